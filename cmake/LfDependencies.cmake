@@ -1,0 +1,21 @@
+# Every third-party library the project uses, found in one place (DESIGN.md section 3).
+# A folder names the ones it needs under LIBS.
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(Threads REQUIRED)
+find_package(TBB REQUIRED)
+find_package(yaml-cpp 0.7 REQUIRED)
+find_package(nlohmann_json 3 REQUIRED)
+find_package(fmt 9 REQUIRED)
+find_package(CLI11 2 REQUIRED)
+if(LF_TESTS)
+  find_package(GTest REQUIRED)
+endif()
+
+# OpenImageIO by its library: Debian's CMake package also asks for the development
+# packages of everything OpenImageIO was built with, which none of our code touches.
+find_path(LF_OIIO_INCLUDE OpenImageIO/imageio.h REQUIRED)
+find_library(LF_OIIO_LIBRARY OpenImageIO REQUIRED)
+find_library(LF_OIIO_UTIL_LIBRARY OpenImageIO_Util REQUIRED)
+add_library(lf_oiio INTERFACE)
+target_include_directories(lf_oiio SYSTEM INTERFACE ${LF_OIIO_INCLUDE})
+target_link_libraries(lf_oiio INTERFACE ${LF_OIIO_LIBRARY} ${LF_OIIO_UTIL_LIBRARY})

@@ -1,0 +1,93 @@
+# The compiler settings of everything we compile. -ffp-contract=off: the same bits on every
+# target need that no multiply-add is fused behind our back (doc/ray.md, "Same bits").
+add_library(lf_options INTERFACE)
+target_compile_features(lf_options INTERFACE cxx_std_20)
+target_compile_options(lf_options INTERFACE -ffp-contract=off -Wall -Wextra -Wshadow
+                                            -Wnon-virtual-dtor)
+target_include_directories(lf_options INTERFACE ${PROJECT_SOURCE_DIR})
+if(LF_WERROR)
+  target_compile_options(lf_options INTERFACE -Werror)
+endif()
+if(LF_SANITIZE)
+  target_compile_options(lf_options INTERFACE -fsanitize=${LF_SANITIZE} -fno-omit-frame-pointer
+                                              -fno-sanitize-recover=all)
+  target_link_options(lf_options INTERFACE -fsanitize=${LF_SANITIZE})
+endif()
+if(LF_FUZZ)
+  # Coverage for libFuzzer everywhere; the fuzz targets alone link its main.
+  target_compile_options(lf_options INTERFACE -fsanitize=fuzzer-no-link)
+  target_link_options(lf_options INTERFACE -fsanitize=fuzzer-no-link)
+endif()
+
+# The umbrella users link.
+add_library(lfrendertools INTERFACE)
+add_library(lfrendertools::lfrendertools ALIAS lfrendertools)
+
+# lf_folder(name SOURCES ... DEPENDS ... [LIBS ...] [PUBLIC_LIBS ...] [TESTS ...] [TEST_LIBS ...]
+#           [FUZZ ...] [BENCH ...])
+#
+# One folder of lf/ as the static library lf_<name>.
+#   SOURCES      the .cc files
+#   DEPENDS      the folders it may include (doc/design.md; checked by scripts/check_includes.py)
+#   LIBS         third-party targets its .cc files need;  PUBLIC_LIBS: its headers too
+#   TESTS        x_test.cc files: one program per folder, every test known to ctest
+#   FUZZ         x_fuzz.cc files: libFuzzer programs with LF_FUZZ, and in every build a replay of
+#                fuzz/corpus/<x>/ as a test
+#   BENCH        x_bench.cc files, built with LF_BENCH
+function(lf_folder name)
+  cmake_parse_arguments(F "" "" "SOURCES;DEPENDS;LIBS;PUBLIC_LIBS;TESTS;TEST_LIBS;FUZZ;BENCH"
+                        ${ARGN})
+  if(F_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "lf_folder(${name}): unknown words: ${F_UNPARSED_ARGUMENTS}")
+  endif()
+  list(TRANSFORM F_DEPENDS PREPEND lf_)
+  set(target lf_${name})
+  if(F_SOURCES)
+    add_library(${target} STATIC ${F_SOURCES})
+    target_link_libraries(${target} PUBLIC lf_options Eigen3::Eigen ${F_DEPENDS} ${F_PUBLIC_LIBS}
+                                    PRIVATE ${F_LIBS})
+  else()
+    add_library(${target} INTERFACE)
+    target_link_libraries(${target} INTERFACE lf_options Eigen3::Eigen ${F_DEPENDS})
+  endif()
+  add_library(lf::${name} ALIAS ${target})
+  target_link_libraries(lfrendertools INTERFACE ${target})
+
+  if(LF_TESTS AND F_TESTS)
+    add_executable(${target}_test ${F_TESTS})
+    target_link_libraries(${target}_test PRIVATE ${target} ${F_TEST_LIBS} GTest::gtest_main)
+    gtest_discover_tests(${target}_test TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60)
+  endif()
+  foreach(fuzz_source ${F_FUZZ})
+    lf_fuzz(${target} ${fuzz_source})
+  endforeach()
+  if(LF_BENCH AND F_BENCH)
+    find_package(benchmark REQUIRED)
+    add_executable(${target}_bench ${F_BENCH})
+    target_link_libraries(${target}_bench PRIVATE ${target} benchmark::benchmark_main)
+  endif()
+endfunction()
+
+# x_fuzz.cc -> program x_fuzz, and a test that replays fuzz/corpus/x/.
+function(lf_fuzz target source)
+  get_filename_component(fuzz_target ${source} NAME_WE)
+  string(REGEX REPLACE "_fuzz$" "" subject ${fuzz_target})
+  set(corpus ${PROJECT_SOURCE_DIR}/fuzz/corpus/${subject})
+  if(LF_FUZZ)
+    add_executable(${fuzz_target} ${source})
+    target_link_options(${fuzz_target} PRIVATE -fsanitize=fuzzer)
+    target_link_libraries(${fuzz_target} PRIVATE ${target})
+  elseif(LF_TESTS)
+    add_executable(${fuzz_target} ${source} ${PROJECT_SOURCE_DIR}/fuzz/replay_main.cc)
+    target_link_libraries(${fuzz_target} PRIVATE ${target})
+    add_test(NAME fuzz.${subject}_replays_its_corpus COMMAND ${fuzz_target} ${corpus})
+  endif()
+endfunction()
+
+# lf_tool(name [LIBS ...]): the program tools/<name>.cc.
+function(lf_tool name)
+  cmake_parse_arguments(T "" "" "LIBS" ${ARGN})
+  add_executable(${name} ${name}.cc)
+  target_link_libraries(${name} PRIVATE lf_tool_common ${T_LIBS})
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+endfunction()

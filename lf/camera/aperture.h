@@ -1,0 +1,49 @@
+// The opening of the lens: a disk, or the regular polygon of a few blades inscribed in it
+// (thesis 4.3.3, "Simulating Aperture Shapes").
+//
+// Lens coordinates: origin at the lens centre, right and up as the photographer behind the camera
+// sees them, world units.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "lf/core/geometry.h"
+
+namespace lf {
+
+struct Aperture {
+  double radius_w = 0;      // of the circumscribed circle; 0 is a pinhole
+  int blades = 0;           // 0: disk; >= 3: polygon with a vertex straight up at rotation 0
+  double rotation_rad = 0;  // counter-clockwise as the photographer sees it (right towards up)
+};
+
+// The rim is inside: cameras of regular grids sit exactly on it. Squared lengths within this
+// relative margin of the rim are accepted, edges within half of it (doc/ray.md).
+inline constexpr double kRimTolerance = 1e-9;
+
+// One edge of the opening: normal . l <= distance_w for every l inside; |normal| = 1.
+struct ApertureEdge {
+  Vec2 normal = Vec2::UnitX();
+  double distance_w = 0;
+};
+
+// Whether the opening, rim included, holds the point (right, up).
+bool Contains(const Aperture& aperture, const Vec2& point_lens);
+
+// Vertices of the polygon, counter-clockwise; empty for a disk.
+std::vector<Vec2> Vertices(const Aperture& aperture);
+
+// Edges of the polygon; for a disk those of the circumscribed regular polygon of
+// `disk_edge_count` edges, which holds the disk.
+std::vector<ApertureEdge> Edges(const Aperture& aperture, int disk_edge_count = 16);
+
+// Area of the opening in squared world units.
+double Area(const Aperture& aperture);
+
+// `count` points spread uniformly over the opening: the R2 low-discrepancy sequence shifted by
+// `seed`, mapped to the disk by (sqrt(r) cos, sqrt(r) sin) (thesis Eq. 4.7), and to polygons by
+// triangles of equal area. The same points for the same arguments, everywhere.
+std::vector<Vec2> SampleLens(const Aperture& aperture, int count, uint64_t seed = 0);
+
+}  // namespace lf

@@ -1,0 +1,51 @@
+// The pinhole camera (thesis 2.2.2-2.2.4): every LF camera, and the render camera through the
+// centre of its lens.
+#pragma once
+
+#include <optional>
+
+#include "lf/camera/ray.h"
+#include "lf/core/geometry.h"
+
+namespace lf {
+
+// The calibration matrix K (thesis Eq. 2.5) and the size of the image, in pixels. Continuous pixel
+// coordinates: the centre of the upper left pixel is (0.5, 0.5).
+struct Intrinsics {
+  double fx_px = 1;
+  double fy_px = 1;
+  double cx_px = 0;
+  double cy_px = 0;
+  double skew_px = 0;
+  int width_px = 0;
+  int height_px = 0;
+
+  Mat3 Matrix() const;
+  Mat3 InverseMatrix() const;  // exact form; fx and fy must not be 0
+  friend bool operator==(const Intrinsics&, const Intrinsics&) = default;
+};
+
+struct PinholeCamera {
+  Intrinsics intrinsics;
+  RigidTransform cam_from_world;
+
+  // c = -R^T t
+  Vec3 CentreWorld() const { return cam_from_world.Inverse().translation; }
+  Vec3 RightWorld() const { return cam_from_world.rotation.row(0).transpose(); }
+  Vec3 UpWorld() const { return -cam_from_world.rotation.row(1).transpose(); }
+  Vec3 ForwardWorld() const { return cam_from_world.rotation.row(2).transpose(); }
+};
+
+// The camera at `centre` that looks along `forward`, with `up` in the upper half of its image.
+// None if forward is 0, or up is parallel to it.
+std::optional<RigidTransform> LookAlong(const Vec3& centre_world, const Vec3& forward_world,
+                                        const Vec3& up_world);
+
+// The ray through continuous pixel position (x, y): p_camera = K^-1 p (thesis Eq. 4.1, 4.2). Its
+// direction has length 1 along the optical axis, so Ray::At(z) is the point at depth z.
+Ray RayOfPixel(const PinholeCamera& camera, double x_px, double y_px);
+
+// P = K [R|t] (thesis Eq. 2.6, 2.7). None for points at depth 0 or behind the camera.
+std::optional<Vec2> Project(const PinholeCamera& camera, const Vec3& point_world);
+
+}  // namespace lf

@@ -1,0 +1,22 @@
+// Rays are lines: what a light field camera recorded along a direction it recorded wherever the
+// ray is cut (thesis 2.1.1).
+#pragma once
+
+#include <optional>
+
+#include "lf/core/geometry.h"
+
+namespace lf {
+
+struct Ray {
+  Vec3 origin = Vec3::Zero();
+  Vec3 direction = Vec3::UnitZ();  // any length but 0
+
+  Vec3 At(double lambda) const { return origin + lambda * direction; }
+};
+
+// The point of the line through `ray` on `plane`, before or behind the origin; none if the ray is
+// parallel to the plane.
+std::optional<Vec3> IntersectLine(const Ray& ray, const Plane& plane);
+
+}  // namespace lf

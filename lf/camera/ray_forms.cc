@@ -1,0 +1,56 @@
+#include "lf/camera/ray_forms.h"
+
+#include "lf/core/check.h"
+
+namespace lf {
+
+RayForms MakeRayForms(const PinholeCamera& lf_camera, const RenderCamera& render_camera) {
+  const Mat3 direction =
+      lf_camera.cam_from_world.rotation.transpose() * lf_camera.intrinsics.InverseMatrix();
+  const Vec3 c = lf_camera.CentreWorld();
+  const PinholeCamera& plate = render_camera.pinhole;
+  const Vec3 offset = c - plate.CentreWorld();
+  const Vec3 f = plate.ForwardWorld();
+  const Vec3& n = render_camera.focus_plane.normal;
+  const double h = render_camera.focus_plane.offset_w;
+
+  // (X - c') n.d = [ (c - c') n^T + (h - n.c) I ] d
+  const Mat3 focus = offset * n.transpose() + (h - n.dot(c)) * Mat3::Identity();
+  const Mat3 sensor = plate.intrinsics.Matrix() * plate.cam_from_world.rotation * focus * direction;
+  // (lens point - c') f.d = M d
+  const Mat3 lens = offset * f.transpose() - f.dot(offset) * Mat3::Identity();
+
+  RayForms forms;
+  forms.forward = f.transpose() * direction;
+  forms.plane = n.transpose() * direction;
+  forms.sensor_x = sensor.row(0);
+  forms.sensor_y = sensor.row(1);
+  forms.front = sensor.row(2);
+  forms.lens_right = plate.RightWorld().transpose() * lens * direction;
+  forms.lens_up = plate.UpWorld().transpose() * lens * direction;
+  return forms;
+}
+
+std::vector<PixelForm> RayHalfPlanes(const RayForms& forms, const RenderCamera& render_camera,
+                                     int plane_sign, const HalfPlaneMargins& margins) {
+  LF_CHECK(plane_sign == 1 || plane_sign == -1);
+  const double s = plane_sign;
+  const Intrinsics& plate = render_camera.pinhole.intrinsics;
+  const double margin = margins.element_px;
+  std::vector<PixelForm> half_planes = {
+      -forms.forward,
+      -s * forms.plane,
+      -s * forms.front,
+      -s * (forms.sensor_x + margin * forms.front),
+      s * (forms.sensor_x - (plate.width_px + margin) * forms.front),
+      -s * (forms.sensor_y + margin * forms.front),
+      s * (forms.sensor_y - (plate.height_px + margin) * forms.front),
+  };
+  const double lens_margin_w = margins.lens_relative * render_camera.aperture.radius_w;
+  for (const ApertureEdge& edge : Edges(render_camera.aperture))
+    half_planes.push_back(edge.normal.x() * forms.lens_right + edge.normal.y() * forms.lens_up -
+                          (edge.distance_w + lens_margin_w) * forms.forward);
+  return half_planes;
+}
+
+}  // namespace lf

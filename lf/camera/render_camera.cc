@@ -1,0 +1,29 @@
+#include "lf/camera/render_camera.h"
+
+#include <cmath>
+
+namespace lf {
+
+Plane FocusPlane(const PinholeCamera& camera, double focus_distance_w, const FocusTilt& tilt) {
+  // z = g + x tan(h) + u tan(v) with u = -y:  (-tan h, tan v, 1) . X_camera = g
+  const Vec3 normal_camera(-std::tan(tilt.horizontal_rad), std::tan(tilt.vertical_rad), 1);
+  const Vec3 normal_world = camera.cam_from_world.rotation.transpose() * normal_camera.normalized();
+  const Vec3 on_axis = camera.CentreWorld() + focus_distance_w * camera.ForwardWorld();
+  return {normal_world, normal_world.dot(on_axis)};
+}
+
+Vec3 LensPointWorld(const RenderCamera& camera, const Vec2& point_lens) {
+  return camera.pinhole.CentreWorld() + point_lens.x() * camera.pinhole.RightWorld() +
+         point_lens.y() * camera.pinhole.UpWorld();
+}
+
+std::optional<Vec3> FocusPointOfElement(const RenderCamera& camera, double x_px, double y_px) {
+  const Ray ray = RayOfPixel(camera.pinhole, x_px, y_px);
+  const std::optional<Vec3> point = IntersectLine(ray, camera.focus_plane);
+  if (!point) return std::nullopt;
+  const double depth = camera.pinhole.ForwardWorld().dot(*point - ray.origin);
+  if (!(depth > 0)) return std::nullopt;
+  return point;
+}
+
+}  // namespace lf

@@ -1,0 +1,39 @@
+#include "lf/camera/thin_lens.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+namespace lf {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Result<double> ImageDistance(double focal_length_w, double focus_distance_w) {
+  if (!(focal_length_w > 0))
+    return InputError(fmt::format("focal length {} is not positive", focal_length_w));
+  if (!(focus_distance_w > focal_length_w))
+    return InputError(fmt::format(
+        "focus distance {} must exceed the focal length {}: the lens forms no real image closer",
+        focus_distance_w, focal_length_w));
+  if (std::isinf(focus_distance_w)) return focal_length_w;
+  return focal_length_w * focus_distance_w / (focus_distance_w - focal_length_w);
+}
+
+double FNumber(double focal_length_w, double aperture_diameter_w) {
+  return aperture_diameter_w > 0 ? focal_length_w / aperture_diameter_w : kInfinity;
+}
+
+double BlurOnFocusPlane(double aperture_diameter_w, double focus_distance_w, double depth_w) {
+  return aperture_diameter_w * std::abs(depth_w - focus_distance_w) / depth_w;
+}
+
+DepthRange DepthOfField(double aperture_diameter_w, double focus_distance_w, double blur_limit_w) {
+  // d |z - g| / z <= c  <=>  d g / (d + c) <= z <= d g / (d - c)
+  const double d = aperture_diameter_w;
+  const double c = blur_limit_w;
+  if (!(d > 0)) return {0, kInfinity};
+  return {d * focus_distance_w / (d + c), d > c ? d * focus_distance_w / (d - c) : kInfinity};
+}
+
+}  // namespace lf

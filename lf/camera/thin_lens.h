@@ -1,0 +1,35 @@
+// The thin lens (thesis 2.2.5, 2.2.6): pure formulas, lengths in world units.
+#pragma once
+
+#include "lf/core/result.h"
+
+namespace lf {
+
+// Distance behind the lens at which a point on the focus plane is imaged sharply.
+//
+//   1/f = 1/g + 1/b                                     (thesis Eq. 2.8)
+//
+// focal_length_w    f > 0
+// focus_distance_w  g, from the lens to the focus plane; must exceed f
+// Returns b. kInput if g <= f: the lens then forms no real image.
+Result<double> ImageDistance(double focal_length_w, double focus_distance_w);
+
+// N = f / d                                             (thesis Eq. 2.11); infinite for a pinhole.
+double FNumber(double focal_length_w, double aperture_diameter_w);
+
+// Diameter on the focus plane, in world units there, of the blur of a point at depth z when the
+// lens of diameter d is focused at depth g:  d |z - g| / z. Times the plate's elements per world
+// unit at the focus plane (fx / g) it is the circle of confusion in elements (thesis Eq. 2.9 seen
+// from the object side).
+double BlurOnFocusPlane(double aperture_diameter_w, double focus_distance_w, double depth_w);
+
+struct DepthRange {
+  double near_w = 0;
+  double far_w = 0;  // infinity beyond the hyperfocal distance
+};
+
+// The depths whose blur on the focus plane stays within `blur_limit_w`, world units there: exact
+// where thesis Eq. 2.10 is the approximation for g >> f. [0, infinity) for a pinhole.
+DepthRange DepthOfField(double aperture_diameter_w, double focus_distance_w, double blur_limit_w);
+
+}  // namespace lf

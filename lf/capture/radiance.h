@@ -1,0 +1,53 @@
+// From stored numbers to light: the table of RAY.md, "What is added".
+//
+// Radiance is linear light, 1 = display white. A kernel sees it as a 16-bit integer
+//   v = clip(round(radiance * gain * scale) + pedestal, 0, 65535)
+// with one scale and one pedestal for the whole light field, so that sums of any images add.
+// Values below black are noise that must average to black: the pedestal keeps them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "lf/core/geometry.h"
+#include "lf/core/image.h"
+
+namespace lf {
+
+enum class Transfer : uint8_t {
+  kSrgb,      // IEC 61966-2-1
+  kLinear,    // (stored - black) / (white - black)
+  kResponse,  // a measured curve: linear radiance at evenly spaced stored values
+};
+
+// How the pixels of a light field are stored (keys lf_*, doc/formats/transforms_json.md).
+// Float files hold radiance itself: transfer and levels do not apply to them.
+struct RadianceEncoding {
+  BayerPattern bayer = BayerPattern::kNone;
+  Transfer transfer = Transfer::kSrgb;
+  std::vector<double> response;       // kResponse: radiance at black .. white, evenly spaced, >= 2
+  double black_level = 0;             // stored value of no light
+  std::optional<double> white_level;  // stored value of radiance 1; default: the largest storable
+  double max_radiance = 1;            // radiance (after gain) that v = 65535 stands for
+  double pedestal = 0;                // v of no light: 1024 for raw data, 0 otherwise
+  std::array<double, 3> white_balance = {1, 1, 1};  // applied on developing
+  Mat3 camera_to_srgb = Mat3::Identity();           // linear sRGB = M * white balanced camera RGB
+
+  // v per unit of radiance.
+  double Scale() const { return (65535 - pedestal) / max_radiance; }
+};
+
+// Linear light of an sRGB value in [0, 1], and back.
+double LinearFromSrgb(double srgb);
+double SrgbFromLinear(double linear);
+
+// v for every stored value of 8 or 16 bit files: 256 or 65536 entries.
+// bits: 8 or 16.
+std::vector<uint16_t> RadianceTable(const RadianceEncoding& encoding, int bits, double gain);
+
+// v of a float file's radiance. NaN gives the pedestal.
+uint16_t QuantizeRadiance(const RadianceEncoding& encoding, double radiance, double gain);
+
+}  // namespace lf

@@ -1,0 +1,113 @@
+#include "lf/core/file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+class FileDescriptor {
+ public:
+  explicit FileDescriptor(int fd) : fd_(fd) {}
+  ~FileDescriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  FileDescriptor(const FileDescriptor&) = delete;
+  FileDescriptor& operator=(const FileDescriptor&) = delete;
+  int get() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
+std::string SystemReason() { return std::strerror(errno); }
+
+Result<void> FlushToDisk(const fs::path& path) {
+  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (file.get() < 0 || ::fsync(file.get()) != 0)
+    return OutputError(fmt::format("{}: cannot flush to disk: {}", path.string(), SystemReason()));
+  return {};
+}
+
+fs::path TemporaryName(const fs::path& path) {
+  return path.parent_path() /
+         fmt::format(".{}.{}.tmp{}", path.stem().string(), ::getpid(), path.extension().string());
+}
+
+}  // namespace
+
+Result<std::string> ReadFile(const fs::path& path, size_t limit_bytes) {
+  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  struct stat status {};
+  if (file.get() < 0 || ::fstat(file.get(), &status) != 0)
+    return InputError(fmt::format("{}: cannot be read: {}", path.string(), SystemReason()));
+  if (!S_ISREG(status.st_mode)) return InputError(fmt::format("{}: is not a file", path.string()));
+  if (static_cast<uint64_t>(status.st_size) > limit_bytes)
+    return InputError(
+        fmt::format("{}: has {} bytes, more than the {} allowed for this kind of file",
+                    path.string(), status.st_size, limit_bytes));
+  std::string bytes(static_cast<size_t>(status.st_size), '\0');
+  size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t n = ::read(file.get(), bytes.data() + done, bytes.size() - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0)
+      return InputError(fmt::format("{}: cannot be read: {}", path.string(), SystemReason()));
+    if (n == 0) break;  // became shorter while we read
+    done += static_cast<size_t>(n);
+  }
+  bytes.resize(done);
+  return bytes;
+}
+
+Result<void> WriteFileAtomically(const fs::path& path, std::string_view bytes) {
+  return WriteAtomically(path, [bytes](const fs::path& temporary) -> Result<void> {
+    const FileDescriptor file(
+        ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+    if (file.get() < 0)
+      return OutputError(
+          fmt::format("{}: cannot be created: {}", temporary.string(), SystemReason()));
+    size_t done = 0;
+    while (done < bytes.size()) {
+      const ssize_t n = ::write(file.get(), bytes.data() + done, bytes.size() - done);
+      if (n < 0 && errno == EINTR) continue;
+      if (n < 0)
+        return OutputError(
+            fmt::format("{}: cannot be written: {}", temporary.string(), SystemReason()));
+      done += static_cast<size_t>(n);
+    }
+    return {};
+  });
+}
+
+Result<void> WriteAtomically(const fs::path& path,
+                             const std::function<Result<void>(const fs::path&)>& write) {
+  const fs::path temporary = TemporaryName(path);
+  Result<void> result = write(temporary);
+  if (result) result = FlushToDisk(temporary);
+  if (result && ::rename(temporary.c_str(), path.c_str()) != 0)
+    result =
+        OutputError(fmt::format("{}: cannot be renamed to: {}", path.string(), SystemReason()));
+  // The rename itself is on the disk once its folder is.
+  if (result) result = FlushToDisk(path.has_parent_path() ? path.parent_path() : fs::path("."));
+  if (!result) ::unlink(temporary.c_str());
+  return result;
+}
+
+Result<void> CreateFolder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder))
+    return OutputError(fmt::format("{}: cannot be created as a folder: {}", folder.string(),
+                                   error ? error.message() : "a file has this name"));
+  return {};
+}
+
+}  // namespace lf

@@ -1,0 +1,35 @@
+// Whole files in and out. The only way anything of ours gets its final name on disk.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "lf/core/result.h"
+
+namespace lf {
+
+// The bytes of a file. kInput if it cannot be read or is larger than limit_bytes (checked before
+// anything is allocated).
+Result<std::string> ReadFile(const std::filesystem::path& path,
+                             size_t limit_bytes = size_t{4} << 30);
+
+// Writes a file under a temporary name in the same folder, flushes it to the disk and renames it:
+// readers see the old file or the new one, never a part. After a failure the old file is intact
+// and the temporary one is gone. kOutput with the system's reason (disk full, no permission).
+Result<void> WriteFileAtomically(const std::filesystem::path& path, std::string_view bytes);
+
+// The same for a writer that wants a path: `write` is given the temporary name, which keeps the
+// extension of `path` (libraries choose the format by it).
+Result<void> WriteAtomically(
+    const std::filesystem::path& path,
+    const std::function<Result<void>(const std::filesystem::path&)>& write);
+
+// Creates the folder and its parents. kOutput if that fails or a file has the name.
+Result<void> CreateFolder(const std::filesystem::path& folder);
+
+}  // namespace lf

@@ -1,0 +1,69 @@
+#include "lf/core/file.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+
+namespace lf {
+namespace {
+namespace fs = std::filesystem;
+
+class FileTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ =
+        fs::temp_directory_path() / ("lf_file_test." + std::to_string(::getpid()) + "." +
+                                     testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  size_t FileCount() const {
+    return static_cast<size_t>(std::distance(fs::directory_iterator(folder_), {}));
+  }
+  fs::path folder_;
+};
+
+TEST_F(FileTest, GivesBackWhatWasWritten) {
+  const std::string bytes("light\0field", 11);
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "a.bin", bytes));
+  EXPECT_EQ(*ReadFile(folder_ / "a.bin"), bytes);
+  EXPECT_EQ(FileCount(), 1u);
+}
+
+TEST_F(FileTest, AFailedWriteLeavesTheOldFileAlone) {
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "a.txt", "old"));
+  const Result<void> result =
+      WriteAtomically(folder_ / "a.txt", [](const fs::path& temporary) -> Result<void> {
+        std::ofstream(temporary) << "half of the new";
+        return OutputError("disk full");
+      });
+  EXPECT_EQ(result.error().kind, ErrorKind::kOutput);
+  EXPECT_EQ(*ReadFile(folder_ / "a.txt"), "old");
+  EXPECT_EQ(FileCount(), 1u);
+}
+
+TEST_F(FileTest, TheTemporaryNameKeepsTheExtension) {
+  ASSERT_TRUE(WriteAtomically(folder_ / "a.exr", [](const fs::path& temporary) -> Result<void> {
+    EXPECT_EQ(temporary.extension(), ".exr");
+    std::ofstream(temporary) << "x";
+    return {};
+  }));
+}
+
+TEST_F(FileTest, MissingAndHugeFilesAreErrorsThatNameThem) {
+  EXPECT_NE(ReadFile(folder_ / "none").error().message.find("none"), std::string::npos);
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "big", "123456789"));
+  EXPECT_NE(ReadFile(folder_ / "big", 8).error().message.find("9 bytes"), std::string::npos);
+  EXPECT_FALSE(ReadFile(folder_));
+}
+
+TEST_F(FileTest, AFolderCannotReplaceAFile) {
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "a", "x"));
+  EXPECT_EQ(CreateFolder(folder_ / "a").error().kind, ErrorKind::kOutput);
+  EXPECT_TRUE(CreateFolder(folder_ / "b" / "c"));
+  EXPECT_EQ(WriteFileAtomically(folder_ / "none" / "a", "x").error().kind, ErrorKind::kOutput);
+}
+
+}  // namespace
+}  // namespace lf

@@ -1,0 +1,28 @@
+// Integers that cannot be mixed up.
+#pragma once
+
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+
+namespace lf {
+
+template <class Tag>
+struct Id {
+  uint32_t value = 0;
+  friend auto operator<=>(const Id&, const Id&) = default;
+};
+
+// One photograph of the light field: its index in LightField::cameras.
+using LfImageId = Id<struct LfImageTag>;
+
+// One rendered image of the sequence. Frame numbers start at 1 (frame 1 is time 0).
+using FrameId = Id<struct FrameTag>;
+
+}  // namespace lf
+
+template <class Tag>
+struct std::hash<lf::Id<Tag>> {
+  size_t operator()(lf::Id<Tag> id) const noexcept { return id.value; }
+};

@@ -1,0 +1,84 @@
+// Pixels in memory: [height][width][channels], rows `stride` elements apart.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+#include "lf/core/check.h"
+
+namespace lf {
+
+// A view does not own; it is copied freely and must not outlive the pixels.
+template <class T>
+struct ImageView {
+  T* data = nullptr;
+  int width = 0;
+  int height = 0;
+  int channels = 1;
+  size_t stride = 0;  // elements from one row to the next
+
+  T* row(int y) const {
+    LF_DCHECK(y >= 0 && y < height);
+    return data + static_cast<size_t>(y) * stride;
+  }
+  T& at(int x, int y, int channel = 0) const {
+    LF_DCHECK(x >= 0 && x < width && channel >= 0 && channel < channels);
+    return row(y)[static_cast<size_t>(x) * channels + channel];
+  }
+  bool empty() const { return width == 0 || height == 0; }
+  operator ImageView<const T>() const  // NOLINT: as pointers convert
+      requires(!std::is_const_v<T>) {
+    return {data, width, height, channels, stride};
+  }
+};
+
+template <class T>
+class Image {
+ public:
+  Image() = default;
+  Image(int width, int height, int channels = 1, T fill = T{})
+      : width_(width), height_(height), channels_(channels) {
+    LF_CHECK(width >= 0 && height >= 0 && channels >= 1);
+    pixels_.assign(static_cast<size_t>(width) * height * channels, fill);
+  }
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  int channels() const { return channels_; }
+  bool empty() const { return pixels_.empty(); }
+  size_t size_bytes() const { return pixels_.size() * sizeof(T); }
+  const std::vector<T>& pixels() const { return pixels_; }
+  std::vector<T>& pixels() { return pixels_; }
+
+  ImageView<T> view() {
+    return {pixels_.data(), width_, height_, channels_, static_cast<size_t>(width_) * channels_};
+  }
+  ImageView<const T> view() const {
+    return {pixels_.data(), width_, height_, channels_, static_cast<size_t>(width_) * channels_};
+  }
+  T* row(int y) { return view().row(y); }
+  const T* row(int y) const { return view().row(y); }
+  T& at(int x, int y, int channel = 0) { return view().at(x, y, channel); }
+  const T& at(int x, int y, int channel = 0) const { return view().at(x, y, channel); }
+
+ private:
+  int width_ = 0;
+  int height_ = 0;
+  int channels_ = 1;
+  std::vector<T> pixels_;
+};
+
+// Colour filter of a mosaic sensor: the channels of the upper left 2x2 pixels, row by row.
+// kNone: three channels per pixel.
+enum class BayerPattern : uint8_t { kNone, kRggb, kBggr, kGrbg, kGbrg };
+
+// The channel (0 R, 1 G, 2 B) that a mosaic records at pixel (x, y). Not for kNone.
+inline int BayerChannel(BayerPattern pattern, int x, int y) {
+  constexpr uint8_t kChannels[5][4] = {
+      {0, 0, 0, 0}, {0, 1, 1, 2}, {2, 1, 1, 0}, {1, 0, 2, 1}, {1, 2, 0, 1}};
+  return kChannels[static_cast<int>(pattern)][(y & 1) * 2 + (x & 1)];
+}
+
+}  // namespace lf

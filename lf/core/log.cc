@@ -1,0 +1,46 @@
+#include "lf/core/log.h"
+
+#include <cstdio>
+#include <mutex>
+#include <string>
+
+namespace lf {
+namespace {
+
+std::mutex mutex;
+LogLevel threshold = LogLevel::kInfo;
+bool line_in_progress = false;
+
+void ClearLine() {
+  if (line_in_progress) std::fputs("\r\x1b[K", stderr);
+  line_in_progress = false;
+}
+
+}  // namespace
+
+void SetLogLevel(LogLevel level) {
+  const std::lock_guard lock(mutex);
+  threshold = level;
+}
+
+void LogMessage(LogLevel level, std::string_view message) {
+  const std::lock_guard lock(mutex);
+  if (level < threshold) return;
+  ClearLine();
+  const char* prefix = level == LogLevel::kWarning ? "warning: "
+                       : level == LogLevel::kError ? "error: "
+                                                   : "";
+  std::fputs(fmt::format("{}{}\n", prefix, message).c_str(), stderr);
+  std::fflush(stderr);
+}
+
+void LogProgressLine(std::string_view line) {
+  const std::lock_guard lock(mutex);
+  ClearLine();
+  if (line.empty()) return;
+  std::fputs(std::string(line).c_str(), stderr);
+  std::fflush(stderr);
+  line_in_progress = true;
+}
+
+}  // namespace lf

@@ -1,0 +1,26 @@
+// Counter-based random numbers: the value depends on (seed, stream, index) alone, so it is the
+// same on any thread, in any order, on any machine.
+#pragma once
+
+#include <cstdint>
+
+namespace lf {
+
+// The SplitMix64 finalizer (Steele, Lea, Flood 2014): a bijection that mixes all bits.
+inline uint64_t MixBits(uint64_t x) {
+  x += 0x9e3779b97f4a7c15ULL;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
+  return x ^ (x >> 31);
+}
+
+inline uint64_t RandomBits(uint64_t seed, uint64_t stream, uint64_t index) {
+  return MixBits(MixBits(MixBits(seed) ^ stream) ^ index);
+}
+
+// Uniform in [0, 1).
+inline double RandomUnit(uint64_t seed, uint64_t stream, uint64_t index) {
+  return static_cast<double>(RandomBits(seed, stream, index) >> 11) * 0x1.0p-53;
+}
+
+}  // namespace lf

@@ -1,0 +1,102 @@
+// Errors as values: bad input and failing machines (doc/design.md, "Errors"). Bugs of ours are
+// LF_CHECK's; nothing in the library throws.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "lf/core/check.h"
+
+namespace lf {
+
+// What went wrong, as the exit code a program ends with.
+enum class ErrorKind {
+  kUsage = 2,          // the call itself: options that contradict each other
+  kInput = 3,          // a file or value we were given
+  kOutput = 4,         // writing, disk, memory, a program we call
+  kInterrupted = 5,    // stopped from outside; what is done is kept
+  kBelowRequired = 6,  // finished, but below what was asked for
+};
+
+// The message names file, line or entry, the value found, what was expected and what to do.
+struct Error {
+  ErrorKind kind = ErrorKind::kInput;
+  std::string message;
+};
+
+inline Error UsageError(std::string message) { return {ErrorKind::kUsage, std::move(message)}; }
+inline Error InputError(std::string message) { return {ErrorKind::kInput, std::move(message)}; }
+inline Error OutputError(std::string message) { return {ErrorKind::kOutput, std::move(message)}; }
+
+// A value or the error that prevented it. Shaped like std::expected (C++23).
+template <class T>
+class [[nodiscard]] Result {
+ public:
+  Result(T value) : state_(std::move(value)) {}      // NOLINT: implicit on purpose
+  Result(Error error) : state_(std::move(error)) {}  // NOLINT
+
+  bool has_value() const { return state_.index() == 0; }
+  explicit operator bool() const { return has_value(); }
+
+  const T& value() const& {
+    LF_CHECK(has_value());
+    return std::get<0>(state_);
+  }
+  T& value() & {
+    LF_CHECK(has_value());
+    return std::get<0>(state_);
+  }
+  T&& value() && {
+    LF_CHECK(has_value());
+    return std::get<0>(std::move(state_));
+  }
+  const T& operator*() const& { return value(); }
+  T& operator*() & { return value(); }
+  T&& operator*() && { return std::move(*this).value(); }
+  const T* operator->() const { return &value(); }
+  T* operator->() { return &value(); }
+
+  const Error& error() const {
+    LF_CHECK(!has_value());
+    return std::get<1>(state_);
+  }
+
+ private:
+  std::variant<T, Error> state_;
+};
+
+template <>
+class [[nodiscard]] Result<void> {
+ public:
+  Result() = default;
+  Result(Error error) : error_(std::move(error)) {}  // NOLINT
+  bool has_value() const { return !error_; }
+  explicit operator bool() const { return has_value(); }
+  const Error& error() const {
+    LF_CHECK(error_.has_value());
+    return *error_;
+  }
+
+ private:
+  std::optional<Error> error_;
+};
+
+// Returns the error of `expression` from the calling function, if it has one.
+#define LF_RETURN_IF_ERROR(expression)                                       \
+  do {                                                                       \
+    if (auto lf_result = (expression); !lf_result) return lf_result.error(); \
+  } while (false)
+
+// LF_ASSIGN_OR_RETURN(auto image, ReadImage(path));
+#define LF_ASSIGN_OR_RETURN(declaration, expression) \
+  LF_ASSIGN_OR_RETURN_(LF_CONCAT_(lf_result_, __LINE__), declaration, expression)
+#define LF_ASSIGN_OR_RETURN_(result, declaration, expression) \
+  auto result = (expression);                                 \
+  if (!result) return result.error();                         \
+  declaration = *std::move(result)
+#define LF_CONCAT_(a, b) LF_CONCAT_2_(a, b)
+#define LF_CONCAT_2_(a, b) a##b
+
+}  // namespace lf

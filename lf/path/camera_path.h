@@ -1,0 +1,24 @@
+// The camera movement, evaluated: one thin-lens camera per frame (thesis 4.5.1).
+#pragma once
+
+#include <vector>
+
+#include "lf/camera/render_camera.h"
+#include "lf/core/check.h"
+#include "lf/core/ids.h"
+
+namespace lf {
+
+struct CameraPath {
+  double fps = 30;
+  double unit_m = 1;                  // metres per world unit
+  std::vector<RenderCamera> cameras;  // of frames 1, 2, ...; frame 1 is time 0
+
+  size_t frame_count() const { return cameras.size(); }
+  const RenderCamera& Camera(FrameId frame) const {
+    LF_CHECK(frame.value >= 1 && frame.value <= cameras.size());
+    return cameras[frame.value - 1];
+  }
+};
+
+}  // namespace lf

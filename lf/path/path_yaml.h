@@ -1,0 +1,24 @@
+// The camera path file (doc/formats/path.md). The only place with yaml-cpp.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string_view>
+
+#include "lf/core/result.h"
+#include "lf/path/camera_path.h"
+
+namespace lf {
+
+// text                the file's content
+// name                its name for messages: "path.yaml:12:5: ..."
+// light_field_unit_m  metres per world unit of the light field, if there is one; a path that
+//                     states another is an error. Without it the path's own, else 1.
+// kInput: every key is checked; messages carry file:line:column, the value found, the allowed keys
+// and, for a misspelt one, the nearest.
+Result<CameraPath> ParsePathYaml(std::string_view text, std::string_view name,
+                                 std::optional<double> light_field_unit_m);
+Result<CameraPath> ReadPathYaml(const std::filesystem::path& path,
+                                std::optional<double> light_field_unit_m);
+
+}  // namespace lf

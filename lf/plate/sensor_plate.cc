@@ -1,0 +1,108 @@
+#include "lf/plate/sensor_plate.h"
+
+#include <algorithm>
+
+namespace lf {
+namespace {
+
+uint32_t CountOf(uint64_t word) { return static_cast<uint32_t>(word >> SensorPlate::kSumBits); }
+ElementSum Unpack(uint64_t word) { return {word & SensorPlate::kSumMask, CountOf(word)}; }
+
+}  // namespace
+
+SensorPlate::SensorPlate(int width, int height, uint32_t count_limit)
+    : width_(width),
+      height_(height),
+      count_limit_(count_limit),
+      packed_(static_cast<size_t>(width) * height * kChannels),
+      wide_mutex_(std::make_unique<std::mutex>()) {
+  LF_CHECK(count_limit >= 1 && count_limit <= kMaxCount);
+}
+SensorPlate::SensorPlate(SensorPlate&&) noexcept = default;
+SensorPlate& SensorPlate::operator=(SensorPlate&&) noexcept = default;
+SensorPlate::~SensorPlate() = default;
+
+size_t SensorPlate::size_bytes() const {
+  constexpr size_t kMapNodeBytes = 64;
+  return packed_.size() * sizeof(uint64_t) + wide_.size() * kMapNodeBytes;
+}
+
+ElementSum SensorPlate::At(int x, int y, int channel) const {
+  const size_t index = (static_cast<size_t>(y) * width_ + x) * kChannels + channel;
+  ElementSum total = Unpack(packed_[index]);
+  if (const auto wide = wide_.find(index); wide != wide_.end()) {
+    total.sum += wide->second.sum;
+    total.count += wide->second.count;
+  }
+  return total;
+}
+
+void SensorPlate::AddRay(int x, int y, int channel, uint16_t v) { Add(x, y, channel, {v, 1}); }
+
+void SensorPlate::Add(int x, int y, int channel, const ElementSum& rays) {
+  LF_DCHECK(rays.sum <= 65535 * rays.count);
+  const size_t index = (static_cast<size_t>(y) * width_ + x) * kChannels + channel;
+  const ElementSum packed = Unpack(packed_[index]);
+  if (packed.count + rays.count <= count_limit_) {
+    packed_[index] += rays.count * kOneRay + rays.sum;
+    return;
+  }
+  const std::lock_guard lock(*wide_mutex_);
+  ElementSum& wide = wide_[index];
+  wide.sum += packed.sum + rays.sum;
+  wide.count += packed.count + rays.count;
+  packed_[index] = 0;
+}
+
+void SensorPlate::Merge(const SensorPlate& other) {
+  LF_CHECK(width_ == other.width_ && height_ == other.height_);
+  for (int y = 0; y < height_; ++y)
+    for (int x = 0; x < width_; ++x)
+      for (int channel = 0; channel < kChannels; ++channel)
+        if (const ElementSum rays = other.At(x, y, channel); rays.count > 0)
+          Add(x, y, channel, rays);
+}
+
+bool operator==(const SensorPlate& a, const SensorPlate& b) {
+  if (a.width_ != b.width_ || a.height_ != b.height_) return false;
+  if (a.wide_.empty() && b.wide_.empty()) return a.packed_ == b.packed_;
+  for (int y = 0; y < a.height_; ++y)
+    for (int x = 0; x < a.width_; ++x)
+      for (int channel = 0; channel < SensorPlate::kChannels; ++channel)
+        if (a.At(x, y, channel) != b.At(x, y, channel)) return false;
+  return true;
+}
+
+uint32_t SensorPlate::Promote(int y_begin, int y_end, uint32_t count_kept) {
+  const size_t row_words = static_cast<size_t>(width_) * kChannels;
+  uint32_t largest = 0;
+  for (size_t i = y_begin * row_words; i < y_end * row_words; ++i) {
+    const uint32_t count = CountOf(packed_[i]);
+    if (count <= count_kept) {
+      largest = std::max(largest, count);
+      continue;
+    }
+    const std::lock_guard lock(*wide_mutex_);
+    ElementSum& wide = wide_[i];
+    const ElementSum packed = Unpack(packed_[i]);
+    wide.sum += packed.sum;
+    wide.count += packed.count;
+    packed_[i] = 0;
+  }
+  return largest;
+}
+
+PlateBand::PlateBand(SensorPlate* plate, int y_begin, int y_end)
+    : plate_(plate), y_begin_(y_begin), y_end_(y_end) {
+  LF_CHECK(y_begin >= 0 && y_begin <= y_end && y_end <= plate->height());
+}
+
+void PlateBand::MakeRoom(uint32_t rays) {
+  LF_CHECK(rays <= max_reserve());
+  // What was reserved and not used comes back: the true largest count decides.
+  const uint32_t limit = plate_->count_limit_;
+  const uint32_t largest = plate_->Promote(y_begin_, y_end_, limit - rays);
+  headroom_ = limit - largest;
+}
+
+}  // namespace lf

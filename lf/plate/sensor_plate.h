@@ -1,0 +1,112 @@
+// The synthetic sensor plate of one frame: sum and count of the rays of every element and channel
+// (thesis 4.3.1), exact.
+//
+// One 64-bit word per element and channel, [height][width][3], R G B: the upper 24 bits count rays,
+// the lower 40 hold the sum of their 16-bit values. A ray is one addition of
+// kOneRay | value; integer addition commutes, so the plate has the same bits for any order, any
+// number of threads and any split of the work. 2^24 - 1 rays of value 65535 just fit; before an
+// element could exceed that, its content moves to a side table of wide words. Nothing wraps.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "lf/core/check.h"
+
+namespace lf {
+
+struct ElementSum {
+  uint64_t sum = 0;    // of the rays' values v
+  uint64_t count = 0;  // of rays
+  friend bool operator==(const ElementSum&, const ElementSum&) = default;
+};
+
+class SensorPlate {
+ public:
+  static constexpr int kChannels = 3;
+  static constexpr int kSumBits = 40;
+  static constexpr uint64_t kOneRay = uint64_t{1} << kSumBits;
+  static constexpr uint64_t kSumMask = kOneRay - 1;
+  static constexpr uint32_t kMaxCount = (1u << 24) - 1;
+
+  // count_limit: the largest count a packed word may hold; below kMaxCount for tests only.
+  SensorPlate(int width, int height, uint32_t count_limit = kMaxCount);
+  SensorPlate(SensorPlate&&) noexcept;
+  SensorPlate& operator=(SensorPlate&&) noexcept;
+  ~SensorPlate();
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  size_t size_bytes() const;
+
+  // Sum and count of one element and channel, wherever they are kept.
+  ElementSum At(int x, int y, int channel) const;
+
+  // Adds one ray of value v. Checked against overflow; for references and tests.
+  void AddRay(int x, int y, int channel, uint16_t v);
+
+  // Adds any sum of rays. sum <= 65535 * count.
+  void Add(int x, int y, int channel, const ElementSum& rays);
+
+  // Adds another plate of the same size.
+  void Merge(const SensorPlate& other);
+
+  // The same sums and counts everywhere, however they are kept.
+  friend bool operator==(const SensorPlate& a, const SensorPlate& b);
+
+ private:
+  friend class PlateBand;
+  // Moves packed words of rows [y_begin, y_end) whose count exceeds `count_kept` to the wide
+  // table. Returns the largest count still packed there.
+  uint32_t Promote(int y_begin, int y_end, uint32_t count_kept);
+
+  int width_;
+  int height_;
+  uint32_t count_limit_;
+  std::vector<uint64_t> packed_;
+  // Totals are packed + wide. Rare, so one lock does for all bands.
+  std::map<size_t, ElementSum> wide_;
+  std::unique_ptr<std::mutex> wide_mutex_;
+};
+
+// Rows [y_begin, y_end) of a plate as a kernel writes them. One thread owns a band at a time;
+// bands of one plate that do not overlap may be written at the same time.
+class PlateBand {
+ public:
+  PlateBand(SensorPlate* plate, int y_begin, int y_end);
+
+  int width() const { return plate_->width_; }
+  int y_begin() const { return y_begin_; }
+  int y_end() const { return y_end_; }
+
+  // Words of row y, [width][3].
+  uint64_t* row(int y) {
+    LF_DCHECK(y >= y_begin_ && y < y_end_);
+    return plate_->packed_.data() +
+           static_cast<size_t>(y) * plate_->width_ * SensorPlate::kChannels;
+  }
+
+  // The most rays one Reserve() can be asked for.
+  uint32_t max_reserve() const { return plate_->count_limit_; }
+
+  // Afterwards `rays` more rays may be added to the band's words, even all to the same one,
+  // without overflow. rays <= max_reserve(). Almost always one comparison.
+  void Reserve(uint32_t rays) {
+    if (rays > headroom_) MakeRoom(rays);
+    headroom_ -= rays;
+  }
+
+ private:
+  void MakeRoom(uint32_t rays);
+
+  SensorPlate* plate_;
+  int y_begin_;
+  int y_end_;
+  uint32_t headroom_ = 0;
+};
+
+}  // namespace lf

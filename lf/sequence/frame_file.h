@@ -1,0 +1,37 @@
+// One finished frame as one file, and the pictures made of many.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "lf/core/ids.h"
+#include "lf/core/result.h"
+#include "lf/imageio/image_file.h"
+#include "lf/sequence/develop.h"
+
+namespace lf {
+
+enum class FrameFormat {
+  kExrHalf,   // exr: R G B count.R count.G count.B coverage; colours half, counts 32-bit integers
+  kExrFloat,  // exr-float: the same, colours float
+  kPng8,      // png: sRGB
+  kPng16,     // png16: sRGB, 16 bit
+};
+
+// "exr", "exr-float", "png", "png16"; none for anything else.
+std::optional<FrameFormat> ParseFrameFormat(std::string_view name);
+
+// DIR/frame_0001.exr
+std::filesystem::path FramePath(const std::filesystem::path& folder, FrameId frame,
+                                FrameFormat format);
+
+// Atomic; metadata goes into the file (EXR attributes, PNG text).
+Result<void> WriteFrame(const std::filesystem::path& path, const DevelopedFrame& frame,
+                        FrameFormat format, const ImageMetadata& metadata);
+
+// A frame's picture as 8-bit sRGB, [height][width][3], for contact sheets and video.
+Image<uint8_t> DisplayImage(const DevelopedFrame& frame);
+
+}  // namespace lf

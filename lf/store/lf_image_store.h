@@ -1,0 +1,22 @@
+// Where the pixels of LF images come from. A terabyte is never in memory: one image at a time.
+#pragma once
+
+#include "lf/capture/lf_pixels.h"
+#include "lf/core/geometry.h"
+#include "lf/core/ids.h"
+#include "lf/core/result.h"
+
+namespace lf {
+
+class LfImageStore {
+ public:
+  virtual ~LfImageStore() = default;
+
+  // The pixels of one LF image, at least those of `rect` (pixels of the LF image), as linear
+  // 16-bit radiance. May be called by many threads at the same time.
+  // kInput: missing, broken or of another size than the calibration says; the message names the
+  // file. The caller decides whether the run goes on without it.
+  virtual Result<LfPixels> Load(LfImageId id, const PixelRect& rect) const = 0;
+};
+
+}  // namespace lf

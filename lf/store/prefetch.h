@@ -1,0 +1,53 @@
+// Loader threads and a bounded queue: decoding of the next LF images overlaps collection, and no
+// more than a few are in memory (thesis 4.4).
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "lf/core/geometry.h"
+#include "lf/core/ids.h"
+#include "lf/core/result.h"
+#include "lf/store/lf_image_store.h"
+
+namespace lf {
+
+struct LoadRequest {
+  LfImageId id;
+  PixelRect rect;
+};
+
+struct LoadedImage {
+  LfImageId id;
+  Result<LfPixels> pixels;
+};
+
+struct PrefetchOptions {
+  int thread_count = 1;                  // loader threads
+  size_t queue_bytes = size_t{1} << 30;  // decoded images waiting or being decoded, at least one
+  size_t image_bytes_estimate = 0;       // of one decoded image, for the count that fits
+};
+
+// Delivers the requested images in their order. The store must outlive it.
+class Prefetcher {
+ public:
+  Prefetcher(const LfImageStore& store, std::vector<LoadRequest> requests,
+             const PrefetchOptions& options);
+  ~Prefetcher();  // stops the threads, also in the middle
+  Prefetcher(const Prefetcher&) = delete;
+  Prefetcher& operator=(const Prefetcher&) = delete;
+
+  // The next image or its error; none at the end. Waits for it. One caller at a time.
+  std::optional<LoadedImage> Next();
+
+  // CPU seconds spent in Load() so far, all threads.
+  double load_seconds() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace lf

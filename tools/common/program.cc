@@ -1,0 +1,59 @@
+#include "tools/common/program.h"
+
+#include <cstdio>
+#include <new>
+
+#include "lf/core/log.h"
+
+namespace lf {
+
+const char* Version() { return LF_VERSION; }
+
+Program::Program(std::string name, std::string description, std::string examples)
+    : app_(std::move(description), std::move(name)) {
+  app_.footer("\n" + std::move(examples));
+  app_.set_version_flag("--version", app_.get_name() + " " + Version());
+  app_.option_defaults()->always_capture_default();
+  app_.add_option("--threads", common_.threads, "Threads to use; 0: all of the machine's")
+      ->check(CLI::Range(0, 4096))
+      ->group("Common");
+  app_.add_option("--seed", common_.seed, "Seed of everything random")->group("Common");
+  app_.add_flag("--strict", common_.strict, "A broken LF image is an error, not skipped")
+      ->group("Common");
+  app_.add_option("--progress", common_.progress,
+                  "bar, plain, json (one object per line on stderr) or none")
+      ->check(CLI::IsMember({"auto", "bar", "plain", "json", "none"}))
+      ->group("Common");
+  app_.add_flag("-v,--verbose", verbosity_, "Say more")->group("Common");
+  app_.add_flag("-q,--quiet", quiet_, "Say only warnings and errors")->group("Common");
+}
+
+void Program::AddJsonOption(const std::string& what) {
+  app_.add_flag("--json", common_.json, what)->group("Common");
+}
+
+int Program::Run(int argc, char** argv, const std::function<Result<void>()>& body) {
+  try {
+    app_.parse(argc, argv);
+  } catch (const CLI::CallForHelp& help) {
+    return app_.exit(help);
+  } catch (const CLI::CallForVersion& version) {
+    return app_.exit(version);
+  } catch (const CLI::ParseError& error) {
+    std::fprintf(stderr, "Try '%s --help'.\nerror: %s\n", app_.get_name().c_str(), error.what());
+    return static_cast<int>(ErrorKind::kUsage);
+  }
+  SetLogLevel(quiet_ ? LogLevel::kWarning : verbosity_ > 0 ? LogLevel::kDebug : LogLevel::kInfo);
+  try {
+    if (const Result<void> result = body(); !result) {
+      LogMessage(LogLevel::kError, result.error().message);
+      return static_cast<int>(result.error().kind);
+    }
+    return 0;
+  } catch (const std::bad_alloc&) {
+    std::fputs("error: out of memory; lower --memory, or render fewer frames at once\n", stderr);
+    return static_cast<int>(ErrorKind::kOutput);
+  }
+}
+
+}  // namespace lf

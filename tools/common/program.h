@@ -1,0 +1,52 @@
+// What all programs share: the common options, the way errors end them, help and version.
+//
+//   int main(int argc, char** argv) {
+//     lf::Program program("lfexample", "Writes a camera path ...", "Examples:\n  lfexample ...");
+//     program.app().add_option("LIGHTFIELD", light_field, "...")->required();
+//     return program.Run(argc, argv, [&]() -> lf::Result<void> { ... });
+//   }
+//
+// Exit codes: 0 done, 1 our bug, 2 usage, 3 input, 4 output, disk or memory, 5 interrupted,
+// 6 finished below what was asked for. The reason is the last line of stderr, "error: ...".
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "lf/core/result.h"
+
+namespace lf {
+
+struct CommonOptions {
+  int threads = 0;  // 0: all
+  uint64_t seed = 0;
+  bool strict = false;
+  std::string progress =
+      "auto";         // auto, bar, plain, json, none; auto: bar on a terminal, else plain
+  bool json = false;  // only where AddJsonOption() was called
+};
+
+class Program {
+ public:
+  Program(std::string name, std::string description, std::string examples);
+
+  CLI::App& app() { return app_; }
+  const CommonOptions& common() const { return common_; }
+  void AddJsonOption(const std::string& what);
+
+  // Parses the command line, runs `body` and returns the exit code for main().
+  int Run(int argc, char** argv, const std::function<Result<void>()>& body);
+
+ private:
+  CLI::App app_;
+  CommonOptions common_;
+  int verbosity_ = 0;
+  bool quiet_ = false;
+};
+
+// The version of the programs and the library, such as "0.1.0".
+const char* Version();
+
+}  // namespace lf
