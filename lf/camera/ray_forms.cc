@@ -31,25 +31,29 @@ RayForms MakeRayForms(const PinholeCamera& lf_camera, const RenderCamera& render
   return forms;
 }
 
-std::vector<PixelForm> RayHalfPlanes(const RayForms& forms, const RenderCamera& render_camera,
-                                     int plane_sign, const HalfPlaneMargins& margins) {
+std::vector<PixelForm> PlateHalfPlanes(const RayForms& forms, const RenderCamera& render_camera,
+                                       int plane_sign, double margin_px) {
   LF_CHECK(plane_sign == 1 || plane_sign == -1);
   const double s = plane_sign;
   const Intrinsics& plate = render_camera.pinhole.intrinsics;
-  const double margin = margins.element_px;
-  std::vector<PixelForm> half_planes = {
-      -forms.forward,
+  return {
       -s * forms.plane,
+      -forms.forward,
       -s * forms.front,
-      -s * (forms.sensor_x + margin * forms.front),
-      s * (forms.sensor_x - (plate.width_px + margin) * forms.front),
-      -s * (forms.sensor_y + margin * forms.front),
-      s * (forms.sensor_y - (plate.height_px + margin) * forms.front),
+      -s * (forms.sensor_x + margin_px * forms.front),
+      s * (forms.sensor_x - (plate.width_px + margin_px) * forms.front),
+      -s * (forms.sensor_y + margin_px * forms.front),
+      s * (forms.sensor_y - (plate.height_px + margin_px) * forms.front),
   };
-  const double lens_margin_w = margins.lens_relative * render_camera.aperture.radius_w;
+}
+
+std::vector<PixelForm> LensHalfPlanes(const RayForms& forms, const RenderCamera& render_camera,
+                                      double relative_margin) {
+  const double margin_w = relative_margin * render_camera.aperture.radius_w;
+  std::vector<PixelForm> half_planes;
   for (const ApertureEdge& edge : Edges(render_camera.aperture))
     half_planes.push_back(edge.normal.x() * forms.lens_right + edge.normal.y() * forms.lens_up -
-                          (edge.distance_w + lens_margin_w) * forms.forward);
+                          (edge.distance_w + margin_w) * forms.forward);
   return half_planes;
 }
 

@@ -28,17 +28,18 @@ struct RayForms {
 
 RayForms MakeRayForms(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
 
-// How far RayHalfPlanes reaches beyond the exact conditions, so that rounding never loses a ray.
-struct HalfPlaneMargins {
-  double lens_relative = 1e-6;  // the lens grows by this share of its radius
-  double element_px = 1e-6;     // the plate grows by this on every side
-};
+// Half-planes of LF pixels: a ray can be accepted only where `form p <= 0` for all of them. They
+// are the projected lens and focus regions of thesis Fig. 4.5, written as the edges that bound
+// them, so nothing has to be projected through the plane of the LF camera. The two sides of
+// n.d = 0 are bounded apart: plane_sign is the sign of n.d of the rays meant, +1 or -1.
 
-// The LF pixels that can contribute, side by side: a ray of the given sign of n.d is accepted only
-// where `form p <= 0` for all returned forms. The disk is replaced by its circumscribed 16-gon
-// (thesis Fig. 4.5, with the overlap of the projected lens and focus regions written as the
-// half-planes that bound both: nothing has to be projected through a camera plane).
-std::vector<PixelForm> RayHalfPlanes(const RayForms& forms, const RenderCamera& render_camera,
-                                     int plane_sign, const HalfPlaneMargins& margins = {});
+// Forward, the side, front, and the four edges of the plate, each moved outwards by margin_px.
+std::vector<PixelForm> PlateHalfPlanes(const RayForms& forms, const RenderCamera& render_camera,
+                                       int plane_sign, double margin_px);
+
+// The edges of the lens polygon, for a disk of its circumscribed 16-gon, grown by a share of the
+// radius. Valid where the rays run forward.
+std::vector<PixelForm> LensHalfPlanes(const RayForms& forms, const RenderCamera& render_camera,
+                                      double relative_margin);
 
 }  // namespace lf

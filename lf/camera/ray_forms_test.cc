@@ -4,58 +4,22 @@
 
 #include <cmath>
 
+#include "lf/camera/testing_scenes.h"
 #include "lf/core/random.h"
 
 namespace lf {
 namespace {
 
-class RandomScene {
- public:
-  explicit RandomScene(uint64_t seed) : seed_(seed) {}
-  double Uniform(double low, double high) {
-    return low + (high - low) * RandomUnit(seed_, 0, index_++);
-  }
-  Vec3 Vector(double reach) {
-    return {Uniform(-reach, reach), Uniform(-reach, reach), Uniform(-reach, reach)};
-  }
-
- private:
-  uint64_t seed_;
-  uint64_t index_ = 0;
-};
-
-struct Pair {
-  PinholeCamera lf_camera;
-  RenderCamera render_camera;
-};
-
-Pair RandomPair(uint64_t seed) {
-  RandomScene random(seed);
-  Pair pair;
-  PinholeCamera& plate = pair.render_camera.pinhole;
-  plate.intrinsics = {300, 310, 80, 60, 0, 160, 120};
-  plate.cam_from_world = *LookAlong(random.Vector(0.1), Vec3(0, 0, 1) + random.Vector(0.3),
-                                    Vec3(0, -1, 0) + random.Vector(0.3));
-  pair.render_camera.aperture = {random.Uniform(0.02, 0.4), seed % 2 ? 5 : 0, 0.3};
-  pair.render_camera.focus_plane =
-      FocusPlane(plate, random.Uniform(0.5, 3), {random.Uniform(-1.4, 1.4), random.Uniform(-1, 1)});
-  pair.lf_camera.intrinsics = {60, 62, 25, 17, 0.5, 50, 35};
-  pair.lf_camera.cam_from_world =
-      *LookAlong(random.Vector(0.5), Vec3(0, 0, 1) + random.Vector(0.9), Vec3(0, -1, 0.1));
-  return pair;
-}
-
 // Every form against the geometry it stands for, ray by ray.
 TEST(RayForms, AgreeWithTheGeometry) {
   for (uint64_t seed = 0; seed < 200; ++seed) {
-    const Pair pair = RandomPair(seed);
+    const testing::CameraPair pair = testing::RandomCameraPair(seed);
     const RenderCamera& render = pair.render_camera;
     const RayForms forms = MakeRayForms(pair.lf_camera, render);
     const Vec3 c_lens = render.pinhole.CentreWorld();
     const Vec3 f = render.pinhole.ForwardWorld();
-    RandomScene random(seed + 1000);
-    for (int i = 0; i < 20; ++i) {
-      const double px = random.Uniform(0, 50), py = random.Uniform(0, 35);
+    for (uint64_t i = 0; i < 20; ++i) {
+      const double px = 50 * RandomUnit(seed, 1, i), py = 35 * RandomUnit(seed, 2, i);
       const auto at = [&](const PixelForm& form) { return Value(form, px, py); };
       const Ray ray = RayOfPixel(pair.lf_camera, px, py);
       EXPECT_NEAR(at(forms.forward), f.dot(ray.direction), 1e-12);
@@ -77,14 +41,15 @@ TEST(RayForms, AgreeWithTheGeometry) {
   }
 }
 
-TEST(RayHalfPlanes, HoldEveryRayThatReachesThePlate) {
+TEST(HalfPlanes, HoldEveryRayThatReachesThePlate) {
   size_t reached_count = 0;
   for (uint64_t seed = 0; seed < 300; ++seed) {
-    const Pair pair = RandomPair(seed);
+    const testing::CameraPair pair = testing::RandomCameraPair(seed);
     const RenderCamera& render = pair.render_camera;
     const RayForms forms = MakeRayForms(pair.lf_camera, render);
-    const std::vector<PixelForm> sides[2] = {RayHalfPlanes(forms, render, -1),
-                                             RayHalfPlanes(forms, render, +1)};
+    const std::vector<PixelForm> lens = LensHalfPlanes(forms, render, 1e-6);
+    const std::vector<PixelForm> sides[2] = {PlateHalfPlanes(forms, render, -1, 1e-6),
+                                             PlateHalfPlanes(forms, render, +1, 1e-6)};
     const Vec3 c_lens = render.pinhole.CentreWorld();
     const Vec3 f = render.pinhole.ForwardWorld();
     for (int y = 0; y < 35; ++y)
@@ -101,6 +66,7 @@ TEST(RayHalfPlanes, HoldEveryRayThatReachesThePlate) {
           continue;
         ++reached_count;
         const bool positive = render.focus_plane.normal.dot(ray.direction) > 0;
+        for (const PixelForm& form : lens) EXPECT_LE(Value(form, x + 0.5, y + 0.5), 0) << seed;
         for (const PixelForm& form : sides[positive])
           EXPECT_LE(Value(form, x + 0.5, y + 0.5), 0) << seed;
       }

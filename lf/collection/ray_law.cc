@@ -1,0 +1,49 @@
+#include "lf/collection/ray_law.h"
+
+#include <cmath>
+
+namespace lf {
+
+RayLaw::RayLaw(const PinholeCamera& lf_camera, const RenderCamera& render_camera)
+    : centre_(lf_camera.CentreWorld()),
+      direction_(lf_camera.cam_from_world.rotation.transpose() *
+                 lf_camera.intrinsics.InverseMatrix()),
+      lens_centre_(render_camera.pinhole.CentreWorld()),
+      right_(render_camera.pinhole.RightWorld()),
+      up_(render_camera.pinhole.UpWorld()),
+      forward_(render_camera.pinhole.ForwardWorld()),
+      focus_plane_(render_camera.focus_plane),
+      plate_from_world_(render_camera.pinhole.intrinsics.Matrix() *
+                        render_camera.pinhole.cam_from_world.rotation),
+      aperture_(render_camera.aperture),
+      width_px_(render_camera.pinhole.intrinsics.width_px),
+      height_px_(render_camera.pinhole.intrinsics.height_px) {}
+
+std::optional<PlateElement> RayLaw::Collect(int x, int y) const {
+  // 1. The ray.
+  const Ray ray{centre_, direction_ * Vec3(x + 0.5, y + 0.5, 1)};
+
+  // 2. Forward.
+  const double along = forward_.dot(ray.direction);
+  if (!(along > 0)) return std::nullopt;
+
+  // 3. The focus point, before the lens.
+  const std::optional<Vec3> focus_point = IntersectLine(ray, focus_plane_);
+  if (!focus_point || !(forward_.dot(*focus_point - lens_centre_) > 0)) return std::nullopt;
+
+  // 5. The lens, as a quotient so that a camera in the lens plane needs no special case:
+  //    M d / (f.d) with M = (c - c') f^T - (f.(c - c')) I.
+  const Vec3 offset = centre_ - lens_centre_;
+  const Vec3 on_lens = offset - ray.direction * (forward_.dot(offset) / along);
+  if (!Contains(aperture_, {right_.dot(on_lens), up_.dot(on_lens)})) return std::nullopt;
+
+  // 4. The sensor: floor, never truncate.
+  const Vec3 p = plate_from_world_ * (*focus_point - lens_centre_);
+  const double element_x = std::floor(p.x() / p.z());
+  const double element_y = std::floor(p.y() / p.z());
+  if (!(element_x >= 0 && element_x < width_px_ && element_y >= 0 && element_y < height_px_))
+    return std::nullopt;
+  return PlateElement{static_cast<int>(element_x), static_cast<int>(element_y)};
+}
+
+}  // namespace lf

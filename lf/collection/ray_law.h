@@ -1,0 +1,40 @@
+// One ray, literally: doc/ray.md, "Geometry" 1-5, in double precision. The reference calls it for
+// every pixel, the fast kernels where their spans begin and end.
+#pragma once
+
+#include <optional>
+
+#include "lf/camera/pinhole.h"
+#include "lf/camera/render_camera.h"
+#include "lf/core/geometry.h"
+
+namespace lf {
+
+// Element of the sensor plate.
+struct PlateElement {
+  int x = 0;
+  int y = 0;
+  friend bool operator==(const PlateElement&, const PlateElement&) = default;
+};
+
+// The fate of the rays of one LF camera at one render camera.
+class RayLaw {
+ public:
+  RayLaw(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
+
+  // Where the ray of LF pixel (x, y) lands on the plate; none if it is not accepted: it runs
+  // backward, meets no focus point before the lens, misses the lens or the plate.
+  std::optional<PlateElement> Collect(int x, int y) const;
+
+ private:
+  Vec3 centre_;       // c
+  Mat3 direction_;    // R^T K^-1
+  Vec3 lens_centre_;  // c'
+  Vec3 right_, up_, forward_;
+  Plane focus_plane_;
+  Mat3 plate_from_world_;  // K' R', after subtracting c'
+  Aperture aperture_;
+  int width_px_, height_px_;
+};
+
+}  // namespace lf

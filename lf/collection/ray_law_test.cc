@@ -1,0 +1,136 @@
+#include "lf/collection/ray_law.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace lf {
+namespace {
+
+// Plate and LF image 100 x 100, f = 100 elements, looking along +z from the origin, focus at z = 2.
+struct Scene {
+  PinholeCamera lf_camera;
+  RenderCamera render;
+
+  Scene() {
+    render.pinhole.intrinsics = {100, 100, 50, 50, 0, 100, 100};
+    render.aperture = {0.1, 0, 0};
+    render.focus_plane = {Vec3::UnitZ(), 2};
+    lf_camera.intrinsics = render.pinhole.intrinsics;
+  }
+  void Place(const Vec3& centre, const Vec3& forward = {0, 0, 1}) {
+    lf_camera.cam_from_world = *LookAlong(centre, forward, {0, -1, 0});
+  }
+  std::optional<PlateElement> Collect(int x, int y) const {
+    return RayLaw(lf_camera, render).Collect(x, y);
+  }
+  int AcceptedCount() const {
+    const RayLaw law(lf_camera, render);
+    int count = 0;
+    for (int y = 0; y < 100; ++y)
+      for (int x = 0; x < 100; ++x) count += law.Collect(x, y).has_value();
+    return count;
+  }
+};
+
+TEST(RayLaw, TheSameCameraReproducesItself) {
+  Scene scene;
+  for (const int x : {0, 37, 99})
+    for (const int y : {0, 50, 99}) EXPECT_EQ(scene.Collect(x, y), (PlateElement{x, y}));
+}
+
+TEST(RayLaw, ACameraToTheRightSeesTheFocusPlaneShifted) {
+  Scene scene;
+  scene.Place({0.06, 0, 0});  // disparity f x / g = 3 elements
+  EXPECT_EQ(scene.Collect(20, 30), (PlateElement{23, 30}));
+  EXPECT_FALSE(scene.Collect(97, 30));
+  EXPECT_EQ(scene.AcceptedCount(), 97 * 100);
+}
+
+TEST(RayLaw, CoordinatesLeftOfThePlateAreNotTruncatedIntoIt) {
+  Scene scene;
+  scene.Place({-0.011, 0, 0});  // 0.55 elements to the left
+  EXPECT_FALSE(scene.Collect(0, 10));
+  EXPECT_EQ(scene.Collect(1, 10), (PlateElement{0, 10}));
+}
+
+TEST(RayLaw, CamerasOnTheRimAreInside) {
+  for (int i = 0; i < 360; ++i) {
+    Scene scene;
+    const double a = RadiansFromDegrees(i);
+    scene.Place({0.1 * std::cos(a), 0.1 * std::sin(a), 0});
+    EXPECT_TRUE(scene.Collect(50, 50)) << i;
+    scene.Place({0.1001 * std::cos(a), 0.1001 * std::sin(a), 0});
+    EXPECT_FALSE(scene.Collect(50, 50)) << i;
+  }
+}
+
+TEST(RayLaw, CamerasBeforeAndBehindTheLensSeeItAsACone) {
+  // From 1 before the lens, on the axis, the ray at slope s left the lens at radius s.
+  for (const double z : {1.0, -1.0}) {
+    Scene scene;
+    scene.Place({0, 0, z});
+    EXPECT_TRUE(scene.Collect(50, 50));
+    EXPECT_TRUE(scene.Collect(59, 50));   // slope 0.095
+    EXPECT_FALSE(scene.Collect(60, 50));  // slope 0.105
+    EXPECT_NEAR(scene.AcceptedCount(), kPi * 10 * 10, 12);
+  }
+}
+
+TEST(RayLaw, ACameraBehindTheFocusPlaneRecordsTheLineBackwards) {
+  // It stands beyond the focus plane and looks away from the lens; its rays, run backwards, pass
+  // the focus plane and the lens.
+  Scene scene;
+  scene.Place({0, 0, 3});
+  // Slope s: at the focus plane -s, at the lens -3 s. Accepted within slope 1/30.
+  EXPECT_TRUE(scene.Collect(50, 50));
+  EXPECT_EQ(scene.Collect(52, 50), (PlateElement{48, 49}));
+  EXPECT_FALSE(scene.Collect(54, 50));
+}
+
+TEST(RayLaw, ImagesLookingTheOtherWayGiveNothing) {
+  Scene scene;
+  scene.Place({0, 0, 1}, {0, 0, -1});
+  EXPECT_EQ(scene.AcceptedCount(), 0);
+  scene.Place({0.01, 0, 0}, {0, 0, -1});
+  EXPECT_EQ(scene.AcceptedCount(), 0);
+}
+
+TEST(RayLaw, ElementsBeyondTheHorizonOfATiltedPlaneGetNothing) {
+  Scene scene;
+  scene.render.focus_plane =
+      FocusPlane(scene.render.pinhole, 1, {RadiansFromDegrees(75), 0});  // depth 1 + 3.73 x
+  const RayLaw law(scene.lf_camera, scene.render);
+  // Direction (x - 49.5) / 100: the plane runs away at slope 1 / tan 75 = 0.268, column 76.8.
+  int last = -1;
+  for (int x = 0; x < 100; ++x)
+    if (law.Collect(x, 50)) {
+      EXPECT_EQ(x, last + 1);
+      EXPECT_EQ(law.Collect(x, 50), (PlateElement{x, 50}));
+      last = x;
+    }
+  EXPECT_EQ(last, 76);
+}
+
+TEST(RayLaw, ACameraInTheFocusPlaneSendsAllItsRaysToOneElement) {
+  Scene scene;
+  scene.Place({0.5, 0.1, 2});
+  scene.render.aperture.radius_w = 10;
+  const std::optional<PlateElement> first = scene.Collect(50, 50);
+  EXPECT_EQ(first, (PlateElement{75, 55}));
+  EXPECT_EQ(scene.Collect(10, 80), first);
+}
+
+TEST(RayLaw, PolygonsTakeTheirVerticesAndNotTheCircleBetween) {
+  Scene scene;
+  scene.render.aperture = {0.1, 3, 0};
+  scene.Place({0, -0.1, 0});  // y down: straight up, the vertex
+  EXPECT_TRUE(scene.Collect(50, 50));
+  scene.Place({0, 0.05, 0});  // on the lower edge
+  EXPECT_TRUE(scene.Collect(50, 50));
+  scene.Place({0, 0.051, 0});
+  EXPECT_FALSE(scene.Collect(50, 50));
+}
+
+}  // namespace
+}  // namespace lf

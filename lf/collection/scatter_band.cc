@@ -1,0 +1,134 @@
+// The inner loop of ray collection: addresses by linear forms, a chunk at a time so that the
+// compiler turns the maths into vectors, then one integer addition per ray and channel.
+#include <algorithm>
+
+#include "lf/collection/scatter.h"
+
+namespace lf {
+namespace {
+
+constexpr int kChunk = 64;
+
+// Within this of the band's border a span is tested ray by ray. Covers the float bounds of RaySpan.
+constexpr float kBorderMargin = 0.01f;
+
+// Elements of kChunk rays, clamped to the plate: the law has accepted them, rounding must not
+// move them out.
+struct ChunkElements {
+  int x[kChunk];
+  int y[kChunk];
+};
+
+class LineAddresses {
+ public:
+  LineAddresses(const ScatterPlan& plan, int y)
+      : x_slope_(plan.forms.sensor_x[0]),
+        y_slope_(plan.forms.sensor_y[0]),
+        front_slope_(plan.forms.front[0]),
+        x_constant_(Value(plan.forms.sensor_x, 0, y + 0.5)),
+        y_constant_(Value(plan.forms.sensor_y, 0, y + 0.5)),
+        front_constant_(Value(plan.forms.front, 0, y + 0.5)),
+        x_last_(plan.plate_width - 1),
+        y_last_(plan.plate_height - 1) {}
+
+  // From absolute pixel positions, so that no cut of the work changes an address.
+  void Compute(int x_begin, int count, ChunkElements* elements) const {
+    for (int i = 0; i < count; ++i) {
+      const double position = x_begin + i + 0.5;
+      const double front = front_slope_ * position + front_constant_;
+      const double x = (x_slope_ * position + x_constant_) / front;
+      const double y = (y_slope_ * position + y_constant_) / front;
+      // Not negative after clamping: truncation is floor.
+      elements->x[i] = static_cast<int>(std::min(std::max(x, 0.0), x_last_));
+      elements->y[i] = static_cast<int>(std::min(std::max(y, 0.0), y_last_));
+    }
+  }
+
+ private:
+  double x_slope_, y_slope_, front_slope_;
+  double x_constant_, y_constant_, front_constant_;
+  double x_last_, y_last_;
+};
+
+// How a pixel of the scanline adds to an element.
+struct RgbPixels {
+  const uint16_t* row;  // [width][3]
+  void Add(int column, uint64_t* element) const {
+    const uint16_t* v = row + static_cast<ptrdiff_t>(column) * 3;
+    element[0] += SensorPlate::kOneRay | v[0];
+    element[1] += SensorPlate::kOneRay | v[1];
+    element[2] += SensorPlate::kOneRay | v[2];
+  }
+};
+
+struct MosaicPixels {
+  const uint16_t* row;  // [width]
+  int channels[2];      // of even and odd columns
+  void Add(int column, uint64_t* element) const {
+    element[channels[column & 1]] += SensorPlate::kOneRay | row[column];
+  }
+};
+
+template <class Pixels>
+uint64_t ScatterSpan(const ScatterPlan& plan, const RaySpan& span, const Pixels& pixels,
+                     int x_origin, const uint8_t* mask, PlateBand* band) {
+  const LineAddresses addresses(plan, span.y);
+  const bool all_inside =
+      span.element_y_min >= static_cast<float>(band->y_begin()) + kBorderMargin &&
+      span.element_y_max <= static_cast<float>(band->y_end()) - kBorderMargin;
+  const int chunk = std::min<int>(kChunk, static_cast<int>(band->max_reserve()));
+  const int rows = band->y_end() - band->y_begin();
+  const size_t row_words = static_cast<size_t>(band->width()) * SensorPlate::kChannels;
+  uint64_t* const words = band->row(band->y_begin());
+  uint64_t accepted = 0;
+  ChunkElements elements;
+  for (int x = span.x_begin; x < span.x_end; x += chunk) {
+    const int count = std::min(chunk, span.x_end - x);
+    addresses.Compute(x, count, &elements);
+    band->Reserve(static_cast<uint32_t>(count));
+    const auto add = [&](int i, int row) {
+      pixels.Add(x + i - x_origin, words + static_cast<size_t>(row) * row_words +
+                                       static_cast<size_t>(elements.x[i]) * SensorPlate::kChannels);
+    };
+    if (all_inside && mask == nullptr) {
+      for (int i = 0; i < count; ++i) add(i, elements.y[i] - band->y_begin());
+      accepted += static_cast<uint64_t>(count);
+      continue;
+    }
+    for (int i = 0; i < count; ++i) {
+      const int row = elements.y[i] - band->y_begin();
+      if (row < 0 || row >= rows) continue;
+      if (mask != nullptr && mask[x + i - x_origin] == 0) continue;
+      add(i, row);
+      ++accepted;
+    }
+  }
+  return accepted;
+}
+
+}  // namespace
+
+uint64_t ScatterBand(const ScatterPlan& plan, const LfPixels& pixels, PlateBand* band) {
+  LF_CHECK(band->width() == plan.plate_width);
+  const int x_origin = pixels.rect.x_begin;
+  const float begin = static_cast<float>(band->y_begin()) - kBorderMargin;
+  const float end = static_cast<float>(band->y_end()) + kBorderMargin;
+  uint64_t accepted = 0;
+  for (const RaySpan& span : plan.spans) {
+    if (span.element_y_max < begin || span.element_y_min > end) continue;
+    const int row = span.y - pixels.rect.y_begin;
+    const uint8_t* mask = pixels.mask.empty() ? nullptr : pixels.mask.row(row);
+    if (pixels.bayer == BayerPattern::kNone) {
+      accepted +=
+          ScatterSpan(plan, span, RgbPixels{pixels.radiance.row(row)}, x_origin, mask, band);
+      continue;
+    }
+    const MosaicPixels mosaic{pixels.radiance.row(row),
+                              {BayerChannel(pixels.bayer, x_origin, span.y),
+                               BayerChannel(pixels.bayer, x_origin + 1, span.y)}};
+    accepted += ScatterSpan(plan, span, mosaic, x_origin, mask, band);
+  }
+  return accepted;
+}
+
+}  // namespace lf

@@ -1,0 +1,32 @@
+#include "lf/collection/ray_law.h"
+#include "lf/collection/scatter.h"
+
+namespace lf {
+
+uint64_t ScatterReference(const PinholeCamera& lf_camera, const LfPixels& pixels,
+                          const RenderCamera& render_camera, const PixelRect& rect,
+                          SensorPlate* plate) {
+  LF_CHECK(Intersection(rect, pixels.rect) == rect || rect.empty());
+  const RayLaw law(lf_camera, render_camera);
+  uint64_t accepted = 0;
+  for (int y = rect.y_begin; y < rect.y_end; ++y) {
+    for (int x = rect.x_begin; x < rect.x_end; ++x) {
+      const int column = x - pixels.rect.x_begin;
+      const int row = y - pixels.rect.y_begin;
+      if (!pixels.mask.empty() && pixels.mask.at(column, row) == 0) continue;
+      const std::optional<PlateElement> element = law.Collect(x, y);
+      if (!element) continue;
+      ++accepted;
+      if (pixels.bayer != BayerPattern::kNone) {
+        plate->AddRay(element->x, element->y, BayerChannel(pixels.bayer, x, y),
+                      pixels.radiance.at(column, row));
+        continue;
+      }
+      for (int channel = 0; channel < SensorPlate::kChannels; ++channel)
+        plate->AddRay(element->x, element->y, channel, pixels.radiance.at(column, row, channel));
+    }
+  }
+  return accepted;
+}
+
+}  // namespace lf

@@ -1,0 +1,204 @@
+// Every back end of ray collection against the reference.
+#include "lf/collection/scatter.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lf/camera/testing_scenes.h"
+#include "lf/collection/ray_law.h"
+#include "lf/core/random.h"
+
+namespace lf {
+namespace {
+
+LfPixels RandomPixels(const PixelRect& rect, BayerPattern bayer, uint64_t seed) {
+  LfPixels pixels;
+  pixels.bayer = bayer;
+  pixels.rect = rect;
+  pixels.radiance =
+      Image<uint16_t>(rect.width(), rect.height(), bayer == BayerPattern::kNone ? 3 : 1);
+  uint64_t index = 0;
+  for (uint16_t& v : pixels.radiance.pixels())
+    v = static_cast<uint16_t>(RandomBits(seed, 7, index++));
+  return pixels;
+}
+
+uint64_t TotalCount(const SensorPlate& plate) {
+  uint64_t count = 0;
+  for (int y = 0; y < plate.height(); ++y)
+    for (int x = 0; x < plate.width(); ++x)
+      for (int channel = 0; channel < 3; ++channel) count += plate.At(x, y, channel).count;
+  return count;
+}
+
+// Rays that lie in different elements of the two plates.
+uint64_t DifferingCount(const SensorPlate& a, const SensorPlate& b) {
+  uint64_t count = 0;
+  for (int y = 0; y < a.height(); ++y)
+    for (int x = 0; x < a.width(); ++x)
+      for (int channel = 0; channel < 3; ++channel) {
+        const ElementSum sum_a = a.At(x, y, channel), sum_b = b.At(x, y, channel);
+        if (sum_a == sum_b) continue;
+        count += std::max<uint64_t>(
+            1, std::max(sum_a.count, sum_b.count) - std::min(sum_a.count, sum_b.count));
+      }
+  return count;
+}
+
+uint64_t ScatterInBands(const testing::CameraPair& pair, const LfPixels& pixels,
+                        const PixelRect& rect, int band_height, SensorPlate* plate) {
+  const ScatterPlan plan = PlanScatter(pair.lf_camera, pair.render_camera, rect);
+  uint64_t accepted = 0;
+  for (int y = 0; y < plate->height(); y += band_height) {
+    PlateBand band(plate, y, std::min(plate->height(), y + band_height));
+    accepted += ScatterBand(plan, pixels, &band);
+  }
+  return accepted;
+}
+
+PixelRect WholeImage(const testing::CameraPair& pair) {
+  return {0, 0, pair.lf_camera.intrinsics.width_px, pair.lf_camera.intrinsics.height_px};
+}
+
+SensorPlate PlateFor(const testing::CameraPair& pair, uint32_t limit = SensorPlate::kMaxCount) {
+  return SensorPlate(pair.render_camera.pinhole.intrinsics.width_px,
+                     pair.render_camera.pinhole.intrinsics.height_px, limit);
+}
+
+TEST(Scatter, SpansHoldExactlyTheRaysThatTheLawAccepts) {
+  size_t accepted_count = 0, scenes_with_rays = 0;
+  for (uint64_t seed = 0; seed < 3000; ++seed) {
+    const testing::CameraPair pair = testing::RandomCameraPair(seed);
+    const RayLaw law(pair.lf_camera, pair.render_camera);
+    const ScatterPlan plan = PlanScatter(pair.lf_camera, pair.render_camera, WholeImage(pair));
+    Image<uint8_t> in_span(50, 35);
+    for (const RaySpan& span : plan.spans)
+      for (int x = span.x_begin; x < span.x_end; ++x) in_span.at(x, span.y) += 1;
+    size_t accepted = 0;
+    for (int y = 0; y < 35; ++y)
+      for (int x = 0; x < 50; ++x) {
+        const bool collected = law.Collect(x, y).has_value();
+        ASSERT_EQ(in_span.at(x, y), collected ? 1 : 0) << seed << ": " << x << ", " << y;
+        accepted += collected;
+      }
+    accepted_count += accepted;
+    scenes_with_rays += accepted > 0;
+  }
+  EXPECT_GT(scenes_with_rays, 1000u);
+  EXPECT_GT(accepted_count, 100000u);
+}
+
+TEST(Scatter, TheFastBackEndAgreesWithTheReference) {
+  uint64_t differing = 0, total = 0;
+  for (uint64_t seed = 0; seed < 400; ++seed) {
+    const testing::CameraPair pair = testing::RandomCameraPair(seed);
+    const auto bayer = static_cast<BayerPattern>(seed % 5);
+    const LfPixels pixels = RandomPixels(WholeImage(pair), bayer, seed);
+    SensorPlate expected = PlateFor(pair), fast = PlateFor(pair);
+    const uint64_t accepted =
+        ScatterReference(pair.lf_camera, pixels, pair.render_camera, pixels.rect, &expected);
+    EXPECT_EQ(ScatterInBands(pair, pixels, pixels.rect, 120, &fast), accepted);
+    // Conservation: accepted rays are the sum of the counts.
+    EXPECT_EQ(TotalCount(expected), accepted * (bayer == BayerPattern::kNone ? 3 : 1));
+    EXPECT_EQ(TotalCount(fast), TotalCount(expected));
+    differing += DifferingCount(expected, fast);
+    total += TotalCount(expected);
+  }
+  EXPECT_GT(total, 100000u);
+  EXPECT_LE(static_cast<double>(differing), 2e-4 * static_cast<double>(total));
+}
+
+TEST(Scatter, AnyCutIntoBandsGivesTheSameBits) {
+  for (uint64_t seed = 0; seed < 200; ++seed) {
+    const testing::CameraPair pair = testing::RandomCameraPair(seed);
+    const LfPixels pixels = RandomPixels(WholeImage(pair), BayerPattern::kNone, seed);
+    SensorPlate whole = PlateFor(pair), cut = PlateFor(pair), fine = PlateFor(pair);
+    const uint64_t accepted = ScatterInBands(pair, pixels, pixels.rect, 120, &whole);
+    EXPECT_EQ(ScatterInBands(pair, pixels, pixels.rect, 17, &cut), accepted);
+    EXPECT_EQ(ScatterInBands(pair, pixels, pixels.rect, 1, &fine), accepted);
+    EXPECT_EQ(whole, cut) << seed;
+    EXPECT_EQ(whole, fine) << seed;
+  }
+}
+
+TEST(Scatter, AnyCutOfTheImageGivesTheSameBits) {
+  for (uint64_t seed = 0; seed < 200; ++seed) {
+    const testing::CameraPair pair = testing::RandomCameraPair(seed);
+    const LfPixels pixels = RandomPixels(WholeImage(pair), BayerPattern::kGrbg, seed);
+    SensorPlate whole = PlateFor(pair), cut = PlateFor(pair);
+    ScatterInBands(pair, pixels, pixels.rect, 120, &whole);
+    for (const PixelRect& rect :
+         {PixelRect{0, 0, 13, 35}, PixelRect{13, 0, 50, 9}, PixelRect{13, 9, 50, 35}})
+      ScatterInBands(pair, pixels, rect, 120, &cut);
+    EXPECT_EQ(whole, cut) << seed;
+  }
+}
+
+// Parallel rigs put whole scanlines exactly on borders of elements, plates and bands, where
+// rounding decides: no ray may be lost or counted twice.
+TEST(Scatter, RaysOnBordersAreNeitherLostNorDoubled) {
+  for (int column = -6; column <= 6; ++column)
+    for (int row = -6; row <= 6; ++row) {
+      // Half an element of disparity per pitch.
+      const testing::CameraPair pair = testing::ParallelPair(column, row, 0.01, 0.05);
+      const LfPixels pixels = RandomPixels(WholeImage(pair), BayerPattern::kNone, 3);
+      SensorPlate expected = PlateFor(pair), fast = PlateFor(pair), bands = PlateFor(pair);
+      const uint64_t accepted =
+          ScatterReference(pair.lf_camera, pixels, pair.render_camera, pixels.rect, &expected);
+      EXPECT_EQ(accepted > 0, column * column + row * row <= 25) << column << ", " << row;
+      EXPECT_EQ(ScatterInBands(pair, pixels, pixels.rect, 35, &fast), accepted);
+      EXPECT_EQ(ScatterInBands(pair, pixels, pixels.rect, 1, &bands), accepted);
+      EXPECT_EQ(fast, bands);
+      EXPECT_EQ(TotalCount(fast), 3 * accepted);
+    }
+}
+
+TEST(Scatter, MaskedPixelsGiveNoRay) {
+  const testing::CameraPair pair = testing::ParallelPair(1, 2, 0.013, 0.05);
+  LfPixels pixels = RandomPixels(WholeImage(pair), BayerPattern::kRggb, 3);
+  pixels.mask = Image<uint8_t>(50, 35, 1, 255);
+  for (int i = 5; i < 30; ++i) pixels.mask.at(i, i) = 0;
+  SensorPlate expected = PlateFor(pair), fast = PlateFor(pair), all = PlateFor(pair);
+  const uint64_t accepted =
+      ScatterReference(pair.lf_camera, pixels, pair.render_camera, pixels.rect, &expected);
+  EXPECT_EQ(ScatterInBands(pair, pixels, pixels.rect, 8, &fast), accepted);
+  EXPECT_EQ(expected, fast);
+  pixels.mask = {};
+  EXPECT_EQ(ScatterInBands(pair, pixels, pixels.rect, 8, &all), accepted + 25);
+}
+
+TEST(Scatter, PixelsOfAPartOfTheImageAreEnough) {
+  const testing::CameraPair pair = testing::ParallelPair(1, 2, 0.013, 0.05);
+  const PixelRect part{7, 9, 31, 20};
+  const LfPixels all = RandomPixels(WholeImage(pair), BayerPattern::kGbrg, 3);
+  LfPixels some = RandomPixels(part, BayerPattern::kGbrg, 3);
+  for (int y = part.y_begin; y < part.y_end; ++y)
+    for (int x = part.x_begin; x < part.x_end; ++x)
+      some.radiance.at(x - part.x_begin, y - part.y_begin) = all.radiance.at(x, y);
+  SensorPlate from_all = PlateFor(pair), from_some = PlateFor(pair), reference = PlateFor(pair);
+  ScatterInBands(pair, all, part, 35, &from_all);
+  ScatterInBands(pair, some, part, 35, &from_some);
+  ScatterReference(pair.lf_camera, some, pair.render_camera, part, &reference);
+  EXPECT_EQ(from_all, from_some);
+  EXPECT_EQ(reference, from_some);
+}
+
+TEST(Scatter, FullWordsArePromotedWithoutLosingARay) {
+  // A camera in the focus plane sends all its rays to one element.
+  testing::CameraPair pair = testing::ParallelPair(0, 0, 0.01, 9);
+  pair.lf_camera.cam_from_world.translation = {0.1, 0.05, -2};
+  const LfPixels pixels = RandomPixels(WholeImage(pair), BayerPattern::kNone, 5);
+  SensorPlate expected = PlateFor(pair), fast = PlateFor(pair, 10), reference = PlateFor(pair, 10);
+  for (int repeat = 0; repeat < 3; ++repeat) {
+    ScatterReference(pair.lf_camera, pixels, pair.render_camera, pixels.rect, &expected);
+    ScatterReference(pair.lf_camera, pixels, pair.render_camera, pixels.rect, &reference);
+    ScatterInBands(pair, pixels, pixels.rect, 35, &fast);
+  }
+  EXPECT_EQ(TotalCount(expected), uint64_t{3} * 3 * 50 * 35);
+  EXPECT_EQ(expected, reference);
+  EXPECT_EQ(expected, fast);
+}
+
+}  // namespace
+}  // namespace lf

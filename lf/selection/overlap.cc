@@ -1,0 +1,107 @@
+#include "lf/selection/overlap.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "lf/camera/ray_forms.h"
+#include "lf/core/check.h"
+
+namespace lf {
+namespace {
+
+constexpr double kLensMargin = 1e-6;
+constexpr double kPlateMarginPx = 1e-6;
+constexpr double kPixelMarginPx = 1e-6;  // of a vertex computed by clipping
+constexpr double kZeroMargin = 1e-12;    // of a form's value at a vertex, relative to its terms
+
+// A convex polygon that half-planes cut (Sutherland, Hodgman 1974): each adds one vertex at most.
+class Clipped {
+ public:
+  explicit Clipped(const Intrinsics& image) {
+    const double w = image.width_px, h = image.height_px;
+    vertices_ = {Vec2(0, 0), Vec2(w, 0), Vec2(w, h), Vec2(0, h)};
+    count_ = 4;
+  }
+
+  bool empty() const { return count_ == 0; }
+
+  // Keeps the part with form <= 0.
+  void Clip(const PixelForm& form) {
+    std::array<Vec2, kCapacity> kept;
+    size_t kept_count = 0;
+    for (size_t i = 0; i < count_; ++i) {
+      LF_CHECK(kept_count + 2 <= kCapacity);
+      const Vec2& a = vertices_[i];
+      const Vec2& b = vertices_[(i + 1) % count_];
+      const double value_a = ValueOrZero(form, a);
+      const double value_b = ValueOrZero(form, b);
+      if (value_a <= 0) kept[kept_count++] = a;
+      if ((value_a < 0 && value_b > 0) || (value_a > 0 && value_b < 0))
+        kept[kept_count++] = a + (b - a) * (value_a / (value_a - value_b));
+    }
+    vertices_ = kept;
+    count_ = kept_count;
+  }
+
+  // Pixels whose centres the polygon's bounding box holds.
+  PixelRect Pixels(const Intrinsics& image) const {
+    if (empty()) return {};
+    Vec2 low = vertices_[0], high = vertices_[0];
+    for (size_t i = 1; i < count_; ++i) {
+      low = low.cwiseMin(vertices_[i]);
+      high = high.cwiseMax(vertices_[i]);
+    }
+    const auto first = [](double v) {
+      return static_cast<int>(std::ceil(v - 0.5 - kPixelMarginPx));
+    };
+    const auto last = [](double v) {
+      return static_cast<int>(std::floor(v - 0.5 + kPixelMarginPx));
+    };
+    return Intersection({0, 0, image.width_px, image.height_px},
+                        {first(low.x()), first(low.y()), last(high.x()) + 1, last(high.y()) + 1});
+  }
+
+ private:
+  // 4 corners and up to 7 + blades half-planes, of which the first cut most; 64 blades fit. More
+  // blades are clipped by the circle's 16 edges instead (see ContributingRect).
+  static constexpr size_t kCapacity = 96;
+
+  static double ValueOrZero(const PixelForm& form, const Vec2& p) {
+    const double value = Value(form, p.x(), p.y());
+    const double magnitude =
+        std::abs(form[0] * p.x()) + std::abs(form[1] * p.y()) + std::abs(form[2]);
+    return std::abs(value) <= kZeroMargin * magnitude ? 0 : value;
+  }
+
+  std::array<Vec2, kCapacity> vertices_;
+  size_t count_ = 0;
+};
+
+}  // namespace
+
+PixelRect ContributingRect(const PinholeCamera& lf_camera, const RenderCamera& render_camera) {
+  const RayForms forms = MakeRayForms(lf_camera, render_camera);
+  // Polygons of very many blades are nearly disks; the disk's 16-gon holds them.
+  constexpr int kMostBlades = 64;
+  RenderCamera bounded = render_camera;
+  if (bounded.aperture.blades > kMostBlades) bounded.aperture.blades = 0;
+  const std::vector<PixelForm> lens = LensHalfPlanes(forms, bounded, kLensMargin);
+
+  PixelRect rect;
+  for (const int plane_sign : {-1, 1}) {
+    Clipped region(lf_camera.intrinsics);
+    for (const PixelForm& form : PlateHalfPlanes(forms, bounded, plane_sign, kPlateMarginPx)) {
+      region.Clip(form);
+      if (region.empty()) break;
+    }
+    for (const PixelForm& form : lens) {
+      if (region.empty()) break;
+      region.Clip(form);
+    }
+    rect = Bounds(rect, region.Pixels(lf_camera.intrinsics));
+  }
+  return rect;
+}
+
+}  // namespace lf

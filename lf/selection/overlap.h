@@ -1,0 +1,22 @@
+// Which pixels of an LF image can contribute to a frame (thesis 4.2.1, "Extraction of Relevant Area
+// in Image Space", Fig. 4.5).
+#pragma once
+
+#include "lf/camera/pinhole.h"
+#include "lf/camera/render_camera.h"
+#include "lf/core/geometry.h"
+
+namespace lf {
+
+// The smallest pixel rectangle holding the overlap of the lens (for a disk its circumscribed
+// 16-gon) and the plate's region on the focus plane, both as the LF camera sees them. Empty if no
+// ray of the image can be accepted.
+//
+// Holds every accepted ray (doc/ray.md), wherever the LF camera is: before, behind or in the lens
+// plane, in the focus plane, with the lens behind its back, with the plate beyond the horizon of a
+// tilted focus plane. Where the thesis projects rectangles and intersects them, this clips the
+// image by the half-planes that bound them (camera/ray_forms.h): the same region, without
+// projecting points that lie in the plane of the LF camera.
+PixelRect ContributingRect(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
+
+}  // namespace lf

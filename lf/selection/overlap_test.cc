@@ -1,0 +1,85 @@
+#include "lf/selection/overlap.h"
+
+#include <gtest/gtest.h>
+
+#include "lf/camera/testing_scenes.h"
+
+namespace lf {
+namespace {
+
+// Brute force in this folder's own words: is the ray of pixel (x, y) accepted (doc/ray.md, 1-5)?
+bool Contributes(const PinholeCamera& lf_camera, const RenderCamera& render, int x, int y) {
+  const Ray ray = RayOfPixel(lf_camera, x + 0.5, y + 0.5);
+  const PinholeCamera& plate = render.pinhole;
+  const Vec3 forward = plate.ForwardWorld(), centre = plate.CentreWorld();
+  if (!(forward.dot(ray.direction) > 0)) return false;
+  const auto on_lens = IntersectLine(ray, {forward, forward.dot(centre)});
+  if (!Contains(render.aperture, {plate.RightWorld().dot(*on_lens - centre),
+                                  plate.UpWorld().dot(*on_lens - centre)}))
+    return false;
+  const auto focus_point = IntersectLine(ray, render.focus_plane);
+  if (!focus_point) return false;
+  const auto element = Project(plate, *focus_point);
+  return element && element->x() >= 0 && element->x() < plate.intrinsics.width_px &&
+         element->y() >= 0 && element->y() < plate.intrinsics.height_px;
+}
+
+TEST(Overlap, NoContributingRayLiesOutsideTheRectangle) {
+  size_t contributing_images = 0, selected_images = 0, rays = 0, pixels = 0;
+  for (uint64_t seed = 0; seed < 3000; ++seed) {
+    const testing::CameraPair pair = testing::RandomCameraPair(seed);
+    const PixelRect rect = ContributingRect(pair.lf_camera, pair.render_camera);
+    bool any = false;
+    for (int y = 0; y < 35; ++y)
+      for (int x = 0; x < 50; ++x)
+        if (Contributes(pair.lf_camera, pair.render_camera, x, y)) {
+          any = true;
+          ++rays;
+          ASSERT_TRUE(rect.Contains(x, y)) << seed << ": " << x << ", " << y;
+        }
+    contributing_images += any;
+    selected_images += !rect.empty();
+    pixels += static_cast<size_t>(rect.pixel_count());
+  }
+  EXPECT_GT(contributing_images, 1000u);
+  // Rarely an image in vain, and rectangles not much larger than what they bound.
+  EXPECT_LE(selected_images, contributing_images + contributing_images * 3 / 100);
+  EXPECT_LE(pixels, 2 * rays);
+}
+
+TEST(Overlap, CamerasExactlyOnTheRimAreSelected) {
+  const PixelRect whole{0, 0, 50, 35};
+  for (const auto& [column, row] : {std::pair{3, 4}, {5, 0}, {0, -5}, {-4, 3}}) {
+    const testing::CameraPair on_rim = testing::ParallelPair(column, row, 0.01, 0.05);
+    EXPECT_GT(ContributingRect(on_rim.lf_camera, on_rim.render_camera).pixel_count(), 1000);
+  }
+  const testing::CameraPair centre = testing::ParallelPair(0, 0, 0.01, 0.05);
+  EXPECT_EQ(ContributingRect(centre.lf_camera, centre.render_camera), whole);
+}
+
+TEST(Overlap, LensOutsideTheImageGivesNoPixels) {
+  const testing::CameraPair far_away = testing::ParallelPair(30, 0, 0.01, 0.05);
+  EXPECT_TRUE(ContributingRect(far_away.lf_camera, far_away.render_camera).empty());
+}
+
+TEST(Overlap, ImagesLookingTheOtherWayGiveNoPixels) {
+  testing::CameraPair pair = testing::ParallelPair(0, 0, 0.01, 0.05);
+  pair.lf_camera.cam_from_world = *LookAlong({0, 0, 1}, {0, 0, -1}, {0, -1, 0});
+  EXPECT_TRUE(ContributingRect(pair.lf_camera, pair.render_camera).empty());
+}
+
+TEST(Overlap, ALensBehindTheBackOfTheCameraStillCounts) {
+  testing::CameraPair pair = testing::ParallelPair(0, 0, 0.01, 0.2);
+  pair.lf_camera.cam_from_world.translation = {0, 0, -1};  // one before the lens, looking away
+  const PixelRect rect = ContributingRect(pair.lf_camera, pair.render_camera);
+  EXPECT_EQ(rect.width(), 40);  // slopes up to 0.2 at 100 pixels
+}
+
+TEST(Overlap, ACameraInTheFocusPlaneContributes) {
+  testing::CameraPair pair = testing::ParallelPair(0, 0, 0.01, 9);
+  pair.lf_camera.cam_from_world.translation = {0.1, 0.05, -2};
+  EXPECT_EQ(ContributingRect(pair.lf_camera, pair.render_camera), (PixelRect{0, 0, 50, 35}));
+}
+
+}  // namespace
+}  // namespace lf

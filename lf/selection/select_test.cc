@@ -1,0 +1,86 @@
+#include "lf/selection/select.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "lf/selection/overlap.h"
+
+namespace lf {
+namespace {
+
+// A 21 x 21 grid with pitch 0.01 in the plane z = 0.
+LightField Grid() {
+  LightField field;
+  field.intrinsics = {{100, 100, 25, 17.5, 0, 50, 35}};
+  for (int row = -10; row <= 10; ++row)
+    for (int column = -10; column <= 10; ++column) {
+      LfCamera camera;
+      camera.cam_from_world.translation = {-0.01 * column, -0.01 * row, 0};
+      field.cameras.push_back(camera);
+      field.image_names.push_back("x.png");
+    }
+  return field;
+}
+
+RenderCamera Frame(double radius_w, double x) {
+  RenderCamera frame;
+  frame.pinhole.intrinsics = {100, 100, 25, 17.5, 0, 50, 35};
+  frame.pinhole.cam_from_world.translation = {-x, 0, 0};
+  frame.aperture = {radius_w, 0, 0};
+  frame.focus_plane = {Vec3::UnitZ(), 2};
+  return frame;
+}
+
+TEST(Select, TakesTheCamerasWithinTheLens) {
+  ThreadPool pool(2);
+  const std::vector<RenderCamera> frames = {Frame(0.0301, 0)};
+  const auto images = SelectImages(Grid(), frames, {}, pool);
+  EXPECT_EQ(images.size(), 29u);  // integer points within radius 3
+  for (const SelectedImage& image : images) EXPECT_EQ(image.frame_count, 1u);
+}
+
+TEST(Select, TheOrderDependsOnTheSeedAlone) {
+  const LightField grid = Grid();
+  const std::vector<RenderCamera> frames = {Frame(0.05, 0), Frame(0.02, 0.03)};
+  const auto order = [&](int threads, uint64_t seed) {
+    ThreadPool pool(threads);
+    std::vector<uint32_t> ids;
+    for (const SelectedImage& image : SelectImages(grid, frames, {seed, {}}, pool))
+      ids.push_back(image.id.value);
+    return ids;
+  };
+  EXPECT_EQ(order(1, 0), order(3, 0));
+  EXPECT_NE(order(1, 0), order(1, 1));
+  const auto a = order(1, 0), b = order(1, 1);
+  EXPECT_EQ(std::set<uint32_t>(a.begin(), a.end()), std::set<uint32_t>(b.begin(), b.end()));
+}
+
+TEST(Select, BoundsHoldTheRectanglesOfAllFrames) {
+  ThreadPool pool(1);
+  const LightField grid = Grid();
+  const std::vector<RenderCamera> frames = {Frame(0.03, 0), Frame(0.03, 0.02)};
+  for (const SelectedImage& image : SelectImages(grid, frames, {}, pool)) {
+    PixelRect bounds;
+    uint64_t rays = 0;
+    for (const RenderCamera& frame : frames) {
+      const PixelRect rect = ContributingRect(grid.Camera(image.id), frame);
+      bounds = Bounds(bounds, rect);
+      rays += static_cast<uint64_t>(rect.pixel_count());
+    }
+    EXPECT_EQ(image.rect, bounds);
+    EXPECT_EQ(image.ray_count, rays);
+  }
+}
+
+TEST(Select, TheLimitKeepsTheFirstOfTheOrder) {
+  ThreadPool pool(1);
+  const std::vector<RenderCamera> frames = {Frame(0.05, 0)};
+  const auto all = SelectImages(Grid(), frames, {}, pool);
+  const auto some = SelectImages(Grid(), frames, {0, 10}, pool);
+  ASSERT_EQ(some.size(), 10u);
+  for (size_t i = 0; i < some.size(); ++i) EXPECT_EQ(some[i].id, all[i].id);
+}
+
+}  // namespace
+}  // namespace lf
