@@ -1,0 +1,26 @@
+#!/usr/bin/env bash
+# Makes build/release what the sources say: missing packages, configure, build.
+#
+# usage: scripts/build.sh
+#
+# With CI=true in the environment compiler warnings are errors.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+source scripts/patiently.sh
+
+scripts/install_packages.sh
+mkdir -p build
+# Some machines give their builders no home to write to.
+[[ -w ${HOME:-/nowhere} ]] || export CCACHE_DIR=$PWD/build/ccache
+
+werror=OFF
+if [[ ${CI:-} == true ]]; then werror=ON; fi
+patiently configuring build/configure.log cmake --preset release -DLF_WERROR="$werror"
+
+# As many compilers as there are processors, and 1.5 GB of memory for each.
+memory_kb=$(awk '/^MemAvailable:/ { print $2 }' /proc/meminfo)
+jobs=$(nproc)
+by_memory=$((memory_kb / 1500000))
+if ((by_memory < jobs)); then jobs=$((by_memory > 0 ? by_memory : 1)); fi
+echo "Building in build/release ($jobs at a time)"
+cmake --build build/release -j "$jobs"

@@ -1,0 +1,61 @@
+#!/usr/bin/env bash
+# Installs the packages of scripts/packages.txt that are missing, and says which.
+#
+# usage: scripts/install_packages.sh
+#
+# Nothing missing: says nothing and needs no rights. Otherwise apt-get does the work, as root or
+# through a sudo that asks no password; who has neither is told the exact command to run (exit 1).
+# On systems without dpkg it lists what is needed and leaves the rest to CMake's own messages.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+source scripts/patiently.sh
+
+groups=always
+if [[ -d ${LF_TEST_DATA:-../shared}/groundtruth ]]; then groups='always|truth'; fi
+mapfile -t wanted < <(awk -v groups="^($groups)\$" '$1 ~ groups { print $2 }' scripts/packages.txt)
+
+if ! command -v dpkg-query >/dev/null; then
+  echo "This is no Debian: $(basename "$0") installs nothing. Under Debian's names it takes:"
+  echo "  ${wanted[*]}"
+  exit 0
+fi
+
+# "ii": wanted and installed. dpkg-query exits 1 when it does not know some of the names.
+installed=" $(dpkg-query -W -f='${db:Status-Abbrev}${Package}\n' "${wanted[@]}" 2>/dev/null |
+  sed -n 's/^ii  *//p' | tr '\n' ' ') " || [[ -n $installed ]]
+missing=()
+for package in "${wanted[@]}"; do
+  [[ $installed == *" $package "* ]] || missing+=("$package")
+done
+if ((${#missing[@]} == 0)); then exit 0; fi
+
+as_root=()
+if ((EUID != 0)); then
+  if ! command -v sudo >/dev/null || ! sudo -n true 2>/dev/null; then
+    echo "Packages are missing, and installing them takes root. Run this, then start again:" >&2
+    echo "  sudo apt-get update && sudo apt-get install --no-install-recommends ${missing[*]}" >&2
+    exit 1
+  fi
+  as_root=(sudo)
+fi
+apt_get=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y
+  -o DPkg::Lock::Timeout=120 -o Acquire::Retries=3)
+
+# Another apt may be at work. DPkg::Lock::Timeout waits for it when installing, not when updating.
+log=build/apt-update.log
+update_package_lists() {
+  local attempt
+  for attempt in {1..12}; do
+    if "${apt_get[@]}" update; then return 0; fi
+    tail -n 5 "$log" | grep -q 'Could not get lock' || return 1
+    echo "waiting for another apt to finish ($attempt of 12)"
+    sleep 10
+  done
+  return 1
+}
+
+mkdir -p build
+echo "Installing ${#missing[@]} packages with ${as_root[0]:+sudo }apt-get: ${missing[*]}"
+patiently "apt-get update" "$log" update_package_lists
+patiently "apt-get install" build/apt-install.log \
+  "${apt_get[@]}" install --no-install-recommends "${missing[@]}"
