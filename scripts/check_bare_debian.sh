@@ -1,0 +1,90 @@
+#!/usr/bin/env bash
+# Proves ./test and ./demo on a bare Debian 12: a fresh system with nothing but git, the last
+# commit cloned into it, everything else left to the two commands.
+#
+# usage: scripts/check_bare_debian.sh FOLDER [COMMAND...]     (root; default: ./test, then ./demo)
+#
+# FOLDER takes the base system (kept: the next run starts from it), the system of this run and the
+# log of every step. Mirror and proxy are those of this machine's apt. Commands run as root, then
+# once more as an ordinary user, who must need no rights any more; before the first one, an
+# ordinary user must be told what to install.
+set -euo pipefail
+
+if ((EUID != 0)) || ! command -v debootstrap >/dev/null || (($# == 0)); then
+  sed -n '2,/^set/s/^# \{0,1\}//p' "$0" >&2
+  echo "error: needs a FOLDER, root, and the package debootstrap" >&2
+  exit 2
+fi
+# Mounts made below vanish with this process's own view of the file system.
+if [[ ${LF_UNSHARED:-} != yes ]]; then
+  LF_UNSHARED=yes exec unshare --mount --propagation private "$0" "$@"
+fi
+
+repository=$(cd "$(dirname "$0")/.." && pwd)
+folder=$(mkdir -p "$1" && cd "$1" && pwd)
+shift
+commands=("$@")
+if ((${#commands[@]} == 0)); then commands=(./test ./demo); fi
+base=$folder/base
+root=$folder/root
+checkout=/home/user/lfrendertools
+
+say() { printf '%5d s  %s\n' "$SECONDS" "$*"; }
+
+# The first archive of apt's that has bookworm: a "SITE CODENAME" a line.
+mirror=$(apt-get indextargets --format '$(SITE) $(CODENAME)' 'Identifier: Packages' |
+  awk '$2 == "bookworm" { print $1; exit }')
+mirror=${mirror:-http://deb.debian.org/debian}
+
+if [[ ! -e $base/etc/debian_version ]]; then
+  say "making the base system"
+  debootstrap --variant=minbase --include=git bookworm "$base" "$mirror" >"$folder/base.log"
+fi
+say "bare Debian $(cat "$base/etc/debian_version"): $(du -sm "$base" | cut -f 1) MB," \
+  "$(chroot "$base" dpkg-query -f '.\n' -W | wc -l) packages"
+
+rm -rf --one-file-system "$root"
+cp -a "$base" "$root"
+apt-config dump Acquire | sed -nE '/::proxy|check-(valid|date)/Ip' >"$root/etc/apt/apt.conf.d/90host"
+cp -L /etc/resolv.conf "$root/etc/resolv.conf"
+mount -t proc proc "$root/proc"
+mount --rbind /dev "$root/dev"
+chroot "$root" useradd --create-home --shell /bin/bash user
+git clone --quiet --no-local "$repository" "$root$checkout"
+chroot "$root" chown -R user:user /home/user
+chroot "$root" git config --system --add safe.directory "$checkout"
+say "cloned $(git -C "$repository" log -1 --format='%h %s')"
+
+# inside USER COMMAND...
+inside() {
+  local user=$1 home=/root
+  shift
+  if [[ $user != root ]]; then home=/home/$user; fi
+  chroot --userspec="$user:$user" "$root" env -i HOME="$home" USER="$user" LANG=C.UTF-8 \
+    PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin CI="${CI:-}" \
+    bash -c 'cd "$0" && exec "$@"' "$checkout" "$@"
+}
+
+# step NAME USER COMMAND...: runs it, says how long it took, shows the last lines it wrote.
+step() {
+  local name=$1 user=$2 start=$SECONDS code=0
+  shift 2
+  inside "$user" "$@" >"$folder/$name.log" 2>&1 || code=$?
+  say "$* as $user: exit code $code after $((SECONDS - start)) s (log: $folder/$name.log)"
+  tail -n 4 "$folder/$name.log" | sed 's/^/         | /'
+  return "$code"
+}
+
+if step unprivileged user scripts/install_packages.sh; then
+  echo "error: an ordinary user without packages must be told what to install" >&2
+  exit 1
+fi
+grep -q 'sudo apt-get install' "$folder/unprivileged.log"
+
+for command in "${commands[@]}"; do
+  name=$(basename "$command")
+  step "$name-root" root $command
+  chroot "$root" chown -R user:user "$checkout"
+  step "$name-user" user $command
+done
+say "done"
