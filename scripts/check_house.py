@@ -1,0 +1,148 @@
+#!/usr/bin/python3
+"""House rules that no compiler checks. Every fault is one line: file, place, what is wrong.
+
+usage: check_house.py REPOSITORY CHECK
+
+  lengths  no source file is longer than 500 lines (doc/style.md)
+  paths    no file holds an absolute path of somebody's build machine
+  links    in every Markdown page: links lead to files and headings that exist, `paths` in
+           backticks exist, and `folder.Suite.Test` names a test that exists
+  pages    the pages of doc/ that comments in sources refer to exist
+"""
+import functools
+import pathlib
+import re
+import subprocess
+import sys
+
+SOURCES = {".cc", ".h", ".cu", ".py", ".sh", ".cmake", ".txt", ""}
+LINE_LIMIT = 500
+MACHINE_PATH = re.compile(r"(?<![\w.$}])/(?:work|root)/[\w.]")
+LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
+# `lf/camera/ray.h`, `scripts/`; patterns and places to fill in (x_test.cc aside) hold * < { or ...
+NAMED_FILE = re.compile(r"`((?:lf|tools|tests|scripts|doc|examples|cmake|fuzz|bench)/[\w./-]*)`")
+NAMED_TEST = re.compile(r"`([a-z_]+)\.([A-Z]\w*)\.(\w+)`")
+PAGE_IN_COMMENT = re.compile(r"\bdoc/[\w/]+\.md\b")
+
+
+def tracked_files(root: pathlib.Path) -> list:
+    """What git knows; in an unpacked archive, everything but build outputs."""
+    git = subprocess.run(["git", "-C", root, "ls-files", "-z"], capture_output=True)
+    if git.returncode == 0 and git.stdout:
+        names = [root / name for name in git.stdout.decode().split("\0") if name]
+        return sorted(name for name in names if name.is_file())
+    skipped = {"build", "demo-output", ".git"}
+    return sorted(p for p in root.rglob("*")
+                  if p.is_file() and p.relative_to(root).parts[0] not in skipped)
+
+
+@functools.lru_cache(maxsize=None)
+def text_lines(path: pathlib.Path) -> tuple:
+    """The lines of a text file; none of a binary one (it holds a NUL)."""
+    data = path.read_bytes()
+    return () if b"\0" in data else tuple(data.decode("utf-8", "replace").splitlines())
+
+
+def is_source(path: pathlib.Path) -> bool:
+    return (path.suffix in SOURCES and path.name != "LICENSE" and
+            "corpus" not in path.parts)
+
+
+def check_lengths(root, files):
+    for path in filter(is_source, files):
+        count = len(text_lines(path))
+        if count > LINE_LIMIT:
+            yield f"{path.relative_to(root)}: {count} lines, the limit is {LINE_LIMIT}: split it"
+
+
+def check_paths(root, files):
+    for path in files:
+        for number, line in enumerate(text_lines(path), 1):
+            match = MACHINE_PATH.search(line)
+            if match:
+                yield (f"{path.relative_to(root)}:{number}: '{line[match.start():][:40]}' is a path"
+                       " of one machine; write it relative to the repository")
+
+
+def heading_anchors(page) -> set:
+    """The anchors that GitHub gives the headings of a page."""
+    headings = (re.match(r"#+ +(.*)", line) for line in text_lines(page))
+    return {re.sub(r"[^\w\- ]", "", h.group(1).lower()).replace(" ", "-")
+            for h in headings if h}
+
+
+def link_fault(root, page, target):
+    if re.match(r"[a-z]+:", target):
+        return None  # another site: not ours to check
+    name, _, anchor = target.partition("#")
+    path = (page.parent / name).resolve() if name else page
+    if not path.is_relative_to(root.resolve()):
+        return f"link '{target}' leaves the repository"
+    if not path.exists():
+        return f"link '{target}' leads nowhere"
+    if anchor and anchor not in heading_anchors(path):
+        return f"link '{target}': {path.name} has no such heading"
+    return None
+
+
+def page_faults(root, page, tests):
+    for number, line in enumerate(text_lines(page), 1):
+        for target in LINK.findall(line):
+            fault = link_fault(root, page, target)
+            if fault:
+                yield number, fault
+        for name in NAMED_FILE.findall(line):
+            if not (root / name).exists():
+                yield number, f"`{name}` does not exist"
+        for folder, suite, test in NAMED_TEST.findall(line):
+            if (folder, suite, test) not in tests:
+                yield number, f"there is no test `{folder}.{suite}.{test}`"
+
+
+def named_tests(root, files) -> set:
+    """(folder, suite, test) of every TEST in lf/ and tests/."""
+    found = set()
+    for path in files:
+        if path.name.endswith("_test.cc"):
+            text = "\n".join(text_lines(path))
+            for suite, test in re.findall(r"\bTEST(?:_[FP])?\(\s*(\w+),\s*(\w+)\)", text):
+                found.add((path.parent.name, suite, test))
+    return found
+
+
+def check_links(root, files):
+    tests = named_tests(root, files)
+    for page in files:
+        if page.suffix == ".md":
+            for number, fault in page_faults(root, page, tests):
+                yield f"{page.relative_to(root)}:{number}: {fault}"
+
+
+def check_pages(root, files):
+    for path in filter(is_source, files):
+        for number, line in enumerate(text_lines(path), 1):
+            for name in PAGE_IN_COMMENT.findall(line):
+                if not (root / name).exists():
+                    yield f"{path.relative_to(root)}:{number}: the page {name} does not exist"
+
+
+CHECKS = {"lengths": check_lengths, "paths": check_paths, "links": check_links,
+          "pages": check_pages}
+
+
+def main() -> int:
+    if len(sys.argv) != 3 or sys.argv[2] not in CHECKS:
+        print(__doc__, file=sys.stderr)
+        return 2
+    root = pathlib.Path(sys.argv[1])
+    files = tracked_files(root)
+    if not files:
+        print(f"{root}: no files", file=sys.stderr)
+        return 1
+    faults = list(CHECKS[sys.argv[2]](root, files))
+    print("\n".join(faults) or f"{len(files)} files, no fault")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
