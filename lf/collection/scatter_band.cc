@@ -1,6 +1,7 @@
 // The inner loop of ray collection: addresses by linear forms, a chunk at a time so that the
 // compiler turns the maths into vectors, then one integer addition per ray and channel.
 #include <algorithm>
+#include <cmath>
 
 #include "lf/collection/scatter.h"
 
@@ -35,16 +36,41 @@ class LineAddresses {
   void Compute(int x_begin, int count, ChunkElements* elements) const {
     for (int i = 0; i < count; ++i) {
       const double position = x_begin + i + 0.5;
-      const double front = front_slope_ * position + front_constant_;
-      const double x = (x_slope_ * position + x_constant_) / front;
-      const double y = (y_slope_ * position + y_constant_) / front;
+      const double scale = 1 / (front_slope_ * position + front_constant_);
+      const double x = (x_slope_ * position + x_constant_) * scale;
+      const double y = (y_slope_ * position + y_constant_) * scale;
       // Not negative after clamping: truncation is floor.
       elements->x[i] = static_cast<int>(std::min(std::max(x, 0.0), x_last_));
       elements->y[i] = static_cast<int>(std::min(std::max(y, 0.0), y_last_));
     }
   }
 
+  // Cuts from [begin, end) what lands outside of element rows [row_begin, row_end), leaving up to
+  // a pixel too much on either side. y is monotonic along a span; a row is solved for only where
+  // the span crosses it.
+  void Narrow(double row_begin, double row_end, int* begin, int* end) const {
+    const double y_first = RowAt(*begin), y_last = RowAt(*end - 1);
+    const bool rising = y_first <= y_last;
+    const double enter = rising ? row_begin : row_end, leave = rising ? row_end : row_begin;
+    const auto beyond = [rising](double y, double row) { return rising ? y > row : y < row; };
+    const int first = beyond(enter, y_first) ? CrossingOf(enter, *begin, *end) : *begin;
+    const int last = beyond(y_last, leave) ? CrossingOf(leave, *begin, *end) + 2 : *end;
+    *begin = first;
+    *end = std::min(*end, last);
+  }
+
  private:
+  double RowAt(int x) const {
+    const double position = x + 0.5;
+    return (y_slope_ * position + y_constant_) / (front_slope_ * position + front_constant_);
+  }
+
+  // Last pixel of [begin, end) whose centre is not beyond y = row.
+  int CrossingOf(double row, int begin, int end) const {
+    const double x = (row * front_constant_ - y_constant_) / (y_slope_ - row * front_slope_);
+    return static_cast<int>(std::clamp<double>(std::floor(x - 0.5), begin, end));
+  }
+
   double x_slope_, y_slope_, front_slope_;
   double x_constant_, y_constant_, front_constant_;
   double x_last_, y_last_;
@@ -80,10 +106,14 @@ uint64_t ScatterSpan(const ScatterPlan& plan, const RaySpan& span, const Pixels&
   const int rows = band->y_end() - band->y_begin();
   const size_t row_words = static_cast<size_t>(band->width()) * SensorPlate::kChannels;
   uint64_t* const words = band->row(band->y_begin());
+  int x_begin = span.x_begin, x_end = span.x_end;
+  if (!all_inside)
+    addresses.Narrow(band->y_begin() - kBorderMargin, band->y_end() + kBorderMargin, &x_begin,
+                     &x_end);
   uint64_t accepted = 0;
   ChunkElements elements;
-  for (int x = span.x_begin; x < span.x_end; x += chunk) {
-    const int count = std::min(chunk, span.x_end - x);
+  for (int x = x_begin; x < x_end; x += chunk) {
+    const int count = std::min(chunk, x_end - x);
     addresses.Compute(x, count, &elements);
     band->Reserve(static_cast<uint32_t>(count));
     const auto add = [&](int i, int row) {

@@ -1,0 +1,74 @@
+// Rays per second of the back ends: LF images around the lens of one frame, everything accepted.
+#include <benchmark/benchmark.h>
+
+#include "lf/collection/scatter.h"
+#include "lf/core/random.h"
+
+namespace lf {
+namespace {
+
+struct Scene {
+  PinholeCamera lf_camera;
+  RenderCamera frame;
+  LfPixels pixels;
+};
+
+Scene MakeScene(BayerPattern bayer, double turn_rad) {
+  Scene scene;
+  scene.frame.pinhole.intrinsics = {1000, 1000, 480, 320, 0, 960, 640};
+  scene.frame.aperture = {0.05, 0, 0};
+  scene.frame.focus_plane = {Vec3::UnitZ(), 2};
+  scene.lf_camera.intrinsics = scene.frame.pinhole.intrinsics;
+  scene.lf_camera.cam_from_world =
+      *LookAlong({0.01, 0.005, 0.003}, {turn_rad, 0.01, 1}, {0.02, -1, 0});
+  scene.pixels.bayer = bayer;
+  scene.pixels.rect = {0, 0, 960, 640};
+  scene.pixels.radiance = Image<uint16_t>(960, 640, bayer == BayerPattern::kNone ? 3 : 1);
+  uint64_t index = 0;
+  for (uint16_t& v : scene.pixels.radiance.pixels())
+    v = static_cast<uint16_t>(RandomBits(1, 1, index++));
+  return scene;
+}
+
+void ReportRays(benchmark::State& state, uint64_t accepted) {
+  state.counters["rays/s"] =
+      benchmark::Counter(static_cast<double>(accepted), benchmark::Counter::kIsRate);
+}
+
+void BM_Fast(benchmark::State& state, BayerPattern bayer) {
+  const Scene scene = MakeScene(bayer, 0.02);
+  SensorPlate plate(960, 640);
+  constexpr int kBandRows = 22;
+  uint64_t accepted = 0;
+  for (auto _ : state) {
+    const ScatterPlan plan = PlanScatter(scene.lf_camera, scene.frame, scene.pixels.rect);
+    for (int y = 0; y < 640; y += kBandRows) {
+      PlateBand band(&plate, y, std::min(640, y + kBandRows));
+      accepted += ScatterBand(plan, scene.pixels, &band);
+    }
+  }
+  ReportRays(state, accepted);
+}
+BENCHMARK_CAPTURE(BM_Fast, rgb, BayerPattern::kNone);
+BENCHMARK_CAPTURE(BM_Fast, bayer, BayerPattern::kRggb);
+
+void BM_Plan(benchmark::State& state) {
+  const Scene scene = MakeScene(BayerPattern::kNone, 0.02);
+  for (auto _ : state)
+    benchmark::DoNotOptimize(PlanScatter(scene.lf_camera, scene.frame, scene.pixels.rect));
+}
+BENCHMARK(BM_Plan);
+
+void BM_Reference(benchmark::State& state) {
+  const Scene scene = MakeScene(BayerPattern::kNone, 0.02);
+  SensorPlate plate(960, 640);
+  uint64_t accepted = 0;
+  for (auto _ : state)
+    accepted +=
+        ScatterReference(scene.lf_camera, scene.pixels, scene.frame, scene.pixels.rect, &plate);
+  ReportRays(state, accepted);
+}
+BENCHMARK(BM_Reference);
+
+}  // namespace
+}  // namespace lf
