@@ -119,7 +119,7 @@ def check_links(root, files):
 
 
 def check_pages(root, files):
-    for path in filter(is_source, files):
+    for path in (f for f in files if f.suffix in {".cc", ".h", ".cu", ".cmake"}):
         for number, line in enumerate(text_lines(path), 1):
             for name in PAGE_IN_COMMENT.findall(line):
                 if not (root / name).exists():
