@@ -1,8 +1,13 @@
 // Image files in and out: PNG, JPEG, TIFF, EXR. The only place with OpenImageIO.
+//
+// All functions may be called by many threads at once; none starts threads of its own.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -12,8 +17,10 @@
 
 namespace lf {
 
-// What a file holds, in the type it is stored in: integers of up to 8 bits as uint8_t (scaled to
-// the full range), of up to 16 as uint16_t, half and float as float.
+// What a file holds, in the type it is stored in: integers of up to 8 bits as uint8_t, of up to 16
+// as uint16_t (depths between are scaled to the full range), half and float as float. Wider or
+// signed integers, and the integer channels of an EXR file that also holds others, become floats
+// of the same value (exact up to 2^24); doubles are rounded to float.
 using StoredImage = std::variant<Image<uint8_t>, Image<uint16_t>, Image<float>>;
 
 struct ImageFileInfo {
@@ -22,15 +29,23 @@ struct ImageFileInfo {
   int channels = 0;
   int bits = 0;  // 8, 16 or 32 of the StoredImage
   bool is_float = false;
+  std::vector<std::string> channel_names;  // one per channel, as the format calls them
 };
 
-// The header alone. kInput as for ReadImage.
+// The header alone. kInput as for ReadImage, but a file truncated later goes unnoticed.
 Result<ImageFileInfo> ReadImageInfo(const std::filesystem::path& path);
 
 // All pixels and channels as stored: no colour conversion, alpha not multiplied in, no rotation.
+// The content decides the format, not the name. The first part of a file with several.
 // Channels of EXR files come in the order R, G, B, A, then the others.
-// kInput: missing, unreadable or truncated file, or larger than 2^30 pixels; the message names it.
+// kInput: missing, unreadable, truncated or damaged file (JPEG: whatever libjpeg could only guess),
+// another format (camera raw among them), or larger than 2^30 pixels or 2^32 values, which is
+// checked before pixels are allocated; the message names the file.
 Result<StoredImage> ReadImage(const std::filesystem::path& path);
+
+// The same for a file that is in memory; `name` is what messages call it.
+Result<ImageFileInfo> ReadImageInfoBytes(std::string_view bytes, const std::string& name);
+Result<StoredImage> ReadImageBytes(std::string_view bytes, const std::string& name);
 
 enum class PixelType { kUint8, kUint16, kHalf, kFloat };
 
@@ -38,16 +53,32 @@ enum class PixelType { kUint8, kUint16, kHalf, kFloat };
 using ImageMetadata = std::vector<std::pair<std::string, std::variant<std::string, double, int>>>;
 
 // Writes `pixels` atomically (core/file.h); the extension of `path` chooses the format. Integer
-// types take values in [0, 1], clipped and rounded; floats are written as they are.
+// types take values in [0, 1], clipped (NaN: 0) and rounded to nearest; they are sRGB for display,
+// and PNG files say so. Floats are written as they are; what half cannot hold becomes infinite.
+// The same pixels give the same bytes: no date is written.
 //   channel_names  one per channel, as EXR shows them; other formats ignore the names
-//   type           kUint8 (PNG, JPEG, TIFF), kUint16 (PNG, TIFF), kHalf and kFloat (EXR)
+//   type           kUint8 (PNG, JPEG, TIFF), kUint16 (PNG, TIFF), kHalf (EXR), kFloat (EXR, TIFF)
+// JPEG has quality 95 and full chroma resolution. EXR is compressed without loss (zip).
 // kOutput: the folder, the disk, or a format that cannot hold the type.
 Result<void> WriteImage(const std::filesystem::path& path, ImageView<const float> pixels,
                         const std::vector<std::string>& channel_names, PixelType type,
                         const ImageMetadata& metadata = {});
 
-// Integers exactly as they are, 8 or 16 bits.
+// Integers exactly as they are, 8 or 16 bits, without a word on their colour space.
 Result<void> WriteImage(const std::filesystem::path& path, ImageView<const uint8_t> pixels);
 Result<void> WriteImage(const std::filesystem::path& path, ImageView<const uint16_t> pixels);
+
+// One channel of an EXR file with a type of its own: floats as half or float, or 32-bit integers.
+struct ExrChannel {
+  std::string name;
+  std::variant<ImageView<const float>, ImageView<const uint32_t>> pixels;
+  int channel = 0;      // of `pixels`
+  bool as_half = true;  // floats only
+};
+
+// Writes channels of one size as one EXR file, as WriteImage does. kOutput: the folder, the disk,
+// an extension other than .exr.
+Result<void> WriteExr(const std::filesystem::path& path, std::span<const ExrChannel> channels,
+                      const ImageMetadata& metadata = {});
 
 }  // namespace lf

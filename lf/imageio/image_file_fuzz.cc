@@ -1,0 +1,29 @@
+#include <cstddef>
+#include <cstdint>
+
+#include "lf/imageio/image_file.h"
+
+// Any bytes are an image or an error that names the file. Pictures above a million values are left
+// to their headers: decoding them takes long and shows nothing new.
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size_bytes) {
+  const std::string_view file(reinterpret_cast<const char*>(bytes), size_bytes);
+  const auto info = lf::ReadImageInfoBytes(file, "fuzz");
+  if (!info) {
+    LF_CHECK(info.error().message.starts_with("fuzz: "));
+    return 0;
+  }
+  LF_CHECK(info->width > 0 && info->height > 0 && info->channels > 0);
+  if (int64_t{info->width} * info->height > 1'000'000 / info->channels) return 0;
+  const auto image = lf::ReadImageBytes(file, "fuzz");
+  if (!image) {
+    LF_CHECK(image.error().message.starts_with("fuzz: "));
+    return 0;
+  }
+  std::visit(
+      [&](const auto& pixels) {
+        LF_CHECK(pixels.width() == info->width && pixels.height() == info->height);
+        LF_CHECK(pixels.channels() == info->channels);
+      },
+      *image);
+  return 0;
+}

@@ -1,0 +1,245 @@
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <new>
+
+#include "lf/core/file.h"
+#include "lf/imageio/image_file.h"
+#include "lf/imageio/open_image_io.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+std::string LowerCaseExtension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return extension;
+}
+
+Result<ImageFormat> FormatOf(const fs::path& path) {
+  const std::string extension = LowerCaseExtension(path);
+  if (extension == ".png") return ImageFormat::kPng;
+  if (extension == ".jpg" || extension == ".jpeg") return ImageFormat::kJpeg;
+  if (extension == ".tif" || extension == ".tiff") return ImageFormat::kTiff;
+  if (extension == ".exr") return ImageFormat::kExr;
+  return OutputError(
+      fmt::format("{}: no image format has the extension \"{}\"; use .png, .jpg, .tif or .exr",
+                  path.string(), extension));
+}
+
+Result<void> CheckHolds(const fs::path& path, ImageFormat format, PixelType type, int channels) {
+  const bool integer = type == PixelType::kUint8 || type == PixelType::kUint16;
+  const bool holds = (format == ImageFormat::kExr && !integer) ||
+                     (format == ImageFormat::kJpeg && type == PixelType::kUint8) ||
+                     (format == ImageFormat::kPng && integer) ||
+                     (format == ImageFormat::kTiff && type != PixelType::kHalf);
+  const bool holds_channels = (format != ImageFormat::kPng || channels <= 4) &&
+                              (format != ImageFormat::kJpeg || channels == 1 || channels == 3);
+  if (!holds_channels)
+    return OutputError(fmt::format("{}: {} files cannot hold {} channels; choose another extension",
+                                   path.string(), PluginName(format), channels));
+  if (holds) return {};
+  constexpr const char* kTypes[] = {"8-bit integers", "16-bit integers", "half floats", "floats"};
+  return OutputError(fmt::format("{}: {} files are not written with {}; choose another extension",
+                                 path.string(), PluginName(format),
+                                 kTypes[static_cast<int>(type)]));
+}
+
+std::string TextOf(const std::variant<std::string, double, int>& value) {
+  if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  if (const auto* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
+  return fmt::format("{}", std::get<int>(value));
+}
+
+// EXR: attributes with their types. PNG: one text each. TIFF, JPEG: lines of the description, the
+// one text that every reader shows.
+void AddMetadata(OIIO::ImageSpec& spec, ImageFormat format, const ImageMetadata& metadata) {
+  std::string description;
+  for (const auto& [key, value] : metadata) {
+    if (format == ImageFormat::kPng) {
+      spec.attribute(key, TextOf(value));
+    } else if (format == ImageFormat::kExr) {
+      std::visit([&, &name = key](const auto& v) { spec[name] = v; }, value);
+    } else {
+      description += fmt::format("{}: {}\n", key, TextOf(value));
+    }
+  }
+  if (!description.empty()) spec.attribute("ImageDescription", description);
+}
+
+OIIO::ImageSpec SpecOf(ImageFormat format, int width, int height, int channels,
+                       OIIO::TypeDesc type) {
+  OIIO::ImageSpec spec(width, height, channels, type);
+  spec.attribute("oiio:UnassociatedAlpha", 1);  // nothing is multiplied in or divided out
+  spec.alpha_channel = -1;
+  if (format == ImageFormat::kExr || format == ImageFormat::kTiff) {
+    spec.attribute("compression", "zip");
+    spec.attribute("DateTime", "");  // the date of today would make equal frames differ
+  }
+  if (format == ImageFormat::kJpeg) {
+    spec.attribute("compression", "jpeg:95");
+    spec.attribute("jpeg:subsampling", "4:4:4");
+  }
+  return spec;
+}
+
+// The file in memory first: then every failure of the disk is seen by core/file.h.
+// pixels: packed as the spec says.
+Result<void> Encode(const fs::path& path, ImageFormat format, const OIIO::ImageSpec& spec,
+                    const void* pixels) {
+  ConfigureOpenImageIo();
+  const std::string name = path.string();
+  const auto failure = [&](const std::string& reason) {
+    return OutputError(fmt::format("{}: cannot be encoded: {}", name, reason));
+  };
+  std::vector<unsigned char> bytes;
+  try {
+    OIIO::Filesystem::IOVecOutput file(bytes);
+    const auto output = OIIO::ImageOutput::create(PluginName(format));
+    if (!output) return failure(OIIO::geterror());
+    output->set_ioproxy(&file);
+    if (!output->open(name, spec) || !output->write_image(OIIO::TypeUnknown, pixels) ||
+        !output->close())
+      return failure(output->geterror());
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    return failure(error.what());
+  }
+  return WriteFileAtomically(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+// Rows without gaps between them, each value converted.
+template <class To, class From, class Convert>
+Image<To> Packed(ImageView<const From> pixels, const Convert& convert) {
+  Image<To> packed(pixels.width, pixels.height, pixels.channels);
+  const size_t row_values = static_cast<size_t>(pixels.width) * pixels.channels;
+  for (int y = 0; y < pixels.height; ++y)
+    std::transform(pixels.row(y), pixels.row(y) + row_values, packed.row(y), convert);
+  return packed;
+}
+
+// NaN compares false and becomes 0.
+template <class T>
+T IntegerOf(float value) {
+  constexpr double kMax = std::numeric_limits<T>::max();
+  const double clipped = value > 0 ? std::min<double>(value, 1) : 0;
+  return static_cast<T>(std::floor(clipped * kMax + 0.5));
+}
+
+Result<void> CheckShape(const fs::path& path, int width, int height) {
+  if (width > 0 && height > 0) return {};
+  return OutputError(fmt::format("{}: a picture of {} x {} pixels cannot be written", path.string(),
+                                 width, height));
+}
+
+template <class T>
+Result<void> WriteIntegers(const fs::path& path, ImageFormat format, const Image<T>& pixels,
+                           bool is_srgb, const ImageMetadata& metadata) {
+  OIIO::ImageSpec spec = SpecOf(format, pixels.width(), pixels.height(), pixels.channels(),
+                                OIIO::BaseTypeFromC<T>::value);
+  if (is_srgb) spec.attribute("oiio:ColorSpace", "sRGB");
+  AddMetadata(spec, format, metadata);
+  return Encode(path, format, spec, pixels.pixels().data());
+}
+
+template <class T>
+Result<void> WriteStored(const fs::path& path, ImageView<const T> pixels, PixelType type) {
+  LF_ASSIGN_OR_RETURN(const ImageFormat format, FormatOf(path));
+  LF_RETURN_IF_ERROR(CheckHolds(path, format, type, pixels.channels));
+  LF_RETURN_IF_ERROR(CheckShape(path, pixels.width, pixels.height));
+  return WriteIntegers(path, format, Packed<T>(pixels, [](T v) { return v; }), false, {});
+}
+
+Result<void> WriteFloatTiff(const fs::path& path, ImageView<const float> pixels,
+                            const ImageMetadata& metadata) {
+  OIIO::ImageSpec spec = SpecOf(ImageFormat::kTiff, pixels.width, pixels.height, pixels.channels,
+                                OIIO::TypeDesc::FLOAT);
+  AddMetadata(spec, ImageFormat::kTiff, metadata);
+  return Encode(path, ImageFormat::kTiff, spec,
+                Packed<float>(pixels, [](float v) { return v; }).pixels().data());
+}
+
+OIIO::TypeDesc TypeOf(const ExrChannel& channel) {
+  if (std::holds_alternative<ImageView<const uint32_t>>(channel.pixels))
+    return OIIO::TypeDesc::UINT32;
+  return channel.as_half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT;
+}
+
+void StoreValue(const ExrChannel& channel, int x, int y, std::byte* to) {
+  if (const auto* counts = std::get_if<ImageView<const uint32_t>>(&channel.pixels)) {
+    std::memcpy(to, &counts->at(x, y, channel.channel), sizeof(uint32_t));
+    return;
+  }
+  const float value = std::get<ImageView<const float>>(channel.pixels).at(x, y, channel.channel);
+  OIIO::convert_pixel_values(OIIO::TypeDesc::FLOAT, &value, TypeOf(channel), to, 1);
+}
+
+}  // namespace
+
+Result<void> WriteImage(const fs::path& path, ImageView<const float> pixels,
+                        const std::vector<std::string>& channel_names, PixelType type,
+                        const ImageMetadata& metadata) {
+  LF_CHECK(channel_names.size() == static_cast<size_t>(pixels.channels));
+  LF_ASSIGN_OR_RETURN(const ImageFormat format, FormatOf(path));
+  LF_RETURN_IF_ERROR(CheckHolds(path, format, type, pixels.channels));
+  LF_RETURN_IF_ERROR(CheckShape(path, pixels.width, pixels.height));
+  if (type == PixelType::kUint8)
+    return WriteIntegers(path, format, Packed<uint8_t>(pixels, IntegerOf<uint8_t>), true, metadata);
+  if (type == PixelType::kUint16)
+    return WriteIntegers(path, format, Packed<uint16_t>(pixels, IntegerOf<uint16_t>), true,
+                         metadata);
+  if (format == ImageFormat::kTiff) return WriteFloatTiff(path, pixels, metadata);
+  std::vector<ExrChannel> channels;
+  for (int channel = 0; channel < pixels.channels; ++channel)
+    channels.push_back({channel_names[channel], pixels, channel, type == PixelType::kHalf});
+  return WriteExr(path, channels, metadata);
+}
+
+Result<void> WriteImage(const fs::path& path, ImageView<const uint8_t> pixels) {
+  return WriteStored(path, pixels, PixelType::kUint8);
+}
+
+Result<void> WriteImage(const fs::path& path, ImageView<const uint16_t> pixels) {
+  return WriteStored(path, pixels, PixelType::kUint16);
+}
+
+Result<void> WriteExr(const fs::path& path, std::span<const ExrChannel> channels,
+                      const ImageMetadata& metadata) {
+  LF_CHECK(!channels.empty());
+  if (LowerCaseExtension(path) != ".exr")
+    return OutputError(fmt::format("{}: an EXR file needs the extension .exr", path.string()));
+  const auto size = [](const ExrChannel& channel) {
+    return std::visit([](const auto& view) { return std::pair(view.width, view.height); },
+                      channel.pixels);
+  };
+  const auto [width, height] = size(channels[0]);
+  LF_RETURN_IF_ERROR(CheckShape(path, width, height));
+  OIIO::ImageSpec spec = SpecOf(ImageFormat::kExr, width, height, static_cast<int>(channels.size()),
+                                OIIO::TypeDesc::FLOAT);
+  spec.channelnames.clear();
+  for (const ExrChannel& channel : channels) {
+    LF_CHECK(size(channel) == std::pair(width, height));
+    spec.channelnames.push_back(channel.name);
+    spec.channelformats.push_back(TypeOf(channel));
+  }
+  AddMetadata(spec, ImageFormat::kExr, metadata);
+  std::vector<std::byte> packed(spec.image_bytes(true));
+  std::byte* to = packed.data();
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      for (size_t i = 0; i < channels.size(); ++i) {
+        StoreValue(channels[i], x, y, to);
+        to += spec.channelformats[i].size();
+      }
+  return Encode(path, ImageFormat::kExr, spec, packed.data());
+}
+
+}  // namespace lf

@@ -1,0 +1,132 @@
+#include "lf/imageio/image_probe.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace lf {
+namespace {
+
+// `count` bytes at `offset` as a number, the most significant first; none beyond the end.
+std::optional<uint64_t> BigEndian(const ByteSource& source, uint64_t offset, size_t count) {
+  std::array<uint8_t, 8> bytes;
+  if (source(offset, std::span(bytes).first(count)) != count) return std::nullopt;
+  uint64_t value = 0;
+  for (size_t i = 0; i < count; ++i) value = value << 8 | bytes[i];
+  return value;
+}
+
+bool StartsWith(std::span<const uint8_t> bytes, std::string_view magic) {
+  return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
+}
+
+Result<void> CheckPng(const ByteSource& source, const std::string& name) {
+  const auto width = BigEndian(source, 16, 4), height = BigEndian(source, 20, 4);
+  if (!width || !height)
+    return InputError(fmt::format("{}: PNG file ends within its header", name));
+  return CheckPixelCount(*width, *height, name);
+}
+
+// The frame header (SOFn) carries the size. Bytes between segments are skipped, as libjpeg does.
+Result<void> CheckJpeg(const ByteSource& source, const std::string& name) {
+  uint64_t offset = 2;
+  while (const auto byte = BigEndian(source, offset++, 1)) {
+    if (*byte != 0xff) continue;
+    std::optional<uint64_t> marker;
+    while ((marker = BigEndian(source, offset++, 1)) == 0xff) continue;
+    if (!marker || *marker == 0xd9 || *marker == 0xda) break;
+    if (*marker <= 0x01 || (*marker >= 0xd0 && *marker <= 0xd8)) continue;  // no content
+    const bool is_frame =
+        *marker >= 0xc0 && *marker <= 0xcf && *marker != 0xc4 && *marker != 0xc8 && *marker != 0xcc;
+    if (is_frame) {
+      const auto height = BigEndian(source, offset + 3, 2),
+                 width = BigEndian(source, offset + 5, 2);
+      if (!width || !height) break;
+      return CheckPixelCount(*width, *height, name);
+    }
+    const auto length = BigEndian(source, offset, 2);
+    if (!length) break;
+    offset += std::max<uint64_t>(*length, 2);
+  }
+  return InputError(
+      fmt::format("{}: JPEG file without a frame header: truncated or damaged", name));
+}
+
+// Camera raw files are TIFF files that lead with a thumbnail; taken for TIFF they would silently
+// give a tiny picture.
+bool IsCameraRaw(const ByteSource& source) {
+  constexpr uint64_t kNewSubfileType = 254, kDngVersion = 50706;
+  std::array<uint8_t, 10> head{};
+  if (source(0, head) != head.size()) return false;
+  const bool little_endian = head[0] == 'I';
+  const auto number = [&](const uint8_t* bytes, int count) {
+    uint64_t value = 0;
+    for (int i = 0; i < count; ++i) value = value << 8 | bytes[little_endian ? count - 1 - i : i];
+    return value;
+  };
+  if (number(head.data() + 2, 2) != 42) return false;  // BigTIFF: no camera writes it
+  if (head[8] == 'C' && head[9] == 'R') return true;   // Canon CR2
+  const uint64_t directory = number(head.data() + 4, 4);
+  std::array<uint8_t, 2> count_bytes{};
+  if (source(directory, count_bytes) != 2) return false;
+  std::vector<uint8_t> entries(12 * number(count_bytes.data(), 2));
+  entries.resize(source(directory + 2, entries) / 12 * 12);
+  for (size_t at = 0; at < entries.size(); at += 12) {
+    const uint64_t tag = number(&entries[at], 2);
+    const bool reduced = tag == kNewSubfileType && (number(&entries[at + 8], 4) & 1) != 0;
+    if (reduced || tag == kDngVersion) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Result<void> CheckPixelCount(uint64_t width, uint64_t height, const std::string& name) {
+  // Both are below 2^32, so the product does not wrap.
+  if (width * height <= kMaxImagePixels) return {};
+  return InputError(fmt::format("{}: claims {} x {} pixels, more than the {} that are read", name,
+                                width, height, kMaxImagePixels));
+}
+
+Result<ImageFormat> ProbeImage(const ByteSource& source, const std::string& name) {
+  std::array<uint8_t, 8> head;
+  const auto start = std::span<const uint8_t>(head).first(source(0, head));
+  if (start.empty()) return InputError(fmt::format("{}: file is empty", name));
+  if (StartsWith(start, "\x89PNG\r\n\x1a\n")) {
+    LF_RETURN_IF_ERROR(CheckPng(source, name));
+    return ImageFormat::kPng;
+  }
+  if (StartsWith(start, "\xff\xd8\xff")) {
+    LF_RETURN_IF_ERROR(CheckJpeg(source, name));
+    return ImageFormat::kJpeg;
+  }
+  if (StartsWith(start, "\x76\x2f\x31\x01")) return ImageFormat::kExr;
+  using namespace std::string_view_literals;
+  for (const std::string_view tiff : {"II*\0"sv, "MM\0*"sv, "II+\0"sv, "MM\0+"sv}) {
+    if (!StartsWith(start, tiff)) continue;
+    if (IsCameraRaw(source))
+      return InputError(fmt::format(
+          "{}: is a camera raw file; convert it to 16-bit TIFF or PNG without demosaicking", name));
+    return ImageFormat::kTiff;
+  }
+  return InputError(fmt::format("{}: is not a PNG, JPEG, TIFF or EXR file", name));
+}
+
+Result<void> CheckPngIsComplete(const ByteSource& source, const std::string& name) {
+  constexpr uint64_t kEnd = 0x49454e44;  // "IEND"
+  uint64_t offset = 8;                   // chunks: length, type, content, checksum
+  while (true) {
+    const auto length = BigEndian(source, offset, 4), type = BigEndian(source, offset + 4, 4);
+    offset += 12 + length.value_or(0);
+    if (!length || !type || !BigEndian(source, offset - 1, 1)) break;
+    if (type == kEnd) return {};
+  }
+  return InputError(fmt::format("{}: PNG file is truncated: it ends before its end mark", name));
+}
+
+}  // namespace lf

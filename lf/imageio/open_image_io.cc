@@ -1,0 +1,30 @@
+#include "lf/imageio/open_image_io.h"
+
+#include <OpenImageIO/imageio.h>
+
+namespace lf {
+
+void ConfigureOpenImageIo() {
+  static const bool done = [] {
+    OIIO::attribute("threads", 1);
+    OIIO::attribute("exr_threads", -1);  // -1: OpenEXR works in the calling thread
+    return true;
+  }();
+  static_cast<void>(done);
+}
+
+const char* PluginName(ImageFormat format) {
+  switch (format) {
+    case ImageFormat::kPng:
+      return "png";
+    case ImageFormat::kJpeg:
+      return "jpeg";
+    case ImageFormat::kTiff:
+      return "tiff";
+    case ImageFormat::kExr:
+      return "openexr";
+  }
+  LF_CHECK(false);
+}
+
+}  // namespace lf
