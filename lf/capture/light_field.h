@@ -14,7 +14,7 @@
 
 namespace lf {
 
-// One LF camera: 112 bytes, since a light field may have a million of them.
+// One LF camera: 104 bytes, since a light field may have a million of them.
 struct LfCamera {
   RigidTransform cam_from_world;
   uint32_t intrinsics_index = 0;  // into LightField::intrinsics

@@ -9,6 +9,8 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "lf/core/geometry.h"
@@ -43,8 +45,18 @@ struct RadianceEncoding {
 double LinearFromSrgb(double srgb);
 double SrgbFromLinear(double linear);
 
-// v for every stored value of 8 or 16 bit files: 256 or 65536 entries.
-// bits: 8 or 16.
+// max_radiance of a light field that does not state it: 16 when an image is a float file (its name
+// ends in .exr or .hdr), so that highlights up to 16 times display white are kept while black to
+// white still has 4096 steps; else 1, which integer files cannot exceed.
+double DefaultMaxRadiance(std::span<const std::string> image_names);
+
+// Whether files of so many bits can hold the levels: black < white <= the largest storable value.
+bool LevelsFit(const RadianceEncoding& encoding, int bits);
+
+// v for every stored value of 8 or 16 bit files: 256 or 65536 entries. Halves round away from zero
+// (noise around black stays symmetric). Beyond the levels sRGB and linear go on; a response curve
+// goes on with its first slope below black and holds its last value above white.
+// bits: 8 or 16, and LevelsFit().
 std::vector<uint16_t> RadianceTable(const RadianceEncoding& encoding, int bits, double gain);
 
 // v of a float file's radiance. NaN gives the pedestal.

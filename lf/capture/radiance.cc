@@ -1,0 +1,83 @@
+#include "lf/capture/radiance.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+
+#include "lf/core/check.h"
+
+namespace lf {
+namespace {
+
+double LargestStorable(int bits) { return bits == 8 ? 255 : 65535; }
+
+double WhiteLevel(const RadianceEncoding& encoding, int bits) {
+  return encoding.white_level.value_or(LargestStorable(bits));
+}
+
+// x = 0 at black, 1 at white.
+double RadianceOfResponse(const std::vector<double>& response, double x) {
+  if (x >= 1) return response.back();
+  const double position = x * static_cast<double>(response.size() - 1);
+  const size_t segment = static_cast<size_t>(std::max(0.0, position));
+  const double slope = response[segment + 1] - response[segment];
+  return response[segment] + slope * (position - static_cast<double>(segment));
+}
+
+double RadianceOf(const RadianceEncoding& encoding, double x) {
+  switch (encoding.transfer) {
+    case Transfer::kSrgb:
+      return LinearFromSrgb(x);
+    case Transfer::kLinear:
+      return x;
+    case Transfer::kResponse:
+      return RadianceOfResponse(encoding.response, x);
+  }
+  return x;
+}
+
+}  // namespace
+
+double LinearFromSrgb(double srgb) {
+  return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
+}
+
+double SrgbFromLinear(double linear) {
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
+
+double DefaultMaxRadiance(std::span<const std::string> image_names) {
+  const auto is_float_file = [](const std::string& name) {
+    std::string extension = std::filesystem::path(name).extension().string();
+    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return extension == ".exr" || extension == ".hdr";
+  };
+  return std::any_of(image_names.begin(), image_names.end(), is_float_file) ? 16 : 1;
+}
+
+bool LevelsFit(const RadianceEncoding& encoding, int bits) {
+  const double white_level = WhiteLevel(encoding, bits);
+  return encoding.black_level < white_level && white_level <= LargestStorable(bits);
+}
+
+std::vector<uint16_t> RadianceTable(const RadianceEncoding& encoding, int bits, double gain) {
+  LF_CHECK(bits == 8 || bits == 16);
+  LF_CHECK(LevelsFit(encoding, bits));
+  LF_CHECK(encoding.transfer != Transfer::kResponse || encoding.response.size() >= 2);
+  const double range = WhiteLevel(encoding, bits) - encoding.black_level;
+  std::vector<uint16_t> table(size_t{1} << bits);
+  for (size_t stored = 0; stored < table.size(); ++stored) {
+    const double x = (static_cast<double>(stored) - encoding.black_level) / range;
+    table[stored] = QuantizeRadiance(encoding, RadianceOf(encoding, x), gain);
+  }
+  return table;
+}
+
+uint16_t QuantizeRadiance(const RadianceEncoding& encoding, double radiance, double gain) {
+  const double light = std::isnan(radiance) ? 0 : radiance;
+  const double v = std::round(light * gain * encoding.Scale()) + encoding.pedestal;
+  return static_cast<uint16_t>(std::clamp(v, 0.0, 65535.0));
+}
+
+}  // namespace lf
