@@ -1,0 +1,27 @@
+// The lf_* keys of transforms.json that say how stored numbers become light. Internal to capture.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "lf/capture/json_fields.h"
+#include "lf/capture/radiance.h"
+#include "lf/core/result.h"
+
+namespace lf {
+
+// All lf_* keys there are (doc/formats/transforms_json.md).
+inline constexpr const char* kTopLevelLfKeys[] = {
+    "lf_bayer",         "lf_transfer",       "lf_response",     "lf_black_level", "lf_white_level",
+    "lf_white_balance", "lf_camera_to_srgb", "lf_max_radiance", "lf_pedestal",    "lf_unit_m"};
+inline constexpr const char* kFrameLfKeys[] = {"lf_gain", "lf_mask", "lf_translation"};
+
+// Of the top level. Defaults: sRGB without a Bayer pattern, linear with one; pedestal 1024 where
+// there is a black level, else 0; DefaultMaxRadiance(image_names).
+Result<RadianceEncoding> ReadEncoding(const JsonFields& top,
+                                      std::span<const std::string> image_names);
+
+// "RGGB", ...; "" for kNone.
+const char* NameOf(BayerPattern bayer);
+
+}  // namespace lf

@@ -1,0 +1,107 @@
+#include "lf/capture/open_light_field.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <string>
+
+#include "lf/core/file.h"
+
+namespace lf {
+namespace {
+namespace fs = std::filesystem;
+
+class OpenLightFieldTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() /
+              ("lf_open_light_field_test." + std::to_string(::getpid()) + "." +
+               testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  fs::path folder_;
+};
+
+constexpr const char* kCalibration = R"({"fl_x": 5, "w": 6, "h": 7, "frames": [{"file_path":
+  "a.png", "transform_matrix": [[1,0,0,1],[0,1,0,2],[0,0,1,3]]}]})";
+
+TEST_F(OpenLightFieldTest, TakesTheFileOrItsFolder) {
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "transforms.json", kCalibration));
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "other.json", kCalibration));
+  for (const fs::path& path : {folder_, folder_ / "transforms.json", folder_ / "other.json"}) {
+    const Result<LightField> light_field = OpenLightField(path);
+    ASSERT_TRUE(light_field) << light_field.error().message;
+    EXPECT_EQ(light_field->size(), 1u);
+    EXPECT_EQ(light_field->ImagePath({0}), folder_ / "a.png");
+  }
+}
+
+TEST_F(OpenLightFieldTest, SaysWhatItLookedFor) {
+  const auto error = [](const fs::path& path) {
+    const Result<LightField> light_field = OpenLightField(path);
+    return light_field ? "" : light_field.error().message;
+  };
+  EXPECT_NE(error(folder_ / "none").find("none: no such file or folder"), std::string::npos);
+  EXPECT_NE(error(folder_).find("looked for transforms.json"), std::string::npos);
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "transforms_train.json", kCalibration));
+  EXPECT_NE(error(folder_).find("it holds transforms_train.json"), std::string::npos);
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "a.blend", ""));
+  EXPECT_NE(error(folder_ / "a.blend").find("a.blend: is not a light field"), std::string::npos);
+}
+
+// Real light fields, where they are at hand.
+class RealLightFieldTest : public testing::Test {
+ protected:
+  static fs::path TestData() {
+    const char* folder = std::getenv("LF_TEST_DATA");
+    return folder ? folder : LF_TEST_DATA_DEFAULT;
+  }
+  // Skips the test where the folder is not there.
+  static Result<LightField> Open(const fs::path& folder) {
+    return OpenLightField(TestData() / folder);
+  }
+};
+
+#define LF_SKIP_WITHOUT(folder)                                          \
+  if (!fs::exists(TestData() / (folder)))                                \
+  GTEST_SKIP() << "skipped: no test data at " << (TestData() / (folder)) \
+               << " (set LF_TEST_DATA to the folder that holds it)"
+
+TEST_F(RealLightFieldTest, GroundTruthGridIsParallelAndPitchedDown) {
+  LF_SKIP_WITHOUT("groundtruth/data/planar");
+  const Result<LightField> light_field = Open("groundtruth/data/planar");
+  ASSERT_TRUE(light_field) << light_field.error().message;
+  ASSERT_EQ(light_field->size(), 361u);
+  ASSERT_EQ(light_field->intrinsics.size(), 1u);
+  EXPECT_EQ(light_field->intrinsics[0], (Intrinsics{440, 440, 160, 120, 0, 320, 240}));
+  const Vec3 step = light_field->Camera({1}).CentreWorld() - light_field->Camera({0}).CentreWorld();
+  EXPECT_NEAR((step - Vec3(0.0005, 0, 0)).norm(), 0, 1e-15);
+  for (uint32_t i = 0; i < light_field->size(); ++i) {
+    const PinholeCamera camera = light_field->Camera({i});
+    EXPECT_NEAR(camera.ForwardWorld().y(), -std::sin(RadiansFromDegrees(9)), 1e-12);
+    EXPECT_NEAR(camera.RightWorld().x(), 1, 1e-12);
+    EXPECT_TRUE(fs::exists(light_field->ImagePath({i})));
+  }
+}
+
+TEST_F(RealLightFieldTest, GroundTruthBandLooksAtOnePointFortyCentimetresAhead) {
+  LF_SKIP_WITHOUT("groundtruth/data/band");
+  const Result<LightField> light_field = Open("groundtruth/data/band");
+  ASSERT_TRUE(light_field) << light_field.error().message;
+  ASSERT_EQ(light_field->size(), 48u * 6u);
+  const auto point_ahead = [&](uint32_t i) -> Vec3 {
+    const PinholeCamera camera = light_field->Camera({i});
+    return camera.CentreWorld() + 0.4 * camera.ForwardWorld();
+  };
+  Vec3 target = Vec3::Zero();
+  for (uint32_t i = 0; i < light_field->size(); ++i)
+    target += point_ahead(i) / static_cast<double>(light_field->size());
+  for (uint32_t i = 0; i < light_field->size(); ++i)  // jittered by 0.2 mm and 0.05 degrees
+    EXPECT_LT((point_ahead(i) - target).norm(), 0.001) << i;
+}
+
+}  // namespace
+}  // namespace lf
