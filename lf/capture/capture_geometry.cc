@@ -1,0 +1,106 @@
+#include "lf/capture/capture_geometry.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace lf {
+namespace {
+
+constexpr size_t kSpacingSamples = 500;
+constexpr size_t kAxisSamples = 20000;
+
+std::vector<Vec3> Centres(const LightField& light_field) {
+  std::vector<Vec3> centres;
+  centres.reserve(light_field.size());
+  for (const LfCamera& camera : light_field.cameras)
+    centres.push_back(camera.cam_from_world.Inverse().translation);
+  return centres;
+}
+
+double Percentile(std::vector<double> values, double share) {
+  if (values.empty()) return 0;
+  const auto at = values.begin() + static_cast<ptrdiff_t>(share * (values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+// Squared distance of `point` to a line.
+double SquaredDistance(const Vec3& point, const Ray& axis) {
+  const Vec3 offset = point - axis.origin;
+  return offset.squaredNorm() - std::pow(axis.direction.dot(offset), 2);
+}
+
+// Minimises the sum of squared distances to the axes. None if they are parallel: then the smallest
+// eigenvalue of the mean of I - d d^T, the squared sine of their spread, vanishes.
+std::optional<Vec3> NearestPoint(const std::vector<Ray>& axes) {
+  constexpr double kLeastSpread = 1e-5;  // about 0.2 degrees
+  Mat3 a = Mat3::Zero();
+  Vec3 b = Vec3::Zero();
+  for (const Ray& axis : axes) {
+    const Mat3 across = Mat3::Identity() - axis.direction * axis.direction.transpose();
+    a += across / axes.size();
+    b += across * axis.origin / axes.size();
+  }
+  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(a);
+  if (!(eigen.eigenvalues()[0] > kLeastSpread)) return std::nullopt;
+  return a.ldlt().solve(b);
+}
+
+}  // namespace
+
+double MedianSpacing(const LightField& light_field) {
+  if (light_field.size() < 2) return 0;
+  const std::vector<Vec3> centres = Centres(light_field);
+  const size_t step = std::max<size_t>(1, centres.size() / kSpacingSamples);
+  std::vector<double> nearest;
+  for (size_t i = 0; i < centres.size(); i += step) {
+    double least = std::numeric_limits<double>::infinity();
+    for (size_t k = 0; k < centres.size(); ++k)
+      if (k != i) least = std::min(least, (centres[k] - centres[i]).squaredNorm());
+    nearest.push_back(std::sqrt(least));
+  }
+  return Percentile(std::move(nearest), 0.5);
+}
+
+std::optional<Vec3> AxesMeetingPoint(const LightField& light_field) {
+  std::vector<Ray> axes;
+  const size_t step = std::max<size_t>(1, light_field.size() / kAxisSamples);
+  for (size_t i = 0; i < light_field.size(); i += step) {
+    const PinholeCamera camera = light_field.Camera(LfImageId{static_cast<uint32_t>(i)});
+    axes.push_back({camera.CentreWorld(), camera.ForwardWorld()});
+  }
+  std::optional<Vec3> point = axes.size() < 2 ? std::nullopt : NearestPoint(axes);
+  if (!point) return std::nullopt;
+  std::sort(axes.begin(), axes.end(), [&](const Ray& x, const Ray& y) {
+    return SquaredDistance(*point, x) < SquaredDistance(*point, y);
+  });
+  axes.resize(std::max<size_t>(2, axes.size() * 9 / 10));
+  point = NearestPoint(axes);
+  if (!point) return std::nullopt;
+  const auto in_front = std::count_if(axes.begin(), axes.end(), [&](const Ray& axis) {
+    return axis.direction.dot(*point - axis.origin) > 0;
+  });
+  if (static_cast<size_t>(in_front) * 10 < axes.size() * 9) return std::nullopt;
+  return point;
+}
+
+Reach CaptureReach(const LightField& light_field, const PinholeCamera& camera, size_t count) {
+  std::vector<Vec3> offsets = Centres(light_field);
+  for (Vec3& offset : offsets) offset -= camera.CentreWorld();
+  count = std::min(count, offsets.size());
+  std::nth_element(offsets.begin(), offsets.begin() + static_cast<ptrdiff_t>(count) - 1,
+                   offsets.end(),
+                   [](const Vec3& a, const Vec3& b) { return a.squaredNorm() < b.squaredNorm(); });
+  std::vector<double> right, up;
+  for (size_t i = 0; i < count; ++i) {
+    right.push_back(std::abs(camera.RightWorld().dot(offsets[i])));
+    up.push_back(std::abs(camera.UpWorld().dot(offsets[i])));
+  }
+  return {Percentile(std::move(right), 0.8), Percentile(std::move(up), 0.8)};
+}
+
+}  // namespace lf

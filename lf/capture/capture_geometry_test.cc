@@ -1,0 +1,71 @@
+#include "lf/capture/capture_geometry.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace lf {
+namespace {
+
+LightField Field(const std::vector<RigidTransform>& poses) {
+  LightField field;
+  field.intrinsics = {{100, 100, 50, 50, 0, 100, 100}};
+  for (const RigidTransform& pose : poses) {
+    field.cameras.push_back({pose, 0, 1});
+    field.image_names.push_back("x");
+  }
+  return field;
+}
+
+// A 12 x 6 grid, pitch 0.1 and 0.2, looking along +z, or at a target.
+LightField Grid(std::optional<Vec3> target) {
+  std::vector<RigidTransform> poses;
+  for (int row = 0; row < 6; ++row)
+    for (int column = 0; column < 12; ++column) {
+      const Vec3 centre(0.1 * column, 0.2 * row, 0);
+      poses.push_back(
+          *LookAlong(centre, target ? Vec3(*target - centre) : Vec3(0, 0, 1), {0, -1, 0}));
+    }
+  return Field(poses);
+}
+
+TEST(CaptureGeometry, SpacingIsTheDistanceToTheNearestNeighbour) {
+  EXPECT_NEAR(MedianSpacing(Grid({})), 0.1, 1e-12);
+  EXPECT_EQ(MedianSpacing(Field({RigidTransform{}})), 0);
+}
+
+TEST(CaptureGeometry, AxesMeetAtWhatAllCamerasLookAt) {
+  const Vec3 target(0.3, 0.2, 2);
+  const std::optional<Vec3> point = AxesMeetingPoint(Grid(target));
+  ASSERT_TRUE(point);
+  EXPECT_NEAR((*point - target).norm(), 0, 1e-9);
+}
+
+TEST(CaptureGeometry, AFewStraysDoNotMoveTheMeetingPoint) {
+  const Vec3 target(0.3, 0.2, 2);
+  LightField field = Grid(target);
+  for (int i = 0; i < 4; ++i)
+    field.cameras[i * 7].cam_from_world = *LookAlong({0, 0, 0}, {1, 0.3 * i, 0.1}, {0, -1, 0});
+  EXPECT_NEAR((*AxesMeetingPoint(field) - target).norm(), 0, 1e-6);
+}
+
+TEST(CaptureGeometry, ParallelAndOutwardAxesDoNotMeet) {
+  EXPECT_FALSE(AxesMeetingPoint(Grid({})));
+  std::vector<RigidTransform> poses;
+  for (int i = 0; i < 20; ++i) {
+    const Vec3 outward(std::cos(0.3 * i), 0.1, std::sin(0.3 * i));
+    poses.push_back(*LookAlong(outward, outward, {0, -1, 0}));
+  }
+  EXPECT_FALSE(AxesMeetingPoint(Field(poses)));
+}
+
+TEST(CaptureGeometry, ReachFollowsTheShapeOfTheCapture) {
+  const LightField field = Grid({});
+  const PinholeCamera middle = field.Camera(LfImageId{2 * 12 + 6});
+  const Reach reach = CaptureReach(field, middle, 72);
+  EXPECT_NEAR(reach.right_w, 0.5, 0.1001);
+  EXPECT_NEAR(reach.up_w, 0.5, 0.1001);
+}
+
+}  // namespace
+}  // namespace lf
