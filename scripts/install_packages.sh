@@ -55,7 +55,11 @@ update_package_lists() {
 }
 
 mkdir -p build
-echo "Installing ${#missing[@]} packages with ${as_root[0]:+sudo }apt-get: ${missing[*]}"
+echo "Installing with ${as_root[0]:+sudo }apt-get: ${missing[*]}"
 patiently "apt-get update" "$log" update_package_lists
-patiently "apt-get install" build/apt-install.log \
-  "${apt_get[@]}" install --no-install-recommends "${missing[@]}"
+if ! patiently "apt-get install" build/apt-install.log \
+  "${apt_get[@]}" install --no-install-recommends "${missing[@]}"; then
+  # An unreachable mirror is only a warning when the lists are updated.
+  sed -n 's/^[WE]: /apt-get update had warned: /p' "$log" >&2
+  exit 1
+fi
