@@ -7,6 +7,7 @@
 #include <system_error>
 #include <vector>
 
+#include "lf/capture/read_stanford.h"
 #include "lf/capture/transforms_json.h"
 
 namespace lf {
@@ -14,6 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kCalibrationName = "transforms.json";
+constexpr const char* kImagesName = "images";
 
 // Calibrations under other names, such as Blender's transforms_train.json.
 std::string OtherCalibrations(const fs::path& folder) {
@@ -28,24 +30,37 @@ std::string OtherCalibrations(const fs::path& folder) {
   return fmt::format("; it holds {}: name the file itself to read it", fmt::join(names, ", "));
 }
 
+Result<LightField> OpenTransformsJson(const fs::path& path, const OpenOptions& options) {
+  if (options.focal_px)
+    return UsageError(
+        fmt::format("--focal-px is for folders whose file names lack the focal length; {} states "
+                    "its own",
+                    path.string()));
+  return ReadTransformsJson(path);
+}
+
 }  // namespace
 
-Result<LightField> OpenLightField(const fs::path& path) {
+Result<LightField> OpenLightField(const fs::path& path, const OpenOptions& options) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status))
     return InputError(fmt::format("{}: no such file or folder", path.string()));
   if (!fs::is_directory(status)) {
-    if (path.extension() == ".json") return ReadTransformsJson(path);
+    if (path.extension() == ".json") return OpenTransformsJson(path, options);
     return InputError(
-        fmt::format("{}: is not a light field: expected a transforms.json or a folder that holds "
-                    "one",
+        fmt::format("{}: is not a light field: expected a transforms.json or the folder of one, "
+                    "or a folder of images",
                     path.string()));
   }
   if (fs::exists(path / kCalibrationName, error))
-    return ReadTransformsJson(path / kCalibrationName);
-  return InputError(fmt::format("{}: holds no light field: looked for {}{}", path.string(),
-                                kCalibrationName, OtherCalibrations(path)));
+    return OpenTransformsJson(path / kCalibrationName, options);
+  for (const fs::path& folder : {path, path / kImagesName})
+    if (HoldsStanfordNames(folder)) return ReadStanfordFolder(folder, options.focal_px);
+  return InputError(
+      fmt::format("{}: holds no light field: looked for {}, and for images named "
+                  "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext in it and in {}/{}",
+                  path.string(), kCalibrationName, kImagesName, OtherCalibrations(path)));
 }
 
 }  // namespace lf

@@ -2,17 +2,24 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "lf/capture/light_field.h"
 #include "lf/core/result.h"
 
 namespace lf {
 
-// Reads what `path` is: a transforms.json, a folder holding one, or a folder of images in
-// Stanford order (capture/read_stanford.h). No pixels are read; that image files exist is not
-// checked here.
+struct OpenOptions {
+  // Of all cameras of a folder of the Stanford form, whose names may lack it; elsewhere kUsage.
+  std::optional<double> focal_px;
+};
+
+// Reads what `path` is: a transforms.json (any .json file), a folder holding one, or a folder of
+// images with names of the Stanford form (capture/read_stanford.h), in it or in its images/. No
+// pixels are read; that image files exist is not checked here.
 // kInput: nothing there that is a light field (the message lists what was looked for), or the
 // reader's own error.
-Result<LightField> OpenLightField(const std::filesystem::path& path);
+Result<LightField> OpenLightField(const std::filesystem::path& path,
+                                  const OpenOptions& options = {});
 
 }  // namespace lf

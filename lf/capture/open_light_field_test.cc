@@ -1,29 +1,20 @@
 #include "lf/capture/open_light_field.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <string>
 
 #include "lf/core/file.h"
+#include "lf/imageio/image_file.h"
+#include "lf/imageio/test_folder.h"
 
 namespace lf {
 namespace {
 namespace fs = std::filesystem;
 
-class OpenLightFieldTest : public testing::Test {
- protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() /
-              ("lf_open_light_field_test." + std::to_string(::getpid()) + "." +
-               testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  fs::path folder_;
-};
+class OpenLightFieldTest : public FolderTest {};
 
 constexpr const char* kCalibration = R"({"fl_x": 5, "w": 6, "h": 7, "frames": [{"file_path":
   "a.png", "transform_matrix": [[1,0,0,1],[0,1,0,2],[0,0,1,3]]}]})";
@@ -39,6 +30,25 @@ TEST_F(OpenLightFieldTest, TakesTheFileOrItsFolder) {
   }
 }
 
+TEST_F(OpenLightFieldTest, TakesStanfordNamesInTheFolderOrInItsImages) {
+  fs::create_directories(folder_ / "images");
+  const Image<uint8_t> image(4, 4, 3);
+  ASSERT_TRUE(WriteImage(folder_ / "images" / "a_0_0_0.0_5.0_30_36.png", image.view()));
+  for (const fs::path& path : {folder_, folder_ / "images"}) {
+    const Result<LightField> light_field = OpenLightField(path);
+    ASSERT_TRUE(light_field) << light_field.error().message;
+    EXPECT_TRUE(fs::exists(light_field->ImagePath({0})));
+  }
+  EXPECT_EQ(OpenLightField(folder_, {.focal_px = 7})->intrinsics[0].fx_px, 7);
+}
+
+TEST_F(OpenLightFieldTest, ATransformsJsonNeedsNoFocalLength) {
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "transforms.json", kCalibration));
+  const Result<LightField> light_field = OpenLightField(folder_, {.focal_px = 7});
+  ASSERT_FALSE(light_field);
+  EXPECT_EQ(light_field.error().kind, ErrorKind::kUsage);
+}
+
 TEST_F(OpenLightFieldTest, SaysWhatItLookedFor) {
   const auto error = [](const fs::path& path) {
     const Result<LightField> light_field = OpenLightField(path);
@@ -46,6 +56,7 @@ TEST_F(OpenLightFieldTest, SaysWhatItLookedFor) {
   };
   EXPECT_NE(error(folder_ / "none").find("none: no such file or folder"), std::string::npos);
   EXPECT_NE(error(folder_).find("looked for transforms.json"), std::string::npos);
+  EXPECT_NE(error(folder_).find("NAME_ROW_COL_Y_X"), std::string::npos);
   ASSERT_TRUE(WriteFileAtomically(folder_ / "transforms_train.json", kCalibration));
   EXPECT_NE(error(folder_).find("it holds transforms_train.json"), std::string::npos);
   ASSERT_TRUE(WriteFileAtomically(folder_ / "a.blend", ""));
@@ -101,6 +112,23 @@ TEST_F(RealLightFieldTest, GroundTruthBandLooksAtOnePointFortyCentimetresAhead) 
     target += point_ahead(i) / static_cast<double>(light_field->size());
   for (uint32_t i = 0; i < light_field->size(); ++i)  // jittered by 0.2 mm and 0.05 degrees
     EXPECT_LT((point_ahead(i) - target).norm(), 0.001) << i;
+}
+
+TEST_F(RealLightFieldTest, TheShopIsAGridOf729Cameras) {
+  LF_SKIP_WITHOUT("data/blender-shop");
+  const Result<LightField> light_field = Open("data/blender-shop");
+  ASSERT_TRUE(light_field) << light_field.error().message;
+  ASSERT_EQ(light_field->size(), 729u);
+  ASSERT_EQ(light_field->intrinsics.size(), 1u);
+  EXPECT_EQ(light_field->intrinsics[0], (Intrinsics{800, 800, 480, 320, 0, 960, 640}));
+  constexpr double kPitch_m = 0.8 / 26;
+  for (uint32_t i = 0; i < 729; ++i) {
+    // Row 00 is the lowest camera, column 00 the rightmost; y is down.
+    const Vec3 expected(0.4 - kPitch_m * (i % 27), 0.4 - kPitch_m * (i / 27), 0);
+    EXPECT_LT((light_field->Camera({i}).CentreWorld() - expected).norm(), 1e-8) << i;
+    EXPECT_EQ(light_field->Camera({i}).ForwardWorld(), Vec3(0, 0, 1));
+    EXPECT_TRUE(fs::exists(light_field->ImagePath({i})));
+  }
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstring>
@@ -8,21 +7,14 @@
 #include "lf/capture/transforms_json.h"
 #include "lf/core/file.h"
 #include "lf/core/random.h"
+#include "lf/imageio/test_folder.h"
 
 namespace lf {
 namespace {
 namespace fs = std::filesystem;
 
-class WriteTransformsJsonTest : public testing::Test {
+class WriteTransformsJsonTest : public FolderTest {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() /
-              ("lf_write_transforms_test." + std::to_string(::getpid()) + "." +
-               testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   LightField WrittenAndRead(const LightField& light_field) const {
     const fs::path path = folder_ / "transforms.json";
     const Result<void> written = WriteTransformsJson(light_field, path);
@@ -31,7 +23,6 @@ class WriteTransformsJsonTest : public testing::Test {
     EXPECT_TRUE(read) << read.error().message;
     return read ? *std::move(read) : LightField{};
   }
-  fs::path folder_;
 };
 
 double Number(uint64_t camera, uint64_t index) { return RandomUnit(7, camera, index) - 0.5; }
