@@ -1,0 +1,45 @@
+// Curves through given values, as pure functions. A "knot" is where on the parameter axis a value
+// is reached: a time, or for Catmull-Rom curves a length-like parameter.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <span>
+#include <vector>
+
+#include "lf/core/geometry.h"
+
+namespace lf {
+
+// Slopes at the knots of the monotone cubic (Fritsch and Butland 1984; the ends by the three-point
+// formula, limited): between two knots the curve never leaves the range of their values.
+//
+// knots   strictly increasing, as many as values; one value has slope 0
+std::vector<double> MonotoneSlopes(std::span<const double> knots, std::span<const double> values);
+
+// Parameters of the centripetal Catmull-Rom curve: knot[0] = 0,
+//   knot[i + 1] = knot[i] + |P[i + 1] - P[i]|^(1/2)        (Yuksel, Schaefer and Keyser 2011)
+// No cusp and no loop between two points. A repeated point repeats its knot.
+std::vector<double> CentripetalKnots(std::span<const Vec3> points);
+
+// Slopes dP/dknot of that curve at its points; at the two ends along the chord.
+std::vector<Vec3> CatmullRomSlopes(std::span<const double> knots, std::span<const Vec3> points);
+
+// The cubic with values and slopes given at both ends of [knot_a, knot_b], knot_a < knot_b.
+// T is double or an Eigen vector.
+template <class T>
+T CubicHermite(double knot, double knot_a, double knot_b, const T& value_a, const T& value_b,
+               const T& slope_a, const T& slope_b) {
+  const double h = knot_b - knot_a;
+  const double x = (knot - knot_a) / h;
+  const double y = 1 - x;
+  const T values = (y * y * (1 + 2 * x)) * value_a + (x * x * (1 + 2 * y)) * value_b;
+  const T slopes = (h * x * y * y) * slope_a - (h * x * x * y) * slope_b;
+  return values + slopes;
+}
+
+// The rotation a share x in [0, 1] of the way from a to b, at constant angular speed along the
+// shorter arc.
+Eigen::Quaterniond Slerp(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b, double x);
+
+}  // namespace lf

@@ -1,0 +1,55 @@
+// The camera path as its file describes it, checked as far as that goes without looking at single
+// frames. Lengths are world units, angles radians, whatever the file used.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "lf/core/geometry.h"
+#include "lf/path/motion.h"
+#include "lf/path/yaml_schema.h"
+
+namespace lf {
+
+// A quantity that may move.
+struct Quantity {
+  Motion motion;
+  // For messages.
+  std::string label;          // "lens.focus_distance_mm"
+  YamlPlace place;            // where its motion is given
+  NumberRange range;          // of every component, in units of the file
+  double units_per_file = 1;  // internal value = units_per_file * value in the file
+};
+
+struct PathDescription {
+  std::string file_name;
+  double fps = 30;
+  int frame_count = 0;
+  double unit_m = 1;
+  int width_px = 0;
+  int height_px = 0;
+
+  Quantity position_w;
+  std::optional<Quantity> look_at_w;    // this one or orientation
+  std::optional<Quantity> orientation;  // yaw, pitch, roll in radians, or quaternion w, x, y, z
+  Vec3 up = -Vec3::UnitY();             // with look_at
+  bool keep_direction = false;          // with look_at: that of time 0, wherever the camera moves
+  Quantity roll_rad;                    // after look_at or orientation
+
+  // Two of three; the third follows.
+  std::optional<double> sensor_width_w;
+  std::optional<Quantity> focal_length_w;
+  std::optional<Quantity> field_of_view_rad;  // horizontal, focused at infinity
+
+  std::optional<Quantity> aperture_diameter_w;  // this one or f_number
+  std::optional<Quantity> f_number;
+  std::optional<Quantity> focus_distance_w;  // this one or focus_point
+  std::optional<Quantity> focus_point_w;
+  Quantity focus_tilt_rad;  // horizontal, vertical
+  bool breathing = false;
+  int blades = 0;
+  Quantity blade_rotation_rad;
+  double blade_rotation_per_stop_rad = 0;
+};
+
+}  // namespace lf

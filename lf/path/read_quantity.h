@@ -1,0 +1,83 @@
+// Quantities of a path file that may move: their start and speed in a section of the file, their
+// `accelerations` or `keyframes`.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lf/path/path_description.h"
+#include "lf/path/read_value.h"
+#include "lf/path/yaml_schema.h"
+
+namespace lf {
+
+// The keys of a quantity are its name with the ending of a unit: "focus_distance_mm".
+enum class QuantityUnit { kNone, kLength, kDegrees, kDegreesUnsaid };
+
+struct QuantitySpec {
+  std::string name;
+  ValueShape shape = ValueShape::kNumber;
+  QuantityUnit unit = QuantityUnit::kNone;
+  NumberRange range = {};
+  bool zero_if_not_given = false;
+};
+
+class QuantityReader {
+ public:
+  // keyframes, accelerations   values of those keys of the file; null if not given
+  QuantityReader(const YamlEntry* keyframes, const YamlEntry* accelerations, double unit_m,
+                 YamlErrors* errors);
+
+  // The quantity; none if the file does not give it, or gives it wrongly. Its start and speed are
+  // keys of `section`. The start of one with keyframes is its key at time 0.
+  std::optional<Quantity> Read(YamlMap* section, const QuantitySpec& spec);
+
+  // A length that does not move, in either unit.
+  std::optional<double> ReadFixedLength(YamlMap* section, const std::string& name,
+                                        const NumberRange& range);
+
+  // After the last quantity: reports keyframes and accelerations of others.
+  void CheckKeys();
+
+ private:
+  struct UnitEnding {
+    std::string ending;
+    double units_per_file = 1;
+  };
+  struct Acceleration {
+    YamlPlace place;
+    std::string quantity;
+    const YamlNode* value = nullptr;
+    double from_s = 0;
+    double to_s = 0;
+    bool read = false;
+  };
+  struct Given {  // an entry of the file and the unit its key names
+    const YamlEntry* entry = nullptr;
+    std::string label;
+    double units_per_file = 1;
+    explicit operator bool() const { return entry != nullptr; }
+  };
+
+  void ReadAccelerations(const YamlNode& node);
+  std::vector<UnitEnding> Endings(QuantityUnit unit) const;
+  Given FindInOneUnit(YamlMap* map, const std::string& name, QuantityUnit unit);
+  std::vector<AccelerationPeriod> TakePeriods(const QuantitySpec& spec, YamlPlace* place);
+  std::optional<AcceleratedMotion> ReadAccelerated(const QuantitySpec& spec, const Given& start,
+                                                   const Given& speed,
+                                                   std::vector<AccelerationPeriod> periods);
+  std::optional<KeyframeCurve> ReadKeyframes(const QuantitySpec& spec, const Given& start,
+                                             const Given& keyframes);
+  std::optional<Key> ReadKey(const YamlNode& node, const QuantitySpec& spec,
+                             const Given& keyframes);
+  bool AddStartAsKey(const QuantitySpec& spec, const Given& start, std::vector<Key>* keys);
+
+  double unit_m_;
+  YamlErrors* errors_;
+  YamlMap keyframes_;
+  std::vector<Acceleration> accelerations_;
+  std::vector<std::string> accelerable_;  // quantities asked for so far
+};
+
+}  // namespace lf

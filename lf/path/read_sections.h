@@ -1,0 +1,17 @@
+// The sections `camera` and `lens` of a path file (doc/formats/path.md).
+#pragma once
+
+#include "lf/path/path_description.h"
+#include "lf/path/read_quantity.h"
+#include "lf/path/yaml_schema.h"
+
+namespace lf {
+
+// Each fills in its part of the description, and adds an error for a key that is unknown, missing,
+// of a wrong type or range, or contradicts another.
+void ReadCameraSection(const YamlNode& node, QuantityReader* quantities, PathDescription* path,
+                       YamlErrors* errors);
+void ReadLensSection(const YamlNode& node, QuantityReader* quantities, PathDescription* path,
+                     YamlErrors* errors);
+
+}  // namespace lf

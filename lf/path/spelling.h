@@ -1,0 +1,18 @@
+// Which word was meant.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace lf {
+
+// How many letters must be changed, added, left out or swapped with their neighbour to turn one
+// word into the other (optimal string alignment).
+size_t EditDistance(std::string_view a, std::string_view b);
+
+// The nearest of `words`; empty if even that differs in more than a third of its letters.
+std::string NearestWord(std::string_view word, std::span<const std::string> words);
+
+}  // namespace lf

@@ -1,0 +1,55 @@
+// A YAML text as a tree of our own, with the place of every key and value. The only file that
+// knows yaml-cpp.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lf/core/result.h"
+
+namespace lf {
+
+struct YamlPlace {
+  int line = 1;    // counted from 1
+  int column = 1;  // counted from 1
+};
+
+struct YamlNode;
+using YamlNodePtr = std::shared_ptr<const YamlNode>;
+
+struct YamlEntry {
+  std::string key;
+  YamlPlace place;  // of the key
+  YamlNodePtr value;
+};
+
+struct YamlNode {
+  enum class Kind { kNull, kPlain, kQuoted, kSequence, kMap };
+
+  Kind kind = Kind::kNull;
+  YamlPlace place;
+  std::string text;                // kPlain, kQuoted
+  std::vector<YamlNodePtr> items;  // kSequence
+  std::vector<YamlEntry> entries;  // kMap, in the order of the file; keys may repeat
+};
+
+// Bounds checked before the text is parsed: no path made by people or programs comes near them, and
+// the worst text within them costs the parser some 250 MB and 2 s.
+inline constexpr size_t kMaxYamlBytes = size_t{8} << 20;
+inline constexpr size_t kMaxYamlMarks = 1'000'000;  // of the characters that make structure
+inline constexpr size_t kMaxYamlDepth = 16;
+
+// The one document of the text. Aliases share the node of their anchor.
+//
+// name   the file's name for messages: "name:line:column: ..."
+// kInput for what is not YAML, beyond a bound, several documents, keys that are not words, tags,
+// and an alias inside its own anchor.
+Result<YamlNodePtr> ParseYaml(std::string_view text, std::string_view name);
+
+// Text of the file for a message: in quotes, at most 40 characters, nothing unprintable.
+std::string QuoteForMessage(std::string_view text);
+
+}  // namespace lf
