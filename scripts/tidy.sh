@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Runs clang-tidy 14 (Debian package clang-tidy-14) with the checks of .clang-tidy.
 #
-# usage: scripts/tidy.sh [FILE.cc...]      default: every source of lf/ and tools/ in the build
+# usage: scripts/tidy.sh [FILE.cc...]      default: every source of lf/ and tools/
+#                                       but tests, fuzz targets and benchmarks
 #
 # Needs a configured build/dev (cmake --preset dev) for its list of compiler calls.
 set -euo pipefail
@@ -10,7 +11,7 @@ cd "$(dirname "$0")/.."
 files=("$@")
 if ((${#files[@]} == 0)); then
   mapfile -t files < <(sed -n "s|^ *\"file\": \"$PWD/\(.*\)\"|\1|p" build/dev/compile_commands.json |
-    grep -E '^(lf|tools)/' | sort -u)
+    grep -E '^(lf|tools)/' | grep -vE '_(test|fuzz|bench)\.cc$' | sort -u)
 fi
 printf '%s\n' "${files[@]}" |
   xargs -P "$(nproc)" -n 1 clang-tidy-14 -p build/dev --quiet --warnings-as-errors='*'
