@@ -1,4 +1,4 @@
-# Every third-party library the project uses, found in one place (DESIGN.md section 3).
+# Every third-party library the project uses, found in one place (doc/design.md, "Dependencies").
 # A folder names the ones it needs under LIBS.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(Threads REQUIRED)
