@@ -196,13 +196,13 @@ TEST(PathYaml, KeysFollowEachOtherInTime) {
   EXPECT_TRUE(Says(path, "2, value", "accelerations.to: 2 s is not after 'from', 2 s"));
 }
 
-TEST(PathYaml, TheStartAgreesWithAKeyAtTimeZero) {
+TEST(PathYaml, TheStartIsTheKeyAtTimeZeroUnlessThereIsOne) {
   TestPath path;
-  path.more = "keyframes: {focus_distance_mm: [{time: 0, value: 2000}, {time: 1, value: 3000}]}\n";
-  EXPECT_EQ(path.Error(), "");
-  path.more = "keyframes: {focus_distance: [{time: 0, value: 3}]}\n";
-  EXPECT_TRUE(
-      Says(path, "focus_distance: 2", "lens.focus_distance differs from its keyframe at time 0"));
+  path.more = "keyframes: {focus_distance_mm: [{time: 1, value: 3000}]}\n";
+  EXPECT_EQ(path.At(1).focus_distance_w, 2);
+  EXPECT_EQ(path.At(11).focus_distance_w, 3);
+  path.more = "keyframes: {focus_distance: [{time: 0, value: 5}]}\n";
+  EXPECT_EQ(path.At(1).focus_distance_w, 5);
 }
 
 TEST(PathYaml, HalfATurnHasNoShorterArc) {

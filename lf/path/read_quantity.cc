@@ -47,11 +47,6 @@ bool TurnsHalfway(const Key& a, const Key& b, SmoothCurve curve) {
          std::abs(a.value.dot(b.value)) < 1e-9;
 }
 
-bool IsSame(const MotionValue& a, const MotionValue& b, SmoothCurve curve) {
-  if (curve == SmoothCurve::kRotation) return std::abs(a.dot(b)) > 1 - 1e-9;  // q and -q turn alike
-  return (a - b).norm() <= 1e-9 * a.norm();
-}
-
 Interpolation InterpolationOf(const std::string& word) {
   return word == "step"     ? Interpolation::kStep
          : word == "linear" ? Interpolation::kLinear
@@ -262,14 +257,9 @@ bool QuantityReader::AddStartAsKey(const QuantitySpec& spec, const Given& start,
                               start.units_per_file, errors_);
   if (!read) return false;
   const MotionValue value = KeyValue(*read, spec.shape);
-  if (keys->front().time_s >= kLeastKeyDistance_s) {
+  if (keys->front().time_s >= kLeastKeyDistance_s)
     keys->insert(keys->begin(), Key{0, value, Interpolation::kSmooth});
-    return true;
-  }
-  if (IsSame(value, keys->front().value, CurveOf(spec.shape))) return true;
-  errors_->Add(start.entry->place,
-               fmt::format("{} differs from its keyframe at time 0; remove one", start.label));
-  return false;
+  return true;
 }
 
 void QuantityReader::CheckKeys() {

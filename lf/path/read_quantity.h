@@ -30,7 +30,7 @@ class QuantityReader {
                  YamlErrors* errors);
 
   // The quantity; none if the file does not give it, or gives it wrongly. Its start and speed are
-  // keys of `section`. The start of one with keyframes is its key at time 0.
+  // keys of `section`. The start of one with keyframes is its key at time 0, if they have none.
   std::optional<Quantity> Read(YamlMap* section, const QuantitySpec& spec);
 
   // A length that does not move, in either unit.

@@ -70,7 +70,7 @@ std::string NumberRange::Describe() const {
   if (max < kLargest && open) return fmt::format("above {} and below {}", min, max);
   if (max < kLargest) return fmt::format("from {} to {}", min, max);
   if (min > -kLargest) return fmt::format("{} {}", open ? "above" : "at least", min);
-  return fmt::format("within +-{}", kLargest);
+  return fmt::format("within +-{:g}", kLargest);
 }
 
 YamlMap::YamlMap(const YamlNode& node, std::string title, YamlErrors* errors)

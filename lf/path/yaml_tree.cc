@@ -120,6 +120,13 @@ class TreeBuilder : public YAML::EventHandler {
   std::map<YAML::anchor_t, std::shared_ptr<YamlNode>> anchors_;
 };
 
+std::string Printable(std::string_view text) {
+  std::string printable(text);
+  for (char& c : printable)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  return printable;
+}
+
 Error ErrorAt(std::string_view name, const YAML::Exception& error, std::string_view message) {
   const YamlPlace place = error.mark.is_null() ? YamlPlace{} : PlaceOf(error.mark);
   return InputError(fmt::format("{}:{}:{}: {}", name, place.line, place.column, message));
@@ -161,16 +168,14 @@ Result<YamlNodePtr> ParseYaml(std::string_view text, std::string_view name) {
     return ErrorAt(name, error,
                    fmt::format("not YAML: {} (is a bracket, colon or quote missing near here, or "
                                "the indentation uneven?)",
-                               error.msg));
+                               Printable(error.msg)));
   }
 }
 
 std::string QuoteForMessage(std::string_view text) {
   constexpr size_t kLongest = 40;
-  std::string quoted = "'";
-  for (const char c : text.substr(0, kLongest))
-    quoted += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
-  return quoted + (text.size() > kLongest ? "...'" : "'");
+  return fmt::format("'{}{}'", Printable(text.substr(0, kLongest)),
+                     text.size() > kLongest ? "..." : "");
 }
 
 }  // namespace lf
