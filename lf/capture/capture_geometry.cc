@@ -66,6 +66,18 @@ double MedianSpacing(const LightField& light_field) {
   return Percentile(std::move(nearest), 0.5);
 }
 
+LfImageId MiddleCamera(const LightField& light_field) {
+  LF_CHECK(light_field.size() > 0);
+  const std::vector<Vec3> centres = Centres(light_field);
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& centre : centres) mean += centre / static_cast<double>(centres.size());
+  const auto nearest =
+      std::min_element(centres.begin(), centres.end(), [&](const Vec3& a, const Vec3& b) {
+        return (a - mean).squaredNorm() < (b - mean).squaredNorm();
+      });
+  return LfImageId{static_cast<uint32_t>(nearest - centres.begin())};
+}
+
 std::optional<Vec3> AxesMeetingPoint(const LightField& light_field) {
   std::vector<Ray> axes;
   const size_t step = std::max<size_t>(1, light_field.size() / kAxisSamples);

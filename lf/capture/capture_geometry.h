@@ -13,6 +13,9 @@ namespace lf {
 // cameras spread over the light field. 0 for fewer than two.
 double MedianSpacing(const LightField& light_field);
 
+// The LF camera nearest to the mean position. The light field must have one.
+LfImageId MiddleCamera(const LightField& light_field);
+
 // The point nearest to the optical axes (least squares, with the worst tenth left out), if they
 // converge: in front of most cameras, and not so far away that the axes are parallel for all that
 // their spread tells.

@@ -34,6 +34,12 @@ TEST(CaptureGeometry, SpacingIsTheDistanceToTheNearestNeighbour) {
   EXPECT_EQ(MedianSpacing(Field({RigidTransform{}})), 0);
 }
 
+TEST(CaptureGeometry, TheMiddleCameraIsInTheMiddle) {
+  const uint32_t middle = MiddleCamera(Grid({})).value;
+  EXPECT_TRUE(middle / 12 == 2 || middle / 12 == 3) << middle;
+  EXPECT_TRUE(middle % 12 == 5 || middle % 12 == 6) << middle;
+}
+
 TEST(CaptureGeometry, AxesMeetAtWhatAllCamerasLookAt) {
   const Vec3 target(0.3, 0.2, 2);
   const std::optional<Vec3> point = AxesMeetingPoint(Grid(target));
