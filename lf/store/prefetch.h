@@ -25,17 +25,23 @@ struct LoadedImage {
 };
 
 struct PrefetchOptions {
-  int thread_count = 1;                  // loader threads
+  int thread_count = 1;                  // loader threads; 0: Next() loads, itself
   size_t queue_bytes = size_t{1} << 30;  // decoded images waiting or being decoded, at least one
-  size_t image_bytes_estimate = 0;       // of one decoded image, for the count that fits
+  // Of one decoded image. 0: learnt from the first one, which is then loaded alone.
+  size_t image_bytes_estimate = 0;
 };
 
 // Delivers the requested images in their order. The store must outlive it.
+//
+// An image takes its estimated bytes of the queue from the moment a thread begins with it, and its
+// true ones from when it is decoded until Next() hands it over; larger ones raise the estimate.
+// What a store throws for want of memory becomes that image's error (kOutput); where the machine
+// refuses threads, fewer do the work.
 class Prefetcher {
  public:
   Prefetcher(const LfImageStore& store, std::vector<LoadRequest> requests,
              const PrefetchOptions& options);
-  ~Prefetcher();  // stops the threads, also in the middle
+  ~Prefetcher();  // stops the threads, also in the middle; waits for loads that have begun
   Prefetcher(const Prefetcher&) = delete;
   Prefetcher& operator=(const Prefetcher&) = delete;
 

@@ -1,0 +1,173 @@
+#include "lf/store/folder_store.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "lf/core/file.h"
+#include "lf/imageio/image_file.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+// Which channels of a file are what.
+struct ChannelUse {
+  int channels = 1;
+  int colours = 1;  // 1: grey or mosaic; 3: R, G, B; they come first
+  std::optional<int> alpha;
+};
+
+struct StoredFile {
+  StoredImage image;
+  ChannelUse use;
+};
+
+bool IsAlpha(const std::string& channel_name) {
+  return channel_name == "A" || channel_name == "alpha" || channel_name == "Alpha";
+}
+
+Result<StoredFile> ReadStored(const fs::path& path) {
+  LF_ASSIGN_OR_RETURN(const std::string bytes, ReadFile(path));
+  LF_ASSIGN_OR_RETURN(StoredImage image, ReadImageBytes(bytes, path.string()));
+  ChannelUse use;
+  use.channels = std::visit([](const auto& pixels) { return pixels.channels(); }, image);
+  use.colours = use.channels >= 3 ? 3 : 1;
+  if (use.channels > use.colours) {
+    LF_ASSIGN_OR_RETURN(const ImageFileInfo info, ReadImageInfoBytes(bytes, path.string()));
+    if (IsAlpha(info.channel_names[use.colours])) use.alpha = use.colours;
+  }
+  return StoredFile{std::move(image), use};
+}
+
+Result<void> CheckSize(const StoredImage& image, const Intrinsics& intrinsics,
+                       const fs::path& path) {
+  return std::visit(
+      [&](const auto& pixels) -> Result<void> {
+        if (pixels.width() == intrinsics.width_px && pixels.height() == intrinsics.height_px)
+          return {};
+        return InputError(fmt::format("{}: has {} x {} pixels, but the calibration says {} x {}",
+                                      path.string(), pixels.width(), pixels.height(),
+                                      intrinsics.width_px, intrinsics.height_px));
+      },
+      image);
+}
+
+Result<void> CheckEncoding(const StoredFile& file, const RadianceEncoding& encoding,
+                           const fs::path& path) {
+  if (encoding.bayer != BayerPattern::kNone && file.use.channels != 1)
+    return InputError(
+        fmt::format("{}: has {} channels, but lf_bayer says that it is a mosaic of one",
+                    path.string(), file.use.channels));
+  if (std::holds_alternative<Image<float>>(file.image)) return {};
+  const int bits = std::holds_alternative<Image<uint8_t>>(file.image) ? 8 : 16;
+  if (!LevelsFit(encoding, bits))
+    return InputError(fmt::format(
+        "{}: holds values of {} bits, which lf_black_level {} and lf_white_level {} do not fit",
+        path.string(), bits, encoding.black_level,
+        encoding.white_level ? fmt::format("{}", *encoding.white_level) : "(none)"));
+  return {};
+}
+
+// The mask of `pixels`, which is made where it is first needed.
+void MaskPixel(LfPixels* pixels, int x, int y) {
+  if (pixels->mask.empty())
+    pixels->mask = Image<uint8_t>(pixels->rect.width(), pixels->rect.height(), 1, 255);
+  pixels->mask.at(x, y) = 0;
+}
+
+// Fills radiance from the part `rect` of the stored image; radiance_of(value) is v.
+template <class T, class RadianceOf>
+void ConvertRadiance(const Image<T>& stored, const ChannelUse& use, const RadianceOf& radiance_of,
+                     LfPixels* pixels) {
+  const PixelRect& rect = pixels->rect;
+  const int channels = pixels->radiance.channels();
+  for (int y = 0; y < rect.height(); ++y) {
+    const T* in = stored.row(rect.y_begin + y) + static_cast<size_t>(rect.x_begin) * use.channels;
+    uint16_t* out = pixels->radiance.row(y);
+    for (int x = 0; x < rect.width(); ++x, in += use.channels)
+      for (int c = 0; c < channels; ++c) *out++ = radiance_of(in[c < use.colours ? c : 0]);
+  }
+}
+
+template <class T>
+void MaskTransparent(const Image<T>& stored, int alpha, LfPixels* pixels) {
+  constexpr double kOpaque = std::is_floating_point_v<T> ? 1 : std::numeric_limits<T>::max();
+  const PixelRect& rect = pixels->rect;
+  for (int y = 0; y < rect.height(); ++y)
+    for (int x = 0; x < rect.width(); ++x)
+      if (!(stored.at(rect.x_begin + x, rect.y_begin + y, alpha) >= kOpaque / 2))
+        MaskPixel(pixels, x, y);
+}
+
+Result<void> ApplyMaskFile(const fs::path& path, const Intrinsics& intrinsics, LfPixels* pixels) {
+  LF_ASSIGN_OR_RETURN(const StoredImage mask, ReadImage(path));
+  LF_RETURN_IF_ERROR(CheckSize(mask, intrinsics, path));
+  std::visit(
+      [&](const auto& stored) {
+        const PixelRect& rect = pixels->rect;
+        for (int y = 0; y < rect.height(); ++y)
+          for (int x = 0; x < rect.width(); ++x)
+            if (stored.at(rect.x_begin + x, rect.y_begin + y) == 0) MaskPixel(pixels, x, y);
+      },
+      mask);
+  return {};
+}
+
+std::vector<uint16_t> TableIfItFits(const RadianceEncoding& encoding, int bits) {
+  return LevelsFit(encoding, bits) ? RadianceTable(encoding, bits, 1) : std::vector<uint16_t>();
+}
+
+}  // namespace
+
+FolderStore::FolderStore(const LightField& light_field)
+    : light_field_(light_field),
+      table_8bit_(TableIfItFits(light_field.encoding, 8)),
+      table_16bit_(TableIfItFits(light_field.encoding, 16)) {}
+
+Result<LfPixels> FolderStore::Load(LfImageId id, const PixelRect& rect) const {
+  LF_CHECK(id.value < light_field_.size());
+  const LfCamera& camera = light_field_.cameras[id.value];
+  const Intrinsics& intrinsics = light_field_.intrinsics[camera.intrinsics_index];
+  const RadianceEncoding& encoding = light_field_.encoding;
+  const fs::path path = light_field_.ImagePath(id);
+  LF_ASSIGN_OR_RETURN(const StoredFile file, ReadStored(path));
+  LF_RETURN_IF_ERROR(CheckSize(file.image, intrinsics, path));
+  LF_RETURN_IF_ERROR(CheckEncoding(file, encoding, path));
+
+  LfPixels pixels;
+  pixels.rect = Intersection(rect, {0, 0, intrinsics.width_px, intrinsics.height_px});
+  pixels.bayer = encoding.bayer;
+  pixels.radiance = Image<uint16_t>(pixels.rect.width(), pixels.rect.height(),
+                                    encoding.bayer == BayerPattern::kNone ? 3 : 1);
+  const auto convert = [&]<class T>(const Image<T>& stored) {
+    if constexpr (std::is_floating_point_v<T>) {
+      ConvertRadiance(
+          stored, file.use,
+          [&](float radiance) { return QuantizeRadiance(encoding, radiance, camera.gain); },
+          &pixels);
+    } else {
+      constexpr int kBits = 8 * sizeof(T);
+      std::vector<uint16_t> own_table;
+      if (camera.gain != 1) own_table = RadianceTable(encoding, kBits, camera.gain);
+      const std::vector<uint16_t>& shared_table = kBits == 8 ? table_8bit_ : table_16bit_;
+      const uint16_t* table = camera.gain != 1 ? own_table.data() : shared_table.data();
+      ConvertRadiance(
+          stored, file.use, [table](T value) { return table[value]; }, &pixels);
+    }
+    if (file.use.alpha) MaskTransparent(stored, *file.use.alpha, &pixels);
+  };
+  std::visit(convert, file.image);
+  if (!light_field_.mask_names.empty() && !light_field_.mask_names[id.value].empty())
+    LF_RETURN_IF_ERROR(ApplyMaskFile(light_field_.folder / light_field_.mask_names[id.value],
+                                     intrinsics, &pixels));
+  return pixels;
+}
+
+}  // namespace lf

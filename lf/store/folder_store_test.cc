@@ -1,0 +1,245 @@
+#include "lf/store/folder_store.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "lf/core/file.h"
+#include "lf/imageio/image_file.h"
+#include "lf/imageio/test_folder.h"
+
+namespace lf {
+namespace {
+
+constexpr int kWidth = 7, kHeight = 5;
+constexpr PixelRect kWhole = {0, 0, kWidth, kHeight};
+
+class FolderStoreTest : public FolderTest {
+ protected:
+  // A light field of one image "a.png"; the tests write the file.
+  LightField OneImage(const std::string& name = "a.png") const {
+    LightField light_field;
+    light_field.cameras.resize(1);
+    light_field.intrinsics = {{10, 10, 3.5, 2.5, 0, kWidth, kHeight}};
+    light_field.image_names = {name};
+    light_field.folder = folder_;
+    return light_field;
+  }
+  template <class T>
+  Image<T> Write(const std::string& name, int channels, int width = kWidth, int height = kHeight) {
+    const Image<T> image = NoiseImage<T>(width, height, channels);
+    const Result<void> written = WriteImage(folder_ / name, image.view());
+    EXPECT_TRUE(written) << written.error().message;
+    return image;
+  }
+  void WriteFloats(const std::string& name, const Image<float>& image,
+                   const std::vector<std::string>& channel_names) {
+    ASSERT_TRUE(WriteImage(folder_ / name, image.view(), channel_names, PixelType::kFloat));
+  }
+};
+
+LfPixels Loaded(const LightField& light_field, const PixelRect& rect = kWhole) {
+  Result<LfPixels> pixels = FolderStore(light_field).Load({0}, rect);
+  EXPECT_TRUE(pixels) << pixels.error().message;
+  return pixels ? *std::move(pixels) : LfPixels{};
+}
+
+std::string ErrorOf(const LightField& light_field) {
+  const Result<LfPixels> pixels = FolderStore(light_field).Load({0}, kWhole);
+  EXPECT_FALSE(pixels);
+  return pixels ? "" : pixels.error().message;
+}
+
+void ExpectMentions(const std::string& message, const std::vector<std::string>& parts) {
+  for (const std::string& part : parts)
+    EXPECT_NE(message.find(part), std::string::npos) << part << "\nnot in: " << message;
+}
+
+TEST_F(FolderStoreTest, ColoursGoThroughTheTable) {
+  const Image<uint8_t> stored = Write<uint8_t>("a.png", 3);
+  const LightField light_field = OneImage();
+  const LfPixels pixels = Loaded(light_field);
+  const std::vector<uint16_t> table = RadianceTable(light_field.encoding, 8, 1);
+  ASSERT_EQ(pixels.radiance.channels(), 3);
+  EXPECT_EQ(pixels.rect, kWhole);
+  EXPECT_EQ(pixels.bayer, BayerPattern::kNone);
+  EXPECT_TRUE(pixels.mask.empty());
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      for (int c = 0; c < 3; ++c) EXPECT_EQ(pixels.radiance.at(x, y, c), table[stored.at(x, y, c)]);
+}
+
+TEST_F(FolderStoreTest, ARectangleIsThePartOfTheWhole) {
+  Write<uint8_t>("a.png", 4);
+  const LfPixels whole = Loaded(OneImage());
+  ASSERT_FALSE(whole.mask.empty());
+  const PixelRect rect = {2, 1, 6, 4};
+  const LfPixels part = Loaded(OneImage(), rect);
+  EXPECT_EQ(part.rect, rect);
+  ASSERT_EQ(part.radiance.width(), 4);
+  ASSERT_EQ(part.radiance.height(), 3);
+  for (int y = 0; y < 3; ++y)
+    for (int x = 0; x < 4; ++x) {
+      EXPECT_EQ(part.mask.at(x, y), whole.mask.at(x + 2, y + 1));
+      for (int c = 0; c < 3; ++c)
+        EXPECT_EQ(part.radiance.at(x, y, c), whole.radiance.at(x + 2, y + 1, c));
+    }
+}
+
+TEST_F(FolderStoreTest, ARectangleIsCutToTheImage) {
+  Write<uint8_t>("a.png", 3);
+  EXPECT_EQ(Loaded(OneImage(), {-3, 2, 100, 100}).rect, (PixelRect{0, 2, kWidth, kHeight}));
+  EXPECT_TRUE(Loaded(OneImage(), {50, 50, 60, 60}).radiance.empty());
+}
+
+TEST_F(FolderStoreTest, GreyCountsForAllColours) {
+  const Image<uint16_t> stored = Write<uint16_t>("a.png", 1);
+  LightField light_field = OneImage();
+  light_field.encoding.transfer = Transfer::kLinear;
+  const LfPixels pixels = Loaded(light_field);
+  ASSERT_EQ(pixels.radiance.channels(), 3);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      for (int c = 0; c < 3; ++c) EXPECT_EQ(pixels.radiance.at(x, y, c), stored.at(x, y));
+}
+
+TEST_F(FolderStoreTest, AMosaicKeepsItsOneChannel) {
+  const Image<uint16_t> stored = Write<uint16_t>("a.png", 1);
+  LightField light_field = OneImage();
+  light_field.encoding.transfer = Transfer::kLinear;
+  light_field.encoding.bayer = BayerPattern::kGbrg;
+  const LfPixels pixels = Loaded(light_field);
+  EXPECT_EQ(pixels.bayer, BayerPattern::kGbrg);
+  EXPECT_EQ(pixels.radiance.channels(), 1);
+  EXPECT_EQ(pixels.radiance.pixels(), stored.pixels());
+}
+
+TEST_F(FolderStoreTest, AMosaicWithThreeChannelsIsAnError) {
+  Write<uint8_t>("a.png", 3);
+  LightField light_field = OneImage();
+  light_field.encoding.bayer = BayerPattern::kRggb;
+  ExpectMentions(ErrorOf(light_field), {"a.png: has 3 channels", "lf_bayer"});
+}
+
+TEST_F(FolderStoreTest, AlphaBelowOneHalfMasks) {
+  Image<uint8_t> stored = NoiseImage<uint8_t>(kWidth, kHeight, 4);
+  for (int i = 0; i < kWidth * kHeight; ++i) stored.pixels()[4 * i + 3] = i % 2 ? 255 : 128;
+  stored.at(3, 2, 3) = 127;
+  stored.at(4, 2, 3) = 0;
+  ASSERT_TRUE(WriteImage(folder_ / "a.png", stored.view()));
+  const LfPixels pixels = Loaded(OneImage());
+  ASSERT_FALSE(pixels.mask.empty());
+  EXPECT_EQ(pixels.radiance.channels(), 3);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      EXPECT_EQ(pixels.mask.at(x, y) == 0, y == 2 && (x == 3 || x == 4)) << x << " " << y;
+}
+
+TEST_F(FolderStoreTest, OpaqueImagesHaveNoMask) {
+  Image<uint16_t> stored(kWidth, kHeight, 4, 65535);
+  ASSERT_TRUE(WriteImage(folder_ / "a.png", stored.view()));
+  EXPECT_TRUE(Loaded(OneImage()).mask.empty());
+}
+
+TEST_F(FolderStoreTest, GreyWithAlphaIsBoth) {
+  Image<uint8_t> stored(kWidth, kHeight, 2, 255);
+  stored.at(1, 1, 0) = 0;
+  stored.at(2, 1, 1) = 0;
+  ASSERT_TRUE(WriteImage(folder_ / "a.png", stored.view()));
+  const LfPixels pixels = Loaded(OneImage());
+  EXPECT_EQ(pixels.radiance.at(1, 1, 2), 0);
+  ASSERT_FALSE(pixels.mask.empty());
+  EXPECT_NE(pixels.mask.at(1, 1), 0);
+  EXPECT_EQ(pixels.mask.at(2, 1), 0);
+}
+
+TEST_F(FolderStoreTest, AMaskFileTakesRaysAway) {
+  Write<uint8_t>("a.png", 3);
+  Image<uint8_t> mask(kWidth, kHeight, 1, 1);
+  mask.at(6, 4) = 0;
+  ASSERT_TRUE(WriteImage(folder_ / "m.png", mask.view()));
+  LightField light_field = OneImage();
+  light_field.mask_names = {"m.png"};
+  const LfPixels pixels = Loaded(light_field, {5, 3, 7, 5});
+  ASSERT_FALSE(pixels.mask.empty());
+  EXPECT_EQ(pixels.mask.at(1, 1), 0);
+  EXPECT_NE(pixels.mask.at(0, 1), 0);
+  light_field.mask_names = {""};
+  EXPECT_TRUE(Loaded(light_field).mask.empty());
+}
+
+TEST_F(FolderStoreTest, AMaskOfAnotherSizeOrNoMaskIsAnError) {
+  Write<uint8_t>("a.png", 3);
+  Write<uint8_t>("m.png", 1, kWidth, kHeight + 1);
+  LightField light_field = OneImage();
+  light_field.mask_names = {"m.png"};
+  ExpectMentions(ErrorOf(light_field), {"m.png: has 7 x 6 pixels", "7 x 5"});
+  light_field.mask_names = {"none.png"};
+  ExpectMentions(ErrorOf(light_field), {"none.png"});
+}
+
+TEST_F(FolderStoreTest, GainBelongsToTheImage) {
+  const Image<uint8_t> stored = Write<uint8_t>("a.png", 3);
+  LightField light_field = OneImage();
+  light_field.cameras.push_back(light_field.cameras[0]);
+  light_field.image_names.push_back("a.png");
+  light_field.cameras[1].gain = 0.5f;
+  const FolderStore store(light_field);
+  const Result<LfPixels> plain = store.Load({0}, kWhole);
+  const Result<LfPixels> dimmed = store.Load({1}, kWhole);
+  ASSERT_TRUE(plain && dimmed);
+  for (size_t i = 0; i < plain->radiance.pixels().size(); ++i)
+    EXPECT_NEAR(dimmed->radiance.pixels()[i], plain->radiance.pixels()[i] / 2.0, 0.51);
+}
+
+TEST_F(FolderStoreTest, FloatsAreRadianceItself) {
+  Image<float> stored(kWidth, kHeight, 3, 0.25f);
+  stored.at(0, 0, 0) = 1;
+  stored.at(0, 0, 1) = 40;
+  stored.at(0, 0, 2) = -1;
+  stored.at(1, 0, 0) = std::numeric_limits<float>::quiet_NaN();
+  WriteFloats("a.exr", stored, {"R", "G", "B"});
+  LightField light_field = OneImage("a.exr");
+  light_field.encoding.max_radiance = 16;
+  light_field.encoding.black_level = 60000;  // no business of float files
+  light_field.cameras[0].gain = 2;
+  const LfPixels pixels = Loaded(light_field);
+  EXPECT_EQ(pixels.radiance.at(0, 0, 0), std::lround(65535 / 8.0));
+  EXPECT_EQ(pixels.radiance.at(0, 0, 1), 65535);
+  EXPECT_EQ(pixels.radiance.at(0, 0, 2), 0);
+  EXPECT_EQ(pixels.radiance.at(1, 0, 0), 0);
+  EXPECT_EQ(pixels.radiance.at(1, 1, 0), std::lround(65535 / 32.0));
+  EXPECT_TRUE(pixels.mask.empty());
+}
+
+TEST_F(FolderStoreTest, DepthBesideTheColoursIsNoAlpha) {
+  const Image<float> stored(kWidth, kHeight, 4, 0.25f);
+  WriteFloats("a.exr", stored, {"R", "G", "B", "Z"});
+  EXPECT_TRUE(Loaded(OneImage("a.exr")).mask.empty());
+  WriteFloats("b.exr", stored, {"R", "G", "B", "A"});
+  EXPECT_FALSE(Loaded(OneImage("b.exr")).mask.empty());
+}
+
+TEST_F(FolderStoreTest, AnImageOfAnotherSizeIsAnErrorThatNamesBoth) {
+  Write<uint8_t>("a.png", 3, kWidth + 1, kHeight);
+  ExpectMentions(ErrorOf(OneImage()), {"a.png: has 8 x 5 pixels", "calibration says 7 x 5"});
+}
+
+TEST_F(FolderStoreTest, LevelsBeyondTheFilesBitsAreAnError) {
+  Write<uint8_t>("a.png", 3);
+  LightField light_field = OneImage();
+  light_field.encoding.white_level = 4095;
+  ExpectMentions(ErrorOf(light_field), {"a.png: holds values of 8 bits", "4095"});
+}
+
+TEST_F(FolderStoreTest, MissingAndBrokenImagesAreErrorsThatNameThem) {
+  ExpectMentions(ErrorOf(OneImage()), {"a.png"});
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "a.png", "no picture"));
+  ExpectMentions(ErrorOf(OneImage()), {"a.png"});
+}
+
+}  // namespace
+}  // namespace lf
