@@ -39,7 +39,8 @@ Result<RigidTransform> CamFromWorldOfOpenGl(const Mat34& world_from_opengl_camer
         fmt::format("has the determinant {:g}: expected a rotation, of any scale", determinant));
   if (determinant < 0)
     return InputError(
-        "is mirrored (its determinant is negative): expected a rotation; negate one axis");
+        "is mirrored (its determinant is negative): expected the right-handed axes right, up, "
+        "backward as columns");
   if (!(std::abs(scale - 1) <= kExact && Skew(axes) <= kExact)) {
     axes /= scale;
     const double skew = Skew(axes);
