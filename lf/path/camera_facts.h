@@ -1,0 +1,32 @@
+// What a photographer asks of one frame's camera, as numbers with names: for lfcammvminfo.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lf/camera/render_camera.h"
+#include "lf/core/ids.h"
+
+namespace lf {
+
+struct CameraFact {
+  std::string name;                // "position_w": units as everywhere, _w, _mm, _deg, _s
+  std::vector<std::string> parts;  // "x", "y", "z"; empty if there is but one value
+  std::vector<double> values;
+};
+
+// In this order, the same for every camera:
+//   frame, time_s
+//   position_w         x y z
+//   forward, up        x y z of the axes, length 1
+//   focal_length_mm    as stated, whatever the lens is focused at
+//   field_of_view_deg  horizontal, vertical; at this frame's focus
+//   aperture_diameter_mm, f_number (thesis Eq. 2.11; infinite for a pinhole)
+//   blades, blade_rotation_deg
+//   focus_distance_w   along the optical axis
+//   focus_tilt_deg     horizontal, vertical
+//   depth_of_field_w   near, far: the depths along the optical axis between which the blur stays
+//                      within one element of the plate; far may be infinite
+std::vector<CameraFact> CameraFacts(const RenderCamera& camera, FrameId frame);
+
+}  // namespace lf
