@@ -1,0 +1,56 @@
+#include "lf/synthetic/glows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace lf {
+namespace {
+
+// Beyond this many radii a lamp is dark: exp(-3.2^2) = 4e-5.
+constexpr double kReach = 3.2;
+
+}  // namespace
+
+Glows::Glows(std::vector<Glow> glows) : glows_(std::move(glows)) {
+  for (const Glow& glow : glows_) {
+    balls_.Add(glow.centre_world, kReach * glow.radius_w);
+    const Vec3 reach = Vec3::Constant(kReach * glow.radius_w);
+    bounds_.extend(glow.centre_world - reach).extend(glow.centre_world + reach);
+  }
+}
+
+// Whether the box around the ray's way touches the one around the lamps: rays that end on a table
+// below them do not, and those are many.
+bool Glows::MayMeet(const Ray& ray, const Footprint& footprint, double lambda_end) const {
+  if (glows_.empty()) return false;
+  const double past_all = (bounds_.center() - ray.origin).norm() + bounds_.diagonal().norm();
+  const double end = std::min(lambda_end, past_all);
+  const Vec3 reach = Vec3::Constant(kReach * std::max(footprint.At(0), footprint.At(end)));
+  const Vec3 last = ray.At(end);
+  return Eigen::AlignedBox3d(ray.origin.cwiseMin(last) - reach, ray.origin.cwiseMax(last) + reach)
+      .intersects(bounds_);
+}
+
+Rgb Glows::Along(const Ray& ray, const Footprint& footprint, double lambda_end) const {
+  Rgb light = Rgb::Zero();
+  if (!MayMeet(ray, footprint, lambda_end)) return light;
+  const double tangent = kReach * std::abs(footprint.spread);
+  const Cone cone{ray.origin, ray.direction, kReach * footprint.width_w,
+                  tangent / std::sqrt(1 + tangent * tangent)};
+  balls_.ForEachNear(cone, lambda_end, [&](uint32_t i) {
+    const Glow& glow = glows_[i];
+    const Vec3 to_centre = glow.centre_world - ray.origin;
+    const double lambda = to_centre.dot(ray.direction);
+    if (lambda < 0 || lambda > lambda_end) return;
+    const double passes2 = std::max(0.0, to_centre.squaredNorm() - lambda * lambda);
+    const double width_w = footprint.At(lambda);
+    const double own2 = glow.radius_w * glow.radius_w;
+    const double wide2 = own2 + width_w * width_w;  // of a Gaussian with a Gaussian: squares add
+    if (passes2 > kReach * kReach * wide2) return;
+    light += glow.colour * (own2 / wide2 * std::exp(-passes2 / wide2));
+  });
+  return light;
+}
+
+}  // namespace lf

@@ -1,0 +1,21 @@
+// Mirrors and glass, by the laws.
+#pragma once
+
+#include <optional>
+
+#include "lf/core/geometry.h"
+
+namespace lf {
+
+// The direction after a mirror: d - 2 (d.n) n. Lengths are kept.
+Vec3 Reflected(const Vec3& direction, const Vec3& normal);
+
+// The direction after a surface, by Snell's law n1 sin = n2 sin. Both arguments have unit length,
+// the normal points against the direction; index_ratio = n1 / n2. None where all is reflected.
+std::optional<Vec3> Refracted(const Vec3& direction, const Vec3& normal, double index_ratio);
+
+// Share of unpolarised light that a glass surface reflects (Fresnel), entering glass of
+// `refractive_index` > 1 from air at the given cosine of the angle of incidence.
+double Reflectance(double cosine, double refractive_index);
+
+}  // namespace lf

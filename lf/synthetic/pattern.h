@@ -1,0 +1,37 @@
+// Procedural textures: how much of a material's second colour stands at a place of a surface.
+//
+// Lengths are world units on the surface. `width_w` is the width over which the caller averages
+// (the footprint of a pixel; 0: the exact point): the patterns are filtered analytically where a
+// formula is at hand, so that few rays per pixel show no moire.
+#pragma once
+
+#include <cstdint>
+
+#include "lf/core/geometry.h"
+
+namespace lf {
+
+enum class PatternKind : uint8_t {
+  kPlain,    // 0 everywhere
+  kChecker,  // fields of size scale_w
+  kBars,     // rows of upright bars, scale_w wide in the top row and 4/5 of the row above below it
+  kLetters,  // rows of digits, scale_w high in the top row and 4/5 of the row above below it
+  kStar,     // Siemens star of 36 periods around (0, 0), sinusoidal, radius scale_w
+  kWood,     // planks along v, scale_w wide, with seams and grain
+  kSwirl,    // veins as in glass marbles, about scale_w apart
+};
+
+struct Pattern {
+  PatternKind kind = PatternKind::kPlain;
+  double scale_w = 0.01;
+  uint64_t seed = 0;
+};
+
+// In [0, 1].
+double PatternAt(const Pattern& pattern, const Vec2& place_w, double width_w);
+
+// Smooth noise in [0, 1] with one random value per unit square, bicubically joined; the mean is
+// 1/2. The same everywhere for the same arguments.
+double ValueNoise(double x, double y, uint64_t seed);
+
+}  // namespace lf
