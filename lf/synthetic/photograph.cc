@@ -1,0 +1,140 @@
+#include "lf/synthetic/photograph.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <utility>
+#include <vector>
+
+namespace lf {
+namespace {
+
+// The rays of all pixels of a pinhole camera, without inverting its matrix for each.
+class PixelRays {
+ public:
+  explicit PixelRays(const PinholeCamera& camera)
+      : centre_(camera.CentreWorld()),
+        world_from_pixel_(camera.cam_from_world.rotation.transpose() *
+                          camera.intrinsics.InverseMatrix()),
+        pixel_angle_(1 / std::sqrt(std::abs(camera.intrinsics.fx_px * camera.intrinsics.fy_px))) {}
+
+  Ray Through(double x_px, double y_px) const {
+    return {centre_, world_from_pixel_ * Vec3(x_px, y_px, 1)};
+  }
+  // Of a square of which `samples` tile a pixel.
+  Footprint FootprintOf(int samples) const {
+    return FootprintOfPixel(pixel_angle_ / std::sqrt(static_cast<double>(samples)));
+  }
+
+ private:
+  Vec3 centre_;
+  Mat3 world_from_pixel_;
+  double pixel_angle_;
+};
+
+// The side of the smallest square number of samples that is not below `samples`.
+int SideOf(int samples) { return static_cast<int>(std::ceil(std::sqrt(std::max(1, samples)))); }
+
+// n x n points of the unit square, one in each cell of the n x n grid and in each of n^2 rows and
+// columns: a grid turned a little. Their mean is the centre, and x and y are uncorrelated, so that
+// what lies between the points is blurred alike in all directions.
+std::vector<Vec2> SquarePoints(int side) {
+  std::vector<Vec2> points;
+  const double n = side;
+  for (int j = 0; j < side; ++j)
+    for (int i = 0; i < side; ++i)
+      points.emplace_back((i + (j + 0.5) / n) / n, (j + (n - i - 0.5) / n) / n);
+  return points;
+}
+
+// Brightness steps that count as an edge: this share of the brighter side, above the noise that
+// nobody sees in the dark.
+bool IsEdge(const Scene::Sight& a, const Scene::Sight& b) {
+  if (a.shape != b.shape) return true;
+  constexpr double kShare = 0.25, kDark = 0.05;
+  return ((a.radiance - b.radiance).abs() > kShare * (a.radiance.max(b.radiance) + kDark)).any();
+}
+
+// What the rays through the pixel centres of row y see, from one pixel left of the picture to one
+// right of it.
+using SightRow = std::vector<Scene::Sight>;
+SightRow LookAlongRow(const Scene& scene, const PixelRays& rays, int width, int y) {
+  SightRow row;
+  row.reserve(static_cast<size_t>(width) + 2);
+  const Footprint footprint = rays.FootprintOf(1);
+  for (int x = -1; x <= width; ++x)
+    row.push_back(scene.Look(rays.Through(x + 0.5, y + 0.5), footprint));
+  return row;
+}
+
+Rgb MeanOverPixel(const Scene& scene, const PixelRays& rays, const std::vector<Vec2>& points, int x,
+                  int y) {
+  const auto count = static_cast<int>(points.size());
+  const Footprint footprint = rays.FootprintOf(count);
+  Rgb sum = Rgb::Zero();
+  for (const Vec2& point : points)
+    sum += scene.RadianceAlong(rays.Through(x + point.x(), y + point.y()), footprint);
+  return sum / count;
+}
+
+void Store(const Rgb& radiance, float* pixel) {
+  for (int channel = 0; channel < 3; ++channel)
+    pixel[channel] = static_cast<float>(radiance[channel]);
+}
+
+}  // namespace
+
+Image<float> Photograph(const Scene& scene, const PinholeCamera& camera, int samples) {
+  const int width = camera.intrinsics.width_px, height = camera.intrinsics.height_px;
+  const PixelRays rays(camera);
+  const std::vector<Vec2> points = SquarePoints(SideOf(samples));
+  Image<float> picture(width, height, 3);
+  SightRow above = LookAlongRow(scene, rays, width, -1);
+  SightRow row = LookAlongRow(scene, rays, width, 0);
+  for (int y = 0; y < height; ++y) {
+    SightRow below = LookAlongRow(scene, rays, width, y + 1);
+    for (int x = 0; x < width; ++x) {
+      const size_t i = static_cast<size_t>(x) + 1;
+      const bool edge = IsEdge(row[i], row[i - 1]) || IsEdge(row[i], row[i + 1]) ||
+                        IsEdge(row[i], above[i]) || IsEdge(row[i], below[i]);
+      const Rgb radiance =
+          edge && points.size() > 1 ? MeanOverPixel(scene, rays, points, x, y) : row[i].radiance;
+      Store(radiance, &picture.at(x, y));
+    }
+    above = std::move(row);
+    row = std::move(below);
+  }
+  return picture;
+}
+
+Image<float> ThinLensPhotograph(const Scene& scene, const RenderCamera& camera,
+                                const LensSampling& sampling, ThreadPool& pool) {
+  const Intrinsics& intrinsics = camera.pinhole.intrinsics;
+  const std::vector<Vec2> element_points = SquarePoints(SideOf(sampling.samples));
+  const auto sample_count = static_cast<int>(element_points.size());
+  std::vector<Vec3> lens_points;
+  for (const Vec2& point : SampleLens(camera.aperture, sample_count, sampling.seed))
+    lens_points.push_back(LensPointWorld(camera, point));
+  const double element_spread = PixelRays(camera.pinhole).FootprintOf(sample_count).spread;
+  const double lens_cell_w = kFootprintPerSide * std::sqrt(Area(camera.aperture) / sample_count);
+  Image<float> picture(intrinsics.width_px, intrinsics.height_px, 3);
+  pool.ForEach(static_cast<size_t>(intrinsics.height_px), [&](size_t row) {
+    const int y = static_cast<int>(row);
+    for (int x = 0; x < intrinsics.width_px; ++x) {
+      Rgb sum = Rgb::Zero();
+      for (size_t i = 0; i < lens_points.size(); ++i) {
+        const std::optional<Vec3> focus_point =
+            FocusPointOfElement(camera, x + element_points[i].x(), y + element_points[i].y());
+        if (!focus_point) continue;
+        const Vec3 direction = *focus_point - lens_points[i];
+        // As wide as the sample's part of the lens there, as its part of the element in focus.
+        const Footprint footprint{lens_cell_w, -lens_cell_w / direction.norm() - element_spread};
+        sum += scene.RadianceAlong({lens_points[i], direction}, footprint);
+      }
+      Store(sum / sample_count, &picture.at(x, y));
+    }
+  });
+  return picture;
+}
+
+}  // namespace lf
