@@ -72,10 +72,11 @@ def heading_anchors(page) -> set:
 
 
 def link_fault(root, page, target):
+    """What is wrong with a link of a page; none if nothing is."""
     if re.match(r"[a-z]+:", target):
         return None  # another site: not ours to check
     name, _, anchor = target.partition("#")
-    path = (page.parent / name).resolve() if name else page
+    path = (page.parent / name if name else page).resolve()
     if not path.is_relative_to(root.resolve()):
         return f"link '{target}' leaves the repository"
     if not path.exists():

@@ -9,12 +9,12 @@ import sys
 import tempfile
 import unittest
 
-REPOSITORY = pathlib.Path(sys.argv.pop())
+REPOSITORY = pathlib.Path(sys.argv.pop()).resolve()
 
 
 def run(script, root, *arguments):
-    command = [sys.executable, REPOSITORY / "scripts" / script, root, *arguments]
-    done = subprocess.run(command, capture_output=True, text=True)
+    command = [sys.executable, REPOSITORY / "scripts" / script, ".", *arguments]
+    done = subprocess.run(command, cwd=root, capture_output=True, text=True)
     return done.returncode, done.stdout.splitlines()
 
 
@@ -49,7 +49,7 @@ class PlantedFaults(unittest.TestCase):
         self.expect("check_house.py", "paths", faults=["lf/core/a.h:1", "doc/a.md:3"])
 
     def test_links_must_lead_somewhere(self):
-        self.plant("doc/there.md", "# A heading, here\n")
+        self.plant("doc/there.md", "# A heading, here\n[up](#a-heading-here)\n")
         self.plant("README.md", "[a](doc/there.md#a-heading-here) [b](https://example.org/x)\n"
                                 "[c](doc/gone.md)\n[d](doc/there.md#nowhere)\n[e](../outside.md)\n"
                                 "`lf/core/gone.h`\n`core.Suite.Gone`\n`core.Suite.There`\n")
