@@ -22,7 +22,7 @@ constexpr uint64_t kMaxValues = uint64_t{1} << 32;
 
 ByteSource SourceOf(OIIO::Filesystem::IOProxy& file) {
   return [&file](uint64_t offset, std::span<uint8_t> to) -> size_t {
-    if (offset >= file.size()) return 0;
+    if (to.empty() || offset >= file.size()) return 0;
     return file.pread(to.data(), std::min<uint64_t>(to.size(), file.size() - offset),
                       static_cast<int64_t>(offset));
   };

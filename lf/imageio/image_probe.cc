@@ -25,11 +25,30 @@ bool StartsWith(std::span<const uint8_t> bytes, std::string_view magic) {
   return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
 }
 
+// A whole file of a picture of this size has least_bytes. A header that claims more is refused
+// before a decoder believes it.
+Result<void> CheckClaim(const ByteSource& source, uint64_t width, uint64_t height,
+                        uint64_t least_bytes, const std::string& name) {
+  LF_RETURN_IF_ERROR(CheckPixelCount(width, height, name));
+  if (least_bytes == 0 || BigEndian(source, least_bytes - 1, 1)) return {};
+  return InputError(
+      fmt::format("{}: claims {} x {} pixels, for which the file is too short: "
+                  "truncated or damaged",
+                  name, width, height));
+}
+
 Result<void> CheckPng(const ByteSource& source, const std::string& name) {
   const auto width = BigEndian(source, 16, 4), height = BigEndian(source, 20, 4);
-  if (!width || !height)
+  const auto depth = BigEndian(source, 24, 1), colour_type = BigEndian(source, 25, 1);
+  if (!width || !height || !depth || !colour_type)
     return InputError(fmt::format("{}: PNG file ends within its header", name));
-  return CheckPixelCount(*width, *height, name);
+  constexpr uint64_t kDeflateRatio = 1032;  // no stream is packed more tightly
+  const uint64_t channels = *colour_type == 2   ? 3
+                            : *colour_type == 4 ? 2
+                            : *colour_type == 6 ? 4
+                                                : 1;
+  const uint64_t row_bytes = *width * channels * *depth / 8;
+  return CheckClaim(source, *width, *height, *height * row_bytes / kDeflateRatio, name);
 }
 
 // The frame header (SOFn) carries the size. Bytes between segments are skipped, as libjpeg does.
@@ -47,7 +66,9 @@ Result<void> CheckJpeg(const ByteSource& source, const std::string& name) {
       const auto height = BigEndian(source, offset + 3, 2),
                  width = BigEndian(source, offset + 5, 2);
       if (!width || !height) break;
-      return CheckPixelCount(*width, *height, name);
+      // A Huffman code has at least one bit, and there is one for every 8 x 8 pixels.
+      const bool is_huffman = *marker < 0xc8;
+      return CheckClaim(source, *width, *height, is_huffman ? *width * *height / 512 : 0, name);
     }
     const auto length = BigEndian(source, offset, 2);
     if (!length) break;
