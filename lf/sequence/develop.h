@@ -21,8 +21,8 @@ struct DevelopOptions {
   // Elements with fewer rays than this in a channel are smoothed; 0 and 1: only empty ones are
   // filled.
   uint32_t smooth_below = 0;
-  // Elements further than this from any collected one stay black: light that nobody recorded is
-  // not invented.
+  // No light comes from further away than this: a channel of an element without a collected one
+  // that near stays black; light that nobody recorded is not invented.
   int fill_radius_px = 32;
 };
 
@@ -33,9 +33,14 @@ struct DevelopedFrame {
 };
 
 // Averages every element and channel. Those without a ray (or with fewer than smooth_below) take
-// the inverse-distance mean (1/d, Shepard; thesis [She68]) of collected elements of the channel
-// within the smallest radius that holds at least 4 of them and at least smooth_below rays; their
-// own value enters at d = 0.5. The same bits for any thread count.
+// the inverse-distance mean of collected elements of the channel,
+//
+//   sum_i v_i / d_i  /  sum_i 1 / d_i      (Shepard 1968; d between element centres, in elements)
+//
+// over all that lie within the smallest radius that holds at least 4 of them and at least
+// smooth_below rays, but never beyond fill_radius_px, where fewer must do. Their own value, if they
+// have one, is among them at d = 0.5. Then white balance and camera_to_srgb. Counts above 2^32 - 1
+// are given as that. The same bits for any thread count.
 DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, ThreadPool& pool);
 
 }  // namespace lf

@@ -1,0 +1,78 @@
+#include "lf/sequence/develop.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "lf/sequence/channel_fill.h"
+
+namespace lf {
+namespace {
+
+constexpr int kChannels = SensorPlate::kChannels;
+
+// Own averages, counts and coverage of row y. Returns which channels have elements to fill.
+std::array<bool, kChannels> AverageRow(const SensorPlate& plate, const DevelopOptions& options,
+                                       uint32_t rays_needed, int y, DevelopedFrame& frame,
+                                       Image<float>& mean) {
+  std::array<bool, kChannels> is_thin = {};
+  for (int x = 0; x < plate.width(); ++x) {
+    int collected = 0;
+    for (int c = 0; c < kChannels; ++c) {
+      const ElementSum rays = plate.At(x, y, c);
+      frame.ray_count.at(x, y, c) = static_cast<uint32_t>(
+          std::min<uint64_t>(rays.count, std::numeric_limits<uint32_t>::max()));
+      is_thin[c] |= rays.count < rays_needed;
+      if (rays.count == 0) continue;
+      ++collected;
+      const double average = static_cast<double>(rays.sum) / static_cast<double>(rays.count);
+      mean.at(x, y, c) = static_cast<float>((average - options.pedestal) / options.scale);
+    }
+    frame.coverage.at(x, y) = static_cast<float>(collected) / kChannels;
+  }
+  return is_thin;
+}
+
+}  // namespace
+
+DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, ThreadPool& pool) {
+  LF_CHECK(options.scale > 0 && options.fill_radius_px >= 0);
+  const int width = plate.width(), height = plate.height();
+  const uint32_t rays_needed = std::max(options.smooth_below, 1u);
+  DevelopedFrame frame{Image<float>(width, height, kChannels),
+                       Image<uint32_t>(width, height, kChannels), Image<float>(width, height)};
+  Image<float> mean(width, height, kChannels);
+  std::vector<std::array<bool, kChannels>> row_is_thin(height);
+  pool.ForEach(height, [&](size_t y) {
+    row_is_thin[y] = AverageRow(plate, options, rays_needed, static_cast<int>(y), frame, mean);
+  });
+
+  std::array<std::optional<ChannelFill>, kChannels> fills;
+  pool.ForEach(kChannels, [&](size_t c) {
+    if (std::any_of(row_is_thin.begin(), row_is_thin.end(),
+                    [c](const auto& row) { return row[c]; }))
+      fills[c].emplace(mean, frame.ray_count, static_cast<int>(c), rays_needed,
+                       options.fill_radius_px);
+  });
+
+  const Mat3 srgb_from_camera =
+      options.camera_to_srgb *
+      Vec3(options.white_balance[0], options.white_balance[1], options.white_balance[2])
+          .asDiagonal();
+  pool.ForEach(height, [&](size_t row) {
+    const int y = static_cast<int>(row);
+    ChannelFill::Scratch scratch;
+    for (int x = 0; x < width; ++x) {
+      Vec3 camera_rgb;
+      for (int c = 0; c < kChannels; ++c)
+        camera_rgb[c] = frame.ray_count.at(x, y, c) >= rays_needed ? mean.at(x, y, c)
+                                                                   : fills[c]->At(x, y, scratch);
+      const Vec3 srgb = srgb_from_camera * camera_rgb;
+      for (int c = 0; c < kChannels; ++c) frame.rgb.at(x, y, c) = static_cast<float>(srgb[c]);
+    }
+  });
+  return frame;
+}
+
+}  // namespace lf
