@@ -1,6 +1,7 @@
-// One finished frame as one file, and the pictures made of many.
+// One finished frame as one file, and its picture for people.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string_view>
@@ -33,5 +34,9 @@ Result<void> WriteFrame(const std::filesystem::path& path, const DevelopedFrame&
 
 // A frame's picture as 8-bit sRGB, [height][width][3], for contact sheets and video.
 Image<uint8_t> DisplayImage(const DevelopedFrame& frame);
+
+// The same from a frame's file of any format, so that a film can be made again later. kInput: as
+// for ReadImage, or fewer than three channels.
+Result<Image<uint8_t>> ReadDisplayImage(const std::filesystem::path& path);
 
 }  // namespace lf

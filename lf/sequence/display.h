@@ -1,0 +1,47 @@
+// Linear light to the values displays expect, and back: sRGB (IEC 61966-2-1). Internal to this
+// folder.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+namespace lf {
+
+// Both in [0, 1]; values outside are continued.
+inline double DisplayFromLinear(double linear) {
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
+inline double LinearFromDisplay(double display) {
+  return display <= 0.04045 ? display / 12.92 : std::pow((display + 0.055) / 1.055, 2.4);
+}
+
+// The 8-bit display value nearest to a linear one, clipped; NaN gives 0. Exact, by comparing with
+// the linear values half way between the steps.
+class Display8 {
+ public:
+  Display8() {
+    for (int i = 0; i < 255; ++i)
+      above_[i] = static_cast<float>(LinearFromDisplay((i + 0.5) / 255));
+    above_[255] = INFINITY;
+    for (int cell = 0, value = 0; cell < kCells; ++cell) {
+      while (above_[value] <= static_cast<float>(cell) / kCells) ++value;
+      first_[cell] = static_cast<uint8_t>(value);
+    }
+  }
+
+  uint8_t operator()(float linear) const {
+    if (!(linear > 0)) return 0;
+    if (linear >= 1) return 255;
+    uint8_t value = first_[static_cast<int>(linear * kCells)];
+    while (above_[value] <= linear) ++value;  // once at most: cells are narrower than steps
+    return value;
+  }
+
+ private:
+  static constexpr int kCells = 4096;
+  std::array<float, 256> above_;       // the least linear value that is rounded to the next step
+  std::array<uint8_t, kCells> first_;  // value at the beginning of each of kCells parts of [0, 1]
+};
+
+}  // namespace lf
