@@ -182,7 +182,8 @@ TEST(Path, NamesTheFrameAtWhichAQuantityLeavesItsRange) {
             std::string::npos);
   path = {};
   path.focus += ", focus_tilt_speed_deg: {horizontal: 60}";
-  EXPECT_NE(path.Error().find("focus_tilt at frame 16 (1.5 s): 90 must be above -90 and below 90"),
+  EXPECT_NE(path.Error().find(
+                "lens.focus_tilt_deg at frame 16 (1.5 s): 90 must be above -90 and below 90"),
             std::string::npos)
       << path.Error();
 }

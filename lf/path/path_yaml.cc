@@ -22,7 +22,7 @@ constexpr int kMostFrames = 1'000'000;
 constexpr int kLargestSide_px = 65536;
 constexpr long long kMostElements = 1LL << 30;
 
-// A key outside the sections: fps, frames, resolution, unit_m.
+// fps and frames.
 void ReadClock(YamlMap* file, PathDescription* path) {
   if (const YamlEntry* fps = file->Require("fps", "fps: 30"))
     path->fps =

@@ -115,6 +115,17 @@ QuantityReader::Given QuantityReader::FindInOneUnit(YamlMap* map, const std::str
   return given;
 }
 
+Quantity QuantityReader::Unmoved(const YamlMap& section, const QuantitySpec& spec,
+                                 const Given& given) const {
+  const UnitEnding unit = Endings(spec.unit).front();
+  Quantity quantity;
+  quantity.label = given ? given.label : section.Label(spec.name + unit.ending);
+  quantity.place = given ? given.entry->place : section.place();
+  quantity.range = spec.range;
+  quantity.units_per_file = given ? given.units_per_file : unit.units_per_file;
+  return quantity;
+}
+
 std::optional<Quantity> QuantityReader::Read(YamlMap* section, const QuantitySpec& spec) {
   const Given start = FindInOneUnit(section, spec.name, spec.unit);
   const bool may_accelerate = spec.shape != ValueShape::kQuaternion;
@@ -138,12 +149,7 @@ std::optional<Quantity> QuantityReader::Read(YamlMap* section, const QuantitySpe
   }
   if (!start && !keyframes && !spec.zero_if_not_given) return std::nullopt;
 
-  const Given& named = keyframes ? keyframes : start;
-  Quantity quantity;
-  quantity.label = named ? named.label : section->Label(spec.name);
-  quantity.place = named ? named.entry->place : section->place();
-  quantity.range = spec.range;
-  quantity.units_per_file = named ? named.units_per_file : Endings(spec.unit)[0].units_per_file;
+  Quantity quantity = Unmoved(*section, spec, keyframes ? keyframes : start);
   if (keyframes) {
     auto curve = ReadKeyframes(spec, start, keyframes);
     if (!curve) return std::nullopt;

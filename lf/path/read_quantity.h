@@ -63,6 +63,9 @@ class QuantityReader {
   void ReadAccelerations(const YamlNode& node);
   std::vector<UnitEnding> Endings(QuantityUnit unit) const;
   Given FindInOneUnit(YamlMap* map, const std::string& name, QuantityUnit unit);
+  // The quantity with everything but its motion. `given`: its keyframes or start, if it has any.
+  Quantity Unmoved(const YamlMap& section, const QuantitySpec& spec, const Given& given) const;
+  // The periods of accelerations of the quantity, and the place of the last of them.
   std::vector<AccelerationPeriod> TakePeriods(const QuantitySpec& spec, YamlPlace* place);
   std::optional<AcceleratedMotion> ReadAccelerated(const QuantitySpec& spec, const Given& start,
                                                    const Given& speed,
