@@ -1,4 +1,4 @@
-// From stored numbers to light: the table of RAY.md, "What is added".
+// From stored numbers to light: the table of doc/ray.md, "What is added".
 //
 // Radiance is linear light, 1 = display white. A kernel sees it as a 16-bit integer
 //   v = clip(round(radiance * gain * scale) + pedestal, 0, 65535)

@@ -1,5 +1,5 @@
-// From sums and counts to a picture: average, fill, white balance, colour (thesis 4.3.1; RAY.md,
-// "Develop").
+// From sums and counts to a picture: average, fill, white balance, colour (thesis 4.3.1;
+// doc/ray.md, "Develop").
 #pragma once
 
 #include <array>
