@@ -1,4 +1,5 @@
-// The thin-lens camera of one frame: what doc/ray.md calls K', R', c', the lens and the focus plane.
+// The thin-lens camera of one frame: what doc/ray.md calls K', R', c', the lens and the focus
+// plane.
 #pragma once
 
 #include <optional>

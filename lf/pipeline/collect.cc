@@ -1,0 +1,210 @@
+#include "lf/pipeline/collect.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "lf/collection/scatter.h"
+#include "lf/core/log.h"
+#include "lf/selection/overlap.h"
+#include "lf/store/prefetch.h"
+
+namespace lf {
+namespace {
+
+// A band of this size stays in the second level cache while a batch of LF images is added to it.
+constexpr size_t kBandBytes = size_t{512} << 10;
+constexpr int kLeastBandRows = 8;
+
+// Spans of a batch kept at the same time.
+constexpr size_t kPlanBytes = size_t{64} << 20;
+
+class Stopwatch {
+ public:
+  double Seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+struct BatchImage {
+  LfImageId id;
+  LfPixels pixels;
+};
+
+std::vector<PlateBand> CutIntoBands(SensorPlate* plate) {
+  const size_t row_bytes =
+      static_cast<size_t>(plate->width()) * SensorPlate::kChannels * sizeof(uint64_t);
+  const int rows = std::max(kLeastBandRows, static_cast<int>(kBandBytes / row_bytes));
+  std::vector<PlateBand> bands;
+  for (int y = 0; y < plate->height(); y += rows)
+    bands.emplace_back(plate, y, std::min(plate->height(), y + rows));
+  return bands;
+}
+
+class Collector {
+ public:
+  Collector(const LightField& light_field, std::span<const RenderCamera> frames,
+            CollectBackEnd back_end, ThreadPool& pool, std::vector<SensorPlate>* plates)
+      : light_field_(light_field),
+        frames_(frames),
+        back_end_(back_end),
+        pool_(pool),
+        plates_(*plates),
+        rays_(frames.size()) {
+    LF_CHECK(plates->size() == frames.size());
+    for (SensorPlate& plate : plates_) bands_.push_back(CutIntoBands(&plate));
+  }
+
+  void Add(const std::vector<BatchImage>& batch) {
+    if (back_end_ == CollectBackEnd::kReference) {
+      AddByReference(batch);
+      return;
+    }
+    int tallest = 1;
+    for (const BatchImage& image : batch) tallest = std::max(tallest, image.pixels.rect.height());
+    const size_t plan_bytes = batch.size() * static_cast<size_t>(tallest) * sizeof(RaySpan);
+    const size_t chunk = std::max<size_t>(1, kPlanBytes / std::max<size_t>(1, plan_bytes));
+    for (size_t begin = 0; begin < frames_.size(); begin += chunk)
+      AddToFrames(batch, begin, std::min(frames_.size(), begin + chunk));
+  }
+
+  std::vector<FrameRays> TakeRays() { return std::move(rays_); }
+
+ private:
+  struct Share {
+    PixelRect rect;
+    ScatterPlan plan;
+  };
+
+  void AddToFrames(const std::vector<BatchImage>& batch, size_t frame_begin, size_t frame_end) {
+    const size_t frame_count = frame_end - frame_begin;
+    // First the spans of every (frame, image), then the rays of every (frame, band).
+    std::vector<Share> shares(frame_count * batch.size());
+    pool_.ForEach(shares.size(), [&](size_t i) {
+      const RenderCamera& frame = frames_[frame_begin + i / batch.size()];
+      const BatchImage& image = batch[i % batch.size()];
+      const PinholeCamera camera = light_field_.Camera(image.id);
+      shares[i].rect = Intersection(ContributingRect(camera, frame), image.pixels.rect);
+      if (!shares[i].rect.empty()) shares[i].plan = PlanScatter(camera, frame, shares[i].rect);
+    });
+
+    struct Task {
+      size_t frame;
+      size_t band;
+      uint64_t accepted_count = 0;
+    };
+    std::vector<Task> tasks;
+    for (size_t f = 0; f < frame_count; ++f)
+      for (size_t band = 0; band < bands_[frame_begin + f].size(); ++band)
+        tasks.push_back({f, band});
+    pool_.ForEach(tasks.size(), [&](size_t i) {
+      Task& task = tasks[i];
+      for (size_t k = 0; k < batch.size(); ++k) {
+        const Share& share = shares[task.frame * batch.size() + k];
+        if (share.rect.empty()) continue;
+        task.accepted_count +=
+            ScatterBand(share.plan, batch[k].pixels, &bands_[frame_begin + task.frame][task.band]);
+      }
+    });
+
+    for (const Task& task : tasks)
+      rays_[frame_begin + task.frame].accepted_count += task.accepted_count;
+    for (size_t i = 0; i < shares.size(); ++i)
+      Count(frame_begin + i / batch.size(), shares[i].rect, !shares[i].plan.spans.empty());
+  }
+
+  void AddByReference(const std::vector<BatchImage>& batch) {
+    for (size_t f = 0; f < frames_.size(); ++f)
+      for (const BatchImage& image : batch) {
+        const PinholeCamera camera = light_field_.Camera(image.id);
+        const PixelRect rect =
+            Intersection(ContributingRect(camera, frames_[f]), image.pixels.rect);
+        const uint64_t accepted =
+            ScatterReference(camera, image.pixels, frames_[f], rect, &plates_[f]);
+        rays_[f].accepted_count += accepted;
+        Count(f, rect, accepted > 0);
+      }
+  }
+
+  void Count(size_t frame, const PixelRect& rect, bool any_accepted) {
+    rays_[frame].image_count += any_accepted ? 1 : 0;
+    rays_[frame].tested_count += static_cast<uint64_t>(rect.pixel_count());
+  }
+
+  const LightField& light_field_;
+  std::span<const RenderCamera> frames_;
+  CollectBackEnd back_end_;
+  ThreadPool& pool_;
+  std::vector<SensorPlate>& plates_;
+  std::vector<std::vector<PlateBand>> bands_;
+  std::vector<FrameRays> rays_;
+};
+
+void Skip(const std::string& name, const Error& error, CollectStatistics* statistics) {
+  // The first are told at once; a report has them all.
+  constexpr size_t kTold = 10;
+  if (statistics->skipped.size() < kTold) LogWarning("LF image skipped: {}", error.message);
+  if (statistics->skipped.size() == kTold)
+    LogWarning("more LF images are broken; they are counted and reported at the end");
+  statistics->skipped.push_back({name, error.message});
+}
+
+Error AllBroken(const std::vector<SkippedImage>& skipped) {
+  return InputError(fmt::format("all {} LF images are broken; the first: {}", skipped.size(),
+                                skipped.front().reason));
+}
+
+}  // namespace
+
+Result<CollectStatistics> Collect(const LightField& light_field, const LfImageStore& store,
+                                  std::span<const RenderCamera> frames,
+                                  std::span<const SelectedImage> images,
+                                  const CollectOptions& options, ThreadPool& pool,
+                                  std::vector<SensorPlate>* plates,
+                                  const std::function<void(const CollectProgress&)>& progress) {
+  std::vector<LoadRequest> requests;
+  for (const SelectedImage& image : images) requests.push_back({image.id, image.rect});
+  Prefetcher prefetcher(store, std::move(requests),
+                        {options.loader_count, options.queue_bytes, options.image_bytes});
+
+  Collector collector(light_field, frames, options.back_end, pool, plates);
+  CollectStatistics statistics;
+  CollectProgress done;
+  std::vector<BatchImage> batch;
+  while (done.image_count < images.size()) {
+    const size_t first = done.image_count;
+    const size_t end =
+        std::min(images.size(), first + static_cast<size_t>(options.batch_image_count));
+    for (; done.image_count < end; ++done.image_count) {
+      if (options.interrupted != nullptr && *options.interrupted)
+        return Error{ErrorKind::kInterrupted,
+                     fmt::format("interrupted after {} of {} LF images", first, images.size())};
+      const SelectedImage& selected = images[done.image_count];
+      done.tested_count += selected.ray_count;
+      std::optional<LoadedImage> loaded = prefetcher.Next();
+      LF_CHECK(loaded && loaded->id == selected.id);
+      if (loaded->pixels) {
+        batch.push_back({selected.id, *std::move(loaded->pixels)});
+        continue;
+      }
+      if (options.strict) return loaded->pixels.error();
+      Skip(light_field.image_names[selected.id.value], loaded->pixels.error(), &statistics);
+    }
+    const Stopwatch stopwatch;
+    if (!batch.empty()) collector.Add(batch);
+    batch.clear();
+    statistics.collect_wall_s += stopwatch.Seconds();
+    if (progress) progress(done);
+  }
+  if (!images.empty() && statistics.skipped.size() == images.size())
+    return AllBroken(statistics.skipped);
+  statistics.frames = collector.TakeRays();
+  statistics.load_cpu_s = prefetcher.load_seconds();
+  return statistics;
+}
+
+}  // namespace lf

@@ -1,0 +1,157 @@
+#include "lf/pipeline/collect.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+#include "lf/core/random.h"
+#include "lf/selection/overlap.h"
+
+namespace lf {
+namespace {
+
+constexpr int kWidth = 64, kHeight = 48;
+
+// A 7 x 7 grid of jittered cameras before a wall of noise; frames look at it with wide lenses.
+LightField Field() {
+  LightField field;
+  field.intrinsics = {{70, 70, 32, 24, 0, kWidth, kHeight}};
+  for (uint32_t i = 0; i < 49; ++i) {
+    LfCamera camera;
+    const double x = 0.01 * (i % 7) - 0.03 + 0.002 * RandomUnit(1, 0, i);
+    const double y = 0.01 * (i / 7) - 0.03 + 0.002 * RandomUnit(1, 1, i);
+    const double z = 0.004 * RandomUnit(1, 2, i) - 0.002;
+    camera.cam_from_world = *LookAlong({x, y, z}, {0.1 * x, 0.02, 1}, {0, -1, 0});
+    field.cameras.push_back(camera);
+    field.image_names.push_back("image" + std::to_string(i));
+  }
+  return field;
+}
+
+std::vector<RenderCamera> Frames() {
+  std::vector<RenderCamera> frames;
+  for (int i = 0; i < 3; ++i) {
+    RenderCamera frame;
+    frame.pinhole.intrinsics = {80, 80, 40, 30, 0, 80, 60};
+    frame.pinhole.cam_from_world = *LookAlong({0.01 * i, 0, -0.01 * i}, {0, 0, 1}, {0, -1, 0});
+    frame.aperture = {0.03, i == 1 ? 5 : 0, 0.1 * i};
+    frame.focus_plane = FocusPlane(frame.pinhole, 1 + i, {0.2 * i, 0});
+    frames.push_back(frame);
+  }
+  return frames;
+}
+
+class NoiseStore : public LfImageStore {
+ public:
+  std::vector<uint32_t> broken;
+
+  Result<LfPixels> Load(LfImageId id, const PixelRect& rect) const override {
+    EXPECT_FALSE(rect.empty());
+    if (std::count(broken.begin(), broken.end(), id.value) > 0)
+      return InputError("image" + std::to_string(id.value) + ": broken");
+    LfPixels pixels;
+    pixels.rect = {0, 0, kWidth, kHeight};
+    pixels.radiance = Image<uint16_t>(kWidth, kHeight, 3);
+    uint64_t index = 0;
+    for (uint16_t& v : pixels.radiance.pixels())
+      v = static_cast<uint16_t>(RandomBits(11, id.value, index++));
+    return pixels;
+  }
+};
+
+struct Outcome {
+  std::vector<SensorPlate> plates;
+  Result<CollectStatistics> statistics;
+};
+
+Outcome CollectAll(const NoiseStore& store, int threads, CollectOptions options, uint64_t seed = 0,
+                   std::vector<uint32_t> left_out = {}) {
+  static const LightField field = Field();
+  static const std::vector<RenderCamera> frames = Frames();
+  ThreadPool pool(threads);
+  std::vector<SelectedImage> images = SelectImages(field, frames, {seed, {}}, pool);
+  std::erase_if(images, [&](const SelectedImage& image) {
+    return std::count(left_out.begin(), left_out.end(), image.id.value) > 0;
+  });
+  std::vector<SensorPlate> plates;
+  for (size_t i = 0; i < frames.size(); ++i) plates.emplace_back(80, 60);
+  auto statistics = Collect(field, store, frames, images, options, pool, &plates, nullptr);
+  return {std::move(plates), std::move(statistics)};
+}
+
+TEST(Collect, TheSameBitsForAnyThreadsBatchesAndOrder) {
+  const NoiseStore store;
+  CollectOptions options;
+  const Outcome expected = CollectAll(store, 1, options);
+  ASSERT_TRUE(expected.statistics);
+  EXPECT_GT(expected.statistics->frames[0].accepted_count, 50000u);
+  for (const int threads : {1, 2, 3})
+    for (const int batch : {1, 5, 64})
+      for (const uint64_t seed : {0, 7}) {
+        options.batch_image_count = batch;
+        const Outcome other = CollectAll(store, threads, options, seed);
+        EXPECT_EQ(other.plates, expected.plates) << threads << ", " << batch << ", " << seed;
+      }
+}
+
+TEST(Collect, TheReferenceAcceptsTheSameRays) {
+  const NoiseStore store;
+  CollectOptions options;
+  const Outcome fast = CollectAll(store, 2, options);
+  options.back_end = CollectBackEnd::kReference;
+  const Outcome reference = CollectAll(store, 1, options);
+  for (size_t f = 0; f < 3; ++f) {
+    EXPECT_EQ(fast.statistics->frames[f].accepted_count,
+              reference.statistics->frames[f].accepted_count);
+    EXPECT_EQ(fast.statistics->frames[f].tested_count,
+              reference.statistics->frames[f].tested_count);
+    // Accepted rays are the sum of the counts, in every channel.
+    uint64_t counts[3] = {};
+    for (int y = 0; y < 60; ++y)
+      for (int x = 0; x < 80; ++x)
+        for (int c = 0; c < 3; ++c) counts[c] += fast.plates[f].At(x, y, c).count;
+    for (const uint64_t count : counts) EXPECT_EQ(count, fast.statistics->frames[f].accepted_count);
+  }
+}
+
+TEST(Collect, ABrokenImageLeavesTheBitsOfItsAbsence) {
+  NoiseStore store;
+  const Outcome absent = CollectAll(store, 2, {}, 0, {24, 30});
+  store.broken = {24, 30};
+  const Outcome broken = CollectAll(store, 2, {});
+  ASSERT_TRUE(broken.statistics);
+  EXPECT_EQ(broken.plates, absent.plates);
+  ASSERT_EQ(broken.statistics->skipped.size(), 2u);
+  std::vector<std::string> names = {broken.statistics->skipped[0].name,
+                                    broken.statistics->skipped[1].name};
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(names, (std::vector<std::string>{"image24", "image30"}));
+}
+
+TEST(Collect, StrictMakesABrokenImageAnError) {
+  NoiseStore store;
+  store.broken = {24};
+  CollectOptions options;
+  options.strict = true;
+  EXPECT_EQ(CollectAll(store, 2, options).statistics.error().message, "image24: broken");
+}
+
+TEST(Collect, AllImagesBrokenIsAlwaysAnError) {
+  NoiseStore store;
+  for (uint32_t i = 0; i < 49; ++i) store.broken.push_back(i);
+  const Outcome outcome = CollectAll(store, 2, {});
+  EXPECT_EQ(outcome.statistics.error().kind, ErrorKind::kInput);
+  EXPECT_NE(outcome.statistics.error().message.find("all "), std::string::npos);
+}
+
+TEST(Collect, StopsWhenInterrupted) {
+  const NoiseStore store;
+  const std::atomic<bool> interrupted = true;
+  CollectOptions options;
+  options.interrupted = &interrupted;
+  EXPECT_EQ(CollectAll(store, 2, options).statistics.error().kind, ErrorKind::kInterrupted);
+}
+
+}  // namespace
+}  // namespace lf

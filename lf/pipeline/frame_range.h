@@ -1,0 +1,15 @@
+// Frames as people write them: "1-100x2" is 1, 3, 5 ...; "7"; "1-10,50-60".
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "lf/core/ids.h"
+#include "lf/core/result.h"
+
+namespace lf {
+
+// Ascending, each once. kUsage: not of this form, or outside 1 .. frame_count.
+Result<std::vector<FrameId>> ParseFrameRange(std::string_view text, size_t frame_count);
+
+}  // namespace lf

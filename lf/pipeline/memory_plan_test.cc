@@ -1,0 +1,50 @@
+#include "lf/pipeline/memory_plan.h"
+
+#include <gtest/gtest.h>
+
+namespace lf {
+namespace {
+
+LightField Field(int width, int height) {
+  LightField field;
+  field.intrinsics = {{1000, 1000, width / 2.0, height / 2.0, 0, width, height}};
+  field.cameras.resize(1000);
+  field.image_names.resize(1000);
+  return field;
+}
+
+constexpr size_t kMiB = size_t{1} << 20;
+
+TEST(MemoryPlan, StaysWithinTheMemory) {
+  for (const size_t memory : {1024 * kMiB, 2048 * kMiB, 8192 * kMiB})
+    for (const int width : {640, 4000}) {
+      const MemoryPlan plan = *PlanMemory(memory, Field(width, width), 1920, 1080, 900);
+      const size_t images = plan.batch_image_count * plan.image_bytes + plan.queue_bytes;
+      EXPECT_LE(plan.frames_per_pass * plan.plate_bytes + images, memory) << memory << " " << width;
+      EXPECT_GE(plan.batch_image_count, 1u);
+    }
+}
+
+TEST(MemoryPlan, MoreMemoryNeverMeansMorePasses) {
+  size_t before = 0;
+  for (size_t mib = 400; mib < 10000; mib += 300) {
+    const size_t now = PlanMemory(mib * kMiB, Field(960, 640), 1920, 1080, 900)->frames_per_pass;
+    EXPECT_GE(now, before);
+    before = now;
+  }
+  EXPECT_GT(before, 100u);
+}
+
+TEST(MemoryPlan, NamesTheLeastMemoryThatIsEnough) {
+  const Result<MemoryPlan> plan = PlanMemory(100 * kMiB, Field(960, 640), 1920, 1080, 1);
+  ASSERT_FALSE(plan);
+  EXPECT_EQ(plan.error().kind, ErrorKind::kOutput);
+  const std::string& message = plan.error().message;
+  const size_t at = message.find("at least ");
+  ASSERT_NE(at, std::string::npos) << message;
+  const size_t least = std::stoul(message.substr(at + 9));
+  EXPECT_TRUE(PlanMemory(least * kMiB, Field(960, 640), 1920, 1080, 1));
+}
+
+}  // namespace
+}  // namespace lf

@@ -1,0 +1,100 @@
+#include "lf/pipeline/report.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "lf/core/file.h"
+
+namespace lf {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json FrameToJson(const FrameReport& frame) {
+  return {{"frame", frame.frame.value},
+          {"lf_images", frame.rays.image_count},
+          {"rays_tested", frame.rays.tested_count},
+          {"rays_accepted", frame.rays.accepted_count},
+          {"elements_without_ray", frame.empty_element_count},
+          {"rays_per_element_min", frame.min_count},
+          {"rays_per_element_median", frame.median_count},
+          {"develop_s", frame.develop_s}};
+}
+
+}  // namespace
+
+uint64_t RenderReport::TestedRays() const {
+  uint64_t count = 0;
+  for (const FrameReport& frame : frames) count += frame.rays.tested_count;
+  return count;
+}
+
+uint64_t RenderReport::AcceptedRays() const {
+  uint64_t count = 0;
+  for (const FrameReport& frame : frames) count += frame.rays.accepted_count;
+  return count;
+}
+
+double RenderReport::MraysPerSecondPerCore() const {
+  const double core_s = collect_wall_s * thread_count;
+  return core_s > 0 ? static_cast<double>(TestedRays()) / 1e6 / core_s : 0;
+}
+
+FrameReport MakeFrameReport(FrameId frame, const FrameRays& rays, const DevelopedFrame& developed) {
+  FrameReport report;
+  report.frame = frame;
+  report.rays = rays;
+  const std::vector<uint32_t>& counts = developed.ray_count.pixels();
+  std::vector<uint32_t> channel_counts(counts.size() / 3);
+  if (channel_counts.empty()) return report;
+  for (size_t channel = 0; channel < 3; ++channel) {
+    for (size_t i = 0; i < channel_counts.size(); ++i) channel_counts[i] = counts[i * 3 + channel];
+    const auto middle = channel_counts.begin() + static_cast<ptrdiff_t>(channel_counts.size() / 2);
+    std::nth_element(channel_counts.begin(), middle, channel_counts.end());
+    report.median_count[channel] = *middle;
+    report.min_count[channel] = *std::min_element(channel_counts.begin(), channel_counts.end());
+    report.empty_element_count[channel] = static_cast<uint64_t>(
+        std::count(channel_counts.begin(), channel_counts.end(), uint32_t{0}));
+  }
+  return report;
+}
+
+uint64_t PeakMemoryBytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+std::string ToJson(const RenderReport& report) {
+  Json skipped = Json::array();
+  for (const SkippedImage& image : report.skipped)
+    skipped.push_back({{"name", image.name}, {"reason", image.reason}});
+  Json frames = Json::array();
+  for (const FrameReport& frame : report.frames) frames.push_back(FrameToJson(frame));
+  const Json json = {{"format", "lfreport 1"},
+                     {"version", report.version},
+                     {"resolution", {report.width, report.height}},
+                     {"threads", report.thread_count},
+                     {"lf_images", report.lf_image_count},
+                     {"lf_images_selected", report.selected_image_count},
+                     {"passes", report.pass_count},
+                     {"seconds", report.total_s},
+                     {"load_cpu_s", report.load_cpu_s},
+                     {"collect_s", report.collect_wall_s},
+                     {"rays_tested", report.TestedRays()},
+                     {"rays_accepted", report.AcceptedRays()},
+                     {"mrays_per_s_per_core", report.MraysPerSecondPerCore()},
+                     {"peak_memory_bytes", report.peak_memory_bytes},
+                     {"skipped_lf_images", std::move(skipped)},
+                     {"frames", std::move(frames)}};
+  // File names may hold any bytes; those that are no UTF-8 are replaced.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Result<void> WriteReport(const RenderReport& report, const std::filesystem::path& path) {
+  return WriteFileAtomically(path, ToJson(report));
+}
+
+}  // namespace lf

@@ -1,0 +1,57 @@
+// What a render did: report.json, and the numbers a person is told.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "lf/core/ids.h"
+#include "lf/core/result.h"
+#include "lf/pipeline/collect.h"
+#include "lf/sequence/develop.h"
+
+namespace lf {
+
+struct FrameReport {
+  FrameId frame;
+  FrameRays rays;
+  // Per channel R, G, B.
+  std::array<uint64_t, 3> empty_element_count{};  // without a ray of their own
+  std::array<uint64_t, 3> min_count{};
+  std::array<uint64_t, 3> median_count{};
+  double develop_s = 0;
+};
+
+struct RenderReport {
+  std::string version;
+  int width = 0;
+  int height = 0;
+  int thread_count = 0;
+  size_t lf_image_count = 0;        // of the light field
+  size_t selected_image_count = 0;  // read, largest pass
+  size_t pass_count = 0;
+  std::vector<FrameReport> frames;
+  std::vector<SkippedImage> skipped;
+  double total_s = 0;
+  double load_cpu_s = 0;
+  double collect_wall_s = 0;
+  uint64_t peak_memory_bytes = 0;
+
+  uint64_t TestedRays() const;
+  uint64_t AcceptedRays() const;
+  // Millions of tested rays per second of collection and core.
+  double MraysPerSecondPerCore() const;
+};
+
+// Counts of the developed frame.
+FrameReport MakeFrameReport(FrameId frame, const FrameRays& rays, const DevelopedFrame& developed);
+
+// Largest resident memory of this process so far.
+uint64_t PeakMemoryBytes();
+
+std::string ToJson(const RenderReport& report);
+Result<void> WriteReport(const RenderReport& report, const std::filesystem::path& path);
+
+}  // namespace lf
