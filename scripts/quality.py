@@ -1,0 +1,159 @@
+#!/usr/bin/python3
+"""Renders the ground truth cases, compares them with true thin-lens pictures and prints the table
+of doc/quality.md.
+
+usage: quality.py LFRENDERER GROUNDTRUTH [--write doc/quality.md] [--check] [--keep DIR]
+
+GROUNDTRUTH  folder with cases.json, gt/, data/, compare.py and exr2pfm.py
+--check      exit 1 if a case falls more than 0.3 dB below the scatter column of its README
+--keep DIR   leave paths, frames and difference pictures there
+Exit 77 if GROUNDTRUTH is absent: a test that is skipped, not passed.
+"""
+import argparse
+import json
+import math
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+from PIL import Image
+
+ALLOWED_LOSS_DB = 0.3
+
+
+def camera_axes(case):
+    """position, right, up, forward in the world, from the OpenGL camera-to-world matrix"""
+    m = np.array(case["transform_matrix"])
+    return m[:3, 3], m[:3, 0], m[:3, 1], -m[:3, 2]
+
+
+def tilt_deg(case):
+    """focus_tilt_deg (horizontal, vertical) of the case's focus plane:
+    depth g + x tan(horizontal) + u tan(vertical) at x right, u up"""
+    _, right, up, forward = camera_axes(case)
+    n = np.array(case["focus_plane"]["normal"])
+    return (math.degrees(math.atan(-(n @ right) / (n @ forward))),
+            math.degrees(math.atan(-(n @ up) / (n @ forward))))
+
+
+def path_yaml(case):
+    position, _, up, forward = camera_axes(case)
+    horizontal, vertical = tilt_deg(case)
+    numbers = lambda v: "[" + ", ".join(repr(float(x)) for x in v) + "]"
+    return f"""format: lfpath 1
+fps: 25
+frames: 1
+resolution: [{case['w']}, {case['h']}]
+camera:
+  field_of_view_deg: {case['fov_x_deg']!r}
+  focal_length_mm: 50
+  position: {numbers(position)}
+  look_at: {numbers(position + forward)}
+  up: {numbers(up)}
+lens:
+  aperture_diameter: {case['aperture_diameter_m']!r}
+  focus_distance: {case['focus_distance_m']!r}
+  blades: {case['blades']}
+  blade_rotation_deg: {case['blade_rotation_deg']!r}
+  focus_tilt_deg: {{horizontal: {horizontal!r}, vertical: {vertical!r}}}
+"""
+
+
+def mosaic(calibration, folder):
+    """The light field as an RGGB mosaic sensor would have recorded it."""
+    folder.mkdir(parents=True)
+    field = json.loads(calibration.read_text())
+    field.update(lf_bayer="RGGB", lf_transfer="sRGB")
+    for frame in field["frames"]:
+        rgb = np.asarray(Image.open(calibration.parent / frame["file_path"]).convert("RGB"))
+        raw = rgb[..., 1].copy()
+        raw[0::2, 0::2] = rgb[0::2, 0::2, 0]
+        raw[1::2, 1::2] = rgb[1::2, 1::2, 2]
+        name = pathlib.Path(frame["file_path"]).name
+        Image.fromarray(raw).save(folder / name)
+        frame["file_path"] = name
+    (folder / "transforms.json").write_text(json.dumps(field))
+    return folder / "transforms.json"
+
+
+def render(renderer, calibration, path, folder):
+    subprocess.run([renderer, calibration, path, "-o", folder, "--format", "exr-float",
+                    "--estimator", "nearest", "--lens-weights", "none", "-q",
+                    "--no-contact-sheet"], check=True)
+    report = json.loads((folder / "report.json").read_text())
+    return folder / "frame_0001.exr", report["frames"][0]["lf_images"]
+
+
+def psnr(truth_folder, case, frame):
+    pfm, difference = frame.with_suffix(".pfm"), frame.with_name("difference.png")
+    python = "/usr/bin/python3"
+    subprocess.run([python, truth_folder / "exr2pfm.py", frame, pfm], check=True)
+    result = subprocess.run([python, truth_folder / "compare.py", truth_folder / case["linear"],
+                             pfm, "--diff", difference], check=True, capture_output=True, text=True)
+    return json.loads(result.stdout)["psnr_linear"]
+
+
+def reference_columns(truth_folder):
+    """case -> (scatter, gather) dB, from the table in the README"""
+    columns = {}
+    for line in (truth_folder / "README.md").read_text().splitlines():
+        match = re.match(r"\| (\w+)[^|]*\| *\d+ *\| *([\d.]+) *\| *([\d.]+) *\|", line)
+        if match:
+            columns[match.group(1)] = (float(match.group(2)), float(match.group(3)))
+    return columns
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("renderer")
+    parser.add_argument("groundtruth", type=pathlib.Path)
+    parser.add_argument("--write", type=pathlib.Path)
+    parser.add_argument("--check", action="store_true")
+    parser.add_argument("--keep", type=pathlib.Path)
+    arguments = parser.parse_args()
+    truth = arguments.groundtruth
+    if not (truth / "cases.json").exists():
+        print(f"skipped: no ground truth at {truth} (set LF_TEST_DATA)")
+        return 77
+    references = reference_columns(truth)
+    rows, faults = [], []
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = arguments.keep or pathlib.Path(temporary)
+        bayer = {}
+        for case in json.loads((truth / "cases.json").read_text())["cases"]:
+            if not case["aperture_diameter_m"]:
+                continue  # a pinhole: no recorded ray passes it
+            name, calibration = case["name"], truth / case["light_field"]
+            work = folder / name
+            work.mkdir(parents=True, exist_ok=True)
+            path = work / "path.yaml"
+            path.write_text(path_yaml(case))
+            if calibration not in bayer:
+                bayer[calibration] = mosaic(calibration, folder / ("bayer_" + calibration.parent.name))
+            frame, images = render(arguments.renderer, calibration, path, work / "rgb")
+            rgb_db = psnr(truth, case, frame)
+            frame, _ = render(arguments.renderer, bayer[calibration], path, work / "bayer")
+            bayer_db = psnr(truth, case, frame)
+            scatter = references[name][0]
+            rows.append(f"| {name} | {images} | {rgb_db:.2f} | {scatter:.2f} | "
+                        f"{rgb_db - scatter:+.2f} | {bayer_db:.2f} |")
+            print(rows[-1], flush=True)
+            if rgb_db < scatter - ALLOWED_LOSS_DB:
+                faults.append(f"{name}: {rgb_db:.2f} dB, below {scatter:.2f} - {ALLOWED_LOSS_DB}")
+    if arguments.write:
+        text = arguments.write.read_text()
+        table = "\n".join(["| case | LF images | nearest | reference | difference | nearest, Bayer |",
+                           "| --- | --- | --- | --- | --- | --- |"] + rows)
+        begin, end = "<!-- table: scripts/quality.py -->\n", "\n<!-- end of table -->"
+        before, rest = text.split(begin)
+        arguments.write.write_text(before + begin + table + end + rest.split(end)[1])
+    print("\n".join(faults) or f"{len(rows)} cases, none more than {ALLOWED_LOSS_DB} dB below")
+    return 1 if arguments.check and (faults or not rows) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,108 @@
+// A light field that exists only as a formula: dense parallel cameras in the plane z = 0 that look
+// at a function of the ray. For tests of optics with known answers, without files.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "lf/camera/pinhole.h"
+#include "lf/camera/render_camera.h"
+#include "lf/pipeline/collect.h"
+
+namespace lf::testing {
+
+// Radiance in [0, 1] of a ray.
+using Radiance = std::function<double(const Ray&)>;
+
+struct GridRig {
+  int side = 21;  // side x side cameras
+  double pitch_w = 0.003;
+  Intrinsics intrinsics = {200, 200, 80, 60, 0, 160, 120};
+};
+
+inline LightField GridField(const GridRig& rig) {
+  LightField field;
+  field.intrinsics = {rig.intrinsics};
+  const double middle = (rig.side - 1) / 2.0;
+  for (int row = 0; row < rig.side; ++row)
+    for (int column = 0; column < rig.side; ++column) {
+      LfCamera camera;
+      camera.cam_from_world.translation = {(middle - column) * rig.pitch_w,
+                                           (middle - row) * rig.pitch_w, 0};
+      field.cameras.push_back(camera);
+      field.image_names.push_back("formula");
+    }
+  return field;
+}
+
+// Every pixel is the formula at its centre.
+class FormulaStore : public LfImageStore {
+ public:
+  FormulaStore(const LightField& field, Radiance radiance)
+      : field_(field), radiance_(std::move(radiance)) {}
+
+  Result<LfPixels> Load(LfImageId id, const PixelRect& rect) const override {
+    const PinholeCamera camera = field_.Camera(id);
+    LfPixels pixels;
+    pixels.rect = rect;
+    pixels.radiance = Image<uint16_t>(rect.width(), rect.height(), 3);
+    for (int y = rect.y_begin; y < rect.y_end; ++y)
+      for (int x = rect.x_begin; x < rect.x_end; ++x) {
+        const double value = radiance_(RayOfPixel(camera, x + 0.5, y + 0.5));
+        for (int channel = 0; channel < 3; ++channel)
+          pixels.radiance.at(x - rect.x_begin, y - rect.y_begin, channel) =
+              static_cast<uint16_t>(std::lround(65535 * std::clamp(value, 0.0, 1.0)));
+      }
+    return pixels;
+  }
+
+ private:
+  const LightField& field_;
+  Radiance radiance_;
+};
+
+// Every image is black but for the pixel that holds a point of the scene. Only that pixel is given:
+// black ones would add rays, but no light.
+class PointStore : public LfImageStore {
+ public:
+  PointStore(const LightField& field, const Vec3& point) : field_(field), point_(point) {}
+
+  Result<LfPixels> Load(LfImageId id, const PixelRect&) const override {
+    const Vec2 p = *Project(field_.Camera(id), point_);
+    const int x = static_cast<int>(std::floor(p.x())), y = static_cast<int>(std::floor(p.y()));
+    LfPixels pixels;
+    pixels.rect = {x, y, x + 1, y + 1};
+    pixels.radiance = Image<uint16_t>(1, 1, 3, 65535);
+    return pixels;
+  }
+
+ private:
+  const LightField& field_;
+  Vec3 point_;
+};
+
+inline SensorPlate CollectFrame(const LightField& field, const LfImageStore& store,
+                                const RenderCamera& frame) {
+  ThreadPool pool(2);
+  const std::vector<RenderCamera> frames = {frame};
+  std::vector<SensorPlate> plates;
+  plates.emplace_back(frame.pinhole.intrinsics.width_px, frame.pinhole.intrinsics.height_px);
+  const auto images = SelectImages(field, frames, {}, pool);
+  const auto statistics = Collect(field, store, frames, images, {}, pool, &plates, nullptr);
+  LF_CHECK(statistics.has_value());
+  return std::move(plates[0]);
+}
+
+inline RenderCamera Frame(const Intrinsics& intrinsics, double aperture_diameter_w,
+                          double focus_distance_w, const FocusTilt& tilt = {}) {
+  RenderCamera frame;
+  frame.pinhole.intrinsics = intrinsics;
+  frame.aperture.radius_w = aperture_diameter_w / 2;
+  frame.focus_distance_w = focus_distance_w;
+  frame.focus_tilt = tilt;
+  frame.focus_plane = FocusPlane(frame.pinhole, focus_distance_w, tilt);
+  return frame;
+}
+
+}  // namespace lf::testing

@@ -1,0 +1,178 @@
+#!/usr/bin/python3
+"""lfrenderer as its users meet it: files in, files out, exit codes, last words.
+
+usage: lfrenderer_test.py LFRENDERER
+"""
+import hashlib
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import numpy as np
+from PIL import Image
+
+from small_field import HEIGHT, WIDTH, write_field, write_path
+
+RENDERER = None
+
+
+class RendererTest(unittest.TestCase):
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(self.temporary.cleanup)
+        self.folder = pathlib.Path(self.temporary.name)
+
+    def run_renderer(self, *arguments):
+        return subprocess.run([RENDERER, *map(str, arguments)], capture_output=True, text=True,
+                              timeout=120)
+
+    def render(self, field, path, name, *options):
+        """Frames' digests and report of a run that must succeed."""
+        out = self.folder / name
+        result = self.run_renderer(field, path, "-o", out, "--format", "exr-float", *options)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        digests = [hashlib.sha256(frame.read_bytes()).hexdigest()
+                   for frame in sorted(out.glob("frame_*.exr"))]
+        return digests, json.loads((out / "report.json").read_text())
+
+    def fails(self, code, words, *arguments):
+        result = self.run_renderer(*arguments)
+        self.assertEqual(result.returncode, code, result.stderr)
+        last = result.stderr.strip().splitlines()[-1]
+        self.assertTrue(last.startswith("error: "), last)
+        for word in words:
+            self.assertIn(word, last)
+
+    # What it makes
+
+    def test_writes_frames_a_contact_sheet_and_a_report(self):
+        field, path = write_field(self.folder / "field"), write_path(self.folder)
+        digests, report = self.render(field, path, "out")
+        self.assertEqual(len(digests), 3)
+        self.assertEqual(sorted(p.name for p in (self.folder / "out").iterdir()),
+                         ["contact_sheet.png", "frame_0001.exr", "frame_0002.exr",
+                          "frame_0003.exr", "report.json"])
+        self.assertEqual([frame["frame"] for frame in report["frames"]], [1, 2, 3])
+        for frame in report["frames"]:
+            self.assertGreater(frame["rays_accepted"], 10000)
+            self.assertLessEqual(frame["rays_accepted"], frame["rays_tested"])
+        self.assertEqual(report["skipped_lf_images"], [])
+
+    def test_writes_png_and_a_video(self):
+        field, path = write_field(self.folder / "field"), write_path(self.folder)
+        out = self.folder / "out"
+        result = self.run_renderer(field, path, "-o", out, "--format", "png16", "--frames", "1-3x2",
+                                   "--video", out / "film.mp4")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertTrue((out / "film.mp4").stat().st_size > 500)
+        with Image.open(out / "frame_0003.png") as frame:
+            self.assertEqual(frame.size, (80, 60))
+        self.assertFalse((out / "frame_0002.png").exists())
+
+    def test_the_same_bits_for_any_threads_memory_and_order(self):
+        field, path = write_field(self.folder / "field"), write_path(self.folder, frames=8)
+        expected, report = self.render(field, path, "out", "--threads", "1")
+        self.assertEqual(report["passes"], 1)
+        for index, options in enumerate([["--threads", "2"], ["--threads", "3"], ["--seed", "5"]]):
+            digests, _ = self.render(field, path, f"out{index}", *options)
+            self.assertEqual(digests, expected, options)
+        digests, report = self.render(field, path, "small", "--memory", "97.5M")
+        self.assertGreater(report["passes"], 1)
+        self.assertEqual(digests, expected)
+
+    def test_the_reference_collects_the_same_rays(self):
+        field, path = write_field(self.folder / "field"), write_path(self.folder)
+        _, fast = self.render(field, path, "fast")
+        _, reference = self.render(field, path, "reference", "--back-end", "reference")
+        for a, b in zip(fast["frames"], reference["frames"]):
+            self.assertEqual(a["rays_accepted"], b["rays_accepted"])
+
+    def test_black_stays_black_with_noise(self):
+        # A lens cap on a raw sensor: black level 1000, noise of both signs.
+        def picture(index):
+            noise = np.random.default_rng(index).normal(0, 60, (HEIGHT, WIDTH))
+            return (1000 + np.round(noise)).astype(np.uint16)
+        field = write_field(self.folder / "field", picture, lf_bayer="RGGB", lf_black_level=1000,
+                            lf_white_level=16383)
+        out = self.folder / "out"
+        result = self.run_renderer(field, write_path(self.folder), "-o", out, "--format", "exr-float")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"
+        import cv2  # late: it reads that on loading
+        frame = cv2.imread(str(out / "frame_0002.exr"), cv2.IMREAD_UNCHANGED)[..., :3]
+        # Clipping at black would leave 60 * 0.4 / 15383 = 1.6e-3.
+        self.assertLess(abs(float(frame.mean())), 1e-4)
+        self.assertLess(float(frame.min()), 0)
+
+    # What it survives
+
+    def test_a_broken_image_gives_the_bits_of_its_absence(self):
+        field, path = write_field(self.folder / "field"), write_path(self.folder)
+        description = json.loads(field.read_text())
+        without = dict(description, frames=[f for i, f in enumerate(description["frames"]) if i != 12])
+        absent = field.with_name("without.json")
+        absent.write_text(json.dumps(without))
+        expected, _ = self.render(absent, path, "absent")
+        broken = self.folder / "field" / "image_12.png"
+        broken.write_bytes(broken.read_bytes()[:900])
+        out = self.folder / "broken"
+        digests, report = self.render(field, path, "broken")
+        self.assertEqual([s["name"] for s in report["skipped_lf_images"]], ["image_12.png"])
+        self.assertEqual(digests, expected)
+        self.fails(3, ["image_12.png"], field, path, "-o", out, "--strict")
+
+    def test_all_images_broken_is_an_error(self):
+        field, path = write_field(self.folder / "field"), write_path(self.folder)
+        for image in field.parent.glob("*.png"):
+            image.write_bytes(b"")
+        self.fails(3, ["broken", "image_"], field, path, "-o", self.folder / "out")
+
+    def test_an_interrupt_ends_it_with_code_5(self):
+        field, path = write_field(self.folder / "field"), write_path(self.folder, frames=2000)
+        process = subprocess.Popen([RENDERER, field, path, "-o", self.folder / "out", "--back-end",
+                                    "reference"], stderr=subprocess.PIPE, text=True)
+        time.sleep(1)
+        process.send_signal(signal.SIGINT)
+        _, words = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 5, words)
+        self.assertIn("interrupted", words.strip().splitlines()[-1])
+
+    # What it refuses
+
+    def test_usage_errors_name_the_option(self):
+        field, path = write_field(self.folder / "field"), write_path(self.folder)
+        out = self.folder / "out"
+        self.fails(2, [], field, path)
+        self.fails(2, [], field, "-o", out)
+        self.fails(2, ["--mode rebin", "not available"], field, path, "-o", out, "--mode", "rebin")
+        self.fails(2, ["bilinear"], field, path, "-o", out, "--estimator", "bilinear")
+        self.fails(2, ["--frames"], field, path, "-o", out, "--frames", "2-9")
+        self.fails(2, ["--memory"], field, path, "-o", out, "--memory", "lots")
+
+    def test_input_errors_name_the_file(self):
+        field, path = write_field(self.folder / "field"), write_path(self.folder)
+        out = self.folder / "out"
+        self.fails(3, ["nothing.json"], self.folder / "nothing.json", path, "-o", out)
+        self.fails(3, ["none.yaml"], field, self.folder / "none.yaml", "-o", out)
+        path.write_text(path.read_text().replace("aperture_diameter", "apperture_diameter"))
+        self.fails(3, ["path.yaml:12", "aperture_diameter"], field, path, "-o", out)
+        self.fails(3, ["no LF image"], field, write_path(self.folder, aperture=0, x=0.004),
+                   "-o", out)
+
+    def test_output_errors_name_the_place(self):
+        field, path = write_field(self.folder / "field"), write_path(self.folder)
+        (self.folder / "file").write_text("")
+        self.fails(4, [str(self.folder / "file")], field, path, "-o", self.folder / "file" / "out")
+        self.fails(4, ["--memory", "at least"], field, path, "-o", self.folder / "out", "--memory",
+                   "2M")
+
+
+if __name__ == "__main__":
+    RENDERER = sys.argv.pop(1)
+    unittest.main()

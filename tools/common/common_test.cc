@@ -1,0 +1,41 @@
+#include <gtest/gtest.h>
+
+#include "tools/common/byte_size.h"
+#include "tools/common/progress.h"
+
+namespace lf {
+namespace {
+
+TEST(ByteSize, ReadsMemoryAsPeopleWriteIt) {
+  EXPECT_EQ(*ParseByteSize("4096", "--memory"), 4096u);
+  EXPECT_EQ(*ParseByteSize("8G", "--memory"), size_t{8} << 30);
+  EXPECT_EQ(*ParseByteSize("512MB", "--memory"), size_t{512} << 20);
+  EXPECT_EQ(*ParseByteSize("1.5g", "--memory"), size_t{3} << 29);
+}
+
+TEST(ByteSize, RefusesTheRestAndNamesTheOption) {
+  for (const char* text : {"", "G", "-1G", "8 G", "8X", "0", "8GiB", "1e30", "nan", "0x10G"}) {
+    const Result<size_t> size = ParseByteSize(text, "--memory");
+    ASSERT_FALSE(size) << text;
+    EXPECT_EQ(size.error().kind, ErrorKind::kUsage);
+    EXPECT_NE(size.error().message.find("--memory"), std::string::npos);
+  }
+}
+
+TEST(Progress, NumbersAndDurationsAreShort) {
+  EXPECT_EQ(ShortNumber(0), "0 ");
+  EXPECT_EQ(ShortNumber(1234), "1.23 k");
+  EXPECT_EQ(ShortNumber(4.56e9), "4.56 G");
+  EXPECT_EQ(ShortDuration(14.4), "14 s");
+  EXPECT_EQ(ShortDuration(125), "2 min 5 s");
+  EXPECT_EQ(ShortDuration(3 * 3600 + 20 * 60 + 59), "3 h 20 min");
+  EXPECT_EQ(ShortDuration(-1), "0 s");
+}
+
+TEST(Progress, StylesHaveNames) {
+  EXPECT_EQ(ParseProgressStyle("json"), ProgressStyle::kJson);
+  EXPECT_EQ(ParseProgressStyle("none"), ProgressStyle::kNone);
+}
+
+}  // namespace
+}  // namespace lf

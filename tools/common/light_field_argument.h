@@ -1,0 +1,20 @@
+// LIGHTFIELD, as every program takes it.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "lf/capture/open_light_field.h"
+
+namespace lf {
+
+struct LightFieldArgument {
+  std::string path;
+  double focal_px = 0;
+
+  // The positional argument and the options that go with it.
+  void AddTo(CLI::App& app);
+  Result<LightField> Open() const;
+};
+
+}  // namespace lf

@@ -1,0 +1,141 @@
+// lfrenderer LIGHTFIELD PATH.yaml -o DIR: films a light field with a thin-lens camera.
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <string>
+
+#include "tools/common/byte_size.h"
+#include "tools/common/interrupt.h"
+#include "tools/common/light_field_argument.h"
+#include "tools/common/program.h"
+#include "tools/common/progress.h"
+
+#include "lf/core/log.h"
+#include "lf/path/path_yaml.h"
+#include "lf/pipeline/frame_range.h"
+#include "lf/pipeline/render.h"
+
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  lfrenderer capture/transforms.json path.yaml -o frames
+  lfrenderer capture/ path.yaml -o frames --format png16 --video film.mp4
+  lfrenderer capture/ path.yaml -o preview --frames 1-100x10 --max-images 200
+
+DIR receives frame_0001.exr ..., contact_sheet.png and report.json. EXR frames hold linear light
+(R, G, B), the rays of every element (count.R, count.G, count.B) and coverage.)";
+
+struct Arguments {
+  lf::LightFieldArgument light_field;
+  std::string path, output, video, frames, memory = "8G", format = "exr", mode = "collect";
+  std::string estimator = "auto", lens_weights = "auto", back_end = "fast";
+  size_t max_images = 0;
+  uint32_t smooth_below = 0;
+  bool no_contact_sheet = false;
+};
+
+// Words of the full contract that this version cannot honour are refused, never ignored.
+lf::Result<void> CheckAvailable(const std::string& option, const std::string& value,
+                                std::initializer_list<const char*> available) {
+  for (const char* word : available)
+    if (value == word) return {};
+  return lf::UsageError(
+      fmt::format("{} {} is not available in version {}", option, value, lf::Version()));
+}
+
+lf::Result<lf::RenderOptions> MakeOptions(const Arguments& arguments, const lf::Program& program,
+                                          const lf::CameraPath& path) {
+  lf::RenderOptions options;
+  options.output_folder = arguments.output;
+  if (!arguments.frames.empty()) {
+    LF_ASSIGN_OR_RETURN(options.frames, lf::ParseFrameRange(arguments.frames, path.frame_count()));
+  }
+  options.format = *lf::ParseFrameFormat(arguments.format);
+  if (!arguments.video.empty()) options.video = arguments.video;
+  options.contact_sheet = !arguments.no_contact_sheet;
+  if (arguments.max_images > 0) options.max_image_count = arguments.max_images;
+  options.smooth_below = arguments.smooth_below;
+  LF_ASSIGN_OR_RETURN(options.memory_bytes, lf::ParseByteSize(arguments.memory, "--memory"));
+  options.seed = program.common().seed;
+  options.strict = program.common().strict;
+  if (arguments.back_end == "reference") options.back_end = lf::CollectBackEnd::kReference;
+  options.version = lf::Version();
+  options.interrupted = &lf::CatchInterrupts();
+  return options;
+}
+
+void Summarise(const lf::RenderReport& report, const std::string& output) {
+  lf::LogInfo(
+      "{} frames {}x{} in {}: {}rays from {} of {} LF images, {:.3g} Mrays/s per core, "
+      "peak memory {} MiB",
+      report.frames.size(), report.width, report.height, lf::ShortDuration(report.total_s),
+      lf::ShortNumber(static_cast<double>(report.AcceptedRays())), report.selected_image_count,
+      report.lf_image_count, report.MraysPerSecondPerCore(), report.peak_memory_bytes >> 20);
+  const double element_count = static_cast<double>(report.width) * report.height;
+  for (const lf::FrameReport& frame : report.frames) {
+    const double empty = static_cast<double>(frame.empty_element_count[1]) / element_count;
+    if (empty > 0.01)
+      lf::LogWarning(
+          "frame {}: {:.0f} % of its elements got no ray; a larger aperture, a smaller "
+          "resolution or a denser capture would fill them",
+          frame.frame.value, 100 * empty);
+  }
+  if (!report.skipped.empty())
+    lf::LogWarning("{} LF images were skipped; report.json names them", report.skipped.size());
+  lf::LogInfo("look at {}", (std::filesystem::path(output) / "contact_sheet.png").string());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  lf::Program program("lfrenderer",
+                      "Films a densely recorded light field with a thin-lens camera on a path.",
+                      kExamples);
+  Arguments arguments;
+  CLI::App& app = program.app();
+  arguments.light_field.AddTo(app);
+  app.add_option("PATH.yaml", arguments.path, "Camera path (doc/formats/path.md)")->required();
+  app.add_option("-o,--output", arguments.output, "Folder of the frames")->required();
+  app.add_option("--frames", arguments.frames, "Frames to render: 1-100x2, 7, 3-5,9");
+  app.add_option("--format", arguments.format, "exr, exr-float, png or png16")
+      ->check(CLI::IsMember({"exr", "exr-float", "png", "png16"}));
+  app.add_option("--video", arguments.video, "Also write the frames as this mp4 (needs ffmpeg)");
+  app.add_flag("--no-contact-sheet", arguments.no_contact_sheet, "No contact_sheet.png");
+  app.add_option("--memory", arguments.memory, "Bound of the memory used");
+  app.add_option("--max-images", arguments.max_images,
+                 "Use only the first so many LF images of the order; 0: all");
+  app.add_option("--smooth-below", arguments.smooth_below,
+                 "Smooth elements with fewer rays than this; empty ones are always filled");
+  app.add_option("--mode", arguments.mode, "collect")
+      ->check(CLI::IsMember({"collect", "rebin", "hybrid"}));
+  app.add_option("--estimator", arguments.estimator, "auto or nearest")
+      ->check(CLI::IsMember({"auto", "nearest", "bilinear"}));
+  app.add_option("--lens-weights", arguments.lens_weights, "auto or none")
+      ->check(CLI::IsMember({"auto", "none", "area", "hat"}));
+  app.add_option("--back-end", arguments.back_end,
+                 "fast, or reference: the literal formulas, one ray at a time")
+      ->check(CLI::IsMember({"fast", "reference"}));
+  program.AddJsonOption("Print the report to stdout");
+
+  return program.Run(argc, argv, [&]() -> lf::Result<void> {
+    LF_RETURN_IF_ERROR(CheckAvailable("--mode", arguments.mode, {"collect"}));
+    LF_RETURN_IF_ERROR(CheckAvailable("--estimator", arguments.estimator, {"auto", "nearest"}));
+    LF_RETURN_IF_ERROR(CheckAvailable("--lens-weights", arguments.lens_weights, {"auto", "none"}));
+    LF_ASSIGN_OR_RETURN(const lf::LightField light_field, arguments.light_field.Open());
+    LF_ASSIGN_OR_RETURN(const lf::CameraPath path,
+                        lf::ReadPathYaml(arguments.path, light_field.unit_m));
+    LF_ASSIGN_OR_RETURN(const lf::RenderOptions options, MakeOptions(arguments, program, path));
+    lf::ThreadPool pool(program.common().threads);
+    lf::ProgressMeter meter(lf::ParseProgressStyle(program.common().progress), "rays");
+    const auto progress = [&](const lf::RenderProgress& now) {
+      meter.Update(now.ray_count, now.ray_total,
+                   fmt::format("LF image {}/{}, frame {}/{}", now.image_count, now.image_total,
+                               now.frame_count, now.frame_total));
+    };
+    LF_ASSIGN_OR_RETURN(const lf::RenderReport report,
+                        lf::Render(light_field, path, options, pool, progress));
+    Summarise(report, arguments.output);
+    if (program.common().json) std::cout << lf::ToJson(report);
+    return {};
+  });
+}
