@@ -148,9 +148,10 @@ def main():
         text = arguments.write.read_text()
         table = "\n".join(["| case | LF images | nearest | reference | difference | nearest, Bayer |",
                            "| --- | --- | --- | --- | --- | --- |"] + rows)
-        begin, end = "<!-- table: scripts/quality.py -->\n", "\n<!-- end of table -->"
+        begin, end = "<!-- table: scripts/quality.py -->", "<!-- end of table -->"
         before, rest = text.split(begin)
-        arguments.write.write_text(before + begin + table + end + rest.split(end)[1])
+        after = rest.split(end)[1]
+        arguments.write.write_text(f"{before}{begin}\n{table}\n{end}{after}")
     print("\n".join(faults) or f"{len(rows)} cases, none more than {ALLOWED_LOSS_DB} dB below")
     return 1 if arguments.check and (faults or not rows) else 0
 
