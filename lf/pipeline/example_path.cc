@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "lf/capture/capture_geometry.h"
+#include "lf/core/log.h"
 #include "lf/pipeline/focus_sweep.h"
 
 namespace lf {
@@ -36,13 +37,14 @@ Result<Focus> ChooseFocus(const LightField& light_field, const LfImageStore& sto
     const double depth_w = camera.ForwardWorld().dot(*point - camera.CentreWorld());
     if (depth_w > spacing_w) return Focus{depth_w, "where the optical axes meet"};
   }
-  // From the width of the capture to where neighbours see everything a tenth of a pixel
-  // apart.
+  // The depths at which neighbours see things between 8 and a tenth of a pixel apart.
   const double widest_w = 2 * std::max(reach.right_w, reach.up_w);
   const double sweep_diameter_w =
       std::max(aperture_diameter_w, std::min(kSpacingsPerSweep * spacing_w, widest_w));
-  const double near_w = std::max(widest_w, 2 * aperture_diameter_w);
-  const double far_w = std::max(10 * near_w, 10 * camera.intrinsics.fx_px * spacing_w);
+  LogInfo("the optical axes are parallel: looking for the sharpest plane");
+  const double disparity_w_px = camera.intrinsics.fx_px * spacing_w;
+  const double near_w = disparity_w_px / 8;
+  const double far_w = disparity_w_px / 0.1;
   LF_ASSIGN_OR_RETURN(
       const double distance_w,
       SharpestFocusDistance(light_field, store, camera, sweep_diameter_w, near_w, far_w, pool));

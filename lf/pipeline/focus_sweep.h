@@ -10,9 +10,9 @@
 namespace lf {
 
 // The focus distance, along the axis of `camera`, at which a small picture taken through a lens of
-// `aperture_diameter_w` has the most detail in its middle: the best of a sweep of planes, evenly
-// spaced in 1/distance from `near_w` to `far_w`. Reads at most 300 of the LF images behind the
-// lens, each once.
+// `aperture_diameter_w` has the most detail in its middle. Planes evenly spaced in 1/distance from
+// `near_w` to `far_w` are tried, then finer ones around the best. Reads at most 64 of the LF
+// images behind the lens, twice.
 // kInput: no LF image behind the lens; broken images.
 Result<double> SharpestFocusDistance(const LightField& light_field, const LfImageStore& store,
                                      const PinholeCamera& camera, double aperture_diameter_w,
