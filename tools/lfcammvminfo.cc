@@ -1,0 +1,79 @@
+// lfcammvminfo PATH.yaml: what the camera of every frame of a path does.
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/camera_table.h"
+#include "tools/common/program.h"
+
+#include "lf/core/log.h"
+#include "lf/path/path_yaml.h"
+
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  lfcammvminfo path.yaml                        all frames, a line each
+  lfcammvminfo path.yaml --frame 12             one frame, a line per number
+  lfcammvminfo path.yaml --csv > cameras.csv
+  lfcammvminfo path.yaml --json | jq '.cameras[].f_number'
+
+Lengths that end in _w are world units; the others come from them by unit_m, metres per world unit.
+The depth of field holds what is blurred by less than one element of the sensor plate; it is measured
+along the optical axis. forward and up are the camera's axes in the world. Without an error in the
+path the exit code is 0, so this also checks a path. The path file: doc/formats/path.md.)";
+
+struct Arguments {
+  std::string path;
+  uint32_t frame = 0;  // 0: all
+  std::optional<double> unit_m;
+  bool csv = false;
+};
+
+lf::Result<void> Print(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0)
+    return {};
+  return lf::OutputError("cannot write to the standard output: is the disk full?");
+}
+
+lf::Result<std::vector<lf::FrameId>> ChooseFrames(const Arguments& arguments,
+                                                  const lf::CameraPath& path) {
+  if (arguments.frame > path.frame_count())
+    return lf::UsageError(fmt::format("--frame {}: {} has frames 1 to {}", arguments.frame,
+                                      arguments.path, path.frame_count()));
+  if (arguments.frame > 0) return std::vector<lf::FrameId>{{arguments.frame}};
+  std::vector<lf::FrameId> frames;
+  for (uint32_t frame = 1; frame <= path.frame_count(); ++frame) frames.push_back({frame});
+  return frames;
+}
+
+lf::Result<void> Report(const Arguments& arguments, bool json) {
+  LF_ASSIGN_OR_RETURN(const lf::CameraPath path,
+                      lf::ReadPathYaml(arguments.path, arguments.unit_m));
+  LF_ASSIGN_OR_RETURN(const auto frames, ChooseFrames(arguments, path));
+  if (json) return Print(lf::CameraJson(path, frames));
+  if (arguments.csv) return Print(lf::CameraCsv(path, frames));
+  if (arguments.frame > 0) return Print(lf::CameraBlock(path, frames.front()));
+  return Print(lf::CameraTable(path, frames));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  lf::Program program("lfcammvminfo",
+                      "Shows the camera of every frame of a path: position, orientation, "
+                      "aperture, focus, field of view, depth of field.",
+                      kExamples);
+  CLI::App& app = program.app();
+  app.add_option("PATH", arguments.path, "The camera path, a YAML file")->required();
+  app.add_option("--frame", arguments.frame, "Only this frame, counted from 1")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--unit-m", arguments.unit_m,
+                 "Metres per world unit of the light field, if the path does not say")
+      ->check(CLI::Range(1e-9, 1e9));
+  app.add_flag("--csv", arguments.csv, "A comma-separated table with all digits");
+  program.AddJsonOption("The same as JSON, with all digits; infinite numbers are null");
+  app.get_option("--csv")->excludes("--json");
+  return program.Run(argc, argv, [&] { return Report(arguments, program.common().json); });
+}
