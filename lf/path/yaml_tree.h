@@ -37,7 +37,7 @@ struct YamlNode {
 };
 
 // Bounds checked before the text is parsed: no path made by people or programs comes near them, and
-// the worst text within them costs the parser some 250 MB and 2 s.
+// the worst text within them costs some 350 MB and 2 s.
 inline constexpr size_t kMaxYamlBytes = size_t{8} << 20;
 inline constexpr size_t kMaxYamlMarks = 1'000'000;  // of the characters that make structure
 inline constexpr size_t kMaxYamlDepth = 16;
