@@ -15,7 +15,7 @@ Program::Program(std::string name, std::string description, std::string examples
   app_.set_version_flag("--version", app_.get_name() + " " + Version());
   app_.option_defaults()->always_capture_default();
   app_.add_option("--threads", common_.threads, "Threads to use; 0: all of the machine's")
-      ->check(CLI::Range(0, 4096))
+      ->check(CLI::Range(0, 512))
       ->group("Common");
   app_.add_option("--seed", common_.seed, "Seed of everything random")->group("Common");
   app_.add_flag("--strict", common_.strict, "A broken LF image is an error, not skipped")
