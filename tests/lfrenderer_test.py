@@ -82,7 +82,7 @@ class RendererTest(unittest.TestCase):
         for index, options in enumerate([["--threads", "2"], ["--threads", "3"], ["--seed", "5"]]):
             digests, _ = self.render(field, path, f"out{index}", *options)
             self.assertEqual(digests, expected, options)
-        digests, report = self.render(field, path, "small", "--memory", "97.5M")
+        digests, report = self.render(field, path, "small", "--memory", "161.7M")
         self.assertGreater(report["passes"], 1)
         self.assertEqual(digests, expected)
 
@@ -131,7 +131,15 @@ class RendererTest(unittest.TestCase):
         field, path = write_field(self.folder / "field"), write_path(self.folder)
         for image in field.parent.glob("*.png"):
             image.write_bytes(b"")
-        self.fails(3, ["broken", "image_"], field, path, "-o", self.folder / "out")
+        self.fails(3, ["every LF image", "image_"], field, path, "-o", self.folder / "out")
+
+    def test_a_broken_image_is_skipped_whatever_the_passes(self):
+        field = write_field(self.folder / "field")
+        (field.parent / "image_12.png").write_bytes(b"")
+        path = write_path(self.folder, frames=8)
+        for index, memory in enumerate(["1G", "161.7M"]):
+            _, report = self.render(field, path, f"out{index}", "--memory", memory)
+            self.assertEqual(len(report["skipped_lf_images"]), 1)
 
     def test_an_interrupt_ends_it_with_code_5(self):
         field, path = write_field(self.folder / "field"), write_path(self.folder, frames=2000)
@@ -169,6 +177,13 @@ class RendererTest(unittest.TestCase):
         field, path = write_field(self.folder / "field"), write_path(self.folder)
         (self.folder / "file").write_text("")
         self.fails(4, [str(self.folder / "file")], field, path, "-o", self.folder / "file" / "out")
+        self.fails(4, ["--video", "nowhere"], field, path, "-o", self.folder / "out", "--video",
+                   self.folder / "nowhere" / "film.mp4")
+        self.assertFalse((self.folder / "out" / "frame_0001.exr").exists())
+        with open("/dev/full", "w") as full:
+            result = subprocess.run([RENDERER, field, path, "-o", self.folder / "out", "--json"],
+                                    stdout=full, stderr=subprocess.DEVNULL)
+        self.assertEqual(result.returncode, 4)
         self.fails(4, ["--memory", "at least"], field, path, "-o", self.folder / "out", "--memory",
                    "2M")
 

@@ -29,7 +29,7 @@ struct Arguments {
   lf::LightFieldArgument light_field;
   std::string path, output, video, frames, memory = "8G", format = "exr", mode = "collect";
   std::string estimator = "auto", lens_weights = "auto", back_end = "fast";
-  size_t max_images = 0;
+  int64_t max_images = 0;
   uint32_t smooth_below = 0;
   bool no_contact_sheet = false;
 };
@@ -53,7 +53,7 @@ lf::Result<lf::RenderOptions> MakeOptions(const Arguments& arguments, const lf::
   options.format = *lf::ParseFrameFormat(arguments.format);
   if (!arguments.video.empty()) options.video = arguments.video;
   options.contact_sheet = !arguments.no_contact_sheet;
-  if (arguments.max_images > 0) options.max_image_count = arguments.max_images;
+  if (arguments.max_images > 0) options.max_image_count = static_cast<size_t>(arguments.max_images);
   options.smooth_below = arguments.smooth_below;
   LF_ASSIGN_OR_RETURN(options.memory_bytes, lf::ParseByteSize(arguments.memory, "--memory"));
   options.seed = program.common().seed;
@@ -64,25 +64,37 @@ lf::Result<lf::RenderOptions> MakeOptions(const Arguments& arguments, const lf::
   return options;
 }
 
-void Summarise(const lf::RenderReport& report, const std::string& output) {
+// The share of elements without a ray, once for all frames.
+void WarnOfEmptyElements(const lf::RenderReport& report) {
+  const double element_count = static_cast<double>(report.width) * report.height;
+  size_t thin_count = 0;
+  const lf::FrameReport* worst = nullptr;
+  for (const lf::FrameReport& frame : report.frames) {
+    if (frame.empty_element_count[1] > 0.01 * element_count) ++thin_count;
+    if (worst == nullptr || frame.empty_element_count[1] > worst->empty_element_count[1])
+      worst = &frame;
+  }
+  if (thin_count > 0)
+    lf::LogWarning(
+        "{} of {} frames have elements that no ray reached, most of all frame {}: "
+        "{:.0f} %. Was the camera within the capture, the lens wider than the spacing?",
+        thin_count, report.frames.size(), worst->frame.value,
+        100 * worst->empty_element_count[1] / element_count);
+}
+
+void Summarise(const lf::RenderReport& report, const Arguments& arguments) {
   lf::LogInfo(
       "{} frames {}x{} in {}: {}rays from {} of {} LF images, {:.3g} Mrays/s per core, "
       "peak memory {} MiB",
       report.frames.size(), report.width, report.height, lf::ShortDuration(report.total_s),
       lf::ShortNumber(static_cast<double>(report.AcceptedRays())), report.selected_image_count,
       report.lf_image_count, report.MraysPerSecondPerCore(), report.peak_memory_bytes >> 20);
-  const double element_count = static_cast<double>(report.width) * report.height;
-  for (const lf::FrameReport& frame : report.frames) {
-    const double empty = static_cast<double>(frame.empty_element_count[1]) / element_count;
-    if (empty > 0.01)
-      lf::LogWarning(
-          "frame {}: {:.0f} % of its elements got no ray; a larger aperture, a smaller "
-          "resolution or a denser capture would fill them",
-          frame.frame.value, 100 * empty);
-  }
+  WarnOfEmptyElements(report);
   if (!report.skipped.empty())
     lf::LogWarning("{} LF images were skipped; report.json names them", report.skipped.size());
-  lf::LogInfo("look at {}", (std::filesystem::path(output) / "contact_sheet.png").string());
+  const std::filesystem::path folder = arguments.output;
+  lf::LogInfo("look at {}",
+              (arguments.no_contact_sheet ? folder : folder / "contact_sheet.png").string());
 }
 
 }  // namespace
@@ -103,7 +115,8 @@ int main(int argc, char** argv) {
   app.add_flag("--no-contact-sheet", arguments.no_contact_sheet, "No contact_sheet.png");
   app.add_option("--memory", arguments.memory, "Bound of the memory used");
   app.add_option("--max-images", arguments.max_images,
-                 "Use only the first so many LF images of the order; 0: all");
+                 "Use only the first so many LF images of the order; 0: all")
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--smooth-below", arguments.smooth_below,
                  "Smooth elements with fewer rays than this; empty ones are always filled");
   app.add_option("--mode", arguments.mode, "collect")
@@ -121,6 +134,7 @@ int main(int argc, char** argv) {
     LF_RETURN_IF_ERROR(CheckAvailable("--mode", arguments.mode, {"collect"}));
     LF_RETURN_IF_ERROR(CheckAvailable("--estimator", arguments.estimator, {"auto", "nearest"}));
     LF_RETURN_IF_ERROR(CheckAvailable("--lens-weights", arguments.lens_weights, {"auto", "none"}));
+    lf::CatchInterrupts();
     LF_ASSIGN_OR_RETURN(const lf::LightField light_field, arguments.light_field.Open());
     LF_ASSIGN_OR_RETURN(const lf::CameraPath path,
                         lf::ReadPathYaml(arguments.path, light_field.unit_m));
@@ -134,8 +148,9 @@ int main(int argc, char** argv) {
     };
     LF_ASSIGN_OR_RETURN(const lf::RenderReport report,
                         lf::Render(light_field, path, options, pool, progress));
-    Summarise(report, arguments.output);
-    if (program.common().json) std::cout << lf::ToJson(report);
+    Summarise(report, arguments);
+    if (program.common().json && !(std::cout << lf::ToJson(report) << std::flush))
+      return lf::OutputError("--json: the report cannot be written to stdout");
     return {};
   });
 }

@@ -36,6 +36,22 @@ Result<void> FlushToDisk(const fs::path& path) {
   return {};
 }
 
+// Where a write to `path` ends: the file a link leads to. A device or pipe is no place for a file:
+// renaming over it would replace it.
+Result<fs::path> WriteTarget(const fs::path& path) {
+  std::error_code error;
+  fs::path target = path;
+  if (fs::is_symlink(path, error)) {
+    target = fs::canonical(path, error);
+    if (error)
+      return OutputError(
+          fmt::format("{}: is a link to nowhere: {}", path.string(), error.message()));
+  }
+  if (fs::exists(target, error) && !fs::is_regular_file(target, error))
+    return OutputError(fmt::format("{}: exists and is no file; give another name", path.string()));
+  return target;
+}
+
 fs::path TemporaryName(const fs::path& path) {
   return path.parent_path() /
          fmt::format(".{}.{}.tmp{}", path.stem().string(), ::getpid(), path.extension().string());
@@ -44,7 +60,8 @@ fs::path TemporaryName(const fs::path& path) {
 }  // namespace
 
 Result<std::string> ReadFile(const fs::path& path, size_t limit_bytes) {
-  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  // Not blocking: a named pipe would wait for its writer.
+  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   struct stat status {};
   if (file.get() < 0 || ::fstat(file.get(), &status) != 0)
     return InputError(fmt::format("{}: cannot be read: {}", path.string(), SystemReason()));
@@ -89,14 +106,15 @@ Result<void> WriteFileAtomically(const fs::path& path, std::string_view bytes) {
 
 Result<void> WriteAtomically(const fs::path& path,
                              const std::function<Result<void>(const fs::path&)>& write) {
-  const fs::path temporary = TemporaryName(path);
+  LF_ASSIGN_OR_RETURN(const fs::path target, WriteTarget(path));
+  const fs::path temporary = TemporaryName(target);
   Result<void> result = write(temporary);
   if (result) result = FlushToDisk(temporary);
-  if (result && ::rename(temporary.c_str(), path.c_str()) != 0)
+  if (result && ::rename(temporary.c_str(), target.c_str()) != 0)
     result =
         OutputError(fmt::format("{}: cannot be renamed to: {}", path.string(), SystemReason()));
   // The rename itself is on the disk once its folder is.
-  if (result) result = FlushToDisk(path.has_parent_path() ? path.parent_path() : fs::path("."));
+  if (result) result = FlushToDisk(target.has_parent_path() ? target.parent_path() : fs::path("."));
   if (!result) ::unlink(temporary.c_str());
   return result;
 }

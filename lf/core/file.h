@@ -13,14 +13,15 @@
 
 namespace lf {
 
-// The bytes of a file. kInput if it cannot be read or is larger than limit_bytes (checked before
-// anything is allocated).
+// The bytes of a file. kInput if it cannot be read, is no regular file or is larger than
+// limit_bytes (checked before anything is allocated).
 Result<std::string> ReadFile(const std::filesystem::path& path,
                              size_t limit_bytes = size_t{4} << 30);
 
 // Writes a file under a temporary name in the same folder, flushes it to the disk and renames it:
 // readers see the old file or the new one, never a part. After a failure the old file is intact
-// and the temporary one is gone. kOutput with the system's reason (disk full, no permission).
+// and the temporary one is gone. A link is followed. kOutput with the system's reason (disk full,
+// no permission), or if something that is no file has the name.
 Result<void> WriteFileAtomically(const std::filesystem::path& path, std::string_view bytes);
 
 // The same for a writer that wants a path: `write` is given the temporary name, which keeps the

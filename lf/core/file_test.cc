@@ -1,6 +1,7 @@
 #include "lf/core/file.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -56,6 +57,22 @@ TEST_F(FileTest, MissingAndHugeFilesAreErrorsThatNameThem) {
   ASSERT_TRUE(WriteFileAtomically(folder_ / "big", "123456789"));
   EXPECT_NE(ReadFile(folder_ / "big", 8).error().message.find("9 bytes"), std::string::npos);
   EXPECT_FALSE(ReadFile(folder_));
+}
+
+TEST_F(FileTest, APipeIsNeitherReadNorReplaced) {
+  const fs::path pipe = folder_ / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(ReadFile(pipe).error().kind, ErrorKind::kInput);
+  EXPECT_EQ(WriteFileAtomically(pipe, "x").error().kind, ErrorKind::kOutput);
+  EXPECT_TRUE(fs::is_fifo(pipe));
+}
+
+TEST_F(FileTest, ALinkIsFollowed) {
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "real", "old"));
+  fs::create_symlink(folder_ / "real", folder_ / "link");
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "link", "new"));
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
+  EXPECT_EQ(*ReadFile(folder_ / "real"), "new");
 }
 
 TEST_F(FileTest, AFolderCannotReplaceAFile) {

@@ -153,11 +153,6 @@ void Skip(const std::string& name, const Error& error, CollectStatistics* statis
   statistics->skipped.push_back({name, error.message});
 }
 
-Error AllBroken(const std::vector<SkippedImage>& skipped) {
-  return InputError(fmt::format("all {} LF images are broken; the first: {}", skipped.size(),
-                                skipped.front().reason));
-}
-
 }  // namespace
 
 Result<CollectStatistics> Collect(const LightField& light_field, const LfImageStore& store,
@@ -191,8 +186,10 @@ Result<CollectStatistics> Collect(const LightField& light_field, const LfImageSt
         batch.push_back({selected.id, *std::move(loaded->pixels)});
         continue;
       }
-      if (options.strict) return loaded->pixels.error();
-      Skip(light_field.image_names[selected.id.value], loaded->pixels.error(), &statistics);
+      // Only the image itself may be at fault: what the machine lacks is no reason to go on.
+      const Error& error = loaded->pixels.error();
+      if (options.strict || error.kind != ErrorKind::kInput) return error;
+      Skip(light_field.image_names[selected.id.value], error, &statistics);
     }
     const Stopwatch stopwatch;
     if (!batch.empty()) collector.Add(batch);
@@ -200,8 +197,6 @@ Result<CollectStatistics> Collect(const LightField& light_field, const LfImageSt
     statistics.collect_wall_s += stopwatch.Seconds();
     if (progress) progress(done);
   }
-  if (!images.empty() && statistics.skipped.size() == images.size())
-    return AllBroken(statistics.skipped);
   statistics.frames = collector.TakeRays();
   statistics.load_cpu_s = prefetcher.load_seconds();
   return statistics;

@@ -58,7 +58,7 @@ struct CollectProgress {
 // Adds the rays of `images`, in their order, to `plates`, one per frame. The result has the same
 // bits for any order, batch size and number of threads; a broken image that is skipped leaves the
 // plates as if it had not been there.
-// kInput: a broken image when strict; every image broken. kInterrupted.
+// kInput: a broken image when strict. kOutput: loading ran out of memory. kInterrupted.
 Result<CollectStatistics> Collect(const LightField& light_field, const LfImageStore& store,
                                   std::span<const RenderCamera> frames,
                                   std::span<const SelectedImage> images,

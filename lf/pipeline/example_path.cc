@@ -77,10 +77,16 @@ Movement MakeMovement(ExampleMove move, const PinholeCamera& camera, const Reach
     return movement;
   }
   if (move == ExampleMove::kDolly) {
+    // The rays of the corners of the picture fan out to where LF cameras must have been.
+    const Intrinsics& k = camera.intrinsics;
+    const double room_w =
+        std::min((reach.right_w - aperture_diameter_w / 2) * 2 * k.fx_px / k.width_px,
+                 (reach.up_w - aperture_diameter_w / 2) * 2 * k.fy_px / k.height_px);
+    const double step_w = std::clamp(room_w, 0.0, 0.05 * focus_distance_w);
     movement.keyframes += fmt::format(
-        "  # Straight ahead by a twentieth of the way to the focus.\n"
+        "  # Straight ahead, as far as the captured positions fill the picture.\n"
         "  position: [{{time: 0, value: {}}}, {{time: {:.6g}, value: {}}}]\n",
-        Text(centre), kDuration_s, Text(centre + 0.05 * focus_distance_w * camera.ForwardWorld()));
+        Text(centre), kDuration_s, Text(centre + step_w * camera.ForwardWorld()));
     return movement;
   }
   // An ellipse from the start to the left and back, half as wide as the captured positions let the

@@ -10,8 +10,9 @@ namespace lf {
 namespace {
 
 constexpr size_t kMiB = size_t{1} << 20;
-constexpr size_t kProgramBytes = 96 * kMiB;     // code, libraries, spans of a batch
-constexpr size_t kDevelopBytesPerElement = 96;  // picture, counts, tables for filling, file buffers
+constexpr size_t kProgramBytes = 160 * kMiB;  // code, libraries, spans of a batch
+constexpr size_t kDevelopBytesPerElement =
+    160;  // picture, counts, tables for filling, file buffers, sheet
 constexpr size_t kMostBatchImages = 16;
 constexpr size_t kMostQueuedImages = 48;
 

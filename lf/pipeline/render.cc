@@ -35,6 +35,19 @@ DevelopOptions DevelopOptionsFor(const RadianceEncoding& encoding, uint32_t smoo
   return options;
 }
 
+// Asked before the work, not after it.
+Result<void> CheckVideoTarget(const std::filesystem::path& path) {
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  std::error_code error;
+  // The folder of the frames is made if it is missing, another is not.
+  if (!std::filesystem::is_directory(folder, error))
+    return OutputError(
+        fmt::format("--video {}: there is no folder {}", path.string(), folder.string()));
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
+    return OutputError(fmt::format("--video {}: exists and is no file", path.string()));
+  return {};
+}
+
 // One render: its inputs, and what passes leave behind.
 class Renderer {
  public:
@@ -54,6 +67,7 @@ class Renderer {
   Result<void> RunPass(std::span<const FrameId> frames, const std::vector<SelectedImage>& images);
   Result<void> Finish(FrameId frame, const RenderCamera& camera, const FrameRays& rays,
                       const SensorPlate& plate);
+  void FailVideo(const Result<void>& result);
   void Report(const CollectProgress& pass) const;
   bool OnContactSheet(size_t finished_index) const {
     return std::binary_search(sheet_indices_.begin(), sheet_indices_.end(), finished_index);
@@ -70,6 +84,8 @@ class Renderer {
   RenderProgress done_;
   RenderReport report_;
   std::unique_ptr<VideoWriter> video_;
+  std::optional<Error> video_error_;
+  bool all_broken_ = true;  // every LF image of every pass so far
   std::vector<size_t> sheet_indices_;
   std::vector<Image<uint8_t>> sheet_pictures_;
 };
@@ -81,10 +97,17 @@ Result<RenderReport> Renderer::Run() {
     for (uint32_t n = 1; n <= path_.frame_count(); ++n) frames.push_back(FrameId{n});
   const Intrinsics& plate = path_.Camera(frames.front()).pinhole.intrinsics;
 
-  if (options_.video) LF_RETURN_IF_ERROR(CheckVideoTool());
   LF_ASSIGN_OR_RETURN(plan_, PlanMemory(options_.memory_bytes, light_field_, plate.width_px,
                                         plate.height_px, frames.size()));
   LF_RETURN_IF_ERROR(CreateFolder(options_.output_folder));
+  if (options_.video) {
+    LF_RETURN_IF_ERROR(CheckVideoTool());
+    LF_RETURN_IF_ERROR(CheckVideoTarget(*options_.video));
+  }
+  // Of an earlier run: they would look like this one's, should it fail.
+  std::error_code ignored;
+  std::filesystem::remove(options_.output_folder / "report.json", ignored);
+  std::filesystem::remove(options_.output_folder / "contact_sheet.png", ignored);
   if (options_.video) {
     LF_ASSIGN_OR_RETURN(
         video_, VideoWriter::Open(*options_.video, plate.width_px, plate.height_px, path_.fps));
@@ -115,13 +138,14 @@ Result<RenderReport> Renderer::Run() {
     if (report_.pass_count > 1) images = Select(pass);
     LF_RETURN_IF_ERROR(RunPass(pass, images));
   }
-  if (video_) LF_RETURN_IF_ERROR(video_->Close());
+  if (video_) FailVideo(video_->Close());
   if (options_.contact_sheet)
     LF_RETURN_IF_ERROR(
         WriteContactSheet(options_.output_folder / "contact_sheet.png", sheet_pictures_));
   report_.total_s = SecondsSince(start);
   report_.peak_memory_bytes = PeakMemoryBytes();
   LF_RETURN_IF_ERROR(WriteReport(report_, options_.output_folder / "report.json"));
+  if (video_error_) return *video_error_;
   return std::move(report_);
 }
 
@@ -161,6 +185,12 @@ Result<void> Renderer::RunPass(std::span<const FrameId> frames,
   LF_ASSIGN_OR_RETURN(CollectStatistics statistics,
                       Collect(light_field_, store_, cameras, images, collect, pool_, &plates,
                               [this](const CollectProgress& pass) { Report(pass); }));
+  // Passes depend on the memory; what counts as broken must not.
+  all_broken_ = all_broken_ && statistics.skipped.size() == images.size();
+  const bool is_last = done_.frame_count + frames.size() == done_.frame_total;
+  if (all_broken_ && is_last && !statistics.skipped.empty())
+    return InputError(
+        fmt::format("every LF image is broken; the first: {}", statistics.skipped.front().reason));
   done_.image_count += images.size();
   for (const SelectedImage& image : images) done_.ray_count += image.ray_count;
   report_.load_cpu_s += statistics.load_cpu_s;
@@ -171,6 +201,9 @@ Result<void> Renderer::RunPass(std::span<const FrameId> frames,
       report_.skipped.push_back(std::move(skipped));
 
   for (size_t i = 0; i < frames.size(); ++i) {
+    if (options_.interrupted != nullptr && *options_.interrupted)
+      return Error{ErrorKind::kInterrupted, fmt::format("interrupted after {} of {} frames",
+                                                        done_.frame_count, done_.frame_total)};
     LF_RETURN_IF_ERROR(Finish(frames[i], cameras[i], statistics.frames[i], plates[i]));
     plates[i] = SensorPlate(0, 0);
     Report({});
@@ -191,7 +224,7 @@ Result<void> Renderer::Finish(FrameId frame, const RenderCamera& camera, const F
   const bool on_sheet = OnContactSheet(done_.frame_count);
   if (video_ || on_sheet) {
     Image<uint8_t> picture = DisplayImage(developed);
-    if (video_) LF_RETURN_IF_ERROR(video_->Add(picture));
+    if (video_) FailVideo(video_->Add(picture));
     if (on_sheet) sheet_pictures_.push_back(std::move(picture));
   }
   if (rays.image_count == 0)
@@ -199,6 +232,13 @@ Result<void> Renderer::Finish(FrameId frame, const RenderCamera& camera, const F
   report_.frames.push_back(report);
   done_.frame_count += 1;
   return {};
+}
+
+// The frames are what counts: they are finished, and the video's error comes last.
+void Renderer::FailVideo(const Result<void>& result) {
+  if (result) return;
+  video_error_ = result.error();
+  video_.reset();
 }
 
 void Renderer::Report(const CollectProgress& pass) const {

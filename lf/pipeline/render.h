@@ -50,7 +50,7 @@ struct RenderProgress {
 // the video. Every file appears under its name only when it is whole. The frames have the same
 // bits for any number of threads and any memory.
 //   kInput        no LF image contributes to any frame; broken images (collect.h)
-//   kOutput       disk, memory, ffmpeg
+//   kOutput       disk, memory; ffmpeg, after the frames are written all the same
 //   kInterrupted  what is finished stays
 Result<RenderReport> Render(const LightField& light_field, const CameraPath& path,
                             const RenderOptions& options, ThreadPool& pool,

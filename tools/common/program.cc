@@ -1,6 +1,7 @@
 #include "tools/common/program.h"
 
 #include <cstdio>
+#include <exception>
 #include <new>
 
 #include "lf/core/log.h"
@@ -17,7 +18,9 @@ Program::Program(std::string name, std::string description, std::string examples
   app_.add_option("--threads", common_.threads, "Threads to use; 0: all of the machine's")
       ->check(CLI::Range(0, 512))
       ->group("Common");
-  app_.add_option("--seed", common_.seed, "Seed of everything random")->group("Common");
+  app_.add_option("--seed", common_.seed, "Seed of everything random")
+      ->check(CLI::NonNegativeNumber)
+      ->group("Common");
   app_.add_flag("--strict", common_.strict, "A broken LF image is an error, not skipped")
       ->group("Common");
   app_.add_option("--progress", common_.progress,
@@ -53,6 +56,9 @@ int Program::Run(int argc, char** argv, const std::function<Result<void>()>& bod
   } catch (const std::bad_alloc&) {
     std::fputs("error: out of memory; lower --memory, or render fewer frames at once\n", stderr);
     return static_cast<int>(ErrorKind::kOutput);
+  } catch (const std::exception& bug) {
+    std::fprintf(stderr, "error: internal: %s; this is a bug, please report it\n", bug.what());
+    return 1;
   }
 }
 
