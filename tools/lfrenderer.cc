@@ -9,6 +9,7 @@
 #include "tools/common/light_field_argument.h"
 #include "tools/common/program.h"
 #include "tools/common/progress.h"
+#include "tools/render_summary.h"
 
 #include "lf/core/log.h"
 #include "lf/path/path_yaml.h"
@@ -64,39 +65,6 @@ lf::Result<lf::RenderOptions> MakeOptions(const Arguments& arguments, const lf::
   return options;
 }
 
-// The share of elements without a ray, once for all frames.
-void WarnOfEmptyElements(const lf::RenderReport& report) {
-  const double element_count = static_cast<double>(report.width) * report.height;
-  size_t thin_count = 0;
-  const lf::FrameReport* worst = nullptr;
-  for (const lf::FrameReport& frame : report.frames) {
-    if (frame.empty_element_count[1] > 0.01 * element_count) ++thin_count;
-    if (worst == nullptr || frame.empty_element_count[1] > worst->empty_element_count[1])
-      worst = &frame;
-  }
-  if (thin_count > 0)
-    lf::LogWarning(
-        "{} of {} frames have elements that no ray reached, most of all frame {}: "
-        "{:.0f} %. Was the camera within the capture, the lens wider than the spacing?",
-        thin_count, report.frames.size(), worst->frame.value,
-        100 * worst->empty_element_count[1] / element_count);
-}
-
-void Summarise(const lf::RenderReport& report, const Arguments& arguments) {
-  lf::LogInfo(
-      "{} frames {}x{} in {}: {}rays from {} of {} LF images, {:.3g} Mrays/s per core, "
-      "peak memory {} MiB",
-      report.frames.size(), report.width, report.height, lf::ShortDuration(report.total_s),
-      lf::ShortNumber(static_cast<double>(report.AcceptedRays())), report.selected_image_count,
-      report.lf_image_count, report.MraysPerSecondPerCore(), report.peak_memory_bytes >> 20);
-  WarnOfEmptyElements(report);
-  if (!report.skipped.empty())
-    lf::LogWarning("{} LF images were skipped; report.json names them", report.skipped.size());
-  const std::filesystem::path folder = arguments.output;
-  lf::LogInfo("look at {}",
-              (arguments.no_contact_sheet ? folder : folder / "contact_sheet.png").string());
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -148,7 +116,9 @@ int main(int argc, char** argv) {
     };
     LF_ASSIGN_OR_RETURN(const lf::RenderReport report,
                         lf::Render(light_field, path, options, pool, progress));
-    Summarise(report, arguments);
+    lf::SummariseRender(report, arguments.no_contact_sheet
+                                    ? arguments.output
+                                    : arguments.output + "/contact_sheet.png");
     if (program.common().json && !(std::cout << lf::ToJson(report) << std::flush))
       return lf::OutputError("--json: the report cannot be written to stdout");
     return {};
