@@ -13,11 +13,13 @@ constexpr double kReach = 3.2;
 }  // namespace
 
 Glows::Glows(std::vector<Glow> glows) : glows_(std::move(glows)) {
+  std::vector<Ball> balls;
   for (const Glow& glow : glows_) {
-    balls_.Add(glow.centre_world, kReach * glow.radius_w);
+    balls.push_back({glow.centre_world, kReach * glow.radius_w});
     const Vec3 reach = Vec3::Constant(kReach * glow.radius_w);
     bounds_.extend(glow.centre_world - reach).extend(glow.centre_world + reach);
   }
+  balls_ = BallBlocks(balls);
 }
 
 // Whether the box around the ray's way touches the one around the lamps: rays that end on a table
@@ -36,9 +38,9 @@ Rgb Glows::Along(const Ray& ray, const Footprint& footprint, double lambda_end) 
   Rgb light = Rgb::Zero();
   if (!MayMeet(ray, footprint, lambda_end)) return light;
   const double tangent = kReach * std::abs(footprint.spread);
-  const Cone cone{ray.origin, ray.direction, kReach * footprint.width_w,
+  const Cone cone{ray.origin, ray.direction, lambda_end, kReach * footprint.width_w,
                   tangent / std::sqrt(1 + tangent * tangent)};
-  balls_.ForEachNear(cone, lambda_end, [&](uint32_t i) {
+  balls_.ForEachNear(cone, [&](uint32_t i) {
     const Glow& glow = glows_[i];
     const Vec3 to_centre = glow.centre_world - ray.origin;
     const double lambda = to_centre.dot(ray.direction);

@@ -46,8 +46,10 @@ double HiddenShare(double a, double b, double c) {
 
 Lighting::Lighting(std::vector<Lamp> lamps, std::vector<Occluder> occluders, const Rgb& ambient)
     : lamps_(std::move(lamps)), occluders_(std::move(occluders)), ambient_(ambient) {
+  std::vector<Ball> balls;
   for (const Occluder& occluder : occluders_)
-    balls_.Add(occluder.sphere.centre_world, occluder.sphere.radius_w);
+    balls.push_back({occluder.sphere.centre_world, occluder.sphere.radius_w});
+  balls_ = BallBlocks(balls);
 }
 
 // Share of the room's light that spheres above the surface leave: each hides the cosine times the
@@ -70,7 +72,7 @@ Rgb Lighting::PassedLight(const Lamp& lamp, const Vec3& to_lamp, double distance
                           const Vec3& point_world) const {
   const double sine_lamp = std::min(0.99, lamp.radius_w / distance);
   Rgb passed = Rgb::Ones();
-  balls_.ForEachNear({point_world, to_lamp, 0, sine_lamp}, distance, [&](uint32_t i) {
+  balls_.ForEachNear({point_world, to_lamp, distance, 0, sine_lamp}, [&](uint32_t i) {
     const Sphere& sphere = occluders_[i].sphere;
     const Vec3 to_sphere = sphere.centre_world - point_world;
     const double ahead = to_lamp.dot(to_sphere);

@@ -15,6 +15,18 @@ double LatticeValue(int64_t x, int64_t y, uint64_t seed) {
   return static_cast<double>(MixBits(place ^ seed) >> 40) * 0x1.0p-24;
 }
 
+// The baseline instruction set has no floor(), and half of a texture's time would go into calls.
+double Floor(double t) {
+  const auto cut = static_cast<double>(static_cast<int64_t>(t));
+  return cut > t ? cut - 1 : cut;
+}
+
+// A wave of period 1 between -1 and 1 like a sine, of two parabolas.
+double Wave(double t) {
+  const double phase = t - Floor(t) - 0.5;
+  return 16 * phase * (std::abs(phase) - 0.5);
+}
+
 double SmoothStep(double t) { return t * t * (3 - 2 * t); }
 
 // What is left of a wave of period 1 averaged over `width`: 1 for points, 0 from one period on.
@@ -26,9 +38,9 @@ double Contrast(double width) {
 // +1 on [0, 1/2), -1 on [1/2, 1), averaged over `width`: the difference of its integral, a
 // triangle wave.
 double SquareWave(double x, double width) {
-  const auto integral = [](double t) { return 0.5 - std::abs(t - std::floor(t) - 0.5); };
+  const auto integral = [](double t) { return 0.5 - std::abs(t - Floor(t) - 0.5); };
   constexpr double kNarrow = 1e-6;  // below it the difference would be rounding noise
-  if (width < kNarrow) return x - std::floor(x) < 0.5 ? 1 : -1;
+  if (width < kNarrow) return x - Floor(x) < 0.5 ? 1 : -1;
   return std::clamp((integral(x + width / 2) - integral(x - width / 2)) / width, -1.0, 1.0);
 }
 
@@ -78,7 +90,7 @@ double Letters(const Pattern& pattern, const Vec2& place_w) {
   const ShrinkingRow row = RowAt(place_w.y(), pattern.scale_w);
   if (row.down < 0 || row.down >= 1) return 0;
   const double across = place_w.x() / row.letter_w * 5;  // in dots; 3 of 4 are the digit
-  const double cell = std::floor(across / 4);
+  const double cell = Floor(across / 4);
   const int dot_x = static_cast<int>(across - 4 * cell);
   if (dot_x >= 3) return 0;
   const int dot_y = std::min(4, static_cast<int>(row.down * 5));
@@ -99,7 +111,7 @@ double Star(const Pattern& pattern, const Vec2& place_w, double width_w) {
 
 double Wood(const Pattern& pattern, const Vec2& place_w, double width_w) {
   const double across = place_w.x() / pattern.scale_w;
-  const double plank = std::floor(across);
+  const double plank = Floor(across);
   const double in_plank = across - plank;
   const uint64_t seed =
       RandomBits(pattern.seed, 1, static_cast<uint64_t>(static_cast<int64_t>(plank)));
@@ -110,7 +122,7 @@ double Wood(const Pattern& pattern, const Vec2& place_w, double width_w) {
 
   // Year rings, bent by slow noise, and pores: short dark strokes along the grain.
   const double bend = ValueNoise(2.2 * x, 0.55 * y, seed);
-  const double rings = std::sin(2 * kPi * (2.6 * x + 3.2 * bend));
+  const double rings = Wave(2.6 * x + 3.2 * bend);
   const double fibre = ValueNoise(26 * x, 1.6 * y, seed + 1) - 0.5;
   const double pores = ValueNoise(60 * x, 5 * y, seed + 2);
   double value = 0.42 + 0.3 * (tone - 0.5) + 0.14 * Contrast(4 * width) * rings +
@@ -127,14 +139,14 @@ double Swirl(const Pattern& pattern, const Vec2& place_w, double width_w) {
   const double x = place_w.x() / pattern.scale_w;
   const double y = place_w.y() / pattern.scale_w;
   const double bend = ValueNoise(0.8 * x, 0.8 * y, pattern.seed);
-  const double wave = std::sin(2 * kPi * (0.5 * x + 0.3 * y + 1.8 * bend));
+  const double wave = Wave(0.5 * x + 0.3 * y + 1.8 * bend);
   return 0.5 + 0.5 * Contrast(1.5 * width_w / pattern.scale_w) * wave * std::abs(wave);
 }
 
 }  // namespace
 
 double ValueNoise(double x, double y, uint64_t seed) {
-  const double floor_x = std::floor(x), floor_y = std::floor(y);
+  const double floor_x = Floor(x), floor_y = Floor(y);
   const auto ix = static_cast<int64_t>(floor_x), iy = static_cast<int64_t>(floor_y);
   const double tx = SmoothStep(x - floor_x), ty = SmoothStep(y - floor_y);
   const double top = (1 - tx) * LatticeValue(ix, iy, seed) + tx * LatticeValue(ix + 1, iy, seed);

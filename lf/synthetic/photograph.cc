@@ -51,7 +51,7 @@ std::vector<Vec2> SquarePoints(int side) {
 // nobody sees in the dark.
 bool IsEdge(const Scene::Sight& a, const Scene::Sight& b) {
   if (a.shape != b.shape) return true;
-  constexpr double kShare = 0.25, kDark = 0.05;
+  constexpr double kShare = 0.4, kDark = 0.1;
   return ((a.radiance - b.radiance).abs() > kShare * (a.radiance.max(b.radiance) + kDark)).any();
 }
 

@@ -12,8 +12,8 @@ namespace {
 
 // Light paths end after this many mirrors and glasses, or when less than this share of them would
 // reach the eye.
-constexpr int kDepthLimit = 5;
-constexpr double kLeastWeight = 0.004;
+constexpr int kDepthLimit = 4;
+constexpr double kLeastWeight = 0.012;
 
 }  // namespace
 
@@ -96,7 +96,8 @@ Rgb Scene::Follow(const Beam& beam, Hit* first) const {
     }
     case Finish::kLight: {
       const Vec2 at = place.panel->PlaceOf(place.point);
-      const double rim = (1 - std::pow(at.x(), 8)) * (1 - std::pow(at.y(), 8));
+      const auto fall = [](double t) { return 1 - (t * t) * (t * t) * (t * t) * (t * t); };
+      const double rim = fall(at.x()) * fall(at.y());
       return glow + material.colour * std::max(0.0, rim);
     }
   }
@@ -110,6 +111,7 @@ Rgb Scene::Reflection(const Beam& beam, const Place& place, double share) const 
             beam.weight * share,
             beam.depth + 1};
   if (next.depth > kDepthLimit || next.weight < kLeastWeight) return Rgb::Zero();
+  next.footprint.spread += place.material->haze_rad;
   if (place.sphere) {
     constexpr double kGrazing = 0.1;
     next.footprint.spread +=
@@ -134,14 +136,14 @@ Rgb Scene::ThroughGlass(const Beam& beam, const Place& place) const {
   const Vec3 exit_normal = (sphere.centre_world - exit) / sphere.radius_w;
   const std::optional<Vec3> direction = Refracted(inside, exit_normal, glass.refractive_index);
   if (!direction) return mirrored;  // rounding at the very rim
-  // A ball lens of focal length n R / (2 (n - 1)), taken as thin.
+  // A ball lens of focal length n R / (2 (n - 1)), taken as thin. It draws the footprint together;
+  // haze widens it, whichever way it runs.
   const double focal_w =
       glass.refractive_index * sphere.radius_w / (2 * (glass.refractive_index - 1));
+  double spread = place.footprint.spread - place.footprint.width_w / focal_w;
+  spread += std::copysign(glass.haze_rad, spread);
   const Beam next{
-      {exit, *direction},
-      {place.footprint.width_w, place.footprint.spread - place.footprint.width_w / focal_w},
-      passing * beam.weight,
-      beam.depth + 1};
+      {exit, *direction}, {place.footprint.width_w, spread}, passing * beam.weight, beam.depth + 1};
   const Rgb tint = glass.colour.pow(chord_w / sphere.radius_w);
   return mirrored + passing * tint * Follow(next, nullptr);
 }

@@ -28,6 +28,9 @@ struct Material {
   Pattern pattern;
   double coat = 0;                // 0: matte; 1: polished
   double refractive_index = 1.5;  // of glass and of the coat
+  // Glows seen in it or through it are spread by this angle, as by a polish that is not perfect:
+  // keeps their tiny images in balls from sparkling.
+  double haze_rad = 0;
 };
 
 struct Sphere {

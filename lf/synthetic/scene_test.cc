@@ -72,6 +72,20 @@ TEST(Scene, AGlassBallBendsARayTwice) {
   EXPECT_LT(scene.RadianceAlong({{h + 0.002, 0, -5}, Vec3::UnitZ()})[0], 0.1);
 }
 
+// A Gaussian of radius r seen at distance d through haze a has radius sqrt(r^2 + (a d)^2), and as
+// much less radiance as it is larger.
+TEST(Scene, HazeSpreadsTheImageOfALampWithoutLosingLight) {
+  Material mirror = Mirror();
+  mirror.haze_rad = 0.03;
+  SceneDescription description;
+  description.materials = {mirror};
+  description.panels = {{Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY(), false, 0}};
+  description.glows = {{{0, 0, -2}, 0.02, Rgb::Constant(7)}};
+  const Scene scene(description);
+  const Rgb seen = scene.RadianceAlong({{0, 0, -1}, Vec3::UnitZ()});
+  EXPECT_NEAR(seen[0], 7 * 0.02 * 0.02 / (0.02 * 0.02 + 0.06 * 0.06), 1e-9);
+}
+
 TEST(Scene, TintedGlassColoursByTheWayThroughIt) {
   Material glass = Glass();
   glass.colour = {0.5, 1, 1};

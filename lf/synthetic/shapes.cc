@@ -29,8 +29,10 @@ PanelPlane::PanelPlane(const Panel& panel)
 
 std::optional<double> Intersect(const Ray& ray, const PanelPlane& panel) {
   const double along = panel.normal_world.dot(ray.direction);
-  const double lambda = (panel.offset_w - panel.normal_world.dot(ray.origin)) / along;
-  if (!(lambda > kLeastLambda) || !std::isfinite(lambda)) return std::nullopt;
+  const double height_w = panel.offset_w - panel.normal_world.dot(ray.origin);
+  if (!(along * height_w > 0)) return std::nullopt;  // runs away from the plane, or along it
+  const double lambda = height_w / along;
+  if (lambda <= kLeastLambda) return std::nullopt;
   const Vec2 place = panel.PlaceOf(ray.At(lambda));
   const bool inside = panel.is_disk ? place.squaredNorm() <= 1 : place.cwiseAbs().maxCoeff() <= 1;
   return inside ? std::optional(lambda) : std::nullopt;
@@ -38,7 +40,9 @@ std::optional<double> Intersect(const Ray& ray, const PanelPlane& panel) {
 
 Shapes::Shapes(std::vector<Sphere> spheres, const std::vector<Panel>& panels)
     : spheres_(std::move(spheres)), panels_(panels.begin(), panels.end()) {
-  for (const Sphere& sphere : spheres_) balls_.Add(sphere.centre_world, sphere.radius_w);
+  std::vector<Ball> balls;
+  for (const Sphere& sphere : spheres_) balls.push_back({sphere.centre_world, sphere.radius_w});
+  balls_ = BallBlocks(balls);
 }
 
 Hit Shapes::FirstHit(const Ray& ray) const {
@@ -48,7 +52,7 @@ Hit Shapes::FirstHit(const Ray& ray) const {
   };
   auto shape = static_cast<uint32_t>(spheres_.size());
   for (const PanelPlane& panel : panels_) keep_nearest(Intersect(ray, panel), shape++);
-  balls_.ForEachNear({ray.origin, ray.direction}, hit.lambda,
+  balls_.ForEachNear({ray.origin, ray.direction, hit.lambda},
                      [&](uint32_t ball) { keep_nearest(Intersect(ray, spheres_[ball]), ball); });
   return hit;
 }

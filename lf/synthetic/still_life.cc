@@ -38,12 +38,14 @@ class Table {
   uint32_t Metal(const Rgb& colour) {
     Material material;
     material.finish = Finish::kMirror;
+    material.haze_rad = 0.04;
     material.colour = colour;
     return Add(material);
   }
   uint32_t Glass(const Rgb& colour) {
     Material material;
     material.finish = Finish::kGlass;
+    material.haze_rad = 0.012;
     material.colour = colour;
     return Add(material);
   }
@@ -58,6 +60,7 @@ void AddTableTop(SceneDescription& scene, Table& table) {
   wood.second_colour = {0.022, 0.009, 0.005};
   wood.pattern = {PatternKind::kWood, 0.11, 7};
   wood.coat = 0.4;
+  wood.haze_rad = 0.006;
   scene.panels.push_back({{0, 0, 0.2}, {1.5, 0, 0}, {0, 0, 1.0}, false, table.Add(wood)});
 }
 
@@ -116,7 +119,7 @@ void AddSpheres(Table& table) {
   table.Lay(-0.29, 0.26, 0.02, amber);
   table.Lay(-0.13, 0.42, 0.024, wine);
   table.Lay(0.15, -0.375, 0.015, wine);
-  table.Lay(-0.205, -0.35, 0.014, honey);
+  table.Lay(-0.192, -0.35, 0.014, honey);
 }
 
 // Lamps on strings that hang through between their nails, nearly all of them golden.

@@ -1,0 +1,26 @@
+#include "lf/synthetic/write_truth.h"
+
+#include <fmt/format.h>
+
+#include "lf/core/file.h"
+#include "lf/imageio/image_file.h"
+
+namespace lf {
+
+Result<void> WriteTruth(const Scene& scene, std::span<const RenderCamera> cameras,
+                        const LensSampling& sampling, const std::filesystem::path& folder,
+                        ThreadPool& pool,
+                        const std::function<bool(size_t frames_done)>& keep_going) {
+  LF_RETURN_IF_ERROR(CreateFolder(folder));
+  for (size_t i = 0; i < cameras.size(); ++i) {
+    const Image<float> picture = ThinLensPhotograph(scene, cameras[i], sampling, pool);
+    LF_RETURN_IF_ERROR(WriteImage(folder / fmt::format("frame_{:04}.exr", i + 1), picture.view(),
+                                  {"R", "G", "B"}, PixelType::kFloat));
+    if (keep_going && !keep_going(i + 1) && i + 1 < cameras.size())
+      return Error{ErrorKind::kInterrupted, fmt::format("{}: stopped after {} of {} frames",
+                                                        folder.string(), i + 1, cameras.size())};
+  }
+  return {};
+}
+
+}  // namespace lf

@@ -1,0 +1,26 @@
+// The frames that a lens would film of the scene itself: what renders of its light field are
+// measured against.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <span>
+
+#include "lf/camera/render_camera.h"
+#include "lf/core/parallel.h"
+#include "lf/core/result.h"
+#include "lf/synthetic/photograph.h"
+#include "lf/synthetic/scene.h"
+
+namespace lf {
+
+// Writes folder/frame_0001.exr ..., one per camera: R, G, B as floats, linear light.
+//   keep_going  called after every frame; false stops the work. May be empty
+// kOutput: folder, disk, no permission. kInterrupted: stopped; frames written are complete.
+Result<void> WriteTruth(const Scene& scene, std::span<const RenderCamera> cameras,
+                        const LensSampling& sampling, const std::filesystem::path& folder,
+                        ThreadPool& pool,
+                        const std::function<bool(size_t frames_done)>& keep_going = {});
+
+}  // namespace lf
