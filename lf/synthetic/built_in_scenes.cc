@@ -13,10 +13,10 @@ std::array<BuiltInScene, 3> MakeScenes() {
   still_life.rig.target_world = {0, -0.085, 0};
   still_life.rig.view_world = {0, 0.04, 0.8};
   still_life.focal_length_per_width = 1.125;
-  still_life.max_radiance = 32;
+  still_life.max_radiance = 24;
 
   BuiltInScene lights{"lights", "lights alone at seven depths, on black", DescribeLights, {}};
-  lights.max_radiance = 32;
+  lights.max_radiance = 24;
 
   BuiltInScene chart{"chart", "flat test charts at known depths and slants", DescribeChart, {}};
   chart.samples = 16;

@@ -143,11 +143,11 @@ void AddStringsOfLights(SceneDescription& scene) {
       Vec3 place = string.from + t * (string.to - string.from);
       place.y() += 4 * string.sag_w * t * (1 - t) + 0.025 * (RandomUnit(11, 1, lamp) - 0.5);
       place.z() += 0.1 * (RandomUnit(11, 2, lamp) - 0.5);
-      const double strength = 10 + 20 * RandomUnit(11, 3, lamp);
+      const double strength = 5 + 10 * RandomUnit(11, 3, lamp);
       const Rgb colour = lamp % 5 == 2   ? sea
                          : lamp % 7 == 3 ? rose
                                          : golden[RandomBits(11, 4, lamp) % std::size(golden)];
-      scene.glows.push_back({place, 0.0085, strength * colour});
+      scene.glows.push_back({place, 0.0125, strength * colour});
     }
 }
 

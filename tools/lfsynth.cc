@@ -1,0 +1,145 @@
+// lfsynth SCENE -o DIR: a scene known exactly, as a light field and as true thin-lens frames.
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/common/interrupt.h"
+#include "tools/common/program.h"
+#include "tools/common/progress.h"
+
+#include "lf/capture/transforms_json.h"
+#include "lf/core/file.h"
+#include "lf/core/log.h"
+#include "lf/path/path_yaml.h"
+#include "lf/synthetic/built_in_scenes.h"
+#include "lf/synthetic/write_light_field.h"
+#include "lf/synthetic/write_truth.h"
+
+namespace {
+
+constexpr const char* kExamples = R"(Scenes:
+  still-life  glass, mirrors and marbles before strings of lights
+  lights      lights alone at seven depths, on black
+  chart       flat test charts at known depths and slants
+
+Examples:
+  lfsynth still-life -o still-life
+  lfsynth chart -o chart --capture band --count 600 --jitter 0.2 --format png
+  lfsynth lights -o raw --bayer --noise 0.01
+  lfsynth still-life -o still-life --calibration-only --truth path.yaml
+
+DIR receives images/0000.exr ... and transforms.json; with --truth also truth/frame_0001.exr ...,
+the frames that a real lens would film along a camera path. Lengths are metres.)";
+
+struct Arguments {
+  std::string scene, output, capture = "planar", format = "exr", truth;
+  std::vector<int> size_px;
+  uint32_t count = 0;
+  std::optional<double> spacing, distance;
+  double jitter = 0, noise = 0;
+  int samples = 0, truth_samples = lf::LensSampling{}.samples;
+  bool bayer = false, calibration_only = false;
+};
+
+void AddOptions(CLI::App& app, Arguments& a) {
+  const CLI::IsMember scenes({"still-life", "lights", "chart"});
+  app.add_option("SCENE", a.scene, "One of the scenes below")->required()->check(scenes);
+  app.add_option("-o,--output", a.output, "Folder to write")->required();
+  app.add_option("--capture", a.capture, "Grid, band on an arc, or dome of LF cameras")
+      ->check(CLI::IsMember({"planar", "band", "hemisphere"}));
+  app.add_option("--count", a.count, "LF cameras, about; 0: as the scene recommends")
+      ->check(CLI::Range(0, 100'000'000));
+  app.add_option("--size", a.size_px, "Of the LF images, such as 960x640")
+      ->type_name("WxH")
+      ->delimiter('x')
+      ->expected(2)
+      ->check(CLI::Range(1, 32768));
+  app.add_option("--spacing", a.spacing, "From LF camera to LF camera");
+  app.add_option("--distance", a.distance, "From the middle of the rig to that of the scene");
+  app.add_option("--jitter", a.jitter, "Share of the spacing, and degrees, that poses are off by");
+  app.add_option("--format", a.format, "exr, png (8-bit sRGB) or png16 (linear)")
+      ->check(CLI::IsMember({"exr", "png", "png16"}));
+  app.add_flag("--bayer", a.bayer, "Raw-like 16-bit RGGB mosaics instead");
+  app.add_option("--noise", a.noise, "With --bayer: standard deviation at radiance 1")
+      ->check(CLI::Range(0.0, 10.0));
+  app.add_option("--samples", a.samples, "Rays per pixel at edges; 0: as the scene recommends")
+      ->check(CLI::Range(0, 4096));
+  app.add_flag("--calibration-only", a.calibration_only, "Write transforms.json without images");
+  app.add_option("--truth", a.truth, "PATH.yaml whose true thin-lens frames to write");
+  app.add_option("--truth-samples", a.truth_samples, "Rays per element of these")
+      ->check(CLI::Range(1, 1'000'000));
+}
+
+lf::Result<lf::RigOptions> MakeRigOptions(const Arguments& a, const lf::BuiltInScene& scene) {
+  lf::RigOptions rig = scene.rig;
+  if (a.capture == "band") rig.shape = lf::RigShape::kBand;
+  if (a.capture == "hemisphere") rig.shape = lf::RigShape::kHemisphere;
+  if (rig.shape == lf::RigShape::kHemisphere && a.spacing)
+    return lf::UsageError("--spacing: on a hemisphere it follows from --count and --distance");
+  if (a.count > 0) rig.count = a.count;
+  rig.spacing_w = a.spacing.value_or(rig.spacing_w);
+  rig.distance_w = a.distance.value_or(rig.distance_w);
+  rig.jitter = a.jitter;
+  return rig;
+}
+
+lf::Result<lf::LfImageFormat> FormatOf(const Arguments& a) {
+  if (a.bayer && a.format != "exr")
+    return lf::UsageError("--bayer and --format exclude each other: mosaics are 16-bit PNG");
+  if (a.noise > 0 && !a.bayer) return lf::UsageError("--noise is for mosaics: add --bayer");
+  if (a.bayer) return lf::LfImageFormat::kBayer;
+  if (a.format == "png") return lf::LfImageFormat::kPng;
+  return a.format == "png16" ? lf::LfImageFormat::kPng16 : lf::LfImageFormat::kExr;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  lf::Program program("lfsynth", "Photographs a synthetic scene as a light field.", kExamples);
+  Arguments a;
+  AddOptions(program.app(), a);
+  return program.Run(argc, argv, [&]() -> lf::Result<void> {
+    const lf::BuiltInScene& built_in = *lf::FindBuiltInScene(a.scene);
+    const lf::ProgressStyle style = lf::ParseProgressStyle(program.common().progress);
+    const uint64_t seed = program.common().seed;
+    lf::CatchInterrupts();
+    LF_ASSIGN_OR_RETURN(const lf::LfImageFormat format, FormatOf(a));
+    LF_ASSIGN_OR_RETURN(lf::RigOptions rig, MakeRigOptions(a, built_in));
+    rig.seed = seed;
+    LF_ASSIGN_OR_RETURN(const std::vector<lf::RigidTransform> poses, lf::MakeRig(rig));
+    lf::CameraPath path;
+    if (!a.truth.empty()) {
+      LF_ASSIGN_OR_RETURN(path, lf::ReadPathYaml(a.truth, 1.0));
+    }
+    const auto size =
+        a.size_px.empty() ? std::vector{built_in.width_px, built_in.height_px} : a.size_px;
+    const lf::LightField light_field =
+        lf::DescribeLightField(poses, lf::IntrinsicsFor(built_in, size[0], size[1]), format,
+                               built_in.max_radiance, a.output);
+    lf::ThreadPool pool(program.common().threads);
+    const lf::Scene scene(built_in.describe());
+    if (a.calibration_only) {
+      LF_RETURN_IF_ERROR(lf::CreateFolder(a.output));
+      LF_RETURN_IF_ERROR(
+          lf::WriteTransformsJson(light_field, light_field.folder / "transforms.json"));
+    } else {
+      lf::ProgressMeter meter(style, " images");
+      const auto keep_going = [&](size_t done) {
+        meter.Update(done, poses.size(), a.scene);
+        return !lf::CatchInterrupts();
+      };
+      const int samples = a.samples > 0 ? a.samples : built_in.samples;
+      LF_RETURN_IF_ERROR(lf::WriteLightField(scene, light_field,
+                                             {format, samples, a.noise, seed, keep_going}, pool));
+    }
+    lf::LogInfo("{}: {} LF cameras, {:.4g} apart", a.output, poses.size(), lf::RigPitch(rig));
+    if (a.truth.empty()) return {};
+    lf::ProgressMeter meter(style, " frames");
+    return lf::WriteTruth(scene, path.cameras, {a.truth_samples, 0}, light_field.folder / "truth",
+                          pool, [&](size_t done) {
+                            meter.Update(done, path.frame_count(), "truth");
+                            return !lf::CatchInterrupts();
+                          });
+  });
+}
