@@ -33,6 +33,7 @@ void BallBlocks::Build(const std::vector<Ball>& balls, Indices& order, size_t be
     const Ball& ball = balls[order[i]];
     const double far_side_w = (ball.centre_world - box.center()).norm() + ball.radius_w;
     block.around.radius_w = std::max(block.around.radius_w, far_side_w);
+    block.largest_radius_w = std::max(block.largest_radius_w, ball.radius_w);
     block.x[block.count] = static_cast<float>(ball.centre_world.x());
     block.y[block.count] = static_cast<float>(ball.centre_world.y());
     block.z[block.count] = static_cast<float>(ball.centre_world.z());

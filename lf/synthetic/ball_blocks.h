@@ -50,6 +50,7 @@ class BallBlocks {
   struct Block {
     Lanes x = Lanes::Zero(), y = Lanes::Zero(), z = Lanes::Zero(), radius = Lanes::Zero();
     Ball around;
+    double largest_radius_w = 0;
     std::array<uint32_t, kLanes> index = {};
     int count = 0;
   };
@@ -97,6 +98,9 @@ void BallBlocks::ForEachAround(const Vec3& point_world, double factor, Visit&& v
   const Eigen::Vector3f p = point_world.cast<float>();
   const auto squared = static_cast<float>(factor * factor) * kSlack;
   for (const Block& block : blocks_) {
+    const double block_reach = block.around.radius_w + factor * block.largest_radius_w;
+    if ((block.around.centre_world - point_world).squaredNorm() > block_reach * block_reach)
+      continue;
     const Lanes distance2 =
         (block.x - p.x()).square() + (block.y - p.y()).square() + (block.z - p.z()).square();
     VisitInside(block, distance2 - squared * block.radius.square(), visit);

@@ -19,7 +19,7 @@ std::array<BuiltInScene, 3> MakeScenes() {
   lights.max_radiance = 24;
 
   BuiltInScene chart{"chart", "flat test charts at known depths and slants", DescribeChart, {}};
-  chart.samples = 16;
+  chart.samples = 9;
   return {still_life, lights, chart};
 }
 

@@ -1,6 +1,7 @@
 // The small lamps that a ray passes.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "lf/camera/ray.h"
@@ -10,13 +11,21 @@
 
 namespace lf {
 
+// Beyond this many radii a lamp is dark: exp(-3.2^2) = 4e-5.
+inline constexpr double kGlowReach = 3.2;
+
 class Glows {
  public:
   explicit Glows(std::vector<Glow> glows);
 
   // The light that all lamps before `lambda_end` bring to the ray, averaged over its footprint.
-  // The direction must have unit length.
-  Rgb Along(const Ray& ray, const Footprint& footprint, double lambda_end) const;
+  // The direction must have unit length. `among`: the lamps that alone come into question, null
+  // for all.
+  Rgb Along(const Ray& ray, const Footprint& footprint, double lambda_end,
+            const std::vector<uint32_t>* among = nullptr) const;
+
+  // The lamps that reach into the cone, and perhaps some that do not.
+  std::vector<uint32_t> Near(const Cone& cone) const;
 
  private:
   bool MayMeet(const Ray& ray, const Footprint& footprint, double lambda_end) const;

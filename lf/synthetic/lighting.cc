@@ -8,7 +8,7 @@ namespace lf {
 namespace {
 
 // Spheres further away than this many radii hide nothing of the room.
-constexpr double kReach = 10;
+constexpr double kReach = 6;
 // A point this near to a sphere, relative to its radius, is on it.
 constexpr double kTouching = 1e-6;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -55,25 +56,68 @@ bool IsEdge(const Scene::Sight& a, const Scene::Sight& b) {
   return ((a.radiance - b.radiance).abs() > kShare * (a.radiance.max(b.radiance) + kDark)).any();
 }
 
+// The picture in tiles, each with what its rays may meet first.
+class Tiles {
+ public:
+  Tiles(const Scene& scene, const PixelRays& rays, int width, int height)
+      : side_((std::max(width, height) + kAcross - 1) / kAcross),
+        columns_((width + side_ - 1) / side_),
+        rows_((height + side_ - 1) / side_) {
+    for (int row = 0; row < rows_; ++row)
+      for (int column = 0; column < columns_; ++column)
+        sectors_.push_back(scene.SectorOf(ConeOf(rays, column * side_, row * side_)));
+  }
+
+  // Of a pixel of the picture, or one pixel beside it.
+  const Scene::Sector& At(int x, int y) const {
+    const int column = std::clamp(x / side_, 0, columns_ - 1);
+    const int row = std::clamp(y / side_, 0, rows_ - 1);
+    return sectors_[static_cast<size_t>(row * columns_ + column)];
+  }
+
+ private:
+  static constexpr int kAcross = 32;  // tiles along the longer side
+  // One pixel for the border, kGlowReach footprints of a pixel, and some for safety.
+  static constexpr double kMargin_px = 1 + kGlowReach * kFootprintPerSide + 0.5;
+
+  Cone ConeOf(const PixelRays& rays, int x, int y) const {
+    const Ray axis = rays.Through(x + 0.5 * side_, y + 0.5 * side_);
+    Cone cone{axis.origin, axis.direction.normalized(), std::numeric_limits<double>::infinity()};
+    for (const double corner_x : {x - kMargin_px, x + side_ + kMargin_px})
+      for (const double corner_y : {y - kMargin_px, y + side_ + kMargin_px}) {
+        const Vec3 corner = rays.Through(corner_x, corner_y).direction.normalized();
+        cone.sine = std::max(cone.sine, corner.cross(cone.direction).norm());
+      }
+    return cone;
+  }
+
+  int side_;
+  int columns_;
+  int rows_;
+  std::vector<Scene::Sector> sectors_;
+};
+
 // What the rays through the pixel centres of row y see, from one pixel left of the picture to one
 // right of it.
 using SightRow = std::vector<Scene::Sight>;
-SightRow LookAlongRow(const Scene& scene, const PixelRays& rays, int width, int y) {
+SightRow LookAlongRow(const Scene& scene, const PixelRays& rays, const Tiles& tiles, int width,
+                      int y) {
   SightRow row;
   row.reserve(static_cast<size_t>(width) + 2);
   const Footprint footprint = rays.FootprintOf(1);
   for (int x = -1; x <= width; ++x)
-    row.push_back(scene.Look(rays.Through(x + 0.5, y + 0.5), footprint));
+    row.push_back(scene.Look(rays.Through(x + 0.5, y + 0.5), footprint, &tiles.At(x, y)));
   return row;
 }
 
-Rgb MeanOverPixel(const Scene& scene, const PixelRays& rays, const std::vector<Vec2>& points, int x,
-                  int y) {
+Rgb MeanOverPixel(const Scene& scene, const PixelRays& rays, const Tiles& tiles,
+                  const std::vector<Vec2>& points, int x, int y) {
   const auto count = static_cast<int>(points.size());
   const Footprint footprint = rays.FootprintOf(count);
   Rgb sum = Rgb::Zero();
   for (const Vec2& point : points)
-    sum += scene.RadianceAlong(rays.Through(x + point.x(), y + point.y()), footprint);
+    sum +=
+        scene.Look(rays.Through(x + point.x(), y + point.y()), footprint, &tiles.At(x, y)).radiance;
   return sum / count;
 }
 
@@ -87,18 +131,20 @@ void Store(const Rgb& radiance, float* pixel) {
 Image<float> Photograph(const Scene& scene, const PinholeCamera& camera, int samples) {
   const int width = camera.intrinsics.width_px, height = camera.intrinsics.height_px;
   const PixelRays rays(camera);
+  const Tiles tiles(scene, rays, width, height);
   const std::vector<Vec2> points = SquarePoints(SideOf(samples));
   Image<float> picture(width, height, 3);
-  SightRow above = LookAlongRow(scene, rays, width, -1);
-  SightRow row = LookAlongRow(scene, rays, width, 0);
+  SightRow above = LookAlongRow(scene, rays, tiles, width, -1);
+  SightRow row = LookAlongRow(scene, rays, tiles, width, 0);
   for (int y = 0; y < height; ++y) {
-    SightRow below = LookAlongRow(scene, rays, width, y + 1);
+    SightRow below = LookAlongRow(scene, rays, tiles, width, y + 1);
     for (int x = 0; x < width; ++x) {
       const size_t i = static_cast<size_t>(x) + 1;
       const bool edge = IsEdge(row[i], row[i - 1]) || IsEdge(row[i], row[i + 1]) ||
                         IsEdge(row[i], above[i]) || IsEdge(row[i], below[i]);
-      const Rgb radiance =
-          edge && points.size() > 1 ? MeanOverPixel(scene, rays, points, x, y) : row[i].radiance;
+      const Rgb radiance = edge && points.size() > 1
+                               ? MeanOverPixel(scene, rays, tiles, points, x, y)
+                               : row[i].radiance;
       Store(radiance, &picture.at(x, y));
     }
     above = std::move(row);

@@ -65,6 +65,22 @@ TEST(Photograph, WhereNothingChangesAPixelIsTheRayThroughItsCentre) {
   EXPECT_LT(changed, 600);  // and nothing else
 }
 
+// Photographs look for what a tile may meet once for all of its rays: nothing may be lost by that.
+TEST(Photograph, EveryPixelIsWhatItsRayAloneSees) {
+  const BuiltInScene& still_life = *FindBuiltInScene("still-life");
+  const Scene scene(still_life.describe());
+  const PinholeCamera camera{IntrinsicsFor(still_life, 150, 100), MakeRig(still_life.rig)->front()};
+  const Image<float> picture = Photograph(scene, camera, 1);
+  const Footprint footprint = FootprintOfPixel(1 / camera.intrinsics.fx_px);
+  for (int y = 0; y < 100; ++y)
+    for (int x = 0; x < 150; ++x) {
+      const Rgb seen = scene.RadianceAlong(RayOfPixel(camera, x + 0.5, y + 0.5), footprint);
+      for (int channel = 0; channel < 3; ++channel)
+        ASSERT_NEAR(static_cast<double>(picture.at(x, y, channel)), seen[channel],
+                    1e-5 * (1 + seen[channel]));
+    }
+}
+
 RenderCamera Lens(const PinholeCamera& pinhole, double radius_w, int blades, double focus_w) {
   RenderCamera camera;
   camera.pinhole = pinhole;

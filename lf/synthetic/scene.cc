@@ -50,9 +50,14 @@ Rgb Scene::RadianceAlong(const Ray& ray, const Footprint& footprint) const {
   return Look(ray, footprint).radiance;
 }
 
-Scene::Sight Scene::Look(const Ray& ray, const Footprint& footprint) const {
+Scene::Sector Scene::SectorOf(const Cone& cone) const {
+  return {shapes_.SpheresNear(cone), glows_.Near(cone)};
+}
+
+Scene::Sight Scene::Look(const Ray& ray, const Footprint& footprint, const Sector* sector) const {
   Hit first;
-  const Rgb radiance = Follow({{ray.origin, ray.direction.normalized()}, footprint, 1, 0}, &first);
+  const Rgb radiance =
+      Follow({{ray.origin, ray.direction.normalized()}, footprint, 1, 0, sector}, &first);
   return {radiance, first.shape};
 }
 
@@ -78,9 +83,11 @@ Scene::Place Scene::PlaceOf(const Beam& beam, const Hit& hit) const {
 }
 
 Rgb Scene::Follow(const Beam& beam, Hit* first) const {
-  const Hit hit = shapes_.FirstHit(beam.ray);
+  const Sector* const sector = beam.sector;
+  const Hit hit = shapes_.FirstHit(beam.ray, sector ? &sector->spheres : nullptr);
   if (first) *first = hit;
-  const Rgb glow = glows_.Along(beam.ray, beam.footprint, hit.lambda);
+  const Rgb glow =
+      glows_.Along(beam.ray, beam.footprint, hit.lambda, sector ? &sector->glows : nullptr);
   if (!hit) return glow + RoomRadiance(beam.ray.direction);
   const Place place = PlaceOf(beam, hit);
   const Material& material = *place.material;
@@ -109,7 +116,8 @@ Rgb Scene::Reflection(const Beam& beam, const Place& place, double share) const 
   Beam next{{place.point, Reflected(beam.ray.direction, place.normal)},
             place.footprint,
             beam.weight * share,
-            beam.depth + 1};
+            beam.depth + 1,
+            nullptr};
   if (next.depth > kDepthLimit || next.weight < kLeastWeight) return Rgb::Zero();
   next.footprint.spread += place.material->haze_rad;
   if (place.sphere) {

@@ -5,6 +5,9 @@
 // thread, which is what makes light field and thin-lens frames pictures of one world.
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "lf/camera/ray.h"
 #include "lf/synthetic/footprint.h"
 #include "lf/synthetic/glows.h"
@@ -23,12 +26,22 @@ class Scene {
   // `footprint`, whose lengths are those of a ray of unit length.
   Rgb RadianceAlong(const Ray& ray, const Footprint& footprint = {}) const;
 
-  // The same with what was seen first, for deciding where more rays are due.
+  // What rays within a cone may meet first. Looking along many of them with it in hand gives the
+  // same light sooner. The cone must hold the rays with kGlowReach widths of their
+  // footprints (glows.h).
+  struct Sector {
+    std::vector<uint32_t> spheres;
+    std::vector<uint32_t> glows;
+  };
+  Sector SectorOf(const Cone& cone) const;
+
+  // The radiance with what was seen first, for deciding where more rays are due. `sector`: one
+  // that holds the ray, or null.
   struct Sight {
     Rgb radiance = Rgb::Zero();
     uint32_t shape = Hit::kNothing;
   };
-  Sight Look(const Ray& ray, const Footprint& footprint) const;
+  Sight Look(const Ray& ray, const Footprint& footprint, const Sector* sector = nullptr) const;
 
  private:
   struct Beam {
@@ -36,6 +49,7 @@ class Scene {
     Footprint footprint;
     double weight = 1;  // share of it that reaches the eye
     int depth = 0;      // mirrors and glass passed
+    const Sector* sector = nullptr;
   };
   struct Place;  // a point on a surface (scene.cc)
 

@@ -1,5 +1,6 @@
 #include "lf/synthetic/shapes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -45,16 +46,25 @@ Shapes::Shapes(std::vector<Sphere> spheres, const std::vector<Panel>& panels)
   balls_ = BallBlocks(balls);
 }
 
-Hit Shapes::FirstHit(const Ray& ray) const {
+Hit Shapes::FirstHit(const Ray& ray, const std::vector<uint32_t>* among) const {
   Hit hit;
   const auto keep_nearest = [&hit](const std::optional<double>& lambda, uint32_t shape) {
     if (lambda && *lambda < hit.lambda) hit = {*lambda, shape};
   };
   auto shape = static_cast<uint32_t>(spheres_.size());
   for (const PanelPlane& panel : panels_) keep_nearest(Intersect(ray, panel), shape++);
-  balls_.ForEachNear({ray.origin, ray.direction, hit.lambda},
-                     [&](uint32_t ball) { keep_nearest(Intersect(ray, spheres_[ball]), ball); });
+  const auto try_sphere = [&](uint32_t i) { keep_nearest(Intersect(ray, spheres_[i]), i); };
+  if (among)
+    std::for_each(among->begin(), among->end(), try_sphere);
+  else
+    balls_.ForEachNear({ray.origin, ray.direction, hit.lambda}, try_sphere);
   return hit;
+}
+
+std::vector<uint32_t> Shapes::SpheresNear(const Cone& cone) const {
+  std::vector<uint32_t> spheres;
+  balls_.ForEachNear(cone, [&spheres](uint32_t i) { spheres.push_back(i); });
+  return spheres;
 }
 
 }  // namespace lf

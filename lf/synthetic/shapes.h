@@ -58,7 +58,12 @@ class Shapes {
  public:
   Shapes(std::vector<Sphere> spheres, const std::vector<Panel>& panels);
 
-  Hit FirstHit(const Ray& ray) const;  // the direction must have unit length
+  // The direction must have unit length. `among`: the spheres that alone come into question, null
+  // for all; panels always do.
+  Hit FirstHit(const Ray& ray, const std::vector<uint32_t>* among = nullptr) const;
+
+  // The spheres that reach into the cone, and perhaps some that do not.
+  std::vector<uint32_t> SpheresNear(const Cone& cone) const;
 
   const std::vector<Sphere>& spheres() const { return spheres_; }
   // Null for a panel.
