@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tools/common/interrupt.h"
@@ -34,7 +35,7 @@ the frames that a real lens would film along a camera path. Lengths are metres.)
 
 struct Arguments {
   std::string scene, output, capture = "planar", format = "exr", truth;
-  std::vector<int> size_px;
+  std::optional<std::pair<int, int>> size_px;
   uint32_t count = 0;
   std::optional<double> spacing, distance;
   double jitter = 0, noise = 0;
@@ -53,7 +54,6 @@ void AddOptions(CLI::App& app, Arguments& a) {
   app.add_option("--size", a.size_px, "Of the LF images, such as 960x640")
       ->type_name("WxH")
       ->delimiter('x')
-      ->expected(2)
       ->check(CLI::Range(1, 32768));
   app.add_option("--spacing", a.spacing, "From LF camera to LF camera");
   app.add_option("--distance", a.distance, "From the middle of the rig to that of the scene");
@@ -112,10 +112,10 @@ int main(int argc, char** argv) {
     if (!a.truth.empty()) {
       LF_ASSIGN_OR_RETURN(path, lf::ReadPathYaml(a.truth, 1.0));
     }
-    const auto size =
-        a.size_px.empty() ? std::vector{built_in.width_px, built_in.height_px} : a.size_px;
+    const auto [width_px, height_px] =
+        a.size_px.value_or(std::pair(built_in.width_px, built_in.height_px));
     const lf::LightField light_field =
-        lf::DescribeLightField(poses, lf::IntrinsicsFor(built_in, size[0], size[1]), format,
+        lf::DescribeLightField(poses, lf::IntrinsicsFor(built_in, width_px, height_px), format,
                                built_in.max_radiance, a.output);
     lf::ThreadPool pool(program.common().threads);
     const lf::Scene scene(built_in.describe());
