@@ -10,9 +10,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/patiently.sh
 
-groups=always
-if [[ -d ${LF_TEST_DATA:-../shared}/groundtruth ]]; then groups='always|truth'; fi
-mapfile -t wanted < <(awk -v groups="^($groups)\$" '$1 ~ groups { print $2 }' scripts/packages.txt)
+mapfile -t wanted < <(awk '!/^#/ && NF { print $1 }' scripts/packages.txt)
 
 if ! command -v dpkg-query >/dev/null; then
   echo "This is no Debian: $(basename "$0") installs nothing. Under Debian's names it takes:"
