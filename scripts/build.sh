@@ -8,6 +8,10 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/patiently.sh
 
+if [[ -e build && ! -w build ]]; then
+  echo "error: build/ belongs to $(stat -c %U build); remove it first: sudo rm -rf $PWD/build" >&2
+  exit 1
+fi
 scripts/install_packages.sh
 mkdir -p build
 # Some machines give their builders no home to write to.

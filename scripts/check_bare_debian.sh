@@ -23,6 +23,11 @@ fi
 repository=$(cd "$(dirname "$0")/.." && pwd)
 folder=$(mkdir -p "$1" && cd "$1" && pwd)
 shift
+exec 9>"$folder/lock"
+if ! flock --nonblock 9; then
+  echo "error: another run is using $folder" >&2
+  exit 1
+fi
 commands=("$@")
 if ((${#commands[@]} == 0)); then commands=(./test ./demo); fi
 base=$folder/base

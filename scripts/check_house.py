@@ -6,7 +6,7 @@ usage: check_house.py REPOSITORY CHECK
   lengths  no source file is longer than 500 lines (doc/style.md)
   paths    no file holds an absolute path of somebody's build machine
   links    in every Markdown page: links lead to files and headings that exist, `paths` in
-           backticks exist, and `folder.Suite.Test` names a test that exists
+           backticks exist, and `folder.Suite.Test` and `tests.name` are tests that exist
   pages    the pages of doc/ that comments in sources refer to exist
 """
 import functools
@@ -21,7 +21,7 @@ MACHINE_PATH = re.compile(r"(?<![\w.$}])/(?:work|root)/[\w.]")
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 # `lf/camera/ray.h`, `scripts/`; patterns and places to fill in (x_test.cc aside) hold * < { or ...
 NAMED_FILE = re.compile(r"`((?:lf|tools|tests|scripts|doc|examples|cmake|fuzz|bench)/[\w./-]*)`")
-NAMED_TEST = re.compile(r"`([a-z_]+)\.([A-Z]\w*)\.(\w+)`")
+NAMED_TEST = re.compile(r"`([a-z_]+\.[A-Z]\w*\.\w+|(?:tests|house)\.\w+)`")
 PAGE_IN_COMMENT = re.compile(r"\bdoc/[\w/]+\.md\b")
 
 
@@ -95,19 +95,21 @@ def page_faults(root, page, tests):
         for name in NAMED_FILE.findall(line):
             if not (root / name).exists():
                 yield number, f"`{name}` does not exist"
-        for folder, suite, test in NAMED_TEST.findall(line):
-            if (folder, suite, test) not in tests:
-                yield number, f"there is no test `{folder}.{suite}.{test}`"
+        for name in NAMED_TEST.findall(line):
+            if name not in tests:
+                yield number, f"there is no test `{name}`"
 
 
 def named_tests(root, files) -> set:
-    """(folder, suite, test) of every TEST in lf/ and tests/."""
+    """folder.Suite.Test of every TEST, and what CMake lists name themselves."""
     found = set()
     for path in files:
+        text = "\n".join(text_lines(path))
         if path.name.endswith("_test.cc"):
-            text = "\n".join(text_lines(path))
-            for suite, test in re.findall(r"\bTEST(?:_[FP])?\(\s*(\w+),\s*(\w+)\)", text):
-                found.add((path.parent.name, suite, test))
+            cases = re.findall(r"\bTEST(?:_[FP])?\(\s*(\w+),\s*(\w+)\)", text)
+            found.update(f"{path.parent.name}.{suite}.{test}" for suite, test in cases)
+        elif path.name == "CMakeLists.txt":
+            found.update(re.findall(r"add_test\(NAME ([\w.]+)", text))
     return found
 
 

@@ -52,10 +52,12 @@ class PlantedFaults(unittest.TestCase):
         self.plant("doc/there.md", "# A heading, here\n[up](#a-heading-here)\n")
         self.plant("README.md", "[a](doc/there.md#a-heading-here) [b](https://example.org/x)\n"
                                 "[c](doc/gone.md)\n[d](doc/there.md#nowhere)\n[e](../outside.md)\n"
-                                "`lf/core/gone.h`\n`core.Suite.Gone`\n`core.Suite.There`\n")
+                                "`lf/core/gone.h`\n`core.Suite.Gone`\n`core.Suite.There` `tests.there`\n"
+                                "`tests.gone`\n")
+        self.plant("tests/CMakeLists.txt", "add_test(NAME tests.there COMMAND x)\n")
         self.plant("lf/core/x_test.cc", "TEST(Suite, There) {}\n")
         self.expect("check_house.py", "links",
-                    faults=[f"README.md:{line}" for line in (2, 3, 4, 5, 6)])
+                    faults=[f"README.md:{line}" for line in (2, 3, 4, 5, 6, 8)])
 
     def test_pages_that_comments_name_must_exist(self):
         self.plant("lf/core/a.h", "// see doc/there.md and doc/" + "gone.md\n")
