@@ -1,9 +1,10 @@
-// The pinhole camera (thesis 2.2.2-2.2.4): every LF camera, and the render camera through the
-// centre of its lens.
+// The pinhole camera (thesis 2.2.2-2.2.4): every LF camera, whose lens may bend the rays, and the
+// render camera through the centre of its lens, which has no distortion.
 #pragma once
 
 #include <optional>
 
+#include "lf/camera/distortion.h"
 #include "lf/camera/ray.h"
 #include "lf/core/geometry.h"
 
@@ -19,7 +20,9 @@ struct Intrinsics {
   double skew_px = 0;
   int width_px = 0;
   int height_px = 0;
+  Distortion distortion = {};  // between the pinhole's rays and K
 
+  bool has_distortion() const { return distortion.model != DistortionModel::kNone; }
   Mat3 Matrix() const;
   Mat3 InverseMatrix() const;  // exact form; fx and fy must not be 0
   friend bool operator==(const Intrinsics&, const Intrinsics&) = default;
@@ -41,11 +44,13 @@ struct PinholeCamera {
 std::optional<RigidTransform> LookAlong(const Vec3& centre_world, const Vec3& forward_world,
                                         const Vec3& up_world);
 
-// The ray through continuous pixel position (x, y): p_camera = K^-1 p (thesis Eq. 4.1, 4.2). Its
-// direction has length 1 along the optical axis, so Ray::At(z) is the point at depth z.
+// The ray through continuous pixel position (x, y) of a camera without distortion:
+// p_camera = K^-1 p (thesis Eq. 4.1, 4.2). Its direction has length 1 along the optical axis, so
+// Ray::At(z) is the point at depth z.
 Ray RayOfPixel(const PinholeCamera& camera, double x_px, double y_px);
 
-// P = K [R|t] (thesis Eq. 2.6, 2.7). None for points at depth 0 or behind the camera.
+// P = K [R|t] (thesis Eq. 2.6, 2.7), for a camera without distortion. None for points at depth 0
+// or behind the camera.
 std::optional<Vec2> Project(const PinholeCamera& camera, const Vec3& point_world);
 
 }  // namespace lf

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,13 @@ struct LfCamera {
   float gain = 1;                 // its radiance is multiplied by this (lf_gain)
 };
 
+// Depths along the optical axes between which the scene lies, in world units.
+struct DepthRange {
+  double near_w = 0;
+  double far_w = 0;
+  friend bool operator==(const DepthRange&, const DepthRange&) = default;
+};
+
 struct LightField {
   std::vector<LfCamera> cameras;       // LfImageId indexes these and the two lists of names
   std::vector<Intrinsics> intrinsics;  // the distinct ones
@@ -30,7 +38,8 @@ struct LightField {
   std::filesystem::path folder;
 
   RadianceEncoding encoding;
-  double unit_m = 1;  // metres per world unit
+  double unit_m = 1;                      // metres per world unit
+  std::optional<DepthRange> depth_range;  // if the calibration tells
 
   size_t size() const { return cameras.size(); }
   PinholeCamera Camera(LfImageId id) const {

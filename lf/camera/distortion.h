@@ -1,0 +1,63 @@
+// How a real lens bends rays: between a direction before the camera and the *distorted* normalised
+// position (xd, yd), which K then turns into pixels: x_px = fx xd + skew yd + cx, y_px = fy yd +
+// cy. Formulas and parameter order are those of OpenCV and COLMAP, whose models all are among
+// these.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "lf/core/geometry.h"
+
+namespace lf {
+
+enum class DistortionModel : uint8_t {
+  kNone,  // xd = X / Z, yd = Y / Z
+  // k1 k2 p1 p2 k3 k4 k5 k6; with x = X / Z, y = Y / Z, r^2 = x^2 + y^2:
+  //   xd = x radial + 2 p1 x y + p2 (r^2 + 2 x^2)
+  //   yd = y radial + p1 (r^2 + 2 y^2) + 2 p2 x y
+  //   radial = (1 + k1 r^2 + k2 r^4 + k3 r^6) / (1 + k4 r^2 + k5 r^4 + k6 r^6)
+  // (COLMAP: SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV)
+  kRadialTangential,
+  // k1 k2 k3 k4; with the angle theta from the optical axis:
+  //   rd = theta (1 + k1 theta^2 + k2 theta^4 + k3 theta^6 + k4 theta^8)
+  // (OpenCV fisheye; COLMAP: OPENCV_FISHEYE, SIMPLE_RADIAL_FISHEYE, RADIAL_FISHEYE)
+  kFisheye,
+  // omega, the field of view of an ideal fish-eye lens: rd = atan(2 r tan(omega / 2)) / omega
+  // (Devernay and Faugeras 2001; COLMAP: FOV)
+  kFov,
+};
+
+struct Distortion {
+  DistortionModel model = DistortionModel::kNone;
+  std::array<double, 8> parameters = {};  // as listed at the model; the others are 0
+
+  friend bool operator==(const Distortion&, const Distortion&) = default;
+};
+
+// Both directions of a distortion, prepared for many points.
+//
+// A polynomial is a lens only as far as it grows: beyond the first angle where it turns back, or
+// where a denominator vanishes, a pixel has no ray and a direction no pixel.
+class DistortionMap {
+ public:
+  // parameters: finite; omega in (0, pi)
+  explicit DistortionMap(const Distortion& distortion);
+
+  // (xd, yd) of a direction; none where the lens has no image of it. Only a fish-eye sees
+  // directions with Z <= 0.
+  std::optional<Vec2> Distort(const Vec3& direction) const;
+
+  // The direction that is distorted to (xd, yd), by iteration until rounding: Distort() of it is
+  // within 1e-12 of (xd, yd). Of any length above 0, chosen to be smooth over the image: Z = 1 but
+  // for fish-eyes. None where no ray arrives.
+  std::optional<Vec3> Undistort(const Vec2& distorted) const;
+
+ private:
+  Distortion distortion_;
+  double limit_;            // of r = tan(theta); of theta for kFisheye; not used for kFov
+  double distorted_limit_;  // of rd
+};
+
+}  // namespace lf

@@ -1,0 +1,116 @@
+#include "lf/camera/distortion.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "lf/core/random.h"
+
+namespace lf {
+namespace {
+
+struct Lens {
+  std::string name;
+  Distortion distortion;
+  double widest_rad;  // directions up to here are tested
+};
+
+std::vector<Lens> Lenses() {
+  using enum DistortionModel;
+  return {{"none", {}, 1.4},
+          {"simple radial", {kRadialTangential, {0.035}}, 0.9},
+          {"barrel", {kRadialTangential, {-0.25, 0.07}}, 0.7},
+          {"tangential", {kRadialTangential, {-0.28, 0.09, 0.002, -0.003}}, 0.7},
+          {"rational", {kRadialTangential, {0.3, -0.1, 5e-4, -2e-4, 0.02, 0.6, -0.05, 0.01}}, 0.8},
+          {"fish-eye", {kFisheye, {-0.02, 0.004, -0.002, 3e-4}}, 1.7},
+          {"fov", {kFov, {0.93}}, 1.5}};
+}
+
+Vec3 RandomDirection(uint64_t index, double widest_rad) {
+  const double theta = widest_rad * std::sqrt(RandomUnit(5, 0, index));
+  const double phi = 2 * kPi * RandomUnit(5, 1, index);
+  return Vec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
+}
+
+TEST(Distortion, BothDirectionsAreInverse) {
+  constexpr double kFocal_px = 1000;
+  for (const Lens& lens : Lenses()) {
+    const DistortionMap map(lens.distortion);
+    for (uint64_t i = 0; i < 10000; ++i) {
+      const Vec3 direction = RandomDirection(i, lens.widest_rad);
+      const std::optional<Vec2> distorted = map.Distort(direction);
+      ASSERT_TRUE(distorted) << lens.name;
+      const std::optional<Vec3> back = map.Undistort(*distorted);
+      ASSERT_TRUE(back) << lens.name << " " << distorted->transpose();
+      EXPECT_LE((back->normalized() - direction).norm(), 1e-11) << lens.name;
+      const std::optional<Vec2> again = map.Distort(*back);
+      ASSERT_TRUE(again) << lens.name;
+      EXPECT_LE(kFocal_px * (*again - *distorted).norm(), 1e-9) << lens.name;
+    }
+  }
+}
+
+TEST(Distortion, TheOpticalAxisStaysWithoutTangentialTerms) {
+  for (const Lens& lens : Lenses()) {
+    const DistortionMap map(lens.distortion);
+    EXPECT_EQ(map.Distort({0, 0, 3}), Vec2(0, 0)) << lens.name;
+    const std::optional<Vec3> axis = map.Undistort({0, 0});
+    ASSERT_TRUE(axis) << lens.name;
+    EXPECT_EQ(axis->normalized(), Vec3(0, 0, 1)) << lens.name;
+  }
+}
+
+TEST(Distortion, DirectionsAreSmoothOverTheImage) {
+  for (const Lens& lens : Lenses()) {
+    const DistortionMap map(lens.distortion);
+    for (double x = -0.4; x < 0.4; x += 0.013) {
+      const Vec3 a = *map.Undistort({x, 0.1}), b = *map.Undistort({x + 1e-6, 0.1});
+      EXPECT_LE((a - b).norm(), 1e-5) << lens.name;
+    }
+  }
+}
+
+// x (1 - 0.3 x^2) grows up to x = 1 / sqrt(0.9) only.
+TEST(Distortion, NoRayArrivesBeyondTheFold) {
+  const DistortionMap map({DistortionModel::kRadialTangential, {-0.3}});
+  const double fold = 1 / std::sqrt(0.9), distorted_fold = fold * (1 - 0.3 / 0.9);
+  EXPECT_TRUE(map.Distort({fold - 1e-6, 0, 1}));
+  EXPECT_FALSE(map.Distort({fold + 1e-6, 0, 1}));
+  EXPECT_FALSE(map.Distort({3, 0, 1}));
+  EXPECT_TRUE(map.Undistort({distorted_fold - 1e-9, 0}));
+  EXPECT_FALSE(map.Undistort({distorted_fold + 1e-9, 0}));
+  EXPECT_NEAR(map.Undistort({distorted_fold - 1e-12, 0})->x(), fold, 1e-5);
+}
+
+TEST(Distortion, WithTangentialTermsTooNoRayArrivesBeyondTheFold) {
+  const DistortionMap map({DistortionModel::kRadialTangential, {-0.3, 0, 0.001, 0.001}});
+  EXPECT_TRUE(map.Undistort({0.69, 0.1}));
+  EXPECT_FALSE(map.Undistort({0.8, 0.1}));
+  EXPECT_FALSE(map.Distort({3, 0, 1}));
+}
+
+TEST(Distortion, OnlyAFishEyeSeesBehindItself) {
+  for (const Lens& lens : Lenses()) {
+    const bool sees = DistortionMap(lens.distortion).Distort({1, 0, -0.1}).has_value();
+    EXPECT_EQ(sees, lens.distortion.model == DistortionModel::kFisheye) << lens.name;
+  }
+}
+
+TEST(Distortion, TheIdealFishEyeIsLinearInTheAngle) {
+  const DistortionMap map({DistortionModel::kFisheye, {}});
+  EXPECT_NEAR(map.Distort({std::sin(0.5), 0, std::cos(0.5)})->x(), 0.5, 1e-15);
+  EXPECT_NEAR(map.Distort({0, std::sin(2.5), std::cos(2.5)})->y(), 2.5, 1e-15);
+  EXPECT_FALSE(map.Undistort({3.2, 0}));
+}
+
+TEST(Distortion, APoleOfTheDenominatorEndsTheImage) {
+  // 1 - 4 r^2 vanishes at r = 0.5.
+  const DistortionMap map({DistortionModel::kRadialTangential, {0, 0, 0, 0, 0, -4}});
+  EXPECT_TRUE(map.Distort({0.499, 0, 1}));
+  EXPECT_FALSE(map.Distort({0.501, 0, 1}));
+}
+
+}  // namespace
+}  // namespace lf
