@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <iterator>
 
 namespace lf {
 namespace {
@@ -21,32 +19,8 @@ constexpr NumberRule kPrincipal = {"a number of pixels within +-1e7",
 constexpr NumberRule kSize = {"a whole number of pixels from 1 to 65536", [](double x) {
                                 return x >= 1 && x <= kMaxSize_px && x == std::floor(x);
                               }};
-constexpr NumberRule kAnyNumber = {"a number", [](double) { return true; }};
-
-constexpr const char* kDistortionKeys[] = {"k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2"};
-constexpr const char* kPinholeModels[] = {"PINHOLE", "SIMPLE_PINHOLE", "OPENCV"};
-
-Result<void> CheckIsPinhole(const JsonFields& fields) {
-  constexpr const char* kAdvice =
-      "lens distortion is not supported yet: undistort the images first (e.g. COLMAP "
-      "image_undistorter)";
-  for (const char* key : kDistortionKeys) {
-    LF_ASSIGN_OR_RETURN(const std::optional<double> value, fields.Number(key, kAnyNumber));
-    if (value.value_or(0) != 0)
-      return fields.Fault(fmt::format("\"{}\" is {}: {}", key, *value, kAdvice));
-  }
-  LF_ASSIGN_OR_RETURN(const std::optional<bool> is_fisheye, fields.Bool("is_fisheye"));
-  if (is_fisheye.value_or(false))
-    return fields.Fault(fmt::format("\"is_fisheye\" is true: {}", kAdvice));
-
-  LF_ASSIGN_OR_RETURN(const std::optional<std::string> model, fields.Text("camera_model"));
-  if (model && std::find(std::begin(kPinholeModels), std::end(kPinholeModels), *model) ==
-                   std::end(kPinholeModels))
-    return fields.Wrong("camera_model",
-                        "PINHOLE, SIMPLE_PINHOLE or OPENCV without distortion; other models must "
-                        "be undistorted first (e.g. COLMAP image_undistorter)");
-  return {};
-}
+constexpr NumberRule kSkew = {"a number of pixels within +-1e7",
+                              [](double x) { return std::abs(x) <= 1e7; }};
 
 using Key = std::optional<double> IntrinsicsKeys::*;
 
@@ -63,8 +37,8 @@ std::optional<double> Focal(const IntrinsicsKeys& frame, const IntrinsicsKeys& t
 }  // namespace
 
 Result<IntrinsicsKeys> ReadIntrinsicsKeys(const JsonFields& fields) {
-  LF_RETURN_IF_ERROR(CheckIsPinhole(fields));
   IntrinsicsKeys keys;
+  LF_ASSIGN_OR_RETURN(keys.distortion, ReadDistortionKeys(fields));
   const struct {
     const char* name;
     Key key;
@@ -78,6 +52,7 @@ Result<IntrinsicsKeys> ReadIntrinsicsKeys(const JsonFields& fields) {
       {"cy", &IntrinsicsKeys::cy, kPrincipal},
       {"w", &IntrinsicsKeys::w, kSize},
       {"h", &IntrinsicsKeys::h, kSize},
+      {"lf_skew", &IntrinsicsKeys::lf_skew, kSkew},
   };
   for (const auto& row : table) {
     LF_ASSIGN_OR_RETURN(keys.*row.key, fields.Number(row.name, row.rule));
@@ -86,14 +61,16 @@ Result<IntrinsicsKeys> ReadIntrinsicsKeys(const JsonFields& fields) {
 }
 
 Result<Intrinsics> ResolveIntrinsics(const IntrinsicsKeys& frame, const IntrinsicsKeys& top,
-                                     const JsonFields& fields) {
+                                     const SizeSource& default_size, const JsonFields& fields) {
   const auto value = [&](Key key) { return frame.*key ? frame.*key : top.*key; };
-  const std::optional<double> width = value(&IntrinsicsKeys::w);
-  const std::optional<double> height = value(&IntrinsicsKeys::h);
-  if (!width || !height)
-    return fields.Fault(
-        "the image size is missing: add \"w\" and \"h\", in pixels, at the top level "
-        "(e.g. \"w\": 800, \"h\": 800)");
+  std::optional<double> width = value(&IntrinsicsKeys::w);
+  std::optional<double> height = value(&IntrinsicsKeys::h);
+  if (!width || !height) {
+    using Size = std::array<int, 2>;
+    LF_ASSIGN_OR_RETURN(const Size size, default_size());
+    if (!width) width = size[0];
+    if (!height) height = size[1];
+  }
   if (*width * *height > kMaxPixelCount)
     return fields.Fault(
         fmt::format("images of {} x {} pixels are beyond the limit of 2^30", *width, *height));
@@ -113,6 +90,9 @@ Result<Intrinsics> ResolveIntrinsics(const IntrinsicsKeys& frame, const Intrinsi
   intrinsics.fy_px = fy.value_or(*fx);
   intrinsics.cx_px = value(&IntrinsicsKeys::cx).value_or(*width / 2);
   intrinsics.cy_px = value(&IntrinsicsKeys::cy).value_or(*height / 2);
+  intrinsics.skew_px = value(&IntrinsicsKeys::lf_skew).value_or(0);
+  LF_ASSIGN_OR_RETURN(intrinsics.distortion,
+                      ResolveDistortion(frame.distortion, top.distortion, fields));
   return intrinsics;
 }
 

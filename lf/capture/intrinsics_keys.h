@@ -2,10 +2,13 @@
 // each frame. Internal to capture.
 #pragma once
 
+#include <array>
 #include <compare>
+#include <functional>
 #include <optional>
 
 #include "lf/camera/pinhole.h"
+#include "lf/capture/distortion_keys.h"
 #include "lf/capture/json_fields.h"
 #include "lf/core/result.h"
 
@@ -17,19 +20,23 @@ struct IntrinsicsKeys {
   std::optional<double> camera_angle_x, camera_angle_y;  // rad, the whole field of view
   std::optional<double> cx, cy;                          // px
   std::optional<double> w, h;                            // px
+  std::optional<double> lf_skew;                         // px
+  DistortionKeys distortion;
 
   friend auto operator<=>(const IntrinsicsKeys&, const IntrinsicsKeys&) = default;
 };
 
-// Every value in its range. kInput also for lens distortion and camera models other than the
-// pinhole.
+// Every value in its range.
 Result<IntrinsicsKeys> ReadIntrinsicsKeys(const JsonFields& fields);
 
 // Key by key the frame's value, else the top level's. The focal length is fl_x, else that of
 // camera_angle_x; fl_y, else that of camera_angle_y, else the one along x. The principal point is
 // the image centre unless given.
-// kInput: no size or no focal length. `fields` is for messages.
+//   default_size  [width, height], asked for where neither gives w or h; its error is returned
+//   fields        for messages
+// kInput: no focal length, a distortion that is unclear (ResolveDistortion).
+using SizeSource = std::function<Result<std::array<int, 2>>()>;
 Result<Intrinsics> ResolveIntrinsics(const IntrinsicsKeys& frame, const IntrinsicsKeys& top,
-                                     const JsonFields& fields);
+                                     const SizeSource& default_size, const JsonFields& fields);
 
 }  // namespace lf

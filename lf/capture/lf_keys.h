@@ -13,8 +13,10 @@ namespace lf {
 // All lf_* keys there are (doc/formats/transforms_json.md).
 inline constexpr const char* kTopLevelLfKeys[] = {
     "lf_bayer",         "lf_transfer",       "lf_response",     "lf_black_level", "lf_white_level",
-    "lf_white_balance", "lf_camera_to_srgb", "lf_max_radiance", "lf_pedestal",    "lf_unit_m"};
-inline constexpr const char* kFrameLfKeys[] = {"lf_gain", "lf_mask", "lf_translation"};
+    "lf_white_balance", "lf_camera_to_srgb", "lf_max_radiance", "lf_pedestal",    "lf_unit_m",
+    "lf_depth_range",   "lf_skew",           "lf_fov_omega"};
+inline constexpr const char* kFrameLfKeys[] = {"lf_gain", "lf_mask", "lf_translation", "lf_skew",
+                                               "lf_fov_omega"};
 
 // Of the top level. Defaults: sRGB without a Bayer pattern, linear with one; pedestal 1024 where
 // there is a black level, else 0; DefaultMaxRadiance(image_names).

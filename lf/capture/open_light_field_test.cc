@@ -42,6 +42,26 @@ TEST_F(OpenLightFieldTest, TakesStanfordNamesInTheFolderOrInItsImages) {
   EXPECT_EQ(OpenLightField(folder_, {.focal_px = 7})->intrinsics[0].fx_px, 7);
 }
 
+TEST_F(OpenLightFieldTest, TakesBlendersFormWithTheSizeFromTheFirstImage) {
+  fs::create_directories(folder_ / "train");
+  const fs::path path = folder_ / "transforms_train.json";
+  ASSERT_TRUE(WriteFileAtomically(path, R"({"camera_angle_x": 1, "frames": [{"file_path":
+      "./train/r_0", "transform_matrix": [[1,0,0,1],[0,1,0,2],[0,0,1,3],[0,0,0,1]]}]})"));
+  const Result<LightField> without = OpenLightField(path);
+  ASSERT_FALSE(without);
+  EXPECT_NE(without.error().message.find("r_0.png"), std::string::npos);
+  EXPECT_NE(without.error().message.find("add \"w\" and \"h\""), std::string::npos);
+
+  const Image<uint8_t> image(8, 6, 4);
+  ASSERT_TRUE(WriteImage(folder_ / "train" / "r_0.png", image.view()));
+  const Result<LightField> light_field = OpenLightField(path);
+  ASSERT_TRUE(light_field) << light_field.error().message;
+  const Intrinsics& k = light_field->intrinsics[0];
+  EXPECT_EQ(k.width_px, 8);
+  EXPECT_EQ(k.height_px, 6);
+  EXPECT_NEAR(k.fx_px, 4 / std::tan(0.5), 1e-12);
+}
+
 TEST_F(OpenLightFieldTest, ATransformsJsonNeedsNoFocalLength) {
   ASSERT_TRUE(WriteFileAtomically(folder_ / "transforms.json", kCalibration));
   const Result<LightField> light_field = OpenLightField(folder_, {.focal_px = 7});

@@ -14,6 +14,7 @@
 #include "lf/capture/lf_keys.h"
 #include "lf/capture/opengl_pose.h"
 #include "lf/core/file.h"
+#include "lf/imageio/image_file.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -36,7 +37,10 @@ constexpr NumberRule kUnit = {"metres per world unit, from 1e-9 to 1e9",
 // file, so their intrinsics are resolved at the end.
 class Reader {
  public:
-  explicit Reader(const fs::path& path) : path_(path) { light_field_.folder = path.parent_path(); }
+  Reader(const fs::path& path, const ImageSizeSource& image_size)
+      : path_(path), image_size_(image_size) {
+    light_field_.folder = path.parent_path();
+  }
 
   // The parser's callback: whether to keep what it has just read. Depth 0 is the top level, 1 its
   // keys and values, 2 the entries of "frames".
@@ -67,6 +71,7 @@ class Reader {
     LF_ASSIGN_OR_RETURN(light_field_.encoding, ReadEncoding(fields, light_field_.image_names));
     LF_ASSIGN_OR_RETURN(const std::optional<double> unit_m, fields.Number("lf_unit_m", kUnit));
     light_field_.unit_m = unit_m.value_or(1);
+    LF_RETURN_IF_ERROR(ReadDepthRange(fields));
     if (!light_field_.mask_names.empty()) light_field_.mask_names.resize(frame_count());
     return std::move(light_field_);
   }
@@ -153,6 +158,36 @@ class Reader {
     return {};
   }
 
+  Result<void> ReadDepthRange(const JsonFields& fields) {
+    constexpr NumberRule kDepth = {"a depth above 0 and at most 1e12",
+                                   [](double x) { return x > 0 && x <= 1e12; }};
+    LF_ASSIGN_OR_RETURN(const std::optional<std::vector<double>> range,
+                        fields.Numbers("lf_depth_range", 2, 2, kDepth));
+    if (!range) return {};
+    if (!(range->front() < range->back()))
+      return fields.Wrong("lf_depth_range", "[near, far] with near < far");
+    light_field_.depth_range = DepthRange{range->front(), range->back()};
+    return {};
+  }
+
+  // Of the first image, for all: asked for once.
+  Result<std::array<int, 2>> DefaultSize() {
+    constexpr const char* kAdvice =
+        "add \"w\" and \"h\", in pixels, at the top level (e.g. \"w\": 800, \"h\": 800)";
+    if (!default_size_) {
+      if (!image_size_)
+        return InputError(
+            fmt::format("{}: the image size is missing: {}", path_.string(), kAdvice));
+      const auto size = image_size_(light_field_.ImagePath({0}));
+      if (!size)
+        return InputError(fmt::format(
+            "{}: the image size is missing, and the first image does not tell it: {}; {}",
+            path_.string(), size.error().message, kAdvice));
+      default_size_ = *size;
+    }
+    return *default_size_;
+  }
+
   Result<void> ResolveAllIntrinsics(const JsonFields& fields) {
     LF_ASSIGN_OR_RETURN(const IntrinsicsKeys top, ReadIntrinsicsKeys(fields));
     std::vector<const IntrinsicsKeys*> keys_by_index(distinct_keys_.size());
@@ -166,8 +201,10 @@ class Reader {
       if (resolved[index] == kNotYet) {
         const json no_object = json::object();
         const JsonFields frame(no_object, path_, i, light_field_.image_names[i]);
-        LF_ASSIGN_OR_RETURN(const Intrinsics intrinsics,
-                            ResolveIntrinsics(*keys_by_index[index], top, frame));
+        LF_ASSIGN_OR_RETURN(
+            const Intrinsics intrinsics,
+            ResolveIntrinsics(
+                *keys_by_index[index], top, [this] { return DefaultSize(); }, frame));
         resolved[index] = distinct.IndexOf(intrinsics);
       }
       index = resolved[index];
@@ -177,6 +214,8 @@ class Reader {
   }
 
   const fs::path& path_;
+  const ImageSizeSource& image_size_;
+  std::optional<std::array<int, 2>> default_size_;
   LightField light_field_;  // intrinsics_index counts distinct_keys_ until the end
   std::map<IntrinsicsKeys, uint32_t> distinct_keys_;
   std::set<std::string> seen_keys_;
@@ -187,8 +226,9 @@ class Reader {
 
 }  // namespace
 
-Result<LightField> ParseTransformsJson(std::string_view text, const fs::path& path) {
-  Reader reader(path);
+Result<LightField> ParseTransformsJson(std::string_view text, const fs::path& path,
+                                       const ImageSizeSource& image_size) {
+  Reader reader(path, image_size);
   try {
     const json top =
         json::parse(text.begin(), text.end(), [&reader](int depth, Event event, json& value) {
@@ -204,7 +244,10 @@ Result<LightField> ParseTransformsJson(std::string_view text, const fs::path& pa
 
 Result<LightField> ReadTransformsJson(const fs::path& path) {
   LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(path));
-  return ParseTransformsJson(text, path);
+  return ParseTransformsJson(text, path, [](const fs::path& image) -> Result<std::array<int, 2>> {
+    LF_ASSIGN_OR_RETURN(const ImageFileInfo info, ReadImageInfo(image));
+    return std::array{info.width, info.height};
+  });
 }
 
 }  // namespace lf

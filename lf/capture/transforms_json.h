@@ -3,7 +3,9 @@
 // camera-to-world), converted on reading.
 #pragma once
 
+#include <array>
 #include <filesystem>
+#include <functional>
 #include <string_view>
 
 #include "lf/capture/light_field.h"
@@ -11,13 +13,23 @@
 
 namespace lf {
 
-// text  the file's content;  path  its name for messages; its folder becomes LightField::folder
+// [width, height] of an image file.
+using ImageSizeSource = std::function<Result<std::array<int, 2>>(const std::filesystem::path&)>;
+
+// text        the file's content
+// path        its name for messages; its folder becomes LightField::folder
+// image_size  asked for the first image where a frame has no "w" or "h", as in Blender's scenes;
+//             without it that is an error
 // kInput names the file, the frame and its key, the value found and what was expected.
-Result<LightField> ParseTransformsJson(std::string_view text, const std::filesystem::path& path);
+Result<LightField> ParseTransformsJson(std::string_view text, const std::filesystem::path& path,
+                                       const ImageSizeSource& image_size = {});
+
+// The same for a file; a missing size comes from the header of the first image file.
 Result<LightField> ReadTransformsJson(const std::filesystem::path& path);
 
-// Writes `light_field` so that reading it gives the same cameras bit for bit. Image names are
-// written as they are. kOutput.
+// Writes `light_field` so that reading it gives the same cameras bit for bit (but that a
+// radial-tangential distortion of zeros reads as none). Image names are written as they are.
+// kOutput.
 Result<void> WriteTransformsJson(const LightField& light_field, const std::filesystem::path& path);
 
 }  // namespace lf

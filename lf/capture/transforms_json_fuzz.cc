@@ -1,4 +1,5 @@
 // Any bytes are a light field or an error; a light field has sane cameras only.
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -30,6 +31,17 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size_bytes) {
     LF_CHECK(camera.intrinsics.InverseMatrix().allFinite());
     LF_CHECK(camera.intrinsics.width_px > 0 && camera.intrinsics.height_px > 0);
     LF_CHECK(light_field->cameras[i].gain > 0 && std::isfinite(light_field->cameras[i].gain));
+  }
+  if (light_field->depth_range)
+    LF_CHECK(light_field->depth_range->near_w > 0 &&
+             light_field->depth_range->near_w < light_field->depth_range->far_w);
+  constexpr size_t kTried = 4;
+  for (size_t i = 0; i < std::min(kTried, light_field->intrinsics.size()); ++i) {
+    const lf::DistortionMap map(light_field->intrinsics[i].distortion);
+    for (const double x : {0.0, 0.4, 100.0}) {
+      const auto direction = map.Undistort({x, -0.3});
+      LF_CHECK(!direction || direction->allFinite());
+    }
   }
   return 0;
 }

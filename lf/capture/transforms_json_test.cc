@@ -153,6 +153,46 @@ TEST(TransformsJson, BrokenMatricesAreErrorsThatNameTheFrame) {
   expect("null", "is missing");
 }
 
+TEST(TransformsJson, ReadsTheDepthRange) {
+  const auto range = [](const std::string& list) {
+    return OneFrame(kIntrinsics + R"("lf_depth_range": )" + list + ", ");
+  };
+  EXPECT_EQ(Parsed(range("[0.5, 20]")).depth_range, (DepthRange{0.5, 20}));
+  EXPECT_EQ(Parsed(OneFrame(kIntrinsics)).depth_range, std::nullopt);
+  ExpectError(range("[0, 20]"), {"lf_depth_range", "above 0"});
+  ExpectError(range("[20, 20]"), {"lf_depth_range", "near < far"});
+  ExpectError(range("[1, 2, 3]"), {"lf_depth_range", "a list of 2 numbers"});
+}
+
+TEST(TransformsJson, AMissingSizeIsThatOfTheFirstImage) {
+  const std::string frame = std::string(R"("transform_matrix": )") + kUnturned + "}";
+  const std::string text = R"({"camera_angle_x": 1, "frames": [{"file_path": "./train/r_0", )" +
+                           frame + R"(, {"file_path": "b", "w": 100, "fl_x": 7, )" + frame + "]}";
+  int asked = 0;
+  const auto size = [&asked](const std::filesystem::path& image) {
+    ++asked;
+    EXPECT_EQ(image, "d/./train/r_0.png");
+    return std::array{800, 600};
+  };
+  const Result<LightField> light_field = ParseTransformsJson(text, "d/t.json", size);
+  ASSERT_TRUE(light_field) << light_field.error().message;
+  EXPECT_EQ(asked, 1);
+  const Intrinsics k = light_field->Camera({0}).intrinsics;
+  EXPECT_EQ(k.width_px, 800);
+  EXPECT_EQ(k.height_px, 600);
+  EXPECT_EQ(k.cy_px, 300);
+  EXPECT_NEAR(k.fx_px, 400 / std::tan(0.5), 1e-10);
+  EXPECT_EQ(light_field->Camera({1}).intrinsics, (Intrinsics{7, 7, 50, 300, 0, 100, 600}));
+
+  const auto fails = [](const auto&) -> Result<std::array<int, 2>> {
+    return InputError("r_0.png: no such file");
+  };
+  const Result<LightField> error = ParseTransformsJson(text, "d/t.json", fails);
+  ASSERT_FALSE(error);
+  EXPECT_EQ(error.error().message.find("d/t.json: the image size is missing"), 0u);
+  EXPECT_NE(error.error().message.find("r_0.png: no such file; add \"w\""), std::string::npos);
+}
+
 TEST(TransformsJson, IntrinsicsOutOfRangeAreErrorsThatNameKeyAndValue) {
   ExpectError(OneFrame(R"("fl_x": 0, )" + kSize), {"\"fl_x\" is 0: expected"});
   ExpectError(OneFrame(kIntrinsics, R"("fl_x": -3, )"),
@@ -169,19 +209,8 @@ TEST(TransformsJson, IntrinsicsOutOfRangeAreErrorsThatNameKeyAndValue) {
 
 TEST(TransformsJson, MissingSizeAndFocalLengthSayWhatToAdd) {
   ExpectError(OneFrame(R"("camera_angle_x": 0.69, )"),
-              {"frames[0] (images/a.png)", "add \"w\" and \"h\""});
+              {"the image size is missing", "add \"w\" and \"h\""});
   ExpectError(OneFrame(kSize), {"add \"fl_x\"", "camera_angle_x"});
-}
-
-TEST(TransformsJson, LensDistortionIsRefusedWithAdvice) {
-  for (const char* key : {"k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2"}) {
-    const std::string value = std::string("\"") + key + "\": 0.01, ";
-    ExpectError(OneFrame(kIntrinsics + value), {key, "undistort the images first"});
-    ExpectError(OneFrame(kIntrinsics, value), {"frames[0]", key, "undistort"});
-  }
-  ExpectError(OneFrame(kIntrinsics + R"("is_fisheye": true, )"), {"is_fisheye", "undistort"});
-  ExpectError(OneFrame(kIntrinsics + R"("camera_model": "OPENCV_FISHEYE", )"),
-              {"OPENCV_FISHEYE", "PINHOLE"});
 }
 
 TEST(TransformsJson, WhatIsNoTransformsJsonIsAnError) {

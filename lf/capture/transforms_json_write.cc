@@ -1,10 +1,15 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
 
+#include "lf/capture/distortion_keys.h"
 #include "lf/capture/lf_keys.h"
 #include "lf/capture/opengl_pose.h"
 #include "lf/capture/transforms_json.h"
@@ -61,7 +66,38 @@ class JsonText {
   std::string text_;
 };
 
-void AddIntrinsics(const Intrinsics& k, const char* separator, JsonText* json) {
+// camera_model and its parameters. Those that only `top` has are written as 0: they would else be
+// taken from there.
+void AddDistortion(const Distortion& distortion, const Distortion& top, const char* separator,
+                   JsonText* json) {
+  const auto parameters = [](const Distortion& d, const CameraModelName& model) {
+    std::vector<std::pair<std::string_view, double>> list;
+    for (size_t i = 0; i < model.parameter_count; ++i)
+      list.emplace_back(ParameterKeys(model.model)[i], d.parameters[i]);
+    return list;
+  };
+  const CameraModelName model = CameraModelOf(distortion);
+  auto list = parameters(distortion, model);
+  for (const auto& [key, value] : parameters(top, CameraModelOf(top)))
+    if (std::none_of(list.begin(), list.end(), [&](const auto& p) { return p.first == key; }))
+      list.emplace_back(key, 0);
+  json->Add("\"camera_model\": \"{}\",{}", model.name, separator);
+  for (const auto& [key, value] : list) {
+    json->Add("\"{}\": ", key);
+    json->AddNumber(value);
+    json->Add(",{}", separator);
+  }
+}
+
+// top  the intrinsics at the top level
+void AddIntrinsics(const Intrinsics& k, const Intrinsics& top, const char* separator,
+                   JsonText* json) {
+  AddDistortion(k.distortion, top.distortion, separator, json);
+  if (k.skew_px != 0 || top.skew_px != 0) {
+    json->Add("\"lf_skew\": ");
+    json->AddNumber(k.skew_px);
+    json->Add(",{}", separator);
+  }
   const std::pair<const char*, double> numbers[] = {
       {"fl_x", k.fx_px}, {"fl_y", k.fy_px}, {"cx", k.cx_px}, {"cy", k.cy_px}};
   for (const auto& [key, value] : numbers) {
@@ -123,9 +159,11 @@ Result<void> AddFrame(const LightField& light_field, size_t index, JsonText* jso
   LF_RETURN_IF_ERROR(json->AddString(name));
   json->Add(", ");
   AddPose(camera.cam_from_world, json);
-  if (camera.intrinsics_index != light_field.cameras[0].intrinsics_index) {
+  const uint32_t top_index = light_field.cameras[0].intrinsics_index;
+  if (camera.intrinsics_index != top_index) {
     json->Add(", ");
-    AddIntrinsics(light_field.intrinsics[camera.intrinsics_index], " ", json);
+    AddIntrinsics(light_field.intrinsics[camera.intrinsics_index],
+                  light_field.intrinsics[top_index], " ", json);
   }
   if (camera.gain != 1) json->Add(", \"lf_gain\": {}", static_cast<double>(camera.gain));
   if (!light_field.mask_names.empty() && !light_field.mask_names[index].empty()) {
@@ -137,14 +175,17 @@ Result<void> AddFrame(const LightField& light_field, size_t index, JsonText* jso
 }
 
 Result<std::string> TransformsJsonText(const LightField& light_field) {
-  for (const Intrinsics& k : light_field.intrinsics)
-    if (k.skew_px != 0)
-      return OutputError(fmt::format("a camera has a skew of {} px, which has no key", k.skew_px));
   JsonText json;
-  json.Add("{{\n\"camera_model\": \"PINHOLE\",\n");
-  AddIntrinsics(light_field.intrinsics[light_field.cameras[0].intrinsics_index], "\n", &json);
+  json.Add("{{\n");
+  const Intrinsics& top = light_field.intrinsics[light_field.cameras[0].intrinsics_index];
+  AddIntrinsics(top, top, "\n", &json);
   json.Add(",\n");
   AddEncoding(light_field.encoding, &json);
+  if (light_field.depth_range) {
+    json.Add("\"lf_depth_range\": ");
+    json.AddNumbers(std::array{light_field.depth_range->near_w, light_field.depth_range->far_w});
+    json.Add(",\n");
+  }
   json.Add("\"lf_unit_m\": {},\n\"frames\": [\n", light_field.unit_m);
   for (size_t i = 0; i < light_field.size(); ++i) {
     LF_RETURN_IF_ERROR(AddFrame(light_field, i, &json));
