@@ -1,6 +1,7 @@
 // The thin lens (thesis 2.2.5, 2.2.6): pure formulas, lengths in world units.
 #pragma once
 
+#include "lf/core/geometry.h"
 #include "lf/core/result.h"
 
 namespace lf {
@@ -23,13 +24,9 @@ double FNumber(double focal_length_w, double aperture_diameter_w);
 // from the object side).
 double BlurOnFocusPlane(double aperture_diameter_w, double focus_distance_w, double depth_w);
 
-struct DepthRange {
-  double near_w = 0;
-  double far_w = 0;  // infinity beyond the hyperfocal distance
-};
-
 // The depths whose blur on the focus plane stays within `blur_limit_w`, world units there: exact
-// where thesis Eq. 2.10 is the approximation for g >> f. [0, infinity) for a pinhole.
+// where thesis Eq. 2.10 is the approximation for g >> f. The far end is infinity beyond the
+// hyperfocal distance; [0, infinity) for a pinhole.
 DepthRange DepthOfField(double aperture_diameter_w, double focus_distance_w, double blur_limit_w);
 
 }  // namespace lf

@@ -22,13 +22,6 @@ struct LfCamera {
   float gain = 1;                 // its radiance is multiplied by this (lf_gain)
 };
 
-// Depths along the optical axes between which the scene lies, in world units.
-struct DepthRange {
-  double near_w = 0;
-  double far_w = 0;
-  friend bool operator==(const DepthRange&, const DepthRange&) = default;
-};
-
 struct LightField {
   std::vector<LfCamera> cameras;       // LfImageId indexes these and the two lists of names
   std::vector<Intrinsics> intrinsics;  // the distinct ones
@@ -39,7 +32,7 @@ struct LightField {
 
   RadianceEncoding encoding;
   double unit_m = 1;                      // metres per world unit
-  std::optional<DepthRange> depth_range;  // if the calibration tells
+  std::optional<DepthRange> depth_range;  // of the scene, if the calibration tells
 
   size_t size() const { return cameras.size(); }
   PinholeCamera Camera(LfImageId id) const {

@@ -46,6 +46,13 @@ struct Plane {
   double offset_w = 0;
 };
 
+// Depths along an optical axis, in world units.
+struct DepthRange {
+  double near_w = 0;
+  double far_w = 0;
+  friend bool operator==(const DepthRange&, const DepthRange&) = default;
+};
+
 // Pixels [x_begin, x_end) x [y_begin, y_end).
 struct PixelRect {
   int x_begin = 0;
