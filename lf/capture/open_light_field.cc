@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -30,13 +31,33 @@ std::string OtherCalibrations(const fs::path& folder) {
   return fmt::format("; it holds {}: name the file itself to read it", fmt::join(names, ", "));
 }
 
+// The option given that only folders of the Stanford form take, for messages; none: "".
+std::string_view StanfordOptionOf(const OpenOptions& options) {
+  if (options.focal_px) return "--focal-px";
+  if (options.pitch_w) return "--pitch";
+  if (options.plane_distance_w) return "--plane-distance";
+  if (options.flip_x) return "--flip-x";
+  if (options.flip_y) return "--flip-y";
+  return "";
+}
+
 Result<LightField> OpenTransformsJson(const fs::path& path, const OpenOptions& options) {
-  if (options.focal_px)
-    return UsageError(
-        fmt::format("--focal-px is for folders whose file names lack the focal length; {} states "
-                    "its own",
-                    path.string()));
+  const std::string_view option = StanfordOptionOf(options);
+  if (!option.empty())
+    return UsageError(fmt::format(
+        "{} is for folders of images whose names do not tell everything; {} states its own", option,
+        path.string()));
   return ReadTransformsJson(path);
+}
+
+Result<LightField> OpenStanford(const fs::path& folder, const OpenOptions& options,
+                                const fs::path& asked_for) {
+  return ReadStanfordFolder(folder, {.focal_px = options.focal_px,
+                                     .pitch_w = options.pitch_w,
+                                     .plane_distance_w = options.plane_distance_w,
+                                     .flip_x = options.flip_x,
+                                     .flip_y = options.flip_y,
+                                     .asked_for = asked_for});
 }
 
 }  // namespace
@@ -56,10 +77,10 @@ Result<LightField> OpenLightField(const fs::path& path, const OpenOptions& optio
   if (fs::exists(path / kCalibrationName, error))
     return OpenTransformsJson(path / kCalibrationName, options);
   for (const fs::path& folder : {path, path / kImagesName})
-    if (HoldsStanfordNames(folder)) return ReadStanfordFolder(folder, options.focal_px);
+    if (HoldsStanfordNames(folder)) return OpenStanford(folder, options, path);
   return InputError(
       fmt::format("{}: holds no light field: looked for {}, and for images named "
-                  "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext in it and in {}/{}",
+                  "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext or NAME_ROW_COL.ext in it and in {}/{}",
                   path.string(), kCalibrationName, kImagesName, OtherCalibrations(path)));
 }
 

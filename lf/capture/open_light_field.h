@@ -10,8 +10,13 @@
 namespace lf {
 
 struct OpenOptions {
-  // Of all cameras of a folder of the Stanford form, whose names may lack it; elsewhere kUsage.
-  std::optional<double> focal_px;
+  // What folders of the Stanford form may lack: StanfordOptions of capture/read_stanford.h, and
+  // kUsage elsewhere. All but the first are offered by lfimport alone.
+  std::optional<double> focal_px = {};
+  std::optional<Vec2> pitch_w = {};
+  std::optional<double> plane_distance_w = {};
+  bool flip_x = false;
+  bool flip_y = false;
 };
 
 // Reads what `path` is: a transforms.json (any .json file), a folder holding one, or a folder of

@@ -1,5 +1,6 @@
 #include "lf/capture/open_light_field.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -64,9 +65,13 @@ TEST_F(OpenLightFieldTest, TakesBlendersFormWithTheSizeFromTheFirstImage) {
 
 TEST_F(OpenLightFieldTest, ATransformsJsonNeedsNoFocalLength) {
   ASSERT_TRUE(WriteFileAtomically(folder_ / "transforms.json", kCalibration));
-  const Result<LightField> light_field = OpenLightField(folder_, {.focal_px = 7});
-  ASSERT_FALSE(light_field);
-  EXPECT_EQ(light_field.error().kind, ErrorKind::kUsage);
+  for (const OpenOptions& options : {OpenOptions{.focal_px = 7}, OpenOptions{.pitch_w = Vec2(1, 1)},
+                                     OpenOptions{.plane_distance_w = 7},
+                                     OpenOptions{.flip_x = true}, OpenOptions{.flip_y = true}}) {
+    const Result<LightField> light_field = OpenLightField(folder_, options);
+    ASSERT_FALSE(light_field);
+    EXPECT_EQ(light_field.error().kind, ErrorKind::kUsage);
+  }
 }
 
 TEST_F(OpenLightFieldTest, SaysWhatItLookedFor) {
@@ -132,6 +137,25 @@ TEST_F(RealLightFieldTest, GroundTruthBandLooksAtOnePointFortyCentimetresAhead) 
     target += point_ahead(i) / static_cast<double>(light_field->size());
   for (uint32_t i = 0; i < light_field->size(); ++i)  // jittered by 0.2 mm and 0.05 degrees
     EXPECT_LT((point_ahead(i) - target).norm(), 0.001) << i;
+}
+
+TEST_F(RealLightFieldTest, TheCardsAreARectifiedSlab) {
+  LF_SKIP_WITHOUT("data/stanford-cards-9x9");
+  const fs::path folder = TestData() / "data/stanford-cards-9x9";
+  const Result<LightField> without = OpenLightField(folder);
+  ASSERT_FALSE(without);
+  EXPECT_TRUE(without.error().message.ends_with(
+      fmt::format("lfimport {0} -o {0} --pitch 1 --focal-px 768", folder.string())))
+      << without.error().message;
+  const Result<LightField> light_field =
+      OpenLightField(folder, {.focal_px = 768, .pitch_w = Vec2(1, 1), .plane_distance_w = 100});
+  ASSERT_TRUE(light_field) << light_field.error().message;
+  ASSERT_EQ(light_field->size(), 81u);
+  ASSERT_EQ(light_field->intrinsics.size(), 81u);
+  // Every second row and column of 17: the last is 8 off the middle.
+  const PinholeCamera last = light_field->Camera({80});
+  EXPECT_EQ(last.CentreWorld(), Vec3(8, 8, 0));
+  EXPECT_EQ(last.intrinsics, (Intrinsics{768, 768, 384 + 61.44, 384 + 61.44, 0, 768, 768}));
 }
 
 TEST_F(RealLightFieldTest, TheShopIsAGridOf729Cameras) {

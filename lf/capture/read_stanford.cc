@@ -3,17 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
-#include <charconv>
-#include <cmath>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "lf/capture/distinct_intrinsics.h"
+#include "lf/capture/stanford_name.h"
 #include "lf/core/log.h"
 #include "lf/imageio/image_file.h"
 
@@ -22,50 +21,15 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kForm = "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext";
-constexpr double kLargest_mm = 1e12;
-
-bool IsImageName(std::string_view file_name) {
-  constexpr std::string_view kExtensions[] = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".exr"};
-  std::string extension = fs::path(file_name).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return std::find(std::begin(kExtensions), std::end(kExtensions), extension) !=
-         std::end(kExtensions);
-}
-
-std::optional<int> ParseIndex(std::string_view text) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || text[0] == '-')
-    return std::nullopt;
-  return value;
-}
-
-std::optional<double> ParseDecimal(std::string_view text) {
-  if (text.find_first_not_of("-.0123456789") != std::string_view::npos) return std::nullopt;
-  double value = 0;
-  const auto [end, error] =
-      std::from_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed);
-  if (error != std::errc() || end != text.data() + text.size() || !(std::abs(value) <= kLargest_mm))
-    return std::nullopt;
-  return value;
-}
-
-// ROW, COL, Y, X from four fields.
-std::optional<StanfordName> ParsePosition(const std::string_view* fields) {
-  const std::optional<int> row = ParseIndex(fields[0]);
-  const std::optional<int> column = ParseIndex(fields[1]);
-  const std::optional<double> y_mm = ParseDecimal(fields[2]);
-  const std::optional<double> x_mm = ParseDecimal(fields[3]);
-  if (!row || !column || !y_mm || !x_mm) return std::nullopt;
-  return StanfordName{*row, *column, *y_mm, *x_mm, std::nullopt};
-}
+constexpr double kLargestPrincipal_px = 1e7;  // as in transforms.json
 
 struct StanfordImage {
   std::string file_name;
   StanfordName name;
 };
 
-// Image files of this form, by row and column, and the names of all other files.
+// Image files of one form, by row and column, and the names of all other files. A sheet_01_02.png
+// beside names with positions is no camera.
 struct Listing {
   std::vector<StanfordImage> images;
   std::vector<std::string> others;
@@ -85,6 +49,13 @@ Result<Listing> ListFolder(const fs::path& folder) {
   }
   if (error)
     return InputError(fmt::format("{}: cannot be listed: {}", folder.string(), error.message()));
+  const auto has_position = [](const StanfordImage& image) { return !!image.name.position; };
+  const auto others = std::partition(listing.images.begin(), listing.images.end(), has_position);
+  if (others != listing.images.begin()) {
+    for (auto it = others; it != listing.images.end(); ++it)
+      listing.others.push_back(std::move(it->file_name));
+    listing.images.erase(others, listing.images.end());
+  }
   std::sort(listing.others.begin(), listing.others.end());
   std::sort(listing.images.begin(), listing.images.end(),
             [](const StanfordImage& a, const StanfordImage& b) {
@@ -104,8 +75,28 @@ void WarnOfOthers(const fs::path& folder, const Listing& listing) {
              others.size() > kShown ? ", ..." : "");
 }
 
-Result<void> CheckListing(const fs::path& folder, const Listing& listing, bool needs_lens) {
-  const std::vector<StanfordImage>& images = listing.images;
+// A path as a shell takes it.
+std::string ShellWord(const fs::path& path) {
+  const std::string text = path.string();
+  const auto is_plain = [](unsigned char c) {
+    return std::isalnum(c) || std::string_view("/._-+,:@%").find(c) != std::string_view::npos;
+  };
+  if (std::all_of(text.begin(), text.end(), is_plain)) return text;
+  std::string word = "'";
+  for (const char c : text) word += c == '\'' ? "'\\''" : std::string(1, c);
+  return word + "'";
+}
+
+// The call that writes down what the names do not tell, with numbers to start from.
+std::string ImportCommand(const fs::path& folder, const StanfordOptions& options, bool needs_pitch,
+                          int width_px) {
+  const std::string word = ShellWord(options.asked_for.empty() ? folder : options.asked_for);
+  return fmt::format("lfimport {} -o {}{} --focal-px {}", word, word,
+                     needs_pitch ? " --pitch 1" : "",
+                     options.focal_px.value_or(static_cast<double>(width_px)));
+}
+
+Result<void> CheckPlaces(const fs::path& folder, const std::vector<StanfordImage>& images) {
   if (images.empty())
     return InputError(fmt::format("{}: holds no image named {}", folder.string(), kForm));
   for (size_t i = 0; i + 1 < images.size(); ++i)
@@ -115,7 +106,31 @@ Result<void> CheckListing(const fs::path& folder, const Listing& listing, bool n
           "{}: row {}, column {} is there twice, as {} and {}: keep one image per camera",
           folder.string(), images[i].name.row, images[i].name.column, images[i].file_name,
           images[i + 1].file_name));
-  if (!needs_lens) return {};
+  return {};
+}
+
+Result<void> CheckOptions(const StanfordOptions& options) {
+  const auto is_length = [](double length_w) { return length_w > 0 && length_w <= 1e9; };
+  const Vec2 pitch_w = options.pitch_w.value_or(Vec2(1, 1));
+  if (!is_length(pitch_w.x()) || !is_length(pitch_w.y()))
+    return UsageError(fmt::format("the pitch is {}, {}: expected above 0 and at most 1e9",
+                                  pitch_w.x(), pitch_w.y()));
+  if (!is_length(options.plane_distance_w.value_or(1)))
+    return UsageError(fmt::format("the plane distance is {}: expected above 0 and at most 1e9",
+                                  *options.plane_distance_w));
+  return {};
+}
+
+// Whether names and options together tell all.
+Result<void> CheckComplete(const fs::path& folder, const std::vector<StanfordImage>& images,
+                           const StanfordOptions& options, int width_px) {
+  if (!options.pitch_w && !images[0].name.position)
+    return InputError(fmt::format(
+        "{}: the names tell row and column, but neither positions nor the focal length ({}): write "
+        "down pitch and focal length, and --plane-distance if the images are rectified to one "
+        "plane, as in: {}",
+        folder.string(), images[0].file_name, ImportCommand(folder, options, true, width_px)));
+  if (options.focal_px) return {};
   const auto lacks_lens = [](const StanfordImage& image) { return !image.name.lens; };
   const auto without = std::find_if(images.begin(), images.end(), lacks_lens);
   const auto with = std::find_if_not(images.begin(), images.end(), lacks_lens);
@@ -125,37 +140,59 @@ Result<void> CheckListing(const fs::path& folder, const Listing& listing, bool n
         "{}: {} states focal length and sensor width, {} does not: rename them alike as {}",
         folder.string(), with->file_name, without->file_name, kForm));
   return InputError(fmt::format(
-      "{}: the names lack the focal length: {} has no _FOCALMM_SENSORMM behind the position; add "
-      "it, or give the focal length in pixels (--focal-px)",
-      folder.string(), without->file_name));
+      "{}: the names lack the focal length: {} has no _FOCALMM_SENSORMM at its end; give "
+      "it in pixels (--focal-px), or write it down once, and --plane-distance if the images are "
+      "rectified to one plane, as in: {}",
+      folder.string(), without->file_name,
+      ImportCommand(folder, options, !images[0].name.position, width_px)));
+}
+
+// Where the cameras stand in their plane.
+std::vector<Vec2> Positions(const std::vector<StanfordImage>& images,
+                            const StanfordOptions& options) {
+  std::vector<Vec2> positions;
+  for (const StanfordImage& image : images) {
+    const StanfordName& name = image.name;
+    positions.push_back(
+        options.pitch_w ? Vec2(options.pitch_w->x() * name.column, options.pitch_w->y() * name.row)
+                        : Vec2(name.position->x_mm, name.position->y_mm) / 1000);
+    if (options.flip_x) positions.back().x() *= -1;
+    if (options.flip_y) positions.back().y() *= -1;
+  }
+  return positions;
+}
+
+Vec2 MiddleOf(const std::vector<Vec2>& positions) {
+  Eigen::AlignedBox2d box;
+  for (const Vec2& position : positions) box.extend(position);
+  return box.center();
+}
+
+// Of the camera at `offset_w` from the middle of the grid.
+Result<Intrinsics> IntrinsicsOf(const StanfordName& name, const ImageFileInfo& info,
+                                const StanfordOptions& options, const Vec2& offset_w) {
+  Intrinsics k;
+  k.width_px = info.width;
+  k.height_px = info.height;
+  k.fx_px = options.focal_px ? *options.focal_px
+                             : name.lens->focal_mm / name.lens->sensor_width_mm * info.width;
+  if (!(k.fx_px >= 0.001 && k.fx_px <= 1e7))
+    return InputError(
+        fmt::format("the focal length comes to {} px: expected 0.001 to 1e7", k.fx_px));
+  k.fy_px = k.fx_px;
+  const Vec2 shift_px =
+      options.plane_distance_w ? offset_w * k.fx_px / *options.plane_distance_w : Vec2(0, 0);
+  k.cx_px = info.width / 2.0 + shift_px.x();
+  k.cy_px = info.height / 2.0 + shift_px.y();
+  if (!(shift_px.cwiseAbs().maxCoeff() <= kLargestPrincipal_px / 2))
+    return InputError(fmt::format(
+        "the principal point comes to ({}, {}) px: is the plane distance {} in the units of the "
+        "positions?",
+        k.cx_px, k.cy_px, *options.plane_distance_w));
+  return k;
 }
 
 }  // namespace
-
-std::optional<StanfordName> ParseStanfordName(std::string_view file_name) {
-  if (!IsImageName(file_name)) return std::nullopt;
-  std::string_view stem = file_name.substr(0, file_name.rfind('.'));
-  if (stem.ends_with('_')) stem.remove_suffix(1);
-  // The last fields, each with a '_' before it: so there is a NAME, if an empty one.
-  std::array<std::string_view, 6> fields;
-  size_t count = 0;
-  for (; count < fields.size(); ++count) {
-    const size_t underscore = stem.rfind('_');
-    if (underscore == std::string_view::npos) break;
-    fields[fields.size() - 1 - count] = stem.substr(underscore + 1);
-    stem.remove_suffix(stem.size() - underscore);
-  }
-  if (count == 6) {
-    std::optional<StanfordName> name = ParsePosition(&fields[0]);
-    const std::optional<double> focal_mm = ParseDecimal(fields[4]);
-    const std::optional<double> sensor_width_mm = ParseDecimal(fields[5]);
-    if (name && focal_mm.value_or(0) > 0 && sensor_width_mm.value_or(0) > 0) {
-      name->lens = StanfordName::Lens{*focal_mm, *sensor_width_mm};
-      return name;
-    }
-  }
-  return count >= 4 ? ParsePosition(&fields[2]) : std::nullopt;
-}
 
 bool HoldsStanfordNames(const fs::path& folder) {
   std::error_code error;
@@ -164,32 +201,31 @@ bool HoldsStanfordNames(const fs::path& folder) {
   return false;
 }
 
-Result<LightField> ReadStanfordFolder(const fs::path& folder, std::optional<double> focal_px) {
+Result<LightField> ReadStanfordFolder(const fs::path& folder, const StanfordOptions& options) {
+  LF_RETURN_IF_ERROR(CheckOptions(options));
   LF_ASSIGN_OR_RETURN(const Listing listing, ListFolder(folder));
-  LF_RETURN_IF_ERROR(CheckListing(folder, listing, !focal_px));
-  WarnOfOthers(folder, listing);
+  LF_RETURN_IF_ERROR(CheckPlaces(folder, listing.images));
   LF_ASSIGN_OR_RETURN(const ImageFileInfo info,
                       ReadImageInfo(folder / listing.images[0].file_name));
+  LF_RETURN_IF_ERROR(CheckComplete(folder, listing.images, options, info.width));
+  WarnOfOthers(folder, listing);
 
   LightField light_field;
   light_field.folder = folder;
+  const std::vector<Vec2> positions = Positions(listing.images, options);
+  const Vec2 middle = MiddleOf(positions);
+  const Vec2 origin = options.pitch_w ? middle : Vec2(0, 0);
   DistinctIntrinsics distinct;
-  for (const auto& [file_name, name] : listing.images) {
-    Intrinsics k;
-    k.fx_px = focal_px ? *focal_px : name.lens->focal_mm / name.lens->sensor_width_mm * info.width;
-    if (!(k.fx_px >= 0.001 && k.fx_px <= 1e7))
-      return InputError(fmt::format("{}: the focal length comes to {} px: expected 0.001 to 1e7",
-                                    (folder / file_name).string(), k.fx_px));
-    k.fy_px = k.fx_px;
-    k.cx_px = info.width / 2.0;
-    k.cy_px = info.height / 2.0;
-    k.width_px = info.width;
-    k.height_px = info.height;
+  for (size_t i = 0; i < positions.size(); ++i) {
+    const StanfordImage& image = listing.images[i];
+    const Result<Intrinsics> k = IntrinsicsOf(image.name, info, options, positions[i] - middle);
+    if (!k) return InputError((folder / image.file_name).string() + ": " + k.error().message);
+    const Vec2 centre = positions[i] - origin;
     LfCamera camera;
-    camera.intrinsics_index = distinct.IndexOf(k);
-    camera.cam_from_world.translation = Vec3::Zero() - Vec3(name.x_mm, name.y_mm, 0) / 1000;
+    camera.intrinsics_index = distinct.IndexOf(*k);
+    camera.cam_from_world.translation = Vec3::Zero() - Vec3(centre.x(), centre.y(), 0);
     light_field.cameras.push_back(camera);
-    light_field.image_names.push_back(file_name);
+    light_field.image_names.push_back(image.file_name);
   }
   light_field.intrinsics = distinct.Take();
   light_field.encoding.max_radiance = DefaultMaxRadiance(light_field.image_names);

@@ -1,5 +1,6 @@
 #include "lf/capture/read_stanford.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -12,65 +13,6 @@
 namespace lf {
 namespace {
 namespace fs = std::filesystem;
-
-TEST(StanfordName, HasRowColumnAndPosition) {
-  const auto name = ParseStanfordName("out_09_16_-381.909271_1103.376221.png");
-  ASSERT_TRUE(name);
-  EXPECT_EQ(name->row, 9);
-  EXPECT_EQ(name->column, 16);
-  EXPECT_EQ(name->y_mm, -381.909271);
-  EXPECT_EQ(name->x_mm, 1103.376221);
-  EXPECT_FALSE(name->lens);
-}
-
-TEST(StanfordName, MayStateTheLens) {
-  const auto name = ParseStanfordName("Original Camera_18_04_-153.846154_276.923077_30_36.jpg");
-  ASSERT_TRUE(name);
-  EXPECT_EQ(name->row, 18);
-  EXPECT_EQ(name->column, 4);
-  EXPECT_EQ(name->y_mm, -153.846154);
-  EXPECT_EQ(name->x_mm, 276.923077);
-  ASSERT_TRUE(name->lens);
-  EXPECT_EQ(name->lens->focal_mm, 30);
-  EXPECT_EQ(name->lens->sensor_width_mm, 36);
-}
-
-TEST(StanfordName, MayEndInAnUnderscoreAndContainSome) {
-  const auto name = ParseStanfordName("my_2nd_scene_00_01_-780.1_-3355.3_.PNG");
-  ASSERT_TRUE(name);
-  EXPECT_EQ(name->row, 0);
-  EXPECT_EQ(name->column, 1);
-  EXPECT_EQ(name->x_mm, -3355.3);
-  EXPECT_FALSE(name->lens);
-}
-
-TEST(StanfordName, OtherNamesHaveNone) {
-  for (const char* name : {"",
-                           ".",
-                           "_",
-                           "____.png",
-                           ".png",
-                           "a.png",
-                           "out_00_01.png",
-                           "out_00_01_2.png",
-                           "00_01_2.0_3.0.png",
-                           "out_00_01_2.0_3.0",
-                           "out_00_01_2.0_3.0.txt",
-                           "out_-1_01_2.0_3.0.png",
-                           "out_0x1_01_2.0_3.0.png",
-                           "out_1.5_01_2.0_3.0.png",
-                           "out_00_01_nan_3.0.png",
-                           "out_00_01_inf_3.0.png",
-                           "out_00_01_1e3_3.0.png",
-                           "out_00_01_-_3.0.png",
-                           "out_00_01_--1_3.0.png",
-                           "out_00_01_1.2.3_3.0.png",
-                           "out_00_01__3.0.png",
-                           "out_99999999999_01_2.0_3.0.png",
-                           "out_00_01_9999999999999_3.0.png",
-                           "out_00_01_2.0_3.0_30.png"})
-    EXPECT_FALSE(ParseStanfordName(name)) << name;
-}
 
 class StanfordFolderTest : public FolderTest {
  protected:
@@ -123,11 +65,88 @@ TEST_F(StanfordFolderTest, OtherFilesAreLeftOutWithAWarning) {
 TEST_F(StanfordFolderTest, WithoutAFocalLengthSaysWhatIsMissing) {
   AddImage("s_01_10_-5.0_-25.0.png");
   EXPECT_NE(Error().find("s_01_10_-5.0_-25.0.png has no _FOCALMM_SENSORMM"), std::string::npos);
-  const Result<LightField> light_field = ReadStanfordFolder(folder_, 100);
+  const Result<LightField> light_field = ReadStanfordFolder(folder_, {.focal_px = 100});
   ASSERT_TRUE(light_field);
   EXPECT_EQ(light_field->intrinsics[0], (Intrinsics{100, 100, 18, 10, 0, 36, 20}));
+  EXPECT_NE(Error().find(" -o " + folder_.string() + " --focal-px 36"), std::string::npos);
   AddImage("s_01_11_-5.0_-25.0_30_36.png");
   EXPECT_NE(Error().find("rename them alike"), std::string::npos);
+}
+
+TEST_F(StanfordFolderTest, APitchPlacesRowsAndColumnsAroundTheMiddle) {
+  for (const char* name : {"out_02_04.png", "out_02_08.png", "out_05_04.png", "out_05_08.png"})
+    AddImage(name);
+  const Result<LightField> light_field =
+      ReadStanfordFolder(folder_, {.focal_px = 90, .pitch_w = Vec2(0.5, 2)});
+  ASSERT_TRUE(light_field) << light_field.error().message;
+  ASSERT_EQ(light_field->size(), 4u);
+  EXPECT_EQ(light_field->Camera({0}).CentreWorld(), Vec3(-1, -3, 0));
+  EXPECT_EQ(light_field->Camera({1}).CentreWorld(), Vec3(1, -3, 0));
+  EXPECT_EQ(light_field->Camera({2}).CentreWorld(), Vec3(-1, 3, 0));
+  EXPECT_EQ(light_field->intrinsics, (std::vector<Intrinsics>{{90, 90, 18, 10, 0, 36, 20}}));
+  const Result<LightField> flipped = ReadStanfordFolder(
+      folder_, {.focal_px = 90, .pitch_w = Vec2(0.5, 2), .flip_x = true, .flip_y = true});
+  ASSERT_TRUE(flipped);
+  EXPECT_EQ(flipped->Camera({0}).CentreWorld(), Vec3(1, 3, 0));
+  EXPECT_EQ(flipped->Camera({1}).CentreWorld(), Vec3(-1, 3, 0));
+}
+
+TEST_F(StanfordFolderTest, ARectifiedPlaneHasNoDisparity) {
+  for (const char* name : {"a_00_00_100_-300.png", "a_00_01_100_500.png", "a_01_00_-700_-300.png"})
+    AddImage(name);
+  for (const bool flip : {false, true}) {
+    const Result<LightField> light_field = ReadStanfordFolder(
+        folder_, {.focal_px = 90, .plane_distance_w = 8, .flip_x = flip, .flip_y = flip});
+    ASSERT_TRUE(light_field) << light_field.error().message;
+    EXPECT_EQ(light_field->intrinsics.size(), 3u);
+    const double sign = flip ? -1 : 1;
+    EXPECT_EQ(light_field->Camera({0}).CentreWorld(), Vec3(-0.3, 0.1, 0) * sign);
+    // Off the middle, (0.1, -0.3), by (-0.4, 0.4).
+    EXPECT_NEAR(light_field->Camera({0}).intrinsics.cx_px, 18 - sign * 90 * 0.4 / 8, 1e-12);
+    EXPECT_NEAR(light_field->Camera({0}).intrinsics.cy_px, 10 + sign * 90 * 0.4 / 8, 1e-12);
+    const Vec3 point(0.7, 0.2, 8);  // in the plane: everywhere at the same pixel
+    for (uint32_t i = 0; i < 3; ++i)
+      EXPECT_LT(
+          (*Project(light_field->Camera({i}), point) - *Project(light_field->Camera({0}), point))
+              .norm(),
+          1e-12);
+  }
+}
+
+TEST_F(StanfordFolderTest, WithoutPositionsNamesTheCallThatAddsThem) {
+  AddImage("out_02_04.png");
+  const std::string call =
+      fmt::format("lfimport {0} -o {0} --pitch 1 --focal-px 36", folder_.string());
+  EXPECT_TRUE(Error().ends_with(call)) << Error();
+  const Result<LightField> asked = ReadStanfordFolder(folder_, {.asked_for = "my field's"});
+  EXPECT_TRUE(asked.error().message.ends_with(
+      R"(lfimport 'my field'\''s' -o 'my field'\''s' --pitch 1 --focal-px 36)"))
+      << asked.error().message;
+  const Result<LightField> no_lens = ReadStanfordFolder(folder_, {.pitch_w = Vec2(1, 1)});
+  EXPECT_NE(no_lens.error().message.find("lack the focal length"), std::string::npos);
+  EXPECT_TRUE(no_lens.error().message.ends_with(call)) << no_lens.error().message;
+}
+
+TEST_F(StanfordFolderTest, BesidePositionsRowAndColumnAreNoCamera) {
+  AddImage("s_01_10_-5.0_-25.0_30_36.png");
+  AddImage("sheet_01_10.png");
+  testing::internal::CaptureStderr();
+  const Result<LightField> light_field = ReadStanfordFolder(folder_);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("sheet_01_10.png"), std::string::npos);
+  ASSERT_TRUE(light_field);
+  EXPECT_EQ(light_field->size(), 1u);
+}
+
+TEST_F(StanfordFolderTest, LengthsAreAboveZero) {
+  AddImage("out_02_04.png");
+  for (const StanfordOptions& options :
+       {StanfordOptions{.focal_px = 9, .pitch_w = Vec2(0, 1)},
+        StanfordOptions{.focal_px = 9, .pitch_w = Vec2(1, -1)},
+        StanfordOptions{.focal_px = 9, .pitch_w = Vec2(1, 1), .plane_distance_w = 0}}) {
+    const Result<LightField> light_field = ReadStanfordFolder(folder_, options);
+    ASSERT_FALSE(light_field);
+    EXPECT_EQ(light_field.error().kind, ErrorKind::kUsage);
+  }
 }
 
 TEST_F(StanfordFolderTest, UnclearFoldersAreErrors) {
