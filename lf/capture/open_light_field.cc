@@ -8,6 +8,7 @@
 #include <system_error>
 #include <vector>
 
+#include "lf/capture/read_middlebury.h"
 #include "lf/capture/read_stanford.h"
 #include "lf/capture/transforms_json.h"
 
@@ -41,13 +42,33 @@ std::string_view StanfordOptionOf(const OpenOptions& options) {
   return "";
 }
 
-Result<LightField> OpenTransformsJson(const fs::path& path, const OpenOptions& options) {
+// kUsage if options are given that the file at `path` needs none of.
+Result<void> CheckNoOptions(const fs::path& path, const OpenOptions& options) {
   const std::string_view option = StanfordOptionOf(options);
-  if (!option.empty())
-    return UsageError(fmt::format(
-        "{} is for folders of images whose names do not tell everything; {} states its own", option,
-        path.string()));
-  return ReadTransformsJson(path);
+  if (option.empty()) return {};
+  return UsageError(fmt::format(
+      "{} is for folders of images whose names do not tell everything; {} states its own", option,
+      path.string()));
+}
+
+// None if the name is that of no calibration file.
+std::optional<Result<LightField>> OpenFile(const fs::path& path, const OpenOptions& options) {
+  const bool is_json = path.extension() == ".json";
+  if (!is_json && !IsMiddleburyName(path.filename().string())) return std::nullopt;
+  if (Result<void> result = CheckNoOptions(path, options); !result) return result.error();
+  return is_json ? ReadTransformsJson(path) : ReadMiddlebury(path);
+}
+
+// The file in a folder that describes its light field, if any.
+Result<std::optional<fs::path>> CalibrationIn(const fs::path& folder) {
+  std::error_code error;
+  if (fs::exists(folder / kCalibrationName, error)) return std::optional(folder / kCalibrationName);
+  const std::vector<fs::path> middlebury = MiddleburyFiles(folder);
+  if (middlebury.size() > 1)
+    return InputError(fmt::format("{}: holds {} and {}: name the file itself to read it",
+                                  folder.string(), middlebury[0].filename().string(),
+                                  middlebury[1].filename().string()));
+  return middlebury.empty() ? std::nullopt : std::optional(middlebury[0]);
 }
 
 Result<LightField> OpenStanford(const fs::path& folder, const OpenOptions& options,
@@ -68,18 +89,18 @@ Result<LightField> OpenLightField(const fs::path& path, const OpenOptions& optio
   if (!fs::exists(status))
     return InputError(fmt::format("{}: no such file or folder", path.string()));
   if (!fs::is_directory(status)) {
-    if (path.extension() == ".json") return OpenTransformsJson(path, options);
+    if (std::optional<Result<LightField>> opened = OpenFile(path, options)) return *opened;
     return InputError(
-        fmt::format("{}: is not a light field: expected a transforms.json or the folder of one, "
-                    "or a folder of images",
+        fmt::format("{}: is not a light field: expected a transforms.json, a NAME_par.txt "
+                    "(Middlebury) or the folder of one, or a folder of images",
                     path.string()));
   }
-  if (fs::exists(path / kCalibrationName, error))
-    return OpenTransformsJson(path / kCalibrationName, options);
+  LF_ASSIGN_OR_RETURN(const std::optional<fs::path> calibration, CalibrationIn(path));
+  if (calibration) return *OpenFile(*calibration, options);
   for (const fs::path& folder : {path, path / kImagesName})
     if (HoldsStanfordNames(folder)) return OpenStanford(folder, options, path);
   return InputError(
-      fmt::format("{}: holds no light field: looked for {}, and for images named "
+      fmt::format("{}: holds no light field: looked for {}, NAME_par.txt, and for images named "
                   "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext or NAME_ROW_COL.ext in it and in {}/{}",
                   path.string(), kCalibrationName, kImagesName, OtherCalibrations(path)));
 }

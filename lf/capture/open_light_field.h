@@ -19,9 +19,13 @@ struct OpenOptions {
   bool flip_y = false;
 };
 
-// Reads what `path` is: a transforms.json (any .json file), a folder holding one, or a folder of
-// images with names of the Stanford form (capture/read_stanford.h), in it or in its images/. No
-// pixels are read; that image files exist is not checked here.
+// Reads what `path` is: a file, or a folder that holds one, looked for in this order:
+//   transforms.json      or any .json file (capture/transforms_json.h)
+//   NAME_par.txt         Middlebury's multi-view form (capture/read_middlebury.h), one in the
+//   folder images named by the Stanford form (capture/read_stanford.h), in the folder or in its
+//   images/
+// No pixels are read; that image files exist is not checked here, but for a first one where its
+// header tells the size.
 // kInput: nothing there that is a light field (the message lists what was looked for), or the
 // reader's own error.
 Result<LightField> OpenLightField(const std::filesystem::path& path,

@@ -74,6 +74,23 @@ TEST_F(OpenLightFieldTest, ATransformsJsonNeedsNoFocalLength) {
   }
 }
 
+TEST_F(OpenLightFieldTest, TakesMiddleburysFileOrTheFolderOfOne) {
+  const Image<uint8_t> image(8, 6, 3);
+  ASSERT_TRUE(WriteImage(folder_ / "a.png", image.view()));
+  const std::string text = "1\na.png 5 0 4 0 5 3 0 0 1 1 0 0 0 1 0 0 0 1 0 0 0\n";
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "x_par.txt", text));
+  for (const fs::path& path : {folder_, folder_ / "x_par.txt"}) {
+    const Result<LightField> light_field = OpenLightField(path);
+    ASSERT_TRUE(light_field) << light_field.error().message;
+    EXPECT_EQ(light_field->intrinsics[0], (Intrinsics{5, 5, 4.5, 3.5, 0, 8, 6}));
+  }
+  EXPECT_EQ(OpenLightField(folder_, {.focal_px = 7}).error().kind, ErrorKind::kUsage);
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "y_par.txt", text));
+  const Result<LightField> two = OpenLightField(folder_);
+  ASSERT_FALSE(two);
+  EXPECT_NE(two.error().message.find("holds x_par.txt and y_par.txt"), std::string::npos);
+}
+
 TEST_F(OpenLightFieldTest, SaysWhatItLookedFor) {
   const auto error = [](const fs::path& path) {
     const Result<LightField> light_field = OpenLightField(path);
@@ -81,6 +98,7 @@ TEST_F(OpenLightFieldTest, SaysWhatItLookedFor) {
   };
   EXPECT_NE(error(folder_ / "none").find("none: no such file or folder"), std::string::npos);
   EXPECT_NE(error(folder_).find("looked for transforms.json"), std::string::npos);
+  EXPECT_NE(error(folder_).find("NAME_par.txt"), std::string::npos);
   EXPECT_NE(error(folder_).find("NAME_ROW_COL_Y_X"), std::string::npos);
   ASSERT_TRUE(WriteFileAtomically(folder_ / "transforms_train.json", kCalibration));
   EXPECT_NE(error(folder_).find("it holds transforms_train.json"), std::string::npos);
@@ -171,6 +189,27 @@ TEST_F(RealLightFieldTest, TheShopIsAGridOf729Cameras) {
     const Vec3 expected(0.4 - kPitch_m * (i % 27), 0.4 - kPitch_m * (i / 27), 0);
     EXPECT_LT((light_field->Camera({i}).CentreWorld() - expected).norm(), 1e-8) << i;
     EXPECT_EQ(light_field->Camera({i}).ForwardWorld(), Vec3(0, 0, 1));
+    EXPECT_TRUE(fs::exists(light_field->ImagePath({i})));
+  }
+}
+
+TEST_F(RealLightFieldTest, TheTempleIsProjectedAsItsFileSays) {
+  LF_SKIP_WITHOUT("data/middlebury-templeRing");
+  const Result<LightField> light_field = Open("data/middlebury-templeRing/templeRing");
+  ASSERT_TRUE(light_field) << light_field.error().message;
+  ASSERT_EQ(light_field->size(), 47u);
+  ASSERT_EQ(light_field->intrinsics.size(), 1u);
+  // The middle of the bounding box that the data set states; P = K [R t] of the first line gives
+  // (362.0134555, 247.2674371) from the centre of the upper left pixel.
+  const Vec3 middle(0.0277525, 0.0418135, -0.0546675);
+  const std::optional<Vec2> first = Project(light_field->Camera({0}), middle);
+  ASSERT_TRUE(first);
+  EXPECT_NEAR(first->x(), 362.01345550900254 + 0.5, 1e-6);
+  EXPECT_NEAR(first->y(), 247.26743707775952 + 0.5, 1e-6);
+  for (uint32_t i = 0; i < 47; ++i) {
+    const PinholeCamera camera = light_field->Camera({i});
+    EXPECT_NEAR((camera.CentreWorld() - middle).norm(), 0.565, 0.02) << i;
+    EXPECT_LT((*Project(camera, middle) - Vec2(320, 240)).norm(), 80) << i;
     EXPECT_TRUE(fs::exists(light_field->ImagePath({i})));
   }
 }

@@ -5,6 +5,8 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "lf/capture/rotation.h"
+
 namespace lf {
 namespace {
 
@@ -12,18 +14,6 @@ constexpr double kLargest = 1e12;
 constexpr double kSmallestScale = 1e-6;
 constexpr double kSkewTolerance = 1e-3;
 constexpr double kExact = 1e-12;
-
-// How far the columns are from right angles and unit length.
-double Skew(const Mat3& axes) {
-  return (axes.transpose() * axes - Mat3::Identity()).cwiseAbs().maxCoeff();
-}
-
-// The orthogonal factor of the polar decomposition, by Newton's iteration (Higham 1986); from
-// within kSkewTolerance three steps reach machine precision.
-Mat3 NearestRotation(Mat3 axes) {
-  for (int i = 0; i < 4; ++i) axes = 0.5 * (axes + axes.inverse().transpose()).eval();
-  return axes;
-}
 
 }  // namespace
 
@@ -37,20 +27,8 @@ Result<RigidTransform> CamFromWorldOfOpenGl(const Mat34& world_from_opengl_camer
   if (!(scale >= kSmallestScale))
     return InputError(
         fmt::format("has the determinant {:g}: expected a rotation, of any scale", determinant));
-  if (determinant < 0)
-    return InputError(
-        "is mirrored (its determinant is negative): expected the right-handed axes right, up, "
-        "backward as columns");
-  if (!(std::abs(scale - 1) <= kExact && Skew(axes) <= kExact)) {
-    axes /= scale;
-    const double skew = Skew(axes);
-    if (!(skew <= kSkewTolerance))
-      return InputError(
-          fmt::format("is sheared or scaled unevenly: its axes miss right angles and equal lengths "
-                      "by {:.2g}, more than {:g}",
-                      skew, kSkewTolerance));
-    axes = NearestRotation(axes);
-  }
+  if (std::abs(scale - 1) > kExact) axes /= scale;
+  LF_ASSIGN_OR_RETURN(axes, NearestRotation(axes, kSkewTolerance));
   RigidTransform cam_from_world;
   cam_from_world.rotation.row(0) = axes.col(0);
   cam_from_world.rotation.row(1) = -axes.col(1);

@@ -1,27 +1,16 @@
 #include "lf/capture/stanford_name.h"
 
-#include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
-#include <iterator>
-#include <string>
 #include <system_error>
+
+#include "lf/capture/image_files.h"
 
 namespace lf {
 namespace {
 
 constexpr double kLargest_mm = 1e12;
-
-bool IsImageName(std::string_view file_name) {
-  constexpr std::string_view kExtensions[] = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".exr"};
-  std::string extension = std::filesystem::path(file_name).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return std::find(std::begin(kExtensions), std::end(kExtensions), extension) !=
-         std::end(kExtensions);
-}
 
 std::optional<int> ParseIndex(std::string_view text) {
   int value = 0;

@@ -14,7 +14,6 @@
 #include "lf/capture/lf_keys.h"
 #include "lf/capture/opengl_pose.h"
 #include "lf/core/file.h"
-#include "lf/imageio/image_file.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -244,10 +243,7 @@ Result<LightField> ParseTransformsJson(std::string_view text, const fs::path& pa
 
 Result<LightField> ReadTransformsJson(const fs::path& path) {
   LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(path));
-  return ParseTransformsJson(text, path, [](const fs::path& image) -> Result<std::array<int, 2>> {
-    LF_ASSIGN_OR_RETURN(const ImageFileInfo info, ReadImageInfo(image));
-    return std::array{info.width, info.height};
-  });
+  return ParseTransformsJson(text, path, ImageSizeInHeader);
 }
 
 }  // namespace lf

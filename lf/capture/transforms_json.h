@@ -3,18 +3,14 @@
 // camera-to-world), converted on reading.
 #pragma once
 
-#include <array>
 #include <filesystem>
-#include <functional>
 #include <string_view>
 
+#include "lf/capture/image_files.h"
 #include "lf/capture/light_field.h"
 #include "lf/core/result.h"
 
 namespace lf {
-
-// [width, height] of an image file.
-using ImageSizeSource = std::function<Result<std::array<int, 2>>(const std::filesystem::path&)>;
 
 // text        the file's content
 // path        its name for messages; its folder becomes LightField::folder

@@ -1,0 +1,24 @@
+// Numbers in text files. Internal to capture.
+#pragma once
+
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string_view>
+#include <system_error>
+
+namespace lf {
+
+// The whole of `text` as a finite decimal number, with or without exponent and sign; none
+// otherwise. Of the C locale whatever the program's is.
+inline std::optional<double> ParseNumber(std::string_view text) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || text.empty() ||
+      !std::isfinite(value))
+    return std::nullopt;
+  return value;
+}
+
+}  // namespace lf
