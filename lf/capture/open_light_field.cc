@@ -8,6 +8,7 @@
 #include <system_error>
 #include <vector>
 
+#include "lf/capture/read_llff.h"
 #include "lf/capture/read_middlebury.h"
 #include "lf/capture/read_stanford.h"
 #include "lf/capture/transforms_json.h"
@@ -53,10 +54,13 @@ Result<void> CheckNoOptions(const fs::path& path, const OpenOptions& options) {
 
 // None if the name is that of no calibration file.
 std::optional<Result<LightField>> OpenFile(const fs::path& path, const OpenOptions& options) {
-  const bool is_json = path.extension() == ".json";
-  if (!is_json && !IsMiddleburyName(path.filename().string())) return std::nullopt;
+  Result<LightField> (*read)(const fs::path&) = nullptr;
+  if (path.extension() == ".json") read = ReadTransformsJson;
+  if (path.extension() == ".npy") read = ReadLlff;
+  if (IsMiddleburyName(path.filename().string())) read = ReadMiddlebury;
+  if (!read) return std::nullopt;
   if (Result<void> result = CheckNoOptions(path, options); !result) return result.error();
-  return is_json ? ReadTransformsJson(path) : ReadMiddlebury(path);
+  return read(path);
 }
 
 // The file in a folder that describes its light field, if any.
@@ -68,7 +72,9 @@ Result<std::optional<fs::path>> CalibrationIn(const fs::path& folder) {
     return InputError(fmt::format("{}: holds {} and {}: name the file itself to read it",
                                   folder.string(), middlebury[0].filename().string(),
                                   middlebury[1].filename().string()));
-  return middlebury.empty() ? std::nullopt : std::optional(middlebury[0]);
+  if (!middlebury.empty()) return std::optional(middlebury[0]);
+  if (fs::exists(folder / kLlffName, error)) return std::optional(folder / kLlffName);
+  return std::optional<fs::path>();
 }
 
 Result<LightField> OpenStanford(const fs::path& folder, const OpenOptions& options,
@@ -92,17 +98,18 @@ Result<LightField> OpenLightField(const fs::path& path, const OpenOptions& optio
     if (std::optional<Result<LightField>> opened = OpenFile(path, options)) return *opened;
     return InputError(
         fmt::format("{}: is not a light field: expected a transforms.json, a NAME_par.txt "
-                    "(Middlebury) or the folder of one, or a folder of images",
+                    "(Middlebury), a poses_bounds.npy (LLFF) or the folder of one, or a folder of "
+                    "images",
                     path.string()));
   }
   LF_ASSIGN_OR_RETURN(const std::optional<fs::path> calibration, CalibrationIn(path));
   if (calibration) return *OpenFile(*calibration, options);
   for (const fs::path& folder : {path, path / kImagesName})
     if (HoldsStanfordNames(folder)) return OpenStanford(folder, options, path);
-  return InputError(
-      fmt::format("{}: holds no light field: looked for {}, NAME_par.txt, and for images named "
-                  "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext or NAME_ROW_COL.ext in it and in {}/{}",
-                  path.string(), kCalibrationName, kImagesName, OtherCalibrations(path)));
+  return InputError(fmt::format(
+      "{}: holds no light field: looked for {}, NAME_par.txt, {}, and for images named "
+      "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext or NAME_ROW_COL.ext in it and in {}/{}",
+      path.string(), kCalibrationName, kLlffName, kImagesName, OtherCalibrations(path)));
 }
 
 }  // namespace lf

@@ -20,10 +20,11 @@ struct OpenOptions {
 };
 
 // Reads what `path` is: a file, or a folder that holds one, looked for in this order:
-//   transforms.json      or any .json file (capture/transforms_json.h)
-//   NAME_par.txt         Middlebury's multi-view form (capture/read_middlebury.h), one in the
-//   folder images named by the Stanford form (capture/read_stanford.h), in the folder or in its
-//   images/
+// - transforms.json, or any .json file: capture/transforms_json.h
+// - NAME_par.txt, one in the folder: capture/read_middlebury.h
+// - poses_bounds.npy, or any .npy file: capture/read_llff.h
+// - images named by the Stanford form, in the folder or its images/: capture/read_stanford.h
+//
 // No pixels are read; that image files exist is not checked here, but for a first one where its
 // header tells the size.
 // kInput: nothing there that is a light field (the message lists what was looked for), or the

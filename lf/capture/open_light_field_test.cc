@@ -91,6 +91,17 @@ TEST_F(OpenLightFieldTest, TakesMiddleburysFileOrTheFolderOfOne) {
   EXPECT_NE(two.error().message.find("holds x_par.txt and y_par.txt"), std::string::npos);
 }
 
+TEST_F(OpenLightFieldTest, TakesLlffsFileOrItsFolder) {
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "poses_bounds.npy", "x"));
+  fs::create_directories(folder_ / "images");
+  for (const fs::path& path : {folder_, folder_ / "poses_bounds.npy"}) {
+    const Result<LightField> light_field = OpenLightField(path);
+    ASSERT_FALSE(light_field);
+    EXPECT_NE(light_field.error().message.find("poses_bounds.npy: is no .npy file"),
+              std::string::npos);
+  }
+}
+
 TEST_F(OpenLightFieldTest, SaysWhatItLookedFor) {
   const auto error = [](const fs::path& path) {
     const Result<LightField> light_field = OpenLightField(path);
@@ -99,6 +110,7 @@ TEST_F(OpenLightFieldTest, SaysWhatItLookedFor) {
   EXPECT_NE(error(folder_ / "none").find("none: no such file or folder"), std::string::npos);
   EXPECT_NE(error(folder_).find("looked for transforms.json"), std::string::npos);
   EXPECT_NE(error(folder_).find("NAME_par.txt"), std::string::npos);
+  EXPECT_NE(error(folder_).find("poses_bounds.npy"), std::string::npos);
   EXPECT_NE(error(folder_).find("NAME_ROW_COL_Y_X"), std::string::npos);
   ASSERT_TRUE(WriteFileAtomically(folder_ / "transforms_train.json", kCalibration));
   EXPECT_NE(error(folder_).find("it holds transforms_train.json"), std::string::npos);
