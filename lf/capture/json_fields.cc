@@ -56,6 +56,11 @@ const char* Nearest(std::string_view key, std::span<const char* const> known) {
 
 }  // namespace
 
+Error IsNotJson(const std::filesystem::path& file, std::string_view what) {
+  what.remove_prefix(std::min(what.size(), what.find("] ") + 2));  // the library's name
+  return InputError(fmt::format("{}: is not JSON: {}", file.string(), what));
+}
+
 const json* JsonFields::Find(const char* key) const {
   const auto found = object_.find(key);
   return found == object_.end() || found->is_null() ? nullptr : &*found;

@@ -21,6 +21,9 @@ struct NumberRule {
   bool (*holds)(double);
 };
 
+// "a/transforms.json: is not JSON: " + what the parser says
+Error IsNotJson(const std::filesystem::path& file, std::string_view what);
+
 // A view of one object of a file; object, file and file_path must outlive it.
 class JsonFields {
  public:

@@ -8,6 +8,7 @@
 #include <system_error>
 #include <vector>
 
+#include "lf/capture/read_aos.h"
 #include "lf/capture/read_llff.h"
 #include "lf/capture/read_middlebury.h"
 #include "lf/capture/read_stanford.h"
@@ -18,6 +19,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kCalibrationName = "transforms.json";
+constexpr const char* kAosName = "poses.json";
 constexpr const char* kImagesName = "images";
 
 // Calibrations under other names, such as Blender's transforms_train.json.
@@ -44,7 +46,7 @@ std::string_view StanfordOptionOf(const OpenOptions& options) {
 }
 
 // kUsage if options are given that the file at `path` needs none of.
-Result<void> CheckNoOptions(const fs::path& path, const OpenOptions& options) {
+Result<void> CheckNoStanfordOptions(const fs::path& path, const OpenOptions& options) {
   const std::string_view option = StanfordOptionOf(options);
   if (option.empty()) return {};
   return UsageError(fmt::format(
@@ -52,14 +54,29 @@ Result<void> CheckNoOptions(const fs::path& path, const OpenOptions& options) {
       path.string()));
 }
 
+Result<void> CheckNoFov(const fs::path& path, const OpenOptions& options) {
+  if (!options.fov_deg) return {};
+  return UsageError(fmt::format(
+      "--fov-deg is for poses of Airborne Optical Sectioning, which do not tell it; {} is of "
+      "another kind",
+      path.string()));
+}
+
+Result<LightField> OpenAos(const fs::path& path, const OpenOptions& options) {
+  LF_RETURN_IF_ERROR(CheckNoStanfordOptions(path, options));
+  return ReadAos(path, {.fov_deg = options.fov_deg});
+}
+
 // None if the name is that of no calibration file.
 std::optional<Result<LightField>> OpenFile(const fs::path& path, const OpenOptions& options) {
+  if (path.extension() == ".json" && IsAosFile(path)) return OpenAos(path, options);
   Result<LightField> (*read)(const fs::path&) = nullptr;
   if (path.extension() == ".json") read = ReadTransformsJson;
   if (path.extension() == ".npy") read = ReadLlff;
   if (IsMiddleburyName(path.filename().string())) read = ReadMiddlebury;
   if (!read) return std::nullopt;
-  if (Result<void> result = CheckNoOptions(path, options); !result) return result.error();
+  if (Result<void> result = CheckNoStanfordOptions(path, options); !result) return result.error();
+  if (Result<void> result = CheckNoFov(path, options); !result) return result.error();
   return read(path);
 }
 
@@ -74,11 +91,13 @@ Result<std::optional<fs::path>> CalibrationIn(const fs::path& folder) {
                                   middlebury[1].filename().string()));
   if (!middlebury.empty()) return std::optional(middlebury[0]);
   if (fs::exists(folder / kLlffName, error)) return std::optional(folder / kLlffName);
+  if (IsAosFile(folder / kAosName)) return std::optional(folder / kAosName);
   return std::optional<fs::path>();
 }
 
 Result<LightField> OpenStanford(const fs::path& folder, const OpenOptions& options,
                                 const fs::path& asked_for) {
+  LF_RETURN_IF_ERROR(CheckNoFov(folder, options));
   return ReadStanfordFolder(folder, {.focal_px = options.focal_px,
                                      .pitch_w = options.pitch_w,
                                      .plane_distance_w = options.plane_distance_w,
@@ -98,7 +117,8 @@ Result<LightField> OpenLightField(const fs::path& path, const OpenOptions& optio
     if (std::optional<Result<LightField>> opened = OpenFile(path, options)) return *opened;
     return InputError(
         fmt::format("{}: is not a light field: expected a transforms.json, a NAME_par.txt "
-                    "(Middlebury), a poses_bounds.npy (LLFF) or the folder of one, or a folder of "
+                    "(Middlebury), a poses_bounds.npy (LLFF), a poses.json (AOS) or the folder of "
+                    "one, or a folder of "
                     "images",
                     path.string()));
   }
@@ -107,9 +127,9 @@ Result<LightField> OpenLightField(const fs::path& path, const OpenOptions& optio
   for (const fs::path& folder : {path, path / kImagesName})
     if (HoldsStanfordNames(folder)) return OpenStanford(folder, options, path);
   return InputError(fmt::format(
-      "{}: holds no light field: looked for {}, NAME_par.txt, {}, and for images named "
+      "{}: holds no light field: looked for {}, NAME_par.txt, {}, {} (AOS), and for images named "
       "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext or NAME_ROW_COL.ext in it and in {}/{}",
-      path.string(), kCalibrationName, kLlffName, kImagesName, OtherCalibrations(path)));
+      path.string(), kCalibrationName, kLlffName, kAosName, kImagesName, OtherCalibrations(path)));
 }
 
 }  // namespace lf

@@ -17,10 +17,14 @@ struct OpenOptions {
   std::optional<double> plane_distance_w = {};
   bool flip_x = false;
   bool flip_y = false;
+  // Of all cameras of poses of Airborne Optical Sectioning, which need it (capture/read_aos.h);
+  // elsewhere kUsage.
+  std::optional<double> fov_deg = {};
 };
 
 // Reads what `path` is: a file, or a folder that holds one, looked for in this order:
-// - transforms.json, or any .json file: capture/transforms_json.h
+// - transforms.json, or any .json file that is not of the next kind: capture/transforms_json.h
+// - poses.json, or any .json file with M3x4 matrices: capture/read_aos.h
 // - NAME_par.txt, one in the folder: capture/read_middlebury.h
 // - poses_bounds.npy, or any .npy file: capture/read_llff.h
 // - images named by the Stanford form, in the folder or its images/: capture/read_stanford.h

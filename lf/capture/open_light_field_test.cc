@@ -102,6 +102,26 @@ TEST_F(OpenLightFieldTest, TakesLlffsFileOrItsFolder) {
   }
 }
 
+TEST_F(OpenLightFieldTest, TakesPosesOfAirborneOpticalSectioningByContent) {
+  const std::string text = R"({"images": [{"imagefile": "a.png", "M3x4":
+      [[1,0,0,1], [0,1,0,2], [0,0,1,3]]}]})";
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "poses.json", text));
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "other.json", text));
+  const Image<uint8_t> image(8, 8, 3);
+  ASSERT_TRUE(WriteImage(folder_ / "a.png", image.view()));
+  for (const fs::path& path : {folder_, folder_ / "poses.json", folder_ / "other.json"}) {
+    const Result<LightField> light_field = OpenLightField(path, {.fov_deg = 90});
+    ASSERT_TRUE(light_field) << light_field.error().message;
+    EXPECT_NEAR(light_field->intrinsics[0].fx_px, 4, 1e-12);
+    const Result<LightField> without = OpenLightField(path);
+    ASSERT_FALSE(without);
+    EXPECT_NE(without.error().message.find("--fov-deg"), std::string::npos);
+  }
+  EXPECT_EQ(OpenLightField(folder_, {.focal_px = 7}).error().kind, ErrorKind::kUsage);
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "transforms.json", kCalibration));
+  EXPECT_EQ(OpenLightField(folder_, {.fov_deg = 90}).error().kind, ErrorKind::kUsage);
+}
+
 TEST_F(OpenLightFieldTest, SaysWhatItLookedFor) {
   const auto error = [](const fs::path& path) {
     const Result<LightField> light_field = OpenLightField(path);
@@ -111,6 +131,7 @@ TEST_F(OpenLightFieldTest, SaysWhatItLookedFor) {
   EXPECT_NE(error(folder_).find("looked for transforms.json"), std::string::npos);
   EXPECT_NE(error(folder_).find("NAME_par.txt"), std::string::npos);
   EXPECT_NE(error(folder_).find("poses_bounds.npy"), std::string::npos);
+  EXPECT_NE(error(folder_).find("poses.json (AOS)"), std::string::npos);
   EXPECT_NE(error(folder_).find("NAME_ROW_COL_Y_X"), std::string::npos);
   ASSERT_TRUE(WriteFileAtomically(folder_ / "transforms_train.json", kCalibration));
   EXPECT_NE(error(folder_).find("it holds transforms_train.json"), std::string::npos);

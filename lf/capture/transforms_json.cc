@@ -235,9 +235,7 @@ Result<LightField> ParseTransformsJson(std::string_view text, const fs::path& pa
         });
     return reader.Finish(top);
   } catch (const json::exception& exception) {
-    std::string_view reason = exception.what();
-    reason.remove_prefix(std::min(reason.size(), reason.find("] ") + 2));  // the library's name
-    return InputError(fmt::format("{}: is not JSON: {}", path.string(), reason));
+    return IsNotJson(path, exception.what());
   }
 }
 
