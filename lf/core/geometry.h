@@ -24,6 +24,9 @@ using PixelForm = Eigen::RowVector3d;
 inline double Value(const PixelForm& form, double x_px, double y_px) {
   return form[0] * x_px + form[1] * y_px + form[2];
 }
+inline double Value(const PixelForm& form, const Vec3& position) {
+  return form[0] * position[0] + form[1] * position[1] + form[2] * position[2];
+}
 
 // x_b = rotation * x_a + translation; named b_from_a.
 struct RigidTransform {

@@ -1,0 +1,98 @@
+#include "lf/camera/ideal_pixels.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace lf {
+namespace {
+
+struct Case {
+  std::string name;
+  Intrinsics k;
+};
+
+std::vector<Case> Cameras() {
+  using enum DistortionModel;
+  std::vector<Case> cases;
+  const auto add = [&](const std::string& name, double focal_px, const Distortion& distortion) {
+    cases.push_back({name, {focal_px, focal_px * 1.01, 155.3, 122.7, 0.4, 320, 240, distortion}});
+  };
+  add("phone", 270, {kRadialTangential, {0.035}});
+  add("barrel", 250, {kRadialTangential, {-0.25, 0.07, 0.002, -0.003}});
+  add("rational", 300, {kRadialTangential, {0.3, -0.1, 5e-4, -2e-4, 0.02, 0.6, -0.05, 0.01}});
+  add("fish-eye", 110, {kFisheye, {-0.02, 0.004, -0.002, 3e-4}});
+  add("fov", 240, {kFov, {0.93}});
+  return cases;
+}
+
+TEST(IdealPixels, ArcsHoldEveryPixelOnceAndAgreeWithTheIteration) {
+  for (const Case& camera : Cameras()) {
+    const DistortionMap map(camera.k.distortion);
+    const IdealPixels pixels(camera.k);
+    size_t arc_count = 0;
+    for (int y = 0; y < camera.k.height_px; ++y) {
+      int next = 0;
+      for (const IdealArc& arc : pixels.Scanline(y)) {
+        ++arc_count;
+        ASSERT_EQ(arc.x_begin, next) << camera.name;
+        next = arc.x_end;
+        for (int x = arc.x_begin; x < arc.x_end; ++x) {
+          const Vec3 q = arc.At(arc.Parameter(x));
+          const std::optional<Vec3> exact = IdealPosition(camera.k, map, x + 0.5, y + 0.5);
+          ASSERT_TRUE(exact) << camera.name;
+          // As an angle, times the focal length: pixels at the centre of the image.
+          const Mat3 inverse = camera.k.InverseMatrix();
+          const Vec3 a = (inverse * q).normalized(), b = (inverse * *exact).normalized();
+          EXPECT_LE((a - b).norm() * camera.k.fx_px, 3e-5) << camera.name << " " << x << " " << y;
+        }
+      }
+      ASSERT_EQ(next, camera.k.width_px) << camera.name;
+    }
+    // Few arcs, or they would be no gain: these small images of strong lenses need the most.
+    EXPECT_LE(arc_count, 320u * 240 / 5) << camera.name;
+  }
+}
+
+TEST(IdealPixels, PixelsBeyondTheFoldHaveNoArc) {
+  // x (1 - 0.3 x^2): no ray beyond 0.70 focal lengths.
+  const Intrinsics k{200, 200, 160, 120, 0, 320, 240, {DistortionModel::kRadialTangential, {-0.3}}};
+  const DistortionMap map(k.distortion);
+  const IdealPixels pixels(k);
+  size_t missing = 0;
+  for (int y = 0; y < k.height_px; ++y) {
+    std::vector<bool> covered(320);
+    for (const IdealArc& arc : pixels.Scanline(y))
+      for (int x = arc.x_begin; x < arc.x_end; ++x) covered[x] = true;
+    for (int x = 0; x < 320; ++x) {
+      EXPECT_EQ(covered[x], IdealPosition(k, map, x + 0.5, y + 0.5).has_value()) << x << " " << y;
+      missing += covered[x] ? 0 : 1;
+    }
+  }
+  EXPECT_GT(missing, 5000u);
+  EXPECT_LT(missing, 60000u);
+}
+
+TEST(IdealPixels, AFormLiesBetweenItsValuesAtTheControlPoints) {
+  for (const Case& camera : Cameras()) {
+    const IdealPixels pixels(camera.k);
+    const PixelForm form(0.3, -0.7, 12);
+    for (int y = 3; y < camera.k.height_px; y += 29)
+      for (const IdealArc& arc : pixels.Scanline(y)) {
+        double low = Value(form, arc.control[0]), high = low;
+        for (const Vec3& control : arc.control) {
+          low = std::min(low, Value(form, control));
+          high = std::max(high, Value(form, control));
+        }
+        for (int x = arc.x_begin; x < arc.x_end; ++x) {
+          const double value = Value(form, arc.At(arc.Parameter(x)));
+          EXPECT_GE(value, low - 1e-9);
+          EXPECT_LE(value, high + 1e-9);
+        }
+      }
+  }
+}
+
+}  // namespace
+}  // namespace lf
