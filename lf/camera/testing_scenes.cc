@@ -58,6 +58,24 @@ CameraPair RandomCameraPair(uint64_t seed) {
   return pair;
 }
 
+CameraPair RandomDistortedPair(uint64_t seed) {
+  using enum DistortionModel;
+  static const Distortion kDistortions[] = {
+      {kRadialTangential, {0.035}},
+      {kRadialTangential, {-0.25, 0.07, 0.002, -0.003}},
+      {kRadialTangential, {0.3, -0.1, 5e-4, -2e-4, 0.02, 0.6, -0.05, 0.01}},
+      {kRadialTangential, {-1.2}},
+      {kFisheye, {-0.02, 0.004, -0.002, 3e-4}},
+      {kFov, {0.93}},
+      {kFisheye, {}},
+  };
+  CameraPair pair = RandomCameraPair(seed);
+  Intrinsics& k = pair.lf_camera.intrinsics;
+  k = {240, 248, 101.2, 68.4, 0.5, 200, 140, kDistortions[seed % 7]};
+  if (seed % 7 == 6) k.fx_px = k.fy_px = 55;  // sees behind itself
+  return pair;
+}
+
 CameraPair ParallelPair(int column, int row, double pitch_w, double radius_w) {
   CameraPair pair;
   RenderCamera& render = pair.render_camera;

@@ -2,10 +2,13 @@
 
 #include <cmath>
 
+#include "lf/camera/ideal_pixels.h"
+
 namespace lf {
 
 RayLaw::RayLaw(const PinholeCamera& lf_camera, const RenderCamera& render_camera)
-    : centre_(lf_camera.CentreWorld()),
+    : intrinsics_(lf_camera.intrinsics),
+      centre_(lf_camera.CentreWorld()),
       direction_(lf_camera.cam_from_world.rotation.transpose() *
                  lf_camera.intrinsics.InverseMatrix()),
       lens_centre_(render_camera.pinhole.CentreWorld()),
@@ -17,11 +20,20 @@ RayLaw::RayLaw(const PinholeCamera& lf_camera, const RenderCamera& render_camera
                         render_camera.pinhole.cam_from_world.rotation),
       aperture_(render_camera.aperture),
       width_px_(render_camera.pinhole.intrinsics.width_px),
-      height_px_(render_camera.pinhole.intrinsics.height_px) {}
+      height_px_(render_camera.pinhole.intrinsics.height_px) {
+  if (intrinsics_.has_distortion()) distortion_.emplace(intrinsics_.distortion);
+}
 
 std::optional<PlateElement> RayLaw::Collect(int x, int y) const {
+  if (!distortion_) return CollectIdeal({x + 0.5, y + 0.5, 1});
+  const std::optional<Vec3> position = IdealPosition(intrinsics_, *distortion_, x + 0.5, y + 0.5);
+  if (!position) return std::nullopt;
+  return CollectIdeal(*position);
+}
+
+std::optional<PlateElement> RayLaw::CollectIdeal(const Vec3& position) const {
   // 1. The ray.
-  const Ray ray{centre_, direction_ * Vec3(x + 0.5, y + 0.5, 1)};
+  const Ray ray{centre_, direction_ * position};
 
   // 2. Forward.
   const double along = forward_.dot(ray.direction);

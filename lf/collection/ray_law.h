@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "lf/camera/distortion.h"
 #include "lf/camera/pinhole.h"
 #include "lf/camera/render_camera.h"
 #include "lf/core/geometry.h"
@@ -24,9 +25,15 @@ class RayLaw {
 
   // Where the ray of LF pixel (x, y) lands on the plate; none if it is not accepted: it runs
   // backward, meets no focus point before the lens, misses the lens or the plate.
+  // Lens distortion is undone by iteration.
   std::optional<PlateElement> Collect(int x, int y) const;
 
+  // The same of an ideal position (camera/ideal_pixels.h).
+  std::optional<PlateElement> CollectIdeal(const Vec3& position) const;
+
  private:
+  Intrinsics intrinsics_;
+  std::optional<DistortionMap> distortion_;
   Vec3 centre_;       // c
   Mat3 direction_;    // R^T K^-1
   Vec3 lens_centre_;  // c'

@@ -9,11 +9,14 @@
 // Tolerance: both accept exactly the same rays. A ray within 1e-9 elements of an element's border
 // may land in the neighbour, since the reference intersects planes and the fast one divides linear
 // forms; a band takes exactly the rays whose address, as the fast one computes it, lies in it.
+// With lens distortion the reference iterates and the fast one follows arcs: rays within
+// IdealPixels::kTolerance_px of a border of element, lens or plate may differ.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
+#include "lf/camera/ideal_pixels.h"
 #include "lf/camera/pinhole.h"
 #include "lf/camera/ray_forms.h"
 #include "lf/camera/render_camera.h"
@@ -31,7 +34,7 @@ uint64_t ScatterReference(const PinholeCamera& lf_camera, const LfPixels& pixels
                           SensorPlate* plate);
 
 // Pixels [x_begin, x_end) of scanline y, all accepted. Along a span the element moves monotonically
-// in both coordinates.
+// in both coordinates; with lens distortion it lies on one arc instead.
 struct RaySpan {
   int32_t y = 0;
   int32_t x_begin = 0;
@@ -39,18 +42,21 @@ struct RaySpan {
   // Range of element_y, continuous, over the span.
   float element_y_min = 0;
   float element_y_max = 0;
+  uint32_t arc = 0;  // with lens distortion: index into the scanline's arcs
 };
 
 struct ScatterPlan {
   RayForms forms;
   int plate_width = 0;
   int plate_height = 0;
-  std::vector<RaySpan> spans;  // by y, then x
+  const IdealPixels* ideal_pixels = nullptr;  // with lens distortion
+  std::vector<RaySpan> spans;                 // by y, then x
 };
 
 // The spans of `rect`: exact, their ends confirmed by the law.
+//   ideal_pixels  of lf_camera's intrinsics, for a camera with distortion; must outlive the plan
 ScatterPlan PlanScatter(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
-                        const PixelRect& rect);
+                        const PixelRect& rect, const IdealPixels* ideal_pixels = nullptr);
 
 // Adds the rays of `plan` that land in `band`. Returns how many. Bands of one plate may be written
 // at the same time by different threads.

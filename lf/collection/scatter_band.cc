@@ -20,6 +20,7 @@ struct ChunkElements {
   int y[kChunk];
 };
 
+// On a scanline of a camera without distortion.
 class LineAddresses {
  public:
   LineAddresses(const ScatterPlan& plan, int y)
@@ -76,6 +77,51 @@ class LineAddresses {
   double x_last_, y_last_;
 };
 
+// A form along an arc: a cubic in the arc's parameter.
+struct ArcForm {
+  double c0, c1, c2, c3;
+  ArcForm(const PixelForm& form, const IdealArc& arc) {
+    const double b0 = Value(form, arc.control[0]), b1 = Value(form, arc.control[1]);
+    const double b2 = Value(form, arc.control[2]), b3 = Value(form, arc.control[3]);
+    c0 = b0;
+    c1 = 3 * (b1 - b0);
+    c2 = 3 * (b0 - 2 * b1 + b2);
+    c3 = b3 - b0 + 3 * (b1 - b2);
+  }
+  double At(double t) const { return c0 + t * (c1 + t * (c2 + t * c3)); }
+};
+
+// On an arc of a camera with distortion.
+class ArcAddresses {
+ public:
+  ArcAddresses(const ScatterPlan& plan, const IdealArc& arc)
+      : x_(plan.forms.sensor_x, arc),
+        y_(plan.forms.sensor_y, arc),
+        front_(plan.forms.front, arc),
+        first_(arc.x_begin),
+        step_(1.0 / (arc.x_end - arc.x_begin)),
+        x_last_(plan.plate_width - 1),
+        y_last_(plan.plate_height - 1) {}
+
+  void Compute(int x_begin, int count, ChunkElements* elements) const {
+    for (int i = 0; i < count; ++i) {
+      const double t = (x_begin - first_ + i + 0.5) * step_;
+      const double scale = 1 / front_.At(t);
+      elements->x[i] = static_cast<int>(std::min(std::max(x_.At(t) * scale, 0.0), x_last_));
+      elements->y[i] = static_cast<int>(std::min(std::max(y_.At(t) * scale, 0.0), y_last_));
+    }
+  }
+
+  // Arcs are short: all of it is tested.
+  void Narrow(double, double, int*, int*) const {}
+
+ private:
+  ArcForm x_, y_, front_;
+  int first_;
+  double step_;
+  double x_last_, y_last_;
+};
+
 // How a pixel of the scanline adds to an element.
 struct RgbPixels {
   const uint16_t* row;  // [width][3]
@@ -95,10 +141,9 @@ struct MosaicPixels {
   }
 };
 
-template <class Pixels>
-uint64_t ScatterSpan(const ScatterPlan& plan, const RaySpan& span, const Pixels& pixels,
+template <class Addresses, class Pixels>
+uint64_t ScatterSpan(const Addresses& addresses, const RaySpan& span, const Pixels& pixels,
                      int x_origin, const uint8_t* mask, PlateBand* band) {
-  const LineAddresses addresses(plan, span.y);
   const bool all_inside =
       span.element_y_min >= static_cast<float>(band->y_begin()) + kBorderMargin &&
       span.element_y_max <= static_cast<float>(band->y_end()) - kBorderMargin;
@@ -134,6 +179,15 @@ uint64_t ScatterSpan(const ScatterPlan& plan, const RaySpan& span, const Pixels&
     }
   }
   return accepted;
+}
+
+template <class Pixels>
+uint64_t ScatterSpan(const ScatterPlan& plan, const RaySpan& span, const Pixels& pixels,
+                     int x_origin, const uint8_t* mask, PlateBand* band) {
+  if (plan.ideal_pixels == nullptr)
+    return ScatterSpan(LineAddresses(plan, span.y), span, pixels, x_origin, mask, band);
+  const IdealArc& arc = plan.ideal_pixels->Scanline(span.y)[span.arc];
+  return ScatterSpan(ArcAddresses(plan, arc), span, pixels, x_origin, mask, band);
 }
 
 }  // namespace

@@ -3,8 +3,10 @@
 #include <cmath>
 #include <limits>
 
+#include "lf/collection/plan_on_arcs.h"
 #include "lf/collection/ray_law.h"
 #include "lf/collection/scatter.h"
+#include "lf/core/check.h"
 
 namespace lf {
 namespace {
@@ -90,7 +92,7 @@ class Planner {
       : law_(lf_camera, render_camera),
         render_camera_(render_camera),
         rect_(rect),
-        in_lens_plane_(InLensPlane(lf_camera, render_camera)) {
+        in_lens_plane_(LiesInLensPlane(lf_camera, render_camera)) {
     plan_.forms = MakeRayForms(lf_camera, render_camera);
     plan_.plate_width = render_camera.pinhole.intrinsics.width_px;
     plan_.plate_height = render_camera.pinhole.intrinsics.height_px;
@@ -115,12 +117,6 @@ class Planner {
   }
 
  private:
-  static bool InLensPlane(const PinholeCamera& lf_camera, const RenderCamera& render_camera) {
-    const Vec3 offset = lf_camera.CentreWorld() - render_camera.pinhole.CentreWorld();
-    return std::abs(render_camera.pinhole.ForwardWorld().dot(offset)) <=
-           1e-13 * (lf_camera.CentreWorld().norm() + render_camera.pinhole.CentreWorld().norm());
-  }
-
   void AddSide(int y, int side) {
     const double centre_y = y + 0.5;
     Interval range{rect_.x_begin + 0.5, rect_.x_end - 0.5};
@@ -180,8 +176,10 @@ class Planner {
 }  // namespace
 
 ScatterPlan PlanScatter(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
-                        const PixelRect& rect) {
-  return Planner(lf_camera, render_camera, rect).Run();
+                        const PixelRect& rect, const IdealPixels* ideal_pixels) {
+  if (!lf_camera.intrinsics.has_distortion()) return Planner(lf_camera, render_camera, rect).Run();
+  LF_CHECK(ideal_pixels != nullptr);
+  return PlanScatterOnArcs(lf_camera, render_camera, rect, *ideal_pixels);
 }
 
 }  // namespace lf

@@ -1,0 +1,186 @@
+#include "lf/collection/plan_on_arcs.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "lf/collection/ray_law.h"
+
+namespace lf {
+namespace {
+
+// Values this near to 0, relative to the terms they are summed from, may be rounding.
+constexpr double kRounding = 1e-9;
+
+enum class Share { kNone, kSome, kAll };  // of an arc's rays
+
+Share Both(Share a, Share b) { return std::min(a, b); }
+
+// The least and the largest value that a form can have on an arc.
+struct Range {
+  double low = 0;
+  double high = 0;
+  double rounding = 0;
+};
+
+Range RangeOn(const IdealArc& arc, const PixelForm& form) {
+  Range range{Value(form, arc.control[0]), 0, 0};
+  range.high = range.low;
+  for (const Vec3& q : arc.control) {
+    const double value = Value(form, q);
+    range.low = std::min(range.low, value);
+    range.high = std::max(range.high, value);
+    range.rounding = std::max(range.rounding, std::abs(form[0] * q[0]) + std::abs(form[1] * q[1]) +
+                                                  std::abs(form[2] * q[2]));
+  }
+  range.rounding *= kRounding;
+  return range;
+}
+
+// Where form <= 0.
+Share AtMostZero(const IdealArc& arc, const PixelForm& form) {
+  const Range range = RangeOn(arc, form);
+  if (range.low > range.rounding) return Share::kNone;
+  return range.high < -range.rounding ? Share::kAll : Share::kSome;
+}
+
+double LeastSquare(const Range& range) {
+  if (range.low <= 0 && range.high >= 0) return 0;
+  return std::min(range.low * range.low, range.high * range.high);
+}
+
+double LargestSquare(const Range& range) {
+  return std::max(range.low * range.low, range.high * range.high);
+}
+
+class ArcPlanner {
+ public:
+  ArcPlanner(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
+             const PixelRect& rect, const IdealPixels& ideal_pixels)
+      : law_(lf_camera, render_camera),
+        render_camera_(render_camera),
+        rect_(rect),
+        in_lens_plane_(LiesInLensPlane(lf_camera, render_camera)) {
+    plan_.forms = MakeRayForms(lf_camera, render_camera);
+    plan_.plate_width = render_camera.pinhole.intrinsics.width_px;
+    plan_.plate_height = render_camera.pinhole.intrinsics.height_px;
+    plan_.ideal_pixels = &ideal_pixels;
+    for (const int side : {0, 1})
+      plate_half_planes_[side] = PlateHalfPlanes(plan_.forms, render_camera, side == 0 ? -1 : 1, 0);
+    if (render_camera.aperture.blades > 0)
+      lens_half_planes_ = LensHalfPlanes(plan_.forms, render_camera, 0);
+  }
+
+  ScatterPlan Run() {
+    for (int y = rect_.y_begin; y < rect_.y_end; ++y) {
+      const std::span<const IdealArc> arcs = plan_.ideal_pixels->Scanline(y);
+      for (size_t i = 0; i < arcs.size(); ++i) AddArc(y, arcs[i], static_cast<uint32_t>(i));
+    }
+    return std::move(plan_);
+  }
+
+ private:
+  void AddArc(int y, const IdealArc& arc, uint32_t index) {
+    const int begin = std::max(arc.x_begin, rect_.x_begin), end = std::min(arc.x_end, rect_.x_end);
+    if (begin >= end) return;
+    const Share share = AcceptedShare(arc);
+    if (share == Share::kNone) return;
+    if (share == Share::kAll) {
+      AddSpan(y, begin, end, arc, index);
+      return;
+    }
+    const auto accepted = [&](int x) {
+      return law_.CollectIdeal(arc.At(arc.Parameter(x))).has_value();
+    };
+    for (int x = begin; x < end;) {
+      int stop = x;
+      while (stop < end && accepted(stop)) ++stop;
+      if (stop > x) AddSpan(y, x, stop, arc, index);
+      x = stop + 1;
+    }
+  }
+
+  Share AcceptedShare(const IdealArc& arc) const {
+    // The two sides of n.d = 0 exclude each other.
+    const Share sides = std::max(ShareOnPlate(arc, 0), ShareOnPlate(arc, 1));
+    return sides == Share::kNone ? sides : Both(sides, ShareInLens(arc));
+  }
+
+  Share ShareOnPlate(const IdealArc& arc, int side) const {
+    Share share = Share::kAll;
+    for (const PixelForm& form : plate_half_planes_[side]) {
+      share = Both(share, AtMostZero(arc, form));
+      if (share == Share::kNone) break;
+    }
+    return share;
+  }
+
+  Share ShareInLens(const IdealArc& arc) const {
+    if (render_camera_.aperture.blades > 0) {
+      Share share = Share::kAll;
+      for (const PixelForm& form : lens_half_planes_) {
+        share = Both(share, AtMostZero(arc, form));
+        if (share == Share::kNone) break;
+      }
+      return share;
+    }
+    const Range right = RangeOn(arc, plan_.forms.lens_right);
+    const Range up = RangeOn(arc, plan_.forms.lens_up);
+    const Range forward = RangeOn(arc, plan_.forms.forward);
+    if (!(forward.low > 0)) return Share::kSome;
+    const double r2 = render_camera_.aperture.radius_w * render_camera_.aperture.radius_w;
+    // Here lens_right = l_x forward with one l_x for all rays: the quotient is sharper.
+    if (in_lens_plane_) {
+      const double l2 = (LargestSquare(right) + LargestSquare(up)) /
+                        std::max(forward.high * forward.high, 1e-300);
+      if (l2 > r2 * (1 + kInLensPlaneMargin)) return Share::kNone;
+      return l2 < r2 * (1 - kInLensPlaneMargin) ? Share::kAll : Share::kSome;
+    }
+    const double rounding =
+        10 * kRounding * (LargestSquare(right) + LargestSquare(up) + r2 * LargestSquare(forward));
+    if (LeastSquare(right) + LeastSquare(up) > r2 * LargestSquare(forward) + rounding)
+      return Share::kNone;
+    return LargestSquare(right) + LargestSquare(up) < r2 * LeastSquare(forward) - rounding
+               ? Share::kAll
+               : Share::kSome;
+  }
+
+  void AddSpan(int y, int begin, int end, const IdealArc& arc, uint32_t index) {
+    // Rows relative to that of the middle ray, so that the quotient of two ranges stays narrow.
+    const RayForms& forms = plan_.forms;
+    const Vec3 middle = arc.At(arc.Parameter((begin + end - 1) / 2));
+    const double row = Value(forms.sensor_y, middle) / Value(forms.front, middle);
+    const Range offset = RangeOn(arc, forms.sensor_y - row * forms.front);
+    const Range front = RangeOn(arc, forms.front);
+    const double least_front = std::sqrt(LeastSquare(front));
+    const double reach =
+        std::max(std::abs(offset.low), std::abs(offset.high)) / std::max(least_front, 1e-300);
+    plan_.spans.push_back(
+        {y, begin, end, static_cast<float>(row - reach), static_cast<float>(row + reach), index});
+  }
+
+  static constexpr double kInLensPlaneMargin = 1e-6;
+
+  RayLaw law_;
+  const RenderCamera& render_camera_;
+  PixelRect rect_;
+  bool in_lens_plane_;
+  std::vector<PixelForm> plate_half_planes_[2];
+  std::vector<PixelForm> lens_half_planes_;
+  ScatterPlan plan_;
+};
+
+}  // namespace
+
+bool LiesInLensPlane(const PinholeCamera& lf_camera, const RenderCamera& render_camera) {
+  const Vec3 offset = lf_camera.CentreWorld() - render_camera.pinhole.CentreWorld();
+  return std::abs(render_camera.pinhole.ForwardWorld().dot(offset)) <=
+         1e-13 * (lf_camera.CentreWorld().norm() + render_camera.pinhole.CentreWorld().norm());
+}
+
+ScatterPlan PlanScatterOnArcs(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
+                              const PixelRect& rect, const IdealPixels& ideal_pixels) {
+  return ArcPlanner(lf_camera, render_camera, rect, ideal_pixels).Run();
+}
+
+}  // namespace lf

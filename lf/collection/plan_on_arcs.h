@@ -1,0 +1,18 @@
+// The spans of LF cameras with lens distortion. Internal to collection.
+#pragma once
+
+#include "lf/camera/ideal_pixels.h"
+#include "lf/collection/scatter.h"
+
+namespace lf {
+
+// As PlanScatter. A scanline is a chain of arcs (camera/ideal_pixels.h); by their control points an
+// arc is wholly accepted, wholly rejected, or undecided, and then the law is asked ray by ray.
+ScatterPlan PlanScatterOnArcs(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
+                              const PixelRect& rect, const IdealPixels& ideal_pixels);
+
+// Whether the LF camera stands in the lens plane to rounding: then all its rays cross the lens at
+// one point (doc/ray.md, Geometry 6).
+bool LiesInLensPlane(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
+
+}  // namespace lf

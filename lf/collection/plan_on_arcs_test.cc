@@ -1,0 +1,142 @@
+// Ray collection from LF cameras with lens distortion.
+#include "lf/collection/plan_on_arcs.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "lf/camera/testing_scenes.h"
+#include "lf/collection/ray_law.h"
+#include "lf/core/random.h"
+
+namespace lf {
+namespace {
+
+constexpr int kWidth = 200, kHeight = 140;
+constexpr PixelRect kWholeImage{0, 0, kWidth, kHeight};
+
+LfPixels RandomPixels(BayerPattern bayer, uint64_t seed) {
+  LfPixels pixels;
+  pixels.bayer = bayer;
+  pixels.rect = kWholeImage;
+  pixels.radiance = Image<uint16_t>(kWidth, kHeight, bayer == BayerPattern::kNone ? 3 : 1);
+  uint64_t index = 0;
+  for (uint16_t& v : pixels.radiance.pixels())
+    v = static_cast<uint16_t>(RandomBits(seed, 7, index++));
+  return pixels;
+}
+
+SensorPlate PlateFor(const testing::CameraPair& pair) {
+  const Intrinsics& k = pair.render_camera.pinhole.intrinsics;
+  return SensorPlate(k.width_px, k.height_px);
+}
+
+uint64_t Scatter(const testing::CameraPair& pair, const LfPixels& pixels, const PixelRect& rect,
+                 const IdealPixels& ideal_pixels, int band_height, SensorPlate* plate) {
+  const ScatterPlan plan = PlanScatter(pair.lf_camera, pair.render_camera, rect, &ideal_pixels);
+  uint64_t accepted = 0;
+  for (int y = 0; y < plate->height(); y += band_height) {
+    PlateBand band(plate, y, std::min(plate->height(), y + band_height));
+    accepted += ScatterBand(plan, pixels, &band);
+  }
+  return accepted;
+}
+
+uint64_t TotalCount(const SensorPlate& plate) {
+  uint64_t count = 0;
+  for (int y = 0; y < plate.height(); ++y)
+    for (int x = 0; x < plate.width(); ++x)
+      for (int channel = 0; channel < 3; ++channel) count += plate.At(x, y, channel).count;
+  return count;
+}
+
+// Elements and channels that differ.
+uint64_t DifferingCount(const SensorPlate& a, const SensorPlate& b) {
+  uint64_t count = 0;
+  for (int y = 0; y < a.height(); ++y)
+    for (int x = 0; x < a.width(); ++x)
+      for (int channel = 0; channel < 3; ++channel)
+        count += a.At(x, y, channel) == b.At(x, y, channel) ? 0 : 1;
+  return count;
+}
+
+TEST(PlanOnArcs, SpansHoldExactlyTheRaysThatTheLawAcceptsOnTheArcs) {
+  size_t accepted_count = 0, scenes_with_rays = 0;
+  for (uint64_t seed = 0; seed < 280; ++seed) {
+    const testing::CameraPair pair = testing::RandomDistortedPair(seed);
+    const IdealPixels ideal(pair.lf_camera.intrinsics);
+    const RayLaw law(pair.lf_camera, pair.render_camera);
+    const ScatterPlan plan = PlanScatter(pair.lf_camera, pair.render_camera, kWholeImage, &ideal);
+    Image<uint8_t> in_span(kWidth, kHeight);
+    for (const RaySpan& span : plan.spans)
+      for (int x = span.x_begin; x < span.x_end; ++x) in_span.at(x, span.y) += 1;
+    size_t accepted = 0;
+    for (int y = 0; y < kHeight; ++y)
+      for (const IdealArc& arc : ideal.Scanline(y))
+        for (int x = arc.x_begin; x < arc.x_end; ++x) {
+          const bool collected = law.CollectIdeal(arc.At(arc.Parameter(x))).has_value();
+          ASSERT_EQ(in_span.at(x, y), collected ? 1 : 0) << seed << ": " << x << ", " << y;
+          accepted += collected;
+        }
+    accepted_count += accepted;
+    scenes_with_rays += accepted > 0;
+  }
+  EXPECT_GT(scenes_with_rays, 100u);
+  EXPECT_GT(accepted_count, 100000u);
+}
+
+TEST(PlanOnArcs, MostSpansAreFoundWithoutAskingTheLaw) {
+  // A wide lens close by: most arcs lie wholly inside.
+  testing::CameraPair pair = testing::ParallelPair(1, 1, 0.01, 0.2);
+  pair.render_camera.pinhole.intrinsics = {1000, 1000, 640, 360, 0, 1280, 720, {}};
+  pair.lf_camera.intrinsics = {1000, 1000, 640, 360,
+                               0,    1280, 720, {DistortionModel::kRadialTangential, {0.035}}};
+  const IdealPixels ideal(pair.lf_camera.intrinsics);
+  const ScatterPlan plan =
+      PlanScatter(pair.lf_camera, pair.render_camera, {0, 0, 1280, 720}, &ideal);
+  size_t whole = 0;
+  for (const RaySpan& span : plan.spans) whole += span.x_end - span.x_begin >= 16 ? 1 : 0;
+  EXPECT_GT(whole, plan.spans.size() * 9 / 10);
+}
+
+TEST(PlanOnArcs, TheFastBackEndAgreesWithTheIteratingReference) {
+  uint64_t differing = 0, total = 0;
+  int64_t accepted_difference = 0;
+  for (uint64_t seed = 0; seed < 140; ++seed) {
+    const testing::CameraPair pair = testing::RandomDistortedPair(seed);
+    const auto bayer = static_cast<BayerPattern>(seed % 5);
+    const LfPixels pixels = RandomPixels(bayer, seed);
+    const IdealPixels ideal(pair.lf_camera.intrinsics);
+    SensorPlate expected = PlateFor(pair), fast = PlateFor(pair);
+    const uint64_t accepted =
+        ScatterReference(pair.lf_camera, pixels, pair.render_camera, kWholeImage, &expected);
+    const uint64_t fast_accepted = Scatter(pair, pixels, kWholeImage, ideal, 120, &fast);
+    accepted_difference += std::abs(static_cast<int64_t>(accepted - fast_accepted));
+    EXPECT_EQ(TotalCount(fast), fast_accepted * (bayer == BayerPattern::kNone ? 3 : 1));
+    differing += DifferingCount(expected, fast);
+    total += TotalCount(expected);
+  }
+  EXPECT_GT(total, 100000u);
+  // One ray in 10^4 may lie within 1e-5 px of a border.
+  EXPECT_LE(static_cast<double>(accepted_difference), 1e-4 * static_cast<double>(total));
+  EXPECT_LE(static_cast<double>(differing), 3e-4 * static_cast<double>(total));
+}
+
+TEST(PlanOnArcs, AnyCutGivesTheSameBits) {
+  for (uint64_t seed = 0; seed < 70; ++seed) {
+    const testing::CameraPair pair = testing::RandomDistortedPair(seed);
+    const LfPixels pixels = RandomPixels(BayerPattern::kGrbg, seed);
+    const IdealPixels ideal(pair.lf_camera.intrinsics);
+    SensorPlate whole = PlateFor(pair), bands = PlateFor(pair), parts = PlateFor(pair);
+    const uint64_t accepted = Scatter(pair, pixels, kWholeImage, ideal, 120, &whole);
+    EXPECT_EQ(Scatter(pair, pixels, kWholeImage, ideal, 7, &bands), accepted);
+    EXPECT_EQ(whole, bands) << seed;
+    for (const PixelRect& rect : {PixelRect{0, 0, 53, kHeight}, PixelRect{53, 0, kWidth, 31},
+                                  PixelRect{53, 31, kWidth, kHeight}})
+      Scatter(pair, pixels, rect, ideal, 40, &parts);
+    EXPECT_EQ(whole, parts) << seed;
+  }
+}
+
+}  // namespace
+}  // namespace lf
