@@ -4,7 +4,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
+#include <memory>
+#include <optional>
 
+#include "lf/camera/ideal_pixels.h"
 #include "lf/collection/scatter.h"
 #include "lf/core/log.h"
 #include "lf/selection/overlap.h"
@@ -33,6 +37,9 @@ class Stopwatch {
 struct BatchImage {
   LfImageId id;
   LfPixels pixels;
+  // Of a camera with lens distortion.
+  std::vector<IdealCell> cells;
+  std::shared_ptr<const IdealPixels> ideal_pixels;
 };
 
 std::vector<PlateBand> CutIntoBands(SensorPlate* plate) {
@@ -59,7 +66,8 @@ class Collector {
     for (SensorPlate& plate : plates_) bands_.push_back(CutIntoBands(&plate));
   }
 
-  void Add(const std::vector<BatchImage>& batch) {
+  void Add(std::vector<BatchImage>& batch) {
+    UndoDistortion(batch);
     if (back_end_ == CollectBackEnd::kReference) {
       AddByReference(batch);
       return;
@@ -80,6 +88,31 @@ class Collector {
     ScatterPlan plan;
   };
 
+  // Images of one camera share its ideal pixels, also with the next batch.
+  void UndoDistortion(std::vector<BatchImage>& batch) {
+    std::map<uint32_t, std::shared_ptr<const IdealPixels>> in_use;
+    std::vector<uint32_t> missing;
+    for (const BatchImage& image : batch) {
+      const uint32_t index = light_field_.cameras[image.id.value].intrinsics_index;
+      if (!light_field_.intrinsics[index].has_distortion() || in_use.contains(index)) continue;
+      const auto known = ideal_pixels_.find(index);
+      if (known == ideal_pixels_.end()) missing.push_back(index);
+      in_use[index] = known == ideal_pixels_.end() ? nullptr : known->second;
+    }
+    pool_.ForEach(missing.size(), [&](size_t i) {
+      in_use.find(missing[i])->second =
+          std::make_shared<const IdealPixels>(light_field_.intrinsics[missing[i]]);
+    });
+    for (BatchImage& image : batch) {
+      const uint32_t index = light_field_.cameras[image.id.value].intrinsics_index;
+      const auto found = in_use.find(index);
+      if (found == in_use.end()) continue;
+      image.ideal_pixels = found->second;
+      image.cells = MakeIdealCells(light_field_.intrinsics[index]);
+    }
+    ideal_pixels_ = std::move(in_use);
+  }
+
   void AddToFrames(const std::vector<BatchImage>& batch, size_t frame_begin, size_t frame_end) {
     const size_t frame_count = frame_end - frame_begin;
     // First the spans of every (frame, image), then the rays of every (frame, band).
@@ -88,8 +121,10 @@ class Collector {
       const RenderCamera& frame = frames_[frame_begin + i / batch.size()];
       const BatchImage& image = batch[i % batch.size()];
       const PinholeCamera camera = light_field_.Camera(image.id);
-      shares[i].rect = Intersection(ContributingRect(camera, frame), image.pixels.rect);
-      if (!shares[i].rect.empty()) shares[i].plan = PlanScatter(camera, frame, shares[i].rect);
+      shares[i].rect =
+          Intersection(ContributingRect(camera, frame, image.cells), image.pixels.rect);
+      if (shares[i].rect.empty()) return;
+      shares[i].plan = PlanScatter(camera, frame, shares[i].rect, image.ideal_pixels.get());
     });
 
     struct Task {
@@ -122,7 +157,7 @@ class Collector {
       for (const BatchImage& image : batch) {
         const PinholeCamera camera = light_field_.Camera(image.id);
         const PixelRect rect =
-            Intersection(ContributingRect(camera, frames_[f]), image.pixels.rect);
+            Intersection(ContributingRect(camera, frames_[f], image.cells), image.pixels.rect);
         const uint64_t accepted =
             ScatterReference(camera, image.pixels, frames_[f], rect, &plates_[f]);
         rays_[f].accepted_count += accepted;
@@ -142,6 +177,8 @@ class Collector {
   std::vector<SensorPlate>& plates_;
   std::vector<std::vector<PlateBand>> bands_;
   std::vector<FrameRays> rays_;
+  // By index of intrinsics; those of the last batch.
+  std::map<uint32_t, std::shared_ptr<const IdealPixels>> ideal_pixels_;
 };
 
 void Skip(const std::string& name, const Error& error, CollectStatistics* statistics) {
@@ -183,7 +220,7 @@ Result<CollectStatistics> Collect(const LightField& light_field, const LfImageSt
       std::optional<LoadedImage> loaded = prefetcher.Next();
       LF_CHECK(loaded && loaded->id == selected.id);
       if (loaded->pixels) {
-        batch.push_back({selected.id, *std::move(loaded->pixels)});
+        batch.push_back({selected.id, *std::move(loaded->pixels), {}, nullptr});
         continue;
       }
       // Only the image itself may be at fault: what the machine lacks is no reason to go on.

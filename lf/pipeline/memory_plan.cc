@@ -20,9 +20,13 @@ size_t LargestImageBytes(const LightField& light_field) {
   // 16-bit radiance, the stored pixels while they are decoded (float at worst), a mask.
   const size_t channels = light_field.encoding.bayer == BayerPattern::kNone ? 3 : 1;
   const size_t bytes_per_pixel = channels * (2 + 4) + 1;
+  // Of its ideal positions, while it is collected (camera/ideal_pixels.h).
+  constexpr size_t kArcBytesPerPixel = 5;
   size_t largest = 1;
   for (const Intrinsics& k : light_field.intrinsics)
-    largest = std::max(largest, static_cast<size_t>(k.width_px) * k.height_px * bytes_per_pixel);
+    largest =
+        std::max(largest, static_cast<size_t>(k.width_px) * k.height_px *
+                              (bytes_per_pixel + (k.has_distortion() ? kArcBytesPerPixel : 0)));
   return largest;
 }
 

@@ -78,9 +78,41 @@ class Clipped {
   size_t count_ = 0;
 };
 
+PixelRect ClippedRect(const Intrinsics& image, std::span<const PixelForm> plate,
+                      std::span<const PixelForm> lens) {
+  Clipped region(image);
+  for (const std::span<const PixelForm> forms : {plate, lens})
+    for (const PixelForm& form : forms) {
+      if (region.empty()) return {};
+      region.Clip(form);
+    }
+  return region.Pixels(image);
+}
+
+// Whether the half-plane leaves nothing of the cell.
+bool Excludes(const PixelForm& form, const IdealCell& cell) {
+  return Value(form, cell.middle) > form.cwiseAbs().dot(cell.extent.transpose());
+}
+
+PixelRect BoundsOfCells(std::span<const IdealCell> cells, std::span<const PixelForm> plate,
+                        std::span<const PixelForm> lens) {
+  PixelRect rect;
+  for (const IdealCell& cell : cells) {
+    const auto excludes = [&](const PixelForm& form) { return Excludes(form, cell); };
+    if (cell.has_bounds && (std::any_of(plate.begin(), plate.end(), excludes) ||
+                            std::any_of(lens.begin(), lens.end(), excludes)))
+      continue;
+    rect = Bounds(rect, cell.rect);
+  }
+  return rect;
+}
+
 }  // namespace
 
-PixelRect ContributingRect(const PinholeCamera& lf_camera, const RenderCamera& render_camera) {
+PixelRect ContributingRect(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
+                           std::span<const IdealCell> cells) {
+  const bool distorted = lf_camera.intrinsics.has_distortion();
+  LF_CHECK(!distorted || !cells.empty());
   const RayForms forms = MakeRayForms(lf_camera, render_camera);
   // Polygons of very many blades are nearly disks; the disk's 16-gon holds them.
   constexpr int kMostBlades = 64;
@@ -90,16 +122,10 @@ PixelRect ContributingRect(const PinholeCamera& lf_camera, const RenderCamera& r
 
   PixelRect rect;
   for (const int plane_sign : {-1, 1}) {
-    Clipped region(lf_camera.intrinsics);
-    for (const PixelForm& form : PlateHalfPlanes(forms, bounded, plane_sign, kPlateMarginPx)) {
-      region.Clip(form);
-      if (region.empty()) break;
-    }
-    for (const PixelForm& form : lens) {
-      if (region.empty()) break;
-      region.Clip(form);
-    }
-    rect = Bounds(rect, region.Pixels(lf_camera.intrinsics));
+    const std::vector<PixelForm> plate =
+        PlateHalfPlanes(forms, bounded, plane_sign, kPlateMarginPx);
+    rect = Bounds(rect, distorted ? BoundsOfCells(cells, plate, lens)
+                                  : ClippedRect(lf_camera.intrinsics, plate, lens));
   }
   return rect;
 }

@@ -2,9 +2,12 @@
 // in Image Space", Fig. 4.5).
 #pragma once
 
+#include <span>
+
 #include "lf/camera/pinhole.h"
 #include "lf/camera/render_camera.h"
 #include "lf/core/geometry.h"
+#include "lf/selection/ideal_cells.h"
 
 namespace lf {
 
@@ -17,6 +20,11 @@ namespace lf {
 // tilted focus plane. Where the thesis projects rectangles and intersects them, this clips the
 // image by the half-planes that bound them (camera/ray_forms.h): the same region, without
 // projecting points that lie in the plane of the LF camera.
-PixelRect ContributingRect(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
+//
+// With lens distortion the image is no plane of rays that could be clipped: the rectangle bounds
+// those of its `cells` that no half-plane excludes.
+//   cells  MakeIdealCells of the LF camera's intrinsics where these have distortion; else not used
+PixelRect ContributingRect(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
+                           std::span<const IdealCell> cells = {});
 
 }  // namespace lf

@@ -8,8 +8,12 @@ namespace lf {
 namespace {
 
 // Brute force in this folder's own words: is the ray of pixel (x, y) accepted (doc/ray.md, 1-5)?
-bool Contributes(const PinholeCamera& lf_camera, const RenderCamera& render, int x, int y) {
-  const Ray ray = RayOfPixel(lf_camera, x + 0.5, y + 0.5);
+bool Contributes(const PinholeCamera& lf_camera, const DistortionMap& map,
+                 const RenderCamera& render, int x, int y) {
+  const std::optional<Vec3> position = IdealPosition(lf_camera.intrinsics, map, x + 0.5, y + 0.5);
+  if (!position) return false;
+  const Ray ray{lf_camera.CentreWorld(), lf_camera.cam_from_world.rotation.transpose() *
+                                             (lf_camera.intrinsics.InverseMatrix() * *position)};
   const PinholeCamera& plate = render.pinhole;
   const Vec3 forward = plate.ForwardWorld(), centre = plate.CentreWorld();
   if (!(forward.dot(ray.direction) > 0)) return false;
@@ -29,10 +33,11 @@ TEST(Overlap, NoContributingRayLiesOutsideTheRectangle) {
   for (uint64_t seed = 0; seed < 3000; ++seed) {
     const testing::CameraPair pair = testing::RandomCameraPair(seed);
     const PixelRect rect = ContributingRect(pair.lf_camera, pair.render_camera);
+    const DistortionMap map({});
     bool any = false;
     for (int y = 0; y < 35; ++y)
       for (int x = 0; x < 50; ++x)
-        if (Contributes(pair.lf_camera, pair.render_camera, x, y)) {
+        if (Contributes(pair.lf_camera, map, pair.render_camera, x, y)) {
           any = true;
           ++rays;
           ASSERT_TRUE(rect.Contains(x, y)) << seed << ": " << x << ", " << y;
@@ -45,6 +50,31 @@ TEST(Overlap, NoContributingRayLiesOutsideTheRectangle) {
   // Rarely an image in vain, and rectangles not much larger than what they bound.
   EXPECT_LE(selected_images, contributing_images + contributing_images * 3 / 100);
   EXPECT_LE(pixels, 2 * rays);
+}
+
+TEST(Overlap, NoContributingRayOfADistortedImageLiesOutsideTheRectangle) {
+  size_t contributing_images = 0, selected_images = 0, rays = 0, pixels = 0;
+  for (uint64_t seed = 0; seed < 350; ++seed) {
+    const testing::CameraPair pair = testing::RandomDistortedPair(seed);
+    const std::vector<IdealCell> cells = MakeIdealCells(pair.lf_camera.intrinsics);
+    const PixelRect rect = ContributingRect(pair.lf_camera, pair.render_camera, cells);
+    const DistortionMap map(pair.lf_camera.intrinsics.distortion);
+    bool any = false;
+    // Every third pixel, and the rectangle's neighbours are hit soon enough.
+    for (int y = static_cast<int>(seed % 3); y < 140; y += 3)
+      for (int x = static_cast<int>(seed / 3 % 3); x < 200; x += 3)
+        if (Contributes(pair.lf_camera, map, pair.render_camera, x, y)) {
+          any = true;
+          rays += 9;
+          ASSERT_TRUE(rect.Contains(x, y)) << seed << ": " << x << ", " << y;
+        }
+    contributing_images += any;
+    selected_images += !rect.empty();
+    pixels += static_cast<size_t>(rect.pixel_count());
+  }
+  EXPECT_GT(contributing_images, 120u);
+  EXPECT_LE(selected_images, contributing_images + contributing_images / 4);
+  EXPECT_LE(pixels, 4 * rays);
 }
 
 TEST(Overlap, CamerasExactlyOnTheRimAreSelected) {

@@ -11,13 +11,30 @@ namespace {
 constexpr uint64_t kShuffleStream = 1;
 constexpr size_t kCamerasPerTask = 64;
 
+// The cells of the LF camera looked at last: neighbours mostly share their intrinsics.
+class CellsOfLast {
+ public:
+  const std::vector<IdealCell>& Of(const LightField& light_field, LfImageId id) {
+    const uint32_t index = light_field.cameras[id.value].intrinsics_index;
+    if (index == index_) return cells_;
+    index_ = index;
+    const Intrinsics& k = light_field.intrinsics[index];
+    cells_ = k.has_distortion() ? MakeIdealCells(k) : std::vector<IdealCell>();
+    return cells_;
+  }
+
+ private:
+  uint32_t index_ = UINT32_MAX;
+  std::vector<IdealCell> cells_;
+};
+
 SelectedImage Examine(const LightField& light_field, std::span<const RenderCamera> frames,
-                      LfImageId id) {
+                      LfImageId id, std::span<const IdealCell> cells) {
   const PinholeCamera camera = light_field.Camera(id);
   SelectedImage image;
   image.id = id;
   for (const RenderCamera& frame : frames) {
-    const PixelRect rect = ContributingRect(camera, frame);
+    const PixelRect rect = ContributingRect(camera, frame, cells);
     if (rect.empty()) continue;
     image.rect = Bounds(image.rect, rect);
     image.frame_count += 1;
@@ -44,8 +61,10 @@ std::vector<SelectedImage> SelectImages(const LightField& light_field,
   std::vector<std::vector<SelectedImage>> found(task_count);
   pool.ForEach(task_count, [&](size_t task) {
     const size_t end = std::min(camera_count, (task + 1) * kCamerasPerTask);
+    CellsOfLast cells;
     for (size_t i = task * kCamerasPerTask; i < end; ++i) {
-      const SelectedImage image = Examine(light_field, frames, LfImageId{static_cast<uint32_t>(i)});
+      const LfImageId id{static_cast<uint32_t>(i)};
+      const SelectedImage image = Examine(light_field, frames, id, cells.Of(light_field, id));
       if (image.frame_count > 0) found[task].push_back(image);
     }
   });
