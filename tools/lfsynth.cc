@@ -1,4 +1,5 @@
 // lfsynth SCENE -o DIR: a scene known exactly, as a light field and as true thin-lens frames.
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -28,6 +29,7 @@ Examples:
   lfsynth still-life -o still-life
   lfsynth chart -o chart --capture band --count 600 --jitter 0.2 --format png
   lfsynth lights -o raw --bayer --noise 0.01
+  lfsynth still-life -o phone --distortion 0.12,-0.25,0.001,-0.002
   lfsynth still-life -o still-life --calibration-only --truth path.yaml
 
 DIR receives images/0000.exr ... and transforms.json; with --truth also truth/frame_0001.exr ...,
@@ -39,6 +41,8 @@ struct Arguments {
   uint32_t count = 0;
   std::optional<double> spacing, distance;
   double jitter = 0, noise = 0;
+  std::vector<double> distortion, fisheye;
+  double fov = 0;
   int samples = 0, truth_samples = lf::LensSampling{}.samples;
   bool bayer = false, calibration_only = false;
 };
@@ -58,6 +62,20 @@ void AddOptions(CLI::App& app, Arguments& a) {
   app.add_option("--spacing", a.spacing, "From LF camera to LF camera");
   app.add_option("--distance", a.distance, "From the middle of the rig to that of the scene");
   app.add_option("--jitter", a.jitter, "Share of the spacing, and degrees, that poses are off by");
+  app.add_option("--distortion", a.distortion,
+                 "Lens of the LF cameras: OpenCV's k1,k2,p1,p2,k3,k4,k5,k6, or the first of them")
+      ->delimiter(',')
+      ->expected(1, 8)
+      ->check(CLI::Range(-1e6, 1e6));
+  app.add_option("--fisheye", a.fisheye, "Fish-eye lens instead: OpenCV's k1,k2,k3,k4")
+      ->delimiter(',')
+      ->expected(1, 4)
+      ->check(CLI::Range(-1e6, 1e6))
+      ->excludes("--distortion");
+  app.add_option("--fov", a.fov, "Ideal fish-eye lens of this omega (radians) instead")
+      ->check(CLI::Range(1e-3, 3.14))
+      ->excludes("--distortion")
+      ->excludes("--fisheye");
   app.add_option("--format", a.format, "exr, png (8-bit sRGB) or png16 (linear)")
       ->check(CLI::IsMember({"exr", "png", "png16"}));
   app.add_flag("--bayer", a.bayer, "Raw-like 16-bit RGGB mosaics instead");
@@ -82,6 +100,19 @@ lf::Result<lf::RigOptions> MakeRigOptions(const Arguments& a, const lf::BuiltInS
   rig.distance_w = a.distance.value_or(rig.distance_w);
   rig.jitter = a.jitter;
   return rig;
+}
+
+lf::Distortion DistortionOf(const Arguments& a) {
+  lf::Distortion distortion;
+  const auto set = [&](lf::DistortionModel model, const std::vector<double>& parameters) {
+    if (parameters.empty()) return;
+    distortion.model = model;
+    std::copy(parameters.begin(), parameters.end(), distortion.parameters.begin());
+  };
+  set(lf::DistortionModel::kRadialTangential, a.distortion);
+  set(lf::DistortionModel::kFisheye, a.fisheye);
+  if (a.fov > 0) set(lf::DistortionModel::kFov, {a.fov});
+  return distortion;
 }
 
 lf::Result<lf::LfImageFormat> FormatOf(const Arguments& a) {
@@ -114,9 +145,10 @@ int main(int argc, char** argv) {
     }
     const auto [width_px, height_px] =
         a.size_px.value_or(std::pair(built_in.width_px, built_in.height_px));
+    lf::Intrinsics intrinsics = lf::IntrinsicsFor(built_in, width_px, height_px);
+    intrinsics.distortion = DistortionOf(a);
     const lf::LightField light_field =
-        lf::DescribeLightField(poses, lf::IntrinsicsFor(built_in, width_px, height_px), format,
-                               built_in.max_radiance, a.output);
+        lf::DescribeLightField(poses, intrinsics, format, built_in.max_radiance, a.output);
     lf::ThreadPool pool(program.common().threads);
     const lf::Scene scene(built_in.describe());
     if (a.calibration_only) {

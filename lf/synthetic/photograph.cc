@@ -4,23 +4,35 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
+
+#include "lf/camera/ideal_pixels.h"
 
 namespace lf {
 namespace {
 
-// The rays of all pixels of a pinhole camera, without inverting its matrix for each.
+// The rays of all pixels of a camera, without inverting its matrix for each.
 class PixelRays {
  public:
   explicit PixelRays(const PinholeCamera& camera)
-      : centre_(camera.CentreWorld()),
+      : intrinsics_(camera.intrinsics),
+        centre_(camera.CentreWorld()),
         world_from_pixel_(camera.cam_from_world.rotation.transpose() *
                           camera.intrinsics.InverseMatrix()),
-        pixel_angle_(1 / std::sqrt(std::abs(camera.intrinsics.fx_px * camera.intrinsics.fy_px))) {}
+        pixel_angle_(1 / std::sqrt(std::abs(camera.intrinsics.fx_px * camera.intrinsics.fy_px))) {
+    if (intrinsics_.has_distortion()) distortion_.emplace(intrinsics_.distortion);
+  }
 
-  Ray Through(double x_px, double y_px) const {
-    return {centre_, world_from_pixel_ * Vec3(x_px, y_px, 1)};
+  bool has_distortion() const { return distortion_.has_value(); }
+
+  // None where the lens lets no ray through.
+  std::optional<Ray> Through(double x_px, double y_px) const {
+    if (!distortion_) return Ray{centre_, world_from_pixel_ * Vec3(x_px, y_px, 1)};
+    const std::optional<Vec3> position = IdealPosition(intrinsics_, *distortion_, x_px, y_px);
+    if (!position) return std::nullopt;
+    return Ray{centre_, world_from_pixel_ * *position};
   }
   // Of a square of which `samples` tile a pixel.
   Footprint FootprintOf(int samples) const {
@@ -28,6 +40,8 @@ class PixelRays {
   }
 
  private:
+  Intrinsics intrinsics_;
+  std::optional<DistortionMap> distortion_;
   Vec3 centre_;
   Mat3 world_from_pixel_;
   double pixel_angle_;
@@ -64,37 +78,50 @@ class Tiles {
         columns_((width + side_ - 1) / side_),
         rows_((height + side_ - 1) / side_) {
     for (int row = 0; row < rows_; ++row)
-      for (int column = 0; column < columns_; ++column)
-        sectors_.push_back(scene.SectorOf(ConeOf(rays, column * side_, row * side_)));
+      for (int column = 0; column < columns_; ++column) {
+        const std::optional<Cone> cone = ConeOf(rays, column * side_, row * side_);
+        sectors_.push_back(cone ? std::optional(scene.SectorOf(*cone)) : std::nullopt);
+      }
   }
 
-  // Of a pixel of the picture, or one pixel beside it.
-  const Scene::Sector& At(int x, int y) const {
+  // Of a pixel of the picture, or one pixel beside it; null where nothing is known.
+  const Scene::Sector* At(int x, int y) const {
     const int column = std::clamp(x / side_, 0, columns_ - 1);
     const int row = std::clamp(y / side_, 0, rows_ - 1);
-    return sectors_[static_cast<size_t>(row * columns_ + column)];
+    const std::optional<Scene::Sector>& sector =
+        sectors_[static_cast<size_t>(row * columns_ + column)];
+    return sector ? &*sector : nullptr;
   }
 
  private:
   static constexpr int kAcross = 32;  // tiles along the longer side
+  static constexpr double kBow = 1.1;
   // One pixel for the border, kGlowReach footprints of a pixel, and some for safety.
   static constexpr double kMargin_px = 1 + kGlowReach * kFootprintPerSide + 0.5;
 
-  Cone ConeOf(const PixelRays& rays, int x, int y) const {
-    const Ray axis = rays.Through(x + 0.5 * side_, y + 0.5 * side_);
-    Cone cone{axis.origin, axis.direction.normalized(), std::numeric_limits<double>::infinity()};
-    for (const double corner_x : {x - kMargin_px, x + side_ + kMargin_px})
-      for (const double corner_y : {y - kMargin_px, y + side_ + kMargin_px}) {
-        const Vec3 corner = rays.Through(corner_x, corner_y).direction.normalized();
-        cone.sine = std::max(cone.sine, corner.cross(cone.direction).norm());
+  // None unless all its pixels have rays.
+  std::optional<Cone> ConeOf(const PixelRays& rays, int x, int y) const {
+    const std::optional<Ray> axis = rays.Through(x + 0.5 * side_, y + 0.5 * side_);
+    if (!axis) return std::nullopt;
+    Cone cone{axis->origin, axis->direction.normalized(), std::numeric_limits<double>::infinity()};
+    const double xs[] = {x - kMargin_px, x + 0.5 * side_, x + side_ + kMargin_px};
+    const double ys[] = {y - kMargin_px, y + 0.5 * side_, y + side_ + kMargin_px};
+    for (const double border_x : xs)
+      for (const double border_y : ys) {
+        const std::optional<Ray> border = rays.Through(border_x, border_y);
+        if (!border) return std::nullopt;
+        cone.sine =
+            std::max(cone.sine, border->direction.normalized().cross(cone.direction).norm());
       }
+    // The edges of a tile bow between the points looked at.
+    if (rays.has_distortion()) cone.sine *= kBow;
     return cone;
   }
 
   int side_;
   int columns_;
   int rows_;
-  std::vector<Scene::Sector> sectors_;
+  std::vector<std::optional<Scene::Sector>> sectors_;
 };
 
 // What the rays through the pixel centres of row y see, from one pixel left of the picture to one
@@ -105,8 +132,10 @@ SightRow LookAlongRow(const Scene& scene, const PixelRays& rays, const Tiles& ti
   SightRow row;
   row.reserve(static_cast<size_t>(width) + 2);
   const Footprint footprint = rays.FootprintOf(1);
-  for (int x = -1; x <= width; ++x)
-    row.push_back(scene.Look(rays.Through(x + 0.5, y + 0.5), footprint, &tiles.At(x, y)));
+  for (int x = -1; x <= width; ++x) {
+    const std::optional<Ray> ray = rays.Through(x + 0.5, y + 0.5);
+    row.push_back(ray ? scene.Look(*ray, footprint, tiles.At(x, y)) : Scene::Sight());
+  }
   return row;
 }
 
@@ -116,8 +145,8 @@ Rgb MeanOverPixel(const Scene& scene, const PixelRays& rays, const Tiles& tiles,
   const Footprint footprint = rays.FootprintOf(count);
   Rgb sum = Rgb::Zero();
   for (const Vec2& point : points)
-    sum +=
-        scene.Look(rays.Through(x + point.x(), y + point.y()), footprint, &tiles.At(x, y)).radiance;
+    if (const std::optional<Ray> ray = rays.Through(x + point.x(), y + point.y()))
+      sum += scene.Look(*ray, footprint, tiles.At(x, y)).radiance;
   return sum / count;
 }
 

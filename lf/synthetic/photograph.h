@@ -12,7 +12,8 @@
 
 namespace lf {
 
-// What the camera records: linear radiance, the mean over each pixel's square.
+// What the camera records: linear radiance, the mean over each pixel's square; black where its lens
+// lets no ray through.
 //   samples  rays per pixel where the picture has edges (a neighbour shows another surface or
 //            another brightness), spread over the square; elsewhere one ray through its centre
 // Returns [height][width][3].
