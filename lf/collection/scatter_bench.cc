@@ -52,6 +52,41 @@ void BM_Fast(benchmark::State& state, BayerPattern bayer) {
 BENCHMARK_CAPTURE(BM_Fast, rgb, BayerPattern::kNone);
 BENCHMARK_CAPTURE(BM_Fast, bayer, BayerPattern::kRggb);
 
+// Lenses that bend the rays: ideal pixels made once, as for many frames.
+constexpr Distortion kPhone{DistortionModel::kRadialTangential, {0.035}};
+constexpr Distortion kBarrel{DistortionModel::kRadialTangential, {-0.25, 0.07, 0.002, -0.003}};
+constexpr Distortion kFisheyeLens{DistortionModel::kFisheye, {-0.02, 0.004, -0.002, 3e-4}};
+
+void BM_Distorted(benchmark::State& state, const Distortion& distortion) {
+  Scene scene = MakeScene(BayerPattern::kNone, 0.02);
+  scene.lf_camera.intrinsics.distortion = distortion;
+  const IdealPixels ideal(scene.lf_camera.intrinsics);
+  SensorPlate plate(960, 640);
+  constexpr int kBandRows = 22;
+  uint64_t accepted = 0;
+  for (auto _ : state) {
+    const ScatterPlan plan = PlanScatter(scene.lf_camera, scene.frame, scene.pixels.rect, &ideal);
+    for (int y = 0; y < 640; y += kBandRows) {
+      PlateBand band(&plate, y, std::min(640, y + kBandRows));
+      accepted += ScatterBand(plan, scene.pixels, &band);
+    }
+  }
+  ReportRays(state, accepted);
+}
+BENCHMARK_CAPTURE(BM_Distorted, phone, kPhone);
+BENCHMARK_CAPTURE(BM_Distorted, barrel, kBarrel);
+BENCHMARK_CAPTURE(BM_Distorted, fisheye, kFisheyeLens);
+
+void BM_IdealPixels(benchmark::State& state, const Distortion& distortion) {
+  Intrinsics k = MakeScene(BayerPattern::kNone, 0.02).lf_camera.intrinsics;
+  k.distortion = distortion;
+  for (auto _ : state) benchmark::DoNotOptimize(IdealPixels(k));
+  ReportRays(state, state.iterations() * 960 * 640);
+}
+BENCHMARK_CAPTURE(BM_IdealPixels, phone, kPhone);
+BENCHMARK_CAPTURE(BM_IdealPixels, barrel, kBarrel);
+BENCHMARK_CAPTURE(BM_IdealPixels, fisheye, kFisheyeLens);
+
 void BM_Plan(benchmark::State& state) {
   const Scene scene = MakeScene(BayerPattern::kNone, 0.02);
   for (auto _ : state)
