@@ -78,9 +78,10 @@ void AddDistortion(const Distortion& distortion, const Distortion& top, const ch
   };
   const CameraModelName model = CameraModelOf(distortion);
   auto list = parameters(distortion, model);
-  for (const auto& [key, value] : parameters(top, CameraModelOf(top)))
-    if (std::none_of(list.begin(), list.end(), [&](const auto& p) { return p.first == key; }))
-      list.emplace_back(key, 0);
+  for (const auto& of_top : parameters(top, CameraModelOf(top)))
+    if (std::none_of(list.begin(), list.end(),
+                     [&](const auto& parameter) { return parameter.first == of_top.first; }))
+      list.emplace_back(of_top.first, 0);
   json->Add("\"camera_model\": \"{}\",{}", model.name, separator);
   for (const auto& [key, value] : list) {
     json->Add("\"{}\": ", key);
