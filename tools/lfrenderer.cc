@@ -59,6 +59,7 @@ lf::Result<lf::RenderOptions> MakeOptions(const Arguments& arguments, const lf::
   LF_ASSIGN_OR_RETURN(options.memory_bytes, lf::ParseByteSize(arguments.memory, "--memory"));
   options.seed = program.common().seed;
   options.strict = program.common().strict;
+  if (arguments.estimator == "bilinear") options.estimator = lf::Estimator::kBilinear;
   if (arguments.back_end == "reference") options.back_end = lf::CollectBackEnd::kReference;
   options.version = lf::Version();
   options.interrupted = &lf::CatchInterrupts();
@@ -89,7 +90,7 @@ int main(int argc, char** argv) {
                  "Smooth elements with fewer rays than this; empty ones are always filled");
   app.add_option("--mode", arguments.mode, "collect")
       ->check(CLI::IsMember({"collect", "rebin", "hybrid"}));
-  app.add_option("--estimator", arguments.estimator, "auto or nearest")
+  app.add_option("--estimator", arguments.estimator, "nearest (auto), or bilinear for RGB images")
       ->check(CLI::IsMember({"auto", "nearest", "bilinear"}));
   app.add_option("--lens-weights", arguments.lens_weights, "auto or none")
       ->check(CLI::IsMember({"auto", "none", "area", "hat"}));
@@ -100,7 +101,8 @@ int main(int argc, char** argv) {
 
   return program.Run(argc, argv, [&]() -> lf::Result<void> {
     LF_RETURN_IF_ERROR(CheckAvailable("--mode", arguments.mode, {"collect"}));
-    LF_RETURN_IF_ERROR(CheckAvailable("--estimator", arguments.estimator, {"auto", "nearest"}));
+    LF_RETURN_IF_ERROR(
+        CheckAvailable("--estimator", arguments.estimator, {"auto", "nearest", "bilinear"}));
     LF_RETURN_IF_ERROR(CheckAvailable("--lens-weights", arguments.lens_weights, {"auto", "none"}));
     lf::CatchInterrupts();
     LF_ASSIGN_OR_RETURN(const lf::LightField light_field, arguments.light_field.Open());

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <map>
 #include <memory>
 #include <optional>
 
 #include "lf/camera/ideal_pixels.h"
+#include "lf/collection/gather.h"
 #include "lf/collection/scatter.h"
 #include "lf/core/log.h"
 #include "lf/selection/overlap.h"
@@ -55,9 +57,11 @@ std::vector<PlateBand> CutIntoBands(SensorPlate* plate) {
 class Collector {
  public:
   Collector(const LightField& light_field, std::span<const RenderCamera> frames,
-            CollectBackEnd back_end, ThreadPool& pool, std::vector<SensorPlate>* plates)
+            Estimator estimator, CollectBackEnd back_end, ThreadPool& pool,
+            std::vector<SensorPlate>* plates)
       : light_field_(light_field),
         frames_(frames),
+        estimator_(estimator),
         back_end_(back_end),
         pool_(pool),
         plates_(*plates),
@@ -85,8 +89,16 @@ class Collector {
  private:
   struct Share {
     PixelRect rect;
-    ScatterPlan plan;
+    ScatterPlan scatter;  // of the estimator in use
+    std::optional<GatherPlan> gather;
+    std::atomic<uint64_t> accepted_count = 0;
   };
+
+  PixelRect RectOf(const BatchImage& image, const RenderCamera& frame) const {
+    return Intersection(
+        ContributingRect(light_field_.Camera(image.id), frame, image.cells, ReachOf(estimator_)),
+        image.pixels.rect);
+  }
 
   // Images of one camera share its ideal pixels, also with the next batch.
   void UndoDistortion(std::vector<BatchImage>& batch) {
@@ -121,10 +133,12 @@ class Collector {
       const RenderCamera& frame = frames_[frame_begin + i / batch.size()];
       const BatchImage& image = batch[i % batch.size()];
       const PinholeCamera camera = light_field_.Camera(image.id);
-      shares[i].rect =
-          Intersection(ContributingRect(camera, frame, image.cells), image.pixels.rect);
+      shares[i].rect = RectOf(image, frame);
       if (shares[i].rect.empty()) return;
-      shares[i].plan = PlanScatter(camera, frame, shares[i].rect, image.ideal_pixels.get());
+      if (estimator_ == Estimator::kBilinear)
+        shares[i].gather.emplace(camera, frame);
+      else
+        shares[i].scatter = PlanScatter(camera, frame, shares[i].rect, image.ideal_pixels.get());
     });
 
     struct Task {
@@ -139,27 +153,32 @@ class Collector {
     pool_.ForEach(tasks.size(), [&](size_t i) {
       Task& task = tasks[i];
       for (size_t k = 0; k < batch.size(); ++k) {
-        const Share& share = shares[task.frame * batch.size() + k];
+        Share& share = shares[task.frame * batch.size() + k];
         if (share.rect.empty()) continue;
-        task.accepted_count +=
-            ScatterBand(share.plan, batch[k].pixels, &bands_[frame_begin + task.frame][task.band]);
+        PlateBand& band = bands_[frame_begin + task.frame][task.band];
+        const uint64_t accepted = share.gather ? share.gather->GatherBand(batch[k].pixels, &band)
+                                               : ScatterBand(share.scatter, batch[k].pixels, &band);
+        task.accepted_count += accepted;
+        share.accepted_count += accepted;
       }
     });
 
     for (const Task& task : tasks)
       rays_[frame_begin + task.frame].accepted_count += task.accepted_count;
     for (size_t i = 0; i < shares.size(); ++i)
-      Count(frame_begin + i / batch.size(), shares[i].rect, !shares[i].plan.spans.empty());
+      Count(frame_begin + i / batch.size(), shares[i].rect, shares[i].accepted_count > 0);
   }
 
   void AddByReference(const std::vector<BatchImage>& batch) {
     for (size_t f = 0; f < frames_.size(); ++f)
       for (const BatchImage& image : batch) {
         const PinholeCamera camera = light_field_.Camera(image.id);
-        const PixelRect rect =
-            Intersection(ContributingRect(camera, frames_[f], image.cells), image.pixels.rect);
+        const PixelRect rect = RectOf(image, frames_[f]);
+        if (rect.empty()) continue;
         const uint64_t accepted =
-            ScatterReference(camera, image.pixels, frames_[f], rect, &plates_[f]);
+            estimator_ == Estimator::kBilinear
+                ? GatherReference(camera, image.pixels, frames_[f], &plates_[f])
+                : ScatterReference(camera, image.pixels, frames_[f], rect, &plates_[f]);
         rays_[f].accepted_count += accepted;
         Count(f, rect, accepted > 0);
       }
@@ -172,6 +191,7 @@ class Collector {
 
   const LightField& light_field_;
   std::span<const RenderCamera> frames_;
+  Estimator estimator_;
   CollectBackEnd back_end_;
   ThreadPool& pool_;
   std::vector<SensorPlate>& plates_;
@@ -192,6 +212,14 @@ void Skip(const std::string& name, const Error& error, CollectStatistics* statis
 
 }  // namespace
 
+const char* NameOf(Estimator estimator) {
+  return estimator == Estimator::kBilinear ? "bilinear" : "nearest";
+}
+
+PixelReach ReachOf(Estimator estimator) {
+  return estimator == Estimator::kBilinear ? PixelReach::kNeighbours : PixelReach::kOwn;
+}
+
 Result<CollectStatistics> Collect(const LightField& light_field, const LfImageStore& store,
                                   std::span<const RenderCamera> frames,
                                   std::span<const SelectedImage> images,
@@ -203,7 +231,7 @@ Result<CollectStatistics> Collect(const LightField& light_field, const LfImageSt
   Prefetcher prefetcher(store, std::move(requests),
                         {options.loader_count, options.queue_bytes, options.image_bytes});
 
-  Collector collector(light_field, frames, options.back_end, pool, plates);
+  Collector collector(light_field, frames, options.estimator, options.back_end, pool, plates);
   CollectStatistics statistics;
   CollectProgress done;
   std::vector<BatchImage> batch;

@@ -19,10 +19,21 @@
 
 namespace lf {
 
+// Who asks whom (doc/ray.md, "What is added"): every LF pixel looks for its element, or every
+// element for its place in each LF image, which must be RGB.
+enum class Estimator { kNearest, kBilinear };
+
+// "nearest", "bilinear"
+const char* NameOf(Estimator estimator);
+
+// Which pixels of an LF image its rays need, for selection.
+PixelReach ReachOf(Estimator estimator);
+
 // kReference asks the law of every pixel, on one thread: the judge, some 50 times slower.
 enum class CollectBackEnd { kFast, kReference };
 
 struct CollectOptions {
+  Estimator estimator = Estimator::kNearest;
   CollectBackEnd back_end = CollectBackEnd::kFast;
   int batch_image_count = 16;              // LF images collected together into a tile of the plate
   size_t queue_bytes = size_t{256} << 20;  // decoded LF images waiting
@@ -34,7 +45,7 @@ struct CollectOptions {
 
 struct FrameRays {
   uint64_t image_count = 0;   // LF images with an accepted ray
-  uint64_t tested_count = 0;  // rays of their rectangles
+  uint64_t tested_count = 0;  // pixels of their rectangles
   uint64_t accepted_count = 0;
 };
 

@@ -52,11 +52,14 @@ class NoiseStore : public LfImageStore {
     if (std::count(broken.begin(), broken.end(), id.value) > 0)
       return Error{broken_kind, "image" + std::to_string(id.value) + ": broken"};
     LfPixels pixels;
-    pixels.rect = {0, 0, kWidth, kHeight};
-    pixels.radiance = Image<uint16_t>(kWidth, kHeight, 3);
-    uint64_t index = 0;
-    for (uint16_t& v : pixels.radiance.pixels())
-      v = static_cast<uint16_t>(RandomBits(11, id.value, index++));
+    // No more than was asked for.
+    pixels.rect = rect;
+    pixels.radiance = Image<uint16_t>(rect.width(), rect.height(), 3);
+    for (int y = rect.y_begin; y < rect.y_end; ++y)
+      for (int x = rect.x_begin; x < rect.x_end; ++x)
+        for (int c = 0; c < 3; ++c)
+          pixels.radiance.at(x - rect.x_begin, y - rect.y_begin, c) = static_cast<uint16_t>(
+              RandomBits(11, id.value, static_cast<uint64_t>((y * kWidth + x) * 3 + c)));
     return pixels;
   }
 };
@@ -79,6 +82,54 @@ Outcome CollectAll(const NoiseStore& store, int threads, CollectOptions options,
   for (size_t i = 0; i < frames.size(); ++i) plates.emplace_back(80, 60);
   auto statistics = Collect(field, store, frames, images, options, pool, &plates, nullptr);
   return {std::move(plates), std::move(statistics)};
+}
+
+// Half of the cameras through one lens that bends rays, some through their own.
+LightField DistortedField() {
+  LightField field = Field();
+  for (uint32_t i = 0; i < 5; ++i) {
+    Intrinsics k = field.intrinsics[0];
+    k.distortion = {DistortionModel::kRadialTangential, {-0.1 - 0.01 * i, 0.02, 0.001}};
+    field.intrinsics.push_back(k);
+  }
+  for (uint32_t i = 0; i < field.size(); ++i)
+    field.cameras[i].intrinsics_index = i % 2 == 0 ? 0 : i % 3 == 0 ? 1 + i % 5 : 1;
+  return field;
+}
+
+std::vector<SensorPlate> CollectDistorted(int threads, const CollectOptions& options,
+                                          uint64_t* accepted) {
+  const LightField field = DistortedField();
+  const std::vector<RenderCamera> frames = Frames();
+  ThreadPool pool(threads);
+  const std::vector<SelectedImage> images =
+      SelectImages(field, frames, {0, {}, ReachOf(options.estimator)}, pool);
+  std::vector<SensorPlate> plates;
+  for (size_t i = 0; i < frames.size(); ++i) plates.emplace_back(80, 60);
+  const auto statistics =
+      Collect(field, NoiseStore(), frames, images, options, pool, &plates, nullptr);
+  EXPECT_TRUE(statistics);
+  *accepted = 0;
+  if (statistics)
+    for (const FrameRays& rays : statistics->frames) *accepted += rays.accepted_count;
+  return plates;
+}
+
+TEST(Collect, BothEstimatorsThroughLensesThatBendRays) {
+  for (const Estimator estimator : {Estimator::kNearest, Estimator::kBilinear}) {
+    CollectOptions options;
+    options.estimator = estimator;
+    uint64_t accepted = 0, accepted_again = 0, accepted_by_reference = 0;
+    const std::vector<SensorPlate> expected = CollectDistorted(1, options, &accepted);
+    EXPECT_GT(accepted, 100000u);
+    options.batch_image_count = 3;
+    EXPECT_EQ(CollectDistorted(2, options, &accepted_again), expected);
+    EXPECT_EQ(accepted_again, accepted);
+    options.back_end = CollectBackEnd::kReference;
+    CollectDistorted(1, options, &accepted_by_reference);
+    EXPECT_NEAR(static_cast<double>(accepted_by_reference), static_cast<double>(accepted),
+                1e-4 * static_cast<double>(accepted));
+  }
 }
 
 TEST(Collect, TheSameBitsForAnyThreadsBatchesAndOrder) {

@@ -14,12 +14,13 @@ std::string Text(const Vec3& v) { return fmt::format("{:.9g} {:.9g} {:.9g}", v.x
 }  // namespace
 
 ImageMetadata FrameMetadata(FrameId frame, const RenderCamera& camera, const FrameRays& rays,
-                            double fps, const std::string& version) {
+                            Estimator estimator, double fps, const std::string& version) {
   const PinholeCamera& pinhole = camera.pinhole;
   const double mm_per_w = 1000 * camera.unit_m;
   const double diameter_w = 2 * camera.aperture.radius_w;
   ImageMetadata metadata = {
       {"Software", "lfrendertools " + version},
+      {"lf:estimator", std::string(NameOf(estimator))},
       {"lf:frame", static_cast<int>(frame.value)},
       {"lf:time_s", camera.time_s},
       {"lf:fps", fps},

@@ -10,6 +10,6 @@ namespace lf {
 
 // Keys "lf:...", units as in their names; no clock time, so that equal frames are equal files.
 ImageMetadata FrameMetadata(FrameId frame, const RenderCamera& camera, const FrameRays& rays,
-                            double fps, const std::string& version);
+                            Estimator estimator, double fps, const std::string& version);
 
 }  // namespace lf

@@ -92,6 +92,10 @@ class Renderer {
 
 Result<RenderReport> Renderer::Run() {
   const Clock::time_point start = Clock::now();
+  if (options_.estimator == Estimator::kBilinear &&
+      light_field_.encoding.bayer != BayerPattern::kNone)
+    return UsageError(
+        "--estimator bilinear interpolates RGB images, and these are mosaics: use nearest");
   std::vector<FrameId> frames = options_.frames;
   if (frames.empty())
     for (uint32_t n = 1; n <= path_.frame_count(); ++n) frames.push_back(FrameId{n});
@@ -115,6 +119,7 @@ Result<RenderReport> Renderer::Run() {
   if (options_.contact_sheet) sheet_indices_ = ContactSheetFrames(frames.size());
 
   report_.version = options_.version;
+  report_.estimator = options_.estimator;
   report_.width = plate.width_px;
   report_.height = plate.height_px;
   report_.thread_count = pool_.thread_count();
@@ -152,7 +157,9 @@ Result<RenderReport> Renderer::Run() {
 std::vector<SelectedImage> Renderer::Select(std::span<const FrameId> frames) const {
   std::vector<RenderCamera> cameras;
   for (const FrameId frame : frames) cameras.push_back(path_.Camera(frame));
-  return SelectImages(light_field_, cameras, {options_.seed, options_.max_image_count}, pool_);
+  return SelectImages(light_field_, cameras,
+                      {options_.seed, options_.max_image_count, ReachOf(options_.estimator)},
+                      pool_);
 }
 
 Result<void> Renderer::RunPass(std::span<const FrameId> frames,
@@ -175,6 +182,7 @@ Result<void> Renderer::RunPass(std::span<const FrameId> frames,
                                                       });
 
   CollectOptions collect;
+  collect.estimator = options_.estimator;
   collect.back_end = options_.back_end;
   collect.batch_image_count = static_cast<int>(plan_.batch_image_count);
   collect.queue_bytes = plan_.queue_bytes;
@@ -218,9 +226,9 @@ Result<void> Renderer::Finish(FrameId frame, const RenderCamera& camera, const F
       Develop(plate, DevelopOptionsFor(light_field_.encoding, options_.smooth_below), pool_);
   FrameReport report = MakeFrameReport(frame, rays, developed);
   report.develop_s = SecondsSince(start);
-  LF_RETURN_IF_ERROR(WriteFrame(FramePath(options_.output_folder, frame, options_.format),
-                                developed, options_.format,
-                                FrameMetadata(frame, camera, rays, path_.fps, options_.version)));
+  LF_RETURN_IF_ERROR(WriteFrame(
+      FramePath(options_.output_folder, frame, options_.format), developed, options_.format,
+      FrameMetadata(frame, camera, rays, options_.estimator, path_.fps, options_.version)));
   const bool on_sheet = OnContactSheet(done_.frame_count);
   if (video_ || on_sheet) {
     Image<uint8_t> picture = DisplayImage(developed);

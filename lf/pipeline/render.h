@@ -31,6 +31,7 @@ struct RenderOptions {
   size_t memory_bytes = size_t{8} << 30;
   uint64_t seed = 0;
   bool strict = false;
+  Estimator estimator = Estimator::kNearest;
   CollectBackEnd back_end = CollectBackEnd::kFast;
 
   std::string version;                             // of the program, for the files' metadata
@@ -49,6 +50,7 @@ struct RenderProgress {
 // Renders the frames into output_folder: frame_0001.exr ..., contact_sheet.png, report.json, and
 // the video. Every file appears under its name only when it is whole. The frames have the same
 // bits for any number of threads and any memory.
+//   kUsage        bilinear for mosaics
 //   kInput        no LF image contributes to any frame; broken images (collect.h)
 //   kOutput       disk, memory; ffmpeg, after the frames are written all the same
 //   kInterrupted  what is finished stays

@@ -75,6 +75,7 @@ std::string ToJson(const RenderReport& report) {
   for (const FrameReport& frame : report.frames) frames.push_back(FrameToJson(frame));
   const Json json = {{"format", "lfreport 1"},
                      {"version", report.version},
+                     {"estimator", NameOf(report.estimator)},
                      {"resolution", {report.width, report.height}},
                      {"threads", report.thread_count},
                      {"lf_images", report.lf_image_count},

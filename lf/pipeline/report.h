@@ -26,6 +26,7 @@ struct FrameReport {
 
 struct RenderReport {
   std::string version;
+  Estimator estimator = Estimator::kNearest;
   int width = 0;
   int height = 0;
   int thread_count = 0;

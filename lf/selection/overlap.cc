@@ -44,9 +44,11 @@ class Clipped {
     count_ = kept_count;
   }
 
-  // Pixels whose centres the polygon's bounding box holds.
-  PixelRect Pixels(const Intrinsics& image) const {
+  // Pixels whose centres the polygon's bounding box holds; with neighbours, those around any of
+  // its points.
+  PixelRect Pixels(const Intrinsics& image, PixelReach reach) const {
     if (empty()) return {};
+    const int beyond = reach == PixelReach::kNeighbours ? 1 : 0;
     Vec2 low = vertices_[0], high = vertices_[0];
     for (size_t i = 1; i < count_; ++i) {
       low = low.cwiseMin(vertices_[i]);
@@ -59,7 +61,8 @@ class Clipped {
       return static_cast<int>(std::floor(v - 0.5 + kPixelMarginPx));
     };
     return Intersection({0, 0, image.width_px, image.height_px},
-                        {first(low.x()), first(low.y()), last(high.x()) + 1, last(high.y()) + 1});
+                        {first(low.x()) - beyond, first(low.y()) - beyond,
+                         last(high.x()) + 1 + beyond, last(high.y()) + 1 + beyond});
   }
 
  private:
@@ -79,14 +82,14 @@ class Clipped {
 };
 
 PixelRect ClippedRect(const Intrinsics& image, std::span<const PixelForm> plate,
-                      std::span<const PixelForm> lens) {
+                      std::span<const PixelForm> lens, PixelReach reach) {
   Clipped region(image);
   for (const std::span<const PixelForm> forms : {plate, lens})
     for (const PixelForm& form : forms) {
       if (region.empty()) return {};
       region.Clip(form);
     }
-  return region.Pixels(image);
+  return region.Pixels(image, reach);
 }
 
 // Whether the half-plane leaves nothing of the cell.
@@ -110,7 +113,7 @@ PixelRect BoundsOfCells(std::span<const IdealCell> cells, std::span<const PixelF
 }  // namespace
 
 PixelRect ContributingRect(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
-                           std::span<const IdealCell> cells) {
+                           std::span<const IdealCell> cells, PixelReach reach) {
   const bool distorted = lf_camera.intrinsics.has_distortion();
   LF_CHECK(!distorted || !cells.empty());
   const RayForms forms = MakeRayForms(lf_camera, render_camera);
@@ -125,9 +128,12 @@ PixelRect ContributingRect(const PinholeCamera& lf_camera, const RenderCamera& r
     const std::vector<PixelForm> plate =
         PlateHalfPlanes(forms, bounded, plane_sign, kPlateMarginPx);
     rect = Bounds(rect, distorted ? BoundsOfCells(cells, plate, lens)
-                                  : ClippedRect(lf_camera.intrinsics, plate, lens));
+                                  : ClippedRect(lf_camera.intrinsics, plate, lens, reach));
   }
-  return rect;
+  // Cells hold the whole of their pixels.
+  if (!distorted || reach == PixelReach::kOwn || rect.empty()) return rect;
+  return Intersection({0, 0, lf_camera.intrinsics.width_px, lf_camera.intrinsics.height_px},
+                      {rect.x_begin - 1, rect.y_begin - 1, rect.x_end + 1, rect.y_end + 1});
 }
 
 }  // namespace lf

@@ -24,7 +24,13 @@ namespace lf {
 // With lens distortion the image is no plane of rays that could be clipped: the rectangle bounds
 // those of its `cells` that no half-plane excludes.
 //   cells  MakeIdealCells of the LF camera's intrinsics where these have distortion; else not used
+//   reach  which pixels a ray takes its value from
+enum class PixelReach {
+  kOwn,         // the one it goes through the centre of
+  kNeighbours,  // the four around it: rays go through any point of the image
+};
 PixelRect ContributingRect(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
-                           std::span<const IdealCell> cells = {});
+                           std::span<const IdealCell> cells = {},
+                           PixelReach reach = PixelReach::kOwn);
 
 }  // namespace lf

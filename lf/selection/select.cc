@@ -29,12 +29,12 @@ class CellsOfLast {
 };
 
 SelectedImage Examine(const LightField& light_field, std::span<const RenderCamera> frames,
-                      LfImageId id, std::span<const IdealCell> cells) {
+                      LfImageId id, std::span<const IdealCell> cells, PixelReach reach) {
   const PinholeCamera camera = light_field.Camera(id);
   SelectedImage image;
   image.id = id;
   for (const RenderCamera& frame : frames) {
-    const PixelRect rect = ContributingRect(camera, frame, cells);
+    const PixelRect rect = ContributingRect(camera, frame, cells, reach);
     if (rect.empty()) continue;
     image.rect = Bounds(image.rect, rect);
     image.frame_count += 1;
@@ -64,7 +64,8 @@ std::vector<SelectedImage> SelectImages(const LightField& light_field,
     CellsOfLast cells;
     for (size_t i = task * kCamerasPerTask; i < end; ++i) {
       const LfImageId id{static_cast<uint32_t>(i)};
-      const SelectedImage image = Examine(light_field, frames, id, cells.Of(light_field, id));
+      const SelectedImage image =
+          Examine(light_field, frames, id, cells.Of(light_field, id), options.reach);
       if (image.frame_count > 0) found[task].push_back(image);
     }
   });

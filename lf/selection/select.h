@@ -11,6 +11,7 @@
 #include "lf/core/geometry.h"
 #include "lf/core/ids.h"
 #include "lf/core/parallel.h"
+#include "lf/selection/overlap.h"
 
 namespace lf {
 
@@ -26,6 +27,7 @@ struct SelectedImage {
 struct SelectOptions {
   uint64_t seed = 0;                      // of the shuffle
   std::optional<size_t> max_image_count;  // off; the first so many of the order
+  PixelReach reach = PixelReach::kOwn;    // of the estimator
 };
 
 // Tests every LF camera against every frame. The result is shuffled by `seed` (thesis: "a more

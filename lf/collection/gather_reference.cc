@@ -1,0 +1,69 @@
+#include <cmath>
+
+#include "lf/collection/gather.h"
+#include "lf/core/check.h"
+
+namespace lf {
+
+std::optional<std::array<uint16_t, 3>> InterpolatePixels(const LfPixels& pixels, int width_px,
+                                                         int height_px, double x_px, double y_px) {
+  LF_DCHECK(pixels.bayer == BayerPattern::kNone);
+  const double left = std::floor(x_px - 0.5), top = std::floor(y_px - 0.5);
+  if (!(left >= 0 && left + 1 < width_px && top >= 0 && top + 1 < height_px)) return std::nullopt;
+  const int column = static_cast<int>(left) - pixels.rect.x_begin;
+  const int row = static_cast<int>(top) - pixels.rect.y_begin;
+  LF_CHECK(column >= 0 && column + 1 < pixels.rect.width() && row >= 0 &&
+           row + 1 < pixels.rect.height());
+  if (!pixels.mask.empty())
+    for (const int y : {row, row + 1})
+      if (pixels.mask.at(column, y) == 0 || pixels.mask.at(column + 1, y) == 0) return std::nullopt;
+  constexpr uint32_t kOne = 256;
+  const auto right_weight = static_cast<uint32_t>(std::floor((x_px - 0.5 - left) * kOne + 0.5));
+  const auto lower_weight = static_cast<uint32_t>(std::floor((y_px - 0.5 - top) * kOne + 0.5));
+  const uint16_t* upper = pixels.radiance.row(row) + static_cast<ptrdiff_t>(column) * 3;
+  const uint16_t* lower = pixels.radiance.row(row + 1) + static_cast<ptrdiff_t>(column) * 3;
+  std::array<uint16_t, 3> value;
+  for (int c = 0; c < 3; ++c) {
+    const uint32_t above = upper[c] * (kOne - right_weight) + upper[c + 3] * right_weight;
+    const uint32_t below = lower[c] * (kOne - right_weight) + lower[c + 3] * right_weight;
+    const uint64_t sum = uint64_t{above} * (kOne - lower_weight) + uint64_t{below} * lower_weight;
+    value[c] = static_cast<uint16_t>((sum + kOne * kOne / 2) / (kOne * kOne));
+  }
+  return value;
+}
+
+uint64_t GatherReference(const PinholeCamera& lf_camera, const LfPixels& pixels,
+                         const RenderCamera& render_camera, SensorPlate* plate) {
+  const Intrinsics& k = lf_camera.intrinsics;
+  const DistortionMap map(k.distortion);
+  const Vec3 c = lf_camera.CentreWorld();
+  const PinholeCamera& lens = render_camera.pinhole;
+  const Vec3 offset = c - lens.CentreWorld();
+  const Vec3 f = lens.ForwardWorld();
+  uint64_t accepted = 0;
+  for (int y = 0; y < plate->height(); ++y)
+    for (int x = 0; x < plate->width(); ++x) {
+      // The focus point, before the lens.
+      const std::optional<Vec3> focus_point = FocusPointOfElement(render_camera, x + 0.5, y + 0.5);
+      if (!focus_point) continue;
+      // The line through it and c, running forward.
+      Vec3 d = *focus_point - c;
+      if (f.dot(d) < 0) d = -d;
+      if (!(f.dot(d) > 0)) continue;
+      const Vec3 on_lens = offset - d * (f.dot(offset) / f.dot(d));
+      if (!Contains(render_camera.aperture,
+                    {lens.RightWorld().dot(on_lens), lens.UpWorld().dot(on_lens)}))
+        continue;
+      const std::optional<Vec2> recorded = map.Distort(lf_camera.cam_from_world.rotation * d);
+      if (!recorded) continue;
+      const Vec3 p = k.Matrix() * Vec3(recorded->x(), recorded->y(), 1);
+      const auto value = InterpolatePixels(pixels, k.width_px, k.height_px, p.x(), p.y());
+      if (!value) continue;
+      for (int channel = 0; channel < SensorPlate::kChannels; ++channel)
+        plate->AddRay(x, y, channel, (*value)[channel]);
+      ++accepted;
+    }
+  return accepted;
+}
+
+}  // namespace lf

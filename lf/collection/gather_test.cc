@@ -1,0 +1,153 @@
+// The estimator *bilinear*: both back ends, and against pictures known in closed form.
+#include "lf/collection/gather.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "lf/camera/testing_scenes.h"
+#include "lf/core/random.h"
+
+namespace lf {
+namespace {
+
+LfPixels PixelsFor(const Intrinsics& k) {
+  LfPixels pixels;
+  pixels.rect = {0, 0, k.width_px, k.height_px};
+  pixels.radiance = Image<uint16_t>(k.width_px, k.height_px, 3);
+  return pixels;
+}
+
+LfPixels RandomPixels(const Intrinsics& k, uint64_t seed) {
+  LfPixels pixels = PixelsFor(k);
+  uint64_t index = 0;
+  for (uint16_t& v : pixels.radiance.pixels())
+    v = static_cast<uint16_t>(RandomBits(seed, 7, index++));
+  return pixels;
+}
+
+SensorPlate PlateFor(const testing::CameraPair& pair) {
+  const Intrinsics& k = pair.render_camera.pinhole.intrinsics;
+  return SensorPlate(k.width_px, k.height_px);
+}
+
+uint64_t GatherInBands(const testing::CameraPair& pair, const LfPixels& pixels, int band_height,
+                       SensorPlate* plate) {
+  const GatherPlan plan(pair.lf_camera, pair.render_camera);
+  uint64_t accepted = 0;
+  for (int y = 0; y < plate->height(); y += band_height) {
+    PlateBand band(plate, y, std::min(plate->height(), y + band_height));
+    accepted += plan.GatherBand(pixels, &band);
+  }
+  return accepted;
+}
+
+testing::CameraPair RandomPair(uint64_t seed) {
+  return seed % 2 == 0 ? testing::RandomCameraPair(seed / 2)
+                       : testing::RandomDistortedPair(seed / 2);
+}
+
+TEST(Gather, TheFastBackEndAgreesWithTheReference) {
+  uint64_t total = 0, differing_counts = 0, differing_values = 0, scenes_with_rays = 0;
+  for (uint64_t seed = 0; seed < 280; ++seed) {
+    const testing::CameraPair pair = RandomPair(seed);
+    const LfPixels pixels = RandomPixels(pair.lf_camera.intrinsics, seed);
+    SensorPlate expected = PlateFor(pair), fast = PlateFor(pair);
+    const uint64_t accepted =
+        GatherReference(pair.lf_camera, pixels, pair.render_camera, &expected);
+    GatherInBands(pair, pixels, 120, &fast);
+    total += accepted;
+    scenes_with_rays += accepted > 0;
+    for (int y = 0; y < expected.height(); ++y)
+      for (int x = 0; x < expected.width(); ++x)
+        for (int channel = 0; channel < 3; ++channel) {
+          const ElementSum a = expected.At(x, y, channel), b = fast.At(x, y, channel);
+          differing_counts += a.count != b.count;
+          if (a.count != b.count || a.sum == b.sum) continue;
+          ++differing_values;
+          // One step of the weights, of neighbours that differ by everything.
+          EXPECT_LE(std::max(a.sum, b.sum) - std::min(a.sum, b.sum), 65535u / 128);
+        }
+  }
+  EXPECT_GT(scenes_with_rays, 90u);
+  EXPECT_GT(total, 150000u);
+  EXPECT_LE(static_cast<double>(differing_counts), 1e-5 * static_cast<double>(total));
+  EXPECT_LE(static_cast<double>(differing_values), 1e-5 * static_cast<double>(total));
+}
+
+TEST(Gather, AnyCutIntoBandsGivesTheSameBits) {
+  for (uint64_t seed = 0; seed < 100; ++seed) {
+    const testing::CameraPair pair = RandomPair(seed);
+    const LfPixels pixels = RandomPixels(pair.lf_camera.intrinsics, seed);
+    SensorPlate whole = PlateFor(pair), cut = PlateFor(pair);
+    const uint64_t accepted = GatherInBands(pair, pixels, 120, &whole);
+    EXPECT_EQ(GatherInBands(pair, pixels, 7, &cut), accepted);
+    EXPECT_EQ(whole, cut) << seed;
+  }
+}
+
+// A wall in focus whose radiance is linear in the plane: bilinear interpolation is exact, so every
+// element shows the wall where it looks, whatever the lens of the LF camera does to its image.
+TEST(Gather, AWallInFocusReproducesItself) {
+  for (const Distortion& distortion :
+       {Distortion{}, Distortion{DistortionModel::kRadialTangential, {-0.2, 0.05, 0.002, -0.001}},
+        Distortion{DistortionModel::kFisheye, {0.01, -0.004}}}) {
+    testing::CameraPair pair = testing::ParallelPair(3, 2, 0.01, 0.05);
+    pair.lf_camera.intrinsics = {400, 400, 101, 69, 0.3, 200, 140, distortion};
+    const Intrinsics& k = pair.lf_camera.intrinsics;
+    const auto wall = [](const Vec3& point) {
+      return 30000 + 20000 * point.x() - 15000 * point.y();
+    };
+    LfPixels pixels = PixelsFor(k);
+    const DistortionMap map(distortion);
+    const Vec3 centre = pair.lf_camera.CentreWorld();
+    for (int y = 0; y < k.height_px; ++y)
+      for (int x = 0; x < k.width_px; ++x) {
+        const Vec3 distorted = k.InverseMatrix() * Vec3(x + 0.5, y + 0.5, 1);
+        const Vec3 d = *map.Undistort(distorted.head<2>());
+        const double v = wall(centre + d * (2 / d.z()));
+        for (int channel = 0; channel < 3; ++channel)
+          pixels.radiance.at(x, y, channel) = static_cast<uint16_t>(std::lround(v));
+      }
+    SensorPlate plate = PlateFor(pair);
+    const uint64_t accepted = GatherInBands(pair, pixels, 35, &plate);
+    EXPECT_GT(accepted, 1200u);
+    for (int y = 0; y < plate.height(); ++y)
+      for (int x = 0; x < plate.width(); ++x) {
+        const ElementSum element = plate.At(x, y, 1);
+        if (element.count == 0) continue;
+        const Vec3 point = *FocusPointOfElement(pair.render_camera, x + 0.5, y + 0.5);
+        // A pixel is 100 units of radiance wide: half a step of the weights, and rounding.
+        EXPECT_NEAR(static_cast<double>(element.sum), wall(point), 2.5) << x << ", " << y;
+      }
+  }
+}
+
+TEST(Gather, AllFourPixelsMustExistAndBeUnmasked) {
+  const Intrinsics k{100, 100, 4, 3, 0, 8, 6};
+  LfPixels pixels = RandomPixels(k, 1);
+  EXPECT_FALSE(InterpolatePixels(pixels, 8, 6, 0.49, 3));
+  EXPECT_TRUE(InterpolatePixels(pixels, 8, 6, 0.5, 3));
+  EXPECT_TRUE(InterpolatePixels(pixels, 8, 6, 7.49, 3));
+  EXPECT_FALSE(InterpolatePixels(pixels, 8, 6, 7.5, 3));
+  EXPECT_FALSE(InterpolatePixels(pixels, 8, 6, 4, 5.6));
+  pixels.mask = Image<uint8_t>(8, 6, 1, 255);
+  pixels.mask.at(3, 2) = 0;
+  EXPECT_FALSE(InterpolatePixels(pixels, 8, 6, 4, 3));
+  EXPECT_TRUE(InterpolatePixels(pixels, 8, 6, 5, 3));
+}
+
+TEST(Gather, InterpolationIsExactAtCentresAndHalfway) {
+  const Intrinsics k{100, 100, 4, 3, 0, 8, 6};
+  const LfPixels pixels = RandomPixels(k, 2);
+  const auto at_centre = InterpolatePixels(pixels, 8, 6, 2.5, 3.5);
+  const auto halfway = InterpolatePixels(pixels, 8, 6, 3, 3.5);
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_EQ((*at_centre)[c], pixels.radiance.at(2, 3, c));
+    EXPECT_EQ((*halfway)[c], (pixels.radiance.at(2, 3, c) + pixels.radiance.at(3, 3, c) + 1) / 2);
+  }
+}
+
+}  // namespace
+}  // namespace lf
