@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lf/capture/read_aos.h"
+#include "lf/capture/read_colmap.h"
 #include "lf/capture/read_llff.h"
 #include "lf/capture/read_middlebury.h"
 #include "lf/capture/read_stanford.h"
@@ -45,7 +46,7 @@ std::string_view StanfordOptionOf(const OpenOptions& options) {
   return "";
 }
 
-// kUsage if options are given that the file at `path` needs none of.
+// kUsage if options are given that what lies at `path` needs none of.
 Result<void> CheckNoStanfordOptions(const fs::path& path, const OpenOptions& options) {
   const std::string_view option = StanfordOptionOf(options);
   if (option.empty()) return {};
@@ -62,8 +63,16 @@ Result<void> CheckNoFov(const fs::path& path, const OpenOptions& options) {
       path.string()));
 }
 
+Result<void> CheckNoImagesFolder(const fs::path& path, const OpenOptions& options) {
+  if (!options.images_folder) return {};
+  return UsageError(
+      fmt::format("--images is for COLMAP models, which do not say where their images are; {} does",
+                  path.string()));
+}
+
 Result<LightField> OpenAos(const fs::path& path, const OpenOptions& options) {
   LF_RETURN_IF_ERROR(CheckNoStanfordOptions(path, options));
+  LF_RETURN_IF_ERROR(CheckNoImagesFolder(path, options));
   return ReadAos(path, {.fov_deg = options.fov_deg});
 }
 
@@ -77,6 +86,7 @@ std::optional<Result<LightField>> OpenFile(const fs::path& path, const OpenOptio
   if (!read) return std::nullopt;
   if (Result<void> result = CheckNoStanfordOptions(path, options); !result) return result.error();
   if (Result<void> result = CheckNoFov(path, options); !result) return result.error();
+  if (Result<void> result = CheckNoImagesFolder(path, options); !result) return result.error();
   return read(path);
 }
 
@@ -95,9 +105,16 @@ Result<std::optional<fs::path>> CalibrationIn(const fs::path& folder) {
   return std::optional<fs::path>();
 }
 
+Result<LightField> OpenColmap(const fs::path& model_folder, const OpenOptions& options) {
+  LF_RETURN_IF_ERROR(CheckNoStanfordOptions(model_folder, options));
+  LF_RETURN_IF_ERROR(CheckNoFov(model_folder, options));
+  return ReadColmapModel(model_folder, options.images_folder);
+}
+
 Result<LightField> OpenStanford(const fs::path& folder, const OpenOptions& options,
                                 const fs::path& asked_for) {
   LF_RETURN_IF_ERROR(CheckNoFov(folder, options));
+  LF_RETURN_IF_ERROR(CheckNoImagesFolder(folder, options));
   return ReadStanfordFolder(folder, {.focal_px = options.focal_px,
                                      .pitch_w = options.pitch_w,
                                      .plane_distance_w = options.plane_distance_w,
@@ -118,16 +135,21 @@ Result<LightField> OpenLightField(const fs::path& path, const OpenOptions& optio
     return InputError(
         fmt::format("{}: is not a light field: expected a transforms.json, a NAME_par.txt "
                     "(Middlebury), a poses_bounds.npy (LLFF), a poses.json (AOS) or the folder of "
-                    "one, or a folder of "
-                    "images",
+                    "one, the folder of a COLMAP model, or a folder of images",
                     path.string()));
+  }
+  // Before poses_bounds.npy, which is made of such a model and leaves out the distortion.
+  if (!fs::exists(path / kCalibrationName, error)) {
+    LF_ASSIGN_OR_RETURN(const std::optional<fs::path> model, FindColmapModel(path));
+    if (model) return OpenColmap(*model, options);
   }
   LF_ASSIGN_OR_RETURN(const std::optional<fs::path> calibration, CalibrationIn(path));
   if (calibration) return *OpenFile(*calibration, options);
   for (const fs::path& folder : {path, path / kImagesName})
     if (HoldsStanfordNames(folder)) return OpenStanford(folder, options, path);
   return InputError(fmt::format(
-      "{}: holds no light field: looked for {}, NAME_par.txt, {}, {} (AOS), and for images named "
+      "{}: holds no light field: looked for {}, a COLMAP model in it or in sparse/0, NAME_par.txt, "
+      "{}, {} (AOS), and for images named "
       "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext or NAME_ROW_COL.ext in it and in {}/{}",
       path.string(), kCalibrationName, kLlffName, kAosName, kImagesName, OtherCalibrations(path)));
 }

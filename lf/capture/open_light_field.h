@@ -20,17 +20,21 @@ struct OpenOptions {
   // Of all cameras of poses of Airborne Optical Sectioning, which need it (capture/read_aos.h);
   // elsewhere kUsage.
   std::optional<double> fov_deg = {};
+  // Where the image files of a COLMAP model are, instead of searching; not checked
+  // (capture/read_colmap.h). kUsage elsewhere: others say it themselves.
+  std::optional<std::filesystem::path> images_folder = {};
 };
 
 // Reads what `path` is: a file, or a folder that holds one, looked for in this order:
-// - transforms.json, or any .json file that is not of the next kind: capture/transforms_json.h
+// - transforms.json, or any .json file that is no poses.json: capture/transforms_json.h
+// - a COLMAP model, in the folder or in its sparse/0: capture/read_colmap.h
 // - poses.json, or any .json file with M3x4 matrices: capture/read_aos.h
 // - NAME_par.txt, one in the folder: capture/read_middlebury.h
 // - poses_bounds.npy, or any .npy file: capture/read_llff.h
 // - images named by the Stanford form, in the folder or its images/: capture/read_stanford.h
 //
 // No pixels are read; that image files exist is not checked here, but for a first one where its
-// header tells the size.
+// header tells the size, or its name the folder.
 // kInput: nothing there that is a light field (the message lists what was looked for), or the
 // reader's own error.
 Result<LightField> OpenLightField(const std::filesystem::path& path,

@@ -226,6 +226,40 @@ TEST_F(RealLightFieldTest, TheShopIsAGridOf729Cameras) {
   }
 }
 
+// The numbers are those of a reader of its own, in numpy, for which the model's points are
+// reprojected within 0.85 px in the mean.
+TEST_F(RealLightFieldTest, TheBeerIsAsAnotherReaderSeesIt) {
+  LF_SKIP_WITHOUT("data/beer-colmap");
+  const Result<LightField> light_field = Open("data/beer-colmap");
+  ASSERT_TRUE(light_field) << light_field.error().message;
+  ASSERT_EQ(light_field->size(), 71u);
+  EXPECT_EQ(light_field->intrinsics.size(), 71u);
+  Vec3 centres = Vec3::Zero();
+  double focal_px = 0, k = 0;
+  for (uint32_t i = 0; i < 71; ++i) {
+    const PinholeCamera camera = light_field->Camera({i});
+    centres += camera.CentreWorld();
+    focal_px += camera.intrinsics.fx_px;
+    k += camera.intrinsics.distortion.parameters[0];
+    EXPECT_EQ(camera.intrinsics.fx_px, camera.intrinsics.fy_px);
+    EXPECT_EQ(camera.intrinsics.cx_px, 360);
+    EXPECT_EQ(camera.intrinsics.cy_px, 640);
+    EXPECT_EQ(camera.intrinsics.distortion.model, DistortionModel::kRadialTangential);
+    EXPECT_TRUE(fs::exists(light_field->ImagePath({i})));
+  }
+  const auto expect_near = [](const Vec3& a, const Vec3& b) { EXPECT_LT((a - b).norm(), 1e-12); };
+  expect_near(centres, Vec3(8.920645297302766, -2.953269514667041, 21.6690109176599));
+  expect_near(light_field->Camera({0}).CentreWorld(),
+              Vec3(0.2708125657388623, 1.6597579474636932, -1.3957008584801027));
+  expect_near(light_field->Camera({70}).CentreWorld(),
+              Vec3(0.9913895011719277, 0.6920423869829948, -0.5186137561778914));
+  EXPECT_NEAR(focal_px, 79378.37862488278, 1e-9);
+  EXPECT_NEAR(k, 2.708013943761758, 1e-13);
+  ASSERT_TRUE(light_field->depth_range);
+  EXPECT_NEAR(light_field->depth_range->near_w, 3.5492805666715666, 1e-12);
+  EXPECT_NEAR(light_field->depth_range->far_w, 20.428267777661354, 1e-12);
+}
+
 TEST_F(RealLightFieldTest, TheTempleIsProjectedAsItsFileSays) {
   LF_SKIP_WITHOUT("data/middlebury-templeRing");
   const Result<LightField> light_field = Open("data/middlebury-templeRing/templeRing");
