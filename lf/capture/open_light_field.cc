@@ -65,15 +65,15 @@ Result<void> CheckNoFov(const fs::path& path, const OpenOptions& options) {
 
 Result<void> CheckNoImagesFolder(const fs::path& path, const OpenOptions& options) {
   if (!options.images_folder) return {};
-  return UsageError(
-      fmt::format("--images is for COLMAP models, which do not say where their images are; {} does",
-                  path.string()));
+  return UsageError(fmt::format(
+      "--images is for COLMAP models and poses of Airborne Optical Sectioning, which do "
+      "not say where their images are; {} does",
+      path.string()));
 }
 
 Result<LightField> OpenAos(const fs::path& path, const OpenOptions& options) {
   LF_RETURN_IF_ERROR(CheckNoStanfordOptions(path, options));
-  LF_RETURN_IF_ERROR(CheckNoImagesFolder(path, options));
-  return ReadAos(path, {.fov_deg = options.fov_deg});
+  return ReadAos(path, {.fov_deg = options.fov_deg, .images_folder = options.images_folder});
 }
 
 // None if the name is that of no calibration file.

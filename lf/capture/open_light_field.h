@@ -20,8 +20,8 @@ struct OpenOptions {
   // Of all cameras of poses of Airborne Optical Sectioning, which need it (capture/read_aos.h);
   // elsewhere kUsage.
   std::optional<double> fov_deg = {};
-  // Where the image files of a COLMAP model are, instead of searching; not checked
-  // (capture/read_colmap.h). kUsage elsewhere: others say it themselves.
+  // Where the image files of a COLMAP model are, not checked (capture/read_colmap.h), or those of
+  // poses of Airborne Optical Sectioning; instead of searching. kUsage elsewhere: others say it.
   std::optional<std::filesystem::path> images_folder = {};
 };
 

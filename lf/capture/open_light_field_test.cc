@@ -118,6 +118,12 @@ TEST_F(OpenLightFieldTest, TakesPosesOfAirborneOpticalSectioningByContent) {
     EXPECT_NE(without.error().message.find("--fov-deg"), std::string::npos);
   }
   EXPECT_EQ(OpenLightField(folder_, {.focal_px = 7}).error().kind, ErrorKind::kUsage);
+  fs::create_directories(folder_ / "elsewhere");
+  ASSERT_TRUE(WriteImage(folder_ / "elsewhere" / "a.png", Image<uint8_t>(6, 6, 3).view()));
+  const Result<LightField> elsewhere =
+      OpenLightField(folder_, {.fov_deg = 90, .images_folder = folder_ / "elsewhere"});
+  ASSERT_TRUE(elsewhere) << elsewhere.error().message;
+  EXPECT_EQ(elsewhere->intrinsics[0].width_px, 6);
   ASSERT_TRUE(WriteFileAtomically(folder_ / "transforms.json", kCalibration));
   EXPECT_EQ(OpenLightField(folder_, {.fov_deg = 90}).error().kind, ErrorKind::kUsage);
 }
