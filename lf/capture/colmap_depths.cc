@@ -17,6 +17,8 @@ void DepthSample::Add(uint64_t point_id, uint32_t image_id, double depth_w) {
   if (!(depth_w > 0) || !std::isfinite(depth_w)) return;
   const uint64_t hash = RandomBits(kSeed, point_id, image_id);
   if (hash > hash_limit_) return;
+  // Once: growing would hold the old and the new ones. What is not touched takes no memory.
+  if (depths_.empty()) depths_.reserve(kMaxCount + 1);
   depths_.emplace_back(hash, depth_w);
   while (depths_.size() > kMaxCount && hash_limit_ > 0) {
     hash_limit_ /= 2;

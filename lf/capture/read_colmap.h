@@ -18,9 +18,9 @@ namespace lf {
 // whose images cannot be counted.
 Result<std::optional<std::filesystem::path>> FindColmapModel(const std::filesystem::path& path);
 
-// The registered images, sorted by name. .bin goes before .txt. Nothing but the result, a block of
-// a file and a sample of depths is in memory at a time, besides some 20 bytes for each image and
-// 150 for each camera.
+// The registered images, sorted by name. .bin goes before .txt. Besides the result, a block
+// of a file and a sample of depths, some 50 bytes for each image and 350 for each camera are in
+// memory while it reads.
 //
 //   images_folder  where the image files are, not checked; if not given, searched: `images` in the
 //                  model folder and in the three above it, then these themselves; the first in
