@@ -1,10 +1,13 @@
-// Image files in and out: PNG, JPEG, TIFF, EXR. The only place with OpenImageIO.
+// Image files in and out: PNG, JPEG, TIFF, EXR; camera raw files in. The only place with
+// OpenImageIO.
 //
 // All functions may be called by many threads at once; none starts threads of its own.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,6 +15,7 @@
 #include <variant>
 #include <vector>
 
+#include "lf/core/geometry.h"
 #include "lf/core/image.h"
 #include "lf/core/result.h"
 
@@ -23,6 +27,16 @@ namespace lf {
 // of the same value (exact up to 2^24); doubles are rounded to float.
 using StoredImage = std::variant<Image<uint8_t>, Image<uint16_t>, Image<float>>;
 
+// What a camera raw file tells of its pixels, in the words of capture/radiance.h.
+struct RawFacts {
+  BayerPattern bayer =
+      BayerPattern::kNone;            // at pixel (0, 0); kNone: not told, or no Bayer pattern
+  std::optional<double> black_level;  // the mean, where the file has several
+  std::optional<double> white_level;
+  std::optional<std::array<double, 3>> white_balance;  // as shot; green is 1
+  std::optional<Mat3> camera_to_srgb;                  // of white balanced colours
+};
+
 struct ImageFileInfo {
   int width = 0;
   int height = 0;
@@ -30,6 +44,7 @@ struct ImageFileInfo {
   int bits = 0;  // 8, 16 or 32 of the StoredImage
   bool is_float = false;
   std::vector<std::string> channel_names;  // one per channel, as the format calls them
+  std::optional<RawFacts> raw;             // of camera raw files: one channel of 16 bits
 };
 
 // The header alone. kInput as for ReadImage, but a file truncated later goes unnoticed.
@@ -38,14 +53,27 @@ Result<ImageFileInfo> ReadImageInfo(const std::filesystem::path& path);
 // All pixels and channels as stored: no colour conversion, alpha not multiplied in, no rotation.
 // The content decides the format, not the name. The first part of a file with several.
 // Channels of EXR files come in the order R, G, B, A, then the others.
+// Camera raw files give the mosaic as the sensor recorded it: not demosaicked, brightened, balanced
+// or turned, black not subtracted; cut to the active area where a DNG states one, and through its
+// linearization table. Read are DNG, and others that state a mosaic of 2 x 2 pixels in TIFF tags
+// (NEF, ARW). LibRaw decodes them: damage within compressed ones may go unnoticed, and pictures
+// below 22 pixels are no raw files to it.
 // kInput: missing, unreadable, truncated or damaged file (JPEG: whatever libjpeg could only guess),
-// another format (camera raw among them), or larger than 2^30 pixels or 2^32 values, which is
-// checked before pixels are allocated; the message names the file.
+// another format (other camera raw files among them), or larger than 2^30 pixels or 2^32 values,
+// which is checked before pixels are allocated; the message names the file.
 Result<StoredImage> ReadImage(const std::filesystem::path& path);
+
+// Both at once.
+struct ImageWithInfo {
+  StoredImage image;
+  ImageFileInfo info;
+};
+Result<ImageWithInfo> ReadImageWithInfo(const std::filesystem::path& path);
 
 // The same for a file that is in memory; `name` is what messages call it.
 Result<ImageFileInfo> ReadImageInfoBytes(std::string_view bytes, const std::string& name);
 Result<StoredImage> ReadImageBytes(std::string_view bytes, const std::string& name);
+Result<ImageWithInfo> ReadImageWithInfoBytes(std::string_view bytes, const std::string& name);
 
 enum class PixelType { kUint8, kUint16, kHalf, kFloat };
 

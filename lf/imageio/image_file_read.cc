@@ -8,11 +8,14 @@
 #include <memory>
 #include <new>
 #include <numeric>
+#include <optional>
 
 #include "lf/core/file.h"
 #include "lf/imageio/image_file.h"
 #include "lf/imageio/image_probe.h"
 #include "lf/imageio/open_image_io.h"
+#include "lf/imageio/open_raw.h"
+#include "lf/imageio/stored_value.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -42,12 +45,21 @@ Result<void> CheckRemarks(const std::string& remarks, const std::string& name) {
   return {};
 }
 
+// A file, under its name or in memory.
+struct FileSource {
+  OIIO::Filesystem::IOProxy& file;
+  std::string name;
+  std::optional<std::string_view> bytes;  // none: `name` is its path
+};
+
 // A decoder at the start of its pixels.
 struct OpenImage {
   std::string name;
+  std::optional<NamedBytes> raw_bytes;  // what `input` reads, if these; outlives it
   std::unique_ptr<OIIO::ImageInput> input;
   OIIO::ImageSpec spec;
   std::vector<int> channel_order;  // as we give them: indices into the file's order
+  std::optional<RawFacts> raw;
 };
 
 // The stored type of every channel: 8 and 16 for unsigned integers, 32 for what becomes float.
@@ -87,32 +99,53 @@ Result<void> CheckSize(const OIIO::ImageSpec& spec, const std::string& name) {
   return {};
 }
 
-Result<OpenImage> Open(OIIO::Filesystem::IOProxy& file, ImageFormat format,
-                       const std::string& name) {
+Result<OpenImage> OpenMosaic(const FileSource& source) {
+  LF_ASSIGN_OR_RETURN(const RawMosaic mosaic, ReadRawMosaic(SourceOf(source.file), source.name));
+  OpenImage image{source.name, {}, {}, {}, {0}, {}};
+  std::string path = source.name;
+  if (source.bytes) {
+    LF_ASSIGN_OR_RETURN(NamedBytes bytes, NamedBytes::Create(*source.bytes));
+    path = image.raw_bytes.emplace(std::move(bytes)).path();
+  }
+  LF_ASSIGN_OR_RETURN(OpenRaw raw, OpenRawFile(path, mosaic, source.name));
+  image.input = std::move(raw.input);
+  image.spec = raw.spec;
+  image.raw = raw.facts;
+  return image;
+}
+
+Result<OpenImage> OpenPicture(const FileSource& source, ImageFormat format) {
   ConfigureOpenImageIo();
-  OpenImage image{name, OIIO::ImageInput::create(PluginName(format)), {}, {}};
+  const std::string& name = source.name;
+  OpenImage image{name, {}, OIIO::ImageInput::create(PluginName(format)), {}, {}, {}};
   if (!image.input)
     return InputError(fmt::format("{}: this OpenImageIO cannot read {} files: {}", name,
                                   PluginName(format), OIIO::geterror()));
   OIIO::ImageSpec wishes;
   wishes.attribute("oiio:UnassociatedAlpha", 1);  // alpha stays beside the colours
-  image.input->set_ioproxy(&file);
+  image.input->set_ioproxy(&source.file);
   if (!image.input->open(name, image.spec, wishes)) {
     const std::string remarks = image.input->geterror();
     LF_RETURN_IF_ERROR(CheckRemarks(remarks, name));
     return InputError(fmt::format("{}: truncated or damaged {} file", name, PluginName(format)));
   }
-  LF_RETURN_IF_ERROR(CheckSize(image.spec, name));
   image.channel_order = ColoursFirst(
       format == ImageFormat::kExr ? image.spec.channelnames : std::vector<std::string>{},
       image.spec.nchannels);
   return image;
 }
 
+Result<OpenImage> Open(const FileSource& source, ImageFormat format) {
+  LF_ASSIGN_OR_RETURN(OpenImage image, format == ImageFormat::kRaw ? OpenMosaic(source)
+                                                                   : OpenPicture(source, format));
+  LF_RETURN_IF_ERROR(CheckSize(image.spec, source.name));
+  return image;
+}
+
 ImageFileInfo InfoOf(const OpenImage& image) {
   const int bits = StoredBits(image.spec);
   ImageFileInfo info{
-      image.spec.width, image.spec.height, image.spec.nchannels, bits, bits == 32, {}};
+      image.spec.width, image.spec.height, image.spec.nchannels, bits, bits == 32, {}, image.raw};
   for (const int channel : image.channel_order)
     info.channel_names.push_back(image.spec.channel_name(channel));
   return info;
@@ -121,7 +154,10 @@ ImageFileInfo InfoOf(const OpenImage& image) {
 // Reads all pixels, packed as stored (`type` unknown) or converted to `type`.
 Result<void> ReadPixels(OpenImage& image, OIIO::TypeDesc type, void* pixels) {
   const bool read = image.input->read_image(0, 0, 0, image.spec.nchannels, type, pixels);
-  LF_RETURN_IF_ERROR(CheckRemarks(image.input->geterror(), image.name));
+  const std::string remarks = image.input->geterror();
+  if (!read && image.raw)
+    return InputError(fmt::format("{}: LibRaw cannot decode it: truncated or damaged", image.name));
+  LF_RETURN_IF_ERROR(CheckRemarks(remarks, image.name));
   if (!read) return InputError(fmt::format("{}: truncated or damaged", image.name));
   return {};
 }
@@ -131,40 +167,6 @@ Result<StoredImage> ReadIntegers(OpenImage& image) {
   Image<T> pixels(image.spec.width, image.spec.height, image.spec.nchannels);
   LF_RETURN_IF_ERROR(ReadPixels(image, OIIO::BaseTypeFromC<T>::value, pixels.pixels().data()));
   return StoredImage(std::move(pixels));
-}
-
-template <class T>
-float ValueAt(const std::byte* bytes) {
-  T value;
-  std::memcpy(&value, bytes, sizeof(T));
-  return static_cast<float>(value);
-}
-
-// The value itself: OpenImageIO would scale integers to [0, 1].
-float FloatOf(OIIO::TypeDesc type, const std::byte* bytes) {
-  switch (type.basetype) {
-    case OIIO::TypeDesc::UINT8:
-      return ValueAt<uint8_t>(bytes);
-    case OIIO::TypeDesc::INT8:
-      return ValueAt<int8_t>(bytes);
-    case OIIO::TypeDesc::UINT16:
-      return ValueAt<uint16_t>(bytes);
-    case OIIO::TypeDesc::INT16:
-      return ValueAt<int16_t>(bytes);
-    case OIIO::TypeDesc::UINT32:
-      return ValueAt<uint32_t>(bytes);
-    case OIIO::TypeDesc::INT32:
-      return ValueAt<int32_t>(bytes);
-    case OIIO::TypeDesc::UINT64:
-      return ValueAt<uint64_t>(bytes);
-    case OIIO::TypeDesc::INT64:
-      return ValueAt<int64_t>(bytes);
-    default:
-      break;
-  }
-  float value = 0;
-  OIIO::convert_pixel_values(type, bytes, OIIO::TypeDesc::FLOAT, &value, 1);
-  return value;
 }
 
 // Channels of any types, in any order.
@@ -196,17 +198,7 @@ Result<StoredImage> ReadFloats(OpenImage& image) {
   return StoredImage(std::move(pixels));
 }
 
-Result<ImageFileInfo> InfoFrom(OIIO::Filesystem::IOProxy& file, const std::string& name) {
-  LF_ASSIGN_OR_RETURN(const ImageFormat format, ProbeImage(SourceOf(file), name));
-  LF_ASSIGN_OR_RETURN(const OpenImage image, Open(file, format, name));
-  return InfoOf(image);
-}
-
-Result<StoredImage> PixelsFrom(OIIO::Filesystem::IOProxy& file, const std::string& name) {
-  const ByteSource source = SourceOf(file);
-  LF_ASSIGN_OR_RETURN(const ImageFormat format, ProbeImage(source, name));
-  if (format == ImageFormat::kPng) LF_RETURN_IF_ERROR(CheckPngIsComplete(source, name));
-  LF_ASSIGN_OR_RETURN(OpenImage image, Open(file, format, name));
+Result<StoredImage> PixelsOf(OpenImage& image) {
   switch (StoredBits(image.spec)) {
     case 8:
       return ReadIntegers<uint8_t>(image);
@@ -215,6 +207,21 @@ Result<StoredImage> PixelsFrom(OIIO::Filesystem::IOProxy& file, const std::strin
     default:
       return ReadFloats(image);
   }
+}
+
+Result<ImageFileInfo> InfoFrom(const FileSource& source) {
+  LF_ASSIGN_OR_RETURN(const ImageFormat format, ProbeImage(SourceOf(source.file), source.name));
+  LF_ASSIGN_OR_RETURN(const OpenImage image, Open(source, format));
+  return InfoOf(image);
+}
+
+Result<ImageWithInfo> ImageFrom(const FileSource& source) {
+  const ByteSource bytes = SourceOf(source.file);
+  LF_ASSIGN_OR_RETURN(const ImageFormat format, ProbeImage(bytes, source.name));
+  if (format == ImageFormat::kPng) LF_RETURN_IF_ERROR(CheckPngIsComplete(bytes, source.name));
+  LF_ASSIGN_OR_RETURN(OpenImage image, Open(source, format));
+  LF_ASSIGN_OR_RETURN(StoredImage pixels, PixelsOf(image));
+  return ImageWithInfo{std::move(pixels), InfoOf(image)};
 }
 
 // What a decoder throws becomes an error; out of memory is main's business.
@@ -239,22 +246,32 @@ Result<ImageFileInfo> ReadImageInfo(const fs::path& path) {
   OIIO::Filesystem::IOFile file(name, OIIO::Filesystem::IOProxy::Read);
   if (!file.opened())
     return InputError(fmt::format("{}: cannot be read: {}", name, std::strerror(errno)));
-  return WithoutThrowing(name, [&] { return InfoFrom(file, name); });
+  return WithoutThrowing(name, [&] { return InfoFrom({file, name, {}}); });
 }
 
 Result<ImageFileInfo> ReadImageInfoBytes(std::string_view bytes, const std::string& name) {
   OIIO::Filesystem::IOMemReader file(const_cast<char*>(bytes.data()), bytes.size());
-  return WithoutThrowing(name, [&] { return InfoFrom(file, name); });
+  return WithoutThrowing(name, [&] { return InfoFrom({file, name, bytes}); });
+}
+
+Result<ImageWithInfo> ReadImageWithInfo(const fs::path& path) {
+  LF_ASSIGN_OR_RETURN(const std::string bytes, ReadFile(path));
+  return ReadImageWithInfoBytes(bytes, path.string());
+}
+
+Result<ImageWithInfo> ReadImageWithInfoBytes(std::string_view bytes, const std::string& name) {
+  OIIO::Filesystem::IOMemReader file(const_cast<char*>(bytes.data()), bytes.size());
+  return WithoutThrowing(name, [&] { return ImageFrom({file, name, bytes}); });
 }
 
 Result<StoredImage> ReadImage(const fs::path& path) {
-  LF_ASSIGN_OR_RETURN(const std::string bytes, ReadFile(path));
-  return ReadImageBytes(bytes, path.string());
+  LF_ASSIGN_OR_RETURN(ImageWithInfo read, ReadImageWithInfo(path));
+  return std::move(read.image);
 }
 
 Result<StoredImage> ReadImageBytes(std::string_view bytes, const std::string& name) {
-  OIIO::Filesystem::IOMemReader file(const_cast<char*>(bytes.data()), bytes.size());
-  return WithoutThrowing(name, [&] { return PixelsFrom(file, name); });
+  LF_ASSIGN_OR_RETURN(ImageWithInfo read, ReadImageWithInfoBytes(bytes, name));
+  return std::move(read.image);
 }
 
 }  // namespace lf

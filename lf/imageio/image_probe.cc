@@ -7,7 +7,8 @@
 #include <cstring>
 #include <optional>
 #include <string_view>
-#include <vector>
+
+#include "lf/imageio/raw_mosaic.h"
 
 namespace lf {
 namespace {
@@ -78,31 +79,23 @@ Result<void> CheckJpeg(const ByteSource& source, const std::string& name) {
       fmt::format("{}: JPEG file without a frame header: truncated or damaged", name));
 }
 
-// Camera raw files are TIFF files that lead with a thumbnail; taken for TIFF they would silently
-// give a tiny picture.
-bool IsCameraRaw(const ByteSource& source) {
-  constexpr uint64_t kNewSubfileType = 254, kDngVersion = 50706;
-  std::array<uint8_t, 10> head{};
-  if (source(0, head) != head.size()) return false;
-  const bool little_endian = head[0] == 'I';
-  const auto number = [&](const uint8_t* bytes, int count) {
-    uint64_t value = 0;
-    for (int i = 0; i < count; ++i) value = value << 8 | bytes[little_endian ? count - 1 - i : i];
-    return value;
+// The start of a camera raw file that is no TIFF file.
+Result<void> CheckNoOtherRaw(std::span<const uint8_t> start, const std::string& name) {
+  using namespace std::string_view_literals;
+  struct Kind {
+    size_t offset;
+    std::string_view magic;
+    const char* name;
   };
-  if (number(head.data() + 2, 2) != 42) return false;  // BigTIFF: no camera writes it
-  if (head[8] == 'C' && head[9] == 'R') return true;   // Canon CR2
-  const uint64_t directory = number(head.data() + 4, 4);
-  std::array<uint8_t, 2> count_bytes{};
-  if (source(directory, count_bytes) != 2) return false;
-  std::vector<uint8_t> entries(12 * number(count_bytes.data(), 2));
-  entries.resize(source(directory + 2, entries) / 12 * 12);
-  for (size_t at = 0; at < entries.size(); at += 12) {
-    const uint64_t tag = number(&entries[at], 2);
-    const bool reduced = tag == kNewSubfileType && (number(&entries[at + 8], 4) & 1) != 0;
-    if (reduced || tag == kDngVersion) return true;
-  }
-  return false;
+  constexpr Kind kKinds[] = {{0, "FUJIFILM"sv, "Fujifilm RAF"}, {0, "FOVb"sv, "Sigma X3F"},
+                             {0, "IIRO"sv, "Olympus ORF"},      {0, "IIRS"sv, "Olympus ORF"},
+                             {0, "MMOR"sv, "Olympus ORF"},      {0, "IIU\0"sv, "Panasonic RW2"},
+                             {0, "\0MRM"sv, "Minolta MRW"},     {4, "ftypcrx "sv, "Canon CR3"}};
+  for (const Kind& kind : kKinds)
+    if (start.size() >= kind.offset && StartsWith(start.subspan(kind.offset), kind.magic))
+      return InputError(fmt::format(
+          "{}: is a camera raw file ({}) that is not read; convert it to DNG", name, kind.name));
+  return {};
 }
 
 }  // namespace
@@ -115,7 +108,7 @@ Result<void> CheckPixelCount(uint64_t width, uint64_t height, const std::string&
 }
 
 Result<ImageFormat> ProbeImage(const ByteSource& source, const std::string& name) {
-  std::array<uint8_t, 8> head;
+  std::array<uint8_t, 12> head;
   const auto start = std::span<const uint8_t>(head).first(source(0, head));
   if (start.empty()) return InputError(fmt::format("{}: file is empty", name));
   if (StartsWith(start, "\x89PNG\r\n\x1a\n")) {
@@ -130,12 +123,11 @@ Result<ImageFormat> ProbeImage(const ByteSource& source, const std::string& name
   using namespace std::string_view_literals;
   for (const std::string_view tiff : {"II*\0"sv, "MM\0*"sv, "II+\0"sv, "MM\0+"sv}) {
     if (!StartsWith(start, tiff)) continue;
-    if (IsCameraRaw(source))
-      return InputError(fmt::format(
-          "{}: is a camera raw file; convert it to 16-bit TIFF or PNG without demosaicking", name));
+    if (IsRawTiff(source)) return ImageFormat::kRaw;
     return ImageFormat::kTiff;
   }
-  return InputError(fmt::format("{}: is not a PNG, JPEG, TIFF or EXR file", name));
+  LF_RETURN_IF_ERROR(CheckNoOtherRaw(start, name));
+  return InputError(fmt::format("{}: is not a PNG, JPEG, TIFF, EXR or DNG file", name));
 }
 
 Result<void> CheckPngIsComplete(const ByteSource& source, const std::string& name) {

@@ -65,13 +65,25 @@ TEST(ImageProbe, ACameraRawFileIsNotTakenForItsThumbnail) {
   const std::string full_size = "\xfe\0\4\0\1\0\0\0\0\0\0\0"s;
   const std::string thumbnail = "\xfe\0\4\0\1\0\0\0\1\0\0\0"s;
   const std::string dng_version = "\x12\xc6\1\0\4\0\0\0\1\4\0\0"s;
-  EXPECT_TRUE(Probe(header + full_size + width));
-  const auto raw = Probe(header + width + thumbnail);
-  ASSERT_FALSE(raw);
-  EXPECT_NE(raw.error().message.find("camera raw"), std::string::npos);
-  EXPECT_FALSE(Probe(header + width + dng_version));
-  EXPECT_FALSE(Probe("II*\0\x10\0\0\0CR\2\0"s));
-  EXPECT_TRUE(Probe(header + width));  // ends within the directory: the decoder's business
+  EXPECT_EQ(*Probe(header + full_size + width), ImageFormat::kTiff);
+  EXPECT_EQ(*Probe(header + width + thumbnail), ImageFormat::kRaw);
+  EXPECT_EQ(*Probe(header + width + dng_version), ImageFormat::kRaw);
+  EXPECT_EQ(*Probe("II*\0\x10\0\0\0CR\2\0"s), ImageFormat::kRaw);
+  // Ends within the directory: the decoder's business.
+  EXPECT_EQ(*Probe(header + width), ImageFormat::kTiff);
+}
+
+TEST(ImageProbe, OtherCameraRawFilesAreNamed) {
+  for (const auto& [start, kind] :
+       {std::pair("FUJIFILMCCD-RAW "s, "RAF"), std::pair("IIU\0\x18\0\0\0"s, "RW2"),
+        std::pair("\0\0\0\x18"
+                  "ftypcrx "s,
+                  "CR3"),
+        std::pair("IIRO\x08\0\0\0"s, "ORF")}) {
+    const std::string message = MessageOf(Probe(start));
+    EXPECT_NE(message.find("camera raw file"), std::string::npos) << message;
+    EXPECT_NE(message.find(kind), std::string::npos) << message;
+  }
 }
 
 }  // namespace

@@ -23,6 +23,8 @@ const char* PluginName(ImageFormat format) {
       return "tiff";
     case ImageFormat::kExr:
       return "openexr";
+    case ImageFormat::kRaw:
+      return "raw";
   }
   LF_CHECK(false);
 }

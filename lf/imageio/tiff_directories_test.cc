@@ -1,0 +1,74 @@
+#include "lf/imageio/tiff_directories.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+namespace lf {
+namespace {
+using namespace std::string_literals;
+
+ByteSource SourceOf(const std::string& bytes) {
+  return [&bytes](uint64_t offset, std::span<uint8_t> to) -> size_t {
+    if (offset >= bytes.size()) return 0;
+    const size_t count = std::min<uint64_t>(to.size(), bytes.size() - offset);
+    std::copy_n(bytes.data() + offset, count, to.data());
+    return count;
+  };
+}
+
+TEST(TiffDirectories, NumbersOfAllTypesAreRead) {
+  const std::string file =
+      "MM\0*\0\0\0\x08\0\5"
+      "\0\1\0\3\0\0\0\2\1\2\3\4"      // two shorts in place
+      "\0\2\0\5\0\0\0\1\0\0\0\x4a"    // a fraction at 74
+      "\0\3\0\x0a\0\0\0\1\0\0\0\x52"  // a signed fraction at 82
+      "\0\4\0\2\0\0\0\2ab\0\0"        // text
+      "\0\5\0\1\0\0\0\4\1\2\3\xff"
+      "\0\0\0\0"
+      "\0\0\0\7\0\0\0\2"
+      "\xff\xff\xff\xfd\0\0\0\4"s;
+  const ByteSource source = SourceOf(file);
+  const auto first = FirstTiffDirectory(source);
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->Numbers(1, 2), (std::vector<double>{0x102, 0x304}));
+  EXPECT_EQ(first->Numbers(1, 1), std::vector<double>{});  // more than asked for
+  EXPECT_EQ(first->Numbers(2, 1), std::vector<double>{3.5});
+  EXPECT_EQ(first->Numbers(3, 1), std::vector<double>{-0.75});
+  EXPECT_EQ(first->Numbers(4, 9), std::vector<double>{});
+  EXPECT_EQ(first->Numbers(5, 4), (std::vector<double>{1, 2, 3, 255}));
+  EXPECT_EQ(first->Number(6, 17), 17);
+  EXPECT_TRUE(first->Has(4));
+  EXPECT_FALSE(first->Has(6));
+}
+
+TEST(TiffDirectories, DirectoriesWithinOthersAndBehindThemAreFound) {
+  // The first at 8 leads to one at 26 behind it, and holds one at 44.
+  const std::string file =
+      "II*\0\x08\0\0\0"
+      "\1\0\x4a\1\4\0\1\0\0\0\x2c\0\0\0\x1a\0\0\0"
+      "\1\0\1\0\3\0\1\0\0\0\7\0\0\0\x08\0\0\0"  // leads back to the first
+      "\1\0\1\0\3\0\1\0\0\0\x09\0\0\0\0\0\0\0"s;
+  const ByteSource source = SourceOf(file);
+  const std::vector<TiffDirectory> all = AllTiffDirectories(source);
+  ASSERT_EQ(all.size(), 3u);
+  EXPECT_EQ(all[1].Number(1, 0), 7);
+  EXPECT_EQ(all[2].Number(1, 0), 9);
+}
+
+TEST(TiffDirectories, WhatLiesBeyondTheEndIsMissing) {
+  const std::string file = "II*\0\x08\0\0\0\xff\xff\1\0\3\0\4\0\0\0\xff\xff\xff\xff\2\0\3\0"s;
+  const ByteSource source = SourceOf(file);
+  const std::vector<TiffDirectory> all = AllTiffDirectories(source);
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_TRUE(all[0].Has(1));
+  EXPECT_EQ(all[0].Numbers(1, 4), std::vector<double>{});
+  EXPECT_FALSE(all[0].Has(2));
+  const std::string big_tiff = "II+\0\x08\0\0\0\x10\0\0\0\0\0\0\0"s, none = "II*\0\0\0\0\0"s;
+  EXPECT_FALSE(FirstTiffDirectory(SourceOf(big_tiff)));
+  EXPECT_FALSE(FirstTiffDirectory(SourceOf(none)));
+}
+
+}  // namespace
+}  // namespace lf
