@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "lf/capture/text_words.h"
+#include "lf/core/log.h"
 
 namespace lf {
 namespace {
@@ -108,6 +109,10 @@ Result<void> ReadColmapImagesText(ByteStream* stream, ColmapScene* scene) {
   LF_RETURN_IF_ERROR(stream->Status());
   if (Result<void> ended = scene->EndImages(); !ended)
     return InputError(fmt::format("{}: {}", stream->path().string(), ended.error().message));
+  // Text that is cut off between two images is whole in itself.
+  if (words.announced_count().value_or(scene->image_count()) != scene->image_count())
+    LogWarning("{}: holds {} images, but says {} at its start: was it edited, or is it cut off?",
+               stream->path().string(), scene->image_count(), *words.announced_count());
   return {};
 }
 

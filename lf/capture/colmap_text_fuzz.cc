@@ -6,8 +6,10 @@
 #include <string_view>
 
 #include "lf/capture/test_colmap.h"
+#include "lf/core/log.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size_bytes) {
+  lf::SetLogLevel(lf::LogLevel::kError);
   std::string_view rest(reinterpret_cast<const char*>(bytes), size_bytes);
   const auto take = [&rest] {
     const std::string_view file = rest.substr(0, rest.find('\f'));

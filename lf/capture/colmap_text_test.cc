@@ -104,6 +104,18 @@ TEST(ColmapText, BrokenImagesAreNamedWithTheirLine) {
              "m/images.txt: images 1 and 2 are both named a");
 }
 
+TEST(ColmapText, AnotherNumberOfImagesThanAnnouncedIsAWarning) {
+  const auto messages = [](const std::string& start) {
+    testing::internal::CaptureStderr();
+    EXPECT_TRUE(ParseColmap(false, kCameras, start + kImages));
+    return testing::internal::GetCapturedStderr();
+  };
+  EXPECT_HAS(messages("# Number of images: 2, mean observations per image: 5\n"),
+             "m/images.txt: holds 1 images, but says 2 at its start");
+  EXPECT_EQ(messages("# Number of images: 1, mean observations per image: 5\n"), "");
+  EXPECT_EQ(messages("# Number of things\n"), "");
+}
+
 // A file that lacks the empty lines of images without points would lose every second image.
 TEST(ColmapText, AnImageInThePlaceOfPointsIsAnError) {
   const char* expected = "m/images.txt:2: expected the 2D points of image 1 (X Y POINT3D_ID";

@@ -47,6 +47,10 @@ Result<std::optional<std::string>> ModelExtension(const fs::path& folder) {
   return std::optional<std::string>();
 }
 
+bool HoldsBinaryFiles(const fs::path& folder) {
+  return IsFile(folder / "cameras.bin") || IsFile(folder / "images.bin");
+}
+
 Result<uint64_t> CountImages(const fs::path& folder, const std::string& extension) {
   LF_ASSIGN_OR_RETURN(ByteStream stream, ByteStream::Open(folder / ("images" + extension)));
   return extension == ".bin" ? CountColmapImagesBinary(&stream) : CountColmapImagesText(&stream);
@@ -153,8 +157,11 @@ void AddMasks(LightField* light_field) {
 
 Result<std::optional<fs::path>> FindColmapModel(const fs::path& path) {
   for (const fs::path& folder : {path, path / "sparse", path / "colmap" / "sparse"}) {
-    LF_ASSIGN_OR_RETURN(const std::optional<std::string> extension, ModelExtension(folder));
-    if (extension) return std::optional<fs::path>(folder);
+    const Result<std::optional<std::string>> extension = ModelExtension(folder);
+    // A cameras.txt or images.txt alone may be of any kind, unless it lies in sparse.
+    const bool may_be_another = folder == path && !HoldsBinaryFiles(folder);
+    if (!extension && !may_be_another) return extension.error();
+    if (extension && *extension) return std::optional<fs::path>(folder);
     // A folder of a million images need not be listed.
     if (folder == path && !IsFolder(path / "0")) continue;
     LF_ASSIGN_OR_RETURN(std::optional<fs::path> largest, LargestModel(folder));

@@ -14,8 +14,8 @@ namespace lf {
 // The model in or below a folder: the folder itself, its sparse/0, sparse, colmap/sparse/0 or
 // colmap/sparse. Where sparse holds several models (0, 1, ...), the one with most images, with a
 // warning; of equals the first. None if there is none.
-// kInput: a cameras file without an images file beside it or the other way round; an images file
-// whose images cannot be counted.
+// kInput: a cameras file without an images file beside it or the other way round (as text only
+// below `path`, where it is COLMAP's for sure); an images file whose images cannot be counted.
 Result<std::optional<std::filesystem::path>> FindColmapModel(const std::filesystem::path& path);
 
 // The registered images, sorted by name. .bin goes before .txt. Besides the result, a block

@@ -174,6 +174,13 @@ TEST_F(ReadColmapTest, AModelThatIsIncompleteIsAnError) {
   EXPECT_HAS(ErrorOf(ReadColmapModel(folder_)), "holds no COLMAP model");
 }
 
+TEST_F(ReadColmapTest, ATextOfThatNameAloneIsNoModel) {
+  Write(folder_ / "images.txt", "a list of something");
+  EXPECT_HAS(ErrorOf(Open(folder_)), "holds no light field");
+  Write(folder_ / "cameras.bin");
+  EXPECT_HAS(ErrorOf(Open(folder_)), "cameras.bin: is there, but not the images.bin");
+}
+
 TEST_F(ReadColmapTest, ImagesAreLookedForAndThePlacesAreListed) {
   WriteModel(folder_ / "sparse/0", {{.name = "sub/a b.png"}});
   const std::string error = ErrorOf(Open(folder_));

@@ -54,8 +54,18 @@ bool TextWords::NextEntry() {
     SkipBlanks();
     const std::optional<char> first = Peek();
     if (first && *first != '#') return true;
+    if (first) NoteComment();
   }
   return false;
+}
+
+void TextWords::NoteComment() {
+  if (Word() != "#" || Word() != "Number" || Word() != "of") return;
+  Word();
+  const std::string_view word = Word();
+  uint64_t count = 0;
+  if (std::from_chars(word.data(), word.data() + word.size(), count).ec == std::errc())
+    announced_count_ = count;
 }
 
 std::optional<char> TextWords::Peek() {

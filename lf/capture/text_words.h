@@ -24,6 +24,8 @@ class TextWords {
   bool NextLine();
   // To the next line that holds something other than a comment (#...).
   bool NextEntry();
+  // The number in a comment "# Number of THINGS: NUMBER..." that was passed on the way.
+  const std::optional<uint64_t>& announced_count() const { return announced_count_; }
 
   // Whether this line holds no further word.
   bool AtLineEnd() {
@@ -49,10 +51,12 @@ class TextWords {
   // The next character of this line, not taken; none at its end.
   std::optional<char> Peek();
   void SkipBlanks();
+  void NoteComment();
 
   ByteStream* stream_;
   uint64_t line_number_ = 0;  // 0: before the first
-  std::string word_;          // where a word crosses blocks
+  std::optional<uint64_t> announced_count_;
+  std::string word_;  // where a word crosses blocks
 };
 
 }  // namespace lf
