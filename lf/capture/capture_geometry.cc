@@ -50,6 +50,25 @@ std::optional<Vec3> NearestPoint(const std::vector<Ray>& axes) {
   return a.ldlt().solve(b);
 }
 
+std::vector<Ray> SampledAxes(const LightField& light_field) {
+  std::vector<Ray> axes;
+  const size_t step = std::max<size_t>(1, light_field.size() / kAxisSamples);
+  for (size_t i = 0; i < light_field.size(); i += step)
+    axes.push_back(CentralRay(light_field.Camera(LfImageId{static_cast<uint32_t>(i)})));
+  return axes;
+}
+
+// The nearest point of the better nine tenths of the axes, which are what is left of them.
+std::optional<Vec3> NearestWithoutWorst(std::vector<Ray>* axes) {
+  const std::optional<Vec3> point = axes->size() < 2 ? std::nullopt : NearestPoint(*axes);
+  if (!point) return std::nullopt;
+  std::sort(axes->begin(), axes->end(), [&](const Ray& x, const Ray& y) {
+    return SquaredDistance(*point, x) < SquaredDistance(*point, y);
+  });
+  axes->resize(std::max<size_t>(2, axes->size() * 9 / 10));
+  return NearestPoint(*axes);
+}
+
 }  // namespace
 
 double MedianSpacing(const LightField& light_field) {
@@ -78,20 +97,23 @@ LfImageId MiddleCamera(const LightField& light_field) {
   return LfImageId{static_cast<uint32_t>(nearest - centres.begin())};
 }
 
+Ray CentralRay(const PinholeCamera& camera) {
+  const Intrinsics& k = camera.intrinsics;
+  if (k.has_distortion()) return {camera.CentreWorld(), camera.ForwardWorld()};
+  const double y = (k.height_px / 2.0 - k.cy_px) / k.fy_px;
+  const double x = (k.width_px / 2.0 - k.cx_px - k.skew_px * y) / k.fx_px;
+  const Vec3 direction = camera.cam_from_world.rotation.transpose() * Vec3(x, y, 1);
+  return {camera.CentreWorld(), direction.normalized()};
+}
+
+std::optional<Vec3> PointNearestToAxes(const LightField& light_field) {
+  std::vector<Ray> axes = SampledAxes(light_field);
+  return NearestWithoutWorst(&axes);
+}
+
 std::optional<Vec3> AxesMeetingPoint(const LightField& light_field) {
-  std::vector<Ray> axes;
-  const size_t step = std::max<size_t>(1, light_field.size() / kAxisSamples);
-  for (size_t i = 0; i < light_field.size(); i += step) {
-    const PinholeCamera camera = light_field.Camera(LfImageId{static_cast<uint32_t>(i)});
-    axes.push_back({camera.CentreWorld(), camera.ForwardWorld()});
-  }
-  std::optional<Vec3> point = axes.size() < 2 ? std::nullopt : NearestPoint(axes);
-  if (!point) return std::nullopt;
-  std::sort(axes.begin(), axes.end(), [&](const Ray& x, const Ray& y) {
-    return SquaredDistance(*point, x) < SquaredDistance(*point, y);
-  });
-  axes.resize(std::max<size_t>(2, axes.size() * 9 / 10));
-  point = NearestPoint(axes);
+  std::vector<Ray> axes = SampledAxes(light_field);
+  const std::optional<Vec3> point = NearestWithoutWorst(&axes);
   if (!point) return std::nullopt;
   const auto in_front = std::count_if(axes.begin(), axes.end(), [&](const Ray& axis) {
     return axis.direction.dot(*point - axis.origin) > 0;

@@ -16,9 +16,15 @@ double MedianSpacing(const LightField& light_field);
 // The LF camera nearest to the mean position. The light field must have one.
 LfImageId MiddleCamera(const LightField& light_field);
 
-// The point nearest to the optical axes (least squares, with the worst tenth left out), if they
-// converge: in front of most cameras, and not so far away that the axes are parallel for all that
-// their spread tells.
+// The ray through the middle of the image, of length 1: the optical axis, but for cameras with an
+// off-axis principal point, as rectified slabs have. (Of lenses with distortion: the optical axis.)
+Ray CentralRay(const PinholeCamera& camera);
+
+// The point nearest to the central rays taken as lines (least squares, with the worst tenth left
+// out; of at most 20,000 cameras). None if they are parallel for all that their spread tells.
+std::optional<Vec3> PointNearestToAxes(const LightField& light_field);
+
+// The same, if the cameras look at it: it is in front of nine of ten.
 std::optional<Vec3> AxesMeetingPoint(const LightField& light_field);
 
 // How far the positions of the `count` LF cameras nearest to `camera` reach from it along its

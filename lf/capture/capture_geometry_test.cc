@@ -65,6 +65,31 @@ TEST(CaptureGeometry, ParallelAndOutwardAxesDoNotMeet) {
   EXPECT_FALSE(AxesMeetingPoint(Field(poses)));
 }
 
+TEST(CaptureGeometry, TheAxesOfARectifiedSlabMeetInItsPlane) {
+  LightField field = Grid({});  // its middle: (0.55, 0.5, 0)
+  field.intrinsics.clear();
+  for (size_t i = 0; i < field.size(); ++i) {
+    const Vec3 offset = field.cameras[i].cam_from_world.Inverse().translation - Vec3(0.55, 0.5, 0);
+    field.cameras[i].intrinsics_index = static_cast<uint32_t>(i);
+    field.intrinsics.push_back(
+        {100, 100, 50 + 100 * offset.x() / 4, 50 + 100 * offset.y() / 4, 0, 100, 100});
+  }
+  const std::optional<Vec3> point = AxesMeetingPoint(field);
+  ASSERT_TRUE(point);
+  EXPECT_LT((*point - Vec3(0.55, 0.5, 4)).norm(), 1e-9);
+}
+
+TEST(CaptureGeometry, OutwardAxesAsLinesMeetBehindTheCameras) {
+  std::vector<RigidTransform> poses;
+  for (int i = 0; i < 20; ++i) {
+    const Vec3 outward(std::cos(0.3 * i), 0.1, std::sin(0.3 * i));
+    poses.push_back(*LookAlong(outward, outward, {0, -1, 0}));
+  }
+  ASSERT_TRUE(PointNearestToAxes(Field(poses)));
+  EXPECT_LT(PointNearestToAxes(Field(poses))->norm(), 1e-9);
+  EXPECT_FALSE(PointNearestToAxes(Grid({})));
+}
+
 TEST(CaptureGeometry, ReachFollowsTheShapeOfTheCapture) {
   const LightField field = Grid({});
   const PinholeCamera middle = field.Camera(LfImageId{2 * 12 + 6});

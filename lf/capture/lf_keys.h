@@ -14,7 +14,7 @@ namespace lf {
 inline constexpr const char* kTopLevelLfKeys[] = {
     "lf_bayer",         "lf_transfer",       "lf_response",     "lf_black_level", "lf_white_level",
     "lf_white_balance", "lf_camera_to_srgb", "lf_max_radiance", "lf_pedestal",    "lf_unit_m",
-    "lf_depth_range",   "lf_skew",           "lf_fov_omega"};
+    "lf_depth_range",   "lf_skew",           "lf_fov_omega",    "lf_written_by"};
 inline constexpr const char* kFrameLfKeys[] = {"lf_gain", "lf_mask", "lf_translation", "lf_skew",
                                                "lf_fov_omega"};
 

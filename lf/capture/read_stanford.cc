@@ -21,7 +21,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kForm = "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext";
-constexpr double kLargestPrincipal_px = 1e7;  // as in transforms.json
+constexpr double kLargest_w = 1e12;           // as in transforms.json
+constexpr double kLargestPrincipal_px = 1e7;  // as there
 
 struct StanfordImage {
   std::string file_name;
@@ -221,6 +222,9 @@ Result<LightField> ReadStanfordFolder(const fs::path& folder, const StanfordOpti
     const Result<Intrinsics> k = IntrinsicsOf(image.name, info, options, positions[i] - middle);
     if (!k) return InputError((folder / image.file_name).string() + ": " + k.error().message);
     const Vec2 centre = positions[i] - origin;
+    if (!(centre.cwiseAbs().maxCoeff() <= kLargest_w))
+      return InputError(fmt::format("{}: stands at ({}, {}): expected within 1e12 world units",
+                                    (folder / image.file_name).string(), centre.x(), centre.y()));
     LfCamera camera;
     camera.intrinsics_index = distinct.IndexOf(*k);
     camera.cam_from_world.translation = Vec3::Zero() - Vec3(centre.x(), centre.y(), 0);

@@ -25,7 +25,12 @@ Result<LightField> ReadTransformsJson(const std::filesystem::path& path);
 
 // Writes `light_field` so that reading it gives the same cameras bit for bit (but that a
 // radial-tangential distortion of zeros reads as none). Image names are written as they are.
+//   writer  the program, if its name and a checksum are to be written too (lf_written_by)
 // kOutput.
-Result<void> WriteTransformsJson(const LightField& light_field, const std::filesystem::path& path);
+Result<void> WriteTransformsJson(const LightField& light_field, const std::filesystem::path& path,
+                                 std::string_view writer = {});
+
+// Whether the file was written by `writer`, and nobody changed it since. kInput: unreadable.
+Result<bool> IsAsWritten(const std::filesystem::path& path, std::string_view writer);
 
 }  // namespace lf

@@ -196,13 +196,41 @@ Result<std::string> TransformsJsonText(const LightField& light_field) {
   return json.text();
 }
 
+// FNV-1a, 64 bits: tells an edited file from one that is as it was written.
+uint64_t ChecksumOf(std::string_view text) {
+  uint64_t sum = 0xcbf29ce484222325;
+  for (const char c : text) sum = (sum ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  return sum;
+}
+
+// The first lines of a file by `writer`; `rest` follows.
+std::string SignedOpening(std::string_view writer, std::string_view rest) {
+  return fmt::format("{{\n\"lf_written_by\": \"{} {:016x}\",\n", writer, ChecksumOf(rest));
+}
+
+constexpr std::string_view kOpening = "{\n";
+
 }  // namespace
 
-Result<void> WriteTransformsJson(const LightField& light_field, const fs::path& path) {
+Result<void> WriteTransformsJson(const LightField& light_field, const fs::path& path,
+                                 std::string_view writer) {
   LF_CHECK(light_field.size() > 0 && light_field.image_names.size() == light_field.size());
-  const Result<std::string> text = TransformsJsonText(light_field);
+  Result<std::string> text = TransformsJsonText(light_field);
   if (!text) return OutputError(fmt::format("{}: {}", path.string(), text.error().message));
+  if (!writer.empty()) {
+    const std::string opening =
+        SignedOpening(writer, std::string_view(*text).substr(kOpening.size()));
+    text->replace(0, kOpening.size(), opening);
+  }
   return WriteFileAtomically(path, *text);
+}
+
+Result<bool> IsAsWritten(const fs::path& path, std::string_view writer) {
+  LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(path));
+  const size_t size = SignedOpening(writer, "").size();  // the same for every text
+  if (text.size() < size) return false;
+  return std::string_view(text).substr(0, size) ==
+         SignedOpening(writer, std::string_view(text).substr(size));
 }
 
 }  // namespace lf

@@ -184,5 +184,29 @@ TEST_F(WriteTransformsJsonTest, AnImpossiblePlaceIsAnOutputError) {
   EXPECT_EQ(written.error().kind, ErrorKind::kOutput);
 }
 
+TEST_F(WriteTransformsJsonTest, KnowsWhatItWroteUntilSomebodyChangesIt) {
+  LightField light_field;
+  light_field.intrinsics = {{70, 70, 32, 24, 0, 64, 48}};
+  light_field.cameras.resize(2);
+  light_field.image_names = {"a.png", "b.png"};
+  const fs::path path = folder_ / "transforms.json";
+  ASSERT_TRUE(WriteTransformsJson(light_field, path));
+  EXPECT_FALSE(*IsAsWritten(path, "lfimport"));
+  ASSERT_TRUE(WriteTransformsJson(light_field, path, "lfimport"));
+  EXPECT_TRUE(*IsAsWritten(path, "lfimport"));
+  EXPECT_FALSE(*IsAsWritten(path, "lfexport"));
+  const Result<LightField> read = ReadTransformsJson(path);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->image_names, light_field.image_names);
+
+  std::string text = *ReadFile(path);
+  text.replace(text.find("b.png"), 5, "c.png");
+  ASSERT_TRUE(WriteFileAtomically(path, text));
+  EXPECT_FALSE(*IsAsWritten(path, "lfimport"));
+  ASSERT_TRUE(WriteFileAtomically(path, "{"));
+  EXPECT_FALSE(*IsAsWritten(path, "lfimport"));
+  EXPECT_FALSE(IsAsWritten(folder_ / "none", "lfimport"));
+}
+
 }  // namespace
 }  // namespace lf

@@ -4,18 +4,26 @@ namespace lf {
 
 void LightFieldArgument::AddTo(CLI::App& app) {
   app.add_option("LIGHTFIELD", path,
-                 "transforms.json, its folder, or a folder of images in Stanford order")
+                 "A calibration file, or its folder: transforms.json, Middlebury, LLFF, AOS; or a "
+                 "folder of images with Stanford names")
       ->required();
   app.add_option("--focal-px", focal_px,
                  "Focal length in pixels, for Stanford folders whose names do not tell it; 0: as "
                  "recorded")
       ->check(CLI::NonNegativeNumber);
+  app.add_option(
+         "--fov-deg", fov_deg,
+         "Field of view in degrees, for poses of Airborne Optical Sectioning; 0: as recorded")
+      ->check(CLI::Range(0., 179.));
 }
 
-Result<LightField> LightFieldArgument::Open() const {
+OpenOptions LightFieldArgument::Options() const {
   OpenOptions options;
   if (focal_px > 0) options.focal_px = focal_px;
-  return OpenLightField(path, options);
+  if (fov_deg > 0) options.fov_deg = fov_deg;
+  return options;
 }
+
+Result<LightField> LightFieldArgument::Open() const { return OpenLightField(path, Options()); }
 
 }  // namespace lf

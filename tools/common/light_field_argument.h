@@ -11,9 +11,11 @@ namespace lf {
 struct LightFieldArgument {
   std::string path;
   double focal_px = 0;
+  double fov_deg = 0;
 
   // The positional argument and the options that go with it.
   void AddTo(CLI::App& app);
+  OpenOptions Options() const;
   Result<LightField> Open() const;
 };
 

@@ -1,0 +1,26 @@
+// What looks wrong in a capture, by its poses. Internal to import.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "lf/capture/light_field.h"
+#include "lf/import/capture_report.h"
+
+namespace lf {
+
+// facing-away and diverging-axes.
+std::vector<CaptureWarning> WarnOfDirections(const LightField& light_field);
+
+// upside-down.
+std::vector<CaptureWarning> WarnOfUpsideDown(const LightField& light_field);
+
+// repeated-positions: nearest_w as of NearestDistances(), extent_w the diagonal of the positions.
+std::vector<CaptureWarning> WarnOfRepeats(const LightField& light_field,
+                                          std::span<const double> nearest_w, double extent_w);
+
+// sparse: for images so wide, with cameras so far apart.
+std::vector<CaptureWarning> WarnOfSparseness(const Density& density, double width_px,
+                                             double spacing_w);
+
+}  // namespace lf

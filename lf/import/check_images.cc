@@ -1,0 +1,75 @@
+#include "lf/import/check_images.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <system_error>
+#include <variant>
+
+#include "lf/imageio/image_file.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+// Images between two looks at the clock and the flag.
+constexpr size_t kHeadersPerRound = 512;
+constexpr size_t kImagesPerRound = 64;
+
+struct Finding {
+  bool is_missing = false;
+  std::string reason;  // "": nothing is wrong
+};
+
+Finding CheckFile(const fs::path& path, const Intrinsics& k, ImageCheck check) {
+  std::error_code error;
+  if (!fs::exists(path, error))
+    return {true, fmt::format("{}: {}", path.string(), error ? error.message() : "no such file")};
+  const Result<ImageFileInfo> info = ReadImageInfo(path);
+  if (!info) return {false, info.error().message};
+  if (info->width != k.width_px || info->height != k.height_px)
+    return {false, fmt::format("{}: is {}x{}, the calibration says {}x{}", path.string(),
+                               info->width, info->height, k.width_px, k.height_px)};
+  if (check == ImageCheck::kHeaders) return {};
+  const Result<StoredImage> image = ReadImage(path);
+  return {false, image ? "" : image.error().message};
+}
+
+Finding CheckImage(const LightField& light_field, LfImageId id, ImageCheck check) {
+  const Intrinsics& k = light_field.intrinsics[light_field.cameras[id.value].intrinsics_index];
+  Finding finding = CheckFile(light_field.ImagePath(id), k, check);
+  if (!finding.reason.empty() || light_field.mask_names.empty()) return finding;
+  const std::string& mask = light_field.mask_names[id.value];
+  return mask.empty() ? finding : CheckFile(light_field.folder / mask, k, check);
+}
+
+}  // namespace
+
+Result<ImageFaults> CheckImages(const LightField& light_field, const CheckOptions& options,
+                                ThreadPool& pool) {
+  const size_t round = options.check == ImageCheck::kHeaders ? kHeadersPerRound : kImagesPerRound;
+  ImageFaults faults;
+  std::vector<Finding> findings(round);
+  for (size_t begin = 0; begin < light_field.size(); begin += round) {
+    if (options.interrupted && *options.interrupted)
+      return Error{
+          ErrorKind::kInterrupted,
+          fmt::format("interrupted after checking {} of {} images", begin, light_field.size())};
+    const size_t count = std::min(round, light_field.size() - begin);
+    pool.ForEach(count, [&](size_t i) {
+      findings[i] =
+          CheckImage(light_field, LfImageId{static_cast<uint32_t>(begin + i)}, options.check);
+    });
+    for (size_t i = 0; i < count; ++i)
+      if (!findings[i].reason.empty())
+        (findings[i].is_missing ? faults.missing : faults.broken)
+            .push_back(
+                {LfImageId{static_cast<uint32_t>(begin + i)}, std::move(findings[i].reason)});
+    if (options.progress) options.progress(begin + count, light_field.size());
+  }
+  return faults;
+}
+
+}  // namespace lf

@@ -1,0 +1,80 @@
+#include "lf/import/native_folder.h"
+
+#include <fmt/format.h>
+
+#include <system_error>
+
+#include "lf/capture/transforms_json.h"
+#include "lf/core/file.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kCalibrationName = "transforms.json";
+constexpr const char* kWriter = "lfimport";
+
+Result<fs::path> Canonical(const fs::path& folder) {
+  std::error_code error;
+  fs::path canonical = fs::canonical(folder.empty() ? fs::path(".") : folder, error);
+  if (error) return InputError(fmt::format("{}: {}", folder.string(), error.message()));
+  return canonical;
+}
+
+// Whether the two share more than the root.
+bool AreNear(const fs::path& a, const fs::path& b) {
+  auto part_a = a.begin(), part_b = b.begin();
+  if (part_a == a.end() || part_b == b.end() || ++part_a == a.end() || ++part_b == b.end())
+    return false;
+  return *part_a == *part_b;
+}
+
+}  // namespace
+
+Result<void> MoveToFolder(const fs::path& folder, LightField* light_field) {
+  LF_ASSIGN_OR_RETURN(const fs::path from, Canonical(light_field->folder));
+  LF_ASSIGN_OR_RETURN(const fs::path to, Canonical(folder));
+  const fs::path prefix = from == to ? fs::path() : from.lexically_relative(to);
+  const auto rename = [&](std::string* name) {
+    if (name->empty()) return;
+    const fs::path path(*name);
+    if (path.is_absolute()) {
+      if (AreNear(path, to)) *name = path.lexically_relative(to).string();
+    } else if (!prefix.empty()) {
+      *name = (prefix / path).string();
+    }
+  };
+  for (std::string& name : light_field->image_names) rename(&name);
+  for (std::string& name : light_field->mask_names) rename(&name);
+  light_field->folder = folder;
+  return {};
+}
+
+Result<void> CheckMayWrite(const fs::path& source, const fs::path& folder, bool force) {
+  std::error_code error;
+  const fs::path path = folder / kCalibrationName;
+  if (force || !fs::exists(path, error)) return {};
+  const fs::path read = fs::is_directory(source, error) ? source / kCalibrationName : source;
+  if (fs::exists(read, error) && fs::equivalent(read, path, error))
+    return UsageError(fmt::format(
+        "{} is what would be read: write to another folder, or replace it (--force); to read what "
+        "it was made from again, remove it first",
+        path.string()));
+  LF_ASSIGN_OR_RETURN(const bool is_ours, IsAsWritten(path, kWriter));
+  if (is_ours) return {};
+  return UsageError(
+      fmt::format("{} was not written by lfimport, or was changed since: write to another folder, "
+                  "or replace it "
+                  "(--force)",
+                  path.string()));
+}
+
+Result<std::string> WriteNativeFolder(const fs::path& folder, LightField* light_field) {
+  LF_RETURN_IF_ERROR(CreateFolder(folder));
+  LF_RETURN_IF_ERROR(MoveToFolder(folder, light_field));
+  const fs::path path = folder / kCalibrationName;
+  LF_RETURN_IF_ERROR(WriteTransformsJson(*light_field, path, kWriter));
+  return path.string();
+}
+
+}  // namespace lf

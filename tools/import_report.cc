@@ -1,0 +1,212 @@
+#include "tools/import_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "lf/core/log.h"
+
+namespace lf {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* NameOf(DistortionModel model) {
+  switch (model) {
+    case DistortionModel::kNone:
+      return "pinhole";
+    case DistortionModel::kRadialTangential:
+      return "radial-tangential";
+    case DistortionModel::kFisheye:
+      return "fisheye";
+    case DistortionModel::kFov:
+      return "fov";
+  }
+  LF_CHECK(false);
+}
+
+const char* NameOf(DistanceSource source) {
+  switch (source) {
+    case DistanceSource::kStated:
+      return "stated";
+    case DistanceSource::kDepthRange:
+      return "depth range";
+    case DistanceSource::kMeeting:
+      return "where the axes meet";
+  }
+  LF_CHECK(false);
+}
+
+Spread Degrees(const Spread& rad) {
+  return {DegreesFromRadians(rad.min), DegreesFromRadians(rad.median), DegreesFromRadians(rad.max)};
+}
+
+// For people: five digits, one number where all are the same.
+std::string Brief(double value) { return fmt::format("{:.5g}", value == 0 ? 0.0 : value); }
+std::string Brief(const Spread& spread) {
+  const std::string min = Brief(spread.min), max = Brief(spread.max);
+  return min == max ? max : fmt::format("{} ({} to {})", Brief(spread.median), min, max);
+}
+std::string Brief(Vec3 point) {
+  for (double& x : point)  // no rounding error posing as a number
+    if (std::abs(x) < 1e-9 * point.cwiseAbs().maxCoeff()) x = 0;
+  return fmt::format("{}, {}, {}", Brief(point.x()), Brief(point.y()), Brief(point.z()));
+}
+
+void AddLine(const char* name, const std::string& text, std::string* lines) {
+  *lines += fmt::format("{:<14} {}\n", name, text);
+}
+
+void AddCameras(const std::vector<CameraGroup>& groups, std::string* lines) {
+  constexpr size_t kShown = 5;
+  for (size_t i = 0; i < std::min(kShown, groups.size()); ++i) {
+    const CameraGroup& group = groups[i];
+    const std::string focal = Brief(group.fx_px) == Brief(group.fy_px)
+                                  ? Brief(group.fx_px)
+                                  : fmt::format("{} x {}", Brief(group.fx_px), Brief(group.fy_px));
+    AddLine("cameras",
+            fmt::format("{} of {} {}x{}, {} distinct: focal length {} px, field of view {} x {} "
+                        "degrees",
+                        group.image_count, NameOf(group.model), group.width_px, group.height_px,
+                        group.intrinsics_count, focal, Brief(Degrees(group.horizontal_fov_rad)),
+                        Brief(Degrees(group.vertical_fov_rad))),
+            lines);
+  }
+  if (groups.size() > kShown)
+    AddLine("", fmt::format("and {} other models and sizes", groups.size() - kShown), lines);
+}
+
+void AddDensity(const Density& density, std::string* lines) {
+  AddLine("density",
+          fmt::format("{:.3g} degrees, or {:.3g} pixels, between neighbours at distance {} ({})",
+                      DegreesFromRadians(density.spacing_rad), density.disparity_px,
+                      Brief(density.distance_w), NameOf(density.source)),
+          lines);
+  AddLine("ghosts",
+          fmt::format("{:.3g} pixels apart 25 % before the focus plane, {:.3g} behind it",
+                      density.near_ghost_px, density.far_ghost_px),
+          lines);
+}
+
+std::string ImagesText(const ImportReport& report) {
+  std::string text = fmt::format("{}", report.capture.image_count);
+  if (report.capture.mask_count > 0) text += fmt::format(", {} masks", report.capture.mask_count);
+  if (report.excluded_count > 0) text += fmt::format(", {} left out", report.excluded_count);
+  if (!report.faults) return text + ", not checked";
+  return text + fmt::format(", {} missing, {} broken", report.faults->missing.size(),
+                            report.faults->broken.size());
+}
+
+Json JsonOf(const Spread& spread) {
+  return {{"min", spread.min}, {"median", spread.median}, {"max", spread.max}};
+}
+Json JsonOf(const Vec3& point) { return {point.x() + 0.0, point.y() + 0.0, point.z() + 0.0}; }
+Json JsonOf(const DepthRange& range) { return {range.near_w, range.far_w}; }
+Json JsonOf(const CameraGroup& group) {
+  return {{"model", NameOf(group.model)},
+          {"size_px", {group.width_px, group.height_px}},
+          {"images", group.image_count},
+          {"distinct", group.intrinsics_count},
+          {"fx_px", JsonOf(group.fx_px)},
+          {"fy_px", JsonOf(group.fy_px)},
+          {"cx_px", JsonOf(group.cx_px)},
+          {"cy_px", JsonOf(group.cy_px)},
+          {"horizontal_fov_deg", JsonOf(Degrees(group.horizontal_fov_rad))},
+          {"vertical_fov_deg", JsonOf(Degrees(group.vertical_fov_rad))}};
+}
+Json JsonOf(const Density& density) {
+  return {{"distance_w", density.distance_w},
+          {"distance_from", NameOf(density.source)},
+          {"spacing_deg", DegreesFromRadians(density.spacing_rad)},
+          {"disparity_px", density.disparity_px},
+          {"ghost_near_px", density.near_ghost_px},
+          {"ghost_far_px", density.far_ghost_px}};
+}
+template <class T>
+Json OrNull(const std::optional<T>& value) {
+  return value ? JsonOf(*value) : Json(nullptr);
+}
+
+}  // namespace
+
+void WarnOfFaults(const LightField& light_field, ImportReport* report) {
+  const auto warn = [&](const char* kind, const char* what, const std::vector<ImageFault>& faults) {
+    if (faults.empty()) return;
+    std::vector<LfImageId> ids;
+    for (const ImageFault& fault : faults) ids.push_back(fault.id);
+    report->capture.warnings.push_back(
+        WarningAbout(light_field, kind,
+                     fmt::format("{} of {} images are {} and will be skipped. The first: {}",
+                                 faults.size(), light_field.size(), what, faults[0].reason),
+                     ids));
+  };
+  warn("missing-images", "missing", report->faults->missing);
+  warn("broken-images", "broken", report->faults->broken);
+}
+
+std::string ReportText(const ImportReport& report) {
+  const CaptureReport& capture = report.capture;
+  std::string lines;
+  AddLine("light field", report.light_field, &lines);
+  AddLine("images", ImagesText(report), &lines);
+  AddCameras(capture.groups, &lines);
+  AddLine("positions",
+          fmt::format("from {} to {}", Brief(capture.box_min_w), Brief(capture.box_max_w)), &lines);
+  if (capture.spacing_w)
+    AddLine("spacing", Brief(*capture.spacing_w) + " to the nearest neighbour", &lines);
+  AddLine("axes meet",
+          capture.meeting_point_w ? "at " + Brief(*capture.meeting_point_w)
+                                  : "nowhere before the cameras",
+          &lines);
+  if (capture.depth_range)
+    AddLine("depth range",
+            fmt::format("{} to {}", Brief(capture.depth_range->near_w),
+                        Brief(capture.depth_range->far_w)),
+            &lines);
+  AddLine("unit", fmt::format("1 world unit is {} m", capture.unit_m), &lines);
+  if (capture.density)
+    AddDensity(*capture.density, &lines);
+  else if (capture.spacing_w)
+    AddLine("density", "unknown: give the distance to the scene (--distance)", &lines);
+  for (const CaptureWarning& warning : capture.warnings) {
+    lines += fmt::format("\nwarning: {}: {}\n", warning.kind, warning.message);
+    if (!warning.names.empty())
+      lines += fmt::format("  {}{}\n", fmt::join(warning.names, ", "),
+                           warning.names.size() < warning.image_count ? ", ..." : "");
+  }
+  if (!report.written.empty()) lines += fmt::format("\nwritten: {}\n", report.written);
+  return lines;
+}
+
+std::string ReportJson(const ImportReport& report) {
+  const CaptureReport& capture = report.capture;
+  Json json = {{"light_field", report.light_field},
+               {"images", capture.image_count},
+               {"masks", capture.mask_count},
+               {"left_out", report.excluded_count},
+               {"missing", nullptr},
+               {"broken", nullptr}};
+  if (report.faults) {
+    json["missing"] = report.faults->missing.size();
+    json["broken"] = report.faults->broken.size();
+  }
+  json["cameras"] = Json::array();
+  for (const CameraGroup& group : capture.groups) json["cameras"].push_back(JsonOf(group));
+  json["positions_w"] = {{"min", JsonOf(capture.box_min_w)}, {"max", JsonOf(capture.box_max_w)}};
+  json["spacing_w"] = OrNull(capture.spacing_w);
+  json["axes_meet_at_w"] = OrNull(capture.meeting_point_w);
+  json["depth_range_w"] = OrNull(capture.depth_range);
+  json["unit_m"] = capture.unit_m;
+  json["density"] = OrNull(capture.density);
+  json["warnings"] = Json::array();
+  for (const CaptureWarning& warning : capture.warnings)
+    json["warnings"].push_back({{"kind", warning.kind},
+                                {"message", warning.message},
+                                {"images", warning.image_count},
+                                {"names", warning.names}});
+  json["written"] = report.written.empty() ? Json(nullptr) : Json(report.written);
+  // Names that are not UTF-8 are shown, not refused.
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace lf

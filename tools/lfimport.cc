@@ -1,0 +1,165 @@
+// lfimport LIGHTFIELD [-o DIR]: any calibration as the native one, and what is to be said about it.
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tools/common/interrupt.h"
+#include "tools/common/light_field_argument.h"
+#include "tools/common/program.h"
+#include "tools/common/progress.h"
+#include "tools/import_report.h"
+
+#include "lf/core/file.h"
+#include "lf/core/log.h"
+#include "lf/import/exclude_images.h"
+#include "lf/import/native_folder.h"
+#include "lf/import/similarity.h"
+
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  lfimport capture/                                   only the report: what is it, is it complete?
+  lfimport capture/ -o native --exclude 'IMG_01*,IMG_0377.jpg' --scale 0.0213
+  lfimport capture/ -o native --exclude @bad.txt --transform upright.txt
+  lfimport cards/ -o cards --pitch 1 --focal-px 768 --plane-distance 100
+  lfimport capture/ --json --distance 1.5 | jq .density
+
+Writes DIR/transforms.json, which names the images where they lie; nothing is copied. A
+transforms.json that lfimport did not write, or that was changed since, is replaced only with
+--force. Exit code 6: done, but images are missing or broken; with --strict that is an error, and
+nothing is written. The report: doc/formats/import_report.md.)";
+
+struct Arguments {
+  lf::LightFieldArgument light_field;
+  std::string output, pitch, transform, check = "headers";
+  double plane_distance = 0, scale = 1, unit_m = 0, distance = 0;
+  bool flip_x = false, flip_y = false, force = false;
+  std::vector<std::string> exclude;
+};
+
+void AddOptions(CLI::App& app, Arguments& a) {
+  a.light_field.AddTo(app);
+  app.add_option("-o,--output", a.output, "Folder of the transforms.json to write");
+  app.add_flag("--force", a.force, "Replace a transforms.json that lfimport did not write");
+  app.add_option("--exclude", a.exclude,
+                 "Images to leave out: names or patterns (* ? [a-z]), with commas between, or "
+                 "@FILE with one per line; may be repeated")
+      ->expected(1)
+      ->take_all();
+  app.add_option("--transform", a.transform,
+                 "Move the world: FILE with a 4x4 matrix, or its 16 numbers in one word; new = M * "
+                 "old, M a rotation, one scale and a translation");
+  app.add_option("--scale", a.scale, "Multiply all lengths by this, after --transform")
+      ->check(CLI::Range(1e-9, 1e9));
+  app.add_option("--unit-m", a.unit_m,
+                 "Metres per world unit, as they are then; 0: as the light field says")
+      ->check(CLI::Range(0., 1e9));
+  app.add_option("--check", a.check, "How to check the images: none, headers or pixels (slow)")
+      ->check(CLI::IsMember({"none", "headers", "pixels"}));
+  app.add_option("--distance", a.distance,
+                 "Distance to the scene in world units, for the density; 0: from the calibration")
+      ->check(CLI::NonNegativeNumber);
+  const char* group = "Images named by row and column (doc/formats/stanford.md)";
+  app.add_option("--pitch", a.pitch, "World units between columns and rows: P, or PX,PY")
+      ->group(group);
+  app.add_option("--plane-distance", a.plane_distance,
+                 "Depth of the plane that stands still in all images of a rectified slab; 0: "
+                 "the cameras are parallel")
+      ->check(CLI::NonNegativeNumber)
+      ->group(group);
+  app.add_flag("--flip-x", a.flip_x, "Columns count to the left")->group(group);
+  app.add_flag("--flip-y", a.flip_y, "Rows count upwards")->group(group);
+}
+
+// P, or PX,PY.
+lf::Result<lf::Vec2> ParsePitch(const std::string& text) {
+  lf::Vec2 pitch;
+  int end_of_one = -1, end_of_two = -1;
+  std::sscanf(text.c_str(), "%lf%n,%lf%n", &pitch.x(), &end_of_one, &pitch.y(), &end_of_two);
+  const int size = static_cast<int>(text.size());
+  if (end_of_one == size) return lf::Vec2(pitch.x(), pitch.x());
+  if (end_of_two == size) return pitch;
+  return lf::UsageError(fmt::format("--pitch {}: expected P or PX,PY", text));
+}
+
+lf::Result<lf::OpenOptions> MakeOpenOptions(const Arguments& a) {
+  lf::OpenOptions options = a.light_field.Options();
+  if (!a.pitch.empty()) {
+    LF_ASSIGN_OR_RETURN(options.pitch_w, ParsePitch(a.pitch));
+  }
+  if (a.plane_distance > 0) options.plane_distance_w = a.plane_distance;
+  options.flip_x = a.flip_x;
+  options.flip_y = a.flip_y;
+  return options;
+}
+
+// The light field as it is to be written; reports what was left out.
+lf::Result<lf::LightField> OpenChanged(const Arguments& a, size_t* excluded_count) {
+  LF_ASSIGN_OR_RETURN(const lf::OpenOptions options, MakeOpenOptions(a));
+  LF_ASSIGN_OR_RETURN(lf::LightField light_field, lf::OpenLightField(a.light_field.path, options));
+  LF_ASSIGN_OR_RETURN(const std::vector<std::string> patterns, lf::ReadPatterns(a.exclude));
+  LF_ASSIGN_OR_RETURN(*excluded_count, lf::ExcludeImages(patterns, &light_field));
+  lf::Similarity similarity;
+  if (!a.transform.empty()) {
+    LF_ASSIGN_OR_RETURN(similarity, lf::ReadSimilarity(a.transform));
+  }
+  similarity.scale *= a.scale;
+  similarity.translation *= a.scale;
+  if (!a.transform.empty() || a.scale != 1)
+    LF_RETURN_IF_ERROR(lf::Transform(similarity, &light_field));
+  if (a.unit_m > 0) light_field.unit_m = a.unit_m;
+  return light_field;
+}
+
+lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {
+  const std::atomic<bool>& interrupted = lf::CatchInterrupts();
+  if (!a.output.empty())
+    LF_RETURN_IF_ERROR(lf::CheckMayWrite(a.light_field.path, a.output, a.force));
+  lf::ImportReport report;
+  report.light_field = a.light_field.path;
+  LF_ASSIGN_OR_RETURN(lf::LightField light_field, OpenChanged(a, &report.excluded_count));
+  lf::ThreadPool pool(common.threads);
+  lf::CaptureReportOptions options;
+  if (a.distance > 0) options.distance_w = a.distance;
+  report.capture = lf::ReportCapture(light_field, options, pool);
+  size_t fault_count = 0;
+  if (a.check != "none") {
+    lf::ProgressMeter meter(lf::ParseProgressStyle(common.progress), "images");
+    lf::CheckOptions check;
+    check.check = a.check == "pixels" ? lf::ImageCheck::kPixels : lf::ImageCheck::kHeaders;
+    check.interrupted = &interrupted;
+    check.progress = [&](size_t done, size_t total) { meter.Update(done, total, "checking"); };
+    LF_ASSIGN_OR_RETURN(report.faults, lf::CheckImages(light_field, check, pool));
+    lf::WarnOfFaults(light_field, &report);
+    fault_count = report.faults->missing.size() + report.faults->broken.size();
+  }
+  if (interrupted)
+    return lf::Error{lf::ErrorKind::kInterrupted, "interrupted before anything was written"};
+  const bool refuses = fault_count == light_field.size() || (common.strict && fault_count > 0);
+  if (!a.output.empty() && !refuses) {
+    LF_ASSIGN_OR_RETURN(report.written, lf::WriteNativeFolder(a.output, &light_field));
+  }
+  const std::string text = common.json ? lf::ReportJson(report) : lf::ReportText(report);
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+    return lf::OutputError("cannot write the report to the standard output: is the disk full?");
+  if (fault_count == 0) return {};
+  const std::string what = fmt::format(
+      "{} of {} images are missing, {} broken; {}", report.faults->missing.size(),
+      light_field.size(), report.faults->broken.size(),
+      refuses ? "nothing was written" : "rendering skips them, --exclude leaves them out");
+  return lf::Error{refuses ? lf::ErrorKind::kInput : lf::ErrorKind::kBelowRequired, what};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  lf::Program program("lfimport",
+                      "Reports what a light field is and what looks wrong in it, and writes it as "
+                      "the native transforms.json.",
+                      kExamples);
+  AddOptions(program.app(), arguments);
+  program.AddJsonOption("The report as JSON, with all digits");
+  return program.Run(argc, argv, [&] { return Import(arguments, program.common()); });
+}
