@@ -281,6 +281,9 @@ class ImportTest(unittest.TestCase):
         self.fails(3, ["--fov-deg"], folder)
         camera, = self.report(folder, "--fov-deg", 50)["cameras"]
         self.assertAlmostEqual(camera["horizontal_fov_deg"]["median"], 50)
+        (folder / "images").rename(self.folder / "elsewhere")
+        report = self.report(folder, "--fov-deg", 50, "--images", self.folder / "elsewhere")
+        self.assertEqual((report["images"], report["missing"]), (1, 0))
 
     def test_pitch_plane_and_signs_of_a_rectified_slab(self):
         grid = self.write_grid()

@@ -12,6 +12,7 @@ struct LightFieldArgument {
   std::string path;
   double focal_px = 0;
   double fov_deg = 0;
+  std::string images;
 
   // The positional argument and the options that go with it.
   void AddTo(CLI::App& app);
