@@ -175,6 +175,17 @@ TEST(CaptureReport, ADomeHasNoUpsideDown) {
   EXPECT_EQ(Kinds(ReportOf(field, {.distance_w = 1e6})), Words{});
 }
 
+TEST(CaptureReport, CamerasOnTheirSideAroundARingHaveNoUpsideDown) {
+  for (int shown = 10; shown <= 60; ++shown) {  // arcs of all lengths
+    LightField field = Ring(1), arc;
+    for (int i = 0; i < shown; ++i) {
+      const Mat3 turn = Eigen::AngleAxisd(kPi / 2, Vec3::UnitZ()).toRotationMatrix();
+      Add(RigidTransform{turn, Vec3::Zero()} * field.cameras[i].cam_from_world, &arc);
+    }
+    EXPECT_EQ(Kinds(ReportOf(arc, {.distance_w = 1e6})), Words{}) << shown;
+  }
+}
+
 TEST(CaptureReport, RepeatedPositionsAreNamed) {
   LightField field = Grid();
   Add(field.cameras[5].cam_from_world, &field);

@@ -71,9 +71,12 @@ std::vector<CaptureWarning> WarnOfUpsideDown(const LightField& light_field) {
     ups.push_back(light_field.Camera(IdOf(i)).UpWorld());
     spread += ups.back() * ups.back().transpose() / static_cast<double>(light_field.size());
   }
-  // The axis that most up vectors lie along, whichever way, if there is one.
+  // The axis that most up vectors lie along, whichever way, if there is one: a dome has 2/3 of the
+  // spread along it. Cameras that lie on their side around a ring have no common up; arcs of such
+  // rings have up to 0.61 along an axis.
+  constexpr double kCommonUp = 0.65;
   const Eigen::SelfAdjointEigenSolver<Mat3> eigen(spread);
-  if (!(eigen.eigenvalues()[2] >= 0.5)) return {};
+  if (!(eigen.eigenvalues()[2] >= kCommonUp)) return {};
   Vec3 axis = eigen.eigenvectors().col(2);
   const auto along =
       std::count_if(ups.begin(), ups.end(), [&](const Vec3& up) { return up.dot(axis) > 0; });
