@@ -7,6 +7,7 @@
 #include <iterator>
 #include <system_error>
 
+#include "lf/capture/raw_encoding.h"
 #include "lf/imageio/image_file.h"
 
 namespace lf {
@@ -18,6 +19,7 @@ Result<std::array<int, 2>> ImageSizeInHeader(const fs::path& image) {
 }
 
 bool IsImageName(std::string_view file_name) {
+  if (IsRawName(std::string(file_name))) return true;
   constexpr std::string_view kExtensions[] = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".exr"};
   std::string extension = fs::path(file_name).extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));

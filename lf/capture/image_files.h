@@ -19,7 +19,7 @@ using ImageSizeSource = std::function<Result<std::array<int, 2>>(const std::file
 // From the header of the file (imageio's ReadImageInfo).
 Result<std::array<int, 2>> ImageSizeInHeader(const std::filesystem::path& image);
 
-// By the extension, in any case: png, jpg, jpeg, tif, tiff, exr.
+// By the extension, in any case: png, jpg, jpeg, tif, tiff, exr, and those of IsRawName().
 bool IsImageName(std::string_view file_name);
 
 // Names of the image files of a folder, sorted by bytes; hidden ones left out. kInput if it cannot

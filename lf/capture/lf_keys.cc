@@ -5,7 +5,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 namespace lf {
 namespace {
@@ -22,16 +21,13 @@ constexpr NumberRule kPedestal = {"a whole number from 0 to 32767", [](double x)
                                     return x >= 0 && x <= 32767 && x == std::floor(x);
                                   }};
 
-constexpr double kRawPedestal = 1024;
-constexpr const char* kBayerNames[] = {"", "RGGB", "BGGR", "GRBG", "GBRG"};
-
-Result<BayerPattern> ReadBayer(const JsonFields& top) {
+Result<BayerPattern> ReadBayer(const JsonFields& top, BayerPattern otherwise) {
   LF_ASSIGN_OR_RETURN(const std::optional<std::string> name, top.Text("lf_bayer"));
-  if (!name) return BayerPattern::kNone;
-  const auto found = std::find(std::begin(kBayerNames) + 1, std::end(kBayerNames), *name);
-  if (found == std::end(kBayerNames))
+  if (!name) return otherwise;
+  const std::optional<BayerPattern> bayer = BayerPatternOf(*name);
+  if (!bayer)
     return top.Wrong("lf_bayer", "RGGB, BGGR, GRBG or GBRG, the upper left 2x2 pixels row by row");
-  return static_cast<BayerPattern>(found - std::begin(kBayerNames));
+  return *bayer;
 }
 
 // transfer and response.
@@ -51,9 +47,8 @@ Result<void> ReadTransfer(const JsonFields& top, RadianceEncoding* encoding) {
     encoding->response = *std::move(response);
   } else if (name) {
     encoding->transfer = *name == "sRGB" ? Transfer::kSrgb : Transfer::kLinear;
-  } else {
-    encoding->transfer =
-        encoding->bayer == BayerPattern::kNone ? Transfer::kSrgb : Transfer::kLinear;
+  } else if (encoding->bayer != BayerPattern::kNone) {
+    encoding->transfer = Transfer::kLinear;
   }
   return {};
 }
@@ -61,8 +56,10 @@ Result<void> ReadTransfer(const JsonFields& top, RadianceEncoding* encoding) {
 Result<void> ReadLevels(const JsonFields& top, RadianceEncoding* encoding) {
   LF_ASSIGN_OR_RETURN(const std::optional<double> black,
                       top.Number("lf_black_level", kStoredValue));
-  LF_ASSIGN_OR_RETURN(encoding->white_level, top.Number("lf_white_level", kStoredValue));
-  encoding->black_level = black.value_or(0);
+  LF_ASSIGN_OR_RETURN(const std::optional<double> white,
+                      top.Number("lf_white_level", kStoredValue));
+  if (black) encoding->black_level = *black;
+  if (white) encoding->white_level = white;
   if (!LevelsFit(*encoding, 16))
     return top.Fault(fmt::format("\"lf_black_level\" is {}: expected less than lf_white_level, {}",
                                  encoding->black_level, encoding->white_level.value_or(65535)));
@@ -83,23 +80,35 @@ Result<void> ReadColour(const JsonFields& top, RadianceEncoding* encoding) {
   return {};
 }
 
+// What the first of camera raw files tells of what is not stated.
+Result<RadianceEncoding> DefaultEncoding(const JsonFields& top, const LightField& light_field,
+                                         const RawFactsSource& raw_facts) {
+  const auto stated = [&](const auto&... keys) { return (... && (top.Find(keys) != nullptr)); };
+  const bool levels_stated = stated("lf_black_level", "lf_white_level");
+  const bool colours_stated = stated("lf_white_balance", "lf_camera_to_srgb");
+  if (!raw_facts || (stated("lf_bayer") && levels_stated && colours_stated))
+    return RadianceEncoding();
+  LF_ASSIGN_OR_RETURN(const std::optional<RawFacts> facts, raw_facts(light_field));
+  if (!facts) return RadianceEncoding();
+  WarnOfUnknown(light_field, *facts, levels_stated, colours_stated);
+  return EncodingOfRaw(*facts);
+}
+
 }  // namespace
 
-Result<RadianceEncoding> ReadEncoding(const JsonFields& top,
-                                      std::span<const std::string> image_names) {
-  RadianceEncoding encoding;
-  LF_ASSIGN_OR_RETURN(encoding.bayer, ReadBayer(top));
+Result<RadianceEncoding> ReadEncoding(const JsonFields& top, const LightField& light_field,
+                                      const RawFactsSource& raw_facts) {
+  LF_ASSIGN_OR_RETURN(RadianceEncoding encoding, DefaultEncoding(top, light_field, raw_facts));
+  LF_ASSIGN_OR_RETURN(encoding.bayer, ReadBayer(top, encoding.bayer));
   LF_RETURN_IF_ERROR(ReadTransfer(top, &encoding));
   LF_RETURN_IF_ERROR(ReadLevels(top, &encoding));
   LF_RETURN_IF_ERROR(ReadColour(top, &encoding));
   LF_ASSIGN_OR_RETURN(const std::optional<double> max_radiance,
                       top.Number("lf_max_radiance", kMaxRadiance));
   LF_ASSIGN_OR_RETURN(const std::optional<double> pedestal, top.Number("lf_pedestal", kPedestal));
-  encoding.max_radiance = max_radiance.value_or(DefaultMaxRadiance(image_names));
+  encoding.max_radiance = max_radiance.value_or(DefaultMaxRadiance(light_field.image_names));
   encoding.pedestal = pedestal.value_or(encoding.black_level > 0 ? kRawPedestal : 0);
   return encoding;
 }
-
-const char* NameOf(BayerPattern bayer) { return kBayerNames[static_cast<int>(bayer)]; }
 
 }  // namespace lf

@@ -1,11 +1,10 @@
 // The lf_* keys of transforms.json that say how stored numbers become light. Internal to capture.
 #pragma once
 
-#include <span>
-#include <string>
-
 #include "lf/capture/json_fields.h"
+#include "lf/capture/light_field.h"
 #include "lf/capture/radiance.h"
+#include "lf/capture/raw_encoding.h"
 #include "lf/core/result.h"
 
 namespace lf {
@@ -18,12 +17,11 @@ inline constexpr const char* kTopLevelLfKeys[] = {
 inline constexpr const char* kFrameLfKeys[] = {"lf_gain", "lf_mask", "lf_translation", "lf_skew",
                                                "lf_fov_omega"};
 
-// Of the top level. Defaults: sRGB without a Bayer pattern, linear with one; pedestal 1024 where
-// there is a black level, else 0; DefaultMaxRadiance(image_names).
-Result<RadianceEncoding> ReadEncoding(const JsonFields& top,
-                                      std::span<const std::string> image_names);
-
-// "RGGB", ...; "" for kNone.
-const char* NameOf(BayerPattern bayer);
+// Of the top level. Defaults: what camera raw files tell (`raw_facts` is asked where a key they
+// could replace is missing; null: not asked); else sRGB without a Bayer pattern, linear with one.
+// Pedestal 1024 where there is a black level, else 0; DefaultMaxRadiance(image_names).
+//   light_field  names and folder of the images
+Result<RadianceEncoding> ReadEncoding(const JsonFields& top, const LightField& light_field,
+                                      const RawFactsSource& raw_facts);
 
 }  // namespace lf

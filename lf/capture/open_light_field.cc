@@ -8,6 +8,7 @@
 #include <system_error>
 #include <vector>
 
+#include "lf/capture/raw_encoding.h"
 #include "lf/capture/read_aos.h"
 #include "lf/capture/read_colmap.h"
 #include "lf/capture/read_llff.h"
@@ -123,9 +124,27 @@ Result<LightField> OpenStanford(const fs::path& folder, const OpenOptions& optio
                                      .asked_for = asked_for});
 }
 
-}  // namespace
+// What kind of pixels: after the calibration, which may have said nothing of them.
+Result<void> CompleteEncoding(const OpenOptions& options, const fs::path& path,
+                              LightField* light_field) {
+  RadianceEncoding& encoding = light_field->encoding;
+  const bool is_raw = IsRawName(light_field->image_names[0]);
+  // One that tells of mosaics tells everything.
+  if (is_raw && encoding.bayer == BayerPattern::kNone && encoding.transfer == Transfer::kSrgb)
+    LF_RETURN_IF_ERROR(CompleteEncodingOfRaw(light_field));
+  if (options.bayer) {
+    if (encoding.transfer == Transfer::kSrgb) encoding.transfer = Transfer::kLinear;
+    encoding.bayer = *options.bayer;
+  }
+  if (!is_raw || encoding.bayer != BayerPattern::kNone) return {};
+  return InputError(fmt::format(
+      "{}: the camera raw file {} does not tell a Bayer pattern (four letters of R, G, B with the "
+      "two G on a diagonal): state \"lf_bayer\": \"RGGB\", or what it is, in transforms.json, or "
+      "import with lfimport --bayer RGGB",
+      path.string(), light_field->ImagePath({0}).string()));
+}
 
-Result<LightField> OpenLightField(const fs::path& path, const OpenOptions& options) {
+Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& options) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status))
@@ -152,6 +171,14 @@ Result<LightField> OpenLightField(const fs::path& path, const OpenOptions& optio
       "{}, {} (AOS), and for images named "
       "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext or NAME_ROW_COL.ext in it and in {}/{}",
       path.string(), kCalibrationName, kLlffName, kAosName, kImagesName, OtherCalibrations(path)));
+}
+
+}  // namespace
+
+Result<LightField> OpenLightField(const fs::path& path, const OpenOptions& options) {
+  LF_ASSIGN_OR_RETURN(LightField light_field, OpenCalibration(path, options));
+  LF_RETURN_IF_ERROR(CompleteEncoding(options, path, &light_field));
+  return light_field;
 }
 
 }  // namespace lf

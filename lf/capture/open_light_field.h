@@ -23,6 +23,9 @@ struct OpenOptions {
   // Where the image files of a COLMAP model are, not checked (capture/read_colmap.h), or those of
   // poses of Airborne Optical Sectioning; instead of searching. kUsage elsewhere: others say it.
   std::optional<std::filesystem::path> images_folder = {};
+  // The images are mosaics of this pattern, whatever the calibration or the files say. Offered by
+  // lfimport alone.
+  std::optional<BayerPattern> bayer = {};
 };
 
 // Reads what `path` is: a file, or a folder that holds one, looked for in this order:
@@ -34,9 +37,11 @@ struct OpenOptions {
 // - images named by the Stanford form, in the folder or its images/: capture/read_stanford.h
 //
 // No pixels are read; that image files exist is not checked here, but for a first one where its
-// header tells the size, or its name the folder.
+// header tells the size, or its name the folder. Camera raw files: pattern, levels and colours that
+// the calibration does not state are those that the first file tells; a warning says what neither
+// does.
 // kInput: nothing there that is a light field (the message lists what was looked for), or the
-// reader's own error.
+// reader's own error; camera raw files whose Bayer pattern nobody tells.
 Result<LightField> OpenLightField(const std::filesystem::path& path,
                                   const OpenOptions& options = {});
 

@@ -10,6 +10,8 @@
 namespace lf {
 namespace {
 
+constexpr const char* kBayerNames[] = {"", "RGGB", "BGGR", "GRBG", "GBRG"};
+
 double LargestStorable(int bits) { return bits == 8 ? 255 : 65535; }
 
 double WhiteLevel(const RadianceEncoding& encoding, int bits) {
@@ -38,6 +40,14 @@ double RadianceOf(const RadianceEncoding& encoding, double x) {
 }
 
 }  // namespace
+
+const char* NameOf(BayerPattern bayer) { return kBayerNames[static_cast<int>(bayer)]; }
+
+std::optional<BayerPattern> BayerPatternOf(const std::string& name) {
+  for (int i = 1; i < 5; ++i)
+    if (name == kBayerNames[i]) return static_cast<BayerPattern>(i);
+  return std::nullopt;
+}
 
 double LinearFromSrgb(double srgb) {
   return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);

@@ -41,6 +41,10 @@ struct RadianceEncoding {
   double Scale() const { return (65535 - pedestal) / max_radiance; }
 };
 
+// "RGGB", ... as in lf_bayer, and back; "" for kNone, and none for other words.
+const char* NameOf(BayerPattern bayer);
+std::optional<BayerPattern> BayerPatternOf(const std::string& name);
+
 // Linear light of an sRGB value in [0, 1], and back.
 double LinearFromSrgb(double srgb);
 double SrgbFromLinear(double linear);

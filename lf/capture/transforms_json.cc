@@ -36,8 +36,8 @@ constexpr NumberRule kUnit = {"metres per world unit, from 1e-9 to 1e9",
 // file, so their intrinsics are resolved at the end.
 class Reader {
  public:
-  Reader(const fs::path& path, const ImageSizeSource& image_size)
-      : path_(path), image_size_(image_size) {
+  Reader(const fs::path& path, const ImageSizeSource& image_size, const RawFactsSource& raw_facts)
+      : path_(path), image_size_(image_size), raw_facts_(raw_facts) {
     light_field_.folder = path.parent_path();
   }
 
@@ -67,7 +67,7 @@ class Reader {
     if (frame_count() == 0) return fields.Fault("\"frames\" is empty: a light field needs images");
     LF_RETURN_IF_ERROR(fields.CheckLfKeys(kTopLevelLfKeys, kFrameLfKeys, "into each frame"));
     LF_RETURN_IF_ERROR(ResolveAllIntrinsics(fields));
-    LF_ASSIGN_OR_RETURN(light_field_.encoding, ReadEncoding(fields, light_field_.image_names));
+    LF_ASSIGN_OR_RETURN(light_field_.encoding, ReadEncoding(fields, light_field_, raw_facts_));
     LF_ASSIGN_OR_RETURN(const std::optional<double> unit_m, fields.Number("lf_unit_m", kUnit));
     light_field_.unit_m = unit_m.value_or(1);
     LF_RETURN_IF_ERROR(ReadDepthRange(fields));
@@ -214,6 +214,7 @@ class Reader {
 
   const fs::path& path_;
   const ImageSizeSource& image_size_;
+  const RawFactsSource& raw_facts_;
   std::optional<std::array<int, 2>> default_size_;
   LightField light_field_;  // intrinsics_index counts distinct_keys_ until the end
   std::map<IntrinsicsKeys, uint32_t> distinct_keys_;
@@ -226,8 +227,9 @@ class Reader {
 }  // namespace
 
 Result<LightField> ParseTransformsJson(std::string_view text, const fs::path& path,
-                                       const ImageSizeSource& image_size) {
-  Reader reader(path, image_size);
+                                       const ImageSizeSource& image_size,
+                                       const RawFactsSource& raw_facts) {
+  Reader reader(path, image_size, raw_facts);
   try {
     const json top =
         json::parse(text.begin(), text.end(), [&reader](int depth, Event event, json& value) {
@@ -241,7 +243,7 @@ Result<LightField> ParseTransformsJson(std::string_view text, const fs::path& pa
 
 Result<LightField> ReadTransformsJson(const fs::path& path) {
   LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(path));
-  return ParseTransformsJson(text, path, ImageSizeInHeader);
+  return ParseTransformsJson(text, path, ImageSizeInHeader, RawFactsOfFirstImage);
 }
 
 }  // namespace lf

@@ -8,6 +8,7 @@
 
 #include "lf/capture/image_files.h"
 #include "lf/capture/light_field.h"
+#include "lf/capture/raw_encoding.h"
 #include "lf/core/result.h"
 
 namespace lf {
@@ -16,11 +17,14 @@ namespace lf {
 // path        its name for messages; its folder becomes LightField::folder
 // image_size  asked for the first image where a frame has no "w" or "h", as in Blender's scenes;
 //             without it that is an error
+// raw_facts   asked for what the keys do not say of camera raw files; without it nobody is asked
 // kInput names the file, the frame and its key, the value found and what was expected.
 Result<LightField> ParseTransformsJson(std::string_view text, const std::filesystem::path& path,
-                                       const ImageSizeSource& image_size = {});
+                                       const ImageSizeSource& image_size = {},
+                                       const RawFactsSource& raw_facts = {});
 
-// The same for a file; a missing size comes from the header of the first image file.
+// The same for a file; a missing size, and what is not said of camera raw files, come from the
+// header of the first image file.
 Result<LightField> ReadTransformsJson(const std::filesystem::path& path);
 
 // Writes `light_field` so that reading it gives the same cameras bit for bit (but that a

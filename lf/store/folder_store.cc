@@ -10,7 +10,6 @@
 #include <utility>
 #include <variant>
 
-#include "lf/core/file.h"
 #include "lf/imageio/image_file.h"
 
 namespace lf {
@@ -24,26 +23,17 @@ struct ChannelUse {
   std::optional<int> alpha;
 };
 
-struct StoredFile {
-  StoredImage image;
-  ChannelUse use;
-};
-
 bool IsAlpha(const std::string& channel_name) {
   return channel_name == "A" || channel_name == "alpha" || channel_name == "Alpha";
 }
 
-Result<StoredFile> ReadStored(const fs::path& path) {
-  LF_ASSIGN_OR_RETURN(const std::string bytes, ReadFile(path));
-  LF_ASSIGN_OR_RETURN(StoredImage image, ReadImageBytes(bytes, path.string()));
+ChannelUse UseOf(const ImageFileInfo& info) {
   ChannelUse use;
-  use.channels = std::visit([](const auto& pixels) { return pixels.channels(); }, image);
+  use.channels = info.channels;
   use.colours = use.channels >= 3 ? 3 : 1;
-  if (use.channels > use.colours) {
-    LF_ASSIGN_OR_RETURN(const ImageFileInfo info, ReadImageInfoBytes(bytes, path.string()));
-    if (IsAlpha(info.channel_names[use.colours])) use.alpha = use.colours;
-  }
-  return StoredFile{std::move(image), use};
+  if (use.channels > use.colours && IsAlpha(info.channel_names[use.colours]))
+    use.alpha = use.colours;
+  return use;
 }
 
 Result<void> CheckSize(const StoredImage& image, const Intrinsics& intrinsics,
@@ -59,12 +49,26 @@ Result<void> CheckSize(const StoredImage& image, const Intrinsics& intrinsics,
       image);
 }
 
-Result<void> CheckEncoding(const StoredFile& file, const RadianceEncoding& encoding,
+// A raw file in a light field of anything else would show its mosaic as a grey picture.
+Result<void> CheckRaw(const RawFacts& raw, const RadianceEncoding& encoding, const fs::path& path) {
+  if (encoding.bayer == BayerPattern::kNone)
+    return InputError(
+        fmt::format("{}: is a camera raw file, but the light field states no lf_bayer: raw files "
+                    "and other images do not go together",
+                    path.string()));
+  if (raw.bayer != BayerPattern::kNone && raw.bayer != encoding.bayer)
+    return InputError(fmt::format("{}: its mosaic is {}, but that of the light field is {}",
+                                  path.string(), NameOf(raw.bayer), NameOf(encoding.bayer)));
+  return {};
+}
+
+Result<void> CheckEncoding(const ImageWithInfo& file, const RadianceEncoding& encoding,
                            const fs::path& path) {
-  if (encoding.bayer != BayerPattern::kNone && file.use.channels != 1)
+  if (file.info.raw) LF_RETURN_IF_ERROR(CheckRaw(*file.info.raw, encoding, path));
+  if (encoding.bayer != BayerPattern::kNone && file.info.channels != 1)
     return InputError(
         fmt::format("{}: has {} channels, but lf_bayer says that it is a mosaic of one",
-                    path.string(), file.use.channels));
+                    path.string(), file.info.channels));
   if (std::holds_alternative<Image<float>>(file.image)) return {};
   const int bits = std::holds_alternative<Image<uint8_t>>(file.image) ? 8 : 16;
   if (!LevelsFit(encoding, bits))
@@ -137,7 +141,8 @@ Result<LfPixels> FolderStore::Load(LfImageId id, const PixelRect& rect) const {
   const Intrinsics& intrinsics = light_field_.intrinsics[camera.intrinsics_index];
   const RadianceEncoding& encoding = light_field_.encoding;
   const fs::path path = light_field_.ImagePath(id);
-  LF_ASSIGN_OR_RETURN(const StoredFile file, ReadStored(path));
+  LF_ASSIGN_OR_RETURN(const ImageWithInfo file, ReadImageWithInfo(path));
+  const ChannelUse use = UseOf(file.info);
   LF_RETURN_IF_ERROR(CheckSize(file.image, intrinsics, path));
   LF_RETURN_IF_ERROR(CheckEncoding(file, encoding, path));
 
@@ -149,7 +154,7 @@ Result<LfPixels> FolderStore::Load(LfImageId id, const PixelRect& rect) const {
   const auto convert = [&]<class T>(const Image<T>& stored) {
     if constexpr (std::is_floating_point_v<T>) {
       ConvertRadiance(
-          stored, file.use,
+          stored, use,
           [&](float radiance) { return QuantizeRadiance(encoding, radiance, camera.gain); },
           &pixels);
     } else {
@@ -159,9 +164,9 @@ Result<LfPixels> FolderStore::Load(LfImageId id, const PixelRect& rect) const {
       const std::vector<uint16_t>& shared_table = kBits == 8 ? table_8bit_ : table_16bit_;
       const uint16_t* table = camera.gain != 1 ? own_table.data() : shared_table.data();
       ConvertRadiance(
-          stored, file.use, [table](T value) { return table[value]; }, &pixels);
+          stored, use, [table](T value) { return table[value]; }, &pixels);
     }
-    if (file.use.alpha) MaskTransparent(stored, *file.use.alpha, &pixels);
+    if (use.alpha) MaskTransparent(stored, *use.alpha, &pixels);
   };
   std::visit(convert, file.image);
   if (!light_field_.mask_names.empty() && !light_field_.mask_names[id.value].empty())

@@ -9,6 +9,7 @@
 
 #include "lf/core/file.h"
 #include "lf/imageio/image_file.h"
+#include "lf/imageio/test_dng.h"
 #include "lf/imageio/test_folder.h"
 
 namespace lf {
@@ -122,6 +123,41 @@ TEST_F(FolderStoreTest, AMosaicWithThreeChannelsIsAnError) {
   LightField light_field = OneImage();
   light_field.encoding.bayer = BayerPattern::kRggb;
   ExpectMentions(ErrorOf(light_field), {"a.png: has 3 channels", "lf_bayer"});
+}
+
+TEST_F(FolderStoreTest, ARawFileGivesTheBitsOfTheSameMosaicAsPng) {
+  const Image<uint16_t> mosaic = NoiseImage<uint16_t>(24, 23, 1);
+  ASSERT_TRUE(WriteImage(folder_ / "a.png", mosaic.view()));
+  TestDng dng(mosaic, "GBRG");
+  dng.Long(50714, {512}).Long(50717, {16383}).Short(274, {6});
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "a.dng", dng.File()));
+  LightField light_field = OneImage();
+  light_field.intrinsics[0].width_px = 24;
+  light_field.intrinsics[0].height_px = 23;
+  light_field.encoding.bayer = BayerPattern::kGbrg;
+  light_field.encoding.transfer = Transfer::kLinear;
+  light_field.encoding.black_level = 512;
+  light_field.encoding.white_level = 16383;
+  light_field.encoding.pedestal = 1024;
+  const LfPixels png = Loaded(light_field, {0, 0, 24, 23});
+  light_field.image_names = {"a.dng"};
+  const LfPixels raw = Loaded(light_field, {0, 0, 24, 23});
+  EXPECT_EQ(raw.radiance.pixels(), png.radiance.pixels());
+  EXPECT_EQ(raw.bayer, png.bayer);
+}
+
+TEST_F(FolderStoreTest, ARawFileMustHaveThePatternOfTheLightField) {
+  const Image<uint16_t> mosaic = NoiseImage<uint16_t>(24, 23, 1);
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "a.dng", TestDng(mosaic, "GBRG").File()));
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "untold.dng", TestDng(mosaic, "RGBG").File()));
+  LightField light_field = OneImage("a.dng");
+  light_field.intrinsics[0].width_px = 24;
+  light_field.intrinsics[0].height_px = 23;
+  ExpectMentions(ErrorOf(light_field), {"a.dng: is a camera raw file", "lf_bayer"});
+  light_field.encoding.bayer = BayerPattern::kRggb;
+  ExpectMentions(ErrorOf(light_field), {"a.dng: its mosaic is GBRG", "light field is RGGB"});
+  light_field.image_names = {"untold.dng"};
+  EXPECT_EQ(Loaded(light_field).bayer, BayerPattern::kRggb);
 }
 
 TEST_F(FolderStoreTest, AlphaBelowOneHalfMasks) {
