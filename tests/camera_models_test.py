@@ -1,0 +1,105 @@
+#!/usr/bin/python3
+"""Every camera model against OpenCV where it has it, else against its formula in numpy.
+
+usage: camera_models_test.py PROJECT_POINTS
+"""
+import subprocess
+import sys
+import unittest
+
+import cv2
+import numpy as np
+
+PROJECT_POINTS = None
+F, C = (1117.2, 1120.9), (640.3, 359.6)
+K = np.array([[F[0], 0, C[0]], [0, F[1], C[1]], [0, 0, 1]])
+COUNT = 10_000
+
+
+def directions(widest_rad):
+    """COUNT directions spread evenly over the disk of that half angle"""
+    index = np.arange(COUNT)
+    theta = widest_rad * np.sqrt((index + 0.5) / COUNT)
+    phi = index * np.pi * (3 - np.sqrt(5))
+    depth = 1 + index % 7  # lengths must not matter
+    return depth[:, None] * np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi),
+                                      np.cos(theta)], axis=1)
+
+
+def project(model, parameters, points):
+    parameters = [*parameters, *[0.0] * (8 - len(parameters))]
+    header = " ".join(map(repr, [*F, *C])) + f" {model} " + " ".join(map(repr, parameters))
+    text = header + "\n" + "\n".join(" ".join(repr(float(v)) for v in p) for p in points)
+    result = subprocess.run([PROJECT_POINTS], input=text, capture_output=True, text=True)
+    if result.returncode != 0:
+        raise AssertionError(result.stderr)
+    return np.array([[float(v) for v in line.split()] for line in result.stdout.splitlines()])
+
+
+def by_opencv(parameters, points):
+    """parameters: k1 k2 p1 p2 k3 k4 k5 k6"""
+    zero = np.zeros(3)
+    return cv2.projectPoints(points, zero, zero, K, np.array(parameters))[0][:, 0]
+
+
+def by_opencv_fisheye(parameters, points):
+    zero = np.zeros(3)
+    return cv2.fisheye.projectPoints(points[:, None], zero, zero, K, np.array(parameters))[0][:, 0]
+
+
+def by_numpy_fisheye(parameters, points):
+    """OpenCV's stops at 90 degrees"""
+    across = np.hypot(points[:, 0], points[:, 1])
+    theta = np.arctan2(across, points[:, 2])
+    rd = theta + sum(k * theta ** (2 * i + 3) for i, k in enumerate(parameters))
+    return points[:, :2] / across[:, None] * rd[:, None] * F + C
+
+
+def by_numpy_fov(parameters, points):
+    u = points[:, :2] / points[:, 2:]
+    r = np.hypot(*u.T)
+    rd = np.arctan(2 * r * np.tan(parameters[0] / 2)) / parameters[0]
+    return u * (rd / r)[:, None] * F + C
+
+
+# COLMAP's name: model, parameters, half angle tested, judge
+MODELS = {
+    "PINHOLE": ("none", [], 1.3, lambda p, x: x[:, :2] / x[:, 2:] * F + C),
+    "SIMPLE_RADIAL": ("radial-tangential", [0.035], 0.9, lambda p, x: by_opencv([*p, 0, 0, 0], x)),
+    "RADIAL": ("radial-tangential", [-0.25, 0.07], 0.7, lambda p, x: by_opencv([*p, 0, 0], x)),
+    "OPENCV": ("radial-tangential", [-0.28, 0.09, 0.002, -0.003], 0.7, by_opencv),
+    "FULL_OPENCV": ("radial-tangential", [0.3, -0.1, 5e-4, -2e-4, 0.02, 0.6, -0.05, 0.01], 0.8,
+                    by_opencv),
+    "OPENCV_FISHEYE": ("fisheye", [-0.02, 0.004, -0.002, 3e-4], 1.5, by_opencv_fisheye),
+    "OPENCV_FISHEYE, behind itself": ("fisheye", [-0.02, 0.004, -0.002, 3e-4], 1.7,
+                                      by_numpy_fisheye),
+    "SIMPLE_RADIAL_FISHEYE": ("fisheye", [0.03], 1.5, lambda p, x: by_opencv_fisheye([*p, 0, 0, 0], x)),
+    "RADIAL_FISHEYE": ("fisheye", [0.03, -0.01], 1.5, lambda p, x: by_opencv_fisheye([*p, 0, 0], x)),
+    "FOV": ("fov", [0.93], 1.5, by_numpy_fov),
+}
+
+
+class CameraModelsTest(unittest.TestCase):
+    def test_pixels_are_those_of_an_independent_formula(self):
+        for name, (model, parameters, widest_rad, judge) in MODELS.items():
+            with self.subTest(name):
+                points = directions(widest_rad)
+                found = project(model, parameters, points)
+                self.assertEqual(found.shape, (COUNT, 5))
+                error = np.abs(found[:, :2] - judge(parameters, points)).max()
+                self.assertLessEqual(error, 1e-6)
+
+    def test_unprojecting_gives_the_direction_back(self):
+        for name, (model, parameters, widest_rad, _) in MODELS.items():
+            with self.subTest(name):
+                points = directions(widest_rad)
+                found = project(model, parameters, points)
+                back = found[:, 2:] / np.linalg.norm(found[:, 2:], axis=1)[:, None]
+                forth = points / np.linalg.norm(points, axis=1)[:, None]
+                # As an angle, times the focal length.
+                self.assertLessEqual(np.abs(back - forth).max() * max(F), 1e-6)
+
+
+if __name__ == "__main__":
+    PROJECT_POINTS = sys.argv[1]
+    sys.exit(unittest.main(argv=sys.argv[:1], verbosity=2))
