@@ -1,5 +1,4 @@
-// The bytes of a file from front to back, a block at a time: files larger than memory. Internal to
-// capture.
+// The bytes of a file from front to back, a block at a time: files larger than memory.
 #pragma once
 
 #include <bit>

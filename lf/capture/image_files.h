@@ -1,5 +1,4 @@
 // What calibrations without an image size ask of image files: names, and sizes from headers.
-// Internal to capture.
 #pragma once
 
 #include <array>

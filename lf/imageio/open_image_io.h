@@ -1,4 +1,4 @@
-// How OpenImageIO is used in this folder, and only here.
+// How OpenImageIO is used in this folder, and only here. Internal to imageio.
 #pragma once
 
 #include "lf/imageio/image_probe.h"

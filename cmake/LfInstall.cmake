@@ -1,0 +1,54 @@
+# What `cmake --install` puts where: the library as one archive with its public headers, for CMake's
+# find_package(lfrendertools) and for pkg-config; the programs; their documentation.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+get_property(folders GLOBAL PROPERTY LF_FOLDERS)
+list(TRANSFORM folders REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>" OUTPUT_VARIABLE objects)
+add_library(lf_installed STATIC ${objects})
+set_target_properties(lf_installed PROPERTIES OUTPUT_NAME lfrendertools EXPORT_NAME lfrendertools
+                                              LINKER_LANGUAGE CXX)
+target_compile_features(lf_installed PUBLIC cxx_std_20)
+# Inline functions of the headers keep their bits, too (cmake/LfFolder.cmake).
+target_compile_options(lf_installed INTERFACE -ffp-contract=off)
+target_include_directories(lf_installed INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+# An archive carries nothing of what it needs: whoever links it links these. OpenImageIO by name,
+# see LfDependencies.cmake.
+target_link_libraries(lf_installed PUBLIC Eigen3::Eigen fmt::fmt TBB::tbb Threads::Threads yaml-cpp
+                                          OpenImageIO OpenImageIO_Util)
+install(TARGETS lf_installed EXPORT lfrendertoolsTargets
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+
+# Headers that say "Internal to" their folder stay here, and so do those of tests.
+file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}
+     ${PROJECT_SOURCE_DIR}/lf/*.h)
+foreach(header ${headers})
+  file(READ ${PROJECT_SOURCE_DIR}/${header} top LIMIT 1000)
+  get_filename_component(name ${header} NAME)
+  if(top MATCHES "Internal to[ /\n]+(this folder|[a-z]+)\\." OR name MATCHES "^test(ing)?_")
+    continue()
+  endif()
+  get_filename_component(folder ${header} DIRECTORY)
+  install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder})
+endforeach()
+
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/lfrendertools)
+install(EXPORT lfrendertoolsTargets NAMESPACE lfrendertools:: DESTINATION ${package_folder})
+configure_package_config_file(cmake/lfrendertoolsConfig.cmake.in
+                              ${PROJECT_BINARY_DIR}/lfrendertoolsConfig.cmake
+                              INSTALL_DESTINATION ${package_folder})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/lfrendertoolsConfigVersion.cmake
+                                 COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/lfrendertoolsConfig.cmake
+              ${PROJECT_BINARY_DIR}/lfrendertoolsConfigVersion.cmake
+        DESTINATION ${package_folder})
+# From the .pc file to the prefix, so that an installation can be moved.
+string(REGEX REPLACE "[^/]+" ".." LF_PC_UP "${CMAKE_INSTALL_LIBDIR}")
+configure_file(cmake/lfrendertools.pc.in lfrendertools.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/lfrendertools.pc
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+
+get_property(tools GLOBAL PROPERTY LF_TOOLS)
+install(TARGETS ${tools} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(FILES README.md CHANGELOG.md LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY doc examples DESTINATION ${CMAKE_INSTALL_DOCDIR})

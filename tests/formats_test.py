@@ -1,0 +1,192 @@
+#!/usr/bin/python3
+"""One light field in every format: read alike, rendered alike.
+
+usage: formats_test.py LFSYNTH LFEXAMPLE LFIMPORT LFRENDERER
+"""
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"
+import cv2
+import numpy as np
+
+import write_formats
+
+SYNTH = EXAMPLE = IMPORT = RENDERER = None
+
+
+def run(*arguments):
+    result = subprocess.run([*map(str, arguments)], capture_output=True, text=True, timeout=300)
+    if result.returncode != 0:
+        raise AssertionError(f"{arguments}: exit {result.returncode}\n{result.stderr}")
+
+
+def picture(frames):
+    """linear RGB of the first frame [height][width][3]"""
+    bgr = cv2.imread(str(frames / "frame_0001.exr"), cv2.IMREAD_UNCHANGED)[..., :3]
+    return bgr[..., ::-1].astype(np.float64)
+
+
+def target_position(frame):
+    """(x, y) of the brightest spot: the centroid of its upper half, in elements"""
+    grey = frame.sum(axis=2)
+    y, x = np.unravel_index(grey.argmax(), grey.shape)
+    window = grey[max(0, y - 4):y + 5, max(0, x - 4):x + 5]
+    weight = np.clip(window - 0.5 * window.max(), 0, None)
+    rows, columns = np.indices(weight.shape)
+    return (max(0, x - 4) + (columns * weight).sum() / weight.sum() + 0.5,
+            max(0, y - 4) + (rows * weight).sum() / weight.sum() + 0.5)
+
+
+class FormatsTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.temporary.cleanup)
+        cls.folder = pathlib.Path(cls.temporary.name)
+        # Turned and jittered cameras, off the grid: none is on the lens's rim.
+        cls.jittered = cls.synth("jittered", "still-life", "--jitter", 0.4, "--size", "120x80")
+        cls.square = cls.synth("square", "still-life", "--jitter", 0.4, "--size", "80x80")
+        cls.brown = cls.synth("brown", "still-life", "--jitter", 0.4, "--size", "120x80",
+                              "--distortion=-0.2,0.06,0.003,-0.002")
+        cls.rational = cls.synth("rational", "still-life", "--jitter", 0.4, "--size", "120x80",
+                                 "--distortion=0.3,-0.1,0.001,-0.002,0.02,0.6,-0.05,0.01")
+        cls.fisheye = cls.synth("fisheye", "still-life", "--jitter", 0.4, "--size", "120x80",
+                                "--fisheye=-0.02,0.004,-0.002,0.0003")
+        cls.fov = cls.synth("fov", "still-life", "--jitter", 0.4, "--size", "120x80",
+                            "--fov", 0.93)
+        cls.parallel = cls.synth("parallel", "lights", "--size", "120x80")
+        cls.centre_at_origin(cls.parallel)
+        cls.rendered = {}
+
+    @classmethod
+    def synth(cls, name, scene, *options):
+        folder = cls.folder / name
+        run(SYNTH, scene, "-o", folder, "--count", 25, "--format", "png", *options)
+        return folder
+
+    @staticmethod
+    def centre_at_origin(folder):
+        """Moves the world so that the grid lies around its origin, in the plane z = 0."""
+        field = json.loads((folder / "transforms.json").read_text())
+        matrices = [np.array(f["transform_matrix"]) for f in field["frames"]]
+        centre = np.mean([m[:3, 3] for m in matrices], axis=0)
+        for frame, matrix in zip(field["frames"], matrices):
+            matrix[:3, 3] -= centre
+            frame["transform_matrix"] = matrix.tolist()
+            frame.pop("lf_translation", None)
+        (folder / "transforms.json").write_text(json.dumps(field))
+
+    def native_frame(self, native):
+        """path and picture of the native form"""
+        if native not in self.rendered:
+            path = native.with_name(native.name + ".yaml")
+            run(EXAMPLE, native, "-o", path, "--move", "static")
+            out = native.with_name(native.name + "-frames")
+            run(RENDERER, native, path, "-o", out, "--frames", 1, "--format", "exr-float",
+                "--estimator", "bilinear")
+            self.rendered[native] = path, picture(out)
+        return self.rendered[native]
+
+    def check(self, writer, native, import_options=(), reads_itself=True):
+        field = json.loads((native / "transforms.json").read_text())
+        folder = self.folder / f"{native.name}-{writer.__name__}"
+        folder.mkdir()
+        light_field = writer(field, native, folder)
+        imported = folder / "imported"
+        run(IMPORT, light_field, "-o", imported, *import_options)
+        self.compare_calibrations(field, json.loads((imported / "transforms.json").read_text()),
+                                  writer.__name__)
+        path, expected = self.native_frame(native)
+        sources = [imported] + ([light_field] if reads_itself else [])
+        for number, source in enumerate(sources):
+            out = folder / f"frames{number}"
+            run(RENDERER, source, path, "-o", out, "--frames", 1, "--format", "exr-float",
+                "--estimator", "bilinear")
+            frame = picture(out)
+            rms = np.sqrt(np.mean((frame - expected) ** 2))
+            self.assertGreater(expected.std(), 0.01)
+            self.assertLessEqual(rms, 1e-4, source)
+            shift = np.subtract(target_position(frame), target_position(expected))
+            self.assertLessEqual(np.abs(shift).max(), 0.05, source)
+
+    def compare_calibrations(self, native, imported, name):
+        expected, found = write_formats.poses(native), write_formats.poses(imported)
+        self.assertEqual(len(found), len(expected))
+        # The same number of frames in the same order, whatever the names.
+        if name.startswith("stanford"):
+            found.sort(key=lambda pose: pose[0])
+        for (_, rotation, translation), (file_path, rotation2, translation2) in zip(expected, found):
+            self.assertLessEqual(np.abs(rotation - rotation2).max(), 1e-9, file_path)
+            self.assertLessEqual(np.abs(rotation.T @ translation - rotation2.T @ translation2).max(),
+                                 1e-9, file_path)
+        keys = ["fl_x", "fl_y", "cx", "cy", "w", "h", "k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2",
+                "lf_fov_omega"]
+        for key in keys:
+            self.assertAlmostEqual(native.get(key, 0), imported.get(key, 0), delta=1e-9, msg=key)
+        self.assertEqual(native["camera_model"], imported["camera_model"])
+
+    def test_colmap_binary(self):
+        for native in (self.jittered, self.brown, self.rational, self.fisheye, self.fov):
+            with self.subTest(native.name):
+                self.check(write_formats.colmap_binary, native)
+
+    def test_colmap_text(self):
+        for native in (self.jittered, self.brown, self.fov):
+            with self.subTest(native.name):
+                self.check(write_formats.colmap_text, native)
+
+    def test_nerfstudio(self):
+        for native in (self.jittered, self.brown, self.fisheye):
+            with self.subTest(native.name):
+                self.check(write_formats.nerfstudio, native)
+
+    def test_blender(self):
+        self.check(write_formats.blender, self.jittered)
+
+    def test_middlebury(self):
+        self.check(write_formats.middlebury, self.jittered)
+
+    def test_llff(self):
+        self.check(write_formats.llff, self.jittered)
+
+    def test_aos(self):
+        field = json.loads((self.square / "transforms.json").read_text())
+        fov = 2 * np.degrees(np.arctan(0.5 * field["w"] / field["fl_x"]))
+        self.check(write_formats.aos, self.square, ["--fov-deg", repr(float(fov))],
+                   reads_itself=False)
+
+    def test_stanford(self):
+        self.check(write_formats.stanford, self.parallel)
+
+    def test_stanford_without_positions(self):
+        field = json.loads((self.parallel / "transforms.json").read_text())
+        xs = sorted({round(f["transform_matrix"][0][3], 9) for f in field["frames"]})
+        self.check(write_formats.stanford_without_positions, self.parallel,
+                   ["--pitch", repr(float(xs[1] - xs[0])), "--focal-px", repr(field["fl_x"])],
+                   reads_itself=False)
+
+    def test_every_lens_gives_the_picture_of_the_pinhole(self):
+        """The same scene through other lenses: less alike, for their pixels lie elsewhere."""
+        path, expected = self.native_frame(self.jittered)
+        for native in (self.brown, self.rational, self.fisheye, self.fov):
+            out = self.folder / f"{native.name}-as-pinhole"
+            run(RENDERER, native, path, "-o", out, "--frames", 1, "--format", "exr-float",
+                "--estimator", "bilinear")
+            frame = picture(out)
+            inner = (slice(12, -12), slice(18, -18))
+            error = np.sqrt(np.mean((frame[inner] - expected[inner]) ** 2))
+            with self.subTest(native.name):
+                self.assertLessEqual(error, 0.03)
+                shift = np.subtract(target_position(frame), target_position(expected))
+                self.assertLessEqual(np.abs(shift).max(), 0.25)
+
+
+if __name__ == "__main__":
+    SYNTH, EXAMPLE, IMPORT, RENDERER = map(pathlib.Path, sys.argv[1:5])
+    sys.exit(unittest.main(argv=sys.argv[:1], verbosity=2))

@@ -1,0 +1,83 @@
+#!/usr/bin/python3
+"""Installs the project and builds a foreign one against it, by CMake and by pkg-config.
+
+usage: install_test.py CMAKE BUILD_FOLDER SOURCE_FOLDER
+"""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import small_field
+
+CMAKE = BUILD = SOURCE = None
+
+
+class InstallTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.temporary.cleanup)
+        cls.folder = pathlib.Path(cls.temporary.name)
+        cls.prefix = cls.folder / "installed"
+        cls.run_tool(CMAKE, "--install", BUILD, "--prefix", cls.prefix)
+        # Nothing may depend on where it was installed first.
+        moved = cls.folder / "elsewhere"
+        cls.prefix.rename(moved)
+        cls.prefix = moved
+        cls.library = next(moved.rglob("liblfrendertools.a")).parent
+
+    @staticmethod
+    def run_tool(*command, **keys):
+        result = subprocess.run([*map(str, command)], capture_output=True, text=True, timeout=600,
+                                **keys)
+        if result.returncode != 0:
+            raise AssertionError(f"{command}: exit {result.returncode}\n{result.stdout[-4000:]}"
+                                 f"{result.stderr[-4000:]}")
+        return result.stdout
+
+    def film(self, program):
+        with tempfile.TemporaryDirectory() as temporary:
+            work = pathlib.Path(temporary)
+            field = small_field.write_field(work / "field")
+            path = small_field.write_path(work, frames=2)
+            self.assertEqual(self.run_tool(program, field, path, work / "frames"), "2 frames\n")
+            self.assertTrue((work / "frames" / "frame_0002.png").exists())
+
+    def test_a_foreign_project_by_cmake(self):
+        build = self.folder / "by-cmake"
+        self.run_tool(CMAKE, "-G", "Ninja", "-S", SOURCE / "tests" / "foreign", "-B", build,
+                      f"-DCMAKE_PREFIX_PATH={self.prefix}",
+                      f"-DLF_INCLUDE={self.prefix / 'include'}")
+        self.run_tool(CMAKE, "--build", build)
+        self.film(build / "film")
+
+    def test_a_foreign_program_by_pkg_config(self):
+        environment = {**os.environ, "PKG_CONFIG_PATH": str(self.library / "pkgconfig")}
+        flags = self.run_tool("pkg-config", "--cflags", "--libs", "lfrendertools", env=environment)
+        program = self.folder / "film-by-pkg-config"
+        self.run_tool("c++", SOURCE / "tests" / "foreign" / "film.cc", "-o", program,
+                      *flags.split())
+        self.film(program)
+
+    def test_programs_and_documents_are_installed(self):
+        for name in ("lfrenderer", "lfexample", "lfsynth", "lfcammvminfo"):
+            self.run_tool(self.prefix / "bin" / name, "--version")
+        for name in ("README.md", "LICENSE", "CITATION.cff", "doc/conventions.md"):
+            self.assertTrue(list(self.prefix.rglob(name)), name)
+
+    def test_internal_headers_stay_behind(self):
+        headers = sorted(p.name for p in (self.prefix / "include").rglob("*.h"))
+        self.assertIn("render.h", headers)
+        self.assertNotIn("json_fields.h", headers)
+        self.assertFalse([name for name in headers if name.startswith("test")])
+
+
+if __name__ == "__main__":
+    CMAKE, BUILD, SOURCE = map(pathlib.Path, sys.argv[1:4])
+    if not shutil.which("pkg-config"):
+        sys.exit("pkg-config is missing: apt-get install pkgconf")
+    sys.exit(unittest.main(argv=sys.argv[:1], verbosity=2))
