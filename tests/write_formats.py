@@ -168,7 +168,9 @@ def stanford(field, source, folder):
 
     def name(index, _):
         row, column, x, y = places[index]
-        return f"out_{row:02}_{column:02}_{1000 * y!r}_{1000 * x!r}_36.0_{36 * field['w'] / field['fl_x']!r}.png"
+        focal_mm = 36 * field["fl_x"] / field["w"]
+        return (f"out_{row:02}_{column:02}_{1000 * y:.12f}_{1000 * x:.12f}_"
+                f"{focal_mm:.12f}_36.png")
     copy_images(field, source, folder, name)
     return folder
 
