@@ -159,7 +159,8 @@ class RendererTest(unittest.TestCase):
         self.fails(2, [], field, path)
         self.fails(2, [], field, "-o", out)
         self.fails(2, ["--mode rebin", "not available"], field, path, "-o", out, "--mode", "rebin")
-        self.fails(2, ["bilinear"], field, path, "-o", out, "--estimator", "bilinear")
+        mosaics = write_field(self.folder / "mosaics", lf_bayer="RGGB")
+        self.fails(2, ["bilinear", "mosaics"], mosaics, path, "-o", out, "--estimator", "bilinear")
         self.fails(2, ["--frames"], field, path, "-o", out, "--frames", "2-9")
         self.fails(2, ["--memory"], field, path, "-o", out, "--memory", "lots")
 

@@ -1,5 +1,4 @@
 // What camera raw files say themselves of their pixels, where the light field does not.
-// Internal to capture.
 #pragma once
 
 #include <functional>
