@@ -19,18 +19,9 @@ target_link_libraries(lf_installed PUBLIC Eigen3::Eigen fmt::fmt TBB::tbb Thread
 install(TARGETS lf_installed EXPORT lfrendertoolsTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 
-# Headers that say "Internal to" their folder stay here, and so do those of tests.
-file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}
-     ${PROJECT_SOURCE_DIR}/lf/*.h)
-foreach(header ${headers})
-  file(READ ${PROJECT_SOURCE_DIR}/${header} top LIMIT 1000)
-  get_filename_component(name ${header} NAME)
-  if(top MATCHES "Internal to[ /\n]+(this folder|[a-z]+)\\." OR name MATCHES "^test(ing)?_")
-    continue()
-  endif()
-  get_filename_component(folder ${header} DIRECTORY)
-  install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder})
-endforeach()
+# Which headers are public is seen when they are installed, for their text says it.
+install(CODE "set(source ${PROJECT_SOURCE_DIR})\nset(destination ${CMAKE_INSTALL_INCLUDEDIR})")
+install(SCRIPT cmake/install_headers.cmake)
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/lfrendertools)
 install(EXPORT lfrendertoolsTargets NAMESPACE lfrendertools:: DESTINATION ${package_folder})

@@ -1,0 +1,12 @@
+# Run by `cmake --install`: the public headers of `source`/lf to `destination`/lf. Those that say
+# "Internal to" their folder stay behind, and so do those of tests.
+file(GLOB_RECURSE headers RELATIVE ${source} ${source}/lf/*.h)
+foreach(header ${headers})
+  file(READ ${source}/${header} top LIMIT 1000)
+  get_filename_component(name ${header} NAME)
+  if(top MATCHES "Internal to[ /\n]+(this folder|[a-z]+)\\." OR name MATCHES "^test(ing)?_")
+    continue()
+  endif()
+  get_filename_component(folder ${header} DIRECTORY)
+  file(INSTALL ${source}/${header} DESTINATION ${CMAKE_INSTALL_PREFIX}/${destination}/${folder})
+endforeach()
