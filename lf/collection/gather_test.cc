@@ -6,41 +6,22 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lf/camera/testing_scenes.h"
-#include "lf/core/random.h"
+#include "lf/collection/test_plates.h"
 
 namespace lf {
 namespace {
 
-LfPixels PixelsFor(const Intrinsics& k) {
-  LfPixels pixels;
-  pixels.rect = {0, 0, k.width_px, k.height_px};
-  pixels.radiance = Image<uint16_t>(k.width_px, k.height_px, 3);
-  return pixels;
-}
+using testing::PlateFor;
 
 LfPixels RandomPixels(const Intrinsics& k, uint64_t seed) {
-  LfPixels pixels = PixelsFor(k);
-  uint64_t index = 0;
-  for (uint16_t& v : pixels.radiance.pixels())
-    v = static_cast<uint16_t>(RandomBits(seed, 7, index++));
-  return pixels;
-}
-
-SensorPlate PlateFor(const testing::CameraPair& pair) {
-  const Intrinsics& k = pair.render_camera.pinhole.intrinsics;
-  return SensorPlate(k.width_px, k.height_px);
+  return testing::NoisePixels({0, 0, k.width_px, k.height_px}, BayerPattern::kNone, seed);
 }
 
 uint64_t GatherInBands(const testing::CameraPair& pair, const LfPixels& pixels, int band_height,
                        SensorPlate* plate) {
   const GatherPlan plan(pair.lf_camera, pair.render_camera);
-  uint64_t accepted = 0;
-  for (int y = 0; y < plate->height(); y += band_height) {
-    PlateBand band(plate, y, std::min(plate->height(), y + band_height));
-    accepted += plan.GatherBand(pixels, &band);
-  }
-  return accepted;
+  return testing::InBands(plate, band_height,
+                          [&](PlateBand* band) { return plan.GatherBand(pixels, band); });
 }
 
 testing::CameraPair RandomPair(uint64_t seed) {
@@ -99,7 +80,7 @@ TEST(Gather, AWallInFocusReproducesItself) {
     const auto wall = [](const Vec3& point) {
       return 30000 + 20000 * point.x() - 15000 * point.y();
     };
-    LfPixels pixels = PixelsFor(k);
+    LfPixels pixels = RandomPixels(k, 0);
     const DistortionMap map(distortion);
     const Vec3 centre = pair.lf_camera.CentreWorld();
     for (int y = 0; y < k.height_px; ++y)

@@ -3,11 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <cstdlib>
 
-#include "lf/camera/testing_scenes.h"
 #include "lf/collection/ray_law.h"
-#include "lf/core/random.h"
+#include "lf/collection/test_plates.h"
 
 namespace lf {
 namespace {
@@ -15,49 +14,19 @@ namespace {
 constexpr int kWidth = 200, kHeight = 140;
 constexpr PixelRect kWholeImage{0, 0, kWidth, kHeight};
 
-LfPixels RandomPixels(BayerPattern bayer, uint64_t seed) {
-  LfPixels pixels;
-  pixels.bayer = bayer;
-  pixels.rect = kWholeImage;
-  pixels.radiance = Image<uint16_t>(kWidth, kHeight, bayer == BayerPattern::kNone ? 3 : 1);
-  uint64_t index = 0;
-  for (uint16_t& v : pixels.radiance.pixels())
-    v = static_cast<uint16_t>(RandomBits(seed, 7, index++));
-  return pixels;
-}
+using testing::DifferingCount;
+using testing::PlateFor;
+using testing::TotalCount;
 
-SensorPlate PlateFor(const testing::CameraPair& pair) {
-  const Intrinsics& k = pair.render_camera.pinhole.intrinsics;
-  return SensorPlate(k.width_px, k.height_px);
+LfPixels RandomPixels(BayerPattern bayer, uint64_t seed) {
+  return testing::NoisePixels(kWholeImage, bayer, seed);
 }
 
 uint64_t Scatter(const testing::CameraPair& pair, const LfPixels& pixels, const PixelRect& rect,
                  const IdealPixels& ideal_pixels, int band_height, SensorPlate* plate) {
   const ScatterPlan plan = PlanScatter(pair.lf_camera, pair.render_camera, rect, &ideal_pixels);
-  uint64_t accepted = 0;
-  for (int y = 0; y < plate->height(); y += band_height) {
-    PlateBand band(plate, y, std::min(plate->height(), y + band_height));
-    accepted += ScatterBand(plan, pixels, &band);
-  }
-  return accepted;
-}
-
-uint64_t TotalCount(const SensorPlate& plate) {
-  uint64_t count = 0;
-  for (int y = 0; y < plate.height(); ++y)
-    for (int x = 0; x < plate.width(); ++x)
-      for (int channel = 0; channel < 3; ++channel) count += plate.At(x, y, channel).count;
-  return count;
-}
-
-// Elements and channels that differ.
-uint64_t DifferingCount(const SensorPlate& a, const SensorPlate& b) {
-  uint64_t count = 0;
-  for (int y = 0; y < a.height(); ++y)
-    for (int x = 0; x < a.width(); ++x)
-      for (int channel = 0; channel < 3; ++channel)
-        count += a.At(x, y, channel) == b.At(x, y, channel) ? 0 : 1;
-  return count;
+  return testing::InBands(plate, band_height,
+                          [&](PlateBand* band) { return ScatterBand(plan, pixels, band); });
 }
 
 TEST(PlanOnArcs, SpansHoldExactlyTheRaysThatTheLawAcceptsOnTheArcs) {

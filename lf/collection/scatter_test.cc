@@ -5,65 +5,22 @@
 
 #include <cmath>
 
-#include "lf/camera/testing_scenes.h"
 #include "lf/collection/ray_law.h"
-#include "lf/core/random.h"
+#include "lf/collection/test_plates.h"
 
 namespace lf {
 namespace {
 
-LfPixels RandomPixels(const PixelRect& rect, BayerPattern bayer, uint64_t seed) {
-  LfPixels pixels;
-  pixels.bayer = bayer;
-  pixels.rect = rect;
-  pixels.radiance =
-      Image<uint16_t>(rect.width(), rect.height(), bayer == BayerPattern::kNone ? 3 : 1);
-  uint64_t index = 0;
-  for (uint16_t& v : pixels.radiance.pixels())
-    v = static_cast<uint16_t>(RandomBits(seed, 7, index++));
-  return pixels;
-}
-
-uint64_t TotalCount(const SensorPlate& plate) {
-  uint64_t count = 0;
-  for (int y = 0; y < plate.height(); ++y)
-    for (int x = 0; x < plate.width(); ++x)
-      for (int channel = 0; channel < 3; ++channel) count += plate.At(x, y, channel).count;
-  return count;
-}
-
-// Rays that lie in different elements of the two plates.
-uint64_t DifferingCount(const SensorPlate& a, const SensorPlate& b) {
-  uint64_t count = 0;
-  for (int y = 0; y < a.height(); ++y)
-    for (int x = 0; x < a.width(); ++x)
-      for (int channel = 0; channel < 3; ++channel) {
-        const ElementSum sum_a = a.At(x, y, channel), sum_b = b.At(x, y, channel);
-        if (sum_a == sum_b) continue;
-        count += std::max<uint64_t>(
-            1, std::max(sum_a.count, sum_b.count) - std::min(sum_a.count, sum_b.count));
-      }
-  return count;
-}
+using testing::DifferingCount;
+using testing::PlateFor;
+using testing::TotalCount;
+using testing::WholeImage;
 
 uint64_t ScatterInBands(const testing::CameraPair& pair, const LfPixels& pixels,
                         const PixelRect& rect, int band_height, SensorPlate* plate) {
   const ScatterPlan plan = PlanScatter(pair.lf_camera, pair.render_camera, rect);
-  uint64_t accepted = 0;
-  for (int y = 0; y < plate->height(); y += band_height) {
-    PlateBand band(plate, y, std::min(plate->height(), y + band_height));
-    accepted += ScatterBand(plan, pixels, &band);
-  }
-  return accepted;
-}
-
-PixelRect WholeImage(const testing::CameraPair& pair) {
-  return {0, 0, pair.lf_camera.intrinsics.width_px, pair.lf_camera.intrinsics.height_px};
-}
-
-SensorPlate PlateFor(const testing::CameraPair& pair, uint32_t limit = SensorPlate::kMaxCount) {
-  return SensorPlate(pair.render_camera.pinhole.intrinsics.width_px,
-                     pair.render_camera.pinhole.intrinsics.height_px, limit);
+  return testing::InBands(plate, band_height,
+                          [&](PlateBand* band) { return ScatterBand(plan, pixels, band); });
 }
 
 TEST(Scatter, SpansHoldExactlyTheRaysThatTheLawAccepts) {
@@ -94,7 +51,7 @@ TEST(Scatter, TheFastBackEndAgreesWithTheReference) {
   for (uint64_t seed = 0; seed < 400; ++seed) {
     const testing::CameraPair pair = testing::RandomCameraPair(seed);
     const auto bayer = static_cast<BayerPattern>(seed % 5);
-    const LfPixels pixels = RandomPixels(WholeImage(pair), bayer, seed);
+    const LfPixels pixels = testing::NoisePixels(WholeImage(pair), bayer, seed);
     SensorPlate expected = PlateFor(pair), fast = PlateFor(pair);
     const uint64_t accepted =
         ScatterReference(pair.lf_camera, pixels, pair.render_camera, pixels.rect, &expected);
@@ -112,7 +69,7 @@ TEST(Scatter, TheFastBackEndAgreesWithTheReference) {
 TEST(Scatter, AnyCutIntoBandsGivesTheSameBits) {
   for (uint64_t seed = 0; seed < 200; ++seed) {
     const testing::CameraPair pair = testing::RandomCameraPair(seed);
-    const LfPixels pixels = RandomPixels(WholeImage(pair), BayerPattern::kNone, seed);
+    const LfPixels pixels = testing::NoisePixels(WholeImage(pair), BayerPattern::kNone, seed);
     SensorPlate whole = PlateFor(pair), cut = PlateFor(pair), fine = PlateFor(pair);
     const uint64_t accepted = ScatterInBands(pair, pixels, pixels.rect, 120, &whole);
     EXPECT_EQ(ScatterInBands(pair, pixels, pixels.rect, 17, &cut), accepted);
@@ -125,7 +82,7 @@ TEST(Scatter, AnyCutIntoBandsGivesTheSameBits) {
 TEST(Scatter, AnyCutOfTheImageGivesTheSameBits) {
   for (uint64_t seed = 0; seed < 200; ++seed) {
     const testing::CameraPair pair = testing::RandomCameraPair(seed);
-    const LfPixels pixels = RandomPixels(WholeImage(pair), BayerPattern::kGrbg, seed);
+    const LfPixels pixels = testing::NoisePixels(WholeImage(pair), BayerPattern::kGrbg, seed);
     SensorPlate whole = PlateFor(pair), cut = PlateFor(pair);
     ScatterInBands(pair, pixels, pixels.rect, 120, &whole);
     for (const PixelRect& rect :
@@ -142,7 +99,7 @@ TEST(Scatter, RaysOnBordersAreNeitherLostNorDoubled) {
     for (int row = -6; row <= 6; ++row) {
       // Half an element of disparity per pitch.
       const testing::CameraPair pair = testing::ParallelPair(column, row, 0.01, 0.05);
-      const LfPixels pixels = RandomPixels(WholeImage(pair), BayerPattern::kNone, 3);
+      const LfPixels pixels = testing::NoisePixels(WholeImage(pair), BayerPattern::kNone, 3);
       SensorPlate expected = PlateFor(pair), fast = PlateFor(pair), bands = PlateFor(pair);
       const uint64_t accepted =
           ScatterReference(pair.lf_camera, pixels, pair.render_camera, pixels.rect, &expected);
@@ -156,7 +113,7 @@ TEST(Scatter, RaysOnBordersAreNeitherLostNorDoubled) {
 
 TEST(Scatter, MaskedPixelsGiveNoRay) {
   const testing::CameraPair pair = testing::ParallelPair(1, 2, 0.013, 0.05);
-  LfPixels pixels = RandomPixels(WholeImage(pair), BayerPattern::kRggb, 3);
+  LfPixels pixels = testing::NoisePixels(WholeImage(pair), BayerPattern::kRggb, 3);
   pixels.mask = Image<uint8_t>(50, 35, 1, 255);
   for (int i = 5; i < 30; ++i) pixels.mask.at(i, i) = 0;
   SensorPlate expected = PlateFor(pair), fast = PlateFor(pair), all = PlateFor(pair);
@@ -171,8 +128,8 @@ TEST(Scatter, MaskedPixelsGiveNoRay) {
 TEST(Scatter, PixelsOfAPartOfTheImageAreEnough) {
   const testing::CameraPair pair = testing::ParallelPair(1, 2, 0.013, 0.05);
   const PixelRect part{7, 9, 31, 20};
-  const LfPixels all = RandomPixels(WholeImage(pair), BayerPattern::kGbrg, 3);
-  LfPixels some = RandomPixels(part, BayerPattern::kGbrg, 3);
+  const LfPixels all = testing::NoisePixels(WholeImage(pair), BayerPattern::kGbrg, 3);
+  LfPixels some = testing::NoisePixels(part, BayerPattern::kGbrg, 3);
   for (int y = part.y_begin; y < part.y_end; ++y)
     for (int x = part.x_begin; x < part.x_end; ++x)
       some.radiance.at(x - part.x_begin, y - part.y_begin) = all.radiance.at(x, y);
@@ -188,7 +145,7 @@ TEST(Scatter, FullWordsArePromotedWithoutLosingARay) {
   // A camera in the focus plane sends all its rays to one element.
   testing::CameraPair pair = testing::ParallelPair(0, 0, 0.01, 9);
   pair.lf_camera.cam_from_world.translation = {0.1, 0.05, -2};
-  const LfPixels pixels = RandomPixels(WholeImage(pair), BayerPattern::kNone, 5);
+  const LfPixels pixels = testing::NoisePixels(WholeImage(pair), BayerPattern::kNone, 5);
   SensorPlate expected = PlateFor(pair), fast = PlateFor(pair, 10), reference = PlateFor(pair, 10);
   for (int repeat = 0; repeat < 3; ++repeat) {
     ScatterReference(pair.lf_camera, pixels, pair.render_camera, pixels.rect, &expected);

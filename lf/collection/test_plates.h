@@ -1,0 +1,69 @@
+// What the tests of ray collection share: LF images of noise, plates for a pair of cameras, and
+// what two plates differ in.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "lf/camera/testing_scenes.h"
+#include "lf/capture/lf_pixels.h"
+#include "lf/core/random.h"
+#include "lf/plate/sensor_plate.h"
+
+namespace lf::testing {
+
+inline PixelRect WholeImage(const CameraPair& pair) {
+  return {0, 0, pair.lf_camera.intrinsics.width_px, pair.lf_camera.intrinsics.height_px};
+}
+
+inline LfPixels NoisePixels(const PixelRect& rect, BayerPattern bayer, uint64_t seed) {
+  LfPixels pixels;
+  pixels.bayer = bayer;
+  pixels.rect = rect;
+  pixels.radiance =
+      Image<uint16_t>(rect.width(), rect.height(), bayer == BayerPattern::kNone ? 3 : 1);
+  uint64_t index = 0;
+  for (uint16_t& v : pixels.radiance.pixels())
+    v = static_cast<uint16_t>(RandomBits(seed, 7, index++));
+  return pixels;
+}
+
+inline SensorPlate PlateFor(const CameraPair& pair, uint32_t limit = SensorPlate::kMaxCount) {
+  return SensorPlate(pair.render_camera.pinhole.intrinsics.width_px,
+                     pair.render_camera.pinhole.intrinsics.height_px, limit);
+}
+
+inline uint64_t TotalCount(const SensorPlate& plate) {
+  uint64_t count = 0;
+  for (int y = 0; y < plate.height(); ++y)
+    for (int x = 0; x < plate.width(); ++x)
+      for (int channel = 0; channel < 3; ++channel) count += plate.At(x, y, channel).count;
+  return count;
+}
+
+// Rays that lie in different elements of the two plates.
+inline uint64_t DifferingCount(const SensorPlate& a, const SensorPlate& b) {
+  uint64_t count = 0;
+  for (int y = 0; y < a.height(); ++y)
+    for (int x = 0; x < a.width(); ++x)
+      for (int channel = 0; channel < 3; ++channel) {
+        const ElementSum sum_a = a.At(x, y, channel), sum_b = b.At(x, y, channel);
+        if (sum_a == sum_b) continue;
+        count += std::max<uint64_t>(
+            1, std::max(sum_a.count, sum_b.count) - std::min(sum_a.count, sum_b.count));
+      }
+  return count;
+}
+
+// Calls collect(&band) for bands of the plate from top to bottom; the sum of what it returns.
+template <class Collect>
+uint64_t InBands(SensorPlate* plate, int band_height, const Collect& collect) {
+  uint64_t accepted = 0;
+  for (int y = 0; y < plate->height(); y += band_height) {
+    PlateBand band(plate, y, std::min(plate->height(), y + band_height));
+    accepted += collect(&band);
+  }
+  return accepted;
+}
+
+}  // namespace lf::testing
