@@ -144,6 +144,31 @@ Result<void> CompleteEncoding(const OpenOptions& options, const fs::path& path,
       path.string(), light_field->ImagePath({0}).string()));
 }
 
+bool HoldsLightField(const fs::path& folder) {
+  std::error_code error;
+  if (fs::exists(folder / kCalibrationName, error)) return true;
+  const Result<std::optional<fs::path>> model = FindColmapModel(folder);
+  if (model && *model) return true;
+  const Result<std::optional<fs::path>> calibration = CalibrationIn(folder);
+  return !calibration || *calibration || HoldsStanfordNames(folder) ||
+         HoldsStanfordNames(folder / kImagesName);
+}
+
+// A hint for whoever is one folder too high.
+std::string LightFieldsBelow(const fs::path& folder) {
+  constexpr size_t kMostNames = 5;
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    std::error_code ignored;
+    if (names.size() < kMostNames && it->is_directory(ignored) && HoldsLightField(it->path()))
+      names.push_back(it->path().filename().string());
+  }
+  if (names.empty()) return "";
+  std::sort(names.begin(), names.end());
+  return fmt::format("; but {}/ in it does", fmt::join(names, "/, "));
+}
+
 Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& options) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
@@ -169,8 +194,9 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
   return InputError(fmt::format(
       "{}: holds no light field: looked for {}, a COLMAP model in it or in sparse/0, NAME_par.txt, "
       "{}, {} (AOS), and for images named "
-      "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext or NAME_ROW_COL.ext in it and in {}/{}",
-      path.string(), kCalibrationName, kLlffName, kAosName, kImagesName, OtherCalibrations(path)));
+      "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext or NAME_ROW_COL.ext in it and in {}/{}{}",
+      path.string(), kCalibrationName, kLlffName, kAosName, kImagesName, OtherCalibrations(path),
+      LightFieldsBelow(path)));
 }
 
 }  // namespace

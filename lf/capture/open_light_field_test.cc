@@ -145,6 +145,16 @@ TEST_F(OpenLightFieldTest, SaysWhatItLookedFor) {
   EXPECT_NE(error(folder_ / "a.blend").find("a.blend: is not a light field"), std::string::npos);
 }
 
+TEST_F(OpenLightFieldTest, PointsToAFolderBelow) {
+  fs::create_directories(folder_ / "inner");
+  fs::create_directories(folder_ / "other");
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "inner" / "transforms.json", kCalibration));
+  const Result<LightField> light_field = OpenLightField(folder_);
+  ASSERT_FALSE(light_field);
+  EXPECT_NE(light_field.error().message.find("; but inner/ in it does"), std::string::npos)
+      << light_field.error().message;
+}
+
 // Real light fields, where they are at hand.
 class RealLightFieldTest : public testing::Test {
  protected:
