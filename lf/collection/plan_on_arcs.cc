@@ -23,22 +23,26 @@ struct Range {
   double rounding = 0;
 };
 
-Range RangeOn(const IdealArc& arc, const PixelForm& form) {
-  Range range{Value(form, arc.control[0]), 0, 0};
-  range.high = range.low;
-  for (const Vec3& q : arc.control) {
-    const double value = Value(form, q);
-    range.low = std::min(range.low, value);
-    range.high = std::max(range.high, value);
-    range.rounding = std::max(range.rounding, std::abs(form[0] * q[0]) + std::abs(form[1] * q[1]) +
-                                                  std::abs(form[2] * q[2]));
+// The control points of an arc, and how far they reach in each coordinate.
+struct Hull {
+  const Vec3* control;
+  Vec3 reach;
+  explicit Hull(const IdealArc& arc) : control(arc.control) {
+    reach = control[0].cwiseAbs().cwiseMax(control[1].cwiseAbs());
+    reach = reach.cwiseMax(control[2].cwiseAbs()).cwiseMax(control[3].cwiseAbs());
   }
-  range.rounding *= kRounding;
-  return range;
+};
+
+Range RangeOn(const Hull& arc, const PixelForm& form) {
+  const double a = Value(form, arc.control[0]), b = Value(form, arc.control[1]);
+  const double c = Value(form, arc.control[2]), d = Value(form, arc.control[3]);
+  return {std::min(std::min(a, b), std::min(c, d)), std::max(std::max(a, b), std::max(c, d)),
+          kRounding * (std::abs(form[0]) * arc.reach[0] + std::abs(form[1]) * arc.reach[1] +
+                       std::abs(form[2]) * arc.reach[2])};
 }
 
 // Where form <= 0.
-Share AtMostZero(const IdealArc& arc, const PixelForm& form) {
+Share AtMostZero(const Hull& arc, const PixelForm& form) {
   const Range range = RangeOn(arc, form);
   if (range.low > range.rounding) return Share::kNone;
   return range.high < -range.rounding ? Share::kAll : Share::kSome;
@@ -83,10 +87,11 @@ class ArcPlanner {
   void AddArc(int y, const IdealArc& arc, uint32_t index) {
     const int begin = std::max(arc.x_begin, rect_.x_begin), end = std::min(arc.x_end, rect_.x_end);
     if (begin >= end) return;
-    const Share share = AcceptedShare(arc);
+    const Hull hull(arc);
+    const Share share = AcceptedShare(hull);
     if (share == Share::kNone) return;
     if (share == Share::kAll) {
-      AddSpan(y, begin, end, arc, index);
+      AddSpan(y, begin, end, arc, hull, index);
       return;
     }
     const auto accepted = [&](int x) {
@@ -95,18 +100,18 @@ class ArcPlanner {
     for (int x = begin; x < end;) {
       int stop = x;
       while (stop < end && accepted(stop)) ++stop;
-      if (stop > x) AddSpan(y, x, stop, arc, index);
+      if (stop > x) AddSpan(y, x, stop, arc, hull, index);
       x = stop + 1;
     }
   }
 
-  Share AcceptedShare(const IdealArc& arc) const {
+  Share AcceptedShare(const Hull& arc) const {
     // The two sides of n.d = 0 exclude each other.
     const Share sides = std::max(ShareOnPlate(arc, 0), ShareOnPlate(arc, 1));
     return sides == Share::kNone ? sides : Both(sides, ShareInLens(arc));
   }
 
-  Share ShareOnPlate(const IdealArc& arc, int side) const {
+  Share ShareOnPlate(const Hull& arc, int side) const {
     Share share = Share::kAll;
     for (const PixelForm& form : plate_half_planes_[side]) {
       share = Both(share, AtMostZero(arc, form));
@@ -115,7 +120,7 @@ class ArcPlanner {
     return share;
   }
 
-  Share ShareInLens(const IdealArc& arc) const {
+  Share ShareInLens(const Hull& arc) const {
     if (render_camera_.aperture.blades > 0) {
       Share share = Share::kAll;
       for (const PixelForm& form : lens_half_planes_) {
@@ -145,13 +150,13 @@ class ArcPlanner {
                : Share::kSome;
   }
 
-  void AddSpan(int y, int begin, int end, const IdealArc& arc, uint32_t index) {
+  void AddSpan(int y, int begin, int end, const IdealArc& arc, const Hull& hull, uint32_t index) {
     // Rows relative to that of the middle ray, so that the quotient of two ranges stays narrow.
     const RayForms& forms = plan_.forms;
     const Vec3 middle = arc.At(arc.Parameter((begin + end - 1) / 2));
     const double row = Value(forms.sensor_y, middle) / Value(forms.front, middle);
-    const Range offset = RangeOn(arc, forms.sensor_y - row * forms.front);
-    const Range front = RangeOn(arc, forms.front);
+    const Range offset = RangeOn(hull, forms.sensor_y - row * forms.front);
+    const Range front = RangeOn(hull, forms.front);
     const double least_front = std::sqrt(LeastSquare(front));
     const double reach =
         std::max(std::abs(offset.low), std::abs(offset.high)) / std::max(least_front, 1e-300);
