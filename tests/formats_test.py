@@ -43,6 +43,16 @@ def target_position(frame):
             max(0, y - 4) + (rows * weight).sum() / weight.sum() + 0.5)
 
 
+def shift_between(a, b):
+    """(x, y) in elements by which b lies beside a, by least squares over the picture"""
+    grey, difference = (a + b).sum(axis=2) / 2, (b - a).sum(axis=2)
+    inner = (slice(6, -6), slice(6, -6))
+    rows, columns = (g[inner].ravel() for g in np.gradient(grey))
+    difference = difference[inner].ravel()
+    normal = [[columns @ columns, columns @ rows], [columns @ rows, rows @ rows]]
+    return -np.linalg.solve(normal, [columns @ difference, rows @ difference])
+
+
 class FormatsTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -130,6 +140,21 @@ class FormatsTest(unittest.TestCase):
         for key in keys:
             self.assertAlmostEqual(native.get(key, 0), imported.get(key, 0), delta=1e-9, msg=key)
         self.assertEqual(native["camera_model"], imported["camera_model"])
+
+    def test_the_native_form_lands_where_the_true_picture_does(self):
+        path, frame = self.native_frame(self.jittered)
+        lines = ["frames: 1" if line.startswith("frames:") else line
+                 for line in path.read_text().splitlines()]
+        one_frame = self.folder / "truth.yaml"
+        one_frame.write_text("\n".join(lines) + "\n")
+        folder = self.folder / "truth"
+        run(SYNTH, "still-life", "-o", folder, "--calibration-only", "--truth", one_frame,
+            "--truth-samples", 200)
+        truth = picture(folder / "truth")
+        self.assertEqual(truth.shape, frame.shape)
+        self.assertLessEqual(np.abs(shift_between(truth, frame)).max(), 0.05)
+        # The measure sees a shift of one element.
+        self.assertGreater(shift_between(truth, np.roll(truth, 1, axis=1))[0], 0.8)
 
     def test_colmap_binary(self):
         for native in (self.jittered, self.brown, self.rational, self.fisheye, self.fov):
