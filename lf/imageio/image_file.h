@@ -44,6 +44,7 @@ struct ImageFileInfo {
   int bits = 0;  // 8, 16 or 32 of the StoredImage
   bool is_float = false;
   std::vector<std::string> channel_names;  // one per channel, as the format calls them
+  int orientation = 1;                     // EXIF's, 1 to 8; the pixels stay as stored
   std::optional<RawFacts> raw;             // of camera raw files: one channel of 16 bits
 };
 
@@ -52,7 +53,8 @@ Result<ImageFileInfo> ReadImageInfo(const std::filesystem::path& path);
 
 // All pixels and channels as stored: no colour conversion, alpha not multiplied in, no rotation.
 // The content decides the format, not the name. The first part of a file with several.
-// Channels of EXR files come in the order R, G, B, A, then the others.
+// Channels of EXR files come in the order R, G, B, A, then the others; where there are none of
+// these names, but one layer has them (beauty.R), its come first. Several such layers are an error.
 // Camera raw files give the mosaic as the sensor recorded it: not demosaicked, brightened, balanced
 // or turned, black not subtracted; cut to the active area where a DNG states one, and through its
 // linearization table. Read are DNG, and others that state a mosaic of 2 x 2 pixels in TIFF tags

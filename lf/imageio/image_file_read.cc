@@ -13,6 +13,7 @@
 #include "lf/core/file.h"
 #include "lf/imageio/image_file.h"
 #include "lf/imageio/image_probe.h"
+#include "lf/imageio/layers.h"
 #include "lf/imageio/open_image_io.h"
 #include "lf/imageio/open_raw.h"
 #include "lf/imageio/stored_value.h"
@@ -73,17 +74,6 @@ int StoredBits(const OIIO::ImageSpec& spec) {
   return bits;
 }
 
-std::vector<int> ColoursFirst(const std::vector<std::string>& names, size_t channel_count) {
-  std::vector<int> order(channel_count);
-  std::iota(order.begin(), order.end(), 0);
-  const auto rank = [&](int channel) -> size_t {
-    if (static_cast<size_t>(channel) >= names.size() || names[channel].size() != 1) return 4;
-    return std::min<size_t>(std::string_view("RGBA").find(names[channel]), 4);
-  };
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return rank(a) < rank(b); });
-  return order;
-}
-
 Result<void> CheckSize(const OIIO::ImageSpec& spec, const std::string& name) {
   if (spec.deep || spec.depth > 1)
     return InputError(fmt::format("{}: holds deep or volume data, not a picture", name));
@@ -129,9 +119,11 @@ Result<OpenImage> OpenPicture(const FileSource& source, ImageFormat format) {
     LF_RETURN_IF_ERROR(CheckRemarks(remarks, name));
     return InputError(fmt::format("{}: truncated or damaged {} file", name, PluginName(format)));
   }
-  image.channel_order = ColoursFirst(
-      format == ImageFormat::kExr ? image.spec.channelnames : std::vector<std::string>{},
-      image.spec.nchannels);
+  image.channel_order.resize(std::max(image.spec.nchannels, 0));
+  std::iota(image.channel_order.begin(), image.channel_order.end(), 0);
+  if (format == ImageFormat::kExr) {
+    LF_ASSIGN_OR_RETURN(image.channel_order, ColoursFirst(image.spec.channelnames, name));
+  }
   return image;
 }
 
@@ -145,7 +137,10 @@ Result<OpenImage> Open(const FileSource& source, ImageFormat format) {
 ImageFileInfo InfoOf(const OpenImage& image) {
   const int bits = StoredBits(image.spec);
   ImageFileInfo info{
-      image.spec.width, image.spec.height, image.spec.nchannels, bits, bits == 32, {}, image.raw};
+      image.spec.width, image.spec.height, image.spec.nchannels, bits, bits == 32, {}, 1,
+      image.raw};
+  const int orientation = image.spec.get_int_attribute("Orientation", 1);
+  if (!image.raw && orientation >= 1 && orientation <= 8) info.orientation = orientation;
   for (const int channel : image.channel_order)
     info.channel_names.push_back(image.spec.channel_name(channel));
   return info;

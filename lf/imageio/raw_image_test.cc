@@ -18,7 +18,7 @@ ImageWithInfo Read(const TestDng& dng) {
   Result<ImageWithInfo> read = ReadImageWithInfoBytes(dng.File(), "a.dng");
   EXPECT_TRUE(read) << read.error().message;
   return read ? *std::move(read)
-              : ImageWithInfo{Image<uint16_t>(), {0, 0, 0, 0, false, {}, RawFacts{}}};
+              : ImageWithInfo{Image<uint16_t>(), {0, 0, 0, 0, false, {}, 1, RawFacts{}}};
 }
 
 std::vector<uint16_t> PixelsOf(const ImageWithInfo& read) {

@@ -8,6 +8,7 @@
 #include <system_error>
 #include <variant>
 
+#include "lf/capture/image_fit.h"
 #include "lf/imageio/image_file.h"
 
 namespace lf {
@@ -23,15 +24,14 @@ struct Finding {
   std::string reason;  // "": nothing is wrong
 };
 
-Finding CheckFile(const fs::path& path, const Intrinsics& k, ImageCheck check) {
+Finding CheckFile(const fs::path& path, bool is_mosaic, const Intrinsics& k, ImageCheck check) {
   std::error_code error;
   if (!fs::exists(path, error))
     return {true, fmt::format("{}: {}", path.string(), error ? error.message() : "no such file")};
   const Result<ImageFileInfo> info = ReadImageInfo(path);
   if (!info) return {false, info.error().message};
-  if (info->width != k.width_px || info->height != k.height_px)
-    return {false, fmt::format("{}: is {}x{}, the calibration says {}x{}", path.string(),
-                               info->width, info->height, k.width_px, k.height_px)};
+  if (const auto fit = FitToCalibration(*info, is_mosaic, k, path.string()); !fit)
+    return {false, fit.error().message};
   if (check == ImageCheck::kHeaders) return {};
   const Result<StoredImage> image = ReadImage(path);
   return {false, image ? "" : image.error().message};
@@ -39,10 +39,11 @@ Finding CheckFile(const fs::path& path, const Intrinsics& k, ImageCheck check) {
 
 Finding CheckImage(const LightField& light_field, LfImageId id, ImageCheck check) {
   const Intrinsics& k = light_field.intrinsics[light_field.cameras[id.value].intrinsics_index];
-  Finding finding = CheckFile(light_field.ImagePath(id), k, check);
+  Finding finding = CheckFile(light_field.ImagePath(id),
+                              light_field.encoding.bayer != BayerPattern::kNone, k, check);
   if (!finding.reason.empty() || light_field.mask_names.empty()) return finding;
   const std::string& mask = light_field.mask_names[id.value];
-  return mask.empty() ? finding : CheckFile(light_field.folder / mask, k, check);
+  return mask.empty() ? finding : CheckFile(light_field.folder / mask, false, k, check);
 }
 
 }  // namespace

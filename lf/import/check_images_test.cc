@@ -56,7 +56,7 @@ TEST_F(CheckImagesTest, TellMissingFromBrokenAndCountMasks) {
   EXPECT_NE(faults.missing[0].reason.find("none.png"), std::string::npos);
   ASSERT_EQ(faults.broken.size(), 3u);
   EXPECT_EQ(faults.broken[0].id.value, 2u);
-  EXPECT_NE(faults.broken[0].reason.find("is 37x20, the calibration says 36x20"),
+  EXPECT_NE(faults.broken[0].reason.find("has 37 x 20 pixels, but the calibration says 36 x 20"),
             std::string::npos);
   EXPECT_EQ(faults.broken[1].id.value, 3u);
   EXPECT_EQ(faults.broken[2].id.value, 6u);

@@ -10,7 +10,9 @@
 #include <utility>
 #include <variant>
 
+#include "lf/capture/image_fit.h"
 #include "lf/imageio/image_file.h"
+#include "lf/imageio/upright.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -23,8 +25,10 @@ struct ChannelUse {
   std::optional<int> alpha;
 };
 
+// With or without a layer of an EXR file before it.
 bool IsAlpha(const std::string& channel_name) {
-  return channel_name == "A" || channel_name == "alpha" || channel_name == "Alpha";
+  const std::string name = channel_name.substr(channel_name.rfind('.') + 1);
+  return name == "A" || name == "alpha" || name == "Alpha";
 }
 
 ChannelUse UseOf(const ImageFileInfo& info) {
@@ -36,17 +40,15 @@ ChannelUse UseOf(const ImageFileInfo& info) {
   return use;
 }
 
-Result<void> CheckSize(const StoredImage& image, const Intrinsics& intrinsics,
-                       const fs::path& path) {
-  return std::visit(
-      [&](const auto& pixels) -> Result<void> {
-        if (pixels.width() == intrinsics.width_px && pixels.height() == intrinsics.height_px)
-          return {};
-        return InputError(fmt::format("{}: has {} x {} pixels, but the calibration says {} x {}",
-                                      path.string(), pixels.width(), pixels.height(),
-                                      intrinsics.width_px, intrinsics.height_px));
-      },
-      image);
+// The pixels that the calibration is of.
+Result<ImageWithInfo> ReadFitting(const fs::path& path, bool is_mosaic,
+                                  const Intrinsics& intrinsics) {
+  LF_ASSIGN_OR_RETURN(ImageWithInfo read, ReadImageWithInfo(path));
+  LF_ASSIGN_OR_RETURN(const ImageFit fit,
+                      FitToCalibration(read.info, is_mosaic, intrinsics, path.string()));
+  if (fit == ImageFit::kTurned)
+    std::visit([&](auto& image) { image = Upright(image, read.info.orientation); }, read.image);
+  return read;
 }
 
 // A raw file in a light field of anything else would show its mosaic as a grey picture.
@@ -111,8 +113,7 @@ void MaskTransparent(const Image<T>& stored, int alpha, LfPixels* pixels) {
 }
 
 Result<void> ApplyMaskFile(const fs::path& path, const Intrinsics& intrinsics, LfPixels* pixels) {
-  LF_ASSIGN_OR_RETURN(const StoredImage mask, ReadImage(path));
-  LF_RETURN_IF_ERROR(CheckSize(mask, intrinsics, path));
+  LF_ASSIGN_OR_RETURN(const ImageWithInfo mask, ReadFitting(path, false, intrinsics));
   std::visit(
       [&](const auto& stored) {
         const PixelRect& rect = pixels->rect;
@@ -120,7 +121,7 @@ Result<void> ApplyMaskFile(const fs::path& path, const Intrinsics& intrinsics, L
           for (int x = 0; x < rect.width(); ++x)
             if (stored.at(rect.x_begin + x, rect.y_begin + y) == 0) MaskPixel(pixels, x, y);
       },
-      mask);
+      mask.image);
   return {};
 }
 
@@ -141,9 +142,9 @@ Result<LfPixels> FolderStore::Load(LfImageId id, const PixelRect& rect) const {
   const Intrinsics& intrinsics = light_field_.intrinsics[camera.intrinsics_index];
   const RadianceEncoding& encoding = light_field_.encoding;
   const fs::path path = light_field_.ImagePath(id);
-  LF_ASSIGN_OR_RETURN(const ImageWithInfo file, ReadImageWithInfo(path));
+  LF_ASSIGN_OR_RETURN(const ImageWithInfo file,
+                      ReadFitting(path, encoding.bayer != BayerPattern::kNone, intrinsics));
   const ChannelUse use = UseOf(file.info);
-  LF_RETURN_IF_ERROR(CheckSize(file.image, intrinsics, path));
   LF_RETURN_IF_ERROR(CheckEncoding(file, encoding, path));
 
   LfPixels pixels;

@@ -231,6 +231,25 @@ TEST_F(FolderStoreTest, GainBelongsToTheImage) {
     EXPECT_NEAR(dimmed->radiance.pixels()[i], plain->radiance.pixels()[i] / 2.0, 0.51);
 }
 
+TEST_F(FolderStoreTest, GainOfAMosaicLeavesBlackOnThePedestal) {
+  Image<uint16_t> stored(kWidth, kHeight, 1, 512);
+  stored.at(1, 0) = 512 + 1000;
+  stored.at(2, 0) = 512 - 100;
+  ASSERT_TRUE(WriteImage(folder_ / "a.png", stored.view()));
+  LightField light_field = OneImage();
+  light_field.cameras[0].gain = 0.5f;
+  light_field.encoding.bayer = BayerPattern::kRggb;
+  light_field.encoding.transfer = Transfer::kLinear;
+  light_field.encoding.black_level = 512;
+  light_field.encoding.white_level = 4095;
+  light_field.encoding.pedestal = 1024;
+  const LfPixels pixels = Loaded(light_field);
+  const double step = (65535 - 1024) / (4095.0 - 512) / 2;
+  EXPECT_EQ(pixels.radiance.at(0, 0), 1024);
+  EXPECT_EQ(pixels.radiance.at(1, 0), 1024 + std::lround(1000 * step));
+  EXPECT_EQ(pixels.radiance.at(2, 0), 1024 - std::lround(100 * step));
+}
+
 TEST_F(FolderStoreTest, FloatsAreRadianceItself) {
   Image<float> stored(kWidth, kHeight, 3, 0.25f);
   stored.at(0, 0, 0) = 1;

@@ -1,0 +1,50 @@
+#include "lf/capture/image_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace lf {
+namespace {
+
+Result<ImageFit> Fit(int width, int height, int orientation, bool is_mosaic = false) {
+  ImageFileInfo info;
+  info.width = width;
+  info.height = height;
+  info.orientation = orientation;
+  Intrinsics k;
+  k.width_px = 1920;
+  k.height_px = 1080;
+  return FitToCalibration(info, is_mosaic, k, "a.jpg");
+}
+
+void ExpectAdvice(const Result<ImageFit>& fit, const std::string& advice) {
+  ASSERT_FALSE(fit);
+  EXPECT_EQ(fit.error().kind, ErrorKind::kInput);
+  EXPECT_NE(fit.error().message.find("a.jpg: has "), std::string::npos);
+  EXPECT_NE(fit.error().message.find("calibration says 1920 x 1080"), std::string::npos);
+  EXPECT_NE(fit.error().message.find(advice), std::string::npos) << fit.error().message;
+}
+
+TEST(ImageFit, TheCalibratedSizeIsTakenAsStored) {
+  for (int orientation = 1; orientation <= 8; ++orientation)
+    EXPECT_EQ(*Fit(1920, 1080, orientation), ImageFit::kAsStored) << orientation;
+}
+
+TEST(ImageFit, ExchangedSidesAreTurnedIfTheTagSaysSo) {
+  for (int orientation = 5; orientation <= 8; ++orientation) {
+    EXPECT_EQ(*Fit(1080, 1920, orientation), ImageFit::kTurned) << orientation;
+    ExpectAdvice(Fit(1080, 1920, orientation, true), "mosaics are not turned");
+  }
+  for (int orientation = 1; orientation <= 4; ++orientation)
+    ExpectAdvice(Fit(1080, 1920, orientation), "no orientation tag");
+}
+
+TEST(ImageFit, OtherSizesAreErrorsThatSayWhatToDo) {
+  ExpectAdvice(Fit(960, 540, 1), "by 0.5");
+  ExpectAdvice(Fit(640, 361, 1), "by 0.3333");  // rounded up
+  ExpectAdvice(Fit(1920, 1078, 1), "cropped");
+}
+
+}  // namespace
+}  // namespace lf
