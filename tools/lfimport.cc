@@ -32,7 +32,7 @@ nothing is written. The report: doc/formats/import_report.md.)";
 
 struct Arguments {
   lf::LightFieldArgument light_field;
-  std::string output, pitch, transform, check = "headers";
+  std::string output, pitch, transform, bayer, check = "headers";
   double plane_distance = 0, scale = 1, unit_m = 0, distance = 0;
   bool flip_x = false, flip_y = false, force = false;
   std::vector<std::string> exclude;
@@ -55,6 +55,10 @@ void AddOptions(CLI::App& app, Arguments& a) {
   app.add_option("--unit-m", a.unit_m,
                  "Metres per world unit, as they are then; 0: as the light field says")
       ->check(CLI::Range(0., 1e9));
+  app.add_option("--bayer", a.bayer,
+                 "The images are mosaics of this pattern, whatever the calibration or camera raw "
+                 "files say: the upper left 2x2 pixels row by row")
+      ->check(CLI::IsMember({"RGGB", "BGGR", "GRBG", "GBRG"}));
   app.add_option("--check", a.check, "How to check the images: none, headers or pixels (slow)")
       ->check(CLI::IsMember({"none", "headers", "pixels"}));
   app.add_option("--distance", a.distance,
@@ -91,6 +95,7 @@ lf::Result<lf::OpenOptions> MakeOpenOptions(const Arguments& a) {
   if (a.plane_distance > 0) options.plane_distance_w = a.plane_distance;
   options.flip_x = a.flip_x;
   options.flip_y = a.flip_y;
+  options.bayer = lf::BayerPatternOf(a.bayer);
   return options;
 }
 
