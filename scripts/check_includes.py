@@ -13,7 +13,7 @@ import sys
 OWNERS = {
     "OpenImageIO/": {"imageio"},
     "yaml-cpp/": {"path"},
-    "nlohmann/": {"capture", "pipeline"},
+    "nlohmann/": {"calibration", "native", "pipeline"},
     "tbb/": {"core"},
     "CLI/": set(),
 }

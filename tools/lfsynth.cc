@@ -10,9 +10,9 @@
 #include "tools/common/program.h"
 #include "tools/common/progress.h"
 
-#include "lf/capture/transforms_json.h"
 #include "lf/core/file.h"
 #include "lf/core/log.h"
+#include "lf/native/transforms_json.h"
 #include "lf/path/path_yaml.h"
 #include "lf/synthetic/built_in_scenes.h"
 #include "lf/synthetic/write_light_field.h"

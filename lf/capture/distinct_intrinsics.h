@@ -1,4 +1,4 @@
-// The list LightField::intrinsics while it grows. Internal to capture.
+// The list LightField::intrinsics while it grows. For the readers of calibrations.
 #pragma once
 
 #include <algorithm>

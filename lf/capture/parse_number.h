@@ -1,4 +1,4 @@
-// Numbers in text files. Internal to capture.
+// Numbers in text files. For the readers of calibrations.
 #pragma once
 
 #include <charconv>

@@ -1,4 +1,5 @@
-// Rotations as files have them: rounded to a few digits. Internal to capture.
+// Rotations as files have them: rounded to a few digits. For the readers of
+// calibrations.
 #pragma once
 
 #include "lf/core/geometry.h"

@@ -4,8 +4,8 @@
 
 #include <system_error>
 
-#include "lf/capture/transforms_json.h"
 #include "lf/core/file.h"
+#include "lf/native/transforms_json.h"
 
 namespace lf {
 namespace fs = std::filesystem;

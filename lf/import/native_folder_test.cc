@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "lf/capture/transforms_json.h"
 #include "lf/core/file.h"
 #include "lf/imageio/test_folder.h"
+#include "lf/native/transforms_json.h"
 
 namespace lf {
 namespace {

@@ -9,11 +9,11 @@
 #include <optional>
 #include <system_error>
 
-#include "lf/capture/transforms_json.h"
 #include "lf/core/check.h"
 #include "lf/core/file.h"
 #include "lf/core/random.h"
 #include "lf/imageio/image_file.h"
+#include "lf/native/transforms_json.h"
 #include "lf/synthetic/photograph.h"
 
 namespace lf {

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <fstream>
 
-#include "lf/capture/transforms_json.h"
 #include "lf/core/file.h"
 #include "lf/imageio/image_file.h"
 #include "lf/imageio/test_folder.h"
+#include "lf/native/transforms_json.h"
 #include "lf/synthetic/built_in_scenes.h"
 #include "lf/synthetic/photograph.h"
 

@@ -1,7 +1,7 @@
 // Films a light field with the installed library: film LIGHTFIELD PATH.yaml DIR
 #include <cstdio>
 
-#include "lf/capture/open_light_field.h"
+#include "lf/calibration/open_light_field.h"
 #include "lf/path/path_yaml.h"
 #include "lf/pipeline/render.h"
 

@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "lf/capture/open_light_field.h"
+#include "lf/calibration/open_light_field.h"
 
 namespace lf {
 

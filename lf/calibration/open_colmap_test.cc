@@ -1,0 +1,266 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "lf/calibration/open_light_field.h"
+#include "lf/colmap/read_colmap.h"
+#include "lf/colmap/test_colmap.h"
+#include "lf/core/file.h"
+#include "lf/imageio/test_folder.h"
+
+namespace lf {
+namespace {
+namespace fs = std::filesystem;
+
+#define EXPECT_HAS(message, part) EXPECT_NE((message).find(part), std::string::npos) << (message)
+
+// Made by COLMAP itself (make.py there): one camera of each model, two images each.
+const fs::path kTenCameras = fs::path(LF_COLMAP_MODELS) / "ten_cameras";
+
+class ReadColmapTest : public FolderTest {
+ protected:
+  static void Write(const fs::path& path, std::string_view bytes = "") {
+    fs::create_directories(path.parent_path());
+    ASSERT_TRUE(WriteFileAtomically(path, bytes));
+  }
+  static void WriteModel(const fs::path& folder, const std::vector<TestImage>& images = {{}}) {
+    Write(folder / "cameras.bin", CamerasBin({TestCamera()}));
+    Write(folder / "images.bin", ImagesBin(images));
+  }
+  void Copy(const char* extension) {
+    for (const char* name : {"cameras", "images", "points3D"})
+      fs::copy_file(kTenCameras / (std::string(name) + extension),
+                    folder_ / (std::string(name) + extension));
+  }
+  Result<LightField> Open(const fs::path& path) { return OpenLightField(path); }
+};
+
+void ExpectSame(const LightField& a, const LightField& b) {
+  ASSERT_EQ(a.image_names, b.image_names);
+  EXPECT_EQ(a.intrinsics, b.intrinsics);
+  EXPECT_EQ(a.depth_range, b.depth_range);
+  for (uint32_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a.cameras[i].intrinsics_index, b.cameras[i].intrinsics_index);
+    EXPECT_EQ(a.cameras[i].cam_from_world.rotation, b.cameras[i].cam_from_world.rotation);
+    EXPECT_EQ(a.cameras[i].cam_from_world.translation, b.cameras[i].cam_from_world.translation);
+  }
+}
+
+TEST_F(ReadColmapTest, BothFormsAreTheSameBitForBit) {
+  Copy(".txt");
+  const Result<LightField> text = ReadColmapModel(folder_, folder_);
+  ASSERT_TRUE(text) << text.error().message;
+  Copy(".bin");  // goes first from now on
+  const Result<LightField> binary = ReadColmapModel(folder_, folder_);
+  ASSERT_TRUE(binary) << binary.error().message;
+  EXPECT_EQ(binary->size(), 20u);
+  EXPECT_EQ(binary->intrinsics.size(), 10u);
+  ExpectSame(*text, *binary);
+}
+
+// The points of the fixture were projected by formulas of their own, and COLMAP's reprojection
+// error of them is 1e-14 px: so our cameras are COLMAP's, pixel centres and all.
+TEST_F(ReadColmapTest, EveryModelProjectsAsColmapDoes) {
+  Copy(".txt");
+  const Result<LightField> light_field = ReadColmapModel(folder_, folder_);
+  ASSERT_TRUE(light_field) << light_field.error().message;
+  std::map<int, Vec3> points;
+  std::ifstream points_file(folder_ / "points3D.txt");
+  for (std::string line; std::getline(points_file, line);) {
+    std::istringstream words(line);
+    int id = 0;
+    Vec3 point;
+    if (words >> id >> point.x() >> point.y() >> point.z()) points[id] = point;
+  }
+  ASSERT_EQ(points.size(), 12u);
+  size_t compared_count = 0;
+  std::ifstream images_file(folder_ / "images.txt");
+  for (std::string line; std::getline(images_file, line);) {
+    if (line.starts_with('#')) continue;
+    const std::string name = line.substr(line.rfind(' ') + 1);
+    const auto& names = light_field->image_names;
+    const auto found = std::find(names.begin(), names.end(), name);
+    ASSERT_NE(found, names.end()) << name;
+    const PinholeCamera camera =
+        light_field->Camera({static_cast<uint32_t>(found - names.begin())});
+    const Intrinsics& k = camera.intrinsics;
+    std::getline(images_file, line);
+    std::istringstream words(line);
+    int id = 0;
+    for (double x_px = 0, y_px = 0; words >> x_px >> y_px >> id; ++compared_count) {
+      const std::optional<Vec2> bent =
+          DistortionMap(k.distortion).Distort(camera.cam_from_world * points.at(id));
+      ASSERT_TRUE(bent) << name;
+      EXPECT_NEAR(k.fx_px * bent->x() + k.cx_px, x_px, 1e-9) << name;
+      EXPECT_NEAR(k.fy_px * bent->y() + k.cy_px, y_px, 1e-9) << name;
+    }
+  }
+  EXPECT_EQ(compared_count, 20u * 12u);
+}
+
+// Since COLMAP 3.12 a model also has rigs and frames. Every image still has its own pose.
+TEST_F(ReadColmapTest, RigsAndFramesChangeNothing) {
+  for (const std::string extension : {".bin", ".txt"}) {
+    Copy(extension.c_str());
+    const Result<LightField> without = ReadColmapModel(folder_, folder_);
+    ASSERT_TRUE(without) << without.error().message;
+    if (extension == ".txt") {
+      Write(folder_ / "rigs.txt", "# Rig calib list\n1 1 CAMERA 100\n2 1 CAMERA 97\n");
+      Write(folder_ / "frames.txt",
+            "# Frame list\n1 1 1 0 0 0 0 0 0 1 CAMERA 100 2\n2 2 1 0 0 0 0 0 0 1 CAMERA 97 9\n");
+    } else {
+      // One rig of one camera (type 0), and one frame of it.
+      Write(folder_ / "rigs.bin",
+            PackedBytes().Put(uint64_t{1}).Put(1u).Put(1u).Put(0).Put(100u).bytes());
+      Write(folder_ / "frames.bin", PackedBytes()
+                                        .Put(uint64_t{1})
+                                        .Put(1u)
+                                        .Put(1u)
+                                        .Put(std::array<double, 7>{1})
+                                        .Put(1u)
+                                        .Put(0)
+                                        .Put(100u)
+                                        .Put(uint64_t{2})
+                                        .bytes());
+    }
+    const Result<LightField> with = ReadColmapModel(folder_, folder_);
+    ASSERT_TRUE(with) << with.error().message;
+    ExpectSame(*with, *without);
+    for (const char* name : {"cameras", "images", "points3D", "rigs", "frames"})
+      fs::remove(folder_ / (name + extension));
+  }
+}
+
+TEST_F(ReadColmapTest, TheModelIsFoundInAndBelowTheFolder) {
+  for (const char* place : {".", "sparse", "sparse/0", "colmap/sparse/0", "colmap/sparse", "0"}) {
+    const fs::path root = folder_ / fmt::format("root_{}", std::hash<std::string_view>()(place));
+    WriteModel(root / place);
+    Write(root / "images" / "a.png");
+    for (const fs::path& path : {root, root / place}) {
+      const Result<LightField> light_field = Open(path);
+      ASSERT_TRUE(light_field) << place << ": " << light_field.error().message;
+      EXPECT_EQ(light_field->folder.lexically_normal(), root / "images") << place;
+      EXPECT_TRUE(fs::exists(light_field->ImagePath({0})));
+    }
+  }
+}
+
+TEST_F(ReadColmapTest, OfSeveralModelsTheLargestIsTaken) {
+  Write(folder_ / "images" / "a.png");
+  WriteModel(folder_ / "sparse/0");
+  WriteModel(folder_ / "sparse/2", {{.id = 1}, {.id = 2, .name = "b.png"}});
+  Write(folder_ / "sparse/10/cameras.txt", "1 PINHOLE 8 6 10 11 4 3\n");
+  Write(folder_ / "sparse/10/images.txt", "1 1 0 0 0 0 0 0 1 a.png\n\n2 1 0 0 0 0 0 0 1 b.png\n\n");
+  fs::create_directories(folder_ / "sparse/1");
+  testing::internal::CaptureStderr();
+  const Result<LightField> light_field = Open(folder_);
+  const std::string messages = testing::internal::GetCapturedStderr();
+  ASSERT_TRUE(light_field) << light_field.error().message;
+  EXPECT_EQ(light_field->size(), 2u);
+  EXPECT_HAS(messages, "holds 3 COLMAP models: taking 2, with 2 of 5 images");
+  EXPECT_EQ(Open(folder_ / "sparse/0")->size(), 1u);
+}
+
+TEST_F(ReadColmapTest, AModelThatIsIncompleteIsAnError) {
+  Write(folder_ / "sparse/0/cameras.bin", CamerasBin({TestCamera()}));
+  Write(folder_ / "sparse/0/images.txt", "");
+  EXPECT_HAS(ErrorOf(Open(folder_)), "sparse/0/cameras.bin: is there, but not the images.bin of");
+  fs::remove(folder_ / "sparse/0/cameras.bin");
+  EXPECT_HAS(ErrorOf(Open(folder_)), "sparse/0/images.txt: is there, but not the cameras.txt of");
+  EXPECT_HAS(ErrorOf(ReadColmapModel(folder_)), "holds no COLMAP model");
+}
+
+TEST_F(ReadColmapTest, ATextOfThatNameAloneIsNoModel) {
+  Write(folder_ / "images.txt", "a list of something");
+  EXPECT_HAS(ErrorOf(Open(folder_)), "holds no light field");
+  Write(folder_ / "cameras.bin");
+  EXPECT_HAS(ErrorOf(Open(folder_)), "cameras.bin: is there, but not the images.bin");
+}
+
+TEST_F(ReadColmapTest, ImagesAreLookedForAndThePlacesAreListed) {
+  WriteModel(folder_ / "sparse/0", {{.name = "sub/a b.png"}});
+  const std::string error = ErrorOf(Open(folder_));
+  EXPECT_HAS(error, "its image sub/a b.png is not found");
+  for (const fs::path& tried : {folder_ / "sparse/0/images", folder_ / "sparse/images",
+                                folder_ / "images", folder_ / "sparse/0", folder_ / "sparse"})
+    EXPECT_HAS(error, tried.string());
+  EXPECT_HAS(error, "(--images)");
+  Write(folder_ / "sub/a b.png");  // in the parent itself
+  EXPECT_EQ(Open(folder_)->folder, folder_);
+  Write(folder_ / "sparse/0/images/sub/a b.png");  // nearest
+  EXPECT_EQ(Open(folder_)->folder, folder_ / "sparse/0/images");
+}
+
+TEST_F(ReadColmapTest, ANamedFolderOfImagesIsNotChecked) {
+  WriteModel(folder_ / "sparse/0");
+  const OpenOptions options = {.images_folder = "nowhere"};
+  const Result<LightField> light_field = OpenLightField(folder_, options);
+  ASSERT_TRUE(light_field) << light_field.error().message;
+  EXPECT_EQ(light_field->ImagePath({0}), "nowhere/a.png");
+}
+
+TEST_F(ReadColmapTest, OptionsOfOtherKindsAreUsageErrors) {
+  WriteModel(folder_ / "sparse/0");
+  OpenOptions options;
+  options.focal_px = 7;
+  EXPECT_EQ(OpenLightField(folder_, options).error().kind, ErrorKind::kUsage);
+  Write(folder_ / "transforms.json", "{}");
+  options = {.images_folder = "images"};
+  EXPECT_EQ(OpenLightField(folder_, options).error().kind, ErrorKind::kUsage);
+}
+
+TEST_F(ReadColmapTest, ATransformsJsonGoesFirst) {
+  WriteModel(folder_ / "sparse/0");
+  Write(folder_ / "transforms.json", "{}");
+  EXPECT_HAS(ErrorOf(Open(folder_)), "transforms.json");
+}
+
+TEST_F(ReadColmapTest, RelativePathsReachTheFoldersAbove) {
+  Write(folder_ / "images/a.png");
+  WriteModel(folder_ / "sparse/0");
+  const fs::path before = fs::current_path();
+  fs::current_path(folder_ / "sparse/0");
+  for (const char* path : {".", "./", "../0", "../../sparse/0/", "..", "../.."}) {
+    const Result<LightField> light_field = Open(path);
+    ASSERT_TRUE(light_field) << path << ": " << light_field.error().message;
+    EXPECT_TRUE(fs::exists(light_field->ImagePath({0}))) << path;
+  }
+  fs::current_path(before);
+}
+
+TEST_F(ReadColmapTest, MasksStandBesideTheImages) {
+  WriteModel(folder_ / "sparse/0", {{.id = 1}, {.id = 2, .name = "s/b.jpg"}});
+  Write(folder_ / "images/a.png");
+  fs::create_directories(folder_ / "masks");
+  EXPECT_TRUE(Open(folder_)->mask_names.empty());
+  Write(folder_ / "masks/s/b.jpg.png");
+  Result<LightField> light_field = Open(folder_);
+  ASSERT_TRUE(light_field) << light_field.error().message;
+  EXPECT_EQ(light_field->mask_names, (std::vector<std::string>{"", "../masks/s/b.jpg.png"}));
+  EXPECT_TRUE(fs::exists(light_field->folder / light_field->mask_names[1]));
+
+  // With a link, `..` is beside what it leads to.
+  fs::create_directories(folder_ / "elsewhere");
+  fs::rename(folder_ / "images", folder_ / "elsewhere/images");
+  fs::create_directory_symlink("elsewhere/images", folder_ / "images");
+  light_field = Open(folder_);
+  ASSERT_TRUE(light_field) << light_field.error().message;
+  ASSERT_EQ(light_field->mask_names.size(), 2u);
+  EXPECT_TRUE(fs::exists(light_field->folder / light_field->mask_names[1]));
+}
+
+TEST_F(ReadColmapTest, BrokenPointsAreAnError) {
+  Copy(".bin");
+  Write(folder_ / "points3D.bin", "short");
+  EXPECT_HAS(ErrorOf(ReadColmapModel(folder_, folder_)), "points3D.bin: has 5 bytes");
+  fs::remove(folder_ / "points3D.bin");
+  EXPECT_EQ(ReadColmapModel(folder_, folder_)->depth_range, std::nullopt);
+  fs::create_directory(folder_ / "points3D.bin");
+  EXPECT_HAS(ErrorOf(ReadColmapModel(folder_, folder_)), "is not a regular file");
+}
+
+}  // namespace
+}  // namespace lf

@@ -1,0 +1,210 @@
+#include "lf/calibration/open_light_field.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "lf/calibration/read_aos.h"
+#include "lf/calibration/read_llff.h"
+#include "lf/calibration/read_middlebury.h"
+#include "lf/calibration/read_stanford.h"
+#include "lf/capture/raw_encoding.h"
+#include "lf/colmap/read_colmap.h"
+#include "lf/native/transforms_json.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kCalibrationName = "transforms.json";
+constexpr const char* kAosName = "poses.json";
+constexpr const char* kImagesName = "images";
+
+// Calibrations under other names, such as Blender's transforms_train.json.
+std::string OtherCalibrations(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    if (name.starts_with("transforms") && name.ends_with(".json")) names.push_back(name);
+  }
+  if (names.empty()) return "";
+  std::sort(names.begin(), names.end());
+  return fmt::format("; it holds {}: name the file itself to read it", fmt::join(names, ", "));
+}
+
+// The option given that only folders of the Stanford form take, for messages; none: "".
+std::string_view StanfordOptionOf(const OpenOptions& options) {
+  if (options.focal_px) return "--focal-px";
+  if (options.pitch_w) return "--pitch";
+  if (options.plane_distance_w) return "--plane-distance";
+  if (options.flip_x) return "--flip-x";
+  if (options.flip_y) return "--flip-y";
+  return "";
+}
+
+// kUsage if options are given that what lies at `path` needs none of.
+Result<void> CheckNoStanfordOptions(const fs::path& path, const OpenOptions& options) {
+  const std::string_view option = StanfordOptionOf(options);
+  if (option.empty()) return {};
+  return UsageError(fmt::format(
+      "{} is for folders of images whose names do not tell everything; {} states its own", option,
+      path.string()));
+}
+
+Result<void> CheckNoFov(const fs::path& path, const OpenOptions& options) {
+  if (!options.fov_deg) return {};
+  return UsageError(fmt::format(
+      "--fov-deg is for poses of Airborne Optical Sectioning, which do not tell it; {} is of "
+      "another kind",
+      path.string()));
+}
+
+Result<void> CheckNoImagesFolder(const fs::path& path, const OpenOptions& options) {
+  if (!options.images_folder) return {};
+  return UsageError(fmt::format(
+      "--images is for COLMAP models and poses of Airborne Optical Sectioning, which do "
+      "not say where their images are; {} does",
+      path.string()));
+}
+
+Result<LightField> OpenAos(const fs::path& path, const OpenOptions& options) {
+  LF_RETURN_IF_ERROR(CheckNoStanfordOptions(path, options));
+  return ReadAos(path, {.fov_deg = options.fov_deg, .images_folder = options.images_folder});
+}
+
+// None if the name is that of no calibration file.
+std::optional<Result<LightField>> OpenFile(const fs::path& path, const OpenOptions& options) {
+  if (path.extension() == ".json" && IsAosFile(path)) return OpenAos(path, options);
+  Result<LightField> (*read)(const fs::path&) = nullptr;
+  if (path.extension() == ".json") read = ReadTransformsJson;
+  if (path.extension() == ".npy") read = ReadLlff;
+  if (IsMiddleburyName(path.filename().string())) read = ReadMiddlebury;
+  if (!read) return std::nullopt;
+  if (Result<void> result = CheckNoStanfordOptions(path, options); !result) return result.error();
+  if (Result<void> result = CheckNoFov(path, options); !result) return result.error();
+  if (Result<void> result = CheckNoImagesFolder(path, options); !result) return result.error();
+  return read(path);
+}
+
+// The file in a folder that describes its light field, if any.
+Result<std::optional<fs::path>> CalibrationIn(const fs::path& folder) {
+  std::error_code error;
+  if (fs::exists(folder / kCalibrationName, error)) return std::optional(folder / kCalibrationName);
+  const std::vector<fs::path> middlebury = MiddleburyFiles(folder);
+  if (middlebury.size() > 1)
+    return InputError(fmt::format("{}: holds {} and {}: name the file itself to read it",
+                                  folder.string(), middlebury[0].filename().string(),
+                                  middlebury[1].filename().string()));
+  if (!middlebury.empty()) return std::optional(middlebury[0]);
+  if (fs::exists(folder / kLlffName, error)) return std::optional(folder / kLlffName);
+  if (IsAosFile(folder / kAosName)) return std::optional(folder / kAosName);
+  return std::optional<fs::path>();
+}
+
+Result<LightField> OpenColmap(const fs::path& model_folder, const OpenOptions& options) {
+  LF_RETURN_IF_ERROR(CheckNoStanfordOptions(model_folder, options));
+  LF_RETURN_IF_ERROR(CheckNoFov(model_folder, options));
+  return ReadColmapModel(model_folder, options.images_folder);
+}
+
+Result<LightField> OpenStanford(const fs::path& folder, const OpenOptions& options,
+                                const fs::path& asked_for) {
+  LF_RETURN_IF_ERROR(CheckNoFov(folder, options));
+  LF_RETURN_IF_ERROR(CheckNoImagesFolder(folder, options));
+  return ReadStanfordFolder(folder, {.focal_px = options.focal_px,
+                                     .pitch_w = options.pitch_w,
+                                     .plane_distance_w = options.plane_distance_w,
+                                     .flip_x = options.flip_x,
+                                     .flip_y = options.flip_y,
+                                     .asked_for = asked_for});
+}
+
+// What kind of pixels: after the calibration, which may have said nothing of them.
+Result<void> CompleteEncoding(const OpenOptions& options, const fs::path& path,
+                              LightField* light_field) {
+  RadianceEncoding& encoding = light_field->encoding;
+  const bool is_raw = IsRawName(light_field->image_names[0]);
+  // One that tells of mosaics tells everything.
+  if (is_raw && encoding.bayer == BayerPattern::kNone && encoding.transfer == Transfer::kSrgb)
+    LF_RETURN_IF_ERROR(CompleteEncodingOfRaw(light_field));
+  if (options.bayer) {
+    if (encoding.transfer == Transfer::kSrgb) encoding.transfer = Transfer::kLinear;
+    encoding.bayer = *options.bayer;
+  }
+  if (!is_raw || encoding.bayer != BayerPattern::kNone) return {};
+  return InputError(fmt::format(
+      "{}: the camera raw file {} does not tell a Bayer pattern (four letters of R, G, B with the "
+      "two G on a diagonal): state \"lf_bayer\": \"RGGB\", or what it is, in transforms.json, or "
+      "import with lfimport --bayer RGGB",
+      path.string(), light_field->ImagePath({0}).string()));
+}
+
+bool HoldsLightField(const fs::path& folder) {
+  std::error_code error;
+  if (fs::exists(folder / kCalibrationName, error)) return true;
+  const Result<std::optional<fs::path>> model = FindColmapModel(folder);
+  if (model && *model) return true;
+  const Result<std::optional<fs::path>> calibration = CalibrationIn(folder);
+  return !calibration || *calibration || HoldsStanfordNames(folder) ||
+         HoldsStanfordNames(folder / kImagesName);
+}
+
+// A hint for whoever is one folder too high.
+std::string LightFieldsBelow(const fs::path& folder) {
+  constexpr size_t kMostNames = 5;
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    std::error_code ignored;
+    if (names.size() < kMostNames && it->is_directory(ignored) && HoldsLightField(it->path()))
+      names.push_back(it->path().filename().string());
+  }
+  if (names.empty()) return "";
+  std::sort(names.begin(), names.end());
+  return fmt::format("; but {}/ in it does", fmt::join(names, "/, "));
+}
+
+Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& options) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status))
+    return InputError(fmt::format("{}: no such file or folder", path.string()));
+  if (!fs::is_directory(status)) {
+    if (std::optional<Result<LightField>> opened = OpenFile(path, options)) return *opened;
+    return InputError(
+        fmt::format("{}: is not a light field: expected a transforms.json, a NAME_par.txt "
+                    "(Middlebury), a poses_bounds.npy (LLFF), a poses.json (AOS) or the folder of "
+                    "one, the folder of a COLMAP model, or a folder of images",
+                    path.string()));
+  }
+  // Before poses_bounds.npy, which is made of such a model and leaves out the distortion.
+  if (!fs::exists(path / kCalibrationName, error)) {
+    LF_ASSIGN_OR_RETURN(const std::optional<fs::path> model, FindColmapModel(path));
+    if (model) return OpenColmap(*model, options);
+  }
+  LF_ASSIGN_OR_RETURN(const std::optional<fs::path> calibration, CalibrationIn(path));
+  if (calibration) return *OpenFile(*calibration, options);
+  for (const fs::path& folder : {path, path / kImagesName})
+    if (HoldsStanfordNames(folder)) return OpenStanford(folder, options, path);
+  return InputError(fmt::format(
+      "{}: holds no light field: looked for {}, a COLMAP model in it or in sparse/0, NAME_par.txt, "
+      "{}, {} (AOS), and for images named "
+      "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext or NAME_ROW_COL.ext in it and in {}/{}{}",
+      path.string(), kCalibrationName, kLlffName, kAosName, kImagesName, OtherCalibrations(path),
+      LightFieldsBelow(path)));
+}
+
+}  // namespace
+
+Result<LightField> OpenLightField(const fs::path& path, const OpenOptions& options) {
+  LF_ASSIGN_OR_RETURN(LightField light_field, OpenCalibration(path, options));
+  LF_RETURN_IF_ERROR(CompleteEncoding(options, path, &light_field));
+  return light_field;
+}
+
+}  // namespace lf

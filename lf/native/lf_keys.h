@@ -1,0 +1,27 @@
+// The lf_* keys of transforms.json that say how stored numbers become light. Internal to native.
+#pragma once
+
+#include "lf/capture/light_field.h"
+#include "lf/capture/radiance.h"
+#include "lf/capture/raw_encoding.h"
+#include "lf/core/result.h"
+#include "lf/native/json_fields.h"
+
+namespace lf {
+
+// All lf_* keys there are (doc/formats/transforms_json.md).
+inline constexpr const char* kTopLevelLfKeys[] = {
+    "lf_bayer",         "lf_transfer",       "lf_response",     "lf_black_level", "lf_white_level",
+    "lf_white_balance", "lf_camera_to_srgb", "lf_max_radiance", "lf_pedestal",    "lf_unit_m",
+    "lf_depth_range",   "lf_skew",           "lf_fov_omega",    "lf_written_by"};
+inline constexpr const char* kFrameLfKeys[] = {"lf_gain", "lf_mask", "lf_translation", "lf_skew",
+                                               "lf_fov_omega"};
+
+// Of the top level. Defaults: what camera raw files tell (`raw_facts` is asked where a key they
+// could replace is missing; null: not asked); else sRGB without a Bayer pattern, linear with one.
+// Pedestal 1024 where there is a black level, else 0; DefaultMaxRadiance(image_names).
+//   light_field  names and folder of the images
+Result<RadianceEncoding> ReadEncoding(const JsonFields& top, const LightField& light_field,
+                                      const RawFactsSource& raw_facts);
+
+}  // namespace lf
