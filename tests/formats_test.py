@@ -142,15 +142,20 @@ class FormatsTest(unittest.TestCase):
         self.assertEqual(native["camera_model"], imported["camera_model"])
 
     def test_the_native_form_lands_where_the_true_picture_does(self):
-        path, frame = self.native_frame(self.jittered)
+        # A regular grid: the mean of its cameras within the lens is the lens's middle.
+        chart = ("chart", "--count", 49, "--size", "120x80", "--format", "png")
+        run(SYNTH, *chart, "-o", self.folder / "chart")
+        path = self.folder / "chart.yaml"
+        run(EXAMPLE, self.folder / "chart", "-o", path, "--move", "static", "--focus", 1.2)
         lines = ["frames: 1" if line.startswith("frames:") else line
                  for line in path.read_text().splitlines()]
-        one_frame = self.folder / "truth.yaml"
-        one_frame.write_text("\n".join(lines) + "\n")
-        folder = self.folder / "truth"
-        run(SYNTH, "still-life", "-o", folder, "--calibration-only", "--truth", one_frame,
+        path.write_text("\n".join(lines) + "\n")
+        run(SYNTH, *chart, "-o", self.folder / "truth", "--calibration-only", "--truth", path,
             "--truth-samples", 200)
-        truth = picture(folder / "truth")
+        out = self.folder / "chart-frames"
+        run(RENDERER, self.folder / "chart", path, "-o", out, "--format", "exr-float",
+            "--estimator", "bilinear")
+        frame, truth = picture(out), picture(self.folder / "truth" / "truth")
         self.assertEqual(truth.shape, frame.shape)
         self.assertLessEqual(np.abs(shift_between(truth, frame)).max(), 0.05)
         # The measure sees a shift of one element.

@@ -148,6 +148,7 @@ std::string ReportText(const ImportReport& report) {
   const CaptureReport& capture = report.capture;
   std::string lines;
   AddLine("light field", report.light_field, &lines);
+  AddLine("first image", report.first_image, &lines);
   AddLine("images", ImagesText(report), &lines);
   AddCameras(capture.groups, &lines);
   AddLine("positions",
@@ -181,6 +182,7 @@ std::string ReportText(const ImportReport& report) {
 std::string ReportJson(const ImportReport& report) {
   const CaptureReport& capture = report.capture;
   Json json = {{"light_field", report.light_field},
+               {"first_image", report.first_image},
                {"images", capture.image_count},
                {"masks", capture.mask_count},
                {"left_out", report.excluded_count},

@@ -11,6 +11,7 @@ namespace lf {
 
 struct ImportReport {
   std::string light_field;  // as the user called it
+  std::string first_image;  // its file: tells where the images were found
   CaptureReport capture;
   std::optional<ImageFaults> faults;  // none: not checked
   size_t excluded_count = 0;

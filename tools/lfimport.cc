@@ -113,6 +113,10 @@ lf::Result<lf::LightField> OpenChanged(const Arguments& a, size_t* excluded_coun
   similarity.translation *= a.scale;
   if (!a.transform.empty() || a.scale != 1)
     LF_RETURN_IF_ERROR(lf::Transform(similarity, &light_field));
+  constexpr double kLeastUnit_m = 1e-9;
+  if (a.unit_m > 0 && a.unit_m < kLeastUnit_m)
+    return lf::UsageError(
+        fmt::format("--unit-m {}: expected metres per world unit from 1e-9 to 1e9", a.unit_m));
   if (a.unit_m > 0) light_field.unit_m = a.unit_m;
   return light_field;
 }
@@ -124,6 +128,7 @@ lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {
   lf::ImportReport report;
   report.light_field = a.light_field.path;
   LF_ASSIGN_OR_RETURN(lf::LightField light_field, OpenChanged(a, &report.excluded_count));
+  report.first_image = light_field.ImagePath({0}).lexically_normal().string();
   lf::ThreadPool pool(common.threads);
   lf::CaptureReportOptions options;
   if (a.distance > 0) options.distance_w = a.distance;

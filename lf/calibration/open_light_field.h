@@ -31,9 +31,9 @@ struct OpenOptions {
 // Reads what `path` is: a file, or a folder that holds one, looked for in this order:
 // - transforms.json, or any .json file that is no poses.json: native/transforms_json.h
 // - a COLMAP model, in the folder or in its sparse/0: colmap/read_colmap.h
-// - poses.json, or any .json file with M3x4 matrices: calibration/read_aos.h
 // - NAME_par.txt, one in the folder: calibration/read_middlebury.h
 // - poses_bounds.npy, or any .npy file: calibration/read_llff.h
+// - poses.json, or any .json file with M3x4 matrices: calibration/read_aos.h
 // - images named by the Stanford form, in the folder or its images/: calibration/read_stanford.h
 //
 // No pixels are read; that image files exist is not checked here, but for a first one where its

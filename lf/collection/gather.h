@@ -28,6 +28,9 @@ namespace lf {
 std::optional<std::array<uint16_t, 3>> InterpolatePixels(const LfPixels& pixels, int width_px,
                                                          int height_px, double x_px, double y_px);
 
+// Whether rays arrive at the four pixel centres around (x, y): beyond the fold of a lens none do.
+bool RaysArriveAround(const Intrinsics& k, const DistortionMap& map, double x_px, double y_px);
+
 // Adds one ray to each element that has one in this LF image. Returns how many.
 //   plate  has the size of the render camera's
 uint64_t GatherReference(const PinholeCamera& lf_camera, const LfPixels& pixels,
@@ -50,7 +53,8 @@ class GatherPlan {
 
   Intrinsics intrinsics_;  // of the LF camera
   std::optional<DistortionMap> distortion_;
-  double plane_sign_ = 1;  // of n.(X - c') for points before the lens
+  bool may_lack_rays_ = false;  // some pixels of the image have none
+  double plane_sign_ = 1;       // of n.(X - c') for points before the lens
   PixelForm plane_;       // n.d' of the element's own ray; X is before the lens where its sign fits
   PixelForm forward_;     // f.(X - c), times |n.d'|
   PixelForm lens_right_;  // lens position = (lens_right e, lens_up e) / (forward e)

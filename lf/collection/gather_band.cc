@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lf/camera/ideal_pixels.h"
 #include "lf/collection/gather.h"
 #include "lf/core/check.h"
 
@@ -21,7 +22,13 @@ struct GatherPlan::Chunk {
 
 GatherPlan::GatherPlan(const PinholeCamera& lf_camera, const RenderCamera& render_camera)
     : intrinsics_(lf_camera.intrinsics) {
-  if (intrinsics_.has_distortion()) distortion_.emplace(intrinsics_.distortion);
+  if (intrinsics_.has_distortion()) {
+    distortion_.emplace(intrinsics_.distortion);
+    // What lies farthest from the optical axis loses its rays first.
+    for (const double x : {0.5, intrinsics_.width_px - 0.5})
+      for (const double y : {0.5, intrinsics_.height_px - 0.5})
+        may_lack_rays_ |= !IdealPosition(intrinsics_, *distortion_, x, y);
+  }
   const PinholeCamera& lens = render_camera.pinhole;
   const Vec3& n = render_camera.focus_plane.normal;
   const Vec3 offset = lf_camera.CentreWorld() - lens.CentreWorld();
@@ -107,6 +114,8 @@ uint64_t GatherPlan::GatherBand(const LfPixels& pixels, PlateBand* band) const {
       FindRays(y, x, count, &chunk);
       for (int i = 0; i < count; ++i) {
         if (!chunk.accepted[i]) continue;
+        if (may_lack_rays_ && !RaysArriveAround(intrinsics_, *distortion_, chunk.x[i], chunk.y[i]))
+          continue;
         const auto value = InterpolatePixels(pixels, intrinsics_.width_px, intrinsics_.height_px,
                                              chunk.x[i], chunk.y[i]);
         if (!value) continue;

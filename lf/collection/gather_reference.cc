@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "lf/camera/ideal_pixels.h"
 #include "lf/collection/gather.h"
 #include "lf/core/check.h"
 
@@ -32,6 +33,14 @@ std::optional<std::array<uint16_t, 3>> InterpolatePixels(const LfPixels& pixels,
   return value;
 }
 
+bool RaysArriveAround(const Intrinsics& k, const DistortionMap& map, double x_px, double y_px) {
+  const double left = std::floor(x_px - 0.5) + 0.5, top = std::floor(y_px - 0.5) + 0.5;
+  for (const double y : {top, top + 1})
+    for (const double x : {left, left + 1})
+      if (!IdealPosition(k, map, x, y)) return false;
+  return true;
+}
+
 uint64_t GatherReference(const PinholeCamera& lf_camera, const LfPixels& pixels,
                          const RenderCamera& render_camera, SensorPlate* plate) {
   const Intrinsics& k = lf_camera.intrinsics;
@@ -57,6 +66,7 @@ uint64_t GatherReference(const PinholeCamera& lf_camera, const LfPixels& pixels,
       const std::optional<Vec2> recorded = map.Distort(lf_camera.cam_from_world.rotation * d);
       if (!recorded) continue;
       const Vec3 p = k.Matrix() * Vec3(recorded->x(), recorded->y(), 1);
+      if (!RaysArriveAround(k, map, p.x(), p.y())) continue;
       const auto value = InterpolatePixels(pixels, k.width_px, k.height_px, p.x(), p.y());
       if (!value) continue;
       for (int channel = 0; channel < SensorPlate::kChannels; ++channel)

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lf/camera/ideal_pixels.h"
 #include "lf/collection/test_plates.h"
 
 namespace lf {
@@ -55,6 +56,29 @@ TEST(Gather, TheFastBackEndAgreesWithTheReference) {
   EXPECT_GT(total, 150000u);
   EXPECT_LE(static_cast<double>(differing_counts), 1e-5 * static_cast<double>(total));
   EXPECT_LE(static_cast<double>(differing_values), 1e-5 * static_cast<double>(total));
+}
+
+TEST(Gather, PixelsWithoutARayLendNoLight) {
+  testing::CameraPair pair = testing::ParallelPair(3, 2, 0.01, 0.05);
+  pair.lf_camera.intrinsics = {100, 100, 100, 70,
+                               0,   200, 140, {DistortionModel::kRadialTangential, {-0.9}}};
+  pair.render_camera.pinhole.intrinsics = {50, 50, 50, 40, 0, 100, 80};
+  const Intrinsics& k = pair.lf_camera.intrinsics;
+  const DistortionMap map(k.distortion);
+  const LfPixels pixels = RandomPixels(k, 1);
+  LfPixels changed = pixels;
+  size_t without_ray = 0;
+  for (int y = 0; y < k.height_px; ++y)
+    for (int x = 0; x < k.width_px; ++x) {
+      if (IdealPosition(k, map, x + 0.5, y + 0.5)) continue;
+      ++without_ray;
+      for (int channel = 0; channel < 3; ++channel) changed.radiance.at(x, y, channel) = 65535;
+    }
+  EXPECT_GT(without_ray, 5000u);
+  SensorPlate plate = PlateFor(pair), plate_of_changed = PlateFor(pair);
+  EXPECT_GT(GatherInBands(pair, pixels, 80, &plate), 500u);
+  GatherInBands(pair, changed, 80, &plate_of_changed);
+  EXPECT_EQ(plate, plate_of_changed);
 }
 
 TEST(Gather, AnyCutIntoBandsGivesTheSameBits) {

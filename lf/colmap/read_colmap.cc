@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -116,16 +117,21 @@ std::vector<fs::path> ImageFolders(const fs::path& model_folder) {
   return folders;
 }
 
-Result<fs::path> FindImages(const fs::path& model_folder, const std::string& first_name) {
+// The first folder that holds one of the first images: some may be missing.
+Result<fs::path> FindImages(const fs::path& model_folder, std::span<const std::string> names) {
+  constexpr size_t kMostAsked = 64;
+  const auto asked = names.first(std::min(names.size(), kMostAsked));
   std::string tried;
   for (const fs::path& folder : ImageFolders(model_folder)) {
-    if (IsFile(folder / first_name)) return folder;
+    if (std::any_of(asked.begin(), asked.end(),
+                    [&](const std::string& name) { return IsFile(folder / name); }))
+      return folder;
     tried += fmt::format("{}{}", tried.empty() ? "" : ", ", folder.string());
   }
   return InputError(
       fmt::format("{}: its image {} is not found: looked for it in {}; put the images there, or "
                   "name their folder (--images)",
-                  model_folder.string(), first_name, tried));
+                  model_folder.string(), names.front(), tried));
 }
 
 // The folder masks beside the images, as names that are relative to that folder where possible.
@@ -205,7 +211,7 @@ Result<LightField> ReadColmapModel(const fs::path& model_folder,
   if (images_folder) {
     light_field.folder = *images_folder;
   } else {
-    LF_ASSIGN_OR_RETURN(light_field.folder, FindImages(model_folder, light_field.image_names[0]));
+    LF_ASSIGN_OR_RETURN(light_field.folder, FindImages(model_folder, light_field.image_names));
   }
   AddMasks(&light_field);
   return light_field;

@@ -96,10 +96,13 @@ std::vector<CaptureWarning> WarnOfUpsideDown(const LightField& light_field) {
 
 std::vector<CaptureWarning> WarnOfRepeats(const LightField& light_field,
                                           std::span<const double> nearest_w, double extent_w) {
-  constexpr double kSamePlace = 1e-9;
+  constexpr double kSamePlace = 1e-9, kRounding = 1e-14;
+  double reach_w = 0;  // of the positions: what rounding leaves of equal ones
+  for (const LfCamera& camera : light_field.cameras)
+    reach_w = std::max(reach_w, camera.cam_from_world.translation.norm());
   std::vector<LfImageId> repeated;
   for (size_t i = 0; i < nearest_w.size(); ++i)
-    if (nearest_w[i] <= kSamePlace * extent_w) repeated.push_back(IdOf(i));
+    if (nearest_w[i] <= kSamePlace * extent_w + kRounding * reach_w) repeated.push_back(IdOf(i));
   if (repeated.empty()) return {};
   return {WarningAbout(light_field, "repeated-positions",
                        fmt::format("{} of {} cameras share their position with another: rays from "

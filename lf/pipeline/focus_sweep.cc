@@ -34,23 +34,32 @@ RenderCamera SweepCamera(const PinholeCamera& camera, double diameter_w, double 
   return frame;
 }
 
-double Green(const SensorPlate& plate, int x, int y) {
+// The mean of an element, compressed so that lights do not count for everything, but less than to
+// the square root: there the energy of n copies of a light would equal that of the light. NaN where
+// no ray arrived.
+double Brightness(const SensorPlate& plate, int x, int y) {
   const ElementSum element = plate.At(x, y, 1);
-  return element.count > 0 ? static_cast<double>(element.sum) / element.count : 0;
+  constexpr double kCompression = 0.6;
+  return std::pow(static_cast<double>(element.sum) / element.count, kCompression);
 }
 
-// Mean magnitude of the Laplacian over the middle half of the plate: small bright lights count
-// little.
+// Mean energy of the Laplacian over the middle half of the plate; 0 where few elements there have
+// rays. Energy, because where cameras stand far apart what is out of focus is not blurred but
+// copied: n copies with 1/n of the contrast have all of the magnitude, but 1/n of the energy.
 double Detail(const SensorPlate& plate) {
   double sum = 0;
+  int known_count = 0, count = 0;
   for (int y = plate.height() / 4; y < plate.height() * 3 / 4; ++y)
     for (int x = plate.width() / 4; x < plate.width() * 3 / 4; ++x) {
-      const double laplacian = 4 * Green(plate, x, y) - Green(plate, x - 1, y) -
-                               Green(plate, x + 1, y) - Green(plate, x, y - 1) -
-                               Green(plate, x, y + 1);
-      sum += std::abs(laplacian);
+      const double laplacian = 4 * Brightness(plate, x, y) - Brightness(plate, x - 1, y) -
+                               Brightness(plate, x + 1, y) - Brightness(plate, x, y - 1) -
+                               Brightness(plate, x, y + 1);
+      ++count;
+      if (std::isnan(laplacian)) continue;
+      ++known_count;
+      sum += laplacian * laplacian;
     }
-  return sum;
+  return 2 * known_count > count ? sum / known_count : 0;
 }
 
 // The middle of the stretch around the largest value that is as good but for a hundredth: where
@@ -76,13 +85,27 @@ Result<std::vector<double>> DetailAt(const std::vector<double>& distances_w,
     const Intrinsics& k = frames.back().pinhole.intrinsics;
     plates.emplace_back(k.width_px, k.height_px);
   }
+  CollectOptions options;
+  // Interpolated rays leave no holes, which would count as detail.
+  if (light_field.encoding.bayer == BayerPattern::kNone) options.estimator = Estimator::kBilinear;
   const std::vector<SelectedImage> images =
-      SelectImages(light_field, frames, {0, kMostImages}, pool);
+      SelectImages(light_field, frames, {0, kMostImages, ReachOf(options.estimator)}, pool);
   if (images.empty())
     return InputError(
         fmt::format("no LF image lies behind a lens of diameter {:.4g} at the starting camera",
                     aperture_diameter_w));
-  LF_RETURN_IF_ERROR(Collect(light_field, store, frames, images, {}, pool, &plates, nullptr));
+  LF_ASSIGN_OR_RETURN(const CollectStatistics statistics,
+                      Collect(light_field, store, frames, images, options, pool, &plates, nullptr));
+  if (std::all_of(statistics.frames.begin(), statistics.frames.end(),
+                  [](const FrameRays& rays) { return rays.accepted_count == 0; }))
+    return InputError(
+        statistics.skipped.empty()
+            ? "the LF images around the starting camera have no rays (are they masked?): no focus "
+              "can be found"
+            : fmt::format("no focus can be found: {} of {} LF images around the starting camera "
+                          "are missing or broken, the first: {}",
+                          statistics.skipped.size(), images.size(),
+                          statistics.skipped.front().reason));
   std::vector<double> detail(plates.size());
   pool.ForEach(plates.size(), [&](size_t i) { detail[i] = Detail(plates[i]); });
   return detail;

@@ -150,6 +150,10 @@ Result<RenderReport> Renderer::Run() {
   report_.total_s = SecondsSince(start);
   report_.peak_memory_bytes = PeakMemoryBytes();
   LF_RETURN_IF_ERROR(WriteReport(report_, options_.output_folder / "report.json"));
+  if (report_.AcceptedRays() == 0)
+    return InputError(fmt::format(
+        "{}: every frame is black: no ray of {} LF images reached them (are the images masked?)",
+        options_.output_folder.string(), report_.selected_image_count));
   if (video_error_) return *video_error_;
   return std::move(report_);
 }

@@ -35,6 +35,23 @@ void Program::AddJsonOption(const std::string& what) {
   app_.add_flag("--json", common_.json, what)->group("Common");
 }
 
+namespace {
+
+// CLI11 takes "nan" for a number, and ranges let it pass.
+Result<void> CheckNoNan(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->get_type_name().find("FLOAT") == std::string::npos) continue;
+    for (const std::string& word : option->results()) {
+      const std::string value = CLI::detail::to_lower(word);
+      if (value.find("nan") != std::string::npos)
+        return UsageError(fmt::format("{} {}: expected a number", option->get_name(), word));
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
 int Program::Run(int argc, char** argv, const std::function<Result<void>()>& body) {
   try {
     app_.parse(argc, argv);
@@ -48,7 +65,9 @@ int Program::Run(int argc, char** argv, const std::function<Result<void>()>& bod
   }
   SetLogLevel(quiet_ ? LogLevel::kWarning : verbosity_ > 0 ? LogLevel::kDebug : LogLevel::kInfo);
   try {
-    if (const Result<void> result = body(); !result) {
+    Result<void> result = CheckNoNan(app_);
+    if (result) result = body();
+    if (!result) {
       LogMessage(LogLevel::kError, result.error().message);
       return static_cast<int>(result.error().kind);
     }
