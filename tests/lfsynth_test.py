@@ -52,6 +52,11 @@ class SynthTest(unittest.TestCase):
                 self.run_tool(RENDERER, field, path, "-o", out, "--frames", 1, "--format", "png")
                 self.assertGreater(np.asarray(Image.open(out / "frame_0001.png")).max(), 20)
 
+    def test_nan_is_no_number(self):
+        for option in ("--distortion=nan", "--fov=NaN", "--spacing=nan", "--distortion=0.1,nan"):
+            self.assertIn("expected", self.run_tool(SYNTH, "chart", "-o", self.folder / "nan",
+                                                    option, code=2))
+
     def test_truth_is_written_beside_the_light_field(self):
         field = self.synth("lights", "lights", "--count", 9, "--size", "48x32")
         path = self.folder / "path.yaml"

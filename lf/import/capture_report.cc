@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "lf/camera/ideal_pixels.h"
 #include "lf/capture/capture_geometry.h"
 #include "lf/import/capture_warnings.h"
 #include "lf/import/nearest_distances.h"
@@ -22,18 +23,28 @@ Spread SpreadOf(std::vector<double> values) {
 }
 
 // From the ray of one image position over that of the middle between them to that of the other,
-// since a fish-eye may see more than half a turn. An image position that a distorted lens gives no
-// ray counts as that of the pinhole.
+// since a fish-eye may see more than half a turn; less where the lens ends within the image.
 double AngleBetween(const Intrinsics& k, const Vec2& a_px, const Vec2& b_px) {
   const DistortionMap map(k.distortion);
+  const Vec2 middle_px = (a_px + b_px) / 2;
+  // Of the pixel, or where the lens ends before it: of the last place towards it that has a ray.
   const auto direction = [&](const Vec2& pixel) -> Vec3 {
-    const Vec3 p = k.InverseMatrix() * Vec3(pixel.x(), pixel.y(), 1);
-    return map.Undistort(Vec2(p.x(), p.y())).value_or(p);
+    const auto position = [&](double share) {
+      const Vec2 at = middle_px + share * (pixel - middle_px);
+      return IdealPosition(k, map, at.x(), at.y());
+    };
+    double inside = 0, outside = 1;
+    if (position(1)) inside = 1;
+    while (outside - inside > 1e-12) {
+      const double between = 0.5 * (inside + outside);
+      (position(between) ? inside : outside) = between;
+    }
+    return k.InverseMatrix() * position(inside).value_or(Vec3(pixel.x(), pixel.y(), 1));
   };
   const auto angle = [](const Vec3& a, const Vec3& b) {
     return std::atan2(a.cross(b).norm(), a.dot(b));
   };
-  const Vec3 middle = direction((a_px + b_px) / 2);
+  const Vec3 middle = direction(middle_px);
   return angle(direction(a_px), middle) + angle(middle, direction(b_px));
 }
 

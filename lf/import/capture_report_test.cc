@@ -98,6 +98,15 @@ TEST(CaptureReport, GroupsCamerasByModelAndSize) {
   EXPECT_EQ(groups[1].image_count, 10u);
 }
 
+TEST(CaptureReport, TheFieldOfViewEndsWhereTheLensDoes) {
+  LightField field = Grid();
+  // x (1 - 0.9 x^2) grows up to x = 1 / sqrt(2.7).
+  field.intrinsics[0] = {100, 100, 100, 50,
+                         0,   200, 100, {DistortionModel::kRadialTangential, {-0.9}}};
+  EXPECT_NEAR(ReportOf(field).groups[0].horizontal_fov_rad.median,
+              2 * std::atan(1 / std::sqrt(2.7)), 1e-4);
+}
+
 TEST(CaptureReport, AFishEyeSeesMoreThanItsPinhole) {
   LightField field = Grid();
   field.intrinsics[0] = {400, 400, 800, 800, 0, 1600, 1600, {DistortionModel::kFisheye, {}}};

@@ -100,15 +100,17 @@ class Collector {
         image.pixels.rect);
   }
 
-  // Images of one camera share its ideal pixels, also with the next batch.
+  // Images of one camera share its ideal pixels, also with the next batch. Only the fast back end
+  // of nearest follows arcs.
   void UndoDistortion(std::vector<BatchImage>& batch) {
+    const bool needs_arcs = estimator_ == Estimator::kNearest && back_end_ == CollectBackEnd::kFast;
     std::map<uint32_t, std::shared_ptr<const IdealPixels>> in_use;
     std::vector<uint32_t> missing;
     for (const BatchImage& image : batch) {
       const uint32_t index = light_field_.cameras[image.id.value].intrinsics_index;
       if (!light_field_.intrinsics[index].has_distortion() || in_use.contains(index)) continue;
       const auto known = ideal_pixels_.find(index);
-      if (known == ideal_pixels_.end()) missing.push_back(index);
+      if (needs_arcs && known == ideal_pixels_.end()) missing.push_back(index);
       in_use[index] = known == ideal_pixels_.end() ? nullptr : known->second;
     }
     pool_.ForEach(missing.size(), [&](size_t i) {

@@ -51,8 +51,8 @@ struct RenderProgress {
 // the video. Every file appears under its name only when it is whole. The frames have the same
 // bits for any number of threads and any memory.
 //   kUsage        bilinear for mosaics
-//   kInput        no LF image contributes to any frame; broken images (collect.h)
-//   kOutput       disk, memory; ffmpeg, after the frames are written all the same
+//   kInput        no LF image contributes to any frame, or none has a ray; broken images
+//   (collect.h) kOutput       disk, memory; ffmpeg, after the frames are written all the same
 //   kInterrupted  what is finished stays
 Result<RenderReport> Render(const LightField& light_field, const CameraPath& path,
                             const RenderOptions& options, ThreadPool& pool,

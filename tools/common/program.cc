@@ -1,6 +1,8 @@
 #include "tools/common/program.h"
 
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 
@@ -42,8 +44,7 @@ Result<void> CheckNoNan(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options()) {
     if (option->get_type_name().find("FLOAT") == std::string::npos) continue;
     for (const std::string& word : option->results()) {
-      const std::string value = CLI::detail::to_lower(word);
-      if (value.find("nan") != std::string::npos)
+      if (std::isnan(std::strtod(word.c_str(), nullptr)))
         return UsageError(fmt::format("{} {}: expected a number", option->get_name(), word));
     }
   }
