@@ -52,7 +52,8 @@ struct RenderProgress {
 // bits for any number of threads and any memory.
 //   kUsage        bilinear for mosaics
 //   kInput        no LF image contributes to any frame, or none has a ray; broken images
-//   (collect.h) kOutput       disk, memory; ffmpeg, after the frames are written all the same
+//                 (collect.h)
+//   kOutput       disk, memory; ffmpeg, after the frames are written all the same
 //   kInterrupted  what is finished stays
 Result<RenderReport> Render(const LightField& light_field, const CameraPath& path,
                             const RenderOptions& options, ThreadPool& pool,
