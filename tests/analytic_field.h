@@ -44,9 +44,7 @@ class FormulaStore : public LfImageStore {
 
   Result<LfPixels> Load(LfImageId id, const PixelRect& rect) const override {
     const PinholeCamera camera = field_.Camera(id);
-    LfPixels pixels;
-    pixels.rect = rect;
-    pixels.radiance = Image<uint16_t>(rect.width(), rect.height(), 3);
+    LfPixels pixels(rect, BayerPattern::kNone);
     for (int y = rect.y_begin; y < rect.y_end; ++y)
       for (int x = rect.x_begin; x < rect.x_end; ++x) {
         const double value = radiance_(RayOfPixel(camera, x + 0.5, y + 0.5));
@@ -71,9 +69,8 @@ class PointStore : public LfImageStore {
   Result<LfPixels> Load(LfImageId id, const PixelRect&) const override {
     const Vec2 p = *Project(field_.Camera(id), point_);
     const int x = static_cast<int>(std::floor(p.x())), y = static_cast<int>(std::floor(p.y()));
-    LfPixels pixels;
-    pixels.rect = {x, y, x + 1, y + 1};
-    pixels.radiance = Image<uint16_t>(1, 1, 3, 65535);
+    LfPixels pixels({x, y, x + 1, y + 1}, BayerPattern::kNone);
+    for (int channel = 0; channel < 3; ++channel) pixels.radiance.at(0, 0, channel) = 65535;
     return pixels;
   }
 

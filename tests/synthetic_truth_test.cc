@@ -21,9 +21,7 @@ class SceneStore : public LfImageStore {
 
   Result<LfPixels> Load(LfImageId id, const PixelRect& rect) const override {
     const Image<float> picture = Photograph(scene_, field_.Camera(id), 4);
-    LfPixels pixels;
-    pixels.rect = rect;
-    pixels.radiance = Image<uint16_t>(rect.width(), rect.height(), 3);
+    LfPixels pixels(rect, BayerPattern::kNone);
     for (int y = rect.y_begin; y < rect.y_end; ++y)
       for (int x = rect.x_begin; x < rect.x_end; ++x)
         for (int channel = 0; channel < 3; ++channel)

@@ -9,13 +9,43 @@
 namespace lf {
 
 struct LfPixels {
-  // v of every pixel (capture/radiance.h)  [height][width][1] of a mosaic, [height][width][3] RGB
+  // What a kernel adds for an RGB pixel in one go: v of R, G and B, and how many rays they are.
+  static constexpr int kRgbLanes = 4;
+  static constexpr int kRayLane = 3;
+
+  LfPixels() = default;
+  // Black, nothing masked.
+  LfPixels(const PixelRect& part, BayerPattern pattern)
+      : radiance(part.width(), part.height(), pattern == BayerPattern::kNone ? kRgbLanes : 1),
+        bayer(pattern),
+        rect(part) {
+    if (pattern == BayerPattern::kNone)
+      for (size_t i = kRayLane; i < radiance.pixels().size(); i += kRgbLanes)
+        radiance.pixels()[i] = 1;
+  }
+
+  bool IsMasked(int column, int row) const {
+    if (bayer == BayerPattern::kNone) return radiance.at(column, row, kRayLane) == 0;
+    return !mosaic_mask.empty() && mosaic_mask.at(column, row) == 0;
+  }
+  // No ray from the pixel at this place of `rect`.
+  void Mask(int column, int row) {
+    if (bayer == BayerPattern::kNone) {
+      for (int lane = 0; lane < kRgbLanes; ++lane) radiance.at(column, row, lane) = 0;
+      return;
+    }
+    if (mosaic_mask.empty()) mosaic_mask = Image<uint8_t>(rect.width(), rect.height(), 1, 255);
+    mosaic_mask.at(column, row) = 0;
+  }
+
+  // v of every pixel (capture/radiance.h)  [height][width][1] of a mosaic; otherwise
+  // [height][width][4]: R, G, B, and 1, or all 0 where the pixel is masked
   Image<uint16_t> radiance;
   BayerPattern bayer = BayerPattern::kNone;  // at pixel (0, 0) of the whole LF image
-  Image<uint8_t> mask;  // empty, or [height][width]: 0 = no ray from this pixel
-  PixelRect rect;       // the part of the LF image that these pixels are
+  Image<uint8_t> mosaic_mask;  // empty, or of a mosaic [height][width]: 0 = no ray from this pixel
+  PixelRect rect;              // the part of the LF image that these pixels are
 
-  size_t size_bytes() const { return radiance.size_bytes() + mask.size_bytes(); }
+  size_t size_bytes() const { return radiance.size_bytes() + mosaic_mask.size_bytes(); }
 };
 
 }  // namespace lf

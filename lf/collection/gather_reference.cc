@@ -15,18 +15,21 @@ std::optional<std::array<uint16_t, 3>> InterpolatePixels(const LfPixels& pixels,
   const int row = static_cast<int>(top) - pixels.rect.y_begin;
   LF_CHECK(column >= 0 && column + 1 < pixels.rect.width() && row >= 0 &&
            row + 1 < pixels.rect.height());
-  if (!pixels.mask.empty())
-    for (const int y : {row, row + 1})
-      if (pixels.mask.at(column, y) == 0 || pixels.mask.at(column + 1, y) == 0) return std::nullopt;
+  for (const int y : {row, row + 1})
+    if (pixels.IsMasked(column, y) || pixels.IsMasked(column + 1, y)) return std::nullopt;
   constexpr uint32_t kOne = 256;
   const auto right_weight = static_cast<uint32_t>(std::floor((x_px - 0.5 - left) * kOne + 0.5));
   const auto lower_weight = static_cast<uint32_t>(std::floor((y_px - 0.5 - top) * kOne + 0.5));
-  const uint16_t* upper = pixels.radiance.row(row) + static_cast<ptrdiff_t>(column) * 3;
-  const uint16_t* lower = pixels.radiance.row(row + 1) + static_cast<ptrdiff_t>(column) * 3;
+  const uint16_t* upper =
+      pixels.radiance.row(row) + static_cast<ptrdiff_t>(column) * LfPixels::kRgbLanes;
+  const uint16_t* lower =
+      pixels.radiance.row(row + 1) + static_cast<ptrdiff_t>(column) * LfPixels::kRgbLanes;
   std::array<uint16_t, 3> value;
   for (int c = 0; c < 3; ++c) {
-    const uint32_t above = upper[c] * (kOne - right_weight) + upper[c + 3] * right_weight;
-    const uint32_t below = lower[c] * (kOne - right_weight) + lower[c + 3] * right_weight;
+    const uint32_t above =
+        upper[c] * (kOne - right_weight) + upper[c + LfPixels::kRgbLanes] * right_weight;
+    const uint32_t below =
+        lower[c] * (kOne - right_weight) + lower[c + LfPixels::kRgbLanes] * right_weight;
     const uint64_t sum = uint64_t{above} * (kOne - lower_weight) + uint64_t{below} * lower_weight;
     value[c] = static_cast<uint16_t>((sum + kOne * kOne / 2) / (kOne * kOne));
   }

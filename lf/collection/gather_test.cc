@@ -137,8 +137,7 @@ TEST(Gather, AllFourPixelsMustExistAndBeUnmasked) {
   EXPECT_TRUE(InterpolatePixels(pixels, 8, 6, 7.49, 3));
   EXPECT_FALSE(InterpolatePixels(pixels, 8, 6, 7.5, 3));
   EXPECT_FALSE(InterpolatePixels(pixels, 8, 6, 4, 5.6));
-  pixels.mask = Image<uint8_t>(8, 6, 1, 255);
-  pixels.mask.at(3, 2) = 0;
+  pixels.Mask(3, 2);
   EXPECT_FALSE(InterpolatePixels(pixels, 8, 6, 4, 3));
   EXPECT_TRUE(InterpolatePixels(pixels, 8, 6, 5, 3));
 }

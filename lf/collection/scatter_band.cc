@@ -122,28 +122,33 @@ class ArcAddresses {
   double x_last_, y_last_;
 };
 
-// How a pixel of the scanline adds to an element.
+// How a pixel of the scanline adds to an element; the number of its rays, 0 of a masked one.
 struct RgbPixels {
-  const uint16_t* row;  // [width][3]
-  void Add(int column, uint64_t* element) const {
-    const uint16_t* v = row + static_cast<ptrdiff_t>(column) * 3;
-    element[0] += SensorPlate::kOneRay | v[0];
-    element[1] += SensorPlate::kOneRay | v[1];
-    element[2] += SensorPlate::kOneRay | v[2];
+  const uint16_t* row;  // [width][4]
+  uint32_t Add(int column, uint64_t* element) const {
+    const uint16_t* v = row + static_cast<ptrdiff_t>(column) * LfPixels::kRgbLanes;
+    const uint64_t rays = uint64_t{v[LfPixels::kRayLane]} << SensorPlate::kSumBits;
+    element[0] += rays | v[0];
+    element[1] += rays | v[1];
+    element[2] += rays | v[2];
+    return v[LfPixels::kRayLane];
   }
 };
 
 struct MosaicPixels {
   const uint16_t* row;  // [width]
+  const uint8_t* mask;  // [width], or none
   int channels[2];      // of even and odd columns
-  void Add(int column, uint64_t* element) const {
+  uint32_t Add(int column, uint64_t* element) const {
+    if (mask != nullptr && mask[column] == 0) return 0;
     element[channels[column & 1]] += SensorPlate::kOneRay | row[column];
+    return 1;
   }
 };
 
 template <class Addresses, class Pixels>
 uint64_t ScatterSpan(const Addresses& addresses, const RaySpan& span, const Pixels& pixels,
-                     int x_origin, const uint8_t* mask, PlateBand* band) {
+                     int x_origin, PlateBand* band) {
   const bool all_inside =
       span.element_y_min >= static_cast<float>(band->y_begin()) + kBorderMargin &&
       span.element_y_max <= static_cast<float>(band->y_end()) - kBorderMargin;
@@ -162,20 +167,17 @@ uint64_t ScatterSpan(const Addresses& addresses, const RaySpan& span, const Pixe
     addresses.Compute(x, count, &elements);
     band->Reserve(static_cast<uint32_t>(count));
     const auto add = [&](int i, int row) {
-      pixels.Add(x + i - x_origin, words + static_cast<size_t>(row) * row_words +
-                                       static_cast<size_t>(elements.x[i]) * SensorPlate::kChannels);
+      accepted += pixels.Add(x + i - x_origin,
+                             words + static_cast<size_t>(row) * row_words +
+                                 static_cast<size_t>(elements.x[i]) * SensorPlate::kChannels);
     };
-    if (all_inside && mask == nullptr) {
+    if (all_inside) {
       for (int i = 0; i < count; ++i) add(i, elements.y[i] - band->y_begin());
-      accepted += static_cast<uint64_t>(count);
       continue;
     }
     for (int i = 0; i < count; ++i) {
       const int row = elements.y[i] - band->y_begin();
-      if (row < 0 || row >= rows) continue;
-      if (mask != nullptr && mask[x + i - x_origin] == 0) continue;
-      add(i, row);
-      ++accepted;
+      if (row >= 0 && row < rows) add(i, row);
     }
   }
   return accepted;
@@ -183,11 +185,11 @@ uint64_t ScatterSpan(const Addresses& addresses, const RaySpan& span, const Pixe
 
 template <class Pixels>
 uint64_t ScatterSpan(const ScatterPlan& plan, const RaySpan& span, const Pixels& pixels,
-                     int x_origin, const uint8_t* mask, PlateBand* band) {
+                     int x_origin, PlateBand* band) {
   if (plan.ideal_pixels == nullptr)
-    return ScatterSpan(LineAddresses(plan, span.y), span, pixels, x_origin, mask, band);
+    return ScatterSpan(LineAddresses(plan, span.y), span, pixels, x_origin, band);
   const IdealArc& arc = plan.ideal_pixels->Scanline(span.y)[span.arc];
-  return ScatterSpan(ArcAddresses(plan, arc), span, pixels, x_origin, mask, band);
+  return ScatterSpan(ArcAddresses(plan, arc), span, pixels, x_origin, band);
 }
 
 }  // namespace
@@ -201,16 +203,15 @@ uint64_t ScatterBand(const ScatterPlan& plan, const LfPixels& pixels, PlateBand*
   for (const RaySpan& span : plan.spans) {
     if (span.element_y_max < begin || span.element_y_min > end) continue;
     const int row = span.y - pixels.rect.y_begin;
-    const uint8_t* mask = pixels.mask.empty() ? nullptr : pixels.mask.row(row);
     if (pixels.bayer == BayerPattern::kNone) {
-      accepted +=
-          ScatterSpan(plan, span, RgbPixels{pixels.radiance.row(row)}, x_origin, mask, band);
+      accepted += ScatterSpan(plan, span, RgbPixels{pixels.radiance.row(row)}, x_origin, band);
       continue;
     }
     const MosaicPixels mosaic{pixels.radiance.row(row),
+                              pixels.mosaic_mask.empty() ? nullptr : pixels.mosaic_mask.row(row),
                               {BayerChannel(pixels.bayer, x_origin, span.y),
                                BayerChannel(pixels.bayer, x_origin + 1, span.y)}};
-    accepted += ScatterSpan(plan, span, mosaic, x_origin, mask, band);
+    accepted += ScatterSpan(plan, span, mosaic, x_origin, band);
   }
   return accepted;
 }

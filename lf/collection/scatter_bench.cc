@@ -2,7 +2,7 @@
 #include <benchmark/benchmark.h>
 
 #include "lf/collection/scatter.h"
-#include "lf/core/random.h"
+#include "lf/collection/test_plates.h"
 
 namespace lf {
 namespace {
@@ -21,12 +21,7 @@ Scene MakeScene(BayerPattern bayer, double turn_rad) {
   scene.lf_camera.intrinsics = scene.frame.pinhole.intrinsics;
   scene.lf_camera.cam_from_world =
       *LookAlong({0.01, 0.005, 0.003}, {turn_rad, 0.01, 1}, {0.02, -1, 0});
-  scene.pixels.bayer = bayer;
-  scene.pixels.rect = {0, 0, 960, 640};
-  scene.pixels.radiance = Image<uint16_t>(960, 640, bayer == BayerPattern::kNone ? 3 : 1);
-  uint64_t index = 0;
-  for (uint16_t& v : scene.pixels.radiance.pixels())
-    v = static_cast<uint16_t>(RandomBits(1, 1, index++));
+  scene.pixels = testing::NoisePixels({0, 0, 960, 640}, bayer, 1);
   return scene;
 }
 

@@ -13,7 +13,7 @@ uint64_t ScatterReference(const PinholeCamera& lf_camera, const LfPixels& pixels
     for (int x = rect.x_begin; x < rect.x_end; ++x) {
       const int column = x - pixels.rect.x_begin;
       const int row = y - pixels.rect.y_begin;
-      if (!pixels.mask.empty() && pixels.mask.at(column, row) == 0) continue;
+      if (pixels.IsMasked(column, row)) continue;
       const std::optional<PlateElement> element = law.Collect(x, y);
       if (!element) continue;
       ++accepted;

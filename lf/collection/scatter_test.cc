@@ -114,14 +114,13 @@ TEST(Scatter, RaysOnBordersAreNeitherLostNorDoubled) {
 TEST(Scatter, MaskedPixelsGiveNoRay) {
   const testing::CameraPair pair = testing::ParallelPair(1, 2, 0.013, 0.05);
   LfPixels pixels = testing::NoisePixels(WholeImage(pair), BayerPattern::kRggb, 3);
-  pixels.mask = Image<uint8_t>(50, 35, 1, 255);
-  for (int i = 5; i < 30; ++i) pixels.mask.at(i, i) = 0;
+  for (int i = 5; i < 30; ++i) pixels.Mask(i, i);
   SensorPlate expected = PlateFor(pair), fast = PlateFor(pair), all = PlateFor(pair);
   const uint64_t accepted =
       ScatterReference(pair.lf_camera, pixels, pair.render_camera, pixels.rect, &expected);
   EXPECT_EQ(ScatterInBands(pair, pixels, pixels.rect, 8, &fast), accepted);
   EXPECT_EQ(expected, fast);
-  pixels.mask = {};
+  pixels.mosaic_mask = {};
   EXPECT_EQ(ScatterInBands(pair, pixels, pixels.rect, 8, &all), accepted + 25);
 }
 

@@ -17,14 +17,13 @@ inline PixelRect WholeImage(const CameraPair& pair) {
 }
 
 inline LfPixels NoisePixels(const PixelRect& rect, BayerPattern bayer, uint64_t seed) {
-  LfPixels pixels;
-  pixels.bayer = bayer;
-  pixels.rect = rect;
-  pixels.radiance =
-      Image<uint16_t>(rect.width(), rect.height(), bayer == BayerPattern::kNone ? 3 : 1);
+  LfPixels pixels(rect, bayer);
   uint64_t index = 0;
-  for (uint16_t& v : pixels.radiance.pixels())
-    v = static_cast<uint16_t>(RandomBits(seed, 7, index++));
+  const int colours = bayer == BayerPattern::kNone ? 3 : 1;
+  for (int y = 0; y < rect.height(); ++y)
+    for (int x = 0; x < rect.width(); ++x)
+      for (int c = 0; c < colours; ++c)
+        pixels.radiance.at(x, y, c) = static_cast<uint16_t>(RandomBits(seed, 7, index++));
   return pixels;
 }
 

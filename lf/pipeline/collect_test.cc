@@ -51,10 +51,7 @@ class NoiseStore : public LfImageStore {
     EXPECT_FALSE(rect.empty());
     if (std::count(broken.begin(), broken.end(), id.value) > 0)
       return Error{broken_kind, "image" + std::to_string(id.value) + ": broken"};
-    LfPixels pixels;
-    // No more than was asked for.
-    pixels.rect = rect;
-    pixels.radiance = Image<uint16_t>(rect.width(), rect.height(), 3);
+    LfPixels pixels(rect, BayerPattern::kNone);  // no more than was asked for
     for (int y = rect.y_begin; y < rect.y_end; ++y)
       for (int x = rect.x_begin; x < rect.x_end; ++x)
         for (int c = 0; c < 3; ++c)

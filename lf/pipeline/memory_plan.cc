@@ -18,7 +18,7 @@ constexpr size_t kMostQueuedImages = 48;
 
 size_t LargestImageBytes(const LightField& light_field) {
   // 16-bit radiance, the stored pixels while they are decoded (float at worst), a mask.
-  const size_t channels = light_field.encoding.bayer == BayerPattern::kNone ? 3 : 1;
+  const size_t channels = light_field.encoding.bayer == BayerPattern::kNone ? 4 : 1;
   const size_t bytes_per_pixel = channels * (2 + 4) + 1;
   // Of its ideal positions, while it is collected (camera/ideal_pixels.h).
   constexpr size_t kArcBytesPerPixel = 5;

@@ -81,24 +81,21 @@ Result<void> CheckEncoding(const ImageWithInfo& file, const RadianceEncoding& en
   return {};
 }
 
-// The mask of `pixels`, which is made where it is first needed.
-void MaskPixel(LfPixels* pixels, int x, int y) {
-  if (pixels->mask.empty())
-    pixels->mask = Image<uint8_t>(pixels->rect.width(), pixels->rect.height(), 1, 255);
-  pixels->mask.at(x, y) = 0;
-}
-
 // Fills radiance from the part `rect` of the stored image; radiance_of(value) is v.
 template <class T, class RadianceOf>
 void ConvertRadiance(const Image<T>& stored, const ChannelUse& use, const RadianceOf& radiance_of,
                      LfPixels* pixels) {
   const PixelRect& rect = pixels->rect;
-  const int channels = pixels->radiance.channels();
+  const bool is_mosaic = pixels->bayer != BayerPattern::kNone;
   for (int y = 0; y < rect.height(); ++y) {
     const T* in = stored.row(rect.y_begin + y) + static_cast<size_t>(rect.x_begin) * use.channels;
     uint16_t* out = pixels->radiance.row(y);
-    for (int x = 0; x < rect.width(); ++x, in += use.channels)
-      for (int c = 0; c < channels; ++c) *out++ = radiance_of(in[c < use.colours ? c : 0]);
+    if (is_mosaic) {
+      for (int x = 0; x < rect.width(); ++x) *out++ = radiance_of(in[x]);
+      continue;
+    }
+    for (int x = 0; x < rect.width(); ++x, in += use.channels, out += LfPixels::kRgbLanes)
+      for (int c = 0; c < 3; ++c) out[c] = radiance_of(in[c < use.colours ? c : 0]);
   }
 }
 
@@ -109,7 +106,7 @@ void MaskTransparent(const Image<T>& stored, int alpha, LfPixels* pixels) {
   for (int y = 0; y < rect.height(); ++y)
     for (int x = 0; x < rect.width(); ++x)
       if (!(stored.at(rect.x_begin + x, rect.y_begin + y, alpha) >= kOpaque / 2))
-        MaskPixel(pixels, x, y);
+        pixels->Mask(x, y);
 }
 
 Result<void> ApplyMaskFile(const fs::path& path, const Intrinsics& intrinsics, LfPixels* pixels) {
@@ -119,7 +116,7 @@ Result<void> ApplyMaskFile(const fs::path& path, const Intrinsics& intrinsics, L
         const PixelRect& rect = pixels->rect;
         for (int y = 0; y < rect.height(); ++y)
           for (int x = 0; x < rect.width(); ++x)
-            if (stored.at(rect.x_begin + x, rect.y_begin + y) == 0) MaskPixel(pixels, x, y);
+            if (stored.at(rect.x_begin + x, rect.y_begin + y) == 0) pixels->Mask(x, y);
       },
       mask.image);
   return {};
@@ -147,11 +144,8 @@ Result<LfPixels> FolderStore::Load(LfImageId id, const PixelRect& rect) const {
   const ChannelUse use = UseOf(file.info);
   LF_RETURN_IF_ERROR(CheckEncoding(file, encoding, path));
 
-  LfPixels pixels;
-  pixels.rect = Intersection(rect, {0, 0, intrinsics.width_px, intrinsics.height_px});
-  pixels.bayer = encoding.bayer;
-  pixels.radiance = Image<uint16_t>(pixels.rect.width(), pixels.rect.height(),
-                                    encoding.bayer == BayerPattern::kNone ? 3 : 1);
+  LfPixels pixels(Intersection(rect, {0, 0, intrinsics.width_px, intrinsics.height_px}),
+                  encoding.bayer);
   const auto convert = [&]<class T>(const Image<T>& stored) {
     if constexpr (std::is_floating_point_v<T>) {
       ConvertRadiance(
