@@ -4,6 +4,10 @@
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <time.h>
+
+#include <algorithm>
+#include <atomic>
 
 namespace lf {
 
@@ -24,14 +28,24 @@ ThreadPool::~ThreadPool() = default;
 int ThreadPool::thread_count() const { return state_->arena.max_concurrency(); }
 
 void ThreadPool::ForEach(size_t count, const std::function<void(size_t)>& body) {
+  // One task per thread, each taking the next item: tbb alone would cut [0, count) into halves and
+  // begin in the middle of it.
+  std::atomic<size_t> next = 0;
+  const size_t task_count = std::min(count, static_cast<size_t>(thread_count()));
   state_->arena.execute([&] {
     tbb::parallel_for(
-        tbb::blocked_range<size_t>(0, count, 1),
-        [&](const tbb::blocked_range<size_t>& range) {
-          for (size_t i = range.begin(); i != range.end(); ++i) body(i);
+        tbb::blocked_range<size_t>(0, task_count, 1),
+        [&](const tbb::blocked_range<size_t>&) {
+          for (size_t i = next++; i < count; i = next++) body(i);
         },
         tbb::simple_partitioner{});
   });
+}
+
+int64_t ThreadCpuTimer::Now() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return int64_t{1'000'000'000} * time.tv_sec + time.tv_nsec;
 }
 
 }  // namespace lf

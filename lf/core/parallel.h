@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 
@@ -19,13 +20,25 @@ class ThreadPool {
 
   int thread_count() const;
 
-  // Calls body(i) once for every i in [0, count), in any order and at the same time; returns when
-  // all are done. Items are taken one by one, so they should cost at least some microseconds.
+  // Calls body(i) once for every i in [0, count), at the same time; returns when all are done.
+  // Items are begun in their order, each by the next thread that is free, so they should cost at
+  // least some microseconds, and the long ones come first.
   void ForEach(size_t count, const std::function<void(size_t)>& body);
 
  private:
   struct State;
   std::unique_ptr<State> state_;
+};
+
+// CPU time of the calling thread, from construction on.
+class ThreadCpuTimer {
+ public:
+  ThreadCpuTimer() : begin_ns_(Now()) {}
+  int64_t Nanoseconds() const { return Now() - begin_ns_; }
+
+ private:
+  static int64_t Now();
+  int64_t begin_ns_;
 };
 
 }  // namespace lf

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
+#include <mutex>
+#include <thread>
 #include <vector>
 
 namespace lf {
@@ -16,6 +19,34 @@ TEST(ThreadPool, RunsEveryItemOnce) {
     pool.ForEach(calls.size(), [&](size_t i) { ++calls[i]; });
     for (const auto& count : calls) EXPECT_EQ(count, 1);
   }
+}
+
+TEST(ThreadPool, ItemsAreBegunInOrder) {
+  for (const int threads : {1, 3}) {
+    ThreadPool pool(threads);
+    std::mutex mutex;
+    std::vector<size_t> begun;
+    pool.ForEach(1000, [&](size_t i) {
+      const std::lock_guard lock(mutex);
+      begun.push_back(i);
+    });
+    ASSERT_EQ(begun.size(), 1000u);
+    // Between taking an item and noting it, others may overtake; not on one thread.
+    for (size_t i = 0; threads == 1 && i < begun.size(); ++i) EXPECT_EQ(begun[i], i);
+    if (threads > 1) {
+      EXPECT_LT(begun.front(), 3u);
+    }
+  }
+}
+
+TEST(ThreadCpuTimer, SleepIsNoWork) {
+  const ThreadCpuTimer timer;
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_LT(timer.Nanoseconds(), 50'000'000);
+  const int64_t before = timer.Nanoseconds();
+  volatile uint64_t sum = 0;
+  for (uint64_t i = 0; i < 1'000'000; ++i) sum = sum + i;
+  EXPECT_GT(timer.Nanoseconds(), before);
 }
 
 TEST(ThreadPool, LoopsCanBeNestedAndEmpty) {

@@ -3,269 +3,253 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
-#include <map>
-#include <memory>
+#include <exception>
+#include <new>
 #include <optional>
+#include <utility>
 
-#include "lf/camera/ideal_pixels.h"
-#include "lf/collection/gather.h"
-#include "lf/collection/scatter.h"
 #include "lf/core/log.h"
 #include "lf/selection/overlap.h"
-#include "lf/store/prefetch.h"
 
 namespace lf {
 namespace {
 
-// A band of this size stays in the second level cache while a batch of LF images is added to it.
-constexpr size_t kBandBytes = size_t{512} << 10;
-constexpr int kLeastBandRows = 8;
+using Clock = std::chrono::steady_clock;
 
-// Spans of a batch kept at the same time.
-constexpr size_t kPlanBytes = size_t{64} << 20;
-
-class Stopwatch {
- public:
-  double Seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
-struct BatchImage {
-  LfImageId id;
-  LfPixels pixels;
-  // Of a camera with lens distortion.
-  std::vector<IdealCell> cells;
-  std::shared_ptr<const IdealPixels> ideal_pixels;
-};
-
-std::vector<PlateBand> CutIntoBands(SensorPlate* plate) {
-  const size_t row_bytes =
-      static_cast<size_t>(plate->width()) * SensorPlate::kChannels * sizeof(uint64_t);
-  const int rows = std::max(kLeastBandRows, static_cast<int>(kBandBytes / row_bytes));
-  std::vector<PlateBand> bands;
-  for (int y = 0; y < plate->height(); y += rows)
-    bands.emplace_back(plate, y, std::min(plate->height(), y + rows));
-  return bands;
+double SecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-class Collector {
- public:
-  Collector(const LightField& light_field, std::span<const RenderCamera> frames,
-            Estimator estimator, CollectBackEnd back_end, ThreadPool& pool,
-            std::vector<SensorPlate>* plates)
-      : light_field_(light_field),
-        frames_(frames),
-        estimator_(estimator),
-        back_end_(back_end),
-        pool_(pool),
-        plates_(*plates),
-        rays_(frames.size()) {
-    LF_CHECK(plates->size() == frames.size());
-    for (SensorPlate& plate : plates_) bands_.push_back(CutIntoBands(&plate));
+// An exception that leaves a task would end the program.
+Result<LfPixels> LoadWithoutThrowing(const LfImageStore& store, LfImageId id, const PixelRect& rect,
+                                     const std::string& name) {
+  try {
+    return store.Load(id, rect);
+  } catch (const std::bad_alloc&) {
+    return OutputError(
+        fmt::format("{}: no memory to load it: lower --memory, or give the machine more", name));
+  } catch (const std::exception& exception) {
+    return InputError(fmt::format("{}: {}", name, exception.what()));
   }
+}
 
-  void Add(std::vector<BatchImage>& batch) {
-    UndoDistortion(batch);
-    if (back_end_ == CollectBackEnd::kReference) {
-      AddByReference(batch);
-      return;
-    }
-    int tallest = 1;
-    for (const BatchImage& image : batch) tallest = std::max(tallest, image.pixels.rect.height());
-    const size_t plan_bytes = batch.size() * static_cast<size_t>(tallest) * sizeof(RaySpan);
-    const size_t chunk = std::max<size_t>(1, kPlanBytes / std::max<size_t>(1, plan_bytes));
-    for (size_t begin = 0; begin < frames_.size(); begin += chunk)
-      AddToFrames(batch, begin, std::min(frames_.size(), begin + chunk));
-  }
-
-  std::vector<FrameRays> TakeRays() { return std::move(rays_); }
-
- private:
-  struct Share {
-    PixelRect rect;
-    ScatterPlan scatter;  // of the estimator in use
-    std::optional<GatherPlan> gather;
-    std::atomic<uint64_t> accepted_count = 0;
-  };
-
-  PixelRect RectOf(const BatchImage& image, const RenderCamera& frame) const {
-    return Intersection(
-        ContributingRect(light_field_.Camera(image.id), frame, image.cells, ReachOf(estimator_)),
-        image.pixels.rect);
-  }
-
-  // Images of one camera share its ideal pixels, also with the next batch. Only the fast back end
-  // of nearest follows arcs.
-  void UndoDistortion(std::vector<BatchImage>& batch) {
-    const bool needs_arcs = estimator_ == Estimator::kNearest && back_end_ == CollectBackEnd::kFast;
-    std::map<uint32_t, std::shared_ptr<const IdealPixels>> in_use;
-    std::vector<uint32_t> missing;
-    for (const BatchImage& image : batch) {
-      const uint32_t index = light_field_.cameras[image.id.value].intrinsics_index;
-      if (!light_field_.intrinsics[index].has_distortion() || in_use.contains(index)) continue;
-      const auto known = ideal_pixels_.find(index);
-      if (needs_arcs && known == ideal_pixels_.end()) missing.push_back(index);
-      in_use[index] = known == ideal_pixels_.end() ? nullptr : known->second;
-    }
-    pool_.ForEach(missing.size(), [&](size_t i) {
-      in_use.find(missing[i])->second =
-          std::make_shared<const IdealPixels>(light_field_.intrinsics[missing[i]]);
-    });
-    for (BatchImage& image : batch) {
-      const uint32_t index = light_field_.cameras[image.id.value].intrinsics_index;
-      const auto found = in_use.find(index);
-      if (found == in_use.end()) continue;
-      image.ideal_pixels = found->second;
-      image.cells = MakeIdealCells(light_field_.intrinsics[index]);
-    }
-    ideal_pixels_ = std::move(in_use);
-  }
-
-  void AddToFrames(const std::vector<BatchImage>& batch, size_t frame_begin, size_t frame_end) {
-    const size_t frame_count = frame_end - frame_begin;
-    // First the spans of every (frame, image), then the rays of every (frame, band).
-    std::vector<Share> shares(frame_count * batch.size());
-    pool_.ForEach(shares.size(), [&](size_t i) {
-      const RenderCamera& frame = frames_[frame_begin + i / batch.size()];
-      const BatchImage& image = batch[i % batch.size()];
-      const PinholeCamera camera = light_field_.Camera(image.id);
-      shares[i].rect = RectOf(image, frame);
-      if (shares[i].rect.empty()) return;
-      if (estimator_ == Estimator::kBilinear)
-        shares[i].gather.emplace(camera, frame);
-      else
-        shares[i].scatter = PlanScatter(camera, frame, shares[i].rect, image.ideal_pixels.get());
-    });
-
-    struct Task {
-      size_t frame;
-      size_t band;
-      uint64_t accepted_count = 0;
-    };
-    std::vector<Task> tasks;
-    for (size_t f = 0; f < frame_count; ++f)
-      for (size_t band = 0; band < bands_[frame_begin + f].size(); ++band)
-        tasks.push_back({f, band});
-    pool_.ForEach(tasks.size(), [&](size_t i) {
-      Task& task = tasks[i];
-      for (size_t k = 0; k < batch.size(); ++k) {
-        Share& share = shares[task.frame * batch.size() + k];
-        if (share.rect.empty()) continue;
-        PlateBand& band = bands_[frame_begin + task.frame][task.band];
-        const uint64_t accepted = share.gather ? share.gather->GatherBand(batch[k].pixels, &band)
-                                               : ScatterBand(share.scatter, batch[k].pixels, &band);
-        task.accepted_count += accepted;
-        share.accepted_count += accepted;
-      }
-    });
-
-    for (const Task& task : tasks)
-      rays_[frame_begin + task.frame].accepted_count += task.accepted_count;
-    for (size_t i = 0; i < shares.size(); ++i)
-      Count(frame_begin + i / batch.size(), shares[i].rect, shares[i].accepted_count > 0);
-  }
-
-  void AddByReference(const std::vector<BatchImage>& batch) {
-    for (size_t f = 0; f < frames_.size(); ++f)
-      for (const BatchImage& image : batch) {
-        const PinholeCamera camera = light_field_.Camera(image.id);
-        const PixelRect rect = RectOf(image, frames_[f]);
-        if (rect.empty()) continue;
-        const uint64_t accepted =
-            estimator_ == Estimator::kBilinear
-                ? GatherReference(camera, image.pixels, frames_[f], &plates_[f])
-                : ScatterReference(camera, image.pixels, frames_[f], rect, &plates_[f]);
-        rays_[f].accepted_count += accepted;
-        Count(f, rect, accepted > 0);
-      }
-  }
-
-  void Count(size_t frame, const PixelRect& rect, bool any_accepted) {
-    rays_[frame].image_count += any_accepted ? 1 : 0;
-    rays_[frame].tested_count += static_cast<uint64_t>(rect.pixel_count());
-  }
-
-  const LightField& light_field_;
-  std::span<const RenderCamera> frames_;
-  Estimator estimator_;
-  CollectBackEnd back_end_;
-  ThreadPool& pool_;
-  std::vector<SensorPlate>& plates_;
-  std::vector<std::vector<PlateBand>> bands_;
-  std::vector<FrameRays> rays_;
-  // By index of intrinsics; those of the last batch.
-  std::map<uint32_t, std::shared_ptr<const IdealPixels>> ideal_pixels_;
+// An LF image of a batch while it is decoded.
+struct Loading {
+  size_t place = 0;
+  std::optional<Result<LfPixels>> pixels;
 };
 
-void Skip(const std::string& name, const Error& error, CollectStatistics* statistics) {
-  // The first are told at once; a report has them all.
-  constexpr size_t kTold = 10;
-  if (statistics->skipped.size() < kTold) LogWarning("LF image skipped: {}", error.message);
-  if (statistics->skipped.size() == kTold)
-    LogWarning("more LF images are broken; they are counted and reported at the end");
-  statistics->skipped.push_back({name, error.message});
-}
+// Places [begin, end) of the order.
+struct Batch {
+  size_t begin = 0;
+  size_t end = 0;
+  std::vector<Loading> loading;
+  std::vector<BatchImage> images;  // those that are whole, when all are loaded
+  bool is_loaded = false;
+};
 
 }  // namespace
 
-const char* NameOf(Estimator estimator) {
-  return estimator == Estimator::kBilinear ? "bilinear" : "nearest";
+class FrameCollector::State {
+ public:
+  State(const LightField& light_field, const LfImageStore& store,
+        std::span<const RenderCamera> frames, std::span<const SelectedImage> order,
+        std::span<const FrameProgress> start, const CollectOptions& options, ThreadPool& pool,
+        std::vector<SensorPlate>* plates)
+      : light_field_(light_field),
+        store_(store),
+        order_(order),
+        options_(options),
+        pool_(pool),
+        collector_(light_field, frames, options.estimator, options.back_end, pool, plates),
+        progress_(start.begin(), start.end()),
+        is_stopped_(start.size(), false) {
+    LF_CHECK(start.size() == frames.size());
+    LF_CHECK(options.batch_image_count >= 1);
+    place_ = FirstPlaceWanted(0);
+  }
+
+  Result<bool> Step();
+
+  std::vector<FrameProgress>& progress() { return progress_; }
+  std::vector<bool>& is_stopped() { return is_stopped_; }
+  const std::vector<SkippedImage>& skipped() const { return skipped_; }
+  const CollectTimes& times() const { return times_; }
+  size_t place() const { return place_; }
+
+ private:
+  bool IsInterrupted() const { return options_.interrupted != nullptr && *options_.interrupted; }
+  Error Interruption() const {
+    return {ErrorKind::kInterrupted,
+            fmt::format("interrupted after {} of {} LF images", place_, order_.size())};
+  }
+  size_t FirstPlaceWanted(size_t from) const;
+  Batch BatchFrom(size_t from) const;
+  std::vector<BatchFrame> FramesOf(const Batch& batch) const;
+  void Load(Loading* loading);
+  Result<void> FinishLoading(Batch* batch);
+  void Skip(size_t place, const Error& error);
+
+  const LightField& light_field_;
+  const LfImageStore& store_;
+  std::span<const SelectedImage> order_;
+  const CollectOptions options_;
+  ThreadPool& pool_;
+  BatchCollector collector_;
+  std::vector<FrameProgress> progress_;
+  std::vector<bool> is_stopped_;
+  std::vector<SkippedImage> skipped_;
+  CollectTimes times_;
+  std::atomic<int64_t> load_cpu_ns_ = 0;
+  std::atomic<int64_t> load_wall_ns_ = 0;
+  size_t place_ = 0;
+  Batch batch_;  // the one to be collected
+  Batch next_;   // the one to be decoded meanwhile
+};
+
+Result<bool> FrameCollector::State::Step() {
+  const Clock::time_point start = Clock::now();
+  std::vector<BatchFrame> takers = FramesOf(batch_);
+  // Frames may have been stopped since the next batch was planned.
+  while (takers.empty()) {
+    if (batch_.end > batch_.begin) place_ = batch_.end;
+    batch_ = next_.end > next_.begin ? std::move(next_) : BatchFrom(place_);
+    next_ = {};
+    if (batch_.begin == batch_.end) return false;
+    takers = FramesOf(batch_);
+  }
+  LF_RETURN_IF_ERROR(FinishLoading(&batch_));
+  if (next_.begin == next_.end) next_ = BatchFrom(batch_.end);
+  collector_.Add(batch_.images, takers,
+                 {next_.loading.size(), [this](size_t i) { Load(&next_.loading[i]); }},
+                 options_.interrupted);
+
+  bool all_done = true;
+  for (const BatchFrame& taker : takers) {
+    all_done = all_done && taker.is_done;
+    if (!taker.is_done) continue;
+    FrameProgress& progress = progress_[taker.frame];
+    progress.places_done = batch_.end;
+    progress.rays.image_count += taker.rays.image_count;
+    progress.rays.tested_count += taker.rays.tested_count;
+    progress.rays.accepted_count += taker.rays.accepted_count;
+  }
+  times_.load_cpu_s = static_cast<double>(load_cpu_ns_) * 1e-9;
+  times_.load_wall_s = static_cast<double>(load_wall_ns_) * 1e-9;
+  times_.collect_cpu_s = collector_.cpu_seconds();
+  times_.wall_s += SecondsSince(start);
+  if (!all_done) return Interruption();
+  place_ = batch_.end;
+  batch_ = {};
+  return true;
 }
 
-PixelReach ReachOf(Estimator estimator) {
-  return estimator == Estimator::kBilinear ? PixelReach::kNeighbours : PixelReach::kOwn;
+// The first place from `from` on that a frame has still to take.
+size_t FrameCollector::State::FirstPlaceWanted(size_t from) const {
+  size_t first = order_.size();
+  for (size_t f = 0; f < progress_.size(); ++f)
+    if (!is_stopped_[f]) first = std::min(first, progress_[f].places_done);
+  return std::max(first, std::min(from, order_.size()));
 }
+
+Batch FrameCollector::State::BatchFrom(size_t from) const {
+  Batch batch;
+  batch.begin = FirstPlaceWanted(from);
+  const size_t decision = (batch.begin / kDecisionPlaces + 1) * kDecisionPlaces;
+  const size_t count = static_cast<size_t>(options_.batch_image_count);
+  batch.end = std::min({order_.size(), decision, batch.begin + count});
+  for (size_t place = batch.begin; place < batch.end; ++place)
+    batch.loading.push_back({place, std::nullopt});
+  return batch;
+}
+
+// Those behind the end of the batch.
+std::vector<BatchFrame> FrameCollector::State::FramesOf(const Batch& batch) const {
+  std::vector<BatchFrame> frames;
+  for (size_t f = 0; f < progress_.size(); ++f)
+    if (!is_stopped_[f] && progress_[f].places_done < batch.end)
+      frames.push_back({f, progress_[f].places_done, false, {}});
+  return frames;
+}
+
+void FrameCollector::State::Load(Loading* loading) {
+  if (loading->pixels || IsInterrupted()) return;
+  const Clock::time_point start = Clock::now();
+  const ThreadCpuTimer timer;
+  const SelectedImage& selected = order_[loading->place];
+  loading->pixels = LoadWithoutThrowing(store_, selected.id, selected.rect,
+                                        light_field_.image_names[selected.id.value]);
+  load_cpu_ns_ += timer.Nanoseconds();
+  load_wall_ns_ += std::chrono::nanoseconds(Clock::now() - start).count();
+}
+
+Result<void> FrameCollector::State::FinishLoading(Batch* batch) {
+  if (batch->is_loaded) return {};
+  pool_.ForEach(batch->loading.size(), [&](size_t i) { Load(&batch->loading[i]); });
+  for (const Loading& loading : batch->loading)
+    if (!loading.pixels) return Interruption();
+  for (Loading& loading : batch->loading) {
+    if (*loading.pixels) {
+      const LfImageId id = order_[loading.place].id;
+      batch->images.push_back({loading.place, id, **std::move(loading.pixels), {}, nullptr});
+      continue;
+    }
+    // Only the image itself may be at fault: what the machine lacks is no reason to go on.
+    const Error& error = loading.pixels->error();
+    if (options_.strict || error.kind != ErrorKind::kInput) return error;
+    Skip(loading.place, error);
+  }
+  batch->loading.clear();
+  batch->is_loaded = true;
+  return {};
+}
+
+void FrameCollector::State::Skip(size_t place, const Error& error) {
+  // The first are told at once; a report has them all.
+  constexpr size_t kTold = 10;
+  if (skipped_.size() < kTold) LogWarning("LF image skipped: {}", error.message);
+  if (skipped_.size() == kTold)
+    LogWarning("more LF images are broken; they are counted and reported at the end");
+  skipped_.push_back({light_field_.image_names[order_[place].id.value], error.message, place});
+}
+
+FrameCollector::FrameCollector(const LightField& light_field, const LfImageStore& store,
+                               std::span<const RenderCamera> frames,
+                               std::span<const SelectedImage> order,
+                               std::span<const FrameProgress> start, const CollectOptions& options,
+                               ThreadPool& pool, std::vector<SensorPlate>* plates)
+    : state_(std::make_unique<State>(light_field, store, frames, order, start, options, pool,
+                                     plates)) {}
+FrameCollector::~FrameCollector() = default;
+
+Result<bool> FrameCollector::Step() { return state_->Step(); }
+void FrameCollector::Stop(size_t frame) { state_->is_stopped()[frame] = true; }
+std::span<const FrameProgress> FrameCollector::frames() const { return state_->progress(); }
+std::span<const SkippedImage> FrameCollector::skipped() const { return state_->skipped(); }
+size_t FrameCollector::place() const { return state_->place(); }
+const CollectTimes& FrameCollector::times() const { return state_->times(); }
 
 Result<CollectStatistics> Collect(const LightField& light_field, const LfImageStore& store,
                                   std::span<const RenderCamera> frames,
-                                  std::span<const SelectedImage> images,
+                                  std::span<const SelectedImage> order,
                                   const CollectOptions& options, ThreadPool& pool,
                                   std::vector<SensorPlate>* plates,
                                   const std::function<void(const CollectProgress&)>& progress) {
-  std::vector<LoadRequest> requests;
-  for (const SelectedImage& image : images) requests.push_back({image.id, image.rect});
-  Prefetcher prefetcher(store, std::move(requests),
-                        {options.loader_count, options.queue_bytes, options.image_bytes});
-
-  Collector collector(light_field, frames, options.estimator, options.back_end, pool, plates);
-  CollectStatistics statistics;
+  const std::vector<FrameProgress> start(frames.size());
+  FrameCollector collector(light_field, store, frames, order, start, options, pool, plates);
   CollectProgress done;
-  std::vector<BatchImage> batch;
-  while (done.image_count < images.size()) {
-    const size_t first = done.image_count;
-    const size_t end =
-        std::min(images.size(), first + static_cast<size_t>(options.batch_image_count));
-    for (; done.image_count < end; ++done.image_count) {
-      if (options.interrupted != nullptr && *options.interrupted)
-        return Error{ErrorKind::kInterrupted,
-                     fmt::format("interrupted after {} of {} LF images", first, images.size())};
-      const SelectedImage& selected = images[done.image_count];
-      done.tested_count += selected.ray_count;
-      std::optional<LoadedImage> loaded = prefetcher.Next();
-      LF_CHECK(loaded && loaded->id == selected.id);
-      if (loaded->pixels) {
-        batch.push_back({selected.id, *std::move(loaded->pixels), {}, nullptr});
-        continue;
-      }
-      // Only the image itself may be at fault: what the machine lacks is no reason to go on.
-      const Error& error = loaded->pixels.error();
-      if (options.strict || error.kind != ErrorKind::kInput) return error;
-      Skip(light_field.image_names[selected.id.value], error, &statistics);
-    }
-    const Stopwatch stopwatch;
-    if (!batch.empty()) collector.Add(batch);
-    batch.clear();
-    statistics.collect_wall_s += stopwatch.Seconds();
+  while (true) {
+    LF_ASSIGN_OR_RETURN(const bool stepped, collector.Step());
+    if (!stepped) break;
+    for (; done.image_count < collector.place(); ++done.image_count)
+      done.tested_count += order[done.image_count].ray_count;
     if (progress) progress(done);
   }
-  statistics.frames = collector.TakeRays();
-  statistics.load_cpu_s = prefetcher.load_seconds();
+  CollectStatistics statistics;
+  for (const FrameProgress& frame : collector.frames()) statistics.frames.push_back(frame.rays);
+  statistics.skipped.assign(collector.skipped().begin(), collector.skipped().end());
+  statistics.times = collector.times();
   return statistics;
 }
 

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,66 +15,103 @@
 #include "lf/capture/light_field.h"
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
+#include "lf/pipeline/collect_batch.h"
 #include "lf/plate/sensor_plate.h"
 #include "lf/selection/select.h"
 #include "lf/store/lf_image_store.h"
 
 namespace lf {
 
-// Who asks whom (doc/ray.md, "What is added"): every LF pixel looks for its element, or every
-// element for its place in each LF image, which must be RGB.
-enum class Estimator { kNearest, kBilinear };
-
-// "nearest", "bilinear"
-const char* NameOf(Estimator estimator);
-
-// Which pixels of an LF image its rays need, for selection.
-PixelReach ReachOf(Estimator estimator);
-
-// kReference asks the law of every pixel, on one thread: the judge, some 50 times slower.
-enum class CollectBackEnd { kFast, kReference };
-
 struct CollectOptions {
   Estimator estimator = Estimator::kNearest;
   CollectBackEnd back_end = CollectBackEnd::kFast;
-  int batch_image_count = 16;              // LF images collected together into a tile of the plate
-  size_t queue_bytes = size_t{256} << 20;  // decoded LF images waiting
-  size_t image_bytes = 0;                  // of one decoded LF image
-  int loader_count = 2;
+  // The most LF images collected together into a tile of a plate. As many again are decoded
+  // meanwhile, so that twice as many are in memory.
+  int batch_image_count = 16;
   bool strict = false;                             // a broken LF image is an error
-  const std::atomic<bool>* interrupted = nullptr;  // looked at between batches
+  const std::atomic<bool>* interrupted = nullptr;  // looked at between items of about 10 ms
 };
 
-struct FrameRays {
-  uint64_t image_count = 0;   // LF images with an accepted ray
-  uint64_t tested_count = 0;  // pixels of their rectangles
-  uint64_t accepted_count = 0;
+// How far a frame is: its plate holds the rays of places [0, places_done) of the order.
+struct FrameProgress {
+  size_t places_done = 0;  // broken LF images included
+  FrameRays rays;          // in all of these places
 };
 
 struct SkippedImage {
   std::string name;
   std::string reason;
+  size_t place = 0;  // in the order
+};
+
+struct CollectTimes {
+  double load_cpu_s = 0;     // reading and decoding LF images, all threads
+  double load_wall_s = 0;    // the same with waiting for the disk, summed over the threads
+  double collect_cpu_s = 0;  // planning and adding rays, all threads
+  double wall_s = 0;         // of all steps
+};
+
+// Adds the rays of LF images, in their order, to plates, one per frame, a batch a step. While a
+// batch is collected the next one is decoded, both by the threads of the pool alone.
+//
+// The plates have the same bits for any order, batch size and number of threads, and however often
+// the work was interrupted and taken up again by another object; a broken image that is skipped
+// leaves the plates as if it had not been there.
+class FrameCollector {
+ public:
+  // Every stop rule may be decided where places_done is a multiple of it: no batch goes across.
+  static constexpr size_t kDecisionPlaces = 64;
+
+  // start   one per frame: none done, or what its plate holds already
+  // plates  one per frame; only Step() writes them
+  // All that is referred to must outlive the collector; `options` and `start` are copied.
+  FrameCollector(const LightField& light_field, const LfImageStore& store,
+                 std::span<const RenderCamera> frames, std::span<const SelectedImage> order,
+                 std::span<const FrameProgress> start, const CollectOptions& options,
+                 ThreadPool& pool, std::vector<SensorPlate>* plates);
+  ~FrameCollector();
+  FrameCollector(const FrameCollector&) = delete;
+  FrameCollector& operator=(const FrameCollector&) = delete;
+
+  // Collects the next batch into every frame that is behind its end and not stopped; false when
+  // there was nothing left to do. Frames that start at different places catch up.
+  // kInterrupted: *options.interrupted became true. Every frame is consistent then: those that were
+  //   begun are finished, the others stay at their place. Step() may be called again, and goes on.
+  // kInput: a broken image when strict, and kOutput: loading ran out of memory; the plates are as
+  //   after the last step, and no further step may follow.
+  Result<bool> Step();
+
+  // The frame takes no more images.
+  void Stop(size_t frame);
+
+  // As the frames given.
+  std::span<const FrameProgress> frames() const;
+  // Broken images, by place; of this object's steps only.
+  std::span<const SkippedImage> skipped() const;
+  // The end of the last batch, or where the first one begins: no frame is farther.
+  size_t place() const;
+  const CollectTimes& times() const;
+
+ private:
+  class State;
+  std::unique_ptr<State> state_;
 };
 
 struct CollectStatistics {
   std::vector<FrameRays> frames;  // as the frames given
   std::vector<SkippedImage> skipped;
-  double load_cpu_s = 0;      // of the loader threads
-  double collect_wall_s = 0;  // without waiting for images
+  CollectTimes times;
 };
 
 struct CollectProgress {
-  size_t image_count = 0;
+  size_t image_count = 0;  // places of the order done
   uint64_t tested_count = 0;
 };
 
-// Adds the rays of `images`, in their order, to `plates`, one per frame. The result has the same
-// bits for any order, batch size and number of threads; a broken image that is skipped leaves the
-// plates as if it had not been there.
-// kInput: a broken image when strict. kOutput: loading ran out of memory. kInterrupted.
+// All steps of a FrameCollector, from the first place of the order to its end, with its errors.
 Result<CollectStatistics> Collect(const LightField& light_field, const LfImageStore& store,
                                   std::span<const RenderCamera> frames,
-                                  std::span<const SelectedImage> images,
+                                  std::span<const SelectedImage> order,
                                   const CollectOptions& options, ThreadPool& pool,
                                   std::vector<SensorPlate>* plates,
                                   const std::function<void(const CollectProgress&)>& progress);

@@ -3,63 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <map>
 
-#include "lf/core/random.h"
-#include "lf/selection/overlap.h"
+#include "lf/pipeline/test_noise_field.h"
 
 namespace lf {
 namespace {
 
-constexpr int kWidth = 64, kHeight = 48;
-
-// A 7 x 7 grid of jittered cameras before a wall of noise; frames look at it with wide lenses.
-LightField Field() {
-  LightField field;
-  field.intrinsics = {{70, 70, 32, 24, 0, kWidth, kHeight}};
-  for (uint32_t i = 0; i < 49; ++i) {
-    LfCamera camera;
-    const double x = 0.01 * (i % 7) - 0.03 + 0.002 * RandomUnit(1, 0, i);
-    const double y = 0.01 * (i / 7) - 0.03 + 0.002 * RandomUnit(1, 1, i);
-    const double z = 0.004 * RandomUnit(1, 2, i) - 0.002;
-    camera.cam_from_world = *LookAlong({x, y, z}, {0.1 * x, 0.02, 1}, {0, -1, 0});
-    field.cameras.push_back(camera);
-    field.image_names.push_back("image" + std::to_string(i));
-  }
-  return field;
-}
-
-std::vector<RenderCamera> Frames() {
-  std::vector<RenderCamera> frames;
-  for (int i = 0; i < 3; ++i) {
-    RenderCamera frame;
-    frame.pinhole.intrinsics = {80, 80, 40, 30, 0, 80, 60};
-    frame.pinhole.cam_from_world = *LookAlong({0.01 * i, 0, -0.01 * i}, {0, 0, 1}, {0, -1, 0});
-    frame.aperture = {0.03, i == 1 ? 5 : 0, 0.1 * i};
-    frame.focus_plane = FocusPlane(frame.pinhole, 1 + i, {0.2 * i, 0});
-    frames.push_back(frame);
-  }
-  return frames;
-}
-
-class NoiseStore : public LfImageStore {
- public:
-  std::vector<uint32_t> broken;
-  ErrorKind broken_kind = ErrorKind::kInput;
-
-  Result<LfPixels> Load(LfImageId id, const PixelRect& rect) const override {
-    EXPECT_FALSE(rect.empty());
-    if (std::count(broken.begin(), broken.end(), id.value) > 0)
-      return Error{broken_kind, "image" + std::to_string(id.value) + ": broken"};
-    LfPixels pixels(rect, BayerPattern::kNone);  // no more than was asked for
-    for (int y = rect.y_begin; y < rect.y_end; ++y)
-      for (int x = rect.x_begin; x < rect.x_end; ++x)
-        for (int c = 0; c < 3; ++c)
-          pixels.radiance.at(x - rect.x_begin, y - rect.y_begin, c) = static_cast<uint16_t>(
-              RandomBits(11, id.value, static_cast<uint64_t>((y * kWidth + x) * 3 + c)));
-    return pixels;
-  }
-};
+using testing::NoiseFrames;
+using testing::NoiseStore;
 
 struct Outcome {
   std::vector<SensorPlate> plates;
@@ -68,8 +19,8 @@ struct Outcome {
 
 Outcome CollectAll(const NoiseStore& store, int threads, CollectOptions options, uint64_t seed = 0,
                    std::vector<uint32_t> left_out = {}) {
-  static const LightField field = Field();
-  static const std::vector<RenderCamera> frames = Frames();
+  static const LightField field = testing::NoiseField();
+  static const std::vector<RenderCamera> frames = NoiseFrames();
   ThreadPool pool(threads);
   std::vector<SelectedImage> images = SelectImages(field, frames, {seed, {}}, pool);
   std::erase_if(images, [&](const SelectedImage& image) {
@@ -83,7 +34,7 @@ Outcome CollectAll(const NoiseStore& store, int threads, CollectOptions options,
 
 // Half of the cameras through one lens that bends rays, some through their own.
 LightField DistortedField() {
-  LightField field = Field();
+  LightField field = testing::NoiseField();
   for (uint32_t i = 0; i < 5; ++i) {
     Intrinsics k = field.intrinsics[0];
     k.distortion = {DistortionModel::kRadialTangential, {-0.1 - 0.01 * i, 0.02, 0.001}};
@@ -97,7 +48,7 @@ LightField DistortedField() {
 std::vector<SensorPlate> CollectDistorted(int threads, const CollectOptions& options,
                                           uint64_t* accepted) {
   const LightField field = DistortedField();
-  const std::vector<RenderCamera> frames = Frames();
+  const std::vector<RenderCamera> frames = NoiseFrames();
   ThreadPool pool(threads);
   const std::vector<SelectedImage> images =
       SelectImages(field, frames, {0, {}, ReachOf(options.estimator)}, pool);
@@ -191,6 +142,15 @@ TEST(Collect, WhatTheMachineLacksIsNotTakenForABrokenImage) {
   store.broken = {24};
   store.broken_kind = ErrorKind::kOutput;
   EXPECT_EQ(CollectAll(store, 2, {}).statistics.error().kind, ErrorKind::kOutput);
+}
+
+TEST(Collect, WantOfMemoryAndOtherExceptionsAreErrors) {
+  NoiseStore store;
+  store.without_memory = {24};
+  const Outcome without_memory = CollectAll(store, 2, {});
+  EXPECT_EQ(without_memory.statistics.error().kind, ErrorKind::kOutput);
+  EXPECT_NE(without_memory.statistics.error().message.find("image24: no memory"),
+            std::string::npos);
 }
 
 TEST(Collect, StopsWhenInterrupted) {

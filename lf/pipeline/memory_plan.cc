@@ -13,8 +13,7 @@ constexpr size_t kMiB = size_t{1} << 20;
 constexpr size_t kProgramBytes = 160 * kMiB;  // code, libraries, spans of a batch
 constexpr size_t kDevelopBytesPerElement =
     160;  // picture, counts, tables for filling, file buffers, sheet
-constexpr size_t kMostBatchImages = 16;
-constexpr size_t kMostQueuedImages = 48;
+constexpr size_t kMostBatchImages = 64;
 
 size_t LargestImageBytes(const LightField& light_field) {
   // 16-bit radiance, the stored pixels while they are decoded (float at worst), a mask.
@@ -48,10 +47,9 @@ Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field
         memory_bytes / kMiB, plate_width, plate_height, least / kMiB + 1));
 
   const size_t free_bytes = memory_bytes - set_aside;
-  const size_t image_slots = std::clamp<size_t>(memory_bytes / 4 / plan.image_bytes, 2,
-                                                kMostBatchImages + kMostQueuedImages);
-  plan.batch_image_count = std::clamp<size_t>(image_slots / 2, 1, kMostBatchImages);
-  plan.queue_bytes = (image_slots - plan.batch_image_count) * plan.image_bytes;
+  const size_t image_slots =
+      std::clamp<size_t>(memory_bytes / 4 / plan.image_bytes, 2, 2 * kMostBatchImages);
+  plan.batch_image_count = image_slots / 2;
   const size_t plates_bytes =
       std::max(plan.plate_bytes, free_bytes - std::min(free_bytes, image_slots * plan.image_bytes));
   plan.frames_per_pass =

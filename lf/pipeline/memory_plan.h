@@ -10,9 +10,8 @@ namespace lf {
 
 struct MemoryPlan {
   size_t frames_per_pass = 1;  // plates kept at the same time; each pass reads the LF images again
-  size_t batch_image_count = 1;
-  size_t queue_bytes = 0;  // decoded LF images waiting
-  size_t image_bytes = 0;  // the largest decoded LF image, with what decoding needs
+  size_t batch_image_count = 1;  // two batches are kept at the same time
+  size_t image_bytes = 0;        // the largest decoded LF image, with what decoding needs
   size_t plate_bytes = 0;
 };
 

@@ -189,9 +189,6 @@ Result<void> Renderer::RunPass(std::span<const FrameId> frames,
   collect.estimator = options_.estimator;
   collect.back_end = options_.back_end;
   collect.batch_image_count = static_cast<int>(plan_.batch_image_count);
-  collect.queue_bytes = plan_.queue_bytes;
-  collect.image_bytes = plan_.image_bytes;
-  collect.loader_count = pool_.thread_count();
   collect.strict = options_.strict;
   collect.interrupted = options_.interrupted;
   LF_ASSIGN_OR_RETURN(CollectStatistics statistics,
@@ -205,8 +202,9 @@ Result<void> Renderer::RunPass(std::span<const FrameId> frames,
         fmt::format("every LF image is broken; the first: {}", statistics.skipped.front().reason));
   done_.image_count += images.size();
   for (const SelectedImage& image : images) done_.ray_count += image.ray_count;
-  report_.load_cpu_s += statistics.load_cpu_s;
-  report_.collect_wall_s += statistics.collect_wall_s;
+  report_.load_cpu_s += statistics.times.load_cpu_s;
+  report_.load_wall_s += statistics.times.load_wall_s;
+  report_.collect_cpu_s += statistics.times.collect_cpu_s;
   for (SkippedImage& skipped : statistics.skipped)
     if (std::none_of(report_.skipped.begin(), report_.skipped.end(),
                      [&](const SkippedImage& known) { return known.name == skipped.name; }))

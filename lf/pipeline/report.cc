@@ -38,8 +38,7 @@ uint64_t RenderReport::AcceptedRays() const {
 }
 
 double RenderReport::MraysPerSecondPerCore() const {
-  const double core_s = collect_wall_s * thread_count;
-  return core_s > 0 ? static_cast<double>(TestedRays()) / 1e6 / core_s : 0;
+  return collect_cpu_s > 0 ? static_cast<double>(TestedRays()) / 1e6 / collect_cpu_s : 0;
 }
 
 FrameReport MakeFrameReport(FrameId frame, const FrameRays& rays, const DevelopedFrame& developed) {
@@ -83,7 +82,8 @@ std::string ToJson(const RenderReport& report) {
                      {"passes", report.pass_count},
                      {"seconds", report.total_s},
                      {"load_cpu_s", report.load_cpu_s},
-                     {"collect_s", report.collect_wall_s},
+                     {"load_wall_s", report.load_wall_s},
+                     {"collect_cpu_s", report.collect_cpu_s},
                      {"rays_tested", report.TestedRays()},
                      {"rays_accepted", report.AcceptedRays()},
                      {"mrays_per_s_per_core", report.MraysPerSecondPerCore()},

@@ -36,13 +36,14 @@ struct RenderReport {
   std::vector<FrameReport> frames;
   std::vector<SkippedImage> skipped;
   double total_s = 0;
-  double load_cpu_s = 0;
-  double collect_wall_s = 0;
+  double load_cpu_s = 0;  // this and the next two as CollectTimes
+  double load_wall_s = 0;
+  double collect_cpu_s = 0;
   uint64_t peak_memory_bytes = 0;
 
   uint64_t TestedRays() const;
   uint64_t AcceptedRays() const;
-  // Millions of tested rays per second of collection and core.
+  // Millions of tested rays per CPU second of collection.
   double MraysPerSecondPerCore() const;
 };
 

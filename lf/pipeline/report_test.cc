@@ -21,7 +21,7 @@ TEST(Report, CountsEmptyElementsPerChannel) {
 TEST(Report, IsJsonEvenWithNamesThatAreNoText) {
   RenderReport report;
   report.frames.push_back({FrameId{7}, {3, 100, 90}, {}, {}, {}, 0});
-  report.skipped.push_back({"a\xff.png", "broken"});
+  report.skipped.push_back({"a\xff.png", "broken", 0});
   const nlohmann::json json = nlohmann::json::parse(ToJson(report));
   EXPECT_EQ(json["frames"][0]["frame"], 7);
   EXPECT_EQ(json["rays_tested"], 100);

@@ -1,0 +1,221 @@
+#include "lf/pipeline/collect_batch.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "lf/collection/gather.h"
+#include "lf/collection/scatter.h"
+
+namespace lf {
+namespace {
+
+// A band of this size stays in the second level cache while a batch of LF images is added to it.
+constexpr size_t kBandBytes = size_t{512} << 10;
+constexpr int kLeastBandRows = 8;
+
+// Spans of a batch kept at the same time.
+constexpr size_t kPlanBytes = size_t{64} << 20;
+
+std::vector<PlateBand> CutIntoBands(SensorPlate* plate) {
+  const size_t row_bytes =
+      static_cast<size_t>(plate->width()) * SensorPlate::kChannels * sizeof(uint64_t);
+  const int rows = std::max(kLeastBandRows, static_cast<int>(kBandBytes / row_bytes));
+  std::vector<PlateBand> bands;
+  for (int y = 0; y < plate->height(); y += rows)
+    bands.emplace_back(plate, y, std::min(plate->height(), y + rows));
+  return bands;
+}
+
+// Whether a frame is collected is decided once, where its first item comes.
+class FrameGate {
+ public:
+  bool IsOpen(const std::atomic<bool>* interrupted) {
+    State state = state_;
+    if (state != State::kUndecided) return state == State::kOpen;
+    const State decided = interrupted != nullptr && *interrupted ? State::kShut : State::kOpen;
+    // On failure `state` is what another thread decided.
+    if (state_.compare_exchange_strong(state, decided)) state = decided;
+    return state == State::kOpen;
+  }
+
+ private:
+  enum class State { kUndecided, kOpen, kShut };
+  std::atomic<State> state_ = State::kUndecided;
+};
+
+void Count(const PixelRect& rect, bool any_accepted, FrameRays* rays) {
+  rays->image_count += any_accepted ? 1 : 0;
+  rays->tested_count += static_cast<uint64_t>(rect.pixel_count());
+}
+
+}  // namespace
+
+const char* NameOf(Estimator estimator) {
+  return estimator == Estimator::kBilinear ? "bilinear" : "nearest";
+}
+
+PixelReach ReachOf(Estimator estimator) {
+  return estimator == Estimator::kBilinear ? PixelReach::kNeighbours : PixelReach::kOwn;
+}
+
+struct BatchCollector::Share {
+  PixelRect rect;
+  ScatterPlan scatter;  // of the estimator in use
+  std::optional<GatherPlan> gather;
+  std::atomic<uint64_t> accepted_count = 0;
+};
+
+BatchCollector::BatchCollector(const LightField& light_field, std::span<const RenderCamera> frames,
+                               Estimator estimator, CollectBackEnd back_end, ThreadPool& pool,
+                               std::vector<SensorPlate>* plates)
+    : light_field_(light_field),
+      frames_(frames),
+      estimator_(estimator),
+      back_end_(back_end),
+      pool_(pool),
+      plates_(*plates) {
+  LF_CHECK(plates->size() == frames.size());
+  for (SensorPlate& plate : plates_) bands_.push_back(CutIntoBands(&plate));
+}
+
+void BatchCollector::Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>& frames,
+                         const OtherItems& other_items, const std::atomic<bool>* interrupted) {
+  UndoDistortion(batch);
+  const auto is_interrupted = [&] { return interrupted != nullptr && *interrupted; };
+  if (back_end_ == CollectBackEnd::kReference || batch.empty()) {
+    pool_.ForEach(other_items.count, other_items.run);
+    for (BatchFrame& frame : frames)
+      if (!is_interrupted()) AddByReference(batch, &frame);
+    return;
+  }
+  int tallest = 1;
+  for (const BatchImage& image : batch) tallest = std::max(tallest, image.pixels.rect.height());
+  const size_t plan_bytes = batch.size() * static_cast<size_t>(tallest) * sizeof(RaySpan);
+  const size_t chunk = std::max<size_t>(1, kPlanBytes / std::max<size_t>(1, plan_bytes));
+  for (size_t begin = 0; begin < frames.size(); begin += chunk) {
+    if (is_interrupted()) return;
+    const size_t count = std::min(frames.size() - begin, chunk);
+    AddToFrames(batch, std::span(frames).subspan(begin, count),
+                begin == 0 ? other_items : OtherItems{}, interrupted);
+  }
+}
+
+PixelRect BatchCollector::RectOf(const BatchImage& image, const RenderCamera& frame) const {
+  return Intersection(
+      ContributingRect(light_field_.Camera(image.id), frame, image.cells, ReachOf(estimator_)),
+      image.pixels.rect);
+}
+
+// Images of one camera share its ideal pixels, also with the next batch. Only the fast back end of
+// nearest follows arcs.
+void BatchCollector::UndoDistortion(std::vector<BatchImage>& batch) {
+  const bool needs_arcs = estimator_ == Estimator::kNearest && back_end_ == CollectBackEnd::kFast;
+  std::map<uint32_t, std::shared_ptr<const IdealPixels>> in_use;
+  std::vector<uint32_t> missing;
+  for (const BatchImage& image : batch) {
+    const uint32_t index = light_field_.cameras[image.id.value].intrinsics_index;
+    if (!light_field_.intrinsics[index].has_distortion() || in_use.contains(index)) continue;
+    const auto known = ideal_pixels_.find(index);
+    if (needs_arcs && known == ideal_pixels_.end()) missing.push_back(index);
+    in_use[index] = known == ideal_pixels_.end() ? nullptr : known->second;
+  }
+  ForEachTimed(missing.size(), [&](size_t i) {
+    in_use.find(missing[i])->second =
+        std::make_shared<const IdealPixels>(light_field_.intrinsics[missing[i]]);
+  });
+  for (BatchImage& image : batch) {
+    const uint32_t index = light_field_.cameras[image.id.value].intrinsics_index;
+    const auto found = in_use.find(index);
+    if (found == in_use.end()) continue;
+    image.ideal_pixels = found->second;
+    image.cells = MakeIdealCells(light_field_.intrinsics[index]);
+  }
+  ideal_pixels_ = std::move(in_use);
+}
+
+void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span<BatchFrame> frames,
+                                 const OtherItems& other_items,
+                                 const std::atomic<bool>* interrupted) {
+  // First the spans of every (frame, image), then the rays of every (frame, band).
+  std::vector<Share> shares(frames.size() * batch.size());
+  ForEachTimed(shares.size(), [&](size_t i) {
+    const BatchFrame& taker = frames[i / batch.size()];
+    const BatchImage& image = batch[i % batch.size()];
+    if (image.place < taker.first_place) return;
+    const RenderCamera& frame = frames_[taker.frame];
+    const PinholeCamera camera = light_field_.Camera(image.id);
+    shares[i].rect = RectOf(image, frame);
+    if (shares[i].rect.empty()) return;
+    if (estimator_ == Estimator::kBilinear)
+      shares[i].gather.emplace(camera, frame);
+    else
+      shares[i].scatter = PlanScatter(camera, frame, shares[i].rect, image.ideal_pixels.get());
+  });
+
+  struct Task {
+    size_t taker;
+    size_t band;
+  };
+  std::vector<Task> tasks;
+  for (size_t f = 0; f < frames.size(); ++f)
+    for (size_t band = 0; band < bands_[frames[f].frame].size(); ++band) tasks.push_back({f, band});
+  std::vector<FrameGate> gates(frames.size());
+  const auto collect = [&](const Task& task) {
+    if (!gates[task.taker].IsOpen(interrupted)) return;
+    PlateBand& band = bands_[frames[task.taker].frame][task.band];
+    for (size_t k = 0; k < batch.size(); ++k) {
+      Share& share = shares[task.taker * batch.size() + k];
+      if (share.rect.empty()) continue;
+      share.accepted_count += share.gather ? share.gather->GatherBand(batch[k].pixels, &band)
+                                           : ScatterBand(share.scatter, batch[k].pixels, &band);
+    }
+  };
+  // The other items are long ones: what comes last should be short, so that no thread waits.
+  pool_.ForEach(other_items.count + tasks.size(), [&](size_t i) {
+    if (i < other_items.count) {
+      other_items.run(i);
+      return;
+    }
+    const ThreadCpuTimer timer;
+    collect(tasks[i - other_items.count]);
+    cpu_ns_ += timer.Nanoseconds();
+  });
+
+  for (size_t f = 0; f < frames.size(); ++f) {
+    frames[f].is_done = gates[f].IsOpen(nullptr);
+    if (!frames[f].is_done) continue;
+    for (size_t k = 0; k < batch.size(); ++k) {
+      const Share& share = shares[f * batch.size() + k];
+      frames[f].rays.accepted_count += share.accepted_count;
+      Count(share.rect, share.accepted_count > 0, &frames[f].rays);
+    }
+  }
+}
+
+void BatchCollector::AddByReference(const std::vector<BatchImage>& batch, BatchFrame* frame) {
+  const ThreadCpuTimer timer;
+  const RenderCamera& camera = frames_[frame->frame];
+  SensorPlate& plate = plates_[frame->frame];
+  for (const BatchImage& image : batch) {
+    const PixelRect rect = RectOf(image, camera);
+    if (rect.empty() || image.place < frame->first_place) continue;
+    const PinholeCamera lf_camera = light_field_.Camera(image.id);
+    const uint64_t accepted = estimator_ == Estimator::kBilinear
+                                  ? GatherReference(lf_camera, image.pixels, camera, &plate)
+                                  : ScatterReference(lf_camera, image.pixels, camera, rect, &plate);
+    frame->rays.accepted_count += accepted;
+    Count(rect, accepted > 0, &frame->rays);
+  }
+  frame->is_done = true;
+  cpu_ns_ += timer.Nanoseconds();
+}
+
+void BatchCollector::ForEachTimed(size_t count, const std::function<void(size_t)>& body) {
+  pool_.ForEach(count, [&](size_t i) {
+    const ThreadCpuTimer timer;
+    body(i);
+    cpu_ns_ += timer.Nanoseconds();
+  });
+}
+
+}  // namespace lf

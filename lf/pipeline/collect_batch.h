@@ -1,0 +1,101 @@
+// A batch of decoded LF images, added to the plates of all frames by all threads.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "lf/camera/ideal_pixels.h"
+#include "lf/camera/render_camera.h"
+#include "lf/capture/lf_pixels.h"
+#include "lf/capture/light_field.h"
+#include "lf/core/ids.h"
+#include "lf/core/parallel.h"
+#include "lf/plate/sensor_plate.h"
+#include "lf/selection/overlap.h"
+
+namespace lf {
+
+// Who asks whom (doc/ray.md, "What is added"): every LF pixel looks for its element, or every
+// element for its place in each LF image, which must be RGB.
+enum class Estimator { kNearest, kBilinear };
+
+// "nearest", "bilinear"
+const char* NameOf(Estimator estimator);
+
+// Which pixels of an LF image its rays need, for selection.
+PixelReach ReachOf(Estimator estimator);
+
+// kReference asks the law of every pixel, on one thread: the judge, some 50 times slower.
+enum class CollectBackEnd { kFast, kReference };
+
+struct FrameRays {
+  uint64_t image_count = 0;   // LF images with an accepted ray
+  uint64_t tested_count = 0;  // pixels of their rectangles
+  uint64_t accepted_count = 0;
+};
+
+struct BatchImage {
+  size_t place = 0;  // in the order of the run
+  LfImageId id;
+  LfPixels pixels;
+  // Of a camera with lens distortion; filled by BatchCollector.
+  std::vector<IdealCell> cells;
+  std::shared_ptr<const IdealPixels> ideal_pixels;
+};
+
+// A frame that takes the images of a batch from `first_place` of the order on.
+struct BatchFrame {
+  size_t frame = 0;
+  size_t first_place = 0;
+  bool is_done = false;  // answer of Add(): all of its images are in the plate, not none
+  FrameRays rays;        // answer of Add(), if it is done
+};
+
+// Work that has nothing to do with the batch, done by the same threads at the same time.
+struct OtherItems {
+  size_t count = 0;
+  std::function<void(size_t)> run;
+};
+
+class BatchCollector {
+ public:
+  BatchCollector(const LightField& light_field, std::span<const RenderCamera> frames,
+                 Estimator estimator, CollectBackEnd back_end, ThreadPool& pool,
+                 std::vector<SensorPlate>* plates);
+
+  // Adds the images to the plates of `frames`, and runs the other items. Once *interrupted is true
+  // no further frame is begun, and those begun are finished; other items may then be left out.
+  void Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>& frames,
+           const OtherItems& other_items, const std::atomic<bool>* interrupted);
+
+  // CPU seconds spent on batches so far, all threads, other items left out.
+  double cpu_seconds() const { return static_cast<double>(cpu_ns_.load()) * 1e-9; }
+
+ private:
+  struct Share;
+  PixelRect RectOf(const BatchImage& image, const RenderCamera& frame) const;
+  void UndoDistortion(std::vector<BatchImage>& batch);
+  void AddToFrames(const std::vector<BatchImage>& batch, std::span<BatchFrame> frames,
+                   const OtherItems& other_items, const std::atomic<bool>* interrupted);
+  void AddByReference(const std::vector<BatchImage>& batch, BatchFrame* frame);
+  void ForEachTimed(size_t count, const std::function<void(size_t)>& body);
+
+  const LightField& light_field_;
+  std::span<const RenderCamera> frames_;
+  Estimator estimator_;
+  CollectBackEnd back_end_;
+  ThreadPool& pool_;
+  std::vector<SensorPlate>& plates_;
+  std::vector<std::vector<PlateBand>> bands_;
+  // By index of intrinsics; those of the last batch.
+  std::map<uint32_t, std::shared_ptr<const IdealPixels>> ideal_pixels_;
+  std::atomic<int64_t> cpu_ns_ = 0;
+};
+
+}  // namespace lf
