@@ -22,7 +22,7 @@ Outcome CollectAll(const NoiseStore& store, int threads, CollectOptions options,
   static const LightField field = testing::NoiseField();
   static const std::vector<RenderCamera> frames = NoiseFrames();
   ThreadPool pool(threads);
-  std::vector<SelectedImage> images = SelectImages(field, frames, {seed, {}}, pool);
+  std::vector<SelectedImage> images = SelectImages(field, frames, {seed}, pool);
   std::erase_if(images, [&](const SelectedImage& image) {
     return std::count(left_out.begin(), left_out.end(), image.id.value) > 0;
   });
@@ -51,7 +51,7 @@ std::vector<SensorPlate> CollectDistorted(int threads, const CollectOptions& opt
   const std::vector<RenderCamera> frames = NoiseFrames();
   ThreadPool pool(threads);
   const std::vector<SelectedImage> images =
-      SelectImages(field, frames, {0, {}, ReachOf(options.estimator)}, pool);
+      SelectImages(field, frames, {0, ReachOf(options.estimator)}, pool);
   std::vector<SensorPlate> plates;
   for (size_t i = 0; i < frames.size(); ++i) plates.emplace_back(80, 60);
   const auto statistics =

@@ -88,8 +88,9 @@ Result<std::vector<double>> DetailAt(const std::vector<double>& distances_w,
   CollectOptions options;
   // Interpolated rays leave no holes, which would count as detail.
   if (light_field.encoding.bayer == BayerPattern::kNone) options.estimator = Estimator::kBilinear;
-  const std::vector<SelectedImage> images =
-      SelectImages(light_field, frames, {0, kMostImages, ReachOf(options.estimator)}, pool);
+  std::vector<SelectedImage> images =
+      SelectImages(light_field, frames, {0, ReachOf(options.estimator)}, pool);
+  if (images.size() > kMostImages) images.resize(kMostImages);
   if (images.empty())
     return InputError(
         fmt::format("no LF image lies behind a lens of diameter {:.4g} at the starting camera",

@@ -161,9 +161,11 @@ Result<RenderReport> Renderer::Run() {
 std::vector<SelectedImage> Renderer::Select(std::span<const FrameId> frames) const {
   std::vector<RenderCamera> cameras;
   for (const FrameId frame : frames) cameras.push_back(path_.Camera(frame));
-  return SelectImages(light_field_, cameras,
-                      {options_.seed, options_.max_image_count, ReachOf(options_.estimator)},
-                      pool_);
+  std::vector<SelectedImage> images =
+      SelectImages(light_field_, cameras, {options_.seed, ReachOf(options_.estimator)}, pool_);
+  if (options_.max_image_count && images.size() > *options_.max_image_count)
+    images.resize(*options_.max_image_count);
+  return images;
 }
 
 Result<void> Renderer::RunPass(std::span<const FrameId> frames,

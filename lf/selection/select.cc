@@ -1,7 +1,9 @@
 #include "lf/selection/select.h"
 
 #include <algorithm>
+#include <utility>
 
+#include "lf/core/check.h"
 #include "lf/core/random.h"
 #include "lf/selection/overlap.h"
 
@@ -29,12 +31,15 @@ class CellsOfLast {
 };
 
 SelectedImage Examine(const LightField& light_field, std::span<const RenderCamera> frames,
-                      LfImageId id, std::span<const IdealCell> cells, PixelReach reach) {
+                      std::span<const PlaceRange> places, LfImageId id, uint32_t place,
+                      std::span<const IdealCell> cells, PixelReach reach) {
   const PinholeCamera camera = light_field.Camera(id);
   SelectedImage image;
   image.id = id;
-  for (const RenderCamera& frame : frames) {
-    const PixelRect rect = ContributingRect(camera, frame, cells, reach);
+  image.place = place;
+  for (size_t f = 0; f < frames.size(); ++f) {
+    if (!places.empty() && !places[f].Holds(place)) continue;
+    const PixelRect rect = ContributingRect(camera, frames[f], cells, reach);
     if (rect.empty()) continue;
     image.rect = Bounds(image.rect, rect);
     image.frame_count += 1;
@@ -43,20 +48,27 @@ SelectedImage Examine(const LightField& light_field, std::span<const RenderCamer
   return image;
 }
 
-void Shuffle(std::vector<SelectedImage>* images, uint64_t seed) {
-  const auto key = [seed](LfImageId id) { return RandomBits(seed, kShuffleStream, id.value); };
-  std::sort(images->begin(), images->end(), [&](const SelectedImage& a, const SelectedImage& b) {
-    const uint64_t key_a = key(a.id), key_b = key(b.id);
-    return key_a != key_b ? key_a < key_b : a.id < b.id;
-  });
-}
-
 }  // namespace
+
+std::vector<LfImageId> ImageOrder(size_t image_count, uint64_t seed) {
+  std::vector<std::pair<uint64_t, LfImageId>> keyed(image_count);
+  for (uint32_t i = 0; i < image_count; ++i)
+    keyed[i] = {RandomBits(seed, kShuffleStream, i), LfImageId{i}};
+  std::sort(keyed.begin(), keyed.end());
+  std::vector<LfImageId> order;
+  for (const auto& [key, id] : keyed) order.push_back(id);
+  return order;
+}
 
 std::vector<SelectedImage> SelectImages(const LightField& light_field,
                                         std::span<const RenderCamera> frames,
-                                        const SelectOptions& options, ThreadPool& pool) {
+                                        const SelectOptions& options, ThreadPool& pool,
+                                        std::span<const PlaceRange> places) {
+  LF_CHECK(places.empty() || places.size() == frames.size());
   const size_t camera_count = light_field.size();
+  const std::vector<LfImageId> order = ImageOrder(camera_count, options.seed);
+  std::vector<uint32_t> place_of(camera_count);
+  for (uint32_t place = 0; place < camera_count; ++place) place_of[order[place].value] = place;
   const size_t task_count = (camera_count + kCamerasPerTask - 1) / kCamerasPerTask;
   std::vector<std::vector<SelectedImage>> found(task_count);
   pool.ForEach(task_count, [&](size_t task) {
@@ -64,18 +76,40 @@ std::vector<SelectedImage> SelectImages(const LightField& light_field,
     CellsOfLast cells;
     for (size_t i = task * kCamerasPerTask; i < end; ++i) {
       const LfImageId id{static_cast<uint32_t>(i)};
-      const SelectedImage image =
-          Examine(light_field, frames, id, cells.Of(light_field, id), options.reach);
+      const SelectedImage image = Examine(light_field, frames, places, id, place_of[i],
+                                          cells.Of(light_field, id), options.reach);
       if (image.frame_count > 0) found[task].push_back(image);
     }
   });
   std::vector<SelectedImage> images;
   for (const std::vector<SelectedImage>& part : found)
     images.insert(images.end(), part.begin(), part.end());
-  Shuffle(&images, options.seed);
-  if (options.max_image_count && images.size() > *options.max_image_count)
-    images.resize(*options.max_image_count);
+  std::sort(images.begin(), images.end(),
+            [](const SelectedImage& a, const SelectedImage& b) { return a.place < b.place; });
   return images;
+}
+
+std::vector<PlaceRange> PlacesOfFirst(size_t image_count, const LightField& light_field,
+                                      std::span<const RenderCamera> frames,
+                                      const SelectOptions& options, ThreadPool& pool) {
+  const std::vector<LfImageId> order = ImageOrder(light_field.size(), options.seed);
+  std::vector<PlaceRange> ranges(frames.size());
+  // Each frame walks along the order by itself.
+  pool.ForEach(frames.size(), [&](size_t f) {
+    CellsOfLast cells;
+    size_t found = 0;
+    for (uint32_t place = 0; place < order.size(); ++place) {
+      if (found == image_count) {
+        ranges[f].end = place;
+        return;
+      }
+      const LfImageId id = order[place];
+      const PixelRect rect = ContributingRect(light_field.Camera(id), frames[f],
+                                              cells.Of(light_field, id), options.reach);
+      found += rect.empty() ? 0 : 1;
+    }
+  });
+  return ranges;
 }
 
 }  // namespace lf

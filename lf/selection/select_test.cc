@@ -46,7 +46,7 @@ TEST(Select, TheOrderDependsOnTheSeedAlone) {
   const auto order = [&](int threads, uint64_t seed) {
     ThreadPool pool(threads);
     std::vector<uint32_t> ids;
-    for (const SelectedImage& image : SelectImages(grid, frames, {seed, {}}, pool))
+    for (const SelectedImage& image : SelectImages(grid, frames, {seed}, pool))
       ids.push_back(image.id.value);
     return ids;
   };
@@ -73,13 +73,41 @@ TEST(Select, BoundsHoldTheRectanglesOfAllFrames) {
   }
 }
 
-TEST(Select, TheLimitKeepsTheFirstOfTheOrder) {
-  ThreadPool pool(1);
-  const std::vector<RenderCamera> frames = {Frame(0.05, 0)};
-  const auto all = SelectImages(Grid(), frames, {}, pool);
-  const auto some = SelectImages(Grid(), frames, {0, 10}, pool);
-  ASSERT_EQ(some.size(), 10u);
-  for (size_t i = 0; i < some.size(); ++i) EXPECT_EQ(some[i].id, all[i].id);
+TEST(Select, PlacesAreThoseOfTheWholeLightFieldWhateverTheFrames) {
+  ThreadPool pool(2);
+  const LightField grid = Grid();
+  const std::vector<RenderCamera> frames = {Frame(0.05, 0), Frame(0.03, 0.04)};
+  const std::vector<LfImageId> order = ImageOrder(grid.size(), 3);
+  for (const auto& part : {std::span(frames), std::span(frames).first(1)}) {
+    uint32_t last = 0;
+    for (const SelectedImage& image : SelectImages(grid, part, {3}, pool)) {
+      EXPECT_EQ(order[image.place], image.id);
+      EXPECT_GE(image.place, last);
+      last = image.place + 1;
+    }
+  }
+}
+
+TEST(Select, EveryFrameTakesItsFirstImagesOnly) {
+  ThreadPool pool(2);
+  const LightField grid = Grid();
+  const std::vector<RenderCamera> frames = {Frame(0.05, 0), Frame(0.03, 0.08), Frame(0.0101, 0)};
+  const std::vector<PlaceRange> places = PlacesOfFirst(10, grid, frames, {}, pool);
+  EXPECT_EQ(places[2], PlaceRange{});  // it has five
+  for (size_t f = 0; f < 2; ++f) {
+    const auto alone = std::span(frames).subspan(f, 1);
+    const auto all = SelectImages(grid, alone, {}, pool);
+    const auto some = SelectImages(grid, alone, {}, pool, std::span(places).subspan(f, 1));
+    ASSERT_EQ(some.size(), 10u);
+    for (size_t i = 0; i < some.size(); ++i) EXPECT_EQ(some[i].id, all[i].id);
+    // And the rest, when it goes on from there.
+    const std::vector<PlaceRange> rest = {{places[f].end}};
+    EXPECT_EQ(SelectImages(grid, alone, {}, pool, rest).size(), all.size() - 10);
+  }
+  uint32_t taken = 0;
+  for (const SelectedImage& image : SelectImages(grid, frames, {}, pool, places))
+    taken += image.frame_count;
+  EXPECT_EQ(taken, 25u);
 }
 
 }  // namespace
