@@ -59,6 +59,11 @@ fs::path TemporaryName(const fs::path& path) {
 
 }  // namespace
 
+void AnnounceRead(const fs::path& path) {
+  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (file.get() >= 0) ::posix_fadvise(file.get(), 0, 0, POSIX_FADV_WILLNEED);
+}
+
 Result<std::string> ReadFile(const fs::path& path, size_t limit_bytes) {
   // Not blocking: a named pipe would wait for its writer.
   const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));

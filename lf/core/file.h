@@ -18,6 +18,9 @@ namespace lf {
 Result<std::string> ReadFile(const std::filesystem::path& path,
                              size_t limit_bytes = size_t{4} << 30);
 
+// Asks the system to read the file into its cache soon. Does not wait, and fails silently.
+void AnnounceRead(const std::filesystem::path& path);
+
 // Writes a file under a temporary name in the same folder, flushes it to the disk and renames it:
 // readers see the old file or the new one, never a part. After a failure the old file is intact
 // and the temporary one is gone. A link is followed. kOutput with the system's reason (disk full,

@@ -44,6 +44,7 @@ struct Loading {
 struct Batch {
   size_t begin = 0;
   size_t end = 0;
+  std::vector<size_t> frames;  // that take it, if these are not all
   std::vector<Loading> loading;
   std::vector<BatchImage> images;  // those that are whole, when all are loaded
   bool is_loaded = false;
@@ -67,7 +68,7 @@ class FrameCollector::State {
         is_stopped_(start.size(), false) {
     LF_CHECK(start.size() == frames.size());
     LF_CHECK(options.batch_image_count >= 1);
-    place_ = FirstPlaceWanted(0);
+    place_ = announced_ = FirstPlaceWanted(0);
   }
 
   Result<bool> Step();
@@ -87,7 +88,8 @@ class FrameCollector::State {
   size_t FirstPlaceWanted(size_t from) const;
   Batch BatchFrom(size_t from) const;
   std::vector<BatchFrame> FramesOf(const Batch& batch) const;
-  void Load(Loading* loading);
+  void AnnounceUpTo(size_t end);
+  void Load(const Batch& batch, Loading* loading);
   Result<void> FinishLoading(Batch* batch);
   void Skip(size_t place, const Error& error);
 
@@ -104,8 +106,9 @@ class FrameCollector::State {
   std::atomic<int64_t> load_cpu_ns_ = 0;
   std::atomic<int64_t> load_wall_ns_ = 0;
   size_t place_ = 0;
-  Batch batch_;  // the one to be collected
-  Batch next_;   // the one to be decoded meanwhile
+  size_t announced_ = 0;  // places before are known to the store
+  Batch batch_;           // the one to be collected
+  Batch next_;            // the one to be decoded meanwhile
 };
 
 Result<bool> FrameCollector::State::Step() {
@@ -121,8 +124,14 @@ Result<bool> FrameCollector::State::Step() {
   }
   LF_RETURN_IF_ERROR(FinishLoading(&batch_));
   if (next_.begin == next_.end) next_ = BatchFrom(batch_.end);
-  collector_.Add(batch_.images, takers,
-                 {next_.loading.size(), [this](size_t i) { Load(&next_.loading[i]); }},
+  // Files are read by the system while the images before them are decoded.
+  const auto load_or_announce = [this](size_t i) {
+    if (i > 0)
+      Load(next_, &next_.loading[i - 1]);
+    else
+      AnnounceUpTo(BatchFrom(next_.end).end);
+  };
+  collector_.Add(batch_.images, takers, {1 + next_.loading.size(), load_or_announce},
                  options_.interrupted);
 
   bool all_done = true;
@@ -161,6 +170,8 @@ Batch FrameCollector::State::BatchFrom(size_t from) const {
   batch.end = std::min({order_.size(), decision, batch.begin + count});
   for (size_t place = batch.begin; place < batch.end; ++place)
     batch.loading.push_back({place, std::nullopt});
+  for (const BatchFrame& taker : FramesOf(batch)) batch.frames.push_back(taker.frame);
+  if (batch.frames.size() == progress_.size()) batch.frames.clear();
   return batch;
 }
 
@@ -173,20 +184,29 @@ std::vector<BatchFrame> FrameCollector::State::FramesOf(const Batch& batch) cons
   return frames;
 }
 
-void FrameCollector::State::Load(Loading* loading) {
+void FrameCollector::State::AnnounceUpTo(size_t end) {
+  for (; announced_ < end && !IsInterrupted(); ++announced_) store_.Announce(order_[announced_].id);
+}
+
+void FrameCollector::State::Load(const Batch& batch, Loading* loading) {
   if (loading->pixels || IsInterrupted()) return;
   const Clock::time_point start = Clock::now();
   const ThreadCpuTimer timer;
   const SelectedImage& selected = order_[loading->place];
-  loading->pixels = LoadWithoutThrowing(store_, selected.id, selected.rect,
-                                        light_field_.image_names[selected.id.value]);
+  // Those of all frames where all take it.
+  const PixelRect rect =
+      batch.frames.empty() ? selected.rect : collector_.RectOf(selected.id, batch.frames);
+  loading->pixels = rect.empty() ? LfPixels()
+                                 : LoadWithoutThrowing(store_, selected.id, rect,
+                                                       light_field_.image_names[selected.id.value]);
   load_cpu_ns_ += timer.Nanoseconds();
   load_wall_ns_ += std::chrono::nanoseconds(Clock::now() - start).count();
 }
 
 Result<void> FrameCollector::State::FinishLoading(Batch* batch) {
   if (batch->is_loaded) return {};
-  pool_.ForEach(batch->loading.size(), [&](size_t i) { Load(&batch->loading[i]); });
+  AnnounceUpTo(batch->end);
+  pool_.ForEach(batch->loading.size(), [&](size_t i) { Load(*batch, &batch->loading[i]); });
   for (const Loading& loading : batch->loading)
     if (!loading.pixels) return Interruption();
   for (Loading& loading : batch->loading) {

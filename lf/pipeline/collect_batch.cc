@@ -106,6 +106,16 @@ PixelRect BatchCollector::RectOf(const BatchImage& image, const RenderCamera& fr
       image.pixels.rect);
 }
 
+PixelRect BatchCollector::RectOf(LfImageId id, std::span<const size_t> frames) const {
+  const PinholeCamera camera = light_field_.Camera(id);
+  std::vector<IdealCell> cells;
+  if (camera.intrinsics.has_distortion()) cells = MakeIdealCells(camera.intrinsics);
+  PixelRect rect;
+  for (const size_t frame : frames)
+    rect = Bounds(rect, ContributingRect(camera, frames_[frame], cells, ReachOf(estimator_)));
+  return rect;
+}
+
 // Images of one camera share its ideal pixels, also with the next batch. Only the fast back end of
 // nearest follows arcs.
 void BatchCollector::UndoDistortion(std::vector<BatchImage>& batch) {

@@ -74,6 +74,9 @@ class BatchCollector {
   void Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>& frames,
            const OtherItems& other_items, const std::atomic<bool>* interrupted);
 
+  // The pixels of an LF image that some of `frames` need.
+  PixelRect RectOf(LfImageId id, std::span<const size_t> frames) const;
+
   // CPU seconds spent on batches so far, all threads, other items left out.
   double cpu_seconds() const { return static_cast<double>(cpu_ns_.load()) * 1e-9; }
 

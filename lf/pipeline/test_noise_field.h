@@ -50,14 +50,17 @@ inline std::vector<RenderCamera> NoiseFrames() {
 
 class NoiseStore : public LfImageStore {
  public:
+  void Announce(LfImageId id) const override { announced.push_back(id.value); }
+
   std::vector<uint32_t> broken;
   ErrorKind broken_kind = ErrorKind::kInput;
   std::vector<uint32_t> without_memory;
-  std::function<void(LfImageId)> on_load;
+  std::function<void(LfImageId, const PixelRect&)> on_load;
+  mutable std::vector<uint32_t> announced;  // one thread at a time does
 
   Result<LfPixels> Load(LfImageId id, const PixelRect& rect) const override {
     EXPECT_FALSE(rect.empty());
-    if (on_load) on_load(id);
+    if (on_load) on_load(id, rect);
     if (std::count(broken.begin(), broken.end(), id.value) > 0)
       return Error{broken_kind, "image" + std::to_string(id.value) + ": broken"};
     if (std::count(without_memory.begin(), without_memory.end(), id.value) > 0)

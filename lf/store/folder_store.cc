@@ -11,6 +11,7 @@
 #include <variant>
 
 #include "lf/capture/image_fit.h"
+#include "lf/core/file.h"
 #include "lf/imageio/image_file.h"
 #include "lf/imageio/upright.h"
 
@@ -132,6 +133,8 @@ FolderStore::FolderStore(const LightField& light_field)
     : light_field_(light_field),
       table_8bit_(TableIfItFits(light_field.encoding, 8)),
       table_16bit_(TableIfItFits(light_field.encoding, 16)) {}
+
+void FolderStore::Announce(LfImageId id) const { AnnounceRead(light_field_.ImagePath(id)); }
 
 Result<LfPixels> FolderStore::Load(LfImageId id, const PixelRect& rect) const {
   LF_CHECK(id.value < light_field_.size());

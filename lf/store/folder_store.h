@@ -28,6 +28,8 @@ class FolderStore : public LfImageStore {
   // (lf_black_level, lf_white_level) beyond the file's bits, a mask of another size, a camera raw
   // file of another Bayer pattern.
   Result<LfPixels> Load(LfImageId id, const PixelRect& rect) const override;
+  // Of the image's file; a mask file is not read ahead.
+  void Announce(LfImageId id) const override;
 
  private:
   const LightField& light_field_;

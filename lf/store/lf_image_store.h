@@ -17,6 +17,10 @@ class LfImageStore {
   // kInput: missing, broken or of another size than the calibration says; the message names the
   // file. The caller decides whether the run goes on without it.
   virtual Result<LfPixels> Load(LfImageId id, const PixelRect& rect) const = 0;
+
+  // The image will be loaded soon: the disk may begin to read it. Does not wait; failing is silent,
+  // for Load() will say what is wrong. May be called by many threads at the same time.
+  virtual void Announce(LfImageId /*id*/) const {}
 };
 
 }  // namespace lf
