@@ -36,14 +36,15 @@ Result<LfPixels> LoadWithoutThrowing(const LfImageStore& store, LfImageId id, co
 
 // An LF image of a batch while it is decoded.
 struct Loading {
-  size_t place = 0;
+  size_t index = 0;  // in the order
   std::optional<Result<LfPixels>> pixels;
 };
 
-// Places [begin, end) of the order.
+// LF images [begin, end) of the order.
 struct Batch {
   size_t begin = 0;
   size_t end = 0;
+  uint32_t place_end = 0;      // with it, all places before are done
   std::vector<size_t> frames;  // that take it, if these are not all
   std::vector<Loading> loading;
   std::vector<BatchImage> images;  // those that are whole, when all are loaded
@@ -56,7 +57,7 @@ class FrameCollector::State {
  public:
   State(const LightField& light_field, const LfImageStore& store,
         std::span<const RenderCamera> frames, std::span<const SelectedImage> order,
-        std::span<const FrameProgress> start, const CollectOptions& options, ThreadPool& pool,
+        std::span<const PlaceRange> places, const CollectOptions& options, ThreadPool& pool,
         std::vector<SensorPlate>* plates)
       : light_field_(light_field),
         store_(store),
@@ -64,11 +65,14 @@ class FrameCollector::State {
         options_(options),
         pool_(pool),
         collector_(light_field, frames, options.estimator, options.back_end, pool, plates),
-        progress_(start.begin(), start.end()),
-        is_stopped_(start.size(), false) {
-    LF_CHECK(start.size() == frames.size());
+        places_(places.begin(), places.end()),
+        progress_(frames.size()),
+        is_stopped_(frames.size(), false) {
+    if (places_.empty()) places_.resize(frames.size());
+    LF_CHECK(places_.size() == frames.size());
+    for (size_t f = 0; f < places_.size(); ++f) progress_[f].places_done = places_[f].begin;
     LF_CHECK(options.batch_image_count >= 1);
-    place_ = announced_ = FirstPlaceWanted(0);
+    images_done_ = announced_ = FirstWanted(0);
   }
 
   Result<bool> Step();
@@ -77,21 +81,24 @@ class FrameCollector::State {
   std::vector<bool>& is_stopped() { return is_stopped_; }
   const std::vector<SkippedImage>& skipped() const { return skipped_; }
   const CollectTimes& times() const { return times_; }
-  size_t place() const { return place_; }
+  size_t images_done() const { return images_done_; }
 
  private:
   bool IsInterrupted() const { return options_.interrupted != nullptr && *options_.interrupted; }
   Error Interruption() const {
     return {ErrorKind::kInterrupted,
-            fmt::format("interrupted after {} of {} LF images", place_, order_.size())};
+            fmt::format("interrupted after {} of {} LF images", images_done_, order_.size())};
   }
-  size_t FirstPlaceWanted(size_t from) const;
+  bool Takes(size_t frame) const {
+    return !is_stopped_[frame] && progress_[frame].places_done < places_[frame].end;
+  }
+  size_t FirstWanted(size_t from) const;
   Batch BatchFrom(size_t from) const;
   std::vector<BatchFrame> FramesOf(const Batch& batch) const;
   void AnnounceUpTo(size_t end);
   void Load(const Batch& batch, Loading* loading);
   Result<void> FinishLoading(Batch* batch);
-  void Skip(size_t place, const Error& error);
+  void Skip(const SelectedImage& image, const Error& error);
 
   const LightField& light_field_;
   const LfImageStore& store_;
@@ -99,14 +106,15 @@ class FrameCollector::State {
   const CollectOptions options_;
   ThreadPool& pool_;
   BatchCollector collector_;
+  std::vector<PlaceRange> places_;
   std::vector<FrameProgress> progress_;
   std::vector<bool> is_stopped_;
   std::vector<SkippedImage> skipped_;
   CollectTimes times_;
   std::atomic<int64_t> load_cpu_ns_ = 0;
   std::atomic<int64_t> load_wall_ns_ = 0;
-  size_t place_ = 0;
-  size_t announced_ = 0;  // places before are known to the store
+  size_t images_done_ = 0;
+  size_t announced_ = 0;  // LF images of the order that the store knows of
   Batch batch_;           // the one to be collected
   Batch next_;            // the one to be decoded meanwhile
 };
@@ -116,8 +124,8 @@ Result<bool> FrameCollector::State::Step() {
   std::vector<BatchFrame> takers = FramesOf(batch_);
   // Frames may have been stopped since the next batch was planned.
   while (takers.empty()) {
-    if (batch_.end > batch_.begin) place_ = batch_.end;
-    batch_ = next_.end > next_.begin ? std::move(next_) : BatchFrom(place_);
+    if (batch_.end > batch_.begin) images_done_ = batch_.end;
+    batch_ = next_.end > next_.begin ? std::move(next_) : BatchFrom(images_done_);
     next_ = {};
     if (batch_.begin == batch_.end) return false;
     takers = FramesOf(batch_);
@@ -139,7 +147,7 @@ Result<bool> FrameCollector::State::Step() {
     all_done = all_done && taker.is_done;
     if (!taker.is_done) continue;
     FrameProgress& progress = progress_[taker.frame];
-    progress.places_done = batch_.end;
+    progress.places_done = std::min(batch_.place_end, places_[taker.frame].end);
     progress.rays.image_count += taker.rays.image_count;
     progress.rays.tested_count += taker.rays.tested_count;
     progress.rays.accepted_count += taker.rays.accepted_count;
@@ -149,27 +157,35 @@ Result<bool> FrameCollector::State::Step() {
   times_.collect_cpu_s = collector_.cpu_seconds();
   times_.wall_s += SecondsSince(start);
   if (!all_done) return Interruption();
-  place_ = batch_.end;
+  images_done_ = batch_.end;
   batch_ = {};
   return true;
 }
 
-// The first place from `from` on that a frame has still to take.
-size_t FrameCollector::State::FirstPlaceWanted(size_t from) const {
-  size_t first = order_.size();
+// The first LF image from `from` on that a frame has still to take.
+size_t FrameCollector::State::FirstWanted(size_t from) const {
+  uint32_t place = UINT32_MAX;
   for (size_t f = 0; f < progress_.size(); ++f)
-    if (!is_stopped_[f]) first = std::min(first, progress_[f].places_done);
-  return std::max(first, std::min(from, order_.size()));
+    if (Takes(f)) place = std::min(place, progress_[f].places_done);
+  if (place == UINT32_MAX) return order_.size();
+  const auto first = std::lower_bound(
+      order_.begin(), order_.end(), place,
+      [](const SelectedImage& image, uint32_t least) { return image.place < least; });
+  return std::max(from, static_cast<size_t>(first - order_.begin()));
 }
 
 Batch FrameCollector::State::BatchFrom(size_t from) const {
   Batch batch;
-  batch.begin = FirstPlaceWanted(from);
-  const size_t decision = (batch.begin / kDecisionPlaces + 1) * kDecisionPlaces;
-  const size_t count = static_cast<size_t>(options_.batch_image_count);
-  batch.end = std::min({order_.size(), decision, batch.begin + count});
-  for (size_t place = batch.begin; place < batch.end; ++place)
-    batch.loading.push_back({place, std::nullopt});
+  batch.begin = batch.end = FirstWanted(from);
+  if (batch.begin == order_.size()) return batch;
+  const uint32_t decision = (order_[batch.begin].place / kDecisionPlaces + 1) * kDecisionPlaces;
+  const size_t most = batch.begin + static_cast<size_t>(options_.batch_image_count);
+  for (; batch.end < std::min(order_.size(), most); ++batch.end) {
+    if (order_[batch.end].place >= decision) break;
+    batch.loading.push_back({batch.end, std::nullopt});
+  }
+  batch.place_end = batch.end < order_.size() ? std::min(decision, order_[batch.end].place)
+                                              : static_cast<uint32_t>(light_field_.size());
   for (const BatchFrame& taker : FramesOf(batch)) batch.frames.push_back(taker.frame);
   if (batch.frames.size() == progress_.size()) batch.frames.clear();
   return batch;
@@ -179,8 +195,8 @@ Batch FrameCollector::State::BatchFrom(size_t from) const {
 std::vector<BatchFrame> FrameCollector::State::FramesOf(const Batch& batch) const {
   std::vector<BatchFrame> frames;
   for (size_t f = 0; f < progress_.size(); ++f)
-    if (!is_stopped_[f] && progress_[f].places_done < batch.end)
-      frames.push_back({f, progress_[f].places_done, false, {}});
+    if (Takes(f) && progress_[f].places_done < batch.place_end)
+      frames.push_back({f, {progress_[f].places_done, places_[f].end}, false, {}});
   return frames;
 }
 
@@ -192,7 +208,7 @@ void FrameCollector::State::Load(const Batch& batch, Loading* loading) {
   if (loading->pixels || IsInterrupted()) return;
   const Clock::time_point start = Clock::now();
   const ThreadCpuTimer timer;
-  const SelectedImage& selected = order_[loading->place];
+  const SelectedImage& selected = order_[loading->index];
   // Those of all frames where all take it.
   const PixelRect rect =
       batch.frames.empty() ? selected.rect : collector_.RectOf(selected.id, batch.frames);
@@ -210,36 +226,36 @@ Result<void> FrameCollector::State::FinishLoading(Batch* batch) {
   for (const Loading& loading : batch->loading)
     if (!loading.pixels) return Interruption();
   for (Loading& loading : batch->loading) {
+    const SelectedImage& image = order_[loading.index];
     if (*loading.pixels) {
-      const LfImageId id = order_[loading.place].id;
-      batch->images.push_back({loading.place, id, **std::move(loading.pixels), {}, nullptr});
+      batch->images.push_back({image.id, image.place, **std::move(loading.pixels), {}, nullptr});
       continue;
     }
     // Only the image itself may be at fault: what the machine lacks is no reason to go on.
     const Error& error = loading.pixels->error();
     if (options_.strict || error.kind != ErrorKind::kInput) return error;
-    Skip(loading.place, error);
+    Skip(image, error);
   }
   batch->loading.clear();
   batch->is_loaded = true;
   return {};
 }
 
-void FrameCollector::State::Skip(size_t place, const Error& error) {
+void FrameCollector::State::Skip(const SelectedImage& image, const Error& error) {
   // The first are told at once; a report has them all.
   constexpr size_t kTold = 10;
   if (skipped_.size() < kTold) LogWarning("LF image skipped: {}", error.message);
   if (skipped_.size() == kTold)
     LogWarning("more LF images are broken; they are counted and reported at the end");
-  skipped_.push_back({light_field_.image_names[order_[place].id.value], error.message, place});
+  skipped_.push_back({light_field_.image_names[image.id.value], error.message, image.place});
 }
 
 FrameCollector::FrameCollector(const LightField& light_field, const LfImageStore& store,
                                std::span<const RenderCamera> frames,
                                std::span<const SelectedImage> order,
-                               std::span<const FrameProgress> start, const CollectOptions& options,
+                               std::span<const PlaceRange> places, const CollectOptions& options,
                                ThreadPool& pool, std::vector<SensorPlate>* plates)
-    : state_(std::make_unique<State>(light_field, store, frames, order, start, options, pool,
+    : state_(std::make_unique<State>(light_field, store, frames, order, places, options, pool,
                                      plates)) {}
 FrameCollector::~FrameCollector() = default;
 
@@ -247,7 +263,7 @@ Result<bool> FrameCollector::Step() { return state_->Step(); }
 void FrameCollector::Stop(size_t frame) { state_->is_stopped()[frame] = true; }
 std::span<const FrameProgress> FrameCollector::frames() const { return state_->progress(); }
 std::span<const SkippedImage> FrameCollector::skipped() const { return state_->skipped(); }
-size_t FrameCollector::place() const { return state_->place(); }
+size_t FrameCollector::images_done() const { return state_->images_done(); }
 const CollectTimes& FrameCollector::times() const { return state_->times(); }
 
 Result<CollectStatistics> Collect(const LightField& light_field, const LfImageStore& store,
@@ -257,12 +273,12 @@ Result<CollectStatistics> Collect(const LightField& light_field, const LfImageSt
                                   std::vector<SensorPlate>* plates,
                                   const std::function<void(const CollectProgress&)>& progress) {
   const std::vector<FrameProgress> start(frames.size());
-  FrameCollector collector(light_field, store, frames, order, start, options, pool, plates);
+  FrameCollector collector(light_field, store, frames, order, {}, options, pool, plates);
   CollectProgress done;
   while (true) {
     LF_ASSIGN_OR_RETURN(const bool stepped, collector.Step());
     if (!stepped) break;
-    for (; done.image_count < collector.place(); ++done.image_count)
+    for (; done.image_count < collector.images_done(); ++done.image_count)
       done.tested_count += order[done.image_count].ray_count;
     if (progress) progress(done);
   }

@@ -32,16 +32,17 @@ struct CollectOptions {
   const std::atomic<bool>* interrupted = nullptr;  // looked at between items of about 10 ms
 };
 
-// How far a frame is: its plate holds the rays of places [0, places_done) of the order.
+// How far a frame is: of the places it takes, its plate holds the rays of all below places_done,
+// and of no other. Broken LF images count as done.
 struct FrameProgress {
-  size_t places_done = 0;  // broken LF images included
-  FrameRays rays;          // in all of these places
+  uint32_t places_done = 0;
+  FrameRays rays;  // that were added by this collector
 };
 
 struct SkippedImage {
   std::string name;
   std::string reason;
-  size_t place = 0;  // in the order
+  uint32_t place = 0;  // in the order
 };
 
 struct CollectTimes {
@@ -60,14 +61,16 @@ struct CollectTimes {
 class FrameCollector {
  public:
   // Every stop rule may be decided where places_done is a multiple of it: no batch goes across.
-  static constexpr size_t kDecisionPlaces = 64;
+  static constexpr uint32_t kDecisionPlaces = 64;
 
-  // start   one per frame: none done, or what its plate holds already
+  // order   by ascending places, with all LF images that the frames take, their rectangles over
+  //         the frames that take them
+  // places  what each frame takes: begin is how far its plate is already; empty: every frame all
   // plates  one per frame; only Step() writes them
-  // All that is referred to must outlive the collector; `options` and `start` are copied.
+  // All that is referred to must outlive the collector; `options` and `places` are copied.
   FrameCollector(const LightField& light_field, const LfImageStore& store,
                  std::span<const RenderCamera> frames, std::span<const SelectedImage> order,
-                 std::span<const FrameProgress> start, const CollectOptions& options,
+                 std::span<const PlaceRange> places, const CollectOptions& options,
                  ThreadPool& pool, std::vector<SensorPlate>* plates);
   ~FrameCollector();
   FrameCollector(const FrameCollector&) = delete;
@@ -88,8 +91,8 @@ class FrameCollector {
   std::span<const FrameProgress> frames() const;
   // Broken images, by place; of this object's steps only.
   std::span<const SkippedImage> skipped() const;
-  // The end of the last batch, or where the first one begins: no frame is farther.
-  size_t place() const;
+  // Of the order, how many LF images are in all plates that take them.
+  size_t images_done() const;
   const CollectTimes& times() const;
 
  private:

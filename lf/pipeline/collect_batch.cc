@@ -151,7 +151,7 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
   ForEachTimed(shares.size(), [&](size_t i) {
     const BatchFrame& taker = frames[i / batch.size()];
     const BatchImage& image = batch[i % batch.size()];
-    if (image.place < taker.first_place) return;
+    if (!taker.places.Holds(image.place)) return;
     const RenderCamera& frame = frames_[taker.frame];
     const PinholeCamera camera = light_field_.Camera(image.id);
     shares[i].rect = RectOf(image, frame);
@@ -208,7 +208,7 @@ void BatchCollector::AddByReference(const std::vector<BatchImage>& batch, BatchF
   SensorPlate& plate = plates_[frame->frame];
   for (const BatchImage& image : batch) {
     const PixelRect rect = RectOf(image, camera);
-    if (rect.empty() || image.place < frame->first_place) continue;
+    if (rect.empty() || !frame->places.Holds(image.place)) continue;
     const PinholeCamera lf_camera = light_field_.Camera(image.id);
     const uint64_t accepted = estimator_ == Estimator::kBilinear
                                   ? GatherReference(lf_camera, image.pixels, camera, &plate)

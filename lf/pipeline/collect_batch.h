@@ -18,6 +18,7 @@
 #include "lf/core/parallel.h"
 #include "lf/plate/sensor_plate.h"
 #include "lf/selection/overlap.h"
+#include "lf/selection/select.h"
 
 namespace lf {
 
@@ -41,19 +42,19 @@ struct FrameRays {
 };
 
 struct BatchImage {
-  size_t place = 0;  // in the order of the run
   LfImageId id;
+  uint32_t place = 0;  // in the order of the LF images
   LfPixels pixels;
   // Of a camera with lens distortion; filled by BatchCollector.
   std::vector<IdealCell> cells;
   std::shared_ptr<const IdealPixels> ideal_pixels;
 };
 
-// A frame that takes the images of a batch from `first_place` of the order on.
+// A frame that takes those images of a batch whose places it says.
 struct BatchFrame {
   size_t frame = 0;
-  size_t first_place = 0;
-  bool is_done = false;  // answer of Add(): all of its images are in the plate, not none
+  PlaceRange places;
+  bool is_done = false;  // answer of Add(): all of these images are in the plate, or none
   FrameRays rays;        // answer of Add(), if it is done
 };
 

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "lf/pipeline/collect.h"
@@ -17,11 +18,11 @@ struct Job {
   const LightField field = testing::NoiseField(kSide);
   const std::vector<RenderCamera> frames = testing::NoiseFrames();
   ThreadPool pool{2};
-  const std::vector<SelectedImage> order = SelectImages(field, frames, {3, {}}, pool);
+  const std::vector<SelectedImage> order = SelectImages(field, frames, {3, PixelReach::kOwn}, pool);
   testing::NoiseStore store;
   CollectOptions options;
   std::vector<SensorPlate> plates = EmptyPlates();
-  std::vector<FrameProgress> start = std::vector<FrameProgress>(frames.size());
+  std::vector<PlaceRange> places = std::vector<PlaceRange>(frames.size());
 
   std::vector<SensorPlate> EmptyPlates() const {
     std::vector<SensorPlate> empty;
@@ -29,28 +30,39 @@ struct Job {
     return empty;
   }
   FrameCollector Collector() {
-    return FrameCollector(field, store, frames, order, start, options, pool, &plates);
+    return FrameCollector(field, store, frames, order, places, options, pool, &plates);
   }
 };
 
-// Frame f alone, of places [begin, end) of the order.
-SensorPlate PlateOf(Job& job, size_t f, size_t end, FrameRays* rays) {
+// Frame f alone, of places [0, end) of the order.
+SensorPlate PlateOf(Job& job, size_t f, uint32_t end, FrameRays* rays) {
   std::vector<SensorPlate> plates;
   plates.emplace_back(80, 60);
+  std::vector<SelectedImage> images = job.order;
+  std::erase_if(images, [&](const SelectedImage& image) { return image.place >= end; });
   CollectOptions options = job.options;
   options.interrupted = nullptr;
+  const auto on_load = std::exchange(job.store.on_load, nullptr);
   const Result<CollectStatistics> statistics =
-      Collect(job.field, job.store, std::span(job.frames).subspan(f, 1),
-              std::span(job.order).first(end), options, job.pool, &plates, nullptr);
+      Collect(job.field, job.store, std::span(job.frames).subspan(f, 1), images, options, job.pool,
+              &plates, nullptr);
+  job.store.on_load = on_load;
   EXPECT_TRUE(statistics);
   *rays = statistics->frames[0];
   return std::move(plates[0]);
 }
 
-void ExpectConsistent(Job& job, std::span<const FrameProgress> progress) {
+void ExpectPlates(Job& job, std::span<const FrameProgress> progress) {
   for (size_t f = 0; f < job.frames.size(); ++f) {
     FrameRays rays;
     EXPECT_EQ(job.plates[f], PlateOf(job, f, progress[f].places_done, &rays)) << f;
+  }
+}
+
+void ExpectRays(Job& job, std::span<const FrameProgress> progress) {
+  for (size_t f = 0; f < job.frames.size(); ++f) {
+    FrameRays rays;
+    PlateOf(job, f, progress[f].places_done, &rays);
     EXPECT_EQ(progress[f].rays.image_count, rays.image_count);
     EXPECT_EQ(progress[f].rays.tested_count, rays.tested_count);
     EXPECT_EQ(progress[f].rays.accepted_count, rays.accepted_count);
@@ -62,45 +74,68 @@ TEST(FrameCollector, NoBatchGoesAcrossADecision) {
     Job job;
     job.options.batch_image_count = batch_image_count;
     FrameCollector collector = job.Collector();
-    std::vector<size_t> ends;
+    std::vector<uint32_t> ends;
+    size_t images_done = 0;
     while (*collector.Step()) {
-      ends.push_back(collector.place());
+      ends.push_back(collector.frames()[0].places_done);
       for (const FrameProgress& frame : collector.frames())
-        EXPECT_EQ(frame.places_done, collector.place());
+        EXPECT_EQ(frame.places_done, ends.back());
+      EXPECT_LE(collector.images_done() - images_done, static_cast<size_t>(batch_image_count));
+      images_done = collector.images_done();
+      const size_t images_before =
+          std::count_if(job.order.begin(), job.order.end(),
+                        [&](const SelectedImage& image) { return image.place < ends.back(); });
+      EXPECT_EQ(images_done, images_before);
     }
-    for (const size_t decision : {size_t{64}, size_t{128}, job.order.size()})
+    for (const uint32_t decision : {64u, 128u, kSide * kSide})
       EXPECT_EQ(std::count(ends.begin(), ends.end(), decision), 1) << batch_image_count;
-    ExpectConsistent(job, collector.frames());
+    ExpectPlates(job, collector.frames());
+    ExpectRays(job, collector.frames());
   }
 }
 
 TEST(FrameCollector, FramesThatStartApartCatchUp) {
   Job job;
   job.options.batch_image_count = 10;
-  const size_t places[] = {37, 0, 64};
+  const uint32_t places[] = {37, 0, 64};
   for (size_t f = 0; f < 3; ++f) {
-    job.start[f].places_done = places[f];
-    job.plates[f] = PlateOf(job, f, places[f], &job.start[f].rays);
+    job.places[f].begin = places[f];
+    FrameRays rays;
+    job.plates[f] = PlateOf(job, f, places[f], &rays);
   }
-  std::atomic<int> load_count = 0;
+  std::atomic<size_t> load_count = 0;
   job.store.on_load = [&](LfImageId, const PixelRect&) { ++load_count; };
   FrameCollector collector = job.Collector();
   while (*collector.Step()) continue;
   // Once each, but for those that no frame behind needs.
-  EXPECT_LE(load_count, static_cast<int>(job.order.size()));
-  EXPECT_GT(load_count, static_cast<int>(job.order.size()) - 37);
-  ExpectConsistent(job, collector.frames());
+  EXPECT_LE(load_count, job.order.size());
+  EXPECT_GT(load_count, job.order.size() - 37);
+  ExpectPlates(job, collector.frames());
+}
+
+TEST(FrameCollector, FramesThatEndApart) {
+  Job job;
+  const uint32_t ends[] = {37, UINT32_MAX, 64};
+  for (size_t f = 0; f < 3; ++f) job.places[f].end = ends[f];
+  FrameCollector collector = job.Collector();
+  while (*collector.Step()) continue;
+  EXPECT_EQ(collector.frames()[0].places_done, 37u);
+  EXPECT_EQ(collector.frames()[1].places_done, kSide * kSide);
+  EXPECT_EQ(collector.frames()[2].places_done, 64u);
+  ExpectPlates(job, collector.frames());
+  ExpectRays(job, collector.frames());
 }
 
 TEST(FrameCollector, WhatNoFrameWantsIsNotRead) {
   Job job;
-  for (FrameProgress& frame : job.start) frame.places_done = 100;
+  for (PlaceRange& range : job.places) range.begin = 100;
   std::atomic<int> load_count = 0;
   job.store.on_load = [&](LfImageId, const PixelRect&) { ++load_count; };
   FrameCollector collector = job.Collector();
-  EXPECT_EQ(collector.place(), 100u);
   while (*collector.Step()) continue;
-  EXPECT_EQ(load_count, static_cast<int>(job.order.size()) - 100);
+  EXPECT_EQ(load_count,
+            std::count_if(job.order.begin(), job.order.end(),
+                          [](const SelectedImage& image) { return image.place >= 100; }));
 }
 
 TEST(FrameCollector, TheNextBatchIsDecodedMeanwhile) {
@@ -129,15 +164,14 @@ TEST(FrameCollector, ImagesAreAnnouncedOnceAndAhead) {
 
 TEST(FrameCollector, OnlyWhatFramesStillNeedIsDecoded) {
   Job job;
-  for (const size_t f : {size_t{0}, size_t{2}}) job.start[f].places_done = job.order.size();
+  for (const size_t f : {size_t{0}, size_t{2}}) job.places[f].begin = kSide * kSide;
   job.store.on_load = [&](LfImageId id, const PixelRect& rect) {
     EXPECT_EQ(rect, ContributingRect(job.field.Camera(id), job.frames[1]));
   };
   FrameCollector collector = job.Collector();
   while (*collector.Step()) continue;
-  job.store.on_load = nullptr;
   FrameRays rays;
-  EXPECT_EQ(job.plates[1], PlateOf(job, 1, job.order.size(), &rays));
+  EXPECT_EQ(job.plates[1], PlateOf(job, 1, kSide * kSide, &rays));
 }
 
 TEST(FrameCollector, AStoppedFrameTakesNoMore) {
@@ -152,7 +186,8 @@ TEST(FrameCollector, AStoppedFrameTakesNoMore) {
   collector.Stop(0);
   collector.Stop(2);
   EXPECT_FALSE(*collector.Step());
-  ExpectConsistent(job, collector.frames());
+  ExpectPlates(job, collector.frames());
+  ExpectRays(job, collector.frames());
 }
 
 TEST(FrameCollector, InterruptedAnywhereEveryFrameIsConsistent) {
@@ -163,36 +198,35 @@ TEST(FrameCollector, InterruptedAnywhereEveryFrameIsConsistent) {
     Job job;
     std::atomic<bool> interrupted = false;
     job.options.interrupted = &interrupted;
-    std::vector<FrameProgress> reached;
-    {
-      FrameCollector collector = job.Collector();
-      std::thread user([&] {
-        std::this_thread::sleep_for(std::chrono::microseconds(delay_us));
-        interrupted = true;
-      });
-      Result<bool> step = true;
-      while (step && *step) step = collector.Step();
-      user.join();
-      if (!step) {
-        EXPECT_EQ(step.error().kind, ErrorKind::kInterrupted);
-      }
-      reached.assign(collector.frames().begin(), collector.frames().end());
-      ExpectConsistent(job, reached);
-      // This one may go on, after a look at the plates, say.
-      interrupted = delay_us % 2000 != 0;
-      if (!interrupted) {
-        while (*collector.Step()) continue;
-        reached.assign(collector.frames().begin(), collector.frames().end());
-      }
-    }
-    // So may another.
-    interrupted = false;
-    job.start = reached;
     FrameCollector collector = job.Collector();
-    while (*collector.Step()) continue;
+    std::thread user([&] {
+      std::this_thread::sleep_for(std::chrono::microseconds(delay_us));
+      interrupted = true;
+    });
+    Result<bool> step = true;
+    while (step && *step) step = collector.Step();
+    user.join();
+    if (!step) {
+      EXPECT_EQ(step.error().kind, ErrorKind::kInterrupted);
+    }
+    ExpectPlates(job, collector.frames());
+    ExpectRays(job, collector.frames());
+
+    // This one may go on, after a look at the plates, or another.
+    interrupted = false;
+    if (delay_us % 2000 == 0) {
+      while (*collector.Step()) continue;
+      ExpectRays(job, collector.frames());
+    } else {
+      for (size_t f = 0; f < 3; ++f) job.places[f].begin = collector.frames()[f].places_done;
+      FrameCollector another = job.Collector();
+      while (*another.Step()) continue;
+      for (size_t f = 0; f < 3; ++f)
+        EXPECT_EQ(
+            collector.frames()[f].rays.accepted_count + another.frames()[f].rays.accepted_count,
+            of_all.frames()[f].rays.accepted_count);
+    }
     EXPECT_EQ(job.plates, whole.plates);
-    for (size_t f = 0; f < 3; ++f)
-      EXPECT_EQ(collector.frames()[f].rays.accepted_count, of_all.frames()[f].rays.accepted_count);
   }
 }
 
@@ -201,10 +235,9 @@ TEST(FrameCollector, BrokenImagesArePlaces) {
   job.store.broken = {job.order[5].id.value, job.order[70].id.value};
   FrameCollector collector = job.Collector();
   while (*collector.Step()) continue;
-  EXPECT_EQ(collector.frames()[0].places_done, job.order.size());
   ASSERT_EQ(collector.skipped().size(), 2u);
-  EXPECT_EQ(collector.skipped()[0].place, 5u);
-  EXPECT_EQ(collector.skipped()[1].place, 70u);
+  EXPECT_EQ(collector.skipped()[0].place, job.order[5].place);
+  EXPECT_EQ(collector.skipped()[1].place, job.order[70].place);
 }
 
 TEST(FrameCollector, TellsWhereTheTimeWent) {
