@@ -15,7 +15,7 @@ target_include_directories(lf_installed INTERFACE $<INSTALL_INTERFACE:${CMAKE_IN
 # An archive carries nothing of what it needs: whoever links it links these. OpenImageIO by name,
 # see LfDependencies.cmake.
 target_link_libraries(lf_installed PUBLIC Eigen3::Eigen fmt::fmt TBB::tbb Threads::Threads yaml-cpp
-                                          OpenImageIO OpenImageIO_Util)
+                                          hwy::hwy OpenImageIO OpenImageIO_Util)
 install(TARGETS lf_installed EXPORT lfrendertoolsTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 

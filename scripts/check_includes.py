@@ -15,6 +15,7 @@ OWNERS = {
     "yaml-cpp/": {"path"},
     "nlohmann/": {"calibration", "native", "pipeline"},
     "tbb/": {"core"},
+    "hwy/": {"collection"},
     "CLI/": set(),
 }
 

@@ -30,6 +30,7 @@ struct LfPixels {
   }
   // No ray from the pixel at this place of `rect`.
   void Mask(int column, int row) {
+    any_masked = true;
     if (bayer == BayerPattern::kNone) {
       for (int lane = 0; lane < kRgbLanes; ++lane) radiance.at(column, row, lane) = 0;
       return;
@@ -43,7 +44,8 @@ struct LfPixels {
   Image<uint16_t> radiance;
   BayerPattern bayer = BayerPattern::kNone;  // at pixel (0, 0) of the whole LF image
   Image<uint8_t> mosaic_mask;  // empty, or of a mosaic [height][width]: 0 = no ray from this pixel
-  PixelRect rect;              // the part of the LF image that these pixels are
+  bool any_masked = false;
+  PixelRect rect;  // the part of the LF image that these pixels are
 
   size_t size_bytes() const { return radiance.size_bytes() + mosaic_mask.size_bytes(); }
 };

@@ -18,6 +18,7 @@
 #include "lf/capture/lf_pixels.h"
 #include "lf/core/geometry.h"
 #include "lf/plate/sensor_plate.h"
+#include "lf/plate/tile_sums.h"
 
 namespace lf {
 
@@ -42,9 +43,9 @@ class GatherPlan {
  public:
   GatherPlan(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
 
-  // Adds the rays of the band's elements. Returns how many. Bands of one plate may be written at
-  // the same time by different threads; the same bits for any cut into bands.
-  uint64_t GatherBand(const LfPixels& pixels, PlateBand* band) const;
+  // Adds the rays of the tile's elements to the sums, which the caller flushes. Returns how many.
+  // The same bits for any cut into tiles.
+  uint64_t GatherTile(const LfPixels& pixels, TileSums* sums) const;
 
  private:
   struct Chunk;

@@ -103,14 +103,16 @@ void GatherPlan::FindRays(int y, int x_begin, int count, Chunk* chunk) const {
   }
 }
 
-uint64_t GatherPlan::GatherBand(const LfPixels& pixels, PlateBand* band) const {
-  band->Reserve(1);  // at most one ray for each element
+uint64_t GatherPlan::GatherTile(const LfPixels& pixels, TileSums* sums) const {
+  sums->Reserve(1);  // at most one ray for each element
+  const PixelRect& rect = sums->tile().rect();
   uint64_t accepted = 0;
   Chunk chunk;
-  for (int y = band->y_begin(); y < band->y_end(); ++y) {
-    uint64_t* const row = band->row(y);
-    for (int x = 0; x < band->width(); x += kChunk) {
-      const int count = std::min(kChunk, band->width() - x);
+  for (int y = rect.y_begin; y < rect.y_end; ++y) {
+    TileSums::Element* const row =
+        sums->elements() + static_cast<ptrdiff_t>(y - rect.y_begin) * rect.width();
+    for (int x = rect.x_begin; x < rect.x_end; x += kChunk) {
+      const int count = std::min(kChunk, rect.x_end - x);
       FindRays(y, x, count, &chunk);
       for (int i = 0; i < count; ++i) {
         if (!chunk.accepted[i]) continue;
@@ -119,9 +121,10 @@ uint64_t GatherPlan::GatherBand(const LfPixels& pixels, PlateBand* band) const {
         const auto value = InterpolatePixels(pixels, intrinsics_.width_px, intrinsics_.height_px,
                                              chunk.x[i], chunk.y[i]);
         if (!value) continue;
-        uint64_t* const element = row + static_cast<size_t>(x + i) * SensorPlate::kChannels;
+        uint32_t* const element = row[x + i - rect.x_begin].rgb_rays;
         for (int channel = 0; channel < SensorPlate::kChannels; ++channel)
-          element[channel] += SensorPlate::kOneRay | (*value)[channel];
+          element[channel] += (*value)[channel];
+        element[LfPixels::kRayLane] += 1;
         ++accepted;
       }
     }

@@ -21,8 +21,8 @@ LfPixels RandomPixels(const Intrinsics& k, uint64_t seed) {
 uint64_t GatherInBands(const testing::CameraPair& pair, const LfPixels& pixels, int band_height,
                        SensorPlate* plate) {
   const GatherPlan plan(pair.lf_camera, pair.render_camera);
-  return testing::InBands(plate, band_height,
-                          [&](PlateBand* band) { return plan.GatherBand(pixels, band); });
+  return testing::InTiles(plate, plate->width(), band_height,
+                          [&](TileSums* sums) { return plan.GatherTile(pixels, sums); });
 }
 
 testing::CameraPair RandomPair(uint64_t seed) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "lf/collection/ray_law.h"
+#include "lf/collection/ray_segments.h"
 
 namespace lf {
 namespace {
@@ -64,34 +65,33 @@ class ArcPlanner {
       : law_(lf_camera, render_camera),
         render_camera_(render_camera),
         rect_(rect),
-        in_lens_plane_(LiesInLensPlane(lf_camera, render_camera)) {
-    plan_.forms = MakeRayForms(lf_camera, render_camera);
-    plan_.plate_width = render_camera.pinhole.intrinsics.width_px;
-    plan_.plate_height = render_camera.pinhole.intrinsics.height_px;
-    plan_.ideal_pixels = &ideal_pixels;
+        in_lens_plane_(LiesInLensPlane(lf_camera, render_camera)),
+        ideal_pixels_(ideal_pixels),
+        forms_(MakeRayForms(lf_camera, render_camera)),
+        segments_(forms_, render_camera.pinhole.intrinsics.width_px,
+                  render_camera.pinhole.intrinsics.height_px) {
     for (const int side : {0, 1})
-      plate_half_planes_[side] = PlateHalfPlanes(plan_.forms, render_camera, side == 0 ? -1 : 1, 0);
+      plate_half_planes_[side] = PlateHalfPlanes(forms_, render_camera, side == 0 ? -1 : 1, 0);
     if (render_camera.aperture.blades > 0)
-      lens_half_planes_ = LensHalfPlanes(plan_.forms, render_camera, 0);
+      lens_half_planes_ = LensHalfPlanes(forms_, render_camera, 0);
   }
 
   ScatterPlan Run() {
     for (int y = rect_.y_begin; y < rect_.y_end; ++y) {
-      const std::span<const IdealArc> arcs = plan_.ideal_pixels->Scanline(y);
-      for (size_t i = 0; i < arcs.size(); ++i) AddArc(y, arcs[i], static_cast<uint32_t>(i));
+      for (const IdealArc& arc : ideal_pixels_.Scanline(y)) AddArc(y, arc);
     }
-    return std::move(plan_);
+    return segments_.Take();
   }
 
  private:
-  void AddArc(int y, const IdealArc& arc, uint32_t index) {
+  void AddArc(int y, const IdealArc& arc) {
     const int begin = std::max(arc.x_begin, rect_.x_begin), end = std::min(arc.x_end, rect_.x_end);
     if (begin >= end) return;
     const Hull hull(arc);
     const Share share = AcceptedShare(hull);
     if (share == Share::kNone) return;
     if (share == Share::kAll) {
-      AddSpan(y, begin, end, arc, hull, index);
+      segments_.AddOnArc(y, begin, end, arc);
       return;
     }
     const auto accepted = [&](int x) {
@@ -100,7 +100,7 @@ class ArcPlanner {
     for (int x = begin; x < end;) {
       int stop = x;
       while (stop < end && accepted(stop)) ++stop;
-      if (stop > x) AddSpan(y, x, stop, arc, hull, index);
+      if (stop > x) segments_.AddOnArc(y, x, stop, arc);
       x = stop + 1;
     }
   }
@@ -129,9 +129,9 @@ class ArcPlanner {
       }
       return share;
     }
-    const Range right = RangeOn(arc, plan_.forms.lens_right);
-    const Range up = RangeOn(arc, plan_.forms.lens_up);
-    const Range forward = RangeOn(arc, plan_.forms.forward);
+    const Range right = RangeOn(arc, forms_.lens_right);
+    const Range up = RangeOn(arc, forms_.lens_up);
+    const Range forward = RangeOn(arc, forms_.forward);
     if (!(forward.low > 0)) return Share::kSome;
     const double r2 = render_camera_.aperture.radius_w * render_camera_.aperture.radius_w;
     // Here lens_right = l_x forward with one l_x for all rays: the quotient is sharper.
@@ -150,20 +150,6 @@ class ArcPlanner {
                : Share::kSome;
   }
 
-  void AddSpan(int y, int begin, int end, const IdealArc& arc, const Hull& hull, uint32_t index) {
-    // Rows relative to that of the middle ray, so that the quotient of two ranges stays narrow.
-    const RayForms& forms = plan_.forms;
-    const Vec3 middle = arc.At(arc.Parameter((begin + end - 1) / 2));
-    const double row = Value(forms.sensor_y, middle) / Value(forms.front, middle);
-    const Range offset = RangeOn(hull, forms.sensor_y - row * forms.front);
-    const Range front = RangeOn(hull, forms.front);
-    const double least_front = std::sqrt(LeastSquare(front));
-    const double reach =
-        std::max(std::abs(offset.low), std::abs(offset.high)) / std::max(least_front, 1e-300);
-    plan_.spans.push_back(
-        {y, begin, end, static_cast<float>(row - reach), static_cast<float>(row + reach), index});
-  }
-
   static constexpr double kInLensPlaneMargin = 1e-6;
 
   RayLaw law_;
@@ -172,7 +158,9 @@ class ArcPlanner {
   bool in_lens_plane_;
   std::vector<PixelForm> plate_half_planes_[2];
   std::vector<PixelForm> lens_half_planes_;
-  ScatterPlan plan_;
+  const IdealPixels& ideal_pixels_;
+  RayForms forms_;
+  SegmentMaker segments_;
 };
 
 }  // namespace

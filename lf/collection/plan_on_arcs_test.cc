@@ -25,8 +25,8 @@ LfPixels RandomPixels(BayerPattern bayer, uint64_t seed) {
 uint64_t Scatter(const testing::CameraPair& pair, const LfPixels& pixels, const PixelRect& rect,
                  const IdealPixels& ideal_pixels, int band_height, SensorPlate* plate) {
   const ScatterPlan plan = PlanScatter(pair.lf_camera, pair.render_camera, rect, &ideal_pixels);
-  return testing::InBands(plate, band_height,
-                          [&](PlateBand* band) { return ScatterBand(plan, pixels, band); });
+  return testing::InTiles(plate, plate->width(), band_height,
+                          [&](TileSums* sums) { return ScatterTile(plan, pixels, sums); });
 }
 
 TEST(PlanOnArcs, SpansHoldExactlyTheRaysThatTheLawAcceptsOnTheArcs) {
@@ -37,8 +37,8 @@ TEST(PlanOnArcs, SpansHoldExactlyTheRaysThatTheLawAcceptsOnTheArcs) {
     const RayLaw law(pair.lf_camera, pair.render_camera);
     const ScatterPlan plan = PlanScatter(pair.lf_camera, pair.render_camera, kWholeImage, &ideal);
     Image<uint8_t> in_span(kWidth, kHeight);
-    for (const RaySpan& span : plan.spans)
-      for (int x = span.x_begin; x < span.x_end; ++x) in_span.at(x, span.y) += 1;
+    for (const RaySegment& segment : plan.segments)
+      for (int i = 0; i < segment.count; ++i) in_span.at(segment.x_begin + i, segment.y) += 1;
     size_t accepted = 0;
     for (int y = 0; y < kHeight; ++y)
       for (const IdealArc& arc : ideal.Scanline(y))
@@ -64,8 +64,8 @@ TEST(PlanOnArcs, MostSpansAreFoundWithoutAskingTheLaw) {
   const ScatterPlan plan =
       PlanScatter(pair.lf_camera, pair.render_camera, {0, 0, 1280, 720}, &ideal);
   size_t whole = 0;
-  for (const RaySpan& span : plan.spans) whole += span.x_end - span.x_begin >= 16 ? 1 : 0;
-  EXPECT_GT(whole, plan.spans.size() * 9 / 10);
+  for (const RaySegment& segment : plan.segments) whole += segment.count >= 16 ? 1 : 0;
+  EXPECT_GT(whole, plan.segments.size() * 9 / 10);
 }
 
 TEST(PlanOnArcs, TheFastBackEndAgreesWithTheIteratingReference) {

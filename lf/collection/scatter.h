@@ -3,14 +3,15 @@
 //
 // Two back ends, compared by one test. The reference asks the law of every pixel. The fast one
 // works in two steps, so that many threads can share one plate and one LF image many plates:
-//   1. PlanScatter, once per (LF image, frame): the spans of each scanline that are accepted.
-//   2. ScatterBand, once per (LF image, frame, band of the plate): the rays of these spans that
-//      land in the band.
-// Tolerance: both accept exactly the same rays. A ray within 1e-9 elements of an element's border
-// may land in the neighbour, since the reference intersects planes and the fast one divides linear
-// forms; a band takes exactly the rays whose address, as the fast one computes it, lies in it.
+//   1. PlanScatter, once per (LF image, frame): the accepted pixels of each scanline, in segments
+//      along which the element position is a cubic.
+//   2. ScatterTile, once per (LF image, frame, tile of the plate): the rays that land in the tile.
+// Tolerance: both accept exactly the same rays. A ray within 1e-4 elements of an element's border
+// may land in the neighbour, since the fast back end evaluates cubics in single precision; a tile
+// takes exactly the rays whose address, so computed, lies in it, and the bits are the same for any
+// cut into tiles or rectangles and on every instruction set.
 // With lens distortion the reference iterates and the fast one follows arcs: rays within
-// IdealPixels::kTolerance_px of a border of element, lens or plate may differ.
+// IdealPixels::kTolerance_px of a border of lens or plate may differ, too.
 #pragma once
 
 #include <cstdint>
@@ -18,11 +19,11 @@
 
 #include "lf/camera/ideal_pixels.h"
 #include "lf/camera/pinhole.h"
-#include "lf/camera/ray_forms.h"
 #include "lf/camera/render_camera.h"
 #include "lf/capture/lf_pixels.h"
 #include "lf/core/geometry.h"
 #include "lf/plate/sensor_plate.h"
+#include "lf/plate/tile_sums.h"
 
 namespace lf {
 
@@ -33,34 +34,43 @@ uint64_t ScatterReference(const PinholeCamera& lf_camera, const LfPixels& pixels
                           const RenderCamera& render_camera, const PixelRect& rect,
                           SensorPlate* plate);
 
-// Pixels [x_begin, x_end) of scanline y, all accepted. Along a span the element moves monotonically
-// in both coordinates; with lens distortion it lies on one arc instead.
-struct RaySpan {
+// Pixels [x_begin, x_begin + count) of scanline y, all accepted. That with index i in the segment
+// hits, with t = i + t_begin (exact in single precision), the element
+//   element_x + floor(((x[3] t + x[2]) t + x[1]) t + x[0])
+// clamped to the plate, since the law has accepted it; and likewise y.
+struct RaySegment {
   int32_t y = 0;
   int32_t x_begin = 0;
-  int32_t x_end = 0;
-  // Range of element_y, continuous, over the span.
-  float element_y_min = 0;
-  float element_y_max = 0;
-  uint32_t arc = 0;  // with lens distortion: index into the scanline's arcs
+  int32_t count = 0;
+  float t_begin = 0;
+  int32_t element_x = 0;
+  int32_t element_y = 0;
+  float x_cubic[4] = {};
+  float y_cubic[4] = {};
+  // It hits no elements but these, and none more often than `crowd` times.
+  PixelRect elements;
+  uint32_t crowd = 0;
 };
 
 struct ScatterPlan {
-  RayForms forms;
+  // Of this many segments the bounds are kept, to pass over those that miss a tile.
+  static constexpr size_t kBlock = 32;
+
   int plate_width = 0;
   int plate_height = 0;
-  const IdealPixels* ideal_pixels = nullptr;  // with lens distortion
-  std::vector<RaySpan> spans;                 // by y, then x
+  std::vector<RaySegment> segments;  // by y, then x
+  std::vector<PixelRect> block_elements;
 };
 
-// The spans of `rect`: exact, their ends confirmed by the law.
-//   ideal_pixels  of lf_camera's intrinsics, for a camera with distortion; must outlive the plan
+// The accepted rays of `rect`: exact, the ends of every span confirmed by the law.
+//   ideal_pixels  of lf_camera's intrinsics, for a camera with distortion
 ScatterPlan PlanScatter(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
                         const PixelRect& rect, const IdealPixels* ideal_pixels = nullptr);
 
-// Adds the rays of `plan` that land in `band`. Returns how many. Bands of one plate may be written
-// at the same time by different threads.
+// Adds the rays of `plan` that land in the tile of `sums`; of RGB images to the sums, which are
+// flushed to the plate when they might overflow and by the caller at the end, of mosaics to the
+// plate at once. Returns how many.
 //   pixels  those the plan's rectangle was taken from
-uint64_t ScatterBand(const ScatterPlan& plan, const LfPixels& pixels, PlateBand* band);
+uint64_t ScatterTile(const ScatterPlan& plan, const LfPixels& pixels, TileSums* sums);
 
 }  // namespace lf

@@ -2,9 +2,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "lf/collection/plan_on_arcs.h"
 #include "lf/collection/ray_law.h"
+#include "lf/collection/ray_segments.h"
 #include "lf/collection/scatter.h"
 #include "lf/core/check.h"
 
@@ -92,28 +95,28 @@ class Planner {
       : law_(lf_camera, render_camera),
         render_camera_(render_camera),
         rect_(rect),
-        in_lens_plane_(LiesInLensPlane(lf_camera, render_camera)) {
-    plan_.forms = MakeRayForms(lf_camera, render_camera);
-    plan_.plate_width = render_camera.pinhole.intrinsics.width_px;
-    plan_.plate_height = render_camera.pinhole.intrinsics.height_px;
+        in_lens_plane_(LiesInLensPlane(lf_camera, render_camera)),
+        forms_(MakeRayForms(lf_camera, render_camera)),
+        segments_(forms_, render_camera.pinhole.intrinsics.width_px,
+                  render_camera.pinhole.intrinsics.height_px) {
     const bool is_disk = render_camera.aperture.blades == 0;
     for (const int side : {0, 1}) {
-      half_planes_[side] = PlateHalfPlanes(plan_.forms, render_camera, side == 0 ? -1 : 1, 0);
+      half_planes_[side] = PlateHalfPlanes(forms_, render_camera, side == 0 ? -1 : 1, 0);
       if (is_disk) continue;
-      const std::vector<PixelForm> lens = LensHalfPlanes(plan_.forms, render_camera, kLensMargin);
+      const std::vector<PixelForm> lens = LensHalfPlanes(forms_, render_camera, kLensMargin);
       half_planes_[side].insert(half_planes_[side].end(), lens.begin(), lens.end());
     }
   }
 
   ScatterPlan Run() {
     for (int y = rect_.y_begin; y < rect_.y_end; ++y) {
-      const size_t first = plan_.spans.size();
+      spans_.clear();
       for (const int side : {0, 1}) AddSide(y, side);
       // Two sides at most, one span each but for ties.
-      std::sort(plan_.spans.begin() + static_cast<ptrdiff_t>(first), plan_.spans.end(),
-                [](const RaySpan& a, const RaySpan& b) { return a.x_begin < b.x_begin; });
+      std::sort(spans_.begin(), spans_.end());
+      for (const auto& [begin, end] : spans_) segments_.AddSpan(y, begin, end);
     }
-    return std::move(plan_);
+    return segments_.Take();
   }
 
  private:
@@ -128,7 +131,7 @@ class Planner {
     // All rays of a camera in the lens plane cross it at one point: the law at the ends of the span
     // decides for them all, where the quadratic would have a double root.
     if (render_camera_.aperture.blades == 0 && !in_lens_plane_) {
-      const RayForms& forms = plan_.forms;
+      const RayForms& forms = forms_;
       range = WithinDisk(Along(forms.lens_right, centre_y), Along(forms.lens_up, centre_y),
                          Along(forms.forward, centre_y), render_camera_.aperture.radius_w, range);
       if (range.empty()) return;
@@ -140,29 +143,20 @@ class Planner {
     while (begin < end && !accepted(end - 1)) --end;
     if (begin == end) return;
     if (!tie) {
-      AddSpan(y, begin, end);
+      spans_.emplace_back(begin, end);
       return;
     }
     for (int x = begin; x < end;) {
       int stop = x;
       while (stop < end && accepted(stop)) ++stop;
-      if (stop > x) AddSpan(y, x, stop);
+      if (stop > x) spans_.emplace_back(x, stop);
       x = stop + 1;
     }
   }
 
   bool OnSide(int x, int y, int side) const {
-    const double value = Value(plan_.forms.plane, x + 0.5, y + 0.5);
+    const double value = Value(forms_.plane, x + 0.5, y + 0.5);
     return side == 0 ? value < 0 : value > 0;
-  }
-
-  void AddSpan(int y, int begin, int end) {
-    const auto element_y = [&](int x) {
-      return Value(plan_.forms.sensor_y, x + 0.5, y + 0.5) /
-             Value(plan_.forms.front, x + 0.5, y + 0.5);
-    };
-    const auto [low, high] = std::minmax({element_y(begin), element_y(end - 1)});
-    plan_.spans.push_back({y, begin, end, static_cast<float>(low), static_cast<float>(high)});
   }
 
   RayLaw law_;
@@ -170,7 +164,9 @@ class Planner {
   PixelRect rect_;
   bool in_lens_plane_;
   std::vector<PixelForm> half_planes_[2];
-  ScatterPlan plan_;
+  RayForms forms_;
+  SegmentMaker segments_;
+  std::vector<std::pair<int, int>> spans_;  // of the scanline
 };
 
 }  // namespace

@@ -19,8 +19,8 @@ using testing::WholeImage;
 uint64_t ScatterInBands(const testing::CameraPair& pair, const LfPixels& pixels,
                         const PixelRect& rect, int band_height, SensorPlate* plate) {
   const ScatterPlan plan = PlanScatter(pair.lf_camera, pair.render_camera, rect);
-  return testing::InBands(plate, band_height,
-                          [&](PlateBand* band) { return ScatterBand(plan, pixels, band); });
+  return testing::InTiles(plate, plate->width(), band_height,
+                          [&](TileSums* sums) { return ScatterTile(plan, pixels, sums); });
 }
 
 TEST(Scatter, SpansHoldExactlyTheRaysThatTheLawAccepts) {
@@ -30,8 +30,8 @@ TEST(Scatter, SpansHoldExactlyTheRaysThatTheLawAccepts) {
     const RayLaw law(pair.lf_camera, pair.render_camera);
     const ScatterPlan plan = PlanScatter(pair.lf_camera, pair.render_camera, WholeImage(pair));
     Image<uint8_t> in_span(50, 35);
-    for (const RaySpan& span : plan.spans)
-      for (int x = span.x_begin; x < span.x_end; ++x) in_span.at(x, span.y) += 1;
+    for (const RaySegment& segment : plan.segments)
+      for (int i = 0; i < segment.count; ++i) in_span.at(segment.x_begin + i, segment.y) += 1;
     size_t accepted = 0;
     for (int y = 0; y < 35; ++y)
       for (int x = 0; x < 50; ++x) {
@@ -145,11 +145,13 @@ TEST(Scatter, FullWordsArePromotedWithoutLosingARay) {
   testing::CameraPair pair = testing::ParallelPair(0, 0, 0.01, 9);
   pair.lf_camera.cam_from_world.translation = {0.1, 0.05, -2};
   const LfPixels pixels = testing::NoisePixels(WholeImage(pair), BayerPattern::kNone, 5);
-  SensorPlate expected = PlateFor(pair), fast = PlateFor(pair, 10), reference = PlateFor(pair, 10);
+  SensorPlate expected = PlateFor(pair), fast = PlateFor(pair, 300), reference = PlateFor(pair, 10);
+  const ScatterPlan plan = PlanScatter(pair.lf_camera, pair.render_camera, pixels.rect);
   for (int repeat = 0; repeat < 3; ++repeat) {
     ScatterReference(pair.lf_camera, pixels, pair.render_camera, pixels.rect, &expected);
     ScatterReference(pair.lf_camera, pixels, pair.render_camera, pixels.rect, &reference);
-    ScatterInBands(pair, pixels, pixels.rect, 35, &fast);
+    testing::InTiles(
+        &fast, 50, 35, [&](TileSums* sums) { return ScatterTile(plan, pixels, sums); }, 70);
   }
   EXPECT_EQ(TotalCount(expected), uint64_t{3} * 3 * 50 * 35);
   EXPECT_EQ(expected, reference);

@@ -9,6 +9,7 @@
 #include "lf/capture/lf_pixels.h"
 #include "lf/core/random.h"
 #include "lf/plate/sensor_plate.h"
+#include "lf/plate/tile_sums.h"
 
 namespace lf::testing {
 
@@ -54,13 +55,17 @@ inline uint64_t DifferingCount(const SensorPlate& a, const SensorPlate& b) {
   return count;
 }
 
-// Calls collect(&band) for bands of the plate from top to bottom; the sum of what it returns.
+// Calls collect(&sums) for tiles of the plate, flushing each; the sum of what it returns.
+//   ray_limit  of the sums
 template <class Collect>
-uint64_t InBands(SensorPlate* plate, int band_height, const Collect& collect) {
+uint64_t InTiles(SensorPlate* plate, int width, int height, const Collect& collect,
+                 uint32_t ray_limit = TileSums::kMaxRays) {
   uint64_t accepted = 0;
-  for (int y = 0; y < plate->height(); y += band_height) {
-    PlateBand band(plate, y, std::min(plate->height(), y + band_height));
-    accepted += collect(&band);
+  TileSums sums(ray_limit);
+  for (PlateTile& tile : CutIntoTiles(plate, width, height)) {
+    sums.Begin(&tile);
+    accepted += collect(&sums);
+    sums.Flush();
   }
   return accepted;
 }

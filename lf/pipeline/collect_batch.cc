@@ -9,22 +9,13 @@
 namespace lf {
 namespace {
 
-// A band of this size stays in the second level cache while a batch of LF images is added to it.
-constexpr size_t kBandBytes = size_t{512} << 10;
-constexpr int kLeastBandRows = 8;
+// A tile stays in the second level cache while a batch of LF images is added to it; the wider it
+// is, the fewer pieces scanlines are cut into. Tall enough for cameras that are turned.
+constexpr int kTileWidth = 512;
+constexpr int kTileHeight = 64;
 
-// Spans of a batch kept at the same time.
+// Segments of a batch kept at the same time.
 constexpr size_t kPlanBytes = size_t{64} << 20;
-
-std::vector<PlateBand> CutIntoBands(SensorPlate* plate) {
-  const size_t row_bytes =
-      static_cast<size_t>(plate->width()) * SensorPlate::kChannels * sizeof(uint64_t);
-  const int rows = std::max(kLeastBandRows, static_cast<int>(kBandBytes / row_bytes));
-  std::vector<PlateBand> bands;
-  for (int y = 0; y < plate->height(); y += rows)
-    bands.emplace_back(plate, y, std::min(plate->height(), y + rows));
-  return bands;
-}
 
 // Whether a frame is collected is decided once, where its first item comes.
 class FrameGate {
@@ -75,7 +66,8 @@ BatchCollector::BatchCollector(const LightField& light_field, std::span<const Re
       pool_(pool),
       plates_(*plates) {
   LF_CHECK(plates->size() == frames.size());
-  for (SensorPlate& plate : plates_) bands_.push_back(CutIntoBands(&plate));
+  for (SensorPlate& plate : plates_)
+    tiles_.push_back(CutIntoTiles(&plate, kTileWidth, kTileHeight));
 }
 
 void BatchCollector::Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>& frames,
@@ -88,9 +80,11 @@ void BatchCollector::Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>
       if (!is_interrupted()) AddByReference(batch, &frame);
     return;
   }
-  int tallest = 1;
-  for (const BatchImage& image : batch) tallest = std::max(tallest, image.pixels.rect.height());
-  const size_t plan_bytes = batch.size() * static_cast<size_t>(tallest) * sizeof(RaySpan);
+  size_t segments = 1;
+  for (const BatchImage& image : batch)
+    segments = std::max(segments, static_cast<size_t>(image.pixels.rect.height()) *
+                                      (2 + image.pixels.rect.width() / 256));
+  const size_t plan_bytes = batch.size() * segments * sizeof(RaySegment);
   const size_t chunk = std::max<size_t>(1, kPlanBytes / std::max<size_t>(1, plan_bytes));
   for (size_t begin = 0; begin < frames.size(); begin += chunk) {
     if (is_interrupted()) return;
@@ -146,7 +140,7 @@ void BatchCollector::UndoDistortion(std::vector<BatchImage>& batch) {
 void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span<BatchFrame> frames,
                                  const OtherItems& other_items,
                                  const std::atomic<bool>* interrupted) {
-  // First the spans of every (frame, image), then the rays of every (frame, band).
+  // First the segments of every (frame, image), then the rays of every (frame, tile).
   std::vector<Share> shares(frames.size() * batch.size());
   ForEachTimed(shares.size(), [&](size_t i) {
     const BatchFrame& taker = frames[i / batch.size()];
@@ -164,21 +158,23 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
 
   struct Task {
     size_t taker;
-    size_t band;
+    size_t tile;
   };
   std::vector<Task> tasks;
   for (size_t f = 0; f < frames.size(); ++f)
-    for (size_t band = 0; band < bands_[frames[f].frame].size(); ++band) tasks.push_back({f, band});
+    for (size_t tile = 0; tile < tiles_[frames[f].frame].size(); ++tile) tasks.push_back({f, tile});
   std::vector<FrameGate> gates(frames.size());
   const auto collect = [&](const Task& task) {
     if (!gates[task.taker].IsOpen(interrupted)) return;
-    PlateBand& band = bands_[frames[task.taker].frame][task.band];
+    thread_local TileSums sums;
+    sums.Begin(&tiles_[frames[task.taker].frame][task.tile]);
     for (size_t k = 0; k < batch.size(); ++k) {
       Share& share = shares[task.taker * batch.size() + k];
       if (share.rect.empty()) continue;
-      share.accepted_count += share.gather ? share.gather->GatherBand(batch[k].pixels, &band)
-                                           : ScatterBand(share.scatter, batch[k].pixels, &band);
+      share.accepted_count += share.gather ? share.gather->GatherTile(batch[k].pixels, &sums)
+                                           : ScatterTile(share.scatter, batch[k].pixels, &sums);
     }
+    sums.Flush();
   };
   // The other items are long ones: what comes last should be short, so that no thread waits.
   pool_.ForEach(other_items.count + tasks.size(), [&](size_t i) {

@@ -96,7 +96,7 @@ class BatchCollector {
   CollectBackEnd back_end_;
   ThreadPool& pool_;
   std::vector<SensorPlate>& plates_;
-  std::vector<std::vector<PlateBand>> bands_;
+  std::vector<std::vector<PlateTile>> tiles_;
   // By index of intrinsics; those of the last batch.
   std::map<uint32_t, std::shared_ptr<const IdealPixels>> ideal_pixels_;
   std::atomic<int64_t> cpu_ns_ = 0;

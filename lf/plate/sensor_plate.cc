@@ -73,36 +73,45 @@ bool operator==(const SensorPlate& a, const SensorPlate& b) {
   return true;
 }
 
-uint32_t SensorPlate::Promote(int y_begin, int y_end, uint32_t count_kept) {
-  const size_t row_words = static_cast<size_t>(width_) * kChannels;
+uint32_t SensorPlate::Promote(const PixelRect& rect, uint32_t count_kept) {
   uint32_t largest = 0;
-  for (size_t i = y_begin * row_words; i < y_end * row_words; ++i) {
-    const uint32_t count = CountOf(packed_[i]);
-    if (count <= count_kept) {
-      largest = std::max(largest, count);
-      continue;
+  for (int y = rect.y_begin; y < rect.y_end; ++y) {
+    const size_t row = static_cast<size_t>(y) * width_;
+    for (size_t i = (row + rect.x_begin) * kChannels; i < (row + rect.x_end) * kChannels; ++i) {
+      const uint32_t count = CountOf(packed_[i]);
+      if (count <= count_kept) {
+        largest = std::max(largest, count);
+        continue;
+      }
+      const std::lock_guard lock(*wide_mutex_);
+      ElementSum& wide = wide_[i];
+      const ElementSum packed = Unpack(packed_[i]);
+      wide.sum += packed.sum;
+      wide.count += packed.count;
+      packed_[i] = 0;
     }
-    const std::lock_guard lock(*wide_mutex_);
-    ElementSum& wide = wide_[i];
-    const ElementSum packed = Unpack(packed_[i]);
-    wide.sum += packed.sum;
-    wide.count += packed.count;
-    packed_[i] = 0;
   }
   return largest;
 }
 
-PlateBand::PlateBand(SensorPlate* plate, int y_begin, int y_end)
-    : plate_(plate), y_begin_(y_begin), y_end_(y_end) {
-  LF_CHECK(y_begin >= 0 && y_begin <= y_end && y_end <= plate->height());
+PlateTile::PlateTile(SensorPlate* plate, const PixelRect& rect) : plate_(plate), rect_(rect) {
+  LF_CHECK(Intersection(rect, {0, 0, plate->width(), plate->height()}) == rect);
 }
 
-void PlateBand::MakeRoom(uint32_t rays) {
+void PlateTile::MakeRoom(uint32_t rays) {
   LF_CHECK(rays <= max_reserve());
   // What was reserved and not used comes back: the true largest count decides.
   const uint32_t limit = plate_->count_limit_;
-  const uint32_t largest = plate_->Promote(y_begin_, y_end_, limit - rays);
-  headroom_ = limit - largest;
+  headroom_ = limit - plate_->Promote(rect_, limit - rays);
+}
+
+std::vector<PlateTile> CutIntoTiles(SensorPlate* plate, int width, int height) {
+  std::vector<PlateTile> tiles;
+  for (int y = 0; y < plate->height(); y += height)
+    for (int x = 0; x < plate->width(); x += width)
+      tiles.emplace_back(plate, PixelRect{x, y, std::min(plate->width(), x + width),
+                                          std::min(plate->height(), y + height)});
+  return tiles;
 }
 
 }  // namespace lf

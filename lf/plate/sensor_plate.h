@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "lf/core/check.h"
+#include "lf/core/geometry.h"
 
 namespace lf {
 
@@ -59,41 +60,42 @@ class SensorPlate {
   friend bool operator==(const SensorPlate& a, const SensorPlate& b);
 
  private:
-  friend class PlateBand;
-  // Moves packed words of rows [y_begin, y_end) whose count exceeds `count_kept` to the wide
-  // table. Returns the largest count still packed there.
-  uint32_t Promote(int y_begin, int y_end, uint32_t count_kept);
+  friend class PlateTile;
+  // Moves packed words of `rect` whose count exceeds `count_kept` to the wide table. Returns the
+  // largest count still packed there.
+  uint32_t Promote(const PixelRect& rect, uint32_t count_kept);
 
   int width_;
   int height_;
   uint32_t count_limit_;
   std::vector<uint64_t> packed_;
-  // Totals are packed + wide. Rare, so one lock does for all bands.
+  // Totals are packed + wide. Rare, so one lock does for all tiles.
   std::map<size_t, ElementSum> wide_;
   std::unique_ptr<std::mutex> wide_mutex_;
 };
 
-// Rows [y_begin, y_end) of a plate as a kernel writes them. One thread owns a band at a time;
-// bands of one plate that do not overlap may be written at the same time.
-class PlateBand {
+// A rectangle of a plate as a kernel writes it. One thread owns a tile at a time; tiles of one
+// plate that do not overlap may be written at the same time.
+class PlateTile {
  public:
-  PlateBand(SensorPlate* plate, int y_begin, int y_end);
+  // `rect` lies on the plate.
+  PlateTile(SensorPlate* plate, const PixelRect& rect);
 
-  int width() const { return plate_->width_; }
-  int y_begin() const { return y_begin_; }
-  int y_end() const { return y_end_; }
+  const PixelRect& rect() const { return rect_; }
+  int plate_width() const { return plate_->width_; }
+  int plate_height() const { return plate_->height_; }
 
-  // Words of row y, [width][3].
+  // Words of the whole plate, [height][width][3]; those of the tile may be written.
+  uint64_t* words() { return plate_->packed_.data(); }
   uint64_t* row(int y) {
-    LF_DCHECK(y >= y_begin_ && y < y_end_);
-    return plate_->packed_.data() +
-           static_cast<size_t>(y) * plate_->width_ * SensorPlate::kChannels;
+    LF_DCHECK(y >= rect_.y_begin && y < rect_.y_end);
+    return words() + static_cast<size_t>(y) * plate_->width_ * SensorPlate::kChannels;
   }
 
   // The most rays one Reserve() can be asked for.
   uint32_t max_reserve() const { return plate_->count_limit_; }
 
-  // Afterwards `rays` more rays may be added to the band's words, even all to the same one,
+  // Afterwards `rays` more rays may be added to the tile's words, even all to the same one,
   // without overflow. rays <= max_reserve(). Almost always one comparison.
   void Reserve(uint32_t rays) {
     if (rays > headroom_) MakeRoom(rays);
@@ -104,9 +106,11 @@ class PlateBand {
   void MakeRoom(uint32_t rays);
 
   SensorPlate* plate_;
-  int y_begin_;
-  int y_end_;
+  PixelRect rect_;
   uint32_t headroom_ = 0;
 };
+
+// The tiles of a plate, no larger than `width` x `height`, row by row.
+std::vector<PlateTile> CutIntoTiles(SensorPlate* plate, int width, int height);
 
 }  // namespace lf

@@ -33,17 +33,17 @@ TEST(SensorPlate, LosesNothingWhenWordsArePromoted) {
       for (int c = 0; c < 3; ++c) EXPECT_EQ(plate.At(x, y, c), expected[y][x][c]);
 }
 
-TEST(PlateBand, ReservesRoomByPromoting) {
+TEST(PlateTile, ReservesRoomByPromoting) {
   SensorPlate small(3, 4, 7);
   SensorPlate large(3, 4);
-  PlateBand band(&small, 1, 3);
+  PlateTile tile(&small, {1, 1, 3, 3});
   for (uint64_t i = 0; i < 1000; ++i) {
-    band.Reserve(2);
+    tile.Reserve(2);
     for (int k = 0; k < 2; ++k) {
       const uint64_t bits = RandomBits(5, static_cast<uint64_t>(k), i);
-      const int x = bits % 3, y = 1 + (bits >> 8) % 2, c = (bits >> 16) % 3;
+      const int x = 1 + bits % 2, y = 1 + (bits >> 8) % 2, c = (bits >> 16) % 3;
       const auto v = static_cast<uint16_t>(bits >> 32);
-      band.row(y)[x * 3 + c] += SensorPlate::kOneRay | v;
+      tile.row(y)[x * 3 + c] += SensorPlate::kOneRay | v;
       large.AddRay(x, y, c, v);
     }
   }
