@@ -16,6 +16,8 @@ OWNERS = {
     "nlohmann/": {"calibration", "native", "pipeline"},
     "tbb/": {"core"},
     "hwy/": {"collection"},
+    "zstd": {"plate"},
+    "xxhash": {"plate"},
     "CLI/": set(),
 }
 

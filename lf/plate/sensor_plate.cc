@@ -28,7 +28,10 @@ size_t SensorPlate::size_bytes() const {
 }
 
 ElementSum SensorPlate::At(int x, int y, int channel) const {
-  const size_t index = (static_cast<size_t>(y) * width_ + x) * kChannels + channel;
+  return AtWord((static_cast<size_t>(y) * width_ + x) * kChannels + channel);
+}
+
+ElementSum SensorPlate::AtWord(size_t index) const {
   ElementSum total = Unpack(packed_[index]);
   if (const auto wide = wide_.find(index); wide != wide_.end()) {
     total.sum += wide->second.sum;

@@ -13,6 +13,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <vector>
 
 #include "lf/core/check.h"
@@ -55,6 +56,12 @@ class SensorPlate {
 
   // Adds another plate of the same size.
   void Merge(const SensorPlate& other);
+
+  // How it is kept, for files: packed words [height][width][3], what is kept beside them by the
+  // index of the word, and the total of both.
+  std::span<const uint64_t> words() const { return packed_; }
+  const std::map<size_t, ElementSum>& wide() const { return wide_; }
+  ElementSum AtWord(size_t index) const;
 
   // The same sums and counts everywhere, however they are kept.
   friend bool operator==(const SensorPlate& a, const SensorPlate& b);

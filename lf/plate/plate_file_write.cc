@@ -1,0 +1,154 @@
+#include <fmt/format.h>
+#include <xxhash.h>
+#include <zstd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <new>
+
+#include "lf/core/check.h"
+#include "lf/core/file.h"
+#include "lf/plate/plate_file.h"
+#include "lf/plate/plate_format.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+using namespace plate_format;
+
+// Measured on plates of 1280 x 960 elements: 1.25 GB/s and a sixth of the bytes; level 3 takes a
+// third longer for 3 % less.
+constexpr int kCompressionLevel = 1;
+
+class OutputFile {
+ public:
+  explicit OutputFile(const fs::path& path)
+      : path_(path), file_(std::fopen(path.c_str(), "wbe"), &std::fclose) {
+    if (!file_) error_ = errno;
+  }
+
+  void Write(const void* bytes, size_t size) {
+    if (error_ == 0 && size > 0 && std::fwrite(bytes, 1, size, file_.get()) != size) error_ = errno;
+  }
+  void Write(std::string_view bytes) { Write(bytes.data(), bytes.size()); }
+
+  Result<void> Close() {
+    if (error_ == 0 && std::fflush(file_.get()) != 0) error_ = errno;
+    if (error_ == 0) return {};
+    return OutputError(
+        fmt::format("{}: cannot be written: {}", path_.string(), std::strerror(error_)));
+  }
+
+ private:
+  fs::path path_;
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
+  int error_ = 0;
+};
+
+std::string TextOf(const PlateEntries& entries) {
+  std::string text;
+  for (const auto& [key, value] : entries) {
+    LF_CHECK(!key.empty() &&
+             key.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_.") == std::string::npos);
+    LF_CHECK(std::none_of(value.begin(), value.end(),
+                          [](char c) { return static_cast<unsigned char>(c) < 0x20; }));
+    text += fmt::format("{}: {}\n", key, value);
+  }
+  LF_CHECK(text.size() <= PlateReader::kMaxTextBytes);
+  return text;
+}
+
+// Elements of the wide table that a packed word could hold are written packed: which ones a plate
+// keeps wide depends on how it was filled.
+bool IsWide(const ElementSum& rays) { return rays.count > SensorPlate::kMaxCount; }
+
+class Compressor {
+ public:
+  explicit Compressor(const SensorPlate& plate) : plate_(plate) {}
+
+  // Words [begin, end): ChunkHead and stored bytes.
+  std::string Chunk(uint32_t number, size_t begin, size_t end) const {
+    std::vector<uint64_t> words(plate_.words().begin() + static_cast<ptrdiff_t>(begin),
+                                plate_.words().begin() + static_cast<ptrdiff_t>(end));
+    for (auto wide = plate_.wide().lower_bound(begin);
+         wide != plate_.wide().end() && wide->first < end; ++wide) {
+      const ElementSum rays = plate_.AtWord(wide->first);
+      words[wide->first - begin] = IsWide(rays) ? 0 : rays.count * SensorPlate::kOneRay + rays.sum;
+    }
+    const size_t size = words.size() * sizeof(uint64_t);
+    std::vector<char> planes(size);
+    ToPlanes(words, planes.data());
+    std::string chunk(sizeof(ChunkHead) + ZSTD_compressBound(size), '\0');
+    const size_t stored = ZSTD_compress(chunk.data() + sizeof(ChunkHead), ZSTD_compressBound(size),
+                                        planes.data(), size, kCompressionLevel);
+    if (ZSTD_isError(stored) != 0) throw std::bad_alloc();  // all else is excluded by the bound
+    const ChunkHead head = {static_cast<uint32_t>(stored), 0,
+                            XXH3_64bits_withSeed(chunk.data() + sizeof(head), stored, number)};
+    std::memcpy(chunk.data(), &head, sizeof(head));
+    chunk.resize(sizeof(head) + stored);
+    return chunk;
+  }
+
+ private:
+  const SensorPlate& plate_;
+};
+
+Result<void> Write(const fs::path& path, const std::string& text, const SensorPlate& plate,
+                   ThreadPool& pool) {
+  const size_t row_words = static_cast<size_t>(plate.width()) * SensorPlate::kChannels;
+  const size_t chunk_rows = std::max<size_t>(1, kChunkWords / std::max<size_t>(1, row_words));
+  std::vector<WideWord> wide;
+  for (const auto& [index, unused] : plate.wide())
+    if (const ElementSum rays = plate.AtWord(index); IsWide(rays))
+      wide.push_back({index, rays.sum, rays.count});
+
+  OutputFile file(path);
+  Head head = {{},
+               kVersion,
+               static_cast<uint32_t>(text.size()),
+               static_cast<uint32_t>(plate.width()),
+               static_cast<uint32_t>(plate.height()),
+               SensorPlate::kChannels,
+               static_cast<uint32_t>(chunk_rows),
+               wide.size()};
+  std::memcpy(head.magic, kMagic.data(), kMagic.size());
+  const std::string front = std::string(reinterpret_cast<const char*>(&head), sizeof(head)) + text;
+  const uint64_t front_hash = XXH3_64bits(front.data(), front.size());
+  file.Write(front);
+  file.Write(&front_hash, sizeof(front_hash));
+
+  const Compressor compressor(plate);
+  const size_t word_count = plate.words().size(), chunk_words = chunk_rows * row_words;
+  const size_t chunk_count = chunk_words == 0 ? 0 : (word_count + chunk_words - 1) / chunk_words;
+  // A few at a time, so that little is in memory.
+  const size_t together = 2 * static_cast<size_t>(pool.thread_count());
+  for (size_t first = 0; first < chunk_count; first += together) {
+    std::vector<std::string> chunks(std::min(together, chunk_count - first));
+    pool.ForEach(chunks.size(), [&](size_t i) {
+      const size_t begin = (first + i) * chunk_words;
+      chunks[i] = compressor.Chunk(static_cast<uint32_t>(first + i), begin,
+                                   std::min(word_count, begin + chunk_words));
+    });
+    for (const std::string& chunk : chunks) file.Write(chunk);
+  }
+  const size_t wide_bytes = wide.size() * sizeof(WideWord);
+  const uint64_t wide_hash = XXH3_64bits(wide.data(), wide_bytes);
+  file.Write(wide.data(), wide_bytes);
+  file.Write(&wide_hash, sizeof(wide_hash));
+  return file.Close();
+}
+
+}  // namespace
+
+Result<void> WritePlate(const fs::path& path, const PlateEntries& entries, const SensorPlate& plate,
+                        ThreadPool& pool) {
+  const std::string text = TextOf(entries);
+  return WriteAtomically(
+      path, [&](const fs::path& temporary) { return Write(temporary, text, plate, pool); });
+}
+
+}  // namespace lf
