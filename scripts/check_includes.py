@@ -17,7 +17,7 @@ OWNERS = {
     "tbb/": {"core"},
     "hwy/": {"collection"},
     "zstd": {"plate"},
-    "xxhash": {"plate"},
+    "xxhash": {"core"},
     "CLI/": set(),
 }
 

@@ -1,8 +1,6 @@
 // Any bytes are a plate or an error; a plate that was read holds sums that its rays can have. The
 // checksums of the head and of the chunks are made right first, or nothing behind them would ever
 // be reached.
-#include <xxhash.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -10,6 +8,7 @@
 #include <string>
 
 #include "lf/core/check.h"
+#include "lf/core/hash.h"
 #include "lf/plate/plate_file.h"
 #include "lf/plate/plate_format.h"
 
@@ -26,7 +25,7 @@ void MakeChecksumsRight(std::string* bytes) {
       std::memcpy(bytes->data() + place, &hash, sizeof(hash));
   };
   if (at > bytes->size()) return;
-  put(at, XXH3_64bits(bytes->data(), at));
+  put(at, lf::HashBytes(std::string_view(*bytes).substr(0, at)));
   at += sizeof(uint64_t);
   const uint32_t rows = std::max(1u, head.rows_per_chunk);
   const uint32_t chunk_count = std::min(1000u, (head.height + rows - 1) / rows);
@@ -37,12 +36,12 @@ void MakeChecksumsRight(std::string* bytes) {
     at += sizeof(chunk_head);
     if (chunk_head.stored_bytes > bytes->size() - at) return;
     put(at - sizeof(uint64_t),
-        XXH3_64bits_withSeed(bytes->data() + at, chunk_head.stored_bytes, chunk));
+        lf::HashBytes(std::string_view(*bytes).substr(at, chunk_head.stored_bytes), chunk));
     at += chunk_head.stored_bytes;
   }
   if (bytes->size() >= at + sizeof(uint64_t)) {
     const size_t wide_bytes = bytes->size() - at - sizeof(uint64_t);
-    put(at + wide_bytes, XXH3_64bits(bytes->data() + at, wide_bytes));
+    put(at + wide_bytes, lf::HashBytes(std::string_view(*bytes).substr(at, wide_bytes)));
   }
 }
 

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <xxhash.h>
 #include <zstd.h>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include <optional>
 
 #include "lf/core/check.h"
+#include "lf/core/hash.h"
 #include "lf/plate/plate_file.h"
 #include "lf/plate/plate_format.h"
 
@@ -154,8 +154,7 @@ Result<void> PlateReader::ReadHead() {
   LF_RETURN_IF_ERROR(source_->Read(front.data() + sizeof(head), head.text_bytes));
   uint64_t hash = 0;
   LF_RETURN_IF_ERROR(source_->Read(&hash, sizeof(hash)));
-  if (hash != XXH3_64bits(front.data(), front.size()))
-    return Damaged("the checksum of its head differs");
+  if (hash != HashBytes(front)) return Damaged("the checksum of its head differs");
 
   // From here on it is what somebody wrote on purpose.
   if (head.width < 1 || head.width > kMaxSide || head.height < 1 || head.height > kMaxSide ||
@@ -210,7 +209,7 @@ Result<void> PlateReader::AddChunk(uint32_t chunk, SensorPlate* plate) {
                                y_end - 1, head.stored_bytes, ZSTD_compressBound(size)));
   std::string stored(head.stored_bytes, '\0');
   LF_RETURN_IF_ERROR(source_->Read(stored.data(), stored.size()));
-  if (XXH3_64bits_withSeed(stored.data(), stored.size(), chunk) != head.hash)
+  if (HashBytes(stored, chunk) != head.hash)
     return Damaged(fmt::format("the checksum of rows {}-{} differs", y_begin, y_end - 1));
   std::vector<char> planes(size);
   if (ZSTD_decompress(planes.data(), size, stored.data(), stored.size()) != size)
@@ -232,15 +231,12 @@ Result<void> PlateReader::AddChunk(uint32_t chunk, SensorPlate* plate) {
 Result<void> PlateReader::AddWide(SensorPlate* plate) {
   const uint64_t row_words = static_cast<uint64_t>(width_) * SensorPlate::kChannels;
   const uint64_t word_count = row_words * static_cast<uint64_t>(height_);
-  XXH3_state_t* const state = XXH3_createState();
-  const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> owner(state,
-                                                                              &XXH3_freeState);
-  XXH3_64bits_reset(state);
+  Hasher hasher;
   uint64_t next_index = 0;
   for (uint64_t done = 0; done < wide_count_;) {
     std::vector<WideWord> block(std::min<uint64_t>(kWideBlock, wide_count_ - done));
     LF_RETURN_IF_ERROR(source_->Read(block.data(), block.size() * sizeof(WideWord)));
-    XXH3_64bits_update(state, block.data(), block.size() * sizeof(WideWord));
+    hasher.Add({reinterpret_cast<const char*>(block.data()), block.size() * sizeof(WideWord)});
     for (const WideWord& word : block) {
       // A count beyond any run keeps sums of such plates from wrapping.
       if (word.index < next_index || word.index >= word_count ||
@@ -257,7 +253,7 @@ Result<void> PlateReader::AddWide(SensorPlate* plate) {
   }
   uint64_t hash = 0;
   LF_RETURN_IF_ERROR(source_->Read(&hash, sizeof(hash)));
-  if (hash != XXH3_64bits_digest(state)) return Damaged("the checksum of its wide words differs");
+  if (hash != hasher.Hash()) return Damaged("the checksum of its wide words differs");
   return {};
 }
 

@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 #include <unistd.h>
-#include <xxhash.h>
 
 #include <cstring>
 #include <fstream>
 
 #include "lf/core/file.h"
+#include "lf/core/hash.h"
 #include "lf/plate/plate_format.h"
 #include "lf/plate/test_plate.h"
 
@@ -63,7 +63,7 @@ std::string WithHead(std::string bytes, const std::function<void(plate_format::H
   const size_t front_bytes = sizeof(head) + head.text_bytes;
   change(&head);
   std::memcpy(bytes.data(), &head, sizeof(head));
-  const uint64_t hash = XXH3_64bits(bytes.data(), front_bytes);
+  const uint64_t hash = HashBytes(std::string_view(bytes).substr(0, front_bytes));
   std::memcpy(bytes.data() + front_bytes, &hash, sizeof(hash));
   return bytes;
 }

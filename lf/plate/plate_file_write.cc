@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <xxhash.h>
 #include <zstd.h>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 
 #include "lf/core/check.h"
 #include "lf/core/file.h"
+#include "lf/core/hash.h"
 #include "lf/plate/plate_file.h"
 #include "lf/plate/plate_format.h"
 
@@ -87,7 +87,7 @@ class Compressor {
                                         planes.data(), size, kCompressionLevel);
     if (ZSTD_isError(stored) != 0) throw std::bad_alloc();  // all else is excluded by the bound
     const ChunkHead head = {static_cast<uint32_t>(stored), 0,
-                            XXH3_64bits_withSeed(chunk.data() + sizeof(head), stored, number)};
+                            HashBytes({chunk.data() + sizeof(head), stored}, number)};
     std::memcpy(chunk.data(), &head, sizeof(head));
     chunk.resize(sizeof(head) + stored);
     return chunk;
@@ -117,7 +117,7 @@ Result<void> Write(const fs::path& path, const std::string& text, const SensorPl
                wide.size()};
   std::memcpy(head.magic, kMagic.data(), kMagic.size());
   const std::string front = std::string(reinterpret_cast<const char*>(&head), sizeof(head)) + text;
-  const uint64_t front_hash = XXH3_64bits(front.data(), front.size());
+  const uint64_t front_hash = HashBytes(front);
   file.Write(front);
   file.Write(&front_hash, sizeof(front_hash));
 
@@ -136,7 +136,7 @@ Result<void> Write(const fs::path& path, const std::string& text, const SensorPl
     for (const std::string& chunk : chunks) file.Write(chunk);
   }
   const size_t wide_bytes = wide.size() * sizeof(WideWord);
-  const uint64_t wide_hash = XXH3_64bits(wide.data(), wide_bytes);
+  const uint64_t wide_hash = HashBytes({reinterpret_cast<const char*>(wide.data()), wide_bytes});
   file.Write(wide.data(), wide_bytes);
   file.Write(&wide_hash, sizeof(wide_hash));
   return file.Close();

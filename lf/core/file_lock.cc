@@ -1,0 +1,78 @@
+#include "lf/core/file_lock.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+#include <utility>
+
+namespace lf {
+namespace {
+
+// Whether the file that is open is still the one of this name: its last owner may have removed it.
+bool IsStill(int fd, const std::filesystem::path& path) {
+  struct stat open_file {
+  }, named_file{};
+  return ::fstat(fd, &open_file) == 0 && ::stat(path.c_str(), &named_file) == 0 &&
+         open_file.st_ino == named_file.st_ino && open_file.st_dev == named_file.st_dev;
+}
+
+std::string Owner(int fd) {
+  char text[32] = {};
+  if (::pread(fd, text, sizeof(text) - 1, 0) <= 0) return "";
+  const std::string number(text, std::strspn(text, "0123456789"));
+  return number.empty() ? "" : fmt::format(" (process {})", number);
+}
+
+}  // namespace
+
+FileLock::FileLock(std::filesystem::path path, int fd) : path_(std::move(path)), fd_(fd) {}
+FileLock::FileLock(FileLock&& other) noexcept
+    : path_(std::move(other.path_)), fd_(std::exchange(other.fd_, -1)) {}
+FileLock& FileLock::operator=(FileLock&& other) noexcept {
+  std::swap(path_, other.path_);
+  std::swap(fd_, other.fd_);
+  return *this;
+}
+FileLock::~FileLock() {
+  if (fd_ >= 0) ::close(fd_);
+}
+
+void FileLock::Remove() {
+  if (fd_ < 0) return;
+  ::unlink(path_.c_str());
+  ::close(std::exchange(fd_, -1));
+}
+
+Result<FileLock> FileLock::Take(const std::filesystem::path& path) {
+  while (true) {
+    const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (fd < 0)
+      return OutputError(
+          fmt::format("{}: cannot be created: {}", path.string(), std::strerror(errno)));
+    FileLock lock(path, fd);
+    if (::flock(fd, LOCK_EX | LOCK_NB) != 0) {
+      if (errno == EINTR) continue;
+      if (errno == EWOULDBLOCK)
+        return OutputError(
+            fmt::format("{}: is locked: another program{} is at work here; wait for it to end",
+                        path.string(), Owner(fd)));
+      return OutputError(
+          fmt::format("{}: cannot be locked: {}", path.string(), std::strerror(errno)));
+    }
+    if (!IsStill(fd, path)) continue;
+    // For people and messages only.
+    const std::string text = fmt::format("{}\n", ::getpid());
+    if (::ftruncate(fd, 0) != 0 || ::pwrite(fd, text.data(), text.size(), 0) < 0)
+      return OutputError(
+          fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
+    return lock;
+  }
+}
+
+}  // namespace lf

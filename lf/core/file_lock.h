@@ -1,0 +1,30 @@
+// One process at a time: a lock that the kernel holds, and lets go of when its process ends,
+// however it ends.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "lf/core/result.h"
+
+namespace lf {
+
+class FileLock {
+ public:
+  // Locks the file, made if it is missing, without waiting. kOutput: another process (its number is
+  // in the message) or another FileLock holds it, or it cannot be made.
+  static Result<FileLock> Take(const std::filesystem::path& path);
+  FileLock(FileLock&& other) noexcept;
+  FileLock& operator=(FileLock&& other) noexcept;
+  ~FileLock();  // lets go; the file stays
+
+  // Lets go, and removes the file.
+  void Remove();
+
+ private:
+  FileLock(std::filesystem::path path, int fd);
+  std::filesystem::path path_;
+  int fd_ = -1;
+};
+
+}  // namespace lf
