@@ -1,99 +1,207 @@
 #!/usr/bin/python3
-"""Times whole renders, after the workloads of Table 5.1 of the thesis, at a size a laptop can hold.
+"""Times whole renders: the five camera movements of Table 5.1 of the thesis, thinned out.
 
-usage: bench/workloads.py BUILD_DIR [--runs 5] [--size 480x320] [--count 289] [--threads 1,2]
+usage: bench/workloads.py BUILD_DIR [--density 0.1] [--size 480x320] [--runs 3] [--threads 1,2]
+                          [--only stack,short] [--field DIR] [--name NAME] [--again JSON]
 
-Makes a light field with lfsynth in a temporary folder, then renders each workload `runs` times per
-number of threads, in turn, so that a busy machine disturbs all alike. Prints one row each:
-minimum, median and maximum seconds, tested rays per second of wall time, peak memory.
+Lengths, times, frames, apertures and focus distances are the thesis's; of its LF cameras every
+tenth is there (--density), and LF images and frames have --size. lfsynth photographs a planar grid
+of noisy raw Bayer mosaics. A path sweeps the area that makes the LF images it needs the thesis's
+number times the density; the grid is a square where the thesis had a band, so long paths wind.
+
+Workloads are rendered `runs` times per number of threads, in turn, so that a busy machine disturbs
+all alike. Seconds and peak memory are those of the whole program.
+
+--field DIR   keep the light field there, or take the one that is there
+--name NAME   write bench/results/NAME.md and NAME.json
+--again JSON  print the table of an earlier run
 """
 import argparse
 import json
+import math
+import os
 import pathlib
-import platform
 import statistics
 import subprocess
 import tempfile
+import time
 
-# The thesis's stack (nothing moves but the focus), short (a small move with a focus pull) and sharp
-# (a small lens): frames, diameter in spacings of LF cameras, seconds moved.
-PATH = """format: lfpath 1
-fps: 30
-frames: {frames}
-resolution: [{width}, {height}]
-{camera}lens:
-  aperture_diameter: {aperture}
-  focus_distance: {focus}
-{movement}"""
+import record as results
 
+PER_MM2 = 66    # LF cameras: 827 within a disk of 4 mm (stack)
+DISTANCE_M = 1  # from the grid to the middle of the scene
+FPS = 30
+
+# Table 5.1. focus: metres, from the first frame to the last; a changing aperture opens and closes
+# every ten seconds.
 WORKLOADS = {
-    "stack": dict(frames=30, aperture=1.0, movement="focus"),
-    "short": dict(frames=60, aperture=0.7, movement="both"),
-    "sharp": dict(frames=30, aperture=0.3, movement="position"),
+    "stack": dict(frames=30, aperture_mm=(4, 4), focus_m=(0.2, 1), images=827),
+    "short": dict(frames=60, aperture_mm=(4, 4), focus_m=(0.5, 0.1), images=5621),
+    "sharp": dict(frames=30, aperture_mm=(2, 2), focus_m=(0.8, 0.8), images=1914),
+    "long": dict(frames=480, aperture_mm=(2, 2), focus_m=(0.15, 1), images=27173),
+    "bokeh": dict(frames=900, aperture_mm=(0.1, 2), focus_m=(0.15, 1), images=67502),
 }
 
 
-def example(build, field, folder):
-    """camera block, aperture and focus of a path that lfexample finds"""
-    path = folder / "example.yaml"
-    subprocess.run([build / "bin/lfexample", field, "-o", path, "--move", "static", "-q"], check=True)
-    text = path.read_text()
-    camera = text[text.index("camera:"):text.index("lens:")]
-    value = lambda key: float(text.split(key + ":")[1].split()[0])
-    return camera, value("aperture_diameter"), value("focus_distance")
+def straight_length_mm(workload):
+    """of a path whose lens sweeps over the workload's LF images"""
+    narrow, wide = workload["aperture_mm"]
+    area_mm2 = workload["images"] / PER_MM2
+    return max(0, area_mm2 - math.pi / 4 * wide ** 2) / ((narrow + wide) / 2)
 
 
-def path_for(workload, camera, aperture, focus, size):
-    width, height = size
-    movement = "accelerations: []\n"
-    if workload["movement"] in ("focus", "both"):
-        movement = (f"keyframes:\n  focus_distance: [{{time: 0, value: {0.5 * focus}}}, "
-                    f"{{time: 1, value: {2 * focus}}}]\n")
-    if workload["movement"] in ("position", "both"):
-        camera += f"  speed: [{aperture / 4}, 0, 0]\n"
-    return PATH.format(frames=workload["frames"], width=width, height=height, camera=camera,
-                       aperture=aperture * workload["aperture"], focus=focus, movement=movement)
+# Of the grid: bokeh winds over all of it, in lines as far apart as its lens is wide.
+SIDE_MM = math.sqrt(straight_length_mm(WORKLOADS["bokeh"]) * WORKLOADS["bokeh"]["aperture_mm"][1])
+
+
+def winding_path(workload):
+    """Points (x, y), mm: a straight line in the middle of the grid, or many from its upper left."""
+    wide = workload["aperture_mm"][1]
+    left = straight_length_mm(workload)
+    reach = (SIDE_MM - wide) / 2
+    if left <= 2 * reach:
+        return [(-left / 2, 0), (left / 2, 0)]
+    x, y, direction = -reach, -reach, 1
+    points = [(x, y)]
+    while left > 0:
+        x += direction * min(left, 2 * reach)
+        left -= 2 * reach
+        points.append((x, y))
+        if left <= 0 or y + wide > reach:
+            return points
+        y += wide
+        left -= wide
+        points.append((x, y))
+        direction = -direction
+    return points
+
+
+def keys(times, values):
+    return "[" + ", ".join(f"{{time: {t:.6f}, value: {v}, interpolation: linear}}"
+                           for t, v in zip(times, values)) + "]"
+
+
+def path_yaml(workload, size):
+    seconds = (workload["frames"] - 1) / FPS
+    points = winding_path(workload)
+    (x, y), (near, far), (narrow, wide) = points[0], workload["focus_m"], workload["aperture_mm"]
+    moves = {}
+    lengths = [0]
+    for a, b in zip(points, points[1:]):
+        lengths.append(lengths[-1] + math.dist(a, b))
+    if lengths[-1] > 0:
+        moves["position"] = keys([seconds * length / lengths[-1] for length in lengths],
+                                 [f"[{a / 1000:.6f}, {b / 1000:.6f}, {-DISTANCE_M}]"
+                                  for a, b in points])
+    if near != far:
+        moves["focus_distance"] = keys([0, seconds], [near, far])
+    if narrow != wide:
+        times = range(0, math.ceil(seconds) + 5, 5)
+        moves["aperture_diameter_mm"] = keys(times, [(narrow, wide)[i % 2] for i in range(len(times))])
+    movement = "keyframes:\n" + "".join(f"  {key}: {value}\n" for key, value in moves.items())
+    return f"""format: lfpath 1
+fps: {FPS}
+frames: {workload['frames']}
+resolution: [{size[0]}, {size[1]}]
+camera:
+  sensor_width_mm: 36
+  focal_length_mm: 36
+  position: [{x / 1000:.6f}, {y / 1000:.6f}, {-DISTANCE_M}]
+  look_at: [{x / 1000:.6f}, {y / 1000:.6f}, 0]
+  follow: direction
+lens:
+  aperture_diameter_mm: {narrow}
+  focus_distance: {near}
+{movement if moves else ''}"""
+
+
+def photograph(build, field, density, size):
+    """The light field, unless it is there."""
+    if (field / "transforms.json").exists():
+        return
+    spacing_m = 0.001 / math.sqrt(density * PER_MM2)
+    count = round(SIDE_MM ** 2 * PER_MM2 * density)
+    subprocess.run([build / "bin/lfsynth", "chart", "-o", field, "--count", str(count), "--size", size,
+                    "--spacing", f"{spacing_m:.8f}", "--distance", str(DISTANCE_M), "--bayer",
+                    "--noise", "0.01", "--samples", "1", "-q"], check=True)
+
+
+def render(build, field, path, out, threads):
+    """One run: seconds, peak bytes, report."""
+    start = time.monotonic()
+    process = subprocess.Popen([build / "bin/lfrenderer", field, path, "-o", out, "--threads",
+                                str(threads), "-q", "--no-contact-sheet"], stderr=subprocess.PIPE)
+    messages = process.stderr.read().decode()
+    _, status, usage = os.wait4(process.pid, 0)
+    if status != 0:
+        raise SystemExit(f"lfrenderer failed on {path.name}: {messages}")
+    seconds = time.monotonic() - start
+    return seconds, usage.ru_maxrss * 1024, json.loads((out / "report.json").read_text())
+
+
+def measure(build, field, folder, name, size, runs, threads):
+    """The rows of one workload, one for each number of threads."""
+    path = folder / f"{name}.yaml"
+    path.write_text(path_yaml(WORKLOADS[name], size))
+    rows = {n: {"workload": name, "threads": n, "seconds": [], "peak_bytes": 0} for n in threads}
+    for _ in range(runs):
+        for n in threads:
+            seconds, peak_bytes, report = render(build, field, path, folder / "out", n)
+            row = rows[n]
+            row["seconds"].append(round(seconds, 3))
+            row["peak_bytes"] = max(row["peak_bytes"], peak_bytes)
+            row["lf_images"] = report["lf_images_selected"]
+            row["rays"] = report["rays_accepted"]
+    return list(rows.values())
+
+
+def table(record):
+    lines = ["| workload | frames | LF images (aim) | Grays | threads | seconds: min, median, max | "
+             "Mrays/s | peak MiB |", "| --- | --- | --- | --- | --- | --- | --- | --- |"]
+    for row in record["rows"]:
+        workload, seconds = WORKLOADS[row["workload"]], row["seconds"]
+        median = statistics.median(seconds)
+        lines.append(f"| {row['workload']} | {workload['frames']} | {row['lf_images']} "
+                     f"({workload['images'] * record['density']:.0f}) | {row['rays'] / 1e9:.2f} | "
+                     f"{row['threads']} | {min(seconds):.2f}, {median:.2f}, {max(seconds):.2f} | "
+                     f"{row['rays'] / 1e6 / median:.0f} | {row['peak_bytes'] >> 20} |")
+    return lines
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("build", type=pathlib.Path)
-    parser.add_argument("--runs", type=int, default=5)
+    parser.add_argument("build", type=pathlib.Path, nargs="?")
+    parser.add_argument("--density", type=float, default=0.1)
     parser.add_argument("--size", default="480x320")
-    parser.add_argument("--count", type=int, default=289)
+    parser.add_argument("--runs", type=int, default=3)
     parser.add_argument("--threads", default="1,2")
+    parser.add_argument("--only", default=",".join(WORKLOADS))
+    parser.add_argument("--field", type=pathlib.Path)
+    parser.add_argument("--name")
+    parser.add_argument("--again", type=pathlib.Path)
     arguments = parser.parse_args()
-    build = arguments.build.resolve()
-    size = tuple(map(int, arguments.size.split("x")))
-    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True)
-    print(f"commit {commit.stdout.strip()}, {platform.processor() or platform.machine()}, "
-          f"{arguments.count} LF images {arguments.size}, {arguments.runs} runs")
-    print("| workload | frames | threads | min s | median s | max s | Mrays/s | peak MiB |")
-    print("| --- | --- | --- | --- | --- | --- | --- | --- |")
-    with tempfile.TemporaryDirectory() as temporary:
-        folder = pathlib.Path(temporary)
-        field = folder / "field"
-        subprocess.run([build / "bin/lfsynth", "still-life", "-o", field, "--count",
-                        str(arguments.count), "--size", arguments.size, "-q"], check=True)
-        camera, aperture, focus = example(build, field, folder)
-        for name, workload in WORKLOADS.items():
-            path = folder / f"{name}.yaml"
-            path.write_text(path_for(workload, camera, aperture, focus, size))
-            threads = [int(n) for n in arguments.threads.split(",")]
-            seconds = {n: [] for n in threads}
-            for _ in range(arguments.runs):
-                for n in threads:
-                    out = folder / "out"
-                    subprocess.run([build / "bin/lfrenderer", field, path, "-o", out, "--threads",
-                                    str(n), "-q", "--no-contact-sheet"], check=True)
-                    report = json.loads((out / "report.json").read_text())
-                    seconds[n].append(report["seconds"])
-            for n in threads:
-                median = statistics.median(seconds[n])
-                print(f"| {name} | {workload['frames']} | {n} | {min(seconds[n]):.2f} | {median:.2f} "
-                      f"| {max(seconds[n]):.2f} | {report['rays_tested'] / 1e6 / median:.0f} "
-                      f"| {report['peak_memory_bytes'] >> 20} |", flush=True)
+    if arguments.again:
+        record = json.loads(arguments.again.read_text())
+    elif arguments.build:
+        build, size = arguments.build.resolve(), tuple(map(int, arguments.size.split("x")))
+        record = results.context()
+        record.update(density=arguments.density, size=arguments.size, runs=arguments.runs, rows=[])
+        with tempfile.TemporaryDirectory() as temporary:
+            folder = pathlib.Path(temporary)
+            field = arguments.field or folder / "field"
+            photograph(build, field, arguments.density, arguments.size)
+            for name in arguments.only.split(","):
+                record["rows"] += measure(build, field, folder, name, size, arguments.runs,
+                                          list(map(int, arguments.threads.split(","))))
+    else:
+        parser.error("BUILD_DIR or --again is needed")
+    text = "\n".join([results.sentence(record) + f" LF images and frames {record['size']}, "
+                      f"{record['density']:g} of the thesis's LF cameras, {record['runs']} runs.", ""] +
+                     table(record)) + "\n"
+    print(text)
+    if arguments.name:
+        results.save(arguments.name, record, text)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,174 @@
+// Our kernels and their peers on the same data in the same run, in turn: round 0 of every
+// contender, then round 1, so that whatever else the machine does disturbs all alike and ratios
+// within a round mean something. bench/kernel_table.py makes the table of it.
+//
+// One thread, CPU time. A ray, in rays/s, is one that our kernel accepts: an LF pixel with nearest,
+// an element and LF image with bilinear; the same number for every contender.
+//
+// Before anything is timed, the contenders' pictures are compared.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+
+#include "bench/contender.h"
+
+namespace lf::bench {
+namespace {
+
+// LF images that the reference, some 50 times slower, is given.
+constexpr int kReferenceImages = 1;
+
+struct Entrant {
+  std::unique_ptr<Contender> contender;
+  int image_count = 0;
+  double ray_count = 0;  // of these images
+};
+
+struct Difference {
+  double count_share = 0;    // of rays, in other elements
+  double mean_absolute = 0;  // of the means of elements that both have, 65535 = white
+};
+
+Difference Compare(const Picture& a, const Picture& b) {
+  Difference difference;
+  double rays = 0, compared = 0;
+  for (size_t i = 0; i < a.sums.size(); ++i) {
+    rays += a.counts[i];
+    difference.count_share += 0.5 * std::abs(a.counts[i] - b.counts[i]);
+    if (a.counts[i] == 0 || b.counts[i] == 0) continue;
+    difference.mean_absolute += std::abs(a.sums[i] / a.counts[i] - b.sums[i] / b.counts[i]);
+    ++compared;
+  }
+  difference.count_share /= std::max(1.0, rays);
+  difference.mean_absolute /= std::max(1.0, compared);
+  return difference;
+}
+
+// The case being measured, with everybody's plates; one at a time, for they are large.
+class Arena {
+ public:
+  explicit Arena(const CaseSpec& spec) : case_(MakeCase(spec)) {
+    for (const int count :
+         std::set<int>{spec.image_count, spec.peer_image_count, kReferenceImages}) {
+      const std::unique_ptr<OurKernel> ours = MakeOurKernel(case_);
+      ours->Collect(count);
+      ray_counts_[count] = static_cast<double>(ours->accepted_count());
+      if (count == spec.peer_image_count) CheckPeers(ours->Develop());
+      if (count == kReferenceImages)
+        CheckSame("reference", MakeReference(case_), count, ours->Develop(), 0.001, 10);
+    }
+  }
+
+  const CaseSpec& spec() const { return case_.spec; }
+
+  Entrant& Enter(const std::string& name) {
+    Entrant& entrant = entrants_[name];
+    if (entrant.contender) return entrant;
+    entrant.image_count = case_.spec.peer_image_count;
+    if (name == "thesis") {
+      entrant.contender = MakeThesisLoop(case_);
+    } else if (name == "thesis_native") {
+      entrant.contender = MakeThesisLoopNative(case_);
+    } else if (name == "opencv") {
+      entrant.contender = MakeOpenCv(case_);
+    } else if (name == "reference") {
+      entrant.contender = MakeReference(case_);
+      entrant.image_count = kReferenceImages;
+    } else {
+      entrant.contender = MakeOurKernel(case_);
+      entrant.image_count = case_.spec.image_count;
+    }
+    entrant.ray_count = ray_counts_.at(entrant.image_count);
+    return entrant;
+  }
+
+ private:
+  void CheckPeers(const Picture& ours) const {
+    const int count = case_.spec.peer_image_count;
+    // Float positions put a few rays into the next element; the law's iteration, arcs and 32-bit
+    // ideal positions differ by 10^-4 px.
+    CheckSame("thesis", MakeThesisLoop(case_), count, ours, 0.002, 60);
+    CheckSame("thesis_native", MakeThesisLoopNative(case_), count, ours, 0.002, 60);
+    // OpenCV interpolates, and demosaics, where nearest does not: other counts, but the picture is
+    // smooth, so that means agree.
+    const bool same_rays = case_.spec.estimator == Estimator::kBilinear;
+    CheckSame("opencv", MakeOpenCv(case_), count, ours, same_rays ? 0.002 : 1e9, 300);
+  }
+
+  void CheckSame(const char* name, std::unique_ptr<Contender> peer, int image_count,
+                 const Picture& ours, double count_limit, double mean_limit) const {
+    peer->Collect(image_count);
+    const Difference d = Compare(ours, peer->Develop());
+    std::fprintf(stderr, "%s: %s differs by %.1e of the rays, %.1f of 65535 in the mean\n",
+                 case_.spec.name.c_str(), name, d.count_share, d.mean_absolute);
+    if (d.count_share <= count_limit && d.mean_absolute <= mean_limit) return;
+    std::fprintf(stderr, "not the same picture: limits are %.1e and %.1f\n", count_limit,
+                 mean_limit);
+    std::exit(EXIT_FAILURE);
+  }
+
+  KernelCase case_;
+  std::map<int, double> ray_counts_;  // by number of LF images
+  std::map<std::string, Entrant> entrants_;
+};
+
+Arena& ArenaOf(const CaseSpec& spec) {
+  static std::unique_ptr<Arena> arena;
+  if (arena == nullptr || arena->spec().name != spec.name) {
+    arena.reset();
+    arena = std::make_unique<Arena>(spec);
+  }
+  return *arena;
+}
+
+void Run(benchmark::State& state, const CaseSpec& spec, const std::string& name) {
+  Entrant& entrant = ArenaOf(spec).Enter(name);
+  const size_t at = name.find('@');
+  UseSimdTarget(at == std::string::npos ? "" : name.substr(at + 1));
+  for (auto _ : state) entrant.contender->Collect(entrant.image_count);
+  UseSimdTarget("");
+  const double rays = entrant.ray_count * static_cast<double>(state.iterations());
+  state.counters["rays/s"] = benchmark::Counter(rays, benchmark::Counter::kIsRate);
+}
+
+void Register(int rounds) {
+  for (const CaseSpec& spec : AllCases()) {
+    std::vector<std::string> names = {"thesis", "thesis_native", "opencv", "reference", "ours"};
+    if (spec.every_target)
+      for (const std::string& target : SimdTargets()) names.push_back("ours@" + target);
+    for (int round = 0; round < rounds; ++round)
+      for (const std::string& name : names)
+        benchmark::RegisterBenchmark(
+            (spec.name + "/" + name + "/round:" + std::to_string(round)).c_str(),
+            [spec, name](benchmark::State& state) { Run(state, spec, name); })
+            ->Iterations(name.starts_with("ours") ? 3 : 1)
+            ->Unit(benchmark::kMillisecond);
+  }
+}
+
+}  // namespace
+}  // namespace lf::bench
+
+// --rounds=N before Google Benchmark's own options; 5 by default.
+int main(int argc, char** argv) {
+  int rounds = 5;
+  if (argc > 1 && std::strncmp(argv[1], "--rounds=", 9) == 0) {
+    rounds = std::atoi(argv[1] + 9);
+    argv[1] = argv[0];
+    ++argv;
+    --argc;
+  }
+  lf::bench::Register(rounds);
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return EXIT_FAILURE;
+  benchmark::AddCustomContext("compiler", __VERSION__);
+  benchmark::RunSpecifiedBenchmarks();
+  return EXIT_SUCCESS;
+}

@@ -1,0 +1,57 @@
+// Who is measured: our kernels, and their peers. A contender adds LF images to a plate of its own.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/kernel_case.h"
+
+namespace lf::bench {
+
+// Means and counts of a plate, to compare contenders by.
+struct Picture {
+  int width = 0;
+  int height = 0;
+  std::vector<float> sums;    // [height][width][3]
+  std::vector<float> counts;  // [height][width][3]
+};
+
+class Contender {
+ public:
+  virtual ~Contender() = default;
+
+  // Adds the first `image_count` LF images of the case. What is timed.
+  virtual void Collect(int image_count) = 0;
+
+  virtual Picture Develop() const = 0;
+};
+
+// Our fast kernels, on a plate cut as the renderer cuts it. Also counts the rays.
+class OurKernel : public Contender {
+ public:
+  // Accepted by the last Collect(): pixels with nearest, elements with bilinear.
+  virtual uint64_t accepted_count() const = 0;
+};
+
+// Instruction sets that our kernels are compiled for and the machine has, and the choice of one;
+// "" leaves it to Highway, which takes the best.
+std::vector<std::string> SimdTargets();
+void UseSimdTarget(const std::string& target);
+
+// The contenders keep a reference to the case.
+std::unique_ptr<OurKernel> MakeOurKernel(const KernelCase& kernel_case);
+
+// The law asked of every pixel (or element), in double precision.
+std::unique_ptr<Contender> MakeReference(const KernelCase& kernel_case);
+
+// The loop that the thesis describes (4.3.1) with Eigen; compiled as the project is, and for the
+// machine it is built on.
+std::unique_ptr<Contender> MakeThesisLoop(const KernelCase& kernel_case);
+std::unique_ptr<Contender> MakeThesisLoopNative(const KernelCase& kernel_case);
+
+// Demosaic, warpPerspective, accumulate.
+std::unique_ptr<Contender> MakeOpenCv(const KernelCase& kernel_case);
+
+}  // namespace lf::bench

@@ -1,0 +1,140 @@
+#!/usr/bin/python3
+"""Runs lf_collection_peers_bench and prints the table of our kernels against their peers.
+
+usage: bench/kernel_table.py BUILD_DIR [--rounds 5] [--cases REGEX] [--name NAME] [--again JSON]
+
+Rounds are interleaved: a ratio is taken within a round, printed is the median over the rounds and,
+in brackets, the least and the largest. Times are CPU times of one thread.
+
+--name NAME   write bench/results/NAME.md and NAME.json
+--again JSON  print the table of an earlier run
+"""
+import argparse
+import json
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+
+import record as results
+
+PEERS = {"thesis": "thesis's loop", "thesis_native": "the same, -march=native", "opencv": "OpenCV",
+         "reference": "reference"}
+
+
+def run(build, rounds, cases):
+    """{case: {contender: [ns per ray of round 0, 1, ...]}}, and what was compiled with"""
+    with tempfile.NamedTemporaryFile(suffix=".json") as out:
+        subprocess.run([build / "bench/lf_collection_peers_bench", f"--rounds={rounds}",
+                        f"--benchmark_filter=^({cases})/", f"--benchmark_out={out.name}",
+                        "--benchmark_out_format=json"], check=True, stdout=sys.stderr)
+        report = json.load(open(out.name))
+    result = {}
+    for row in report["benchmarks"]:
+        case, contender, _ = row["name"].split("/", 2)
+        result.setdefault(case, {}).setdefault(contender, []).append(1e9 / row["rays/s"])
+    return result, report["context"]["compiler"]
+
+
+def spread(values, digits):
+    return f"{statistics.median(values):.{digits}f} ({min(values):.{digits}f}-{max(values):.{digits}f})"
+
+
+def ratios(contenders, peer, ours="ours"):
+    return [a / b for a, b in zip(contenders[peer], contenders[ours])]
+
+
+def rows(head, lines):
+    return ["| " + " | ".join(line) + " |" for line in [head, ["---"] * len(head)] + lines]
+
+
+def table(cases):
+    return rows(["case", "ns/ray"] + [f"x {text}" for text in PEERS.values()],
+                [[case, spread(contenders["ours"], 2)] +
+                 [spread(ratios(contenders, peer), 1) for peer in PEERS]
+                 for case, contenders in cases.items()])
+
+
+def target_table(cases):
+    """ns/ray, and how often faster than the thesis's loop, by instruction set."""
+    targets = []
+    for contenders in cases.values():
+        targets += [name for name in contenders if name.startswith("ours@") and name not in targets]
+    lines = []
+    for case, contenders in cases.items():
+        if all(name in contenders for name in targets):
+            lines.append([case] + [f"{statistics.median(contenders[name]):.2f} "
+                                   f"({statistics.median(ratios(contenders, 'thesis', name)):.1f} x)"
+                                   for name in targets])
+    return [""] + rows(["case"] + [name[5:] for name in targets], lines) if targets else []
+
+
+def goals(cases):
+    """What the project wants to reach, with what it reaches: lines of pass or fail."""
+    lines = []
+
+    def goal(text, value, holds):
+        lines.append(f"- {'reached' if holds else 'MISSED'}: {text}: {value}")
+
+    def at_least(case, peer, limit, ours="ours", what=""):
+        if ours not in cases.get(case, {}):
+            return
+        value = statistics.median(ratios(cases[case], peer, ours))
+        goal(f"{case}{what} >= {limit} x {PEERS[peer]}", f"{value:.1f}", value >= limit)
+
+    def close(names, limit, base):
+        names = [name for name in names if name in cases]
+        if base not in cases or not names:
+            return
+        for name in names:
+            share = statistics.median(a / b for a, b in zip(cases[name]["ours"], cases[base]["ours"]))
+            goal(f"{name} within {limit:.0%} of {base}", f"{share - 1:+.0%}", share <= 1 + limit)
+
+    at_least("disk", "thesis", 22)
+    at_least("disk", "opencv", 6)
+    at_least("disk", "thesis", 18, "ours@AVX2", " by AVX2")
+    at_least("separable", "thesis", 50)
+    close(["tilt", "pentagon", "distortion_phone", "distortion_barrel", "distortion_fisheye"], 0.15, "disk")
+    plates = [name for name in ("plate_720p", "plate_1080p", "plate_4k", "plate_8k") if name in cases]
+    if len(plates) == 4:
+        times = [statistics.median(cases[name]["ours"]) for name in plates]
+        goal("720p to 8K within 15%", " ".join(f"{t:.2f}" for t in times), max(times) <= 1.15 * min(times))
+    at_least("bilinear", "thesis", 15)
+    at_least("bilinear", "opencv", 5)
+    for case in ("disk", "bilinear"):
+        if case in cases:
+            value = statistics.median(ratios(cases[case], "opencv", "thesis"))
+            goal(f"the thesis's loop >= 0.25 x OpenCV, {case}", f"{value:.2f}", value >= 0.25)
+    return lines
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=pathlib.Path, nargs="?")
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--cases", default=".*")
+    parser.add_argument("--name")
+    parser.add_argument("--again", type=pathlib.Path)
+    arguments = parser.parse_args()
+    if arguments.again:
+        record = json.loads(arguments.again.read_text())
+    elif arguments.build:
+        record = results.context()
+        record["rounds"] = arguments.rounds
+        cases, compiler = run(arguments.build.resolve(), arguments.rounds, arguments.cases)
+        record.update(compiler=f"g++ {compiler}, -O3", ns_per_ray=cases)
+    else:
+        parser.error("BUILD_DIR or --again is needed")
+    text = "\n".join(
+        [results.sentence(record) + f" {record['compiler']}; one thread, CPU time, median "
+         f"(least-largest) of {record['rounds']} interleaved rounds.", ""] +
+        table(record["ns_per_ray"]) + target_table(record["ns_per_ray"]) + [""] + goals(record["ns_per_ray"])) + "\n"
+    print(text)
+    if arguments.name:
+        results.save(arguments.name, record, text)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,121 @@
+// Our kernels as the renderer calls them (lf/pipeline/collect_batch.cc), on one thread.
+#include <hwy/targets.h>
+
+#include <vector>
+
+#include "bench/contender.h"
+
+#include "lf/collection/gather.h"
+#include "lf/collection/scatter.h"
+#include "lf/plate/sensor_plate.h"
+#include "lf/plate/tile_sums.h"
+
+namespace lf::bench {
+namespace {
+
+Picture PictureOf(const SensorPlate& plate) {
+  Picture picture;
+  picture.width = plate.width();
+  picture.height = plate.height();
+  for (int y = 0; y < plate.height(); ++y)
+    for (int x = 0; x < plate.width(); ++x)
+      for (int channel = 0; channel < 3; ++channel) {
+        const ElementSum element = plate.At(x, y, channel);
+        picture.sums.push_back(static_cast<float>(element.sum));
+        picture.counts.push_back(static_cast<float>(element.count));
+      }
+  return picture;
+}
+
+class FastKernel final : public OurKernel {
+ public:
+  explicit FastKernel(const KernelCase& kernel_case)
+      : case_(kernel_case),
+        plate_(kernel_case.spec.plate_width, kernel_case.spec.plate_height),
+        tiles_(CutIntoTiles(&plate_, kTileWidth, kTileHeight)) {}
+
+  void Collect(int image_count) override {
+    const auto count = static_cast<size_t>(image_count);
+    accepted_count_ = 0;
+    if (case_.spec.estimator == Estimator::kBilinear) {
+      std::vector<GatherPlan> plans;
+      for (size_t i = 0; i < count; ++i) plans.emplace_back(case_.cameras[i], case_.frame);
+      CollectTiles(count, [&](size_t i) { return plans[i].GatherTile(case_.images[i], &sums_); });
+      return;
+    }
+    const IdealPixels* ideal = case_.ideal_pixels ? &*case_.ideal_pixels : nullptr;
+    std::vector<ScatterPlan> plans;
+    for (size_t i = 0; i < count; ++i)
+      plans.push_back(PlanScatter(case_.cameras[i], case_.frame, case_.rects[i], ideal));
+    CollectTiles(count, [&](size_t i) { return ScatterTile(plans[i], case_.images[i], &sums_); });
+  }
+
+  Picture Develop() const override { return PictureOf(plate_); }
+  uint64_t accepted_count() const override { return accepted_count_; }
+
+ private:
+  static constexpr int kTileWidth = 512;
+  static constexpr int kTileHeight = 64;
+
+  template <class CollectImage>
+  void CollectTiles(size_t image_count, const CollectImage& collect_image) {
+    for (PlateTile& tile : tiles_) {
+      sums_.Begin(&tile);
+      for (size_t i = 0; i < image_count; ++i) accepted_count_ += collect_image(i);
+      sums_.Flush();
+    }
+  }
+
+  const KernelCase& case_;
+  SensorPlate plate_;
+  std::vector<PlateTile> tiles_;
+  TileSums sums_;
+  uint64_t accepted_count_ = 0;
+};
+
+class Reference final : public Contender {
+ public:
+  explicit Reference(const KernelCase& kernel_case)
+      : case_(kernel_case), plate_(kernel_case.spec.plate_width, kernel_case.spec.plate_height) {}
+
+  void Collect(int image_count) override {
+    for (size_t i = 0; i < static_cast<size_t>(image_count); ++i) {
+      if (case_.spec.estimator == Estimator::kBilinear)
+        GatherReference(case_.cameras[i], case_.images[i], case_.frame, &plate_);
+      else
+        ScatterReference(case_.cameras[i], case_.images[i], case_.frame, case_.rects[i], &plate_);
+    }
+  }
+
+  Picture Develop() const override { return PictureOf(plate_); }
+
+ private:
+  const KernelCase& case_;
+  SensorPlate plate_;
+};
+
+}  // namespace
+
+std::vector<std::string> SimdTargets() {
+  std::vector<std::string> names;
+  for (const int64_t target : hwy::SupportedAndGeneratedTargets())
+    names.push_back(hwy::TargetName(target));
+  return names;
+}
+
+void UseSimdTarget(const std::string& name) {
+  hwy::SetSupportedTargetsForTest(0);
+  for (const int64_t target : hwy::SupportedAndGeneratedTargets())
+    if (name == hwy::TargetName(target)) hwy::SetSupportedTargetsForTest(target);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+std::unique_ptr<OurKernel> MakeOurKernel(const KernelCase& kernel_case) {
+  return std::make_unique<FastKernel>(kernel_case);
+}
+
+std::unique_ptr<Contender> MakeReference(const KernelCase& kernel_case) {
+  return std::make_unique<Reference>(kernel_case);
+}
+
+}  // namespace lf::bench
