@@ -12,6 +12,8 @@ import sys
 # Third-party headers and the only folders that may include them (doc/design.md, section 3).
 OWNERS = {
     "OpenImageIO/": {"imageio"},
+    "jpeglib.h": {"imageio"},
+    "jerror.h": {"imageio"},
     "yaml-cpp/": {"path"},
     "nlohmann/": {"calibration", "native", "pipeline"},
     "tbb/": {"core"},

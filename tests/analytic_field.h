@@ -42,17 +42,17 @@ class FormulaStore : public LfImageStore {
   FormulaStore(const LightField& field, Radiance radiance)
       : field_(field), radiance_(std::move(radiance)) {}
 
-  Result<LfPixels> Load(LfImageId id, const PixelRect& rect) const override {
+  Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override {
     const PinholeCamera camera = field_.Camera(id);
-    LfPixels pixels(rect, BayerPattern::kNone);
+    *pixels = LfPixels(rect, BayerPattern::kNone);
     for (int y = rect.y_begin; y < rect.y_end; ++y)
       for (int x = rect.x_begin; x < rect.x_end; ++x) {
         const double value = radiance_(RayOfPixel(camera, x + 0.5, y + 0.5));
         for (int channel = 0; channel < 3; ++channel)
-          pixels.radiance.at(x - rect.x_begin, y - rect.y_begin, channel) =
+          pixels->radiance.at(x - rect.x_begin, y - rect.y_begin, channel) =
               static_cast<uint16_t>(std::lround(65535 * std::clamp(value, 0.0, 1.0)));
       }
-    return pixels;
+    return {};
   }
 
  private:
@@ -66,12 +66,12 @@ class PointStore : public LfImageStore {
  public:
   PointStore(const LightField& field, const Vec3& point) : field_(field), point_(point) {}
 
-  Result<LfPixels> Load(LfImageId id, const PixelRect&) const override {
+  Result<void> Load(LfImageId id, const PixelRect&, LfPixels* pixels) const override {
     const Vec2 p = *Project(field_.Camera(id), point_);
     const int x = static_cast<int>(std::floor(p.x())), y = static_cast<int>(std::floor(p.y()));
-    LfPixels pixels({x, y, x + 1, y + 1}, BayerPattern::kNone);
-    for (int channel = 0; channel < 3; ++channel) pixels.radiance.at(0, 0, channel) = 65535;
-    return pixels;
+    *pixels = LfPixels({x, y, x + 1, y + 1}, BayerPattern::kNone);
+    for (int channel = 0; channel < 3; ++channel) pixels->radiance.at(0, 0, channel) = 65535;
+    return {};
   }
 
  private:

@@ -19,15 +19,15 @@ class SceneStore : public LfImageStore {
  public:
   SceneStore(const LightField& field, const Scene& scene) : field_(field), scene_(scene) {}
 
-  Result<LfPixels> Load(LfImageId id, const PixelRect& rect) const override {
+  Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override {
     const Image<float> picture = Photograph(scene_, field_.Camera(id), 4);
-    LfPixels pixels(rect, BayerPattern::kNone);
+    *pixels = LfPixels(rect, BayerPattern::kNone);
     for (int y = rect.y_begin; y < rect.y_end; ++y)
       for (int x = rect.x_begin; x < rect.x_end; ++x)
         for (int channel = 0; channel < 3; ++channel)
-          pixels.radiance.at(x - rect.x_begin, y - rect.y_begin, channel) =
+          pixels->radiance.at(x - rect.x_begin, y - rect.y_begin, channel) =
               QuantizeRadiance(field_.encoding, static_cast<double>(picture.at(x, y, channel)), 1);
-    return pixels;
+    return {};
   }
 
  private:

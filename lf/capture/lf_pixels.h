@@ -24,6 +24,15 @@ struct LfPixels {
         radiance.pixels()[i] = 1;
   }
 
+  // Another part in the same memory, nothing masked; the radiance is left open.
+  void Reset(const PixelRect& part, BayerPattern pattern) {
+    radiance.Resize(part.width(), part.height(), pattern == BayerPattern::kNone ? kRgbLanes : 1);
+    bayer = pattern;
+    mosaic_mask = {};
+    any_masked = false;
+    rect = part;
+  }
+
   bool IsMasked(int column, int row) const {
     if (bayer == BayerPattern::kNone) return radiance.at(column, row, kRayLane) == 0;
     return !mosaic_mask.empty() && mosaic_mask.at(column, row) == 0;

@@ -44,6 +44,15 @@ class Image {
     pixels_.assign(static_cast<size_t>(width) * height * channels, fill);
   }
 
+  // Another size in the same memory, if that is large enough. What the pixels are is left open.
+  void Resize(int width, int height, int channels) {
+    LF_CHECK(width >= 0 && height >= 0 && channels >= 1);
+    pixels_.resize(static_cast<size_t>(width) * height * channels);
+    width_ = width;
+    height_ = height;
+    channels_ = channels;
+  }
+
   int width() const { return width_; }
   int height() const { return height_; }
   int channels() const { return channels_; }

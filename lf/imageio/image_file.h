@@ -1,5 +1,5 @@
 // Image files in and out: PNG, JPEG, TIFF, EXR; camera raw files in. The only place with
-// OpenImageIO.
+// OpenImageIO and libjpeg.
 //
 // All functions may be called by many threads at once; none starts threads of its own.
 #pragma once
@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -61,8 +62,8 @@ Result<ImageFileInfo> ReadImageInfo(const std::filesystem::path& path);
 // (NEF, ARW). LibRaw decodes them: damage within compressed ones may go unnoticed, and pictures
 // below 22 pixels are no raw files to it.
 // kInput: missing, unreadable, truncated or damaged file (JPEG: whatever libjpeg could only guess),
-// another format (other camera raw files among them), or larger than 2^30 pixels or 2^32 values,
-// which is checked before pixels are allocated; the message names the file.
+// another format (other camera raw files among them), a CMYK JPEG, or larger than 2^30 pixels or
+// 2^32 values, which is checked before pixels are allocated; the message names the file.
 Result<StoredImage> ReadImage(const std::filesystem::path& path);
 
 // Both at once.
@@ -72,10 +73,29 @@ struct ImageWithInfo {
 };
 Result<ImageWithInfo> ReadImageWithInfo(const std::filesystem::path& path);
 
+// A part of a picture: `image` holds its pixels `rect`, info is of the whole.
+struct ImagePart {
+  StoredImage image;
+  PixelRect rect;
+  ImageFileInfo info;
+};
+
+// Which pixels are needed, asked once the header is known. An error ends the reading.
+using WantedPixels = std::function<Result<PixelRect>(const ImageFileInfo& info)>;
+
+// At least the wanted pixels, which are some within the picture; the same as ReadImage gives there.
+// JPEG files are decoded in part where this saves time, others as a whole; damage is found anywhere
+// in the file all the same. The memory of part->image is used again if it has the same type, as
+// getting it from the system costs as much as a third of the decoding.
+Result<void> ReadImagePart(const std::filesystem::path& path, const WantedPixels& wanted,
+                           ImagePart* part);
+
 // The same for a file that is in memory; `name` is what messages call it.
 Result<ImageFileInfo> ReadImageInfoBytes(std::string_view bytes, const std::string& name);
 Result<StoredImage> ReadImageBytes(std::string_view bytes, const std::string& name);
 Result<ImageWithInfo> ReadImageWithInfoBytes(std::string_view bytes, const std::string& name);
+Result<void> ReadImagePartBytes(std::string_view bytes, const std::string& name,
+                                const WantedPixels& wanted, ImagePart* part);
 
 enum class PixelType { kUint8, kUint16, kHalf, kFloat };
 

@@ -16,6 +16,7 @@
 #include "lf/imageio/layers.h"
 #include "lf/imageio/open_image_io.h"
 #include "lf/imageio/open_raw.h"
+#include "lf/imageio/read_jpeg.h"
 #include "lf/imageio/stored_value.h"
 
 namespace lf {
@@ -32,18 +33,13 @@ ByteSource SourceOf(OIIO::Filesystem::IOProxy& file) {
   };
 }
 
-// libjpeg fills what it cannot decode with grey and only warns, libtiff goes on with the next row:
-// whatever a decoder remarks means pixels that were not recorded. Stuffing between the segments of
-// a JPEG alone is harmless, and some cameras write it.
+// libtiff goes on with the next row: whatever a decoder remarks means pixels that were not
+// recorded.
 Result<void> CheckRemarks(const std::string& remarks, const std::string& name) {
-  for (size_t begin = 0; begin < remarks.size();) {
-    const size_t end = std::min(remarks.find('\n', begin), remarks.size());
-    const std::string line = remarks.substr(begin, end - begin);
-    if (!line.empty() && line.find("extraneous bytes before marker") == std::string::npos)
-      return InputError(fmt::format("{}: truncated or damaged: {}", name, line));
-    begin = end + 1;
-  }
-  return {};
+  const size_t begin = remarks.find_first_not_of('\n');
+  if (begin == std::string::npos) return {};
+  return InputError(fmt::format("{}: truncated or damaged: {}", name,
+                                remarks.substr(begin, remarks.find('\n', begin) - begin)));
 }
 
 // A file, under its name or in memory.
@@ -157,66 +153,92 @@ Result<void> ReadPixels(OpenImage& image, OIIO::TypeDesc type, void* pixels) {
   return {};
 }
 
+// The image of `stored` of this type and size, in the memory it has if it can be.
 template <class T>
-Result<StoredImage> ReadIntegers(OpenImage& image) {
-  Image<T> pixels(image.spec.width, image.spec.height, image.spec.nchannels);
-  LF_RETURN_IF_ERROR(ReadPixels(image, OIIO::BaseTypeFromC<T>::value, pixels.pixels().data()));
-  return StoredImage(std::move(pixels));
+Image<T>& Resized(const OIIO::ImageSpec& spec, StoredImage* stored) {
+  if (!std::holds_alternative<Image<T>>(*stored)) stored->emplace<Image<T>>();
+  Image<T>& image = std::get<Image<T>>(*stored);
+  image.Resize(spec.width, spec.height, spec.nchannels);
+  return image;
+}
+
+template <class T>
+Result<void> ReadSimply(OpenImage& image, StoredImage* stored) {
+  return ReadPixels(image, OIIO::BaseTypeFromC<T>::value,
+                    Resized<T>(image.spec, stored).pixels().data());
 }
 
 // Channels of any types, in any order.
-Result<StoredImage> ReadMixed(OpenImage& image) {
+Result<void> ReadMixed(OpenImage& image, StoredImage* stored) {
   const OIIO::ImageSpec& spec = image.spec;
   const size_t pixel_bytes = spec.pixel_bytes(true);
-  std::vector<std::byte> stored(spec.image_pixels() * pixel_bytes);
-  LF_RETURN_IF_ERROR(ReadPixels(image, OIIO::TypeUnknown, stored.data()));
-  Image<float> pixels(spec.width, spec.height, spec.nchannels);
-  float* value = pixels.pixels().data();
+  std::vector<std::byte> packed(spec.image_pixels() * pixel_bytes);
+  LF_RETURN_IF_ERROR(ReadPixels(image, OIIO::TypeUnknown, packed.data()));
+  float* value = Resized<float>(spec, stored).pixels().data();
   std::vector<size_t> offsets;
   for (const int channel : image.channel_order)
     offsets.push_back(spec.pixel_bytes(0, channel, true));
-  for (const std::byte* pixel = stored.data(); pixel != stored.data() + stored.size();
+  for (const std::byte* pixel = packed.data(); pixel != packed.data() + packed.size();
        pixel += pixel_bytes)
     for (size_t i = 0; i < offsets.size(); ++i)
       *value++ = FloatOf(spec.channelformat(image.channel_order[i]), pixel + offsets[i]);
-  return StoredImage(std::move(pixels));
+  return {};
 }
 
-Result<StoredImage> ReadFloats(OpenImage& image) {
+Result<void> ReadFloats(OpenImage& image, StoredImage* stored) {
   const bool simple =
       image.spec.channelformats.empty() &&
       (image.spec.format == OIIO::TypeDesc::HALF || image.spec.format == OIIO::TypeDesc::FLOAT) &&
       std::is_sorted(image.channel_order.begin(), image.channel_order.end());
-  if (!simple) return ReadMixed(image);
-  Image<float> pixels(image.spec.width, image.spec.height, image.spec.nchannels);
-  LF_RETURN_IF_ERROR(ReadPixels(image, OIIO::TypeDesc::FLOAT, pixels.pixels().data()));
-  return StoredImage(std::move(pixels));
+  return simple ? ReadSimply<float>(image, stored) : ReadMixed(image, stored);
 }
 
-Result<StoredImage> PixelsOf(OpenImage& image) {
+Result<void> ReadStored(OpenImage& image, StoredImage* stored) {
   switch (StoredBits(image.spec)) {
     case 8:
-      return ReadIntegers<uint8_t>(image);
+      return ReadSimply<uint8_t>(image, stored);
     case 16:
-      return ReadIntegers<uint16_t>(image);
+      return ReadSimply<uint16_t>(image, stored);
     default:
-      return ReadFloats(image);
+      return ReadFloats(image, stored);
   }
 }
 
 Result<ImageFileInfo> InfoFrom(const FileSource& source) {
-  LF_ASSIGN_OR_RETURN(const ImageFormat format, ProbeImage(SourceOf(source.file), source.name));
+  const ByteSource bytes = SourceOf(source.file);
+  LF_ASSIGN_OR_RETURN(const ImageFormat format, ProbeImage(bytes, source.name));
+  if (format == ImageFormat::kJpeg) {
+    LF_ASSIGN_OR_RETURN(const JpegReader jpeg, JpegReader::Open(bytes, source.name));
+    return jpeg.info();
+  }
   LF_ASSIGN_OR_RETURN(const OpenImage image, Open(source, format));
   return InfoOf(image);
 }
 
-Result<ImageWithInfo> ImageFrom(const FileSource& source) {
+Result<void> PartOfJpeg(const ByteSource& bytes, const std::string& name,
+                        const WantedPixels& wanted, ImagePart* part) {
+  LF_ASSIGN_OR_RETURN(JpegReader jpeg, JpegReader::Open(bytes, name));
+  part->info = jpeg.info();
+  LF_ASSIGN_OR_RETURN(const PixelRect rect, wanted(part->info));
+  if (!std::holds_alternative<Image<uint8_t>>(part->image)) part->image.emplace<Image<uint8_t>>();
+  LF_ASSIGN_OR_RETURN(part->rect, jpeg.Read(rect, &std::get<Image<uint8_t>>(part->image)));
+  return {};
+}
+
+Result<void> PartFrom(const FileSource& source, const WantedPixels& wanted, ImagePart* part) {
   const ByteSource bytes = SourceOf(source.file);
   LF_ASSIGN_OR_RETURN(const ImageFormat format, ProbeImage(bytes, source.name));
+  if (format == ImageFormat::kJpeg) return PartOfJpeg(bytes, source.name, wanted, part);
   if (format == ImageFormat::kPng) LF_RETURN_IF_ERROR(CheckPngIsComplete(bytes, source.name));
   LF_ASSIGN_OR_RETURN(OpenImage image, Open(source, format));
-  LF_ASSIGN_OR_RETURN(StoredImage pixels, PixelsOf(image));
-  return ImageWithInfo{std::move(pixels), InfoOf(image)};
+  part->info = InfoOf(image);
+  if (const auto rect = wanted(part->info); !rect) return rect.error();
+  part->rect = {0, 0, part->info.width, part->info.height};
+  return ReadStored(image, &part->image);
+}
+
+Result<PixelRect> All(const ImageFileInfo& info) {
+  return PixelRect{0, 0, info.width, info.height};
 }
 
 // What a decoder throws becomes an error; out of memory is main's business.
@@ -249,24 +271,38 @@ Result<ImageFileInfo> ReadImageInfoBytes(std::string_view bytes, const std::stri
   return WithoutThrowing(name, [&] { return InfoFrom({file, name, bytes}); });
 }
 
+Result<void> ReadImagePart(const fs::path& path, const WantedPixels& wanted, ImagePart* part) {
+  LF_ASSIGN_OR_RETURN(const std::string bytes, ReadFile(path));
+  return ReadImagePartBytes(bytes, path.string(), wanted, part);
+}
+
+Result<void> ReadImagePartBytes(std::string_view bytes, const std::string& name,
+                                const WantedPixels& wanted, ImagePart* part) {
+  OIIO::Filesystem::IOMemReader file(const_cast<char*>(bytes.data()), bytes.size());
+  return WithoutThrowing(name, [&] { return PartFrom({file, name, bytes}, wanted, part); });
+}
+
 Result<ImageWithInfo> ReadImageWithInfo(const fs::path& path) {
   LF_ASSIGN_OR_RETURN(const std::string bytes, ReadFile(path));
   return ReadImageWithInfoBytes(bytes, path.string());
 }
 
 Result<ImageWithInfo> ReadImageWithInfoBytes(std::string_view bytes, const std::string& name) {
-  OIIO::Filesystem::IOMemReader file(const_cast<char*>(bytes.data()), bytes.size());
-  return WithoutThrowing(name, [&] { return ImageFrom({file, name, bytes}); });
+  ImagePart part;
+  LF_RETURN_IF_ERROR(ReadImagePartBytes(bytes, name, All, &part));
+  return ImageWithInfo{std::move(part.image), std::move(part.info)};
 }
 
 Result<StoredImage> ReadImage(const fs::path& path) {
-  LF_ASSIGN_OR_RETURN(ImageWithInfo read, ReadImageWithInfo(path));
-  return std::move(read.image);
+  ImagePart part;
+  LF_RETURN_IF_ERROR(ReadImagePart(path, All, &part));
+  return std::move(part.image);
 }
 
 Result<StoredImage> ReadImageBytes(std::string_view bytes, const std::string& name) {
-  LF_ASSIGN_OR_RETURN(ImageWithInfo read, ReadImageWithInfoBytes(bytes, name));
-  return std::move(read.image);
+  ImagePart part;
+  LF_RETURN_IF_ERROR(ReadImagePartBytes(bytes, name, All, &part));
+  return std::move(part.image);
 }
 
 }  // namespace lf

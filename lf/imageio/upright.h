@@ -2,6 +2,7 @@
 #pragma once
 
 #include "lf/core/check.h"
+#include "lf/core/geometry.h"
 #include "lf/core/image.h"
 
 namespace lf {
@@ -23,6 +24,36 @@ Image<T> Upright(const Image<T>& stored, int orientation) {
       const int stored_y = orientation == 5 || orientation == 8 ? x : width - 1 - x;
       for (int c = 0; c < channels; ++c) upright.at(x, y, c) = stored.at(stored_x, stored_y, c);
     }
+  return upright;
+}
+
+// Where the part `rect` of the upright picture lies in the stored one, of width x height.
+inline PixelRect StoredRect(const PixelRect& rect, int width, int height, int orientation) {
+  LF_CHECK(TurnsByQuarter(orientation));
+  PixelRect stored = {rect.y_begin, rect.x_begin, rect.y_end, rect.x_end};
+  if (orientation > 6) {
+    stored.x_begin = width - rect.y_end;
+    stored.x_end = width - rect.y_begin;
+  }
+  if (orientation == 6 || orientation == 7) {
+    stored.y_begin = height - rect.x_end;
+    stored.y_end = height - rect.x_begin;
+  }
+  return stored;
+}
+
+// And back: where the part `rect` of the stored picture lies in the upright one.
+inline PixelRect UprightRect(const PixelRect& rect, int width, int height, int orientation) {
+  LF_CHECK(TurnsByQuarter(orientation));
+  PixelRect upright = {rect.y_begin, rect.x_begin, rect.y_end, rect.x_end};
+  if (orientation > 6) {
+    upright.y_begin = width - rect.x_end;
+    upright.y_end = width - rect.x_begin;
+  }
+  if (orientation == 6 || orientation == 7) {
+    upright.x_begin = height - rect.y_end;
+    upright.x_end = height - rect.y_begin;
+  }
   return upright;
 }
 

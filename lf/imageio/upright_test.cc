@@ -28,5 +28,24 @@ TEST(Upright, ChannelsStayTogether) {
   EXPECT_EQ(Upright(stored, 8).pixels(), (std::vector<int>{3, 4, 1, 2}));
 }
 
+TEST(Upright, PartsKeepTheirPlaces) {
+  Image<int> stored(5, 4);
+  for (int i = 0; i < 20; ++i) stored.pixels()[i] = i;
+  for (int orientation = 5; orientation <= 8; ++orientation) {
+    const Image<int> upright = Upright(stored, orientation);
+    const PixelRect wanted = {1, 2, 3, 5};  // of the 4 x 5 upright picture
+    const PixelRect rect = StoredRect(wanted, 5, 4, orientation);
+    EXPECT_EQ(UprightRect(rect, 5, 4, orientation), wanted);
+    Image<int> part(rect.width(), rect.height());
+    for (int y = 0; y < part.height(); ++y)
+      for (int x = 0; x < part.width(); ++x)
+        part.at(x, y) = stored.at(rect.x_begin + x, rect.y_begin + y);
+    const Image<int> turned = Upright(part, orientation);
+    for (int y = 0; y < wanted.height(); ++y)
+      for (int x = 0; x < wanted.width(); ++x)
+        EXPECT_EQ(turned.at(x, y), upright.at(wanted.x_begin + x, wanted.y_begin + y));
+  }
+}
+
 }  // namespace
 }  // namespace lf

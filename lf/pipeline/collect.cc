@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <mutex>
 #include <new>
 #include <optional>
 #include <utility>
@@ -23,9 +24,10 @@ double SecondsSince(Clock::time_point start) {
 
 // An exception that leaves a task would end the program.
 Result<LfPixels> LoadWithoutThrowing(const LfImageStore& store, LfImageId id, const PixelRect& rect,
-                                     const std::string& name) {
+                                     const std::string& name, LfPixels pixels) {
   try {
-    return store.Load(id, rect);
+    LF_RETURN_IF_ERROR(store.Load(id, rect, &pixels));
+    return pixels;
   } catch (const std::bad_alloc&) {
     return OutputError(
         fmt::format("{}: no memory to load it: lower --memory, or give the machine more", name));
@@ -98,6 +100,7 @@ class FrameCollector::State {
   void AnnounceUpTo(size_t end);
   void Load(const Batch& batch, Loading* loading);
   Result<void> FinishLoading(Batch* batch);
+  LfPixels TakeSpare();
   void Skip(const SelectedImage& image, const Error& error);
 
   const LightField& light_field_;
@@ -115,8 +118,10 @@ class FrameCollector::State {
   std::atomic<int64_t> load_wall_ns_ = 0;
   size_t images_done_ = 0;
   size_t announced_ = 0;  // LF images of the order that the store knows of
-  Batch batch_;           // the one to be collected
-  Batch next_;            // the one to be decoded meanwhile
+  std::mutex spare_mutex_;
+  std::vector<LfPixels> spare_;  // collected: their memory is used again
+  Batch batch_;                  // the one to be collected
+  Batch next_;                   // the one to be decoded meanwhile
 };
 
 Result<bool> FrameCollector::State::Step() {
@@ -158,6 +163,7 @@ Result<bool> FrameCollector::State::Step() {
   times_.wall_s += SecondsSince(start);
   if (!all_done) return Interruption();
   images_done_ = batch_.end;
+  for (BatchImage& image : batch_.images) spare_.push_back(std::move(image.pixels));
   batch_ = {};
   return true;
 }
@@ -212,11 +218,20 @@ void FrameCollector::State::Load(const Batch& batch, Loading* loading) {
   // Those of all frames where all take it.
   const PixelRect rect =
       batch.frames.empty() ? selected.rect : collector_.RectOf(selected.id, batch.frames);
-  loading->pixels = rect.empty() ? LfPixels()
-                                 : LoadWithoutThrowing(store_, selected.id, rect,
-                                                       light_field_.image_names[selected.id.value]);
+  loading->pixels =
+      rect.empty() ? LfPixels()
+                   : LoadWithoutThrowing(store_, selected.id, rect,
+                                         light_field_.image_names[selected.id.value], TakeSpare());
   load_cpu_ns_ += timer.Nanoseconds();
   load_wall_ns_ += std::chrono::nanoseconds(Clock::now() - start).count();
+}
+
+LfPixels FrameCollector::State::TakeSpare() {
+  const std::lock_guard lock(spare_mutex_);
+  if (spare_.empty()) return {};
+  LfPixels pixels = std::move(spare_.back());
+  spare_.pop_back();
+  return pixels;
 }
 
 Result<void> FrameCollector::State::FinishLoading(Batch* batch) {

@@ -41,15 +41,22 @@ ChannelUse UseOf(const ImageFileInfo& info) {
   return use;
 }
 
-// The pixels that the calibration is of.
-Result<ImageWithInfo> ReadFitting(const fs::path& path, bool is_mosaic,
-                                  const Intrinsics& intrinsics) {
-  LF_ASSIGN_OR_RETURN(ImageWithInfo read, ReadImageWithInfo(path));
-  LF_ASSIGN_OR_RETURN(const ImageFit fit,
-                      FitToCalibration(read.info, is_mosaic, intrinsics, path.string()));
-  if (fit == ImageFit::kTurned)
-    std::visit([&](auto& image) { image = Upright(image, read.info.orientation); }, read.image);
-  return read;
+// At least the pixels `rect` of the picture that the calibration is of, and where they lie in it.
+Result<void> ReadFitting(const fs::path& path, bool is_mosaic, const Intrinsics& intrinsics,
+                         const PixelRect& rect, ImagePart* part) {
+  bool is_turned = false;
+  const auto wanted = [&](const ImageFileInfo& info) -> Result<PixelRect> {
+    LF_ASSIGN_OR_RETURN(const ImageFit fit,
+                        FitToCalibration(info, is_mosaic, intrinsics, path.string()));
+    is_turned = fit == ImageFit::kTurned;
+    return is_turned ? StoredRect(rect, info.width, info.height, info.orientation) : rect;
+  };
+  LF_RETURN_IF_ERROR(ReadImagePart(path, wanted, part));
+  if (!is_turned) return {};
+  const ImageFileInfo& info = part->info;
+  std::visit([&](auto& image) { image = Upright(image, info.orientation); }, part->image);
+  part->rect = UprightRect(part->rect, info.width, info.height, info.orientation);
+  return {};
 }
 
 // A raw file in a light field of anything else would show its mosaic as a grey picture.
@@ -65,7 +72,7 @@ Result<void> CheckRaw(const RawFacts& raw, const RadianceEncoding& encoding, con
   return {};
 }
 
-Result<void> CheckEncoding(const ImageWithInfo& file, const RadianceEncoding& encoding,
+Result<void> CheckEncoding(const ImagePart& file, const RadianceEncoding& encoding,
                            const fs::path& path) {
   if (file.info.raw) LF_RETURN_IF_ERROR(CheckRaw(*file.info.raw, encoding, path));
   if (encoding.bayer != BayerPattern::kNone && file.info.channels != 1)
@@ -82,95 +89,96 @@ Result<void> CheckEncoding(const ImageWithInfo& file, const RadianceEncoding& en
   return {};
 }
 
-// Fills radiance from the part `rect` of the stored image; radiance_of(value) is v.
-template <class T, class RadianceOf>
-void ConvertRadiance(const Image<T>& stored, const ChannelUse& use, const RadianceOf& radiance_of,
-                     LfPixels* pixels) {
+// Masks the pixels whose stored value, of `channel`, is not what is_kept(value) asks for.
+template <class T, class IsKept>
+void MaskByChannel(const Image<T>& stored, const PixelRect& stored_rect, int channel,
+                   const IsKept& is_kept, LfPixels* pixels) {
   const PixelRect& rect = pixels->rect;
-  const bool is_mosaic = pixels->bayer != BayerPattern::kNone;
-  for (int y = 0; y < rect.height(); ++y) {
-    const T* in = stored.row(rect.y_begin + y) + static_cast<size_t>(rect.x_begin) * use.channels;
-    uint16_t* out = pixels->radiance.row(y);
-    if (is_mosaic) {
-      for (int x = 0; x < rect.width(); ++x) *out++ = radiance_of(in[x]);
-      continue;
-    }
-    for (int x = 0; x < rect.width(); ++x, in += use.channels, out += LfPixels::kRgbLanes)
-      for (int c = 0; c < 3; ++c) out[c] = radiance_of(in[c < use.colours ? c : 0]);
+  LF_CHECK(Intersection(rect, stored_rect) == rect);
+  for (int y = rect.y_begin; y < rect.y_end; ++y) {
+    const T* value = stored.row(y - stored_rect.y_begin) +
+                     static_cast<size_t>(rect.x_begin - stored_rect.x_begin) * stored.channels() +
+                     channel;
+    for (int x = rect.x_begin; x < rect.x_end; ++x, value += stored.channels())
+      if (!is_kept(*value)) pixels->Mask(x - rect.x_begin, y - rect.y_begin);
   }
 }
 
-template <class T>
-void MaskTransparent(const Image<T>& stored, int alpha, LfPixels* pixels) {
-  constexpr double kOpaque = std::is_floating_point_v<T> ? 1 : std::numeric_limits<T>::max();
-  const PixelRect& rect = pixels->rect;
-  for (int y = 0; y < rect.height(); ++y)
-    for (int x = 0; x < rect.width(); ++x)
-      if (!(stored.at(rect.x_begin + x, rect.y_begin + y, alpha) >= kOpaque / 2))
-        pixels->Mask(x, y);
+void MaskTransparent(const ImagePart& part, int alpha, LfPixels* pixels) {
+  std::visit(
+      [&]<class T>(const Image<T>& stored) {
+        constexpr double kOpaque = std::is_floating_point_v<T> ? 1 : std::numeric_limits<T>::max();
+        MaskByChannel(
+            stored, part.rect, alpha, [](T value) { return value >= kOpaque / 2; }, pixels);
+      },
+      part.image);
 }
 
 Result<void> ApplyMaskFile(const fs::path& path, const Intrinsics& intrinsics, LfPixels* pixels) {
-  LF_ASSIGN_OR_RETURN(const ImageWithInfo mask, ReadFitting(path, false, intrinsics));
+  if (pixels->rect.empty()) return {};
+  ImagePart mask;
+  LF_RETURN_IF_ERROR(ReadFitting(path, false, intrinsics, pixels->rect, &mask));
   std::visit(
-      [&](const auto& stored) {
-        const PixelRect& rect = pixels->rect;
-        for (int y = 0; y < rect.height(); ++y)
-          for (int x = 0; x < rect.width(); ++x)
-            if (stored.at(rect.x_begin + x, rect.y_begin + y) == 0) pixels->Mask(x, y);
+      [&]<class T>(const Image<T>& stored) {
+        MaskByChannel(
+            stored, mask.rect, 0, [](T value) { return value != 0; }, pixels);
       },
       mask.image);
   return {};
 }
 
-std::vector<uint16_t> TableIfItFits(const RadianceEncoding& encoding, int bits) {
-  return LevelsFit(encoding, bits) ? RadianceTable(encoding, bits, 1) : std::vector<uint16_t>();
-}
-
 }  // namespace
 
 FolderStore::FolderStore(const LightField& light_field)
-    : light_field_(light_field),
-      table_8bit_(TableIfItFits(light_field.encoding, 8)),
-      table_16bit_(TableIfItFits(light_field.encoding, 16)) {}
+    : light_field_(light_field), tables_(light_field.encoding, 1) {}
 
 void FolderStore::Announce(LfImageId id) const { AnnounceRead(light_field_.ImagePath(id)); }
 
-Result<LfPixels> FolderStore::Load(LfImageId id, const PixelRect& rect) const {
+Result<void> FolderStore::Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const {
+  std::unique_ptr<ImagePart> part = TakePart();
+  const Result<void> loaded = LoadBy(part.get(), id, rect, pixels);
+  GiveBack(std::move(part));
+  return loaded;
+}
+
+Result<void> FolderStore::LoadBy(ImagePart* part, LfImageId id, const PixelRect& rect,
+                                 LfPixels* pixels) const {
   LF_CHECK(id.value < light_field_.size());
   const LfCamera& camera = light_field_.cameras[id.value];
   const Intrinsics& intrinsics = light_field_.intrinsics[camera.intrinsics_index];
   const RadianceEncoding& encoding = light_field_.encoding;
   const fs::path path = light_field_.ImagePath(id);
-  LF_ASSIGN_OR_RETURN(const ImageWithInfo file,
-                      ReadFitting(path, encoding.bayer != BayerPattern::kNone, intrinsics));
-  const ChannelUse use = UseOf(file.info);
-  LF_RETURN_IF_ERROR(CheckEncoding(file, encoding, path));
+  const PixelRect inside = Intersection(rect, {0, 0, intrinsics.width_px, intrinsics.height_px});
+  const PixelRect wanted = inside.empty() ? PixelRect{0, 0, 1, 1} : inside;
+  LF_RETURN_IF_ERROR(
+      ReadFitting(path, encoding.bayer != BayerPattern::kNone, intrinsics, wanted, part));
+  const ChannelUse use = UseOf(part->info);
+  LF_RETURN_IF_ERROR(CheckEncoding(*part, encoding, path));
 
-  LfPixels pixels(Intersection(rect, {0, 0, intrinsics.width_px, intrinsics.height_px}),
-                  encoding.bayer);
-  const auto convert = [&]<class T>(const Image<T>& stored) {
-    if constexpr (std::is_floating_point_v<T>) {
-      ConvertRadiance(
-          stored, use,
-          [&](float radiance) { return QuantizeRadiance(encoding, radiance, camera.gain); },
-          &pixels);
-    } else {
-      constexpr int kBits = 8 * sizeof(T);
-      std::vector<uint16_t> own_table;
-      if (camera.gain != 1) own_table = RadianceTable(encoding, kBits, camera.gain);
-      const std::vector<uint16_t>& shared_table = kBits == 8 ? table_8bit_ : table_16bit_;
-      const uint16_t* table = camera.gain != 1 ? own_table.data() : shared_table.data();
-      ConvertRadiance(
-          stored, use, [table](T value) { return table[value]; }, &pixels);
-    }
-    if (use.alpha) MaskTransparent(stored, *use.alpha, &pixels);
-  };
-  std::visit(convert, file.image);
+  pixels->Reset(inside, encoding.bayer);
+  if (camera.gain == 1)
+    ConvertRadiance(*part, use.colours, tables_, encoding, 1, pixels);
+  else
+    ConvertRadiance(*part, use.colours, RadianceTables(encoding, camera.gain, part->info.bits),
+                    encoding, camera.gain, pixels);
+  if (use.alpha) MaskTransparent(*part, *use.alpha, pixels);
   if (!light_field_.mask_names.empty() && !light_field_.mask_names[id.value].empty())
-    LF_RETURN_IF_ERROR(ApplyMaskFile(light_field_.folder / light_field_.mask_names[id.value],
-                                     intrinsics, &pixels));
-  return pixels;
+    LF_RETURN_IF_ERROR(
+        ApplyMaskFile(light_field_.folder / light_field_.mask_names[id.value], intrinsics, pixels));
+  return {};
+}
+
+std::unique_ptr<ImagePart> FolderStore::TakePart() const {
+  const std::lock_guard lock(mutex_);
+  if (parts_.empty()) return std::make_unique<ImagePart>();
+  std::unique_ptr<ImagePart> part = std::move(parts_.back());
+  parts_.pop_back();
+  return part;
+}
+
+void FolderStore::GiveBack(std::unique_ptr<ImagePart> part) const {
+  const std::lock_guard lock(mutex_);
+  parts_.push_back(std::move(part));
 }
 
 }  // namespace lf

@@ -1,11 +1,14 @@
 // Loose image files, as the calibration names them.
 #pragma once
 
-#include <cstdint>
+#include <memory>
+#include <mutex>
 #include <vector>
 
 #include "lf/capture/light_field.h"
+#include "lf/imageio/image_file.h"
 #include "lf/store/lf_image_store.h"
+#include "lf/store/radiance_conversion.h"
 
 namespace lf {
 
@@ -18,7 +21,8 @@ namespace lf {
 //     channel of the image's mask file. Further channels are not used;
 //   - pictures and masks are taken as stored, or turned by 90 degrees as their orientation tag says
 //     where the calibration is of the turned picture (capture/image_fit.h).
-// While one image loads, the file, its stored values and the result are in memory together.
+// While one image loads, the file, its stored values and the result are in memory together; the
+// memory of the stored values is kept for the next.
 // Keeps a reference to `light_field`, which must outlive it.
 class FolderStore : public LfImageStore {
  public:
@@ -27,15 +31,21 @@ class FolderStore : public LfImageStore {
   // The pixels of `rect`, cut to the image. kInput as LfImageStore says, and also: levels
   // (lf_black_level, lf_white_level) beyond the file's bits, a mask of another size, a camera raw
   // file of another Bayer pattern.
-  Result<LfPixels> Load(LfImageId id, const PixelRect& rect) const override;
+  Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override;
   // Of the image's file; a mask file is not read ahead.
   void Announce(LfImageId id) const override;
 
  private:
+  Result<void> LoadBy(ImagePart* part, LfImageId id, const PixelRect& rect, LfPixels* pixels) const;
+  std::unique_ptr<ImagePart> TakePart() const;
+  void GiveBack(std::unique_ptr<ImagePart> part) const;
+
   const LightField& light_field_;
-  // v by stored value, for images without a gain of their own. Empty where the levels do not fit.
-  std::vector<uint16_t> table_8bit_;
-  std::vector<uint16_t> table_16bit_;
+  const RadianceTables tables_;  // for images without a gain of their own
+  mutable std::mutex mutex_;
+  // Stored values of images that were loaded, one for each load at the same time: their memory is
+  // used again.
+  mutable std::vector<std::unique_ptr<ImagePart>> parts_;
 };
 
 }  // namespace lf

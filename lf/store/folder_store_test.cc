@@ -43,9 +43,10 @@ class FolderStoreTest : public FolderTest {
 };
 
 LfPixels Loaded(const LightField& light_field, const PixelRect& rect = kWhole) {
-  Result<LfPixels> pixels = FolderStore(light_field).Load({0}, rect);
-  EXPECT_TRUE(pixels) << pixels.error().message;
-  return pixels ? *std::move(pixels) : LfPixels{};
+  LfPixels pixels;
+  const Result<void> loaded = FolderStore(light_field).Load({0}, rect, &pixels);
+  EXPECT_TRUE(loaded) << loaded.error().message;
+  return pixels;
 }
 
 bool HasMasked(const LfPixels& pixels) {
@@ -56,9 +57,10 @@ bool HasMasked(const LfPixels& pixels) {
 }
 
 std::string ErrorOf(const LightField& light_field) {
-  const Result<LfPixels> pixels = FolderStore(light_field).Load({0}, kWhole);
-  EXPECT_FALSE(pixels);
-  return pixels ? "" : pixels.error().message;
+  LfPixels pixels;
+  const Result<void> loaded = FolderStore(light_field).Load({0}, kWhole, &pixels);
+  EXPECT_FALSE(loaded);
+  return loaded ? "" : loaded.error().message;
 }
 
 void ExpectMentions(const std::string& message, const std::vector<std::string>& parts) {
@@ -231,11 +233,13 @@ TEST_F(FolderStoreTest, GainBelongsToTheImage) {
   light_field.image_names.push_back("a.png");
   light_field.cameras[1].gain = 0.5f;
   const FolderStore store(light_field);
-  const Result<LfPixels> plain = store.Load({0}, kWhole);
-  const Result<LfPixels> dimmed = store.Load({1}, kWhole);
-  ASSERT_TRUE(plain && dimmed);
-  for (size_t i = 0; i < plain->radiance.pixels().size(); ++i)
-    EXPECT_NEAR(dimmed->radiance.pixels()[i], plain->radiance.pixels()[i] / 2.0, 0.51);
+  LfPixels plain, dimmed;
+  ASSERT_TRUE(store.Load({0}, kWhole, &plain));
+  ASSERT_TRUE(store.Load({1}, kWhole, &dimmed));
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(dimmed.radiance.at(x, y, c), plain.radiance.at(x, y, c) / 2.0, 0.51);
 }
 
 TEST_F(FolderStoreTest, GainOfAMosaicLeavesBlackOnThePedestal) {

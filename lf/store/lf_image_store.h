@@ -13,10 +13,11 @@ class LfImageStore {
   virtual ~LfImageStore() = default;
 
   // The pixels of one LF image, at least those of `rect` (pixels of the LF image), as linear
-  // 16-bit radiance. May be called by many threads at the same time.
+  // 16-bit radiance. The memory of `pixels` is used again. May be called by many threads at the
+  // same time.
   // kInput: missing, broken or of another size than the calibration says; the message names the
   // file. The caller decides whether the run goes on without it.
-  virtual Result<LfPixels> Load(LfImageId id, const PixelRect& rect) const = 0;
+  virtual Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const = 0;
 
   // The image will be loaded soon: the disk may begin to read it. Does not wait; failing is silent,
   // for Load() will say what is wrong. May be called by many threads at the same time.
