@@ -5,6 +5,7 @@
 #include <string>
 
 #include "tools/common/byte_size.h"
+#include "tools/common/duration.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/light_field_argument.h"
 #include "tools/common/program.h"
@@ -22,17 +23,24 @@ constexpr const char* kExamples = R"(Examples:
   lfrenderer capture/transforms.json path.yaml -o frames
   lfrenderer capture/ path.yaml -o frames --format png16 --video film.mp4
   lfrenderer capture/ path.yaml -o preview --frames 1-100x10 --max-images 200
+  lfrenderer capture/ path.yaml -o frames --resume       # after Ctrl-C, kill, a crash
+  lfrenderer capture/ path.yaml -o frames --stop-when "samples>=16"
 
 DIR receives frame_0001.exr ..., contact_sheet.png and report.json. EXR frames hold linear light
-(R, G, B), the rays of every element (count.R, count.G, count.B) and coverage.)";
+(R, G, B), the rays of every element (count.R, count.G, count.B) and coverage.
+
+The state of unfinished frames lies in DIR/partial. Ctrl-C (SIGINT) and SIGTERM write it and end with
+exit code 5, SIGUSR1 writes it and goes on; a second Ctrl-C ends at once. --resume gives the same
+bits as if there had been no interruption.)";
 
 struct Arguments {
   lf::LightFieldArgument light_field;
   std::string path, output, video, frames, memory = "8G", format = "exr", mode = "collect";
   std::string estimator = "auto", lens_weights = "auto", back_end = "fast";
+  std::string dump_every = "30s", stop_when, require;
   int64_t max_images = 0;
   uint32_t smooth_below = 0;
-  bool no_contact_sheet = false;
+  bool no_contact_sheet = false, resume = false, overwrite = false, keep_plates = false;
 };
 
 // Words of the full contract that this version cannot honour are refused, never ignored.
@@ -62,7 +70,19 @@ lf::Result<lf::RenderOptions> MakeOptions(const Arguments& arguments, const lf::
   if (arguments.estimator == "bilinear") options.estimator = lf::Estimator::kBilinear;
   if (arguments.back_end == "reference") options.back_end = lf::CollectBackEnd::kReference;
   options.version = lf::Version();
-  options.interrupted = &lf::CatchInterrupts();
+  LF_ASSIGN_OR_RETURN(options.dump_every_s,
+                      lf::ParseDuration(arguments.dump_every, "--dump-every"));
+  if (!arguments.stop_when.empty()) {
+    LF_ASSIGN_OR_RETURN(options.stop_at_samples,
+                        lf::ParseSampleRule(arguments.stop_when, "--stop-when"));
+  }
+  if (!arguments.require.empty()) {
+    LF_ASSIGN_OR_RETURN(options.require_samples,
+                        lf::ParseSampleRule(arguments.require, "--require"));
+  }
+  options.resume = arguments.resume;
+  options.overwrite = arguments.overwrite;
+  options.keep_plates = arguments.keep_plates;
   return options;
 }
 
@@ -84,8 +104,25 @@ int main(int argc, char** argv) {
   app.add_flag("--no-contact-sheet", arguments.no_contact_sheet, "No contact_sheet.png");
   app.add_option("--memory", arguments.memory, "Bound of the memory used");
   app.add_option("--max-images", arguments.max_images,
-                 "Use only the first so many LF images of the order; 0: all")
+                 "Use only so many LF images for each frame, the first of a shuffled order; 0: all")
       ->check(CLI::NonNegativeNumber);
+  app.add_option(
+      "--dump-every", arguments.dump_every,
+      "Write the state so often, such as 30s, 10m, 1h; seldomer if it would take more than "
+      "5 % of the time; 0: at signals only");
+  auto* resume = app.add_flag("--resume", arguments.resume,
+                              "Go on with the render in DIR, from the same inputs; finished frames "
+                              "are kept");
+  app.add_flag("--overwrite", arguments.overwrite, "Remove an unfinished render in DIR")
+      ->excludes(resume);
+  app.add_option(
+      "--stop-when", arguments.stop_when,
+      "samples>=N: a frame is finished when 99 % of the elements that LF images see have "
+      "N rays in every channel");
+  app.add_option("--require", arguments.require,
+                 "samples>=N: exit code 6 if a frame has fewer in the end");
+  app.add_flag("--keep-plates", arguments.keep_plates,
+               "Also write each frame's sums and counts: frame_0001.plate");
   app.add_option("--smooth-below", arguments.smooth_below,
                  "Smooth elements with fewer rays than this; empty ones are always filled");
   app.add_option("--mode", arguments.mode, "collect")
@@ -104,11 +141,12 @@ int main(int argc, char** argv) {
     LF_RETURN_IF_ERROR(
         CheckAvailable("--estimator", arguments.estimator, {"auto", "nearest", "bilinear"}));
     LF_RETURN_IF_ERROR(CheckAvailable("--lens-weights", arguments.lens_weights, {"auto", "none"}));
-    lf::CatchInterrupts();
+    lf::RenderSignals& signals = lf::CatchRenderSignals();
     LF_ASSIGN_OR_RETURN(const lf::LightField light_field, arguments.light_field.Open());
     LF_ASSIGN_OR_RETURN(const lf::CameraPath path,
                         lf::ReadPathYaml(arguments.path, light_field.unit_m));
-    LF_ASSIGN_OR_RETURN(const lf::RenderOptions options, MakeOptions(arguments, program, path));
+    LF_ASSIGN_OR_RETURN(lf::RenderOptions options, MakeOptions(arguments, program, path));
+    options.signals = &signals;
     lf::ThreadPool pool(program.common().threads);
     lf::ProgressMeter meter(lf::ParseProgressStyle(program.common().progress), "rays");
     const auto progress = [&](const lf::RenderProgress& now) {
@@ -116,13 +154,15 @@ int main(int argc, char** argv) {
                    fmt::format("LF image {}/{}, frame {}/{}", now.image_count, now.image_total,
                                now.frame_count, now.frame_total));
     };
-    LF_ASSIGN_OR_RETURN(const lf::RenderReport report,
-                        lf::Render(light_field, path, options, pool, progress));
+    const lf::Result<lf::RenderReport> rendered =
+        lf::Render(light_field, path, options, pool, progress);
+    if (!rendered) return lf::WithResumeCommand(rendered.error(), argc, argv);
+    const lf::RenderReport& report = *rendered;
     lf::SummariseRender(report, arguments.no_contact_sheet
                                     ? arguments.output
                                     : arguments.output + "/contact_sheet.png");
     if (program.common().json && !(std::cout << lf::ToJson(report) << std::flush))
       return lf::OutputError("--json: the report cannot be written to stdout");
-    return {};
+    return lf::CheckRequired(report, options.require_samples);
   });
 }

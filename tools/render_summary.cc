@@ -1,5 +1,11 @@
 #include "tools/render_summary.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstring>
+
 #include "tools/common/progress.h"
 
 #include "lf/core/log.h"
@@ -25,6 +31,23 @@ void WarnOfEmptyElements(const RenderReport& report) {
         100 * worst->empty_element_count[1] / element_count);
 }
 
+// A word of a command line, so that a shell takes it as it is.
+std::string Quoted(const std::string& word) {
+  const auto is_plain = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || std::strchr("_-./=,:+@%", c);
+  };
+  if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return word;
+  std::string quoted = "'";
+  for (const char c : word) {
+    if (c == '\'')
+      quoted += "'\\''";
+    else
+      quoted += c;
+  }
+  quoted += '\'';
+  return quoted;
+}
+
 }  // namespace
 
 void SummariseRender(const RenderReport& report, const std::string& look_at) {
@@ -38,6 +61,44 @@ void SummariseRender(const RenderReport& report, const std::string& look_at) {
   if (!report.skipped.empty())
     LogWarning("{} LF images were skipped; report.json names them", report.skipped.size());
   LogInfo("look at {}", look_at);
+}
+
+Error WithResumeCommand(Error error, int argc, char** argv) {
+  if (error.kind != ErrorKind::kInterrupted) return error;
+  std::string command;
+  bool has_resume = false;
+  for (int i = 0; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word == "--overwrite") continue;
+    has_resume = has_resume || word == "--resume";
+    if (i > 0) command += ' ';
+    command += Quoted(word);
+  }
+  error.message += "; go on with: " + command + (has_resume ? "" : " --resume");
+  return error;
+}
+
+Result<void> CheckRequired(const RenderReport& report, std::optional<uint32_t> samples) {
+  if (!samples) return {};
+  constexpr size_t kNamed = 10;
+  size_t count = 0;
+  std::string frames;
+  for (const FrameReport& frame : report.frames) {
+    if (!frame.samples || frame.samples->measured.most_have >= *samples) continue;
+    if (++count > kNamed) continue;
+    if (!frames.empty()) frames += ", ";
+    frames += frame.samples->asked == *samples
+                  ? fmt::format("frame {} ({:.1f} %)", frame.frame.value,
+                                100 * frame.samples->measured.share)
+                  : fmt::format("frame {} ({} in most)", frame.frame.value,
+                                frame.samples->measured.most_have);
+  }
+  if (count == 0) return {};
+  return Error{
+      ErrorKind::kBelowRequired,
+      fmt::format("--require samples>={}: {} of {} frames have them in less than 99 % of "
+                  "the elements that LF images see: {}{}",
+                  *samples, count, report.frames.size(), frames, count > kNamed ? ", ..." : "")};
 }
 
 }  // namespace lf

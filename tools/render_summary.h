@@ -1,8 +1,11 @@
 // What lfrenderer tells at the end.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 
+#include "lf/core/result.h"
 #include "lf/pipeline/report.h"
 
 namespace lf {
@@ -10,5 +13,11 @@ namespace lf {
 // Counts, speed and memory; then what a person should know: thin frames, skipped LF images, and
 // where to look.
 void SummariseRender(const RenderReport& report, const std::string& look_at);
+
+// An interruption says with which call the render goes on.
+Error WithResumeCommand(Error error, int argc, char** argv);
+
+// kBelowRequired if frames have fewer samples than were asked for; names them.
+Result<void> CheckRequired(const RenderReport& report, std::optional<uint32_t> samples);
 
 }  // namespace lf

@@ -19,23 +19,42 @@
 
 namespace lf {
 
+// What the user wants of a render under way. Whoever sets `stop` or `save` then sets `attention`;
+// handlers of signals may.
+struct RenderSignals {
+  std::atomic<bool> attention = false;  // ends what is being done, so that the others are looked at
+  std::atomic<bool> stop = false;       // write the state and end
+  std::atomic<bool> save = false;       // write the state and go on
+};
+
 struct RenderOptions {
   std::filesystem::path output_folder;
   std::vector<FrameId> frames;  // ascending; empty: all of the path
   FrameFormat format = FrameFormat::kExrHalf;
   std::optional<std::filesystem::path> video;  // an mp4 of the frames
   bool contact_sheet = true;                   // contact_sheet.png beside the frames
+  bool keep_plates = false;                    // frame_0001.plate beside the frames
 
-  std::optional<size_t> max_image_count;  // off: the first so many LF images of the order
-  uint32_t smooth_below = 0;              // sequence/develop.h
+  // off: a frame takes only the first so many LF images of the order that contribute to it
+  std::optional<size_t> max_image_count;
+  // off: a frame is finished when its elements have so many rays (sample_rule.h). Decided where a
+  // multiple of 64 places of the order is done, so that the frame has the same bits in any run.
+  std::optional<uint32_t> stop_at_samples;
+  std::optional<uint32_t> require_samples;  // off: measured, and in the report of each frame
+  uint32_t smooth_below = 0;                // sequence/develop.h
   size_t memory_bytes = size_t{8} << 30;
   uint64_t seed = 0;
   bool strict = false;
   Estimator estimator = Estimator::kNearest;
   CollectBackEnd back_end = CollectBackEnd::kFast;
 
-  std::string version;                             // of the program, for the files' metadata
-  const std::atomic<bool>* interrupted = nullptr;  // becomes true when the user wants to stop
+  // Checkpoints (run_state.h). They take at most 5 % of the time: the interval stretches itself.
+  double dump_every_s = 30;  // 0: none but those asked for by signals
+  bool resume = false;       // go on with the state in the folder
+  bool overwrite = false;    // remove it
+
+  std::string version;               // of the program, for the files' metadata
+  RenderSignals* signals = nullptr;  // looked at all the time
 };
 
 struct RenderProgress {
@@ -49,12 +68,16 @@ struct RenderProgress {
 
 // Renders the frames into output_folder: frame_0001.exr ..., contact_sheet.png, report.json, and
 // the video. Every file appears under its name only when it is whole. The frames have the same
-// bits for any number of threads and any memory.
-//   kUsage        bilinear for mosaics
+// bits for any number of threads and any memory, and however often the render was interrupted,
+// killed and resumed: at most the time since the last checkpoint is lost.
+//   kUsage        bilinear for mosaics; an unfinished render in the folder, or one from other
+//   inputs
+//                 (run_state.h)
 //   kInput        no LF image contributes to any frame, or none has a ray; broken images
-//                 (collect.h)
-//   kOutput       disk, memory; ffmpeg, after the frames are written all the same
-//   kInterrupted  what is finished stays
+//                 (collect.h); a damaged state
+//   kOutput       disk, memory; ffmpeg, after the frames are written all the same. The state on the
+//                 disk is that of the last checkpoint.
+//   kInterrupted  what is finished stays, and the state of what is not is written
 Result<RenderReport> Render(const LightField& light_field, const CameraPath& path,
                             const RenderOptions& options, ThreadPool& pool,
                             const std::function<void(const RenderProgress&)>& progress);

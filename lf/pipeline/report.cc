@@ -12,15 +12,27 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+Json InputsToJson(const RunInputs& inputs) {
+  Json json = Json::object();
+  for (const auto& [key, value] : inputs) json[key] = value;
+  return json;
+}
+
 Json FrameToJson(const FrameReport& frame) {
-  return {{"frame", frame.frame.value},
-          {"lf_images", frame.rays.image_count},
-          {"rays_tested", frame.rays.tested_count},
-          {"rays_accepted", frame.rays.accepted_count},
-          {"elements_without_ray", frame.empty_element_count},
-          {"rays_per_element_min", frame.min_count},
-          {"rays_per_element_median", frame.median_count},
-          {"develop_s", frame.develop_s}};
+  Json json = {{"frame", frame.frame.value},
+               {"lf_images", frame.rays.image_count},
+               {"rays_tested", frame.rays.tested_count},
+               {"rays_accepted", frame.rays.accepted_count},
+               {"elements_without_ray", frame.empty_element_count},
+               {"rays_per_element_min", frame.min_count},
+               {"rays_per_element_median", frame.median_count},
+               {"develop_s", frame.develop_s}};
+  if (frame.samples)
+    json["samples"] = {{"asked", frame.samples->asked},
+                       {"share", frame.samples->measured.share},
+                       {"most_have", frame.samples->measured.most_have}};
+  json["inputs"] = InputsToJson(frame.camera);
+  return json;
 }
 
 }  // namespace
@@ -74,6 +86,7 @@ std::string ToJson(const RenderReport& report) {
   for (const FrameReport& frame : report.frames) frames.push_back(FrameToJson(frame));
   const Json json = {{"format", "lfreport 1"},
                      {"version", report.version},
+                     {"inputs", InputsToJson(report.inputs)},
                      {"estimator", NameOf(report.estimator)},
                      {"resolution", {report.width, report.height}},
                      {"threads", report.thread_count},

@@ -1,15 +1,21 @@
-// What a render did: report.json, and the numbers a person is told.
+// What a render did: report.json, and the numbers a person is told. The state of an interrupted
+// render keeps such reports, too: one of each finished frame, and one of what was spent and
+// skipped.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lf/core/ids.h"
 #include "lf/core/result.h"
 #include "lf/pipeline/collect.h"
+#include "lf/pipeline/run_inputs.h"
+#include "lf/pipeline/sample_rule.h"
 #include "lf/sequence/develop.h"
 
 namespace lf {
@@ -22,10 +28,19 @@ struct FrameReport {
   std::array<uint64_t, 3> min_count{};
   std::array<uint64_t, 3> median_count{};
   double develop_s = 0;
+
+  // Where samples were asked for (--stop-when, --require): how many, and what there is.
+  struct Samples {
+    uint32_t asked = 0;
+    SampleShare measured;
+  };
+  std::optional<Samples> samples;
+  RunInputs camera;  // InputsOfCamera()
 };
 
 struct RenderReport {
   std::string version;
+  RunInputs inputs;  // of rays and pictures, the same for all frames
   Estimator estimator = Estimator::kNearest;
   int width = 0;
   int height = 0;
@@ -54,6 +69,12 @@ FrameReport MakeFrameReport(FrameId frame, const FrameRays& rays, const Develope
 uint64_t PeakMemoryBytes();
 
 std::string ToJson(const RenderReport& report);
+
+// What was written, as far as a render that goes on needs it: inputs, frames, skipped LF images,
+// times, the number selected. kInput: no such text; the message calls it `name`.
+Result<RenderReport> ParseReport(std::string_view text, const std::string& name);
+Result<RenderReport> ReadReport(const std::filesystem::path& path);
+
 Result<void> WriteReport(const RenderReport& report, const std::filesystem::path& path);
 
 }  // namespace lf

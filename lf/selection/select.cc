@@ -71,7 +71,11 @@ std::vector<SelectedImage> SelectImages(const LightField& light_field,
   for (uint32_t place = 0; place < camera_count; ++place) place_of[order[place].value] = place;
   const size_t task_count = (camera_count + kCamerasPerTask - 1) / kCamerasPerTask;
   std::vector<std::vector<SelectedImage>> found(task_count);
+  const auto is_interrupted = [&] {
+    return options.interrupted != nullptr && *options.interrupted;
+  };
   pool.ForEach(task_count, [&](size_t task) {
+    if (is_interrupted()) return;
     const size_t end = std::min(camera_count, (task + 1) * kCamerasPerTask);
     CellsOfLast cells;
     for (size_t i = task * kCamerasPerTask; i < end; ++i) {
@@ -99,6 +103,7 @@ std::vector<PlaceRange> PlacesOfFirst(size_t image_count, const LightField& ligh
     CellsOfLast cells;
     size_t found = 0;
     for (uint32_t place = 0; place < order.size(); ++place) {
+      if (options.interrupted != nullptr && *options.interrupted) return;
       if (found == image_count) {
         ranges[f].end = place;
         return;

@@ -1,6 +1,7 @@
 // Which LF images the frames need, and in what order (thesis 4.2.1).
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -41,6 +42,8 @@ struct SelectedImage {
 struct SelectOptions {
   uint64_t seed = 0;                    // of the shuffle
   PixelReach reach = PixelReach::kOwn;  // of the estimator
+  // Once it is true, the rest is left out and the answer is of no use.
+  const std::atomic<bool>* interrupted = nullptr;
 };
 
 // All LF images by their places: the shuffle.

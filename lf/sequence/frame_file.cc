@@ -61,6 +61,11 @@ std::optional<FrameFormat> ParseFrameFormat(std::string_view name) {
   return std::nullopt;
 }
 
+const char* NameOf(FrameFormat format) {
+  constexpr const char* kNames[] = {"exr", "exr-float", "png", "png16"};
+  return kNames[static_cast<int>(format)];
+}
+
 std::filesystem::path FramePath(const std::filesystem::path& folder, FrameId frame,
                                 FrameFormat format) {
   const bool exr = format == FrameFormat::kExrHalf || format == FrameFormat::kExrFloat;

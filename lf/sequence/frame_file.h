@@ -23,6 +23,7 @@ enum class FrameFormat {
 
 // "exr", "exr-float", "png", "png16"; none for anything else.
 std::optional<FrameFormat> ParseFrameFormat(std::string_view name);
+const char* NameOf(FrameFormat format);
 
 // DIR/frame_0001.exr
 std::filesystem::path FramePath(const std::filesystem::path& folder, FrameId frame,

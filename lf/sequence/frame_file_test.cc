@@ -117,6 +117,8 @@ TEST_F(FrameFileTest, NamesCountFromOneWithFourDigits) {
 TEST_F(FrameFileTest, FormatsHaveTheirNamesOnTheCommandLine) {
   EXPECT_EQ(ParseFrameFormat("exr"), FrameFormat::kExrHalf);
   EXPECT_EQ(ParseFrameFormat("exr-float"), FrameFormat::kExrFloat);
+  for (const char* name : {"exr", "exr-float", "png", "png16"})
+    EXPECT_STREQ(NameOf(*ParseFrameFormat(name)), name);
   EXPECT_EQ(ParseFrameFormat("png"), FrameFormat::kPng8);
   EXPECT_EQ(ParseFrameFormat("png16"), FrameFormat::kPng16);
   EXPECT_EQ(ParseFrameFormat("jpg"), std::nullopt);

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "tools/common/byte_size.h"
+#include "tools/common/duration.h"
 #include "tools/common/progress.h"
 
 namespace lf {
@@ -19,6 +20,20 @@ TEST(ByteSize, RefusesTheRestAndNamesTheOption) {
     ASSERT_FALSE(size) << text;
     EXPECT_EQ(size.error().kind, ErrorKind::kUsage);
     EXPECT_NE(size.error().message.find("--memory"), std::string::npos);
+  }
+}
+
+TEST(Duration, ReadsTimesAsPeopleWriteThem) {
+  EXPECT_EQ(*ParseDuration("30s", "--dump-every"), 30);
+  EXPECT_EQ(*ParseDuration("45", "--dump-every"), 45);
+  EXPECT_EQ(*ParseDuration("10m", "--dump-every"), 600);
+  EXPECT_EQ(*ParseDuration("1.5h", "--dump-every"), 5400);
+  EXPECT_EQ(*ParseDuration("0", "--dump-every"), 0);
+  for (const char* text : {"", "s", "-1s", "30 s", "30S", "1d", "1e30", "nan", "99999999h"}) {
+    const Result<double> time_s = ParseDuration(text, "--dump-every");
+    ASSERT_FALSE(time_s) << text;
+    EXPECT_EQ(time_s.error().kind, ErrorKind::kUsage);
+    EXPECT_NE(time_s.error().message.find("--dump-every"), std::string::npos);
   }
 }
 

@@ -1,0 +1,44 @@
+// From a frame's plate to its files. Internal to pipeline.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "lf/capture/light_field.h"
+#include "lf/core/parallel.h"
+#include "lf/core/result.h"
+#include "lf/path/camera_path.h"
+#include "lf/pipeline/render.h"
+#include "lf/pipeline/report.h"
+#include "lf/plate/sensor_plate.h"
+
+namespace lf {
+
+// The light field, path and options must outlive it.
+class FrameOutput {
+ public:
+  FrameOutput(const LightField& light_field, const CameraPath& path, const RenderOptions& options,
+              ThreadPool& pool)
+      : light_field_(light_field), path_(path), options_(options), pool_(pool) {}
+
+  // Develops the plate and writes its picture under any name. Its report lacks the samples.
+  // kOutput: the disk.
+  Result<FrameReport> Write(FrameId frame, const FrameRays& rays, const SensorPlate& plate,
+                            const std::filesystem::path& to) const;
+
+  // From the files of the frames, so that it does not matter when and by whom they were rendered.
+  // kOutput: the disk, ffmpeg; kInput: a frame that cannot be read. kInterrupted.
+  Result<void> WriteContactSheet(const std::vector<FrameId>& frames) const;
+  Result<void> WriteVideo(const std::vector<FrameId>& frames) const;
+
+ private:
+  std::filesystem::path PathOf(FrameId frame) const;
+
+  const LightField& light_field_;
+  const CameraPath& path_;
+  const RenderOptions& options_;
+  ThreadPool& pool_;
+};
+
+}  // namespace lf

@@ -1,0 +1,249 @@
+#include "lf/pipeline/render_pass.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "lf/core/log.h"
+
+namespace lf {
+namespace {
+
+// Of pictures in a checkpoint: half of what checkpoints may cost (dump_clock.h).
+constexpr double kPictureShare = DumpClock::kMostShare / 2;
+// After a signal to end, the plates being safe.
+constexpr double kLastPictures_s = 2;
+
+}  // namespace
+
+SelectOptions RenderJob::Select() const {
+  SelectOptions select;
+  select.seed = options.seed;
+  select.reach = ReachOf(options.estimator);
+  if (options.signals != nullptr) select.interrupted = &options.signals->stop;
+  return select;
+}
+
+RenderPass::RenderPass(const RenderJob& job, std::span<const FrameId> frames) : job_(job) {
+  for (const FrameId frame : frames) {
+    frames_.push_back({});
+    frames_.back().id = frame;
+    cameras_.push_back(job.path.Camera(frame));
+    const Intrinsics& plate = cameras_.back().pinhole.intrinsics;
+    plates_.emplace_back(plate.width_px, plate.height_px);
+  }
+}
+
+Result<void> RenderPass::Prepare() {
+  std::vector<PlaceRange> places(frames_.size());
+  if (job_.options.max_image_count)
+    places = PlacesOfFirst(*job_.options.max_image_count, job_.light_field, cameras_, job_.Select(),
+                           job_.pool);
+  for (size_t f = 0; f < frames_.size(); ++f) {
+    if (job_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
+    LF_ASSIGN_OR_RETURN(const FrameProgress start,
+                        job_.state.LoadPlate(frames_[f].id, &plates_[f]));
+    places[f].begin = start.places_done;
+    frames_[f].places = {0, places[f].end};
+    frames_[f].earlier_rays = start.rays;
+    frames_[f].saved_places = start.places_done;
+  }
+  images_ = SelectImages(job_.light_field, cameras_, job_.Select(), job_.pool, places);
+  if (job_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
+  job_.totals.selected_image_count = std::max(job_.totals.selected_image_count, images_.size());
+
+  CollectOptions collect;
+  collect.estimator = job_.options.estimator;
+  collect.back_end = job_.options.back_end;
+  collect.batch_image_count = static_cast<int>(job_.plan.batch_image_count);
+  collect.strict = job_.options.strict;
+  if (job_.options.signals != nullptr) collect.interrupted = &job_.options.signals->attention;
+  collector_ = std::make_unique<FrameCollector>(job_.light_field, job_.store, cameras_, images_,
+                                                places, collect, job_.pool, &plates_);
+  return {};
+}
+
+Result<void> RenderPass::Collect() {
+  // Frames that an earlier run left where the rule is to be asked.
+  LF_RETURN_IF_ERROR(DecideStops());
+  while (true) {
+    const Result<bool> step = collector_->Step();
+    if (!step && step.error().kind != ErrorKind::kInterrupted) {
+      // Plates are as after the last step: nothing of them need be lost.
+      if (!Save(0)) return step.error();
+      return Error{step.error().kind,
+                   step.error().message + " (what is done is kept: --resume goes on)"};
+    }
+    LF_RETURN_IF_ERROR(DecideStops());
+    for (; done_.image_count < collector_->images_done(); ++done_.image_count)
+      done_.tested_count += images_[done_.image_count].ray_count;
+    job_.progress(done_, finished_count_);
+    if (job_.IsStopped()) return Interrupt();
+    if (!step) job_.options.signals->attention = false;
+    if (job_.options.signals != nullptr && job_.options.signals->save.exchange(false)) {
+      LF_RETURN_IF_ERROR(Save(std::numeric_limits<double>::infinity()));
+      LogInfo("the state is written, as the signal asked for");
+    }
+    if (step && !*step) return {};
+    LF_RETURN_IF_ERROR(SaveWhenDue());
+  }
+}
+
+bool RenderPass::AllBroken() const {
+  if (collector_->skipped().size() != images_.size()) return false;
+  return std::none_of(frames_.begin(), frames_.end(),
+                      [](const Frame& frame) { return frame.earlier_rays.accepted_count > 0; });
+}
+
+Result<void> RenderPass::Finish() {
+  LF_RETURN_IF_ERROR(job_.state.SaveTotals(Totals()));
+  for (size_t f = 0; f < frames_.size(); ++f) {
+    if (frames_[f].is_finished) continue;
+    if (job_.IsStopped()) return Interrupt();
+    LF_RETURN_IF_ERROR(FinishFrame(f));
+    plates_[f] = SensorPlate(0, 0);
+  }
+  const double earlier_s = job_.totals.total_s;
+  job_.totals = Totals();
+  job_.totals.total_s = earlier_s;
+  return {};
+}
+
+// All rays of its plate, whenever they were collected.
+FrameProgress RenderPass::ProgressOf(size_t f) const {
+  FrameProgress progress = collector_->frames()[f];
+  const FrameRays& earlier = frames_[f].earlier_rays;
+  progress.rays.image_count += earlier.image_count;
+  progress.rays.tested_count += earlier.tested_count;
+  progress.rays.accepted_count += earlier.accepted_count;
+  return progress;
+}
+
+const ReachableElements& RenderPass::ReachableOf(size_t f) {
+  Frame& frame = frames_[f];
+  if (!frame.reachable)
+    frame.reachable = std::make_unique<ReachableElements>(job_.light_field, cameras_[f],
+                                                          frame.places, job_.Select(), job_.pool);
+  return *frame.reachable;
+}
+
+// Asked of every frame that has just done a multiple of 64 places, whatever the other frames do.
+// Asking twice, as after an interruption, gives the same answer.
+Result<void> RenderPass::DecideStops() {
+  if (!job_.options.stop_at_samples) return {};
+  bool are_totals_saved = false;
+  for (size_t f = 0; f < frames_.size(); ++f) {
+    Frame& frame = frames_[f];
+    const uint32_t places_done = collector_->frames()[f].places_done;
+    if (frame.is_finished || places_done == frame.decided_places ||  // none, or asked before
+        places_done % FrameCollector::kDecisionPlaces != 0)
+      continue;
+    const bool is_met = HasSamples(plates_[f], ReachableOf(f), *job_.options.stop_at_samples);
+    if (job_.IsStopped()) return {};  // what is reachable may be wrong then
+    frame.decided_places = places_done;
+    if (!is_met) continue;
+    collector_->Stop(f);
+    frame.is_stopped = true;
+    if (!are_totals_saved) LF_RETURN_IF_ERROR(job_.state.SaveTotals(Totals()));
+    are_totals_saved = true;
+    LF_RETURN_IF_ERROR(FinishFrame(f));
+  }
+  return {};
+}
+
+Result<void> RenderPass::FinishFrame(size_t f) {
+  Frame& frame = frames_[f];
+  FrameProgress progress = ProgressOf(f);
+  const std::filesystem::path to =
+      FramePath(job_.options.output_folder, frame.id, job_.options.format);
+  if (job_.options.keep_plates) {
+    // Where a frame ends that was not stopped is no matter of passes.
+    if (!frame.is_stopped)
+      progress.places_done =
+          std::min(frame.places.end, static_cast<uint32_t>(job_.light_field.size()));
+    std::filesystem::path plate = to;
+    LF_RETURN_IF_ERROR(WritePlate(plate.replace_extension(".plate"),
+                                  job_.state.PlateText(frame.id, progress), plates_[f], job_.pool));
+  }
+  LF_ASSIGN_OR_RETURN(FrameReport report,
+                      job_.output.Write(frame.id, progress.rays, plates_[f], to));
+  const auto asked =
+      job_.options.require_samples ? job_.options.require_samples : job_.options.stop_at_samples;
+  if (asked)
+    report.samples =
+        FrameReport::Samples{*asked, MeasureSamples(plates_[f], ReachableOf(f), *asked)};
+  if (asked && job_.IsStopped()) return Interrupt();
+  if (progress.rays.image_count == 0)
+    LogWarning("frame {} is black: no LF image contributes to it", frame.id.value);
+  LF_RETURN_IF_ERROR(job_.state.SaveFinished(report));
+  frame.is_finished = true;
+  ++finished_count_;
+  job_.progress(done_, finished_count_);
+  return {};
+}
+
+// Plates first, then pictures, the oldest first, as many as the time allows.
+Result<void> RenderPass::Save(double picture_budget_s) {
+  LF_RETURN_IF_ERROR(job_.state.SaveTotals(Totals()));
+  for (size_t f = 0; f < frames_.size(); ++f) {
+    Frame& frame = frames_[f];
+    const FrameProgress progress = ProgressOf(f);
+    if (frame.is_finished || progress.places_done == frame.saved_places) continue;
+    LF_RETURN_IF_ERROR(job_.state.SavePlate(frame.id, progress, plates_[f], job_.pool));
+    frame.saved_places = progress.places_done;
+  }
+  return SavePictures(picture_budget_s);
+}
+
+Result<void> RenderPass::SavePictures(double picture_budget_s) {
+  std::vector<size_t> oldest_first;
+  for (size_t f = 0; f < frames_.size(); ++f)
+    if (!frames_[f].is_finished && frames_[f].saved_places > 0) oldest_first.push_back(f);
+  std::stable_sort(oldest_first.begin(), oldest_first.end(), [this](size_t a, size_t b) {
+    return frames_[a].picture_s < frames_[b].picture_s;
+  });
+  const double begin_s = NowSeconds();
+  for (const size_t f : oldest_first) {
+    if (NowSeconds() - begin_s >= picture_budget_s) break;
+    Frame& frame = frames_[f];
+    LF_RETURN_IF_ERROR(job_.output.Write(frame.id, ProgressOf(f).rays, plates_[f],
+                                         job_.state.PicturePath(frame.id)));
+    frame.picture_s = NowSeconds();
+  }
+  return {};
+}
+
+Result<void> RenderPass::SaveWhenDue() {
+  const double begin_s = NowSeconds();
+  if (!job_.clock.IsDue(begin_s)) return {};
+  LF_RETURN_IF_ERROR(Save(kPictureShare * (begin_s - job_.clock.last_s())));
+  if (job_.clock.Done(begin_s, NowSeconds()))
+    LogInfo(
+        "a checkpoint took {:.1f} s: the next one follows after {:.0f} s, so that they cost no "
+        "more than {:.0f} % of the time",
+        NowSeconds() - begin_s, job_.clock.interval_s(), 100 * DumpClock::kMostShare);
+  return {};
+}
+
+Error RenderPass::Interrupt() {
+  LogInfo("interrupted: writing the state");
+  if (const Result<void> saved = Save(kLastPictures_s); !saved) return saved.error();
+  return {ErrorKind::kInterrupted, "interrupted; the state is kept"};
+}
+
+// With what this pass did so far.
+RenderReport RenderPass::Totals() const {
+  RenderReport totals = job_.totals;
+  totals.total_s += NowSeconds() - job_.begin_s;
+  totals.load_cpu_s += collector_->times().load_cpu_s;
+  totals.load_wall_s += collector_->times().load_wall_s;
+  totals.collect_cpu_s += collector_->times().collect_cpu_s;
+  for (const SkippedImage& skipped : collector_->skipped())
+    if (std::none_of(totals.skipped.begin(), totals.skipped.end(),
+                     [&](const SkippedImage& known) { return known.name == skipped.name; }))
+      totals.skipped.push_back(skipped);
+  return totals;
+}
+
+}  // namespace lf

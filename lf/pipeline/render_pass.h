@@ -1,0 +1,95 @@
+// One pass over the LF images: the frames whose plates fit in the memory together. Internal to
+// pipeline.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lf/pipeline/collect.h"
+#include "lf/pipeline/dump_clock.h"
+#include "lf/pipeline/frame_output.h"
+#include "lf/pipeline/memory_plan.h"
+#include "lf/pipeline/render.h"
+#include "lf/pipeline/run_state.h"
+#include "lf/pipeline/sample_rule.h"
+
+namespace lf {
+
+// Of a clock that never goes back.
+inline double NowSeconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// What passes share.
+struct RenderJob {
+  const LightField& light_field;
+  const CameraPath& path;
+  const RenderOptions& options;
+  ThreadPool& pool;
+  const LfImageStore& store;
+  const MemoryPlan& plan;
+  const FrameOutput& output;
+  RunState& state;
+  DumpClock& clock;
+  RenderReport& totals;  // of passes that are done, and of earlier runs; total_s of those alone
+  double begin_s;        // of this run
+  std::function<void(const CollectProgress&, size_t finished_count)> progress;
+
+  bool IsStopped() const { return options.signals != nullptr && options.signals->stop; }
+  SelectOptions Select() const;
+};
+
+class RenderPass {
+ public:
+  RenderPass(const RenderJob& job, std::span<const FrameId> frames);
+
+  // Plates of an earlier run, and the LF images that are still to be collected. kInput: damaged.
+  Result<void> Prepare();
+  const std::vector<SelectedImage>& images() const { return images_; }
+  std::span<const SkippedImage> skipped() const { return collector_->skipped(); }
+  // Whether all of them were broken (or there were none), and nothing was collected before.
+  bool AllBroken() const;
+
+  // Collects until all is done, or it is interrupted: then the state is written.
+  Result<void> Collect();
+  // Writes the frames that are left. kInterrupted as before.
+  Result<void> Finish();
+
+ private:
+  struct Frame {
+    FrameId id;
+    PlaceRange places;            // it takes, from its first image on
+    FrameRays earlier_rays;       // in its plate when the pass began
+    uint32_t saved_places = 0;    // done, in the state on the disk
+    uint32_t decided_places = 0;  // done, when this run asked the stop rule last
+    bool is_finished = false;
+    bool is_stopped = false;  // by the rule
+    double picture_s = 0;     // when its picture was written last
+    std::unique_ptr<ReachableElements> reachable;
+  };
+
+  FrameProgress ProgressOf(size_t f) const;
+  const ReachableElements& ReachableOf(size_t f);
+  Result<void> DecideStops();
+  Result<void> FinishFrame(size_t f);
+  Result<void> Save(double picture_budget_s);
+  Result<void> SavePictures(double picture_budget_s);
+  Result<void> SaveWhenDue();
+  Error Interrupt();
+  RenderReport Totals() const;
+
+  const RenderJob& job_;
+  std::vector<Frame> frames_;
+  std::vector<RenderCamera> cameras_;  // one per frame, and so are the plates
+  std::vector<SensorPlate> plates_;
+  std::vector<SelectedImage> images_;
+  std::unique_ptr<FrameCollector> collector_;
+  CollectProgress done_;
+  size_t finished_count_ = 0;
+};
+
+}  // namespace lf

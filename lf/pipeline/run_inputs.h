@@ -1,0 +1,52 @@
+// What a frame is made from, as readable lines: so that an interrupted render goes on from the
+// inputs it was begun with, or tells which one differs.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lf/camera/render_camera.h"
+#include "lf/capture/light_field.h"
+#include "lf/core/ids.h"
+#include "lf/pipeline/collect_batch.h"
+
+namespace lf {
+
+// (key, value), in the order written; keys as in plate/plate_file.h.
+using RunInputs = std::vector<std::pair<std::string, std::string>>;
+
+// The options that decide about the rays of a frame, and (the last two) about its picture.
+struct RunChoices {
+  Estimator estimator = Estimator::kNearest;
+  CollectBackEnd back_end = CollectBackEnd::kFast;
+  uint64_t seed = 0;
+  std::optional<size_t> max_image_count;
+  std::optional<uint32_t> stop_at_samples;
+  std::string format = "exr";
+  uint32_t smooth_below = 0;
+};
+
+// The version of doc/ray.md: raised when the same inputs give other rays.
+inline constexpr int kLawVersion = 1;
+
+// Of all frames: the law, the light field (numbers of images, hashes of calibration, encoding and
+// names; not its folder, which may move, nor the pixels) and the choices for rays.
+RunInputs InputsOfRays(const LightField& light_field, const RunChoices& choices);
+
+// Of one frame: its number, its camera in words and, exact, as a hash.
+RunInputs InputsOfCamera(FrameId frame, const RenderCamera& camera);
+
+// Of its picture alone.
+RunInputs InputsOfPicture(const RunChoices& choices);
+
+// The first key that differs, and both values; "(none)" where one side lacks it.
+struct InputDifference {
+  std::string key;
+  std::string recorded;
+  std::string wanted;
+};
+std::optional<InputDifference> FirstDifference(const RunInputs& recorded, const RunInputs& wanted);
+
+}  // namespace lf

@@ -1,0 +1,267 @@
+#include "lf/pipeline/run_state.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <memory>
+#include <optional>
+#include <system_error>
+
+#include "lf/core/file.h"
+#include "lf/core/log.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::string_view kProgress = "progress.";
+
+// N of "frame_N.EXTENSION".
+std::optional<FrameId> FrameOf(const fs::path& path) {
+  constexpr std::string_view kPrefix = "frame_";
+  const std::string stem = path.stem().string();
+  if (!stem.starts_with(kPrefix)) return std::nullopt;
+  FrameId frame;
+  const char* const end = stem.data() + stem.size();
+  const auto [rest, error] = std::from_chars(stem.data() + kPrefix.size(), end, frame.value);
+  if (error != std::errc{} || rest != end || frame.value == 0) return std::nullopt;
+  return frame;
+}
+
+// A plate that is damaged costs its frame only.
+Error WithAdvice(const Error& error) {
+  return {error.kind, error.message + "; remove the file to render its frame anew"};
+}
+
+std::vector<fs::path> FilesOf(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+// Temporary files (core/file.h) of a process that was killed; the lock says that none is at work.
+void RemoveTemporaryFiles(const fs::path& folder) {
+  std::error_code ignored;
+  for (const fs::path& path : FilesOf(folder)) {
+    const std::string name = path.filename().string();
+    if ((name.starts_with(".frame_") || name.starts_with(".run.")) &&
+        name.find(".tmp.") != std::string::npos)
+      fs::remove(path, ignored);
+  }
+}
+
+RunInputs Joined(RunInputs a, const RunInputs& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+}  // namespace
+
+RunState::RunState(const RunStateOptions& options, const CameraPath& path, FileLock lock)
+    : options_(options),
+      path_(path),
+      partial_(options.folder / "partial"),
+      lock_(std::move(lock)) {}
+
+RunState::~RunState() {
+  lock_.Remove();
+  std::error_code ignored;
+  fs::remove(partial_, ignored);  // fails, as it should, where files are left
+}
+
+fs::path RunState::PlatePath(FrameId frame) const {
+  return FramePath(partial_, frame, options_.format).replace_extension(".plate");
+}
+fs::path RunState::RecordPath(FrameId frame) const {
+  return FramePath(partial_, frame, options_.format).replace_extension(".json");
+}
+fs::path RunState::PicturePath(FrameId frame) const {
+  return FramePath(partial_, frame, options_.format);
+}
+
+Result<std::unique_ptr<RunState>> RunState::Open(const RunStateOptions& options,
+                                                 const CameraPath& path) {
+  const fs::path partial = options.folder / "partial";
+  LF_RETURN_IF_ERROR(CreateFolder(options.folder));
+  LF_RETURN_IF_ERROR(CreateFolder(partial));
+  LF_ASSIGN_OR_RETURN(FileLock lock, FileLock::Take(partial / "lock"));
+  std::unique_ptr<RunState> state(new RunState(options, path, std::move(lock)));
+  LF_RETURN_IF_ERROR(state->Look());
+  return state;
+}
+
+Result<void> RunState::Look() {
+  RemoveTemporaryFiles(partial_);
+  RemoveTemporaryFiles(options_.folder);
+  for (const fs::path& file : FilesOf(partial_)) {
+    const std::optional<FrameId> frame = FrameOf(file);
+    if (frame && file.extension() == ".plate") plates_.insert(*frame);
+    if (frame && file.extension() == ".json") records_.insert(*frame);
+  }
+  if (options_.resume) return Read();
+  if (options_.overwrite) {
+    RemoveAll();
+  } else if (!plates_.empty() || !records_.empty()) {
+    return UsageError(
+        fmt::format("{}: holds an unfinished render ({} frames finished, {} begun): --resume goes "
+                    "on with it, --overwrite removes it and starts anew",
+                    partial_.string(), records_.size(), plates_.size()));
+  }
+  // Of an earlier run: they would look like this one's, should it fail.
+  std::error_code ignored;
+  fs::remove(options_.folder / "report.json", ignored);
+  fs::remove(options_.folder / "contact_sheet.png", ignored);
+  return {};
+}
+
+void RunState::RemoveAll() {
+  std::error_code ignored;
+  for (const fs::path& file : FilesOf(partial_))
+    if (FrameOf(file) || file.filename() == "run.json") fs::remove(file, ignored);
+  plates_.clear();
+  records_.clear();
+}
+
+Result<void> RunState::Read() {
+  const fs::path report = options_.folder / "report.json", run = partial_ / "run.json";
+  if (fs::exists(report)) LF_RETURN_IF_ERROR(ReadFinished(report));
+  for (const FrameId frame : records_) LF_RETURN_IF_ERROR(ReadFinished(RecordPath(frame)));
+  // Those of a complete render are in its report, and no longer here.
+  if (fs::exists(run)) {
+    LF_ASSIGN_OR_RETURN(earlier_, ReadReport(run));
+  }
+  for (auto plate = plates_.begin(); plate != plates_.end();) {
+    if (finished_.contains(*plate)) {  // killed before it was removed
+      std::error_code ignored;
+      fs::remove(PlatePath(*plate), ignored);
+      plate = plates_.erase(plate);
+      continue;
+    }
+    LF_RETURN_IF_ERROR(CheckPlate(*plate));
+    ++plate;
+  }
+  if (!finished_.empty() || !plates_.empty())
+    LogInfo("going on: {} frames are finished, {} begun", finished_.size(), plates_.size());
+  return {};
+}
+
+Result<void> RunState::ReadFinished(const fs::path& path) {
+  LF_ASSIGN_OR_RETURN(RenderReport report, ReadReport(path));
+  for (FrameReport& frame : report.frames) {
+    const RunInputs recorded = Joined(report.inputs, frame.camera);
+    // Somebody may have removed it to have it rendered again; in another format it is a difference.
+    const bool has_format =
+        std::find(recorded.begin(), recorded.end(), options_.picture.front()) != recorded.end();
+    if (has_format && !fs::exists(FramePath(options_.folder, frame.frame, options_.format)))
+      continue;
+    LF_RETURN_IF_ERROR(Check(path.string(), frame.frame, recorded, true));
+    finished_[frame.frame] = std::move(frame);
+  }
+  if (path.filename() == "report.json") {
+    report.frames.clear();
+    earlier_ = std::move(report);
+  }
+  return {};
+}
+
+Result<void> RunState::CheckPlate(FrameId frame) const {
+  const Result<PlateReader> reader = PlateReader::Open(PlatePath(frame));
+  if (!reader) return WithAdvice(reader.error());
+  RunInputs recorded;
+  for (const auto& entry : reader->entries())
+    if (!entry.first.starts_with(kProgress)) recorded.push_back(entry);
+  return Check(PlatePath(frame).string(), frame, recorded, false);
+}
+
+Result<void> RunState::Check(const std::string& place, FrameId frame, const RunInputs& recorded,
+                             bool has_picture) const {
+  constexpr const char* kAdvice =
+      "give the same, or another -o, or --overwrite in place of --resume to start anew";
+  if (frame.value > path_.frame_count())
+    return UsageError(fmt::format("{}: --resume: is of frame {}, the path has {}; {}", place,
+                                  frame.value, path_.frame_count(), kAdvice));
+  RunInputs wanted = options_.rays;
+  if (has_picture) wanted = Joined(wanted, options_.picture);
+  wanted = Joined(wanted, InputsOfCamera(frame, path_.Camera(frame)));
+  if (const auto difference = FirstDifference(recorded, wanted))
+    return UsageError(fmt::format("{}: --resume: was made with {} {}, this call has {}; {}", place,
+                                  difference->key, difference->recorded, difference->wanted,
+                                  kAdvice));
+  return {};
+}
+
+PlateEntries RunState::PlateText(FrameId frame, const FrameProgress& progress) const {
+  PlateEntries text = Joined(options_.rays, InputsOfCamera(frame, path_.Camera(frame)));
+  text.emplace_back("progress.places_done", fmt::format("{}", progress.places_done));
+  text.emplace_back("progress.lf_images", fmt::format("{}", progress.rays.image_count));
+  text.emplace_back("progress.rays_tested", fmt::format("{}", progress.rays.tested_count));
+  text.emplace_back("progress.rays_accepted", fmt::format("{}", progress.rays.accepted_count));
+  return text;
+}
+
+Result<FrameProgress> RunState::LoadPlate(FrameId frame, SensorPlate* plate) const {
+  FrameProgress progress;
+  if (!plates_.contains(frame)) return progress;
+  const fs::path path = PlatePath(frame);
+  LF_ASSIGN_OR_RETURN(PlateReader reader, PlateReader::Open(path));
+  const auto get = [&](const char* key, auto* value) -> Result<void> {
+    const std::string* text = FindEntry(reader.entries(), key);
+    const std::string number = text == nullptr ? "(none)" : *text;
+    const char* const end = number.data() + number.size();
+    const auto [rest, error] = std::from_chars(number.data(), end, *value);
+    if (error == std::errc{} && rest == end) return {};
+    return WithAdvice(InputError(
+        fmt::format("{}: {} is {}, expected a whole number", path.string(), key, number)));
+  };
+  LF_RETURN_IF_ERROR(get("progress.places_done", &progress.places_done));
+  LF_RETURN_IF_ERROR(get("progress.lf_images", &progress.rays.image_count));
+  LF_RETURN_IF_ERROR(get("progress.rays_tested", &progress.rays.tested_count));
+  LF_RETURN_IF_ERROR(get("progress.rays_accepted", &progress.rays.accepted_count));
+  if (reader.width() != plate->width() || reader.height() != plate->height())
+    return InputError(fmt::format("{}: has {} x {} elements, expected {} x {}", path.string(),
+                                  reader.width(), reader.height(), plate->width(),
+                                  plate->height()));
+  if (const Result<void> added = reader.AddTo(plate); !added) return WithAdvice(added.error());
+  return progress;
+}
+
+Result<void> RunState::SavePlate(FrameId frame, const FrameProgress& progress,
+                                 const SensorPlate& plate, ThreadPool& pool) {
+  LF_RETURN_IF_ERROR(WritePlate(PlatePath(frame), PlateText(frame, progress), plate, pool));
+  plates_.insert(frame);
+  return {};
+}
+
+Result<void> RunState::SaveTotals(const RenderReport& totals) {
+  RenderReport report = totals;
+  report.frames.clear();
+  return WriteReport(report, partial_ / "run.json");
+}
+
+Result<void> RunState::SaveFinished(const FrameReport& frame) {
+  RenderReport record;
+  record.inputs = Joined(options_.rays, options_.picture);
+  record.frames = {frame};
+  LF_RETURN_IF_ERROR(WriteReport(record, RecordPath(frame.frame)));
+  records_.insert(frame.frame);
+  finished_[frame.frame] = frame;
+  std::error_code ignored;
+  fs::remove(PlatePath(frame.frame), ignored);
+  fs::remove(PicturePath(frame.frame), ignored);
+  plates_.erase(frame.frame);
+  return {};
+}
+
+Result<void> RunState::Close(const RenderReport& report) {
+  LF_RETURN_IF_ERROR(WriteReport(report, options_.folder / "report.json"));
+  std::error_code ignored;
+  for (const FrameId frame : records_) fs::remove(RecordPath(frame), ignored);
+  records_.clear();
+  if (plates_.empty()) RemoveAll();
+  return {};
+}
+
+}  // namespace lf

@@ -1,0 +1,96 @@
+// What a render has done so far, in DIR/partial/ of its output folder, so that it can be
+// interrupted at any moment and gone on with (doc/checkpoints.md).
+//
+//   lock              held by the process at work
+//   run.json          times so far and skipped LF images
+//   frame_0001.plate  the plate of an unfinished frame, what it is made from and how far it is
+//   frame_0001.exr    its picture, about as new
+//   frame_0002.json   the report of a finished frame, and what it is made from
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+
+#include "lf/core/file_lock.h"
+#include "lf/core/ids.h"
+#include "lf/core/parallel.h"
+#include "lf/core/result.h"
+#include "lf/path/camera_path.h"
+#include "lf/pipeline/collect.h"
+#include "lf/pipeline/report.h"
+#include "lf/pipeline/run_inputs.h"
+#include "lf/plate/plate_file.h"
+#include "lf/plate/sensor_plate.h"
+#include "lf/sequence/frame_file.h"
+
+namespace lf {
+
+struct RunStateOptions {
+  std::filesystem::path folder;  // DIR
+  FrameFormat format = FrameFormat::kExrHalf;
+  bool resume = false;     // go on with what is there
+  bool overwrite = false;  // remove what is there
+  RunInputs rays;          // InputsOfRays, InputsOfPicture
+  RunInputs picture;
+};
+
+class RunState {
+ public:
+  // Makes the folder, locks it and looks at what is there. The path must outlive the state.
+  // kUsage: an unfinished render is there and neither resume nor overwrite is asked for, or it was
+  //   made from other inputs: the message names the first that differs, and both values.
+  // kInput: a file of the state is damaged. kOutput: the folder, or another program at work in it.
+  static Result<std::unique_ptr<RunState>> Open(const RunStateOptions& options,
+                                                const CameraPath& path);
+  ~RunState();  // leaves no empty partial/ behind
+
+  // Frames that were finished before and are still there.
+  const std::map<FrameId, FrameReport>& finished() const { return finished_; }
+  // Times and skipped LF images of earlier runs.
+  const RenderReport& earlier() const { return earlier_; }
+  bool HasPlates() const { return !plates_.empty(); }
+
+  // Adds the rays of the frame's plate, if there is one, and tells how far it is.
+  // kInput: damaged.
+  Result<FrameProgress> LoadPlate(FrameId frame, SensorPlate* plate) const;
+  // kOutput; the file before is then intact.
+  Result<void> SavePlate(FrameId frame, const FrameProgress& progress, const SensorPlate& plate,
+                         ThreadPool& pool);
+  Result<void> SaveTotals(const RenderReport& totals);
+  // To be called when the frame's own file is written: its unfinished files are removed.
+  Result<void> SaveFinished(const FrameReport& frame);
+  // A finished frame that is to be rendered anew.
+  void Forget(FrameId frame) { finished_.erase(frame); }
+
+  // What a plate's file says, for one that is kept.
+  PlateEntries PlateText(FrameId frame, const FrameProgress& progress) const;
+  std::filesystem::path PicturePath(FrameId frame) const;
+
+  // All is done: writes report.json and removes what is not needed any more.
+  Result<void> Close(const RenderReport& report);
+
+ private:
+  RunState(const RunStateOptions& options, const CameraPath& path, FileLock lock);
+  Result<void> Look();
+  Result<void> Read();
+  Result<void> ReadFinished(const std::filesystem::path& path);
+  Result<void> CheckPlate(FrameId frame) const;
+  Result<void> Check(const std::string& place, FrameId frame, const RunInputs& recorded,
+                     bool has_picture) const;
+  void RemoveAll();
+  std::filesystem::path PlatePath(FrameId frame) const;
+  std::filesystem::path RecordPath(FrameId frame) const;
+
+  RunStateOptions options_;
+  const CameraPath& path_;
+  std::filesystem::path partial_;
+  FileLock lock_;
+  std::set<FrameId> plates_;   // files that are there
+  std::set<FrameId> records_;  // of finished frames
+  std::map<FrameId, FrameReport> finished_;
+  RenderReport earlier_;
+};
+
+}  // namespace lf

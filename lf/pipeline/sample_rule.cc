@@ -1,0 +1,134 @@
+#include "lf/pipeline/sample_rule.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <string_view>
+
+#include "lf/camera/distortion.h"
+#include "lf/selection/ideal_cells.h"
+#include "lf/selection/overlap.h"
+
+namespace lf {
+namespace {
+
+// An LF camera, prepared to be asked for rays through points.
+struct Viewer {
+  Vec3 centre_world;
+  Mat3 rotation;
+  const Intrinsics* intrinsics;
+  const DistortionMap* distortion;
+};
+
+// Whether the LF image has a ray through X and the lens (doc/ray.md, 2, 3, 5).
+bool Sees(const Viewer& viewer, const RenderCamera& camera, const Vec3& point_world,
+          double border_px) {
+  const PinholeCamera& lens = camera.pinhole;
+  const Vec3 forward = lens.ForwardWorld();
+  const Vec3 offset = viewer.centre_world - lens.CentreWorld();
+  Vec3 d = point_world - viewer.centre_world;
+  if (forward.dot(d) < 0) d = -d;
+  if (!(forward.dot(d) > 0)) return false;
+  const Vec3 on_lens = offset - d * (forward.dot(offset) / forward.dot(d));
+  if (!Contains(camera.aperture, {lens.RightWorld().dot(on_lens), lens.UpWorld().dot(on_lens)}))
+    return false;
+  const std::optional<Vec2> recorded = viewer.distortion->Distort(viewer.rotation * d);
+  if (!recorded) return false;
+  const Intrinsics& k = *viewer.intrinsics;
+  const double x_px = k.fx_px * recorded->x() + k.skew_px * recorded->y() + k.cx_px;
+  const double y_px = k.fy_px * recorded->y() + k.cy_px;
+  return x_px >= border_px && x_px < k.width_px - border_px && y_px >= border_px &&
+         y_px < k.height_px - border_px;
+}
+
+uint64_t LeastCount(const SensorPlate& plate, int x, int y) {
+  uint64_t least = plate.At(x, y, 0).count;
+  for (int c = 1; c < SensorPlate::kChannels; ++c) least = std::min(least, plate.At(x, y, c).count);
+  return least;
+}
+
+// How many elements may have less than the rule asks for.
+size_t MayLack(size_t count) {
+  return static_cast<size_t>((1 - kMostElements) * static_cast<double>(count));
+}
+
+}  // namespace
+
+Result<uint32_t> ParseSampleRule(const std::string& text, const std::string& option) {
+  constexpr std::string_view kStart = "samples>=";
+  uint32_t samples = 0;
+  const char* const end = text.data() + text.size();
+  if (!text.starts_with(kStart))
+    return UsageError(fmt::format("{} '{}' is not like samples>=8", option, text));
+  const auto [rest, error] = std::from_chars(text.data() + kStart.size(), end, samples);
+  if (error != std::errc{} || rest != end || samples < 1 || samples > SensorPlate::kMaxCount)
+    return UsageError(fmt::format("{} '{}': expected samples>=N with N from 1 to {}", option, text,
+                                  SensorPlate::kMaxCount));
+  return samples;
+}
+
+ReachableElements::ReachableElements(const LightField& light_field, const RenderCamera& camera,
+                                     const PlaceRange& places, const SelectOptions& select,
+                                     ThreadPool& pool) {
+  const std::vector<RenderCamera> frames = {camera};
+  const std::vector<PlaceRange> ranges = {places};
+  const std::vector<SelectedImage> images = SelectImages(light_field, frames, select, pool, ranges);
+  std::map<uint32_t, DistortionMap> maps;
+  std::vector<Viewer> viewers;
+  for (const SelectedImage& image : images) {
+    const LfCamera& lf_camera = light_field.cameras[image.id.value];
+    const Intrinsics& k = light_field.intrinsics[lf_camera.intrinsics_index];
+    const auto map = maps.try_emplace(lf_camera.intrinsics_index, k.distortion).first;
+    viewers.push_back({lf_camera.cam_from_world.Inverse().translation,
+                       lf_camera.cam_from_world.rotation, &k, &map->second});
+  }
+  const double border_px = select.reach == PixelReach::kNeighbours ? 0.5 : 0;
+  const int width = camera.pinhole.intrinsics.width_px;
+  const int height = camera.pinhole.intrinsics.height_px;
+  columns_ = static_cast<size_t>((width + kGrid - 1) / kGrid);
+  const auto rows = static_cast<size_t>((height + kGrid - 1) / kGrid);
+  is_reachable_.assign(rows * columns_, 0);
+  pool.ForEach(rows, [&](size_t row) {
+    for (size_t column = 0; column < columns_; ++column) {
+      const int x = std::min(width - 1, static_cast<int>(column) * kGrid + kGrid / 2);
+      const int y = std::min(height - 1, static_cast<int>(row) * kGrid + kGrid / 2);
+      const std::optional<Vec3> point = FocusPointOfElement(camera, x + 0.5, y + 0.5);
+      if (!point) continue;
+      is_reachable_[row * columns_ + column] = std::any_of(
+          viewers.begin(), viewers.end(),
+          [&](const Viewer& viewer) { return Sees(viewer, camera, *point, border_px); });
+    }
+  });
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) count_ += Holds(x, y) ? 1 : 0;
+}
+
+bool HasSamples(const SensorPlate& plate, const ReachableElements& reachable, uint32_t samples) {
+  const size_t may_lack = MayLack(reachable.count());
+  size_t lacking = 0;
+  for (int y = 0; y < plate.height(); ++y)
+    for (int x = 0; x < plate.width(); ++x) {
+      if (!reachable.Holds(x, y) || LeastCount(plate, x, y) >= samples) continue;
+      if (++lacking > may_lack) return false;
+    }
+  return true;
+}
+
+SampleShare MeasureSamples(const SensorPlate& plate, const ReachableElements& reachable,
+                           uint32_t samples) {
+  if (reachable.count() == 0) return {};
+  std::vector<uint64_t> least;
+  least.reserve(reachable.count());
+  for (int y = 0; y < plate.height(); ++y)
+    for (int x = 0; x < plate.width(); ++x)
+      if (reachable.Holds(x, y)) least.push_back(LeastCount(plate, x, y));
+  const auto enough = std::count_if(least.begin(), least.end(),
+                                    [samples](uint64_t count) { return count >= samples; });
+  const auto at = least.begin() + static_cast<ptrdiff_t>(MayLack(least.size()));
+  std::nth_element(least.begin(), at, least.end());
+  return {static_cast<double>(enough) / static_cast<double>(least.size()), *at};
+}
+
+}  // namespace lf

@@ -1,0 +1,59 @@
+// How many rays the elements of a frame have, measured so that a frame may stop, or be refused:
+// "samples>=8".
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "lf/camera/render_camera.h"
+#include "lf/capture/light_field.h"
+#include "lf/core/parallel.h"
+#include "lf/core/result.h"
+#include "lf/pipeline/collect_batch.h"
+#include "lf/plate/sensor_plate.h"
+#include "lf/selection/select.h"
+
+namespace lf {
+
+// N of "samples>=N", 1 to 2^24 - 1. kUsage names the option.
+Result<uint32_t> ParseSampleRule(const std::string& text, const std::string& option);
+
+// A rule is met when this share of the elements that can have rays do have N, in every channel.
+inline constexpr double kMostElements = 0.99;
+
+// Which elements can have rays: those whose focus point is seen by an LF image, through the lens.
+// Asked of every 8th element in both directions, which answers for those around it.
+class ReachableElements {
+ public:
+  static constexpr int kGrid = 8;  // elements
+
+  // places  which LF images of the order by `select.seed` count
+  ReachableElements(const LightField& light_field, const RenderCamera& camera,
+                    const PlaceRange& places, const SelectOptions& select, ThreadPool& pool);
+
+  bool Holds(int x, int y) const {
+    return is_reachable_[static_cast<size_t>(y / kGrid) * columns_ + x / kGrid] != 0;
+  }
+  size_t count() const { return count_; }  // elements
+
+ private:
+  size_t columns_ = 0;
+  std::vector<uint8_t> is_reachable_;  // [rows][columns] of the grid
+  size_t count_ = 0;
+};
+
+// Whether kMostElements of the reachable elements have at least `samples` rays in every channel;
+// so they have where none is reachable. Quick where it is far from so.
+bool HasSamples(const SensorPlate& plate, const ReachableElements& reachable, uint32_t samples);
+
+// The share of reachable elements that have `samples` rays in every channel (1 where none is
+// reachable), and the largest number of rays that kMostElements of them have.
+struct SampleShare {
+  double share = 1;
+  uint64_t most_have = 0;
+};
+SampleShare MeasureSamples(const SensorPlate& plate, const ReachableElements& reachable,
+                           uint32_t samples);
+
+}  // namespace lf

@@ -1,0 +1,81 @@
+#include "lf/pipeline/sample_rule.h"
+
+#include <gtest/gtest.h>
+
+#include "lf/collection/gather.h"
+#include "lf/pipeline/test_noise_field.h"
+
+namespace lf {
+namespace {
+
+TEST(SampleRule, ReadsAndRefuses) {
+  EXPECT_EQ(*ParseSampleRule("samples>=8", "--require"), 8u);
+  EXPECT_EQ(*ParseSampleRule("samples>=16777215", "--require"), 16777215u);
+  for (const char* text : {"", "8", "samples>8", "samples>=0", "samples>=-1", "samples>=8x",
+                           "samples>=16777216", "samples>= 8", "rays>=8"}) {
+    const Result<uint32_t> samples = ParseSampleRule(text, "--require");
+    ASSERT_FALSE(samples) << text;
+    EXPECT_EQ(samples.error().kind, ErrorKind::kUsage);
+    EXPECT_NE(samples.error().message.find("--require"), std::string::npos);
+  }
+}
+
+// Counts of a collected plate are the judge: bilinear asks every element for its rays.
+TEST(SampleRule, ElementsAreReachableWhereTheyGetRays) {
+  const LightField field = testing::NoiseField();
+  const testing::NoiseStore store;
+  ThreadPool pool(2);
+  for (RenderCamera camera : testing::NoiseFrames()) {
+    // Wide enough that its borders are seen by no LF image.
+    camera.pinhole.intrinsics = {60, 60, 80, 40, 0, 160, 80};
+    SensorPlate plate(160, 80);
+    for (uint32_t i = 0; i < field.size(); ++i) {
+      LfPixels pixels;
+      ASSERT_TRUE(store.Load(LfImageId{i}, {0, 0, testing::kWidth, testing::kHeight}, &pixels));
+      GatherReference(field.Camera(LfImageId{i}), pixels, camera, &plate);
+    }
+    const ReachableElements reachable(field, camera, {}, {0, PixelReach::kNeighbours}, pool);
+    EXPECT_GT(reachable.count(), 1000u);
+    EXPECT_LT(reachable.count(), 12000u);
+    for (int y = 4; y < 80; y += 8)
+      for (int x = 4; x < 160; x += 8)
+        EXPECT_EQ(reachable.Holds(x, y), plate.At(x, y, 0).count > 0) << x << " " << y;
+    // No LF image at all.
+    EXPECT_EQ(ReachableElements(field, camera, {5, 5}, {}, pool).count(), 0u);
+  }
+}
+
+TEST(SampleRule, CountsEveryChannelOfReachableElementsAlone) {
+  const LightField field = testing::NoiseField();
+  ThreadPool pool(1);
+  RenderCamera camera = testing::NoiseFrames()[0];
+  camera.pinhole.intrinsics = {60, 60, 80, 40, 0, 160, 80};
+  const ReachableElements reachable(field, camera, {}, {}, pool);
+  SensorPlate plate(160, 80);
+  for (int y = 0; y < 80; ++y)
+    for (int x = 0; x < 160; ++x)
+      if (reachable.Holds(x, y))
+        for (int c = 0; c < 3; ++c) plate.Add(x, y, c, {0, c == 2 ? 5u : 9u});
+  EXPECT_TRUE(HasSamples(plate, reachable, 5));
+  EXPECT_FALSE(HasSamples(plate, reachable, 6));
+  EXPECT_EQ(MeasureSamples(plate, reachable, 5).share, 1);
+  EXPECT_EQ(MeasureSamples(plate, reachable, 6).share, 0);
+  EXPECT_EQ(MeasureSamples(plate, reachable, 6).most_have, 5u);
+  // One per cent may have fewer.
+  size_t left = reachable.count() - reachable.count() / 100;
+  for (int y = 0; y < 80; ++y)
+    for (int x = 0; x < 160; ++x)
+      if (reachable.Holds(x, y) && left > 0) {
+        plate.Add(x, y, 2, {0, 4});
+        --left;
+      }
+  EXPECT_TRUE(HasSamples(plate, reachable, 9));
+  EXPECT_EQ(MeasureSamples(plate, reachable, 9).most_have, 9u);
+  EXPECT_NEAR(MeasureSamples(plate, reachable, 9).share, 0.99, 0.001);
+  SensorPlate nothing(160, 80);
+  EXPECT_FALSE(HasSamples(nothing, reachable, 1));
+  EXPECT_EQ(MeasureSamples(nothing, reachable, 1).most_have, 0u);
+}
+
+}  // namespace
+}  // namespace lf

@@ -1,0 +1,351 @@
+#!/usr/bin/python3
+"""lfrenderer interrupted, killed and resumed: the same bits, and no wrong picture from a damaged
+state.
+
+usage: lfrenderer_resume_test.py LFRENDERER
+"""
+import hashlib
+import json
+import pathlib
+import random
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import small_field
+
+RENDERER = None
+FRAMES = 40
+
+
+def digests(folder):
+    """sha256 of the finished frames and plates of a folder."""
+    return {path.name: hashlib.sha256(path.read_bytes()).hexdigest()
+            for pattern in ("frame_*.exr", "frame_*.plate") for path in folder.glob(pattern)}
+
+
+class ResumeTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.temporary.name)
+        # 169 LF images, of which a frame takes about 110: decisions at 64 and 128 places.
+        small_field.SIDE = 13
+        cls.field = small_field.write_field(cls.folder / "field")
+        cls.path = small_field.write_path(cls.folder, frames=FRAMES, aperture=0.12)
+        cls.common = ["--format", "exr-float", "--keep-plates", "--no-contact-sheet"]
+        one = cls()
+        start = time.monotonic()
+        cls.expected = one.finish("whole", "--threads", "1")
+        cls.whole_s = time.monotonic() - start
+        cls.expected_reference = one.reference("ref")
+        few = one.run_renderer("few", "--memory", "2M")
+        cls.small_memory = re.search(r"at least (\d+) MiB", few.stderr).group(1) + "M"
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    def arguments(self, name, *options):
+        return [RENDERER, str(self.field), str(self.path), "-o", str(self.folder / name),
+                *self.common, *options]
+
+    def run_renderer(self, name, *options, **keys):
+        return subprocess.run(self.arguments(name, *options), capture_output=True, text=True,
+                              timeout=120, **keys)
+
+    def finish(self, name, *options):
+        result = self.run_renderer(name, *options)
+        if result.returncode != 0:
+            raise AssertionError(result.stderr)
+        return digests(self.folder / name)
+
+    def fails(self, code, words, name, *options, **keys):
+        result = self.run_renderer(name, *options, **keys)
+        self.assertEqual(result.returncode, code, result.stderr)
+        last = result.stderr.strip().splitlines()[-1]
+        self.assertTrue(last.startswith("error: "), last)
+        for word in words:
+            self.assertIn(word, last)
+        return last
+
+    def partial(self, name):
+        return self.folder / name / "partial"
+
+    def wait_for_lock(self, name, process):
+        """From then on it answers signals. A killed one leaves its lock's file behind."""
+        lock = self.partial(name) / "lock"
+        while process.poll() is None:
+            try:
+                if lock.read_text().strip() == str(process.pid):
+                    return
+            except FileNotFoundError:
+                pass
+            time.sleep(0.002)
+
+    def begun(self, name, *options, frames="1-12"):
+        """An unfinished render: some plates, perhaps some frames. The reference takes its time."""
+        delay_s = 0.3
+        while True:
+            process = subprocess.Popen(
+                self.arguments(name, "--back-end", "reference", "--frames", frames, *options),
+                stderr=subprocess.PIPE, text=True)
+            self.wait_for_lock(name, process)
+            time.sleep(delay_s)
+            process.send_signal(signal.SIGTERM)
+            _, words = process.communicate(timeout=60)
+            if list(self.partial(name).glob("*.plate")):
+                self.assertEqual(process.returncode, 5, words)
+                return words
+            shutil.rmtree(self.folder / name, ignore_errors=True)
+            # Not yet begun, or already done.
+            delay_s *= 1.5 if process.returncode == 5 else 0.6
+
+    def reference(self, name, *options, frames="1-12"):
+        return self.finish(name, "--back-end", "reference", "--frames", frames, *options)
+
+    def of_reference(self, frames):
+        names = {f"frame_{n:04d}.{kind}" for n in frames for kind in ("exr", "plate")}
+        return {name: self.expected_reference[name] for name in names}
+
+    # The same bits
+
+    def test_killed_at_random_points_it_ends_with_the_same_bits(self):
+        rng = random.Random(5)
+        resumed = 0
+        for index, options in enumerate((
+                ["--threads", "1", "--dump-every", "0"],
+                ["--threads", "2", "--dump-every", "0.01s"],
+                ["--threads", "3", "--dump-every", "0.02s", "--memory", self.small_memory],
+                ["--threads", "2", "--dump-every", "0.05s", "--seed", "0"])):
+            name = f"killed{index}"
+            for kill in range(5):
+                process = subprocess.Popen(self.arguments(name, "--resume", *options),
+                                           stderr=subprocess.PIPE, text=True)
+                self.wait_for_lock(name, process)
+                time.sleep(rng.uniform(0, 0.4 * self.whole_s))
+                process.send_signal(signal.SIGKILL if kill % 2 == index % 2 else signal.SIGTERM)
+                _, words = process.communicate(timeout=60)
+                self.assertIn(process.returncode, (-signal.SIGKILL, 0, 5), words)
+                resumed += "going on" in words
+                # Whatever has a final name is whole and right.
+                for file, digest in digests(self.folder / name).items():
+                    self.assertEqual(digest, self.expected[file], (options, kill, file))
+            self.assertEqual(self.finish(name, "--resume", *options), self.expected, options)
+            self.assertFalse(self.partial(name).exists())
+            report = json.loads((self.folder / name / "report.json").read_text())
+            self.assertEqual([f["frame"] for f in report["frames"]], list(range(1, FRAMES + 1)))
+        self.assertGreater(resumed, 4)
+
+    def test_plates_and_frames_do_not_depend_on_threads_and_memory(self):
+        for index, options in enumerate((["--threads", "2"], ["--threads", "3"],
+                                         ["--memory", self.small_memory])):
+            self.assertEqual(self.finish(f"same{index}", *options), self.expected, options)
+
+    def test_the_order_changes_nothing_but_the_text_of_plates(self):
+        def rays(folder):
+            rays = {}
+            for path in folder.glob("frame_*.plate"):
+                plate = path.read_bytes()
+                rays[path.name] = plate[48 + int.from_bytes(plate[12:16], "little"):]
+            return rays
+        other = self.finish("seed", "--seed", "5", "--frames", "1-40x3")
+        for name, digest in other.items():
+            self.assertEqual(digest == self.expected[name], name.endswith(".exr"), name)
+        whole = rays(self.folder / "whole")
+        for name, content in rays(self.folder / "seed").items():
+            self.assertEqual(content, whole[name])
+
+    def test_a_state_is_resumed_with_other_memory_threads_and_frames(self):
+        words = self.begun("other")
+        last = words.strip().splitlines()[-1]
+        self.assertRegex(last, r"interrupted after \d+ of 12 frames.*--resume$")
+        self.reference("other", "--resume", "--memory", self.small_memory, frames="3-11x4")
+        state = [p.name for p in self.partial("other").glob("*.plate")]
+        self.assertNotIn("frame_0007.plate", state)
+        self.assertEqual(self.reference("other", "--resume", "--threads", "3"),
+                         self.expected_reference)
+        self.assertFalse(self.partial("other").exists())
+        # Once more: nothing is left to do.
+        before = (self.folder / "other" / "frame_0001.exr").stat().st_mtime_ns
+        self.assertEqual(self.reference("other", "--resume"), self.expected_reference)
+        self.assertEqual((self.folder / "other" / "frame_0001.exr").stat().st_mtime_ns, before)
+
+    def test_the_command_in_the_last_words_goes_on(self):
+        words = self.begun("words with 'quotes'")
+        command = words.strip().splitlines()[-1].split("go on with: ")[1]
+        result = subprocess.run(command, shell=True, capture_output=True, text=True, timeout=120)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(digests(self.folder / "words with 'quotes'"), self.expected_reference)
+
+    def test_pictures_stand_beside_unfinished_plates(self):
+        self.begun("pictures")
+        self.assertTrue(list(self.partial("pictures").glob("frame_*.exr")))
+
+    def test_sigusr1_writes_the_state_and_goes_on(self):
+        expected = self.of_reference(range(1, 7))
+        process = subprocess.Popen(
+            self.arguments("usr1", "--back-end", "reference", "--frames", "1-6", "--dump-every",
+                           "0"), stderr=subprocess.PIPE, text=True)
+        while process.poll() is None and not list(self.partial("usr1").glob("*.plate")):
+            if (self.partial("usr1") / "lock").exists():
+                process.send_signal(signal.SIGUSR1)
+            time.sleep(0.05)
+        _, words = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 0, words)
+        self.assertIn("the state is written", words)
+        self.assertEqual(digests(self.folder / "usr1"), expected)
+
+    def test_a_second_sigint_ends_at_once_and_harms_nothing(self):
+        expected = self.of_reference(range(1, 7))
+        process = subprocess.Popen(
+            self.arguments("twice", "--back-end", "reference", "--frames", "1-6"),
+            stderr=subprocess.PIPE, text=True)
+        self.wait_for_lock("twice", process)
+        time.sleep(0.2)
+        process.send_signal(signal.SIGINT)
+        time.sleep(0.01)
+        process.send_signal(signal.SIGINT)
+        _, words = process.communicate(timeout=60)
+        self.assertIn(process.returncode, (-signal.SIGINT, 5), words)
+        self.assertEqual(self.reference("twice", "--resume", frames="1-6"), expected)
+
+    # Limits and rules
+
+    def test_max_images_does_not_depend_on_passes_and_frames(self):
+        expected = self.finish("max", "--max-images", "20")
+        self.assertNotEqual(expected, self.expected)
+        self.assertEqual(
+            self.finish("max_small", "--max-images", "20", "--memory", self.small_memory), expected)
+        some = self.finish("max_some", "--max-images", "20", "--frames", "5-40x11")
+        self.assertEqual(some, {name: expected[name] for name in some})
+        report = json.loads((self.folder / "max" / "report.json").read_text())
+        self.assertLessEqual(max(f["lf_images"] for f in report["frames"]), 20)
+
+    def test_stop_rules_give_the_same_bits_in_any_run(self):
+        rule = ["--stop-when", "samples>=12"]
+        expected = self.finish("stop", *rule)
+        report = json.loads((self.folder / "stop" / "report.json").read_text())
+        whole = json.loads((self.folder / "whole" / "report.json").read_text())
+        stopped = 0
+        for frame, all_of_it in zip(report["frames"], whole["frames"]):
+            if frame["lf_images"] == all_of_it["lf_images"]:
+                continue
+            stopped += 1
+            self.assertGreaterEqual(frame["samples"]["share"], 0.99)
+            self.assertGreaterEqual(frame["samples"]["most_have"], 12)
+            # 64 or 128 places of 169, all about as likely to contribute.
+            share = frame["lf_images"] / all_of_it["lf_images"]
+            self.assertLess(min(abs(share - 64 / 169), abs(share - 128 / 169)), 0.12)
+        self.assertGreater(stopped, 5)
+        self.assertEqual(self.finish("stop_small", *rule, "--memory", self.small_memory), expected)
+        some = self.finish("stop_some", *rule, "--frames", "5-40x11", "--threads", "3")
+        self.assertEqual(some, {name: expected[name] for name in some})
+        expected = self.reference("stop_ref", *rule)
+        self.begun("stop_begun", *rule)
+        self.assertEqual(self.reference("stop_begun", *rule, "--resume"), expected)
+
+    def test_require_ends_with_code_6_and_names_frames(self):
+        last = self.fails(6, ["samples>=1000", "3 of 3 frames", "frame 2 (0.0 %)"], "require",
+                          "--frames", "1-3", "--require", "samples>=1000")
+        self.assertIn("99 %", last)
+        self.assertTrue((self.folder / "require" / "frame_0002.exr").exists())
+        self.finish("require", "--frames", "1-3", "--require", "samples>=1", "--resume")
+        # Frames whose samples nobody measured are rendered again.
+        self.finish("measured", "--frames", "1-2")
+        self.fails(6, ["2 of 2 frames"], "measured", "--frames", "1-2", "--resume", "--require",
+                   "samples>=1000")
+
+    # What it refuses
+
+    def test_an_unfinished_render_is_not_lost_by_accident(self):
+        self.begun("kept")
+        self.fails(2, ["--resume", "--overwrite"], "kept", "--frames", "1")
+        self.assertTrue(list(self.partial("kept").glob("*.plate")))
+        kept = self.finish("kept", "--overwrite", "--frames", "1")
+        for name in ("frame_0001.exr", "frame_0001.plate"):
+            self.assertEqual(kept[name], self.expected[name])
+        self.assertFalse(self.partial("kept").exists())
+
+    def test_a_state_from_other_inputs_is_refused_and_the_difference_named(self):
+        self.begun("inputs")
+        options = ["--back-end", "reference", "--frames", "1-12", "--resume"]
+        self.fails(2, ["seed 0, this call has 7", "--overwrite"], "inputs", *options, "--seed", "7")
+        self.fails(2, ["estimator nearest, this call has bilinear"], "inputs", *options,
+                   "--estimator", "bilinear")
+        self.fails(2, ["back_end reference, this call has fast"], "inputs", "--resume")
+        self.fails(2, ["max_images all, this call has 9"], "inputs", *options, "--max-images", "9")
+        self.fails(2, ["stop_when never, this call has samples>=3"], "inputs", *options,
+                   "--stop-when", "samples>=3")
+        path, other = self.path.read_text(), self.path.with_name("other.yaml")
+        other.write_text(path.replace("[{time: 0, value: 0.8}", "[{time: 0, value: 0.9}"))
+        result = subprocess.run([RENDERER, self.field, other, "-o", self.folder / "inputs",
+                                 *self.common, *options], capture_output=True, text=True)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("frame.focus_distance_w 0.8, this call has 0.9", result.stderr)
+        calibration = json.loads(self.field.read_text())
+        calibration["frames"][7]["transform_matrix"][0][3] += 1e-9
+        moved = self.field.with_name("moved.json")
+        moved.write_text(json.dumps(calibration))
+        result = subprocess.run([RENDERER, moved, self.path, "-o", self.folder / "inputs",
+                                 *self.common, *options], capture_output=True, text=True)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("light_field.calibration", result.stderr)
+        # Finished frames, too.
+        self.finish("complete", "--frames", "1-2")
+        self.fails(2, ["report.json", "seed 0, this call has 1"], "complete", "--frames", "1-2",
+                   "--resume", "--seed", "1")
+
+    def test_a_damaged_state_is_a_clear_error(self):
+        self.begun("damaged")
+        plate = sorted(self.partial("damaged").glob("*.plate"))[0]
+        whole = plate.read_bytes()
+        options = ["--back-end", "reference", "--frames", "1-12", "--resume"]
+        before = digests(self.folder / "damaged")
+        plate.write_bytes(whole[:len(whole) // 2])
+        self.fails(3, [plate.name, "truncated", "remove the file"], "damaged", *options)
+        flipped = bytearray(whole)
+        flipped[len(whole) * 2 // 3] ^= 16
+        plate.write_bytes(flipped)
+        self.fails(3, [plate.name, "checksum", "remove the file"], "damaged", *options)
+        self.assertEqual(digests(self.folder / "damaged"), before)
+        plate.unlink()  # as told
+        self.assertEqual(self.reference("damaged", "--resume"), self.expected_reference)
+
+    def test_a_folder_is_rendered_into_by_one_program_at_a_time(self):
+        process = subprocess.Popen(self.arguments("locked", "--back-end", "reference"),
+                                   stderr=subprocess.DEVNULL)
+        try:
+            while not (self.partial("locked") / "lock").exists():
+                time.sleep(0.01)
+            time.sleep(0.05)
+            self.fails(4, ["locked", str(process.pid)], "locked", "--overwrite")
+        finally:
+            process.kill()
+            process.wait()
+
+    def test_a_full_disk_keeps_the_last_checkpoint(self):
+        self.begun("full", "--dump-every", "0")
+        state = {p.name: p.read_bytes() for p in self.partial("full").glob("*.plate")}
+
+        def limit_files():  # writes beyond it fail, since Python ignores SIGXFSZ
+            resource.setrlimit(resource.RLIMIT_FSIZE, (9000, 9000))
+        self.fails(4, ["cannot be written"], "full", "--back-end", "reference", "--frames", "1-12",
+                   "--resume", "--dump-every", "0.01s", preexec_fn=limit_files,
+                   restore_signals=False)
+        for name, content in state.items():
+            if (self.partial("full") / name).exists():
+                self.assertEqual((self.partial("full") / name).read_bytes(), content)
+        self.assertFalse(list(self.partial("full").glob(".*.tmp.*")))
+        self.assertEqual(self.reference("full", "--resume"), self.expected_reference)
+
+
+if __name__ == "__main__":
+    RENDERER = sys.argv.pop(1)
+    unittest.main()
