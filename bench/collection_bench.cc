@@ -32,22 +32,29 @@ struct Entrant {
 };
 
 struct Difference {
-  double count_share = 0;    // of rays, in other elements
-  double mean_absolute = 0;  // of the means of elements that both have, 65535 = white
+  double count_share = 0;  // of rays, in other elements
+  // Of the means of elements that both have, 65535 = white.
+  double mean_absolute = 0;
+  double psnr_db = 0;
 };
 
 Difference Compare(const Picture& a, const Picture& b) {
   Difference difference;
-  double rays = 0, compared = 0;
+  double rays = 0, compared = 0, squares = 0;
   for (size_t i = 0; i < a.sums.size(); ++i) {
     rays += a.counts[i];
     difference.count_share += 0.5 * std::abs(a.counts[i] - b.counts[i]);
     if (a.counts[i] == 0 || b.counts[i] == 0) continue;
-    difference.mean_absolute += std::abs(a.sums[i] / a.counts[i] - b.sums[i] / b.counts[i]);
+    const double apart = a.sums[i] / a.counts[i] - b.sums[i] / b.counts[i];
+    difference.mean_absolute += std::abs(apart);
+    squares += apart * apart;
     ++compared;
   }
   difference.count_share /= std::max(1.0, rays);
   difference.mean_absolute /= std::max(1.0, compared);
+  const double least_square = 1e-12;  // a finite figure for the same picture
+  difference.psnr_db = 10 * std::log10(65535.0 * 65535.0 /
+                                       std::max(least_square, squares / std::max(1.0, compared)));
   return difference;
 }
 
@@ -62,11 +69,13 @@ class Arena {
       ray_counts_[count] = static_cast<double>(ours->accepted_count());
       if (count == spec.peer_image_count) CheckPeers(ours->Develop());
       if (count == kReferenceImages)
-        CheckSame("reference", MakeReference(case_), count, ours->Develop(), 0.001, 10);
+        from_reference_ =
+            CheckSame("reference", MakeReference(case_), count, ours->Develop(), 0.001, 10);
     }
   }
 
   const CaseSpec& spec() const { return case_.spec; }
+  const Difference& from_reference() const { return from_reference_; }
 
   Entrant& Enter(const std::string& name) {
     Entrant& entrant = entrants_[name];
@@ -102,19 +111,20 @@ class Arena {
     CheckSame("opencv", MakeOpenCv(case_), count, ours, same_rays ? 0.002 : 1e9, 300);
   }
 
-  void CheckSame(const char* name, std::unique_ptr<Contender> peer, int image_count,
-                 const Picture& ours, double count_limit, double mean_limit) const {
+  Difference CheckSame(const char* name, std::unique_ptr<Contender> peer, int image_count,
+                       const Picture& ours, double count_limit, double mean_limit) const {
     peer->Collect(image_count);
     const Difference d = Compare(ours, peer->Develop());
     std::fprintf(stderr, "%s: %s differs by %.1e of the rays, %.1f of 65535 in the mean\n",
                  case_.spec.name.c_str(), name, d.count_share, d.mean_absolute);
-    if (d.count_share <= count_limit && d.mean_absolute <= mean_limit) return;
+    if (d.count_share <= count_limit && d.mean_absolute <= mean_limit) return d;
     std::fprintf(stderr, "not the same picture: limits are %.1e and %.1f\n", count_limit,
                  mean_limit);
     std::exit(EXIT_FAILURE);
   }
 
   KernelCase case_;
+  Difference from_reference_;
   std::map<int, double> ray_counts_;  // by number of LF images
   std::map<std::string, Entrant> entrants_;
 };
@@ -136,6 +146,9 @@ void Run(benchmark::State& state, const CaseSpec& spec, const std::string& name)
   UseSimdTarget("");
   const double rays = entrant.ray_count * static_cast<double>(state.iterations());
   state.counters["rays/s"] = benchmark::Counter(rays, benchmark::Counter::kIsRate);
+  if (name != "reference") return;
+  state.counters["dB"] = ArenaOf(spec).from_reference().psnr_db;
+  state.counters["moved"] = ArenaOf(spec).from_reference().count_share;
 }
 
 void Register(int rounds) {

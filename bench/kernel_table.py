@@ -24,17 +24,20 @@ PEERS = {"thesis": "thesis's loop", "thesis_native": "the same, -march=native", 
 
 
 def run(build, rounds, cases):
-    """{case: {contender: [ns per ray of round 0, 1, ...]}}, and what was compiled with"""
+    """{case: {contender: [ns per ray of round 0, 1, ...]}}, {case: how our frame differs from the
+    reference's}, and what was compiled with"""
     with tempfile.NamedTemporaryFile(suffix=".json") as out:
         subprocess.run([build / "bench/lf_collection_peers_bench", f"--rounds={rounds}",
                         f"--benchmark_filter=^({cases})/", f"--benchmark_out={out.name}",
                         "--benchmark_out_format=json"], check=True, stdout=sys.stderr)
         report = json.load(open(out.name))
-    result = {}
+    result, agreement = {}, {}
     for row in report["benchmarks"]:
         case, contender, _ = row["name"].split("/", 2)
         result.setdefault(case, {}).setdefault(contender, []).append(1e9 / row["rays/s"])
-    return result, report["context"]["compiler"]
+        if contender == "reference":
+            agreement[case] = {"psnr_db": row["dB"], "rays_in_other_elements": row["moved"]}
+    return result, agreement, report["context"]["compiler"]
 
 
 def spread(values, digits):
@@ -70,9 +73,9 @@ def target_table(cases):
     return [""] + rows(["case"] + [name[5:] for name in targets], lines) if targets else []
 
 
-def goals(cases):
+def goals(record):
     """What the project wants to reach, with what it reaches: lines of pass or fail."""
-    lines = []
+    cases, lines = record["ns_per_ray"], []
 
     def goal(text, value, holds):
         lines.append(f"- {'reached' if holds else 'MISSED'}: {text}: {value}")
@@ -102,6 +105,11 @@ def goals(cases):
         goal("720p to 8K within 15%", " ".join(f"{t:.2f}" for t in times), max(times) <= 1.15 * min(times))
     at_least("bilinear", "thesis", 15)
     at_least("bilinear", "opencv", 5)
+    if "bilinear" in record.get("agreement", {}):
+        same = record["agreement"]["bilinear"]
+        goal("bilinear >= 75 dB from the reference", f"{same['psnr_db']:.1f}", same["psnr_db"] >= 75)
+        share = same["rays_in_other_elements"]
+        goal("bilinear accepts the rays of the reference", f"{share:.1e} others", share == 0)
     for case in ("disk", "bilinear"):
         if case in cases:
             value = statistics.median(ratios(cases[case], "opencv", "thesis"))
@@ -123,14 +131,15 @@ def main():
     elif arguments.build:
         record = results.context()
         record["rounds"] = arguments.rounds
-        cases, compiler = run(arguments.build.resolve(), arguments.rounds, arguments.cases)
-        record.update(compiler=f"g++ {compiler}, -O3", ns_per_ray=cases)
+        cases, agreement, compiler = run(arguments.build.resolve(), arguments.rounds, arguments.cases)
+        record.update(compiler=f"g++ {compiler}, -O3", ns_per_ray=cases,
+                      agreement=agreement)
     else:
         parser.error("BUILD_DIR or --again is needed")
     text = "\n".join(
         [results.sentence(record) + f" {record['compiler']}; one thread, CPU time, median "
          f"(least-largest) of {record['rounds']} interleaved rounds.", ""] +
-        table(record["ns_per_ray"]) + target_table(record["ns_per_ray"]) + [""] + goals(record["ns_per_ray"])) + "\n"
+        table(record["ns_per_ray"]) + target_table(record["ns_per_ray"]) + [""] + goals(record)) + "\n"
     print(text)
     if arguments.name:
         results.save(arguments.name, record, text)
