@@ -1,13 +1,11 @@
 #!/usr/bin/python3
 """Runs lf_collection_peers_bench and prints the table of our kernels against their peers.
 
-usage: bench/kernel_table.py BUILD_DIR [--rounds 5] [--cases REGEX] [--name NAME] [--again JSON]
+usage: bench/kernel_table.py BUILD_DIR [--rounds 5] [--cases REGEX] [--name NAME] [--write PAGE]
+       bench/kernel_table.py --again JSON [--write PAGE]
 
 Rounds are interleaved: a ratio is taken within a round, printed is the median over the rounds and,
 in brackets, the least and the largest. Times are CPU times of one thread.
-
---name NAME   write bench/results/NAME.md and NAME.json
---again JSON  print the table of an earlier run
 """
 import argparse
 import json
@@ -123,8 +121,7 @@ def main():
     parser.add_argument("build", type=pathlib.Path, nargs="?")
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--cases", default=".*")
-    parser.add_argument("--name")
-    parser.add_argument("--again", type=pathlib.Path)
+    results.add_options(parser)
     arguments = parser.parse_args()
     if arguments.again:
         record = json.loads(arguments.again.read_text())
@@ -140,9 +137,7 @@ def main():
         [results.sentence(record) + f" {record['compiler']}; one thread, CPU time, median "
          f"(least-largest) of {record['rounds']} interleaved rounds.", ""] +
         table(record["ns_per_ray"]) + target_table(record["ns_per_ray"]) + [""] + goals(record)) + "\n"
-    print(text)
-    if arguments.name:
-        results.save(arguments.name, record, text)
+    results.publish(arguments, "kernel_table.py", record, text)
 
 
 if __name__ == "__main__":

@@ -42,3 +42,23 @@ def save(name, record, text):
     folder.mkdir(exist_ok=True)
     (folder / f"{name}.md").write_text(text)
     (folder / f"{name}.json").write_text(json.dumps(record, indent=1) + "\n")
+
+
+def add_options(parser):
+    parser.add_argument("--name", help="write bench/results/NAME.md and NAME.json")
+    parser.add_argument("--again", type=pathlib.Path, metavar="JSON", help="of an earlier run")
+    parser.add_argument("--write", type=pathlib.Path, metavar="PAGE",
+                        help="put the table into this page, between its markers")
+
+
+def publish(arguments, script, record, text):
+    """Prints the table, and writes it where the options say."""
+    print(text)
+    if arguments.name:
+        save(arguments.name, record, text)
+    if arguments.write:
+        page = arguments.write.read_text()
+        begin, end = f"<!-- table: bench/{script} -->", "<!-- end of table -->"
+        before, rest = page.split(begin)
+        after = rest.split(end, 1)[1]
+        arguments.write.write_text(f"{before}{begin}\n{text}{end}{after}")

@@ -1,20 +1,21 @@
 #!/usr/bin/python3
 """Times whole renders: the five camera movements of Table 5.1 of the thesis, thinned out.
 
-usage: bench/workloads.py BUILD_DIR [--density 0.1] [--size 480x320] [--runs 3] [--threads 1,2]
-                          [--only stack,short] [--field DIR] [--name NAME] [--again JSON]
+usage: bench/workloads.py BUILD_DIR [--density 0.03] [--size 480x320] [--runs 3] [--threads 1,2]
+                          [--only stack,short] [--field DIR] [--name NAME] [--write PAGE]
+       bench/workloads.py --again JSON [--write PAGE]
 
-Lengths, times, frames, apertures and focus distances are the thesis's; of its LF cameras every
-tenth is there (--density), and LF images and frames have --size. lfsynth photographs a planar grid
+Lengths, times, frames, apertures and focus distances are the thesis's; of its LF cameras
+only a share is there (--density). LF images have --size, frames half of it, which gives an element the
+rays of four times as many LF cameras. lfsynth photographs a planar grid
 of noisy raw Bayer mosaics. A path sweeps the area that makes the LF images it needs the thesis's
 number times the density; the grid is a square where the thesis had a band, so long paths wind.
 
 Workloads are rendered `runs` times per number of threads, in turn, so that a busy machine disturbs
-all alike. Seconds and peak memory are those of the whole program.
+all alike. Seconds and peak memory are those of the whole program, CPU seconds those of the last run,
+ns/ray is collection alone.
 
---field DIR   keep the light field there, or take the one that is there
---name NAME   write bench/results/NAME.md and NAME.json
---again JSON  print the table of an earlier run
+--field DIR  keep the light field there, or take the one that is there
 """
 import argparse
 import json
@@ -127,7 +128,7 @@ def photograph(build, field, density, size):
 
 
 def render(build, field, path, out, threads):
-    """One run: seconds, peak bytes, report."""
+    """One run: seconds, what the system says it used, report."""
     start = time.monotonic()
     process = subprocess.Popen([build / "bin/lfrenderer", field, path, "-o", out, "--threads",
                                 str(threads), "-q", "--no-contact-sheet"], stderr=subprocess.PIPE)
@@ -136,7 +137,7 @@ def render(build, field, path, out, threads):
     if status != 0:
         raise SystemExit(f"lfrenderer failed on {path.name}: {messages}")
     seconds = time.monotonic() - start
-    return seconds, usage.ru_maxrss * 1024, json.loads((out / "report.json").read_text())
+    return seconds, usage, json.loads((out / "report.json").read_text())
 
 
 def measure(build, field, folder, name, size, runs, threads):
@@ -146,25 +147,29 @@ def measure(build, field, folder, name, size, runs, threads):
     rows = {n: {"workload": name, "threads": n, "seconds": [], "peak_bytes": 0} for n in threads}
     for _ in range(runs):
         for n in threads:
-            seconds, peak_bytes, report = render(build, field, path, folder / "out", n)
+            seconds, usage, report = render(build, field, path, folder / "out", n)
             row = rows[n]
             row["seconds"].append(round(seconds, 3))
-            row["peak_bytes"] = max(row["peak_bytes"], peak_bytes)
-            row["lf_images"] = report["lf_images_selected"]
-            row["rays"] = report["rays_accepted"]
+            row["peak_bytes"] = max(row["peak_bytes"], usage.ru_maxrss * 1024)
+            row["cpu_s"] = round(usage.ru_utime + usage.ru_stime, 3)
+            for key in ("lf_images_selected", "rays_accepted", "load_cpu_s", "collect_cpu_s"):
+                row[key] = report[key]
     return list(rows.values())
 
 
 def table(record):
     lines = ["| workload | frames | LF images (aim) | Grays | threads | seconds: min, median, max | "
-             "Mrays/s | peak MiB |", "| --- | --- | --- | --- | --- | --- | --- | --- |"]
+             "CPU s: decoding, collecting, rest | ns/ray | peak MiB |",
+             "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
     for row in record["rows"]:
         workload, seconds = WORKLOADS[row["workload"]], row["seconds"]
-        median = statistics.median(seconds)
-        lines.append(f"| {row['workload']} | {workload['frames']} | {row['lf_images']} "
-                     f"({workload['images'] * record['density']:.0f}) | {row['rays'] / 1e9:.2f} | "
-                     f"{row['threads']} | {min(seconds):.2f}, {median:.2f}, {max(seconds):.2f} | "
-                     f"{row['rays'] / 1e6 / median:.0f} | {row['peak_bytes'] >> 20} |")
+        load, collect = row["load_cpu_s"], row["collect_cpu_s"]
+        lines.append(
+            f"| {row['workload']} | {workload['frames']} | {row['lf_images_selected']} "
+            f"({workload['images'] * record['density']:.0f}) | {row['rays_accepted'] / 1e9:.2f} | "
+            f"{row['threads']} | {min(seconds):.2f}, {statistics.median(seconds):.2f}, "
+            f"{max(seconds):.2f} | {load:.2f}, {collect:.2f}, {row['cpu_s'] - load - collect:.2f} | "
+            f"{collect / row['rays_accepted'] * 1e9:.2f} | {row['peak_bytes'] >> 20} |")
     return lines
 
 
@@ -172,19 +177,19 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=pathlib.Path, nargs="?")
-    parser.add_argument("--density", type=float, default=0.1)
+    parser.add_argument("--density", type=float, default=0.03)
     parser.add_argument("--size", default="480x320")
     parser.add_argument("--runs", type=int, default=3)
     parser.add_argument("--threads", default="1,2")
     parser.add_argument("--only", default=",".join(WORKLOADS))
     parser.add_argument("--field", type=pathlib.Path)
-    parser.add_argument("--name")
-    parser.add_argument("--again", type=pathlib.Path)
+    results.add_options(parser)
     arguments = parser.parse_args()
     if arguments.again:
         record = json.loads(arguments.again.read_text())
     elif arguments.build:
-        build, size = arguments.build.resolve(), tuple(map(int, arguments.size.split("x")))
+        build = arguments.build.resolve()
+        size = [int(length) // 2 for length in arguments.size.split("x")]
         record = results.context()
         record.update(density=arguments.density, size=arguments.size, runs=arguments.runs, rows=[])
         with tempfile.TemporaryDirectory() as temporary:
@@ -196,12 +201,10 @@ def main():
                                           list(map(int, arguments.threads.split(","))))
     else:
         parser.error("BUILD_DIR or --again is needed")
-    text = "\n".join([results.sentence(record) + f" LF images and frames {record['size']}, "
-                      f"{record['density']:g} of the thesis's LF cameras, {record['runs']} runs.", ""] +
+    text = "\n".join([results.sentence(record) + f" LF images {record['size']}, frames half "
+                      f"as large, {record['density']:g} of the thesis's LF cameras, {record['runs']} runs.", ""] +
                      table(record)) + "\n"
-    print(text)
-    if arguments.name:
-        results.save(arguments.name, record, text)
+    results.publish(arguments, "workloads.py", record, text)
 
 
 if __name__ == "__main__":
