@@ -17,9 +17,17 @@ double VertexAngle(const Aperture& aperture, int index) {
 }  // namespace
 
 bool Contains(const Aperture& aperture, const Vec2& point_lens) {
-  if (aperture.blades == 0)
-    return point_lens.squaredNorm() <= aperture.radius_w * aperture.radius_w * (1 + kRimTolerance);
-  for (const ApertureEdge& edge : Edges(aperture))
+  return ApertureTest(aperture).Contains(point_lens);
+}
+
+ApertureTest::ApertureTest(const Aperture& aperture)
+    : radius2_w2_(aperture.radius_w * aperture.radius_w * (1 + kRimTolerance)) {
+  if (aperture.blades > 0) edges_ = Edges(aperture);
+}
+
+bool ApertureTest::Contains(const Vec2& point_lens) const {
+  if (edges_.empty()) return point_lens.squaredNorm() <= radius2_w2_;
+  for (const ApertureEdge& edge : edges_)
     if (edge.normal.dot(point_lens) > edge.distance_w * (1 + kRimTolerance / 2)) return false;
   return true;
 }

@@ -28,15 +28,26 @@ struct ApertureEdge {
   double distance_w = 0;
 };
 
-// Whether the opening, rim included, holds the point (right, up).
-bool Contains(const Aperture& aperture, const Vec2& point_lens);
-
 // Vertices of the polygon, counter-clockwise; empty for a disk.
 std::vector<Vec2> Vertices(const Aperture& aperture);
 
 // Edges of the polygon; for a disk those of the circumscribed regular polygon of
 // `disk_edge_count` edges, which holds the disk.
 std::vector<ApertureEdge> Edges(const Aperture& aperture, int disk_edge_count = 16);
+
+// Whether the opening, rim included, holds the point (right, up).
+bool Contains(const Aperture& aperture, const Vec2& point_lens);
+
+// The same for many points: the edges of a polygon are found once.
+class ApertureTest {
+ public:
+  explicit ApertureTest(const Aperture& aperture);
+  bool Contains(const Vec2& point_lens) const;
+
+ private:
+  double radius2_w2_;                // of a disk, with the rim's tolerance
+  std::vector<ApertureEdge> edges_;  // of a polygon
+};
 
 // Area of the opening in squared world units.
 double Area(const Aperture& aperture);

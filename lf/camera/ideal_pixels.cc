@@ -5,7 +5,7 @@
 namespace lf {
 namespace {
 
-constexpr int kLongestArc_px = 32;
+constexpr int kLongestArc_px = 512;
 
 class ArcMaker {
  public:
@@ -33,6 +33,8 @@ class ArcMaker {
       }
       arcs->push_back(*arc);
       x = end;
+      // Longer ones are tried now and then.
+      if (x % (8 * length) < length) length = std::min(2 * length, kLongestArc_px);
     }
   }
 

@@ -87,22 +87,49 @@ class ArcPlanner {
   void AddArc(int y, const IdealArc& arc) {
     const int begin = std::max(arc.x_begin, rect_.x_begin), end = std::min(arc.x_end, rect_.x_end);
     if (begin >= end) return;
-    const Hull hull(arc);
-    const Share share = AcceptedShare(hull);
+    runs_.clear();
+    FindRuns(arc, arc, begin, end);
+    for (const PixelRun& run : runs_) segments_.AddOnArc(y, run.begin, run.end, arc);
+  }
+
+  // Appends the accepted pixels of `part` of an arc, within [begin, end).
+  void FindRuns(const IdealArc& part, const IdealArc& arc, int begin, int end) {
+    if (part.x_begin >= end || part.x_end <= begin) return;
+    const Share share = AcceptedShare(Hull(part));
     if (share == Share::kNone) return;
     if (share == Share::kAll) {
-      segments_.AddOnArc(y, begin, end, arc);
+      AppendRun(std::max(begin, part.x_begin), std::min(end, part.x_end));
       return;
     }
-    const auto accepted = [&](int x) {
-      return law_.CollectIdeal(arc.At(arc.Parameter(x))).has_value();
-    };
-    for (int x = begin; x < end;) {
-      int stop = x;
-      while (stop < end && accepted(stop)) ++stop;
-      if (stop > x) segments_.AddOnArc(y, x, stop, arc);
-      x = stop + 1;
+    constexpr int kFewPixels = 4;
+    if (part.x_end - part.x_begin <= kFewPixels) {
+      for (int x = std::max(begin, part.x_begin); x < std::min(end, part.x_end); ++x)
+        if (law_.CollectIdeal(arc.At(arc.Parameter(x)))) AppendRun(x, x + 1);
+      return;
     }
+    IdealArc left, right;
+    Split(part, &left, &right);
+    FindRuns(left, arc, begin, end);
+    FindRuns(right, arc, begin, end);
+  }
+
+  // De Casteljau's construction at a border of pixels near the middle.
+  static void Split(const IdealArc& arc, IdealArc* left, IdealArc* right) {
+    const int middle = arc.x_begin + (arc.x_end - arc.x_begin) / 2;
+    const double t = static_cast<double>(middle - arc.x_begin) / (arc.x_end - arc.x_begin);
+    const auto mix = [t](const Vec3& a, const Vec3& b) -> Vec3 { return a + t * (b - a); };
+    const Vec3 ab = mix(arc.control[0], arc.control[1]), bc = mix(arc.control[1], arc.control[2]);
+    const Vec3 cd = mix(arc.control[2], arc.control[3]);
+    const Vec3 abc = mix(ab, bc), bcd = mix(bc, cd), on_arc = mix(abc, bcd);
+    *left = {arc.x_begin, middle, {arc.control[0], ab, abc, on_arc}};
+    *right = {middle, arc.x_end, {on_arc, bcd, cd, arc.control[3]}};
+  }
+
+  void AppendRun(int begin, int end) {
+    if (!runs_.empty() && runs_.back().end == begin)
+      runs_.back().end = end;
+    else
+      runs_.push_back({begin, end});
   }
 
   Share AcceptedShare(const Hull& arc) const {
@@ -150,6 +177,12 @@ class ArcPlanner {
                : Share::kSome;
   }
 
+  // Pixels [begin, end) of a scanline, accepted.
+  struct PixelRun {
+    int begin;
+    int end;
+  };
+
   static constexpr double kInLensPlaneMargin = 1e-6;
 
   RayLaw law_;
@@ -161,6 +194,7 @@ class ArcPlanner {
   const IdealPixels& ideal_pixels_;
   RayForms forms_;
   SegmentMaker segments_;
+  std::vector<PixelRun> runs_;  // of the arc
 };
 
 }  // namespace

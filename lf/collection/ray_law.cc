@@ -47,7 +47,7 @@ std::optional<PlateElement> RayLaw::CollectIdeal(const Vec3& position) const {
   //    M d / (f.d) with M = (c - c') f^T - (f.(c - c')) I.
   const Vec3 offset = centre_ - lens_centre_;
   const Vec3 on_lens = offset - ray.direction * (forward_.dot(offset) / along);
-  if (!Contains(aperture_, {right_.dot(on_lens), up_.dot(on_lens)})) return std::nullopt;
+  if (!aperture_.Contains({right_.dot(on_lens), up_.dot(on_lens)})) return std::nullopt;
 
   // 4. The sensor: floor, never truncate.
   const Vec3 p = plate_from_world_ * (*focus_point - lens_centre_);

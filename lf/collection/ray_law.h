@@ -40,7 +40,7 @@ class RayLaw {
   Vec3 right_, up_, forward_;
   Plane focus_plane_;
   Mat3 plate_from_world_;  // K' R', after subtracting c'
-  Aperture aperture_;
+  ApertureTest aperture_;
   int width_px_, height_px_;
 };
 
