@@ -1,13 +1,18 @@
 // Ray collection, estimator *bilinear* (doc/ray.md, "What is added"): every element asks every LF
 // image for the ray through its centre, interpolated between four LF pixels. For RGB images.
 //
-// Two back ends, compared by one test. The reference intersects planes for every element; the fast
-// one evaluates linear forms of the element position, a chunk of a row at a time. Tolerance: rays
-// within 1e-9 of a border of lens or image may be accepted by one of them only, and values differ
-// by rounding of the interpolation's weights, 1/256 pixel.
+// Two back ends, compared by one test. The reference intersects planes for every element. The fast
+// one works in two steps, as scatter.h does:
+//   1. PlanGather, once per (LF image, frame): the accepted elements of each row of the plate, in
+//      segments along which the position in the LF image is a cubic.
+//   2. GatherTile, once per (LF image, frame, tile of the plate).
+// Tolerance: both accept the same rays, but for rays within 1e-9 of a border of lens or image.
+// Positions of the fast one are true to 1e-4 px, so the weights, in steps of 1/256 px, may differ
+// by a step. The same bits for any cut into tiles and on every instruction set.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -16,6 +21,7 @@
 #include "lf/camera/pinhole.h"
 #include "lf/camera/render_camera.h"
 #include "lf/capture/lf_pixels.h"
+#include "lf/collection/cubic_segments.h"
 #include "lf/core/geometry.h"
 #include "lf/plate/sensor_plate.h"
 #include "lf/plate/tile_sums.h"
@@ -37,34 +43,19 @@ bool RaysArriveAround(const Intrinsics& k, const DistortionMap& map, double x_px
 uint64_t GatherReference(const PinholeCamera& lf_camera, const LfPixels& pixels,
                          const RenderCamera& render_camera, SensorPlate* plate);
 
-// The linear forms of an element position e for one (LF camera, render camera): X is the point of
-// the focus plane that the element sees, d = +-(X - c) the direction of its ray, forward.
-class GatherPlan {
- public:
-  GatherPlan(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
-
-  // Adds the rays of the tile's elements to the sums, which the caller flushes. Returns how many.
-  // The same bits for any cut into tiles.
-  uint64_t GatherTile(const LfPixels& pixels, TileSums* sums) const;
-
- private:
-  struct Chunk;
-  void FindRays(int y, int x_begin, int count, Chunk* chunk) const;
-  bool IsInPolygon(double right, double up, double forward) const;
-
-  Intrinsics intrinsics_;  // of the LF camera
-  std::optional<DistortionMap> distortion_;
-  bool may_lack_rays_ = false;  // some pixels of the image have none
-  double plane_sign_ = 1;       // of n.(X - c') for points before the lens
-  PixelForm plane_;       // n.d' of the element's own ray; X is before the lens where its sign fits
-  PixelForm forward_;     // f.(X - c), times |n.d'|
-  PixelForm lens_right_;  // lens position = (lens_right e, lens_up e) / (forward e)
-  PixelForm lens_up_;
-  PixelForm across_x_;  // X - c in axes of the LF camera, times K for pinholes, and |n.d'|
-  PixelForm across_y_;
-  PixelForm depth_;
-  double radius2_w2_ = 0;            // with the rim's tolerance
-  std::vector<ApertureEdge> edges_;  // of a polygon
+struct GatherPlan {
+  int plate_width = 0;
+  int plate_height = 0;
+  int image_width = 0;
+  int image_height = 0;
+  std::vector<CubicSegment> segments;  // of elements, all accepted, by y, then x
+  std::vector<size_t> row_begin;       // [plate_height + 1]: the first segment of a row
 };
+
+GatherPlan PlanGather(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
+
+// Adds the rays of the elements in the tile of `sums`, which the caller flushes. Returns how many.
+//   pixels  RGB; must hold the four around every ray
+uint64_t GatherTile(const GatherPlan& plan, const LfPixels& pixels, TileSums* sums);
 
 }  // namespace lf

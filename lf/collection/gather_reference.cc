@@ -2,6 +2,7 @@
 
 #include "lf/camera/ideal_pixels.h"
 #include "lf/collection/gather.h"
+#include "lf/collection/gather_law.h"
 #include "lf/core/check.h"
 
 namespace lf {
@@ -47,30 +48,13 @@ bool RaysArriveAround(const Intrinsics& k, const DistortionMap& map, double x_px
 uint64_t GatherReference(const PinholeCamera& lf_camera, const LfPixels& pixels,
                          const RenderCamera& render_camera, SensorPlate* plate) {
   const Intrinsics& k = lf_camera.intrinsics;
-  const DistortionMap map(k.distortion);
-  const Vec3 c = lf_camera.CentreWorld();
-  const PinholeCamera& lens = render_camera.pinhole;
-  const Vec3 offset = c - lens.CentreWorld();
-  const Vec3 f = lens.ForwardWorld();
+  const GatherLaw law(lf_camera, render_camera);
   uint64_t accepted = 0;
   for (int y = 0; y < plate->height(); ++y)
     for (int x = 0; x < plate->width(); ++x) {
-      // The focus point, before the lens.
-      const std::optional<Vec3> focus_point = FocusPointOfElement(render_camera, x + 0.5, y + 0.5);
-      if (!focus_point) continue;
-      // The line through it and c, running forward.
-      Vec3 d = *focus_point - c;
-      if (f.dot(d) < 0) d = -d;
-      if (!(f.dot(d) > 0)) continue;
-      const Vec3 on_lens = offset - d * (f.dot(offset) / f.dot(d));
-      if (!Contains(render_camera.aperture,
-                    {lens.RightWorld().dot(on_lens), lens.UpWorld().dot(on_lens)}))
-        continue;
-      const std::optional<Vec2> recorded = map.Distort(lf_camera.cam_from_world.rotation * d);
-      if (!recorded) continue;
-      const Vec3 p = k.Matrix() * Vec3(recorded->x(), recorded->y(), 1);
-      if (!RaysArriveAround(k, map, p.x(), p.y())) continue;
-      const auto value = InterpolatePixels(pixels, k.width_px, k.height_px, p.x(), p.y());
+      const std::optional<Vec2> p = law.Position(x, y);
+      if (!p) continue;
+      const auto value = InterpolatePixels(pixels, k.width_px, k.height_px, p->x(), p->y());
       if (!value) continue;
       for (int channel = 0; channel < SensorPlate::kChannels; ++channel)
         plate->AddRay(x, y, channel, (*value)[channel]);

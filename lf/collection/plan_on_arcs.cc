@@ -4,8 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "lf/camera/ray_forms.h"
 #include "lf/collection/ray_law.h"
-#include "lf/collection/ray_segments.h"
+#include "lf/collection/scatter_plan.h"
 
 namespace lf {
 namespace {
@@ -68,8 +69,7 @@ class ArcPlanner {
         in_lens_plane_(LiesInLensPlane(lf_camera, render_camera)),
         ideal_pixels_(ideal_pixels),
         forms_(MakeRayForms(lf_camera, render_camera)),
-        segments_(forms_, render_camera.pinhole.intrinsics.width_px,
-                  render_camera.pinhole.intrinsics.height_px) {
+        cubics_(forms_.sensor_x, forms_.sensor_y, forms_.front) {
     for (const int side : {0, 1})
       plate_half_planes_[side] = PlateHalfPlanes(forms_, render_camera, side == 0 ? -1 : 1, 0);
     if (render_camera.aperture.blades > 0)
@@ -80,7 +80,8 @@ class ArcPlanner {
     for (int y = rect_.y_begin; y < rect_.y_end; ++y) {
       for (const IdealArc& arc : ideal_pixels_.Scanline(y)) AddArc(y, arc);
     }
-    return segments_.Take();
+    const Intrinsics& plate = render_camera_.pinhole.intrinsics;
+    return MakeScatterPlan(segments_, plate.width_px, plate.height_px);
   }
 
  private:
@@ -89,7 +90,7 @@ class ArcPlanner {
     if (begin >= end) return;
     runs_.clear();
     FindRuns(arc, arc, begin, end);
-    for (const PixelRun& run : runs_) segments_.AddOnArc(y, run.begin, run.end, arc);
+    for (const PixelRun& run : runs_) cubics_.AddOnArc(y, run.begin, run.end, arc, &segments_);
   }
 
   // Appends the accepted pixels of `part` of an arc, within [begin, end).
@@ -193,7 +194,8 @@ class ArcPlanner {
   std::vector<PixelForm> lens_half_planes_;
   const IdealPixels& ideal_pixels_;
   RayForms forms_;
-  SegmentMaker segments_;
+  CubicSegments cubics_;
+  std::vector<CubicSegment> segments_;
   std::vector<PixelRun> runs_;  // of the arc
 };
 

@@ -21,6 +21,7 @@
 #include "lf/camera/pinhole.h"
 #include "lf/camera/render_camera.h"
 #include "lf/capture/lf_pixels.h"
+#include "lf/collection/cubic_segments.h"
 #include "lf/core/geometry.h"
 #include "lf/plate/sensor_plate.h"
 #include "lf/plate/tile_sums.h"
@@ -34,19 +35,9 @@ uint64_t ScatterReference(const PinholeCamera& lf_camera, const LfPixels& pixels
                           const RenderCamera& render_camera, const PixelRect& rect,
                           SensorPlate* plate);
 
-// Pixels [x_begin, x_begin + count) of scanline y, all accepted. That with index i in the segment
-// hits, with t = i + t_begin (exact in single precision), the element
-//   element_x + floor(((x[3] t + x[2]) t + x[1]) t + x[0])
-// clamped to the plate, since the law has accepted it; and likewise y.
-struct RaySegment {
-  int32_t y = 0;
-  int32_t x_begin = 0;
-  int32_t count = 0;
-  float t_begin = 0;
-  int32_t element_x = 0;
-  int32_t element_y = 0;
-  float x_cubic[4] = {};
-  float y_cubic[4] = {};
+// Pixels of a scanline, all accepted. Positions are elements: pixel i of the segment hits
+// floor(position), clamped to the plate, since the law has accepted it.
+struct RaySegment : CubicSegment {
   // It hits no elements but these, and none more often than `crowd` times.
   PixelRect elements;
   uint32_t crowd = 0;

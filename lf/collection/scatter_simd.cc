@@ -87,9 +87,6 @@ struct MosaicPixels {
   }
 };
 
-// Of a segment: addresses are kept for one at a time.
-constexpr int kLongestSegment = 512;
-
 struct IndexRange {
   int begin;
   int end;
@@ -138,15 +135,15 @@ HWY_ATTR uint32_t ScatterInside(const RaySegment& s, IndexRange range, const Pix
   constexpr float kTwoTo23 = 8388608;
   const auto x_stride = hn::Set(df, static_cast<float>(tile.x_stride));
   const auto y_stride = hn::Set(df, static_cast<float>(tile.y_stride));
-  const int first = (s.element_y - tile.rect.y_begin) * tile.y_stride +
-                    (s.element_x - tile.rect.x_begin) * tile.x_stride;
+  const int first = (s.base_y - tile.rect.y_begin) * tile.y_stride +
+                    (s.base_x - tile.rect.x_begin) * tile.x_stride;
   const auto base = hn::Set(df, static_cast<float>(first) + kTwoTo23);
   HWY_ALIGN int32_t pattern[kLanes];
   for (int i = 0; i < kLanes; ++i)
     pattern[i] = pixels.channel(column_begin + range.begin + i) - std::bit_cast<int32_t>(kTwoTo23);
   const auto channel = hn::Load(di, pattern);
   // All addresses first: reading them back one by one is cheaper than taking a vector apart.
-  HWY_ALIGN int32_t words[kLongestSegment];
+  HWY_ALIGN int32_t words[CubicSegment::kMaxCount];
   const int count = range.end - range.begin;
   for (int i = 0; i < count; i += kLanes) {
     const auto t = hn::Iota(df, s.t_begin + static_cast<float>(range.begin + i));
@@ -182,11 +179,11 @@ HWY_ATTR uint32_t ScatterTested(const RaySegment& s, IndexRange range, const Pix
     const auto t = hn::Iota(df, s.t_begin + static_cast<float>(i));
     const auto zero = hn::Zero(di), minus_one = hn::Set(di, -1);
     const auto x =
-        hn::Sub(hn::Min(hn::Max(hn::Add(position(s.x_cubic, t), hn::Set(di, s.element_x)), zero),
+        hn::Sub(hn::Min(hn::Max(hn::Add(position(s.x_cubic, t), hn::Set(di, s.base_x)), zero),
                         hn::Set(di, tile.plate_width - 1)),
                 hn::Set(di, rect.x_begin));
     const auto y =
-        hn::Sub(hn::Min(hn::Max(hn::Add(position(s.y_cubic, t), hn::Set(di, s.element_y)), zero),
+        hn::Sub(hn::Min(hn::Max(hn::Add(position(s.y_cubic, t), hn::Set(di, s.base_y)), zero),
                         hn::Set(di, tile.plate_height - 1)),
                 hn::Set(di, rect.y_begin));
     const auto in_tile =
@@ -219,10 +216,10 @@ HWY_ATTR uint32_t ScatterSegment(const RaySegment& s, const Pixels& pixels, cons
                       e.y_end <= t.y_end && e.x_begin > 0 && e.y_begin > 0 &&
                       e.x_end < tile.plate_width && e.y_end < tile.plate_height;
   if (inside) return ScatterInside(s, inner, pixels, tile, column_begin);
-  Narrow(s.x_cubic, s.t_begin, s.count, static_cast<float>(t.x_begin - s.element_x),
-         static_cast<float>(t.x_end - s.element_x), &outer, &inner);
-  Narrow(s.y_cubic, s.t_begin, s.count, static_cast<float>(t.y_begin - s.element_y),
-         static_cast<float>(t.y_end - s.element_y), &outer, &inner);
+  Narrow(s.x_cubic, s.t_begin, s.count, static_cast<float>(t.x_begin - s.base_x),
+         static_cast<float>(t.x_end - s.base_x), &outer, &inner);
+  Narrow(s.y_cubic, s.t_begin, s.count, static_cast<float>(t.y_begin - s.base_y),
+         static_cast<float>(t.y_end - s.base_y), &outer, &inner);
   if (outer.empty()) return 0;
   if (inner.empty()) return ScatterTested(s, outer, pixels, tile, column_begin);
   return ScatterTested(s, {outer.begin, inner.begin}, pixels, tile, column_begin) +

@@ -151,7 +151,7 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
     shares[i].rect = RectOf(image, frame);
     if (shares[i].rect.empty()) return;
     if (estimator_ == Estimator::kBilinear)
-      shares[i].gather.emplace(camera, frame);
+      shares[i].gather = PlanGather(camera, frame);
     else
       shares[i].scatter = PlanScatter(camera, frame, shares[i].rect, image.ideal_pixels.get());
   });
@@ -171,7 +171,7 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
     for (size_t k = 0; k < batch.size(); ++k) {
       Share& share = shares[task.taker * batch.size() + k];
       if (share.rect.empty()) continue;
-      share.accepted_count += share.gather ? share.gather->GatherTile(batch[k].pixels, &sums)
+      share.accepted_count += share.gather ? GatherTile(*share.gather, batch[k].pixels, &sums)
                                            : ScatterTile(share.scatter, batch[k].pixels, &sums);
     }
     sums.Flush();

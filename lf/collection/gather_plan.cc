@@ -1,0 +1,192 @@
+// Which elements of a row get a ray, and from where in the LF image.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "lf/collection/gather.h"
+#include "lf/collection/gather_law.h"
+#include "lf/collection/row_spans.h"
+
+namespace lf {
+namespace {
+
+// The linear forms of an element position e for one (LF camera, render camera): X is the point of
+// the focus plane that the element sees, d = +-(X - c) the direction of its ray, forward.
+struct GatherForms {
+  PixelForm plane;       // > 0 where X is before the lens
+  PixelForm forward;     // f.(X - c), times something positive; its sign is that of d
+  PixelForm lens_right;  // lens position = (lens_right e, lens_up e) / (forward e)
+  PixelForm lens_up;
+  PixelForm across_x;  // X - c in axes of the LF camera, times K for pinholes: homogeneous pixels
+  PixelForm across_y;
+  PixelForm depth;
+};
+
+GatherForms MakeForms(const PinholeCamera& lf_camera, const RenderCamera& render_camera) {
+  const PinholeCamera& lens = render_camera.pinhole;
+  const Vec3& n = render_camera.focus_plane.normal;
+  const Vec3 offset = lf_camera.CentreWorld() - lens.CentreWorld();
+  const Vec3 f = lens.ForwardWorld();
+  // n.(X - c') for the points of the focus plane.
+  const double distance = render_camera.focus_plane.offset_w - n.dot(lens.CentreWorld());
+  const double sign = distance < 0 ? -1 : 1;
+  // d' = direction e with f.d' = 1;  X - c' = d' distance / n.d'
+  const Mat3 direction = lens.cam_from_world.rotation.transpose() * lens.intrinsics.InverseMatrix();
+  // (X - c) |n.d'|, where n.d' has the sign of `distance`
+  const Mat3 to_focus = sign * (distance * Mat3::Identity() - offset * n.transpose()) * direction;
+  const Mat3 to_lens = offset * f.transpose() - f.dot(offset) * Mat3::Identity();
+  GatherForms forms;
+  forms.plane = sign * n.transpose() * direction;
+  forms.forward = f.transpose() * to_focus;
+  forms.lens_right = lens.RightWorld().transpose() * to_lens * to_focus;
+  forms.lens_up = lens.UpWorld().transpose() * to_lens * to_focus;
+  Mat3 across = lf_camera.cam_from_world.rotation * to_focus;
+  if (!lf_camera.intrinsics.has_distortion()) across = lf_camera.intrinsics.Matrix() * across;
+  forms.across_x = across.row(0);
+  forms.across_y = across.row(1);
+  forms.depth = across.row(2);
+  return forms;
+}
+
+// Conditions for the elements whose forward form has this sign, those of the image but with lens
+// distortion.
+std::vector<PixelForm> HalfPlanes(const GatherForms& forms, const Intrinsics& k,
+                                  const Aperture& aperture, int sign) {
+  std::vector<PixelForm> half_planes = {-forms.plane, -sign * forms.forward};
+  if (!k.has_distortion()) {
+    half_planes.push_back(-sign * forms.depth);
+    half_planes.push_back(sign * (0.5 * forms.depth - forms.across_x));
+    half_planes.push_back(sign * (forms.across_x - (k.width_px - 0.5) * forms.depth));
+    half_planes.push_back(sign * (0.5 * forms.depth - forms.across_y));
+    half_planes.push_back(sign * (forms.across_y - (k.height_px - 0.5) * forms.depth));
+  }
+  if (aperture.blades > 0)
+    for (const ApertureEdge& edge : Edges(aperture))
+      half_planes.push_back(sign *
+                            (edge.normal.x() * forms.lens_right + edge.normal.y() * forms.lens_up -
+                             edge.distance_w * (1 + kRimTolerance) * forms.forward));
+  return half_planes;
+}
+
+class GatherPlanner {
+ public:
+  GatherPlanner(const PinholeCamera& lf_camera, const RenderCamera& render_camera)
+      : k_(lf_camera.intrinsics),
+        law_(lf_camera, render_camera),
+        forms_(MakeForms(lf_camera, render_camera)),
+        map_(lf_camera.intrinsics.distortion),
+        cubics_(forms_.across_x, forms_.across_y, forms_.depth) {
+    for (const int side : {0, 1})
+      rows_.half_planes[side] = HalfPlanes(forms_, k_, render_camera.aperture, side == 0 ? -1 : 1);
+    // All rays of a camera in the lens plane cross it at one point, for which the ends of a span
+    // stand.
+    const Vec3 offset = lf_camera.CentreWorld() - render_camera.pinhole.CentreWorld();
+    if (render_camera.aperture.blades == 0 &&
+        std::abs(render_camera.pinhole.ForwardWorld().dot(offset)) >
+            1e-13 * (lf_camera.CentreWorld().norm() + render_camera.pinhole.CentreWorld().norm()))
+      rows_.disk = {forms_.lens_right, forms_.lens_up, forms_.forward,
+                    render_camera.aperture.radius_w};
+    plan_.plate_width = render_camera.pinhole.intrinsics.width_px;
+    plan_.plate_height = render_camera.pinhole.intrinsics.height_px;
+    plan_.image_width = k_.width_px;
+    plan_.image_height = k_.height_px;
+  }
+
+  GatherPlan Run() {
+    for (int y = 0; y < plan_.plate_height; ++y) {
+      plan_.row_begin.push_back(plan_.segments.size());
+      const auto accepted = [&](int side, int x) {
+        const double forward = Value(forms_.forward, x + 0.5, y + 0.5);
+        if (!(side == 0 ? forward < 0 : forward > 0)) return false;
+        return k_.has_distortion() ? law_.Direction(x, y).has_value()
+                                   : law_.Position(x, y).has_value();
+      };
+      rows_.Find(y, 0, plan_.plate_width, accepted, &spans_);
+      for (const auto& [begin, end] : spans_) {
+        if (k_.has_distortion())
+          AddDistorted(y, begin, end);
+        else
+          cubics_.Add(y, begin, end, &plan_.segments);
+      }
+    }
+    plan_.row_begin.push_back(plan_.segments.size());
+    return std::move(plan_);
+  }
+
+ private:
+  // Of elements whose rays pass the lens: those that the LF image holds.
+  void AddDistorted(int y, int x_begin, int x_end) {
+    const double sign = Value(forms_.forward, x_begin + 0.5, y + 0.5) < 0 ? -1 : 1;
+    const auto position = [&](double x) -> std::optional<Vec2> {
+      const Vec3 e(x, y + 0.5, 1);
+      const std::optional<Vec2> recorded =
+          map_.Distort(sign * Vec3(Value(forms_.across_x, e), Value(forms_.across_y, e),
+                                   Value(forms_.depth, e)));
+      if (!recorded) return std::nullopt;
+      return Vec2(k_.fx_px * recorded->x() + k_.skew_px * recorded->y() + k_.cx_px,
+                  k_.fy_px * recorded->y() + k_.cy_px);
+    };
+    found_.clear();
+    CubicSegments::AddOfFunction(y, x_begin, x_end, position, &found_);
+    for (const CubicSegment& segment : found_) {
+      part_end_ = -1;
+      AddParts(segment);
+    }
+  }
+
+  // Those elements of a segment whose rays the LF image holds; across its border the segment is
+  // halved until few are left, for which the law is asked.
+  void AddParts(const CubicSegment& segment) {
+    const SegmentBounds b = BoundsOf(segment);
+    if (b.x_high < 0 || b.y_high < 0 || b.x_low > k_.width_px || b.y_low > k_.height_px) return;
+    if (!law_.may_lack_rays() && HasFourPixels(k_, b.x_low, b.y_low) &&
+        HasFourPixels(k_, b.x_high, b.y_high)) {
+      AppendPart(segment);
+      return;
+    }
+    constexpr int kFew = 4;
+    if (segment.count <= kFew) {
+      for (int i = 0; i < segment.count; ++i)
+        if (law_.Position(segment.x_begin + i, segment.y)) AppendPart(Part(segment, i, i + 1));
+      return;
+    }
+    AddParts(Part(segment, 0, segment.count / 2));
+    AddParts(Part(segment, segment.count / 2, segment.count));
+  }
+
+  static CubicSegment Part(const CubicSegment& segment, int begin, int end) {
+    CubicSegment part = segment;
+    part.x_begin += begin;
+    part.t_begin += static_cast<float>(begin);
+    part.count = end - begin;
+    return part;
+  }
+
+  // Neighbours of one segment, which share its cubics, are put together again.
+  void AppendPart(const CubicSegment& part) {
+    if (part.x_begin == part_end_)
+      plan_.segments.back().count += part.count;
+    else
+      plan_.segments.push_back(part);
+    part_end_ = part.x_begin + part.count;
+  }
+
+  Intrinsics k_;
+  GatherLaw law_;
+  GatherForms forms_;
+  DistortionMap map_;
+  CubicSegments cubics_;
+  RowSpans rows_;
+  GatherPlan plan_;
+  std::vector<RowSpan> spans_;       // of the row
+  std::vector<CubicSegment> found_;  // of the span
+  int part_end_ = -1;                // of the last part of the segment
+};
+
+}  // namespace
+
+GatherPlan PlanGather(const PinholeCamera& lf_camera, const RenderCamera& render_camera) {
+  return GatherPlanner(lf_camera, render_camera).Run();
+}
+
+}  // namespace lf

@@ -1,0 +1,103 @@
+#include "lf/collection/row_spans.h"
+
+#include <cmath>
+#include <limits>
+
+namespace lf {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Candidate intervals reach this far beyond the exact conditions, relative to the largest value a
+// form takes on the scanline; the law then confirms every end. Far above rounding, far below a
+// pixel.
+constexpr double kFormMargin = 1e-9;
+constexpr double kDiskMargin = 1e-7;
+
+// Real interval of pixel positions, [begin, end]; empty if end < begin.
+struct Interval {
+  double begin = -kInfinity;
+  double end = kInfinity;
+  bool empty() const { return !(begin <= end); }
+};
+
+Interval Intersect(const Interval& a, const Interval& b) {
+  return {std::max(a.begin, b.begin), std::min(a.end, b.end)};
+}
+
+// A form along one scanline: slope x + constant.
+struct LineForm {
+  double slope = 0;
+  double constant = 0;
+  double At(double x) const { return slope * x + constant; }
+};
+
+LineForm Along(const PixelForm& form, double y) { return {form[0], form[1] * y + form[2]}; }
+
+// Candidates of form <= 0 within `range`; `tie` is set where the form stays at 0 all along, so
+// that rounding alone decides each pixel.
+Interval AtMostZero(const LineForm& form, const Interval& range, bool* tie) {
+  const double magnitude =
+      std::abs(form.slope) * std::max(std::abs(range.begin), std::abs(range.end)) +
+      std::abs(form.constant);
+  const double margin = kFormMargin * magnitude;
+  if (std::abs(form.At(range.begin)) <= margin && std::abs(form.At(range.end)) <= margin) {
+    *tie = true;
+    return range;
+  }
+  const double bound = (margin - form.constant) / form.slope;
+  if (form.slope > 0) return Intersect(range, {-kInfinity, bound});
+  if (form.slope < 0) return Intersect(range, {bound, kInfinity});
+  return form.constant <= margin ? range : Interval{1, 0};
+}
+
+// Candidates of right^2 + up^2 <= radius^2 forward^2 within `range`, where forward >= 0: the cut of
+// a line with a convex cone, one interval. The quadratic's leading coefficient has either sign.
+Interval WithinDisk(const LineForm& right, const LineForm& up, const LineForm& forward,
+                    double radius, const Interval& range) {
+  const double r2 = radius * radius * (1 + kDiskMargin);
+  // a x^2 + 2 b x + c <= 0
+  const double a =
+      right.slope * right.slope + up.slope * up.slope - r2 * forward.slope * forward.slope;
+  const double b =
+      right.slope * right.constant + up.slope * up.constant - r2 * forward.slope * forward.constant;
+  const double c = right.constant * right.constant + up.constant * up.constant -
+                   r2 * forward.constant * forward.constant;
+  const double discriminant = b * b - a * c;
+  const auto inside = [&](double x) { return (a * x + 2 * b) * x + c <= 0; };
+  if (!(discriminant > 0)) return inside(0.5 * (range.begin + range.end)) ? range : Interval{1, 0};
+  // Both roots without cancellation.
+  const double t = -(b + std::copysign(std::sqrt(discriminant), b));
+  if (a == 0)
+    return Intersect(range, b > 0 ? Interval{-kInfinity, c / t} : Interval{c / t, kInfinity});
+  const double low = std::min(c / t, t / a);
+  const double high = std::max(c / t, t / a);
+  if (a > 0) return Intersect(range, {low, high});
+  // Outside the roots: one branch is the cone's mirror image with forward < 0, beyond `range` but
+  // for rounding. Should both touch it, the hull is a candidate.
+  const Interval left = Intersect(range, {-kInfinity, low});
+  const Interval right_branch = Intersect(range, {high, kInfinity});
+  if (left.empty()) return right_branch;
+  return right_branch.empty() ? left : range;
+}
+
+}  // namespace
+
+RowSpans::Candidate RowSpans::FindCandidate(int side, double centre_y, int x_begin,
+                                            int x_end) const {
+  Interval range{x_begin + 0.5, x_end - 0.5};
+  bool tie = false;
+  for (const PixelForm& form : half_planes[side]) {
+    range = AtMostZero(Along(form, centre_y), range, &tie);
+    if (range.empty()) return {};
+  }
+  if (disk) {
+    range = WithinDisk(Along(disk->right, centre_y), Along(disk->up, centre_y),
+                       Along(disk->forward, centre_y), disk->radius, range);
+    if (range.empty()) return {};
+  }
+  return {std::max(x_begin, static_cast<int>(std::floor(range.begin - 0.5)) - 1),
+          std::min(x_end, static_cast<int>(std::ceil(range.end - 0.5)) + 2), tie};
+}
+
+}  // namespace lf
