@@ -9,7 +9,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "lf/camera/distortion.h"
@@ -42,26 +41,34 @@ struct IdealArc {
   }
 };
 
-// All scanlines of a camera with distortion, as arcs that are true to kTolerance_px; about 4 bytes
-// for each pixel, and 10 ns to make it.
+// Pixels of a rectangle, whose ideal positions lie on a bicubic Bezier patch, which runs evenly
+// from its left to its right and from its upper to its lower border. A linear form on the patch
+// lies between its values at the sixteen control points.
+struct IdealPatch {
+  PixelRect rect;
+  Vec3 control[4][4];  // [row][column]
+
+  // The centres of scanline y, one of rect's.
+  IdealArc Scanline(int y) const { return ArcAt((y + 0.5 - rect.y_begin) / rect.height()); }
+  // At v from 0, the upper border, to 1.
+  IdealArc ArcAt(double v) const;
+};
+
+// All pixels of a camera with distortion, in patches that are true to kTolerance_px.
 class IdealPixels {
  public:
   // Distance, in LF pixels, from a pixel to where the camera would record what its ideal position
-  // stands for: between the points where arcs were made to fit (checked where they miss most).
+  // stands for: between the points where patches were made to fit (checked where they miss most).
   static constexpr double kTolerance_px = 1e-5;
 
   explicit IdealPixels(const Intrinsics& k);
 
-  // By x. Pixels that no arc covers have no ray.
-  std::span<const IdealArc> Scanline(int y) const {
-    const auto row = static_cast<size_t>(y);
-    return std::span(arcs_).subspan(row_begin_[row], row_begin_[row + 1] - row_begin_[row]);
-  }
-  size_t size_bytes() const { return arcs_.capacity() * sizeof(IdealArc); }
+  // Without overlap. Pixels that no patch covers have no ray.
+  const std::vector<IdealPatch>& patches() const { return patches_; }
+  size_t size_bytes() const { return patches_.capacity() * sizeof(IdealPatch); }
 
  private:
-  std::vector<IdealArc> arcs_;
-  std::vector<size_t> row_begin_;  // [height + 1]
+  std::vector<IdealPatch> patches_;
 };
 
 }  // namespace lf

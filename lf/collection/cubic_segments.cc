@@ -15,31 +15,7 @@ constexpr double kBoundMargin = 0.01;
 // Where cubics through four even points of [-1, 1] miss most.
 constexpr double kWorstPlace = 0.745;
 
-// Position over the distance t from the middle of a piece of a row.
-struct Cubics {
-  double x[4] = {};
-  double y[4] = {};
-};
-
 double ValueAt(const double (&c)[4], double t) { return ((c[3] * t + c[2]) * t + c[1]) * t + c[0]; }
-
-void Append(int y, int x_begin, int x_end, double middle, const Cubics& cubics,
-            std::vector<CubicSegment>* segments) {
-  CubicSegment segment;
-  segment.y = y;
-  segment.x_begin = x_begin;
-  segment.count = x_end - x_begin;
-  segment.t_begin = static_cast<float>(x_begin + 0.5 - middle);
-  const double base_x = std::floor(std::clamp(cubics.x[0], -kFarthest, kFarthest));
-  const double base_y = std::floor(std::clamp(cubics.y[0], -kFarthest, kFarthest));
-  segment.base_x = static_cast<int32_t>(base_x);
-  segment.base_y = static_cast<int32_t>(base_y);
-  for (int power = 0; power < 4; ++power) {
-    segment.x_cubic[power] = static_cast<float>(cubics.x[power] - (power == 0 ? base_x : 0));
-    segment.y_cubic[power] = static_cast<float>(cubics.y[power] - (power == 0 ? base_y : 0));
-  }
-  segments->push_back(segment);
-}
 
 // Through the values at u = -1, -1/3, 1/3, 1 with t = u half.
 void Interpolate(const double (&e)[4], double half, double (&c)[4]) {
@@ -61,7 +37,7 @@ class PieceFitter {
   void Add(int x_begin, int x_end, int begin, int end) {
     Cubics cubics;
     if (Fit(begin, end, &cubics)) {
-      Append(y_, x_begin, x_end, 0.5 * (begin + end), cubics, segments_);
+      segments_->push_back(MakeSegment(y_, x_begin, x_end, 0.5 * (begin + end), cubics));
       return;
     }
     if (end - begin == 1) return;  // there is no position
@@ -105,6 +81,23 @@ class PieceFitter {
 };
 
 }  // namespace
+
+CubicSegment MakeSegment(int y, int x_begin, int x_end, double middle, const Cubics& cubics) {
+  CubicSegment segment;
+  segment.y = y;
+  segment.x_begin = x_begin;
+  segment.count = x_end - x_begin;
+  segment.t_begin = static_cast<float>(x_begin + 0.5 - middle);
+  const double base_x = std::floor(std::clamp(cubics.x[0], -kFarthest, kFarthest));
+  const double base_y = std::floor(std::clamp(cubics.y[0], -kFarthest, kFarthest));
+  segment.base_x = static_cast<int32_t>(base_x);
+  segment.base_y = static_cast<int32_t>(base_y);
+  for (int power = 0; power < 4; ++power) {
+    segment.x_cubic[power] = static_cast<float>(cubics.x[power] - (power == 0 ? base_x : 0));
+    segment.y_cubic[power] = static_cast<float>(cubics.y[power] - (power == 0 ? base_y : 0));
+  }
+  return segment;
+}
 
 void CubicSegments::Add(int y, int x_begin, int x_end, std::vector<CubicSegment>* segments) const {
   for (int x = x_begin; x < x_end;) {
@@ -150,7 +143,7 @@ void CubicSegments::AddInBlock(int y, int x_begin, int x_end, int block_begin, i
     c[2] = -s[axis] * q + c4 * half * half;
     c[3] = s[axis] * q * q;
   }
-  Append(y, x_begin, x_end, middle, cubics, segments);
+  segments->push_back(MakeSegment(y, x_begin, x_end, middle, cubics));
 }
 
 void CubicSegments::AddOnArc(int y, int x_begin, int x_end, const IdealArc& arc,
@@ -183,37 +176,35 @@ void CubicSegments::AddOfFunction(int y, int x_begin, int x_end, const Function&
   }
 }
 
-SegmentBounds BoundsOf(const CubicSegment& segment) {
-  // Between its Bernstein coefficients.
-  const double t_begin = segment.t_begin, w = segment.count - 1, t_end = t_begin + w;
-  const auto range = [&](const float(&c)[4], double base, double* low, double* high) {
-    const auto value = [&](double t) { return ((double{c[3]} * t + c[2]) * t + c[1]) * t + c[0]; };
-    const auto slope = [&](double t) {
-      return (3 * double{c[3]} * t + 2 * double{c[2]}) * t + c[1];
-    };
-    const double b0 = value(t_begin), b3 = value(t_end);
-    const double b1 = b0 + slope(t_begin) * w / 3, b2 = b3 - slope(t_end) * w / 3;
-    *low = base - kBoundMargin + std::min(std::min(b0, b1), std::min(b2, b3));
-    *high = base + kBoundMargin + std::max(std::max(b0, b1), std::max(b2, b3));
-  };
-  SegmentBounds bounds;
-  range(segment.x_cubic, segment.base_x, &bounds.x_low, &bounds.x_high);
-  range(segment.y_cubic, segment.base_y, &bounds.y_low, &bounds.y_high);
-  return bounds;
-}
+namespace {
 
-double LeastStep(const CubicSegment& segment) {
-  const double t_begin = segment.t_begin, w = segment.count - 1, t_end = t_begin + w;
-  const auto least = [&](const float(&c)[4]) {
-    const auto slope = [&](double t) {
-      return (3 * double{c[3]} * t + 2 * double{c[2]}) * t + c[1];
-    };
-    const double b0 = slope(t_begin), b2 = slope(t_end);
-    const double b1 = b0 + (6 * double{c[3]} * t_begin + 2 * double{c[2]}) * w / 2;
-    const double low = std::min(b0, std::min(b1, b2)), high = std::max(b0, std::max(b1, b2));
-    return std::max(0.0, std::max(low, -high));
-  };
-  return std::max(least(segment.x_cubic), least(segment.y_cubic));
+// The chord of one coordinate, and how far the cubic may stray: w^2 / 8 times the most of its
+// second derivative; of its slope, w times that.
+struct Chord {
+  double first, last, stray, slope_low, slope_high;
+  Chord(const float (&c)[4], double t_begin, double w) {
+    const double t_end = t_begin + w;
+    const double bend = 2 * std::abs(double{c[2]}) +
+                        6 * std::abs(double{c[3]}) * std::max(std::abs(t_begin), std::abs(t_end));
+    first = ((double{c[3]} * t_begin + c[2]) * t_begin + c[1]) * t_begin + c[0];
+    last = ((double{c[3]} * t_end + c[2]) * t_end + c[1]) * t_end + c[0];
+    stray = w * w * 0.125 * bend + kBoundMargin;
+    const double slope = (3 * double{c[3]} * t_begin + 2 * double{c[2]}) * t_begin + c[1];
+    slope_low = slope - w * bend;
+    slope_high = slope + w * bend;
+  }
+};
+
+}  // namespace
+
+SegmentBounds BoundsOf(const CubicSegment& segment) {
+  const Chord x(segment.x_cubic, segment.t_begin, segment.count - 1);
+  const Chord y(segment.y_cubic, segment.t_begin, segment.count - 1);
+  return {segment.base_x + std::min(x.first, x.last) - x.stray,
+          segment.base_x + std::max(x.first, x.last) + x.stray,
+          segment.base_y + std::min(y.first, y.last) - y.stray,
+          segment.base_y + std::max(y.first, y.last) + y.stray,
+          std::max({0.0, x.slope_low, -x.slope_high, y.slope_low, -y.slope_high})};
 }
 
 }  // namespace lf

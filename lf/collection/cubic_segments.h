@@ -30,6 +30,15 @@ struct CubicSegment {
   float y_cubic[4] = {};
 };
 
+// Position over the distance t from the middle of a piece of a row.
+struct Cubics {
+  double x[4] = {};
+  double y[4] = {};
+};
+
+// Positions [x_begin, x_end) of row y on the cubics of a piece with this middle.
+CubicSegment MakeSegment(int y, int x_begin, int x_end, double middle, const Cubics& cubics);
+
 // Makes the segments of rows where (x p, y p) / (denominator p) is the position for
 // p = (x + 0.5, y + 0.5, 1), or any ideal position.
 class CubicSegments {
@@ -60,14 +69,13 @@ class CubicSegments {
   PixelForm x_, y_, denominator_;
 };
 
-// Least and largest position of a segment in each coordinate, a little wider.
+// Least and largest position of a segment in each coordinate, a little wider; and how far, at
+// least, positions move from one to the next, in the coordinate that moves faster, 0 if they may
+// turn round.
 struct SegmentBounds {
   double x_low, x_high, y_low, y_high;
+  double least_step;
 };
 SegmentBounds BoundsOf(const CubicSegment& segment);
-
-// How far, at least, positions move from one to the next, in the coordinate that moves faster; 0 if
-// they may turn round.
-double LeastStep(const CubicSegment& segment);
 
 }  // namespace lf

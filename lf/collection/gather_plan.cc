@@ -93,6 +93,8 @@ class GatherPlanner {
   }
 
   GatherPlan Run() {
+    const size_t blocks = 1 + plan_.plate_width / CubicSegment::kMaxCount;
+    plan_.segments.reserve(plan_.plate_height * (1 + blocks));
     for (int y = 0; y < plan_.plate_height; ++y) {
       plan_.row_begin.push_back(plan_.segments.size());
       const auto accepted = [&](int side, int x) {

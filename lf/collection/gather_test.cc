@@ -18,10 +18,10 @@ LfPixels RandomPixels(const Intrinsics& k, uint64_t seed) {
   return testing::NoisePixels({0, 0, k.width_px, k.height_px}, BayerPattern::kNone, seed);
 }
 
-uint64_t GatherInBands(const testing::CameraPair& pair, const LfPixels& pixels, int band_height,
-                       SensorPlate* plate) {
+uint64_t GatherInTilesOf(const testing::CameraPair& pair, const LfPixels& pixels, int tile_height,
+                         SensorPlate* plate) {
   const GatherPlan plan = PlanGather(pair.lf_camera, pair.render_camera);
-  return testing::InTiles(plate, plate->width(), band_height,
+  return testing::InTiles(plate, 1 + 3 * tile_height, tile_height,
                           [&](TileSums* sums) { return GatherTile(plan, pixels, sums); });
 }
 
@@ -38,7 +38,7 @@ TEST(Gather, TheFastBackEndAgreesWithTheReference) {
     SensorPlate expected = PlateFor(pair), fast = PlateFor(pair);
     const uint64_t accepted =
         GatherReference(pair.lf_camera, pixels, pair.render_camera, &expected);
-    GatherInBands(pair, pixels, 120, &fast);
+    GatherInTilesOf(pair, pixels, 120, &fast);
     total += accepted;
     scenes_with_rays += accepted > 0;
     for (int y = 0; y < expected.height(); ++y)
@@ -77,18 +77,18 @@ TEST(Gather, PixelsWithoutARayLendNoLight) {
     }
   EXPECT_GT(without_ray, 5000u);
   SensorPlate plate = PlateFor(pair), plate_of_changed = PlateFor(pair);
-  EXPECT_GT(GatherInBands(pair, pixels, 80, &plate), 500u);
-  GatherInBands(pair, changed, 80, &plate_of_changed);
+  EXPECT_GT(GatherInTilesOf(pair, pixels, 80, &plate), 500u);
+  GatherInTilesOf(pair, changed, 80, &plate_of_changed);
   EXPECT_EQ(plate, plate_of_changed);
 }
 
-TEST(Gather, AnyCutIntoBandsGivesTheSameBits) {
+TEST(Gather, AnyCutIntoTilesGivesTheSameBits) {
   for (uint64_t seed = 0; seed < 100; ++seed) {
     const testing::CameraPair pair = RandomPair(seed);
     const LfPixels pixels = RandomPixels(pair.lf_camera.intrinsics, seed);
     SensorPlate whole = PlateFor(pair), cut = PlateFor(pair);
-    const uint64_t accepted = GatherInBands(pair, pixels, 120, &whole);
-    EXPECT_EQ(GatherInBands(pair, pixels, 7, &cut), accepted);
+    const uint64_t accepted = GatherInTilesOf(pair, pixels, 120, &whole);
+    EXPECT_EQ(GatherInTilesOf(pair, pixels, 7, &cut), accepted);
     EXPECT_EQ(whole, cut) << seed;
   }
 }
@@ -117,7 +117,7 @@ TEST(Gather, AWallInFocusReproducesItself) {
           pixels.radiance.at(x, y, channel) = static_cast<uint16_t>(std::lround(v));
       }
     SensorPlate plate = PlateFor(pair);
-    const uint64_t accepted = GatherInBands(pair, pixels, 35, &plate);
+    const uint64_t accepted = GatherInTilesOf(pair, pixels, 35, &plate);
     EXPECT_GT(accepted, 1200u);
     for (int y = 0; y < plate.height(); ++y)
       for (int x = 0; x < plate.width(); ++x) {

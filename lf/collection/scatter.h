@@ -49,7 +49,7 @@ struct ScatterPlan {
 
   int plate_width = 0;
   int plate_height = 0;
-  std::vector<RaySegment> segments;  // by y, then x
+  std::vector<RaySegment> segments;
   std::vector<PixelRect> block_elements;
 };
 

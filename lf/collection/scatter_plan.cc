@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "lf/camera/ray_forms.h"
-#include "lf/collection/plan_on_arcs.h"
+#include "lf/collection/plan_on_patches.h"
 #include "lf/collection/ray_law.h"
 #include "lf/collection/row_spans.h"
 #include "lf/core/check.h"
@@ -31,7 +31,7 @@ ScatterPlan PlanOnLines(const PinholeCamera& lf_camera, const RenderCamera& rend
     rows.disk = {forms.lens_right, forms.lens_up, forms.forward, render_camera.aperture.radius_w};
 
   const CubicSegments cubics(forms.sensor_x, forms.sensor_y, forms.front);
-  std::vector<CubicSegment> segments;
+  std::vector<CubicSegment>& segments = ScratchSegments();
   std::vector<RowSpan> spans;
   for (int y = rect.y_begin; y < rect.y_end; ++y) {
     const auto accepted = [&](int side, int x) {
@@ -46,6 +46,12 @@ ScatterPlan PlanOnLines(const PinholeCamera& lf_camera, const RenderCamera& rend
 }
 
 }  // namespace
+
+std::vector<CubicSegment>& ScratchSegments() {
+  thread_local std::vector<CubicSegment> segments;
+  segments.clear();
+  return segments;
+}
 
 ScatterPlan MakeScatterPlan(const std::vector<CubicSegment>& segments, int plate_width,
                             int plate_height) {
@@ -63,8 +69,7 @@ ScatterPlan MakeScatterPlan(const std::vector<CubicSegment>& segments, int plate
     segment.elements = {
         element(bounds.x_low, plate_width - 1), element(bounds.y_low, plate_height - 1),
         element(bounds.x_high, plate_width - 1) + 1, element(bounds.y_high, plate_height - 1) + 1};
-    const double step = LeastStep(cubic);
-    const double crowd = step > 1e-6 ? 2 + 1.01 / step : cubic.count;
+    const double crowd = bounds.least_step > 1e-6 ? 2 + 1.01 / bounds.least_step : cubic.count;
     segment.crowd = static_cast<uint32_t>(std::min<double>(cubic.count, crowd));
     if (plan.segments.size() % ScatterPlan::kBlock == 0) plan.block_elements.emplace_back();
     plan.block_elements.back() = Bounds(plan.block_elements.back(), segment.elements);
@@ -77,7 +82,7 @@ ScatterPlan PlanScatter(const PinholeCamera& lf_camera, const RenderCamera& rend
                         const PixelRect& rect, const IdealPixels* ideal_pixels) {
   if (!lf_camera.intrinsics.has_distortion()) return PlanOnLines(lf_camera, render_camera, rect);
   LF_CHECK(ideal_pixels != nullptr);
-  return PlanScatterOnArcs(lf_camera, render_camera, rect, *ideal_pixels);
+  return PlanScatterOnPatches(lf_camera, render_camera, rect, *ideal_pixels);
 }
 
 }  // namespace lf

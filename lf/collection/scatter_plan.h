@@ -6,7 +6,10 @@
 
 namespace lf {
 
-// `segments`, by y, then x, with what tiles need to know of them.
+// An empty list of this thread's, whose memory is used again by the next plan.
+std::vector<CubicSegment>& ScratchSegments();
+
+// `segments` with what tiles need to know of them.
 ScatterPlan MakeScatterPlan(const std::vector<CubicSegment>& segments, int plate_width,
                             int plate_height);
 

@@ -138,8 +138,9 @@ HWY_ATTR uint32_t ScatterInside(const RaySegment& s, IndexRange range, const Pix
   const int first = (s.base_y - tile.rect.y_begin) * tile.y_stride +
                     (s.base_x - tile.rect.x_begin) * tile.x_stride;
   const auto base = hn::Set(df, static_cast<float>(first) + kTwoTo23);
-  HWY_ALIGN int32_t pattern[kLanes];
-  for (int i = 0; i < kLanes; ++i)
+  // Colours alternate along a scanline.
+  HWY_ALIGN int32_t pattern[kLanes + 1];
+  for (int i = 0; i <= kLanes; ++i)
     pattern[i] = pixels.channel(column_begin + range.begin + i) - std::bit_cast<int32_t>(kTwoTo23);
   const auto channel = hn::Load(di, pattern);
   // All addresses first: reading them back one by one is cheaper than taking a vector apart.
@@ -152,7 +153,9 @@ HWY_ATTR uint32_t ScatterInside(const RaySegment& s, IndexRange range, const Pix
     const auto y =
         hn::Floor(hn::Add(hn::Mul(hn::Add(hn::Mul(hn::Add(hn::Mul(y3, t), y2), t), y1), t), y0));
     const auto word = hn::Add(hn::Add(hn::Mul(y, y_stride), hn::Mul(x, x_stride)), base);
-    hn::Store(hn::Add(hn::BitCast(di, word), channel), di, words + i);
+    const bool is_odd = kLanes == 1 && (i & 1) != 0;
+    hn::Store(hn::Add(hn::BitCast(di, word), is_odd ? hn::LoadU(di, pattern + 1) : channel), di,
+              words + i);
   }
   return pixels.AddAll(column_begin + range.begin, count, words);
 }

@@ -16,10 +16,11 @@ using testing::PlateFor;
 using testing::TotalCount;
 using testing::WholeImage;
 
-uint64_t ScatterInBands(const testing::CameraPair& pair, const LfPixels& pixels,
-                        const PixelRect& rect, int band_height, SensorPlate* plate) {
+// Tiles are about three times as wide as high, so that both of their borders cut rays.
+uint64_t ScatterInTilesOf(const testing::CameraPair& pair, const LfPixels& pixels,
+                          const PixelRect& rect, int tile_height, SensorPlate* plate) {
   const ScatterPlan plan = PlanScatter(pair.lf_camera, pair.render_camera, rect);
-  return testing::InTiles(plate, plate->width(), band_height,
+  return testing::InTiles(plate, 1 + 3 * tile_height, tile_height,
                           [&](TileSums* sums) { return ScatterTile(plan, pixels, sums); });
 }
 
@@ -55,7 +56,7 @@ TEST(Scatter, TheFastBackEndAgreesWithTheReference) {
     SensorPlate expected = PlateFor(pair), fast = PlateFor(pair);
     const uint64_t accepted =
         ScatterReference(pair.lf_camera, pixels, pair.render_camera, pixels.rect, &expected);
-    EXPECT_EQ(ScatterInBands(pair, pixels, pixels.rect, 120, &fast), accepted);
+    EXPECT_EQ(ScatterInTilesOf(pair, pixels, pixels.rect, 120, &fast), accepted);
     // Conservation: accepted rays are the sum of the counts.
     EXPECT_EQ(TotalCount(expected), accepted * (bayer == BayerPattern::kNone ? 3 : 1));
     EXPECT_EQ(TotalCount(fast), TotalCount(expected));
@@ -66,14 +67,14 @@ TEST(Scatter, TheFastBackEndAgreesWithTheReference) {
   EXPECT_LE(static_cast<double>(differing), 2e-4 * static_cast<double>(total));
 }
 
-TEST(Scatter, AnyCutIntoBandsGivesTheSameBits) {
+TEST(Scatter, AnyCutIntoTilesGivesTheSameBits) {
   for (uint64_t seed = 0; seed < 200; ++seed) {
     const testing::CameraPair pair = testing::RandomCameraPair(seed);
     const LfPixels pixels = testing::NoisePixels(WholeImage(pair), BayerPattern::kNone, seed);
     SensorPlate whole = PlateFor(pair), cut = PlateFor(pair), fine = PlateFor(pair);
-    const uint64_t accepted = ScatterInBands(pair, pixels, pixels.rect, 120, &whole);
-    EXPECT_EQ(ScatterInBands(pair, pixels, pixels.rect, 17, &cut), accepted);
-    EXPECT_EQ(ScatterInBands(pair, pixels, pixels.rect, 1, &fine), accepted);
+    const uint64_t accepted = ScatterInTilesOf(pair, pixels, pixels.rect, 120, &whole);
+    EXPECT_EQ(ScatterInTilesOf(pair, pixels, pixels.rect, 17, &cut), accepted);
+    EXPECT_EQ(ScatterInTilesOf(pair, pixels, pixels.rect, 1, &fine), accepted);
     EXPECT_EQ(whole, cut) << seed;
     EXPECT_EQ(whole, fine) << seed;
   }
@@ -84,10 +85,10 @@ TEST(Scatter, AnyCutOfTheImageGivesTheSameBits) {
     const testing::CameraPair pair = testing::RandomCameraPair(seed);
     const LfPixels pixels = testing::NoisePixels(WholeImage(pair), BayerPattern::kGrbg, seed);
     SensorPlate whole = PlateFor(pair), cut = PlateFor(pair);
-    ScatterInBands(pair, pixels, pixels.rect, 120, &whole);
+    ScatterInTilesOf(pair, pixels, pixels.rect, 120, &whole);
     for (const PixelRect& rect :
          {PixelRect{0, 0, 13, 35}, PixelRect{13, 0, 50, 9}, PixelRect{13, 9, 50, 35}})
-      ScatterInBands(pair, pixels, rect, 120, &cut);
+      ScatterInTilesOf(pair, pixels, rect, 120, &cut);
     EXPECT_EQ(whole, cut) << seed;
   }
 }
@@ -104,8 +105,8 @@ TEST(Scatter, RaysOnBordersAreNeitherLostNorDoubled) {
       const uint64_t accepted =
           ScatterReference(pair.lf_camera, pixels, pair.render_camera, pixels.rect, &expected);
       EXPECT_EQ(accepted > 0, column * column + row * row <= 25) << column << ", " << row;
-      EXPECT_EQ(ScatterInBands(pair, pixels, pixels.rect, 35, &fast), accepted);
-      EXPECT_EQ(ScatterInBands(pair, pixels, pixels.rect, 1, &bands), accepted);
+      EXPECT_EQ(ScatterInTilesOf(pair, pixels, pixels.rect, 35, &fast), accepted);
+      EXPECT_EQ(ScatterInTilesOf(pair, pixels, pixels.rect, 1, &bands), accepted);
       EXPECT_EQ(fast, bands);
       EXPECT_EQ(TotalCount(fast), 3 * accepted);
     }
@@ -118,10 +119,10 @@ TEST(Scatter, MaskedPixelsGiveNoRay) {
   SensorPlate expected = PlateFor(pair), fast = PlateFor(pair), all = PlateFor(pair);
   const uint64_t accepted =
       ScatterReference(pair.lf_camera, pixels, pair.render_camera, pixels.rect, &expected);
-  EXPECT_EQ(ScatterInBands(pair, pixels, pixels.rect, 8, &fast), accepted);
+  EXPECT_EQ(ScatterInTilesOf(pair, pixels, pixels.rect, 8, &fast), accepted);
   EXPECT_EQ(expected, fast);
   pixels.mosaic_mask = {};
-  EXPECT_EQ(ScatterInBands(pair, pixels, pixels.rect, 8, &all), accepted + 25);
+  EXPECT_EQ(ScatterInTilesOf(pair, pixels, pixels.rect, 8, &all), accepted + 25);
 }
 
 TEST(Scatter, PixelsOfAPartOfTheImageAreEnough) {
@@ -133,8 +134,8 @@ TEST(Scatter, PixelsOfAPartOfTheImageAreEnough) {
     for (int x = part.x_begin; x < part.x_end; ++x)
       some.radiance.at(x - part.x_begin, y - part.y_begin) = all.radiance.at(x, y);
   SensorPlate from_all = PlateFor(pair), from_some = PlateFor(pair), reference = PlateFor(pair);
-  ScatterInBands(pair, all, part, 35, &from_all);
-  ScatterInBands(pair, some, part, 35, &from_some);
+  ScatterInTilesOf(pair, all, part, 35, &from_all);
+  ScatterInTilesOf(pair, some, part, 35, &from_some);
   ScatterReference(pair.lf_camera, some, pair.render_camera, part, &reference);
   EXPECT_EQ(from_all, from_some);
   EXPECT_EQ(reference, from_some);

@@ -20,12 +20,12 @@ size_t LargestImageBytes(const LightField& light_field) {
   const size_t channels = light_field.encoding.bayer == BayerPattern::kNone ? 4 : 1;
   const size_t bytes_per_pixel = channels * (2 + 4) + 1;
   // Of its ideal positions, while it is collected (camera/ideal_pixels.h).
-  constexpr size_t kArcBytesPerPixel = 5;
+  constexpr size_t kPatchBytesPerPixel = 1;
   size_t largest = 1;
   for (const Intrinsics& k : light_field.intrinsics)
     largest =
         std::max(largest, static_cast<size_t>(k.width_px) * k.height_px *
-                              (bytes_per_pixel + (k.has_distortion() ? kArcBytesPerPixel : 0)));
+                              (bytes_per_pixel + (k.has_distortion() ? kPatchBytesPerPixel : 0)));
   return largest;
 }
 

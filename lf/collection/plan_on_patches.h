@@ -6,10 +6,11 @@
 
 namespace lf {
 
-// As PlanScatter. A scanline is a chain of arcs (camera/ideal_pixels.h); by their control points an
-// arc is wholly accepted, wholly rejected, or undecided, and then the law is asked ray by ray.
-ScatterPlan PlanScatterOnArcs(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
-                              const PixelRect& rect, const IdealPixels& ideal_pixels);
+// As PlanScatter. By their control points patches (camera/ideal_pixels.h) are wholly accepted,
+// wholly rejected, or undecided; then their scanlines are asked, halves of these, and at last the
+// law, ray by ray.
+ScatterPlan PlanScatterOnPatches(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
+                                 const PixelRect& rect, const IdealPixels& ideal_pixels);
 
 // Whether the LF camera stands in the lens plane to rounding: then all its rays cross the lens at
 // one point (doc/ray.md, Geometry 6).

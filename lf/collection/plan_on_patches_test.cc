@@ -1,5 +1,5 @@
 // Ray collection from LF cameras with lens distortion.
-#include "lf/collection/plan_on_arcs.h"
+#include "lf/collection/plan_on_patches.h"
 
 #include <gtest/gtest.h>
 
@@ -23,13 +23,13 @@ LfPixels RandomPixels(BayerPattern bayer, uint64_t seed) {
 }
 
 uint64_t Scatter(const testing::CameraPair& pair, const LfPixels& pixels, const PixelRect& rect,
-                 const IdealPixels& ideal_pixels, int band_height, SensorPlate* plate) {
+                 const IdealPixels& ideal_pixels, int tile_height, SensorPlate* plate) {
   const ScatterPlan plan = PlanScatter(pair.lf_camera, pair.render_camera, rect, &ideal_pixels);
-  return testing::InTiles(plate, plate->width(), band_height,
+  return testing::InTiles(plate, 1 + 3 * tile_height, tile_height,
                           [&](TileSums* sums) { return ScatterTile(plan, pixels, sums); });
 }
 
-TEST(PlanOnArcs, SpansHoldExactlyTheRaysThatTheLawAcceptsOnTheArcs) {
+TEST(PlanOnPatches, SegmentsHoldExactlyTheRaysThatTheLawAcceptsOnThePatches) {
   size_t accepted_count = 0, scenes_with_rays = 0;
   for (uint64_t seed = 0; seed < 280; ++seed) {
     const testing::CameraPair pair = testing::RandomDistortedPair(seed);
@@ -40,13 +40,15 @@ TEST(PlanOnArcs, SpansHoldExactlyTheRaysThatTheLawAcceptsOnTheArcs) {
     for (const RaySegment& segment : plan.segments)
       for (int i = 0; i < segment.count; ++i) in_span.at(segment.x_begin + i, segment.y) += 1;
     size_t accepted = 0;
-    for (int y = 0; y < kHeight; ++y)
-      for (const IdealArc& arc : ideal.Scanline(y))
+    for (const IdealPatch& patch : ideal.patches())
+      for (int y = patch.rect.y_begin; y < patch.rect.y_end; ++y) {
+        const IdealArc arc = patch.Scanline(y);
         for (int x = arc.x_begin; x < arc.x_end; ++x) {
           const bool collected = law.CollectIdeal(arc.At(arc.Parameter(x))).has_value();
           ASSERT_EQ(in_span.at(x, y), collected ? 1 : 0) << seed << ": " << x << ", " << y;
           accepted += collected;
         }
+      }
     accepted_count += accepted;
     scenes_with_rays += accepted > 0;
   }
@@ -54,7 +56,7 @@ TEST(PlanOnArcs, SpansHoldExactlyTheRaysThatTheLawAcceptsOnTheArcs) {
   EXPECT_GT(accepted_count, 100000u);
 }
 
-TEST(PlanOnArcs, MostSpansAreFoundWithoutAskingTheLaw) {
+TEST(PlanOnPatches, MostSpansAreFoundWithoutAskingTheLaw) {
   // A wide lens close by: most arcs lie wholly inside.
   testing::CameraPair pair = testing::ParallelPair(1, 1, 0.01, 0.2);
   pair.render_camera.pinhole.intrinsics = {1000, 1000, 640, 360, 0, 1280, 720, {}};
@@ -68,7 +70,7 @@ TEST(PlanOnArcs, MostSpansAreFoundWithoutAskingTheLaw) {
   EXPECT_GT(whole, plan.segments.size() * 9 / 10);
 }
 
-TEST(PlanOnArcs, TheFastBackEndAgreesWithTheIteratingReference) {
+TEST(PlanOnPatches, TheFastBackEndAgreesWithTheIteratingReference) {
   uint64_t differing = 0, total = 0;
   int64_t accepted_difference = 0;
   for (uint64_t seed = 0; seed < 140; ++seed) {
@@ -91,15 +93,15 @@ TEST(PlanOnArcs, TheFastBackEndAgreesWithTheIteratingReference) {
   EXPECT_LE(static_cast<double>(differing), 3e-4 * static_cast<double>(total));
 }
 
-TEST(PlanOnArcs, AnyCutGivesTheSameBits) {
+TEST(PlanOnPatches, AnyCutGivesTheSameBits) {
   for (uint64_t seed = 0; seed < 70; ++seed) {
     const testing::CameraPair pair = testing::RandomDistortedPair(seed);
     const LfPixels pixels = RandomPixels(BayerPattern::kGrbg, seed);
     const IdealPixels ideal(pair.lf_camera.intrinsics);
-    SensorPlate whole = PlateFor(pair), bands = PlateFor(pair), parts = PlateFor(pair);
+    SensorPlate whole = PlateFor(pair), tiles = PlateFor(pair), parts = PlateFor(pair);
     const uint64_t accepted = Scatter(pair, pixels, kWholeImage, ideal, 120, &whole);
-    EXPECT_EQ(Scatter(pair, pixels, kWholeImage, ideal, 7, &bands), accepted);
-    EXPECT_EQ(whole, bands) << seed;
+    EXPECT_EQ(Scatter(pair, pixels, kWholeImage, ideal, 7, &tiles), accepted);
+    EXPECT_EQ(whole, tiles) << seed;
     for (const PixelRect& rect : {PixelRect{0, 0, 53, kHeight}, PixelRect{53, 0, kWidth, 31},
                                   PixelRect{53, 31, kWidth, kHeight}})
       Scatter(pair, pixels, rect, ideal, 40, &parts);

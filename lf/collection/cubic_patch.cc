@@ -1,0 +1,54 @@
+#include "lf/collection/cubic_patch.h"
+
+namespace lf {
+namespace {
+
+// Through the values at -1, -1/3, 1/3, 1 times `half`.
+void Interpolate(const double (&e)[4], double half, double (&c)[4]) {
+  c[0] = (9 * (e[1] + e[2]) - (e[0] + e[3])) / 16;
+  c[1] = (27 * (e[2] - e[1]) - (e[3] - e[0])) / 16 / half;
+  c[2] = 9 * ((e[0] + e[3]) - (e[1] + e[2])) / 16 / (half * half);
+  c[3] = 9 * ((e[3] - e[0]) - 3 * (e[2] - e[1])) / 16 / (half * half * half);
+}
+
+// values [row][column]
+void InterpolateBoth(const double (&values)[4][4], double half_x, double half_y,
+                     double (&c)[4][4]) {
+  double along[4][4];  // [row][power of t]
+  for (int j = 0; j < 4; ++j) Interpolate(values[j], half_x, along[j]);
+  for (int k = 0; k < 4; ++k)
+    Interpolate({along[0][k], along[1][k], along[2][k], along[3][k]}, half_y, c[k]);
+}
+
+}  // namespace
+
+CubicPatch::CubicPatch(const PixelForm& x, const PixelForm& y, const PixelForm& denominator,
+                       const IdealPatch& patch)
+    : middle_x_(0.5 * (patch.rect.x_begin + patch.rect.x_end)),
+      middle_y_(0.5 * (patch.rect.y_begin + patch.rect.y_end)) {
+  double x_values[4][4], y_values[4][4];
+  for (int j = 0; j < 4; ++j) {
+    const IdealArc arc = patch.ArcAt(j / 3.0);
+    for (int i = 0; i < 4; ++i) {
+      const Vec3 p = arc.At(i / 3.0);
+      const double inverse = 1 / Value(denominator, p);
+      x_values[j][i] = Value(x, p) * inverse;
+      y_values[j][i] = Value(y, p) * inverse;
+    }
+  }
+  const double half_x = 0.5 * patch.rect.width(), half_y = 0.5 * patch.rect.height();
+  InterpolateBoth(x_values, half_x, half_y, x_);
+  InterpolateBoth(y_values, half_x, half_y, y_);
+}
+
+void CubicPatch::Append(int y, int x_begin, int x_end, std::vector<CubicSegment>* segments) const {
+  const double s = y + 0.5 - middle_y_;
+  Cubics cubics;
+  for (int k = 0; k < 4; ++k) {
+    cubics.x[k] = ((x_[k][3] * s + x_[k][2]) * s + x_[k][1]) * s + x_[k][0];
+    cubics.y[k] = ((y_[k][3] * s + y_[k][2]) * s + y_[k][1]) * s + y_[k][0];
+  }
+  segments->push_back(MakeSegment(y, x_begin, x_end, middle_x_, cubics));
+}
+
+}  // namespace lf

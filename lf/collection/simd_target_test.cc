@@ -1,0 +1,53 @@
+// The same bits on every instruction set.
+#include "lf/collection/simd_target.h"
+
+#include <gtest/gtest.h>
+
+#include "lf/collection/gather.h"
+#include "lf/collection/scatter.h"
+#include "lf/collection/test_plates.h"
+
+namespace lf {
+namespace {
+
+using testing::PlateFor;
+
+// Plates of both estimators for a pair of cameras.
+std::vector<SensorPlate> Collect(const testing::CameraPair& pair, uint64_t seed) {
+  const Intrinsics& k = pair.lf_camera.intrinsics;
+  const auto bayer = static_cast<BayerPattern>(seed % 5);
+  const LfPixels pixels = testing::NoisePixels(testing::WholeImage(pair), bayer, seed);
+  const IdealPixels ideal(k);
+  const ScatterPlan scatter = PlanScatter(pair.lf_camera, pair.render_camera, pixels.rect, &ideal);
+  std::vector<SensorPlate> plates;
+  plates.push_back(PlateFor(pair));
+  testing::InTiles(&plates.back(), 40, 23,
+                   [&](TileSums* sums) { return ScatterTile(scatter, pixels, sums); });
+  if (bayer != BayerPattern::kNone) return plates;
+  const GatherPlan gather = PlanGather(pair.lf_camera, pair.render_camera);
+  plates.push_back(PlateFor(pair));
+  testing::InTiles(&plates.back(), 40, 23,
+                   [&](TileSums* sums) { return GatherTile(gather, pixels, sums); });
+  return plates;
+}
+
+TEST(SimdTarget, EveryTargetGivesTheSameBits) {
+  const std::vector<std::string> targets = SimdTargets();
+  ASSERT_GE(targets.size(), 2u);
+  EXPECT_EQ(targets.back(), "SCALAR");
+  for (uint64_t seed = 0; seed < 120; ++seed) {
+    const testing::CameraPair pair =
+        seed % 3 == 0 ? testing::RandomDistortedPair(seed) : testing::RandomCameraPair(seed);
+    ASSERT_TRUE(UseSimdTarget(""));
+    const std::vector<SensorPlate> best = Collect(pair, seed);
+    for (const std::string& target : targets) {
+      ASSERT_TRUE(UseSimdTarget(target));
+      EXPECT_EQ(Collect(pair, seed), best) << target << ", " << seed;
+    }
+  }
+  EXPECT_FALSE(UseSimdTarget("no such target"));
+  UseSimdTarget("");
+}
+
+}  // namespace
+}  // namespace lf
