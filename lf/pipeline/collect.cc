@@ -66,7 +66,8 @@ class FrameCollector::State {
         order_(order),
         options_(options),
         pool_(pool),
-        collector_(light_field, frames, options.estimator, options.back_end, pool, plates),
+        collector_(light_field, frames, options.estimator, options.back_end, options.plan_bytes,
+                   pool, plates),
         places_(places.begin(), places.end()),
         progress_(frames.size()),
         is_stopped_(frames.size(), false) {

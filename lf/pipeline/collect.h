@@ -28,6 +28,7 @@ struct CollectOptions {
   // The most LF images collected together into a tile of a plate. As many again are decoded
   // meanwhile, so that twice as many are in memory.
   int batch_image_count = 16;
+  size_t plan_bytes = size_t{64} << 20;            // of frames whose rays are planned together
   bool strict = false;                             // a broken LF image is an error
   const std::atomic<bool>* interrupted = nullptr;  // looked at between items of about 10 ms
 };

@@ -14,9 +14,6 @@ namespace {
 constexpr int kTileWidth = 512;
 constexpr int kTileHeight = 64;
 
-// Segments of a batch kept at the same time.
-constexpr size_t kPlanBytes = size_t{64} << 20;
-
 // Whether a frame is collected is decided once, where its first item comes.
 class FrameGate {
  public:
@@ -49,6 +46,12 @@ PixelReach ReachOf(Estimator estimator) {
   return estimator == Estimator::kBilinear ? PixelReach::kNeighbours : PixelReach::kOwn;
 }
 
+size_t PlanBytes(int image_width, int image_height) {
+  // Segments are pieces of blocks of 256 pixels, a few a scanline.
+  return static_cast<size_t>(image_height) * (2 + static_cast<size_t>(image_width) / 256) *
+         sizeof(RaySegment);
+}
+
 struct BatchCollector::Share {
   PixelRect rect;
   ScatterPlan scatter;  // of the estimator in use
@@ -57,12 +60,13 @@ struct BatchCollector::Share {
 };
 
 BatchCollector::BatchCollector(const LightField& light_field, std::span<const RenderCamera> frames,
-                               Estimator estimator, CollectBackEnd back_end, ThreadPool& pool,
-                               std::vector<SensorPlate>* plates)
+                               Estimator estimator, CollectBackEnd back_end, size_t plan_bytes,
+                               ThreadPool& pool, std::vector<SensorPlate>* plates)
     : light_field_(light_field),
       frames_(frames),
       estimator_(estimator),
       back_end_(back_end),
+      plan_bytes_(plan_bytes),
       pool_(pool),
       plates_(*plates) {
   LF_CHECK(plates->size() == frames.size());
@@ -80,12 +84,10 @@ void BatchCollector::Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>
       if (!is_interrupted()) AddByReference(batch, &frame);
     return;
   }
-  size_t segments = 1;
+  size_t frame_bytes = 1;
   for (const BatchImage& image : batch)
-    segments = std::max(segments, static_cast<size_t>(image.pixels.rect.height()) *
-                                      (2 + image.pixels.rect.width() / 256));
-  const size_t plan_bytes = batch.size() * segments * sizeof(RaySegment);
-  const size_t chunk = std::max<size_t>(1, kPlanBytes / std::max<size_t>(1, plan_bytes));
+    frame_bytes += PlanBytes(image.pixels.rect.width(), image.pixels.rect.height());
+  const size_t chunk = std::max<size_t>(1, plan_bytes_ / frame_bytes);
   for (size_t begin = 0; begin < frames.size(); begin += chunk) {
     if (is_interrupted()) return;
     const size_t count = std::min(frames.size() - begin, chunk);

@@ -64,10 +64,14 @@ struct OtherItems {
   std::function<void(size_t)> run;
 };
 
+// What is planned for the rays of one LF image of this size in one frame, about.
+size_t PlanBytes(int image_width, int image_height);
+
 class BatchCollector {
  public:
+  // plan_bytes  of frames planned together; one may take more
   BatchCollector(const LightField& light_field, std::span<const RenderCamera> frames,
-                 Estimator estimator, CollectBackEnd back_end, ThreadPool& pool,
+                 Estimator estimator, CollectBackEnd back_end, size_t plan_bytes, ThreadPool& pool,
                  std::vector<SensorPlate>* plates);
 
   // Adds the images to the plates of `frames`, and runs the other items. Once *interrupted is true
@@ -94,6 +98,7 @@ class BatchCollector {
   std::span<const RenderCamera> frames_;
   Estimator estimator_;
   CollectBackEnd back_end_;
+  size_t plan_bytes_;
   ThreadPool& pool_;
   std::vector<SensorPlate>& plates_;
   std::vector<std::vector<PlateTile>> tiles_;

@@ -4,54 +4,85 @@
 
 #include <algorithm>
 
+#include "lf/pipeline/collect_batch.h"
 #include "lf/plate/sensor_plate.h"
 
 namespace lf {
 namespace {
 
 constexpr size_t kMiB = size_t{1} << 20;
-constexpr size_t kProgramBytes = 160 * kMiB;  // code, libraries, spans of a batch
-constexpr size_t kDevelopBytesPerElement =
-    160;  // picture, counts, tables for filling, file buffers, sheet
-constexpr size_t kMostBatchImages = 64;
 
-size_t LargestImageBytes(const LightField& light_field) {
-  // 16-bit radiance, the stored pixels while they are decoded (float at worst), a mask.
-  const size_t channels = light_field.encoding.bayer == BayerPattern::kNone ? 4 : 1;
-  const size_t bytes_per_pixel = channels * (2 + 4) + 1;
-  // Of its ideal positions, while it is collected (camera/ideal_pixels.h).
-  constexpr size_t kPatchBytesPerPixel = 1;
-  size_t largest = 1;
-  for (const Intrinsics& k : light_field.intrinsics)
-    largest =
-        std::max(largest, static_cast<size_t>(k.width_px) * k.height_px *
-                              (bytes_per_pixel + (k.has_distortion() ? kPatchBytesPerPixel : 0)));
-  return largest;
+// Code and libraries (most of it OpenImageIO's), and small things. Measured: 120 MiB.
+constexpr size_t kProgramBytes = 132 * kMiB;
+
+// Picture, counts, tables for filling, file buffers. Measured: 58.
+constexpr size_t kDevelopBytesPerElement = 64;
+constexpr size_t kSheetBytesPerElement = 3;  // of each picture kept for the contact sheet
+constexpr size_t kMostSheetPictures = 12;
+
+// Of one LF image while it is decoded: the file, its stored values, what the decoder needs.
+constexpr size_t kDecodeBytesPerPixel = 16;
+constexpr size_t kDecodeFloatBytesPerPixel = 32;
+constexpr size_t kTileBytes = kMiB;  // of the sums that one thread works on
+
+constexpr size_t kMostBatchImages = 64;
+constexpr size_t kMostPlanBytes = 64 * kMiB;
+
+// What the largest LF image takes.
+struct ImageNeed {
+  size_t kept_bytes = 1;    // 16-bit radiance, a mask; ideal positions, if any
+  size_t decode_bytes = 1;  // by the thread that decodes it
+  size_t plan_bytes = 1;    // for one frame
+};
+
+ImageNeed NeedOf(const LightField& light_field) {
+  const bool is_rgb = light_field.encoding.bayer == BayerPattern::kNone;
+  const size_t decode_bytes_per_pixel = DefaultMaxRadiance(light_field.image_names) > 1
+                                            ? kDecodeFloatBytesPerPixel
+                                            : kDecodeBytesPerPixel;
+  constexpr size_t kPatchBytesPerPixel = 1;  // camera/ideal_pixels.h
+  ImageNeed need;
+  for (const Intrinsics& k : light_field.intrinsics) {
+    const size_t pixels = static_cast<size_t>(k.width_px) * k.height_px;
+    const size_t bytes_per_pixel =
+        (is_rgb ? LfPixels::kRgbLanes * sizeof(uint16_t) : sizeof(uint16_t) + 1) +
+        (k.has_distortion() ? kPatchBytesPerPixel : 0);
+    need.kept_bytes = std::max(need.kept_bytes, pixels * bytes_per_pixel);
+    need.decode_bytes = std::max(need.decode_bytes, pixels * decode_bytes_per_pixel);
+    need.plan_bytes = std::max(need.plan_bytes, PlanBytes(k.width_px, k.height_px));
+  }
+  return need;
 }
 
 }  // namespace
 
 Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field, int plate_width,
-                              int plate_height, size_t frame_count) {
+                              int plate_height, size_t frame_count, int thread_count) {
   const size_t element_count = static_cast<size_t>(plate_width) * plate_height;
+  const ImageNeed need = NeedOf(light_field);
   MemoryPlan plan;
   plan.plate_bytes = element_count * SensorPlate::kChannels * sizeof(uint64_t);
-  plan.image_bytes = LargestImageBytes(light_field);
+  plan.image_bytes = need.kept_bytes;
 
-  const size_t set_aside = kProgramBytes + light_field.size() * (sizeof(LfCamera) + 128) +
-                           element_count * kDevelopBytesPerElement;
-  const size_t least = set_aside + plan.plate_bytes + 2 * plan.image_bytes;
+  const size_t sheet_pictures = std::min(frame_count, kMostSheetPictures);
+  const size_t set_aside =
+      kProgramBytes + light_field.size() * (sizeof(LfCamera) + 128) +
+      element_count * (kDevelopBytesPerElement + sheet_pictures * kSheetBytesPerElement) +
+      static_cast<size_t>(thread_count) * (need.decode_bytes + kTileBytes);
+  const size_t pair_bytes = 2 * need.kept_bytes + need.plan_bytes;  // an image of each batch
+  const size_t least = set_aside + plan.plate_bytes + pair_bytes;
   if (memory_bytes < least)
     return OutputError(fmt::format(
         "--memory {} MiB is not enough for one {}x{} plate and two LF images: at least {} MiB",
         memory_bytes / kMiB, plate_width, plate_height, least / kMiB + 1));
 
   const size_t free_bytes = memory_bytes - set_aside;
-  const size_t image_slots =
-      std::clamp<size_t>(memory_bytes / 4 / plan.image_bytes, 2, 2 * kMostBatchImages);
-  plan.batch_image_count = image_slots / 2;
-  const size_t plates_bytes =
-      std::max(plan.plate_bytes, free_bytes - std::min(free_bytes, image_slots * plan.image_bytes));
+  plan.batch_image_count = std::clamp<size_t>(free_bytes / 4 / pair_bytes, 1, kMostBatchImages);
+  // Frames that are planned together save waiting at the end of each.
+  plan.plan_bytes =
+      std::max(plan.batch_image_count * need.plan_bytes, std::min(kMostPlanBytes, free_bytes / 16));
+  const size_t images_bytes = plan.batch_image_count * 2 * need.kept_bytes + plan.plan_bytes;
+  const size_t plates_bytes = free_bytes - std::min(free_bytes, images_bytes);
   plan.frames_per_pass =
       std::clamp<size_t>(plates_bytes / plan.plate_bytes, 1, std::max<size_t>(1, frame_count));
   return plan;

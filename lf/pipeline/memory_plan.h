@@ -10,15 +10,17 @@ namespace lf {
 
 struct MemoryPlan {
   size_t frames_per_pass = 1;  // plates kept at the same time; each pass reads the LF images again
-  size_t batch_image_count = 1;  // two batches are kept at the same time
-  size_t image_bytes = 0;        // the largest decoded LF image, with what decoding needs
+  size_t batch_image_count = 1;  // two batches are kept at the same time (collect.h)
+  size_t plan_bytes = 0;         // what is planned ahead of a batch's rays
+  size_t image_bytes = 0;        // the largest decoded LF image
   size_t plate_bytes = 0;
 };
 
-// A quarter of the memory holds LF images, what a developing frame and the program itself need is
-// set aside, plates take the rest.
+// What the program itself, its threads and a developing frame need is set aside; a quarter of the
+// rest holds two batches of LF images, of 64 each if they fit, plates take what is left. Where not
+// all plates do, frames are cut into passes.
 // kOutput: not enough for one plate and two LF images; the message names the least that is.
 Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field, int plate_width,
-                              int plate_height, size_t frame_count);
+                              int plate_height, size_t frame_count, int thread_count);
 
 }  // namespace lf

@@ -57,6 +57,7 @@ Result<void> RenderPass::Prepare() {
   collect.estimator = job_.options.estimator;
   collect.back_end = job_.options.back_end;
   collect.batch_image_count = static_cast<int>(job_.plan.batch_image_count);
+  collect.plan_bytes = job_.plan.plan_bytes;
   collect.strict = job_.options.strict;
   if (job_.options.signals != nullptr) collect.interrupted = &job_.options.signals->attention;
   collector_ = std::make_unique<FrameCollector>(job_.light_field, job_.store, cameras_, images_,

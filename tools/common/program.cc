@@ -1,5 +1,7 @@
 #include "tools/common/program.h"
 
+#include <malloc.h>
+
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -54,6 +56,12 @@ Result<void> CheckNoNan(const CLI::App& app) {
 }  // namespace
 
 int Program::Run(int argc, char** argv, const std::function<Result<void>()>& body) {
+#ifdef __GLIBC__
+  // Images and plates go back to the system when they are freed: --memory bounds what a program
+  // holds. Otherwise glibc learns to keep the largest for later.
+  constexpr int kLargeBytes = 1 << 20;
+  mallopt(M_MMAP_THRESHOLD, kLargeBytes);
+#endif
   try {
     app_.parse(argc, argv);
   } catch (const CLI::CallForHelp& help) {
