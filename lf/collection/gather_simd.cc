@@ -10,6 +10,7 @@
 #define HWY_TARGET_INCLUDE "lf/collection/gather_simd.cc"  // NOLINT: as Highway wants it
 #include <hwy/foreach_target.h>
 // After foreach_target.h.
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -154,10 +155,14 @@ HWY_ATTR uint32_t GatherPart(const GatherPlan& plan, const CubicSegment& s, int 
   FindPlaces(plan, s, begin, count, pixels.rect, &places);
   const uint16_t* const values = pixels.radiance.row(0);
   const ptrdiff_t row_values = static_cast<ptrdiff_t>(pixels.rect.width()) * LfPixels::kRgbLanes;
+  constexpr int kRowsAhead = 2;
+  constexpr int kLineElements = 8;  // of an LF image, in a cache line
   uint32_t rays = 0;
   for (int i = 0; i < count; ++i) {
     const uint16_t* upper = values + static_cast<ptrdiff_t>(places.pixel[i]) * LfPixels::kRgbLanes;
     const uint16_t* lower = upper + row_values;
+    // Rows are too far apart for the processor to foresee.
+    if (i % kLineElements == 0) hwy::Prefetch(lower + kRowsAhead * row_values);
     LF_DCHECK(places.pixel[i] >= 0 &&
               lower + 2 * LfPixels::kRgbLanes <= values + pixels.radiance.pixels().size());
     if constexpr (kMayBeMasked) {
@@ -176,7 +181,7 @@ HWY_ATTR uint64_t GatherTile(const GatherPlan& plan, const LfPixels& pixels, Til
   uint64_t rays = 0;
   for (int y = tile.y_begin; y < tile.y_end; ++y) {
     TileSums::Element* const row =
-        sums->elements() + static_cast<ptrdiff_t>(y - tile.y_begin) * tile.width();
+        sums->elements() + static_cast<ptrdiff_t>(y - tile.y_begin) * sums->stride();
     for (size_t i = plan.row_begin[y]; i < plan.row_begin[y + 1]; ++i) {
       const CubicSegment& s = plan.segments[i];
       const int begin = std::max(s.x_begin, tile.x_begin);

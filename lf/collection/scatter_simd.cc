@@ -11,6 +11,7 @@
 #define HWY_TARGET_INCLUDE "lf/collection/scatter_simd.cc"  // NOLINT: as Highway wants it
 #include <hwy/foreach_target.h>
 // After foreach_target.h.
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -37,8 +38,9 @@ struct TileLayout {
 
 // An RGB scanline adds to sums. Returns the number of rays: none from a masked pixel.
 struct RgbPixels {
-  static constexpr int kChannels = 1;  // words are elements
-  const uint16_t* row;                 // [width][4]
+  static constexpr int kLanesPerPixel = LfPixels::kRgbLanes;
+  const uint16_t* row;        // [width][4]
+  const uint16_t* row_ahead;  // that of a scanline to come
   TileSums::Element* elements;
   bool may_be_masked;
 
@@ -64,7 +66,9 @@ struct RgbPixels {
 
 // A scanline of a mosaic adds to the plate's words.
 struct MosaicPixels {
-  const uint16_t* row;  // [width]
+  static constexpr int kLanesPerPixel = 1;
+  const uint16_t* row;        // [width]
+  const uint16_t* row_ahead;  // that of a scanline to come
   uint64_t* words;
   const uint8_t* mask;  // [width], or none
   int channels[2];      // of even and odd columns
@@ -143,6 +147,10 @@ HWY_ATTR uint32_t ScatterInside(const RaySegment& s, IndexRange range, const Pix
   for (int i = 0; i <= kLanes; ++i)
     pattern[i] = pixels.channel(column_begin + range.begin + i) - std::bit_cast<int32_t>(kTwoTo23);
   const auto channel = hn::Load(di, pattern);
+  // Scanlines are too far apart for the processor to foresee.
+  constexpr int kLinePixels = 64 / (Pixels::kLanesPerPixel * static_cast<int>(sizeof(uint16_t)));
+  for (int i = range.begin; i < range.end; i += kLinePixels)
+    hwy::Prefetch(pixels.row_ahead + (column_begin + i) * Pixels::kLanesPerPixel);
   // All addresses first: reading them back one by one is cheaper than taking a vector apart.
   HWY_ALIGN int32_t words[CubicSegment::kMaxCount];
   const int count = range.end - range.begin;
@@ -238,7 +246,7 @@ HWY_ATTR uint64_t ScatterTile(const ScatterPlan& plan, const LfPixels& pixels, T
   PlateTile& plate_tile = sums->tile();
   const PixelRect& rect = plate_tile.rect();
   const bool is_rgb = pixels.bayer == BayerPattern::kNone;
-  TileLayout tile{rect, plan.plate_width, plan.plate_height, 1, rect.width()};
+  TileLayout tile{rect, plan.plate_width, plan.plate_height, 1, sums->stride()};
   if (!is_rgb) tile.x_stride = SensorPlate::kChannels;
   if (!is_rgb) tile.y_stride = plan.plate_width * SensorPlate::kChannels;
   uint64_t* const words =
@@ -252,16 +260,20 @@ HWY_ATTR uint64_t ScatterTile(const ScatterPlan& plan, const LfPixels& pixels, T
       const RaySegment& s = plan.segments[i];
       if (!Meet(s.elements, rect)) continue;
       const int row = s.y - pixels.rect.y_begin;
+      constexpr int kRowsAhead = 2;
+      const uint16_t* const row_ahead =
+          pixels.radiance.row(std::min(row + kRowsAhead, pixels.rect.height() - 1));
       const int column = s.x_begin - pixels.rect.x_begin;
       if (is_rgb) {
         sums->Reserve(s.crowd);
         rays += ScatterSegment(
-            s, RgbPixels{pixels.radiance.row(row), sums->elements(), pixels.any_masked}, tile,
-            column);
+            s, RgbPixels{pixels.radiance.row(row), row_ahead, sums->elements(), pixels.any_masked},
+            tile, column);
         continue;
       }
       plate_tile.Reserve(s.crowd);
       const MosaicPixels mosaic{pixels.radiance.row(row),
+                                row_ahead,
                                 words,
                                 pixels.mosaic_mask.empty() ? nullptr : pixels.mosaic_mask.row(row),
                                 {BayerChannel(pixels.bayer, pixels.rect.x_begin, s.y),

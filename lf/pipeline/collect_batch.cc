@@ -11,8 +11,8 @@ namespace {
 
 // A tile stays in the second level cache while a batch of LF images is added to it; the wider it
 // is, the fewer pieces scanlines are cut into. Tall enough for cameras that are turned.
-constexpr int kTileWidth = 512;
-constexpr int kTileHeight = 64;
+constexpr int kTileWidth = 384;
+constexpr int kTileHeight = 80;
 
 // Whether a frame is collected is decided once, where its first item comes.
 class FrameGate {

@@ -6,9 +6,9 @@ namespace lf {
 
 void TileSums::Begin(PlateTile* tile) {
   LF_CHECK(ray_limit_ <= tile->max_reserve());
-  const auto count = static_cast<size_t>(tile->rect().pixel_count());
-  if (elements_.size() < count) elements_.resize(count);
   tile_ = tile;
+  const size_t count = static_cast<size_t>(stride()) * tile->rect().height();
+  if (elements_.size() < count) elements_.resize(count);
   headroom_ = ray_limit_;
 }
 
@@ -22,8 +22,8 @@ void TileSums::Flush() {
   if (most_rays == 0) return;
   tile_->Reserve(most_rays);
   const PixelRect& rect = tile_->rect();
-  Element* element = elements_.data();
   for (int y = rect.y_begin; y < rect.y_end; ++y) {
+    Element* element = elements_.data() + static_cast<ptrdiff_t>(y - rect.y_begin) * stride();
     uint64_t* word = tile_->row(y) + static_cast<size_t>(rect.x_begin) * SensorPlate::kChannels;
     for (int x = rect.x_begin; x < rect.x_end; ++x, ++element, word += SensorPlate::kChannels) {
       const uint64_t rays = uint64_t{element->rgb_rays[3]} << SensorPlate::kSumBits;

@@ -25,8 +25,10 @@ class TileSums {
   void Begin(PlateTile* tile);
   PlateTile& tile() { return *tile_; }
 
-  // [height][width] of the tile.
+  // [height][width] of the tile, rows stride() elements apart: one cache line more than they are
+  // wide, since columns of a power of two would share a few lines of the first level cache.
   Element* elements() { return elements_.data(); }
+  int stride() const { return tile_->rect().width() + 4; }
 
   // The most rays one Reserve() can be asked for.
   uint32_t max_reserve() const { return ray_limit_; }
