@@ -45,8 +45,9 @@ class ResumeTest(unittest.TestCase):
         cls.expected = one.finish("whole", "--threads", "1")
         cls.whole_s = time.monotonic() - start
         cls.expected_reference = one.reference("ref")
-        few = one.run_renderer("few", "--memory", "2M")
-        cls.small_memory = re.search(r"at least (\d+) MiB", few.stderr).group(1) + "M"
+        few = one.run_renderer("few", "--threads", "3", "--memory", "2M")
+        cls.small_memory = ["--threads", "3", "--memory",
+                            re.search(r"at least (\d+) MiB", few.stderr).group(1) + "M"]
 
     @classmethod
     def tearDownClass(cls):
@@ -122,7 +123,7 @@ class ResumeTest(unittest.TestCase):
         for index, options in enumerate((
                 ["--threads", "1", "--dump-every", "0"],
                 ["--threads", "2", "--dump-every", "0.01s"],
-                ["--threads", "3", "--dump-every", "0.02s", "--memory", self.small_memory],
+                ["--dump-every", "0.02s", *self.small_memory],
                 ["--threads", "2", "--dump-every", "0.05s", "--seed", "0"])):
             name = f"killed{index}"
             for kill in range(5):
@@ -145,7 +146,7 @@ class ResumeTest(unittest.TestCase):
 
     def test_plates_and_frames_do_not_depend_on_threads_and_memory(self):
         for index, options in enumerate((["--threads", "2"], ["--threads", "3"],
-                                         ["--memory", self.small_memory])):
+                                         self.small_memory)):
             self.assertEqual(self.finish(f"same{index}", *options), self.expected, options)
 
     def test_the_order_changes_nothing_but_the_text_of_plates(self):
@@ -166,7 +167,7 @@ class ResumeTest(unittest.TestCase):
         words = self.begun("other")
         last = words.strip().splitlines()[-1]
         self.assertRegex(last, r"interrupted after \d+ of 12 frames.*--resume$")
-        self.reference("other", "--resume", "--memory", self.small_memory, frames="3-11x4")
+        self.reference("other", "--resume", *self.small_memory, frames="3-11x4")
         state = [p.name for p in self.partial("other").glob("*.plate")]
         self.assertNotIn("frame_0007.plate", state)
         self.assertEqual(self.reference("other", "--resume", "--threads", "3"),
@@ -222,7 +223,7 @@ class ResumeTest(unittest.TestCase):
         expected = self.finish("max", "--max-images", "20")
         self.assertNotEqual(expected, self.expected)
         self.assertEqual(
-            self.finish("max_small", "--max-images", "20", "--memory", self.small_memory), expected)
+            self.finish("max_small", "--max-images", "20", *self.small_memory), expected)
         some = self.finish("max_some", "--max-images", "20", "--frames", "5-40x11")
         self.assertEqual(some, {name: expected[name] for name in some})
         report = json.loads((self.folder / "max" / "report.json").read_text())
@@ -244,7 +245,7 @@ class ResumeTest(unittest.TestCase):
             share = frame["lf_images"] / all_of_it["lf_images"]
             self.assertLess(min(abs(share - 64 / 169), abs(share - 128 / 169)), 0.12)
         self.assertGreater(stopped, 5)
-        self.assertEqual(self.finish("stop_small", *rule, "--memory", self.small_memory), expected)
+        self.assertEqual(self.finish("stop_small", *rule, *self.small_memory), expected)
         some = self.finish("stop_some", *rule, "--frames", "5-40x11", "--threads", "3")
         self.assertEqual(some, {name: expected[name] for name in some})
         expected = self.reference("stop_ref", *rule)

@@ -46,10 +46,13 @@ PixelReach ReachOf(Estimator estimator) {
   return estimator == Estimator::kBilinear ? PixelReach::kNeighbours : PixelReach::kOwn;
 }
 
-size_t PlanBytes(int image_width, int image_height) {
-  // Segments are pieces of blocks of 256 pixels, a few a scanline.
-  return static_cast<size_t>(image_height) * (2 + static_cast<size_t>(image_width) / 256) *
-         sizeof(RaySegment);
+size_t PlanBytes(Estimator estimator, int image_width, int image_height, int plate_width,
+                 int plate_height) {
+  const bool is_nearest = estimator == Estimator::kNearest;
+  const auto width = static_cast<size_t>(is_nearest ? image_width : plate_width);
+  const auto height = static_cast<size_t>(is_nearest ? image_height : plate_height);
+  // Segments are pieces of blocks of 256, a few a scanline.
+  return height * (2 + width / 256) * (is_nearest ? sizeof(RaySegment) : sizeof(CubicSegment));
 }
 
 struct BatchCollector::Share {
@@ -86,7 +89,8 @@ void BatchCollector::Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>
   }
   size_t frame_bytes = 1;
   for (const BatchImage& image : batch)
-    frame_bytes += PlanBytes(image.pixels.rect.width(), image.pixels.rect.height());
+    frame_bytes += PlanBytes(estimator_, image.pixels.rect.width(), image.pixels.rect.height(),
+                             plates_[0].width(), plates_[0].height());
   const size_t chunk = std::max<size_t>(1, plan_bytes_ / frame_bytes);
   for (size_t begin = 0; begin < frames.size(); begin += chunk) {
     if (is_interrupted()) return;

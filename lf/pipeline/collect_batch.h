@@ -64,8 +64,10 @@ struct OtherItems {
   std::function<void(size_t)> run;
 };
 
-// What is planned for the rays of one LF image of this size in one frame, about.
-size_t PlanBytes(int image_width, int image_height);
+// What is planned for the rays of one LF image in one frame, about. nearest goes by the scanlines
+// of the image, bilinear by those of the plate.
+size_t PlanBytes(Estimator estimator, int image_width, int image_height, int plate_width,
+                 int plate_height);
 
 class BatchCollector {
  public:

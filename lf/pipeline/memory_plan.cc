@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "lf/pipeline/collect_batch.h"
 #include "lf/plate/sensor_plate.h"
 
 namespace lf {
@@ -35,7 +34,8 @@ struct ImageNeed {
   size_t plan_bytes = 1;    // for one frame
 };
 
-ImageNeed NeedOf(const LightField& light_field) {
+ImageNeed NeedOf(const LightField& light_field, Estimator estimator, int plate_width,
+                 int plate_height) {
   const bool is_rgb = light_field.encoding.bayer == BayerPattern::kNone;
   const size_t decode_bytes_per_pixel = DefaultMaxRadiance(light_field.image_names) > 1
                                             ? kDecodeFloatBytesPerPixel
@@ -49,17 +49,19 @@ ImageNeed NeedOf(const LightField& light_field) {
         (k.has_distortion() ? kPatchBytesPerPixel : 0);
     need.kept_bytes = std::max(need.kept_bytes, pixels * bytes_per_pixel);
     need.decode_bytes = std::max(need.decode_bytes, pixels * decode_bytes_per_pixel);
-    need.plan_bytes = std::max(need.plan_bytes, PlanBytes(k.width_px, k.height_px));
+    need.plan_bytes = std::max(
+        need.plan_bytes, PlanBytes(estimator, k.width_px, k.height_px, plate_width, plate_height));
   }
   return need;
 }
 
 }  // namespace
 
-Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field, int plate_width,
-                              int plate_height, size_t frame_count, int thread_count) {
+Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field,
+                              Estimator estimator, int plate_width, int plate_height,
+                              size_t frame_count, int thread_count) {
   const size_t element_count = static_cast<size_t>(plate_width) * plate_height;
-  const ImageNeed need = NeedOf(light_field);
+  const ImageNeed need = NeedOf(light_field, estimator, plate_width, plate_height);
   MemoryPlan plan;
   plan.plate_bytes = element_count * SensorPlate::kChannels * sizeof(uint64_t);
   plan.image_bytes = need.kept_bytes;

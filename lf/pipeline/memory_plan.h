@@ -5,6 +5,7 @@
 
 #include "lf/capture/light_field.h"
 #include "lf/core/result.h"
+#include "lf/pipeline/collect_batch.h"
 
 namespace lf {
 
@@ -20,7 +21,8 @@ struct MemoryPlan {
 // rest holds two batches of LF images, of 64 each if they fit, plates take what is left. Where not
 // all plates do, frames are cut into passes.
 // kOutput: not enough for one plate and two LF images; the message names the least that is.
-Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field, int plate_width,
-                              int plate_height, size_t frame_count, int thread_count);
+Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field,
+                              Estimator estimator, int plate_width, int plate_height,
+                              size_t frame_count, int thread_count);
 
 }  // namespace lf

@@ -18,7 +18,8 @@ constexpr size_t kMiB = size_t{1} << 20;
 TEST(MemoryPlan, StaysWithinTheMemory) {
   for (const size_t memory : {2048 * kMiB, 4096 * kMiB, 8192 * kMiB})
     for (const int width : {640, 4000}) {
-      const MemoryPlan plan = *PlanMemory(memory, Field(width, width), 1920, 1080, 900, 2);
+      const MemoryPlan plan =
+          *PlanMemory(memory, Field(width, width), Estimator::kNearest, 1920, 1080, 900, 2);
       const size_t images = 2 * plan.batch_image_count * plan.image_bytes + plan.plan_bytes;
       EXPECT_LE(plan.frames_per_pass * plan.plate_bytes + images, memory) << memory << " " << width;
       EXPECT_GE(plan.batch_image_count, 1u);
@@ -28,7 +29,9 @@ TEST(MemoryPlan, StaysWithinTheMemory) {
 TEST(MemoryPlan, MoreMemoryNeverMeansMorePasses) {
   size_t before = 0;
   for (size_t mib = 700; mib < 10000; mib += 300) {
-    const size_t now = PlanMemory(mib * kMiB, Field(960, 640), 1920, 1080, 900, 2)->frames_per_pass;
+    const size_t now =
+        PlanMemory(mib * kMiB, Field(960, 640), Estimator::kNearest, 1920, 1080, 900, 2)
+            ->frames_per_pass;
     EXPECT_GE(now, before);
     before = now;
   }
@@ -36,29 +39,35 @@ TEST(MemoryPlan, MoreMemoryNeverMeansMorePasses) {
 }
 
 TEST(MemoryPlan, BatchesGrowToDecisions) {
-  EXPECT_EQ(PlanMemory(16384 * kMiB, Field(960, 640), 1920, 1080, 900, 2)->batch_image_count, 64u);
-  EXPECT_LT(PlanMemory(600 * kMiB, Field(960, 640), 1920, 1080, 900, 2)->batch_image_count, 20u);
+  EXPECT_EQ(PlanMemory(16384 * kMiB, Field(960, 640), Estimator::kNearest, 1920, 1080, 900, 2)
+                ->batch_image_count,
+            64u);
+  EXPECT_LT(PlanMemory(600 * kMiB, Field(960, 640), Estimator::kNearest, 1920, 1080, 900, 2)
+                ->batch_image_count,
+            20u);
 }
 
 // 24 megapixels: what is planned for one batch in one frame would be as much as the images.
 TEST(MemoryPlan, LargeImagesAndManyThreadsCount) {
   const LightField field = Field(6000, 4000);
-  const MemoryPlan few = *PlanMemory(4096 * kMiB, field, 1920, 1080, 900, 2);
-  const MemoryPlan many = *PlanMemory(16384 * kMiB, field, 1920, 1080, 900, 32);
+  const MemoryPlan few = *PlanMemory(4096 * kMiB, field, Estimator::kNearest, 1920, 1080, 900, 2);
+  const MemoryPlan many =
+      *PlanMemory(16384 * kMiB, field, Estimator::kNearest, 1920, 1080, 900, 32);
   EXPECT_LE(few.batch_image_count * 2 * few.image_bytes, 1024 * kMiB);
-  EXPECT_FALSE(PlanMemory(4096 * kMiB, field, 1920, 1080, 900, 32));
+  EXPECT_FALSE(PlanMemory(4096 * kMiB, field, Estimator::kNearest, 1920, 1080, 900, 32));
   EXPECT_GE(many.plan_bytes, many.batch_image_count * size_t{4000} * 6000 / 256 * 32);
 }
 
 TEST(MemoryPlan, NamesTheLeastMemoryThatIsEnough) {
-  const Result<MemoryPlan> plan = PlanMemory(100 * kMiB, Field(960, 640), 1920, 1080, 1, 2);
+  const Result<MemoryPlan> plan =
+      PlanMemory(100 * kMiB, Field(960, 640), Estimator::kNearest, 1920, 1080, 1, 2);
   ASSERT_FALSE(plan);
   EXPECT_EQ(plan.error().kind, ErrorKind::kOutput);
   const std::string& message = plan.error().message;
   const size_t at = message.find("at least ");
   ASSERT_NE(at, std::string::npos) << message;
   const size_t least = std::stoul(message.substr(at + 9));
-  EXPECT_TRUE(PlanMemory(least * kMiB, Field(960, 640), 1920, 1080, 1, 2));
+  EXPECT_TRUE(PlanMemory(least * kMiB, Field(960, 640), Estimator::kNearest, 1920, 1080, 1, 2));
 }
 
 }  // namespace

@@ -111,8 +111,9 @@ Result<void> Renderer::Begin() {
   if (frames_.empty())
     for (uint32_t n = 1; n <= path_.frame_count(); ++n) frames_.push_back(FrameId{n});
   const Intrinsics& plate = path_.Camera(frames_.front()).pinhole.intrinsics;
-  LF_ASSIGN_OR_RETURN(plan_, PlanMemory(options_.memory_bytes, light_field_, plate.width_px,
-                                        plate.height_px, frames_.size(), pool_.thread_count()));
+  LF_ASSIGN_OR_RETURN(
+      plan_, PlanMemory(options_.memory_bytes, light_field_, options_.estimator, plate.width_px,
+                        plate.height_px, frames_.size(), pool_.thread_count()));
   LF_RETURN_IF_ERROR(CreateFolder(options_.output_folder));
   if (options_.video) {
     LF_RETURN_IF_ERROR(CheckVideoTool());
