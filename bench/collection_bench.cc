@@ -19,6 +19,9 @@
 
 #include "bench/contender.h"
 
+#include "lf/collection/simd_target.h"
+#include "lf/core/check.h"
+
 namespace lf::bench {
 namespace {
 
@@ -141,9 +144,9 @@ Arena& ArenaOf(const CaseSpec& spec) {
 void Run(benchmark::State& state, const CaseSpec& spec, const std::string& name) {
   Entrant& entrant = ArenaOf(spec).Enter(name);
   const size_t at = name.find('@');
-  UseSimdTarget(at == std::string::npos ? "" : name.substr(at + 1));
+  LF_CHECK(UseSimdTarget(at == std::string::npos ? "" : name.substr(at + 1)));
   for (auto _ : state) entrant.contender->Collect(entrant.image_count);
-  UseSimdTarget("");
+  LF_CHECK(UseSimdTarget(""));
   const double rays = entrant.ray_count * static_cast<double>(state.iterations());
   state.counters["rays/s"] = benchmark::Counter(rays, benchmark::Counter::kIsRate);
   if (name != "reference") return;

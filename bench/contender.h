@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "bench/kernel_case.h"
@@ -34,11 +33,6 @@ class OurKernel : public Contender {
   // Accepted by the last Collect(): pixels with nearest, elements with bilinear.
   virtual uint64_t accepted_count() const = 0;
 };
-
-// Instruction sets that our kernels are compiled for and the machine has, and the choice of one;
-// "" leaves it to Highway, which takes the best.
-std::vector<std::string> SimdTargets();
-void UseSimdTarget(const std::string& target);
 
 // The contenders keep a reference to the case.
 std::unique_ptr<OurKernel> MakeOurKernel(const KernelCase& kernel_case);

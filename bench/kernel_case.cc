@@ -68,13 +68,15 @@ double Pattern(double x, double y, int channel) {
 // Of pixel centres, [height][width][2].
 Image<float> IdealPositions(const IdealPixels& ideal_pixels, int size) {
   Image<float> positions(size, size, 2, -1e6f);
-  for (int y = 0; y < size; ++y)
-    for (const IdealArc& arc : ideal_pixels.Scanline(y))
+  for (const IdealPatch& patch : ideal_pixels.patches())
+    for (int y = patch.rect.y_begin; y < patch.rect.y_end; ++y) {
+      const IdealArc arc = patch.Scanline(y);
       for (int x = arc.x_begin; x < arc.x_end; ++x) {
         const Vec3 q = arc.At(arc.Parameter(x));
         positions.at(x, y, 0) = static_cast<float>(q.x() / q.z());
         positions.at(x, y, 1) = static_cast<float>(q.y() / q.z());
       }
+    }
   return positions;
 }
 

@@ -39,8 +39,8 @@ class FastKernel final : public OurKernel {
     accepted_count_ = 0;
     if (case_.spec.estimator == Estimator::kBilinear) {
       std::vector<GatherPlan> plans;
-      for (size_t i = 0; i < count; ++i) plans.emplace_back(case_.cameras[i], case_.frame);
-      CollectTiles(count, [&](size_t i) { return plans[i].GatherTile(case_.images[i], &sums_); });
+      for (size_t i = 0; i < count; ++i) plans.push_back(PlanGather(case_.cameras[i], case_.frame));
+      CollectTiles(count, [&](size_t i) { return GatherTile(plans[i], case_.images[i], &sums_); });
       return;
     }
     const IdealPixels* ideal = case_.ideal_pixels ? &*case_.ideal_pixels : nullptr;
@@ -54,8 +54,9 @@ class FastKernel final : public OurKernel {
   uint64_t accepted_count() const override { return accepted_count_; }
 
  private:
-  static constexpr int kTileWidth = 512;
-  static constexpr int kTileHeight = 64;
+  // Those of lf/pipeline/collect_batch.cc.
+  static constexpr int kTileWidth = 384;
+  static constexpr int kTileHeight = 80;
 
   template <class CollectImage>
   void CollectTiles(size_t image_count, const CollectImage& collect_image) {
@@ -95,20 +96,6 @@ class Reference final : public Contender {
 };
 
 }  // namespace
-
-std::vector<std::string> SimdTargets() {
-  std::vector<std::string> names;
-  for (const int64_t target : hwy::SupportedAndGeneratedTargets())
-    names.push_back(hwy::TargetName(target));
-  return names;
-}
-
-void UseSimdTarget(const std::string& name) {
-  hwy::SetSupportedTargetsForTest(0);
-  for (const int64_t target : hwy::SupportedAndGeneratedTargets())
-    if (name == hwy::TargetName(target)) hwy::SetSupportedTargetsForTest(target);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-}
 
 std::unique_ptr<OurKernel> MakeOurKernel(const KernelCase& kernel_case) {
   return std::make_unique<FastKernel>(kernel_case);
