@@ -252,6 +252,26 @@ class ResumeTest(unittest.TestCase):
         self.begun("stop_begun", *rule)
         self.assertEqual(self.reference("stop_begun", *rule, "--resume"), expected)
 
+    def test_stop_rules_of_frames_that_take_different_images(self):
+        # A camera that passes by: each frame takes some 60 of 169 LF images, or fewer at the ends.
+        path = self.folder / "passing.yaml"
+        text = small_field.PATH_YAML.format(frames=30, aperture=0.09, x=-0.04)
+        path.write_text(text.replace("  up: [0, 1, 0]", "  up: [0, 1, 0]\n  speed: [0.07, 0, 0]"))
+        rule = ["--stop-when", "samples>=5"]
+        def run(name, *options):
+            result = subprocess.run([RENDERER, self.field, path, "-o", self.folder / name,
+                                     *self.common, *rule, *options], capture_output=True, text=True)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            return digests(self.folder / name)
+        expected = run("passing")
+        plates = [p.read_bytes() for p in (self.folder / "passing").glob("*.plate")]
+        places = {int(re.search(rb"places_done: (\d+)", plate).group(1)) for plate in plates}
+        self.assertEqual(places, {128, 169})
+        self.assertEqual(run("passing_small", "--memory", self.small_memory), expected)
+        for frame in (1, 9, 15, 22, 30):
+            alone = run(f"passing{frame}", "--frames", str(frame))
+            self.assertEqual(alone, {name: expected[name] for name in alone})
+
     def test_require_ends_with_code_6_and_names_frames(self):
         last = self.fails(6, ["samples>=1000", "3 of 3 frames", "frame 2 (0.0 %)"], "require",
                           "--frames", "1-3", "--require", "samples>=1000")

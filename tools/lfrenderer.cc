@@ -141,12 +141,12 @@ int main(int argc, char** argv) {
     LF_RETURN_IF_ERROR(
         CheckAvailable("--estimator", arguments.estimator, {"auto", "nearest", "bilinear"}));
     LF_RETURN_IF_ERROR(CheckAvailable("--lens-weights", arguments.lens_weights, {"auto", "none"}));
-    lf::RenderSignals& signals = lf::CatchRenderSignals();
     LF_ASSIGN_OR_RETURN(const lf::LightField light_field, arguments.light_field.Open());
     LF_ASSIGN_OR_RETURN(const lf::CameraPath path,
                         lf::ReadPathYaml(arguments.path, light_field.unit_m));
     LF_ASSIGN_OR_RETURN(lf::RenderOptions options, MakeOptions(arguments, program, path));
-    options.signals = &signals;
+    // Until here there is nothing to be kept, and a signal ends the program.
+    options.signals = &lf::CatchRenderSignals();
     lf::ThreadPool pool(program.common().threads);
     lf::ProgressMeter meter(lf::ParseProgressStyle(program.common().progress), "rays");
     const auto progress = [&](const lf::RenderProgress& now) {

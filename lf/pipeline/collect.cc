@@ -185,7 +185,8 @@ Batch FrameCollector::State::BatchFrom(size_t from) const {
   Batch batch;
   batch.begin = batch.end = FirstWanted(from);
   if (batch.begin == order_.size()) return batch;
-  const uint32_t decision = (order_[batch.begin].place / kDecisionPlaces + 1) * kDecisionPlaces;
+  const uint32_t cut = options_.decision_places;
+  const uint32_t decision = cut == 0 ? UINT32_MAX : (order_[batch.begin].place / cut + 1) * cut;
   const size_t most = batch.begin + static_cast<size_t>(options_.batch_image_count);
   for (; batch.end < std::min(order_.size(), most); ++batch.end) {
     if (order_[batch.end].place >= decision) break;

@@ -22,13 +22,19 @@
 
 namespace lf {
 
+// Stop rules are decided at multiples of so many places (doc/ray.md, "Same bits").
+inline constexpr uint32_t kDecisionPlaces = 64;
+
 struct CollectOptions {
   Estimator estimator = Estimator::kNearest;
   CollectBackEnd back_end = CollectBackEnd::kFast;
   // The most LF images collected together into a tile of a plate. As many again are decoded
   // meanwhile, so that twice as many are in memory.
   int batch_image_count = 16;
-  size_t plan_bytes = size_t{64} << 20;            // of frames whose rays are planned together
+  size_t plan_bytes = size_t{64} << 20;  // of frames whose rays are planned together
+  // No batch goes across a multiple of it, in places: there stop rules may be decided, for every
+  // frame alike. 0: no rule, batches are not cut. Else a multiple of kDecisionPlaces.
+  uint32_t decision_places = kDecisionPlaces;
   bool strict = false;                             // a broken LF image is an error
   const std::atomic<bool>* interrupted = nullptr;  // looked at between items of about 10 ms
 };
@@ -61,9 +67,6 @@ struct CollectTimes {
 // leaves the plates as if it had not been there.
 class FrameCollector {
  public:
-  // Every stop rule may be decided where places_done is a multiple of it: no batch goes across.
-  static constexpr uint32_t kDecisionPlaces = 64;
-
   // order   by ascending places, with all LF images that the frames take, their rectangles over
   //         the frames that take them
   // places  what each frame takes: begin is how far its plate is already; empty: every frame all

@@ -94,6 +94,15 @@ TEST(FrameCollector, NoBatchGoesAcrossADecision) {
   }
 }
 
+TEST(FrameCollector, WithoutRulesBatchesAreNotCut) {
+  Job job;
+  job.options.batch_image_count = 100;
+  job.options.decision_places = 0;
+  FrameCollector collector = job.Collector();
+  EXPECT_TRUE(*collector.Step());
+  EXPECT_EQ(collector.images_done(), 100u);
+}
+
 TEST(FrameCollector, FramesThatStartApartCatchUp) {
   Job job;
   job.options.batch_image_count = 10;

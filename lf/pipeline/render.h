@@ -38,7 +38,8 @@ struct RenderOptions {
   // off: a frame takes only the first so many LF images of the order that contribute to it
   std::optional<size_t> max_image_count;
   // off: a frame is finished when its elements have so many rays (sample_rule.h). Decided where a
-  // multiple of 64 places of the order is done, so that the frame has the same bits in any run.
+  // multiple of 64 places of the order is done (of 128, 256, ... where a frame takes only a part of
+  // them), so that the frame has the same bits in any run.
   std::optional<uint32_t> stop_at_samples;
   std::optional<uint32_t> require_samples;  // off: measured, and in the report of each frame
   uint32_t smooth_below = 0;                // sequence/develop.h

@@ -30,8 +30,6 @@ RenderPass::RenderPass(const RenderJob& job, std::span<const FrameId> frames) : 
     frames_.push_back({});
     frames_.back().id = frame;
     cameras_.push_back(job.path.Camera(frame));
-    const Intrinsics& plate = cameras_.back().pinhole.intrinsics;
-    plates_.emplace_back(plate.width_px, plate.height_px);
   }
 }
 
@@ -42,6 +40,8 @@ Result<void> RenderPass::Prepare() {
                            job_.pool);
   for (size_t f = 0; f < frames_.size(); ++f) {
     if (job_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
+    const Intrinsics& plate = cameras_[f].pinhole.intrinsics;
+    plates_.emplace_back(plate.width_px, plate.height_px);
     LF_ASSIGN_OR_RETURN(const FrameProgress start,
                         job_.state.LoadPlate(frames_[f].id, &plates_[f]));
     places[f].begin = start.places_done;
@@ -60,6 +60,21 @@ Result<void> RenderPass::Prepare() {
   collect.plan_bytes = job_.plan.plan_bytes;
   collect.strict = job_.options.strict;
   if (job_.options.signals != nullptr) collect.interrupted = &job_.options.signals->attention;
+  collect.decision_places = 0;
+  if (job_.options.stop_at_samples) {
+    // Those of all frames are multiples of the least.
+    collect.decision_places = UINT32_MAX;
+    for (size_t f = 0; f < frames_.size(); ++f) {
+      if (job_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
+      const uint32_t decision =
+          DecisionPlaces(job_.light_field.size(), ReachableOf(f).image_count());
+      frames_[f].decision_places = decision;
+      frames_[f].next_decision =
+          std::max(1u, (places[f].begin + decision - 1) / decision) * decision;
+      collect.decision_places = std::min(collect.decision_places, decision);
+    }
+    if (job_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
+  }
   collector_ = std::make_unique<FrameCollector>(job_.light_field, job_.store, cameras_, images_,
                                                 places, collect, job_.pool, &plates_);
   return {};
@@ -129,21 +144,31 @@ const ReachableElements& RenderPass::ReachableOf(size_t f) {
   return *frame.reachable;
 }
 
-// Asked of every frame that has just done a multiple of 64 places, whatever the other frames do.
-// Asking twice, as after an interruption, gives the same answer.
+// Its plate is what it would be with all places before this one done: no LF image of the pass lies
+// between.
+uint32_t RenderPass::PlacesCovered(size_t f) const {
+  const auto next = std::lower_bound(
+      images_.begin(), images_.end(), collector_->frames()[f].places_done,
+      [](const SelectedImage& image, uint32_t place) { return image.place < place; });
+  return next == images_.end() ? static_cast<uint32_t>(job_.light_field.size()) : next->place;
+}
+
+// Asks every frame at the first multiple of its decision_places after an LF image it took, with
+// exactly the rays of the places before: batches do not go across, and where there is a gap in the
+// order of this pass, nothing is added. So the answers do not depend on what other frames take.
+// An earlier run that was interrupted may have asked already; the answer is the same.
 Result<void> RenderPass::DecideStops() {
   if (!job_.options.stop_at_samples) return {};
   bool are_totals_saved = false;
   for (size_t f = 0; f < frames_.size(); ++f) {
     Frame& frame = frames_[f];
-    const uint32_t places_done = collector_->frames()[f].places_done;
-    if (frame.is_finished || places_done == frame.decided_places ||  // none, or asked before
-        places_done % FrameCollector::kDecisionPlaces != 0)
-      continue;
+    const uint32_t covered = PlacesCovered(f);
+    if (frame.is_finished || covered < frame.next_decision) continue;
     const bool is_met = HasSamples(plates_[f], ReachableOf(f), *job_.options.stop_at_samples);
-    if (job_.IsStopped()) return {};  // what is reachable may be wrong then
-    frame.decided_places = places_done;
-    if (!is_met) continue;
+    if (!is_met) {
+      frame.next_decision = (covered / frame.decision_places + 1) * frame.decision_places;
+      continue;
+    }
     collector_->Stop(f);
     frame.is_stopped = true;
     if (!are_totals_saved) LF_RETURN_IF_ERROR(job_.state.SaveTotals(Totals()));
@@ -159,10 +184,11 @@ Result<void> RenderPass::FinishFrame(size_t f) {
   const std::filesystem::path to =
       FramePath(job_.options.output_folder, frame.id, job_.options.format);
   if (job_.options.keep_plates) {
-    // Where a frame ends that was not stopped is no matter of passes.
-    if (!frame.is_stopped)
-      progress.places_done =
-          std::min(frame.places.end, static_cast<uint32_t>(job_.light_field.size()));
+    // Where a frame ends is no matter of passes.
+    progress.places_done =
+        frame.is_stopped
+            ? frame.next_decision
+            : std::min(frame.places.end, static_cast<uint32_t>(job_.light_field.size()));
     std::filesystem::path plate = to;
     LF_RETURN_IF_ERROR(WritePlate(plate.replace_extension(".plate"),
                                   job_.state.PlateText(frame.id, progress), plates_[f], job_.pool));

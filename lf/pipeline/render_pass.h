@@ -62,10 +62,11 @@ class RenderPass {
  private:
   struct Frame {
     FrameId id;
-    PlaceRange places;            // it takes, from its first image on
-    FrameRays earlier_rays;       // in its plate when the pass began
-    uint32_t saved_places = 0;    // done, in the state on the disk
-    uint32_t decided_places = 0;  // done, when this run asked the stop rule last
+    PlaceRange places;             // it takes, from its first image on
+    FrameRays earlier_rays;        // in its plate when the pass began
+    uint32_t saved_places = 0;     // done, in the state on the disk
+    uint32_t decision_places = 0;  // with a stop rule: it is asked at multiples of this
+    uint32_t next_decision = 0;    // place
     bool is_finished = false;
     bool is_stopped = false;  // by the rule
     double picture_s = 0;     // when its picture was written last
@@ -74,6 +75,7 @@ class RenderPass {
 
   FrameProgress ProgressOf(size_t f) const;
   const ReachableElements& ReachableOf(size_t f);
+  uint32_t PlacesCovered(size_t f) const;
   Result<void> DecideStops();
   Result<void> FinishFrame(size_t f);
   Result<void> Save(double picture_budget_s);

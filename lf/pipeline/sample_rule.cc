@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "lf/camera/distortion.h"
+#include "lf/pipeline/collect.h"
 #include "lf/selection/ideal_cells.h"
 #include "lf/selection/overlap.h"
 
@@ -75,6 +76,7 @@ ReachableElements::ReachableElements(const LightField& light_field, const Render
   const std::vector<RenderCamera> frames = {camera};
   const std::vector<PlaceRange> ranges = {places};
   const std::vector<SelectedImage> images = SelectImages(light_field, frames, select, pool, ranges);
+  image_count_ = images.size();
   std::map<uint32_t, DistortionMap> maps;
   std::vector<Viewer> viewers;
   for (const SelectedImage& image : images) {
@@ -103,6 +105,14 @@ ReachableElements::ReachableElements(const LightField& light_field, const Render
   });
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) count_ += Holds(x, y) ? 1 : 0;
+}
+
+uint32_t DecisionPlaces(size_t light_field_image_count, size_t frame_image_count) {
+  uint32_t places = kDecisionPlaces;
+  for (size_t taken = 2 * std::max<size_t>(1, frame_image_count);
+       taken <= light_field_image_count && places < 1u << 30; taken *= 2)
+    places *= 2;
+  return places;
 }
 
 bool HasSamples(const SensorPlate& plate, const ReachableElements& reachable, uint32_t samples) {

@@ -35,13 +35,20 @@ class ReachableElements {
   bool Holds(int x, int y) const {
     return is_reachable_[static_cast<size_t>(y / kGrid) * columns_ + x / kGrid] != 0;
   }
-  size_t count() const { return count_; }  // elements
+  size_t count() const { return count_; }              // elements
+  size_t image_count() const { return image_count_; }  // LF images of these places
 
  private:
   size_t columns_ = 0;
   std::vector<uint8_t> is_reachable_;  // [rows][columns] of the grid
   size_t count_ = 0;
+  size_t image_count_ = 0;
 };
+
+// At which multiples of places a frame is asked: 64 where it takes every LF image of a light field,
+// 64 * 2^k where it takes one in 2^k, so that about 64 of its own lie between. Those of any two
+// frames divide each other.
+uint32_t DecisionPlaces(size_t light_field_image_count, size_t frame_image_count);
 
 // Whether kMostElements of the reachable elements have at least `samples` rays in every channel;
 // so they have where none is reachable. Quick where it is far from so.

@@ -20,6 +20,15 @@ TEST(SampleRule, ReadsAndRefuses) {
   }
 }
 
+TEST(SampleRule, IsAskedAboutEvery64ImagesOfAFrame) {
+  EXPECT_EQ(DecisionPlaces(1000, 1000), 64u);
+  EXPECT_EQ(DecisionPlaces(1000, 501), 64u);
+  EXPECT_EQ(DecisionPlaces(1000, 500), 128u);
+  EXPECT_EQ(DecisionPlaces(1000, 30), 64u * 32);
+  EXPECT_EQ(DecisionPlaces(1000, 0), DecisionPlaces(1000, 1));
+  EXPECT_EQ(DecisionPlaces(size_t{1} << 32, 1), 1u << 30);
+}
+
 // Counts of a collected plate are the judge: bilinear asks every element for its rays.
 TEST(SampleRule, ElementsAreReachableWhereTheyGetRays) {
   const LightField field = testing::NoiseField();
