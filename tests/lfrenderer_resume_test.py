@@ -267,7 +267,7 @@ class ResumeTest(unittest.TestCase):
         plates = [p.read_bytes() for p in (self.folder / "passing").glob("*.plate")]
         places = {int(re.search(rb"places_done: (\d+)", plate).group(1)) for plate in plates}
         self.assertEqual(places, {128, 169})
-        self.assertEqual(run("passing_small", "--memory", self.small_memory), expected)
+        self.assertEqual(run("passing_small", *self.small_memory), expected)
         for frame in (1, 9, 15, 22, 30):
             alone = run(f"passing{frame}", "--frames", str(frame))
             self.assertEqual(alone, {name: expected[name] for name in alone})
