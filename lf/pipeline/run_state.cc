@@ -44,12 +44,14 @@ std::vector<fs::path> FilesOf(const fs::path& folder) {
 
 // Temporary files (core/file.h) of a process that was killed; the lock says that none is at work.
 void RemoveTemporaryFiles(const fs::path& folder) {
+  constexpr const char* kOurs[] = {".frame_", ".run.", ".report.", ".contact_sheet."};
   std::error_code ignored;
   for (const fs::path& path : FilesOf(folder)) {
     const std::string name = path.filename().string();
-    if ((name.starts_with(".frame_") || name.starts_with(".run.")) &&
-        name.find(".tmp.") != std::string::npos)
-      fs::remove(path, ignored);
+    const bool is_ours =
+        std::any_of(std::begin(kOurs), std::end(kOurs),
+                    [&name](const char* start) { return name.starts_with(start); });
+    if (is_ours && name.find(".tmp.") != std::string::npos) fs::remove(path, ignored);
   }
 }
 

@@ -1,0 +1,145 @@
+#include "lf/pipeline/run_state.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "lf/core/file.h"
+#include "lf/pipeline/test_noise_field.h"
+#include "lf/plate/test_plate.h"
+
+namespace lf {
+namespace {
+
+namespace fs = std::filesystem;
+
+class RunStateTest : public ::testing::Test {
+ protected:
+  RunStateTest() {
+    static int count = 0;
+    folder_ = fs::temp_directory_path() /
+              ("lf_run_state_" + std::to_string(::getpid()) + "_" + std::to_string(count++));
+    path_.cameras = testing::NoiseFrames();
+  }
+  ~RunStateTest() override {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+  }
+
+  Result<std::unique_ptr<RunState>> Open(bool resume, bool overwrite = false, uint64_t seed = 0) {
+    RunChoices choices;
+    choices.seed = seed;
+    return RunState::Open({folder_, FrameFormat::kExrHalf, resume, overwrite,
+                           InputsOfRays(field_, choices), InputsOfPicture(choices)},
+                          path_);
+  }
+  // Frame 2 begun, frame 3 finished.
+  void LeaveUnfinished() {
+    const std::unique_ptr<RunState> state = *Open(false);
+    ASSERT_TRUE(state->SavePlate(FrameId{2}, progress_, plate_, pool_));
+    std::ofstream(folder_ / "frame_0003.exr") << "a picture";
+    FrameReport frame;
+    frame.frame = FrameId{3};
+    frame.rays.accepted_count = 77;
+    frame.camera = InputsOfCamera(FrameId{3}, path_.Camera(FrameId{3}));
+    ASSERT_TRUE(state->SaveFinished(frame));
+  }
+
+  fs::path folder_;
+  CameraPath path_;
+  const LightField field_ = testing::NoiseField();
+  ThreadPool pool_{2};
+  const FrameProgress progress_ = {128, {50, 5000, 4000}};
+  const SensorPlate plate_ = testing::NoisePlate(80, 60, 7, SensorPlate::kMaxCount, true);
+};
+
+TEST_F(RunStateTest, GoesOnWhereItWas) {
+  LeaveUnfinished();
+  const auto state = Open(true);
+  ASSERT_TRUE(state) << state.error().message;
+  ASSERT_EQ((*state)->finished().size(), 1u);
+  EXPECT_EQ((*state)->finished().at(FrameId{3}).rays.accepted_count, 77u);
+  SensorPlate plate(80, 60);
+  const Result<FrameProgress> progress = (*state)->LoadPlate(FrameId{2}, &plate);
+  ASSERT_TRUE(progress);
+  EXPECT_EQ(progress->places_done, 128u);
+  EXPECT_EQ(progress->rays.tested_count, 5000u);
+  EXPECT_EQ(plate, plate_);
+  SensorPlate fresh(80, 60);
+  EXPECT_EQ((*state)->LoadPlate(FrameId{1}, &fresh)->places_done, 0u);
+}
+
+TEST_F(RunStateTest, LeavesNothingWhenAllIsDone) {
+  {
+    const std::unique_ptr<RunState> state = *Open(false);
+    FrameReport frame;
+    frame.frame = FrameId{1};
+    ASSERT_TRUE(state->SavePlate(FrameId{1}, progress_, plate_, pool_));
+    ASSERT_TRUE(state->SaveTotals({}));
+    ASSERT_TRUE(state->SaveFinished(frame));
+    ASSERT_TRUE(state->Close({}));
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "partial"));
+  EXPECT_TRUE(fs::exists(folder_ / "report.json"));
+}
+
+TEST_F(RunStateTest, IsNotTouchedUnlessAskedFor) {
+  LeaveUnfinished();
+  const auto refused = Open(false);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, ErrorKind::kUsage);
+  EXPECT_NE(refused.error().message.find("1 frames finished, 1 begun"), std::string::npos);
+  EXPECT_TRUE(Open(true));
+  EXPECT_TRUE(Open(false, true));
+  EXPECT_FALSE(fs::exists(folder_ / "partial"));
+  EXPECT_TRUE(Open(false));
+}
+
+TEST_F(RunStateTest, OtherInputsAreNamed) {
+  LeaveUnfinished();
+  auto refused = Open(true, false, 9);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("seed 0, this call has 9"), std::string::npos);
+  path_.cameras[1].aperture.blades = 8;
+  refused = Open(true);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("frame_0002.plate"), std::string::npos);
+  EXPECT_NE(refused.error().message.find("frame.blades 5, this call has 8"), std::string::npos);
+  path_.cameras.pop_back();
+  refused = Open(true);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("frame 3, the path has 2"), std::string::npos);
+}
+
+TEST_F(RunStateTest, AFinishedFrameThatWasRemovedIsRenderedAgain) {
+  LeaveUnfinished();
+  fs::remove(folder_ / "frame_0003.exr");
+  EXPECT_TRUE((*Open(true))->finished().empty());
+}
+
+TEST_F(RunStateTest, WhatAKilledProcessLeftIsCleared) {
+  LeaveUnfinished();
+  const fs::path partial = folder_ / "partial";
+  std::ofstream(partial / ".frame_0002.123.tmp.plate") << "half";
+  std::ofstream(folder_ / ".frame_0003.123.tmp.exr") << "half";
+  std::ofstream(folder_ / ".hidden.tmp.txt") << "the user's";
+  // Killed between the record of a frame and the removal of its plate.
+  fs::copy(partial / "frame_0002.plate", partial / "frame_0003.plate");
+  ASSERT_TRUE(Open(true));
+  EXPECT_FALSE(fs::exists(partial / ".frame_0002.123.tmp.plate"));
+  EXPECT_FALSE(fs::exists(folder_ / ".frame_0003.123.tmp.exr"));
+  EXPECT_TRUE(fs::exists(folder_ / ".hidden.tmp.txt"));
+  EXPECT_FALSE(fs::exists(partial / "frame_0003.plate"));
+  EXPECT_TRUE(fs::exists(partial / "frame_0002.plate"));
+}
+
+TEST_F(RunStateTest, OneAtATime) {
+  const auto first = Open(false);
+  const auto second = Open(true);
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().kind, ErrorKind::kOutput);
+}
+
+}  // namespace
+}  // namespace lf
