@@ -2,13 +2,14 @@
 """Times whole programs on the same light field: lfrenderer, and the same thing written with OpenCV
 (bench/compare_opencv.cc), JPEG decoding included.
 
-usage: bench/compare_opencv.py BUILD_DIR LIGHTFIELD [--threads 2] [--rounds 5] [--frames 1,30]
+usage: bench/compare_opencv.py BUILD_DIR LIGHTFIELD [--threads 2] [--frames 1,30] [--rounds 5,3]
                                [--diameter W] [--name NAME]
 
 LIGHTFIELD  8-bit sRGB images of parallel cameras in one plane; measured with the 27 x 27 views of
             960 x 640 of Linus Mossberg's light-field-renderer, folder light-fields/shop
 --diameter  of the lens, in world units (1.2: all 729 views are within)
 --frames    lengths of the focus pulls that are rendered; a pull of one frame is its beginning
+--rounds    of each of them
 --name      write bench/results/NAME.md and NAME.json
 
 The programs take turns; figures are medians over the rounds, ratios those of the medians. Rates are
@@ -73,8 +74,8 @@ def main():
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("light_field", type=pathlib.Path)
     parser.add_argument("--threads", type=int, default=2)
-    parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--frames", default="1,30")
+    parser.add_argument("--rounds", default="5,3")
     parser.add_argument("--diameter", type=float, default=1.2)
     parser.add_argument("--name")
     arguments = parser.parse_args()
@@ -92,41 +93,44 @@ def main():
                     folder / program, "--estimator", program, "--threads", arguments.threads,
                     "--progress", "none", "--no-contact-sheet"]
 
-        for frames in map(int, arguments.frames.split(",")):
+        for frames, rounds in zip(map(int, arguments.frames.split(",")),
+                                  map(int, arguments.rounds.split(",")), strict=True):
             path = folder / f"path{frames}.yaml"
             path.write_text(PATH.format(frames=frames, diameter=arguments.diameter,
                                         end=(frames - 1) / 25 or 1))
             times = {program: [] for program in programs}
-            for _ in range(arguments.rounds):
+            for _ in range(rounds):
                 for program in programs:
                     times[program].append(timed(call(program, path, frames)))
             theirs = np.fromfile(folder / "opencv.f32", np.float32).reshape(640, 960, 3)
             medians = {}
             for program in programs:
                 wall, cpu, peak = (statistics.median(column) for column in zip(*times[program]))
-                medians[program] = wall
-                row = dict(program=program, frames=frames, wall_s=wall, cpu_s=cpu, peak_mib=peak,
+                medians[program] = (wall, cpu)
+                row = dict(program=program, frames=frames, rounds=rounds, wall_s=wall, cpu_s=cpu, peak_mib=peak,
                            images_per_s=images / wall, per_frame_s=wall / frames)
                 if program != "OpenCV":
                     ours = cv2.imread(str(folder / program / "frame_0001.exr"),
                                       cv2.IMREAD_UNCHANGED)[:, :, 2::-1]
                     row["psnr_db"] = psnr_db(ours, theirs)
-                    row["rate"] = medians["OpenCV"] / wall
+                    row["rate"] = medians["OpenCV"][0] / wall
+                    row["cpu_ratio"] = medians["OpenCV"][1] / cpu
                     if program == "bilinear" and row["psnr_db"] < LEAST_PSNR_DB:
                         raise SystemExit(f"the frames differ: {row['psnr_db']:.1f} dB")
                 record["rows"].append(row)
 
     text = (f"# Whole programs: ours against OpenCV\n\n{images} LF images, {arguments.threads} "
-            f"threads each, frames of 960 x 640, medians of {arguments.rounds} rounds. "
+            f"threads each, frames of 960 x 640, medians over the rounds. "
             f"{results.sentence(record)}\n\n"
-            "| frames | program | s | s/frame | LF images/s | rate to OpenCV's | CPU s | peak MiB | "
-            "PSNR to OpenCV's |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n")
+            "| frames | rounds | program | s | s/frame | LF images/s | rate to OpenCV's | CPU s | OpenCV's CPU to it | peak MiB | "
+            "PSNR to OpenCV's |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n")
     for row in record["rows"]:
-        rate = f"{row['rate']:.2f} x" if "rate" in row else "1"
+        rate, cpu_ratio = (f"{row[key]:.2f} x" if key in row else "1"
+                           for key in ("rate", "cpu_ratio"))
         psnr = f"{row['psnr_db']:.1f} dB" if "psnr_db" in row else ""
-        text += (f"| {row['frames']} | {row['program']} | {row['wall_s']:.2f} | "
+        text += (f"| {row['frames']} | {row['rounds']} | {row['program']} | {row['wall_s']:.2f} | "
                  f"{row['per_frame_s']:.3f} | {row['images_per_s']:.0f} | {rate} | "
-                 f"{row['cpu_s']:.2f} | {row['peak_mib']:.0f} | {psnr} |\n")
+                 f"{row['cpu_s']:.2f} | {cpu_ratio} | {row['peak_mib']:.0f} | {psnr} |\n")
     print(text)
     if arguments.name:
         results.save(arguments.name, record, text)
