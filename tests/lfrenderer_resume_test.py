@@ -18,6 +18,8 @@ import tempfile
 import time
 import unittest
 
+from PIL import Image
+
 import small_field
 
 RENDERER = None
@@ -188,6 +190,27 @@ class ResumeTest(unittest.TestCase):
     def test_pictures_stand_beside_unfinished_plates(self):
         self.begun("pictures")
         self.assertTrue(list(self.partial("pictures").glob("frame_*.exr")))
+
+    def test_video_sheet_and_report_of_a_resumed_render_have_all_frames(self):
+        self.begun("film")
+        out = self.folder / "film"
+        result = subprocess.run(
+            [argument for argument in self.arguments(
+                "film", "--back-end", "reference", "--frames", "1-12", "--resume", "--video",
+                str(out / "film.mp4")) if argument != "--no-contact-sheet"],
+            capture_output=True, text=True, timeout=120)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        counted = subprocess.run(["ffprobe", "-v", "error", "-count_frames", "-show_entries",
+                                  "stream=nb_read_frames", "-of", "csv=p=0", out / "film.mp4"],
+                                 capture_output=True, text=True)
+        self.assertEqual(counted.stdout.strip().strip(","), "12", counted.stderr)
+        with Image.open(out / "contact_sheet.png") as sheet:
+            self.assertGreater(sheet.size[0], 4 * 80)
+        report = json.loads((out / "report.json").read_text())
+        self.assertEqual([f["frame"] for f in report["frames"]], list(range(1, 13)))
+        whole = json.loads((self.folder / "ref" / "report.json").read_text())
+        for ours, theirs in zip(report["frames"], whole["frames"]):
+            self.assertEqual({**ours, "develop_s": 0}, {**theirs, "develop_s": 0})
 
     def test_sigusr1_writes_the_state_and_goes_on(self):
         expected = self.of_reference(range(1, 7))
