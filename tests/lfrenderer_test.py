@@ -152,7 +152,11 @@ class RendererTest(unittest.TestCase):
         field, path = write_field(self.folder / "field"), write_path(self.folder, frames=2000)
         process = subprocess.Popen([RENDERER, field, path, "-o", self.folder / "out", "--back-end",
                                     "reference"], stderr=subprocess.PIPE, text=True)
-        time.sleep(1)
+        # Its folder is made after it has begun to listen.
+        for _ in range(6000):
+            if (self.folder / "out").exists():
+                break
+            time.sleep(0.01)
         process.send_signal(signal.SIGINT)
         _, words = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 5, words)

@@ -1,5 +1,5 @@
-// JPEG files, decoded by libjpeg-turbo, whole or in part. Internal to this folder, and the only
-// place with libjpeg.
+// JPEG files, decoded by libjpeg-turbo, whole or in part: the only place with libjpeg. Internal to
+// imageio.
 #pragma once
 
 #include <cstdint>
