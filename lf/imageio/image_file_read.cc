@@ -33,15 +33,6 @@ ByteSource SourceOf(OIIO::Filesystem::IOProxy& file) {
   };
 }
 
-// libtiff goes on with the next row: whatever a decoder remarks means pixels that were not
-// recorded.
-Result<void> CheckRemarks(const std::string& remarks, const std::string& name) {
-  const size_t begin = remarks.find_first_not_of('\n');
-  if (begin == std::string::npos) return {};
-  return InputError(fmt::format("{}: truncated or damaged: {}", name,
-                                remarks.substr(begin, remarks.find('\n', begin) - begin)));
-}
-
 // A file, under its name or in memory.
 struct FileSource {
   OIIO::Filesystem::IOProxy& file;

@@ -1,6 +1,7 @@
 #include "lf/imageio/open_image_io.h"
 
 #include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
 
 namespace lf {
 
@@ -11,6 +12,13 @@ void ConfigureOpenImageIo() {
     return true;
   }();
   static_cast<void>(done);
+}
+
+Result<void> CheckRemarks(const std::string& remarks, const std::string& name) {
+  const size_t begin = remarks.find_first_not_of('\n');
+  if (begin == std::string::npos) return {};
+  return InputError(fmt::format("{}: truncated or damaged: {}", name,
+                                remarks.substr(begin, remarks.find('\n', begin) - begin)));
 }
 
 const char* PluginName(ImageFormat format) {

@@ -1,6 +1,9 @@
 // How OpenImageIO is used in this folder, and only here. Internal to imageio.
 #pragma once
 
+#include <string>
+
+#include "lf/core/result.h"
 #include "lf/imageio/image_probe.h"
 
 namespace lf {
@@ -11,5 +14,9 @@ void ConfigureOpenImageIo();
 
 // What OpenImageIO calls its coder of the format.
 const char* PluginName(ImageFormat format);
+
+// kInput if a decoder remarked anything. libtiff goes on with the next row, and libpng with what it
+// has: it means pixels that were not recorded.
+Result<void> CheckRemarks(const std::string& remarks, const std::string& name);
 
 }  // namespace lf

@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <exception>
 #include <mutex>
-#include <new>
 #include <optional>
 #include <utility>
 
@@ -20,20 +18,6 @@ using Clock = std::chrono::steady_clock;
 
 double SecondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-// An exception that leaves a task would end the program.
-Result<LfPixels> LoadWithoutThrowing(const LfImageStore& store, LfImageId id, const PixelRect& rect,
-                                     const std::string& name, LfPixels pixels) {
-  try {
-    LF_RETURN_IF_ERROR(store.Load(id, rect, &pixels));
-    return pixels;
-  } catch (const std::bad_alloc&) {
-    return OutputError(
-        fmt::format("{}: no memory to load it: lower --memory, or give the machine more", name));
-  } catch (const std::exception& exception) {
-    return InputError(fmt::format("{}: {}", name, exception.what()));
-  }
 }
 
 // An LF image of a batch while it is decoded.
@@ -188,8 +172,14 @@ Batch FrameCollector::State::BatchFrom(size_t from) const {
   const uint32_t cut = options_.decision_places;
   const uint32_t decision = cut == 0 ? UINT32_MAX : (order_[batch.begin].place / cut + 1) * cut;
   const size_t most = batch.begin + static_cast<size_t>(options_.batch_image_count);
+  uint64_t rays = 0, frame_rays = 0;
   for (; batch.end < std::min(order_.size(), most); ++batch.end) {
-    if (order_[batch.end].place >= decision) break;
+    const SelectedImage& image = order_[batch.end];
+    rays += image.ray_count;
+    frame_rays += image.ray_count / std::max(1U, image.frame_count);
+    const bool is_long =
+        rays > options_.batch_ray_count || frame_rays > options_.batch_frame_ray_count;
+    if (image.place >= decision || (is_long && batch.end > batch.begin)) break;
     batch.loading.push_back({batch.end, std::nullopt});
   }
   batch.place_end = batch.end < order_.size() ? std::min(decision, order_[batch.end].place)

@@ -31,6 +31,11 @@ struct CollectOptions {
   // The most LF images collected together into a tile of a plate. As many again are decoded
   // meanwhile, so that twice as many are in memory.
   int batch_image_count = 16;
+  // Less where a batch would test more rays than this in all frames: some seconds, so that there is
+  // progress to tell and a state to write. Or in one frame: less than a second, for those that are
+  // begun are finished before an interruption is answered.
+  uint64_t batch_ray_count = 10'000'000'000;
+  uint64_t batch_frame_ray_count = 500'000'000;
   size_t plan_bytes = size_t{64} << 20;  // of frames whose rays are planned together
   // No batch goes across a multiple of it, in places: there stop rules may be decided, for every
   // frame alike. 0: no rule, batches are not cut. Else a multiple of kDecisionPlaces.

@@ -147,6 +147,20 @@ TEST(FrameCollector, WhatNoFrameWantsIsNotRead) {
                           [](const SelectedImage& image) { return image.place >= 100; }));
 }
 
+TEST(FrameCollector, LongBatchesAreCut) {
+  Job job;
+  job.options.batch_image_count = 64;
+  job.options.batch_frame_ray_count = 10 * testing::kWidth * testing::kHeight;
+  FrameCollector collector = job.Collector();
+  EXPECT_TRUE(*collector.Step());
+  EXPECT_GE(collector.images_done(), 10u);
+  EXPECT_LT(collector.images_done(), 40u);
+  job.options.batch_ray_count = 1;
+  FrameCollector one_by_one = job.Collector();
+  EXPECT_TRUE(*one_by_one.Step());
+  EXPECT_EQ(one_by_one.images_done(), 1u);
+}
+
 TEST(FrameCollector, TheNextBatchIsDecodedMeanwhile) {
   Job job;
   job.options.batch_image_count = 10;

@@ -1,6 +1,8 @@
 // Where the pixels of LF images come from. A terabyte is never in memory: one image at a time.
 #pragma once
 
+#include <string>
+
 #include "lf/capture/lf_pixels.h"
 #include "lf/core/geometry.h"
 #include "lf/core/ids.h"
@@ -23,5 +25,11 @@ class LfImageStore {
   // for Load() will say what is wrong. May be called by many threads at the same time.
   virtual void Announce(LfImageId /*id*/) const {}
 };
+
+// store.Load() into the memory of `pixels`, which are the answer. What a store throws, for want of
+// memory (kOutput) or otherwise (kInput), becomes the image's error: an exception that leaves a
+// thread ends the program.
+Result<LfPixels> LoadWithoutThrowing(const LfImageStore& store, LfImageId id, const PixelRect& rect,
+                                     const std::string& name, LfPixels pixels);
 
 }  // namespace lf

@@ -1,0 +1,24 @@
+#include "lf/store/lf_image_store.h"
+
+#include <fmt/format.h>
+
+#include <exception>
+#include <new>
+#include <utility>
+
+namespace lf {
+
+Result<LfPixels> LoadWithoutThrowing(const LfImageStore& store, LfImageId id, const PixelRect& rect,
+                                     const std::string& name, LfPixels pixels) {
+  try {
+    LF_RETURN_IF_ERROR(store.Load(id, rect, &pixels));
+    return pixels;
+  } catch (const std::bad_alloc&) {
+    return OutputError(
+        fmt::format("{}: no memory to load it: lower --memory, or give the machine more", name));
+  } catch (const std::exception& exception) {
+    return InputError(fmt::format("{}: {}", name, exception.what()));
+  }
+}
+
+}  // namespace lf
