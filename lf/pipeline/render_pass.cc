@@ -232,7 +232,10 @@ Result<void> RenderPass::SavePictures(double picture_budget_s) {
   });
   const double begin_s = NowSeconds();
   for (const size_t f : oldest_first) {
-    if (NowSeconds() - begin_s >= picture_budget_s) break;
+    // A signal to end may come on the way.
+    const double budget_s =
+        job_.IsStopped() ? std::min(picture_budget_s, kLastPictures_s) : picture_budget_s;
+    if (NowSeconds() - begin_s >= budget_s) break;
     Frame& frame = frames_[f];
     LF_RETURN_IF_ERROR(job_.output.Write(frame.id, ProgressOf(f).rays, plates_[f],
                                          job_.state.PicturePath(frame.id)));
