@@ -198,8 +198,7 @@ Result<void> RenderPass::FinishFrame(size_t f) {
   const auto asked =
       job_.options.require_samples ? job_.options.require_samples : job_.options.stop_at_samples;
   if (asked)
-    report.samples =
-        FrameReport::Samples{*asked, MeasureSamples(plates_[f], ReachableOf(f), *asked)};
+    report.samples = FrameSamples{*asked, MeasureSamples(plates_[f], ReachableOf(f), *asked)};
   if (asked && job_.IsStopped()) return Interrupt();
   if (progress.rays.image_count == 0)
     LogWarning("frame {} is black: no LF image contributes to it", frame.id.value);

@@ -20,6 +20,12 @@
 
 namespace lf {
 
+// With --stop-when or --require: how many samples were asked for, and what there is.
+struct FrameSamples {
+  uint32_t asked = 0;
+  SampleShare measured;
+};
+
 struct FrameReport {
   FrameId frame;
   FrameRays rays;
@@ -29,13 +35,8 @@ struct FrameReport {
   std::array<uint64_t, 3> median_count{};
   double develop_s = 0;
 
-  // Where samples were asked for (--stop-when, --require): how many, and what there is.
-  struct Samples {
-    uint32_t asked = 0;
-    SampleShare measured;
-  };
-  std::optional<Samples> samples;
-  RunInputs camera;  // InputsOfCamera()
+  std::optional<FrameSamples> samples;  // where they were asked for
+  RunInputs camera;                     // InputsOfCamera()
 };
 
 struct RenderReport {

@@ -40,7 +40,7 @@ TEST(Report, ReadsBackWhatItWrote) {
   frame.rays = {3, uint64_t{1} << 60, 90};
   frame.empty_element_count = {1, 2, 3};
   frame.median_count = {7, 8, 9};
-  frame.samples = FrameReport::Samples{8, {0.25, 3}};
+  frame.samples = FrameSamples{8, {0.25, 3}};
   frame.camera = {{"frame", "7"}};
   report.frames = {frame, {FrameId{9}, {}, {}, {}, {}, 0, {}, {}}};
   const Result<RenderReport> read = ParseReport(ToJson(report), "x");
