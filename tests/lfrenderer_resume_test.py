@@ -232,7 +232,7 @@ class ResumeTest(unittest.TestCase):
             self.arguments("twice", "--back-end", "reference", "--frames", "1-6"),
             stderr=subprocess.PIPE, text=True)
         self.wait_for_lock("twice", process)
-        time.sleep(0.2)
+        time.sleep(0.02)  # long before the last frame
         process.send_signal(signal.SIGINT)
         time.sleep(0.01)
         process.send_signal(signal.SIGINT)
