@@ -32,7 +32,7 @@ class FastKernel final : public OurKernel {
   explicit FastKernel(const KernelCase& kernel_case)
       : case_(kernel_case),
         plate_(kernel_case.spec.plate_width, kernel_case.spec.plate_height),
-        tiles_(CutIntoTiles(&plate_, kTileWidth, kTileHeight)) {}
+        tiles_(CutIntoTiles(&plate_, TileSums::kTileWidth, TileSums::kTileHeight)) {}
 
   void Collect(int image_count) override {
     const auto count = static_cast<size_t>(image_count);
@@ -54,10 +54,6 @@ class FastKernel final : public OurKernel {
   uint64_t accepted_count() const override { return accepted_count_; }
 
  private:
-  // Those of lf/pipeline/collect_batch.cc.
-  static constexpr int kTileWidth = 384;
-  static constexpr int kTileHeight = 80;
-
   template <class CollectImage>
   void CollectTiles(size_t image_count, const CollectImage& collect_image) {
     for (PlateTile& tile : tiles_) {

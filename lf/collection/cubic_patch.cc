@@ -1,23 +1,17 @@
 #include "lf/collection/cubic_patch.h"
 
+#include "lf/collection/even_cubic.h"
+
 namespace lf {
 namespace {
-
-// Through the values at -1, -1/3, 1/3, 1 times `half`.
-void Interpolate(const double (&e)[4], double half, double (&c)[4]) {
-  c[0] = (9 * (e[1] + e[2]) - (e[0] + e[3])) / 16;
-  c[1] = (27 * (e[2] - e[1]) - (e[3] - e[0])) / 16 / half;
-  c[2] = 9 * ((e[0] + e[3]) - (e[1] + e[2])) / 16 / (half * half);
-  c[3] = 9 * ((e[3] - e[0]) - 3 * (e[2] - e[1])) / 16 / (half * half * half);
-}
 
 // values [row][column]
 void InterpolateBoth(const double (&values)[4][4], double half_x, double half_y,
                      double (&c)[4][4]) {
   double along[4][4];  // [row][power of t]
-  for (int j = 0; j < 4; ++j) Interpolate(values[j], half_x, along[j]);
+  for (int j = 0; j < 4; ++j) InterpolateEven(values[j], half_x, along[j]);
   for (int k = 0; k < 4; ++k)
-    Interpolate({along[0][k], along[1][k], along[2][k], along[3][k]}, half_y, c[k]);
+    InterpolateEven({along[0][k], along[1][k], along[2][k], along[3][k]}, half_y, c[k]);
 }
 
 }  // namespace

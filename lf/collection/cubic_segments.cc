@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lf/collection/even_cubic.h"
+
 namespace lf {
 namespace {
 
@@ -16,14 +18,6 @@ constexpr double kBoundMargin = 0.01;
 constexpr double kWorstPlace = 0.745;
 
 double ValueAt(const double (&c)[4], double t) { return ((c[3] * t + c[2]) * t + c[1]) * t + c[0]; }
-
-// Through the values at u = -1, -1/3, 1/3, 1 with t = u half.
-void Interpolate(const double (&e)[4], double half, double (&c)[4]) {
-  c[0] = (9 * (e[1] + e[2]) - (e[0] + e[3])) / 16;
-  c[1] = (27 * (e[2] - e[1]) - (e[3] - e[0])) / 16 / half;
-  c[2] = 9 * ((e[0] + e[3]) - (e[1] + e[2])) / 16 / (half * half);
-  c[3] = 9 * ((e[3] - e[0]) - 3 * (e[2] - e[1])) / 16 / (half * half * half);
-}
 
 // The cubics of pieces [begin, end) of a row on which `position(x)`, an optional Vec2, is defined;
 // pieces where they miss it are halved. `is_certain(begin, end)` spares the check.
@@ -61,8 +55,8 @@ class PieceFitter {
       x[i] = p->x();
       y[i] = p->y();
     }
-    Interpolate(x, half, cubics->x);
-    Interpolate(y, half, cubics->y);
+    InterpolateEven(x, half, cubics->x);
+    InterpolateEven(y, half, cubics->y);
     if (is_certain_(begin, end)) return true;
     for (const double u : {-kWorstPlace, kWorstPlace}) {
       const std::optional<Vec2> truth = position_(middle + u * half);

@@ -46,8 +46,6 @@ uint64_t GatherReference(const PinholeCamera& lf_camera, const LfPixels& pixels,
 struct GatherPlan {
   int plate_width = 0;
   int plate_height = 0;
-  int image_width = 0;
-  int image_height = 0;
   std::vector<CubicSegment> segments;  // of elements, all accepted, by y, then x
   std::vector<size_t> row_begin;       // [plate_height + 1]: the first segment of a row
 };

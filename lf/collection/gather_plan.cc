@@ -88,8 +88,6 @@ class GatherPlanner {
                     render_camera.aperture.radius_w};
     plan_.plate_width = render_camera.pinhole.intrinsics.width_px;
     plan_.plate_height = render_camera.pinhole.intrinsics.height_px;
-    plan_.image_width = k_.width_px;
-    plan_.image_height = k_.height_px;
   }
 
   GatherPlan Run() {

@@ -37,7 +37,8 @@ struct Coordinate {
   hn::Vec<LaneI> pixel;
   hn::Vec<LaneI> weight;
 };
-HWY_ATTR HWY_INLINE Coordinate FindCoordinate(const float (&c)[4], int32_t base, int size,
+// Within pixels [begin, end).
+HWY_ATTR HWY_INLINE Coordinate FindCoordinate(const float (&c)[4], int32_t base, int begin, int end,
                                               hn::Vec<LaneF> t) {
   const LaneF df;
   const LaneI di;
@@ -47,26 +48,26 @@ HWY_ATTR HWY_INLINE Coordinate FindCoordinate(const float (&c)[4], int32_t base,
                               hn::Set(df, c[1])),
                       t),
               hn::Set(df, c[0]));
-  // From pixel centres; what rounding has sent out of the image is on its border.
+  // From pixel centres; what rounding has sent beyond the pixels is on their border.
   const auto position =
-      hn::Min(hn::Max(hn::Sub(cubic, half), hn::Set(df, static_cast<float>(-base))),
-              hn::Set(df, static_cast<float>(size - 1 - base)));
-  const auto pixel = hn::Min(hn::Floor(position), hn::Set(df, static_cast<float>(size - 2 - base)));
+      hn::Min(hn::Max(hn::Sub(cubic, half), hn::Set(df, static_cast<float>(begin - base))),
+              hn::Set(df, static_cast<float>(end - 1 - base)));
+  const auto pixel = hn::Min(hn::Floor(position), hn::Set(df, static_cast<float>(end - 2 - base)));
   const auto weight = hn::Floor(
       hn::Add(hn::Mul(hn::Sub(position, pixel), hn::Set(df, static_cast<float>(kOne))), half));
   return {hn::Add(hn::ConvertTo(di, pixel), hn::Set(di, base)), hn::ConvertTo(di, weight)};
 }
 
-HWY_ATTR void FindPlaces(const GatherPlan& plan, const CubicSegment& s, int begin, int count,
-                         const PixelRect& rect, Places* places) {
+HWY_ATTR void FindPlaces(const CubicSegment& s, int begin, int count, const PixelRect& rect,
+                         Places* places) {
   const LaneF df;
   const LaneI di;
   const auto width = hn::Set(di, rect.width());
   const auto x_begin = hn::Set(di, rect.x_begin), y_begin = hn::Set(di, rect.y_begin);
   for (int i = 0; i < count; i += kLanes) {
     const auto t = hn::Iota(df, s.t_begin + static_cast<float>(begin + i));
-    const Coordinate x = FindCoordinate(s.x_cubic, s.base_x, plan.image_width, t);
-    const Coordinate y = FindCoordinate(s.y_cubic, s.base_y, plan.image_height, t);
+    const Coordinate x = FindCoordinate(s.x_cubic, s.base_x, rect.x_begin, rect.x_end, t);
+    const Coordinate y = FindCoordinate(s.y_cubic, s.base_y, rect.y_begin, rect.y_end, t);
     const auto row = hn::Sub(y.pixel, y_begin), column = hn::Sub(x.pixel, x_begin);
     hn::Store(hn::Add(hn::Mul(row, width), column), di, places->pixel + i);
     const hn::RebindToUnsigned<LaneI> du;
@@ -149,10 +150,10 @@ HWY_ATTR HWY_INLINE void AddRay(const uint16_t* upper, const uint16_t* lower, ui
 
 // Elements [begin, begin + count) of the segment; `sums` of the first.
 template <bool kMayBeMasked>
-HWY_ATTR uint32_t GatherPart(const GatherPlan& plan, const CubicSegment& s, int begin, int count,
-                             const LfPixels& pixels, TileSums::Element* sums) {
+HWY_ATTR uint32_t GatherPart(const CubicSegment& s, int begin, int count, const LfPixels& pixels,
+                             TileSums::Element* sums) {
   Places places;
-  FindPlaces(plan, s, begin, count, pixels.rect, &places);
+  FindPlaces(s, begin, count, pixels.rect, &places);
   const uint16_t* const values = pixels.radiance.row(0);
   const ptrdiff_t row_values = static_cast<ptrdiff_t>(pixels.rect.width()) * LfPixels::kRgbLanes;
   constexpr int kRowsAhead = 2;
@@ -188,7 +189,7 @@ HWY_ATTR uint64_t GatherTile(const GatherPlan& plan, const LfPixels& pixels, Til
       const int end = std::min(s.x_begin + s.count, tile.x_end);
       if (begin >= end) continue;
       const auto gather = pixels.any_masked ? GatherPart<true> : GatherPart<false>;
-      rays += gather(plan, s, begin - s.x_begin, end - begin, pixels, row + (begin - tile.x_begin));
+      rays += gather(s, begin - s.x_begin, end - begin, pixels, row + (begin - tile.x_begin));
     }
   }
   return rays;
@@ -207,6 +208,7 @@ uint64_t GatherTile(const GatherPlan& plan, const LfPixels& pixels, TileSums* su
   LF_CHECK(sums->tile().plate_width() == plan.plate_width &&
            sums->tile().plate_height() == plan.plate_height);
   if (plan.segments.empty()) return 0;
+  LF_CHECK(pixels.rect.width() >= 2 && pixels.rect.height() >= 2);
   return HWY_DYNAMIC_DISPATCH(GatherTile)(plan, pixels, sums);
 }
 

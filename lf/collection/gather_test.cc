@@ -143,6 +143,21 @@ TEST(Gather, AllFourPixelsMustExistAndBeUnmasked) {
   EXPECT_TRUE(InterpolatePixels(pixels, 8, 6, 5, 3));
 }
 
+TEST(Gather, MaskedPixelsTakeTheRaysAroundThem) {
+  // Half a pixel of disparity per pitch: every ray lies between pixels.
+  const testing::CameraPair pair = testing::ParallelPair(1, 3, 0.01, 0.05);
+  LfPixels pixels = RandomPixels(pair.lf_camera.intrinsics, 4);
+  SensorPlate expected = PlateFor(pair), fast = PlateFor(pair), all = PlateFor(pair);
+  const uint64_t unmasked = GatherInTilesOf(pair, pixels, 9, &all);
+  for (int i = 5; i < 30; i += 3) pixels.Mask(i, i);
+  const uint64_t accepted = GatherReference(pair.lf_camera, pixels, pair.render_camera, &expected);
+  EXPECT_LT(accepted, unmasked - 20);
+  EXPECT_EQ(GatherInTilesOf(pair, pixels, 9, &fast), accepted);
+  for (int y = 0; y < expected.height(); ++y)
+    for (int x = 0; x < expected.width(); ++x)
+      EXPECT_EQ(fast.At(x, y, 1).count, expected.At(x, y, 1).count) << x << ", " << y;
+}
+
 TEST(Gather, InterpolationIsExactAtCentresAndHalfway) {
   const Intrinsics k{100, 100, 4, 3, 0, 8, 6};
   const LfPixels pixels = RandomPixels(k, 2);

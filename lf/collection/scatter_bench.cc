@@ -66,46 +66,6 @@ BENCHMARK_CAPTURE(BM_Distorted, phone, kPhone);
 BENCHMARK_CAPTURE(BM_Distorted, barrel, kBarrel);
 BENCHMARK_CAPTURE(BM_Distorted, fisheye, kFisheyeLens);
 
-// As a renderer works: a batch of large LF images into the tiles of one frame.
-void BM_Batch(benchmark::State& state, BayerPattern bayer) {
-  constexpr int kImages = 16, kSize = 2048;
-  RenderCamera frame;
-  frame.pinhole.intrinsics = {2000, 2000, 960, 540, 0, 1920, 1080, {}};
-  frame.aperture = {0.05, 0, 0};
-  frame.focus_plane = {Vec3::UnitZ(), 2};
-  const LfPixels pixels = testing::NoisePixels({0, 0, kSize, kSize}, bayer, 1);
-  std::vector<ScatterPlan> plans;
-  for (int i = 0; i < kImages; ++i) {
-    PinholeCamera camera;
-    camera.intrinsics = {2000, 2000, 1024, 1024, 0, kSize, kSize, {}};
-    camera.cam_from_world =
-        *LookAlong({0.002 * i, 0.001 * i, 0.003}, {0.02, 0.01, 1}, {0.02, -1, 0});
-    plans.push_back(PlanScatter(camera, frame, pixels.rect));
-  }
-  SensorPlate plate(1920, 1080);
-  std::vector<PlateTile> tiles =
-      CutIntoTiles(&plate, static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
-  TileSums sums;
-  uint64_t accepted = 0;
-  for (auto _ : state)
-    for (PlateTile& tile : tiles) {
-      sums.Begin(&tile);
-      for (const ScatterPlan& plan : plans) accepted += ScatterTile(plan, pixels, &sums);
-      sums.Flush();
-    }
-  ReportRays(state, accepted);
-}
-BENCHMARK_CAPTURE(BM_Batch, rgb, BayerPattern::kNone)
-    ->Args({512, 64})
-    ->Args({512, 32})
-    ->Args({256, 64})
-    ->Args({1920, 8});
-BENCHMARK_CAPTURE(BM_Batch, bayer, BayerPattern::kRggb)
-    ->Args({512, 64})
-    ->Args({512, 32})
-    ->Args({256, 64})
-    ->Args({1920, 8});
-
 void BM_IdealPixels(benchmark::State& state, const Distortion& distortion) {
   Intrinsics k = MakeScene(BayerPattern::kNone, 0.02).lf_camera.intrinsics;
   k.distortion = distortion;

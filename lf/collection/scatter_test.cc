@@ -114,15 +114,18 @@ TEST(Scatter, RaysOnBordersAreNeitherLostNorDoubled) {
 
 TEST(Scatter, MaskedPixelsGiveNoRay) {
   const testing::CameraPair pair = testing::ParallelPair(1, 2, 0.013, 0.05);
-  LfPixels pixels = testing::NoisePixels(WholeImage(pair), BayerPattern::kRggb, 3);
-  for (int i = 5; i < 30; ++i) pixels.Mask(i, i);
-  SensorPlate expected = PlateFor(pair), fast = PlateFor(pair), all = PlateFor(pair);
-  const uint64_t accepted =
-      ScatterReference(pair.lf_camera, pixels, pair.render_camera, pixels.rect, &expected);
-  EXPECT_EQ(ScatterInTilesOf(pair, pixels, pixels.rect, 8, &fast), accepted);
-  EXPECT_EQ(expected, fast);
-  pixels.mosaic_mask = {};
-  EXPECT_EQ(ScatterInTilesOf(pair, pixels, pixels.rect, 8, &all), accepted + 25);
+  for (const BayerPattern bayer : {BayerPattern::kRggb, BayerPattern::kNone}) {
+    LfPixels pixels = testing::NoisePixels(WholeImage(pair), bayer, 3);
+    SensorPlate expected = PlateFor(pair), fast = PlateFor(pair), all = PlateFor(pair);
+    const uint64_t unmasked = ScatterInTilesOf(pair, pixels, pixels.rect, 8, &all);
+    for (int i = 5; i < 30; ++i) pixels.Mask(i, i);
+    const uint64_t accepted =
+        ScatterReference(pair.lf_camera, pixels, pair.render_camera, pixels.rect, &expected);
+    EXPECT_EQ(unmasked, accepted + 25);
+    EXPECT_EQ(ScatterInTilesOf(pair, pixels, pixels.rect, 8, &fast), accepted);
+    EXPECT_EQ(expected, fast);
+    EXPECT_EQ(TotalCount(fast), accepted * (bayer == BayerPattern::kNone ? 3 : 1));
+  }
 }
 
 TEST(Scatter, PixelsOfAPartOfTheImageAreEnough) {

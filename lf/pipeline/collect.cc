@@ -279,7 +279,6 @@ Result<CollectStatistics> Collect(const LightField& light_field, const LfImageSt
                                   const CollectOptions& options, ThreadPool& pool,
                                   std::vector<SensorPlate>* plates,
                                   const std::function<void(const CollectProgress&)>& progress) {
-  const std::vector<FrameProgress> start(frames.size());
   FrameCollector collector(light_field, store, frames, order, {}, options, pool, plates);
   CollectProgress done;
   while (true) {

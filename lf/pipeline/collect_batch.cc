@@ -9,11 +9,6 @@
 namespace lf {
 namespace {
 
-// A tile stays in the second level cache while a batch of LF images is added to it; the wider it
-// is, the fewer pieces scanlines are cut into. Tall enough for cameras that are turned.
-constexpr int kTileWidth = 384;
-constexpr int kTileHeight = 80;
-
 // Whether a frame is collected is decided once, where its first item comes.
 class FrameGate {
  public:
@@ -74,7 +69,7 @@ BatchCollector::BatchCollector(const LightField& light_field, std::span<const Re
       plates_(*plates) {
   LF_CHECK(plates->size() == frames.size());
   for (SensorPlate& plate : plates_)
-    tiles_.push_back(CutIntoTiles(&plate, kTileWidth, kTileHeight));
+    tiles_.push_back(CutIntoTiles(&plate, TileSums::kTileWidth, TileSums::kTileHeight));
 }
 
 void BatchCollector::Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>& frames,

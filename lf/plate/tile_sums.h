@@ -15,6 +15,10 @@ class TileSums {
   struct alignas(16) Element {
     uint32_t rgb_rays[4] = {};
   };
+  // Tiles of this shape stay in the second level cache while a batch of LF images is added to them.
+  // The wider they are, the fewer pieces scanlines are cut into; tall enough for turned cameras.
+  static constexpr int kTileWidth = 384;
+  static constexpr int kTileHeight = 80;
   // The brightest rays that a sum of 32 bits holds.
   static constexpr uint32_t kMaxRays = 65537;
 
