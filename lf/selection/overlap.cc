@@ -14,6 +14,8 @@ constexpr double kLensMargin = 1e-6;
 constexpr double kPlateMarginPx = 1e-6;
 constexpr double kPixelMarginPx = 1e-6;  // of a vertex computed by clipping
 constexpr double kZeroMargin = 1e-12;    // of a form's value at a vertex, relative to its terms
+// Of the circle around a disk's circumscribed 16-gon: 1 / cos(pi / 16).
+constexpr double kDiskPolygonRadius = 1.0195911582083184;
 
 // A convex polygon that half-planes cut (Sutherland, Hodgman 1974): each adds one vertex at most.
 class Clipped {
@@ -110,13 +112,81 @@ PixelRect BoundsOfCells(std::span<const IdealCell> cells, std::span<const PixelF
   return rect;
 }
 
+// A box around the ideal positions of all pixels.
+IdealCell BoundImage(const Intrinsics& image, std::span<const IdealCell> cells) {
+  IdealCell whole;
+  if (!image.has_distortion()) {
+    whole.middle = {0.5 * image.width_px, 0.5 * image.height_px, 1};
+    whole.extent = {0.5 * image.width_px, 0.5 * image.height_px, 0};
+    whole.has_bounds = true;
+    return whole;
+  }
+  whole.has_bounds = std::all_of(cells.begin(), cells.end(),
+                                 [](const IdealCell& cell) { return cell.has_bounds; });
+  if (!whole.has_bounds) return whole;
+  Vec3 low = cells[0].middle - cells[0].extent, high = cells[0].middle + cells[0].extent;
+  for (const IdealCell& cell : cells) {
+    low = low.cwiseMin(cell.middle - cell.extent);
+    high = high.cwiseMax(cell.middle + cell.extent);
+  }
+  whole.middle = 0.5 * (low + high);
+  whole.extent = 0.5 * (high - low);
+  return whole;
+}
+
 }  // namespace
 
 PixelRect ContributingRect(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
                            std::span<const IdealCell> cells, PixelReach reach) {
-  const bool distorted = lf_camera.intrinsics.has_distortion();
-  LF_CHECK(!distorted || !cells.empty());
-  const RayForms forms = MakeRayForms(lf_camera, render_camera);
+  return ImageOverlap(lf_camera, cells, reach).Rect(render_camera);
+}
+
+ImageOverlap::ImageOverlap(const PinholeCamera& lf_camera, std::span<const IdealCell> cells,
+                           PixelReach reach)
+    : lf_camera_(lf_camera), cells_(cells), reach_(reach), centre_world_(lf_camera.CentreWorld()) {
+  LF_CHECK(!lf_camera.intrinsics.has_distortion() || !cells.empty());
+  const IdealCell box = BoundImage(lf_camera.intrinsics, cells);
+  const Mat3 direction =
+      lf_camera.cam_from_world.rotation.transpose() * lf_camera.intrinsics.InverseMatrix();
+  has_bounds_ = box.has_bounds;
+  if (!has_bounds_) return;
+  middle_world_ = direction * box.middle;
+  axes_world_ = direction * box.extent.asDiagonal();
+}
+
+// A ray of direction d passes the lens plane at M d / (f.d) (doc/ray.md, 5). The line is normal to
+// where the middle ray does, and touches a circle that holds every polygon Rect() clips by, so that
+// both say the same.
+bool ImageOverlap::PlainlyMisses(const RenderCamera& render_camera) const {
+  if (!has_bounds_) return false;
+  constexpr double kRounding = 1e-9;
+  constexpr double kLensGrowth = (1 + 4 * kLensMargin) * kDiskPolygonRadius;
+  const Vec3 f = render_camera.pinhole.ForwardWorld();
+  const auto spread = [this](const Vec3& form) {
+    return (form.transpose() * axes_world_).cwiseAbs().sum();
+  };
+  const double length = middle_world_.lpNorm<1>() + axes_world_.lpNorm<1>();
+  const double forward = f.dot(middle_world_);
+  if (forward + spread(f) < -kRounding * length) return true;
+  if (forward <= 0) return false;
+
+  const Vec3 offset = centre_world_ - render_camera.pinhole.CentreWorld();
+  const double depth = f.dot(offset);
+  const Vec3 middle_on_lens = offset * forward - depth * middle_world_;
+  const double distance = middle_on_lens.norm();
+  if (!(distance > 0)) return false;
+  const Vec3 outwards = middle_on_lens / distance;
+  const double radius_w = kLensGrowth * render_camera.aperture.radius_w;
+  const Vec3 beyond = (outwards.dot(offset) - radius_w) * f - depth * outwards;
+  return beyond.dot(middle_world_) - spread(beyond) >
+         kRounding * length * (offset.lpNorm<1>() + radius_w);
+}
+
+PixelRect ImageOverlap::Rect(const RenderCamera& render_camera) const {
+  if (PlainlyMisses(render_camera)) return {};
+  const Intrinsics& image = lf_camera_.intrinsics;
+  const bool distorted = image.has_distortion();
+  const RayForms forms = MakeRayForms(lf_camera_, render_camera);
   // Polygons of very many blades are nearly disks; the disk's 16-gon holds them.
   constexpr int kMostBlades = 64;
   RenderCamera bounded = render_camera;
@@ -127,12 +197,12 @@ PixelRect ContributingRect(const PinholeCamera& lf_camera, const RenderCamera& r
   for (const int plane_sign : {-1, 1}) {
     const std::vector<PixelForm> plate =
         PlateHalfPlanes(forms, bounded, plane_sign, kPlateMarginPx);
-    rect = Bounds(rect, distorted ? BoundsOfCells(cells, plate, lens)
-                                  : ClippedRect(lf_camera.intrinsics, plate, lens, reach));
+    rect = Bounds(rect, distorted ? BoundsOfCells(cells_, plate, lens)
+                                  : ClippedRect(image, plate, lens, reach_));
   }
   // Cells hold the whole of their pixels.
-  if (!distorted || reach == PixelReach::kOwn || rect.empty()) return rect;
-  return Intersection({0, 0, lf_camera.intrinsics.width_px, lf_camera.intrinsics.height_px},
+  if (!distorted || reach_ == PixelReach::kOwn || rect.empty()) return rect;
+  return Intersection({0, 0, image.width_px, image.height_px},
                       {rect.x_begin - 1, rect.y_begin - 1, rect.x_end + 1, rect.y_end + 1});
 }
 

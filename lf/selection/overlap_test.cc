@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 #include "lf/camera/testing_scenes.h"
 
 namespace lf {
@@ -30,6 +32,7 @@ bool Contributes(const PinholeCamera& lf_camera, const DistortionMap& map,
 
 TEST(Overlap, NoContributingRayLiesOutsideTheRectangle) {
   size_t contributing_images = 0, selected_images = 0, rays = 0, pixels = 0;
+  size_t idle_images = 0, plainly_idle_images = 0;
   for (uint64_t seed = 0; seed < 3000; ++seed) {
     const testing::CameraPair pair = testing::RandomCameraPair(seed);
     const PixelRect rect = ContributingRect(pair.lf_camera, pair.render_camera);
@@ -45,8 +48,12 @@ TEST(Overlap, NoContributingRayLiesOutsideTheRectangle) {
     contributing_images += any;
     selected_images += !rect.empty();
     pixels += static_cast<size_t>(rect.pixel_count());
+    idle_images += !any;
+    plainly_idle_images +=
+        ImageOverlap(pair.lf_camera, {}, PixelReach::kOwn).PlainlyMisses(pair.render_camera);
   }
   EXPECT_GT(contributing_images, 1000u);
+  EXPECT_GT(plainly_idle_images, idle_images / 2);
   // Rarely an image in vain, and rectangles not much larger than what they bound.
   EXPECT_LE(selected_images, contributing_images + contributing_images * 3 / 100);
   EXPECT_LE(pixels, 2 * rays);
@@ -96,6 +103,17 @@ TEST(Overlap, ImagesLookingTheOtherWayGiveNoPixels) {
   testing::CameraPair pair = testing::ParallelPair(0, 0, 0.01, 0.05);
   pair.lf_camera.cam_from_world = *LookAlong({0, 0, 1}, {0, 0, -1}, {0, -1, 0});
   EXPECT_TRUE(ContributingRect(pair.lf_camera, pair.render_camera).empty());
+}
+
+TEST(Overlap, CamerasBeyondTheRimPlainlyMiss) {
+  // Rim at 5 pitches, its circumscribed 16-gon's vertices at 5.098.
+  for (const auto& [column, row, misses] :
+       {std::tuple{5, 0, false}, {0, -5, false}, {4, 3, false}, {3, 5, true}, {-6, 0, true}}) {
+    const testing::CameraPair pair = testing::ParallelPair(column, row, 0.01, 0.05);
+    const ImageOverlap overlap(pair.lf_camera, {}, PixelReach::kOwn);
+    EXPECT_EQ(overlap.PlainlyMisses(pair.render_camera), misses) << column << ", " << row;
+    EXPECT_EQ(overlap.Rect(pair.render_camera).empty(), misses) << column << ", " << row;
+  }
 }
 
 TEST(Overlap, ALensBehindTheBackOfTheCameraStillCounts) {

@@ -33,13 +33,13 @@ class CellsOfLast {
 SelectedImage Examine(const LightField& light_field, std::span<const RenderCamera> frames,
                       std::span<const PlaceRange> places, LfImageId id, uint32_t place,
                       std::span<const IdealCell> cells, PixelReach reach) {
-  const PinholeCamera camera = light_field.Camera(id);
+  const ImageOverlap overlap(light_field.Camera(id), cells, reach);
   SelectedImage image;
   image.id = id;
   image.place = place;
   for (size_t f = 0; f < frames.size(); ++f) {
     if (!places.empty() && !places[f].Holds(place)) continue;
-    const PixelRect rect = ContributingRect(camera, frames[f], cells, reach);
+    const PixelRect rect = overlap.Rect(frames[f]);
     if (rect.empty()) continue;
     image.rect = Bounds(image.rect, rect);
     image.frame_count += 1;

@@ -30,7 +30,7 @@ struct PlaceRange {
 };
 
 // One LF image that contributes. Its rectangles per frame are not kept: overlap.h gives them again
-// in about a microsecond each.
+// in about a microsecond each, and sooner for frames that it misses.
 struct SelectedImage {
   LfImageId id;
   uint32_t place = 0;        // in the order
