@@ -235,7 +235,7 @@ Result<void> FrameCollector::State::FinishLoading(Batch* batch) {
   for (Loading& loading : batch->loading) {
     const SelectedImage& image = order_[loading.index];
     if (*loading.pixels) {
-      batch->images.push_back({image.id, image.place, **std::move(loading.pixels), {}, nullptr});
+      batch->images.push_back({image.id, image.place, **std::move(loading.pixels)});
       continue;
     }
     // Only the image itself may be at fault: what the machine lacks is no reason to go on.

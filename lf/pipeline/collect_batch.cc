@@ -82,32 +82,32 @@ void BatchCollector::Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>
       if (!is_interrupted()) AddByReference(batch, &frame);
     return;
   }
+  const std::span<BatchFrame> takers = FramesThatMayTake(batch, frames);
+  if (takers.empty()) pool_.ForEach(other_items.count, other_items.run);
   size_t frame_bytes = 1;
   for (const BatchImage& image : batch)
     frame_bytes += PlanBytes(estimator_, image.pixels.rect.width(), image.pixels.rect.height(),
                              plates_[0].width(), plates_[0].height());
   const size_t chunk = std::max<size_t>(1, plan_bytes_ / frame_bytes);
-  for (size_t begin = 0; begin < frames.size(); begin += chunk) {
+  for (size_t begin = 0; begin < takers.size(); begin += chunk) {
     if (is_interrupted()) return;
-    const size_t count = std::min(frames.size() - begin, chunk);
-    AddToFrames(batch, std::span(frames).subspan(begin, count),
-                begin == 0 ? other_items : OtherItems{}, interrupted);
+    const size_t count = std::min(takers.size() - begin, chunk);
+    AddToFrames(batch, takers.subspan(begin, count), begin == 0 ? other_items : OtherItems{},
+                interrupted);
   }
 }
 
 PixelRect BatchCollector::RectOf(const BatchImage& image, const RenderCamera& frame) const {
-  return Intersection(
-      ContributingRect(light_field_.Camera(image.id), frame, image.cells, ReachOf(estimator_)),
-      image.pixels.rect);
+  return Intersection(image.overlap->Rect(frame), image.pixels.rect);
 }
 
 PixelRect BatchCollector::RectOf(LfImageId id, std::span<const size_t> frames) const {
   const PinholeCamera camera = light_field_.Camera(id);
   std::vector<IdealCell> cells;
   if (camera.intrinsics.has_distortion()) cells = MakeIdealCells(camera.intrinsics);
+  const ImageOverlap overlap(camera, cells, ReachOf(estimator_));
   PixelRect rect;
-  for (const size_t frame : frames)
-    rect = Bounds(rect, ContributingRect(camera, frames_[frame], cells, ReachOf(estimator_)));
+  for (const size_t frame : frames) rect = Bounds(rect, overlap.Rect(frames_[frame]));
   return rect;
 }
 
@@ -128,14 +128,34 @@ void BatchCollector::UndoDistortion(std::vector<BatchImage>& batch) {
     in_use.find(missing[i])->second =
         std::make_shared<const IdealPixels>(light_field_.intrinsics[missing[i]]);
   });
+  std::map<uint32_t, std::shared_ptr<const std::vector<IdealCell>>> cells;
   for (BatchImage& image : batch) {
     const uint32_t index = light_field_.cameras[image.id.value].intrinsics_index;
     const auto found = in_use.find(index);
-    if (found == in_use.end()) continue;
-    image.ideal_pixels = found->second;
-    image.cells = MakeIdealCells(light_field_.intrinsics[index]);
+    std::shared_ptr<const std::vector<IdealCell>>& shared = cells[index];
+    if (!shared)
+      shared = std::make_shared<const std::vector<IdealCell>>(
+          found == in_use.end() ? std::vector<IdealCell>()
+                                : MakeIdealCells(light_field_.intrinsics[index]));
+    image.cells = shared;
+    if (found != in_use.end()) image.ideal_pixels = found->second;
+    image.overlap.emplace(light_field_.Camera(image.id), *image.cells, ReachOf(estimator_));
   }
   ideal_pixels_ = std::move(in_use);
+}
+
+// Long paths through large light fields have few that do. The others are done: they come last.
+std::span<BatchFrame> BatchCollector::FramesThatMayTake(const std::vector<BatchImage>& batch,
+                                                        std::span<BatchFrame> frames) {
+  ForEachTimed(frames.size(), [&](size_t f) {
+    frames[f].is_done = std::none_of(batch.begin(), batch.end(), [&](const BatchImage& image) {
+      return frames[f].places.Holds(image.place) &&
+             !image.overlap->PlainlyMisses(frames_[frames[f].frame]);
+    });
+  });
+  const auto rest = std::stable_partition(frames.begin(), frames.end(),
+                                          [](const BatchFrame& frame) { return !frame.is_done; });
+  return frames.first(static_cast<size_t>(rest - frames.begin()));
 }
 
 void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span<BatchFrame> frames,
@@ -217,10 +237,14 @@ void BatchCollector::AddByReference(const std::vector<BatchImage>& batch, BatchF
   cpu_ns_ += timer.Nanoseconds();
 }
 
+// Many together where there are many: asking for the time costs more than a pair that misses.
 void BatchCollector::ForEachTimed(size_t count, const std::function<void(size_t)>& body) {
-  pool_.ForEach(count, [&](size_t i) {
+  constexpr size_t kTasksPerThread = 64, kMostItems = 32;
+  const size_t tasks_wanted = kTasksPerThread * static_cast<size_t>(pool_.thread_count());
+  const size_t together = std::clamp<size_t>(count / tasks_wanted, 1, kMostItems);
+  pool_.ForEach((count + together - 1) / together, [&](size_t task) {
     const ThreadCpuTimer timer;
-    body(i);
+    for (size_t i = task * together; i < std::min(count, (task + 1) * together); ++i) body(i);
     cpu_ns_ += timer.Nanoseconds();
   });
 }

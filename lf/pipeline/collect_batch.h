@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -45,9 +46,10 @@ struct BatchImage {
   LfImageId id;
   uint32_t place = 0;  // in the order of the LF images
   LfPixels pixels;
-  // Of a camera with lens distortion; filled by BatchCollector.
-  std::vector<IdealCell> cells;
-  std::shared_ptr<const IdealPixels> ideal_pixels;
+  // Filled by BatchCollector: of a camera with lens distortion the first two.
+  std::shared_ptr<const std::vector<IdealCell>> cells = nullptr;
+  std::shared_ptr<const IdealPixels> ideal_pixels = nullptr;
+  std::optional<ImageOverlap> overlap = std::nullopt;
 };
 
 // A frame that takes those images of a batch whose places it says.
@@ -76,8 +78,9 @@ class BatchCollector {
                  Estimator estimator, CollectBackEnd back_end, size_t plan_bytes, ThreadPool& pool,
                  std::vector<SensorPlate>* plates);
 
-  // Adds the images to the plates of `frames`, and runs the other items. Once *interrupted is true
-  // no further frame is begun, and those begun are finished; other items may then be left out.
+  // Adds the images to the plates of `frames`, whose order may change, and runs the other items.
+  // Once *interrupted is true no further frame is begun, and those begun are finished; other items
+  // may then be left out.
   void Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>& frames,
            const OtherItems& other_items, const std::atomic<bool>* interrupted);
 
@@ -91,6 +94,8 @@ class BatchCollector {
   struct Share;
   PixelRect RectOf(const BatchImage& image, const RenderCamera& frame) const;
   void UndoDistortion(std::vector<BatchImage>& batch);
+  std::span<BatchFrame> FramesThatMayTake(const std::vector<BatchImage>& batch,
+                                          std::span<BatchFrame> frames);
   void AddToFrames(const std::vector<BatchImage>& batch, std::span<BatchFrame> frames,
                    const OtherItems& other_items, const std::atomic<bool>* interrupted);
   void AddByReference(const std::vector<BatchImage>& batch, BatchFrame* frame);

@@ -63,6 +63,41 @@ std::vector<SensorPlate> CollectDistorted(int threads, const CollectOptions& opt
   return plates;
 }
 
+TEST(Collect, FramesThatPassByTakeWhatTheyTakeAlone) {
+  const LightField field = testing::NoiseField(14);
+  std::vector<RenderCamera> frames;
+  for (int i = 0; i < 20; ++i) {
+    frames.push_back(NoiseFrames()[i % 3]);
+    // From beside the LF cameras, across them, to the other side.
+    frames.back().pinhole.cam_from_world =
+        *LookAlong({0.012 * (i - 10), 0, 0}, {0, 0, 1}, {0, -1, 0});
+    frames.back().aperture.radius_w = 0.006;
+    frames.back().focus_plane = FocusPlane(frames.back().pinhole, 1 + i % 3, {0, 0});
+  }
+  ThreadPool pool(2);
+  CollectOptions options;
+  options.batch_image_count = 3;
+  options.plan_bytes = 1;
+  const auto collect = [&](std::span<const RenderCamera> some, std::vector<SensorPlate>* plates) {
+    for (size_t f = 0; f < some.size(); ++f) plates->emplace_back(80, 60);
+    const std::vector<SelectedImage> images = SelectImages(field, some, {}, pool);
+    return Collect(field, NoiseStore(), some, images, options, pool, plates, nullptr)->frames;
+  };
+  std::vector<SensorPlate> plates;
+  const std::vector<FrameRays> rays = collect(frames, &plates);
+  size_t idle_frames = 0;
+  for (size_t f = 0; f < frames.size(); ++f) {
+    std::vector<SensorPlate> alone;
+    const FrameRays rays_alone = collect(std::span(frames).subspan(f, 1), &alone)[0];
+    EXPECT_EQ(plates[f], alone[0]) << f;
+    EXPECT_EQ(rays[f].tested_count, rays_alone.tested_count) << f;
+    EXPECT_EQ(rays[f].accepted_count, rays_alone.accepted_count) << f;
+    idle_frames += rays[f].accepted_count == 0;
+  }
+  EXPECT_GT(idle_frames, 5u);
+  EXPECT_LT(idle_frames, 15u);
+}
+
 TEST(Collect, BothEstimatorsThroughLensesThatBendRays) {
   for (const Estimator estimator : {Estimator::kNearest, Estimator::kBilinear}) {
     CollectOptions options;
