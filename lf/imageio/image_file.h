@@ -108,11 +108,14 @@ using ImageMetadata = std::vector<std::pair<std::string, std::variant<std::strin
 // The same pixels give the same bytes: no date is written.
 //   channel_names  one per channel, as EXR shows them; other formats ignore the names
 //   type           kUint8 (PNG, JPEG, TIFF), kUint16 (PNG, TIFF), kHalf (EXR), kFloat (EXR, TIFF)
+//   is_interrupted asked before every 32 rows are encoded, if given; the disk is waited for
 // JPEG has quality 95 and full chroma resolution. EXR is compressed without loss (zip).
-// kOutput: the folder, the disk, or a format that cannot hold the type.
+// kOutput: the folder, the disk, or a format that cannot hold the type. kInterrupted: nothing is
+// written.
 Result<void> WriteImage(const std::filesystem::path& path, ImageView<const float> pixels,
                         const std::vector<std::string>& channel_names, PixelType type,
-                        const ImageMetadata& metadata = {});
+                        const ImageMetadata& metadata = {},
+                        const std::function<bool()>& is_interrupted = {});
 
 // Integers exactly as they are, 8 or 16 bits, without a word on their colour space.
 Result<void> WriteImage(const std::filesystem::path& path, ImageView<const uint8_t> pixels);
@@ -127,8 +130,9 @@ struct ExrChannel {
 };
 
 // Writes channels of one size as one EXR file, as WriteImage does. kOutput: the folder, the disk,
-// an extension other than .exr.
+// an extension other than .exr. kInterrupted.
 Result<void> WriteExr(const std::filesystem::path& path, std::span<const ExrChannel> channels,
-                      const ImageMetadata& metadata = {});
+                      const ImageMetadata& metadata = {},
+                      const std::function<bool()>& is_interrupted = {});
 
 }  // namespace lf

@@ -42,6 +42,38 @@ TEST_F(WriteImageTest, IntegersComeBackBitForBit) {
     }
 }
 
+TEST_F(WriteImageTest, PicturesOfManyBlocksOfRowsComeBackBitForBit) {
+  for (const int height : {31, 32, 33, 100}) {
+    const auto words = NoiseImage<uint16_t>(23, height, 3);
+    for (const char* name : {"a.png", "a.tif"}) {
+      ASSERT_TRUE(WriteImage(folder_ / name, words.view()));
+      ExpectSame(ReadImage(folder_ / name), words);
+    }
+    Image<float> floats(23, height, 3);
+    std::copy(words.pixels().begin(), words.pixels().end(), floats.pixels().begin());
+    for (const char* name : {"a.exr", "b.tif"}) {
+      ASSERT_TRUE(WriteImage(folder_ / name, floats.view(), {"R", "G", "B"}, PixelType::kFloat));
+      ExpectSame(ReadImage(folder_ / name), floats);
+    }
+  }
+}
+
+TEST_F(WriteImageTest, AnInterruptionLeavesTheOldFileAlone) {
+  const auto picture = NoiseImage<uint8_t>(23, 100, 3);
+  Image<float> floats(23, 100, 3);
+  for (const char* name : {"a.png", "a.tif", "a.jpg"}) {
+    ASSERT_TRUE(WriteImage(folder_ / name, picture.view()));
+    const std::string before = ReadFile(folder_ / name).value();
+    int asked = 0;
+    const auto result = WriteImage(folder_ / name, floats.view(), {"R", "G", "B"},
+                                   PixelType::kUint8, {}, [&] { return ++asked == 3; });
+    ASSERT_FALSE(result);
+    EXPECT_EQ(result.error().kind, ErrorKind::kInterrupted);
+    EXPECT_EQ(asked, 3);
+    EXPECT_EQ(ReadFile(folder_ / name).value(), before);
+  }
+}
+
 TEST_F(WriteImageTest, AViewWithinAPictureIsWrittenAlone) {
   const auto picture = NoiseImage<uint16_t>(9, 6, 3);
   ImageView<const uint16_t> part = picture.view();
