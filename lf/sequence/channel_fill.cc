@@ -12,7 +12,8 @@ constexpr double kOwnDistance = 0.5;
 }  // namespace
 
 ChannelFill::ChannelFill(const Image<float>& mean, const Image<uint32_t>& ray_count, int channel,
-                         uint32_t rays_needed, int fill_radius_px)
+                         uint32_t rays_needed, int fill_radius_px,
+                         const std::function<bool()>& is_interrupted)
     : mean_(mean),
       ray_count_(ray_count),
       width_(mean.width()),
@@ -25,6 +26,7 @@ ChannelFill::ChannelFill(const Image<float>& mean, const Image<uint32_t>& ray_co
   element_sums_.resize(size);
   if (rays_needed_ > 1) ray_sums_.resize(size);
   for (int y = 0; y < height_; ++y) {
+    if (is_interrupted()) return;
     row_begin_.push_back(columns_.size());
     Collected row;
     for (int x = 0; x < width_; ++x) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "lf/core/image.h"
@@ -14,8 +15,10 @@ class ChannelFill {
   // mean, ray_count  [height][width][channels]; own average and rays of every element; must
   //                  outlive this
   // rays_needed      what the rays around an element must add up to; at least 1
+  // is_interrupted   asked before each row; once it is true, this is of no use
   ChannelFill(const Image<float>& mean, const Image<uint32_t>& ray_count, int channel,
-              uint32_t rays_needed, int fill_radius_px);
+              uint32_t rays_needed, int fill_radius_px,
+              const std::function<bool()>& is_interrupted);
 
   // Memory of one thread, kept from call to call.
   class Scratch;

@@ -1,6 +1,7 @@
 #include "lf/sequence/develop.h"
 
 #include <algorithm>
+#include <atomic>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -11,6 +12,7 @@ namespace lf {
 namespace {
 
 constexpr int kChannels = SensorPlate::kChannels;
+constexpr int kFilledPerQuestion = 64;  // up to 0.1 ms each
 
 // Own averages, counts and coverage of row y. Returns which channels have elements to fill.
 std::array<bool, kChannels> AverageRow(const SensorPlate& plate, const DevelopOptions& options,
@@ -43,8 +45,14 @@ DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, 
   DevelopedFrame frame{Image<float>(width, height, kChannels),
                        Image<uint32_t>(width, height, kChannels), Image<float>(width, height)};
   Image<float> mean(width, height, kChannels);
+  std::atomic<bool> is_ended = false;
+  const auto ends = [&] {
+    if (!is_ended && options.is_interrupted && options.is_interrupted()) is_ended = true;
+    return is_ended.load();
+  };
   std::vector<std::array<bool, kChannels>> row_is_thin(height);
   pool.ForEach(height, [&](size_t y) {
+    if (ends()) return;
     row_is_thin[y] = AverageRow(plate, options, rays_needed, static_cast<int>(y), frame, mean);
   });
 
@@ -53,8 +61,9 @@ DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, 
     if (std::any_of(row_is_thin.begin(), row_is_thin.end(),
                     [c](const auto& row) { return row[c]; }))
       fills[c].emplace(mean, frame.ray_count, static_cast<int>(c), rays_needed,
-                       options.fill_radius_px);
+                       options.fill_radius_px, ends);
   });
+  if (is_ended) return frame;
 
   const Mat3 srgb_from_camera =
       options.camera_to_srgb *
@@ -63,11 +72,18 @@ DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, 
   pool.ForEach(height, [&](size_t row) {
     const int y = static_cast<int>(row);
     ChannelFill::Scratch scratch;
+    int filled = 0;  // since it was asked
+    if (ends()) return;
     for (int x = 0; x < width; ++x) {
       Vec3 camera_rgb;
-      for (int c = 0; c < kChannels; ++c)
-        camera_rgb[c] = frame.ray_count.at(x, y, c) >= rays_needed ? mean.at(x, y, c)
-                                                                   : fills[c]->At(x, y, scratch);
+      for (int c = 0; c < kChannels; ++c) {
+        if (frame.ray_count.at(x, y, c) >= rays_needed) {
+          camera_rgb[c] = mean.at(x, y, c);
+          continue;
+        }
+        if (++filled % kFilledPerQuestion == 0 && ends()) return;
+        camera_rgb[c] = fills[c]->At(x, y, scratch);
+      }
       const Vec3 srgb = srgb_from_camera * camera_rgb;
       for (int c = 0; c < kChannels; ++c) frame.rgb.at(x, y, c) = static_cast<float>(srgb[c]);
     }

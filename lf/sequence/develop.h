@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 
 #include "lf/core/geometry.h"
 #include "lf/core/image.h"
@@ -24,6 +25,10 @@ struct DevelopOptions {
   // No light comes from further away than this: a channel of an element without a collected one
   // that near stays black; light that nobody recorded is not invented.
   int fill_radius_px = 32;
+
+  // Asked by any thread, at least before each row and every 64 elements to be filled, if given.
+  // Once it is true, the rest is left out and the answer is of no use.
+  std::function<bool()> is_interrupted = {};
 };
 
 struct DevelopedFrame {

@@ -172,5 +172,29 @@ TEST(Develop, ValuesBelowThePedestalStayNegative) {
   EXPECT_EQ(Develop(plate, options, pool).rgb.at(0, 0, 0), -0.5f);
 }
 
+// However slow the machine: no more than some elements lie between two questions.
+TEST(Develop, AnInterruptionIsAnsweredWithinSomeElements) {
+  const int width = 200, height = 40;
+  const SensorPlate plate = RandomPlate(width, height, 0.4, 3, 8);
+  ThreadPool pool(1);
+  DevelopOptions options;
+  options.smooth_below = 100;  // all are filled
+  int asked = 0, last = 0;
+  options.is_interrupted = [&] { return ++asked == last; };
+  const DevelopedFrame whole = Develop(plate, options, pool);
+  const int all = asked;
+  EXPECT_GE(all, (3 + 1 + 3 * width / 64) * height);
+  for (const int question : {1, height / 2, 3 * height, all / 2, all}) {
+    asked = 0;
+    last = question;
+    const DevelopedFrame frame = Develop(plate, options, pool);
+    EXPECT_EQ(asked, question);  // true once is enough
+    EXPECT_EQ(frame.rgb.at(width - 1, height - 1, 0), 0);
+  }
+  EXPECT_GT(whole.rgb.at(width - 1, height - 1, 0), 0);
+  options.is_interrupted = {};
+  EXPECT_EQ(Develop(plate, options, pool).rgb.pixels(), whole.rgb.pixels());
+}
+
 }  // namespace
 }  // namespace lf

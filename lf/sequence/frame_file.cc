@@ -9,11 +9,16 @@
 namespace lf {
 namespace {
 
-// The encoder for files clips and rounds what it is given in [0, 1].
-Image<float> DisplayValues(const Image<float>& linear) {
+// The encoder for files clips and rounds what it is given in [0, 1]. None if interrupted.
+std::optional<Image<float>> DisplayValues(const Image<float>& linear,
+                                          const std::function<bool()>& is_interrupted) {
   Image<float> display(linear.width(), linear.height(), linear.channels());
-  std::transform(linear.pixels().begin(), linear.pixels().end(), display.pixels().begin(),
-                 [](float value) { return static_cast<float>(DisplayFromLinear(value)); });
+  const size_t row_values = static_cast<size_t>(linear.width()) * linear.channels();
+  for (int y = 0; y < linear.height(); ++y) {
+    if (is_interrupted && is_interrupted()) return std::nullopt;
+    std::transform(linear.row(y), linear.row(y) + row_values, display.row(y),
+                   [](float value) { return static_cast<float>(DisplayFromLinear(value)); });
+  }
   return display;
 }
 
@@ -40,7 +45,8 @@ Image<uint8_t> Picture(const Image<T>& image) {
 }
 
 Result<void> WriteExrFrame(const std::filesystem::path& path, const DevelopedFrame& frame,
-                           bool as_half, const ImageMetadata& metadata) {
+                           bool as_half, const ImageMetadata& metadata,
+                           const std::function<bool()>& is_interrupted) {
   std::vector<ExrChannel> channels;
   for (const auto& [name, channel] : {std::pair("R", 0), std::pair("G", 1), std::pair("B", 2)})
     channels.push_back({name, frame.rgb.view(), channel, as_half});
@@ -48,7 +54,7 @@ Result<void> WriteExrFrame(const std::filesystem::path& path, const DevelopedFra
        {std::pair("count.R", 0), std::pair("count.G", 1), std::pair("count.B", 2)})
     channels.push_back({name, frame.ray_count.view(), channel});
   channels.push_back({"coverage", frame.coverage.view(), 0, as_half});
-  return WriteExr(path, channels, metadata);
+  return WriteExr(path, channels, metadata, is_interrupted);
 }
 
 }  // namespace
@@ -73,19 +79,23 @@ std::filesystem::path FramePath(const std::filesystem::path& folder, FrameId fra
 }
 
 Result<void> WriteFrame(const std::filesystem::path& path, const DevelopedFrame& frame,
-                        FrameFormat format, const ImageMetadata& metadata) {
+                        FrameFormat format, const ImageMetadata& metadata,
+                        const std::function<bool()>& is_interrupted) {
   switch (format) {
     case FrameFormat::kExrHalf:
-      return WriteExrFrame(path, frame, true, metadata);
+      return WriteExrFrame(path, frame, true, metadata, is_interrupted);
     case FrameFormat::kExrFloat:
-      return WriteExrFrame(path, frame, false, metadata);
+      return WriteExrFrame(path, frame, false, metadata, is_interrupted);
     case FrameFormat::kPng8:
     case FrameFormat::kPng16:
       break;
   }
-  return WriteImage(path, DisplayValues(frame.rgb).view(), {"R", "G", "B"},
-                    format == FrameFormat::kPng8 ? PixelType::kUint8 : PixelType::kUint16,
-                    metadata);
+  const std::optional<Image<float>> display = DisplayValues(frame.rgb, is_interrupted);
+  if (!display)
+    return Error{ErrorKind::kInterrupted, fmt::format("{}: interrupted", path.string())};
+  return WriteImage(path, display->view(), {"R", "G", "B"},
+                    format == FrameFormat::kPng8 ? PixelType::kUint8 : PixelType::kUint16, metadata,
+                    is_interrupted);
 }
 
 Image<uint8_t> DisplayImage(const DevelopedFrame& frame) { return Picture(frame.rgb); }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -30,8 +31,11 @@ std::filesystem::path FramePath(const std::filesystem::path& folder, FrameId fra
                                 FrameFormat format);
 
 // Atomic; metadata goes into the file (EXR attributes, PNG text).
+//   is_interrupted  asked between some rows, if given
+// kOutput: the folder, the disk. kInterrupted: nothing is written.
 Result<void> WriteFrame(const std::filesystem::path& path, const DevelopedFrame& frame,
-                        FrameFormat format, const ImageMetadata& metadata);
+                        FrameFormat format, const ImageMetadata& metadata,
+                        const std::function<bool()>& is_interrupted = {});
 
 // A frame's picture as 8-bit sRGB, [height][width][3], for contact sheets and video.
 Image<uint8_t> DisplayImage(const DevelopedFrame& frame);

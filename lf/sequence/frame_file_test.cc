@@ -108,6 +108,34 @@ TEST_F(FrameFileTest, EqualFramesAreEqualFiles) {
   }
 }
 
+TEST_F(FrameFileTest, AnInterruptionIsAnsweredWithinSomeRowsAndLeavesNoFile) {
+  const int height = 200;
+  const DevelopedFrame frame = RandomFrame(9, height);
+  for (const FrameFormat format :
+       {FrameFormat::kExrHalf, FrameFormat::kExrFloat, FrameFormat::kPng8, FrameFormat::kPng16}) {
+    const auto path = FramePath(folder_, FrameId{1}, format);
+    int asked = 0, last = 0;
+    const auto is_interrupted = [&] { return ++asked == last; };
+    ASSERT_TRUE(WriteFrame(path, frame, format, {}, is_interrupted));
+    const std::string whole = ReadFile(path).value();
+    const int all = asked;
+    EXPECT_GE(all, height / 32);
+    for (const int question : {1, all / 2, all}) {
+      std::filesystem::remove(path);
+      asked = 0;
+      last = question;
+      const auto result = WriteFrame(path, frame, format, {}, is_interrupted);
+      ASSERT_FALSE(result);
+      EXPECT_EQ(result.error().kind, ErrorKind::kInterrupted);
+      EXPECT_EQ(asked, question);
+      EXPECT_TRUE(std::filesystem::is_empty(folder_));
+    }
+    ASSERT_TRUE(WriteFrame(path, frame, format, {}));
+    EXPECT_EQ(ReadFile(path).value(), whole);
+    std::filesystem::remove(path);
+  }
+}
+
 TEST_F(FrameFileTest, NamesCountFromOneWithFourDigits) {
   EXPECT_EQ(FramePath("out", FrameId{1}, FrameFormat::kExrHalf), "out/frame_0001.exr");
   EXPECT_EQ(FramePath("out", FrameId{900}, FrameFormat::kPng16), "out/frame_0900.png");
