@@ -240,6 +240,23 @@ class ResumeTest(unittest.TestCase):
         self.assertIn(process.returncode, (-signal.SIGINT, 5), words)
         self.assertEqual(self.reference("twice", "--resume", frames="1-6"), expected)
 
+    def test_a_frame_that_is_being_finished_is_interrupted(self):
+        # Every element is smoothed over all others within 32: work of minutes.
+        path = self.folder / "large.yaml"
+        text = small_field.PATH_YAML.format(frames=1, aperture=0.12, x=0)
+        path.write_text(text.replace("[80, 60]", "[640, 480]"))
+        out = self.folder / "finishing"
+        process = subprocess.Popen(
+            [RENDERER, self.field, path, "-o", out, *self.common, "--dump-every", "0",
+             "--smooth-below", "1000000"], stderr=subprocess.PIPE, text=True)
+        while process.poll() is None and not (out / "frame_0001.plate").exists():
+            time.sleep(0.005)  # collected; what follows is the picture
+        process.send_signal(signal.SIGTERM)
+        _, words = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 5, words)
+        self.assertFalse((out / "frame_0001.exr").exists())
+        self.assertTrue((out / "partial" / "frame_0001.plate").exists())
+
     # Limits and rules
 
     def test_max_images_does_not_depend_on_passes_and_frames(self):

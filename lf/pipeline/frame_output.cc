@@ -1,5 +1,7 @@
 #include "lf/pipeline/frame_output.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <memory>
 
@@ -29,19 +31,23 @@ std::filesystem::path FrameOutput::PathOf(FrameId frame) const {
 }
 
 Result<FrameReport> FrameOutput::Write(FrameId frame, const FrameRays& rays,
-                                       const SensorPlate& plate,
-                                       const std::filesystem::path& to) const {
+                                       const SensorPlate& plate, const std::filesystem::path& to,
+                                       const std::function<bool()>& is_interrupted) const {
   const auto start = std::chrono::steady_clock::now();
   const RenderCamera& camera = path_.Camera(frame);
-  const DevelopedFrame developed =
-      Develop(plate, DevelopOptionsFor(light_field_.encoding, options_.smooth_below), pool_);
+  DevelopOptions develop = DevelopOptionsFor(light_field_.encoding, options_.smooth_below);
+  develop.is_interrupted = is_interrupted;
+  const DevelopedFrame developed = Develop(plate, develop, pool_);
+  if (is_interrupted && is_interrupted())
+    return Error{ErrorKind::kInterrupted, fmt::format("{}: interrupted", to.string())};
   FrameReport report = MakeFrameReport(frame, rays, developed);
   report.camera = InputsOfCamera(frame, camera);
   report.develop_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   LF_RETURN_IF_ERROR(WriteFrame(
       to, developed, options_.format,
-      FrameMetadata(frame, camera, rays, options_.estimator, path_.fps, options_.version)));
+      FrameMetadata(frame, camera, rays, options_.estimator, path_.fps, options_.version),
+      is_interrupted));
   return report;
 }
 

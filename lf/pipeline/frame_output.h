@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -23,9 +24,11 @@ class FrameOutput {
       : light_field_(light_field), path_(path), options_(options), pool_(pool) {}
 
   // Develops the plate and writes its picture under any name. Its report lacks the samples.
-  // kOutput: the disk.
+  //   is_interrupted  asked all the time, by any thread, if given
+  // kOutput: the disk. kInterrupted: nothing is written.
   Result<FrameReport> Write(FrameId frame, const FrameRays& rays, const SensorPlate& plate,
-                            const std::filesystem::path& to) const;
+                            const std::filesystem::path& to,
+                            const std::function<bool()>& is_interrupted) const;
 
   // From the files of the frames, so that it does not matter when and by whom they were rendered.
   // kOutput: the disk, ffmpeg; kInput: a frame that cannot be read. kInterrupted.

@@ -193,8 +193,11 @@ Result<void> RenderPass::FinishFrame(size_t f) {
     LF_RETURN_IF_ERROR(WritePlate(plate.replace_extension(".plate"),
                                   job_.state.PlateText(frame.id, progress), plates_[f], job_.pool));
   }
-  LF_ASSIGN_OR_RETURN(FrameReport report,
-                      job_.output.Write(frame.id, progress.rays, plates_[f], to));
+  Result<FrameReport> written = job_.output.Write(frame.id, progress.rays, plates_[f], to,
+                                                  [this] { return job_.IsStopped(); });
+  if (!written)
+    return written.error().kind == ErrorKind::kInterrupted ? Interrupt() : written.error();
+  FrameReport& report = *written;
   const auto asked =
       job_.options.require_samples ? job_.options.require_samples : job_.options.stop_at_samples;
   if (asked)
@@ -230,14 +233,18 @@ Result<void> RenderPass::SavePictures(double picture_budget_s) {
     return frames_[a].picture_s < frames_[b].picture_s;
   });
   const double begin_s = NowSeconds();
+  // A signal to end may come on the way. After it these pictures are the last, and even one of them
+  // may take minutes.
+  std::function<bool()> is_interrupted = [this] { return job_.IsStopped(); };
+  if (job_.IsStopped()) is_interrupted = [=] { return NowSeconds() - begin_s >= picture_budget_s; };
   for (const size_t f : oldest_first) {
-    // A signal to end may come on the way.
-    const double budget_s =
-        job_.IsStopped() ? std::min(picture_budget_s, kLastPictures_s) : picture_budget_s;
-    if (NowSeconds() - begin_s >= budget_s) break;
+    if (NowSeconds() - begin_s >= picture_budget_s) break;
     Frame& frame = frames_[f];
-    LF_RETURN_IF_ERROR(job_.output.Write(frame.id, ProgressOf(f).rays, plates_[f],
-                                         job_.state.PicturePath(frame.id)));
+    const Result<FrameReport> written = job_.output.Write(
+        frame.id, ProgressOf(f).rays, plates_[f], job_.state.PicturePath(frame.id), is_interrupted);
+    // The state that is written after a signal has pictures of its own.
+    if (!written && written.error().kind == ErrorKind::kInterrupted) return {};
+    LF_RETURN_IF_ERROR(written);
     frame.picture_s = NowSeconds();
   }
   return {};
