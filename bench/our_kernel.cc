@@ -1,6 +1,8 @@
 // Our kernels as the renderer calls them (lf/pipeline/collect_batch.cc), on one thread.
 #include <hwy/targets.h>
 
+#include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "bench/contender.h"
@@ -32,22 +34,33 @@ class FastKernel final : public OurKernel {
   explicit FastKernel(const KernelCase& kernel_case)
       : case_(kernel_case),
         plate_(kernel_case.spec.plate_width, kernel_case.spec.plate_height),
-        tiles_(CutIntoTiles(&plate_, TileSums::kTileWidth, TileSums::kTileHeight)) {}
+        grid_(TileSums::GridOf(plate_.width(), plate_.height())),
+        tiles_(CutIntoTiles(&plate_, grid_)) {}
 
   void Collect(int image_count) override {
     const auto count = static_cast<size_t>(image_count);
     accepted_count_ = 0;
     if (case_.spec.estimator == Estimator::kBilinear) {
-      std::vector<GatherPlan> plans;
-      for (size_t i = 0; i < count; ++i) plans.push_back(PlanGather(case_.cameras[i], case_.frame));
-      CollectTiles(count, [&](size_t i) { return GatherTile(plans[i], case_.images[i], &sums_); });
+      gather_plans_.resize(std::max(gather_plans_.size(), count));
+      for (size_t i = 0; i < count; ++i) {
+        GatherPlan& plan = gather_plans_[i];
+        plan = PlanGather(case_.cameras[i], case_.frame, std::move(plan));
+      }
+      CollectTiles(count, [&](size_t i, size_t /*tile*/) {
+        return GatherTile(gather_plans_[i], case_.images[i], &sums_);
+      });
       return;
     }
     const IdealPixels* ideal = case_.ideal_pixels ? &*case_.ideal_pixels : nullptr;
-    std::vector<ScatterPlan> plans;
-    for (size_t i = 0; i < count; ++i)
-      plans.push_back(PlanScatter(case_.cameras[i], case_.frame, case_.rects[i], ideal));
-    CollectTiles(count, [&](size_t i) { return ScatterTile(plans[i], case_.images[i], &sums_); });
+    scatter_plans_.resize(std::max(scatter_plans_.size(), count));
+    for (size_t i = 0; i < count; ++i) {
+      ScatterPlan& plan = scatter_plans_[i];
+      plan =
+          PlanScatter(case_.cameras[i], case_.frame, case_.rects[i], grid_, ideal, std::move(plan));
+    }
+    CollectTiles(count, [&](size_t i, size_t tile) {
+      return ScatterTile(scatter_plans_[i], tile, case_.images[i], &sums_);
+    });
   }
 
   Picture Develop() const override { return PictureOf(plate_); }
@@ -56,16 +69,19 @@ class FastKernel final : public OurKernel {
  private:
   template <class CollectImage>
   void CollectTiles(size_t image_count, const CollectImage& collect_image) {
-    for (PlateTile& tile : tiles_) {
-      sums_.Begin(&tile);
-      for (size_t i = 0; i < image_count; ++i) accepted_count_ += collect_image(i);
+    for (size_t tile = 0; tile < tiles_.size(); ++tile) {
+      sums_.Begin(&tiles_[tile]);
+      for (size_t i = 0; i < image_count; ++i) accepted_count_ += collect_image(i, tile);
       sums_.Flush();
     }
   }
 
   const KernelCase& case_;
   SensorPlate plate_;
+  TileGrid grid_;
   std::vector<PlateTile> tiles_;
+  std::vector<ScatterPlan> scatter_plans_;
+  std::vector<GatherPlan> gather_plans_;
   TileSums sums_;
   uint64_t accepted_count_ = 0;
 };

@@ -12,7 +12,7 @@ namespace {
 constexpr double kFarthest = 1 << 24;
 
 // Bounds are this much wider: far above the rounding of single precision.
-constexpr double kBoundMargin = 0.01;
+constexpr float kBoundMargin = 0.01F;
 
 // Where cubics through four even points of [-1, 1] miss most.
 constexpr double kWorstPlace = 0.745;
@@ -170,35 +170,19 @@ void CubicSegments::AddOfFunction(int y, int x_begin, int x_end, const Function&
   }
 }
 
-namespace {
-
-// The chord of one coordinate, and how far the cubic may stray: w^2 / 8 times the most of its
-// second derivative; of its slope, w times that.
-struct Chord {
-  double first, last, stray, slope_low, slope_high;
-  Chord(const float (&c)[4], double t_begin, double w) {
-    const double t_end = t_begin + w;
-    const double bend = 2 * std::abs(double{c[2]}) +
-                        6 * std::abs(double{c[3]}) * std::max(std::abs(t_begin), std::abs(t_end));
-    first = ((double{c[3]} * t_begin + c[2]) * t_begin + c[1]) * t_begin + c[0];
-    last = ((double{c[3]} * t_end + c[2]) * t_end + c[1]) * t_end + c[0];
-    stray = w * w * 0.125 * bend + kBoundMargin;
-    const double slope = (3 * double{c[3]} * t_begin + 2 * double{c[2]}) * t_begin + c[1];
-    slope_low = slope - w * bend;
-    slope_high = slope + w * bend;
-  }
-};
-
-}  // namespace
-
-SegmentBounds BoundsOf(const CubicSegment& segment) {
-  const Chord x(segment.x_cubic, segment.t_begin, segment.count - 1);
-  const Chord y(segment.y_cubic, segment.t_begin, segment.count - 1);
-  return {segment.base_x + std::min(x.first, x.last) - x.stray,
-          segment.base_x + std::max(x.first, x.last) + x.stray,
-          segment.base_y + std::min(y.first, y.last) - y.stray,
-          segment.base_y + std::max(y.first, y.last) + y.stray,
-          std::max({0.0, x.slope_low, -x.slope_high, y.slope_low, -y.slope_high})};
+// From the chord: the cubic strays from it by w^2 / 8 times the most of its second derivative, at
+// most, and its slope changes by w times that.
+CubicRange RangeOf(const float (&c)[4], float t_begin, int count) {
+  const auto w = static_cast<float>(count - 1);
+  const float t_end = t_begin + w;
+  const float bend =
+      2 * std::abs(c[2]) + 6 * std::abs(c[3]) * std::max(std::abs(t_begin), std::abs(t_end));
+  const float first = ((c[3] * t_begin + c[2]) * t_begin + c[1]) * t_begin + c[0];
+  const float last = ((c[3] * t_end + c[2]) * t_end + c[1]) * t_end + c[0];
+  const float stray = w * w * 0.125F * bend + kBoundMargin;
+  const float slope = (3 * c[3] * t_begin + 2 * c[2]) * t_begin + c[1];
+  return {std::min(first, last) - stray, std::max(first, last) + stray, slope - w * bend,
+          slope + w * bend};
 }
 
 }  // namespace lf

@@ -69,13 +69,12 @@ class CubicSegments {
   PixelForm x_, y_, denominator_;
 };
 
-// Least and largest position of a segment in each coordinate, a little wider; and how far, at
-// least, positions move from one to the next, in the coordinate that moves faster, 0 if they may
-// turn round.
-struct SegmentBounds {
-  double x_low, x_high, y_low, y_high;
-  double least_step;
+// Where one coordinate of a segment's positions lies, counted from the base and a little wider than
+// it does, and how far it moves from one position to the next.
+struct CubicRange {
+  float low, high;
+  float least_step, most_step;
 };
-SegmentBounds BoundsOf(const CubicSegment& segment);
+CubicRange RangeOf(const float (&cubic)[4], float t_begin, int count);
 
 }  // namespace lf

@@ -50,7 +50,9 @@ struct GatherPlan {
   std::vector<size_t> row_begin;       // [plate_height + 1]: the first segment of a row
 };
 
-GatherPlan PlanGather(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
+//   memory  a plan no longer needed, to be used again
+GatherPlan PlanGather(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
+                      GatherPlan memory = {});
 
 // Adds the rays of the elements in the tile of `sums`, which the caller flushes. Returns how many.
 //   pixels  RGB; must hold the four around every ray

@@ -70,12 +70,14 @@ std::vector<PixelForm> HalfPlanes(const GatherForms& forms, const Intrinsics& k,
 
 class GatherPlanner {
  public:
-  GatherPlanner(const PinholeCamera& lf_camera, const RenderCamera& render_camera)
+  GatherPlanner(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
+                GatherPlan memory)
       : k_(lf_camera.intrinsics),
         law_(lf_camera, render_camera),
         forms_(MakeForms(lf_camera, render_camera)),
         map_(lf_camera.intrinsics.distortion),
-        cubics_(forms_.across_x, forms_.across_y, forms_.depth) {
+        cubics_(forms_.across_x, forms_.across_y, forms_.depth),
+        plan_(std::move(memory)) {
     for (const int side : {0, 1})
       rows_.half_planes[side] = HalfPlanes(forms_, k_, render_camera.aperture, side == 0 ? -1 : 1);
     // All rays of a camera in the lens plane cross it at one point, for which the ends of a span
@@ -88,11 +90,11 @@ class GatherPlanner {
                     render_camera.aperture.radius_w};
     plan_.plate_width = render_camera.pinhole.intrinsics.width_px;
     plan_.plate_height = render_camera.pinhole.intrinsics.height_px;
+    plan_.segments.clear();
+    plan_.row_begin.clear();
   }
 
   GatherPlan Run() {
-    const size_t blocks = 1 + plan_.plate_width / CubicSegment::kMaxCount;
-    plan_.segments.reserve(plan_.plate_height * (1 + blocks));
     for (int y = 0; y < plan_.plate_height; ++y) {
       plan_.row_begin.push_back(plan_.segments.size());
       const auto accepted = [&](int side, int x) {
@@ -137,10 +139,13 @@ class GatherPlanner {
   // Those elements of a segment whose rays the LF image holds; across its border the segment is
   // halved until few are left, for which the law is asked.
   void AddParts(const CubicSegment& segment) {
-    const SegmentBounds b = BoundsOf(segment);
-    if (b.x_high < 0 || b.y_high < 0 || b.x_low > k_.width_px || b.y_low > k_.height_px) return;
-    if (!law_.may_lack_rays() && HasFourPixels(k_, b.x_low, b.y_low) &&
-        HasFourPixels(k_, b.x_high, b.y_high)) {
+    const CubicRange x = RangeOf(segment.x_cubic, segment.t_begin, segment.count);
+    const CubicRange y = RangeOf(segment.y_cubic, segment.t_begin, segment.count);
+    const Vec2 base(segment.base_x, segment.base_y);
+    const Vec2 low = base + Vec2(x.low, y.low), high = base + Vec2(x.high, y.high);
+    if (high.x() < 0 || high.y() < 0 || low.x() > k_.width_px || low.y() > k_.height_px) return;
+    if (!law_.may_lack_rays() && HasFourPixels(k_, low.x(), low.y()) &&
+        HasFourPixels(k_, high.x(), high.y())) {
       AppendPart(segment);
       return;
     }
@@ -185,8 +190,9 @@ class GatherPlanner {
 
 }  // namespace
 
-GatherPlan PlanGather(const PinholeCamera& lf_camera, const RenderCamera& render_camera) {
-  return GatherPlanner(lf_camera, render_camera).Run();
+GatherPlan PlanGather(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
+                      GatherPlan memory) {
+  return GatherPlanner(lf_camera, render_camera, std::move(memory)).Run();
 }
 
 }  // namespace lf

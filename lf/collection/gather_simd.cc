@@ -177,12 +177,12 @@ HWY_ATTR uint32_t GatherPart(const CubicSegment& s, int begin, int count, const 
 }
 
 HWY_ATTR uint64_t GatherTile(const GatherPlan& plan, const LfPixels& pixels, TileSums* sums) {
-  sums->Reserve(1);  // at most one ray for each element
-  const PixelRect& tile = sums->tile().rect();
+  TileSums::Element* const elements = sums->ReserveRgb(1);  // at most one ray for each
+  const PixelRect& tile = sums->rect();
   uint64_t rays = 0;
   for (int y = tile.y_begin; y < tile.y_end; ++y) {
     TileSums::Element* const row =
-        sums->elements() + static_cast<ptrdiff_t>(y - tile.y_begin) * sums->stride();
+        elements + static_cast<ptrdiff_t>(y - tile.y_begin) * sums->stride();
     for (size_t i = plan.row_begin[y]; i < plan.row_begin[y + 1]; ++i) {
       const CubicSegment& s = plan.segments[i];
       const int begin = std::max(s.x_begin, tile.x_begin);
@@ -205,8 +205,7 @@ HWY_EXPORT(GatherTile);
 
 uint64_t GatherTile(const GatherPlan& plan, const LfPixels& pixels, TileSums* sums) {
   LF_CHECK(pixels.bayer == BayerPattern::kNone);
-  LF_CHECK(sums->tile().plate_width() == plan.plate_width &&
-           sums->tile().plate_height() == plan.plate_height);
+  LF_CHECK(sums->rect().x_end <= plan.plate_width && sums->rect().y_end <= plan.plate_height);
   if (plan.segments.empty()) return 0;
   LF_CHECK(pixels.rect.width() >= 2 && pixels.rect.height() >= 2);
   return HWY_DYNAMIC_DISPATCH(GatherTile)(plan, pixels, sums);

@@ -21,8 +21,9 @@ LfPixels RandomPixels(const Intrinsics& k, uint64_t seed) {
 uint64_t GatherInTilesOf(const testing::CameraPair& pair, const LfPixels& pixels, int tile_height,
                          SensorPlate* plate) {
   const GatherPlan plan = PlanGather(pair.lf_camera, pair.render_camera);
-  return testing::InTiles(plate, 1 + 3 * tile_height, tile_height,
-                          [&](TileSums* sums) { return GatherTile(plan, pixels, sums); });
+  return testing::InTiles(
+      plate, testing::GridOf(*plate, 1 + 3 * tile_height, tile_height),
+      [&](size_t /*tile*/, TileSums* sums) { return GatherTile(plan, pixels, sums); });
 }
 
 testing::CameraPair RandomPair(uint64_t seed) {

@@ -9,7 +9,7 @@
 #include "lf/camera/ray_forms.h"
 #include "lf/collection/cubic_patch.h"
 #include "lf/collection/ray_law.h"
-#include "lf/collection/scatter_plan.h"
+#include "lf/core/check.h"
 
 namespace lf {
 namespace {
@@ -81,14 +81,16 @@ void SplitCubic(const Vec3 (&c)[4], double t, Vec3 (&left)[4], Vec3 (&right)[4])
 class PatchPlanner {
  public:
   PatchPlanner(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
-               const PixelRect& rect, const IdealPixels& ideal_pixels)
+               const PixelRect& rect, const IdealPixels& ideal_pixels,
+               std::vector<CubicSegment>* segments)
       : law_(lf_camera, render_camera),
         render_camera_(render_camera),
         rect_(rect),
         in_lens_plane_(LiesInLensPlane(lf_camera, render_camera)),
         ideal_pixels_(ideal_pixels),
         forms_(MakeRayForms(lf_camera, render_camera)),
-        cubics_(forms_.sensor_x, forms_.sensor_y, forms_.front) {
+        cubics_(forms_.sensor_x, forms_.sensor_y, forms_.front),
+        segments_(*segments) {
     for (const int side : {0, 1})
       plate_half_planes_[side] = PlateHalfPlanes(forms_, render_camera, side == 0 ? -1 : 1, 0);
     if (render_camera.aperture.blades > 0)
@@ -98,10 +100,8 @@ class PatchPlanner {
     all_conditions_.disk = render_camera.aperture.blades == 0;
   }
 
-  ScatterPlan Run() {
+  void Run() {
     for (const IdealPatch& patch : ideal_pixels_.patches()) AddPatch(patch);
-    const Intrinsics& plate = render_camera_.pinhole.intrinsics;
-    return MakeScatterPlan(segments_, plate.width_px, plate.height_px);
   }
 
  private:
@@ -290,7 +290,7 @@ class PatchPlanner {
   const IdealPixels& ideal_pixels_;
   RayForms forms_;
   CubicSegments cubics_;
-  std::vector<CubicSegment>& segments_ = ScratchSegments();
+  std::vector<CubicSegment>& segments_;
   std::vector<PixelRun> runs_;          // of the scanline
   std::optional<CubicPatch> elements_;  // of the patch, if its perspective is weak
 };
@@ -303,9 +303,10 @@ bool LiesInLensPlane(const PinholeCamera& lf_camera, const RenderCamera& render_
          1e-13 * (lf_camera.CentreWorld().norm() + render_camera.pinhole.CentreWorld().norm());
 }
 
-ScatterPlan PlanScatterOnPatches(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
-                                 const PixelRect& rect, const IdealPixels& ideal_pixels) {
-  return PatchPlanner(lf_camera, render_camera, rect, ideal_pixels).Run();
+void PlanScatterOnPatches(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
+                          const PixelRect& rect, const IdealPixels& ideal_pixels,
+                          std::vector<CubicSegment>* segments) {
+  PatchPlanner(lf_camera, render_camera, rect, ideal_pixels, segments).Run();
 }
 
 }  // namespace lf

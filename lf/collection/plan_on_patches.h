@@ -1,16 +1,21 @@
 // The spans of LF cameras with lens distortion. Internal to collection.
 #pragma once
 
+#include <vector>
+
 #include "lf/camera/ideal_pixels.h"
-#include "lf/collection/scatter.h"
+#include "lf/camera/pinhole.h"
+#include "lf/camera/render_camera.h"
+#include "lf/collection/cubic_segments.h"
 
 namespace lf {
 
-// As PlanScatter. By their control points patches (camera/ideal_pixels.h) are wholly accepted,
-// wholly rejected, or undecided; then their scanlines are asked, halves of these, and at last the
-// law, ray by ray.
-ScatterPlan PlanScatterOnPatches(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
-                                 const PixelRect& rect, const IdealPixels& ideal_pixels);
+// Appends the accepted pixels of `rect`. By their control points patches (camera/ideal_pixels.h)
+// are wholly accepted, wholly rejected, or undecided; then their scanlines are asked, halves of
+// these, and at last the law, ray by ray.
+void PlanScatterOnPatches(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
+                          const PixelRect& rect, const IdealPixels& ideal_pixels,
+                          std::vector<CubicSegment>* segments);
 
 // Whether the LF camera stands in the lens plane to rounding: then all its rays cross the lens at
 // one point (doc/ray.md, Geometry 6).

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "lf/collection/ray_law.h"
+#include "lf/collection/scatter.h"
 #include "lf/collection/test_plates.h"
 
 namespace lf {
@@ -24,9 +25,12 @@ LfPixels RandomPixels(BayerPattern bayer, uint64_t seed) {
 
 uint64_t Scatter(const testing::CameraPair& pair, const LfPixels& pixels, const PixelRect& rect,
                  const IdealPixels& ideal_pixels, int tile_height, SensorPlate* plate) {
-  const ScatterPlan plan = PlanScatter(pair.lf_camera, pair.render_camera, rect, &ideal_pixels);
-  return testing::InTiles(plate, 1 + 3 * tile_height, tile_height,
-                          [&](TileSums* sums) { return ScatterTile(plan, pixels, sums); });
+  const TileGrid grid = testing::GridOf(*plate, 1 + 3 * tile_height, tile_height);
+  const ScatterPlan plan =
+      PlanScatter(pair.lf_camera, pair.render_camera, rect, grid, &ideal_pixels);
+  return testing::InTiles(plate, grid, [&](size_t tile, TileSums* sums) {
+    return ScatterTile(plan, tile, pixels, sums);
+  });
 }
 
 TEST(PlanOnPatches, SegmentsHoldExactlyTheRaysThatTheLawAcceptsOnThePatches) {
@@ -35,9 +39,10 @@ TEST(PlanOnPatches, SegmentsHoldExactlyTheRaysThatTheLawAcceptsOnThePatches) {
     const testing::CameraPair pair = testing::RandomDistortedPair(seed);
     const IdealPixels ideal(pair.lf_camera.intrinsics);
     const RayLaw law(pair.lf_camera, pair.render_camera);
-    const ScatterPlan plan = PlanScatter(pair.lf_camera, pair.render_camera, kWholeImage, &ideal);
+    const ScatterPlan plan =
+        PlanScatter(pair.lf_camera, pair.render_camera, kWholeImage, {160, 120, 40, 23}, &ideal);
     Image<uint8_t> in_span(kWidth, kHeight);
-    for (const RaySegment& segment : plan.segments)
+    for (const CubicSegment& segment : plan.segments)
       for (int i = 0; i < segment.count; ++i) in_span.at(segment.x_begin + i, segment.y) += 1;
     size_t accepted = 0;
     for (const IdealPatch& patch : ideal.patches())
@@ -63,10 +68,10 @@ TEST(PlanOnPatches, MostSpansAreFoundWithoutAskingTheLaw) {
   pair.lf_camera.intrinsics = {1000, 1000, 640, 360,
                                0,    1280, 720, {DistortionModel::kRadialTangential, {0.035}}};
   const IdealPixels ideal(pair.lf_camera.intrinsics);
-  const ScatterPlan plan =
-      PlanScatter(pair.lf_camera, pair.render_camera, {0, 0, 1280, 720}, &ideal);
+  const ScatterPlan plan = PlanScatter(pair.lf_camera, pair.render_camera, {0, 0, 1280, 720},
+                                       {1280, 720, 384, 40}, &ideal);
   size_t whole = 0;
-  for (const RaySegment& segment : plan.segments) whole += segment.count >= 16 ? 1 : 0;
+  for (const CubicSegment& segment : plan.segments) whole += segment.count >= 16 ? 1 : 0;
   EXPECT_GT(whole, plan.segments.size() * 9 / 10);
 }
 

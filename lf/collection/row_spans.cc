@@ -13,6 +13,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // pixel.
 constexpr double kFormMargin = 1e-9;
 constexpr double kDiskMargin = 1e-7;
+constexpr double kSlack = 0.01;  // of the ends, in pixels
 
 // Real interval of pixel positions, [begin, end]; empty if end < begin.
 struct Interval {
@@ -96,8 +97,8 @@ RowSpans::Candidate RowSpans::FindCandidate(int side, double centre_y, int x_beg
                        Along(disk->forward, centre_y), disk->radius, range);
     if (range.empty()) return {};
   }
-  return {std::max(x_begin, static_cast<int>(std::floor(range.begin - 0.5)) - 1),
-          std::min(x_end, static_cast<int>(std::ceil(range.end - 0.5)) + 2), tie};
+  return {std::max(x_begin, static_cast<int>(std::ceil(range.begin - 0.5 - kSlack))),
+          std::min(x_end, static_cast<int>(std::floor(range.end - 0.5 + kSlack)) + 1), tie};
 }
 
 }  // namespace lf

@@ -4,7 +4,7 @@
 // Two back ends, compared by one test. The reference asks the law of every pixel. The fast one
 // works in two steps, so that many threads can share one plate and one LF image many plates:
 //   1. PlanScatter, once per (LF image, frame): the accepted pixels of each scanline, in segments
-//      along which the element position is a cubic.
+//      along which the element position is a cubic, cut where they leave a tile.
 //   2. ScatterTile, once per (LF image, frame, tile of the plate): the rays that land in the tile.
 // Tolerance: both accept exactly the same rays. A ray within 1e-4 elements of an element's border
 // may land in the neighbour, since the fast back end evaluates cubics in single precision; a tile
@@ -14,6 +14,7 @@
 // IdealPixels::kTolerance_px of a border of lens or plate may differ, too.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -22,8 +23,10 @@
 #include "lf/camera/render_camera.h"
 #include "lf/capture/lf_pixels.h"
 #include "lf/collection/cubic_segments.h"
+#include "lf/collection/tile_pieces.h"
 #include "lf/core/geometry.h"
 #include "lf/plate/sensor_plate.h"
+#include "lf/plate/tile_grid.h"
 #include "lf/plate/tile_sums.h"
 
 namespace lf {
@@ -35,33 +38,25 @@ uint64_t ScatterReference(const PinholeCamera& lf_camera, const LfPixels& pixels
                           const RenderCamera& render_camera, const PixelRect& rect,
                           SensorPlate* plate);
 
-// Pixels of a scanline, all accepted. Positions are elements: pixel i of the segment hits
-// floor(position), clamped to the plate, since the law has accepted it.
-struct RaySegment : CubicSegment {
-  // It hits no elements but these, and none more often than `crowd` times.
-  PixelRect elements;
-  uint32_t crowd = 0;
-};
-
 struct ScatterPlan {
-  // Of this many segments the bounds are kept, to pass over those that miss a tile.
-  static constexpr size_t kBlock = 32;
-
-  int plate_width = 0;
-  int plate_height = 0;
-  std::vector<RaySegment> segments;
-  std::vector<PixelRect> block_elements;
+  TileGrid grid;
+  // Pixels of scanlines, all accepted. Positions are elements: a pixel hits floor(position),
+  // clamped to the plate, since the law has accepted it.
+  std::vector<CubicSegment> segments;
+  TilePieces pieces;
 };
 
 // The accepted rays of `rect`: exact, the ends of every span confirmed by the law.
+//   grid          of a plate of the render camera's size
 //   ideal_pixels  of lf_camera's intrinsics, for a camera with distortion
+//   memory        a plan no longer needed, to be used again
 ScatterPlan PlanScatter(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
-                        const PixelRect& rect, const IdealPixels* ideal_pixels = nullptr);
+                        const PixelRect& rect, const TileGrid& grid,
+                        const IdealPixels* ideal_pixels = nullptr, ScatterPlan memory = {});
 
-// Adds the rays of `plan` that land in the tile of `sums`; of RGB images to the sums, which are
-// flushed to the plate when they might overflow and by the caller at the end, of mosaics to the
-// plate at once. Returns how many.
+// Adds the rays of `plan` that land in one tile of its grid, that of `sums`, which the caller
+// flushes. Returns how many.
 //   pixels  those the plan's rectangle was taken from
-uint64_t ScatterTile(const ScatterPlan& plan, const LfPixels& pixels, TileSums* sums);
+uint64_t ScatterTile(const ScatterPlan& plan, size_t tile, const LfPixels& pixels, TileSums* sums);
 
 }  // namespace lf

@@ -7,6 +7,8 @@
 namespace lf {
 namespace {
 
+const TileGrid kGrid = TileSums::GridOf(960, 640);
+
 struct Scene {
   PinholeCamera lf_camera;
   RenderCamera frame;
@@ -30,15 +32,19 @@ void ReportRays(benchmark::State& state, uint64_t accepted) {
       benchmark::Counter(static_cast<double>(accepted), benchmark::Counter::kIsRate);
 }
 
+uint64_t Scatter(const Scene& scene, const IdealPixels* ideal, SensorPlate* plate) {
+  const ScatterPlan plan =
+      PlanScatter(scene.lf_camera, scene.frame, scene.pixels.rect, kGrid, ideal);
+  return testing::InTiles(plate, kGrid, [&](size_t tile, TileSums* sums) {
+    return ScatterTile(plan, tile, scene.pixels, sums);
+  });
+}
+
 void BM_Fast(benchmark::State& state, BayerPattern bayer) {
   const Scene scene = MakeScene(bayer, 0.02);
   SensorPlate plate(960, 640);
   uint64_t accepted = 0;
-  for (auto _ : state) {
-    const ScatterPlan plan = PlanScatter(scene.lf_camera, scene.frame, scene.pixels.rect);
-    accepted += testing::InTiles(
-        &plate, 512, 64, [&](TileSums* sums) { return ScatterTile(plan, scene.pixels, sums); });
-  }
+  for (auto _ : state) accepted += Scatter(scene, nullptr, &plate);
   ReportRays(state, accepted);
 }
 BENCHMARK_CAPTURE(BM_Fast, rgb, BayerPattern::kNone);
@@ -55,11 +61,7 @@ void BM_Distorted(benchmark::State& state, const Distortion& distortion) {
   const IdealPixels ideal(scene.lf_camera.intrinsics);
   SensorPlate plate(960, 640);
   uint64_t accepted = 0;
-  for (auto _ : state) {
-    const ScatterPlan plan = PlanScatter(scene.lf_camera, scene.frame, scene.pixels.rect, &ideal);
-    accepted += testing::InTiles(
-        &plate, 512, 64, [&](TileSums* sums) { return ScatterTile(plan, scene.pixels, sums); });
-  }
+  for (auto _ : state) accepted += Scatter(scene, &ideal, &plate);
   ReportRays(state, accepted);
 }
 BENCHMARK_CAPTURE(BM_Distorted, phone, kPhone);
@@ -79,7 +81,7 @@ BENCHMARK_CAPTURE(BM_IdealPixels, fisheye, kFisheyeLens);
 void BM_Plan(benchmark::State& state) {
   const Scene scene = MakeScene(BayerPattern::kNone, 0.02);
   for (auto _ : state)
-    benchmark::DoNotOptimize(PlanScatter(scene.lf_camera, scene.frame, scene.pixels.rect));
+    benchmark::DoNotOptimize(PlanScatter(scene.lf_camera, scene.frame, scene.pixels.rect, kGrid));
 }
 BENCHMARK(BM_Plan);
 

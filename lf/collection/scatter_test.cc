@@ -19,9 +19,11 @@ using testing::WholeImage;
 // Tiles are about three times as wide as high, so that both of their borders cut rays.
 uint64_t ScatterInTilesOf(const testing::CameraPair& pair, const LfPixels& pixels,
                           const PixelRect& rect, int tile_height, SensorPlate* plate) {
-  const ScatterPlan plan = PlanScatter(pair.lf_camera, pair.render_camera, rect);
-  return testing::InTiles(plate, 1 + 3 * tile_height, tile_height,
-                          [&](TileSums* sums) { return ScatterTile(plan, pixels, sums); });
+  const TileGrid grid = testing::GridOf(*plate, 1 + 3 * tile_height, tile_height);
+  const ScatterPlan plan = PlanScatter(pair.lf_camera, pair.render_camera, rect, grid);
+  return testing::InTiles(plate, grid, [&](size_t tile, TileSums* sums) {
+    return ScatterTile(plan, tile, pixels, sums);
+  });
 }
 
 TEST(Scatter, SpansHoldExactlyTheRaysThatTheLawAccepts) {
@@ -29,9 +31,10 @@ TEST(Scatter, SpansHoldExactlyTheRaysThatTheLawAccepts) {
   for (uint64_t seed = 0; seed < 3000; ++seed) {
     const testing::CameraPair pair = testing::RandomCameraPair(seed);
     const RayLaw law(pair.lf_camera, pair.render_camera);
-    const ScatterPlan plan = PlanScatter(pair.lf_camera, pair.render_camera, WholeImage(pair));
+    const ScatterPlan plan =
+        PlanScatter(pair.lf_camera, pair.render_camera, WholeImage(pair), {160, 120, 17, 9});
     Image<uint8_t> in_span(50, 35);
-    for (const RaySegment& segment : plan.segments)
+    for (const CubicSegment& segment : plan.segments)
       for (int i = 0; i < segment.count; ++i) in_span.at(segment.x_begin + i, segment.y) += 1;
     size_t accepted = 0;
     for (int y = 0; y < 35; ++y)
@@ -150,12 +153,15 @@ TEST(Scatter, FullWordsArePromotedWithoutLosingARay) {
   pair.lf_camera.cam_from_world.translation = {0.1, 0.05, -2};
   const LfPixels pixels = testing::NoisePixels(WholeImage(pair), BayerPattern::kNone, 5);
   SensorPlate expected = PlateFor(pair), fast = PlateFor(pair, 300), reference = PlateFor(pair, 10);
-  const ScatterPlan plan = PlanScatter(pair.lf_camera, pair.render_camera, pixels.rect);
+  const TileGrid grid = testing::GridOf(fast, 50, 35);
+  const ScatterPlan plan = PlanScatter(pair.lf_camera, pair.render_camera, pixels.rect, grid);
   for (int repeat = 0; repeat < 3; ++repeat) {
     ScatterReference(pair.lf_camera, pixels, pair.render_camera, pixels.rect, &expected);
     ScatterReference(pair.lf_camera, pixels, pair.render_camera, pixels.rect, &reference);
-    testing::InTiles(
-        &fast, 50, 35, [&](TileSums* sums) { return ScatterTile(plan, pixels, sums); }, 70);
+    const auto collect = [&](size_t tile, TileSums* sums) {
+      return ScatterTile(plan, tile, pixels, sums);
+    };
+    testing::InTiles(&fast, grid, collect, 70);
   }
   EXPECT_EQ(TotalCount(expected), uint64_t{3} * 3 * 50 * 35);
   EXPECT_EQ(expected, reference);

@@ -18,16 +18,21 @@ std::vector<SensorPlate> Collect(const testing::CameraPair& pair, uint64_t seed)
   const auto bayer = static_cast<BayerPattern>(seed % 5);
   const LfPixels pixels = testing::NoisePixels(testing::WholeImage(pair), bayer, seed);
   const IdealPixels ideal(k);
-  const ScatterPlan scatter = PlanScatter(pair.lf_camera, pair.render_camera, pixels.rect, &ideal);
+  SensorPlate plate = PlateFor(pair);
+  const TileGrid grid = testing::GridOf(plate, 40, 23);
+  const ScatterPlan scatter =
+      PlanScatter(pair.lf_camera, pair.render_camera, pixels.rect, grid, &ideal);
+  testing::InTiles(&plate, grid, [&](size_t tile, TileSums* sums) {
+    return ScatterTile(scatter, tile, pixels, sums);
+  });
   std::vector<SensorPlate> plates;
-  plates.push_back(PlateFor(pair));
-  testing::InTiles(&plates.back(), 40, 23,
-                   [&](TileSums* sums) { return ScatterTile(scatter, pixels, sums); });
+  plates.push_back(std::move(plate));
   if (bayer != BayerPattern::kNone) return plates;
   const GatherPlan gather = PlanGather(pair.lf_camera, pair.render_camera);
   plates.push_back(PlateFor(pair));
-  testing::InTiles(&plates.back(), 40, 23,
-                   [&](TileSums* sums) { return GatherTile(gather, pixels, sums); });
+  testing::InTiles(&plates.back(), grid, [&](size_t /*tile*/, TileSums* sums) {
+    return GatherTile(gather, pixels, sums);
+  });
   return plates;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <vector>
 
 #include "lf/camera/testing_scenes.h"
 #include "lf/capture/lf_pixels.h"
@@ -33,6 +34,10 @@ inline SensorPlate PlateFor(const CameraPair& pair, uint32_t limit = SensorPlate
                      pair.render_camera.pinhole.intrinsics.height_px, limit);
 }
 
+inline TileGrid GridOf(const SensorPlate& plate, int tile_width, int tile_height) {
+  return {plate.width(), plate.height(), tile_width, tile_height};
+}
+
 inline uint64_t TotalCount(const SensorPlate& plate) {
   uint64_t count = 0;
   for (int y = 0; y < plate.height(); ++y)
@@ -55,16 +60,17 @@ inline uint64_t DifferingCount(const SensorPlate& a, const SensorPlate& b) {
   return count;
 }
 
-// Calls collect(&sums) for tiles of the plate, flushing each; the sum of what it returns.
+// Calls collect(tile, &sums) for all tiles of the plate, flushing each; the sum of what it returns.
 //   ray_limit  of the sums
 template <class Collect>
-uint64_t InTiles(SensorPlate* plate, int width, int height, const Collect& collect,
+uint64_t InTiles(SensorPlate* plate, const TileGrid& grid, const Collect& collect,
                  uint32_t ray_limit = TileSums::kMaxRays) {
   uint64_t accepted = 0;
   TileSums sums(ray_limit);
-  for (PlateTile& tile : CutIntoTiles(plate, width, height)) {
-    sums.Begin(&tile);
-    accepted += collect(&sums);
+  std::vector<PlateTile> tiles = CutIntoTiles(plate, grid);
+  for (size_t tile = 0; tile < tiles.size(); ++tile) {
+    sums.Begin(&tiles[tile]);
+    accepted += collect(tile, &sums);
     sums.Flush();
   }
   return accepted;

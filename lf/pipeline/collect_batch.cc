@@ -1,7 +1,7 @@
 #include "lf/pipeline/collect_batch.h"
 
 #include <algorithm>
-#include <optional>
+#include <utility>
 
 #include "lf/collection/gather.h"
 #include "lf/collection/scatter.h"
@@ -46,16 +46,10 @@ size_t PlanBytes(Estimator estimator, int image_width, int image_height, int pla
   const bool is_nearest = estimator == Estimator::kNearest;
   const auto width = static_cast<size_t>(is_nearest ? image_width : plate_width);
   const auto height = static_cast<size_t>(is_nearest ? image_height : plate_height);
-  // Segments are pieces of blocks of 256, a few a scanline.
-  return height * (2 + width / 256) * (is_nearest ? sizeof(RaySegment) : sizeof(CubicSegment));
+  // Segments are pieces of blocks of 256, a few a scanline; tiles cut them into two or three.
+  return height * (2 + width / 256) *
+         (sizeof(CubicSegment) + (is_nearest ? 3 * sizeof(TilePiece) : 0));
 }
-
-struct BatchCollector::Share {
-  PixelRect rect;
-  ScatterPlan scatter;  // of the estimator in use
-  std::optional<GatherPlan> gather;
-  std::atomic<uint64_t> accepted_count = 0;
-};
 
 BatchCollector::BatchCollector(const LightField& light_field, std::span<const RenderCamera> frames,
                                Estimator estimator, CollectBackEnd back_end, size_t plan_bytes,
@@ -69,7 +63,7 @@ BatchCollector::BatchCollector(const LightField& light_field, std::span<const Re
       plates_(*plates) {
   LF_CHECK(plates->size() == frames.size());
   for (SensorPlate& plate : plates_)
-    tiles_.push_back(CutIntoTiles(&plate, TileSums::kTileWidth, TileSums::kTileHeight));
+    tiles_.push_back(CutIntoTiles(&plate, TileSums::GridOf(plate.width(), plate.height())));
 }
 
 void BatchCollector::Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>& frames,
@@ -162,19 +156,26 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
                                  const OtherItems& other_items,
                                  const std::atomic<bool>* interrupted) {
   // First the segments of every (frame, image), then the rays of every (frame, tile).
-  std::vector<Share> shares(frames.size() * batch.size());
-  ForEachTimed(shares.size(), [&](size_t i) {
+  const size_t share_count = frames.size() * batch.size();
+  while (shares_.size() < share_count) shares_.emplace_back();
+  ForEachTimed(share_count, [&](size_t i) {
     const BatchFrame& taker = frames[i / batch.size()];
     const BatchImage& image = batch[i % batch.size()];
+    Share& share = shares_[i];
+    share.rect = {};
+    share.accepted_count = 0;
     if (!taker.places.Holds(image.place)) return;
     const RenderCamera& frame = frames_[taker.frame];
     const PinholeCamera camera = light_field_.Camera(image.id);
-    shares[i].rect = RectOf(image, frame);
-    if (shares[i].rect.empty()) return;
+    share.rect = RectOf(image, frame);
+    if (share.rect.empty()) return;
+    const Intrinsics& plate = frame.pinhole.intrinsics;
     if (estimator_ == Estimator::kBilinear)
-      shares[i].gather = PlanGather(camera, frame);
+      share.gather = PlanGather(camera, frame, std::move(share.gather));
     else
-      shares[i].scatter = PlanScatter(camera, frame, shares[i].rect, image.ideal_pixels.get());
+      share.scatter =
+          PlanScatter(camera, frame, share.rect, TileSums::GridOf(plate.width_px, plate.height_px),
+                      image.ideal_pixels.get(), std::move(share.scatter));
   });
 
   struct Task {
@@ -190,10 +191,11 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
     thread_local TileSums sums;
     sums.Begin(&tiles_[frames[task.taker].frame][task.tile]);
     for (size_t k = 0; k < batch.size(); ++k) {
-      Share& share = shares[task.taker * batch.size() + k];
+      Share& share = shares_[task.taker * batch.size() + k];
       if (share.rect.empty()) continue;
-      share.accepted_count += share.gather ? GatherTile(*share.gather, batch[k].pixels, &sums)
-                                           : ScatterTile(share.scatter, batch[k].pixels, &sums);
+      share.accepted_count += estimator_ == Estimator::kBilinear
+                                  ? GatherTile(share.gather, batch[k].pixels, &sums)
+                                  : ScatterTile(share.scatter, task.tile, batch[k].pixels, &sums);
     }
     sums.Flush();
   };
@@ -212,7 +214,7 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
     frames[f].is_done = gates[f].IsOpen(nullptr);
     if (!frames[f].is_done) continue;
     for (size_t k = 0; k < batch.size(); ++k) {
-      const Share& share = shares[f * batch.size() + k];
+      const Share& share = shares_[f * batch.size() + k];
       frames[f].rays.accepted_count += share.accepted_count;
       Count(share.rect, share.accepted_count > 0, &frames[f].rays);
     }

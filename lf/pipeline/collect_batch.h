@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -15,6 +16,8 @@
 #include "lf/camera/render_camera.h"
 #include "lf/capture/lf_pixels.h"
 #include "lf/capture/light_field.h"
+#include "lf/collection/gather.h"
+#include "lf/collection/scatter.h"
 #include "lf/core/ids.h"
 #include "lf/core/parallel.h"
 #include "lf/plate/sensor_plate.h"
@@ -91,7 +94,13 @@ class BatchCollector {
   double cpu_seconds() const { return static_cast<double>(cpu_ns_.load()) * 1e-9; }
 
  private:
-  struct Share;
+  // Of one LF image in one frame.
+  struct Share {
+    PixelRect rect;
+    ScatterPlan scatter;  // of the estimator in use
+    GatherPlan gather;
+    std::atomic<uint64_t> accepted_count = 0;
+  };
   PixelRect RectOf(const BatchImage& image, const RenderCamera& frame) const;
   void UndoDistortion(std::vector<BatchImage>& batch);
   std::span<BatchFrame> FramesThatMayTake(const std::vector<BatchImage>& batch,
@@ -109,6 +118,7 @@ class BatchCollector {
   ThreadPool& pool_;
   std::vector<SensorPlate>& plates_;
   std::vector<std::vector<PlateTile>> tiles_;
+  std::deque<Share> shares_;  // of (frame, LF image); their memory serves batch after batch
   // By index of intrinsics; those of the last batch.
   std::map<uint32_t, std::shared_ptr<const IdealPixels>> ideal_pixels_;
   std::atomic<int64_t> cpu_ns_ = 0;

@@ -108,12 +108,11 @@ void PlateTile::MakeRoom(uint32_t rays) {
   headroom_ = limit - plate_->Promote(rect_, limit - rays);
 }
 
-std::vector<PlateTile> CutIntoTiles(SensorPlate* plate, int width, int height) {
+std::vector<PlateTile> CutIntoTiles(SensorPlate* plate, const TileGrid& grid) {
+  LF_CHECK(plate->width() == grid.plate_width && plate->height() == grid.plate_height);
   std::vector<PlateTile> tiles;
-  for (int y = 0; y < plate->height(); y += height)
-    for (int x = 0; x < plate->width(); x += width)
-      tiles.emplace_back(plate, PixelRect{x, y, std::min(plate->width(), x + width),
-                                          std::min(plate->height(), y + height)});
+  for (size_t tile = 0; tile < grid.tile_count(); ++tile)
+    tiles.emplace_back(plate, grid.RectOf(tile));
   return tiles;
 }
 

@@ -18,6 +18,7 @@
 
 #include "lf/core/check.h"
 #include "lf/core/geometry.h"
+#include "lf/plate/tile_grid.h"
 
 namespace lf {
 
@@ -89,14 +90,12 @@ class PlateTile {
   PlateTile(SensorPlate* plate, const PixelRect& rect);
 
   const PixelRect& rect() const { return rect_; }
-  int plate_width() const { return plate_->width_; }
-  int plate_height() const { return plate_->height_; }
 
-  // Words of the whole plate, [height][width][3]; those of the tile may be written.
-  uint64_t* words() { return plate_->packed_.data(); }
+  // The tile's words in row y of the plate, [width][3].
   uint64_t* row(int y) {
     LF_DCHECK(y >= rect_.y_begin && y < rect_.y_end);
-    return words() + static_cast<size_t>(y) * plate_->width_ * SensorPlate::kChannels;
+    return plate_->packed_.data() +
+           (static_cast<size_t>(y) * plate_->width_ + rect_.x_begin) * SensorPlate::kChannels;
   }
 
   // The most rays one Reserve() can be asked for.
@@ -117,7 +116,7 @@ class PlateTile {
   uint32_t headroom_ = 0;
 };
 
-// The tiles of a plate, no larger than `width` x `height`, row by row.
-std::vector<PlateTile> CutIntoTiles(SensorPlate* plate, int width, int height);
+// All tiles of a plate of the grid's size.
+std::vector<PlateTile> CutIntoTiles(SensorPlate* plate, const TileGrid& grid);
 
 }  // namespace lf

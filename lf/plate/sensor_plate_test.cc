@@ -43,7 +43,7 @@ TEST(PlateTile, ReservesRoomByPromoting) {
       const uint64_t bits = RandomBits(5, static_cast<uint64_t>(k), i);
       const int x = 1 + bits % 2, y = 1 + (bits >> 8) % 2, c = (bits >> 16) % 3;
       const auto v = static_cast<uint16_t>(bits >> 32);
-      tile.row(y)[x * 3 + c] += SensorPlate::kOneRay | v;
+      tile.row(y)[(x - 1) * 3 + c] += SensorPlate::kOneRay | v;
       large.AddRay(x, y, c, v);
     }
   }

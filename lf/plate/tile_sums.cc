@@ -3,29 +3,51 @@
 #include <algorithm>
 
 namespace lf {
+namespace {
+
+// Rows of a plate are too far apart for the processor to foresee.
+void Prefetch(const uint64_t* words) { __builtin_prefetch(words, 1); }
+
+}  // namespace
 
 void TileSums::Begin(PlateTile* tile) {
   LF_CHECK(ray_limit_ <= tile->max_reserve());
+  LF_CHECK(!has_rgb_ && !has_mosaic_);
   tile_ = tile;
-  const size_t count = static_cast<size_t>(stride()) * tile->rect().height();
-  if (elements_.size() < count) elements_.resize(count);
-  headroom_ = ray_limit_;
 }
 
-void TileSums::MakeRoom(uint32_t rays) {
+void TileSums::MakeRgbRoom(uint32_t rays) {
   LF_CHECK(rays <= ray_limit_);
-  Flush();
+  FlushRgb();
+  const size_t count = static_cast<size_t>(stride()) * rect().height();
+  if (elements_.size() < count) elements_.resize(count);
+  rgb_headroom_ = ray_limit_;
+  has_rgb_ = true;
+}
+
+void TileSums::MakeMosaicRoom(uint32_t rays) {
+  LF_CHECK(rays <= ray_limit_);
+  FlushMosaic();
+  const size_t count = static_cast<size_t>(stride()) * rect().height() * kMosaicRows + 2 * kMargin;
+  if (words_.size() < count) words_.resize(count);
+  mosaic_headroom_ = ray_limit_;
+  has_mosaic_ = true;
 }
 
 void TileSums::Flush() {
-  const uint32_t most_rays = ray_limit_ - headroom_;  // that an element can have got
-  if (most_rays == 0) return;
-  tile_->Reserve(most_rays);
-  const PixelRect& rect = tile_->rect();
-  for (int y = rect.y_begin; y < rect.y_end; ++y) {
-    Element* element = elements_.data() + static_cast<ptrdiff_t>(y - rect.y_begin) * stride();
-    uint64_t* word = tile_->row(y) + static_cast<size_t>(rect.x_begin) * SensorPlate::kChannels;
-    for (int x = rect.x_begin; x < rect.x_end; ++x, ++element, word += SensorPlate::kChannels) {
+  FlushRgb();
+  FlushMosaic();
+}
+
+void TileSums::FlushRgb() {
+  if (!has_rgb_) return;
+  tile_->Reserve(ray_limit_ - rgb_headroom_);
+  for (int y = rect().y_begin; y < rect().y_end; ++y) {
+    Element* element = elements_.data() + static_cast<ptrdiff_t>(y - rect().y_begin) * stride();
+    uint64_t* word = tile_->row(y);
+    const ptrdiff_t ahead = tile_->row(std::min(y + 1, rect().y_end - 1)) - word;
+    for (int x = 0; x < rect().width(); ++x, ++element, word += SensorPlate::kChannels) {
+      Prefetch(word + ahead);
       const uint64_t rays = uint64_t{element->rgb_rays[3]} << SensorPlate::kSumBits;
       word[0] += rays | element->rgb_rays[0];
       word[1] += rays | element->rgb_rays[1];
@@ -33,7 +55,40 @@ void TileSums::Flush() {
       *element = Element{};
     }
   }
-  headroom_ = ray_limit_;
+  has_rgb_ = false;
+  rgb_headroom_ = 0;
+}
+
+void TileSums::FlushMosaic() {
+  if (!has_mosaic_) return;
+  tile_->Reserve(ray_limit_ - mosaic_headroom_);
+  const int width = rect().width();
+  for (int y = rect().y_begin; y < rect().y_end; ++y) {
+    uint64_t* const rows = words_.data() + kMargin +
+                           static_cast<ptrdiff_t>(y - rect().y_begin) * kMosaicRows * stride();
+    const auto row = [&](int kind) { return rows + static_cast<ptrdiff_t>(kind) * stride(); };
+    const uint64_t *const r_g = row(kRedFirst), *const g_r = row(kGreenFirst);
+    const uint64_t *const b_g = row(kBlueFirst), *const g_b = row(kGreenFirst + kBlueFirst);
+    uint64_t* word = tile_->row(y);
+    const ptrdiff_t ahead = tile_->row(std::min(y + 1, rect().y_end - 1)) - word;
+    for (int x = 0; x + 1 < width; x += 2, word += 2 * SensorPlate::kChannels) {
+      Prefetch(word + ahead);
+      word[0] += r_g[x];
+      word[1] += g_r[x] + g_b[x];
+      word[2] += b_g[x];
+      word[3] += g_r[x + 1];
+      word[4] += r_g[x + 1] + b_g[x + 1];
+      word[5] += g_b[x + 1];
+    }
+    if (width % 2 != 0) {
+      word[0] += r_g[width - 1];
+      word[1] += g_r[width - 1] + g_b[width - 1];
+      word[2] += b_g[width - 1];
+    }
+    std::fill_n(rows, static_cast<size_t>(kMosaicRows) * stride(), 0);
+  }
+  has_mosaic_ = false;
+  mosaic_headroom_ = 0;
 }
 
 }  // namespace lf

@@ -1,24 +1,43 @@
-// What a batch of RGB LF images adds to one tile of a plate, before the plate sees it: small
-// enough for the second level cache, and one 128-bit addition for a ray of three colours.
+// What a batch of LF images adds to one tile of a plate, before the plate sees it: small enough for
+// the second level cache, and laid out so that the rays of neighbouring LF pixels fall on
+// neighbouring words.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "lf/plate/sensor_plate.h"
+#include "lf/plate/tile_grid.h"
 
 namespace lf {
 
 class TileSums {
  public:
-  // Sums of 16-bit values and the number of rays.
+  // Of RGB LF images: sums of 16-bit values and the number of rays.
   struct alignas(16) Element {
     uint32_t rgb_rays[4] = {};
   };
+
+  // Of mosaics: packed words as the plate's. Along a scanline green alternates with another colour;
+  // if an LF pixel is as large as an element, so it does along a row of elements. A row of elements
+  // has one row of words for each of these, so that the scanline adds to words side by side:
+  //   kRedFirst    R at even x, G at odd ones     kBlueFirst   B at even x, G at odd ones
+  //   kGreenFirst  G at even x, R at odd ones     kGreenFirst + kBlueFirst   G, B
+  static constexpr int kRedFirst = 0;
+  static constexpr int kGreenFirst = 1;
+  static constexpr int kBlueFirst = 2;
+  static constexpr int kMosaicRows = 4;
+  static constexpr int kMargin = 8;
+
   // Tiles of this shape stay in the second level cache while a batch of LF images is added to them.
   // The wider they are, the fewer pieces scanlines are cut into; tall enough for turned cameras.
   static constexpr int kTileWidth = 384;
-  static constexpr int kTileHeight = 80;
+  static constexpr int kTileHeight = 40;
+  static TileGrid GridOf(int plate_width, int plate_height) {
+    return {plate_width, plate_height, kTileWidth, kTileHeight};
+  }
+
   // The brightest rays that a sum of 32 bits holds.
   static constexpr uint32_t kMaxRays = 65537;
 
@@ -27,32 +46,48 @@ class TileSums {
 
   // What is added from here on, until Flush(), belongs to `tile`.
   void Begin(PlateTile* tile);
-  PlateTile& tile() { return *tile_; }
+  const PixelRect& rect() const { return tile_->rect(); }
 
-  // [height][width] of the tile, rows stride() elements apart: one cache line more than they are
-  // wide, since columns of a power of two would share a few lines of the first level cache.
-  Element* elements() { return elements_.data(); }
-  int stride() const { return tile_->rect().width() + 4; }
+  // Words or elements from one row to the next: a cache line more than they are wide, since columns
+  // of a power of two would share a few lines of the first level cache.
+  int stride() const { return rect().width() + 8; }
 
-  // The most rays one Reserve() can be asked for.
-  uint32_t max_reserve() const { return ray_limit_; }
-
-  // Afterwards `rays` more may be added to any element. rays <= max_reserve().
-  void Reserve(uint32_t rays) {
-    if (rays > headroom_) MakeRoom(rays);
-    headroom_ -= rays;
+  // [height][stride()]. Afterwards `rays` more may be added to any element; rays <= max_reserve().
+  Element* ReserveRgb(uint32_t rays) {
+    if (rays > rgb_headroom_) MakeRgbRoom(rays);
+    rgb_headroom_ -= rays;
+    return elements_.data();
   }
+
+  // [height][kMosaicRows][stride()], likewise. kMargin words before and behind the rows of the
+  // tile may be added to as well, but only zeros.
+  uint64_t* ReserveMosaic(uint32_t rays) {
+    if (rays > mosaic_headroom_) MakeMosaicRoom(rays);
+    mosaic_headroom_ -= rays;
+    return words_.data() + kMargin;
+  }
+
+  uint32_t max_reserve() const { return ray_limit_; }
 
   // Adds everything to the plate; the sums are 0 again.
   void Flush();
 
  private:
-  void MakeRoom(uint32_t rays);
+  void MakeRgbRoom(uint32_t rays);
+  void MakeMosaicRoom(uint32_t rays);
+  void FlushRgb();
+  void FlushMosaic();
 
   uint32_t ray_limit_;
-  uint32_t headroom_ = 0;
   PlateTile* tile_ = nullptr;
+  bool has_rgb_ = false;
+  bool has_mosaic_ = false;
+  // Rays that still fit; 0 before there are sums.
+  uint32_t rgb_headroom_ = 0;
+  uint32_t mosaic_headroom_ = 0;
+  // All 0 but between the first Reserve and Flush().
   std::vector<Element> elements_;
+  std::vector<uint64_t> words_;
 };
 
 }  // namespace lf

@@ -1,0 +1,37 @@
+// The pieces of segments that land in each tile of a plate. Kernels read them; callers
+// only hand them on.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "lf/collection/cubic_segments.h"
+#include "lf/plate/tile_grid.h"
+
+namespace lf {
+
+// Positions [begin, end) of a segment, counted from its own; all land in one tile, clamped to the
+// plate, and none of its elements takes more than `crowd`.
+struct TilePiece {
+  uint32_t segment = 0;
+  uint16_t begin = 0;
+  uint16_t end = 0;
+  uint16_t crowd = 0;
+};
+
+// By tile, in the order of the segments.
+class TilePieces {
+ public:
+  // Decided by single precision, as kernels find addresses.
+  void Cut(const std::vector<CubicSegment>& segments, const TileGrid& grid);
+
+  const TilePiece* begin(size_t tile) const { return sorted_.data() + tile_begin_[tile]; }
+  const TilePiece* end(size_t tile) const { return sorted_.data() + tile_begin_[tile + 1]; }
+
+ private:
+  std::vector<TilePiece> sorted_;
+  std::vector<uint32_t> tile_begin_;  // [tile_count + 1]
+};
+
+}  // namespace lf
