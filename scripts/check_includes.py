@@ -15,7 +15,7 @@ OWNERS = {
     "jpeglib.h": {"imageio"},
     "jerror.h": {"imageio"},
     "yaml-cpp/": {"path"},
-    "nlohmann/": {"calibration", "native", "pipeline"},
+    "nlohmann/": {"calibration", "native", "record"},
     "tbb/": {"core"},
     "hwy/": {"collection"},
     "zstd": {"plate"},

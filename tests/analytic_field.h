@@ -8,7 +8,7 @@
 
 #include "lf/camera/pinhole.h"
 #include "lf/camera/render_camera.h"
-#include "lf/pipeline/collect.h"
+#include "lf/collector/collect.h"
 
 namespace lf::testing {
 

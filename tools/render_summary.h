@@ -6,7 +6,7 @@
 #include <string>
 
 #include "lf/core/result.h"
-#include "lf/pipeline/report.h"
+#include "lf/record/report.h"
 
 namespace lf {
 

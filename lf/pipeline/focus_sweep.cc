@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "lf/pipeline/collect.h"
+#include "lf/collector/collect.h"
 
 namespace lf {
 namespace {

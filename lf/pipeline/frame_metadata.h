@@ -2,9 +2,9 @@
 #pragma once
 
 #include "lf/camera/render_camera.h"
+#include "lf/collector/collect.h"
 #include "lf/core/ids.h"
 #include "lf/imageio/image_file.h"
-#include "lf/pipeline/collect.h"
 
 namespace lf {
 

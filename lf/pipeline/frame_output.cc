@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "lf/pipeline/frame_metadata.h"
-#include "lf/pipeline/run_inputs.h"
+#include "lf/record/run_inputs.h"
 #include "lf/sequence/contact_sheet.h"
 #include "lf/sequence/frame_file.h"
 #include "lf/sequence/video.h"

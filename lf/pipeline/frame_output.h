@@ -11,8 +11,8 @@
 #include "lf/core/result.h"
 #include "lf/path/camera_path.h"
 #include "lf/pipeline/render.h"
-#include "lf/pipeline/report.h"
 #include "lf/plate/sensor_plate.h"
+#include "lf/record/report.h"
 
 namespace lf {
 

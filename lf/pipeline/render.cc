@@ -7,12 +7,12 @@
 #include <numeric>
 #include <span>
 
+#include "lf/collector/memory_plan.h"
 #include "lf/core/file.h"
 #include "lf/core/log.h"
 #include "lf/pipeline/frame_output.h"
-#include "lf/pipeline/memory_plan.h"
 #include "lf/pipeline/render_pass.h"
-#include "lf/pipeline/run_state.h"
+#include "lf/record/run_state.h"
 #include "lf/sequence/video.h"
 #include "lf/store/folder_store.h"
 

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "lf/capture/light_field.h"
+#include "lf/collector/collect.h"
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
 #include "lf/path/camera_path.h"
-#include "lf/pipeline/collect.h"
-#include "lf/pipeline/report.h"
+#include "lf/record/report.h"
 #include "lf/sequence/frame_file.h"
 
 namespace lf {

@@ -9,13 +9,13 @@
 #include <string>
 #include <vector>
 
-#include "lf/pipeline/collect.h"
-#include "lf/pipeline/dump_clock.h"
+#include "lf/collector/collect.h"
+#include "lf/collector/memory_plan.h"
+#include "lf/collector/sample_rule.h"
 #include "lf/pipeline/frame_output.h"
-#include "lf/pipeline/memory_plan.h"
 #include "lf/pipeline/render.h"
-#include "lf/pipeline/run_state.h"
-#include "lf/pipeline/sample_rule.h"
+#include "lf/record/dump_clock.h"
+#include "lf/record/run_state.h"
 
 namespace lf {
 

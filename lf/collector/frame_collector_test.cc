@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "lf/pipeline/collect.h"
-#include "lf/pipeline/test_noise_field.h"
+#include "lf/collector/collect.h"
+#include "lf/collector/test_noise_field.h"
 #include "lf/selection/overlap.h"
 
 namespace lf {

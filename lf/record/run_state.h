@@ -13,16 +13,16 @@
 #include <set>
 #include <string>
 
+#include "lf/collector/collect.h"
 #include "lf/core/file_lock.h"
 #include "lf/core/ids.h"
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
 #include "lf/path/camera_path.h"
-#include "lf/pipeline/collect.h"
-#include "lf/pipeline/report.h"
-#include "lf/pipeline/run_inputs.h"
 #include "lf/plate/plate_file.h"
 #include "lf/plate/sensor_plate.h"
+#include "lf/record/report.h"
+#include "lf/record/run_inputs.h"
 #include "lf/sequence/frame_file.h"
 
 namespace lf {

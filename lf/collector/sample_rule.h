@@ -8,9 +8,9 @@
 
 #include "lf/camera/render_camera.h"
 #include "lf/capture/light_field.h"
+#include "lf/collector/collect_batch.h"
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
-#include "lf/pipeline/collect_batch.h"
 #include "lf/plate/sensor_plate.h"
 #include "lf/selection/select.h"
 

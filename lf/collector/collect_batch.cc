@@ -1,4 +1,4 @@
-#include "lf/pipeline/collect_batch.h"
+#include "lf/collector/collect_batch.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,12 +1,12 @@
-#include "lf/pipeline/run_state.h"
+#include "lf/record/run_state.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <fstream>
 
+#include "lf/collector/test_noise_field.h"
 #include "lf/core/file.h"
-#include "lf/pipeline/test_noise_field.h"
 #include "lf/plate/test_plate.h"
 
 namespace lf {

@@ -1,4 +1,4 @@
-#include "lf/pipeline/collect.h"
+#include "lf/collector/collect.h"
 
 #include <fmt/format.h>
 

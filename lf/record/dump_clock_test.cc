@@ -1,4 +1,4 @@
-#include "lf/pipeline/dump_clock.h"
+#include "lf/record/dump_clock.h"
 
 #include <gtest/gtest.h>
 

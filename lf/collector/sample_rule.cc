@@ -1,4 +1,4 @@
-#include "lf/pipeline/sample_rule.h"
+#include "lf/collector/sample_rule.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "lf/camera/distortion.h"
-#include "lf/pipeline/collect.h"
+#include "lf/collector/collect.h"
 #include "lf/selection/ideal_cells.h"
 #include "lf/selection/overlap.h"
 

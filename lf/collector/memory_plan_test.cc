@@ -1,4 +1,4 @@
-#include "lf/pipeline/memory_plan.h"
+#include "lf/collector/memory_plan.h"
 
 #include <gtest/gtest.h>
 

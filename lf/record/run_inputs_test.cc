@@ -1,10 +1,10 @@
-#include "lf/pipeline/run_inputs.h"
+#include "lf/record/run_inputs.h"
 
 #include <gtest/gtest.h>
 
 #include <functional>
 
-#include "lf/pipeline/test_noise_field.h"
+#include "lf/collector/test_noise_field.h"
 
 namespace lf {
 namespace {

@@ -4,8 +4,8 @@
 #include <cstddef>
 
 #include "lf/capture/light_field.h"
+#include "lf/collector/collect_batch.h"
 #include "lf/core/result.h"
-#include "lf/pipeline/collect_batch.h"
 
 namespace lf {
 

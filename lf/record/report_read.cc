@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lf/core/file.h"
-#include "lf/pipeline/report.h"
+#include "lf/record/report.h"
 
 namespace lf {
 namespace {

@@ -11,11 +11,11 @@
 #include <string_view>
 #include <vector>
 
+#include "lf/collector/collect.h"
+#include "lf/collector/sample_rule.h"
 #include "lf/core/ids.h"
 #include "lf/core/result.h"
-#include "lf/pipeline/collect.h"
-#include "lf/pipeline/run_inputs.h"
-#include "lf/pipeline/sample_rule.h"
+#include "lf/record/run_inputs.h"
 #include "lf/sequence/develop.h"
 
 namespace lf {

@@ -1,4 +1,4 @@
-#include "lf/pipeline/report.h"
+#include "lf/record/report.h"
 
 #include <gtest/gtest.h>
 

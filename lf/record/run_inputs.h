@@ -9,8 +9,8 @@
 
 #include "lf/camera/render_camera.h"
 #include "lf/capture/light_field.h"
+#include "lf/collector/collect_batch.h"
 #include "lf/core/ids.h"
-#include "lf/pipeline/collect_batch.h"
 
 namespace lf {
 

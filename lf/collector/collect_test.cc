@@ -1,10 +1,10 @@
-#include "lf/pipeline/collect.h"
+#include "lf/collector/collect.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "lf/pipeline/test_noise_field.h"
+#include "lf/collector/test_noise_field.h"
 
 namespace lf {
 namespace {

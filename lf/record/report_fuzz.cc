@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "lf/core/check.h"
-#include "lf/pipeline/report.h"
+#include "lf/record/report.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size_bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes), size_bytes);

@@ -1,4 +1,4 @@
-#include "lf/pipeline/run_state.h"
+#include "lf/record/run_state.h"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
-#include "lf/pipeline/sample_rule.h"
+#include "lf/collector/sample_rule.h"
 
 #include <gtest/gtest.h>
 
 #include "lf/collection/gather.h"
-#include "lf/pipeline/test_noise_field.h"
+#include "lf/collector/test_noise_field.h"
 
 namespace lf {
 namespace {

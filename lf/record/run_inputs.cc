@@ -1,4 +1,4 @@
-#include "lf/pipeline/run_inputs.h"
+#include "lf/record/run_inputs.h"
 
 #include <fmt/format.h>
 
