@@ -22,59 +22,70 @@ using LaneF = hn::CappedTag<float, 16>;
 using LaneI = hn::RebindToSigned<LaneF>;
 constexpr int kLanes = static_cast<int>(hn::MaxLanes(LaneF()));
 
-constexpr uint32_t kOne = 256;  // of the weights
+constexpr int kWeightBits = 8;
+constexpr int kOne = 1 << kWeightBits;  // of the weights
 
-// Upper left pixels of consecutive elements, and the weights of the right, upper and lower ones.
+// Upper left pixels of consecutive elements, and the weights of the right and of the lower ones.
 struct Places {
-  HWY_ALIGN int32_t pixel[CubicSegment::kMaxCount];
-  HWY_ALIGN uint32_t right[CubicSegment::kMaxCount];
-  HWY_ALIGN uint32_t upper[CubicSegment::kMaxCount];
-  HWY_ALIGN uint32_t lower[CubicSegment::kMaxCount];
+  static constexpr int kRoom = CubicSegment::kMaxCount + kLanes;
+  HWY_ALIGN int32_t pixel[kRoom];
+  HWY_ALIGN uint32_t right[kRoom];
+  HWY_ALIGN uint32_t lower[kRoom];
 };
 
-// One coordinate: the pixel before the position, and its distance in 1/256.
+// One coordinate: the pixel before the position, counted from `begin`, and its distance in 1/256.
 struct Coordinate {
   hn::Vec<LaneI> pixel;
   hn::Vec<LaneI> weight;
 };
-// Within pixels [begin, end).
-HWY_ATTR HWY_INLINE Coordinate FindCoordinate(const float (&c)[4], int32_t base, int begin, int end,
-                                              hn::Vec<LaneF> t) {
-  const LaneF df;
-  const LaneI di;
-  const auto half = hn::Set(df, 0.5F);
-  const auto cubic =
-      hn::Add(hn::Mul(hn::Add(hn::Mul(hn::Add(hn::Mul(hn::Set(df, c[3]), t), hn::Set(df, c[2])), t),
-                              hn::Set(df, c[1])),
-                      t),
-              hn::Set(df, c[0]));
-  // From pixel centres; what rounding has sent beyond the pixels is on their border.
-  const auto position =
-      hn::Min(hn::Max(hn::Sub(cubic, half), hn::Set(df, static_cast<float>(begin - base))),
-              hn::Set(df, static_cast<float>(end - 1 - base)));
-  const auto pixel = hn::Min(hn::Floor(position), hn::Set(df, static_cast<float>(end - 2 - base)));
-  const auto weight = hn::Floor(
-      hn::Add(hn::Mul(hn::Sub(position, pixel), hn::Set(df, static_cast<float>(kOne))), half));
-  return {hn::Add(hn::ConvertTo(di, pixel), hn::Set(di, base)), hn::ConvertTo(di, weight)};
-}
+
+// Finds it within pixels [begin, end).
+class CoordinateFinder {
+ public:
+  HWY_ATTR HWY_INLINE CoordinateFinder(const float (&cubic)[4], int32_t base, int begin, int end) {
+    // In 1/256 from the centre of pixel `begin`, rounded half up; multiplying by 256 is exact.
+    for (int power = 0; power < 4; ++power) cubic_[power] = cubic[power] * kOne;
+    cubic_[0] += 0.5F - 0.5F * kOne;
+    base_ = (base - begin) * kOne;
+    last_ = end - begin - 1;
+  }
+
+  HWY_ATTR HWY_INLINE Coordinate Find(hn::Vec<LaneF> t) const {
+    const LaneF df;
+    const LaneI di;
+    const auto cubic = hn::Add(
+        hn::Mul(
+            hn::Add(hn::Mul(hn::Add(hn::Mul(hn::Set(df, cubic_[3]), t), hn::Set(df, cubic_[2])), t),
+                    hn::Set(df, cubic_[1])),
+            t),
+        hn::Set(df, cubic_[0]));
+    const auto found = hn::Add(hn::ConvertTo(di, hn::Floor(cubic)), hn::Set(di, base_));
+    // What rounding has sent beyond the pixels is on their border.
+    const auto position = hn::Min(hn::Max(found, hn::Zero(di)), hn::Set(di, last_ * kOne));
+    const auto pixel = hn::Min(hn::ShiftRight<kWeightBits>(position), hn::Set(di, last_ - 1));
+    return {pixel, hn::Sub(position, hn::ShiftLeft<kWeightBits>(pixel))};
+  }
+
+ private:
+  float cubic_[4];
+  int32_t base_;
+  int32_t last_;
+};
 
 HWY_ATTR void FindPlaces(const CubicSegment& s, int begin, int count, const PixelRect& rect,
                          Places* places) {
   const LaneF df;
   const LaneI di;
+  const hn::RebindToUnsigned<LaneI> du;
+  const CoordinateFinder x_finder(s.x_cubic, s.base_x, rect.x_begin, rect.x_end);
+  const CoordinateFinder y_finder(s.y_cubic, s.base_y, rect.y_begin, rect.y_end);
   const auto width = hn::Set(di, rect.width());
-  const auto x_begin = hn::Set(di, rect.x_begin), y_begin = hn::Set(di, rect.y_begin);
   for (int i = 0; i < count; i += kLanes) {
     const auto t = hn::Iota(df, s.t_begin + static_cast<float>(begin + i));
-    const Coordinate x = FindCoordinate(s.x_cubic, s.base_x, rect.x_begin, rect.x_end, t);
-    const Coordinate y = FindCoordinate(s.y_cubic, s.base_y, rect.y_begin, rect.y_end, t);
-    const auto row = hn::Sub(y.pixel, y_begin), column = hn::Sub(x.pixel, x_begin);
-    hn::Store(hn::Add(hn::Mul(row, width), column), di, places->pixel + i);
-    const hn::RebindToUnsigned<LaneI> du;
-    const auto weight = hn::BitCast(du, y.weight);
+    const Coordinate x = x_finder.Find(t), y = y_finder.Find(t);
+    hn::Store(hn::Add(hn::Mul(y.pixel, width), x.pixel), di, places->pixel + i);
     hn::Store(hn::BitCast(du, x.weight), du, places->right + i);
-    hn::Store(hn::Sub(hn::Set(du, kOne), weight), du, places->upper + i);
-    hn::Store(weight, du, places->lower + i);
+    hn::Store(hn::BitCast(du, y.weight), du, places->lower + i);
   }
 }
 
@@ -83,67 +94,95 @@ constexpr uint32_t kHalf = kOne * kOne / 2;
 
 #if HWY_TARGET == HWY_SCALAR
 
-HWY_INLINE void AddRay(const uint16_t* upper, const uint16_t* lower, uint32_t right_weight,
-                       uint32_t above, uint32_t lower_weight, uint32_t* sums) {
-  const uint32_t left = kOne - right_weight;
+constexpr int kRaysAtOnce = 1;
+
+HWY_INLINE void AddRays(const Places& places, int i, const uint16_t* values, ptrdiff_t row_values,
+                        TileSums::Element* sums) {
+  const uint16_t* upper = values + static_cast<ptrdiff_t>(places.pixel[i]) * LfPixels::kRgbLanes;
+  const uint16_t* lower = upper + row_values;
+  const uint32_t right = places.right[i], left = kOne - right, down = places.lower[i];
   for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane) {
     const int next = lane + LfPixels::kRgbLanes;
-    const uint32_t sum = upper[lane] * (left * above) + upper[next] * (right_weight * above) +
-                         lower[lane] * (left * lower_weight) +
-                         lower[next] * (right_weight * lower_weight);
-    sums[lane] += (sum + kHalf) >> 16;
+    const uint32_t sum = (upper[lane] * left + upper[next] * right) * (kOne - down) +
+                         (lower[lane] * left + lower[next] * right) * down;
+    sums[i].rgb_rays[lane] += (sum + kHalf) >> (2 * kWeightBits);
   }
 }
-
-#elif HWY_MAX_BYTES >= 32
-
-// Weights of the left and of the right pixel, four lanes each.
-struct alignas(32) ColumnWeights {
-  uint32_t lanes[2 * LfPixels::kRgbLanes];
-};
-struct ColumnWeightTable {
-  ColumnWeights of_right[kOne + 1];
-  constexpr ColumnWeightTable() : of_right() {
-    for (uint32_t right = 0; right <= kOne; ++right)
-      for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane) {
-        of_right[right].lanes[lane] = kOne - right;
-        of_right[right].lanes[lane + LfPixels::kRgbLanes] = right;
-      }
-  }
-};
-constexpr ColumnWeightTable kColumnWeights;
-
-// Two pixels at a time: first the rows are mixed, then the columns.
-HWY_ATTR HWY_INLINE void AddRay(const uint16_t* upper, const uint16_t* lower, uint32_t right_weight,
-                                uint32_t above, uint32_t lower_weight, uint32_t* sums) {
-  const hn::FixedTag<uint32_t, 8> d32;
-  const hn::FixedTag<uint16_t, 8> d16;
-  const hn::Full128<uint32_t> half;
-  const auto rows =
-      hn::Add(hn::Mul(hn::PromoteTo(d32, hn::LoadU(d16, upper)), hn::Set(d32, above)),
-              hn::Mul(hn::PromoteTo(d32, hn::LoadU(d16, lower)), hn::Set(d32, lower_weight)));
-  const auto columns = hn::Mul(rows, hn::Load(d32, kColumnWeights.of_right[right_weight].lanes));
-  const auto sum = hn::Add(hn::LowerHalf(half, columns), hn::UpperHalf(half, columns));
-  const auto ray = hn::ShiftRight<16>(hn::Add(sum, hn::Set(half, kHalf)));
-  hn::Store(hn::Add(hn::Load(half, sums), ray), half, sums);
-}
+constexpr auto AddRay = AddRays;
 
 #else
 
-HWY_ATTR HWY_INLINE void AddRay(const uint16_t* upper, const uint16_t* lower, uint32_t right_weight,
-                                uint32_t above, uint32_t lower_weight, uint32_t* sums) {
-  const hn::Full128<uint32_t> d32;
-  const hn::Full64<uint16_t> d16;
-  const uint32_t left = kOne - right_weight;
-  const auto part = [&](const uint16_t* pixel, uint32_t weight) HWY_ATTR {
-    return hn::Mul(hn::PromoteTo(d32, hn::LoadU(d16, pixel)), hn::Set(d32, weight));
+using AllLanes = hn::CappedTag<uint32_t, 16>;
+using LanesOfOne = hn::Full128<uint32_t>;
+constexpr int kRaysAtOnce = static_cast<int>(hn::MaxLanes(AllLanes())) / LfPixels::kRgbLanes;
+
+// Two pixels side by side for each ray, in a block of 128 bits.
+HWY_ATTR HWY_INLINE hn::Vec<hn::Full128<uint16_t>> LoadPairs(hn::Full128<uint16_t> d,
+                                                             const uint16_t* values,
+                                                             const int32_t* pixel) {
+  return hn::LoadU(d, values + static_cast<ptrdiff_t>(pixel[0]) * LfPixels::kRgbLanes);
+}
+template <class D>
+HWY_ATTR HWY_INLINE hn::Vec<D> LoadPairs(D d, const uint16_t* values, const int32_t* pixel) {
+  const hn::Half<D> half;
+  constexpr int kBlocks = static_cast<int>(hn::MaxLanes(half)) * 2 / 16;
+  return hn::Combine(d, LoadPairs(half, values, pixel + kBlocks), LoadPairs(half, values, pixel));
+}
+
+// weights[k] in all lanes of block k.
+template <class D>
+HWY_ATTR HWY_INLINE hn::Vec<D> LoadWeights(D d, const uint32_t* weights) {
+  if constexpr (hn::MaxLanes(d) == 4) {
+    return hn::Set(d, *weights);
+  } else {
+    HWY_ALIGN static constexpr uint8_t kBytes[64] = {
+        0,  1,  2,  3,  0,  1,  2,  3,  0,  1,  2,  3,  0,  1,  2,  3,   //
+        4,  5,  6,  7,  4,  5,  6,  7,  4,  5,  6,  7,  4,  5,  6,  7,   //
+        8,  9,  10, 11, 8,  9,  10, 11, 8,  9,  10, 11, 8,  9,  10, 11,  //
+        12, 13, 14, 15, 12, 13, 14, 15, 12, 13, 14, 15, 12, 13, 14, 15};
+    const hn::Repartition<uint8_t, D> d8;
+    return hn::BitCast(
+        d, hn::TableLookupBytes(hn::BitCast(d8, hn::LoadDup128(d, weights)), hn::Load(d8, kBytes)));
+  }
+}
+
+// first * (256 - weight) + second * weight, modulo 2^32.
+template <class V>
+HWY_ATTR HWY_INLINE V Mix(V first, V second, V weight) {
+  return hn::Add(hn::ShiftLeft<kWeightBits>(first), hn::Mul(hn::Sub(second, first), weight));
+}
+
+// Of as many rays, from `i` on, as there are blocks in the vector.
+template <class D>
+HWY_ATTR HWY_INLINE void AddRaysOf(D d, const Places& places, int i, const uint16_t* values,
+                                   ptrdiff_t row_values, TileSums::Element* sums) {
+  const hn::Repartition<uint16_t, D> d16;
+  const hn::Repartition<uint8_t, D> d8;
+  // Of each colour, the left and the right pixel side by side.
+  HWY_ALIGN static constexpr uint8_t kSideBySide[16] = {0, 1, 8,  9,  2, 3, 10, 11,
+                                                        4, 5, 12, 13, 6, 7, 14, 15};
+  const auto side_by_side = hn::LoadDup128(d8, kSideBySide);
+  const auto low = hn::Set(d, 0xFFFF);
+  const auto right = LoadWeights(d, places.right + i);
+  const auto mix_row = [&](const uint16_t* row) HWY_ATTR {
+    const auto pairs = LoadPairs(d16, row, places.pixel + i);
+    const auto mixed = hn::BitCast(d, hn::TableLookupBytes(hn::BitCast(d8, pairs), side_by_side));
+    return Mix(hn::And(mixed, low), hn::ShiftRight<16>(mixed), right);
   };
-  const auto sum = hn::Add(
-      hn::Add(part(upper, left * above), part(upper + LfPixels::kRgbLanes, right_weight * above)),
-      hn::Add(part(lower, left * lower_weight),
-              part(lower + LfPixels::kRgbLanes, right_weight * lower_weight)));
-  const auto ray = hn::ShiftRight<16>(hn::Add(sum, hn::Set(d32, kHalf)));
-  hn::Store(hn::Add(hn::Load(d32, sums), ray), d32, sums);
+  const auto sum =
+      Mix(mix_row(values), mix_row(values + row_values), LoadWeights(d, places.lower + i));
+  const auto rays = hn::ShiftRight<2 * kWeightBits>(hn::Add(sum, hn::Set(d, kHalf)));
+  uint32_t* const lanes = sums[i].rgb_rays;
+  hn::StoreU(hn::Add(hn::LoadU(d, lanes), rays), d, lanes);
+}
+
+HWY_ATTR HWY_INLINE void AddRays(const Places& places, int i, const uint16_t* values,
+                                 ptrdiff_t row_values, TileSums::Element* sums) {
+  AddRaysOf(AllLanes(), places, i, values, row_values, sums);
+}
+HWY_ATTR HWY_INLINE void AddRay(const Places& places, int i, const uint16_t* values,
+                                ptrdiff_t row_values, TileSums::Element* sums) {
+  AddRaysOf(LanesOfOne(), places, i, values, row_values, sums);
 }
 
 #endif
@@ -156,24 +195,31 @@ HWY_ATTR uint32_t GatherPart(const CubicSegment& s, int begin, int count, const 
   FindPlaces(s, begin, count, pixels.rect, &places);
   const uint16_t* const values = pixels.radiance.row(0);
   const ptrdiff_t row_values = static_cast<ptrdiff_t>(pixels.rect.width()) * LfPixels::kRgbLanes;
+  const auto upper = [&](int i) {
+    LF_DCHECK(places.pixel[i] >= 0 &&
+              places.pixel[i] < pixels.rect.width() * (pixels.rect.height() - 1) - 1);
+    return values + static_cast<ptrdiff_t>(places.pixel[i]) * LfPixels::kRgbLanes;
+  };
+  // Rows are too far apart for the processor to foresee.
   constexpr int kRowsAhead = 2;
   constexpr int kLineElements = 8;  // of an LF image, in a cache line
-  uint32_t rays = 0;
-  for (int i = 0; i < count; ++i) {
-    const uint16_t* upper = values + static_cast<ptrdiff_t>(places.pixel[i]) * LfPixels::kRgbLanes;
-    const uint16_t* lower = upper + row_values;
-    // Rows are too far apart for the processor to foresee.
-    if (i % kLineElements == 0) hwy::Prefetch(lower + kRowsAhead * row_values);
-    LF_DCHECK(places.pixel[i] >= 0 &&
-              lower + 2 * LfPixels::kRgbLanes <= values + pixels.radiance.pixels().size());
-    if constexpr (kMayBeMasked) {
-      constexpr int kRay = LfPixels::kRayLane, kNext = kRay + LfPixels::kRgbLanes;
-      if (upper[kRay] + upper[kNext] + lower[kRay] + lower[kNext] != 4) continue;
+  for (int i = 0; i < count; i += kLineElements)
+    hwy::Prefetch(upper(i) + (1 + kRowsAhead) * row_values);
+  if constexpr (kMayBeMasked) {
+    constexpr int kRay = LfPixels::kRayLane, kNext = kRay + LfPixels::kRgbLanes;
+    uint32_t rays = 0;
+    for (int i = 0; i < count; ++i) {
+      const uint16_t *const row = upper(i), *const next_row = row + row_values;
+      if (row[kRay] + row[kNext] + next_row[kRay] + next_row[kNext] != 4) continue;
+      AddRay(places, i, values, row_values, sums);
+      ++rays;
     }
-    AddRay(upper, lower, places.right[i], places.upper[i], places.lower[i], sums[i].rgb_rays);
-    ++rays;
+    return rays;
   }
-  return rays;
+  int i = 0;
+  for (; i + kRaysAtOnce <= count; i += kRaysAtOnce) AddRays(places, i, values, row_values, sums);
+  for (; i < count; ++i) AddRay(places, i, values, row_values, sums);
+  return static_cast<uint32_t>(count);
 }
 
 HWY_ATTR uint64_t GatherTile(const GatherPlan& plan, const LfPixels& pixels, TileSums* sums) {
