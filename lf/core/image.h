@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
-#include <vector>
 
 #include "lf/core/check.h"
+#include "lf/core/large_vector.h"
 
 namespace lf {
 
@@ -58,8 +58,8 @@ class Image {
   int channels() const { return channels_; }
   bool empty() const { return pixels_.empty(); }
   size_t size_bytes() const { return pixels_.size() * sizeof(T); }
-  const std::vector<T>& pixels() const { return pixels_; }
-  std::vector<T>& pixels() { return pixels_; }
+  const LargeVector<T>& pixels() const { return pixels_; }
+  LargeVector<T>& pixels() { return pixels_; }
 
   ImageView<T> view() {
     return {pixels_.data(), width_, height_, channels_, static_cast<size_t>(width_) * channels_};
@@ -76,7 +76,7 @@ class Image {
   int width_ = 0;
   int height_ = 0;
   int channels_ = 1;
-  std::vector<T> pixels_;
+  LargeVector<T> pixels_;
 };
 
 // Colour filter of a mosaic sensor: the channels of the upper left 2x2 pixels, row by row.

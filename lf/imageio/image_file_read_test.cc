@@ -65,7 +65,7 @@ TEST_F(ReadImageTest, FewBitsAreScaledToTheFullRange) {
 TEST_F(ReadImageTest, PalettesBecomeColours) {
   const auto image = std::get<Image<uint8_t>>(ReadImageBytes(kPngPalette, "palette").value());
   EXPECT_EQ(image.channels(), 3);
-  EXPECT_EQ(image.pixels(), (std::vector<uint8_t>{10, 20, 30, 40, 50, 60}));
+  EXPECT_EQ(image.pixels(), (LargeVector<uint8_t>{10, 20, 30, 40, 50, 60}));
 }
 
 TEST_F(ReadImageTest, AlphaDoesNotTouchTheColours) {
@@ -82,7 +82,7 @@ TEST_F(ReadImageTest, WideIntegersKeepTheirValue) {
   SaveByOpenImageIo("a.tif", OIIO::ImageSpec(4, 1, 1, OIIO::TypeDesc::UINT32),
                     OIIO::TypeDesc::UINT32, values.data());
   const auto image = std::get<Image<float>>(ReadImage(folder_ / "a.tif").value());
-  EXPECT_EQ(image.pixels(), (std::vector<float>{0, 1, 70000, 1 << 24}));
+  EXPECT_EQ(image.pixels(), (LargeVector<float>{0, 1, 70000, 1 << 24}));
 }
 
 TEST_F(ReadImageTest, TilesAndOtherCompressionsAreRead) {

@@ -116,10 +116,10 @@ TEST_F(WriteImageTest, IntegerTypesAreClippedAndRounded) {
   std::copy(std::begin(values), std::end(values), image.pixels().begin());
   ASSERT_TRUE(WriteImage(folder_ / "a.png", image.view(), {"Y"}, PixelType::kUint8));
   EXPECT_EQ(std::get<Image<uint8_t>>(*ReadImage(folder_ / "a.png")).pixels(),
-            (std::vector<uint8_t>{0, 0, 1, 128, 255, 0}));
+            (LargeVector<uint8_t>{0, 0, 1, 128, 255, 0}));
   ASSERT_TRUE(WriteImage(folder_ / "b.png", image.view(), {"Y"}, PixelType::kUint16));
   EXPECT_EQ(std::get<Image<uint16_t>>(*ReadImage(folder_ / "b.png")).pixels(),
-            (std::vector<uint16_t>{0, 103, 154, 32768, 65535, 0}));
+            (LargeVector<uint16_t>{0, 103, 154, 32768, 65535, 0}));
 }
 
 TEST_F(WriteImageTest, JpegKeepsColoursClosely) {

@@ -21,7 +21,7 @@ ImageWithInfo Read(const TestDng& dng) {
               : ImageWithInfo{Image<uint16_t>(), {0, 0, 0, 0, false, {}, 1, RawFacts{}}};
 }
 
-std::vector<uint16_t> PixelsOf(const ImageWithInfo& read) {
+LargeVector<uint16_t> PixelsOf(const ImageWithInfo& read) {
   return std::get<Image<uint16_t>>(read.image).pixels();
 }
 

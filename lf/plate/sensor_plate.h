@@ -18,6 +18,7 @@
 
 #include "lf/core/check.h"
 #include "lf/core/geometry.h"
+#include "lf/core/large_vector.h"
 #include "lf/plate/tile_grid.h"
 
 namespace lf {
@@ -76,7 +77,7 @@ class SensorPlate {
   int width_;
   int height_;
   uint32_t count_limit_;
-  std::vector<uint64_t> packed_;
+  LargeVector<uint64_t> packed_;
   // Totals are packed + wide. Rare, so one lock does for all tiles.
   std::map<size_t, ElementSum> wide_;
   std::unique_ptr<std::mutex> wide_mutex_;

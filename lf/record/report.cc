@@ -57,7 +57,7 @@ FrameReport MakeFrameReport(FrameId frame, const FrameRays& rays, const Develope
   FrameReport report;
   report.frame = frame;
   report.rays = rays;
-  const std::vector<uint32_t>& counts = developed.ray_count.pixels();
+  const LargeVector<uint32_t>& counts = developed.ray_count.pixels();
   std::vector<uint32_t> channel_counts(counts.size() / 3);
   if (channel_counts.empty()) return report;
   for (size_t channel = 0; channel < 3; ++channel) {

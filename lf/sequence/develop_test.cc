@@ -144,7 +144,7 @@ TEST(Develop, CountsAndCoverageTellWhatWasCollected) {
   plate.Add(1, 0, 2, {0, uint64_t{1} << 34});
   ThreadPool pool(1);
   const DevelopedFrame frame = Develop(plate, {}, pool);
-  EXPECT_EQ(frame.ray_count.pixels(), (std::vector<uint32_t>{5, 2, 0, 0, 0, 0xffffffff}));
+  EXPECT_EQ(frame.ray_count.pixels(), (LargeVector<uint32_t>{5, 2, 0, 0, 0, 0xffffffff}));
   EXPECT_EQ(frame.coverage.at(0, 0), 2.0f / 3);
   EXPECT_EQ(frame.coverage.at(1, 0), 1.0f / 3);
 }
@@ -159,7 +159,7 @@ TEST(Develop, BalancesInTheCamerasColoursThenMixesThem) {
   options.camera_to_srgb << 1, 0, 0, 0, 1, 0.5, -1, 0, 1;
   ThreadPool pool(1);
   const DevelopedFrame frame = Develop(plate, options, pool);
-  EXPECT_EQ(frame.rgb.pixels(), (std::vector<float>{2, 2 + 6, -2 + 12}));
+  EXPECT_EQ(frame.rgb.pixels(), (LargeVector<float>{2, 2 + 6, -2 + 12}));
 }
 
 TEST(Develop, ValuesBelowThePedestalStayNegative) {

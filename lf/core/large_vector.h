@@ -1,0 +1,42 @@
+// Vectors for images and plates: the larger ones ask the system for huge pages, so that rows far
+// apart do not cost a walk through page tables each (a tenth to a sixth of ray collection's time).
+#pragma once
+
+#include <sys/mman.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <new>
+#include <vector>
+
+namespace lf {
+
+template <class T>
+struct LargeAllocator {
+  static_assert(alignof(T) <= alignof(std::max_align_t));
+  using value_type = T;
+  static constexpr size_t kHugePage = size_t{2} << 20;
+
+  LargeAllocator() = default;
+  template <class U>
+  LargeAllocator(const LargeAllocator<U>& /*other*/) {}  // NOLINT: as allocators convert
+
+  T* allocate(size_t count) {
+    if (count > SIZE_MAX / sizeof(T)) throw std::bad_array_new_length();
+    const size_t bytes = count * sizeof(T);
+    const bool is_large = bytes >= 2 * kHugePage;
+    void* const memory = is_large ? std::aligned_alloc(kHugePage, bytes) : std::malloc(bytes);
+    if (memory == nullptr) throw std::bad_alloc();
+    // A wish: where the system has no huge pages there are small ones.
+    if (is_large) madvise(memory, bytes / kHugePage * kHugePage, MADV_HUGEPAGE);
+    return static_cast<T*>(memory);
+  }
+  void deallocate(T* memory, size_t /*count*/) { std::free(memory); }
+  friend bool operator==(const LargeAllocator&, const LargeAllocator&) = default;
+};
+
+template <class T>
+using LargeVector = std::vector<T, LargeAllocator<T>>;
+
+}  // namespace lf
