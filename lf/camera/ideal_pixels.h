@@ -59,7 +59,7 @@ class IdealPixels {
  public:
   // Distance, in LF pixels, from a pixel to where the camera would record what its ideal position
   // stands for: between the points where patches were made to fit (checked where they miss most).
-  static constexpr double kTolerance_px = 1e-5;
+  static constexpr double kTolerance_px = 3e-5;
 
   explicit IdealPixels(const Intrinsics& k);
 

@@ -44,7 +44,7 @@ CubicSegment MakeSegment(int y, int x_begin, int x_end, double middle, const Cub
 class CubicSegments {
  public:
   // Cubics are true to this before they are rounded to single precision.
-  static constexpr double kTolerance = 1e-5;
+  static constexpr double kTolerance = 2e-5;
 
   CubicSegments(const PixelForm& x, const PixelForm& y, const PixelForm& denominator)
       : x_(x), y_(y), denominator_(denominator) {}
