@@ -1,4 +1,4 @@
-// Our kernels as the renderer calls them (lf/pipeline/collect_batch.cc), on one thread.
+// Our kernels as the renderer calls them (lf/collector/collect_batch.cc), on one thread.
 #include <hwy/targets.h>
 
 #include <algorithm>
