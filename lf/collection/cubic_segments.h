@@ -18,7 +18,7 @@ namespace lf {
 // where x_cubic[0] is in [0, 1): single precision holds it to 1e-4.
 struct CubicSegment {
   // Of the kernels' buffers.
-  static constexpr int kMaxCount = 512;
+  static constexpr int kMaxCount = 1024;
 
   int32_t y = 0;
   int32_t x_begin = 0;

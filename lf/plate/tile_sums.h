@@ -32,8 +32,8 @@ class TileSums {
 
   // Tiles of this shape stay in the second level cache while a batch of LF images is added to them.
   // The wider they are, the fewer pieces scanlines are cut into; tall enough for turned cameras.
-  static constexpr int kTileWidth = 384;
-  static constexpr int kTileHeight = 40;
+  static constexpr int kTileWidth = 512;
+  static constexpr int kTileHeight = 32;
   static TileGrid GridOf(int plate_width, int plate_height) {
     return {plate_width, plate_height, kTileWidth, kTileHeight};
   }
