@@ -90,6 +90,7 @@ class GatherPlanner {
                     render_camera.aperture.radius_w};
     plan_.plate_width = render_camera.pinhole.intrinsics.width_px;
     plan_.plate_height = render_camera.pinhole.intrinsics.height_px;
+    rows_.RestrictTo({0, 0, plan_.plate_width, plan_.plate_height});
     plan_.segments.clear();
     plan_.row_begin.clear();
   }

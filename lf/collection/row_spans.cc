@@ -84,6 +84,27 @@ Interval WithinDisk(const LineForm& right, const LineForm& up, const LineForm& f
 
 }  // namespace
 
+void RowSpans::RestrictTo(const PixelRect& rect) {
+  if (rect.empty()) return;
+  const double x[2] = {rect.x_begin + 0.5, rect.x_end - 0.5};
+  const double y[2] = {rect.y_begin + 0.5, rect.y_end - 0.5};
+  for (const int side : {0, 1}) {
+    std::vector<PixelForm>& forms = half_planes[side];
+    std::erase_if(forms, [&](const PixelForm& form) {
+      // A linear form is largest and least at corners.
+      const double middle = 0.5 * (form[0] * (x[0] + x[1]) + form[1] * (y[0] + y[1])) + form[2];
+      const double reach =
+          0.5 * (std::abs(form[0]) * (x[1] - x[0]) + std::abs(form[1]) * (y[1] - y[0]));
+      const double margin =
+          kFormMargin *
+          (std::abs(form[0]) * std::max(std::abs(x[0]), std::abs(x[1])) +
+           std::abs(form[1]) * std::max(std::abs(y[0]), std::abs(y[1])) + std::abs(form[2]));
+      is_shut_[side] |= middle - reach > margin;
+      return middle + reach < -margin;
+    });
+  }
+}
+
 RowSpans::Candidate RowSpans::FindCandidate(int side, double centre_y, int x_begin,
                                             int x_end) const {
   Interval range{x_begin + 0.5, x_end - 0.5};

@@ -27,6 +27,10 @@ class RowSpans {
   std::vector<PixelForm> half_planes[2];
   std::optional<Disk> disk;
 
+  // Leaves out what is decided all over `rect`: half-planes that hold there, and a side on which one
+  // does not. For rows of `rect` only.
+  void RestrictTo(const PixelRect& rect);
+
   // Those of [x_begin, x_end) in row y that the conditions let through and that the law accepts:
   // exact if accepted positions of a side have no gap but where a form stays at 0. Sorted.
   //   accepted(side, x)  asks the law
@@ -34,6 +38,8 @@ class RowSpans {
   void Find(int y, int x_begin, int x_end, const Accepted& accepted, std::vector<RowSpan>* spans);
 
  private:
+  bool is_shut_[2] = {false, false};
+
   struct Candidate {
     int begin = 0;
     int end = 0;
@@ -47,6 +53,7 @@ void RowSpans::Find(int y, int x_begin, int x_end, const Accepted& accepted,
                     std::vector<RowSpan>* spans) {
   spans->clear();
   for (const int side : {0, 1}) {
+    if (is_shut_[side]) continue;
     auto [begin, end, tie] = FindCandidate(side, y + 0.5, x_begin, x_end);
     while (begin < end && !accepted(side, begin)) ++begin;
     while (begin < end && !accepted(side, end - 1)) --end;

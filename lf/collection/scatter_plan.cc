@@ -30,6 +30,8 @@ void PlanOnLines(const PinholeCamera& lf_camera, const RenderCamera& render_came
   if (is_disk && !LiesInLensPlane(lf_camera, render_camera))
     rows.disk = {forms.lens_right, forms.lens_up, forms.forward, render_camera.aperture.radius_w};
 
+  rows.RestrictTo(rect);
+
   const CubicSegments cubics(forms.sensor_x, forms.sensor_y, forms.front);
   std::vector<RowSpan> spans;
   for (int y = rect.y_begin; y < rect.y_end; ++y) {

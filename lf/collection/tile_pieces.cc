@@ -18,58 +18,81 @@ int Floor(float f) {
   return static_cast<float>(i) > f ? i - 1 : i;
 }
 
+// A position that is the first on another side of a border between tiles than the one before.
+struct Crossing {
+  uint16_t index;
+  int16_t step;  // to the next column or row of tiles, or back
+};
+
 // One coordinate of a segment's positions, counted from its base.
 class Axis {
  public:
-  Axis(const float (&cubic)[4], float t_begin, int count)
-      : cubic_(cubic), t_begin_(t_begin), count_(count) {
-    const CubicRange range = RangeOf(cubic, t_begin, count);
-    low_ = range.low;
-    high_ = range.high;
-    is_rising_ = range.least_step > kSureStep;
-    is_falling_ = range.most_step < -kSureStep;
-    least_distance_ = std::max(range.least_step, -range.most_step);
-  }
+  // base  of the segment, in elements
+  Axis(const float (&cubic)[4], int base, float t_begin, int count, int last_element, int tile_size)
+      : cubic_(cubic),
+        base_(base),
+        t_begin_(t_begin),
+        count_(count),
+        last_element_(last_element),
+        tile_size_(tile_size),
+        range_(RangeOf(cubic, t_begin, count)) {}
 
   // How far positions move, at least, from one to the next; below 0 if they may turn round.
-  float least_distance() const { return least_distance_; }
+  float least_distance() const { return std::max(range_.least_step, -range_.most_step); }
 
-  // Appends the indices, within (0, count), that are the first on another side of a border between
-  // tiles than those before. `base` is that of the segment in elements, `size` that of tiles.
-  uint16_t* AppendCuts(int base, int last_element, int size, uint16_t* cuts) const {
-    const int first_tile = std::clamp(Floor(low_) + base, 0, last_element) / size;
-    const int last_tile = std::clamp(Floor(high_) + base, 0, last_element) / size;
-    if (first_tile == last_tile || count_ == 1) return cuts;
-    for (int tile = first_tile + 1; tile <= last_tile; ++tile)
-      cuts = AppendCut(static_cast<float>(tile * size - base), cuts);
-    return cuts;
+  // The column or row of tiles of the first position.
+  int FirstTile() const { return TileOf(At(cubic_, t_begin_)); }
+
+  // Writes all crossings but at the first position, in order, and one at `count`.
+  void Cross(Crossing* crossings) const {
+    const int least = TileOf(range_.low), most = TileOf(range_.high);
+    if (least != most && count_ > 1) {
+      if (range_.least_step > kSureStep)
+        for (int tile = least + 1; tile <= most; ++tile) CrossOnce(tile, 1, &crossings);
+      else if (range_.most_step < -kSureStep)
+        for (int tile = most; tile > least; --tile) CrossOnce(tile, -1, &crossings);
+      else
+        CrossAtWill(&crossings);
+    }
+    *crossings = {static_cast<uint16_t>(count_), 0};
   }
 
  private:
-  bool IsBeyond(int i, float border) const {
-    return At(cubic_, t_begin_ + static_cast<float>(i)) >= border;
+  int TileOf(float position) const {
+    return std::clamp(Floor(position) + base_, 0, last_element_) / tile_size_;
+  }
+  float Position(int i) const { return At(cubic_, t_begin_ + static_cast<float>(i)); }
+
+  // Where the positions, which rise or fall, enter or leave `tile` by its lesser border.
+  void CrossOnce(int tile, int step, Crossing** crossings) const {
+    const auto border = static_cast<float>(tile * tile_size_ - base_);
+    const auto is_behind = [&](int i) { return (Position(i) >= border) == (step > 0); };
+    const auto last = static_cast<float>(count_ - 1);
+    const float first = Position(0), rise = Position(count_ - 1) - first;
+    int index = 1 + static_cast<int>(std::clamp((border - first) * last / rise, 0.0F, last));
+    while (index > 0 && is_behind(index - 1)) --index;
+    while (index < count_ && !is_behind(index)) ++index;
+    if (index > 0 && index < count_)
+      *(*crossings)++ = {static_cast<uint16_t>(index), static_cast<int16_t>(step)};
   }
 
-  uint16_t* AppendCut(float border, uint16_t* cuts) const {
-    if (!is_rising_ && !is_falling_) {
-      for (int i = 1; i < count_; ++i)
-        if (IsBeyond(i, border) != IsBeyond(i - 1, border)) *cuts++ = static_cast<uint16_t>(i);
-      return cuts;
+  void CrossAtWill(Crossing** crossings) const {
+    int tile = FirstTile();
+    for (int i = 1; i < count_; ++i) {
+      const int next = TileOf(Position(i));
+      if (next == tile) continue;
+      *(*crossings)++ = {static_cast<uint16_t>(i), static_cast<int16_t>(next - tile)};
+      tile = next;
     }
-    const auto last = static_cast<float>(count_ - 1);
-    const float first = At(cubic_, t_begin_), rise = At(cubic_, t_begin_ + last) - first;
-    int cut = static_cast<int>(std::clamp((border - first) * last / rise, 0.0F, last));
-    while (cut > 0 && IsBeyond(cut - 1, border) == is_rising_) --cut;
-    while (cut < count_ && IsBeyond(cut, border) != is_rising_) ++cut;
-    if (cut > 0 && cut < count_) *cuts++ = static_cast<uint16_t>(cut);
-    return cuts;
   }
 
   const float (&cubic_)[4];
+  int base_;
   float t_begin_;
   int count_;
-  float low_, high_, least_distance_;
-  bool is_rising_, is_falling_;
+  int last_element_;
+  int tile_size_;
+  CubicRange range_;
 };
 
 struct Cutting {
@@ -94,24 +117,25 @@ void TilePieces::Cut(const std::vector<CubicSegment>& segments, const TileGrid& 
   tile_begin_.assign(grid.tile_count() + 1, 0);
   for (size_t k = 0; k < segments.size(); ++k) {
     const CubicSegment& s = segments[k];
-    const Axis x_axis(s.x_cubic, s.t_begin, s.count), y_axis(s.y_cubic, s.t_begin, s.count);
-    uint16_t cuts[2 * CubicSegment::kMaxCount + 1];
-    uint16_t* const x_cuts = x_axis.AppendCuts(s.base_x, last_x, grid.tile_width, cuts);
-    uint16_t* cuts_end = y_axis.AppendCuts(s.base_y, last_y, grid.tile_height, x_cuts);
-    if (cuts_end > cuts + 1) std::sort(cuts, cuts_end);
-    *cuts_end++ = static_cast<uint16_t>(s.count);
+    const Axis x_axis(s.x_cubic, s.base_x, s.t_begin, s.count, last_x, grid.tile_width);
+    const Axis y_axis(s.y_cubic, s.base_y, s.t_begin, s.count, last_y, grid.tile_height);
+    Crossing x_crossings[CubicSegment::kMaxCount], y_crossings[CubicSegment::kMaxCount];
+    x_axis.Cross(x_crossings);
+    y_axis.Cross(y_crossings);
+    const Crossing *x = x_crossings, *y = y_crossings;
+    int column = x_axis.FirstTile(), row = y_axis.FirstTile();
     const uint16_t crowd =
         Crowd(std::max(x_axis.least_distance(), y_axis.least_distance()), s.count);
-    uint16_t begin = 0;
-    for (const uint16_t* cut = cuts; cut != cuts_end; ++cut) {
-      if (begin == *cut) continue;  // cut by both axes
-      const float t = s.t_begin + static_cast<float>(begin);
-      const int x = std::clamp(Floor(At(s.x_cubic, t)) + s.base_x, 0, last_x);
-      const int y = std::clamp(Floor(At(s.y_cubic, t)) + s.base_y, 0, last_y);
-      const int tile = y / grid.tile_height * columns + x / grid.tile_width;
-      cuttings.push_back({{static_cast<uint32_t>(k), begin, *cut, crowd}, tile});
+    for (int begin = 0; begin < s.count;) {
+      const uint16_t end = std::min(x->index, y->index);
+      const int tile = row * columns + column;
+      cuttings.push_back(
+          {{static_cast<uint32_t>(k), static_cast<uint16_t>(begin), end, crowd}, tile});
       ++tile_begin_[static_cast<size_t>(tile) + 1];
-      begin = *cut;
+      // Steps are large where several borders are crossed at once.
+      for (; x->index == end && end < s.count; ++x) column += x->step;
+      for (; y->index == end && end < s.count; ++y) row += y->step;
+      begin = end;
     }
   }
   for (size_t tile = 1; tile < tile_begin_.size(); ++tile)
