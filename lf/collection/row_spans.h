@@ -27,8 +27,8 @@ class RowSpans {
   std::vector<PixelForm> half_planes[2];
   std::optional<Disk> disk;
 
-  // Leaves out what is decided all over `rect`: half-planes that hold there, and a side on which one
-  // does not. For rows of `rect` only.
+  // Leaves out what is decided all over `rect`: half-planes that hold there, and a side on which
+  // one does not. For rows of `rect` only.
   void RestrictTo(const PixelRect& rect);
 
   // Those of [x_begin, x_end) in row y that the conditions let through and that the law accepts:
