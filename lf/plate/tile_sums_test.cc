@@ -1,0 +1,64 @@
+#include "lf/plate/tile_sums.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "lf/core/random.h"
+
+namespace lf {
+namespace {
+
+// Where a channel of element (x, y) of the tile may lie in the sums of mosaics: green has two
+// places.
+std::vector<size_t> WordsOf(const TileSums& sums, int x, int y, int channel) {
+  const int odd = x % 2;
+  const auto word = [&](int kind) {
+    return (static_cast<size_t>(y) * TileSums::kMosaicRows + static_cast<size_t>(kind)) *
+               static_cast<size_t>(sums.stride()) +
+           static_cast<size_t>(x);
+  };
+  const int other_first = odd ? TileSums::kGreenFirst : TileSums::kRedFirst;
+  const int green_first = odd ? TileSums::kRedFirst : TileSums::kGreenFirst;
+  if (channel == 0) return {word(other_first)};
+  if (channel == 2) return {word(TileSums::kBlueFirst + other_first)};
+  return {word(green_first), word(TileSums::kBlueFirst + green_first)};
+}
+
+TEST(TileSums, MosaicsAndRgbReachThePlate) {
+  for (const int width : {1, 2, 7, 20}) {
+    SensorPlate plate(23, 9), expected(23, 9);
+    PlateTile tile(&plate, {2, 3, 2 + width, 8});
+    TileSums sums(50);  // flushed now and then
+    sums.Begin(&tile);
+    for (uint64_t ray = 0; ray < 500; ++ray) {
+      const auto random = [&](uint64_t index, int end) {
+        return static_cast<int>(RandomUnit(ray, index, 0) * end);
+      };
+      const int x = random(0, width), y = random(1, 5), channel = random(2, 3);
+      const auto v = static_cast<uint16_t>(random(3, 65536));
+      if (ray % 3 == 0) {
+        TileSums::Element& element = sums.ReserveRgb(1)[y * sums.stride() + x];
+        element.rgb_rays[channel] += v;
+        ++element.rgb_rays[3];
+        for (int c = 0; c < 3; ++c)
+          expected.AddRay(2 + x, 3 + y, c, c == channel ? v : uint16_t{0});
+        continue;
+      }
+      const std::vector<size_t> words = WordsOf(sums, x, y, channel);
+      sums.ReserveMosaic(1)[words[ray % words.size()]] += SensorPlate::kOneRay | v;
+      expected.AddRay(2 + x, 3 + y, channel, v);
+    }
+    sums.Flush();
+    EXPECT_EQ(plate, expected) << width;
+    // Nothing is left for the next tile.
+    sums.Begin(&tile);
+    sums.ReserveRgb(1);
+    sums.ReserveMosaic(1);
+    sums.Flush();
+    EXPECT_EQ(plate, expected) << width;
+  }
+}
+
+}  // namespace
+}  // namespace lf
