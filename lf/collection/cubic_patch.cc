@@ -19,7 +19,8 @@ void InterpolateBoth(const double (&values)[4][4], double half_x, double half_y,
 CubicPatch::CubicPatch(const PixelForm& x, const PixelForm& y, const PixelForm& denominator,
                        const IdealPatch& patch)
     : middle_x_(0.5 * (patch.rect.x_begin + patch.rect.x_end)),
-      middle_y_(0.5 * (patch.rect.y_begin + patch.rect.y_end)) {
+      middle_y_(0.5 * (patch.rect.y_begin + patch.rect.y_end)),
+      half_x_(0.5 * patch.rect.width()) {
   double x_values[4][4], y_values[4][4];
   for (int j = 0; j < 4; ++j) {
     const IdealArc arc = patch.ArcAt(j / 3.0);
@@ -30,9 +31,13 @@ CubicPatch::CubicPatch(const PixelForm& x, const PixelForm& y, const PixelForm& 
       y_values[j][i] = Value(y, p) * inverse;
     }
   }
-  const double half_x = 0.5 * patch.rect.width(), half_y = 0.5 * patch.rect.height();
-  InterpolateBoth(x_values, half_x, half_y, x_);
-  InterpolateBoth(y_values, half_x, half_y, y_);
+  const double half_y = 0.5 * patch.rect.height();
+  InterpolateBoth(x_values, half_x_, half_y, x_);
+  InterpolateBoth(y_values, half_x_, half_y, y_);
+}
+
+bool CubicPatch::IsNearMiddle() const {
+  return lf::IsNearMiddle({{0, x_[1][0], 0, 0}, {0, y_[1][0], 0, 0}}, half_x_);
 }
 
 void CubicPatch::Append(int y, int x_begin, int x_end, std::vector<CubicSegment>* segments) const {

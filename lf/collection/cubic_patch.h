@@ -17,11 +17,15 @@ class CubicPatch {
   CubicPatch(const PixelForm& x, const PixelForm& y, const PixelForm& denominator,
              const IdealPatch& patch);
 
+  // Whether single precision is enough for it (cubic_segments.h).
+  bool IsNearMiddle() const;
+
   // Pixels [x_begin, x_end) of scanline y.
   void Append(int y, int x_begin, int x_end, std::vector<CubicSegment>* segments) const;
 
  private:
   double middle_x_, middle_y_;
+  double half_x_;
   // Coefficients of t^k s^l, with t and s the distances from the middle along and across.
   double x_[4][4];
   double y_[4][4];

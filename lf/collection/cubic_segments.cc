@@ -57,6 +57,7 @@ class PieceFitter {
     }
     InterpolateEven(x, half, cubics->x);
     InterpolateEven(y, half, cubics->y);
+    if (!IsNearMiddle(*cubics, half)) return false;
     if (is_certain_(begin, end)) return true;
     for (const double u : {-kWorstPlace, kWorstPlace}) {
       const std::optional<Vec2> truth = position_(middle + u * half);
@@ -75,6 +76,11 @@ class PieceFitter {
 };
 
 }  // namespace
+
+bool IsNearMiddle(const Cubics& cubics, double half) {
+  return std::max(std::abs(cubics.x[1]), std::abs(cubics.y[1])) * half <=
+         CubicSegments::kFarthestFromMiddle;
+}
 
 CubicSegment MakeSegment(int y, int x_begin, int x_end, double middle, const Cubics& cubics) {
   CubicSegment segment;
@@ -117,7 +123,8 @@ void CubicSegments::AddInBlock(int y, int x_begin, int x_end, int block_begin, i
   const double reach = std::abs(q) * half, half4 = half * half * half * half;
   const double fourth = std::max(std::abs(s[0]), std::abs(s[1])) * std::abs(q * q * q) * half4;
   // Written so that what is not a number is not good.
-  const bool is_good = reach < 0.5 && fourth * (0.125 + reach / (1 - reach)) <= kTolerance &&
+  const bool is_good = std::max(std::abs(s[0]), std::abs(s[1])) * half <= kFarthestFromMiddle &&
+                       reach < 0.5 && fourth * (0.125 + reach / (1 - reach)) <= kTolerance &&
                        std::abs(e[0]) < kFarthest && std::abs(e[1]) < kFarthest;
   if (block_size > 1 && !is_good) {
     const int half_size = block_size / 2, split = block_begin + half_size;

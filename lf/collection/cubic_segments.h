@@ -39,12 +39,19 @@ struct Cubics {
 // Positions [x_begin, x_end) of row y on the cubics of a piece with this middle.
 CubicSegment MakeSegment(int y, int x_begin, int x_end, double middle, const Cubics& cubics);
 
+// Whether the positions of a piece with these cubics, `half` to both sides of its middle, are no
+// further from it than CubicSegments::kFarthestFromMiddle.
+bool IsNearMiddle(const Cubics& cubics, double half);
+
 // Makes the segments of rows where (x p, y p) / (denominator p) is the position for
 // p = (x + 0.5, y + 0.5, 1), or any ideal position.
 class CubicSegments {
  public:
   // Cubics are true to this before they are rounded to single precision.
-  static constexpr double kTolerance = 2e-5;
+  static constexpr double kTolerance = 1e-5;
+  // How far positions of a piece may lie from its middle: single precision, rounding coefficient,
+  // product and sum, then holds them to 9.5e-5.
+  static constexpr double kFarthestFromMiddle = 530;
 
   CubicSegments(const PixelForm& x, const PixelForm& y, const PixelForm& denominator)
       : x_(x), y_(y), denominator_(denominator) {}

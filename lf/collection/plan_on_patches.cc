@@ -129,6 +129,7 @@ class PatchPlanner {
     elements_.reset();
     if (front.high - front.low < 1e-2 * std::sqrt(LeastSquare(front)))
       elements_.emplace(forms_.sensor_x, forms_.sensor_y, forms_.front, patch);
+    if (elements_ && !elements_->IsNearMiddle()) elements_.reset();
     AddRows(patch, patch, share, open);
   }
 

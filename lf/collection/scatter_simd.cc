@@ -178,13 +178,15 @@ HWY_ATTR HWY_INLINE void FindStarts(const CubicSegment& s, int begin, int count,
   const auto y0 = hn::Set(df, s.y_cubic[0]), y1 = hn::Set(df, s.y_cubic[1]);
   const auto y2 = hn::Set(df, s.y_cubic[2]), y3 = hn::Set(df, s.y_cubic[3]);
   const auto row_stride = hn::Set(df, static_cast<float>(tile.row_stride));
-  // The least and the most that x and y may be, counted from the base.
+  // The tile's corner, counted from the base of the segment.
   const int left = tile.rect.x_begin - s.base_x, upper = tile.rect.y_begin - s.base_y;
-  const auto x_low = hn::Set(df, static_cast<float>(left));
-  const auto y_low = hn::Set(df, static_cast<float>(upper));
-  const auto x_high = hn::Set(df, static_cast<float>(left + tile.rect.width() - 1));
-  const auto y_high = hn::Set(df, static_cast<float>(upper + tile.rect.height() - 1));
-  const auto base = hn::Set(df, kTwoTo23 - static_cast<float>(upper * tile.row_stride + left));
+  const auto x_corner = hn::Set(df, static_cast<float>(left));
+  const auto y_corner = hn::Set(df, static_cast<float>(upper));
+  const auto x_last = hn::Set(df, static_cast<float>(tile.rect.width() - 1));
+  const auto y_last = hn::Set(df, static_cast<float>(tile.rect.height() - 1));
+  const auto zero = hn::Zero(df);
+  const int corner = kClamp ? 0 : upper * tile.row_stride + left;
+  const auto base = hn::Set(df, kTwoTo23 - static_cast<float>(corner));
   auto less = hn::Neg(hn::Iota(di, std::bit_cast<int32_t>(kTwoTo23)));
   for (int i = 0; i < count; i += kLanes) {
     const auto t = hn::Iota(df, s.t_begin + static_cast<float>(begin + i));
@@ -193,8 +195,8 @@ HWY_ATTR HWY_INLINE void FindStarts(const CubicSegment& s, int begin, int count,
     auto y =
         hn::Floor(hn::Add(hn::Mul(hn::Add(hn::Mul(hn::Add(hn::Mul(y3, t), y2), t), y1), t), y0));
     if constexpr (kClamp) {
-      x = hn::Min(hn::Max(x, x_low), x_high);
-      y = hn::Min(hn::Max(y, y_low), y_high);
+      x = hn::Min(hn::Max(hn::Sub(x, x_corner), zero), x_last);
+      y = hn::Min(hn::Max(hn::Sub(y, y_corner), zero), y_last);
     }
     const auto word = hn::Add(hn::Add(hn::Mul(y, row_stride), x), base);
     hn::Store(hn::Add(hn::BitCast(di, word), less), di, starts + i);
@@ -297,9 +299,10 @@ HWY_EXPORT(ScatterTile);
 uint64_t ScatterTile(const ScatterPlan& plan, size_t tile, const LfPixels& pixels, TileSums* sums) {
   const PixelRect& rect = sums->rect();
   LF_CHECK(plan.grid.RectOf(tile) == rect);
-  // Addresses within a tile are exact in single precision.
-  LF_CHECK(static_cast<int64_t>(rect.height()) * TileSums::kMosaicRows * sums->stride() <
-           (int64_t{1} << 23));
+  // Addresses in the tile, and those counted from the base of a segment, are exact in single
+  // precision.
+  const int64_t row_stride = int64_t{TileSums::kMosaicRows} * sums->stride();
+  LF_CHECK(row_stride * (rect.height() + int64_t{CubicSegment::kMaxCount}) < (int64_t{1} << 22));
   return HWY_DYNAMIC_DISPATCH(ScatterTile)(plan, tile, pixels, sums);
 }
 

@@ -147,6 +147,32 @@ TEST(Scatter, PixelsOfAPartOfTheImageAreEnough) {
   EXPECT_EQ(reference, from_some);
 }
 
+// An LF pixel as long as a hundred elements, along tiles that are far from the middle of a
+// scanline.
+TEST(Scatter, AddressesFarFromTheMiddleOfAScanlineAreExact) {
+  testing::CameraPair pair = testing::ParallelPair(0, 0, 0.01, 9);
+  pair.render_camera.pinhole.intrinsics = {9000, 9000, 260, 4500, 0, 520, 9000, {}};
+  pair.lf_camera.intrinsics = {90, 9000, 45, 260, 0, 90, 520, {}};
+  const Mat3 quarter_turn =
+      Eigen::AngleAxisd(RadiansFromDegrees(90.1), Vec3::UnitZ()).toRotationMatrix();
+  pair.lf_camera.cam_from_world.rotation =
+      quarter_turn * pair.lf_camera.cam_from_world.rotation.eval();
+  pair.lf_camera.cam_from_world.translation =
+      quarter_turn * pair.lf_camera.cam_from_world.translation.eval();
+  const LfPixels pixels = testing::NoisePixels(WholeImage(pair), BayerPattern::kRggb, 3);
+  SensorPlate expected = PlateFor(pair), fast = PlateFor(pair);
+  const uint64_t accepted =
+      ScatterReference(pair.lf_camera, pixels, pair.render_camera, pixels.rect, &expected);
+  EXPECT_GT(accepted, 30000u);
+  const TileGrid grid = TileSums::GridOf(520, 9000);
+  const ScatterPlan plan = PlanScatter(pair.lf_camera, pair.render_camera, pixels.rect, grid);
+  EXPECT_EQ(testing::InTiles(
+                &fast, grid,
+                [&](size_t tile, TileSums* sums) { return ScatterTile(plan, tile, pixels, sums); }),
+            accepted);
+  EXPECT_LE(DifferingCount(expected, fast), accepted / 5000);
+}
+
 TEST(Scatter, FullWordsArePromotedWithoutLosingARay) {
   // A camera in the focus plane sends all its rays to one element.
   testing::CameraPair pair = testing::ParallelPair(0, 0, 0.01, 9);
