@@ -5,6 +5,7 @@
 
 #include "lf/collection/gather.h"
 #include "lf/collection/gather_law.h"
+#include "lf/collection/ray_law.h"
 #include "lf/collection/row_spans.h"
 
 namespace lf {
@@ -82,10 +83,7 @@ class GatherPlanner {
       rows_.half_planes[side] = HalfPlanes(forms_, k_, render_camera.aperture, side == 0 ? -1 : 1);
     // All rays of a camera in the lens plane cross it at one point, for which the ends of a span
     // stand.
-    const Vec3 offset = lf_camera.CentreWorld() - render_camera.pinhole.CentreWorld();
-    if (render_camera.aperture.blades == 0 &&
-        std::abs(render_camera.pinhole.ForwardWorld().dot(offset)) >
-            1e-13 * (lf_camera.CentreWorld().norm() + render_camera.pinhole.CentreWorld().norm()))
+    if (render_camera.aperture.blades == 0 && !LiesInLensPlane(lf_camera, render_camera))
       rows_.disk = {forms_.lens_right, forms_.lens_up, forms_.forward,
                     render_camera.aperture.radius_w};
     plan_.plate_width = render_camera.pinhole.intrinsics.width_px;

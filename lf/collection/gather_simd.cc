@@ -13,14 +13,12 @@
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
+#include "lf/collection/cubic_simd-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace lf {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-
-using LaneF = hn::CappedTag<float, 16>;
-using LaneI = hn::RebindToSigned<LaneF>;
-constexpr int kLanes = static_cast<int>(hn::MaxLanes(LaneF()));
 
 constexpr int kWeightBits = 8;
 constexpr int kOne = 1 << kWeightBits;  // of the weights
@@ -42,23 +40,16 @@ struct Coordinate {
 // Finds it within pixels [begin, end).
 class CoordinateFinder {
  public:
-  HWY_ATTR HWY_INLINE CoordinateFinder(const float (&cubic)[4], int32_t base, int begin, int end) {
+  HWY_ATTR HWY_INLINE CoordinateFinder(const float (&cubic)[4], int32_t base, int begin, int end)
+      : base_((base - begin) * kOne), last_(end - begin - 1) {
     // In 1/256 from the centre of pixel `begin`, rounded half up; multiplying by 256 is exact.
     for (int power = 0; power < 4; ++power) cubic_[power] = cubic[power] * kOne;
     cubic_[0] += 0.5F - 0.5F * kOne;
-    base_ = (base - begin) * kOne;
-    last_ = end - begin - 1;
   }
 
   HWY_ATTR HWY_INLINE Coordinate Find(hn::Vec<LaneF> t) const {
-    const LaneF df;
     const LaneI di;
-    const auto cubic = hn::Add(
-        hn::Mul(
-            hn::Add(hn::Mul(hn::Add(hn::Mul(hn::Set(df, cubic_[3]), t), hn::Set(df, cubic_[2])), t),
-                    hn::Set(df, cubic_[1])),
-            t),
-        hn::Set(df, cubic_[0]));
+    const auto cubic = CubicLanes(cubic_).At(t);
     const auto found = hn::Add(hn::ConvertTo(di, hn::Floor(cubic)), hn::Set(di, base_));
     // What rounding has sent beyond the pixels is on their border.
     const auto position = hn::Min(hn::Max(found, hn::Zero(di)), hn::Set(di, last_ * kOne));

@@ -298,12 +298,6 @@ class PatchPlanner {
 
 }  // namespace
 
-bool LiesInLensPlane(const PinholeCamera& lf_camera, const RenderCamera& render_camera) {
-  const Vec3 offset = lf_camera.CentreWorld() - render_camera.pinhole.CentreWorld();
-  return std::abs(render_camera.pinhole.ForwardWorld().dot(offset)) <=
-         1e-13 * (lf_camera.CentreWorld().norm() + render_camera.pinhole.CentreWorld().norm());
-}
-
 void PlanScatterOnPatches(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
                           const PixelRect& rect, const IdealPixels& ideal_pixels,
                           std::vector<CubicSegment>* segments) {

@@ -17,8 +17,4 @@ void PlanScatterOnPatches(const PinholeCamera& lf_camera, const RenderCamera& re
                           const PixelRect& rect, const IdealPixels& ideal_pixels,
                           std::vector<CubicSegment>* segments);
 
-// Whether the LF camera stands in the lens plane to rounding: then all its rays cross the lens at
-// one point (doc/ray.md, Geometry 6).
-bool LiesInLensPlane(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
-
 }  // namespace lf

@@ -6,6 +6,12 @@
 
 namespace lf {
 
+bool LiesInLensPlane(const PinholeCamera& lf_camera, const RenderCamera& render_camera) {
+  const Vec3 offset = lf_camera.CentreWorld() - render_camera.pinhole.CentreWorld();
+  return std::abs(render_camera.pinhole.ForwardWorld().dot(offset)) <=
+         1e-13 * (lf_camera.CentreWorld().norm() + render_camera.pinhole.CentreWorld().norm());
+}
+
 RayLaw::RayLaw(const PinholeCamera& lf_camera, const RenderCamera& render_camera)
     : intrinsics_(lf_camera.intrinsics),
       centre_(lf_camera.CentreWorld()),

@@ -18,6 +18,10 @@ struct PlateElement {
   friend bool operator==(const PlateElement&, const PlateElement&) = default;
 };
 
+// Whether the LF camera stands in the lens plane to rounding: then all its rays cross the lens at
+// one point (doc/ray.md, Geometry 6).
+bool LiesInLensPlane(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
+
 // The fate of the rays of one LF camera at one render camera.
 class RayLaw {
  public:

@@ -15,17 +15,12 @@
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
+#include "lf/collection/cubic_simd-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace lf {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-
-using LaneF = hn::CappedTag<float, 16>;
-using LaneI = hn::RebindToSigned<LaneF>;
-#if HWY_HAVE_SCALABLE
-#error "vectors of unknown length need loops over Lanes()"
-#endif
-constexpr int kLanes = static_cast<int>(hn::MaxLanes(LaneF()));
 
 constexpr int kGroup = 8;  // LF pixels that are looked at together
 // Slopes from which on groups are rarely runs: a row or column is skipped every 1 / kRareRun
@@ -173,10 +168,7 @@ HWY_ATTR HWY_INLINE void FindStarts(const CubicSegment& s, int begin, int count,
                                     const TileLayout& tile, int32_t* starts) {
   const LaneF df;
   const LaneI di;
-  const auto x0 = hn::Set(df, s.x_cubic[0]), x1 = hn::Set(df, s.x_cubic[1]);
-  const auto x2 = hn::Set(df, s.x_cubic[2]), x3 = hn::Set(df, s.x_cubic[3]);
-  const auto y0 = hn::Set(df, s.y_cubic[0]), y1 = hn::Set(df, s.y_cubic[1]);
-  const auto y2 = hn::Set(df, s.y_cubic[2]), y3 = hn::Set(df, s.y_cubic[3]);
+  const CubicLanes x_cubic(s.x_cubic), y_cubic(s.y_cubic);
   const auto row_stride = hn::Set(df, static_cast<float>(tile.row_stride));
   // The tile's corner, counted from the base of the segment.
   const int left = tile.rect.x_begin - s.base_x, upper = tile.rect.y_begin - s.base_y;
@@ -190,10 +182,7 @@ HWY_ATTR HWY_INLINE void FindStarts(const CubicSegment& s, int begin, int count,
   auto less = hn::Neg(hn::Iota(di, std::bit_cast<int32_t>(kTwoTo23)));
   for (int i = 0; i < count; i += kLanes) {
     const auto t = hn::Iota(df, s.t_begin + static_cast<float>(begin + i));
-    auto x =
-        hn::Floor(hn::Add(hn::Mul(hn::Add(hn::Mul(hn::Add(hn::Mul(x3, t), x2), t), x1), t), x0));
-    auto y =
-        hn::Floor(hn::Add(hn::Mul(hn::Add(hn::Mul(hn::Add(hn::Mul(y3, t), y2), t), y1), t), y0));
+    auto x = hn::Floor(x_cubic.At(t)), y = hn::Floor(y_cubic.At(t));
     if constexpr (kClamp) {
       x = hn::Min(hn::Max(hn::Sub(x, x_corner), zero), x_last);
       y = hn::Min(hn::Max(hn::Sub(y, y_corner), zero), y_last);

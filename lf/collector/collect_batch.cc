@@ -41,13 +41,15 @@ PixelReach ReachOf(Estimator estimator) {
   return estimator == Estimator::kBilinear ? PixelReach::kNeighbours : PixelReach::kOwn;
 }
 
-size_t PlanBytes(Estimator estimator, int image_width, int image_height, int plate_width,
-                 int plate_height) {
+size_t PlanBytes(Estimator estimator, bool has_distortion, int image_width, int image_height,
+                 int plate_width, int plate_height) {
   const bool is_nearest = estimator == Estimator::kNearest;
   const auto width = static_cast<size_t>(is_nearest ? image_width : plate_width);
   const auto height = static_cast<size_t>(is_nearest ? image_height : plate_height);
-  // Segments are pieces of blocks of 256, a few a scanline; tiles cut them into two or three.
-  return height * (2 + width / 256) *
+  // Segments are a few a scanline, but short where distortion bends them; tiles cut them into two
+  // or three.
+  const size_t segment_width = has_distortion ? 64 : 256;
+  return height * (2 + width / segment_width) *
          (sizeof(CubicSegment) + (is_nearest ? 3 * sizeof(TilePiece) : 0));
 }
 
@@ -80,7 +82,8 @@ void BatchCollector::Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>
   if (takers.empty()) pool_.ForEach(other_items.count, other_items.run);
   size_t frame_bytes = 1;
   for (const BatchImage& image : batch)
-    frame_bytes += PlanBytes(estimator_, image.pixels.rect.width(), image.pixels.rect.height(),
+    frame_bytes += PlanBytes(estimator_, light_field_.Camera(image.id).intrinsics.has_distortion(),
+                             image.pixels.rect.width(), image.pixels.rect.height(),
                              plates_[0].width(), plates_[0].height());
   const size_t chunk = std::max<size_t>(1, plan_bytes_ / frame_bytes);
   for (size_t begin = 0; begin < takers.size(); begin += chunk) {

@@ -71,8 +71,8 @@ struct OtherItems {
 
 // What is planned for the rays of one LF image in one frame, about. nearest goes by the scanlines
 // of the image, bilinear by those of the plate.
-size_t PlanBytes(Estimator estimator, int image_width, int image_height, int plate_width,
-                 int plate_height);
+size_t PlanBytes(Estimator estimator, bool has_distortion, int image_width, int image_height,
+                 int plate_width, int plate_height);
 
 class BatchCollector {
  public:

@@ -49,8 +49,8 @@ ImageNeed NeedOf(const LightField& light_field, Estimator estimator, int plate_w
         (k.has_distortion() ? kPatchBytesPerPixel : 0);
     need.kept_bytes = std::max(need.kept_bytes, pixels * bytes_per_pixel);
     need.decode_bytes = std::max(need.decode_bytes, pixels * decode_bytes_per_pixel);
-    need.plan_bytes = std::max(
-        need.plan_bytes, PlanBytes(estimator, k.width_px, k.height_px, plate_width, plate_height));
+    need.plan_bytes = std::max(need.plan_bytes, PlanBytes(estimator, k.has_distortion(), k.width_px,
+                                                          k.height_px, plate_width, plate_height));
   }
   return need;
 }
