@@ -1,19 +1,35 @@
 #include "lf/camera/ideal_pixels.h"
 
 #include <algorithm>
+#include <array>
+
+#include "lf/core/quintic.h"
 
 namespace lf {
 namespace {
 
 // Wide, since kernels work along scanlines.
-constexpr int kLargestWidth_px = 256, kLargestHeight_px = 64;
+constexpr int kLargestWidth_px = 1024, kLargestHeight_px = 64;
 
-// Control points of the cubic through four even points.
-void ThroughFour(const Vec3& p0, const Vec3& p1, const Vec3& p2, const Vec3& p3, Vec3* control) {
-  control[0] = p0;
-  control[1] = (-5 * p0 + 18 * p1 - 9 * p2 + 2 * p3) * (1.0 / 6);
-  control[2] = (2 * p0 - 9 * p1 + 18 * p2 - 5 * p3) * (1.0 / 6);
-  control[3] = p3;
+constexpr int kControls = IdealPatch::kControls;
+
+using Points = std::array<Vec3, kControls>;
+
+// Control points of the arc through points at kQuinticPlaces.
+Points ControlsThrough(const Points& points) {
+  // Of the powers of t, the values of their blossoms, times these divisors.
+  constexpr int kValues[kControls][kControls] = {{1, -5, 10, -10, 5, -1}, {1, -3, 2, 2, -3, 1},
+                                                 {1, -1, -2, 2, 1, -1},   {1, 1, -2, -2, 1, 1},
+                                                 {1, 3, 2, -2, -3, -1},   {1, 5, 10, 10, 5, 1}};
+  constexpr int kDivisors[kControls] = {1, 5, 10, 10, 5, 1};
+  const Points powers = QuinticThrough(points);
+  Points controls;
+  for (size_t i = 0; i < kControls; ++i) {
+    controls[i] = powers[0];
+    for (size_t k = 1; k < kControls; ++k)
+      controls[i] += powers[k] * (static_cast<double>(kValues[i][k]) / kDivisors[k]);
+  }
+  return controls;
 }
 
 class PatchMaker {
@@ -59,31 +75,35 @@ class PatchMaker {
     patches_->push_back(patch);
   }
 
-  // Through the ideal positions of four by four points.
+  // Through the ideal positions of six by six points.
   bool Fit(IdealPatch* patch) const {
     const PixelRect& rect = patch->rect;
-    Vec3 rows[4][4];  // control points of the scanlines through the points
-    for (int j = 0; j < 4; ++j) {
-      Vec3 through[4];
-      for (int i = 0; i < 4; ++i) {
+    Points rows[kControls];  // control points of the scanlines through the points
+    for (size_t j = 0; j < kControls; ++j) {
+      Points through;
+      for (size_t i = 0; i < kControls; ++i) {
         const std::optional<Vec3> q =
-            Position(rect.x_begin + rect.width() * i / 3.0, rect.y_begin + rect.height() * j / 3.0);
+            Position(rect.x_begin + rect.width() * Share(kQuinticPlaces[i]),
+                     rect.y_begin + rect.height() * Share(kQuinticPlaces[j]));
         if (!q) return false;
         through[i] = *q;
       }
-      ThroughFour(through[0], through[1], through[2], through[3], rows[j]);
+      rows[j] = ControlsThrough(through);
     }
-    for (int i = 0; i < 4; ++i) {
-      Vec3 column[4];
-      ThroughFour(rows[0][i], rows[1][i], rows[2][i], rows[3][i], column);
-      for (int j = 0; j < 4; ++j) patch->control[j][i] = column[j];
+    for (size_t i = 0; i < kControls; ++i) {
+      Points through;
+      for (size_t j = 0; j < kControls; ++j) through[j] = rows[j][i];
+      const Points column = ControlsThrough(through);
+      for (size_t j = 0; j < kControls; ++j) patch->control[j][i] = column[j];
     }
-    // A cubic through four even points misses most near the middle of the outer thirds.
-    for (const double v : {0.127, 0.5, 0.873})
-      for (const double u : {0.127, 0.5, 0.873})
-        if (!IsTrue(*patch, u, v)) return false;
+    for (const double v : kQuinticWorstPlaces)
+      for (const double u : kQuinticWorstPlaces)
+        if (!IsTrue(*patch, Share(u), Share(v))) return false;
     return true;
   }
+
+  // Of a length, for a place in [-1, 1].
+  static double Share(double place) { return 0.5 * (1 + place); }
 
   bool IsTrue(const IdealPatch& patch, double u, double v) const {
     const std::optional<Vec2> recorded = map_.Distort(inverse_ * patch.ArcAt(v).At(u));
@@ -110,13 +130,26 @@ std::optional<Vec3> IdealPosition(const Intrinsics& k, const DistortionMap& map,
   return k.Matrix() * *direction;
 }
 
+BezierWeights BezierWeightsAt(double t) {
+  const double s = 1 - t, s2 = s * s, t2 = t * t;
+  return {s2 * s2 * s,      5 * s2 * s2 * t, 10 * s2 * s * t2,
+          10 * s2 * t2 * t, 5 * s * t2 * t2, t2 * t2 * t};
+}
+
+Vec3 IdealArc::At(double t) const {
+  const BezierWeights weights = BezierWeightsAt(t);
+  Vec3 sum = weights[0] * control[0];
+  for (size_t i = 1; i < kControls; ++i) sum += weights[i] * control[i];
+  return sum;
+}
+
 IdealArc IdealPatch::ArcAt(double v) const {
-  const double s = 1 - v;
-  const double weight[4] = {s * s * s, 3 * s * s * v, 3 * s * v * v, v * v * v};
+  const BezierWeights weights = BezierWeightsAt(v);
   IdealArc arc{rect.x_begin, rect.x_end, {}};
-  for (int i = 0; i < 4; ++i)
-    arc.control[i] = weight[0] * control[0][i] + weight[1] * control[1][i] +
-                     weight[2] * control[2][i] + weight[3] * control[3][i];
+  for (int i = 0; i < kControls; ++i) {
+    arc.control[i] = weights[0] * control[0][i];
+    for (size_t j = 1; j < kControls; ++j) arc.control[i] += weights[j] * control[j][i];
+  }
   return arc;
 }
 

@@ -6,6 +6,7 @@
 // linear form of camera/ray_forms.h applies to q as it does to pixels.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -22,37 +23,40 @@ namespace lf {
 std::optional<Vec3> IdealPosition(const Intrinsics& k, const DistortionMap& map, double x_px,
                                   double y_px);
 
-// Pixels [x_begin, x_end) of a scanline, whose ideal positions lie on a cubic Bezier arc; it runs
-// evenly from the left border of the first pixel to the right border of the last. A linear form on
-// the arc lies between its values at the four control points.
+// Pixels [x_begin, x_end) of a scanline, whose ideal positions lie on a Bezier arc of degree 5; it
+// runs evenly from the left border of the first pixel to the right border of the last. A linear
+// form on the arc lies between its values at the control points.
 struct IdealArc {
   int32_t x_begin = 0;
   int32_t x_end = 0;
-  Vec3 control[4];
+  static constexpr int kControls = 6;
+  Vec3 control[kControls];
 
   // Of the centre of pixel x.
   double Parameter(int x) const {
     return (x - x_begin + 0.5) / static_cast<double>(x_end - x_begin);
   }
-  Vec3 At(double t) const {
-    const double s = 1 - t;
-    return (s * s * s) * control[0] + (3 * s * s * t) * control[1] + (3 * s * t * t) * control[2] +
-           (t * t * t) * control[3];
-  }
+  Vec3 At(double t) const;
 };
 
-// Pixels of a rectangle, whose ideal positions lie on a bicubic Bezier patch, which runs evenly
-// from its left to its right and from its upper to its lower border. A linear form on the patch
-// lies between its values at the sixteen control points.
+// Pixels of a rectangle, whose ideal positions lie on a Bezier patch of degree 5 by 5, which runs
+// evenly from its left to its right and from its upper to its lower border. A linear form on the
+// patch lies between its values at the control points.
 struct IdealPatch {
+  static constexpr int kControls = IdealArc::kControls;
   PixelRect rect;
-  Vec3 control[4][4];  // [row][column]
+  Vec3 control[kControls][kControls];  // [row][column]
 
   // The centres of scanline y, one of rect's.
-  IdealArc Scanline(int y) const { return ArcAt((y + 0.5 - rect.y_begin) / rect.height()); }
+  IdealArc Scanline(int y) const { return ArcAt(Parameter(y)); }
+  double Parameter(int y) const { return (y + 0.5 - rect.y_begin) / rect.height(); }
   // At v from 0, the upper border, to 1.
   IdealArc ArcAt(double v) const;
 };
+
+// Those of the control points for the value at t, from 0 to 1; their sum is 1.
+using BezierWeights = std::array<double, IdealArc::kControls>;
+BezierWeights BezierWeightsAt(double t);
 
 // All pixels of a camera with distortion, in patches that are true to kTolerance_px.
 class IdealPixels {

@@ -21,7 +21,7 @@
 #include "lf/camera/pinhole.h"
 #include "lf/camera/render_camera.h"
 #include "lf/capture/lf_pixels.h"
-#include "lf/collection/cubic_segments.h"
+#include "lf/collection/segments.h"
 #include "lf/core/geometry.h"
 #include "lf/plate/sensor_plate.h"
 #include "lf/plate/tile_sums.h"
@@ -46,8 +46,8 @@ uint64_t GatherReference(const PinholeCamera& lf_camera, const LfPixels& pixels,
 struct GatherPlan {
   int plate_width = 0;
   int plate_height = 0;
-  std::vector<CubicSegment> segments;  // of elements, all accepted, by y, then x
-  std::vector<size_t> row_begin;       // [plate_height + 1]: the first segment of a row
+  std::vector<Segment> segments;  // of elements, all accepted, by y, then x
+  std::vector<size_t> row_begin;  // [plate_height + 1]: the first segment of a row
 };
 
 //   memory  a plan no longer needed, to be used again

@@ -77,13 +77,16 @@ class GatherPlanner {
         law_(lf_camera, render_camera),
         forms_(MakeForms(lf_camera, render_camera)),
         map_(lf_camera.intrinsics.distortion),
-        cubics_(forms_.across_x, forms_.across_y, forms_.depth),
+        maker_(forms_.across_x, forms_.across_y, forms_.depth),
         plan_(std::move(memory)) {
     for (const int side : {0, 1})
       rows_.half_planes[side] = HalfPlanes(forms_, k_, render_camera.aperture, side == 0 ? -1 : 1);
-    // All rays of a camera in the lens plane cross it at one point, for which the ends of a span
-    // stand.
-    if (render_camera.aperture.blades == 0 && !LiesInLensPlane(lf_camera, render_camera))
+    // All rays of a camera in the lens plane cross it at one point: if it is near the rim, the law
+    // at the ends of a span decides for them all.
+    const bool is_disk = render_camera.aperture.blades == 0;
+    if (is_disk && LiesInLensPlane(lf_camera, render_camera))
+      rows_.law_decides = !IsSurelyInDisk(lf_camera, render_camera);
+    else if (is_disk)
       rows_.disk = {forms_.lens_right, forms_.lens_up, forms_.forward,
                     render_camera.aperture.radius_w};
     plan_.plate_width = render_camera.pinhole.intrinsics.width_px;
@@ -107,7 +110,7 @@ class GatherPlanner {
         if (k_.has_distortion())
           AddDistorted(y, begin, end);
         else
-          cubics_.Add(y, begin, end, &plan_.segments);
+          maker_.Add(y, begin, end, &plan_.segments);
       }
     }
     plan_.row_begin.push_back(plan_.segments.size());
@@ -128,8 +131,8 @@ class GatherPlanner {
                   k_.fy_px * recorded->y() + k_.cy_px);
     };
     found_.clear();
-    CubicSegments::AddOfFunction(y, x_begin, x_end, position, &found_);
-    for (const CubicSegment& segment : found_) {
+    SegmentMaker::AddOfFunction(y, x_begin, x_end, position, &found_);
+    for (const Segment& segment : found_) {
       part_end_ = -1;
       AddParts(segment);
     }
@@ -137,9 +140,9 @@ class GatherPlanner {
 
   // Those elements of a segment whose rays the LF image holds; across its border the segment is
   // halved until few are left, for which the law is asked.
-  void AddParts(const CubicSegment& segment) {
-    const CubicRange x = RangeOf(segment.x_cubic, segment.t_begin, segment.count);
-    const CubicRange y = RangeOf(segment.y_cubic, segment.t_begin, segment.count);
+  void AddParts(const Segment& segment) {
+    const PositionRange x = RangeOf(segment.x_poly, segment.t_begin, segment.count);
+    const PositionRange y = RangeOf(segment.y_poly, segment.t_begin, segment.count);
     const Vec2 base(segment.base_x, segment.base_y);
     const Vec2 low = base + Vec2(x.low, y.low), high = base + Vec2(x.high, y.high);
     if (high.x() < 0 || high.y() < 0 || low.x() > k_.width_px || low.y() > k_.height_px) return;
@@ -158,16 +161,16 @@ class GatherPlanner {
     AddParts(Part(segment, segment.count / 2, segment.count));
   }
 
-  static CubicSegment Part(const CubicSegment& segment, int begin, int end) {
-    CubicSegment part = segment;
+  static Segment Part(const Segment& segment, int begin, int end) {
+    Segment part = segment;
     part.x_begin += begin;
     part.t_begin += static_cast<float>(begin);
     part.count = end - begin;
     return part;
   }
 
-  // Neighbours of one segment, which share its cubics, are put together again.
-  void AppendPart(const CubicSegment& part) {
+  // Neighbours of one segment, which share its polynomials, are put together again.
+  void AppendPart(const Segment& part) {
     if (part.x_begin == part_end_)
       plan_.segments.back().count += part.count;
     else
@@ -179,12 +182,12 @@ class GatherPlanner {
   GatherLaw law_;
   GatherForms forms_;
   DistortionMap map_;
-  CubicSegments cubics_;
+  SegmentMaker maker_;
   RowSpans rows_;
   GatherPlan plan_;
-  std::vector<RowSpan> spans_;       // of the row
-  std::vector<CubicSegment> found_;  // of the span
-  int part_end_ = -1;                // of the last part of the segment
+  std::vector<RowSpan> spans_;  // of the row
+  std::vector<Segment> found_;  // of the span
+  int part_end_ = -1;           // of the last part of the segment
 };
 
 }  // namespace

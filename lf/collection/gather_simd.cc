@@ -1,7 +1,8 @@
 // The inner loop of the estimator *bilinear*, for every instruction set from one source (Highway):
-// positions by cubics, a vector at a time; then four pixels, each four lanes of 16 bits, are mixed
-// in integers and added to the element. No fused multiply-add: the same bits on every target.
+// positions by polynomials, a vector at a time; then four pixels, each four lanes of 16 bits, are
+// mixed in integers and added to the element. No fused multiply-add: the same bits on every target.
 #include <algorithm>
+#include <bit>
 
 #include "lf/collection/gather.h"
 #include "lf/core/check.h"
@@ -13,7 +14,7 @@
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
-#include "lf/collection/cubic_simd-inl.h"
+#include "lf/collection/polynomial_simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace lf {
@@ -23,13 +24,17 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr int kWeightBits = 8;
 constexpr int kOne = 1 << kWeightBits;  // of the weights
 
-// Upper left pixels of consecutive elements, and the weights of the right and of the lower ones.
+// Upper left pixels of consecutive elements, and the weights of the others.
 struct Places {
-  static constexpr int kRoom = CubicSegment::kMaxCount + kLanes;
+  static constexpr int kRoom = Segment::kMaxCount + kLanes;
   HWY_ALIGN int32_t pixel[kRoom];
-  HWY_ALIGN uint32_t right[kRoom];
+  HWY_ALIGN uint32_t left_right[kRoom];  // those of the left and of the right pixels, 16 bits each
   HWY_ALIGN uint32_t lower[kRoom];
 };
+
+// Integers below 2^22 of either sign are exact in single precision; added to 2^23 + 2^22 they are
+// its last bits: cheaper than a conversion, which minds overflow.
+constexpr float kWhole = 12582912;
 
 // One coordinate: the pixel before the position, counted from `begin`, and its distance in 1/256.
 struct Coordinate {
@@ -38,19 +43,23 @@ struct Coordinate {
 };
 
 // Finds it within pixels [begin, end).
+template <int kDegree>
 class CoordinateFinder {
  public:
-  HWY_ATTR HWY_INLINE CoordinateFinder(const float (&cubic)[4], int32_t base, int begin, int end)
-      : base_((base - begin) * kOne), last_(end - begin - 1) {
+  HWY_ATTR HWY_INLINE CoordinateFinder(const float (&polynomial)[Segment::kTerms], int32_t base,
+                                       int begin, int end)
+      : base_((base - begin) * kOne - std::bit_cast<int32_t>(kWhole)), last_(end - begin - 1) {
     // In 1/256 from the centre of pixel `begin`, rounded half up; multiplying by 256 is exact.
-    for (int power = 0; power < 4; ++power) cubic_[power] = cubic[power] * kOne;
-    cubic_[0] += 0.5F - 0.5F * kOne;
+    for (int power = 0; power < Segment::kTerms; ++power)
+      polynomial_[power] = polynomial[power] * kOne;
+    polynomial_[0] += 0.5F - 0.5F * kOne;
   }
 
   HWY_ATTR HWY_INLINE Coordinate Find(hn::Vec<LaneF> t) const {
     const LaneI di;
-    const auto cubic = CubicLanes(cubic_).At(t);
-    const auto found = hn::Add(hn::ConvertTo(di, hn::Floor(cubic)), hn::Set(di, base_));
+    const auto place = PolynomialLanes<kDegree>(polynomial_).At(t);
+    const auto whole = hn::BitCast(di, hn::Add(hn::Floor(place), hn::Set(LaneF(), kWhole)));
+    const auto found = hn::Add(whole, hn::Set(di, base_));
     // What rounding has sent beyond the pixels is on their border.
     const auto position = hn::Min(hn::Max(found, hn::Zero(di)), hn::Set(di, last_ * kOne));
     const auto pixel = hn::Min(hn::ShiftRight<kWeightBits>(position), hn::Set(di, last_ - 1));
@@ -58,24 +67,27 @@ class CoordinateFinder {
   }
 
  private:
-  float cubic_[4];
-  int32_t base_;
+  float polynomial_[Segment::kTerms];
+  int32_t base_;  // less the bits of kWhole
   int32_t last_;
 };
 
-HWY_ATTR void FindPlaces(const CubicSegment& s, int begin, int count, const PixelRect& rect,
+template <int kDegree>
+HWY_ATTR void FindPlaces(const Segment& s, int begin, int count, const PixelRect& rect,
                          Places* places) {
   const LaneF df;
   const LaneI di;
   const hn::RebindToUnsigned<LaneI> du;
-  const CoordinateFinder x_finder(s.x_cubic, s.base_x, rect.x_begin, rect.x_end);
-  const CoordinateFinder y_finder(s.y_cubic, s.base_y, rect.y_begin, rect.y_end);
+  const CoordinateFinder<kDegree> x_finder(s.x_poly, s.base_x, rect.x_begin, rect.x_end);
+  const CoordinateFinder<kDegree> y_finder(s.y_poly, s.base_y, rect.y_begin, rect.y_end);
   const auto width = hn::Set(di, rect.width());
-  for (int i = 0; i < count; i += kLanes) {
-    const auto t = hn::Iota(df, s.t_begin + static_cast<float>(begin + i));
+  auto t = hn::Iota(df, s.t_begin + static_cast<float>(begin));
+  for (int i = 0; i < count; i += kLanes, t = hn::Add(t, hn::Set(df, kLanes))) {
     const Coordinate x = x_finder.Find(t), y = y_finder.Find(t);
     hn::Store(hn::Add(hn::Mul(y.pixel, width), x.pixel), di, places->pixel + i);
-    hn::Store(hn::BitCast(du, x.weight), du, places->right + i);
+    const auto left_weight = hn::Sub(hn::Set(di, kOne), x.weight);
+    hn::Store(hn::BitCast(du, hn::Or(left_weight, hn::ShiftLeft<16>(x.weight))), du,
+              places->left_right + i);
     hn::Store(hn::BitCast(du, y.weight), du, places->lower + i);
   }
 }
@@ -91,7 +103,7 @@ HWY_INLINE void AddRays(const Places& places, int i, const uint16_t* values, ptr
                         TileSums::Element* sums) {
   const uint16_t* upper = values + static_cast<ptrdiff_t>(places.pixel[i]) * LfPixels::kRgbLanes;
   const uint16_t* lower = upper + row_values;
-  const uint32_t right = places.right[i], left = kOne - right, down = places.lower[i];
+  const uint32_t right = places.left_right[i] >> 16, left = kOne - right, down = places.lower[i];
   for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane) {
     const int next = lane + LfPixels::kRgbLanes;
     const uint32_t sum = (upper[lane] * left + upper[next] * right) * (kOne - down) +
@@ -102,6 +114,9 @@ HWY_INLINE void AddRays(const Places& places, int i, const uint16_t* values, ptr
 constexpr auto AddRay = AddRays;
 
 #else
+
+// Products of signed numbers, two and two added, are one operation: values are taken less this.
+constexpr uint16_t kMiddle = 0x8000;
 
 using AllLanes = hn::CappedTag<uint32_t, 16>;
 using LanesOfOne = hn::Full128<uint32_t>;
@@ -149,20 +164,27 @@ HWY_ATTR HWY_INLINE void AddRaysOf(D d, const Places& places, int i, const uint1
                                    ptrdiff_t row_values, TileSums::Element* sums) {
   const hn::Repartition<uint16_t, D> d16;
   const hn::Repartition<uint8_t, D> d8;
+  const hn::RebindToSigned<D> di;
+  const hn::RebindToSigned<decltype(d16)> di16;
   // Of each colour, the left and the right pixel side by side.
   HWY_ALIGN static constexpr uint8_t kSideBySide[16] = {0, 1, 8,  9,  2, 3, 10, 11,
                                                         4, 5, 12, 13, 6, 7, 14, 15};
   const auto side_by_side = hn::LoadDup128(d8, kSideBySide);
-  const auto low = hn::Set(d, 0xFFFF);
-  const auto right = LoadWeights(d, places.right + i);
+  const auto middle = hn::Set(d16, kMiddle);
+  const auto left_right = hn::BitCast(di16, LoadWeights(d, places.left_right + i));
   const auto mix_row = [&](const uint16_t* row) HWY_ATTR {
     const auto pairs = LoadPairs(d16, row, places.pixel + i);
-    const auto mixed = hn::BitCast(d, hn::TableLookupBytes(hn::BitCast(d8, pairs), side_by_side));
-    return Mix(hn::And(mixed, low), hn::ShiftRight<16>(mixed), right);
+    const auto mixed = hn::BitCast(d16, hn::TableLookupBytes(hn::BitCast(d8, pairs), side_by_side));
+    const auto about_0 = hn::BitCast(di16, hn::Xor(mixed, middle));
+    auto odd = hn::Zero(di);
+    const auto even = hn::ReorderWidenMulAccumulate(di, about_0, left_right, hn::Zero(di), odd);
+    return hn::BitCast(d, hn::RearrangeToOddPlusEven(even, odd));
   };
   const auto sum =
       Mix(mix_row(values), mix_row(values + row_values), LoadWeights(d, places.lower + i));
-  const auto rays = hn::ShiftRight<2 * kWeightBits>(hn::Add(sum, hn::Set(d, kHalf)));
+  // All weights together, 65536, times kMiddle make the highest bit.
+  constexpr uint32_t kBack = uint32_t{kMiddle} * kOne * kOne + kHalf;
+  const auto rays = hn::ShiftRight<2 * kWeightBits>(hn::Add(sum, hn::Set(d, kBack)));
   uint32_t* const lanes = sums[i].rgb_rays;
   hn::StoreU(hn::Add(hn::LoadU(d, lanes), rays), d, lanes);
 }
@@ -180,10 +202,11 @@ HWY_ATTR HWY_INLINE void AddRay(const Places& places, int i, const uint16_t* val
 
 // Elements [begin, begin + count) of the segment; `sums` of the first.
 template <bool kMayBeMasked>
-HWY_ATTR uint32_t GatherPart(const CubicSegment& s, int begin, int count, const LfPixels& pixels,
+HWY_ATTR uint32_t GatherPart(const Segment& s, int begin, int count, const LfPixels& pixels,
                              TileSums::Element* sums) {
   Places places;
-  FindPlaces(s, begin, count, pixels.rect, &places);
+  const auto find_places = s.is_cubic() ? FindPlaces<3> : FindPlaces<5>;
+  find_places(s, begin, count, pixels.rect, &places);
   const uint16_t* const values = pixels.radiance.row(0);
   const ptrdiff_t row_values = static_cast<ptrdiff_t>(pixels.rect.width()) * LfPixels::kRgbLanes;
   const auto upper = [&](int i) {
@@ -221,7 +244,7 @@ HWY_ATTR uint64_t GatherTile(const GatherPlan& plan, const LfPixels& pixels, Til
     TileSums::Element* const row =
         elements + static_cast<ptrdiff_t>(y - tile.y_begin) * sums->stride();
     for (size_t i = plan.row_begin[y]; i < plan.row_begin[y + 1]; ++i) {
-      const CubicSegment& s = plan.segments[i];
+      const Segment& s = plan.segments[i];
       const int begin = std::max(s.x_begin, tile.x_begin);
       const int end = std::min(s.x_begin + s.count, tile.x_end);
       if (begin >= end) continue;

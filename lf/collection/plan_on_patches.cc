@@ -3,51 +3,22 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <optional>
-#include <span>
+#include <utility>
+#include <vector>
 
 #include "lf/camera/ray_forms.h"
-#include "lf/collection/cubic_patch.h"
+#include "lf/collection/element_patch.h"
+#include "lf/collection/patch_edges.h"
+#include "lf/collection/patch_hull.h"
 #include "lf/collection/ray_law.h"
 #include "lf/core/check.h"
 
 namespace lf {
 namespace {
 
-// Values this near to 0, relative to the terms they are summed from, may be rounding.
-constexpr double kRounding = 1e-9;
-
 enum class Share { kNone, kSome, kAll };  // of the rays of an arc or a patch
-
-// The least and the largest value that a form can have on it.
-struct Range {
-  double low = 0;
-  double high = 0;
-  double rounding = 0;
-};
-
-// The control points of an arc or a patch, and how far they reach in each coordinate.
-struct Hull {
-  std::span<const Vec3> control;
-  Vec3 reach;
-  explicit Hull(std::span<const Vec3> points) : control(points), reach(points[0].cwiseAbs()) {
-    for (const Vec3& point : points) reach = reach.cwiseMax(point.cwiseAbs());
-  }
-};
-
-Range RangeOn(const Hull& hull, const PixelForm& form) {
-  Range range;
-  range.low = range.high = Value(form, hull.control[0]);
-  for (const Vec3& point : hull.control.subspan(1)) {
-    const double value = Value(form, point);
-    range.low = std::min(range.low, value);
-    range.high = std::max(range.high, value);
-  }
-  range.rounding =
-      kRounding * (std::abs(form[0]) * hull.reach[0] + std::abs(form[1]) * hull.reach[1] +
-                   std::abs(form[2]) * hull.reach[2]);
-  return range;
-}
 
 // Where form <= 0.
 Share AtMostZero(const Hull& hull, const PixelForm& form) {
@@ -56,40 +27,30 @@ Share AtMostZero(const Hull& hull, const PixelForm& form) {
   return range.high < -range.rounding ? Share::kAll : Share::kSome;
 }
 
-double LeastSquare(const Range& range) {
-  if (range.low <= 0 && range.high >= 0) return 0;
-  return std::min(range.low * range.low, range.high * range.high);
-}
-
-double LargestSquare(const Range& range) {
-  return std::max(range.low * range.low, range.high * range.high);
-}
+constexpr int kControls = IdealPatch::kControls;
 
 // De Casteljau's construction: the control points of both sides of t.
-void SplitCubic(const Vec3 (&c)[4], double t, Vec3 (&left)[4], Vec3 (&right)[4]) {
-  const auto mix = [t](const Vec3& a, const Vec3& b) -> Vec3 { return a + t * (b - a); };
-  const Vec3 middle = mix(c[1], c[2]);
-  left[0] = c[0];
-  left[1] = mix(c[0], c[1]);
-  left[2] = mix(left[1], middle);
-  right[3] = c[3];
-  right[2] = mix(c[2], c[3]);
-  right[1] = mix(middle, right[2]);
-  left[3] = right[0] = mix(left[2], right[1]);
+void SplitBezier(const Vec3 (&c)[kControls], double t, Vec3 (&left)[kControls],
+                 Vec3 (&right)[kControls]) {
+  std::copy(std::begin(c), std::end(c), std::begin(right));
+  for (int k = 0; k < kControls; ++k) {
+    left[k] = right[0];
+    for (int i = 0; i < kControls - 1 - k; ++i) right[i] += t * (right[i + 1] - right[i]);
+  }
 }
 
 class PatchPlanner {
  public:
   PatchPlanner(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
                const PixelRect& rect, const IdealPixels& ideal_pixels,
-               std::vector<CubicSegment>* segments)
+               std::vector<Segment>* segments)
       : law_(lf_camera, render_camera),
         render_camera_(render_camera),
         rect_(rect),
         in_lens_plane_(LiesInLensPlane(lf_camera, render_camera)),
         ideal_pixels_(ideal_pixels),
         forms_(MakeRayForms(lf_camera, render_camera)),
-        cubics_(forms_.sensor_x, forms_.sensor_y, forms_.front),
+        maker_(forms_.sensor_x, forms_.sensor_y, forms_.front),
         segments_(*segments) {
     for (const int side : {0, 1})
       plate_half_planes_[side] = PlateHalfPlanes(forms_, render_camera, side == 0 ? -1 : 1, 0);
@@ -105,6 +66,12 @@ class PatchPlanner {
   }
 
  private:
+  // Pixels [begin, end) of a scanline, accepted.
+  struct PixelRun {
+    int begin;
+    int end;
+  };
+
   // Those that are not known to hold: what holds of a hull holds of its parts.
   struct Conditions {
     bool sides[2] = {true, true};
@@ -120,17 +87,27 @@ class PatchPlanner {
 
   void AddPatch(const IdealPatch& patch) {
     if (Intersection(patch.rect, rect_).empty()) return;
-    const Hull hull(AllControls(patch));
+    const Hull hull(patch);
     Conditions open = all_conditions_;
     const Share share = AcceptedShare(hull, &open);
     if (share == Share::kNone) return;
     // Decided by the whole patch, whatever part of it is asked for.
-    const Range front = RangeOn(hull, forms_.front);
-    elements_.reset();
-    if (front.high - front.low < 1e-2 * std::sqrt(LeastSquare(front)))
-      elements_.emplace(forms_.sensor_x, forms_.sensor_y, forms_.front, patch);
-    if (elements_ && !elements_->IsNearMiddle()) elements_.reset();
+    columns_.clear();
+    FitColumns(patch, patch.rect.x_begin, patch.rect.x_end);
     AddRows(patch, patch, share, open);
+  }
+
+  void FitColumns(const IdealPatch& patch, int x_begin, int x_end) {
+    constexpr int kNarrow = 32;
+    std::optional<ElementPatch> elements =
+        ElementPatch::Fit(forms_.sensor_x, forms_.sensor_y, forms_.front, patch, x_begin, x_end);
+    if (!elements && x_end - x_begin > kNarrow) {
+      const int middle = x_begin + (x_end - x_begin) / 2;
+      FitColumns(patch, x_begin, middle);
+      FitColumns(patch, middle, x_end);
+      return;
+    }
+    columns_.push_back({x_begin, x_end, std::move(elements)});
   }
 
   // The scanlines of `part` of a patch.
@@ -138,36 +115,74 @@ class PatchPlanner {
                const Conditions& open) {
     const PixelRect clip = Intersection(part.rect, rect_);
     if (clip.empty() || share == Share::kNone) return;
+    const bool by_edges = share == Share::kSome && SetEdges(part, open);
     constexpr int kFewRows = 4;
-    if (share == Share::kSome && part.rect.height() > kFewRows) {
+    if (share == Share::kSome && !by_edges && part.rect.height() > kFewRows) {
       IdealPatch upper, lower;
       SplitRows(part, &upper, &lower);
       for (const IdealPatch* half : {&upper, &lower}) {
         Conditions still_open = open;
-        const Share share_of_half = AcceptedShare(Hull(AllControls(*half)), &still_open);
+        const Share share_of_half = AcceptedShare(Hull(*half), &still_open);
         AddRows(*half, patch, share_of_half, still_open);
       }
       return;
     }
     for (int y = clip.y_begin; y < clip.y_end; ++y) {
       runs_.clear();
-      IdealArc arc;
-      if (share == Share::kSome || !elements_) arc = patch.Scanline(y);
-      if (share == Share::kAll)
+      if (share == Share::kAll) {
         AppendRun(clip.x_begin, clip.x_end);
-      else
+      } else if (!by_edges || !FindRunBetweenEdges(patch, y, clip)) {
+        const IdealArc arc = patch.Scanline(y);
         FindRuns(arc, arc, clip.x_begin, clip.x_end, open);
-      for (const PixelRun& run : runs_) {
-        if (elements_)
-          elements_->Append(y, run.begin, run.end, &segments_);
-        else
-          cubics_.AddOnArc(y, run.begin, run.end, arc, &segments_);
       }
+      for (const PixelRun& run : runs_) AppendSegments(patch, y, run);
     }
   }
 
-  static std::span<const Vec3> AllControls(const IdealPatch& patch) {
-    return std::span(&patch.control[0][0], 16);
+  void AppendSegments(const IdealPatch& patch, int y, const PixelRun& run) {
+    for (const Columns& columns : columns_) {
+      const int begin = std::max(run.begin, columns.x_begin);
+      const int end = std::min(run.end, columns.x_end);
+      if (begin >= end) continue;
+      if (columns.elements)
+        columns.elements->Append(y, begin, end, &segments_);
+      else
+        maker_.AddOnArc(y, begin, end, patch.Scanline(y), &segments_);
+    }
+  }
+
+  // What is left to be decided of a part of a patch; false if that is more than edges.
+  bool SetEdges(const IdealPatch& part, const Conditions& open) {
+    if (open.sides[0] == open.sides[1]) return false;
+    edges_.Begin(part);
+    const auto add = [&](const std::vector<PixelForm>& forms, uint64_t bits) {
+      for (; bits != 0; bits &= bits - 1)
+        edges_.AddForm(forms[static_cast<size_t>(std::countr_zero(bits))]);
+    };
+    const int side = open.sides[0] ? 0 : 1;
+    add(plate_half_planes_[side], open.plate[side]);
+    add(lens_half_planes_, open.lens);
+    return !open.disk ||
+           (!in_lens_plane_ && edges_.AddDisk({forms_.lens_right, forms_.lens_up, forms_.forward,
+                                               render_camera_.aperture.radius_w}));
+  }
+
+  // The one run of scanline y between edges; the law is asked where rounding might decide. False if
+  // they cannot tell.
+  bool FindRunBetweenEdges(const IdealPatch& patch, int y, const PixelRect& clip) {
+    const std::optional<PatchEdges::Pixels> pixels = edges_.Find(y);
+    if (!pixels) return false;
+    const auto is_accepted = [&](int x) {
+      if (x >= pixels->sure_begin && x <= pixels->sure_end) return true;
+      const IdealArc arc = patch.Scanline(y);
+      return law_.CollectIdeal(arc.At(arc.Parameter(x))).has_value();
+    };
+    int begin = std::max(clip.x_begin, static_cast<int>(std::ceil(pixels->begin)));
+    int end = std::min(clip.x_end, static_cast<int>(std::floor(pixels->end)) + 1);
+    while (begin < end && !is_accepted(begin)) ++begin;
+    while (begin < end && !is_accepted(end - 1)) --end;
+    if (begin < end) AppendRun(begin, end);
+    return true;
   }
 
   static void SplitRows(const IdealPatch& patch, IdealPatch* upper, IdealPatch* lower) {
@@ -176,19 +191,19 @@ class PatchPlanner {
     const double t = static_cast<double>(middle - rect.y_begin) / rect.height();
     upper->rect = {rect.x_begin, rect.y_begin, rect.x_end, middle};
     lower->rect = {rect.x_begin, middle, rect.x_end, rect.y_end};
-    for (int i = 0; i < 4; ++i) {
-      Vec3 column[4], first[4], second[4];
-      for (int j = 0; j < 4; ++j) column[j] = patch.control[j][i];
-      SplitCubic(column, t, first, second);
-      for (int j = 0; j < 4; ++j) upper->control[j][i] = first[j];
-      for (int j = 0; j < 4; ++j) lower->control[j][i] = second[j];
+    for (int i = 0; i < kControls; ++i) {
+      Vec3 column[kControls], first[kControls], second[kControls];
+      for (int j = 0; j < kControls; ++j) column[j] = patch.control[j][i];
+      SplitBezier(column, t, first, second);
+      for (int j = 0; j < kControls; ++j) upper->control[j][i] = first[j];
+      for (int j = 0; j < kControls; ++j) lower->control[j][i] = second[j];
     }
   }
 
   // Appends the accepted pixels of `part` of an arc, within [begin, end).
   void FindRuns(const IdealArc& part, const IdealArc& arc, int begin, int end, Conditions open) {
     if (part.x_begin >= end || part.x_end <= begin) return;
-    const Share share = AcceptedShare(Hull(part.control), &open);
+    const Share share = AcceptedShare(Hull(part), &open);
     if (share == Share::kNone) return;
     if (share == Share::kAll) {
       AppendRun(std::max(begin, part.x_begin), std::min(end, part.x_end));
@@ -212,8 +227,8 @@ class PatchPlanner {
     left->x_begin = arc.x_begin;
     left->x_end = right->x_begin = middle;
     right->x_end = arc.x_end;
-    SplitCubic(arc.control, static_cast<double>(middle - arc.x_begin) / (arc.x_end - arc.x_begin),
-               left->control, right->control);
+    SplitBezier(arc.control, static_cast<double>(middle - arc.x_begin) / (arc.x_end - arc.x_begin),
+                left->control, right->control);
   }
 
   void AppendRun(int begin, int end) {
@@ -259,25 +274,18 @@ class PatchPlanner {
     const double r2 = render_camera_.aperture.radius_w * render_camera_.aperture.radius_w;
     // Here lens_right = l_x forward with one l_x for all rays: the quotient is sharper.
     if (in_lens_plane_) {
-      const double l2 = (LargestSquare(right) + LargestSquare(up)) /
+      const double l2 = (right.LargestSquare() + up.LargestSquare()) /
                         std::max(forward.high * forward.high, 1e-300);
       if (l2 > r2 * (1 + kInLensPlaneMargin)) return Share::kNone;
       return l2 < r2 * (1 - kInLensPlaneMargin) ? Share::kAll : Share::kSome;
     }
-    const double rounding =
-        10 * kRounding * (LargestSquare(right) + LargestSquare(up) + r2 * LargestSquare(forward));
-    if (LeastSquare(right) + LeastSquare(up) > r2 * LargestSquare(forward) + rounding)
+    const double rounding = DiskRounding(right, up, forward, render_camera_.aperture.radius_w);
+    if (right.LeastSquare() + up.LeastSquare() > r2 * forward.LargestSquare() + rounding)
       return Share::kNone;
-    return LargestSquare(right) + LargestSquare(up) < r2 * LeastSquare(forward) - rounding
+    return right.LargestSquare() + up.LargestSquare() < r2 * forward.LeastSquare() - rounding
                ? Share::kAll
                : Share::kSome;
   }
-
-  // Pixels [begin, end) of a scanline, accepted.
-  struct PixelRun {
-    int begin;
-    int end;
-  };
 
   static constexpr double kInLensPlaneMargin = 1e-6;
 
@@ -290,17 +298,24 @@ class PatchPlanner {
   Conditions all_conditions_;
   const IdealPixels& ideal_pixels_;
   RayForms forms_;
-  CubicSegments cubics_;
-  std::vector<CubicSegment>& segments_;
-  std::vector<PixelRun> runs_;          // of the scanline
-  std::optional<CubicPatch> elements_;  // of the patch, if its perspective is weak
+  SegmentMaker maker_;
+  std::vector<Segment>& segments_;
+  std::vector<PixelRun> runs_;  // of the scanline
+  // Of the patch: columns whose scanlines have polynomials of one fit, or none where perspective is
+  // too strong for it.
+  struct Columns {
+    int x_begin, x_end;
+    std::optional<ElementPatch> elements;
+  };
+  std::vector<Columns> columns_;
+  PatchEdges edges_;  // of a part of it
 };
 
 }  // namespace
 
 void PlanScatterOnPatches(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
                           const PixelRect& rect, const IdealPixels& ideal_pixels,
-                          std::vector<CubicSegment>* segments) {
+                          std::vector<Segment>* segments) {
   PatchPlanner(lf_camera, render_camera, rect, ideal_pixels, segments).Run();
 }
 

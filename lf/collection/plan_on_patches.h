@@ -6,7 +6,7 @@
 #include "lf/camera/ideal_pixels.h"
 #include "lf/camera/pinhole.h"
 #include "lf/camera/render_camera.h"
-#include "lf/collection/cubic_segments.h"
+#include "lf/collection/segments.h"
 
 namespace lf {
 
@@ -15,6 +15,6 @@ namespace lf {
 // these, and at last the law, ray by ray.
 void PlanScatterOnPatches(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
                           const PixelRect& rect, const IdealPixels& ideal_pixels,
-                          std::vector<CubicSegment>* segments);
+                          std::vector<Segment>* segments);
 
 }  // namespace lf

@@ -42,7 +42,7 @@ TEST(PlanOnPatches, SegmentsHoldExactlyTheRaysThatTheLawAcceptsOnThePatches) {
     const ScatterPlan plan =
         PlanScatter(pair.lf_camera, pair.render_camera, kWholeImage, {160, 120, 40, 23}, &ideal);
     Image<uint8_t> in_span(kWidth, kHeight);
-    for (const CubicSegment& segment : plan.segments)
+    for (const Segment& segment : plan.segments)
       for (int i = 0; i < segment.count; ++i) in_span.at(segment.x_begin + i, segment.y) += 1;
     size_t accepted = 0;
     for (const IdealPatch& patch : ideal.patches())
@@ -71,7 +71,7 @@ TEST(PlanOnPatches, MostSpansAreFoundWithoutAskingTheLaw) {
   const ScatterPlan plan = PlanScatter(pair.lf_camera, pair.render_camera, {0, 0, 1280, 720},
                                        {1280, 720, 384, 40}, &ideal);
   size_t whole = 0;
-  for (const CubicSegment& segment : plan.segments) whole += segment.count >= 16 ? 1 : 0;
+  for (const Segment& segment : plan.segments) whole += segment.count >= 16 ? 1 : 0;
   EXPECT_GT(whole, plan.segments.size() * 9 / 10);
 }
 

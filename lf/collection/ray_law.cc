@@ -12,6 +12,14 @@ bool LiesInLensPlane(const PinholeCamera& lf_camera, const RenderCamera& render_
          1e-13 * (lf_camera.CentreWorld().norm() + render_camera.pinhole.CentreWorld().norm());
 }
 
+bool IsSurelyInDisk(const PinholeCamera& lf_camera_in_lens_plane,
+                    const RenderCamera& render_camera) {
+  constexpr double kMargin = 1e-4;
+  const RenderCamera& r = render_camera;
+  const Vec3 offset = lf_camera_in_lens_plane.CentreWorld() - r.pinhole.CentreWorld();
+  return offset.norm() < (1 - kMargin) * r.aperture.radius_w;
+}
+
 RayLaw::RayLaw(const PinholeCamera& lf_camera, const RenderCamera& render_camera)
     : intrinsics_(lf_camera.intrinsics),
       centre_(lf_camera.CentreWorld()),

@@ -22,6 +22,10 @@ struct PlateElement {
 // one point (doc/ray.md, Geometry 6).
 bool LiesInLensPlane(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
 
+// Whether that point is so far inside a disk that rounding cannot move it out.
+bool IsSurelyInDisk(const PinholeCamera& lf_camera_in_lens_plane,
+                    const RenderCamera& render_camera);
+
 // The fate of the rays of one LF camera at one render camera.
 class RayLaw {
  public:

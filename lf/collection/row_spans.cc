@@ -15,15 +15,31 @@ constexpr double kFormMargin = 1e-9;
 constexpr double kDiskMargin = 1e-7;
 constexpr double kSlack = 0.01;  // of the ends, in pixels
 
-// Real interval of pixel positions, [begin, end]; empty if end < begin.
-struct Interval {
-  double begin = -kInfinity;
-  double end = kInfinity;
-  bool empty() const { return !(begin <= end); }
-};
+using Interval = RowSpans::Interval;
+constexpr Interval kNowhere{1, 0};
 
 Interval Intersect(const Interval& a, const Interval& b) {
   return {std::max(a.begin, b.begin), std::min(a.end, b.end)};
+}
+
+// The least and the largest value of a form on the centres of a rectangle's pixels, which it takes
+// at corners; what is this near to 0 may be rounding.
+struct FormRange {
+  double low, high;
+  double margin;
+};
+
+FormRange RangeOn(const PixelRect& rect, const PixelForm& form) {
+  const double x[2] = {rect.x_begin + 0.5, rect.x_end - 0.5};
+  const double y[2] = {rect.y_begin + 0.5, rect.y_end - 0.5};
+  const double middle = 0.5 * (form[0] * (x[0] + x[1]) + form[1] * (y[0] + y[1])) + form[2];
+  const double reach =
+      0.5 * (std::abs(form[0]) * (x[1] - x[0]) + std::abs(form[1]) * (y[1] - y[0]));
+  const double margin =
+      kFormMargin *
+      (std::abs(form[0]) * std::max(std::abs(x[0]), std::abs(x[1])) +
+       std::abs(form[1]) * std::max(std::abs(y[0]), std::abs(y[1])) + std::abs(form[2]));
+  return {middle - reach, middle + reach, margin};
 }
 
 // A form along one scanline: slope x + constant.
@@ -36,20 +52,26 @@ struct LineForm {
 LineForm Along(const PixelForm& form, double y) { return {form[0], form[1] * y + form[2]}; }
 
 // Candidates of form <= 0 within `range`; `tie` is set where the form stays at 0 all along, so
-// that rounding alone decides each pixel.
-Interval AtMostZero(const LineForm& form, const Interval& range, bool* tie) {
+// that rounding alone decides each pixel. `sure` is narrowed to where rounding decides nothing.
+Interval AtMostZero(const LineForm& form, const Interval& range, bool* tie, Interval* sure) {
   const double magnitude =
       std::abs(form.slope) * std::max(std::abs(range.begin), std::abs(range.end)) +
       std::abs(form.constant);
   const double margin = kFormMargin * magnitude;
   if (std::abs(form.At(range.begin)) <= margin && std::abs(form.At(range.end)) <= margin) {
     *tie = true;
+    *sure = kNowhere;
     return range;
   }
-  const double bound = (margin - form.constant) / form.slope;
-  if (form.slope > 0) return Intersect(range, {-kInfinity, bound});
-  if (form.slope < 0) return Intersect(range, {bound, kInfinity});
-  return form.constant <= margin ? range : Interval{1, 0};
+  if (form.slope == 0) return form.constant <= margin ? range : kNowhere;
+  const double inverse = 1 / form.slope, bound = (margin - form.constant) * inverse;
+  const double inside = kSlack + 2 * margin * std::abs(inverse);
+  if (form.slope > 0) {
+    *sure = Intersect(*sure, {-kInfinity, bound - inside});
+    return Intersect(range, {-kInfinity, bound});
+  }
+  *sure = Intersect(*sure, {bound + inside, kInfinity});
+  return Intersect(range, {bound, kInfinity});
 }
 
 // Candidates of right^2 + up^2 <= radius^2 forward^2 within `range`, where forward >= 0: the cut of
@@ -66,7 +88,7 @@ Interval WithinDisk(const LineForm& right, const LineForm& up, const LineForm& f
                    r2 * forward.constant * forward.constant;
   const double discriminant = b * b - a * c;
   const auto inside = [&](double x) { return (a * x + 2 * b) * x + c <= 0; };
-  if (!(discriminant > 0)) return inside(0.5 * (range.begin + range.end)) ? range : Interval{1, 0};
+  if (!(discriminant > 0)) return inside(0.5 * (range.begin + range.end)) ? range : kNowhere;
   // Both roots without cancellation.
   const double t = -(b + std::copysign(std::sqrt(discriminant), b));
   if (a == 0)
@@ -86,40 +108,43 @@ Interval WithinDisk(const LineForm& right, const LineForm& up, const LineForm& f
 
 void RowSpans::RestrictTo(const PixelRect& rect) {
   if (rect.empty()) return;
-  const double x[2] = {rect.x_begin + 0.5, rect.x_end - 0.5};
-  const double y[2] = {rect.y_begin + 0.5, rect.y_end - 0.5};
   for (const int side : {0, 1}) {
     std::vector<PixelForm>& forms = half_planes[side];
     std::erase_if(forms, [&](const PixelForm& form) {
-      // A linear form is largest and least at corners.
-      const double middle = 0.5 * (form[0] * (x[0] + x[1]) + form[1] * (y[0] + y[1])) + form[2];
-      const double reach =
-          0.5 * (std::abs(form[0]) * (x[1] - x[0]) + std::abs(form[1]) * (y[1] - y[0]));
-      const double margin =
-          kFormMargin *
-          (std::abs(form[0]) * std::max(std::abs(x[0]), std::abs(x[1])) +
-           std::abs(form[1]) * std::max(std::abs(y[0]), std::abs(y[1])) + std::abs(form[2]));
-      is_shut_[side] |= middle - reach > margin;
-      return middle + reach < -margin;
+      const FormRange range = RangeOn(rect, form);
+      is_shut_[side] |= range.low > range.margin;
+      return range.high < -range.margin;
     });
   }
+  if (!disk) return;
+  const auto largest_square = [&](const PixelForm& form) {
+    const FormRange range = RangeOn(rect, form);
+    const double most = std::max(-range.low, range.high) + range.margin;
+    return most * most;
+  };
+  const FormRange forward = RangeOn(rect, disk->forward);
+  const double least_forward = std::max(0.0, forward.low - forward.margin);
+  if (largest_square(disk->right) + largest_square(disk->up) <
+      disk->radius * disk->radius * (1 - kDiskMargin) * least_forward * least_forward)
+    disk.reset();
 }
 
 RowSpans::Candidate RowSpans::FindCandidate(int side, double centre_y, int x_begin,
                                             int x_end) const {
-  Interval range{x_begin + 0.5, x_end - 0.5};
+  Interval range{x_begin + 0.5, x_end - 0.5}, sure{-kInfinity, kInfinity};
   bool tie = false;
   for (const PixelForm& form : half_planes[side]) {
-    range = AtMostZero(Along(form, centre_y), range, &tie);
+    range = AtMostZero(Along(form, centre_y), range, &tie, &sure);
     if (range.empty()) return {};
   }
   if (disk) {
     range = WithinDisk(Along(disk->right, centre_y), Along(disk->up, centre_y),
                        Along(disk->forward, centre_y), disk->radius, range);
     if (range.empty()) return {};
+    sure = kNowhere;
   }
   return {std::max(x_begin, static_cast<int>(std::ceil(range.begin - 0.5 - kSlack))),
-          std::min(x_end, static_cast<int>(std::floor(range.end - 0.5 + kSlack)) + 1), tie};
+          std::min(x_end, static_cast<int>(std::floor(range.end - 0.5 + kSlack)) + 1), tie, sure};
 }
 
 }  // namespace lf

@@ -22,7 +22,7 @@
 #include "lf/camera/pinhole.h"
 #include "lf/camera/render_camera.h"
 #include "lf/capture/lf_pixels.h"
-#include "lf/collection/cubic_segments.h"
+#include "lf/collection/segments.h"
 #include "lf/collection/tile_pieces.h"
 #include "lf/core/geometry.h"
 #include "lf/plate/sensor_plate.h"
@@ -42,7 +42,7 @@ struct ScatterPlan {
   TileGrid grid;
   // Pixels of scanlines, all accepted. Positions are elements: a pixel hits floor(position),
   // clamped to the plate, since the law has accepted it.
-  std::vector<CubicSegment> segments;
+  std::vector<Segment> segments;
   TilePieces pieces;
 };
 

@@ -14,7 +14,7 @@ namespace {
 constexpr double kLensMargin = 1e-7;
 
 void PlanOnLines(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
-                 const PixelRect& rect, std::vector<CubicSegment>* segments) {
+                 const PixelRect& rect, std::vector<Segment>* segments) {
   const RayLaw law(lf_camera, render_camera);
   const RayForms forms = MakeRayForms(lf_camera, render_camera);
   const bool is_disk = render_camera.aperture.blades == 0;
@@ -25,14 +25,16 @@ void PlanOnLines(const PinholeCamera& lf_camera, const RenderCamera& render_came
     const std::vector<PixelForm> lens = LensHalfPlanes(forms, render_camera, kLensMargin);
     rows.half_planes[side].insert(rows.half_planes[side].end(), lens.begin(), lens.end());
   }
-  // All rays of a camera in the lens plane cross it at one point: the law at the ends of a span
-  // decides for them all, where the quadratic would have a double root.
-  if (is_disk && !LiesInLensPlane(lf_camera, render_camera))
+  // All rays of a camera in the lens plane cross it at one point: if it is near the rim, the law at
+  // the ends of a span decides for them all, where the quadratic would have a double root.
+  if (is_disk && LiesInLensPlane(lf_camera, render_camera))
+    rows.law_decides = !IsSurelyInDisk(lf_camera, render_camera);
+  else if (is_disk)
     rows.disk = {forms.lens_right, forms.lens_up, forms.forward, render_camera.aperture.radius_w};
 
   rows.RestrictTo(rect);
 
-  const CubicSegments cubics(forms.sensor_x, forms.sensor_y, forms.front);
+  const SegmentMaker maker(forms.sensor_x, forms.sensor_y, forms.front);
   std::vector<RowSpan> spans;
   for (int y = rect.y_begin; y < rect.y_end; ++y) {
     const auto accepted = [&](int side, int x) {
@@ -40,7 +42,7 @@ void PlanOnLines(const PinholeCamera& lf_camera, const RenderCamera& render_came
       return (side == 0 ? plane < 0 : plane > 0) && law.Collect(x, y);
     };
     rows.Find(y, rect.x_begin, rect.x_end, accepted, &spans);
-    for (const auto& [begin, end] : spans) cubics.Add(y, begin, end, segments);
+    for (const auto& [begin, end] : spans) maker.Add(y, begin, end, segments);
   }
 }
 

@@ -1,7 +1,7 @@
 // The inner loop of ray collection, for every instruction set from one source (Highway): addresses
-// by cubics, a vector at a time; then integer additions, of a whole vector where neighbouring LF
-// pixels hit neighbouring elements, else one per ray. No fused multiply-add: every target gives the
-// same bits.
+// by polynomials, a vector at a time; then integer additions, of a whole vector where neighbouring
+// LF pixels hit neighbouring elements, else one per ray. No fused multiply-add: every target gives
+// the same bits.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -15,7 +15,7 @@
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
-#include "lf/collection/cubic_simd-inl.h"
+#include "lf/collection/polynomial_simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace lf {
@@ -126,28 +126,33 @@ struct MosaicPixels {
   // zeros.
   HWY_ATTR HWY_INLINE void AddGroup(int i, const int32_t* starts) const {
     const Lanes d;
-    const hn::RebindToSigned<Lanes> d_start;
-    const hn::Rebind<int32_t, Lanes> d32;
+    const hn::CappedTag<int32_t, kGroup> d32;
     constexpr int kStep = static_cast<int>(hn::MaxLanes(d));
+    constexpr int kStep32 = static_cast<int>(hn::MaxLanes(d32));
     const int32_t first_start = starts[0], last_start = starts[kGroup - 1];
-    const auto first = hn::Set(d_start, first_start), last = hn::Set(d_start, last_start);
+    const auto first = hn::Set(d32, first_start), last = hn::Set(d32, last_start);
     bool are_two = true;
-    for (int k = 0; k < kGroup; k += kStep) {
-      const auto start = hn::PromoteTo(d_start, hn::LoadU(d32, starts + k));
-      are_two &= hn::AllTrue(d_start, hn::Or(hn::Eq(start, first), hn::Eq(start, last)));
+    for (int k = 0; k < kGroup; k += kStep32) {
+      const auto start = hn::Load(d32, starts + k);
+      are_two &= hn::AllTrue(d32, hn::Or(hn::Eq(start, first), hn::Eq(start, last)));
     }
     if (HWY_UNLIKELY(!are_two)) {
       for (int k = 0; k < kGroup; ++k) Add(i + k, starts[k]);
       return;
     }
+    if (first_start == last_start) {
+      AddRun(i, first_start);
+      return;
+    }
+    const hn::RebindToSigned<Lanes> d_start;
+    const hn::Rebind<int32_t, Lanes> d_half;
     uint64_t *const first_sums = WordsOf(i, first_start), *const last_sums = WordsOf(i, last_start);
     for (int k = 0; k < kGroup; k += kStep) {
-      const auto start = hn::PromoteTo(d_start, hn::LoadU(d32, starts + k));
-      const auto is_first = hn::RebindMask(d, hn::Eq(start, first));
+      const auto start = hn::PromoteTo(d_start, hn::LoadU(d_half, starts + k));
+      const auto is_first = hn::RebindMask(d, hn::Eq(start, hn::Set(d_start, first_start)));
       const auto rays = Rays(values + i + k);
       hn::StoreU(hn::Add(hn::LoadU(d, first_sums + k), hn::IfThenElseZero(is_first, rays)), d,
                  first_sums + k);
-      if (first_start == last_start) continue;
       hn::StoreU(hn::Add(hn::LoadU(d, last_sums + k), hn::IfThenZeroElse(is_first, rays)), d,
                  last_sums + k);
     }
@@ -163,12 +168,12 @@ struct MosaicPixels {
 // Of positions [begin, begin + count) of a segment, the addresses less their index from `begin`:
 // they stay the same where neighbours lie side by side.
 //   kClamp  what rounding has sent over the border of the plate, the tile's too, comes back
-template <bool kClamp>
-HWY_ATTR HWY_INLINE void FindStarts(const CubicSegment& s, int begin, int count,
-                                    const TileLayout& tile, int32_t* starts) {
+template <int kDegree, bool kClamp>
+HWY_ATTR HWY_INLINE void FindStarts(const Segment& s, int begin, int count, const TileLayout& tile,
+                                    int32_t* starts) {
   const LaneF df;
   const LaneI di;
-  const CubicLanes x_cubic(s.x_cubic), y_cubic(s.y_cubic);
+  const PolynomialLanes<kDegree> x_poly(s.x_poly), y_poly(s.y_poly);
   const auto row_stride = hn::Set(df, static_cast<float>(tile.row_stride));
   // The tile's corner, counted from the base of the segment.
   const int left = tile.rect.x_begin - s.base_x, upper = tile.rect.y_begin - s.base_y;
@@ -180,9 +185,9 @@ HWY_ATTR HWY_INLINE void FindStarts(const CubicSegment& s, int begin, int count,
   const int corner = kClamp ? 0 : upper * tile.row_stride + left;
   const auto base = hn::Set(df, kTwoTo23 - static_cast<float>(corner));
   auto less = hn::Neg(hn::Iota(di, std::bit_cast<int32_t>(kTwoTo23)));
-  for (int i = 0; i < count; i += kLanes) {
-    const auto t = hn::Iota(df, s.t_begin + static_cast<float>(begin + i));
-    auto x = hn::Floor(x_cubic.At(t)), y = hn::Floor(y_cubic.At(t));
+  auto t = hn::Iota(df, s.t_begin + static_cast<float>(begin));  // exact, and so is what is added
+  for (int i = 0; i < count; i += kLanes, t = hn::Add(t, hn::Set(df, kLanes))) {
+    auto x = hn::Floor(x_poly.At(t)), y = hn::Floor(y_poly.At(t));
     if constexpr (kClamp) {
       x = hn::Min(hn::Max(hn::Sub(x, x_corner), zero), x_last);
       y = hn::Min(hn::Max(hn::Sub(y, y_corner), zero), y_last);
@@ -193,17 +198,27 @@ HWY_ATTR HWY_INLINE void FindStarts(const CubicSegment& s, int begin, int count,
   }
 }
 
+template <bool kClamp>
+HWY_ATTR HWY_INLINE void FindStarts(const Segment& s, int begin, int count, const TileLayout& tile,
+                                    int32_t* starts) {
+  if (s.is_cubic())
+    FindStarts<3, kClamp>(s, begin, count, tile, starts);
+  else
+    FindStarts<5, kClamp>(s, begin, count, tile, starts);
+}
+
 // Whether position i + 1 hits the element beside that of position i, all along.
-bool IsOneRun(const CubicSegment& s) {
+bool IsOneRun(const Segment& s) {
   // Far enough from the border of an element for single precision.
   constexpr float kMargin = 1e-3F;
-  const float place = s.x_cubic[0] + s.t_begin, in_element = place - std::floor(place);
-  return s.x_cubic[1] == 1 && s.x_cubic[2] == 0 && s.x_cubic[3] == 0 && s.y_cubic[1] == 0 &&
-         s.y_cubic[2] == 0 && s.y_cubic[3] == 0 && in_element > kMargin && in_element < 1 - kMargin;
+  const float place = s.x_poly[0] + s.t_begin, in_element = place - std::floor(place);
+  return s.is_cubic() && s.x_poly[1] == 1 && s.x_poly[2] == 0 && s.x_poly[3] == 0 &&
+         s.y_poly[1] == 0 && s.y_poly[2] == 0 && s.y_poly[3] == 0 && in_element > kMargin &&
+         in_element < 1 - kMargin;
 }
 
 template <class Pixels>
-HWY_ATTR uint32_t ScatterPiece(const CubicSegment& s, const TilePiece& piece, const Pixels& pixels,
+HWY_ATTR uint32_t ScatterPiece(const Segment& s, const TilePiece& piece, const Pixels& pixels,
                                const TileLayout& tile) {
   const int count = piece.end - piece.begin;
   // Scanlines are too far apart for the processor to foresee.
@@ -221,13 +236,13 @@ HWY_ATTR uint32_t ScatterPiece(const CubicSegment& s, const TilePiece& piece, co
   }
 #endif
   // All addresses first: reading them back one by one is cheaper than taking a vector apart.
-  HWY_ALIGN int32_t starts[CubicSegment::kMaxCount];
+  HWY_ALIGN int32_t starts[Segment::kMaxCount];
   if (tile.has_plate_border)
     FindStarts<true>(s, piece.begin, count, tile, starts);
   else
     FindStarts<false>(s, piece.begin, count, tile, starts);
 #if HWY_TARGET != HWY_SCALAR
-  if (std::abs(s.x_cubic[1] - 1) + std::abs(s.y_cubic[1]) < kRareRun && pixels.has_runs())
+  if (std::abs(s.x_poly[1] - 1) + std::abs(s.y_poly[1]) < kRareRun && pixels.has_runs())
     for (; i + kGroup <= count; i += kGroup) pixels.AddGroup(i, starts + i);
 #endif
   for (; i < count; ++i) pixels.Add(i, starts[i]);
@@ -245,7 +260,7 @@ HWY_ATTR uint64_t ScatterTile(const ScatterPlan& plan, size_t tile, const LfPixe
   const TileLayout layout{rect, is_rgb ? stride : TileSums::kMosaicRows * stride, has_plate_border};
   uint64_t rays = 0;
   for (const TilePiece* piece = plan.pieces.begin(tile); piece != plan.pieces.end(tile); ++piece) {
-    const CubicSegment& s = plan.segments[piece->segment];
+    const Segment& s = plan.segments[piece->segment];
     const int row = s.y - pixels.rect.y_begin;
     const int column = s.x_begin + piece->begin - pixels.rect.x_begin;
     constexpr int kRowsAhead = 2;
@@ -291,7 +306,7 @@ uint64_t ScatterTile(const ScatterPlan& plan, size_t tile, const LfPixels& pixel
   // Addresses in the tile, and those counted from the base of a segment, are exact in single
   // precision.
   const int64_t row_stride = int64_t{TileSums::kMosaicRows} * sums->stride();
-  LF_CHECK(row_stride * (rect.height() + int64_t{CubicSegment::kMaxCount}) < (int64_t{1} << 22));
+  LF_CHECK(row_stride * (rect.height() + int64_t{Segment::kMaxCount}) < (int64_t{1} << 22));
   return HWY_DYNAMIC_DISPATCH(ScatterTile)(plan, tile, pixels, sums);
 }
 

@@ -34,7 +34,7 @@ TEST(Scatter, SpansHoldExactlyTheRaysThatTheLawAccepts) {
     const ScatterPlan plan =
         PlanScatter(pair.lf_camera, pair.render_camera, WholeImage(pair), {160, 120, 17, 9});
     Image<uint8_t> in_span(50, 35);
-    for (const CubicSegment& segment : plan.segments)
+    for (const Segment& segment : plan.segments)
       for (int i = 0; i < segment.count; ++i) in_span.at(segment.x_begin + i, segment.y) += 1;
     size_t accepted = 0;
     for (int y = 0; y < 35; ++y)

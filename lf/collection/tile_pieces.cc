@@ -7,9 +7,6 @@
 namespace lf {
 namespace {
 
-// As kernels evaluate it.
-float At(const float (&c)[4], float t) { return ((c[3] * t + c[2]) * t + c[1]) * t + c[0]; }
-
 // Single precision keeps the order of positions this far apart.
 constexpr float kSureStep = 1e-3F;
 
@@ -28,32 +25,25 @@ struct Crossing {
 class Axis {
  public:
   // base  of the segment, in elements
-  Axis(const float (&cubic)[4], int base, float t_begin, int count, int last_element, int tile_size)
-      : cubic_(cubic),
+  Axis(const float (&polynomial)[Segment::kTerms], int base, float t_begin, int count,
+       int last_element, int tile_size)
+      : polynomial_(polynomial),
         base_(base),
         t_begin_(t_begin),
         count_(count),
         last_element_(last_element),
         tile_size_(tile_size),
-        range_(RangeOf(cubic, t_begin, count)) {}
+        range_(RangeOf(polynomial, t_begin, count)) {}
 
   // How far positions move, at least, from one to the next; below 0 if they may turn round.
   float least_distance() const { return std::max(range_.least_step, -range_.most_step); }
 
   // The column or row of tiles of the first position.
-  int FirstTile() const { return TileOf(At(cubic_, t_begin_)); }
+  int FirstTile() const { return TileOf(range_.first); }
 
   // Writes all crossings but at the first position, in order, and one at `count`.
   void Cross(Crossing* crossings) const {
-    const int least = TileOf(range_.low), most = TileOf(range_.high);
-    if (least != most && count_ > 1) {
-      if (range_.least_step > kSureStep)
-        for (int tile = least + 1; tile <= most; ++tile) CrossOnce(tile, 1, &crossings);
-      else if (range_.most_step < -kSureStep)
-        for (int tile = most; tile > least; --tile) CrossOnce(tile, -1, &crossings);
-      else
-        CrossAtWill(&crossings);
-    }
+    CrossWithin(0, count_ - 1, range_, &crossings);
     *crossings = {static_cast<uint16_t>(count_), 0};
   }
 
@@ -61,24 +51,52 @@ class Axis {
   int TileOf(float position) const {
     return std::clamp(Floor(position) + base_, 0, last_element_) / tile_size_;
   }
-  float Position(int i) const { return At(cubic_, t_begin_ + static_cast<float>(i)); }
+  float At(float i) const { return PositionAt(polynomial_, t_begin_ + i); }
+  float Position(int i) const { return At(static_cast<float>(i)); }
+
+  // Crossings at positions (first, last]; where those may turn round, half by half.
+  void CrossWithin(int first, int last, const PositionRange& range, Crossing** crossings) const {
+    const int least = TileOf(range.low), most = TileOf(range.high);
+    if (least == most || first == last) return;
+    if (range.least_step > kSureStep) {
+      for (int tile = least + 1; tile <= most; ++tile)
+        CrossOnce(first, last, range, tile, 1, crossings);
+    } else if (range.most_step < -kSureStep) {
+      for (int tile = most; tile > least; --tile)
+        CrossOnce(first, last, range, tile, -1, crossings);
+    } else if (constexpr int kFew = 8; last - first <= kFew) {
+      CrossAtWill(first, last, crossings);
+    } else {
+      const int middle = first + (last - first) / 2;
+      CrossWithin(first, middle, Range(first, middle), crossings);
+      CrossWithin(middle, last, Range(middle, last), crossings);
+    }
+  }
+  PositionRange Range(int first, int last) const {
+    return RangeOf(polynomial_, t_begin_ + static_cast<float>(first), last - first + 1);
+  }
 
   // Where the positions, which rise or fall, enter or leave `tile` by its lesser border.
-  void CrossOnce(int tile, int step, Crossing** crossings) const {
+  void CrossOnce(int first, int last, const PositionRange& range, int tile, int step,
+                 Crossing** crossings) const {
     const auto border = static_cast<float>(tile * tile_size_ - base_);
     const auto is_behind = [&](int i) { return (Position(i) >= border) == (step > 0); };
-    const auto last = static_cast<float>(count_ - 1);
-    const float first = Position(0), rise = Position(count_ - 1) - first;
-    int index = 1 + static_cast<int>(std::clamp((border - first) * last / rise, 0.0F, last));
-    while (index > 0 && is_behind(index - 1)) --index;
-    while (index < count_ && !is_behind(index)) ++index;
-    if (index > 0 && index < count_)
+    const auto steps = static_cast<float>(last - first);
+    const float inverse = steps / (range.last - range.first);
+    // By the chord, then by what that misses: off by one at most, as a rule.
+    float place = std::clamp((border - range.first) * inverse, 0.0F, steps);
+    const float found = At(static_cast<float>(first) + place);
+    place = std::clamp(place + (border - found) * inverse, 0.0F, steps);
+    int index = first + 1 + static_cast<int>(place);
+    while (index > first && is_behind(index - 1)) --index;
+    while (index <= last && !is_behind(index)) ++index;
+    if (index > first && index <= last)
       *(*crossings)++ = {static_cast<uint16_t>(index), static_cast<int16_t>(step)};
   }
 
-  void CrossAtWill(Crossing** crossings) const {
-    int tile = FirstTile();
-    for (int i = 1; i < count_; ++i) {
+  void CrossAtWill(int first, int last, Crossing** crossings) const {
+    int tile = TileOf(Position(first));
+    for (int i = first + 1; i <= last; ++i) {
       const int next = TileOf(Position(i));
       if (next == tile) continue;
       *(*crossings)++ = {static_cast<uint16_t>(i), static_cast<int16_t>(next - tile)};
@@ -86,13 +104,13 @@ class Axis {
     }
   }
 
-  const float (&cubic_)[4];
+  const float (&polynomial_)[Segment::kTerms];
   int base_;
   float t_begin_;
   int count_;
   int last_element_;
   int tile_size_;
-  CubicRange range_;
+  PositionRange range_;
 };
 
 struct Cutting {
@@ -108,7 +126,7 @@ uint16_t Crowd(float least_distance, int count) {
 
 }  // namespace
 
-void TilePieces::Cut(const std::vector<CubicSegment>& segments, const TileGrid& grid) {
+void TilePieces::Cut(const std::vector<Segment>& segments, const TileGrid& grid) {
   thread_local std::vector<Cutting> kept;
   std::vector<Cutting> cuttings = std::move(kept);
   cuttings.clear();
@@ -116,10 +134,10 @@ void TilePieces::Cut(const std::vector<CubicSegment>& segments, const TileGrid& 
   const int last_x = grid.plate_width - 1, last_y = grid.plate_height - 1;
   tile_begin_.assign(grid.tile_count() + 1, 0);
   for (size_t k = 0; k < segments.size(); ++k) {
-    const CubicSegment& s = segments[k];
-    const Axis x_axis(s.x_cubic, s.base_x, s.t_begin, s.count, last_x, grid.tile_width);
-    const Axis y_axis(s.y_cubic, s.base_y, s.t_begin, s.count, last_y, grid.tile_height);
-    Crossing x_crossings[CubicSegment::kMaxCount], y_crossings[CubicSegment::kMaxCount];
+    const Segment& s = segments[k];
+    const Axis x_axis(s.x_poly, s.base_x, s.t_begin, s.count, last_x, grid.tile_width);
+    const Axis y_axis(s.y_poly, s.base_y, s.t_begin, s.count, last_y, grid.tile_height);
+    Crossing x_crossings[Segment::kMaxCount], y_crossings[Segment::kMaxCount];
     x_axis.Cross(x_crossings);
     y_axis.Cross(y_crossings);
     const Crossing *x = x_crossings, *y = y_crossings;

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "lf/collection/cubic_segments.h"
+#include "lf/collection/segments.h"
 #include "lf/plate/tile_grid.h"
 
 namespace lf {
@@ -24,7 +24,7 @@ struct TilePiece {
 class TilePieces {
  public:
   // Decided by single precision, as kernels find addresses.
-  void Cut(const std::vector<CubicSegment>& segments, const TileGrid& grid);
+  void Cut(const std::vector<Segment>& segments, const TileGrid& grid);
 
   const TilePiece* begin(size_t tile) const { return sorted_.data() + tile_begin_[tile]; }
   const TilePiece* end(size_t tile) const { return sorted_.data() + tile_begin_[tile + 1]; }

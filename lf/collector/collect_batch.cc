@@ -50,7 +50,7 @@ size_t PlanBytes(Estimator estimator, bool has_distortion, int image_width, int 
   // or three.
   const size_t segment_width = has_distortion ? 64 : 256;
   return height * (2 + width / segment_width) *
-         (sizeof(CubicSegment) + (is_nearest ? 3 * sizeof(TilePiece) : 0));
+         (sizeof(Segment) + (is_nearest ? 3 * sizeof(TilePiece) : 0));
 }
 
 BatchCollector::BatchCollector(const LightField& light_field, std::span<const RenderCamera> frames,

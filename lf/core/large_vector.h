@@ -1,5 +1,7 @@
-// Vectors for images and plates: the larger ones ask the system for huge pages, so that rows far
-// apart do not cost a walk through page tables each (a tenth to a sixth of ray collection's time).
+// Vectors for images and plates. They begin with a cache line, so that vectors of the processor's
+// width do not cross one more than they must; the larger ones ask the system for huge pages, so
+// that rows far apart do not cost a walk through page tables each (a tenth to a sixth of ray
+// collection's time).
 #pragma once
 
 #include <sys/mman.h>
@@ -16,6 +18,7 @@ template <class T>
 struct LargeAllocator {
   static_assert(alignof(T) <= alignof(std::max_align_t));
   using value_type = T;
+  static constexpr size_t kCacheLine = 64;
   static constexpr size_t kHugePage = size_t{2} << 20;
 
   LargeAllocator() = default;
@@ -23,10 +26,10 @@ struct LargeAllocator {
   LargeAllocator(const LargeAllocator<U>& /*other*/) {}  // NOLINT: as allocators convert
 
   T* allocate(size_t count) {
-    if (count > SIZE_MAX / sizeof(T)) throw std::bad_array_new_length();
-    const size_t bytes = count * sizeof(T);
+    if (count > (SIZE_MAX - kCacheLine) / sizeof(T)) throw std::bad_array_new_length();
+    const size_t bytes = (count * sizeof(T) + kCacheLine - 1) / kCacheLine * kCacheLine;
     const bool is_large = bytes >= 2 * kHugePage;
-    void* const memory = is_large ? std::aligned_alloc(kHugePage, bytes) : std::malloc(bytes);
+    void* const memory = std::aligned_alloc(is_large ? kHugePage : kCacheLine, bytes);
     if (memory == nullptr) throw std::bad_alloc();
     // A wish: where the system has no huge pages there are small ones.
     if (is_large) madvise(memory, bytes / kHugePage * kHugePage, MADV_HUGEPAGE);

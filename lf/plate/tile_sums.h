@@ -5,8 +5,8 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
+#include "lf/core/large_vector.h"
 #include "lf/plate/sensor_plate.h"
 #include "lf/plate/tile_grid.h"
 
@@ -86,8 +86,8 @@ class TileSums {
   uint32_t rgb_headroom_ = 0;
   uint32_t mosaic_headroom_ = 0;
   // All 0 but between the first Reserve and Flush().
-  std::vector<Element> elements_;
-  std::vector<uint64_t> words_;
+  LargeVector<Element> elements_;
+  LargeVector<uint64_t> words_;
 };
 
 }  // namespace lf

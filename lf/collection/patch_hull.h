@@ -1,0 +1,61 @@
+// What values linear forms take on an arc or a patch of ideal positions. Internal to collection.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "lf/camera/ideal_pixels.h"
+#include "lf/core/geometry.h"
+
+namespace lf {
+
+// The control points of an arc or a patch, and how far they reach in each coordinate.
+struct Hull {
+  std::span<const Vec3> control;
+  Vec3 reach;
+  explicit Hull(std::span<const Vec3> points) : control(points), reach(points[0].cwiseAbs()) {
+    for (const Vec3& point : points) reach = reach.cwiseMax(point.cwiseAbs());
+  }
+  explicit Hull(const IdealArc& arc) : Hull(std::span(arc.control)) {}
+  explicit Hull(const IdealPatch& patch)
+      : Hull(std::span(&patch.control[0][0], IdealPatch::kControls * IdealPatch::kControls)) {}
+};
+
+// The least and the largest value that a form can have on it. Values as near to 0 as `rounding` may
+// have either sign.
+struct Range {
+  double low = 0;
+  double high = 0;
+  double rounding = 0;
+
+  double LeastSquare() const {
+    return low <= 0 && high >= 0 ? 0 : std::min(low * low, high * high);
+  }
+  double Most() const { return std::max(-low, high); }
+  double LargestSquare() const { return Most() * Most(); }
+};
+
+// Relative to the terms that a value is summed from.
+inline constexpr double kFormRounding = 1e-9;
+
+inline Range RangeOn(const Hull& hull, const PixelForm& form) {
+  Range range;
+  range.low = range.high = Value(form, hull.control[0]);
+  for (const Vec3& point : hull.control.subspan(1)) {
+    const double value = Value(form, point);
+    range.low = std::min(range.low, value);
+    range.high = std::max(range.high, value);
+  }
+  range.rounding = kFormRounding * form.cwiseAbs().dot(hull.reach);
+  return range;
+}
+
+// Of right^2 + up^2 - radius^2 forward^2.
+inline double DiskRounding(const Range& right, const Range& up, const Range& forward,
+                           double radius) {
+  return 10 * kFormRounding *
+         (right.LargestSquare() + up.LargestSquare() + radius * radius * forward.LargestSquare());
+}
+
+}  // namespace lf

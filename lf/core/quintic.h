@@ -1,0 +1,39 @@
+// The polynomial of degree 5 through six points, by which smooth functions are replaced.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace lf {
+
+// Where it goes through them, in [-1, 1]: the roots of Chebyshev's T_6, so that what it misses is
+// spread evenly.
+inline constexpr std::array<double, 6> kQuinticPlaces = {-0.9659258262890683, -0.7071067811865476,
+                                                         -0.2588190451025208, 0.2588190451025208,
+                                                         0.7071067811865476,  0.9659258262890683};
+
+// Where it misses most, the same everywhere to first order: half of the extremes of T_6.
+inline constexpr std::array<double, 3> kQuinticWorstPlaces = {-1, 0, 1};
+
+// Its powers: c[0] + c[1] t + ... + c[5] t^5. T is a number or a vector of them.
+template <class T>
+std::array<T, 6> QuinticThrough(const std::array<T, 6>& at) {
+  // Even and odd powers are parabolas of u = t^2.
+  const double u[3] = {kQuinticPlaces[5] * kQuinticPlaces[5], 0.5,
+                       kQuinticPlaces[3] * kQuinticPlaces[3]};
+  std::array<T, 6> c;
+  for (const size_t odd : {0u, 1u}) {
+    T e[3];
+    for (size_t k = 0; k < 3; ++k)
+      e[k] = odd ? T((at[5 - k] - at[k]) * (0.5 / kQuinticPlaces[5 - k]))
+                 : T((at[5 - k] + at[k]) * 0.5);
+    const T slope = (e[0] - e[1]) * (1 / (u[0] - u[1]));
+    const T inner_slope = (e[1] - e[2]) * (1 / (u[1] - u[2]));
+    c[odd + 4] = (slope - inner_slope) * (1 / (u[0] - u[2]));
+    c[odd + 2] = slope - c[odd + 4] * (u[0] + u[1]);
+    c[odd] = e[0] - slope * u[0] + c[odd + 4] * (u[0] * u[1]);
+  }
+  return c;
+}
+
+}  // namespace lf
