@@ -214,16 +214,17 @@ HWY_ATTR uint32_t GatherPart(const Segment& s, int begin, int count, const LfPix
               places.pixel[i] < pixels.rect.width() * (pixels.rect.height() - 1) - 1);
     return values + static_cast<ptrdiff_t>(places.pixel[i]) * LfPixels::kRgbLanes;
   };
-  // Rows are too far apart for the processor to foresee.
+  // Rows are too far apart for the processor to foresee, and it waits for few lines at a time: they
+  // are asked for one by one.
   constexpr int kRowsAhead = 2;
   constexpr int kLineElements = 8;  // of an LF image, in a cache line
-  for (int i = 0; i < count; i += kLineElements)
-    hwy::Prefetch(upper(i) + (1 + kRowsAhead) * row_values);
+  const auto fetch_ahead = [&](int i) { hwy::Prefetch(upper(i) + (1 + kRowsAhead) * row_values); };
   if constexpr (kMayBeMasked) {
     constexpr int kRay = LfPixels::kRayLane, kNext = kRay + LfPixels::kRgbLanes;
     uint32_t rays = 0;
     for (int i = 0; i < count; ++i) {
       const uint16_t *const row = upper(i), *const next_row = row + row_values;
+      if (i % kLineElements == 0) fetch_ahead(i);
       if (row[kRay] + row[kNext] + next_row[kRay] + next_row[kNext] != 4) continue;
       AddRay(places, i, values, row_values, sums);
       ++rays;
@@ -231,7 +232,11 @@ HWY_ATTR uint32_t GatherPart(const Segment& s, int begin, int count, const LfPix
     return rays;
   }
   int i = 0;
-  for (; i + kRaysAtOnce <= count; i += kRaysAtOnce) AddRays(places, i, values, row_values, sums);
+  for (; i + kLineElements <= count; i += kLineElements) {
+    fetch_ahead(i);
+    for (int k = i; k < i + kLineElements; k += kRaysAtOnce)
+      AddRays(places, k, values, row_values, sums);
+  }
   for (; i < count; ++i) AddRay(places, i, values, row_values, sums);
   return static_cast<uint32_t>(count);
 }

@@ -221,16 +221,24 @@ template <class Pixels>
 HWY_ATTR uint32_t ScatterPiece(const Segment& s, const TilePiece& piece, const Pixels& pixels,
                                const TileLayout& tile) {
   const int count = piece.end - piece.begin;
-  // Scanlines are too far apart for the processor to foresee.
+  // Scanlines are too far apart for the processor to foresee, and it waits for few lines at a time:
+  // those of RGB pixels are asked for one by one.
   constexpr int kLinePixels = 64 / (Pixels::kLanesPerPixel * static_cast<int>(sizeof(uint16_t)));
-  for (int i = 0; i < count; i += kLinePixels)
-    hwy::Prefetch(pixels.values_ahead + static_cast<ptrdiff_t>(i) * Pixels::kLanesPerPixel);
+  constexpr bool kOneByOne = kLinePixels <= kGroup;
+  const auto fetch_ahead = [&](int begin, int end) {
+    for (int i = begin; i < end; i += kLinePixels)
+      hwy::Prefetch(pixels.values_ahead + static_cast<ptrdiff_t>(i) * Pixels::kLanesPerPixel);
+  };
+  if (!kOneByOne) fetch_ahead(0, count);
   int i = 0;
 #if HWY_TARGET != HWY_SCALAR
   if (IsOneRun(s) && pixels.has_runs()) {
     HWY_ALIGN int32_t start[kLanes];
     FindStarts<true>(s, piece.begin, 1, tile, start);
-    for (; i + kGroup <= count; i += kGroup) pixels.AddRun(i, start[0]);
+    for (; i + kGroup <= count; i += kGroup) {
+      if (kOneByOne) fetch_ahead(i, i + kGroup);
+      pixels.AddRun(i, start[0]);
+    }
     for (; i < count; ++i) pixels.Add(i, start[0]);
     return pixels.CountRays(count);
   }
@@ -242,8 +250,17 @@ HWY_ATTR uint32_t ScatterPiece(const Segment& s, const TilePiece& piece, const P
   else
     FindStarts<false>(s, piece.begin, count, tile, starts);
 #if HWY_TARGET != HWY_SCALAR
-  if (std::abs(s.x_poly[1] - 1) + std::abs(s.y_poly[1]) < kRareRun && pixels.has_runs())
-    for (; i + kGroup <= count; i += kGroup) pixels.AddGroup(i, starts + i);
+  const bool is_slow =
+      std::abs(s.x_poly[1] - 1) + std::abs(s.y_poly[1]) < kRareRun && pixels.has_runs();
+  if (is_slow)
+    for (; i + kGroup <= count; i += kGroup) {
+      if (kOneByOne) fetch_ahead(i, i + kGroup);
+      pixels.AddGroup(i, starts + i);
+    }
+  for (; i + kGroup <= count; i += kGroup) {
+    if (kOneByOne) fetch_ahead(i, i + kGroup);
+    for (int k = i; k < i + kGroup; ++k) pixels.Add(k, starts[k]);
+  }
 #endif
   for (; i < count; ++i) pixels.Add(i, starts[i]);
   return pixels.CountRays(count);
