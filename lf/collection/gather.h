@@ -21,6 +21,7 @@
 #include "lf/camera/pinhole.h"
 #include "lf/camera/render_camera.h"
 #include "lf/capture/lf_pixels.h"
+#include "lf/collection/ray_weight.h"
 #include "lf/collection/segments.h"
 #include "lf/core/geometry.h"
 #include "lf/plate/sensor_plate.h"
@@ -39,9 +40,11 @@ std::optional<std::array<uint16_t, 3>> InterpolatePixels(const LfPixels& pixels,
 bool RaysArriveAround(const Intrinsics& k, const DistortionMap& map, double x_px, double y_px);
 
 // Adds one ray to each element that has one in this LF image. Returns how many.
-//   plate  has the size of the render camera's
+//   plate   has the size of the render camera's
+//   weight  1..kMaxWeight: a ray adds so many times its value, and counts as so many
 uint64_t GatherReference(const PinholeCamera& lf_camera, const LfPixels& pixels,
-                         const RenderCamera& render_camera, SensorPlate* plate);
+                         const RenderCamera& render_camera, SensorPlate* plate,
+                         uint32_t weight = 1);
 
 struct GatherPlan {
   int plate_width = 0;
@@ -56,6 +59,8 @@ GatherPlan PlanGather(const PinholeCamera& lf_camera, const RenderCamera& render
 
 // Adds the rays of the elements in the tile of `sums`, which the caller flushes. Returns how many.
 //   pixels  RGB; must hold the four around every ray
-uint64_t GatherTile(const GatherPlan& plan, const LfPixels& pixels, TileSums* sums);
+//   weight  1..kMaxWeight; may differ from tile to tile
+uint64_t GatherTile(const GatherPlan& plan, const LfPixels& pixels, TileSums* sums,
+                    uint32_t weight = 1);
 
 }  // namespace lf

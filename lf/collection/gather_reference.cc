@@ -46,7 +46,7 @@ bool RaysArriveAround(const Intrinsics& k, const DistortionMap& map, double x_px
 }
 
 uint64_t GatherReference(const PinholeCamera& lf_camera, const LfPixels& pixels,
-                         const RenderCamera& render_camera, SensorPlate* plate) {
+                         const RenderCamera& render_camera, SensorPlate* plate, uint32_t weight) {
   const Intrinsics& k = lf_camera.intrinsics;
   const GatherLaw law(lf_camera, render_camera);
   uint64_t accepted = 0;
@@ -57,7 +57,7 @@ uint64_t GatherReference(const PinholeCamera& lf_camera, const LfPixels& pixels,
       const auto value = InterpolatePixels(pixels, k.width_px, k.height_px, p->x(), p->y());
       if (!value) continue;
       for (int channel = 0; channel < SensorPlate::kChannels; ++channel)
-        plate->AddRay(x, y, channel, (*value)[channel]);
+        plate->Add(x, y, channel, {uint64_t{weight} * (*value)[channel], weight});
       ++accepted;
     }
   return accepted;

@@ -95,12 +95,14 @@ HWY_ATTR void FindPlaces(const Segment& s, int begin, int count, const PixelRect
 // Sums of 65535 * 65536 and the half that rounds just fit into 32 bits.
 constexpr uint32_t kHalf = kOne * kOne / 2;
 
+// kWeighted: whether the weight is another than 1.
 #if HWY_TARGET == HWY_SCALAR
 
 constexpr int kRaysAtOnce = 1;
 
+template <bool kWeighted>
 HWY_INLINE void AddRays(const Places& places, int i, const uint16_t* values, ptrdiff_t row_values,
-                        TileSums::Element* sums) {
+                        uint32_t weight, TileSums::Element* sums) {
   const uint16_t* upper = values + static_cast<ptrdiff_t>(places.pixel[i]) * LfPixels::kRgbLanes;
   const uint16_t* lower = upper + row_values;
   const uint32_t right = places.left_right[i] >> 16, left = kOne - right, down = places.lower[i];
@@ -108,10 +110,11 @@ HWY_INLINE void AddRays(const Places& places, int i, const uint16_t* values, ptr
     const int next = lane + LfPixels::kRgbLanes;
     const uint32_t sum = (upper[lane] * left + upper[next] * right) * (kOne - down) +
                          (lower[lane] * left + lower[next] * right) * down;
-    sums[i].rgb_rays[lane] += (sum + kHalf) >> (2 * kWeightBits);
+    sums[i].rgb_rays[lane] += ((sum + kHalf) >> (2 * kWeightBits)) * weight;
   }
 }
-constexpr auto AddRay = AddRays;
+template <bool kWeighted>
+constexpr auto AddRay = AddRays<kWeighted>;
 
 #else
 
@@ -159,9 +162,9 @@ HWY_ATTR HWY_INLINE V Mix(V first, V second, V weight) {
 }
 
 // Of as many rays, from `i` on, as there are blocks in the vector.
-template <class D>
+template <bool kWeighted, class D>
 HWY_ATTR HWY_INLINE void AddRaysOf(D d, const Places& places, int i, const uint16_t* values,
-                                   ptrdiff_t row_values, TileSums::Element* sums) {
+                                   ptrdiff_t row_values, uint32_t weight, TileSums::Element* sums) {
   const hn::Repartition<uint16_t, D> d16;
   const hn::Repartition<uint8_t, D> d8;
   const hn::RebindToSigned<D> di;
@@ -184,26 +187,29 @@ HWY_ATTR HWY_INLINE void AddRaysOf(D d, const Places& places, int i, const uint1
       Mix(mix_row(values), mix_row(values + row_values), LoadWeights(d, places.lower + i));
   // All weights together, 65536, times kMiddle make the highest bit.
   constexpr uint32_t kBack = uint32_t{kMiddle} * kOne * kOne + kHalf;
-  const auto rays = hn::ShiftRight<2 * kWeightBits>(hn::Add(sum, hn::Set(d, kBack)));
+  auto rays = hn::ShiftRight<2 * kWeightBits>(hn::Add(sum, hn::Set(d, kBack)));
+  if constexpr (kWeighted) rays = hn::Mul(rays, hn::Set(d, weight));
   uint32_t* const lanes = sums[i].rgb_rays;
   hn::StoreU(hn::Add(hn::LoadU(d, lanes), rays), d, lanes);
 }
 
+template <bool kWeighted>
 HWY_ATTR HWY_INLINE void AddRays(const Places& places, int i, const uint16_t* values,
-                                 ptrdiff_t row_values, TileSums::Element* sums) {
-  AddRaysOf(AllLanes(), places, i, values, row_values, sums);
+                                 ptrdiff_t row_values, uint32_t weight, TileSums::Element* sums) {
+  AddRaysOf<kWeighted>(AllLanes(), places, i, values, row_values, weight, sums);
 }
+template <bool kWeighted>
 HWY_ATTR HWY_INLINE void AddRay(const Places& places, int i, const uint16_t* values,
-                                ptrdiff_t row_values, TileSums::Element* sums) {
-  AddRaysOf(LanesOfOne(), places, i, values, row_values, sums);
+                                ptrdiff_t row_values, uint32_t weight, TileSums::Element* sums) {
+  AddRaysOf<kWeighted>(LanesOfOne(), places, i, values, row_values, weight, sums);
 }
 
 #endif
 
 // Elements [begin, begin + count) of the segment; `sums` of the first.
-template <bool kMayBeMasked>
+template <bool kMayBeMasked, bool kWeighted>
 HWY_ATTR uint32_t GatherPart(const Segment& s, int begin, int count, const LfPixels& pixels,
-                             TileSums::Element* sums) {
+                             uint32_t weight, TileSums::Element* sums) {
   Places places;
   const auto find_places = s.is_cubic() ? FindPlaces<3> : FindPlaces<5>;
   find_places(s, begin, count, pixels.rect, &places);
@@ -226,7 +232,7 @@ HWY_ATTR uint32_t GatherPart(const Segment& s, int begin, int count, const LfPix
       const uint16_t *const row = upper(i), *const next_row = row + row_values;
       if (i % kLineElements == 0) fetch_ahead(i);
       if (row[kRay] + row[kNext] + next_row[kRay] + next_row[kNext] != 4) continue;
-      AddRay(places, i, values, row_values, sums);
+      AddRay<kWeighted>(places, i, values, row_values, weight, sums);
       ++rays;
     }
     return rays;
@@ -235,15 +241,19 @@ HWY_ATTR uint32_t GatherPart(const Segment& s, int begin, int count, const LfPix
   for (; i + kLineElements <= count; i += kLineElements) {
     fetch_ahead(i);
     for (int k = i; k < i + kLineElements; k += kRaysAtOnce)
-      AddRays(places, k, values, row_values, sums);
+      AddRays<kWeighted>(places, k, values, row_values, weight, sums);
   }
-  for (; i < count; ++i) AddRay(places, i, values, row_values, sums);
+  for (; i < count; ++i) AddRay<kWeighted>(places, i, values, row_values, weight, sums);
   return static_cast<uint32_t>(count);
 }
 
-HWY_ATTR uint64_t GatherTile(const GatherPlan& plan, const LfPixels& pixels, TileSums* sums) {
-  TileSums::Element* const elements = sums->ReserveRgb(1);  // at most one ray for each
+HWY_ATTR uint64_t GatherTile(const GatherPlan& plan, const LfPixels& pixels, uint32_t weight,
+                             TileSums* sums) {
+  TileSums::Element* const elements = sums->ReserveRgb(weight);  // at most one ray for each
   const PixelRect& tile = sums->rect();
+  const auto gather = pixels.any_masked
+                          ? (weight == 1 ? GatherPart<true, false> : GatherPart<true, true>)
+                          : (weight == 1 ? GatherPart<false, false> : GatherPart<false, true>);
   uint64_t rays = 0;
   for (int y = tile.y_begin; y < tile.y_end; ++y) {
     TileSums::Element* const row =
@@ -253,8 +263,8 @@ HWY_ATTR uint64_t GatherTile(const GatherPlan& plan, const LfPixels& pixels, Til
       const int begin = std::max(s.x_begin, tile.x_begin);
       const int end = std::min(s.x_begin + s.count, tile.x_end);
       if (begin >= end) continue;
-      const auto gather = pixels.any_masked ? GatherPart<true> : GatherPart<false>;
-      rays += gather(s, begin - s.x_begin, end - begin, pixels, row + (begin - tile.x_begin));
+      rays +=
+          gather(s, begin - s.x_begin, end - begin, pixels, weight, row + (begin - tile.x_begin));
     }
   }
   return rays;
@@ -268,12 +278,14 @@ HWY_AFTER_NAMESPACE();
 namespace lf {
 HWY_EXPORT(GatherTile);
 
-uint64_t GatherTile(const GatherPlan& plan, const LfPixels& pixels, TileSums* sums) {
+uint64_t GatherTile(const GatherPlan& plan, const LfPixels& pixels, TileSums* sums,
+                    uint32_t weight) {
+  LF_CHECK(weight >= 1 && weight <= kMaxWeight);
   LF_CHECK(pixels.bayer == BayerPattern::kNone);
   LF_CHECK(sums->rect().x_end <= plan.plate_width && sums->rect().y_end <= plan.plate_height);
   if (plan.segments.empty()) return 0;
   LF_CHECK(pixels.rect.width() >= 2 && pixels.rect.height() >= 2);
-  return HWY_DYNAMIC_DISPATCH(GatherTile)(plan, pixels, sums);
+  return HWY_DYNAMIC_DISPATCH(GatherTile)(plan, pixels, weight, sums);
 }
 
 }  // namespace lf

@@ -5,9 +5,12 @@ namespace lf {
 
 uint64_t ScatterReference(const PinholeCamera& lf_camera, const LfPixels& pixels,
                           const RenderCamera& render_camera, const PixelRect& rect,
-                          SensorPlate* plate) {
+                          SensorPlate* plate, uint32_t weight) {
   LF_CHECK(Intersection(rect, pixels.rect) == rect || rect.empty());
   const RayLaw law(lf_camera, render_camera);
+  const auto add = [&](const PlateElement& element, int channel, uint16_t v) {
+    plate->Add(element.x, element.y, channel, {uint64_t{weight} * v, weight});
+  };
   uint64_t accepted = 0;
   for (int y = rect.y_begin; y < rect.y_end; ++y) {
     for (int x = rect.x_begin; x < rect.x_end; ++x) {
@@ -18,12 +21,11 @@ uint64_t ScatterReference(const PinholeCamera& lf_camera, const LfPixels& pixels
       if (!element) continue;
       ++accepted;
       if (pixels.bayer != BayerPattern::kNone) {
-        plate->AddRay(element->x, element->y, BayerChannel(pixels.bayer, x, y),
-                      pixels.radiance.at(column, row));
+        add(*element, BayerChannel(pixels.bayer, x, y), pixels.radiance.at(column, row));
         continue;
       }
       for (int channel = 0; channel < SensorPlate::kChannels; ++channel)
-        plate->AddRay(element->x, element->y, channel, pixels.radiance.at(column, row, channel));
+        add(*element, channel, pixels.radiance.at(column, row, channel));
     }
   }
   return accepted;

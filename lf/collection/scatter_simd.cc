@@ -38,11 +38,14 @@ struct TileLayout {
 };
 
 // A piece of an RGB scanline, counted from its begin, adds to sums.
+//   kWeighted  whether the weight is another than 1
+template <bool kWeighted>
 struct RgbPixels {
   static constexpr int kLanesPerPixel = LfPixels::kRgbLanes;
   const uint16_t* values;        // [count][4]
   const uint16_t* values_ahead;  // those of a scanline to come
   TileSums::Element* elements;
+  uint32_t weight;
   bool may_be_masked;
 
   static constexpr bool has_runs() { return true; }
@@ -51,23 +54,26 @@ struct RgbPixels {
     const uint16_t* v = values + static_cast<ptrdiff_t>(i) * LfPixels::kRgbLanes;
     uint32_t* sums = elements[start + i].rgb_rays;
 #if HWY_TARGET == HWY_SCALAR
-    for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane) sums[lane] += v[lane];
+    for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane) sums[lane] += v[lane] * weight;
 #else
     const hn::Full128<uint32_t> d32;
-    const hn::Full64<uint16_t> d16;
-    hn::Store(hn::Add(hn::Load(d32, sums), hn::PromoteTo(d32, hn::LoadU(d16, v))), d32, sums);
+    hn::Store(hn::Add(hn::Load(d32, sums), Rays(d32, v)), d32, sums);
 #endif
   }
 #if HWY_TARGET != HWY_SCALAR
+  template <class D>
+  HWY_ATTR HWY_INLINE hn::Vec<D> Rays(D d32, const uint16_t* v) const {
+    const hn::Rebind<uint16_t, D> d16;
+    const auto rays = hn::PromoteTo(d32, hn::LoadU(d16, v));
+    return kWeighted ? hn::Mul(rays, hn::Set(d32, weight)) : rays;
+  }
   HWY_ATTR HWY_INLINE void AddRun(int i, int32_t start) const {
     const hn::CappedTag<uint32_t, 16> d32;
-    const hn::Rebind<uint16_t, decltype(d32)> d16;
     constexpr int kStep = static_cast<int>(hn::MaxLanes(d32));
     const uint16_t* v = values + static_cast<ptrdiff_t>(i) * LfPixels::kRgbLanes;
     uint32_t* sums = elements[start + i].rgb_rays;
     for (int lane = 0; lane < kGroup * LfPixels::kRgbLanes; lane += kStep)
-      hn::StoreU(hn::Add(hn::LoadU(d32, sums + lane), hn::PromoteTo(d32, hn::LoadU(d16, v + lane))),
-                 d32, sums + lane);
+      hn::StoreU(hn::Add(hn::LoadU(d32, sums + lane), Rays(d32, v + lane)), d32, sums + lane);
   }
   HWY_ATTR HWY_INLINE void AddGroup(int i, const int32_t* starts) const {
     const hn::CappedTag<int32_t, kGroup> d;
@@ -92,28 +98,34 @@ struct RgbPixels {
 };
 
 // A piece of a mosaic's scanline adds to packed words.
+template <bool kWeighted>
 struct MosaicPixels {
   static constexpr int kLanesPerPixel = 1;
   const uint16_t* values;        // [count]
   const uint16_t* values_ahead;  // those of a scanline to come
   uint64_t* words[2];            // for pixels whose index and column are both odd or even; others
-  const uint8_t* mask;           // [count], or none
+  uint32_t weight;
+  const uint8_t* mask;  // [count], or none
 
   bool has_runs() const { return mask == nullptr; }
   // The row of words is the same all along a run, since rows have an even distance.
   uint64_t* WordsOf(int i, int32_t start) const { return words[start & 1] + start + i; }
 
   void Add(int i, int32_t start) const {
-    if (mask == nullptr || mask[i] != 0) *WordsOf(i, start) += SensorPlate::kOneRay | values[i];
+    if (mask != nullptr && mask[i] == 0) return;
+    const uint64_t ray = SensorPlate::kOneRay | values[i];
+    *WordsOf(i, start) += kWeighted ? ray * weight : ray;
   }
 #if HWY_TARGET != HWY_SCALAR
   using Lanes = hn::CappedTag<uint64_t, kGroup>;
-  static HWY_ATTR HWY_INLINE hn::Vec<Lanes> Rays(const uint16_t* v) {
+  HWY_ATTR HWY_INLINE hn::Vec<Lanes> Rays(const uint16_t* v) const {
     const Lanes d64;
     const hn::Rebind<uint32_t, Lanes> d32;
     const hn::Rebind<uint16_t, Lanes> d16;
-    return hn::Or(hn::PromoteTo(d64, hn::PromoteTo(d32, hn::LoadU(d16, v))),
-                  hn::Set(d64, SensorPlate::kOneRay));
+    auto sums = hn::PromoteTo(d32, hn::LoadU(d16, v));
+    if constexpr (kWeighted) sums = hn::Mul(sums, hn::Set(d32, weight));
+    const uint64_t counted = kWeighted ? SensorPlate::kOneRay * weight : SensorPlate::kOneRay;
+    return hn::Or(hn::PromoteTo(d64, sums), hn::Set(d64, counted));
   }
   HWY_ATTR HWY_INLINE void AddRun(int i, int32_t start) const {
     const Lanes d;
@@ -266,8 +278,9 @@ HWY_ATTR uint32_t ScatterPiece(const Segment& s, const TilePiece& piece, const P
   return pixels.CountRays(count);
 }
 
-HWY_ATTR uint64_t ScatterTile(const ScatterPlan& plan, size_t tile, const LfPixels& pixels,
-                              TileSums* sums) {
+template <bool kWeighted>
+HWY_ATTR uint64_t ScatterTileBy(const ScatterPlan& plan, size_t tile, const LfPixels& pixels,
+                                uint32_t weight, TileSums* sums) {
   const bool is_rgb = pixels.bayer == BayerPattern::kNone;
   const int stride = sums->stride();
   const PixelRect& rect = sums->rect();
@@ -275,38 +288,60 @@ HWY_ATTR uint64_t ScatterTile(const ScatterPlan& plan, size_t tile, const LfPixe
                                 rect.x_end == plan.grid.plate_width ||
                                 rect.y_end == plan.grid.plate_height;
   const TileLayout layout{rect, is_rgb ? stride : TileSums::kMosaicRows * stride, has_plate_border};
+  // Of a longer piece too many rays might fall on one element.
+  const uint32_t most_rays = sums->max_reserve() / weight;
   uint64_t rays = 0;
-  for (const TilePiece* piece = plan.pieces.begin(tile); piece != plan.pieces.end(tile); ++piece) {
-    const Segment& s = plan.segments[piece->segment];
+  const TilePiece* piece = plan.pieces.begin(tile);
+  for (int begin = 0; piece != plan.pieces.end(tile);) {
+    TilePiece part = *piece;
+    part.begin = static_cast<uint16_t>(part.begin + begin);
+    if (HWY_UNLIKELY(part.crowd > most_rays)) {
+      part.crowd = static_cast<uint16_t>(std::min<uint32_t>(part.end - part.begin, most_rays));
+      part.end = static_cast<uint16_t>(part.begin + part.crowd);
+    }
+    const Segment& s = plan.segments[part.segment];
     const int row = s.y - pixels.rect.y_begin;
-    const int column = s.x_begin + piece->begin - pixels.rect.x_begin;
-    constexpr int kRowsAhead = 2;
+    const int column = s.x_begin + part.begin - pixels.rect.x_begin;
+    constexpr int kRowsAhead = 4;
     const int row_ahead = std::min(row + kRowsAhead, pixels.rect.height() - 1);
     if (is_rgb) {
       const ptrdiff_t lane = static_cast<ptrdiff_t>(column) * LfPixels::kRgbLanes;
+      rays +=
+          ScatterPiece(s, part,
+                       RgbPixels<kWeighted>{
+                           pixels.radiance.row(row) + lane, pixels.radiance.row(row_ahead) + lane,
+                           sums->ReserveRgb(part.crowd * weight), weight, pixels.any_masked},
+                       layout);
+    } else {
+      // Whether the piece begins with green, and the other colour.
+      const int x = s.x_begin + part.begin;
+      const int first = BayerChannel(pixels.bayer, x, s.y);
+      const int other = first == 1 ? BayerChannel(pixels.bayer, x + 1, s.y) : first;
+      uint64_t* const words =
+          sums->ReserveMosaic(part.crowd * weight) +
+          static_cast<ptrdiff_t>(other == 2 ? TileSums::kBlueFirst : 0) * stride;
+      uint64_t* const other_words = words + static_cast<ptrdiff_t>(TileSums::kGreenFirst) * stride;
       rays += ScatterPiece(
-          s, *piece,
-          RgbPixels{pixels.radiance.row(row) + lane, pixels.radiance.row(row_ahead) + lane,
-                    sums->ReserveRgb(piece->crowd), pixels.any_masked},
+          s, part,
+          MosaicPixels<kWeighted>{
+              pixels.radiance.row(row) + column,
+              pixels.radiance.row(row_ahead) + column,
+              {first == 1 ? other_words : words, first == 1 ? words : other_words},
+              weight,
+              pixels.mosaic_mask.empty() ? nullptr : pixels.mosaic_mask.row(row) + column},
           layout);
-      continue;
     }
-    // Whether the piece begins with green, and the other colour.
-    const int x = s.x_begin + piece->begin;
-    const int first = BayerChannel(pixels.bayer, x, s.y);
-    const int other = first == 1 ? BayerChannel(pixels.bayer, x + 1, s.y) : first;
-    uint64_t* const words = sums->ReserveMosaic(piece->crowd) +
-                            static_cast<ptrdiff_t>(other == 2 ? TileSums::kBlueFirst : 0) * stride;
-    uint64_t* const other_words = words + static_cast<ptrdiff_t>(TileSums::kGreenFirst) * stride;
-    rays += ScatterPiece(
-        s, *piece,
-        MosaicPixels{pixels.radiance.row(row) + column,
-                     pixels.radiance.row(row_ahead) + column,
-                     {first == 1 ? other_words : words, first == 1 ? words : other_words},
-                     pixels.mosaic_mask.empty() ? nullptr : pixels.mosaic_mask.row(row) + column},
-        layout);
+    const bool is_last = part.end == piece->end;
+    begin = is_last ? 0 : part.end - piece->begin;
+    piece += is_last ? 1 : 0;
   }
   return rays;
+}
+
+HWY_ATTR uint64_t ScatterTile(const ScatterPlan& plan, size_t tile, const LfPixels& pixels,
+                              uint32_t weight, TileSums* sums) {
+  const auto scatter = weight == 1 ? ScatterTileBy<false> : ScatterTileBy<true>;
+  return scatter(plan, tile, pixels, weight, sums);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -317,14 +352,16 @@ HWY_AFTER_NAMESPACE();
 namespace lf {
 HWY_EXPORT(ScatterTile);
 
-uint64_t ScatterTile(const ScatterPlan& plan, size_t tile, const LfPixels& pixels, TileSums* sums) {
+uint64_t ScatterTile(const ScatterPlan& plan, size_t tile, const LfPixels& pixels, TileSums* sums,
+                     uint32_t weight) {
+  LF_CHECK(weight >= 1 && weight <= kMaxWeight);
   const PixelRect& rect = sums->rect();
   LF_CHECK(plan.grid.RectOf(tile) == rect);
   // Addresses in the tile, and those counted from the base of a segment, are exact in single
   // precision.
   const int64_t row_stride = int64_t{TileSums::kMosaicRows} * sums->stride();
   LF_CHECK(row_stride * (rect.height() + int64_t{Segment::kMaxCount}) < (int64_t{1} << 22));
-  return HWY_DYNAMIC_DISPATCH(ScatterTile)(plan, tile, pixels, sums);
+  return HWY_DYNAMIC_DISPATCH(ScatterTile)(plan, tile, pixels, weight, sums);
 }
 
 }  // namespace lf

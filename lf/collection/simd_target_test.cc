@@ -18,12 +18,13 @@ std::vector<SensorPlate> Collect(const testing::CameraPair& pair, uint64_t seed)
   const auto bayer = static_cast<BayerPattern>(seed % 5);
   const LfPixels pixels = testing::NoisePixels(testing::WholeImage(pair), bayer, seed);
   const IdealPixels ideal(k);
+  const auto weight = static_cast<uint32_t>(1 + seed * seed % kMaxWeight);
   SensorPlate plate = PlateFor(pair);
   const TileGrid grid = testing::GridOf(plate, 40, 23);
   const ScatterPlan scatter =
       PlanScatter(pair.lf_camera, pair.render_camera, pixels.rect, grid, &ideal);
   testing::InTiles(&plate, grid, [&](size_t tile, TileSums* sums) {
-    return ScatterTile(scatter, tile, pixels, sums);
+    return ScatterTile(scatter, tile, pixels, sums, weight);
   });
   std::vector<SensorPlate> plates;
   plates.push_back(std::move(plate));
@@ -31,7 +32,7 @@ std::vector<SensorPlate> Collect(const testing::CameraPair& pair, uint64_t seed)
   const GatherPlan gather = PlanGather(pair.lf_camera, pair.render_camera);
   plates.push_back(PlateFor(pair));
   testing::InTiles(&plates.back(), grid, [&](size_t /*tile*/, TileSums* sums) {
-    return GatherTile(gather, pixels, sums);
+    return GatherTile(gather, pixels, sums, weight);
   });
   return plates;
 }
