@@ -129,6 +129,13 @@ void RowSpans::RestrictTo(const PixelRect& rect) {
     disk.reset();
 }
 
+bool RowSpans::IsSurelyInDisk(double centre_x, double centre_y) const {
+  const double right = Value(disk->right, centre_x, centre_y);
+  const double up = Value(disk->up, centre_x, centre_y);
+  const double rim = disk->radius * Value(disk->forward, centre_x, centre_y);
+  return right * right + up * up < (1 - kDiskMargin) * rim * rim;
+}
+
 RowSpans::Candidate RowSpans::FindCandidate(int side, double centre_y, int x_begin,
                                             int x_end) const {
   Interval range{x_begin + 0.5, x_end - 0.5}, sure{-kInfinity, kInfinity};
@@ -141,7 +148,6 @@ RowSpans::Candidate RowSpans::FindCandidate(int side, double centre_y, int x_beg
     range = WithinDisk(Along(disk->right, centre_y), Along(disk->up, centre_y),
                        Along(disk->forward, centre_y), disk->radius, range);
     if (range.empty()) return {};
-    sure = kNowhere;
   }
   return {std::max(x_begin, static_cast<int>(std::ceil(range.begin - 0.5 - kSlack))),
           std::min(x_end, static_cast<int>(std::floor(range.end - 0.5 + kSlack)) + 1), tie, sure};

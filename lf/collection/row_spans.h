@@ -56,6 +56,7 @@ class RowSpans {
     bool tie = false;  // rounding decides every position
     Interval sure;     // it decides none
   };
+  bool IsSurelyInDisk(double centre_x, double centre_y) const;
   Candidate FindCandidate(int side, double centre_y, int x_begin, int x_end) const;
 };
 
@@ -67,7 +68,8 @@ void RowSpans::Find(int y, int x_begin, int x_end, const Accepted& accepted,
     if (is_shut_[side]) continue;
     auto [begin, end, tie, sure] = FindCandidate(side, y + 0.5, x_begin, x_end);
     const auto is_accepted = [&](int x) {
-      const bool is_sure = x + 0.5 > sure.begin && x + 0.5 < sure.end && !law_decides;
+      const bool is_sure = x + 0.5 > sure.begin && x + 0.5 < sure.end && !law_decides &&
+                           (!disk || IsSurelyInDisk(x + 0.5, y + 0.5));
       return is_sure || accepted(side, x);
     };
     while (begin < end && !is_accepted(begin)) ++begin;
