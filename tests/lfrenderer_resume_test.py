@@ -358,7 +358,8 @@ class ResumeTest(unittest.TestCase):
         result = subprocess.run([RENDERER, self.field, other, "-o", self.folder / "inputs",
                                  *self.common, *options], capture_output=True, text=True)
         self.assertEqual(result.returncode, 2)
-        self.assertIn("frame.focus_distance_w 0.8, this call has 0.9", result.stderr)
+        # Of the first frame that is kept, whichever that is.
+        self.assertRegex(result.stderr, r"frame\.focus_distance_w 0\.8\d*, this call has 0\.9\d*")
         calibration = json.loads(self.field.read_text())
         calibration["frames"][7]["transform_matrix"][0][3] += 1e-9
         moved = self.field.with_name("moved.json")

@@ -117,7 +117,10 @@ Result<bool> FrameCollector::State::Step() {
     if (batch_.end > batch_.begin) images_done_ = batch_.end;
     batch_ = next_.end > next_.begin ? std::move(next_) : BatchFrom(images_done_);
     next_ = {};
-    if (batch_.begin == batch_.end) return false;
+    if (batch_.begin == batch_.end) {
+      spare_.clear();  // others need the memory now
+      return false;
+    }
     takers = FramesOf(batch_);
   }
   LF_RETURN_IF_ERROR(FinishLoading(&batch_));

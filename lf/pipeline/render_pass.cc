@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include "lf/core/log.h"
 
@@ -38,10 +39,14 @@ Result<void> RenderPass::Prepare() {
   if (job_.options.max_image_count)
     places = PlacesOfFirst(*job_.options.max_image_count, job_.light_field, cameras_, job_.Select(),
                            job_.pool);
+  // By all threads, since whoever clears a plate waits for its memory.
+  for (size_t f = 0; f < frames_.size(); ++f) plates_.emplace_back(0, 0);
+  job_.pool.ForEach(frames_.size(), [this](size_t f) {
+    const Intrinsics& plate = cameras_[f].pinhole.intrinsics;
+    if (!job_.IsStopped()) plates_[f] = SensorPlate(plate.width_px, plate.height_px);
+  });
   for (size_t f = 0; f < frames_.size(); ++f) {
     if (job_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
-    const Intrinsics& plate = cameras_[f].pinhole.intrinsics;
-    plates_.emplace_back(plate.width_px, plate.height_px);
     LF_ASSIGN_OR_RETURN(const FrameProgress start,
                         job_.state.LoadPlate(frames_[f].id, &plates_[f]));
     places[f].begin = start.places_done;
@@ -114,11 +119,16 @@ bool RenderPass::AllBroken() const {
 
 Result<void> RenderPass::Finish() {
   LF_RETURN_IF_ERROR(job_.state.SaveTotals(Totals()));
-  for (size_t f = 0; f < frames_.size(); ++f) {
-    if (frames_[f].is_finished) continue;
+  std::vector<size_t> left;
+  for (size_t f = 0; f < frames_.size(); ++f)
+    if (!frames_[f].is_finished) left.push_back(f);
+  for (size_t begin = 0; begin < left.size();) {
     if (job_.IsStopped()) return Interrupt();
-    LF_RETURN_IF_ERROR(FinishFrame(f));
-    plates_[f] = SensorPlate(0, 0);
+    const size_t count = std::min(job_.plan.frames_finished_at_once, left.size() - begin);
+    const auto together = std::span(left).subspan(begin, count);
+    LF_RETURN_IF_ERROR(FinishFrames(together));
+    for (const size_t f : together) plates_[f] = SensorPlate(0, 0);
+    begin += count;
   }
   const double earlier_s = job_.totals.total_s;
   job_.totals = Totals();
@@ -173,12 +183,27 @@ Result<void> RenderPass::DecideStops() {
     frame.is_stopped = true;
     if (!are_totals_saved) LF_RETURN_IF_ERROR(job_.state.SaveTotals(Totals()));
     are_totals_saved = true;
-    LF_RETURN_IF_ERROR(FinishFrame(f));
+    LF_RETURN_IF_ERROR(FinishFrames({&f, 1}));
   }
   return {};
 }
 
-Result<void> RenderPass::FinishFrame(size_t f) {
+// At the same time: encoders keep one thread busy each. What is finished is kept, whatever becomes
+// of the others.
+Result<void> RenderPass::FinishFrames(std::span<const size_t> frames) {
+  std::vector<std::optional<Result<FrameReport>>> written(frames.size());
+  job_.pool.ForEach(frames.size(), [&](size_t i) { written[i].emplace(WriteFiles(frames[i])); });
+  for (size_t i = 0; i < frames.size(); ++i)
+    if (*written[i]) LF_RETURN_IF_ERROR(Conclude(frames[i], **written[i]));
+  for (const std::optional<Result<FrameReport>>& result : written)
+    if (!*result && result->error().kind != ErrorKind::kInterrupted) return result->error();
+  for (const std::optional<Result<FrameReport>>& result : written)
+    if (!*result) return Interrupt();
+  return {};
+}
+
+// Any thread may call it, for a frame each.
+Result<FrameReport> RenderPass::WriteFiles(size_t f) {
   Frame& frame = frames_[f];
   FrameProgress progress = ProgressOf(f);
   const std::filesystem::path to =
@@ -193,17 +218,19 @@ Result<void> RenderPass::FinishFrame(size_t f) {
     LF_RETURN_IF_ERROR(WritePlate(plate.replace_extension(".plate"),
                                   job_.state.PlateText(frame.id, progress), plates_[f], job_.pool));
   }
-  Result<FrameReport> written = job_.output.Write(frame.id, progress.rays, plates_[f], to,
-                                                  [this] { return job_.IsStopped(); });
-  if (!written)
-    return written.error().kind == ErrorKind::kInterrupted ? Interrupt() : written.error();
-  FrameReport& report = *written;
+  LF_ASSIGN_OR_RETURN(FrameReport report, job_.output.Write(frame.id, progress.rays, plates_[f], to,
+                                                            [this] { return job_.IsStopped(); }));
   const auto asked =
       job_.options.require_samples ? job_.options.require_samples : job_.options.stop_at_samples;
   if (asked)
     report.samples = FrameSamples{*asked, MeasureSamples(plates_[f], ReachableOf(f), *asked)};
-  if (asked && job_.IsStopped()) return Interrupt();
-  if (progress.rays.image_count == 0)
+  if (asked && job_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
+  return report;
+}
+
+Result<void> RenderPass::Conclude(size_t f, const FrameReport& report) {
+  Frame& frame = frames_[f];
+  if (ProgressOf(f).rays.image_count == 0)
     LogWarning("frame {} is black: no LF image contributes to it", frame.id.value);
   LF_RETURN_IF_ERROR(job_.state.SaveFinished(report));
   frame.is_finished = true;

@@ -77,7 +77,9 @@ class RenderPass {
   const ReachableElements& ReachableOf(size_t f);
   uint32_t PlacesCovered(size_t f) const;
   Result<void> DecideStops();
-  Result<void> FinishFrame(size_t f);
+  Result<void> FinishFrames(std::span<const size_t> frames);
+  Result<FrameReport> WriteFiles(size_t f);
+  Result<void> Conclude(size_t f, const FrameReport& report);
   Result<void> Save(double picture_budget_s);
   Result<void> SavePictures(double picture_budget_s);
   Result<void> SaveWhenDue();
