@@ -20,16 +20,6 @@ constexpr double kDepthOffset_w = 0.03;
 constexpr double kLateralOffset_w = 0.004;
 constexpr double kWideLens_w = 10;
 
-class Random {
- public:
-  double Uniform(double low, double high) {
-    return low + (high - low) * RandomUnit(1, 0, index_++);
-  }
-
- private:
-  uint64_t index_ = 0;
-};
-
 RigidTransform Pose(const Vec3& centre, const Vec3& turns_rad) {
   const Mat3 rotation = (Eigen::AngleAxisd(turns_rad.z(), Vec3::UnitZ()) *
                          Eigen::AngleAxisd(turns_rad.y(), Vec3::UnitY()) *
@@ -39,7 +29,7 @@ RigidTransform Pose(const Vec3& centre, const Vec3& turns_rad) {
 }
 
 std::vector<PinholeCamera> MakeCameras(const CaseSpec& spec, double focal_length_px) {
-  Random random;
+  RandomSequence random(1);
   std::vector<PinholeCamera> cameras(static_cast<size_t>(spec.image_count));
   const double turn = RadiansFromDegrees(spec.parallel ? 0 : spec.turn_deg);
   const int size = spec.image_size_px;

@@ -5,21 +5,10 @@
 namespace lf::testing {
 namespace {
 
-class Random {
- public:
-  explicit Random(uint64_t seed) : seed_(seed) {}
-  double Uniform(double low, double high) {
-    return low + (high - low) * RandomUnit(seed_, 0, index_++);
-  }
-  Vec3 Vector(double reach) {
-    const double x = Uniform(-reach, reach), y = Uniform(-reach, reach);
-    return {x, y, Uniform(-reach, reach)};
-  }
-
- private:
-  uint64_t seed_;
-  uint64_t index_ = 0;
-};
+Vec3 Vector(RandomSequence* random, double reach) {
+  const double x = random->Uniform(-reach, reach), y = random->Uniform(-reach, reach);
+  return {x, y, random->Uniform(-reach, reach)};
+}
 
 // Turns about the optical axis too, so that scanlines run in any direction over the plate.
 RigidTransform Pose(const Vec3& centre, const Vec3& forward, double roll_rad) {
@@ -32,12 +21,12 @@ RigidTransform Pose(const Vec3& centre, const Vec3& forward, double roll_rad) {
 }  // namespace
 
 CameraPair RandomCameraPair(uint64_t seed) {
-  Random random(seed);
+  RandomSequence random(seed);
   CameraPair pair;
   RenderCamera& render = pair.render_camera;
   render.pinhole.intrinsics = {300, 310, 80, 60, 0, 160, 120};
   render.pinhole.cam_from_world =
-      Pose(random.Vector(0.1), Vec3(0, 0, 1) + random.Vector(0.2), random.Uniform(-0.3, 0.3));
+      Pose(Vector(&random, 0.1), Vec3(0, 0, 1) + Vector(&random, 0.2), random.Uniform(-0.3, 0.3));
   constexpr int kBlades[] = {0, 5, 0, 3, 0, 8};
   render.aperture = {random.Uniform(0.05, 0.6), kBlades[seed % 6], random.Uniform(-1, 1)};
   const bool tilted = seed % 4 >= 2;
@@ -48,13 +37,13 @@ CameraPair RandomCameraPair(uint64_t seed) {
 
   pair.lf_camera.intrinsics = {60, 62, 25.3, 17.1, 0.5, 50, 35};
   const double turn = seed % 3 == 0 ? 3 : 0.1;
-  Vec3 centre = random.Vector(seed % 11 ? 0.35 : 3);
+  Vec3 centre = Vector(&random, seed % 11 ? 0.35 : 3);
   if (seed % 5 == 0) {  // in the lens plane
     const Vec3 f = render.pinhole.ForwardWorld();
     centre -= f * f.dot(centre - render.pinhole.CentreWorld());
   }
-  pair.lf_camera.cam_from_world = Pose(centre, Vec3(0, 0, 1) + random.Vector(seed % 7 ? 0.3 : 1.5),
-                                       random.Uniform(-turn, turn));
+  pair.lf_camera.cam_from_world = Pose(
+      centre, Vec3(0, 0, 1) + Vector(&random, seed % 7 ? 0.3 : 1.5), random.Uniform(-turn, turn));
   return pair;
 }
 

@@ -6,15 +6,6 @@
 #include "lf/core/quintic.h"
 
 namespace lf {
-namespace {
-
-constexpr int kTerms = Segment::kTerms;
-
-double ValueAt(const double (&c)[kTerms], double t) {
-  return ((((c[5] * t + c[4]) * t + c[3]) * t + c[2]) * t + c[1]) * t + c[0];
-}
-
-}  // namespace
 
 std::optional<ElementPatch> ElementPatch::Fit(const PixelForm& x, const PixelForm& y,
                                               const PixelForm& denominator, const IdealPatch& patch,
@@ -61,7 +52,7 @@ std::optional<ElementPatch> ElementPatch::Fit(const PixelForm& x, const PixelFor
     if (!IsNearMiddle(along, half_x)) return std::nullopt;
     const IdealArc arc = arc_at(s);
     for (const double t : kQuinticWorstPlaces) {
-      const Vec2 found(ValueAt(along.x, half_x * t), ValueAt(along.y, half_x * t));
+      const Vec2 found(QuinticAt(along.x, half_x * t), QuinticAt(along.y, half_x * t));
       // Written so that what is not a number is not good.
       if (!((found - position(arc, t)).norm() <= SegmentMaker::kTolerance)) return std::nullopt;
     }
@@ -72,8 +63,8 @@ std::optional<ElementPatch> ElementPatch::Fit(const PixelForm& x, const PixelFor
 Polynomials ElementPatch::AlongRow(double s) const {
   Polynomials along;
   for (int k = 0; k < kTerms; ++k) {
-    along.x[k] = ValueAt(x_[k], s);
-    along.y[k] = ValueAt(y_[k], s);
+    along.x[k] = QuinticAt(x_[k], s);
+    along.y[k] = QuinticAt(y_[k], s);
   }
   return along;
 }

@@ -4,7 +4,7 @@
 // Two back ends, compared by one test. The reference intersects planes for every element. The fast
 // one works in two steps, as scatter.h does:
 //   1. PlanGather, once per (LF image, frame): the accepted elements of each row of the plate, in
-//      segments along which the position in the LF image is a cubic.
+//      segments along which the position in the LF image is a polynomial.
 //   2. GatherTile, once per (LF image, frame, tile of the plate).
 // Tolerance: both accept the same rays, but for rays within 1e-9 of a border of lens or image.
 // Positions of the fast one are true to 1e-4 px, so the weights, in steps of 1/256 px, may differ

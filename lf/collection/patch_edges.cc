@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lf/core/quintic.h"
+
 namespace lf {
 namespace {
 
@@ -31,7 +33,7 @@ class Powers {
     for (size_t k = 0; k < kControls; ++k) c_[k] *= kBinomial[k];
   }
   ValueAndSlope At(double t) const {
-    return {((((c_[5] * t + c_[4]) * t + c_[3]) * t + c_[2]) * t + c_[1]) * t + c_[0],
+    return {QuinticAt(c_, t),
             (((5 * c_[5] * t + 4 * c_[4]) * t + 3 * c_[3]) * t + 2 * c_[2]) * t + c_[1]};
   }
 

@@ -4,10 +4,10 @@
 // Two back ends, compared by one test. The reference asks the law of every pixel. The fast one
 // works in two steps, so that many threads can share one plate and one LF image many plates:
 //   1. PlanScatter, once per (LF image, frame): the accepted pixels of each scanline, in segments
-//      along which the element position is a cubic, cut where they leave a tile.
+//      along which the element position is a polynomial, cut where they leave a tile.
 //   2. ScatterTile, once per (LF image, frame, tile of the plate): the rays that land in the tile.
 // Tolerance: both accept exactly the same rays. A ray within 1e-4 elements of an element's border
-// may land in the neighbour, since the fast back end evaluates cubics in single precision; a tile
+// may land in the neighbour, since the fast back end evaluates them in single precision; a tile
 // takes exactly the rays whose address, so computed, lies in it, and the bits are the same for any
 // cut into tiles or rectangles and on every instruction set.
 // With lens distortion the reference iterates and the fast one follows arcs: rays within

@@ -15,10 +15,6 @@ constexpr double kFarthest = 1 << 24;
 // Bounds are this much wider: far above the rounding of single precision.
 constexpr float kBoundMargin = 0.01F;
 
-double ValueAt(const double (&c)[Segment::kTerms], double t) {
-  return ((((c[5] * t + c[4]) * t + c[3]) * t + c[2]) * t + c[1]) * t + c[0];
-}
-
 // The polynomials of pieces [begin, end) of a row on which `position(x)`, an optional Vec2, is
 // defined; pieces where they miss it are halved.
 template <class Position>
@@ -63,8 +59,8 @@ class PieceFitter {
     if (!IsNearMiddle(*polynomials, half)) return false;
     for (const double u : kQuinticWorstPlaces) {
       const std::optional<Vec2> truth = position_(middle + u * half);
-      if (!truth || !(std::abs(ValueAt(polynomials->x, u * half) - truth->x()) +
-                          std::abs(ValueAt(polynomials->y, u * half) - truth->y()) <=
+      if (!truth || !(std::abs(QuinticAt(polynomials->x, u * half) - truth->x()) +
+                          std::abs(QuinticAt(polynomials->y, u * half) - truth->y()) <=
                       SegmentMaker::kTolerance))
         return false;
     }

@@ -47,7 +47,7 @@ Segment MakeSegment(int y, int x_begin, int x_end, double middle, const Polynomi
 
 // Whether the positions of a piece with these polynomials, `half` to both sides of its middle, are
 // no further from it than SegmentMaker::kFarthestFromMiddle.
-bool IsNearMiddle(const Polynomials& cubics, double half);
+bool IsNearMiddle(const Polynomials& polynomials, double half);
 
 // Makes the segments of rows where (x p, y p) / (denominator p) is the position for
 // p = (x + 0.5, y + 0.5, 1), or any ideal position.

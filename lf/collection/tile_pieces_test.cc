@@ -10,21 +10,9 @@
 namespace lf {
 namespace {
 
-class Random {
- public:
-  explicit Random(uint64_t seed) : seed_(seed) {}
-  double Uniform(double low, double high) {
-    return low + (high - low) * RandomUnit(seed_, 0, index_++);
-  }
-
- private:
-  uint64_t seed_;
-  uint64_t index_ = 0;
-};
-
 // Straight ones, bent ones, some that turn round or hardly move, some over the edge of the plate.
 Segment RandomSegment(uint64_t seed) {
-  Random random(seed);
+  RandomSequence random(seed);
   const double speeds[] = {1e-5, 0.02, 1, 3, 40};
   const double speed = speeds[seed % 5];
   const int begin = static_cast<int>(random.Uniform(0, 200));

@@ -84,9 +84,9 @@ Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field
   plan.plan_bytes =
       std::max(plan.batch_image_count * need.plan_bytes, std::min(kMostPlanBytes, free_bytes / 16));
   const size_t images_bytes = plan.batch_image_count * 2 * need.kept_bytes + plan.plan_bytes;
-  plan.frames_finished_at_once =
-      std::min<size_t>(static_cast<size_t>(thread_count),
-                       1 + images_bytes / (element_count * kDevelopBytesPerElement));
+  plan.frames_finished_at_once = std::min<size_t>(
+      static_cast<size_t>(thread_count),
+      1 + (images_bytes - plan.plan_bytes) / (element_count * kDevelopBytesPerElement));
   const size_t plates_bytes = free_bytes - std::min(free_bytes, images_bytes);
   plan.frames_per_pass =
       std::clamp<size_t>(plates_bytes / plan.plate_bytes, 1, std::max<size_t>(1, frame_count));

@@ -36,4 +36,10 @@ std::array<T, 6> QuinticThrough(const std::array<T, 6>& at) {
   return c;
 }
 
+// Its value, by Horner's rule. Powers: six numbers.
+template <class Powers, class T>
+T QuinticAt(const Powers& c, T t) {
+  return ((((c[5] * t + c[4]) * t + c[3]) * t + c[2]) * t + c[1]) * t + c[0];
+}
+
 }  // namespace lf

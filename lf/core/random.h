@@ -23,4 +23,17 @@ inline double RandomUnit(uint64_t seed, uint64_t stream, uint64_t index) {
   return static_cast<double>(RandomBits(seed, stream, index) >> 11) * 0x1.0p-53;
 }
 
+// One number after the other, where counting is nobody's business.
+class RandomSequence {
+ public:
+  explicit RandomSequence(uint64_t seed) : seed_(seed) {}
+  double Uniform(double low, double high) {
+    return low + (high - low) * RandomUnit(seed_, 0, index_++);
+  }
+
+ private:
+  uint64_t seed_;
+  uint64_t index_ = 0;
+};
+
 }  // namespace lf
