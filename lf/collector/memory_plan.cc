@@ -24,11 +24,18 @@ constexpr size_t kDecodeBytesPerPixel = 16;
 constexpr size_t kDecodeFloatBytesPerPixel = 32;
 constexpr size_t kTileBytes = kMiB;  // of the sums that one thread works on
 
+// Of a batch: so that adding its tiles to the plate is little beside their rays, and so that
+// waiting for its last task is little. Memory beyond that is not free: its first use can cost as
+// much as decoding an image into it.
+constexpr size_t kRaysPerElement = 8;
+constexpr size_t kEnoughBatchImages = 16;
+constexpr size_t kEnoughBatchImagesPerThread = 2;
 constexpr size_t kMostBatchImages = 64;
 constexpr size_t kMostPlanBytes = 64 * kMiB;
 
 // What the largest LF image takes.
 struct ImageNeed {
+  size_t pixels = 1;
   size_t kept_bytes = 1;    // 16-bit radiance, a mask; ideal positions, if any
   size_t decode_bytes = 1;  // by the thread that decodes it
   size_t plan_bytes = 1;    // for one frame
@@ -47,6 +54,7 @@ ImageNeed NeedOf(const LightField& light_field, Estimator estimator, int plate_w
     const size_t bytes_per_pixel =
         (is_rgb ? LfPixels::kRgbLanes * sizeof(uint16_t) : sizeof(uint16_t) + 1) +
         (k.has_distortion() ? kPatchBytesPerPixel : 0);
+    need.pixels = std::max(need.pixels, pixels);
     need.kept_bytes = std::max(need.kept_bytes, pixels * bytes_per_pixel);
     need.decode_bytes = std::max(need.decode_bytes, pixels * decode_bytes_per_pixel);
     need.plan_bytes = std::max(need.plan_bytes, PlanBytes(estimator, k.has_distortion(), k.width_px,
@@ -79,7 +87,10 @@ Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field
         memory_bytes / kMiB, plate_width, plate_height, least / kMiB + 1));
 
   const size_t free_bytes = memory_bytes - set_aside;
-  plan.batch_image_count = std::clamp<size_t>(free_bytes / 4 / pair_bytes, 1, kMostBatchImages);
+  const size_t enough =
+      std::max({kEnoughBatchImages, kEnoughBatchImagesPerThread * static_cast<size_t>(thread_count),
+                std::min(kMostBatchImages, kRaysPerElement * element_count / need.pixels)});
+  plan.batch_image_count = std::clamp<size_t>(free_bytes / 4 / pair_bytes, 1, enough);
   // Frames that are planned together save waiting at the end of each.
   plan.plan_bytes =
       std::max(plan.batch_image_count * need.plan_bytes, std::min(kMostPlanBytes, free_bytes / 16));

@@ -19,9 +19,10 @@ struct MemoryPlan {
 };
 
 // What the program itself, its threads and a developing frame need is set aside; a quarter of the
-// rest holds two batches of LF images, of 64 each if they fit, plates take what is left. Where not
-// all plates do, frames are cut into passes.
-// kOutput: not enough for one plate and two LF images; the message names the least that is.
+// rest holds two batches of LF images, plates take what is left. Where not all plates do, frames
+// are cut into passes. Batches are no larger than pays: of 16 LF images, or two for each thread, or
+// of as many pixels as eight plates have (64 images at most), whichever is more. kOutput: not
+// enough for one plate and two LF images; the message names the least that is.
 Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field,
                               Estimator estimator, int plate_width, int plate_height,
                               size_t frame_count, int thread_count);

@@ -38,13 +38,17 @@ TEST(MemoryPlan, MoreMemoryNeverMeansMorePasses) {
   EXPECT_GT(before, 100u);
 }
 
-TEST(MemoryPlan, BatchesGrowToDecisions) {
-  EXPECT_EQ(PlanMemory(16384 * kMiB, Field(960, 640), Estimator::kNearest, 1920, 1080, 900, 2)
-                ->batch_image_count,
-            64u);
-  EXPECT_LT(PlanMemory(600 * kMiB, Field(960, 640), Estimator::kNearest, 1920, 1080, 900, 2)
-                ->batch_image_count,
-            20u);
+TEST(MemoryPlan, BatchesAreNoLargerThanPays) {
+  const auto images = [](size_t mib, int width, int height, int threads) {
+    return PlanMemory(mib * kMiB, Field(width, height), Estimator::kNearest, 1920, 1080, 900,
+                      threads)
+        ->batch_image_count;
+  };
+  EXPECT_EQ(images(16384, 320, 240, 2), 64u);
+  EXPECT_EQ(images(16384, 960, 640, 2), 8u * 1920 * 1080 / (960 * 640));
+  EXPECT_EQ(images(16384, 2048, 2048, 2), 16u);
+  EXPECT_EQ(images(65536, 2048, 2048, 40), 80u);
+  EXPECT_LT(images(600, 960, 640, 2), 20u);
 }
 
 // 24 megapixels: what is planned for one batch in one frame would be as much as the images.

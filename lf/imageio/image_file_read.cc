@@ -165,14 +165,15 @@ Result<void> ReadMixed(OpenImage& image, StoredImage* stored) {
   const size_t pixel_bytes = spec.pixel_bytes(true);
   std::vector<std::byte> packed(spec.image_pixels() * pixel_bytes);
   LF_RETURN_IF_ERROR(ReadPixels(image, OIIO::TypeUnknown, packed.data()));
-  float* value = Resized<float>(spec, stored).pixels().data();
-  std::vector<size_t> offsets;
-  for (const int channel : image.channel_order)
-    offsets.push_back(spec.pixel_bytes(0, channel, true));
-  for (const std::byte* pixel = packed.data(); pixel != packed.data() + packed.size();
-       pixel += pixel_bytes)
-    for (size_t i = 0; i < offsets.size(); ++i)
-      *value++ = FloatOf(spec.channelformat(image.channel_order[i]), pixel + offsets[i]);
+  Image<float>& floats = Resized<float>(spec, stored);
+  for (int y = 0; y < spec.height; ++y)
+    for (size_t i = 0; i < image.channel_order.size(); ++i) {
+      const int channel = image.channel_order[i];
+      FloatsOf(spec.channelformat(channel),
+               packed.data() + static_cast<size_t>(y) * spec.width * pixel_bytes +
+                   spec.pixel_bytes(0, channel, true),
+               pixel_bytes, spec.width, floats.row(y) + i, image.channel_order.size());
+    }
   return {};
 }
 

@@ -12,6 +12,7 @@
 #include "lf/core/file.h"
 #include "lf/imageio/image_file.h"
 #include "lf/imageio/open_image_io.h"
+#include "lf/imageio/stored_value.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -80,10 +81,12 @@ OIIO::ImageSpec SpecOf(ImageFormat format, int width, int height, int channels,
   OIIO::ImageSpec spec(width, height, channels, type);
   spec.attribute("oiio:UnassociatedAlpha", 1);  // nothing is multiplied in or divided out
   spec.alpha_channel = -1;
-  if (format == ImageFormat::kExr || format == ImageFormat::kTiff) {
-    spec.attribute("compression", "zip");
+  // What the last twentieth of a file's size would cost is most of a frame's encoding.
+  if (format == ImageFormat::kExr) spec.attribute("compression", "zip:2");
+  if (format == ImageFormat::kPng) spec.attribute("png:compressionLevel", 4);
+  if (format == ImageFormat::kTiff) spec.attribute("compression", "zip");
+  if (format == ImageFormat::kExr || format == ImageFormat::kTiff)
     spec.attribute("DateTime", "");  // the date of today would make equal frames differ
-  }
   if (format == ImageFormat::kJpeg) {
     spec.attribute("compression", "jpeg:95");
     spec.attribute("jpeg:subsampling", "4:4:4");
@@ -197,13 +200,19 @@ OIIO::TypeDesc TypeOf(const ExrChannel& channel) {
   return channel.as_half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT;
 }
 
-void StoreValue(const ExrChannel& channel, int x, int y, std::byte* to) {
-  if (const auto* counts = std::get_if<ImageView<const uint32_t>>(&channel.pixels)) {
-    std::memcpy(to, &counts->at(x, y, channel.channel), sizeof(uint32_t));
-    return;
-  }
-  const float value = std::get<ImageView<const float>>(channel.pixels).at(x, y, channel.channel);
-  OIIO::convert_pixel_values(OIIO::TypeDesc::FLOAT, &value, TypeOf(channel), to, 1);
+// Row y of a channel, pixels `step` bytes apart.
+void StoreRow(const ExrChannel& channel, int y, std::byte* to, size_t step) {
+  const auto copy = [&](const auto& view) {
+    for (int x = 0; x < view.width; ++x) {
+      const auto& value = view.at(x, y, channel.channel);
+      std::memcpy(to + step * static_cast<size_t>(x), &value, sizeof(value));
+    }
+  };
+  const auto* floats = std::get_if<ImageView<const float>>(&channel.pixels);
+  if (floats != nullptr && channel.as_half)
+    StoreHalves(&floats->at(0, y, channel.channel), floats->channels, floats->width, to, step);
+  else
+    std::visit(copy, channel.pixels);
 }
 
 }  // namespace
@@ -255,12 +264,11 @@ Result<void> WriteExr(const fs::path& path, std::span<const ExrChannel> channels
     spec.channelformats.push_back(TypeOf(channel));
   }
   AddMetadata(spec, ImageFormat::kExr, metadata);
-  const auto pack_row = [&, width = width](int y, std::byte* to) {
-    for (int x = 0; x < width; ++x)
-      for (size_t i = 0; i < channels.size(); ++i) {
-        StoreValue(channels[i], x, y, to);
-        to += spec.channelformats[i].size();
-      }
+  const auto pack_row = [&](int y, std::byte* to) {
+    for (size_t i = 0; i < channels.size(); ++i) {
+      StoreRow(channels[i], y, to, spec.pixel_bytes(true));
+      to += spec.channelformats[i].size();
+    }
   };
   return Encode(path, ImageFormat::kExr, spec, pack_row, is_interrupted);
 }

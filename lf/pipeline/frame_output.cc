@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
+#include <optional>
 
 #include "lf/pipeline/frame_metadata.h"
 #include "lf/record/run_inputs.h"
@@ -51,15 +53,37 @@ Result<FrameReport> FrameOutput::Write(FrameId frame, const FrameRays& rays,
   return report;
 }
 
-Result<void> FrameOutput::WriteContactSheet(const std::vector<FrameId>& frames) const {
-  std::vector<Image<uint8_t>> pictures;
-  for (const size_t index : ContactSheetFrames(frames.size())) {
+Result<Image<uint8_t>> FrameOutput::ReadPicture(FrameId frame) const {
+  LF_ASSIGN_OR_RETURN(Image<uint8_t> picture, ReadDisplayImage(PathOf(frame)));
+  const Intrinsics& plate = path_.Camera(frame).pinhole.intrinsics;
+  if (picture.width() != plate.width_px || picture.height() != plate.height_px)
+    return InputError(
+        fmt::format("{}: has {} x {} pixels, the frame has {} x {}: remove it, and "
+                    "--resume renders it again",
+                    PathOf(frame).string(), picture.width(), picture.height(), plate.width_px,
+                    plate.height_px));
+  return picture;
+}
+
+Result<void> FrameOutput::WriteContactSheet(const std::vector<FrameId>& frames,
+                                            size_t at_once) const {
+  const std::vector<size_t> shown = ContactSheetFrames(frames.size());
+  const Intrinsics& plate = path_.Camera(frames.front()).pinhole.intrinsics;
+  ContactSheet sheet(shown.size(), plate.width_px, plate.height_px);
+  for (size_t begin = 0; begin < shown.size(); begin += at_once) {
     if (options_.signals != nullptr && options_.signals->stop)
       return Error{ErrorKind::kInterrupted, "interrupted at the contact sheet"};
-    LF_ASSIGN_OR_RETURN(Image<uint8_t> picture, ReadDisplayImage(PathOf(frames[index])));
-    pictures.push_back(std::move(picture));
+    std::vector<std::optional<Error>> errors(std::min(at_once, shown.size() - begin));
+    pool_.ForEach(errors.size(), [&](size_t i) {
+      if (const auto picture = ReadPicture(frames[shown[begin + i]]); picture)
+        sheet.Place(begin + i, *picture);
+      else
+        errors[i] = picture.error();
+    });
+    for (const std::optional<Error>& error : errors)
+      if (error) return *error;
   }
-  return lf::WriteContactSheet(options_.output_folder / "contact_sheet.png", pictures);
+  return sheet.Write(options_.output_folder / "contact_sheet.png");
 }
 
 Result<void> FrameOutput::WriteVideo(const std::vector<FrameId>& frames) const {
@@ -70,7 +94,7 @@ Result<void> FrameOutput::WriteVideo(const std::vector<FrameId>& frames) const {
   for (const FrameId frame : frames) {
     if (options_.signals != nullptr && options_.signals->stop)
       return Error{ErrorKind::kInterrupted, "interrupted at the video"};
-    LF_ASSIGN_OR_RETURN(const Image<uint8_t> picture, ReadDisplayImage(PathOf(frame)));
+    LF_ASSIGN_OR_RETURN(const Image<uint8_t> picture, ReadPicture(frame));
     LF_RETURN_IF_ERROR(video->Add(picture));
   }
   return video->Close();

@@ -31,12 +31,15 @@ class FrameOutput {
                             const std::function<bool()>& is_interrupted) const;
 
   // From the files of the frames, so that it does not matter when and by whom they were rendered.
-  // kOutput: the disk, ffmpeg; kInput: a frame that cannot be read. kInterrupted.
-  Result<void> WriteContactSheet(const std::vector<FrameId>& frames) const;
+  //   at_once  files that are read at the same time
+  // kOutput: the disk, ffmpeg; kInput: a frame that cannot be read, or of another size.
+  // kInterrupted.
+  Result<void> WriteContactSheet(const std::vector<FrameId>& frames, size_t at_once) const;
   Result<void> WriteVideo(const std::vector<FrameId>& frames) const;
 
  private:
   std::filesystem::path PathOf(FrameId frame) const;
+  Result<Image<uint8_t>> ReadPicture(FrameId frame) const;
 
   const LightField& light_field_;
   const CameraPath& path_;

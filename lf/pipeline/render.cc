@@ -242,7 +242,9 @@ Result<void> Renderer::RunPass(const RenderJob& job, std::span<const FrameId> fr
 Result<RenderReport> Renderer::End() {
   std::optional<Error> video_error;
   if (options_.contact_sheet)
-    if (const Result<void> sheet = output_.WriteContactSheet(frames_); !sheet)
+    if (const Result<void> sheet =
+            output_.WriteContactSheet(frames_, plan_.frames_finished_at_once);
+        !sheet)
       return sheet.error().kind == ErrorKind::kInterrupted ? Interrupted() : sheet.error();
   // The frames are what counts: they are finished, and the video's error comes last.
   if (options_.video)

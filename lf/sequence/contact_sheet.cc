@@ -1,8 +1,7 @@
 #include "lf/sequence/contact_sheet.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "lf/imageio/image_file.h"
@@ -43,38 +42,22 @@ Image<uint8_t> Reduced(const Image<uint8_t>& picture, int width, int height) {
   const std::vector<Cover> columns = Covers(picture.width(), width);
   const std::vector<Cover> rows = Covers(picture.height(), height);
   Image<uint8_t> reduced(width, height, 3);
-  for (int y = 0; y < height; ++y)
+  std::vector<float> row(3 * static_cast<size_t>(picture.width()));  // source rows of one target
+  for (int y = 0; y < height; ++y) {
+    std::fill(row.begin(), row.end(), 0.0f);
+    for (size_t j = 0; j < rows[y].shares.size(); ++j) {
+      const uint8_t* source = picture.row(rows[y].begin + static_cast<int>(j));
+      for (size_t i = 0; i < row.size(); ++i) row[i] += rows[y].shares[j] * linear[source[i]];
+    }
     for (int x = 0; x < width; ++x)
       for (int c = 0; c < 3; ++c) {
         float sum = 0;
-        for (size_t j = 0; j < rows[y].shares.size(); ++j)
-          for (size_t i = 0; i < columns[x].shares.size(); ++i)
-            sum += rows[y].shares[j] * columns[x].shares[i] *
-                   linear[picture.at(columns[x].begin + static_cast<int>(i),
-                                     rows[y].begin + static_cast<int>(j), c)];
+        for (size_t i = 0; i < columns[x].shares.size(); ++i)
+          sum += columns[x].shares[i] * row[3 * (static_cast<size_t>(columns[x].begin) + i) + c];
         reduced.at(x, y, c) = display8(sum);
       }
+  }
   return reduced;
-}
-
-// The grid and the size of a picture in it.
-struct SheetLayout {
-  int columns = 1;
-  int rows = 1;
-  int width = 1;
-  int height = 1;
-};
-
-// About as many columns as rows, so that the page has the shape of a frame.
-SheetLayout LayOut(int count, int width, int height, int max_width_px) {
-  SheetLayout layout;
-  layout.columns = static_cast<int>(std::ceil(std::sqrt(count)));
-  layout.rows = (count + layout.columns - 1) / layout.columns;
-  const int room = (max_width_px - kBorderPx * (layout.columns + 1)) / layout.columns;
-  layout.width = std::clamp(room, 1, width);
-  layout.height = std::max(
-      1, static_cast<int>(std::lround(static_cast<double>(height) * layout.width / width)));
-  return layout;
 }
 
 }  // namespace
@@ -87,26 +70,32 @@ std::vector<size_t> ContactSheetFrames(size_t frame_count, size_t limit) {
   return frames;
 }
 
-Result<void> WriteContactSheet(const std::filesystem::path& path,
-                               const std::vector<Image<uint8_t>>& pictures, int max_width_px) {
-  if (pictures.empty() || pictures[0].empty())
-    return OutputError(fmt::format("{}: there is no frame to show on it", path.string()));
-  const SheetLayout layout = LayOut(static_cast<int>(pictures.size()), pictures[0].width(),
-                                    pictures[0].height(), max_width_px);
-  Image<uint8_t> sheet(layout.columns * (layout.width + kBorderPx) + kBorderPx,
-                       layout.rows * (layout.height + kBorderPx) + kBorderPx, 3, kBorderGrey);
-  for (size_t i = 0; i < pictures.size(); ++i) {
-    LF_CHECK(pictures[i].width() == pictures[0].width() && pictures[i].channels() == 3 &&
-             pictures[i].height() == pictures[0].height());
-    const Image<uint8_t> small = Reduced(pictures[i], layout.width, layout.height);
-    const int column = static_cast<int>(i) % layout.columns;
-    const int row = static_cast<int>(i) / layout.columns;
-    for (int y = 0; y < layout.height; ++y)
-      std::copy_n(small.row(y), 3 * static_cast<size_t>(layout.width),
-                  &sheet.at(kBorderPx + column * (layout.width + kBorderPx),
-                            kBorderPx + row * (layout.height + kBorderPx) + y));
-  }
-  return WriteImage(path, sheet.view());
+ContactSheet::ContactSheet(size_t count, int width, int height, int max_width_px)
+    : width_(width), height_(height) {
+  LF_CHECK(count > 0 && width > 0 && height > 0);
+  columns_ = static_cast<int>(std::ceil(std::sqrt(count)));
+  const int rows = (static_cast<int>(count) + columns_ - 1) / columns_;
+  const int room = (max_width_px - kBorderPx * (columns_ + 1)) / columns_;
+  reduced_width_ = std::clamp(room, 1, width);
+  reduced_height_ = std::max(
+      1, static_cast<int>(std::lround(static_cast<double>(height) * reduced_width_ / width)));
+  page_ = Image<uint8_t>(columns_ * (reduced_width_ + kBorderPx) + kBorderPx,
+                         rows * (reduced_height_ + kBorderPx) + kBorderPx, 3, kBorderGrey);
+}
+
+void ContactSheet::Place(size_t i, const Image<uint8_t>& picture) {
+  LF_CHECK(picture.width() == width_ && picture.height() == height_ && picture.channels() == 3);
+  const Image<uint8_t> reduced = Reduced(picture, reduced_width_, reduced_height_);
+  const int column = static_cast<int>(i) % columns_;
+  const int row = static_cast<int>(i) / columns_;
+  for (int y = 0; y < reduced_height_; ++y)
+    std::copy_n(reduced.row(y), 3 * static_cast<size_t>(reduced_width_),
+                &page_.at(kBorderPx + column * (reduced_width_ + kBorderPx),
+                          kBorderPx + row * (reduced_height_ + kBorderPx) + y));
+}
+
+Result<void> ContactSheet::Write(const std::filesystem::path& path) const {
+  return WriteImage(path, page_.view());
 }
 
 }  // namespace lf

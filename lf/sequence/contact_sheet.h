@@ -13,10 +13,26 @@ namespace lf {
 // among them.
 std::vector<size_t> ContactSheetFrames(size_t frame_count, size_t limit = 12);
 
-// Lays 8-bit sRGB pictures [height][width][3] of one size out in a grid with thin borders, each
-// reduced (area average) so that the page is at most max_width_px wide, and writes it as PNG.
-Result<void> WriteContactSheet(const std::filesystem::path& path,
-                               const std::vector<Image<uint8_t>>& pictures,
-                               int max_width_px = 1920);
+// A grid of pictures of one size with thin borders, about as many columns as rows.
+class ContactSheet {
+ public:
+  // For `count` pictures of width x height px, at least one; the page is at most max_width_px wide.
+  ContactSheet(size_t count, int width, int height, int max_width_px = 1920);
+
+  // Puts an 8-bit sRGB picture [height][width][3] at the i-th place, reduced to what there is room
+  // for (area average in linear light). Threads may place different pictures at once.
+  void Place(size_t i, const Image<uint8_t>& picture);
+
+  // As PNG, atomically. kOutput: the folder, the disk.
+  Result<void> Write(const std::filesystem::path& path) const;
+
+ private:
+  int width_;  // of the pictures
+  int height_;
+  int columns_;
+  int reduced_width_;
+  int reduced_height_;
+  Image<uint8_t> page_;
+};
 
 }  // namespace lf

@@ -11,7 +11,9 @@ namespace {
 class ContactSheetTest : public FolderTest {
  protected:
   Image<uint8_t> Sheet(const std::vector<Image<uint8_t>>& pictures, int max_width_px) const {
-    EXPECT_TRUE(WriteContactSheet(folder_ / "sheet.png", pictures, max_width_px));
+    ContactSheet sheet(pictures.size(), pictures[0].width(), pictures[0].height(), max_width_px);
+    for (size_t i = 0; i < pictures.size(); ++i) sheet.Place(i, pictures[i]);
+    EXPECT_TRUE(sheet.Write(folder_ / "sheet.png"));
     return std::get<Image<uint8_t>>(ReadImage(folder_ / "sheet.png").value());
   }
 };
@@ -70,10 +72,9 @@ TEST_F(ContactSheetTest, APageIsNeverWiderThanAskedForAndKeepsUniformColours) {
     }
 }
 
-TEST_F(ContactSheetTest, NothingToShowAndNowhereToWriteAreErrors) {
-  EXPECT_EQ(WriteContactSheet(folder_ / "a.png", {}).error().kind, ErrorKind::kOutput);
-  EXPECT_EQ(WriteContactSheet(folder_ / "none" / "a.png", {Image<uint8_t>(4, 4, 3)}).error().kind,
-            ErrorKind::kOutput);
+TEST_F(ContactSheetTest, NowhereToWriteIsAnError) {
+  const ContactSheet sheet(1, 4, 4);
+  EXPECT_EQ(sheet.Write(folder_ / "none" / "a.png").error().kind, ErrorKind::kOutput);
   EXPECT_TRUE(std::filesystem::is_empty(folder_));
 }
 
