@@ -400,9 +400,8 @@ class ResumeTest(unittest.TestCase):
         process = subprocess.Popen(self.arguments("locked", "--back-end", "reference"),
                                    stderr=subprocess.DEVNULL)
         try:
-            while not (self.partial("locked") / "lock").exists():
-                time.sleep(0.01)
-            time.sleep(0.05)
+            self.wait_for_lock("locked", process)
+            process.send_signal(signal.SIGSTOP)  # it holds the lock for as long as the other takes
             self.fails(4, ["locked", str(process.pid)], "locked", "--overwrite")
         finally:
             process.kill()
