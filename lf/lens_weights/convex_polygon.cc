@@ -1,0 +1,80 @@
+#include "lf/lens_weights/convex_polygon.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace lf {
+namespace {
+
+double Cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+// Of the triangle (origin, a, b), within the disk; below 0 if it turns clockwise.
+double TriangleAreaInDisk(const Vec2& a, const Vec2& b, double radius) {
+  const double r2 = radius * radius;
+  const auto sector = [r2](const Vec2& from, const Vec2& to) {
+    return 0.5 * r2 * std::atan2(Cross(from, to), from.dot(to));
+  };
+  // Where the edge a + t (b - a) crosses the rim.
+  const Vec2 edge = b - a;
+  const double length2 = edge.squaredNorm();
+  if (length2 == 0) return 0;
+  const double middle = -a.dot(edge) / length2;
+  const double rest = middle * middle - (a.squaredNorm() - r2) / length2;
+  if (rest <= 0) return sector(a, b);
+  const double half = std::sqrt(rest);
+  const double enters = std::max(0.0, middle - half), leaves = std::min(1.0, middle + half);
+  if (enters >= leaves) return sector(a, b);
+  const Vec2 p = a + enters * edge, q = a + leaves * edge;
+  double area = 0.5 * Cross(p, q);
+  if (enters > 0) area += sector(a, p);
+  if (leaves < 1) area += sector(q, b);
+  return area;
+}
+
+}  // namespace
+
+ConvexPolygon ConvexPolygon::SquareAround(double half_side) {
+  const double h = half_side;
+  return ConvexPolygon({{-h, -h}, {h, -h}, {h, h}, {-h, h}});
+}
+
+void ConvexPolygon::Clip(const Vec2& normal, double offset) {
+  if (std::all_of(vertices_.begin(), vertices_.end(),
+                  [&](const Vec2& v) { return normal.dot(v) <= offset; }))
+    return;
+  std::vector<Vec2> kept;
+  kept.reserve(vertices_.size() + 1);
+  for (size_t i = 0; i < vertices_.size(); ++i) {
+    const Vec2& a = vertices_[i];
+    const Vec2& b = vertices_[(i + 1) % vertices_.size()];
+    const double past_a = normal.dot(a) - offset, past_b = normal.dot(b) - offset;
+    if (past_a <= 0) kept.push_back(a);
+    if ((past_a < 0 && past_b > 0) || (past_a > 0 && past_b < 0))
+      kept.push_back(a + past_a / (past_a - past_b) * (b - a));
+  }
+  vertices_ = std::move(kept);
+  if (vertices_.size() < 3) vertices_.clear();
+}
+
+double ConvexPolygon::FarthestFrom(const Vec2& point) const {
+  double most = 0;
+  for (const Vec2& v : vertices_) most = std::max(most, (v - point).squaredNorm());
+  return std::sqrt(most);
+}
+
+double ConvexPolygon::Area() const {
+  double twice = 0;
+  for (size_t i = 0; i < vertices_.size(); ++i)
+    twice += Cross(vertices_[i], vertices_[(i + 1) % vertices_.size()]);
+  return 0.5 * twice;
+}
+
+double ConvexPolygon::AreaInDisk(double radius) const {
+  double area = 0;
+  for (size_t i = 0; i < vertices_.size(); ++i)
+    area += TriangleAreaInDisk(vertices_[i], vertices_[(i + 1) % vertices_.size()], radius);
+  return area;
+}
+
+}  // namespace lf

@@ -1,0 +1,35 @@
+// Convex polygons in the lens plane. Internal to lens_weights.
+#pragma once
+
+#include <vector>
+
+#include "lf/core/geometry.h"
+
+namespace lf {
+
+class ConvexPolygon {
+ public:
+  // Counter-clockwise.
+  explicit ConvexPolygon(std::vector<Vec2> vertices) : vertices_(std::move(vertices)) {}
+
+  // [-half_side, half_side]^2
+  static ConvexPolygon SquareAround(double half_side);
+
+  bool empty() const { return vertices_.empty(); }
+
+  // Leaves the part where normal . p <= offset.
+  void Clip(const Vec2& normal, double offset);
+
+  // Distance of the farthest vertex; 0 if there is none.
+  double FarthestFrom(const Vec2& point) const;
+
+  double Area() const;
+
+  // Of the part within the disk of this radius around the origin.
+  double AreaInDisk(double radius) const;
+
+ private:
+  std::vector<Vec2> vertices_;
+};
+
+}  // namespace lf

@@ -1,0 +1,57 @@
+// Points of the plane in square buckets, about one a bucket, to be met in the order of their
+// distance, roughly. Internal to lens_weights.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "lf/core/geometry.h"
+
+namespace lf {
+
+class PointGrid {
+ public:
+  // `points` must last.
+  explicit PointGrid(std::span<const Vec2> points);
+
+  // Rings of buckets around the bucket of one of the points: 0 is that one, and those up to this
+  // hold all points.
+  int ring_count() const { return std::max(columns_, rows_); }
+
+  // Points in this ring are at least so far away.
+  double LeastDistanceOf(int ring) const { return std::max(0, ring - 1) * bucket_size_; }
+
+  // Calls use(point) for the points of a ring around `centre`, one of the points.
+  template <class Use>
+  void ForEachInRing(const Vec2& centre, int ring, const Use& use) const {
+    const int column = ColumnOf(centre), row = RowOf(centre);
+    for (int y = std::max(0, row - ring); y <= std::min(rows_ - 1, row + ring); ++y) {
+      const bool is_edge = std::abs(y - row) == ring;
+      const int step = is_edge || ring == 0 ? 1 : 2 * ring;
+      for (int x = column - ring; x <= column + ring; x += step) {
+        if (x < 0 || x >= columns_) continue;
+        const size_t bucket = static_cast<size_t>(y) * columns_ + x;
+        for (size_t i = begin_[bucket]; i < begin_[bucket + 1]; ++i) use(sorted_[i]);
+      }
+    }
+  }
+
+ private:
+  int ColumnOf(const Vec2& point) const { return Bucket(point.x() - corner_.x(), columns_); }
+  int RowOf(const Vec2& point) const { return Bucket(point.y() - corner_.y(), rows_); }
+  int Bucket(double distance, int count) const {
+    return std::clamp(static_cast<int>(distance / bucket_size_), 0, count - 1);
+  }
+
+  Vec2 corner_ = Vec2::Zero();
+  double bucket_size_ = 1;
+  int columns_ = 1;
+  int rows_ = 1;
+  std::vector<size_t> begin_;  // [rows * columns + 1]
+  std::vector<Vec2> sorted_;   // by bucket
+};
+
+}  // namespace lf
