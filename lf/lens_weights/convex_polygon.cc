@@ -34,15 +34,16 @@ double TriangleAreaInDisk(const Vec2& a, const Vec2& b, double radius) {
 
 }  // namespace
 
-ConvexPolygon ConvexPolygon::SquareAround(double half_side) {
+ConvexPolygon ConvexPolygon::SquareAround(const Vec2& middle, double half_side) {
   const double h = half_side;
-  return ConvexPolygon({{-h, -h}, {h, -h}, {h, h}, {-h, h}});
+  return ConvexPolygon(
+      {middle + Vec2(-h, -h), middle + Vec2(h, -h), middle + Vec2(h, h), middle + Vec2(-h, h)});
 }
 
-void ConvexPolygon::Clip(const Vec2& normal, double offset) {
+bool ConvexPolygon::Clip(const Vec2& normal, double offset) {
   if (std::all_of(vertices_.begin(), vertices_.end(),
                   [&](const Vec2& v) { return normal.dot(v) <= offset; }))
-    return;
+    return false;
   std::vector<Vec2> kept;
   kept.reserve(vertices_.size() + 1);
   for (size_t i = 0; i < vertices_.size(); ++i) {
@@ -55,6 +56,7 @@ void ConvexPolygon::Clip(const Vec2& normal, double offset) {
   }
   vertices_ = std::move(kept);
   if (vertices_.size() < 3) vertices_.clear();
+  return true;
 }
 
 double ConvexPolygon::FarthestFrom(const Vec2& point) const {

@@ -12,13 +12,12 @@ class ConvexPolygon {
   // Counter-clockwise.
   explicit ConvexPolygon(std::vector<Vec2> vertices) : vertices_(std::move(vertices)) {}
 
-  // [-half_side, half_side]^2
-  static ConvexPolygon SquareAround(double half_side);
+  static ConvexPolygon SquareAround(const Vec2& middle, double half_side);
 
   bool empty() const { return vertices_.empty(); }
 
-  // Leaves the part where normal . p <= offset.
-  void Clip(const Vec2& normal, double offset);
+  // Leaves the part where normal . p <= offset; true if that is not all of it.
+  bool Clip(const Vec2& normal, double offset);
 
   // Distance of the farthest vertex; 0 if there is none.
   double FarthestFrom(const Vec2& point) const;

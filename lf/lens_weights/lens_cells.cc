@@ -2,67 +2,106 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 
 #include "lf/core/check.h"
-#include "lf/lens_weights/convex_polygon.h"
-#include "lf/lens_weights/point_grid.h"
+#include "lf/lens_weights/lens_cell.h"
 
 namespace lf {
 namespace {
 
-// What is left of the opening, or of a polygon around it, by the bisectors with other points.
-class Cell {
+// Nearest neighbours of a place, and what its cell takes from each.
+class HatMaker {
  public:
-  Cell(const Vec2& point, const ConvexPolygon& opening) : point_(point), polygon_(opening) {}
+  explicit HatMaker(std::span<const Vec2> points) : points_(points), grid_(points) {}
 
-  // The part that is no nearer to `other`. False if the two are the same.
-  bool CutBy(const Vec2& other) {
-    const Vec2 across = other - point_;
-    if (across == Vec2::Zero()) return false;
-    polygon_.Clip(across, across.dot(0.5 * (point_ + other)));
-    reach_ = -1;
-    return true;
-  }
-
-  const ConvexPolygon& polygon() const { return polygon_; }
-
-  // How far a point may be to cut this further.
-  double Reach() {
-    if (reach_ < 0) reach_ = 2 * polygon_.FarthestFrom(point_);
-    return reach_;
+  void AddAt(const Vec2& place, double share, std::vector<double>* shares) {
+    neighbours_.clear();
+    same_.clear();
+    const ConvexPolygon cell = CellOf(
+        place, points_, grid_, Surroundings(place), [this](size_t i) { neighbours_.push_back(i); },
+        [this](size_t i) { same_.push_back(i); });
+    if (!same_.empty()) {
+      for (const size_t i : same_) (*shares)[i] += share / static_cast<double>(same_.size());
+      return;
+    }
+    taken_.clear();
+    double total = 0;
+    for (const size_t i : neighbours_) {
+      taken_.push_back(TakenFrom(i, cell));
+      total += taken_.back();
+    }
+    for (size_t k = 0; k < neighbours_.size(); ++k)
+      (*shares)[neighbours_[k]] += share * taken_[k] / total;
   }
 
  private:
-  Vec2 point_;
-  ConvexPolygon polygon_;
-  double reach_ = -1;
+  // Beside the cameras cells have no end. Between them they are smaller than this.
+  ConvexPolygon Surroundings(const Vec2& place) const {
+    constexpr double kFar = 8;
+    return ConvexPolygon::SquareAround(place,
+                                       kFar * (DistanceToNearest(place) + grid_.bucket_size()));
+  }
+
+  double DistanceToNearest(const Vec2& place) const {
+    double nearest = INFINITY;
+    for (int ring = 0; ring <= grid_.ring_count() && grid_.LeastDistanceOf(ring) < nearest; ++ring)
+      grid_.ForEachInRing(
+          place, ring, [&](size_t i) { nearest = std::min(nearest, (points_[i] - place).norm()); });
+    return nearest;
+  }
+
+  // Those at the same place share what is nearest to them.
+  double TakenFrom(size_t i, ConvexPolygon cell) const {
+    int sharing = 1;
+    for (const size_t other : neighbours_) {
+      if (other == i) continue;
+      const Vec2 across = points_[other] - points_[i];
+      if (across == Vec2::Zero())
+        ++sharing;
+      else
+        cell.Clip(across, across.dot(0.5 * (points_[i] + points_[other])));
+    }
+    return cell.Area() / sharing;
+  }
+
+  std::span<const Vec2> points_;
+  PointGrid grid_;
+  std::vector<size_t> neighbours_;
+  std::vector<size_t> same_;
+  std::vector<double> taken_;
 };
 
 }  // namespace
 
-std::vector<double> LensCellAreas(std::span<const Vec2> points, const Aperture& aperture) {
+std::vector<double> CellShares(std::span<const Vec2> points, const Aperture& aperture) {
   LF_CHECK(aperture.radius_w > 0);
   const bool is_disk = aperture.blades == 0;
-  const ConvexPolygon opening =
-      is_disk ? ConvexPolygon::SquareAround(aperture.radius_w) : ConvexPolygon(Vertices(aperture));
+  const ConvexPolygon opening = is_disk
+                                    ? ConvexPolygon::SquareAround(Vec2::Zero(), aperture.radius_w)
+                                    : ConvexPolygon(Vertices(aperture));
   const PointGrid grid(points);
-  std::vector<double> areas;
-  areas.reserve(points.size());
+  std::vector<double> shares;
+  shares.reserve(points.size());
   for (const Vec2& point : points) {
-    Cell cell(point, opening);
     int sharing = 0;  // points at this place, itself among them
-    for (int ring = 0; ring <= grid.ring_count(); ++ring) {
-      if (cell.polygon().empty() || grid.LeastDistanceOf(ring) > cell.Reach()) break;
-      grid.ForEachInRing(point, ring, [&](const Vec2& other) {
-        if (!cell.polygon().empty() && !cell.CutBy(other)) ++sharing;
-      });
-    }
-    const double area =
-        is_disk ? cell.polygon().AreaInDisk(aperture.radius_w) : cell.polygon().Area();
-    areas.push_back(area / std::max(1, sharing));
+    const ConvexPolygon cell = CellOf(
+        point, points, grid, opening, [](size_t) {}, [&](size_t) { ++sharing; });
+    const double area = is_disk ? cell.AreaInDisk(aperture.radius_w) : cell.Area();
+    shares.push_back(area / Area(aperture) / std::max(1, sharing));
   }
-  return areas;
+  return shares;
+}
+
+std::vector<double> HatShares(std::span<const Vec2> points, const Aperture& aperture,
+                              int sample_count) {
+  LF_CHECK(aperture.radius_w >= 0 && sample_count > 0);
+  std::vector<double> shares(points.size(), 0);
+  if (points.empty()) return shares;
+  HatMaker hats(points);
+  if (aperture.radius_w == 0) sample_count = 1;
+  for (const Vec2& place : SampleLens(aperture, sample_count))
+    hats.AddAt(place, 1.0 / sample_count, &shares);
+  return shares;
 }
 
 }  // namespace lf

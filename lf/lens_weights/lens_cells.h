@@ -1,5 +1,5 @@
-// The lens as an integral over its area (doc/ray.md, "What is added"): each LF camera stands for the part
-// of the lens that is nearer to it than to any other, its Voronoi cell, cut by the opening.
+// The lens as an integral over its area (doc/ray.md, "What is added"): what share of it each LF
+// camera stands for.
 #pragma once
 
 #include <span>
@@ -10,12 +10,25 @@
 
 namespace lf {
 
-// The area of each point's cell within the opening, in squared world units: exact but for rounding,
-// a part in 1e-12 of the opening. Their sum is Area(aperture) as soon as there is a point, in the
-// opening or not: cells of points beside it reach in. Points at the same place share their cell.
-//   points    in lens coordinates, finite, any number and arrangement
+// Cells: a camera stands for the part of the opening that is nearer to it than to any other, its
+// Voronoi cell. Exact but for rounding, a part in 1e-12. The shares' sum is 1 as soon as there is a
+// point, in the opening or not: cells of points beside it reach in. Points at the same place share
+// alike.
+//   points    where rays of the LF cameras meet the lens plane, lens coordinates; finite, any
+//             number and arrangement
 //   aperture  radius_w > 0
 // About a microsecond a point.
-std::vector<double> LensCellAreas(std::span<const Vec2> points, const Aperture& aperture);
+std::vector<double> CellShares(std::span<const Vec2> points, const Aperture& aperture);
+
+// Hats: every point of the opening is seen by the cameras around it, in the shares in which a
+// camera there would take its cell from theirs (natural neighbours; Sibson 1981). A camera's share
+// is the mean over the opening, by `sample_count` points of it. These are the weights for openings
+// that are small beside the distances of the cameras, pinholes among them: a picture between
+// cameras is interpolated, and moves smoothly from one to the next. Outside of all cameras the
+// nearest ones share alike. The sum is 1 as soon as there is a point.
+//   aperture  radius_w >= 0; at 0 one sample is enough
+// Some microseconds a sample.
+std::vector<double> HatShares(std::span<const Vec2> points, const Aperture& aperture,
+                              int sample_count = 64);
 
 }  // namespace lf

@@ -13,8 +13,8 @@ namespace {
 
 const Aperture kOpenings[] = {{1, 0, 0}, {1, 3, 0.3}, {1, 5, 0}, {1, 8, 0.1}};
 
-double Sum(const std::vector<double>& areas) {
-  return std::accumulate(areas.begin(), areas.end(), 0.0);
+double Sum(const std::vector<double>& shares) {
+  return std::accumulate(shares.begin(), shares.end(), 0.0);
 }
 
 std::vector<Vec2> RandomPoints(size_t count, double reach, uint64_t seed) {
@@ -28,107 +28,205 @@ std::vector<Vec2> RandomPoints(size_t count, double reach, uint64_t seed) {
 }
 
 // The share of the opening's samples that are nearest to each point.
-std::vector<double> AreasBySampling(const std::vector<Vec2>& points, const Aperture& aperture,
-                                    int samples) {
-  std::vector<double> areas(points.size());
+std::vector<double> SharesBySampling(const std::vector<Vec2>& points, const Aperture& aperture,
+                                     int samples) {
+  std::vector<double> shares(points.size());
   for (const Vec2& sample : SampleLens(aperture, samples)) {
     const auto nearest =
         std::min_element(points.begin(), points.end(), [&](const Vec2& a, const Vec2& b) {
           return (a - sample).squaredNorm() < (b - sample).squaredNorm();
         });
-    areas[static_cast<size_t>(nearest - points.begin())] += Area(aperture) / samples;
+    shares[static_cast<size_t>(nearest - points.begin())] += 1.0 / samples;
   }
-  return areas;
+  return shares;
 }
 
-TEST(LensCells, OnePointStandsForTheWholeLensWhereverItIs) {
+TEST(CellShares, OnePointStandsForTheWholeLensWhereverItIs) {
   for (const Aperture& aperture : kOpenings)
     for (const Vec2& point : {Vec2(0, 0), Vec2(0.9, 0), Vec2(30, -7)}) {
-      const std::vector<double> areas = LensCellAreas(std::vector{point}, aperture);
-      ASSERT_EQ(areas.size(), 1u);
-      EXPECT_NEAR(areas[0], Area(aperture), 1e-12);
+      const std::vector<double> shares = CellShares(std::vector{point}, aperture);
+      ASSERT_EQ(shares.size(), 1u);
+      EXPECT_NEAR(shares[0], 1, 1e-12);
     }
-  EXPECT_TRUE(LensCellAreas({}, kOpenings[0]).empty());
+  EXPECT_TRUE(CellShares({}, kOpenings[0]).empty());
 }
 
-TEST(LensCells, CellsTileTheLens) {
+TEST(CellShares, CellsTileTheLens) {
   for (const Aperture& aperture : kOpenings)
     for (const size_t count : {2, 3, 7, 100, 3000})
       for (const double reach : {0.01, 1.0, 3.0}) {
         const auto points = RandomPoints(count, reach, count);
-        const auto areas = LensCellAreas(points, aperture);
-        EXPECT_NEAR(Sum(areas), Area(aperture), 1e-11) << count << " within " << reach;
-        for (const double area : areas) EXPECT_GE(area, -1e-13);
+        const auto shares = CellShares(points, aperture);
+        EXPECT_NEAR(Sum(shares), 1, 1e-11) << count << " within " << reach;
+        for (const double share : shares) EXPECT_GE(share, -1e-13);
       }
 }
 
-TEST(LensCells, AreasAreThoseOfTheNearestPoints) {
+TEST(CellShares, AreThoseOfTheNearestPoints) {
   constexpr int kSamples = 200000;
   for (const Aperture& aperture : kOpenings)
     for (const uint64_t seed : {1, 2, 3}) {
       // Uneven: two thirds of the points in a corner.
       std::vector<Vec2> points = RandomPoints(20, 1.5, seed);
       for (const Vec2& p : RandomPoints(40, 0.4, seed + 9)) points.push_back(p + Vec2(0.6, 0.5));
-      const auto areas = LensCellAreas(points, aperture);
-      const auto expected = AreasBySampling(points, aperture, kSamples);
-      for (size_t i = 0; i < points.size(); ++i) EXPECT_NEAR(areas[i], expected[i], 1e-3) << i;
+      const auto shares = CellShares(points, aperture);
+      const auto expected = SharesBySampling(points, aperture, kSamples);
+      for (size_t i = 0; i < points.size(); ++i) EXPECT_NEAR(shares[i], expected[i], 1e-3) << i;
     }
 }
 
-TEST(LensCells, InTheMiddleOfAGridTheyAreItsSquares) {
+TEST(CellShares, InTheMiddleOfAGridTheyAreItsSquares) {
   std::vector<Vec2> points;
   for (int y = -12; y <= 12; ++y)
     for (int x = -12; x <= 12; ++x) points.emplace_back(0.1 * x, 0.1 * y);
   for (const Aperture& aperture : kOpenings) {
-    const auto areas = LensCellAreas(points, aperture);
+    const auto shares = CellShares(points, aperture);
     for (size_t i = 0; i < points.size(); ++i) {
       const double distance = points[i].norm();
       if (distance >= 0.35 && distance <= 1.08) continue;
-      EXPECT_NEAR(areas[i], distance < 1 ? 0.01 : 0, 1e-12) << points[i].transpose();
+      EXPECT_NEAR(shares[i] * Area(aperture), distance < 1 ? 0.01 : 0, 1e-12)
+          << points[i].transpose();
     }
   }
   // Half of the square of the camera at (1, 0) reaches into the disk, less what the rim cuts off.
-  const auto areas = LensCellAreas(points, kOpenings[0]);
+  const auto shares = CellShares(points, kOpenings[0]);
   const double half_chord = 0.05, rim = std::asin(half_chord) + half_chord * std::sqrt(1 - 0.0025);
-  EXPECT_NEAR(areas[12 * 25 + 22], rim - 0.95 * 0.1, 1e-12);
+  EXPECT_NEAR(shares[12 * 25 + 22] * kPi, rim - 0.95 * 0.1, 1e-12);
 }
 
-TEST(LensCells, PointsAtOnePlaceShareTheirCell) {
+TEST(CellShares, PointsAtOnePlaceShareTheirCell) {
   std::vector<Vec2> points = RandomPoints(50, 1, 4);
-  const auto single = LensCellAreas(points, kOpenings[0]);
+  const auto single = CellShares(points, kOpenings[0]);
   for (int i = 0; i < 3; ++i) points.push_back(points[17]);
-  const auto shared = LensCellAreas(points, kOpenings[0]);
+  const auto shared = CellShares(points, kOpenings[0]);
   for (size_t i = 0; i < 50; ++i)
     EXPECT_NEAR(shared[i], i == 17 ? single[i] / 4 : single[i], 1e-12);
   for (size_t i = 50; i < 53; ++i) EXPECT_NEAR(shared[i], single[17] / 4, 1e-12);
   const std::vector<Vec2> all_the_same(5, Vec2(0.2, 0.1));
-  for (const double area : LensCellAreas(all_the_same, kOpenings[2]))
-    EXPECT_NEAR(area, Area(kOpenings[2]) / 5, 1e-12);
+  for (const double share : CellShares(all_the_same, kOpenings[2])) EXPECT_NEAR(share, 0.2, 1e-12);
 }
 
-TEST(LensCells, CamerasOnALineCutTheLensIntoStrips) {
+TEST(CellShares, CamerasOnALineCutTheLensIntoStrips) {
   for (const Vec2& along : {Vec2(1, 0), Vec2(0, 1), Vec2(0.6, 0.8)}) {
     std::vector<Vec2> points;
     for (int i = -30; i <= 30; ++i) points.emplace_back(0.05 * i * along);
-    const auto areas = LensCellAreas(points, kOpenings[0]);
+    const auto shares = CellShares(points, kOpenings[0]);
     // Between the chords at distances a and b.
     const auto below = [](double d) { return std::asin(d) + d * std::sqrt(1 - d * d); };
     for (int i = -19; i <= 19; ++i)
-      EXPECT_NEAR(areas[static_cast<size_t>(i + 30)],
+      EXPECT_NEAR(shares[static_cast<size_t>(i + 30)] * kPi,
                   below(0.05 * i + 0.025) - below(0.05 * i - 0.025), 1e-12);
   }
 }
 
-TEST(LensCells, AreAsLargeInAnyUnit) {
+TEST(CellShares, AreTheSameInAnyUnit) {
   const auto points = RandomPoints(80, 1.2, 11);
-  const auto areas = LensCellAreas(points, kOpenings[1]);
+  const auto shares = CellShares(points, kOpenings[1]);
   for (const double unit : {1e-6, 1e6}) {
     std::vector<Vec2> scaled;
     for (const Vec2& p : points) scaled.push_back(unit * p);
-    const auto scaled_areas = LensCellAreas(scaled, {unit, 3, 0.3});
-    for (size_t i = 0; i < points.size(); ++i)
-      EXPECT_NEAR(scaled_areas[i] / unit / unit, areas[i], 1e-11);
+    const auto scaled_shares = CellShares(scaled, {unit, 3, 0.3});
+    for (size_t i = 0; i < points.size(); ++i) EXPECT_NEAR(scaled_shares[i], shares[i], 1e-11);
   }
+}
+
+constexpr Aperture kPinhole = {0, 0, 0};
+
+// Sum of the points in their shares: where the picture is seen from.
+Vec2 MeanPlace(const std::vector<double>& shares, const std::vector<Vec2>& points) {
+  Vec2 mean = Vec2::Zero();
+  for (size_t i = 0; i < points.size(); ++i) mean += shares[i] * points[i];
+  return mean;
+}
+
+std::vector<Vec2> Moved(std::vector<Vec2> points, const Vec2& by) {
+  for (Vec2& p : points) p += by;
+  return points;
+}
+
+// Sibson's local coordinate property, which tells them from other hats.
+TEST(HatShares, APinholeAmongCamerasIsSeenFromItsOwnPlace) {
+  for (uint64_t seed = 1; seed < 40; ++seed) {
+    const auto points = RandomPoints(300, 1, seed);
+    const auto shares = HatShares(points, kPinhole);
+    EXPECT_NEAR(Sum(shares), 1, 1e-12);
+    EXPECT_NEAR(MeanPlace(shares, points).norm(), 0, 1e-9) << seed;
+    const auto used =
+        std::count_if(shares.begin(), shares.end(), [](double share) { return share > 1e-9; });
+    EXPECT_GE(used, 3);
+    EXPECT_LE(used, 12);
+    for (const double share : shares) EXPECT_GE(share, 0);
+  }
+}
+
+TEST(HatShares, APinholeAtACameraIsThatCamera) {
+  auto points = RandomPoints(100, 1, 3);
+  points[40] = Vec2::Zero();
+  EXPECT_NEAR(HatShares(points, kPinhole)[40], 1, 1e-12);
+  points[41] = points[42] = points[40];
+  for (const size_t i : {40, 41, 42}) EXPECT_NEAR(HatShares(points, kPinhole)[i], 1.0 / 3, 1e-12);
+  // Near it, nearly so.
+  for (const double distance : {1e-9, 1e-6, 1e-4}) {
+    const auto near = HatShares(Moved(points, {distance, 0}), kPinhole);
+    EXPECT_NEAR(near[40] + near[41] + near[42], 1, 100 * distance);
+  }
+}
+
+TEST(HatShares, OnAGridTheyAreSymmetric) {
+  std::vector<Vec2> points;
+  for (int y = -4; y < 4; ++y)
+    for (int x = -4; x < 4; ++x) points.emplace_back(x + 0.5, y + 0.5);
+  const auto middle = HatShares(points, kPinhole);
+  for (const size_t i : {27, 28, 35, 36}) EXPECT_NEAR(middle[i], 0.25, 1e-12);
+  const auto beside = HatShares(Moved(points, {0, 0.5}), kPinhole);
+  EXPECT_NEAR(beside[27], beside[28], 1e-12);
+  EXPECT_NEAR(beside[27], 4.0 / 9, 1e-12);  // of a cell of area 9/16, 1/4 from each of the two
+}
+
+TEST(HatShares, MoveSmoothlyWithTheLens) {
+  const auto points = RandomPoints(60, 1, 5);
+  std::vector<double> before = HatShares(Moved(points, {-0.3, 0.1}), kPinhole);
+  for (int step = 1; step <= 2000; ++step) {
+    const auto now = HatShares(Moved(points, {-0.3 + 3e-4 * step, 0.1}), kPinhole);
+    for (size_t i = 0; i < points.size(); ++i) EXPECT_NEAR(now[i], before[i], 0.02);
+    before = now;
+  }
+}
+
+TEST(HatShares, OfAnOpeningAreTheMeanOverIt) {
+  const auto points = RandomPoints(30, 1, 6);
+  for (const Aperture& aperture : kOpenings) {
+    std::vector<double> mean(points.size(), 0);
+    for (const Vec2& place : SampleLens(aperture, 16)) {
+      const auto there = HatShares(Moved(points, -place), kPinhole);
+      for (size_t i = 0; i < mean.size(); ++i) mean[i] += there[i] / 16;
+    }
+    const auto shares = HatShares(points, aperture, 16);
+    for (size_t i = 0; i < mean.size(); ++i) EXPECT_NEAR(shares[i], mean[i], 1e-12);
+  }
+}
+
+TEST(HatShares, OfManyCamerasAreNearlyTheirCells) {
+  std::vector<Vec2> points;
+  for (int y = -12; y <= 12; ++y)
+    for (int x = -12; x <= 12; ++x) points.emplace_back(0.1 * x, 0.1 * y);
+  const auto cells = CellShares(points, kOpenings[0]);
+  const auto hats = HatShares(points, kOpenings[0], 20000);
+  for (size_t i = 0; i < points.size(); ++i)
+    EXPECT_NEAR(hats[i], cells[i], points[i].norm() < 0.8 ? 0.05 * cells[i] : 0.003) << i;
+}
+
+TEST(HatShares, BesideAllCamerasTheNearestOnesShare) {
+  const auto points = RandomPoints(50, 1, 7);
+  for (const Vec2& away : {Vec2(1.5, 0), Vec2(40, 3), Vec2(-1e4, 1e4)}) {
+    const auto shares = HatShares(Moved(points, away), kPinhole);
+    EXPECT_NEAR(Sum(shares), 1, 1e-12);
+    for (const double share : shares) EXPECT_GE(share, 0);
+  }
+  const std::vector<Vec2> two = {{1, 0}, {-1, 0}};
+  for (const double share : HatShares(two, kPinhole)) EXPECT_NEAR(share, 0.5, 1e-12);
+  EXPECT_NEAR(HatShares(std::vector{Vec2(3, 4)}, kOpenings[1])[0], 1, 1e-12);
+  EXPECT_TRUE(HatShares({}, kPinhole).empty());
 }
 
 }  // namespace

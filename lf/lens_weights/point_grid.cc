@@ -26,7 +26,7 @@ PointGrid::PointGrid(std::span<const Vec2> points) {
   for (size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
   sorted_.resize(points.size());
   std::vector<size_t> next(begin_.begin(), begin_.end() - 1);
-  for (const Vec2& p : points) sorted_[next[bucket_of(p)]++] = p;
+  for (size_t i = 0; i < points.size(); ++i) sorted_[next[bucket_of(points[i])]++] = i;
 }
 
 }  // namespace lf

@@ -17,14 +17,17 @@ class PointGrid {
   // `points` must last.
   explicit PointGrid(std::span<const Vec2> points);
 
-  // Rings of buckets around the bucket of one of the points: 0 is that one, and those up to this
+  // About as far as points are apart.
+  double bucket_size() const { return bucket_size_; }
+
+  // Rings of buckets around the one that is nearest to a place: 0 is that one, and those up to this
   // hold all points.
   int ring_count() const { return std::max(columns_, rows_); }
 
   // Points in this ring are at least so far away.
   double LeastDistanceOf(int ring) const { return std::max(0, ring - 1) * bucket_size_; }
 
-  // Calls use(point) for the points of a ring around `centre`, one of the points.
+  // Calls use(i) for the points of a ring around `centre`, which may be anywhere.
   template <class Use>
   void ForEachInRing(const Vec2& centre, int ring, const Use& use) const {
     const int column = ColumnOf(centre), row = RowOf(centre);
@@ -43,15 +46,15 @@ class PointGrid {
   int ColumnOf(const Vec2& point) const { return Bucket(point.x() - corner_.x(), columns_); }
   int RowOf(const Vec2& point) const { return Bucket(point.y() - corner_.y(), rows_); }
   int Bucket(double distance, int count) const {
-    return std::clamp(static_cast<int>(distance / bucket_size_), 0, count - 1);
+    return static_cast<int>(std::clamp(distance / bucket_size_, 0.0, count - 1.0));
   }
 
   Vec2 corner_ = Vec2::Zero();
   double bucket_size_ = 1;
   int columns_ = 1;
   int rows_ = 1;
-  std::vector<size_t> begin_;  // [rows * columns + 1]
-  std::vector<Vec2> sorted_;   // by bucket
+  std::vector<size_t> begin_;   // [rows * columns + 1]
+  std::vector<size_t> sorted_;  // indices of points, by bucket
 };
 
 }  // namespace lf

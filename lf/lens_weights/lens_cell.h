@@ -1,0 +1,33 @@
+// The cell of one place among points of the lens plane. Internal to lens_weights.
+#pragma once
+
+#include <span>
+
+#include "lf/core/geometry.h"
+#include "lf/lens_weights/convex_polygon.h"
+#include "lf/lens_weights/point_grid.h"
+
+namespace lf {
+
+// What of `around` is nearer to `place` than to any point. Calls met(i) for every point that may
+// have cut it, and same(i) for those at the very place.
+template <class Met, class Same>
+ConvexPolygon CellOf(const Vec2& place, std::span<const Vec2> points, const PointGrid& grid,
+                     ConvexPolygon around, const Met& met, const Same& same) {
+  double reach = 2 * around.FarthestFrom(place);  // how far a point may be to cut it further
+  for (int ring = 0; ring <= grid.ring_count() && !around.empty(); ++ring) {
+    if (grid.LeastDistanceOf(ring) > reach) break;
+    grid.ForEachInRing(place, ring, [&](size_t i) {
+      if (around.empty()) return;
+      const Vec2 across = points[i] - place;
+      if (across == Vec2::Zero())
+        same(i);
+      else if (around.Clip(across, across.dot(0.5 * (place + points[i]))))
+        met(i);
+    });
+    reach = 2 * around.FarthestFrom(place);
+  }
+  return around;
+}
+
+}  // namespace lf
