@@ -21,7 +21,7 @@
 #include "lf/camera/pinhole.h"
 #include "lf/camera/render_camera.h"
 #include "lf/capture/lf_pixels.h"
-#include "lf/collection/ray_weight.h"
+#include "lf/camera/ray_weight.h"
 #include "lf/collection/segments.h"
 #include "lf/core/geometry.h"
 #include "lf/plate/sensor_plate.h"

@@ -1,5 +1,5 @@
 // Weighted rays, of both estimators and back ends.
-#include "lf/collection/ray_weight.h"
+#include "lf/camera/ray_weight.h"
 
 #include <gtest/gtest.h>
 

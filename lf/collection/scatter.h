@@ -22,7 +22,7 @@
 #include "lf/camera/pinhole.h"
 #include "lf/camera/render_camera.h"
 #include "lf/capture/lf_pixels.h"
-#include "lf/collection/ray_weight.h"
+#include "lf/camera/ray_weight.h"
 #include "lf/collection/segments.h"
 #include "lf/collection/tile_pieces.h"
 #include "lf/core/geometry.h"

@@ -1,0 +1,205 @@
+#include "lf/lens_weights/frame_weights.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "lf/core/check.h"
+#include "lf/lens_weights/lens_cells.h"
+
+namespace lf {
+namespace {
+
+// Lens points move by no more than this part of their distance from node to node, about.
+constexpr double kStepOfDistance = 1.0 / 3;
+constexpr int kMostNodes = 64;  // along an edge of the plate
+// Cameras that stand in the lens plane but for rounding.
+constexpr double kAtRest = 1e-6;
+
+constexpr double kLeastShare = 1e-9;  // of the lens: what rounding makes of none
+
+constexpr double kUnit = 256;  // of a node, for a weight of 1
+
+// Where all cameras see one element through. Those beside the lens plane are left out.
+struct LensPoints {
+  std::vector<Vec2> points;
+  std::vector<size_t> cameras;
+};
+
+LensPoints PointsAt(const RenderCamera& frame, std::span<const Vec3> centres_world,
+                    const Vec3& focus_point) {
+  LensPoints seen;
+  for (size_t i = 0; i < centres_world.size(); ++i) {
+    const Vec2 point = LensPointOfLine(frame, centres_world[i], focus_point);
+    if (!point.allFinite()) continue;
+    seen.points.push_back(point);
+    seen.cameras.push_back(i);
+  }
+  return seen;
+}
+
+// About how far points around the lens are apart: a dozen of them, or all that are within it.
+double DistanceAround(const LensPoints& seen, double radius) {
+  constexpr size_t kDozen = 12;
+  std::vector<double> distances;
+  for (const Vec2& point : seen.points) distances.push_back(point.norm());
+  if (distances.empty()) return 0;
+  std::sort(distances.begin(), distances.end());
+  const auto within = static_cast<size_t>(
+      std::upper_bound(distances.begin(), distances.end(), radius) - distances.begin());
+  const size_t count = std::min(distances.size(), std::max(within, kDozen));
+  return std::max(radius, distances[count - 1]) * std::sqrt(kPi / static_cast<double>(count));
+}
+
+// How far lens points move from one edge of the plate to the other, at most.
+struct Movement {
+  double across = 0;
+  double down = 0;
+};
+
+Movement MovementOf(const RenderCamera& frame, std::span<const Vec3> centres_world) {
+  const Intrinsics& plate = frame.pinhole.intrinsics;
+  std::optional<Vec3> focus[3][3];
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i)
+      focus[j][i] = FocusPointOfElement(frame, 0.5 * i * plate.width_px, 0.5 * j * plate.height_px);
+  const auto moved = [&](const Vec3& centre, const std::optional<Vec3>& a,
+                         const std::optional<Vec3>& b) {
+    if (!a || !b) return 0.0;
+    const double d =
+        (LensPointOfLine(frame, centre, *a) - LensPointOfLine(frame, centre, *b)).norm();
+    return std::isfinite(d) ? d : 0.0;
+  };
+  Movement most;
+  for (const Vec3& centre : centres_world)
+    for (int k = 0; k < 3; ++k) {
+      most.across = std::max(most.across, moved(centre, focus[k][0], focus[k][1]) +
+                                              moved(centre, focus[k][1], focus[k][2]));
+      most.down = std::max(most.down, moved(centre, focus[0][k], focus[1][k]) +
+                                          moved(centre, focus[1][k], focus[2][k]));
+    }
+  return most;
+}
+
+int NodeCount(double movement, double distance) {
+  if (!(movement > kAtRest * distance)) return 1;
+  const double steps = movement / (kStepOfDistance * distance);
+  return static_cast<int>(std::min(2 + steps, static_cast<double>(kMostNodes)));
+}
+
+double Median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double NodePosition(int index, int count, int size_px) {
+  return count == 1 ? 0.5 * size_px : static_cast<double>(index) * size_px / (count - 1);
+}
+
+// The node before an element, and how far it is to the next one, in 1/256.
+struct Place {
+  int node;
+  int fraction;
+};
+
+Place PlaceOf(int element, int count, int size_px) {
+  if (count == 1) return {0, 0};
+  const int middle = element / kWeightBlock * kWeightBlock + kWeightBlock / 2;
+  const int64_t place = int64_t{256} * std::min(middle, size_px - 1) * (count - 1) / size_px;
+  return {static_cast<int>(place >> 8), static_cast<int>(place & 255)};
+}
+
+}  // namespace
+
+Vec2 LensPointOfLine(const RenderCamera& frame, const Vec3& centre_world, const Vec3& point_world) {
+  const Vec3 lens_centre = frame.pinhole.CentreWorld();
+  const Vec3 forward = frame.pinhole.ForwardWorld();
+  const Vec3 along = centre_world - point_world;
+  const double t = forward.dot(lens_centre - point_world) / forward.dot(along);
+  const Vec3 offset = point_world + t * along - lens_centre;
+  return {frame.pinhole.RightWorld().dot(offset), frame.pinhole.UpWorld().dot(offset)};
+}
+
+FrameWeights::FrameWeights(const RenderCamera& frame, std::span<const Vec3> centres_world,
+                           LensShares kind)
+    : width_px_(frame.pinhole.intrinsics.width_px),
+      height_px_(frame.pinhole.intrinsics.height_px),
+      nodes_begin_(centres_world.size(), kNone) {
+  LF_CHECK(kind == LensShares::kHats || frame.aperture.radius_w > 0);
+  SetGrid(frame, centres_world);
+  std::vector<Node> nodes;
+  for (int row = 0; row < rows_; ++row)
+    for (int column = 0; column < columns_; ++column)
+      nodes.push_back(MakeNode(frame, centres_world, kind, column, row));
+  SetWeights(nodes);
+}
+
+void FrameWeights::SetGrid(const RenderCamera& frame, std::span<const Vec3> centres_world) {
+  const std::optional<Vec3> middle = FocusPointOfElement(frame, 0.5 * width_px_, 0.5 * height_px_);
+  if (!middle || centres_world.empty()) return;
+  const LensPoints seen = PointsAt(frame, centres_world, *middle);
+  const double distance = DistanceAround(seen, frame.aperture.radius_w);
+  const Movement movement = MovementOf(frame, centres_world);
+  columns_ = NodeCount(movement.across, distance);
+  rows_ = NodeCount(movement.down, distance);
+  if (columns_ > 1) step_w_ += movement.across / (columns_ - 1);
+  if (rows_ > 1) step_w_ += movement.down / (rows_ - 1);
+}
+
+FrameWeights::Node FrameWeights::MakeNode(const RenderCamera& frame,
+                                          std::span<const Vec3> centres_world, LensShares kind,
+                                          int column, int row) {
+  Node node;
+  const std::optional<Vec3> focus = FocusPointOfElement(
+      frame, NodePosition(column, columns_, width_px_), NodePosition(row, rows_, height_px_));
+  if (!focus) return node;  // beyond the horizon of a tilted focus plane: no ray goes there
+  const LensPoints seen = PointsAt(frame, centres_world, *focus);
+  const std::vector<double> shares = kind == LensShares::kCells
+                                         ? CellShares(seen.points, frame.aperture)
+                                         : HatShares(seen.points, frame.aperture);
+  for (size_t k = 0; k < shares.size(); ++k) {
+    if (!(shares[k] > kLeastShare)) continue;
+    node.push_back({seen.cameras[k], shares[k]});
+    farthest_w_ = std::max(farthest_w_, seen.points[k].norm());
+  }
+  return node;
+}
+
+void FrameWeights::SetWeights(const std::vector<Node>& nodes) {
+  std::vector<double> shares;
+  for (const Node& node : nodes)
+    for (const Share& share : node) shares.push_back(share.share);
+  if (shares.empty()) return;
+  const double most =
+      std::min(*std::max_element(shares.begin(), shares.end()), kMostMedians * Median(shares));
+  const double scale = kUnit * kMaxWeight / most;
+  for (size_t n = 0; n < nodes.size(); ++n)
+    for (const Share& share : nodes[n]) {
+      size_t& begin = nodes_begin_[share.camera];
+      if (begin == kNone) {
+        begin = weights_.size();
+        weights_.resize(begin + nodes.size(), 0);
+      }
+      weights_[begin + n] = static_cast<uint16_t>(
+          std::min(std::lround(share.share * scale), std::lround(kUnit * kMaxWeight)));
+    }
+}
+
+uint32_t FrameWeights::At(size_t camera, int x, int y) const {
+  if (nodes_begin_[camera] == kNone) return 0;
+  const uint16_t* const weights = &weights_[nodes_begin_[camera]];
+  const Place h = PlaceOf(x, columns_, width_px_), v = PlaceOf(y, rows_, height_px_);
+  const int right = columns_ > 1 ? 1 : 0, below = rows_ > 1 ? columns_ : 0;
+  const uint16_t* const node = weights + v.node * columns_ + h.node;
+  const auto between = [](uint64_t a, uint64_t b, int fraction) {
+    return a * static_cast<uint64_t>(256 - fraction) + b * static_cast<uint64_t>(fraction);
+  };
+  const uint64_t weight =
+      between(between(node[0], node[right], h.fraction),
+              between(node[below], node[below + right], h.fraction), v.fraction);
+  return static_cast<uint32_t>((weight + (1 << 23)) >> 24);
+}
+
+}  // namespace lf

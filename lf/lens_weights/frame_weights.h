@@ -1,0 +1,78 @@
+// What every LF camera counts for in one frame, all over its plate: integer weights (doc/ray.md,
+// "What is added"), known before an LF image is read.
+//
+// Through which point of the lens an LF camera sees an element depends on the element, unless the
+// camera stands in the lens plane. Shares (lens_cells.h) are found at the nodes of a grid over the
+// plate, as fine as these points move, and interpolated between them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lf/camera/ray_weight.h"
+#include "lf/camera/render_camera.h"
+#include "lf/core/geometry.h"
+
+namespace lf {
+
+enum class LensShares { kCells, kHats };
+
+// Elements [8 i, 8 i + 8) x [8 j, 8 j + 8) have one weight.
+inline constexpr int kWeightBlock = 8;
+
+class FrameWeights {
+ public:
+  // centres_world  of the LF cameras whose images may contribute
+  // Cells want a lens of some size, radius_w > 0.
+  FrameWeights(const RenderCamera& frame, std::span<const Vec3> centres_world, LensShares kind);
+
+  // Of a ray of the camera's to an element: 0 (it adds nothing) to kMaxWeight. The largest share of
+  // the frame has kMaxWeight, unless it is more than kMostMedians times the middle one: then it is
+  // taken for so much.
+  uint32_t At(size_t camera, int x, int y) const;
+
+  // Whether it has any but 0, on a node.
+  bool TakesPart(size_t camera) const { return nodes_begin_[camera] != kNone; }
+
+  // Whether weights are the same all over the plate.
+  bool is_constant() const { return columns_ * rows_ == 1; }
+
+  // Rays that meet the lens plane farther from the lens centre have no weight.
+  double reach_w() const { return farthest_w_ + step_w_; }
+
+  // Of the grid, from edge to edge of the plate; 1: its middle.
+  int columns() const { return columns_; }
+  int rows() const { return rows_; }
+
+  static constexpr double kMostMedians = 32;
+
+ private:
+  static constexpr size_t kNone = SIZE_MAX;
+  struct Share {
+    size_t camera;
+    double share;
+  };
+  using Node = std::vector<Share>;  // those above 0
+
+  void SetGrid(const RenderCamera& frame, std::span<const Vec3> centres_world);
+  Node MakeNode(const RenderCamera& frame, std::span<const Vec3> centres_world, LensShares kind,
+                int column, int row);
+  void SetWeights(const std::vector<Node>& nodes);
+
+  int width_px_;
+  int height_px_;
+  int columns_ = 1;
+  int rows_ = 1;
+  double farthest_w_ = 0;            // lens point with weight, from a node
+  double step_w_ = 0;                // of lens points from node to node
+  std::vector<size_t> nodes_begin_;  // [camera]: its part of weights_, if it has one
+  std::vector<uint16_t> weights_;    // [row][column] of one camera after the other, in 1/256
+};
+
+// Where the line through a world point and an LF camera meets the lens plane, in lens coordinates
+// (doc/ray.md, Geometry 5). Not finite if it runs beside it.
+Vec2 LensPointOfLine(const RenderCamera& frame, const Vec3& centre_world, const Vec3& point_world);
+
+}  // namespace lf

@@ -1,0 +1,181 @@
+#include "lf/lens_weights/frame_weights.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "lf/core/random.h"
+#include "lf/lens_weights/lens_cells.h"
+
+namespace lf {
+namespace {
+
+// Looks along z from `z`, in focus 2 in front of z = 0.
+RenderCamera Frame(double radius_w, double z = 0) {
+  RenderCamera frame;
+  frame.pinhole.intrinsics = {300, 300, 160, 100, 0, 320, 200, {}};
+  frame.pinhole.cam_from_world = *LookAlong({0, 0, z}, Vec3::UnitZ(), -Vec3::UnitY());
+  frame.aperture.radius_w = radius_w;
+  frame.focus_plane = {Vec3::UnitZ(), 2};
+  return frame;
+}
+
+std::vector<Vec3> JitteredGrid(int side, double spacing, double jitter, uint64_t seed) {
+  RandomSequence random(seed);
+  std::vector<Vec3> centres;
+  for (int y = -side; y <= side; ++y)
+    for (int x = -side; x <= side; ++x) {
+      const double dx = random.Uniform(-jitter, jitter), dy = random.Uniform(-jitter, jitter);
+      centres.emplace_back(spacing * (x + dx), spacing * (y + dy), 0);
+    }
+  return centres;
+}
+
+// The shares at an element, found there and not interpolated.
+std::vector<double> ExactShares(const RenderCamera& frame, const std::vector<Vec3>& centres,
+                                double x, double y) {
+  const Vec3 focus = *FocusPointOfElement(frame, x, y);
+  std::vector<Vec2> points;
+  for (const Vec3& centre : centres) points.push_back(LensPointOfLine(frame, centre, focus));
+  return CellShares(points, frame.aperture);
+}
+
+// As shares of the weights at the element.
+std::vector<double> SharesOf(const FrameWeights& weights, size_t camera_count, int x, int y) {
+  std::vector<double> shares;
+  double sum = 0;
+  for (size_t i = 0; i < camera_count; ++i) {
+    shares.push_back(weights.At(i, x, y));
+    sum += shares.back();
+  }
+  for (double& share : shares) share /= sum;
+  return shares;
+}
+
+TEST(LensPoints, AreWhereLinesMeetTheLens) {
+  RandomSequence random(1);
+  const auto any = [&] {
+    const double x = random.Uniform(-1, 1), y = random.Uniform(-1, 1);
+    return Vec3(x, y, random.Uniform(-1, 1));
+  };
+  for (int i = 0; i < 200; ++i) {
+    RenderCamera frame;
+    frame.pinhole.cam_from_world = *LookAlong(any(), any(), Vec3::UnitY());
+    const Vec2 point(random.Uniform(-1, 1), random.Uniform(-1, 1));
+    const Vec3 on_lens = LensPointWorld(frame, point);
+    const Vec3 seen = any();
+    const Vec3 centre = seen + random.Uniform(0.5, 2) * (on_lens - seen);
+    EXPECT_NEAR((LensPointOfLine(frame, centre, seen) - point).norm(), 0, 1e-9);
+  }
+}
+
+TEST(FrameWeights, OfCamerasInTheLensPlaneAreConstantAndTheirCells) {
+  const RenderCamera frame = Frame(0.05);
+  const auto centres = JitteredGrid(10, 0.01, 0.4, 2);
+  const FrameWeights weights(frame, centres, LensShares::kCells);
+  EXPECT_TRUE(weights.is_constant());
+  const auto exact = ExactShares(frame, centres, 160, 100);
+  const double most = *std::max_element(exact.begin(), exact.end());
+  for (size_t i = 0; i < centres.size(); ++i) {
+    EXPECT_EQ(weights.At(i, 0, 0), weights.At(i, 319, 199));
+    EXPECT_NEAR(weights.At(i, 5, 7), 255 * exact[i] / most, 0.51);
+    EXPECT_EQ(weights.TakesPart(i), exact[i] > 1e-9);
+    if (weights.TakesPart(i)) {
+      EXPECT_LE(centres[i].norm(), weights.reach_w() + 1e-12);
+    }
+  }
+}
+
+TEST(FrameWeights, OfAnEvenGridAreTheLargestThereIs) {
+  const auto centres = JitteredGrid(10, 0.01, 0, 0);
+  const FrameWeights weights(Frame(0.05), centres, LensShares::kCells);
+  for (size_t i = 0; i < centres.size(); ++i)
+    if (centres[i].norm() < 0.04) {
+      EXPECT_EQ(weights.At(i, 9, 9), kMaxWeight);
+    }
+}
+
+TEST(FrameWeights, BesideTheLensPlaneAreInterpolatedBetweenNodes) {
+  for (const double z : {-0.3, -0.05, 0.02, 0.4}) {
+    const RenderCamera frame = Frame(0.06, z);
+    const auto centres = JitteredGrid(30, 0.015, 0.3, 3);
+    const FrameWeights weights(frame, centres, LensShares::kCells);
+    EXPECT_FALSE(weights.is_constant());
+    EXPECT_LE(weights.columns(), 64);
+    double squares = 0, error_squares = 0;
+    for (int y = 4; y < 200; y += 24)
+      for (int x = 4; x < 320; x += 24) {
+        const auto exact = ExactShares(frame, centres, x, y);
+        const auto found = SharesOf(weights, centres.size(), x, y);
+        for (size_t i = 0; i < centres.size(); ++i) {
+          squares += exact[i] * exact[i];
+          error_squares += (found[i] - exact[i]) * (found[i] - exact[i]);
+        }
+      }
+    EXPECT_LT(std::sqrt(error_squares / squares), 0.06) << z;
+  }
+}
+
+TEST(FrameWeights, RaysBeyondTheirReachHaveNone) {
+  const RenderCamera frame = Frame(0.06, 0.1);
+  const auto centres = JitteredGrid(30, 0.015, 0.3, 4);
+  const FrameWeights weights(frame, centres, LensShares::kCells);
+  for (int y = 0; y < 200; y += 8)
+    for (int x = 0; x < 320; x += 8) {
+      const Vec3 focus = *FocusPointOfElement(frame, x + 4, y + 4);
+      for (size_t i = 0; i < centres.size(); ++i)
+        if (weights.At(i, x, y) > 0) {
+          ASSERT_LE(LensPointOfLine(frame, centres[i], focus).norm(), weights.reach_w());
+        }
+    }
+}
+
+TEST(FrameWeights, AreTheSameInBlocksOfElements) {
+  const auto centres = JitteredGrid(10, 0.02, 0.3, 5);
+  const FrameWeights weights(Frame(0.06, 0.2), centres, LensShares::kCells);
+  for (size_t i = 0; i < centres.size(); i += 7)
+    for (int y = 0; y < 200; y += 3)
+      for (int x = 0; x < 320; x += 5)
+        ASSERT_EQ(weights.At(i, x, y), weights.At(i, x / 8 * 8, y / 8 * 8));
+}
+
+TEST(FrameWeights, OneCameraWithAHugeShareLeavesTheOthersTheirs) {
+  std::vector<Vec3> centres = JitteredGrid(10, 0.002, 0.3, 6);  // all in a corner of the lens
+  for (Vec3& c : centres) c += Vec3(0.1, 0.1, 0);
+  centres.emplace_back(-0.1, -0.1, 0);
+  const FrameWeights weights(Frame(0.2), centres, LensShares::kCells);
+  EXPECT_EQ(weights.At(centres.size() - 1, 0, 0), kMaxWeight);
+  EXPECT_GE(weights.At(220, 0, 0), 6u);
+}
+
+TEST(FrameWeights, HatsOfAPinholeGoToTheCamerasAroundIt) {
+  RenderCamera frame = Frame(0);
+  frame.pinhole.cam_from_world = *LookAlong({0.0005, 0.0005, 0}, Vec3::UnitZ(), -Vec3::UnitY());
+  const auto centres = JitteredGrid(5, 0.001, 0, 0);
+  const FrameWeights weights(frame, centres, LensShares::kHats);
+  size_t taking_part = 0;
+  for (size_t i = 0; i < centres.size(); ++i) {
+    taking_part += weights.TakesPart(i) ? 1 : 0;
+    if (weights.TakesPart(i)) {
+      EXPECT_EQ(weights.At(i, 40, 40), kMaxWeight);
+    }
+  }
+  EXPECT_EQ(taking_part, 4u);
+}
+
+TEST(FrameWeights, NoCamerasAndTiltedHorizonsAreNoTrouble) {
+  EXPECT_TRUE(FrameWeights(Frame(0.1), {}, LensShares::kCells).is_constant());
+  RenderCamera frame = Frame(0.1, 0.05);
+  frame.focus_plane = FocusPlane(frame.pinhole, 1, {RadiansFromDegrees(80), 0});
+  const auto centres = JitteredGrid(10, 0.02, 0.2, 7);
+  const FrameWeights weights(frame, centres, LensShares::kCells);
+  const auto takes = [&](size_t i) { return weights.TakesPart(i); };
+  size_t count = 0;
+  for (size_t i = 0; i < centres.size(); ++i) count += takes(i) ? 1 : 0;
+  EXPECT_GT(count, 20u);
+}
+
+}  // namespace
+}  // namespace lf
