@@ -19,9 +19,9 @@
 
 #include "lf/camera/distortion.h"
 #include "lf/camera/pinhole.h"
+#include "lf/camera/ray_weight.h"
 #include "lf/camera/render_camera.h"
 #include "lf/capture/lf_pixels.h"
-#include "lf/camera/ray_weight.h"
 #include "lf/collection/segments.h"
 #include "lf/core/geometry.h"
 #include "lf/plate/sensor_plate.h"
@@ -41,10 +41,10 @@ bool RaysArriveAround(const Intrinsics& k, const DistortionMap& map, double x_px
 
 // Adds one ray to each element that has one in this LF image. Returns how many.
 //   plate   has the size of the render camera's
-//   weight  1..kMaxWeight: a ray adds so many times its value, and counts as so many
+//   weights  a ray adds so many times its value, and counts as so many
 uint64_t GatherReference(const PinholeCamera& lf_camera, const LfPixels& pixels,
                          const RenderCamera& render_camera, SensorPlate* plate,
-                         uint32_t weight = 1);
+                         const RayWeights& weights = {});
 
 struct GatherPlan {
   int plate_width = 0;
@@ -59,8 +59,8 @@ GatherPlan PlanGather(const PinholeCamera& lf_camera, const RenderCamera& render
 
 // Adds the rays of the elements in the tile of `sums`, which the caller flushes. Returns how many.
 //   pixels  RGB; must hold the four around every ray
-//   weight  1..kMaxWeight; may differ from tile to tile
+//   weights  as for the reference, on every cut into tiles
 uint64_t GatherTile(const GatherPlan& plan, const LfPixels& pixels, TileSums* sums,
-                    uint32_t weight = 1);
+                    const RayWeights& weights = {});
 
 }  // namespace lf

@@ -46,7 +46,8 @@ bool RaysArriveAround(const Intrinsics& k, const DistortionMap& map, double x_px
 }
 
 uint64_t GatherReference(const PinholeCamera& lf_camera, const LfPixels& pixels,
-                         const RenderCamera& render_camera, SensorPlate* plate, uint32_t weight) {
+                         const RenderCamera& render_camera, SensorPlate* plate,
+                         const RayWeights& weights) {
   const Intrinsics& k = lf_camera.intrinsics;
   const GatherLaw law(lf_camera, render_camera);
   uint64_t accepted = 0;
@@ -56,8 +57,9 @@ uint64_t GatherReference(const PinholeCamera& lf_camera, const LfPixels& pixels,
       if (!p) continue;
       const auto value = InterpolatePixels(pixels, k.width_px, k.height_px, p->x(), p->y());
       if (!value) continue;
+      const uint64_t weight = weights.At(x, y);
       for (int channel = 0; channel < SensorPlate::kChannels; ++channel)
-        plate->Add(x, y, channel, {uint64_t{weight} * (*value)[channel], weight});
+        plate->Add(x, y, channel, {weight * (*value)[channel], weight});
       ++accepted;
     }
   return accepted;

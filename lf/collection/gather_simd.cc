@@ -5,6 +5,7 @@
 #include <bit>
 
 #include "lf/collection/gather.h"
+#include "lf/collection/tile_weights.h"
 #include "lf/core/check.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -15,6 +16,7 @@
 #include <hwy/highway.h>
 
 #include "lf/collection/polynomial_simd-inl.h"
+#include "lf/collection/ray_weight_simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace lf {
@@ -95,14 +97,14 @@ HWY_ATTR void FindPlaces(const Segment& s, int begin, int count, const PixelRect
 // Sums of 65535 * 65536 and the half that rounds just fit into 32 bits.
 constexpr uint32_t kHalf = kOne * kOne / 2;
 
-// kWeighted: whether the weight is another than 1.
+// Weights and sums are those of the elements from the first one on.
 #if HWY_TARGET == HWY_SCALAR
 
 constexpr int kRaysAtOnce = 1;
 
-template <bool kWeighted>
+template <class Weights>
 HWY_INLINE void AddRays(const Places& places, int i, const uint16_t* values, ptrdiff_t row_values,
-                        uint32_t weight, TileSums::Element* sums) {
+                        const Weights& weights, TileSums::Element* sums) {
   const uint16_t* upper = values + static_cast<ptrdiff_t>(places.pixel[i]) * LfPixels::kRgbLanes;
   const uint16_t* lower = upper + row_values;
   const uint32_t right = places.left_right[i] >> 16, left = kOne - right, down = places.lower[i];
@@ -110,11 +112,11 @@ HWY_INLINE void AddRays(const Places& places, int i, const uint16_t* values, ptr
     const int next = lane + LfPixels::kRgbLanes;
     const uint32_t sum = (upper[lane] * left + upper[next] * right) * (kOne - down) +
                          (lower[lane] * left + lower[next] * right) * down;
-    sums[i].rgb_rays[lane] += ((sum + kHalf) >> (2 * kWeightBits)) * weight;
+    sums[i].rgb_rays[lane] += ((sum + kHalf) >> (2 * kWeightBits)) * weights.At(i);
   }
 }
-template <bool kWeighted>
-constexpr auto AddRay = AddRays<kWeighted>;
+template <class Weights>
+constexpr auto AddRay = AddRays<Weights>;
 
 #else
 
@@ -162,9 +164,10 @@ HWY_ATTR HWY_INLINE V Mix(V first, V second, V weight) {
 }
 
 // Of as many rays, from `i` on, as there are blocks in the vector.
-template <bool kWeighted, class D>
+template <class D, class Weights>
 HWY_ATTR HWY_INLINE void AddRaysOf(D d, const Places& places, int i, const uint16_t* values,
-                                   ptrdiff_t row_values, uint32_t weight, TileSums::Element* sums) {
+                                   ptrdiff_t row_values, const Weights& weights,
+                                   TileSums::Element* sums) {
   const hn::Repartition<uint16_t, D> d16;
   const hn::Repartition<uint8_t, D> d8;
   const hn::RebindToSigned<D> di;
@@ -188,28 +191,30 @@ HWY_ATTR HWY_INLINE void AddRaysOf(D d, const Places& places, int i, const uint1
   // All weights together, 65536, times kMiddle make the highest bit.
   constexpr uint32_t kBack = uint32_t{kMiddle} * kOne * kOne + kHalf;
   auto rays = hn::ShiftRight<2 * kWeightBits>(hn::Add(sum, hn::Set(d, kBack)));
-  if constexpr (kWeighted) rays = hn::Mul(rays, hn::Set(d, weight));
+  if constexpr (!Weights::kIsOne) rays = hn::Mul(rays, weights.OfPixels(d, i));
   uint32_t* const lanes = sums[i].rgb_rays;
   hn::StoreU(hn::Add(hn::LoadU(d, lanes), rays), d, lanes);
 }
 
-template <bool kWeighted>
+template <class Weights>
 HWY_ATTR HWY_INLINE void AddRays(const Places& places, int i, const uint16_t* values,
-                                 ptrdiff_t row_values, uint32_t weight, TileSums::Element* sums) {
-  AddRaysOf<kWeighted>(AllLanes(), places, i, values, row_values, weight, sums);
+                                 ptrdiff_t row_values, const Weights& weights,
+                                 TileSums::Element* sums) {
+  AddRaysOf(AllLanes(), places, i, values, row_values, weights, sums);
 }
-template <bool kWeighted>
+template <class Weights>
 HWY_ATTR HWY_INLINE void AddRay(const Places& places, int i, const uint16_t* values,
-                                ptrdiff_t row_values, uint32_t weight, TileSums::Element* sums) {
-  AddRaysOf<kWeighted>(LanesOfOne(), places, i, values, row_values, weight, sums);
+                                ptrdiff_t row_values, const Weights& weights,
+                                TileSums::Element* sums) {
+  AddRaysOf(LanesOfOne(), places, i, values, row_values, weights, sums);
 }
 
 #endif
 
-// Elements [begin, begin + count) of the segment; `sums` of the first.
-template <bool kMayBeMasked, bool kWeighted>
+// Elements [begin, begin + count) of the segment; weights and sums from the first one on.
+template <bool kMayBeMasked, class Weights>
 HWY_ATTR uint32_t GatherPart(const Segment& s, int begin, int count, const LfPixels& pixels,
-                             uint32_t weight, TileSums::Element* sums) {
+                             const Weights& weights, TileSums::Element* sums) {
   Places places;
   const auto find_places = s.is_cubic() ? FindPlaces<3> : FindPlaces<5>;
   find_places(s, begin, count, pixels.rect, &places);
@@ -232,7 +237,7 @@ HWY_ATTR uint32_t GatherPart(const Segment& s, int begin, int count, const LfPix
       const uint16_t *const row = upper(i), *const next_row = row + row_values;
       if (i % kLineElements == 0) fetch_ahead(i);
       if (row[kRay] + row[kNext] + next_row[kRay] + next_row[kNext] != 4) continue;
-      AddRay<kWeighted>(places, i, values, row_values, weight, sums);
+      AddRay<Weights>(places, i, values, row_values, weights, sums);
       ++rays;
     }
     return rays;
@@ -241,33 +246,42 @@ HWY_ATTR uint32_t GatherPart(const Segment& s, int begin, int count, const LfPix
   for (; i + kLineElements <= count; i += kLineElements) {
     fetch_ahead(i);
     for (int k = i; k < i + kLineElements; k += kRaysAtOnce)
-      AddRays<kWeighted>(places, k, values, row_values, weight, sums);
+      AddRays(places, k, values, row_values, weights, sums);
   }
-  for (; i < count; ++i) AddRay<kWeighted>(places, i, values, row_values, weight, sums);
+  for (; i < count; ++i) AddRay<Weights>(places, i, values, row_values, weights, sums);
   return static_cast<uint32_t>(count);
 }
 
-HWY_ATTR uint64_t GatherTile(const GatherPlan& plan, const LfPixels& pixels, uint32_t weight,
-                             TileSums* sums) {
-  TileSums::Element* const elements = sums->ReserveRgb(weight);  // at most one ray for each
+//   most_weight  of the weights
+template <class Weights>
+HWY_ATTR uint64_t GatherTileBy(const GatherPlan& plan, const LfPixels& pixels,
+                               const Weights& weights, uint32_t most_weight, TileSums* sums) {
+  TileSums::Element* const elements = sums->ReserveRgb(most_weight);  // at most one ray for each
   const PixelRect& tile = sums->rect();
-  const auto gather = pixels.any_masked
-                          ? (weight == 1 ? GatherPart<true, false> : GatherPart<true, true>)
-                          : (weight == 1 ? GatherPart<false, false> : GatherPart<false, true>);
+  const auto gather = pixels.any_masked ? GatherPart<true, Weights> : GatherPart<false, Weights>;
   uint64_t rays = 0;
   for (int y = tile.y_begin; y < tile.y_end; ++y) {
-    TileSums::Element* const row =
-        elements + static_cast<ptrdiff_t>(y - tile.y_begin) * sums->stride();
+    const ptrdiff_t row = static_cast<ptrdiff_t>(y - tile.y_begin) * sums->stride();
     for (size_t i = plan.row_begin[y]; i < plan.row_begin[y + 1]; ++i) {
       const Segment& s = plan.segments[i];
       const int begin = std::max(s.x_begin, tile.x_begin);
       const int end = std::min(s.x_begin + s.count, tile.x_end);
       if (begin >= end) continue;
-      rays +=
-          gather(s, begin - s.x_begin, end - begin, pixels, weight, row + (begin - tile.x_begin));
+      const ptrdiff_t element = row + (begin - tile.x_begin);
+      rays += gather(s, begin - s.x_begin, end - begin, pixels, weights.From(element),
+                     elements + element);
     }
   }
   return rays;
+}
+
+HWY_ATTR uint64_t GatherTile(const GatherPlan& plan, const LfPixels& pixels,
+                             const TileWeights& weights, TileSums* sums) {
+  const uint32_t most = weights.most();
+  if (weights.least() < most)
+    return GatherTileBy(plan, pixels, WeightByElement{weights.data()}, most, sums);
+  if (most > 1) return GatherTileBy(plan, pixels, WeightSame{most}, most, sums);
+  return GatherTileBy(plan, pixels, WeightOne(), 1, sums);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -279,13 +293,15 @@ namespace lf {
 HWY_EXPORT(GatherTile);
 
 uint64_t GatherTile(const GatherPlan& plan, const LfPixels& pixels, TileSums* sums,
-                    uint32_t weight) {
-  LF_CHECK(weight >= 1 && weight <= kMaxWeight);
+                    const RayWeights& weights) {
   LF_CHECK(pixels.bayer == BayerPattern::kNone);
   LF_CHECK(sums->rect().x_end <= plan.plate_width && sums->rect().y_end <= plan.plate_height);
   if (plan.segments.empty()) return 0;
   LF_CHECK(pixels.rect.width() >= 2 && pixels.rect.height() >= 2);
-  return HWY_DYNAMIC_DISPATCH(GatherTile)(plan, pixels, weight, sums);
+  thread_local TileWeights tile_weights;
+  tile_weights.Fill(weights, sums->rect(), sums->stride());
+  if (tile_weights.most() == 0) return 0;
+  return HWY_DYNAMIC_DISPATCH(GatherTile)(plan, pixels, tile_weights, sums);
 }
 
 }  // namespace lf

@@ -4,34 +4,52 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <iterator>
 
 #include "lf/collection/gather.h"
 #include "lf/collection/scatter.h"
 #include "lf/collection/test_plates.h"
+#include "lf/core/random.h"
 
 namespace lf {
 namespace {
 
 using testing::PlateFor;
 
-constexpr uint32_t kWeights[] = {1, 2, 100, kMaxWeight};
+// Of every block at random, 0 among them; in some corners of the plate all the same.
+RayWeights AnyWeights(uint64_t seed) {
+  return RayWeights([seed](int x, int y) -> uint32_t {
+    const auto column = static_cast<uint64_t>(x / kWeightBlock);
+    const auto row = static_cast<uint64_t>(y / kWeightBlock);
+    if (column < 6 && row < 4) return seed % 4 == 0 ? 0 : kMaxWeight;
+    const uint64_t any = RandomBits(seed, column, row);
+    return any % 5 == 0 ? 0 : static_cast<uint32_t>(any >> 32) % (kMaxWeight + 1);
+  });
+}
 
-// weight(tile) times what `plate` holds.
-template <class Weight>
-SensorPlate Multiplied(const SensorPlate& plate, const TileGrid& grid, const Weight& weight) {
+// What `plate` holds, element by element so many times.
+SensorPlate Multiplied(const SensorPlate& plate, const RayWeights& weights) {
   SensorPlate product(plate.width(), plate.height());
   for (int y = 0; y < plate.height(); ++y)
     for (int x = 0; x < plate.width(); ++x)
       for (int channel = 0; channel < SensorPlate::kChannels; ++channel) {
         const ElementSum rays = plate.At(x, y, channel);
-        const uint64_t w = weight(static_cast<size_t>(grid.TileAt(x, y)));
+        const uint64_t w = weights.At(x, y);
         product.Add(x, y, channel, {w * rays.sum, w * rays.count});
       }
   return product;
 }
 
-TEST(RayWeight, RaysAddAndCountSoManyTimesInEveryTile) {
+TEST(RayWeights, AreThoseOfBlocks) {
+  const RayWeights weights([](int x, int y) { return static_cast<uint32_t>(10 * x + y); });
+  EXPECT_EQ(weights.At(7, 7), 0u);
+  EXPECT_EQ(weights.At(8, 23), 96u);
+  EXPECT_FALSE(weights.are_same());
+  EXPECT_EQ(RayWeights().At(5, 9), 1u);
+  EXPECT_EQ(RayWeights(7).At(5, 9), 7u);
+  EXPECT_TRUE(RayWeights(7).are_same());
+}
+
+TEST(RayWeights, RaysAddAndCountSoManyTimes) {
   uint64_t total = 0, most = 0;
   for (uint64_t seed = 0; seed < 100; ++seed) {
     testing::CameraPair pair =
@@ -48,24 +66,26 @@ TEST(RayWeight, RaysAddAndCountSoManyTimesInEveryTile) {
     const ScatterPlan scatter =
         PlanScatter(pair.lf_camera, pair.render_camera, pixels.rect, grid, &ideal);
     const GatherPlan gather = PlanGather(pair.lf_camera, pair.render_camera);
-    const auto weight = [&](size_t tile) { return kWeights[(tile + seed) % std::size(kWeights)]; };
     for (const bool is_gather : {false, true}) {
       if (is_gather && bayer != BayerPattern::kNone) continue;
       // The smallest limit: pieces of scanlines are added pixel by pixel.
-      const auto collect = [&](const auto& weight_of, SensorPlate* plate) {
+      const auto collect = [&](const RayWeights& weights, SensorPlate* plate) {
         return testing::InTiles(
             plate, grid,
             [&](size_t tile, TileSums* sums) {
-              return is_gather ? GatherTile(gather, pixels, sums, weight_of(tile))
-                               : ScatterTile(scatter, tile, pixels, sums, weight_of(tile));
+              return is_gather ? GatherTile(gather, pixels, sums, weights)
+                               : ScatterTile(scatter, tile, pixels, sums, weights);
             },
             seed % 2 == 0 ? TileSums::kMaxRays : kMaxWeight);
       };
-      SensorPlate plain = PlateFor(pair), weighted = PlateFor(pair);
-      const uint64_t rays = collect([](size_t /*tile*/) { return 1u; }, &plain);
-      EXPECT_EQ(collect(weight, &weighted), rays);
-      EXPECT_EQ(weighted, Multiplied(plain, grid, weight)) << seed;
-      total += rays;
+      SensorPlate plain = PlateFor(pair);
+      total += collect(1, &plain);
+      for (const RayWeights& weights :
+           {RayWeights(0), RayWeights(2), RayWeights(kMaxWeight), AnyWeights(seed)}) {
+        SensorPlate weighted = PlateFor(pair);
+        collect(weights, &weighted);
+        EXPECT_EQ(weighted, Multiplied(plain, weights)) << seed;
+      }
       for (int y = 0; y < plain.height(); ++y)
         for (int x = 0; x < plain.width(); ++x) most = std::max(most, plain.At(x, y, 1).count);
     }
@@ -74,20 +94,18 @@ TEST(RayWeight, RaysAddAndCountSoManyTimesInEveryTile) {
   EXPECT_GT(most, 10u);
 }
 
-TEST(RayWeight, TheReferencesDoTheSame) {
+TEST(RayWeights, TheReferencesDoTheSame) {
   const testing::CameraPair pair = testing::ParallelPair(1, 2, 0.013, 0.05);
   const LfPixels pixels = testing::NoisePixels(testing::WholeImage(pair), BayerPattern::kNone, 3);
-  for (const uint32_t weight : kWeights) {
+  for (const RayWeights& weights : {RayWeights(1), RayWeights(100), AnyWeights(2)}) {
     SensorPlate plain = PlateFor(pair), weighted = PlateFor(pair);
-    const TileGrid whole = testing::GridOf(plain, plain.width(), plain.height());
-    const auto same = [&](size_t /*tile*/) { return weight; };
     ScatterReference(pair.lf_camera, pixels, pair.render_camera, pixels.rect, &plain);
-    ScatterReference(pair.lf_camera, pixels, pair.render_camera, pixels.rect, &weighted, weight);
-    EXPECT_EQ(weighted, Multiplied(plain, whole, same));
+    ScatterReference(pair.lf_camera, pixels, pair.render_camera, pixels.rect, &weighted, weights);
+    EXPECT_EQ(weighted, Multiplied(plain, weights));
     SensorPlate gathered = PlateFor(pair), weighted_gathered = PlateFor(pair);
     EXPECT_GT(GatherReference(pair.lf_camera, pixels, pair.render_camera, &gathered), 0u);
-    GatherReference(pair.lf_camera, pixels, pair.render_camera, &weighted_gathered, weight);
-    EXPECT_EQ(weighted_gathered, Multiplied(gathered, whole, same));
+    GatherReference(pair.lf_camera, pixels, pair.render_camera, &weighted_gathered, weights);
+    EXPECT_EQ(weighted_gathered, Multiplied(gathered, weights));
   }
 }
 

@@ -20,9 +20,9 @@
 
 #include "lf/camera/ideal_pixels.h"
 #include "lf/camera/pinhole.h"
+#include "lf/camera/ray_weight.h"
 #include "lf/camera/render_camera.h"
 #include "lf/capture/lf_pixels.h"
-#include "lf/camera/ray_weight.h"
 #include "lf/collection/segments.h"
 #include "lf/collection/tile_pieces.h"
 #include "lf/core/geometry.h"
@@ -35,10 +35,10 @@ namespace lf {
 // Adds the rays of pixels `rect` of one LF image. Masked pixels give no ray; a pixel of a mosaic
 // adds to its own channel, another to three. Returns how many rays were accepted.
 //   pixels  must hold `rect`;  plate  has the size of the render camera's
-//   weight  1..kMaxWeight: a ray adds so many times its value, and counts as so many
+//   weights  a ray adds so many times its value, and counts as so many
 uint64_t ScatterReference(const PinholeCamera& lf_camera, const LfPixels& pixels,
                           const RenderCamera& render_camera, const PixelRect& rect,
-                          SensorPlate* plate, uint32_t weight = 1);
+                          SensorPlate* plate, const RayWeights& weights = {});
 
 struct ScatterPlan {
   TileGrid grid;
@@ -59,8 +59,8 @@ ScatterPlan PlanScatter(const PinholeCamera& lf_camera, const RenderCamera& rend
 // Adds the rays of `plan` that land in one tile of its grid, that of `sums`, which the caller
 // flushes. Returns how many.
 //   pixels  those the plan's rectangle was taken from
-//   weight  1..kMaxWeight; may differ from tile to tile
+//   weights  as for the reference, on every cut into tiles
 uint64_t ScatterTile(const ScatterPlan& plan, size_t tile, const LfPixels& pixels, TileSums* sums,
-                     uint32_t weight = 1);
+                     const RayWeights& weights = {});
 
 }  // namespace lf

@@ -5,11 +5,12 @@ namespace lf {
 
 uint64_t ScatterReference(const PinholeCamera& lf_camera, const LfPixels& pixels,
                           const RenderCamera& render_camera, const PixelRect& rect,
-                          SensorPlate* plate, uint32_t weight) {
+                          SensorPlate* plate, const RayWeights& weights) {
   LF_CHECK(Intersection(rect, pixels.rect) == rect || rect.empty());
   const RayLaw law(lf_camera, render_camera);
   const auto add = [&](const PlateElement& element, int channel, uint16_t v) {
-    plate->Add(element.x, element.y, channel, {uint64_t{weight} * v, weight});
+    const uint64_t weight = weights.At(element.x, element.y);
+    plate->Add(element.x, element.y, channel, {weight * v, weight});
   };
   uint64_t accepted = 0;
   for (int y = rect.y_begin; y < rect.y_end; ++y) {

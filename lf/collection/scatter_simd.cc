@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "lf/collection/scatter.h"
+#include "lf/collection/tile_weights.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lf/collection/scatter_simd.cc"  // NOLINT: as Highway wants it
@@ -16,6 +17,7 @@
 #include <hwy/highway.h>
 
 #include "lf/collection/polynomial_simd-inl.h"
+#include "lf/collection/ray_weight_simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace lf {
@@ -38,14 +40,13 @@ struct TileLayout {
 };
 
 // A piece of an RGB scanline, counted from its begin, adds to sums.
-//   kWeighted  whether the weight is another than 1
-template <bool kWeighted>
+template <class Weights>
 struct RgbPixels {
   static constexpr int kLanesPerPixel = LfPixels::kRgbLanes;
   const uint16_t* values;        // [count][4]
   const uint16_t* values_ahead;  // those of a scanline to come
   TileSums::Element* elements;
-  uint32_t weight;
+  Weights weights;  // as elements
   bool may_be_masked;
 
   static constexpr bool has_runs() { return true; }
@@ -54,18 +55,23 @@ struct RgbPixels {
     const uint16_t* v = values + static_cast<ptrdiff_t>(i) * LfPixels::kRgbLanes;
     uint32_t* sums = elements[start + i].rgb_rays;
 #if HWY_TARGET == HWY_SCALAR
-    for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane) sums[lane] += v[lane] * weight;
+    for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane)
+      sums[lane] += v[lane] * weights.At(start + i);
 #else
     const hn::Full128<uint32_t> d32;
-    hn::Store(hn::Add(hn::Load(d32, sums), Rays(d32, v)), d32, sums);
+    hn::Store(hn::Add(hn::Load(d32, sums), Rays(d32, v, start + i)), d32, sums);
 #endif
   }
 #if HWY_TARGET != HWY_SCALAR
+  // Of pixels that fall on this element and the next ones.
   template <class D>
-  HWY_ATTR HWY_INLINE hn::Vec<D> Rays(D d32, const uint16_t* v) const {
+  HWY_ATTR HWY_INLINE hn::Vec<D> Rays(D d32, const uint16_t* v, int32_t element) const {
     const hn::Rebind<uint16_t, D> d16;
     const auto rays = hn::PromoteTo(d32, hn::LoadU(d16, v));
-    return kWeighted ? hn::Mul(rays, hn::Set(d32, weight)) : rays;
+    if constexpr (Weights::kIsOne)
+      return rays;
+    else
+      return hn::Mul(rays, weights.OfPixels(d32, element));
   }
   HWY_ATTR HWY_INLINE void AddRun(int i, int32_t start) const {
     const hn::CappedTag<uint32_t, 16> d32;
@@ -73,7 +79,9 @@ struct RgbPixels {
     const uint16_t* v = values + static_cast<ptrdiff_t>(i) * LfPixels::kRgbLanes;
     uint32_t* sums = elements[start + i].rgb_rays;
     for (int lane = 0; lane < kGroup * LfPixels::kRgbLanes; lane += kStep)
-      hn::StoreU(hn::Add(hn::LoadU(d32, sums + lane), Rays(d32, v + lane)), d32, sums + lane);
+      hn::StoreU(hn::Add(hn::LoadU(d32, sums + lane),
+                         Rays(d32, v + lane, start + i + lane / LfPixels::kRgbLanes)),
+                 d32, sums + lane);
   }
   HWY_ATTR HWY_INLINE void AddGroup(int i, const int32_t* starts) const {
     const hn::CappedTag<int32_t, kGroup> d;
@@ -98,14 +106,14 @@ struct RgbPixels {
 };
 
 // A piece of a mosaic's scanline adds to packed words.
-template <bool kWeighted>
+template <class Weights>
 struct MosaicPixels {
   static constexpr int kLanesPerPixel = 1;
   const uint16_t* values;        // [count]
   const uint16_t* values_ahead;  // those of a scanline to come
   uint64_t* words[2];            // for pixels whose index and column are both odd or even; others
-  uint32_t weight;
-  const uint8_t* mask;  // [count], or none
+  Weights weights;               // as words
+  const uint8_t* mask;           // [count], or none
 
   bool has_runs() const { return mask == nullptr; }
   // The row of words is the same all along a run, since rows have an even distance.
@@ -113,26 +121,31 @@ struct MosaicPixels {
 
   void Add(int i, int32_t start) const {
     if (mask != nullptr && mask[i] == 0) return;
-    const uint64_t ray = SensorPlate::kOneRay | values[i];
-    *WordsOf(i, start) += kWeighted ? ray * weight : ray;
+    *WordsOf(i, start) += (SensorPlate::kOneRay | values[i]) * weights.At(start + i);
   }
 #if HWY_TARGET != HWY_SCALAR
   using Lanes = hn::CappedTag<uint64_t, kGroup>;
-  HWY_ATTR HWY_INLINE hn::Vec<Lanes> Rays(const uint16_t* v) const {
+  // Of pixels from `i` on that fall on the words from this one on.
+  HWY_ATTR HWY_INLINE hn::Vec<Lanes> Rays(int i, int32_t word) const {
     const Lanes d64;
     const hn::Rebind<uint32_t, Lanes> d32;
     const hn::Rebind<uint16_t, Lanes> d16;
-    auto sums = hn::PromoteTo(d32, hn::LoadU(d16, v));
-    if constexpr (kWeighted) sums = hn::Mul(sums, hn::Set(d32, weight));
-    const uint64_t counted = kWeighted ? SensorPlate::kOneRay * weight : SensorPlate::kOneRay;
-    return hn::Or(hn::PromoteTo(d64, sums), hn::Set(d64, counted));
+    const auto sums = hn::PromoteTo(d32, hn::LoadU(d16, values + i));
+    if constexpr (Weights::kIsOne) {
+      return hn::Or(hn::PromoteTo(d64, sums), hn::Set(d64, SensorPlate::kOneRay));
+    } else {
+      constexpr int kCountBit = std::countr_zero(SensorPlate::kOneRay);
+      const auto weight = weights.OfWords(d32, word);
+      return hn::Or(hn::PromoteTo(d64, hn::Mul(sums, weight)),
+                    hn::ShiftLeft<kCountBit>(hn::PromoteTo(d64, weight)));
+    }
   }
   HWY_ATTR HWY_INLINE void AddRun(int i, int32_t start) const {
     const Lanes d;
     constexpr int kStep = static_cast<int>(hn::MaxLanes(d));
     uint64_t* const sums = WordsOf(i, start);
     for (int k = 0; k < kGroup; k += kStep)
-      hn::StoreU(hn::Add(hn::LoadU(d, sums + k), Rays(values + i + k)), d, sums + k);
+      hn::StoreU(hn::Add(hn::LoadU(d, sums + k), Rays(i + k, start + i + k)), d, sums + k);
   }
   // Most groups are one run or two: then the words where each would lie get what belongs to it, and
   // zeros.
@@ -162,10 +175,11 @@ struct MosaicPixels {
     for (int k = 0; k < kGroup; k += kStep) {
       const auto start = hn::PromoteTo(d_start, hn::LoadU(d_half, starts + k));
       const auto is_first = hn::RebindMask(d, hn::Eq(start, hn::Set(d_start, first_start)));
-      const auto rays = Rays(values + i + k);
-      hn::StoreU(hn::Add(hn::LoadU(d, first_sums + k), hn::IfThenElseZero(is_first, rays)), d,
+      const auto first_rays = Rays(i + k, first_start + i + k);
+      const auto last_rays = Weights::kIsSame ? first_rays : Rays(i + k, last_start + i + k);
+      hn::StoreU(hn::Add(hn::LoadU(d, first_sums + k), hn::IfThenElseZero(is_first, first_rays)), d,
                  first_sums + k);
-      hn::StoreU(hn::Add(hn::LoadU(d, last_sums + k), hn::IfThenZeroElse(is_first, rays)), d,
+      hn::StoreU(hn::Add(hn::LoadU(d, last_sums + k), hn::IfThenZeroElse(is_first, last_rays)), d,
                  last_sums + k);
     }
   }
@@ -278,9 +292,10 @@ HWY_ATTR uint32_t ScatterPiece(const Segment& s, const TilePiece& piece, const P
   return pixels.CountRays(count);
 }
 
-template <bool kWeighted>
+//   most_weight  of the weights
+template <class Weights>
 HWY_ATTR uint64_t ScatterTileBy(const ScatterPlan& plan, size_t tile, const LfPixels& pixels,
-                                uint32_t weight, TileSums* sums) {
+                                const Weights& weights, uint32_t most_weight, TileSums* sums) {
   const bool is_rgb = pixels.bayer == BayerPattern::kNone;
   const int stride = sums->stride();
   const PixelRect& rect = sums->rect();
@@ -289,7 +304,7 @@ HWY_ATTR uint64_t ScatterTileBy(const ScatterPlan& plan, size_t tile, const LfPi
                                 rect.y_end == plan.grid.plate_height;
   const TileLayout layout{rect, is_rgb ? stride : TileSums::kMosaicRows * stride, has_plate_border};
   // Of a longer piece too many rays might fall on one element.
-  const uint32_t most_rays = sums->max_reserve() / weight;
+  const uint32_t most_rays = sums->max_reserve() / most_weight;
   uint64_t rays = 0;
   const TilePiece* piece = plan.pieces.begin(tile);
   for (int begin = 0; piece != plan.pieces.end(tile);) {
@@ -308,9 +323,9 @@ HWY_ATTR uint64_t ScatterTileBy(const ScatterPlan& plan, size_t tile, const LfPi
       const ptrdiff_t lane = static_cast<ptrdiff_t>(column) * LfPixels::kRgbLanes;
       rays +=
           ScatterPiece(s, part,
-                       RgbPixels<kWeighted>{
+                       RgbPixels<Weights>{
                            pixels.radiance.row(row) + lane, pixels.radiance.row(row_ahead) + lane,
-                           sums->ReserveRgb(part.crowd * weight), weight, pixels.any_masked},
+                           sums->ReserveRgb(part.crowd * most_weight), weights, pixels.any_masked},
                        layout);
     } else {
       // Whether the piece begins with green, and the other colour.
@@ -318,16 +333,16 @@ HWY_ATTR uint64_t ScatterTileBy(const ScatterPlan& plan, size_t tile, const LfPi
       const int first = BayerChannel(pixels.bayer, x, s.y);
       const int other = first == 1 ? BayerChannel(pixels.bayer, x + 1, s.y) : first;
       uint64_t* const words =
-          sums->ReserveMosaic(part.crowd * weight) +
+          sums->ReserveMosaic(part.crowd * most_weight) +
           static_cast<ptrdiff_t>(other == 2 ? TileSums::kBlueFirst : 0) * stride;
       uint64_t* const other_words = words + static_cast<ptrdiff_t>(TileSums::kGreenFirst) * stride;
       rays += ScatterPiece(
           s, part,
-          MosaicPixels<kWeighted>{
+          MosaicPixels<Weights>{
               pixels.radiance.row(row) + column,
               pixels.radiance.row(row_ahead) + column,
               {first == 1 ? other_words : words, first == 1 ? words : other_words},
-              weight,
+              weights,
               pixels.mosaic_mask.empty() ? nullptr : pixels.mosaic_mask.row(row) + column},
           layout);
     }
@@ -339,9 +354,12 @@ HWY_ATTR uint64_t ScatterTileBy(const ScatterPlan& plan, size_t tile, const LfPi
 }
 
 HWY_ATTR uint64_t ScatterTile(const ScatterPlan& plan, size_t tile, const LfPixels& pixels,
-                              uint32_t weight, TileSums* sums) {
-  const auto scatter = weight == 1 ? ScatterTileBy<false> : ScatterTileBy<true>;
-  return scatter(plan, tile, pixels, weight, sums);
+                              const TileWeights& weights, TileSums* sums) {
+  const uint32_t most = weights.most();
+  if (weights.least() < most)
+    return ScatterTileBy(plan, tile, pixels, WeightByElement{weights.data()}, most, sums);
+  if (most > 1) return ScatterTileBy(plan, tile, pixels, WeightSame{most}, most, sums);
+  return ScatterTileBy(plan, tile, pixels, WeightOne(), 1, sums);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -353,15 +371,18 @@ namespace lf {
 HWY_EXPORT(ScatterTile);
 
 uint64_t ScatterTile(const ScatterPlan& plan, size_t tile, const LfPixels& pixels, TileSums* sums,
-                     uint32_t weight) {
-  LF_CHECK(weight >= 1 && weight <= kMaxWeight);
+                     const RayWeights& weights) {
   const PixelRect& rect = sums->rect();
   LF_CHECK(plan.grid.RectOf(tile) == rect);
   // Addresses in the tile, and those counted from the base of a segment, are exact in single
   // precision.
   const int64_t row_stride = int64_t{TileSums::kMosaicRows} * sums->stride();
   LF_CHECK(row_stride * (rect.height() + int64_t{Segment::kMaxCount}) < (int64_t{1} << 22));
-  return HWY_DYNAMIC_DISPATCH(ScatterTile)(plan, tile, pixels, weight, sums);
+  thread_local TileWeights tile_weights;
+  const bool is_rgb = pixels.bayer == BayerPattern::kNone;
+  tile_weights.Fill(weights, rect, is_rgb ? sums->stride() : static_cast<int>(row_stride));
+  if (tile_weights.most() == 0) return 0;
+  return HWY_DYNAMIC_DISPATCH(ScatterTile)(plan, tile, pixels, tile_weights, sums);
 }
 
 }  // namespace lf

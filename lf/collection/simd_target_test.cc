@@ -6,6 +6,7 @@
 #include "lf/collection/gather.h"
 #include "lf/collection/scatter.h"
 #include "lf/collection/test_plates.h"
+#include "lf/core/random.h"
 
 namespace lf {
 namespace {
@@ -18,13 +19,18 @@ std::vector<SensorPlate> Collect(const testing::CameraPair& pair, uint64_t seed)
   const auto bayer = static_cast<BayerPattern>(seed % 5);
   const LfPixels pixels = testing::NoisePixels(testing::WholeImage(pair), bayer, seed);
   const IdealPixels ideal(k);
-  const auto weight = static_cast<uint32_t>(1 + seed * seed % kMaxWeight);
+  // All 1, all the same, or by element.
+  RayWeights weights(seed % 3 == 0 ? 1 : 1 + static_cast<uint32_t>(seed % kMaxWeight));
+  if (seed % 3 == 2)
+    weights = RayWeights([seed](int x, int y) {
+      return static_cast<uint32_t>(RandomBits(seed, x, y) % (kMaxWeight + 1));
+    });
   SensorPlate plate = PlateFor(pair);
   const TileGrid grid = testing::GridOf(plate, 40, 23);
   const ScatterPlan scatter =
       PlanScatter(pair.lf_camera, pair.render_camera, pixels.rect, grid, &ideal);
   testing::InTiles(&plate, grid, [&](size_t tile, TileSums* sums) {
-    return ScatterTile(scatter, tile, pixels, sums, weight);
+    return ScatterTile(scatter, tile, pixels, sums, weights);
   });
   std::vector<SensorPlate> plates;
   plates.push_back(std::move(plate));
@@ -32,7 +38,7 @@ std::vector<SensorPlate> Collect(const testing::CameraPair& pair, uint64_t seed)
   const GatherPlan gather = PlanGather(pair.lf_camera, pair.render_camera);
   plates.push_back(PlateFor(pair));
   testing::InTiles(&plates.back(), grid, [&](size_t /*tile*/, TileSums* sums) {
-    return GatherTile(gather, pixels, sums, weight);
+    return GatherTile(gather, pixels, sums, weights);
   });
   return plates;
 }

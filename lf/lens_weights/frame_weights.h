@@ -19,9 +19,6 @@ namespace lf {
 
 enum class LensShares { kCells, kHats };
 
-// Elements [8 i, 8 i + 8) x [8 j, 8 j + 8) have one weight.
-inline constexpr int kWeightBlock = 8;
-
 class FrameWeights {
  public:
   // centres_world  of the LF cameras whose images may contribute

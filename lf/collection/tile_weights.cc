@@ -1,0 +1,45 @@
+#include "lf/collection/tile_weights.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "lf/core/check.h"
+
+namespace lf {
+
+void TileWeights::Fill(const RayWeights& weights, const PixelRect& tile, int pitch) {
+  LF_CHECK(pitch >= tile.width());
+  if (weights.are_same()) {
+    LF_CHECK(weights.same() <= kMaxWeight);
+    least_ = most_ = weights.same();
+    return;
+  }
+  const size_t row_bytes = static_cast<size_t>(pitch);
+  const size_t size = row_bytes * static_cast<size_t>(tile.height()) + 2 * kMargin;
+  if (bytes_.size() < size) bytes_.resize(size);
+  least_ = kMaxWeight;
+  most_ = 0;
+  uint8_t* row = bytes_.data() + kMargin;
+  const auto block_end = [](int begin, int end) {
+    return std::min(end, begin / kWeightBlock * kWeightBlock + kWeightBlock);
+  };
+  for (int y = tile.y_begin; y < tile.y_end;) {
+    uint8_t* const first = row;
+    for (int x = tile.x_begin; x < tile.x_end;) {
+      const uint32_t weight = weights.At(x, y);
+      LF_DCHECK(weight <= kMaxWeight);
+      least_ = std::min(least_, weight);
+      most_ = std::max(most_, weight);
+      const int end = block_end(x, tile.x_end);
+      std::memset(first + (x - tile.x_begin), static_cast<int>(weight),
+                  static_cast<size_t>(end - x));
+      x = end;
+    }
+    const int end = block_end(y, tile.y_end);
+    row += row_bytes;
+    for (++y; y < end; ++y, row += row_bytes)
+      std::memcpy(row, first, static_cast<size_t>(tile.width()));
+  }
+}
+
+}  // namespace lf

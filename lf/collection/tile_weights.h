@@ -1,0 +1,35 @@
+// The weights of one LF image's rays in one tile, a byte for each element, where kernels find them
+// by the address they add to. Internal to collection.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "lf/camera/ray_weight.h"
+#include "lf/core/geometry.h"
+
+namespace lf {
+
+class TileWeights {
+ public:
+  // Bytes before and behind that may be read, and belong to no element.
+  static constexpr int kMargin = 64;
+
+  //   pitch  from one row of elements to the next
+  // Nothing is written where weights are the same.
+  void Fill(const RayWeights& weights, const PixelRect& tile, int pitch);
+
+  // The least and the largest.
+  uint32_t least() const { return least_; }
+  uint32_t most() const { return most_; }
+
+  // [y * pitch + x], counted from the tile's corner.
+  const uint8_t* data() const { return bytes_.data() + kMargin; }
+
+ private:
+  uint32_t least_ = 0;
+  uint32_t most_ = 0;
+  std::vector<uint8_t> bytes_;
+};
+
+}  // namespace lf
