@@ -11,7 +11,7 @@ void Prefetch(const uint64_t* words) { __builtin_prefetch(words, 1); }
 }  // namespace
 
 void TileSums::Begin(PlateTile* tile) {
-  LF_CHECK(ray_limit_ <= tile->max_reserve());
+  LF_CHECK(mosaic_limit_ <= tile->max_reserve());
   LF_CHECK(!has_rgb_ && !has_mosaic_);
   tile_ = tile;
 }
@@ -26,11 +26,11 @@ void TileSums::MakeRgbRoom(uint32_t rays) {
 }
 
 void TileSums::MakeMosaicRoom(uint32_t rays) {
-  LF_CHECK(rays <= ray_limit_);
+  LF_CHECK(rays <= mosaic_limit_);
   FlushMosaic();
   const size_t count = static_cast<size_t>(stride()) * rect().height() * kMosaicRows + 2 * kMargin;
   if (words_.size() < count) words_.resize(count);
-  mosaic_headroom_ = ray_limit_;
+  mosaic_headroom_ = mosaic_limit_;
   has_mosaic_ = true;
 }
 
@@ -61,7 +61,7 @@ void TileSums::FlushRgb() {
 
 void TileSums::FlushMosaic() {
   if (!has_mosaic_) return;
-  tile_->Reserve(ray_limit_ - mosaic_headroom_);
+  tile_->Reserve(mosaic_limit_ - mosaic_headroom_);
   const int width = rect().width();
   for (int y = rect().y_begin; y < rect().y_end; ++y) {
     uint64_t* const rows = words_.data() + kMargin +

@@ -42,7 +42,9 @@ class TileSums {
   static constexpr uint32_t kMaxRays = 65537;
 
   // ray_limit: below kMaxRays for tests only.
-  explicit TileSums(uint32_t ray_limit = kMaxRays) : ray_limit_(ray_limit) {}
+  explicit TileSums(uint32_t ray_limit = kMaxRays)
+      : ray_limit_(ray_limit),
+        mosaic_limit_(ray_limit == kMaxRays ? SensorPlate::kMaxCount : ray_limit) {}
 
   // What is added from here on, until Flush(), belongs to `tile`.
   void Begin(PlateTile* tile);
@@ -79,6 +81,7 @@ class TileSums {
   void FlushMosaic();
 
   uint32_t ray_limit_;
+  uint32_t mosaic_limit_;  // what the plate's words hold
   PlateTile* tile_ = nullptr;
   bool has_rgb_ = false;
   bool has_mosaic_ = false;
