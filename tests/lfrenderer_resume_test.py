@@ -7,6 +7,7 @@ usage: lfrenderer_resume_test.py LFRENDERER
 import concurrent.futures
 import hashlib
 import json
+import os
 import pathlib
 import random
 import re
@@ -245,6 +246,35 @@ class ResumeTest(unittest.TestCase):
         self.assertIn("the state is written", words)
         self.assertEqual(digests(self.folder / "usr1"), expected)
 
+    def test_an_interrupt_that_comes_twice_at_once_is_one(self):
+        """`timeout -s INT` sends it to the program and to its group."""
+        process = subprocess.Popen(self.arguments("echo", "--back-end", "reference"),
+                                   stderr=subprocess.PIPE, text=True)
+        self.wait_for_lock("echo", process)
+        for _ in range(3):
+            process.send_signal(signal.SIGINT)
+        _, words = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 5, words)
+        self.assertEqual(self.reference("echo", "--resume"), self.expected_reference)
+
+    def test_a_closed_terminal_is_an_interrupt_but_not_under_nohup(self):
+        for name, prefix, code in (("hup", [], 5), ("nohup", ["nohup"], 0)):
+            process = subprocess.Popen(
+                [*prefix, *self.arguments(name, "--back-end", "reference", "--frames", "1-6")],
+                stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
+            self.wait_for_lock(name, process)
+            process.send_signal(signal.SIGHUP)
+            _, words = process.communicate(timeout=60)
+            self.assertEqual(process.returncode, code, words)
+
+    def test_a_log_that_nobody_reads_any_more_does_not_end_it(self):
+        read, write = os.pipe()
+        os.close(read)
+        process = subprocess.run(self.arguments("pipe"), stderr=write)
+        os.close(write)
+        self.assertEqual(process.returncode, 0)
+        self.assertEqual(digests(self.folder / "pipe"), self.expected)
+
     def test_a_second_sigint_ends_at_once_and_harms_nothing(self):
         expected = self.of_reference(range(1, 7))
         process = subprocess.Popen(
@@ -253,7 +283,7 @@ class ResumeTest(unittest.TestCase):
         self.wait_for_lock("twice", process)
         time.sleep(0.02)  # long before the last frame
         process.send_signal(signal.SIGINT)
-        time.sleep(0.01)
+        time.sleep(0.6)
         process.send_signal(signal.SIGINT)
         _, words = process.communicate(timeout=60)
         self.assertIn(process.returncode, (-signal.SIGINT, 5), words)
@@ -411,11 +441,10 @@ class ResumeTest(unittest.TestCase):
         self.begun("full")
         state = {p.name: p.read_bytes() for p in self.partial("full").glob("*.plate")}
 
-        def limit_files():  # writes beyond it fail, since Python ignores SIGXFSZ
+        def limit_files():  # writes beyond it fail; the signal that comes with it does not end it
             resource.setrlimit(resource.RLIMIT_FSIZE, (9000, 9000))
         self.fails(4, ["cannot be written"], "full", "--back-end", "reference", "--frames", "1-12",
-                   "--resume", "--dump-every", "0.01s", preexec_fn=limit_files,
-                   restore_signals=False)
+                   "--resume", "--dump-every", "0.01s", preexec_fn=limit_files)
         for name, content in state.items():
             if (self.partial("full") / name).exists():
                 self.assertEqual((self.partial("full") / name).read_bytes(), content)

@@ -29,8 +29,8 @@ constexpr const char* kExamples = R"(Examples:
 DIR receives frame_0001.exr ..., contact_sheet.png and report.json. EXR frames hold linear light
 (R, G, B), the rays of every element (count.R, count.G, count.B) and coverage.
 
-The state of unfinished frames lies in DIR/partial. Ctrl-C (SIGINT) and SIGTERM write it and end with
-exit code 5, SIGUSR1 writes it and goes on; a second Ctrl-C ends at once. --resume gives the same
+The state of unfinished frames lies in DIR/partial. Ctrl-C (SIGINT), SIGTERM and SIGHUP write it and end
+with exit code 5, SIGUSR1 writes it and goes on; a second Ctrl-C ends at once. --resume gives the same
 bits as if there had been no interruption.)";
 
 struct Arguments {
@@ -68,6 +68,8 @@ lf::Result<lf::RenderOptions> MakeOptions(const Arguments& arguments, const lf::
   options.seed = program.common().seed;
   options.strict = program.common().strict;
   if (arguments.estimator == "bilinear") options.estimator = lf::Estimator::kBilinear;
+  if (arguments.lens_weights == "area") options.lens_weights = lf::LensWeights::kArea;
+  if (arguments.lens_weights == "hat") options.lens_weights = lf::LensWeights::kHat;
   if (arguments.back_end == "reference") options.back_end = lf::CollectBackEnd::kReference;
   options.version = lf::Version();
   LF_ASSIGN_OR_RETURN(options.dump_every_s,
@@ -97,15 +99,17 @@ int main(int argc, char** argv) {
   arguments.light_field.AddTo(app);
   app.add_option("PATH.yaml", arguments.path, "Camera path (doc/formats/path.md)")->required();
   app.add_option("-o,--output", arguments.output, "Folder of the frames")->required();
-  app.add_option("--frames", arguments.frames, "Frames to render: 1-100x2, 7, 3-5,9");
+  app.add_option("--frames", arguments.frames, "Frames to render: 1-100x2, 7, 3-5,9")
+      ->check(lf::NotEmpty());
   app.add_option("--format", arguments.format, "exr, exr-float, png or png16")
       ->check(CLI::IsMember({"exr", "exr-float", "png", "png16"}));
-  app.add_option("--video", arguments.video, "Also write the frames as this mp4 (needs ffmpeg)");
+  app.add_option("--video", arguments.video, "Also write the frames as this mp4 (needs ffmpeg)")
+      ->check(lf::NotEmpty());
   app.add_flag("--no-contact-sheet", arguments.no_contact_sheet, "No contact_sheet.png");
   app.add_option("--memory", arguments.memory, "Bound of the memory used");
   app.add_option("--max-images", arguments.max_images,
                  "Use only so many LF images for each frame, the first of a shuffled order; 0: all")
-      ->check(CLI::NonNegativeNumber);
+      ->check(lf::WholeNumber());
   app.add_option(
       "--dump-every", arguments.dump_every,
       "Write the state so often, such as 30s, 10m, 1h; seldomer if it would take more than "
@@ -116,11 +120,13 @@ int main(int argc, char** argv) {
   app.add_flag("--overwrite", arguments.overwrite, "Remove an unfinished render in DIR")
       ->excludes(resume);
   app.add_option(
-      "--stop-when", arguments.stop_when,
-      "samples>=N: a frame is finished when 99 % of the elements that LF images see have "
-      "N rays in every channel");
+         "--stop-when", arguments.stop_when,
+         "samples>=N: a frame is finished when 99 % of the elements that LF images see have "
+         "N rays in every channel")
+      ->check(lf::NotEmpty());
   app.add_option("--require", arguments.require,
-                 "samples>=N: exit code 6 if a frame has fewer in the end");
+                 "samples>=N: exit code 6 if a frame has fewer in the end")
+      ->check(lf::NotEmpty());
   app.add_flag("--keep-plates", arguments.keep_plates,
                "Also write each frame's sums and counts: frame_0001.plate");
   app.add_option("--smooth-below", arguments.smooth_below,
@@ -129,7 +135,10 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"collect", "rebin", "hybrid"}));
   app.add_option("--estimator", arguments.estimator, "nearest (auto), or bilinear for RGB images")
       ->check(CLI::IsMember({"auto", "nearest", "bilinear"}));
-  app.add_option("--lens-weights", arguments.lens_weights, "auto or none")
+  app.add_option(
+         "--lens-weights", arguments.lens_weights,
+         "none (auto): LF images count alike; area: as the part of the lens that is nearest "
+         "to each; hat: interpolated, for small lenses and pinholes")
       ->check(CLI::IsMember({"auto", "none", "area", "hat"}));
   app.add_option("--back-end", arguments.back_end,
                  "fast, or reference: the literal formulas, one ray at a time")
@@ -137,18 +146,19 @@ int main(int argc, char** argv) {
   program.AddJsonOption("Print the report to stdout");
 
   return program.Run(argc, argv, [&]() -> lf::Result<void> {
+    lf::RenderSignals& signals = lf::CatchRenderSignals();
     LF_RETURN_IF_ERROR(CheckAvailable("--mode", arguments.mode, {"collect"}));
     LF_RETURN_IF_ERROR(
         CheckAvailable("--estimator", arguments.estimator, {"auto", "nearest", "bilinear"}));
-    LF_RETURN_IF_ERROR(CheckAvailable("--lens-weights", arguments.lens_weights, {"auto", "none"}));
     LF_ASSIGN_OR_RETURN(const lf::LightField light_field, arguments.light_field.Open());
     LF_ASSIGN_OR_RETURN(const lf::CameraPath path,
                         lf::ReadPathYaml(arguments.path, light_field.unit_m));
     LF_ASSIGN_OR_RETURN(lf::RenderOptions options, MakeOptions(arguments, program, path));
-    // Until here there is nothing to be kept, and a signal ends the program.
-    options.signals = &lf::CatchRenderSignals();
+    options.signals = &signals;
     lf::ThreadPool pool(program.common().threads);
-    lf::ProgressMeter meter(lf::ParseProgressStyle(program.common().progress), "rays");
+    // What is known beforehand: every pixel of a needed rectangle is tried as a ray, or read.
+    const char* unit = options.estimator == lf::Estimator::kNearest ? "rays" : "px";
+    lf::ProgressMeter meter(lf::ParseProgressStyle(program.common().progress), unit);
     const auto progress = [&](const lf::RenderProgress& now) {
       meter.Update(now.ray_count, now.ray_total,
                    fmt::format("LF image {}/{}, frame {}/{}", now.image_count, now.image_total,

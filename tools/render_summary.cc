@@ -55,7 +55,8 @@ void SummariseRender(const RenderReport& report, const std::string& look_at) {
       "{} frames {}x{} in {}: {}rays from {} of {} LF images, {:.3g} Mrays/s per core, "
       "peak memory {} MiB",
       report.frames.size(), report.width, report.height, ShortDuration(report.total_s),
-      ShortNumber(static_cast<double>(report.AcceptedRays())), report.selected_image_count,
+      ShortNumber(static_cast<double>(report.AcceptedRays())),
+      report.selected_image_count - std::min(report.selected_image_count, report.skipped.size()),
       report.lf_image_count, report.MraysPerSecondPerCore(), report.peak_memory_bytes >> 20);
   WarnOfEmptyElements(report);
   if (!report.skipped.empty())

@@ -50,8 +50,8 @@ class FrameCollector::State {
         order_(order),
         options_(options),
         pool_(pool),
-        collector_(light_field, frames, options.estimator, options.back_end, options.plan_bytes,
-                   pool, plates),
+        collector_(light_field, frames, options.estimator, options.back_end, options.weights,
+                   options.plan_bytes, pool, plates),
         places_(places.begin(), places.end()),
         progress_(frames.size()),
         is_stopped_(frames.size(), false) {
@@ -104,9 +104,10 @@ class FrameCollector::State {
   size_t images_done_ = 0;
   size_t announced_ = 0;  // LF images of the order that the store knows of
   std::mutex spare_mutex_;
-  std::vector<LfPixels> spare_;  // collected: their memory is used again
-  Batch batch_;                  // the one to be collected
-  Batch next_;                   // the one to be decoded meanwhile
+  std::vector<LfPixels> spare_;     // collected: their memory is used again
+  std::optional<LfImageId> whole_;  // one that was loaded
+  Batch batch_;                     // the one to be collected
+  Batch next_;                      // the one to be decoded meanwhile
 };
 
 Result<bool> FrameCollector::State::Step() {
@@ -238,12 +239,17 @@ Result<void> FrameCollector::State::FinishLoading(Batch* batch) {
   for (Loading& loading : batch->loading) {
     const SelectedImage& image = order_[loading.index];
     if (*loading.pixels) {
+      whole_ = image.id;
       batch->images.push_back({image.id, image.place, **std::move(loading.pixels)});
       continue;
     }
     // Only the image itself may be at fault: what the machine lacks is no reason to go on.
     const Error& error = loading.pixels->error();
     if (options_.strict || error.kind != ErrorKind::kInput) return error;
+    if (whole_ && !store_.IsThere(*whole_))
+      return InputError(
+          fmt::format("the LF images are gone: {} was read before, and is not there any more",
+                      light_field_.image_names[whole_->value]));
     Skip(image, error);
   }
   batch->loading.clear();

@@ -40,6 +40,7 @@ struct CollectOptions {
   // No batch goes across a multiple of it, in places: there stop rules may be decided, for every
   // frame alike. 0: no rule, batches are not cut. Else a multiple of kDecisionPlaces.
   uint32_t decision_places = kDecisionPlaces;
+  FrameImageWeights weights;
   bool strict = false;                             // a broken LF image is an error
   const std::atomic<bool>* interrupted = nullptr;  // looked at between items of about 10 ms
 };

@@ -54,12 +54,14 @@ size_t PlanBytes(Estimator estimator, bool has_distortion, int image_width, int 
 }
 
 BatchCollector::BatchCollector(const LightField& light_field, std::span<const RenderCamera> frames,
-                               Estimator estimator, CollectBackEnd back_end, size_t plan_bytes,
-                               ThreadPool& pool, std::vector<SensorPlate>* plates)
+                               Estimator estimator, CollectBackEnd back_end,
+                               FrameImageWeights weights, size_t plan_bytes, ThreadPool& pool,
+                               std::vector<SensorPlate>* plates)
     : light_field_(light_field),
       frames_(frames),
       estimator_(estimator),
       back_end_(back_end),
+      weights_(std::move(weights)),
       plan_bytes_(plan_bytes),
       pool_(pool),
       plates_(*plates) {
@@ -170,6 +172,8 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
     if (!taker.places.Holds(image.place)) return;
     const RenderCamera& frame = frames_[taker.frame];
     const PinholeCamera camera = light_field_.Camera(image.id);
+    share.weights = WeightsOf(taker.frame, image.id);
+    if (share.weights.are_same() && share.weights.same() == 0) return;
     share.rect = RectOf(image, frame);
     if (share.rect.empty()) return;
     const Intrinsics& plate = frame.pinhole.intrinsics;
@@ -196,9 +200,10 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
     for (size_t k = 0; k < batch.size(); ++k) {
       Share& share = shares_[task.taker * batch.size() + k];
       if (share.rect.empty()) continue;
-      share.accepted_count += estimator_ == Estimator::kBilinear
-                                  ? GatherTile(share.gather, batch[k].pixels, &sums)
-                                  : ScatterTile(share.scatter, task.tile, batch[k].pixels, &sums);
+      share.accepted_count +=
+          estimator_ == Estimator::kBilinear
+              ? GatherTile(share.gather, batch[k].pixels, &sums, share.weights)
+              : ScatterTile(share.scatter, task.tile, batch[k].pixels, &sums, share.weights);
     }
     sums.Flush();
   };
@@ -231,10 +236,13 @@ void BatchCollector::AddByReference(const std::vector<BatchImage>& batch, BatchF
   for (const BatchImage& image : batch) {
     const PixelRect rect = RectOf(image, camera);
     if (rect.empty() || !frame->places.Holds(image.place)) continue;
+    const RayWeights weights = WeightsOf(frame->frame, image.id);
+    if (weights.are_same() && weights.same() == 0) continue;
     const PinholeCamera lf_camera = light_field_.Camera(image.id);
-    const uint64_t accepted = estimator_ == Estimator::kBilinear
-                                  ? GatherReference(lf_camera, image.pixels, camera, &plate)
-                                  : ScatterReference(lf_camera, image.pixels, camera, rect, &plate);
+    const uint64_t accepted =
+        estimator_ == Estimator::kBilinear
+            ? GatherReference(lf_camera, image.pixels, camera, &plate, weights)
+            : ScatterReference(lf_camera, image.pixels, camera, rect, &plate, weights);
     frame->rays.accepted_count += accepted;
     Count(rect, accepted > 0, &frame->rays);
   }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "lf/camera/ideal_pixels.h"
+#include "lf/camera/ray_weight.h"
 #include "lf/camera/render_camera.h"
 #include "lf/capture/lf_pixels.h"
 #include "lf/capture/light_field.h"
@@ -74,12 +75,16 @@ struct OtherItems {
 size_t PlanBytes(Estimator estimator, bool has_distortion, int image_width, int image_height,
                  int plate_width, int plate_height);
 
+// What rays of an LF image count in a frame; 0: the image takes no part in it. Empty: 1.
+using FrameImageWeights = std::function<RayWeights(size_t frame, LfImageId id)>;
+
 class BatchCollector {
  public:
+  // weights     what rays count (collect.h)
   // plan_bytes  of frames planned together; one may take more
   BatchCollector(const LightField& light_field, std::span<const RenderCamera> frames,
-                 Estimator estimator, CollectBackEnd back_end, size_t plan_bytes, ThreadPool& pool,
-                 std::vector<SensorPlate>* plates);
+                 Estimator estimator, CollectBackEnd back_end, FrameImageWeights weights,
+                 size_t plan_bytes, ThreadPool& pool, std::vector<SensorPlate>* plates);
 
   // Adds the images to the plates of `frames`, whose order may change, and runs the other items.
   // Once *interrupted is true no further frame is begun, and those begun are finished; other items
@@ -99,9 +104,13 @@ class BatchCollector {
     PixelRect rect;
     ScatterPlan scatter;  // of the estimator in use
     GatherPlan gather;
+    RayWeights weights;
     std::atomic<uint64_t> accepted_count = 0;
   };
   PixelRect RectOf(const BatchImage& image, const RenderCamera& frame) const;
+  RayWeights WeightsOf(size_t frame, LfImageId id) const {
+    return weights_ ? weights_(frame, id) : RayWeights();
+  }
   void UndoDistortion(std::vector<BatchImage>& batch);
   std::span<BatchFrame> FramesThatMayTake(const std::vector<BatchImage>& batch,
                                           std::span<BatchFrame> frames);
@@ -114,6 +123,7 @@ class BatchCollector {
   std::span<const RenderCamera> frames_;
   Estimator estimator_;
   CollectBackEnd back_end_;
+  FrameImageWeights weights_;
   size_t plan_bytes_;
   ThreadPool& pool_;
   std::vector<SensorPlate>& plates_;

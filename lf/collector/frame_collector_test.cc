@@ -263,6 +263,37 @@ TEST(FrameCollector, BrokenImagesArePlaces) {
   EXPECT_EQ(collector.skipped()[1].place, job.order[70].place);
 }
 
+TEST(FrameCollector, ALightFieldThatVanishesIsNotSkipped) {
+  Job job;
+  job.options.batch_image_count = 10;
+  FrameCollector collector = job.Collector();
+  ASSERT_TRUE(*collector.Step());
+  ASSERT_TRUE(*collector.Step());
+  const size_t done = collector.images_done();
+  // From here on nothing can be read.
+  for (const SelectedImage& image : job.order) job.store.broken.push_back(image.id.value);
+  job.store.is_gone = true;
+  Result<bool> step = true;
+  while (step && *step) step = collector.Step();
+  ASSERT_FALSE(step);
+  EXPECT_EQ(step.error().kind, ErrorKind::kInput);
+  EXPECT_NE(step.error().message.find("are gone"), std::string::npos);
+  EXPECT_TRUE(collector.skipped().empty());
+  EXPECT_LE(collector.images_done(), done + 10);  // a batch may have been decoded before
+
+  // The disk is back.
+  job.store.broken.clear();
+  job.store.is_gone = false;
+  ExpectPlates(job, collector.frames());
+  for (size_t f = 0; f < 3; ++f) job.places[f].begin = collector.frames()[f].places_done;
+  FrameCollector another = job.Collector();
+  while (*another.Step()) continue;
+  Job whole;
+  FrameCollector of_all = whole.Collector();
+  while (*of_all.Step()) continue;
+  EXPECT_EQ(job.plates, whole.plates);
+}
+
 TEST(FrameCollector, TellsWhereTheTimeWent) {
   Job job;
   FrameCollector collector = job.Collector();

@@ -51,7 +51,9 @@ inline std::vector<RenderCamera> NoiseFrames() {
 class NoiseStore : public LfImageStore {
  public:
   void Announce(LfImageId id) const override { announced.push_back(id.value); }
+  bool IsThere(LfImageId /*id*/) const override { return !is_gone; }
 
+  bool is_gone = false;
   std::vector<uint32_t> broken;
   ErrorKind broken_kind = ErrorKind::kInput;
   std::vector<uint32_t> without_memory;

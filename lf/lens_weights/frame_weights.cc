@@ -113,6 +113,19 @@ Place PlaceOf(int element, int count, int size_px) {
 
 }  // namespace
 
+const char* NameOf(LensWeights weights) {
+  constexpr const char* kNames[] = {"none", "area", "hat"};
+  return kNames[static_cast<int>(weights)];
+}
+
+double CameraDistance(const RenderCamera& frame, std::span<const Vec3> centres_world) {
+  const Intrinsics& plate = frame.pinhole.intrinsics;
+  const std::optional<Vec3> middle =
+      FocusPointOfElement(frame, 0.5 * plate.width_px, 0.5 * plate.height_px);
+  if (!middle) return 0;
+  return DistanceAround(PointsAt(frame, centres_world, *middle), frame.aperture.radius_w);
+}
+
 Vec2 LensPointOfLine(const RenderCamera& frame, const Vec3& centre_world, const Vec3& point_world) {
   const Vec3 lens_centre = frame.pinhole.CentreWorld();
   const Vec3 forward = frame.pinhole.ForwardWorld();
@@ -123,11 +136,12 @@ Vec2 LensPointOfLine(const RenderCamera& frame, const Vec3& centre_world, const 
 }
 
 FrameWeights::FrameWeights(const RenderCamera& frame, std::span<const Vec3> centres_world,
-                           LensShares kind)
+                           LensWeights kind)
     : width_px_(frame.pinhole.intrinsics.width_px),
       height_px_(frame.pinhole.intrinsics.height_px),
       nodes_begin_(centres_world.size(), kNone) {
-  LF_CHECK(kind == LensShares::kHats || frame.aperture.radius_w > 0);
+  LF_CHECK(kind == LensWeights::kHat ||
+           (kind == LensWeights::kArea && frame.aperture.radius_w > 0));
   SetGrid(frame, centres_world);
   std::vector<Node> nodes;
   for (int row = 0; row < rows_; ++row)
@@ -137,10 +151,8 @@ FrameWeights::FrameWeights(const RenderCamera& frame, std::span<const Vec3> cent
 }
 
 void FrameWeights::SetGrid(const RenderCamera& frame, std::span<const Vec3> centres_world) {
-  const std::optional<Vec3> middle = FocusPointOfElement(frame, 0.5 * width_px_, 0.5 * height_px_);
-  if (!middle || centres_world.empty()) return;
-  const LensPoints seen = PointsAt(frame, centres_world, *middle);
-  const double distance = DistanceAround(seen, frame.aperture.radius_w);
+  const double distance = CameraDistance(frame, centres_world);
+  if (distance == 0) return;
   const Movement movement = MovementOf(frame, centres_world);
   columns_ = NodeCount(movement.across, distance);
   rows_ = NodeCount(movement.down, distance);
@@ -149,14 +161,14 @@ void FrameWeights::SetGrid(const RenderCamera& frame, std::span<const Vec3> cent
 }
 
 FrameWeights::Node FrameWeights::MakeNode(const RenderCamera& frame,
-                                          std::span<const Vec3> centres_world, LensShares kind,
+                                          std::span<const Vec3> centres_world, LensWeights kind,
                                           int column, int row) {
   Node node;
   const std::optional<Vec3> focus = FocusPointOfElement(
       frame, NodePosition(column, columns_, width_px_), NodePosition(row, rows_, height_px_));
   if (!focus) return node;  // beyond the horizon of a tilted focus plane: no ray goes there
   const LensPoints seen = PointsAt(frame, centres_world, *focus);
-  const std::vector<double> shares = kind == LensShares::kCells
+  const std::vector<double> shares = kind == LensWeights::kArea
                                          ? CellShares(seen.points, frame.aperture)
                                          : HatShares(seen.points, frame.aperture);
   for (size_t k = 0; k < shares.size(); ++k) {
@@ -185,6 +197,16 @@ void FrameWeights::SetWeights(const std::vector<Node>& nodes) {
       weights_[begin + n] = static_cast<uint16_t>(
           std::min(std::lround(share.share * scale), std::lround(kUnit * kMaxWeight)));
     }
+}
+
+double FrameWeights::EffectiveCount() const {
+  double sum = 0, squares = 0;
+  for (size_t camera = 0; camera < nodes_begin_.size(); ++camera) {
+    const double weight = At(camera, width_px_ / 2, height_px_ / 2);
+    sum += weight;
+    squares += weight * weight;
+  }
+  return squares > 0 ? sum * sum / squares : 0;
 }
 
 uint32_t FrameWeights::At(size_t camera, int x, int y) const {

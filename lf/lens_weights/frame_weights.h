@@ -17,13 +17,17 @@
 
 namespace lf {
 
-enum class LensShares { kCells, kHats };
+// How rays are weighed. kNone: they count alike, as in the thesis.
+enum class LensWeights { kNone, kArea, kHat };
+
+// "none", "area", "hat"
+const char* NameOf(LensWeights weights);
 
 class FrameWeights {
  public:
   // centres_world  of the LF cameras whose images may contribute
-  // Cells want a lens of some size, radius_w > 0.
-  FrameWeights(const RenderCamera& frame, std::span<const Vec3> centres_world, LensShares kind);
+  // kind           kArea: cells, which want a lens of some size, radius_w > 0; kHat: hats
+  FrameWeights(const RenderCamera& frame, std::span<const Vec3> centres_world, LensWeights kind);
 
   // Of a ray of the camera's to an element: 0 (it adds nothing) to kMaxWeight. The largest share of
   // the frame has kMaxWeight, unless it is more than kMostMedians times the middle one: then it is
@@ -38,6 +42,10 @@ class FrameWeights {
 
   // Rays that meet the lens plane farther from the lens centre have no weight.
   double reach_w() const { return farthest_w_ + step_w_; }
+
+  // How many LF cameras of equal weight would make as little noise in the middle of the plate:
+  // (sum w)^2 / sum w^2.
+  double EffectiveCount() const;
 
   // Of the grid, from edge to edge of the plate; 1: its middle.
   int columns() const { return columns_; }
@@ -54,7 +62,7 @@ class FrameWeights {
   using Node = std::vector<Share>;  // those above 0
 
   void SetGrid(const RenderCamera& frame, std::span<const Vec3> centres_world);
-  Node MakeNode(const RenderCamera& frame, std::span<const Vec3> centres_world, LensShares kind,
+  Node MakeNode(const RenderCamera& frame, std::span<const Vec3> centres_world, LensWeights kind,
                 int column, int row);
   void SetWeights(const std::vector<Node>& nodes);
 
@@ -67,6 +75,10 @@ class FrameWeights {
   std::vector<size_t> nodes_begin_;  // [camera]: its part of weights_, if it has one
   std::vector<uint16_t> weights_;    // [row][column] of one camera after the other, in 1/256
 };
+
+// About how far apart the LF cameras around the lens see through it, from their centres: a dozen of
+// them, or all that the lens holds. 0 if there is none.
+double CameraDistance(const RenderCamera& frame, std::span<const Vec3> centres_world);
 
 // Where the line through a world point and an LF camera meets the lens plane, in lens coordinates
 // (doc/ray.md, Geometry 5). Not finite if it runs beside it.

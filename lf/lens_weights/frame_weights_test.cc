@@ -74,7 +74,7 @@ TEST(LensPoints, AreWhereLinesMeetTheLens) {
 TEST(FrameWeights, OfCamerasInTheLensPlaneAreConstantAndTheirCells) {
   const RenderCamera frame = Frame(0.05);
   const auto centres = JitteredGrid(10, 0.01, 0.4, 2);
-  const FrameWeights weights(frame, centres, LensShares::kCells);
+  const FrameWeights weights(frame, centres, LensWeights::kArea);
   EXPECT_TRUE(weights.is_constant());
   const auto exact = ExactShares(frame, centres, 160, 100);
   const double most = *std::max_element(exact.begin(), exact.end());
@@ -90,7 +90,7 @@ TEST(FrameWeights, OfCamerasInTheLensPlaneAreConstantAndTheirCells) {
 
 TEST(FrameWeights, OfAnEvenGridAreTheLargestThereIs) {
   const auto centres = JitteredGrid(10, 0.01, 0, 0);
-  const FrameWeights weights(Frame(0.05), centres, LensShares::kCells);
+  const FrameWeights weights(Frame(0.05), centres, LensWeights::kArea);
   for (size_t i = 0; i < centres.size(); ++i)
     if (centres[i].norm() < 0.04) {
       EXPECT_EQ(weights.At(i, 9, 9), kMaxWeight);
@@ -101,7 +101,7 @@ TEST(FrameWeights, BesideTheLensPlaneAreInterpolatedBetweenNodes) {
   for (const double z : {-0.3, -0.05, 0.02, 0.4}) {
     const RenderCamera frame = Frame(0.06, z);
     const auto centres = JitteredGrid(30, 0.015, 0.3, 3);
-    const FrameWeights weights(frame, centres, LensShares::kCells);
+    const FrameWeights weights(frame, centres, LensWeights::kArea);
     EXPECT_FALSE(weights.is_constant());
     EXPECT_LE(weights.columns(), 64);
     double squares = 0, error_squares = 0;
@@ -121,7 +121,7 @@ TEST(FrameWeights, BesideTheLensPlaneAreInterpolatedBetweenNodes) {
 TEST(FrameWeights, RaysBeyondTheirReachHaveNone) {
   const RenderCamera frame = Frame(0.06, 0.1);
   const auto centres = JitteredGrid(30, 0.015, 0.3, 4);
-  const FrameWeights weights(frame, centres, LensShares::kCells);
+  const FrameWeights weights(frame, centres, LensWeights::kArea);
   for (int y = 0; y < 200; y += 8)
     for (int x = 0; x < 320; x += 8) {
       const Vec3 focus = *FocusPointOfElement(frame, x + 4, y + 4);
@@ -134,7 +134,7 @@ TEST(FrameWeights, RaysBeyondTheirReachHaveNone) {
 
 TEST(FrameWeights, AreTheSameInBlocksOfElements) {
   const auto centres = JitteredGrid(10, 0.02, 0.3, 5);
-  const FrameWeights weights(Frame(0.06, 0.2), centres, LensShares::kCells);
+  const FrameWeights weights(Frame(0.06, 0.2), centres, LensWeights::kArea);
   for (size_t i = 0; i < centres.size(); i += 7)
     for (int y = 0; y < 200; y += 3)
       for (int x = 0; x < 320; x += 5)
@@ -145,7 +145,7 @@ TEST(FrameWeights, OneCameraWithAHugeShareLeavesTheOthersTheirs) {
   std::vector<Vec3> centres = JitteredGrid(10, 0.002, 0.3, 6);  // all in a corner of the lens
   for (Vec3& c : centres) c += Vec3(0.1, 0.1, 0);
   centres.emplace_back(-0.1, -0.1, 0);
-  const FrameWeights weights(Frame(0.2), centres, LensShares::kCells);
+  const FrameWeights weights(Frame(0.2), centres, LensWeights::kArea);
   EXPECT_EQ(weights.At(centres.size() - 1, 0, 0), kMaxWeight);
   EXPECT_GE(weights.At(220, 0, 0), 6u);
 }
@@ -154,7 +154,7 @@ TEST(FrameWeights, HatsOfAPinholeGoToTheCamerasAroundIt) {
   RenderCamera frame = Frame(0);
   frame.pinhole.cam_from_world = *LookAlong({0.0005, 0.0005, 0}, Vec3::UnitZ(), -Vec3::UnitY());
   const auto centres = JitteredGrid(5, 0.001, 0, 0);
-  const FrameWeights weights(frame, centres, LensShares::kHats);
+  const FrameWeights weights(frame, centres, LensWeights::kHat);
   size_t taking_part = 0;
   for (size_t i = 0; i < centres.size(); ++i) {
     taking_part += weights.TakesPart(i) ? 1 : 0;
@@ -166,11 +166,11 @@ TEST(FrameWeights, HatsOfAPinholeGoToTheCamerasAroundIt) {
 }
 
 TEST(FrameWeights, NoCamerasAndTiltedHorizonsAreNoTrouble) {
-  EXPECT_TRUE(FrameWeights(Frame(0.1), {}, LensShares::kCells).is_constant());
+  EXPECT_TRUE(FrameWeights(Frame(0.1), {}, LensWeights::kArea).is_constant());
   RenderCamera frame = Frame(0.1, 0.05);
   frame.focus_plane = FocusPlane(frame.pinhole, 1, {RadiansFromDegrees(80), 0});
   const auto centres = JitteredGrid(10, 0.02, 0.2, 7);
-  const FrameWeights weights(frame, centres, LensShares::kCells);
+  const FrameWeights weights(frame, centres, LensWeights::kArea);
   const auto takes = [&](size_t i) { return weights.TakesPart(i); };
   size_t count = 0;
   for (size_t i = 0; i < centres.size(); ++i) count += takes(i) ? 1 : 0;

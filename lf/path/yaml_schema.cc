@@ -69,7 +69,8 @@ bool NumberRange::Holds(double value) const {
 std::string NumberRange::Describe() const {
   if (max < kLargest && open) return fmt::format("above {} and below {}", min, max);
   if (max < kLargest) return fmt::format("from {} to {}", min, max);
-  if (min > -kLargest) return fmt::format("{} {}", open ? "above" : "at least", min);
+  if (min > -kLargest && open) return fmt::format("above {} (below {:g})", min, kLargest);
+  if (min > -kLargest) return fmt::format("at least {} (at most {:g})", min, kLargest);
   return fmt::format("within +-{:g}", kLargest);
 }
 

@@ -56,7 +56,7 @@ struct NumberRange {
   static constexpr NumberRange Between(double min, double max) { return {min, max, true}; }
 
   bool Holds(double value) const;  // false for NaN
-  std::string Describe() const;    // "above 0", "at least 0", "from 1 to 3", ...
+  std::string Describe() const;    // "above 0 (below 1e+09)", "from 1 to 3", ...
 };
 
 // A map of the file. Each key asked for becomes an allowed one; CheckKeys() reports the others.

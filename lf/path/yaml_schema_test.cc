@@ -24,8 +24,8 @@ TEST(NumberRange, NoneHoldsWhatIsNoNumber) {
 }
 
 TEST(NumberRange, DescribesItself) {
-  EXPECT_EQ(NumberRange::Above(0).Describe(), "above 0");
-  EXPECT_EQ(NumberRange::AtLeast(0).Describe(), "at least 0");
+  EXPECT_EQ(NumberRange::Above(0).Describe(), "above 0 (below 1e+09)");
+  EXPECT_EQ(NumberRange::AtLeast(0).Describe(), "at least 0 (at most 1e+09)");
   EXPECT_EQ(NumberRange::Between(-90, 90).Describe(), "above -90 and below 90");
   EXPECT_EQ(NumberRange::Within(1, 3).Describe(), "from 1 to 3");
   EXPECT_EQ(NumberRange::Any().Describe(), "within +-1e+09");

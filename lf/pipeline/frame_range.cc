@@ -36,7 +36,11 @@ Result<std::vector<FrameId>> ParseFrameRange(std::string_view text, size_t frame
     if (good && TakeCharacter(&rest, 'x')) good = TakeNumber(&rest, &step);
     if (!good || (!rest.empty() && rest.front() != ','))
       return UsageError(fmt::format("--frames '{}' is not like 1-100, 1-100x2 or 3,7,9", text));
-    if (first < 1 || last < first || last > frame_count || step < 1)
+    if (last < first)
+      return UsageError(fmt::format("--frames '{}': ranges go upward: {}-{}", text, last, first));
+    if (step < 1)
+      return UsageError(fmt::format("--frames '{}': the step after x is at least 1", text));
+    if (first < 1 || last > frame_count)
       return UsageError(fmt::format("--frames '{}': the path has frames 1-{}", text, frame_count));
     for (uint64_t n = first; n <= last; n += step) numbers.insert(static_cast<uint32_t>(n));
   } while (TakeCharacter(&rest, ','));

@@ -28,6 +28,10 @@ TEST(FrameRange, RefusesWhatItDoesNotUnderstand) {
     ASSERT_FALSE(frames) << text;
     EXPECT_EQ(frames.error().kind, ErrorKind::kUsage);
   }
+  const auto says = [](const char* text) { return ParseFrameRange(text, 4).error().message; };
+  EXPECT_NE(says("4-1").find("1-4"), std::string::npos);
+  EXPECT_NE(says("1-4x0").find("at least 1"), std::string::npos);
+  EXPECT_NE(says("2-7").find("the path has frames 1-4"), std::string::npos);
 }
 
 }  // namespace

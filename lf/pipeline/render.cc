@@ -35,6 +35,7 @@ Result<void> CheckVideoTarget(const std::filesystem::path& path) {
 RunStateOptions StateOptions(const LightField& light_field, const RenderOptions& options) {
   RunChoices choices;
   choices.estimator = options.estimator;
+  choices.lens_weights = options.lens_weights;
   choices.back_end = options.back_end;
   choices.seed = options.seed;
   choices.max_image_count = options.max_image_count;
@@ -66,6 +67,7 @@ class Renderer {
 
  private:
   Result<void> Begin();
+  Result<void> CheckLensWeights() const;
   std::vector<FrameId> FramesToRender();
   Result<void> RunPasses(std::span<const FrameId> frames);
   Result<void> RunPass(const RenderJob& job, std::span<const FrameId> frames, size_t frames_left);
@@ -89,6 +91,7 @@ class Renderer {
   RenderProgress done_;
   RenderReport totals_;
   const double begin_s_ = NowSeconds();
+  size_t black_count_ = 0;
   bool all_broken_ = true;  // every LF image of every pass so far
 };
 
@@ -110,6 +113,7 @@ Result<void> Renderer::Begin() {
   frames_ = options_.frames;
   if (frames_.empty())
     for (uint32_t n = 1; n <= path_.frame_count(); ++n) frames_.push_back(FrameId{n});
+  LF_RETURN_IF_ERROR(CheckLensWeights());
   const Intrinsics& plate = path_.Camera(frames_.front()).pinhole.intrinsics;
   LF_ASSIGN_OR_RETURN(
       plan_, PlanMemory(options_.memory_bytes, light_field_, options_.estimator, plate.width_px,
@@ -136,6 +140,23 @@ Result<void> Renderer::Begin() {
   totals_.thread_count = pool_.thread_count();
   totals_.lf_image_count = light_field_.size();
   done_.frame_total = frames_.size();
+  return {};
+}
+
+Result<void> Renderer::CheckLensWeights() const {
+  if (options_.lens_weights == LensWeights::kNone) return {};
+  const char* const name = NameOf(options_.lens_weights);
+  if (options_.stop_at_samples || options_.require_samples || options_.smooth_below > 0)
+    return UsageError(
+        fmt::format("--lens-weights {}: counts are sums of weights, so that --stop-when, --require "
+                    "and --smooth-below have no rays to count: leave them out",
+                    name));
+  if (options_.lens_weights == LensWeights::kArea)
+    for (const FrameId frame : frames_)
+      if (path_.Camera(frame).aperture.radius_w == 0)
+        return UsageError(fmt::format(
+            "--lens-weights area: the lens of frame {} is a pinhole, which has no area: use hat",
+            frame.value));
   return {};
 }
 
@@ -179,6 +200,7 @@ Result<void> Renderer::RunPasses(std::span<const FrameId> frames) {
       clock,
       totals_,
       begin_s_,
+      black_count_,
       [this](const CollectProgress& pass, size_t finished_count) { Report(pass, finished_count); }};
   // Better known before a night's work than after it; what is there was once found to contribute.
   if (totals_.pass_count > 1 && !state_->HasPlates() && state_->finished().empty())
@@ -201,6 +223,8 @@ Result<void> Renderer::CheckAnyContributes(const RenderJob& job,
                                            std::span<const FrameId> frames) const {
   std::vector<RenderCamera> cameras;
   for (const FrameId frame : frames) cameras.push_back(path_.Camera(frame));
+  // With weights LF cameras beside the lens take part: a pass will tell.
+  if (options_.lens_weights != LensWeights::kNone) return {};
   const bool any_contributes = !SelectImages(light_field_, cameras, job.Select(), pool_).empty();
   if (job.IsStopped()) return Interrupted();
   if (!any_contributes) return NoneContributes();

@@ -13,6 +13,7 @@
 #include "lf/collector/collect.h"
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
+#include "lf/lens_weights/frame_weights.h"
 #include "lf/path/camera_path.h"
 #include "lf/record/report.h"
 #include "lf/sequence/frame_file.h"
@@ -47,6 +48,9 @@ struct RenderOptions {
   uint64_t seed = 0;
   bool strict = false;
   Estimator estimator = Estimator::kNearest;
+  // kArea, kHat: not together with counts that ask for rays (stop_at_samples, require_samples,
+  // smooth_below), since counts are sums of weights then.
+  LensWeights lens_weights = LensWeights::kNone;
   CollectBackEnd back_end = CollectBackEnd::kFast;
 
   // Checkpoints (run_state.h). They take at most 5 % of the time: the interval stretches itself.

@@ -30,11 +30,32 @@ RenderPass::RenderPass(const RenderJob& job, std::span<const FrameId> frames) : 
   for (const FrameId frame : frames) {
     frames_.push_back({});
     frames_.back().id = frame;
-    cameras_.push_back(job.path.Camera(frame));
   }
 }
 
+void RenderPass::FindLenses() {
+  for (const Frame& frame : frames_) {
+    if (job_.IsStopped()) return;
+    lenses_.emplace_back(job_.light_field, job_.path.Camera(frame.id), job_.options.lens_weights,
+                         job_.Select(), job_.pool);
+    cameras_.push_back(lenses_.back().camera());
+  }
+}
+
+// Those that take part in some frame.
+void RenderPass::DropUnweighted() {
+  if (job_.options.lens_weights == LensWeights::kNone) return;
+  std::erase_if(images_, [this](const SelectedImage& image) {
+    return std::all_of(lenses_.begin(), lenses_.end(), [&](const FrameLens& lens) {
+      const RayWeights weights = lens.WeightsOf(image.id);
+      return weights.are_same() && weights.same() == 0;
+    });
+  });
+}
+
 Result<void> RenderPass::Prepare() {
+  FindLenses();
+  if (job_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
   std::vector<PlaceRange> places(frames_.size());
   if (job_.options.max_image_count)
     places = PlacesOfFirst(*job_.options.max_image_count, job_.light_field, cameras_, job_.Select(),
@@ -55,6 +76,7 @@ Result<void> RenderPass::Prepare() {
     frames_[f].saved_places = start.places_done;
   }
   images_ = SelectImages(job_.light_field, cameras_, job_.Select(), job_.pool, places);
+  DropUnweighted();
   if (job_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
   job_.totals.selected_image_count = std::max(job_.totals.selected_image_count, images_.size());
 
@@ -65,6 +87,8 @@ Result<void> RenderPass::Prepare() {
   collect.plan_bytes = job_.plan.plan_bytes;
   collect.strict = job_.options.strict;
   if (job_.options.signals != nullptr) collect.interrupted = &job_.options.signals->attention;
+  if (job_.options.lens_weights != LensWeights::kNone)
+    collect.weights = [this](size_t f, LfImageId id) { return lenses_[f].WeightsOf(id); };
   collect.decision_places = 0;
   if (job_.options.stop_at_samples) {
     // Those of all frames are multiples of the least.
@@ -220,6 +244,7 @@ Result<FrameReport> RenderPass::WriteFiles(size_t f) {
   }
   LF_ASSIGN_OR_RETURN(FrameReport report, job_.output.Write(frame.id, progress.rays, plates_[f], to,
                                                             [this] { return job_.IsStopped(); }));
+  report.effective_count = lenses_[f].effective_count();
   const auto asked =
       job_.options.require_samples ? job_.options.require_samples : job_.options.stop_at_samples;
   if (asked)
@@ -230,8 +255,14 @@ Result<FrameReport> RenderPass::WriteFiles(size_t f) {
 
 Result<void> RenderPass::Conclude(size_t f, const FrameReport& report) {
   Frame& frame = frames_[f];
-  if (ProgressOf(f).rays.image_count == 0)
-    LogWarning("frame {} is black: no LF image contributes to it", frame.id.value);
+  if (ProgressOf(f).rays.image_count == 0) {
+    // The first are told at once; a report has them all.
+    constexpr size_t kTold = 10;
+    if (++job_.black_count <= kTold)
+      LogWarning("frame {} is black: no LF image contributes to it", frame.id.value);
+    if (job_.black_count == kTold + 1)
+      LogWarning("more frames are black; report.json has the LF images of every frame");
+  }
   LF_RETURN_IF_ERROR(job_.state.SaveFinished(report));
   frame.is_finished = true;
   ++finished_count_;

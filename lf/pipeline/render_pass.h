@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lf/collector/collect.h"
+#include "lf/collector/frame_lens.h"
 #include "lf/collector/memory_plan.h"
 #include "lf/collector/sample_rule.h"
 #include "lf/pipeline/frame_output.h"
@@ -37,6 +38,7 @@ struct RenderJob {
   DumpClock& clock;
   RenderReport& totals;  // of passes that are done, and of earlier runs; total_s of those alone
   double begin_s;        // of this run
+  size_t& black_count;   // frames that no LF image contributes to
   std::function<void(const CollectProgress&, size_t finished_count)> progress;
 
   bool IsStopped() const { return options.signals != nullptr && options.signals->stop; }
@@ -73,6 +75,8 @@ class RenderPass {
     std::unique_ptr<ReachableElements> reachable;
   };
 
+  void FindLenses();
+  void DropUnweighted();
   FrameProgress ProgressOf(size_t f) const;
   const ReachableElements& ReachableOf(size_t f);
   uint32_t PlacesCovered(size_t f) const;
@@ -88,7 +92,8 @@ class RenderPass {
 
   const RenderJob& job_;
   std::vector<Frame> frames_;
-  std::vector<RenderCamera> cameras_;  // one per frame, and so are the plates
+  std::vector<FrameLens> lenses_;      // one per frame, and so are cameras and plates
+  std::vector<RenderCamera> cameras_;  // with these lenses
   std::vector<SensorPlate> plates_;
   std::vector<SelectedImage> images_;
   std::unique_ptr<FrameCollector> collector_;

@@ -27,6 +27,7 @@ Json FrameToJson(const FrameReport& frame) {
                {"rays_per_element_min", frame.min_count},
                {"rays_per_element_median", frame.median_count},
                {"develop_s", frame.develop_s}};
+  if (frame.effective_count) json["effective_lf_images"] = *frame.effective_count;
   if (frame.samples)
     json["samples"] = {{"asked", frame.samples->asked},
                        {"share", frame.samples->measured.share},
@@ -50,7 +51,7 @@ uint64_t RenderReport::AcceptedRays() const {
 }
 
 double RenderReport::MraysPerSecondPerCore() const {
-  return collect_cpu_s > 0 ? static_cast<double>(TestedRays()) / 1e6 / collect_cpu_s : 0;
+  return collect_cpu_s > 0 ? static_cast<double>(AcceptedRays()) / 1e6 / collect_cpu_s : 0;
 }
 
 FrameReport MakeFrameReport(FrameId frame, const FrameRays& rays, const DevelopedFrame& developed) {

@@ -34,9 +34,11 @@ struct FrameReport {
   std::array<uint64_t, 3> min_count{};
   std::array<uint64_t, 3> median_count{};
   double develop_s = 0;
-
   std::optional<FrameSamples> samples;  // where they were asked for
   RunInputs camera;                     // InputsOfCamera()
+  // With lens weights (then counts are sums of weights): as many LF images of equal weight would
+  // make as little noise in the middle of the frame.
+  std::optional<double> effective_count = std::nullopt;
 };
 
 struct RenderReport {
@@ -59,7 +61,7 @@ struct RenderReport {
 
   uint64_t TestedRays() const;
   uint64_t AcceptedRays() const;
-  // Millions of tested rays per CPU second of collection.
+  // Millions of accepted rays per CPU second of collection.
   double MraysPerSecondPerCore() const;
 };
 

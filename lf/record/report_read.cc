@@ -105,6 +105,8 @@ FrameReport FrameFromJson(const Json& json, std::string* fault) {
   fields.Get("rays_per_element_median", &frame.median_count);
   fields.Get("develop_s", &frame.develop_s);
   fields.Get("inputs", &frame.camera);
+  if (fields.Find("effective_lf_images") != nullptr)
+    fields.Get("effective_lf_images", &frame.effective_count.emplace());
   if (const Json* samples = fields.Find("samples")) {
     Fields sample_fields(*samples, fault);
     frame.samples.emplace();

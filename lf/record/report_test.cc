@@ -41,6 +41,7 @@ TEST(Report, ReadsBackWhatItWrote) {
   frame.empty_element_count = {1, 2, 3};
   frame.median_count = {7, 8, 9};
   frame.samples = FrameSamples{8, {0.25, 3}};
+  frame.effective_count = 12.5;
   frame.camera = {{"frame", "7"}};
   report.frames = {frame, {FrameId{9}, {}, {}, {}, {}, 0, {}, {}}};
   const Result<RenderReport> read = ParseReport(ToJson(report), "x");
@@ -57,6 +58,8 @@ TEST(Report, ReadsBackWhatItWrote) {
   EXPECT_EQ(read->frames[0].samples->measured.most_have, 3u);
   EXPECT_EQ(read->frames[0].camera, frame.camera);
   EXPECT_FALSE(read->frames[1].samples);
+  EXPECT_EQ(read->frames[0].effective_count, 12.5);
+  EXPECT_FALSE(read->frames[1].effective_count);
 }
 
 TEST(Report, OtherTextsAreErrorsThatNameTheFieldAndTheFile) {

@@ -112,6 +112,7 @@ RunInputs InputsOfRays(const LightField& light_field, const RunChoices& choices)
   return {
       {"law", fmt::format("{}", kLawVersion)},
       {"estimator", NameOf(choices.estimator)},
+      {"lens_weights", NameOf(choices.lens_weights)},
       {"back_end", choices.back_end == CollectBackEnd::kFast ? "fast" : "reference"},
       {"seed", fmt::format("{}", choices.seed)},
       {"max_images", choices.max_image_count ? fmt::format("{}", *choices.max_image_count) : "all"},

@@ -11,6 +11,7 @@
 #include "lf/capture/light_field.h"
 #include "lf/collector/collect_batch.h"
 #include "lf/core/ids.h"
+#include "lf/lens_weights/frame_weights.h"
 
 namespace lf {
 
@@ -22,6 +23,7 @@ struct RunChoices {
   Estimator estimator = Estimator::kNearest;
   CollectBackEnd back_end = CollectBackEnd::kFast;
   uint64_t seed = 0;
+  LensWeights lens_weights = LensWeights::kNone;
   std::optional<size_t> max_image_count;
   std::optional<uint32_t> stop_at_samples;
   std::string format = "exr";

@@ -31,6 +31,7 @@ TEST(RunInputs, EveryInputMakesADifferenceAndItsKeyNamesIt) {
       {"seed", [](Inputs& i) { i.choices.seed = 1; }},
       {"estimator", [](Inputs& i) { i.choices.estimator = Estimator::kBilinear; }},
       {"back_end", [](Inputs& i) { i.choices.back_end = CollectBackEnd::kReference; }},
+      {"lens_weights", [](Inputs& i) { i.choices.lens_weights = LensWeights::kHat; }},
       {"max_images", [](Inputs& i) { i.choices.max_image_count = 9; }},
       {"stop_when", [](Inputs& i) { i.choices.stop_at_samples = 9; }},
       {"picture.format", [](Inputs& i) { i.choices.format = "png"; }},

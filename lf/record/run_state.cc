@@ -114,6 +114,9 @@ Result<void> RunState::Look() {
   }
   // Of an earlier run: they would look like this one's, should it fail.
   std::error_code ignored;
+  if (fs::exists(options_.folder / "report.json", ignored))
+    LogWarning("{}: the finished render there is replaced, frame by frame",
+               options_.folder.string());
   fs::remove(options_.folder / "report.json", ignored);
   fs::remove(options_.folder / "contact_sheet.png", ignored);
   return {};

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -131,6 +132,11 @@ Result<void> ApplyMaskFile(const fs::path& path, const Intrinsics& intrinsics, L
 
 FolderStore::FolderStore(const LightField& light_field)
     : light_field_(light_field), tables_(light_field.encoding, 1) {}
+
+bool FolderStore::IsThere(LfImageId id) const {
+  std::error_code error;
+  return fs::exists(light_field_.ImagePath(id), error);
+}
 
 void FolderStore::Announce(LfImageId id) const { AnnounceRead(light_field_.ImagePath(id)); }
 

@@ -32,6 +32,7 @@ class FolderStore : public LfImageStore {
   // (lf_black_level, lf_white_level) beyond the file's bits, a mask of another size, a camera raw
   // file of another Bayer pattern.
   Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override;
+  bool IsThere(LfImageId id) const override;
   // Of the image's file; a mask file is not read ahead.
   void Announce(LfImageId id) const override;
 

@@ -21,6 +21,9 @@ class LfImageStore {
   // file. The caller decides whether the run goes on without it.
   virtual Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const = 0;
 
+  // Whether the file is there, whatever it holds: a disk may be unmounted during a night's work.
+  virtual bool IsThere(LfImageId /*id*/) const { return true; }
+
   // The image will be loaded soon: the disk may begin to read it. Does not wait; failing is silent,
   // for Load() will say what is wrong. May be called by many threads at the same time.
   virtual void Announce(LfImageId /*id*/) const {}

@@ -2,6 +2,7 @@
 
 #include "tools/common/byte_size.h"
 #include "tools/common/duration.h"
+#include "tools/common/program.h"
 #include "tools/common/progress.h"
 
 namespace lf {
@@ -45,6 +46,24 @@ TEST(Progress, NumbersAndDurationsAreShort) {
   EXPECT_EQ(ShortDuration(125), "2 min 5 s");
   EXPECT_EQ(ShortDuration(3 * 3600 + 20 * 60 + 59), "3 h 20 min");
   EXPECT_EQ(ShortDuration(-1), "0 s");
+}
+
+TEST(Progress, ABarHasRoomInTheTerminal) {
+  EXPECT_EQ(ProgressLine(0.5, "half", 200), "[############............] half");
+  EXPECT_EQ(ProgressLine(1, "all", 19), "[############] all");
+  for (size_t width = 1; width < 120; ++width)
+    EXPECT_LT(ProgressLine(0.3, "LF image 642/1386, frame 5/12  46 %", width).size(), width);
+  EXPECT_EQ(ProgressLine(0.3, "46 %  6 s left", 20), "46 %  6 s left");
+}
+
+TEST(Program, WholeNumbersAreDecimalAndFit) {
+  std::string word = "010";
+  EXPECT_EQ(WholeNumber()(word), "");
+  EXPECT_EQ(word, "10");
+  for (std::string wrong : {"", "-1", "a", "1.5", "18446744073709551616", "0x10"})
+    EXPECT_NE(WholeNumber()(wrong).find("expected a whole number"), std::string::npos) << wrong;
+  std::string empty;
+  EXPECT_NE(NotEmpty()(empty), "");
 }
 
 TEST(Progress, StylesHaveNames) {

@@ -1,25 +1,47 @@
 #include "tools/common/interrupt.h"
 
 #include <signal.h>
+#include <time.h>
+
+#include <cstdint>
 
 namespace lf {
 namespace {
 
 std::atomic<bool> interrupted = false;
 static_assert(std::atomic<bool>::is_always_lock_free);
+static_assert(std::atomic<int64_t>::is_always_lock_free);
 
 void OnSignal(int) { interrupted = true; }
 
 RenderSignals render_signals;
+std::atomic<int64_t> first_interrupt_ns = 0;
+
+// Wrappers such as `timeout` send one interrupt twice: to the program and to its group.
+constexpr int64_t kOneInterrupt_ns = 500'000'000;
+
+int64_t NowNanoseconds() {
+  timespec now{};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);  // handlers may
+  return int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
 
 void OnRenderSignal(int signal) {
   if (signal == SIGUSR1) {
     render_signals.save = true;
-  } else {
+  } else if (!render_signals.stop) {
+    first_interrupt_ns = NowNanoseconds();
     render_signals.stop = true;
+  } else if (signal == SIGINT && NowNanoseconds() - first_interrupt_ns > kOneInterrupt_ns) {
     ::signal(SIGINT, SIG_DFL);
+    ::raise(SIGINT);
   }
   render_signals.attention = true;
+}
+
+bool IsIgnored(int signal) {
+  struct sigaction action {};
+  return ::sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
 }
 
 }  // namespace
@@ -38,6 +60,7 @@ RenderSignals& CatchRenderSignals() {
   action.sa_handler = OnRenderSignal;
   action.sa_flags = SA_RESTART;
   for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) ::sigaction(signal, &action, nullptr);
+  if (!IsIgnored(SIGHUP)) ::sigaction(SIGHUP, &action, nullptr);
   return render_signals;
 }
 

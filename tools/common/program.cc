@@ -1,7 +1,9 @@
 #include "tools/common/program.h"
 
 #include <malloc.h>
+#include <signal.h>
 
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -14,6 +16,29 @@ namespace lf {
 
 const char* Version() { return LF_VERSION; }
 
+CLI::Validator WholeNumber() {
+  return CLI::Validator(
+      [](std::string& word) -> std::string {
+        uint64_t number = 0;
+        const char* const end = word.data() + word.size();
+        const auto [rest, error] = std::from_chars(word.data(), end, number);
+        if (error != std::errc{} || rest != end)
+          return fmt::format("expected a whole number from 0 to {}, found '{}'", UINT64_MAX, word);
+        word = fmt::format("{}", number);  // without zeros before it, which would make it octal
+        return {};
+      },
+      "");
+}
+
+CLI::Validator NotEmpty() {
+  return CLI::Validator(
+      [](const std::string& word) -> std::string {
+        return word.empty() ? "expected a value, found nothing: is a variable of the shell unset?"
+                            : "";
+      },
+      "");
+}
+
 Program::Program(std::string name, std::string description, std::string examples)
     : app_(std::move(description), std::move(name)) {
   app_.footer("\n" + std::move(examples));
@@ -23,7 +48,7 @@ Program::Program(std::string name, std::string description, std::string examples
       ->check(CLI::Range(0, 512))
       ->group("Common");
   app_.add_option("--seed", common_.seed, "Seed of everything random")
-      ->check(CLI::NonNegativeNumber)
+      ->check(WholeNumber())
       ->group("Common");
   app_.add_flag("--strict", common_.strict, "A broken LF image is an error, not skipped")
       ->group("Common");
@@ -62,6 +87,9 @@ int Program::Run(int argc, char** argv, const std::function<Result<void>()>& bod
   constexpr int kLargeBytes = 1 << 20;
   mallopt(M_MMAP_THRESHOLD, kLargeBytes);
 #endif
+  // A pipe that nobody reads and a file that may not grow are errors of the write, not the end.
+  ::signal(SIGPIPE, SIG_IGN);
+  ::signal(SIGXFSZ, SIG_IGN);
   try {
     app_.parse(argc, argv);
   } catch (const CLI::CallForHelp& help) {

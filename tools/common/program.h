@@ -46,6 +46,10 @@ class Program {
   bool quiet_ = false;
 };
 
+// For options: 0 to 2^64 - 1, decimal; and a value that is not the empty word.
+CLI::Validator WholeNumber();
+CLI::Validator NotEmpty();
+
 // The version of the programs and the library, such as "0.1.0".
 const char* Version();
 

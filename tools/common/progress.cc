@@ -1,6 +1,7 @@
 #include "tools/common/progress.h"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -17,6 +18,16 @@ ProgressStyle ParseProgressStyle(const std::string& name) {
   if (name == "none") return ProgressStyle::kNone;
   return ::isatty(STDERR_FILENO) ? ProgressStyle::kBar : ProgressStyle::kPlain;
 }
+
+namespace {
+
+size_t TerminalWidth() {
+  winsize size{};
+  if (::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) return size.ws_col;
+  return 80;
+}
+
+}  // namespace
 
 ProgressMeter::ProgressMeter(ProgressStyle style, std::string unit)
     : style_(style), unit_(std::move(unit)), last_(start_) {}
@@ -48,10 +59,18 @@ void ProgressMeter::Update(uint64_t done, uint64_t total, const std::string& det
     LogMessage(LogLevel::kInfo, numbers);
     return;
   }
-  constexpr int kBarWidth = 24;
-  const int filled = static_cast<int>(share * kBarWidth);
-  LogProgressLine(fmt::format("[{}{}] {}", std::string(static_cast<size_t>(filled), '#'),
-                              std::string(static_cast<size_t>(kBarWidth - filled), '.'), numbers));
+  LogProgressLine(ProgressLine(share, numbers, TerminalWidth()));
+}
+
+std::string ProgressLine(double share, const std::string& numbers, size_t width) {
+  constexpr size_t kMostBar = 24, kLeastBar = 6;
+  const size_t frame = 3;  // brackets and a space
+  const size_t room = width - std::min(width, numbers.size() + frame + 1);
+  if (room < kLeastBar) return numbers.substr(0, width - std::min<size_t>(width, 1));
+  const size_t bar = std::min(room, kMostBar);
+  const auto filled = static_cast<size_t>(share * static_cast<double>(bar));
+  return fmt::format("[{}{}] {}", std::string(filled, '#'), std::string(bar - filled, '.'),
+                     numbers);
 }
 
 std::string ShortNumber(double value) {

@@ -31,6 +31,10 @@ class ProgressMeter {
   Clock::time_point last_;
 };
 
+// A bar and numbers in a line of a terminal that has room for `width` characters; where there is
+// none for a bar, without one.
+std::string ProgressLine(double share, const std::string& numbers, size_t width);
+
 // "1.5 G", "320 M", "12 k".
 std::string ShortNumber(double value);
 // "3 h 20 min", "2 min 5 s", "14 s".

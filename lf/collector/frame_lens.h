@@ -1,0 +1,47 @@
+// The lens of one frame as collection takes it: which rays it lets through, and what they count.
+#pragma once
+
+#include <map>
+#include <optional>
+
+#include "lf/camera/ray_weight.h"
+#include "lf/camera/render_camera.h"
+#include "lf/capture/light_field.h"
+#include "lf/core/ids.h"
+#include "lf/core/parallel.h"
+#include "lf/lens_weights/frame_weights.h"
+#include "lf/selection/select.h"
+
+namespace lf {
+
+// With lens weights LF cameras beside the lens take part, and weights replace its test
+// (doc/ray.md, "What is added").
+class FrameLens {
+ public:
+  FrameLens() = default;  // of no use
+
+  // LF images with rays within so many distances of neighbouring LF cameras of the lens are asked
+  // for their share.
+  static constexpr double kReach_distances = 8;
+
+  // kArea wants a lens of some size.
+  FrameLens(const LightField& light_field, const RenderCamera& frame, LensWeights kind,
+            const SelectOptions& select, ThreadPool& pool);
+
+  // The frame's; with weights its lens is the disk that holds all rays that have one.
+  const RenderCamera& camera() const { return camera_; }
+
+  // 0 all over: the image takes no part. Refers to this object.
+  RayWeights WeightsOf(LfImageId id) const;
+
+  // How many LF images, each as good as any other, would make as little noise; none without
+  // weights.
+  std::optional<double> effective_count() const;
+
+ private:
+  RenderCamera camera_;
+  std::optional<FrameWeights> weights_;
+  std::map<uint32_t, size_t> cameras_;  // of weights_, by LF image
+};
+
+}  // namespace lf

@@ -1,0 +1,106 @@
+#include "lf/collector/frame_lens.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "lf/collector/collect.h"
+#include "lf/collector/test_noise_field.h"
+
+namespace lf {
+namespace {
+
+// What a plate of the reference would be: every image with its weights.
+std::vector<SensorPlate> Collected(const LightField& field, const std::vector<FrameLens>& lenses,
+                                   Estimator estimator, CollectBackEnd back_end, int threads,
+                                   uint64_t seed) {
+  ThreadPool pool(threads);
+  const testing::NoiseStore store;
+  std::vector<RenderCamera> cameras;
+  std::vector<SensorPlate> plates;
+  for (const FrameLens& lens : lenses) {
+    cameras.push_back(lens.camera());
+    plates.emplace_back(cameras.back().pinhole.intrinsics.width_px,
+                        cameras.back().pinhole.intrinsics.height_px);
+  }
+  SelectOptions select;
+  select.seed = seed;
+  select.reach = ReachOf(estimator);
+  const auto order = SelectImages(field, cameras, select, pool);
+  CollectOptions options;
+  options.estimator = estimator;
+  options.back_end = back_end;
+  options.weights = [&](size_t f, LfImageId id) { return lenses[f].WeightsOf(id); };
+  EXPECT_TRUE(Collect(field, store, cameras, order, options, pool, &plates, {}));
+  return plates;
+}
+
+TEST(FrameLens, WithoutWeightsIsTheFrames) {
+  ThreadPool pool(2);
+  const LightField field = testing::NoiseField();
+  for (const RenderCamera& frame : testing::NoiseFrames()) {
+    const FrameLens lens(field, frame, LensWeights::kNone, {}, pool);
+    EXPECT_EQ(lens.camera().aperture.radius_w, frame.aperture.radius_w);
+    EXPECT_EQ(lens.camera().aperture.blades, frame.aperture.blades);
+    EXPECT_TRUE(lens.WeightsOf(LfImageId{3}).are_same());
+    EXPECT_EQ(lens.WeightsOf(LfImageId{3}).same(), 1u);
+    EXPECT_FALSE(lens.effective_count());
+  }
+}
+
+TEST(FrameLens, PlatesAreThoseOfTheReferenceForAnyThreadsAndOrder) {
+  const LightField field = testing::NoiseField();
+  ThreadPool pool(2);
+  for (const LensWeights kind : {LensWeights::kArea, LensWeights::kHat})
+    for (const Estimator estimator : {Estimator::kNearest, Estimator::kBilinear}) {
+      SelectOptions select;
+      select.reach = ReachOf(estimator);
+      std::vector<FrameLens> lenses;
+      for (const RenderCamera& frame : testing::NoiseFrames())
+        lenses.emplace_back(field, frame, kind, select, pool);
+      const auto plates = Collected(field, lenses, estimator, CollectBackEnd::kFast, 1, 0);
+      EXPECT_EQ(Collected(field, lenses, estimator, CollectBackEnd::kFast, 3, 5), plates);
+      const auto expected = Collected(field, lenses, estimator, CollectBackEnd::kReference, 1, 0);
+      uint64_t total = 0, differing = 0;
+      for (size_t f = 0; f < plates.size(); ++f)
+        for (int y = 0; y < plates[f].height(); ++y)
+          for (int x = 0; x < plates[f].width(); ++x) {
+            const ElementSum found = plates[f].At(x, y, 1), wanted = expected[f].At(x, y, 1);
+            total += wanted.count;
+            differing += found.count > wanted.count ? found.count - wanted.count
+                                                    : wanted.count - found.count;
+          }
+      EXPECT_GT(total, 100000u);
+      EXPECT_LE(differing, total / 1000);
+    }
+}
+
+TEST(FrameLens, ImagesBesideTheLensTakePartAndThoseFarAwayDoNot) {
+  ThreadPool pool(2);
+  const LightField field = testing::NoiseField(15);
+  RenderCamera frame = testing::NoiseFrames()[0];
+  frame.aperture = {0.012, 0, 0};
+  const FrameLens lens(field, frame, LensWeights::kArea, {}, pool);
+  EXPECT_GT(lens.camera().aperture.radius_w, 0.012);
+  EXPECT_LT(lens.camera().aperture.radius_w, 0.025);
+  size_t inside = 0, beside = 0, none = 0;
+  for (uint32_t i = 0; i < field.size(); ++i) {
+    const double distance =
+        (field.cameras[i].cam_from_world.Inverse().translation - frame.pinhole.CentreWorld())
+            .norm();
+    const RayWeights weights = lens.WeightsOf(LfImageId{i});
+    const bool takes_part = !weights.are_same() || weights.same() > 0;
+    EXPECT_TRUE(takes_part || distance >= 0.01) << i;
+    inside += takes_part && distance < 0.012 ? 1 : 0;
+    beside += takes_part && distance > 0.0121 ? 1 : 0;
+    none += takes_part ? 0 : 1;
+  }
+  EXPECT_GT(inside, 10u);
+  EXPECT_GT(beside, 3u);
+  EXPECT_GT(none, 100u);
+  EXPECT_GT(*lens.effective_count(), 10);
+  EXPECT_LE(*lens.effective_count(), static_cast<double>(inside + beside));
+}
+
+}  // namespace
+}  // namespace lf
