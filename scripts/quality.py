@@ -80,10 +80,16 @@ def mosaic(calibration, folder):
     return folder / "transforms.json"
 
 
-def render(renderer, calibration, path, folder, estimator="nearest"):
-    subprocess.run([renderer, calibration, path, "-o", folder, "--format", "exr-float",
-                    "--estimator", estimator, "--lens-weights", "none", "-q",
-                    "--no-contact-sheet"], check=True)
+class RenderFailed(Exception):
+    pass
+
+
+def render(renderer, calibration, path, folder, estimator="nearest", lens_weights="none"):
+    result = subprocess.run([renderer, calibration, path, "-o", folder, "--format", "exr-float",
+                             "--estimator", estimator, "--lens-weights", lens_weights, "-q",
+                             "--no-contact-sheet"], stderr=subprocess.PIPE, text=True)
+    if result.returncode != 0:
+        raise RenderFailed(result.stderr.strip())
     report = json.loads((folder / "report.json").read_text())
     return folder / "frame_0001.exr", report["frames"][0]["lf_images"]
 
