@@ -11,29 +11,41 @@ namespace lf {
 // count += weight. A ray of weight 0 adds nothing.
 inline constexpr uint32_t kMaxWeight = 255;
 
-// Elements [8 i, 8 i + 8) x [8 j, 8 j + 8) of the plate have one weight.
+// Blocks of 8 x 8 elements of the plate have one weight. Every LF image has blocks of its own,
+// which begin elsewhere, so that the borders of all of them do not add up to a pattern.
 inline constexpr int kWeightBlock = 8;
+
+struct WeightBlocks {
+  // In [0, kWeightBlock): blocks begin at x = 8 i - shift_x.
+  int shift_x = 0;
+  int shift_y = 0;
+
+  // The end of the block that x lies in; likewise for y.
+  int EndX(int x) const { return ((x + shift_x) / kWeightBlock + 1) * kWeightBlock - shift_x; }
+  int EndY(int y) const { return ((y + shift_y) / kWeightBlock + 1) * kWeightBlock - shift_y; }
+};
 
 // What the rays of one LF image count in one frame.
 class RayWeights {
  public:
   // The same all over the plate, at most kMaxWeight.
   RayWeights(uint32_t weight = 1) : same_(weight) {}  // NOLINT: a number is such weights
-  // By element (x, y), at most kMaxWeight; asked for one element of each block.
-  explicit RayWeights(std::function<uint32_t(int x, int y)> of_element)
-      : of_element_(std::move(of_element)) {}
+  // Of the block that ends before (end_x, end_y), at most kMaxWeight.
+  RayWeights(const WeightBlocks& blocks, std::function<uint32_t(int end_x, int end_y)> of_block)
+      : blocks_(blocks), of_block_(std::move(of_block)) {}
 
-  bool are_same() const { return of_element_ == nullptr; }
+  bool are_same() const { return of_block_ == nullptr; }
   uint32_t same() const { return same_; }
+  const WeightBlocks& blocks() const { return blocks_; }
+  // Of element (x, y).
   uint32_t At(int x, int y) const {
-    return are_same()
-               ? same_
-               : of_element_(x / kWeightBlock * kWeightBlock, y / kWeightBlock * kWeightBlock);
+    return are_same() ? same_ : of_block_(blocks_.EndX(x), blocks_.EndY(y));
   }
 
  private:
   uint32_t same_ = 1;
-  std::function<uint32_t(int x, int y)> of_element_;
+  WeightBlocks blocks_;
+  std::function<uint32_t(int end_x, int end_y)> of_block_;
 };
 
 }  // namespace lf

@@ -17,7 +17,8 @@ using testing::PlateFor;
 
 // Of every block at random, 0 among them; in some corners of the plate all the same.
 RayWeights AnyWeights(uint64_t seed) {
-  return RayWeights([seed](int x, int y) -> uint32_t {
+  const WeightBlocks blocks = {static_cast<int>(seed % 8), static_cast<int>(seed / 8 % 8)};
+  return RayWeights(blocks, [seed](int x, int y) -> uint32_t {
     const auto column = static_cast<uint64_t>(x / kWeightBlock);
     const auto row = static_cast<uint64_t>(y / kWeightBlock);
     if (column < 6 && row < 4) return seed % 4 == 0 ? 0 : kMaxWeight;
@@ -40,9 +41,11 @@ SensorPlate Multiplied(const SensorPlate& plate, const RayWeights& weights) {
 }
 
 TEST(RayWeights, AreThoseOfBlocks) {
-  const RayWeights weights([](int x, int y) { return static_cast<uint32_t>(10 * x + y); });
-  EXPECT_EQ(weights.At(7, 7), 0u);
-  EXPECT_EQ(weights.At(8, 23), 96u);
+  const RayWeights weights({3, 0}, [](int x, int y) { return static_cast<uint32_t>(10 * x + y); });
+  EXPECT_EQ(weights.At(0, 0), 58u);
+  EXPECT_EQ(weights.At(4, 7), 58u);
+  EXPECT_EQ(weights.At(5, 7), 138u);
+  EXPECT_EQ(weights.At(12, 8), 146u);
   EXPECT_FALSE(weights.are_same());
   EXPECT_EQ(RayWeights().At(5, 9), 1u);
   EXPECT_EQ(RayWeights(7).At(5, 9), 7u);

@@ -20,9 +20,7 @@ void TileWeights::Fill(const RayWeights& weights, const PixelRect& tile, int pit
   least_ = kMaxWeight;
   most_ = 0;
   uint8_t* row = bytes_.data() + kMargin;
-  const auto block_end = [](int begin, int end) {
-    return std::min(end, begin / kWeightBlock * kWeightBlock + kWeightBlock);
-  };
+  const WeightBlocks& blocks = weights.blocks();
   for (int y = tile.y_begin; y < tile.y_end;) {
     uint8_t* const first = row;
     for (int x = tile.x_begin; x < tile.x_end;) {
@@ -30,12 +28,12 @@ void TileWeights::Fill(const RayWeights& weights, const PixelRect& tile, int pit
       LF_DCHECK(weight <= kMaxWeight);
       least_ = std::min(least_, weight);
       most_ = std::max(most_, weight);
-      const int end = block_end(x, tile.x_end);
+      const int end = std::min(tile.x_end, blocks.EndX(x));
       std::memset(first + (x - tile.x_begin), static_cast<int>(weight),
                   static_cast<size_t>(end - x));
       x = end;
     }
-    const int end = block_end(y, tile.y_end);
+    const int end = std::min(tile.y_end, blocks.EndY(y));
     row += row_bytes;
     for (++y; y < end; ++y, row += row_bytes)
       std::memcpy(row, first, static_cast<size_t>(tile.width()));

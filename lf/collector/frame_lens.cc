@@ -31,7 +31,9 @@ RayWeights FrameLens::WeightsOf(LfImageId id) const {
   if (found == cameras_.end() || !weights_->TakesPart(found->second)) return 0;
   const size_t camera = found->second;
   if (weights_->is_constant()) return weights_->At(camera, 0, 0);
-  return RayWeights([this, camera](int x, int y) { return weights_->At(camera, x, y); });
+  return RayWeights(weights_->BlocksOf(camera), [this, camera](int end_x, int end_y) {
+    return weights_->At(camera, end_x - 1, end_y - 1);
+  });
 }
 
 std::optional<double> FrameLens::effective_count() const {

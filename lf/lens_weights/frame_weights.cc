@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "lf/core/check.h"
+#include "lf/core/random.h"
 #include "lf/lens_weights/lens_cells.h"
 
 namespace lf {
@@ -12,7 +13,8 @@ namespace {
 
 // Lens points move by no more than this part of their distance from node to node, about.
 constexpr double kStepOfDistance = 1.0 / 3;
-constexpr int kMostNodes = 64;  // along an edge of the plate
+constexpr int kMostNodes = 64;         // along an edge of the plate
+constexpr int kLeastNodeStep_px = 32;  // finer ones would cost more than the rays
 // Cameras that stand in the lens plane but for rounding.
 constexpr double kAtRest = 1e-6;
 
@@ -81,10 +83,11 @@ Movement MovementOf(const RenderCamera& frame, std::span<const Vec3> centres_wor
   return most;
 }
 
-int NodeCount(double movement, double distance) {
+int NodeCount(double movement, double distance, int size_px) {
   if (!(movement > kAtRest * distance)) return 1;
   const double steps = movement / (kStepOfDistance * distance);
-  return static_cast<int>(std::min(2 + steps, static_cast<double>(kMostNodes)));
+  const int most = std::clamp(size_px / kLeastNodeStep_px, 2, kMostNodes);
+  return static_cast<int>(std::min(2 + steps, static_cast<double>(most)));
 }
 
 double Median(std::vector<double> values) {
@@ -98,16 +101,16 @@ double NodePosition(int index, int count, int size_px) {
   return count == 1 ? 0.5 * size_px : static_cast<double>(index) * size_px / (count - 1);
 }
 
-// The node before an element, and how far it is to the next one, in 1/256.
+// The node before the middle of a block, and how far it is to the next one, in 1/256.
 struct Place {
   int node;
   int fraction;
 };
 
-Place PlaceOf(int element, int count, int size_px) {
+Place PlaceOf(int block_end, int count, int size_px) {
   if (count == 1) return {0, 0};
-  const int middle = element / kWeightBlock * kWeightBlock + kWeightBlock / 2;
-  const int64_t place = int64_t{256} * std::min(middle, size_px - 1) * (count - 1) / size_px;
+  const int middle = std::clamp(block_end - kWeightBlock / 2, 0, size_px - 1);
+  const int64_t place = int64_t{256} * middle * (count - 1) / size_px;
   return {static_cast<int>(place >> 8), static_cast<int>(place & 255)};
 }
 
@@ -154,8 +157,8 @@ void FrameWeights::SetGrid(const RenderCamera& frame, std::span<const Vec3> cent
   const double distance = CameraDistance(frame, centres_world);
   if (distance == 0) return;
   const Movement movement = MovementOf(frame, centres_world);
-  columns_ = NodeCount(movement.across, distance);
-  rows_ = NodeCount(movement.down, distance);
+  columns_ = NodeCount(movement.across, distance, width_px_);
+  rows_ = NodeCount(movement.down, distance, height_px_);
   if (columns_ > 1) step_w_ += movement.across / (columns_ - 1);
   if (rows_ > 1) step_w_ += movement.down / (rows_ - 1);
 }
@@ -199,6 +202,11 @@ void FrameWeights::SetWeights(const std::vector<Node>& nodes) {
     }
 }
 
+WeightBlocks FrameWeights::BlocksOf(size_t camera) const {
+  const uint64_t any = MixBits(camera);
+  return {static_cast<int>(any % kWeightBlock), static_cast<int>((any >> 32) % kWeightBlock)};
+}
+
 double FrameWeights::EffectiveCount() const {
   double sum = 0, squares = 0;
   for (size_t camera = 0; camera < nodes_begin_.size(); ++camera) {
@@ -212,7 +220,9 @@ double FrameWeights::EffectiveCount() const {
 uint32_t FrameWeights::At(size_t camera, int x, int y) const {
   if (nodes_begin_[camera] == kNone) return 0;
   const uint16_t* const weights = &weights_[nodes_begin_[camera]];
-  const Place h = PlaceOf(x, columns_, width_px_), v = PlaceOf(y, rows_, height_px_);
+  const WeightBlocks blocks = BlocksOf(camera);
+  const Place h = PlaceOf(blocks.EndX(x), columns_, width_px_);
+  const Place v = PlaceOf(blocks.EndY(y), rows_, height_px_);
   const int right = columns_ > 1 ? 1 : 0, below = rows_ > 1 ? columns_ : 0;
   const uint16_t* const node = weights + v.node * columns_ + h.node;
   const auto between = [](uint64_t a, uint64_t b, int fraction) {

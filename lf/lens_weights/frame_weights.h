@@ -29,10 +29,11 @@ class FrameWeights {
   // kind           kArea: cells, which want a lens of some size, radius_w > 0; kHat: hats
   FrameWeights(const RenderCamera& frame, std::span<const Vec3> centres_world, LensWeights kind);
 
-  // Of a ray of the camera's to an element: 0 (it adds nothing) to kMaxWeight. The largest share of
-  // the frame has kMaxWeight, unless it is more than kMostMedians times the middle one: then it is
-  // taken for so much.
+  // Of a ray of the camera's to an element, whose block is one of BlocksOf(camera): 0 (it adds
+  // nothing) to kMaxWeight. The largest share of the frame has kMaxWeight, unless it is more than
+  // kMostMedians times the middle one: then it is taken for so much.
   uint32_t At(size_t camera, int x, int y) const;
+  WeightBlocks BlocksOf(size_t camera) const;
 
   // Whether it has any but 0, on a node.
   bool TakesPart(size_t camera) const { return nodes_begin_[camera] != kNone; }
