@@ -10,7 +10,6 @@ import argparse
 import json
 import pathlib
 import random
-import re
 import sys
 import tempfile
 
@@ -37,13 +36,15 @@ def thinned(case, frames):
 
 
 def decibels(renderer, truth, case, calibration, folder, weights):
-    """PSNR of the frame, or what went wrong; LF images that took part"""
+    """PSNR of the frame, none without a ray; LF images that took part"""
     path = folder / "path.yaml"
     path.write_text(quality.path_yaml(case))
     try:
         frame, images = quality.render(renderer, calibration, path, folder / weights, "bilinear",
                                        weights)
-    except quality.RenderFailed:
+    except quality.RenderFailed as failure:
+        if "no LF image contributes" not in str(failure):
+            raise
         return None, 0
     return quality.psnr(truth, case, frame), images
 
@@ -84,11 +85,7 @@ def main():
                             f"{text(hat[0])} |")
                 print(rows[-1], flush=True)
     if arguments.write:
-        page = arguments.write.read_text()
-        table = "<!-- table: scripts/lens_weights.py -->\n"
-        page = re.sub(re.escape(table) + ".*?<!-- end of table -->",
-                      lambda _: table + "\n".join(rows) + "\n<!-- end of table -->", page, flags=re.S)
-        arguments.write.write_text(page)
+        quality.write_table(arguments.write, "lens_weights.py", rows)
     return 0
 
 

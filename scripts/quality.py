@@ -113,6 +113,14 @@ def reference_columns(truth_folder):
     return columns
 
 
+def write_table(page, script, lines):
+    """Puts the lines where the page has the script's table."""
+    begin, end = f"<!-- table: scripts/{script} -->", "<!-- end of table -->"
+    before, rest = page.read_text().split(begin)
+    after = rest.split(end, 1)[1]
+    page.write_text("\n".join([before + begin, *lines, end + after]))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -158,14 +166,10 @@ def main():
                     faults.append(f"{name}, {estimator}: {db:.2f} dB, "
                                   f"below {least:.2f} - {ALLOWED_LOSS_DB}")
     if arguments.write:
-        text = arguments.write.read_text()
-        table = "\n".join(["| case | LF images | nearest | reference | difference | bilinear | reference | "
-                           "difference | nearest, Bayer |",
-                           "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"] + rows)
-        begin, end = "<!-- table: scripts/quality.py -->", "<!-- end of table -->"
-        before, rest = text.split(begin)
-        after = rest.split(end)[1]
-        arguments.write.write_text(f"{before}{begin}\n{table}\n{end}{after}")
+        write_table(arguments.write, "quality.py",
+                    ["| case | LF images | nearest | reference | difference | bilinear | reference | "
+                     "difference | nearest, Bayer |",
+                     "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"] + rows)
     print("\n".join(faults) or f"{len(rows)} cases, none more than {ALLOWED_LOSS_DB} dB below")
     return 1 if arguments.check and (faults or not rows) else 0
 

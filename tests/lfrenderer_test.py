@@ -93,6 +93,28 @@ class RendererTest(unittest.TestCase):
         self.assertGreater(report["passes"], 1)
         self.assertEqual(digests, expected)
 
+    def test_weighed_frames_have_the_same_bits_for_any_threads_memory_and_order(self):
+        field, path = write_field(self.folder / "field"), write_path(self.folder, frames=12)
+        plain, _ = self.render(field, path, "plain")
+        for weights in ("area", "hat"):
+            chosen = ["--lens-weights", weights]
+            expected, report = self.render(field, path, weights, "--threads", "1", *chosen)
+            self.assertNotEqual(expected, plain)
+            self.assertGreater(report["frames"][0]["effective_lf_images"], 1)
+            for index, options in enumerate([["--threads", "3"], ["--seed", "5"],
+                                             self.least_memory(field, path)]):
+                digests, _ = self.render(field, path, f"{weights}{index}", *chosen, *options)
+                self.assertEqual(digests, expected, options)
+
+    def test_pinholes_have_hats_but_no_area(self):
+        field, path = write_field(self.folder / "field"), write_path(self.folder, aperture=0)
+        self.fails(2, ["area", "pinhole", "hat"], field, path, "-o", self.folder / "area",
+                   "--lens-weights", "area")
+        digests, _ = self.render(field, path, "hat", "--lens-weights", "hat")
+        self.assertEqual(len(digests), 3)
+        self.fails(2, ["sums of weights"], field, path, "-o", self.folder / "counted",
+                   "--lens-weights", "hat", "--stop-when", "samples>=4")
+
     def test_the_reference_collects_the_same_rays(self):
         field, path = write_field(self.folder / "field"), write_path(self.folder)
         _, fast = self.render(field, path, "fast")

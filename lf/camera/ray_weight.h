@@ -36,6 +36,8 @@ class RayWeights {
 
   bool are_same() const { return of_block_ == nullptr; }
   uint32_t same() const { return same_; }
+  // The image takes no part.
+  bool are_none() const { return are_same() && same_ == 0; }
   const WeightBlocks& blocks() const { return blocks_; }
   // Of element (x, y).
   uint32_t At(int x, int y) const {

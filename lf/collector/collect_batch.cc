@@ -173,7 +173,7 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
     const RenderCamera& frame = frames_[taker.frame];
     const PinholeCamera camera = light_field_.Camera(image.id);
     share.weights = WeightsOf(taker.frame, image.id);
-    if (share.weights.are_same() && share.weights.same() == 0) return;
+    if (share.weights.are_none()) return;
     share.rect = RectOf(image, frame);
     if (share.rect.empty()) return;
     const Intrinsics& plate = frame.pinhole.intrinsics;
@@ -237,7 +237,7 @@ void BatchCollector::AddByReference(const std::vector<BatchImage>& batch, BatchF
     const PixelRect rect = RectOf(image, camera);
     if (rect.empty() || !frame->places.Holds(image.place)) continue;
     const RayWeights weights = WeightsOf(frame->frame, image.id);
-    if (weights.are_same() && weights.same() == 0) continue;
+    if (weights.are_none()) continue;
     const PinholeCamera lf_camera = light_field_.Camera(image.id);
     const uint64_t accepted =
         estimator_ == Estimator::kBilinear

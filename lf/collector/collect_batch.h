@@ -80,7 +80,6 @@ using FrameImageWeights = std::function<RayWeights(size_t frame, LfImageId id)>;
 
 class BatchCollector {
  public:
-  // weights     what rays count (collect.h)
   // plan_bytes  of frames planned together; one may take more
   BatchCollector(const LightField& light_field, std::span<const RenderCamera> frames,
                  Estimator estimator, CollectBackEnd back_end, FrameImageWeights weights,

@@ -15,10 +15,13 @@ FrameLens::FrameLens(const LightField& light_field, const RenderCamera& frame, L
   RenderCamera grown = frame;
   grown.aperture = {frame.aperture.radius_w + kReach_distances * CameraDistance(frame, centres), 0,
                     0};
+  for (const SelectedImage& image : SelectImages(light_field, std::span(&grown, 1), select, pool))
+    cameras_[image.id.value] = 0;
+  // In the order of their numbers: the order in which images are taken has no say in weights.
   std::vector<Vec3> near;
-  for (const SelectedImage& image : SelectImages(light_field, std::span(&grown, 1), select, pool)) {
-    cameras_[image.id.value] = near.size();
-    near.push_back(centres[image.id.value]);
+  for (auto& [id, camera] : cameras_) {
+    camera = near.size();
+    near.push_back(centres[id]);
   }
   weights_.emplace(frame, near, kind);
   // A little more, so that what lies on the rim is inside.

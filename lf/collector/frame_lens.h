@@ -18,8 +18,6 @@ namespace lf {
 // (doc/ray.md, "What is added").
 class FrameLens {
  public:
-  FrameLens() = default;  // of no use
-
   // LF images with rays within so many distances of neighbouring LF cameras of the lens are asked
   // for their share.
   static constexpr double kReach_distances = 8;
@@ -31,7 +29,7 @@ class FrameLens {
   // The frame's; with weights its lens is the disk that holds all rays that have one.
   const RenderCamera& camera() const { return camera_; }
 
-  // 0 all over: the image takes no part. Refers to this object.
+  // Refer to this object.
   RayWeights WeightsOf(LfImageId id) const;
 
   // How many LF images, each as good as any other, would make as little noise; none without

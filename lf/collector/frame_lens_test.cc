@@ -55,11 +55,14 @@ TEST(FrameLens, PlatesAreThoseOfTheReferenceForAnyThreadsAndOrder) {
     for (const Estimator estimator : {Estimator::kNearest, Estimator::kBilinear}) {
       SelectOptions select;
       select.reach = ReachOf(estimator);
-      std::vector<FrameLens> lenses;
+      std::vector<FrameLens> lenses, of_another_order;
       for (const RenderCamera& frame : testing::NoiseFrames())
         lenses.emplace_back(field, frame, kind, select, pool);
+      select.seed = 5;
+      for (const RenderCamera& frame : testing::NoiseFrames())
+        of_another_order.emplace_back(field, frame, kind, select, pool);
       const auto plates = Collected(field, lenses, estimator, CollectBackEnd::kFast, 1, 0);
-      EXPECT_EQ(Collected(field, lenses, estimator, CollectBackEnd::kFast, 3, 5), plates);
+      EXPECT_EQ(Collected(field, of_another_order, estimator, CollectBackEnd::kFast, 3, 5), plates);
       const auto expected = Collected(field, lenses, estimator, CollectBackEnd::kReference, 1, 0);
       uint64_t total = 0, differing = 0;
       for (size_t f = 0; f < plates.size(); ++f)

@@ -221,10 +221,10 @@ Error Renderer::NoneContributes() const {
 
 Result<void> Renderer::CheckAnyContributes(const RenderJob& job,
                                            std::span<const FrameId> frames) const {
-  std::vector<RenderCamera> cameras;
-  for (const FrameId frame : frames) cameras.push_back(path_.Camera(frame));
   // With weights LF cameras beside the lens take part: a pass will tell.
   if (options_.lens_weights != LensWeights::kNone) return {};
+  std::vector<RenderCamera> cameras;
+  for (const FrameId frame : frames) cameras.push_back(path_.Camera(frame));
   const bool any_contributes = !SelectImages(light_field_, cameras, job.Select(), pool_).empty();
   if (job.IsStopped()) return Interrupted();
   if (!any_contributes) return NoneContributes();

@@ -46,10 +46,8 @@ void RenderPass::FindLenses() {
 void RenderPass::DropUnweighted() {
   if (job_.options.lens_weights == LensWeights::kNone) return;
   std::erase_if(images_, [this](const SelectedImage& image) {
-    return std::all_of(lenses_.begin(), lenses_.end(), [&](const FrameLens& lens) {
-      const RayWeights weights = lens.WeightsOf(image.id);
-      return weights.are_same() && weights.same() == 0;
-    });
+    return std::all_of(lenses_.begin(), lenses_.end(),
+                       [&](const FrameLens& lens) { return lens.WeightsOf(image.id).are_none(); });
   });
 }
 
