@@ -17,7 +17,7 @@ OWNERS = {
     "yaml-cpp/": {"path"},
     "nlohmann/": {"calibration", "native", "record"},
     "tbb/": {"core"},
-    "hwy/": {"collection"},
+    "hwy/": {"collection", "store"},
     "zstd": {"plate"},
     "xxhash": {"core"},
     "CLI/": set(),

@@ -1,0 +1,36 @@
+// What both back ends of demosaicing share. Internal to store.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "lf/core/check.h"
+#include "lf/core/geometry.h"
+
+namespace lf {
+
+// A colour is a sum in 1/4096: weights of pixels are multiples of 1/16, ratios of 1/256.
+inline constexpr int kWeightBits = 4;
+inline constexpr int kRatioBits = 8;
+// So large that no sum reaches 2^31: (4096 + 12 * 2048) * 65535 < 2^31.
+inline constexpr int32_t kMaxRatio = 8 << kRatioBits;
+
+// w[recorded] / w[missing], by which a Laplacian is multiplied.
+inline int32_t BalanceRatio(const std::array<double, 3>& white_balance, int recorded, int missing) {
+  const double of_recorded = white_balance[static_cast<size_t>(recorded)];
+  const double of_missing = white_balance[static_cast<size_t>(missing)];
+  LF_CHECK(of_recorded > 0 && of_missing > 0);
+  const double ratio = std::floor(of_recorded / of_missing * (1 << kRatioBits) + 0.5);
+  return static_cast<int32_t>(std::min<double>(ratio, kMaxRatio));
+}
+
+// Where a position beyond an image of `size` >= 2 is found.
+inline int Mirrored(int position, int size) {
+  while (position < 0 || position >= size)
+    position = position < 0 ? -position : 2 * (size - 1) - position;
+  return position;
+}
+
+}  // namespace lf
