@@ -204,11 +204,17 @@ std::vector<CaseSpec> AllCases() {
   plate("plate_4k", 3840, 2160, 4);
   plate("plate_8k", 7680, 4320, 2);
   add("rgb").bayer = BayerPattern::kNone;
-  CaseSpec& bilinear = add("bilinear");
-  bilinear.bayer = BayerPattern::kNone;
-  bilinear.estimator = Estimator::kBilinear;
+  const auto gather = [&](const char* name) -> CaseSpec& {
+    CaseSpec& spec = add(name);
+    spec.bayer = BayerPattern::kNone;
+    spec.estimator = Estimator::kBilinear;
+    return spec;
+  };
+  gather("bilinear");
+  gather("bicubic").filter = PixelFilter::kBicubic;
+  gather("bilinear_0.5").magnification = 0.5;
   for (CaseSpec& spec : cases) {
-    for (const char* name : {"disk", "separable", "distortion_phone", "rgb", "bilinear"})
+    for (const char* name : {"disk", "separable", "distortion_phone", "rgb", "bilinear", "bicubic"})
       spec.every_target |= spec.name == name;
     spec.peer_image_count = std::min(spec.peer_image_count, spec.image_count);
   }

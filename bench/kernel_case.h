@@ -12,6 +12,7 @@
 #include "lf/camera/pinhole.h"
 #include "lf/camera/render_camera.h"
 #include "lf/capture/lf_pixels.h"
+#include "lf/collection/gather_sampling.h"
 #include "lf/core/geometry.h"
 #include "lf/core/image.h"
 
@@ -22,6 +23,7 @@ enum class Estimator { kNearest, kBilinear };
 struct CaseSpec {
   std::string name;
   Estimator estimator = Estimator::kNearest;
+  PixelFilter filter = PixelFilter::kBilinear;  // of kBilinear
   BayerPattern bayer = BayerPattern::kRggb;
   int image_size_px = 2048;  // LF images are square
   int plate_width = 1920;

@@ -44,7 +44,7 @@ class FastKernel final : public OurKernel {
       gather_plans_.resize(std::max(gather_plans_.size(), count));
       for (size_t i = 0; i < count; ++i) {
         GatherPlan& plan = gather_plans_[i];
-        plan = PlanGather(case_.cameras[i], case_.frame, std::move(plan));
+        plan = PlanGather(case_.cameras[i], case_.frame, std::move(plan), case_.spec.filter);
       }
       CollectTiles(count, [&](size_t i, size_t /*tile*/) {
         return GatherTile(gather_plans_[i], case_.images[i], &sums_);
@@ -94,7 +94,8 @@ class Reference final : public Contender {
   void Collect(int image_count) override {
     for (size_t i = 0; i < static_cast<size_t>(image_count); ++i) {
       if (case_.spec.estimator == Estimator::kBilinear)
-        GatherReference(case_.cameras[i], case_.images[i], case_.frame, &plate_);
+        GatherReference(case_.cameras[i], case_.images[i], case_.frame, &plate_, 1,
+                        case_.spec.filter);
       else
         ScatterReference(case_.cameras[i], case_.images[i], case_.frame, case_.rects[i], &plate_);
     }

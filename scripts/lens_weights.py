@@ -1,52 +1,218 @@
 #!/usr/bin/python3
-"""Renders ground truth cases from thinned captures, without and with lens weights, and prints the
-table of doc/lens-integral.md.
+"""Renders light fields whose true thin-lens pictures are known, by every estimator and with every
+kind of lens weights, and prints the tables of doc/lens-integral.md.
 
 usage: lens_weights.py LFRENDERER GROUNDTRUTH [--write doc/lens-integral.md] [--only SUBSTRING]
+                       [--tables captures,lenses,magnifications]
 
-GROUNDTRUTH  as for quality.py
+GROUNDTRUTH     as for quality.py
+captures        thinned captures of the ground truth cases; LF images are dropped at random, but
+                always the same
+lenses          lenses as small as pinholes, in two scenes of lfsynth (beside LFRENDERER)
+magnifications  the same scenes with frames finer and coarser than their LF images
 """
 import argparse
 import json
+import os
 import pathlib
 import random
+import subprocess
 import sys
 import tempfile
 
+os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"
+import cv2
 import numpy as np
 
 import quality
 
 PINHOLE_FOCUS_M = 0.5  # the truth of a pinhole has no focus plane
 SEED = 5
+SYNTHETIC_SCENES = ("still-life", "chart")
+SYNTHETIC_SIZE = (320, 212)
+SYNTHETIC_SPACING = 0.003
+TRUTH_SAMPLES = 256
 
 
-def thinned(case, frames):
-    """(name, frames of it) of every capture; LF images are dropped at random, but always the same."""
-    position, right, _, _ = quality.camera_axes(case)
-    side = [(np.array(f["transform_matrix"])[:3, 3] - position) @ right for f in frames]
+def linear_exr(path):
+    return cv2.imread(str(path), cv2.IMREAD_UNCHANGED)[..., 2::-1].astype(np.float64)
+
+
+def linear_pfm(path):
+    with open(path, "rb") as file:
+        kind, size, scale = (file.readline().strip() for _ in range(3))
+        width, height = map(int, size.split())
+        values = np.frombuffer(file.read(), "<f4" if float(scale) < 0 else ">f4")
+    assert kind == b"PF"
+    return values.reshape(height, width, 3)[::-1].astype(np.float64)
+
+
+def psnr(truth, picture):
+    """dB in linear light, up to display white"""
+    error = np.clip(truth, 0, 1) - np.clip(picture, 0, 1)
+    return -10 * np.log10(np.mean(error ** 2))
+
+
+def decibels(renderer, truth, calibration, path, options):
+    """(PSNR, LF images that took part); None without a ray"""
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = pathlib.Path(temporary)
+        result = subprocess.run([renderer, calibration, path, "-o", folder, "--format", "exr-float",
+                                 "-q", "--no-contact-sheet", *options.split()],
+                                stderr=subprocess.PIPE, text=True)
+        if "no LF image contributes" in result.stderr or "has no area" in result.stderr:
+            return None, 0
+        if result.returncode != 0:
+            sys.exit(result.stderr)
+        report = json.loads((folder / "report.json").read_text())
+        return (psnr(truth, linear_exr(folder / "frame_0001.exr")),
+                report["frames"][0]["lf_images"])
+
+
+def text(found):
+    return "-" if found[0] is None else f"{found[0]:.2f}"
+
+
+class Table:
+    def __init__(self, *columns):
+        self.rows = ["| " + " | ".join(columns) + " |", "| --- " * len(columns) + "|"]
+
+    def add(self, *cells):
+        self.rows.append("| " + " | ".join(map(str, cells)) + " |")
+        print(self.rows[-1], flush=True)
+
+
+def captures(case, frames):
+    """(name, frames of it)"""
+    position, right, up, _ = quality.camera_axes(case)
+    places = [np.array(f["transform_matrix"])[:3, 3] - position for f in frames]
 
     def kept(share):
         dice = random.Random(SEED)
-        return [f for f, s in zip(frames, side) if dice.random() < share(s)]
+        return [f for f, p in zip(frames, places) if dice.random() < share(p @ right)]
+
+    # Of the grid that the names are numbers of, or of the order in a row.
     yield "full", frames
-    yield "half of one lens half dropped", kept(lambda s: 0.5 if s > 0 else 1)
-    yield "three quarters dropped", kept(lambda s: 0.25)
-    yield "90 % dropped", kept(lambda s: 0.1)
+    yield "every 2nd", frames[::2]
+    yield "every 4th", frames[::4]
+    yield "half of one lens half dropped", kept(lambda side: 0.5 if side > 0 else 1)
+    yield "90 % dropped", kept(lambda side: 0.1)
 
 
-def decibels(renderer, truth, case, calibration, folder, weights):
-    """PSNR of the frame, none without a ray; LF images that took part"""
-    path = folder / "path.yaml"
-    path.write_text(quality.path_yaml(case))
-    try:
-        frame, images = quality.render(renderer, calibration, path, folder / weights, "bilinear",
-                                       weights)
-    except quality.RenderFailed as failure:
-        if "no LF image contributes" not in str(failure):
-            raise
-        return None, 0
-    return quality.psnr(truth, case, frame), images
+def table_of_captures(renderer, truth_folder, only):
+    weights = ("none", "area", "hat", "auto")
+    table = Table("case", "capture", "LF images", *weights)
+    for case in json.loads((truth_folder / "cases.json").read_text())["cases"]:
+        if only not in case["name"]:
+            continue
+        if not case["aperture_diameter_m"]:
+            *_, forward = quality.camera_axes(case)
+            case.update(aperture_diameter_m=0.0, blades=0, blade_rotation_deg=0.0,
+                        focus_distance_m=PINHOLE_FOCUS_M, focus_plane={"normal": list(forward)})
+        truth = linear_pfm(truth_folder / case["linear"])
+        calibration = truth_folder / case["light_field"]
+        field = json.loads(calibration.read_text())
+        for frame in field["frames"]:
+            frame["file_path"] = str((calibration.parent / frame["file_path"]).resolve())
+        for name, frames in captures(case, field["frames"]):
+            with tempfile.TemporaryDirectory() as temporary:
+                folder = pathlib.Path(temporary)
+                (folder / "transforms.json").write_text(json.dumps(dict(field, frames=frames)))
+                (folder / "path.yaml").write_text(quality.path_yaml(case))
+                found = {w: decibels(renderer, truth, folder / "transforms.json",
+                                     folder / "path.yaml", "--lens-weights " + w) for w in weights}
+            table.add(case["name"], name, f"{found['none'][1]} ({found['auto'][1]} weighed)",
+                      *(text(found[w]) for w in weights))
+    return table.rows
+
+
+def synthetic_path(calibration, diameter, scale, focus):
+    """The middle of the capture, looking as it does on the whole."""
+    field = json.loads(calibration.read_text())
+    poses = np.array([f["transform_matrix"] for f in field["frames"]])
+    position = poses[:, :3, 3].mean(axis=0)
+    forward, up = -poses[:, :3, 2].mean(axis=0), poses[:, :3, 1].mean(axis=0)
+    numbers = lambda v: "[" + ", ".join(repr(float(x)) for x in v) + "]"
+    width, height = (round(scale * size) for size in SYNTHETIC_SIZE)
+    fov = 2 * np.degrees(np.arctan(0.5 * SYNTHETIC_SIZE[0] / field["fl_x"]))
+    return f"""format: lfpath 1
+fps: 25
+frames: 1
+resolution: [{width}, {height}]
+camera:
+  field_of_view_deg: {float(0.8 * fov)!r}
+  focal_length_mm: 50
+  position: {numbers(position)}
+  look_at: {numbers(position + forward)}
+  up: {numbers(up)}
+lens:
+  aperture_diameter: {diameter!r}
+  focus_distance: {focus!r}
+"""
+
+
+class SyntheticScenes:
+    """Light fields of lfsynth, made once."""
+
+    def __init__(self, renderer, folder):
+        self.lfsynth = pathlib.Path(renderer).with_name("lfsynth")
+        self.folder = folder
+        for scene in SYNTHETIC_SCENES:
+            if self.calibration(scene).exists():
+                continue
+            self.run(scene, "-o", folder / scene, "--count", 225, "--jitter", 0.4, "--spacing",
+                     SYNTHETIC_SPACING, "--size", "x".join(map(str, SYNTHETIC_SIZE)))
+
+    def run(self, *arguments):
+        subprocess.run([self.lfsynth, *map(str, arguments), "-q"], check=True)
+
+    def calibration(self, scene):
+        return self.folder / scene / "transforms.json"
+
+    def truth(self, scene, diameter, scale=1, focus=0.8):
+        """(path, true picture)"""
+        name = f"{scene}_{diameter}_{scale}"
+        path = self.folder / (name + ".yaml")
+        path.write_text(synthetic_path(self.calibration(scene), diameter, scale, focus))
+        out = self.folder / ("truth_" + name)
+        if not out.exists():
+            self.run(scene, "-o", out, "--calibration-only", "--truth", path, "--truth-samples",
+                     TRUTH_SAMPLES)
+        return path, linear_exr(next(out.rglob("frame_0001.exr")))
+
+
+def table_of_lenses(renderer, scenes, only):
+    weights = ("none", "area", "hat", "auto")
+    table = Table("scene", "diameter, in camera distances", "LF images", *weights)
+    for scene in SYNTHETIC_SCENES:
+        if only not in scene:
+            continue
+        for distances in (0, 0.25, 0.5, 1, 1.5, 2, 3, 8):
+            path, truth = scenes.truth(scene, distances * SYNTHETIC_SPACING)
+            found = {w: decibels(renderer, truth, scenes.calibration(scene), path,
+                                 "--lens-weights " + w) for w in weights}
+            table.add(scene, distances or "pinhole",
+                      f"{found['none'][1]} ({found['auto'][1]} weighed)",
+                      *(text(found[w]) for w in weights))
+    return table.rows
+
+
+def table_of_magnifications(renderer, scenes, only):
+    estimators = {"nearest": "--estimator nearest",
+                  "bilinear": "--estimator bilinear --filter bilinear",
+                  "bicubic": "--estimator bilinear --filter bicubic"}
+    columns = [(e, w) for e in estimators for w in ("none", "area")] + [("auto", "auto")]
+    table = Table("scene", "elements per LF pixel", *(", ".join(dict.fromkeys(c)) for c in columns))
+    for scene in SYNTHETIC_SCENES:
+        if only not in scene:
+            continue
+        for scale in (0.4, 0.8, 1.2, 1.6):  # the frame sees 0.8 of what LF images do
+            path, truth = scenes.truth(scene, 8 * SYNTHETIC_SPACING, scale)
+            table.add(scene, f"{scale / 0.8:g}",
+                      *(text(decibels(renderer, truth, scenes.calibration(scene), path,
+                                      f"{estimators.get(e, '')} --lens-weights {w}"))
+                        for e, w in columns))
+    return table.rows
 
 
 def main():
@@ -55,37 +221,24 @@ def main():
     parser.add_argument("renderer")
     parser.add_argument("groundtruth", type=pathlib.Path)
     parser.add_argument("--write", type=pathlib.Path)
-    parser.add_argument("--only", default="")
-    arguments = parser.parse_args()
-    truth = arguments.groundtruth
-    text = lambda db: "no ray" if db is None else f"{db:.2f}"
-    rows = ["| case | capture | LF images | none | area | hat |", "| --- | --- | --- | --- | --- | --- |"]
-    for case in json.loads((truth / "cases.json").read_text())["cases"]:
-        if arguments.only not in case["name"]:
-            continue
-        is_pinhole = not case["aperture_diameter_m"]
-        if is_pinhole:
-            *_, forward = quality.camera_axes(case)
-            case.update(aperture_diameter_m=0.0, blades=0, blade_rotation_deg=0.0,
-                        focus_distance_m=PINHOLE_FOCUS_M, focus_plane={"normal": list(forward)})
-        calibration = truth / case["light_field"]
-        field = json.loads(calibration.read_text())
-        for frame in field["frames"]:
-            frame["file_path"] = str((calibration.parent / frame["file_path"]).resolve())
-        for name, frames in thinned(case, field["frames"]):
-            with tempfile.TemporaryDirectory() as temporary:
-                folder = pathlib.Path(temporary)
-                (folder / "transforms.json").write_text(json.dumps(dict(field, frames=frames)))
-                found = {weights: decibels(arguments.renderer, truth, case,
-                                           folder / "transforms.json", folder, weights)
-                         for weights in (["hat"] if is_pinhole else ["none", "area", "hat"])}
-                none, area, hat = (found.get(w, (None, 0)) for w in ("none", "area", "hat"))
-                rows.append(f"| {case['name']} | {name} | {none[1]} ({(hat if is_pinhole else area)[1]}"
-                            f" weighed) | {text(none[0])} | {'-' if is_pinhole else text(area[0])} | "
-                            f"{text(hat[0])} |")
-                print(rows[-1], flush=True)
-    if arguments.write:
-        quality.write_table(arguments.write, "lens_weights.py", rows)
+    parser.add_argument("--only", default="", help="cases or scenes whose names have it")
+    parser.add_argument("--tables", default="captures,lenses,magnifications")
+    parser.add_argument("--scenes", type=pathlib.Path, help="keep the scenes of lfsynth here, and use what is there")
+    a = parser.parse_args()
+    wanted = a.tables.split(",")
+    tables = {}
+    if "captures" in wanted:
+        tables["captures"] = table_of_captures(a.renderer, a.groundtruth, a.only)
+    if "lenses" in wanted or "magnifications" in wanted:
+        with tempfile.TemporaryDirectory() as temporary:
+            scenes = SyntheticScenes(a.renderer, a.scenes or pathlib.Path(temporary))
+            if "lenses" in wanted:
+                tables["lenses"] = table_of_lenses(a.renderer, scenes, a.only)
+            if "magnifications" in wanted:
+                tables["magnifications"] = table_of_magnifications(a.renderer, scenes, a.only)
+    if a.write:
+        for name, rows in tables.items():
+            quality.write_table(a.write, "lens_weights.py " + name, rows)
     return 0
 
 

@@ -62,7 +62,7 @@ class RendererTest(unittest.TestCase):
         self.assertEqual([frame["frame"] for frame in report["frames"]], [1, 2, 3])
         for frame in report["frames"]:
             self.assertGreater(frame["rays_accepted"], 10000)
-            self.assertLessEqual(frame["rays_accepted"], frame["rays_tested"])
+            self.assertGreater(frame["rays_tested"], 10000)
         self.assertEqual(report["skipped_lf_images"], [])
 
     def test_writes_png_and_a_video(self):
@@ -95,8 +95,8 @@ class RendererTest(unittest.TestCase):
 
     def test_weighed_frames_have_the_same_bits_for_any_threads_memory_and_order(self):
         field, path = write_field(self.folder / "field"), write_path(self.folder, frames=12)
-        plain, _ = self.render(field, path, "plain")
-        for weights in ("area", "hat"):
+        plain, _ = self.render(field, path, "plain", "--lens-weights", "none")
+        for weights in ("area", "hat", "auto"):
             chosen = ["--lens-weights", weights]
             expected, report = self.render(field, path, weights, "--threads", "1", *chosen)
             self.assertNotEqual(expected, plain)
@@ -147,11 +147,13 @@ class RendererTest(unittest.TestCase):
         without = dict(description, frames=[f for i, f in enumerate(description["frames"]) if i != 12])
         absent = field.with_name("without.json")
         absent.write_text(json.dumps(without))
-        expected, _ = self.render(absent, path, "absent")
+        # Weights stay as planned, whatever is broken.
+        alike = ["--lens-weights", "none"]
+        expected, _ = self.render(absent, path, "absent", *alike)
         broken = self.folder / "field" / "image_12.png"
         broken.write_bytes(broken.read_bytes()[:900])
         out = self.folder / "broken"
-        digests, report = self.render(field, path, "broken")
+        digests, report = self.render(field, path, "broken", *alike)
         self.assertEqual([s["name"] for s in report["skipped_lf_images"]], ["image_12.png"])
         self.assertEqual(digests, expected)
         self.fails(3, ["image_12.png"], field, path, "-o", out, "--strict")
@@ -192,8 +194,7 @@ class RendererTest(unittest.TestCase):
         self.fails(2, [], field, path)
         self.fails(2, [], field, "-o", out)
         self.fails(2, ["--mode rebin", "not available"], field, path, "-o", out, "--mode", "rebin")
-        mosaics = write_field(self.folder / "mosaics", lf_bayer="RGGB")
-        self.fails(2, ["bilinear", "mosaics"], mosaics, path, "-o", out, "--estimator", "bilinear")
+        self.fails(2, ["--filter"], field, path, "-o", out, "--filter", "cubic")
         self.fails(2, ["--frames"], field, path, "-o", out, "--frames", "2-9")
         self.fails(2, ["--memory"], field, path, "-o", out, "--memory", "lots")
 
@@ -205,7 +206,7 @@ class RendererTest(unittest.TestCase):
         path.write_text(path.read_text().replace("aperture_diameter", "apperture_diameter"))
         self.fails(3, ["path.yaml:12", "aperture_diameter"], field, path, "-o", out)
         self.fails(3, ["no LF image"], field, write_path(self.folder, aperture=0, x=0.004),
-                   "-o", out)
+                   "-o", out, "--lens-weights", "none")
 
     def test_output_errors_name_the_place(self):
         field, path = write_field(self.folder / "field"), write_path(self.folder)

@@ -48,7 +48,7 @@ int main(int argc, char** argv) {
     options.move = *lf::ParseExampleMove(move);
     if (focus > 0) options.focus_distance_w = focus;
     lf::ThreadPool pool(program.common().threads);
-    const lf::FolderStore store(light_field);
+    const lf::FolderStore store(light_field, lf::FolderStore::Mosaics::kToRgb);
     LF_ASSIGN_OR_RETURN(const lf::ExamplePath example,
                         lf::MakeExamplePath(light_field, store, options, pool));
     // A path that would not render is a bug of ours, found here and not by the renderer.

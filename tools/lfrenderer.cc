@@ -36,7 +36,7 @@ bits as if there had been no interruption.)";
 struct Arguments {
   lf::LightFieldArgument light_field;
   std::string path, output, video, frames, memory = "8G", format = "exr", mode = "collect";
-  std::string estimator = "auto", lens_weights = "auto", back_end = "fast";
+  std::string estimator = "auto", filter = "auto", lens_weights = "auto", back_end = "fast";
   std::string dump_every = "30s", stop_when, require;
   int64_t max_images = 0;
   uint32_t smooth_below = 0;
@@ -67,9 +67,14 @@ lf::Result<lf::RenderOptions> MakeOptions(const Arguments& arguments, const lf::
   LF_ASSIGN_OR_RETURN(options.memory_bytes, lf::ParseByteSize(arguments.memory, "--memory"));
   options.seed = program.common().seed;
   options.strict = program.common().strict;
-  if (arguments.estimator == "bilinear") options.estimator = lf::Estimator::kBilinear;
-  if (arguments.lens_weights == "area") options.lens_weights = lf::LensWeights::kArea;
-  if (arguments.lens_weights == "hat") options.lens_weights = lf::LensWeights::kHat;
+  options.reading.estimator =
+      arguments.estimator == "nearest" ? lf::Estimator::kNearest : lf::Estimator::kBilinear;
+  for (const lf::PixelFilter filter :
+       {lf::PixelFilter::kNearest, lf::PixelFilter::kBilinear, lf::PixelFilter::kBicubic})
+    if (arguments.filter == lf::NameOf(filter)) options.reading.filter = filter;
+  for (const lf::LensWeights weights :
+       {lf::LensWeights::kAuto, lf::LensWeights::kArea, lf::LensWeights::kHat})
+    if (arguments.lens_weights == lf::NameOf(weights)) options.lens_weights = weights;
   if (arguments.back_end == "reference") options.back_end = lf::CollectBackEnd::kReference;
   options.version = lf::Version();
   LF_ASSIGN_OR_RETURN(options.dump_every_s,
@@ -81,6 +86,11 @@ lf::Result<lf::RenderOptions> MakeOptions(const Arguments& arguments, const lf::
   if (!arguments.require.empty()) {
     LF_ASSIGN_OR_RETURN(options.require_samples,
                         lf::ParseSampleRule(arguments.require, "--require"));
+  }
+  if (options.lens_weights == lf::LensWeights::kAuto && options.CountsRays()) {
+    options.lens_weights = lf::LensWeights::kNone;
+    lf::LogInfo(
+        "--lens-weights auto: none, since --stop-when, --require and --smooth-below count rays");
   }
   options.resume = arguments.resume;
   options.overwrite = arguments.overwrite;
@@ -133,12 +143,19 @@ int main(int argc, char** argv) {
                  "Smooth elements with fewer rays than this; empty ones are always filled");
   app.add_option("--mode", arguments.mode, "collect")
       ->check(CLI::IsMember({"collect", "rebin", "hybrid"}));
-  app.add_option("--estimator", arguments.estimator, "nearest (auto), or bilinear for RGB images")
+  app.add_option(
+         "--estimator", arguments.estimator,
+         "bilinear (auto): every element reads each LF image where it looks; nearest: every "
+         "LF pixel goes to one element, and mosaics are not interpolated")
       ->check(CLI::IsMember({"auto", "nearest", "bilinear"}));
+  app.add_option("--filter", arguments.filter,
+                 "Of the estimator bilinear, between LF pixels: nearest, bilinear, bicubic; auto: "
+                 "bicubic, but bilinear where an element is as large as nine LF pixels or more")
+      ->check(CLI::IsMember({"auto", "nearest", "bilinear", "bicubic"}));
   app.add_option(
          "--lens-weights", arguments.lens_weights,
-         "none (auto): LF images count alike; area: as the part of the lens that is nearest "
-         "to each; hat: interpolated, for small lenses and pinholes")
+         "none: LF images count alike; area: as the part of the lens that is nearest to each; hat: "
+         "interpolated, for small lenses and pinholes; auto: area, and hat as the lens closes")
       ->check(CLI::IsMember({"auto", "none", "area", "hat"}));
   app.add_option("--back-end", arguments.back_end,
                  "fast, or reference: the literal formulas, one ray at a time")
@@ -157,7 +174,7 @@ int main(int argc, char** argv) {
     options.signals = &signals;
     lf::ThreadPool pool(program.common().threads);
     // What is known beforehand: every pixel of a needed rectangle is tried as a ray, or read.
-    const char* unit = options.estimator == lf::Estimator::kNearest ? "rays" : "px";
+    const char* unit = options.reading.estimator == lf::Estimator::kNearest ? "rays" : "px";
     lf::ProgressMeter meter(lf::ParseProgressStyle(program.common().progress), unit);
     const auto progress = [&](const lf::RenderProgress& now) {
       meter.Update(now.ray_count, now.ray_total,

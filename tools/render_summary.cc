@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstring>
+#include <functional>
 
 #include "tools/common/progress.h"
 
@@ -29,6 +30,63 @@ void WarnOfEmptyElements(const RenderReport& report) {
         "{:.0f} %. Was the camera within the capture, the lens wider than the spacing?",
         thin_count, report.frames.size(), worst->frame.value,
         100 * worst->empty_element_count[1] / element_count);
+}
+
+// What kAuto made of every lens.
+void TellLensWeights(const RenderReport& report) {
+  size_t cells = 0, hats = 0, both = 0;
+  for (const FrameReport& frame : report.frames) {
+    if (!frame.weighed) continue;
+    const double share = frame.weighed->hat_share;
+    ++(share == 0 ? cells : share == 1 ? hats : both);
+  }
+  if (cells + hats + both == 0) return;
+  if (hats + both == 0)
+    LogInfo("lens weights: LF images count as the area of the lens that each stands for");
+  else
+    LogInfo(
+        "lens weights: by area in {} frames, interpolated between LF images (hats) in {}, by "
+        "both in {}",
+        cells, hats, both);
+}
+
+// Which frames show it, for a message: "3 of 40 frames, most of all frame 7".
+template <class Badness>
+void WarnOfFrames(const RenderReport& report, double limit, const Badness& badness,
+                  const std::function<void(size_t count, const FrameReport& worst)>& warn) {
+  size_t count = 0;
+  const FrameReport* worst = nullptr;
+  for (const FrameReport& frame : report.frames) {
+    if (!frame.weighed || !(badness(*frame.weighed) > limit)) continue;
+    ++count;
+    if (worst == nullptr || badness(*frame.weighed) > badness(*worst->weighed)) worst = &frame;
+  }
+  if (count > 0) warn(count, *worst);
+}
+
+void WarnOfLenses(const RenderReport& report) {
+  constexpr double kFewImages = 4, kMuchUncovered = 0.5;
+  WarnOfFrames(
+      report, kMuchUncovered, [](const auto& weighed) { return weighed.uncovered_share; },
+      [&](size_t count, const FrameReport& worst) {
+        LogWarning(
+            "in {} of {} frames half of the lens and more is farther than two camera distances "
+            "from "
+            "every LF camera, most of all in frame {}: {:.0f} %. What was not recorded is stood "
+            "for by the LF images at the border of the capture: bokeh has their shape. A smaller "
+            "aperture, or a camera nearer to the middle of the capture, would show the truth",
+            count, report.frames.size(), worst.frame.value, 100 * worst.weighed->uncovered_share);
+      });
+  WarnOfFrames(
+      report, -kFewImages, [](const auto& weighed) { return -weighed.effective_count; },
+      [&](size_t count, const FrameReport& worst) {
+        LogWarning(
+            "{} of {} frames are made of fewer than {:.0f} LF images, counted by their weights, "
+            "fewest of all frame {}: {:.1f}. Expect double edges out of focus, and noise; a wider "
+            "aperture has more",
+            count, report.frames.size(), kFewImages, worst.frame.value,
+            worst.weighed->effective_count);
+      });
 }
 
 // A word of a command line, so that a shell takes it as it is.
@@ -58,7 +116,9 @@ void SummariseRender(const RenderReport& report, const std::string& look_at) {
       ShortNumber(static_cast<double>(report.AcceptedRays())),
       report.selected_image_count - std::min(report.selected_image_count, report.skipped.size()),
       report.lf_image_count, report.MraysPerSecondPerCore(), report.peak_memory_bytes >> 20);
+  TellLensWeights(report);
   WarnOfEmptyElements(report);
+  WarnOfLenses(report);
   if (!report.skipped.empty())
     LogWarning("{} LF images were skipped; report.json names them", report.skipped.size());
   LogInfo("look at {}", look_at);

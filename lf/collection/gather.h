@@ -1,5 +1,6 @@
 // Ray collection, estimator *bilinear* (doc/ray.md, "What is added"): every element asks every LF
-// image for the ray through its centre, interpolated between four LF pixels. For RGB images.
+// image for the ray through its centre, interpolated between LF pixels; where these are finer than
+// elements, for the mean of several (gather_sampling.h). For RGB images.
 //
 // Two back ends, compared by one test. The reference intersects planes for every element. The fast
 // one works in two steps, as scatter.h does:
@@ -22,6 +23,7 @@
 #include "lf/camera/ray_weight.h"
 #include "lf/camera/render_camera.h"
 #include "lf/capture/lf_pixels.h"
+#include "lf/collection/gather_sampling.h"
 #include "lf/collection/segments.h"
 #include "lf/core/geometry.h"
 #include "lf/plate/sensor_plate.h"
@@ -29,36 +31,43 @@
 
 namespace lf {
 
-// v of the LF image at continuous position (x, y), bilinear between the four nearest pixel centres
-// with weights in 1/256, rounded half up. None unless all four are in the image (of `width_px` x
+// v of the LF image at continuous position (x, y), interpolated in integers: bilinear between the
+// four nearest pixel centres with weights in 1/256, rounded half up, or as cubic_weights.h says.
+// None unless all pixels that take part, and the four nearest, are in the image (of `width_px` x
 // `height_px`) and not masked.
-//   pixels  RGB; must hold the four wherever they are in the image
-std::optional<std::array<uint16_t, 3>> InterpolatePixels(const LfPixels& pixels, int width_px,
-                                                         int height_px, double x_px, double y_px);
+//   pixels  RGB; must hold them wherever they are in the image
+//   filter  not kAuto
+std::optional<std::array<uint16_t, 3>> InterpolatePixels(
+    const LfPixels& pixels, int width_px, int height_px, double x_px, double y_px,
+    PixelFilter filter = PixelFilter::kBilinear);
 
-// Whether rays arrive at the four pixel centres around (x, y): beyond the fold of a lens none do.
-bool RaysArriveAround(const Intrinsics& k, const DistortionMap& map, double x_px, double y_px);
+// Whether rays arrive at the four pixel centres around (x, y), and so many more on each side:
+// beyond the fold of a lens none do.
+bool RaysArriveAround(const Intrinsics& k, const DistortionMap& map, double x_px, double y_px,
+                      int outer_pixels = 0);
 
 // Adds one ray to each element that has one in this LF image. Returns how many.
 //   plate   has the size of the render camera's
 //   weights  a ray adds so many times its value, and counts as so many
 uint64_t GatherReference(const PinholeCamera& lf_camera, const LfPixels& pixels,
                          const RenderCamera& render_camera, SensorPlate* plate,
-                         const RayWeights& weights = {});
+                         const RayWeights& weights = {}, PixelFilter filter = PixelFilter::kAuto);
 
 struct GatherPlan {
+  GatherSampling sampling;
   int plate_width = 0;
   int plate_height = 0;
-  std::vector<Segment> segments;  // of elements, all accepted, by y, then x
-  std::vector<size_t> row_begin;  // [plate_height + 1]: the first segment of a row
+  // Of positions on the finer plate of sampling.samples, all accepted, by y, then x.
+  std::vector<Segment> segments;
+  std::vector<size_t> row_begin;  // [plate_height * samples + 1]: the first segment of a row
 };
 
 //   memory  a plan no longer needed, to be used again
 GatherPlan PlanGather(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
-                      GatherPlan memory = {});
+                      GatherPlan memory = {}, PixelFilter filter = PixelFilter::kAuto);
 
 // Adds the rays of the elements in the tile of `sums`, which the caller flushes. Returns how many.
-//   pixels  RGB; must hold the four around every ray
+//   pixels  RGB; must hold what the filter wants around every ray
 //   weights  as for the reference, on every cut into tiles
 uint64_t GatherTile(const GatherPlan& plan, const LfPixels& pixels, TileSums* sums,
                     const RayWeights& weights = {});

@@ -5,7 +5,8 @@
 
 namespace lf {
 
-GatherLaw::GatherLaw(const PinholeCamera& lf_camera, const RenderCamera& render_camera)
+GatherLaw::GatherLaw(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
+                     PixelFilter filter)
     : lf_camera_(lf_camera),
       render_camera_(render_camera),
       centre_(lf_camera.CentreWorld()),
@@ -14,7 +15,9 @@ GatherLaw::GatherLaw(const PinholeCamera& lf_camera, const RenderCamera& render_
       right_(render_camera.pinhole.RightWorld()),
       up_(render_camera.pinhole.UpWorld()),
       aperture_(render_camera.aperture),
-      map_(lf_camera.intrinsics.distortion) {
+      map_(lf_camera.intrinsics.distortion),
+      outer_pixels_(OuterPixels(filter)),
+      border_px_(0.5 + outer_pixels_) {
   const Intrinsics& k = lf_camera.intrinsics;
   if (!k.has_distortion()) return;
   // What lies farthest from the optical axis loses its rays first.
@@ -42,8 +45,9 @@ std::optional<Vec2> GatherLaw::Position(int x, int y) const {
   if (!recorded) return std::nullopt;
   const Intrinsics& k = lf_camera_.intrinsics;
   const Vec2 p = (k.Matrix() * Vec3(recorded->x(), recorded->y(), 1)).head<2>();
-  if (!HasFourPixels(k, p.x(), p.y())) return std::nullopt;
-  if (may_lack_rays_ && !RaysArriveAround(k, map_, p.x(), p.y())) return std::nullopt;
+  if (!HasPixels(p.x(), p.y())) return std::nullopt;
+  if (may_lack_rays_ && !RaysArriveAround(k, map_, p.x(), p.y(), outer_pixels_))
+    return std::nullopt;
   return p;
 }
 

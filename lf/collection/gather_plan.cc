@@ -1,4 +1,5 @@
-// Which elements of a row get a ray, and from where in the LF image.
+// Which elements of a row get a ray, and from where in the LF image. Where an element takes the
+// mean of several rays, all this is of the finer plate that these are the elements of.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -51,15 +52,16 @@ GatherForms MakeForms(const PinholeCamera& lf_camera, const RenderCamera& render
 
 // Conditions for the elements whose forward form has this sign, those of the image but with lens
 // distortion.
-std::vector<PixelForm> HalfPlanes(const GatherForms& forms, const Intrinsics& k,
+//   border_px  how far from the border of the image rays keep
+std::vector<PixelForm> HalfPlanes(const GatherForms& forms, const Intrinsics& k, double border_px,
                                   const Aperture& aperture, int sign) {
   std::vector<PixelForm> half_planes = {-forms.plane, -sign * forms.forward};
   if (!k.has_distortion()) {
     half_planes.push_back(-sign * forms.depth);
-    half_planes.push_back(sign * (0.5 * forms.depth - forms.across_x));
-    half_planes.push_back(sign * (forms.across_x - (k.width_px - 0.5) * forms.depth));
-    half_planes.push_back(sign * (0.5 * forms.depth - forms.across_y));
-    half_planes.push_back(sign * (forms.across_y - (k.height_px - 0.5) * forms.depth));
+    half_planes.push_back(sign * (border_px * forms.depth - forms.across_x));
+    half_planes.push_back(sign * (forms.across_x - (k.width_px - border_px) * forms.depth));
+    half_planes.push_back(sign * (border_px * forms.depth - forms.across_y));
+    half_planes.push_back(sign * (forms.across_y - (k.height_px - border_px) * forms.depth));
   }
   if (aperture.blades > 0)
     for (const ApertureEdge& edge : Edges(aperture))
@@ -71,33 +73,37 @@ std::vector<PixelForm> HalfPlanes(const GatherForms& forms, const Intrinsics& k,
 
 class GatherPlanner {
  public:
-  GatherPlanner(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
-                GatherPlan memory)
+  // finer  the render camera, with the finer plate of `sampling`
+  GatherPlanner(const PinholeCamera& lf_camera, const RenderCamera& finer,
+                const GatherSampling& sampling, GatherPlan memory)
       : k_(lf_camera.intrinsics),
-        law_(lf_camera, render_camera),
-        forms_(MakeForms(lf_camera, render_camera)),
+        law_(lf_camera, finer, sampling.filter),
+        forms_(MakeForms(lf_camera, finer)),
         map_(lf_camera.intrinsics.distortion),
         maker_(forms_.across_x, forms_.across_y, forms_.depth),
         plan_(std::move(memory)) {
     for (const int side : {0, 1})
-      rows_.half_planes[side] = HalfPlanes(forms_, k_, render_camera.aperture, side == 0 ? -1 : 1);
+      rows_.half_planes[side] =
+          HalfPlanes(forms_, k_, law_.border_px(), finer.aperture, side == 0 ? -1 : 1);
     // All rays of a camera in the lens plane cross it at one point: if it is near the rim, the law
     // at the ends of a span decides for them all.
-    const bool is_disk = render_camera.aperture.blades == 0;
-    if (is_disk && LiesInLensPlane(lf_camera, render_camera))
-      rows_.law_decides = !IsSurelyInDisk(lf_camera, render_camera);
+    const bool is_disk = finer.aperture.blades == 0;
+    if (is_disk && LiesInLensPlane(lf_camera, finer))
+      rows_.law_decides = !IsSurelyInDisk(lf_camera, finer);
     else if (is_disk)
-      rows_.disk = {forms_.lens_right, forms_.lens_up, forms_.forward,
-                    render_camera.aperture.radius_w};
-    plan_.plate_width = render_camera.pinhole.intrinsics.width_px;
-    plan_.plate_height = render_camera.pinhole.intrinsics.height_px;
-    rows_.RestrictTo({0, 0, plan_.plate_width, plan_.plate_height});
+      rows_.disk = {forms_.lens_right, forms_.lens_up, forms_.forward, finer.aperture.radius_w};
+    width_ = finer.pinhole.intrinsics.width_px;
+    height_ = finer.pinhole.intrinsics.height_px;
+    rows_.RestrictTo({0, 0, width_, height_});
+    plan_.sampling = sampling;
+    plan_.plate_width = width_ / sampling.samples;
+    plan_.plate_height = height_ / sampling.samples;
     plan_.segments.clear();
     plan_.row_begin.clear();
   }
 
   GatherPlan Run() {
-    for (int y = 0; y < plan_.plate_height; ++y) {
+    for (int y = 0; y < height_; ++y) {
       plan_.row_begin.push_back(plan_.segments.size());
       const auto accepted = [&](int side, int x) {
         const double forward = Value(forms_.forward, x + 0.5, y + 0.5);
@@ -105,7 +111,7 @@ class GatherPlanner {
         return k_.has_distortion() ? law_.Direction(x, y).has_value()
                                    : law_.Position(x, y).has_value();
       };
-      rows_.Find(y, 0, plan_.plate_width, accepted, &spans_);
+      rows_.Find(y, 0, width_, accepted, &spans_);
       for (const auto& [begin, end] : spans_) {
         if (k_.has_distortion())
           AddDistorted(y, begin, end);
@@ -146,8 +152,8 @@ class GatherPlanner {
     const Vec2 base(segment.base_x, segment.base_y);
     const Vec2 low = base + Vec2(x.low, y.low), high = base + Vec2(x.high, y.high);
     if (high.x() < 0 || high.y() < 0 || low.x() > k_.width_px || low.y() > k_.height_px) return;
-    if (!law_.may_lack_rays() && HasFourPixels(k_, low.x(), low.y()) &&
-        HasFourPixels(k_, high.x(), high.y())) {
+    if (!law_.may_lack_rays() && law_.HasPixels(low.x(), low.y()) &&
+        law_.HasPixels(high.x(), high.y())) {
       AppendPart(segment);
       return;
     }
@@ -185,6 +191,7 @@ class GatherPlanner {
   SegmentMaker maker_;
   RowSpans rows_;
   GatherPlan plan_;
+  int width_, height_;          // of the finer plate
   std::vector<RowSpan> spans_;  // of the row
   std::vector<Segment> found_;  // of the span
   int part_end_ = -1;           // of the last part of the segment
@@ -193,8 +200,11 @@ class GatherPlanner {
 }  // namespace
 
 GatherPlan PlanGather(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
-                      GatherPlan memory) {
-  return GatherPlanner(lf_camera, render_camera, std::move(memory)).Run();
+                      GatherPlan memory, PixelFilter filter) {
+  const GatherSampling sampling = SamplingOf(lf_camera, render_camera, filter);
+  return GatherPlanner(lf_camera, WithFinerPlate(render_camera, sampling.samples), sampling,
+                       std::move(memory))
+      .Run();
 }
 
 }  // namespace lf

@@ -1,8 +1,11 @@
 // The inner loop of the estimator *bilinear*, for every instruction set from one source (Highway):
-// positions by polynomials, a vector at a time; then four pixels, each four lanes of 16 bits, are
-// mixed in integers and added to the element. No fused multiply-add: the same bits on every target.
+// positions by polynomials, a vector at a time; then four or sixteen pixels, each four lanes of 16
+// bits, are mixed in integers and added to the element. No fused multiply-add: the same bits on
+// every target.
 #include <algorithm>
 #include <bit>
+#include <cstring>
+#include <vector>
 
 #include "lf/collection/gather.h"
 #include "lf/collection/tile_weights.h"
@@ -15,6 +18,7 @@
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
+#include "lf/collection/cubic_simd-inl.h"
 #include "lf/collection/polynomial_simd-inl.h"
 #include "lf/collection/ray_weight_simd-inl.h"
 
@@ -44,13 +48,15 @@ struct Coordinate {
   hn::Vec<LaneI> weight;
 };
 
-// Finds it within pixels [begin, end).
+// Finds it within pixels [begin, end), which reach `outer` pixels around those to be found.
 template <int kDegree>
 class CoordinateFinder {
  public:
   HWY_ATTR HWY_INLINE CoordinateFinder(const float (&polynomial)[Segment::kTerms], int32_t base,
-                                       int begin, int end)
-      : base_((base - begin) * kOne - std::bit_cast<int32_t>(kWhole)), last_(end - begin - 1) {
+                                       int begin, int end, int outer)
+      : base_((base - begin) * kOne - std::bit_cast<int32_t>(kWhole)),
+        first_(outer),
+        last_(end - begin - 1 - outer) {
     // In 1/256 from the centre of pixel `begin`, rounded half up; multiplying by 256 is exact.
     for (int power = 0; power < Segment::kTerms; ++power)
       polynomial_[power] = polynomial[power] * kOne;
@@ -63,7 +69,8 @@ class CoordinateFinder {
     const auto whole = hn::BitCast(di, hn::Add(hn::Floor(place), hn::Set(LaneF(), kWhole)));
     const auto found = hn::Add(whole, hn::Set(di, base_));
     // What rounding has sent beyond the pixels is on their border.
-    const auto position = hn::Min(hn::Max(found, hn::Zero(di)), hn::Set(di, last_ * kOne));
+    const auto position =
+        hn::Min(hn::Max(found, hn::Set(di, first_ * kOne)), hn::Set(di, last_ * kOne));
     const auto pixel = hn::Min(hn::ShiftRight<kWeightBits>(position), hn::Set(di, last_ - 1));
     return {pixel, hn::Sub(position, hn::ShiftLeft<kWeightBits>(pixel))};
   }
@@ -71,26 +78,35 @@ class CoordinateFinder {
  private:
   float polynomial_[Segment::kTerms];
   int32_t base_;  // less the bits of kWhole
+  int32_t first_;
   int32_t last_;
 };
 
 template <int kDegree>
 HWY_ATTR void FindPlaces(const Segment& s, int begin, int count, const PixelRect& rect,
-                         Places* places) {
+                         PixelFilter filter, Places* places) {
   const LaneF df;
   const LaneI di;
   const hn::RebindToUnsigned<LaneI> du;
-  const CoordinateFinder<kDegree> x_finder(s.x_poly, s.base_x, rect.x_begin, rect.x_end);
-  const CoordinateFinder<kDegree> y_finder(s.y_poly, s.base_y, rect.y_begin, rect.y_end);
+  const int outer = OuterPixels(filter);
+  const CoordinateFinder<kDegree> x_finder(s.x_poly, s.base_x, rect.x_begin, rect.x_end, outer);
+  const CoordinateFinder<kDegree> y_finder(s.y_poly, s.base_y, rect.y_begin, rect.y_end, outer);
   const auto width = hn::Set(di, rect.width());
+  // Added before the weight is cut to kOne or 0.
+  const bool is_nearest = filter == PixelFilter::kNearest;
+  const auto half = hn::Set(di, is_nearest ? kOne / 2 : 0);
+  const auto kept_bits = hn::Set(di, is_nearest ? kOne : -1);
+  const auto weight_of = [&](hn::Vec<LaneI> weight)
+                             HWY_ATTR { return hn::And(hn::Add(weight, half), kept_bits); };
   auto t = hn::Iota(df, s.t_begin + static_cast<float>(begin));
   for (int i = 0; i < count; i += kLanes, t = hn::Add(t, hn::Set(df, kLanes))) {
     const Coordinate x = x_finder.Find(t), y = y_finder.Find(t);
     hn::Store(hn::Add(hn::Mul(y.pixel, width), x.pixel), di, places->pixel + i);
-    const auto left_weight = hn::Sub(hn::Set(di, kOne), x.weight);
-    hn::Store(hn::BitCast(du, hn::Or(left_weight, hn::ShiftLeft<16>(x.weight))), du,
+    const auto right_weight = weight_of(x.weight);
+    const auto left_weight = hn::Sub(hn::Set(di, kOne), right_weight);
+    hn::Store(hn::BitCast(du, hn::Or(left_weight, hn::ShiftLeft<16>(right_weight))), du,
               places->left_right + i);
-    hn::Store(hn::BitCast(du, y.weight), du, places->lower + i);
+    hn::Store(hn::BitCast(du, weight_of(y.weight)), du, places->lower + i);
   }
 }
 
@@ -119,9 +135,6 @@ template <class Weights>
 constexpr auto AddRay = AddRays<Weights>;
 
 #else
-
-// Products of signed numbers, two and two added, are one operation: values are taken less this.
-constexpr uint16_t kMiddle = 0x8000;
 
 using AllLanes = hn::CappedTag<uint32_t, 16>;
 using LanesOfOne = hn::Full128<uint32_t>;
@@ -212,12 +225,13 @@ HWY_ATTR HWY_INLINE void AddRay(const Places& places, int i, const uint16_t* val
 #endif
 
 // Elements [begin, begin + count) of the segment; weights and sums from the first one on.
-template <bool kMayBeMasked, class Weights>
-HWY_ATTR uint32_t GatherPart(const Segment& s, int begin, int count, const LfPixels& pixels,
-                             const Weights& weights, TileSums::Element* sums) {
+template <bool kMayBeMasked, bool kIsCubic, class Weights>
+HWY_ATTR uint32_t GatherPart(const Segment& s, int begin, int count, PixelFilter filter,
+                             const LfPixels& pixels, const Weights& weights,
+                             TileSums::Element* sums) {
   Places places;
   const auto find_places = s.is_cubic() ? FindPlaces<3> : FindPlaces<5>;
-  find_places(s, begin, count, pixels.rect, &places);
+  find_places(s, begin, count, pixels.rect, filter, &places);
   const uint16_t* const values = pixels.radiance.row(0);
   const ptrdiff_t row_values = static_cast<ptrdiff_t>(pixels.rect.width()) * LfPixels::kRgbLanes;
   const auto upper = [&](int i) {
@@ -225,19 +239,32 @@ HWY_ATTR uint32_t GatherPart(const Segment& s, int begin, int count, const LfPix
               places.pixel[i] < pixels.rect.width() * (pixels.rect.height() - 1) - 1);
     return values + static_cast<ptrdiff_t>(places.pixel[i]) * LfPixels::kRgbLanes;
   };
+  static const CubicTables* const cubic = new CubicTables;
+  const auto add_ray = [&](int i) HWY_ATTR {
+    if constexpr (kIsCubic)
+      AddCubicRay(*cubic, places.left_right[i] >> 16, places.lower[i],
+                  upper(i) - row_values - LfPixels::kRgbLanes, row_values, weights, i, sums);
+    else
+      AddRay<Weights>(places, i, values, row_values, weights, sums);
+  };
   // Rows are too far apart for the processor to foresee, and it waits for few lines at a time: they
   // are asked for one by one.
   constexpr int kRowsAhead = 2;
   constexpr int kLineElements = 8;  // of an LF image, in a cache line
   const auto fetch_ahead = [&](int i) { hwy::Prefetch(upper(i) + (1 + kRowsAhead) * row_values); };
   if constexpr (kMayBeMasked) {
-    constexpr int kRay = LfPixels::kRayLane, kNext = kRay + LfPixels::kRgbLanes;
+    constexpr int kOuter = kIsCubic ? 1 : 0;
+    constexpr int kTaps = 2 + 2 * kOuter;
     uint32_t rays = 0;
     for (int i = 0; i < count; ++i) {
-      const uint16_t *const row = upper(i), *const next_row = row + row_values;
       if (i % kLineElements == 0) fetch_ahead(i);
-      if (row[kRay] + row[kNext] + next_row[kRay] + next_row[kNext] != 4) continue;
-      AddRay<Weights>(places, i, values, row_values, weights, sums);
+      const uint16_t* const first =
+          upper(i) - kOuter * (row_values + LfPixels::kRgbLanes) + LfPixels::kRayLane;
+      int unmasked = 0;
+      for (int tap = 0; tap < kTaps * kTaps; ++tap)
+        unmasked += first[tap / kTaps * row_values + tap % kTaps * LfPixels::kRgbLanes];
+      if (unmasked != kTaps * kTaps) continue;
+      add_ray(i);
       ++rays;
     }
     return rays;
@@ -245,20 +272,31 @@ HWY_ATTR uint32_t GatherPart(const Segment& s, int begin, int count, const LfPix
   int i = 0;
   for (; i + kLineElements <= count; i += kLineElements) {
     fetch_ahead(i);
-    for (int k = i; k < i + kLineElements; k += kRaysAtOnce)
-      AddRays(places, k, values, row_values, weights, sums);
+    if constexpr (kIsCubic)
+      for (int k = i; k < i + kLineElements; ++k) add_ray(k);
+    else
+      for (int k = i; k < i + kLineElements; k += kRaysAtOnce)
+        AddRays(places, k, values, row_values, weights, sums);
   }
-  for (; i < count; ++i) AddRay<Weights>(places, i, values, row_values, weights, sums);
+  for (; i < count; ++i) add_ray(i);
   return static_cast<uint32_t>(count);
 }
 
+template <class Weights>
+auto GatherPartOf(const LfPixels& pixels, PixelFilter filter) {
+  if (filter == PixelFilter::kBicubic)
+    return pixels.any_masked ? GatherPart<true, true, Weights> : GatherPart<false, true, Weights>;
+  return pixels.any_masked ? GatherPart<true, false, Weights> : GatherPart<false, false, Weights>;
+}
+
+// One ray an element.
 //   most_weight  of the weights
 template <class Weights>
 HWY_ATTR uint64_t GatherTileBy(const GatherPlan& plan, const LfPixels& pixels,
                                const Weights& weights, uint32_t most_weight, TileSums* sums) {
   TileSums::Element* const elements = sums->ReserveRgb(most_weight);  // at most one ray for each
   const PixelRect& tile = sums->rect();
-  const auto gather = pixels.any_masked ? GatherPart<true, Weights> : GatherPart<false, Weights>;
+  const auto gather = GatherPartOf<Weights>(pixels, plan.sampling.filter);
   uint64_t rays = 0;
   for (int y = tile.y_begin; y < tile.y_end; ++y) {
     const ptrdiff_t row = static_cast<ptrdiff_t>(y - tile.y_begin) * sums->stride();
@@ -268,20 +306,120 @@ HWY_ATTR uint64_t GatherTileBy(const GatherPlan& plan, const LfPixels& pixels,
       const int end = std::min(s.x_begin + s.count, tile.x_end);
       if (begin >= end) continue;
       const ptrdiff_t element = row + (begin - tile.x_begin);
-      rays += gather(s, begin - s.x_begin, end - begin, pixels, weights.From(element),
-                     elements + element);
+      rays += gather(s, begin - s.x_begin, end - begin, plan.sampling.filter, pixels,
+                     weights.From(element), elements + element);
     }
   }
   return rays;
+}
+
+// Adds the means of a row of elements, rounded half up, each of samples^2 rays that are added up on
+// as many elements of `fine`, if they are all there. Returns how many.
+//
+// Quotients of numbers up to 2^24 are rounded down rightly: those next to an integer are further
+// from it than a float can tell.
+#if HWY_TARGET == HWY_SCALAR
+
+template <class Weights>
+uint64_t AddMeans(const TileSums::Element* fine, int samples, int count, const Weights& weights,
+                  TileSums::Element* sums) {
+  const auto whole = static_cast<uint32_t>(samples * samples);
+  uint64_t rays = 0;
+  for (int i = 0; i < count; ++i, fine += samples) {
+    TileSums::Element sum;
+    for (int k = 0; k < samples; ++k)
+      for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane)
+        sum.rgb_rays[lane] += fine[k].rgb_rays[lane];
+    if (sum.rgb_rays[LfPixels::kRayLane] != whole) continue;
+    for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane)
+      sums[i].rgb_rays[lane] += (sum.rgb_rays[lane] + whole / 2) / whole * weights.At(i);
+    ++rays;
+  }
+  return rays;
+}
+
+#else
+
+template <class Weights>
+HWY_ATTR uint64_t AddMeans(const TileSums::Element* fine, int samples, int count,
+                           const Weights& weights, TileSums::Element* sums) {
+  const hn::Full128<uint32_t> du;
+  const hn::Full128<int32_t> di;
+  const hn::Full128<float> df;
+  const auto whole = hn::Set(di, samples * samples);
+  const auto half = hn::Set(di, samples * samples / 2);
+  const auto divisor = hn::Set(df, static_cast<float>(samples * samples));
+  auto rays = hn::Zero(di);  // in the lane of rays
+  for (int i = 0; i < count; ++i, fine += samples) {
+    auto sum = hn::Load(du, fine[0].rgb_rays);
+    for (int k = 1; k < samples; ++k) sum = hn::Add(sum, hn::Load(du, fine[k].rgb_rays));
+    const auto rays_and_sums = hn::BitCast(di, sum);
+    const auto quotient = hn::Div(hn::ConvertTo(df, hn::Add(rays_and_sums, half)), divisor);
+    const auto is_whole = hn::Eq(hn::Broadcast<LfPixels::kRayLane>(rays_and_sums), whole);
+    auto mean = hn::IfThenElseZero(is_whole, hn::ConvertTo(di, quotient));
+    rays = hn::Add(rays, mean);
+    if constexpr (!Weights::kIsOne) mean = hn::Mul(mean, hn::BitCast(di, weights.OfPixels(du, i)));
+    uint32_t* const lanes = sums[i].rgb_rays;
+    hn::Store(hn::Add(hn::Load(du, lanes), hn::BitCast(du, mean)), du, lanes);
+  }
+  return static_cast<uint64_t>(hn::ExtractLane(rays, LfPixels::kRayLane));
+}
+
+#endif
+
+// The mean of several rays an element, which all have to exist: those of a row of elements are
+// added up on a row as fine as they are.
+template <class Weights>
+HWY_ATTR uint64_t GatherFinely(const GatherPlan& plan, const LfPixels& pixels,
+                               const Weights& weights, uint32_t most_weight, TileSums* sums) {
+  TileSums::Element* const elements = sums->ReserveRgb(most_weight);
+  const PixelRect& tile = sums->rect();
+  const auto gather = GatherPartOf<WeightOne>(pixels, plan.sampling.filter);
+  const int samples = plan.sampling.samples;
+  thread_local std::vector<TileSums::Element> fine;
+  uint64_t rays = 0;
+  // So few that the fine row and its places stay in the first level cache.
+  const int chunk = std::max(16, 256 / samples);
+  for (int x_begin = tile.x_begin; x_begin < tile.x_end; x_begin += chunk) {
+    const int x_end = std::min(tile.x_end, x_begin + chunk);
+    const int fine_begin = x_begin * samples, fine_end = x_end * samples;
+    for (int y = tile.y_begin; y < tile.y_end; ++y) {
+      fine.assign(static_cast<size_t>(fine_end - fine_begin), {});
+      bool any = false;
+      for (size_t i = plan.row_begin[static_cast<size_t>(y) * samples];
+           i < plan.row_begin[static_cast<size_t>(y + 1) * samples]; ++i) {
+        const Segment& s = plan.segments[i];
+        const int begin = std::max(s.x_begin, fine_begin);
+        const int end = std::min(s.x_begin + s.count, fine_end);
+        if (begin >= end) continue;
+        any = true;
+        gather(s, begin - s.x_begin, end - begin, plan.sampling.filter, pixels, WeightOne(),
+               fine.data() + (begin - fine_begin));
+      }
+      if (!any) continue;
+      const ptrdiff_t element =
+          static_cast<ptrdiff_t>(y - tile.y_begin) * sums->stride() + (x_begin - tile.x_begin);
+      rays += AddMeans(fine.data(), samples, x_end - x_begin, weights.From(element),
+                       elements + element);
+    }
+  }
+  return rays;
+}
+
+template <class Weights>
+HWY_ATTR uint64_t GatherBy(const GatherPlan& plan, const LfPixels& pixels, const Weights& weights,
+                           uint32_t most_weight, TileSums* sums) {
+  const auto gather = plan.sampling.samples == 1 ? GatherTileBy<Weights> : GatherFinely<Weights>;
+  return gather(plan, pixels, weights, most_weight, sums);
 }
 
 HWY_ATTR uint64_t GatherTile(const GatherPlan& plan, const LfPixels& pixels,
                              const TileWeights& weights, TileSums* sums) {
   const uint32_t most = weights.most();
   if (weights.least() < most)
-    return GatherTileBy(plan, pixels, WeightByElement{weights.data()}, most, sums);
-  if (most > 1) return GatherTileBy(plan, pixels, WeightSame{most}, most, sums);
-  return GatherTileBy(plan, pixels, WeightOne(), 1, sums);
+    return GatherBy(plan, pixels, WeightByElement{weights.data()}, most, sums);
+  if (most > 1) return GatherBy(plan, pixels, WeightSame{most}, most, sums);
+  return GatherBy(plan, pixels, WeightOne(), 1, sums);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -297,7 +435,8 @@ uint64_t GatherTile(const GatherPlan& plan, const LfPixels& pixels, TileSums* su
   LF_CHECK(pixels.bayer == BayerPattern::kNone);
   LF_CHECK(sums->rect().x_end <= plan.plate_width && sums->rect().y_end <= plan.plate_height);
   if (plan.segments.empty()) return 0;
-  LF_CHECK(pixels.rect.width() >= 2 && pixels.rect.height() >= 2);
+  const int least = 2 + 2 * OuterPixels(plan.sampling.filter);
+  LF_CHECK(pixels.rect.width() >= least && pixels.rect.height() >= least);
   thread_local TileWeights tile_weights;
   tile_weights.Fill(weights, sums->rect(), sums->stride());
   if (tile_weights.most() == 0) return 0;

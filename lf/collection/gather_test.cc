@@ -19,8 +19,8 @@ LfPixels RandomPixels(const Intrinsics& k, uint64_t seed) {
 }
 
 uint64_t GatherInTilesOf(const testing::CameraPair& pair, const LfPixels& pixels, int tile_height,
-                         SensorPlate* plate) {
-  const GatherPlan plan = PlanGather(pair.lf_camera, pair.render_camera);
+                         SensorPlate* plate, PixelFilter filter = PixelFilter::kAuto) {
+  const GatherPlan plan = PlanGather(pair.lf_camera, pair.render_camera, {}, filter);
   return testing::InTiles(
       plate, testing::GridOf(*plate, 1 + 3 * tile_height, tile_height),
       [&](size_t /*tile*/, TileSums* sums) { return GatherTile(plan, pixels, sums); });
@@ -31,15 +31,31 @@ testing::CameraPair RandomPair(uint64_t seed) {
                        : testing::RandomDistortedPair(seed / 2);
 }
 
+// Elements as many times as large, on as much smaller a plate.
+void MakeCoarser(double factor, RenderCamera* camera) {
+  Intrinsics& k = camera->pinhole.intrinsics;
+  for (double* value : {&k.fx_px, &k.fy_px, &k.cx_px, &k.cy_px, &k.skew_px}) *value /= factor;
+  k.width_px = std::max(1, static_cast<int>(k.width_px / factor));
+  k.height_px = std::max(1, static_cast<int>(k.height_px / factor));
+}
+
+PixelFilter FilterOf(uint64_t seed) { return static_cast<PixelFilter>(seed % 4); }
+
 TEST(Gather, TheFastBackEndAgreesWithTheReference) {
   uint64_t total = 0, differing_counts = 0, differing_values = 0, scenes_with_rays = 0;
+  size_t scenes_of_several = 0, scenes_of_cubics = 0;
   for (uint64_t seed = 0; seed < 280; ++seed) {
-    const testing::CameraPair pair = RandomPair(seed);
+    testing::CameraPair pair = RandomPair(seed);
+    if (seed % 3 == 0) MakeCoarser(1.5 + 0.7 * static_cast<double>(seed % 5), &pair.render_camera);
+    const PixelFilter filter = FilterOf(seed / 2);
     const LfPixels pixels = RandomPixels(pair.lf_camera.intrinsics, seed);
     SensorPlate expected = PlateFor(pair), fast = PlateFor(pair);
     const uint64_t accepted =
-        GatherReference(pair.lf_camera, pixels, pair.render_camera, &expected);
-    GatherInTilesOf(pair, pixels, 120, &fast);
+        GatherReference(pair.lf_camera, pixels, pair.render_camera, &expected, 1, filter);
+    GatherInTilesOf(pair, pixels, 120, &fast, filter);
+    const GatherSampling sampling = SamplingOf(pair.lf_camera, pair.render_camera, filter);
+    scenes_of_several += sampling.samples > 1 && accepted > 0;
+    scenes_of_cubics += sampling.filter == PixelFilter::kBicubic && accepted > 0;
     total += accepted;
     scenes_with_rays += accepted > 0;
     for (int y = 0; y < expected.height(); ++y)
@@ -49,11 +65,16 @@ TEST(Gather, TheFastBackEndAgreesWithTheReference) {
           differing_counts += a.count != b.count;
           if (a.count != b.count || a.sum == b.sum) continue;
           ++differing_values;
-          // One step of the weights, of neighbours that differ by everything.
-          EXPECT_LE(std::max(a.sum, b.sum) - std::min(a.sum, b.sum), 65535u / 128);
+          // One step of the weights, of neighbours that differ by everything; the nearest pixel
+          // may be another one.
+          if (filter != PixelFilter::kNearest) {
+            EXPECT_LE(std::max(a.sum, b.sum) - std::min(a.sum, b.sum), 65535u / 128);
+          }
         }
   }
   EXPECT_GT(scenes_with_rays, 90u);
+  EXPECT_GT(scenes_of_several, 15u);
+  EXPECT_GT(scenes_of_cubics, 30u);
   EXPECT_GT(total, 150000u);
   EXPECT_LE(static_cast<double>(differing_counts), 1e-5 * static_cast<double>(total));
   // Single precision places one weight in some hundreds on the other side of a step.
@@ -85,11 +106,13 @@ TEST(Gather, PixelsWithoutARayLendNoLight) {
 
 TEST(Gather, AnyCutIntoTilesGivesTheSameBits) {
   for (uint64_t seed = 0; seed < 100; ++seed) {
-    const testing::CameraPair pair = RandomPair(seed);
+    testing::CameraPair pair = RandomPair(seed);
+    if (seed % 3 == 0) MakeCoarser(1.5 + 0.7 * static_cast<double>(seed % 5), &pair.render_camera);
+    const PixelFilter filter = FilterOf(seed / 2);
     const LfPixels pixels = RandomPixels(pair.lf_camera.intrinsics, seed);
     SensorPlate whole = PlateFor(pair), cut = PlateFor(pair);
-    const uint64_t accepted = GatherInTilesOf(pair, pixels, 120, &whole);
-    EXPECT_EQ(GatherInTilesOf(pair, pixels, 7, &cut), accepted);
+    const uint64_t accepted = GatherInTilesOf(pair, pixels, 120, &whole, filter);
+    EXPECT_EQ(GatherInTilesOf(pair, pixels, 7, &cut, filter), accepted);
     EXPECT_EQ(whole, cut) << seed;
   }
 }

@@ -50,7 +50,7 @@ class FrameCollector::State {
         order_(order),
         options_(options),
         pool_(pool),
-        collector_(light_field, frames, options.estimator, options.back_end, options.weights,
+        collector_(light_field, frames, options.reading, options.back_end, options.weights,
                    options.plan_bytes, pool, plates),
         places_(places.begin(), places.end()),
         progress_(frames.size()),

@@ -26,7 +26,7 @@ namespace lf {
 inline constexpr uint32_t kDecisionPlaces = 64;
 
 struct CollectOptions {
-  Estimator estimator = Estimator::kNearest;
+  RayReading reading;
   CollectBackEnd back_end = CollectBackEnd::kFast;
   // The most LF images collected together into a tile of a plate. As many again are decoded
   // meanwhile, so that twice as many are in memory.

@@ -44,8 +44,11 @@ PixelReach ReachOf(Estimator estimator) {
 size_t PlanBytes(Estimator estimator, bool has_distortion, int image_width, int image_height,
                  int plate_width, int plate_height) {
   const bool is_nearest = estimator == Estimator::kNearest;
-  const auto width = static_cast<size_t>(is_nearest ? image_width : plate_width);
-  const auto height = static_cast<size_t>(is_nearest ? image_height : plate_height);
+  // Plates that are made finer are never twice as fine as the image.
+  const auto width =
+      static_cast<size_t>(is_nearest ? image_width : std::max(plate_width, 2 * image_width));
+  const auto height =
+      static_cast<size_t>(is_nearest ? image_height : std::max(plate_height, 2 * image_height));
   // Segments are a few a scanline, but short where distortion bends them; tiles cut them into two
   // or three.
   const size_t segment_width = has_distortion ? 64 : 256;
@@ -54,12 +57,12 @@ size_t PlanBytes(Estimator estimator, bool has_distortion, int image_width, int 
 }
 
 BatchCollector::BatchCollector(const LightField& light_field, std::span<const RenderCamera> frames,
-                               Estimator estimator, CollectBackEnd back_end,
+                               const RayReading& reading, CollectBackEnd back_end,
                                FrameImageWeights weights, size_t plan_bytes, ThreadPool& pool,
                                std::vector<SensorPlate>* plates)
     : light_field_(light_field),
       frames_(frames),
-      estimator_(estimator),
+      reading_(reading),
       back_end_(back_end),
       weights_(std::move(weights)),
       plan_bytes_(plan_bytes),
@@ -84,9 +87,10 @@ void BatchCollector::Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>
   if (takers.empty()) pool_.ForEach(other_items.count, other_items.run);
   size_t frame_bytes = 1;
   for (const BatchImage& image : batch)
-    frame_bytes += PlanBytes(estimator_, light_field_.Camera(image.id).intrinsics.has_distortion(),
-                             image.pixels.rect.width(), image.pixels.rect.height(),
-                             plates_[0].width(), plates_[0].height());
+    frame_bytes +=
+        PlanBytes(reading_.estimator, light_field_.Camera(image.id).intrinsics.has_distortion(),
+                  image.pixels.rect.width(), image.pixels.rect.height(), plates_[0].width(),
+                  plates_[0].height());
   const size_t chunk = std::max<size_t>(1, plan_bytes_ / frame_bytes);
   for (size_t begin = 0; begin < takers.size(); begin += chunk) {
     if (is_interrupted()) return;
@@ -104,7 +108,7 @@ PixelRect BatchCollector::RectOf(LfImageId id, std::span<const size_t> frames) c
   const PinholeCamera camera = light_field_.Camera(id);
   std::vector<IdealCell> cells;
   if (camera.intrinsics.has_distortion()) cells = MakeIdealCells(camera.intrinsics);
-  const ImageOverlap overlap(camera, cells, ReachOf(estimator_));
+  const ImageOverlap overlap(camera, cells, ReachOf(reading_.estimator));
   PixelRect rect;
   for (const size_t frame : frames) rect = Bounds(rect, overlap.Rect(frames_[frame]));
   return rect;
@@ -113,7 +117,8 @@ PixelRect BatchCollector::RectOf(LfImageId id, std::span<const size_t> frames) c
 // Images of one camera share its ideal pixels, also with the next batch. Only the fast back end of
 // nearest follows arcs.
 void BatchCollector::UndoDistortion(std::vector<BatchImage>& batch) {
-  const bool needs_arcs = estimator_ == Estimator::kNearest && back_end_ == CollectBackEnd::kFast;
+  const bool needs_arcs =
+      reading_.estimator == Estimator::kNearest && back_end_ == CollectBackEnd::kFast;
   std::map<uint32_t, std::shared_ptr<const IdealPixels>> in_use;
   std::vector<uint32_t> missing;
   for (const BatchImage& image : batch) {
@@ -138,7 +143,7 @@ void BatchCollector::UndoDistortion(std::vector<BatchImage>& batch) {
                                 : MakeIdealCells(light_field_.intrinsics[index]));
     image.cells = shared;
     if (found != in_use.end()) image.ideal_pixels = found->second;
-    image.overlap.emplace(light_field_.Camera(image.id), *image.cells, ReachOf(estimator_));
+    image.overlap.emplace(light_field_.Camera(image.id), *image.cells, ReachOf(reading_.estimator));
   }
   ideal_pixels_ = std::move(in_use);
 }
@@ -177,8 +182,8 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
     share.rect = RectOf(image, frame);
     if (share.rect.empty()) return;
     const Intrinsics& plate = frame.pinhole.intrinsics;
-    if (estimator_ == Estimator::kBilinear)
-      share.gather = PlanGather(camera, frame, std::move(share.gather));
+    if (reading_.estimator == Estimator::kBilinear)
+      share.gather = PlanGather(camera, frame, std::move(share.gather), reading_.filter);
     else
       share.scatter =
           PlanScatter(camera, frame, share.rect, TileSums::GridOf(plate.width_px, plate.height_px),
@@ -201,7 +206,7 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
       Share& share = shares_[task.taker * batch.size() + k];
       if (share.rect.empty()) continue;
       share.accepted_count +=
-          estimator_ == Estimator::kBilinear
+          reading_.estimator == Estimator::kBilinear
               ? GatherTile(share.gather, batch[k].pixels, &sums, share.weights)
               : ScatterTile(share.scatter, task.tile, batch[k].pixels, &sums, share.weights);
     }
@@ -240,8 +245,8 @@ void BatchCollector::AddByReference(const std::vector<BatchImage>& batch, BatchF
     if (weights.are_none()) continue;
     const PinholeCamera lf_camera = light_field_.Camera(image.id);
     const uint64_t accepted =
-        estimator_ == Estimator::kBilinear
-            ? GatherReference(lf_camera, image.pixels, camera, &plate, weights)
+        reading_.estimator == Estimator::kBilinear
+            ? GatherReference(lf_camera, image.pixels, camera, &plate, weights, reading_.filter)
             : ScatterReference(lf_camera, image.pixels, camera, rect, &plate, weights);
     frame->rays.accepted_count += accepted;
     Count(rect, accepted > 0, &frame->rays);

@@ -18,6 +18,7 @@
 #include "lf/capture/lf_pixels.h"
 #include "lf/capture/light_field.h"
 #include "lf/collection/gather.h"
+#include "lf/collection/gather_sampling.h"
 #include "lf/collection/scatter.h"
 #include "lf/core/ids.h"
 #include "lf/core/parallel.h"
@@ -33,6 +34,12 @@ enum class Estimator { kNearest, kBilinear };
 
 // "nearest", "bilinear"
 const char* NameOf(Estimator estimator);
+
+// How rays are made of pixels.
+struct RayReading {
+  Estimator estimator = Estimator::kNearest;
+  PixelFilter filter = PixelFilter::kAuto;  // of kBilinear
+};
 
 // Which pixels of an LF image its rays need, for selection.
 PixelReach ReachOf(Estimator estimator);
@@ -71,7 +78,7 @@ struct OtherItems {
 };
 
 // What is planned for the rays of one LF image in one frame, about. nearest goes by the scanlines
-// of the image, bilinear by those of the plate.
+// of the image, bilinear by those of the plate, or of the image where that is finer.
 size_t PlanBytes(Estimator estimator, bool has_distortion, int image_width, int image_height,
                  int plate_width, int plate_height);
 
@@ -82,7 +89,7 @@ class BatchCollector {
  public:
   // plan_bytes  of frames planned together; one may take more
   BatchCollector(const LightField& light_field, std::span<const RenderCamera> frames,
-                 Estimator estimator, CollectBackEnd back_end, FrameImageWeights weights,
+                 const RayReading& reading, CollectBackEnd back_end, FrameImageWeights weights,
                  size_t plan_bytes, ThreadPool& pool, std::vector<SensorPlate>* plates);
 
   // Adds the images to the plates of `frames`, whose order may change, and runs the other items.
@@ -120,7 +127,7 @@ class BatchCollector {
 
   const LightField& light_field_;
   std::span<const RenderCamera> frames_;
-  Estimator estimator_;
+  RayReading reading_;
   CollectBackEnd back_end_;
   FrameImageWeights weights_;
   size_t plan_bytes_;

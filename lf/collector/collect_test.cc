@@ -51,7 +51,7 @@ std::vector<SensorPlate> CollectDistorted(int threads, const CollectOptions& opt
   const std::vector<RenderCamera> frames = NoiseFrames();
   ThreadPool pool(threads);
   const std::vector<SelectedImage> images =
-      SelectImages(field, frames, {0, ReachOf(options.estimator)}, pool);
+      SelectImages(field, frames, {0, ReachOf(options.reading.estimator)}, pool);
   std::vector<SensorPlate> plates;
   for (size_t i = 0; i < frames.size(); ++i) plates.emplace_back(80, 60);
   const auto statistics =
@@ -101,7 +101,7 @@ TEST(Collect, FramesThatPassByTakeWhatTheyTakeAlone) {
 TEST(Collect, BothEstimatorsThroughLensesThatBendRays) {
   for (const Estimator estimator : {Estimator::kNearest, Estimator::kBilinear}) {
     CollectOptions options;
-    options.estimator = estimator;
+    options.reading.estimator = estimator;
     uint64_t accepted = 0, accepted_again = 0, accepted_by_reference = 0;
     const std::vector<SensorPlate> expected = CollectDistorted(1, options, &accepted);
     EXPECT_GT(accepted, 100000u);

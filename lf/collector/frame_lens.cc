@@ -1,12 +1,48 @@
 #include "lf/collector/frame_lens.h"
 
+#include <algorithm>
+#include <utility>
 #include <vector>
 
+#include "lf/camera/distortion.h"
+
 namespace lf {
+namespace {
+
+// Which points of the world are in the picture of an LF camera.
+class LfView {
+ public:
+  LfView(const PinholeCamera& lf_camera, const RenderCamera& frame)
+      : k_(lf_camera.intrinsics),
+        cam_from_world_(lf_camera.cam_from_world),
+        centre_(lf_camera.CentreWorld()),
+        forward_(frame.pinhole.ForwardWorld()),
+        map_(k_.distortion) {}
+
+  // On the line through it, which runs forward (doc/ray.md, 2).
+  bool Holds(const Vec3& point) const {
+    Vec3 d = point - centre_;
+    if (forward_.dot(d) < 0) d = -d;
+    const std::optional<Vec2> recorded = map_.Distort(cam_from_world_.rotation * d);
+    if (!recorded) return false;
+    const double x = k_.fx_px * recorded->x() + k_.skew_px * recorded->y() + k_.cx_px;
+    const double y = k_.fy_px * recorded->y() + k_.cy_px;
+    return x >= 0 && x <= k_.width_px && y >= 0 && y <= k_.height_px;
+  }
+
+ private:
+  Intrinsics k_;
+  RigidTransform cam_from_world_;
+  Vec3 centre_;
+  Vec3 forward_;
+  DistortionMap map_;
+};
+
+}  // namespace
 
 FrameLens::FrameLens(const LightField& light_field, const RenderCamera& frame, LensWeights kind,
                      const SelectOptions& select, ThreadPool& pool)
-    : camera_(frame) {
+    : light_field_(light_field), camera_(frame) {
   if (kind == LensWeights::kNone) return;
   std::vector<Vec3> centres;
   centres.reserve(light_field.size());
@@ -39,9 +75,67 @@ RayWeights FrameLens::WeightsOf(LfImageId id) const {
   });
 }
 
-std::optional<double> FrameLens::effective_count() const {
+std::optional<FrameLens::Facts> FrameLens::facts() const {
   if (!weights_) return std::nullopt;
-  return weights_->EffectiveCount();
+  return Facts{weights_->hat_share(), weights_->uncovered_share()};
+}
+
+Image<float> FrameLens::EffectiveCounts() const {
+  if (!weights_) return {};
+  const Intrinsics& plate = camera_.pinhole.intrinsics;
+  const auto nodes = [](int size) { return std::max(0, size - 2) / kEffectiveStep + 2; };
+  Image<double> sums(nodes(plate.width_px), nodes(plate.height_px), 2);
+  const auto element = [](int node, int size) { return std::min(node * kEffectiveStep, size - 1); };
+  Image<float> counts(sums.width(), sums.height(), 1);
+  std::vector<std::optional<Vec3>> focus;
+  for (int row = 0; row < sums.height(); ++row)
+    for (int column = 0; column < sums.width(); ++column)
+      focus.push_back(FocusPointOfElement(camera_, element(column, plate.width_px) + 0.5,
+                                          element(row, plate.height_px) + 0.5));
+  for (const auto& [id, camera] : cameras_) {
+    if (!weights_->TakesPart(camera)) continue;
+    const LfView view(light_field_.Camera(LfImageId{id}), camera_);
+    for (int row = 0; row < sums.height(); ++row)
+      for (int column = 0; column < sums.width(); ++column) {
+        const std::optional<Vec3>& point = focus[static_cast<size_t>(row) * sums.width() + column];
+        if (!point || !view.Holds(*point)) continue;
+        const double weight =
+            weights_->At(camera, element(column, plate.width_px), element(row, plate.height_px));
+        sums.at(column, row, 0) += weight;
+        sums.at(column, row, 1) += weight * weight;
+      }
+  }
+  for (int row = 0; row < sums.height(); ++row)
+    for (int column = 0; column < sums.width(); ++column) {
+      const double sum = sums.at(column, row, 0), squares = sums.at(column, row, 1);
+      counts.at(column, row, 0) = static_cast<float>(squares > 0 ? sum * sum / squares : 0);
+    }
+  return counts;
+}
+
+Image<float> FrameLens::SpreadOverPlate(const Image<float>& effective_counts) const {
+  const Intrinsics& plate = camera_.pinhole.intrinsics;
+  Image<float> spread(plate.width_px, plate.height_px);
+  // Of an element: the node before it, and how far it is to the next.
+  const auto place = [](int i, int size) {
+    const int node = std::min(i / kEffectiveStep, (size - 2) / kEffectiveStep);
+    const int begin = node * kEffectiveStep, end = std::min(begin + kEffectiveStep, size - 1);
+    return std::pair(
+        std::max(0, node),
+        end > begin ? static_cast<float>(i - begin) / static_cast<float>(end - begin) : 0.0F);
+  };
+  for (int y = 0; y < plate.height_px; ++y) {
+    const auto [row, down] = place(y, plate.height_px);
+    for (int x = 0; x < plate.width_px; ++x) {
+      const auto [column, right] = place(x, plate.width_px);
+      const auto along = [&](int r) {
+        return effective_counts.at(column, r) * (1 - right) +
+               effective_counts.at(column + 1, r) * right;
+      };
+      spread.at(x, y) = along(row) * (1 - down) + along(row + 1) * down;
+    }
+  }
+  return spread;
 }
 
 }  // namespace lf

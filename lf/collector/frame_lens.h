@@ -8,6 +8,7 @@
 #include "lf/camera/render_camera.h"
 #include "lf/capture/light_field.h"
 #include "lf/core/ids.h"
+#include "lf/core/image.h"
 #include "lf/core/parallel.h"
 #include "lf/lens_weights/frame_weights.h"
 #include "lf/selection/select.h"
@@ -23,6 +24,7 @@ class FrameLens {
   static constexpr double kReach_distances = 8;
 
   // kArea wants a lens of some size.
+  // Refers to the light field.
   FrameLens(const LightField& light_field, const RenderCamera& frame, LensWeights kind,
             const SelectOptions& select, ThreadPool& pool);
 
@@ -32,11 +34,25 @@ class FrameLens {
   // Refer to this object.
   RayWeights WeightsOf(LfImageId id) const;
 
-  // How many LF images, each as good as any other, would make as little noise; none without
-  // weights.
-  std::optional<double> effective_count() const;
+  // What the weights are like; none without weights.
+  struct Facts {
+    double hat_share = 0;        // FrameWeights::hat_share()
+    double uncovered_share = 0;  // of the opening (lens_weights/lens_coverage.h)
+  };
+  std::optional<Facts> facts() const;
+
+  // Of elements 0, kStep, 2 kStep ... and the last one of rows and columns alike: how many LF
+  // images, each as good as any other, would make as little noise, (sum w)^2 / sum w^2 over those
+  // that hold what the element sees; broken images and masks are not known here.  [rows][columns]
+  // Empty without weights.
+  static constexpr int kEffectiveStep = 64;
+  Image<float> EffectiveCounts() const;
+
+  // The same of every element, interpolated.  [height][width]
+  Image<float> SpreadOverPlate(const Image<float>& effective_counts) const;
 
  private:
+  const LightField& light_field_;
   RenderCamera camera_;
   std::optional<FrameWeights> weights_;
   std::map<uint32_t, size_t> cameras_;  // of weights_, by LF image

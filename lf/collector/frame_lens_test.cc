@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 #include "lf/collector/collect.h"
@@ -28,7 +29,7 @@ std::vector<SensorPlate> Collected(const LightField& field, const std::vector<Fr
   select.reach = ReachOf(estimator);
   const auto order = SelectImages(field, cameras, select, pool);
   CollectOptions options;
-  options.estimator = estimator;
+  options.reading.estimator = estimator;
   options.back_end = back_end;
   options.weights = [&](size_t f, LfImageId id) { return lenses[f].WeightsOf(id); };
   EXPECT_TRUE(Collect(field, store, cameras, order, options, pool, &plates, {}));
@@ -44,7 +45,8 @@ TEST(FrameLens, WithoutWeightsIsTheFrames) {
     EXPECT_EQ(lens.camera().aperture.blades, frame.aperture.blades);
     EXPECT_TRUE(lens.WeightsOf(LfImageId{3}).are_same());
     EXPECT_EQ(lens.WeightsOf(LfImageId{3}).same(), 1u);
-    EXPECT_FALSE(lens.effective_count());
+    EXPECT_FALSE(lens.facts());
+    EXPECT_TRUE(lens.EffectiveCounts().empty());
   }
 }
 
@@ -101,8 +103,37 @@ TEST(FrameLens, ImagesBesideTheLensTakePartAndThoseFarAwayDoNot) {
   EXPECT_GT(inside, 10u);
   EXPECT_GT(beside, 3u);
   EXPECT_GT(none, 100u);
-  EXPECT_GT(*lens.effective_count(), 10);
-  EXPECT_LE(*lens.effective_count(), static_cast<double>(inside + beside));
+  ASSERT_TRUE(lens.facts());
+  EXPECT_EQ(lens.facts()->hat_share, 0);
+  EXPECT_LT(lens.facts()->uncovered_share, 0.1);
+}
+
+// Against sums over the weights themselves, where every image holds all of the frame.
+TEST(FrameLens, EffectiveCountsAreThoseOfTheWeights) {
+  ThreadPool pool(2);
+  const LightField field = testing::NoiseField(15);
+  for (RenderCamera frame : testing::NoiseFrames()) {
+    Intrinsics& k = frame.pinhole.intrinsics;
+    const int width = k.width_px;
+    for (double* value : {&k.fx_px, &k.fy_px}) *value *= 4;  // sees a small part of the images
+    const FrameLens lens(field, frame, LensWeights::kArea, {}, pool);
+    const Image<float> counts = lens.EffectiveCounts();
+    const Image<float> spread = lens.SpreadOverPlate(counts);
+    ASSERT_EQ(spread.width(), width);
+    EXPECT_EQ(counts.width(), (width - 2) / FrameLens::kEffectiveStep + 2);
+    double sum = 0, squares = 0;
+    for (uint32_t i = 0; i < field.size(); ++i) {
+      const double weight = lens.WeightsOf(LfImageId{i}).At(0, 0);
+      sum += weight;
+      squares += weight * weight;
+    }
+    ASSERT_GT(squares, 0);
+    EXPECT_NEAR(counts.at(0, 0), sum * sum / squares, 1e-3);
+    EXPECT_EQ(spread.at(0, 0), counts.at(0, 0));
+    EXPECT_EQ(spread.at(width - 1, 0), counts.at(counts.width() - 1, 0));
+    for (int x = 1; x < width; ++x)
+      EXPECT_LE(std::abs(spread.at(x, 0) - spread.at(x - 1, 0)), 0.2F * spread.at(x, 0));
+  }
 }
 
 }  // namespace

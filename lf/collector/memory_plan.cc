@@ -43,7 +43,9 @@ struct ImageNeed {
 
 ImageNeed NeedOf(const LightField& light_field, Estimator estimator, int plate_width,
                  int plate_height) {
-  const bool is_rgb = light_field.encoding.bayer == BayerPattern::kNone;
+  // The one estimator needs RGB, and mosaics become so.
+  const bool is_rgb =
+      light_field.encoding.bayer == BayerPattern::kNone || estimator == Estimator::kBilinear;
   const size_t decode_bytes_per_pixel = DefaultMaxRadiance(light_field.image_names) > 1
                                             ? kDecodeFloatBytesPerPixel
                                             : kDecodeBytesPerPixel;

@@ -21,11 +21,17 @@ struct Viewer {
   Mat3 rotation;
   const Intrinsics* intrinsics;
   const DistortionMap* distortion;
+  double border_px;  // of the image, which rays keep away from
 };
 
+// Of all that an element's ray is made of, about.
+double BorderOf(const PinholeCamera& lf_camera, const RenderCamera& camera, PixelFilter filter) {
+  const GatherSampling sampling = SamplingOf(lf_camera, camera, filter);
+  return 0.5 + OuterPixels(sampling.filter) + 0.5 * (sampling.samples - 1);
+}
+
 // Whether the LF image has a ray through X and the lens (doc/ray.md, 2, 3, 5).
-bool Sees(const Viewer& viewer, const RenderCamera& camera, const Vec3& point_world,
-          double border_px) {
+bool Sees(const Viewer& viewer, const RenderCamera& camera, const Vec3& point_world) {
   const PinholeCamera& lens = camera.pinhole;
   const Vec3 forward = lens.ForwardWorld();
   const Vec3 offset = viewer.centre_world - lens.CentreWorld();
@@ -38,6 +44,7 @@ bool Sees(const Viewer& viewer, const RenderCamera& camera, const Vec3& point_wo
   const std::optional<Vec2> recorded = viewer.distortion->Distort(viewer.rotation * d);
   if (!recorded) return false;
   const Intrinsics& k = *viewer.intrinsics;
+  const double border_px = viewer.border_px;
   const double x_px = k.fx_px * recorded->x() + k.skew_px * recorded->y() + k.cx_px;
   const double y_px = k.fy_px * recorded->y() + k.cy_px;
   return x_px >= border_px && x_px < k.width_px - border_px && y_px >= border_px &&
@@ -72,7 +79,7 @@ Result<uint32_t> ParseSampleRule(const std::string& text, const std::string& opt
 
 ReachableElements::ReachableElements(const LightField& light_field, const RenderCamera& camera,
                                      const PlaceRange& places, const SelectOptions& select,
-                                     ThreadPool& pool) {
+                                     PixelFilter filter, ThreadPool& pool) {
   const std::vector<RenderCamera> frames = {camera};
   const std::vector<PlaceRange> ranges = {places};
   const std::vector<SelectedImage> images = SelectImages(light_field, frames, select, pool, ranges);
@@ -84,9 +91,11 @@ ReachableElements::ReachableElements(const LightField& light_field, const Render
     const Intrinsics& k = light_field.intrinsics[lf_camera.intrinsics_index];
     const auto map = maps.try_emplace(lf_camera.intrinsics_index, k.distortion).first;
     viewers.push_back({lf_camera.cam_from_world.Inverse().translation,
-                       lf_camera.cam_from_world.rotation, &k, &map->second});
+                       lf_camera.cam_from_world.rotation, &k, &map->second,
+                       select.reach == PixelReach::kNeighbours
+                           ? BorderOf(light_field.Camera(image.id), camera, filter)
+                           : 0});
   }
-  const double border_px = select.reach == PixelReach::kNeighbours ? 0.5 : 0;
   const int width = camera.pinhole.intrinsics.width_px;
   const int height = camera.pinhole.intrinsics.height_px;
   columns_ = static_cast<size_t>((width + kGrid - 1) / kGrid);
@@ -98,9 +107,9 @@ ReachableElements::ReachableElements(const LightField& light_field, const Render
       const int y = std::min(height - 1, static_cast<int>(row) * kGrid + kGrid / 2);
       const std::optional<Vec3> point = FocusPointOfElement(camera, x + 0.5, y + 0.5);
       if (!point) continue;
-      is_reachable_[row * columns_ + column] = std::any_of(
-          viewers.begin(), viewers.end(),
-          [&](const Viewer& viewer) { return Sees(viewer, camera, *point, border_px); });
+      is_reachable_[row * columns_ + column] =
+          std::any_of(viewers.begin(), viewers.end(),
+                      [&](const Viewer& viewer) { return Sees(viewer, camera, *point); });
     }
   });
   for (int y = 0; y < height; ++y)

@@ -8,6 +8,7 @@
 
 #include "lf/camera/render_camera.h"
 #include "lf/capture/light_field.h"
+#include "lf/collection/gather_sampling.h"
 #include "lf/collector/collect_batch.h"
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
@@ -29,8 +30,10 @@ class ReachableElements {
   static constexpr int kGrid = 8;  // elements
 
   // places  which LF images of the order by `select.seed` count
+  // filter  where select.reach is that of bilinear
   ReachableElements(const LightField& light_field, const RenderCamera& camera,
-                    const PlaceRange& places, const SelectOptions& select, ThreadPool& pool);
+                    const PlaceRange& places, const SelectOptions& select, PixelFilter filter,
+                    ThreadPool& pool);
 
   bool Holds(int x, int y) const {
     return is_reachable_[static_cast<size_t>(y / kGrid) * columns_ + x / kGrid] != 0;

@@ -7,6 +7,7 @@
 #include "lf/core/check.h"
 #include "lf/core/random.h"
 #include "lf/lens_weights/lens_cells.h"
+#include "lf/lens_weights/lens_coverage.h"
 
 namespace lf {
 namespace {
@@ -117,8 +118,15 @@ Place PlaceOf(int block_end, int count, int size_px) {
 }  // namespace
 
 const char* NameOf(LensWeights weights) {
-  constexpr const char* kNames[] = {"none", "area", "hat"};
+  constexpr const char* kNames[] = {"none", "area", "hat", "auto"};
   return kNames[static_cast<int>(weights)];
+}
+
+double AutoHatShare(double diameter_w, double camera_distance_w) {
+  if (!(camera_distance_w > 0)) return diameter_w > 0 ? 0 : 1;
+  const double distances = diameter_w / camera_distance_w;
+  const double t = std::clamp((kCellsFrom - distances) / (kCellsFrom - kHatsUpTo), 0.0, 1.0);
+  return t * t * (3 - 2 * t);
 }
 
 double CameraDistance(const RenderCamera& frame, std::span<const Vec3> centres_world) {
@@ -143,37 +151,47 @@ FrameWeights::FrameWeights(const RenderCamera& frame, std::span<const Vec3> cent
     : width_px_(frame.pinhole.intrinsics.width_px),
       height_px_(frame.pinhole.intrinsics.height_px),
       nodes_begin_(centres_world.size(), kNone) {
-  LF_CHECK(kind == LensWeights::kHat ||
-           (kind == LensWeights::kArea && frame.aperture.radius_w > 0));
-  SetGrid(frame, centres_world);
+  LF_CHECK(kind != LensWeights::kNone);
+  LF_CHECK(kind != LensWeights::kArea || frame.aperture.radius_w > 0);
+  const double distance = CameraDistance(frame, centres_world);
+  if (kind == LensWeights::kHat) hat_share_ = 1;
+  if (kind == LensWeights::kAuto) hat_share_ = AutoHatShare(2 * frame.aperture.radius_w, distance);
+  if (const std::optional<Vec3> focus =
+          FocusPointOfElement(frame, 0.5 * width_px_, 0.5 * height_px_))
+    uncovered_share_ =
+        UncoveredShare(PointsAt(frame, centres_world, *focus).points, frame.aperture);
+  SetGrid(frame, centres_world, distance);
   std::vector<Node> nodes;
   for (int row = 0; row < rows_; ++row)
     for (int column = 0; column < columns_; ++column)
-      nodes.push_back(MakeNode(frame, centres_world, kind, column, row));
+      nodes.push_back(MakeNode(frame, centres_world, column, row));
   SetWeights(nodes);
 }
 
-void FrameWeights::SetGrid(const RenderCamera& frame, std::span<const Vec3> centres_world) {
-  const double distance = CameraDistance(frame, centres_world);
-  if (distance == 0) return;
+void FrameWeights::SetGrid(const RenderCamera& frame, std::span<const Vec3> centres_world,
+                           double distance_w) {
+  if (distance_w == 0) return;
   const Movement movement = MovementOf(frame, centres_world);
-  columns_ = NodeCount(movement.across, distance, width_px_);
-  rows_ = NodeCount(movement.down, distance, height_px_);
+  columns_ = NodeCount(movement.across, distance_w, width_px_);
+  rows_ = NodeCount(movement.down, distance_w, height_px_);
   if (columns_ > 1) step_w_ += movement.across / (columns_ - 1);
   if (rows_ > 1) step_w_ += movement.down / (rows_ - 1);
 }
 
 FrameWeights::Node FrameWeights::MakeNode(const RenderCamera& frame,
-                                          std::span<const Vec3> centres_world, LensWeights kind,
-                                          int column, int row) {
+                                          std::span<const Vec3> centres_world, int column,
+                                          int row) {
   Node node;
   const std::optional<Vec3> focus = FocusPointOfElement(
       frame, NodePosition(column, columns_, width_px_), NodePosition(row, rows_, height_px_));
   if (!focus) return node;  // beyond the horizon of a tilted focus plane: no ray goes there
   const LensPoints seen = PointsAt(frame, centres_world, *focus);
-  const std::vector<double> shares = kind == LensWeights::kArea
-                                         ? CellShares(seen.points, frame.aperture)
-                                         : HatShares(seen.points, frame.aperture);
+  std::vector<double> shares(seen.points.size(), 0);
+  const auto mix = [&](const std::vector<double>& part, double by) {
+    for (size_t k = 0; k < shares.size(); ++k) shares[k] += by * part[k];
+  };
+  if (hat_share_ < 1) mix(CellShares(seen.points, frame.aperture), 1 - hat_share_);
+  if (hat_share_ > 0) mix(HatShares(seen.points, frame.aperture), hat_share_);
   for (size_t k = 0; k < shares.size(); ++k) {
     if (!(shares[k] > kLeastShare)) continue;
     node.push_back({seen.cameras[k], shares[k]});
@@ -205,16 +223,6 @@ void FrameWeights::SetWeights(const std::vector<Node>& nodes) {
 WeightBlocks FrameWeights::BlocksOf(size_t camera) const {
   const uint64_t any = MixBits(camera);
   return {static_cast<int>(any % kWeightBlock), static_cast<int>((any >> 32) % kWeightBlock)};
-}
-
-double FrameWeights::EffectiveCount() const {
-  double sum = 0, squares = 0;
-  for (size_t camera = 0; camera < nodes_begin_.size(); ++camera) {
-    const double weight = At(camera, width_px_ / 2, height_px_ / 2);
-    sum += weight;
-    squares += weight * weight;
-  }
-  return squares > 0 ? sum * sum / squares : 0;
 }
 
 uint32_t FrameWeights::At(size_t camera, int x, int y) const {

@@ -17,16 +17,26 @@
 
 namespace lf {
 
-// How rays are weighed. kNone: they count alike, as in the thesis.
-enum class LensWeights { kNone, kArea, kHat };
+// How rays are weighed (doc/lens-integral.md).
+//   kNone  alike, as in the thesis
+//   kArea  by cells, which want a lens of some size: radius_w > 0
+//   kHat   by hats, for lenses as narrow as pinholes
+//   kAuto  by the one or the other, or by both where the lens is between them: AutoHatShare()
+enum class LensWeights { kNone, kArea, kHat, kAuto };
 
-// "none", "area", "hat"
+// "none", "area", "hat", "auto"
 const char* NameOf(LensWeights weights);
+
+// What part of kAuto's weights are hats, in [0, 1]: all below kHatsUpTo camera distances of
+// diameter, none above kCellsFrom, smoothly between, so that an aperture may open along a path.
+inline constexpr double kHatsUpTo = 2;
+inline constexpr double kCellsFrom = 4;
+double AutoHatShare(double diameter_w, double camera_distance_w);
 
 class FrameWeights {
  public:
   // centres_world  of the LF cameras whose images may contribute
-  // kind           kArea: cells, which want a lens of some size, radius_w > 0; kHat: hats
+  // kind           not kNone
   FrameWeights(const RenderCamera& frame, std::span<const Vec3> centres_world, LensWeights kind);
 
   // Of a ray of the camera's to an element, whose block is one of BlocksOf(camera): 0 (it adds
@@ -44,9 +54,11 @@ class FrameWeights {
   // Rays that meet the lens plane farther from the lens centre have no weight.
   double reach_w() const { return farthest_w_ + step_w_; }
 
-  // How many LF cameras of equal weight would make as little noise in the middle of the plate:
-  // (sum w)^2 / sum w^2.
-  double EffectiveCount() const;
+  // The part of hats in it: 0 for kArea, 1 for kHat.
+  double hat_share() const { return hat_share_; }
+
+  // As seen from the middle of the plate (lens_coverage.h).
+  double uncovered_share() const { return uncovered_share_; }
 
   // Of the grid, from edge to edge of the plate; 1: its middle.
   int columns() const { return columns_; }
@@ -62,11 +74,13 @@ class FrameWeights {
   };
   using Node = std::vector<Share>;  // those above 0
 
-  void SetGrid(const RenderCamera& frame, std::span<const Vec3> centres_world);
-  Node MakeNode(const RenderCamera& frame, std::span<const Vec3> centres_world, LensWeights kind,
-                int column, int row);
+  void SetGrid(const RenderCamera& frame, std::span<const Vec3> centres_world, double distance_w);
+  Node MakeNode(const RenderCamera& frame, std::span<const Vec3> centres_world, int column,
+                int row);
   void SetWeights(const std::vector<Node>& nodes);
 
+  double hat_share_ = 0;
+  double uncovered_share_ = 1;
   int width_px_;
   int height_px_;
   int columns_ = 1;

@@ -171,6 +171,37 @@ TEST(FrameWeights, HatsOfAPinholeGoToTheCamerasAroundIt) {
   EXPECT_EQ(taking_part, 4u);
 }
 
+TEST(FrameWeights, AutoGoesFromHatsToCellsAsTheLensOpens) {
+  constexpr double kSpacing = 0.01;
+  const auto centres = JitteredGrid(12, kSpacing, 0.3, 8);
+  const auto total_difference = [&](double diameter, LensWeights a, LensWeights b) {
+    const RenderCamera frame = Frame(0.5 * diameter);
+    const auto of_a = SharesOf(FrameWeights(frame, centres, a), centres.size(), 0, 0);
+    const auto of_b = SharesOf(FrameWeights(frame, centres, b), centres.size(), 0, 0);
+    double sum = 0;
+    for (size_t i = 0; i < centres.size(); ++i) sum += std::abs(of_a[i] - of_b[i]);
+    return sum;
+  };
+  EXPECT_EQ(total_difference(kSpacing, LensWeights::kAuto, LensWeights::kHat), 0);
+  EXPECT_EQ(total_difference(6 * kSpacing, LensWeights::kAuto, LensWeights::kArea), 0);
+  const double to_hats = total_difference(3 * kSpacing, LensWeights::kAuto, LensWeights::kHat);
+  const double to_cells = total_difference(3 * kSpacing, LensWeights::kAuto, LensWeights::kArea);
+  const double whole = total_difference(3 * kSpacing, LensWeights::kHat, LensWeights::kArea);
+  EXPECT_GT(to_hats, 0.02);
+  EXPECT_GT(to_cells, 0.02);
+  EXPECT_NEAR(to_hats + to_cells, whole, 0.02);
+  // A pinhole, too.
+  EXPECT_EQ(FrameWeights(Frame(0), centres, LensWeights::kAuto).hat_share(), 1);
+  double last = 1;
+  for (double distances = 0; distances < 6; distances += 0.01) {
+    const double share = AutoHatShare(distances, 1);
+    EXPECT_LE(share, last);
+    EXPECT_LT(last - share, 0.01);
+    last = share;
+  }
+  EXPECT_EQ(last, 0);
+}
+
 TEST(FrameWeights, NoCamerasAndTiltedHorizonsAreNoTrouble) {
   EXPECT_TRUE(FrameWeights(Frame(0.1), {}, LensWeights::kArea).is_constant());
   RenderCamera frame = Frame(0.1, 0.05);

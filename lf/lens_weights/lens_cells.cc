@@ -38,16 +38,8 @@ class HatMaker {
   // Beside the cameras cells have no end. Between them they are smaller than this.
   ConvexPolygon Surroundings(const Vec2& place) const {
     constexpr double kFar = 8;
-    return ConvexPolygon::SquareAround(place,
-                                       kFar * (DistanceToNearest(place) + grid_.bucket_size()));
-  }
-
-  double DistanceToNearest(const Vec2& place) const {
-    double nearest = INFINITY;
-    for (int ring = 0; ring <= grid_.ring_count() && grid_.LeastDistanceOf(ring) < nearest; ++ring)
-      grid_.ForEachInRing(
-          place, ring, [&](size_t i) { nearest = std::min(nearest, (points_[i] - place).norm()); });
-    return nearest;
+    return ConvexPolygon::SquareAround(
+        place, kFar * (grid_.DistanceToNearest(place) + grid_.bucket_size()));
   }
 
   // Those at the same place share what is nearest to them.

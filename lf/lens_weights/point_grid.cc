@@ -2,7 +2,7 @@
 
 namespace lf {
 
-PointGrid::PointGrid(std::span<const Vec2> points) {
+PointGrid::PointGrid(std::span<const Vec2> points) : points_(points) {
   if (!points.empty()) {
     Vec2 low = points[0], high = points[0];
     for (const Vec2& p : points) {

@@ -42,6 +42,18 @@ class PointGrid {
     }
   }
 
+  // From a place to the nearest point but for those at the place itself, if these are left out;
+  // infinite if there is none.
+  double DistanceToNearest(const Vec2& place, bool leave_out_same = false) const {
+    double nearest = INFINITY;
+    for (int ring = 0; ring <= ring_count() && LeastDistanceOf(ring) < nearest; ++ring)
+      ForEachInRing(place, ring, [&](size_t i) {
+        const double distance = (points_[i] - place).norm();
+        if (distance > 0 || !leave_out_same) nearest = std::min(nearest, distance);
+      });
+    return nearest;
+  }
+
  private:
   int ColumnOf(const Vec2& point) const { return Bucket(point.x() - corner_.x(), columns_); }
   int RowOf(const Vec2& point) const { return Bucket(point.y() - corner_.y(), rows_); }
@@ -49,6 +61,7 @@ class PointGrid {
     return static_cast<int>(std::clamp(distance / bucket_size_, 0.0, count - 1.0));
   }
 
+  std::span<const Vec2> points_;
   Vec2 corner_ = Vec2::Zero();
   double bucket_size_ = 1;
   int columns_ = 1;

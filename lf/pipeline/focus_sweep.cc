@@ -87,9 +87,9 @@ Result<std::vector<double>> DetailAt(const std::vector<double>& distances_w,
   }
   CollectOptions options;
   // Interpolated rays leave no holes, which would count as detail.
-  if (light_field.encoding.bayer == BayerPattern::kNone) options.estimator = Estimator::kBilinear;
+  options.reading = {Estimator::kBilinear, PixelFilter::kBilinear};
   std::vector<SelectedImage> images =
-      SelectImages(light_field, frames, {0, ReachOf(options.estimator)}, pool);
+      SelectImages(light_field, frames, {0, ReachOf(options.reading.estimator)}, pool);
   if (images.size() > kMostImages) images.resize(kMostImages);
   if (images.empty())
     return InputError(

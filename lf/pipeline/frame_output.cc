@@ -26,29 +26,45 @@ DevelopOptions DevelopOptionsFor(const RadianceEncoding& encoding, uint32_t smoo
   return options;
 }
 
+bool IsExr(FrameFormat format) {
+  return format == FrameFormat::kExrHalf || format == FrameFormat::kExrFloat;
+}
+
+double Median(const LargeVector<float>& values) {
+  std::vector<float> sorted(values.begin(), values.end());
+  const auto middle = sorted.begin() + static_cast<ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  return *middle;
+}
+
 }  // namespace
 
 std::filesystem::path FrameOutput::PathOf(FrameId frame) const {
   return FramePath(options_.output_folder, frame, options_.format);
 }
 
-Result<FrameReport> FrameOutput::Write(FrameId frame, const FrameRays& rays,
+Result<FrameReport> FrameOutput::Write(FrameId frame, const FrameRays& rays, const FrameLens& lens,
                                        const SensorPlate& plate, const std::filesystem::path& to,
                                        const std::function<bool()>& is_interrupted) const {
   const auto start = std::chrono::steady_clock::now();
   const RenderCamera& camera = path_.Camera(frame);
   DevelopOptions develop = DevelopOptionsFor(light_field_.encoding, options_.smooth_below);
   develop.is_interrupted = is_interrupted;
-  const DevelopedFrame developed = Develop(plate, develop, pool_);
+  DevelopedFrame developed = Develop(plate, develop, pool_);
   if (is_interrupted && is_interrupted())
     return Error{ErrorKind::kInterrupted, fmt::format("{}: interrupted", to.string())};
   FrameReport report = MakeFrameReport(frame, rays, developed);
   report.camera = InputsOfCamera(frame, camera);
+  if (const std::optional<FrameLens::Facts> facts = lens.facts()) {
+    const Image<float> counts = lens.EffectiveCounts();
+    report.weighed = {Median(counts.pixels()), facts->hat_share, facts->uncovered_share};
+    if (IsExr(options_.format)) developed.effective_count = lens.SpreadOverPlate(counts);
+  }
   report.develop_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   LF_RETURN_IF_ERROR(WriteFrame(
       to, developed, options_.format,
-      FrameMetadata(frame, camera, rays, options_.estimator, path_.fps, options_.version),
+      FrameMetadata(frame, camera, rays, options_.reading.estimator, path_.fps, options_.version),
       is_interrupted));
   return report;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lf/capture/light_field.h"
+#include "lf/collector/frame_lens.h"
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
 #include "lf/path/camera_path.h"
@@ -26,8 +27,8 @@ class FrameOutput {
   // Develops the plate and writes its picture under any name. Its report lacks the samples.
   //   is_interrupted  asked all the time, by any thread, if given
   // kOutput: the disk. kInterrupted: nothing is written.
-  Result<FrameReport> Write(FrameId frame, const FrameRays& rays, const SensorPlate& plate,
-                            const std::filesystem::path& to,
+  Result<FrameReport> Write(FrameId frame, const FrameRays& rays, const FrameLens& lens,
+                            const SensorPlate& plate, const std::filesystem::path& to,
                             const std::function<bool()>& is_interrupted) const;
 
   // From the files of the frames, so that it does not matter when and by whom they were rendered.

@@ -34,7 +34,7 @@ Result<void> CheckVideoTarget(const std::filesystem::path& path) {
 
 RunStateOptions StateOptions(const LightField& light_field, const RenderOptions& options) {
   RunChoices choices;
-  choices.estimator = options.estimator;
+  choices.reading = options.reading;
   choices.lens_weights = options.lens_weights;
   choices.back_end = options.back_end;
   choices.seed = options.seed;
@@ -60,7 +60,9 @@ class Renderer {
         options_(options),
         pool_(pool),
         progress_(progress),
-        store_(light_field),
+        store_(light_field, options.reading.estimator == Estimator::kBilinear
+                                ? FolderStore::Mosaics::kToRgb
+                                : FolderStore::Mosaics::kAsRecorded),
         output_(light_field, path, options, pool) {}
 
   Result<RenderReport> Run();
@@ -106,18 +108,14 @@ Result<RenderReport> Renderer::Run() {
 }
 
 Result<void> Renderer::Begin() {
-  if (options_.estimator == Estimator::kBilinear &&
-      light_field_.encoding.bayer != BayerPattern::kNone)
-    return UsageError(
-        "--estimator bilinear interpolates RGB images, and these are mosaics: use nearest");
   frames_ = options_.frames;
   if (frames_.empty())
     for (uint32_t n = 1; n <= path_.frame_count(); ++n) frames_.push_back(FrameId{n});
   LF_RETURN_IF_ERROR(CheckLensWeights());
   const Intrinsics& plate = path_.Camera(frames_.front()).pinhole.intrinsics;
   LF_ASSIGN_OR_RETURN(
-      plan_, PlanMemory(options_.memory_bytes, light_field_, options_.estimator, plate.width_px,
-                        plate.height_px, frames_.size(), pool_.thread_count()));
+      plan_, PlanMemory(options_.memory_bytes, light_field_, options_.reading.estimator,
+                        plate.width_px, plate.height_px, frames_.size(), pool_.thread_count()));
   LF_RETURN_IF_ERROR(CreateFolder(options_.output_folder));
   if (options_.video) {
     LF_RETURN_IF_ERROR(CheckVideoTool());
@@ -134,7 +132,7 @@ Result<void> Renderer::Begin() {
   totals_.inputs = state_options.rays;
   totals_.inputs.insert(totals_.inputs.end(), state_options.picture.begin(),
                         state_options.picture.end());
-  totals_.estimator = options_.estimator;
+  totals_.estimator = options_.reading.estimator;
   totals_.width = plate.width_px;
   totals_.height = plate.height_px;
   totals_.thread_count = pool_.thread_count();
@@ -146,7 +144,7 @@ Result<void> Renderer::Begin() {
 Result<void> Renderer::CheckLensWeights() const {
   if (options_.lens_weights == LensWeights::kNone) return {};
   const char* const name = NameOf(options_.lens_weights);
-  if (options_.stop_at_samples || options_.require_samples || options_.smooth_below > 0)
+  if (options_.CountsRays())
     return UsageError(
         fmt::format("--lens-weights {}: counts are sums of weights, so that --stop-when, --require "
                     "and --smooth-below have no rays to count: leave them out",

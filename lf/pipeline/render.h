@@ -47,9 +47,8 @@ struct RenderOptions {
   size_t memory_bytes = size_t{8} << 30;
   uint64_t seed = 0;
   bool strict = false;
-  Estimator estimator = Estimator::kNearest;
-  // kArea, kHat: not together with counts that ask for rays (stop_at_samples, require_samples,
-  // smooth_below), since counts are sums of weights then.
+  RayReading reading;
+  // kNone where CountsRays(), for counts are sums of weights else.
   LensWeights lens_weights = LensWeights::kNone;
   CollectBackEnd back_end = CollectBackEnd::kFast;
 
@@ -60,6 +59,9 @@ struct RenderOptions {
 
   std::string version;               // of the program, for the files' metadata
   RenderSignals* signals = nullptr;  // looked at all the time
+
+  // Whether something asks how many rays elements have.
+  bool CountsRays() const { return stop_at_samples || require_samples || smooth_below > 0; }
 };
 
 struct RenderProgress {
@@ -75,9 +77,7 @@ struct RenderProgress {
 // the video. Every file appears under its name only when it is whole. The frames have the same
 // bits for any number of threads and any memory, and however often the render was interrupted,
 // killed and resumed: at most the time since the last checkpoint is lost.
-//   kUsage        bilinear for mosaics; an unfinished render in the folder, or one from other
-//   inputs
-//                 (run_state.h)
+//   kUsage        an unfinished render in the folder, or one from other inputs (run_state.h)
 //   kInput        no LF image contributes to any frame, or none has a ray; broken images
 //                 (collect.h); a damaged state
 //   kOutput       disk, memory; ffmpeg, after the frames are written all the same. The state on the

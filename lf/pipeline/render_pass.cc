@@ -21,7 +21,7 @@ constexpr double kLastPictures_s = 2;
 SelectOptions RenderJob::Select() const {
   SelectOptions select;
   select.seed = options.seed;
-  select.reach = ReachOf(options.estimator);
+  select.reach = ReachOf(options.reading.estimator);
   if (options.signals != nullptr) select.interrupted = &options.signals->stop;
   return select;
 }
@@ -79,7 +79,7 @@ Result<void> RenderPass::Prepare() {
   job_.totals.selected_image_count = std::max(job_.totals.selected_image_count, images_.size());
 
   CollectOptions collect;
-  collect.estimator = job_.options.estimator;
+  collect.reading = job_.options.reading;
   collect.back_end = job_.options.back_end;
   collect.batch_image_count = static_cast<int>(job_.plan.batch_image_count);
   collect.plan_bytes = job_.plan.plan_bytes;
@@ -171,8 +171,9 @@ FrameProgress RenderPass::ProgressOf(size_t f) const {
 const ReachableElements& RenderPass::ReachableOf(size_t f) {
   Frame& frame = frames_[f];
   if (!frame.reachable)
-    frame.reachable = std::make_unique<ReachableElements>(job_.light_field, cameras_[f],
-                                                          frame.places, job_.Select(), job_.pool);
+    frame.reachable =
+        std::make_unique<ReachableElements>(job_.light_field, cameras_[f], frame.places,
+                                            job_.Select(), job_.options.reading.filter, job_.pool);
   return *frame.reachable;
 }
 
@@ -240,9 +241,9 @@ Result<FrameReport> RenderPass::WriteFiles(size_t f) {
     LF_RETURN_IF_ERROR(WritePlate(plate.replace_extension(".plate"),
                                   job_.state.PlateText(frame.id, progress), plates_[f], job_.pool));
   }
-  LF_ASSIGN_OR_RETURN(FrameReport report, job_.output.Write(frame.id, progress.rays, plates_[f], to,
-                                                            [this] { return job_.IsStopped(); }));
-  report.effective_count = lenses_[f].effective_count();
+  LF_ASSIGN_OR_RETURN(FrameReport report,
+                      job_.output.Write(frame.id, progress.rays, lenses_[f], plates_[f], to,
+                                        [this] { return job_.IsStopped(); }));
   const auto asked =
       job_.options.require_samples ? job_.options.require_samples : job_.options.stop_at_samples;
   if (asked)
@@ -296,8 +297,9 @@ Result<void> RenderPass::SavePictures(double picture_budget_s) {
   for (const size_t f : oldest_first) {
     if (NowSeconds() - begin_s >= picture_budget_s) break;
     Frame& frame = frames_[f];
-    const Result<FrameReport> written = job_.output.Write(
-        frame.id, ProgressOf(f).rays, plates_[f], job_.state.PicturePath(frame.id), is_interrupted);
+    const Result<FrameReport> written =
+        job_.output.Write(frame.id, ProgressOf(f).rays, lenses_[f], plates_[f],
+                          job_.state.PicturePath(frame.id), is_interrupted);
     // The state that is written after a signal has pictures of its own.
     if (!written && written.error().kind == ErrorKind::kInterrupted) return {};
     LF_RETURN_IF_ERROR(written);

@@ -27,7 +27,11 @@ Json FrameToJson(const FrameReport& frame) {
                {"rays_per_element_min", frame.min_count},
                {"rays_per_element_median", frame.median_count},
                {"develop_s", frame.develop_s}};
-  if (frame.effective_count) json["effective_lf_images"] = *frame.effective_count;
+  if (frame.weighed) {
+    json["effective_lf_images"] = frame.weighed->effective_count;
+    json["hat_share"] = frame.weighed->hat_share;
+    json["uncovered_share"] = frame.weighed->uncovered_share;
+  }
   if (frame.samples)
     json["samples"] = {{"asked", frame.samples->asked},
                        {"share", frame.samples->measured.share},

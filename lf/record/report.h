@@ -36,9 +36,13 @@ struct FrameReport {
   double develop_s = 0;
   std::optional<FrameSamples> samples;  // where they were asked for
   RunInputs camera;                     // InputsOfCamera()
-  // With lens weights (then counts are sums of weights): as many LF images of equal weight would
-  // make as little noise in the middle of the frame.
-  std::optional<double> effective_count = std::nullopt;
+  // With lens weights (then counts are sums of weights).
+  struct Weighed {
+    double effective_count = 0;  // median over the frame (collector/frame_lens.h)
+    double hat_share = 0;        // the part of hats in the weights
+    double uncovered_share = 0;  // of the opening (lens_weights/lens_coverage.h)
+  };
+  std::optional<Weighed> weighed = std::nullopt;
 };
 
 struct RenderReport {

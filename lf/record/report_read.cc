@@ -105,8 +105,12 @@ FrameReport FrameFromJson(const Json& json, std::string* fault) {
   fields.Get("rays_per_element_median", &frame.median_count);
   fields.Get("develop_s", &frame.develop_s);
   fields.Get("inputs", &frame.camera);
-  if (fields.Find("effective_lf_images") != nullptr)
-    fields.Get("effective_lf_images", &frame.effective_count.emplace());
+  if (fields.Find("effective_lf_images") != nullptr) {
+    FrameReport::Weighed& weighed = frame.weighed.emplace();
+    fields.Get("effective_lf_images", &weighed.effective_count);
+    fields.Get("hat_share", &weighed.hat_share);
+    fields.Get("uncovered_share", &weighed.uncovered_share);
+  }
   if (const Json* samples = fields.Find("samples")) {
     Fields sample_fields(*samples, fault);
     frame.samples.emplace();

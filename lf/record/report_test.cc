@@ -41,7 +41,7 @@ TEST(Report, ReadsBackWhatItWrote) {
   frame.empty_element_count = {1, 2, 3};
   frame.median_count = {7, 8, 9};
   frame.samples = FrameSamples{8, {0.25, 3}};
-  frame.effective_count = 12.5;
+  frame.weighed = {12.5, 0.25, 0.75};
   frame.camera = {{"frame", "7"}};
   report.frames = {frame, {FrameId{9}, {}, {}, {}, {}, 0, {}, {}}};
   const Result<RenderReport> read = ParseReport(ToJson(report), "x");
@@ -58,8 +58,11 @@ TEST(Report, ReadsBackWhatItWrote) {
   EXPECT_EQ(read->frames[0].samples->measured.most_have, 3u);
   EXPECT_EQ(read->frames[0].camera, frame.camera);
   EXPECT_FALSE(read->frames[1].samples);
-  EXPECT_EQ(read->frames[0].effective_count, 12.5);
-  EXPECT_FALSE(read->frames[1].effective_count);
+  ASSERT_TRUE(read->frames[0].weighed);
+  EXPECT_EQ(read->frames[0].weighed->effective_count, 12.5);
+  EXPECT_EQ(read->frames[0].weighed->hat_share, 0.25);
+  EXPECT_EQ(read->frames[0].weighed->uncovered_share, 0.75);
+  EXPECT_FALSE(read->frames[1].weighed);
 }
 
 TEST(Report, OtherTextsAreErrorsThatNameTheFieldAndTheFile) {

@@ -111,7 +111,9 @@ std::string CameraHash(const RenderCamera& camera) {
 RunInputs InputsOfRays(const LightField& light_field, const RunChoices& choices) {
   return {
       {"law", fmt::format("{}", kLawVersion)},
-      {"estimator", NameOf(choices.estimator)},
+      {"estimator", NameOf(choices.reading.estimator)},
+      {"filter",
+       choices.reading.estimator == Estimator::kBilinear ? NameOf(choices.reading.filter) : "none"},
       {"lens_weights", NameOf(choices.lens_weights)},
       {"back_end", choices.back_end == CollectBackEnd::kFast ? "fast" : "reference"},
       {"seed", fmt::format("{}", choices.seed)},

@@ -20,7 +20,7 @@ using RunInputs = std::vector<std::pair<std::string, std::string>>;
 
 // The options that decide about the rays of a frame, and (the last two) about its picture.
 struct RunChoices {
-  Estimator estimator = Estimator::kNearest;
+  RayReading reading;
   CollectBackEnd back_end = CollectBackEnd::kFast;
   uint64_t seed = 0;
   LensWeights lens_weights = LensWeights::kNone;
@@ -31,7 +31,7 @@ struct RunChoices {
 };
 
 // The version of doc/ray.md: raised when the same inputs give other rays.
-inline constexpr int kLawVersion = 1;
+inline constexpr int kLawVersion = 2;
 
 // Of all frames: the law, the light field (numbers of images, hashes of calibration, encoding and
 // names; not its folder, which may move, nor the pixels) and the choices for rays.

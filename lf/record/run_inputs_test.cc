@@ -19,6 +19,7 @@ RunInputs AllInputs(const LightField& field, const RunChoices& choices,
 
 TEST(RunInputs, EveryInputMakesADifferenceAndItsKeyNamesIt) {
   struct Inputs {
+    Inputs() { choices.reading.estimator = Estimator::kBilinear; }
     LightField field = testing::NoiseField();
     RunChoices choices;
     RenderCamera camera = testing::NoiseFrames()[0];
@@ -29,7 +30,8 @@ TEST(RunInputs, EveryInputMakesADifferenceAndItsKeyNamesIt) {
             std::nullopt);
   const std::vector<std::pair<std::string, std::function<void(Inputs&)>>> changes = {
       {"seed", [](Inputs& i) { i.choices.seed = 1; }},
-      {"estimator", [](Inputs& i) { i.choices.estimator = Estimator::kBilinear; }},
+      {"estimator", [](Inputs& i) { i.choices.reading.estimator = Estimator::kNearest; }},
+      {"filter", [](Inputs& i) { i.choices.reading.filter = PixelFilter::kBicubic; }},
       {"back_end", [](Inputs& i) { i.choices.back_end = CollectBackEnd::kReference; }},
       {"lens_weights", [](Inputs& i) { i.choices.lens_weights = LensWeights::kHat; }},
       {"max_images", [](Inputs& i) { i.choices.max_image_count = 9; }},

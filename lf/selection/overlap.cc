@@ -13,9 +13,12 @@ namespace {
 constexpr double kLensMargin = 1e-6;
 constexpr double kPlateMarginPx = 1e-6;
 constexpr double kPixelMarginPx = 1e-6;  // of a vertex computed by clipping
+constexpr int kNeighboursPx = 2;         // on each side of a ray between pixels
 constexpr double kZeroMargin = 1e-12;    // of a form's value at a vertex, relative to its terms
 // Of the circle around a disk's circumscribed 16-gon: 1 / cos(pi / 16).
 constexpr double kDiskPolygonRadius = 1.0195911582083184;
+
+int NeighboursOf(PixelReach reach) { return reach == PixelReach::kNeighbours ? kNeighboursPx : 0; }
 
 // A convex polygon that half-planes cut (Sutherland, Hodgman 1974): each adds one vertex at most.
 class Clipped {
@@ -50,7 +53,7 @@ class Clipped {
   // its points.
   PixelRect Pixels(const Intrinsics& image, PixelReach reach) const {
     if (empty()) return {};
-    const int beyond = reach == PixelReach::kNeighbours ? 1 : 0;
+    const int beyond = NeighboursOf(reach);
     Vec2 low = vertices_[0], high = vertices_[0];
     for (size_t i = 1; i < count_; ++i) {
       low = low.cwiseMin(vertices_[i]);
@@ -203,7 +206,8 @@ PixelRect ImageOverlap::Rect(const RenderCamera& render_camera) const {
   // Cells hold the whole of their pixels.
   if (!distorted || reach_ == PixelReach::kOwn || rect.empty()) return rect;
   return Intersection({0, 0, image.width_px, image.height_px},
-                      {rect.x_begin - 1, rect.y_begin - 1, rect.x_end + 1, rect.y_end + 1});
+                      {rect.x_begin - kNeighboursPx, rect.y_begin - kNeighboursPx,
+                       rect.x_end + kNeighboursPx, rect.y_end + kNeighboursPx});
 }
 
 }  // namespace lf

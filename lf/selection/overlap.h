@@ -27,7 +27,7 @@ namespace lf {
 //   reach  which pixels a ray takes its value from
 enum class PixelReach {
   kOwn,         // the one it goes through the centre of
-  kNeighbours,  // the four around it: rays go through any point of the image
+  kNeighbours,  // those around it, four or sixteen: rays go through any point of the image
 };
 PixelRect ContributingRect(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
                            std::span<const IdealCell> cells = {},

@@ -35,6 +35,9 @@ struct DevelopedFrame {
   Image<float> rgb;           // [height][width][3] linear light, sRGB primaries
   Image<uint32_t> ray_count;  // [height][width][3]
   Image<float> coverage;      // [height][width] share of the channels with a ray of their own
+  // [height][width] with lens weights, where counts are sums of weights: how many LF images of
+  // equal weight would make as little noise; else empty
+  Image<float> effective_count = {};
 };
 
 // Averages every element and channel. Those without a ray (or with fewer than smooth_below) take

@@ -54,6 +54,8 @@ Result<void> WriteExrFrame(const std::filesystem::path& path, const DevelopedFra
        {std::pair("count.R", 0), std::pair("count.G", 1), std::pair("count.B", 2)})
     channels.push_back({name, frame.ray_count.view(), channel});
   channels.push_back({"coverage", frame.coverage.view(), 0, as_half});
+  if (!frame.effective_count.empty())
+    channels.push_back({"effective", frame.effective_count.view(), 0, as_half});
   return WriteExr(path, channels, metadata, is_interrupted);
 }
 

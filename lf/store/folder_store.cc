@@ -15,6 +15,7 @@
 #include "lf/core/file.h"
 #include "lf/imageio/image_file.h"
 #include "lf/imageio/upright.h"
+#include "lf/store/demosaic.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -130,8 +131,8 @@ Result<void> ApplyMaskFile(const fs::path& path, const Intrinsics& intrinsics, L
 
 }  // namespace
 
-FolderStore::FolderStore(const LightField& light_field)
-    : light_field_(light_field), tables_(light_field.encoding, 1) {}
+FolderStore::FolderStore(const LightField& light_field, Mosaics mosaics)
+    : light_field_(light_field), tables_(light_field.encoding, 1), mosaics_(mosaics) {}
 
 bool FolderStore::IsThere(LfImageId id) const {
   std::error_code error;
@@ -141,15 +142,32 @@ bool FolderStore::IsThere(LfImageId id) const {
 void FolderStore::Announce(LfImageId id) const { AnnounceRead(light_field_.ImagePath(id)); }
 
 Result<void> FolderStore::Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const {
-  std::unique_ptr<ImagePart> part = TakePart();
-  const Result<void> loaded = LoadBy(part.get(), id, rect, pixels);
-  GiveBack(std::move(part));
+  std::unique_ptr<Loading> loading = TakeLoading();
+  const Result<void> loaded = LoadBy(loading.get(), id, rect, pixels);
+  GiveBack(std::move(loading));
   return loaded;
 }
 
-Result<void> FolderStore::LoadBy(ImagePart* part, LfImageId id, const PixelRect& rect,
+Result<void> FolderStore::LoadBy(Loading* loading, LfImageId id, const PixelRect& rect,
                                  LfPixels* pixels) const {
   LF_CHECK(id.value < light_field_.size());
+  const bool is_mosaic = light_field_.encoding.bayer != BayerPattern::kNone;
+  if (!is_mosaic || mosaics_ == Mosaics::kAsRecorded)
+    return LoadRecorded(&loading->part, id, rect, pixels);
+  const Intrinsics& k = light_field_.intrinsics[light_field_.cameras[id.value].intrinsics_index];
+  if (k.width_px < 2 || k.height_px < 2)
+    return InputError(fmt::format("{}: is {}x{}, and a mosaic has at least 2x2 pixels",
+                                  light_field_.ImagePath(id).string(), k.width_px, k.height_px));
+  const PixelRect inside = Intersection(rect, {0, 0, k.width_px, k.height_px});
+  LF_RETURN_IF_ERROR(LoadRecorded(&loading->part, id, MosaicRectOf(inside, k.width_px, k.height_px),
+                                  &loading->mosaic));
+  Demosaic(loading->mosaic, k.width_px, k.height_px, light_field_.encoding.white_balance, inside,
+           pixels);
+  return {};
+}
+
+Result<void> FolderStore::LoadRecorded(ImagePart* part, LfImageId id, const PixelRect& rect,
+                                       LfPixels* pixels) const {
   const LfCamera& camera = light_field_.cameras[id.value];
   const Intrinsics& intrinsics = light_field_.intrinsics[camera.intrinsics_index];
   const RadianceEncoding& encoding = light_field_.encoding;
@@ -174,17 +192,17 @@ Result<void> FolderStore::LoadBy(ImagePart* part, LfImageId id, const PixelRect&
   return {};
 }
 
-std::unique_ptr<ImagePart> FolderStore::TakePart() const {
+std::unique_ptr<FolderStore::Loading> FolderStore::TakeLoading() const {
   const std::lock_guard lock(mutex_);
-  if (parts_.empty()) return std::make_unique<ImagePart>();
-  std::unique_ptr<ImagePart> part = std::move(parts_.back());
-  parts_.pop_back();
-  return part;
+  if (loadings_.empty()) return std::make_unique<Loading>();
+  std::unique_ptr<Loading> loading = std::move(loadings_.back());
+  loadings_.pop_back();
+  return loading;
 }
 
-void FolderStore::GiveBack(std::unique_ptr<ImagePart> part) const {
+void FolderStore::GiveBack(std::unique_ptr<Loading> loading) const {
   const std::lock_guard lock(mutex_);
-  parts_.push_back(std::move(part));
+  loadings_.push_back(std::move(loading));
 }
 
 }  // namespace lf

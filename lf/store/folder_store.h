@@ -15,8 +15,8 @@ namespace lf {
 // Reads PNG, JPEG, TIFF, EXR and camera raw files (imageio/image_file.h) and turns their values
 // into radiance as LightField::encoding says:
 //   - integers through its table, of 8 or 16 bits; floats are radiance already, and quantised;
-//   - with a Bayer pattern a file has one channel; without, it is RGB, or grey, which counts for
-//     all three;
+//   - with a Bayer pattern a file has one channel, and gives a mosaic, or RGB pixels made of it
+//     (demosaic.h); without, it is RGB, or grey, which counts for all three;
 //   - pixels whose alpha is below one half are masked, and so are those that are 0 in the first
 //     channel of the image's mask file. Further channels are not used;
 //   - pictures and masks are taken as stored, or turned by 90 degrees as their orientation tag says
@@ -26,7 +26,10 @@ namespace lf {
 // Keeps a reference to `light_field`, which must outlive it.
 class FolderStore : public LfImageStore {
  public:
-  explicit FolderStore(const LightField& light_field);
+  // What becomes of mosaics.
+  enum class Mosaics { kAsRecorded, kToRgb };
+
+  explicit FolderStore(const LightField& light_field, Mosaics mosaics = Mosaics::kAsRecorded);
 
   // The pixels of `rect`, cut to the image. kInput as LfImageStore says, and also: levels
   // (lf_black_level, lf_white_level) beyond the file's bits, a mask of another size, a camera raw
@@ -37,16 +40,25 @@ class FolderStore : public LfImageStore {
   void Announce(LfImageId id) const override;
 
  private:
-  Result<void> LoadBy(ImagePart* part, LfImageId id, const PixelRect& rect, LfPixels* pixels) const;
-  std::unique_ptr<ImagePart> TakePart() const;
-  void GiveBack(std::unique_ptr<ImagePart> part) const;
+  // What one load needs, whose memory serves others.
+  struct Loading {
+    ImagePart part;   // stored values
+    LfPixels mosaic;  // before it becomes RGB
+  };
+
+  Result<void> LoadBy(Loading* loading, LfImageId id, const PixelRect& rect,
+                      LfPixels* pixels) const;
+  // Pixels as recorded.
+  Result<void> LoadRecorded(ImagePart* part, LfImageId id, const PixelRect& rect,
+                            LfPixels* pixels) const;
+  std::unique_ptr<Loading> TakeLoading() const;
+  void GiveBack(std::unique_ptr<Loading> loading) const;
 
   const LightField& light_field_;
   const RadianceTables tables_;  // for images without a gain of their own
+  const Mosaics mosaics_;
   mutable std::mutex mutex_;
-  // Stored values of images that were loaded, one for each load at the same time: their memory is
-  // used again.
-  mutable std::vector<std::unique_ptr<ImagePart>> parts_;
+  mutable std::vector<std::unique_ptr<Loading>> loadings_;  // as many as were at the same time
 };
 
 }  // namespace lf

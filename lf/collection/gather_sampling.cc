@@ -1,0 +1,86 @@
+#include "lf/collection/gather_sampling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "lf/camera/distortion.h"
+
+namespace lf {
+namespace {
+
+// Where the LF camera records what the element position sees of the focus plane, inside its image
+// or not; in pixels.
+std::optional<Vec2> RecordedAt(const PinholeCamera& lf_camera, const DistortionMap& map,
+                               const RenderCamera& render_camera, double x, double y) {
+  const std::optional<Vec3> focus_point = FocusPointOfElement(render_camera, x, y);
+  if (!focus_point) return std::nullopt;
+  Vec3 d = *focus_point - lf_camera.CentreWorld();
+  if (render_camera.pinhole.ForwardWorld().dot(d) < 0) d = -d;
+  const std::optional<Vec2> recorded = map.Distort(lf_camera.cam_from_world.rotation * d);
+  if (!recorded) return std::nullopt;
+  return (lf_camera.intrinsics.Matrix() * Vec3(recorded->x(), recorded->y(), 1)).head<2>();
+}
+
+}  // namespace
+
+const char* NameOf(PixelFilter filter) {
+  constexpr const char* kNames[] = {"auto", "nearest", "bilinear", "bicubic"};
+  return kNames[static_cast<int>(filter)];
+}
+
+double Magnification(const PinholeCamera& lf_camera, const RenderCamera& render_camera) {
+  const Intrinsics& k = lf_camera.intrinsics;
+  const Intrinsics& plate = render_camera.pinhole.intrinsics;
+  const DistortionMap map(k.distortion);
+  double densest_held = 0, densest = 0;  // LF pixels per element
+  for (const double v : {0.1, 0.5, 0.9})
+    for (const double u : {0.1, 0.5, 0.9}) {
+      const double x = u * plate.width_px, y = v * plate.height_px;
+      const auto at = [&](double dx, double dy) {
+        return RecordedAt(lf_camera, map, render_camera, x + dx, y + dy);
+      };
+      const auto middle = at(0, 0), left = at(-0.5, 0), right = at(0.5, 0), above = at(0, -0.5),
+                 below = at(0, 0.5);
+      if (!middle || !left || !right || !above || !below) continue;
+      const Vec2 along = *right - *left, down = *below - *above;
+      const double pixels = std::abs(along.x() * down.y() - along.y() * down.x());
+      densest = std::max(densest, pixels);
+      const bool is_held = middle->x() >= 0 && middle->x() < k.width_px && middle->y() >= 0 &&
+                           middle->y() < k.height_px;
+      if (is_held) densest_held = std::max(densest_held, pixels);
+    }
+  const double pixels = densest_held > 0 ? densest_held : densest;
+  return pixels > 0 && std::isfinite(pixels) ? 1 / std::sqrt(pixels) : 1;
+}
+
+GatherSampling SamplingOf(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
+                          PixelFilter filter) {
+  const double magnification = Magnification(lf_camera, render_camera);
+  GatherSampling sampling;
+  sampling.filter = filter;
+  // What is just above a whole number is that number.
+  constexpr double kRounding = 1e-3;
+  if (magnification * kFinerAtMost < 1)
+    sampling.samples =
+        std::min(kMostSamples, static_cast<int>(std::ceil(1 / magnification - kRounding)));
+  if (filter == PixelFilter::kAuto)
+    sampling.filter =
+        sampling.samples < kBilinearFrom ? PixelFilter::kBicubic : PixelFilter::kBilinear;
+  return sampling;
+}
+
+RenderCamera WithFinerPlate(const RenderCamera& render_camera, int samples) {
+  RenderCamera finer = render_camera;
+  Intrinsics& k = finer.pinhole.intrinsics;
+  k.width_px *= samples;
+  k.height_px *= samples;
+  k.fx_px *= samples;
+  k.fy_px *= samples;
+  k.cx_px *= samples;
+  k.cy_px *= samples;
+  k.skew_px *= samples;
+  return finer;
+}
+
+}  // namespace lf
