@@ -331,7 +331,8 @@ lens:
   aperture_diameter: 30
   focus_distance: {1 / (1 / 100 + shift / 768)}
 """)
-        self.run_tool(RENDERER, field, path, "-o", self.folder / "out", "--format", "png")
+        self.run_tool(RENDERER, field, path, "-o", self.folder / "out", "--format", "png",
+                      "--estimator", "nearest", "--lens-weights", "none")
         frame = np.asarray(Image.open(self.folder / "out" / "frame_0001.png")).astype(float) / 255
         # The same in numpy, in linear light.
         total = np.zeros((768, 768, 3))

@@ -59,7 +59,7 @@ FrameLens::FrameLens(const LightField& light_field, const RenderCamera& frame, L
     camera = near.size();
     near.push_back(centres[id]);
   }
-  weights_.emplace(frame, near, kind);
+  weights_.emplace(frame, near, kind, pool);
   // A little more, so that what lies on the rim is inside.
   camera_.aperture = {weights_->reach_w() * (1 + 1e-6), 0, 0};
 }

@@ -14,7 +14,7 @@ namespace {
 
 // Lens points move by no more than this part of their distance from node to node, about.
 constexpr double kStepOfDistance = 1.0 / 3;
-constexpr int kMostNodes = 64;         // along an edge of the plate
+constexpr int kMostNodes = 48;         // along an edge of the plate
 constexpr int kLeastNodeStep_px = 32;  // finer ones would cost more than the rays
 // Cameras that stand in the lens plane but for rounding.
 constexpr double kAtRest = 1e-6;
@@ -102,19 +102,6 @@ double NodePosition(int index, int count, int size_px) {
   return count == 1 ? 0.5 * size_px : static_cast<double>(index) * size_px / (count - 1);
 }
 
-// The node before the middle of a block, and how far it is to the next one, in 1/256.
-struct Place {
-  int node;
-  int fraction;
-};
-
-Place PlaceOf(int block_end, int count, int size_px) {
-  if (count == 1) return {0, 0};
-  const int middle = std::clamp(block_end - kWeightBlock / 2, 0, size_px - 1);
-  const int64_t place = int64_t{256} * middle * (count - 1) / size_px;
-  return {static_cast<int>(place >> 8), static_cast<int>(place & 255)};
-}
-
 }  // namespace
 
 const char* NameOf(LensWeights weights) {
@@ -147,7 +134,7 @@ Vec2 LensPointOfLine(const RenderCamera& frame, const Vec3& centre_world, const 
 }
 
 FrameWeights::FrameWeights(const RenderCamera& frame, std::span<const Vec3> centres_world,
-                           LensWeights kind)
+                           LensWeights kind, ThreadPool& pool)
     : width_px_(frame.pinhole.intrinsics.width_px),
       height_px_(frame.pinhole.intrinsics.height_px),
       nodes_begin_(centres_world.size(), kNone) {
@@ -161,11 +148,13 @@ FrameWeights::FrameWeights(const RenderCamera& frame, std::span<const Vec3> cent
     uncovered_share_ =
         UncoveredShare(PointsAt(frame, centres_world, *focus).points, frame.aperture);
   SetGrid(frame, centres_world, distance);
-  std::vector<Node> nodes;
-  for (int row = 0; row < rows_; ++row)
-    for (int column = 0; column < columns_; ++column)
-      nodes.push_back(MakeNode(frame, centres_world, column, row));
+  std::vector<Node> nodes(static_cast<size_t>(columns_) * rows_);
+  pool.ForEach(nodes.size(), [&](size_t n) {
+    nodes[n] = MakeNode(frame, centres_world, static_cast<int>(n) % columns_,
+                        static_cast<int>(n) / columns_);
+  });
   SetWeights(nodes);
+  SetPlaces();
 }
 
 void FrameWeights::SetGrid(const RenderCamera& frame, std::span<const Vec3> centres_world,
@@ -180,7 +169,7 @@ void FrameWeights::SetGrid(const RenderCamera& frame, std::span<const Vec3> cent
 
 FrameWeights::Node FrameWeights::MakeNode(const RenderCamera& frame,
                                           std::span<const Vec3> centres_world, int column,
-                                          int row) {
+                                          int row) const {
   Node node;
   const std::optional<Vec3> focus = FocusPointOfElement(
       frame, NodePosition(column, columns_, width_px_), NodePosition(row, rows_, height_px_));
@@ -194,8 +183,7 @@ FrameWeights::Node FrameWeights::MakeNode(const RenderCamera& frame,
   if (hat_share_ > 0) mix(HatShares(seen.points, frame.aperture), hat_share_);
   for (size_t k = 0; k < shares.size(); ++k) {
     if (!(shares[k] > kLeastShare)) continue;
-    node.push_back({seen.cameras[k], shares[k]});
-    farthest_w_ = std::max(farthest_w_, seen.points[k].norm());
+    node.push_back({seen.cameras[k], shares[k], seen.points[k].norm()});
   }
   return node;
 }
@@ -210,6 +198,7 @@ void FrameWeights::SetWeights(const std::vector<Node>& nodes) {
   const double scale = kUnit * kMaxWeight / most;
   for (size_t n = 0; n < nodes.size(); ++n)
     for (const Share& share : nodes[n]) {
+      farthest_w_ = std::max(farthest_w_, share.distance_w);
       size_t& begin = nodes_begin_[share.camera];
       if (begin == kNone) {
         begin = weights_.size();
@@ -218,6 +207,21 @@ void FrameWeights::SetWeights(const std::vector<Node>& nodes) {
       weights_[begin + n] = static_cast<uint16_t>(
           std::min(std::lround(share.share * scale), std::lround(kUnit * kMaxWeight)));
     }
+}
+
+void FrameWeights::SetPlaces() {
+  const auto set = [](int count, int size_px, std::vector<Place>* places) {
+    // Blocks begin before the plate and end behind it.
+    places->resize(static_cast<size_t>(size_px) + kWeightBlock + 1);
+    if (count == 1) return;
+    for (size_t end = 0; end < places->size(); ++end) {
+      const int middle = std::clamp(static_cast<int>(end) - kWeightBlock / 2, 0, size_px - 1);
+      const int64_t place = int64_t{256} * middle * (count - 1) / size_px;
+      (*places)[end] = {static_cast<int>(place >> 8), static_cast<int>(place & 255)};
+    }
+  };
+  set(columns_, width_px_, &places_across_);
+  set(rows_, height_px_, &places_down_);
 }
 
 WeightBlocks FrameWeights::BlocksOf(size_t camera) const {
@@ -229,8 +233,8 @@ uint32_t FrameWeights::At(size_t camera, int x, int y) const {
   if (nodes_begin_[camera] == kNone) return 0;
   const uint16_t* const weights = &weights_[nodes_begin_[camera]];
   const WeightBlocks blocks = BlocksOf(camera);
-  const Place h = PlaceOf(blocks.EndX(x), columns_, width_px_);
-  const Place v = PlaceOf(blocks.EndY(y), rows_, height_px_);
+  const Place h = places_across_[blocks.EndX(x)];
+  const Place v = places_down_[blocks.EndY(y)];
   const int right = columns_ > 1 ? 1 : 0, below = rows_ > 1 ? columns_ : 0;
   const uint16_t* const node = weights + v.node * columns_ + h.node;
   const auto between = [](uint64_t a, uint64_t b, int fraction) {

@@ -14,6 +14,7 @@
 #include "lf/camera/ray_weight.h"
 #include "lf/camera/render_camera.h"
 #include "lf/core/geometry.h"
+#include "lf/core/parallel.h"
 
 namespace lf {
 
@@ -37,7 +38,8 @@ class FrameWeights {
  public:
   // centres_world  of the LF cameras whose images may contribute
   // kind           not kNone
-  FrameWeights(const RenderCamera& frame, std::span<const Vec3> centres_world, LensWeights kind);
+  FrameWeights(const RenderCamera& frame, std::span<const Vec3> centres_world, LensWeights kind,
+               ThreadPool& pool);
 
   // Of a ray of the camera's to an element, whose block is one of BlocksOf(camera): 0 (it adds
   // nothing) to kMaxWeight. The largest share of the frame has kMaxWeight, unless it is more than
@@ -71,13 +73,20 @@ class FrameWeights {
   struct Share {
     size_t camera;
     double share;
+    double distance_w;  // of the lens point from the lens centre
   };
   using Node = std::vector<Share>;  // those above 0
+  // Of a block: the node before its middle, and how far it is to the next one, in 1/256.
+  struct Place {
+    int node = 0;
+    int fraction = 0;
+  };
 
   void SetGrid(const RenderCamera& frame, std::span<const Vec3> centres_world, double distance_w);
   Node MakeNode(const RenderCamera& frame, std::span<const Vec3> centres_world, int column,
-                int row);
+                int row) const;
   void SetWeights(const std::vector<Node>& nodes);
+  void SetPlaces();
 
   double hat_share_ = 0;
   double uncovered_share_ = 1;
@@ -85,8 +94,10 @@ class FrameWeights {
   int height_px_;
   int columns_ = 1;
   int rows_ = 1;
-  double farthest_w_ = 0;            // lens point with weight, from a node
-  double step_w_ = 0;                // of lens points from node to node
+  double farthest_w_ = 0;             // lens point with weight, from a node
+  double step_w_ = 0;                 // of lens points from node to node
+  std::vector<Place> places_across_;  // by where the block ends
+  std::vector<Place> places_down_;
   std::vector<size_t> nodes_begin_;  // [camera]: its part of weights_, if it has one
   std::vector<uint16_t> weights_;    // [row][column] of one camera after the other, in 1/256
 };

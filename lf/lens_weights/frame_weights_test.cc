@@ -12,6 +12,11 @@
 namespace lf {
 namespace {
 
+ThreadPool& Pool() {
+  static ThreadPool pool(2);
+  return pool;
+}
+
 // Looks along z from `z`, in focus 2 in front of z = 0.
 RenderCamera Frame(double radius_w, double z = 0) {
   RenderCamera frame;
@@ -74,7 +79,7 @@ TEST(LensPoints, AreWhereLinesMeetTheLens) {
 TEST(FrameWeights, OfCamerasInTheLensPlaneAreConstantAndTheirCells) {
   const RenderCamera frame = Frame(0.05);
   const auto centres = JitteredGrid(10, 0.01, 0.4, 2);
-  const FrameWeights weights(frame, centres, LensWeights::kArea);
+  const FrameWeights weights(frame, centres, LensWeights::kArea, Pool());
   EXPECT_TRUE(weights.is_constant());
   const auto exact = ExactShares(frame, centres, 640, 400);
   const double most = *std::max_element(exact.begin(), exact.end());
@@ -90,7 +95,7 @@ TEST(FrameWeights, OfCamerasInTheLensPlaneAreConstantAndTheirCells) {
 
 TEST(FrameWeights, OfAnEvenGridAreTheLargestThereIs) {
   const auto centres = JitteredGrid(10, 0.01, 0, 0);
-  const FrameWeights weights(Frame(0.05), centres, LensWeights::kArea);
+  const FrameWeights weights(Frame(0.05), centres, LensWeights::kArea, Pool());
   for (size_t i = 0; i < centres.size(); ++i)
     if (centres[i].norm() < 0.04) {
       EXPECT_EQ(weights.At(i, 9, 9), kMaxWeight);
@@ -101,9 +106,9 @@ TEST(FrameWeights, BesideTheLensPlaneAreInterpolatedBetweenNodes) {
   for (const double z : {-0.3, -0.05, 0.02, 0.4}) {
     const RenderCamera frame = Frame(0.06, z);
     const auto centres = JitteredGrid(30, 0.015, 0.3, 3);
-    const FrameWeights weights(frame, centres, LensWeights::kArea);
+    const FrameWeights weights(frame, centres, LensWeights::kArea, Pool());
     EXPECT_FALSE(weights.is_constant());
-    EXPECT_LE(weights.columns(), 64);
+    EXPECT_LE(weights.columns(), 48);
     double squares = 0, error_squares = 0;
     for (int y = 20; y < 800; y += 130)
       for (int x = 20; x < 1280; x += 130) {
@@ -121,7 +126,7 @@ TEST(FrameWeights, BesideTheLensPlaneAreInterpolatedBetweenNodes) {
 TEST(FrameWeights, RaysBeyondTheirReachHaveNone) {
   const RenderCamera frame = Frame(0.06, 0.1);
   const auto centres = JitteredGrid(30, 0.015, 0.3, 4);
-  const FrameWeights weights(frame, centres, LensWeights::kArea);
+  const FrameWeights weights(frame, centres, LensWeights::kArea, Pool());
   for (int y = 0; y < 800; y += 40)
     for (int x = 0; x < 1280; x += 40) {
       const Vec3 focus = *FocusPointOfElement(frame, x + 4, y + 4);
@@ -134,7 +139,7 @@ TEST(FrameWeights, RaysBeyondTheirReachHaveNone) {
 
 TEST(FrameWeights, AreTheSameInBlocksOfEachCamerasOwn) {
   const auto centres = JitteredGrid(10, 0.02, 0.3, 5);
-  const FrameWeights weights(Frame(0.06, 0.2), centres, LensWeights::kArea);
+  const FrameWeights weights(Frame(0.06, 0.2), centres, LensWeights::kArea, Pool());
   size_t shifted = 0;
   for (size_t i = 0; i < centres.size(); i += 7) {
     const WeightBlocks blocks = weights.BlocksOf(i);
@@ -151,7 +156,7 @@ TEST(FrameWeights, OneCameraWithAHugeShareLeavesTheOthersTheirs) {
   std::vector<Vec3> centres = JitteredGrid(10, 0.002, 0.3, 6);  // all in a corner of the lens
   for (Vec3& c : centres) c += Vec3(0.1, 0.1, 0);
   centres.emplace_back(-0.1, -0.1, 0);
-  const FrameWeights weights(Frame(0.2), centres, LensWeights::kArea);
+  const FrameWeights weights(Frame(0.2), centres, LensWeights::kArea, Pool());
   EXPECT_EQ(weights.At(centres.size() - 1, 0, 0), kMaxWeight);
   EXPECT_GE(weights.At(220, 0, 0), 6u);
 }
@@ -160,7 +165,7 @@ TEST(FrameWeights, HatsOfAPinholeGoToTheCamerasAroundIt) {
   RenderCamera frame = Frame(0);
   frame.pinhole.cam_from_world = *LookAlong({0.0005, 0.0005, 0}, Vec3::UnitZ(), -Vec3::UnitY());
   const auto centres = JitteredGrid(5, 0.001, 0, 0);
-  const FrameWeights weights(frame, centres, LensWeights::kHat);
+  const FrameWeights weights(frame, centres, LensWeights::kHat, Pool());
   size_t taking_part = 0;
   for (size_t i = 0; i < centres.size(); ++i) {
     taking_part += weights.TakesPart(i) ? 1 : 0;
@@ -176,8 +181,8 @@ TEST(FrameWeights, AutoGoesFromHatsToCellsAsTheLensOpens) {
   const auto centres = JitteredGrid(12, kSpacing, 0.3, 8);
   const auto total_difference = [&](double diameter, LensWeights a, LensWeights b) {
     const RenderCamera frame = Frame(0.5 * diameter);
-    const auto of_a = SharesOf(FrameWeights(frame, centres, a), centres.size(), 0, 0);
-    const auto of_b = SharesOf(FrameWeights(frame, centres, b), centres.size(), 0, 0);
+    const auto of_a = SharesOf(FrameWeights(frame, centres, a, Pool()), centres.size(), 0, 0);
+    const auto of_b = SharesOf(FrameWeights(frame, centres, b, Pool()), centres.size(), 0, 0);
     double sum = 0;
     for (size_t i = 0; i < centres.size(); ++i) sum += std::abs(of_a[i] - of_b[i]);
     return sum;
@@ -191,7 +196,7 @@ TEST(FrameWeights, AutoGoesFromHatsToCellsAsTheLensOpens) {
   EXPECT_GT(to_cells, 0.02);
   EXPECT_NEAR(to_hats + to_cells, whole, 0.02);
   // A pinhole, too.
-  EXPECT_EQ(FrameWeights(Frame(0), centres, LensWeights::kAuto).hat_share(), 1);
+  EXPECT_EQ(FrameWeights(Frame(0), centres, LensWeights::kAuto, Pool()).hat_share(), 1);
   double last = 1;
   for (double distances = 0; distances < 6; distances += 0.01) {
     const double share = AutoHatShare(distances, 1);
@@ -203,11 +208,11 @@ TEST(FrameWeights, AutoGoesFromHatsToCellsAsTheLensOpens) {
 }
 
 TEST(FrameWeights, NoCamerasAndTiltedHorizonsAreNoTrouble) {
-  EXPECT_TRUE(FrameWeights(Frame(0.1), {}, LensWeights::kArea).is_constant());
+  EXPECT_TRUE(FrameWeights(Frame(0.1), {}, LensWeights::kArea, Pool()).is_constant());
   RenderCamera frame = Frame(0.1, 0.05);
   frame.focus_plane = FocusPlane(frame.pinhole, 1, {RadiansFromDegrees(80), 0});
   const auto centres = JitteredGrid(10, 0.02, 0.2, 7);
-  const FrameWeights weights(frame, centres, LensWeights::kArea);
+  const FrameWeights weights(frame, centres, LensWeights::kArea, Pool());
   const auto takes = [&](size_t i) { return weights.TakesPart(i); };
   size_t count = 0;
   for (size_t i = 0; i < centres.size(); ++i) count += takes(i) ? 1 : 0;

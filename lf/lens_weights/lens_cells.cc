@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "lf/core/check.h"
 #include "lf/lens_weights/lens_cell.h"
@@ -63,6 +64,22 @@ class HatMaker {
   std::vector<double> taken_;
 };
 
+// For a point beside the opening, one near where the opening is nearest to it.
+std::optional<Vec2> PointAtRim(const Vec2& point, std::span<const Vec2> points,
+                               const PointGrid& grid, double radius) {
+  const double distance = point.norm();
+  if (distance <= radius) return std::nullopt;
+  const Vec2 rim = point * (radius / distance);
+  std::optional<Vec2> nearest;
+  for (int ring = 0; ring <= 1; ++ring)
+    grid.ForEachInRing(rim, ring, [&](size_t i) {
+      if (points[i] == point) return;
+      if (!nearest || (points[i] - rim).squaredNorm() < (*nearest - rim).squaredNorm())
+        nearest = points[i];
+    });
+  return nearest;
+}
+
 }  // namespace
 
 std::vector<double> CellShares(std::span<const Vec2> points, const Aperture& aperture) {
@@ -75,9 +92,19 @@ std::vector<double> CellShares(std::span<const Vec2> points, const Aperture& ape
   std::vector<double> shares;
   shares.reserve(points.size());
   for (const Vec2& point : points) {
+    // Most points beside the opening lose all of it to those at its rim.
+    ConvexPolygon around = opening;
+    if (const std::optional<Vec2> rival = PointAtRim(point, points, grid, aperture.radius_w)) {
+      const Vec2 across = *rival - point;
+      around.Clip(across, across.dot(0.5 * (point + *rival)));
+      if (around.empty()) {
+        shares.push_back(0);
+        continue;
+      }
+    }
     int sharing = 0;  // points at this place, itself among them
     const ConvexPolygon cell = CellOf(
-        point, points, grid, opening, [](size_t) {}, [&](size_t) { ++sharing; });
+        point, points, grid, around, [](size_t) {}, [&](size_t) { ++sharing; });
     const double area = is_disk ? cell.AreaInDisk(aperture.radius_w) : cell.Area();
     shares.push_back(area / Area(aperture) / std::max(1, sharing));
   }
