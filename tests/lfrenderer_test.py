@@ -106,6 +106,36 @@ class RendererTest(unittest.TestCase):
                 digests, _ = self.render(field, path, f"{weights}{index}", *chosen, *options)
                 self.assertEqual(digests, expected, options)
 
+    def test_mosaics_become_rgb_unless_they_are_sorted_by_pixels(self):
+        flat = lambda index: np.full((HEIGHT, WIDTH), 120, np.uint8)
+        field = write_field(self.folder / "mosaics", flat, lf_bayer="RGGB", lf_transfer="sRGB")
+        path = write_path(self.folder)
+        for options in ([], ["--estimator", "nearest"]):
+            out = self.folder / ("out" + str(len(options)))
+            result = self.run_renderer(field, path, "-o", out, "--format", "png", *options)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            with Image.open(out / "frame_0001.png") as frame:
+                middle = np.asarray(frame)[20:-20, 20:-20]
+            self.assertTrue((np.abs(middle.astype(int) - 120) <= 1).all())
+        inputs = json.loads((self.folder / "out0" / "report.json").read_text())["inputs"]
+        self.assertEqual((inputs["estimator"], inputs["filter"]), ("bilinear", "auto"))
+
+    def test_auto_weights_say_what_they_are_and_warn(self):
+        field = write_field(self.folder / "field")
+        wide = self.run_renderer(field, write_path(self.folder), "-o", self.folder / "wide")
+        self.assertIn("the area of the lens", wide.stderr)
+        self.assertNotIn("two camera distances", wide.stderr)
+        pinhole = self.run_renderer(field, write_path(self.folder, aperture=0), "-o",
+                                    self.folder / "pinhole")
+        self.assertIn("(hats) in 3", pinhole.stderr)
+        self.assertIn("fewer than 4 LF images", pinhole.stderr)
+        huge = self.run_renderer(field, write_path(self.folder, aperture=0.3), "-o",
+                                 self.folder / "huge")
+        self.assertIn("farther than two camera distances", huge.stderr)
+        counted = self.run_renderer(field, write_path(self.folder), "-o", self.folder / "counted",
+                                    "--stop-when", "samples>=2")
+        self.assertIn("auto: none", counted.stderr)
+
     def test_pinholes_have_hats_but_no_area(self):
         field, path = write_field(self.folder / "field"), write_path(self.folder, aperture=0)
         self.fails(2, ["area", "pinhole", "hat"], field, path, "-o", self.folder / "area",

@@ -30,8 +30,8 @@ const char* NameOf(LensWeights weights);
 
 // What part of kAuto's weights are hats, in [0, 1]: all below kHatsUpTo camera distances of
 // diameter, none above kCellsFrom, smoothly between, so that an aperture may open along a path.
-inline constexpr double kHatsUpTo = 2;
-inline constexpr double kCellsFrom = 4;
+inline constexpr double kHatsUpTo = 1;
+inline constexpr double kCellsFrom = 1.75;
 double AutoHatShare(double diameter_w, double camera_distance_w);
 
 class FrameWeights {

@@ -55,6 +55,17 @@ TEST_F(FrameFileTest, ExrHoldsColoursCountsAndCoverage) {
   }
 }
 
+TEST_F(FrameFileTest, ExrHoldsEffectiveCountsWhereThereAreSome) {
+  DevelopedFrame frame = RandomFrame(11, 6);
+  frame.effective_count = Image<float>(11, 6, 1, 12.5F);
+  const auto path = FramePath(folder_, FrameId{3}, FrameFormat::kExrHalf);
+  ASSERT_TRUE(WriteFrame(path, frame, FrameFormat::kExrHalf, {}));
+  const ImageFileInfo info = ReadImageInfo(path).value();
+  ASSERT_EQ(info.channels, 8);
+  const auto read = std::get<Image<float>>(ReadImage(path).value());
+  EXPECT_EQ(read.at(10, 5, ChannelNamed(info, "effective")), 12.5F);
+}
+
 TEST_F(FrameFileTest, PngHoldsDisplayValuesRoundedToTheNearestStep) {
   const DevelopedFrame frame = RandomFrame(40, 30);
   ASSERT_TRUE(WriteFrame(folder_ / "a.png", frame, FrameFormat::kPng8, {}));

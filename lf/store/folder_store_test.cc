@@ -11,6 +11,7 @@
 #include "lf/imageio/image_file.h"
 #include "lf/imageio/test_dng.h"
 #include "lf/imageio/test_folder.h"
+#include "lf/store/demosaic.h"
 
 namespace lf {
 namespace {
@@ -125,6 +126,48 @@ TEST_F(FolderStoreTest, AMosaicKeepsItsOneChannel) {
   EXPECT_EQ(pixels.bayer, BayerPattern::kGbrg);
   EXPECT_EQ(pixels.radiance.channels(), 1);
   EXPECT_EQ(pixels.radiance.pixels(), stored.pixels());
+}
+
+TEST_F(FolderStoreTest, AMosaicBecomesRgbWhereItIsAskedTo) {
+  Write<uint16_t>("a.png", 1);
+  LightField light_field = OneImage();
+  light_field.encoding.transfer = Transfer::kLinear;
+  light_field.encoding.bayer = BayerPattern::kGbrg;
+  light_field.encoding.white_balance = {2, 1, 1.5};
+  const LfPixels mosaic = Loaded(light_field);
+  LfPixels expected;
+  DemosaicReference(mosaic, kWidth, kHeight, light_field.encoding.white_balance, kWhole, &expected);
+  const FolderStore store(light_field, FolderStore::Mosaics::kToRgb);
+  LfPixels pixels;
+  ASSERT_TRUE(store.Load({0}, kWhole, &pixels));
+  EXPECT_EQ(pixels.bayer, BayerPattern::kNone);
+  EXPECT_EQ(pixels.radiance.pixels(), expected.radiance.pixels());
+  // A part, beyond the image too, is a part of that.
+  ASSERT_TRUE(store.Load({0}, {1, 1, kWidth + 3, kHeight}, &pixels));
+  EXPECT_EQ(pixels.rect, (PixelRect{1, 1, kWidth, kHeight}));
+  for (int y = 1; y < kHeight; ++y)
+    for (int x = 1; x < kWidth; ++x)
+      for (int c = 0; c < 4; ++c)
+        ASSERT_EQ(pixels.radiance.at(x - 1, y - 1, c), expected.radiance.at(x, y, c));
+  ASSERT_TRUE(store.Load({0}, {kWidth + 5, 0, kWidth + 9, 2}, &pixels));
+  EXPECT_TRUE(pixels.rect.empty());
+  // What is no mosaic stays as it is.
+  light_field.encoding.bayer = BayerPattern::kNone;
+  const LfPixels grey = Loaded(light_field);
+  ASSERT_TRUE(FolderStore(light_field, FolderStore::Mosaics::kToRgb).Load({0}, kWhole, &pixels));
+  EXPECT_EQ(pixels.radiance.pixels(), grey.radiance.pixels());
+}
+
+TEST_F(FolderStoreTest, AMosaicOfOneRowIsAnError) {
+  Write<uint16_t>("a.png", 1, kWidth, 1);
+  LightField light_field = OneImage();
+  light_field.intrinsics[0].height_px = 1;
+  light_field.encoding.bayer = BayerPattern::kGbrg;
+  LfPixels pixels;
+  const Result<void> loaded =
+      FolderStore(light_field, FolderStore::Mosaics::kToRgb).Load({0}, kWhole, &pixels);
+  ASSERT_FALSE(loaded);
+  ExpectMentions(loaded.error().message, {"a.png", "x1", "2x2"});
 }
 
 TEST_F(FolderStoreTest, AMosaicWithThreeChannelsIsAnError) {

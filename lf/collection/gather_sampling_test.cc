@@ -1,0 +1,117 @@
+#include "lf/collection/gather_sampling.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lf/camera/testing_scenes.h"
+#include "lf/collection/cubic_weights.h"
+#include "lf/collection/gather.h"
+#include "lf/collection/test_plates.h"
+
+namespace lf {
+namespace {
+
+// LF pixels are so many times as large as elements.
+testing::CameraPair PairOf(double magnification) {
+  testing::CameraPair pair = testing::ParallelPair(3, 2, 0.01, 0.05);
+  const Intrinsics& plate = pair.render_camera.pinhole.intrinsics;
+  // Parallel cameras: the ratio of focal lengths, at any depth.
+  const double focal = plate.fx_px / magnification;
+  const int width = static_cast<int>(plate.width_px / magnification) + 40;
+  const int height = static_cast<int>(plate.height_px / magnification) + 40;
+  pair.lf_camera.intrinsics = {focal, focal, 0.5 * width, 0.5 * height, 0, width, height, {}};
+  return pair;
+}
+
+TEST(GatherSampling, MagnificationIsElementsPerLfPixel) {
+  for (const double magnification : {0.11, 0.5, 0.77, 1.0, 2.5}) {
+    const testing::CameraPair pair = PairOf(magnification);
+    EXPECT_NEAR(Magnification(pair.lf_camera, pair.render_camera), magnification,
+                1e-6 * magnification);
+  }
+  // An LF camera that sees nothing of the frame.
+  testing::CameraPair pair = PairOf(1);
+  pair.lf_camera.cam_from_world.translation += Vec3(1000, 0, 0);
+  EXPECT_NEAR(Magnification(pair.lf_camera, pair.render_camera), 1, 1e-6);
+}
+
+TEST(GatherSampling, TakesAsManySamplesAsLfPixelsAreSmaller) {
+  const auto of = [](double magnification, PixelFilter filter = PixelFilter::kAuto) {
+    const testing::CameraPair pair = PairOf(magnification);
+    return SamplingOf(pair.lf_camera, pair.render_camera, filter);
+  };
+  EXPECT_EQ(of(3).samples, 1);
+  EXPECT_EQ(of(0.81).samples, 1);
+  EXPECT_EQ(of(0.79).samples, 2);
+  EXPECT_EQ(of(0.5).samples, 2);
+  EXPECT_EQ(of(0.49).samples, 3);
+  EXPECT_EQ(of(0.01).samples, kMostSamples);
+  EXPECT_EQ(of(2).filter, PixelFilter::kBicubic);
+  EXPECT_EQ(of(0.5).filter, PixelFilter::kBicubic);
+  EXPECT_EQ(of(0.3).filter, PixelFilter::kBilinear);
+  EXPECT_EQ(of(0.3, PixelFilter::kBicubic).filter, PixelFilter::kBicubic);
+  EXPECT_EQ(of(2, PixelFilter::kNearest).filter, PixelFilter::kNearest);
+}
+
+// Noise of LF pixels much finer than elements averages out: one sample would keep all of it.
+TEST(GatherSampling, FinePixelsAverage) {
+  const testing::CameraPair pair = PairOf(0.25);
+  const LfPixels pixels = testing::NoisePixels(testing::WholeImage(pair), BayerPattern::kNone, 1);
+  SensorPlate plate = testing::PlateFor(pair);
+  ASSERT_GT(GatherReference(pair.lf_camera, pixels, pair.render_camera, &plate), 1000u);
+  double squares = 0, count = 0;
+  for (int y = 0; y < plate.height(); ++y)
+    for (int x = 0; x < plate.width(); ++x) {
+      const ElementSum element = plate.At(x, y, 1);
+      if (element.count == 0) continue;
+      ASSERT_EQ(element.count, 1u);
+      squares += std::pow(static_cast<double>(element.sum) - 32767.5, 2);
+      ++count;
+    }
+  // Uniform noise has 65536 / sqrt(12); 4 x 4 samples have a quarter of that, or less.
+  EXPECT_LT(std::sqrt(squares / count), 65536 / std::sqrt(12.0) / 4 * 1.05);
+}
+
+TEST(CubicWeights, SumToOneAndReproduceParabolas) {
+  for (int step = 0; step <= kCubicSteps; ++step)
+    for (const int bits : {kCubicDownBits, kCubicRightBits}) {
+      const CubicTaps taps = CubicTapsAt(step, bits);
+      EXPECT_EQ(taps[0] + taps[1] + taps[2] + taps[3], 1 << bits);
+      const double t = static_cast<double>(step) / kCubicSteps;
+      double linear = 0, square = 0;
+      for (int i = 0; i < 4; ++i) {
+        linear += taps[i] * (i - 1.0) / (1 << bits);
+        square += taps[i] * (i - 1.0) * (i - 1.0) / (1 << bits);
+      }
+      EXPECT_NEAR(linear, t, 1e-3);
+      EXPECT_NEAR(square, t * t, 3e-3);
+    }
+  EXPECT_EQ(CubicTapsAt(0, 12), (CubicTaps{0, 4096, 0, 0}));
+  EXPECT_EQ(CubicTapsAt(kCubicSteps, 12), (CubicTaps{0, 0, 4096, 0}));
+}
+
+TEST(CubicWeights, ConstantPicturesStayWhatTheyAre) {
+  const testing::CameraPair pair = PairOf(2);
+  for (const uint16_t value : {0, 1, 777, 32768, 65535}) {
+    LfPixels pixels(testing::WholeImage(pair), BayerPattern::kNone);
+    for (int y = 0; y < pixels.rect.height(); ++y)
+      for (int x = 0; x < pixels.rect.width(); ++x)
+        for (int c = 0; c < 3; ++c) pixels.radiance.at(x, y, c) = value;
+    SensorPlate plate = testing::PlateFor(pair);
+    const GatherPlan plan =
+        PlanGather(pair.lf_camera, pair.render_camera, {}, PixelFilter::kBicubic);
+    EXPECT_GT(testing::InTiles(
+                  &plate, testing::GridOf(plate, 64, 16),
+                  [&](size_t /*tile*/, TileSums* sums) { return GatherTile(plan, pixels, sums); }),
+              1000u);
+    for (int y = 0; y < plate.height(); ++y)
+      for (int x = 0; x < plate.width(); ++x) {
+        const ElementSum element = plate.At(x, y, 2);
+        EXPECT_EQ(element.sum, element.count * value);
+      }
+  }
+}
+
+}  // namespace
+}  // namespace lf
