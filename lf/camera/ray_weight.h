@@ -30,24 +30,33 @@ class RayWeights {
  public:
   // The same all over the plate, at most kMaxWeight.
   RayWeights(uint32_t weight = 1) : same_(weight) {}  // NOLINT: a number is such weights
-  // Of the block that ends before (end_x, end_y), at most kMaxWeight.
-  RayWeights(const WeightBlocks& blocks, std::function<uint32_t(int end_x, int end_y)> of_block)
-      : blocks_(blocks), of_block_(std::move(of_block)) {}
+  // At most kMaxWeight, of `count` blocks side by side, the first of which ends before (end_x,
+  // end_y).
+  using RowFunction = std::function<void(int end_x, int end_y, int count, uint8_t* weights)>;
+  RayWeights(const WeightBlocks& blocks, RowFunction of_row)
+      : blocks_(blocks), of_row_(std::move(of_row)) {}
 
-  bool are_same() const { return of_block_ == nullptr; }
+  bool are_same() const { return of_row_ == nullptr; }
   uint32_t same() const { return same_; }
   // The image takes no part.
   bool are_none() const { return are_same() && same_ == 0; }
   const WeightBlocks& blocks() const { return blocks_; }
   // Of element (x, y).
   uint32_t At(int x, int y) const {
-    return are_same() ? same_ : of_block_(blocks_.EndX(x), blocks_.EndY(y));
+    if (are_same()) return same_;
+    uint8_t weight = 0;
+    of_row_(blocks_.EndX(x), blocks_.EndY(y), 1, &weight);
+    return weight;
+  }
+  // Of as many blocks from that of element (x, y) on, side by side; not where are_same().
+  void OfRow(int x, int y, int count, uint8_t* weights) const {
+    of_row_(blocks_.EndX(x), blocks_.EndY(y), count, weights);
   }
 
  private:
   uint32_t same_ = 1;
   WeightBlocks blocks_;
-  std::function<uint32_t(int end_x, int end_y)> of_block_;
+  RowFunction of_row_;
 };
 
 }  // namespace lf

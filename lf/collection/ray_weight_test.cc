@@ -18,7 +18,7 @@ using testing::PlateFor;
 // Of every block at random, 0 among them; in some corners of the plate all the same.
 RayWeights AnyWeights(uint64_t seed) {
   const WeightBlocks blocks = {static_cast<int>(seed % 8), static_cast<int>(seed / 8 % 8)};
-  return RayWeights(blocks, [seed](int x, int y) -> uint32_t {
+  return testing::WeightsByBlock(blocks, [seed](int x, int y) -> uint32_t {
     const auto column = static_cast<uint64_t>(x / kWeightBlock);
     const auto row = static_cast<uint64_t>(y / kWeightBlock);
     if (column < 6 && row < 4) return seed % 4 == 0 ? 0 : kMaxWeight;
@@ -41,7 +41,8 @@ SensorPlate Multiplied(const SensorPlate& plate, const RayWeights& weights) {
 }
 
 TEST(RayWeights, AreThoseOfBlocks) {
-  const RayWeights weights({3, 0}, [](int x, int y) { return static_cast<uint32_t>(10 * x + y); });
+  const RayWeights weights = testing::WeightsByBlock(
+      {3, 0}, [](int x, int y) { return static_cast<uint32_t>(10 * x + y); });
   EXPECT_EQ(weights.At(0, 0), 58u);
   EXPECT_EQ(weights.At(4, 7), 58u);
   EXPECT_EQ(weights.At(5, 7), 138u);

@@ -22,7 +22,7 @@ std::vector<SensorPlate> Collect(const testing::CameraPair& pair, uint64_t seed)
   // All 1, all the same, or by element.
   RayWeights weights(seed % 3 == 0 ? 1 : 1 + static_cast<uint32_t>(seed % kMaxWeight));
   if (seed % 3 == 2)
-    weights = RayWeights({static_cast<int>(seed % 8), 5}, [seed](int x, int y) {
+    weights = testing::WeightsByBlock({static_cast<int>(seed % 8), 5}, [seed](int x, int y) {
       return static_cast<uint32_t>(RandomBits(seed, x, y) % (kMaxWeight + 1));
     });
   SensorPlate plate = PlateFor(pair);

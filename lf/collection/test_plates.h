@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "lf/camera/ray_weight.h"
 #include "lf/camera/testing_scenes.h"
 #include "lf/capture/lf_pixels.h"
 #include "lf/core/random.h"
@@ -32,6 +33,15 @@ inline LfPixels NoisePixels(const PixelRect& rect, BayerPattern bayer, uint64_t 
 inline SensorPlate PlateFor(const CameraPair& pair, uint32_t limit = SensorPlate::kMaxCount) {
   return SensorPlate(pair.render_camera.pinhole.intrinsics.width_px,
                      pair.render_camera.pinhole.intrinsics.height_px, limit);
+}
+
+// of_block(end_x, end_y) of every block.
+template <class OfBlock>
+RayWeights WeightsByBlock(const WeightBlocks& blocks, const OfBlock& of_block) {
+  return RayWeights(blocks, [of_block](int end_x, int end_y, int count, uint8_t* weights) {
+    for (int i = 0; i < count; ++i)
+      weights[i] = static_cast<uint8_t>(of_block(end_x + i * kWeightBlock, end_y));
+  });
 }
 
 inline TileGrid GridOf(const SensorPlate& plate, int tile_width, int tile_height) {

@@ -21,16 +21,18 @@ void TileWeights::Fill(const RayWeights& weights, const PixelRect& tile, int pit
   most_ = 0;
   uint8_t* row = bytes_.data() + kMargin;
   const WeightBlocks& blocks = weights.blocks();
+  const int block_count =
+      (blocks.EndX(tile.x_end - 1) - blocks.EndX(tile.x_begin)) / kWeightBlock + 1;
+  of_blocks_.resize(static_cast<size_t>(block_count));
   for (int y = tile.y_begin; y < tile.y_end;) {
     uint8_t* const first = row;
-    for (int x = tile.x_begin; x < tile.x_end;) {
-      const uint32_t weight = weights.At(x, y);
-      LF_DCHECK(weight <= kMaxWeight);
-      least_ = std::min(least_, weight);
-      most_ = std::max(most_, weight);
+    weights.OfRow(tile.x_begin, y, block_count, of_blocks_.data());
+    int x = tile.x_begin;
+    for (const uint8_t weight : of_blocks_) {
+      least_ = std::min<uint32_t>(least_, weight);
+      most_ = std::max<uint32_t>(most_, weight);
       const int end = std::min(tile.x_end, blocks.EndX(x));
-      std::memset(first + (x - tile.x_begin), static_cast<int>(weight),
-                  static_cast<size_t>(end - x));
+      std::memset(first + (x - tile.x_begin), weight, static_cast<size_t>(end - x));
       x = end;
     }
     const int end = std::min(tile.y_end, blocks.EndY(y));

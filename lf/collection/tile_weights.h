@@ -30,6 +30,7 @@ class TileWeights {
   uint32_t least_ = 0;
   uint32_t most_ = 0;
   std::vector<uint8_t> bytes_;
+  std::vector<uint8_t> of_blocks_;  // of a row of blocks
 };
 
 }  // namespace lf

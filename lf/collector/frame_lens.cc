@@ -70,9 +70,10 @@ RayWeights FrameLens::WeightsOf(LfImageId id) const {
   if (found == cameras_.end() || !weights_->TakesPart(found->second)) return 0;
   const size_t camera = found->second;
   if (weights_->is_constant()) return weights_->At(camera, 0, 0);
-  return RayWeights(weights_->BlocksOf(camera), [this, camera](int end_x, int end_y) {
-    return weights_->At(camera, end_x - 1, end_y - 1);
-  });
+  return RayWeights(weights_->BlocksOf(camera),
+                    [this, camera](int end_x, int end_y, int count, uint8_t* weights) {
+                      weights_->OfRow(camera, end_x, end_y, count, weights);
+                    });
 }
 
 std::optional<FrameLens::Facts> FrameLens::facts() const {

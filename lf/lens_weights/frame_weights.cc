@@ -230,20 +230,32 @@ WeightBlocks FrameWeights::BlocksOf(size_t camera) const {
 }
 
 uint32_t FrameWeights::At(size_t camera, int x, int y) const {
-  if (nodes_begin_[camera] == kNone) return 0;
-  const uint16_t* const weights = &weights_[nodes_begin_[camera]];
   const WeightBlocks blocks = BlocksOf(camera);
-  const Place h = places_across_[blocks.EndX(x)];
-  const Place v = places_down_[blocks.EndY(y)];
+  uint8_t weight = 0;
+  OfRow(camera, blocks.EndX(x), blocks.EndY(y), 1, &weight);
+  return weight;
+}
+
+void FrameWeights::OfRow(size_t camera, int end_x, int end_y, int count, uint8_t* weights) const {
+  if (nodes_begin_[camera] == kNone) {
+    std::fill_n(weights, count, uint8_t{0});
+    return;
+  }
   const int right = columns_ > 1 ? 1 : 0, below = rows_ > 1 ? columns_ : 0;
-  const uint16_t* const node = weights + v.node * columns_ + h.node;
-  const auto between = [](uint64_t a, uint64_t b, int fraction) {
-    return a * static_cast<uint64_t>(256 - fraction) + b * static_cast<uint64_t>(fraction);
+  const Place v = places_down_[end_y];
+  const uint16_t* const upper = &weights_[nodes_begin_[camera]] + v.node * columns_;
+  const uint16_t* const lower = upper + below;
+  const auto between = [](uint32_t a, uint32_t b, int fraction) {
+    return a * static_cast<uint32_t>(256 - fraction) + b * static_cast<uint32_t>(fraction);
   };
-  const uint64_t weight =
-      between(between(node[0], node[right], h.fraction),
-              between(node[below], node[below + right], h.fraction), v.fraction);
-  return static_cast<uint32_t>((weight + (1 << 23)) >> 24);
+  const auto down = static_cast<uint64_t>(v.fraction);
+  for (int i = 0; i < count; ++i) {
+    const Place h = places_across_[end_x + i * kWeightBlock];
+    const uint64_t above = between(upper[h.node], upper[h.node + right], h.fraction);
+    const uint64_t under = between(lower[h.node], lower[h.node + right], h.fraction);
+    const uint64_t weight = above * (256 - down) + under * down;
+    weights[i] = static_cast<uint8_t>((weight + (1 << 23)) >> 24);
+  }
 }
 
 }  // namespace lf

@@ -45,6 +45,8 @@ class FrameWeights {
   // nothing) to kMaxWeight. The largest share of the frame has kMaxWeight, unless it is more than
   // kMostMedians times the middle one: then it is taken for so much.
   uint32_t At(size_t camera, int x, int y) const;
+  // The same of blocks side by side, the first of which ends before (end_x, end_y).
+  void OfRow(size_t camera, int end_x, int end_y, int count, uint8_t* weights) const;
   WeightBlocks BlocksOf(size_t camera) const;
 
   // Whether it has any but 0, on a node.
