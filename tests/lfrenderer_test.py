@@ -127,8 +127,11 @@ class RendererTest(unittest.TestCase):
         self.assertNotIn("two camera distances", wide.stderr)
         pinhole = self.run_renderer(field, write_path(self.folder, aperture=0), "-o",
                                     self.folder / "pinhole")
-        self.assertIn("(hats) in 3", pinhole.stderr)
-        self.assertIn("fewer than 4 LF images", pinhole.stderr)
+        self.assertIn("small lenses, interpolated between the LF images", pinhole.stderr)
+        self.assertNotIn("warning", pinhole.stderr)
+        few = self.run_renderer(field, write_path(self.folder, aperture=0.016), "-o",
+                                self.folder / "few")
+        self.assertIn("fewer than 4 LF images", few.stderr)
         huge = self.run_renderer(field, write_path(self.folder, aperture=0.3), "-o",
                                  self.folder / "huge")
         self.assertIn("farther than two camera distances", huge.stderr)

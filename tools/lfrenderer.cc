@@ -27,7 +27,8 @@ constexpr const char* kExamples = R"(Examples:
   lfrenderer capture/ path.yaml -o frames --stop-when "samples>=16"
 
 DIR receives frame_0001.exr ..., contact_sheet.png and report.json. EXR frames hold linear light
-(R, G, B), the rays of every element (count.R, count.G, count.B) and coverage.
+(R, G, B), the rays of every element (count.R, count.G, count.B; with lens weights the sums of their
+weights), coverage, and with lens weights how many LF images of equal weight there are (effective).
 
 The state of unfinished frames lies in DIR/partial. Ctrl-C (SIGINT), SIGTERM and SIGHUP write it and end
 with exit code 5, SIGUSR1 writes it and goes on; a second Ctrl-C ends at once. --resume gives the same

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstring>
 #include <functional>
 
@@ -41,7 +42,9 @@ void TellLensWeights(const RenderReport& report) {
     ++(share == 0 ? cells : share == 1 ? hats : both);
   }
   if (cells + hats + both == 0) return;
-  if (hats + both == 0)
+  if (cells + both == 0)
+    LogInfo("lens weights: small lenses, interpolated between the LF images around them");
+  else if (hats + both == 0)
     LogInfo("lens weights: LF images count as the area of the lens that each stands for");
   else
     LogInfo(
@@ -65,7 +68,7 @@ void WarnOfFrames(const RenderReport& report, double limit, const Badness& badne
 }
 
 void WarnOfLenses(const RenderReport& report) {
-  constexpr double kFewImages = 4, kMuchUncovered = 0.5;
+  constexpr double kFewImages = 3.95, kMuchUncovered = 0.5;
   WarnOfFrames(
       report, kMuchUncovered, [](const auto& weighed) { return weighed.uncovered_share; },
       [&](size_t count, const FrameReport& worst) {
@@ -77,8 +80,13 @@ void WarnOfLenses(const RenderReport& report) {
             "aperture, or a camera nearer to the middle of the capture, would show the truth",
             count, report.frames.size(), worst.frame.value, 100 * worst.weighed->uncovered_share);
       });
+  // Hats are few by their nature, and frames that nobody sees are black: both are told otherwise.
   WarnOfFrames(
-      report, -kFewImages, [](const auto& weighed) { return -weighed.effective_count; },
+      report, -kFewImages,
+      [](const auto& weighed) {
+        const bool is_told = weighed.hat_share == 1 || weighed.effective_count == 0;
+        return is_told ? -INFINITY : -weighed.effective_count;
+      },
       [&](size_t count, const FrameReport& worst) {
         LogWarning(
             "{} of {} frames are made of fewer than {:.0f} LF images, counted by their weights, "

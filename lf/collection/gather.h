@@ -33,18 +33,16 @@ namespace lf {
 
 // v of the LF image at continuous position (x, y), interpolated in integers: bilinear between the
 // four nearest pixel centres with weights in 1/256, rounded half up, or as cubic_weights.h says.
-// None unless all pixels that take part, and the four nearest, are in the image (of `width_px` x
-// `height_px`) and not masked.
+// None unless the four are in the image (of `width_px` x `height_px`) and not masked; where others
+// of the sixteen are not, the four make the value.
 //   pixels  RGB; must hold them wherever they are in the image
 //   filter  not kAuto
 std::optional<std::array<uint16_t, 3>> InterpolatePixels(
     const LfPixels& pixels, int width_px, int height_px, double x_px, double y_px,
     PixelFilter filter = PixelFilter::kBilinear);
 
-// Whether rays arrive at the four pixel centres around (x, y), and so many more on each side:
-// beyond the fold of a lens none do.
-bool RaysArriveAround(const Intrinsics& k, const DistortionMap& map, double x_px, double y_px,
-                      int outer_pixels = 0);
+// Whether rays arrive at the four pixel centres around (x, y): beyond the fold of a lens none do.
+bool RaysArriveAround(const Intrinsics& k, const DistortionMap& map, double x_px, double y_px);
 
 // Adds one ray to each element that has one in this LF image. Returns how many.
 //   plate   has the size of the render camera's

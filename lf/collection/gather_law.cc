@@ -1,12 +1,11 @@
 #include "lf/collection/gather_law.h"
 
-#include "lf/camera/ideal_pixels.h"
 #include "lf/collection/gather.h"
+#include "lf/collection/gather_sampling.h"
 
 namespace lf {
 
-GatherLaw::GatherLaw(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
-                     PixelFilter filter)
+GatherLaw::GatherLaw(const PinholeCamera& lf_camera, const RenderCamera& render_camera)
     : lf_camera_(lf_camera),
       render_camera_(render_camera),
       centre_(lf_camera.CentreWorld()),
@@ -15,14 +14,8 @@ GatherLaw::GatherLaw(const PinholeCamera& lf_camera, const RenderCamera& render_
       right_(render_camera.pinhole.RightWorld()),
       up_(render_camera.pinhole.UpWorld()),
       aperture_(render_camera.aperture),
-      map_(lf_camera.intrinsics.distortion),
-      outer_pixels_(OuterPixels(filter)),
-      border_px_(0.5 + outer_pixels_) {
-  const Intrinsics& k = lf_camera.intrinsics;
-  if (!k.has_distortion()) return;
-  // What lies farthest from the optical axis loses its rays first.
-  for (const double x : {0.5, k.width_px - 0.5})
-    for (const double y : {0.5, k.height_px - 0.5}) may_lack_rays_ |= !IdealPosition(k, map_, x, y);
+      map_(lf_camera.intrinsics.distortion) {
+  may_lack_rays_ = MayLackRays(lf_camera.intrinsics);
 }
 
 std::optional<Vec3> GatherLaw::Direction(int x, int y) const {
@@ -45,9 +38,8 @@ std::optional<Vec2> GatherLaw::Position(int x, int y) const {
   if (!recorded) return std::nullopt;
   const Intrinsics& k = lf_camera_.intrinsics;
   const Vec2 p = (k.Matrix() * Vec3(recorded->x(), recorded->y(), 1)).head<2>();
-  if (!HasPixels(p.x(), p.y())) return std::nullopt;
-  if (may_lack_rays_ && !RaysArriveAround(k, map_, p.x(), p.y(), outer_pixels_))
-    return std::nullopt;
+  if (!HasFourPixels(k, p.x(), p.y())) return std::nullopt;
+  if (may_lack_rays_ && !RaysArriveAround(k, map_, p.x(), p.y())) return std::nullopt;
   return p;
 }
 

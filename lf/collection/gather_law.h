@@ -8,7 +8,6 @@
 #include "lf/camera/distortion.h"
 #include "lf/camera/pinhole.h"
 #include "lf/camera/render_camera.h"
-#include "lf/collection/gather_sampling.h"
 #include "lf/core/geometry.h"
 
 namespace lf {
@@ -16,24 +15,15 @@ namespace lf {
 class GatherLaw {
  public:
   // render_camera  with the finer plate, where an element's ray is the mean of several
-  GatherLaw(const PinholeCamera& lf_camera, const RenderCamera& render_camera, PixelFilter filter);
+  GatherLaw(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
 
   // The direction, in axes of the LF camera, of the ray that element (x, y) asks for; none if it
   // has no focus point before the lens, or the ray misses the lens.
   std::optional<Vec3> Direction(int x, int y) const;
 
-  // Where the LF camera records it, in pixels; none unless the pixels that the filter wants around
-  // it are in the image and rays arrive there.
+  // Where the LF camera records it, in pixels; none unless the four pixels around are in the image
+  // and rays arrive there.
   std::optional<Vec2> Position(int x, int y) const;
-
-  // Whether the image has the pixels that the filter wants around this position.
-  bool HasPixels(double x_px, double y_px) const {
-    const Intrinsics& k = lf_camera_.intrinsics;
-    return x_px >= border_px_ && x_px < k.width_px - border_px_ && y_px >= border_px_ &&
-           y_px < k.height_px - border_px_;
-  }
-  // So far from the border of the image.
-  double border_px() const { return border_px_; }
 
   // Whether some pixels of the LF image have no ray: then each has to be asked.
   bool may_lack_rays() const { return may_lack_rays_; }
@@ -45,9 +35,12 @@ class GatherLaw {
   Vec3 forward_, right_, up_;
   ApertureTest aperture_;
   DistortionMap map_;
-  int outer_pixels_;
-  double border_px_;
   bool may_lack_rays_ = false;
 };
+
+// Whether the four pixel centres around (x, y) are in the image.
+inline bool HasFourPixels(const Intrinsics& k, double x_px, double y_px) {
+  return x_px >= 0.5 && x_px < k.width_px - 0.5 && y_px >= 0.5 && y_px < k.height_px - 0.5;
+}
 
 }  // namespace lf

@@ -52,16 +52,15 @@ GatherForms MakeForms(const PinholeCamera& lf_camera, const RenderCamera& render
 
 // Conditions for the elements whose forward form has this sign, those of the image but with lens
 // distortion.
-//   border_px  how far from the border of the image rays keep
-std::vector<PixelForm> HalfPlanes(const GatherForms& forms, const Intrinsics& k, double border_px,
+std::vector<PixelForm> HalfPlanes(const GatherForms& forms, const Intrinsics& k,
                                   const Aperture& aperture, int sign) {
   std::vector<PixelForm> half_planes = {-forms.plane, -sign * forms.forward};
   if (!k.has_distortion()) {
     half_planes.push_back(-sign * forms.depth);
-    half_planes.push_back(sign * (border_px * forms.depth - forms.across_x));
-    half_planes.push_back(sign * (forms.across_x - (k.width_px - border_px) * forms.depth));
-    half_planes.push_back(sign * (border_px * forms.depth - forms.across_y));
-    half_planes.push_back(sign * (forms.across_y - (k.height_px - border_px) * forms.depth));
+    half_planes.push_back(sign * (0.5 * forms.depth - forms.across_x));
+    half_planes.push_back(sign * (forms.across_x - (k.width_px - 0.5) * forms.depth));
+    half_planes.push_back(sign * (0.5 * forms.depth - forms.across_y));
+    half_planes.push_back(sign * (forms.across_y - (k.height_px - 0.5) * forms.depth));
   }
   if (aperture.blades > 0)
     for (const ApertureEdge& edge : Edges(aperture))
@@ -77,14 +76,13 @@ class GatherPlanner {
   GatherPlanner(const PinholeCamera& lf_camera, const RenderCamera& finer,
                 const GatherSampling& sampling, GatherPlan memory)
       : k_(lf_camera.intrinsics),
-        law_(lf_camera, finer, sampling.filter),
+        law_(lf_camera, finer),
         forms_(MakeForms(lf_camera, finer)),
         map_(lf_camera.intrinsics.distortion),
         maker_(forms_.across_x, forms_.across_y, forms_.depth),
         plan_(std::move(memory)) {
     for (const int side : {0, 1})
-      rows_.half_planes[side] =
-          HalfPlanes(forms_, k_, law_.border_px(), finer.aperture, side == 0 ? -1 : 1);
+      rows_.half_planes[side] = HalfPlanes(forms_, k_, finer.aperture, side == 0 ? -1 : 1);
     // All rays of a camera in the lens plane cross it at one point: if it is near the rim, the law
     // at the ends of a span decides for them all.
     const bool is_disk = finer.aperture.blades == 0;
@@ -152,8 +150,8 @@ class GatherPlanner {
     const Vec2 base(segment.base_x, segment.base_y);
     const Vec2 low = base + Vec2(x.low, y.low), high = base + Vec2(x.high, y.high);
     if (high.x() < 0 || high.y() < 0 || low.x() > k_.width_px || low.y() > k_.height_px) return;
-    if (!law_.may_lack_rays() && law_.HasPixels(low.x(), low.y()) &&
-        law_.HasPixels(high.x(), high.y())) {
+    if (!law_.may_lack_rays() && HasFourPixels(k_, low.x(), low.y()) &&
+        HasFourPixels(k_, high.x(), high.y())) {
       AppendPart(segment);
       return;
     }

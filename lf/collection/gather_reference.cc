@@ -44,42 +44,50 @@ std::optional<std::array<uint16_t, 3>> InterpolatePixels(const LfPixels& pixels,
                                                          int height_px, double x_px, double y_px,
                                                          PixelFilter filter) {
   LF_DCHECK(pixels.bayer == BayerPattern::kNone);
-  const int outer = OuterPixels(filter);
   const double left = std::floor(x_px - 0.5), top = std::floor(y_px - 0.5);
-  if (!(left >= outer && left + 1 + outer < width_px && top >= outer &&
-        top + 1 + outer < height_px))
-    return std::nullopt;
-  const int column = static_cast<int>(left) - pixels.rect.x_begin;
-  const int row = static_cast<int>(top) - pixels.rect.y_begin;
-  LF_CHECK(column >= outer && column + 1 + outer < pixels.rect.width() && row >= outer &&
-           row + 1 + outer < pixels.rect.height());
-  for (int dy = -outer; dy <= 1 + outer; ++dy)
-    for (int dx = -outer; dx <= 1 + outer; ++dx)
-      if (pixels.IsMasked(column + dx, row + dy)) return std::nullopt;
-  constexpr uint32_t kOne = 256;
-  auto right = static_cast<uint32_t>(std::floor((x_px - 0.5 - left) * kOne + 0.5));
-  auto down = static_cast<uint32_t>(std::floor((y_px - 0.5 - top) * kOne + 0.5));
+  if (!(left >= 0 && left + 1 < width_px && top >= 0 && top + 1 < height_px)) return std::nullopt;
+  // In 1/256, from the first pixel of the image.
+  constexpr int64_t kOne = 256;
+  const auto x = static_cast<int64_t>(std::floor((x_px - 0.5) * kOne + 0.5));
+  const auto y = static_cast<int64_t>(std::floor((y_px - 0.5) * kOne + 0.5));
+  const int image_column = std::min(static_cast<int>(x / kOne), width_px - 2);
+  const int image_row = std::min(static_cast<int>(y / kOne), height_px - 2);
+  auto right = static_cast<uint32_t>(x - kOne * image_column);
+  auto down = static_cast<uint32_t>(y - kOne * image_row);
   if (filter == PixelFilter::kNearest) {
     right = right < kOne / 2 ? 0 : kOne;
     down = down < kOne / 2 ? 0 : kOne;
   }
+  const int column = image_column - pixels.rect.x_begin, row = image_row - pixels.rect.y_begin;
+  LF_CHECK(column >= 0 && column + 1 < pixels.rect.width() && row >= 0 &&
+           row + 1 < pixels.rect.height());
+  // Whether all pixels so many around the four are there.
+  const auto has_all = [&](int outer) {
+    if (column < outer || column + 1 + outer >= pixels.rect.width() || row < outer ||
+        row + 1 + outer >= pixels.rect.height())
+      return false;
+    for (int dy = -outer; dy <= 1 + outer; ++dy)
+      for (int dx = -outer; dx <= 1 + outer; ++dx)
+        if (pixels.IsMasked(column + dx, row + dy)) return false;
+    return true;
+  };
+  if (!has_all(0)) return std::nullopt;
+  const bool is_cubic = filter == PixelFilter::kBicubic && has_all(1);
   std::array<uint16_t, 3> value;
   for (int c = 0; c < 3; ++c) {
     const auto pixel = [&](int dx, int dy) -> uint32_t {
       return pixels.radiance.at(column + dx, row + dy, c);
     };
-    value[c] = filter == PixelFilter::kBicubic ? Bicubic(pixel, right, down)
-                                               : Bilinear(pixel, right, down);
+    value[c] = is_cubic ? Bicubic(pixel, right, down) : Bilinear(pixel, right, down);
   }
   return value;
 }
 
-bool RaysArriveAround(const Intrinsics& k, const DistortionMap& map, double x_px, double y_px,
-                      int outer_pixels) {
+bool RaysArriveAround(const Intrinsics& k, const DistortionMap& map, double x_px, double y_px) {
   const double left = std::floor(x_px - 0.5) + 0.5, top = std::floor(y_px - 0.5) + 0.5;
-  for (int dy = -outer_pixels; dy <= 1 + outer_pixels; ++dy)
-    for (int dx = -outer_pixels; dx <= 1 + outer_pixels; ++dx)
-      if (!IdealPosition(k, map, left + dx, top + dy)) return false;
+  for (const double y : {top, top + 1})
+    for (const double x : {left, left + 1})
+      if (!IdealPosition(k, map, x, y)) return false;
   return true;
 }
 
@@ -89,20 +97,22 @@ uint64_t GatherReference(const PinholeCamera& lf_camera, const LfPixels& pixels,
   const Intrinsics& k = lf_camera.intrinsics;
   const GatherSampling sampling = SamplingOf(lf_camera, render_camera, filter);
   const int samples = sampling.samples;
-  const GatherLaw law(lf_camera, WithFinerPlate(render_camera, samples), sampling.filter);
+  const GatherLaw law(lf_camera, WithFinerPlate(render_camera, samples));
   // The ray of element (x, y).
   const auto ray_of = [&](int x, int y) -> std::optional<std::array<uint16_t, 3>> {
     std::array<uint32_t, 3> sum = {};
+    uint32_t count = 0;
     for (int i = 0; i < samples * samples; ++i) {
       const std::optional<Vec2> p =
           law.Position(x * samples + i % samples, y * samples + i / samples);
-      if (!p) return std::nullopt;
+      if (!p) continue;
       const auto value =
           InterpolatePixels(pixels, k.width_px, k.height_px, p->x(), p->y(), sampling.filter);
-      if (!value) return std::nullopt;
+      if (!value) continue;
       for (int c = 0; c < 3; ++c) sum[c] += (*value)[c];
+      ++count;
     }
-    const auto count = static_cast<uint32_t>(samples * samples);
+    if (count == 0) return std::nullopt;
     std::array<uint16_t, 3> mean;
     for (int c = 0; c < 3; ++c) mean[c] = static_cast<uint16_t>((sum[c] + count / 2) / count);
     return mean;

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "lf/camera/distortion.h"
+#include "lf/camera/ideal_pixels.h"
 
 namespace lf {
 namespace {
@@ -67,7 +68,19 @@ GatherSampling SamplingOf(const PinholeCamera& lf_camera, const RenderCamera& re
   if (filter == PixelFilter::kAuto)
     sampling.filter =
         sampling.samples < kBilinearFrom ? PixelFilter::kBicubic : PixelFilter::kBilinear;
+  if (sampling.filter == PixelFilter::kBicubic && MayLackRays(lf_camera.intrinsics))
+    sampling.filter = PixelFilter::kBilinear;
   return sampling;
+}
+
+bool MayLackRays(const Intrinsics& k) {
+  if (!k.has_distortion()) return false;
+  const DistortionMap map(k.distortion);
+  // What lies farthest from the optical axis loses its rays first.
+  for (const double x : {0.5, k.width_px - 0.5})
+    for (const double y : {0.5, k.height_px - 0.5})
+      if (!IdealPosition(k, map, x, y)) return true;
+  return false;
 }
 
 RenderCamera WithFinerPlate(const RenderCamera& render_camera, int samples) {

@@ -11,7 +11,8 @@ namespace lf {
 //   kNearest   the value of the nearest one
 //   kBilinear  the mean of four
 //   kBicubic   sixteen, by Catmull and Rom's cubics: gives back some of what cameras blur over a
-//              pixel, at three times the cost
+//              pixel, at three times the cost. Where the outer ones are not all in the image and
+//              unmasked, the four.
 //   kAuto      kBicubic, but kBilinear where an element takes kBilinearFrom x kBilinearFrom
 //              samples and more: their mean hides the difference
 enum class PixelFilter { kAuto, kNearest, kBilinear, kBicubic };
@@ -25,7 +26,7 @@ inline constexpr int kBilinearFrom = 3;
 inline constexpr double kFinerAtMost = 1.25;
 inline constexpr int kMostSamples = 16;
 
-// How many pixels around the four nearest ones take part: 1 for kBicubic.
+// How many pixels around the four nearest ones may take part: 1 for kBicubic.
 inline int OuterPixels(PixelFilter filter) { return filter == PixelFilter::kBicubic ? 1 : 0; }
 
 // Elements per LF pixel, along an edge: the square root of the area that an LF pixel covers of the
@@ -33,11 +34,15 @@ inline int OuterPixels(PixelFilter filter) { return filter == PixelFilter::kBicu
 // if it holds none). 1 if nothing can be said.
 double Magnification(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
 
+// Whether some pixels of the image have no ray, as beyond the fold of a lens. Such an image is not
+// read by kBicubic.
+bool MayLackRays(const Intrinsics& k);
+
 // Of one LF image in one frame.
 struct GatherSampling {
   PixelFilter filter = PixelFilter::kBilinear;  // not kAuto
-  // Along each edge of an element: its ray is the mean of samples^2 evenly spaced ones, which all
-  // have to exist. As many as LF pixels are smaller than an element, rounded up, kMostSamples at
+  // Along each edge of an element: its ray is the mean of samples^2 evenly spaced ones, or of those
+  // that there are. As many as LF pixels are smaller than an element, rounded up, kMostSamples at
   // most.
   int samples = 1;
 };

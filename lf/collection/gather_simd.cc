@@ -48,7 +48,7 @@ struct Coordinate {
   hn::Vec<LaneI> weight;
 };
 
-// Finds it within pixels [begin, end), which reach `outer` pixels around those to be found.
+// Finds it within pixels [begin, end), so far from their border as `outer` more taps want.
 template <int kDegree>
 class CoordinateFinder {
  public:
@@ -84,11 +84,10 @@ class CoordinateFinder {
 
 template <int kDegree>
 HWY_ATTR void FindPlaces(const Segment& s, int begin, int count, const PixelRect& rect,
-                         PixelFilter filter, Places* places) {
+                         PixelFilter filter, int outer, Places* places) {
   const LaneF df;
   const LaneI di;
   const hn::RebindToUnsigned<LaneI> du;
-  const int outer = OuterPixels(filter);
   const CoordinateFinder<kDegree> x_finder(s.x_poly, s.base_x, rect.x_begin, rect.x_end, outer);
   const CoordinateFinder<kDegree> y_finder(s.y_poly, s.base_y, rect.y_begin, rect.y_end, outer);
   const auto width = hn::Set(di, rect.width());
@@ -224,14 +223,28 @@ HWY_ATTR HWY_INLINE void AddRay(const Places& places, int i, const uint16_t* val
 
 #endif
 
+// Whether all rays are so far from the border of the pixels that these hold the sixteen around
+// each.
+bool IsInner(const Segment& s, int begin, int count, const PixelRect& rect) {
+  const float t = s.t_begin + static_cast<float>(begin);
+  const auto is_inner = [](const PositionRange& range, int base, int pixel_begin, int pixel_end) {
+    constexpr float kBorder = 1.51F;
+    return static_cast<float>(base - pixel_begin) + range.low >= kBorder &&
+           static_cast<float>(base - pixel_end) + range.high <= -kBorder;
+  };
+  return is_inner(RangeOf(s.x_poly, t, count), s.base_x, rect.x_begin, rect.x_end) &&
+         is_inner(RangeOf(s.y_poly, t, count), s.base_y, rect.y_begin, rect.y_end);
+}
+
 // Elements [begin, begin + count) of the segment; weights and sums from the first one on.
 template <bool kMayBeMasked, bool kIsCubic, class Weights>
 HWY_ATTR uint32_t GatherPart(const Segment& s, int begin, int count, PixelFilter filter,
                              const LfPixels& pixels, const Weights& weights,
                              TileSums::Element* sums) {
   Places places;
+  const bool is_inner = kIsCubic && IsInner(s, begin, count, pixels.rect);
   const auto find_places = s.is_cubic() ? FindPlaces<3> : FindPlaces<5>;
-  find_places(s, begin, count, pixels.rect, filter, &places);
+  find_places(s, begin, count, pixels.rect, filter, is_inner ? 1 : 0, &places);
   const uint16_t* const values = pixels.radiance.row(0);
   const ptrdiff_t row_values = static_cast<ptrdiff_t>(pixels.rect.width()) * LfPixels::kRgbLanes;
   const auto upper = [&](int i) {
@@ -240,31 +253,39 @@ HWY_ATTR uint32_t GatherPart(const Segment& s, int begin, int count, PixelFilter
     return values + static_cast<ptrdiff_t>(places.pixel[i]) * LfPixels::kRgbLanes;
   };
   static const CubicTables* const cubic = new CubicTables;
-  const auto add_ray = [&](int i) HWY_ATTR {
-    if constexpr (kIsCubic)
-      AddCubicRay(*cubic, places.left_right[i] >> 16, places.lower[i],
-                  upper(i) - row_values - LfPixels::kRgbLanes, row_values, weights, i, sums);
-    else
-      AddRay<Weights>(places, i, values, row_values, weights, sums);
+  const auto add_cubic_ray = [&](int i) HWY_ATTR {
+    AddCubicRay(*cubic, places.left_right[i] >> 16, places.lower[i],
+                upper(i) - row_values - LfPixels::kRgbLanes, row_values, weights, i, sums);
   };
   // Rows are too far apart for the processor to foresee, and it waits for few lines at a time: they
   // are asked for one by one.
   constexpr int kRowsAhead = 2;
   constexpr int kLineElements = 8;  // of an LF image, in a cache line
   const auto fetch_ahead = [&](int i) { hwy::Prefetch(upper(i) + (1 + kRowsAhead) * row_values); };
-  if constexpr (kMayBeMasked) {
-    constexpr int kOuter = kIsCubic ? 1 : 0;
-    constexpr int kTaps = 2 + 2 * kOuter;
+  if (kMayBeMasked || (kIsCubic && !is_inner)) {
+    const auto has_all = [&](int i, int outer) {
+      const int x = places.pixel[i] % pixels.rect.width(),
+                y = places.pixel[i] / pixels.rect.width();
+      if (x < outer || x + 1 + outer >= pixels.rect.width() || y < outer ||
+          y + 1 + outer >= pixels.rect.height())
+        return false;
+      const int taps = 2 + 2 * outer;
+      const uint16_t* const ray =
+          upper(i) - outer * (row_values + LfPixels::kRgbLanes) + LfPixels::kRayLane;
+      int unmasked = 0;
+      for (int tap = 0; tap < taps * taps; ++tap)
+        unmasked += ray[tap / taps * row_values + tap % taps * LfPixels::kRgbLanes];
+      return unmasked == taps * taps;
+    };
     uint32_t rays = 0;
     for (int i = 0; i < count; ++i) {
       if (i % kLineElements == 0) fetch_ahead(i);
-      const uint16_t* const first =
-          upper(i) - kOuter * (row_values + LfPixels::kRgbLanes) + LfPixels::kRayLane;
-      int unmasked = 0;
-      for (int tap = 0; tap < kTaps * kTaps; ++tap)
-        unmasked += first[tap / kTaps * row_values + tap % kTaps * LfPixels::kRgbLanes];
-      if (unmasked != kTaps * kTaps) continue;
-      add_ray(i);
+      if (kIsCubic && has_all(i, 1))
+        add_cubic_ray(i);
+      else if (has_all(i, 0))
+        AddRay<Weights>(places, i, values, row_values, weights, sums);
+      else
+        continue;
       ++rays;
     }
     return rays;
@@ -273,12 +294,17 @@ HWY_ATTR uint32_t GatherPart(const Segment& s, int begin, int count, PixelFilter
   for (; i + kLineElements <= count; i += kLineElements) {
     fetch_ahead(i);
     if constexpr (kIsCubic)
-      for (int k = i; k < i + kLineElements; ++k) add_ray(k);
+      for (int k = i; k < i + kLineElements; ++k) add_cubic_ray(k);
     else
       for (int k = i; k < i + kLineElements; k += kRaysAtOnce)
         AddRays(places, k, values, row_values, weights, sums);
   }
-  for (; i < count; ++i) add_ray(i);
+  for (; i < count; ++i) {
+    if constexpr (kIsCubic)
+      add_cubic_ray(i);
+    else
+      AddRay<Weights>(places, i, values, row_values, weights, sums);
+  }
   return static_cast<uint32_t>(count);
 }
 
@@ -313,8 +339,8 @@ HWY_ATTR uint64_t GatherTileBy(const GatherPlan& plan, const LfPixels& pixels,
   return rays;
 }
 
-// Adds the means of a row of elements, rounded half up, each of samples^2 rays that are added up on
-// as many elements of `fine`, if they are all there. Returns how many.
+// Adds the means of a row of elements, rounded half up, each of the up to samples^2 rays that are
+// added up on as many elements of `fine`. Returns how many.
 //
 // Quotients of numbers up to 2^24 are rounded down rightly: those next to an integer are further
 // from it than a float can tell.
@@ -323,16 +349,16 @@ HWY_ATTR uint64_t GatherTileBy(const GatherPlan& plan, const LfPixels& pixels,
 template <class Weights>
 uint64_t AddMeans(const TileSums::Element* fine, int samples, int count, const Weights& weights,
                   TileSums::Element* sums) {
-  const auto whole = static_cast<uint32_t>(samples * samples);
   uint64_t rays = 0;
   for (int i = 0; i < count; ++i, fine += samples) {
     TileSums::Element sum;
     for (int k = 0; k < samples; ++k)
       for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane)
         sum.rgb_rays[lane] += fine[k].rgb_rays[lane];
-    if (sum.rgb_rays[LfPixels::kRayLane] != whole) continue;
+    const uint32_t added = sum.rgb_rays[LfPixels::kRayLane];
+    if (added == 0) continue;
     for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane)
-      sums[i].rgb_rays[lane] += (sum.rgb_rays[lane] + whole / 2) / whole * weights.At(i);
+      sums[i].rgb_rays[lane] += (sum.rgb_rays[lane] + added / 2) / added * weights.At(i);
     ++rays;
   }
   return rays;
@@ -346,17 +372,16 @@ HWY_ATTR uint64_t AddMeans(const TileSums::Element* fine, int samples, int count
   const hn::Full128<uint32_t> du;
   const hn::Full128<int32_t> di;
   const hn::Full128<float> df;
-  const auto whole = hn::Set(di, samples * samples);
-  const auto half = hn::Set(di, samples * samples / 2);
-  const auto divisor = hn::Set(df, static_cast<float>(samples * samples));
   auto rays = hn::Zero(di);  // in the lane of rays
   for (int i = 0; i < count; ++i, fine += samples) {
     auto sum = hn::Load(du, fine[0].rgb_rays);
     for (int k = 1; k < samples; ++k) sum = hn::Add(sum, hn::Load(du, fine[k].rgb_rays));
     const auto rays_and_sums = hn::BitCast(di, sum);
-    const auto quotient = hn::Div(hn::ConvertTo(df, hn::Add(rays_and_sums, half)), divisor);
-    const auto is_whole = hn::Eq(hn::Broadcast<LfPixels::kRayLane>(rays_and_sums), whole);
-    auto mean = hn::IfThenElseZero(is_whole, hn::ConvertTo(di, quotient));
+    const auto added = hn::Broadcast<LfPixels::kRayLane>(rays_and_sums);
+    const auto dividend = hn::Add(rays_and_sums, hn::ShiftRight<1>(added));
+    // Where none is added all lanes are 0.
+    const auto divisor = hn::Max(added, hn::Set(di, 1));
+    auto mean = hn::ConvertTo(di, hn::Div(hn::ConvertTo(df, dividend), hn::ConvertTo(df, divisor)));
     rays = hn::Add(rays, mean);
     if constexpr (!Weights::kIsOne) mean = hn::Mul(mean, hn::BitCast(di, weights.OfPixels(du, i)));
     uint32_t* const lanes = sums[i].rgb_rays;
@@ -367,8 +392,8 @@ HWY_ATTR uint64_t AddMeans(const TileSums::Element* fine, int samples, int count
 
 #endif
 
-// The mean of several rays an element, which all have to exist: those of a row of elements are
-// added up on a row as fine as they are.
+// The mean of several rays an element: those of a row of elements are added up on a row as fine as
+// they are.
 template <class Weights>
 HWY_ATTR uint64_t GatherFinely(const GatherPlan& plan, const LfPixels& pixels,
                                const Weights& weights, uint32_t most_weight, TileSums* sums) {
@@ -435,8 +460,7 @@ uint64_t GatherTile(const GatherPlan& plan, const LfPixels& pixels, TileSums* su
   LF_CHECK(pixels.bayer == BayerPattern::kNone);
   LF_CHECK(sums->rect().x_end <= plan.plate_width && sums->rect().y_end <= plan.plate_height);
   if (plan.segments.empty()) return 0;
-  const int least = 2 + 2 * OuterPixels(plan.sampling.filter);
-  LF_CHECK(pixels.rect.width() >= least && pixels.rect.height() >= least);
+  LF_CHECK(pixels.rect.width() >= 2 && pixels.rect.height() >= 2);
   thread_local TileWeights tile_weights;
   tile_weights.Fill(weights, sums->rect(), sums->stride());
   if (tile_weights.most() == 0) return 0;

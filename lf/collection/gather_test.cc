@@ -143,14 +143,24 @@ TEST(Gather, AWallInFocusReproducesItself) {
     SensorPlate plate = PlateFor(pair);
     const uint64_t accepted = GatherInTilesOf(pair, pixels, 35, &plate);
     EXPECT_GT(accepted, 1200u);
+    size_t tested = 0;
     for (int y = 0; y < plate.height(); ++y)
       for (int x = 0; x < plate.width(); ++x) {
         const ElementSum element = plate.At(x, y, 1);
-        if (element.count == 0) continue;
+        // At the border of the LF image elements are the mean of a part of them.
+        const auto is_seen = [&](int u, int v) {
+          return u >= 0 && v >= 0 && u < plate.width() && v < plate.height() &&
+                 plate.At(u, v, 1).count > 0;
+        };
+        if (element.count == 0 || !is_seen(x - 1, y) || !is_seen(x + 1, y) || !is_seen(x, y - 1) ||
+            !is_seen(x, y + 1))
+          continue;
+        ++tested;
         const Vec3 point = *FocusPointOfElement(pair.render_camera, x + 0.5, y + 0.5);
         // A pixel is 100 units of radiance wide: half a step of the weights, and rounding.
         EXPECT_NEAR(static_cast<double>(element.sum), wall(point), 2.5) << x << ", " << y;
       }
+    EXPECT_GT(tested, 800u);
   }
 }
 
@@ -165,6 +175,43 @@ TEST(Gather, AllFourPixelsMustExistAndBeUnmasked) {
   pixels.Mask(3, 2);
   EXPECT_FALSE(InterpolatePixels(pixels, 8, 6, 4, 3));
   EXPECT_TRUE(InterpolatePixels(pixels, 8, 6, 5, 3));
+}
+
+TEST(Gather, BicubicTakesTheFourWhereTheSixteenAreNot) {
+  const Intrinsics k{100, 100, 4, 3, 0, 8, 6};
+  LfPixels pixels = RandomPixels(k, 3);
+  const auto at = [&](double x, double y, PixelFilter filter) {
+    return InterpolatePixels(pixels, 8, 6, x, y, filter);
+  };
+  const auto is_bilinear = [&](double x, double y) {
+    EXPECT_TRUE(at(x, y, PixelFilter::kBicubic));
+    return at(x, y, PixelFilter::kBicubic) == at(x, y, PixelFilter::kBilinear);
+  };
+  EXPECT_TRUE(is_bilinear(1.2, 3.3));
+  EXPECT_TRUE(is_bilinear(6.7, 3.3));
+  EXPECT_TRUE(is_bilinear(4.2, 5.1));
+  EXPECT_FALSE(is_bilinear(4.2, 3.3));
+  pixels.Mask(2, 1);
+  EXPECT_TRUE(is_bilinear(4.2, 3.3));
+  // Both back ends, with masks and images so small that nothing else is left.
+  for (const int size : {2, 3, 4, 5, 40}) {
+    testing::CameraPair pair = testing::ParallelPair(1, 3, 0.01, 0.05);
+    Intrinsics& small = pair.lf_camera.intrinsics;
+    small = {0.1 * size, 0.1 * size, 0.5 * size, 0.5 * size, 0, size, size, {}};
+    small.fx_px = small.fy_px = 100.0 * size / 200;
+    LfPixels few = RandomPixels(small, static_cast<uint64_t>(size));
+    for (int i = 7; i < size; i += 9) few.Mask(i, i);
+    SensorPlate expected = PlateFor(pair), fast = PlateFor(pair);
+    const uint64_t accepted = GatherReference(pair.lf_camera, few, pair.render_camera, &expected, 1,
+                                              PixelFilter::kBicubic);
+    EXPECT_GT(accepted, 100u) << size;
+    EXPECT_EQ(GatherInTilesOf(pair, few, 9, &fast, PixelFilter::kBicubic), accepted);
+    uint64_t differing = 0;
+    for (int y = 0; y < expected.height(); ++y)
+      for (int x = 0; x < expected.width(); ++x)
+        differing += expected.At(x, y, 1) == fast.At(x, y, 1) ? 0 : 1;
+    EXPECT_LE(differing, accepted / 50);
+  }
 }
 
 TEST(Gather, MaskedPixelsTakeTheRaysAroundThem) {

@@ -1,7 +1,7 @@
 #include "lf/collector/frame_lens.h"
 
 #include <algorithm>
-#include <utility>
+#include <cmath>
 #include <vector>
 
 #include "lf/camera/distortion.h"
@@ -84,9 +84,12 @@ std::optional<FrameLens::Facts> FrameLens::facts() const {
 Image<float> FrameLens::EffectiveCounts() const {
   if (!weights_) return {};
   const Intrinsics& plate = camera_.pinhole.intrinsics;
-  const auto nodes = [](int size) { return std::max(0, size - 2) / kEffectiveStep + 2; };
+  const int step = EffectiveStep();
+  const auto nodes = [step](int size) { return (size + step - 1) / step; };
   Image<double> sums(nodes(plate.width_px), nodes(plate.height_px), 2);
-  const auto element = [](int node, int size) { return std::min(node * kEffectiveStep, size - 1); };
+  const auto element = [step](int node, int size) {
+    return std::min(node * step + step / 2, size - 1);
+  };
   Image<float> counts(sums.width(), sums.height(), 1);
   std::vector<std::optional<Vec3>> focus;
   for (int row = 0; row < sums.height(); ++row)
@@ -114,28 +117,49 @@ Image<float> FrameLens::EffectiveCounts() const {
   return counts;
 }
 
+int FrameLens::EffectiveStep() const {
+  constexpr int kMostStep = 64, kLeastNodes = 8;
+  const Intrinsics& plate = camera_.pinhole.intrinsics;
+  return std::clamp(std::min(plate.width_px, plate.height_px) / kLeastNodes, 1, kMostStep);
+}
+
 Image<float> FrameLens::SpreadOverPlate(const Image<float>& effective_counts) const {
   const Intrinsics& plate = camera_.pinhole.intrinsics;
   Image<float> spread(plate.width_px, plate.height_px);
-  // Of an element: the node before it, and how far it is to the next.
-  const auto place = [](int i, int size) {
-    const int node = std::min(i / kEffectiveStep, (size - 2) / kEffectiveStep);
-    const int begin = node * kEffectiveStep, end = std::min(begin + kEffectiveStep, size - 1);
-    return std::pair(
-        std::max(0, node),
-        end > begin ? static_cast<float>(i - begin) / static_cast<float>(end - begin) : 0.0F);
+  // The node before an element, and how far it is to the next one.
+  struct Place {
+    int node, next;
+    float fraction;
   };
-  for (int y = 0; y < plate.height_px; ++y) {
-    const auto [row, down] = place(y, plate.height_px);
-    for (int x = 0; x < plate.width_px; ++x) {
-      const auto [column, right] = place(x, plate.width_px);
-      const auto along = [&](int r) {
-        return effective_counts.at(column, r) * (1 - right) +
-               effective_counts.at(column + 1, r) * right;
-      };
-      spread.at(x, y) = along(row) * (1 - down) + along(row + 1) * down;
+  const auto places = [step = EffectiveStep()](int size, int count) {
+    std::vector<Place> of_elements;
+    for (int i = 0; i < size; ++i) {
+      const float at =
+          (static_cast<float>(i) - static_cast<float>(step / 2)) / static_cast<float>(step);
+      const int node = std::clamp(static_cast<int>(std::floor(at)), 0, count - 1);
+      of_elements.push_back({node, std::min(node + 1, count - 1),
+                             std::clamp(at - static_cast<float>(node), 0.0F, 1.0F)});
     }
-  }
+    return of_elements;
+  };
+  const std::vector<Place> across = places(plate.width_px, effective_counts.width());
+  const std::vector<Place> down = places(plate.height_px, effective_counts.height());
+  for (int y = 0; y < plate.height_px; ++y)
+    for (int x = 0; x < plate.width_px; ++x) {
+      const Place &h = across[x], &v = down[y];
+      float sum = 0, total = 0;
+      const auto add = [&](int column, int row, float weight) {
+        const float count = effective_counts.at(column, row);
+        if (count == 0) return;
+        sum += weight * count;
+        total += weight;
+      };
+      add(h.node, v.node, (1 - h.fraction) * (1 - v.fraction));
+      add(h.next, v.node, h.fraction * (1 - v.fraction));
+      add(h.node, v.next, (1 - h.fraction) * v.fraction);
+      add(h.next, v.next, h.fraction * v.fraction);
+      spread.at(x, y) = total > 0 ? sum / total : 0;
+    }
   return spread;
 }
 

@@ -41,14 +41,14 @@ class FrameLens {
   };
   std::optional<Facts> facts() const;
 
-  // Of elements 0, kStep, 2 kStep ... and the last one of rows and columns alike: how many LF
-  // images, each as good as any other, would make as little noise, (sum w)^2 / sum w^2 over those
-  // that hold what the element sees; broken images and masks are not known here.  [rows][columns]
-  // Empty without weights.
-  static constexpr int kEffectiveStep = 64;
+  // Of the elements in the middle of squares of EffectiveStep() elements: how many LF images, each
+  // as good as any other, would make as little noise, (sum w)^2 / sum w^2 over those that hold what
+  // the element sees; 0 where none does. Broken images and masks are not known here.
+  // [rows][columns]  Empty without weights.
   Image<float> EffectiveCounts() const;
+  int EffectiveStep() const;
 
-  // The same of every element, interpolated.  [height][width]
+  // The same of every element, interpolated between those that are not 0.  [height][width]
   Image<float> SpreadOverPlate(const Image<float>& effective_counts) const;
 
  private:

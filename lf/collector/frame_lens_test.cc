@@ -120,17 +120,20 @@ TEST(FrameLens, EffectiveCountsAreThoseOfTheWeights) {
     const Image<float> counts = lens.EffectiveCounts();
     const Image<float> spread = lens.SpreadOverPlate(counts);
     ASSERT_EQ(spread.width(), width);
-    EXPECT_EQ(counts.width(), (width - 2) / FrameLens::kEffectiveStep + 2);
+    const int step = lens.EffectiveStep();
+    EXPECT_GE(counts.height(), 8);
+    EXPECT_EQ(counts.width(), (width + step - 1) / step);
     double sum = 0, squares = 0;
     for (uint32_t i = 0; i < field.size(); ++i) {
-      const double weight = lens.WeightsOf(LfImageId{i}).At(0, 0);
+      const double weight = lens.WeightsOf(LfImageId{i}).At(step / 2, step / 2);
       sum += weight;
       squares += weight * weight;
     }
     ASSERT_GT(squares, 0);
     EXPECT_NEAR(counts.at(0, 0), sum * sum / squares, 1e-3);
     EXPECT_EQ(spread.at(0, 0), counts.at(0, 0));
-    EXPECT_EQ(spread.at(width - 1, 0), counts.at(counts.width() - 1, 0));
+    EXPECT_EQ(spread.at(step / 2, step / 2), counts.at(0, 0));
+    EXPECT_NEAR(spread.at(width - 1, 0), counts.at(counts.width() - 1, 0), 1);
     for (int x = 1; x < width; ++x)
       EXPECT_LE(std::abs(spread.at(x, 0) - spread.at(x - 1, 0)), 0.2F * spread.at(x, 0));
   }

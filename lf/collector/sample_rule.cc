@@ -26,8 +26,7 @@ struct Viewer {
 
 // Of all that an element's ray is made of, about.
 double BorderOf(const PinholeCamera& lf_camera, const RenderCamera& camera, PixelFilter filter) {
-  const GatherSampling sampling = SamplingOf(lf_camera, camera, filter);
-  return 0.5 + OuterPixels(sampling.filter) + 0.5 * (sampling.samples - 1);
+  return 0.5 + 0.5 * (SamplingOf(lf_camera, camera, filter).samples - 1);
 }
 
 // Whether the LF image has a ray through X and the lens (doc/ray.md, 2, 3, 5).

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 #include "lf/core/check.h"
@@ -91,11 +92,15 @@ int NodeCount(double movement, double distance, int size_px) {
   return static_cast<int>(std::min(2 + steps, static_cast<double>(most)));
 }
 
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+// Shares up to this one make up a tenth of all. Very many tiny ones, as of cameras at nearly the
+// same place, do not.
+double ShareOfFirstTenth(std::vector<double> shares) {
+  std::sort(shares.begin(), shares.end());
+  const double tenth = 0.1 * std::accumulate(shares.begin(), shares.end(), 0.0);
+  double sum = 0;
+  for (const double share : shares)
+    if ((sum += share) >= tenth) return share;
+  return 0;
 }
 
 double NodePosition(int index, int count, int size_px) {
@@ -193,8 +198,8 @@ void FrameWeights::SetWeights(const std::vector<Node>& nodes) {
   for (const Node& node : nodes)
     for (const Share& share : node) shares.push_back(share.share);
   if (shares.empty()) return;
-  const double most =
-      std::min(*std::max_element(shares.begin(), shares.end()), kMostMedians * Median(shares));
+  const double most = std::min(*std::max_element(shares.begin(), shares.end()),
+                               kMostSmallShares * ShareOfFirstTenth(shares));
   const double scale = kUnit * kMaxWeight / most;
   for (size_t n = 0; n < nodes.size(); ++n)
     for (const Share& share : nodes[n]) {

@@ -43,7 +43,8 @@ class FrameWeights {
 
   // Of a ray of the camera's to an element, whose block is one of BlocksOf(camera): 0 (it adds
   // nothing) to kMaxWeight. The largest share of the frame has kMaxWeight, unless it is more than
-  // kMostMedians times the middle one: then it is taken for so much.
+  // kMostSmallShares times the small ones, those that make up a tenth of the lens: then it is taken
+  // for so much.
   uint32_t At(size_t camera, int x, int y) const;
   // The same of blocks side by side, the first of which ends before (end_x, end_y).
   void OfRow(size_t camera, int end_x, int end_y, int count, uint8_t* weights) const;
@@ -68,7 +69,7 @@ class FrameWeights {
   int columns() const { return columns_; }
   int rows() const { return rows_; }
 
-  static constexpr double kMostMedians = 32;
+  static constexpr double kMostSmallShares = 32;
 
  private:
   static constexpr size_t kNone = SIZE_MAX;

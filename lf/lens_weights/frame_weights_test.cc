@@ -158,7 +158,48 @@ TEST(FrameWeights, OneCameraWithAHugeShareLeavesTheOthersTheirs) {
   centres.emplace_back(-0.1, -0.1, 0);
   const FrameWeights weights(Frame(0.2), centres, LensWeights::kArea, Pool());
   EXPECT_EQ(weights.At(centres.size() - 1, 0, 0), kMaxWeight);
-  EXPECT_GE(weights.At(220, 0, 0), 6u);
+  // Half of the lens belongs to it, the other half to those around the corner of the others.
+  double others = 0;
+  for (size_t i = 0; i + 1 < centres.size(); ++i) others += weights.At(i, 0, 0);
+  EXPECT_NEAR(others / (others + kMaxWeight), 0.5, 0.1);
+}
+
+TEST(FrameWeights, ManyCamerasAtOnePlaceLeaveTheOthersTheirs) {
+  std::vector<Vec3> centres = JitteredGrid(5, 0.01, 0.3, 9);
+  const size_t count = centres.size();
+  const FrameWeights alone(Frame(0.04), centres, LensWeights::kArea, Pool());
+  for (int i = 0; i < 300; ++i) centres.push_back(centres[count / 2] + Vec3(1e-7 * i, 0, 0));
+  const FrameWeights weights(Frame(0.04), centres, LensWeights::kArea, Pool());
+  const auto relative = [&](const FrameWeights& of, size_t i) {
+    uint32_t most = 0;
+    for (size_t k = 0; k < count; ++k)
+      if (k != count / 2) most = std::max(most, of.At(k, 0, 0));
+    return static_cast<double>(of.At(i, 0, 0)) / most;
+  };
+  for (size_t i = 0; i < count; ++i) {
+    if (i != count / 2) {
+      EXPECT_NEAR(relative(weights, i), relative(alone, i), 0.02) << i;
+    }
+  }
+}
+
+// Weights that a trace of hats gives to many more cameras do not count.
+TEST(FrameWeights, AutoIsSteadyWhereTheLastHatsGo) {
+  constexpr double kSpacing = 0.01;
+  const auto centres = JitteredGrid(6, kSpacing, 0.3, 10);
+  const auto shares = [&](double distances) {
+    return SharesOf(
+        FrameWeights(Frame(0.5 * distances * kSpacing), centres, LensWeights::kAuto, Pool()),
+        centres.size(), 0, 0);
+  };
+  std::vector<double> last = shares(1.2);
+  for (double distances = 1.21; distances < 2.5; distances += 0.01) {
+    const std::vector<double> now = shares(distances);
+    double difference = 0;
+    for (size_t i = 0; i < now.size(); ++i) difference += std::abs(now[i] - last[i]);
+    EXPECT_LT(difference, 0.06) << distances;
+    last = now;
+  }
 }
 
 TEST(FrameWeights, HatsOfAPinholeGoToTheCamerasAroundIt) {

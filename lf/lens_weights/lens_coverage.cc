@@ -2,24 +2,57 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "lf/lens_weights/point_grid.h"
 
 namespace lf {
+namespace {
+
+// One of those that are near each other beside how far points are apart: a camera on a tripod is
+// recorded many times, and trembles.
+std::vector<Vec2> OneOfEachPlace(std::span<const Vec2> points, double distance) {
+  constexpr double kSamePlace = 1.0 / 16;
+  std::vector<Vec2> kept;
+  std::set<std::pair<int64_t, int64_t>> taken;
+  for (const Vec2& point : points) {
+    const Vec2 place = point / (kSamePlace * distance);
+    if (taken.emplace(std::llround(place.x()), std::llround(place.y())).second)
+      kept.push_back(point);
+  }
+  return kept;
+}
+
+// Distance to the nearest neighbour, the middle one by the area that it stands for: cameras that
+// crowd in a corner do not decide. 0 without two points.
+double DistanceOfMost(const std::vector<Vec2>& points) {
+  const PointGrid grid(points);
+  std::vector<double> distances;
+  double area = 0;
+  for (const Vec2& point : points) {
+    const double distance = grid.DistanceToNearest(point, true);
+    if (!std::isfinite(distance)) continue;
+    distances.push_back(distance);
+    area += distance * distance;
+  }
+  std::sort(distances.begin(), distances.end());
+  double sum = 0;
+  for (const double distance : distances)
+    if ((sum += distance * distance) >= 0.5 * area) return distance;
+  return 0;
+}
+
+}  // namespace
 
 double UncoveredShare(std::span<const Vec2> points, const Aperture& aperture) {
   constexpr int kSamples = 256;
   const PointGrid grid(points);
-  std::vector<double> distances;
-  for (const Vec2& point : points) {
-    const double distance = grid.DistanceToNearest(point, true);
-    if (std::isfinite(distance)) distances.push_back(distance);
-  }
-  if (distances.empty()) return 1;
-  const auto middle = distances.begin() + static_cast<ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  const double far = kFarDistances * *middle;
+  const double distance = DistanceOfMost(OneOfEachPlace(points, grid.bucket_size()));
+  if (distance == 0) return 1;
+  const double far = kFarDistances * distance;
   const std::vector<Vec2> places = SampleLens(aperture, aperture.radius_w > 0 ? kSamples : 1);
   const auto uncovered = std::count_if(places.begin(), places.end(), [&](const Vec2& place) {
     return grid.DistanceToNearest(place) > far;

@@ -42,6 +42,15 @@ TEST(LensCoverage, CamerasRecordedTwiceDoNotMakeDistancesSmaller) {
   const std::vector<Vec2> again = points;
   points.insert(points.end(), again.begin(), again.end());
   EXPECT_EQ(UncoveredShare(points, {1, 0, 0}), 0);
+  // Nor where they tremble, or where a pause has very many, or where some crowd.
+  for (size_t i = again.size(); i < points.size(); ++i) points[i].x() += 1e-5;
+  EXPECT_EQ(UncoveredShare(points, {1, 0, 0}), 0);
+  points = again;
+  for (int i = 0; i < 500; ++i) points.emplace_back(0.3 + 1e-7 * i, 0.2);
+  EXPECT_EQ(UncoveredShare(points, {1, 0, 0}), 0);
+  points = again;
+  for (const Vec2& point : Grid(15, 0.02, {0.3, 0.3})) points.push_back(point);
+  EXPECT_EQ(UncoveredShare(points, {1, 0, 0}), 0);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <memory>
 #include <optional>
 
@@ -30,8 +31,12 @@ bool IsExr(FrameFormat format) {
   return format == FrameFormat::kExrHalf || format == FrameFormat::kExrFloat;
 }
 
-double Median(const LargeVector<float>& values) {
-  std::vector<float> sorted(values.begin(), values.end());
+// Of those that are not 0; 0 if all are.
+double MedianOfSeen(const LargeVector<float>& values) {
+  std::vector<float> sorted;
+  std::copy_if(values.begin(), values.end(), std::back_inserter(sorted),
+               [](float value) { return value > 0; });
+  if (sorted.empty()) return 0;
   const auto middle = sorted.begin() + static_cast<ptrdiff_t>(sorted.size() / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
   return *middle;
@@ -57,7 +62,7 @@ Result<FrameReport> FrameOutput::Write(FrameId frame, const FrameRays& rays, con
   report.camera = InputsOfCamera(frame, camera);
   if (const std::optional<FrameLens::Facts> facts = lens.facts()) {
     const Image<float> counts = lens.EffectiveCounts();
-    report.weighed = {Median(counts.pixels()), facts->hat_share, facts->uncovered_share};
+    report.weighed = {MedianOfSeen(counts.pixels()), facts->hat_share, facts->uncovered_share};
     if (IsExr(options_.format)) developed.effective_count = lens.SpreadOverPlate(counts);
   }
   report.develop_s =

@@ -38,7 +38,7 @@ struct FrameReport {
   RunInputs camera;                     // InputsOfCamera()
   // With lens weights (then counts are sums of weights).
   struct Weighed {
-    double effective_count = 0;  // median over the frame (collector/frame_lens.h)
+    double effective_count = 0;  // median over what LF images see (collector/frame_lens.h)
     double hat_share = 0;        // the part of hats in the weights
     double uncovered_share = 0;  // of the opening (lens_weights/lens_coverage.h)
   };
