@@ -168,11 +168,13 @@ int main(int argc, char** argv) {
     LF_RETURN_IF_ERROR(CheckAvailable("--mode", arguments.mode, {"collect"}));
     LF_RETURN_IF_ERROR(
         CheckAvailable("--estimator", arguments.estimator, {"auto", "nearest", "bilinear"}));
-    LF_ASSIGN_OR_RETURN(const lf::LightField light_field, arguments.light_field.Open());
+    LF_ASSIGN_OR_RETURN(lf::LightField light_field, arguments.light_field.Open());
     LF_ASSIGN_OR_RETURN(const lf::CameraPath path,
                         lf::ReadPathYaml(arguments.path, light_field.unit_m));
     LF_ASSIGN_OR_RETURN(lf::RenderOptions options, MakeOptions(arguments, program, path));
     options.signals = &signals;
+    if (options.reading.estimator == lf::Estimator::kBilinear)
+      lf::MakeRoomForUndershoot(&light_field.encoding);
     lf::ThreadPool pool(program.common().threads);
     // What is known beforehand: every pixel of a needed rectangle is tried as a ray, or read.
     const char* unit = options.reading.estimator == lf::Estimator::kNearest ? "rays" : "px";

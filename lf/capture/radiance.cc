@@ -41,6 +41,10 @@ double RadianceOf(const RadianceEncoding& encoding, double x) {
 
 }  // namespace
 
+void MakeRoomForUndershoot(RadianceEncoding* encoding) {
+  encoding->pedestal = std::max(encoding->pedestal, kUndershootPedestal);
+}
+
 const char* NameOf(BayerPattern bayer) { return kBayerNames[static_cast<int>(bayer)]; }
 
 std::optional<BayerPattern> BayerPatternOf(const std::string& name) {

@@ -41,6 +41,12 @@ struct RadianceEncoding {
   double Scale() const { return (65535 - pedestal) / max_radiance; }
 };
 
+// Bicubic interpolation and demosaicking undershoot beside bright lights, as they overshoot on
+// them: clipped at no light, dark surroundings of small lights would turn grey. Raises the pedestal
+// to kUndershootPedestal, which leaves room for a fifteenth of max_radiance below black.
+inline constexpr double kUndershootPedestal = 4096;
+void MakeRoomForUndershoot(RadianceEncoding* encoding);
+
 // "RGGB", ... as in lf_bayer, and back; "" for kNone, and none for other words.
 const char* NameOf(BayerPattern bayer);
 std::optional<BayerPattern> BayerPatternOf(const std::string& name);

@@ -146,5 +146,18 @@ TEST(DefaultMaxRadiance, LeavesRoomForHighlightsInFloatFiles) {
   EXPECT_EQ(DefaultMaxRadiance(Names{}), 1);
 }
 
+TEST(RadianceTable, RoomForUndershootIsNeverLess) {
+  RadianceEncoding encoding;
+  encoding.max_radiance = 4;
+  MakeRoomForUndershoot(&encoding);
+  EXPECT_EQ(encoding.pedestal, kUndershootPedestal);
+  EXPECT_EQ(QuantizeRadiance(encoding, 0, 1), kUndershootPedestal);
+  EXPECT_EQ(QuantizeRadiance(encoding, 4, 1), 65535);
+  EXPECT_GT(QuantizeRadiance(encoding, -4.0 / 15.1, 1), 0);
+  encoding.pedestal = 9000;
+  MakeRoomForUndershoot(&encoding);
+  EXPECT_EQ(encoding.pedestal, 9000);
+}
+
 }  // namespace
 }  // namespace lf
