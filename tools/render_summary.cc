@@ -74,8 +74,8 @@ void WarnOfLenses(const RenderReport& report) {
       [&](size_t count, const FrameReport& worst) {
         LogWarning(
             "in {} of {} frames half of the lens and more is farther than two camera distances "
-            "from "
-            "every LF camera, most of all in frame {}: {:.0f} %. What was not recorded is stood "
+            "from every LF camera, most of all in frame {}: {:.0f} %. What was not recorded is "
+            "stood "
             "for by the LF images at the border of the capture: bokeh has their shape. A smaller "
             "aperture, or a camera nearer to the middle of the capture, would show the truth",
             count, report.frames.size(), worst.frame.value, 100 * worst.weighed->uncovered_share);

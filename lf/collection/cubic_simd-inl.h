@@ -44,6 +44,11 @@ struct CubicTables {
   }
 };
 
+inline const CubicTables& TablesOfCubics() {
+  static const CubicTables tables;
+  return tables;
+}
+
 #if HWY_TARGET == HWY_SCALAR
 
 // The sixteen pixels from `first` on; steps right and down of the inner four.

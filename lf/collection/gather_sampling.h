@@ -26,9 +26,6 @@ inline constexpr int kBilinearFrom = 3;
 inline constexpr double kFinerAtMost = 1.25;
 inline constexpr int kMostSamples = 16;
 
-// How many pixels around the four nearest ones may take part: 1 for kBicubic.
-inline int OuterPixels(PixelFilter filter) { return filter == PixelFilter::kBicubic ? 1 : 0; }
-
 // Elements per LF pixel, along an edge: the square root of the area that an LF pixel covers of the
 // plate, where it is smallest of nine places of the plate that the LF image holds (or of all nine,
 // if it holds none). 1 if nothing can be said.

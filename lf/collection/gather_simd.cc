@@ -48,15 +48,13 @@ struct Coordinate {
   hn::Vec<LaneI> weight;
 };
 
-// Finds it within pixels [begin, end), so far from their border as `outer` more taps want.
+// Finds it within pixels [begin, end).
 template <int kDegree>
 class CoordinateFinder {
  public:
   HWY_ATTR HWY_INLINE CoordinateFinder(const float (&polynomial)[Segment::kTerms], int32_t base,
-                                       int begin, int end, int outer)
-      : base_((base - begin) * kOne - std::bit_cast<int32_t>(kWhole)),
-        first_(outer),
-        last_(end - begin - 1 - outer) {
+                                       int begin, int end)
+      : base_((base - begin) * kOne - std::bit_cast<int32_t>(kWhole)), last_(end - begin - 1) {
     // In 1/256 from the centre of pixel `begin`, rounded half up; multiplying by 256 is exact.
     for (int power = 0; power < Segment::kTerms; ++power)
       polynomial_[power] = polynomial[power] * kOne;
@@ -69,8 +67,7 @@ class CoordinateFinder {
     const auto whole = hn::BitCast(di, hn::Add(hn::Floor(place), hn::Set(LaneF(), kWhole)));
     const auto found = hn::Add(whole, hn::Set(di, base_));
     // What rounding has sent beyond the pixels is on their border.
-    const auto position =
-        hn::Min(hn::Max(found, hn::Set(di, first_ * kOne)), hn::Set(di, last_ * kOne));
+    const auto position = hn::Min(hn::Max(found, hn::Zero(di)), hn::Set(di, last_ * kOne));
     const auto pixel = hn::Min(hn::ShiftRight<kWeightBits>(position), hn::Set(di, last_ - 1));
     return {pixel, hn::Sub(position, hn::ShiftLeft<kWeightBits>(pixel))};
   }
@@ -78,18 +75,17 @@ class CoordinateFinder {
  private:
   float polynomial_[Segment::kTerms];
   int32_t base_;  // less the bits of kWhole
-  int32_t first_;
   int32_t last_;
 };
 
 template <int kDegree>
 HWY_ATTR void FindPlaces(const Segment& s, int begin, int count, const PixelRect& rect,
-                         PixelFilter filter, int outer, Places* places) {
+                         PixelFilter filter, Places* places) {
   const LaneF df;
   const LaneI di;
   const hn::RebindToUnsigned<LaneI> du;
-  const CoordinateFinder<kDegree> x_finder(s.x_poly, s.base_x, rect.x_begin, rect.x_end, outer);
-  const CoordinateFinder<kDegree> y_finder(s.y_poly, s.base_y, rect.y_begin, rect.y_end, outer);
+  const CoordinateFinder<kDegree> x_finder(s.x_poly, s.base_x, rect.x_begin, rect.x_end);
+  const CoordinateFinder<kDegree> y_finder(s.y_poly, s.base_y, rect.y_begin, rect.y_end);
   const auto width = hn::Set(di, rect.width());
   // Added before the weight is cut to kOne or 0.
   const bool is_nearest = filter == PixelFilter::kNearest;
@@ -242,9 +238,8 @@ HWY_ATTR uint32_t GatherPart(const Segment& s, int begin, int count, PixelFilter
                              const LfPixels& pixels, const Weights& weights,
                              TileSums::Element* sums) {
   Places places;
-  const bool is_inner = kIsCubic && IsInner(s, begin, count, pixels.rect);
   const auto find_places = s.is_cubic() ? FindPlaces<3> : FindPlaces<5>;
-  find_places(s, begin, count, pixels.rect, filter, is_inner ? 1 : 0, &places);
+  find_places(s, begin, count, pixels.rect, filter, &places);
   const uint16_t* const values = pixels.radiance.row(0);
   const ptrdiff_t row_values = static_cast<ptrdiff_t>(pixels.rect.width()) * LfPixels::kRgbLanes;
   const auto upper = [&](int i) {
@@ -252,9 +247,8 @@ HWY_ATTR uint32_t GatherPart(const Segment& s, int begin, int count, PixelFilter
               places.pixel[i] < pixels.rect.width() * (pixels.rect.height() - 1) - 1);
     return values + static_cast<ptrdiff_t>(places.pixel[i]) * LfPixels::kRgbLanes;
   };
-  static const CubicTables* const cubic = new CubicTables;
   const auto add_cubic_ray = [&](int i) HWY_ATTR {
-    AddCubicRay(*cubic, places.left_right[i] >> 16, places.lower[i],
+    AddCubicRay(TablesOfCubics(), places.left_right[i] >> 16, places.lower[i],
                 upper(i) - row_values - LfPixels::kRgbLanes, row_values, weights, i, sums);
   };
   // Rows are too far apart for the processor to foresee, and it waits for few lines at a time: they
@@ -262,7 +256,7 @@ HWY_ATTR uint32_t GatherPart(const Segment& s, int begin, int count, PixelFilter
   constexpr int kRowsAhead = 2;
   constexpr int kLineElements = 8;  // of an LF image, in a cache line
   const auto fetch_ahead = [&](int i) { hwy::Prefetch(upper(i) + (1 + kRowsAhead) * row_values); };
-  if (kMayBeMasked || (kIsCubic && !is_inner)) {
+  if (kMayBeMasked || (kIsCubic && !IsInner(s, begin, count, pixels.rect))) {
     const auto has_all = [&](int i, int outer) {
       const int x = places.pixel[i] % pixels.rect.width(),
                 y = places.pixel[i] / pixels.rect.width();
