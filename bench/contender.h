@@ -35,7 +35,8 @@ class OurKernel : public Contender {
 };
 
 // The contenders keep a reference to the case.
-std::unique_ptr<OurKernel> MakeOurKernel(const KernelCase& kernel_case);
+//   is_weighed  every 8 x 8 elements weigh the rays of each LF image differently
+std::unique_ptr<OurKernel> MakeOurKernel(const KernelCase& kernel_case, bool is_weighed = false);
 
 // The law asked of every pixel (or element), in double precision.
 std::unique_ptr<Contender> MakeReference(const KernelCase& kernel_case);

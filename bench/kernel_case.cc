@@ -161,6 +161,8 @@ KernelCase MakeCase(const CaseSpec& spec) {
       spec.estimator == Estimator::kBilinear ? PixelReach::kNeighbours : PixelReach::kOwn;
   for (const PinholeCamera& camera : kernel_case.cameras) {
     kernel_case.images.push_back(Photograph(kernel_case, camera, table));
+    if (spec.filter == PixelFilter::kMosaic)
+      kernel_case.images.back().recorded = BayerPattern::kRggb;
     kernel_case.rects.push_back(ContributingRect(camera, frame, cells, reach));
     LF_CHECK(!kernel_case.rects.back().empty());
   }
@@ -212,9 +214,11 @@ std::vector<CaseSpec> AllCases() {
   };
   gather("bilinear");
   gather("bicubic").filter = PixelFilter::kBicubic;
+  gather("mosaic").filter = PixelFilter::kMosaic;
   gather("bilinear_0.5").magnification = 0.5;
   for (CaseSpec& spec : cases) {
-    for (const char* name : {"disk", "separable", "distortion_phone", "rgb", "bilinear", "bicubic"})
+    for (const char* name :
+         {"disk", "separable", "distortion_phone", "rgb", "bilinear", "bicubic", "mosaic"})
       spec.every_target |= spec.name == name;
     spec.peer_image_count = std::min(spec.peer_image_count, spec.image_count);
   }

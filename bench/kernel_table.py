@@ -46,13 +46,20 @@ def ratios(contenders, peer, ours="ours"):
     return [a / b for a, b in zip(contenders[peer], contenders[ours])]
 
 
+def weighed(contenders):
+    """what other lens weights for every few elements cost"""
+    if "ours_weighed" not in contenders:
+        return ""
+    return f"{statistics.median(ratios(contenders, 'ours_weighed')) - 1:+.0%}"
+
+
 def rows(head, lines):
     return ["| " + " | ".join(line) + " |" for line in [head, ["---"] * len(head)] + lines]
 
 
 def table(cases):
-    return rows(["case", "ns/ray"] + [f"x {text}" for text in PEERS.values()],
-                [[case, spread(contenders["ours"], 2)] +
+    return rows(["case", "ns/ray", "weighed"] + [f"x {text}" for text in PEERS.values()],
+                [[case, spread(contenders["ours"], 2), weighed(contenders)] +
                  [spread(ratios(contenders, peer), 1) for peer in PEERS]
                  for case, contenders in cases.items()])
 
@@ -108,6 +115,10 @@ def goals(record):
         goal("bilinear >= 75 dB from the reference", f"{same['psnr_db']:.1f}", same["psnr_db"] >= 75)
         share = same["rays_in_other_elements"]
         goal("bilinear accepts the rays of the reference", f"{share:.1e} others", share == 0)
+    for case in ("bilinear", "bicubic", "mosaic"):
+        if "ours_weighed" in cases.get(case, {}):
+            share = statistics.median(ratios(cases[case], "ours_weighed"))
+            goal(f"{case}, weighed within 30% of unweighed", f"{share - 1:+.0%}", share <= 1.3)
     for case in ("disk", "bilinear"):
         if case in cases:
             value = statistics.median(ratios(cases[case], "opencv", "thesis"))

@@ -7,8 +7,10 @@
 
 #include "bench/contender.h"
 
+#include "lf/camera/ray_weight.h"
 #include "lf/collection/gather.h"
 #include "lf/collection/scatter.h"
+#include "lf/core/random.h"
 #include "lf/plate/sensor_plate.h"
 #include "lf/plate/tile_sums.h"
 
@@ -29,13 +31,28 @@ Picture PictureOf(const SensorPlate& plate) {
   return picture;
 }
 
+// Other weights in each block of each LF image, as many large as small ones.
+RayWeights SomeWeights(uint64_t image) {
+  const WeightBlocks blocks{static_cast<int>(image % kWeightBlock), 0};
+  return RayWeights(blocks, [image](int end_x, int end_y, int count, uint8_t* weights) {
+    for (int i = 0; i < count; ++i)
+      weights[i] = static_cast<uint8_t>(
+          1 + RandomBits(image, static_cast<uint64_t>(end_x) + static_cast<uint64_t>(i),
+                         static_cast<uint64_t>(end_y)) %
+                  kMaxWeight);
+  });
+}
+
 class FastKernel final : public OurKernel {
  public:
-  explicit FastKernel(const KernelCase& kernel_case)
+  FastKernel(const KernelCase& kernel_case, bool is_weighed)
       : case_(kernel_case),
+        weights_(static_cast<size_t>(kernel_case.spec.image_count)),
         plate_(kernel_case.spec.plate_width, kernel_case.spec.plate_height),
         grid_(TileSums::GridOf(plate_.width(), plate_.height())),
-        tiles_(CutIntoTiles(&plate_, grid_)) {}
+        tiles_(CutIntoTiles(&plate_, grid_)) {
+    for (size_t i = 0; is_weighed && i < weights_.size(); ++i) weights_[i] = SomeWeights(i);
+  }
 
   void Collect(int image_count) override {
     const auto count = static_cast<size_t>(image_count);
@@ -47,7 +64,7 @@ class FastKernel final : public OurKernel {
         plan = PlanGather(case_.cameras[i], case_.frame, std::move(plan), case_.spec.filter);
       }
       CollectTiles(count, [&](size_t i, size_t /*tile*/) {
-        return GatherTile(gather_plans_[i], case_.images[i], &sums_);
+        return GatherTile(gather_plans_[i], case_.images[i], &sums_, weights_[i]);
       });
       return;
     }
@@ -59,7 +76,7 @@ class FastKernel final : public OurKernel {
           PlanScatter(case_.cameras[i], case_.frame, case_.rects[i], grid_, ideal, std::move(plan));
     }
     CollectTiles(count, [&](size_t i, size_t tile) {
-      return ScatterTile(scatter_plans_[i], tile, case_.images[i], &sums_);
+      return ScatterTile(scatter_plans_[i], tile, case_.images[i], &sums_, weights_[i]);
     });
   }
 
@@ -77,6 +94,7 @@ class FastKernel final : public OurKernel {
   }
 
   const KernelCase& case_;
+  std::vector<RayWeights> weights_;  // of the LF images
   SensorPlate plate_;
   TileGrid grid_;
   std::vector<PlateTile> tiles_;
@@ -110,8 +128,8 @@ class Reference final : public Contender {
 
 }  // namespace
 
-std::unique_ptr<OurKernel> MakeOurKernel(const KernelCase& kernel_case) {
-  return std::make_unique<FastKernel>(kernel_case);
+std::unique_ptr<OurKernel> MakeOurKernel(const KernelCase& kernel_case, bool is_weighed) {
+  return std::make_unique<FastKernel>(kernel_case, is_weighed);
 }
 
 std::unique_ptr<Contender> MakeReference(const KernelCase& kernel_case) {

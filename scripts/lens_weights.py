@@ -3,13 +3,14 @@
 kind of lens weights, and prints the tables of doc/lens-integral.md.
 
 usage: lens_weights.py LFRENDERER GROUNDTRUTH [--write doc/lens-integral.md] [--only SUBSTRING]
-                       [--tables captures,lenses,magnifications]
+                       [--tables captures,lenses,magnifications,mosaics]
 
 GROUNDTRUTH     as for quality.py
 captures        thinned captures of the ground truth cases; LF images are dropped at random, but
                 always the same
 lenses          lenses as small as pinholes, in two scenes of lfsynth (beside LFRENDERER)
 magnifications  the same scenes with frames finer and coarser than their LF images
+mosaics         mosaics instead of RGB images (doc/quality.md); not unless asked for
 """
 import argparse
 import json
@@ -157,17 +158,16 @@ class SyntheticScenes:
     def __init__(self, renderer, folder):
         self.lfsynth = pathlib.Path(renderer).with_name("lfsynth")
         self.folder = folder
-        for scene in SYNTHETIC_SCENES:
-            if self.calibration(scene).exists():
-                continue
-            self.run(scene, "-o", folder / scene, "--count", 225, "--jitter", 0.4, "--spacing",
-                     SYNTHETIC_SPACING, "--size", "x".join(map(str, SYNTHETIC_SIZE)))
-
     def run(self, *arguments):
         subprocess.run([self.lfsynth, *map(str, arguments), "-q"], check=True)
 
-    def calibration(self, scene):
-        return self.folder / scene / "transforms.json"
+    def calibration(self, scene, is_mosaic=False):
+        folder = self.folder / (scene + ("-mosaic" if is_mosaic else ""))
+        if not (folder / "transforms.json").exists():
+            self.run(scene, "-o", folder, "--count", 225, "--jitter", 0.4, "--spacing",
+                     SYNTHETIC_SPACING, "--size", "x".join(map(str, SYNTHETIC_SIZE)),
+                     *(["--bayer"] if is_mosaic else []))
+        return folder / "transforms.json"
 
     def truth(self, scene, diameter, scale=1, focus=0.8):
         """(path, true picture)"""
@@ -215,6 +215,22 @@ def table_of_magnifications(renderer, scenes, only):
     return table.rows
 
 
+def table_of_mosaics(renderer, scenes, only):
+    ways = {"nearest": "--estimator nearest", "demosaicked": "--filter bicubic", "default": ""}
+    table = Table("scene", "diameter, in camera distances", "elements per LF pixel", "RGB", *ways)
+    for scene in (*SYNTHETIC_SCENES, "lights"):
+        if only not in scene:
+            continue
+        for distances, scale in ((1, 0.8), (3, 0.8), (8, 0.4), (8, 0.8), (8, 1.6)):
+            path, truth = scenes.truth(scene, distances * SYNTHETIC_SPACING, scale)
+            rgb = decibels(renderer, truth, scenes.calibration(scene), path, "")
+            mosaics = scenes.calibration(scene, is_mosaic=True)
+            table.add(scene, distances, f"{scale / 0.8:g}", text(rgb),
+                      *(text(decibels(renderer, truth, mosaics, path, way))
+                        for way in ways.values()))
+    return table.rows
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -223,19 +239,22 @@ def main():
     parser.add_argument("--write", type=pathlib.Path)
     parser.add_argument("--only", default="", help="cases or scenes whose names have it")
     parser.add_argument("--tables", default="captures,lenses,magnifications")
-    parser.add_argument("--scenes", type=pathlib.Path, help="keep the scenes of lfsynth here, and use what is there")
+    parser.add_argument("--scenes", type=pathlib.Path,
+                        help="keep the scenes of lfsynth here, and use what is there")
     a = parser.parse_args()
     wanted = a.tables.split(",")
     tables = {}
     if "captures" in wanted:
         tables["captures"] = table_of_captures(a.renderer, a.groundtruth, a.only)
-    if "lenses" in wanted or "magnifications" in wanted:
+    if {"lenses", "magnifications", "mosaics"} & set(wanted):
         with tempfile.TemporaryDirectory() as temporary:
             scenes = SyntheticScenes(a.renderer, a.scenes or pathlib.Path(temporary))
             if "lenses" in wanted:
                 tables["lenses"] = table_of_lenses(a.renderer, scenes, a.only)
             if "magnifications" in wanted:
                 tables["magnifications"] = table_of_magnifications(a.renderer, scenes, a.only)
+            if "mosaics" in wanted:
+                tables["mosaics"] = table_of_mosaics(a.renderer, scenes, a.only)
     if a.write:
         for name, rows in tables.items():
             quality.write_table(a.write, "lens_weights.py " + name, rows)

@@ -118,7 +118,28 @@ class RendererTest(unittest.TestCase):
                 middle = np.asarray(frame)[20:-20, 20:-20]
             self.assertTrue((np.abs(middle.astype(int) - 120) <= 1).all())
         inputs = json.loads((self.folder / "out0" / "report.json").read_text())["inputs"]
-        self.assertEqual((inputs["estimator"], inputs["filter"]), ("bilinear", "auto"))
+        self.assertEqual((inputs["estimator"], inputs["filter"]), ("bilinear", "mosaic"))
+
+    def test_frames_of_mosaics_have_the_same_bits_for_any_threads_memory_and_order(self):
+        picture = lambda index: np.random.default_rng(index).integers(0, 256, (HEIGHT, WIDTH), np.uint8)
+        field = write_field(self.folder / "mosaics", picture, lf_bayer="GBRG", lf_transfer="sRGB")
+        path = write_path(self.folder, frames=12)
+        expected, _ = self.render(field, path, "out", "--threads", "1")
+        for index, options in enumerate([["--threads", "3"], ["--seed", "5"],
+                                         self.least_memory(field, path)]):
+            digests, _ = self.render(field, path, f"out{index}", *options)
+            self.assertEqual(digests, expected, options)
+        bilinear, _ = self.render(field, path, "bilinear", "--filter", "bilinear")
+        self.assertNotEqual(bilinear, expected)
+
+    def test_rays_of_mosaics_are_counted_where_they_count_once(self):
+        flat = lambda index: np.full((HEIGHT, WIDTH), 120, np.uint8)
+        field = write_field(self.folder / "mosaics", flat, lf_bayer="RGGB", lf_transfer="sRGB")
+        path, rule = write_path(self.folder), ["--require", "samples>=1"]
+        self.fails(2, "--filter mosaic: rays count up to 8 times", field, path, "-o",
+                    self.folder / "out", "--filter", "mosaic", *rule)
+        _, report = self.render(field, path, "counted", *rule)
+        self.assertEqual(report["inputs"]["filter"], "auto")
 
     def test_auto_weights_say_what_they_are_and_warn(self):
         field = write_field(self.folder / "field")

@@ -54,6 +54,7 @@ lf::Result<void> CheckAvailable(const std::string& option, const std::string& va
 }
 
 lf::Result<lf::RenderOptions> MakeOptions(const Arguments& arguments, const lf::Program& program,
+                                          const lf::LightField& light_field,
                                           const lf::CameraPath& path) {
   lf::RenderOptions options;
   options.output_folder = arguments.output;
@@ -70,8 +71,8 @@ lf::Result<lf::RenderOptions> MakeOptions(const Arguments& arguments, const lf::
   options.strict = program.common().strict;
   options.reading.estimator =
       arguments.estimator == "nearest" ? lf::Estimator::kNearest : lf::Estimator::kBilinear;
-  for (const lf::PixelFilter filter :
-       {lf::PixelFilter::kNearest, lf::PixelFilter::kBilinear, lf::PixelFilter::kBicubic})
+  for (const lf::PixelFilter filter : {lf::PixelFilter::kNearest, lf::PixelFilter::kBilinear,
+                                       lf::PixelFilter::kBicubic, lf::PixelFilter::kMosaic})
     if (arguments.filter == lf::NameOf(filter)) options.reading.filter = filter;
   for (const lf::LensWeights weights :
        {lf::LensWeights::kAuto, lf::LensWeights::kArea, lf::LensWeights::kHat})
@@ -93,6 +94,9 @@ lf::Result<lf::RenderOptions> MakeOptions(const Arguments& arguments, const lf::
     lf::LogInfo(
         "--lens-weights auto: none, since --stop-when, --require and --smooth-below count rays");
   }
+  if (options.reading.filter == lf::PixelFilter::kAuto && !options.CountsRays() &&
+      light_field.encoding.bayer != lf::BayerPattern::kNone)
+    options.reading.filter = lf::PixelFilter::kMosaic;
   options.resume = arguments.resume;
   options.overwrite = arguments.overwrite;
   options.keep_plates = arguments.keep_plates;
@@ -149,10 +153,13 @@ int main(int argc, char** argv) {
          "bilinear (auto): every element reads each LF image where it looks; nearest: every "
          "LF pixel goes to one element, and mosaics are not interpolated")
       ->check(CLI::IsMember({"auto", "nearest", "bilinear"}));
-  app.add_option("--filter", arguments.filter,
-                 "Of the estimator bilinear, between LF pixels: nearest, bilinear, bicubic; auto: "
-                 "bicubic, but bilinear where an element is as large as nine LF pixels or more")
-      ->check(CLI::IsMember({"auto", "nearest", "bilinear", "bicubic"}));
+  app.add_option(
+         "--filter", arguments.filter,
+         "Of the estimator bilinear, between LF pixels: nearest, bilinear, bicubic; auto: "
+         "bicubic, but bilinear where an element is as large as nine LF pixels or more; "
+         "mosaic (auto for mosaics): the same, and colours that the sensor recorded count 8 times "
+         "those that were interpolated")
+      ->check(CLI::IsMember({"auto", "nearest", "bilinear", "bicubic", "mosaic"}));
   app.add_option(
          "--lens-weights", arguments.lens_weights,
          "none: LF images count alike; area: as the part of the lens that is nearest to each; hat: "
@@ -171,7 +178,8 @@ int main(int argc, char** argv) {
     LF_ASSIGN_OR_RETURN(lf::LightField light_field, arguments.light_field.Open());
     LF_ASSIGN_OR_RETURN(const lf::CameraPath path,
                         lf::ReadPathYaml(arguments.path, light_field.unit_m));
-    LF_ASSIGN_OR_RETURN(lf::RenderOptions options, MakeOptions(arguments, program, path));
+    LF_ASSIGN_OR_RETURN(lf::RenderOptions options,
+                        MakeOptions(arguments, program, light_field, path));
     options.signals = &signals;
     if (options.reading.estimator == lf::Estimator::kBilinear)
       lf::MakeRoomForUndershoot(&light_field.encoding);

@@ -28,6 +28,7 @@ struct LfPixels {
   void Reset(const PixelRect& part, BayerPattern pattern) {
     radiance.Resize(part.width(), part.height(), pattern == BayerPattern::kNone ? kRgbLanes : 1);
     bayer = pattern;
+    recorded = BayerPattern::kNone;
     mosaic_mask = {};
     any_masked = false;
     rect = part;
@@ -52,6 +53,9 @@ struct LfPixels {
   // [height][width][4]: R, G, B, and 1, or all 0 where the pixel is masked
   Image<uint16_t> radiance;
   BayerPattern bayer = BayerPattern::kNone;  // at pixel (0, 0) of the whole LF image
+  // RGB pixels: the mosaic that they were made from, at pixel (0, 0) of the whole LF image; kNone:
+  // all three colours were recorded everywhere
+  BayerPattern recorded = BayerPattern::kNone;
   Image<uint8_t> mosaic_mask;  // empty, or of a mosaic [height][width]: 0 = no ray from this pixel
   bool any_masked = false;
   PixelRect rect;  // the part of the LF image that these pixels are

@@ -31,15 +31,21 @@
 
 namespace lf {
 
+// A ray of R, G and B, which counts so many times in each.
+struct RgbRay {
+  std::array<uint16_t, 3> value = {};
+  std::array<uint32_t, 3> count = {1, 1, 1};
+  friend bool operator==(const RgbRay&, const RgbRay&) = default;
+};
+
 // v of the LF image at continuous position (x, y), interpolated in integers: bilinear between the
-// four nearest pixel centres with weights in 1/256, rounded half up, or as cubic_weights.h says.
-// None unless the four are in the image (of `width_px` x `height_px`) and not masked; where others
-// of the sixteen are not, the four make the value.
+// four nearest pixel centres with weights in 1/256, rounded half up, or as cubic_weights.h and
+// mosaic_filter.h say. None unless the four are in the image (of `width_px` x `height_px`) and not
+// masked; where others of the sixteen are not, the four make the value.
 //   pixels  RGB; must hold them wherever they are in the image
-//   filter  not kAuto
-std::optional<std::array<uint16_t, 3>> InterpolatePixels(
-    const LfPixels& pixels, int width_px, int height_px, double x_px, double y_px,
-    PixelFilter filter = PixelFilter::kBilinear);
+std::optional<RgbRay> InterpolatePixels(const LfPixels& pixels, int width_px, int height_px,
+                                        double x_px, double y_px,
+                                        const GatherSampling& sampling = {});
 
 // Whether rays arrive at the four pixel centres around (x, y): beyond the fold of a lens none do.
 bool RaysArriveAround(const Intrinsics& k, const DistortionMap& map, double x_px, double y_px);

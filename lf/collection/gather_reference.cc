@@ -1,10 +1,13 @@
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "lf/camera/ideal_pixels.h"
 #include "lf/collection/cubic_weights.h"
 #include "lf/collection/gather.h"
 #include "lf/collection/gather_law.h"
+#include "lf/collection/mosaic_filter.h"
 #include "lf/core/check.h"
 
 namespace lf {
@@ -20,6 +23,23 @@ uint16_t Bilinear(const Pixel& pixel, uint32_t right, uint32_t down) {
   const uint32_t below = pixel(0, 1) * (kOne - right) + pixel(1, 1) * right;
   const uint64_t sum = uint64_t{above} * (kOne - down) + uint64_t{below} * down;
   return static_cast<uint16_t>((sum + kOne * kOne / 2) / (kOne * kOne));
+}
+
+// Value and count; share(dx, dy) is k of mosaic_filter.h.
+template <class Pixel, class Share>
+std::pair<uint16_t, uint32_t> BilinearByShares(const Pixel& pixel, const Share& share,
+                                               uint32_t right, uint32_t down) {
+  constexpr uint32_t kOne = 256;
+  uint32_t sum = 0, count = 0;
+  for (int dy = 0; dy < 2; ++dy)
+    for (int dx = 0; dx < 2; ++dx) {
+      const uint32_t weight = (dx == 0 ? kOne - right : right) * (dy == 0 ? kOne - down : down);
+      const uint32_t t = (weight * share(dx, dy)) >> kShareShift;
+      sum += t * pixel(dx, dy);
+      count += t;
+    }
+  return {static_cast<uint16_t>(SharedMean(sum, count)),
+          (count + (1 << (kShareBits - 1))) >> kShareBits};
 }
 
 template <class Pixel>
@@ -38,11 +58,30 @@ uint16_t Bicubic(const Pixel& pixel, uint32_t right, uint32_t down) {
   return static_cast<uint16_t>(std::clamp<int64_t>(rounded(sum, kCubicShift), 0, 65535));
 }
 
+template <class Pixel, class Share>
+std::pair<uint16_t, uint32_t> BicubicByShares(const Pixel& pixel, const Share& share,
+                                              uint32_t right, uint32_t down) {
+  const CubicTaps d = CubicTapsAt(static_cast<int>(down), kMosaicTapBits);
+  const CubicTaps c = CubicTapsAt(static_cast<int>(right), kMosaicTapBits);
+  int32_t sum = 0, count = 0;
+  for (int k = 0; k < 4; ++k) {
+    int32_t column = 0, column_count = 0;
+    for (int i = 0; i < 4; ++i) {
+      const int32_t weight = d[i] * static_cast<int32_t>(share(k - 1, i - 1));
+      column += weight * (static_cast<int32_t>(pixel(k - 1, i - 1)) - 32768);
+      column_count += weight;
+    }
+    sum += c[k] * ((column + (1 << (kMosaicColumnShift - 1))) >> kMosaicColumnShift);
+    count += c[k] * column_count;
+  }
+  return {static_cast<uint16_t>(CubicMosaicValue(sum, count)),
+          static_cast<uint32_t>((count + (1 << (kMosaicCountBits - 1))) >> kMosaicCountBits)};
+}
+
 }  // namespace
 
-std::optional<std::array<uint16_t, 3>> InterpolatePixels(const LfPixels& pixels, int width_px,
-                                                         int height_px, double x_px, double y_px,
-                                                         PixelFilter filter) {
+std::optional<RgbRay> InterpolatePixels(const LfPixels& pixels, int width_px, int height_px,
+                                        double x_px, double y_px, const GatherSampling& sampling) {
   LF_DCHECK(pixels.bayer == BayerPattern::kNone);
   const double left = std::floor(x_px - 0.5), top = std::floor(y_px - 0.5);
   if (!(left >= 0 && left + 1 < width_px && top >= 0 && top + 1 < height_px)) return std::nullopt;
@@ -54,7 +93,7 @@ std::optional<std::array<uint16_t, 3>> InterpolatePixels(const LfPixels& pixels,
   const int image_row = std::min(static_cast<int>(y / kOne), height_px - 2);
   auto right = static_cast<uint32_t>(x - kOne * image_column);
   auto down = static_cast<uint32_t>(y - kOne * image_row);
-  if (filter == PixelFilter::kNearest) {
+  if (sampling.filter == PixelFilter::kNearest) {
     right = right < kOne / 2 ? 0 : kOne;
     down = down < kOne / 2 ? 0 : kOne;
   }
@@ -72,15 +111,22 @@ std::optional<std::array<uint16_t, 3>> InterpolatePixels(const LfPixels& pixels,
     return true;
   };
   if (!has_all(0)) return std::nullopt;
-  const bool is_cubic = filter == PixelFilter::kBicubic && has_all(1);
-  std::array<uint16_t, 3> value;
+  const bool is_cubic = sampling.is_cubic && has_all(1);
+  RgbRay ray;
   for (int c = 0; c < 3; ++c) {
     const auto pixel = [&](int dx, int dy) -> uint32_t {
       return pixels.radiance.at(column + dx, row + dy, c);
     };
-    value[c] = is_cubic ? Bicubic(pixel, right, down) : Bilinear(pixel, right, down);
+    const auto share = [&](int dx, int dy) {
+      return RecordedShareOf(pixels.recorded, image_column + dx, image_row + dy, c);
+    };
+    if (sampling.filter == PixelFilter::kMosaic)
+      std::tie(ray.value[c], ray.count[c]) = is_cubic ? BicubicByShares(pixel, share, right, down)
+                                                      : BilinearByShares(pixel, share, right, down);
+    else
+      ray.value[c] = is_cubic ? Bicubic(pixel, right, down) : Bilinear(pixel, right, down);
   }
-  return value;
+  return ray;
 }
 
 bool RaysArriveAround(const Intrinsics& k, const DistortionMap& map, double x_px, double y_px) {
@@ -99,32 +145,40 @@ uint64_t GatherReference(const PinholeCamera& lf_camera, const LfPixels& pixels,
   const int samples = sampling.samples;
   const GatherLaw law(lf_camera, WithFinerPlate(render_camera, samples));
   // The ray of element (x, y).
-  const auto ray_of = [&](int x, int y) -> std::optional<std::array<uint16_t, 3>> {
-    std::array<uint32_t, 3> sum = {};
-    uint32_t count = 0;
+  const auto ray_of = [&](int x, int y) -> std::optional<RgbRay> {
+    std::array<uint32_t, 3> sum = {}, counted = {};
+    uint32_t rays = 0;
     for (int i = 0; i < samples * samples; ++i) {
       const std::optional<Vec2> p =
           law.Position(x * samples + i % samples, y * samples + i / samples);
       if (!p) continue;
-      const auto value =
-          InterpolatePixels(pixels, k.width_px, k.height_px, p->x(), p->y(), sampling.filter);
-      if (!value) continue;
-      for (int c = 0; c < 3; ++c) sum[c] += (*value)[c];
-      ++count;
+      const auto ray = InterpolatePixels(pixels, k.width_px, k.height_px, p->x(), p->y(), sampling);
+      if (!ray) continue;
+      for (int c = 0; c < 3; ++c) {
+        sum[c] += ray->count[c] * ray->value[c];
+        counted[c] += ray->count[c];
+      }
+      ++rays;
     }
-    if (count == 0) return std::nullopt;
-    std::array<uint16_t, 3> mean;
-    for (int c = 0; c < 3; ++c) mean[c] = static_cast<uint16_t>((sum[c] + count / 2) / count);
+    if (rays == 0) return std::nullopt;
+    const bool is_mosaic = sampling.filter == PixelFilter::kMosaic;
+    RgbRay mean;
+    for (int c = 0; c < 3; ++c) {
+      mean.value[c] = static_cast<uint16_t>(is_mosaic ? SharedMean(sum[c], counted[c])
+                                                      : (sum[c] + rays / 2) / rays);
+      if (is_mosaic) mean.count[c] = MeanCount(counted[c], kRecordedShare * rays);
+    }
     return mean;
   };
   uint64_t accepted = 0;
   for (int y = 0; y < plate->height(); ++y)
     for (int x = 0; x < plate->width(); ++x) {
-      const auto value = ray_of(x, y);
-      if (!value) continue;
-      const uint64_t weight = weights.At(x, y);
-      for (int channel = 0; channel < SensorPlate::kChannels; ++channel)
-        plate->Add(x, y, channel, {weight * (*value)[channel], weight});
+      const auto ray = ray_of(x, y);
+      if (!ray) continue;
+      for (int channel = 0; channel < SensorPlate::kChannels; ++channel) {
+        const uint64_t count = uint64_t{weights.At(x, y)} * ray->count[channel];
+        plate->Add(x, y, channel, {count * ray->value[channel], count});
+      }
       ++accepted;
     }
   return accepted;

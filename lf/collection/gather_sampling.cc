@@ -26,7 +26,7 @@ std::optional<Vec2> RecordedAt(const PinholeCamera& lf_camera, const DistortionM
 }  // namespace
 
 const char* NameOf(PixelFilter filter) {
-  constexpr const char* kNames[] = {"auto", "nearest", "bilinear", "bicubic"};
+  constexpr const char* kNames[] = {"auto", "nearest", "bilinear", "bicubic", "mosaic"};
   return kNames[static_cast<int>(filter)];
 }
 
@@ -65,11 +65,15 @@ GatherSampling SamplingOf(const PinholeCamera& lf_camera, const RenderCamera& re
   if (magnification * kFinerAtMost < 1)
     sampling.samples =
         std::min(kMostSamples, static_cast<int>(std::ceil(1 / magnification - kRounding)));
+  const bool prefers_cubic = sampling.samples < kBilinearFrom;
   if (filter == PixelFilter::kAuto)
-    sampling.filter =
-        sampling.samples < kBilinearFrom ? PixelFilter::kBicubic : PixelFilter::kBilinear;
-  if (sampling.filter == PixelFilter::kBicubic && MayLackRays(lf_camera.intrinsics))
-    sampling.filter = PixelFilter::kBilinear;
+    sampling.filter = prefers_cubic ? PixelFilter::kBicubic : PixelFilter::kBilinear;
+  sampling.is_cubic = sampling.filter == PixelFilter::kBicubic ||
+                      (sampling.filter == PixelFilter::kMosaic && prefers_cubic);
+  if (sampling.is_cubic && MayLackRays(lf_camera.intrinsics)) {
+    sampling.is_cubic = false;
+    if (sampling.filter == PixelFilter::kBicubic) sampling.filter = PixelFilter::kBilinear;
+  }
   return sampling;
 }
 

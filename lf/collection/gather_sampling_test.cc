@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "lf/camera/testing_scenes.h"
 #include "lf/collection/cubic_weights.h"
@@ -91,26 +92,52 @@ TEST(CubicWeights, SumToOneAndReproduceParabolas) {
   EXPECT_EQ(CubicTapsAt(kCubicSteps, 12), (CubicTaps{0, 0, 4096, 0}));
 }
 
-TEST(CubicWeights, ConstantPicturesStayWhatTheyAre) {
-  const testing::CameraPair pair = PairOf(2);
-  for (const uint16_t value : {0, 1, 777, 32768, 65535}) {
-    LfPixels pixels(testing::WholeImage(pair), BayerPattern::kNone);
-    for (int y = 0; y < pixels.rect.height(); ++y)
-      for (int x = 0; x < pixels.rect.width(); ++x)
-        for (int c = 0; c < 3; ++c) pixels.radiance.at(x, y, c) = value;
-    SensorPlate plate = testing::PlateFor(pair);
-    const GatherPlan plan =
-        PlanGather(pair.lf_camera, pair.render_camera, {}, PixelFilter::kBicubic);
-    EXPECT_GT(testing::InTiles(
-                  &plate, testing::GridOf(plate, 64, 16),
-                  [&](size_t /*tile*/, TileSums* sums) { return GatherTile(plan, pixels, sums); }),
-              1000u);
-    for (int y = 0; y < plate.height(); ++y)
-      for (int x = 0; x < plate.width(); ++x) {
-        const ElementSum element = plate.At(x, y, 2);
-        EXPECT_EQ(element.sum, element.count * value);
+TEST(PixelFilter, ConstantPicturesStayWhatTheyAre) {
+  for (const double magnification : {2.0, 0.3})
+    for (const PixelFilter filter : {PixelFilter::kBicubic, PixelFilter::kMosaic})
+      for (const uint16_t value : {0, 1, 777, 32768, 65535}) {
+        const testing::CameraPair pair = PairOf(magnification);
+        LfPixels pixels(testing::WholeImage(pair), BayerPattern::kNone);
+        pixels.recorded = BayerPattern::kGrbg;
+        for (int y = 0; y < pixels.rect.height(); ++y)
+          for (int x = 0; x < pixels.rect.width(); ++x)
+            for (int c = 0; c < 3; ++c) pixels.radiance.at(x, y, c) = value;
+        SensorPlate plate = testing::PlateFor(pair);
+        const GatherPlan plan = PlanGather(pair.lf_camera, pair.render_camera, {}, filter);
+        const auto gather = [&](size_t /*tile*/, TileSums* sums) {
+          return GatherTile(plan, pixels, sums);
+        };
+        EXPECT_GT(testing::InTiles(&plate, testing::GridOf(plate, 64, 16), gather), 1000u);
+        for (int y = 0; y < plate.height(); ++y)
+          for (int x = 0; x < plate.width(); ++x) {
+            const ElementSum element = plate.At(x, y, 2);
+            EXPECT_EQ(element.sum, element.count * value);
+          }
       }
-  }
+}
+
+// GRBG: red is recorded at odd x and even y.
+TEST(PixelFilter, WhatAMosaicRecordedCountsMore) {
+  LfPixels pixels({0, 0, 8, 6}, BayerPattern::kNone);
+  pixels.recorded = BayerPattern::kGrbg;
+  for (int y = 0; y < 6; ++y)
+    for (int x = 0; x < 8; ++x)
+      pixels.radiance.at(x, y, 0) = BayerChannel(pixels.recorded, x, y) == 0 ? 9000 : 0;
+  const auto red_at = [&](double x, double y, bool is_cubic = false) {
+    const RgbRay ray = *InterpolatePixels(pixels, 8, 6, x, y, {PixelFilter::kMosaic, is_cubic});
+    return std::pair<int, uint32_t>(ray.value[0], ray.count[0]);
+  };
+  EXPECT_EQ(red_at(3.5, 2.5), std::pair(9000, 8u));
+  EXPECT_EQ(red_at(4.5, 2.5), std::pair(0, 1u));
+  EXPECT_EQ(red_at(4, 2.5), std::pair(8000, 5u));  // 8 of 9; 4.5 rays
+  EXPECT_EQ(red_at(4, 3), std::pair(6545, 3u));    // 8 of 11; 2.75 rays
+  // As far from them, sixteen pixels have the same shares; clipped between them.
+  EXPECT_EQ(red_at(3.5, 2.5, true), std::pair(9000, 8u));
+  EXPECT_EQ(red_at(4, 3, true), std::pair(6545, 3u));
+  EXPECT_EQ(red_at(3, 2.5, true), std::pair(8000, 5u));
+  pixels.recorded = BayerPattern::kNone;
+  EXPECT_EQ(red_at(4, 3), std::pair(2250, 8u));
+  EXPECT_EQ(red_at(4, 3, true), std::pair(2250, 8u));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "lf/camera/ideal_pixels.h"
+#include "lf/collection/mosaic_filter.h"
 #include "lf/collection/test_plates.h"
 
 namespace lf {
@@ -15,7 +16,10 @@ namespace {
 using testing::PlateFor;
 
 LfPixels RandomPixels(const Intrinsics& k, uint64_t seed) {
-  return testing::NoisePixels({0, 0, k.width_px, k.height_px}, BayerPattern::kNone, seed);
+  LfPixels pixels =
+      testing::NoisePixels({0, 0, k.width_px, k.height_px}, BayerPattern::kNone, seed);
+  pixels.recorded = static_cast<BayerPattern>(seed % 5);  // only kMosaic minds
+  return pixels;
 }
 
 uint64_t GatherInTilesOf(const testing::CameraPair& pair, const LfPixels& pixels, int tile_height,
@@ -39,11 +43,15 @@ void MakeCoarser(double factor, RenderCamera* camera) {
   k.height_px = std::max(1, static_cast<int>(k.height_px / factor));
 }
 
-PixelFilter FilterOf(uint64_t seed) { return static_cast<PixelFilter>(seed % 4); }
+double Mean(const ElementSum& rays) {
+  return static_cast<double>(rays.sum) / static_cast<double>(rays.count);
+}
+
+PixelFilter FilterOf(uint64_t seed) { return static_cast<PixelFilter>(seed % 5); }
 
 TEST(Gather, TheFastBackEndAgreesWithTheReference) {
   uint64_t total = 0, differing_counts = 0, differing_values = 0, scenes_with_rays = 0;
-  size_t scenes_of_several = 0, scenes_of_cubics = 0;
+  size_t scenes_of_several = 0, scenes_of_cubics = 0, scenes_of_mosaics = 0;
   for (uint64_t seed = 0; seed < 280; ++seed) {
     testing::CameraPair pair = RandomPair(seed);
     if (seed % 3 == 0) MakeCoarser(1.5 + 0.7 * static_cast<double>(seed % 5), &pair.render_camera);
@@ -56,25 +64,29 @@ TEST(Gather, TheFastBackEndAgreesWithTheReference) {
     const GatherSampling sampling = SamplingOf(pair.lf_camera, pair.render_camera, filter);
     scenes_of_several += sampling.samples > 1 && accepted > 0;
     scenes_of_cubics += sampling.filter == PixelFilter::kBicubic && accepted > 0;
+    scenes_of_mosaics += sampling.filter == PixelFilter::kMosaic && accepted > 0;
     total += accepted;
     scenes_with_rays += accepted > 0;
     for (int y = 0; y < expected.height(); ++y)
       for (int x = 0; x < expected.width(); ++x)
         for (int channel = 0; channel < 3; ++channel) {
           const ElementSum a = expected.At(x, y, channel), b = fast.At(x, y, channel);
-          differing_counts += a.count != b.count;
-          if (a.count != b.count || a.sum == b.sum) continue;
+          const bool is_mosaic = filter == PixelFilter::kMosaic;
+          const bool same_count = is_mosaic ? (a.count == 0) == (b.count == 0) : a.count == b.count;
+          differing_counts += !same_count;
+          if (!same_count || a == b) continue;
           ++differing_values;
-          // One step of the weights, of neighbours that differ by everything; the nearest pixel
-          // may be another one.
-          if (filter != PixelFilter::kNearest) {
-            EXPECT_LE(std::max(a.sum, b.sum) - std::min(a.sum, b.sum), 65535u / 128);
-          }
+          if (filter == PixelFilter::kNearest) continue;  // it may be another pixel
+          // One step of the weights, of neighbours that differ by everything.
+          const double steps = is_mosaic ? 1.0 * kRecordedShare : 1;
+          EXPECT_NEAR(Mean(a), Mean(b), steps * 65535 / 128);
+          EXPECT_LE(std::max(a.count, b.count) - std::min(a.count, b.count), 1u);
         }
   }
   EXPECT_GT(scenes_with_rays, 90u);
   EXPECT_GT(scenes_of_several, 15u);
   EXPECT_GT(scenes_of_cubics, 30u);
+  EXPECT_GT(scenes_of_mosaics, 15u);
   EXPECT_GT(total, 150000u);
   EXPECT_LE(static_cast<double>(differing_counts), 1e-5 * static_cast<double>(total));
   // Single precision places one weight in some hundreds on the other side of a step.
@@ -181,7 +193,7 @@ TEST(Gather, BicubicTakesTheFourWhereTheSixteenAreNot) {
   const Intrinsics k{100, 100, 4, 3, 0, 8, 6};
   LfPixels pixels = RandomPixels(k, 3);
   const auto at = [&](double x, double y, PixelFilter filter) {
-    return InterpolatePixels(pixels, 8, 6, x, y, filter);
+    return InterpolatePixels(pixels, 8, 6, x, y, {filter, filter == PixelFilter::kBicubic});
   };
   const auto is_bilinear = [&](double x, double y) {
     EXPECT_TRUE(at(x, y, PixelFilter::kBicubic));
@@ -235,8 +247,9 @@ TEST(Gather, InterpolationIsExactAtCentresAndHalfway) {
   const auto at_centre = InterpolatePixels(pixels, 8, 6, 2.5, 3.5);
   const auto halfway = InterpolatePixels(pixels, 8, 6, 3, 3.5);
   for (int c = 0; c < 3; ++c) {
-    EXPECT_EQ((*at_centre)[c], pixels.radiance.at(2, 3, c));
-    EXPECT_EQ((*halfway)[c], (pixels.radiance.at(2, 3, c) + pixels.radiance.at(3, 3, c) + 1) / 2);
+    EXPECT_EQ(at_centre->value[c], pixels.radiance.at(2, 3, c));
+    EXPECT_EQ(halfway->value[c],
+              (pixels.radiance.at(2, 3, c) + pixels.radiance.at(3, 3, c) + 1) / 2);
   }
 }
 

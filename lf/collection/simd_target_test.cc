@@ -17,7 +17,8 @@ using testing::PlateFor;
 std::vector<SensorPlate> Collect(const testing::CameraPair& pair, uint64_t seed) {
   const Intrinsics& k = pair.lf_camera.intrinsics;
   const auto bayer = static_cast<BayerPattern>(seed % 5);
-  const LfPixels pixels = testing::NoisePixels(testing::WholeImage(pair), bayer, seed);
+  LfPixels pixels = testing::NoisePixels(testing::WholeImage(pair), bayer, seed);
+  if (bayer == BayerPattern::kNone) pixels.recorded = static_cast<BayerPattern>(seed / 25 % 5);
   const IdealPixels ideal(k);
   // All 1, all the same, or by element.
   RayWeights weights(seed % 3 == 0 ? 1 : 1 + static_cast<uint32_t>(seed % kMaxWeight));
@@ -36,7 +37,7 @@ std::vector<SensorPlate> Collect(const testing::CameraPair& pair, uint64_t seed)
   plates.push_back(std::move(plate));
   if (bayer != BayerPattern::kNone) return plates;
   const GatherPlan gather =
-      PlanGather(pair.lf_camera, pair.render_camera, {}, static_cast<PixelFilter>(seed / 5 % 4));
+      PlanGather(pair.lf_camera, pair.render_camera, {}, static_cast<PixelFilter>(seed / 5 % 5));
   plates.push_back(PlateFor(pair));
   testing::InTiles(&plates.back(), grid, [&](size_t /*tile*/, TileSums* sums) {
     return GatherTile(gather, pixels, sums, weights);

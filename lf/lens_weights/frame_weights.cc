@@ -195,12 +195,19 @@ FrameWeights::Node FrameWeights::MakeNode(const RenderCamera& frame,
 
 void FrameWeights::SetWeights(const std::vector<Node>& nodes) {
   std::vector<double> shares;
-  for (const Node& node : nodes)
-    for (const Share& share : node) shares.push_back(share.share);
+  double together = 0;
+  for (const Node& node : nodes) {
+    double of_node = 0;
+    for (const Share& share : node) {
+      shares.push_back(share.share);
+      of_node += share.share;
+    }
+    together = std::max(together, of_node);
+  }
   if (shares.empty()) return;
   const double most = std::min(*std::max_element(shares.begin(), shares.end()),
                                kMostSmallShares * ShareOfFirstTenth(shares));
-  const double scale = kUnit * kMaxWeight / most;
+  const double scale = kUnit * std::min(kMaxWeight / most, kMostTogether / together);
   for (size_t n = 0; n < nodes.size(); ++n)
     for (const Share& share : nodes[n]) {
       farthest_w_ = std::max(farthest_w_, share.distance_w);

@@ -44,7 +44,7 @@ class FrameWeights {
   // Of a ray of the camera's to an element, whose block is one of BlocksOf(camera): 0 (it adds
   // nothing) to kMaxWeight. The largest share of the frame has kMaxWeight, unless it is more than
   // kMostSmallShares times the small ones, those that make up a tenth of the lens: then it is taken
-  // for so much.
+  // for so much; or unless all together would be more than kMostTogether.
   uint32_t At(size_t camera, int x, int y) const;
   // The same of blocks side by side, the first of which ends before (end_x, end_y).
   void OfRow(size_t camera, int end_x, int end_y, int count, uint8_t* weights) const;
@@ -70,6 +70,9 @@ class FrameWeights {
   int rows() const { return rows_; }
 
   static constexpr double kMostSmallShares = 32;
+  // What the counts of a plate hold where rays count up to 8 times (mosaics). Light fields of
+  // thousands of LF images in one lens do not need the steps.
+  static constexpr double kMostTogether = 2e6;
 
  private:
   static constexpr size_t kNone = SIZE_MAX;

@@ -59,6 +59,22 @@ std::vector<double> SharesOf(const FrameWeights& weights, size_t camera_count, i
   return shares;
 }
 
+TEST(FrameWeights, OfVeryManyLfImagesFitThePlate) {
+  for (const int side : {20, 100}) {
+    const std::vector<Vec3> centres = JitteredGrid(side, 0.02, 0.3, 1);
+    const FrameWeights weights(Frame(0.018 * side), centres, LensWeights::kArea, Pool());
+    double together = 0;
+    uint32_t most = 0;
+    for (size_t i = 0; i < centres.size(); ++i) {
+      most = std::max(most, weights.At(i, 600, 400));
+      together += weights.At(i, 600, 400);
+    }
+    EXPECT_LE(together, 1.01 * FrameWeights::kMostTogether);
+    EXPECT_EQ(most == kMaxWeight, side == 20) << most;
+    EXPECT_GT(most, 50u);
+  }
+}
+
 TEST(LensPoints, AreWhereLinesMeetTheLens) {
   RandomSequence random(1);
   const auto any = [&] {

@@ -69,7 +69,7 @@ class Renderer {
 
  private:
   Result<void> Begin();
-  Result<void> CheckLensWeights() const;
+  Result<void> CheckCounts() const;
   std::vector<FrameId> FramesToRender();
   Result<void> RunPasses(std::span<const FrameId> frames);
   Result<void> RunPass(const RenderJob& job, std::span<const FrameId> frames, size_t frames_left);
@@ -111,7 +111,7 @@ Result<void> Renderer::Begin() {
   frames_ = options_.frames;
   if (frames_.empty())
     for (uint32_t n = 1; n <= path_.frame_count(); ++n) frames_.push_back(FrameId{n});
-  LF_RETURN_IF_ERROR(CheckLensWeights());
+  LF_RETURN_IF_ERROR(CheckCounts());
   const Intrinsics& plate = path_.Camera(frames_.front()).pinhole.intrinsics;
   LF_ASSIGN_OR_RETURN(
       plan_, PlanMemory(options_.memory_bytes, light_field_, options_.reading.estimator,
@@ -141,7 +141,12 @@ Result<void> Renderer::Begin() {
   return {};
 }
 
-Result<void> Renderer::CheckLensWeights() const {
+Result<void> Renderer::CheckCounts() const {
+  if (options_.CountsRays() && options_.reading.estimator == Estimator::kBilinear &&
+      options_.reading.filter == PixelFilter::kMosaic)
+    return UsageError(
+        "--filter mosaic: rays count up to 8 times, so that --stop-when, --require and "
+        "--smooth-below have none to count: leave them out, or use bilinear");
   if (options_.lens_weights == LensWeights::kNone) return {};
   const char* const name = NameOf(options_.lens_weights);
   if (options_.CountsRays())

@@ -47,7 +47,8 @@ struct RenderOptions {
   size_t memory_bytes = size_t{8} << 30;
   uint64_t seed = 0;
   bool strict = false;
-  // With kBilinear the light field wants MakeRoomForUndershoot() (capture/radiance.h).
+  // With kBilinear the light field wants MakeRoomForUndershoot() (capture/radiance.h). Not kMosaic
+  // where CountsRays(), for its rays count more than once.
   RayReading reading;
   // kNone where CountsRays(), for counts are sums of weights else.
   LensWeights lens_weights = LensWeights::kNone;

@@ -12,7 +12,7 @@ void Prefetch(const uint64_t* words) { __builtin_prefetch(words, 1); }
 
 void TileSums::Begin(PlateTile* tile) {
   LF_CHECK(mosaic_limit_ <= tile->max_reserve());
-  LF_CHECK(!has_rgb_ && !has_mosaic_);
+  LF_CHECK(!has_rgb_ && !has_counted_ && !has_mosaic_);
   tile_ = tile;
 }
 
@@ -23,6 +23,15 @@ void TileSums::MakeRgbRoom(uint32_t rays) {
   if (elements_.size() < count) elements_.resize(count);
   rgb_headroom_ = ray_limit_;
   has_rgb_ = true;
+}
+
+void TileSums::MakeCountedRoom(uint32_t rays) {
+  LF_CHECK(rays <= ray_limit_);
+  FlushCounted();
+  const size_t count = static_cast<size_t>(stride()) * rect().height();
+  if (counted_.size() < count) counted_.resize(count);
+  counted_headroom_ = ray_limit_;
+  has_counted_ = true;
 }
 
 void TileSums::MakeMosaicRoom(uint32_t rays) {
@@ -36,6 +45,7 @@ void TileSums::MakeMosaicRoom(uint32_t rays) {
 
 void TileSums::Flush() {
   FlushRgb();
+  FlushCounted();
   FlushMosaic();
 }
 
@@ -57,6 +67,25 @@ void TileSums::FlushRgb() {
   }
   has_rgb_ = false;
   rgb_headroom_ = 0;
+}
+
+void TileSums::FlushCounted() {
+  if (!has_counted_) return;
+  tile_->Reserve(ray_limit_ - counted_headroom_);
+  for (int y = rect().y_begin; y < rect().y_end; ++y) {
+    CountedElement* element =
+        counted_.data() + static_cast<ptrdiff_t>(y - rect().y_begin) * stride();
+    uint64_t* word = tile_->row(y);
+    const ptrdiff_t ahead = tile_->row(std::min(y + 1, rect().y_end - 1)) - word;
+    for (int x = 0; x < rect().width(); ++x, ++element, word += SensorPlate::kChannels) {
+      Prefetch(word + ahead);
+      for (int c = 0; c < SensorPlate::kChannels; ++c)
+        word[c] += uint64_t{element->counts[c]} << SensorPlate::kSumBits | element->rgb[c];
+      *element = CountedElement{};
+    }
+  }
+  has_counted_ = false;
+  counted_headroom_ = 0;
 }
 
 void TileSums::FlushMosaic() {

@@ -19,6 +19,13 @@ class TileSums {
     uint32_t rgb_rays[4] = {};
   };
 
+  // Of rays that count differently in each colour: sums of 16-bit values times counts, and the
+  // counts. The fourth lanes are not flushed.
+  struct alignas(16) CountedElement {
+    uint32_t rgb[4] = {};
+    uint32_t counts[4] = {};
+  };
+
   // Of mosaics: packed words as the plate's. Along a scanline green alternates with another colour;
   // if an LF pixel is as large as an element, so it does along a row of elements. A row of elements
   // has one row of words for each of these, so that the scanline adds to words side by side:
@@ -61,6 +68,13 @@ class TileSums {
     return elements_.data();
   }
 
+  // [height][stride()], likewise.
+  CountedElement* ReserveCounted(uint32_t rays) {
+    if (rays > counted_headroom_) MakeCountedRoom(rays);
+    counted_headroom_ -= rays;
+    return counted_.data();
+  }
+
   // [height][kMosaicRows][stride()], likewise. kMargin words before and behind the rows of the
   // tile may be added to as well, but only zeros.
   uint64_t* ReserveMosaic(uint32_t rays) {
@@ -76,20 +90,25 @@ class TileSums {
 
  private:
   void MakeRgbRoom(uint32_t rays);
+  void MakeCountedRoom(uint32_t rays);
   void MakeMosaicRoom(uint32_t rays);
   void FlushRgb();
+  void FlushCounted();
   void FlushMosaic();
 
   uint32_t ray_limit_;
   uint32_t mosaic_limit_;  // what the plate's words hold
   PlateTile* tile_ = nullptr;
   bool has_rgb_ = false;
+  bool has_counted_ = false;
   bool has_mosaic_ = false;
   // Rays that still fit; 0 before there are sums.
   uint32_t rgb_headroom_ = 0;
+  uint32_t counted_headroom_ = 0;
   uint32_t mosaic_headroom_ = 0;
   // All 0 but between the first Reserve and Flush().
   LargeVector<Element> elements_;
+  LargeVector<CountedElement> counted_;
   LargeVector<uint64_t> words_;
 };
 

@@ -60,5 +60,32 @@ TEST(TileSums, MosaicsAndRgbReachThePlate) {
   }
 }
 
+TEST(TileSums, RaysMayCountDifferentlyInEachColour) {
+  SensorPlate plate(23, 9), expected(23, 9);
+  PlateTile tile(&plate, {2, 3, 20, 8});
+  TileSums sums(50);  // flushed now and then
+  sums.Begin(&tile);
+  for (uint64_t ray = 0; ray < 500; ++ray) {
+    const auto random = [&](uint64_t index, int end) {
+      return static_cast<int>(RandomUnit(ray, index, 0) * end);
+    };
+    const int x = random(0, 18), y = random(1, 5);
+    TileSums::CountedElement& element = sums.ReserveCounted(8)[y * sums.stride() + x];
+    for (int c = 0; c < 3; ++c) {
+      const auto v = static_cast<uint32_t>(random(3 + static_cast<uint64_t>(c), 65536));
+      const auto count = static_cast<uint32_t>(random(6 + static_cast<uint64_t>(c), 9));
+      element.rgb[c] += v * count;
+      element.counts[c] += count;
+      expected.Add(2 + x, 3 + y, c, {uint64_t{v} * count, count});
+    }
+  }
+  sums.Flush();
+  EXPECT_EQ(plate, expected);
+  sums.Begin(&tile);
+  sums.ReserveCounted(1);
+  sums.Flush();
+  EXPECT_EQ(plate, expected);
+}
+
 }  // namespace
 }  // namespace lf

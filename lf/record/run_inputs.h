@@ -31,7 +31,7 @@ struct RunChoices {
 };
 
 // The version of doc/ray.md: raised when the same inputs give other rays.
-inline constexpr int kLawVersion = 2;
+inline constexpr int kLawVersion = 3;
 
 // Of all frames: the law, the light field (numbers of images, hashes of calibration, encoding and
 // names; not its folder, which may move, nor the pixels) and the choices for rays.

@@ -131,6 +131,7 @@ void Demosaic(const LfPixels& mosaic, int image_width_px, int image_height_px,
               const std::array<double, 3>& white_balance, const PixelRect& rect, LfPixels* rgb) {
   LF_CHECK(mosaic.bayer != BayerPattern::kNone && rgb != &mosaic);
   rgb->Reset(rect, BayerPattern::kNone);
+  rgb->recorded = mosaic.bayer;
   if (rect.empty()) return;
   LF_CHECK(image_width_px >= 2 && image_height_px >= 2);
   LF_CHECK(Intersection(rect, {0, 0, image_width_px, image_height_px}) == rect);

@@ -122,6 +122,7 @@ void DemosaicReference(const LfPixels& mosaic, int image_width_px, int image_hei
                        const std::array<double, 3>& white_balance, const PixelRect& rect,
                        LfPixels* rgb) {
   *rgb = LfPixels(rect, BayerPattern::kNone);
+  rgb->recorded = mosaic.bayer;
   for (int row = 0; row < rect.height(); ++row)
     for (int column = 0; column < rect.width(); ++column) {
       const Surroundings at(mosaic, image_width_px, image_height_px, rect.x_begin + column,

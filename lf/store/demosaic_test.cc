@@ -51,6 +51,7 @@ LfPixels RgbOf(const LfPixels& mosaic, const Balance& white_balance) {
 void ExpectSame(const LfPixels& a, const LfPixels& b) {
   EXPECT_EQ(a.rect, b.rect);
   EXPECT_EQ(a.bayer, b.bayer);
+  EXPECT_EQ(a.recorded, b.recorded);
   EXPECT_EQ(a.any_masked, b.any_masked);
   EXPECT_EQ(a.radiance.pixels(), b.radiance.pixels());
 }

@@ -1,0 +1,146 @@
+// Rays through four pixels, added to their elements, several at once.
+// Internal to collection. For each instruction set Highway includes it once more.
+#if defined(LF_COLLECTION_BILINEAR_SIMD_INL_H_) == \
+    defined(HWY_TARGET_TOGGLE)  // NOLINT: Highway's guard
+#ifdef LF_COLLECTION_BILINEAR_SIMD_INL_H_
+#undef LF_COLLECTION_BILINEAR_SIMD_INL_H_
+#else
+#define LF_COLLECTION_BILINEAR_SIMD_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <cstddef>
+#include <cstdint>
+
+#include "lf/capture/lf_pixels.h"
+#include "lf/collection/gather_places_simd-inl.h"
+#include "lf/plate/tile_sums.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace lf {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Sums of 65535 * 65536 and the half that rounds just fit into 32 bits.
+constexpr uint32_t kHalf = kOne * kOne / 2;
+
+// Weights and sums are those of the elements from the first one on.
+#if HWY_TARGET == HWY_SCALAR
+
+constexpr int kRaysAtOnce = 1;
+
+template <class Weights>
+HWY_INLINE void AddRays(const Places& places, int i, const uint16_t* values, ptrdiff_t row_values,
+                        const Weights& weights, TileSums::Element* sums) {
+  const uint16_t* upper = values + static_cast<ptrdiff_t>(places.pixel[i]) * LfPixels::kRgbLanes;
+  const uint16_t* lower = upper + row_values;
+  const uint32_t right = places.left_right[i] >> 16, left = kOne - right, down = places.lower[i];
+  for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane) {
+    const int next = lane + LfPixels::kRgbLanes;
+    const uint32_t sum = (upper[lane] * left + upper[next] * right) * (kOne - down) +
+                         (lower[lane] * left + lower[next] * right) * down;
+    sums[i].rgb_rays[lane] += ((sum + kHalf) >> (2 * kWeightBits)) * weights.At(i);
+  }
+}
+template <class Weights>
+constexpr auto AddRay = AddRays<Weights>;
+
+#else
+
+using AllLanes = hn::CappedTag<uint32_t, 16>;
+using LanesOfOne = hn::Full128<uint32_t>;
+constexpr int kRaysAtOnce = static_cast<int>(hn::MaxLanes(AllLanes())) / LfPixels::kRgbLanes;
+
+// Two pixels side by side for each ray, in a block of 128 bits.
+HWY_ATTR HWY_INLINE hn::Vec<hn::Full128<uint16_t>> LoadPairs(hn::Full128<uint16_t> d,
+                                                             const uint16_t* values,
+                                                             const int32_t* pixel) {
+  return hn::LoadU(d, values + static_cast<ptrdiff_t>(pixel[0]) * LfPixels::kRgbLanes);
+}
+template <class D>
+HWY_ATTR HWY_INLINE hn::Vec<D> LoadPairs(D d, const uint16_t* values, const int32_t* pixel) {
+  const hn::Half<D> half;
+  constexpr int kBlocks = static_cast<int>(hn::MaxLanes(half)) * 2 / 16;
+  return hn::Combine(d, LoadPairs(half, values, pixel + kBlocks), LoadPairs(half, values, pixel));
+}
+
+// weights[k] in all lanes of block k.
+template <class D>
+HWY_ATTR HWY_INLINE hn::Vec<D> LoadWeights(D d, const uint32_t* weights) {
+  if constexpr (hn::MaxLanes(d) == 4) {
+    return hn::Set(d, *weights);
+  } else {
+    HWY_ALIGN static constexpr uint8_t kBytes[64] = {
+        0,  1,  2,  3,  0,  1,  2,  3,  0,  1,  2,  3,  0,  1,  2,  3,   //
+        4,  5,  6,  7,  4,  5,  6,  7,  4,  5,  6,  7,  4,  5,  6,  7,   //
+        8,  9,  10, 11, 8,  9,  10, 11, 8,  9,  10, 11, 8,  9,  10, 11,  //
+        12, 13, 14, 15, 12, 13, 14, 15, 12, 13, 14, 15, 12, 13, 14, 15};
+    const hn::Repartition<uint8_t, D> d8;
+    return hn::BitCast(
+        d, hn::TableLookupBytes(hn::BitCast(d8, hn::LoadDup128(d, weights)), hn::Load(d8, kBytes)));
+  }
+}
+
+// first * (256 - weight) + second * weight, modulo 2^32.
+template <class V>
+HWY_ATTR HWY_INLINE V Mix(V first, V second, V weight) {
+  return hn::Add(hn::ShiftLeft<kWeightBits>(first), hn::Mul(hn::Sub(second, first), weight));
+}
+
+// Of two pixels in each block, those of each lane side by side.
+template <class D16>
+HWY_ATTR HWY_INLINE hn::Vec<D16> SideBySide(D16 d16, hn::Vec<D16> pairs) {
+  HWY_ALIGN static constexpr uint8_t kBytes[16] = {0, 1, 8,  9,  2, 3, 10, 11,
+                                                   4, 5, 12, 13, 6, 7, 14, 15};
+  const hn::Repartition<uint8_t, D16> d8;
+  return hn::BitCast(d16, hn::TableLookupBytes(hn::BitCast(d8, pairs), hn::LoadDup128(d8, kBytes)));
+}
+
+// Of as many rays, from `i` on, as there are blocks in the vector.
+template <class D, class Weights>
+HWY_ATTR HWY_INLINE void AddRaysOf(D d, const Places& places, int i, const uint16_t* values,
+                                   ptrdiff_t row_values, const Weights& weights,
+                                   TileSums::Element* sums) {
+  const hn::Repartition<uint16_t, D> d16;
+  const hn::RebindToSigned<D> di;
+  const hn::RebindToSigned<decltype(d16)> di16;
+  const auto middle = hn::Set(d16, kMiddle);
+  const auto left_right = hn::BitCast(di16, LoadWeights(d, places.left_right + i));
+  const auto mix_row = [&](const uint16_t* row) HWY_ATTR {
+    const auto pairs = SideBySide(d16, LoadPairs(d16, row, places.pixel + i));
+    const auto about_0 = hn::BitCast(di16, hn::Xor(pairs, middle));
+    auto odd = hn::Zero(di);
+    const auto even = hn::ReorderWidenMulAccumulate(di, about_0, left_right, hn::Zero(di), odd);
+    return hn::BitCast(d, hn::RearrangeToOddPlusEven(even, odd));
+  };
+  const auto sum =
+      Mix(mix_row(values), mix_row(values + row_values), LoadWeights(d, places.lower + i));
+  // All weights together, 65536, times kMiddle make the highest bit.
+  constexpr uint32_t kBack = uint32_t{kMiddle} * kOne * kOne + kHalf;
+  auto rays = hn::ShiftRight<2 * kWeightBits>(hn::Add(sum, hn::Set(d, kBack)));
+  if constexpr (!Weights::kIsOne) rays = hn::Mul(rays, weights.OfPixels(d, i));
+  uint32_t* const lanes = sums[i].rgb_rays;
+  hn::StoreU(hn::Add(hn::LoadU(d, lanes), rays), d, lanes);
+}
+
+template <class Weights>
+HWY_ATTR HWY_INLINE void AddRays(const Places& places, int i, const uint16_t* values,
+                                 ptrdiff_t row_values, const Weights& weights,
+                                 TileSums::Element* sums) {
+  AddRaysOf(AllLanes(), places, i, values, row_values, weights, sums);
+}
+template <class Weights>
+HWY_ATTR HWY_INLINE void AddRay(const Places& places, int i, const uint16_t* values,
+                                ptrdiff_t row_values, const Weights& weights,
+                                TileSums::Element* sums) {
+  AddRaysOf(LanesOfOne(), places, i, values, row_values, weights, sums);
+}
+
+#endif
+
+}  // namespace HWY_NAMESPACE
+}  // namespace lf
+HWY_AFTER_NAMESPACE();
+
+#endif

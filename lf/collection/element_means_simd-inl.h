@@ -1,0 +1,142 @@
+// From the rays of several places in an element to the one that they are.
+// Internal to collection. For each instruction set Highway includes it once more.
+#if defined(LF_COLLECTION_ELEMENT_MEANS_SIMD_INL_H_) == \
+    defined(HWY_TARGET_TOGGLE)  // NOLINT: Highway's guard
+#ifdef LF_COLLECTION_ELEMENT_MEANS_SIMD_INL_H_
+#undef LF_COLLECTION_ELEMENT_MEANS_SIMD_INL_H_
+#else
+#define LF_COLLECTION_ELEMENT_MEANS_SIMD_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cstdint>
+
+#include "lf/capture/lf_pixels.h"
+#include "lf/collection/mosaic_filter.h"
+#include "lf/collection/ray_weight_simd-inl.h"
+#include "lf/plate/tile_sums.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace lf {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Adds the means of a row of elements, rounded half up, each of the up to samples^2 rays that are
+// added up on as many elements of `fine`. Returns how many.
+//
+// Quotients of numbers up to 2^24 are rounded down rightly: those next to an integer are further
+// from it than a float can tell.
+#if HWY_TARGET == HWY_SCALAR
+
+template <class Weights>
+uint64_t AddMeans(const TileSums::CountedElement* fine, int samples, int count,
+                  const Weights& weights, TileSums::CountedElement* sums) {
+  uint64_t rays = 0;
+  for (int i = 0; i < count; ++i, fine += samples) {
+    TileSums::CountedElement sum;
+    for (int k = 0; k < samples; ++k)
+      for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane) {
+        sum.rgb[lane] += fine[k].rgb[lane];
+        sum.counts[lane] += fine[k].counts[lane];
+      }
+    const uint32_t most = sum.counts[LfPixels::kRayLane];
+    if (most == 0) continue;
+    for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane) {
+      const uint32_t counted = MeanCount(sum.counts[lane], most) * weights.At(i);
+      sums[i].rgb[lane] += SharedMean(sum.rgb[lane], sum.counts[lane]) * counted;
+      sums[i].counts[lane] += counted;
+    }
+    ++rays;
+  }
+  return rays;
+}
+
+template <class Weights>
+uint64_t AddMeans(const TileSums::Element* fine, int samples, int count, const Weights& weights,
+                  TileSums::Element* sums) {
+  uint64_t rays = 0;
+  for (int i = 0; i < count; ++i, fine += samples) {
+    TileSums::Element sum;
+    for (int k = 0; k < samples; ++k)
+      for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane)
+        sum.rgb_rays[lane] += fine[k].rgb_rays[lane];
+    const uint32_t added = sum.rgb_rays[LfPixels::kRayLane];
+    if (added == 0) continue;
+    for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane)
+      sums[i].rgb_rays[lane] += (sum.rgb_rays[lane] + added / 2) / added * weights.At(i);
+    ++rays;
+  }
+  return rays;
+}
+
+#else
+
+template <class Weights>
+HWY_ATTR uint64_t AddMeans(const TileSums::CountedElement* fine, int samples, int count,
+                           const Weights& weights, TileSums::CountedElement* sums) {
+  const hn::Full128<uint32_t> du;
+  const hn::Full128<int32_t> di;
+  const hn::Full128<float> df;
+  const auto divide = [&](hn::Vec<decltype(di)> dividend, hn::Vec<decltype(di)> divisor) HWY_ATTR {
+    // Where none is added all lanes are 0.
+    const auto some = hn::Max(divisor, hn::Set(di, 1));
+    return hn::Div(hn::ConvertTo(df, dividend), hn::ConvertTo(df, some));
+  };
+  auto rays = hn::Zero(di);  // in the lane of rays, kRecordedShare times
+  for (int i = 0; i < count; ++i, fine += samples) {
+    auto rgb = hn::Load(du, fine[0].rgb), counts = hn::Load(du, fine[0].counts);
+    for (int k = 1; k < samples; ++k) {
+      rgb = hn::Add(rgb, hn::Load(du, fine[k].rgb));
+      counts = hn::Add(counts, hn::Load(du, fine[k].counts));
+    }
+    const auto all = hn::BitCast(di, counts);
+    const auto most = hn::Broadcast<LfPixels::kRayLane>(all);
+    const auto mean_count = hn::ConvertTo(
+        di, divide(hn::Add(hn::Mul(all, hn::Set(di, static_cast<int32_t>(kRecordedShare))),
+                           hn::ShiftRight<1>(most)),
+                   most));
+    rays = hn::Add(rays, mean_count);
+    const auto mean =
+        hn::ConvertTo(di, hn::Add(divide(hn::BitCast(di, rgb), all), hn::Set(df, 0.5F)));
+    auto counted = hn::BitCast(du, mean_count);
+    if constexpr (!Weights::kIsOne) counted = hn::Mul(counted, weights.OfPixels(du, i));
+    TileSums::CountedElement& sum = sums[i];
+    hn::Store(hn::Add(hn::Load(du, sum.rgb), hn::Mul(hn::BitCast(du, mean), counted)), du, sum.rgb);
+    hn::Store(hn::Add(hn::Load(du, sum.counts), counted), du, sum.counts);
+  }
+  return static_cast<uint64_t>(hn::ExtractLane(rays, LfPixels::kRayLane)) / kRecordedShare;
+}
+
+template <class Weights>
+HWY_ATTR uint64_t AddMeans(const TileSums::Element* fine, int samples, int count,
+                           const Weights& weights, TileSums::Element* sums) {
+  const hn::Full128<uint32_t> du;
+  const hn::Full128<int32_t> di;
+  const hn::Full128<float> df;
+  auto rays = hn::Zero(di);  // in the lane of rays
+  for (int i = 0; i < count; ++i, fine += samples) {
+    auto sum = hn::Load(du, fine[0].rgb_rays);
+    for (int k = 1; k < samples; ++k) sum = hn::Add(sum, hn::Load(du, fine[k].rgb_rays));
+    const auto rays_and_sums = hn::BitCast(di, sum);
+    const auto added = hn::Broadcast<LfPixels::kRayLane>(rays_and_sums);
+    const auto dividend = hn::Add(rays_and_sums, hn::ShiftRight<1>(added));
+    // Where none is added all lanes are 0.
+    const auto divisor = hn::Max(added, hn::Set(di, 1));
+    auto mean = hn::ConvertTo(di, hn::Div(hn::ConvertTo(df, dividend), hn::ConvertTo(df, divisor)));
+    rays = hn::Add(rays, mean);
+    if constexpr (!Weights::kIsOne) mean = hn::Mul(mean, hn::BitCast(di, weights.OfPixels(du, i)));
+    uint32_t* const lanes = sums[i].rgb_rays;
+    hn::Store(hn::Add(hn::Load(du, lanes), hn::BitCast(du, mean)), du, lanes);
+  }
+  return static_cast<uint64_t>(hn::ExtractLane(rays, LfPixels::kRayLane));
+}
+
+#endif
+
+}  // namespace HWY_NAMESPACE
+}  // namespace lf
+HWY_AFTER_NAMESPACE();
+
+#endif

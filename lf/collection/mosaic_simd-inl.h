@@ -1,0 +1,232 @@
+// One ray through four or sixteen pixels by the shares of mosaic_filter.h, added to its element.
+// Internal to collection. For each instruction set Highway includes it once more.
+#if defined(LF_COLLECTION_MOSAIC_SIMD_INL_H_) == \
+    defined(HWY_TARGET_TOGGLE)  // NOLINT: Highway's guard
+#ifdef LF_COLLECTION_MOSAIC_SIMD_INL_H_
+#undef LF_COLLECTION_MOSAIC_SIMD_INL_H_
+#else
+#define LF_COLLECTION_MOSAIC_SIMD_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include "lf/capture/lf_pixels.h"
+#include "lf/collection/bilinear_simd-inl.h"
+#include "lf/collection/cubic_simd-inl.h"
+#include "lf/collection/cubic_weights.h"
+#include "lf/collection/gather_places_simd-inl.h"
+#include "lf/collection/mosaic_filter.h"
+#include "lf/plate/tile_sums.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace lf {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Of one mosaic, by the phase of the upper left pixel of the inner four (Places). The last lane,
+// which counts rays, is recorded everywhere.
+struct MosaicTable {
+  // Of sixteen pixels, for columns 0 and 2, and for 1 and 3.
+  struct Columns {
+    // d k of rows 0 and 1, and of 2 and 3, side by side for each lane
+    HWY_ALIGN int16_t weights[2][2][8];
+    HWY_ALIGN int32_t counts[2][4];  // all four added up
+  };
+  Columns columns[4][kCubicSteps + 1];  // by steps down
+  // Of four: 2 k of the left and the right pixel, side by side for each lane; of both rows.
+  HWY_ALIGN uint16_t rows[4][2][8];
+
+  explicit MosaicTable(BayerPattern recorded) {
+    const auto share = [recorded](int x, int y, int lane) {
+      const bool is_colour = lane != LfPixels::kRayLane;
+      return is_colour ? RecordedShareOf(recorded, x, y, lane) : kRecordedShare;
+    };
+    for (int phase = 0; phase < 4; ++phase) {
+      const int x = phase % 2, y = phase / 2;
+      for (int row = 0; row < 2; ++row)
+        for (int i = 0; i < 8; ++i)
+          rows[phase][row][i] = static_cast<uint16_t>(2 * share(x + i % 2, y + row, i / 2));
+      for (int down = 0; down <= kCubicSteps; ++down) {
+        const CubicTaps taps = CubicTapsAt(down, kMosaicTapBits);
+        Columns& of_step = columns[phase][down];
+        for (int column = 0; column < 2; ++column)
+          for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane) {
+            of_step.counts[column][lane] = 0;
+            for (int row = 0; row < 4; ++row) {
+              // The sixteen begin a pixel before the four: at the other phase.
+              const int32_t weight =
+                  taps[row] * static_cast<int32_t>(share(x + 1 + column, y + 1 + row, lane));
+              of_step.weights[column][row / 2][2 * lane + row % 2] = static_cast<int16_t>(weight);
+              of_step.counts[column][lane] += weight;
+            }
+          }
+      }
+    }
+  }
+};
+
+inline const MosaicTable& TableOfMosaic(BayerPattern recorded) {
+  static const MosaicTable tables[] = {
+      MosaicTable(BayerPattern::kNone), MosaicTable(BayerPattern::kRggb),
+      MosaicTable(BayerPattern::kBggr), MosaicTable(BayerPattern::kGrbg),
+      MosaicTable(BayerPattern::kGbrg)};
+  return tables[static_cast<int>(recorded)];
+}
+
+// a_x a_y k / 2^9 is the upper half of 64 a_x times 2 a_y k.
+constexpr int kSideShift = 16 - kShareShift - 1;
+
+// Each adds ray i of the places to the i-th element.
+#if HWY_TARGET == HWY_SCALAR
+
+//   upper  the upper left of four pixels
+template <class Weights>
+HWY_INLINE void AddMosaicRay(const MosaicTable& table, const Places& places, int i,
+                             const uint16_t* upper, ptrdiff_t row_values, const Weights& weights,
+                             TileSums::CountedElement* sums) {
+  const uint32_t sides[] = {(places.left_right[i] & 0xFFFF) << kSideShift,
+                            (places.left_right[i] >> 16) << kSideShift};
+  const uint32_t row_weights[] = {kOne - places.lower[i], places.lower[i]};
+  const auto& shares = table.rows[places.phase[i]];
+  for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane) {
+    uint32_t sum = 0, count = 0;
+    for (int row = 0; row < 2; ++row)
+      for (int side = 0; side < 2; ++side) {
+        const uint32_t t = (sides[side] * (row_weights[row] * shares[row][2 * lane + side])) >> 16;
+        sum += t * upper[row * row_values + side * LfPixels::kRgbLanes + lane];
+        count += t;
+      }
+    const uint32_t rays = ((count + (1 << (kShareBits - 1))) >> kShareBits) * weights.At(i);
+    sums[i].rgb[lane] += SharedMean(sum, count) * rays;
+    sums[i].counts[lane] += rays;
+  }
+}
+
+//   first  of sixteen pixels
+template <class Weights>
+HWY_INLINE void AddCubicMosaicRay(const CubicTables& cubics, const MosaicTable& table,
+                                  const Places& places, int i, const uint16_t* first,
+                                  ptrdiff_t row_values, const Weights& weights,
+                                  TileSums::CountedElement* sums) {
+  const MosaicTable::Columns& columns = table.columns[places.phase[i]][places.lower[i]];
+  const int32_t* const right = cubics.right[places.left_right[i] >> 16];
+  for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane) {
+    int32_t sum = 0, count = 0;
+    for (int k = 0; k < 4; ++k) {
+      int32_t column = 1 << (kMosaicColumnShift - 1);
+      for (int row = 0; row < 4; ++row)
+        column += columns.weights[k % 2][row / 2][2 * lane + row % 2] *
+                  (first[row * row_values + k * LfPixels::kRgbLanes + lane] - kMiddle);
+      const int32_t across = right[CubicTables::kPlaces[k]];
+      sum += across * (column >> kMosaicColumnShift);
+      count += across * columns.counts[k % 2][lane];
+    }
+    const auto rays =
+        static_cast<uint32_t>((count + (1 << (kMosaicCountBits - 1))) >> kMosaicCountBits) *
+        weights.At(i);
+    sums[i].rgb[lane] += CubicMosaicValue(sum, count) * rays;
+    sums[i].counts[lane] += rays;
+  }
+}
+
+#else
+
+// Of numbers from 0 to 2^22.
+HWY_ATTR HWY_INLINE hn::Vec<hn::Full128<int32_t>> RoundedDown(hn::Vec<hn::Full128<float>> v) {
+  const hn::Full128<int32_t> di;
+  const hn::Full128<float> df;
+  const auto whole = hn::Add(hn::Floor(v), hn::Set(df, kWhole));
+  return hn::Sub(hn::BitCast(di, whole), hn::Set(di, std::bit_cast<int32_t>(kWhole)));
+}
+
+// value: whole numbers of 16 bits; rays: what each counts.
+template <class Weights>
+HWY_ATTR HWY_INLINE void AddCounted(hn::Vec<hn::Full128<int32_t>> value,
+                                    hn::Vec<hn::Full128<int32_t>> rays, const Weights& weights,
+                                    int i, TileSums::CountedElement* sums) {
+  const hn::Full128<uint32_t> du;
+  auto counted = hn::BitCast(du, rays);
+  if constexpr (!Weights::kIsOne) counted = hn::Mul(counted, weights.OfPixels(du, i));
+  TileSums::CountedElement& element = sums[i];
+  hn::Store(hn::Add(hn::Load(du, element.rgb), hn::Mul(hn::BitCast(du, value), counted)), du,
+            element.rgb);
+  hn::Store(hn::Add(hn::Load(du, element.counts), counted), du, element.counts);
+}
+
+//   upper  the upper left of four pixels
+template <class Weights>
+HWY_ATTR HWY_INLINE void AddMosaicRay(const MosaicTable& table, const Places& places, int i,
+                                      const uint16_t* upper, ptrdiff_t row_values,
+                                      const Weights& weights, TileSums::CountedElement* sums) {
+  const hn::Full128<uint32_t> du;
+  const hn::Full128<int32_t> di;
+  const hn::Full128<float> df;
+  const hn::Full128<uint16_t> d16;
+  const hn::Full128<int16_t> di16;
+  const auto middle = hn::Set(d16, kMiddle);
+  const auto one = hn::Set(di16, 1);
+  const auto sides = hn::ShiftLeft<kSideShift>(hn::BitCast(d16, hn::Set(du, places.left_right[i])));
+  const auto& shares = table.rows[places.phase[i]];
+  auto sum = hn::Zero(di), sum_odd = hn::Zero(di), count = hn::Zero(di), count_odd = hn::Zero(di);
+  const auto add = [&](uint32_t row_weight, const uint16_t* share, const uint16_t* row) HWY_ATTR {
+    const auto weight = hn::Set(d16, static_cast<uint16_t>(row_weight));
+    const auto t = hn::BitCast(di16, hn::MulHigh(sides, hn::Mul(weight, hn::Load(d16, share))));
+    const auto values = hn::BitCast(di16, hn::Xor(SideBySide(d16, hn::LoadU(d16, row)), middle));
+    sum = hn::ReorderWidenMulAccumulate(di, values, t, sum, sum_odd);
+    count = hn::ReorderWidenMulAccumulate(di, one, t, count, count_odd);
+  };
+  add(kOne - places.lower[i], shares[0], upper);
+  add(places.lower[i], shares[1], upper + row_values);
+  const auto all_t = hn::RearrangeToOddPlusEven(count, count_odd);
+  const auto all_values =
+      hn::Add(hn::RearrangeToOddPlusEven(sum, sum_odd), hn::ShiftLeft<15>(all_t));
+  const auto quotient = hn::Div(hn::ConvertTo(df, all_values), hn::ConvertTo(df, all_t));
+  const auto half = hn::Set(di, 1 << (kShareBits - 1));
+  AddCounted(RoundedDown(hn::Add(quotient, hn::Set(df, 0.5F))),
+             hn::ShiftRight<kShareBits>(hn::Add(all_t, half)), weights, i, sums);
+}
+
+//   first  of sixteen pixels
+template <class Weights>
+HWY_ATTR HWY_INLINE void AddCubicMosaicRay(const CubicTables& cubics, const MosaicTable& table,
+                                           const Places& places, int i, const uint16_t* first,
+                                           ptrdiff_t row_values, const Weights& weights,
+                                           TileSums::CountedElement* sums) {
+  const hn::Full128<int32_t> di;
+  const hn::Full128<float> df;
+  const hn::Repartition<int16_t, SixteenTag> d16;
+  const MosaicTable::Columns& columns = table.columns[places.phase[i]][places.lower[i]];
+  const int32_t* const right = cubics.right[places.left_right[i] >> 16];
+  ColumnWeights<hn::Vec<decltype(d16)>> down;
+  for (int pair = 0; pair < 2; ++pair) {
+    down.low[pair] = hn::LoadDup128(d16, columns.weights[0][pair]);
+    down.high[pair] = hn::LoadDup128(d16, columns.weights[1][pair]);
+  }
+  const auto sum = MixSixteen<kMosaicColumnShift>(SixteenTag(), down, right, first, row_values);
+  const auto counts = [&](int column) HWY_ATTR {
+    const int32_t* const other = right + CubicTables::kPlaces[column + 2];
+    const auto across =
+        hn::Add(hn::Load(di, right + CubicTables::kPlaces[column]), hn::Load(di, other));
+    return hn::Mul(across, hn::Load(di, columns.counts[column]));
+  };
+  const auto count = hn::Add(counts(0), counts(1));
+  const auto quotient = hn::Div(hn::ConvertTo(df, sum), hn::ConvertTo(df, count));
+  const auto value =
+      hn::Add(hn::Mul(quotient, hn::Set(df, 1 << kMosaicColumnShift)), hn::Set(df, 32768.5F));
+  const auto clipped = hn::Min(hn::Max(value, hn::Zero(df)), hn::Set(df, 65535.0F));
+  const auto half = hn::Set(di, 1 << (kMosaicCountBits - 1));
+  AddCounted(RoundedDown(clipped), hn::ShiftRight<kMosaicCountBits>(hn::Add(count, half)), weights,
+             i, sums);
+}
+
+#endif
+
+}  // namespace HWY_NAMESPACE
+}  // namespace lf
+HWY_AFTER_NAMESPACE();
+
+#endif
