@@ -21,6 +21,9 @@ PEERS = {"thesis": "thesis's loop", "thesis_native": "the same, -march=native", 
          "reference": "reference"}
 
 
+ALL = ".*"
+
+
 def run(build, rounds, cases):
     """{case: {contender: [ns per ray of round 0, 1, ...]}}, {case: how our frame differs from the
     reference's}, and what was compiled with"""
@@ -131,7 +134,7 @@ def main():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=pathlib.Path, nargs="?")
     parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--cases", default=".*")
+    parser.add_argument("--cases", default=ALL, help="a table of its own (default: %(default)s)")
     results.add_options(parser)
     arguments = parser.parse_args()
     if arguments.again:
@@ -148,7 +151,10 @@ def main():
         [results.sentence(record) + f" {record['compiler']}; one thread, CPU time, median "
          f"(least-largest) of {record['rounds']} interleaved rounds.", ""] +
         table(record["ns_per_ray"]) + target_table(record["ns_per_ray"]) + [""] + goals(record)) + "\n"
-    results.publish(arguments, "kernel_table.py", record, text)
+    script = "kernel_table.py"
+    if arguments.cases != ALL:
+        script += f" --cases '{arguments.cases}'"
+    results.publish(arguments, script, record, text)
 
 
 if __name__ == "__main__":
