@@ -20,6 +20,7 @@ OWNERS = {
     "hwy/": {"collection", "store"},
     "zstd": {"plate"},
     "xxhash": {"core"},
+    "sqlite3": {"database"},
     "CLI/": set(),
 }
 

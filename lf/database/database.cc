@@ -1,0 +1,240 @@
+#include "lf/database/database.h"
+
+#include <fmt/format.h>
+#include <sqlite3.h>
+
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "lf/core/hash.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int kPageBytes = 65536;
+constexpr int kMaxBlobBytes = 1 << 30;
+constexpr size_t kHashBytes = sizeof(uint64_t);
+
+// The checksum as bytes, the least first.
+std::string HashText(std::string_view bytes) {
+  std::string text(kHashBytes, '\0');
+  const uint64_t hash = HashBytes(bytes);
+  for (size_t i = 0; i < kHashBytes; ++i) text[i] = static_cast<char>(hash >> (8 * i) & 0xFF);
+  return text;
+}
+
+// The path as SQLite's URI wants it.
+std::string UriOf(const fs::path& path) {
+  std::string uri = "file:";
+  for (const char c : fs::absolute(path).string()) {
+    if (c == '%' || c == '?' || c == '#')
+      uri += fmt::format("%{:02x}", static_cast<unsigned char>(c));
+    else
+      uri += c;
+  }
+  return uri + "?immutable=1";
+}
+
+}  // namespace
+
+struct Database::State {
+  sqlite3* handle = nullptr;
+  std::string name;  // for messages
+  std::string what;
+  ErrorKind kind = ErrorKind::kInput;
+
+  ~State() { sqlite3_close(handle); }
+
+  Error Fault(std::string_view message) const {
+    return {kind, fmt::format("{}: {}", name, message)};
+  }
+  // What SQLite has said last.
+  Error Failed() const {
+    if (kind == ErrorKind::kOutput)
+      return Fault(fmt::format("cannot be written: {}", sqlite3_errmsg(handle)));
+    return Fault(fmt::format("is no {}, or a damaged one: {}", what, sqlite3_errmsg(handle)));
+  }
+};
+
+struct Statement::State {
+  sqlite3_stmt* handle = nullptr;
+  std::shared_ptr<Database::State> database;
+  bool fresh = true;  // bound since the last run
+
+  ~State() { sqlite3_finalize(handle); }
+};
+
+Statement::Statement(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Statement::Statement(Statement&&) noexcept = default;
+Statement& Statement::operator=(Statement&&) noexcept = default;
+Statement::~Statement() = default;
+
+Statement& Statement::Bind(int parameter, int64_t value) {
+  LF_CHECK(sqlite3_bind_int64(state_->handle, parameter + 1, value) == SQLITE_OK);
+  return *this;
+}
+
+Statement& Statement::Bind(int parameter, double value) {
+  LF_CHECK(sqlite3_bind_double(state_->handle, parameter + 1, value) == SQLITE_OK);
+  return *this;
+}
+
+Statement& Statement::Bind(int parameter, std::string_view text) {
+  LF_CHECK(sqlite3_bind_text64(state_->handle, parameter + 1, text.data(), text.size(),
+                               SQLITE_TRANSIENT, SQLITE_UTF8) == SQLITE_OK);
+  return *this;
+}
+
+Statement& Statement::BindBlob(int parameter, std::string_view bytes) {
+  const std::string stored = std::string(bytes) + HashText(bytes);
+  LF_CHECK(sqlite3_bind_blob64(state_->handle, parameter + 1, stored.data(), stored.size(),
+                               SQLITE_TRANSIENT) == SQLITE_OK);
+  return *this;
+}
+
+Result<bool> Statement::Step() {
+  const int code = sqlite3_step(state_->handle);
+  if (code == SQLITE_ROW) return true;
+  const Error error = code == SQLITE_DONE ? Error() : state_->database->Failed();
+  sqlite3_reset(state_->handle);
+  if (code == SQLITE_DONE) return false;
+  return error;
+}
+
+Result<void> Statement::Run() {
+  LF_ASSIGN_OR_RETURN(const bool has_row, Step());
+  LF_CHECK(!has_row);
+  return {};
+}
+
+Error Statement::Wrong(int column, std::string_view found, std::string_view expected) const {
+  return state_->database->Fault(fmt::format("is damaged: {} in column {}, expected {}", found,
+                                             sqlite3_column_name(state_->handle, column),
+                                             expected));
+}
+
+Result<int64_t> Statement::Integer(int column) const {
+  return Integer(column, INT64_MIN, INT64_MAX);
+}
+
+Result<int64_t> Statement::Integer(int column, int64_t low, int64_t high) const {
+  if (sqlite3_column_type(state_->handle, column) != SQLITE_INTEGER)
+    return Wrong(column, "something else", "a whole number");
+  const int64_t value = sqlite3_column_int64(state_->handle, column);
+  if (value < low || value > high)
+    return Wrong(column, fmt::format("{}", value), fmt::format("{} to {}", low, high));
+  return value;
+}
+
+Result<double> Statement::Real(int column) const {
+  const int type = sqlite3_column_type(state_->handle, column);
+  const double value = sqlite3_column_double(state_->handle, column);
+  if ((type != SQLITE_FLOAT && type != SQLITE_INTEGER) || !std::isfinite(value))
+    return Wrong(column, "something else", "a finite number");
+  return value;
+}
+
+Result<std::string> Statement::Text(int column) const {
+  if (sqlite3_column_type(state_->handle, column) != SQLITE_TEXT)
+    return Wrong(column, "something else", "text");
+  const auto* const text =
+      reinterpret_cast<const char*>(sqlite3_column_text(state_->handle, column));
+  const auto size = static_cast<size_t>(sqlite3_column_bytes(state_->handle, column));
+  return std::string(text, size);
+}
+
+Result<std::string_view> Statement::Blob(int column) const {
+  if (sqlite3_column_type(state_->handle, column) != SQLITE_BLOB)
+    return Wrong(column, "something else", "bytes");
+  const auto* const data = static_cast<const char*>(sqlite3_column_blob(state_->handle, column));
+  const auto size = static_cast<size_t>(sqlite3_column_bytes(state_->handle, column));
+  if (size < kHashBytes) return Wrong(column, fmt::format("{} bytes", size), "8 and more");
+  const std::string_view stored(data, size), bytes = stored.substr(0, size - kHashBytes);
+  if (HashText(bytes) != stored.substr(bytes.size()))
+    return Wrong(column, "bytes of another checksum", "the one that was written");
+  return bytes;
+}
+
+Database::Database(std::shared_ptr<State> state) : state_(std::move(state)) {}
+Database::Database(Database&&) noexcept = default;
+Database& Database::operator=(Database&&) noexcept = default;
+Database::~Database() = default;
+
+Error Database::Fault(std::string_view message) const { return state_->Fault(message); }
+
+Result<void> Database::Execute(const std::string& sql) {
+  if (sqlite3_exec(state_->handle, sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK)
+    return state_->Failed();
+  return {};
+}
+
+Result<Statement> Database::Prepare(const std::string& sql) {
+  auto statement = std::make_unique<Statement::State>();
+  statement->database = state_;
+  const auto size = static_cast<int>(sql.size());
+  if (sqlite3_prepare_v2(state_->handle, sql.data(), size, &statement->handle, nullptr) !=
+      SQLITE_OK)
+    return state_->Failed();
+  return Statement(std::move(statement));
+}
+
+Result<Database> Database::Create(const fs::path& path, const DatabaseFormat& format) {
+  auto state = std::make_shared<State>();
+  state->name = path.string();
+  state->what = format.name;
+  state->kind = ErrorKind::kOutput;
+  std::error_code ignored;
+  fs::remove(path, ignored);
+  constexpr int kFlags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX;
+  if (sqlite3_open_v2(path.c_str(), &state->handle, kFlags, nullptr) != SQLITE_OK)
+    return state->Failed();
+  Database database(std::move(state));
+  // The file has a temporary name and is flushed when it is whole: no journal is needed.
+  LF_RETURN_IF_ERROR(database.Execute(
+      fmt::format("pragma page_size = {}; pragma journal_mode = off; pragma synchronous = off; "
+                  "pragma application_id = {}; pragma user_version = {};",
+                  kPageBytes, static_cast<int32_t>(format.application_id), format.version)));
+  return database;
+}
+
+Result<Database> Database::Open(const fs::path& path, const DatabaseFormat& format) {
+  auto state = std::make_shared<State>();
+  state->name = path.string();
+  state->what = format.name;
+  std::error_code error;
+  if (!fs::exists(path, error)) return state->Fault("no such file");
+  if (!fs::is_regular_file(path, error)) return state->Fault("is no file");
+  constexpr int kFlags = SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX;
+  if (sqlite3_open_v2(UriOf(path).c_str(), &state->handle, kFlags, nullptr) != SQLITE_OK)
+    return state->Fault(fmt::format("cannot be read: {}", sqlite3_errmsg(state->handle)));
+  // Files of others: nothing in them is run, and sizes are checked before anything is allocated.
+  sqlite3_db_config(state->handle, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+  sqlite3_db_config(state->handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+  sqlite3_limit(state->handle, SQLITE_LIMIT_LENGTH, kMaxBlobBytes);
+  Database database(std::move(state));
+  LF_RETURN_IF_ERROR(database.Execute("pragma cell_size_check = on; pragma mmap_size = 0;"));
+  const auto pragma = [&](const char* name) -> Result<int64_t> {
+    LF_ASSIGN_OR_RETURN(Statement statement, database.Prepare(fmt::format("pragma {}", name)));
+    LF_ASSIGN_OR_RETURN(const bool has_row, statement.Step());
+    if (!has_row) return database.Fault(fmt::format("is no {}", format.name));
+    return statement.Integer(0);
+  };
+  LF_ASSIGN_OR_RETURN(const int64_t id, pragma("application_id"));
+  if (id != static_cast<int32_t>(format.application_id))
+    return database.Fault(
+        fmt::format("is no {} (another SQLite file, application_id {})", format.name, id));
+  LF_ASSIGN_OR_RETURN(const int64_t version, pragma("user_version"));
+  if (version > format.version)
+    return database.Fault(
+        fmt::format("is a {} of version {}, which a newer lfrendertools has written; this one "
+                    "knows version {}",
+                    format.name, version, format.version));
+  if (version < format.version)
+    return database.Fault(fmt::format("is a {} of version {}, which is too old: make it again",
+                                      format.name, version));
+  return database;
+}
+
+}  // namespace lf
