@@ -85,7 +85,7 @@ inline SensorPlate CollectFrame(const LightField& field, const LfImageStore& sto
   const std::vector<RenderCamera> frames = {frame};
   std::vector<SensorPlate> plates;
   plates.emplace_back(frame.pinhole.intrinsics.width_px, frame.pinhole.intrinsics.height_px);
-  const auto images = SelectImages(field, frames, {}, pool);
+  const auto images = SelectImages(ImageIndex(field), frames, {}, pool);
   const auto statistics = Collect(field, store, frames, images, {}, pool, &plates, nullptr);
   LF_CHECK(statistics.has_value());
   return std::move(plates[0]);

@@ -52,8 +52,7 @@ std::vector<PixelForm> LensHalfPlanes(const RayForms& forms, const RenderCamera&
   const double margin_w = relative_margin * render_camera.aperture.radius_w;
   std::vector<PixelForm> half_planes;
   for (const ApertureEdge& edge : Edges(render_camera.aperture))
-    half_planes.push_back(edge.normal.x() * forms.lens_right + edge.normal.y() * forms.lens_up -
-                          (edge.distance_w + margin_w) * forms.forward);
+    half_planes.push_back(LensHalfPlane(forms, edge, margin_w));
   return half_planes;
 }
 

@@ -10,6 +10,7 @@
 
 #include <vector>
 
+#include "lf/camera/aperture.h"
 #include "lf/camera/pinhole.h"
 #include "lf/camera/render_camera.h"
 #include "lf/core/geometry.h"
@@ -37,8 +38,12 @@ RayForms MakeRayForms(const PinholeCamera& lf_camera, const RenderCamera& render
 std::vector<PixelForm> PlateHalfPlanes(const RayForms& forms, const RenderCamera& render_camera,
                                        int plane_sign, double margin_px);
 
-// The edges of the lens polygon, for a disk of its circumscribed 16-gon, grown by a share of the
-// radius. Valid where the rays run forward.
+// An edge of the lens polygon (for a disk, of its circumscribed 16-gon), moved outwards by
+// margin_w; and all of them, moved by a share of the radius. Valid where the rays run forward.
+inline PixelForm LensHalfPlane(const RayForms& forms, const ApertureEdge& edge, double margin_w) {
+  return edge.normal.x() * forms.lens_right + edge.normal.y() * forms.lens_up -
+         (edge.distance_w + margin_w) * forms.forward;
+}
 std::vector<PixelForm> LensHalfPlanes(const RayForms& forms, const RenderCamera& render_camera,
                                       double relative_margin);
 

@@ -5,8 +5,8 @@
 
 #include <optional>
 
-#include "lf/camera/distortion.h"
 #include "lf/camera/pinhole.h"
+#include "lf/camera/ray_through.h"
 #include "lf/camera/render_camera.h"
 #include "lf/core/geometry.h"
 
@@ -17,8 +17,8 @@ class GatherLaw {
   // render_camera  with the finer plate, where an element's ray is the mean of several
   GatherLaw(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
 
-  // The direction, in axes of the LF camera, of the ray that element (x, y) asks for; none if it
-  // has no focus point before the lens, or the ray misses the lens.
+  // The direction, in the world, of the ray that element (x, y) asks for; none if it has no focus
+  // point before the lens, or the ray misses the lens.
   std::optional<Vec3> Direction(int x, int y) const;
 
   // Where the LF camera records it, in pixels; none unless the four pixels around are in the image
@@ -29,12 +29,11 @@ class GatherLaw {
   bool may_lack_rays() const { return may_lack_rays_; }
 
  private:
-  PinholeCamera lf_camera_;
   RenderCamera render_camera_;
-  Vec3 centre_, offset_;  // c, c - c'
   Vec3 forward_, right_, up_;
+  RayThrough ray_;
+  Vec3 offset_;  // c - c'
   ApertureTest aperture_;
-  DistortionMap map_;
   bool may_lack_rays_ = false;
 };
 

@@ -6,25 +6,9 @@
 
 #include "lf/camera/distortion.h"
 #include "lf/camera/ideal_pixels.h"
+#include "lf/camera/ray_through.h"
 
 namespace lf {
-namespace {
-
-// Where the LF camera records what the element position sees of the focus plane, inside its image
-// or not; in pixels.
-std::optional<Vec2> RecordedAt(const PinholeCamera& lf_camera, const DistortionMap& map,
-                               const RenderCamera& render_camera, double x, double y) {
-  const std::optional<Vec3> focus_point = FocusPointOfElement(render_camera, x, y);
-  if (!focus_point) return std::nullopt;
-  Vec3 d = *focus_point - lf_camera.CentreWorld();
-  if (render_camera.pinhole.ForwardWorld().dot(d) < 0) d = -d;
-  const std::optional<Vec2> recorded = map.Distort(lf_camera.cam_from_world.rotation * d);
-  if (!recorded) return std::nullopt;
-  return (lf_camera.intrinsics.Matrix() * Vec3(recorded->x(), recorded->y(), 1)).head<2>();
-}
-
-}  // namespace
-
 const char* NameOf(PixelFilter filter) {
   constexpr const char* kNames[] = {"auto", "nearest", "bilinear", "bicubic", "mosaic"};
   return kNames[static_cast<int>(filter)];
@@ -33,13 +17,16 @@ const char* NameOf(PixelFilter filter) {
 double Magnification(const PinholeCamera& lf_camera, const RenderCamera& render_camera) {
   const Intrinsics& k = lf_camera.intrinsics;
   const Intrinsics& plate = render_camera.pinhole.intrinsics;
-  const DistortionMap map(k.distortion);
+  const RayThrough ray(lf_camera, render_camera.pinhole.ForwardWorld());
   double densest_held = 0, densest = 0;  // LF pixels per element
   for (const double v : {0.1, 0.5, 0.9})
     for (const double u : {0.1, 0.5, 0.9}) {
       const double x = u * plate.width_px, y = v * plate.height_px;
-      const auto at = [&](double dx, double dy) {
-        return RecordedAt(lf_camera, map, render_camera, x + dx, y + dy);
+      // Where the LF camera records what is seen there of the focus plane.
+      const auto at = [&](double dx, double dy) -> std::optional<Vec2> {
+        const std::optional<Vec3> point = FocusPointOfElement(render_camera, x + dx, y + dy);
+        if (!point) return std::nullopt;
+        return ray.RecordedAt(ray.DirectionWorld(*point));
       };
       const auto middle = at(0, 0), left = at(-0.5, 0), right = at(0.5, 0), above = at(0, -0.5),
                  below = at(0, 0.5);

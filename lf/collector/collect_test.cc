@@ -22,7 +22,7 @@ Outcome CollectAll(const NoiseStore& store, int threads, CollectOptions options,
   static const LightField field = testing::NoiseField();
   static const std::vector<RenderCamera> frames = NoiseFrames();
   ThreadPool pool(threads);
-  std::vector<SelectedImage> images = SelectImages(field, frames, {seed}, pool);
+  std::vector<SelectedImage> images = SelectImages(ImageIndex(field, seed), frames, {}, pool);
   std::erase_if(images, [&](const SelectedImage& image) {
     return std::count(left_out.begin(), left_out.end(), image.id.value) > 0;
   });
@@ -51,7 +51,7 @@ std::vector<SensorPlate> CollectDistorted(int threads, const CollectOptions& opt
   const std::vector<RenderCamera> frames = NoiseFrames();
   ThreadPool pool(threads);
   const std::vector<SelectedImage> images =
-      SelectImages(field, frames, {0, ReachOf(options.reading.estimator)}, pool);
+      SelectImages(ImageIndex(field), frames, {.reach = ReachOf(options.reading.estimator)}, pool);
   std::vector<SensorPlate> plates;
   for (size_t i = 0; i < frames.size(); ++i) plates.emplace_back(80, 60);
   const auto statistics =
@@ -80,7 +80,7 @@ TEST(Collect, FramesThatPassByTakeWhatTheyTakeAlone) {
   options.plan_bytes = 1;
   const auto collect = [&](std::span<const RenderCamera> some, std::vector<SensorPlate>* plates) {
     for (size_t f = 0; f < some.size(); ++f) plates->emplace_back(80, 60);
-    const std::vector<SelectedImage> images = SelectImages(field, some, {}, pool);
+    const std::vector<SelectedImage> images = SelectImages(ImageIndex(field), some, {}, pool);
     return Collect(field, NoiseStore(), some, images, options, pool, plates, nullptr)->frames;
   };
   std::vector<SensorPlate> plates;

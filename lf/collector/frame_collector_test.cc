@@ -18,7 +18,7 @@ struct Job {
   const LightField field = testing::NoiseField(kSide);
   const std::vector<RenderCamera> frames = testing::NoiseFrames();
   ThreadPool pool{2};
-  const std::vector<SelectedImage> order = SelectImages(field, frames, {3, PixelReach::kOwn}, pool);
+  const std::vector<SelectedImage> order = SelectImages(ImageIndex(field, 3), frames, {}, pool);
   testing::NoiseStore store;
   CollectOptions options;
   std::vector<SensorPlate> plates = EmptyPlates();

@@ -4,60 +4,65 @@
 #include <cmath>
 #include <vector>
 
-#include "lf/camera/distortion.h"
+#include "lf/camera/ray_through.h"
 
 namespace lf {
 namespace {
 
-// Which points of the world are in the picture of an LF camera.
-class LfView {
- public:
-  LfView(const PinholeCamera& lf_camera, const RenderCamera& frame)
-      : k_(lf_camera.intrinsics),
-        cam_from_world_(lf_camera.cam_from_world),
-        centre_(lf_camera.CentreWorld()),
-        forward_(frame.pinhole.ForwardWorld()),
-        map_(k_.distortion) {}
+// Whether what is at the point is in the picture of the LF camera.
+bool Holds(const RayThrough& ray, const Vec3& point_world) {
+  const std::optional<Vec2> p = ray.RecordedAt(ray.DirectionWorld(point_world));
+  const Intrinsics& k = ray.intrinsics();
+  return p && p->x() >= 0 && p->x() <= k.width_px && p->y() >= 0 && p->y() <= k.height_px;
+}
 
-  // On the line through it, which runs forward (doc/ray.md, 2).
-  bool Holds(const Vec3& point) const {
-    Vec3 d = point - centre_;
-    if (forward_.dot(d) < 0) d = -d;
-    const std::optional<Vec2> recorded = map_.Distort(cam_from_world_.rotation * d);
-    if (!recorded) return false;
-    const double x = k_.fx_px * recorded->x() + k_.skew_px * recorded->y() + k_.cx_px;
-    const double y = k_.fy_px * recorded->y() + k_.cy_px;
-    return x >= 0 && x <= k_.width_px && y >= 0 && y <= k_.height_px;
+// Of the LF cameras that see the middle of the plate through the lens, or, if these are few,
+// through one that a dozen see it through.
+std::vector<Vec3> CentresAroundLens(const ImageIndex& index, const RenderCamera& frame) {
+  const Intrinsics& k = frame.pinhole.intrinsics;
+  const std::optional<Vec3> focus = FocusPointOfElement(frame, 0.5 * k.width_px, 0.5 * k.height_px);
+  if (!focus) return {};
+  RenderCamera middle = frame;
+  middle.pinhole.intrinsics.cx_px -= 0.5 * k.width_px;
+  middle.pinhole.intrinsics.cy_px -= 0.5 * k.height_px;
+  middle.pinhole.intrinsics.width_px = middle.pinhole.intrinsics.height_px = 0;
+  const CameraTree& tree = index.tree();
+  // From a thousandth of how far it is to what is in focus to a million times that.
+  constexpr int kDoublings = 30;
+  double radius_w =
+      std::max(frame.aperture.radius_w, 1e-3 * (*focus - frame.pinhole.CentreWorld()).norm());
+  std::vector<Vec3> centres;
+  for (int i = 0; i < kDoublings; ++i, radius_w *= 2) {
+    middle.aperture = {radius_w, 0, 0};
+    centres.clear();
+    size_t count = 0;
+    tree.ForEachLeaf(SeenRegion(middle), std::nullopt, [&](size_t leaf, bool /*all_inside*/) {
+      for (const LfImageId id : tree.Leaf(leaf)) {
+        centres.push_back(index.light_field().Camera(id).CentreWorld());
+        count += LensPointOfLine(frame, centres.back(), *focus).norm() <= radius_w;
+      }
+    });
+    if (count >= kCamerasAround) return centres;
   }
-
- private:
-  Intrinsics k_;
-  RigidTransform cam_from_world_;
-  Vec3 centre_;
-  Vec3 forward_;
-  DistortionMap map_;
-};
+  return centres;
+}
 
 }  // namespace
 
-FrameLens::FrameLens(const LightField& light_field, const RenderCamera& frame, LensWeights kind,
+FrameLens::FrameLens(const ImageIndex& index, const RenderCamera& frame, LensWeights kind,
                      const SelectOptions& select, ThreadPool& pool)
-    : light_field_(light_field), camera_(frame) {
+    : light_field_(index.light_field()), camera_(frame) {
   if (kind == LensWeights::kNone) return;
-  std::vector<Vec3> centres;
-  centres.reserve(light_field.size());
-  for (const LfCamera& camera : light_field.cameras)
-    centres.push_back(camera.cam_from_world.Inverse().translation);
+  const double distance_w = CameraDistance(frame, CentresAroundLens(index, frame));
   RenderCamera grown = frame;
-  grown.aperture = {frame.aperture.radius_w + kReach_distances * CameraDistance(frame, centres), 0,
-                    0};
-  for (const SelectedImage& image : SelectImages(light_field, std::span(&grown, 1), select, pool))
+  grown.aperture = {frame.aperture.radius_w + kReach_distances * distance_w, 0, 0};
+  for (const SelectedImage& image : SelectImages(index, std::span(&grown, 1), select, pool))
     cameras_[image.id.value] = 0;
   // In the order of their numbers: the order in which images are taken has no say in weights.
   std::vector<Vec3> near;
   for (auto& [id, camera] : cameras_) {
     camera = near.size();
-    near.push_back(centres[id]);
+    near.push_back(light_field_.Camera(LfImageId{id}).CentreWorld());
   }
   weights_.emplace(frame, near, kind, pool);
   // A little more, so that what lies on the rim is inside.
@@ -98,11 +103,11 @@ Image<float> FrameLens::EffectiveCounts() const {
                                           element(row, plate.height_px) + 0.5));
   for (const auto& [id, camera] : cameras_) {
     if (!weights_->TakesPart(camera)) continue;
-    const LfView view(light_field_.Camera(LfImageId{id}), camera_);
+    const RayThrough ray(light_field_.Camera(LfImageId{id}), camera_.pinhole.ForwardWorld());
     for (int row = 0; row < sums.height(); ++row)
       for (int column = 0; column < sums.width(); ++column) {
         const std::optional<Vec3>& point = focus[static_cast<size_t>(row) * sums.width() + column];
-        if (!point || !view.Holds(*point)) continue;
+        if (!point || !Holds(ray, *point)) continue;
         const double weight =
             weights_->At(camera, element(column, plate.width_px), element(row, plate.height_px));
         sums.at(column, row, 0) += weight;

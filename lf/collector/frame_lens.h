@@ -25,7 +25,7 @@ class FrameLens {
 
   // kArea wants a lens of some size.
   // Refers to the light field.
-  FrameLens(const LightField& light_field, const RenderCamera& frame, LensWeights kind,
+  FrameLens(const ImageIndex& index, const RenderCamera& frame, LensWeights kind,
             const SelectOptions& select, ThreadPool& pool);
 
   // The frame's; with weights its lens is the disk that holds all rays that have one.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "lf/collection/scatter.h"
 #include "lf/collector/collect.h"
 #include "lf/collector/test_noise_field.h"
 
@@ -25,9 +26,8 @@ std::vector<SensorPlate> Collected(const LightField& field, const std::vector<Fr
                         cameras.back().pinhole.intrinsics.height_px);
   }
   SelectOptions select;
-  select.seed = seed;
   select.reach = ReachOf(estimator);
-  const auto order = SelectImages(field, cameras, select, pool);
+  const auto order = SelectImages(ImageIndex(field, seed), cameras, select, pool);
   CollectOptions options;
   options.reading.estimator = estimator;
   options.back_end = back_end;
@@ -39,8 +39,9 @@ std::vector<SensorPlate> Collected(const LightField& field, const std::vector<Fr
 TEST(FrameLens, WithoutWeightsIsTheFrames) {
   ThreadPool pool(2);
   const LightField field = testing::NoiseField();
+  const ImageIndex index(field);
   for (const RenderCamera& frame : testing::NoiseFrames()) {
-    const FrameLens lens(field, frame, LensWeights::kNone, {}, pool);
+    const FrameLens lens(index, frame, LensWeights::kNone, {}, pool);
     EXPECT_EQ(lens.camera().aperture.radius_w, frame.aperture.radius_w);
     EXPECT_EQ(lens.camera().aperture.blades, frame.aperture.blades);
     EXPECT_TRUE(lens.WeightsOf(LfImageId{3}).are_same());
@@ -59,10 +60,9 @@ TEST(FrameLens, PlatesAreThoseOfTheReferenceForAnyThreadsAndOrder) {
       select.reach = ReachOf(estimator);
       std::vector<FrameLens> lenses, of_another_order;
       for (const RenderCamera& frame : testing::NoiseFrames())
-        lenses.emplace_back(field, frame, kind, select, pool);
-      select.seed = 5;
+        lenses.emplace_back(ImageIndex(field), frame, kind, select, pool);
       for (const RenderCamera& frame : testing::NoiseFrames())
-        of_another_order.emplace_back(field, frame, kind, select, pool);
+        of_another_order.emplace_back(ImageIndex(field, 5), frame, kind, select, pool);
       const auto plates = Collected(field, lenses, estimator, CollectBackEnd::kFast, 1, 0);
       EXPECT_EQ(Collected(field, of_another_order, estimator, CollectBackEnd::kFast, 3, 5), plates);
       const auto expected = Collected(field, lenses, estimator, CollectBackEnd::kReference, 1, 0);
@@ -80,12 +80,55 @@ TEST(FrameLens, PlatesAreThoseOfTheReferenceForAnyThreadsAndOrder) {
     }
 }
 
+// Before, behind and in the lens plane, tilted, with polygons, near and far: weighed rays of pixels
+// that selection left out would be missing.
+TEST(FrameLens, SelectionLeavesOutNoRayWithAWeight) {
+  const LightField field = testing::NoiseField();
+  const testing::NoiseStore store;
+  ThreadPool pool(2);
+  uint64_t total = 0, all_pixels = 0, selected_pixels = 0;
+  for (uint64_t seed = 0; seed < 24; ++seed) {
+    const auto random = [&](uint64_t i, double low, double high) {
+      return low + (high - low) * RandomUnit(3, seed, i);
+    };
+    RenderCamera frame = testing::NoiseFrames()[seed % 3];
+    frame.pinhole.cam_from_world =
+        *LookAlong({random(0, -0.02, 0.02), random(1, -0.02, 0.02), random(2, -0.1, 0.1)},
+                   {random(3, -0.2, 0.2), random(4, -0.2, 0.2), 1}, {0, -1, 0});
+    frame.aperture.radius_w = seed % 4 == 0 ? 0.001 : random(5, 0.005, 0.05);
+    frame.focus_plane = FocusPlane(frame.pinhole, random(6, 0.3, 3), {random(7, -1, 1), 0.3});
+    const LensWeights kind = seed % 2 == 0 ? LensWeights::kArea : LensWeights::kHat;
+    std::vector<FrameLens> lenses;
+    lenses.emplace_back(ImageIndex(field), frame, kind, SelectOptions{}, pool);
+    const RenderCamera& camera = lenses[0].camera();
+    SensorPlate expected(80, 60);
+    const PixelRect whole{0, 0, testing::kWidth, testing::kHeight};
+    for (uint32_t i = 0; i < field.size(); ++i) {
+      LfPixels pixels;
+      ASSERT_TRUE(store.Load({i}, whole, &pixels));
+      const RayWeights weights = lenses[0].WeightsOf({i});
+      if (weights.are_none()) continue;
+      ScatterReference(field.Camera({i}), pixels, camera, whole, &expected, weights);
+      all_pixels += static_cast<uint64_t>(whole.pixel_count());
+    }
+    for (const SelectedImage& image : SelectImages(ImageIndex(field), {&camera, 1}, {}, pool))
+      selected_pixels += lenses[0].WeightsOf(image.id).are_none() ? 0 : image.ray_count;
+    const auto plates =
+        Collected(field, lenses, Estimator::kNearest, CollectBackEnd::kReference, 1, 0);
+    EXPECT_EQ(plates[0], expected) << seed;
+    for (int y = 0; y < 60; ++y)
+      for (int x = 0; x < 80; ++x) total += expected.At(x, y, 1).count;
+  }
+  EXPECT_GT(total, 1000000u);
+  EXPECT_LT(selected_pixels, all_pixels);
+}
+
 TEST(FrameLens, ImagesBesideTheLensTakePartAndThoseFarAwayDoNot) {
   ThreadPool pool(2);
   const LightField field = testing::NoiseField(15);
   RenderCamera frame = testing::NoiseFrames()[0];
   frame.aperture = {0.012, 0, 0};
-  const FrameLens lens(field, frame, LensWeights::kArea, {}, pool);
+  const FrameLens lens(ImageIndex(field), frame, LensWeights::kArea, {}, pool);
   EXPECT_GT(lens.camera().aperture.radius_w, 0.012);
   EXPECT_LT(lens.camera().aperture.radius_w, 0.025);
   size_t inside = 0, beside = 0, none = 0;
@@ -116,7 +159,7 @@ TEST(FrameLens, EffectiveCountsAreThoseOfTheWeights) {
     Intrinsics& k = frame.pinhole.intrinsics;
     const int width = k.width_px;
     for (double* value : {&k.fx_px, &k.fy_px}) *value *= 4;  // sees a small part of the images
-    const FrameLens lens(field, frame, LensWeights::kArea, {}, pool);
+    const FrameLens lens(ImageIndex(field), frame, LensWeights::kArea, {}, pool);
     const Image<float> counts = lens.EffectiveCounts();
     const Image<float> spread = lens.SpreadOverPlate(counts);
     ASSERT_EQ(spread.width(), width);

@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <charconv>
-#include <map>
 #include <string_view>
 
-#include "lf/camera/distortion.h"
+#include "lf/camera/ray_through.h"
 #include "lf/collector/collect.h"
 #include "lf/selection/ideal_cells.h"
 #include "lf/selection/overlap.h"
@@ -17,10 +16,7 @@ namespace {
 
 // An LF camera, prepared to be asked for rays through points.
 struct Viewer {
-  Vec3 centre_world;
-  Mat3 rotation;
-  const Intrinsics* intrinsics;
-  const DistortionMap* distortion;
+  RayThrough ray;
   double border_px;  // of the image, which rays keep away from
 };
 
@@ -33,21 +29,17 @@ double BorderOf(const PinholeCamera& lf_camera, const RenderCamera& camera, Pixe
 bool Sees(const Viewer& viewer, const RenderCamera& camera, const Vec3& point_world) {
   const PinholeCamera& lens = camera.pinhole;
   const Vec3 forward = lens.ForwardWorld();
-  const Vec3 offset = viewer.centre_world - lens.CentreWorld();
-  Vec3 d = point_world - viewer.centre_world;
-  if (forward.dot(d) < 0) d = -d;
+  const Vec3 offset = viewer.ray.centre_world() - lens.CentreWorld();
+  const Vec3 d = viewer.ray.DirectionWorld(point_world);
   if (!(forward.dot(d) > 0)) return false;
   const Vec3 on_lens = offset - d * (forward.dot(offset) / forward.dot(d));
   if (!Contains(camera.aperture, {lens.RightWorld().dot(on_lens), lens.UpWorld().dot(on_lens)}))
     return false;
-  const std::optional<Vec2> recorded = viewer.distortion->Distort(viewer.rotation * d);
-  if (!recorded) return false;
-  const Intrinsics& k = *viewer.intrinsics;
+  const std::optional<Vec2> p = viewer.ray.RecordedAt(d);
+  const Intrinsics& k = viewer.ray.intrinsics();
   const double border_px = viewer.border_px;
-  const double x_px = k.fx_px * recorded->x() + k.skew_px * recorded->y() + k.cx_px;
-  const double y_px = k.fy_px * recorded->y() + k.cy_px;
-  return x_px >= border_px && x_px < k.width_px - border_px && y_px >= border_px &&
-         y_px < k.height_px - border_px;
+  return p && p->x() >= border_px && p->x() < k.width_px - border_px && p->y() >= border_px &&
+         p->y() < k.height_px - border_px;
 }
 
 uint64_t LeastCount(const SensorPlate& plate, int x, int y) {
@@ -76,24 +68,20 @@ Result<uint32_t> ParseSampleRule(const std::string& text, const std::string& opt
   return samples;
 }
 
-ReachableElements::ReachableElements(const LightField& light_field, const RenderCamera& camera,
+ReachableElements::ReachableElements(const ImageIndex& index, const RenderCamera& camera,
                                      const PlaceRange& places, const SelectOptions& select,
                                      PixelFilter filter, ThreadPool& pool) {
   const std::vector<RenderCamera> frames = {camera};
   const std::vector<PlaceRange> ranges = {places};
-  const std::vector<SelectedImage> images = SelectImages(light_field, frames, select, pool, ranges);
+  const std::vector<SelectedImage> images = SelectImages(index, frames, select, pool, ranges);
+  const LightField& light_field = index.light_field();
   image_count_ = images.size();
-  std::map<uint32_t, DistortionMap> maps;
   std::vector<Viewer> viewers;
   for (const SelectedImage& image : images) {
-    const LfCamera& lf_camera = light_field.cameras[image.id.value];
-    const Intrinsics& k = light_field.intrinsics[lf_camera.intrinsics_index];
-    const auto map = maps.try_emplace(lf_camera.intrinsics_index, k.distortion).first;
-    viewers.push_back({lf_camera.cam_from_world.Inverse().translation,
-                       lf_camera.cam_from_world.rotation, &k, &map->second,
-                       select.reach == PixelReach::kNeighbours
-                           ? BorderOf(light_field.Camera(image.id), camera, filter)
-                           : 0});
+    const PinholeCamera lf_camera = light_field.Camera(image.id);
+    viewers.push_back(
+        {RayThrough(lf_camera, camera.pinhole.ForwardWorld()),
+         select.reach == PixelReach::kNeighbours ? BorderOf(lf_camera, camera, filter) : 0});
   }
   const int width = camera.pinhole.intrinsics.width_px;
   const int height = camera.pinhole.intrinsics.height_px;

@@ -31,9 +31,8 @@ class ReachableElements {
 
   // places  which LF images of the order by `select.seed` count
   // filter  where select.reach is that of bilinear
-  ReachableElements(const LightField& light_field, const RenderCamera& camera,
-                    const PlaceRange& places, const SelectOptions& select, PixelFilter filter,
-                    ThreadPool& pool);
+  ReachableElements(const ImageIndex& index, const RenderCamera& camera, const PlaceRange& places,
+                    const SelectOptions& select, PixelFilter filter, ThreadPool& pool);
 
   bool Holds(int x, int y) const {
     return is_reachable_[static_cast<size_t>(y / kGrid) * columns_ + x / kGrid] != 0;

@@ -43,15 +43,15 @@ TEST(SampleRule, ElementsAreReachableWhereTheyGetRays) {
       ASSERT_TRUE(store.Load(LfImageId{i}, {0, 0, testing::kWidth, testing::kHeight}, &pixels));
       GatherReference(field.Camera(LfImageId{i}), pixels, camera, &plate);
     }
-    const ReachableElements reachable(field, camera, {}, {0, PixelReach::kNeighbours},
-                                      PixelFilter::kAuto, pool);
+    const ReachableElements reachable(ImageIndex(field), camera, {},
+                                      {.reach = PixelReach::kNeighbours}, PixelFilter::kAuto, pool);
     EXPECT_GT(reachable.count(), 1000u);
     EXPECT_LT(reachable.count(), 12000u);
     for (int y = 4; y < 80; y += 8)
       for (int x = 4; x < 160; x += 8)
         EXPECT_EQ(reachable.Holds(x, y), plate.At(x, y, 0).count > 0) << x << " " << y;
     // No LF image at all.
-    EXPECT_EQ(ReachableElements(field, camera, {5, 5}, {}, {}, pool).count(), 0u);
+    EXPECT_EQ(ReachableElements(ImageIndex(field), camera, {5, 5}, {}, {}, pool).count(), 0u);
   }
 }
 
@@ -60,7 +60,7 @@ TEST(SampleRule, CountsEveryChannelOfReachableElementsAlone) {
   ThreadPool pool(1);
   RenderCamera camera = testing::NoiseFrames()[0];
   camera.pinhole.intrinsics = {60, 60, 80, 40, 0, 160, 80};
-  const ReachableElements reachable(field, camera, {}, {}, {}, pool);
+  const ReachableElements reachable(ImageIndex(field), camera, {}, {}, {}, pool);
   SensorPlate plate(160, 80);
   for (int y = 0; y < 80; ++y)
     for (int x = 0; x < 160; ++x)

@@ -42,16 +42,15 @@ LensPoints PointsAt(const RenderCamera& frame, std::span<const Vec3> centres_wor
   return seen;
 }
 
-// About how far points around the lens are apart: a dozen of them, or all that are within it.
+// About how far points around the lens are apart: kCamerasAround of them, or all within it.
 double DistanceAround(const LensPoints& seen, double radius) {
-  constexpr size_t kDozen = 12;
   std::vector<double> distances;
   for (const Vec2& point : seen.points) distances.push_back(point.norm());
   if (distances.empty()) return 0;
   std::sort(distances.begin(), distances.end());
   const auto within = static_cast<size_t>(
       std::upper_bound(distances.begin(), distances.end(), radius) - distances.begin());
-  const size_t count = std::min(distances.size(), std::max(within, kDozen));
+  const size_t count = std::min(distances.size(), std::max(within, kCamerasAround));
   return std::max(radius, distances[count - 1]) * std::sqrt(kPi / static_cast<double>(count));
 }
 

@@ -108,8 +108,9 @@ class FrameWeights {
   std::vector<uint16_t> weights_;    // [row][column] of one camera after the other, in 1/256
 };
 
-// About how far apart the LF cameras around the lens see through it, from their centres: a dozen of
-// them, or all that the lens holds. 0 if there is none.
+// About how far apart the LF cameras around the lens see through it, from their centres:
+// kCamerasAround of them, or all that the lens holds. 0 if there is none.
+inline constexpr size_t kCamerasAround = 12;
 double CameraDistance(const RenderCamera& frame, std::span<const Vec3> centres_world);
 
 // Where the line through a world point and an LF camera meets the lens plane, in lens coordinates

@@ -88,8 +88,9 @@ Result<std::vector<double>> DetailAt(const std::vector<double>& distances_w,
   CollectOptions options;
   // Interpolated rays leave no holes, which would count as detail.
   options.reading = {Estimator::kBilinear, PixelFilter::kBilinear};
-  std::vector<SelectedImage> images =
-      SelectImages(light_field, frames, {0, ReachOf(options.reading.estimator)}, pool);
+  SelectOptions select;
+  select.reach = ReachOf(options.reading.estimator);
+  std::vector<SelectedImage> images = SelectImages(ImageIndex(light_field), frames, select, pool);
   if (images.size() > kMostImages) images.resize(kMostImages);
   if (images.empty())
     return InputError(

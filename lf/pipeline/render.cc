@@ -60,6 +60,7 @@ class Renderer {
         options_(options),
         pool_(pool),
         progress_(progress),
+        index_(light_field, options.seed),
         store_(light_field, options.reading.estimator == Estimator::kBilinear
                                 ? FolderStore::Mosaics::kToRgb
                                 : FolderStore::Mosaics::kAsRecorded),
@@ -84,6 +85,7 @@ class Renderer {
   const RenderOptions& options_;
   ThreadPool& pool_;
   const std::function<void(const RenderProgress&)>& progress_;
+  ImageIndex index_;
   FolderStore store_;
   FrameOutput output_;
 
@@ -193,6 +195,7 @@ Result<void> Renderer::RunPasses(std::span<const FrameId> frames) {
   DumpClock clock(options_.dump_every_s, NowSeconds());
   const RenderJob job = {
       light_field_,
+      index_,
       path_,
       options_,
       pool_,
@@ -228,7 +231,7 @@ Result<void> Renderer::CheckAnyContributes(const RenderJob& job,
   if (options_.lens_weights != LensWeights::kNone) return {};
   std::vector<RenderCamera> cameras;
   for (const FrameId frame : frames) cameras.push_back(path_.Camera(frame));
-  const bool any_contributes = !SelectImages(light_field_, cameras, job.Select(), pool_).empty();
+  const bool any_contributes = !SelectImages(index_, cameras, job.Select(), pool_).empty();
   if (job.IsStopped()) return Interrupted();
   if (!any_contributes) return NoneContributes();
   return {};

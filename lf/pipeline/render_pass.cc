@@ -20,7 +20,6 @@ constexpr double kLastPictures_s = 2;
 
 SelectOptions RenderJob::Select() const {
   SelectOptions select;
-  select.seed = options.seed;
   select.reach = ReachOf(options.reading.estimator);
   if (options.signals != nullptr) select.interrupted = &options.signals->stop;
   return select;
@@ -36,7 +35,7 @@ RenderPass::RenderPass(const RenderJob& job, std::span<const FrameId> frames) : 
 void RenderPass::FindLenses() {
   for (const Frame& frame : frames_) {
     if (job_.IsStopped()) return;
-    lenses_.emplace_back(job_.light_field, job_.path.Camera(frame.id), job_.options.lens_weights,
+    lenses_.emplace_back(job_.index, job_.path.Camera(frame.id), job_.options.lens_weights,
                          job_.Select(), job_.pool);
     cameras_.push_back(lenses_.back().camera());
   }
@@ -56,7 +55,7 @@ Result<void> RenderPass::Prepare() {
   if (job_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
   std::vector<PlaceRange> places(frames_.size());
   if (job_.options.max_image_count)
-    places = PlacesOfFirst(*job_.options.max_image_count, job_.light_field, cameras_, job_.Select(),
+    places = PlacesOfFirst(*job_.options.max_image_count, job_.index, cameras_, job_.Select(),
                            job_.pool);
   // By all threads, since whoever clears a plate waits for its memory.
   for (size_t f = 0; f < frames_.size(); ++f) plates_.emplace_back(0, 0);
@@ -73,7 +72,7 @@ Result<void> RenderPass::Prepare() {
     frames_[f].earlier_rays = start.rays;
     frames_[f].saved_places = start.places_done;
   }
-  images_ = SelectImages(job_.light_field, cameras_, job_.Select(), job_.pool, places);
+  images_ = SelectImages(job_.index, cameras_, job_.Select(), job_.pool, places);
   DropUnweighted();
   if (job_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
   job_.totals.selected_image_count = std::max(job_.totals.selected_image_count, images_.size());
@@ -172,8 +171,8 @@ const ReachableElements& RenderPass::ReachableOf(size_t f) {
   Frame& frame = frames_[f];
   if (!frame.reachable)
     frame.reachable =
-        std::make_unique<ReachableElements>(job_.light_field, cameras_[f], frame.places,
-                                            job_.Select(), job_.options.reading.filter, job_.pool);
+        std::make_unique<ReachableElements>(job_.index, cameras_[f], frame.places, job_.Select(),
+                                            job_.options.reading.filter, job_.pool);
   return *frame.reachable;
 }
 

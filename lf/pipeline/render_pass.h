@@ -28,6 +28,7 @@ inline double NowSeconds() {
 // What passes share.
 struct RenderJob {
   const LightField& light_field;
+  const ImageIndex& index;
   const CameraPath& path;
   const RenderOptions& options;
   ThreadPool& pool;

@@ -20,32 +20,62 @@ constexpr double kDiskPolygonRadius = 1.0195911582083184;
 
 int NeighboursOf(PixelReach reach) { return reach == PixelReach::kNeighbours ? kNeighboursPx : 0; }
 
+// How far a form is from its value in the middle, within the image.
+double SpreadOf(const PixelForm& form, const Intrinsics& image) {
+  return 0.5 * (std::abs(form[0]) * image.width_px + std::abs(form[1]) * image.height_px);
+}
+
+double InMiddle(const PixelForm& form, const Intrinsics& image) {
+  return Value(form, 0.5 * image.width_px, 0.5 * image.height_px);
+}
+
+// All over the image, and not by rounding.
+bool IsBelowZero(const PixelForm& form, const Intrinsics& image) {
+  const double spread = SpreadOf(form, image), middle = InMiddle(form, image);
+  return middle + spread < -kZeroMargin * (spread + std::abs(middle) + std::abs(form[2]));
+}
+
 // A convex polygon that half-planes cut (Sutherland, Hodgman 1974): each adds one vertex at most.
 class Clipped {
  public:
-  explicit Clipped(const Intrinsics& image) {
+  explicit Clipped(const Intrinsics& image) : image_(image) {
     const double w = image.width_px, h = image.height_px;
     vertices_ = {Vec2(0, 0), Vec2(w, 0), Vec2(w, h), Vec2(0, h)};
     count_ = 4;
   }
+  Clipped(const Clipped&) = delete;
+  Clipped& operator=(const Clipped&) = delete;
 
   bool empty() const { return count_ == 0; }
 
   // Keeps the part with form <= 0.
   void Clip(const PixelForm& form) {
-    std::array<Vec2, kCapacity> kept;
+    // Nearly all leave the image as it is, or nothing of it.
+    if (IsBelowZero(form, image_)) return;
+    if (IsBelowZero(-form, image_)) {
+      count_ = 0;
+      return;
+    }
+    std::array<double, kCapacity> values;
+    bool any_beyond = false;
+    for (size_t i = 0; i < count_; ++i) {
+      values[i] = ValueOrZero(form, vertices_[i]);
+      any_beyond |= values[i] > 0;
+    }
+    if (!any_beyond) return;
+    std::array<Vec2, kCapacity>& kept = spare_;
     size_t kept_count = 0;
     for (size_t i = 0; i < count_; ++i) {
       LF_CHECK(kept_count + 2 <= kCapacity);
+      const size_t next = i + 1 < count_ ? i + 1 : 0;
       const Vec2& a = vertices_[i];
-      const Vec2& b = vertices_[(i + 1) % count_];
-      const double value_a = ValueOrZero(form, a);
-      const double value_b = ValueOrZero(form, b);
+      const Vec2& b = vertices_[next];
+      const double value_a = values[i], value_b = values[next];
       if (value_a <= 0) kept[kept_count++] = a;
       if ((value_a < 0 && value_b > 0) || (value_a > 0 && value_b < 0))
         kept[kept_count++] = a + (b - a) * (value_a / (value_a - value_b));
     }
-    vertices_ = kept;
+    std::copy_n(kept.begin(), kept_count, vertices_.begin());
     count_ = kept_count;
   }
 
@@ -82,18 +112,24 @@ class Clipped {
     return std::abs(value) <= kZeroMargin * magnitude ? 0 : value;
   }
 
+  const Intrinsics& image_;
   std::array<Vec2, kCapacity> vertices_;
+  std::array<Vec2, kCapacity> spare_;
   size_t count_ = 0;
 };
 
 PixelRect ClippedRect(const Intrinsics& image, std::span<const PixelForm> plate,
-                      std::span<const PixelForm> lens, PixelReach reach) {
+                      const RayForms& forms, const FrameOutline& frame, PixelReach reach) {
   Clipped region(image);
-  for (const std::span<const PixelForm> forms : {plate, lens})
-    for (const PixelForm& form : forms) {
-      if (region.empty()) return {};
-      region.Clip(form);
-    }
+  for (const PixelForm& form : plate) {
+    region.Clip(form);
+    if (region.empty()) return {};
+  }
+  const double margin_w = kLensMargin * frame.camera.aperture.radius_w;
+  for (const ApertureEdge& edge : frame.lens_edges) {
+    region.Clip(LensHalfPlane(forms, edge, margin_w));
+    if (region.empty()) return {};
+  }
   return region.Pixels(image, reach);
 }
 
@@ -185,23 +221,27 @@ bool ImageOverlap::PlainlyMisses(const RenderCamera& render_camera) const {
          kRounding * length * (offset.lpNorm<1>() + radius_w);
 }
 
-PixelRect ImageOverlap::Rect(const RenderCamera& render_camera) const {
-  if (PlainlyMisses(render_camera)) return {};
-  const Intrinsics& image = lf_camera_.intrinsics;
-  const bool distorted = image.has_distortion();
-  const RayForms forms = MakeRayForms(lf_camera_, render_camera);
+FrameOutline::FrameOutline(const RenderCamera& render_camera) : camera(render_camera) {
   // Polygons of very many blades are nearly disks; the disk's 16-gon holds them.
   constexpr int kMostBlades = 64;
-  RenderCamera bounded = render_camera;
-  if (bounded.aperture.blades > kMostBlades) bounded.aperture.blades = 0;
-  const std::vector<PixelForm> lens = LensHalfPlanes(forms, bounded, kLensMargin);
+  if (camera.aperture.blades > kMostBlades) camera.aperture.blades = 0;
+  lens_edges = Edges(camera.aperture);
+}
 
+PixelRect ImageOverlap::Rect(const FrameOutline& frame) const {
+  if (PlainlyMisses(frame.camera)) return {};
+  const Intrinsics& image = lf_camera_.intrinsics;
+  const bool distorted = image.has_distortion();
+  const RayForms forms = MakeRayForms(lf_camera_, frame.camera);
+  std::vector<PixelForm> lens;
+  if (distorted) lens = LensHalfPlanes(forms, frame.camera, kLensMargin);
   PixelRect rect;
   for (const int plane_sign : {-1, 1}) {
+    if (!distorted && IsBelowZero(plane_sign * forms.plane, image)) continue;
     const std::vector<PixelForm> plate =
-        PlateHalfPlanes(forms, bounded, plane_sign, kPlateMarginPx);
+        PlateHalfPlanes(forms, frame.camera, plane_sign, kPlateMarginPx);
     rect = Bounds(rect, distorted ? BoundsOfCells(cells_, plate, lens)
-                                  : ClippedRect(image, plate, lens, reach_));
+                                  : ClippedRect(image, plate, forms, frame, reach_));
   }
   // Cells hold the whole of their pixels.
   if (!distorted || reach_ == PixelReach::kOwn || rect.empty()) return rect;

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
+#include "lf/camera/aperture.h"
 #include "lf/camera/pinhole.h"
 #include "lf/camera/render_camera.h"
 #include "lf/core/geometry.h"
@@ -33,6 +35,14 @@ PixelRect ContributingRect(const PinholeCamera& lf_camera, const RenderCamera& r
                            std::span<const IdealCell> cells = {},
                            PixelReach reach = PixelReach::kOwn);
 
+// A frame as its LF images ask it: what is the same for all of them.
+struct FrameOutline {
+  explicit FrameOutline(const RenderCamera& render_camera);
+
+  RenderCamera camera;
+  std::vector<ApertureEdge> lens_edges;  // of a polygon that holds the lens
+};
+
 // The same for many frames: what only the LF image decides is found once, and frames that it
 // plainly misses cost some 30 ns instead of a microsecond and more. A dense light field and a long
 // path have millions of pairs, of which nearly all are such.
@@ -45,7 +55,10 @@ class ImageOverlap {
   // its other side. Then Rect() is empty; it may be so without.
   bool PlainlyMisses(const RenderCamera& render_camera) const;
 
-  PixelRect Rect(const RenderCamera& render_camera) const;
+  PixelRect Rect(const RenderCamera& render_camera) const {
+    return PlainlyMisses(render_camera) ? PixelRect() : Rect(FrameOutline(render_camera));
+  }
+  PixelRect Rect(const FrameOutline& frame) const;
 
  private:
   PinholeCamera lf_camera_;

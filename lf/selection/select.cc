@@ -1,17 +1,19 @@
 #include "lf/selection/select.h"
 
 #include <algorithm>
-#include <utility>
+#include <cmath>
+#include <functional>
 
 #include "lf/core/check.h"
-#include "lf/core/random.h"
 #include "lf/selection/overlap.h"
+#include "lf/selection/seen_region.h"
 
 namespace lf {
 namespace {
 
-constexpr uint64_t kShuffleStream = 1;
-constexpr size_t kCamerasPerTask = 64;
+// Frames whose leaves are kept together: a list of 4 bytes for each leaf and frame.
+constexpr size_t kFramesTogether = 64;
+constexpr size_t kLeavesPerTask = 4;
 
 // The cells of the LF camera looked at last: neighbours mostly share their intrinsics.
 class CellsOfLast {
@@ -30,88 +32,199 @@ class CellsOfLast {
   std::vector<IdealCell> cells_;
 };
 
-SelectedImage Examine(const LightField& light_field, std::span<const RenderCamera> frames,
-                      std::span<const PlaceRange> places, LfImageId id, uint32_t place,
-                      std::span<const IdealCell> cells, PixelReach reach) {
-  const ImageOverlap overlap(light_field.Camera(id), cells, reach);
-  SelectedImage image;
-  image.id = id;
-  image.place = place;
-  for (size_t f = 0; f < frames.size(); ++f) {
-    if (!places.empty() && !places[f].Holds(place)) continue;
-    const PixelRect rect = overlap.Rect(frames[f]);
-    if (rect.empty()) continue;
-    image.rect = Bounds(image.rect, rect);
-    image.frame_count += 1;
-    image.ray_count += static_cast<uint64_t>(rect.pixel_count());
+// What a frame asks LF cameras before their rectangles.
+class LensGate {
+ public:
+  LensGate(const RenderCamera& frame, const SelectOptions& options)
+      : region_(frame), forward_(frame.pinhole.ForwardWorld()) {
+    max_angle_rad_ = options.max_angle_rad;
+    if (max_angle_rad_) least_cosine_ = std::cos(*max_angle_rad_);
   }
-  return image;
+
+  void ForEachLeaf(const CameraTree& tree,
+                   const std::function<void(size_t leaf, bool all_inside)>& visit) const {
+    tree.ForEachLeaf(region_, max_angle_rad_, visit);
+  }
+
+  bool MayTake(const PinholeCamera& lf_camera, bool is_inside) const {
+    if (max_angle_rad_ && forward_.dot(lf_camera.ForwardWorld()) < least_cosine_) return false;
+    return is_inside || !region_.Misses(lf_camera.CentreWorld());
+  }
+
+ private:
+  SeenRegion region_;
+  Vec3 forward_;
+  std::optional<double> max_angle_rad_;
+  double least_cosine_ = -1;
+};
+
+// Some frames and a leaf that they may take.
+struct Visit {
+  uint32_t leaf;
+  uint32_t frame : 31;
+  uint32_t all_inside : 1;
+};
+
+// Leaf by leaf, for each by ascending frames.
+std::vector<Visit> VisitsOf(const CameraTree& tree, std::span<const LensGate> gates,
+                            ThreadPool& pool) {
+  std::vector<std::vector<Visit>> of_frames(gates.size());
+  pool.ForEach(gates.size(), [&](size_t f) {
+    gates[f].ForEachLeaf(tree, [&](size_t leaf, bool all_inside) {
+      of_frames[f].push_back(
+          {static_cast<uint32_t>(leaf), static_cast<uint32_t>(f), all_inside ? 1U : 0U});
+    });
+  });
+  std::vector<size_t> begin(tree.leaf_count() + 1, 0);
+  for (const std::vector<Visit>& visits : of_frames)
+    for (const Visit& visit : visits) ++begin[visit.leaf + 1];
+  for (size_t leaf = 0; leaf < tree.leaf_count(); ++leaf) begin[leaf + 1] += begin[leaf];
+  std::vector<Visit> sorted(begin.back());
+  for (const std::vector<Visit>& visits : of_frames)
+    for (const Visit& visit : visits) sorted[begin[visit.leaf]++] = visit;
+  return sorted;
+}
+
+// Of some frames; frame f is first_frame + f of all.
+class Selector {
+ public:
+  Selector(const ImageIndex& index, std::span<const RenderCamera> frames, size_t first_frame,
+           const SelectOptions& options, std::span<const PlaceRange> places)
+      : index_(index),
+        options_(options),
+        places_(places.empty() ? places : places.subspan(first_frame, frames.size())) {
+    for (const RenderCamera& frame : frames) {
+      gates_.emplace_back(frame, options);
+      outlines_.emplace_back(frame);
+    }
+  }
+
+  std::vector<Visit> Visits(ThreadPool& pool) const {
+    return VisitsOf(index_.tree(), gates_, pool);
+  }
+
+  // Those of a leaf; all visits are of it.
+  void Examine(std::span<const Visit> visits, CellsOfLast* cells,
+               std::vector<SelectedImage>* found) const {
+    const LightField& light_field = index_.light_field();
+    for (const LfImageId id : index_.tree().Leaf(visits.front().leaf)) {
+      const PinholeCamera camera = light_field.Camera(id);
+      SelectedImage image;
+      image.id = id;
+      image.place = index_.PlaceOf(id);
+      std::optional<ImageOverlap> overlap;
+      for (const Visit& visit : visits) {
+        const size_t f = visit.frame;
+        if (!places_.empty() && !places_[f].Holds(image.place)) continue;
+        if (!gates_[f].MayTake(camera, visit.all_inside != 0)) continue;
+        if (!overlap) overlap.emplace(camera, cells->Of(light_field, id), options_.reach);
+        const PixelRect rect = overlap->Rect(outlines_[f]);
+        if (rect.empty()) continue;
+        image.rect = Bounds(image.rect, rect);
+        image.frame_count += 1;
+        image.ray_count += static_cast<uint64_t>(rect.pixel_count());
+      }
+      if (image.frame_count > 0) found->push_back(image);
+    }
+  }
+
+ private:
+  const ImageIndex& index_;
+  const SelectOptions& options_;
+  std::span<const PlaceRange> places_;
+  std::vector<LensGate> gates_;
+  std::vector<FrameOutline> outlines_;
+};
+
+bool IsInterrupted(const SelectOptions& options) {
+  return options.interrupted != nullptr && *options.interrupted;
+}
+
+// Where the visits of each leaf begin, and where the last end.
+std::vector<size_t> LeavesOf(std::span<const Visit> visits) {
+  std::vector<size_t> begin;
+  for (size_t i = 0; i < visits.size(); ++i)
+    if (i == 0 || visits[i].leaf != visits[i - 1].leaf) begin.push_back(i);
+  begin.push_back(visits.size());
+  return begin;
+}
+
+// Those of one image that other frames found, added up.
+void JoinByPlace(std::vector<SelectedImage>* images) {
+  std::sort(images->begin(), images->end(),
+            [](const SelectedImage& a, const SelectedImage& b) { return a.place < b.place; });
+  size_t count = 0;
+  for (const SelectedImage& image : *images) {
+    if (count > 0 && (*images)[count - 1].id == image.id) {
+      SelectedImage& joined = (*images)[count - 1];
+      joined.rect = Bounds(joined.rect, image.rect);
+      joined.frame_count += image.frame_count;
+      joined.ray_count += image.ray_count;
+    } else {
+      (*images)[count++] = image;
+    }
+  }
+  images->resize(count);
 }
 
 }  // namespace
 
-std::vector<LfImageId> ImageOrder(size_t image_count, uint64_t seed) {
-  std::vector<std::pair<uint64_t, LfImageId>> keyed(image_count);
-  for (uint32_t i = 0; i < image_count; ++i)
-    keyed[i] = {RandomBits(seed, kShuffleStream, i), LfImageId{i}};
-  std::sort(keyed.begin(), keyed.end());
-  std::vector<LfImageId> order;
-  for (const auto& [key, id] : keyed) order.push_back(id);
-  return order;
-}
-
-std::vector<SelectedImage> SelectImages(const LightField& light_field,
+std::vector<SelectedImage> SelectImages(const ImageIndex& index,
                                         std::span<const RenderCamera> frames,
                                         const SelectOptions& options, ThreadPool& pool,
                                         std::span<const PlaceRange> places) {
   LF_CHECK(places.empty() || places.size() == frames.size());
-  const size_t camera_count = light_field.size();
-  const std::vector<LfImageId> order = ImageOrder(camera_count, options.seed);
-  std::vector<uint32_t> place_of(camera_count);
-  for (uint32_t place = 0; place < camera_count; ++place) place_of[order[place].value] = place;
-  const size_t task_count = (camera_count + kCamerasPerTask - 1) / kCamerasPerTask;
-  std::vector<std::vector<SelectedImage>> found(task_count);
-  const auto is_interrupted = [&] {
-    return options.interrupted != nullptr && *options.interrupted;
-  };
-  pool.ForEach(task_count, [&](size_t task) {
-    if (is_interrupted()) return;
-    const size_t end = std::min(camera_count, (task + 1) * kCamerasPerTask);
-    CellsOfLast cells;
-    for (size_t i = task * kCamerasPerTask; i < end; ++i) {
-      const LfImageId id{static_cast<uint32_t>(i)};
-      const SelectedImage image = Examine(light_field, frames, places, id, place_of[i],
-                                          cells.Of(light_field, id), options.reach);
-      if (image.frame_count > 0) found[task].push_back(image);
-    }
-  });
   std::vector<SelectedImage> images;
-  for (const std::vector<SelectedImage>& part : found)
-    images.insert(images.end(), part.begin(), part.end());
-  std::sort(images.begin(), images.end(),
-            [](const SelectedImage& a, const SelectedImage& b) { return a.place < b.place; });
+  for (size_t first = 0; first < frames.size(); first += kFramesTogether) {
+    if (IsInterrupted(options)) break;
+    const Selector selector(index,
+                            frames.subspan(first, std::min(kFramesTogether, frames.size() - first)),
+                            first, options, places);
+    const std::vector<Visit> visits = selector.Visits(pool);
+    const std::vector<size_t> begin = LeavesOf(visits);
+    const size_t leaf_count = begin.size() - 1;
+    std::vector<std::vector<SelectedImage>> found((leaf_count + kLeavesPerTask - 1) /
+                                                  kLeavesPerTask);
+    pool.ForEach(found.size(), [&](size_t task) {
+      CellsOfLast cells;
+      const size_t end = std::min(leaf_count, (task + 1) * kLeavesPerTask);
+      for (size_t i = task * kLeavesPerTask; i < end && !IsInterrupted(options); ++i)
+        selector.Examine(std::span(visits).subspan(begin[i], begin[i + 1] - begin[i]), &cells,
+                         &found[task]);
+    });
+    for (const std::vector<SelectedImage>& part : found)
+      images.insert(images.end(), part.begin(), part.end());
+  }
+  JoinByPlace(&images);
   return images;
 }
 
-std::vector<PlaceRange> PlacesOfFirst(size_t image_count, const LightField& light_field,
+std::vector<PlaceRange> PlacesOfFirst(size_t image_count, const ImageIndex& index,
                                       std::span<const RenderCamera> frames,
                                       const SelectOptions& options, ThreadPool& pool) {
-  const std::vector<LfImageId> order = ImageOrder(light_field.size(), options.seed);
+  const LightField& light_field = index.light_field();
   std::vector<PlaceRange> ranges(frames.size());
   // Each frame walks along the order by itself.
   pool.ForEach(frames.size(), [&](size_t f) {
+    const LensGate gate(frames[f], options);
+    std::vector<uint32_t> places;
+    gate.ForEachLeaf(index.tree(), [&](size_t leaf, bool all_inside) {
+      for (const LfImageId id : index.tree().Leaf(leaf))
+        if (gate.MayTake(light_field.Camera(id), all_inside)) places.push_back(index.PlaceOf(id));
+    });
+    std::sort(places.begin(), places.end());
     CellsOfLast cells;
     size_t found = 0;
-    for (uint32_t place = 0; place < order.size(); ++place) {
-      if (options.interrupted != nullptr && *options.interrupted) return;
-      if (found == image_count) {
-        ranges[f].end = place;
-        return;
-      }
-      const LfImageId id = order[place];
+    for (const uint32_t place : places) {
+      if (IsInterrupted(options)) return;
+      const LfImageId id = index.AtPlace(place);
       const PixelRect rect = ContributingRect(light_field.Camera(id), frames[f],
                                               cells.Of(light_field, id), options.reach);
       found += rect.empty() ? 0 : 1;
+      if (found == image_count) {
+        ranges[f].end = place + 1;
+        return;
+      }
     }
   });
   return ranges;

@@ -3,22 +3,18 @@
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "lf/camera/render_camera.h"
-#include "lf/capture/light_field.h"
 #include "lf/core/geometry.h"
 #include "lf/core/ids.h"
 #include "lf/core/parallel.h"
+#include "lf/selection/image_index.h"
 #include "lf/selection/overlap.h"
 
 namespace lf {
-
-// The image order is a shuffle of all LF cameras of the light field by a seed; the *place* of an LF
-// image is its rank there, from 0. It does not depend on frames, so that what is counted in places
-// (limits, stop rules, how far an interrupted frame has come) means the same for any choice of
-// frames and any passes.
 
 // The LF images a frame takes: those at places [begin, end) of the order.
 struct PlaceRange {
@@ -40,27 +36,24 @@ struct SelectedImage {
 };
 
 struct SelectOptions {
-  uint64_t seed = 0;                    // of the shuffle
   PixelReach reach = PixelReach::kOwn;  // of the estimator
+  // Between the optical axes of LF camera and frame; a loss that the user asks for.
+  std::optional<double> max_angle_rad = std::nullopt;
   // Once it is true, the rest is left out and the answer is of no use.
   const std::atomic<bool>* interrupted = nullptr;
 };
 
-// All LF images by their places: the shuffle.
-std::vector<LfImageId> ImageOrder(size_t image_count, uint64_t seed);
-
-// Tests every LF camera against every frame. The result is in the order of places (thesis: "a more
-// even result among all rendered frames, even before all have been processed"), the same for any
-// number of threads.
+// The result is in the order of places (thesis: "a more even result among all rendered frames, even
+// before all have been processed"), the same for any number of threads.
 //   places  what each frame takes; empty: every frame takes all
-std::vector<SelectedImage> SelectImages(const LightField& light_field,
+std::vector<SelectedImage> SelectImages(const ImageIndex& index,
                                         std::span<const RenderCamera> frames,
                                         const SelectOptions& options, ThreadPool& pool,
                                         std::span<const PlaceRange> places = {});
 
 // For each frame, the places of its first `image_count` contributing LF images: [0, end). A frame
-// with fewer takes all places. Looks no further than the frames need.
-std::vector<PlaceRange> PlacesOfFirst(size_t image_count, const LightField& light_field,
+// with fewer takes all places.
+std::vector<PlaceRange> PlacesOfFirst(size_t image_count, const ImageIndex& index,
                                       std::span<const RenderCamera> frames,
                                       const SelectOptions& options, ThreadPool& pool);
 

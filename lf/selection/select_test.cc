@@ -34,8 +34,9 @@ RenderCamera Frame(double radius_w, double x) {
 
 TEST(Select, TakesTheCamerasWithinTheLens) {
   ThreadPool pool(2);
+  const LightField field = Grid();
   const std::vector<RenderCamera> frames = {Frame(0.0301, 0)};
-  const auto images = SelectImages(Grid(), frames, {}, pool);
+  const auto images = SelectImages(ImageIndex(field), frames, {}, pool);
   EXPECT_EQ(images.size(), 29u);  // integer points within radius 3
   for (const SelectedImage& image : images) EXPECT_EQ(image.frame_count, 1u);
 }
@@ -46,7 +47,7 @@ TEST(Select, TheOrderDependsOnTheSeedAlone) {
   const auto order = [&](int threads, uint64_t seed) {
     ThreadPool pool(threads);
     std::vector<uint32_t> ids;
-    for (const SelectedImage& image : SelectImages(grid, frames, {seed}, pool))
+    for (const SelectedImage& image : SelectImages(ImageIndex(grid, seed), frames, {}, pool))
       ids.push_back(image.id.value);
     return ids;
   };
@@ -60,7 +61,7 @@ TEST(Select, BoundsHoldTheRectanglesOfAllFrames) {
   ThreadPool pool(1);
   const LightField grid = Grid();
   const std::vector<RenderCamera> frames = {Frame(0.03, 0), Frame(0.03, 0.02)};
-  for (const SelectedImage& image : SelectImages(grid, frames, {}, pool)) {
+  for (const SelectedImage& image : SelectImages(ImageIndex(grid), frames, {}, pool)) {
     PixelRect bounds;
     uint64_t rays = 0;
     for (const RenderCamera& frame : frames) {
@@ -80,7 +81,7 @@ TEST(Select, PlacesAreThoseOfTheWholeLightFieldWhateverTheFrames) {
   const std::vector<LfImageId> order = ImageOrder(grid.size(), 3);
   for (const auto& part : {std::span(frames), std::span(frames).first(1)}) {
     uint32_t last = 0;
-    for (const SelectedImage& image : SelectImages(grid, part, {3}, pool)) {
+    for (const SelectedImage& image : SelectImages(ImageIndex(grid, 3), part, {}, pool)) {
       EXPECT_EQ(order[image.place], image.id);
       EXPECT_GE(image.place, last);
       last = image.place + 1;
@@ -92,20 +93,21 @@ TEST(Select, EveryFrameTakesItsFirstImagesOnly) {
   ThreadPool pool(2);
   const LightField grid = Grid();
   const std::vector<RenderCamera> frames = {Frame(0.05, 0), Frame(0.03, 0.08), Frame(0.0101, 0)};
-  const std::vector<PlaceRange> places = PlacesOfFirst(10, grid, frames, {}, pool);
+  const std::vector<PlaceRange> places = PlacesOfFirst(10, ImageIndex(grid), frames, {}, pool);
   EXPECT_EQ(places[2], PlaceRange{});  // it has five
   for (size_t f = 0; f < 2; ++f) {
     const auto alone = std::span(frames).subspan(f, 1);
-    const auto all = SelectImages(grid, alone, {}, pool);
-    const auto some = SelectImages(grid, alone, {}, pool, std::span(places).subspan(f, 1));
+    const auto all = SelectImages(ImageIndex(grid), alone, {}, pool);
+    const auto some =
+        SelectImages(ImageIndex(grid), alone, {}, pool, std::span(places).subspan(f, 1));
     ASSERT_EQ(some.size(), 10u);
     for (size_t i = 0; i < some.size(); ++i) EXPECT_EQ(some[i].id, all[i].id);
     // And the rest, when it goes on from there.
     const std::vector<PlaceRange> rest = {{places[f].end}};
-    EXPECT_EQ(SelectImages(grid, alone, {}, pool, rest).size(), all.size() - 10);
+    EXPECT_EQ(SelectImages(ImageIndex(grid), alone, {}, pool, rest).size(), all.size() - 10);
   }
   uint32_t taken = 0;
-  for (const SelectedImage& image : SelectImages(grid, frames, {}, pool, places))
+  for (const SelectedImage& image : SelectImages(ImageIndex(grid), frames, {}, pool, places))
     taken += image.frame_count;
   EXPECT_EQ(taken, 25u);
 }

@@ -1,0 +1,51 @@
+// The ray of an LF camera through a point of the world, as a frame takes it (doc/ray.md, 2, 3).
+#pragma once
+
+#include <optional>
+
+#include "lf/camera/distortion.h"
+#include "lf/camera/pinhole.h"
+#include "lf/core/geometry.h"
+
+namespace lf {
+
+class RayThrough {
+ public:
+  //   forward_world  the optical axis of the frame
+  RayThrough(const PinholeCamera& lf_camera, const Vec3& forward_world)
+      : intrinsics_(lf_camera.intrinsics),
+        rotation_(lf_camera.cam_from_world.rotation),
+        centre_(lf_camera.CentreWorld()),
+        forward_(forward_world),
+        map_(lf_camera.intrinsics.distortion) {}
+
+  const Vec3& centre_world() const { return centre_; }
+
+  // Along the line through the point and the LF camera, so that it runs forward.
+  Vec3 DirectionWorld(const Vec3& point_world) const {
+    const Vec3 d = point_world - centre_;
+    return forward_.dot(d) < 0 ? Vec3(-d) : d;
+  }
+
+  // Where the LF camera records a ray of this direction, in pixels, within its image or not. None
+  // where its lens has no such ray.
+  std::optional<Vec2> RecordedAt(const Vec3& direction_world) const {
+    const std::optional<Vec2> distorted = map_.Distort(rotation_ * direction_world);
+    if (!distorted) return std::nullopt;
+    const Intrinsics& k = intrinsics_;
+    return Vec2(k.fx_px * distorted->x() + k.skew_px * distorted->y() + k.cx_px,
+                k.fy_px * distorted->y() + k.cy_px);
+  }
+
+  const Intrinsics& intrinsics() const { return intrinsics_; }
+  const DistortionMap& map() const { return map_; }
+
+ private:
+  Intrinsics intrinsics_;
+  Mat3 rotation_;
+  Vec3 centre_;
+  Vec3 forward_;
+  DistortionMap map_;
+};
+
+}  // namespace lf
