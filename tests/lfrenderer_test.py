@@ -216,7 +216,11 @@ class RendererTest(unittest.TestCase):
         field, path = write_field(self.folder / "field"), write_path(self.folder)
         for image in field.parent.glob("*.png"):
             image.write_bytes(b"")
-        self.fails(3, ["every LF image", "image_"], field, path, "-o", self.folder / "out")
+        # Also where it took so long that the state was written, which is of no use then.
+        for index, options in enumerate([[], ["--dump-every", "0.001s", "--memory", "300M"]]):
+            out = self.folder / f"out{index}"
+            self.fails(3, ["every LF image", "image_"], field, path, "-o", out, *options)
+            self.assertFalse(out.exists() and any(out.iterdir()), list(out.glob("*")))
 
     def test_a_broken_image_is_skipped_whatever_the_passes(self):
         field = write_field(self.folder / "field")

@@ -96,7 +96,8 @@ class Renderer {
   RenderReport totals_;
   const double begin_s_ = NowSeconds();
   size_t black_count_ = 0;
-  bool all_broken_ = true;  // every LF image of every pass so far
+  bool had_plates_ = false;  // of an earlier run
+  bool all_broken_ = true;   // every LF image of every pass so far
 };
 
 Result<RenderReport> Renderer::Run() {
@@ -125,6 +126,7 @@ Result<void> Renderer::Begin() {
   }
   const RunStateOptions state_options = StateOptions(light_field_, options_);
   LF_ASSIGN_OR_RETURN(state_, RunState::Open(state_options, path_));
+  had_plates_ = state_->HasPlates();
   totals_ = state_->earlier();
   if (options_.strict && !totals_.skipped.empty())
     return InputError(fmt::format(
@@ -257,10 +259,12 @@ Result<void> Renderer::RunPass(const RenderJob& job, std::span<const FrameId> fr
   // Passes depend on the memory; what counts as broken must not.
   all_broken_ = all_broken_ && pass.AllBroken();
   const bool is_last = frames_left == frames.size();
-  if (all_broken_ && is_last && !pass.skipped().empty() && !state_->HasPlates() &&
-      state_->finished().empty())
+  if (all_broken_ && is_last && !pass.skipped().empty() && !had_plates_ &&
+      state_->finished().empty()) {
+    state_->RemoveAll();  // plates without a ray, should it have taken so long
     return InputError(
         fmt::format("every LF image is broken; the first: {}", pass.skipped().front().reason));
+  }
   LF_RETURN_IF_ERROR(pass.Finish());
   done_.image_count += images.size();
   done_.ray_count += rays;

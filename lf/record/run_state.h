@@ -68,6 +68,8 @@ class RunState {
   PlateEntries PlateText(FrameId frame, const FrameProgress& progress) const;
   std::filesystem::path PicturePath(FrameId frame) const;
 
+  // Nothing that is there is of use: removes it.
+  void RemoveAll();
   // All is done: writes report.json and removes what is not needed any more.
   Result<void> Close(const RenderReport& report);
 
@@ -79,7 +81,6 @@ class RunState {
   Result<void> CheckPlate(FrameId frame) const;
   Result<void> Check(const std::string& place, FrameId frame, const RunInputs& recorded,
                      bool has_picture) const;
-  void RemoveAll();
   std::filesystem::path PlatePath(FrameId frame) const;
   std::filesystem::path RecordPath(FrameId frame) const;
 
