@@ -33,7 +33,10 @@ std::vector<Vec2> Vertices(const Aperture& aperture);
 
 // Edges of the polygon; for a disk those of the circumscribed regular polygon of
 // `disk_edge_count` edges, which holds the disk.
-std::vector<ApertureEdge> Edges(const Aperture& aperture, int disk_edge_count = 16);
+inline constexpr int kDiskEdges = 16;
+std::vector<ApertureEdge> Edges(const Aperture& aperture, int disk_edge_count = kDiskEdges);
+// Of the circle around them, for a disk of radius 1: 1 / cos(pi / kDiskEdges).
+inline constexpr double kDiskPolygonRadius = 1.0195911582083184;
 
 // Whether the opening, rim included, holds the point (right, up).
 bool Contains(const Aperture& aperture, const Vec2& point_lens);

@@ -12,12 +12,15 @@ namespace lf {
 class RayThrough {
  public:
   //   forward_world  the optical axis of the frame
+  //   map            that of the LF camera's distortion, if it is known: it takes a while to make
   RayThrough(const PinholeCamera& lf_camera, const Vec3& forward_world)
+      : RayThrough(lf_camera, forward_world, DistortionMap(lf_camera.intrinsics.distortion)) {}
+  RayThrough(const PinholeCamera& lf_camera, const Vec3& forward_world, const DistortionMap& map)
       : intrinsics_(lf_camera.intrinsics),
         rotation_(lf_camera.cam_from_world.rotation),
         centre_(lf_camera.CentreWorld()),
         forward_(forward_world),
-        map_(lf_camera.intrinsics.distortion) {}
+        map_(map) {}
 
   const Vec3& centre_world() const { return centre_; }
 

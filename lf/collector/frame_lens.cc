@@ -36,7 +36,7 @@ std::vector<Vec3> CentresAroundLens(const ImageIndex& index, const RenderCamera&
     middle.aperture = {radius_w, 0, 0};
     centres.clear();
     size_t count = 0;
-    tree.ForEachLeaf(SeenRegion(middle), std::nullopt, [&](size_t leaf, bool /*all_inside*/) {
+    tree.ForEachLeaf(SeenRegion(middle), [&](size_t leaf, bool /*all_inside*/) {
       for (const LfImageId id : tree.Leaf(leaf)) {
         centres.push_back(index.light_field().Camera(id).CentreWorld());
         count += LensPointOfLine(frame, centres.back(), *focus).norm() <= radius_w;

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <map>
 #include <string_view>
 
+#include "lf/camera/distortion.h"
 #include "lf/camera/ray_through.h"
 #include "lf/collector/collect.h"
 #include "lf/selection/ideal_cells.h"
@@ -76,11 +78,14 @@ ReachableElements::ReachableElements(const ImageIndex& index, const RenderCamera
   const std::vector<SelectedImage> images = SelectImages(index, frames, select, pool, ranges);
   const LightField& light_field = index.light_field();
   image_count_ = images.size();
+  std::map<uint32_t, DistortionMap> maps;
   std::vector<Viewer> viewers;
   for (const SelectedImage& image : images) {
     const PinholeCamera lf_camera = light_field.Camera(image.id);
+    const auto map = maps.try_emplace(light_field.cameras[image.id.value].intrinsics_index,
+                                      lf_camera.intrinsics.distortion);
     viewers.push_back(
-        {RayThrough(lf_camera, camera.pinhole.ForwardWorld()),
+        {RayThrough(lf_camera, camera.pinhole.ForwardWorld(), map.first->second),
          select.reach == PixelReach::kNeighbours ? BorderOf(lf_camera, camera, filter) : 0});
   }
   const int width = camera.pinhole.intrinsics.width_px;

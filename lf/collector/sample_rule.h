@@ -29,7 +29,7 @@ class ReachableElements {
  public:
   static constexpr int kGrid = 8;  // elements
 
-  // places  which LF images of the order by `select.seed` count
+  // places  which LF images of the index's order count
   // filter  where select.reach is that of bilinear
   ReachableElements(const ImageIndex& index, const RenderCamera& camera, const PlaceRange& places,
                     const SelectOptions& select, PixelFilter filter, ThreadPool& pool);

@@ -153,11 +153,11 @@ CameraTree::CameraTree(const LightField& light_field) : light_field_(light_field
     view_angle_rad_ = std::max(view_angle_rad_, ViewAngle(k));
 }
 
-void CameraTree::ForEachLeaf(const SeenRegion& region, std::optional<double> max_angle_rad,
+void CameraTree::ForEachLeaf(const SeenRegion& region,
                              const std::function<void(size_t leaf, bool all_inside)>& visit) const {
   constexpr double kRounding = 1e-6;
-  const double rays_meet = region.ray_angle_rad() + view_angle_rad_;
-  const double most_angle = std::min(rays_meet, max_angle_rad.value_or(kPi)) + kRounding;
+  // Beyond it rays of the LF camera and of the frame have no direction in common.
+  const double most_angle = region.ray_angle_rad() + view_angle_rad_ + kRounding;
   uint32_t inside_until = 0;  // nodes before this one are inside, for one above them is
   for (uint32_t n = 0; n < nodes_.size();) {
     const Node& node = nodes_[n];

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -30,9 +29,7 @@ class CameraTree {
 
   // Calls visit(leaf, all_inside) for every leaf with cameras that the region may hold, in
   // ascending order; all_inside: it holds all of them.
-  //   max_angle_rad  between the optical axes of the frame and of LF cameras; leaves in which all
-  //                  are beyond it are left out
-  void ForEachLeaf(const SeenRegion& region, std::optional<double> max_angle_rad,
+  void ForEachLeaf(const SeenRegion& region,
                    const std::function<void(size_t leaf, bool all_inside)>& visit) const;
 
  private:

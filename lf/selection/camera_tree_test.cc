@@ -84,7 +84,7 @@ TEST(CameraTree, LeavesOutNoCameraThatContributes) {
     for (const RenderCamera& frame : frames) {
       const SeenRegion region(frame);
       std::set<uint32_t> found;
-      tree.ForEachLeaf(region, std::nullopt, [&](size_t leaf, bool all_inside) {
+      tree.ForEachLeaf(region, [&](size_t leaf, bool all_inside) {
         for (const LfImageId id : tree.Leaf(leaf)) {
           found.insert(id.value);
           inside += all_inside;
@@ -138,7 +138,7 @@ TEST(CameraTree, AsksFewOfAWall) {
   frame.aperture.radius_w = 5;
   frame.focus_plane = {Vec3::UnitZ(), 40};
   size_t visited = 0, inside = 0;
-  tree.ForEachLeaf(SeenRegion(frame), std::nullopt, [&](size_t leaf, bool all_inside) {
+  tree.ForEachLeaf(SeenRegion(frame), [&](size_t leaf, bool all_inside) {
     visited += tree.Leaf(leaf).size();
     inside += all_inside ? tree.Leaf(leaf).size() : 0;
   });
@@ -149,30 +149,8 @@ TEST(CameraTree, AsksFewOfAWall) {
   frame.pinhole.cam_from_world = *LookAlong({0, 0, 30}, -Vec3::UnitZ(), -Vec3::UnitY());
   frame.focus_plane = {Vec3::UnitZ(), 20};
   visited = 0;
-  tree.ForEachLeaf(SeenRegion(frame), std::nullopt,
-                   [&](size_t /*leaf*/, bool /*all_inside*/) { ++visited; });
+  tree.ForEachLeaf(SeenRegion(frame), [&](size_t /*leaf*/, bool /*all_inside*/) { ++visited; });
   EXPECT_EQ(visited, 0u);
-}
-
-TEST(CameraTree, AnglesBetweenAxesAreALossThatIsAskedFor) {
-  const LightField field = Wall(40, true);
-  RenderCamera frame;
-  frame.pinhole.intrinsics = {100, 100, 25, 17.5, 0, 50, 35, {}};
-  frame.aperture.radius_w = 20;
-  frame.focus_plane = {Vec3::UnitZ(), 30};
-  ThreadPool pool(1);
-  const ImageIndex index(field);
-  SelectOptions options;
-  const std::vector<SelectedImage> all = SelectImages(index, std::span(&frame, 1), options, pool);
-  options.max_angle_rad = 0.2;
-  const std::vector<SelectedImage> some = SelectImages(index, std::span(&frame, 1), options, pool);
-  std::set<uint32_t> expected, found;
-  for (const SelectedImage& image : all)
-    if (field.Camera(image.id).ForwardWorld().z() >= std::cos(0.2)) expected.insert(image.id.value);
-  for (const SelectedImage& image : some) found.insert(image.id.value);
-  EXPECT_EQ(found, expected);
-  EXPECT_GT(some.size(), 20u);
-  EXPECT_LT(some.size(), all.size() / 2);
 }
 
 // Frames more than are taken together, places of their own, and an image counts every frame.

@@ -15,8 +15,6 @@ constexpr double kPlateMarginPx = 1e-6;
 constexpr double kPixelMarginPx = 1e-6;  // of a vertex computed by clipping
 constexpr int kNeighboursPx = 2;         // on each side of a ray between pixels
 constexpr double kZeroMargin = 1e-12;    // of a form's value at a vertex, relative to its terms
-// Of the circle around a disk's circumscribed 16-gon: 1 / cos(pi / 16).
-constexpr double kDiskPolygonRadius = 1.0195911582083184;
 
 int NeighboursOf(PixelReach reach) { return reach == PixelReach::kNeighbours ? kNeighboursPx : 0; }
 

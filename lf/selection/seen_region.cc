@@ -10,8 +10,6 @@ namespace {
 // What overlap.h adds to lens and plate, several times.
 constexpr double kLensGrowth = 1 + 1e-5;
 constexpr double kPlateMargin_px = 1e-3;
-// Of the circle around a disk's circumscribed 16-gon: 1 / cos(pi / 16).
-constexpr double kDiskPolygonRadius = 1.0195911582083184;
 constexpr double kRounding = 1e-9;
 
 std::array<Vec3, 8> Corners(const WorldBox& box) {

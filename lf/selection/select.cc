@@ -1,8 +1,7 @@
 #include "lf/selection/select.h"
 
 #include <algorithm>
-#include <cmath>
-#include <functional>
+#include <optional>
 
 #include "lf/core/check.h"
 #include "lf/selection/overlap.h"
@@ -32,32 +31,6 @@ class CellsOfLast {
   std::vector<IdealCell> cells_;
 };
 
-// What a frame asks LF cameras before their rectangles.
-class LensGate {
- public:
-  LensGate(const RenderCamera& frame, const SelectOptions& options)
-      : region_(frame), forward_(frame.pinhole.ForwardWorld()) {
-    max_angle_rad_ = options.max_angle_rad;
-    if (max_angle_rad_) least_cosine_ = std::cos(*max_angle_rad_);
-  }
-
-  void ForEachLeaf(const CameraTree& tree,
-                   const std::function<void(size_t leaf, bool all_inside)>& visit) const {
-    tree.ForEachLeaf(region_, max_angle_rad_, visit);
-  }
-
-  bool MayTake(const PinholeCamera& lf_camera, bool is_inside) const {
-    if (max_angle_rad_ && forward_.dot(lf_camera.ForwardWorld()) < least_cosine_) return false;
-    return is_inside || !region_.Misses(lf_camera.CentreWorld());
-  }
-
- private:
-  SeenRegion region_;
-  Vec3 forward_;
-  std::optional<double> max_angle_rad_;
-  double least_cosine_ = -1;
-};
-
 // Some frames and a leaf that they may take.
 struct Visit {
   uint32_t leaf;
@@ -66,11 +39,11 @@ struct Visit {
 };
 
 // Leaf by leaf, for each by ascending frames.
-std::vector<Visit> VisitsOf(const CameraTree& tree, std::span<const LensGate> gates,
+std::vector<Visit> VisitsOf(const CameraTree& tree, std::span<const SeenRegion> regions,
                             ThreadPool& pool) {
-  std::vector<std::vector<Visit>> of_frames(gates.size());
-  pool.ForEach(gates.size(), [&](size_t f) {
-    gates[f].ForEachLeaf(tree, [&](size_t leaf, bool all_inside) {
+  std::vector<std::vector<Visit>> of_frames(regions.size());
+  pool.ForEach(regions.size(), [&](size_t f) {
+    tree.ForEachLeaf(regions[f], [&](size_t leaf, bool all_inside) {
       of_frames[f].push_back(
           {static_cast<uint32_t>(leaf), static_cast<uint32_t>(f), all_inside ? 1U : 0U});
     });
@@ -94,13 +67,13 @@ class Selector {
         options_(options),
         places_(places.empty() ? places : places.subspan(first_frame, frames.size())) {
     for (const RenderCamera& frame : frames) {
-      gates_.emplace_back(frame, options);
+      regions_.emplace_back(frame);
       outlines_.emplace_back(frame);
     }
   }
 
   std::vector<Visit> Visits(ThreadPool& pool) const {
-    return VisitsOf(index_.tree(), gates_, pool);
+    return VisitsOf(index_.tree(), regions_, pool);
   }
 
   // Those of a leaf; all visits are of it.
@@ -116,7 +89,7 @@ class Selector {
       for (const Visit& visit : visits) {
         const size_t f = visit.frame;
         if (!places_.empty() && !places_[f].Holds(image.place)) continue;
-        if (!gates_[f].MayTake(camera, visit.all_inside != 0)) continue;
+        if (visit.all_inside == 0 && regions_[f].Misses(camera.CentreWorld())) continue;
         if (!overlap) overlap.emplace(camera, cells->Of(light_field, id), options_.reach);
         const PixelRect rect = overlap->Rect(outlines_[f]);
         if (rect.empty()) continue;
@@ -132,7 +105,7 @@ class Selector {
   const ImageIndex& index_;
   const SelectOptions& options_;
   std::span<const PlaceRange> places_;
-  std::vector<LensGate> gates_;
+  std::vector<SeenRegion> regions_;
   std::vector<FrameOutline> outlines_;
 };
 
@@ -206,11 +179,12 @@ std::vector<PlaceRange> PlacesOfFirst(size_t image_count, const ImageIndex& inde
   std::vector<PlaceRange> ranges(frames.size());
   // Each frame walks along the order by itself.
   pool.ForEach(frames.size(), [&](size_t f) {
-    const LensGate gate(frames[f], options);
+    const SeenRegion region(frames[f]);
     std::vector<uint32_t> places;
-    gate.ForEachLeaf(index.tree(), [&](size_t leaf, bool all_inside) {
+    index.tree().ForEachLeaf(region, [&](size_t leaf, bool all_inside) {
       for (const LfImageId id : index.tree().Leaf(leaf))
-        if (gate.MayTake(light_field.Camera(id), all_inside)) places.push_back(index.PlaceOf(id));
+        if (all_inside || !region.Misses(light_field.Camera(id).CentreWorld()))
+          places.push_back(index.PlaceOf(id));
     });
     std::sort(places.begin(), places.end());
     CellsOfLast cells;

@@ -3,7 +3,6 @@
 
 #include <atomic>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -37,8 +36,6 @@ struct SelectedImage {
 
 struct SelectOptions {
   PixelReach reach = PixelReach::kOwn;  // of the estimator
-  // Between the optical axes of LF camera and frame; a loss that the user asks for.
-  std::optional<double> max_angle_rad = std::nullopt;
   // Once it is true, the rest is left out and the answer is of no use.
   const std::atomic<bool>* interrupted = nullptr;
 };
