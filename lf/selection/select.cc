@@ -10,7 +10,7 @@
 namespace lf {
 namespace {
 
-// Frames whose leaves are kept together: a list of 4 bytes for each leaf and frame.
+// Frames whose leaves are kept together: 8 bytes for each leaf that a frame may take.
 constexpr size_t kFramesTogether = 64;
 constexpr size_t kLeavesPerTask = 4;
 
@@ -31,7 +31,7 @@ class CellsOfLast {
   std::vector<IdealCell> cells_;
 };
 
-// Some frames and a leaf that they may take.
+// A leaf that a frame may take, of some frames.
 struct Visit {
   uint32_t leaf;
   uint32_t frame : 31;
