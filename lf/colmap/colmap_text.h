@@ -9,8 +9,8 @@
 // Internal to colmap.
 #pragma once
 
-#include "lf/colmap/byte_stream.h"
 #include "lf/colmap/colmap_scene.h"
+#include "lf/core/byte_stream.h"
 #include "lf/core/result.h"
 
 namespace lf {

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "lf/capture/light_field.h"
-#include "lf/colmap/byte_stream.h"
+#include "lf/core/byte_stream.h"
 #include "lf/core/result.h"
 
 namespace lf {

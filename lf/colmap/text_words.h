@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "lf/colmap/byte_stream.h"
+#include "lf/core/byte_stream.h"
 #include "lf/core/result.h"
 
 namespace lf {

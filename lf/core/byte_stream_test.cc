@@ -1,14 +1,27 @@
-#include "lf/colmap/byte_stream.h"
+#include "lf/core/byte_stream.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "lf/core/file.h"
-#include "lf/imageio/test_folder.h"
+#include "lf/core/random.h"
 
 namespace lf {
 namespace {
+namespace fs = std::filesystem;
 
-class ByteStreamTest : public FolderTest {};
+class ByteStreamTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ =
+        fs::temp_directory_path() / ("lf_byte_stream_test." + std::to_string(::getpid()) + "." +
+                                     testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  fs::path folder_;
+};
 
 std::string Noise(size_t size) {
   std::string bytes(size, '\0');
@@ -55,16 +68,18 @@ TEST_F(ByteStreamTest, AFileThatShrinksMeanwhileIsAnError) {
   ASSERT_TRUE(WriteFileAtomically(folder_ / "file", Noise(size_t{3} << 20)));
   Result<ByteStream> stream = ByteStream::Open(folder_ / "file");
   ASSERT_TRUE(stream);
-  std::filesystem::resize_file(folder_ / "file", 1000);
+  fs::resize_file(folder_ / "file", 1000);
   stream->Skip(size_t{2} << 20);
   EXPECT_TRUE(stream->Window().empty());
   ASSERT_FALSE(stream->Status());
   EXPECT_NE(stream->Status().error().message.find("shorter"), std::string::npos);
 }
 
-TEST_F(ByteStreamTest, FoldersAndMissingFilesAreErrors) {
+TEST_F(ByteStreamTest, WhatIsNoFileIsAnErrorAtOnce) {
   EXPECT_FALSE(ByteStream::Open(folder_));
   EXPECT_FALSE(ByteStream::Open(folder_ / "none"));
+  ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  EXPECT_FALSE(ByteStream::Open(folder_ / "pipe"));  // which nobody writes to
 }
 
 }  // namespace

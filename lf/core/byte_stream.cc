@@ -1,4 +1,4 @@
-#include "lf/colmap/byte_stream.h"
+#include "lf/core/byte_stream.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -18,7 +18,8 @@ constexpr size_t kBlockSize = size_t{1} << 20;
 }  // namespace
 
 Result<ByteStream> ByteStream::Open(const fs::path& path) {
-  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  // Not blocking: a named pipe would wait for its writer.
+  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (fd < 0)
     return InputError(fmt::format("{}: cannot be opened: {}", path.string(), std::strerror(errno)));
   struct stat status = {};
