@@ -16,6 +16,7 @@ OWNERS = {
     "jerror.h": {"imageio"},
     "yaml-cpp/": {"path"},
     "nlohmann/": {"calibration", "native", "record"},
+    "simdjson": {"native"},
     "tbb/": {"core"},
     "hwy/": {"collection", "store"},
     "zstd": {"plate"},

@@ -15,7 +15,7 @@
 #include "lf/capture/rotation.h"
 #include "lf/core/file.h"
 #include "lf/core/log.h"
-#include "lf/native/json_fields.h"
+#include "lf/native/json_syntax.h"
 #include "lf/native/opengl_pose.h"
 
 namespace lf {

@@ -1,35 +1,49 @@
 #include "lf/native/json_fields.h"
 
 #include <fmt/format.h>
+#include <simdjson.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <nlohmann/json.hpp>
 #include <numeric>
 
 namespace lf {
 namespace {
 
-using nlohmann::json;
+using simdjson::dom::array;
+using simdjson::dom::element;
+using simdjson::dom::object;
 
 // A value as a message shows it: short, whatever the file holds.
-std::string Shown(const json& value) {
-  if (value.is_object()) return "an object";
-  if (value.is_array() && value.size() > 4) return fmt::format("a list of {}", value.size());
+std::string Shown(const element& value) {
+  if (value.is<object>()) return "an object";
+  array list;
+  if (value.get(list) == simdjson::SUCCESS && list.size() > 4)
+    return fmt::format("a list of {}", list.size());
   constexpr size_t kLongest = 80;
-  const std::string text = value.dump();
+  const std::string text = simdjson::minify(value);
   return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
 }
 
-bool Holds(const NumberRule& rule, const json& value) {
-  return value.is_number() && std::isfinite(value.get<double>()) && rule.holds(value.get<double>());
+std::optional<double> NumberBy(const NumberRule& rule, const element& value) {
+  double number = 0;
+  if (value.get(number) != simdjson::SUCCESS || !std::isfinite(number) || !rule.holds(number))
+    return std::nullopt;
+  return number;
 }
 
-bool IsNumbers(const json& list, size_t count_min, size_t count_max, const NumberRule& rule) {
-  return list.is_array() && list.size() >= count_min && list.size() <= count_max &&
-         std::all_of(list.begin(), list.end(),
-                     [&](const json& value) { return Holds(rule, value); });
+// False unless the value is a list of count_min to count_max numbers by the rule.
+bool AppendNumbers(const element& value, size_t count_min, size_t count_max, const NumberRule& rule,
+                   std::vector<double>* numbers) {
+  array list;
+  if (value.get(list) != simdjson::SUCCESS || list.size() < count_min || list.size() > count_max)
+    return false;
+  for (const element entry : list) {
+    const std::optional<double> number = NumberBy(rule, entry);
+    if (!number) return false;
+    numbers->push_back(*number);
+  }
+  return true;
 }
 
 // Levenshtein's distance.
@@ -56,85 +70,93 @@ const char* Nearest(std::string_view key, std::span<const char* const> known) {
 
 }  // namespace
 
-Error IsNotJson(const std::filesystem::path& file, std::string_view what) {
-  what.remove_prefix(std::min(what.size(), what.find("] ") + 2));  // the library's name
-  return InputError(fmt::format("{}: is not JSON: {}", file.string(), what));
+std::optional<element> JsonFields::Find(const char* key) const {
+  const std::string_view wanted = key;
+  std::optional<element> found;
+  for (const auto [name, value] : object_.object())
+    if (name == wanted) found = value;
+  return found && found->is_null() ? std::nullopt : found;
 }
 
-const json* JsonFields::Find(const char* key) const {
-  const auto found = object_.find(key);
-  return found == object_.end() || found->is_null() ? nullptr : &*found;
+bool JsonFields::Has(const char* key) const { return Find(key).has_value(); }
+
+bool JsonFields::HasList(const char* key) const {
+  const std::optional<element> value = Find(key);
+  return value && value->is<array>();
 }
 
 Result<std::optional<double>> JsonFields::Number(const char* key, const NumberRule& rule) const {
-  const json* value = Find(key);
+  const std::optional<element> value = Find(key);
   if (!value) return std::optional<double>();
-  if (!Holds(rule, *value)) return Wrong(key, rule.expected);
-  return std::optional(value->get<double>());
+  const std::optional<double> number = NumberBy(rule, *value);
+  if (!number) return Wrong(key, rule.expected);
+  return number;
 }
 
 Result<std::optional<bool>> JsonFields::Bool(const char* key) const {
-  const json* value = Find(key);
+  const std::optional<element> value = Find(key);
   if (!value) return std::optional<bool>();
-  if (!value->is_boolean()) return Wrong(key, "true or false");
-  return std::optional(value->get<bool>());
+  bool is_true = false;
+  if (value->get(is_true) != simdjson::SUCCESS) return Wrong(key, "true or false");
+  return std::optional(is_true);
 }
 
 Result<std::optional<std::string>> JsonFields::Text(const char* key) const {
-  const json* value = Find(key);
+  const std::optional<element> value = Find(key);
   if (!value) return std::optional<std::string>();
-  if (!value->is_string()) return Wrong(key, "text in quotes");
-  const std::string& text = value->get_ref<const std::string&>();
-  if (text.find('\0') != std::string::npos) return Wrong(key, "text without NUL characters");
-  return std::optional(text);
+  std::string_view text;
+  if (value->get(text) != simdjson::SUCCESS) return Wrong(key, "text in quotes");
+  if (text.find('\0') != std::string_view::npos) return Wrong(key, "text without NUL characters");
+  return std::optional(std::string(text));
 }
 
 Result<std::optional<std::vector<double>>> JsonFields::Numbers(const char* key, size_t count_min,
                                                                size_t count_max,
                                                                const NumberRule& rule) const {
-  const json* list = Find(key);
+  const std::optional<element> list = Find(key);
   if (!list) return std::optional<std::vector<double>>();
-  if (!IsNumbers(*list, count_min, count_max, rule)) {
+  std::vector<double> numbers;
+  if (!AppendNumbers(*list, count_min, count_max, rule, &numbers)) {
     const std::string count = count_min == count_max
                                   ? fmt::format("{}", count_min)
                                   : fmt::format("{} to {}", count_min, count_max);
     return Wrong(key, fmt::format("a list of {} numbers, each {}", count, rule.expected));
   }
-  return std::optional(list->get<std::vector<double>>());
+  return std::optional(std::move(numbers));
 }
 
 Result<std::optional<std::vector<double>>> JsonFields::Matrix(const char* key, size_t rows_min,
                                                               size_t rows_max, size_t columns,
                                                               const NumberRule& rule) const {
-  const json* rows = Find(key);
-  if (!rows) return std::optional<std::vector<double>>();
-  const bool is_matrix = rows->is_array() && rows->size() >= rows_min && rows->size() <= rows_max &&
-                         std::all_of(rows->begin(), rows->end(), [&](const json& row) {
-                           return IsNumbers(row, columns, columns, rule);
-                         });
+  const std::optional<element> value = Find(key);
+  if (!value) return std::optional<std::vector<double>>();
+  array rows;
+  bool is_matrix =
+      value->get(rows) == simdjson::SUCCESS && rows.size() >= rows_min && rows.size() <= rows_max;
+  std::vector<double> numbers;
+  numbers.reserve(rows_max * columns);
+  if (is_matrix)
+    for (const element row : rows)
+      is_matrix = is_matrix && AppendNumbers(row, columns, columns, rule, &numbers);
   if (!is_matrix)
     return Wrong(key,
                  fmt::format("{} lists of {} numbers, each {}", rows_max, columns, rule.expected));
-  std::vector<double> values;
-  values.reserve(rows->size() * columns);
-  for (const json& row : *rows)
-    for (const json& value : row) values.push_back(value.get<double>());
-  return std::optional(std::move(values));
+  return std::optional(std::move(numbers));
 }
 
 Result<void> JsonFields::CheckLfKeys(std::span<const char* const> known,
                                      std::span<const char* const> known_elsewhere,
                                      const char* elsewhere_place) const {
-  const auto is_in = [](std::span<const char* const> keys, const std::string& key) {
+  const auto is_in = [](std::span<const char* const> keys, std::string_view key) {
     return std::find(keys.begin(), keys.end(), key) != keys.end();
   };
-  for (const auto& [key, value] : object_.items()) {
+  for (const auto [key, value] : object_.object()) {
     if (!key.starts_with("lf_") || is_in(known, key)) continue;
     if (is_in(known_elsewhere, key))
       return Fault(
           fmt::format("\"{}\" stands in the wrong place: it belongs {}", key, elsewhere_place));
     constexpr size_t kLongest = 64;
-    const std::string shown = key.substr(0, kLongest);
+    const std::string_view shown = key.substr(0, kLongest);
     return Fault(
         fmt::format("\"{}\" is not known: did you mean \"{}\"?", shown, Nearest(shown, known)));
   }
@@ -149,7 +171,7 @@ Error JsonFields::Fault(std::string_view message) const {
 }
 
 Error JsonFields::Wrong(const char* key, std::string_view expected) const {
-  const json* value = Find(key);
+  const std::optional<element> value = Find(key);
   return Fault(value ? fmt::format("\"{}\" is {}: expected {}", key, Shown(*value), expected)
                      : fmt::format("\"{}\" is missing: expected {}", key, expected));
 }

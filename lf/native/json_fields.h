@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,6 +11,11 @@
 #include <vector>
 
 #include "lf/core/result.h"
+#include "lf/native/json_object.h"
+
+namespace simdjson::dom {
+class element;
+}  // namespace simdjson::dom
 
 namespace lf {
 
@@ -21,23 +25,21 @@ struct NumberRule {
   bool (*holds)(double);
 };
 
-// "a/transforms.json: is not JSON: " + what the parser says
-Error IsNotJson(const std::filesystem::path& file, std::string_view what);
-
 // A view of one object of a file; object, file and file_path must outlive it.
 class JsonFields {
  public:
   // The top level of the file.
-  JsonFields(const nlohmann::json& object, const std::filesystem::path& file)
+  JsonFields(const JsonObject& object, const std::filesystem::path& file)
       : object_(object), file_(file) {}
   // frames[frame_index], which describes the image file_path ("" while that is not known).
-  JsonFields(const nlohmann::json& object, const std::filesystem::path& file, size_t frame_index,
+  JsonFields(const JsonObject& object, const std::filesystem::path& file, size_t frame_index,
              std::string_view file_path)
       : object_(object), file_(file), frame_index_(frame_index), file_path_(file_path) {}
 
+  bool Has(const char* key) const;  // and it is not null
+  bool HasList(const char* key) const;
   // None where the key is missing or null; kInput where the value has another type or breaks the
   // rule.
-  const nlohmann::json* Find(const char* key) const;
   Result<std::optional<double>> Number(const char* key, const NumberRule& rule) const;
   Result<std::optional<bool>> Bool(const char* key) const;
   Result<std::optional<std::string>> Text(const char* key) const;  // without NUL characters
@@ -62,7 +64,9 @@ class JsonFields {
   Error Wrong(const char* key, std::string_view expected) const;
 
  private:
-  const nlohmann::json& object_;
+  std::optional<simdjson::dom::element> Find(const char* key) const;
+
+  const JsonObject& object_;
   const std::filesystem::path& file_;
   std::optional<size_t> frame_index_;
   std::string_view file_path_;

@@ -83,7 +83,7 @@ Result<void> ReadColour(const JsonFields& top, RadianceEncoding* encoding) {
 // What the first of camera raw files tells of what is not stated.
 Result<RadianceEncoding> DefaultEncoding(const JsonFields& top, const LightField& light_field,
                                          const RawFactsSource& raw_facts) {
-  const auto stated = [&](const auto&... keys) { return (... && (top.Find(keys) != nullptr)); };
+  const auto stated = [&](const auto&... keys) { return (... && top.Has(keys)); };
   const bool levels_stated = stated("lf_black_level", "lf_white_level");
   const bool colours_stated = stated("lf_white_balance", "lf_camera_to_srgb");
   if (!raw_facts || (stated("lf_bayer") && levels_stated && colours_stated))

@@ -3,15 +3,19 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
 
 #include "lf/capture/distinct_intrinsics.h"
-#include "lf/core/file.h"
+#include "lf/core/byte_stream.h"
+#include "lf/native/frame_cutter.h"
 #include "lf/native/intrinsics_keys.h"
 #include "lf/native/json_fields.h"
+#include "lf/native/json_object.h"
+#include "lf/native/json_syntax.h"
 #include "lf/native/lf_keys.h"
 #include "lf/native/opengl_pose.h"
 
@@ -23,6 +27,7 @@ using nlohmann::json;
 using Event = json::parse_event_t;
 
 constexpr size_t kMaxFrameCount = size_t{1} << 24;
+constexpr size_t kMaxHeldBytes = size_t{1} << 30;
 constexpr int kMaxDepth = 8;  // nothing we read lies deeper; hostile nesting takes no memory
 
 constexpr NumberRule kFinite = {"finite", [](double) { return true; }};
@@ -31,7 +36,7 @@ constexpr NumberRule kGain = {"a factor from 1e-6 to 1e6",
 constexpr NumberRule kUnit = {"metres per world unit, from 1e-9 to 1e9",
                               [](double x) { return x >= 1e-9 && x <= 1e9; }};
 
-// Takes the frames one by one as the parser completes them and lets it forget them: of a million
+// Takes the frames one by one, as they are cut out of the text, and forgets them: of a million
 // frames only LfCameras and names are ever in memory. What they share may come after them in the
 // file, so their intrinsics are resolved at the end.
 class Reader {
@@ -41,61 +46,83 @@ class Reader {
     light_field_.folder = path.parent_path();
   }
 
-  // The parser's callback: whether to keep what it has just read. Depth 0 is the top level, 1 its
-  // keys and values, 2 the entries of "frames".
-  bool Keep(int depth, Event event, json& value) {
-    if (error_ || depth > kMaxDepth) return false;
-    if (depth == 1 && event == Event::key) NoteKey(value.get_ref<const std::string&>());
-    if (!in_frames_) return true;
-    if (depth == 1 && event == Event::array_start) in_frames_list_ = true;
-    if (depth == 1 && event == Event::array_end) in_frames_list_ = false;
-    if (depth != 2 || !in_frames_list_) return true;
-    if (event == Event::value || event == Event::array_start)
-      SetError(JsonFields(value, path_, frame_count(), "").Fault("expected an object {...}"));
-    if (event != Event::object_end) return true;
-    if (Result<void> result = AddFrame(value); !result) SetError(result.error());
-    return false;
+  // False if it is no JSON.
+  bool TakeFrame(const std::string& text) {
+    if (!frame_.Parse(text)) return false;
+    if (error_) return true;  // still to be said: whether the file is JSON
+    if (Result<void> result = AddFrame(); !result) error_ = result.error();
+    return true;
   }
 
-  // After the parser, with all that it kept.
-  Result<LightField> Finish(const json& top) {
-    if (error_) return *error_;
+  // Everything but the frames, after them; {} stands for each. None if it is no JSON.
+  std::optional<Result<LightField>> TakeRest(const std::string& text) {
+    std::optional<Error> first_error;
+    std::string top_text;
+    try {
+      top_text = TopLevel(text, &first_error).dump();
+    } catch (const json::exception&) {
+      return std::nullopt;
+    }
+    if (first_error) return *first_error;
+    JsonObject top;
     const JsonFields fields(top, path_);
-    if (!top.is_object()) return fields.Fault("expected an object {...} with a list \"frames\"");
-    const json* frames = fields.Find("frames");
-    if (!frames || !frames->is_array()) return fields.Wrong("frames", "a list of objects");
-    if (frame_count() == 0) return fields.Fault("\"frames\" is empty: a light field needs images");
-    LF_RETURN_IF_ERROR(fields.CheckLfKeys(kTopLevelLfKeys, kFrameLfKeys, "into each frame"));
-    LF_RETURN_IF_ERROR(ResolveAllIntrinsics(fields));
-    LF_ASSIGN_OR_RETURN(light_field_.encoding, ReadEncoding(fields, light_field_, raw_facts_));
-    LF_ASSIGN_OR_RETURN(const std::optional<double> unit_m, fields.Number("lf_unit_m", kUnit));
-    light_field_.unit_m = unit_m.value_or(1);
-    LF_RETURN_IF_ERROR(ReadDepthRange(fields));
-    if (!light_field_.mask_names.empty()) light_field_.mask_names.resize(frame_count());
-    return std::move(light_field_);
+    if (!top.Parse(top_text))
+      return fields.Fault("expected an object {...} with a list \"frames\"");
+    if (error_) return *error_;
+    return Finish(fields);
   }
 
  private:
   size_t frame_count() const { return light_field_.cameras.size(); }
-  void SetError(Error error) {
-    if (!error_) error_ = std::move(error);
+
+  // The top level, without the entries of "frames". An error if one of these is no object, or if a
+  // key is given twice. Throws if it is no JSON.
+  json TopLevel(const std::string& text, std::optional<Error>* error) const {
+    std::set<std::string> seen_keys;
+    bool in_frames = false, in_frames_list = false;
+    size_t entry_count = 0;
+    // Depth 0 is the top level, 1 its keys and values, 2 the entries of "frames".
+    return json::parse(text, [&](int depth, Event event, json& value) {
+      if (*error || depth > kMaxDepth) return false;
+      if (depth == 1 && event == Event::key) {
+        const std::string& key = value.get_ref<const std::string&>();
+        in_frames = key == "frames";
+        if (!seen_keys.insert(key).second)
+          *error = InputError(fmt::format("{}: \"{}\" is given twice", path_.string(), key));
+      }
+      if (!in_frames) return true;
+      if (depth == 1 && event == Event::array_start) in_frames_list = true;
+      if (depth == 1 && event == Event::array_end) in_frames_list = false;
+      if (depth != 2 || !in_frames_list) return true;
+      if (event == Event::value || event == Event::array_start)
+        *error = JsonFields(JsonObject(), path_, entry_count, "").Fault("expected an object {...}");
+      if (event == Event::object_end) ++entry_count;
+      return event != Event::object_end;
+    });
   }
 
-  void NoteKey(const std::string& key) {
-    in_frames_ = key == "frames";
-    if (!seen_keys_.insert(key).second)
-      SetError(InputError(fmt::format("{}: \"{}\" is given twice", path_.string(), key)));
+  Result<LightField> Finish(const JsonFields& top) {
+    if (!top.HasList("frames")) return top.Wrong("frames", "a list of objects");
+    if (frame_count() == 0) return top.Fault("\"frames\" is empty: a light field needs images");
+    LF_RETURN_IF_ERROR(top.CheckLfKeys(kTopLevelLfKeys, kFrameLfKeys, "into each frame"));
+    LF_RETURN_IF_ERROR(ResolveAllIntrinsics(top));
+    LF_ASSIGN_OR_RETURN(light_field_.encoding, ReadEncoding(top, light_field_, raw_facts_));
+    LF_ASSIGN_OR_RETURN(const std::optional<double> unit_m, top.Number("lf_unit_m", kUnit));
+    light_field_.unit_m = unit_m.value_or(1);
+    LF_RETURN_IF_ERROR(ReadDepthRange(top));
+    if (!light_field_.mask_names.empty()) light_field_.mask_names.resize(frame_count());
+    return std::move(light_field_);
   }
 
-  Result<void> AddFrame(const json& frame) {
+  Result<void> AddFrame() {
     const size_t index = frame_count();
-    const JsonFields unnamed(frame, path_, index, "");
+    const JsonFields unnamed(frame_, path_, index, "");
     if (index == kMaxFrameCount)
       return unnamed.Fault(fmt::format("more than {} frames", kMaxFrameCount));
     LF_ASSIGN_OR_RETURN(std::optional<std::string> name, unnamed.Text("file_path"));
     if (!name || name->empty()) return unnamed.Wrong("file_path", "the name of the image file");
 
-    const JsonFields fields(frame, path_, index, *name);
+    const JsonFields fields(frame_, path_, index, *name);
     LF_RETURN_IF_ERROR(fields.CheckLfKeys(kFrameLfKeys, kTopLevelLfKeys, "to the top level"));
     LfCamera camera;
     LF_ASSIGN_OR_RETURN(camera.cam_from_world, ReadPose(fields));
@@ -195,10 +222,10 @@ class Reader {
     constexpr uint32_t kNotYet = UINT32_MAX;
     std::vector<uint32_t> resolved(distinct_keys_.size(), kNotYet);
     DistinctIntrinsics distinct;
+    const JsonObject no_object;
     for (size_t i = 0; i < frame_count(); ++i) {
       uint32_t& index = light_field_.cameras[i].intrinsics_index;
       if (resolved[index] == kNotYet) {
-        const json no_object = json::object();
         const JsonFields frame(no_object, path_, i, light_field_.image_names[i]);
         LF_ASSIGN_OR_RETURN(
             const Intrinsics intrinsics,
@@ -218,32 +245,52 @@ class Reader {
   std::optional<std::array<int, 2>> default_size_;
   LightField light_field_;  // intrinsics_index counts distinct_keys_ until the end
   std::map<IntrinsicsKeys, uint32_t> distinct_keys_;
-  std::set<std::string> seen_keys_;
-  bool in_frames_ = false;
-  bool in_frames_list_ = false;
-  std::optional<Error> error_;
+  JsonObject frame_;            // the one that is being read
+  std::optional<Error> error_;  // of the first frame that has one
 };
+
+using StreamSource = std::function<Result<ByteStream>()>;
+
+// The parsers of frames do not tell where in the file they stop: it is read a second time.
+Error SyntaxError(const StreamSource& open) {
+  Result<ByteStream> stream = open();
+  return stream ? JsonSyntaxError(&*stream) : stream.error();
+}
+
+Result<LightField> Read(const fs::path& path, const StreamSource& open,
+                        const ImageSizeSource& image_size, const RawFactsSource& raw_facts) {
+  Reader reader(path, image_size, raw_facts);
+  bool is_json = true;
+  FrameCutter cutter([&](const std::string& frame) { is_json &= reader.TakeFrame(frame); });
+  LF_ASSIGN_OR_RETURN(ByteStream stream, open());
+  for (std::string_view piece = stream.Window(); is_json && !piece.empty();
+       piece = stream.Window()) {
+    cutter.Add(piece);
+    stream.Skip(piece.size());
+    if (cutter.held_bytes() > kMaxHeldBytes)
+      return InputError(
+          fmt::format("{}: holds more than {} bytes beside its frames, or in one of them: is it a "
+                      "transforms.json?",
+                      path.string(), kMaxHeldBytes));
+  }
+  LF_RETURN_IF_ERROR(stream.Status());
+  if (!is_json || cutter.is_in_frame()) return SyntaxError(open);
+  std::optional<Result<LightField>> light_field = reader.TakeRest(cutter.rest());
+  return light_field ? *std::move(light_field) : SyntaxError(open);
+}
 
 }  // namespace
 
 Result<LightField> ParseTransformsJson(std::string_view text, const fs::path& path,
                                        const ImageSizeSource& image_size,
                                        const RawFactsSource& raw_facts) {
-  Reader reader(path, image_size, raw_facts);
-  try {
-    const json top =
-        json::parse(text.begin(), text.end(), [&reader](int depth, Event event, json& value) {
-          return reader.Keep(depth, event, value);
-        });
-    return reader.Finish(top);
-  } catch (const json::exception& exception) {
-    return IsNotJson(path, exception.what());
-  }
+  return Read(
+      path, [&] { return ByteStream(text, path); }, image_size, raw_facts);
 }
 
 Result<LightField> ReadTransformsJson(const fs::path& path) {
-  LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(path));
-  return ParseTransformsJson(text, path, ImageSizeInHeader, RawFactsOfFirstImage);
+  return Read(
+      path, [&] { return ByteStream::Open(path); }, ImageSizeInHeader, RawFactsOfFirstImage);
 }
 
 }  // namespace lf

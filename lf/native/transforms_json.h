@@ -23,8 +23,9 @@ Result<LightField> ParseTransformsJson(std::string_view text, const std::filesys
                                        const ImageSizeSource& image_size = {},
                                        const RawFactsSource& raw_facts = {});
 
-// The same for a file; a missing size, and what is not said of camera raw files, come from the
-// header of the first image file.
+// The same for a file, which is read in pieces: it takes the memory of the light field, not that of
+// the text. A missing size, and what is not said of camera raw files, come from the header of the
+// first image file.
 Result<LightField> ReadTransformsJson(const std::filesystem::path& path);
 
 // Writes `light_field` so that reading it gives the same cameras bit for bit (but that a

@@ -1,16 +1,32 @@
-// Any bytes are a light field or an error; a light field has sane cameras only.
+// Any bytes are a light field or an error, and are cut into the same frames wherever their pieces
+// end; a light field has sane cameras only.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 #include "lf/core/check.h"
+#include "lf/native/frame_cutter.h"
 #include "lf/native/transforms_json.h"
+
+namespace {
+
+// The frames, a line each, and the rest.
+std::string Cut(std::string_view text, size_t piece_size) {
+  std::string frames;
+  lf::FrameCutter cutter([&](const std::string& frame) { frames += frame + '\n'; });
+  for (size_t i = 0; i < text.size(); i += piece_size) cutter.Add(text.substr(i, piece_size));
+  return frames + cutter.rest();
+}
+
+}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size_bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes), size_bytes);
   const lf::Result<lf::LightField> light_field = lf::ParseTransformsJson(text, "f/transforms.json");
+  LF_CHECK(Cut(text, 1) == Cut(text, std::string_view::npos / 2));
   if (!light_field) {
     LF_CHECK(light_field.error().message.starts_with("f/transforms.json: "));
     return 0;

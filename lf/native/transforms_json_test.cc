@@ -1,10 +1,14 @@
 #include "lf/native/transforms_json.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
 #include <vector>
+
+#include "lf/core/file.h"
+#include "lf/imageio/test_folder.h"
 
 namespace lf {
 namespace {
@@ -232,6 +236,74 @@ TEST(TransformsJson, WhatIsNoTransformsJsonIsAnError) {
   ExpectError("{\"frames\": [{\"file_path\": \"a\"}]}", {"(a): \"transform_matrix\" is missing"});
   ExpectError(OneFrame(kIntrinsics + R"("w": 3, )"), {"\"w\" is given twice"});
   ExpectError(std::string(100'000, '['), {"is not JSON"});
+}
+
+TEST(TransformsJson, AFaultIsFoundWhereverItStands) {
+  const std::string frame =
+      std::string(R"({"file_path": "a.png", "transform_matrix": )") + kUnturned + "}";
+  const auto text = [&](const std::string& second, const std::string& end) {
+    return "{" + kIntrinsics + "\"frames\": [\n" + frame + ",\n" + second + ",\n" + frame + end;
+  };
+  EXPECT_EQ(Parsed(text(frame, "]}")).size(), 3u);
+  ExpectError(text(R"({"a": 01})", "]}"), {"is not JSON", "line 3, column 8"});
+  ExpectError(text(R"({"a": [1})", "]}"), {"is not JSON", "line 3, column 9"});
+  ExpectError(text(R"({"a": "})", "]}"), {"is not JSON", "invalid string"});
+  ExpectError(text("{}{}", "]}"), {"is not JSON", "line 3, column 3"});
+  ExpectError(text(frame, "}"), {"is not JSON", "line 4"});
+  ExpectError(text(frame, "],}"), {"is not JSON", "line 4"});
+  ExpectError(text(frame, "]} {}"), {"is not JSON", "line 4"});
+  // That it is no JSON goes before all else.
+  ExpectError(text("{}", "]"), {"is not JSON", "line 4"});
+  ExpectError(text("{}", "]}"), {"frames[1]: \"file_path\" is missing"});
+  ExpectError(text("7", R"(,{}]})"), {"frames[1]: expected an object"});
+}
+
+TEST(TransformsJson, WhatNobodyReadsMayBeAnything) {
+  const std::string deep = std::string(5000, '[') + std::string(5000, ']');
+  const std::string keys = R"("a": {"frames": [{"b": "}{"}]}, "id": 340282366920938463463374607431,
+                               "e": "\ud83d\ude00", "z": )" +
+                           deep + ", ";
+  const LightField light_field = Parsed(OneFrame(keys + kIntrinsics, keys));
+  EXPECT_EQ(light_field.size(), 1u);
+  EXPECT_EQ(light_field.Camera({0}).CentreWorld(), Vec3(1, 2, 3));
+}
+
+class TransformsJsonFileTest : public FolderTest {};
+
+// Of some blocks of the file, with names of all lengths.
+TEST_F(TransformsJsonFileTest, AFileIsReadInPiecesAsItsTextIsAtOnce) {
+  std::string frames;
+  constexpr uint32_t kCount = 20'000;
+  const auto name = [](uint32_t i) {
+    return fmt::format("{}\u00e9{{}}[]/{}.png", std::string(i % 97, 'x'), i);
+  };
+  for (uint32_t i = 0; i < kCount; ++i)
+    frames += fmt::format(
+        "{}{{\"file_path\": \"{}\", \"note\": \"}}\\\"{{\\u00e9\", \"transform_matrix\": "
+        "[[1,0,0,{}],[0,1,0,2],[0,0,1,3]]}}",
+        i ? ",\n" : "", name(i), 0.1 * i);
+  const std::string text =
+      "{\"frames\": [" + frames + "], \"fl_x\": 500, " + R"("w": 640, "h": 480})";
+  ASSERT_GT(text.size(), size_t{2} << 20);
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "transforms.json", text));
+  const Result<LightField> read = ReadTransformsJson(folder_ / "transforms.json");
+  ASSERT_TRUE(read) << read.error().message;
+  ASSERT_EQ(read->size(), kCount);
+  EXPECT_EQ(read->image_names, Parsed(text).image_names);
+  for (uint32_t i = 0; i < kCount; ++i) {
+    EXPECT_EQ(read->image_names[i], name(i));
+    EXPECT_EQ(read->cameras[i].cam_from_world.translation, Vec3(0 - 0.1 * i, 2, 3));
+  }
+}
+
+TEST_F(TransformsJsonFileTest, ABrokenFileNamesTheLine) {
+  const std::filesystem::path path = folder_ / "transforms.json";
+  ASSERT_TRUE(WriteFileAtomically(path, "{\"frames\": [\n{\"a\": 1,}]}"));
+  const Result<LightField> read = ReadTransformsJson(path);
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().message.find(path.string() + ": is not JSON: parse error at line 2"), 0u);
+  EXPECT_FALSE(ReadTransformsJson(folder_));
+  EXPECT_FALSE(ReadTransformsJson(folder_ / "none.json"));
 }
 
 TEST(TransformsJson, ReadsHowStoredNumbersBecomeLight) {

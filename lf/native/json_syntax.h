@@ -1,0 +1,19 @@
+// What is said of files that are not JSON. For the readers of calibrations.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "lf/core/byte_stream.h"
+#include "lf/core/result.h"
+
+namespace lf {
+
+// "a/transforms.json: is not JSON: " + what nlohmann's parser says
+Error IsNotJson(const std::filesystem::path& file, std::string_view what);
+
+// Reads the whole stream: kInput with line and column of its first fault, or with the reason why it
+// cannot be read. Takes no memory for what it reads, whatever the nesting.
+Error JsonSyntaxError(ByteStream* stream);
+
+}  // namespace lf
