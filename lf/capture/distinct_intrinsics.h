@@ -4,37 +4,34 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <map>
-#include <utility>
-#include <vector>
+#include <string_view>
 
 #include "lf/camera/pinhole.h"
+#include "lf/core/distinct.h"
+#include "lf/core/hash.h"
 
 namespace lf {
 
-class DistinctIntrinsics {
- public:
-  // The index of these intrinsics in the list, where they are put if new.
-  uint32_t IndexOf(const Intrinsics& k) {
-    Key key = {k.fx_px,
-               k.fy_px,
-               k.cx_px,
-               k.cy_px,
-               k.skew_px,
-               static_cast<double>(k.width_px),
-               static_cast<double>(k.height_px),
-               static_cast<double>(k.distortion.model)};
-    std::copy(k.distortion.parameters.begin(), k.distortion.parameters.end(), key.begin() + 8);
-    const auto [entry, is_new] = index_.try_emplace(key, static_cast<uint32_t>(list_.size()));
-    if (is_new) list_.push_back(k);
-    return entry->second;
-  }
-  std::vector<Intrinsics> Take() { return std::move(list_); }
+// Of numbers; both zeros are one.
+template <size_t kCount>
+uint64_t HashOfNumbers(std::array<double, kCount> numbers) {
+  for (double& x : numbers) x += 0.0;
+  return HashBytes({reinterpret_cast<const char*>(numbers.data()), sizeof(numbers)});
+}
 
- private:
-  using Key = std::array<double, 16>;
-  std::map<Key, uint32_t> index_;
-  std::vector<Intrinsics> list_;
-};
+inline uint64_t HashOfIntrinsics(const Intrinsics& k) {
+  std::array<double, 16> numbers = {k.fx_px,
+                                    k.fy_px,
+                                    k.cx_px,
+                                    k.cy_px,
+                                    k.skew_px,
+                                    static_cast<double>(k.width_px),
+                                    static_cast<double>(k.height_px),
+                                    static_cast<double>(k.distortion.model)};
+  std::copy(k.distortion.parameters.begin(), k.distortion.parameters.end(), numbers.begin() + 8);
+  return HashOfNumbers(numbers);
+}
+
+using DistinctIntrinsics = Distinct<Intrinsics, HashOfIntrinsics>;
 
 }  // namespace lf

@@ -34,7 +34,7 @@ struct DistortionKeys {
   std::optional<bool> is_fisheye;       // instant-ngp
   std::array<std::optional<double>, 9> values;
 
-  friend auto operator<=>(const DistortionKeys&, const DistortionKeys&) = default;
+  friend bool operator==(const DistortionKeys&, const DistortionKeys&) = default;
 };
 
 // kInput: an unknown camera model, a parameter beyond +-1e6, an omega outside [0, pi).

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "lf/capture/distinct_intrinsics.h"
+
 namespace lf {
 namespace {
 
@@ -35,6 +37,22 @@ std::optional<double> Focal(const IntrinsicsKeys& frame, const IntrinsicsKeys& t
 }
 
 }  // namespace
+
+uint64_t HashOfIntrinsicsKeys(const IntrinsicsKeys& keys) {
+  constexpr double kMissing = 1e300;  // no value that is read
+  const DistortionKeys& distortion = keys.distortion;
+  std::array<double, 20> numbers = {
+      static_cast<double>(distortion.camera_model.value_or(UINT8_MAX)),
+      distortion.is_fisheye ? *distortion.is_fisheye : kMissing};
+  size_t i = 2;
+  for (const std::optional<double>& key :
+       {keys.fl_x, keys.fl_y, keys.camera_angle_x, keys.camera_angle_y, keys.cx, keys.cy, keys.w,
+        keys.h, keys.lf_skew})
+    numbers[i++] = key.value_or(kMissing);
+  for (const std::optional<double>& value : distortion.values)
+    numbers[i++] = value.value_or(kMissing);
+  return HashOfNumbers(numbers);
+}
 
 Result<IntrinsicsKeys> ReadIntrinsicsKeys(const JsonFields& fields) {
   IntrinsicsKeys keys;

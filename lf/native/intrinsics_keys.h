@@ -3,7 +3,7 @@
 #pragma once
 
 #include <array>
-#include <compare>
+#include <cstdint>
 #include <functional>
 #include <optional>
 
@@ -23,8 +23,11 @@ struct IntrinsicsKeys {
   std::optional<double> lf_skew;                         // px
   DistortionKeys distortion;
 
-  friend auto operator<=>(const IntrinsicsKeys&, const IntrinsicsKeys&) = default;
+  friend bool operator==(const IntrinsicsKeys&, const IntrinsicsKeys&) = default;
 };
+
+// Of equal keys the same.
+uint64_t HashOfIntrinsicsKeys(const IntrinsicsKeys& keys);
 
 // Every value in its range.
 Result<IntrinsicsKeys> ReadIntrinsicsKeys(const JsonFields& fields);

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <functional>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
@@ -129,9 +128,7 @@ class Reader {
     LF_ASSIGN_OR_RETURN(const std::optional<double> gain, fields.Number("lf_gain", kGain));
     camera.gain = static_cast<float>(gain.value_or(1));
     LF_ASSIGN_OR_RETURN(const IntrinsicsKeys keys, ReadIntrinsicsKeys(fields));
-    camera.intrinsics_index =
-        distinct_keys_.try_emplace(keys, static_cast<uint32_t>(distinct_keys_.size()))
-            .first->second;
+    camera.intrinsics_index = distinct_keys_.IndexOf(keys);
     LF_RETURN_IF_ERROR(ReadMask(fields, index));
     light_field_.cameras.push_back(camera);
     // As instant-ngp does for the frames of Blender's NeRF scenes.
@@ -216,11 +213,9 @@ class Reader {
 
   Result<void> ResolveAllIntrinsics(const JsonFields& fields) {
     LF_ASSIGN_OR_RETURN(const IntrinsicsKeys top, ReadIntrinsicsKeys(fields));
-    std::vector<const IntrinsicsKeys*> keys_by_index(distinct_keys_.size());
-    for (const auto& [keys, index] : distinct_keys_) keys_by_index[index] = &keys;
-
+    const std::vector<IntrinsicsKeys> distinct_keys = distinct_keys_.Take();
     constexpr uint32_t kNotYet = UINT32_MAX;
-    std::vector<uint32_t> resolved(distinct_keys_.size(), kNotYet);
+    std::vector<uint32_t> resolved(distinct_keys.size(), kNotYet);
     DistinctIntrinsics distinct;
     const JsonObject no_object;
     for (size_t i = 0; i < frame_count(); ++i) {
@@ -230,7 +225,7 @@ class Reader {
         LF_ASSIGN_OR_RETURN(
             const Intrinsics intrinsics,
             ResolveIntrinsics(
-                *keys_by_index[index], top, [this] { return DefaultSize(); }, frame));
+                distinct_keys[index], top, [this] { return DefaultSize(); }, frame));
         resolved[index] = distinct.IndexOf(intrinsics);
       }
       index = resolved[index];
@@ -244,7 +239,7 @@ class Reader {
   const RawFactsSource& raw_facts_;
   std::optional<std::array<int, 2>> default_size_;
   LightField light_field_;  // intrinsics_index counts distinct_keys_ until the end
-  std::map<IntrinsicsKeys, uint32_t> distinct_keys_;
+  Distinct<IntrinsicsKeys, HashOfIntrinsicsKeys> distinct_keys_;
   JsonObject frame_;            // the one that is being read
   std::optional<Error> error_;  // of the first frame that has one
 };
