@@ -11,11 +11,19 @@ namespace {
 constexpr uint64_t kSeed = 0;
 constexpr double kShareOutside = 0.01;  // at either end
 
+uint64_t HashOf(uint64_t point_id, uint32_t image_id) {
+  return RandomBits(kSeed, point_id, image_id);
+}
+
 }  // namespace
+
+bool DepthSample::MayKeep(uint64_t point_id, uint32_t image_id) const {
+  return HashOf(point_id, image_id) <= hash_limit_;
+}
 
 void DepthSample::Add(uint64_t point_id, uint32_t image_id, double depth_w) {
   if (!(depth_w > 0) || !std::isfinite(depth_w)) return;
-  const uint64_t hash = RandomBits(kSeed, point_id, image_id);
+  const uint64_t hash = HashOf(point_id, image_id);
   if (hash > hash_limit_) return;
   // Once: growing would hold the old and the new ones. What is not touched takes no memory.
   if (depths_.empty()) depths_.reserve(kMaxCount + 1);

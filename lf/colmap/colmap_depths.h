@@ -16,6 +16,10 @@ class DepthSample {
  public:
   static constexpr size_t kMaxCount = size_t{1} << 20;
 
+  // Whether Add would keep a depth of this observation now. Of very many it keeps few: what takes
+  // time to find need not be looked for.
+  bool MayKeep(uint64_t point_id, uint32_t image_id) const;
+
   // A point as one camera sees it. Depths that are not positive and finite do not count: such a
   // point is a mistake of the reconstruction.
   void Add(uint64_t point_id, uint32_t image_id, double depth_w);

@@ -28,11 +28,14 @@ TEST(ColmapDepths, WhatLiesBehindACameraDoesNotCount) {
 TEST(ColmapDepths, TheOrderDoesNotMatter) {
   constexpr uint64_t kCount = 5 * DepthSample::kMaxCount / 2;
   const auto depth = [](uint64_t i) { return 1 + static_cast<double>(i) / kCount; };
-  DepthSample forward, backward;
+  DepthSample forward, backward, asked;
   for (uint64_t i = 0; i < kCount; ++i) forward.Add(i, 7, depth(i));
   for (uint64_t i = kCount; i-- > 0;) backward.Add(i, 7, depth(i));
+  for (uint64_t i = 0; i < kCount; ++i)
+    if (asked.MayKeep(i, 7)) asked.Add(i, 7, depth(i));
   ASSERT_TRUE(forward.Range());
   EXPECT_EQ(forward.Range(), backward.Range());
+  EXPECT_EQ(forward.Range(), asked.Range());
   EXPECT_NEAR(forward.Range()->near_w, 1.01, 0.001);
   EXPECT_NEAR(forward.Range()->far_w, 1.99, 0.001);
 }

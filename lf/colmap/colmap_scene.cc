@@ -161,6 +161,7 @@ Result<void> ColmapScene::AddObservation(uint64_t point_id, const Vec3& point_wo
         "is seen by image {}, which is not in the images file: remove the points file to read the "
         "model without a range of depths",
         image_id));
+  if (!depths_.MayKeep(point_id, image_id)) return {};  // poses lie all over the memory
   const RigidTransform& pose = light_field_.cameras[*position].cam_from_world;
   depths_.Add(point_id, image_id, pose.rotation.row(2).dot(point_world) + pose.translation.z());
   return {};
