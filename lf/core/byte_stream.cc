@@ -63,7 +63,7 @@ void ByteStream::Skip(uint64_t count) {
 bool ByteStream::ReadMore(size_t count) {
   LF_CHECK(count <= kBlockSize);
   if (fd_ < 0 || count > remaining() || !failure_.empty()) return false;
-  std::memmove(block_.data(), window_.data(), window_.size());
+  if (!window_.empty()) std::memmove(block_.data(), window_.data(), window_.size());
   size_t held = window_.size();
   while (held < count) {
     const ssize_t got =
