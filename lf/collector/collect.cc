@@ -79,6 +79,9 @@ class FrameCollector::State {
   bool Takes(size_t frame) const {
     return !is_stopped_[frame] && progress_[frame].places_done < places_[frame].end;
   }
+  uint32_t PlaceEnd() const {
+    return options_.place_end > 0 ? options_.place_end : static_cast<uint32_t>(light_field_.size());
+  }
   size_t FirstWanted(size_t from) const;
   Batch BatchFrom(size_t from) const;
   std::vector<BatchFrame> FramesOf(const Batch& batch) const;
@@ -186,8 +189,8 @@ Batch FrameCollector::State::BatchFrom(size_t from) const {
     if (image.place >= decision || (is_long && batch.end > batch.begin)) break;
     batch.loading.push_back({batch.end, std::nullopt});
   }
-  batch.place_end = batch.end < order_.size() ? std::min(decision, order_[batch.end].place)
-                                              : static_cast<uint32_t>(light_field_.size());
+  batch.place_end =
+      batch.end < order_.size() ? std::min(decision, order_[batch.end].place) : PlaceEnd();
   for (const BatchFrame& taker : FramesOf(batch)) batch.frames.push_back(taker.frame);
   if (batch.frames.size() == progress_.size()) batch.frames.clear();
   return batch;

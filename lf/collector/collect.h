@@ -41,6 +41,8 @@ struct CollectOptions {
   // frame alike. 0: no rule, batches are not cut. Else a multiple of kDecisionPlaces.
   uint32_t decision_places = kDecisionPlaces;
   FrameImageWeights weights;
+  // All places are below it; 0: they are those of the light field. More of a package.
+  uint32_t place_end = 0;
   bool strict = false;                             // a broken LF image is an error
   const std::atomic<bool>* interrupted = nullptr;  // looked at between items of about 10 ms
 };

@@ -5,57 +5,18 @@
 #include <vector>
 
 #include "lf/camera/ray_through.h"
+#include "lf/collector/around_lens.h"
 
 namespace lf {
-namespace {
-
-// Whether what is at the point is in the picture of the LF camera.
-bool Holds(const RayThrough& ray, const Vec3& point_world) {
-  const std::optional<Vec2> p = ray.RecordedAt(ray.DirectionWorld(point_world));
-  const Intrinsics& k = ray.intrinsics();
-  return p && p->x() >= 0 && p->x() <= k.width_px && p->y() >= 0 && p->y() <= k.height_px;
-}
-
-// Of the LF cameras that see the middle of the plate through the lens, or, if these are few,
-// through one that a dozen see it through.
-std::vector<Vec3> CentresAroundLens(const ImageIndex& index, const RenderCamera& frame) {
-  const Intrinsics& k = frame.pinhole.intrinsics;
-  const std::optional<Vec3> focus = FocusPointOfElement(frame, 0.5 * k.width_px, 0.5 * k.height_px);
-  if (!focus) return {};
-  RenderCamera middle = frame;
-  middle.pinhole.intrinsics.cx_px -= 0.5 * k.width_px;
-  middle.pinhole.intrinsics.cy_px -= 0.5 * k.height_px;
-  middle.pinhole.intrinsics.width_px = middle.pinhole.intrinsics.height_px = 0;
-  const CameraTree& tree = index.tree();
-  // From a thousandth of how far it is to what is in focus to a million times that.
-  constexpr int kDoublings = 30;
-  double radius_w =
-      std::max(frame.aperture.radius_w, 1e-3 * (*focus - frame.pinhole.CentreWorld()).norm());
-  std::vector<Vec3> centres;
-  for (int i = 0; i < kDoublings; ++i, radius_w *= 2) {
-    middle.aperture = {radius_w, 0, 0};
-    centres.clear();
-    size_t count = 0;
-    tree.ForEachLeaf(SeenRegion(middle), [&](size_t leaf, bool /*all_inside*/) {
-      for (const LfImageId id : tree.Leaf(leaf)) {
-        centres.push_back(index.light_field().Camera(id).CentreWorld());
-        count += LensPointOfLine(frame, centres.back(), *focus).norm() <= radius_w;
-      }
-    });
-    if (count >= kCamerasAround) return centres;
-  }
-  return centres;
-}
-
-}  // namespace
 
 FrameLens::FrameLens(const ImageIndex& index, const RenderCamera& frame, LensWeights kind,
-                     const SelectOptions& select, ThreadPool& pool)
-    : light_field_(index.light_field()), camera_(frame) {
+                     const SelectOptions& select, ThreadPool& pool,
+                     std::optional<double> camera_distance_w)
+    : light_field_(index.light_field()), select_(select), camera_(frame) {
   if (kind == LensWeights::kNone) return;
-  const double distance_w = CameraDistance(frame, CentresAroundLens(index, frame));
+  camera_distance_w_ = camera_distance_w ? *camera_distance_w : CameraDistanceAround(index, frame);
   RenderCamera grown = frame;
-  grown.aperture = {frame.aperture.radius_w + kReach_distances * distance_w, 0, 0};
+  grown.aperture = {frame.aperture.radius_w + kReach_distances * camera_distance_w_, 0, 0};
   for (const SelectedImage& image : SelectImages(index, std::span(&grown, 1), select, pool))
     cameras_[image.id.value] = 0;
   // In the order of their numbers: the order in which images are taken has no say in weights.
@@ -70,7 +31,7 @@ FrameLens::FrameLens(const ImageIndex& index, const RenderCamera& frame, LensWei
 }
 
 RayWeights FrameLens::WeightsOf(LfImageId id) const {
-  if (!weights_) return 1;
+  if (!weights_) return IsWithinAngle(light_field_.cameras[id.value], camera_, select_) ? 1 : 0;
   const auto found = cameras_.find(id.value);
   if (found == cameras_.end() || !weights_->TakesPart(found->second)) return 0;
   const size_t camera = found->second;
@@ -79,6 +40,12 @@ RayWeights FrameLens::WeightsOf(LfImageId id) const {
                     [this, camera](int end_x, int end_y, int count, uint8_t* weights) {
                       weights_->OfRow(camera, end_x, end_y, count, weights);
                     });
+}
+
+std::vector<LfImageId> FrameLens::near() const {
+  std::vector<LfImageId> ids;
+  for (const auto& [id, camera] : cameras_) ids.push_back(LfImageId{id});
+  return ids;
 }
 
 std::optional<FrameLens::Facts> FrameLens::facts() const {
@@ -107,7 +74,7 @@ Image<float> FrameLens::EffectiveCounts() const {
     for (int row = 0; row < sums.height(); ++row)
       for (int column = 0; column < sums.width(); ++column) {
         const std::optional<Vec3>& point = focus[static_cast<size_t>(row) * sums.width() + column];
-        if (!point || !Holds(ray, *point)) continue;
+        if (!point || !IsSeenBy(ray, *point)) continue;
         const double weight =
             weights_->At(camera, element(column, plate.width_px), element(row, plate.height_px));
         sums.at(column, row, 0) += weight;

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "lf/camera/ray_weight.h"
 #include "lf/camera/render_camera.h"
@@ -25,14 +26,22 @@ class FrameLens {
 
   // kArea wants a lens of some size.
   // Refers to the light field.
+  //   camera_distance_w  CameraDistanceAround() in the whole light field, where the index is of a
+  //                      part: one that has all of near() gives the same weights
   FrameLens(const ImageIndex& index, const RenderCamera& frame, LensWeights kind,
-            const SelectOptions& select, ThreadPool& pool);
+            const SelectOptions& select, ThreadPool& pool,
+            std::optional<double> camera_distance_w = {});
 
   // The frame's; with weights its lens is the disk that holds all rays that have one.
   const RenderCamera& camera() const { return camera_; }
 
-  // Refer to this object.
+  // Refer to this object. 0 beyond the angle that selection allows.
   RayWeights WeightsOf(LfImageId id) const;
+
+  // LF images that were asked for their share, ascending, and how far apart their cameras are
+  // around the lens; with weights.
+  std::vector<LfImageId> near() const;
+  double camera_distance_w() const { return camera_distance_w_; }
 
   // What the weights are like; none without weights.
   struct Facts {
@@ -53,7 +62,9 @@ class FrameLens {
 
  private:
   const LightField& light_field_;
+  SelectOptions select_;
   RenderCamera camera_;
+  double camera_distance_w_ = 0;
   std::optional<FrameWeights> weights_;
   std::map<uint32_t, size_t> cameras_;  // of weights_, by LF image
 };

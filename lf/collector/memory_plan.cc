@@ -103,6 +103,7 @@ Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field
   const size_t plates_bytes = free_bytes - std::min(free_bytes, images_bytes);
   plan.frames_per_pass =
       std::clamp<size_t>(plates_bytes / plan.plate_bytes, 1, std::max<size_t>(1, frame_count));
+  plan.total_bytes = set_aside + images_bytes + plan.frames_per_pass * plan.plate_bytes;
   return plan;
 }
 

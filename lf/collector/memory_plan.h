@@ -16,6 +16,7 @@ struct MemoryPlan {
   size_t frames_finished_at_once = 1;  // after the last batch, in the memory of the LF images
   size_t image_bytes = 0;              // the largest decoded LF image
   size_t plate_bytes = 0;
+  size_t total_bytes = 0;  // what all of this takes, and the program itself
 };
 
 // What the program itself, its threads and a developing frame need is set aside; a quarter of the

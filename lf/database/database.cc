@@ -13,7 +13,6 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr int kPageBytes = 65536;
 constexpr int kMaxBlobBytes = 1 << 30;
 constexpr size_t kHashBytes = sizeof(uint64_t);
 
@@ -82,7 +81,9 @@ Statement& Statement::Bind(int parameter, double value) {
 }
 
 Statement& Statement::Bind(int parameter, std::string_view text) {
-  LF_CHECK(sqlite3_bind_text64(state_->handle, parameter + 1, text.data(), text.size(),
+  // A null pointer would be no text, but NULL.
+  const char* const letters = text.empty() ? "" : text.data();
+  LF_CHECK(sqlite3_bind_text64(state_->handle, parameter + 1, letters, text.size(),
                                SQLITE_TRANSIENT, SQLITE_UTF8) == SQLITE_OK);
   return *this;
 }
@@ -195,7 +196,7 @@ Result<Database> Database::Create(const fs::path& path, const DatabaseFormat& fo
   LF_RETURN_IF_ERROR(database.Execute(
       fmt::format("pragma page_size = {}; pragma journal_mode = off; pragma synchronous = off; "
                   "pragma application_id = {}; pragma user_version = {};",
-                  kPageBytes, static_cast<int32_t>(format.application_id), format.version)));
+                  format.page_bytes, static_cast<int32_t>(format.application_id), format.version)));
   return database;
 }
 

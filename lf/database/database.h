@@ -21,6 +21,7 @@ struct DatabaseFormat {
   const char* name;         // as messages call such a file: "package"
   uint32_t application_id;  // four letters
   int version;              // of what this program writes; older ones are not known
+  int page_bytes = 65536;   // a power of 2; small files want small ones
 };
 
 // One command, prepared; run by steps. The database must outlive it. Columns and parameters count

@@ -44,6 +44,18 @@ double MedianOfSeen(const LargeVector<float>& values) {
 
 }  // namespace
 
+Result<void> CheckVideoTarget(const std::filesystem::path& path) {
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  std::error_code error;
+  // The folder of the frames is made if it is missing, another is not.
+  if (!std::filesystem::is_directory(folder, error))
+    return OutputError(
+        fmt::format("--video {}: there is no folder {}", path.string(), folder.string()));
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
+    return OutputError(fmt::format("--video {}: exists and is no file", path.string()));
+  return {};
+}
+
 std::filesystem::path FrameOutput::PathOf(FrameId frame) const {
   return FramePath(options_.output_folder, frame, options_.format);
 }

@@ -17,6 +17,9 @@
 
 namespace lf {
 
+// Of --video, before the work and not after it: kOutput where the file could not be written.
+Result<void> CheckVideoTarget(const std::filesystem::path& path);
+
 // The light field, path and options must outlive it.
 class FrameOutput {
  public:

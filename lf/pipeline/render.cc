@@ -19,58 +19,51 @@
 namespace lf {
 namespace {
 
-// Asked before the work, not after it.
-Result<void> CheckVideoTarget(const std::filesystem::path& path) {
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  std::error_code error;
-  // The folder of the frames is made if it is missing, another is not.
-  if (!std::filesystem::is_directory(folder, error))
-    return OutputError(
-        fmt::format("--video {}: there is no folder {}", path.string(), folder.string()));
-  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
-    return OutputError(fmt::format("--video {}: exists and is no file", path.string()));
-  return {};
-}
-
-RunStateOptions StateOptions(const LightField& light_field, const RenderOptions& options) {
+RunStateOptions StateOptions(const Package& package, const RenderOptions& options) {
   RunChoices choices;
   choices.reading = options.reading;
   choices.lens_weights = options.lens_weights;
   choices.back_end = options.back_end;
-  choices.seed = options.seed;
+  choices.order = package.choices.order;
+  choices.seed = package.choices.seed;
   choices.max_image_count = options.max_image_count;
+  choices.max_angle_rad = package.choices.max_angle_rad;
   choices.stop_at_samples = options.stop_at_samples;
   choices.format = NameOf(options.format);
   choices.smooth_below = options.smooth_below;
   return {options.output_folder,
+          package.name,
+          package.FrameIds(),
           options.format,
           options.resume,
           options.overwrite,
-          InputsOfRays(light_field, choices),
+          InputsOfRays(package.whole, package.light_field.encoding, choices),
           InputsOfPicture(choices)};
 }
 
 // One render: its inputs, and what passes leave behind.
 class Renderer {
  public:
-  Renderer(const LightField& light_field, const CameraPath& path, const RenderOptions& options,
-           ThreadPool& pool, const std::function<void(const RenderProgress&)>& progress)
-      : light_field_(light_field),
-        path_(path),
+  Renderer(const Package& package, const RenderOptions& options, ThreadPool& pool,
+           const std::function<void(const RenderProgress&)>& progress)
+      : package_(package),
+        path_(package.path),
         options_(options),
         pool_(pool),
         progress_(progress),
-        index_(light_field, options.seed),
-        store_(light_field, options.reading.estimator == Estimator::kBilinear
-                                ? FolderStore::Mosaics::kToRgb
-                                : FolderStore::Mosaics::kAsRecorded),
-        output_(light_field, path, options, pool) {}
+        index_(package.light_field, package.places),
+        store_(package.light_field, options.reading.estimator == Estimator::kBilinear
+                                        ? FolderStore::Mosaics::kToRgb
+                                        : FolderStore::Mosaics::kAsRecorded),
+        output_(package.light_field, package.path, options, pool) {}
 
   Result<RenderReport> Run();
 
  private:
+  // A section of a film may be black; a film is not.
+  bool IsWhole() const { return package_.name.empty(); }
   Result<void> Begin();
-  Result<void> CheckCounts() const;
+  Result<void> CheckChoices() const;
   std::vector<FrameId> FramesToRender();
   Result<void> RunPasses(std::span<const FrameId> frames);
   Result<void> RunPass(const RenderJob& job, std::span<const FrameId> frames, size_t frames_left);
@@ -80,7 +73,7 @@ class Renderer {
   Error Interrupted() const;
   void Report(const CollectProgress& pass, size_t finished_count) const;
 
-  const LightField& light_field_;
+  const Package& package_;
   const CameraPath& path_;
   const RenderOptions& options_;
   ThreadPool& pool_;
@@ -112,19 +105,18 @@ Result<RenderReport> Renderer::Run() {
 
 Result<void> Renderer::Begin() {
   frames_ = options_.frames;
-  if (frames_.empty())
-    for (uint32_t n = 1; n <= path_.frame_count(); ++n) frames_.push_back(FrameId{n});
-  LF_RETURN_IF_ERROR(CheckCounts());
+  if (frames_.empty()) frames_ = package_.FrameIds();
+  LF_RETURN_IF_ERROR(CheckChoices());
   const Intrinsics& plate = path_.Camera(frames_.front()).pinhole.intrinsics;
   LF_ASSIGN_OR_RETURN(
-      plan_, PlanMemory(options_.memory_bytes, light_field_, options_.reading.estimator,
+      plan_, PlanMemory(options_.memory_bytes, package_.light_field, options_.reading.estimator,
                         plate.width_px, plate.height_px, frames_.size(), pool_.thread_count()));
   LF_RETURN_IF_ERROR(CreateFolder(options_.output_folder));
   if (options_.video) {
     LF_RETURN_IF_ERROR(CheckVideoTool());
     LF_RETURN_IF_ERROR(CheckVideoTarget(*options_.video));
   }
-  const RunStateOptions state_options = StateOptions(light_field_, options_);
+  const RunStateOptions state_options = StateOptions(package_, options_);
   LF_ASSIGN_OR_RETURN(state_, RunState::Open(state_options, path_));
   had_plates_ = state_->HasPlates();
   totals_ = state_->earlier();
@@ -140,12 +132,16 @@ Result<void> Renderer::Begin() {
   totals_.width = plate.width_px;
   totals_.height = plate.height_px;
   totals_.thread_count = pool_.thread_count();
-  totals_.lf_image_count = light_field_.size();
+  totals_.lf_image_count = package_.whole.image_count;
   done_.frame_total = frames_.size();
   return {};
 }
 
-Result<void> Renderer::CheckCounts() const {
+Result<void> Renderer::CheckChoices() const {
+  const std::optional<size_t>& most = package_.choices.max_image_count;
+  if (most && (!options_.max_image_count || *options_.max_image_count > *most))
+    return UsageError(fmt::format(
+        "{}: was made with --max-images {}, and has no more of each frame", package_.name, *most));
   if (options_.CountsRays() && options_.reading.estimator == Estimator::kBilinear &&
       options_.reading.filter == PixelFilter::kMosaic)
     return UsageError(
@@ -153,6 +149,11 @@ Result<void> Renderer::CheckCounts() const {
         "--smooth-below have none to count: leave them out, or use bilinear");
   if (options_.lens_weights == LensWeights::kNone) return {};
   const char* const name = NameOf(options_.lens_weights);
+  if (!package_.choices.has_neighbours)
+    return UsageError(
+        fmt::format("--lens-weights {}: {} was made with --lens-weights none, and lacks the LF "
+                    "cameras beside the lens: give none, or make it again",
+                    name, package_.name));
   if (options_.CountsRays())
     return UsageError(
         fmt::format("--lens-weights {}: counts are sums of weights, so that --stop-when, --require "
@@ -196,7 +197,7 @@ Result<void> Renderer::RunPasses(std::span<const FrameId> frames) {
             frames.size(), totals_.pass_count, per_pass, plan_.plate_bytes >> 20);
   DumpClock clock(options_.dump_every_s, NowSeconds());
   const RenderJob job = {
-      light_field_,
+      package_,
       index_,
       path_,
       options_,
@@ -211,7 +212,7 @@ Result<void> Renderer::RunPasses(std::span<const FrameId> frames) {
       black_count_,
       [this](const CollectProgress& pass, size_t finished_count) { Report(pass, finished_count); }};
   // Better known before a night's work than after it; what is there was once found to contribute.
-  if (totals_.pass_count > 1 && !state_->HasPlates() && state_->finished().empty())
+  if (totals_.pass_count > 1 && IsWhole() && !state_->HasPlates() && state_->finished().empty())
     LF_RETURN_IF_ERROR(CheckAnyContributes(job, frames));
   for (size_t begin = 0; begin < frames.size(); begin += per_pass) {
     const size_t count = std::min(per_pass, frames.size() - begin);
@@ -244,7 +245,7 @@ Result<void> Renderer::RunPass(const RenderJob& job, std::span<const FrameId> fr
   RenderPass pass(job, frames);
   LF_RETURN_IF_ERROR(pass.Prepare());
   const std::vector<SelectedImage>& images = pass.images();
-  if (images.empty() && totals_.pass_count == 1 && !state_->HasPlates() &&
+  if (images.empty() && IsWhole() && totals_.pass_count == 1 && !state_->HasPlates() &&
       state_->finished().empty())
     return NoneContributes();
   // Later passes are guessed to be like this one.
@@ -288,7 +289,7 @@ Result<RenderReport> Renderer::End() {
   totals_.total_s += NowSeconds() - begin_s_;
   totals_.peak_memory_bytes = PeakMemoryBytes();
   LF_RETURN_IF_ERROR(state_->Close(totals_));
-  if (totals_.AcceptedRays() == 0)
+  if (totals_.AcceptedRays() == 0 && IsWhole())
     return InputError(fmt::format(
         "{}: every frame is black: no ray of {} LF images reached them (are the images masked?)",
         options_.output_folder.string(), totals_.selected_image_count));
@@ -316,10 +317,9 @@ void Renderer::Report(const CollectProgress& pass, size_t finished_count) const 
 
 }  // namespace
 
-Result<RenderReport> Render(const LightField& light_field, const CameraPath& path,
-                            const RenderOptions& options, ThreadPool& pool,
+Result<RenderReport> Render(const Package& package, const RenderOptions& options, ThreadPool& pool,
                             const std::function<void(const RenderProgress&)>& progress) {
-  return Renderer(light_field, path, options, pool, progress).Run();
+  return Renderer(package, options, pool, progress).Run();
 }
 
 }  // namespace lf

@@ -1,4 +1,5 @@
-// The main job: a light field and a camera path in, an image sequence out (thesis 4.3).
+// The main job: a package in, an image sequence out (thesis 4.3). A light field and a camera path
+// are a package, too (package/package.h).
 #pragma once
 
 #include <atomic>
@@ -9,12 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "lf/capture/light_field.h"
 #include "lf/collector/collect.h"
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
 #include "lf/lens_weights/frame_weights.h"
-#include "lf/path/camera_path.h"
+#include "lf/package/package.h"
 #include "lf/record/report.h"
 #include "lf/sequence/frame_file.h"
 
@@ -30,13 +30,14 @@ struct RenderSignals {
 
 struct RenderOptions {
   std::filesystem::path output_folder;
-  std::vector<FrameId> frames;  // ascending; empty: all of the path
+  std::vector<FrameId> frames;  // ascending, of the package; empty: all of it
   FrameFormat format = FrameFormat::kExrHalf;
   std::optional<std::filesystem::path> video;  // an mp4 of the frames
   bool contact_sheet = true;                   // contact_sheet.png beside the frames
   bool keep_plates = false;                    // frame_0001.plate beside the frames
 
-  // off: a frame takes only the first so many LF images of the order that contribute to it
+  // off: a frame takes only the first so many LF images of the order that contribute to it. No more
+  // than the package was made for.
   std::optional<size_t> max_image_count;
   // off: a frame is finished when its elements have so many rays (sample_rule.h). Decided where a
   // multiple of 64 places of the order is done (of 128, 256, ... where a frame takes only a part of
@@ -45,12 +46,12 @@ struct RenderOptions {
   std::optional<uint32_t> require_samples;  // off: measured, and in the report of each frame
   uint32_t smooth_below = 0;                // sequence/develop.h
   size_t memory_bytes = size_t{8} << 30;
-  uint64_t seed = 0;
   bool strict = false;
   // With kBilinear the light field wants MakeRoomForUndershoot() (capture/radiance.h). Not kMosaic
   // where CountsRays(), for its rays count more than once.
   RayReading reading;
-  // kNone where CountsRays(), for counts are sums of weights else.
+  // kNone where CountsRays(), for counts are sums of weights else; and of a package without
+  // neighbours.
   LensWeights lens_weights = LensWeights::kNone;
   CollectBackEnd back_end = CollectBackEnd::kFast;
 
@@ -76,17 +77,18 @@ struct RenderProgress {
 };
 
 // Renders the frames into output_folder: frame_0001.exr ..., contact_sheet.png, report.json, and
-// the video. Every file appears under its name only when it is whole. The frames have the same
-// bits for any number of threads and any memory, and however often the render was interrupted,
-// killed and resumed: at most the time since the last checkpoint is lost.
+// the video. Of a package that has a name, the report is report-NAME.json and the state its own, so
+// that several may be rendered into one folder at the same time. Every file appears under its name
+// only when it is whole. The frames have the same bits for any number of threads and any memory,
+// and however often the render was interrupted, killed and resumed: at most the time since the last
+// checkpoint is lost.
 //   kUsage        an unfinished render in the folder, or one from other inputs (run_state.h)
 //   kInput        no LF image contributes to any frame, or none has a ray; broken images
 //                 (collect.h); a damaged state
 //   kOutput       disk, memory; ffmpeg, after the frames are written all the same. The state on the
 //                 disk is that of the last checkpoint.
 //   kInterrupted  what is finished stays, and the state of what is not is written
-Result<RenderReport> Render(const LightField& light_field, const CameraPath& path,
-                            const RenderOptions& options, ThreadPool& pool,
+Result<RenderReport> Render(const Package& package, const RenderOptions& options, ThreadPool& pool,
                             const std::function<void(const RenderProgress&)>& progress);
 
 }  // namespace lf

@@ -21,6 +21,7 @@ constexpr double kLastPictures_s = 2;
 SelectOptions RenderJob::Select() const {
   SelectOptions select;
   select.reach = ReachOf(options.reading.estimator);
+  select.max_angle_rad = package.choices.max_angle_rad;
   if (options.signals != nullptr) select.interrupted = &options.signals->stop;
   return select;
 }
@@ -36,7 +37,7 @@ void RenderPass::FindLenses() {
   for (const Frame& frame : frames_) {
     if (job_.IsStopped()) return;
     lenses_.emplace_back(job_.index, job_.path.Camera(frame.id), job_.options.lens_weights,
-                         job_.Select(), job_.pool);
+                         job_.Select(), job_.pool, job_.package.CameraDistance(frame.id));
     cameras_.push_back(lenses_.back().camera());
   }
 }
@@ -84,7 +85,8 @@ Result<void> RenderPass::Prepare() {
   collect.plan_bytes = job_.plan.plan_bytes;
   collect.strict = job_.options.strict;
   if (job_.options.signals != nullptr) collect.interrupted = &job_.options.signals->attention;
-  if (job_.options.lens_weights != LensWeights::kNone)
+  collect.place_end = job_.index.place_end();
+  if (job_.options.lens_weights != LensWeights::kNone || job_.package.choices.max_angle_rad)
     collect.weights = [this](size_t f, LfImageId id) { return lenses_[f].WeightsOf(id); };
   collect.decision_places = 0;
   if (job_.options.stop_at_samples) {
@@ -93,7 +95,7 @@ Result<void> RenderPass::Prepare() {
     for (size_t f = 0; f < frames_.size(); ++f) {
       if (job_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
       const uint32_t decision =
-          DecisionPlaces(job_.light_field.size(), ReachableOf(f).image_count());
+          DecisionPlaces(job_.index.place_end(), ReachableOf(f).image_count());
       frames_[f].decision_places = decision;
       frames_[f].next_decision =
           std::max(1u, (places[f].begin + decision - 1) / decision) * decision;
@@ -101,8 +103,8 @@ Result<void> RenderPass::Prepare() {
     }
     if (job_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
   }
-  collector_ = std::make_unique<FrameCollector>(job_.light_field, job_.store, cameras_, images_,
-                                                places, collect, job_.pool, &plates_);
+  collector_ = std::make_unique<FrameCollector>(job_.package.light_field, job_.store, cameras_,
+                                                images_, places, collect, job_.pool, &plates_);
   return {};
 }
 
@@ -182,7 +184,7 @@ uint32_t RenderPass::PlacesCovered(size_t f) const {
   const auto next = std::lower_bound(
       images_.begin(), images_.end(), collector_->frames()[f].places_done,
       [](const SelectedImage& image, uint32_t place) { return image.place < place; });
-  return next == images_.end() ? static_cast<uint32_t>(job_.light_field.size()) : next->place;
+  return next == images_.end() ? job_.index.place_end() : next->place;
 }
 
 // Asks every frame at the first multiple of its decision_places after an LF image it took, with
@@ -233,9 +235,7 @@ Result<FrameReport> RenderPass::WriteFiles(size_t f) {
   if (job_.options.keep_plates) {
     // Where a frame ends is no matter of passes.
     progress.places_done =
-        frame.is_stopped
-            ? frame.next_decision
-            : std::min(frame.places.end, static_cast<uint32_t>(job_.light_field.size()));
+        frame.is_stopped ? frame.next_decision : std::min(frame.places.end, job_.index.place_end());
     std::filesystem::path plate = to;
     LF_RETURN_IF_ERROR(WritePlate(plate.replace_extension(".plate"),
                                   job_.state.PlateText(frame.id, progress), plates_[f], job_.pool));

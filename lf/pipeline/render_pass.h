@@ -27,8 +27,8 @@ inline double NowSeconds() {
 
 // What passes share.
 struct RenderJob {
-  const LightField& light_field;
-  const ImageIndex& index;
+  const Package& package;
+  const ImageIndex& index;  // of the package
   const CameraPath& path;
   const RenderOptions& options;
   ThreadPool& pool;

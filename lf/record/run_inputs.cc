@@ -3,69 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstring>
 
-#include "lf/core/hash.h"
+#include "lf/capture/value_hasher.h"
 
 namespace lf {
 namespace {
 
-// Values one after the other, as bytes. Numbers keep all their bits.
-class InputHasher {
- public:
-  void Add(double value) {
-    const double plain = value == 0 ? 0 : value;  // -0 is no other input
-    hasher_.Add({reinterpret_cast<const char*>(&plain), sizeof(plain)});
-  }
-  void Add(const std::string& text) {
-    Add(static_cast<double>(text.size()));
-    hasher_.Add(text);
-  }
-  template <class Matrix>
-  void AddMatrix(const Matrix& matrix) {
-    for (Eigen::Index row = 0; row < matrix.rows(); ++row)
-      for (Eigen::Index column = 0; column < matrix.cols(); ++column) Add(matrix(row, column));
-  }
-  void Add(const RigidTransform& transform) {
-    AddMatrix(transform.rotation);
-    AddMatrix(transform.translation);
-  }
-  void Add(const Intrinsics& k) {
-    for (const double value : {k.fx_px, k.fy_px, k.cx_px, k.cy_px, k.skew_px}) Add(value);
-    Add(k.width_px);
-    Add(k.height_px);
-    Add(static_cast<double>(k.distortion.model));
-    for (const double parameter : k.distortion.parameters) Add(parameter);
-  }
-  std::string Text() const { return fmt::format("{:016x}", hasher_.Hash()); }
-
- private:
-  Hasher hasher_;
-};
-
-std::string CalibrationHash(const LightField& light_field) {
-  InputHasher hasher;
-  for (const LfCamera& camera : light_field.cameras) {
-    hasher.Add(camera.cam_from_world);
-    hasher.Add(static_cast<double>(camera.intrinsics_index));
-    hasher.Add(camera.gain);
-  }
-  for (const Intrinsics& k : light_field.intrinsics) hasher.Add(k);
-  return hasher.Text();
-}
-
-std::string NamesHash(const LightField& light_field) {
-  InputHasher hasher;
-  for (const std::string& name : light_field.image_names) hasher.Add(name);
-  for (const std::string& name : light_field.mask_names) hasher.Add(name);
-  return hasher.Text();
-}
-
 // What a reader may want to see, then the hash of all of it.
 std::string EncodingText(const RadianceEncoding& encoding) {
-  InputHasher hasher;
+  ValueHasher hasher;
   hasher.Add(static_cast<double>(encoding.bayer));
   hasher.Add(static_cast<double>(encoding.transfer));
   for (const double value : encoding.response) hasher.Add(value);
@@ -85,7 +31,7 @@ std::string EncodingText(const RadianceEncoding& encoding) {
 
 // Developing: what is done to colours.
 std::string ColoursText(const RadianceEncoding& encoding) {
-  InputHasher hasher;
+  ValueHasher hasher;
   for (const double gain : encoding.white_balance) hasher.Add(gain);
   hasher.AddMatrix(encoding.camera_to_srgb);
   return fmt::format("white balance {} {} {} ({})", encoding.white_balance[0],
@@ -95,7 +41,7 @@ std::string ColoursText(const RadianceEncoding& encoding) {
 std::string Text(const Vec3& v) { return fmt::format("{} {} {}", v.x(), v.y(), v.z()); }
 
 std::string CameraHash(const RenderCamera& camera) {
-  InputHasher hasher;
+  ValueHasher hasher;
   hasher.Add(camera.pinhole.intrinsics);
   hasher.Add(camera.pinhole.cam_from_world);
   hasher.Add(camera.aperture.radius_w);
@@ -108,7 +54,8 @@ std::string CameraHash(const RenderCamera& camera) {
 
 }  // namespace
 
-RunInputs InputsOfRays(const LightField& light_field, const RunChoices& choices) {
+RunInputs InputsOfRays(const LightFieldIdentity& light_field, const RadianceEncoding& encoding,
+                       const RunChoices& choices) {
   return {
       {"law", fmt::format("{}", kLawVersion)},
       {"estimator", NameOf(choices.reading.estimator)},
@@ -116,15 +63,19 @@ RunInputs InputsOfRays(const LightField& light_field, const RunChoices& choices)
        choices.reading.estimator == Estimator::kBilinear ? NameOf(choices.reading.filter) : "none"},
       {"lens_weights", NameOf(choices.lens_weights)},
       {"back_end", choices.back_end == CollectBackEnd::kFast ? "fast" : "reference"},
+      {"order", NameOf(choices.order)},
       {"seed", fmt::format("{}", choices.seed)},
       {"max_images", choices.max_image_count ? fmt::format("{}", *choices.max_image_count) : "all"},
+      {"max_angle_deg", choices.max_angle_rad
+                            ? fmt::format("{}", DegreesFromRadians(*choices.max_angle_rad))
+                            : "any"},
       {"stop_when",
        choices.stop_at_samples ? fmt::format("samples>={}", *choices.stop_at_samples) : "never"},
-      {"light_field.images", fmt::format("{}", light_field.size())},
-      {"light_field.names", NamesHash(light_field)},
-      {"light_field.calibration", CalibrationHash(light_field)},
-      {"light_field.encoding", EncodingText(light_field.encoding)},
-      {"light_field.colours", ColoursText(light_field.encoding)}};
+      {"light_field.images", fmt::format("{}", light_field.image_count)},
+      {"light_field.names", light_field.names},
+      {"light_field.calibration", light_field.calibration},
+      {"light_field.encoding", EncodingText(encoding)},
+      {"light_field.colours", ColoursText(encoding)}};
 }
 
 RunInputs InputsOfCamera(FrameId frame, const RenderCamera& camera) {

@@ -8,10 +8,12 @@
 #include <vector>
 
 #include "lf/camera/render_camera.h"
-#include "lf/capture/light_field.h"
+#include "lf/capture/light_field_identity.h"
+#include "lf/capture/radiance.h"
 #include "lf/collector/collect_batch.h"
 #include "lf/core/ids.h"
 #include "lf/lens_weights/frame_weights.h"
+#include "lf/selection/image_order.h"
 
 namespace lf {
 
@@ -22,9 +24,11 @@ using RunInputs = std::vector<std::pair<std::string, std::string>>;
 struct RunChoices {
   RayReading reading;
   CollectBackEnd back_end = CollectBackEnd::kFast;
+  ImageOrder order = ImageOrder::kShuffle;
   uint64_t seed = 0;
   LensWeights lens_weights = LensWeights::kNone;
   std::optional<size_t> max_image_count;
+  std::optional<double> max_angle_rad;
   std::optional<uint32_t> stop_at_samples;
   std::string format = "exr";
   uint32_t smooth_below = 0;
@@ -35,7 +39,9 @@ inline constexpr int kLawVersion = 3;
 
 // Of all frames: the law, the light field (numbers of images, hashes of calibration, encoding and
 // names; not its folder, which may move, nor the pixels) and the choices for rays.
-RunInputs InputsOfRays(const LightField& light_field, const RunChoices& choices);
+//   light_field  the whole one, also of a package
+RunInputs InputsOfRays(const LightFieldIdentity& light_field, const RadianceEncoding& encoding,
+                       const RunChoices& choices);
 
 // Of one frame: its number, its camera in words and, exact, as a hash.
 RunInputs InputsOfCamera(FrameId frame, const RenderCamera& camera);

@@ -11,7 +11,7 @@ namespace {
 
 RunInputs AllInputs(const LightField& field, const RunChoices& choices,
                     const RenderCamera& camera) {
-  RunInputs all = InputsOfRays(field, choices);
+  RunInputs all = InputsOfRays(IdentityOf(field), field.encoding, choices);
   for (const RunInputs& part : {InputsOfCamera(FrameId{1}, camera), InputsOfPicture(choices)})
     all.insert(all.end(), part.begin(), part.end());
   return all;
@@ -34,6 +34,8 @@ TEST(RunInputs, EveryInputMakesADifferenceAndItsKeyNamesIt) {
       {"filter", [](Inputs& i) { i.choices.reading.filter = PixelFilter::kBicubic; }},
       {"back_end", [](Inputs& i) { i.choices.back_end = CollectBackEnd::kReference; }},
       {"lens_weights", [](Inputs& i) { i.choices.lens_weights = LensWeights::kHat; }},
+      {"order", [](Inputs& i) { i.choices.order = ImageOrder::kArea; }},
+      {"max_angle_deg", [](Inputs& i) { i.choices.max_angle_rad = 1; }},
       {"max_images", [](Inputs& i) { i.choices.max_image_count = 9; }},
       {"stop_when", [](Inputs& i) { i.choices.stop_at_samples = 9; }},
       {"picture.format", [](Inputs& i) { i.choices.format = "png"; }},
@@ -77,9 +79,10 @@ TEST(RunInputs, WhatOneSideLacksIsADifference) {
 
 TEST(RunInputs, TheFolderMayMove) {
   LightField field = testing::NoiseField();
-  const RunInputs before = InputsOfRays(field, {});
+  const RunInputs before = InputsOfRays(IdentityOf(field), field.encoding, {});
   field.folder = "/elsewhere";
-  EXPECT_EQ(FirstDifference(before, InputsOfRays(field, {})), std::nullopt);
+  EXPECT_EQ(FirstDifference(before, InputsOfRays(IdentityOf(field), field.encoding, {})),
+            std::nullopt);
 }
 
 }  // namespace

@@ -42,17 +42,29 @@ std::vector<fs::path> FilesOf(const fs::path& folder) {
   return files;
 }
 
-// Temporary files (core/file.h) of a process that was killed; the lock says that none is at work.
-void RemoveTemporaryFiles(const fs::path& folder) {
-  constexpr const char* kOurs[] = {".frame_", ".run.", ".report.", ".contact_sheet."};
+// Temporary files (core/file.h) of a process that was killed; the lock says that none is at work on
+// these frames.
+//   frames  ascending; those of others are left alone
+void RemoveTemporaryFiles(const fs::path& folder, const std::vector<FrameId>& frames,
+                          bool is_shared) {
+  constexpr const char* kOurs[] = {".run.", ".report.", ".contact_sheet."};
   std::error_code ignored;
   for (const fs::path& path : FilesOf(folder)) {
     const std::string name = path.filename().string();
+    if (!name.starts_with('.') || name.find(".tmp.") == std::string::npos) continue;
+    const std::optional<FrameId> frame = FrameOf(name.substr(1, name.find('.', 1) - 1));
     const bool is_ours =
-        std::any_of(std::begin(kOurs), std::end(kOurs),
-                    [&name](const char* start) { return name.starts_with(start); });
-    if (is_ours && name.find(".tmp.") != std::string::npos) fs::remove(path, ignored);
+        frame
+            ? std::binary_search(frames.begin(), frames.end(), *frame)
+            : !is_shared && std::any_of(std::begin(kOurs), std::end(kOurs),
+                                        [&](const char* start) { return name.starts_with(start); });
+    if (is_ours) fs::remove(path, ignored);
   }
+}
+
+fs::path PartialFolder(const RunStateOptions& options) {
+  const fs::path partial = options.folder / "partial";
+  return options.package.empty() ? partial : partial / options.package;
 }
 
 RunInputs Joined(RunInputs a, const RunInputs& b) {
@@ -63,15 +75,13 @@ RunInputs Joined(RunInputs a, const RunInputs& b) {
 }  // namespace
 
 RunState::RunState(const RunStateOptions& options, const CameraPath& path, FileLock lock)
-    : options_(options),
-      path_(path),
-      partial_(options.folder / "partial"),
-      lock_(std::move(lock)) {}
+    : options_(options), path_(path), partial_(PartialFolder(options)), lock_(std::move(lock)) {}
 
 RunState::~RunState() {
   lock_.Remove();
   std::error_code ignored;
   fs::remove(partial_, ignored);  // fails, as it should, where files are left
+  if (!options_.package.empty()) fs::remove(partial_.parent_path(), ignored);
 }
 
 fs::path RunState::PlatePath(FrameId frame) const {
@@ -80,13 +90,17 @@ fs::path RunState::PlatePath(FrameId frame) const {
 fs::path RunState::RecordPath(FrameId frame) const {
   return FramePath(partial_, frame, options_.format).replace_extension(".json");
 }
+fs::path RunState::ReportPath() const {
+  return options_.folder /
+         (options_.package.empty() ? "report.json" : "report-" + options_.package + ".json");
+}
 fs::path RunState::PicturePath(FrameId frame) const {
   return FramePath(partial_, frame, options_.format);
 }
 
 Result<std::unique_ptr<RunState>> RunState::Open(const RunStateOptions& options,
                                                  const CameraPath& path) {
-  const fs::path partial = options.folder / "partial";
+  const fs::path partial = PartialFolder(options);
   LF_RETURN_IF_ERROR(CreateFolder(options.folder));
   LF_RETURN_IF_ERROR(CreateFolder(partial));
   LF_ASSIGN_OR_RETURN(FileLock lock, FileLock::Take(partial / "lock"));
@@ -96,8 +110,8 @@ Result<std::unique_ptr<RunState>> RunState::Open(const RunStateOptions& options,
 }
 
 Result<void> RunState::Look() {
-  RemoveTemporaryFiles(partial_);
-  RemoveTemporaryFiles(options_.folder);
+  RemoveTemporaryFiles(partial_, options_.frames, false);
+  RemoveTemporaryFiles(options_.folder, options_.frames, !options_.package.empty());
   for (const fs::path& file : FilesOf(partial_)) {
     const std::optional<FrameId> frame = FrameOf(file);
     if (frame && file.extension() == ".plate") plates_.insert(*frame);
@@ -114,11 +128,11 @@ Result<void> RunState::Look() {
   }
   // Of an earlier run: they would look like this one's, should it fail.
   std::error_code ignored;
-  if (fs::exists(options_.folder / "report.json", ignored))
+  if (fs::exists(ReportPath(), ignored))
     LogWarning("{}: the finished render there is replaced, frame by frame",
                options_.folder.string());
-  fs::remove(options_.folder / "report.json", ignored);
-  fs::remove(options_.folder / "contact_sheet.png", ignored);
+  fs::remove(ReportPath(), ignored);
+  if (options_.package.empty()) fs::remove(options_.folder / "contact_sheet.png", ignored);
   return {};
 }
 
@@ -131,7 +145,7 @@ void RunState::RemoveAll() {
 }
 
 Result<void> RunState::Read() {
-  const fs::path report = options_.folder / "report.json", run = partial_ / "run.json";
+  const fs::path report = ReportPath(), run = partial_ / "run.json";
   if (fs::exists(report)) LF_RETURN_IF_ERROR(ReadFinished(report));
   for (const FrameId frame : records_) LF_RETURN_IF_ERROR(ReadFinished(RecordPath(frame)));
   // Those of a complete render are in its report, and no longer here.
@@ -165,7 +179,7 @@ Result<void> RunState::ReadFinished(const fs::path& path) {
     LF_RETURN_IF_ERROR(Check(path.string(), frame.frame, recorded, true));
     finished_[frame.frame] = std::move(frame);
   }
-  if (path.filename() == "report.json") {
+  if (path == ReportPath()) {
     report.frames.clear();
     earlier_ = std::move(report);
   }
@@ -261,7 +275,7 @@ Result<void> RunState::SaveFinished(const FrameReport& frame) {
 }
 
 Result<void> RunState::Close(const RenderReport& report) {
-  LF_RETURN_IF_ERROR(WriteReport(report, options_.folder / "report.json"));
+  LF_RETURN_IF_ERROR(WriteReport(report, ReportPath()));
   std::error_code ignored;
   for (const FrameId frame : records_) fs::remove(RecordPath(frame), ignored);
   records_.clear();

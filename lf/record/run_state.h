@@ -1,5 +1,6 @@
 // What a render has done so far, in DIR/partial/ of its output folder, so that it can be
-// interrupted at any moment and gone on with (doc/checkpoints.md).
+// interrupted at any moment and gone on with (doc/checkpoints.md); of a package that has a name, in
+// DIR/partial/NAME/.
 //
 //   lock              held by the process at work
 //   run.json          times so far and skipped LF images
@@ -12,6 +13,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "lf/collector/collect.h"
 #include "lf/core/file_lock.h"
@@ -29,6 +31,8 @@ namespace lf {
 
 struct RunStateOptions {
   std::filesystem::path folder;  // DIR
+  std::string package;           // its name, if others are rendered into DIR at the same time
+  std::vector<FrameId> frames;   // of the package, ascending
   FrameFormat format = FrameFormat::kExrHalf;
   bool resume = false;     // go on with what is there
   bool overwrite = false;  // remove what is there
@@ -70,7 +74,8 @@ class RunState {
 
   // Nothing that is there is of use: removes it.
   void RemoveAll();
-  // All is done: writes report.json and removes what is not needed any more.
+  // All is done: writes report.json (of a package report-NAME.json) and removes what is not needed
+  // any more.
   Result<void> Close(const RenderReport& report);
 
  private:
@@ -83,6 +88,7 @@ class RunState {
                      bool has_picture) const;
   std::filesystem::path PlatePath(FrameId frame) const;
   std::filesystem::path RecordPath(FrameId frame) const;
+  std::filesystem::path ReportPath() const;
 
   RunStateOptions options_;
   const CameraPath& path_;

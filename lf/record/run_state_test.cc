@@ -30,9 +30,12 @@ class RunStateTest : public ::testing::Test {
   Result<std::unique_ptr<RunState>> Open(bool resume, bool overwrite = false, uint64_t seed = 0) {
     RunChoices choices;
     choices.seed = seed;
-    return RunState::Open({folder_, FrameFormat::kExrHalf, resume, overwrite,
-                           InputsOfRays(field_, choices), InputsOfPicture(choices)},
-                          path_);
+    std::vector<FrameId> frames;
+    for (uint32_t n = 1; n <= path_.frame_count(); ++n) frames.push_back(FrameId{n});
+    return RunState::Open(
+        {folder_, "", frames, FrameFormat::kExrHalf, resume, overwrite,
+         InputsOfRays(IdentityOf(field_), field_.encoding, choices), InputsOfPicture(choices)},
+        path_);
   }
   // Frame 2 begun, frame 3 finished.
   void LeaveUnfinished() {

@@ -1,7 +1,9 @@
 #include "lf/selection/select.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
+#include <utility>
 
 #include "lf/core/check.h"
 #include "lf/selection/overlap.h"
@@ -81,6 +83,7 @@ class Selector {
                std::vector<SelectedImage>* found) const {
     const LightField& light_field = index_.light_field();
     for (const LfImageId id : index_.tree().Leaf(visits.front().leaf)) {
+      const LfCamera& lf_camera = light_field.cameras[id.value];
       const PinholeCamera camera = light_field.Camera(id);
       SelectedImage image;
       image.id = id;
@@ -90,6 +93,7 @@ class Selector {
         const size_t f = visit.frame;
         if (!places_.empty() && !places_[f].Holds(image.place)) continue;
         if (visit.all_inside == 0 && regions_[f].Misses(camera.CentreWorld())) continue;
+        if (!IsWithinAngle(lf_camera, outlines_[f].camera, options_)) continue;
         if (!overlap) overlap.emplace(camera, cells->Of(light_field, id), options_.reach);
         const PixelRect rect = overlap->Rect(outlines_[f]);
         if (rect.empty()) continue;
@@ -142,6 +146,14 @@ void JoinByPlace(std::vector<SelectedImage>* images) {
 
 }  // namespace
 
+bool IsWithinAngle(const LfCamera& lf_camera, const RenderCamera& frame,
+                   const SelectOptions& options) {
+  if (!options.max_angle_rad) return true;
+  const double cosine =
+      lf_camera.cam_from_world.rotation.row(2).dot(frame.pinhole.cam_from_world.rotation.row(2));
+  return cosine >= std::cos(*options.max_angle_rad);
+}
+
 std::vector<SelectedImage> SelectImages(const ImageIndex& index,
                                         std::span<const RenderCamera> frames,
                                         const SelectOptions& options, ThreadPool& pool,
@@ -180,18 +192,18 @@ std::vector<PlaceRange> PlacesOfFirst(size_t image_count, const ImageIndex& inde
   // Each frame walks along the order by itself.
   pool.ForEach(frames.size(), [&](size_t f) {
     const SeenRegion region(frames[f]);
-    std::vector<uint32_t> places;
+    std::vector<std::pair<uint32_t, LfImageId>> places;
     index.tree().ForEachLeaf(region, [&](size_t leaf, bool all_inside) {
       for (const LfImageId id : index.tree().Leaf(leaf))
         if (all_inside || !region.Misses(light_field.Camera(id).CentreWorld()))
-          places.push_back(index.PlaceOf(id));
+          places.emplace_back(index.PlaceOf(id), id);
     });
     std::sort(places.begin(), places.end());
     CellsOfLast cells;
     size_t found = 0;
-    for (const uint32_t place : places) {
+    for (const auto& [place, id] : places) {
       if (IsInterrupted(options)) return;
-      const LfImageId id = index.AtPlace(place);
+      if (!IsWithinAngle(light_field.cameras[id.value], frames[f], options)) continue;
       const PixelRect rect = ContributingRect(light_field.Camera(id), frames[f],
                                               cells.Of(light_field, id), options.reach);
       found += rect.empty() ? 0 : 1;

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -36,9 +37,17 @@ struct SelectedImage {
 
 struct SelectOptions {
   PixelReach reach = PixelReach::kOwn;  // of the estimator
+  // LF cameras whose optical axes differ more from the frame's are left out, though they may have
+  // rays: in the thesis those that look at the render camera, here a choice of the user's. None: no
+  // LF camera is.
+  std::optional<double> max_angle_rad = {};
   // Once it is true, the rest is left out and the answer is of no use.
   const std::atomic<bool>* interrupted = nullptr;
 };
+
+// Whether max_angle_rad lets the LF camera take part.
+bool IsWithinAngle(const LfCamera& lf_camera, const RenderCamera& frame,
+                   const SelectOptions& options);
 
 // The result is in the order of places (thesis: "a more even result among all rendered frames, even
 // before all have been processed"), the same for any number of threads.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "lf/selection/overlap.h"
@@ -78,15 +79,63 @@ TEST(Select, PlacesAreThoseOfTheWholeLightFieldWhateverTheFrames) {
   ThreadPool pool(2);
   const LightField grid = Grid();
   const std::vector<RenderCamera> frames = {Frame(0.05, 0), Frame(0.03, 0.04)};
-  const std::vector<LfImageId> order = ImageOrder(grid.size(), 3);
+  const ImagePlaces order = ShuffledPlaces(grid.size(), 3);
   for (const auto& part : {std::span(frames), std::span(frames).first(1)}) {
     uint32_t last = 0;
     for (const SelectedImage& image : SelectImages(ImageIndex(grid, 3), part, {}, pool)) {
-      EXPECT_EQ(order[image.place], image.id);
+      EXPECT_EQ(order.of_images[image.id.value], image.place);
       EXPECT_GE(image.place, last);
       last = image.place + 1;
     }
   }
+}
+
+// A part of a light field with its places gives what the whole one gives.
+TEST(Select, APartWithItsPlacesIsAsGoodAsTheWhole) {
+  ThreadPool pool(2);
+  const LightField grid = Grid();
+  const std::vector<RenderCamera> frames = {Frame(0.05, 0), Frame(0.03, 0.02)};
+  const ImageIndex whole(grid, 4);
+  std::vector<SelectedImage> images = SelectImages(whole, frames, {}, pool);
+  LightField part;
+  part.intrinsics = grid.intrinsics;
+  ImagePlaces places{{}, whole.place_end()};
+  for (uint32_t i = 0; i < grid.size(); ++i) {
+    const auto is_it = [i](const SelectedImage& image) { return image.id.value == i; };
+    if (std::none_of(images.begin(), images.end(), is_it)) continue;
+    part.cameras.push_back(grid.cameras[i]);
+    part.image_names.push_back("x.png");
+    places.of_images.push_back(whole.PlaceOf(LfImageId{i}));
+  }
+  const ImageIndex index(part, places);
+  const auto again = SelectImages(index, frames, {}, pool);
+  ASSERT_EQ(again.size(), images.size());
+  for (size_t i = 0; i < images.size(); ++i) {
+    EXPECT_EQ(again[i].place, images[i].place);
+    EXPECT_EQ(again[i].rect, images[i].rect);
+    EXPECT_EQ(again[i].ray_count, images[i].ray_count);
+  }
+  EXPECT_EQ(PlacesOfFirst(10, index, frames, {}, pool), PlacesOfFirst(10, whole, frames, {}, pool));
+}
+
+TEST(Select, LfCamerasBeyondTheAngleAreLeftOut) {
+  ThreadPool pool(2);
+  LightField grid = Grid();
+  for (uint32_t i = 0; i < grid.size(); i += 2)
+    grid.cameras[i].cam_from_world.rotation =
+        Eigen::AngleAxisd(RadiansFromDegrees(5), Vec3::UnitX()).toRotationMatrix();
+  const std::vector<RenderCamera> frames = {Frame(0.05, 0)};
+  SelectOptions options;
+  const auto all = SelectImages(ImageIndex(grid), frames, options, pool);
+  options.max_angle_rad = RadiansFromDegrees(4);
+  const auto some = SelectImages(ImageIndex(grid), frames, options, pool);
+  EXPECT_GT(all.size(), some.size());
+  EXPECT_FALSE(some.empty());
+  for (const SelectedImage& image : some) EXPECT_EQ(image.id.value % 2, 1U);
+  const auto first = PlacesOfFirst(5, ImageIndex(grid), frames, options, pool);
+  EXPECT_EQ(SelectImages(ImageIndex(grid), frames, options, pool, first).size(), 5u);
+  options.max_angle_rad = RadiansFromDegrees(6);
+  EXPECT_EQ(SelectImages(ImageIndex(grid), frames, options, pool).size(), all.size());
 }
 
 TEST(Select, EveryFrameTakesItsFirstImagesOnly) {

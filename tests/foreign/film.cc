@@ -1,18 +1,20 @@
 // Films a light field with the installed library: film LIGHTFIELD PATH.yaml DIR
 #include <cstdio>
+#include <utility>
 
 #include "lf/calibration/open_light_field.h"
+#include "lf/package/package.h"
 #include "lf/path/path_yaml.h"
 #include "lf/pipeline/render.h"
 
 int main(int argc, char** argv) {
   if (argc != 4) return 2;
-  const auto light_field = lf::OpenLightField(argv[1]);
+  auto light_field = lf::OpenLightField(argv[1]);
   if (!light_field) {
     std::fprintf(stderr, "error: %s\n", light_field.error().message.c_str());
     return 3;
   }
-  const auto path = lf::ReadPathYaml(argv[2], light_field->unit_m);
+  auto path = lf::ReadPathYaml(argv[2], light_field->unit_m);
   if (!path) {
     std::fprintf(stderr, "error: %s\n", path.error().message.c_str());
     return 3;
@@ -21,7 +23,9 @@ int main(int argc, char** argv) {
   options.output_folder = argv[3];
   options.format = lf::FrameFormat::kPng8;
   lf::ThreadPool pool(2);
-  const auto report = lf::Render(*light_field, *path, options, pool, nullptr);
+  constexpr uint64_t kSeed = 0;  // of the order of the LF images
+  const lf::Package film = lf::PackageOfAll(*std::move(light_field), *std::move(path), kSeed);
+  const auto report = lf::Render(film, options, pool, nullptr);
   if (!report) {
     std::fprintf(stderr, "error: %s\n", report.error().message.c_str());
     return 4;

@@ -7,6 +7,10 @@ void LightFieldArgument::AddTo(CLI::App& app) {
                  "A calibration file, or its folder: transforms.json, COLMAP, Middlebury, LLFF, "
                  "AOS; or a folder of images with Stanford names")
       ->required();
+  AddOptionsTo(app);
+}
+
+void LightFieldArgument::AddOptionsTo(CLI::App& app) {
   app.add_option("--focal-px", focal_px,
                  "Focal length in pixels, for Stanford folders whose names do not tell it; 0: as "
                  "recorded")

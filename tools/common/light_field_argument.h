@@ -16,6 +16,8 @@ struct LightFieldArgument {
 
   // The positional argument and the options that go with it.
   void AddTo(CLI::App& app);
+  // The options alone.
+  void AddOptionsTo(CLI::App& app);
   OpenOptions Options() const;
   Result<LightField> Open() const;
 };

@@ -1,0 +1,21 @@
+#include "lf/capture/light_field_identity.h"
+
+#include "lf/capture/value_hasher.h"
+
+namespace lf {
+
+LightFieldIdentity IdentityOf(const LightField& light_field) {
+  ValueHasher names;
+  for (const std::string& name : light_field.image_names) names.Add(name);
+  for (const std::string& name : light_field.mask_names) names.Add(name);
+  ValueHasher calibration;
+  for (const LfCamera& camera : light_field.cameras) {
+    calibration.Add(camera.cam_from_world);
+    calibration.Add(static_cast<double>(camera.intrinsics_index));
+    calibration.Add(camera.gain);
+  }
+  for (const Intrinsics& k : light_field.intrinsics) calibration.Add(k);
+  return {light_field.size(), names.Text(), calibration.Text()};
+}
+
+}  // namespace lf

@@ -1,0 +1,21 @@
+// Which light field it is, in a few words: what renders that go on, and packages, compare.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "lf/capture/light_field.h"
+
+namespace lf {
+
+struct LightFieldIdentity {
+  size_t image_count = 0;
+  std::string names;        // hash of the names of images and masks; not of their folder
+  std::string calibration;  // hash of all cameras
+
+  friend bool operator==(const LightFieldIdentity&, const LightFieldIdentity&) = default;
+};
+
+LightFieldIdentity IdentityOf(const LightField& light_field);
+
+}  // namespace lf

@@ -1,0 +1,54 @@
+#include "lf/collector/around_lens.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "lf/lens_weights/frame_weights.h"
+
+namespace lf {
+
+std::vector<LfImageId> CamerasAroundLens(const ImageIndex& index, const RenderCamera& frame) {
+  const Intrinsics& k = frame.pinhole.intrinsics;
+  const std::optional<Vec3> focus = FocusPointOfElement(frame, 0.5 * k.width_px, 0.5 * k.height_px);
+  if (!focus) return {};
+  RenderCamera middle = frame;
+  middle.pinhole.intrinsics.cx_px -= 0.5 * k.width_px;
+  middle.pinhole.intrinsics.cy_px -= 0.5 * k.height_px;
+  middle.pinhole.intrinsics.width_px = middle.pinhole.intrinsics.height_px = 0;
+  const CameraTree& tree = index.tree();
+  // From a thousandth of how far it is to what is in focus to a million times that.
+  constexpr int kDoublings = 30;
+  double radius_w =
+      std::max(frame.aperture.radius_w, 1e-3 * (*focus - frame.pinhole.CentreWorld()).norm());
+  std::vector<LfImageId> ids;
+  for (int i = 0; i < kDoublings; ++i, radius_w *= 2) {
+    middle.aperture = {radius_w, 0, 0};
+    ids.clear();
+    size_t count = 0;
+    tree.ForEachLeaf(SeenRegion(middle), [&](size_t leaf, bool /*all_inside*/) {
+      for (const LfImageId id : tree.Leaf(leaf)) {
+        const Vec3 centre_world = index.light_field().Camera(id).CentreWorld();
+        ids.push_back(id);
+        count += LensPointOfLine(frame, centre_world, *focus).norm() <= radius_w;
+      }
+    });
+    if (count >= kCamerasAround) break;
+  }
+  std::sort(ids.begin(), ids.end());
+  return ids;
+}
+
+double CameraDistanceAround(const ImageIndex& index, const RenderCamera& frame) {
+  std::vector<Vec3> centres_world;
+  for (const LfImageId id : CamerasAroundLens(index, frame))
+    centres_world.push_back(index.light_field().Camera(id).CentreWorld());
+  return CameraDistance(frame, centres_world);
+}
+
+bool IsSeenBy(const RayThrough& lf_camera, const Vec3& point_world) {
+  const std::optional<Vec2> p = lf_camera.RecordedAt(lf_camera.DirectionWorld(point_world));
+  const Intrinsics& k = lf_camera.intrinsics();
+  return p && p->x() >= 0 && p->x() <= k.width_px && p->y() >= 0 && p->y() <= k.height_px;
+}
+
+}  // namespace lf

@@ -1,0 +1,205 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "lf/core/check.h"
+#include "lf/core/file.h"
+#include "lf/database/seal.h"
+#include "lf/package/package_file.h"
+#include "lf/package/package_format.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+// Tables as doc/formats/package.md describes them.
+constexpr const char* kTables = R"(
+create table settings (key text primary key, value text not null) without rowid;
+create table intrinsics (id integer primary key, width integer, height integer, fx real, fy real,
+  cx real, cy real, skew real, distortion text, parameters text);
+create table lf_images (place integer primary key, id integer, name text, mask text,
+  intrinsics integer, gain real, x real, y real, z real, pose blob, file_bytes integer,
+  x_begin integer, y_begin integer, x_end integer, y_end integer, frames integer, rays integer);
+create table rectangles (place integer primary key, rectangles blob);
+create table frames (frame integer primary key, time_s real, x real, y real, z real,
+  aperture_diameter real, focus_distance real, camera blob, is_rendered integer,
+  lf_images integer, rays integer, camera_distance real);
+begin;
+)";
+
+class Writer {
+ public:
+  Writer(Database database, const Package& package, const FrameRects& rects)
+      : database_(std::move(database)),
+        package_(package),
+        light_field_(package.light_field),
+        rects_(rects) {}
+
+  Result<void> Write(const fs::path& final_path, const PackageNotes& notes) {
+    LF_RETURN_IF_ERROR(database_.Execute(kTables));
+    LF_RETURN_IF_ERROR(WriteSettings(final_path, notes));
+    LF_RETURN_IF_ERROR(WriteIntrinsics());
+    LF_RETURN_IF_ERROR(WriteImages());
+    LF_RETURN_IF_ERROR(WriteFrames());
+    return database_.Execute("commit");
+  }
+
+ private:
+  Result<void> WriteSettings(const fs::path& final_path, const PackageNotes& notes) {
+    LF_ASSIGN_OR_RETURN(Statement insert, database_.Prepare("insert into settings values (?, ?)"));
+    const auto set = [&insert](const char* key, const std::string& value) {
+      return insert.Bind(0, std::string_view(key)).Bind(1, std::string_view(value)).Run();
+    };
+    // "" is the working folder, as in paths of files there.
+    const auto absolute = [](const fs::path& path) {
+      return fs::absolute(path.empty() ? "." : path).lexically_normal();
+    };
+    const fs::path folder = absolute(light_field_.folder);
+    const fs::path from_package = folder.lexically_relative(absolute(final_path).parent_path());
+    const PackageChoices& choices = package_.choices;
+    const RadianceEncoding& encoding = light_field_.encoding;
+    const Mat3& m = encoding.camera_to_srgb;
+    const std::optional<DepthRange>& depths = light_field_.depth_range;
+    const std::pair<const char*, std::string> settings[] = {
+        {"written_by", "lfrendertools " + notes.version},
+        {"package", fmt::format("{} of {}", notes.number, notes.count)},
+        {"light_field", notes.light_field},
+        {"light_field.images", fmt::format("{}", package_.whole.image_count)},
+        {"light_field.names", package_.whole.names},
+        {"light_field.calibration", package_.whole.calibration},
+        {"folder", folder.string()},
+        {"folder_from_package", from_package.string()},
+        {"unit_m", fmt::format("{}", light_field_.unit_m)},
+        {"depth_range", depths ? fmt::format("{} {}", depths->near_w, depths->far_w) : ""},
+        {"bayer", NameOf(encoding.bayer)},
+        {"transfer", kTransferNames[static_cast<int>(encoding.transfer)]},
+        {"response", fmt::format("{}", fmt::join(encoding.response, " "))},
+        {"black_level", fmt::format("{}", encoding.black_level)},
+        {"white_level", encoding.white_level ? fmt::format("{}", *encoding.white_level) : ""},
+        {"max_radiance", fmt::format("{}", encoding.max_radiance)},
+        {"pedestal", fmt::format("{}", encoding.pedestal)},
+        {"white_balance", fmt::format("{}", fmt::join(encoding.white_balance, " "))},
+        {"camera_to_srgb", fmt::format("{} {} {} {} {} {} {} {} {}", m(0, 0), m(0, 1), m(0, 2),
+                                       m(1, 0), m(1, 1), m(1, 2), m(2, 0), m(2, 1), m(2, 2))},
+        {"order", NameOf(choices.order)},
+        {"seed", fmt::format("{}", choices.seed)},
+        {"places", fmt::format("{}", package_.places.end)},
+        {"max_images", choices.max_image_count ? fmt::format("{}", *choices.max_image_count) : ""},
+        {"max_angle_rad", choices.max_angle_rad ? fmt::format("{}", *choices.max_angle_rad) : ""},
+        {"lens_neighbours", choices.has_neighbours ? "yes" : "no"},
+        {"fps", fmt::format("{}", package_.path.fps)},
+        {"path_unit_m", fmt::format("{}", package_.path.unit_m)}};
+    for (const auto& [key, value] : settings) LF_RETURN_IF_ERROR(set(key, value));
+    return {};
+  }
+
+  Result<void> WriteIntrinsics() {
+    LF_ASSIGN_OR_RETURN(
+        Statement insert,
+        database_.Prepare("insert into intrinsics values (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"));
+    for (size_t i = 0; i < light_field_.intrinsics.size(); ++i) {
+      const Intrinsics& k = light_field_.intrinsics[i];
+      insert.Bind(0, static_cast<int64_t>(i)).Bind(1, int64_t{k.width_px});
+      insert.Bind(2, int64_t{k.height_px}).Bind(3, k.fx_px).Bind(4, k.fy_px).Bind(5, k.cx_px);
+      insert.Bind(6, k.cy_px).Bind(7, k.skew_px);
+      insert.Bind(8, std::string_view(kModelNames[static_cast<int>(k.distortion.model)]));
+      const std::string parameters = fmt::format("{}", fmt::join(k.distortion.parameters, " "));
+      LF_RETURN_IF_ERROR(insert.Bind(9, std::string_view(parameters)).Run());
+    }
+    return {};
+  }
+
+  // By places, so that SQLite appends.
+  Result<void> WriteImages() {
+    LF_CHECK(package_.images.size() == light_field_.size());
+    LF_ASSIGN_OR_RETURN(Statement image,
+                        database_.Prepare("insert into lf_images values "
+                                          "(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"));
+    LF_ASSIGN_OR_RETURN(Statement rectangles,
+                        database_.Prepare("insert into rectangles values (?, ?)"));
+    std::vector<uint32_t> order(light_field_.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::sort(order.begin(), order.end(), [this](uint32_t a, uint32_t b) {
+      return package_.places.of_images[a] < package_.places.of_images[b];
+    });
+    for (const uint32_t i : order) {
+      const int64_t place = package_.places.of_images[i];
+      LF_RETURN_IF_ERROR(WriteImage(&image, i, place));
+      std::vector<int32_t> numbers;
+      for (const auto& [frame, rect] : rects_(LfImageId{i}))
+        numbers.insert(numbers.end(), {static_cast<int32_t>(frame.value), rect.x_begin,
+                                       rect.y_begin, rect.x_end, rect.y_end});
+      if (numbers.empty()) continue;  // a neighbour
+      rectangles.Bind(0, place).BindBlob(1, BytesOf(std::span<const int32_t>(numbers)));
+      LF_RETURN_IF_ERROR(rectangles.Run());
+    }
+    return {};
+  }
+
+  Result<void> WriteImage(Statement* insert, uint32_t i, int64_t place) {
+    const LfCamera& camera = light_field_.cameras[i];
+    const PackageImage& image = package_.images[i];
+    const Vec3 centre = light_field_.Camera(LfImageId{i}).CentreWorld();
+    const auto pose = NumbersOfPose(camera.cam_from_world);
+    insert->Bind(0, place).Bind(1, int64_t{image.id});
+    insert->Bind(2, std::string_view(light_field_.image_names[i]));
+    insert->Bind(3, light_field_.mask_names.empty() ? std::string_view()
+                                                    : std::string_view(light_field_.mask_names[i]));
+    insert->Bind(4, int64_t{camera.intrinsics_index}).Bind(5, double{camera.gain});
+    insert->Bind(6, centre.x()).Bind(7, centre.y()).Bind(8, centre.z());
+    insert->BindBlob(9, BytesOf(std::span<const double>(pose)));
+    insert->Bind(10, static_cast<int64_t>(image.file_bytes));
+    insert->Bind(11, int64_t{image.rect.x_begin}).Bind(12, int64_t{image.rect.y_begin});
+    insert->Bind(13, int64_t{image.rect.x_end}).Bind(14, int64_t{image.rect.y_end});
+    insert->Bind(15, int64_t{image.frame_count}).Bind(16, static_cast<int64_t>(image.ray_count));
+    return insert->Run();
+  }
+
+  // All of the film; those of the package are rendered.
+  Result<void> WriteFrames() {
+    LF_ASSIGN_OR_RETURN(
+        Statement insert,
+        database_.Prepare("insert into frames values (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"));
+    auto rendered = package_.frames.begin();
+    for (uint32_t n = 1; n <= package_.path.frame_count(); ++n) {
+      const RenderCamera& camera = package_.path.Camera(FrameId{n});
+      const Vec3 centre = camera.pinhole.CentreWorld();
+      const auto numbers = NumbersOfCamera(camera);
+      const bool is_rendered = rendered != package_.frames.end() && rendered->id.value == n;
+      PackageFrame frame;
+      if (is_rendered) frame = *rendered++;
+      insert.Bind(0, int64_t{n}).Bind(1, camera.time_s);
+      insert.Bind(2, centre.x()).Bind(3, centre.y()).Bind(4, centre.z());
+      insert.Bind(5, 2 * camera.aperture.radius_w).Bind(6, camera.focus_distance_w);
+      insert.BindBlob(7, BytesOf(std::span<const double>(numbers)));
+      insert.Bind(8, int64_t{is_rendered}).Bind(9, static_cast<int64_t>(frame.image_count));
+      insert.Bind(10, static_cast<int64_t>(frame.ray_count));
+      // -1: not known.
+      insert.Bind(11, frame.camera_distance_w ? *frame.camera_distance_w : -1.0);
+      LF_RETURN_IF_ERROR(insert.Run());
+    }
+    return {};
+  }
+
+  Database database_;
+  const Package& package_;
+  const LightField& light_field_;
+  const FrameRects& rects_;
+};
+
+}  // namespace
+
+Result<void> WritePackage(const fs::path& path, const Package& package, const FrameRects& rects,
+                          const PackageNotes& notes) {
+  return WriteAtomically(path, [&](const fs::path& temporary) -> Result<void> {
+    {
+      LF_ASSIGN_OR_RETURN(Database database, Database::Create(temporary, kPackageFormat));
+      LF_RETURN_IF_ERROR(Writer(std::move(database), package, rects).Write(path, notes));
+    }
+    return SealFile(temporary);
+  });
+}
+
+}  // namespace lf

@@ -1,0 +1,42 @@
+// Package files in, one image sequence out.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lf/capture/light_field_identity.h"
+#include "lf/core/parallel.h"
+#include "lf/core/result.h"
+#include "lf/package/package.h"
+#include "lf/pipeline/render.h"
+#include "lf/record/report.h"
+
+namespace lf {
+
+// A light field that packages are said to be of, which may have moved since they were made.
+struct LightFieldPlace {
+  std::string name;  // for messages
+  LightFieldIdentity identity;
+  std::filesystem::path folder;  // of its image files
+};
+
+// Reads and checks a package and its light field's image files, a few of which are looked at.
+// kInput: as ReadPackage(); it is of another light field than `place`; none of the files is there,
+// or none is the one that it was.
+Result<Package> OpenPackage(const std::filesystem::path& path,
+                            const std::optional<LightFieldPlace>& place = {});
+
+// One after the other as by Render(), each with its own report and state; then contact_sheet.png
+// and the video of all their frames. Reads every package before the first is rendered. Of
+// options.frames each takes its own. The report is that of all.
+// kUsage: packages that have frames in common, frames that none of them has; kInput: packages of
+// different films or light fields. Else as Render() and OpenPackage().
+Result<RenderReport> RenderPackages(const std::vector<std::filesystem::path>& paths,
+                                    const std::optional<LightFieldPlace>& place,
+                                    const RenderOptions& options, ThreadPool& pool,
+                                    const std::function<void(const RenderProgress&)>& progress);
+
+}  // namespace lf

@@ -1,0 +1,94 @@
+#include "lf/preprocess/frame_density.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "lf/camera/aperture.h"
+#include "lf/collector/around_lens.h"
+#include "lf/lens_weights/frame_weights.h"
+#include "lf/lens_weights/lens_coverage.h"
+
+namespace lf {
+namespace {
+
+constexpr double kBefore = 0.75, kBehind = 1.25;  // of the focus distance
+constexpr double kPlaces[] = {1.0 / 6, 0.5, 5.0 / 6};
+
+// The nearest that a ray to the element comes to the lens centre.
+double NearestRay(const ImageIndex& index, const std::vector<LfImageId>& around,
+                  const RenderCamera& frame, double x_px, double y_px) {
+  double nearest_w = std::numeric_limits<double>::infinity();
+  const std::optional<Vec3> focus = FocusPointOfElement(frame, x_px, y_px);
+  if (!focus) return 0;  // beyond the horizon of a tilted focus plane
+  for (const LfImageId id : around) {
+    const PinholeCamera camera = index.light_field().Camera(id);
+    const double distance_w = LensPointOfLine(frame, camera.CentreWorld(), *focus).norm();
+    // Few are asked what they see: it takes longer.
+    if (distance_w < nearest_w &&
+        IsSeenBy(RayThrough(camera, frame.pinhole.ForwardWorld()), *focus))
+      nearest_w = distance_w;
+  }
+  return nearest_w;
+}
+
+// Along the frame's axis instead of those of the LF cameras around its lens.
+DepthRange DepthsOfFrame(const DepthRange& depths, const ImageIndex& index,
+                         const std::vector<LfImageId>& around, const RenderCamera& frame) {
+  double shift_w = 0;
+  for (const LfImageId id : around)
+    shift_w += frame.pinhole.ForwardWorld().dot(index.light_field().Camera(id).CentreWorld() -
+                                                frame.pinhole.CentreWorld()) /
+               static_cast<double>(around.size());
+  // Nothing is nearer than a tenth of where the nearest was.
+  const double least_w = 0.1 * depths.near_w;
+  return {std::max(least_w, depths.near_w + shift_w), std::max(least_w, depths.far_w + shift_w)};
+}
+
+}  // namespace
+
+double FrameDensity::MostDisplacement_px() const {
+  return std::max(near_displacement_px, far_displacement_px);
+}
+double FrameDensity::DepthOfMost_w() const {
+  return near_displacement_px >= far_displacement_px ? depths.near_w : depths.far_w;
+}
+
+FrameDensity DensityOf(const ImageIndex& index, const RenderCamera& frame,
+                       const std::optional<DepthRange>& depths) {
+  FrameDensity density;
+  const Intrinsics& plate = frame.pinhole.intrinsics;
+  const std::vector<LfImageId> around = CamerasAroundLens(index, frame);
+  std::vector<Vec3> centres_world;
+  for (const LfImageId id : around)
+    centres_world.push_back(index.light_field().Camera(id).CentreWorld());
+  density.camera_distance_w = CameraDistance(frame, centres_world);
+  const std::optional<Vec3> focus =
+      FocusPointOfElement(frame, 0.5 * plate.width_px, 0.5 * plate.height_px);
+  std::vector<Vec2> points;
+  for (const Vec3& centre : centres_world) {
+    if (!focus) break;
+    const Vec2 point = LensPointOfLine(frame, centre, *focus);
+    if (!point.allFinite()) continue;
+    points.push_back(point);
+    density.cameras_in_lens += Contains(frame.aperture, point) ? 1 : 0;
+  }
+  density.uncovered_share = UncoveredShare(points, frame.aperture);
+  for (const double x : kPlaces)
+    for (const double y : kPlaces)
+      density.least_aperture_w =
+          std::max(density.least_aperture_w,
+                   2 * NearestRay(index, around, frame, x * plate.width_px, y * plate.height_px));
+  const double focus_w = frame.focus_distance_w;
+  density.depths = depths && !around.empty() ? DepthsOfFrame(*depths, index, around, frame)
+                                             : DepthRange{kBefore * focus_w, kBehind * focus_w};
+  const auto displacement = [&](double z_w) {
+    return plate.fx_px * density.camera_distance_w * std::abs(1 / z_w - 1 / focus_w);
+  };
+  density.near_displacement_px = displacement(density.depths.near_w);
+  density.far_displacement_px = displacement(density.depths.far_w);
+  return density;
+}
+
+}  // namespace lf

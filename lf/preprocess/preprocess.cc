@@ -1,0 +1,358 @@
+#include "lf/preprocess/preprocess.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <numeric>
+
+#include "lf/collector/memory_plan.h"
+#include "lf/core/file.h"
+#include "lf/core/log.h"
+#include "lf/package/package_file.h"
+#include "lf/preprocess/frame_needs.h"
+#include "lf/preprocess/split_film.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kExtension = ".lfp";
+
+// Of what a package's frames need, while it is made: a quarter of the memory.
+constexpr uint64_t kPairBytes = sizeof(FrameNeeds::Image) + sizeof(FrameRect);
+
+double SecondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// package-0000.lfp, ... of an earlier call.
+std::vector<fs::path> PackagesIn(const fs::path& folder) {
+  std::vector<fs::path> packages;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error))
+    if (entry.path().extension() == kExtension &&
+        entry.path().filename().string().starts_with("package-"))
+      packages.push_back(entry.path());
+  return packages;
+}
+
+// The LF images of a package while frame after frame is added.
+class Gathering {
+ public:
+  void Add(FrameId frame, const FrameNeeds& needs) {
+    for (const FrameNeeds::Image& image : needs.images)
+      rects_[image.id].push_back({frame, image.rect});
+    for (const LfImageId id : needs.neighbours) rects_[id];
+  }
+  // By ascending ids; those without rectangles are neighbours.
+  const std::map<LfImageId, std::vector<FrameRect>>& rects() const { return rects_; }
+
+ private:
+  std::map<LfImageId, std::vector<FrameRect>> rects_;
+};
+
+class Preprocessor {
+ public:
+  Preprocessor(const LightField& light_field, const CameraPath& path,
+               const PreprocessOptions& options, ThreadPool& pool,
+               const std::function<void(size_t, size_t)>& progress)
+      : light_field_(light_field),
+        path_(path),
+        options_(options),
+        pool_(pool),
+        progress_(progress) {
+    needs_.select.reach = ReachOf(options.reading.estimator);
+    needs_.select.max_angle_rad = options.max_angle_rad;
+    needs_.select.interrupted = options.interrupted;
+    needs_.lens_weights = options.lens_weights;
+    needs_.max_image_count = options.max_image_count;
+  }
+
+  Result<PreprocessReport> Run();
+
+ private:
+  Result<void> Begin();
+  Result<void> MakeIndex();
+  Result<void> ForecastFrames();
+  Result<void> Measure();
+  Result<std::vector<Section>> Split() const;
+  Result<void> MakePackage(size_t number, const Section& section, size_t count);
+  Package PackageOf(const Section& section, const Gathering& gathering) const;
+  std::vector<uint64_t> FileSizes(const Package& package) const;
+  Result<void> Forecast(const Package& package, PackageForecast* forecast) const;
+
+  FrameNeeds Needs(FrameId frame) { return NeedsOf(*index_, path_.Camera(frame), needs_, pool_); }
+  Result<void> Step() {
+    if (options_.interrupted != nullptr && *options_.interrupted)
+      return Error{ErrorKind::kInterrupted, "interrupted"};
+    if (progress_) progress_(++done_, 2 * frames_.size());
+    return {};
+  }
+
+  const LightField& light_field_;
+  const CameraPath& path_;
+  const PreprocessOptions& options_;
+  ThreadPool& pool_;
+  const std::function<void(size_t, size_t)>& progress_;
+  NeedsOptions needs_;
+  std::vector<FrameId> frames_;
+  LightFieldIdentity whole_;
+  ImagePlaces places_;
+  std::optional<ImageIndex> index_;
+  std::vector<uint64_t> pairs_;  // of a frame: LF images and neighbours
+  std::vector<double> distances_w_;
+  size_t done_ = 0;
+  PreprocessReport report_;
+};
+
+Result<PreprocessReport> Preprocessor::Run() {
+  LF_RETURN_IF_ERROR(Begin());
+  LF_RETURN_IF_ERROR(MakeIndex());
+  LF_RETURN_IF_ERROR(ForecastFrames());
+  LF_RETURN_IF_ERROR(Measure());
+  LF_ASSIGN_OR_RETURN(const std::vector<Section> sections, Split());
+  for (size_t i = 0; i < sections.size(); ++i)
+    LF_RETURN_IF_ERROR(MakePackage(i, sections[i], sections.size()));
+  return std::move(report_);
+}
+
+Result<void> Preprocessor::Begin() {
+  frames_ = options_.frames;
+  if (frames_.empty())
+    for (uint32_t n = 1; n <= path_.frame_count(); ++n) frames_.push_back(FrameId{n});
+  if (options_.lens_weights == LensWeights::kArea)
+    for (const FrameId frame : frames_)
+      if (path_.Camera(frame).aperture.radius_w == 0)
+        return UsageError(fmt::format(
+            "--lens-weights area: the lens of frame {} is a pinhole, which has no area: use hat",
+            frame.value));
+  if (options_.output_folder) {
+    const std::vector<fs::path> there = PackagesIn(*options_.output_folder);
+    if (!there.empty() && !options_.overwrite)
+      return UsageError(
+          fmt::format("{}: holds {} packages already: --overwrite replaces them, or give another "
+                      "-o",
+                      options_.output_folder->string(), there.size()));
+    LF_RETURN_IF_ERROR(CreateFolder(*options_.output_folder));
+  }
+  report_.light_field_image_count = light_field_.size();
+  whole_ = IdentityOf(light_field_);
+  return {};
+}
+
+Result<void> Preprocessor::MakeIndex() {
+  const auto start = std::chrono::steady_clock::now();
+  places_ = ShuffledPlaces(light_field_.size(), options_.seed);
+  index_.emplace(light_field_, places_);
+  if (options_.order != ImageOrder::kShuffle) {
+    std::vector<std::vector<ImageRays>> taken;
+    for (const FrameId frame : frames_) {
+      if (options_.interrupted != nullptr && *options_.interrupted)
+        return Error{ErrorKind::kInterrupted, "interrupted"};
+      taken.emplace_back();
+      const RenderCamera& camera = path_.Camera(frame);
+      for (const SelectedImage& image :
+           SelectImages(*index_, std::span(&camera, 1), needs_.select, pool_))
+        taken.back().push_back({image.id, image.ray_count});
+    }
+    places_ = PlacesInOrder(options_.order, light_field_.size(), options_.seed, taken);
+    index_.emplace(light_field_, places_);
+  }
+  report_.index_s = SecondsSince(start);
+  return {};
+}
+
+Result<void> Preprocessor::ForecastFrames() {
+  const auto start = std::chrono::steady_clock::now();
+  for (const FrameId frame : frames_) {
+    LF_RETURN_IF_ERROR(Step());
+    const FrameNeeds needs = Needs(frame);
+    pairs_.push_back(needs.images.size() + needs.neighbours.size());
+    report_.frames.push_back({frame, needs.images.size(), needs.RayCount(), {}});
+  }
+  // One frame costs little, but asks one thread only.
+  pool_.ForEach(frames_.size(), [this](size_t f) {
+    if (options_.interrupted != nullptr && *options_.interrupted) return;
+    report_.frames[f].density =
+        DensityOf(*index_, path_.Camera(frames_[f]),
+                  options_.depths ? options_.depths : light_field_.depth_range);
+  });
+  report_.select_s += SecondsSince(start);
+  if (std::all_of(report_.frames.begin(), report_.frames.end(),
+                  [](const FrameForecast& frame) { return frame.image_count == 0; }))
+    return InputError(fmt::format(
+        "no LF image contributes to frames {}-{}: no recorded ray passes both their lens and what "
+        "they see (is the aperture smaller than the camera spacing, or the camera off the "
+        "capture?)",
+        frames_.front().value, frames_.back().value));
+  return {};
+}
+
+// By the frame that has the median number of rays.
+Result<void> Preprocessor::Measure() {
+  std::vector<size_t> by_rays(frames_.size());
+  std::iota(by_rays.begin(), by_rays.end(), size_t{0});
+  std::erase_if(by_rays, [this](size_t f) { return report_.frames[f].image_count == 0; });
+  std::sort(by_rays.begin(), by_rays.end(), [this](size_t a, size_t b) {
+    return report_.frames[a].ray_count < report_.frames[b].ray_count;
+  });
+  const FrameId frame = frames_[by_rays[by_rays.size() / 2]];
+  const Result<RenderRate> rate =
+      MeasureRate(light_field_, path_.Camera(frame), Needs(frame), options_.reading, pool_);
+  if (rate)
+    report_.rate = *rate;
+  else
+    report_.rate_error = rate.error().message;
+  return {};
+}
+
+Result<std::vector<Section>> Preprocessor::Split() const {
+  const Intrinsics& plate = path_.Camera(frames_.front()).pinhole.intrinsics;
+  LF_ASSIGN_OR_RETURN(
+      const MemoryPlan memory,
+      PlanMemory(options_.memory_bytes, light_field_, options_.reading.estimator, plate.width_px,
+                 plate.height_px, frames_.size(), pool_.thread_count()));
+  std::vector<uint64_t> costs;
+  for (const FrameForecast& frame : report_.frames)
+    costs.push_back(options_.balance == PackageBalance::kRays ? frame.ray_count : 1);
+  if (options_.package_count) return SplitByCost(costs, *options_.package_count);
+  if (options_.frames_per_package) {
+    std::vector<Section> sections;
+    for (size_t begin = 0; begin < frames_.size(); begin += *options_.frames_per_package)
+      sections.push_back({begin, std::min(frames_.size(), begin + *options_.frames_per_package)});
+    return sections;
+  }
+  std::vector<uint64_t> sizes;
+  for (const uint64_t pairs : pairs_) sizes.push_back(pairs * kPairBytes);
+  return SplitToFit(costs, memory.frames_per_pass, sizes, options_.memory_bytes / 4);
+}
+
+Result<void> Preprocessor::MakePackage(size_t number, const Section& section, size_t count) {
+  const auto start = std::chrono::steady_clock::now();
+  Gathering gathering;
+  std::vector<std::optional<double>> distances_w;
+  for (size_t f = section.begin; f < section.end; ++f) {
+    LF_RETURN_IF_ERROR(Step());
+    const FrameNeeds needs = Needs(frames_[f]);
+    distances_w.push_back(needs.camera_distance_w);
+    gathering.Add(frames_[f], needs);
+  }
+  Package package = PackageOf(section, gathering);
+  for (size_t i = 0; i < distances_w.size(); ++i)
+    package.frames[i].camera_distance_w = distances_w[i];
+  report_.select_s += SecondsSince(start);
+
+  PackageForecast forecast;
+  forecast.name = fmt::format("package-{:04}", number);
+  LF_RETURN_IF_ERROR(Forecast(package, &forecast));
+  report_.packages.push_back(std::move(forecast));
+  if (!options_.output_folder) return {};
+
+  const auto write_start = std::chrono::steady_clock::now();
+  if (number == 0)
+    for (const fs::path& old : PackagesIn(*options_.output_folder)) {
+      std::error_code ignored;
+      fs::remove(old, ignored);
+    }
+  std::vector<const std::vector<FrameRect>*> rects;
+  for (const auto& [id, of_image] : gathering.rects()) rects.push_back(&of_image);
+  LF_RETURN_IF_ERROR(
+      WritePackage(*options_.output_folder / (report_.packages.back().name + kExtension), package,
+                   [&rects](LfImageId id) { return *rects[id.value]; },
+                   {options_.version, options_.light_field_name, number + 1, count}));
+  report_.write_s += SecondsSince(write_start);
+  return {};
+}
+
+Package Preprocessor::PackageOf(const Section& section, const Gathering& gathering) const {
+  Package package;
+  package.whole = whole_;
+  package.choices = {options_.order, options_.seed, options_.max_image_count,
+                     options_.max_angle_rad, options_.lens_weights != LensWeights::kNone};
+  package.path = path_;
+  for (size_t f = section.begin; f < section.end; ++f)
+    package.frames.push_back({.id = frames_[f],
+                              .camera_distance_w = std::nullopt,
+                              .image_count = report_.frames[f].image_count,
+                              .ray_count = report_.frames[f].ray_count});
+  LightField& part = package.light_field;
+  part.folder = light_field_.folder;
+  part.encoding = light_field_.encoding;
+  part.unit_m = light_field_.unit_m;
+  part.depth_range = light_field_.depth_range;
+  package.places.end = places_.end;
+  std::map<uint32_t, uint32_t> intrinsics;  // by index in the whole light field
+  for (const auto& [id, rects] : gathering.rects()) {
+    LfCamera camera = light_field_.cameras[id.value];
+    const auto [known, is_new] = intrinsics.try_emplace(
+        camera.intrinsics_index, static_cast<uint32_t>(part.intrinsics.size()));
+    if (is_new) part.intrinsics.push_back(light_field_.intrinsics[camera.intrinsics_index]);
+    camera.intrinsics_index = known->second;
+    part.cameras.push_back(camera);
+    part.image_names.push_back(light_field_.image_names[id.value]);
+    if (!light_field_.mask_names.empty())
+      part.mask_names.push_back(light_field_.mask_names[id.value]);
+    package.places.of_images.push_back(places_.of_images[id.value]);
+    PackageImage image;
+    image.id = id.value;
+    image.frame_count = static_cast<uint32_t>(rects.size());
+    for (const FrameRect& rect : rects) {
+      image.rect = Bounds(image.rect, rect.rect);
+      image.ray_count += static_cast<uint64_t>(rect.rect.pixel_count());
+    }
+    package.images.push_back(image);
+  }
+  const std::vector<uint64_t> sizes = FileSizes(package);
+  for (size_t i = 0; i < sizes.size(); ++i) package.images[i].file_bytes = sizes[i];
+  return package;
+}
+
+// 0: not there, or not to be read.
+std::vector<uint64_t> Preprocessor::FileSizes(const Package& package) const {
+  constexpr size_t kTogether = 256;
+  std::vector<uint64_t> sizes(package.images.size(), 0);
+  pool_.ForEach((sizes.size() + kTogether - 1) / kTogether, [&](size_t task) {
+    for (size_t i = task * kTogether; i < std::min(sizes.size(), (task + 1) * kTogether); ++i) {
+      if (package.images[i].frame_count == 0) continue;
+      std::error_code error;
+      const uint64_t size =
+          fs::file_size(package.light_field.ImagePath(LfImageId{static_cast<uint32_t>(i)}), error);
+      if (!error) sizes[i] = size;
+    }
+  });
+  return sizes;
+}
+
+Result<void> Preprocessor::Forecast(const Package& package, PackageForecast* forecast) const {
+  forecast->frames = package.FrameIds();
+  for (const PackageImage& image : package.images) {
+    (image.frame_count > 0 ? forecast->image_count : forecast->neighbour_count) += 1;
+    forecast->read_bytes += image.file_bytes;
+    forecast->ray_count += image.ray_count;
+  }
+  const Intrinsics& plate = path_.Camera(frames_.front()).pinhole.intrinsics;
+  LF_ASSIGN_OR_RETURN(
+      const MemoryPlan memory,
+      PlanMemory(options_.memory_bytes, package.light_field, options_.reading.estimator,
+                 plate.width_px, plate.height_px, package.frames.size(), pool_.thread_count()));
+  forecast->memory_bytes = memory.total_bytes;
+  forecast->pass_count =
+      (package.frames.size() + memory.frames_per_pass - 1) / memory.frames_per_pass;
+  if (report_.rate)
+    forecast->cpu_s = report_.rate->load_s * static_cast<double>(forecast->image_count) +
+                      report_.rate->collect_s * static_cast<double>(forecast->ray_count) +
+                      report_.rate->finish_s * static_cast<double>(package.frames.size());
+  return {};
+}
+
+}  // namespace
+
+Result<PreprocessReport> Preprocess(const LightField& light_field, const CameraPath& path,
+                                    const PreprocessOptions& options, ThreadPool& pool,
+                                    const std::function<void(size_t, size_t)>& progress) {
+  return Preprocessor(light_field, path, options, pool, progress).Run();
+}
+
+}  // namespace lf

@@ -1,0 +1,74 @@
+#include "lf/preprocess/render_rate.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <vector>
+
+#include "lf/collector/collect.h"
+#include "lf/sequence/frame_file.h"
+#include "lf/store/folder_store.h"
+
+namespace lf {
+namespace {
+
+constexpr size_t kSampleImages = 16;
+
+// As they would be collected: with the places of a small order of their own.
+std::vector<SelectedImage> SampleOf(const FrameNeeds& needs) {
+  std::vector<SelectedImage> sample;
+  const size_t count = std::min(kSampleImages, needs.images.size());
+  for (size_t i = 0; i < count; ++i) {
+    const FrameNeeds::Image& image = needs.images[i];
+    sample.push_back({image.id, static_cast<uint32_t>(i), image.rect, 1,
+                      static_cast<uint64_t>(image.rect.pixel_count())});
+  }
+  return sample;
+}
+
+}  // namespace
+
+Result<RenderRate> MeasureRate(const LightField& light_field, const RenderCamera& frame,
+                               const FrameNeeds& needs, const RayReading& reading,
+                               ThreadPool& pool) {
+  const FolderStore store(light_field, reading.estimator == Estimator::kBilinear
+                                           ? FolderStore::Mosaics::kToRgb
+                                           : FolderStore::Mosaics::kAsRecorded);
+  const Intrinsics& plate = frame.pinhole.intrinsics;
+  std::vector<SensorPlate> plates;
+  plates.emplace_back(plate.width_px, plate.height_px);
+  const std::vector<SelectedImage> sample = SampleOf(needs);
+  CollectOptions options;
+  options.reading = reading;
+  LF_ASSIGN_OR_RETURN(
+      const CollectStatistics statistics,
+      Collect(light_field, store, std::span(&frame, 1), sample, options, pool, &plates, nullptr));
+  const size_t loaded = sample.size() - statistics.skipped.size();
+  if (loaded == 0)
+    return InputError(statistics.skipped.empty() ? "no LF image is needed"
+                                                 : statistics.skipped.front().reason);
+  RenderRate rate;
+  rate.load_s = statistics.times.load_cpu_s / static_cast<double>(loaded);
+  rate.collect_s = statistics.times.collect_cpu_s /
+                   static_cast<double>(std::max<uint64_t>(1, statistics.frames[0].tested_count));
+
+  ThreadPool alone(1);
+  const ThreadCpuTimer timer;
+  DevelopOptions develop;
+  develop.pedestal = light_field.encoding.pedestal;
+  develop.scale = light_field.encoding.Scale();
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / fmt::format("lf_rate.{}.exr", ::getpid());
+  const Result<void> written =
+      WriteFrame(file, Develop(plates[0], develop, alone), FrameFormat::kExrHalf, {});
+  std::error_code ignored;
+  std::filesystem::remove(file, ignored);
+  LF_RETURN_IF_ERROR(written);
+  rate.finish_s = static_cast<double>(timer.Nanoseconds()) * 1e-9;
+  return rate;
+}
+
+}  // namespace lf

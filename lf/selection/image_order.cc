@@ -1,0 +1,124 @@
+#include "lf/selection/image_order.h"
+
+#include <algorithm>
+#include <functional>
+#include <queue>
+#include <utility>
+
+#include "lf/core/random.h"
+
+namespace lf {
+namespace {
+
+constexpr uint64_t kShuffleStream = 1;
+constexpr const char* kNames[] = {"shuffle", "round-robin", "area"};
+
+std::vector<uint32_t> Shuffle(size_t image_count, uint64_t seed) {
+  std::vector<std::pair<uint64_t, uint32_t>> keyed(image_count);
+  for (uint32_t i = 0; i < image_count; ++i) keyed[i] = {RandomBits(seed, kShuffleStream, i), i};
+  std::sort(keyed.begin(), keyed.end());
+  std::vector<uint32_t> ids;
+  ids.reserve(image_count);
+  for (const auto& [key, id] : keyed) ids.push_back(id);
+  return ids;
+}
+
+ImagePlaces PlacesOf(const std::vector<uint32_t>& ids) {
+  ImagePlaces places;
+  places.end = static_cast<uint32_t>(ids.size());
+  places.of_images.resize(ids.size());
+  for (uint32_t place = 0; place < ids.size(); ++place) places.of_images[ids[place]] = place;
+  return places;
+}
+
+std::vector<uint32_t> ByArea(std::vector<uint32_t> shuffled,
+                             std::span<const std::vector<ImageRays>> frames) {
+  std::vector<uint64_t> rays(shuffled.size(), 0);
+  for (const std::vector<ImageRays>& images : frames)
+    for (const ImageRays& image : images) rays[image.id.value] += image.ray_count;
+  std::stable_sort(shuffled.begin(), shuffled.end(),
+                   [&](uint32_t a, uint32_t b) { return rays[a] > rays[b]; });
+  return shuffled;
+}
+
+// What frames take, from the side of the LF images.
+class Takers {
+ public:
+  Takers(size_t image_count, std::span<const std::vector<ImageRays>> frames)
+      : begin_(image_count + 2, 0) {
+    for (const std::vector<ImageRays>& images : frames)
+      for (const ImageRays& image : images) ++begin_[image.id.value + 2];
+    for (size_t i = 2; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
+    takers_.resize(begin_.back());
+    for (uint32_t f = 0; f < frames.size(); ++f)
+      for (const ImageRays& image : frames[f])
+        takers_[begin_[image.id.value + 1]++] = {f, image.ray_count};
+  }
+  std::span<const std::pair<uint32_t, uint64_t>> Of(uint32_t id) const {
+    return std::span(takers_).subspan(begin_[id], begin_[id + 1] - begin_[id]);
+  }
+
+ private:
+  std::vector<size_t> begin_;
+  std::vector<std::pair<uint32_t, uint64_t>> takers_;  // frame, rays
+};
+
+std::vector<uint32_t> RoundRobin(const std::vector<uint32_t>& shuffled,
+                                 std::span<const std::vector<ImageRays>> frames) {
+  const Takers takers(shuffled.size(), frames);
+  const ImagePlaces places = PlacesOf(shuffled);
+  std::vector<std::vector<uint32_t>> waiting(frames.size());  // of a frame, the next one last
+  for (size_t f = 0; f < frames.size(); ++f) {
+    for (const ImageRays& image : frames[f]) waiting[f].push_back(image.id.value);
+    std::sort(waiting[f].begin(), waiting[f].end(),
+              [&](uint32_t a, uint32_t b) { return places.of_images[a] > places.of_images[b]; });
+  }
+  std::vector<uint64_t> rays(frames.size(), 0);
+  using Turn = std::pair<uint64_t, uint32_t>;  // rays, frame
+  std::priority_queue<Turn, std::vector<Turn>, std::greater<>> turns;
+  for (uint32_t f = 0; f < frames.size(); ++f) turns.emplace(0, f);
+  std::vector<bool> is_taken(shuffled.size(), false);
+  std::vector<uint32_t> order;
+  const auto take = [&](uint32_t id) {
+    is_taken[id] = true;
+    order.push_back(id);
+    for (const auto& [frame, count] : takers.Of(id)) rays[frame] += count;
+  };
+  while (!turns.empty()) {
+    const auto [had, f] = turns.top();
+    turns.pop();
+    std::vector<uint32_t>& queue = waiting[f];
+    while (!queue.empty() && is_taken[queue.back()]) queue.pop_back();
+    if (queue.empty()) continue;
+    // Others' turns gave it rays meanwhile.
+    if (had == rays[f]) take(queue.back());
+    turns.emplace(rays[f], f);
+  }
+  for (const uint32_t id : shuffled)
+    if (!is_taken[id]) order.push_back(id);
+  return order;
+}
+
+}  // namespace
+
+const char* NameOf(ImageOrder order) { return kNames[static_cast<int>(order)]; }
+
+std::optional<ImageOrder> ImageOrderOf(const std::string& name) {
+  for (size_t i = 0; i < std::size(kNames); ++i)
+    if (name == kNames[i]) return static_cast<ImageOrder>(i);
+  return std::nullopt;
+}
+
+ImagePlaces ShuffledPlaces(size_t image_count, uint64_t seed) {
+  return PlacesOf(Shuffle(image_count, seed));
+}
+
+ImagePlaces PlacesInOrder(ImageOrder order, size_t image_count, uint64_t seed,
+                          std::span<const std::vector<ImageRays>> frames) {
+  std::vector<uint32_t> shuffled = Shuffle(image_count, seed);
+  if (order == ImageOrder::kArea) return PlacesOf(ByArea(std::move(shuffled), frames));
+  if (order == ImageOrder::kRoundRobin) return PlacesOf(RoundRobin(shuffled, frames));
+  return PlacesOf(shuffled);
+}
+
+}  // namespace lf

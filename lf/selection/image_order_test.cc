@@ -1,0 +1,97 @@
+#include "lf/selection/image_order.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "lf/core/random.h"
+
+namespace lf {
+namespace {
+
+constexpr size_t kImages = 2000, kFrames = 20;
+
+// Frames along a film whose lens opens: each takes a window of LF images, later ones wider ones.
+// Images 0 .. 99 are taken by none.
+std::vector<std::vector<ImageRays>> Film() {
+  std::vector<std::vector<ImageRays>> frames(kFrames);
+  for (uint32_t f = 0; f < kFrames; ++f) {
+    const uint32_t begin = 100 + 60 * f, count = 100 + 30 * f;
+    for (uint32_t i = begin; i < begin + count; ++i)
+      frames[f].push_back({LfImageId{i}, 100 + RandomBits(7, f, i) % 200});
+  }
+  return frames;
+}
+
+std::vector<uint32_t> Ids(const ImagePlaces& places) {
+  std::vector<uint32_t> ids(places.of_images.size(), UINT32_MAX);
+  for (uint32_t id = 0; id < places.of_images.size(); ++id) ids[places.of_images[id]] = id;
+  return ids;
+}
+
+// Rays of every frame after a tenth of the LF images that are taken at all: the standard deviation
+// over their mean.
+double SpreadAfterATenth(ImageOrder order, const std::vector<std::vector<ImageRays>>& frames) {
+  const ImagePlaces places = PlacesInOrder(order, kImages, 3, frames);
+  std::vector<uint32_t> taken;
+  for (const auto& frame : frames)
+    for (const ImageRays& image : frame) taken.push_back(places.of_images[image.id.value]);
+  std::sort(taken.begin(), taken.end());
+  taken.erase(std::unique(taken.begin(), taken.end()), taken.end());
+  const uint32_t tenth = taken[taken.size() / 10];
+  double sum = 0, squares = 0;
+  for (const auto& frame : frames) {
+    double rays = 0;
+    for (const ImageRays& image : frame)
+      if (places.of_images[image.id.value] < tenth) rays += static_cast<double>(image.ray_count);
+    sum += rays;
+    squares += rays * rays;
+  }
+  const double mean = sum / kFrames;
+  return std::sqrt(squares / kFrames - mean * mean) / mean;
+}
+
+TEST(ImageOrder, EveryOrderHasEachImageOnce) {
+  for (const ImageOrder order :
+       {ImageOrder::kShuffle, ImageOrder::kRoundRobin, ImageOrder::kArea}) {
+    const ImagePlaces places = PlacesInOrder(order, kImages, 3, Film());
+    EXPECT_EQ(places.end, kImages);
+    std::vector<uint32_t> ids = Ids(places);
+    if (order != ImageOrder::kShuffle) {
+      // The last are those that nobody takes.
+      std::vector<uint32_t> last(ids.end() - 100, ids.end());
+      for (const uint32_t id : last) EXPECT_TRUE(id < 100 || id >= 100 + 60 * 19 + 670) << id;
+    }
+    std::sort(ids.begin(), ids.end());
+    for (uint32_t i = 0; i < kImages; ++i) EXPECT_EQ(ids[i], i);
+    EXPECT_EQ(ImageOrderOf(NameOf(order)), order);
+  }
+  EXPECT_EQ(ImageOrderOf("size"), std::nullopt);
+}
+
+TEST(ImageOrder, TheShuffleDependsOnTheSeedAlone) {
+  EXPECT_EQ(PlacesInOrder(ImageOrder::kShuffle, kImages, 5, Film()).of_images,
+            ShuffledPlaces(kImages, 5).of_images);
+  EXPECT_NE(ShuffledPlaces(kImages, 6).of_images, ShuffledPlaces(kImages, 5).of_images);
+}
+
+TEST(ImageOrder, RoundRobinFillsFramesEqually) {
+  const double shuffled = SpreadAfterATenth(ImageOrder::kShuffle, Film());
+  const double in_turn = SpreadAfterATenth(ImageOrder::kRoundRobin, Film());
+  EXPECT_GT(shuffled, 0.3);  // later frames are wider, and get more
+  EXPECT_LT(in_turn, 0.1);
+}
+
+TEST(ImageOrder, AreaTakesTheLargestFirst) {
+  const auto frames = Film();
+  std::vector<uint64_t> rays(kImages, 0);
+  for (const auto& frame : frames)
+    for (const ImageRays& image : frame) rays[image.id.value] += image.ray_count;
+  const std::vector<uint32_t> ids = Ids(PlacesInOrder(ImageOrder::kArea, kImages, 3, frames));
+  for (size_t i = 1; i < ids.size(); ++i) EXPECT_GE(rays[ids[i - 1]], rays[ids[i]]);
+}
+
+}  // namespace
+}  // namespace lf

@@ -1,0 +1,336 @@
+#!/usr/bin/python3
+"""Packages as their users meet them: made by lfpreprocessor, rendered by lfrenderer to the same bits.
+
+usage: lfpreprocessor_test.py LFPREPROCESSOR LFRENDERER
+"""
+import hashlib
+import json
+import pathlib
+import shutil
+import signal
+import sqlite3
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import numpy as np
+from PIL import Image
+
+from small_field import HEIGHT, SIDE, WIDTH, write_field, write_path
+
+PREPROCESSOR = RENDERER = None
+
+
+class PackagesTest(unittest.TestCase):
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(self.temporary.cleanup)
+        self.folder = pathlib.Path(self.temporary.name)
+
+    def call(self, program, *arguments):
+        return subprocess.run([program, *map(str, arguments)], capture_output=True, text=True,
+                              timeout=120)
+
+    def succeeds(self, program, *arguments):
+        result = self.call(program, *arguments)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return result.stdout
+
+    def fails(self, code, words, program, *arguments):
+        result = self.call(program, *arguments)
+        self.assertEqual(result.returncode, code, result.stderr)
+        last = result.stderr.strip().splitlines()[-1]
+        self.assertTrue(last.startswith("error: "), last)
+        for word in words:
+            self.assertIn(word, last)
+
+    def digests(self, folder):
+        return {frame.name: hashlib.sha256(frame.read_bytes()).hexdigest()
+                for frame in sorted(folder.glob("frame_*.exr"))}
+
+    def film(self, frames=6, **keys):
+        return write_field(self.folder / "field", **keys), write_path(self.folder, frames=frames)
+
+    def packages(self, field, path, *options, name="packages"):
+        """the report, and the files"""
+        out = self.folder / name
+        report = json.loads(self.succeeds(PREPROCESSOR, field, path, "-o", out, "--json", *options))
+        files = sorted(out.glob("*.lfp"))
+        self.assertEqual([file.stem for file in files], [p["name"] for p in report["packages"]])
+        return report, files
+
+    # The same bits
+
+    def test_packages_render_to_the_bits_of_the_whole_film(self):
+        """whatever rays are read, weighed and limited by"""
+        field, path = self.film()
+        for number, (preprocess, render) in enumerate([
+                ([], []),
+                ([], ["--estimator", "nearest"]),
+                ([], ["--lens-weights", "none", "--stop-when", "samples>=4"]),
+                ([], ["--lens-weights", "hat", "--back-end", "reference"]),
+                (["--lens-weights", "none"], ["--lens-weights", "none"]),
+                (["--max-images", "7"], ["--max-images", "7"]),
+                (["--seed", "3", "--max-images", "7"], ["--max-images", "5", "--seed", "3"])]):
+            with self.subTest(preprocess=preprocess, render=render):
+                _, files = self.packages(field, path, "--packages", "3", *preprocess,
+                                         name=f"packages{number}")
+                whole, parts = self.folder / f"whole{number}", self.folder / f"parts{number}"
+                self.succeeds(RENDERER, field, path, "-o", whole, "-q", *render)
+                if "--seed" in render:  # which packages have decided about
+                    render = render[:-2]
+                self.succeeds(RENDERER, *files, "-o", parts, "-q", *render)
+                self.assertEqual(len(self.digests(whole)), 6)
+                self.assertEqual(self.digests(whole), self.digests(parts))
+                for name in ("contact_sheet.png", "report-package-0002.json"):
+                    self.assertTrue((parts / name).exists(), name)
+                self.assertFalse((parts / "partial").exists())
+
+    def test_mosaics_distortion_masks_and_gains_come_along(self):
+        def picture(index):
+            return np.random.default_rng(index).integers(0, 60000, (HEIGHT, WIDTH), dtype=np.uint16)
+        field = write_field(self.folder / "field", picture, lf_bayer="RGGB", lf_transfer="linear",
+                            lf_black_level=100, lf_white_balance=[2, 1, 1.5], k1=0.05, k2=-0.01,
+                            p1=0.001, p2=0.0, camera_model="OPENCV")
+        text = json.loads(field.read_text())
+        mask = np.full((HEIGHT, WIDTH), 255, np.uint8)
+        mask[:, :WIDTH // 2] = 0
+        Image.fromarray(mask).save(self.folder / "field" / "mask.png")
+        text["frames"][3]["lf_mask"] = "mask.png"
+        text["frames"][4]["lf_gain"] = 1.25
+        field.write_text(json.dumps(text))
+        path = write_path(self.folder, frames=4)
+        _, files = self.packages(field, path, "--frames-per-package", "3")
+        self.assertEqual(len(files), 2)
+        self.succeeds(RENDERER, field, path, "-o", self.folder / "whole", "-q")
+        self.succeeds(RENDERER, *files, "-o", self.folder / "parts", "-q")
+        self.assertEqual(self.digests(self.folder / "whole"), self.digests(self.folder / "parts"))
+
+    def test_every_order_ends_with_the_same_frames(self):
+        field, path = self.film()
+        whole = self.folder / "whole"
+        self.succeeds(RENDERER, field, path, "-o", whole, "-q")
+        for order in ("round-robin", "area"):
+            _, files = self.packages(field, path, "--order", order, "--packages", "2", name=order)
+            self.succeeds(RENDERER, *files, "-o", self.folder / f"out-{order}", "-q")
+            self.assertEqual(self.digests(self.folder / f"out-{order}"), self.digests(whole))
+
+    def test_lf_cameras_beyond_the_angle_have_no_say(self):
+        """as if they had not been recorded"""
+        field, path = self.film()
+        text = json.loads(field.read_text())
+        kept = []
+        for index, frame in enumerate(text["frames"]):
+            if index % 3 == 0:  # turned by 3 degrees about y
+                c, s = np.cos(np.radians(3)), np.sin(np.radians(3))
+                for row, values in enumerate([[c, 0, s], [0, 1, 0], [-s, 0, c]]):
+                    frame["transform_matrix"][row][:3] = values
+            else:
+                kept.append(frame)
+        field.write_text(json.dumps(text))
+        fewer = field.with_name("fewer.json")
+        fewer.write_text(json.dumps({**text, "frames": kept}))
+        for weights in ("none", "auto"):
+            options = ["--lens-weights", weights]
+            _, files = self.packages(field, path, "--max-angle", "2", *options, name=f"p{weights}")
+            out, expected = self.folder / f"out{weights}", self.folder / f"expected{weights}"
+            self.succeeds(RENDERER, *files, "-o", out, "-q", *options, "--format", "png16")
+            self.succeeds(RENDERER, fewer, path, "-o", expected, "-q", *options, "--format", "png16")
+            for name in ("frame_0001.png", "frame_0006.png"):
+                with Image.open(out / name) as a, Image.open(expected / name) as b:
+                    self.assertEqual(a.tobytes(), b.tobytes())
+
+    def test_frames_of_a_package_may_be_asked_for(self):
+        field, path = self.film()
+        _, files = self.packages(field, path, "--packages", "2", "--frames", "1-6x2")
+        out = self.folder / "out"
+        self.succeeds(RENDERER, *files, "-o", out, "-q", "--frames", "3")
+        self.assertEqual(list(self.digests(out)), ["frame_0003.exr"])
+        self.fails(2, ["frame 4", "none of the packages"], RENDERER, *files, "-o", out, "--frames",
+                   "3-4")
+
+    def test_frames_that_nobody_sees_are_black_in_packages_too(self):
+        field = write_field(self.folder / "field")
+        path = self.folder / "path.yaml"
+        write_path(self.folder, frames=4)
+        path.write_text(path.read_text().replace(
+            "keyframes:", "keyframes:\n  position: [{time: 0, value: [0, 0, 0]}, "
+                          "{time: 0.12, value: [50, 0, 0]}]"))
+        options = ["--lens-weights", "none"]
+        _, files = self.packages(field, path, "--frames-per-package", "1", *options)
+        self.succeeds(RENDERER, field, path, "-o", self.folder / "whole", *options)
+        self.succeeds(RENDERER, *files, "-o", self.folder / "parts", *options)
+        self.assertEqual(self.digests(self.folder / "whole"), self.digests(self.folder / "parts"))
+        self.fails(3, ["every frame is black"], RENDERER, files[-1], "-o", self.folder / "black",
+                   *options)
+
+    # Many machines, one folder
+
+    def test_two_processes_render_into_one_folder(self):
+        field, path = self.film()
+        _, files = self.packages(field, path, "--packages", "2")
+        whole, parts = self.folder / "whole", self.folder / "parts"
+        self.succeeds(RENDERER, field, path, "-o", whole, "-q")
+        runs = [subprocess.Popen([RENDERER, file, "-o", parts, "-q", "--no-contact-sheet"])
+                for file in files]
+        self.assertEqual([run.wait(120) for run in runs], [0, 0])
+        self.assertEqual(self.digests(whole), self.digests(parts))
+
+    def test_a_killed_package_goes_on_and_leaves_others_alone(self):
+        field, path = self.film(frames=40)
+        _, files = self.packages(field, path, "--packages", "2")
+        out = self.folder / "out"
+        options = ["-o", out, "-q", "--no-contact-sheet", "--back-end", "reference",
+                   "--dump-every", "0.05s"]
+        run = subprocess.Popen([RENDERER, files[1], *map(str, options)])
+        partial = out / "partial" / "package-0001"
+        for _ in range(400):
+            if list(partial.glob("frame_*")) or run.poll() is not None:
+                break
+            time.sleep(0.02)
+        run.send_signal(signal.SIGKILL)
+        run.wait()
+        left = sorted(p.name for p in partial.glob("frame_*"))
+        self.assertTrue(left)
+        self.succeeds(RENDERER, files[0], *options)
+        self.assertEqual(sorted(p.name for p in partial.glob("frame_*")), left)
+        self.fails(2, ["--resume"], RENDERER, files[1], *options)
+        self.succeeds(RENDERER, files[1], *options, "--resume")
+        self.assertFalse((out / "partial").exists())
+        self.succeeds(RENDERER, field, path, "-o", self.folder / "whole", "-q", "--back-end",
+                      "reference")
+        self.assertEqual(self.digests(self.folder / "whole"), self.digests(out))
+
+    # What is refused
+
+    def test_damage_and_strangers_are_input_errors(self):
+        field, path = self.film()
+        _, files = self.packages(field, path, "--packages", "2")
+        out, whole = self.folder / "out", files[0].read_bytes()
+        for at in (10, 70, 5000, len(whole) // 2, len(whole) - 3):
+            damaged = bytearray(whole)
+            damaged[at] ^= 4
+            files[0].write_bytes(damaged)
+            self.fails(3, ["package-0000.lfp"], RENDERER, files[0], "-o", out)
+        files[0].write_bytes(whole[:-1000])
+        self.fails(3, ["package-0000.lfp", "damaged"], RENDERER, files[0], "-o", out)
+        newer = bytearray(whole)
+        newer[63] = 9
+        files[0].write_bytes(newer)
+        self.fails(3, ["version 9", "newer"], RENDERER, files[0], "-o", out)
+        files[0].write_bytes(b"something else")
+        self.fails(3, ["is no package"], RENDERER, files[0], "-o", out)
+        self.fails(3, ["no such file"], RENDERER, self.folder / "none.lfp", "-o", out)
+        self.assertFalse(list(out.glob("frame_*")) if out.exists() else [])
+
+    def test_another_light_field_is_an_input_error(self):
+        field, path = self.film()
+        _, files = self.packages(field, path, "--packages", "2")
+        out = self.folder / "out"
+
+        # Packages of two light fields.
+        other = write_field(self.folder / "other", fl_y=71)
+        _, others = self.packages(other, path, "--packages", "2", name="others")
+        self.fails(3, ["another light field"], RENDERER, files[0], others[1], "-o", out)
+        _, shuffled = self.packages(field, path, "--packages", "2", "--seed", "1", name="shuffled")
+        self.fails(3, ["another order"], RENDERER, files[0], shuffled[1], "-o", out)
+
+        # Moved, with its packages or without.
+        self.succeeds(RENDERER, files[0], "-o", out, "-q", "--lightfield", field)
+        self.fails(3, ["another light field", "calibration"], RENDERER, files[0], "-o", out,
+                   "--lightfield", other)
+        moved = self.folder / "moved"
+        shutil.move(self.folder / "field", moved)
+        self.fails(3, ["--lightfield"], RENDERER, files[0], "-o", out)
+        self.succeeds(RENDERER, files[0], "-o", out, "-q", "--lightfield", moved)
+
+        # Other images in its place.
+        write_field(self.folder / "field", lambda i: np.zeros((HEIGHT, WIDTH, 3), np.uint8))
+        self.fails(3, ["another light field", "bytes"], RENDERER, files[0], "-o", out)
+
+    def test_usage(self):
+        field, path = self.film()
+        _, files = self.packages(field, path, "--packages", "2", "--max-images", "9",
+                                 "--lens-weights", "none")
+        out = self.folder / "out"
+        self.fails(2, ["made with --lens-weights none"], RENDERER, *files, "-o", out)
+        none = ["--lens-weights", "none"]
+        self.fails(2, ["--max-images 9"], RENDERER, *files, "-o", out, "--max-images", "10", *none)
+        self.fails(2, ["--seed"], RENDERER, *files, "-o", out, "--seed", "1", *none)
+        self.fails(2, ["frame 1"], RENDERER, files[0], files[1],
+                   self.again(files[0]), "-o", out, *none)
+        self.fails(2, ["PACKAGE..."], RENDERER, files[0], path, "-o", out)
+        self.fails(2, ["PACKAGE..."], RENDERER, field, "-o", out)
+        self.fails(2, ["--lightfield"], RENDERER, field, path, "-o", out, "--lightfield", field)
+        self.fails(2, ["--plan"], PREPROCESSOR, field, path)
+        self.fails(2, ["--overwrite"], PREPROCESSOR, field, path, "-o", self.folder / "packages")
+        self.fails(2, ["nearer"], PREPROCESSOR, field, path, "--plan", "--depths", "3", "2")
+        self.fails(2, ["--packages"], PREPROCESSOR, field, path, "--plan", "--packages", "2",
+                   "--frames-per-package", "3")
+        self.fails(4, ["--memory"], PREPROCESSOR, field, path, "--plan", "--memory", "1M")
+
+    def again(self, file):
+        return shutil.copy(file, self.folder / "copy.lfp")
+
+    def test_packages_are_replaced_on_request(self):
+        field, path = self.film()
+        self.packages(field, path, "--packages", "3")
+        _, files = self.packages(field, path, "--packages", "2", "--overwrite")
+        self.assertEqual(len(files), 2)
+
+    # What is told
+
+    def test_a_plan_tells_what_packages_will_be(self):
+        field, path = self.film()
+        plan = json.loads(self.succeeds(PREPROCESSOR, field, path, "--plan", "--json",
+                                        "--packages", "3"))
+        made, _ = self.packages(field, path, "--packages", "3")
+        self.assertIsNone(plan["output"])
+        for a, b in zip(plan["packages"], made["packages"], strict=True):
+            for key in ("name", "frames", "lf_images", "neighbours", "rays", "bytes_to_read"):
+                self.assertEqual(a[key], b[key], key)
+        self.assertLess(plan["largest_over_mean_rays"], 1.1)
+        self.assertGreater(plan["rate"]["cpu_s_per_ray"], 0)
+        size = sum(image.stat().st_size for image in (self.folder / "field").glob("*.png"))
+        self.assertEqual(plan["packages"][0]["bytes_to_read"], size)
+        self.assertEqual(len(plan["frames"]), 6)
+        text = self.succeeds(PREPROCESSOR, field, path, "--plan")
+        for words in ("package-0000", "LF cameras", "displacement", "about"):
+            self.assertIn(words, text)
+
+    def test_a_sparse_capture_is_warned_of_in_plain_words(self):
+        field, path = self.film()
+        # f = 80 / (2 tan 25) = 86 px, spacing 9 mm, focus 0.8 m: 86 x 0.009 x |1/0.1 - 1/0.8| = 7
+        text = self.succeeds(PREPROCESSOR, field, path, "--plan", "--depths", "0.1", "4")
+        for words in ("expect double edges of 7 px at 100 mm", "mm apart in the lens", "needed",
+                      "What would work"):
+            self.assertIn(words, text)
+        self.assertNotIn("double edges", self.succeeds(
+            PREPROCESSOR, field, path, "--plan", "--depths", "0.7", "4"))
+        write_path(self.folder, aperture=0.2)
+        self.assertIn("bokeh are cut off", self.succeeds(PREPROCESSOR, field, path, "--plan"))
+
+    def test_packages_can_be_asked_by_sql(self):
+        """the schema of doc/formats/package.md"""
+        field, path = self.film()
+        _, files = self.packages(field, path, "--packages", "2")
+        with sqlite3.connect(f"file:{files[1]}?immutable=1", uri=True) as db:
+            self.assertEqual(db.execute("pragma integrity_check").fetchone(), ("ok",))
+            frames = db.execute("select frame, rays from frames where is_rendered").fetchall()
+            self.assertEqual([frame for frame, _ in frames], [4, 5, 6])
+            rays = {frame: 0 for frame, _ in frames}
+            places = [place for place, in db.execute("select place from lf_images")]
+            self.assertEqual(sorted(places), list(range(SIDE * SIDE)))
+            for blob, in db.execute("select rectangles from rectangles"):
+                for frame, x0, y0, x1, y1 in struct.iter_unpack("<5i", blob[:-8]):
+                    self.assertTrue(0 <= x0 < x1 <= WIDTH and 0 <= y0 < y1 <= HEIGHT)
+                    rays[frame] += (x1 - x0) * (y1 - y0)
+            self.assertEqual(sorted(rays.items()), frames)
+
+
+if __name__ == "__main__":
+    PREPROCESSOR, RENDERER = map(pathlib.Path, sys.argv[1:3])
+    sys.exit(unittest.main(argv=sys.argv[:1], verbosity=2))

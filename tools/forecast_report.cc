@@ -1,0 +1,270 @@
+#include "tools/forecast_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tools/common/progress.h"
+
+namespace lf {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Elements that an eye takes for one edge.
+constexpr double kDoubleEdge_px = 2;
+constexpr double kMuchUncovered = 0.1;
+
+// "31.2 mm", "2.05 m", "1.2 km"
+std::string Length(double length_w, double unit_m) {
+  const double length_m = length_w * unit_m;
+  if (!std::isfinite(length_m)) return "-";
+  if (length_m == 0) return "0";
+  const double size = std::abs(length_m);
+  if (size < 1e-3) return fmt::format("{:.3g} um", length_m * 1e6);
+  if (size < 1) return fmt::format("{:.3g} mm", length_m * 1e3);
+  return size < 1e3 ? fmt::format("{:.3g} m", length_m) : fmt::format("{:.3g} km", length_m / 1e3);
+}
+
+std::string Bytes(uint64_t bytes) {
+  return bytes < uint64_t{10} << 30 ? fmt::format("{} MiB", bytes >> 20)
+                                    : fmt::format("{:.1f} GiB", std::ldexp(bytes, -30));
+}
+
+void AddLine(const char* name, const std::string& text, std::string* lines) {
+  *lines += fmt::format("{:<14} {}\n", name, text);
+}
+
+double LargestOverMean(const std::vector<PackageForecast>& packages) {
+  double largest = 0, sum = 0;
+  for (const PackageForecast& package : packages) {
+    largest = std::max(largest, static_cast<double>(package.ray_count));
+    sum += static_cast<double>(package.ray_count);
+  }
+  return sum > 0 ? largest * static_cast<double>(packages.size()) / sum : 1;
+}
+
+template <class Badness>
+const FrameForecast& Worst(const PreprocessReport& report, const Badness& badness) {
+  return *std::max_element(
+      report.frames.begin(), report.frames.end(),
+      [&](const FrameForecast& a, const FrameForecast& b) { return badness(a) < badness(b); });
+}
+
+// Spread over the film.
+std::vector<size_t> ShownFrames(size_t frame_count) {
+  constexpr size_t kMost = 12;
+  std::vector<size_t> shown;
+  const size_t count = std::min(kMost, frame_count);
+  for (size_t i = 0; i < count; ++i)
+    shown.push_back(count == 1 ? 0 : i * (frame_count - 1) / (count - 1));
+  return shown;
+}
+
+void AddPackages(const PreprocessReport& report, const ForecastFacts& facts, std::string* lines) {
+  *lines +=
+      fmt::format("\n{:<14} {:<13} {:>9} {:>11} {:>9} {:>9} {:>9} {:>6}  {}\n", "package", "frames",
+                  "LF images", "neighbours", "rays", "to read", "memory", "passes", "about");
+  for (const PackageForecast& package : report.packages) {
+    const std::string frames =
+        fmt::format("{}-{}", package.frames.front().value, package.frames.back().value);
+    *lines +=
+        fmt::format("{:<14} {:<13} {:>9} {:>11} {:>9} {:>9} {:>9} {:>6}  {}\n", package.name,
+                    frames, package.image_count, package.neighbour_count,
+                    ShortNumber(static_cast<double>(package.ray_count)), Bytes(package.read_bytes),
+                    Bytes(package.memory_bytes), package.pass_count,
+                    report.rate ? ShortDuration(package.cpu_s / facts.thread_count) : "-");
+  }
+  if (report.packages.size() > 1)
+    *lines +=
+        fmt::format("largest of their rays / mean: {:.3f}\n", LargestOverMean(report.packages));
+}
+
+void AddDensity(const PreprocessReport& report, const CameraPath& path, std::string* lines) {
+  *lines += fmt::format("\n{:>7} {:>10} {:>10} {:>12} {:>10} {:>13} {:>13} {:>12} {:>14}\n",
+                        "frame", "LF images", "rays", "LF cameras", "spacing", "displacement",
+                        "displacement", "of the lens", "least aperture");
+  *lines += fmt::format("{:>7} {:>10} {:>10} {:>12} {:>10} {:>13} {:>13} {:>12} {:>14}\n", "", "",
+                        "", "in the lens", "there", "near", "far", "uncovered", "that collects");
+  for (const size_t f : ShownFrames(report.frames.size())) {
+    const FrameForecast& frame = report.frames[f];
+    const FrameDensity& density = frame.density;
+    *lines += fmt::format(
+        "{:>7} {:>10} {:>10} {:>12} {:>10} {:>10.1f} px {:>10.1f} px {:>10.0f} % {:>14}\n",
+        frame.frame.value, frame.image_count, ShortNumber(static_cast<double>(frame.ray_count)),
+        density.cameras_in_lens, Length(density.camera_distance_w, path.unit_m),
+        density.near_displacement_px, density.far_displacement_px, 100 * density.uncovered_share,
+        Length(density.least_aperture_w, path.unit_m));
+  }
+}
+
+// Where copies are less than kDoubleEdge_px apart, along the frame's axis.
+std::string DepthsInOne(const RenderCamera& camera, const FrameDensity& density) {
+  const double step =
+      kDoubleEdge_px / (camera.pinhole.intrinsics.fx_px * density.camera_distance_w);
+  const double focus = 1 / camera.focus_distance_w;
+  const std::string near = Length(1 / (focus + step), camera.unit_m);
+  if (focus <= step) return fmt::format("from {} on", near);
+  return fmt::format("from {} to {}", near, Length(1 / (focus - step), camera.unit_m));
+}
+
+}  // namespace
+
+std::vector<std::string> DensityWarnings(const PreprocessReport& report, const CameraPath& path,
+                                         const ForecastFacts& facts) {
+  std::vector<std::string> warnings;
+  const FrameForecast& sparse =
+      Worst(report, [](const FrameForecast& frame) { return frame.density.MostDisplacement_px(); });
+  const double most_px = sparse.density.MostDisplacement_px();
+  if (most_px > kDoubleEdge_px) {
+    const RenderCamera& camera = path.Camera(sparse.frame);
+    const FrameDensity& density = sparse.density;
+    const Intrinsics& plate = camera.pinhole.intrinsics;
+    const double scale = kDoubleEdge_px / most_px;
+    warnings.push_back(fmt::format(
+        "frame {}: expect double edges of {:.0f} px at {}{}; LF cameras are {} apart in the lens, "
+        "{} "
+        "needed. What would work: {} without double edges are depths {}; frames of {} x {} "
+        "elements "
+        "instead of {} x {}; or a capture {:.0f} times as dense along each axis",
+        sparse.frame.value, most_px, Length(density.DepthOfMost_w(), path.unit_m),
+        facts.are_depths_known ? "" : " (depths of the scene are not known: --depths tells them)",
+        Length(density.camera_distance_w, path.unit_m),
+        Length(density.camera_distance_w / most_px, path.unit_m), "as it is,",
+        DepthsInOne(camera, density), std::max(1, static_cast<int>(plate.width_px * scale)),
+        std::max(1, static_cast<int>(plate.height_px * scale)), plate.width_px, plate.height_px,
+        std::ceil(most_px / kDoubleEdge_px)));
+  }
+  size_t black_count = 0;
+  const FrameForecast* black = nullptr;
+  for (const FrameForecast& frame : report.frames) {
+    if (frame.image_count > 0) continue;
+    ++black_count;
+    if (black == nullptr) black = &frame;
+  }
+  if (black != nullptr)
+    warnings.push_back(
+        fmt::format("{} of {} frames will be black: no LF image contributes to them, the first is "
+                    "frame {}; its "
+                    "lens would collect rays from a diameter of {} on, and has {}",
+                    black_count, report.frames.size(), black->frame.value,
+                    Length(black->density.least_aperture_w, path.unit_m),
+                    Length(2 * path.Camera(black->frame).aperture.radius_w, path.unit_m)));
+  const FrameForecast& uncovered =
+      Worst(report, [](const FrameForecast& frame) { return frame.density.uncovered_share; });
+  if (uncovered.density.uncovered_share > kMuchUncovered)
+    warnings.push_back(fmt::format(
+        "frame {}: {:.0f} % of its lens are where no LF camera was: bokeh are cut off there. What "
+        "would work: a smaller aperture, or a path nearer to the middle of the capture",
+        uncovered.frame.value, 100 * uncovered.density.uncovered_share));
+  return warnings;
+}
+
+std::string ForecastText(const PreprocessReport& report, const CameraPath& path,
+                         const ForecastFacts& facts) {
+  std::string lines;
+  const Intrinsics& plate = path.Camera(report.frames.front().frame).pinhole.intrinsics;
+  size_t image_count = 0;
+  uint64_t rays = 0, bytes = 0;
+  double cpu_s = 0;
+  for (const PackageForecast& package : report.packages) {
+    image_count += package.image_count;
+    rays += package.ray_count;
+    bytes += package.read_bytes;
+    cpu_s += package.cpu_s;
+  }
+  AddLine("light field",
+          fmt::format("{}, {} LF images", facts.light_field, report.light_field_image_count),
+          &lines);
+  AddLine(
+      "film",
+      fmt::format("{} frames of {} x {}", report.frames.size(), plate.width_px, plate.height_px),
+      &lines);
+  AddLine(
+      "to be read",
+      fmt::format("{} LF images ({} files' worth), those that several packages need counted for "
+                  "each",
+                  image_count, Bytes(bytes)),
+      &lines);
+  AddLine("rays", fmt::format("{} pixels to be tried", ShortNumber(static_cast<double>(rays))),
+          &lines);
+  AddLine("order",
+          facts.order == ImageOrder::kArea
+              ? std::string("area")
+              : fmt::format("{}, seed {}", NameOf(facts.order), facts.seed),
+          &lines);
+  AddLine(
+      "time",
+      report.rate
+          ? fmt::format("about {} by {} threads of this machine ({:.3g} ms per LF image, {:.3g} "
+                        "ns per ray, {:.3g} ms per frame, measured on a few)",
+                        ShortDuration(cpu_s / facts.thread_count), facts.thread_count,
+                        1e3 * report.rate->load_s, 1e9 * report.rate->collect_s,
+                        1e3 * report.rate->finish_s)
+          : "not known: " + report.rate_error,
+      &lines);
+  AddLine("spent here",
+          fmt::format("{:.2g} s on the order and the octree, {:.2g} s on selection, {:.2g} s on "
+                      "writing",
+                      report.index_s, report.select_s, report.write_s),
+          &lines);
+  AddPackages(report, facts, &lines);
+  AddDensity(report, path, &lines);
+  for (const std::string& warning : DensityWarnings(report, path, facts))
+    lines += fmt::format("\nwarning: {}\n", warning);
+  return lines;
+}
+
+std::string ForecastJson(const PreprocessReport& report, const CameraPath& path,
+                         const ForecastFacts& facts) {
+  const auto finite = [](double value) { return std::isfinite(value) ? Json(value) : Json(); };
+  Json json;
+  json["light_field"] = facts.light_field;
+  json["output"] = facts.output.empty() ? Json() : Json(facts.output);
+  json["lf_images"] = report.light_field_image_count;
+  json["order"] = NameOf(facts.order);
+  json["seed"] = facts.seed;
+  json["unit_m"] = path.unit_m;
+  json["threads"] = facts.thread_count;
+  json["largest_over_mean_rays"] = LargestOverMean(report.packages);
+  json["rate"] = report.rate ? Json{{"cpu_s_per_lf_image", report.rate->load_s},
+                                    {"cpu_s_per_ray", report.rate->collect_s},
+                                    {"cpu_s_per_frame", report.rate->finish_s}}
+                             : Json();
+  json["spent_s"] = {
+      {"index", report.index_s}, {"selection", report.select_s}, {"writing", report.write_s}};
+  json["packages"] = Json::array();
+  for (const PackageForecast& package : report.packages) {
+    Json frames = Json::array();
+    for (const FrameId frame : package.frames) frames.push_back(frame.value);
+    json["packages"].push_back({{"name", package.name},
+                                {"frames", std::move(frames)},
+                                {"lf_images", package.image_count},
+                                {"neighbours", package.neighbour_count},
+                                {"rays", package.ray_count},
+                                {"bytes_to_read", package.read_bytes},
+                                {"memory_bytes", package.memory_bytes},
+                                {"passes", package.pass_count},
+                                {"cpu_s", report.rate ? Json(package.cpu_s) : Json()}});
+  }
+  json["frames"] = Json::array();
+  for (const FrameForecast& frame : report.frames) {
+    const FrameDensity& density = frame.density;
+    json["frames"].push_back({{"frame", frame.frame.value},
+                              {"lf_images", frame.image_count},
+                              {"rays", frame.ray_count},
+                              {"cameras_in_lens", density.cameras_in_lens},
+                              {"camera_distance", density.camera_distance_w},
+                              {"uncovered_share", density.uncovered_share},
+                              {"least_aperture", finite(density.least_aperture_w)},
+                              {"depths", {density.depths.near_w, density.depths.far_w}},
+                              {"near_displacement_px", density.near_displacement_px},
+                              {"far_displacement_px", density.far_displacement_px}});
+  }
+  json["warnings"] = DensityWarnings(report, path, facts);
+  return json.dump(2) + "\n";
+}
+
+}  // namespace lf

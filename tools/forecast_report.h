@@ -1,0 +1,33 @@
+// What lfpreprocessor tells: doc/formats/forecast.md.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lf/path/camera_path.h"
+#include "lf/preprocess/preprocess.h"
+
+namespace lf {
+
+struct ForecastFacts {
+  std::string light_field;  // as the user called it
+  std::string output;       // folder of the packages; empty: a plan
+  ImageOrder order = ImageOrder::kShuffle;
+  uint64_t seed = 0;
+  int thread_count = 1;
+  bool are_depths_known = false;  // of the scene
+};
+
+// What a capture is too sparse for, in plain words: what to expect, why, and what would work.
+std::vector<std::string> DensityWarnings(const PreprocessReport& report, const CameraPath& path,
+                                         const ForecastFacts& facts);
+
+// A line per fact, a table of packages, one of some frames, then the warnings.
+std::string ForecastText(const PreprocessReport& report, const CameraPath& path,
+                         const ForecastFacts& facts);
+
+// All packages and all frames; lengths are world units.
+std::string ForecastJson(const PreprocessReport& report, const CameraPath& path,
+                         const ForecastFacts& facts);
+
+}  // namespace lf

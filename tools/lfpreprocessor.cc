@@ -1,0 +1,159 @@
+// lfpreprocessor LIGHTFIELD PATH.yaml -o DIR: packages for many machines, or for another day.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "tools/common/byte_size.h"
+#include "tools/common/interrupt.h"
+#include "tools/common/light_field_argument.h"
+#include "tools/common/program.h"
+#include "tools/common/progress.h"
+#include "tools/forecast_report.h"
+
+#include "lf/path/path_yaml.h"
+#include "lf/pipeline/frame_range.h"
+#include "lf/preprocess/preprocess.h"
+
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  lfpreprocessor capture/ path.yaml --plan               # what will it take, what will it look like?
+  lfpreprocessor capture/ path.yaml -o packages --packages 4
+  lfpreprocessor capture/ path.yaml -o packages --memory 4G
+  lfrenderer packages/package-0000.lfp -o frames         # each on any machine
+
+DIR receives package-0000.lfp, ...: the cameras of a section of the film, and of the light field the
+LF cameras that its frames need, with their pixel rectangles and their order (doc/formats/package.md).
+Rendered from packages, frames have the same bits as those of lfrenderer LIGHTFIELD PATH.yaml.)";
+
+struct Arguments {
+  lf::LightFieldArgument light_field;
+  std::string path, output, frames, memory = "8G", order = "shuffle", balance = "rays";
+  std::string estimator = "auto", lens_weights = "auto";
+  int64_t packages = 0, frames_per_package = 0, max_images = 0;
+  double max_angle_deg = 0;
+  std::vector<double> depths;
+  bool plan = false, overwrite = false;
+};
+
+void AddOptions(CLI::App& app, Arguments& a) {
+  a.light_field.AddTo(app);
+  app.add_option("PATH.yaml", a.path, "Camera path (doc/formats/path.md)")->required();
+  auto* plan = app.add_flag("--plan", a.plan, "Tell what there would be, and write nothing");
+  app.add_option("-o,--output", a.output, "Folder of the packages")
+      ->check(lf::NotEmpty())
+      ->excludes(plan);
+  app.add_flag("--overwrite", a.overwrite, "Replace the packages in DIR");
+  auto* memory = app.add_option("--memory", a.memory,
+                                "As few packages as there may be, the plates of each in so much "
+                                "memory; also what is taken for the forecast");
+  auto* packages = app.add_option("--packages", a.packages, "So many packages; 0: by --memory")
+                       ->check(CLI::Range(0, 1'000'000));
+  app.add_option("--frames-per-package", a.frames_per_package,
+                 "Packages of so many frames; 0: by --memory")
+      ->check(CLI::Range(0, 1'000'000))
+      ->excludes(packages);
+  (void)memory;
+  app.add_option("--balance", a.balance,
+                 "What packages have equally: rays, so that they take equally long; frames")
+      ->check(CLI::IsMember({"rays", "frames"}));
+  app.add_option("--order", a.order,
+                 "Of the LF images: shuffle, by --seed; round-robin, so that all frames fill "
+                 "equally; area, most rays first")
+      ->check(CLI::IsMember({"shuffle", "round-robin", "area"}));
+  app.add_option("--frames", a.frames, "Frames to render: 1-100x2, 7, 3-5,9")
+      ->check(lf::NotEmpty());
+  app.add_option("--max-images", a.max_images,
+                 "Only so many LF images for each frame, the first of the order; 0: all")
+      ->check(lf::WholeNumber());
+  app.add_option("--max-angle", a.max_angle_deg,
+                 "Only LF cameras whose optical axes differ by at most so many degrees from the "
+                 "frame's; 0: all")
+      ->check(CLI::Range(0., 180.));
+  app.add_option("--lens-weights", a.lens_weights,
+                 "Of the render to come, as of lfrenderer; none: packages without the LF cameras "
+                 "beside the lens, which cannot be weighed")
+      ->check(CLI::IsMember({"auto", "none", "area", "hat"}));
+  app.add_option("--estimator", a.estimator, "Of the render to come, for the forecast")
+      ->check(CLI::IsMember({"auto", "nearest", "bilinear"}));
+  app.add_option("--depths", a.depths,
+                 "NEAR FAR of the scene, world units from the LF cameras, for the density report; "
+                 "without it those that the light field tells")
+      ->expected(2)
+      ->check(CLI::PositiveNumber);
+}
+
+lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::CommonOptions& common,
+                                              const lf::CameraPath& path) {
+  lf::PreprocessOptions options;
+  if (!a.plan) {
+    if (a.output.empty()) return lf::UsageError("-o DIR or --plan is needed");
+    options.output_folder = a.output;
+  }
+  options.overwrite = a.overwrite;
+  if (!a.frames.empty()) {
+    LF_ASSIGN_OR_RETURN(options.frames, lf::ParseFrameRange(a.frames, path.frame_count()));
+  }
+  options.order = *lf::ImageOrderOf(a.order);
+  options.seed = common.seed;
+  if (a.max_images > 0) options.max_image_count = static_cast<size_t>(a.max_images);
+  if (a.max_angle_deg > 0) options.max_angle_rad = lf::RadiansFromDegrees(a.max_angle_deg);
+  options.reading.estimator =
+      a.estimator == "nearest" ? lf::Estimator::kNearest : lf::Estimator::kBilinear;
+  options.lens_weights = lf::LensWeights::kNone;
+  for (const lf::LensWeights weights :
+       {lf::LensWeights::kAuto, lf::LensWeights::kArea, lf::LensWeights::kHat})
+    if (a.lens_weights == lf::NameOf(weights)) options.lens_weights = weights;
+  LF_ASSIGN_OR_RETURN(options.memory_bytes, lf::ParseByteSize(a.memory, "--memory"));
+  if (a.packages > 0) options.package_count = static_cast<size_t>(a.packages);
+  if (a.frames_per_package > 0)
+    options.frames_per_package = static_cast<size_t>(a.frames_per_package);
+  options.balance = a.balance == "frames" ? lf::PackageBalance::kFrames : lf::PackageBalance::kRays;
+  if (!a.depths.empty()) {
+    if (!(a.depths[0] < a.depths[1]))
+      return lf::UsageError(
+          fmt::format("--depths {} {}: expected the nearer one first", a.depths[0], a.depths[1]));
+    options.depths = lf::DepthRange{a.depths[0], a.depths[1]};
+  }
+  options.version = lf::Version();
+  options.light_field_name = a.light_field.path;
+  return options;
+}
+
+lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
+  const std::atomic<bool>& interrupted = lf::CatchInterrupts();
+  LF_ASSIGN_OR_RETURN(const lf::LightField light_field, a.light_field.Open());
+  LF_ASSIGN_OR_RETURN(const lf::CameraPath path, lf::ReadPathYaml(a.path, light_field.unit_m));
+  LF_ASSIGN_OR_RETURN(lf::PreprocessOptions options, MakeOptions(a, common, path));
+  options.interrupted = &interrupted;
+  lf::ThreadPool pool(common.threads);
+  lf::ProgressMeter meter(lf::ParseProgressStyle(common.progress), "frames");
+  LF_ASSIGN_OR_RETURN(
+      const lf::PreprocessReport report,
+      lf::Preprocess(light_field, path, options, pool, [&](size_t done, size_t total) {
+        meter.Update(done, total, 2 * done <= total ? "selecting" : "packing");
+      }));
+  const lf::ForecastFacts facts = {a.light_field.path,  a.output,
+                                   options.order,       options.seed,
+                                   pool.thread_count(), options.depths || light_field.depth_range};
+  const std::string text =
+      common.json ? lf::ForecastJson(report, path, facts) : lf::ForecastText(report, path, facts);
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+    return lf::OutputError("cannot write the report to the standard output: is the disk full?");
+  return {};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  lf::Program program("lfpreprocessor",
+                      "Selects what a film needs of a light field, and cuts it into packages for "
+                      "many machines.",
+                      kExamples);
+  AddOptions(program.app(), arguments);
+  program.AddJsonOption("The report as JSON");
+  return program.Run(argc, argv, [&] { return Run(arguments, program.common()); });
+}

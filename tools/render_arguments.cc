@@ -1,0 +1,160 @@
+#include "tools/render_arguments.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <initializer_list>
+
+#include "tools/common/byte_size.h"
+#include "tools/common/duration.h"
+
+#include "lf/core/log.h"
+#include "lf/pipeline/frame_range.h"
+
+namespace lf {
+namespace {
+
+bool IsPackageName(const std::string& name) {
+  return std::filesystem::path(name).extension() == ".lfp";
+}
+
+// Words of the full contract that this version cannot honour are refused, never ignored.
+Result<void> CheckAvailable(const std::string& option, const std::string& value,
+                            std::initializer_list<const char*> available) {
+  for (const char* word : available)
+    if (value == word) return {};
+  return UsageError(fmt::format("{} {} is not available in version {}", option, value, Version()));
+}
+
+}  // namespace
+
+void RenderArguments::AddTo(CLI::App& app) {
+  app.add_option("INPUT", inputs,
+                 "LIGHTFIELD PATH.yaml: a calibration file or its folder (transforms.json, COLMAP, "
+                 "Middlebury, LLFF, AOS; or images with Stanford names) and a camera path "
+                 "(doc/formats/path.md); or PACKAGE...: files of lfpreprocessor")
+      ->required();
+  app.add_option("--lightfield", light_field.path,
+                 "Where the light field of the packages is now, if it has moved")
+      ->check(NotEmpty());
+  light_field.AddOptionsTo(app);
+  app.add_option("-o,--output", output, "Folder of the frames")->required();
+  app.add_option("--frames", frames, "Frames to render: 1-100x2, 7, 3-5,9")->check(NotEmpty());
+  app.add_option("--format", format, "exr, exr-float, png or png16")
+      ->check(CLI::IsMember({"exr", "exr-float", "png", "png16"}));
+  app.add_option("--video", video, "Also write the frames as this mp4 (needs ffmpeg)")
+      ->check(NotEmpty());
+  app.add_flag("--no-contact-sheet", no_contact_sheet, "No contact_sheet.png");
+  app.add_option("--memory", memory, "Bound of the memory used");
+  app.add_option("--max-images", max_images,
+                 "Use only so many LF images for each frame, the first of a shuffled order; 0: all")
+      ->check(WholeNumber());
+  app.add_option(
+      "--dump-every", dump_every,
+      "Write the state so often, such as 30s, 10m, 1h; seldomer if it would take more than "
+      "5 % of the time; 0: at signals only");
+  auto* resume_flag =
+      app.add_flag("--resume", resume,
+                   "Go on with the render in DIR, from the same inputs; finished frames "
+                   "are kept");
+  app.add_flag("--overwrite", overwrite, "Remove an unfinished render in DIR")
+      ->excludes(resume_flag);
+  app.add_option(
+         "--stop-when", stop_when,
+         "samples>=N: a frame is finished when 99 % of the elements that LF images see have "
+         "N rays in every channel")
+      ->check(NotEmpty());
+  app.add_option("--require", require, "samples>=N: exit code 6 if a frame has fewer in the end")
+      ->check(NotEmpty());
+  app.add_flag("--keep-plates", keep_plates,
+               "Also write each frame's sums and counts: frame_0001.plate");
+  app.add_option("--smooth-below", smooth_below,
+                 "Smooth elements with fewer rays than this; empty ones are always filled");
+  app.add_option("--mode", mode, "collect")->check(CLI::IsMember({"collect", "rebin", "hybrid"}));
+  app.add_option(
+         "--estimator", estimator,
+         "bilinear (auto): every element reads each LF image where it looks; nearest: every "
+         "LF pixel goes to one element, and mosaics are not interpolated")
+      ->check(CLI::IsMember({"auto", "nearest", "bilinear"}));
+  app.add_option(
+         "--filter", filter,
+         "Of the estimator bilinear, between LF pixels: nearest, bilinear, bicubic; auto: "
+         "bicubic, but bilinear where an element is as large as nine LF pixels or more; "
+         "mosaic (auto for mosaics): the same, and colours that the sensor recorded count 8 times "
+         "those that were interpolated")
+      ->check(CLI::IsMember({"auto", "nearest", "bilinear", "bicubic", "mosaic"}));
+  app.add_option(
+         "--lens-weights", lens_weights,
+         "none: LF images count alike; area: as the part of the lens that is nearest to each; hat: "
+         "interpolated, for small lenses and pinholes; auto: area, and hat as the lens closes")
+      ->check(CLI::IsMember({"auto", "none", "area", "hat"}));
+  app.add_option("--back-end", back_end,
+                 "fast, or reference: the literal formulas, one ray at a time")
+      ->check(CLI::IsMember({"fast", "reference"}));
+}
+
+bool RenderArguments::HasPackages() const {
+  return std::all_of(inputs.begin(), inputs.end(), IsPackageName);
+}
+
+Result<void> RenderArguments::Check(bool seed_given) const {
+  LF_RETURN_IF_ERROR(CheckAvailable("--mode", mode, {"collect"}));
+  if (HasPackages()) {
+    if (seed_given)
+      return UsageError("--seed: packages have the order that they were made with: leave it out");
+    return {};
+  }
+  if (std::any_of(inputs.begin(), inputs.end(), IsPackageName))
+    return UsageError("expected LIGHTFIELD PATH.yaml, or packages alone: PACKAGE...");
+  if (inputs.size() != 2)
+    return UsageError(fmt::format("expected LIGHTFIELD PATH.yaml, or PACKAGE...; found {} {}",
+                                  inputs.size(), inputs.size() == 1 ? "word" : "words"));
+  if (!light_field.path.empty())
+    return UsageError("--lightfield is for packages: here it is the first word");
+  return {};
+}
+
+Result<RenderOptions> RenderArguments::MakeOptions(const CommonOptions& common, BayerPattern bayer,
+                                                   size_t frame_count) const {
+  RenderOptions options;
+  options.output_folder = output;
+  if (!frames.empty()) {
+    LF_ASSIGN_OR_RETURN(options.frames, ParseFrameRange(frames, frame_count));
+  }
+  options.format = *ParseFrameFormat(format);
+  if (!video.empty()) options.video = video;
+  options.contact_sheet = !no_contact_sheet;
+  if (max_images > 0) options.max_image_count = static_cast<size_t>(max_images);
+  options.smooth_below = smooth_below;
+  LF_ASSIGN_OR_RETURN(options.memory_bytes, ParseByteSize(memory, "--memory"));
+  options.strict = common.strict;
+  options.reading.estimator = estimator == "nearest" ? Estimator::kNearest : Estimator::kBilinear;
+  for (const PixelFilter known :
+       {PixelFilter::kNearest, PixelFilter::kBilinear, PixelFilter::kBicubic, PixelFilter::kMosaic})
+    if (filter == NameOf(known)) options.reading.filter = known;
+  for (const LensWeights weights : {LensWeights::kAuto, LensWeights::kArea, LensWeights::kHat})
+    if (lens_weights == NameOf(weights)) options.lens_weights = weights;
+  if (back_end == "reference") options.back_end = CollectBackEnd::kReference;
+  options.version = Version();
+  LF_ASSIGN_OR_RETURN(options.dump_every_s, ParseDuration(dump_every, "--dump-every"));
+  if (!stop_when.empty()) {
+    LF_ASSIGN_OR_RETURN(options.stop_at_samples, ParseSampleRule(stop_when, "--stop-when"));
+  }
+  if (!require.empty()) {
+    LF_ASSIGN_OR_RETURN(options.require_samples, ParseSampleRule(require, "--require"));
+  }
+  if (options.lens_weights == LensWeights::kAuto && options.CountsRays()) {
+    options.lens_weights = LensWeights::kNone;
+    LogInfo(
+        "--lens-weights auto: none, since --stop-when, --require and --smooth-below count rays");
+  }
+  if (options.reading.filter == PixelFilter::kAuto && !options.CountsRays() &&
+      bayer != BayerPattern::kNone)
+    options.reading.filter = PixelFilter::kMosaic;
+  options.resume = resume;
+  options.overwrite = overwrite;
+  options.keep_plates = keep_plates;
+  return options;
+}
+
+}  // namespace lf

@@ -1,0 +1,44 @@
+// The command line of lfrenderer.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/common/light_field_argument.h"
+#include "tools/common/program.h"
+
+#include "lf/capture/radiance.h"
+#include "lf/core/result.h"
+#include "lf/pipeline/render.h"
+
+namespace lf {
+
+struct RenderArguments {
+  std::vector<std::string> inputs;  // LIGHTFIELD PATH.yaml, or PACKAGE...
+  LightFieldArgument light_field;   // with packages: where theirs is, or nothing
+  std::string output, video, frames, memory = "8G", format = "exr", mode = "collect";
+  std::string estimator = "auto", filter = "auto", lens_weights = "auto", back_end = "fast";
+  std::string dump_every = "30s", stop_when, require;
+  int64_t max_images = 0;
+  uint32_t smooth_below = 0;
+  bool no_contact_sheet = false, resume = false, overwrite = false, keep_plates = false;
+
+  void AddTo(CLI::App& app);
+
+  // Whether all inputs are packages: files that end in .lfp.
+  bool HasPackages() const;
+  // What cannot be together, or is not in this version; to be asked first.
+  //   seed_given  --seed, which packages have decided about
+  Result<void> Check(bool seed_given) const;
+
+  //   bayer        of the light field
+  //   frame_count  of the film
+  Result<RenderOptions> MakeOptions(const CommonOptions& common, BayerPattern bayer,
+                                    size_t frame_count) const;
+};
+
+}  // namespace lf
