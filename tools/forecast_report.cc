@@ -106,8 +106,8 @@ std::string DepthsInOne(const RenderCamera& camera, const FrameDensity& density)
       kDoubleEdge_px / (camera.pinhole.intrinsics.fx_px * density.camera_distance_w);
   const double focus = 1 / camera.focus_distance_w;
   const std::string near = Length(1 / (focus + step), camera.unit_m);
-  if (focus <= step) return fmt::format("from {} on", near);
-  return fmt::format("from {} to {}", near, Length(1 / (focus - step), camera.unit_m));
+  if (focus <= step) return fmt::format("behind {}", near);
+  return fmt::format("between {} and {}", near, Length(1 / (focus - step), camera.unit_m));
 }
 
 }  // namespace
@@ -126,14 +126,13 @@ std::vector<std::string> DensityWarnings(const PreprocessReport& report, const C
     warnings.push_back(fmt::format(
         "frame {}: expect double edges of {:.0f} px at {}{}; LF cameras are {} apart in the lens, "
         "{} "
-        "needed. What would work: {} without double edges are depths {}; frames of {} x {} "
-        "elements "
-        "instead of {} x {}; or a capture {:.0f} times as dense along each axis",
+        "needed. What would work: a scene that lies {}; frames of {} x {} elements instead of {} x "
+        "{}; or a capture {:.0f} times as dense along each axis",
         sparse.frame.value, most_px, Length(density.DepthOfMost_w(), path.unit_m),
         facts.are_depths_known ? "" : " (depths of the scene are not known: --depths tells them)",
         Length(density.camera_distance_w, path.unit_m),
-        Length(density.camera_distance_w / most_px, path.unit_m), "as it is,",
-        DepthsInOne(camera, density), std::max(1, static_cast<int>(plate.width_px * scale)),
+        Length(density.camera_distance_w / most_px, path.unit_m), DepthsInOne(camera, density),
+        std::max(1, static_cast<int>(plate.width_px * scale)),
         std::max(1, static_cast<int>(plate.height_px * scale)), plate.width_px, plate.height_px,
         std::ceil(most_px / kDoubleEdge_px)));
   }
@@ -233,8 +232,11 @@ std::string ForecastJson(const PreprocessReport& report, const CameraPath& path,
                                     {"cpu_s_per_ray", report.rate->collect_s},
                                     {"cpu_s_per_frame", report.rate->finish_s}}
                              : Json();
-  json["spent_s"] = {
-      {"index", report.index_s}, {"selection", report.select_s}, {"writing", report.write_s}};
+  json["spent_s"] = {{"reading", facts.read_s},
+                     {"index", report.index_s},
+                     {"selection", report.select_s},
+                     {"density", report.density_s},
+                     {"writing", report.write_s}};
   json["packages"] = Json::array();
   for (const PackageForecast& package : report.packages) {
     Json frames = Json::array();

@@ -1,6 +1,7 @@
 // lfpreprocessor LIGHTFIELD PATH.yaml -o DIR: packages for many machines, or for another day.
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -124,7 +125,10 @@ lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::Comm
 
 lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   const std::atomic<bool>& interrupted = lf::CatchInterrupts();
+  const auto start = std::chrono::steady_clock::now();
   LF_ASSIGN_OR_RETURN(const lf::LightField light_field, a.light_field.Open());
+  const double read_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   LF_ASSIGN_OR_RETURN(const lf::CameraPath path, lf::ReadPathYaml(a.path, light_field.unit_m));
   LF_ASSIGN_OR_RETURN(lf::PreprocessOptions options, MakeOptions(a, common, path));
   options.interrupted = &interrupted;
@@ -135,9 +139,14 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
       lf::Preprocess(light_field, path, options, pool, [&](size_t done, size_t total) {
         meter.Update(done, total, 2 * done <= total ? "selecting" : "packing");
       }));
-  const lf::ForecastFacts facts = {a.light_field.path,  a.output,
-                                   options.order,       options.seed,
-                                   pool.thread_count(), options.depths || light_field.depth_range};
+  lf::ForecastFacts facts;
+  facts.light_field = a.light_field.path;
+  facts.output = a.output;
+  facts.order = options.order;
+  facts.seed = options.seed;
+  facts.thread_count = pool.thread_count();
+  facts.read_s = read_s;
+  facts.are_depths_known = options.depths || light_field.depth_range;
   const std::string text =
       common.json ? lf::ForecastJson(report, path, facts) : lf::ForecastText(report, path, facts);
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)

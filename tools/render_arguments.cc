@@ -88,6 +88,10 @@ void RenderArguments::AddTo(CLI::App& app) {
          "none: LF images count alike; area: as the part of the lens that is nearest to each; hat: "
          "interpolated, for small lenses and pinholes; auto: area, and hat as the lens closes")
       ->check(CLI::IsMember({"auto", "none", "area", "hat"}));
+  app.add_option("--rectangles", rectangles,
+                 "off: read and try all pixels of every LF image that may contribute, to measure "
+                 "what their rectangles save; the same bits")
+      ->check(CLI::IsMember({"on", "off"}));
   app.add_option("--back-end", back_end,
                  "fast, or reference: the literal formulas, one ray at a time")
       ->check(CLI::IsMember({"fast", "reference"}));
@@ -128,6 +132,7 @@ Result<RenderOptions> RenderArguments::MakeOptions(const CommonOptions& common, 
   options.smooth_below = smooth_below;
   LF_ASSIGN_OR_RETURN(options.memory_bytes, ParseByteSize(memory, "--memory"));
   options.strict = common.strict;
+  options.whole_images = rectangles == "off";
   options.reading.estimator = estimator == "nearest" ? Estimator::kNearest : Estimator::kBilinear;
   for (const PixelFilter known :
        {PixelFilter::kNearest, PixelFilter::kBilinear, PixelFilter::kBicubic, PixelFilter::kMosaic})

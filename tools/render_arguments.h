@@ -22,7 +22,7 @@ struct RenderArguments {
   LightFieldArgument light_field;   // with packages: where theirs is, or nothing
   std::string output, video, frames, memory = "8G", format = "exr", mode = "collect";
   std::string estimator = "auto", filter = "auto", lens_weights = "auto", back_end = "fast";
-  std::string dump_every = "30s", stop_when, require;
+  std::string rectangles = "on", dump_every = "30s", stop_when, require;
   int64_t max_images = 0;
   uint32_t smooth_below = 0;
   bool no_contact_sheet = false, resume = false, overwrite = false, keep_plates = false;

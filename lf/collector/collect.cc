@@ -51,7 +51,7 @@ class FrameCollector::State {
         options_(options),
         pool_(pool),
         collector_(light_field, frames, options.reading, options.back_end, options.weights,
-                   options.plan_bytes, pool, plates),
+                   options.plan_bytes, options.whole_images, pool, plates),
         places_(places.begin(), places.end()),
         progress_(frames.size()),
         is_stopped_(frames.size(), false) {

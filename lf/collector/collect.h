@@ -41,6 +41,7 @@ struct CollectOptions {
   // frame alike. 0: no rule, batches are not cut. Else a multiple of kDecisionPlaces.
   uint32_t decision_places = kDecisionPlaces;
   FrameImageWeights weights;
+  bool whole_images = false;  // as the order was selected (SelectOptions)
   // All places are below it; 0: they are those of the light field. More of a package.
   uint32_t place_end = 0;
   bool strict = false;                             // a broken LF image is an error

@@ -58,14 +58,15 @@ size_t PlanBytes(Estimator estimator, bool has_distortion, int image_width, int 
 
 BatchCollector::BatchCollector(const LightField& light_field, std::span<const RenderCamera> frames,
                                const RayReading& reading, CollectBackEnd back_end,
-                               FrameImageWeights weights, size_t plan_bytes, ThreadPool& pool,
-                               std::vector<SensorPlate>* plates)
+                               FrameImageWeights weights, size_t plan_bytes, bool whole_images,
+                               ThreadPool& pool, std::vector<SensorPlate>* plates)
     : light_field_(light_field),
       frames_(frames),
       reading_(reading),
       back_end_(back_end),
       weights_(std::move(weights)),
       plan_bytes_(plan_bytes),
+      whole_images_(whole_images),
       pool_(pool),
       plates_(*plates) {
   LF_CHECK(plates->size() == frames.size());
@@ -101,11 +102,13 @@ void BatchCollector::Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>
 }
 
 PixelRect BatchCollector::RectOf(const BatchImage& image, const RenderCamera& frame) const {
+  if (whole_images_) return image.pixels.rect;
   return Intersection(image.overlap->Rect(frame), image.pixels.rect);
 }
 
 PixelRect BatchCollector::RectOf(LfImageId id, std::span<const size_t> frames) const {
   const PinholeCamera camera = light_field_.Camera(id);
+  if (whole_images_) return {0, 0, camera.intrinsics.width_px, camera.intrinsics.height_px};
   std::vector<IdealCell> cells;
   if (camera.intrinsics.has_distortion()) cells = MakeIdealCells(camera.intrinsics);
   const ImageOverlap overlap(camera, cells, ReachOf(reading_.estimator));
@@ -154,7 +157,7 @@ std::span<BatchFrame> BatchCollector::FramesThatMayTake(const std::vector<BatchI
   ForEachTimed(frames.size(), [&](size_t f) {
     frames[f].is_done = std::none_of(batch.begin(), batch.end(), [&](const BatchImage& image) {
       return frames[f].places.Holds(image.place) &&
-             !image.overlap->PlainlyMisses(frames_[frames[f].frame]);
+             (whole_images_ || !image.overlap->PlainlyMisses(frames_[frames[f].frame]));
     });
   });
   const auto rest = std::stable_partition(frames.begin(), frames.end(),

@@ -87,10 +87,12 @@ using FrameImageWeights = std::function<RayWeights(size_t frame, LfImageId id)>;
 
 class BatchCollector {
  public:
-  // plan_bytes  of frames planned together; one may take more
+  // plan_bytes    of frames planned together; one may take more
+  // whole_images  instead of their rectangles
   BatchCollector(const LightField& light_field, std::span<const RenderCamera> frames,
                  const RayReading& reading, CollectBackEnd back_end, FrameImageWeights weights,
-                 size_t plan_bytes, ThreadPool& pool, std::vector<SensorPlate>* plates);
+                 size_t plan_bytes, bool whole_images, ThreadPool& pool,
+                 std::vector<SensorPlate>* plates);
 
   // Adds the images to the plates of `frames`, whose order may change, and runs the other items.
   // Once *interrupted is true no further frame is begun, and those begun are finished; other items
@@ -131,6 +133,7 @@ class BatchCollector {
   CollectBackEnd back_end_;
   FrameImageWeights weights_;
   size_t plan_bytes_;
+  bool whole_images_;
   ThreadPool& pool_;
   std::vector<SensorPlate>& plates_;
   std::vector<std::vector<PlateTile>> tiles_;

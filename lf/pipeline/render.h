@@ -47,6 +47,7 @@ struct RenderOptions {
   uint32_t smooth_below = 0;                // sequence/develop.h
   size_t memory_bytes = size_t{8} << 30;
   bool strict = false;
+  bool whole_images = false;  // SelectOptions; the same bits, but slower
   // With kBilinear the light field wants MakeRoomForUndershoot() (capture/radiance.h). Not kMosaic
   // where CountsRays(), for its rays count more than once.
   RayReading reading;

@@ -73,7 +73,9 @@ Result<void> RenderPass::Prepare() {
     frames_[f].earlier_rays = start.rays;
     frames_[f].saved_places = start.places_done;
   }
-  images_ = SelectImages(job_.index, cameras_, job_.Select(), job_.pool, places);
+  SelectOptions select = job_.Select();
+  select.whole_images = job_.options.whole_images;
+  images_ = SelectImages(job_.index, cameras_, select, job_.pool, places);
   DropUnweighted();
   if (job_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
   job_.totals.selected_image_count = std::max(job_.totals.selected_image_count, images_.size());
@@ -84,6 +86,7 @@ Result<void> RenderPass::Prepare() {
   collect.batch_image_count = static_cast<int>(job_.plan.batch_image_count);
   collect.plan_bytes = job_.plan.plan_bytes;
   collect.strict = job_.options.strict;
+  collect.whole_images = job_.options.whole_images;
   if (job_.options.signals != nullptr) collect.interrupted = &job_.options.signals->attention;
   collect.place_end = job_.index.place_end();
   if (job_.options.lens_weights != LensWeights::kNone || job_.package.choices.max_angle_rad)

@@ -80,6 +80,9 @@ FrameDensity DensityOf(const ImageIndex& index, const RenderCamera& frame,
       density.least_aperture_w =
           std::max(density.least_aperture_w,
                    2 * NearestRay(index, around, frame, x * plate.width_px, y * plate.height_px));
+  constexpr double kRounding = 1e-6;
+  if (density.least_aperture_w < kRounding * density.camera_distance_w)
+    density.least_aperture_w = 0;
   const double focus_w = frame.focus_distance_w;
   density.depths = depths && !around.empty() ? DepthsOfFrame(*depths, index, around, frame)
                                              : DepthRange{kBefore * focus_w, kBehind * focus_w};

@@ -31,6 +31,7 @@ FrameNeeds NeedsOf(const ImageIndex& index, const RenderCamera& frame, const Nee
     needs.images.push_back({image.id, image.rect});
     counted.push_back(image.id);
   }
+  if (options.lens_weights == LensWeights::kNone) return needs;
   // Those without weight were selected all the same, and count towards limits.
   std::vector<LfImageId> all = lens.near();
   all.insert(all.end(), selected.begin(), selected.end());

@@ -172,6 +172,8 @@ Result<void> Preprocessor::ForecastFrames() {
     pairs_.push_back(needs.images.size() + needs.neighbours.size());
     report_.frames.push_back({frame, needs.images.size(), needs.RayCount(), {}});
   }
+  report_.select_s += SecondsSince(start);
+  const auto density_start = std::chrono::steady_clock::now();
   // One frame costs little, but asks one thread only.
   pool_.ForEach(frames_.size(), [this](size_t f) {
     if (options_.interrupted != nullptr && *options_.interrupted) return;
@@ -179,7 +181,7 @@ Result<void> Preprocessor::ForecastFrames() {
         DensityOf(*index_, path_.Camera(frames_[f]),
                   options_.depths ? options_.depths : light_field_.depth_range);
   });
-  report_.select_s += SecondsSince(start);
+  report_.density_s = SecondsSince(density_start);
   if (std::all_of(report_.frames.begin(), report_.frames.end(),
                   [](const FrameForecast& frame) { return frame.image_count == 0; }))
     return InputError(fmt::format(

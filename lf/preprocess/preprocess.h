@@ -80,7 +80,8 @@ struct PreprocessReport {
   std::optional<RenderRate> rate;
   std::string rate_error;  // why there is none
   double index_s = 0;      // spent on the octree and the order
-  double select_s = 0;
+  double select_s = 0;     // on what frames need, twice: to divide them, and to pack them
+  double density_s = 0;
   double write_s = 0;
 };
 

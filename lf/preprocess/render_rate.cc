@@ -17,14 +17,17 @@ namespace {
 
 constexpr size_t kSampleImages = 16;
 
-// As they would be collected: with the places of a small order of their own.
-std::vector<SelectedImage> SampleOf(const FrameNeeds& needs) {
+// Of those that are there, as they would be collected: with the places of a small order of their
+// own.
+std::vector<SelectedImage> SampleOf(const FrameNeeds& needs, const LfImageStore& store) {
+  constexpr size_t kMostAsked = 256;
   std::vector<SelectedImage> sample;
-  const size_t count = std::min(kSampleImages, needs.images.size());
-  for (size_t i = 0; i < count; ++i) {
+  for (size_t i = 0; i < std::min(kMostAsked, needs.images.size()); ++i) {
     const FrameNeeds::Image& image = needs.images[i];
+    if (!store.IsThere(image.id)) continue;
     sample.push_back({image.id, static_cast<uint32_t>(i), image.rect, 1,
                       static_cast<uint64_t>(image.rect.pixel_count())});
+    if (sample.size() == kSampleImages) break;
   }
   return sample;
 }
@@ -40,16 +43,20 @@ Result<RenderRate> MeasureRate(const LightField& light_field, const RenderCamera
   const Intrinsics& plate = frame.pinhole.intrinsics;
   std::vector<SensorPlate> plates;
   plates.emplace_back(plate.width_px, plate.height_px);
-  const std::vector<SelectedImage> sample = SampleOf(needs);
+  const std::vector<SelectedImage> sample = SampleOf(needs, store);
+  if (sample.empty())
+    return InputError(
+        needs.images.empty()
+            ? "no LF image is needed"
+            : fmt::format("{}: not there, nor any other of the LF images that were looked for",
+                          light_field.ImagePath(needs.images.front().id).string()));
   CollectOptions options;
   options.reading = reading;
   LF_ASSIGN_OR_RETURN(
       const CollectStatistics statistics,
       Collect(light_field, store, std::span(&frame, 1), sample, options, pool, &plates, nullptr));
   const size_t loaded = sample.size() - statistics.skipped.size();
-  if (loaded == 0)
-    return InputError(statistics.skipped.empty() ? "no LF image is needed"
-                                                 : statistics.skipped.front().reason);
+  if (loaded == 0) return InputError(statistics.skipped.front().reason);
   RenderRate rate;
   rate.load_s = statistics.times.load_cpu_s / static_cast<double>(loaded);
   rate.collect_s = statistics.times.collect_cpu_s /

@@ -33,6 +33,8 @@ class CellsOfLast {
   std::vector<IdealCell> cells_;
 };
 
+PixelRect WholeImage(const Intrinsics& k) { return {0, 0, k.width_px, k.height_px}; }
+
 // A leaf that a frame may take, of some frames.
 struct Visit {
   uint32_t leaf;
@@ -94,8 +96,11 @@ class Selector {
         if (!places_.empty() && !places_[f].Holds(image.place)) continue;
         if (visit.all_inside == 0 && regions_[f].Misses(camera.CentreWorld())) continue;
         if (!IsWithinAngle(lf_camera, outlines_[f].camera, options_)) continue;
-        if (!overlap) overlap.emplace(camera, cells->Of(light_field, id), options_.reach);
-        const PixelRect rect = overlap->Rect(outlines_[f]);
+        PixelRect rect = WholeImage(camera.intrinsics);
+        if (!options_.whole_images) {
+          if (!overlap) overlap.emplace(camera, cells->Of(light_field, id), options_.reach);
+          rect = overlap->Rect(outlines_[f]);
+        }
         if (rect.empty()) continue;
         image.rect = Bounds(image.rect, rect);
         image.frame_count += 1;

@@ -37,6 +37,9 @@ struct SelectedImage {
 
 struct SelectOptions {
   PixelReach reach = PixelReach::kOwn;  // of the estimator
+  // Every LF image that may contribute is taken whole, without looking for rectangles: for
+  // measuring what these are worth.
+  bool whole_images = false;
   // LF cameras whose optical axes differ more from the frame's are left out, though they may have
   // rays: in the thesis those that look at the render camera, here a choice of the user's. None: no
   // LF camera is.

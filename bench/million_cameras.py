@@ -1,0 +1,146 @@
+#!/usr/bin/python3
+"""Times lfpreprocessor on a million LF cameras: the band of the thesis, and films along a tenth of it.
+
+usage: bench/million_cameras.py BUILD_DIR [--counts 10000,100000,1000000] [--frames 30,480,900]
+                                [--runs 5] [--name NAME] [--write PAGE]
+       bench/million_cameras.py --again JSON [--write PAGE]
+
+LF cameras stand on half a circle of 1 m, within 1 cm of height (thesis 5.1), and look at its middle; there
+are no images. A lens of 30 mm sees 1 % of them, one of 150 mm 5 %. Frame counts are of the largest light
+field; smaller ones film the first of them. Packages are of at most 64 frames, without lens weights. The
+figures are medians over the runs.
+"""
+import argparse
+import json
+import math
+import os
+import pathlib
+import statistics
+import subprocess
+import tempfile
+
+import numpy as np
+
+import record as results
+
+RADIUS_M, HEIGHT_M = 1, 0.01
+FRAMES_PER_PACKAGE = 64
+
+
+def band(count, path):
+    """transforms.json: camera-to-world, OpenGL axes"""
+    random = np.random.default_rng(1)
+    angle = math.pi * random.random(count)
+    lift = HEIGHT_M * (random.random(count) - 0.5)
+    with path.open("w") as out:
+        out.write('{"fl_x": 2100, "fl_y": 2100, "cx": 1024, "cy": 1024, "w": 2048, "h": 2048,\n'
+                  '"frames": [\n')
+        for i in range(count):
+            centre = np.array([RADIUS_M * math.cos(angle[i]), lift[i], RADIUS_M * math.sin(angle[i])])
+            back = centre / np.linalg.norm(centre)
+            right = np.array([back[2], 0, -back[0]])
+            right /= np.linalg.norm(right)
+            rows = np.column_stack([right, np.cross(back, right), back, centre]).tolist()
+            out.write(f'{{"file_path": "images/{i:07}.png", "transform_matrix": '
+                      f'{rows + [[0, 0, 0, 1]]}}}{"," if i + 1 < count else ""}\n')
+        out.write("]}\n")
+
+
+def path_yaml(frames, aperture_mm):
+    keys = []
+    for i in range(33):
+        angle = math.pi * (0.45 + 0.1 * i / 32)
+        keys.append(f"{{time: {i / 32 * (frames - 1) / 30:.6f}, value: "
+                    f"[{RADIUS_M * math.cos(angle):.9f}, 0, {RADIUS_M * math.sin(angle):.9f}]}}")
+    return f"""format: lfpath 1
+fps: 30
+frames: {frames}
+resolution: [1920, 1080]
+camera: {{sensor_width_mm: 36, focal_length_mm: 37.5, position: [0, 0, {RADIUS_M}],
+  look_at: [0, 0, 0], up: [0, 1, 0]}}
+lens: {{aperture_diameter_mm: {aperture_mm}, focus_distance: {RADIUS_M}}}
+keyframes: {{position: [{", ".join(keys)}]}}
+"""
+
+
+def preprocess(build, field, path, out):
+    """One run: the report, and what the system says."""
+    process = subprocess.Popen(
+        [build / "bin/lfpreprocessor", field, path, "-o", out, "--overwrite", "--frames-per-package",
+         str(FRAMES_PER_PACKAGE), "--lens-weights", "none", "--json", "-q"],
+        stdout=subprocess.PIPE)
+    text = process.stdout.read()
+    _, status, usage = os.wait4(process.pid, 0)
+    if status != 0:
+        raise SystemExit(f"lfpreprocessor failed on {field}")
+    return json.loads(text), usage
+
+
+def measure(build, folder, count, frames, aperture_mm, runs):
+    path = folder / "path.yaml"
+    path.write_text(path_yaml(frames, aperture_mm))
+    out = folder / "packages"
+    spent, peaks = [], []
+    for _ in range(runs):
+        report, usage = preprocess(build, folder / f"{count}.json", path, out)
+        spent.append(report["spent_s"])
+        peaks.append(usage.ru_maxrss)
+    seen = sum(frame["lf_images"] for frame in report["frames"])
+    row = {"cameras": count, "frames": frames, "aperture_mm": aperture_mm,
+           "share": seen / count / frames, "packages": len(report["packages"]),
+           "package_bytes": sum(file.stat().st_size for file in out.glob("*.lfp")),
+           "peak_kib": statistics.median(peaks)}
+    for key in spent[0]:
+        row[f"{key}_s"] = statistics.median(run[key] for run in spent)
+    return row
+
+
+def table(record):
+    lines = ["| LF cameras | frames | share seen | calibration | octree | selection | a frame | density "
+             "| writing | packages | peak MiB |", "|" + " --- |" * 11]
+    for row in record["rows"]:
+        # Frames are asked twice: to divide them, and to pack them.
+        frame_ms = row["selection_s"] / 2 / row["frames"] * 1e3
+        lines.append(
+            f"| {row['cameras']:,} | {row['frames']} | {100 * row['share']:.2g} % | "
+            f"{row['reading_s']:.2f} s | {row['index_s']:.2f} s | {row['selection_s']:.2f} s | "
+            f"{frame_ms:.2f} ms | {row['density_s']:.2f} s | {row['writing_s']:.2f} s | "
+            f"{row['packages']}, {row['package_bytes'] / 2**20:.0f} MiB | "
+            f"{row['peak_kib'] / 1024:.0f} |")
+    return lines
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=pathlib.Path, nargs="?")
+    parser.add_argument("--counts", default="10000,100000,1000000")
+    parser.add_argument("--frames", default="30,480,900")
+    parser.add_argument("--runs", type=int, default=5)
+    results.add_options(parser)
+    arguments = parser.parse_args()
+    if arguments.again:
+        record = json.loads(arguments.again.read_text())
+    elif arguments.build:
+        build = arguments.build.resolve()
+        counts = list(map(int, arguments.counts.split(",")))
+        frames = list(map(int, arguments.frames.split(",")))
+        record = results.context()
+        record.update(runs=arguments.runs, rows=[])
+        with tempfile.TemporaryDirectory() as temporary:
+            folder = pathlib.Path(temporary)
+            for count in counts:
+                band(count, folder / f"{count}.json")
+                for n in frames if count == counts[-1] else frames[:1]:
+                    record["rows"].append(measure(build, folder, count, n, 30, arguments.runs))
+            record["rows"].append(
+                measure(build, folder, counts[-1], frames[0], 150, arguments.runs))
+    else:
+        parser.error("BUILD_DIR or --again is needed")
+    text = "\n".join([results.sentence(record) + f" All threads; medians of {record['runs']}.", ""] +
+                     table(record)) + "\n"
+    results.publish(arguments, "million_cameras.py", record, text)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,101 @@
+#!/usr/bin/python3
+"""Draws Figure 5.5 of the thesis: which share of the pixels that are tried are rays that a plate accepts.
+
+usage: bench/ray_usage.py BUILD_DIR [--density 1] [--size 480x320] [--write PAGE]
+
+The movement `short` of Table 5.1 through an LF camera grid as dense as the thesis's (calibration only: the
+law's spans tell, without pixels). LF images are ordered by their usage, accepted / tried, over all frames.
+Writes doc/images/ray_usage.svg, and with --write the figures into PAGE.
+"""
+import argparse
+import csv
+import math
+import pathlib
+import subprocess
+import tempfile
+
+import record as results
+from workloads import PER_MM2, SIDE_MM, WORKLOADS, DISTANCE_M, path_yaml
+
+PICTURE = results.HERE.parent / "doc/images/ray_usage.svg"
+WIDTH, HEIGHT, MARGIN = 420, 260, 48
+
+
+def usage(build, density, size):
+    """[(whole, rectangles, accepted)] of every LF image that the widened frustum holds"""
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = pathlib.Path(temporary)
+        spacing_m = 0.001 / math.sqrt(density * PER_MM2)
+        count = round(SIDE_MM ** 2 * PER_MM2 * density)
+        subprocess.run([build / "bin/lfsynth", "chart", "-o", folder / "field", "--count", str(count),
+                        "--size", size, "--spacing", f"{spacing_m:.8f}", "--distance", str(DISTANCE_M),
+                        "--calibration-only", "-q"], check=True)
+        path = folder / "short.yaml"
+        path.write_text(path_yaml(WORKLOADS["short"], [int(n) // 2 for n in size.split("x")]))
+        text = subprocess.run([build / "bench/lf_ray_usage", folder / "field", path], check=True,
+                              capture_output=True, text=True).stdout
+    return [tuple(map(int, row)) for row in list(csv.reader(text.splitlines()))[1:]]
+
+
+def panel(left, title, shares):
+    """one curve: LF images by falling usage"""
+    across = lambda i: left + MARGIN + i / max(1, len(shares) - 1) * (WIDTH - 2 * MARGIN)
+    down = lambda share: MARGIN + (1 - share) * (HEIGHT - 2 * MARGIN)
+    step = max(1, len(shares) // 400)
+    points = " ".join(f"{across(i):.1f},{down(shares[i]):.1f}" for i in range(0, len(shares), step))
+    corner = f"{across(0):.1f},{down(0):.1f}"
+    end = f"{across(len(shares) - 1):.1f},{down(0):.1f}"
+    lines = [f'<text x="{left + WIDTH / 2}" y="24" text-anchor="middle" font-weight="bold">{title}</text>',
+             f'<polygon points="{corner} {points} {end}" fill="#7aa6c2" stroke="#30566e"/>']
+    for share in (0, 0.25, 0.5, 0.75, 1):
+        y = down(share)
+        lines.append(f'<line x1="{across(0)}" x2="{across(len(shares) - 1)}" y1="{y}" y2="{y}" '
+                     'stroke="#888" stroke-width="0.4"/>')
+        lines.append(f'<text x="{across(0) - 6}" y="{y + 4}" text-anchor="end">{share:g}</text>')
+    lines.append(f'<text x="{across(0)}" y="{HEIGHT - MARGIN + 18}">1</text>')
+    lines.append(f'<text x="{left + WIDTH - MARGIN}" y="{HEIGHT - MARGIN + 18}" text-anchor="end">'
+                 f'{len(shares)}</text>')
+    lines.append(f'<text x="{left + WIDTH / 2}" y="{HEIGHT - 10}" text-anchor="middle">LF images, ordered '
+                 'by their usage</text>')
+    return lines
+
+
+def draw(images):
+    by_rect = sorted((a / r for _, r, a in images if r > 0), reverse=True)
+    by_whole = sorted((a / w for w, _, a in images), reverse=True)
+    lines = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{2 * WIDTH}" height="{HEIGHT}" '
+             'font-family="sans-serif" font-size="12">',
+             f'<rect width="{2 * WIDTH}" height="{HEIGHT}" fill="white"/>']
+    lines += panel(0, "tried by rectangles: accepted / tried", by_rect)
+    lines += panel(WIDTH, "tried as whole LF images: accepted / tried", by_whole)
+    PICTURE.write_text("\n".join(lines + ["</svg>"]) + "\n")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("--density", type=float, default=1)
+    parser.add_argument("--size", default="480x320")
+    parser.add_argument("--write", type=pathlib.Path, metavar="PAGE")
+    parser.set_defaults(name=None)
+    arguments = parser.parse_args()
+    images = usage(arguments.build.resolve(), arguments.density, arguments.size)
+    draw(images)
+    selected = [image for image in images if image[1] > 0]
+    empty = sum(1 for _, _, accepted in selected if accepted == 0)
+    whole, rectangles, accepted = (sum(image[k] for image in images) for k in range(3))
+    record = results.context()
+    text = (f"{results.sentence(record)} LF images {arguments.size}.\n\n"
+            "| | LF images | of them without a ray | pixels tried | accepted |\n"
+            "| --- | --- | --- | --- | --- |\n"
+            f"| widened frustum, whole LF images | {len(images)} | "
+            f"{sum(1 for image in images if image[2] == 0)} | {whole / 1e9:.2f} G | "
+            f"{100 * accepted / whole:.1f} % |\n"
+            f"| rectangles | {len(selected)} | {empty} | {rectangles / 1e9:.2f} G | "
+            f"{100 * accepted / rectangles:.1f} % |\n")
+    results.publish(arguments, "ray_usage.py", record, text)
+
+
+if __name__ == "__main__":
+    main()
