@@ -7,10 +7,12 @@ usage: bench/packages.py BUILD_DIR [--density 0.03] [--size 480x320] [--runs 5] 
 
 The movement `long` is cut into packages by rays and by frames, and each package is rendered by itself,
 with all threads: the longest decides when a film on so many machines is ready. `short` is rendered with
-rectangles and without. The frames of all runs are compared: they must have the same bits.
+rectangles and without, by a lens that sees as much as the LF cameras and by one of twice their focal length,
+without lens weights. The frames of all runs are compared: they must have the same bits.
 """
 import argparse
 import hashlib
+import itertools
 import json
 import pathlib
 import statistics
@@ -35,6 +37,8 @@ def digest(folder):
 
 
 def render(build, inputs, out, *options):
+    for report in out.glob("report*.json"):  # of the run before, which is told otherwise
+        report.unlink()
     start = time.monotonic()
     call(build / "bin/lfrenderer", *inputs, "-o", out, "-q", "--no-contact-sheet", *options)
     return time.monotonic() - start
@@ -69,15 +73,15 @@ def measure_packages(build, field, folder, size, count, balance, runs):
 
 def measure_rectangles(build, field, folder, size, runs):
     path = folder / "short.yaml"
-    path.write_text(path_yaml(WORKLOADS["short"], size))
     rows = []
-    for estimator in ("nearest", "bilinear"):
+    for estimator, focal_mm in itertools.product(("nearest", "bilinear"), (36, 72)):
+        path.write_text(path_yaml(WORKLOADS["short"], size, focal_mm))
         seconds, frames, collect = {"on": [], "off": []}, {}, {}
         for _ in range(runs):
             for choice in seconds:
                 out = folder / f"short-{choice}"
                 seconds[choice].append(render(build, [field, path], out, "--rectangles", choice,
-                                              "--estimator", estimator))
+                                              "--estimator", estimator, "--lens-weights", "none"))
                 frames[choice] = digest(out)
                 report = json.loads((out / "report.json").read_text())
                 collect[choice] = {key: report[key] for key in
@@ -85,7 +89,7 @@ def measure_rectangles(build, field, folder, size, runs):
                                     "rays_tested")}
         if frames["on"] != frames["off"]:
             raise SystemExit("frames differ without rectangles")
-        rows.append({"estimator": estimator, **{
+        rows.append({"estimator": estimator, "focal_mm": focal_mm, **{
             choice: {"seconds": round(statistics.median(seconds[choice]), 3), **collect[choice]}
             for choice in seconds}})
     return rows
@@ -103,16 +107,16 @@ def table(record):
             f"{', '.join(f'{s:.2f}' for s in row['seconds'])} | "
             f"{max(row['seconds']) / mean(row['seconds']):.2f} | "
             f"{min(row['seconds']) / max(row['seconds']):.2f} |")
-    lines += ["", "| `short`, estimator | rectangles | LF images | Mpx tried | seconds | CPU s: decoding, "
-              "collecting |", "|" + " --- |" * 6]
+    lines += ["", "| `short`, estimator | focal length | rectangles | LF images | Mpx tried | seconds | CPU s: decoding, "
+              "collecting |", "|" + " --- |" * 7]
     for row in record["rectangles"]:
         for choice in ("on", "off"):
             part = row[choice]
             lines.append(
-                f"| {row['estimator']} | {choice} | {part['lf_images_selected']} | "
+                f"| {row['estimator']} | {row['focal_mm']} mm | {choice} | {part['lf_images_selected']} | "
                 f"{part['rays_tested'] / 1e6:.0f} | {part['seconds']:.2f} | "
                 f"{part['load_cpu_s']:.2f}, {part['collect_cpu_s']:.2f} |")
-        lines.append(f"| {row['estimator']} | off / on | | | "
+        lines.append(f"| {row['estimator']} | {row['focal_mm']} mm | off / on | | | "
                      f"{row['off']['seconds'] / row['on']['seconds']:.2f} | |")
     return lines
 

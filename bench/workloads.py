@@ -82,7 +82,7 @@ def keys(times, values):
                            for t, v in zip(times, values)) + "]"
 
 
-def path_yaml(workload, size):
+def path_yaml(workload, size, focal_mm=36):
     seconds = (workload["frames"] - 1) / FPS
     points = winding_path(workload)
     (x, y), (near, far), (narrow, wide) = points[0], workload["focus_m"], workload["aperture_mm"]
@@ -106,7 +106,7 @@ frames: {workload['frames']}
 resolution: [{size[0]}, {size[1]}]
 camera:
   sensor_width_mm: 36
-  focal_length_mm: 36
+  focal_length_mm: {focal_mm}
   position: [{x / 1000:.6f}, {y / 1000:.6f}, {-DISTANCE_M}]
   look_at: [{x / 1000:.6f}, {y / 1000:.6f}, 0]
   follow: direction

@@ -7,7 +7,12 @@ namespace lf {
 RayForms MakeRayForms(const PinholeCamera& lf_camera, const RenderCamera& render_camera) {
   const Mat3 direction =
       lf_camera.cam_from_world.rotation.transpose() * lf_camera.intrinsics.InverseMatrix();
-  const Vec3 c = lf_camera.CentreWorld();
+  return MakeRayForms(direction, lf_camera.CentreWorld(), render_camera);
+}
+
+RayForms MakeRayForms(const Mat3& direction, const Vec3& centre_world,
+                      const RenderCamera& render_camera) {
+  const Vec3& c = centre_world;
   const PinholeCamera& plate = render_camera.pinhole;
   const Vec3 offset = c - plate.CentreWorld();
   const Vec3 f = plate.ForwardWorld();
@@ -31,8 +36,9 @@ RayForms MakeRayForms(const PinholeCamera& lf_camera, const RenderCamera& render
   return forms;
 }
 
-std::vector<PixelForm> PlateHalfPlanes(const RayForms& forms, const RenderCamera& render_camera,
-                                       int plane_sign, double margin_px) {
+std::array<PixelForm, kPlateHalfPlanes> PlateHalfPlanes(const RayForms& forms,
+                                                        const RenderCamera& render_camera,
+                                                        int plane_sign, double margin_px) {
   LF_CHECK(plane_sign == 1 || plane_sign == -1);
   const double s = plane_sign;
   const Intrinsics& plate = render_camera.pinhole.intrinsics;

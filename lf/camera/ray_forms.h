@@ -8,6 +8,8 @@
 // render camera's forward axis, X the point on the focus plane n.X = h.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <vector>
 
 #include "lf/camera/aperture.h"
@@ -28,6 +30,10 @@ struct RayForms {
 };
 
 RayForms MakeRayForms(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
+// The same for many frames.
+//   direction  R^T K^-1 of the LF camera
+RayForms MakeRayForms(const Mat3& direction, const Vec3& centre_world,
+                      const RenderCamera& render_camera);
 
 // Half-planes of LF pixels: a ray can be accepted only where `form p <= 0` for all of them. They
 // are the projected lens and focus regions of thesis Fig. 4.5, written as the edges that bound
@@ -35,8 +41,10 @@ RayForms MakeRayForms(const PinholeCamera& lf_camera, const RenderCamera& render
 // n.d = 0 are bounded apart: plane_sign is the sign of n.d of the rays meant, +1 or -1.
 
 // Forward, the side, front, and the four edges of the plate, each moved outwards by margin_px.
-std::vector<PixelForm> PlateHalfPlanes(const RayForms& forms, const RenderCamera& render_camera,
-                                       int plane_sign, double margin_px);
+inline constexpr size_t kPlateHalfPlanes = 7;
+std::array<PixelForm, kPlateHalfPlanes> PlateHalfPlanes(const RayForms& forms,
+                                                        const RenderCamera& render_camera,
+                                                        int plane_sign, double margin_px);
 
 // An edge of the lens polygon (for a disk, of its circumscribed 16-gon), moved outwards by
 // margin_w; and all of them, moved by a share of the radius. Valid where the rays run forward.

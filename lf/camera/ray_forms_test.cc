@@ -48,8 +48,8 @@ TEST(HalfPlanes, HoldEveryRayThatReachesThePlate) {
     const RenderCamera& render = pair.render_camera;
     const RayForms forms = MakeRayForms(pair.lf_camera, render);
     const std::vector<PixelForm> lens = LensHalfPlanes(forms, render, 1e-6);
-    const std::vector<PixelForm> sides[2] = {PlateHalfPlanes(forms, render, -1, 1e-6),
-                                             PlateHalfPlanes(forms, render, +1, 1e-6)};
+    const std::array<PixelForm, kPlateHalfPlanes> sides[2] = {
+        PlateHalfPlanes(forms, render, -1, 1e-6), PlateHalfPlanes(forms, render, +1, 1e-6)};
     const Vec3 c_lens = render.pinhole.CentreWorld();
     const Vec3 f = render.pinhole.ForwardWorld();
     for (int y = 0; y < 35; ++y)

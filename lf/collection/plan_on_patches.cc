@@ -52,8 +52,10 @@ class PatchPlanner {
         forms_(MakeRayForms(lf_camera, render_camera)),
         maker_(forms_.sensor_x, forms_.sensor_y, forms_.front),
         segments_(*segments) {
-    for (const int side : {0, 1})
-      plate_half_planes_[side] = PlateHalfPlanes(forms_, render_camera, side == 0 ? -1 : 1, 0);
+    for (const int side : {0, 1}) {
+      const auto plate = PlateHalfPlanes(forms_, render_camera, side == 0 ? -1 : 1, 0);
+      plate_half_planes_[side].assign(plate.begin(), plate.end());
+    }
     if (render_camera.aperture.blades > 0)
       lens_half_planes_ = LensHalfPlanes(forms_, render_camera, 0);
     for (const int side : {0, 1}) all_conditions_.plate[side] = BitsOf(plate_half_planes_[side]);

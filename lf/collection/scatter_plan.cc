@@ -20,7 +20,8 @@ void PlanOnLines(const PinholeCamera& lf_camera, const RenderCamera& render_came
   const bool is_disk = render_camera.aperture.blades == 0;
   RowSpans rows;
   for (const int side : {0, 1}) {
-    rows.half_planes[side] = PlateHalfPlanes(forms, render_camera, side == 0 ? -1 : 1, 0);
+    const auto plate = PlateHalfPlanes(forms, render_camera, side == 0 ? -1 : 1, 0);
+    rows.half_planes[side].assign(plate.begin(), plate.end());
     if (is_disk) continue;
     const std::vector<PixelForm> lens = LensHalfPlanes(forms, render_camera, kLensMargin);
     rows.half_planes[side].insert(rows.half_planes[side].end(), lens.begin(), lens.end());

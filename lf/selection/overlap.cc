@@ -116,6 +116,20 @@ class Clipped {
   size_t count_ = 0;
 };
 
+// Whether all rays of the image pass a circle within the lens: those of its corners are the
+// farthest from the middle, for where they pass is a projective map of the image.
+bool LensHolds(const RayForms& forms, double inner_w, const Intrinsics& image) {
+  const double w = image.width_px, h = image.height_px;
+  for (const Vec2& corner : {Vec2(0, 0), Vec2(w, 0), Vec2(w, h), Vec2(0, h)}) {
+    const double forward = Value(forms.forward, corner.x(), corner.y());
+    const double right = Value(forms.lens_right, corner.x(), corner.y());
+    const double up = Value(forms.lens_up, corner.x(), corner.y());
+    const double reach = inner_w * forward;
+    if (!(forward > 0 && right * right + up * up <= reach * reach)) return false;
+  }
+  return true;
+}
+
 PixelRect ClippedRect(const Intrinsics& image, std::span<const PixelForm> plate,
                       const RayForms& forms, const FrameOutline& frame, PixelReach reach) {
   Clipped region(image);
@@ -123,6 +137,8 @@ PixelRect ClippedRect(const Intrinsics& image, std::span<const PixelForm> plate,
     region.Clip(form);
     if (region.empty()) return {};
   }
+  // Of most LF cameras in a wide lens: sixteen edges need not be asked.
+  if (LensHolds(forms, frame.lens_inner_w, image)) return region.Pixels(image, reach);
   const double margin_w = kLensMargin * frame.camera.aperture.radius_w;
   for (const ApertureEdge& edge : frame.lens_edges) {
     region.Clip(LensHalfPlane(forms, edge, margin_w));
@@ -183,12 +199,12 @@ ImageOverlap::ImageOverlap(const PinholeCamera& lf_camera, std::span<const Ideal
     : lf_camera_(lf_camera), cells_(cells), reach_(reach), centre_world_(lf_camera.CentreWorld()) {
   LF_CHECK(!lf_camera.intrinsics.has_distortion() || !cells.empty());
   const IdealCell box = BoundImage(lf_camera.intrinsics, cells);
-  const Mat3 direction =
+  direction_world_ =
       lf_camera.cam_from_world.rotation.transpose() * lf_camera.intrinsics.InverseMatrix();
   has_bounds_ = box.has_bounds;
   if (!has_bounds_) return;
-  middle_world_ = direction * box.middle;
-  axes_world_ = direction * box.extent.asDiagonal();
+  middle_world_ = direction_world_ * box.middle;
+  axes_world_ = direction_world_ * box.extent.asDiagonal();
 }
 
 // A ray of direction d passes the lens plane at M d / (f.d) (doc/ray.md, 5). The line is normal to
@@ -224,19 +240,22 @@ FrameOutline::FrameOutline(const RenderCamera& render_camera) : camera(render_ca
   constexpr int kMostBlades = 64;
   if (camera.aperture.blades > kMostBlades) camera.aperture.blades = 0;
   lens_edges = Edges(camera.aperture);
+  lens_inner_w = camera.aperture.radius_w;
+  for (const ApertureEdge& edge : lens_edges)
+    lens_inner_w = std::min(lens_inner_w, edge.distance_w);
 }
 
 PixelRect ImageOverlap::Rect(const FrameOutline& frame) const {
   if (PlainlyMisses(frame.camera)) return {};
   const Intrinsics& image = lf_camera_.intrinsics;
   const bool distorted = image.has_distortion();
-  const RayForms forms = MakeRayForms(lf_camera_, frame.camera);
+  const RayForms forms = MakeRayForms(direction_world_, centre_world_, frame.camera);
   std::vector<PixelForm> lens;
   if (distorted) lens = LensHalfPlanes(forms, frame.camera, kLensMargin);
   PixelRect rect;
   for (const int plane_sign : {-1, 1}) {
     if (!distorted && IsBelowZero(plane_sign * forms.plane, image)) continue;
-    const std::vector<PixelForm> plate =
+    const std::array<PixelForm, kPlateHalfPlanes> plate =
         PlateHalfPlanes(forms, frame.camera, plane_sign, kPlateMarginPx);
     rect = Bounds(rect, distorted ? BoundsOfCells(cells_, plate, lens)
                                   : ClippedRect(image, plate, forms, frame, reach_));

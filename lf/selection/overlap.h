@@ -41,6 +41,7 @@ struct FrameOutline {
 
   RenderCamera camera;
   std::vector<ApertureEdge> lens_edges;  // of a polygon that holds the lens
+  double lens_inner_w = 0;               // radius of a circle within it
 };
 
 // The same for many frames: what only the LF image decides is found once, and frames that it
@@ -67,6 +68,7 @@ class ImageOverlap {
   // Directions of the rays are among middle + a_0 axes.col(0) + a_1 ... with |a_i| <= 1, in the
   // world, if has_bounds_.
   Vec3 centre_world_;
+  Mat3 direction_world_;  // of a ray, from its pixel
   Vec3 middle_world_;
   Mat3 axes_world_;
   bool has_bounds_;

@@ -33,6 +33,12 @@ class CellsOfLast {
   std::vector<IdealCell> cells_;
 };
 
+void Prefetch(const LfCamera& camera) {
+  constexpr size_t kLineBytes = 64;
+  const auto* const bytes = reinterpret_cast<const char*>(&camera);
+  for (size_t at = 0; at < sizeof(camera); at += kLineBytes) __builtin_prefetch(bytes + at);
+}
+
 PixelRect WholeImage(const Intrinsics& k) { return {0, 0, k.width_px, k.height_px}; }
 
 // A leaf that a frame may take, of some frames.
@@ -84,7 +90,11 @@ class Selector {
   void Examine(std::span<const Visit> visits, CellsOfLast* cells,
                std::vector<SelectedImage>* found) const {
     const LightField& light_field = index_.light_field();
-    for (const LfImageId id : index_.tree().Leaf(visits.front().leaf)) {
+    const std::span<const LfImageId> ids = index_.tree().Leaf(visits.front().leaf);
+    for (size_t i = 0; i < ids.size(); ++i) {
+      const LfImageId id = ids[i];
+      // Neighbours in space lie anywhere in the memory.
+      if (i + 1 < ids.size()) Prefetch(light_field.cameras[ids[i + 1].value]);
       const LfCamera& lf_camera = light_field.cameras[id.value];
       const PinholeCamera camera = light_field.Camera(id);
       SelectedImage image;
