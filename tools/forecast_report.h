@@ -15,7 +15,7 @@ struct ForecastFacts {
   ImageOrder order = ImageOrder::kShuffle;
   uint64_t seed = 0;
   int thread_count = 1;
-  double read_s = 0;  // spent on the calibration
+  double read_s = 0;              // spent on the calibration
   bool are_depths_known = false;  // of the scene
 };
 
