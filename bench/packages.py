@@ -8,16 +8,15 @@ usage: bench/packages.py BUILD_DIR [--density 0.03] [--size 480x320] [--runs 5] 
 The movement `long` is cut into packages by rays and by frames, and each package is rendered by itself,
 with all threads: the longest decides when a film on so many machines is ready. `short` is rendered with
 rectangles and without, by a lens that sees as much as the LF cameras and by one of twice their focal length,
-without lens weights. Of `bokeh` it is told how evenly the orders of LF images fill the frames. The frames of all runs are compared: they must have the same bits.
+without lens weights. Without them every LF image
+that may give rays to some frame is tried whole in all frames, as in the thesis. The frames of all runs are compared: they must have the same bits.
 """
 import argparse
 import hashlib
 import itertools
 import json
 import pathlib
-import sqlite3
 import statistics
-import struct
 import subprocess
 import tempfile
 import time
@@ -97,28 +96,6 @@ def measure_rectangles(build, field, folder, size, runs):
     return rows
 
 
-def measure_orders(build, field, folder, size):
-    """of `bokeh`, whose lens opens and closes: how unevenly frames are filled after a tenth of the LF images"""
-    path = folder / "bokeh.yaml"
-    path.write_text(path_yaml(WORKLOADS["bokeh"], size))
-    rows = []
-    for order in ("shuffle", "round-robin", "area"):
-        out = folder / f"order-{order}"
-        call(build / "bin/lfpreprocessor", field, path, "-o", out, "-q", "--order", order,
-             "--packages", "1", "--lens-weights", "none")
-        with sqlite3.connect(f"file:{out / 'package-0000.lfp'}?immutable=1", uri=True) as database:
-            blobs = [blob for blob, in database.execute(
-                "select rectangles from rectangles order by place")]
-        rays = {}
-        for blob in blobs[:len(blobs) // 10]:
-            for frame, x_begin, y_begin, x_end, y_end in struct.iter_unpack("<5i", blob[:-8]):
-                rays[frame] = rays.get(frame, 0) + (x_end - x_begin) * (y_end - y_begin)
-        filled = [rays.get(frame, 0) for frame in range(1, WORKLOADS["bokeh"]["frames"] + 1)]
-        rows.append({"order": order, "empty": filled.count(0),
-                     "spread": statistics.pstdev(filled) / statistics.mean(filled)})
-    return rows
-
-
 def table(record):
     lines = ["| `long`, balanced by | frames | estimated rays, M | largest / mean | seconds alone | longest / "
              "mean | shortest / longest |", "|" + " --- |" * 7]
@@ -142,10 +119,6 @@ def table(record):
                 f"{part['load_cpu_s']:.2f}, {part['collect_cpu_s']:.2f} |")
         lines.append(f"| {row['estimator']} | {row['focal_mm']} mm | off / on | | | "
                      f"{row['off']['seconds'] / row['on']['seconds']:.2f} | |")
-    lines += ["", "| `bokeh`, order | after a tenth of the LF images: frames without a ray | standard deviation "
-              "of the frames' rays / mean |", "|" + " --- |" * 3]
-    for row in record["orders"]:
-        lines.append(f"| {row['order']} | {row['empty']} | {row['spread']:.2f} |")
     return lines
 
 
@@ -174,7 +147,6 @@ def main():
             record["packages"] = [
                 measure_packages(build, field, folder, size, arguments.packages, balance,
                                  arguments.runs) for balance in ("rays", "frames")]
-            record["orders"] = measure_orders(build, field, folder, size)
             record["rectangles"] = measure_rectangles(build, field, folder, size, arguments.runs)
     else:
         parser.error("BUILD_DIR or --again is needed")

@@ -9,13 +9,12 @@ Writes doc/images/ray_usage.svg, and with --write the figures into PAGE.
 """
 import argparse
 import csv
-import math
 import pathlib
 import subprocess
 import tempfile
 
 import record as results
-from workloads import PER_MM2, SIDE_MM, WORKLOADS, DISTANCE_M, path_yaml
+from workloads import WORKLOADS, path_yaml, photograph
 
 PICTURE = results.HERE.parent / "doc/images/ray_usage.svg"
 WIDTH, HEIGHT, MARGIN = 420, 260, 48
@@ -25,11 +24,7 @@ def usage(build, density, size):
     """[(whole, rectangles, accepted)] of every LF image that the widened frustum holds"""
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
-        spacing_m = 0.001 / math.sqrt(density * PER_MM2)
-        count = round(SIDE_MM ** 2 * PER_MM2 * density)
-        subprocess.run([build / "bin/lfsynth", "chart", "-o", folder / "field", "--count", str(count),
-                        "--size", size, "--spacing", f"{spacing_m:.8f}", "--distance", str(DISTANCE_M),
-                        "--calibration-only", "-q"], check=True)
+        photograph(build, folder / "field", density, size, "--calibration-only")
         path = folder / "short.yaml"
         path.write_text(path_yaml(WORKLOADS["short"], [int(n) // 2 for n in size.split("x")]))
         text = subprocess.run([build / "bench/lf_ray_usage", folder / "field", path], check=True,

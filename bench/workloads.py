@@ -116,7 +116,7 @@ lens:
 {movement if moves else ''}"""
 
 
-def photograph(build, field, density, size):
+def photograph(build, field, density, size, *options):
     """The light field, unless it is there."""
     if (field / "transforms.json").exists():
         return
@@ -124,7 +124,7 @@ def photograph(build, field, density, size):
     count = round(SIDE_MM ** 2 * PER_MM2 * density)
     subprocess.run([build / "bin/lfsynth", "chart", "-o", field, "--count", str(count), "--size", size,
                     "--spacing", f"{spacing_m:.8f}", "--distance", str(DISTANCE_M), "--bayer",
-                    "--noise", "0.01", "--samples", "1", "-q"], check=True)
+                    "--noise", "0.01", "--samples", "1", "-q", *options], check=True)
 
 
 def render(build, field, path, out, threads):

@@ -68,8 +68,10 @@ void AddPackages(const PreprocessReport& report, const ForecastFacts& facts, std
       fmt::format("\n{:<14} {:<13} {:>9} {:>11} {:>9} {:>9} {:>9} {:>6}  {}\n", "package", "frames",
                   "LF images", "neighbours", "rays", "to read", "memory", "passes", "about");
   for (const PackageForecast& package : report.packages) {
-    const std::string frames =
-        fmt::format("{}-{}", package.frames.front().value, package.frames.back().value);
+    const uint32_t first = package.frames.front().value, last = package.frames.back().value;
+    std::string frames = fmt::format("{}-{}", first, last);
+    if (package.frames.size() < last - first + 1)
+      frames += fmt::format(" ({})", package.frames.size());
     *lines +=
         fmt::format("{:<14} {:<13} {:>9} {:>11} {:>9} {:>9} {:>9} {:>6}  {}\n", package.name,
                     frames, package.image_count, package.neighbour_count,
@@ -181,12 +183,12 @@ std::string ForecastText(const PreprocessReport& report, const CameraPath& path,
       "film",
       fmt::format("{} frames of {} x {}", report.frames.size(), plate.width_px, plate.height_px),
       &lines);
-  AddLine(
-      "to be read",
-      fmt::format("{} LF images ({} files' worth), those that several packages need counted for "
-                  "each",
-                  image_count, Bytes(bytes)),
-      &lines);
+  AddLine("to be read",
+          fmt::format("{} LF images in files of {} together{}", image_count, Bytes(bytes),
+                      report.packages.size() > 1
+                          ? "; those that several packages need are counted for each"
+                          : ""),
+          &lines);
   AddLine("rays", fmt::format("{} pixels to be tried", ShortNumber(static_cast<double>(rays))),
           &lines);
   AddLine("order",
@@ -204,15 +206,18 @@ std::string ForecastText(const PreprocessReport& report, const CameraPath& path,
                         1e3 * report.rate->finish_s)
           : "not known: " + report.rate_error,
       &lines);
-  AddLine("spent here",
-          fmt::format("{:.2g} s on the order and the octree, {:.2g} s on selection, {:.2g} s on "
-                      "writing",
-                      report.index_s, report.select_s, report.write_s),
-          &lines);
+  AddLine(
+      "spent here",
+      fmt::format("{:.2f} s on the calibration, {:.2f} s on the order and the octree, {:.2f} s on "
+                  "selection, {:.2f} s on density, {:.2f} s on writing",
+                  facts.read_s, report.index_s, report.select_s, report.density_s, report.write_s),
+      &lines);
   AddPackages(report, facts, &lines);
   AddDensity(report, path, &lines);
   for (const std::string& warning : DensityWarnings(report, path, facts))
     lines += fmt::format("\nwarning: {}\n", warning);
+  if (!facts.output.empty())
+    lines += fmt::format("\nnext: lfrenderer {}/package-*.lfp -o frames\n", facts.output);
   return lines;
 }
 

@@ -47,16 +47,15 @@ void AddOptions(CLI::App& app, Arguments& a) {
       ->check(lf::NotEmpty())
       ->excludes(plan);
   app.add_flag("--overwrite", a.overwrite, "Replace the packages in DIR");
-  auto* memory = app.add_option("--memory", a.memory,
-                                "As few packages as there may be, the plates of each in so much "
-                                "memory; also what is taken for the forecast");
+  app.add_option("--memory", a.memory,
+                 "As few packages as there may be, the plates of each in so much "
+                 "memory; also what is taken for the forecast");
   auto* packages = app.add_option("--packages", a.packages, "So many packages; 0: by --memory")
                        ->check(CLI::Range(0, 1'000'000));
   app.add_option("--frames-per-package", a.frames_per_package,
                  "Packages of so many frames; 0: by --memory")
       ->check(CLI::Range(0, 1'000'000))
       ->excludes(packages);
-  (void)memory;
   app.add_option("--balance", a.balance,
                  "What packages have equally: rays, so that they take equally long; frames")
       ->check(CLI::IsMember({"rays", "frames"}));

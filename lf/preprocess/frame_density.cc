@@ -16,31 +16,36 @@ namespace {
 constexpr double kBefore = 0.75, kBehind = 1.25;  // of the focus distance
 constexpr double kPlaces[] = {1.0 / 6, 0.5, 5.0 / 6};
 
+// The LF cameras that the lens looks through, and where they stand.
+struct Around {
+  std::vector<LfImageId> ids;
+  std::vector<Vec3> centres_world;
+};
+
 // The nearest that a ray to the element comes to the lens centre.
-double NearestRay(const ImageIndex& index, const std::vector<LfImageId>& around,
-                  const RenderCamera& frame, double x_px, double y_px) {
+double NearestRay(const LightField& light_field, const Around& around, const RenderCamera& frame,
+                  double x_px, double y_px) {
   double nearest_w = std::numeric_limits<double>::infinity();
   const std::optional<Vec3> focus = FocusPointOfElement(frame, x_px, y_px);
   if (!focus) return 0;  // beyond the horizon of a tilted focus plane
-  for (const LfImageId id : around) {
-    const PinholeCamera camera = index.light_field().Camera(id);
-    const double distance_w = LensPointOfLine(frame, camera.CentreWorld(), *focus).norm();
+  for (size_t i = 0; i < around.ids.size(); ++i) {
+    const double distance_w = LensPointOfLine(frame, around.centres_world[i], *focus).norm();
     // Few are asked what they see: it takes longer.
     if (distance_w < nearest_w &&
-        IsSeenBy(RayThrough(camera, frame.pinhole.ForwardWorld()), *focus))
+        IsSeenBy(RayThrough(light_field.Camera(around.ids[i]), frame.pinhole.ForwardWorld()),
+                 *focus))
       nearest_w = distance_w;
   }
   return nearest_w;
 }
 
 // Along the frame's axis instead of those of the LF cameras around its lens.
-DepthRange DepthsOfFrame(const DepthRange& depths, const ImageIndex& index,
-                         const std::vector<LfImageId>& around, const RenderCamera& frame) {
+DepthRange DepthsOfFrame(const DepthRange& depths, const Around& around,
+                         const RenderCamera& frame) {
   double shift_w = 0;
-  for (const LfImageId id : around)
-    shift_w += frame.pinhole.ForwardWorld().dot(index.light_field().Camera(id).CentreWorld() -
-                                                frame.pinhole.CentreWorld()) /
-               static_cast<double>(around.size());
+  for (const Vec3& centre : around.centres_world)
+    shift_w += frame.pinhole.ForwardWorld().dot(centre - frame.pinhole.CentreWorld()) /
+               static_cast<double>(around.centres_world.size());
   // Nothing is nearer than a tenth of where the nearest was.
   const double least_w = 0.1 * depths.near_w;
   return {std::max(least_w, depths.near_w + shift_w), std::max(least_w, depths.far_w + shift_w)};
@@ -59,15 +64,16 @@ FrameDensity DensityOf(const ImageIndex& index, const RenderCamera& frame,
                        const std::optional<DepthRange>& depths) {
   FrameDensity density;
   const Intrinsics& plate = frame.pinhole.intrinsics;
-  const std::vector<LfImageId> around = CamerasAroundLens(index, frame);
-  std::vector<Vec3> centres_world;
-  for (const LfImageId id : around)
-    centres_world.push_back(index.light_field().Camera(id).CentreWorld());
-  density.camera_distance_w = CameraDistance(frame, centres_world);
+  Around around;
+  around.ids = CamerasAroundLens(index, frame);
+  for (const LfImageId id : around.ids)
+    around.centres_world.push_back(index.light_field().Camera(id).CentreWorld());
+  density.camera_distance_w = CameraDistance(frame, around.centres_world);
+
   const std::optional<Vec3> focus =
       FocusPointOfElement(frame, 0.5 * plate.width_px, 0.5 * plate.height_px);
   std::vector<Vec2> points;
-  for (const Vec3& centre : centres_world) {
+  for (const Vec3& centre : around.centres_world) {
     if (!focus) break;
     const Vec2 point = LensPointOfLine(frame, centre, *focus);
     if (!point.allFinite()) continue;
@@ -75,17 +81,19 @@ FrameDensity DensityOf(const ImageIndex& index, const RenderCamera& frame,
     density.cameras_in_lens += Contains(frame.aperture, point) ? 1 : 0;
   }
   density.uncovered_share = UncoveredShare(points, frame.aperture);
+
   for (const double x : kPlaces)
     for (const double y : kPlaces)
-      density.least_aperture_w =
-          std::max(density.least_aperture_w,
-                   2 * NearestRay(index, around, frame, x * plate.width_px, y * plate.height_px));
+      density.least_aperture_w = std::max(density.least_aperture_w,
+                                          2 * NearestRay(index.light_field(), around, frame,
+                                                         x * plate.width_px, y * plate.height_px));
   constexpr double kRounding = 1e-6;
   if (density.least_aperture_w < kRounding * density.camera_distance_w)
     density.least_aperture_w = 0;
+
   const double focus_w = frame.focus_distance_w;
-  density.depths = depths && !around.empty() ? DepthsOfFrame(*depths, index, around, frame)
-                                             : DepthRange{kBefore * focus_w, kBehind * focus_w};
+  density.depths = depths && !around.ids.empty() ? DepthsOfFrame(*depths, around, frame)
+                                                 : DepthRange{kBefore * focus_w, kBehind * focus_w};
   const auto displacement = [&](double z_w) {
     return plate.fx_px * density.camera_distance_w * std::abs(1 / z_w - 1 / focus_w);
   };
