@@ -86,7 +86,7 @@ void AddOptions(CLI::App& app, Arguments& a) {
 }
 
 lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::CommonOptions& common,
-                                              const lf::CameraPath& path) {
+                                              const lf::CameraPath& path, lf::BayerPattern bayer) {
   lf::PreprocessOptions options;
   if (!a.plan) {
     if (a.output.empty()) return lf::UsageError("-o DIR or --plan is needed");
@@ -102,6 +102,8 @@ lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::Comm
   if (a.max_angle_deg > 0) options.max_angle_rad = lf::RadiansFromDegrees(a.max_angle_deg);
   options.reading.estimator =
       a.estimator == "nearest" ? lf::Estimator::kNearest : lf::Estimator::kBilinear;
+  if (options.reading.estimator == lf::Estimator::kBilinear && bayer != lf::BayerPattern::kNone)
+    options.reading.filter = lf::PixelFilter::kMosaic;  // as lfrenderer, unasked
   options.lens_weights = lf::LensWeights::kNone;
   for (const lf::LensWeights weights :
        {lf::LensWeights::kAuto, lf::LensWeights::kArea, lf::LensWeights::kHat})
@@ -129,7 +131,8 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   const double read_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   LF_ASSIGN_OR_RETURN(const lf::CameraPath path, lf::ReadPathYaml(a.path, light_field.unit_m));
-  LF_ASSIGN_OR_RETURN(lf::PreprocessOptions options, MakeOptions(a, common, path));
+  LF_ASSIGN_OR_RETURN(lf::PreprocessOptions options,
+                      MakeOptions(a, common, path, light_field.encoding.bayer));
   options.interrupted = &interrupted;
   lf::ThreadPool pool(common.threads);
   lf::ProgressMeter meter(lf::ParseProgressStyle(common.progress), "frames");

@@ -202,7 +202,7 @@ Result<void> Preprocessor::Measure() {
   });
   const FrameId frame = frames_[by_rays[by_rays.size() / 2]];
   const Result<RenderRate> rate =
-      MeasureRate(light_field_, path_.Camera(frame), Needs(frame), options_.reading, pool_);
+      MeasureRate(*index_, path_.Camera(frame), needs_, options_.reading, pool_);
   if (rate)
     report_.rate = *rate;
   else
