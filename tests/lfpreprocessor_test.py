@@ -166,8 +166,10 @@ class PackagesTest(unittest.TestCase):
         self.succeeds(RENDERER, field, path, "-o", self.folder / "whole", *options)
         self.succeeds(RENDERER, *files, "-o", self.folder / "parts", *options)
         self.assertEqual(self.digests(self.folder / "whole"), self.digests(self.folder / "parts"))
-        self.fails(3, ["every frame is black"], RENDERER, files[-1], "-o", self.folder / "black",
-                   *options)
+        # A job of its own is no failure; a film of nothing is.
+        self.succeeds(RENDERER, files[-1], "-o", self.folder / "black", *options)
+        _, black = self.packages(field, path, "--frames", "1,4", *options, name="some")
+        self.assertEqual(len(black), 1)
 
     # Many machines, one folder
 
@@ -267,6 +269,8 @@ class PackagesTest(unittest.TestCase):
         self.fails(2, ["PACKAGE..."], RENDERER, files[0], path, "-o", out)
         self.fails(2, ["PACKAGE..."], RENDERER, field, "-o", out)
         self.fails(2, ["--lightfield"], RENDERER, field, path, "-o", out, "--lightfield", field)
+        self.fails(2, ["--lightfield"], RENDERER, *files, "-o", out, "--images", "x", *none)
+        self.fails(2, [".lfp"], RENDERER, self.folder / "packages", "-o", out)
         self.fails(2, ["--plan"], PREPROCESSOR, field, path)
         self.fails(2, ["--overwrite"], PREPROCESSOR, field, path, "-o", self.folder / "packages")
         self.fails(2, ["nearer"], PREPROCESSOR, field, path, "--plan", "--depths", "3", "2")
@@ -276,6 +280,34 @@ class PackagesTest(unittest.TestCase):
 
     def again(self, file):
         return shutil.copy(file, self.folder / "copy.lfp")
+
+    def test_two_films_do_not_share_a_folder(self):
+        field, path = self.film()
+        _, files = self.packages(field, path, "--packages", "2")
+        write_path(self.folder, frames=6, aperture=0.03)
+        _, others = self.packages(field, path, "--packages", "2", name="others")
+        out = self.folder / "out"
+        self.succeeds(RENDERER, files[0], "-o", out, "-q")
+        self.fails(2, ["report-package-0000.json", "picture.film"], RENDERER, others[1], "-o", out)
+        self.fails(2, ["picture.format"], RENDERER, files[1], "-o", out, "--format", "png")
+        self.succeeds(RENDERER, files[1], "-o", out, "-q")
+        self.assertTrue((out / "contact_sheet-package-0001.png").exists())
+
+    def test_a_part_of_a_film_is_told(self):
+        field, path = self.film()
+        _, files = self.packages(field, path, "--packages", "3")
+        told = self.call(RENDERER, *files[:2], "-o", self.folder / "out")
+        self.assertEqual(told.returncode, 0)
+        self.assertIn("2 of the film's 3 packages", told.stderr)
+
+    def test_missing_lf_images_are_told(self):
+        field, path = self.film()
+        (self.folder / "field" / "image_03.png").unlink()
+        text = self.succeeds(PREPROCESSOR, field, path, "--plan")
+        self.assertIn("1 LF images that packages need are not there", text)
+        self.fails(3, ["--strict", "image_03.png"], PREPROCESSOR, field, path, "-o",
+                   self.folder / "strict", "--strict")
+        self.assertEqual(list((self.folder / "strict").glob("*.lfp")), [])
 
     def test_packages_are_replaced_on_request(self):
         field, path = self.film()

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tools/common/program.h"
 #include "tools/common/progress.h"
 
 namespace lf {
@@ -117,6 +118,10 @@ std::string DepthsInOne(const RenderCamera& camera, const FrameDensity& density)
 std::vector<std::string> DensityWarnings(const PreprocessReport& report, const CameraPath& path,
                                          const ForecastFacts& facts) {
   std::vector<std::string> warnings;
+  if (report.missing_count > 0)
+    warnings.push_back(
+        fmt::format("{} LF images that packages need are not there, or empty; the first: {}",
+                    report.missing_count, report.first_missing));
   const FrameForecast& sparse =
       Worst(report, [](const FrameForecast& frame) { return frame.density.MostDisplacement_px(); });
   const double most_px = sparse.density.MostDisplacement_px();
@@ -217,7 +222,8 @@ std::string ForecastText(const PreprocessReport& report, const CameraPath& path,
   for (const std::string& warning : DensityWarnings(report, path, facts))
     lines += fmt::format("\nwarning: {}\n", warning);
   if (!facts.output.empty())
-    lines += fmt::format("\nnext: lfrenderer {}/package-*.lfp -o frames\n", facts.output);
+    lines += fmt::format("\nnext: lfrenderer {}/package-*.lfp -o frames{}\n",
+                         ShellWord(facts.output), facts.render_options);
   return lines;
 }
 

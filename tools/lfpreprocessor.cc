@@ -82,7 +82,7 @@ void AddOptions(CLI::App& app, Arguments& a) {
                  "NEAR FAR of the scene, world units from the LF cameras, for the density report; "
                  "without it those that the light field tells")
       ->expected(2)
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1e-9, 1e12));
 }
 
 lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::CommonOptions& common,
@@ -119,6 +119,7 @@ lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::Comm
           fmt::format("--depths {} {}: expected the nearer one first", a.depths[0], a.depths[1]));
     options.depths = lf::DepthRange{a.depths[0], a.depths[1]};
   }
+  options.strict = common.strict;
   options.version = lf::Version();
   options.light_field_name = a.light_field.path;
   return options;
@@ -148,6 +149,7 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   facts.seed = options.seed;
   facts.thread_count = pool.thread_count();
   facts.read_s = read_s;
+  if (options.lens_weights == lf::LensWeights::kNone) facts.render_options = " --lens-weights none";
   facts.are_depths_known = options.depths || light_field.depth_range;
   const std::string text =
       common.json ? lf::ForecastJson(report, path, facts) : lf::ForecastText(report, path, facts);

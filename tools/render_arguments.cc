@@ -106,13 +106,20 @@ Result<void> RenderArguments::Check(bool seed_given) const {
   if (HasPackages()) {
     if (seed_given)
       return UsageError("--seed: packages have the order that they were made with: leave it out");
+    if (light_field.path.empty() &&
+        (light_field.focal_px > 0 || light_field.fov_deg > 0 || !light_field.images.empty()))
+      return UsageError(
+          "--focal-px, --fov-deg and --images are for a light field: packages have their "
+          "calibration; if the images have moved, --lightfield says where it is now");
     return {};
   }
   if (std::any_of(inputs.begin(), inputs.end(), IsPackageName))
     return UsageError("expected LIGHTFIELD PATH.yaml, or packages alone: PACKAGE...");
   if (inputs.size() != 2)
-    return UsageError(fmt::format("expected LIGHTFIELD PATH.yaml, or PACKAGE...; found {} {}",
-                                  inputs.size(), inputs.size() == 1 ? "word" : "words"));
+    return UsageError(
+        fmt::format("expected LIGHTFIELD PATH.yaml, or PACKAGE... (files that end in .lfp, such as "
+                    "packages/package-0000.lfp); found {} {}",
+                    inputs.size(), inputs.size() == 1 ? "word" : "words"));
   if (!light_field.path.empty())
     return UsageError("--lightfield is for packages: here it is the first word");
   return {};

@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <cstring>
 #include <functional>
 
+#include "tools/common/program.h"
 #include "tools/common/progress.h"
 
 #include "lf/core/log.h"
@@ -97,23 +96,6 @@ void WarnOfLenses(const RenderReport& report) {
       });
 }
 
-// A word of a command line, so that a shell takes it as it is.
-std::string Quoted(const std::string& word) {
-  const auto is_plain = [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || std::strchr("_-./=,:+@%", c);
-  };
-  if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return word;
-  std::string quoted = "'";
-  for (const char c : word) {
-    if (c == '\'')
-      quoted += "'\\''";
-    else
-      quoted += c;
-  }
-  quoted += '\'';
-  return quoted;
-}
-
 }  // namespace
 
 void SummariseRender(const RenderReport& report, const std::string& look_at) {
@@ -128,7 +110,7 @@ void SummariseRender(const RenderReport& report, const std::string& look_at) {
   WarnOfEmptyElements(report);
   WarnOfLenses(report);
   if (!report.skipped.empty())
-    LogWarning("{} LF images were skipped; report.json names them", report.skipped.size());
+    LogWarning("{} LF images were skipped; the report names them", report.skipped.size());
   LogInfo("look at {}", look_at);
 }
 
@@ -141,7 +123,7 @@ Error WithResumeCommand(Error error, int argc, char** argv) {
     if (word == "--overwrite") continue;
     has_resume = has_resume || word == "--resume";
     if (i > 0) command += ' ';
-    command += Quoted(word);
+    command += ShellWord(word);
   }
   error.message += "; go on with: " + command + (has_resume ? "" : " --resume");
   return error;

@@ -48,7 +48,9 @@ struct PackageImage {
 };
 
 struct Package {
-  std::string name;  // of its file, without extension; empty in memory
+  std::string name;   // of its file, without extension; empty in memory
+  size_t number = 1;  // of `count` packages of the film
+  size_t count = 1;
   LightField light_field;
   ImagePlaces places;                // in the whole light field
   CameraPath path;                   // of the whole film

@@ -27,8 +27,6 @@ using FrameRects = std::function<std::vector<FrameRect>(LfImageId)>;
 struct PackageNotes {
   std::string version;      // of the program
   std::string light_field;  // LIGHTFIELD, as it was given
-  size_t number = 1;        // of `count` packages of the film
-  size_t count = 1;
 };
 
 // kOutput; nothing is left behind then.

@@ -17,6 +17,8 @@ namespace fs = std::filesystem;
 // Every third frame of twelve, 40 LF images of 1000, of which the last five are neighbours.
 Package TestPackage() {
   Package package;
+  package.number = 4;
+  package.count = 8;
   package.whole = {1000, "0123456789abcdef", "fedcba9876543210"};
   package.choices = {ImageOrder::kRoundRobin, UINT64_MAX, 17, 0.25, true};
   package.places.end = 1000;
@@ -78,7 +80,7 @@ class PackageFileTest : public ::testing::Test {
   ~PackageFileTest() override { fs::remove_all(folder_); }
 
   void Write(const Package& package) {
-    const Result<void> written = WritePackage(path_, package, RectsOf, {"1.2.3", "../field", 4, 8});
+    const Result<void> written = WritePackage(path_, package, RectsOf, {"1.2.3", "../field"});
     ASSERT_TRUE(written) << written.error().message;
   }
   std::string Fault(const std::string& bytes, bool check_seal = true) {
@@ -100,6 +102,8 @@ TEST_F(PackageFileTest, ReadsWhatWasWrittenToTheBit) {
   const Result<Package> read = ReadPackage(path_);
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(read->name, "package-0003");
+  EXPECT_EQ(read->number, 4u);
+  EXPECT_EQ(read->count, 8u);
   EXPECT_EQ(read->whole, package.whole);
   EXPECT_EQ(read->choices.order, package.choices.order);
   EXPECT_EQ(read->choices.seed, package.choices.seed);

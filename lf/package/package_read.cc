@@ -133,6 +133,7 @@ class Reader {
   }
 
   Result<void> ReadSettings();
+  Result<void> ReadNumber();
   Result<void> ReadEncoding();
   Result<void> ReadChoices();
   Result<void> ReadIntrinsics();
@@ -165,10 +166,28 @@ Result<void> Reader::ReadSettings() {
   package_.whole = {whole_count, Setting("light_field.names"), Setting("light_field.calibration")};
   LF_ASSIGN_OR_RETURN(const double end, Number("places", 1, kMostImages));
   package_.places.end = static_cast<uint32_t>(end);
+  LF_RETURN_IF_ERROR(ReadNumber());
   LF_ASSIGN_OR_RETURN(package_.path.fps, Number("fps", 1e-3, 1e6));
   LF_ASSIGN_OR_RETURN(package_.path.unit_m, Number("path_unit_m", 1e-9, 1e9));
   LF_RETURN_IF_ERROR(ReadEncoding());
   return ReadChoices();
+}
+
+// "3 of 8"
+Result<void> Reader::ReadNumber() {
+  constexpr std::string_view kOf = " of ";
+  const std::string text = Setting("package");
+  const size_t of = std::min(text.find(kOf), text.size());
+  const auto number = ParseNumbers(text.substr(0, of));
+  const auto count = ParseNumbers(text.substr(std::min(text.size(), of + kOf.size())));
+  const auto is_count = [](double x) { return IsWithin(x, 1, kMostFrames) && x == std::floor(x); };
+  const auto is_one = [&](const auto& list) {
+    return list && list->size() == 1 && is_count(list->front());
+  };
+  if (!is_one(number) || !is_one(count)) return WrongSetting("package", "like 3 of 8");
+  package_.number = static_cast<size_t>(number->front());
+  package_.count = static_cast<size_t>(count->front());
+  return {};
 }
 
 Result<void> Reader::ReadEncoding() {

@@ -64,7 +64,7 @@ class Writer {
     const std::optional<DepthRange>& depths = light_field_.depth_range;
     const std::pair<const char*, std::string> settings[] = {
         {"written_by", "lfrendertools " + notes.version},
-        {"package", fmt::format("{} of {}", notes.number, notes.count)},
+        {"package", fmt::format("{} of {}", package_.number, package_.count)},
         {"light_field", notes.light_field},
         {"light_field.images", fmt::format("{}", package_.whole.image_count)},
         {"light_field.names", package_.whole.names},

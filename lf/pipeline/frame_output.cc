@@ -98,8 +98,8 @@ Result<Image<uint8_t>> FrameOutput::ReadPicture(FrameId frame) const {
   return picture;
 }
 
-Result<void> FrameOutput::WriteContactSheet(const std::vector<FrameId>& frames,
-                                            size_t at_once) const {
+Result<void> FrameOutput::WriteContactSheet(const std::vector<FrameId>& frames, size_t at_once,
+                                            const std::string& name) const {
   const std::vector<size_t> shown = ContactSheetFrames(frames.size());
   const Intrinsics& plate = path_.Camera(frames.front()).pinhole.intrinsics;
   ContactSheet sheet(shown.size(), plate.width_px, plate.height_px);
@@ -116,7 +116,7 @@ Result<void> FrameOutput::WriteContactSheet(const std::vector<FrameId>& frames,
     for (const std::optional<Error>& error : errors)
       if (error) return *error;
   }
-  return sheet.Write(options_.output_folder / "contact_sheet.png");
+  return sheet.Write(options_.output_folder / name);
 }
 
 Result<void> FrameOutput::WriteVideo(const std::vector<FrameId>& frames) const {

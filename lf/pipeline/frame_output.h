@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "lf/capture/light_field.h"
@@ -19,6 +20,8 @@ namespace lf {
 
 // Of --video, before the work and not after it: kOutput where the file could not be written.
 Result<void> CheckVideoTarget(const std::filesystem::path& path);
+
+inline constexpr const char* kContactSheet = "contact_sheet.png";
 
 // The light field, path and options must outlive it.
 class FrameOutput {
@@ -38,7 +41,8 @@ class FrameOutput {
   //   at_once  files that are read at the same time
   // kOutput: the disk, ffmpeg; kInput: a frame that cannot be read, or of another size.
   // kInterrupted.
-  Result<void> WriteContactSheet(const std::vector<FrameId>& frames, size_t at_once) const;
+  Result<void> WriteContactSheet(const std::vector<FrameId>& frames, size_t at_once,
+                                 const std::string& name = kContactSheet) const;
   Result<void> WriteVideo(const std::vector<FrameId>& frames) const;
 
  private:

@@ -31,6 +31,8 @@ RunStateOptions StateOptions(const Package& package, const RenderOptions& option
   choices.stop_at_samples = options.stop_at_samples;
   choices.format = NameOf(options.format);
   choices.smooth_below = options.smooth_below;
+  RunInputs picture = InputsOfPicture(choices);
+  if (!package.name.empty()) picture.emplace_back("picture.film", HashOfCameras(package.path));
   return {options.output_folder,
           package.name,
           package.FrameIds(),
@@ -38,7 +40,7 @@ RunStateOptions StateOptions(const Package& package, const RenderOptions& option
           options.resume,
           options.overwrite,
           InputsOfRays(package.whole, package.light_field.encoding, choices),
-          InputsOfPicture(choices)};
+          std::move(picture)};
 }
 
 // One render: its inputs, and what passes leave behind.

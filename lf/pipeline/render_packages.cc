@@ -6,6 +6,7 @@
 #include <iterator>
 #include <map>
 
+#include "lf/core/log.h"
 #include "lf/package/package_file.h"
 #include "lf/pipeline/frame_output.h"
 #include "lf/record/run_inputs.h"
@@ -85,11 +86,20 @@ RenderReport Joined(RenderReport all, const RenderReport& part) {
   return all;
 }
 
+// Frames that are missing from a film should not be found out by watching it. One package alone is
+// a job of many.
+void TellOfOthers(size_t given, size_t count) {
+  if (given > 1 && given < count)
+    LogWarning("{} of the film's {} packages are given: the frames of the others are not rendered",
+               given, count);
+}
+
 // A package file and those of its frames that are wanted.
 struct Part {
   fs::path path;
   std::vector<FrameId> frames;
   uint64_t ray_count = 0;
+  size_t film_count = 1;  // packages of the film
 };
 
 Result<std::vector<Part>> LookAtAll(const std::vector<fs::path>& paths,
@@ -111,7 +121,7 @@ Result<std::vector<Part>> LookAtAll(const std::vector<fs::path>& paths,
           fmt::format("{} and {} have one name: reports and states of both would be "
                       "called {}",
                       named->second.string(), path.string(), package.name));
-    Part part{path, {}, 0};
+    Part part{path, {}, 0, package.count};
     for (const PackageFrame& frame : package.frames) {
       if (const auto [owner, is_new] = owners.emplace(frame.id, path); !is_new)
         return UsageError(fmt::format("{} and {} both have frame {}: give one of them",
@@ -151,6 +161,7 @@ Result<RenderReport> RenderPackages(const std::vector<fs::path>& paths,
                                     const RenderOptions& options, ThreadPool& pool,
                                     const std::function<void(const RenderProgress&)>& progress) {
   LF_ASSIGN_OR_RETURN(const std::vector<Part> parts, LookAtAll(paths, place, options.frames));
+  TellOfOthers(paths.size(), parts.front().film_count);
   if (options.video) {
     LF_RETURN_IF_ERROR(CheckVideoTool());
     LF_RETURN_IF_ERROR(CheckVideoTarget(*options.video));
@@ -194,10 +205,14 @@ Result<RenderReport> RenderPackages(const std::vector<fs::path>& paths,
   std::sort(report.frames.begin(), report.frames.end(),
             [](const FrameReport& a, const FrameReport& b) { return a.frame < b.frame; });
   const FrameOutput output(last->light_field, last->path, options, pool);
+  // One package alone is likely to be rendered beside others: each has its own sheet.
   if (options.contact_sheet)
-    LF_RETURN_IF_ERROR(output.WriteContactSheet(frames, static_cast<size_t>(pool.thread_count())));
+    LF_RETURN_IF_ERROR(output.WriteContactSheet(
+        frames, static_cast<size_t>(pool.thread_count()),
+        paths.size() == 1 ? fmt::format("contact_sheet-{}.png", last->name) : kContactSheet));
   if (options.video) LF_RETURN_IF_ERROR(output.WriteVideo(frames));
-  if (report.AcceptedRays() == 0)
+  // A section may be black.
+  if (report.AcceptedRays() == 0 && paths.size() == parts.front().film_count)
     return InputError(fmt::format("{}: every frame is black: no ray reached them",
                                   options.output_folder.string()));
   return report;

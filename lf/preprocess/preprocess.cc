@@ -27,13 +27,13 @@ double SecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// package-0000.lfp, ... of an earlier call.
-std::vector<fs::path> PackagesIn(const fs::path& folder) {
+// package-0000.lfp, ... of an earlier call; or what it left half written (core/file.h).
+std::vector<fs::path> PackagesIn(const fs::path& folder, const char* prefix = "package-") {
   std::vector<fs::path> packages;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error))
     if (entry.path().extension() == kExtension &&
-        entry.path().filename().string().starts_with("package-"))
+        entry.path().filename().string().starts_with(prefix))
       packages.push_back(entry.path());
   return packages;
 }
@@ -104,6 +104,7 @@ class Preprocessor {
   std::vector<uint64_t> pairs_;  // of a frame: LF images and neighbours
   std::vector<double> distances_w_;
   size_t done_ = 0;
+  std::vector<fs::path> written_;
   PreprocessReport report_;
 };
 
@@ -114,7 +115,14 @@ Result<PreprocessReport> Preprocessor::Run() {
   LF_RETURN_IF_ERROR(Measure());
   LF_ASSIGN_OR_RETURN(const std::vector<Section> sections, Split());
   for (size_t i = 0; i < sections.size(); ++i)
-    LF_RETURN_IF_ERROR(MakePackage(i, sections[i], sections.size()));
+    if (const Result<void> made = MakePackage(i, sections[i], sections.size()); !made) {
+      // A part of a film under the names of the whole would pass for it.
+      for (const fs::path& file : written_) {
+        std::error_code ignored;
+        fs::remove(file, ignored);
+      }
+      return made.error();
+    }
   return std::move(report_);
 }
 
@@ -242,10 +250,21 @@ Result<void> Preprocessor::MakePackage(size_t number, const Section& section, si
     gathering.Add(frames_[f], needs);
   }
   Package package = PackageOf(section, gathering);
+  package.number = number + 1;
+  package.count = count;
   for (size_t i = 0; i < distances_w.size(); ++i)
     package.frames[i].camera_distance_w = distances_w[i];
   report_.select_s += SecondsSince(start);
 
+  for (size_t i = 0; i < package.images.size(); ++i) {
+    const PackageImage& image = package.images[i];
+    if (image.frame_count == 0 || image.file_bytes > 0) continue;
+    if (report_.missing_count++ == 0)
+      report_.first_missing =
+          package.light_field.ImagePath(LfImageId{static_cast<uint32_t>(i)}).string();
+    if (options_.strict)
+      return InputError(fmt::format("--strict: {}: is not there, or empty", report_.first_missing));
+  }
   PackageForecast forecast;
   forecast.name = fmt::format("package-{:04}", number);
   LF_RETURN_IF_ERROR(Forecast(package, &forecast));
@@ -254,16 +273,17 @@ Result<void> Preprocessor::MakePackage(size_t number, const Section& section, si
 
   const auto write_start = std::chrono::steady_clock::now();
   if (number == 0)
-    for (const fs::path& old : PackagesIn(*options_.output_folder)) {
-      std::error_code ignored;
-      fs::remove(old, ignored);
-    }
+    for (const char* const prefix : {"package-", ".package-"})
+      for (const fs::path& old : PackagesIn(*options_.output_folder, prefix)) {
+        std::error_code ignored;
+        fs::remove(old, ignored);
+      }
+  written_.push_back(*options_.output_folder / (report_.packages.back().name + kExtension));
   std::vector<const std::vector<FrameRect>*> rects;
   for (const auto& [id, of_image] : gathering.rects()) rects.push_back(&of_image);
-  LF_RETURN_IF_ERROR(
-      WritePackage(*options_.output_folder / (report_.packages.back().name + kExtension), package,
-                   [&rects](LfImageId id) { return *rects[id.value]; },
-                   {options_.version, options_.light_field_name, number + 1, count}));
+  LF_RETURN_IF_ERROR(WritePackage(written_.back(), package,
+                                  [&rects](LfImageId id) { return *rects[id.value]; },
+                                  {options_.version, options_.light_field_name}));
   report_.write_s += SecondsSince(write_start);
   return {};
 }

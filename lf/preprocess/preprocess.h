@@ -49,6 +49,7 @@ struct PreprocessOptions {
   PackageBalance balance = PackageBalance::kRays;
 
   std::optional<DepthRange> depths;  // of the scene; none: as the light field says
+  bool strict = false;               // an LF image that is not there is an error
   std::string version;               // of the program
   std::string light_field_name;      // LIGHTFIELD, as it was given
   const std::atomic<bool>* interrupted = nullptr;
@@ -75,6 +76,8 @@ struct PackageForecast {
 
 struct PreprocessReport {
   size_t light_field_image_count = 0;
+  size_t missing_count = 0;   // files that are needed and not there, counted for each package
+  std::string first_missing;  // of them
   std::vector<FrameForecast> frames;
   std::vector<PackageForecast> packages;
   std::optional<RenderRate> rate;
@@ -86,7 +89,8 @@ struct PreprocessReport {
 };
 
 // kUsage: packages are there, lenses that kArea cannot weigh. kInput: no LF image contributes to
-// any frame. kOutput: the disk, less memory than one frame needs. kInterrupted.
+// any frame; one is missing, if strict. kOutput: the disk, less memory than one frame needs.
+// kInterrupted. After an error none of the packages is there.
 Result<PreprocessReport> Preprocess(const LightField& light_field, const CameraPath& path,
                                     const PreprocessOptions& options, ThreadPool& pool,
                                     const std::function<void(size_t done, size_t total)>& progress);

@@ -100,6 +100,12 @@ RunInputs InputsOfPicture(const RunChoices& choices) {
           {"picture.smooth_below", fmt::format("{}", choices.smooth_below)}};
 }
 
+std::string HashOfCameras(const CameraPath& path) {
+  ValueHasher hasher;
+  for (const RenderCamera& camera : path.cameras) hasher.Add(CameraHash(camera));
+  return hasher.Text();
+}
+
 std::optional<InputDifference> FirstDifference(const RunInputs& recorded, const RunInputs& wanted) {
   const auto value_in = [](const RunInputs& inputs, const std::string& key) -> std::string {
     for (const auto& [name, value] : inputs)

@@ -13,6 +13,7 @@
 #include "lf/collector/collect_batch.h"
 #include "lf/core/ids.h"
 #include "lf/lens_weights/frame_weights.h"
+#include "lf/path/camera_path.h"
 #include "lf/selection/image_order.h"
 
 namespace lf {
@@ -48,6 +49,9 @@ RunInputs InputsOfCamera(FrameId frame, const RenderCamera& camera);
 
 // Of its picture alone.
 RunInputs InputsOfPicture(const RunChoices& choices);
+
+// All cameras of a film: what packages rendered into one folder must have in common.
+std::string HashOfCameras(const CameraPath& path);
 
 // The first key that differs, and both values; "(none)" where one side lacks it.
 struct InputDifference {

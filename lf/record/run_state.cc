@@ -117,6 +117,7 @@ Result<void> RunState::Look() {
     if (frame && file.extension() == ".plate") plates_.insert(*frame);
     if (frame && file.extension() == ".json") records_.insert(*frame);
   }
+  LF_RETURN_IF_ERROR(CheckOtherPackages());
   if (options_.resume) return Read();
   if (options_.overwrite) {
     RemoveAll();
@@ -133,6 +134,24 @@ Result<void> RunState::Look() {
                options_.folder.string());
   fs::remove(ReportPath(), ignored);
   if (options_.package.empty()) fs::remove(options_.folder / "contact_sheet.png", ignored);
+  return {};
+}
+
+// By their reports: frames of two films in one folder would pass for one.
+Result<void> RunState::CheckOtherPackages() const {
+  if (options_.package.empty()) return {};
+  for (const fs::path& file : FilesOf(options_.folder)) {
+    const std::string name = file.filename().string();
+    if (!name.starts_with("report-") || file.extension() != ".json" || file == ReportPath())
+      continue;
+    LF_ASSIGN_OR_RETURN(const RenderReport other, ReadReport(file));
+    if (const auto difference =
+            FirstDifference(other.inputs, Joined(options_.rays, options_.picture)))
+      return UsageError(fmt::format(
+          "{}: is of a package that was rendered with {} {}, this one has {}: their frames would "
+          "pass for one film; give another -o, or remove what is there",
+          file.string(), difference->key, difference->recorded, difference->wanted));
+  }
   return {};
 }
 

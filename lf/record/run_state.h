@@ -44,7 +44,8 @@ class RunState {
  public:
   // Makes the folder, locks it and looks at what is there. The path must outlive the state.
   // kUsage: an unfinished render is there and neither resume nor overwrite is asked for, or it was
-  //   made from other inputs: the message names the first that differs, and both values.
+  //   made from other inputs: the message names the first that differs, and both values. Or other
+  //   packages were rendered into the folder from other inputs.
   // kInput: a file of the state is damaged. kOutput: the folder, or another program at work in it.
   static Result<std::unique_ptr<RunState>> Open(const RunStateOptions& options,
                                                 const CameraPath& path);
@@ -81,6 +82,7 @@ class RunState {
  private:
   RunState(const RunStateOptions& options, const CameraPath& path, FileLock lock);
   Result<void> Look();
+  Result<void> CheckOtherPackages() const;
   Result<void> Read();
   Result<void> ReadFinished(const std::filesystem::path& path);
   Result<void> CheckPlate(FrameId frame) const;

@@ -50,6 +50,9 @@ class Program {
 CLI::Validator WholeNumber();
 CLI::Validator NotEmpty();
 
+// A word of a command line, quoted so that a shell takes it as it is.
+std::string ShellWord(const std::string& word);
+
 // The version of the programs and the library, such as "0.1.0".
 const char* Version();
 
