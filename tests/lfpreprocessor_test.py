@@ -292,6 +292,8 @@ class PackagesTest(unittest.TestCase):
         self.fails(2, ["picture.format"], RENDERER, files[1], "-o", out, "--format", "png")
         self.succeeds(RENDERER, files[1], "-o", out, "-q")
         self.assertTrue((out / "contact_sheet-package-0001.png").exists())
+        told = self.call(RENDERER, files[0], "-o", out)
+        self.assertIn("look at " + str(out / "contact_sheet-package-0000.png"), told.stderr)
 
     def test_a_part_of_a_film_is_told(self):
         field, path = self.film()
@@ -308,6 +310,28 @@ class PackagesTest(unittest.TestCase):
         self.fails(3, ["--strict", "image_03.png"], PREPROCESSOR, field, path, "-o",
                    self.folder / "strict", "--strict")
         self.assertEqual(list((self.folder / "strict").glob("*.lfp")), [])
+
+    def test_an_interrupted_call_leaves_no_part_of_a_film(self):
+        """whenever it comes: all packages as they should be, or none"""
+        field, path = self.film(frames=150)
+        _, files = self.packages(field, path, "--packages", "3")
+        whole = [file.read_bytes() for file in files]
+        codes = set()
+        for attempt in range(12):
+            out = self.folder / f"interrupted{attempt}"
+            run = subprocess.Popen([PREPROCESSOR, field, path, "-o", out, "-q", "--packages", "3"],
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            for _ in range(1000):
+                if out.exists() or run.poll() is not None:
+                    break
+                time.sleep(0.002)
+            time.sleep(0.02 * attempt)
+            run.send_signal(signal.SIGINT)
+            codes.add(run.wait(60))
+            left = [file.read_bytes() for file in sorted(out.iterdir())]
+            self.assertEqual(left, whole if run.returncode == 0 else [])
+        self.assertIn(5, codes)
+        self.assertTrue(codes <= {0, 5}, codes)
 
     def test_packages_are_replaced_on_request(self):
         field, path = self.film()

@@ -33,8 +33,10 @@ DIR receives frame_0001.exr ..., contact_sheet.png and report.json. EXR frames h
 (R, G, B), the rays of every element (count.R, count.G, count.B; with lens weights the sums of their
 weights), coverage, and with lens weights how many LF images of equal weight there are (effective).
 
-Packages have reports of their own, report-package-0000.json; many machines may render theirs into one
-DIR at the same time. The state of unfinished frames lies in DIR/partial. Ctrl-C (SIGINT), SIGTERM and SIGHUP write it and end
+Packages have reports of their own, report-package-0000.json, and one that is given alone has its own
+contact sheet: many machines may render theirs into one DIR at the same time.
+
+The state of unfinished frames lies in DIR/partial. Ctrl-C (SIGINT), SIGTERM and SIGHUP write it and end
 with exit code 5, SIGUSR1 writes it and goes on; a second Ctrl-C ends at once. --resume gives the same
 bits as if there had been no interruption.)";
 
@@ -110,9 +112,12 @@ int main(int argc, char** argv) {
                         render(arguments, common, &signals, pool, progress));
     if (!rendered.report) return lf::WithResumeCommand(rendered.report.error(), argc, argv);
     const lf::RenderReport& report = *rendered.report;
-    lf::SummariseRender(report, arguments.no_contact_sheet
-                                    ? arguments.output
-                                    : arguments.output + "/contact_sheet.png");
+    std::filesystem::path look_at = arguments.output;
+    if (!arguments.no_contact_sheet)
+      look_at /= arguments.HasPackages()
+                     ? lf::ContactSheetName({arguments.inputs.begin(), arguments.inputs.end()})
+                     : "contact_sheet.png";
+    lf::SummariseRender(report, look_at.string());
     if (common.json && !(std::cout << lf::ToJson(report) << std::flush))
       return lf::OutputError("--json: the report cannot be written to stdout");
     return lf::CheckRequired(report, rendered.options.require_samples);

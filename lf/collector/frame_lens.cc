@@ -1,5 +1,7 @@
 #include "lf/collector/frame_lens.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -8,6 +10,13 @@
 #include "lf/collector/around_lens.h"
 
 namespace lf {
+
+Result<void> CheckHasArea(const RenderCamera& camera, FrameId frame) {
+  if (camera.aperture.radius_w > 0) return {};
+  return UsageError(fmt::format(
+      "--lens-weights area: the lens of frame {} is a pinhole, which has no area: use hat",
+      frame.value));
+}
 
 FrameLens::FrameLens(const ImageIndex& index, const RenderCamera& frame, LensWeights kind,
                      const SelectOptions& select, ThreadPool& pool,

@@ -11,10 +11,14 @@
 #include "lf/core/ids.h"
 #include "lf/core/image.h"
 #include "lf/core/parallel.h"
+#include "lf/core/result.h"
 #include "lf/lens_weights/frame_weights.h"
 #include "lf/selection/select.h"
 
 namespace lf {
+
+// kUsage where the lens of the frame is a pinhole: kArea cannot weigh it.
+Result<void> CheckHasArea(const RenderCamera& camera, FrameId frame);
 
 // With lens weights LF cameras beside the lens take part, and weights replace its test
 // (doc/ray.md, "What is added").

@@ -163,10 +163,7 @@ Result<void> Renderer::CheckChoices() const {
                     name));
   if (options_.lens_weights == LensWeights::kArea)
     for (const FrameId frame : frames_)
-      if (path_.Camera(frame).aperture.radius_w == 0)
-        return UsageError(fmt::format(
-            "--lens-weights area: the lens of frame {} is a pinhole, which has no area: use hat",
-            frame.value));
+      LF_RETURN_IF_ERROR(CheckHasArea(path_.Camera(frame), frame));
   return {};
 }
 

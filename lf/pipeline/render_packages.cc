@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 #include <map>
 
 #include "lf/core/log.h"
@@ -21,13 +20,13 @@ constexpr size_t kLookedAt = 16;  // image files, spread over the package
 // What all packages of one film have in common.
 struct Film {
   LightFieldIdentity light_field;
-  RunInputs cameras;
+  std::string cameras;  // their hash
   PackageChoices choices;
 
-  explicit Film(const Package& package) : light_field(package.whole), choices(package.choices) {
-    for (uint32_t n = 1; n <= package.path.frame_count(); ++n)
-      cameras.push_back(InputsOfCamera(FrameId{n}, package.path.Camera(FrameId{n})).back());
-  }
+  explicit Film(const Package& package)
+      : light_field(package.whole),
+        cameras(HashOfCameras(package.path)),
+        choices(package.choices) {}
   // What differs; empty if nothing does.
   std::string DifferenceTo(const Film& other) const {
     if (light_field != other.light_field) return "another light field";
@@ -156,6 +155,12 @@ Result<Package> OpenPackage(const fs::path& path, const std::optional<LightField
   return package;
 }
 
+// One package alone is likely to be rendered beside others.
+std::string ContactSheetName(const std::vector<fs::path>& paths) {
+  return paths.size() == 1 ? fmt::format("contact_sheet-{}.png", paths.front().stem().string())
+                           : kContactSheet;
+}
+
 Result<RenderReport> RenderPackages(const std::vector<fs::path>& paths,
                                     const std::optional<LightFieldPlace>& place,
                                     const RenderOptions& options, ThreadPool& pool,
@@ -205,11 +210,9 @@ Result<RenderReport> RenderPackages(const std::vector<fs::path>& paths,
   std::sort(report.frames.begin(), report.frames.end(),
             [](const FrameReport& a, const FrameReport& b) { return a.frame < b.frame; });
   const FrameOutput output(last->light_field, last->path, options, pool);
-  // One package alone is likely to be rendered beside others: each has its own sheet.
   if (options.contact_sheet)
-    LF_RETURN_IF_ERROR(output.WriteContactSheet(
-        frames, static_cast<size_t>(pool.thread_count()),
-        paths.size() == 1 ? fmt::format("contact_sheet-{}.png", last->name) : kContactSheet));
+    LF_RETURN_IF_ERROR(output.WriteContactSheet(frames, static_cast<size_t>(pool.thread_count()),
+                                                ContactSheetName(paths)));
   if (options.video) LF_RETURN_IF_ERROR(output.WriteVideo(frames));
   // A section may be black.
   if (report.AcceptedRays() == 0 && paths.size() == parts.front().film_count)

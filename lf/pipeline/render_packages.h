@@ -29,8 +29,11 @@ struct LightFieldPlace {
 Result<Package> OpenPackage(const std::filesystem::path& path,
                             const std::optional<LightFieldPlace>& place = {});
 
+// contact_sheet.png; of one package alone contact_sheet-NAME.png.
+std::string ContactSheetName(const std::vector<std::filesystem::path>& paths);
+
 // One after the other as by Render(), each with its own report and state; then the contact sheet
-// (contact_sheet.png; of one package alone contact_sheet-NAME.png) and the video of their frames.
+// (ContactSheetName()) and the video of their frames.
 // Reads every package before the first is rendered. Of options.frames each takes its own. The
 // report is that of all. kUsage: packages that have frames in common, frames that none of them has;
 // kInput: packages of different films or light fields. Else as Render() and OpenPackage().

@@ -7,9 +7,9 @@
 #include <map>
 #include <numeric>
 
+#include "lf/collector/frame_lens.h"
 #include "lf/collector/memory_plan.h"
 #include "lf/core/file.h"
-#include "lf/core/log.h"
 #include "lf/package/package_file.h"
 #include "lf/preprocess/frame_needs.h"
 #include "lf/preprocess/split_film.h"
@@ -83,12 +83,16 @@ class Preprocessor {
   std::vector<uint64_t> FileSizes(const Package& package) const;
   Result<void> Forecast(const Package& package, PackageForecast* forecast) const;
 
-  FrameNeeds Needs(FrameId frame) { return NeedsOf(*index_, path_.Camera(frame), needs_, pool_); }
-  Result<void> Step() {
-    if (options_.interrupted != nullptr && *options_.interrupted)
-      return Error{ErrorKind::kInterrupted, "interrupted"};
+  Result<void> CheckInterrupted() const {
+    if (options_.interrupted == nullptr || !*options_.interrupted) return {};
+    return Error{ErrorKind::kInterrupted, "interrupted: no package is kept"};
+  }
+  // What was found when the interruption came is not all.
+  Result<FrameNeeds> Needs(FrameId frame) {
+    FrameNeeds needs = NeedsOf(*index_, path_.Camera(frame), needs_, pool_);
+    LF_RETURN_IF_ERROR(CheckInterrupted());
     if (progress_) progress_(++done_, 2 * frames_.size());
-    return {};
+    return needs;
   }
 
   const LightField& light_field_;
@@ -102,7 +106,6 @@ class Preprocessor {
   ImagePlaces places_;
   std::optional<ImageIndex> index_;
   std::vector<uint64_t> pairs_;  // of a frame: LF images and neighbours
-  std::vector<double> distances_w_;
   size_t done_ = 0;
   std::vector<fs::path> written_;
   PreprocessReport report_;
@@ -132,10 +135,7 @@ Result<void> Preprocessor::Begin() {
     for (uint32_t n = 1; n <= path_.frame_count(); ++n) frames_.push_back(FrameId{n});
   if (options_.lens_weights == LensWeights::kArea)
     for (const FrameId frame : frames_)
-      if (path_.Camera(frame).aperture.radius_w == 0)
-        return UsageError(fmt::format(
-            "--lens-weights area: the lens of frame {} is a pinhole, which has no area: use hat",
-            frame.value));
+      LF_RETURN_IF_ERROR(CheckHasArea(path_.Camera(frame), frame));
   if (options_.output_folder) {
     const std::vector<fs::path> there = PackagesIn(*options_.output_folder);
     if (!there.empty() && !options_.overwrite)
@@ -157,14 +157,14 @@ Result<void> Preprocessor::MakeIndex() {
   if (options_.order != ImageOrder::kShuffle) {
     std::vector<std::vector<ImageRays>> taken;
     for (const FrameId frame : frames_) {
-      if (options_.interrupted != nullptr && *options_.interrupted)
-        return Error{ErrorKind::kInterrupted, "interrupted"};
+      LF_RETURN_IF_ERROR(CheckInterrupted());
       taken.emplace_back();
       const RenderCamera& camera = path_.Camera(frame);
       for (const SelectedImage& image :
            SelectImages(*index_, std::span(&camera, 1), needs_.select, pool_))
         taken.back().push_back({image.id, image.ray_count});
     }
+    LF_RETURN_IF_ERROR(CheckInterrupted());
     places_ = PlacesInOrder(options_.order, light_field_.size(), options_.seed, taken);
     index_.emplace(light_field_, places_);
   }
@@ -175,8 +175,7 @@ Result<void> Preprocessor::MakeIndex() {
 Result<void> Preprocessor::ForecastFrames() {
   const auto start = std::chrono::steady_clock::now();
   for (const FrameId frame : frames_) {
-    LF_RETURN_IF_ERROR(Step());
-    const FrameNeeds needs = Needs(frame);
+    LF_ASSIGN_OR_RETURN(const FrameNeeds needs, Needs(frame));
     pairs_.push_back(needs.images.size() + needs.neighbours.size());
     report_.frames.push_back({frame, needs.images.size(), needs.RayCount(), {}});
   }
@@ -189,6 +188,7 @@ Result<void> Preprocessor::ForecastFrames() {
         DensityOf(*index_, path_.Camera(frames_[f]),
                   options_.depths ? options_.depths : light_field_.depth_range);
   });
+  LF_RETURN_IF_ERROR(CheckInterrupted());
   report_.density_s = SecondsSince(density_start);
   if (std::all_of(report_.frames.begin(), report_.frames.end(),
                   [](const FrameForecast& frame) { return frame.image_count == 0; }))
@@ -244,8 +244,7 @@ Result<void> Preprocessor::MakePackage(size_t number, const Section& section, si
   Gathering gathering;
   std::vector<std::optional<double>> distances_w;
   for (size_t f = section.begin; f < section.end; ++f) {
-    LF_RETURN_IF_ERROR(Step());
-    const FrameNeeds needs = Needs(frames_[f]);
+    LF_ASSIGN_OR_RETURN(const FrameNeeds needs, Needs(frames_[f]));
     distances_w.push_back(needs.camera_distance_w);
     gathering.Add(frames_[f], needs);
   }
