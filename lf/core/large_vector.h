@@ -29,8 +29,9 @@ struct LargeAllocator {
     if (count > (SIZE_MAX - kCacheLine) / sizeof(T)) throw std::bad_array_new_length();
     const size_t bytes = (count * sizeof(T) + kCacheLine - 1) / kCacheLine * kCacheLine;
     const bool is_large = bytes >= 2 * kHugePage;
-    void* const memory = std::aligned_alloc(is_large ? kHugePage : kCacheLine, bytes);
-    if (memory == nullptr) throw std::bad_alloc();
+    void* memory = nullptr;
+    if (posix_memalign(&memory, is_large ? kHugePage : kCacheLine, bytes) != 0)
+      throw std::bad_alloc();
     // A wish: where the system has no huge pages there are small ones.
     if (is_large) madvise(memory, bytes / kHugePage * kHugePage, MADV_HUGEPAGE);
     return static_cast<T*>(memory);

@@ -1,0 +1,322 @@
+#!/usr/bin/python3
+"""Table 5.3 of the thesis again: how small LF images become, and what that does to rendered frames.
+
+usage: bench/codec_table.py BUILD_DIR [--data ../shared] [--only shop,synth,noisy] [--no-peers]
+                            [--write doc/codec.md] [--pictures doc/images]
+
+Light fields of RGGB mosaics: `shop`, the 9 x 9 views in the middle of blender-shop, of whose colours every pixel
+keeps one (8 bits, sRGB); `synth` and `noisy`, the still life of lfsynth (16 bits, linear), without and with
+sensor noise. Each is coded by `lfcompressor` with many settings, and frames of a focus pull are rendered
+from the store and from the originals. The thesis's bytes are also given to xz, bzip2 and zstd -19 (by an
+implementation of the thesis's scheme of its own, in NumPy, on three LF images): "best" takes the shortest.
+Peers code the four planes of each mosaic side by side as one grey picture: JPEG and JPEG 2000 by OpenCV,
+PNG, and JPEG XL where `cjxl` is installed (libjxl-tools).
+
+PSNR of images is that of stored values, PSNR of frames that of 16-bit sRGB pictures.
+"""
+import argparse
+import bz2
+import json
+import lzma
+import math
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import time
+
+import cv2
+import numpy as np
+import zstandard
+
+import record as results
+
+FRAMES = "1-50x12"
+THESIS = [(1, t) for t in (0.5, 1, 2, 4, 8, 16)] + [(2, t) for t in (0.5, 1, 2, 4, 8)] + \
+         [(3, t) for t in (0.5, 1, 2, 4)]
+TABLE_5_3 = {(1, 2): 11.7, (1, 4): 13.7, (1, 8): 15.1, (2, 0.5): 7.5, (2, 2): 21.1, (2, 4): 30.6, (3, 4): 44.6}
+DEFAULT = (1, 1.5, 2, 3, 4, 6, 8, 12, 16)
+
+
+def run(*words, **more):
+    return subprocess.run([str(word) for word in words], check=True, capture_output=True, text=True, **more).stdout
+
+
+def mosaic_of(picture):
+    """RGGB from BGR"""
+    mosaic = np.empty(picture.shape[:2], picture.dtype)
+    mosaic[0::2, 0::2] = picture[0::2, 0::2, 2]
+    mosaic[0::2, 1::2] = picture[0::2, 1::2, 1]
+    mosaic[1::2, 0::2] = picture[1::2, 0::2, 1]
+    mosaic[1::2, 1::2] = picture[1::2, 1::2, 0]
+    return mosaic
+
+
+class Content:
+    """a light field of mosaics, a path, and its frames from the originals"""
+
+    def __init__(self, build, data, name, folder):
+        self.build, self.folder, self.name = build, folder, name
+        self.field = folder / "field"
+        if name == "shop":
+            (folder / "mosaics").mkdir(parents=True)
+            for file in sorted((data / "data/blender-shop/images").glob("*.jpg")):
+                row, column = (int(word) for word in file.stem.split("_")[1:3])
+                if abs(row - 13) <= 4 and abs(column - 13) <= 4:
+                    cv2.imwrite(str(folder / "mosaics" / (file.stem + ".png")), mosaic_of(cv2.imread(str(file))))
+            run(build / "bin/lfimport", folder / "mosaics", "-o", self.field, "--bayer", "RGGB", "-q")
+        else:
+            run(build / "bin/lfsynth", "still-life", "-o", self.field, "--count", 81, "--size", "960x640", "--bayer",
+                "--noise", 0.005 if name == "noisy" else 0, "-q")
+        self.path = folder / "path.yaml"
+        run(build / "bin/lfexample", self.field, "-o", self.path, "--move", "focus-pull", "-q")
+        calibration = json.loads((self.field / "transforms.json").read_text())
+        self.images = [self.field / frame["file_path"] for frame in calibration["frames"]]
+        self.bits = 8 if cv2.imread(str(self.images[0]), cv2.IMREAD_UNCHANGED).dtype == np.uint8 else 16
+        self.pixel_bytes = sum(cv2.imread(str(i), cv2.IMREAD_UNCHANGED).nbytes for i in self.images)
+        self.frames = self.render(self.field)
+
+    def render(self, light_field):
+        out = self.folder / "frames"
+        shutil.rmtree(out, ignore_errors=True)
+        run(self.build / "bin/lfrenderer", light_field, self.path, "-o", out, "--frames", FRAMES, "--format", "png16",
+            "--no-contact-sheet", "-q")
+        return [cv2.imread(str(f), cv2.IMREAD_UNCHANGED) for f in sorted(out.glob("frame_*.png"))]
+
+    def frame_psnr(self, frames):
+        error = np.mean([np.mean((a.astype(float) - b) ** 2) for a, b in zip(self.frames, frames)])
+        return 10 * math.log10(65535 ** 2 / error) if error > 0 else math.inf
+
+    def code(self, *options):
+        """one row: the report of lfcompressor, and what becomes of frames"""
+        store = self.folder / "field.lfs"
+        report = json.loads(run(self.build / "bin/lfcompressor", self.field, "-o", store, "--overwrite", "--json",
+                                "--progress", "none", *options))
+        frames = self.render(store)
+        return {"ratio": report["ratio"], "psnr": float(str(report["psnr_db"]).replace("exact", "inf")),
+                "frame_psnr": self.frame_psnr(frames), "cpu_s": report["encode_cpu_s"],
+                "bytes": report["code_bytes"], "total_s": report["total_s"]}, frames
+
+    def peer(self, coder):
+        """the same for an encoder: coder(picture) -> bytes, decoded picture"""
+        folder = self.folder / "peer"
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir()
+        calibration = json.loads((self.field / "transforms.json").read_text())
+        size, error, seconds = 0, 0.0, 0.0
+        for i, (file, frame) in enumerate(zip(self.images, calibration["frames"])):
+            mosaic = cv2.imread(str(file), cv2.IMREAD_UNCHANGED)
+            planes = np.vstack([np.hstack([mosaic[y::2, x::2] for x in (0, 1)]) for y in (0, 1)])
+            begin = time.process_time()
+            code, decoded = coder(planes)
+            seconds += time.process_time() - begin
+            size += code
+            height, width = planes.shape[0] // 2, planes.shape[1] // 2
+            back = np.empty_like(mosaic)
+            for y in (0, 1):
+                for x in (0, 1):
+                    back[y::2, x::2] = decoded[y * height:(y + 1) * height, x * width:(x + 1) * width]
+            error += np.mean((back.astype(float) - mosaic) ** 2)
+            frame["file_path"] = f"{i}.png"
+            cv2.imwrite(str(folder / f"{i}.png"), back, [cv2.IMWRITE_PNG_COMPRESSION, 1])
+        (folder / "transforms.json").write_text(json.dumps(calibration))
+        error /= len(self.images)
+        white = 2 ** self.bits - 1
+        return {"ratio": self.pixel_bytes / size, "cpu_s": seconds, "bytes": size,
+                "psnr": 10 * math.log10(white ** 2 / error) if error > 0 else math.inf,
+                "frame_psnr": self.frame_psnr(self.render(folder))}
+
+
+def haar(plane):
+    """one level of averages and differences: low, across, down, both (thesis 2.5.1)"""
+    def split(a):
+        even, odd = a[0::2], a[1::2]
+        low = even.copy()
+        low[:len(odd)] = (even[:len(odd)] + odd) / 2
+        return low, (even[:len(odd)] - odd) / 2
+    low, high = (half.T for half in split(plane.T))
+    low_low, down = split(low)
+    across, both = split(high)
+    return low_low, across, down, both
+
+
+def best_lossless(content, levels, threshold):
+    """how much shorter the best of four lossless coders is than zstd -1, on the thesis's bytes"""
+    step = 1 if content.bits == 8 else 257
+    sizes = np.zeros(4)
+    for file in content.images[:: len(content.images) // 2 - 1][:3]:
+        mosaic = cv2.imread(str(file), cv2.IMREAD_UNCHANGED).astype(float)
+        planes = []
+        for y in (0, 1):
+            for x in (0, 1):
+                low, details = mosaic[y::2, x::2], []
+                for _ in range(levels):
+                    low, *bands = haar(low)
+                    details.append([np.where(np.abs(b) < threshold * step, 0, b) for b in bands])
+                planes.append((low, details))
+        values = [b for low, details in planes for b in [low] + sum(details, [])]
+        least, most = min(b.min() for b in values), max(b.max() for b in values)
+
+        def picture(low, details):
+            for across, down, both in reversed(details):
+                low = np.vstack([np.hstack([low, across]), np.hstack([down, both])])
+            return low
+        pictures = [picture(*plane) for plane in planes]
+        whole = np.vstack([np.hstack(pictures[:2]), np.hstack(pictures[2:])])
+        data = np.round((whole - least) / (most - least) * 255).astype(np.uint8).tobytes()
+        sizes += [len(zstandard.ZstdCompressor(level=1).compress(data)),
+                  len(zstandard.ZstdCompressor(level=19).compress(data)), len(bz2.compress(data, 9)),
+                  len(lzma.compress(data, preset=6))]
+    return sizes[0] / sizes.min()
+
+
+def at(rows, key, target):
+    """the ratio at which the PSNR `key` is reached, between rows; None beyond them"""
+    points = sorted((row[key], math.log(row["best"])) for row in rows if math.isfinite(row[key]))
+    values = [value for value, _ in points]
+    if not points or not values[0] <= target <= values[-1]:
+        return None
+    return math.exp(np.interp(target, values, [ratio for _, ratio in points]))
+
+
+def best_at(rows, key, target):
+    """of the levels, the best"""
+    ratios = [at([r for r in rows if r["levels"] == level], key, target) for level in {r["levels"] for r in rows}]
+    return max((ratio for ratio in ratios if ratio), default=None)
+
+
+def jpeg(quality):
+    def code(picture):
+        data = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, quality, cv2.IMWRITE_JPEG_OPTIMIZE, 1])[1]
+        return len(data), cv2.imdecode(data, cv2.IMREAD_UNCHANGED)
+    return code
+
+
+def jpeg_2000(thousandths):
+    def code(picture):
+        data = cv2.imencode(".jp2", picture, [cv2.IMWRITE_JPEG2000_COMPRESSION_X1000, thousandths])[1]
+        return len(data), cv2.imdecode(data, cv2.IMREAD_UNCHANGED)
+    return code
+
+
+def png(picture):
+    data = cv2.imencode(".png", picture, [cv2.IMWRITE_PNG_COMPRESSION, 6])[1]
+    return len(data), picture
+
+
+def jpeg_xl(distance, effort=3):
+    def code(picture):
+        with tempfile.TemporaryDirectory() as temporary:
+            source, coded, back = (pathlib.Path(temporary) / name for name in ("a.png", "a.jxl", "b.png"))
+            cv2.imwrite(str(source), picture)
+            run("cjxl", source, coded, "-d", distance, "-e", effort, "--quiet")
+            run("djxl", coded, back, "--quiet")
+            return coded.stat().st_size, cv2.imread(str(back), cv2.IMREAD_UNCHANGED)
+    return code
+
+
+def peers_of(content):
+    peers = {"JPEG 2000": [(f"{t / 10:g} %", jpeg_2000(t)) for t in (20, 40, 70, 120, 200, 300)]}
+    if content.bits == 8:
+        peers["JPEG"] = [(f"quality {q}", jpeg(q)) for q in (70, 80, 90, 95, 98)]
+    if shutil.which("cjxl"):
+        peers["JPEG XL"] = [(f"distance {d:g}", jpeg_xl(d)) for d in (0.2, 0.5, 1, 2, 3)]
+    lossless = {"PNG": png}
+    if shutil.which("cjxl"):
+        lossless["JPEG XL"] = jpeg_xl(0)
+    return peers, lossless
+
+
+def number(value, digits=1):
+    return "exact" if value == math.inf else "-" if value is None else f"{value:.{digits}f}"
+
+
+def measure(content, with_peers, pictures):
+    rows = []
+    for levels, threshold in THESIS:
+        row, frames = content.code("--profile", "thesis", "--levels", levels, "--threshold", threshold)
+        if pictures and content.name == "shop" and (levels, threshold) in ((1, 8), (2, 4)):
+            draw(content, frames, pictures / f"codec_thesis_{levels}.png")
+        row |= {"profile": "thesis", "levels": levels, "threshold": threshold,
+                "best": row["ratio"] * best_lossless(content, levels, threshold)}
+        rows.append(row)
+        print(content.name, row, flush=True)
+    for threshold in DEFAULT:
+        row, frames = content.code("--threshold", threshold)
+        if pictures and content.name == "shop" and threshold == 8:
+            draw(content, frames, pictures / "codec_default.png")
+        rows.append(row | {"profile": "default", "levels": 4, "threshold": threshold, "best": row["ratio"]})
+        print(content.name, rows[-1], flush=True)
+    row, _ = content.code("--profile", "lossless")
+    rows.append(row | {"profile": "lossless", "levels": 4, "threshold": None, "best": row["ratio"]})
+    if with_peers:
+        peers, lossless = peers_of(content)
+        for name, coders in peers.items():
+            for setting, coder in coders:
+                row = content.peer(coder)
+                rows.append(row | {"profile": name, "levels": 0, "threshold": setting, "best": row["ratio"]})
+                print(content.name, rows[-1], flush=True)
+        for name, coder in lossless.items():
+            row = content.peer(coder)
+            rows.append(row | {"profile": f"{name}, lossless", "levels": 0, "threshold": None, "best": row["ratio"]})
+            print(content.name, rows[-1], flush=True)
+    return rows
+
+
+def draw(content, frames, path):
+    """a part of a frame, twice as large"""
+    height, width = frames[1].shape[:2]
+    part = frames[1][height // 3:height // 3 + 160, width // 3:width // 3 + 240]
+    cv2.imwrite(str(path), cv2.resize((part // 257).astype(np.uint8), None, fx=2, fy=2,
+                                      interpolation=cv2.INTER_NEAREST))
+
+
+def table_of(name, rows, pixel_bytes):
+    lines = [f"**{name}**", "", "| profile | levels | threshold | ratio (thesis) | size, MB | CPU s | PSNR of images | of frames |",
+             "|" + " --- |" * 8]
+    for row in rows:
+        if row["profile"] == "thesis" and (row["levels"], row["threshold"]) not in TABLE_5_3:
+            continue
+        ratio = f"{row['ratio']:.1f}"
+        if row["profile"] == "thesis":
+            ratio += f", best {row['best']:.1f} ({TABLE_5_3[row['levels'], row['threshold']]})"
+        lines.append(f"| {row['profile']} | {row['levels'] or '-'} | {row['threshold'] or '-'} | {ratio} | "
+                     f"{row['bytes'] / 1e6:.2f} | {row['cpu_s']:.1f} | {number(row['psnr'])} | {number(row['frame_psnr'])} |")
+    thesis, ours = ([r for r in rows if r["profile"] == p] for p in ("thesis", "default"))
+    lines += ["", "| at equal PSNR | dB | thesis, best coder | default | default / thesis |" + "".join(
+        f" {p} |" for p in ("JPEG", "JPEG 2000", "JPEG XL")), "|" + " --- |" * 8]
+    for key, what, targets in (("psnr", "of images", (40, 42.5, 45, 48)), ("frame_psnr", "of frames", (45, 48, 50, 52))):
+        for target in targets:
+            a, b = best_at(thesis, key, target), at(ours, key, target)
+            others = [at([r for r in rows if r["profile"] == p], key, target) for p in ("JPEG", "JPEG 2000", "JPEG XL")]
+            lines.append(f"| {what} | {target} | {number(a, 2)} | {number(b, 2)} | "
+                         f"{number(b / a if a and b else None, 2)} |" + "".join(f" {number(o, 2)} |" for o in others))
+    return "\n".join(lines) + "\n"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("--data", type=pathlib.Path, default=pathlib.Path("../shared"))
+    parser.add_argument("--only", default="shop,synth,noisy")
+    parser.add_argument("--no-peers", action="store_true")
+    parser.add_argument("--pictures", type=pathlib.Path, help="folder of pictures of artefacts")
+    results.add_options(parser)
+    arguments = parser.parse_args()
+    if arguments.again:
+        record = json.loads(arguments.again.read_text())
+    else:
+        record = results.context() | {"rows": {}}
+        with tempfile.TemporaryDirectory() as temporary:
+            for name in arguments.only.split(","):
+                content = Content(arguments.build.resolve(), arguments.data, name, pathlib.Path(temporary) / name)
+                if arguments.pictures and name == "shop":
+                    draw(content, content.frames, arguments.pictures / "codec_original.png")
+                record["rows"][name] = measure(content, not arguments.no_peers, arguments.pictures)
+    text = results.sentence(record) + "\n\n" + "\n".join(
+        table_of(name, rows, 0) for name, rows in record["rows"].items())
+    results.publish(arguments, "codec_table.py", record, text)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,26 @@
+// The averaging Haar transform of a plane, one level at a time: thesis 2.5.1, equations 2.20 and
+// 2.21, nonstandard decomposition. Internal to codec.
+//
+//   a = (x + y) / 2    d = (x - y) / 2    of rows, then of columns;    x = a + d    y = a - d
+//
+// The last of an odd number is its own average, and has no d. Values are whole multiples of
+// 1 / 2^kHaarBits, in which five levels of pixels of 16 bits are exact.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "lf/codec/wavelet53.h"
+
+namespace lf {
+
+inline constexpr int kHaarBits = 10;
+
+// values  [height][width]; bands as in wavelet53.h, high being d
+void AnalyzeHaar(const int32_t* values, int width, int height,
+                 const std::array<int32_t*, kBands>& bands);
+
+void SynthesizeHaar(Transform transform, const std::array<const int32_t*, kBands>& bands, int width,
+                    int height, int32_t* values);
+
+}  // namespace lf

@@ -1,0 +1,267 @@
+#include "lf/codec/packing.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <type_traits>
+#include <vector>
+
+#include "lf/codec/entropy.h"
+#include "lf/codec/packing_kernels.h"
+
+namespace lf {
+namespace {
+
+template <size_t kPerByte>
+std::vector<uint8_t> PackedBy(std::span<const uint32_t> numbers) {
+  constexpr int kBits = 8 / kPerByte;
+  constexpr uint32_t kEscape = (1u << kBits) - 1;
+  const auto byte_of = [&](size_t begin, size_t count) {
+    uint32_t packed = 0;
+    for (size_t place = 0; place < count; ++place)
+      packed |= std::min(numbers[begin + place], kEscape) << (kBits * place);
+    return static_cast<uint8_t>(packed);
+  };
+  const size_t whole = numbers.size() / kPerByte;
+  std::vector<uint8_t> bytes((numbers.size() + kPerByte - 1) / kPerByte);
+  for (size_t i = 0; i < whole; ++i) bytes[i] = byte_of(i * kPerByte, kPerByte);
+  if (whole < bytes.size()) bytes[whole] = byte_of(whole * kPerByte, numbers.size() % kPerByte);
+  return bytes;
+}
+
+std::vector<uint8_t> Packed(Packing packing, std::span<const uint32_t> numbers) {
+  const size_t count = numbers.size();
+  if (IsPlanes(packing)) {
+    std::vector<uint8_t> bytes(count * PlaneCount(packing));
+    for (int plane = 0; plane < PlaneCount(packing); ++plane)
+      for (size_t i = 0; i < count; ++i)
+        bytes[plane * count + i] = static_cast<uint8_t>(numbers[i] >> (8 * plane));
+    return bytes;
+  }
+  switch (packing) {
+    case Packing::kOne:
+      return PackedBy<1>(numbers);
+    case Packing::kTwo:
+      return PackedBy<2>(numbers);
+    default:
+      return PackedBy<4>(numbers);
+  }
+}
+
+std::vector<uint32_t> Escapes(Packing packing, std::span<const uint32_t> numbers) {
+  const uint32_t escape = EscapeOf(packing);
+  // Every one is written where the next would be: no branch has to be foreseen.
+  std::vector<uint32_t> escapes(numbers.size() + 1);
+  size_t count = 0;
+  for (const uint32_t number : numbers) {
+    escapes[count] = number - escape;
+    count += number >= escape ? 1 : 0;
+  }
+  escapes.resize(count);
+  return escapes;
+}
+
+// Of coding each byte by how often it is there: bytes.
+double Cost(std::span<const uint8_t> bytes) {
+  std::array<uint32_t, 256> counts{};
+  for (const uint8_t byte : bytes) ++counts[byte];
+  double bits = 0;
+  for (const uint32_t count : counts)
+    if (count > 0) bits -= count * std::log2(count / static_cast<double>(bytes.size()));
+  return bits / 8;
+}
+
+struct Choice {
+  Packing packing = Packing::kZeros;
+  double cost = 0;  // bytes
+};
+
+// The packing that takes the fewest bytes; each stream costs some by itself.
+Choice BestPacking(std::span<const uint32_t> numbers, int escapes_left) {
+  constexpr double kOverhead = 40;
+  if (numbers.empty()) return {};
+  const uint32_t largest = *std::max_element(numbers.begin(), numbers.end());
+  if (largest == 0) return {Packing::kZeros, 1};
+  Choice best{Packing::kZeros, 1e300};
+  const auto offer = [&best](Packing packing, double cost) {
+    if (cost < best.cost) best = {packing, cost};
+  };
+  const Packing planes = largest >> 16 == 0   ? Packing::kPlanes2
+                         : largest >> 24 == 0 ? Packing::kPlanes3
+                                              : Packing::kPlanes4;
+  if (largest >= EscapeOf(Packing::kOne)) {
+    double cost = kOverhead;
+    const std::vector<uint8_t> bytes = Packed(planes, numbers);
+    for (int plane = 0; plane < PlaneCount(planes); ++plane)
+      cost += Cost(std::span(bytes).subspan(plane * numbers.size(), numbers.size()));
+    offer(planes, cost);
+  }
+  for (const Packing packing : {Packing::kOne, Packing::kTwo, Packing::kFour}) {
+    const bool has_escapes = largest >= EscapeOf(packing);
+    if (has_escapes && escapes_left == 0) continue;
+    double cost = kOverhead + Cost(Packed(packing, numbers));
+    if (has_escapes && cost < best.cost)
+      cost += BestPacking(Escapes(packing, numbers), escapes_left - 1).cost;
+    offer(packing, cost);
+  }
+  return best;
+}
+
+// Chosen by a part of the numbers, spread over all of them.
+Packing ChosenPacking(std::span<const uint32_t> numbers, int escapes_left) {
+  constexpr size_t kRun = 256, kRuns = 32;
+  const uint32_t largest = *std::max_element(numbers.begin(), numbers.end());
+  if (numbers.size() <= kRun * kRuns) return BestPacking(numbers, escapes_left).packing;
+  std::vector<uint32_t> sample;
+  for (size_t i = 0; i < kRuns; ++i) {
+    const auto run = numbers.subspan(i * (numbers.size() - kRun) / (kRuns - 1), kRun);
+    sample.insert(sample.end(), run.begin(), run.end());
+  }
+  // The rarest numbers may not be in it: whatever is chosen must hold them.
+  sample.push_back(largest);
+  return BestPacking(sample, escapes_left).packing;
+}
+
+void AppendBlock(std::span<const uint8_t> bytes, std::string* code) {
+  std::string compressed;
+  AppendCompressed(bytes, &compressed);
+  AppendNumber(compressed.size(), code);
+  *code += compressed;
+}
+
+void AppendNumbers(std::span<const uint32_t> numbers, int escapes_left, std::string* code) {
+  const Packing packing = ChosenPacking(numbers, escapes_left);
+  code->push_back(static_cast<char>(packing));
+  if (packing == Packing::kZeros) return;
+  AppendBlock(Packed(packing, numbers), code);
+  if (IsPlanes(packing)) return;
+  const std::vector<uint32_t> escapes = Escapes(packing, numbers);
+  AppendNumber(escapes.size(), code);
+  if (!escapes.empty()) AppendNumbers(escapes, escapes_left - 1, code);
+}
+
+[[nodiscard]] bool TakeBlock(std::string_view* code, std::span<uint8_t> bytes) {
+  uint64_t size = 0;
+  std::string_view compressed;
+  return TakeNumber(code, code->size(), &size) && TakeBytes(code, size, &compressed) &&
+         Decompress(compressed, bytes);
+}
+
+bool IsPacking(Packing packing, size_t bytes_of_number) {
+  switch (packing) {
+    case Packing::kOne:
+    case Packing::kTwo:
+    case Packing::kFour:
+    case Packing::kPlanes2:
+      return true;
+    case Packing::kPlanes3:
+    case Packing::kPlanes4:
+      return bytes_of_number == 4;
+    default:
+      return false;
+  }
+}
+
+template <class U>
+[[nodiscard]] bool TakeNumbers(Transform transform, int escapes_left, std::string_view* code,
+                               size_t count, U* numbers) {
+  std::string_view kind;
+  if (!TakeBytes(code, 1, &kind)) return false;
+  const auto packing = static_cast<Packing>(kind.front());
+  if (packing == Packing::kZeros) {
+    std::fill_n(numbers, count, U{0});
+    return true;
+  }
+  if (!IsPacking(packing, sizeof(U))) return false;
+  static thread_local std::vector<uint8_t> bytes;
+  bytes.resize(IsPlanes(packing) ? count * PlaneCount(packing)
+                                 : (count + PerByte(packing) - 1) / PerByte(packing));
+  if (!TakeBlock(code, bytes)) return false;
+  if (transform == Transform::kReference)
+    UnpackReference(packing, bytes.data(), count, numbers);
+  else
+    UnpackSimd(packing, bytes.data(), count, numbers);
+  if (IsPlanes(packing)) return true;
+
+  uint64_t escape_count = 0;
+  if (!TakeNumber(code, count, &escape_count)) return false;
+  if (escape_count == 0) return true;
+  if (escapes_left == 0) return false;
+  static thread_local std::array<std::vector<U>, kMostEscapes> memory;
+  std::vector<U>& escapes = memory[escapes_left - 1];
+  escapes.resize(escape_count + kSlack);
+  if (!TakeNumbers(transform, escapes_left - 1, code, escape_count, escapes.data())) return false;
+  const auto escape = static_cast<U>(EscapeOf(packing));
+  const auto add = transform == Transform::kReference ? AddEscapesReference<U> : AddEscapesSimd<U>;
+  return add(escape, escapes.data(), escape_count, count, numbers) == escape_count;
+}
+
+}  // namespace
+
+template <class T>
+void AppendCoefficients(std::span<const int32_t> values, std::string* code) {
+  if (values.empty()) return;
+  std::vector<uint32_t> folded(values.size());
+  std::transform(values.begin(), values.end(), folded.begin(), Folded<int32_t>);
+  AppendNumbers(folded, kMostEscapes, code);
+}
+template void AppendCoefficients<int16_t>(std::span<const int32_t>, std::string*);
+template void AppendCoefficients<int32_t>(std::span<const int32_t>, std::string*);
+
+template <class T>
+bool TakeCoefficients(Transform transform, std::string_view* code, size_t count, T* values) {
+  if (count == 0) return true;
+  using Unsigned = std::make_unsigned_t<T>;
+  auto* const numbers = reinterpret_cast<Unsigned*>(values);
+  if (!TakeNumbers(transform, kMostEscapes, code, count, numbers)) return false;
+  if (transform == Transform::kReference)
+    UnfoldReference(count, numbers);
+  else
+    UnfoldSimd(count, numbers);
+  return true;
+}
+template bool TakeCoefficients(Transform, std::string_view*, size_t, int16_t*);
+template bool TakeCoefficients(Transform, std::string_view*, size_t, int32_t*);
+
+template <class U>
+void UnpackReference(Packing packing, const uint8_t* bytes, size_t count, U* numbers) {
+  if (IsPlanes(packing)) {
+    for (size_t i = 0; i < count; ++i) {
+      uint32_t number = 0;
+      for (int plane = 0; plane < PlaneCount(packing); ++plane)
+        number |= uint32_t{bytes[plane * count + i]} << (8 * plane);
+      numbers[i] = static_cast<U>(number);
+    }
+    return;
+  }
+  const int per_byte = PerByte(packing), bits = 8 / per_byte;
+  for (size_t i = 0; i < count; ++i)
+    numbers[i] =
+        static_cast<U>((bytes[i / per_byte] >> (bits * (i % per_byte))) & EscapeOf(packing));
+}
+template void UnpackReference(Packing, const uint8_t*, size_t, uint16_t*);
+template void UnpackReference(Packing, const uint8_t*, size_t, uint32_t*);
+
+template <class U>
+size_t AddEscapesReference(U escape, const U* escapes, size_t escape_count, size_t count,
+                           U* numbers) {
+  size_t next = 0;
+  for (size_t i = 0; i < count; ++i) {
+    if (numbers[i] != escape) continue;
+    if (next < escape_count) numbers[i] = static_cast<U>(numbers[i] + escapes[next]);
+    ++next;
+  }
+  return next;
+}
+template size_t AddEscapesReference(uint16_t, const uint16_t*, size_t, size_t, uint16_t*);
+template size_t AddEscapesReference(uint32_t, const uint32_t*, size_t, size_t, uint32_t*);
+
+template <class U>
+void UnfoldReference(size_t count, U* numbers) {
+  for (size_t i = 0; i < count; ++i)
+    numbers[i] = static_cast<U>((numbers[i] >> 1) ^ (U{0} - (numbers[i] & 1)));
+}
+template void UnfoldReference(size_t, uint16_t*);
+template void UnfoldReference(size_t, uint32_t*);
+
+}  // namespace lf
