@@ -1,4 +1,5 @@
 // lfexample LIGHTFIELD -o PATH.yaml: a first camera path, ready to render.
+#include <memory>
 #include <string>
 
 #include "tools/common/light_field_argument.h"
@@ -9,7 +10,7 @@
 #include "lf/core/log.h"
 #include "lf/path/path_yaml.h"
 #include "lf/pipeline/example_path.h"
-#include "lf/store/folder_store.h"
+#include "lf/store/open_store.h"
 
 namespace {
 
@@ -48,9 +49,10 @@ int main(int argc, char** argv) {
     options.move = *lf::ParseExampleMove(move);
     if (focus > 0) options.focus_distance_w = focus;
     lf::ThreadPool pool(program.common().threads);
-    const lf::FolderStore store(light_field, lf::FolderStore::Mosaics::kToRgb);
+    LF_ASSIGN_OR_RETURN(const std::unique_ptr<lf::LfImageStore> store,
+                        lf::OpenStore(light_field, lf::Mosaics::kToRgb));
     LF_ASSIGN_OR_RETURN(const lf::ExamplePath example,
-                        lf::MakeExamplePath(light_field, store, options, pool));
+                        lf::MakeExamplePath(light_field, *store, options, pool));
     // A path that would not render is a bug of ours, found here and not by the renderer.
     LF_RETURN_IF_ERROR(lf::ParsePathYaml(example.yaml, output, light_field.unit_m));
     LF_RETURN_IF_ERROR(lf::WriteFileAtomically(output, example.yaml));

@@ -73,7 +73,7 @@ lf::Result<Rendered> RenderPackageFiles(const lf::RenderArguments& arguments,
   std::optional<lf::LightFieldPlace> place;
   if (!arguments.light_field.path.empty()) {
     LF_ASSIGN_OR_RETURN(const lf::LightField light_field, arguments.light_field.Open());
-    place = {arguments.light_field.path, lf::IdentityOf(light_field), light_field.folder};
+    LF_ASSIGN_OR_RETURN(place, lf::PlaceOf(arguments.light_field.path, light_field));
   }
   const std::vector<std::filesystem::path> files(arguments.inputs.begin(), arguments.inputs.end());
   LF_ASSIGN_OR_RETURN(const lf::Package first, lf::OpenPackage(files.front(), place));

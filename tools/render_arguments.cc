@@ -9,14 +9,11 @@
 #include "tools/common/duration.h"
 
 #include "lf/core/log.h"
+#include "lf/package/package_file.h"
 #include "lf/pipeline/frame_range.h"
 
 namespace lf {
 namespace {
-
-bool IsPackageName(const std::string& name) {
-  return std::filesystem::path(name).extension() == ".lfp";
-}
 
 // Words of the full contract that this version cannot honour are refused, never ignored.
 Result<void> CheckAvailable(const std::string& option, const std::string& value,
@@ -29,13 +26,16 @@ Result<void> CheckAvailable(const std::string& option, const std::string& value,
 }  // namespace
 
 void RenderArguments::AddTo(CLI::App& app) {
-  app.add_option("INPUT", inputs,
-                 "LIGHTFIELD PATH.yaml: a calibration file or its folder (transforms.json, COLMAP, "
-                 "Middlebury, LLFF, AOS; or images with Stanford names) and a camera path "
-                 "(doc/formats/path.md); or PACKAGE...: files of lfpreprocessor")
+  app.add_option(
+         "INPUT", inputs,
+         "LIGHTFIELD PATH.yaml: a calibration file or its folder (transforms.json, COLMAP, "
+         "Middlebury, LLFF, AOS, a packed store; or images with Stanford names) and a camera path "
+         "(doc/formats/path.md); or PACKAGE...: files of lfpreprocessor")
       ->required();
-  app.add_option("--lightfield", light_field.path,
-                 "Where the light field of the packages is now, if it has moved")
+  app.add_option(
+         "--lightfield", light_field.path,
+         "Where the light field of the packages is now, if it has moved; or a packed store of "
+         "their LF images")
       ->check(NotEmpty());
   light_field.AddOptionsTo(app);
   app.add_option("-o,--output", output, "Folder of the frames")->required();

@@ -15,6 +15,7 @@
 #include "lf/capture/raw_encoding.h"
 #include "lf/colmap/read_colmap.h"
 #include "lf/native/transforms_json.h"
+#include "lf/packed/packed_store_file.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -77,9 +78,24 @@ Result<LightField> OpenAos(const fs::path& path, const OpenOptions& options) {
   return ReadAos(path, {.fov_deg = options.fov_deg, .images_folder = options.images_folder});
 }
 
+// It has its calibration, and all that is to be known of its pixels.
+Result<LightField> OpenPackedStore(const fs::path& path, const OpenOptions& options) {
+  LF_RETURN_IF_ERROR(CheckNoStanfordOptions(path, options));
+  LF_RETURN_IF_ERROR(CheckNoFov(path, options));
+  LF_RETURN_IF_ERROR(CheckNoImagesFolder(path, options));
+  if (options.bayer)
+    return UsageError(
+        fmt::format("--bayer: {} is a packed store, whose pixels are coded as what "
+                    "they are: import its light field with it, and compress again",
+                    path.string()));
+  LF_ASSIGN_OR_RETURN(PackedStoreFacts facts, ReadPackedStore(path));
+  return std::move(facts.light_field);
+}
+
 // None if the name is that of no calibration file.
 std::optional<Result<LightField>> OpenFile(const fs::path& path, const OpenOptions& options) {
   if (path.extension() == ".json" && IsAosFile(path)) return OpenAos(path, options);
+  if (path.extension() == kStoreExtension) return OpenPackedStore(path, options);
   Result<LightField> (*read)(const fs::path&) = nullptr;
   if (path.extension() == ".json") read = ReadTransformsJson;
   if (path.extension() == ".npy") read = ReadLlff;
@@ -151,7 +167,7 @@ bool HoldsLightField(const fs::path& folder) {
   if (model && *model) return true;
   const Result<std::optional<fs::path>> calibration = CalibrationIn(folder);
   return !calibration || *calibration || HoldsStanfordNames(folder) ||
-         HoldsStanfordNames(folder / kImagesName);
+         HoldsStanfordNames(folder / kImagesName) || !PackedStoresIn(folder).empty();
 }
 
 // A hint for whoever is one folder too high.
@@ -178,8 +194,9 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
     if (std::optional<Result<LightField>> opened = OpenFile(path, options)) return *opened;
     return InputError(
         fmt::format("{}: is not a light field: expected a transforms.json, a NAME_par.txt "
-                    "(Middlebury), a poses_bounds.npy (LLFF), a poses.json (AOS) or the folder of "
-                    "one, the folder of a COLMAP model, or a folder of images",
+                    "(Middlebury), a poses_bounds.npy (LLFF), a poses.json (AOS), a packed store "
+                    "(STORE.lfs) or the folder of one, the folder of a COLMAP model, or a folder "
+                    "of images",
                     path.string()));
   }
   // Before poses_bounds.npy, which is made of such a model and leaves out the distortion.
@@ -191,9 +208,15 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
   if (calibration) return *OpenFile(*calibration, options);
   for (const fs::path& folder : {path, path / kImagesName})
     if (HoldsStanfordNames(folder)) return OpenStanford(folder, options, path);
+  const std::vector<fs::path> stores = PackedStoresIn(path);
+  if (stores.size() == 1) return OpenPackedStore(stores[0], options);
+  if (stores.size() > 1)
+    return InputError(fmt::format("{}: holds {} and {}: name the file itself to read it",
+                                  path.string(), stores[0].filename().string(),
+                                  stores[1].filename().string()));
   return InputError(fmt::format(
       "{}: holds no light field: looked for {}, a COLMAP model in it or in sparse/0, NAME_par.txt, "
-      "{}, {} (AOS), and for images named "
+      "{}, {} (AOS), one packed store NAME.lfs, and for images named "
       "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext or NAME_ROW_COL.ext in it and in {}/{}{}",
       path.string(), kCalibrationName, kLlffName, kAosName, kImagesName, OtherCalibrations(path),
       LightFieldsBelow(path)));
@@ -203,7 +226,8 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
 
 Result<LightField> OpenLightField(const fs::path& path, const OpenOptions& options) {
   LF_ASSIGN_OR_RETURN(LightField light_field, OpenCalibration(path, options));
-  LF_RETURN_IF_ERROR(CompleteEncoding(options, path, &light_field));
+  if (!HoldsPackedStore(light_field))
+    LF_RETURN_IF_ERROR(CompleteEncoding(options, path, &light_field));
   return light_field;
 }
 

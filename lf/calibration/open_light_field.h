@@ -35,6 +35,7 @@ struct OpenOptions {
 // - poses_bounds.npy, or any .npy file: calibration/read_llff.h
 // - poses.json, or any .json file with M3x4 matrices: calibration/read_aos.h
 // - images named by the Stanford form, in the folder or its images/: calibration/read_stanford.h
+// - STORE.lfs, one in the folder: packed/packed_store_file.h
 //
 // No pixels are read; that image files exist is not checked here, but for a first one where its
 // header tells the size, or its name the folder. Camera raw files: pattern, levels and colours that

@@ -28,6 +28,8 @@ struct LightField {
   // Names as written in the calibration; relative ones are relative to `folder`.
   std::vector<std::string> image_names;
   std::vector<std::string> mask_names;  // empty, or one per camera ("" where there is none)
+  // The folder of the image files, or the file of a packed store that holds them
+  // (store/open_store.h).
   std::filesystem::path folder;
 
   RadianceEncoding encoding;
@@ -39,6 +41,7 @@ struct LightField {
     const LfCamera& camera = cameras[id.value];
     return {intrinsics[camera.intrinsics_index], camera.cam_from_world};
   }
+  // Of a packed store, for messages alone: STORE.lfs/name.png
   std::filesystem::path ImagePath(LfImageId id) const { return folder / image_names[id.value]; }
 };
 

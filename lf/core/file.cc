@@ -114,14 +114,17 @@ Result<void> WriteAtomically(const fs::path& path,
   LF_ASSIGN_OR_RETURN(const fs::path target, WriteTarget(path));
   const fs::path temporary = TemporaryName(target);
   Result<void> result = write(temporary);
-  if (result) result = FlushToDisk(temporary);
-  if (result && ::rename(temporary.c_str(), target.c_str()) != 0)
-    result =
-        OutputError(fmt::format("{}: cannot be renamed to: {}", path.string(), SystemReason()));
-  // The rename itself is on the disk once its folder is.
-  if (result) result = FlushToDisk(target.has_parent_path() ? target.parent_path() : fs::path("."));
+  if (result) result = RenameFlushed(temporary, target);
   if (!result) ::unlink(temporary.c_str());
   return result;
+}
+
+Result<void> RenameFlushed(const fs::path& from, const fs::path& to) {
+  LF_RETURN_IF_ERROR(FlushToDisk(from));
+  if (::rename(from.c_str(), to.c_str()) != 0)
+    return OutputError(fmt::format("{}: cannot be renamed to: {}", to.string(), SystemReason()));
+  // The rename itself is on the disk once its folder is.
+  return FlushToDisk(to.has_parent_path() ? to.parent_path() : fs::path("."));
 }
 
 Result<void> CreateFolder(const fs::path& folder) {

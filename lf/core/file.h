@@ -33,6 +33,10 @@ Result<void> WriteAtomically(
     const std::filesystem::path& path,
     const std::function<Result<void>(const std::filesystem::path&)>& write);
 
+// Gives a complete and closed file its final name: flushes it to the disk, renames it over what has
+// the name, and flushes the folder. Both in one file system. kOutput; the file keeps its name then.
+Result<void> RenameFlushed(const std::filesystem::path& from, const std::filesystem::path& to);
+
 // Creates the folder and its parents. kOutput if that fails or a file has the name.
 Result<void> CreateFolder(const std::filesystem::path& folder);
 

@@ -60,7 +60,6 @@ struct Database::State {
 struct Statement::State {
   sqlite3_stmt* handle = nullptr;
   std::shared_ptr<Database::State> database;
-  bool fresh = true;  // bound since the last run
 
   ~State() { sqlite3_finalize(handle); }
 };
@@ -95,6 +94,11 @@ Statement& Statement::BindBlob(int parameter, std::string_view bytes) {
   return *this;
 }
 
+Statement& Statement::BindNull(int parameter) {
+  LF_CHECK(sqlite3_bind_null(state_->handle, parameter + 1) == SQLITE_OK);
+  return *this;
+}
+
 Result<bool> Statement::Step() {
   const int code = sqlite3_step(state_->handle);
   if (code == SQLITE_ROW) return true;
@@ -108,6 +112,12 @@ Result<void> Statement::Run() {
   LF_ASSIGN_OR_RETURN(const bool has_row, Step());
   LF_CHECK(!has_row);
   return {};
+}
+
+void Statement::Reset() { sqlite3_reset(state_->handle); }
+
+bool Statement::IsNull(int column) const {
+  return sqlite3_column_type(state_->handle, column) == SQLITE_NULL;
 }
 
 Error Statement::Wrong(int column, std::string_view found, std::string_view expected) const {
@@ -165,6 +175,8 @@ Database::~Database() = default;
 
 Error Database::Fault(std::string_view message) const { return state_->Fault(message); }
 
+const std::string& Database::name() const { return state_->name; }
+
 Result<void> Database::Execute(const std::string& sql) {
   if (sqlite3_exec(state_->handle, sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK)
     return state_->Failed();
@@ -179,6 +191,33 @@ Result<Statement> Database::Prepare(const std::string& sql) {
       SQLITE_OK)
     return state_->Failed();
   return Statement(std::move(statement));
+}
+
+Result<int64_t> Database::Pragma(const char* name) {
+  LF_ASSIGN_OR_RETURN(Statement statement, Prepare(fmt::format("pragma {}", name)));
+  LF_ASSIGN_OR_RETURN(const bool has_row, statement.Step());
+  if (!has_row) return Fault(fmt::format("is no {}", state_->what));
+  return statement.Integer(0);
+}
+
+// Whatever the file is opened for, another one is wrong input.
+Result<void> Database::CheckFormat(const DatabaseFormat& format) {
+  const auto wrong = [this](const std::string& message) {
+    return InputError(Fault(message).message);
+  };
+  LF_ASSIGN_OR_RETURN(const int64_t id, Pragma("application_id"));
+  if (id != static_cast<int32_t>(format.application_id))
+    return wrong(fmt::format("is no {} (another SQLite file, application_id {})", format.name, id));
+  LF_ASSIGN_OR_RETURN(const int64_t version, Pragma("user_version"));
+  if (version > format.version)
+    return wrong(
+        fmt::format("is a {} of version {}, which a newer lfrendertools has written; this one "
+                    "knows version {}",
+                    format.name, version, format.version));
+  if (version < format.version)
+    return wrong(fmt::format("is a {} of version {}, which is too old: make it again", format.name,
+                             version));
+  return {};
 }
 
 Result<Database> Database::Create(const fs::path& path, const DatabaseFormat& format) {
@@ -200,6 +239,36 @@ Result<Database> Database::Create(const fs::path& path, const DatabaseFormat& fo
   return database;
 }
 
+Result<Database> Database::OpenToAppend(const fs::path& path, const DatabaseFormat& format) {
+  auto state = std::make_shared<State>();
+  state->name = path.string();
+  state->what = format.name;
+  state->kind = ErrorKind::kOutput;
+  constexpr int kFlags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX;
+  if (sqlite3_open_v2(path.c_str(), &state->handle, kFlags, nullptr) != SQLITE_OK)
+    return state->Failed();
+  Database database(std::move(state));
+  // A rollback journal, and not a write-ahead log: what is written is new pages, of which the
+  // journal holds nothing, and the file is whole and alone after every batch. To be
+  // asked for its pages rolls back what an earlier program left.
+  LF_RETURN_IF_ERROR(database.Execute(
+      fmt::format("pragma page_size = {}; pragma journal_mode = delete; pragma synchronous = full;",
+                  format.page_bytes)));
+  LF_ASSIGN_OR_RETURN(const int64_t page_count, database.Pragma("page_count"));
+  // One that had nothing to roll back is left lying; it has been looked at.
+  std::error_code ignored;
+  fs::remove(fs::path(path) += "-journal", ignored);
+  if (page_count > 0) {
+    LF_RETURN_IF_ERROR(database.CheckFormat(format));
+    return database;
+  }
+  // Both or none, also for one that is killed here.
+  LF_RETURN_IF_ERROR(database.Execute(
+      fmt::format("begin; pragma application_id = {}; pragma user_version = {}; commit",
+                  static_cast<int32_t>(format.application_id), format.version)));
+  return database;
+}
+
 Result<Database> Database::Open(const fs::path& path, const DatabaseFormat& format) {
   auto state = std::make_shared<State>();
   state->name = path.string();
@@ -216,25 +285,7 @@ Result<Database> Database::Open(const fs::path& path, const DatabaseFormat& form
   sqlite3_limit(state->handle, SQLITE_LIMIT_LENGTH, kMaxBlobBytes);
   Database database(std::move(state));
   LF_RETURN_IF_ERROR(database.Execute("pragma cell_size_check = on; pragma mmap_size = 0;"));
-  const auto pragma = [&](const char* name) -> Result<int64_t> {
-    LF_ASSIGN_OR_RETURN(Statement statement, database.Prepare(fmt::format("pragma {}", name)));
-    LF_ASSIGN_OR_RETURN(const bool has_row, statement.Step());
-    if (!has_row) return database.Fault(fmt::format("is no {}", format.name));
-    return statement.Integer(0);
-  };
-  LF_ASSIGN_OR_RETURN(const int64_t id, pragma("application_id"));
-  if (id != static_cast<int32_t>(format.application_id))
-    return database.Fault(
-        fmt::format("is no {} (another SQLite file, application_id {})", format.name, id));
-  LF_ASSIGN_OR_RETURN(const int64_t version, pragma("user_version"));
-  if (version > format.version)
-    return database.Fault(
-        fmt::format("is a {} of version {}, which a newer lfrendertools has written; this one "
-                    "knows version {}",
-                    format.name, version, format.version));
-  if (version < format.version)
-    return database.Fault(fmt::format("is a {} of version {}, which is too old: make it again",
-                                      format.name, version));
+  LF_RETURN_IF_ERROR(database.CheckFormat(format));
   return database;
 }
 

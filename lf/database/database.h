@@ -2,8 +2,8 @@
 // The only folder that knows SQLite.
 //
 // A file says what it is by its application_id, and in which version by its user_version. It is
-// written whole under a temporary name (core/file.h) and then only read: immutable, without locks,
-// so that any number of machines may read it over a network file system.
+// written under a temporary name, whole (core/file.h) or in batches over hours, and then only read:
+// immutable, without locks, so that any number of machines may read it over a network file system.
 #pragma once
 
 #include <cstddef>
@@ -37,13 +37,17 @@ class Statement {
   Statement& Bind(int parameter, std::string_view text);
   // Bytes, with their checksum behind them: read by Blob().
   Statement& BindBlob(int parameter, std::string_view bytes);
+  Statement& BindNull(int parameter);
 
   // Whether there is a (next) row; false when the command is done, after which it may be bound and
   // run again. Errors of the kind of the database: damage when reading, the disk when writing.
   Result<bool> Step();
   // Of a command without rows: runs it to its end.
   Result<void> Run();
+  // Ends a command before its last row: it may be bound and run again.
+  void Reset();
 
+  bool IsNull(int column) const;
   // Of the row. kInput where the column has another type, and where a blob's checksum is wrong.
   Result<int64_t> Integer(int column) const;
   Result<int64_t> Integer(int column, int64_t low, int64_t high) const;
@@ -67,6 +71,15 @@ class Database {
   // To be read. kInput: it cannot be read, is none, is of another kind or version.
   static Result<Database> Open(const std::filesystem::path& path, const DatabaseFormat& format);
 
+  // To be written in batches: made if it is not there or empty, else what it holds stays. What is
+  // committed ("begin" and "commit" by Execute()) is on the disk and survives the program, however
+  // it ends: the next OpenToAppend() finds all batches that were committed, and nothing of the one
+  // that was not. Beside the file there may be one more, FILE-journal, which belongs to it until it
+  // is opened and closed again; between batches there is none. For one program at a time.
+  // kOutput; kInput: it is of another kind or version.
+  static Result<Database> OpenToAppend(const std::filesystem::path& path,
+                                       const DatabaseFormat& format);
+
   Database(Database&&) noexcept;
   Database& operator=(Database&&) noexcept;
   ~Database();
@@ -75,6 +88,7 @@ class Database {
   Result<void> Execute(const std::string& sql);
   Result<Statement> Prepare(const std::string& sql);
 
+  const std::string& name() const;  // as messages call it: its path
   // "package-0000.lfp: " + message; kInput, or kOutput of one that is written.
   Error Fault(std::string_view message) const;
 
@@ -82,7 +96,20 @@ class Database {
   friend class Statement;
   struct State;
   explicit Database(std::shared_ptr<State> state);
+  Result<int64_t> Pragma(const char* name);
+  Result<void> CheckFormat(const DatabaseFormat& format);
   std::shared_ptr<State> state_;
 };
+
+// Calls row(statement), which gives a Result<void>, for every row of a command without parameters.
+template <class Row>
+Result<void> ForEachRow(Database& database, const std::string& sql, const Row& row) {
+  LF_ASSIGN_OR_RETURN(Statement select, database.Prepare(sql));
+  while (true) {
+    LF_ASSIGN_OR_RETURN(const bool has_row, select.Step());
+    if (!has_row) return {};
+    LF_RETURN_IF_ERROR(row(select));
+  }
+}
 
 }  // namespace lf

@@ -1,8 +1,10 @@
 #include "lf/database/database.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <filesystem>
 #include <limits>
 
@@ -173,6 +175,116 @@ TEST_F(DatabaseTest, WhatCannotBeWrittenIsAnOutputError) {
   const Result<Database> database = Database::Create(folder_ / "no" / "folder", kFormat);
   ASSERT_FALSE(database);
   EXPECT_EQ(database.error().kind, ErrorKind::kOutput);
+}
+
+// Appends to what is there, three rows a batch; told(count) after each.
+template <class Told>
+Result<void> AppendBatches(const fs::path& path, int batch_count, const Told& told) {
+  LF_ASSIGN_OR_RETURN(Database database, Database::OpenToAppend(path, kFormat));
+  LF_RETURN_IF_ERROR(database.Execute(
+      "create table if not exists things (key integer primary key, bytes blob not null)"));
+  LF_ASSIGN_OR_RETURN(Statement insert, database.Prepare("insert into things values (?, ?)"));
+  LF_ASSIGN_OR_RETURN(Statement count, database.Prepare("select count(*) from things"));
+  LF_RETURN_IF_ERROR(count.Step());
+  LF_ASSIGN_OR_RETURN(int64_t row, count.Integer(0));
+  count.Reset();
+  for (int batch = 0; batch < batch_count; ++batch) {
+    LF_RETURN_IF_ERROR(database.Execute("begin"));
+    for (int i = 0; i < 3; ++i, ++row) {
+      insert.Bind(0, row).BindBlob(1, std::string(30000, static_cast<char>(row)));
+      LF_RETURN_IF_ERROR(insert.Run());
+    }
+    LF_RETURN_IF_ERROR(database.Execute("commit"));
+    told(row);
+  }
+  return {};
+}
+
+// How many rows there are; all must be whole.
+int64_t CountWhole(const fs::path& path) {
+  Database database = Database::OpenToAppend(path, kFormat).value();
+  Statement check = database.Prepare("pragma integrity_check").value();
+  EXPECT_TRUE(*check.Step());
+  EXPECT_EQ(*check.Text(0), "ok");
+  Statement select = database.Prepare("select key, bytes from things order by key").value();
+  int64_t row = 0;
+  for (; *select.Step(); ++row) {
+    EXPECT_EQ(*select.Integer(0), row);
+    EXPECT_EQ(*select.Blob(1), std::string(30000, static_cast<char>(row)));
+  }
+  return row;
+}
+
+TEST_F(DatabaseTest, BatchesAreAppended) {
+  const fs::path path = folder_ / "batches";
+  int64_t told = 0;
+  for (int i = 0; i < 3; ++i) {
+    const Result<void> appended = AppendBatches(path, 4, [&](int64_t count) { told = count; });
+    ASSERT_TRUE(appended) << appended.error().message;
+  }
+  EXPECT_EQ(told, 36);
+  EXPECT_EQ(CountWhole(path), 36);
+  // One file, to be read as any other.
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
+  EXPECT_TRUE(Database::Open(path, kFormat));
+}
+
+TEST_F(DatabaseTest, WhatWasCommittedSurvivesAKill) {
+  const fs::path path = folder_ / "killed";
+  int64_t least = 0;
+  for (uint64_t round = 0; round < 12; ++round) {
+    int pipes[2];
+    ASSERT_EQ(::pipe(pipes), 0);
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      const auto tell = [&](int64_t count) {
+        if (::write(pipes[1], &count, sizeof(count)) != sizeof(count)) ::_exit(2);
+      };
+      ::_exit(AppendBatches(path, 1000000, tell) ? 0 : 1);
+    }
+    ::close(pipes[1]);
+    int64_t count = 0;
+    ASSERT_EQ(::read(pipes[0], &count, sizeof(count)), ssize_t{sizeof(count)});
+    ::usleep(static_cast<useconds_t>(RandomBits(3, 0, round) % 20000));
+    ::kill(child, SIGKILL);
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    ASSERT_TRUE(WIFSIGNALED(status)) << status;
+    least = count;
+    while (::read(pipes[0], &count, sizeof(count)) == ssize_t{sizeof(count)}) least = count;
+    ::close(pipes[0]);
+    const int64_t found = CountWhole(path);
+    EXPECT_GE(found, least);
+    EXPECT_LE(found, least + 3);
+    EXPECT_EQ(found % 3, 0);
+  }
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
+}
+
+TEST_F(DatabaseTest, OthersAreNotAppendedTo) {
+  const Result<Database> other =
+      Database::OpenToAppend(Write(1, {"other file", 0x4C465455, 3}), kFormat);
+  ASSERT_FALSE(other);
+  EXPECT_EQ(other.error().kind, ErrorKind::kInput);
+  EXPECT_NE(other.error().message.find("another SQLite file"), std::string::npos);
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "text", std::string(5000, 'x')));
+  EXPECT_FALSE(Database::OpenToAppend(folder_ / "text", kFormat));
+  EXPECT_FALSE(Database::OpenToAppend(folder_ / "no" / "folder", kFormat));
+}
+
+TEST_F(DatabaseTest, NullsAreTold) {
+  Database database = Database::OpenToAppend(folder_ / "nulls", kFormat).value();
+  ASSERT_TRUE(database.Execute("create table n (a integer, b blob)"));
+  Statement insert = database.Prepare("insert into n values (?, ?)").value();
+  ASSERT_TRUE(insert.Bind(0, int64_t{1}).BindNull(1).Run());
+  Statement select = database.Prepare("select a, b from n").value();
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_TRUE(*select.Step());
+    EXPECT_FALSE(select.IsNull(0));
+    EXPECT_TRUE(select.IsNull(1));
+    select.Reset();
+  }
 }
 
 }  // namespace

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <optional>
+#include <memory>
 #include <system_error>
 #include <variant>
 
 #include "lf/capture/image_fit.h"
 #include "lf/imageio/image_file.h"
+#include "lf/import/check_codes.h"
+#include "lf/packed/packed_store_file.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -19,10 +21,7 @@ namespace {
 constexpr size_t kHeadersPerRound = 512;
 constexpr size_t kImagesPerRound = 64;
 
-struct Finding {
-  bool is_missing = false;
-  std::string reason;  // "": nothing is wrong
-};
+using Finding = CodeChecker::Fault;
 
 Finding CheckFile(const fs::path& path, bool is_mosaic, const Intrinsics& k, ImageCheck check) {
   std::error_code error;
@@ -37,7 +36,9 @@ Finding CheckFile(const fs::path& path, bool is_mosaic, const Intrinsics& k, Ima
   return {false, image ? "" : image.error().message};
 }
 
-Finding CheckImage(const LightField& light_field, LfImageId id, ImageCheck check) {
+Finding CheckImage(const LightField& light_field, const CodeChecker* codes, LfImageId id,
+                   ImageCheck check) {
+  if (codes != nullptr) return codes->Check(id, check == ImageCheck::kPixels);
   const Intrinsics& k = light_field.intrinsics[light_field.cameras[id.value].intrinsics_index];
   Finding finding = CheckFile(light_field.ImagePath(id),
                               light_field.encoding.bayer != BayerPattern::kNone, k, check);
@@ -51,6 +52,10 @@ Finding CheckImage(const LightField& light_field, LfImageId id, ImageCheck check
 Result<ImageFaults> CheckImages(const LightField& light_field, const CheckOptions& options,
                                 ThreadPool& pool) {
   const size_t round = options.check == ImageCheck::kHeaders ? kHeadersPerRound : kImagesPerRound;
+  std::unique_ptr<CodeChecker> codes;
+  if (HoldsPackedStore(light_field)) {
+    LF_ASSIGN_OR_RETURN(codes, CodeChecker::Open(light_field));
+  }
   ImageFaults faults;
   std::vector<Finding> findings(round);
   for (size_t begin = 0; begin < light_field.size(); begin += round) {
@@ -60,8 +65,8 @@ Result<ImageFaults> CheckImages(const LightField& light_field, const CheckOption
           fmt::format("interrupted after checking {} of {} images", begin, light_field.size())};
     const size_t count = std::min(round, light_field.size() - begin);
     pool.ForEach(count, [&](size_t i) {
-      findings[i] =
-          CheckImage(light_field, LfImageId{static_cast<uint32_t>(begin + i)}, options.check);
+      findings[i] = CheckImage(light_field, codes.get(),
+                               LfImageId{static_cast<uint32_t>(begin + i)}, options.check);
     });
     for (size_t i = 0; i < count; ++i)
       if (!findings[i].reason.empty())

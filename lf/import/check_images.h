@@ -1,4 +1,5 @@
-// Whether the files of a light field are there, and are what its calibration says.
+// Whether the files of a light field are there, and are what its calibration says; or the codes of
+// a packed store.
 #pragma once
 
 #include <atomic>
@@ -14,8 +15,10 @@
 namespace lf {
 
 enum class ImageCheck {
-  kHeaders,  // the files' headers: the size; a truncated file goes unnoticed
-  kPixels,   // all of every file is decoded
+  // The files' headers: the size; a truncated file goes unnoticed. Of a packed store its table of
+  // codes: a damaged one goes unnoticed.
+  kHeaders,
+  kPixels,  // all of every file, or code, is decoded
 };
 
 struct ImageFault {
@@ -36,7 +39,7 @@ struct CheckOptions {
 };
 
 // All LF images and their masks, in parallel; the lists are in the order of the LF images, which
-// stand in at most one of them. kInterrupted.
+// stand in at most one of them. kInterrupted; kInput: a packed store that cannot be read.
 Result<ImageFaults> CheckImages(const LightField& light_field, const CheckOptions& options,
                                 ThreadPool& pool);
 

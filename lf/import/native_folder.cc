@@ -6,6 +6,7 @@
 
 #include "lf/core/file.h"
 #include "lf/native/transforms_json.h"
+#include "lf/packed/packed_store_file.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -70,6 +71,12 @@ Result<void> CheckMayWrite(const fs::path& source, const fs::path& folder, bool 
 }
 
 Result<std::string> WriteNativeFolder(const fs::path& folder, LightField* light_field) {
+  if (HoldsPackedStore(*light_field))
+    return UsageError(
+        fmt::format("{}: a packed store holds its LF images itself, and a transforms.json can only "
+                    "name image files: every program takes the store as LIGHTFIELD, as it is; to "
+                    "change a light field, import it from its image files and compress it again",
+                    light_field->folder.string()));
   LF_RETURN_IF_ERROR(CreateFolder(folder));
   LF_RETURN_IF_ERROR(MoveToFolder(folder, light_field));
   const fs::path path = folder / kCalibrationName;

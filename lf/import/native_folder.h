@@ -22,7 +22,7 @@ Result<void> CheckMayWrite(const std::filesystem::path& source, const std::files
                            bool force);
 
 // Moves the light field to the folder, which is created, and writes its transforms.json there.
-// Returns the file's path. kOutput.
+// Returns the file's path. kOutput; kUsage: a packed store, whose LF images are no files.
 Result<std::string> WriteNativeFolder(const std::filesystem::path& folder, LightField* light_field);
 
 }  // namespace lf

@@ -21,6 +21,9 @@ struct FrameRect {
   friend bool operator==(const FrameRect&, const FrameRect&) = default;
 };
 
+// By its extension, .lfp: that programs tell it from a LIGHTFIELD.
+bool IsPackageName(const std::filesystem::path& path);
+
 // Those of an LF image, by ascending frames; may be asked once for each.
 using FrameRects = std::function<std::vector<FrameRect>(LfImageId)>;
 

@@ -1,26 +1,8 @@
 #include "lf/package/package_format.h"
 
+#include "lf/calibration_tables/stored_numbers.h"
+
 namespace lf {
-
-std::array<double, kPoseNumbers> NumbersOfPose(const RigidTransform& pose) {
-  std::array<double, kPoseNumbers> numbers;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column)
-      numbers[static_cast<size_t>(3 * row + column)] = pose.rotation(row, column);
-    numbers[static_cast<size_t>(9 + row)] = pose.translation[row];
-  }
-  return numbers;
-}
-
-RigidTransform PoseOfNumbers(std::span<const double, kPoseNumbers> numbers) {
-  RigidTransform pose;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column)
-      pose.rotation(row, column) = numbers[static_cast<size_t>(3 * row + column)];
-    pose.translation[row] = numbers[static_cast<size_t>(9 + row)];
-  }
-  return pose;
-}
 
 std::array<double, kCameraNumbers> NumbersOfCamera(const RenderCamera& camera) {
   const Intrinsics& k = camera.pinhole.intrinsics;

@@ -1,9 +1,10 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <numeric>
 
+#include "lf/calibration_tables/calibration_tables.h"
+#include "lf/calibration_tables/stored_numbers.h"
 #include "lf/core/check.h"
 #include "lf/core/file.h"
 #include "lf/database/seal.h"
@@ -14,11 +15,8 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-// Tables as doc/formats/package.md describes them.
+// Settings, intrinsics and these, as doc/formats/package.md describes them.
 constexpr const char* kTables = R"(
-create table settings (key text primary key, value text not null) without rowid;
-create table intrinsics (id integer primary key, width integer, height integer, fx real, fy real,
-  cx real, cy real, skew real, distortion text, parameters text);
 create table lf_images (place integer primary key, id integer, name text, mask text,
   intrinsics integer, gain real, x real, y real, z real, pose blob, file_bytes integer,
   x_begin integer, y_begin integer, x_end integer, y_end integer, frames integer, rays integer);
@@ -38,20 +36,18 @@ class Writer {
         rects_(rects) {}
 
   Result<void> Write(const fs::path& final_path, const PackageNotes& notes) {
+    LF_RETURN_IF_ERROR(database_.Execute(kSettingsTable));
+    LF_RETURN_IF_ERROR(database_.Execute(kIntrinsicsTable));
     LF_RETURN_IF_ERROR(database_.Execute(kTables));
-    LF_RETURN_IF_ERROR(WriteSettings(final_path, notes));
-    LF_RETURN_IF_ERROR(WriteIntrinsics());
+    LF_RETURN_IF_ERROR(WriteSettings(SettingsOf(final_path, notes), &database_));
+    LF_RETURN_IF_ERROR(WriteIntrinsics(light_field_.intrinsics, &database_));
     LF_RETURN_IF_ERROR(WriteImages());
     LF_RETURN_IF_ERROR(WriteFrames());
     return database_.Execute("commit");
   }
 
  private:
-  Result<void> WriteSettings(const fs::path& final_path, const PackageNotes& notes) {
-    LF_ASSIGN_OR_RETURN(Statement insert, database_.Prepare("insert into settings values (?, ?)"));
-    const auto set = [&insert](const char* key, const std::string& value) {
-      return insert.Bind(0, std::string_view(key)).Bind(1, std::string_view(value)).Run();
-    };
+  SettingList SettingsOf(const fs::path& final_path, const PackageNotes& notes) const {
     // "" is the working folder, as in paths of files there.
     const auto absolute = [](const fs::path& path) {
       return fs::absolute(path.empty() ? "." : path).lexically_normal();
@@ -59,30 +55,16 @@ class Writer {
     const fs::path folder = absolute(light_field_.folder);
     const fs::path from_package = folder.lexically_relative(absolute(final_path).parent_path());
     const PackageChoices& choices = package_.choices;
-    const RadianceEncoding& encoding = light_field_.encoding;
-    const Mat3& m = encoding.camera_to_srgb;
-    const std::optional<DepthRange>& depths = light_field_.depth_range;
-    const std::pair<const char*, std::string> settings[] = {
-        {"written_by", "lfrendertools " + notes.version},
-        {"package", fmt::format("{} of {}", package_.number, package_.count)},
-        {"light_field", notes.light_field},
-        {"light_field.images", fmt::format("{}", package_.whole.image_count)},
-        {"light_field.names", package_.whole.names},
-        {"light_field.calibration", package_.whole.calibration},
-        {"folder", folder.string()},
-        {"folder_from_package", from_package.string()},
-        {"unit_m", fmt::format("{}", light_field_.unit_m)},
-        {"depth_range", depths ? fmt::format("{} {}", depths->near_w, depths->far_w) : ""},
-        {"bayer", NameOf(encoding.bayer)},
-        {"transfer", kTransferNames[static_cast<int>(encoding.transfer)]},
-        {"response", fmt::format("{}", fmt::join(encoding.response, " "))},
-        {"black_level", fmt::format("{}", encoding.black_level)},
-        {"white_level", encoding.white_level ? fmt::format("{}", *encoding.white_level) : ""},
-        {"max_radiance", fmt::format("{}", encoding.max_radiance)},
-        {"pedestal", fmt::format("{}", encoding.pedestal)},
-        {"white_balance", fmt::format("{}", fmt::join(encoding.white_balance, " "))},
-        {"camera_to_srgb", fmt::format("{} {} {} {} {} {} {} {} {}", m(0, 0), m(0, 1), m(0, 2),
-                                       m(1, 0), m(1, 1), m(1, 2), m(2, 0), m(2, 1), m(2, 2))},
+    SettingList settings = {{"written_by", "lfrendertools " + notes.version},
+                            {"package", fmt::format("{} of {}", package_.number, package_.count)},
+                            {"light_field", notes.light_field},
+                            {"light_field.images", fmt::format("{}", package_.whole.image_count)},
+                            {"light_field.names", package_.whole.names},
+                            {"light_field.calibration", package_.whole.calibration},
+                            {"folder", folder.string()},
+                            {"folder_from_package", from_package.string()}};
+    const SettingList pixels = SettingsOfPixels(light_field_);
+    const SettingList of_choices = {
         {"order", NameOf(choices.order)},
         {"seed", fmt::format("{}", choices.seed)},
         {"places", fmt::format("{}", package_.places.end)},
@@ -91,24 +73,9 @@ class Writer {
         {"lens_neighbours", choices.has_neighbours ? "yes" : "no"},
         {"fps", fmt::format("{}", package_.path.fps)},
         {"path_unit_m", fmt::format("{}", package_.path.unit_m)}};
-    for (const auto& [key, value] : settings) LF_RETURN_IF_ERROR(set(key, value));
-    return {};
-  }
-
-  Result<void> WriteIntrinsics() {
-    LF_ASSIGN_OR_RETURN(
-        Statement insert,
-        database_.Prepare("insert into intrinsics values (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"));
-    for (size_t i = 0; i < light_field_.intrinsics.size(); ++i) {
-      const Intrinsics& k = light_field_.intrinsics[i];
-      insert.Bind(0, static_cast<int64_t>(i)).Bind(1, int64_t{k.width_px});
-      insert.Bind(2, int64_t{k.height_px}).Bind(3, k.fx_px).Bind(4, k.fy_px).Bind(5, k.cx_px);
-      insert.Bind(6, k.cy_px).Bind(7, k.skew_px);
-      insert.Bind(8, std::string_view(kModelNames[static_cast<int>(k.distortion.model)]));
-      const std::string parameters = fmt::format("{}", fmt::join(k.distortion.parameters, " "));
-      LF_RETURN_IF_ERROR(insert.Bind(9, std::string_view(parameters)).Run());
-    }
-    return {};
+    settings.insert(settings.end(), pixels.begin(), pixels.end());
+    settings.insert(settings.end(), of_choices.begin(), of_choices.end());
+    return settings;
   }
 
   // By places, so that SQLite appends.
@@ -139,17 +106,12 @@ class Writer {
   }
 
   Result<void> WriteImage(Statement* insert, uint32_t i, int64_t place) {
-    const LfCamera& camera = light_field_.cameras[i];
     const PackageImage& image = package_.images[i];
-    const Vec3 centre = light_field_.Camera(LfImageId{i}).CentreWorld();
-    const auto pose = NumbersOfPose(camera.cam_from_world);
     insert->Bind(0, place).Bind(1, int64_t{image.id});
     insert->Bind(2, std::string_view(light_field_.image_names[i]));
     insert->Bind(3, light_field_.mask_names.empty() ? std::string_view()
                                                     : std::string_view(light_field_.mask_names[i]));
-    insert->Bind(4, int64_t{camera.intrinsics_index}).Bind(5, double{camera.gain});
-    insert->Bind(6, centre.x()).Bind(7, centre.y()).Bind(8, centre.z());
-    insert->BindBlob(9, BytesOf(std::span<const double>(pose)));
+    BindCamera(light_field_, LfImageId{i}, 4, insert);
     insert->Bind(10, static_cast<int64_t>(image.file_bytes));
     insert->Bind(11, int64_t{image.rect.x_begin}).Bind(12, int64_t{image.rect.y_begin});
     insert->Bind(13, int64_t{image.rect.x_end}).Bind(14, int64_t{image.rect.y_end});

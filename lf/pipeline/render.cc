@@ -14,7 +14,7 @@
 #include "lf/pipeline/render_pass.h"
 #include "lf/record/run_state.h"
 #include "lf/sequence/video.h"
-#include "lf/store/folder_store.h"
+#include "lf/store/open_store.h"
 
 namespace lf {
 namespace {
@@ -54,9 +54,6 @@ class Renderer {
         pool_(pool),
         progress_(progress),
         index_(package.light_field, package.places),
-        store_(package.light_field, options.reading.estimator == Estimator::kBilinear
-                                        ? FolderStore::Mosaics::kToRgb
-                                        : FolderStore::Mosaics::kAsRecorded),
         output_(package.light_field, package.path, options, pool) {}
 
   Result<RenderReport> Run();
@@ -81,7 +78,7 @@ class Renderer {
   ThreadPool& pool_;
   const std::function<void(const RenderProgress&)>& progress_;
   ImageIndex index_;
-  FolderStore store_;
+  std::unique_ptr<LfImageStore> store_;
   FrameOutput output_;
 
   std::vector<FrameId> frames_;
@@ -109,6 +106,10 @@ Result<void> Renderer::Begin() {
   frames_ = options_.frames;
   if (frames_.empty()) frames_ = package_.FrameIds();
   LF_RETURN_IF_ERROR(CheckChoices());
+  LF_ASSIGN_OR_RETURN(
+      store_, OpenStore(package_.light_field, options_.reading.estimator == Estimator::kBilinear
+                                                  ? Mosaics::kToRgb
+                                                  : Mosaics::kAsRecorded));
   const Intrinsics& plate = path_.Camera(frames_.front()).pinhole.intrinsics;
   LF_ASSIGN_OR_RETURN(
       plan_, PlanMemory(options_.memory_bytes, package_.light_field, options_.reading.estimator,
@@ -201,7 +202,7 @@ Result<void> Renderer::RunPasses(std::span<const FrameId> frames) {
       path_,
       options_,
       pool_,
-      store_,
+      *store_,
       plan_,
       output_,
       *state_,

@@ -7,6 +7,7 @@
 
 #include "lf/core/log.h"
 #include "lf/package/package_file.h"
+#include "lf/packed/packed_store_file.h"
 #include "lf/pipeline/frame_output.h"
 #include "lf/record/run_inputs.h"
 #include "lf/sequence/video.h"
@@ -38,6 +39,32 @@ struct Film {
     return "";
   }
 };
+
+// The packed store may be of other packages. What it could not read itself is skipped when it is
+// loaded, as a broken file is.
+Result<void> CheckCodes(const fs::path& path, const Package& package) {
+  const LightField& light_field = package.light_field;
+  const auto codes = FindCodes(light_field.folder, light_field.image_names);
+  if (!codes)
+    return InputError(
+        fmt::format("{}: its LF images are not at {} ({}): --lightfield says where they are",
+                    path.string(), light_field.folder.string(), codes.error().message));
+  size_t needed = 0, missing = 0;
+  std::string first;
+  for (size_t i = 0; i < package.images.size(); ++i) {
+    if (package.images[i].frame_count == 0) continue;
+    ++needed;
+    const PixelRect& rect = package.images[i].rect;
+    const PackedCode& code = (*codes)[i];
+    if (code.is_listed() && (code.bytes == 0 || Intersection(code.rect, rect) == rect)) continue;
+    if (missing++ == 0) first = light_field.image_names[i];
+  }
+  if (missing == 0) return {};
+  return InputError(
+      fmt::format("{}: {} of its {} LF images are not in the packed store {}, or not all of their "
+                  "pixels, the first: {}; compress this package, too",
+                  path.string(), missing, needed, light_field.folder.string(), first));
+}
 
 // A broken file or two may be; but not all of them are.
 Result<void> CheckImageFiles(const fs::path& path, const Package& package) {
@@ -139,10 +166,18 @@ Result<std::vector<Part>> LookAtAll(const std::vector<fs::path>& paths,
 
 }  // namespace
 
+Result<LightFieldPlace> PlaceOf(const std::string& name, const LightField& light_field) {
+  LightFieldPlace place{name, IdentityOf(light_field), std::nullopt, light_field.folder};
+  if (HoldsPackedStore(light_field)) {
+    LF_ASSIGN_OR_RETURN(place.whole, ReadWholeIdentity(light_field.folder));
+  }
+  return place;
+}
+
 Result<Package> OpenPackage(const fs::path& path, const std::optional<LightFieldPlace>& place) {
   LF_ASSIGN_OR_RETURN(Package package, ReadPackage(path));
   if (place) {
-    if (place->identity != package.whole)
+    if (place->identity != package.whole && place->whole != package.whole)
       return InputError(fmt::format(
           "{}: was made from another light field than {}: {} LF images of calibration {}, there "
           "are "
@@ -151,7 +186,8 @@ Result<Package> OpenPackage(const fs::path& path, const std::optional<LightField
           place->identity.image_count, place->identity.calibration));
     package.light_field.folder = place->folder;
   }
-  LF_RETURN_IF_ERROR(CheckImageFiles(path, package));
+  const auto check = HoldsPackedStore(package.light_field) ? CheckCodes : CheckImageFiles;
+  LF_RETURN_IF_ERROR(check(path, package));
   return package;
 }
 

@@ -20,12 +20,19 @@ namespace lf {
 struct LightFieldPlace {
   std::string name;  // for messages
   LightFieldIdentity identity;
-  std::filesystem::path folder;  // of its image files
+  std::optional<LightFieldIdentity> whole;  // of a packed store: that its LF images are from
+  std::filesystem::path folder;             // of its image files, or the packed store
 };
 
+//   name  for messages
+// kInput: a damaged packed store.
+Result<LightFieldPlace> PlaceOf(const std::string& name, const LightField& light_field);
+
 // Reads and checks a package and its light field's image files, a few of which are looked at.
+// Packages of a light field may take its LF images from a packed store of it, too.
 // kInput: as ReadPackage(); it is of another light field than `place`; none of the files is there,
-// or none is the one that it was.
+// or none is the one that it was; a packed store without some of the package's LF images, or of
+// other pixels of them than it needs.
 Result<Package> OpenPackage(const std::filesystem::path& path,
                             const std::optional<LightFieldPlace>& place = {});
 

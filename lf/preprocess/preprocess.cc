@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
+#include <memory>
 #include <numeric>
 
 #include "lf/collector/frame_lens.h"
@@ -13,6 +14,7 @@
 #include "lf/package/package_file.h"
 #include "lf/preprocess/frame_needs.h"
 #include "lf/preprocess/split_film.h"
+#include "lf/store/open_store.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -102,6 +104,7 @@ class Preprocessor {
   const std::function<void(size_t, size_t)>& progress_;
   NeedsOptions needs_;
   std::vector<FrameId> frames_;
+  std::unique_ptr<LfImageStore> store_;  // for sizes
   LightFieldIdentity whole_;
   ImagePlaces places_;
   std::optional<ImageIndex> index_;
@@ -145,6 +148,7 @@ Result<void> Preprocessor::Begin() {
                       options_.output_folder->string(), there.size()));
     LF_RETURN_IF_ERROR(CreateFolder(*options_.output_folder));
   }
+  LF_ASSIGN_OR_RETURN(store_, OpenStore(light_field_, Mosaics::kAsRecorded));
   report_.light_field_image_count = light_field_.size();
   whole_ = IdentityOf(light_field_);
   return {};
@@ -335,13 +339,9 @@ std::vector<uint64_t> Preprocessor::FileSizes(const Package& package) const {
   constexpr size_t kTogether = 256;
   std::vector<uint64_t> sizes(package.images.size(), 0);
   pool_.ForEach((sizes.size() + kTogether - 1) / kTogether, [&](size_t task) {
-    for (size_t i = task * kTogether; i < std::min(sizes.size(), (task + 1) * kTogether); ++i) {
-      if (package.images[i].frame_count == 0) continue;
-      std::error_code error;
-      const uint64_t size =
-          fs::file_size(package.light_field.ImagePath(LfImageId{static_cast<uint32_t>(i)}), error);
-      if (!error) sizes[i] = size;
-    }
+    for (size_t i = task * kTogether; i < std::min(sizes.size(), (task + 1) * kTogether); ++i)
+      if (package.images[i].frame_count > 0)
+        sizes[i] = store_->StoredBytes(LfImageId{package.images[i].id});
   });
   return sizes;
 }

@@ -6,12 +6,13 @@
 #include <algorithm>
 #include <ctime>
 #include <filesystem>
+#include <memory>
 #include <vector>
 
 #include "lf/collector/collect.h"
 #include "lf/collector/frame_lens.h"
 #include "lf/sequence/frame_file.h"
-#include "lf/store/folder_store.h"
+#include "lf/store/open_store.h"
 
 namespace lf {
 namespace {
@@ -40,9 +41,11 @@ Result<RenderRate> MeasureRate(const ImageIndex& index, const RenderCamera& fram
                                ThreadPool& pool) {
   const LightField& light_field = index.light_field();
   const FrameNeeds needs = NeedsOf(index, frame, needs_options, pool);
-  const FolderStore store(light_field, reading.estimator == Estimator::kBilinear
-                                           ? FolderStore::Mosaics::kToRgb
-                                           : FolderStore::Mosaics::kAsRecorded);
+  LF_ASSIGN_OR_RETURN(
+      const std::unique_ptr<LfImageStore> opened,
+      OpenStore(light_field, reading.estimator == Estimator::kBilinear ? Mosaics::kToRgb
+                                                                       : Mosaics::kAsRecorded));
+  const LfImageStore& store = *opened;
   const Intrinsics& plate = frame.pinhole.intrinsics;
   std::vector<SensorPlate> plates;
   plates.emplace_back(plate.width_px, plate.height_px);

@@ -26,9 +26,6 @@ namespace lf {
 // Keeps a reference to `light_field`, which must outlive it.
 class FolderStore : public LfImageStore {
  public:
-  // What becomes of mosaics.
-  enum class Mosaics { kAsRecorded, kToRgb };
-
   explicit FolderStore(const LightField& light_field, Mosaics mosaics = Mosaics::kAsRecorded);
 
   // The pixels of `rect`, cut to the image. kInput as LfImageStore says, and also: levels
@@ -36,6 +33,7 @@ class FolderStore : public LfImageStore {
   // file of another Bayer pattern.
   Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override;
   bool IsThere(LfImageId id) const override;
+  uint64_t StoredBytes(LfImageId id) const override;
   // Of the image's file; a mask file is not read ahead.
   void Announce(LfImageId id) const override;
 

@@ -137,7 +137,7 @@ TEST_F(FolderStoreTest, AMosaicBecomesRgbWhereItIsAskedTo) {
   const LfPixels mosaic = Loaded(light_field);
   LfPixels expected;
   DemosaicReference(mosaic, kWidth, kHeight, light_field.encoding.white_balance, kWhole, &expected);
-  const FolderStore store(light_field, FolderStore::Mosaics::kToRgb);
+  const FolderStore store(light_field, Mosaics::kToRgb);
   LfPixels pixels;
   ASSERT_TRUE(store.Load({0}, kWhole, &pixels));
   EXPECT_EQ(pixels.bayer, BayerPattern::kNone);
@@ -154,7 +154,7 @@ TEST_F(FolderStoreTest, AMosaicBecomesRgbWhereItIsAskedTo) {
   // What is no mosaic stays as it is.
   light_field.encoding.bayer = BayerPattern::kNone;
   const LfPixels grey = Loaded(light_field);
-  ASSERT_TRUE(FolderStore(light_field, FolderStore::Mosaics::kToRgb).Load({0}, kWhole, &pixels));
+  ASSERT_TRUE(FolderStore(light_field, Mosaics::kToRgb).Load({0}, kWhole, &pixels));
   EXPECT_EQ(pixels.radiance.pixels(), grey.radiance.pixels());
 }
 
@@ -164,8 +164,7 @@ TEST_F(FolderStoreTest, AMosaicOfOneRowIsAnError) {
   light_field.intrinsics[0].height_px = 1;
   light_field.encoding.bayer = BayerPattern::kGbrg;
   LfPixels pixels;
-  const Result<void> loaded =
-      FolderStore(light_field, FolderStore::Mosaics::kToRgb).Load({0}, kWhole, &pixels);
+  const Result<void> loaded = FolderStore(light_field, Mosaics::kToRgb).Load({0}, kWhole, &pixels);
   ASSERT_FALSE(loaded);
   ExpectMentions(loaded.error().message, {"a.png", "x1", "2x2"});
 }

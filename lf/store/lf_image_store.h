@@ -1,6 +1,7 @@
 // Where the pixels of LF images come from. A terabyte is never in memory: one image at a time.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "lf/capture/lf_pixels.h"
@@ -9,6 +10,9 @@
 #include "lf/core/result.h"
 
 namespace lf {
+
+// What becomes of mosaics.
+enum class Mosaics { kAsRecorded, kToRgb };
 
 class LfImageStore {
  public:
@@ -23,6 +27,10 @@ class LfImageStore {
 
   // Whether the file is there, whatever it holds: a disk may be unmounted during a night's work.
   virtual bool IsThere(LfImageId /*id*/) const { return true; }
+
+  // What loading reads: the size of the file, or of the code in a packed store; 0: not there, or
+  // not known.
+  virtual uint64_t StoredBytes(LfImageId /*id*/) const { return 0; }
 
   // The image will be loaded soon: the disk may begin to read it. Does not wait; failing is silent,
   // for Load() will say what is wrong. May be called by many threads at the same time.

@@ -67,23 +67,7 @@ std::vector<uint16_t> TableIfItFits(const RadianceEncoding& encoding, int bits, 
   return LevelsFit(encoding, bits) ? RadianceTable(encoding, bits, gain) : std::vector<uint16_t>();
 }
 
-}  // namespace
-
-RadianceTables::RadianceTables(const RadianceEncoding& encoding, double gain, int bits) {
-  if (bits == 16) of_16bit_ = TableIfItFits(encoding, 16, gain);
-  if (bits != 8) return;
-  of_8bit_ = TableIfItFits(encoding, 8, gain);
-  for (size_t value = 0; value < of_8bit_.size(); ++value)
-    for (size_t c = 0; c < lanes_.size(); ++c)
-      lanes_[c][value] = uint64_t{of_8bit_[value]} << (16 * c) | (c == 0 ? kOneRay : 0);
-}
-
-RadianceTables::RadianceTables(const RadianceEncoding& encoding, double gain)
-    : RadianceTables(encoding, gain, 8) {
-  of_16bit_ = TableIfItFits(encoding, 16, gain);
-}
-
-void ConvertRadiance(const ImagePart& part, int colours, const RadianceTables& tables,
+void ConvertByTables(const ImagePart& part, int colours, const RadianceTables& tables,
                      const RadianceEncoding& encoding, double gain, LfPixels* pixels) {
   if (const auto* floats = std::get_if<Image<float>>(&part.image)) {
     ConvertByValue(
@@ -105,6 +89,33 @@ void ConvertRadiance(const ImagePart& part, int colours, const RadianceTables& t
   const uint16_t* table = tables.of_8bit().data();
   ConvertByValue(
       bytes, part.rect, colours, [table](uint8_t value) { return table[value]; }, pixels);
+}
+
+}  // namespace
+
+RadianceTables::RadianceTables(const RadianceEncoding& encoding, double gain, int bits) {
+  if (bits == 16) of_16bit_ = TableIfItFits(encoding, 16, gain);
+  if (bits != 8) return;
+  of_8bit_ = TableIfItFits(encoding, 8, gain);
+  for (size_t value = 0; value < of_8bit_.size(); ++value)
+    for (size_t c = 0; c < lanes_.size(); ++c)
+      lanes_[c][value] = uint64_t{of_8bit_[value]} << (16 * c) | (c == 0 ? kOneRay : 0);
+}
+
+RadianceTables::RadianceTables(const RadianceEncoding& encoding, double gain)
+    : RadianceTables(encoding, gain, 8) {
+  of_16bit_ = TableIfItFits(encoding, 16, gain);
+}
+
+void ConvertRadiance(const ImagePart& part, int colours, const RadianceTables& plain,
+                     const RadianceEncoding& encoding, double gain, LfPixels* pixels) {
+  if (gain == 1) {
+    ConvertByTables(part, colours, plain, encoding, gain, pixels);
+    return;
+  }
+  const int bits =
+      std::visit([]<class T>(const Image<T>&) { return int{8 * sizeof(T)}; }, part.image);
+  ConvertByTables(part, colours, RadianceTables(encoding, gain, bits), encoding, gain, pixels);
 }
 
 }  // namespace lf

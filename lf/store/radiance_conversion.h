@@ -32,10 +32,11 @@ class RadianceTables {
   LaneTable lanes_{};
 };
 
-// The radiance of pixels->rect, which lies in part.rect: through the tables, floats quantised.
-// All lanes are written, nothing is masked.
+// The radiance of pixels->rect, which lies in part.rect: through tables, floats quantised. All
+// lanes are written, nothing is masked. The levels must fit the integers.
 //   colours  1: grey or mosaic; 3: the first three channels
-void ConvertRadiance(const ImagePart& part, int colours, const RadianceTables& tables,
+//   plain    the tables of gain 1; those of another gain are made
+void ConvertRadiance(const ImagePart& part, int colours, const RadianceTables& plain,
                      const RadianceEncoding& encoding, double gain, LfPixels* pixels);
 
 }  // namespace lf

@@ -5,7 +5,7 @@ namespace lf {
 void LightFieldArgument::AddTo(CLI::App& app) {
   app.add_option("LIGHTFIELD", path,
                  "A calibration file, or its folder: transforms.json, COLMAP, Middlebury, LLFF, "
-                 "AOS; or a folder of images with Stanford names")
+                 "AOS; a packed store (STORE.lfs); or a folder of images with Stanford names")
       ->required();
   AddOptionsTo(app);
 }

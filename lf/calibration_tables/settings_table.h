@@ -1,0 +1,49 @@
+// The table `settings` of our files: text by key.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lf/core/result.h"
+#include "lf/database/database.h"
+
+namespace lf {
+
+inline constexpr const char* kSettingsTable =
+    "create table settings (key text primary key, value text not null) without rowid;";
+
+using SettingList = std::vector<std::pair<std::string, std::string>>;
+
+// In their order; the table must be there. The error is the database's.
+Result<void> WriteSettings(const SettingList& settings, Database* database);
+
+// What was read, as text, and as what the text should be. Errors are kInput, and name file and key.
+class Settings {
+ public:
+  //   what  as messages call such a file: "package"
+  static Result<Settings> Read(Database& database, const char* what);
+
+  // "" where there is none.
+  std::string Text(const std::string& key) const;
+  Result<std::vector<double>> Numbers(const std::string& key, size_t count_min,
+                                      size_t count_max) const;
+  Result<double> Number(const std::string& key, double low, double high) const;
+  // Up to 2^64 - 1.
+  Result<uint64_t> Whole(const std::string& key) const;
+  // The index of the word.
+  Result<int> Word(const std::string& key, std::span<const char* const> words) const;
+
+  // "package-0000.lfp: is a damaged package: " + what
+  Error Damaged(const std::string& what) const;
+  Error Wrong(const std::string& key, const char* expected) const;
+
+ private:
+  std::string file_, what_;
+  std::map<std::string, std::string> texts_;
+};
+
+}  // namespace lf

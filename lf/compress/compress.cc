@@ -1,0 +1,241 @@
+#include "lf/compress/compress.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+#include <utility>
+
+#include "lf/compress/find_threshold.h"
+#include "lf/compress/verify_store.h"
+#include "lf/core/log.h"
+#include "lf/packed/packed_store_file.h"
+#include "lf/packed/packed_store_writer.h"
+#include "lf/store/recorded_image.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+double Now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+bool IsThere(const fs::path& path) {
+  std::error_code error;
+  return fs::exists(path, error);
+}
+
+PackedStorePlan PlanOf(const CompressSource& source, const CompressOptions& options,
+                       const CodecSettings& settings) {
+  PackedStorePlan plan;
+  plan.whole = source.whole;
+  plan.whole_ids = source.whole_ids;
+  plan.codec = NameOf(settings);
+  plan.shard_bytes = options.shard_bytes;
+  plan.source = options.source_name;
+  plan.version = options.version;
+  return plan;
+}
+
+Result<PackedStoreWriter> OpenWriter(const CompressSource& source, const CompressOptions& options,
+                                     const PackedStorePlan& plan) {
+  if (options.resume) return PackedStoreWriter::Resume(options.store, source.light_field, plan);
+  if (options.overwrite)
+    LF_RETURN_IF_ERROR(PackedStoreWriter::RemoveUnfinished(options.store));
+  else if (PackedStoreWriter::IsUnfinished(options.store))
+    return UsageError(
+        fmt::format("{}: there is an unfinished store of this name: --resume goes on "
+                    "with it, --overwrite begins anew",
+                    options.store.string()));
+  return PackedStoreWriter::Create(options.store, source.light_field, plan);
+}
+
+// One call of Compress(): what its threads share.
+class Compressor {
+ public:
+  Compressor(const CompressSource& source, const CompressOptions& options, ThreadPool& pool,
+             const std::function<void(const CompressProgress&)>& progress)
+      : source_(source), options_(options), pool_(pool), progress_(progress) {}
+
+  Result<CompressReport> Run();
+
+ private:
+  Result<void> Write();
+  void AddOne(PackedStoreWriter* writer, LfImageId id);
+  VerifyOptions Verification() const;
+  Result<void> Verify();
+  bool IsInterrupted() const { return options_.interrupted && *options_.interrupted; }
+  Error Interrupted() const;
+
+  const CompressSource& source_;
+  const CompressOptions& options_;
+  ThreadPool& pool_;
+  const std::function<void(const CompressProgress&)>& progress_;
+  CodecSettings settings_;
+
+  std::mutex mutex_;  // of what follows
+  CompressReport report_;
+  CompressProgress now_;
+  std::optional<Error> error_;
+  bool ended_ = false;  // by an error or from outside
+};
+
+Error Compressor::Interrupted() const {
+  return {
+      ErrorKind::kInterrupted,
+      fmt::format("interrupted after {} of {} LF images: --resume goes on", now_.done, now_.total)};
+}
+
+void Compressor::AddOne(PackedStoreWriter* writer, LfImageId id) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (IsInterrupted()) ended_ = true;
+    if (ended_) return;
+  }
+  const ThreadCpuTimer timer;
+  const LightField& light_field = source_.light_field;
+  const std::string& name = light_field.image_names[id.value];
+  const PixelRect rect = RectToRecord(light_field, id, source_.rects[id.value]);
+  const Result<RecordedImage> image = ReadRecordedImage(light_field, id, rect);
+  std::optional<CodedImage> coded;
+  std::optional<Error> error;
+  CodeError lost;
+  if (!image) {
+    error = image.error();
+  } else {
+    CodecSettings settings = settings_;
+    const double grey_step = GreyStep(light_field.encoding, image->values);
+    settings.threshold *= grey_step;
+    coded = CodeOf(*image, settings);
+    DecodedPart decoded;
+    const Result<void> result = DecodeImage(coded->code, &decoded);
+    LF_CHECK(result.has_value());
+    lost = ErrorOf(image->pixels, decoded, grey_step);
+    if (const Result<void> added = writer->Add(id, *coded); !added) error = added.error();
+  }
+
+  const std::lock_guard lock(mutex_);
+  report_.encode_cpu_s += static_cast<double>(timer.Nanoseconds()) * 1e-9;
+  ++now_.done;
+  if (error) {
+    const bool is_image = !image;
+    if (is_image) report_.skipped.push_back({name, error->message});
+    if ((!is_image || options_.strict) && !ended_) {
+      ended_ = true;
+      error_ = *error;
+    }
+    return;
+  }
+  const uint64_t pixel_bytes =
+      std::visit([](const auto& pixels) { return pixels.size_bytes(); }, image->pixels);
+  ++report_.coded_count;
+  report_.rounded_count += image->is_rounded ? 1 : 0;
+  report_.source_bytes += coded->source_bytes;
+  report_.pixel_bytes += pixel_bytes;
+  report_.code_bytes += coded->code.size() + coded->mask.size();
+  report_.error += lost;
+  if (report_.worst_name.empty() || lost.PsnrDb() < report_.worst_psnr_db ||
+      (lost.PsnrDb() == report_.worst_psnr_db && name < report_.worst_name)) {
+    report_.worst_psnr_db = lost.PsnrDb();
+    report_.worst_name = name;
+  }
+  now_.pixel_bytes = report_.pixel_bytes;
+  now_.code_bytes = report_.code_bytes;
+  if (progress_) progress_(now_);
+}
+
+Result<void> Compressor::Write() {
+  LF_ASSIGN_OR_RETURN(PackedStoreWriter writer,
+                      OpenWriter(source_, options_, PlanOf(source_, options_, settings_)));
+  std::vector<LfImageId> ids;
+  for (uint32_t i = 0; i < source_.light_field.size(); ++i)
+    if (!writer.Has(LfImageId{i})) ids.push_back(LfImageId{i});
+  report_.resumed_count = source_.light_field.size() - ids.size();
+  now_.total = source_.light_field.size();
+  now_.done = report_.resumed_count;
+  pool_.ForEach(ids.size(), [&](size_t i) { AddOne(&writer, ids[i]); });
+  std::sort(report_.skipped.begin(), report_.skipped.end(),
+            [](const auto& a, const auto& b) { return a.name < b.name; });
+  if (error_) {
+    // What was done before is kept, unless the disk is the reason.
+    if (error_->kind == ErrorKind::kInput) LF_RETURN_IF_ERROR(writer.Commit());
+    return *error_;
+  }
+  if (ended_) {
+    LF_RETURN_IF_ERROR(writer.Commit());
+    return Interrupted();
+  }
+  if (report_.skipped.size() == source_.light_field.size())
+    return InputError(fmt::format("none of the {} LF images can be read; the first: {}",
+                                  report_.skipped.size(), report_.skipped.front().reason));
+  return writer.Finish();
+}
+
+VerifyOptions Compressor::Verification() const {
+  return {options_.store, settings_, [this] { return IsInterrupted(); }};
+}
+
+Result<void> Compressor::Verify() {
+  now_ = {0, source_.light_field.size(), 0, 0, true};
+  LF_ASSIGN_OR_RETURN(const size_t verified,
+                      VerifyStore(source_, Verification(), pool_, [&](size_t done) {
+                        now_.done = done;
+                        if (progress_) progress_(now_);
+                      }));
+  report_.verified_count = verified;
+  return {};
+}
+
+Result<CompressReport> Compressor::Run() {
+  const double begin_s = Now();
+  settings_ = options_.codec;
+  LF_RETURN_IF_ERROR(CheckSettings(settings_));
+  const bool is_there = IsThere(options_.store);
+  report_.was_there = is_there && !options_.overwrite && (options_.verify || options_.resume) &&
+                      !PackedStoreWriter::IsUnfinished(options_.store);
+  if (is_there && !options_.overwrite && !report_.was_there)
+    return UsageError(
+        fmt::format("{}: is there already: --overwrite replaces it, --verify checks "
+                    "it",
+                    options_.store.string()));
+  report_.image_count = source_.light_field.size();
+  if (options_.target_psnr_db) {
+    LF_ASSIGN_OR_RETURN(settings_.threshold,
+                        FindThreshold(source_, settings_, *options_.target_psnr_db, pool_));
+  }
+  report_.threshold = settings_.threshold;
+  if (report_.was_there)
+    LF_RETURN_IF_ERROR(CheckStoreFacts(source_, Verification()));
+  else
+    LF_RETURN_IF_ERROR(Write());
+  if (options_.verify) LF_RETURN_IF_ERROR(Verify());
+  report_.store_bytes = StoreBytes(options_.store);
+  report_.total_s = Now() - begin_s;
+  return std::move(report_);
+}
+
+}  // namespace
+
+std::string NameOf(const CodecSettings& settings) {
+  switch (settings.profile) {
+    case CodecProfile::kThesis:
+      return fmt::format("thesis, levels {}, threshold {}, quantizer {}", settings.levels,
+                         settings.threshold, settings.quantizer);
+    case CodecProfile::kDefault:
+      return fmt::format("default, levels {}, threshold {}", settings.levels, settings.threshold);
+    case CodecProfile::kLossless:
+      break;
+  }
+  return fmt::format("lossless, levels {}", settings.levels);
+}
+
+Result<CompressReport> Compress(const CompressSource& source, const CompressOptions& options,
+                                ThreadPool& pool,
+                                const std::function<void(const CompressProgress&)>& progress) {
+  return Compressor(source, options, pool, progress).Run();
+}
+
+}  // namespace lf

@@ -1,0 +1,67 @@
+#include "lf/compress/find_threshold.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "lf/compress/code_quality.h"
+#include "lf/core/check.h"
+#include "lf/store/recorded_image.h"
+
+namespace lf {
+namespace {
+
+constexpr size_t kLookedAt = 12;  // LF images
+
+// Thresholds that are tried: 0.05, and a twentieth more each time.
+constexpr int kSteps = 160;
+double ThresholdOf(int step) { return std::round(0.05 * std::pow(1.05, step) * 1e4) / 1e4; }
+
+}  // namespace
+
+Result<double> FindThreshold(const CompressSource& source, const CodecSettings& settings,
+                             double psnr_db, ThreadPool& pool) {
+  if (settings.profile == CodecProfile::kLossless)
+    return UsageError("--target-psnr: nothing is lost by --profile lossless");
+  const LightField& light_field = source.light_field;
+  std::vector<Result<RecordedImage>> images(std::min(kLookedAt, light_field.size()),
+                                            Error{ErrorKind::kInput, ""});
+  pool.ForEach(images.size(), [&](size_t i) {
+    const auto index = static_cast<uint32_t>(i * light_field.size() / images.size());
+    const PixelRect rect = RectToRecord(light_field, LfImageId{index}, source.rects[index]);
+    images[i] = ReadRecordedImage(light_field, LfImageId{index}, rect);
+  });
+  const auto psnr_at = [&](double threshold) {
+    std::vector<CodeError> errors(images.size());
+    pool.ForEach(images.size(), [&](size_t i) {
+      if (!images[i]) return;
+      CodecSettings of_image = settings;
+      const double grey_step = GreyStep(light_field.encoding, images[i]->values);
+      of_image.threshold = threshold * grey_step;
+      DecodedPart decoded;
+      const Result<void> result = DecodeImage(CodeOf(*images[i], of_image).code, &decoded);
+      LF_CHECK(result.has_value());
+      errors[i] = ErrorOf(images[i]->pixels, decoded, grey_step);
+    });
+    CodeError together;
+    for (const CodeError& error : errors) together += error;
+    return together.PsnrDb();
+  };
+  if (std::none_of(images.begin(), images.end(), [](const auto& image) { return bool(image); }))
+    return InputError(fmt::format("none of {} LF images can be read; the first: {}", images.size(),
+                                  images.front().error().message));
+  if (const double best = psnr_at(ThresholdOf(0)); best < psnr_db)
+    return UsageError(
+        fmt::format("--target-psnr {}: the best of these settings is {:.1f} dB", psnr_db, best));
+  int good = 0, bad = kSteps;
+  while (bad - good > 1) {
+    const int middle = (good + bad) / 2;
+    (psnr_at(ThresholdOf(middle)) >= psnr_db ? good : bad) = middle;
+  }
+  return ThresholdOf(good);
+}
+
+}  // namespace lf

@@ -1,0 +1,106 @@
+#include "lf/store/image_reading.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <string>
+#include <utility>
+
+#include "lf/capture/image_fit.h"
+#include "lf/imageio/upright.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+// With or without a layer of an EXR file before it.
+bool IsAlpha(const std::string& channel_name) {
+  const std::string name = channel_name.substr(channel_name.rfind('.') + 1);
+  return name == "A" || name == "alpha" || name == "Alpha";
+}
+
+ChannelUse UseOf(const ImageFileInfo& info) {
+  ChannelUse use;
+  use.channels = info.channels;
+  use.colours = use.channels >= 3 ? 3 : 1;
+  if (use.channels > use.colours && IsAlpha(info.channel_names[use.colours]))
+    use.alpha = use.colours;
+  return use;
+}
+
+// At least the pixels `rect` of the picture that the calibration is of, and where they lie in it.
+Result<void> ReadFitting(const fs::path& path, bool is_mosaic, const Intrinsics& intrinsics,
+                         const PixelRect& rect, ImagePart* part) {
+  bool is_turned = false;
+  const auto wanted = [&](const ImageFileInfo& info) -> Result<PixelRect> {
+    LF_ASSIGN_OR_RETURN(const ImageFit fit,
+                        FitToCalibration(info, is_mosaic, intrinsics, path.string()));
+    is_turned = fit == ImageFit::kTurned;
+    return is_turned ? StoredRect(rect, info.width, info.height, info.orientation) : rect;
+  };
+  LF_RETURN_IF_ERROR(ReadImagePart(path, wanted, part));
+  if (!is_turned) return {};
+  const ImageFileInfo& info = part->info;
+  std::visit([&](auto& image) { image = Upright(image, info.orientation); }, part->image);
+  part->rect = UprightRect(part->rect, info.width, info.height, info.orientation);
+  return {};
+}
+
+// A raw file in a light field of anything else would show its mosaic as a grey picture.
+Result<void> CheckRaw(const RawFacts& raw, const RadianceEncoding& encoding, const fs::path& path) {
+  if (encoding.bayer == BayerPattern::kNone)
+    return InputError(
+        fmt::format("{}: is a camera raw file, but the light field states no lf_bayer: raw files "
+                    "and other images do not go together",
+                    path.string()));
+  if (raw.bayer != BayerPattern::kNone && raw.bayer != encoding.bayer)
+    return InputError(fmt::format("{}: its mosaic is {}, but that of the light field is {}",
+                                  path.string(), NameOf(raw.bayer), NameOf(encoding.bayer)));
+  return {};
+}
+
+Result<void> CheckEncoding(const ImagePart& file, const RadianceEncoding& encoding,
+                           const fs::path& path) {
+  if (file.info.raw) LF_RETURN_IF_ERROR(CheckRaw(*file.info.raw, encoding, path));
+  if (encoding.bayer != BayerPattern::kNone && file.info.channels != 1)
+    return InputError(
+        fmt::format("{}: has {} channels, but lf_bayer says that it is a mosaic of one",
+                    path.string(), file.info.channels));
+  if (std::holds_alternative<Image<float>>(file.image)) return {};
+  return CheckLevels(encoding, std::holds_alternative<Image<uint8_t>>(file.image) ? 8 : 16,
+                     path.string());
+}
+
+const Intrinsics& IntrinsicsOf(const LightField& light_field, LfImageId id) {
+  return light_field.intrinsics[light_field.cameras[id.value].intrinsics_index];
+}
+
+}  // namespace
+
+Result<ChannelUse> ReadStoredPixels(const LightField& light_field, LfImageId id,
+                                    const PixelRect& wanted, ImagePart* part) {
+  const RadianceEncoding& encoding = light_field.encoding;
+  const fs::path path = light_field.ImagePath(id);
+  LF_RETURN_IF_ERROR(ReadFitting(path, encoding.bayer != BayerPattern::kNone,
+                                 IntrinsicsOf(light_field, id), wanted, part));
+  LF_RETURN_IF_ERROR(CheckEncoding(*part, encoding, path));
+  return UseOf(part->info);
+}
+
+Result<bool> ReadMaskFile(const LightField& light_field, LfImageId id, const PixelRect& wanted,
+                          ImagePart* part) {
+  if (light_field.mask_names.empty() || light_field.mask_names[id.value].empty()) return false;
+  LF_RETURN_IF_ERROR(ReadFitting(light_field.folder / light_field.mask_names[id.value], false,
+                                 IntrinsicsOf(light_field, id), wanted, part));
+  return true;
+}
+
+Result<void> CheckLevels(const RadianceEncoding& encoding, int bits, const std::string& path) {
+  if (LevelsFit(encoding, bits)) return {};
+  return InputError(fmt::format(
+      "{}: holds values of {} bits, which lf_black_level {} and lf_white_level {} do not fit", path,
+      bits, encoding.black_level,
+      encoding.white_level ? fmt::format("{}", *encoding.white_level) : "(none)"));
+}
+
+}  // namespace lf

@@ -1,0 +1,85 @@
+// One LF image from its files, as stored: what loose files are loaded and recorded by. Internal to
+// store.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <type_traits>
+#include <variant>
+
+#include "lf/capture/light_field.h"
+#include "lf/core/check.h"
+#include "lf/core/geometry.h"
+#include "lf/core/ids.h"
+#include "lf/core/result.h"
+#include "lf/imageio/image_file.h"
+
+namespace lf {
+
+// Which channels of a file are what.
+struct ChannelUse {
+  int channels = 1;
+  int colours = 1;  // 1: grey or mosaic; 3: R, G, B; they come first
+  std::optional<int> alpha;
+};
+
+// At least the pixels `wanted`, some within the picture that the calibration is of, and where they
+// lie in it; checked against calibration and encoding. kInput, naming the file.
+Result<ChannelUse> ReadStoredPixels(const LightField& light_field, LfImageId id,
+                                    const PixelRect& wanted, ImagePart* part);
+
+// The same of the image's mask file; false: it has none.
+Result<bool> ReadMaskFile(const LightField& light_field, LfImageId id, const PixelRect& wanted,
+                          ImagePart* part);
+
+// Calls mask(x, y), with pixels of the LF image, for those of `rect` whose stored value, of
+// `channel`, is not what is_kept(value) asks for.
+template <class T, class IsKept, class Mask>
+void ForEachUnkept(const Image<T>& stored, const PixelRect& stored_rect, int channel,
+                   const IsKept& is_kept, const PixelRect& rect, const Mask& mask) {
+  LF_CHECK(Intersection(rect, stored_rect) == rect);
+  for (int y = rect.y_begin; y < rect.y_end; ++y) {
+    const T* value = stored.row(y - stored_rect.y_begin) +
+                     static_cast<size_t>(rect.x_begin - stored_rect.x_begin) * stored.channels() +
+                     channel;
+    for (int x = rect.x_begin; x < rect.x_end; ++x, value += stored.channels())
+      if (!is_kept(*value)) mask(x, y);
+  }
+}
+
+// Of the pixels of `rect`, which lies in part.rect: those whose alpha is below one half.
+template <class Mask>
+void ForEachTransparent(const ImagePart& part, int alpha, const PixelRect& rect, const Mask& mask) {
+  std::visit(
+      [&]<class T>(const Image<T>& stored) {
+        constexpr double kOpaque = std::is_floating_point_v<T> ? 1 : std::numeric_limits<T>::max();
+        ForEachUnkept(
+            stored, part.rect, alpha, [](T value) { return value >= kOpaque / 2; }, rect, mask);
+      },
+      part.image);
+}
+
+// Those that are masked at all: by alpha, and by the mask file if there is one, which is read.
+template <class Mask>
+Result<void> ForEachMasked(const LightField& light_field, LfImageId id, const ImagePart& part,
+                           const ChannelUse& use, const PixelRect& rect, const Mask& mask) {
+  if (rect.empty()) return {};
+  if (use.alpha) ForEachTransparent(part, *use.alpha, rect, mask);
+  ImagePart file;
+  LF_ASSIGN_OR_RETURN(const bool has_file, ReadMaskFile(light_field, id, rect, &file));
+  if (!has_file) return {};
+  std::visit(
+      [&]<class T>(const Image<T>& stored) {
+        ForEachUnkept(
+            stored, file.rect, 0, [](T value) { return value != 0; }, rect, mask);
+      },
+      file.image);
+  return {};
+}
+
+// Integers of so many bits can hold the light field's levels; kInput if they cannot.
+//   path  of the image, for the message
+Result<void> CheckLevels(const RadianceEncoding& encoding, int bits, const std::string& path);
+
+}  // namespace lf

@@ -1,0 +1,261 @@
+#!/usr/bin/python3
+"""Packed stores as their users meet them: made by lfcompressor, killed, resumed, verified, damaged.
+
+usage: lfcompressor_test.py LFCOMPRESSOR LFRENDERER LFPREPROCESSOR
+"""
+import json
+import os
+import pathlib
+import random
+import re
+import signal
+import sqlite3
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import numpy as np
+from PIL import Image
+
+from small_field import HEIGHT, SIDE, WIDTH, write_field, write_path
+
+COMPRESSOR = RENDERER = PREPROCESSOR = None
+
+
+def smooth(index):
+    """a picture that wavelets like"""
+    y, x = np.mgrid[0:HEIGHT, 0:WIDTH]
+    waves = 128 + 100 * np.sin(x / 9 + index / 5) * np.cos(y / 7)
+    noise = np.random.default_rng(index).normal(0, 2, (HEIGHT, WIDTH, 3))
+    return np.clip(waves[..., None] + [0, 8, -8] + noise, 0, 255).astype(np.uint8)
+
+
+class CompressorTest(unittest.TestCase):
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(self.temporary.cleanup)
+        self.folder = pathlib.Path(self.temporary.name)
+        self.store = self.folder / "a.lfs"
+
+    def call(self, program, *arguments, **more):
+        return subprocess.run([program, *map(str, arguments)], capture_output=True, text=True,
+                              timeout=120, **more)
+
+    def compress(self, *arguments):
+        result = self.call(COMPRESSOR, *arguments)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return result.stdout
+
+    def report(self, *arguments):
+        return json.loads(self.compress(*arguments, "--json"))
+
+    def fails(self, code, words, program, *arguments):
+        result = self.call(program, *arguments)
+        self.assertEqual(result.returncode, code, result.stderr)
+        last = result.stderr.strip().splitlines()[-1]
+        self.assertTrue(last.startswith("error: "), last)
+        for word in words:
+            self.assertIn(word, last)
+
+    def names(self):
+        return sorted(path.name for path in self.folder.iterdir() if path.name.startswith("a"))
+
+    # What it tells, and how good it is
+
+    def test_profiles_and_what_the_report_tells(self):
+        field = write_field(self.folder / "field", smooth)
+        pixels = SIDE * SIDE * WIDTH * HEIGHT * 3
+        reports = {}
+        for profile in "default", "thesis", "lossless":
+            report = reports[profile] = self.report(field, "-o", self.folder / f"{profile}.lfs",
+                                                    "--profile", profile, "--verify")
+            self.assertEqual((report["lf_images"], report["coded"], report["verified"]), (25, 25, 25))
+            self.assertEqual(report["pixel_bytes"], pixels)
+            self.assertAlmostEqual(report["ratio"], pixels / report["code_bytes"])
+            self.assertEqual(report["skipped"], [])
+            self.assertGreater(report["store_bytes"], report["code_bytes"])
+        self.assertEqual(reports["lossless"]["psnr_db"], "exact")
+        self.assertGreater(reports["default"]["ratio"], reports["lossless"]["ratio"])
+        self.assertGreater(reports["default"]["psnr_db"], 40)
+        self.assertGreaterEqual(reports["default"]["psnr_db"], reports["default"]["worst_psnr_db"])
+        text = self.compress(field, "-o", self.store)
+        for word in "25 LF images", "pixels", "files", "quality", "MB/s", "next: lfrenderer":
+            self.assertIn(word, text)
+
+    def test_the_quality_that_is_asked_for(self):
+        field = write_field(self.folder / "field", smooth)
+        coarser = None
+        for target in 48, 42, 38:
+            report = self.report(field, "-o", self.store, "--target-psnr", target, "--overwrite")
+            self.assertGreater(report["psnr_db"], target - 0.2)
+            self.assertLess(report["psnr_db"], target + 1.5)
+            if coarser:
+                self.assertGreater(report["ratio"], coarser)
+            coarser = report["ratio"]
+        self.fails(2, ["--target-psnr 80", "the best of these settings"], COMPRESSOR, field, "-o",
+                   self.store, "--target-psnr", 80, "--profile", "thesis", "--overwrite")
+
+    def test_the_same_store_whatever_the_threads(self):
+        field = write_field(self.folder / "field", smooth)
+        codes = []
+        for threads in 1, 3:
+            self.compress(field, "-o", self.store, "--threads", threads, "--overwrite")
+            with sqlite3.connect(self.store) as database:
+                codes.append(database.execute("select id, code from blobs order by id").fetchall())
+        self.assertEqual(codes[0], codes[1])
+
+    def test_levels_of_a_sensor_scale_the_threshold(self):
+        """12 bits of 16 are coded as well as 16"""
+        def picture(scale):
+            return lambda index: (smooth(index).astype(np.uint16)[..., 1] * scale)
+        psnr = []
+        for scale, white in (16, 4080), (256, 65280):
+            field = write_field(self.folder / f"field{scale}", picture(scale), lf_bayer="RGGB",
+                                lf_transfer="linear", lf_black_level=0, lf_white_level=white)
+            psnr.append(self.report(field, "-o", self.store, "--overwrite")["psnr_db"])
+        self.assertAlmostEqual(psnr[0], psnr[1], delta=0.3)
+
+    def test_packages_take_what_they_need(self):
+        field = write_field(self.folder / "field", smooth)
+        path = write_path(self.folder, 2, aperture=0.012, x=-0.02)
+        path.write_text(path.read_text().replace("view_deg: 50", "view_deg: 15"))
+        packages = self.folder / "packages"
+        self.call(PREPROCESSOR, field, path, "-o", packages)
+        files = sorted(packages.glob("*.lfp"))
+        whole = self.report(*files, "-o", self.folder / "whole.lfs", "--profile", "lossless")
+        part = self.report(*files, "-o", self.folder / "part.lfs", "--profile", "lossless",
+                           "--needed-pixels", "--verify")
+        self.assertLess(whole["lf_images"], 25)
+        self.assertEqual(part["lf_images"], whole["lf_images"])
+        self.assertLess(part["pixel_bytes"], whole["pixel_bytes"])
+        for light_field in [], ["--lightfield", self.folder / "part.lfs"]:
+            out = self.folder / f"out{len(light_field)}"
+            result = self.call(RENDERER, *files, *light_field, "-o", out)
+            self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual((self.folder / "out0/frame_0001.exr").read_bytes(),
+                         (self.folder / "out2/frame_0001.exr").read_bytes())
+
+    # What can go wrong
+
+    def test_usage(self):
+        field = write_field(self.folder / "field", smooth)
+        for words, options in ((["--quantizer", "thesis"], ["--quantizer", "512"]),
+                               (["lossless drops nothing"], ["--profile", "lossless", "--threshold", "2"]),
+                               (["--quantizer 9x"], ["--profile", "thesis", "--quantizer", "9x"]),
+                               (["--needed-pixels", "packages"], ["--needed-pixels"]),
+                               (["--levels"], ["--levels", "6"])):
+            self.fails(2, words, COMPRESSOR, field, "-o", self.store, *options)
+        self.fails(2, ["ends in .lfs"], COMPRESSOR, field, "-o", self.folder / "store.db")
+        self.assertEqual(self.names(), [])
+        self.compress(field, "-o", self.store)
+        self.fails(2, ["is there already", "--overwrite"], COMPRESSOR, field, "-o", self.store)
+        self.fails(2, ["packed store already"], COMPRESSOR, self.store, "-o", self.folder / "b.lfs")
+        self.assertTrue(self.report(field, "-o", self.store, "--resume")["was_there"])
+        self.fails(3, ["other settings"], COMPRESSOR, field, "-o", self.store, "--verify",
+                   "--threshold", 5)
+
+    def test_an_image_that_is_broken_is_skipped_and_named(self):
+        field = write_field(self.folder / "field", smooth)
+        (self.folder / "field/image_07.png").write_text("no picture")
+        self.fails(3, ["image_07.png"], COMPRESSOR, field, "-o", self.store, "--strict")
+        report = self.report(field, "-o", self.store, "--overwrite", "--verify")
+        self.assertEqual([skipped["name"] for skipped in report["skipped"]], ["image_07.png"])
+        self.assertEqual((report["coded"], report["verified"]), (24, 24))
+        for image in (self.folder / "field").glob("*.png"):
+            image.write_text("no picture")
+        self.fails(3, ["none of the 25 LF images"], COMPRESSOR, field, "-o", self.folder / "b.lfs")
+
+    def test_one_damaged_code_is_one_skipped_image(self):
+        field, path = write_field(self.folder / "field", smooth), write_path(self.folder)
+        self.compress(field, "-o", self.store)
+        with sqlite3.connect(self.store) as database:
+            code = bytearray(database.execute("select code from blobs where id = 12").fetchone()[0])
+            code[len(code) // 2] ^= 16
+            database.execute("update blobs set code = ? where id = 12", (bytes(code),))
+        result = self.call(RENDERER, self.store, path, "-o", self.folder / "out")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        report = json.loads((self.folder / "out/report.json").read_text())
+        self.assertEqual([skipped["name"] for skipped in report["skipped_lf_images"]], ["image_12.png"])
+        self.fails(3, ["a.lfs", "image_12.png"], RENDERER, self.store, path, "-o",
+                   self.folder / "strict", "--strict")
+        self.fails(3, ["a.lfs: 1 of 25 codes are wrong", "image_12.png"], COMPRESSOR, field, "-o",
+                   self.store, "--verify")
+
+    def test_a_full_disk_keeps_what_is_done(self):
+        field = write_field(self.folder / "field", smooth)
+        limited = f"ulimit -f 64; exec '{COMPRESSOR}' '{field}' -o '{self.store}' --profile lossless"
+        result = subprocess.run(["bash", "-c", "trap '' XFSZ; " + limited], capture_output=True, text=True)
+        self.assertEqual(result.returncode, 4, result.stderr)
+        self.assertIn("a.lfs", result.stderr.splitlines()[-1])
+        self.assertFalse(self.store.exists())
+        report = self.report(field, "-o", self.store, "--profile", "lossless", "--resume", "--verify")
+        self.assertEqual(report["verified"], 25)
+
+    def many(self):
+        """3000 LF images, of 25 files"""
+        folder = self.folder / "field"
+        field = write_field(folder, smooth)
+        text = json.loads(field.read_text())
+        frames = []
+        for i in range(3000):
+            frame = dict(text["frames"][i % 25])
+            os.link(folder / frame["file_path"], folder / f"link_{i}.png")
+            frame["file_path"] = f"link_{i}.png"
+            frames.append(frame)
+        field.write_text(json.dumps(text | {"frames": frames}))
+        return field
+
+    def wait_for_work(self, process):
+        """until the store is being written, or was"""
+        while not (self.folder / "a.lfs.unfinished").exists() and process.poll() is None:
+            time.sleep(0.005)
+
+    def test_an_interruption_is_taken_up_again(self):
+        field = self.many()
+        process = subprocess.Popen([COMPRESSOR, field, "-o", self.store, "--threads", "1"],
+                                   stderr=subprocess.PIPE, text=True, stdout=subprocess.PIPE)
+        self.wait_for_work(process)
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 5, errors)
+        done = int(re.search(r"interrupted after (\d+) of 3000 LF images", errors)[1])
+        self.fails(2, ["unfinished", "--resume"], COMPRESSOR, field, "-o", self.store)
+        self.fails(2, ["codec"], COMPRESSOR, field, "-o", self.store, "--resume", "--threshold", 9)
+        report = self.report(field, "-o", self.store, "--resume", "--verify")
+        self.assertEqual((report["resumed"], report["verified"]), (done, 3000))
+
+    def test_twenty_kills_cost_nothing_that_was_written(self):
+        field = self.many()
+        chance = random.Random(1)
+        kills, before = 0, 0
+        for _ in range(20):
+            process = subprocess.Popen([COMPRESSOR, field, "-o", self.store, "--resume",
+                                        "--threads", "1", "--progress", "none"],
+                                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            self.wait_for_work(process)
+            time.sleep(chance.uniform(0.1, 0.5))
+            process.kill()
+            kills += process.wait() == -signal.SIGKILL
+            unfinished = self.folder / "a.lfs.unfinished"
+            if unfinished.exists():
+                with sqlite3.connect(unfinished) as database:
+                    try:
+                        done, = database.execute("select count(*) from blobs").fetchone()
+                    except sqlite3.OperationalError:  # killed before there were tables
+                        done = 0
+                self.assertGreaterEqual(done, before)
+                before = done
+        self.assertEqual(kills, 20)
+        self.assertGreater(before, 0)
+        report = self.report(field, "-o", self.store, "--resume", "--verify")
+        self.assertEqual(report["verified"], 3000)
+        with sqlite3.connect(self.store) as database:
+            self.assertEqual(database.execute("pragma integrity_check").fetchall(), [("ok",)])
+        self.assertEqual([name for name in self.names() if not name.endswith(".lock")], ["a.lfs"])
+
+
+if __name__ == "__main__":
+    COMPRESSOR, RENDERER, PREPROCESSOR = sys.argv[1:4]
+    unittest.main(argv=sys.argv[:1])

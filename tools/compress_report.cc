@@ -1,0 +1,111 @@
+#include "tools/compress_report.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tools/common/program.h"
+#include "tools/common/progress.h"
+
+namespace lf {
+namespace {
+
+double Ratio(uint64_t bytes, uint64_t of) {
+  return of == 0 ? 0 : static_cast<double>(bytes) / static_cast<double>(of);
+}
+
+std::string Decibels(double db) {
+  return std::isinf(db) ? std::string("exact") : fmt::format("{:.1f} dB", db);
+}
+
+double MegabytesPerSecond(uint64_t bytes, double seconds) {
+  return seconds > 0 ? static_cast<double>(bytes) / 1e6 / seconds : 0;
+}
+
+}  // namespace
+
+std::string ProgressDetail(const CompressProgress& now) {
+  if (now.is_verifying) return "verifying";
+  return now.code_bytes == 0 ? std::string("coding")
+                             : fmt::format("{:.1f} : 1", Ratio(now.pixel_bytes, now.code_bytes));
+}
+
+std::string CompressText(const CompressReport& report, const CompressOptions& options) {
+  CodecSettings settings = options.codec;
+  settings.threshold = report.threshold;
+  std::string text =
+      fmt::format("{}: {} LF images, {}B in all; {}\n", options.store.string(),
+                  report.image_count - report.skipped.size(),
+                  ShortNumber(static_cast<double>(report.store_bytes)), NameOf(settings));
+  if (report.was_there) text += "was there already: nothing was written\n";
+  if (report.resumed_count > 0)
+    text += fmt::format("{} LF images were coded before; figures are of the other {}\n",
+                        report.resumed_count, report.coded_count);
+  if (report.coded_count > 0) {
+    text += fmt::format("pixels    {}B, coded {}B: {:.2f} : 1\n",
+                        ShortNumber(static_cast<double>(report.pixel_bytes)),
+                        ShortNumber(static_cast<double>(report.code_bytes)),
+                        Ratio(report.pixel_bytes, report.code_bytes));
+    text += fmt::format("files     {}B: {:.2f} : 1\n",
+                        ShortNumber(static_cast<double>(report.source_bytes)),
+                        Ratio(report.source_bytes, report.code_bytes));
+    text += fmt::format("quality   {}", Decibels(report.error.PsnrDb()));
+    if (report.error.squared > 0)
+      text += fmt::format("; worst {} ({})", Decibels(report.worst_psnr_db), report.worst_name);
+    text += fmt::format("\nspeed     {:.0f} MB/s of pixels, {:.0f} MB/s for each CPU second; {}\n",
+                        MegabytesPerSecond(report.pixel_bytes, report.total_s),
+                        MegabytesPerSecond(report.pixel_bytes, report.encode_cpu_s),
+                        ShortDuration(report.total_s));
+  }
+  if (report.verified_count)
+    text +=
+        fmt::format("verified  {} codes read back: as they should be\n", *report.verified_count);
+  if (report.code_bytes > report.source_bytes && report.source_bytes > 0)
+    text +=
+        "note: the files are smaller than their codes: they are compressed with losses already, "
+        "and are better kept\n";
+  if (report.rounded_count > 0)
+    text += fmt::format("note: {} LF images hold floats that were rounded to half floats\n",
+                        report.rounded_count);
+  for (const CompressReport::Skipped& skipped : report.skipped)
+    text += fmt::format("skipped   {}: {}\n", skipped.name, skipped.reason);
+  text +=
+      fmt::format("next: lfrenderer {} PATH.yaml -o frames\n", ShellWord(options.store.string()));
+  return text;
+}
+
+std::string CompressJson(const CompressReport& report, const CompressOptions& options) {
+  using Json = nlohmann::ordered_json;
+  const auto decibels = [](double db) { return std::isinf(db) ? Json("exact") : Json(db); };
+  CodecSettings settings = options.codec;
+  settings.threshold = report.threshold;
+  Json json;
+  json["store"] = options.store.string();
+  json["codec"] = NameOf(settings);
+  json["threshold"] = report.threshold;
+  json["lf_images"] = report.image_count;
+  json["was_there"] = report.was_there;
+  json["resumed"] = report.resumed_count;
+  json["coded"] = report.coded_count;
+  json["source_bytes"] = report.source_bytes;
+  json["pixel_bytes"] = report.pixel_bytes;
+  json["code_bytes"] = report.code_bytes;
+  json["store_bytes"] = report.store_bytes;
+  json["ratio"] = Ratio(report.pixel_bytes, report.code_bytes);
+  if (report.coded_count > 0) {
+    json["psnr_db"] = decibels(report.error.PsnrDb());
+    json["worst_psnr_db"] = decibels(report.worst_psnr_db);
+    json["worst"] = report.worst_name;
+  }
+  json["encode_cpu_s"] = report.encode_cpu_s;
+  json["total_s"] = report.total_s;
+  json["rounded_to_half"] = report.rounded_count;
+  if (report.verified_count) json["verified"] = *report.verified_count;
+  json["skipped"] = Json::array();
+  for (const CompressReport::Skipped& skipped : report.skipped)
+    json["skipped"].push_back({{"name", skipped.name}, {"reason", skipped.reason}});
+  return json.dump(2) + "\n";
+}
+
+}  // namespace lf
