@@ -16,6 +16,7 @@ PSNR of images is that of stored values, PSNR of frames that of 16-bit sRGB pict
 """
 import argparse
 import bz2
+import itertools
 import json
 import lzma
 import math
@@ -65,6 +66,8 @@ class Content:
                 if abs(row - 13) <= 4 and abs(column - 13) <= 4:
                     cv2.imwrite(str(folder / "mosaics" / (file.stem + ".png")), mosaic_of(cv2.imread(str(file))))
             run(build / "bin/lfimport", folder / "mosaics", "-o", self.field, "--bayer", "RGGB", "-q")
+            calibration = self.field / "transforms.json"  # mosaics are linear unless they say otherwise
+            calibration.write_text(json.dumps(json.loads(calibration.read_text()) | {"lf_transfer": "srgb"}))
         else:
             run(build / "bin/lfsynth", "still-life", "-o", self.field, "--count", 81, "--size", "960x640", "--bayer",
                 "--noise", 0.005 if name == "noisy" else 0, "-q")
@@ -121,9 +124,9 @@ class Content:
             cv2.imwrite(str(folder / f"{i}.png"), back, [cv2.IMWRITE_PNG_COMPRESSION, 1])
         (folder / "transforms.json").write_text(json.dumps(calibration))
         error /= len(self.images)
-        white = 2 ** self.bits - 1
-        return {"ratio": self.pixel_bytes / size, "cpu_s": seconds, "bytes": size,
-                "psnr": 10 * math.log10(white ** 2 / error) if error > 0 else math.inf,
+        # Of 16 bits images are compared along the curve of a display, by lfcompressor alone.
+        psnr = math.inf if error == 0 else 10 * math.log10(255 ** 2 / error) if self.bits == 8 else None
+        return {"ratio": self.pixel_bytes / size, "cpu_s": seconds, "bytes": size, "psnr": psnr,
                 "frame_psnr": self.frame_psnr(self.render(folder))}
 
 
@@ -140,7 +143,7 @@ def haar(plane):
     return low_low, across, down, both
 
 
-def best_lossless(content, levels, threshold):
+def best_lossless(content, levels, threshold, quantizer):
     """how much shorter the best of four lossless coders is than zstd -1, on the thesis's bytes"""
     step = 1 if content.bits == 8 else 257
     sizes = np.zeros(4)
@@ -163,7 +166,8 @@ def best_lossless(content, levels, threshold):
             return low
         pictures = [picture(*plane) for plane in planes]
         whole = np.vstack([np.hstack(pictures[:2]), np.hstack(pictures[2:])])
-        data = np.round((whole - least) / (most - least) * 255).astype(np.uint8).tobytes()
+        codes = np.round((whole - least) / (most - least) * (quantizer - 1))
+        data = codes.astype(np.uint8 if quantizer <= 256 else "<u2").tobytes()
         sizes += [len(zstandard.ZstdCompressor(level=1).compress(data)),
                   len(zstandard.ZstdCompressor(level=19).compress(data)), len(bz2.compress(data, 9)),
                   len(lzma.compress(data, preset=6))]
@@ -172,7 +176,7 @@ def best_lossless(content, levels, threshold):
 
 def at(rows, key, target):
     """the ratio at which the PSNR `key` is reached, between rows; None beyond them"""
-    points = sorted((row[key], math.log(row["best"])) for row in rows if math.isfinite(row[key]))
+    points = sorted((row[key], math.log(row["best"])) for row in rows if row[key] is not None and math.isfinite(row[key]))
     values = [value for value, _ in points]
     if not points or not values[0] <= target <= values[-1]:
         return None
@@ -181,7 +185,8 @@ def at(rows, key, target):
 
 def best_at(rows, key, target):
     """of the levels, the best"""
-    ratios = [at([r for r in rows if r["levels"] == level], key, target) for level in {r["levels"] for r in rows}]
+    kinds = {(r["levels"], r.get("quantizer")) for r in rows}
+    ratios = [at([r for r in rows if (r["levels"], r.get("quantizer")) == kind], key, target) for kind in kinds]
     return max((ratio for ratio in ratios if ratio), default=None)
 
 
@@ -232,21 +237,27 @@ def number(value, digits=1):
 
 
 def measure(content, with_peers, pictures):
-    rows = []
-    for levels, threshold in THESIS:
-        row, frames = content.code("--profile", "thesis", "--levels", levels, "--threshold", threshold)
-        if pictures and content.name == "shop" and (levels, threshold) in ((1, 8), (2, 4)):
-            draw(content, frames, pictures / f"codec_thesis_{levels}.png")
-        row |= {"profile": "thesis", "levels": levels, "threshold": threshold,
-                "best": row["ratio"] * best_lossless(content, levels, threshold)}
+    rows, drawn = [], [content.frames[1]]
+    # Of 16 bits the highlights alone take most of 256 values.
+    quantizers = ("8bit",) if content.bits == 8 else ("8bit", 4096)
+    for quantizer, (levels, threshold) in itertools.product(quantizers, THESIS):
+        row, frames = content.code("--profile", "thesis", "--levels", levels, "--threshold", threshold,
+                                   "--quantizer", quantizer)
+        if content.name == "shop" and (levels, threshold) in ((1, 8), (2, 4)):
+            drawn.append(frames[1])
+        row |= {"profile": "thesis", "levels": levels, "threshold": threshold, "quantizer": quantizer,
+                "best": row["ratio"] * best_lossless(content, levels, threshold,
+                                                     256 if quantizer == "8bit" else quantizer)}
         rows.append(row)
         print(content.name, row, flush=True)
     for threshold in DEFAULT:
         row, frames = content.code("--threshold", threshold)
-        if pictures and content.name == "shop" and threshold == 8:
-            draw(content, frames, pictures / "codec_default.png")
+        if content.name == "shop" and threshold == 8:
+            drawn.append(frames[1])
         rows.append(row | {"profile": "default", "levels": 4, "threshold": threshold, "best": row["ratio"]})
         print(content.name, rows[-1], flush=True)
+    if pictures and content.name == "shop":
+        draw(drawn, pictures / "codec_artefacts.jpg")
     row, _ = content.code("--profile", "lossless")
     rows.append(row | {"profile": "lossless", "levels": 4, "threshold": None, "best": row["ratio"]})
     if with_peers:
@@ -263,19 +274,22 @@ def measure(content, with_peers, pictures):
     return rows
 
 
-def draw(content, frames, path):
-    """a part of a frame, twice as large"""
-    height, width = frames[1].shape[:2]
-    part = frames[1][height // 3:height // 3 + 160, width // 3:width // 3 + 240]
-    cv2.imwrite(str(path), cv2.resize((part // 257).astype(np.uint8), None, fx=2, fy=2,
-                                      interpolation=cv2.INTER_NEAREST))
+def draw(frames, path):
+    """a part of frames, twice as large, above what differs from the first, 16 times as strong"""
+    height, width = frames[0].shape[:2]
+    parts = [f[height // 2 - 60:height // 2 + 100, width // 2 - 80:width // 2 + 80].astype(float) / 257 for f in frames]
+    rows = [np.hstack(parts), np.hstack([128 + 16 * (part - parts[0]) for part in parts])]
+    picture = np.clip(np.round(np.vstack(rows)), 0, 255).astype(np.uint8)
+    cv2.imwrite(str(path), cv2.resize(picture, None, fx=2, fy=2, interpolation=cv2.INTER_NEAREST),
+                [cv2.IMWRITE_JPEG_QUALITY, 90])
 
 
-def table_of(name, rows, pixel_bytes):
+def table_of(name, rows):
     lines = [f"**{name}**", "", "| profile | levels | threshold | ratio (thesis) | size, MB | CPU s | PSNR of images | of frames |",
              "|" + " --- |" * 8]
     for row in rows:
-        if row["profile"] == "thesis" and (row["levels"], row["threshold"]) not in TABLE_5_3:
+        is_thesis = row["profile"] == "thesis"
+        if is_thesis and ((row["levels"], row["threshold"]) not in TABLE_5_3 or row["quantizer"] != "8bit"):
             continue
         ratio = f"{row['ratio']:.1f}"
         if row["profile"] == "thesis":
@@ -310,11 +324,9 @@ def main():
         with tempfile.TemporaryDirectory() as temporary:
             for name in arguments.only.split(","):
                 content = Content(arguments.build.resolve(), arguments.data, name, pathlib.Path(temporary) / name)
-                if arguments.pictures and name == "shop":
-                    draw(content, content.frames, arguments.pictures / "codec_original.png")
                 record["rows"][name] = measure(content, not arguments.no_peers, arguments.pictures)
     text = results.sentence(record) + "\n\n" + "\n".join(
-        table_of(name, rows, 0) for name, rows in record["rows"].items())
+        table_of(name, rows) for name, rows in record["rows"].items())
     results.publish(arguments, "codec_table.py", record, text)
 
 

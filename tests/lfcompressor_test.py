@@ -115,7 +115,22 @@ class CompressorTest(unittest.TestCase):
             field = write_field(self.folder / f"field{scale}", picture(scale), lf_bayer="RGGB",
                                 lf_transfer="linear", lf_black_level=0, lf_white_level=white)
             psnr.append(self.report(field, "-o", self.store, "--overwrite")["psnr_db"])
+            with sqlite3.connect(self.store) as database:
+                self.assertEqual(database.execute("select distinct kind from codes").fetchall(),
+                                 [("display16",)])
         self.assertAlmostEqual(psnr[0], psnr[1], delta=0.3)
+        self.assertGreater(psnr[0], 40)
+        # Levels that are mended later are not those of the curve.
+        path = write_path(self.folder)
+        frames = []
+        for white in 65280, 32640:
+            with sqlite3.connect(self.store) as database:
+                database.execute("update settings set value = ? where key = 'white_level'", (str(white),))
+            out = self.folder / f"out{white}"
+            result = self.call(RENDERER, self.store, path, "-o", out, "--format", "png", "-q")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            frames.append(np.asarray(Image.open(out / "frame_0001.png")).astype(float).mean())
+        self.assertGreater(frames[1], frames[0] * 1.1)
 
     def test_packages_take_what_they_need(self):
         field = write_field(self.folder / "field", smooth)

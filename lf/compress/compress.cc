@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "lf/compress/find_threshold.h"
+#include "lf/compress/image_coder.h"
 #include "lf/compress/verify_store.h"
 #include "lf/core/log.h"
 #include "lf/packed/packed_store_file.h"
@@ -34,6 +35,7 @@ PackedStorePlan PlanOf(const CompressSource& source, const CompressOptions& opti
   plan.whole = source.whole;
   plan.whole_ids = source.whole_ids;
   plan.codec = NameOf(settings);
+  plan.display_levels = ImageCoder(source.light_field.encoding, settings).display_levels();
   plan.shard_bytes = options.shard_bytes;
   plan.source = options.source_name;
   plan.version = options.version;
@@ -75,6 +77,7 @@ class Compressor {
   ThreadPool& pool_;
   const std::function<void(const CompressProgress&)>& progress_;
   CodecSettings settings_;
+  std::optional<ImageCoder> coder_;
 
   std::mutex mutex_;  // of what follows
   CompressReport report_;
@@ -106,14 +109,8 @@ void Compressor::AddOne(PackedStoreWriter* writer, LfImageId id) {
   if (!image) {
     error = image.error();
   } else {
-    CodecSettings settings = settings_;
-    const double grey_step = GreyStep(light_field.encoding, image->values);
-    settings.threshold *= grey_step;
-    coded = CodeOf(*image, settings);
-    DecodedPart decoded;
-    const Result<void> result = DecodeImage(coded->code, &decoded);
-    LF_CHECK(result.has_value());
-    lost = ErrorOf(image->pixels, decoded, grey_step);
+    coded = coder_->Code(*image);
+    lost = coder_->ErrorOf(*image, *coded);
     if (const Result<void> added = writer->Add(id, *coded); !added) error = added.error();
   }
 
@@ -148,6 +145,7 @@ void Compressor::AddOne(PackedStoreWriter* writer, LfImageId id) {
 }
 
 Result<void> Compressor::Write() {
+  coder_.emplace(source_.light_field.encoding, settings_);
   LF_ASSIGN_OR_RETURN(PackedStoreWriter writer,
                       OpenWriter(source_, options_, PlanOf(source_, options_, settings_)));
   std::vector<LfImageId> ids;

@@ -7,8 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "lf/compress/code_quality.h"
-#include "lf/core/check.h"
+#include "lf/compress/image_coder.h"
 #include "lf/store/recorded_image.h"
 
 namespace lf {
@@ -35,16 +34,12 @@ Result<double> FindThreshold(const CompressSource& source, const CodecSettings& 
     images[i] = ReadRecordedImage(light_field, LfImageId{index}, rect);
   });
   const auto psnr_at = [&](double threshold) {
+    CodecSettings of_threshold = settings;
+    of_threshold.threshold = threshold;
+    const ImageCoder coder(light_field.encoding, of_threshold);
     std::vector<CodeError> errors(images.size());
     pool.ForEach(images.size(), [&](size_t i) {
-      if (!images[i]) return;
-      CodecSettings of_image = settings;
-      const double grey_step = GreyStep(light_field.encoding, images[i]->values);
-      of_image.threshold = threshold * grey_step;
-      DecodedPart decoded;
-      const Result<void> result = DecodeImage(CodeOf(*images[i], of_image).code, &decoded);
-      LF_CHECK(result.has_value());
-      errors[i] = ErrorOf(images[i]->pixels, decoded, grey_step);
+      if (images[i]) errors[i] = coder.ErrorOf(*images[i], coder.Code(*images[i]));
     });
     CodeError together;
     for (const CodeError& error : errors) together += error;

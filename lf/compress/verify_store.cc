@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "lf/compress/code_quality.h"
 #include "lf/compress/compress.h"
+#include "lf/compress/image_coder.h"
 #include "lf/packed/packed_store_file.h"
 #include "lf/store/recorded_image.h"
 
@@ -33,6 +33,7 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
   LF_ASSIGN_OR_RETURN(const std::vector<PackedCode> codes,
                       FindCodes(options.store, light_field.image_names));
 
+  const ImageCoder coder(light_field.encoding, options.settings);
   std::mutex mutex;
   std::vector<std::unique_ptr<PackedCodeReader>> readers;
   size_t done = 0, verified = 0;
@@ -62,9 +63,7 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
     LF_ASSIGN_OR_RETURN(std::unique_ptr<PackedCodeReader> reader, reader_of_thread());
     const Result<PackedCodeReader::Bytes> bytes = reader->Read(codes[i]);
     LF_RETURN_IF_ERROR(bytes);
-    CodecSettings settings = options.settings;
-    settings.threshold *= GreyStep(light_field.encoding, image->values);
-    const CodedImage again = CodeOf(*image, settings);
+    const CodedImage again = coder.Code(*image);
     DecodedPart decoded;
     LF_RETURN_IF_ERROR(DecodeImage(bytes->code, &decoded));
     if (codes[i].rect != again.rect || codes[i].values != again.values ||

@@ -28,7 +28,7 @@ inline constexpr const char* kBlobsTable =
     "create table blobs (id integer primary key, code blob not null, mask blob);";
 
 // By StoredValues.
-inline constexpr const char* kKindNames[] = {"uint8", "uint16", "half"};
+inline constexpr const char* kKindNames[] = {"uint8", "uint16", "half", "display16"};
 
 inline constexpr const char* kComplete = "complete";
 inline constexpr const char* kUnfinished = "unfinished";

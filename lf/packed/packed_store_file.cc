@@ -160,6 +160,16 @@ std::vector<fs::path> FilesOf(const fs::path& path, const PackedStoreFacts& fact
   return files;
 }
 
+Result<DisplayLevels> ReadDisplayLevels(const fs::path& path) {
+  LF_ASSIGN_OR_RETURN(const OpenedStore store, OpenComplete(path));
+  LF_ASSIGN_OR_RETURN(const std::vector<double> levels,
+                      store.settings.Numbers("display_levels", 2, 2));
+  constexpr double kMost = 65535;
+  if (!(-kMost <= levels[0] && levels[0] < levels[1] && levels[1] <= kMost))
+    return store.settings.Wrong("display_levels", "black, and white above it");
+  return DisplayLevels{levels[0], levels[1]};
+}
+
 Result<LightFieldIdentity> ReadWholeIdentity(const fs::path& path) {
   LF_ASSIGN_OR_RETURN(const OpenedStore store, OpenComplete(path));
   return WholeIdentity(store.settings);

@@ -22,9 +22,10 @@ namespace lf {
 
 // What the numbers in a code stand for.
 enum class StoredValues : uint8_t {
-  kUint8 = 0,   // stored values of 8 bits
-  kUint16 = 1,  // of 16
-  kHalf = 2,    // radiance: bit patterns of half floats, in order (store/ordered_half.h)
+  kUint8 = 0,      // stored values of 8 bits
+  kUint16 = 1,     // of 16
+  kHalf = 2,       // radiance: bit patterns of half floats, in order (store/ordered_half.h)
+  kDisplay16 = 3,  // of 16 bits, along a curve: ReadDisplayLevels(), store/display_curve.h
 };
 
 inline constexpr const char* kStoreExtension = ".lfs";
@@ -58,6 +59,15 @@ Result<PackedStoreFacts> ReadPackedStore(const std::filesystem::path& path);
 // Its files: itself, then its shards.
 std::vector<std::filesystem::path> FilesOf(const std::filesystem::path& path,
                                            const PackedStoreFacts& facts);
+
+// Black and white of the display curve that codes of kDisplay16 are along. The levels of the light
+// field when they were made: those may be mended.
+struct DisplayLevels {
+  double black = 0;
+  double white = 0;  // above black
+};
+// kInput: as ReadPackedStore(); it has none.
+Result<DisplayLevels> ReadDisplayLevels(const std::filesystem::path& path);
 
 // PackedStoreFacts::whole alone.
 Result<LightFieldIdentity> ReadWholeIdentity(const std::filesystem::path& path);

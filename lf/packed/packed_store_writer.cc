@@ -35,6 +35,10 @@ std::string HashOfIds(const std::vector<uint32_t>& ids) {
                      : fmt::format("{:016x}", HashBytes(BytesOf(std::span<const uint32_t>(ids))));
 }
 
+std::string TextOf(const std::optional<DisplayLevels>& levels) {
+  return levels ? fmt::format("{} {}", levels->black, levels->white) : std::string();
+}
+
 // What a store must have in common with the one that it goes on.
 SettingList SettingsOfPlan(const LightField& light_field, const PackedStorePlan& plan) {
   const LightFieldIdentity images = IdentityOf(light_field);
@@ -46,6 +50,7 @@ SettingList SettingsOfPlan(const LightField& light_field, const PackedStorePlan&
                           {"images.calibration", images.calibration},
                           {"images.whole_ids", HashOfIds(plan.whole_ids)},
                           {"codec", plan.codec},
+                          {"display_levels", TextOf(plan.display_levels)},
                           {"shard_bytes", fmt::format("{}", plan.shard_bytes)}};
   const SettingList pixels = SettingsOfPixels(light_field);
   settings.insert(settings.end(), pixels.begin(), pixels.end());

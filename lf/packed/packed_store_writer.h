@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct PackedStorePlan {
   LightFieldIdentity whole;         // that the LF images are from
   std::vector<uint32_t> whole_ids;  // in it, of each LF image; empty: 0, 1, 2, ...
   std::string codec;                // all that decides about codes, for people to read, too
+  std::optional<DisplayLevels> display_levels = {};  // of codes of kDisplay16
   // 0: one file. Else codes lie in STORE-0001.lfs, STORE-0002.lfs, ... of about this size, beside
   // STORE.lfs, which has all the rest.
   uint64_t shard_bytes = 0;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -52,13 +53,16 @@ Result<void> CheckCode(std::string_view bytes, int bits, PixelLayout layout, boo
 }
 
 // decoded's pixels as `part`, whose memory they exchange.
-void MakePart(StoredValues values, const PixelRect& coded, DecodedPart* decoded,
-              Image<float>* floats, ImagePart* part) {
+void MakePart(StoredValues values, const PixelRect& coded, const std::optional<DisplayCurve>& curve,
+              DecodedPart* decoded, Image<float>* floats, ImagePart* part) {
   part->rect = Moved(decoded->rect, coded.x_begin, coded.y_begin);
   if (values == StoredValues::kUint8) {
     part->image = std::move(std::get<Image<uint8_t>>(decoded->pixels));
-  } else if (values == StoredValues::kUint16) {
-    part->image = std::move(std::get<Image<uint16_t>>(decoded->pixels));
+  } else if (values != StoredValues::kHalf) {
+    auto& words = std::get<Image<uint16_t>>(decoded->pixels);
+    if (values == StoredValues::kDisplay16)
+      for (uint16_t& word : words.pixels()) word = curve->Stored(word);
+    part->image = std::move(words);
   } else {
     const auto& ordered = std::get<Image<uint16_t>>(decoded->pixels);
     floats->Resize(ordered.width(), ordered.height(), ordered.channels());
@@ -91,7 +95,13 @@ Result<std::unique_ptr<PackedStore>> PackedStore::Open(const LightField& light_f
                                                        Mosaics mosaics) {
   LF_ASSIGN_OR_RETURN(std::vector<PackedCode> codes,
                       FindCodes(light_field.folder, light_field.image_names));
-  return std::unique_ptr<PackedStore>(new PackedStore(light_field, mosaics, std::move(codes)));
+  std::unique_ptr<PackedStore> store(new PackedStore(light_field, mosaics, std::move(codes)));
+  if (std::any_of(store->codes_.begin(), store->codes_.end(),
+                  [](const PackedCode& code) { return code.values == StoredValues::kDisplay16; })) {
+    LF_ASSIGN_OR_RETURN(const DisplayLevels levels, ReadDisplayLevels(light_field.folder));
+    store->curve_.emplace(levels.black, levels.white);
+  }
+  return store;
 }
 
 Result<void> PackedStore::Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const {
@@ -144,7 +154,7 @@ Result<void> PackedStore::LoadRecorded(Loading* loading, LfImageId id, const Pix
   const PixelRect wanted = Moved(inside, -code.rect.x_begin, -code.rect.y_begin);
   if (const auto ok = DecodeImage(bytes->code, wanted, &loading->decoded); !ok)
     return named(ok.error());
-  MakePart(code.values, code.rect, &loading->decoded, &loading->floats, &loading->part);
+  MakePart(code.values, code.rect, curve_, &loading->decoded, &loading->floats, &loading->part);
   const int channels =
       std::visit([](const auto& image) { return image.channels(); }, loading->part.image);
   ConvertRadiance(loading->part, channels, tables_, encoding, camera.gain, pixels);

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "lf/capture/light_field.h"
@@ -10,6 +11,7 @@
 #include "lf/core/result.h"
 #include "lf/imageio/image_file.h"
 #include "lf/packed/packed_store_file.h"
+#include "lf/store/display_curve.h"
 #include "lf/store/lf_image_store.h"
 #include "lf/store/radiance_conversion.h"
 
@@ -57,6 +59,7 @@ class PackedStore : public LfImageStore {
   const RadianceTables tables_;  // for images without a gain of their own
   const Mosaics mosaics_;
   const std::vector<PackedCode> codes_;  // as light_field.cameras
+  std::optional<DisplayCurve> curve_;    // where there are codes along it
   mutable std::mutex mutex_;
   mutable std::vector<std::unique_ptr<Loading>> loadings_;  // as many as were at the same time
 };

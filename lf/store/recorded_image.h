@@ -18,7 +18,7 @@ struct RecordedImage {
   // Of `rect`: grey, a mosaic, or R, G, B; further channels of a file are left out.
   CodecPixels pixels;
   PixelLayout layout = PixelLayout::kGrey;
-  // kHalf: of float files, as integers in order (ordered_half.h).
+  // kUint8 or kUint16; kHalf: of float files, as integers in order (ordered_half.h).
   StoredValues values = StoredValues::kUint8;
   PixelRect rect;
   Image<uint8_t> mask;        // empty: nothing is masked; else [height][width]: 0 masked, 255

@@ -1,0 +1,68 @@
+#!/usr/bin/python3
+"""How fast LF images are coded and decoded: 2048 x 2048 RGGB mosaics of 8 bits, one thread.
+
+usage: bench/codec_speed.py BUILD_DIR [--data ../shared] [--runs 5] [--write doc/codec.md]
+
+Pictures of `blender-shop` (the densest) and of `beer-colmap` (photographs) side by side, and the picture of waves and noise
+that lf_codec_bench draws. MB/s are of pixels, 10^6 bytes; CPU time, medians.
+"""
+import argparse
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+
+import cv2
+import numpy as np
+
+import record as results
+
+PROFILES = ("thesis, 1 level, threshold 8", "default", "lossless")
+
+
+def mosaic_of(files):
+    """2048 x 2048 of as many pictures as that takes"""
+    pictures = [cv2.imread(str(file)) for file in files]
+    height, width = pictures[0].shape[:2]
+    across, down = -(-2048 // width), -(-2048 // height)
+    rows = [np.hstack([pictures[(y * across + x) * len(pictures) // (across * down)] for x in range(across)])
+            for y in range(down)]
+    picture = np.vstack(rows)[:2048, :2048]
+    mosaic = np.empty((2048, 2048), np.uint8)
+    for y, x, channel in ((0, 0, 2), (0, 1, 1), (1, 0, 1), (1, 1, 0)):
+        mosaic[y::2, x::2] = picture[y::2, x::2, channel]
+    return mosaic
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("--data", type=pathlib.Path, default=pathlib.Path("../shared"))
+    parser.add_argument("--runs", type=int, default=5)
+    results.add_options(parser)
+    arguments = parser.parse_args()
+    bench = arguments.build.resolve() / "lf/codec/lf_codec_bench"
+    lines = ["| content | profile | ratio | coded, MB/s | decoded, MB/s |", "|" + " --- |" * 5]
+    record = results.context()
+    with tempfile.TemporaryDirectory() as temporary:
+        for name in ("blender-shop", "beer-colmap", "drawn"):
+            environment = dict(os.environ)
+            environment.pop("LF_BENCH_IMAGE", None)
+            if name != "drawn":
+                image = pathlib.Path(temporary) / "mosaic.raw"
+                mosaic_of(sorted((arguments.data / "data" / name / "images").glob("*.jpg"))).tofile(image)
+                environment["LF_BENCH_IMAGE"] = str(image)
+            report = json.loads(subprocess.run(
+                [bench, "--benchmark_filter=Mosaic", f"--benchmark_repetitions={arguments.runs}", "--benchmark_format=json",
+                 "--benchmark_min_time=0.3"], check=True, capture_output=True, text=True, env=environment).stdout)
+            found = {b["run_name"]: b for b in report["benchmarks"] if b.get("aggregate_name") == "median"}
+            for number, profile in enumerate(PROFILES):
+                coded, decoded = (found[f"{what}Mosaic/profile:{number}"] for what in ("Encode", "Decode"))
+                lines.append(f"| {name} | {profile} | {decoded['ratio']:.2f} | {coded['bytes_per_second'] / 1e6:.0f} | "
+                             f"{decoded['bytes_per_second'] / 1e6:.0f} |")
+    results.publish(arguments, "codec_speed.py", record, results.sentence(record) + "\n\n" + "\n".join(lines) + "\n")
+
+
+if __name__ == "__main__":
+    main()
