@@ -67,7 +67,7 @@ class Content:
                     cv2.imwrite(str(folder / "mosaics" / (file.stem + ".png")), mosaic_of(cv2.imread(str(file))))
             run(build / "bin/lfimport", folder / "mosaics", "-o", self.field, "--bayer", "RGGB", "-q")
             calibration = self.field / "transforms.json"  # mosaics are linear unless they say otherwise
-            calibration.write_text(json.dumps(json.loads(calibration.read_text()) | {"lf_transfer": "srgb"}))
+            calibration.write_text(json.dumps(json.loads(calibration.read_text()) | {"lf_transfer": "sRGB"}))
         else:
             run(build / "bin/lfsynth", "still-life", "-o", self.field, "--count", 81, "--size", "960x640", "--bayer",
                 "--noise", 0.005 if name == "noisy" else 0, "-q")
