@@ -75,7 +75,7 @@ def main():
                     subprocess.run([programs / "lfrenderer", light_field, path, "-o", out, "-q", "--no-contact-sheet"],
                                    check=True)
                     report = json.loads((out / "report.json").read_text())
-                    seconds[kind].append(report["total_s"])
+                    seconds[kind].append(report["seconds"])
                     loading[kind].append(report["load_cpu_s"])
                     shares[kind].append(report["load_cpu_s"] / (report["load_cpu_s"] + report["collect_cpu_s"]))
             for kind, light_field in kinds.items():
