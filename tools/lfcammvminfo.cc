@@ -1,5 +1,4 @@
 // lfcammvminfo PATH.yaml: what the camera of every frame of a path does.
-#include <cstdio>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,12 +29,6 @@ struct Arguments {
   bool csv = false;
 };
 
-lf::Result<void> Print(const std::string& text) {
-  if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0)
-    return {};
-  return lf::OutputError("cannot write to the standard output: is the disk full?");
-}
-
 lf::Result<std::vector<lf::FrameId>> ChooseFrames(const Arguments& arguments,
                                                   const lf::CameraPath& path) {
   if (arguments.frame > path.frame_count())
@@ -51,10 +44,10 @@ lf::Result<void> Report(const Arguments& arguments, bool json) {
   LF_ASSIGN_OR_RETURN(const lf::CameraPath path,
                       lf::ReadPathYaml(arguments.path, arguments.unit_m));
   LF_ASSIGN_OR_RETURN(const auto frames, ChooseFrames(arguments, path));
-  if (json) return Print(lf::CameraJson(path, frames));
-  if (arguments.csv) return Print(lf::CameraCsv(path, frames));
-  if (arguments.frame > 0) return Print(lf::CameraBlock(path, frames.front()));
-  return Print(lf::CameraTable(path, frames));
+  if (json) return lf::PrintReport(lf::CameraJson(path, frames));
+  if (arguments.csv) return lf::PrintReport(lf::CameraCsv(path, frames));
+  if (arguments.frame > 0) return lf::PrintReport(lf::CameraBlock(path, frames.front()));
+  return lf::PrintReport(lf::CameraTable(path, frames));
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <optional>
 #include <string>
 #include <vector>
@@ -155,11 +154,8 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
                       lf::Compress(source, options, pool, [&](const lf::CompressProgress& now) {
                         meter.Update(now.done, now.total, lf::ProgressDetail(now));
                       }));
-  const std::string text =
-      common.json ? lf::CompressJson(report, options) : lf::CompressText(report, options);
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
-    return lf::OutputError("cannot write the report to the standard output: is the disk full?");
-  return {};
+  return lf::PrintReport(common.json ? lf::CompressJson(report, options)
+                                     : lf::CompressText(report, options));
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
 // lfimport LIGHTFIELD [-o DIR]: any calibration as the native one, and what is to be said about it.
-#include <cstdio>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -150,9 +149,8 @@ lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {
   if (!a.output.empty() && !refuses) {
     LF_ASSIGN_OR_RETURN(report.written, lf::WriteNativeFolder(a.output, &light_field));
   }
-  const std::string text = common.json ? lf::ReportJson(report) : lf::ReportText(report);
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
-    return lf::OutputError("cannot write the report to the standard output: is the disk full?");
+  LF_RETURN_IF_ERROR(
+      lf::PrintReport(common.json ? lf::ReportJson(report) : lf::ReportText(report)));
   if (fault_count == 0) return {};
   const std::string what = fmt::format(
       "{} of {} images are missing, {} broken; {}", report.faults->missing.size(),

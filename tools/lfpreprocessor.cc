@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -151,11 +150,8 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   facts.read_s = read_s;
   if (options.lens_weights == lf::LensWeights::kNone) facts.render_options = " --lens-weights none";
   facts.are_depths_known = options.depths || light_field.depth_range;
-  const std::string text =
-      common.json ? lf::ForecastJson(report, path, facts) : lf::ForecastText(report, path, facts);
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
-    return lf::OutputError("cannot write the report to the standard output: is the disk full?");
-  return {};
+  return lf::PrintReport(common.json ? lf::ForecastJson(report, path, facts)
+                                     : lf::ForecastText(report, path, facts));
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ struct CodeInfo {
 };
 
 // kInput, without a name: no code, of a newer version, damaged, more than 2^30 pixels, or shorter
-// than its own table of contents. Allocates nothing.
+// than its own table of contents. Reads the head alone.
 Result<CodeInfo> ReadCodeInfo(std::string_view code);
 
 struct DecodedPart {

@@ -48,33 +48,50 @@ HWY_INLINE V Update(V left, V right, V two) {
   return hn::ShiftRight<2>(hn::Add(hn::Add(left, right), two));
 }
 
-// A row of coefficients as they were coded.
+// Coefficients of a row as they were coded: Coefficients(band, row, count).At(x), x a multiple of
+// the lanes.
 template <class T>
-void LoadCoefficients(const CodedBand<T>& band, int row, int count, T* HWY_RESTRICT out) {
+class Coefficients {
+ public:
+  using V = hn::VFromD<hn::ScalableTag<T>>;
+
+  Coefficients(const CodedBand<T>& band, int row, int count)
+      : values_(band.values + static_cast<size_t>(row) * count),
+        step_(hn::Set(hn::ScalableTag<T>(), band.step)),
+        half_(hn::Set(hn::ScalableTag<T>(), static_cast<T>(band.is_doubled ? 1 : 0))),
+        shift_(band.is_doubled ? 1 : 0) {}
+  HWY_INLINE V At(int x) const {
+    const V scaled = hn::Mul(hn::LoadU(hn::ScalableTag<T>(), values_ + x), step_);
+    return hn::ShiftRightSame(hn::Add(scaled, half_), shift_);
+  }
+
+ private:
+  const T* values_;
+  V step_, half_;
+  int shift_;
+};
+
+template <class T>
+void LoadRow(const CodedBand<T>& band, int row, int count, T* HWY_RESTRICT out) {
   const hn::ScalableTag<T> d;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  const T* HWY_RESTRICT in = band.values + static_cast<size_t>(row) * count;
-  const auto step = hn::Set(d, band.step), one = hn::Set(d, T{1});
-  if (band.is_doubled)
-    for (int x = 0; x < count; x += lanes)
-      hn::StoreU(hn::ShiftRight<1>(hn::Add(hn::Mul(hn::LoadU(d, in + x), step), one)), d, out + x);
-  else
-    for (int x = 0; x < count; x += lanes)
-      hn::StoreU(hn::Mul(hn::LoadU(d, in + x), step), d, out + x);
+  const Coefficients<T> coefficients(band, row, count);
+  for (int x = 0; x < count; x += lanes) hn::StoreU(coefficients.At(x), d, out + x);
 }
 
-// low - Update(above, below), in place.
+// An even row: low - Update(above, below).
 template <class T>
-void LiftLow(const T* above, const T* below, int count, T* HWY_RESTRICT low) {
+void LoadEvenRow(const CodedBand<T>& band, int row, int count, const T* above, const T* below,
+                 T* HWY_RESTRICT out) {
   const hn::ScalableTag<T> d;
   const int lanes = static_cast<int>(hn::Lanes(d));
+  const Coefficients<T> low(band, row, count);
   const auto two = hn::Set(d, T{2});
   for (int x = 0; x < count; x += lanes)
-    hn::StoreU(hn::Sub(hn::LoadU(d, low + x), Update(Load(above + x), Load(below + x), two)), d,
-               low + x);
+    hn::StoreU(hn::Sub(low.At(x), Update(Load(above + x), Load(below + x), two)), d, out + x);
 }
 
-// high + Predicted(above, below).
+// An odd row: high + Predicted(above, below).
 template <class T>
 void LiftHigh(const T* high, const T* above, const T* below, int count, T* HWY_RESTRICT out) {
   const hn::ScalableTag<T> d;
@@ -84,27 +101,28 @@ void LiftHigh(const T* high, const T* above, const T* below, int count, T* HWY_R
                out + x);
 }
 
-// One row from its low and its high half. `even` is a row of memory; `out` is written with slack.
-template <class T>
-void MergeRow(const T* low, T* high, int width, T* even, T* HWY_RESTRICT out) {
+// One row from its low and its high half, of whose slack some is written. Calls store(x, even, odd)
+// for the vectors of values 2x, 2x + 2, ... and 2x + 1, 2x + 3, ..., also of some beyond the end.
+template <class T, class Store>
+HWY_INLINE void MergeRow(T* low, T* high, int width, const Store& store) {
   const hn::ScalableTag<T> d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   const int low_count = LowCount(width), high_count = HighCount(width);
   if (high_count == 0) {
-    out[0] = low[0];
+    store(0, Load(low), Load(low));
     return;
   }
+  // What makes the even value beyond the end the same as the last one, where a row ends with an odd
+  // one; else what stands beyond the last high one.
   high[-1] = high[0];
-  if (low_count > high_count) high[high_count] = high[high_count - 1];
+  high[high_count] = low_count > high_count ? high[high_count - 1] : high[high_count - 2];
+  low[low_count] = low[low_count - 1];
   const auto two = hn::Set(d, T{2});
-  for (int x = 0; x < low_count; x += lanes)
-    hn::StoreU(hn::Sub(Load(low + x), Update(Load(high + x - 1), Load(high + x), two)), d,
-               even + x);
-  if (low_count == high_count) even[low_count] = even[low_count - 1];
   for (int x = 0; x < low_count; x += lanes) {
-    const auto here = Load(even + x);
-    const auto odd = hn::Add(Load(high + x), Predicted(here, Load(even + x + 1)));
-    hn::StoreInterleaved2(here, odd, d, out + 2 * x);
+    const auto here = Load(high + x);
+    const auto even = hn::Sub(Load(low + x), Update(Load(high + x - 1), here, two));
+    const auto next = hn::Sub(Load(low + x + 1), Update(here, Load(high + x + 1), two));
+    store(x, even, hn::Add(here, Predicted(even, next)));
   }
 }
 
@@ -131,12 +149,14 @@ void SynthesizeRows(const CodedBands<T>& bands, const Rows<T>& rows, const Put& 
     for (Half<T>& half : halves) {
       std::swap(half.high_now, half.high_last);
       std::swap(half.even_now, half.even_last);
-      LoadCoefficients(half.low, i, half.count, half.even_now);
-      if (high_rows == 0) continue;
+      if (high_rows == 0) {
+        LoadRow(half.low, i, half.count, half.even_now);
+        continue;
+      }
       const bool has_high = i < high_rows;
-      if (has_high) LoadCoefficients(half.high, i, half.count, half.high_now);
-      LiftLow(i > 0 ? half.high_last : half.high_now, has_high ? half.high_now : half.high_last,
-              half.count, half.even_now);
+      if (has_high) LoadRow(half.high, i, half.count, half.high_now);
+      LoadEvenRow(half.low, i, half.count, i > 0 ? half.high_last : half.high_now,
+                  has_high ? half.high_now : half.high_last, half.even_now);
       if (i > 0) LiftHigh(half.high_last, half.even_last, half.even_now, half.count, half.odd);
     }
     if (i > 0) put(2 * i - 1, halves[0].odd, halves[1].odd);
@@ -152,10 +172,11 @@ constexpr int kRowsOfHalves = 10;
 
 template <class T>
 void SynthesizeOf(const CodedBands<T>& bands, T* values) {
-  const Rows<T> rows(kRowsOfHalves + 1, LowCount(bands.width));
-  SynthesizeRows(bands, rows, [&](int y, const T* low, T* high) {
-    MergeRow(low, high, bands.width, rows[kRowsOfHalves],
-             values + static_cast<size_t>(y) * bands.width);
+  const hn::ScalableTag<T> d;
+  SynthesizeRows(bands, Rows<T>(kRowsOfHalves, LowCount(bands.width)), [&](int y, T* low, T* high) {
+    T* const row = values + static_cast<size_t>(y) * bands.width;
+    MergeRow(low, high, bands.width,
+             [&](int x, auto even, auto odd) { hn::StoreInterleaved2(even, odd, d, row + 2 * x); });
   });
 }
 
@@ -164,20 +185,20 @@ void SynthesizePixelsOf(const CodedBands<T>& bands, const PixelScale& scale,
                         ImageView<Pixel> pixels) {
   const hn::ScalableTag<T> d;
   const hn::Rebind<Pixel, decltype(d)> d_pixel;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  const Rows<T> rows(kRowsOfHalves + 2, bands.width);
-  T* const even = rows[kRowsOfHalves];
-  T* const row = rows[kRowsOfHalves + 1];
-  auto* const narrow = reinterpret_cast<Pixel*>(even);
+  const Rows<T> rows(kRowsOfHalves + 1, bands.width);
+  // Rows of the image end where other tiles begin: one is made here and copied.
+  auto* const row = reinterpret_cast<Pixel*>(rows[kRowsOfHalves]);
   const auto half = hn::Set(d, static_cast<T>((1 << scale.fraction_bits) >> 1));
   const auto offset = hn::Set(d, static_cast<T>(scale.offset));
-  SynthesizeRows(bands, rows, [&](int y, const T* low, T* high) {
-    MergeRow(low, high, bands.width, even, row);
-    for (int x = 0; x < bands.width; x += lanes) {
-      const auto whole = hn::ShiftRightSame(hn::Add(Load(row + x), half), scale.fraction_bits);
-      hn::StoreU(hn::DemoteTo(d_pixel, hn::Add(whole, offset)), d_pixel, narrow + x);
-    }
-    std::memcpy(pixels.row(y), narrow, sizeof(Pixel) * bands.width);
+  const auto pixel = [&](auto value) {
+    const auto whole = hn::ShiftRightSame(hn::Add(value, half), scale.fraction_bits);
+    return hn::DemoteTo(d_pixel, hn::Add(whole, offset));
+  };
+  SynthesizeRows(bands, rows, [&](int y, T* low, T* high) {
+    MergeRow(low, high, bands.width, [&](int x, auto even, auto odd) {
+      hn::StoreInterleaved2(pixel(even), pixel(odd), d_pixel, row + 2 * x);
+    });
+    std::memcpy(pixels.row(y), row, sizeof(Pixel) * bands.width);
   });
 }
 

@@ -17,6 +17,12 @@
 
 namespace lf {
 
+Result<void> PrintReport(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0)
+    return {};
+  return OutputError("cannot write the report to the standard output: is the disk full?");
+}
+
 const char* Version() { return LF_VERSION; }
 
 CLI::Validator WholeNumber() {

@@ -50,6 +50,9 @@ class Program {
 CLI::Validator WholeNumber();
 CLI::Validator NotEmpty();
 
+// A report to stdout, whole. kOutput if it cannot be.
+Result<void> PrintReport(const std::string& text);
+
 // A word of a command line, quoted so that a shell takes it as it is.
 std::string ShellWord(const std::string& word);
 
