@@ -24,8 +24,9 @@ ZSTD_CCtx* Compressor() {
   // The length is known beforehand, and the store has a checksum.
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_contentSizeFlag, 0);
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, kEntropyLevel);
-  // Packed coefficients repeat by chance alone: the fewer repetitions are looked for, the shorter
-  // codes are, and the faster to decode.
+  // Packed coefficients repeat by chance, but for runs of zeros: the fewer repetitions are looked
+  // for, the shorter codes are, and the faster to decode.
+  ZSTD_CCtx_setParameter(context.get(), ZSTD_c_minMatch, 7);
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_hashLog, 6);
   return context.get();
 }

@@ -162,6 +162,18 @@ bool IsPacking(Packing packing, size_t bytes_of_number) {
   }
 }
 
+// Memory of a thread, used again: of a stream, and of each level of its escapes.
+template <class U>
+struct Scratch {
+  std::vector<uint8_t> bytes;
+  std::vector<U> escapes;
+
+  static Scratch& OfThread(int escapes_left) {
+    static thread_local std::array<Scratch, kMostEscapes + 1> scratch;
+    return scratch[escapes_left];
+  }
+};
+
 template <class U>
 [[nodiscard]] bool TakeNumbers(Transform transform, int escapes_left, std::string_view* code,
                                size_t count, U* numbers) {
@@ -173,27 +185,25 @@ template <class U>
     return true;
   }
   if (!IsPacking(packing, sizeof(U))) return false;
-  static thread_local std::vector<uint8_t> bytes;
-  bytes.resize(IsPlanes(packing) ? count * PlaneCount(packing)
-                                 : (count + PerByte(packing) - 1) / PerByte(packing));
-  if (!TakeBlock(code, bytes)) return false;
-  if (transform == Transform::kReference)
-    UnpackReference(packing, bytes.data(), count, numbers);
-  else
-    UnpackSimd(packing, bytes.data(), count, numbers);
-  if (IsPlanes(packing)) return true;
-
-  uint64_t escape_count = 0;
-  if (!TakeNumber(code, count, &escape_count)) return false;
-  if (escape_count == 0) return true;
-  if (escapes_left == 0) return false;
-  static thread_local std::array<std::vector<U>, kMostEscapes> memory;
-  std::vector<U>& escapes = memory[escapes_left - 1];
-  escapes.resize(escape_count + kSlack);
-  if (!TakeNumbers(transform, escapes_left - 1, code, escape_count, escapes.data())) return false;
-  const auto escape = static_cast<U>(EscapeOf(packing));
-  const auto add = transform == Transform::kReference ? AddEscapesReference<U> : AddEscapesSimd<U>;
-  return add(escape, escapes.data(), escape_count, count, numbers) == escape_count;
+  auto& [bytes, escapes] = Scratch<U>::OfThread(escapes_left);
+  const size_t size = IsPlanes(packing) ? count * PlaneCount(packing)
+                                        : (count + PerByte(packing) - 1) / PerByte(packing);
+  bytes.resize(size + kSlack);
+  PackedStream<U> stream{packing, std::span(bytes).first(size), count, {}, false};
+  if (!TakeBlock(code, std::span(bytes).first(size))) return false;
+  if (!IsPlanes(packing)) {
+    uint64_t escape_count = 0;
+    if (!TakeNumber(code, count, &escape_count)) return false;
+    if (escape_count > 0 && escapes_left == 0) return false;
+    escapes.resize(escape_count + kSlack);
+    stream.escapes = std::span(escapes).first(escape_count);
+    if (escape_count > 0 &&
+        !TakeNumbers(transform, escapes_left - 1, code, escape_count, escapes.data()))
+      return false;
+  }
+  stream.has_signs = escapes_left == kMostEscapes;
+  return transform == Transform::kReference ? UnpackReference(stream, numbers)
+                                            : UnpackSimd(stream, numbers);
 }
 
 }  // namespace
@@ -211,57 +221,34 @@ template void AppendCoefficients<int32_t>(std::span<const int32_t>, std::string*
 template <class T>
 bool TakeCoefficients(Transform transform, std::string_view* code, size_t count, T* values) {
   if (count == 0) return true;
-  using Unsigned = std::make_unsigned_t<T>;
-  auto* const numbers = reinterpret_cast<Unsigned*>(values);
-  if (!TakeNumbers(transform, kMostEscapes, code, count, numbers)) return false;
-  if (transform == Transform::kReference)
-    UnfoldReference(count, numbers);
-  else
-    UnfoldSimd(count, numbers);
-  return true;
+  auto* const numbers = reinterpret_cast<std::make_unsigned_t<T>*>(values);
+  return TakeNumbers(transform, kMostEscapes, code, count, numbers);
 }
 template bool TakeCoefficients(Transform, std::string_view*, size_t, int16_t*);
 template bool TakeCoefficients(Transform, std::string_view*, size_t, int32_t*);
 
 template <class U>
-void UnpackReference(Packing packing, const uint8_t* bytes, size_t count, U* numbers) {
-  if (IsPlanes(packing)) {
-    for (size_t i = 0; i < count; ++i) {
-      uint32_t number = 0;
+bool UnpackReference(const PackedStream<U>& stream, U* numbers) {
+  const auto& [packing, bytes, count, escapes, has_signs] = stream;
+  size_t escape_count = 0;
+  for (size_t i = 0; i < count; ++i) {
+    uint32_t number = 0;
+    if (IsPlanes(packing)) {
       for (int plane = 0; plane < PlaneCount(packing); ++plane)
         number |= uint32_t{bytes[plane * count + i]} << (8 * plane);
-      numbers[i] = static_cast<U>(number);
+    } else {
+      const int per_byte = PerByte(packing), bits = 8 / per_byte;
+      number = (bytes[i / per_byte] >> (bits * (i % per_byte))) & EscapeOf(packing);
+      if (number == EscapeOf(packing)) {
+        if (escape_count == escapes.size()) return false;
+        number += escapes[escape_count++];
+      }
     }
-    return;
+    numbers[i] = static_cast<U>(has_signs ? (number >> 1) ^ (0u - (number & 1)) : number);
   }
-  const int per_byte = PerByte(packing), bits = 8 / per_byte;
-  for (size_t i = 0; i < count; ++i)
-    numbers[i] =
-        static_cast<U>((bytes[i / per_byte] >> (bits * (i % per_byte))) & EscapeOf(packing));
+  return escape_count == escapes.size();
 }
-template void UnpackReference(Packing, const uint8_t*, size_t, uint16_t*);
-template void UnpackReference(Packing, const uint8_t*, size_t, uint32_t*);
-
-template <class U>
-size_t AddEscapesReference(U escape, const U* escapes, size_t escape_count, size_t count,
-                           U* numbers) {
-  size_t next = 0;
-  for (size_t i = 0; i < count; ++i) {
-    if (numbers[i] != escape) continue;
-    if (next < escape_count) numbers[i] = static_cast<U>(numbers[i] + escapes[next]);
-    ++next;
-  }
-  return next;
-}
-template size_t AddEscapesReference(uint16_t, const uint16_t*, size_t, size_t, uint16_t*);
-template size_t AddEscapesReference(uint32_t, const uint32_t*, size_t, size_t, uint32_t*);
-
-template <class U>
-void UnfoldReference(size_t count, U* numbers) {
-  for (size_t i = 0; i < count; ++i)
-    numbers[i] = static_cast<U>((numbers[i] >> 1) ^ (U{0} - (numbers[i] & 1)));
-}
-template void UnfoldReference(size_t, uint16_t*);
-template void UnfoldReference(size_t, uint32_t*);
+template bool UnpackReference(const PackedStream<uint16_t>&, uint16_t*);
+template bool UnpackReference(const PackedStream<uint32_t>&, uint32_t*);
 
 }  // namespace lf

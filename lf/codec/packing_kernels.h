@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "lf/codec/packing.h"
 
@@ -14,24 +15,20 @@ inline int PlaneCount(Packing packing) { return static_cast<int>(packing) - 16; 
 // What stands for an escape; smaller numbers are as they are.
 inline uint32_t EscapeOf(Packing packing) { return (1u << (8 / PerByte(packing))) - 1; }
 
-// Numbers out of their bytes; not kZeros. `numbers` has slack.
+// A stream, its bytes decompressed and its escapes unpacked.
 template <class U>
-void UnpackReference(Packing packing, const uint8_t* bytes, size_t count, U* numbers);
-template <class U>
-void UnpackSimd(Packing packing, const uint8_t* bytes, size_t count, U* numbers);
+struct PackedStream {
+  Packing packing = Packing::kOne;  // not kZeros
+  std::span<const uint8_t> bytes;   // with slack behind
+  size_t count = 0;                 // numbers
+  std::span<const U> escapes;       // what is to be added to the first one, ...; with slack
+  bool has_signs = false;           // in the lowest bit of each number, to be unfolded
+};
 
-// Adds the next of `escapes` to every number that is `escape`. Both have slack. Answers how many
-// there were; those beyond `escape_count` may have any value.
+// Its numbers. `numbers` has slack. False: it has more escapes, or fewer.
 template <class U>
-size_t AddEscapesReference(U escape, const U* escapes, size_t escape_count, size_t count,
-                           U* numbers);
+[[nodiscard]] bool UnpackReference(const PackedStream<U>& stream, U* numbers);
 template <class U>
-size_t AddEscapesSimd(U escape, const U* escapes, size_t escape_count, size_t count, U* numbers);
-
-// Signs out of the lowest bit, in place. `numbers` has slack.
-template <class U>
-void UnfoldReference(size_t count, U* numbers);
-template <class U>
-void UnfoldSimd(size_t count, U* numbers);
+[[nodiscard]] bool UnpackSimd(const PackedStream<U>& stream, U* numbers);
 
 }  // namespace lf

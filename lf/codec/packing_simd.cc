@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstring>
+#include <span>
 
 #include "lf/codec/packing_kernels.h"
 
@@ -18,7 +18,8 @@ namespace lf {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr size_t kBlock = 2048;                // numbers at a time, in the first-level cache
+// Numbers at a time: all that is done to them is done while they are in the first-level cache.
+constexpr size_t kBlock = 2048;
 constexpr size_t kRoom = kBlock + 4 * kSlack;  // vectors of four times the width may end beyond
 
 // A byte for each number, from `size` bytes.
@@ -52,49 +53,25 @@ void Widen(const uint8_t* HWY_RESTRICT bytes, size_t count, U* HWY_RESTRICT numb
     hn::StoreU(hn::PromoteTo(d, hn::LoadU(d8, bytes + i)), d, numbers + i);
 }
 
-// Two bytes each, the lower ones of all before the upper ones.
 template <class U>
-void JoinTwo(const uint8_t* HWY_RESTRICT bytes, size_t count, U* HWY_RESTRICT numbers) {
+void Join(const uint8_t* HWY_RESTRICT lower, const uint8_t* HWY_RESTRICT upper, size_t count,
+          U* HWY_RESTRICT numbers) {
   const hn::ScalableTag<U> d;
   const hn::Rebind<uint8_t, decltype(d)> d8;
   const size_t lanes = hn::Lanes(d);
-  size_t i = 0;
-  for (; i + lanes <= count; i += lanes) {
-    const auto lower = hn::PromoteTo(d, hn::LoadU(d8, bytes + i));
-    const auto upper = hn::PromoteTo(d, hn::LoadU(d8, bytes + count + i));
-    hn::StoreU(hn::Or(lower, hn::ShiftLeft<8>(upper)), d, numbers + i);
-  }
-  for (; i < count; ++i) numbers[i] = static_cast<U>(bytes[i] | bytes[count + i] << 8);
-}
-
-template <class U>
-void UnpackOf(Packing packing, const uint8_t* bytes, size_t count, U* numbers) {
-  const auto per_byte = static_cast<size_t>(packing);
-  HWY_ALIGN uint8_t in[kRoom];
-  HWY_ALIGN uint8_t spread[kRoom];
-  for (size_t begin = 0; begin < count; begin += kBlock) {
-    const size_t here = std::min(kBlock, count - begin);
-    const size_t size = (here + per_byte - 1) / per_byte;
-    const uint8_t* from = bytes + begin / per_byte;
-    // No byte behind the last may be read.
-    if (begin + kBlock + per_byte * kSlack > count) {
-      std::memcpy(in, from, size);
-      std::memset(in + size, 0, kSlack);
-      from = in;
-    }
-    if (per_byte > 1) {
-      Spread(packing, from, size, spread);
-      from = spread;
-    }
-    Widen(from, here, numbers + begin);
+  for (size_t i = 0; i < count; i += lanes) {
+    const auto high = hn::PromoteTo(d, hn::LoadU(d8, upper + i));
+    const auto low = hn::PromoteTo(d, hn::LoadU(d8, lower + i));
+    hn::StoreU(hn::Or(low, hn::ShiftLeft<8>(high)), d, numbers + i);
   }
 }
 
 #if HWY_TARGET == HWY_SCALAR
 
 template <class U>
-size_t AddEscapesOf(U escape, const U* escapes, size_t escape_count, size_t count, U* numbers) {
-  return AddEscapesReference(escape, escapes, escape_count, count, numbers);
+void AddEscapes(U escape, std::span<const U> escapes, size_t count, U* numbers, size_t* next) {
+  for (size_t i = 0; i < count && *next <= escapes.size(); ++i)
+    if (numbers[i] == escape) numbers[i] = static_cast<U>(numbers[i] + escapes.data()[(*next)++]);
 }
 
 #else
@@ -118,9 +95,11 @@ struct ExpandTable {
   }
 };
 
+// Adds the next of `escapes` to every number that is `escape`; *next counts them, to one beyond
+// their end at least where there are more numbers than escapes.
 template <class U>
-size_t AddEscapesOf(U escape, const U* HWY_RESTRICT escapes, size_t escape_count, size_t count,
-                    U* HWY_RESTRICT numbers) {
+void AddEscapes(U escape, std::span<const U> escapes, size_t count, U* HWY_RESTRICT numbers,
+                size_t* next_escape) {
   static const ExpandTable<U> kTable;
   const hn::FixedTag<U, 16 / sizeof(U)> d;
   const hn::FixedTag<uint8_t, 16> d8;
@@ -130,31 +109,29 @@ size_t AddEscapesOf(U escape, const U* HWY_RESTRICT escapes, size_t escape_count
   // looked at before each run, which may read as far as their slack.
   constexpr size_t kRun = 64;
   static_assert(kRun + kLanes <= kSlack);
-  size_t next = 0, i = 0;
-  for (; i + kRun <= count && next <= escape_count; i += kRun)
+  size_t next = *next_escape, i = 0;
+  for (; i + kRun <= count && next <= escapes.size(); i += kRun)
     for (size_t k = i; k < i + kRun; k += kLanes) {
       const auto v = hn::LoadU(d, numbers + k);
       const auto is_escape = hn::Eq(v, limit);
       uint8_t set[8] = {};
       hn::StoreMaskBits(d, is_escape, set);
-      const auto here = hn::BitCast(d8, hn::LoadU(d, escapes + next));
+      const auto here = hn::BitCast(d8, hn::LoadU(d, escapes.data() + next));
       const auto placed =
           hn::BitCast(d, hn::TableLookupBytes(here, hn::Load(d8, kTable.bytes[set[0]])));
       hn::StoreU(hn::Add(v, hn::IfThenElseZero(is_escape, placed)), d, numbers + k);
       next += static_cast<size_t>(std::popcount(set[0]));
     }
-  for (; i < count && next <= escape_count; ++i) {
-    if (numbers[i] != escape) continue;
-    numbers[i] = static_cast<U>(numbers[i] + escapes[next]);
-    ++next;
-  }
-  return next;
+  for (; i < count && next <= escapes.size(); ++i)
+    if (numbers[i] == escape) numbers[i] = static_cast<U>(numbers[i] + escapes.data()[next++]);
+  *next_escape = next;
 }
 
 #endif
 
+// Signs out of the lowest bit, in place.
 template <class U>
-void UnfoldOf(size_t count, U* numbers) {
+void Unfold(size_t count, U* numbers) {
   const hn::ScalableTag<U> d;
   const size_t lanes = hn::Lanes(d);
   const auto one = hn::Set(d, U{1});
@@ -165,24 +142,39 @@ void UnfoldOf(size_t count, U* numbers) {
   }
 }
 
-void Unpack16(Packing packing, const uint8_t* bytes, size_t count, uint16_t* numbers) {
-  packing == Packing::kPlanes2 ? JoinTwo(bytes, count, numbers)
-                               : UnpackOf(packing, bytes, count, numbers);
+template <class U>
+bool UnpackOf(const PackedStream<U>& stream, U* numbers) {
+  const auto per_byte = static_cast<size_t>(stream.packing);
+  const bool is_joined = stream.packing == Packing::kPlanes2;
+  HWY_ALIGN uint8_t spread[kRoom];
+  size_t next_escape = 0;
+  for (size_t begin = 0; begin < stream.count; begin += kBlock) {
+    const size_t count = std::min(kBlock, stream.count - begin);
+    U* const here = numbers + begin;
+    if (is_joined) {
+      const uint8_t* const lower = stream.bytes.data() + begin;
+      Join(lower, lower + stream.count, count, here);
+    } else {
+      const uint8_t* from = stream.bytes.data() + begin / per_byte;
+      if (per_byte > 1) {
+        Spread(stream.packing, from, (count + per_byte - 1) / per_byte, spread);
+        from = spread;
+      }
+      Widen(from, count, here);
+      AddEscapes(static_cast<U>(EscapeOf(stream.packing)), stream.escapes, count, here,
+                 &next_escape);
+    }
+    if (stream.has_signs) Unfold(count, here);
+  }
+  return next_escape == stream.escapes.size();
 }
-void Unpack32(Packing packing, const uint8_t* bytes, size_t count, uint32_t* numbers) {
-  packing == Packing::kPlanes2 ? JoinTwo(bytes, count, numbers)
-                               : UnpackOf(packing, bytes, count, numbers);
+
+bool Unpack16(const PackedStream<uint16_t>& stream, uint16_t* numbers) {
+  return UnpackOf(stream, numbers);
 }
-size_t AddEscapes16(uint16_t escape, const uint16_t* escapes, size_t escape_count, size_t count,
-                    uint16_t* numbers) {
-  return AddEscapesOf(escape, escapes, escape_count, count, numbers);
+bool Unpack32(const PackedStream<uint32_t>& stream, uint32_t* numbers) {
+  return UnpackOf(stream, numbers);
 }
-size_t AddEscapes32(uint32_t escape, const uint32_t* escapes, size_t escape_count, size_t count,
-                    uint32_t* numbers) {
-  return AddEscapesOf(escape, escapes, escape_count, count, numbers);
-}
-void Unfold16(size_t count, uint16_t* numbers) { UnfoldOf(count, numbers); }
-void Unfold32(size_t count, uint32_t* numbers) { UnfoldOf(count, numbers); }
 
 }  // namespace HWY_NAMESPACE
 }  // namespace lf
@@ -193,39 +185,17 @@ namespace lf {
 
 HWY_EXPORT(Unpack16);
 HWY_EXPORT(Unpack32);
-HWY_EXPORT(AddEscapes16);
-HWY_EXPORT(AddEscapes32);
-HWY_EXPORT(Unfold16);
-HWY_EXPORT(Unfold32);
 
 template <>
-void UnpackSimd(Packing packing, const uint8_t* bytes, size_t count, uint16_t* numbers) {
-  HWY_DYNAMIC_DISPATCH(Unpack16)(packing, bytes, count, numbers);
+bool UnpackSimd(const PackedStream<uint16_t>& stream, uint16_t* numbers) {
+  return HWY_DYNAMIC_DISPATCH(Unpack16)(stream, numbers);
 }
 template <>
-void UnpackSimd(Packing packing, const uint8_t* bytes, size_t count, uint32_t* numbers) {
-  if (packing == Packing::kPlanes3 || packing == Packing::kPlanes4)
-    UnpackReference(packing, bytes, count, numbers);
-  else
-    HWY_DYNAMIC_DISPATCH(Unpack32)(packing, bytes, count, numbers);
-}
-template <>
-size_t AddEscapesSimd(uint16_t escape, const uint16_t* escapes, size_t escape_count, size_t count,
-                      uint16_t* numbers) {
-  return HWY_DYNAMIC_DISPATCH(AddEscapes16)(escape, escapes, escape_count, count, numbers);
-}
-template <>
-size_t AddEscapesSimd(uint32_t escape, const uint32_t* escapes, size_t escape_count, size_t count,
-                      uint32_t* numbers) {
-  return HWY_DYNAMIC_DISPATCH(AddEscapes32)(escape, escapes, escape_count, count, numbers);
-}
-template <>
-void UnfoldSimd(size_t count, uint16_t* numbers) {
-  HWY_DYNAMIC_DISPATCH(Unfold16)(count, numbers);
-}
-template <>
-void UnfoldSimd(size_t count, uint32_t* numbers) {
-  HWY_DYNAMIC_DISPATCH(Unfold32)(count, numbers);
+bool UnpackSimd(const PackedStream<uint32_t>& stream, uint32_t* numbers) {
+  // Rare: noise of more than two bytes.
+  if (stream.packing == Packing::kPlanes3 || stream.packing == Packing::kPlanes4)
+    return UnpackReference(stream, numbers);
+  return HWY_DYNAMIC_DISPATCH(Unpack32)(stream, numbers);
 }
 
 }  // namespace lf
