@@ -32,7 +32,9 @@ def smooth(index):
     return np.clip(waves[..., None] + [0, 8, -8] + noise, 0, 255).astype(np.uint8)
 
 
-class CompressorTest(unittest.TestCase):
+class StoreTest(unittest.TestCase):
+    """a folder, and calls of programs"""
+
     def setUp(self):
         self.temporary = tempfile.TemporaryDirectory()
         self.addCleanup(self.temporary.cleanup)
@@ -62,6 +64,22 @@ class CompressorTest(unittest.TestCase):
     def names(self):
         return sorted(path.name for path in self.folder.iterdir() if path.name.startswith("a"))
 
+    def many(self, picture=smooth):
+        """3000 LF images, of 25 files"""
+        folder = self.folder / "field"
+        field = write_field(folder, picture)
+        text = json.loads(field.read_text())
+        frames = []
+        for i in range(3000):
+            frame = dict(text["frames"][i % 25])
+            os.link(folder / frame["file_path"], folder / f"link_{i}.png")
+            frame["file_path"] = f"link_{i}.png"
+            frames.append(frame)
+        field.write_text(json.dumps(text | {"frames": frames}))
+        return field
+
+
+class CompressorTest(StoreTest):
     # What it tells, and how good it is
 
     def test_profiles_and_what_the_report_tells(self):
@@ -207,20 +225,6 @@ class CompressorTest(unittest.TestCase):
         self.assertFalse(self.store.exists())
         report = self.report(field, "-o", self.store, "--profile", "lossless", "--resume", "--verify")
         self.assertEqual(report["verified"], 25)
-
-    def many(self):
-        """3000 LF images, of 25 files"""
-        folder = self.folder / "field"
-        field = write_field(folder, smooth)
-        text = json.loads(field.read_text())
-        frames = []
-        for i in range(3000):
-            frame = dict(text["frames"][i % 25])
-            os.link(folder / frame["file_path"], folder / f"link_{i}.png")
-            frame["file_path"] = f"link_{i}.png"
-            frames.append(frame)
-        field.write_text(json.dumps(text | {"frames": frames}))
-        return field
 
     def wait_for_work(self, process):
         """until the store is being written, or was"""

@@ -34,10 +34,11 @@ std::string ProgressDetail(const CompressProgress& now) {
 std::string CompressText(const CompressReport& report, const CompressOptions& options) {
   CodecSettings settings = options.codec;
   settings.threshold = report.threshold;
-  std::string text =
-      fmt::format("{}: {} LF images, {}B in all; {}\n", options.store.string(),
-                  report.image_count - report.skipped.size(),
-                  ShortNumber(static_cast<double>(report.store_bytes)), NameOf(settings));
+  std::string text = fmt::format(
+      "{}: {} LF images{}, {}B in all; {}\n", options.store.string(),
+      report.image_count - report.skipped.size(),
+      report.skipped.empty() ? std::string() : fmt::format(" of {}", report.image_count),
+      ShortNumber(static_cast<double>(report.store_bytes)), NameOf(settings));
   if (report.was_there) text += "was there already: nothing was written\n";
   if (report.resumed_count > 0)
     text += fmt::format("{} LF images were coded before; figures are of the other {}\n",
@@ -92,8 +93,8 @@ std::string CompressJson(const CompressReport& report, const CompressOptions& op
   json["pixel_bytes"] = report.pixel_bytes;
   json["code_bytes"] = report.code_bytes;
   json["store_bytes"] = report.store_bytes;
-  json["ratio"] = Ratio(report.pixel_bytes, report.code_bytes);
   if (report.coded_count > 0) {
+    json["ratio"] = Ratio(report.pixel_bytes, report.code_bytes);
     json["psnr_db"] = decibels(report.error.PsnrDb());
     json["worst_psnr_db"] = decibels(report.worst_psnr_db);
     json["worst"] = report.worst_name;
@@ -105,7 +106,7 @@ std::string CompressJson(const CompressReport& report, const CompressOptions& op
   json["skipped"] = Json::array();
   for (const CompressReport::Skipped& skipped : report.skipped)
     json["skipped"].push_back({{"name", skipped.name}, {"reason", skipped.reason}});
-  return json.dump(2) + "\n";
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace lf

@@ -24,9 +24,14 @@ double Now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-bool IsThere(const fs::path& path) {
+// Whether a store has the name. kUsage: something else has.
+Result<bool> IsThere(const fs::path& path) {
   std::error_code error;
-  return fs::exists(path, error);
+  if (!fs::exists(fs::symlink_status(path, error))) return false;
+  if (IsPackedStore(path)) return true;
+  return UsageError(
+      fmt::format("{}: is there already, and is no packed store: give another name, or remove it",
+                  path.string()));
 }
 
 PackedStorePlan PlanOf(const CompressSource& source, const CompressOptions& options,
@@ -34,6 +39,7 @@ PackedStorePlan PlanOf(const CompressSource& source, const CompressOptions& opti
   PackedStorePlan plan;
   plan.whole = source.whole;
   plan.whole_ids = source.whole_ids;
+  plan.rects = source.rects;
   plan.codec = NameOf(settings);
   plan.display_levels = ImageCoder(source.light_field.encoding, settings).display_levels();
   plan.shard_bytes = options.shard_bytes;
@@ -43,17 +49,24 @@ PackedStorePlan PlanOf(const CompressSource& source, const CompressOptions& opti
 }
 
 Result<PackedStoreWriter> OpenWriter(const CompressSource& source, const CompressOptions& options,
-                                     const PackedStorePlan& plan) {
-  if (options.resume) return PackedStoreWriter::Resume(options.store, source.light_field, plan);
-  if (options.overwrite)
-    LF_RETURN_IF_ERROR(PackedStoreWriter::RemoveUnfinished(options.store));
-  else if (PackedStoreWriter::IsUnfinished(options.store))
-    return UsageError(
-        fmt::format("{}: there is an unfinished store of this name: --resume goes on "
-                    "with it, --overwrite begins anew",
-                    options.store.string()));
-  return PackedStoreWriter::Create(options.store, source.light_field, plan);
+                                     const PackedStorePlan& plan, FileLock lock) {
+  const fs::path& store = options.store;
+  if (options.resume)
+    return PackedStoreWriter::Resume(store, source.light_field, plan, std::move(lock));
+  if (options.overwrite) PackedStoreWriter::RemoveUnfinished(store, lock);
+  return PackedStoreWriter::Create(store, source.light_field, plan, std::move(lock));
 }
+
+// Removed at the end, unless a writer has taken it over.
+struct HeldLock {
+  std::optional<FileLock> lock;
+  HeldLock() = default;
+  HeldLock(const HeldLock&) = delete;
+  HeldLock& operator=(const HeldLock&) = delete;
+  ~HeldLock() {
+    if (lock) lock->Remove();
+  }
+};
 
 // One call of Compress(): what its threads share.
 class Compressor {
@@ -65,7 +78,12 @@ class Compressor {
   Result<CompressReport> Run();
 
  private:
-  Result<void> Write();
+  Result<void> Look();
+  Result<void> ChooseThreshold();
+  Result<void> Write(FileLock lock);
+  Result<void> CheckFiles(const PackedStoreWriter& writer);
+  void Count(const RecordedImage& image, const CodedImage& coded, const CodeError& lost,
+             const std::string& name);
   void AddOne(PackedStoreWriter* writer, LfImageId id);
   VerifyOptions Verification() const;
   Result<void> Verify();
@@ -124,15 +142,21 @@ void Compressor::AddOne(PackedStoreWriter* writer, LfImageId id) {
       ended_ = true;
       error_ = *error;
     }
-    return;
+  } else {
+    Count(*image, *coded, lost, name);
   }
+  if (progress_) progress_(now_);
+}
+
+void Compressor::Count(const RecordedImage& image, const CodedImage& coded, const CodeError& lost,
+                       const std::string& name) {
   const uint64_t pixel_bytes =
-      std::visit([](const auto& pixels) { return pixels.size_bytes(); }, image->pixels);
+      std::visit([](const auto& pixels) { return pixels.size_bytes(); }, image.pixels);
   ++report_.coded_count;
-  report_.rounded_count += image->is_rounded ? 1 : 0;
-  report_.source_bytes += coded->source_bytes;
+  report_.rounded_count += image.is_rounded ? 1 : 0;
+  report_.source_bytes += coded.source_bytes;
   report_.pixel_bytes += pixel_bytes;
-  report_.code_bytes += coded->code.size() + coded->mask.size();
+  report_.code_bytes += coded.code.size() + coded.mask.size();
   report_.error += lost;
   if (report_.worst_name.empty() || lost.PsnrDb() < report_.worst_psnr_db ||
       (lost.PsnrDb() == report_.worst_psnr_db && name < report_.worst_name)) {
@@ -141,13 +165,33 @@ void Compressor::AddOne(PackedStoreWriter* writer, LfImageId id) {
   }
   now_.pixel_bytes = report_.pixel_bytes;
   now_.code_bytes = report_.code_bytes;
-  if (progress_) progress_(now_);
 }
 
-Result<void> Compressor::Write() {
+// Of what an unfinished store has: whether it is of the files that are there now, by their sizes.
+Result<void> Compressor::CheckFiles(const PackedStoreWriter& writer) {
+  const LightField& light_field = source_.light_field;
+  pool_.ForEach(light_field.size(), [&](size_t i) {
+    const LfImageId id{static_cast<uint32_t>(i)};
+    if (!writer.Has(id)) return;
+    const uint64_t now = SourceBytesOf(light_field, id), then = writer.SourceBytes(id);
+    if (now == 0 || now == then) return;
+    const std::lock_guard lock(mutex_);
+    if (!error_)
+      error_ = InputError(fmt::format(
+          "{}: has {} bytes, and had {} when it was coded for the unfinished {}: it was changed, "
+          "or is another light field's; --overwrite begins anew",
+          light_field.ImagePath(id).string(), now, then, options_.store.string()));
+  });
+  if (error_) return *error_;
+  return {};
+}
+
+Result<void> Compressor::Write(FileLock lock) {
   coder_.emplace(source_.light_field.encoding, settings_);
-  LF_ASSIGN_OR_RETURN(PackedStoreWriter writer,
-                      OpenWriter(source_, options_, PlanOf(source_, options_, settings_)));
+  LF_ASSIGN_OR_RETURN(
+      PackedStoreWriter writer,
+      OpenWriter(source_, options_, PlanOf(source_, options_, settings_), std::move(lock)));
+  LF_RETURN_IF_ERROR(CheckFiles(writer));
   std::vector<LfImageId> ids;
   for (uint32_t i = 0; i < source_.light_field.size(); ++i)
     if (!writer.Has(LfImageId{i})) ids.push_back(LfImageId{i});
@@ -166,14 +210,21 @@ Result<void> Compressor::Write() {
     LF_RETURN_IF_ERROR(writer.Commit());
     return Interrupted();
   }
-  if (report_.skipped.size() == source_.light_field.size())
+  if (report_.skipped.size() == source_.light_field.size()) {
+    writer.Abandon();
     return InputError(fmt::format("none of the {} LF images can be read; the first: {}",
                                   report_.skipped.size(), report_.skipped.front().reason));
+  }
+  if (!report_.skipped.empty())
+    LogWarning("{} of {} LF images were skipped: {} ({})", report_.skipped.size(),
+               source_.light_field.size(), report_.skipped.front().name,
+               report_.skipped.front().reason);
   return writer.Finish();
 }
 
 VerifyOptions Compressor::Verification() const {
-  return {options_.store, settings_, [this] { return IsInterrupted(); }};
+  return {options_.store, settings_, PlanOf(source_, options_, settings_), !options_.resume,
+          [this] { return IsInterrupted(); }};
 }
 
 Result<void> Compressor::Verify() {
@@ -187,28 +238,55 @@ Result<void> Compressor::Verify() {
   return {};
 }
 
+// Whether there is a store, and what is to be done with it.
+Result<void> Compressor::Look() {
+  const fs::path& store = options_.store;
+  LF_ASSIGN_OR_RETURN(const bool is_there, IsThere(store));
+  const bool is_unfinished = PackedStoreWriter::IsUnfinished(store);
+  if (options_.overwrite) return {};
+  if (options_.resume) {
+    report_.was_there = is_there && !is_unfinished;
+    return {};
+  }
+  report_.was_there = is_there && options_.verify;
+  if (report_.was_there) return {};
+  if (is_there)
+    return UsageError(fmt::format(
+        "{}: is there already: --overwrite replaces it, --verify checks it", store.string()));
+  if (is_unfinished)
+    return UsageError(
+        fmt::format("{}: there is an unfinished store of this name: --resume goes on "
+                    "with it, --overwrite begins anew",
+                    store.string()));
+  return {};
+}
+
+Result<void> Compressor::ChooseThreshold() {
+  if (options_.target_psnr_db) {
+    LF_ASSIGN_OR_RETURN(settings_.threshold,
+                        FindThreshold(source_, settings_, *options_.target_psnr_db, pool_,
+                                      [this] { return IsInterrupted(); }));
+  }
+  report_.threshold = settings_.threshold;
+  return {};
+}
+
 Result<CompressReport> Compressor::Run() {
   const double begin_s = Now();
   settings_ = options_.codec;
   LF_RETURN_IF_ERROR(CheckSettings(settings_));
-  const bool is_there = IsThere(options_.store);
-  report_.was_there = is_there && !options_.overwrite && (options_.verify || options_.resume) &&
-                      !PackedStoreWriter::IsUnfinished(options_.store);
-  if (is_there && !options_.overwrite && !report_.was_there)
-    return UsageError(
-        fmt::format("{}: is there already: --overwrite replaces it, --verify checks "
-                    "it",
-                    options_.store.string()));
   report_.image_count = source_.light_field.size();
-  if (options_.target_psnr_db) {
-    LF_ASSIGN_OR_RETURN(settings_.threshold,
-                        FindThreshold(source_, settings_, *options_.target_psnr_db, pool_));
+  LF_RETURN_IF_ERROR(Look());
+  HeldLock held;
+  if (!report_.was_there) {
+    LF_ASSIGN_OR_RETURN(held.lock, PackedStoreWriter::Lock(options_.store));
+    LF_RETURN_IF_ERROR(Look());  // another one may have finished it meanwhile
   }
-  report_.threshold = settings_.threshold;
+  LF_RETURN_IF_ERROR(ChooseThreshold());
   if (report_.was_there)
     LF_RETURN_IF_ERROR(CheckStoreFacts(source_, Verification()));
   else
-    LF_RETURN_IF_ERROR(Write());
+    LF_RETURN_IF_ERROR(Write(std::move(*held.lock)));
   if (options_.verify) LF_RETURN_IF_ERROR(Verify());
   report_.store_bytes = StoreBytes(options_.store);
   report_.total_s = Now() - begin_s;

@@ -22,13 +22,17 @@ double ThresholdOf(int step) { return std::round(0.05 * std::pow(1.05, step) * 1
 }  // namespace
 
 Result<double> FindThreshold(const CompressSource& source, const CodecSettings& settings,
-                             double psnr_db, ThreadPool& pool) {
+                             double psnr_db, ThreadPool& pool,
+                             const std::function<bool()>& is_interrupted) {
+  const Error interrupted = {ErrorKind::kInterrupted,
+                             "interrupted while the threshold was looked for"};
   if (settings.profile == CodecProfile::kLossless)
     return UsageError("--target-psnr: nothing is lost by --profile lossless");
   const LightField& light_field = source.light_field;
   std::vector<Result<RecordedImage>> images(std::min(kLookedAt, light_field.size()),
                                             Error{ErrorKind::kInput, ""});
   pool.ForEach(images.size(), [&](size_t i) {
+    if (is_interrupted()) return;
     const auto index = static_cast<uint32_t>(i * light_field.size() / images.size());
     const PixelRect rect = RectToRecord(light_field, LfImageId{index}, source.rects[index]);
     images[i] = ReadRecordedImage(light_field, LfImageId{index}, rect);
@@ -39,22 +43,27 @@ Result<double> FindThreshold(const CompressSource& source, const CodecSettings& 
     const ImageCoder coder(light_field.encoding, of_threshold);
     std::vector<CodeError> errors(images.size());
     pool.ForEach(images.size(), [&](size_t i) {
-      if (images[i]) errors[i] = coder.ErrorOf(*images[i], coder.Code(*images[i]));
+      if (images[i] && !is_interrupted())
+        errors[i] = coder.ErrorOf(*images[i], coder.Code(*images[i]));
     });
     CodeError together;
     for (const CodeError& error : errors) together += error;
     return together.PsnrDb();
   };
+  if (is_interrupted()) return interrupted;
   if (std::none_of(images.begin(), images.end(), [](const auto& image) { return bool(image); }))
     return InputError(fmt::format("none of {} LF images can be read; the first: {}", images.size(),
                                   images.front().error().message));
-  if (const double best = psnr_at(ThresholdOf(0)); best < psnr_db)
+  const double best = psnr_at(ThresholdOf(0));
+  if (is_interrupted()) return interrupted;
+  if (best < psnr_db)
     return UsageError(
         fmt::format("--target-psnr {}: the best of these settings is {:.1f} dB", psnr_db, best));
   int good = 0, bad = kSteps;
   while (bad - good > 1) {
     const int middle = (good + bad) / 2;
     (psnr_at(ThresholdOf(middle)) >= psnr_db ? good : bad) = middle;
+    if (is_interrupted()) return interrupted;
   }
   return ThresholdOf(good);
 }

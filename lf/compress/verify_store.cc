@@ -21,9 +21,11 @@ Result<void> CheckStoreFacts(const CompressSource& source, const VerifyOptions& 
   if (facts.whole != source.whole)
     return InputError(fmt::format("{}: is of another light field", options.store.string()));
   if (const std::string asked = NameOf(options.settings); facts.codec != asked)
-    return InputError(fmt::format("{}: was made with other settings: {}; asked for: {}",
-                                  options.store.string(), facts.codec, asked));
-  return {};
+    return InputError(
+        fmt::format("{}: was made with other settings: {}; asked for: {}: give the "
+                    "options that it was made with",
+                    options.store.string(), facts.codec, asked));
+  return CheckIsOfPlan(options.store, source.light_field, options.plan, options.any_shards);
 }
 
 Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& options,

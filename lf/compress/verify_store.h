@@ -10,16 +10,19 @@
 #include "lf/compress/compress_source.h"
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
+#include "lf/packed/packed_store_writer.h"
 
 namespace lf {
 
 struct VerifyOptions {
   std::filesystem::path store;
   CodecSettings settings;  // that it must have been made by
+  PackedStorePlan plan;    // and from what
+  bool any_shards = true;  // of whatever size
   std::function<bool()> is_interrupted;
 };
 
-// kInput: the store is of another light field or other settings, or none.
+// kInput: the store is of other LF images, another calibration or other settings, or none.
 Result<void> CheckStoreFacts(const CompressSource& source, const VerifyOptions& options);
 
 // How many codes were read back, compared with what their LF images give, and decoded. LF images

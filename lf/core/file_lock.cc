@@ -51,7 +51,7 @@ void FileLock::Remove() {
 
 Result<FileLock> FileLock::Take(const std::filesystem::path& path) {
   while (true) {
-    const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
     if (fd < 0)
       return OutputError(
           fmt::format("{}: cannot be created: {}", path.string(), std::strerror(errno)));

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <utility>
 
 #include "lf/core/hash.h"
@@ -34,6 +35,25 @@ std::string UriOf(const fs::path& path) {
       uri += c;
   }
   return uri + "?immutable=1";
+}
+
+// What the head of a file says of its length; 0: nothing that counts (SQLite's "Database File
+// Format", 1.3).
+uintmax_t BytesOfPages(const fs::path& path) {
+  constexpr size_t kHeadBytes = 100, kPageSize = 16, kChanges = 24, kPages = 28, kPagesValid = 92;
+  char head[kHeadBytes] = {};
+  std::ifstream file(path, std::ios::binary);
+  if (!file.read(head, sizeof(head)) || !std::string_view(head, 15).starts_with("SQLite format 3"))
+    return 0;
+  const auto number = [&head](size_t begin, size_t bytes) {
+    uintmax_t value = 0;
+    for (size_t i = begin; i < begin + bytes; ++i)
+      value = value << 8 | static_cast<unsigned char>(head[i]);
+    return value;
+  };
+  if (number(kChanges, 4) != number(kPagesValid, 4)) return 0;
+  const uintmax_t page_bytes = number(kPageSize, 2);
+  return (page_bytes == 1 ? 65536 : page_bytes) * number(kPages, 4);
 }
 
 }  // namespace
@@ -276,6 +296,10 @@ Result<Database> Database::Open(const fs::path& path, const DatabaseFormat& form
   std::error_code error;
   if (!fs::exists(path, error)) return state->Fault("no such file");
   if (!fs::is_regular_file(path, error)) return state->Fault("is no file");
+  const uintmax_t size = fs::file_size(path, error), expected = BytesOfPages(path);
+  if (!error && size < expected)
+    return state->Fault(
+        fmt::format("ends after {} of {} bytes: it was copied in part", size, expected));
   constexpr int kFlags = SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX;
   if (sqlite3_open_v2(UriOf(path).c_str(), &state->handle, kFlags, nullptr) != SQLITE_OK)
     return state->Fault(fmt::format("cannot be read: {}", sqlite3_errmsg(state->handle)));

@@ -68,7 +68,8 @@ class Database {
  public:
   // A new, empty one in place of what has the name. kOutput.
   static Result<Database> Create(const std::filesystem::path& path, const DatabaseFormat& format);
-  // To be read. kInput: it cannot be read, is none, is of another kind or version.
+  // To be read. kInput: it cannot be read, is none, is of another kind or version, or was copied in
+  // part.
   static Result<Database> Open(const std::filesystem::path& path, const DatabaseFormat& format);
 
   // To be written in batches: made if it is not there or empty, else what it holds stays. What is

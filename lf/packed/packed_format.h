@@ -5,6 +5,8 @@
 
 #include <filesystem>
 
+#include "lf/capture/light_field.h"
+#include "lf/capture/light_field_identity.h"
 #include "lf/database/database.h"
 
 namespace lf {
@@ -15,6 +17,9 @@ inline constexpr DatabaseFormat kStoreFormat = {"packed store", 0x4C465053 /* "L
                                                 kPageBytes};
 inline constexpr DatabaseFormat kShardFormat = {"shard of a packed store", 0x4C465348 /* "LFSH" */,
                                                 1, kPageBytes};
+
+// Of the LF images as a store lists them: their masks are within the codes.
+LightFieldIdentity IdentityInStore(const LightField& light_field);
 
 // Settings, intrinsics and these, as doc/formats/packed_store.md describes them.
 inline constexpr const char* kStoreTables = R"(

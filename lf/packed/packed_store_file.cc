@@ -11,6 +11,7 @@
 
 #include "lf/calibration_tables/calibration_tables.h"
 #include "lf/calibration_tables/stored_numbers.h"
+#include "lf/capture/value_hasher.h"
 #include "lf/packed/packed_format.h"
 
 namespace lf {
@@ -59,7 +60,21 @@ Result<void> ReadImages(OpenedStore* store, PackedStoreFacts* facts) {
         return {};
       }));
   if (light_field.size() == 0) return store->settings.Damaged("it has no LF image");
+  const LightFieldIdentity images = IdentityInStore(light_field);
+  if (store->settings.Text("images.names") != images.names)
+    return store->settings.Damaged("names of LF images are not those that were written");
+  if (store->settings.Text("images.calibration") != images.calibration)
+    return store->settings.Damaged("LF cameras are not those that were written");
   return {};
+}
+
+// A shard, to be read.
+Result<Database> OpenShardOf(const fs::path& path, const std::string& store, int number) {
+  LF_ASSIGN_OR_RETURN(Database database, Database::Open(ShardPath(path, number), kShardFormat));
+  LF_ASSIGN_OR_RETURN(const Settings settings, Settings::Read(database, kShardFormat.name));
+  if (settings.Text("store") != store || settings.Text("number") != fmt::format("{}", number))
+    return database.Fault(fmt::format("belongs to another packed store than {}", path.string()));
+  return database;
 }
 
 // By the id in the store, as many as it has.
@@ -111,6 +126,14 @@ Result<OpenBlobs> WithSelect(int shard, Database database) {
 
 }  // namespace
 
+LightFieldIdentity IdentityInStore(const LightField& light_field) {
+  LightFieldIdentity identity = IdentityOf(light_field);
+  ValueHasher names;
+  for (const std::string& name : light_field.image_names) names.Add(name);
+  identity.names = names.Text();
+  return identity;
+}
+
 bool IsPackedStore(const fs::path& path) {
   constexpr size_t kApplicationId = 68;  // where SQLite files have it, the highest byte first
   std::error_code error;
@@ -150,6 +173,9 @@ Result<PackedStoreFacts> ReadPackedStore(const fs::path& path) {
   facts.shard_count = static_cast<size_t>(shards);
   LF_ASSIGN_OR_RETURN(light_field.intrinsics, ReadIntrinsics(settings, &store.database));
   LF_RETURN_IF_ERROR(ReadImages(&store, &facts));
+  // Rather now than LF image by LF image.
+  for (int number = 1; number <= static_cast<int>(facts.shard_count); ++number)
+    LF_RETURN_IF_ERROR(OpenShardOf(path, settings.Text("store"), number));
   return facts;
 }
 
@@ -214,11 +240,7 @@ struct PackedCodeReader::State {
 };
 
 Result<OpenBlobs> PackedCodeReader::State::OpenShard(int number) const {
-  const fs::path shard_path = ShardPath(path, number);
-  LF_ASSIGN_OR_RETURN(Database database, Database::Open(shard_path, kShardFormat));
-  LF_ASSIGN_OR_RETURN(const Settings settings, Settings::Read(database, kShardFormat.name));
-  if (settings.Text("store") != store || settings.Text("number") != fmt::format("{}", number))
-    return database.Fault(fmt::format("belongs to another packed store than {}", path.string()));
+  LF_ASSIGN_OR_RETURN(Database database, OpenShardOf(path, store, number));
   return WithSelect(number, std::move(database));
 }
 

@@ -53,7 +53,8 @@ struct PackedStoreFacts {
   size_t shard_count = 0;  // 0: the codes are in the file itself
 };
 
-// kInput: it cannot be read, is no complete packed store, damaged, or of another version.
+// kInput: it cannot be read, is no complete packed store, damaged, of another version, or lacks a
+// shard.
 Result<PackedStoreFacts> ReadPackedStore(const std::filesystem::path& path);
 
 // Its files: itself, then its shards.

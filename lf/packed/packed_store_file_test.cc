@@ -111,7 +111,7 @@ class PackedStoreFileTest : public ::testing::Test {
     const auto facts = ReadPackedStore(path_);
     if (facts) return "";
     EXPECT_EQ(facts.error().kind, ErrorKind::kInput);
-    EXPECT_NE(facts.error().message.find("a store.lfs: "), std::string::npos);
+    EXPECT_NE(facts.error().message.find("a store"), std::string::npos);
     return facts.error().message;
   }
 
@@ -255,7 +255,12 @@ TEST_F(PackedStoreFileTest, ItGoesOnWithTheSameOnly) {
   field.encoding.pedestal = 5;
   EXPECT_NE(difference(field, plan_).find("pedestal"), std::string::npos);
   EXPECT_EQ(difference(field_, plan_), "");
-  ASSERT_TRUE(PackedStoreWriter::RemoveUnfinished(path_));
+  plan = plan_;
+  plan.rects.assign(field_.size(), {0, 0, 3, 3});
+  EXPECT_NE(difference(field_, plan).find("images.rects"), std::string::npos);
+  FileLock lock = PackedStoreWriter::Lock(path_).value();
+  PackedStoreWriter::RemoveUnfinished(path_, lock);
+  lock.Remove();
   EXPECT_TRUE(Files().empty());
 }
 
@@ -264,7 +269,91 @@ TEST_F(PackedStoreFileTest, OneWriterAtATime) {
   const Result<PackedStoreWriter> other = PackedStoreWriter::Resume(path_, field_, plan_);
   ASSERT_FALSE(other);
   EXPECT_EQ(other.error().kind, ErrorKind::kOutput);
-  EXPECT_FALSE(PackedStoreWriter::RemoveUnfinished(path_));
+  EXPECT_FALSE(PackedStoreWriter::Lock(path_));
+}
+
+TEST_F(PackedStoreFileTest, ShardsOfOtherStoresStayAsTheyAre) {
+  plan_.shard_bytes = 30000;
+  Write();
+  const size_t files = Files().size();
+  ASSERT_GT(files, 3u);
+  // Its owner gave another name to the store alone.
+  const fs::path moved = folder_ / "moved.lfs";
+  fs::rename(path_, moved);
+  const Result<PackedStoreWriter> in_the_way = PackedStoreWriter::Create(path_, field_, plan_);
+  ASSERT_FALSE(in_the_way);
+  EXPECT_EQ(in_the_way.error().kind, ErrorKind::kUsage);
+  EXPECT_NE(in_the_way.error().message.find("a store-0001.lfs"), std::string::npos);
+  plan_.shard_bytes = 0;
+  Write();  // beside them
+  EXPECT_EQ(Files().size(), files + 1);
+  fs::rename(moved, path_);
+  ExpectHoldsAll();
+}
+
+TEST_F(PackedStoreFileTest, WhatItReplacesIsGone) {
+  plan_.shard_bytes = 20000;
+  Write();
+  const size_t files = Files().size();
+  plan_.shard_bytes = 40000;
+  Write();
+  EXPECT_LT(Files().size(), files);
+  ExpectHoldsAll();
+  // Killed while shards got their names.
+  {
+    PackedStoreWriter writer = Writer();
+    for (uint32_t i = 0; i < field_.size(); ++i) ASSERT_TRUE(writer.Add({i}, CodeOfImage(i)));
+    ASSERT_TRUE(writer.Commit());
+  }
+  fs::rename(folder_ / "a store-0001.lfs.unfinished", folder_ / "a store-0001.lfs");
+  EXPECT_NE(Fault().find("belongs to another packed store"), std::string::npos);
+  FileLock lock = PackedStoreWriter::Lock(path_).value();
+  PackedStoreWriter::RemoveUnfinished(path_, lock);
+  lock.Remove();
+  for (const std::string& name : Files()) EXPECT_EQ(name.find("unfinished"), std::string::npos);
+  EXPECT_FALSE(fs::exists(folder_ / "a store-0001.lfs"));
+  Write();
+  ExpectHoldsAll();
+}
+
+TEST_F(PackedStoreFileTest, AbandonedItIsGone) {
+  plan_.shard_bytes = 30000;
+  PackedStoreWriter writer = Writer();
+  ASSERT_TRUE(writer.Add({0}, CodeOfImage(0)));
+  writer.Abandon();
+  EXPECT_TRUE(Files().empty());
+}
+
+TEST_F(PackedStoreFileTest, APartOfItIsAnError) {
+  plan_.shard_bytes = 30000;
+  Write();
+  const auto lacks = [&](const fs::path& file, uintmax_t bytes) {
+    const fs::path whole = folder_ / "whole";
+    fs::copy_file(file, whole);
+    fs::resize_file(file, fs::file_size(file) - bytes);
+    EXPECT_NE(Fault().find("copied in part"), std::string::npos) << Fault();
+    fs::rename(whole, file);
+  };
+  for (const uintmax_t bytes : {1, 5000, 16384}) {
+    lacks(path_, bytes);
+    lacks(folder_ / "a store-0002.lfs", bytes);
+  }
+  fs::remove(folder_ / "a store-0002.lfs");
+  EXPECT_NE(Fault().find("a store-0002.lfs: no such file"), std::string::npos) << Fault();
+}
+
+TEST_F(PackedStoreFileTest, IsOfItsPlan) {
+  Write();
+  EXPECT_TRUE(CheckIsOfPlan(path_, field_, plan_, false));
+  PackedStorePlan plan = plan_;
+  plan.shard_bytes = 9;
+  EXPECT_TRUE(CheckIsOfPlan(path_, field_, plan, true));
+  EXPECT_FALSE(CheckIsOfPlan(path_, field_, plan, false));
+  LightField field = field_;
+  field.encoding.white_level = 4000;
+  const Result<void> other = CheckIsOfPlan(path_, field, plan_, true);
+  ASSERT_FALSE(other);
+  EXPECT_NE(other.error().message.find("white_level"), std::string::npos);
 }
 
 TEST_F(PackedStoreFileTest, ManyThreadsAddAndMayBeKilled) {

@@ -35,13 +35,23 @@ std::string HashOfIds(const std::vector<uint32_t>& ids) {
                      : fmt::format("{:016x}", HashBytes(BytesOf(std::span<const uint32_t>(ids))));
 }
 
+std::string HashOfRects(const std::vector<PixelRect>& rects) {
+  if (rects.empty()) return {};
+  Hasher hasher;
+  for (const PixelRect& rect : rects) {
+    const int32_t sides[] = {rect.x_begin, rect.y_begin, rect.x_end, rect.y_end};
+    hasher.Add(BytesOf(std::span<const int32_t>(sides)));
+  }
+  return fmt::format("{:016x}", hasher.Hash());
+}
+
 std::string TextOf(const std::optional<DisplayLevels>& levels) {
   return levels ? fmt::format("{} {}", levels->black, levels->white) : std::string();
 }
 
 // What a store must have in common with the one that it goes on.
 SettingList SettingsOfPlan(const LightField& light_field, const PackedStorePlan& plan) {
-  const LightFieldIdentity images = IdentityOf(light_field);
+  const LightFieldIdentity images = IdentityInStore(light_field);
   SettingList settings = {{"light_field.images", fmt::format("{}", plan.whole.image_count)},
                           {"light_field.names", plan.whole.names},
                           {"light_field.calibration", plan.whole.calibration},
@@ -49,6 +59,7 @@ SettingList SettingsOfPlan(const LightField& light_field, const PackedStorePlan&
                           {"images.names", images.names},
                           {"images.calibration", images.calibration},
                           {"images.whole_ids", HashOfIds(plan.whole_ids)},
+                          {"images.rects", HashOfRects(plan.rects)},
                           {"codec", plan.codec},
                           {"display_levels", TextOf(plan.display_levels)},
                           {"shard_bytes", fmt::format("{}", plan.shard_bytes)}};
@@ -97,15 +108,13 @@ Result<void> MakeTables(const LightField& light_field, const PackedStorePlan& pl
   return database->Execute("commit");
 }
 
-Result<void> CheckSame(const Settings& settings, const LightField& light_field,
-                       const PackedStorePlan& plan, const fs::path& path) {
+// "codec default, levels 4, threshold 3, this call has ..." for the first that differs.
+std::optional<std::string> FirstDifference(const Settings& settings, const LightField& light_field,
+                                           const PackedStorePlan& plan, bool any_shards) {
+  const auto shown = [](const std::string& value) { return value.empty() ? "(none)" : value; };
   for (const auto& [key, value] : SettingsOfPlan(light_field, plan))
-    if (settings.Text(key) != value)
-      return UsageError(fmt::format(
-          "{}: the unfinished store was made with {} {}, this call has {}: give the same, or "
-          "another name, or begin anew",
-          path.string(), key, settings.Text(key).empty() ? "(none)" : settings.Text(key),
-          value.empty() ? "(none)" : value));
+    if (settings.Text(key) != value && !(any_shards && key == "shard_bytes"))
+      return fmt::format("{} {}, this call has {}", key, shown(settings.Text(key)), shown(value));
   return {};
 }
 
@@ -115,22 +124,29 @@ void RemoveWithJournal(const fs::path& path) {
   fs::remove(fs::path(path) += "-journal", ignored);
 }
 
+// By which a store, or a shard of it, is known; empty if the file is none.
+std::string StoreIdOf(const fs::path& path, const DatabaseFormat& format) {
+  Result<Database> database = Database::Open(path, format);
+  if (!database) return {};
+  const Result<Settings> settings = Settings::Read(*database, format.name);
+  return settings ? settings->Text("store") : std::string();
+}
+std::string StoreOfShard(const fs::path& path) { return StoreIdOf(path, kShardFormat); }
+
+// Also the shards that have got their names already, and those behind a gap of such.
 void RemoveUnfinishedFiles(const fs::path& path) {
+  const std::string store = StoreIdOf(UnfinishedPath(path), kStoreFormat);
   RemoveWithJournal(UnfinishedPath(path));
   std::error_code error;
-  for (int n = 1; n <= kMostShards && fs::exists(UnfinishedPath(ShardPath(path, n)), error); ++n)
-    RemoveWithJournal(UnfinishedPath(ShardPath(path, n)));
+  for (int n = 1; n <= kMostShards; ++n) {
+    const fs::path shard = ShardPath(path, n), unfinished = UnfinishedPath(shard);
+    const bool is_unfinished = fs::exists(unfinished, error);
+    const bool is_ours = !store.empty() && StoreOfShard(shard) == store;
+    if (!is_unfinished && !is_ours) return;
+    RemoveWithJournal(unfinished);
+    if (is_ours) fs::remove(shard, error);
+  }
 }
-
-// The id of the store that a shard belongs to; none if it is no shard.
-std::optional<std::string> StoreOfShard(const fs::path& path) {
-  Result<Database> database = Database::Open(path, kShardFormat);
-  if (!database) return std::nullopt;
-  const Result<Settings> settings = Settings::Read(*database, kShardFormat.name);
-  return settings ? std::optional(settings->Text("store")) : std::nullopt;
-}
-
-Result<FileLock> Lock(const fs::path& path) { return FileLock::Take(fs::path(path) += ".lock"); }
 
 }  // namespace
 
@@ -139,6 +155,8 @@ struct PackedStoreWriter::State {
   std::optional<FileLock> lock;
   uint64_t shard_bytes = 0;
   std::string store;
+  std::string replaced;                // the id of the store that has the name
+  std::vector<uint64_t> source_bytes;  // of what it had
 
   std::mutex mutex;  // of all below
   std::vector<bool> has;
@@ -167,6 +185,7 @@ struct PackedStoreWriter::State {
 
   Result<void> Read(const Settings& settings);
   Result<void> TakeShardsBack() const;
+  Result<void> CheckIsFree(const fs::path& shard_path) const;
   Result<void> OpenShard(int number);
   Result<void> Insert(LfImageId id, const CodedImage& image);
   Result<void> CommitBatch();
@@ -182,14 +201,16 @@ Result<void> PackedStoreWriter::State::Read(const Settings& settings) {
   store = settings.Text("store");
   LF_ASSIGN_OR_RETURN(const double shards, settings.Number("shards", 0, kMostShards));
   shard_count = static_cast<int>(shards);
-  return ForEachRow(*database, "select id, shard, bytes from codes",
+  return ForEachRow(*database, "select id, shard, bytes, source_bytes from codes",
                     [&](const Statement& row) -> Result<void> {
                       LF_ASSIGN_OR_RETURN(const int64_t id, row.Integer(0));
                       LF_ASSIGN_OR_RETURN(const int64_t of_shard, row.Integer(1));
                       LF_ASSIGN_OR_RETURN(const int64_t bytes, row.Integer(2));
+                      LF_ASSIGN_OR_RETURN(const int64_t sources, row.Integer(3));
                       if (id < 0 || static_cast<size_t>(id) >= has.size())
                         return settings.Damaged(fmt::format("a code of LF image {}", id));
                       has[static_cast<size_t>(id)] = true;
+                      source_bytes[static_cast<size_t>(id)] = static_cast<uint64_t>(sources);
                       ++image_count;
                       if (of_shard == shard_count) bytes_in_shard += static_cast<uint64_t>(bytes);
                       return {};
@@ -210,6 +231,18 @@ Result<void> PackedStoreWriter::State::TakeShardsBack() const {
   return {};
 }
 
+// Whether a shard may get this name: what has it is of the store that is replaced, or nothing.
+Result<void> PackedStoreWriter::State::CheckIsFree(const fs::path& shard_path) const {
+  std::error_code error;
+  if (!fs::exists(fs::symlink_status(shard_path, error))) return {};
+  const std::string of = StoreOfShard(shard_path);
+  if (!of.empty() && (of == store || of == replaced)) return {};
+  return UsageError(fmt::format(
+      "{}: is in the way of a shard, and none of the store that is replaced: give another name, or "
+      "remove it",
+      shard_path.string()));
+}
+
 // Makes it if it is not there.
 Result<void> PackedStoreWriter::State::OpenShard(int number) {
   if (number > kMostShards)
@@ -218,11 +251,7 @@ Result<void> PackedStoreWriter::State::OpenShard(int number) {
   insert_blob.reset();
   shard.reset();
   const fs::path shard_path = ShardPath(path, number);
-  if (IsPackedStore(shard_path))
-    return OutputError(
-        fmt::format("{}: is a store of its own, in the way of a shard: give another "
-                    "name",
-                    shard_path.string()));
+  LF_RETURN_IF_ERROR(CheckIsFree(shard_path));
   LF_ASSIGN_OR_RETURN(Database opened,
                       Database::OpenToAppend(UnfinishedPath(shard_path), kShardFormat));
   LF_ASSIGN_OR_RETURN(const bool has_tables, HasTables(&opened));
@@ -295,12 +324,16 @@ Result<void> PackedStoreWriter::State::FinishFiles() {
   LF_RETURN_IF_ERROR(database->Execute(
       fmt::format("update settings set value = '{}' where key = 'state'", kComplete)));
   Close();
-  for (int n = 1; n <= shard_count; ++n)
+  for (int n = 1; n <= shard_count; ++n) {
+    LF_RETURN_IF_ERROR(CheckIsFree(ShardPath(path, n)));
     LF_RETURN_IF_ERROR(RenameFlushed(UnfinishedPath(ShardPath(path, n)), ShardPath(path, n)));
+  }
   LF_RETURN_IF_ERROR(RenameFlushed(UnfinishedPath(path), path));
-  // What a larger store of the same name had.
+  // What the store before it had more.
+  if (replaced.empty()) return {};
   std::error_code ignored;
-  for (int n = shard_count + 1; n <= kMostShards && StoreOfShard(ShardPath(path, n)); ++n)
+  for (int n = shard_count + 1; n <= kMostShards && StoreOfShard(ShardPath(path, n)) == replaced;
+       ++n)
     fs::remove(ShardPath(path, n), ignored);
   return {};
 }
@@ -312,20 +345,33 @@ PackedStoreWriter::~PackedStoreWriter() = default;
 
 Result<PackedStoreWriter> PackedStoreWriter::Open(const fs::path& path,
                                                   const LightField& light_field,
-                                                  const PackedStorePlan& plan) {
+                                                  const PackedStorePlan& plan,
+                                                  std::optional<FileLock> lock) {
   LF_CHECK(light_field.size() > 0);
   auto state = std::make_unique<State>();
   state->path = path;
-  LF_ASSIGN_OR_RETURN(state->lock, Lock(path));
+  if (lock) {
+    state->lock = std::move(lock);
+  } else {
+    LF_ASSIGN_OR_RETURN(state->lock, Lock(path));
+  }
   if (!IsUnfinished(path)) RemoveUnfinishedFiles(path);  // shards alone
   state->shard_bytes = plan.shard_bytes;
+  state->replaced = StoreIdOf(path, kStoreFormat);
   state->has.resize(light_field.size());
+  state->source_bytes.resize(light_field.size());
+  // Rather now than when all work is done.
+  if (plan.shard_bytes > 0 && !IsUnfinished(path))
+    LF_RETURN_IF_ERROR(state->CheckIsFree(ShardPath(path, 1)));
   LF_ASSIGN_OR_RETURN(Database database,
                       Database::OpenToAppend(UnfinishedPath(path), kStoreFormat));
   LF_ASSIGN_OR_RETURN(const bool has_tables, HasTables(&database));
   if (!has_tables) LF_RETURN_IF_ERROR(MakeTables(light_field, plan, &database));
   LF_ASSIGN_OR_RETURN(const Settings settings, Settings::Read(database, kStoreFormat.name));
-  LF_RETURN_IF_ERROR(CheckSame(settings, light_field, plan, path));
+  if (const auto difference = FirstDifference(settings, light_field, plan, false))
+    return UsageError(fmt::format(
+        "{}: the unfinished store was made with {}: give the same, or another name, or begin anew",
+        path.string(), *difference));
   state->database = std::move(database);
   LF_RETURN_IF_ERROR(state->Read(settings));
   LF_ASSIGN_OR_RETURN(
@@ -340,19 +386,25 @@ Result<PackedStoreWriter> PackedStoreWriter::Open(const fs::path& path,
 
 Result<PackedStoreWriter> PackedStoreWriter::Create(const fs::path& path,
                                                     const LightField& light_field,
-                                                    const PackedStorePlan& plan) {
+                                                    const PackedStorePlan& plan,
+                                                    std::optional<FileLock> lock) {
   if (IsUnfinished(path))
     return UsageError(
         fmt::format("{}: there is an unfinished store of this name: go on with it, "
                     "or begin anew",
                     UnfinishedPath(path).string()));
-  return Open(path, light_field, plan);
+  return Open(path, light_field, plan, std::move(lock));
 }
 
 Result<PackedStoreWriter> PackedStoreWriter::Resume(const fs::path& path,
                                                     const LightField& light_field,
-                                                    const PackedStorePlan& plan) {
-  return Open(path, light_field, plan);
+                                                    const PackedStorePlan& plan,
+                                                    std::optional<FileLock> lock) {
+  return Open(path, light_field, plan, std::move(lock));
+}
+
+Result<FileLock> PackedStoreWriter::Lock(const fs::path& path) {
+  return FileLock::Take(fs::path(path) += ".lock");
 }
 
 bool PackedStoreWriter::IsUnfinished(const fs::path& path) {
@@ -360,11 +412,12 @@ bool PackedStoreWriter::IsUnfinished(const fs::path& path) {
   return fs::exists(UnfinishedPath(path), error);
 }
 
-Result<void> PackedStoreWriter::RemoveUnfinished(const fs::path& path) {
-  LF_ASSIGN_OR_RETURN(FileLock lock, Lock(path));
+void PackedStoreWriter::RemoveUnfinished(const fs::path& path, const FileLock& /*lock*/) {
   RemoveUnfinishedFiles(path);
-  lock.Remove();
-  return {};
+}
+
+uint64_t PackedStoreWriter::SourceBytes(LfImageId id) const {
+  return state_->source_bytes[id.value];
 }
 
 bool PackedStoreWriter::Has(LfImageId id) const {
@@ -408,6 +461,22 @@ Result<void> PackedStoreWriter::Finish() {
   const std::lock_guard lock(state_->mutex);
   LF_RETURN_IF_ERROR(state_->FinishFiles());
   state_->lock->Remove();
+  return {};
+}
+
+void PackedStoreWriter::Abandon() {
+  const std::lock_guard lock(state_->mutex);
+  state_->Close();
+  RemoveUnfinishedFiles(state_->path);
+  state_->lock->Remove();
+}
+
+Result<void> CheckIsOfPlan(const fs::path& path, const LightField& light_field,
+                           const PackedStorePlan& plan, bool any_shards) {
+  LF_ASSIGN_OR_RETURN(Database database, Database::Open(path, kStoreFormat));
+  LF_ASSIGN_OR_RETURN(const Settings settings, Settings::Read(database, kStoreFormat.name));
+  if (const auto difference = FirstDifference(settings, light_field, plan, any_shards))
+    return InputError(fmt::format("{}: was made with {}", path.string(), *difference));
   return {};
 }
 

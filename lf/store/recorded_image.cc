@@ -86,9 +86,7 @@ Result<RecordedImage> ReadRecordedImage(const LightField& light_field, LfImageId
       image.mask = Image<uint8_t>(image.rect.width(), image.rect.height(), 1, 255);
     image.mask.at(x - image.rect.x_begin, y - image.rect.y_begin) = 0;
   }));
-  image.source_bytes = SizeOf(path);
-  if (!light_field.mask_names.empty() && !light_field.mask_names[id.value].empty())
-    image.source_bytes += SizeOf(light_field.folder / light_field.mask_names[id.value]);
+  image.source_bytes = SourceBytesOf(light_field, id);
   return image;
 }
 
@@ -109,6 +107,13 @@ CodedImage CodeOf(const RecordedImage& image, const CodecSettings& settings) {
   if (!image.mask.empty()) coded.mask = EncodeImage(image.mask, PixelLayout::kGrey, of_mask);
   coded.source_bytes = image.source_bytes;
   return coded;
+}
+
+uint64_t SourceBytesOf(const LightField& light_field, LfImageId id) {
+  uint64_t bytes = SizeOf(light_field.ImagePath(id));
+  if (bytes > 0 && !light_field.mask_names.empty() && !light_field.mask_names[id.value].empty())
+    bytes += SizeOf(light_field.folder / light_field.mask_names[id.value]);
+  return bytes;
 }
 
 }  // namespace lf

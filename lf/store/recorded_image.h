@@ -34,6 +34,9 @@ struct RecordedImage {
 Result<RecordedImage> ReadRecordedImage(const LightField& light_field, LfImageId id,
                                         const PixelRect& rect);
 
+// RecordedImage::source_bytes, without reading the image; 0: it is not there.
+uint64_t SourceBytesOf(const LightField& light_field, LfImageId id);
+
 // The pixels that a store must hold so that those of `rect` can be loaded: of mosaics some more,
 // which RGB pixels are made from.
 PixelRect RectToRecord(const LightField& light_field, LfImageId id, const PixelRect& rect);

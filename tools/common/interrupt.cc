@@ -12,8 +12,6 @@ std::atomic<bool> interrupted = false;
 static_assert(std::atomic<bool>::is_always_lock_free);
 static_assert(std::atomic<int64_t>::is_always_lock_free);
 
-void OnSignal(int) { interrupted = true; }
-
 RenderSignals render_signals;
 std::atomic<int64_t> first_interrupt_ns = 0;
 
@@ -26,16 +24,24 @@ int64_t NowNanoseconds() {
   return int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
 }
 
-void OnRenderSignal(int signal) {
-  if (signal == SIGUSR1) {
-    render_signals.save = true;
-  } else if (!render_signals.stop) {
+// Sets the flag; ends the program where a person asks for it again.
+void Interrupt(int signal, std::atomic<bool>* flag) {
+  if (!*flag) {
     first_interrupt_ns = NowNanoseconds();
-    render_signals.stop = true;
+    *flag = true;
   } else if (signal == SIGINT && NowNanoseconds() - first_interrupt_ns > kOneInterrupt_ns) {
     ::signal(SIGINT, SIG_DFL);
     ::raise(SIGINT);
   }
+}
+
+void OnSignal(int signal) { Interrupt(signal, &interrupted); }
+
+void OnRenderSignal(int signal) {
+  if (signal == SIGUSR1)
+    render_signals.save = true;
+  else
+    Interrupt(signal, &render_signals.stop);
   render_signals.attention = true;
 }
 
@@ -49,9 +55,8 @@ bool IsIgnored(int signal) {
 const std::atomic<bool>& CatchInterrupts() {
   struct sigaction action {};
   action.sa_handler = OnSignal;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
-  ::sigaction(SIGINT, &action, nullptr);
-  ::sigaction(SIGTERM, &action, nullptr);
+  for (const int signal : {SIGINT, SIGTERM}) ::sigaction(signal, &action, nullptr);
+  if (!IsIgnored(SIGHUP)) ::sigaction(SIGHUP, &action, nullptr);
   return interrupted;
 }
 

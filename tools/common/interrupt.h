@@ -1,4 +1,4 @@
-// SIGINT and SIGTERM as a flag that long work looks at.
+// SIGINT, SIGTERM and SIGHUP as a flag that long work looks at.
 #pragma once
 
 #include <atomic>
@@ -7,13 +7,13 @@
 
 namespace lf {
 
-// From now on the first SIGINT or SIGTERM sets the flag; a second one ends the program at once.
+// From now on the first SIGINT, SIGTERM or, but under nohup, SIGHUP sets the flag. A SIGINT more
+// than half a second after it ends the program at once (a SIGTERM does not: batch systems repeat
+// it).
 const std::atomic<bool>& CatchInterrupts();
 
-// The same for a render, which also listens to SIGUSR1 and SIGHUP: the first SIGINT, SIGTERM or,
-// but under nohup, SIGHUP asks for the state and the end. A SIGINT more than half a second after it
-// ends the program at once (a SIGTERM does not: batch systems repeat it). SIGUSR1 asks for the
-// state. To be called once.
+// The same for a render: the flag asks for the state and the end, and SIGUSR1 for the state. To be
+// called once.
 RenderSignals& CatchRenderSignals();
 
 }  // namespace lf
