@@ -299,7 +299,7 @@ Result<Database> Database::Open(const fs::path& path, const DatabaseFormat& form
   const uintmax_t size = fs::file_size(path, error), expected = BytesOfPages(path);
   if (!error && size < expected)
     return state->Fault(
-        fmt::format("ends after {} of {} bytes: it was copied in part", size, expected));
+        fmt::format("is damaged: it ends after {} of {} bytes, copied in part", size, expected));
   constexpr int kFlags = SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX;
   if (sqlite3_open_v2(UriOf(path).c_str(), &state->handle, kFlags, nullptr) != SQLITE_OK)
     return state->Fault(fmt::format("cannot be read: {}", sqlite3_errmsg(state->handle)));
