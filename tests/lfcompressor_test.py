@@ -12,13 +12,13 @@ import signal
 import sqlite3
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 
 import numpy as np
 from PIL import Image
 
+from program_test_case import ProgramTestCase
 from small_field import HEIGHT, SIDE, WIDTH, write_field, write_path
 
 COMPRESSOR = RENDERER = PREPROCESSOR = None
@@ -32,34 +32,18 @@ def smooth(index):
     return np.clip(waves[..., None] + [0, 8, -8] + noise, 0, 255).astype(np.uint8)
 
 
-class StoreTest(unittest.TestCase):
+class StoreTest(ProgramTestCase):
     """a folder, and calls of programs"""
 
     def setUp(self):
-        self.temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(self.temporary.cleanup)
-        self.folder = pathlib.Path(self.temporary.name)
+        super().setUp()
         self.store = self.folder / "a.lfs"
 
-    def call(self, program, *arguments, **more):
-        return subprocess.run([program, *map(str, arguments)], capture_output=True, text=True,
-                              timeout=120, **more)
-
     def compress(self, *arguments):
-        result = self.call(COMPRESSOR, *arguments)
-        self.assertEqual(result.returncode, 0, result.stderr)
-        return result.stdout
+        return self.succeeds(COMPRESSOR, *arguments)
 
     def report(self, *arguments):
         return json.loads(self.compress(*arguments, "--json"))
-
-    def fails(self, code, words, program, *arguments):
-        result = self.call(program, *arguments)
-        self.assertEqual(result.returncode, code, result.stderr)
-        last = result.stderr.strip().splitlines()[-1]
-        self.assertTrue(last.startswith("error: "), last)
-        for word in words:
-            self.assertIn(word, last)
 
     def names(self):
         return sorted(path.name for path in self.folder.iterdir() if path.name.startswith("a"))

@@ -12,41 +12,19 @@ import sqlite3
 import struct
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 
 import numpy as np
 from PIL import Image
 
+from program_test_case import ProgramTestCase
 from small_field import HEIGHT, SIDE, WIDTH, write_field, write_path
 
 PREPROCESSOR = RENDERER = None
 
 
-class PackagesTest(unittest.TestCase):
-    def setUp(self):
-        self.temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(self.temporary.cleanup)
-        self.folder = pathlib.Path(self.temporary.name)
-
-    def call(self, program, *arguments):
-        return subprocess.run([program, *map(str, arguments)], capture_output=True, text=True,
-                              timeout=120)
-
-    def succeeds(self, program, *arguments):
-        result = self.call(program, *arguments)
-        self.assertEqual(result.returncode, 0, result.stderr)
-        return result.stdout
-
-    def fails(self, code, words, program, *arguments):
-        result = self.call(program, *arguments)
-        self.assertEqual(result.returncode, code, result.stderr)
-        last = result.stderr.strip().splitlines()[-1]
-        self.assertTrue(last.startswith("error: "), last)
-        for word in words:
-            self.assertIn(word, last)
-
+class PackagesTest(ProgramTestCase):
     def digests(self, folder):
         return {frame.name: hashlib.sha256(frame.read_bytes()).hexdigest()
                 for frame in sorted(folder.glob("frame_*.exr"))}

@@ -5,43 +5,20 @@ usage: packed_store_test.py LFCOMPRESSOR LFRENDERER LFPREPROCESSOR LFIMPORT LFEX
 """
 import hashlib
 import json
-import pathlib
 import sqlite3
-import subprocess
 import sys
-import tempfile
 import unittest
 
 import numpy as np
 from PIL import Image
 
+from program_test_case import ProgramTestCase
 from small_field import HEIGHT, WIDTH, write_field, write_path
 
 COMPRESSOR = RENDERER = PREPROCESSOR = IMPORT = EXAMPLE = None
 
 
-class PackedStoreTest(unittest.TestCase):
-    def setUp(self):
-        self.temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(self.temporary.cleanup)
-        self.folder = pathlib.Path(self.temporary.name)
-
-    def call(self, program, *arguments):
-        return subprocess.run([program, *map(str, arguments)], capture_output=True, text=True,
-                              timeout=120)
-
-    def succeeds(self, program, *arguments, code=0):
-        result = self.call(program, *arguments)
-        self.assertEqual(result.returncode, code, result.stderr)
-        return result.stdout
-
-    def fails(self, code, words, program, *arguments):
-        result = self.call(program, *arguments)
-        self.assertEqual(result.returncode, code, result.stderr)
-        last = result.stderr.strip().splitlines()[-1]
-        for word in words:
-            self.assertIn(word, last)
-
+class PackedStoreTest(ProgramTestCase):
     def frames(self, name, *arguments):
         out = self.folder / name
         self.succeeds(RENDERER, *arguments, "-o", out, "-q")

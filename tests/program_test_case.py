@@ -1,0 +1,30 @@
+"""A folder of its own, and programs that are called in it."""
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+
+class ProgramTestCase(unittest.TestCase):
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(self.temporary.cleanup)
+        self.folder = pathlib.Path(self.temporary.name)
+
+    def call(self, program, *arguments):
+        return subprocess.run([program, *map(str, arguments)], capture_output=True, text=True,
+                              timeout=120)
+
+    def succeeds(self, program, *arguments, code=0):
+        result = self.call(program, *arguments)
+        self.assertEqual(result.returncode, code, result.stderr)
+        return result.stdout
+
+    def fails(self, code, words, program, *arguments):
+        """with this exit status, and these words on the last line"""
+        result = self.call(program, *arguments)
+        self.assertEqual(result.returncode, code, result.stderr)
+        last = result.stderr.strip().splitlines()[-1]
+        self.assertTrue(last.startswith("error: "), last)
+        for word in words:
+            self.assertIn(word, last)
