@@ -18,7 +18,7 @@ OWNERS = {
     "nlohmann/": {"calibration", "native", "record"},
     "simdjson": {"native"},
     "tbb/": {"core"},
-    "hwy/": {"codec", "collection", "store"},
+    "hwy/": {"codec", "collection", "rebinning", "store"},
     "zstd": {"codec", "plate"},
     "xxhash": {"core"},
     "sqlite3": {"database"},

@@ -1,0 +1,58 @@
+// What both implementations of probability_map.h do, step by step, in whole numbers. Internal to
+// rebinning.
+//
+// Beyond its borders every plane goes on as it ends.
+//
+//   grey     of stored values                                       [0, 65535]
+//   across   (sum of taps * grey + 128) >> 8                        in 1 / 16
+//   smooth   (sum of taps * across of the rows + 2048) >> 12        in 1 / 16
+//   change   min(|left + right + above + below - 4 here| >> 4, 65535), of smooth
+//   p        min((change * alpha >> 8) + xi, 65535)  where change >= beta
+//
+// and where it is smoothed again, p is grey once more, and smooth + 8 >> 4 the answer.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "lf/core/image.h"
+#include "lf/rebinning/probability_map.h"
+
+namespace lf {
+
+// Of a Gaussian: for distances 0, 1, ...; all on both sides together are kTapSum.
+struct SmoothingTaps {
+  static constexpr uint32_t kTapSum = 4096;
+  std::vector<uint32_t> values;
+  int radius() const { return static_cast<int>(values.size()) - 1; }
+};
+SmoothingTaps MakeTaps(double sigma_px);
+
+struct ProbabilityLaw {
+  SmoothingTaps taps;
+  SmoothingTaps second_taps;
+  uint32_t alpha = 0;  // in 1 / 256
+  uint32_t beta = 0;
+  uint32_t xi = 0;
+};
+ProbabilityLaw MakeLaw(const ProbabilityOptions& options, bool is_mosaic);
+
+inline uint16_t ProbabilityOf(const ProbabilityLaw& law, int32_t laplacian) {
+  const uint32_t change =
+      std::min(static_cast<uint32_t>(laplacian < 0 ? -laplacian : laplacian) >> 4, 65535u);
+  if (change < law.beta) return 0;
+  return static_cast<uint16_t>(std::min((change * law.alpha >> 8) + law.xi, 65535u));
+}
+
+// The stored values that are asked about: one for each pixel, or for each 2 x 2 of a mosaic.
+Image<uint16_t> GreyPlane(const LfPixels& pixels, const std::vector<uint16_t>& stored_values);
+
+// p of every pixel out of that of the grey plane.
+Image<uint16_t> OfEveryPixel(const LfPixels& pixels, Image<uint16_t> of_plane);
+
+// p of a grey plane, row by row; and a plane smoothed, in whole numbers.
+Image<uint16_t> ProbabilityPlane(const ProbabilityLaw& law, ImageView<const uint16_t> grey);
+Image<uint16_t> SmoothedPlane(const SmoothingTaps& taps, ImageView<const uint16_t> grey);
+
+}  // namespace lf

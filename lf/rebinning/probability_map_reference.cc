@@ -1,0 +1,59 @@
+#include "lf/rebinning/probability_law.h"
+
+namespace lf {
+namespace {
+
+class GreyLaw {
+ public:
+  GreyLaw(const SmoothingTaps& taps, ImageView<const uint16_t> grey) : taps_(taps), grey_(grey) {}
+
+  uint32_t Smooth(int x, int y) const {
+    uint32_t sum = 2048;
+    for (int k = -taps_.radius(); k <= taps_.radius(); ++k)
+      sum += taps_.values[std::abs(k)] * Across(x, y + k);
+    return sum >> 12;
+  }
+
+  int32_t Laplacian(int x, int y) const {
+    const auto at = [&](int i, int k) {
+      return static_cast<int32_t>(
+          Smooth(std::clamp(i, 0, grey_.width - 1), std::clamp(k, 0, grey_.height - 1)));
+    };
+    return at(x - 1, y) + at(x + 1, y) + at(x, y - 1) + at(x, y + 1) - 4 * at(x, y);
+  }
+
+ private:
+  uint32_t Across(int x, int y) const {
+    const uint16_t* const row = grey_.row(std::clamp(y, 0, grey_.height - 1));
+    uint32_t sum = 128;
+    for (int k = -taps_.radius(); k <= taps_.radius(); ++k)
+      sum += taps_.values[std::abs(k)] * row[std::clamp(x + k, 0, grey_.width - 1)];
+    return sum >> 8;
+  }
+
+  const SmoothingTaps& taps_;
+  ImageView<const uint16_t> grey_;
+};
+
+}  // namespace
+
+Image<uint16_t> ProbabilityMapReference(const LfPixels& pixels,
+                                        const std::vector<uint16_t>& stored_values,
+                                        const ProbabilityOptions& options) {
+  if (pixels.rect.empty()) return {};
+  const ProbabilityLaw law = MakeLaw(options, pixels.bayer != BayerPattern::kNone);
+  const Image<uint16_t> grey = GreyPlane(pixels, stored_values);
+  const GreyLaw plane(law.taps, grey.view());
+  Image<uint16_t> p(grey.width(), grey.height());
+  for (int y = 0; y < p.height(); ++y)
+    for (int x = 0; x < p.width(); ++x) p.at(x, y) = ProbabilityOf(law, plane.Laplacian(x, y));
+  if (law.second_taps.radius() == 0) return OfEveryPixel(pixels, std::move(p));
+  const GreyLaw again(law.second_taps, p.view());
+  Image<uint16_t> smooth(p.width(), p.height());
+  for (int y = 0; y < p.height(); ++y)
+    for (int x = 0; x < p.width(); ++x)
+      smooth.at(x, y) = static_cast<uint16_t>((again.Smooth(x, y) + 8) >> 4);
+  return OfEveryPixel(pixels, std::move(smooth));
+}
+
+}  // namespace lf

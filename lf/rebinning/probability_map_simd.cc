@@ -1,0 +1,164 @@
+// Probability maps, compiled for every instruction set and chosen as the program runs (Highway).
+#include <algorithm>
+#include <cstring>
+
+#include "lf/core/large_vector.h"
+#include "lf/rebinning/probability_law.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "lf/rebinning/probability_map_simd.cc"  // NOLINT: as Highway wants it
+#include <hwy/foreach_target.h>
+// After foreach_target.h.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace lf {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+using D = hn::ScalableTag<uint32_t>;
+using D16 = hn::Rebind<uint16_t, D>;
+
+// Rows of a band with room for vectors beyond both ends.
+constexpr size_t kMargin = 64;
+constexpr int kBandRows = 32;  // of the answer: what is before it stays in the second level cache
+
+class Rows {
+ public:
+  Rows(int count, int width)
+      : stride_(static_cast<size_t>(width) + 2 * kMargin), values_(stride_ * count) {}
+  uint32_t* row(int i) { return values_.data() + stride_ * i + kMargin; }
+
+ private:
+  size_t stride_;
+  LargeVector<uint32_t> values_;
+};
+
+void Across(const SmoothingTaps& taps, const uint16_t* HWY_RESTRICT padded, int width,
+            uint32_t* HWY_RESTRICT out) {
+  const D d;
+  const D16 d16;
+  const int lanes = static_cast<int>(hn::Lanes(d)), radius = taps.radius();
+  const auto load = [&](int x) { return hn::PromoteTo(d, hn::LoadU(d16, padded + x)); };
+  const auto middle = hn::Set(d, taps.values[0]), half = hn::Set(d, 128u);
+  for (int x = 0; x < width; x += lanes) {
+    auto sum = hn::Add(hn::Mul(load(x), middle), half);
+    for (int k = 1; k <= radius; ++k)
+      sum = hn::Add(sum, hn::Mul(hn::Add(load(x - k), load(x + k)), hn::Set(d, taps.values[k])));
+    hn::StoreU(hn::ShiftRight<8>(sum), d, out + x);
+  }
+}
+
+// rows(k): row k of the answer's, from -radius to radius, which goes on beyond its ends as it ends.
+template <class RowAt>
+void Down(const SmoothingTaps& taps, const RowAt& rows, int width, uint32_t* HWY_RESTRICT out) {
+  const D d;
+  const int lanes = static_cast<int>(hn::Lanes(d)), radius = taps.radius();
+  const auto middle = hn::Set(d, taps.values[0]), half = hn::Set(d, 2048u);
+  const uint32_t* const here = rows(0);
+  for (int x = 0; x < width; x += lanes) {
+    auto sum = hn::Add(hn::Mul(hn::LoadU(d, here + x), middle), half);
+    for (int k = 1; k <= radius; ++k)
+      sum = hn::Add(sum, hn::Mul(hn::Add(hn::LoadU(d, rows(-k) + x), hn::LoadU(d, rows(k) + x)),
+                                 hn::Set(d, taps.values[k])));
+    hn::StoreU(hn::ShiftRight<12>(sum), d, out + x);
+  }
+  out[-1] = out[0];
+  out[width] = out[width - 1];
+}
+
+void Probabilities(const ProbabilityLaw& law, const uint32_t* above, const uint32_t* here,
+                   const uint32_t* below, int width, uint16_t* HWY_RESTRICT out) {
+  const D d;
+  const D16 d16;
+  const hn::RebindToSigned<D> di;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const auto most = hn::Set(d, 65535u), beta = hn::Set(d, law.beta), xi = hn::Set(d, law.xi);
+  const auto alpha = hn::Set(d, law.alpha);
+  for (int x = 0; x < width; x += lanes) {
+    const auto around = hn::Add(hn::Add(hn::LoadU(d, above + x), hn::LoadU(d, below + x)),
+                                hn::Add(hn::LoadU(d, here + x - 1), hn::LoadU(d, here + x + 1)));
+    const auto laplacian = hn::Sub(around, hn::ShiftLeft<2>(hn::LoadU(d, here + x)));
+    const auto size = hn::BitCast(d, hn::Abs(hn::BitCast(di, laplacian)));
+    const auto change = hn::Min(hn::ShiftRight<4>(size), most);
+    const auto p = hn::Min(hn::Add(hn::ShiftRight<8>(hn::Mul(change, alpha)), xi), most);
+    // Both are small enough to be compared with signs.
+    const auto is_below = hn::Lt(hn::BitCast(di, change), hn::BitCast(di, beta));
+    const auto kept = hn::IfThenZeroElse(is_below, hn::BitCast(di, p));
+    hn::StoreU(hn::DemoteTo(d16, kept), d16, out + x);
+  }
+}
+
+// Calls put(y, row) for rows [begin, end) of the smoothed plane, cut at its borders.
+template <class Put>
+void SmoothRows(const SmoothingTaps& taps, ImageView<const uint16_t> grey, int begin, int end,
+                Rows& across, std::vector<uint16_t>& padded, Rows& smooth, const Put& put) {
+  const int radius = taps.radius(), width = grey.width;
+  const int first = std::max(begin - radius, 0), last = std::min(end + radius, grey.height);
+  uint16_t* const line = padded.data() + kMargin;
+  for (int y = first; y < last; ++y) {
+    std::memcpy(line, grey.row(y), sizeof(uint16_t) * width);
+    std::fill_n(line - kMargin, kMargin, line[0]);
+    std::fill_n(line + width, kMargin, line[width - 1]);
+    Across(taps, line, width, across.row(y - first));
+  }
+  for (int y = begin; y < end; ++y) {
+    Down(
+        taps, [&](int k) { return across.row(std::clamp(y + k, 0, grey.height - 1) - first); },
+        width, smooth.row(y - begin));
+    put(y, smooth.row(y - begin));
+  }
+}
+
+void ProbabilityRows(const ProbabilityLaw& law, ImageView<const uint16_t> grey,
+                     ImageView<uint16_t> out) {
+  const int width = grey.width, height = grey.height;
+  Rows across(kBandRows + 2 + 2 * law.taps.radius(), width), smooth(kBandRows + 2, width);
+  std::vector<uint16_t> padded(width + 2 * kMargin), line(width + kMargin);
+  for (int begin = 0; begin < height; begin += kBandRows) {
+    const int end = std::min(begin + kBandRows, height);
+    const int first = std::max(begin - 1, 0), last = std::min(end + 1, height);
+    SmoothRows(law.taps, grey, first, last, across, padded, smooth, [](int, uint32_t*) {});
+    const auto row = [&](int y) { return smooth.row(std::clamp(y, 0, height - 1) - first); };
+    for (int y = begin; y < end; ++y) {
+      Probabilities(law, row(y - 1), row(y), row(y + 1), width, line.data());
+      std::memcpy(out.row(y), line.data(), sizeof(uint16_t) * width);
+    }
+  }
+}
+
+void SmoothedRows(const SmoothingTaps& taps, ImageView<const uint16_t> grey,
+                  ImageView<uint16_t> out) {
+  Rows across(kBandRows + 2 * taps.radius(), grey.width), smooth(kBandRows, grey.width);
+  std::vector<uint16_t> padded(grey.width + 2 * kMargin);
+  for (int begin = 0; begin < grey.height; begin += kBandRows)
+    SmoothRows(taps, grey, begin, std::min(begin + kBandRows, grey.height), across, padded, smooth,
+               [&](int y, const uint32_t* row) {
+                 for (int x = 0; x < grey.width; ++x)
+                   out.at(x, y) = static_cast<uint16_t>((row[x] + 8) >> 4);
+               });
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace lf
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace lf {
+
+HWY_EXPORT(ProbabilityRows);
+HWY_EXPORT(SmoothedRows);
+
+Image<uint16_t> ProbabilityPlane(const ProbabilityLaw& law, ImageView<const uint16_t> grey) {
+  Image<uint16_t> p(grey.width, grey.height);
+  HWY_DYNAMIC_DISPATCH(ProbabilityRows)(law, grey, p.view());
+  return p;
+}
+
+Image<uint16_t> SmoothedPlane(const SmoothingTaps& taps, ImageView<const uint16_t> grey) {
+  Image<uint16_t> smooth(grey.width, grey.height);
+  HWY_DYNAMIC_DISPATCH(SmoothedRows)(taps, grey, smooth.view());
+  return smooth;
+}
+
+}  // namespace lf
+#endif  // HWY_ONCE

@@ -1,0 +1,104 @@
+#include "lf/rebinning/probability_map.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lf/core/random.h"
+
+namespace lf {
+namespace {
+
+LfPixels Noise(const PixelRect& rect, BayerPattern bayer, uint64_t seed) {
+  LfPixels pixels(rect, bayer);
+  RandomSequence random(seed);
+  const int lanes = pixels.radiance.channels();
+  for (size_t i = 0; i < pixels.radiance.pixels().size(); ++i)
+    if (static_cast<int>(i % lanes) != LfPixels::kRayLane)
+      pixels.radiance.pixels()[i] = static_cast<uint16_t>(random.Uniform(0, 65536));
+  return pixels;
+}
+
+void ExpectSame(const Image<uint16_t>& a, const Image<uint16_t>& b) {
+  ASSERT_EQ(a.width(), b.width());
+  ASSERT_EQ(a.height(), b.height());
+  EXPECT_EQ(a.pixels(), b.pixels());
+}
+
+TEST(ProbabilityMap, FastIsTheReference) {
+  const std::vector<uint16_t> table = StoredValueTable({});
+  const PixelRect rects[] = {
+      {0, 0, 1, 1}, {3, 5, 4, 90}, {0, 0, 133, 2}, {7, 3, 90, 71}, {10, 20, 41, 53}};
+  uint64_t seed = 0;
+  for (const PixelRect& rect : rects)
+    for (const BayerPattern bayer : {BayerPattern::kNone, BayerPattern::kRggb, BayerPattern::kGbrg})
+      for (const double sigma : {0.0, 0.5, 1.0, 3.7})
+        for (const double second : {0.0, 1.5}) {
+          LfPixels pixels = Noise(rect, bayer, ++seed);
+          pixels.Mask(0, 0);
+          const ProbabilityOptions options{sigma, 0.3, 0.02, 0.1, second};
+          ExpectSame(ProbabilityMap(pixels, table, options),
+                     ProbabilityMapReference(pixels, table, options));
+        }
+}
+
+TEST(ProbabilityMap, AnEdgeIsLikelyAndFlatIsXi) {
+  RadianceEncoding linear;
+  linear.transfer = Transfer::kLinear;
+  const std::vector<uint16_t> table = StoredValueTable(linear);
+  LfPixels pixels({0, 0, 40, 20}, BayerPattern::kNone);
+  for (int y = 0; y < 20; ++y)
+    for (int x = 0; x < 40; ++x)
+      for (int c = 0; c < 3; ++c) pixels.radiance.at(x, y, c) = x < 20 ? 10000 : 40000;
+  const Image<uint16_t> p = ProbabilityMap(pixels, table, {1, 4, 0, 0.25, 0});
+  EXPECT_EQ(p.at(3, 10), std::lround(0.25 * 65535));
+  // Beside an edge of height h the second derivative of the smoothed step is h / sigma times the
+  // difference of the Gaussian half a pixel and three halves from it.
+  const double step = 30000 / 65535.0;
+  const auto gaussian = [](double x) { return std::exp(-x * x / 2) / std::sqrt(2 * kPi); };
+  const double expected = step * (gaussian(0) - gaussian(1)) * 4 + 0.25;
+  EXPECT_NEAR(p.at(20, 10) / 65535.0, expected, 0.01);
+  EXPECT_EQ(p.at(19, 10), p.at(20, 10));
+  // What does not pass beta is not kept at all.
+  EXPECT_EQ(ProbabilityMap(pixels, table, {1, 4, 0.01, 0.25, 0}).at(3, 10), 0);
+}
+
+// The rectangle that was read must not decide which rays are kept, away from its borders.
+TEST(ProbabilityMap, APartIsThePartOfTheWhole) {
+  const std::vector<uint16_t> table = StoredValueTable({});
+  for (const BayerPattern bayer : {BayerPattern::kNone, BayerPattern::kBggr}) {
+    const LfPixels whole = Noise({0, 0, 64, 64}, bayer, 5);
+    const PixelRect rect{13, 10, 50, 41};
+    LfPixels part(rect, bayer);
+    for (int y = 0; y < rect.height(); ++y)
+      for (int x = 0; x < rect.width(); ++x)
+        for (int c = 0; c < part.radiance.channels(); ++c)
+          part.radiance.at(x, y, c) = whole.radiance.at(x + rect.x_begin, y + rect.y_begin, c);
+    const ProbabilityOptions options{1, 0.3, 0, 0.05, 0};
+    const Image<uint16_t> of_whole = ProbabilityMap(whole, table, options);
+    const Image<uint16_t> of_part = ProbabilityMap(part, table, options);
+    const int around = PixelsAround(options, bayer != BayerPattern::kNone);
+    EXPECT_LT(around, 10);
+    for (int y = around; y < rect.height() - around; ++y)
+      for (int x = around; x < rect.width() - around; ++x)
+        ASSERT_EQ(of_part.at(x, y), of_whole.at(x + rect.x_begin, y + rect.y_begin));
+  }
+}
+
+TEST(ProbabilityMap, StoredValuesAreThoseOfTheFile) {
+  for (const Transfer transfer : {Transfer::kSrgb, Transfer::kLinear, Transfer::kResponse}) {
+    RadianceEncoding encoding;
+    encoding.transfer = transfer;
+    encoding.response = {0, 0.05, 0.3, 1};
+    encoding.pedestal = 1024;
+    encoding.white_level = 200;
+    encoding.black_level = 10;
+    const std::vector<uint16_t> linear = RadianceTable(encoding, 8, 1);
+    const std::vector<uint16_t> stored = StoredValueTable(encoding);
+    for (int value = 10; value <= 200; ++value)
+      EXPECT_NEAR(stored[linear[value]], (value - 10) / 190.0 * 65535, 20) << value;
+  }
+}
+
+}  // namespace
+}  // namespace lf

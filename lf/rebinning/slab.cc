@@ -1,0 +1,84 @@
+#include "lf/rebinning/slab.h"
+
+#include <cmath>
+
+namespace lf {
+namespace {
+
+// How far along the ray each plane is; none where they do not come one after the other.
+std::optional<std::array<double, 2>> Parameters(const std::array<double, 2>& distances,
+                                                const std::array<double, 2>& slopes) {
+  if (slopes[0] == 0 || slopes[1] == 0) return {};
+  const std::array<double, 2> along = {distances[0] / slopes[0], distances[1] / slopes[1]};
+  if (!(along[0] < along[1])) return {};
+  return along;
+}
+
+}  // namespace
+
+std::optional<SlabPoint> Parameterize(const Slab& slab, const Ray& ray) {
+  const Vec3 normals[2] = {slab.st.Normal(), slab.uv.Normal()};
+  const auto along = Parameters({normals[0].dot(slab.st.origin_world - ray.origin),
+                                 normals[1].dot(slab.uv.origin_world - ray.origin)},
+                                {normals[0].dot(ray.direction), normals[1].dot(ray.direction)});
+  if (!along) return {};
+  const Vec3 st = ray.At((*along)[0]) - slab.st.origin_world;
+  const Vec3 uv = ray.At((*along)[1]) - slab.uv.origin_world;
+  return SlabPoint(slab.st.axis_a.dot(st), slab.st.axis_b.dot(st), slab.uv.axis_a.dot(uv),
+                   slab.uv.axis_b.dot(uv));
+}
+
+Ray RayOfPoint(const Slab& slab, const SlabPoint& point) {
+  const Vec3 from = slab.st.origin_world + point[0] * slab.st.axis_a + point[1] * slab.st.axis_b;
+  const Vec3 to = slab.uv.origin_world + point[2] * slab.uv.axis_a + point[3] * slab.uv.axis_b;
+  return {from, to - from};
+}
+
+std::optional<CellKey> CellOf(const Slab& slab, const SlabPoint& point) {
+  CellKey key = 0;
+  for (int k = 0; k < kCellAxes; ++k) {
+    const double number = std::floor(point[k] / (k < 2 ? slab.r_st_w : slab.r_uv_w));
+    if (!(number >= -kMostCells && number < kMostCells)) return {};
+    key |= static_cast<CellKey>(static_cast<int64_t>(number) + kMostCells) << (16 * k);
+  }
+  return key;
+}
+
+SlabPoint MiddleOf(const Slab& slab, CellKey key) {
+  SlabPoint point;
+  for (int k = 0; k < kCellAxes; ++k) {
+    const auto number = static_cast<double>((key >> (16 * k)) & 0xffff) - kMostCells;
+    point[k] = (number + 0.5) * (k < 2 ? slab.r_st_w : slab.r_uv_w);
+  }
+  return point;
+}
+
+SlabForms MakeSlabForms(const Slab& slab, const PinholeCamera& lf_camera) {
+  const Mat3 direction =
+      lf_camera.cam_from_world.rotation.transpose() * lf_camera.intrinsics.InverseMatrix();
+  const Vec3 centre = lf_camera.CentreWorld();
+  SlabForms forms;
+  for (int plane = 0; plane < 2; ++plane) {
+    const SlabPlane& here = plane == 0 ? slab.st : slab.uv;
+    const Vec3 normal = here.Normal(), offset = centre - here.origin_world;
+    forms.distances[plane] = -normal.dot(offset);
+    forms.denominators[plane] = normal.transpose() * direction;
+    // (X - origin) n.d = [ offset n^T - (n.offset) I ] d
+    const Mat3 meet = offset * normal.transpose() - normal.dot(offset) * Mat3::Identity();
+    forms.numerators[2 * plane] = here.axis_a.transpose() * meet * direction;
+    forms.numerators[2 * plane + 1] = here.axis_b.transpose() * meet * direction;
+  }
+  return forms;
+}
+
+std::optional<SlabPoint> Parameterize(const SlabForms& forms, const Vec3& position) {
+  const std::array<double, 2> slopes = {Value(forms.denominators[0], position),
+                                        Value(forms.denominators[1], position)};
+  if (!Parameters(forms.distances, slopes)) return {};
+  SlabPoint point;
+  for (int k = 0; k < kCellAxes; ++k)
+    point[k] = Value(forms.numerators[k], position) / slopes[k / 2];
+  return point;
+}
+
+}  // namespace lf

@@ -1,0 +1,70 @@
+// The light slab: two planes that rays are told apart by, and the cells that rays are sorted into
+// (thesis 2.1.1, 4.3.2).
+//
+// A ray that cuts the st plane at (s, t) and the uv plane at (u, v), along the planes' axes from
+// their origins, is in the cell (thesis Eq. 4.3, with a width for each plane)
+//
+//   (floor(s / r_st), floor(t / r_st), floor(u / r_uv), floor(v / r_uv))
+//
+// and stands for the ray through the middle of that cell. Light runs from the uv plane to the st
+// plane: rays that cut the planes the other way round are others, and have no cell.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "lf/camera/pinhole.h"
+#include "lf/camera/ray.h"
+#include "lf/core/geometry.h"
+
+namespace lf {
+
+struct SlabPlane {
+  Vec3 origin_world = Vec3::Zero();
+  Vec3 axis_a = Vec3::UnitX();  // unit vectors, perpendicular to each other
+  Vec3 axis_b = Vec3::UnitY();
+
+  Vec3 Normal() const { return axis_a.cross(axis_b); }
+};
+
+struct Slab {
+  SlabPlane st;
+  SlabPlane uv;
+  double r_st_w = 0;  // width of a cell on either plane, world units
+  double r_uv_w = 0;
+};
+
+// (s, t, u, v), world units.
+using SlabPoint = Eigen::Vector4d;
+
+// Where a ray cuts the planes; none if it is parallel to one of them, or runs from the uv plane to
+// the st plane. A camera looks along its rays, against the light.
+std::optional<SlabPoint> Parameterize(const Slab& slab, const Ray& ray);
+
+// The ray from the st to the uv plane.
+Ray RayOfPoint(const Slab& slab, const SlabPoint& point);
+
+// A cell: its four numbers, each of 16 bits, the first the lowest; 32768 is added to each.
+using CellKey = uint64_t;
+inline constexpr int kCellAxes = 4;
+inline constexpr int kMostCells = 32768;  // on either side of the origin, along each axis
+
+// None beyond kMostCells.
+std::optional<CellKey> CellOf(const Slab& slab, const SlabPoint& point);
+SlabPoint MiddleOf(const Slab& slab, CellKey key);
+
+// Where the rays of an LF camera cut a slab, as quotients of linear forms on ideal pixel positions
+// (camera/ideal_pixels.h):  point[k] = numerator[k] p / denominator[k] p
+struct SlabForms {
+  std::array<PixelForm, kCellAxes> numerators;
+  std::array<PixelForm, 2> denominators;  // of the st and of the uv plane
+  // Both are parameters along the ray times the denominators, which tell what comes first.
+  std::array<double, 2> distances;
+};
+SlabForms MakeSlabForms(const Slab& slab, const PinholeCamera& lf_camera);
+
+// As Parameterize() of the pixel's ray, but for rounding.
+std::optional<SlabPoint> Parameterize(const SlabForms& forms, const Vec3& position);
+
+}  // namespace lf
