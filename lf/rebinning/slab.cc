@@ -5,6 +5,8 @@
 namespace lf {
 namespace {
 
+constexpr int kCellOffset = 32768;
+
 // How far along the ray each plane is; none where they do not come one after the other.
 std::optional<std::array<double, 2>> Parameters(const std::array<double, 2>& distances,
                                                 const std::array<double, 2>& slopes) {
@@ -39,7 +41,7 @@ std::optional<CellKey> CellOf(const Slab& slab, const SlabPoint& point) {
   for (int k = 0; k < kCellAxes; ++k) {
     const double number = std::floor(point[k] / (k < 2 ? slab.r_st_w : slab.r_uv_w));
     if (!(number >= -kMostCells && number < kMostCells)) return {};
-    key |= static_cast<CellKey>(static_cast<int64_t>(number) + kMostCells) << (16 * k);
+    key |= static_cast<CellKey>(static_cast<int64_t>(number) + kCellOffset) << (16 * k);
   }
   return key;
 }
@@ -47,7 +49,7 @@ std::optional<CellKey> CellOf(const Slab& slab, const SlabPoint& point) {
 SlabPoint MiddleOf(const Slab& slab, CellKey key) {
   SlabPoint point;
   for (int k = 0; k < kCellAxes; ++k) {
-    const auto number = static_cast<double>((key >> (16 * k)) & 0xffff) - kMostCells;
+    const auto number = static_cast<double>((key >> (16 * k)) & 0xffff) - kCellOffset;
     point[k] = (number + 0.5) * (k < 2 ? slab.r_st_w : slab.r_uv_w);
   }
   return point;

@@ -1,0 +1,91 @@
+// Rebinned rays: what was recorded in each cell of a slab, in memory that does not grow beyond a
+// limit (thesis 4.3.2).
+//
+// A cell has the word of a sensor plate's element for each channel: the sum of the rays' linear
+// 16-bit values, and how many they are (plate/sensor_plate.h). Where more cells are found than may
+// be kept, those of the smallest hashes are: the hash above which cells are dropped is lowered step
+// by step, by 1/8. A cell below it was never dropped, so what is kept depends on which rays were
+// given, never on their order or the number of threads.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lf/core/large_vector.h"
+#include "lf/core/parallel.h"
+#include "lf/core/random.h"
+#include "lf/rebinning/slab.h"
+
+namespace lf {
+
+struct BinnedRay {
+  CellKey cell = 0;
+  std::array<uint16_t, 3> rgb = {};
+};
+
+struct BinnedCell {
+  static constexpr int kSumBits = 40;
+  CellKey cell = 0;                    // 0: none
+  std::array<uint64_t, 3> words = {};  // R G B: count << kSumBits | sum
+
+  void Add(const BinnedRay& ray) {
+    for (size_t c = 0; c < words.size(); ++c) words[c] += (uint64_t{1} << kSumBits) | ray.rgb[c];
+  }
+  uint32_t count() const { return static_cast<uint32_t>(words[0] >> kSumBits); }
+  double Mean(int channel) const {
+    const auto sum = static_cast<double>(words[channel] & ((uint64_t{1} << kSumBits) - 1));
+    return sum / count();
+  }
+  friend bool operator==(const BinnedCell&, const BinnedCell&) = default;
+};
+
+class RayMap {
+ public:
+  // Parts that are filled at the same time; the same whatever the number of threads.
+  static constexpr size_t kShards = 64;
+
+  // max_cells  that Trim() leaves; at least 1
+  explicit RayMap(size_t max_cells);
+
+  static size_t ShardOf(CellKey cell) { return MixBits(cell) % kShards; }
+
+  // Adds rays to the cells that they are in. All are of the shard. Shards may be added to at the
+  // same time. At most 2^24 - 1 rays may come into one cell.
+  void Add(size_t shard, std::span<const BinnedRay> rays);
+  // The same, but makes no new cells.
+  void AddToThoseThere(size_t shard, std::span<const BinnedRay> rays);
+
+  // Drops cells of the largest hashes until there are no more than max_cells.
+  void Trim(ThreadPool& pool);
+
+  // Whether a cell may still be made: rays of others need not be looked at.
+  bool MayHold(CellKey cell) const { return MixBits(cell) < limit_; }
+
+  size_t size() const;
+  size_t size_bytes() const;
+  // That max_cells may take, at most, with what may come between two calls of Trim().
+  static size_t BytesOf(size_t max_cells, size_t between);
+
+  // Of a shard, by ascending keys.
+  std::vector<BinnedCell> CellsOf(size_t shard) const;
+
+ private:
+  // Open addressing: a cell is where its hash says, or behind it, before the next gap.
+  struct Shard {
+    LargeVector<BinnedCell> slots;  // a power of two
+    size_t count = 0;
+  };
+  template <bool kMakesNew>
+  void AddTo(Shard& shard, std::span<const BinnedRay> rays);
+  static void Grow(Shard& shard);
+  void DropFrom(Shard& shard) const;
+
+  size_t max_cells_;
+  uint64_t limit_ = UINT64_MAX;
+  std::array<Shard, kShards> shards_;
+};
+
+}  // namespace lf

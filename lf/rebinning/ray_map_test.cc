@@ -1,0 +1,110 @@
+#include "lf/rebinning/ray_map.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace lf {
+namespace {
+
+std::vector<BinnedRay> RandomRays(size_t count, uint64_t cells, uint64_t seed) {
+  std::vector<BinnedRay> rays(count);
+  for (size_t i = 0; i < count; ++i) {
+    rays[i].cell = 1 + RandomBits(seed, 0, i) % cells;
+    for (int c = 0; c < 3; ++c) rays[i].rgb[c] = static_cast<uint16_t>(RandomBits(seed, 1 + c, i));
+  }
+  return rays;
+}
+
+void AddAll(const std::vector<BinnedRay>& rays, RayMap* map) {
+  std::vector<std::vector<BinnedRay>> by_shard(RayMap::kShards);
+  for (const BinnedRay& ray : rays) by_shard[RayMap::ShardOf(ray.cell)].push_back(ray);
+  for (size_t shard = 0; shard < RayMap::kShards; ++shard) map->Add(shard, by_shard[shard]);
+}
+
+std::map<CellKey, BinnedCell> CellsOf(const RayMap& map) {
+  std::map<CellKey, BinnedCell> cells;
+  for (size_t shard = 0; shard < RayMap::kShards; ++shard) {
+    const std::vector<BinnedCell> part = map.CellsOf(shard);
+    EXPECT_TRUE(std::is_sorted(part.begin(), part.end(),
+                               [](const auto& a, const auto& b) { return a.cell < b.cell; }));
+    for (const BinnedCell& cell : part) {
+      EXPECT_EQ(RayMap::ShardOf(cell.cell), shard);
+      EXPECT_TRUE(cells.emplace(cell.cell, cell).second);
+    }
+  }
+  return cells;
+}
+
+TEST(RayMap, HoldsTheSumsOfItsRays) {
+  const std::vector<BinnedRay> rays = RandomRays(100000, 30000, 1);
+  RayMap map(1 << 20);
+  AddAll(rays, &map);
+  std::map<CellKey, BinnedCell> expected;
+  for (const BinnedRay& ray : rays) {
+    expected[ray.cell].cell = ray.cell;
+    expected[ray.cell].Add(ray);
+  }
+  EXPECT_EQ(CellsOf(map), expected);
+  EXPECT_EQ(map.size(), expected.size());
+  const BinnedCell& cell = expected.begin()->second;
+  EXPECT_GE(cell.count(), 1u);
+  EXPECT_LE(cell.Mean(2), 65535);
+}
+
+TEST(RayMap, WhatIsKeptDependsOnTheRaysAlone) {
+  std::vector<BinnedRay> rays = RandomRays(60000, 1 << 30, 2);
+  ThreadPool one(1), three(3);
+  std::map<CellKey, BinnedCell> first;
+  for (int round = 0; round < 4; ++round) {
+    // Other batches, another order, another number of threads.
+    const size_t batch = round == 0 ? rays.size() : 1000 + 777 * round;
+    std::sort(rays.begin(), rays.end(), [round](const BinnedRay& a, const BinnedRay& b) {
+      return MixBits(a.cell + round) < MixBits(b.cell + round);
+    });
+    RayMap map(5000);
+    for (size_t begin = 0; begin < rays.size(); begin += batch) {
+      AddAll({rays.begin() + begin, rays.begin() + std::min(begin + batch, rays.size())}, &map);
+      map.Trim(round % 2 == 0 ? one : three);
+      EXPECT_LE(map.size(), 5000u);
+    }
+    EXPECT_GT(map.size(), 4200u);  // a step is an eighth
+    if (round == 0) first = CellsOf(map);
+    EXPECT_EQ(CellsOf(map), first);
+    for (const auto& [key, cell] : first) EXPECT_TRUE(map.MayHold(key));
+  }
+}
+
+TEST(RayMap, RaysMayBeAddedWithoutNewCells) {
+  const std::vector<BinnedRay> rays = RandomRays(2000, 500, 3);
+  const std::vector<BinnedRay> more = RandomRays(2000, 1000, 4);
+  RayMap map(1 << 20);
+  AddAll(rays, &map);
+  const size_t size = map.size();
+  std::map<CellKey, BinnedCell> expected = CellsOf(map);
+  for (const BinnedRay& ray : more) {
+    map.AddToThoseThere(RayMap::ShardOf(ray.cell), std::span(&ray, 1));
+    const auto found = expected.find(ray.cell);
+    if (found != expected.end()) found->second.Add(ray);
+  }
+  EXPECT_EQ(map.size(), size);
+  EXPECT_EQ(CellsOf(map), expected);
+}
+
+TEST(RayMap, TakesNoMoreMemoryThanItSays) {
+  ThreadPool pool(2);
+  RayMap map(20000);
+  size_t most = 0;
+  for (int i = 0; i < 20; ++i) {
+    AddAll(RandomRays(30000, UINT64_MAX, 5 + i), &map);
+    most = std::max(most, map.size_bytes());
+    map.Trim(pool);
+  }
+  EXPECT_LE(most, RayMap::BytesOf(20000, 30000));
+  EXPECT_GT(2 * most, RayMap::BytesOf(20000, 30000) / 2);
+}
+
+}  // namespace
+}  // namespace lf
