@@ -108,13 +108,17 @@ size_t RayMap::BytesOf(size_t max_cells, size_t between) {
   return (kShards + 1) * std::max(slots, kFewestSlots) * sizeof(BinnedCell);
 }
 
-std::vector<BinnedCell> RayMap::CellsOf(size_t shard) const {
-  std::vector<BinnedCell> cells;
-  cells.reserve(shards_[shard].count);
-  for (const BinnedCell& cell : shards_[shard].slots)
-    if (cell.cell != 0) cells.push_back(cell);
-  std::sort(cells.begin(), cells.end(),
-            [](const BinnedCell& a, const BinnedCell& b) { return a.cell < b.cell; });
+std::vector<BinnedCell> RayMap::Cells(ThreadPool& pool) const {
+  std::array<size_t, kShards + 1> begins{};
+  for (size_t i = 0; i < kShards; ++i) begins[i + 1] = begins[i] + shards_[i].count;
+  std::vector<BinnedCell> cells(begins[kShards]);
+  pool.ForEach(kShards, [&](size_t i) {
+    const auto begin = cells.begin() + static_cast<std::ptrdiff_t>(begins[i]);
+    const auto end = std::copy_if(shards_[i].slots.begin(), shards_[i].slots.end(), begin,
+                                  [](const BinnedCell& cell) { return cell.cell != 0; });
+    std::sort(begin, end,
+              [](const BinnedCell& a, const BinnedCell& b) { return a.cell < b.cell; });
+  });
   return cells;
 }
 

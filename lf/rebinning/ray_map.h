@@ -69,8 +69,8 @@ class RayMap {
   // That max_cells may take, at most, with what may come between two calls of Trim().
   static size_t BytesOf(size_t max_cells, size_t between);
 
-  // Of a shard, by ascending keys.
-  std::vector<BinnedCell> CellsOf(size_t shard) const;
+  // All cells, shard by shard, by ascending keys: an order that depends on the cells alone.
+  std::vector<BinnedCell> Cells(ThreadPool& pool) const;
 
  private:
   // Open addressing: a cell is where its hash says, or behind it, before the next gap.

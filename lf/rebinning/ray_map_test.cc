@@ -25,16 +25,18 @@ void AddAll(const std::vector<BinnedRay>& rays, RayMap* map) {
 }
 
 std::map<CellKey, BinnedCell> CellsOf(const RayMap& map) {
+  ThreadPool pool(2);
   std::map<CellKey, BinnedCell> cells;
-  for (size_t shard = 0; shard < RayMap::kShards; ++shard) {
-    const std::vector<BinnedCell> part = map.CellsOf(shard);
-    EXPECT_TRUE(std::is_sorted(part.begin(), part.end(),
-                               [](const auto& a, const auto& b) { return a.cell < b.cell; }));
-    for (const BinnedCell& cell : part) {
-      EXPECT_EQ(RayMap::ShardOf(cell.cell), shard);
-      EXPECT_TRUE(cells.emplace(cell.cell, cell).second);
-    }
+  size_t shard = 0;
+  CellKey last = 0;
+  for (const BinnedCell& cell : map.Cells(pool)) {
+    const size_t of_cell = RayMap::ShardOf(cell.cell);
+    EXPECT_TRUE(of_cell > shard || (of_cell == shard && cell.cell > last));
+    shard = of_cell;
+    last = cell.cell;
+    cells.emplace(cell.cell, cell);
   }
+  EXPECT_EQ(cells.size(), map.size());
   return cells;
 }
 

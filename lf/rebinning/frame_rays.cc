@@ -1,0 +1,85 @@
+#include "lf/rebinning/frame_rays.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace lf {
+namespace {
+
+// One ray after the other, through the same frame.
+class FrameView {
+ public:
+  FrameView(const RenderCamera& frame, const FrameReach& reach)
+      : centre_(frame.pinhole.CentreWorld()),
+        right_(frame.pinhole.RightWorld()),
+        up_(frame.pinhole.UpWorld()),
+        forward_(frame.pinhole.ForwardWorld()),
+        focus_plane_(frame.focus_plane),
+        plate_from_world_(frame.pinhole.intrinsics.Matrix() *
+                          frame.pinhole.cam_from_world.rotation),
+        lens_reach2_w2_((frame.aperture.radius_w + reach.lens_w) *
+                        (frame.aperture.radius_w + reach.lens_w)),
+        margin_px_(reach.plate_px),
+        width_px_(frame.pinhole.intrinsics.width_px),
+        height_px_(frame.pinhole.intrinsics.height_px) {}
+
+  std::optional<FrameRay> See(const Ray& ray) const {
+    const double along = forward_.dot(ray.direction);
+    if (!(along > 0)) return {};
+    const Vec3 from_centre = ray.origin - centre_;
+    const Vec3 on_lens = from_centre - forward_.dot(from_centre) / along * ray.direction;
+    const double lens_x = right_.dot(on_lens), lens_y = up_.dot(on_lens);
+    if (!(lens_x * lens_x + lens_y * lens_y <= lens_reach2_w2_)) return {};
+    const double slope = focus_plane_.normal.dot(ray.direction);
+    if (slope == 0) return {};
+    const double lambda = (focus_plane_.offset_w - focus_plane_.normal.dot(ray.origin)) / slope;
+    const Vec3 element = plate_from_world_ * (from_centre + lambda * ray.direction);
+    if (!(element.z() > 0)) return {};
+    const double x = element.x() / element.z(), y = element.y() / element.z();
+    if (!(x >= -margin_px_ && x <= width_px_ + margin_px_ && y >= -margin_px_ &&
+          y <= height_px_ + margin_px_))
+      return {};
+    FrameRay seen;
+    seen.lens_x_w = static_cast<float>(lens_x);
+    seen.lens_y_w = static_cast<float>(lens_y);
+    seen.x_px = static_cast<float>(x);
+    seen.y_px = static_cast<float>(y);
+    return seen;
+  }
+
+ private:
+  Vec3 centre_, right_, up_, forward_;
+  Plane focus_plane_;
+  Mat3 plate_from_world_;
+  double lens_reach2_w2_;
+  double margin_px_;
+  int width_px_, height_px_;
+};
+
+}  // namespace
+
+std::vector<FrameRay> FrameRaysOf(const Slab& slab, std::span<const BinnedCell> cells,
+                                  const RenderCamera& frame, const FrameReach& reach,
+                                  ThreadPool& pool) {
+  constexpr size_t kCellsAtOnce = 65536;
+  const FrameView view(frame, reach);
+  std::vector<std::vector<FrameRay>> parts((cells.size() + kCellsAtOnce - 1) / kCellsAtOnce);
+  pool.ForEach(parts.size(), [&](size_t i) {
+    const size_t begin = i * kCellsAtOnce;
+    for (const BinnedCell& cell :
+         cells.subspan(begin, std::min(kCellsAtOnce, cells.size() - begin))) {
+      std::optional<FrameRay> ray = view.See(RayOfPoint(slab, MiddleOf(slab, cell.cell)));
+      if (!ray) continue;
+      for (int c = 0; c < 3; ++c) ray->rgb[c] = static_cast<float>(cell.Mean(c));
+      parts[i].push_back(*ray);
+    }
+  });
+  std::vector<FrameRay> rays;
+  size_t count = 0;
+  for (const auto& part : parts) count += part.size();
+  rays.reserve(count);
+  for (const auto& part : parts) rays.insert(rays.end(), part.begin(), part.end());
+  return rays;
+}
+
+}  // namespace lf

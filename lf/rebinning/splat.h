@@ -1,0 +1,46 @@
+// A whole frame out of rebinned rays: one ray for each element and lens point, each interpolated as
+// in ray_query.h, and their mean (thesis 4.3.2, "Rendering Phase").
+//
+// Not asked ray by ray: lens points are shared by all elements, so that for one of them every
+// rebinned ray near it is added, weighed, to the elements within its reach. The sums are the same,
+// and there is no tree (doc/rebinning.md).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "lf/core/image.h"
+#include "lf/core/parallel.h"
+#include "lf/rebinning/frame_rays.h"
+#include "lf/rebinning/ray_query.h"
+
+namespace lf {
+
+// Lens points in k * k sets: element (x, y) has those of set (y % k) * k + x % k. Several sets make
+// noise of what would be steps in large blurs.
+struct LensPointSets {
+  int k = 1;
+  std::vector<std::vector<Vec2>> sets;  // [k * k]
+};
+// `count` points in each of k * k sets, spread uniformly over the opening, all different
+// (camera/aperture.h, SampleLens). Of a pinhole there is one.
+LensPointSets MakeLensPoints(const Aperture& aperture, int count, int k, uint64_t seed);
+
+struct SplatFrame {
+  Image<float> rgb;    // [height][width][3]: mean of the rays that could be interpolated, linear
+  Image<float> share;  // [height][width]: how many of the lens points these were, 0 to 1
+};
+
+// Elements that no ray is near have share 0 and black. The same bits for any number of threads.
+//   rays  of this frame, with a reach of kReach_sigmas (ReachOf())
+SplatFrame Splat(std::span<const FrameRay> rays, int width_px, int height_px,
+                 const LensPointSets& lens_points, const QueryKernel& kernel, ThreadPool& pool);
+
+FrameReach ReachOf(const QueryKernel& kernel);
+
+// The same by queries, one element after the other: the judge.
+SplatFrame SplatReference(std::span<const FrameRay> rays, int width_px, int height_px,
+                          const LensPointSets& lens_points, const QueryKernel& kernel,
+                          ThreadPool& pool);
+
+}  // namespace lf
