@@ -21,6 +21,8 @@ find_library(LF_XXHASH_LIBRARY xxhash REQUIRED)
 add_library(lf_xxhash INTERFACE)
 target_include_directories(lf_xxhash SYSTEM INTERFACE ${LF_XXHASH_INCLUDE})
 target_link_libraries(lf_xxhash INTERFACE ${LF_XXHASH_LIBRARY})
+# Header only.
+find_path(LF_NANOFLANN_INCLUDE nanoflann.hpp REQUIRED)
 # libjpeg-turbo; the compiler will tell if it is another one, which cannot decode a part.
 find_package(JPEG REQUIRED)
 if(LF_TESTS)

@@ -19,6 +19,7 @@ OWNERS = {
     "simdjson": {"native"},
     "tbb/": {"core"},
     "hwy/": {"codec", "collection", "rebinning", "store"},
+    "nanoflann": {"rebinning"},
     "zstd": {"codec", "plate"},
     "xxhash": {"core"},
     "sqlite3": {"database"},

@@ -116,8 +116,7 @@ std::vector<BinnedCell> RayMap::Cells(ThreadPool& pool) const {
     const auto begin = cells.begin() + static_cast<std::ptrdiff_t>(begins[i]);
     const auto end = std::copy_if(shards_[i].slots.begin(), shards_[i].slots.end(), begin,
                                   [](const BinnedCell& cell) { return cell.cell != 0; });
-    std::sort(begin, end,
-              [](const BinnedCell& a, const BinnedCell& b) { return a.cell < b.cell; });
+    std::sort(begin, end, [](const BinnedCell& a, const BinnedCell& b) { return a.cell < b.cell; });
   });
   return cells;
 }

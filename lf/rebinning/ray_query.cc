@@ -69,8 +69,8 @@ RayQuery::RayQuery(std::span<const FrameRay> rays, const QueryKernel& kernel)
 RayQuery::~RayQuery() = default;
 
 QuerySum RayQuery::WithinReach(const Vec2& lens_point, const Vec2& position_px) const {
-  const auto query = Scaled(lens_point.x(), lens_point.y(), position_px.x(), position_px.y(),
-                            tree_->kernel);
+  const auto query =
+      Scaled(lens_point.x(), lens_point.y(), position_px.x(), position_px.y(), tree_->kernel);
   static thread_local std::vector<std::pair<uint32_t, float>> found;
   constexpr auto kReach2 = static_cast<float>(kReach_sigmas * kReach_sigmas);
   tree_->index.radiusSearch(query.data(), kReach2, found, nanoflann::SearchParams(0, 0, false));
@@ -80,12 +80,11 @@ QuerySum RayQuery::WithinReach(const Vec2& lens_point, const Vec2& position_px) 
 }
 
 QuerySum RayQuery::Nearest(const Vec2& lens_point, const Vec2& position_px, size_t count) const {
-  const auto query = Scaled(lens_point.x(), lens_point.y(), position_px.x(), position_px.y(),
-                            tree_->kernel);
+  const auto query =
+      Scaled(lens_point.x(), lens_point.y(), position_px.x(), position_px.y(), tree_->kernel);
   std::vector<uint32_t> rays(count);
   std::vector<float> distances2(count);
-  const size_t found =
-      tree_->index.knnSearch(query.data(), count, rays.data(), distances2.data());
+  const size_t found = tree_->index.knnSearch(query.data(), count, rays.data(), distances2.data());
   QuerySum sum;
   // Weights may be too small for numbers; their ratios are not.
   for (size_t i = 0; i < found; ++i) tree_->Add(rays[i], distances2[i] - distances2[0], &sum);

@@ -1,6 +1,7 @@
 // What a ray would have recorded, interpolated between rebinned rays near it (thesis Eq. 4.5, 4.6):
 //
-//   L = sum w_i L_i / sum w_i,   w_i = exp(-|l - l_i|^2 / 2 sigma_st^2 - |p - p_i|^2 / 2 sigma_uv^2)
+//   L = sum w_i L_i / sum w_i,   w_i = exp(-|l - l_i|^2 / 2 sigma_st^2 - |p - p_i|^2 / 2
+//   sigma_uv^2)
 //
 // with l where the ray passes the lens and p where it meets the plate, over the rays with
 // |l - l_i|^2 / sigma_st^2 + |p - p_i|^2 / sigma_uv^2 <= kReach_sigmas^2, or the k nearest by that

@@ -23,9 +23,7 @@ class GaussianTable {
       values_[i] = static_cast<float>(
           std::round(std::exp(-(static_cast<double>(i) + 0.5) / kSteps / 2) * 0x1p20) * 0x1p-20);
   }
-  float At(float q) const {
-    return q <= kReach2 ? values_[static_cast<size_t>(q * kSteps)] : 0.0F;
-  }
+  float At(float q) const { return q <= kReach2 ? values_[static_cast<size_t>(q * kSteps)] : 0.0F; }
 
  private:
   static constexpr int kSteps = 512;  // of one q
@@ -112,9 +110,7 @@ class LensGrid {
   size_t cells() const { return static_cast<size_t>(count_[0]) * count_[1]; }
   int Column(double x) const { return Cut((x - low_.x()) / side_w_, count_[0]); }
   int Row(double y) const { return Cut((y - low_.y()) / side_w_, count_[1]); }
-  size_t CellAt(int column, int row) const {
-    return static_cast<size_t>(row) * count_[0] + column;
-  }
+  size_t CellAt(int column, int row) const { return static_cast<size_t>(row) * count_[0] + column; }
 
  private:
   static constexpr int kMostSide = 64;
@@ -137,8 +133,8 @@ class TileSplatter {
         per_st2_(static_cast<float>(1 / (kernel.sigma_st_w * kernel.sigma_st_w))),
         per_uv2_(static_cast<float>(1 / (kernel.sigma_uv_px * kernel.sigma_uv_px))) {}
 
-  void Run(std::span<const FrameRay> rays, std::span<const uint32_t> of_tile,
-           const PixelRect& rect, SplatFrame* frame) {
+  void Run(std::span<const FrameRay> rays, std::span<const uint32_t> of_tile, const PixelRect& rect,
+           SplatFrame* frame) {
     SortByLens(rays, of_tile);
     const int k = points_.k;
     for (int phase = 0; phase < k * k; ++phase) {
@@ -183,8 +179,7 @@ class TileSplatter {
     std::vector<size_t>& next = next_;
     next = begins_;
     sorted_.resize(of_tile.size());
-    for (size_t i = 0; i < of_tile.size(); ++i)
-      sorted_[next[cell_of_[i]]++] = rays[of_tile[i]];
+    for (size_t i = 0; i < of_tile.size(); ++i) sorted_[next[cell_of_[i]]++] = rays[of_tile[i]];
   }
 
   void AddNear(const Vec2& point) {
@@ -293,10 +288,11 @@ SplatFrame Splat(std::span<const FrameRay> rays, int width_px, int height_px,
     const PixelRect rect{x, y, std::min(x + kTileWidth, width_px),
                          std::min(y + kTileHeight, height_px)};
     TileSplatter splatter(kernel, lens_points, lens);
-    splatter.Run(rays,
-                 std::span(by_tile.rays)
-                     .subspan(by_tile.begins[tile], by_tile.begins[tile + 1] - by_tile.begins[tile]),
-                 rect, &frame);
+    splatter.Run(
+        rays,
+        std::span(by_tile.rays)
+            .subspan(by_tile.begins[tile], by_tile.begins[tile + 1] - by_tile.begins[tile]),
+        rect, &frame);
   });
   return frame;
 }

@@ -105,8 +105,8 @@ TEST(Splat, IsWhatQueriesGive) {
           for (int x = 0; x < kWidth; ++x) {
             if (fast.share.at(x, y) != judge.share.at(x, y)) {
               ++differing;  // a single ray on the rim of the reach
-              worst_share = std::max<double>(
-                  worst_share, std::abs(fast.share.at(x, y) - judge.share.at(x, y)));
+              worst_share = std::max<double>(worst_share,
+                                             std::abs(fast.share.at(x, y) - judge.share.at(x, y)));
               continue;
             }
             for (int c = 0; c < 3; ++c, ++count) {
