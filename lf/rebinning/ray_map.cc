@@ -10,8 +10,8 @@ namespace {
 
 constexpr size_t kFewestSlots = 64;
 
-// Slots are filled to five eighths at most: beyond, what is looked for is far from its place.
-bool IsFull(size_t count, size_t slots) { return 8 * count >= 5 * slots; }
+// Slots are filled to three quarters at most: beyond, what is looked for is far from its place.
+bool IsFull(size_t count, size_t slots) { return 4 * count >= 3 * slots; }
 
 size_t FirstSlot(uint64_t hash, size_t slots) { return (hash / RayMap::kShards) & (slots - 1); }
 
@@ -59,7 +59,7 @@ void RayMap::AddTo(Shard& shard, std::span<const BinnedRay> rays) {
       slot->cell = rays[i].cell;
       ++shard.count;
     }
-    slot->Add(rays[i]);
+    if (!slot->Add(rays[i])) shard.is_too_coarse = true;
   }
 }
 
@@ -89,6 +89,11 @@ void RayMap::Trim(ThreadPool& pool) {
   }
 }
 
+bool RayMap::is_too_coarse() const {
+  return std::any_of(shards_.begin(), shards_.end(),
+                     [](const Shard& shard) { return shard.is_too_coarse; });
+}
+
 size_t RayMap::size() const {
   size_t count = 0;
   for (const Shard& shard : shards_) count += shard.count;
@@ -104,7 +109,7 @@ size_t RayMap::size_bytes() const {
 size_t RayMap::BytesOf(size_t max_cells, size_t between) {
   // Some shards have more than others; and one grows into another twice as large beside it.
   const size_t most = (max_cells + between) / kShards + (max_cells + between) / (8 * kShards) + 64;
-  const size_t slots = std::bit_ceil(most * 8 / 5 + 1);
+  const size_t slots = std::bit_ceil(most * 4 / 3 + 1);
   return (kShards + 1) * std::max(slots, kFewestSlots) * sizeof(BinnedCell);
 }
 

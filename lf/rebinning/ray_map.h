@@ -1,11 +1,10 @@
 // Rebinned rays: what was recorded in each cell of a slab, in memory that does not grow beyond a
 // limit (thesis 4.3.2).
 //
-// A cell has the word of a sensor plate's element for each channel: the sum of the rays' linear
-// 16-bit values, and how many they are (plate/sensor_plate.h). Where more cells are found than may
-// be kept, those of the smallest hashes are: the hash above which cells are dropped is lowered step
-// by step, by 1/8. A cell below it was never dropped, so what is kept depends on which rays were
-// given, never on their order or the number of threads.
+// A cell has the sums of its rays' linear 16-bit values, and how many they are. Where more cells
+// are found than may be kept, those of the smallest hashes are: the hash above which cells are
+// dropped is lowered step by step, by 1/8. A cell below it was never dropped, so what is kept
+// depends on which rays were given, never on their order or the number of threads.
 #pragma once
 
 #include <array>
@@ -27,25 +26,28 @@ struct BinnedRay {
 };
 
 struct BinnedCell {
-  static constexpr int kSumBits = 40;
-  CellKey cell = 0;                    // 0: none
-  std::array<uint64_t, 3> words = {};  // R G B: count << kSumBits | sum
+  // More would not fit; so many LF pixels in one cell are cells that are far too wide.
+  static constexpr uint32_t kMostRays = 65537;
 
-  void Add(const BinnedRay& ray) {
-    for (size_t c = 0; c < words.size(); ++c) words[c] += (uint64_t{1} << kSumBits) | ray.rgb[c];
+  CellKey cell = 0;  // 0: none
+  std::array<uint32_t, 3> rgb = {};
+  uint32_t count = 0;
+
+  // False: it has kMostRays already.
+  bool Add(const BinnedRay& ray) {
+    if (count == kMostRays) return false;
+    for (size_t c = 0; c < rgb.size(); ++c) rgb[c] += ray.rgb[c];
+    ++count;
+    return true;
   }
-  uint32_t count() const { return static_cast<uint32_t>(words[0] >> kSumBits); }
-  double Mean(int channel) const {
-    const auto sum = static_cast<double>(words[channel] & ((uint64_t{1} << kSumBits) - 1));
-    return sum / count();
-  }
+  double Mean(int channel) const { return static_cast<double>(rgb[channel]) / count; }
   friend bool operator==(const BinnedCell&, const BinnedCell&) = default;
 };
 
 class RayMap {
  public:
   // Parts that are filled at the same time; the same whatever the number of threads.
-  static constexpr size_t kShards = 64;
+  static constexpr size_t kShards = 32;
 
   // max_cells  that Trim() leaves; at least 1
   explicit RayMap(size_t max_cells);
@@ -53,7 +55,7 @@ class RayMap {
   static size_t ShardOf(CellKey cell) { return MixBits(cell) % kShards; }
 
   // Adds rays to the cells that they are in. All are of the shard. Shards may be added to at the
-  // same time. At most 2^24 - 1 rays may come into one cell.
+  // same time. A ray that its cell has no room for makes is_too_coarse().
   void Add(size_t shard, std::span<const BinnedRay> rays);
   // The same, but makes no new cells.
   void AddToThoseThere(size_t shard, std::span<const BinnedRay> rays);
@@ -63,6 +65,9 @@ class RayMap {
 
   // Whether a cell may still be made: rays of others need not be looked at.
   bool MayHold(CellKey cell) const { return MixBits(cell) < limit_; }
+
+  // Whether some cell got more rays than it can hold: its sums are wrong.
+  bool is_too_coarse() const;
 
   size_t size() const;
   size_t size_bytes() const;
@@ -77,6 +82,7 @@ class RayMap {
   struct Shard {
     LargeVector<BinnedCell> slots;  // a power of two
     size_t count = 0;
+    bool is_too_coarse = false;
   };
   template <bool kMakesNew>
   void AddTo(Shard& shard, std::span<const BinnedRay> rays);

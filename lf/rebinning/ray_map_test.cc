@@ -52,7 +52,7 @@ TEST(RayMap, HoldsTheSumsOfItsRays) {
   EXPECT_EQ(CellsOf(map), expected);
   EXPECT_EQ(map.size(), expected.size());
   const BinnedCell& cell = expected.begin()->second;
-  EXPECT_GE(cell.count(), 1u);
+  EXPECT_GE(cell.count, 1u);
   EXPECT_LE(cell.Mean(2), 65535);
 }
 
@@ -77,6 +77,16 @@ TEST(RayMap, WhatIsKeptDependsOnTheRaysAlone) {
     EXPECT_EQ(CellsOf(map), first);
     for (const auto& [key, cell] : first) EXPECT_TRUE(map.MayHold(key));
   }
+}
+
+TEST(RayMap, CellsThatOverflowAreTold) {
+  const std::vector<BinnedRay> rays(BinnedCell::kMostRays, {7, {65535, 65535, 0}});
+  RayMap map(10);
+  AddAll(rays, &map);
+  EXPECT_FALSE(map.is_too_coarse());
+  EXPECT_EQ(CellsOf(map)[7].Mean(1), 65535);
+  AddAll({rays[0]}, &map);
+  EXPECT_TRUE(map.is_too_coarse());
 }
 
 TEST(RayMap, RaysMayBeAddedWithoutNewCells) {

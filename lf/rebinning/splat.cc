@@ -5,32 +5,14 @@
 #include <cmath>
 
 #include "lf/core/check.h"
+#include "lf/rebinning/splat_tile.h"
 
 namespace lf {
 namespace {
 
-// Sums of a tile for one lens point stay in the first level cache.
+// Sums of a tile stay in the second level cache (splat_tile.h).
 constexpr int kTileWidth = 64;
 constexpr int kTileHeight = 32;
-constexpr float kReach2 = kReach_sigmas * kReach_sigmas;
-
-// exp(-q / 2) for q up to the reach, 0 beyond. Rounded to 2^-20, so that it is the same whatever
-// the machine's exp() makes of its last bit.
-class GaussianTable {
- public:
-  GaussianTable() {
-    for (size_t i = 0; i < kSize; ++i)
-      values_[i] = static_cast<float>(
-          std::round(std::exp(-(static_cast<double>(i) + 0.5) / kSteps / 2) * 0x1p20) * 0x1p-20);
-  }
-  float At(float q) const { return q <= kReach2 ? values_[static_cast<size_t>(q * kSteps)] : 0.0F; }
-
- private:
-  static constexpr int kSteps = 512;  // of one q
-  static constexpr size_t kSize = static_cast<size_t>(kReach2) * kSteps + 1;
-  std::array<float, kSize> values_;
-};
-
 // Which rays reach which tile: [begins[tile], begins[tile + 1]) of `rays`.
 struct TileRays {
   std::vector<size_t> begins;
@@ -92,9 +74,8 @@ TileRays SortIntoTiles(std::span<const FrameRay> rays, const TileGridOfFrame& gr
 // Squares over the lens, as large as the reach: what is near a lens point is in nine of them.
 class LensGrid {
  public:
-  LensGrid(std::span<const FrameRay> rays, const LensPointSets& points, double reach_w) {
-    low_ = {1e30, 1e30};
-    Vec2 high = {-1e30, -1e30};
+  LensGrid(const LensPointSets& points, double reach_w) : low_(points.sets[0][0]) {
+    Vec2 high = low_;
     for (const auto& set : points.sets)
       for (const Vec2& point : set) {
         low_ = low_.cwiseMin(point);
@@ -105,7 +86,6 @@ class LensGrid {
     side_w_ = std::max(reach_w, (high - low_).maxCoeff() / kMostSide);
     for (int axis = 0; axis < 2; ++axis)
       count_[axis] = 1 + static_cast<int>((high[axis] - low_[axis]) / side_w_);
-    (void)rays;
   }
   size_t cells() const { return static_cast<size_t>(count_[0]) * count_[1]; }
   int Column(double x) const { return Cut((x - low_.x()) / side_w_, count_[0]); }
@@ -122,53 +102,70 @@ class LensGrid {
   std::array<int, 2> count_;
 };
 
+// The points of a set by eight that are near each other: strips of the lens, cut across.
+std::vector<LensPointGroup> GroupsOf(std::vector<Vec2> points) {
+  constexpr size_t kPoints = LensPointGroup::kPoints;
+  const size_t groups = (points.size() + kPoints - 1) / kPoints;
+  const auto strips = static_cast<size_t>(std::round(std::sqrt(static_cast<double>(groups))));
+  const size_t per_strip = (groups + strips - 1) / strips * kPoints;
+  const auto sort = [&points](size_t begin, size_t end, int axis) {
+    const auto first = points.begin() + static_cast<std::ptrdiff_t>(begin);
+    std::sort(first, first + static_cast<std::ptrdiff_t>(end - begin),
+              [axis](const Vec2& a, const Vec2& b) { return a[axis] < b[axis]; });
+  };
+  sort(0, points.size(), 0);
+  std::vector<LensPointGroup> all;
+  for (size_t begin = 0; begin < points.size(); begin += per_strip) {
+    const size_t end = std::min(begin + per_strip, points.size());
+    sort(begin, end, 1);
+    for (size_t i = begin; i < end; i += kPoints) {
+      LensPointGroup group;
+      group.x.fill(LensPointGroup::kNowhere);
+      group.y.fill(LensPointGroup::kNowhere);
+      for (size_t k = i; k < std::min(i + kPoints, end); ++k, ++group.count) {
+        group.x[group.count] = static_cast<float>(points[k].x());
+        group.y[group.count] = static_cast<float>(points[k].y());
+      }
+      all.push_back(group);
+    }
+  }
+  return all;
+}
+
 // One tile at a time.
 class TileSplatter {
  public:
-  TileSplatter(const QueryKernel& kernel, const LensPointSets& points, const LensGrid& lens)
-      : points_(points),
-        lens_(lens),
-        reach_w_(kReach_sigmas * kernel.sigma_st_w),
-        reach_px_(static_cast<float>(kReach_sigmas * kernel.sigma_uv_px)),
-        per_st2_(static_cast<float>(1 / (kernel.sigma_st_w * kernel.sigma_st_w))),
-        per_uv2_(static_cast<float>(1 / (kernel.sigma_uv_px * kernel.sigma_uv_px))) {}
+  // groups  of each set of lens points
+  TileSplatter(const QueryKernel& kernel, const LensPointSets& points,
+               std::span<const std::vector<LensPointGroup>> groups, const LensGrid& lens)
+      : kernel_(kernel), points_(points), groups_(groups), lens_(lens) {}
 
   void Run(std::span<const FrameRay> rays, std::span<const uint32_t> of_tile, const PixelRect& rect,
            SplatFrame* frame) {
     SortByLens(rays, of_tile);
     const int k = points_.k;
     for (int phase = 0; phase < k * k; ++phase) {
-      // The elements of this set: (x0 + k i, y0 + k j).
       const auto first = [k](int begin, int remainder) {
         return begin + ((remainder - begin) % k + k) % k;
       };
-      x0_ = first(rect.x_begin, phase % k);
-      y0_ = first(rect.y_begin, phase / k);
-      columns_ = (rect.x_end - x0_ + k - 1) / k;
-      rows_ = (rect.y_end - y0_ + k - 1) / k;
-      if (columns_ <= 0 || rows_ <= 0) continue;
-      const size_t count = static_cast<size_t>(columns_) * rows_;
-      totals_.assign(count, {});
-      for (const Vec2& point : points_.sets[phase]) {
-        sums_.assign(count, {});
-        AddNear(point);
-        for (size_t i = 0; i < count; ++i) {
-          if (!(sums_[i][3] > 0)) continue;
-          const float per_weight = 1 / sums_[i][3];
-          for (int c = 0; c < 3; ++c) totals_[i][c] += sums_[i][c] * per_weight;
-          totals_[i][3] += 1;
-        }
+      SplatGrid grid{first(rect.x_begin, phase % k), first(rect.y_begin, phase / k), k, 0, 0};
+      grid.columns = (rect.x_end - grid.x0 + k - 1) / k;
+      grid.rows = (rect.y_end - grid.y0 + k - 1) / k;
+      if (grid.columns <= 0 || grid.rows <= 0) continue;
+      sums_.Reset(grid);
+      for (const LensPointGroup& group : groups_[phase]) {
+        AddNear(group, grid);
+        AddMeans(grid, &sums_);
       }
-      Store(points_.sets[phase].size(), frame);
+      Store(points_.sets[phase].size(), grid, frame);
     }
   }
 
  private:
-  using Sum = std::array<float, 4>;  // weighted R, G, B, and the weights
-
   void SortByLens(std::span<const FrameRay> rays, std::span<const uint32_t> of_tile) {
     begins_.assign(lens_.cells() + 1, 0);
     cell_of_.resize(of_tile.size());
+    sorted_.resize(of_tile.size());
     for (size_t i = 0; i < of_tile.size(); ++i) {
       const FrameRay& ray = rays[of_tile[i]];
       cell_of_[i] =
@@ -176,75 +173,42 @@ class TileSplatter {
       ++begins_[cell_of_[i] + 1];
     }
     for (size_t cell = 0; cell < lens_.cells(); ++cell) begins_[cell + 1] += begins_[cell];
-    std::vector<size_t>& next = next_;
-    next = begins_;
-    sorted_.resize(of_tile.size());
-    for (size_t i = 0; i < of_tile.size(); ++i) sorted_[next[cell_of_[i]]++] = rays[of_tile[i]];
+    next_ = begins_;
+    for (size_t i = 0; i < of_tile.size(); ++i) sorted_[next_[cell_of_[i]]++] = rays[of_tile[i]];
   }
 
-  void AddNear(const Vec2& point) {
-    const int column0 = lens_.Column(point.x() - reach_w_);
-    const int column1 = lens_.Column(point.x() + reach_w_);
-    const int row1 = lens_.Row(point.y() + reach_w_);
-    const auto x = static_cast<float>(point.x()), y = static_cast<float>(point.y());
-    for (int row = lens_.Row(point.y() - reach_w_); row <= row1; ++row) {
-      const size_t begin = begins_[lens_.CellAt(column0, row)];
-      const size_t end = begins_[lens_.CellAt(column1, row) + 1];
-      for (size_t i = begin; i < end; ++i) {
-        const FrameRay& ray = sorted_[i];
-        const float dx = ray.lens_x_w - x, dy = ray.lens_y_w - y;
-        const float q = (dx * dx + dy * dy) * per_st2_;
-        if (q <= kReach2) AddRay(ray, q);
-      }
+  void AddNear(const LensPointGroup& group, const SplatGrid& grid) {
+    const double reach_w = kReach_sigmas * kernel_.sigma_st_w;
+    const auto [left, right] = std::minmax_element(group.x.begin(), group.x.begin() + group.count);
+    const auto [low, high] = std::minmax_element(group.y.begin(), group.y.begin() + group.count);
+    const int first = lens_.Column(*left - reach_w), last = lens_.Column(*right + reach_w);
+    for (int row = lens_.Row(*low - reach_w); row <= lens_.Row(*high + reach_w); ++row) {
+      const size_t begin = begins_[lens_.CellAt(first, row)];
+      const size_t end = begins_[lens_.CellAt(last, row) + 1];
+      AddRays(std::span(sorted_).subspan(begin, end - begin), group, kernel_, grid, &sums_);
     }
   }
 
-  void AddRay(const FrameRay& ray, float q) {
-    const auto k = static_cast<float>(points_.k);
-    // Of the elements of this set, whose centres are at x0 + 0.5 + k i.
-    const float x = ray.x_px - static_cast<float>(x0_) - 0.5F;
-    const float y = ray.y_px - static_cast<float>(y0_) - 0.5F;
-    const int column0 = std::max(0, static_cast<int>(std::ceil((x - reach_px_) / k)));
-    const int column1 = std::min(columns_ - 1, static_cast<int>(std::floor((x + reach_px_) / k)));
-    const int row0 = std::max(0, static_cast<int>(std::ceil((y - reach_px_) / k)));
-    const int row1 = std::min(rows_ - 1, static_cast<int>(std::floor((y + reach_px_) / k)));
-    for (int row = row0; row <= row1; ++row) {
-      const float dy = static_cast<float>(row) * k - y;
-      const float of_row = q + dy * dy * per_uv2_;
-      Sum* const sums = sums_.data() + static_cast<size_t>(row) * columns_;
-      for (int column = column0; column <= column1; ++column) {
-        const float dx = static_cast<float>(column) * k - x;
-        const float weight = gaussian_.At(of_row + dx * dx * per_uv2_);
-        Sum& sum = sums[column];
-        sum[0] += weight * ray.rgb[0];
-        sum[1] += weight * ray.rgb[1];
-        sum[2] += weight * ray.rgb[2];
-        sum[3] += weight;
-      }
-    }
-  }
-
-  void Store(size_t point_count, SplatFrame* frame) const {
-    for (int row = 0; row < rows_; ++row)
-      for (int column = 0; column < columns_; ++column) {
-        const Sum& total = totals_[static_cast<size_t>(row) * columns_ + column];
-        const int x = x0_ + points_.k * column, y = y0_ + points_.k * row;
-        frame->share.at(x, y) = total[3] / static_cast<float>(point_count);
-        if (total[3] > 0)
-          for (int c = 0; c < 3; ++c) frame->rgb.at(x, y, c) = total[c] / total[3];
+  void Store(size_t point_count, const SplatGrid& grid, SplatFrame* frame) const {
+    const float* mean = sums_.means.data();
+    for (int row = 0; row < grid.rows; ++row)
+      for (int column = 0; column < grid.columns; ++column, mean += SplatSums::kChannels) {
+        const int x = grid.x0 + grid.k * column, y = grid.y0 + grid.k * row;
+        const float found = mean[3];
+        frame->share.at(x, y) = found / static_cast<float>(point_count);
+        if (found > 0)
+          for (int c = 0; c < 3; ++c) frame->rgb.at(x, y, c) = mean[c] / found;
       }
   }
 
+  const QueryKernel kernel_;
   const LensPointSets& points_;
+  const std::span<const std::vector<LensPointGroup>> groups_;
   const LensGrid& lens_;
-  const double reach_w_;
-  const float reach_px_, per_st2_, per_uv2_;
-  const GaussianTable gaussian_;
-  int x0_ = 0, y0_ = 0, columns_ = 0, rows_ = 0;
   std::vector<FrameRay> sorted_;  // of the tile, by places on the lens
   std::vector<size_t> begins_, next_;
   std::vector<uint32_t> cell_of_;
-  std::vector<Sum> sums_, totals_;
+  SplatSums sums_;
 };
 
 SplatFrame EmptyFrame(int width_px, int height_px) {
@@ -281,13 +245,15 @@ SplatFrame Splat(std::span<const FrameRay> rays, int width_px, int height_px,
                              (height_px + kTileHeight - 1) / kTileHeight,
                              kReach_sigmas * kernel.sigma_uv_px};
   const TileRays by_tile = SortIntoTiles(rays, grid, pool);
-  const LensGrid lens(rays, lens_points, kReach_sigmas * kernel.sigma_st_w);
+  const LensGrid lens(lens_points, kReach_sigmas * kernel.sigma_st_w);
+  std::vector<std::vector<LensPointGroup>> groups;
+  for (const auto& set : lens_points.sets) groups.push_back(GroupsOf(set));
   pool.ForEach(static_cast<size_t>(grid.columns) * grid.rows, [&](size_t tile) {
     const int x = static_cast<int>(tile % grid.columns) * kTileWidth;
     const int y = static_cast<int>(tile / grid.columns) * kTileHeight;
     const PixelRect rect{x, y, std::min(x + kTileWidth, width_px),
                          std::min(y + kTileHeight, height_px)};
-    TileSplatter splatter(kernel, lens_points, lens);
+    TileSplatter splatter(kernel, lens_points, groups, lens);
     splatter.Run(
         rays,
         std::span(by_tile.rays)
