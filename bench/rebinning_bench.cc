@@ -118,6 +118,11 @@ FrameCase CaseOf(size_t count) {
     const double grey = 30000 + 20000 * std::sin(ray.x_px / 3) * std::cos(ray.y_px / 4);
     for (int c = 0; c < 3; ++c) ray.rgb[c] = static_cast<float>(grey + random.Uniform(-5000, 5000));
   }
+  // Row by row, as cells are (RayMap::Cells()).
+  std::sort(a.rays.begin(), a.rays.end(), [](const FrameRay& one, const FrameRay& other) {
+    return std::pair(std::floor(one.y_px), one.x_px) <
+           std::pair(std::floor(other.y_px), other.x_px);
+  });
   a.points = MakeLensPoints({kRadius, 0, 0}, 16, 1, 0);
   return a;
 }

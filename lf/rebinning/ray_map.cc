@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include "lf/core/check.h"
 
@@ -114,14 +115,31 @@ size_t RayMap::BytesOf(size_t max_cells, size_t between) {
 }
 
 std::vector<BinnedCell> RayMap::Cells(ThreadPool& pool) const {
-  std::array<size_t, kShards + 1> begins{};
-  for (size_t i = 0; i < kShards; ++i) begins[i + 1] = begins[i] + shards_[i].count;
-  std::vector<BinnedCell> cells(begins[kShards]);
-  pool.ForEach(kShards, [&](size_t i) {
-    const auto begin = cells.begin() + static_cast<std::ptrdiff_t>(begins[i]);
-    const auto end = std::copy_if(shards_[i].slots.begin(), shards_[i].slots.end(), begin,
-                                  [](const BinnedCell& cell) { return cell.cell != 0; });
-    std::sort(begin, end, [](const BinnedCell& a, const BinnedCell& b) { return a.cell < b.cell; });
+  // By the first letters of their keys, then within these, by all threads. As many parts as make
+  // about the same number of cells each, however they lie.
+  constexpr size_t kParts = 256, kLetters = 1 << 16;
+  const auto letter_of = [](const BinnedCell& cell) { return cell.cell >> 48; };
+  const auto for_each_cell = [this](const auto& visit) {
+    for (const Shard& shard : shards_)
+      for (const BinnedCell& cell : shard.slots)
+        if (cell.cell != 0) visit(cell);
+  };
+  std::vector<size_t> next(kLetters);
+  for_each_cell([&](const BinnedCell& cell) { ++next[letter_of(cell)]; });
+  std::vector<size_t> part_begins;
+  size_t count = 0;
+  for (size_t& of_letter : next) {
+    if (count * kParts >= part_begins.size() * size()) part_begins.push_back(count);
+    count += std::exchange(of_letter, count);
+  }
+  part_begins.push_back(count);
+  std::vector<BinnedCell> cells(count);
+  for_each_cell([&](const BinnedCell& cell) { cells[next[letter_of(cell)]++] = cell; });
+  pool.ForEach(part_begins.size() - 1, [&](size_t i) {
+    const auto begin = cells.begin();
+    std::sort(begin + static_cast<std::ptrdiff_t>(part_begins[i]),
+              begin + static_cast<std::ptrdiff_t>(part_begins[i + 1]),
+              [](const BinnedCell& a, const BinnedCell& b) { return a.cell < b.cell; });
   });
   return cells;
 }

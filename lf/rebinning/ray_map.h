@@ -74,7 +74,7 @@ class RayMap {
   // That max_cells may take, at most, with what may come between two calls of Trim().
   static size_t BytesOf(size_t max_cells, size_t between);
 
-  // All cells, shard by shard, by ascending keys: an order that depends on the cells alone.
+  // All cells, by ascending keys: row by row of the uv plane.
   std::vector<BinnedCell> Cells(ThreadPool& pool) const;
 
  private:

@@ -27,12 +27,9 @@ void AddAll(const std::vector<BinnedRay>& rays, RayMap* map) {
 std::map<CellKey, BinnedCell> CellsOf(const RayMap& map) {
   ThreadPool pool(2);
   std::map<CellKey, BinnedCell> cells;
-  size_t shard = 0;
   CellKey last = 0;
   for (const BinnedCell& cell : map.Cells(pool)) {
-    const size_t of_cell = RayMap::ShardOf(cell.cell);
-    EXPECT_TRUE(of_cell > shard || (of_cell == shard && cell.cell > last));
-    shard = of_cell;
+    EXPECT_GT(cell.cell, last);
     last = cell.cell;
     cells.emplace(cell.cell, cell);
   }

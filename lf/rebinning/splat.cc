@@ -166,7 +166,10 @@ class TileSplatter {
     begins_.assign(lens_.cells() + 1, 0);
     cell_of_.resize(of_tile.size());
     sorted_.resize(of_tile.size());
+    // Rays of a tile are anywhere in memory.
+    constexpr size_t kAhead = 16;
     for (size_t i = 0; i < of_tile.size(); ++i) {
+      if (i + kAhead < of_tile.size()) __builtin_prefetch(&rays[of_tile[i + kAhead]]);
       const FrameRay& ray = rays[of_tile[i]];
       cell_of_[i] =
           static_cast<uint32_t>(lens_.CellAt(lens_.Column(ray.lens_x_w), lens_.Row(ray.lens_y_w)));
