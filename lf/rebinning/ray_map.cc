@@ -1,7 +1,6 @@
 #include "lf/rebinning/ray_map.h"
 
 #include <algorithm>
-#include <bit>
 #include <utility>
 
 #include "lf/core/check.h"
@@ -9,28 +8,36 @@
 namespace lf {
 namespace {
 
-constexpr size_t kFewestSlots = 64;
-
 // Slots are filled to three quarters at most: beyond, what is looked for is far from its place.
-bool IsFull(size_t count, size_t slots) { return 4 * count >= 3 * slots; }
+size_t SlotsFor(size_t cells) { return cells + cells / 3 + 64; }
 
-size_t FirstSlot(uint64_t hash, size_t slots) { return (hash / RayMap::kShards) & (slots - 1); }
+// By other bits of the hash than shards, and than those that decide what is dropped.
+size_t FirstSlot(uint64_t hash, size_t slots) {
+  const uint64_t bits = hash / RayMap::kShards & 0xffffffff;
+  return static_cast<size_t>(bits * slots >> 32);
+}
 
 // Where a cell is, or would be.
 BinnedCell* Find(LargeVector<BinnedCell>& slots, CellKey cell, uint64_t hash) {
-  const size_t mask = slots.size() - 1;
-  for (size_t i = FirstSlot(hash, slots.size());; i = (i + 1) & mask)
-    if (slots[i].cell == cell || slots[i].cell == 0) return &slots[i];
+  BinnedCell* slot = &slots[FirstSlot(hash, slots.size())];
+  BinnedCell* const end = slots.data() + slots.size();
+  while (slot->cell != cell && slot->cell != 0)
+    if (++slot == end) slot = slots.data();
+  return slot;
 }
+
+// Of a shard, when all have so many: some have more than others.
+size_t MostOfShard(size_t cells) { return cells / RayMap::kShards * 9 / 8 + 64; }
 
 }  // namespace
 
+// Most maps fill up, and growing would take longer than filling it.
 RayMap::RayMap(size_t max_cells) : max_cells_(std::max<size_t>(max_cells, 1)) {
-  for (Shard& shard : shards_) shard.slots.resize(kFewestSlots);
+  for (Shard& shard : shards_) shard.slots.resize(SlotsFor(MostOfShard(max_cells_)));
 }
 
 void RayMap::Grow(Shard& shard) {
-  LargeVector<BinnedCell> slots(2 * shard.slots.size());
+  LargeVector<BinnedCell> slots(shard.slots.size() + shard.slots.size() / 2);
   for (const BinnedCell& cell : shard.slots)
     if (cell.cell != 0) *Find(slots, cell.cell, MixBits(cell.cell)) = cell;
   shard.slots = std::move(slots);
@@ -39,7 +46,7 @@ void RayMap::Grow(Shard& shard) {
 template <bool kMakesNew>
 void RayMap::AddTo(Shard& shard, std::span<const BinnedRay> rays) {
   // The slot of a ray is somewhere in memory: it is asked for some rays ahead.
-  constexpr size_t kAhead = 16;
+  constexpr size_t kAhead = 32;
   std::array<uint64_t, kAhead> hashes{};
   const auto announce = [&](size_t i) {
     hashes[i % kAhead] = MixBits(rays[i].cell);
@@ -53,7 +60,7 @@ void RayMap::AddTo(Shard& shard, std::span<const BinnedRay> rays) {
     BinnedCell* slot = Find(shard.slots, rays[i].cell, hash);
     if (slot->cell == 0) {
       if (!kMakesNew) continue;
-      if (IsFull(shard.count + 1, shard.slots.size())) {
+      if (SlotsFor(shard.count + 1) > shard.slots.size()) {
         Grow(shard);
         slot = Find(shard.slots, rays[i].cell, hash);
       }
@@ -108,10 +115,12 @@ size_t RayMap::size_bytes() const {
 }
 
 size_t RayMap::BytesOf(size_t max_cells, size_t between) {
-  // Some shards have more than others; and one grows into another twice as large beside it.
-  const size_t most = (max_cells + between) / kShards + (max_cells + between) / (8 * kShards) + 64;
-  const size_t slots = std::bit_ceil(most * 4 / 3 + 1);
-  return (kShards + 1) * std::max(slots, kFewestSlots) * sizeof(BinnedCell);
+  // They may grow, by steps of a half; and one is there twice while it grows.
+  const size_t begin = SlotsFor(MostOfShard(max_cells));
+  size_t slots = begin;
+  while (slots < SlotsFor(MostOfShard(max_cells + between))) slots += slots / 2;
+  const size_t copies = slots > begin ? kShards + 1 : kShards;
+  return copies * slots * sizeof(BinnedCell);
 }
 
 std::vector<BinnedCell> RayMap::Cells(ThreadPool& pool) const {

@@ -49,7 +49,7 @@ class RayMap {
   // Parts that are filled at the same time; the same whatever the number of threads.
   static constexpr size_t kShards = 32;
 
-  // max_cells  that Trim() leaves; at least 1
+  // max_cells  that Trim() leaves; at least 1. There is memory for these from the beginning.
   explicit RayMap(size_t max_cells);
 
   static size_t ShardOf(CellKey cell) { return MixBits(cell) % kShards; }
@@ -80,7 +80,7 @@ class RayMap {
  private:
   // Open addressing: a cell is where its hash says, or behind it, before the next gap.
   struct Shard {
-    LargeVector<BinnedCell> slots;  // a power of two
+    LargeVector<BinnedCell> slots;
     size_t count = 0;
     bool is_too_coarse = false;
   };
