@@ -46,13 +46,26 @@ inline uint16_t ProbabilityOf(const ProbabilityLaw& law, int32_t laplacian) {
 }
 
 // The stored values that are asked about: one for each pixel, or for each 2 x 2 of a mosaic.
-Image<uint16_t> GreyPlane(const LfPixels& pixels, const std::vector<uint16_t>& stored_values);
+class GreyRows {
+ public:
+  GreyRows(const LfPixels& pixels, const std::vector<uint16_t>& stored_values);
+  int width() const { return plane_.width(); }
+  int height() const { return plane_.height(); }
+  void Read(int y, uint16_t* out) const;  // [width]
 
-// p of every pixel out of that of the grey plane.
-Image<uint16_t> OfEveryPixel(const LfPixels& pixels, Image<uint16_t> of_plane);
+ private:
+  uint16_t GreenOfPair(int x, int y) const;
 
-// p of a grey plane, row by row; and a plane smoothed, in whole numbers.
-Image<uint16_t> ProbabilityPlane(const ProbabilityLaw& law, ImageView<const uint16_t> grey);
-Image<uint16_t> SmoothedPlane(const SmoothingTaps& taps, ImageView<const uint16_t> grey);
+  const LfPixels& pixels_;
+  const uint16_t* stored_;
+  PixelRect plane_;  // the pixels, or the 2 x 2 of the whole LF image
+};
+
+// p of every pixel out of that of the grey plane; 0 of those that are masked.
+void SpreadOverPixels(const LfPixels& pixels, Image<uint16_t>* p);
+
+// p of a grey plane; and a plane smoothed, in whole numbers.
+void ProbabilityPlane(const ProbabilityLaw& law, const GreyRows& grey, Image<uint16_t>* p);
+void SmoothedPlane(const SmoothingTaps& taps, const Image<uint16_t>& grey, Image<uint16_t>* smooth);
 
 }  // namespace lf

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "lf/core/check.h"
 #include "lf/rebinning/probability_law.h"
@@ -26,16 +27,6 @@ double StoredOf(const RadianceEncoding& encoding, double radiance) {
     }
   }
   return radiance;
-}
-
-// The green of a row of two pixels that holds column x; inside of the rectangle, if there is one.
-uint16_t GreenOfPair(const LfPixels& pixels, int x, int y) {
-  if (BayerChannel(pixels.bayer, x, y) != 1) x ^= 1;
-  const PixelRect& rect = pixels.rect;
-  if (x < rect.x_begin) x += 2;
-  if (x >= rect.x_end) x -= 2;
-  if (x < rect.x_begin) x = rect.x_begin;
-  return pixels.radiance.at(x - rect.x_begin, y - rect.y_begin);
 }
 
 // Of the 2 x 2 pixels of a mosaic that a rectangle touches.
@@ -88,49 +79,67 @@ ProbabilityLaw MakeLaw(const ProbabilityOptions& options, bool is_mosaic) {
   return law;
 }
 
-Image<uint16_t> GreyPlane(const LfPixels& pixels, const std::vector<uint16_t>& stored_values) {
+GreyRows::GreyRows(const LfPixels& pixels, const std::vector<uint16_t>& stored_values)
+    : pixels_(pixels),
+      stored_(stored_values.data()),
+      plane_(pixels.bayer == BayerPattern::kNone ? pixels.rect : Quads(pixels.rect)) {
   LF_CHECK(stored_values.size() == 65536);
-  const PixelRect& rect = pixels.rect;
-  const uint16_t* const stored = stored_values.data();
-  if (pixels.bayer == BayerPattern::kNone) {
-    Image<uint16_t> grey(rect.width(), rect.height());
-    for (int y = 0; y < rect.height(); ++y) {
-      const uint16_t* v = pixels.radiance.row(y);
-      uint16_t* const out = grey.row(y);
-      for (int x = 0; x < rect.width(); ++x, v += LfPixels::kRgbLanes)
-        out[x] = stored[(v[0] + 2u * v[1] + v[2] + 2) >> 2];
-    }
-    return grey;
-  }
-  const PixelRect quads = Quads(rect);
-  Image<uint16_t> grey(quads.width(), quads.height());
-  for (int y = 0; y < grey.height(); ++y)
-    for (int x = 0; x < grey.width(); ++x) {
-      const int left = 2 * (quads.x_begin + x), top = 2 * (quads.y_begin + y);
-      const int y0 = std::max(top, rect.y_begin), y1 = std::min(top + 1, rect.y_end - 1);
-      grey.at(x, y) = static_cast<uint16_t>(
-          (stored[GreenOfPair(pixels, left, y0)] + stored[GreenOfPair(pixels, left, y1)] + 1) >> 1);
-    }
-  return grey;
 }
 
-Image<uint16_t> OfEveryPixel(const LfPixels& pixels, Image<uint16_t> of_plane) {
+// The green of a row of two pixels that holds column x; inside of the rectangle, if there is one.
+uint16_t GreyRows::GreenOfPair(int x, int y) const {
+  if (BayerChannel(pixels_.bayer, x, y) != 1) x ^= 1;
+  const PixelRect& rect = pixels_.rect;
+  if (x < rect.x_begin) x += 2;
+  if (x >= rect.x_end) x -= 2;
+  if (x < rect.x_begin) x = rect.x_begin;
+  return pixels_.radiance.at(x - rect.x_begin, y - rect.y_begin);
+}
+
+void GreyRows::Read(int y, uint16_t* out) const {
+  const PixelRect& rect = pixels_.rect;
+  if (pixels_.bayer == BayerPattern::kNone) {
+    const uint16_t* v = pixels_.radiance.row(y);
+    for (int x = 0; x < width(); ++x, v += LfPixels::kRgbLanes)
+      out[x] = stored_[(v[0] + 2u * v[1] + v[2] + 2) >> 2];
+    return;
+  }
+  const int top = 2 * (plane_.y_begin + y);
+  const int y0 = std::max(top, rect.y_begin), y1 = std::min(top + 1, rect.y_end - 1);
+  const auto mean = [this](uint16_t a, uint16_t b) {
+    return static_cast<uint16_t>((stored_[a] + stored_[b] + 1) >> 1);
+  };
+  // Away from the borders greens are two apart.
+  const int odd0 = BayerChannel(pixels_.bayer, 0, y0) == 1 ? 0 : 1;
+  const int odd1 = BayerChannel(pixels_.bayer, 0, y1) == 1 ? 0 : 1;
+  const uint16_t* const row0 = pixels_.radiance.row(y0 - rect.y_begin);
+  const uint16_t* const row1 = pixels_.radiance.row(y1 - rect.y_begin);
+  for (int x = 0; x < width(); ++x) {
+    const int left = 2 * (plane_.x_begin + x);
+    if (left < rect.x_begin || left + 2 > rect.x_end)
+      out[x] = mean(GreenOfPair(left, y0), GreenOfPair(left, y1));
+    else
+      out[x] = mean(row0[left + odd0 - rect.x_begin], row1[left + odd1 - rect.x_begin]);
+  }
+}
+
+void SpreadOverPixels(const LfPixels& pixels, Image<uint16_t>* p) {
   const PixelRect& rect = pixels.rect;
   if (pixels.bayer != BayerPattern::kNone) {
+    static thread_local Image<uint16_t> of_plane;
+    std::swap(of_plane, *p);
     const PixelRect quads = Quads(rect);
-    Image<uint16_t> spread(rect.width(), rect.height());
+    p->Resize(rect.width(), rect.height(), 1);
     for (int y = 0; y < rect.height(); ++y) {
       const uint16_t* const in = of_plane.row(((rect.y_begin + y) >> 1) - quads.y_begin);
-      for (int x = 0; x < rect.width(); ++x)
-        spread.at(x, y) = in[((rect.x_begin + x) >> 1) - quads.x_begin];
+      uint16_t* const out = p->row(y);
+      for (int x = 0; x < rect.width(); ++x) out[x] = in[((rect.x_begin + x) >> 1) - quads.x_begin];
     }
-    of_plane = std::move(spread);
   }
-  if (pixels.any_masked)
-    for (int y = 0; y < rect.height(); ++y)
-      for (int x = 0; x < rect.width(); ++x)
-        if (pixels.IsMasked(x, y)) of_plane.at(x, y) = 0;
-  return of_plane;
+  if (!pixels.any_masked) return;
+  for (int y = 0; y < rect.height(); ++y)
+    for (int x = 0; x < rect.width(); ++x)
+      if (pixels.IsMasked(x, y)) p->at(x, y) = 0;
 }
 
 int PixelsAround(const ProbabilityOptions& options, bool is_mosaic) {
@@ -139,13 +148,17 @@ int PixelsAround(const ProbabilityOptions& options, bool is_mosaic) {
   return is_mosaic ? 2 * around + 1 : around;
 }
 
-Image<uint16_t> ProbabilityMap(const LfPixels& pixels, const std::vector<uint16_t>& stored_values,
-                               const ProbabilityOptions& options) {
-  if (pixels.rect.empty()) return {};
+void ProbabilityMap(const LfPixels& pixels, const std::vector<uint16_t>& stored_values,
+                    const ProbabilityOptions& options, Image<uint16_t>* p) {
+  p->Resize(0, 0, 1);
+  if (pixels.rect.empty()) return;
   const ProbabilityLaw law = MakeLaw(options, pixels.bayer != BayerPattern::kNone);
-  Image<uint16_t> p = ProbabilityPlane(law, GreyPlane(pixels, stored_values).view());
-  if (law.second_taps.radius() > 0) p = SmoothedPlane(law.second_taps, p.view());
-  return OfEveryPixel(pixels, std::move(p));
+  ProbabilityPlane(law, GreyRows(pixels, stored_values), p);
+  if (law.second_taps.radius() > 0) {
+    const Image<uint16_t> once = std::move(*p);
+    SmoothedPlane(law.second_taps, once, p);
+  }
+  SpreadOverPixels(pixels, p);
 }
 
 }  // namespace lf

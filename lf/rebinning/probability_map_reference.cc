@@ -37,23 +37,26 @@ class GreyLaw {
 
 }  // namespace
 
-Image<uint16_t> ProbabilityMapReference(const LfPixels& pixels,
-                                        const std::vector<uint16_t>& stored_values,
-                                        const ProbabilityOptions& options) {
-  if (pixels.rect.empty()) return {};
+void ProbabilityMapReference(const LfPixels& pixels, const std::vector<uint16_t>& stored_values,
+                             const ProbabilityOptions& options, Image<uint16_t>* p) {
+  p->Resize(0, 0, 1);
+  if (pixels.rect.empty()) return;
   const ProbabilityLaw law = MakeLaw(options, pixels.bayer != BayerPattern::kNone);
-  const Image<uint16_t> grey = GreyPlane(pixels, stored_values);
+  const GreyRows rows(pixels, stored_values);
+  Image<uint16_t> grey(rows.width(), rows.height());
+  for (int y = 0; y < grey.height(); ++y) rows.Read(y, grey.row(y));
   const GreyLaw plane(law.taps, grey.view());
-  Image<uint16_t> p(grey.width(), grey.height());
-  for (int y = 0; y < p.height(); ++y)
-    for (int x = 0; x < p.width(); ++x) p.at(x, y) = ProbabilityOf(law, plane.Laplacian(x, y));
-  if (law.second_taps.radius() == 0) return OfEveryPixel(pixels, std::move(p));
-  const GreyLaw again(law.second_taps, p.view());
-  Image<uint16_t> smooth(p.width(), p.height());
-  for (int y = 0; y < p.height(); ++y)
-    for (int x = 0; x < p.width(); ++x)
-      smooth.at(x, y) = static_cast<uint16_t>((again.Smooth(x, y) + 8) >> 4);
-  return OfEveryPixel(pixels, std::move(smooth));
+  p->Resize(grey.width(), grey.height(), 1);
+  for (int y = 0; y < p->height(); ++y)
+    for (int x = 0; x < p->width(); ++x) p->at(x, y) = ProbabilityOf(law, plane.Laplacian(x, y));
+  if (law.second_taps.radius() > 0) {
+    const Image<uint16_t> once = *p;
+    const GreyLaw again(law.second_taps, once.view());
+    for (int y = 0; y < p->height(); ++y)
+      for (int x = 0; x < p->width(); ++x)
+        p->at(x, y) = static_cast<uint16_t>((again.Smooth(x, y) + 8) >> 4);
+  }
+  SpreadOverPixels(pixels, p);
 }
 
 }  // namespace lf

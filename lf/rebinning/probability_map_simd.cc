@@ -88,39 +88,57 @@ void Probabilities(const ProbabilityLaw& law, const uint32_t* above, const uint3
   }
 }
 
-// Calls put(y, row) for rows [begin, end) of the smoothed plane, cut at its borders.
-template <class Put>
-void SmoothRows(const SmoothingTaps& taps, ImageView<const uint16_t> grey, int begin, int end,
-                Rows& across, std::vector<uint16_t>& padded, Rows& smooth, const Put& put) {
-  const int radius = taps.radius(), width = grey.width;
-  const int first = std::max(begin - radius, 0), last = std::min(end + radius, grey.height);
-  uint16_t* const line = padded.data() + kMargin;
-  for (int y = first; y < last; ++y) {
-    std::memcpy(line, grey.row(y), sizeof(uint16_t) * width);
-    std::fill_n(line - kMargin, kMargin, line[0]);
-    std::fill_n(line + width, kMargin, line[width - 1]);
-    Across(taps, line, width, across.row(y - first));
-  }
-  for (int y = begin; y < end; ++y) {
-    Down(
-        taps, [&](int k) { return across.row(std::clamp(y + k, 0, grey.height - 1) - first); },
-        width, smooth.row(y - begin));
-    put(y, smooth.row(y - begin));
-  }
-}
+// Rows of a grey plane of this size, smoothed, a band at a time.
+class Smoother {
+ public:
+  Smoother(const SmoothingTaps& taps, int width, int height, int band_rows)
+      : taps_(taps),
+        width_(width),
+        height_(height),
+        across_(band_rows + 2 * taps.radius(), width),
+        smooth_(band_rows, width),
+        padded_(width + 2 * kMargin) {}
 
-void ProbabilityRows(const ProbabilityLaw& law, ImageView<const uint16_t> grey,
-                     ImageView<uint16_t> out) {
-  const int width = grey.width, height = grey.height;
-  Rows across(kBandRows + 2 + 2 * law.taps.radius(), width), smooth(kBandRows + 2, width);
-  std::vector<uint16_t> padded(width + 2 * kMargin), line(width + kMargin);
+  // Rows [begin, end).  read(y, out): a row of the plane.
+  template <class Read>
+  void Run(int begin, int end, const Read& read) {
+    first_ = begin;
+    const int radius = taps_.radius();
+    const int low = std::max(begin - radius, 0), high = std::min(end + radius, height_);
+    uint16_t* const line = padded_.data() + kMargin;
+    for (int y = low; y < high; ++y) {
+      read(y, line);
+      std::fill_n(line - kMargin, kMargin, line[0]);
+      std::fill_n(line + width_, kMargin, line[width_ - 1]);
+      Across(taps_, line, width_, across_.row(y - low));
+    }
+    for (int y = begin; y < end; ++y)
+      Down(
+          taps_, [&](int k) { return across_.row(std::clamp(y + k, 0, height_ - 1) - low); },
+          width_, smooth_.row(y - begin));
+  }
+  // Of those rows; beyond the plane as it ends.
+  const uint32_t* row(int y) { return smooth_.row(std::clamp(y, 0, height_ - 1) - first_); }
+
+ private:
+  const SmoothingTaps& taps_;
+  int width_, height_;
+  Rows across_, smooth_;
+  std::vector<uint16_t> padded_;
+  int first_ = 0;
+};
+
+void ProbabilityRows(const ProbabilityLaw& law, const GreyRows& grey, ImageView<uint16_t> out) {
+  const int width = grey.width(), height = grey.height();
+  Smoother smoother(law.taps, width, height, kBandRows + 2);
+  std::vector<uint16_t> line(width + kMargin);
   for (int begin = 0; begin < height; begin += kBandRows) {
     const int end = std::min(begin + kBandRows, height);
-    const int first = std::max(begin - 1, 0), last = std::min(end + 1, height);
-    SmoothRows(law.taps, grey, first, last, across, padded, smooth, [](int, uint32_t*) {});
-    const auto row = [&](int y) { return smooth.row(std::clamp(y, 0, height - 1) - first); };
+    smoother.Run(std::max(begin - 1, 0), std::min(end + 1, height),
+                 [&](int y, uint16_t* row) { grey.Read(y, row); });
     for (int y = begin; y < end; ++y) {
-      Probabilities(law, row(y - 1), row(y), row(y + 1), width, line.data());
+      Probabilities(law, smoother.row(y - 1), smoother.row(y), smoother.row(y + 1), width,
+                    line.data());
       std::memcpy(out.row(y), line.data(), sizeof(uint16_t) * width);
     }
   }
@@ -128,14 +146,16 @@ void ProbabilityRows(const ProbabilityLaw& law, ImageView<const uint16_t> grey,
 
 void SmoothedRows(const SmoothingTaps& taps, ImageView<const uint16_t> grey,
                   ImageView<uint16_t> out) {
-  Rows across(kBandRows + 2 * taps.radius(), grey.width), smooth(kBandRows, grey.width);
-  std::vector<uint16_t> padded(grey.width + 2 * kMargin);
-  for (int begin = 0; begin < grey.height; begin += kBandRows)
-    SmoothRows(taps, grey, begin, std::min(begin + kBandRows, grey.height), across, padded, smooth,
-               [&](int y, const uint32_t* row) {
-                 for (int x = 0; x < grey.width; ++x)
-                   out.at(x, y) = static_cast<uint16_t>((row[x] + 8) >> 4);
-               });
+  Smoother smoother(taps, grey.width, grey.height, kBandRows);
+  for (int begin = 0; begin < grey.height; begin += kBandRows) {
+    const int end = std::min(begin + kBandRows, grey.height);
+    smoother.Run(begin, end, [&](int y, uint16_t* row) {
+      std::memcpy(row, grey.row(y), sizeof(uint16_t) * grey.width);
+    });
+    for (int y = begin; y < end; ++y)
+      for (int x = 0; x < grey.width; ++x)
+        out.at(x, y) = static_cast<uint16_t>((smoother.row(y)[x] + 8) >> 4);
+  }
 }
 
 }  // namespace HWY_NAMESPACE
@@ -148,16 +168,15 @@ namespace lf {
 HWY_EXPORT(ProbabilityRows);
 HWY_EXPORT(SmoothedRows);
 
-Image<uint16_t> ProbabilityPlane(const ProbabilityLaw& law, ImageView<const uint16_t> grey) {
-  Image<uint16_t> p(grey.width, grey.height);
-  HWY_DYNAMIC_DISPATCH(ProbabilityRows)(law, grey, p.view());
-  return p;
+void ProbabilityPlane(const ProbabilityLaw& law, const GreyRows& grey, Image<uint16_t>* p) {
+  p->Resize(grey.width(), grey.height(), 1);
+  HWY_DYNAMIC_DISPATCH(ProbabilityRows)(law, grey, p->view());
 }
 
-Image<uint16_t> SmoothedPlane(const SmoothingTaps& taps, ImageView<const uint16_t> grey) {
-  Image<uint16_t> smooth(grey.width, grey.height);
-  HWY_DYNAMIC_DISPATCH(SmoothedRows)(taps, grey, smooth.view());
-  return smooth;
+void SmoothedPlane(const SmoothingTaps& taps, const Image<uint16_t>& grey,
+                   Image<uint16_t>* smooth) {
+  smooth->Resize(grey.width(), grey.height(), 1);
+  HWY_DYNAMIC_DISPATCH(SmoothedRows)(taps, grey.view(), smooth->view());
 }
 
 }  // namespace lf

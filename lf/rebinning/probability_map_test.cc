@@ -19,6 +19,13 @@ LfPixels Noise(const PixelRect& rect, BayerPattern bayer, uint64_t seed) {
   return pixels;
 }
 
+Image<uint16_t> MapOf(const LfPixels& pixels, const std::vector<uint16_t>& table,
+                      const ProbabilityOptions& options) {
+  Image<uint16_t> p;
+  ProbabilityMap(pixels, table, options, &p);
+  return p;
+}
+
 void ExpectSame(const Image<uint16_t>& a, const Image<uint16_t>& b) {
   ASSERT_EQ(a.width(), b.width());
   ASSERT_EQ(a.height(), b.height());
@@ -37,8 +44,9 @@ TEST(ProbabilityMap, FastIsTheReference) {
           LfPixels pixels = Noise(rect, bayer, ++seed);
           pixels.Mask(0, 0);
           const ProbabilityOptions options{sigma, 0.3, 0.02, 0.1, second};
-          ExpectSame(ProbabilityMap(pixels, table, options),
-                     ProbabilityMapReference(pixels, table, options));
+          Image<uint16_t> judge;
+          ProbabilityMapReference(pixels, table, options, &judge);
+          ExpectSame(MapOf(pixels, table, options), judge);
         }
 }
 
@@ -50,7 +58,7 @@ TEST(ProbabilityMap, AnEdgeIsLikelyAndFlatIsXi) {
   for (int y = 0; y < 20; ++y)
     for (int x = 0; x < 40; ++x)
       for (int c = 0; c < 3; ++c) pixels.radiance.at(x, y, c) = x < 20 ? 10000 : 40000;
-  const Image<uint16_t> p = ProbabilityMap(pixels, table, {1, 4, 0, 0.25, 0});
+  const Image<uint16_t> p = MapOf(pixels, table, {1, 4, 0, 0.25, 0});
   EXPECT_EQ(p.at(3, 10), std::lround(0.25 * 65535));
   // Beside an edge of height h the second derivative of the smoothed step is h / sigma times the
   // difference of the Gaussian half a pixel and three halves from it.
@@ -60,7 +68,7 @@ TEST(ProbabilityMap, AnEdgeIsLikelyAndFlatIsXi) {
   EXPECT_NEAR(p.at(20, 10) / 65535.0, expected, 0.01);
   EXPECT_EQ(p.at(19, 10), p.at(20, 10));
   // What does not pass beta is not kept at all.
-  EXPECT_EQ(ProbabilityMap(pixels, table, {1, 4, 0.01, 0.25, 0}).at(3, 10), 0);
+  EXPECT_EQ(MapOf(pixels, table, {1, 4, 0.01, 0.25, 0}).at(3, 10), 0);
 }
 
 // The rectangle that was read must not decide which rays are kept, away from its borders.
@@ -75,8 +83,8 @@ TEST(ProbabilityMap, APartIsThePartOfTheWhole) {
         for (int c = 0; c < part.radiance.channels(); ++c)
           part.radiance.at(x, y, c) = whole.radiance.at(x + rect.x_begin, y + rect.y_begin, c);
     const ProbabilityOptions options{1, 0.3, 0, 0.05, 0};
-    const Image<uint16_t> of_whole = ProbabilityMap(whole, table, options);
-    const Image<uint16_t> of_part = ProbabilityMap(part, table, options);
+    const Image<uint16_t> of_whole = MapOf(whole, table, options);
+    const Image<uint16_t> of_part = MapOf(part, table, options);
     const int around = PixelsAround(options, bayer != BayerPattern::kNone);
     EXPECT_LT(around, 10);
     for (int y = around; y < rect.height() - around; ++y)

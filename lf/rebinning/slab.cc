@@ -36,14 +36,19 @@ Ray RayOfPoint(const Slab& slab, const SlabPoint& point) {
   return {from, to - from};
 }
 
-std::optional<CellKey> CellOf(const Slab& slab, const SlabPoint& point) {
+std::optional<CellKey> KeyOf(const SlabPoint& cells) {
   CellKey key = 0;
   for (int k = 0; k < kCellAxes; ++k) {
-    const double number = std::floor(point[k] / (k < 2 ? slab.r_st_w : slab.r_uv_w));
-    if (!(number >= -kMostCells && number < kMostCells)) return {};
-    key |= static_cast<CellKey>(static_cast<int64_t>(number) + kCellOffset) << (16 * k);
+    if (!(cells[k] >= -kMostCells && cells[k] < kMostCells)) return {};
+    // Above 0 cutting is flooring.
+    key |= static_cast<CellKey>(static_cast<int64_t>(cells[k] + kCellOffset)) << (16 * k);
   }
   return key;
+}
+
+std::optional<CellKey> CellOf(const Slab& slab, const SlabPoint& point) {
+  return KeyOf(SlabPoint(point[0] / slab.r_st_w, point[1] / slab.r_st_w, point[2] / slab.r_uv_w,
+                         point[3] / slab.r_uv_w));
 }
 
 SlabPoint MiddleOf(const Slab& slab, CellKey key) {
@@ -73,14 +78,20 @@ SlabForms MakeSlabForms(const Slab& slab, const PinholeCamera& lf_camera) {
   return forms;
 }
 
+SlabForms MakeCellForms(const Slab& slab, const PinholeCamera& lf_camera) {
+  SlabForms forms = MakeSlabForms(slab, lf_camera);
+  for (int k = 0; k < kCellAxes; ++k) forms.numerators[k] /= k < 2 ? slab.r_st_w : slab.r_uv_w;
+  return forms;
+}
+
 std::optional<SlabPoint> Parameterize(const SlabForms& forms, const Vec3& position) {
-  const std::array<double, 2> slopes = {Value(forms.denominators[0], position),
-                                        Value(forms.denominators[1], position)};
-  if (!Parameters(forms.distances, slopes)) return {};
-  SlabPoint point;
-  for (int k = 0; k < kCellAxes; ++k)
-    point[k] = Value(forms.numerators[k], position) / slopes[k / 2];
-  return point;
+  const double per_st = 1 / Value(forms.denominators[0], position);
+  const double per_uv = 1 / Value(forms.denominators[1], position);
+  // Neither where a ray is parallel to a plane.
+  if (!(forms.distances[0] * per_st < forms.distances[1] * per_uv)) return {};
+  return SlabPoint(
+      Value(forms.numerators[0], position) * per_st, Value(forms.numerators[1], position) * per_st,
+      Value(forms.numerators[2], position) * per_uv, Value(forms.numerators[3], position) * per_uv);
 }
 
 }  // namespace lf

@@ -50,7 +50,8 @@ using CellKey = uint64_t;
 inline constexpr int kCellAxes = 4;
 inline constexpr int kMostCells = 32767;  // on either side of the origin, along each axis
 
-// None beyond kMostCells.
+// Of a point in cells instead of world units. None beyond kMostCells.
+std::optional<CellKey> KeyOf(const SlabPoint& cells);
 std::optional<CellKey> CellOf(const Slab& slab, const SlabPoint& point);
 SlabPoint MiddleOf(const Slab& slab, CellKey key);
 
@@ -63,6 +64,8 @@ struct SlabForms {
   std::array<double, 2> distances;
 };
 SlabForms MakeSlabForms(const Slab& slab, const PinholeCamera& lf_camera);
+// The same in cells: KeyOf(Parameterize(forms, position)).
+SlabForms MakeCellForms(const Slab& slab, const PinholeCamera& lf_camera);
 
 // As Parameterize() of the pixel's ray, but for rounding.
 std::optional<SlabPoint> Parameterize(const SlabForms& forms, const Vec3& position);

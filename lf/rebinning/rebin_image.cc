@@ -1,0 +1,189 @@
+#include "lf/rebinning/rebin_image.h"
+
+#include <algorithm>
+
+#include "lf/core/check.h"
+#include "lf/core/random.h"
+
+namespace lf {
+namespace {
+
+// Sixteen random bits for every pixel of an LF image, four pixels at a time.
+class PixelChances {
+ public:
+  PixelChances(uint64_t seed, LfImageId id) : stream_(MixBits(MixBits(seed) ^ id.value)) {}
+
+  // The columns [begin, end) whose number is below their p, which is in 1 / 65535: that is certain.
+  //   first  number of the pixel in column 0
+  void Choose(uint64_t first, const uint16_t* p, int begin, int end, std::vector<int>* chosen) {
+    chosen->resize(end - begin);
+    size_t count = 0;
+    for (int x = begin; x < end;) {
+      const uint64_t pixel = first + x;
+      uint64_t bits = MixBits(stream_ ^ (pixel / 4)) >> (16 * (pixel % 4));
+      for (const int stop = std::min(end, x + 4 - static_cast<int>(pixel % 4)); x < stop; ++x) {
+        // Written always, counted where it holds: no branch has to be foreseen.
+        (*chosen)[count] = x;
+        count += (bits & 0xffff) * 65535 >> 16 < p[x] ? 1 : 0;
+        bits >>= 16;
+      }
+    }
+    chosen->resize(count);
+  }
+
+ private:
+  uint64_t stream_;
+};
+
+// Where all neighbours are there.
+std::array<uint16_t, 3> RgbInside(const LfPixels& pixels, int x, int y) {
+  const int own = BayerChannel(pixels.bayer, x, y);
+  const auto stride = static_cast<std::ptrdiff_t>(pixels.radiance.width());
+  const uint16_t* const v =
+      pixels.radiance.row(y - pixels.rect.y_begin) + (x - pixels.rect.x_begin);
+  const auto two = [](uint32_t a, uint32_t b) { return static_cast<uint16_t>((a + b + 1) / 2); };
+  const auto four = [](uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
+    return static_cast<uint16_t>((a + b + c + d + 2) / 4);
+  };
+  std::array<uint16_t, 3> rgb{};
+  rgb[own] = v[0];
+  if (own == 1) {
+    const int beside = BayerChannel(pixels.bayer, x + 1, y);
+    rgb[beside] = two(v[-1], v[1]);
+    rgb[2 - beside] = two(v[-stride], v[stride]);
+  } else {
+    rgb[1] = four(v[-1], v[1], v[-stride], v[stride]);
+    rgb[2 - own] = four(v[-stride - 1], v[-stride + 1], v[stride - 1], v[stride + 1]);
+  }
+  return rgb;
+}
+
+std::array<uint16_t, 3> RgbOfMosaic(const LfPixels& pixels, int x, int y) {
+  const PixelRect& rect = pixels.rect;
+  if (!pixels.any_masked && x > rect.x_begin && x + 1 < rect.x_end && y > rect.y_begin &&
+      y + 1 < rect.y_end)
+    return RgbInside(pixels, x, y);
+  const int own = BayerChannel(pixels.bayer, x, y);
+  std::array<uint32_t, 3> sums{}, counts{};
+  for (int dy = -1; dy <= 1; ++dy)
+    for (int dx = -1; dx <= 1; ++dx) {
+      if (!pixels.rect.Contains(x + dx, y + dy)) continue;
+      const int column = x + dx - pixels.rect.x_begin, row = y + dy - pixels.rect.y_begin;
+      const int channel = BayerChannel(pixels.bayer, x + dx, y + dy);
+      if ((channel == own && (dx != 0 || dy != 0)) || pixels.IsMasked(column, row)) continue;
+      sums[channel] += pixels.radiance.at(column, row);
+      ++counts[channel];
+    }
+  std::array<uint16_t, 3> rgb{};
+  for (int c = 0; c < 3; ++c) {
+    // At a border without such a neighbour: what was recorded, as if it were grey.
+    const int from = counts[c] > 0 ? c : own;
+    rgb[c] = static_cast<uint16_t>((sums[from] + counts[from] / 2) / counts[from]);
+  }
+  return rgb;
+}
+
+std::array<uint16_t, 3> RgbOf(const LfPixels& pixels, int x, int y) {
+  if (pixels.bayer != BayerPattern::kNone) return RgbOfMosaic(pixels, x, y);
+  const uint16_t* const v = pixels.radiance.row(y - pixels.rect.y_begin) +
+                            static_cast<size_t>(x - pixels.rect.x_begin) * LfPixels::kRgbLanes;
+  return {v[0], v[1], v[2]};
+}
+
+// The pixels of one LF image, row by row.
+class ImageRebinner {
+ public:
+  ImageRebinner(const Slab& slab, const PinholeCamera& lf_camera, LfImageId id,
+                const LfPixels& pixels, const RebinOptions& options, const RayMap& map,
+                BinnedRays* rays)
+      : forms_(MakeCellForms(slab, lf_camera)),
+        pixels_(pixels),
+        width_px_(lf_camera.intrinsics.width_px),
+        chances_(options.seed, id),
+        averages_others_(options.averages_others),
+        map_(map),
+        rays_(*rays) {}
+
+  // Of columns [begin, end).  position(x): the ideal one of the pixel.
+  template <class Position>
+  void Row(const Image<uint16_t>& p, int y, int begin, int end, const Position& position) {
+    const uint16_t* const of_row = p.row(y - pixels_.rect.y_begin) - pixels_.rect.x_begin;
+    chances_.Choose(static_cast<uint64_t>(y) * width_px_, of_row, begin, end, &chosen_);
+    for (const int x : chosen_) Add(x, y, position(x), &rays_.kept);
+    rays_.looked_at += end - begin;
+    if (!averages_others_) return;
+    auto next = chosen_.begin();
+    for (int x = begin; x < end; ++x) {
+      if (next != chosen_.end() && *next == x)
+        ++next;
+      else if (!pixels_.any_masked ||
+               !pixels_.IsMasked(x - pixels_.rect.x_begin, y - pixels_.rect.y_begin))
+        Add(x, y, position(x), &rays_.others);
+    }
+  }
+
+ private:
+  using Shards = std::array<std::vector<BinnedRay>, RayMap::kShards>;
+
+  void Add(int x, int y, const Vec3& position, Shards* shards) {
+    const std::optional<SlabPoint> cells = Parameterize(forms_, position);
+    const std::optional<CellKey> key = cells ? KeyOf(*cells) : std::nullopt;
+    if (key && map_.MayHold(*key))
+      (*shards)[RayMap::ShardOf(*key)].push_back({*key, RgbOf(pixels_, x, y)});
+  }
+
+  const SlabForms forms_;
+  const LfPixels& pixels_;
+  const int width_px_;
+  PixelChances chances_;
+  std::vector<int> chosen_;
+  const bool averages_others_;
+  const RayMap& map_;
+  BinnedRays& rays_;
+};
+
+}  // namespace
+
+void BinnedRays::Clear() {
+  for (auto& shard : kept) shard.clear();
+  for (auto& shard : others) shard.clear();
+  looked_at = 0;
+}
+
+void RebinImage(const Slab& slab, const PinholeCamera& lf_camera, LfImageId id,
+                const LfPixels& pixels, const PixelRect& rect,
+                const std::vector<uint16_t>& stored_values, const IdealPixels* ideal_pixels,
+                const RebinOptions& options, const RayMap& map, BinnedRays* rays) {
+  LF_CHECK(Intersection(rect, pixels.rect) == rect || rect.empty());
+  LF_CHECK((ideal_pixels != nullptr) == lf_camera.intrinsics.has_distortion());
+  if (rect.empty()) return;
+  static thread_local Image<uint16_t> p;
+  ProbabilityMap(pixels, stored_values, options.probability, &p);
+  ImageRebinner rebinner(slab, lf_camera, id, pixels, options, map, rays);
+  if (ideal_pixels == nullptr) {
+    for (int y = rect.y_begin; y < rect.y_end; ++y)
+      rebinner.Row(p, y, rect.x_begin, rect.x_end,
+                   [y](int x) { return Vec3(x + 0.5, y + 0.5, 1); });
+    return;
+  }
+  for (const IdealPatch& patch : ideal_pixels->patches()) {
+    const PixelRect part = Intersection(patch.rect, rect);
+    for (int y = part.y_begin; y < part.y_end; ++y) {
+      const IdealArc arc = patch.Scanline(y);
+      rebinner.Row(p, y, part.x_begin, part.x_end,
+                   [&arc](int x) { return arc.At(arc.Parameter(x)); });
+    }
+  }
+}
+
+void InsertRays(const std::vector<BinnedRays>& rays, ThreadPool& pool, RayMap* map) {
+  pool.ForEach(RayMap::kShards, [&](size_t shard) {
+    for (const BinnedRays& of_image : rays) map->Add(shard, of_image.kept[shard]);
+  });
+  map->Trim(pool);
+  pool.ForEach(RayMap::kShards, [&](size_t shard) {
+    for (const BinnedRays& of_image : rays) map->AddToThoseThere(shard, of_image.others[shard]);
+  });
+}
+
+}  // namespace lf

@@ -1,0 +1,54 @@
+// The rays of one LF image into the cells of a slab (thesis 4.3.2): which of them are kept, and
+// where they go.
+//
+// A pixel's ray is kept where a random number in [0, 1) is below its p (probability_map.h). The
+// number depends on seed, LF image and pixel alone: the same rays are kept whatever the threads,
+// the order of the images, and the part of them that is read.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "lf/camera/ideal_pixels.h"
+#include "lf/capture/lf_pixels.h"
+#include "lf/core/ids.h"
+#include "lf/rebinning/probability_map.h"
+#include "lf/rebinning/ray_map.h"
+
+namespace lf {
+
+struct RebinOptions {
+  ProbabilityOptions probability;
+  uint64_t seed = 0;
+  // Rays that are not kept are added to the cells that are there: less noise, but every pixel's ray
+  // must be found (thesis 5.3).
+  bool averages_others = false;
+};
+
+// Rays of some LF images, by the shards of a RayMap. Its memory is used again.
+struct BinnedRays {
+  std::array<std::vector<BinnedRay>, RayMap::kShards> kept;
+  std::array<std::vector<BinnedRay>, RayMap::kShards> others;  // empty unless averages_others
+  uint64_t looked_at = 0;                                      // LF pixels
+
+  void Clear();
+};
+
+// Adds the rays of the pixels of `rect` that run through both planes of the slab. All three colours
+// are of the pixel; of a mosaic those that it did not record are the means of its neighbours'.
+//   pixels         at least those of `rect`, and PixelsAround() more where the image has them
+//   stored_values  StoredValueTable() of the light field
+//   ideal_pixels   of a camera with lens distortion, else null
+//   map            rays of cells that it has dropped are left out
+void RebinImage(const Slab& slab, const PinholeCamera& lf_camera, LfImageId id,
+                const LfPixels& pixels, const PixelRect& rect,
+                const std::vector<uint16_t>& stored_values, const IdealPixels* ideal_pixels,
+                const RebinOptions& options, const RayMap& map, BinnedRays* rays);
+
+// Puts them into the map, by all threads, and cuts that to its size. Others are added to the cells
+// that are there then: with these it matters which LF images are given together, but not their
+// order.
+void InsertRays(const std::vector<BinnedRays>& rays, ThreadPool& pool, RayMap* map);
+
+}  // namespace lf

@@ -1,0 +1,222 @@
+#include "lf/rebinning/rebin_image.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "lf/camera/testing_scenes.h"
+#include "lf/core/random.h"
+
+namespace lf {
+namespace {
+
+Slab TestSlab() {
+  Slab slab;
+  slab.uv.origin_world = Vec3(0, 0, 1);
+  slab.r_st_w = 1e-3;
+  slab.r_uv_w = 2e-3;
+  return slab;
+}
+
+PinholeCamera TestCamera(const Distortion& distortion = {}) {
+  PinholeCamera camera;
+  camera.intrinsics = {90, 91, 41, 29, 0.5, 80, 60, distortion};
+  camera.cam_from_world = *LookAlong(Vec3(0.01, -0.02, 0.03), Vec3(0.1, -0.05, 1), -Vec3::UnitY());
+  return camera;
+}
+
+LfPixels Noise(const PixelRect& rect, BayerPattern bayer) {
+  LfPixels pixels(rect, bayer);
+  for (int y = 0; y < rect.height(); ++y)
+    for (int x = 0; x < rect.width(); ++x)
+      for (int c = 0; c < std::min(3, pixels.radiance.channels()); ++c)
+        pixels.radiance.at(x, y, c) =
+            static_cast<uint16_t>(RandomBits(3, (rect.y_begin + y) * 4096 + rect.x_begin + x, c));
+  return pixels;
+}
+
+std::multiset<CellKey> Keys(const BinnedRays& rays) {
+  std::multiset<CellKey> keys;
+  for (size_t shard = 0; shard < RayMap::kShards; ++shard)
+    for (const BinnedRay& ray : rays.kept[shard]) {
+      EXPECT_EQ(RayMap::ShardOf(ray.cell), shard);
+      keys.insert(ray.cell);
+    }
+  return keys;
+}
+
+size_t CountOf(const std::array<std::vector<BinnedRay>, RayMap::kShards>& shards) {
+  size_t count = 0;
+  for (const auto& shard : shards) count += shard.size();
+  return count;
+}
+
+RebinOptions Every() {
+  RebinOptions options;
+  options.probability = {0, 0, 0, 0.999999, 0};
+  return options;
+}
+
+// How many of the pixels' rays are in other cells than the law says.
+size_t Misplaced(const PinholeCamera& camera, const IdealPixels* ideal) {
+  const Slab slab = TestSlab();
+  const PixelRect rect{0, 0, 80, 60};
+  const LfPixels pixels = Noise(rect, BayerPattern::kNone);
+  BinnedRays rays;
+  RebinImage(slab, camera, {3}, pixels, rect, StoredValueTable({}), ideal, Every(), RayMap(10),
+             &rays);
+  EXPECT_EQ(rays.looked_at, 80u * 60);
+  const std::multiset<CellKey> found = Keys(rays);
+  PinholeCamera without = camera;
+  without.intrinsics.distortion = {};
+  const DistortionMap map(camera.intrinsics.distortion);
+  size_t missing = 0;
+  std::multiset<CellKey> expected;
+  for (int y = 0; y < 60; ++y)
+    for (int x = 0; x < 80; ++x) {
+      Vec3 position(x + 0.5, y + 0.5, 1);
+      if (ideal != nullptr) position = *IdealPosition(camera.intrinsics, map, x + 0.5, y + 0.5);
+      const auto point = Parameterize(
+          slab, RayOfPixel(without, position.x() / position.z(), position.y() / position.z()));
+      expected.insert(*CellOf(slab, *point));
+    }
+  EXPECT_EQ(found.size(), expected.size());
+  for (const CellKey key : expected) missing += found.count(key) == 0 ? 1 : 0;
+  return missing;
+}
+
+TEST(RebinImage, RaysAreInTheirCells) { EXPECT_LE(Misplaced(TestCamera(), nullptr), 2u); }
+
+TEST(RebinImage, AlsoThroughALensThatBendsThem) {
+  Distortion distortion;
+  distortion.model = DistortionModel::kRadialTangential;
+  distortion.parameters[0] = 0.05;
+  const PinholeCamera camera = TestCamera(distortion);
+  const IdealPixels ideal(camera.intrinsics);
+  EXPECT_LE(Misplaced(camera, &ideal), 20u);
+}
+
+TEST(RebinImage, KeepsAsManyAsItsProbabilitiesSay) {
+  const PixelRect rect{0, 0, 80, 60};
+  const LfPixels pixels = Noise(rect, BayerPattern::kNone);
+  const std::vector<uint16_t> table = StoredValueTable({});
+  RebinOptions options;
+  options.probability = {1, 0.5, 0, 0.1, 0};
+  double expected = 0;
+  Image<uint16_t> map;
+  ProbabilityMap(pixels, table, options.probability, &map);
+  for (const uint16_t p : map.pixels()) expected += p / 65535.0;
+  double sum = 0;
+  std::multiset<CellKey> first;
+  for (uint32_t i = 0; i < 20; ++i) {
+    options.seed = i / 10;
+    BinnedRays rays;
+    RebinImage(TestSlab(), TestCamera(), {i % 10}, pixels, rect, table, nullptr, options,
+               RayMap(10), &rays);
+    sum += static_cast<double>(CountOf(rays.kept));
+    EXPECT_EQ(CountOf(rays.others), 0u);
+    if (i == 0)
+      first = Keys(rays);
+    else
+      EXPECT_NE(Keys(rays), first);  // another LF image or seed, other rays
+  }
+  EXPECT_NEAR(sum / 20, expected, 4 * std::sqrt(expected / 20));
+}
+
+TEST(RebinImage, APartKeepsWhatTheWholeKeepsThere) {
+  const std::vector<uint16_t> table = StoredValueTable({});
+  RebinOptions options;
+  options.probability = {1, 0.5, 0, 0.1, 0};
+  options.averages_others = true;
+  for (const BayerPattern bayer : {BayerPattern::kNone, BayerPattern::kGrbg}) {
+    const bool is_mosaic = bayer != BayerPattern::kNone;
+    const PixelRect rect{20, 15, 57, 48};
+    const int around = PixelsAround(options.probability, is_mosaic);
+    const PixelRect read{rect.x_begin - around, rect.y_begin - around, rect.x_end + around,
+                         rect.y_end + around};
+    BinnedRays of_whole, of_part;
+    RebinImage(TestSlab(), TestCamera(), {5}, Noise({0, 0, 80, 60}, bayer), rect, table, nullptr,
+               options, RayMap(10), &of_whole);
+    RebinImage(TestSlab(), TestCamera(), {5}, Noise(read, bayer), rect, table, nullptr, options,
+               RayMap(10), &of_part);
+    for (size_t shard = 0; shard < RayMap::kShards; ++shard) {
+      ASSERT_EQ(of_whole.kept[shard].size(), of_part.kept[shard].size());
+      for (size_t i = 0; i < of_whole.kept[shard].size(); ++i) {
+        EXPECT_EQ(of_whole.kept[shard][i].cell, of_part.kept[shard][i].cell);
+        EXPECT_EQ(of_whole.kept[shard][i].rgb, of_part.kept[shard][i].rgb);
+      }
+    }
+    EXPECT_EQ(CountOf(of_whole.kept) + CountOf(of_whole.others),
+              static_cast<size_t>(rect.pixel_count()));
+  }
+}
+
+// Where colours change evenly, all three of a mosaic are those of the light.
+TEST(RebinImage, MosaicsGiveAllColours) {
+  const PixelRect rect{0, 0, 80, 60};
+  const auto light = [](int x, int y, int c) {
+    return static_cast<uint16_t>(5000 + 200 * c + 300 * x + (100 + 40 * c) * y);
+  };
+  for (const BayerPattern bayer : {BayerPattern::kRggb, BayerPattern::kGbrg}) {
+    LfPixels pixels(rect, bayer);
+    for (int y = 0; y < 60; ++y)
+      for (int x = 0; x < 80; ++x)
+        pixels.radiance.at(x, y) = light(x, y, BayerChannel(bayer, x, y));
+    pixels.Mask(40, 30);
+    Slab slab = TestSlab();
+    slab.r_uv_w = 1e-4;  // a cell for each pixel
+    BinnedRays rays;
+    RebinImage(slab, TestCamera(), {0}, pixels, {1, 1, 79, 59}, StoredValueTable({}), nullptr,
+               Every(), RayMap(10), &rays);
+    size_t right = 0, count = 0;
+    for (const auto& shard : rays.kept)
+      for (const BinnedRay& ray : shard) {
+        ++count;
+        bool is_light = false;
+        for (int y = 1; y < 59 && !is_light; ++y)
+          for (int x = 1; x < 79 && !is_light; ++x)
+            is_light = std::abs(ray.rgb[0] - light(x, y, 0)) <= 1 &&
+                       std::abs(ray.rgb[1] - light(x, y, 1)) <= 1 &&
+                       std::abs(ray.rgb[2] - light(x, y, 2)) <= 1;
+        right += is_light ? 1 : 0;
+      }
+    EXPECT_EQ(count, 78u * 58 - 1);
+    EXPECT_GE(right, count - 8);  // but beside the masked one
+  }
+}
+
+TEST(RebinImage, OthersMakeNoCells) {
+  const PixelRect rect{0, 0, 80, 60};
+  const std::vector<uint16_t> table = StoredValueTable({});
+  RebinOptions options;
+  options.probability = {1, 0.2, 0, 0.02, 0};
+  Slab slab = TestSlab();
+  slab.r_uv_w = 0.02;  // some pixels in each
+  ThreadPool pool(2);
+  const auto cells_of = [&](bool averages, bool reversed) {
+    options.averages_others = averages;
+    RayMap map(100000);
+    std::vector<BinnedRays> rays(4);
+    for (uint32_t i = 0; i < 4; ++i)
+      RebinImage(slab, TestCamera(), {i}, Noise(rect, BayerPattern::kNone), rect, table, nullptr,
+                 options, map, &rays[i]);
+    if (reversed) std::reverse(rays.begin(), rays.end());
+    InsertRays(rays, pool, &map);
+    return map.Cells(pool);
+  };
+  const std::vector<BinnedCell> kept = cells_of(false, false), all = cells_of(true, false);
+  ASSERT_EQ(kept.size(), all.size());
+  uint64_t rays_kept = 0, rays_all = 0;
+  for (size_t i = 0; i < kept.size(); ++i) {
+    EXPECT_EQ(kept[i].cell, all[i].cell);
+    rays_kept += kept[i].count;
+    rays_all += all[i].count;
+  }
+  EXPECT_GT(rays_all, 3 * rays_kept);
+  EXPECT_EQ(cells_of(true, true), all);
+}
+
+}  // namespace
+}  // namespace lf
