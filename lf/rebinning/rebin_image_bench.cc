@@ -64,7 +64,7 @@ void Rebin(benchmark::State& state, bool averages_others) {
   uint32_t image = 0;
   for (auto _ : state) {
     rays[0].Clear();
-    RebinImage(BenchSlab(), BenchCamera(), {image++ % 64}, pixels, pixels.rect, table, nullptr,
+    RebinImage(BenchSlab(), BenchCamera(), {image++ % 8}, pixels, pixels.rect, table, nullptr,
                options, map, rays.data());
     InsertRays(rays, pool, &map);
   }
