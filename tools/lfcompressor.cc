@@ -75,11 +75,15 @@ void AddOptions(CLI::App& app, Arguments& a) {
   app.add_option("--shard-size", a.shard_size,
                  "Codes in files of about this size beside STORE.lfs, such as 4G")
       ->check(lf::NotEmpty());
-  auto* resume = app.add_flag("--resume", a.resume, "Go on with an unfinished store");
-  app.add_flag("--overwrite", a.overwrite, "Replace a store that is there")->excludes(resume);
-  app.add_flag("--verify", a.verify,
-               "Read all codes back, compare and decode them; a store that is there is checked "
-               "alone");
+  auto* resume =
+      app.add_flag("--resume", a.resume,
+                   "Go on with an unfinished store of the same LF images, options and files");
+  app.add_flag("--overwrite", a.overwrite, "Replace a store that is there, but no other file")
+      ->excludes(resume);
+  app.add_flag(
+      "--verify", a.verify,
+      "Compare the calibration, read all codes back, compare and decode them; a store that "
+      "is there is checked alone");
 }
 
 bool HasPackages(const Arguments& a) {

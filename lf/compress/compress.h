@@ -25,7 +25,7 @@ struct CompressOptions {
   // Instead of the threshold: that with which LF images have this PSNR together, by some of them.
   std::optional<double> target_psnr_db;
   uint64_t shard_bytes = 0;  // as PackedStorePlan
-  bool resume = false;       // an unfinished store
+  bool resume = false;       // an unfinished store; one that is there must be what is asked for
   bool overwrite = false;    // one that is there, unfinished or not
   bool strict = false;       // an LF image that cannot be read is an error
   // Reads all codes back from the disk: each must be what its LF image gives, and be decoded
@@ -74,9 +74,9 @@ struct CompressReport {
 // The settings in words: what a store that goes on compares.
 std::string NameOf(const CodecSettings& settings);
 
-// kUsage: settings, a store that is there; kInput: no LF image can be read, one cannot if strict,
-// a store that is not what its LF images give (verify); kOutput; kInterrupted: what is done is
-// kept.
+// kUsage: settings, a store that is there, another file of its name; kInput: no LF image can be
+// read, one cannot if strict, files that are not those an unfinished store was made from, a store
+// that is not what its LF images give (verify); kOutput; kInterrupted: what is done is kept.
 Result<CompressReport> Compress(const CompressSource& source, const CompressOptions& options,
                                 ThreadPool& pool,
                                 const std::function<void(const CompressProgress&)>& progress);

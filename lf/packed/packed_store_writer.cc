@@ -160,7 +160,6 @@ struct PackedStoreWriter::State {
 
   std::mutex mutex;  // of all below
   std::vector<bool> has;
-  size_t image_count = 0;
   std::optional<Database> database;
   std::optional<Statement> insert_code;
   int shard_count = 0;
@@ -211,7 +210,6 @@ Result<void> PackedStoreWriter::State::Read(const Settings& settings) {
                         return settings.Damaged(fmt::format("a code of LF image {}", id));
                       has[static_cast<size_t>(id)] = true;
                       source_bytes[static_cast<size_t>(id)] = static_cast<uint64_t>(sources);
-                      ++image_count;
                       if (of_shard == shard_count) bytes_in_shard += static_cast<uint64_t>(bytes);
                       return {};
                     });
@@ -425,11 +423,6 @@ bool PackedStoreWriter::Has(LfImageId id) const {
   return state_->has[id.value];
 }
 
-size_t PackedStoreWriter::image_count() const {
-  const std::lock_guard lock(state_->mutex);
-  return state_->image_count;
-}
-
 Result<void> PackedStoreWriter::Add(LfImageId id, const CodedImage& image) {
   const std::lock_guard lock(state_->mutex);
   State& state = *state_;
@@ -439,7 +432,6 @@ Result<void> PackedStoreWriter::Add(LfImageId id, const CodedImage& image) {
   if (const Result<void> inserted = state.Insert(id, image); !inserted)
     return state.Failed(inserted.error());
   state.has[id.value] = true;
-  ++state.image_count;
   if (state.batch_size < kImagesPerBatch &&
       std::chrono::steady_clock::now() - state.batch_begin < kBatchAge)
     return {};

@@ -74,7 +74,6 @@ class PackedStoreWriter {
   ~PackedStoreWriter();  // commits nothing: what was not is lost
 
   bool Has(LfImageId id) const;
-  size_t image_count() const;  // of those it has
   // CodedImage::source_bytes of one that it had when it was opened; 0 of others.
   uint64_t SourceBytes(LfImageId id) const;
 

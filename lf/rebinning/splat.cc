@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "lf/core/check.h"
+#include "lf/plate/tile_grid.h"
 #include "lf/rebinning/splat_tile.h"
 
 namespace lf {
@@ -13,42 +14,38 @@ namespace {
 // Sums of a tile stay in the second level cache (splat_tile.h).
 constexpr int kTileWidth = 64;
 constexpr int kTileHeight = 32;
+
 // Which rays reach which tile: [begins[tile], begins[tile + 1]) of `rays`.
 struct TileRays {
   std::vector<size_t> begins;
   std::vector<uint32_t> rays;
 };
 
-struct TileGridOfFrame {
-  int columns;
-  int rows;
-  double reach_px;
-
-  // Calls visit(tile) for the tiles that a ray reaches.
-  template <class Visit>
-  void ForEachTile(const FrameRay& ray, const Visit& visit) const {
-    const auto tile_of = [](double position, int size, int count) {
-      return std::clamp(static_cast<int>(std::floor(position / size)), 0, count - 1);
-    };
-    const int x0 = tile_of(ray.x_px - reach_px, kTileWidth, columns);
-    const int x1 = tile_of(ray.x_px + reach_px, kTileWidth, columns);
-    const int y0 = tile_of(ray.y_px - reach_px, kTileHeight, rows);
-    const int y1 = tile_of(ray.y_px + reach_px, kTileHeight, rows);
-    for (int y = y0; y <= y1; ++y)
-      for (int x = x0; x <= x1; ++x) visit(static_cast<size_t>(y) * columns + x);
-  }
-};
+// Calls visit(tile) for the tiles that a ray reaches.
+template <class Visit>
+void ForEachTile(const TileGrid& grid, const FrameRay& ray, double reach_px, const Visit& visit) {
+  const auto tile_of = [](double position, int size, int count) {
+    return std::clamp(static_cast<int>(std::floor(position / size)), 0, count - 1);
+  };
+  const int columns = grid.columns(), rows = grid.rows();
+  const int x0 = tile_of(ray.x_px - reach_px, kTileWidth, columns);
+  const int x1 = tile_of(ray.x_px + reach_px, kTileWidth, columns);
+  const int y0 = tile_of(ray.y_px - reach_px, kTileHeight, rows);
+  const int y1 = tile_of(ray.y_px + reach_px, kTileHeight, rows);
+  for (int y = y0; y <= y1; ++y)
+    for (int x = x0; x <= x1; ++x) visit(static_cast<size_t>(y) * columns + x);
+}
 
 // In the order of the rays, whatever the threads: counted, then placed.
-TileRays SortIntoTiles(std::span<const FrameRay> rays, const TileGridOfFrame& grid,
+TileRays SortIntoTiles(std::span<const FrameRay> rays, const TileGrid& grid, double reach_px,
                        ThreadPool& pool) {
   constexpr size_t kParts = 32;
-  const size_t tiles = static_cast<size_t>(grid.columns) * grid.rows;
+  const size_t tiles = grid.tile_count();
   std::vector<std::vector<size_t>> places(kParts, std::vector<size_t>(tiles));
   const auto part_begin = [&](size_t part) { return part * rays.size() / kParts; };
   pool.ForEach(kParts, [&](size_t part) {
     for (size_t i = part_begin(part); i < part_begin(part + 1); ++i)
-      grid.ForEachTile(rays[i], [&](size_t tile) { ++places[part][tile]; });
+      ForEachTile(grid, rays[i], reach_px, [&](size_t tile) { ++places[part][tile]; });
   });
   TileRays sorted;
   size_t next = 0;
@@ -64,7 +61,7 @@ TileRays SortIntoTiles(std::span<const FrameRay> rays, const TileGridOfFrame& gr
   sorted.rays.resize(next);
   pool.ForEach(kParts, [&](size_t part) {
     for (size_t i = part_begin(part); i < part_begin(part + 1); ++i)
-      grid.ForEachTile(rays[i], [&](size_t tile) {
+      ForEachTile(grid, rays[i], reach_px, [&](size_t tile) {
         sorted.rays[places[part][tile]++] = static_cast<uint32_t>(i);
       });
   });
@@ -220,21 +217,6 @@ SplatFrame EmptyFrame(int width_px, int height_px) {
 
 }  // namespace
 
-LensPointSets MakeLensPoints(const Aperture& aperture, int count, int k, uint64_t seed) {
-  LF_CHECK(count >= 1 && k >= 1);
-  LensPointSets points;
-  if (aperture.radius_w == 0) {
-    points.sets = {{Vec2::Zero()}};
-    return points;
-  }
-  points.k = k;
-  points.sets.resize(static_cast<size_t>(k) * k);
-  // Every k * k-th of one sequence: each set is spread, and all together are.
-  const std::vector<Vec2> all = SampleLens(aperture, count * k * k, seed);
-  for (size_t i = 0; i < all.size(); ++i) points.sets[i % points.sets.size()].push_back(all[i]);
-  return points;
-}
-
 FrameReach ReachOf(const QueryKernel& kernel) {
   return {kReach_sigmas * kernel.sigma_st_w, kReach_sigmas * kernel.sigma_uv_px};
 }
@@ -244,24 +226,18 @@ SplatFrame Splat(std::span<const FrameRay> rays, int width_px, int height_px,
   LF_CHECK(kernel.sigma_st_w > 0 && kernel.sigma_uv_px > 0);
   LF_CHECK(rays.size() < UINT32_MAX);
   SplatFrame frame = EmptyFrame(width_px, height_px);
-  const TileGridOfFrame grid{(width_px + kTileWidth - 1) / kTileWidth,
-                             (height_px + kTileHeight - 1) / kTileHeight,
-                             kReach_sigmas * kernel.sigma_uv_px};
-  const TileRays by_tile = SortIntoTiles(rays, grid, pool);
+  const TileGrid grid{width_px, height_px, kTileWidth, kTileHeight};
+  const TileRays by_tile = SortIntoTiles(rays, grid, kReach_sigmas * kernel.sigma_uv_px, pool);
   const LensGrid lens(lens_points, kReach_sigmas * kernel.sigma_st_w);
   std::vector<std::vector<LensPointGroup>> groups;
   for (const auto& set : lens_points.sets) groups.push_back(GroupsOf(set));
-  pool.ForEach(static_cast<size_t>(grid.columns) * grid.rows, [&](size_t tile) {
-    const int x = static_cast<int>(tile % grid.columns) * kTileWidth;
-    const int y = static_cast<int>(tile / grid.columns) * kTileHeight;
-    const PixelRect rect{x, y, std::min(x + kTileWidth, width_px),
-                         std::min(y + kTileHeight, height_px)};
+  pool.ForEach(grid.tile_count(), [&](size_t tile) {
     TileSplatter splatter(kernel, lens_points, groups, lens);
     splatter.Run(
         rays,
         std::span(by_tile.rays)
             .subspan(by_tile.begins[tile], by_tile.begins[tile + 1] - by_tile.begins[tile]),
-        rect, &frame);
+        grid.RectOf(tile), &frame);
   });
   return frame;
 }

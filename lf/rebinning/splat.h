@@ -7,24 +7,14 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "lf/core/image.h"
 #include "lf/core/parallel.h"
 #include "lf/rebinning/frame_rays.h"
+#include "lf/rebinning/lens_points.h"
 #include "lf/rebinning/ray_query.h"
 
 namespace lf {
-
-// Lens points in k * k sets: element (x, y) has those of set (y % k) * k + x % k. Several sets make
-// noise of what would be steps in large blurs.
-struct LensPointSets {
-  int k = 1;
-  std::vector<std::vector<Vec2>> sets;  // [k * k]
-};
-// `count` points in each of k * k sets, spread uniformly over the opening, all different
-// (camera/aperture.h, SampleLens). Of a pinhole there is one.
-LensPointSets MakeLensPoints(const Aperture& aperture, int count, int k, uint64_t seed);
 
 struct SplatFrame {
   Image<float> rgb;    // [height][width][3]: mean of the rays that could be interpolated, linear

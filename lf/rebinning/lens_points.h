@@ -1,0 +1,22 @@
+// The points of the lens that a frame's rays are asked for (thesis 4.3.3, Eq. 4.7).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "lf/camera/aperture.h"
+#include "lf/core/geometry.h"
+
+namespace lf {
+
+// Lens points in k * k sets: element (x, y) has those of set (y % k) * k + x % k. Several sets make
+// noise of what would be steps in large blurs.
+struct LensPointSets {
+  int k = 1;
+  std::vector<std::vector<Vec2>> sets;  // [k * k]
+};
+// `count` points in each of k * k sets, spread uniformly over the opening, all different
+// (camera/aperture.h, SampleLens). Of a pinhole there is one.
+LensPointSets MakeLensPoints(const Aperture& aperture, int count, int k, uint64_t seed);
+
+}  // namespace lf
