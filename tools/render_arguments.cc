@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <initializer_list>
 
 #include "tools/common/byte_size.h"
 #include "tools/common/duration.h"
@@ -13,17 +12,6 @@
 #include "lf/pipeline/frame_range.h"
 
 namespace lf {
-namespace {
-
-// Words of the full contract that this version cannot honour are refused, never ignored.
-Result<void> CheckAvailable(const std::string& option, const std::string& value,
-                            std::initializer_list<const char*> available) {
-  for (const char* word : available)
-    if (value == word) return {};
-  return UsageError(fmt::format("{} {} is not available in version {}", option, value, Version()));
-}
-
-}  // namespace
 
 void RenderArguments::AddTo(CLI::App& app) {
   app.add_option(
@@ -70,7 +58,12 @@ void RenderArguments::AddTo(CLI::App& app) {
                "Also write each frame's sums and counts: frame_0001.plate");
   app.add_option("--smooth-below", smooth_below,
                  "Smooth elements with fewer rays than this; empty ones are always filled");
-  app.add_option("--mode", mode, "collect")->check(CLI::IsMember({"collect", "rebin", "hybrid"}));
+  app.add_option(
+         "--mode", mode,
+         "collect: frames are the rays that were recorded; rebin: interpolated between rays "
+         "that are kept in memory; hybrid: collected, and interpolated where the lens got "
+         "no rays")
+      ->check(CLI::IsMember({"collect", "rebin", "hybrid"}));
   app.add_option(
          "--estimator", estimator,
          "bilinear (auto): every element reads each LF image where it looks; nearest: every "
@@ -95,6 +88,7 @@ void RenderArguments::AddTo(CLI::App& app) {
   app.add_option("--back-end", back_end,
                  "fast, or reference: the literal formulas, one ray at a time")
       ->check(CLI::IsMember({"fast", "reference"}));
+  rebin.AddTo(app);
 }
 
 bool RenderArguments::HasPackages() const {
@@ -102,7 +96,6 @@ bool RenderArguments::HasPackages() const {
 }
 
 Result<void> RenderArguments::Check(bool seed_given) const {
-  LF_RETURN_IF_ERROR(CheckAvailable("--mode", mode, {"collect"}));
   if (HasPackages()) {
     if (seed_given)
       return UsageError("--seed: packages have the order that they were made with: leave it out");
@@ -146,6 +139,9 @@ Result<RenderOptions> RenderArguments::MakeOptions(const CommonOptions& common, 
     if (filter == NameOf(known)) options.reading.filter = known;
   for (const LensWeights weights : {LensWeights::kAuto, LensWeights::kArea, LensWeights::kHat})
     if (lens_weights == NameOf(weights)) options.lens_weights = weights;
+  for (const RenderMode known : {RenderMode::kRebin, RenderMode::kHybrid})
+    if (mode == NameOf(known)) options.mode = known;
+  LF_ASSIGN_OR_RETURN(options.rebin, rebin.Make(common.seed));
   if (back_end == "reference") options.back_end = CollectBackEnd::kReference;
   options.version = Version();
   LF_ASSIGN_OR_RETURN(options.dump_every_s, ParseDuration(dump_every, "--dump-every"));

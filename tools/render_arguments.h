@@ -10,6 +10,7 @@
 
 #include "tools/common/light_field_argument.h"
 #include "tools/common/program.h"
+#include "tools/rebin_arguments.h"
 
 #include "lf/capture/radiance.h"
 #include "lf/core/result.h"
@@ -23,6 +24,7 @@ struct RenderArguments {
   std::string output, video, frames, memory = "8G", format = "exr", mode = "collect";
   std::string estimator = "auto", filter = "auto", lens_weights = "auto", back_end = "fast";
   std::string rectangles = "on", dump_every = "30s", stop_when, require;
+  RebinArguments rebin;
   int64_t max_images = 0;
   uint32_t smooth_below = 0;
   bool no_contact_sheet = false, resume = false, overwrite = false, keep_plates = false;

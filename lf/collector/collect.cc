@@ -79,6 +79,10 @@ class FrameCollector::State {
   bool Takes(size_t frame) const {
     return !is_stopped_[frame] && progress_[frame].places_done < places_[frame].end;
   }
+  // Whether the images before this place are still to be taken beside the frames.
+  bool TakerWants(uint32_t place_end) const {
+    return options_.taker != nullptr && options_.taker->places_done() < place_end;
+  }
   uint32_t PlaceEnd() const {
     return options_.place_end > 0 ? options_.place_end : static_cast<uint32_t>(light_field_.size());
   }
@@ -117,7 +121,7 @@ Result<bool> FrameCollector::State::Step() {
   const Clock::time_point start = Clock::now();
   std::vector<BatchFrame> takers = FramesOf(batch_);
   // Frames may have been stopped since the next batch was planned.
-  while (takers.empty()) {
+  while (takers.empty() && !TakerWants(batch_.place_end)) {
     if (batch_.end > batch_.begin) images_done_ = batch_.end;
     batch_ = next_.end > next_.begin ? std::move(next_) : BatchFrom(images_done_);
     next_ = {};
@@ -153,7 +157,8 @@ Result<bool> FrameCollector::State::Step() {
   times_.load_wall_s = static_cast<double>(load_wall_ns_) * 1e-9;
   times_.collect_cpu_s = collector_.cpu_seconds();
   times_.wall_s += SecondsSince(start);
-  if (!all_done) return Interruption();
+  if (!all_done || (takers.empty() && IsInterrupted())) return Interruption();
+  if (TakerWants(batch_.place_end)) options_.taker->Take(batch_.images, batch_.place_end);
   images_done_ = batch_.end;
   for (BatchImage& image : batch_.images) spare_.push_back(std::move(image.pixels));
   batch_ = {};
@@ -165,6 +170,7 @@ size_t FrameCollector::State::FirstWanted(size_t from) const {
   uint32_t place = UINT32_MAX;
   for (size_t f = 0; f < progress_.size(); ++f)
     if (Takes(f)) place = std::min(place, progress_[f].places_done);
+  if (TakerWants(PlaceEnd())) place = std::min(place, options_.taker->places_done());
   if (place == UINT32_MAX) return order_.size();
   const auto first = std::lower_bound(
       order_.begin(), order_.end(), place,
@@ -215,8 +221,10 @@ void FrameCollector::State::Load(const Batch& batch, Loading* loading) {
   const ThreadCpuTimer timer;
   const SelectedImage& selected = order_[loading->index];
   // Those of all frames where all take it.
-  const PixelRect rect =
+  PixelRect rect =
       batch.frames.empty() ? selected.rect : collector_.RectOf(selected.id, batch.frames);
+  if (TakerWants(selected.place + 1))
+    rect = Bounds(rect, options_.taker->RectOf(selected.id, selected.place));
   loading->pixels =
       rect.empty() ? LfPixels()
                    : LoadWithoutThrowing(store_, selected.id, rect,

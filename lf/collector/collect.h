@@ -14,6 +14,7 @@
 #include "lf/camera/render_camera.h"
 #include "lf/capture/light_field.h"
 #include "lf/collector/collect_batch.h"
+#include "lf/collector/image_taker.h"
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
 #include "lf/plate/sensor_plate.h"
@@ -41,6 +42,8 @@ struct CollectOptions {
   // frame alike. 0: no rule, batches are not cut. Else a multiple of kDecisionPlaces.
   uint32_t decision_places = kDecisionPlaces;
   FrameImageWeights weights;
+  // Takes part in all batches beside the frames, if given; the plates are the same.
+  ImageTaker* taker = nullptr;
   bool whole_images = false;  // as the order was selected (SelectOptions)
   // All places are below it; 0: they are those of the light field. More of a package.
   uint32_t place_end = 0;

@@ -85,7 +85,10 @@ void BatchCollector::Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>
     return;
   }
   const std::span<BatchFrame> takers = FramesThatMayTake(batch, frames);
-  if (takers.empty()) pool_.ForEach(other_items.count, other_items.run);
+  if (takers.empty()) {
+    pool_.ForEach(other_items.count, other_items.run);
+    return;
+  }
   size_t frame_bytes = 1;
   for (const BatchImage& image : batch)
     frame_bytes +=

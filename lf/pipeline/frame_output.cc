@@ -61,12 +61,14 @@ std::filesystem::path FrameOutput::PathOf(FrameId frame) const {
 }
 
 Result<FrameReport> FrameOutput::Write(FrameId frame, const FrameRays& rays, const FrameLens& lens,
-                                       const SensorPlate& plate, const std::filesystem::path& to,
+                                       const SensorPlate& plate, const Completion* completion,
+                                       const std::filesystem::path& to,
                                        const std::function<bool()>& is_interrupted) const {
   const auto start = std::chrono::steady_clock::now();
   const RenderCamera& camera = path_.Camera(frame);
   DevelopOptions develop = DevelopOptionsFor(light_field_.encoding, options_.smooth_below);
   develop.is_interrupted = is_interrupted;
+  develop.completion = completion;
   DevelopedFrame developed = Develop(plate, develop, pool_);
   if (is_interrupted && is_interrupted())
     return Error{ErrorKind::kInterrupted, fmt::format("{}: interrupted", to.string())};

@@ -31,10 +31,12 @@ class FrameOutput {
       : light_field_(light_field), path_(path), options_(options), pool_(pool) {}
 
   // Develops the plate and writes its picture under any name. Its report lacks the samples.
+  //   completion      what rebinned rays say of it, or null
   //   is_interrupted  asked all the time, by any thread, if given
   // kOutput: the disk. kInterrupted: nothing is written.
   Result<FrameReport> Write(FrameId frame, const FrameRays& rays, const FrameLens& lens,
-                            const SensorPlate& plate, const std::filesystem::path& to,
+                            const SensorPlate& plate, const Completion* completion,
+                            const std::filesystem::path& to,
                             const std::function<bool()>& is_interrupted) const;
 
   // From the files of the frames, so that it does not matter when and by whom they were rendered.

@@ -17,6 +17,12 @@
 #include "lf/store/open_store.h"
 
 namespace lf {
+
+const char* NameOf(RenderMode mode) {
+  constexpr const char* kNames[] = {"collect", "rebin", "hybrid"};
+  return kNames[static_cast<int>(mode)];
+}
+
 namespace {
 
 RunStateOptions StateOptions(const Package& package, const RenderOptions& options) {
@@ -63,6 +69,7 @@ class Renderer {
   bool IsWhole() const { return package_.name.empty(); }
   Result<void> Begin();
   Result<void> CheckChoices() const;
+  Result<size_t> PlanRebinning();
   std::vector<FrameId> FramesToRender();
   Result<void> RunPasses(std::span<const FrameId> frames);
   Result<void> RunPass(const RenderJob& job, std::span<const FrameId> frames, size_t frames_left);
@@ -83,6 +90,7 @@ class Renderer {
 
   std::vector<FrameId> frames_;
   MemoryPlan plan_;
+  size_t max_cells_ = 0;  // of rebinned rays
   std::unique_ptr<RunState> state_;
   RenderProgress done_;
   RenderReport totals_;
@@ -111,9 +119,13 @@ Result<void> Renderer::Begin() {
                                                   ? Mosaics::kToRgb
                                                   : Mosaics::kAsRecorded));
   const Intrinsics& plate = path_.Camera(frames_.front()).pinhole.intrinsics;
-  LF_ASSIGN_OR_RETURN(
-      plan_, PlanMemory(options_.memory_bytes, package_.light_field, options_.reading.estimator,
-                        plate.width_px, plate.height_px, frames_.size(), pool_.thread_count()));
+  LF_ASSIGN_OR_RETURN(const size_t rebin_bytes, PlanRebinning());
+  // Without plates all frames are in one pass.
+  LF_ASSIGN_OR_RETURN(plan_, PlanMemory(options_.memory_bytes - rebin_bytes, package_.light_field,
+                                        options_.reading.estimator, plate.width_px, plate.height_px,
+                                        options_.mode == RenderMode::kRebin ? 1 : frames_.size(),
+                                        pool_.thread_count()));
+  if (options_.mode == RenderMode::kRebin) plan_.frames_per_pass = frames_.size();
   LF_RETURN_IF_ERROR(CreateFolder(options_.output_folder));
   if (options_.video) {
     LF_RETURN_IF_ERROR(CheckVideoTool());
@@ -140,7 +152,27 @@ Result<void> Renderer::Begin() {
   return {};
 }
 
+// What is set aside for rebinned rays.
+Result<size_t> Renderer::PlanRebinning() {
+  if (options_.mode == RenderMode::kCollect) return size_t{0};
+  const size_t part = options_.memory_bytes / (options_.mode == RenderMode::kRebin ? 2 : 4);
+  max_cells_ = options_.rebin.max_cells;
+  if (max_cells_ == 0)
+    max_cells_ = (part - std::min(part, RebinnedRays::BytesOf(0))) / RebinnedRays::kBytesPerCell;
+  const size_t bytes = RebinnedRays::BytesOf(max_cells_);
+  if (max_cells_ < RebinnedRays::kLeastCells || bytes > options_.memory_bytes)
+    return OutputError(fmt::format(
+        "--memory {} MiB has no room for {} rebinned rays, which take {} MiB: give more, or fewer "
+        "--max-rays",
+        options_.memory_bytes >> 20, std::max(max_cells_, RebinnedRays::kLeastCells), bytes >> 20));
+  return bytes;
+}
+
 Result<void> Renderer::CheckChoices() const {
+  if (options_.mode == RenderMode::kRebin && (options_.CountsRays() || options_.keep_plates))
+    return UsageError(
+        "--mode rebin: nothing is collected, so that --stop-when, --require, --smooth-below and "
+        "--keep-plates have no rays: leave them out, or use hybrid");
   const std::optional<size_t>& most = package_.choices.max_image_count;
   if (most && (!options_.max_image_count || *options_.max_image_count > *most))
     return UsageError(fmt::format(
@@ -208,15 +240,23 @@ Result<void> Renderer::RunPasses(std::span<const FrameId> frames) {
       *state_,
       clock,
       totals_,
+      max_cells_,
       begin_s_,
       black_count_,
       [this](const CollectProgress& pass, size_t finished_count) { Report(pass, finished_count); }};
   // Better known before a night's work than after it; what is there was once found to contribute.
-  if (totals_.pass_count > 1 && IsWhole() && !state_->HasPlates() && state_->finished().empty())
+  if (totals_.pass_count > 1 && IsWhole() && !job.Rebins() && !state_->HasPlates() &&
+      state_->finished().empty())
     LF_RETURN_IF_ERROR(CheckAnyContributes(job, frames));
-  for (size_t begin = 0; begin < frames.size(); begin += per_pass) {
-    const size_t count = std::min(per_pass, frames.size() - begin);
-    LF_RETURN_IF_ERROR(RunPass(job, frames.subspan(begin, count), frames.size() - begin));
+  // Which rays are kept depends on all frames of a pass: these are the same in a render that goes on.
+  const std::span<const FrameId> in_passes = job.Rebins() ? std::span(frames_) : frames;
+  for (size_t begin = 0; begin < in_passes.size(); begin += per_pass) {
+    const size_t count = std::min(per_pass, in_passes.size() - begin);
+    const std::span<const FrameId> of_pass = in_passes.subspan(begin, count);
+    if (std::all_of(of_pass.begin(), of_pass.end(),
+                    [this](FrameId frame) { return state_->finished().contains(frame); }))
+      continue;
+    LF_RETURN_IF_ERROR(RunPass(job, of_pass, in_passes.size() - begin));
   }
   return {};
 }
@@ -242,6 +282,9 @@ Result<void> Renderer::CheckAnyContributes(const RenderJob& job,
 
 Result<void> Renderer::RunPass(const RenderJob& job, std::span<const FrameId> frames,
                                size_t frames_left) {
+  const auto finished_before = std::count_if(frames.begin(), frames.end(), [this](FrameId frame) {
+    return state_->finished().contains(frame);
+  });
   RenderPass pass(job, frames);
   LF_RETURN_IF_ERROR(pass.Prepare());
   const std::vector<SelectedImage>& images = pass.images();
@@ -269,7 +312,7 @@ Result<void> Renderer::RunPass(const RenderJob& job, std::span<const FrameId> fr
   LF_RETURN_IF_ERROR(pass.Finish());
   done_.image_count += images.size();
   done_.ray_count += rays;
-  done_.frame_count += frames.size();
+  done_.frame_count += frames.size() - static_cast<size_t>(finished_before);
   Report({}, 0);
   return {};
 }
@@ -289,7 +332,12 @@ Result<RenderReport> Renderer::End() {
   totals_.total_s += NowSeconds() - begin_s_;
   totals_.peak_memory_bytes = PeakMemoryBytes();
   LF_RETURN_IF_ERROR(state_->Close(totals_));
-  if (totals_.AcceptedRays() == 0 && IsWhole())
+  const bool are_all_black =
+      totals_.AcceptedRays() == 0 &&
+      std::all_of(totals_.frames.begin(), totals_.frames.end(), [](const FrameReport& frame) {
+        return frame.interpolated_share.value_or(0) == 0;
+      });
+  if (are_all_black && IsWhole())
     return InputError(fmt::format(
         "{}: every frame is black: no ray of {} LF images reached them (are the images masked?)",
         options_.output_folder.string(), totals_.selected_image_count));

@@ -13,6 +13,7 @@
 #include "lf/collector/collect.h"
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
+#include "lf/hybrid/rebinned_rays.h"
 #include "lf/lens_weights/frame_weights.h"
 #include "lf/package/package.h"
 #include "lf/record/report.h"
@@ -27,6 +28,12 @@ struct RenderSignals {
   std::atomic<bool> stop = false;       // write the state and end
   std::atomic<bool> save = false;       // write the state and go on
 };
+
+// What frames are made of: collected rays, rebinned rays, or collected ones, completed by rebinned
+// rays where the lens got none (doc/rebinning.md).
+enum class RenderMode { kCollect, kRebin, kHybrid };
+// "collect", "rebin", "hybrid"
+const char* NameOf(RenderMode mode);
 
 struct RenderOptions {
   std::filesystem::path output_folder;
@@ -55,6 +62,10 @@ struct RenderOptions {
   // neighbours.
   LensWeights lens_weights = LensWeights::kNone;
   CollectBackEnd back_end = CollectBackEnd::kFast;
+  RenderMode mode = RenderMode::kCollect;
+  // Not where kCollect. max_cells 0: as many as fit in half of the memory with kRebin, or a quarter
+  // with kHybrid.
+  RebinPassOptions rebin;
 
   // Checkpoints (run_state.h). They take at most 5 % of the time: the interval stretches itself.
   double dump_every_s = 30;  // 0: none but those asked for by signals

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "lf/collector/around_lens.h"
 #include "lf/core/log.h"
 
 namespace lf {
@@ -30,6 +31,7 @@ RenderPass::RenderPass(const RenderJob& job, std::span<const FrameId> frames) : 
   for (const FrameId frame : frames) {
     frames_.push_back({});
     frames_.back().id = frame;
+    frames_.back().is_finished = job.state.finished().contains(frame);
   }
 }
 
@@ -56,27 +58,11 @@ Result<void> RenderPass::Prepare() {
   if (job_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
   std::vector<PlaceRange> places(frames_.size());
   if (job_.options.max_image_count)
-    places = PlacesOfFirst(*job_.options.max_image_count, job_.index, cameras_, job_.Select(),
-                           job_.pool);
-  // By all threads, since whoever clears a plate waits for its memory.
-  for (size_t f = 0; f < frames_.size(); ++f) plates_.emplace_back(0, 0);
-  job_.pool.ForEach(frames_.size(), [this](size_t f) {
-    const Intrinsics& plate = cameras_[f].pinhole.intrinsics;
-    if (!job_.IsStopped()) plates_[f] = SensorPlate(plate.width_px, plate.height_px);
-  });
-  for (size_t f = 0; f < frames_.size(); ++f) {
-    if (job_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
-    LF_ASSIGN_OR_RETURN(const FrameProgress start,
-                        job_.state.LoadPlate(frames_[f].id, &plates_[f]));
-    places[f].begin = start.places_done;
-    frames_[f].places = {0, places[f].end};
-    frames_[f].earlier_rays = start.rays;
-    frames_[f].saved_places = start.places_done;
-  }
-  SelectOptions select = job_.Select();
-  select.whole_images = job_.options.whole_images;
-  images_ = SelectImages(job_.index, cameras_, select, job_.pool, places);
-  DropUnweighted();
+    places = PlacesOfFirst(*job_.options.max_image_count, job_.index, CamerasToCountBy(),
+                           job_.Select(), job_.pool);
+  if (job_.Rebins()) LF_RETURN_IF_ERROR(PrepareRebinning(places));
+  if (job_.Collects()) LF_RETURN_IF_ERROR(PreparePlates(&places));
+  SelectForPass(places);
   if (job_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
   job_.totals.selected_image_count = std::max(job_.totals.selected_image_count, images_.size());
 
@@ -92,11 +78,16 @@ Result<void> RenderPass::Prepare() {
   if (job_.options.lens_weights != LensWeights::kNone || job_.package.choices.max_angle_rad)
     collect.weights = [this](size_t f, LfImageId id) { return lenses_[f].WeightsOf(id); };
   collect.decision_places = 0;
+  if (rebinned_) {
+    collect.taker = rebinned_.get();
+    collect.decision_places = kDecisionPlaces;
+  }
   if (job_.options.stop_at_samples) {
     // Those of all frames are multiples of the least.
-    collect.decision_places = UINT32_MAX;
+    collect.decision_places = rebinned_ ? kDecisionPlaces : UINT32_MAX;
     for (size_t f = 0; f < frames_.size(); ++f) {
       if (job_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
+      if (frames_[f].is_finished) continue;
       const uint32_t decision =
           DecisionPlaces(job_.index.place_end(), ReachableOf(f).image_count());
       frames_[f].decision_places = decision;
@@ -106,9 +97,95 @@ Result<void> RenderPass::Prepare() {
     }
     if (job_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
   }
-  collector_ = std::make_unique<FrameCollector>(job_.package.light_field, job_.store, cameras_,
-                                                images_, places, collect, job_.pool, &plates_);
+  const auto collected =
+      job_.Collects() ? std::span<const RenderCamera>(cameras_) : std::span<const RenderCamera>();
+  collector_ = std::make_unique<FrameCollector>(
+      job_.package.light_field, job_.store, collected, images_,
+      job_.Collects() ? std::span<const PlaceRange>(places) : std::span<const PlaceRange>(),
+      collect, job_.pool, &plates_);
+  for (size_t f = 0; f < collected.size(); ++f)
+    if (frames_[f].is_finished) collector_->Stop(f);
   return {};
+}
+
+// Rebinned rays are asked of LF images beside the lens, too.
+std::vector<RenderCamera> RenderPass::CamerasToCountBy() const {
+  std::vector<RenderCamera> cameras = cameras_;
+  if (job_.Collects()) return cameras;
+  for (RenderCamera& camera : cameras)
+    camera.aperture.radius_w += CameraDistanceAround(job_.index, camera);
+  return cameras;
+}
+
+Result<void> RenderPass::PreparePlates(std::vector<PlaceRange>* places) {
+  // By all threads, since whoever clears a plate waits for its memory.
+  for (size_t f = 0; f < frames_.size(); ++f) plates_.emplace_back(0, 0);
+  job_.pool.ForEach(frames_.size(), [this](size_t f) {
+    const Intrinsics& plate = cameras_[f].pinhole.intrinsics;
+    if (!job_.IsStopped() && !frames_[f].is_finished)
+      plates_[f] = SensorPlate(plate.width_px, plate.height_px);
+  });
+  for (size_t f = 0; f < frames_.size(); ++f) {
+    if (job_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
+    Frame& frame = frames_[f];
+    PlaceRange& taken = (*places)[f];
+    if (frame.is_finished) {
+      taken.begin = taken.end;
+      continue;
+    }
+    LF_ASSIGN_OR_RETURN(const FrameProgress start, job_.state.LoadPlate(frame.id, &plates_[f]));
+    frame.places = {0, taken.end};
+    taken.begin = start.places_done;
+    frame.earlier_rays = start.rays;
+    frame.saved_places = start.places_done;
+  }
+  return {};
+}
+
+Result<void> RenderPass::PrepareRebinning(std::span<const PlaceRange> places) {
+  std::vector<LensGaps> gaps;
+  for (size_t f = 0; f < frames_.size(); ++f) {
+    if (job_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
+    CollectedWeights collected;
+    if (job_.Collects()) collected = [&, f](LfImageId id) { return lenses_[f].WeightsOf(id); };
+    gaps.emplace_back(job_.index, job_.path.Camera(frames_[f].id), collected,
+                      job_.options.lens_weights == LensWeights::kNone, places[f], job_.Select(),
+                      job_.options.rebin.query, job_.pool);
+  }
+  RebinPassOptions options = job_.options.rebin;
+  options.max_cells = job_.max_cells;
+  rebinned_ = std::make_unique<RebinnedRays>(job_.index, std::move(gaps), places, job_.Collects(),
+                                             job_.Select(), options, job_.pool);
+  for (const std::string& line : rebinned_->Describe()) LogInfo("{}", line);
+  return {};
+}
+
+// For plates, and for rebinned rays.
+void RenderPass::SelectForPass(std::span<const PlaceRange> places) {
+  std::vector<RenderCamera> cameras;
+  std::vector<PlaceRange> taken;
+  if (job_.Collects()) {
+    cameras = cameras_;
+    taken.assign(places.begin(), places.end());
+  }
+  SelectOptions select = job_.Select();
+  select.whole_images = job_.options.whole_images;
+  images_ = SelectImages(job_.index, cameras, select, job_.pool, taken);
+  DropUnweighted();
+  if (!rebinned_) return;
+  // What the plates do not need is read for rebinned rays alone.
+  for (const RenderCamera& camera : rebinned_->ReachedCameras()) cameras.push_back(camera);
+  for (const size_t f : rebinned_->asking_frames())
+    taken.push_back({rebinned_->places_done(), places[f].end});
+  std::vector<SelectedImage> all = SelectImages(job_.index, cameras, select, job_.pool, taken);
+  std::erase_if(all, [this](const SelectedImage& image) {
+    const auto for_plates = std::lower_bound(
+        images_.begin(), images_.end(), image.place,
+        [](const SelectedImage& one, uint32_t place) { return one.place < place; });
+    const bool is_for_plates = for_plates != images_.end() && for_plates->place == image.place;
+    return !is_for_plates && rebinned_->RectOf(image.id, image.place).empty();
+  });
+  images_ = std::move(all);
 }
 
 Result<void> RenderPass::Collect() {
@@ -153,7 +230,8 @@ Result<void> RenderPass::Finish() {
     const size_t count = std::min(job_.plan.frames_finished_at_once, left.size() - begin);
     const auto together = std::span(left).subspan(begin, count);
     LF_RETURN_IF_ERROR(FinishFrames(together));
-    for (const size_t f : together) plates_[f] = SensorPlate(0, 0);
+    if (job_.Collects())
+      for (const size_t f : together) plates_[f] = SensorPlate(0, 0);
     begin += count;
   }
   const double earlier_s = job_.totals.total_s;
@@ -164,6 +242,7 @@ Result<void> RenderPass::Finish() {
 
 // All rays of its plate, whenever they were collected.
 FrameProgress RenderPass::ProgressOf(size_t f) const {
+  if (!job_.Collects()) return {rebinned_->places_done(), {}};
   FrameProgress progress = collector_->frames()[f];
   const FrameRays& earlier = frames_[f].earlier_rays;
   progress.rays.image_count += earlier.image_count;
@@ -219,7 +298,10 @@ Result<void> RenderPass::DecideStops() {
 // of the others.
 Result<void> RenderPass::FinishFrames(std::span<const size_t> frames) {
   std::vector<std::optional<Result<FrameReport>>> written(frames.size());
-  job_.pool.ForEach(frames.size(), [&](size_t i) { written[i].emplace(WriteFiles(frames[i])); });
+  const std::vector<Completion> completions = Complete(frames);
+  job_.pool.ForEach(frames.size(), [&](size_t i) {
+    written[i].emplace(WriteFiles(frames[i], completions.empty() ? nullptr : &completions[i]));
+  });
   for (size_t i = 0; i < frames.size(); ++i)
     if (*written[i]) LF_RETURN_IF_ERROR(Conclude(frames[i], **written[i]));
   for (const std::optional<Result<FrameReport>>& result : written)
@@ -230,7 +312,7 @@ Result<void> RenderPass::FinishFrames(std::span<const size_t> frames) {
 }
 
 // Any thread may call it, for a frame each.
-Result<FrameReport> RenderPass::WriteFiles(size_t f) {
+Result<FrameReport> RenderPass::WriteFiles(size_t f, const Completion* completion) {
   Frame& frame = frames_[f];
   FrameProgress progress = ProgressOf(f);
   const std::filesystem::path to =
@@ -244,8 +326,7 @@ Result<FrameReport> RenderPass::WriteFiles(size_t f) {
                                   job_.state.PlateText(frame.id, progress), plates_[f], job_.pool));
   }
   LF_ASSIGN_OR_RETURN(FrameReport report,
-                      job_.output.Write(frame.id, progress.rays, lenses_[f], plates_[f], to,
-                                        [this] { return job_.IsStopped(); }));
+                      WritePicture(f, completion, to, [this] { return job_.IsStopped(); }));
   const auto asked =
       job_.options.require_samples ? job_.options.require_samples : job_.options.stop_at_samples;
   if (asked)
@@ -254,9 +335,35 @@ Result<FrameReport> RenderPass::WriteFiles(size_t f) {
   return report;
 }
 
+Result<FrameReport> RenderPass::WritePicture(size_t f, const Completion* completion,
+                                             const std::filesystem::path& to,
+                                             const std::function<bool()>& is_interrupted) {
+  const FrameRays rays = ProgressOf(f).rays;
+  if (job_.Collects())
+    return job_.output.Write(frames_[f].id, rays, lenses_[f], plates_[f], completion, to,
+                             is_interrupted);
+  const Intrinsics& plate = cameras_[f].pinhole.intrinsics;
+  return job_.output.Write(frames_[f].id, rays, lenses_[f],
+                           SensorPlate(plate.width_px, plate.height_px), completion, to,
+                           is_interrupted);
+}
+
+// A frame that was stopped, or takes some LF images only, is complete where it ends.
+std::vector<Completion> RenderPass::Complete(std::span<const size_t> frames) {
+  std::vector<Completion> completions;
+  if (!rebinned_) return completions;
+  for (const size_t f : frames) {
+    const uint32_t done =
+        job_.Collects() ? collector_->frames()[f].places_done : rebinned_->places_done();
+    const bool is_all = done >= std::min(frames_[f].places.end, job_.index.place_end());
+    completions.push_back(rebinned_->Complete(f, is_all ? LensGaps::kInTheEnd : done));
+  }
+  return completions;
+}
+
 Result<void> RenderPass::Conclude(size_t f, const FrameReport& report) {
   Frame& frame = frames_[f];
-  if (ProgressOf(f).rays.image_count == 0) {
+  if (ProgressOf(f).rays.image_count == 0 && report.interpolated_share.value_or(0) == 0) {
     // The first are told at once; a report has them all.
     constexpr size_t kTold = 10;
     if (++job_.black_count <= kTold)
@@ -278,7 +385,8 @@ Result<void> RenderPass::Save(double picture_budget_s) {
     Frame& frame = frames_[f];
     const FrameProgress progress = ProgressOf(f);
     if (frame.is_finished || progress.places_done == frame.saved_places) continue;
-    LF_RETURN_IF_ERROR(job_.state.SavePlate(frame.id, progress, plates_[f], job_.pool));
+    if (job_.Collects())
+      LF_RETURN_IF_ERROR(job_.state.SavePlate(frame.id, progress, plates_[f], job_.pool));
     frame.saved_places = progress.places_done;
   }
   return SavePictures(picture_budget_s);
@@ -299,9 +407,10 @@ Result<void> RenderPass::SavePictures(double picture_budget_s) {
   for (const size_t f : oldest_first) {
     if (NowSeconds() - begin_s >= picture_budget_s) break;
     Frame& frame = frames_[f];
+    const std::vector<Completion> completion = Complete({&f, 1});
     const Result<FrameReport> written =
-        job_.output.Write(frame.id, ProgressOf(f).rays, lenses_[f], plates_[f],
-                          job_.state.PicturePath(frame.id), is_interrupted);
+        WritePicture(f, completion.empty() ? nullptr : completion.data(),
+                     job_.state.PicturePath(frame.id), is_interrupted);
     // The state that is written after a signal has pictures of its own.
     if (!written && written.error().kind == ErrorKind::kInterrupted) return {};
     LF_RETURN_IF_ERROR(written);

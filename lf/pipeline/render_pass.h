@@ -38,16 +38,21 @@ struct RenderJob {
   RunState& state;
   DumpClock& clock;
   RenderReport& totals;  // of passes that are done, and of earlier runs; total_s of those alone
+  size_t max_cells;      // of rebinned rays
   double begin_s;        // of this run
   size_t& black_count;   // frames that no LF image contributes to
   std::function<void(const CollectProgress&, size_t finished_count)> progress;
 
+  bool Collects() const { return options.mode != RenderMode::kRebin; }
+  bool Rebins() const { return options.mode != RenderMode::kCollect; }
   bool IsStopped() const { return options.signals != nullptr && options.signals->stop; }
   SelectOptions Select() const;
 };
 
 class RenderPass {
  public:
+  // Those that are finished take no part, but for what rebinned rays are kept: that depends on all
+  // frames of the pass.
   RenderPass(const RenderJob& job, std::span<const FrameId> frames);
 
   // Plates of an earlier run, and the LF images that are still to be collected. kInput: damaged.
@@ -78,12 +83,21 @@ class RenderPass {
 
   void FindLenses();
   void DropUnweighted();
+  std::vector<RenderCamera> CamerasToCountBy() const;
+  Result<void> PreparePlates(std::vector<PlaceRange>* places);
+  Result<void> PrepareRebinning(std::span<const PlaceRange> places);
+  void SelectForPass(std::span<const PlaceRange> places);
+  // What rebinned rays say of each frame, one after the other; empty without them.
+  std::vector<Completion> Complete(std::span<const size_t> frames);
   FrameProgress ProgressOf(size_t f) const;
   const ReachableElements& ReachableOf(size_t f);
   uint32_t PlacesCovered(size_t f) const;
   Result<void> DecideStops();
   Result<void> FinishFrames(std::span<const size_t> frames);
-  Result<FrameReport> WriteFiles(size_t f);
+  Result<FrameReport> WriteFiles(size_t f, const Completion* completion);
+  Result<FrameReport> WritePicture(size_t f, const Completion* completion,
+                                   const std::filesystem::path& to,
+                                   const std::function<bool()>& is_interrupted);
   Result<void> Conclude(size_t f, const FrameReport& report);
   Result<void> Save(double picture_budget_s);
   Result<void> SavePictures(double picture_budget_s);
@@ -98,6 +112,8 @@ class RenderPass {
   std::vector<SensorPlate> plates_;
   std::vector<SelectedImage> images_;
   std::unique_ptr<FrameCollector> collector_;
+  std::unique_ptr<RebinnedRays> rebinned_;  // where it rebins
+  uint32_t saved_rebin_places_ = 0;
   CollectProgress done_;
   size_t finished_count_ = 0;
 };

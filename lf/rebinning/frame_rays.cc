@@ -58,27 +58,30 @@ class FrameView {
 
 }  // namespace
 
-std::vector<FrameRay> FrameRaysOf(const Slab& slab, std::span<const BinnedCell> cells,
+LargeVector<FrameRay> FrameRaysOf(const Slab& slab, std::span<const BinnedCell> cells,
                                   const RenderCamera& frame, const FrameReach& reach,
                                   ThreadPool& pool) {
   constexpr size_t kCellsAtOnce = 65536;
   const FrameView view(frame, reach);
-  std::vector<std::vector<FrameRay>> parts((cells.size() + kCellsAtOnce - 1) / kCellsAtOnce);
-  pool.ForEach(parts.size(), [&](size_t i) {
+  // Parts are written where all of their cells would have room, and moved together.
+  LargeVector<FrameRay> rays(cells.size());
+  std::vector<size_t> counts((cells.size() + kCellsAtOnce - 1) / kCellsAtOnce);
+  pool.ForEach(counts.size(), [&](size_t i) {
     const size_t begin = i * kCellsAtOnce;
     for (const BinnedCell& cell :
          cells.subspan(begin, std::min(kCellsAtOnce, cells.size() - begin))) {
       std::optional<FrameRay> ray = view.See(RayOfPoint(slab, MiddleOf(slab, cell.cell)));
       if (!ray) continue;
       for (int c = 0; c < 3; ++c) ray->rgb[c] = static_cast<float>(cell.Mean(c));
-      parts[i].push_back(*ray);
+      rays[begin + counts[i]++] = *ray;
     }
   });
-  std::vector<FrameRay> rays;
-  size_t count = 0;
-  for (const auto& part : parts) count += part.size();
-  rays.reserve(count);
-  for (const auto& part : parts) rays.insert(rays.end(), part.begin(), part.end());
+  auto end = rays.begin();
+  for (size_t i = 0; i < counts.size(); ++i) {
+    const auto part = rays.begin() + static_cast<std::ptrdiff_t>(i * kCellsAtOnce);
+    end = std::move(part, part + static_cast<std::ptrdiff_t>(counts[i]), end);
+  }
+  rays.erase(end, rays.end());
   return rays;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lf/camera/render_camera.h"
+#include "lf/core/large_vector.h"
 #include "lf/core/parallel.h"
 #include "lf/rebinning/ray_map.h"
 #include "lf/rebinning/slab.h"
@@ -31,7 +32,7 @@ struct FrameReach {
 
 // The middle rays of cells that run forward, through the lens's plane within radius + reach.lens_w
 // of its centre, to the plate or reach.plate_px beside it; in the order of the cells.
-std::vector<FrameRay> FrameRaysOf(const Slab& slab, std::span<const BinnedCell> cells,
+LargeVector<FrameRay> FrameRaysOf(const Slab& slab, std::span<const BinnedCell> cells,
                                   const RenderCamera& frame, const FrameReach& reach,
                                   ThreadPool& pool);
 

@@ -44,7 +44,7 @@ TEST(FrameRays, GoFromTheLensThroughTheFocusPlaneToTheirElement) {
       cells.push_back(cell);
       expected.push_back({x, y, on_lens.x(), on_lens.y()});
     }
-    const std::vector<FrameRay> rays = FrameRaysOf(slab, cells, frame, reach, pool);
+    const LargeVector<FrameRay> rays = FrameRaysOf(slab, cells, frame, reach, pool);
     EXPECT_GT(rays.size(), 1800u);
     size_t next = 0;
     for (const FrameRay& ray : rays) {

@@ -1,8 +1,23 @@
 #include "lf/rebinning/lens_points.h"
 
+#include <algorithm>
+
 #include "lf/core/check.h"
 
 namespace lf {
+
+double LensPointSets::MostSpread() const {
+  double most = 1;
+  for (const auto& set : spreads)
+    for (const double spread : set) most = std::max(most, spread);
+  return most;
+}
+
+size_t LensPointSets::point_count() const {
+  size_t count = 0;
+  for (const auto& set : sets) count += set.size();
+  return count;
+}
 
 LensPointSets MakeLensPoints(const Aperture& aperture, int count, int k, uint64_t seed) {
   LF_CHECK(count >= 1 && k >= 1);

@@ -14,6 +14,14 @@ namespace lf {
 struct LensPointSets {
   int k = 1;
   std::vector<std::vector<Vec2>> sets;  // [k * k]
+  // As sets: how many times sigma_st its reach is, at least 1, where rays are rare; empty: 1.
+  std::vector<std::vector<double>> spreads = {};
+
+  double SpreadOf(size_t set, size_t point) const {
+    return spreads.empty() ? 1 : spreads[set][point];
+  }
+  double MostSpread() const;
+  size_t point_count() const;  // of all sets
 };
 // `count` points in each of k * k sets, spread uniformly over the opening, all different
 // (camera/aperture.h, SampleLens). Of a pinhole there is one.

@@ -31,9 +31,11 @@ size_t MostOfShard(size_t cells) { return cells / RayMap::kShards * 9 / 8 + 64; 
 
 }  // namespace
 
-// Most maps fill up, and growing would take longer than filling it.
-RayMap::RayMap(size_t max_cells) : max_cells_(std::max<size_t>(max_cells, 1)) {
-  for (Shard& shard : shards_) shard.slots.resize(SlotsFor(MostOfShard(max_cells_)));
+// Growing takes longer than filling it, and so does memory that is never used.
+RayMap::RayMap(size_t max_cells, size_t expected_cells)
+    : max_cells_(std::max<size_t>(max_cells, 1)) {
+  const size_t cells = std::min(max_cells_, expected_cells);
+  for (Shard& shard : shards_) shard.slots.resize(SlotsFor(MostOfShard(cells)));
 }
 
 void RayMap::Grow(Shard& shard) {
@@ -78,13 +80,12 @@ void RayMap::AddToThoseThere(size_t shard, std::span<const BinnedRay> rays) {
   AddTo<false>(shards_[shard], rays);
 }
 
-void RayMap::DropFrom(Shard& shard) const {
+void RayMap::DropUnless(const std::function<bool(CellKey)>& is_wanted, Shard& shard) {
   LargeVector<BinnedCell> slots(shard.slots.size());
   shard.count = 0;
   for (const BinnedCell& cell : shard.slots) {
-    const uint64_t hash = MixBits(cell.cell);
-    if (cell.cell == 0 || hash >= limit_) continue;
-    *Find(slots, cell.cell, hash) = cell;
+    if (cell.cell == 0 || !is_wanted(cell.cell)) continue;
+    *Find(slots, cell.cell, MixBits(cell.cell)) = cell;
     ++shard.count;
   }
   shard.slots = std::move(slots);
@@ -93,8 +94,14 @@ void RayMap::DropFrom(Shard& shard) const {
 void RayMap::Trim(ThreadPool& pool) {
   while (size() > max_cells_) {
     limit_ -= limit_ / 8;
-    pool.ForEach(kShards, [this](size_t i) { DropFrom(shards_[i]); });
+    const auto may_stay = [this](CellKey cell) { return MayHold(cell); };
+    pool.ForEach(kShards, [&](size_t i) { DropUnless(may_stay, shards_[i]); });
   }
+}
+
+void RayMap::DropUnless(const std::function<bool(CellKey)>& is_wanted, ThreadPool& pool) {
+  limit_ = UINT64_MAX;
+  pool.ForEach(kShards, [&](size_t i) { DropUnless(is_wanted, shards_[i]); });
 }
 
 bool RayMap::is_too_coarse() const {

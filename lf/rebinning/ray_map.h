@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -49,8 +50,9 @@ class RayMap {
   // Parts that are filled at the same time; the same whatever the number of threads.
   static constexpr size_t kShards = 32;
 
-  // max_cells  that Trim() leaves; at least 1. There is memory for these from the beginning.
-  explicit RayMap(size_t max_cells);
+  // max_cells       that Trim() leaves; at least 1
+  // expected_cells  there is memory for these from the beginning, up to max_cells
+  explicit RayMap(size_t max_cells, size_t expected_cells = SIZE_MAX);
 
   static size_t ShardOf(CellKey cell) { return MixBits(cell) % kShards; }
 
@@ -62,6 +64,10 @@ class RayMap {
 
   // Drops cells of the largest hashes until there are no more than max_cells.
   void Trim(ThreadPool& pool);
+
+  // Drops the cells that are not wanted any more. There is room for others then: cells of all
+  // hashes may be made again, of rays to come.
+  void DropUnless(const std::function<bool(CellKey)>& is_wanted, ThreadPool& pool);
 
   // Whether a cell may still be made: rays of others need not be looked at.
   bool MayHold(CellKey cell) const { return MixBits(cell) < limit_; }
@@ -87,7 +93,7 @@ class RayMap {
   template <bool kMakesNew>
   void AddTo(Shard& shard, std::span<const BinnedRay> rays);
   static void Grow(Shard& shard);
-  void DropFrom(Shard& shard) const;
+  static void DropUnless(const std::function<bool(CellKey)>& is_wanted, Shard& shard);
 
   size_t max_cells_;
   uint64_t limit_ = UINT64_MAX;

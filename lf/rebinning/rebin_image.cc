@@ -116,14 +116,26 @@ class ImageRebinner {
     for (int x = begin; x < end; ++x) {
       if (next != chosen_.end() && *next == x)
         ++next;
-      else if (!pixels_.any_masked ||
-               !pixels_.IsMasked(x - pixels_.rect.x_begin, y - pixels_.rect.y_begin))
+      else if (!IsMasked(x, y))
         Add(x, y, position(x), &rays_.others);
     }
   }
 
+  // The same, all of them.
+  template <class Position>
+  void WholeRow(int y, int begin, int end, const Position& position) {
+    for (int x = begin; x < end; ++x)
+      if (!IsMasked(x, y)) Add(x, y, position(x), &rays_.kept);
+    rays_.looked_at += end - begin;
+  }
+
  private:
   using Shards = std::array<std::vector<BinnedRay>, RayMap::kShards>;
+
+  bool IsMasked(int x, int y) const {
+    return pixels_.any_masked &&
+           pixels_.IsMasked(x - pixels_.rect.x_begin, y - pixels_.rect.y_begin);
+  }
 
   void Add(int x, int y, const Vec3& position, Shards* shards) {
     const std::optional<SlabPoint> cells = Parameterize(forms_, position);
@@ -142,6 +154,52 @@ class ImageRebinner {
   BinnedRays& rays_;
 };
 
+// Pixels of some rows that are covered alike.
+struct PixelRun {
+  PixelRect rect;
+  bool is_whole = false;
+};
+
+// The squares of an LF image that are covered, those side by side as one run. Squares begin at
+// multiples of their side, so that the same pixels are covered whatever part of the image is there.
+class CoveredRuns {
+ public:
+  //   coverage  null: all is kept by edges
+  CoveredRuns(const Slab& slab, const PinholeCamera& lf_camera, const RebinCoverage* coverage)
+      : forms_(MakeSlabForms(slab, lf_camera)), coverage_(coverage) {}
+
+  //   position(x, y)  the ideal one of a place in the rectangle
+  template <class Position>
+  void Find(const PixelRect& rect, const Position& position, std::vector<PixelRun>* runs) const {
+    if (coverage_ == nullptr && !rect.empty()) runs->push_back({rect, false});
+    if (coverage_ == nullptr) return;
+    constexpr int kBlock = RebinCoverage::kBlock;
+    for (int y = rect.y_begin / kBlock * kBlock; y < rect.y_end; y += kBlock) {
+      bool continues = false;  // the run before
+      for (int x = rect.x_begin / kBlock * kBlock; x < rect.x_end; x += kBlock) {
+        const PixelRect block = Intersection({x, y, x + kBlock, y + kBlock}, rect);
+        const std::optional<SlabPoint> point =
+            Parameterize(forms_, position(x + 0.5 * kBlock, y + 0.5 * kBlock));
+        const auto is_in = [&](const CoverageMap* map) {
+          return point && map != nullptr && map->Covers(*point);
+        };
+        const bool is_whole = is_in(coverage_->whole);
+        const bool is_covered =
+            is_whole || is_in(coverage_->by_edges[0]) || is_in(coverage_->by_edges[1]);
+        if (is_covered && continues && runs->back().is_whole == is_whole)
+          runs->back().rect.x_end = block.x_end;
+        else if (is_covered)
+          runs->push_back({block, is_whole});
+        continues = is_covered;
+      }
+    }
+  }
+
+ private:
+  const SlabForms forms_;
+  const RebinCoverage* coverage_;
+};
+
 }  // namespace
 
 void BinnedRays::Clear() {
@@ -153,27 +211,67 @@ void BinnedRays::Clear() {
 void RebinImage(const Slab& slab, const PinholeCamera& lf_camera, LfImageId id,
                 const LfPixels& pixels, const PixelRect& rect,
                 const std::vector<uint16_t>& stored_values, const IdealPixels* ideal_pixels,
-                const RebinOptions& options, const RayMap& map, BinnedRays* rays) {
+                const RebinOptions& options, const RebinCoverage* coverage, const RayMap& map,
+                BinnedRays* rays) {
   LF_CHECK(Intersection(rect, pixels.rect) == rect || rect.empty());
   LF_CHECK((ideal_pixels != nullptr) == lf_camera.intrinsics.has_distortion());
   if (rect.empty()) return;
+  static thread_local std::vector<PixelRun> runs;
+  runs.clear();
+  const CoveredRuns covered(slab, lf_camera, coverage);
+  if (ideal_pixels == nullptr)
+    covered.Find(
+        rect, [](double x, double y) { return Vec3(x, y, 1); }, &runs);
+  else
+    for (const IdealPatch& patch : ideal_pixels->patches())
+      covered.Find(
+          Intersection(patch.rect, rect),
+          [&patch](double x, double y) {
+            const PixelRect& all = patch.rect;
+            return patch.ArcAt(std::clamp((y - all.y_begin) / all.height(), 0.0, 1.0))
+                .At(std::clamp((x - all.x_begin) / all.width(), 0.0, 1.0));
+          },
+          &runs);
+  if (runs.empty()) return;
   static thread_local Image<uint16_t> p;
-  ProbabilityMap(pixels, stored_values, options.probability, &p);
+  if (std::any_of(runs.begin(), runs.end(), [](const PixelRun& run) { return !run.is_whole; }))
+    ProbabilityMap(pixels, stored_values, options.probability, &p);
   ImageRebinner rebinner(slab, lf_camera, id, pixels, options, map, rays);
+  const auto add = [&](const PixelRun& run, int y, const auto& position) {
+    if (run.is_whole)
+      rebinner.WholeRow(y, run.rect.x_begin, run.rect.x_end, position);
+    else
+      rebinner.Row(p, y, run.rect.x_begin, run.rect.x_end, position);
+  };
   if (ideal_pixels == nullptr) {
-    for (int y = rect.y_begin; y < rect.y_end; ++y)
-      rebinner.Row(p, y, rect.x_begin, rect.x_end,
-                   [y](int x) { return Vec3(x + 0.5, y + 0.5, 1); });
+    for (const PixelRun& run : runs)
+      for (int y = run.rect.y_begin; y < run.rect.y_end; ++y)
+        add(run, y, [y](int x) { return Vec3(x + 0.5, y + 0.5, 1); });
     return;
   }
-  for (const IdealPatch& patch : ideal_pixels->patches()) {
-    const PixelRect part = Intersection(patch.rect, rect);
-    for (int y = part.y_begin; y < part.y_end; ++y) {
-      const IdealArc arc = patch.Scanline(y);
-      rebinner.Row(p, y, part.x_begin, part.x_end,
-                   [&arc](int x) { return arc.At(arc.Parameter(x)); });
+  for (const IdealPatch& patch : ideal_pixels->patches())
+    for (const PixelRun& run : runs) {
+      if (Intersection(run.rect, patch.rect).empty()) continue;
+      for (int y = run.rect.y_begin; y < run.rect.y_end; ++y) {
+        const IdealArc arc = patch.Scanline(y);
+        add(run, y, [&arc](int x) { return arc.At(arc.Parameter(x)); });
+      }
     }
-  }
+}
+
+double CoveredShare(const Slab& slab, const PinholeCamera& lf_camera, const PixelRect& rect,
+                    const CoverageMap& map) {
+  if (rect.empty()) return 0;
+  std::vector<PixelRun> runs;
+  PinholeCamera ideal = lf_camera;
+  ideal.intrinsics.distortion = {};
+  const RebinCoverage coverage = {&map, {}};
+  CoveredRuns(slab, ideal, &coverage)
+      .Find(
+          rect, [](double x, double y) { return Vec3(x, y, 1); }, &runs);
+  long long covered = 0;
+  for (const PixelRun& run : runs) covered += run.rect.pixel_count();
+  return static_cast<double>(covered) / static_cast<double>(rect.pixel_count());
 }
 
 void InsertRays(const std::vector<BinnedRays>& rays, ThreadPool& pool, RayMap* map) {

@@ -13,6 +13,7 @@
 #include "lf/camera/ideal_pixels.h"
 #include "lf/capture/lf_pixels.h"
 #include "lf/core/ids.h"
+#include "lf/rebinning/coverage_map.h"
 #include "lf/rebinning/probability_map.h"
 #include "lf/rebinning/ray_map.h"
 
@@ -30,21 +31,36 @@ struct RebinOptions {
 struct BinnedRays {
   std::array<std::vector<BinnedRay>, RayMap::kShards> kept;
   std::array<std::vector<BinnedRay>, RayMap::kShards> others;  // empty unless averages_others
-  uint64_t looked_at = 0;                                      // LF pixels
+  uint64_t looked_at = 0;                                      // LF pixels that are covered
 
   void Clear();
 };
 
-// Adds the rays of the pixels of `rect` that run through both planes of the slab. All three colours
-// are of the pixel; of a mosaic those that it did not record are the means of its neighbours'.
+// What is kept of an LF image, square by square of kBlock pixels: where the middle of one is.
+struct RebinCoverage {
+  static constexpr int kBlock = 8;
+  const CoverageMap* whole = nullptr;  // of these rays all
+  // Of these some, by Eq. 4.4.
+  std::array<const CoverageMap*, 2> by_edges = {};
+};
+
+// Adds the rays of the pixels of `rect` that are covered and run through both planes of the slab.
+// All three colours are of the pixel; of a mosaic those that it did not record are the means of its
+// neighbours'.
 //   pixels         at least those of `rect`, and PixelsAround() more where the image has them
 //   stored_values  StoredValueTable() of the light field
 //   ideal_pixels   of a camera with lens distortion, else null
+//   coverage       null: all is covered, by edges
 //   map            rays of cells that it has dropped are left out
 void RebinImage(const Slab& slab, const PinholeCamera& lf_camera, LfImageId id,
                 const LfPixels& pixels, const PixelRect& rect,
                 const std::vector<uint16_t>& stored_values, const IdealPixels* ideal_pixels,
-                const RebinOptions& options, const RayMap& map, BinnedRays* rays);
+                const RebinOptions& options, const RebinCoverage* coverage, const RayMap& map,
+                BinnedRays* rays);
+
+// The share of the pixels of `rect` that are covered by the map, about: by the middles of squares.
+double CoveredShare(const Slab& slab, const PinholeCamera& lf_camera, const PixelRect& rect,
+                    const CoverageMap& map);
 
 // Puts them into the map, by all threads, and cuts that to its size. Others are added to the cells
 // that are there then: with these it matters which LF images are given together, but not their

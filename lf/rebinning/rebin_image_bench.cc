@@ -65,7 +65,7 @@ void Rebin(benchmark::State& state, bool averages_others) {
   for (auto _ : state) {
     rays[0].Clear();
     RebinImage(BenchSlab(), BenchCamera(), {image++ % 8}, pixels, pixels.rect, table, nullptr,
-               options, map, rays.data());
+               options, nullptr, map, rays.data());
     InsertRays(rays, pool, &map);
   }
   size_t kept = 0;

@@ -65,8 +65,8 @@ size_t Misplaced(const PinholeCamera& camera, const IdealPixels* ideal) {
   const PixelRect rect{0, 0, 80, 60};
   const LfPixels pixels = Noise(rect, BayerPattern::kNone);
   BinnedRays rays;
-  RebinImage(slab, camera, {3}, pixels, rect, StoredValueTable({}), ideal, Every(), RayMap(10),
-             &rays);
+  RebinImage(slab, camera, {3}, pixels, rect, StoredValueTable({}), ideal, Every(), nullptr,
+             RayMap(10), &rays);
   EXPECT_EQ(rays.looked_at, 80u * 60);
   const std::multiset<CellKey> found = Keys(rays);
   PinholeCamera without = camera;
@@ -113,7 +113,7 @@ TEST(RebinImage, KeepsAsManyAsItsProbabilitiesSay) {
   for (uint32_t i = 0; i < 20; ++i) {
     options.seed = i / 10;
     BinnedRays rays;
-    RebinImage(TestSlab(), TestCamera(), {i % 10}, pixels, rect, table, nullptr, options,
+    RebinImage(TestSlab(), TestCamera(), {i % 10}, pixels, rect, table, nullptr, options, nullptr,
                RayMap(10), &rays);
     sum += static_cast<double>(CountOf(rays.kept));
     EXPECT_EQ(CountOf(rays.others), 0u);
@@ -138,9 +138,9 @@ TEST(RebinImage, APartKeepsWhatTheWholeKeepsThere) {
                          rect.y_end + around};
     BinnedRays of_whole, of_part;
     RebinImage(TestSlab(), TestCamera(), {5}, Noise({0, 0, 80, 60}, bayer), rect, table, nullptr,
-               options, RayMap(10), &of_whole);
+               options, nullptr, RayMap(10), &of_whole);
     RebinImage(TestSlab(), TestCamera(), {5}, Noise(read, bayer), rect, table, nullptr, options,
-               RayMap(10), &of_part);
+               nullptr, RayMap(10), &of_part);
     for (size_t shard = 0; shard < RayMap::kShards; ++shard) {
       ASSERT_EQ(of_whole.kept[shard].size(), of_part.kept[shard].size());
       for (size_t i = 0; i < of_whole.kept[shard].size(); ++i) {
@@ -169,7 +169,7 @@ TEST(RebinImage, MosaicsGiveAllColours) {
     slab.r_uv_w = 1e-4;  // a cell for each pixel
     BinnedRays rays;
     RebinImage(slab, TestCamera(), {0}, pixels, {1, 1, 79, 59}, StoredValueTable({}), nullptr,
-               Every(), RayMap(10), &rays);
+               Every(), nullptr, RayMap(10), &rays);
     size_t right = 0, count = 0;
     for (const auto& shard : rays.kept)
       for (const BinnedRay& ray : shard) {
@@ -201,7 +201,7 @@ TEST(RebinImage, OthersMakeNoCells) {
     std::vector<BinnedRays> rays(4);
     for (uint32_t i = 0; i < 4; ++i)
       RebinImage(slab, TestCamera(), {i}, Noise(rect, BayerPattern::kNone), rect, table, nullptr,
-                 options, map, &rays[i]);
+                 options, nullptr, map, &rays[i]);
     if (reversed) std::reverse(rays.begin(), rays.end());
     InsertRays(rays, pool, &map);
     return map.Cells(pool);

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <memory>
+#include <numeric>
 
 #include "lf/core/check.h"
 #include "lf/plate/tile_grid.h"
@@ -99,16 +102,25 @@ class LensGrid {
   std::array<int, 2> count_;
 };
 
-// The points of a set by eight that are near each other: strips of the lens, cut across.
-std::vector<LensPointGroup> GroupsOf(std::vector<Vec2> points) {
+// A point of the lens in the groups of its set.
+struct GroupedPoint {
+  Vec2 at;
+  double sigma_st_w;
+  size_t number;  // in PointShares
+};
+
+// The points of a set by eight that are near each other: strips of the lens, cut across. They come
+// back in the order of the groups.
+std::vector<LensPointGroup> GroupsOf(std::vector<GroupedPoint>& points) {
   constexpr size_t kPoints = LensPointGroup::kPoints;
   const size_t groups = (points.size() + kPoints - 1) / kPoints;
   const auto strips = static_cast<size_t>(std::round(std::sqrt(static_cast<double>(groups))));
   const size_t per_strip = (groups + strips - 1) / strips * kPoints;
   const auto sort = [&points](size_t begin, size_t end, int axis) {
     const auto first = points.begin() + static_cast<std::ptrdiff_t>(begin);
-    std::sort(first, first + static_cast<std::ptrdiff_t>(end - begin),
-              [axis](const Vec2& a, const Vec2& b) { return a[axis] < b[axis]; });
+    std::sort(
+        first, first + static_cast<std::ptrdiff_t>(end - begin),
+        [axis](const GroupedPoint& a, const GroupedPoint& b) { return a.at[axis] < b.at[axis]; });
   };
   sort(0, points.size(), 0);
   std::vector<LensPointGroup> all;
@@ -119,9 +131,14 @@ std::vector<LensPointGroup> GroupsOf(std::vector<Vec2> points) {
       LensPointGroup group;
       group.x.fill(LensPointGroup::kNowhere);
       group.y.fill(LensPointGroup::kNowhere);
+      group.per_st2.fill(1);
+      group.first = i;
       for (size_t k = i; k < std::min(i + kPoints, end); ++k, ++group.count) {
-        group.x[group.count] = static_cast<float>(points[k].x());
-        group.y[group.count] = static_cast<float>(points[k].y());
+        const double sigma_w = points[k].sigma_st_w;
+        group.x[group.count] = static_cast<float>(points[k].at.x());
+        group.y[group.count] = static_cast<float>(points[k].at.y());
+        group.per_st2[group.count] = static_cast<float>(1 / (sigma_w * sigma_w));
+        group.reach_w = std::max(group.reach_w, kReach_sigmas * sigma_w);
       }
       all.push_back(group);
     }
@@ -129,19 +146,36 @@ std::vector<LensPointGroup> GroupsOf(std::vector<Vec2> points) {
   return all;
 }
 
+struct GroupedSet {
+  std::vector<GroupedPoint> points;
+  std::vector<LensPointGroup> groups;
+};
+
+std::vector<GroupedSet> GroupsOfSets(const LensPointSets& lens_points, const QueryKernel& kernel) {
+  std::vector<GroupedSet> sets(lens_points.sets.size());
+  size_t number = 0;
+  for (size_t s = 0; s < sets.size(); ++s) {
+    for (size_t i = 0; i < lens_points.sets[s].size(); ++i)
+      sets[s].points.push_back(
+          {lens_points.sets[s][i], kernel.sigma_st_w * lens_points.SpreadOf(s, i), number++});
+    sets[s].groups = GroupsOf(sets[s].points);
+  }
+  return sets;
+}
+
 // One tile at a time.
 class TileSplatter {
  public:
-  // groups  of each set of lens points
-  TileSplatter(const QueryKernel& kernel, const LensPointSets& points,
-               std::span<const std::vector<LensPointGroup>> groups, const LensGrid& lens)
-      : kernel_(kernel), points_(points), groups_(groups), lens_(lens) {}
+  TileSplatter(const QueryKernel& kernel, std::span<const GroupedSet> sets, const LensGrid& lens,
+               const PointShares* shares, SplatFrame* frame)
+      : kernel_(kernel), sets_(sets), lens_(lens), shares_(shares), frame_(frame) {}
 
+  //   k  of the sets
   void Run(std::span<const FrameRay> rays, std::span<const uint32_t> of_tile, const PixelRect& rect,
-           SplatFrame* frame) {
+           int k) {
     SortByLens(rays, of_tile);
-    const int k = points_.k;
     for (int phase = 0; phase < k * k; ++phase) {
+      const GroupedSet& set = sets_[phase];
       const auto first = [k](int begin, int remainder) {
         return begin + ((remainder - begin) % k + k) % k;
       };
@@ -150,11 +184,12 @@ class TileSplatter {
       grid.rows = (rect.y_end - grid.y0 + k - 1) / k;
       if (grid.columns <= 0 || grid.rows <= 0) continue;
       sums_.Reset(grid);
-      for (const LensPointGroup& group : groups_[phase]) {
+      for (const LensPointGroup& group : set.groups) {
+        if (shares_ != nullptr && !FindShares(set, group, rect, grid)) continue;
         AddNear(group, grid);
         AddMeans(grid, &sums_);
       }
-      Store(points_.sets[phase].size(), grid, frame);
+      Store(set.points.size(), grid);
     }
   }
 
@@ -177,8 +212,27 @@ class TileSplatter {
     for (size_t i = 0; i < of_tile.size(); ++i) sorted_[next_[cell_of_[i]]++] = rays[of_tile[i]];
   }
 
+  // Whether there are any.
+  bool FindShares(const GroupedSet& set, const LensPointGroup& group, const PixelRect& rect,
+                  const SplatGrid& grid) {
+    const int width_px = frame_->share.width(), height_px = frame_->share.height();
+    bool is_any = false;
+    for (int i = 0; i < group.count && !is_any; ++i)
+      is_any = shares_->IsAny(rect, width_px, height_px, set.points[group.first + i].number, 1);
+    if (!is_any) return false;
+    constexpr size_t kPoints = LensPointGroup::kPoints;
+    sums_.shares.assign(static_cast<size_t>(grid.columns) * grid.rows * kPoints, 0.0F);
+    float* out = sums_.shares.data();
+    for (int row = 0; row < grid.rows; ++row)
+      for (int column = 0; column < grid.columns; ++column, out += kPoints)
+        for (int i = 0; i < group.count; ++i)
+          shares_->At(grid.x0 + grid.k * column, grid.y0 + grid.k * row, width_px, height_px,
+                      set.points[group.first + i].number, 1, out + i);
+    return true;
+  }
+
   void AddNear(const LensPointGroup& group, const SplatGrid& grid) {
-    const double reach_w = kReach_sigmas * kernel_.sigma_st_w;
+    const double reach_w = group.reach_w;
     const auto [left, right] = std::minmax_element(group.x.begin(), group.x.begin() + group.count);
     const auto [low, high] = std::minmax_element(group.y.begin(), group.y.begin() + group.count);
     const int first = lens_.Column(*left - reach_w), last = lens_.Column(*right + reach_w);
@@ -189,26 +243,41 @@ class TileSplatter {
     }
   }
 
-  void Store(size_t point_count, const SplatGrid& grid, SplatFrame* frame) const {
+  void Store(size_t point_count, const SplatGrid& grid) const {
     const float* mean = sums_.means.data();
     for (int row = 0; row < grid.rows; ++row)
       for (int column = 0; column < grid.columns; ++column, mean += SplatSums::kChannels) {
         const int x = grid.x0 + grid.k * column, y = grid.y0 + grid.k * row;
         const float found = mean[3];
-        frame->share.at(x, y) = found / static_cast<float>(point_count);
+        frame_->share.at(x, y) = found / static_cast<float>(point_count);
         if (found > 0)
-          for (int c = 0; c < 3; ++c) frame->rgb.at(x, y, c) = mean[c] / found;
+          for (int c = 0; c < 3; ++c) frame_->rgb.at(x, y, c) = mean[c] / found;
       }
   }
 
   const QueryKernel kernel_;
-  const LensPointSets& points_;
-  const std::span<const std::vector<LensPointGroup>> groups_;
+  const std::span<const GroupedSet> sets_;
   const LensGrid& lens_;
+  const PointShares* const shares_;
+  SplatFrame* const frame_;
   std::vector<FrameRay> sorted_;  // of the tile, by places on the lens
   std::vector<size_t> begins_, next_;
   std::vector<uint32_t> cell_of_;
   SplatSums sums_;
+};
+
+// Between which nodes an element is, and how far from the first to the second.
+struct NodePlace {
+  NodePlace(int element, int size_px, int nodes) {
+    if (nodes < 2) return;
+    const double place = (element + 0.5) / size_px * (nodes - 1);
+    first = std::min(static_cast<int>(place), nodes - 2);
+    second = first + 1;
+    fraction = static_cast<float>(place - first);
+  }
+  int first = 0;
+  int second = 0;
+  float fraction = 0;
 };
 
 SplatFrame EmptyFrame(int width_px, int height_px) {
@@ -217,49 +286,110 @@ SplatFrame EmptyFrame(int width_px, int height_px) {
 
 }  // namespace
 
-FrameReach ReachOf(const QueryKernel& kernel) {
-  return {kReach_sigmas * kernel.sigma_st_w, kReach_sigmas * kernel.sigma_uv_px};
+void PointShares::At(int x, int y, int width_px, int height_px, size_t first, size_t count,
+                     float* out) const {
+  const NodePlace across(x, width_px, columns), down(y, height_px, rows);
+  const auto node = [&](int column, int row) {
+    return values.data() + (static_cast<size_t>(row) * columns + column) * point_count + first;
+  };
+  const float* const corners[4] = {node(across.first, down.first), node(across.second, down.first),
+                                   node(across.first, down.second),
+                                   node(across.second, down.second)};
+  for (size_t i = 0; i < count; ++i) {
+    const float above = corners[0][i] + across.fraction * (corners[1][i] - corners[0][i]);
+    const float below = corners[2][i] + across.fraction * (corners[3][i] - corners[2][i]);
+    out[i] = above + down.fraction * (below - above);
+  }
+}
+
+bool PointShares::IsAny(const PixelRect& rect, int width_px, int height_px, size_t first,
+                        size_t count) const {
+  const int left = NodePlace(rect.x_begin, width_px, columns).first;
+  const int right = NodePlace(rect.x_end - 1, width_px, columns).second;
+  const int bottom = NodePlace(rect.y_end - 1, height_px, rows).second;
+  for (int row = NodePlace(rect.y_begin, height_px, rows).first; row <= bottom; ++row)
+    for (int column = left; column <= right; ++column) {
+      const auto begin =
+          values.begin() + static_cast<std::ptrdiff_t>(
+                               (static_cast<size_t>(row) * columns + column) * point_count + first);
+      if (std::any_of(begin, begin + static_cast<std::ptrdiff_t>(count),
+                      [](float value) { return value > 0; }))
+        return true;
+    }
+  return false;
+}
+
+PointShares PointShares::MeansOfSets(const LensPointSets& points) const {
+  PointShares means{columns, rows, points.sets.size(), {}};
+  for (auto value = values.begin(); value != values.end();)
+    for (const auto& set : points.sets) {
+      const auto end = value + static_cast<std::ptrdiff_t>(set.size());
+      means.values.push_back(std::accumulate(value, end, 0.0F) / static_cast<float>(set.size()));
+      value = end;
+    }
+  return means;
+}
+
+FrameReach ReachOf(const QueryKernel& kernel, const LensPointSets& lens_points) {
+  return {kReach_sigmas * kernel.sigma_st_w * lens_points.MostSpread(),
+          kReach_sigmas * kernel.sigma_uv_px};
 }
 
 SplatFrame Splat(std::span<const FrameRay> rays, int width_px, int height_px,
-                 const LensPointSets& lens_points, const QueryKernel& kernel, ThreadPool& pool) {
+                 const LensPointSets& lens_points, const QueryKernel& kernel, ThreadPool& pool,
+                 const PointShares* shares) {
   LF_CHECK(kernel.sigma_st_w > 0 && kernel.sigma_uv_px > 0);
+  LF_CHECK(shares == nullptr || shares->point_count == lens_points.point_count());
   LF_CHECK(rays.size() < UINT32_MAX);
   SplatFrame frame = EmptyFrame(width_px, height_px);
   const TileGrid grid{width_px, height_px, kTileWidth, kTileHeight};
   const TileRays by_tile = SortIntoTiles(rays, grid, kReach_sigmas * kernel.sigma_uv_px, pool);
-  const LensGrid lens(lens_points, kReach_sigmas * kernel.sigma_st_w);
-  std::vector<std::vector<LensPointGroup>> groups;
-  for (const auto& set : lens_points.sets) groups.push_back(GroupsOf(set));
+  const LensGrid lens(lens_points, ReachOf(kernel, lens_points).lens_w);
+  const std::vector<GroupedSet> sets = GroupsOfSets(lens_points, kernel);
   pool.ForEach(grid.tile_count(), [&](size_t tile) {
-    TileSplatter splatter(kernel, lens_points, groups, lens);
+    TileSplatter splatter(kernel, sets, lens, shares, &frame);
     splatter.Run(
         rays,
         std::span(by_tile.rays)
             .subspan(by_tile.begins[tile], by_tile.begins[tile + 1] - by_tile.begins[tile]),
-        grid.RectOf(tile), &frame);
+        grid.RectOf(tile), lens_points.k);
   });
   return frame;
 }
 
 SplatFrame SplatReference(std::span<const FrameRay> rays, int width_px, int height_px,
                           const LensPointSets& lens_points, const QueryKernel& kernel,
-                          ThreadPool& pool) {
+                          ThreadPool& pool, const PointShares* shares) {
   SplatFrame frame = EmptyFrame(width_px, height_px);
-  const RayQuery query(rays, kernel);
+  std::map<double, std::unique_ptr<RayQuery>> queries;  // by spread
+  std::vector<size_t> firsts = {0};                     // of sets, in the shares
+  for (size_t set = 0; set < lens_points.sets.size(); ++set) {
+    firsts.push_back(firsts.back() + lens_points.sets[set].size());
+    for (size_t i = 0; i < lens_points.sets[set].size(); ++i) {
+      const double spread = lens_points.SpreadOf(set, i);
+      std::unique_ptr<RayQuery>& query = queries[spread];
+      if (!query)
+        query = std::make_unique<RayQuery>(
+            rays, QueryKernel{kernel.sigma_st_w * spread, kernel.sigma_uv_px});
+    }
+  }
   pool.ForEach(static_cast<size_t>(height_px), [&](size_t row) {
     const int y = static_cast<int>(row);
     for (int x = 0; x < width_px; ++x) {
-      const auto& set = lens_points.sets[(y % lens_points.k) * lens_points.k + x % lens_points.k];
+      const size_t s = static_cast<size_t>(y % lens_points.k) * lens_points.k + x % lens_points.k;
+      const auto& set = lens_points.sets[s];
       std::array<double, 3> rgb{};
-      int found = 0;
-      for (const Vec2& point : set) {
-        const QuerySum sum = query.WithinReach(point, Vec2(x + 0.5, y + 0.5));
+      double found = 0;
+      for (size_t i = 0; i < set.size(); ++i) {
+        float share = 1;
+        if (shares != nullptr) shares->At(x, y, width_px, height_px, firsts[s] + i, 1, &share);
+        const RayQuery& query = *queries.at(lens_points.SpreadOf(s, i));
+        const QuerySum sum = query.WithinReach(set[i], Vec2(x + 0.5, y + 0.5));
         if (!(sum.weight > 0)) continue;
-        for (int c = 0; c < 3; ++c) rgb[c] += sum.rgb[c] / sum.weight;
-        ++found;
+        for (int c = 0; c < 3; ++c) rgb[c] += share * sum.rgb[c] / sum.weight;
+        found += share;
       }
-      frame.share.at(x, y) = static_cast<float>(found) / static_cast<float>(set.size());
+      frame.share.at(x, y) = static_cast<float>(found / static_cast<double>(set.size()));
       for (int c = 0; c < 3 && found > 0; ++c)
         frame.rgb.at(x, y, c) = static_cast<float>(rgb[c] / found);
     }

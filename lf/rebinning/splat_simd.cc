@@ -72,7 +72,6 @@ void AddRaysOf(std::span<const FrameRay> rays, const LensPointGroup& points,
                const QueryKernel& kernel, const SplatGrid& grid, SplatSums* sums) {
   const D d;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  const V per_st2 = hn::Set(d, static_cast<float>(1 / (kernel.sigma_st_w * kernel.sigma_st_w)));
   const float per_k = 1 / static_cast<float>(grid.k);
   const float scale = static_cast<float>(grid.k / kernel.sigma_uv_px);
   const float left = static_cast<float>(grid.x0) + 0.5F, top = static_cast<float>(grid.y0) + 0.5F;
@@ -85,7 +84,8 @@ void AddRaysOf(std::span<const FrameRay> rays, const LensPointGroup& points,
     for (int i = 0; i < kPoints; i += lanes) {
       const V dx = hn::Sub(hn::Set(d, ray.lens_x_w), hn::LoadU(d, points.x.data() + i));
       const V dy = hn::Sub(hn::Set(d, ray.lens_y_w), hn::LoadU(d, points.y.data() + i));
-      const V q = hn::Mul(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), per_st2);
+      const V q = hn::Mul(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)),
+                          hn::LoadU(d, points.per_st2.data() + i));
       is_near = is_near || !hn::AllFalse(d, hn::Le(q, reach2));
       hn::Store(q, d, q_st + i);
       hn::Store(Gaussian(hn::Min(q, reach2)), d, gaussian_st + i);
@@ -126,15 +126,18 @@ void AddMeansOf(const SplatGrid& grid, SplatSums* sums) {
   HWY_ALIGN float means[kChannels][kPoints];
   for (size_t element = 0; element < elements; ++element) {
     float* const weighted = sums->weighted.data() + element * SplatSums::kElement;
+    const float* const shares =
+        sums->shares.empty() ? nullptr : sums->shares.data() + element * kPoints;
     for (int i = 0; i < kPoints; i += lanes) {
+      const V share = shares == nullptr ? one : hn::Load(d, shares + i);
       const V weight = hn::Load(d, weighted + 3 * kPoints + i);
       const auto has_rays = hn::Gt(weight, zero);
-      const V per_weight = hn::Div(one, hn::IfThenElse(has_rays, weight, one));
+      const V per_weight = hn::Div(share, hn::IfThenElse(has_rays, weight, one));
       for (int c = 0; c < 3; ++c) {
         hn::Store(hn::Mul(hn::Load(d, weighted + c * kPoints + i), per_weight), d, means[c] + i);
         hn::Store(zero, d, weighted + c * kPoints + i);
       }
-      hn::Store(hn::IfThenElseZero(has_rays, one), d, means[3] + i);
+      hn::Store(hn::IfThenElseZero(has_rays, share), d, means[3] + i);
       hn::Store(zero, d, weighted + 3 * kPoints + i);
     }
     float* const total = sums->means.data() + element * kChannels;

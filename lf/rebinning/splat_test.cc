@@ -87,6 +87,26 @@ TEST(RayQuery, TheNearestAreThoseOfBruteForce) {
   EXPECT_GT(query.Nearest(Vec2(3, 3), Vec2(1000, 1000), 4).weight, 0);
 }
 
+// But for single rays on the rim of the reach.
+void ExpectSame(const SplatFrame& fast, const SplatFrame& judge) {
+  double sum2 = 0;
+  size_t count = 0, differing = 0;
+  for (int y = 0; y < fast.share.height(); ++y)
+    for (int x = 0; x < fast.share.width(); ++x) {
+      if (std::abs(fast.share.at(x, y) - judge.share.at(x, y)) > 1e-5) {
+        ++differing;
+        continue;
+      }
+      for (int c = 0; c < 3; ++c, ++count) {
+        const double difference = fast.rgb.at(x, y, c) - judge.rgb.at(x, y, c);
+        sum2 += difference * difference;
+      }
+    }
+  ASSERT_GT(count, fast.rgb.pixels().size() * 9 / 10);
+  EXPECT_LT(differing, 25u);
+  EXPECT_LT(std::sqrt(sum2 / static_cast<double>(count)), 65535 * 0.1 / 255);
+}
+
 TEST(Splat, IsWhatQueriesGive) {
   constexpr int kWidth = 150, kHeight = 71;
   const std::vector<FrameRay> rays = RandomRays(60000, kWidth, kHeight, 4);
@@ -99,25 +119,36 @@ TEST(Splat, IsWhatQueriesGive) {
         const QueryKernel kernel{0.0005, 0.8};
         const SplatFrame fast = Splat(rays, kWidth, kHeight, points, kernel, pool);
         const SplatFrame judge = SplatReference(rays, kWidth, kHeight, points, kernel, pool);
-        double sum2 = 0, worst_share = 0;
-        size_t count = 0, differing = 0;
-        for (int y = 0; y < kHeight; ++y)
-          for (int x = 0; x < kWidth; ++x) {
-            if (fast.share.at(x, y) != judge.share.at(x, y)) {
-              ++differing;  // a single ray on the rim of the reach
-              worst_share = std::max<double>(worst_share,
-                                             std::abs(fast.share.at(x, y) - judge.share.at(x, y)));
-              continue;
-            }
-            for (int c = 0; c < 3; ++c, ++count) {
-              const double difference = fast.rgb.at(x, y, c) - judge.rgb.at(x, y, c);
-              sum2 += difference * difference;
-            }
-          }
-        ASSERT_GT(count, 25000u);
-        EXPECT_LT(differing, 20u);
-        EXPECT_LT(std::sqrt(sum2 / static_cast<double>(count)), 65535 * 0.1 / 255);
+        ExpectSame(fast, judge);
       }
+}
+
+// Where rays are rare lens points reach farther, and only a part of them is asked for, here and
+// there: a ramp from the left to the right edge, and none of some.
+TEST(Splat, PointsMayReachFartherAndBeAskedForInPart) {
+  constexpr int kWidth = 140, kHeight = 67;
+  const std::vector<FrameRay> rays = RandomRays(40000, kWidth, kHeight, 6);
+  ThreadPool pool(2);
+  for (const int k : {1, 2}) {
+    LensPointSets points = MakeLensPoints({kLensRadius, 0, 0}, 11, k, 9);
+    RandomSequence random(7);
+    PointShares shares{4, 3, points.point_count(), {}};
+    for (const auto& set : points.sets) {
+      points.spreads.emplace_back();
+      for (size_t i = 0; i < set.size(); ++i)
+        points.spreads.back().push_back(i % 3 == 0 ? 1.75 : 1);
+    }
+    for (int node = 0; node < shares.columns * shares.rows; ++node)
+      for (size_t i = 0; i < shares.point_count; ++i)
+        shares.values.push_back(
+            i % 5 == 4 || (i % 5 == 3 && node % 4 < 3) ? 0 : static_cast<float>(node % 4) / 3);
+    const QueryKernel kernel{0.0005, 0.8};
+    const SplatFrame fast = Splat(rays, kWidth, kHeight, points, kernel, pool, &shares);
+    ExpectSame(fast, SplatReference(rays, kWidth, kHeight, points, kernel, pool, &shares));
+    EXPECT_LT(fast.share.at(0, 30), 0.02);
+    EXPECT_GT(fast.share.at(kWidth - 1, 30), 0.7);
+    EXPECT_LT(fast.share.at(kWidth - 1, 30), 0.9);
+  }
 }
 
 TEST(Splat, IsTheSameForAnyNumberOfThreads) {

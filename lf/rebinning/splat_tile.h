@@ -17,7 +17,10 @@ struct LensPointGroup {
   static constexpr float kNowhere = 1e18F;  // of the places that are not used
   std::array<float, kPoints> x;
   std::array<float, kPoints> y;
+  std::array<float, kPoints> per_st2;  // 1 / (spread sigma_st)^2
+  double reach_w = 0;                  // of the widest
   int count = 0;
+  size_t first = 0;  // in the order of the groups
 };
 
 // The elements that a tile's sums are of: (x0 + k i, y0 + k j).
@@ -37,6 +40,8 @@ struct SplatSums {
   LargeVector<float> weighted;
   // The means of those that had rays, added up  [rows][columns][kChannels]
   LargeVector<float> means;
+  // How much of each lens point of the group counts  [rows][columns][kPoints]  Empty: 1.
+  LargeVector<float> shares;
 
   void Reset(const SplatGrid& grid) {
     const size_t elements = static_cast<size_t>(grid.columns) * grid.rows;

@@ -27,6 +27,7 @@ Json FrameToJson(const FrameReport& frame) {
                {"rays_per_element_min", frame.min_count},
                {"rays_per_element_median", frame.median_count},
                {"develop_s", frame.develop_s}};
+  if (frame.interpolated_share) json["interpolated_share"] = *frame.interpolated_share;
   if (frame.weighed) {
     json["effective_lf_images"] = frame.weighed->effective_count;
     json["hat_share"] = frame.weighed->hat_share;
@@ -62,6 +63,9 @@ FrameReport MakeFrameReport(FrameId frame, const FrameRays& rays, const Develope
   FrameReport report;
   report.frame = frame;
   report.rays = rays;
+  if (const auto& shares = developed.interpolated.pixels(); !shares.empty())
+    report.interpolated_share =
+        std::accumulate(shares.begin(), shares.end(), 0.0) / static_cast<double>(shares.size());
   const LargeVector<uint32_t>& counts = developed.ray_count.pixels();
   std::vector<uint32_t> channel_counts(counts.size() / 3);
   if (channel_counts.empty()) return report;

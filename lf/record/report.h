@@ -43,6 +43,8 @@ struct FrameReport {
     double uncovered_share = 0;  // of the opening (lens_weights/lens_coverage.h)
   };
   std::optional<Weighed> weighed = std::nullopt;
+  // With rebinned rays: of the picture, how much is interpolated between them.
+  std::optional<double> interpolated_share = std::nullopt;
 };
 
 struct RenderReport {

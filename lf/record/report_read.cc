@@ -105,6 +105,8 @@ FrameReport FrameFromJson(const Json& json, std::string* fault) {
   fields.Get("rays_per_element_median", &frame.median_count);
   fields.Get("develop_s", &frame.develop_s);
   fields.Get("inputs", &frame.camera);
+  if (fields.Find("interpolated_share") != nullptr)
+    fields.Get("interpolated_share", &frame.interpolated_share.emplace());
   if (fields.Find("effective_lf_images") != nullptr) {
     FrameReport::Weighed& weighed = frame.weighed.emplace();
     fields.Get("effective_lf_images", &weighed.effective_count);

@@ -14,6 +14,19 @@ namespace {
 constexpr int kChannels = SensorPlate::kChannels;
 constexpr int kFilledPerQuestion = 64;  // up to 0.1 ms each
 
+// Of the completion in a channel with so many collected rays.
+double ShareOf(const Completion* completion, int x, int y, uint64_t count) {
+  if (completion == nullptr) return 0;
+  const double share = completion->share.at(x, y);
+  return count == 0 && share > 0 ? 1 : share;
+}
+
+// Of rays, for filling: what is interpolated is as good as collected.
+uint32_t KnownCount(const Completion* completion, int x, int y, uint32_t count) {
+  const bool is_completed = completion != nullptr && completion->share.at(x, y) > 0;
+  return is_completed ? std::numeric_limits<uint32_t>::max() : count;
+}
+
 // Own averages, counts and coverage of row y. Returns which channels have elements to fill.
 std::array<bool, kChannels> AverageRow(const SensorPlate& plate, const DevelopOptions& options,
                                        uint32_t rays_needed, int y, DevelopedFrame& frame,
@@ -25,13 +38,21 @@ std::array<bool, kChannels> AverageRow(const SensorPlate& plate, const DevelopOp
       const ElementSum rays = plate.At(x, y, c);
       frame.ray_count.at(x, y, c) = static_cast<uint32_t>(
           std::min<uint64_t>(rays.count, std::numeric_limits<uint32_t>::max()));
-      is_thin[c] |= rays.count < rays_needed;
-      if (rays.count == 0) continue;
-      ++collected;
-      const double average = static_cast<double>(rays.sum) / static_cast<double>(rays.count);
+      is_thin[c] |= KnownCount(options.completion, x, y, frame.ray_count.at(x, y, c)) < rays_needed;
+      const double share = ShareOf(options.completion, x, y, rays.count);
+      if (rays.count == 0 && share == 0) continue;
+      double average = 0;
+      if (rays.count > 0) {
+        ++collected;
+        average = static_cast<double>(rays.sum) / static_cast<double>(rays.count);
+      }
+      if (share > 0) average += share * (options.completion->rgb.at(x, y, c) - average);
       mean.at(x, y, c) = static_cast<float>((average - options.pedestal) / options.scale);
     }
     frame.coverage.at(x, y) = static_cast<float>(collected) / kChannels;
+    if (options.completion != nullptr)
+      frame.interpolated.at(x, y) =
+          static_cast<float>(ShareOf(options.completion, x, y, static_cast<uint64_t>(collected)));
   }
   return is_thin;
 }
@@ -44,6 +65,7 @@ DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, 
   const uint32_t rays_needed = std::max(options.smooth_below, 1u);
   DevelopedFrame frame{Image<float>(width, height, kChannels),
                        Image<uint32_t>(width, height, kChannels), Image<float>(width, height)};
+  if (options.completion != nullptr) frame.interpolated = Image<float>(width, height);
   Image<float> mean(width, height, kChannels);
   std::atomic<bool> is_ended = false;
   const auto ends = [&] {
@@ -56,12 +78,20 @@ DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, 
     row_is_thin[y] = AverageRow(plate, options, rays_needed, static_cast<int>(y), frame, mean);
   });
 
+  Image<uint32_t> known;
+  if (options.completion != nullptr) {
+    known = frame.ray_count;
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x)
+        for (int c = 0; c < kChannels; ++c)
+          known.at(x, y, c) = KnownCount(options.completion, x, y, known.at(x, y, c));
+  }
+  const Image<uint32_t>& count = options.completion != nullptr ? known : frame.ray_count;
   std::array<std::optional<ChannelFill>, kChannels> fills;
   pool.ForEach(kChannels, [&](size_t c) {
     if (std::any_of(row_is_thin.begin(), row_is_thin.end(),
                     [c](const auto& row) { return row[c]; }))
-      fills[c].emplace(mean, frame.ray_count, static_cast<int>(c), rays_needed,
-                       options.fill_radius_px, ends);
+      fills[c].emplace(mean, count, static_cast<int>(c), rays_needed, options.fill_radius_px, ends);
   });
   if (is_ended) return frame;
 
@@ -77,7 +107,7 @@ DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, 
     for (int x = 0; x < width; ++x) {
       Vec3 camera_rgb;
       for (int c = 0; c < kChannels; ++c) {
-        if (frame.ray_count.at(x, y, c) >= rays_needed) {
+        if (count.at(x, y, c) >= rays_needed) {
           camera_rgb[c] = mean.at(x, y, c);
           continue;
         }

@@ -13,6 +13,13 @@
 
 namespace lf {
 
+// What was interpolated of a frame from rebinned rays (hybrid/rebinned_rays.h).
+struct Completion {
+  Image<float> rgb;  // [height][width][3], as averages of the plate's rays
+  Image<float>
+      share;  // [height][width] of it in an element that has rays, too; 0: nothing is known
+};
+
 struct DevelopOptions {
   double pedestal = 0;  // radiance = (sum / count - pedestal) / scale
   double scale = 65535;
@@ -26,6 +33,9 @@ struct DevelopOptions {
   // that near stays black; light that nobody recorded is not invented.
   int fill_radius_px = 32;
 
+  // Mixed with what was collected, if given; stands for what was not.
+  const Completion* completion = nullptr;
+
   // Asked by any thread, at least before each row and every 64 elements to be filled, if given.
   // Once it is true, the rest is left out and the answer is of no use.
   std::function<bool()> is_interrupted = {};
@@ -38,9 +48,12 @@ struct DevelopedFrame {
   // [height][width] with lens weights, where counts are sums of weights: how many LF images of
   // equal weight would make as little noise; else empty
   Image<float> effective_count = {};
+  // [height][width] with completion: the part of each element that was interpolated; else empty
+  Image<float> interpolated = {};
 };
 
-// Averages every element and channel. Those without a ray (or with fewer than smooth_below) take
+// Averages every element and channel: (1 - share) of it and share of the completion, or that alone
+// where no ray was collected. Those without either (or with fewer rays than smooth_below) take
 // the inverse-distance mean of collected elements of the channel,
 //
 //   sum_i v_i / d_i  /  sum_i 1 / d_i      (Shepard 1968; d between element centres, in elements)

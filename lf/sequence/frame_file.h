@@ -16,8 +16,8 @@
 namespace lf {
 
 enum class FrameFormat {
-  kExrHalf,   // exr: R G B count.R count.G count.B coverage, and effective with lens weights;
-              // colours half, counts 32-bit integers
+  kExrHalf,   // exr: R G B count.R count.G count.B coverage; effective with lens weights,
+              // interpolated with rebinned rays; colours half, counts 32-bit integers
   kExrFloat,  // exr-float: the same, colours float
   kPng8,      // png: sRGB
   kPng16,     // png16: sRGB, 16 bit

@@ -1,0 +1,210 @@
+#include "lf/hybrid/lens_gaps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "lf/camera/ray_through.h"
+#include "lf/collector/around_lens.h"
+#include "lf/lens_weights/frame_weights.h"
+
+namespace lf {
+namespace {
+
+// Kernels overlap where lens points are so many sigmas apart.
+constexpr double kPointDistance_sigmas = 3;
+constexpr int kLeastPoints = 8, kMostPoints = 256;
+// Where LF cameras are rare, a kernel is as wide as this part of the way to the nearest.
+constexpr double kSigmaPerDistance = 0.5;
+constexpr int kLeastNodes = 9, kMostNodes = 65;
+constexpr size_t kMostNodeValues = size_t{1} << 19;  // of all nodes and lens points
+
+double MiddleOf(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+LensGaps::LensGaps(const ImageIndex& index, const RenderCamera& frame,
+                   const CollectedWeights& collected, bool lens_test, const PlaceRange& places,
+                   const SelectOptions& select, const QueryOptions& options, ThreadPool& pool)
+    : is_collected_(static_cast<bool>(collected)) {
+  all_.camera = frame;
+  sampling_.camera_distance_w = CameraDistanceAround(index, frame);
+  if (!can_be_asked()) return;
+  RenderCamera grown = frame;
+  grown.aperture = {frame.aperture.radius_w + kFarthestDistances * sampling_.camera_distance_w, 0,
+                    0};
+  std::vector<LfImageId> near;
+  std::vector<double> pixel_rad;
+  std::vector<Vec2> seen_through;  // by the middle of the plate
+  const Intrinsics& plate = frame.pinhole.intrinsics;
+  const std::optional<Vec3> focus =
+      FocusPointOfElement(frame, 0.5 * plate.width_px, 0.5 * plate.height_px);
+  for (const SelectedImage& image : SelectImages(index, std::span(&grown, 1), select, pool)) {
+    if (!places.Holds(image.place)) continue;
+    const PinholeCamera lf_camera = index.light_field().Camera(image.id);
+    near.push_back(image.id);
+    pixel_rad.push_back(1 / lf_camera.intrinsics.fx_px);
+    sampling_.middle_world += lf_camera.CentreWorld();
+    if (focus) seen_through.push_back(LensPointOfLine(frame, lf_camera.CentreWorld(), *focus));
+  }
+  if (near.empty()) {
+    sampling_ = {};
+    return;
+  }
+  sampling_.middle_world /= static_cast<double>(near.size());
+  sampling_.pixel_rad = MiddleOf(pixel_rad);
+  SetPoints(seen_through, options);
+  if (!is_collected_) return;
+  SetNodes(near, index);
+  FindGaps(near, index, collected, lens_test, places, pool);
+}
+
+void LensGaps::SetPoints(const std::vector<Vec2>& seen_through, const QueryOptions& options) {
+  const RenderCamera& frame = all_.camera;
+  const double area_w2 = Area(frame.aperture);
+  const double sigma_w = options.sigma_st * sampling_.camera_distance_w;
+  const double apart_w = kPointDistance_sigmas / 2 * sigma_w;
+  int count = options.lens_point_count;
+  if (count == 0)
+    count = static_cast<int>(std::clamp(std::ceil(area_w2 / (kPi * apart_w * apart_w)),
+                                        0.0 + kLeastPoints, 0.0 + kMostPoints));
+  all_.points = MakeLensPoints(frame.aperture, count, options.lens_sets, options.seed);
+  const double focus_w = frame.focus_distance_w;
+  const double element_rad = 1 / frame.pinhole.intrinsics.fx_px;
+  const double lf_pixel_w =
+      sampling_.pixel_rad * std::abs(frame.pinhole.ForwardWorld().dot(
+                                frame.pinhole.CentreWorld() +
+                                focus_w * frame.pinhole.ForwardWorld() - sampling_.middle_world));
+  constexpr double kMostSigma_px = 8;
+  all_.kernel = {sigma_w,
+                 std::min(options.sigma_uv * std::max(1.0, lf_pixel_w / (element_rad * focus_w)),
+                          kMostSigma_px)};
+  // What few points must stand for, and what is far from LF cameras, is smoothed more.
+  const double few = 0.5 * std::sqrt(area_w2 / count) / sigma_w;
+  for (const auto& set : all_.points.sets) {
+    all_.points.spreads.emplace_back();
+    for (const Vec2& point : set) {
+      double nearest_w = std::numeric_limits<double>::infinity();
+      for (const Vec2& other : seen_through)
+        nearest_w = std::min(nearest_w, (other - point).norm());
+      const double most_w = kFarthestDistances * sampling_.camera_distance_w;
+      nearest_w = std::min(nearest_w, most_w);
+      all_.points.spreads.back().push_back(
+          std::max({1.0, few, kSigmaPerDistance * nearest_w / sigma_w}));
+    }
+  }
+}
+
+// So many that from node to node lens points of an LF camera move by half of what a point covers.
+void LensGaps::SetNodes(const std::vector<LfImageId>& near, const ImageIndex& index) {
+  constexpr size_t kAsked = 64;
+  const RenderCamera& frame = all_.camera;
+  const Intrinsics& plate = frame.pinhole.intrinsics;
+  double across_w = 0, down_w = 0;
+  const auto seen_at = [&](const Vec3& centre, double x, double y) -> std::optional<Vec2> {
+    const std::optional<Vec3> focus = FocusPointOfElement(frame, x, y);
+    if (!focus) return {};
+    const Vec2 point = LensPointOfLine(frame, centre, *focus);
+    return point.allFinite() ? std::optional(point) : std::nullopt;
+  };
+  for (size_t i = 0; i < near.size(); i += 1 + near.size() / kAsked) {
+    const Vec3 centre = index.light_field().Camera(near[i]).CentreWorld();
+    const auto middle = seen_at(centre, 0.5 * plate.width_px, 0.5 * plate.height_px);
+    const auto right = seen_at(centre, plate.width_px, 0.5 * plate.height_px);
+    const auto below = seen_at(centre, 0.5 * plate.width_px, plate.height_px);
+    if (middle && right) across_w = std::max(across_w, 2 * (*right - *middle).norm());
+    if (middle && below) down_w = std::max(down_w, 2 * (*below - *middle).norm());
+  }
+  const double step_w = 0.5 * kCoveredDistances * sampling_.camera_distance_w;
+  const auto nodes = [step_w](double moves_w) {
+    return static_cast<int>(
+        std::clamp(std::ceil(moves_w / step_w) + 1, 0.0 + kLeastNodes, 0.0 + kMostNodes));
+  };
+  columns_ = nodes(across_w);
+  rows_ = nodes(down_w);
+  const size_t points = all_.points.point_count();
+  while (static_cast<size_t>(columns_) * rows_ * points > kMostNodeValues &&
+         columns_ * rows_ > kLeastNodes * kLeastNodes) {
+    columns_ = std::max(columns_ * 7 / 8, kLeastNodes);
+    rows_ = std::max(rows_ * 7 / 8, kLeastNodes);
+  }
+}
+
+void LensGaps::FindGaps(const std::vector<LfImageId>& near, const ImageIndex& index,
+                        const CollectedWeights& collected, bool lens_test, const PlaceRange& places,
+                        ThreadPool& pool) {
+  const RenderCamera& frame = all_.camera;
+  const Intrinsics& plate = frame.pinhole.intrinsics;
+  const ApertureTest aperture(frame.aperture);
+  std::vector<Vec2> points;
+  for (const auto& set : all_.points.sets) points.insert(points.end(), set.begin(), set.end());
+  const double distance_w = sampling_.camera_distance_w;
+  const double near_w =
+      std::max(kCoveredDistances * distance_w,
+               std::sqrt(Area(frame.aperture) / static_cast<double>(points.size())));
+  struct Camera {
+    RayThrough ray;
+    RayWeights weights;
+    uint32_t place;
+  };
+  std::vector<Camera> cameras;
+  for (const LfImageId id : near) {
+    RayWeights weights = collected(id);
+    if (weights.are_none() || !places.Holds(index.PlaceOf(id))) continue;
+    cameras.push_back({RayThrough(index.light_field().Camera(id), frame.pinhole.ForwardWorld()),
+                       std::move(weights), index.PlaceOf(id)});
+  }
+  covered_by_.assign(static_cast<size_t>(columns_) * rows_ * points.size(), UINT32_MAX);
+  pool.ForEach(static_cast<size_t>(columns_) * rows_, [&](size_t node) {
+    const double x = static_cast<double>(node % columns_) / std::max(1, columns_ - 1);
+    const double y = static_cast<double>(node / columns_) / std::max(1, rows_ - 1);
+    const std::optional<Vec3> focus =
+        FocusPointOfElement(frame, x * plate.width_px, y * plate.height_px);
+    if (!focus) return;
+    const auto element = [](double along, int size_px) {
+      return std::min(static_cast<int>(along * size_px), size_px - 1);
+    };
+    uint32_t* const covered_by = covered_by_.data() + node * points.size();
+    for (const Camera& camera : cameras) {
+      const Vec2 through = LensPointOfLine(frame, camera.ray.centre_world(), *focus);
+      if (!through.allFinite() || (lens_test && !aperture.Contains(through)) ||
+          !IsSeenBy(camera.ray, *focus) ||
+          camera.weights.At(element(x, plate.width_px), element(y, plate.height_px)) == 0)
+        continue;
+      for (size_t i = 0; i < points.size(); ++i)
+        if (camera.place < covered_by[i] && (points[i] - through).squaredNorm() <= near_w * near_w)
+          covered_by[i] = camera.place;
+    }
+  });
+  for (const uint32_t covered_by : covered_by_)
+    if (covered_by != UINT32_MAX) changes_until_ = std::max(changes_until_, covered_by + 1);
+}
+
+FrameQueries LensGaps::QueriesAt(uint32_t place) const {
+  FrameQueries queries = all_;
+  if (!is_collected_ || !can_be_asked()) return queries;
+  queries.shares = PointShares{columns_, rows_, all_.points.point_count(), {}};
+  queries.shares->values.reserve(covered_by_.size());
+  for (const uint32_t covered_by : covered_by_)
+    queries.shares->values.push_back(covered_by >= place ? 1 : 0);
+  return queries;
+}
+
+bool LensGaps::AsksAt(uint32_t place) const {
+  if (!can_be_asked()) return false;
+  return !is_collected_ ||
+         std::any_of(covered_by_.begin(), covered_by_.end(),
+                     [place](uint32_t covered_by) { return covered_by >= place; });
+}
+
+RenderCamera LensGaps::ReachedCamera() const {
+  RenderCamera camera = all_.camera;
+  camera.aperture = {camera.aperture.radius_w + ReachOf(all_.kernel, all_.points).lens_w, 0, 0};
+  return camera;
+}
+
+}  // namespace lf

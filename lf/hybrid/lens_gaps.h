@@ -1,0 +1,81 @@
+// Through which parts of a frame's lens no recorded light comes, element by element: known from
+// calibrations alone, before an LF image is read (thesis 4.3.3).
+//
+// The lens is divided among points spread over it. A point is covered, as an element sees it, once
+// the collected LF images have a ray to that element which passes the lens near it: within
+// kCoveredDistances of the distance between LF cameras, or as near as lens points are to each
+// other. What is not covered is asked of rebinned rays. So an aperture larger than the captured
+// band is noticed, and one that falls between LF cameras.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "lf/camera/ray_weight.h"
+#include "lf/camera/render_camera.h"
+#include "lf/core/parallel.h"
+#include "lf/rebinning/frame_queries.h"
+#include "lf/rebinning/slab_plan.h"
+#include "lf/selection/image_index.h"
+#include "lf/selection/select.h"
+
+namespace lf {
+
+// In distances between LF cameras around the lens.
+inline constexpr double kCoveredDistances = 1.25;
+// Rays of LF cameras farther than this from a lens point have no say in what it sees.
+inline constexpr double kFarthestDistances = 8;
+
+struct QueryOptions {
+  double sigma_st = 0.5;     // in distances between LF cameras; wider where these are rare
+  double sigma_uv = 0.45;    // in elements, or in LF pixels where these are larger
+  int lens_point_count = 0;  // in a set; 0: so many that kernels overlap, 8 to 256
+  int lens_sets = 1;         // k: sets of k x k elements (lens_points.h)
+  uint64_t seed = 0;
+};
+
+// What collection takes of an LF image in the frame: none if it never does.
+using CollectedWeights = std::function<RayWeights(LfImageId id)>;
+
+class LensGaps {
+ public:
+  // collected  empty: nothing is collected, everything is asked for
+  // lens_test  whether only rays inside the opening are collected: without lens weights
+  // places     that the frame takes
+  LensGaps(const ImageIndex& index, const RenderCamera& frame, const CollectedWeights& collected,
+           bool lens_test, const PlaceRange& places, const SelectOptions& select,
+           const QueryOptions& options, ThreadPool& pool);
+
+  // Whether there are LF cameras around the lens, whose rays could answer.
+  bool can_be_asked() const { return sampling_.camera_distance_w > 0; }
+  const LfSampling& sampling() const { return sampling_; }
+
+  // What is asked for when the LF images at places before this one are collected.
+  FrameQueries QueriesAt(uint32_t place) const;
+  bool AsksAt(uint32_t place) const;
+  // From this place on what is asked for does not change any more.
+  uint32_t changes_until() const { return changes_until_; }
+  static constexpr uint32_t kInTheEnd = UINT32_MAX - 1;
+
+  // The frame's camera with a lens that holds all that its points reach.
+  RenderCamera ReachedCamera() const;
+
+ private:
+  void SetPoints(const std::vector<Vec2>& seen_through, const QueryOptions& options);
+  void SetNodes(const std::vector<LfImageId>& near, const ImageIndex& index);
+  void FindGaps(const std::vector<LfImageId>& near, const ImageIndex& index,
+                const CollectedWeights& collected, bool lens_test, const PlaceRange& places,
+                ThreadPool& pool);
+
+  LfSampling sampling_;
+  FrameQueries all_;
+  bool is_collected_ = false;
+  int columns_ = 1;  // nodes over the plate
+  int rows_ = 1;
+  // The place of the LF image that covers a lens point first, UINT32_MAX if none does.
+  std::vector<uint32_t> covered_by_;  // [rows_][columns_][points]
+  uint32_t changes_until_ = 0;
+};
+
+}  // namespace lf

@@ -1,0 +1,1 @@
+#include "lf/hybrid/lens_gaps.h"

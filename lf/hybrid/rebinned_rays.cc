@@ -1,0 +1,316 @@
+#include "lf/hybrid/rebinned_rays.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+
+#include "lf/collector/collect.h"
+#include "lf/core/check.h"
+#include "lf/selection/ideal_cells.h"
+#include "lf/selection/overlap.h"
+
+namespace lf {
+namespace {
+
+// Of rays on their way into the map: what waits is 16 bytes each.
+constexpr long long kPixelsAtOnce = 4 << 20;
+// Where images are kept whole they are cut into strips, so that these are bounded.
+constexpr int kStripRows = 64;
+// LF images that the number of asked rays is estimated from, and what of it must fit.
+constexpr size_t kEstimatedFrom = 256;
+constexpr double kFitShare = 0.9;
+// What of it is expected to become cells.
+constexpr double kRoom = 1.1, kRoomByEdges = 0.15;
+
+// What is asked for is looked at anew before the LF images at these places: 0 and the powers of two
+// times kDecisionPlaces. The last one up to `place`.
+uint32_t PhaseOf(uint32_t place) {
+  if (place < kDecisionPlaces) return 0;
+  uint32_t phase = kDecisionPlaces;
+  while (phase <= place / 2) phase *= 2;
+  return phase;
+}
+
+bool Covers(const CoverageMap& map, const Slab& slab, CellKey cell) {
+  return map.Covers(MiddleOf(slab, cell));
+}
+
+}  // namespace
+
+const char* NameOf(KeptRays kept) {
+  switch (kept) {
+    case KeptRays::kAll:
+      return "all";
+    case KeptRays::kEdges:
+      return "edges";
+    default:
+      return "auto";
+  }
+}
+
+// Consecutive frames with a slab of their own.
+struct RebinnedRays::Section {
+  SlabSection plan;        // of asking_ [begin, end)
+  CoverageMap in_the_end;  // what finished frames ask for
+  CoverageMap previews;    // and these before
+  std::unique_ptr<RayMap> map;
+  std::optional<std::vector<BinnedCell>> cells = {};  // of the map as it is, once asked for
+};
+
+RebinnedRays::RebinnedRays(const ImageIndex& index, std::vector<LensGaps> gaps,
+                           std::span<const PlaceRange> places, bool collects,
+                           const SelectOptions& select, const RebinPassOptions& options,
+                           ThreadPool& pool)
+    : light_field_(index.light_field()),
+      gaps_(std::move(gaps)),
+      collects_(collects),
+      select_(select),
+      options_(options),
+      pool_(pool),
+      stored_values_(StoredValueTable(light_field_.encoding)) {
+  LF_CHECK(places.size() == gaps_.size());
+  std::vector<FrameQueries> queries;
+  std::vector<LfSampling> sampling;
+  for (size_t f = 0; f < gaps_.size(); ++f) {
+    if (!gaps_[f].AsksAt(0)) continue;
+    asking_.push_back(f);
+    reached_.push_back(gaps_[f].ReachedCamera());
+    sampling.push_back(gaps_[f].sampling());
+    queries.push_back(gaps_[f].QueriesAt(LensGaps::kInTheEnd));
+  }
+  const std::vector<SlabSection> plans = PlanSlabs(queries, sampling, options_.slab);
+  for (const SlabSection& plan : plans) {
+    const auto of_section = std::span(queries).subspan(plan.begin, plan.end - plan.begin);
+    sections_.push_back(std::make_unique<Section>());
+    sections_.back()->plan = plan;
+    sections_.back()->in_the_end = CoverageMap(plan, of_section, options_.coverage, pool_);
+  }
+  MakeMaps(index, places);
+  Begin(0);
+}
+
+RebinnedRays::~RebinnedRays() = default;
+
+// How many rays are asked for in the end is estimated by the squares of some LF images, all over
+// the order.
+void RebinnedRays::MakeMaps(const ImageIndex& index, std::span<const PlaceRange> places) {
+  std::vector<PlaceRange> taken;
+  for (const size_t f : asking_) taken.push_back({0, places[f].end});
+  const std::vector<SelectedImage> images = SelectImages(index, reached_, select_, pool_, taken);
+  const size_t step = 1 + images.size() / kEstimatedFrom;
+  const size_t asked = (images.size() + step - 1) / step;
+  std::vector<double> totals;  // of sections
+  for (const auto& section : sections_) {
+    std::vector<double> rays(asked);
+    pool_.ForEach(asked, [&](size_t i) {
+      const SelectedImage& image = images[i * step];
+      rays[i] = static_cast<double>(image.rect.pixel_count()) *
+                CoveredShare(section->plan.slab, light_field_.Camera(image.id), image.rect,
+                             section->in_the_end);
+    });
+    totals.push_back(std::accumulate(rays.begin(), rays.end(), 0.0) * static_cast<double>(step));
+  }
+  const size_t most = std::max<size_t>(1, options_.max_cells / std::max<size_t>(1, totals.size()));
+  const double most_asked = totals.empty() ? 0 : *std::max_element(totals.begin(), totals.end());
+  keeps_all_ =
+      options_.kept == KeptRays::kAll ||
+      (options_.kept == KeptRays::kAuto && most_asked <= kFitShare * static_cast<double>(most));
+  for (size_t i = 0; i < sections_.size(); ++i)
+    sections_[i]->map = std::make_unique<RayMap>(
+        most, static_cast<size_t>(totals[i] * (keeps_all_ ? kRoom : kRoomByEdges)));
+}
+
+bool RebinnedRays::IsPreviewed(size_t asking, uint32_t phase) const {
+  return collects_ && options_.preview && phase < gaps_[asking_[asking]].changes_until();
+}
+
+// What only earlier previews asked for is dropped.
+void RebinnedRays::Begin(uint32_t phase) {
+  for (const auto& section : sections_) {
+    const SlabSection& plan = section->plan;
+    std::vector<FrameQueries> queries;
+    for (size_t i = plan.begin; i < plan.end; ++i)
+      if (IsPreviewed(i, phase)) queries.push_back(gaps_[asking_[i]].QueriesAt(phase));
+    if (queries.empty() && section->previews.is_empty()) continue;
+    section->previews = CoverageMap(plan, queries, options_.coverage, pool_);
+    section->cells.reset();
+    section->map->DropUnless(
+        [&](CellKey cell) {
+          return Covers(section->in_the_end, plan.slab, cell) ||
+                 Covers(section->previews, plan.slab, cell);
+        },
+        pool_);
+  }
+  phase_ = phase;
+}
+
+PixelRect RebinnedRays::RectOf(LfImageId id, uint32_t phase, size_t begin, size_t end) const {
+  const PinholeCamera camera = light_field_.Camera(id);
+  std::vector<IdealCell> cells;
+  if (camera.intrinsics.has_distortion()) cells = MakeIdealCells(camera.intrinsics);
+  const ImageOverlap overlap(camera, cells, select_.reach);
+  PixelRect rect;
+  for (size_t i = begin; i < end; ++i) {
+    const LensGaps& gaps = gaps_[asking_[i]];
+    if (!IsPreviewed(i, phase) && !gaps.AsksAt(LensGaps::kInTheEnd)) continue;
+    if (IsWithinAngle(light_field_.cameras[id.value], reached_[i], select_))
+      rect = Bounds(rect, overlap.Rect(reached_[i]));
+  }
+  return rect;
+}
+
+PixelRect RebinnedRays::RectOf(LfImageId id, uint32_t place) const {
+  return RectOf(id, PhaseOf(place), 0, asking_.size());
+}
+
+std::vector<RenderCamera> RebinnedRays::ReachedCameras() const { return reached_; }
+
+void RebinnedRays::FindIdealPixels(std::span<const BatchImage> images) {
+  std::map<uint32_t, std::shared_ptr<const IdealPixels>> in_use;
+  std::vector<uint32_t> missing;
+  for (const BatchImage& image : images) {
+    const uint32_t index = light_field_.cameras[image.id.value].intrinsics_index;
+    if (!light_field_.intrinsics[index].has_distortion() || in_use.contains(index)) continue;
+    const auto known = ideal_pixels_.find(index);
+    if (known == ideal_pixels_.end()) missing.push_back(index);
+    in_use[index] = known == ideal_pixels_.end() ? nullptr : known->second;
+  }
+  pool_.ForEach(missing.size(), [&](size_t i) {
+    in_use.find(missing[i])->second =
+        std::make_shared<const IdealPixels>(light_field_.intrinsics[missing[i]]);
+  });
+  ideal_pixels_ = std::move(in_use);
+}
+
+void RebinnedRays::Take(std::span<const BatchImage> images, uint32_t place_end) {
+  if (place_end <= places_done_) return;
+  const auto first = std::find_if(images.begin(), images.end(), [this](const BatchImage& image) {
+    return image.place >= places_done_;
+  });
+  images = images.subspan(static_cast<size_t>(first - images.begin()));
+  if (!images.empty()) {
+    // Batches do not go across the places of decisions.
+    const uint32_t phase = PhaseOf(images.front().place);
+    LF_CHECK(PhaseOf(images.back().place) == phase);
+    if (phase != phase_) Begin(phase);
+    FindIdealPixels(images);
+    for (const auto& section : sections_) Rebin(images, *section);
+  }
+  places_done_ = place_end;
+}
+
+void RebinnedRays::Rebin(std::span<const BatchImage> images, Section& section) {
+  if (section.in_the_end.is_empty() && section.previews.is_empty()) return;
+  struct Task {
+    const BatchImage* image;
+    PixelRect rect;
+  };
+  std::vector<PixelRect> rects(images.size());
+  pool_.ForEach(images.size(), [&](size_t i) {
+    rects[i] = Intersection(images[i].pixels.rect,
+                            RectOf(images[i].id, phase_, section.plan.begin, section.plan.end));
+  });
+  const bool by_edges = !keeps_all_ || !section.previews.is_empty();
+  std::vector<Task> tasks;
+  for (size_t i = 0; i < images.size(); ++i) {
+    if (rects[i].empty()) continue;
+    // Edges of an image are found once.
+    const int rows = by_edges ? rects[i].y_end : kStripRows;
+    for (int y = rects[i].y_begin / rows * rows; y < rects[i].y_end; y += rows)
+      tasks.push_back(
+          {&images[i], Intersection(rects[i], {rects[i].x_begin, y, rects[i].x_end, y + rows})});
+  }
+  const RebinCoverage coverage = {keeps_all_ ? &section.in_the_end : nullptr,
+                                  {keeps_all_ ? nullptr : &section.in_the_end, &section.previews}};
+  std::vector<BinnedRays> rays;
+  for (size_t begin = 0; begin < tasks.size();) {
+    // What others are averaged into depends on what is given together: one image at a time.
+    size_t end = begin;
+    for (long long pixels = 0; end < tasks.size() && (pixels == 0 || pixels < kPixelsAtOnce);
+         ++end) {
+      if (options_.rebin.averages_others && end > begin && tasks[end].image != tasks[begin].image)
+        break;
+      pixels += tasks[end].rect.pixel_count();
+    }
+    rays.resize(end - begin);
+    pool_.ForEach(rays.size(), [&](size_t i) {
+      const ThreadCpuTimer timer;
+      const Task& task = tasks[begin + i];
+      rays[i].Clear();
+      const LfCamera& lf_camera = light_field_.cameras[task.image->id.value];
+      const auto ideal = ideal_pixels_.find(lf_camera.intrinsics_index);
+      RebinImage(section.plan.slab, light_field_.Camera(task.image->id), task.image->id,
+                 task.image->pixels, task.rect, stored_values_,
+                 ideal == ideal_pixels_.end() ? nullptr : ideal->second.get(), options_.rebin,
+                 &coverage, *section.map, &rays[i]);
+      cpu_ns_ += timer.Nanoseconds();
+    });
+    for (const BinnedRays& of_task : rays) looked_at_ += of_task.looked_at;
+    InsertRays(rays, pool_, section.map.get());
+    begin = end;
+  }
+  section.cells.reset();
+}
+
+Completion RebinnedRays::Complete(size_t frame, uint32_t place) {
+  const Intrinsics& plate = gaps_[frame].ReachedCamera().pinhole.intrinsics;
+  Completion completion{Image<float>(plate.width_px, plate.height_px, 3),
+                        Image<float>(plate.width_px, plate.height_px)};
+  const auto found = std::lower_bound(asking_.begin(), asking_.end(), frame);
+  if (found == asking_.end() || *found != frame || !gaps_[frame].AsksAt(place)) return completion;
+  const auto number = static_cast<size_t>(found - asking_.begin());
+  const auto section = std::find_if(sections_.begin(), sections_.end(),
+                                    [number](const auto& one) { return number < one->plan.end; });
+  if (!(*section)->cells) (*section)->cells = (*section)->map->Cells(pool_);
+  const FrameQueries queries = gaps_[frame].QueriesAt(place);
+  const LargeVector<FrameRay> rays =
+      FrameRaysOf((*section)->plan.slab, *(*section)->cells, queries.camera,
+                  ReachOf(queries.kernel, queries.points), pool_);
+  SplatFrame splat = Splat(rays, plate.width_px, plate.height_px, queries.points, queries.kernel,
+                           pool_, queries.shares ? &*queries.shares : nullptr);
+  completion.rgb = std::move(splat.rgb);
+  if (!queries.shares) {
+    for (size_t i = 0; i < splat.share.pixels().size(); ++i)
+      completion.share.pixels()[i] = splat.share.pixels()[i] > 0 ? 1.0F : 0.0F;
+    return completion;
+  }
+  const PointShares asked = queries.shares->MeansOfSets(queries.points);
+  pool_.ForEach(static_cast<size_t>(plate.height_px), [&](size_t row) {
+    const int y = static_cast<int>(row), k = queries.points.k;
+    for (int x = 0; x < plate.width_px; ++x) {
+      float not_collected = 0;
+      asked.At(x, y, plate.width_px, plate.height_px,
+               static_cast<size_t>(y % k) * k + static_cast<size_t>(x % k), 1, &not_collected);
+      const float interpolated = splat.share.at(x, y);
+      if (interpolated > 0)
+        completion.share.at(x, y) =
+            interpolated / (interpolated + std::max(0.0F, 1 - not_collected));
+    }
+  });
+  return completion;
+}
+
+RebinnedRays::Facts RebinnedRays::facts() const {
+  Facts facts{sections_.size(), 0, looked_at_, static_cast<double>(cpu_ns_) * 1e-9, keeps_all_};
+  for (const auto& section : sections_) facts.cell_count += section->map->size();
+  return facts;
+}
+
+std::vector<std::string> RebinnedRays::Describe() const {
+  std::vector<std::string> lines;
+  for (const auto& section : sections_) {
+    const SlabSection& plan = section->plan;
+    const double distance_w =
+        (plan.slab.uv.origin_world - plan.slab.st.origin_world).dot(plan.slab.st.Normal());
+    lines.push_back(fmt::format(
+        "slab {} of {}: {} frames, planes {:.4g} apart, cells {:.3g} wide on st and {:.3g} on uv "
+        "(world units), {:.1f} % of its bounds asked for",
+        lines.size() + 1, sections_.size(), plan.end - plan.begin, distance_w, plan.slab.r_st_w,
+        plan.slab.r_uv_w, 100 * section->in_the_end.share()));
+  }
+  return lines;
+}
+
+}  // namespace lf

@@ -1,0 +1,128 @@
+// The rebinned rays of the frames of one pass: which are kept, LF image after LF image, and what
+// the frames make of them (thesis 4.3.2, 4.3.3).
+//
+// What a finished frame will ask for is known from calibrations (lens_gaps.h). Of that all rays are
+// kept if there is room for them, else those at edges (Eq. 4.4). Early pictures ask for more: where
+// few LF images are collected yet, rebinned rays, at edges, are a preview. What these ask for is
+// looked at anew before the LF images at places 64, 128, 256, ... : cells that no query can use any
+// more are dropped, and once all that is left is covered, nothing is rebinned. All of this depends
+// on places, not on time: the same rays are kept for any number of threads, however often the work
+// was interrupted.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lf/capture/light_field.h"
+#include "lf/collector/image_taker.h"
+#include "lf/core/parallel.h"
+#include "lf/hybrid/lens_gaps.h"
+#include "lf/plate/plate_file.h"
+#include "lf/rebinning/coverage_map.h"
+#include "lf/rebinning/ray_map.h"
+#include "lf/rebinning/rebin_image.h"
+#include "lf/rebinning/slab_plan.h"
+#include "lf/sequence/develop.h"
+
+namespace lf {
+
+// Which of the rays that finished frames ask for are kept.
+enum class KeptRays {
+  kAuto,  // all, if they fit in max_cells; else kEdges
+  kAll,
+  kEdges,  // by Eq. 4.4
+};
+// "auto", "all", "edges"
+const char* NameOf(KeptRays kept);
+
+struct RebinPassOptions {
+  RebinOptions rebin;
+  KeptRays kept = KeptRays::kAuto;
+  bool preview = true;  // where frames collect, too
+  QueryOptions query;
+  SlabChoices slab;
+  CoverageOptions coverage;
+  size_t max_cells = 0;  // of all sections
+};
+
+class RebinnedRays : public ImageTaker {
+ public:
+  // All that is referred to must outlive it.
+  //   gaps      one per frame
+  //   places    that each frame takes
+  //   collects  whether the frames collect, too
+  RebinnedRays(const ImageIndex& index, std::vector<LensGaps> gaps,
+               std::span<const PlaceRange> places, bool collects, const SelectOptions& select,
+               const RebinPassOptions& options, ThreadPool& pool);
+  ~RebinnedRays() override;
+
+  uint32_t places_done() const override { return places_done_; }
+  PixelRect RectOf(LfImageId id, uint32_t place) const override;
+  void Take(std::span<const BatchImage> images, uint32_t place_end) override;
+
+  // Lenses that hold all rays that are asked for, of frames that ever ask, to select LF images by;
+  // and which frames these are.
+  std::vector<RenderCamera> ReachedCameras() const;
+  const std::vector<size_t>& asking_frames() const { return asking_; }
+
+  // What is interpolated of a frame when the LF images at places before this one are collected.
+  Completion Complete(size_t frame, uint32_t place);
+
+  // One after the other; each with its own slab and part of the memory.
+  size_t section_count() const { return sections_.size(); }
+  // kOutput; kInput: damaged.
+
+  // What so many cells take at most, their map, and what of them is made for one frame; and beside
+  // them what waits for the map, and the coverage maps.
+  static constexpr size_t kBytesPerCell = 100;
+  static constexpr size_t kLeastCells = 1000;
+  static size_t BytesOf(size_t max_cells) {
+    return max_cells * kBytesPerCell + (size_t{192} << 20);
+  }
+
+  struct Facts {
+    size_t section_count = 0;
+    size_t cell_count = 0;
+    uint64_t looked_at = 0;  // LF pixels
+    double cpu_s = 0;
+    bool keeps_all = false;
+  };
+  Facts facts() const;
+  // The slabs and what is kept of rays, in a sentence each.
+  std::vector<std::string> Describe() const;
+
+ private:
+  struct Section;
+  bool IsPreviewed(size_t asking, uint32_t phase) const;
+  PixelRect RectOf(LfImageId id, uint32_t phase, size_t begin, size_t end) const;
+  void MakeMaps(const ImageIndex& index, std::span<const PlaceRange> places);
+  void Begin(uint32_t phase);
+  void FindIdealPixels(std::span<const BatchImage> images);
+  void Rebin(std::span<const BatchImage> images, Section& section);
+
+  const LightField& light_field_;
+  const std::vector<LensGaps> gaps_;
+  const bool collects_;
+  const SelectOptions select_;
+  const RebinPassOptions options_;
+  ThreadPool& pool_;
+  const std::vector<uint16_t> stored_values_;
+  std::vector<size_t> asking_;         // frames that LF cameras could answer
+  std::vector<RenderCamera> reached_;  // of these
+  std::vector<std::unique_ptr<Section>> sections_;
+  std::map<uint32_t, std::shared_ptr<const IdealPixels>> ideal_pixels_;  // by index of intrinsics
+  bool keeps_all_ = false;
+  uint32_t phase_ = 0;
+  uint32_t places_done_ = 0;
+  uint64_t looked_at_ = 0;
+  std::atomic<int64_t> cpu_ns_ = 0;
+};
+
+}  // namespace lf

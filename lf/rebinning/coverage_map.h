@@ -1,0 +1,67 @@
+// Which rays some frames ask for, so that no others are kept (thesis 4.3.2, "coverage map").
+//
+// The slab's bounds are cut into cells, far wider than those of rays, one bit each. Rays are
+// spawned on the lenses of all frames, denser than these cells, and mark those that they run
+// through; then what is beside a marked cell is marked, too. It holds what is asked for, and some
+// more: no ray that is within reach of a query is left out.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "lf/core/large_vector.h"
+#include "lf/core/parallel.h"
+#include "lf/rebinning/frame_queries.h"
+#include "lf/rebinning/slab_plan.h"
+
+namespace lf {
+
+struct CoverageOptions {
+  size_t most_bytes = size_t{32} << 20;  // cells are wider where they would take more
+  // How many of them the plate is wide; they are never narrower than eight LF pixels. On the st
+  // plane they are half as wide as the reach of a lens point.
+  int cells_across = 64;
+};
+
+class CoverageMap {
+ public:
+  CoverageMap() = default;  // covers nothing
+
+  // Those of the section, of which some may ask for nothing.
+  CoverageMap(const SlabSection& section, std::span<const FrameQueries> frames,
+              const CoverageOptions& options, ThreadPool& pool);
+
+  bool is_empty() const { return bits_.empty(); }
+  bool Covers(const SlabPoint& point) const {
+    if (bits_.empty()) return false;
+    size_t index = 0;
+    for (int k = 0; k < kCellAxes; ++k) {
+      const double place = (point[k] - low_[k]) * per_width_[k];
+      if (!(place >= 0 && place < static_cast<double>(count_[k]))) return false;
+      index = index * count_[k] + static_cast<size_t>(place);
+    }
+    return (bits_[index / kBits] >> (index % kBits) & 1) != 0;
+  }
+
+  size_t size_bytes() const { return bits_.size() * sizeof(uint64_t); }
+  double share() const;  // of cells that are marked
+
+ private:
+  static constexpr size_t kBits = 64;
+  void SetGrid(const SlabSection& section, std::span<const FrameQueries> frames,
+               const CoverageOptions& options);
+  void Spawn(const Slab& slab, const FrameQueries& frame);
+  void Mark(const SlabPoint& point);
+  void WidenAlong(int axis, ThreadPool& pool);
+
+  SlabPoint low_ = SlabPoint::Zero();
+  std::array<double, kCellAxes> per_width_ = {};
+  std::array<size_t, kCellAxes> count_ = {};  // the last a multiple of kBits
+  std::array<double, 2> width_w_ = {};        // of cells on the st and on the uv plane
+  LargeVector<uint64_t> bits_;
+};
+
+}  // namespace lf

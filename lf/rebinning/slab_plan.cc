@@ -1,0 +1,186 @@
+#include "lf/rebinning/slab_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "lf/core/check.h"
+
+namespace lf {
+namespace {
+
+constexpr double kMostTurn_rad = RadiansFromDegrees(30);
+constexpr double kMostCoarser = 1.5;  // than wanted
+constexpr double kStPerDistance = 0.25, kLeastStPerDistance = 1.0 / 256;
+constexpr double kUvPerPixel = 0.5;
+
+// Places all over the plate, from edge to edge, a reach beyond it.
+template <class Visit>
+void ForEachPlace(const FrameQueries& frame, const Visit& visit) {
+  constexpr int kSteps = 4;
+  const Intrinsics& plate = frame.camera.pinhole.intrinsics;
+  const double margin_px = ReachOf(frame.kernel, frame.points).plate_px;
+  for (int row = 0; row <= kSteps; ++row)
+    for (int column = 0; column <= kSteps; ++column) {
+      const std::optional<Vec3> focus = FocusPointOfElement(
+          frame.camera, -margin_px + (plate.width_px + 2 * margin_px) * column / kSteps,
+          -margin_px + (plate.height_px + 2 * margin_px) * row / kSteps);
+      if (focus) visit(*focus);
+    }
+}
+
+class SectionPlanner {
+ public:
+  SectionPlanner(std::span<const FrameQueries> frames, std::span<const LfSampling> sampling,
+                 const SlabChoices& choices)
+      : frames_(frames), sampling_(sampling), choices_(choices) {}
+
+  void Plan(size_t begin, size_t end, std::vector<SlabSection>* sections) const {
+    SlabSection section;
+    section.begin = begin;
+    section.end = end;
+    const bool fits = Place(&section) && SetBounds(&section) && SetWidths(&section);
+    if (fits || end - begin == 1) {
+      sections->push_back(section);
+      return;
+    }
+    const size_t middle = begin + (end - begin) / 2;
+    Plan(begin, middle, sections);
+    Plan(middle, end, sections);
+  }
+
+ private:
+  // Whether all frames look about where it faces.
+  bool Place(SlabSection* section) const {
+    Vec3 forward = Vec3::Zero(), up = Vec3::Zero(), position = Vec3::Zero();
+    for (size_t f = section->begin; f < section->end; ++f) {
+      const PinholeCamera& camera = frames_[f].camera.pinhole;
+      forward += camera.ForwardWorld();
+      up += camera.UpWorld();
+      position += camera.CentreWorld() / static_cast<double>(section->end - section->begin);
+    }
+    forward = choices_.forward_world.value_or(forward);
+    position = choices_.position_world.value_or(position);
+    const std::optional<RigidTransform> pose = LookAlong(position, forward, up);
+    if (!pose) {
+      // They look in all directions at once; of a single frame up is not along forward.
+      section->slab.st.origin_world = position;
+      return false;
+    }
+    const PinholeCamera facing{{}, *pose};
+    const Vec3 normal = facing.ForwardWorld();
+    Slab& slab = section->slab;
+    slab.st = slab.uv = {position, facing.RightWorld(), -facing.UpWorld()};
+    slab.uv.origin_world += FocusDistance(*section, position, normal) * normal;
+    bool all_look_along = true;
+    for (size_t f = section->begin; f < section->end; ++f)
+      all_look_along = all_look_along && frames_[f].camera.pinhole.ForwardWorld().dot(normal) >=
+                                             std::cos(kMostTurn_rad);
+    return all_look_along;
+  }
+
+  // Along the normal: where both ends of the focus are equally off, in disparities.
+  double FocusDistance(const SlabSection& section, const Vec3& position, const Vec3& normal) const {
+    if (choices_.uv_distance_w) return *choices_.uv_distance_w;
+    double least = std::numeric_limits<double>::infinity(), most = 0;
+    for (size_t f = section.begin; f < section.end; ++f) {
+      const PinholeCamera& camera = frames_[f].camera.pinhole;
+      const Intrinsics& k = camera.intrinsics;
+      const std::optional<Vec3> focus =
+          FocusPointOfElement(frames_[f].camera, 0.5 * k.width_px, 0.5 * k.height_px);
+      const double distance =
+          focus ? normal.dot(*focus - position) : frames_[f].camera.focus_distance_w;
+      if (!(distance > 0)) continue;
+      least = std::min(least, distance);
+      most = std::max(most, distance);
+    }
+    if (most == 0) return frames_[section.begin].camera.focus_distance_w;
+    return 2 / (1 / least + 1 / most);
+  }
+
+  // Puts the origins in their middle. Whether all rays cut the planes.
+  bool SetBounds(SlabSection* section) const {
+    constexpr double kInf = std::numeric_limits<double>::infinity();
+    SlabPoint low = SlabPoint::Constant(kInf), high = SlabPoint::Constant(-kInf);
+    bool all_cut = true;
+    for (size_t f = section->begin; f < section->end; ++f) {
+      const FrameQueries& frame = frames_[f];
+      const double reach_w =
+          frame.camera.aperture.radius_w + ReachOf(frame.kernel, frame.points).lens_w;
+      ForEachPlace(frame, [&](const Vec3& focus) {
+        for (const Vec2& corner : {Vec2(-1, -1), Vec2(1, -1), Vec2(-1, 1), Vec2(1, 1)}) {
+          const Vec3 lens = LensPointWorld(frame.camera, reach_w * corner);
+          const std::optional<SlabPoint> point =
+              Parameterize(section->slab, Ray{lens, focus - lens});
+          if (!point || !point->allFinite()) {
+            all_cut = false;
+            continue;
+          }
+          low = low.cwiseMin(*point);
+          high = high.cwiseMax(*point);
+        }
+      });
+    }
+    if (!(low.array() <= high.array()).all()) {
+      section->bounds = {};
+      return false;
+    }
+    const SlabPoint middle = (low + high) / 2;
+    for (int plane = 0; plane < 2; ++plane) {
+      SlabPlane& to_move = plane == 0 ? section->slab.st : section->slab.uv;
+      to_move.origin_world +=
+          middle[2 * plane] * to_move.axis_a + middle[2 * plane + 1] * to_move.axis_b;
+    }
+    section->bounds = {low - middle, high - middle};
+    return all_cut;
+  }
+
+  // Whether keys have room for cells about as narrow as wanted.
+  bool SetWidths(SlabSection* section) const {
+    Slab& slab = section->slab;
+    const Vec3 normal = slab.st.Normal();
+    const double distance = normal.dot(slab.uv.origin_world - slab.st.origin_world);
+    double st = std::numeric_limits<double>::infinity(), lf_pixel = st, element = st;
+    for (size_t f = section->begin; f < section->end; ++f) {
+      const LfSampling& sampling = sampling_[f];
+      st = std::min(st, sampling.camera_distance_w);
+      lf_pixel = std::min(
+          lf_pixel,
+          sampling.pixel_rad * std::abs(normal.dot(slab.uv.origin_world - sampling.middle_world)));
+      element = std::min(element, distance / frames_[f].camera.pinhole.intrinsics.fx_px);
+    }
+    section->pixel_uv_w = lf_pixel;
+    const double uv = choices_.r_uv_w.value_or(kUvPerPixel * std::max(lf_pixel, element));
+    const double most_st = kStPerDistance * st, least_st = kLeastStPerDistance * st;
+    st = most_st;
+    for (size_t f = section->begin; f < section->end; ++f)
+      ForEachPlace(frames_[f], [&](const Vec3& focus) {
+        const double depth = normal.dot(focus - slab.st.origin_world);
+        const double off = std::abs(distance - depth);
+        if (depth > 0 && uv * depth < st * off) st = uv * depth / off;
+      });
+    st = choices_.r_st_w.value_or(std::max(st, least_st));
+    const SlabPoint half = section->bounds.high;
+    constexpr double kKeys = kMostCells - 1;
+    slab.r_st_w = std::max(st, half.head<2>().maxCoeff() / kKeys);
+    slab.r_uv_w = std::max(uv, half.tail<2>().maxCoeff() / kKeys);
+    return slab.r_st_w <= kMostCoarser * st && slab.r_uv_w <= kMostCoarser * uv;
+  }
+
+  std::span<const FrameQueries> frames_;
+  std::span<const LfSampling> sampling_;
+  const SlabChoices& choices_;
+};
+
+}  // namespace
+
+std::vector<SlabSection> PlanSlabs(std::span<const FrameQueries> frames,
+                                   std::span<const LfSampling> sampling,
+                                   const SlabChoices& choices) {
+  LF_CHECK(frames.size() == sampling.size());
+  std::vector<SlabSection> sections;
+  if (!frames.empty()) SectionPlanner(frames, sampling, choices).Plan(0, frames.size(), &sections);
+  return sections;
+}
+
+}  // namespace lf

@@ -1,0 +1,127 @@
+#!/usr/bin/python3
+"""Renders light fields whose true thin-lens pictures are known with collected rays, rebinned rays
+and both, and prints the table of doc/rebinning.md.
+
+usage: rebinning_quality.py LFRENDERER GROUNDTRUTH [--write doc/rebinning.md] [--only SUBSTRING]
+                            [--check]
+
+GROUNDTRUTH  as for quality.py
+--check      exit 1 if a hybrid frame is more than 0.05 dB below the one that is collected, or, of
+             a lens that leaves elements without rays, not 3 dB above it; or if the pinhole between
+             the LF cameras is below 30 dB
+"""
+import argparse
+import json
+import pathlib
+import sys
+import tempfile
+
+import lens_weights
+import quality
+
+COLUMNS = {
+    "collected, nearest": "--estimator nearest --lens-weights none",
+    "collected": "--lens-weights none",
+    "with lens weights": "",
+    "rebinned": "--mode rebin",
+    "hybrid, no weights": "--mode hybrid --lens-weights none",
+    "hybrid": "--mode hybrid",
+}
+
+
+def ground_truth_cases(truth_folder, folder):
+    """(name, calibration, path, true picture)"""
+    for case in json.loads((truth_folder / "cases.json").read_text())["cases"]:
+        if not case["aperture_diameter_m"]:
+            *_, forward = quality.camera_axes(case)
+            case.update(aperture_diameter_m=0.0, blades=0, blade_rotation_deg=0.0,
+                        focus_distance_m=lens_weights.PINHOLE_FOCUS_M,
+                        focus_plane={"normal": list(forward)})
+        path = folder / (case["name"] + ".yaml")
+        path.write_text(quality.path_yaml(case))
+        truth = lens_weights.linear_pfm(truth_folder / case["linear"])
+        calibration = truth_folder / case["light_field"]
+        yield case["name"], calibration, path, truth
+        field = json.loads(calibration.read_text())
+        for frame in field["frames"]:
+            frame["file_path"] = str((calibration.parent / frame["file_path"]).resolve())
+        thinned = folder / (calibration.parent.name + "_4th")
+        thinned.mkdir(exist_ok=True)
+        (thinned / "transforms.json").write_text(json.dumps(dict(field, frames=field["frames"][::4])))
+        yield case["name"] + ", every 4th LF image", thinned / "transforms.json", path, truth
+
+
+def synthetic_cases(renderer, folder):
+    scenes = lens_weights.SyntheticScenes(renderer, folder)
+    spacing = lens_weights.SYNTHETIC_SPACING
+    for scene in lens_weights.SYNTHETIC_SCENES:
+        for distances, words in ((0, "pinhole"), (0.25, "1/4 of the spacing"), (1, "1 spacing"),
+                                 (3, "3 spacings"), (8, "8 spacings")):
+            path, truth = scenes.truth(scene, distances * spacing)
+            yield f"{scene}, lens {words}", scenes.calibration(scene), path, truth
+        # Rows in the middle alone: the lens is twice as high.
+        calibration = scenes.calibration(scene)
+        field = json.loads(calibration.read_text())
+        heights = sorted({round(f["transform_matrix"][2][3], 9) for f in field["frames"]})
+        up = lens_weights.np.array(field["frames"][0]["transform_matrix"])[:3, 1]
+        places = [lens_weights.np.array(f["transform_matrix"])[:3, 3] @ up for f in field["frames"]]
+        middle = sum(places) / len(places)
+        del heights
+        kept = [f for f, p in zip(field["frames"], places) if abs(p - middle) < 2 * spacing]
+        for frame in kept:
+            frame["file_path"] = str((calibration.parent / frame["file_path"]).resolve())
+        band = folder / (scene + "_band")
+        band.mkdir(exist_ok=True)
+        (band / "transforms.json").write_text(json.dumps(dict(field, frames=kept)))
+        path, truth = scenes.truth(scene, 8 * spacing)
+        yield (f"{scene}, lens twice as high as the band", band / "transforms.json", path, truth)
+
+
+def faults_of(name, found):
+    plain = [found[c][0] for c in ("collected, nearest", "collected")]
+    for column in ("hybrid, no weights", "hybrid"):
+        hybrid = found[column][0]
+        reference = found["collected"][0]
+        if reference is not None and hybrid < reference - 0.05:
+            yield f"{name}: {column} {hybrid:.2f} dB, collected {reference:.2f} dB"
+        if "1/4 of the spacing" in name and max(p or 0 for p in plain) + 3 > hybrid:
+            yield f"{name}: {column} {hybrid:.2f} dB is not 3 dB above what was collected"
+    if "pinhole_between" in name and "4th" not in name and found["rebinned"][0] < 30:
+        yield f"{name}: rebinned {found['rebinned'][0]:.2f} dB, expected 30"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("renderer")
+    parser.add_argument("groundtruth", type=pathlib.Path)
+    parser.add_argument("--write", type=pathlib.Path)
+    parser.add_argument("--only", default="")
+    parser.add_argument("--check", action="store_true")
+    arguments = parser.parse_args()
+    if not (arguments.groundtruth / "cases.json").exists():
+        print(f"skipped: no ground truth at {arguments.groundtruth} (set LF_TEST_DATA)")
+        return 77
+    table = lens_weights.Table("case", *COLUMNS)
+    faults = []
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = pathlib.Path(temporary)
+        cases = [*ground_truth_cases(arguments.groundtruth, folder),
+                 *synthetic_cases(arguments.renderer, folder)]
+        for name, calibration, path, truth in cases:
+            if arguments.only not in name:
+                continue
+            found = {column: lens_weights.decibels(arguments.renderer, truth, calibration, path,
+                                                   options)
+                     for column, options in COLUMNS.items()}
+            table.add(name, *(lens_weights.text(found[column]) for column in COLUMNS))
+            faults += faults_of(name, found)
+    if arguments.write:
+        quality.write_table(arguments.write, "rebinning_quality.py", table.rows)
+    for fault in faults:
+        print("fault:", fault)
+    return 1 if arguments.check and faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

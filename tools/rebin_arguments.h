@@ -1,0 +1,26 @@
+// The options of lfrenderer that are about rebinned rays (doc/rebinning.md).
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "lf/core/result.h"
+#include "lf/hybrid/rebinned_rays.h"
+
+namespace lf {
+
+struct RebinArguments {
+  std::string kept = "auto", preview = "on", average_others = "off";
+  RebinPassOptions options;  // what the command line says as it is
+  int64_t max_rays = 0;
+  double r_st_w = 0, r_uv_w = 0, slab_distance_w = 0;
+  std::vector<double> slab_position_w, slab_forward;
+
+  void AddTo(CLI::App& app);
+  // kUsage: values that no slab has.
+  Result<RebinPassOptions> Make(uint64_t seed) const;
+};
+
+}  // namespace lf
