@@ -48,6 +48,9 @@ void RebinArguments::AddTo(CLI::App& app) {
   add("--lens-sets", options.query.lens_sets,
       "K: elements of K x K squares have different lens points: noise in place of steps")
       ->check(CLI::Range(1, 8));
+  add("--reparameterise", reparameterise,
+      "on: rays are told apart on each frame's lens and focus plane; off: on the slab's planes")
+      ->check(CLI::IsMember({"on", "off"}));
   add("--r-st", r_st_w, "Width of cells on the slab's st plane, world units; 0: by LF cameras")
       ->check(CLI::NonNegativeNumber);
   add("--r-uv", r_uv_w, "The same on its uv plane; 0: by pixels")->check(CLI::NonNegativeNumber);
@@ -71,6 +74,9 @@ Result<RebinPassOptions> RebinArguments::Make(uint64_t seed) const {
   for (const KeptRays known : {KeptRays::kAll, KeptRays::kEdges})
     if (kept == NameOf(known)) made.kept = known;
   made.max_cells = static_cast<size_t>(max_rays);
+  made.reparameterise = reparameterise == "on";
+  if (!made.reparameterise && made.query.lens_sets > 1)
+    return UsageError("--reparameterise off: has one set of lens points: leave out --lens-sets");
   made.preview = preview == "on";
   made.rebin.averages_others = average_others == "on";
   made.rebin.seed = made.query.seed = seed;

@@ -16,6 +16,8 @@ constexpr double kPointDistance_sigmas = 3;
 constexpr int kLeastPoints = 8, kMostPoints = 256;
 // Where LF cameras are rare, a kernel is as wide as this part of the way to the nearest.
 constexpr double kSigmaPerDistance = 0.5;
+// Splats may not be wider (rebinning/splat_tile.h).
+constexpr double kMostSigma_px = 8;
 constexpr int kLeastNodes = 9, kMostNodes = 65;
 constexpr size_t kMostNodeValues = size_t{1} << 19;  // of all nodes and lens points
 
@@ -63,6 +65,20 @@ LensGaps::LensGaps(const ImageIndex& index, const RenderCamera& frame,
   FindGaps(near, index, collected, lens_test, places, pool);
 }
 
+// How wide LF pixels are where the focus is, in elements, and at least 1.
+double LensGaps::LfPixelsPerElement() const {
+  const RenderCamera& frame = all_.camera;
+  const Intrinsics& plate = frame.pinhole.intrinsics;
+  const std::optional<Vec3> focus =
+      FocusPointOfElement(frame, 0.5 * plate.width_px, 0.5 * plate.height_px);
+  if (!focus) return 1;
+  const Vec3 forward = frame.pinhole.ForwardWorld();
+  const double lf_pixel_w =
+      sampling_.pixel_rad * std::abs(forward.dot(*focus - sampling_.middle_world));
+  const double element_w = forward.dot(*focus - frame.pinhole.CentreWorld()) / plate.fx_px;
+  return std::max(1.0, lf_pixel_w / element_w);
+}
+
 void LensGaps::SetPoints(const std::vector<Vec2>& seen_through, const QueryOptions& options) {
   const RenderCamera& frame = all_.camera;
   const double area_w2 = Area(frame.aperture);
@@ -73,16 +89,7 @@ void LensGaps::SetPoints(const std::vector<Vec2>& seen_through, const QueryOptio
     count = static_cast<int>(std::clamp(std::ceil(area_w2 / (kPi * apart_w * apart_w)),
                                         0.0 + kLeastPoints, 0.0 + kMostPoints));
   all_.points = MakeLensPoints(frame.aperture, count, options.lens_sets, options.seed);
-  const double focus_w = frame.focus_distance_w;
-  const double element_rad = 1 / frame.pinhole.intrinsics.fx_px;
-  const double lf_pixel_w =
-      sampling_.pixel_rad * std::abs(frame.pinhole.ForwardWorld().dot(
-                                frame.pinhole.CentreWorld() +
-                                focus_w * frame.pinhole.ForwardWorld() - sampling_.middle_world));
-  constexpr double kMostSigma_px = 8;
-  all_.kernel = {sigma_w,
-                 std::min(options.sigma_uv * std::max(1.0, lf_pixel_w / (element_rad * focus_w)),
-                          kMostSigma_px)};
+  all_.kernel = {sigma_w, std::min(options.sigma_uv * LfPixelsPerElement(), kMostSigma_px)};
   // What few points must stand for, and what is far from LF cameras, is smoothed more.
   const double few = 0.5 * std::sqrt(area_w2 / count) / sigma_w;
   for (const auto& set : all_.points.sets) {

@@ -29,7 +29,7 @@ inline constexpr double kFarthestDistances = 8;
 
 struct QueryOptions {
   double sigma_st = 0.5;     // in distances between LF cameras; wider where these are rare
-  double sigma_uv = 0.45;    // in elements, or in LF pixels where these are larger
+  double sigma_uv = 0.4;     // in elements, or in LF pixels where these are larger
   int lens_point_count = 0;  // in a set; 0: so many that kernels overlap, 8 to 256
   int lens_sets = 1;         // k: sets of k x k elements (lens_points.h)
   uint64_t seed = 0;
@@ -62,6 +62,7 @@ class LensGaps {
   RenderCamera ReachedCamera() const;
 
  private:
+  double LfPixelsPerElement() const;
   void SetPoints(const std::vector<Vec2>& seen_through, const QueryOptions& options);
   void SetNodes(const std::vector<LfImageId>& near, const ImageIndex& index);
   void FindGaps(const std::vector<LfImageId>& near, const ImageIndex& index,

@@ -56,6 +56,8 @@ struct RebinnedRays::Section {
   CoverageMap in_the_end;  // what finished frames ask for
   CoverageMap previews;    // and these before
   std::unique_ptr<RayMap> map;
+  uint32_t phase = 0;
+  uint32_t places_done = 0;
   std::optional<std::vector<BinnedCell>> cells = {};  // of the map as it is, once asked for
 };
 
@@ -88,7 +90,7 @@ RebinnedRays::RebinnedRays(const ImageIndex& index, std::vector<LensGaps> gaps,
     sections_.back()->in_the_end = CoverageMap(plan, of_section, options_.coverage, pool_);
   }
   MakeMaps(index, places);
-  Begin(0);
+  for (const auto& section : sections_) Begin(0, *section);
 }
 
 RebinnedRays::~RebinnedRays() = default;
@@ -113,6 +115,7 @@ void RebinnedRays::MakeMaps(const ImageIndex& index, std::span<const PlaceRange>
     totals.push_back(std::accumulate(rays.begin(), rays.end(), 0.0) * static_cast<double>(step));
   }
   const size_t most = std::max<size_t>(1, options_.max_cells / std::max<size_t>(1, totals.size()));
+  max_cells_per_section_ = most;
   const double most_asked = totals.empty() ? 0 : *std::max_element(totals.begin(), totals.end());
   keeps_all_ =
       options_.kept == KeptRays::kAll ||
@@ -127,23 +130,37 @@ bool RebinnedRays::IsPreviewed(size_t asking, uint32_t phase) const {
 }
 
 // What only earlier previews asked for is dropped.
-void RebinnedRays::Begin(uint32_t phase) {
-  for (const auto& section : sections_) {
-    const SlabSection& plan = section->plan;
-    std::vector<FrameQueries> queries;
-    for (size_t i = plan.begin; i < plan.end; ++i)
-      if (IsPreviewed(i, phase)) queries.push_back(gaps_[asking_[i]].QueriesAt(phase));
-    if (queries.empty() && section->previews.is_empty()) continue;
-    section->previews = CoverageMap(plan, queries, options_.coverage, pool_);
-    section->cells.reset();
-    section->map->DropUnless(
-        [&](CellKey cell) {
-          return Covers(section->in_the_end, plan.slab, cell) ||
-                 Covers(section->previews, plan.slab, cell);
-        },
-        pool_);
-  }
-  phase_ = phase;
+void RebinnedRays::Begin(uint32_t phase, Section& section) {
+  section.phase = phase;
+  std::vector<FrameQueries> queries;
+  for (size_t i = section.plan.begin; i < section.plan.end; ++i)
+    if (IsPreviewed(i, phase)) queries.push_back(gaps_[asking_[i]].QueriesAt(phase));
+  if (queries.empty() && section.previews.is_empty()) return;
+  section.previews = CoverageMap(section.plan, queries, options_.coverage, pool_);
+  section.cells.reset();
+  section.map->DropUnless(
+      [&section](CellKey cell) {
+        return Covers(section.in_the_end, section.plan.slab, cell) ||
+               Covers(section.previews, section.plan.slab, cell);
+      },
+      pool_);
+}
+
+uint32_t RebinnedRays::places_done() const {
+  uint32_t least = UINT32_MAX;
+  for (const auto& section : sections_) least = std::min(least, section->places_done);
+  return least;
+}
+uint32_t RebinnedRays::places_done(size_t section) const { return sections_[section]->places_done; }
+const RayMap& RebinnedRays::map(size_t section) const { return *sections_[section]->map; }
+
+void RebinnedRays::Restore(size_t number, RayMap map, uint32_t places_done) {
+  Section& section = *sections_[number];
+  // As it was when the last of these was taken: what previews asked for then.
+  if (places_done > 0) Begin(PhaseOf(places_done - 1), section);
+  *section.map = std::move(map);
+  section.places_done = places_done;
+  section.cells.reset();
 }
 
 PixelRect RebinnedRays::RectOf(LfImageId id, uint32_t phase, size_t begin, size_t end) const {
@@ -185,20 +202,21 @@ void RebinnedRays::FindIdealPixels(std::span<const BatchImage> images) {
 }
 
 void RebinnedRays::Take(std::span<const BatchImage> images, uint32_t place_end) {
-  if (place_end <= places_done_) return;
-  const auto first = std::find_if(images.begin(), images.end(), [this](const BatchImage& image) {
-    return image.place >= places_done_;
-  });
-  images = images.subspan(static_cast<size_t>(first - images.begin()));
-  if (!images.empty()) {
+  FindIdealPixels(images);
+  for (const auto& section : sections_) {
+    if (place_end <= section->places_done) continue;
+    const auto first = std::find_if(images.begin(), images.end(), [&](const BatchImage& image) {
+      return image.place >= section->places_done;
+    });
+    const auto left = images.subspan(static_cast<size_t>(first - images.begin()));
+    section->places_done = place_end;
+    if (left.empty()) continue;
     // Batches do not go across the places of decisions.
-    const uint32_t phase = PhaseOf(images.front().place);
-    LF_CHECK(PhaseOf(images.back().place) == phase);
-    if (phase != phase_) Begin(phase);
-    FindIdealPixels(images);
-    for (const auto& section : sections_) Rebin(images, *section);
+    const uint32_t phase = PhaseOf(left.front().place);
+    LF_CHECK(PhaseOf(left.back().place) == phase);
+    if (phase != section->phase) Begin(phase, *section);
+    Rebin(left, *section);
   }
-  places_done_ = place_end;
 }
 
 void RebinnedRays::Rebin(std::span<const BatchImage> images, Section& section) {
@@ -209,8 +227,8 @@ void RebinnedRays::Rebin(std::span<const BatchImage> images, Section& section) {
   };
   std::vector<PixelRect> rects(images.size());
   pool_.ForEach(images.size(), [&](size_t i) {
-    rects[i] = Intersection(images[i].pixels.rect,
-                            RectOf(images[i].id, phase_, section.plan.begin, section.plan.end));
+    rects[i] = Intersection(images[i].pixels.rect, RectOf(images[i].id, section.phase,
+                                                          section.plan.begin, section.plan.end));
   });
   const bool by_edges = !keeps_all_ || !section.previews.is_empty();
   std::vector<Task> tasks;
@@ -254,6 +272,50 @@ void RebinnedRays::Rebin(std::span<const BatchImage> images, Section& section) {
   section.cells.reset();
 }
 
+SplatFrame RebinnedRays::SplatOf(const Section& section, const FrameQueries& queries) const {
+  const Intrinsics& plate = queries.camera.pinhole.intrinsics;
+  const LargeVector<FrameRay> rays = FrameRaysOf(section.plan.slab, *section.cells, queries.camera,
+                                                 ReachOf(queries.kernel, queries.points), pool_);
+  return Splat(rays, plate.width_px, plate.height_px, queries.points, queries.kernel, pool_,
+               queries.shares ? &*queries.shares : nullptr);
+}
+
+// In the slab as it is: a splat for each lens point, and their mean.
+SplatFrame RebinnedRays::SplatOfPoints(const Section& section, const FrameQueries& queries) const {
+  const Intrinsics& plate = queries.camera.pinhole.intrinsics;
+  SplatFrame sum{Image<float>(plate.width_px, plate.height_px, 3),
+                 Image<float>(plate.width_px, plate.height_px)};
+  const LensPointSets& points = queries.points;
+  const size_t count = points.sets[0].size();
+  LF_CHECK(points.k == 1);
+  for (size_t i = 0; i < count; ++i) {
+    LensPointSets point;
+    point.sets = {{points.sets[0][i]}};
+    point.spreads = {{points.SpreadOf(0, i)}};
+    std::optional<PointShares> share;
+    if (queries.shares) share = queries.shares->OfPoint(i);
+    const LargeVector<FrameRay> rays =
+        FrameRaysThrough(points.sets[0][i], section.plan.slab, *section.cells, queries.camera,
+                         ReachOf(queries.kernel, point), pool_);
+    const SplatFrame splat = Splat(rays, plate.width_px, plate.height_px, point, queries.kernel,
+                                   pool_, share ? &*share : nullptr);
+    pool_.ForEach(static_cast<size_t>(plate.height_px), [&](size_t row) {
+      const int y = static_cast<int>(row);
+      for (int x = 0; x < plate.width_px; ++x) {
+        const float found = splat.share.at(x, y);
+        sum.share.at(x, y) += found / static_cast<float>(count);
+        for (int c = 0; c < 3; ++c)
+          sum.rgb.at(x, y, c) += found / static_cast<float>(count) * splat.rgb.at(x, y, c);
+      }
+    });
+  }
+  for (int y = 0; y < plate.height_px; ++y)
+    for (int x = 0; x < plate.width_px; ++x)
+      for (int c = 0; c < 3 && sum.share.at(x, y) > 0; ++c)
+        sum.rgb.at(x, y, c) /= sum.share.at(x, y);
+  return sum;
+}
+
 Completion RebinnedRays::Complete(size_t frame, uint32_t place) {
   const Intrinsics& plate = gaps_[frame].ReachedCamera().pinhole.intrinsics;
   Completion completion{Image<float>(plate.width_px, plate.height_px, 3),
@@ -265,11 +327,8 @@ Completion RebinnedRays::Complete(size_t frame, uint32_t place) {
                                     [number](const auto& one) { return number < one->plan.end; });
   if (!(*section)->cells) (*section)->cells = (*section)->map->Cells(pool_);
   const FrameQueries queries = gaps_[frame].QueriesAt(place);
-  const LargeVector<FrameRay> rays =
-      FrameRaysOf((*section)->plan.slab, *(*section)->cells, queries.camera,
-                  ReachOf(queries.kernel, queries.points), pool_);
-  SplatFrame splat = Splat(rays, plate.width_px, plate.height_px, queries.points, queries.kernel,
-                           pool_, queries.shares ? &*queries.shares : nullptr);
+  SplatFrame splat =
+      options_.reparameterise ? SplatOf(**section, queries) : SplatOfPoints(**section, queries);
   completion.rgb = std::move(splat.rgb);
   if (!queries.shares) {
     for (size_t i = 0; i < splat.share.pixels().size(); ++i)

@@ -12,10 +12,8 @@
 
 #include <atomic>
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,7 +22,6 @@
 #include "lf/collector/image_taker.h"
 #include "lf/core/parallel.h"
 #include "lf/hybrid/lens_gaps.h"
-#include "lf/plate/plate_file.h"
 #include "lf/rebinning/coverage_map.h"
 #include "lf/rebinning/ray_map.h"
 #include "lf/rebinning/rebin_image.h"
@@ -47,6 +44,9 @@ struct RebinPassOptions {
   KeptRays kept = KeptRays::kAuto;
   bool preview = true;  // where frames collect, too
   QueryOptions query;
+  // Whether rays are told apart in each frame's own lens plane and focus plane, or in those of the
+  // slab: then only with one set of lens points.
+  bool reparameterise = true;
   SlabChoices slab;
   CoverageOptions coverage;
   size_t max_cells = 0;  // of all sections
@@ -63,7 +63,7 @@ class RebinnedRays : public ImageTaker {
                const RebinPassOptions& options, ThreadPool& pool);
   ~RebinnedRays() override;
 
-  uint32_t places_done() const override { return places_done_; }
+  uint32_t places_done() const override;
   PixelRect RectOf(LfImageId id, uint32_t place) const override;
   void Take(std::span<const BatchImage> images, uint32_t place_end) override;
 
@@ -75,9 +75,14 @@ class RebinnedRays : public ImageTaker {
   // What is interpolated of a frame when the LF images at places before this one are collected.
   Completion Complete(size_t frame, uint32_t place);
 
-  // One after the other; each with its own slab and part of the memory.
+  // What is kept, so that a render that was interrupted goes on: consecutive frames have a section,
+  // with a map, a slab and a part of the memory of their own.
   size_t section_count() const { return sections_.size(); }
-  // kOutput; kInput: damaged.
+  const RayMap& map(size_t section) const;
+  size_t max_cells_per_section() const { return max_cells_per_section_; }
+  uint32_t places_done(size_t section) const;
+  //   map  of max_cells_per_section(), with all LF images before the place
+  void Restore(size_t section, RayMap map, uint32_t places_done);
 
   // What so many cells take at most, their map, and what of them is made for one frame; and beside
   // them what waits for the map, and the coverage maps.
@@ -103,7 +108,9 @@ class RebinnedRays : public ImageTaker {
   bool IsPreviewed(size_t asking, uint32_t phase) const;
   PixelRect RectOf(LfImageId id, uint32_t phase, size_t begin, size_t end) const;
   void MakeMaps(const ImageIndex& index, std::span<const PlaceRange> places);
-  void Begin(uint32_t phase);
+  void Begin(uint32_t phase, Section& section);
+  SplatFrame SplatOf(const Section& section, const FrameQueries& queries) const;
+  SplatFrame SplatOfPoints(const Section& section, const FrameQueries& queries) const;
   void FindIdealPixels(std::span<const BatchImage> images);
   void Rebin(std::span<const BatchImage> images, Section& section);
 
@@ -119,8 +126,7 @@ class RebinnedRays : public ImageTaker {
   std::vector<std::unique_ptr<Section>> sections_;
   std::map<uint32_t, std::shared_ptr<const IdealPixels>> ideal_pixels_;  // by index of intrinsics
   bool keeps_all_ = false;
-  uint32_t phase_ = 0;
-  uint32_t places_done_ = 0;
+  size_t max_cells_per_section_ = 1;
   uint64_t looked_at_ = 0;
   std::atomic<int64_t> cpu_ns_ = 0;
 };

@@ -25,7 +25,39 @@ const char* NameOf(RenderMode mode) {
 
 namespace {
 
-RunStateOptions StateOptions(const Package& package, const RenderOptions& options) {
+// Collected rays do not depend on any of it.
+RunInputs InputsOfRebinning(const RenderOptions& options, size_t max_cells) {
+  if (options.mode == RenderMode::kCollect) return {};
+  const RebinPassOptions& rebin = options.rebin;
+  const ProbabilityOptions& edges = rebin.rebin.probability;
+  const auto width = [](const std::optional<double>& value) {
+    return value ? fmt::format("{}", *value) : std::string("auto");
+  };
+  const auto place = [](const std::optional<Vec3>& v) {
+    return v ? fmt::format("{} {} {}", v->x(), v->y(), v->z()) : std::string("auto");
+  };
+  return {
+      {"mode", NameOf(options.mode)},
+      {"rebin.max_rays", fmt::format("{}", max_cells)},
+      {"rebin.kept", NameOf(rebin.kept)},
+      {"rebin.edges", fmt::format("alpha {} beta {} xi {} sigma {} then {}", edges.alpha,
+                                  edges.beta, edges.xi, edges.sigma_px, edges.second_sigma_px)},
+      {"rebin.others", rebin.rebin.averages_others ? "averaged" : "left out"},
+      {"rebin.seed", fmt::format("{}", rebin.rebin.seed)},
+      {"rebin.preview", rebin.preview ? "on" : "off"},
+      {"rebin.query",
+       fmt::format("sigma_st {} sigma_uv {} lens points {} sets {} on {}", rebin.query.sigma_st,
+                   rebin.query.sigma_uv, rebin.query.lens_point_count, rebin.query.lens_sets,
+                   rebin.reparameterise ? "focus planes" : "slabs")},
+      {"rebin.slab", fmt::format("position {} forward {} distance {} r_st {} r_uv {}",
+                                 place(rebin.slab.position_world), place(rebin.slab.forward_world),
+                                 width(rebin.slab.uv_distance_w), width(rebin.slab.r_st_w),
+                                 width(rebin.slab.r_uv_w))},
+      {"rebin.coverage", fmt::format("{} cells across", rebin.coverage.cells_across)}};
+}
+
+RunStateOptions StateOptions(const Package& package, const RenderOptions& options,
+                             size_t max_cells) {
   RunChoices choices;
   choices.reading = options.reading;
   choices.lens_weights = options.lens_weights;
@@ -39,14 +71,10 @@ RunStateOptions StateOptions(const Package& package, const RenderOptions& option
   choices.smooth_below = options.smooth_below;
   RunInputs picture = InputsOfPicture(choices);
   if (!package.name.empty()) picture.emplace_back("picture.film", HashOfCameras(package.path));
-  return {options.output_folder,
-          package.name,
-          package.FrameIds(),
-          options.format,
-          options.resume,
-          options.overwrite,
-          InputsOfRays(package.whole, package.light_field.encoding, choices),
-          std::move(picture)};
+  RunInputs rays = InputsOfRays(package.whole, package.light_field.encoding, choices);
+  for (auto& input : InputsOfRebinning(options, max_cells)) rays.push_back(std::move(input));
+  return {options.output_folder, package.name,      package.FrameIds(), options.format,
+          options.resume,        options.overwrite, std::move(rays),    std::move(picture)};
 }
 
 // One render: its inputs, and what passes leave behind.
@@ -131,7 +159,7 @@ Result<void> Renderer::Begin() {
     LF_RETURN_IF_ERROR(CheckVideoTool());
     LF_RETURN_IF_ERROR(CheckVideoTarget(*options_.video));
   }
-  const RunStateOptions state_options = StateOptions(package_, options_);
+  const RunStateOptions state_options = StateOptions(package_, options_, max_cells_);
   LF_ASSIGN_OR_RETURN(state_, RunState::Open(state_options, path_));
   had_plates_ = state_->HasPlates();
   totals_ = state_->earlier();
@@ -248,7 +276,8 @@ Result<void> Renderer::RunPasses(std::span<const FrameId> frames) {
   if (totals_.pass_count > 1 && IsWhole() && !job.Rebins() && !state_->HasPlates() &&
       state_->finished().empty())
     LF_RETURN_IF_ERROR(CheckAnyContributes(job, frames));
-  // Which rays are kept depends on all frames of a pass: these are the same in a render that goes on.
+  // Which rays are kept depends on all frames of a pass: these are the same in a render that goes
+  // on.
   const std::span<const FrameId> in_passes = job.Rebins() ? std::span(frames_) : frames;
   for (size_t begin = 0; begin < in_passes.size(); begin += per_pass) {
     const size_t count = std::min(per_pass, in_passes.size() - begin);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "lf/capture/value_hasher.h"
 #include "lf/collector/around_lens.h"
 #include "lf/core/log.h"
 
@@ -157,6 +158,19 @@ Result<void> RenderPass::PrepareRebinning(std::span<const PlaceRange> places) {
   rebinned_ = std::make_unique<RebinnedRays>(job_.index, std::move(gaps), places, job_.Collects(),
                                              job_.Select(), options, job_.pool);
   for (const std::string& line : rebinned_->Describe()) LogInfo("{}", line);
+  ValueHasher numbers;
+  for (const Frame& frame : frames_) numbers.Add(frame.id.value);
+  rays_frames_ = fmt::format("{} from {} to {} ({})", frames_.size(), frames_.front().id.value,
+                             frames_.back().id.value, numbers.Text());
+  saved_rays_places_.assign(rebinned_->section_count(), 0);
+  for (size_t i = 0; i < rebinned_->section_count(); ++i) {
+    LF_ASSIGN_OR_RETURN(std::optional<RunState::Rays> rays,
+                        job_.state.LoadRays(frames_.front().id, i, rays_frames_,
+                                            rebinned_->max_cells_per_section(), job_.pool));
+    if (!rays) continue;
+    saved_rays_places_[i] = rays->places_done;
+    rebinned_->Restore(i, std::move(rays->map), rays->places_done);
+  }
   return {};
 }
 
@@ -234,6 +248,7 @@ Result<void> RenderPass::Finish() {
       for (const size_t f : together) plates_[f] = SensorPlate(0, 0);
     begin += count;
   }
+  if (rebinned_) job_.state.RemoveRays();
   const double earlier_s = job_.totals.total_s;
   job_.totals = Totals();
   job_.totals.total_s = earlier_s;
@@ -389,7 +404,20 @@ Result<void> RenderPass::Save(double picture_budget_s) {
       LF_RETURN_IF_ERROR(job_.state.SavePlate(frame.id, progress, plates_[f], job_.pool));
     frame.saved_places = progress.places_done;
   }
+  LF_RETURN_IF_ERROR(SaveRays());
   return SavePictures(picture_budget_s);
+}
+
+Result<void> RenderPass::SaveRays() {
+  if (!rebinned_) return {};
+  for (size_t i = 0; i < rebinned_->section_count(); ++i) {
+    const uint32_t places_done = rebinned_->places_done(i);
+    if (places_done == saved_rays_places_[i]) continue;
+    LF_RETURN_IF_ERROR(job_.state.SaveRays(frames_.front().id, i, rays_frames_, rebinned_->map(i),
+                                           places_done, job_.pool));
+    saved_rays_places_[i] = places_done;
+  }
+  return {};
 }
 
 Result<void> RenderPass::SavePictures(double picture_budget_s) {

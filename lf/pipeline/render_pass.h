@@ -100,6 +100,7 @@ class RenderPass {
                                    const std::function<bool()>& is_interrupted);
   Result<void> Conclude(size_t f, const FrameReport& report);
   Result<void> Save(double picture_budget_s);
+  Result<void> SaveRays();
   Result<void> SavePictures(double picture_budget_s);
   Result<void> SaveWhenDue();
   Error Interrupt();
@@ -112,8 +113,9 @@ class RenderPass {
   std::vector<SensorPlate> plates_;
   std::vector<SelectedImage> images_;
   std::unique_ptr<FrameCollector> collector_;
-  std::unique_ptr<RebinnedRays> rebinned_;  // where it rebins
-  uint32_t saved_rebin_places_ = 0;
+  std::unique_ptr<RebinnedRays> rebinned_;   // where it rebins
+  std::vector<uint32_t> saved_rays_places_;  // of its sections, in the state on the disk
+  std::string rays_frames_;                  // what they were made for, beside the inputs
   CollectProgress done_;
   size_t finished_count_ = 0;
 };

@@ -18,6 +18,10 @@
 
 namespace lf {
 
+namespace entry_file {
+class Source;
+}
+
 // What a plate's file says of it, in the order written. Keys are words of [a-z0-9_.], each once;
 // values hold no control characters.
 using PlateEntries = std::vector<std::pair<std::string, std::string>>;
@@ -55,14 +59,12 @@ class PlateReader {
   Result<void> AddTo(SensorPlate* plate);
 
  private:
-  class Source;
-  explicit PlateReader(std::unique_ptr<Source> source);
+  explicit PlateReader(std::unique_ptr<entry_file::Source> source);
   Result<void> ReadHead();
   Result<void> AddChunk(uint32_t chunk, SensorPlate* plate);
   Result<void> AddWide(SensorPlate* plate);
-  Error Damaged(const std::string& reason) const;
 
-  std::unique_ptr<Source> source_;
+  std::unique_ptr<entry_file::Source> source_;
   int width_ = 0;
   int height_ = 0;
   int rows_per_chunk_ = 1;

@@ -2,15 +2,12 @@
 #include <zstd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
 #include <cstring>
-#include <memory>
 #include <new>
 
-#include "lf/core/check.h"
 #include "lf/core/file.h"
 #include "lf/core/hash.h"
+#include "lf/plate/entry_file.h"
 #include "lf/plate/plate_file.h"
 #include "lf/plate/plate_format.h"
 
@@ -23,44 +20,6 @@ using namespace plate_format;
 // Measured on plates of 1280 x 960 elements: 1.25 GB/s and a sixth of the bytes; level 3 takes a
 // third longer for 3 % less.
 constexpr int kCompressionLevel = 1;
-
-class OutputFile {
- public:
-  explicit OutputFile(const fs::path& path)
-      : path_(path), file_(std::fopen(path.c_str(), "wbe"), &std::fclose) {
-    if (!file_) error_ = errno;
-  }
-
-  void Write(const void* bytes, size_t size) {
-    if (error_ == 0 && size > 0 && std::fwrite(bytes, 1, size, file_.get()) != size) error_ = errno;
-  }
-  void Write(std::string_view bytes) { Write(bytes.data(), bytes.size()); }
-
-  Result<void> Close() {
-    if (error_ == 0 && std::fflush(file_.get()) != 0) error_ = errno;
-    if (error_ == 0) return {};
-    return OutputError(
-        fmt::format("{}: cannot be written: {}", path_.string(), std::strerror(error_)));
-  }
-
- private:
-  fs::path path_;
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
-  int error_ = 0;
-};
-
-std::string TextOf(const PlateEntries& entries) {
-  std::string text;
-  for (const auto& [key, value] : entries) {
-    LF_CHECK(!key.empty() &&
-             key.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_.") == std::string::npos);
-    LF_CHECK(std::none_of(value.begin(), value.end(),
-                          [](char c) { return static_cast<unsigned char>(c) < 0x20; }));
-    text += fmt::format("{}: {}\n", key, value);
-  }
-  LF_CHECK(text.size() <= PlateReader::kMaxTextBytes);
-  return text;
-}
 
 // Elements of the wide table that a packed word could hold are written packed: which ones a plate
 // keeps wide depends on how it was filled.
@@ -97,7 +56,7 @@ class Compressor {
   const SensorPlate& plate_;
 };
 
-Result<void> Write(const fs::path& path, const std::string& text, const SensorPlate& plate,
+Result<void> Write(const fs::path& path, const PlateEntries& entries, const SensorPlate& plate,
                    ThreadPool& pool) {
   const size_t row_words = static_cast<size_t>(plate.width()) * SensorPlate::kChannels;
   const size_t chunk_rows = std::max<size_t>(1, kChunkWords / std::max<size_t>(1, row_words));
@@ -106,20 +65,15 @@ Result<void> Write(const fs::path& path, const std::string& text, const SensorPl
     if (const ElementSum rays = plate.AtWord(index); IsWide(rays))
       wide.push_back({index, rays.sum, rays.count});
 
-  OutputFile file(path);
-  Head head = {{},
-               kVersion,
-               static_cast<uint32_t>(text.size()),
-               static_cast<uint32_t>(plate.width()),
-               static_cast<uint32_t>(plate.height()),
-               SensorPlate::kChannels,
-               static_cast<uint32_t>(chunk_rows),
-               wide.size()};
-  std::memcpy(head.magic, kMagic.data(), kMagic.size());
-  const std::string front = std::string(reinterpret_cast<const char*>(&head), sizeof(head)) + text;
-  const uint64_t front_hash = HashBytes(front);
-  file.Write(front);
-  file.Write(&front_hash, sizeof(front_hash));
+  Head head = {};
+  head.width = static_cast<uint32_t>(plate.width());
+  head.height = static_cast<uint32_t>(plate.height());
+  head.channels = SensorPlate::kChannels;
+  head.rows_per_chunk = static_cast<uint32_t>(chunk_rows);
+  head.wide_count = wide.size();
+  entry_file::OutputFile file(path);
+  file.Write(entry_file::FrontOf(
+      kKind, std::string(reinterpret_cast<const char*>(&head), sizeof(head)), entries));
 
   const Compressor compressor(plate);
   const size_t word_count = plate.words().size(), chunk_words = chunk_rows * row_words;
@@ -146,9 +100,8 @@ Result<void> Write(const fs::path& path, const std::string& text, const SensorPl
 
 Result<void> WritePlate(const fs::path& path, const PlateEntries& entries, const SensorPlate& plate,
                         ThreadPool& pool) {
-  const std::string text = TextOf(entries);
   return WriteAtomically(
-      path, [&](const fs::path& temporary) { return Write(temporary, text, plate, pool); });
+      path, [&](const fs::path& temporary) { return Write(temporary, entries, plate, pool); });
 }
 
 }  // namespace lf

@@ -2,20 +2,16 @@
 // plate.
 #pragma once
 
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <span>
-#include <string>
-#include <string_view>
+
+#include "lf/plate/entry_file.h"
 
 namespace lf::plate_format {
 
-static_assert(std::endian::native == std::endian::little, "numbers in the file are little-endian");
-
-inline constexpr std::string_view kMagic = "LFPLATE\n";
-inline constexpr uint32_t kVersion = 1;
+inline constexpr entry_file::Kind kKind = {"LFPLATE\n", 1, "plate", "the plate cannot be used"};
 
 // The file begins with this; the text of the entries follows, and the hash of both.
 struct Head {

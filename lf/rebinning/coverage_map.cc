@@ -74,14 +74,14 @@ void CoverageMap::SetGrid(const SlabSection& section, std::span<const FrameQueri
     double bits = 1;
     for (int k = 0; k < kCellAxes; ++k) {
       // One more on either side.
-      const double cells = std::floor(size[k] / width_w_[k / 2]) + 3;
+      double cells = std::floor(size[k] / width_w_[k / 2]) + 3;
+      if (k == kCellAxes - 1) cells = std::ceil(cells / kBits) * kBits;
       bits *= cells;
       count_[k] = static_cast<size_t>(std::min(cells, 1e9));
     }
     if (bits <= 8.0 * static_cast<double>(options.most_bytes)) break;
     for (double& width : width_w_) width *= 1.1;
   }
-  count_[3] = (count_[3] + kBits - 1) / kBits * kBits;
   for (int k = 0; k < kCellAxes; ++k) {
     per_width_[k] = 1 / width_w_[k / 2];
     low_[k] = section.bounds.low[k] - width_w_[k / 2];

@@ -28,20 +28,26 @@ class FrameView {
     if (!(along > 0)) return {};
     const Vec3 from_centre = ray.origin - centre_;
     const Vec3 on_lens = from_centre - forward_.dot(from_centre) / along * ray.direction;
-    const double lens_x = right_.dot(on_lens), lens_y = up_.dot(on_lens);
-    if (!(lens_x * lens_x + lens_y * lens_y <= lens_reach2_w2_)) return {};
+    const Vec2 lens(right_.dot(on_lens), up_.dot(on_lens));
+    if (!(lens.squaredNorm() <= lens_reach2_w2_)) return {};
+    return At(lens, ray);
+  }
+
+  // Of a ray that is taken for one through another point of the lens.
+  std::optional<FrameRay> At(const Vec2& lens, const Ray& ray) const {
+    if (!(forward_.dot(ray.direction) > 0)) return {};
     const double slope = focus_plane_.normal.dot(ray.direction);
     if (slope == 0) return {};
     const double lambda = (focus_plane_.offset_w - focus_plane_.normal.dot(ray.origin)) / slope;
-    const Vec3 element = plate_from_world_ * (from_centre + lambda * ray.direction);
+    const Vec3 element = plate_from_world_ * (ray.origin - centre_ + lambda * ray.direction);
     if (!(element.z() > 0)) return {};
     const double x = element.x() / element.z(), y = element.y() / element.z();
     if (!(x >= -margin_px_ && x <= width_px_ + margin_px_ && y >= -margin_px_ &&
           y <= height_px_ + margin_px_))
       return {};
     FrameRay seen;
-    seen.lens_x_w = static_cast<float>(lens_x);
-    seen.lens_y_w = static_cast<float>(lens_y);
+    seen.lens_x_w = static_cast<float>(lens.x());
+    seen.lens_y_w = static_cast<float>(lens.y());
     seen.x_px = static_cast<float>(x);
     seen.y_px = static_cast<float>(y);
     return seen;
@@ -56,13 +62,12 @@ class FrameView {
   int width_px_, height_px_;
 };
 
-}  // namespace
-
-LargeVector<FrameRay> FrameRaysOf(const Slab& slab, std::span<const BinnedCell> cells,
-                                  const RenderCamera& frame, const FrameReach& reach,
-                                  ThreadPool& pool) {
+// In the order of the cells.
+//   see(cell)  its ray, but for its colour; none: left out
+template <class See>
+LargeVector<FrameRay> RaysOfCells(std::span<const BinnedCell> cells, ThreadPool& pool,
+                                  const See& see) {
   constexpr size_t kCellsAtOnce = 65536;
-  const FrameView view(frame, reach);
   // Parts are written where all of their cells would have room, and moved together.
   LargeVector<FrameRay> rays(cells.size());
   std::vector<size_t> counts((cells.size() + kCellsAtOnce - 1) / kCellsAtOnce);
@@ -70,7 +75,7 @@ LargeVector<FrameRay> FrameRaysOf(const Slab& slab, std::span<const BinnedCell> 
     const size_t begin = i * kCellsAtOnce;
     for (const BinnedCell& cell :
          cells.subspan(begin, std::min(kCellsAtOnce, cells.size() - begin))) {
-      std::optional<FrameRay> ray = view.See(RayOfPoint(slab, MiddleOf(slab, cell.cell)));
+      std::optional<FrameRay> ray = see(cell.cell);
       if (!ray) continue;
       for (int c = 0; c < 3; ++c) ray->rgb[c] = static_cast<float>(cell.Mean(c));
       rays[begin + counts[i]++] = *ray;
@@ -83,6 +88,33 @@ LargeVector<FrameRay> FrameRaysOf(const Slab& slab, std::span<const BinnedCell> 
   }
   rays.erase(end, rays.end());
   return rays;
+}
+
+}  // namespace
+
+LargeVector<FrameRay> FrameRaysOf(const Slab& slab, std::span<const BinnedCell> cells,
+                                  const RenderCamera& frame, const FrameReach& reach,
+                                  ThreadPool& pool) {
+  const FrameView view(frame, reach);
+  return RaysOfCells(
+      cells, pool, [&](CellKey cell) { return view.See(RayOfPoint(slab, MiddleOf(slab, cell))); });
+}
+
+LargeVector<FrameRay> FrameRaysThrough(const Vec2& lens_point, const Slab& slab,
+                                       std::span<const BinnedCell> cells, const RenderCamera& frame,
+                                       const FrameReach& reach, ThreadPool& pool) {
+  const FrameView view(frame, reach);
+  const Vec3 lens_world = LensPointWorld(frame, lens_point);
+  return RaysOfCells(cells, pool, [&](CellKey cell) -> std::optional<FrameRay> {
+    const SlabPoint point = MiddleOf(slab, cell);
+    const Ray ray = RayOfPoint(slab, point);
+    const Ray asked{lens_world, ray.At(1) - lens_world};
+    const std::optional<SlabPoint> asked_point = Parameterize(slab, asked);
+    if (!asked_point) return {};
+    const Vec2 off = (point - *asked_point).head<2>();
+    if (!(off.squaredNorm() <= reach.lens_w * reach.lens_w)) return {};
+    return view.At(lens_point + off, asked);
+  });
 }
 
 }  // namespace lf

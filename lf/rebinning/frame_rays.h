@@ -36,4 +36,12 @@ LargeVector<FrameRay> FrameRaysOf(const Slab& slab, std::span<const BinnedCell> 
                                   const RenderCamera& frame, const FrameReach& reach,
                                   ThreadPool& pool);
 
+// The same as a single point of the lens asks for them, without exchanging the slab: a ray is as
+// far from the query as their points on the slab's planes are (Eq. 4.5 as it stands). So each is
+// where the ray from the lens point to its point of the uv plane meets the plate, and beside the
+// lens point as far as the two are from each other on the st plane.
+LargeVector<FrameRay> FrameRaysThrough(const Vec2& lens_point, const Slab& slab,
+                                       std::span<const BinnedCell> cells, const RenderCamera& frame,
+                                       const FrameReach& reach, ThreadPool& pool);
+
 }  // namespace lf

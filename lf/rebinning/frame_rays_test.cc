@@ -66,5 +66,44 @@ TEST(FrameRays, GoFromTheLensThroughTheFocusPlaneToTheirElement) {
   }
 }
 
+// What lies on the slab's uv plane is seen where it is, through any point of the lens, though the
+// focus is elsewhere: the lens point and the ray beside it agree about the element.
+TEST(FrameRays, ThroughALensPointAreToldApartOnTheSlab) {
+  Slab slab;
+  slab.uv.origin_world = Vec3(0, 0, 3);
+  slab.r_st_w = 1e-5;
+  slab.r_uv_w = 1e-4;
+  ThreadPool pool(1);
+  RenderCamera frame;
+  frame.pinhole.intrinsics = {300, 300, 160, 120, 0, 320, 240};
+  frame.aperture = {0.02, 0, 0};
+  frame.focus_plane = FocusPlane(frame.pinhole, 1.5, {});
+  const Vec2 lens_point(0.01, -0.005);
+  RandomSequence random(2);
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 on_uv(random.Uniform(-1, 1), random.Uniform(-1, 1), 3);
+    const Vec2 beside(random.Uniform(-0.003, 0.003), random.Uniform(-0.003, 0.003));
+    // Lens coordinates are right and up, those of the slab right and down.
+    const Vec3 on_st(lens_point.x() + beside.x(), -lens_point.y() + beside.y(), 0);
+    BinnedCell cell;
+    cell.cell = *CellOf(slab, *Parameterize(slab, {on_st, on_uv - on_st}));
+    cell.Add({cell.cell, {1, 2, 3}});
+    const LargeVector<FrameRay> rays =
+        FrameRaysThrough(lens_point, slab, std::span(&cell, 1), frame, {0.01, 0}, pool);
+    const Vec3 lens_world = LensPointWorld(frame, lens_point);
+    const Vec3 focus = lens_world + 0.5 * (on_uv - lens_world);
+    const auto seen = Project(frame.pinhole, focus);
+    if (std::abs(seen->x() - 160) > 159 || std::abs(seen->y() - 120) > 119) continue;
+    ASSERT_EQ(rays.size(), 1u);
+    EXPECT_NEAR(rays[0].x_px, seen->x(), 0.05);
+    EXPECT_NEAR(rays[0].y_px, seen->y(), 0.05);
+    EXPECT_NEAR(std::hypot(rays[0].lens_x_w - lens_point.x(), rays[0].lens_y_w - lens_point.y()),
+                beside.norm(), 2e-5);
+    EXPECT_TRUE(FrameRaysThrough(lens_point, slab, std::span(&cell, 1), frame,
+                                 {0.9 * beside.norm(), 0}, pool)
+                    .empty());
+  }
+}
+
 }  // namespace
 }  // namespace lf

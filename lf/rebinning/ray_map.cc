@@ -26,6 +26,11 @@ BinnedCell* Find(LargeVector<BinnedCell>& slots, CellKey cell, uint64_t hash) {
   return slot;
 }
 
+bool IsBefore(const BinnedCell& a, const BinnedCell& b) { return a.cell < b.cell; }
+
+// The slot of a ray is somewhere in memory: it is asked for some rays ahead.
+constexpr size_t kAhead = 32;
+
 // Of a shard, when all have so many: some have more than others.
 size_t MostOfShard(size_t cells) { return cells / RayMap::kShards * 9 / 8 + 64; }
 
@@ -38,6 +43,12 @@ RayMap::RayMap(size_t max_cells, size_t expected_cells)
   for (Shard& shard : shards_) shard.slots.resize(SlotsFor(MostOfShard(cells)));
 }
 
+RayMap::RayMap(size_t max_cells, size_t expected_cells, uint64_t limit, bool is_too_coarse)
+    : RayMap(max_cells, expected_cells) {
+  limit_ = limit;
+  shards_[0].is_too_coarse = is_too_coarse;  // which one it was, nobody asks
+}
+
 void RayMap::Grow(Shard& shard) {
   LargeVector<BinnedCell> slots(shard.slots.size() + shard.slots.size() / 2);
   for (const BinnedCell& cell : shard.slots)
@@ -47,8 +58,6 @@ void RayMap::Grow(Shard& shard) {
 
 template <bool kMakesNew>
 void RayMap::AddTo(Shard& shard, std::span<const BinnedRay> rays) {
-  // The slot of a ray is somewhere in memory: it is asked for some rays ahead.
-  constexpr size_t kAhead = 32;
   std::array<uint64_t, kAhead> hashes{};
   const auto announce = [&](size_t i) {
     hashes[i % kAhead] = MixBits(rays[i].cell);
@@ -78,6 +87,19 @@ void RayMap::Add(size_t shard, std::span<const BinnedRay> rays) {
 }
 void RayMap::AddToThoseThere(size_t shard, std::span<const BinnedRay> rays) {
   AddTo<false>(shards_[shard], rays);
+}
+
+void RayMap::Restore(size_t shard, std::span<const BinnedCell> cells) {
+  Shard& to = shards_[shard];
+  while (SlotsFor(to.count + cells.size()) > to.slots.size()) Grow(to);
+  for (size_t i = 0; i < cells.size(); ++i) {
+    if (i + kAhead < cells.size()) {
+      const uint64_t hash = MixBits(cells[i + kAhead].cell);
+      __builtin_prefetch(&to.slots[FirstSlot(hash, to.slots.size())], 1);
+    }
+    *Find(to.slots, cells[i].cell, MixBits(cells[i].cell)) = cells[i];
+  }
+  to.count += cells.size();
 }
 
 void RayMap::DropUnless(const std::function<bool(CellKey)>& is_wanted, Shard& shard) {
@@ -154,9 +176,17 @@ std::vector<BinnedCell> RayMap::Cells(ThreadPool& pool) const {
   pool.ForEach(part_begins.size() - 1, [&](size_t i) {
     const auto begin = cells.begin();
     std::sort(begin + static_cast<std::ptrdiff_t>(part_begins[i]),
-              begin + static_cast<std::ptrdiff_t>(part_begins[i + 1]),
-              [](const BinnedCell& a, const BinnedCell& b) { return a.cell < b.cell; });
+              begin + static_cast<std::ptrdiff_t>(part_begins[i + 1]), IsBefore);
   });
+  return cells;
+}
+
+std::vector<BinnedCell> RayMap::CellsOf(size_t shard) const {
+  std::vector<BinnedCell> cells;
+  cells.reserve(shards_[shard].count);
+  for (const BinnedCell& cell : shards_[shard].slots)
+    if (cell.cell != 0) cells.push_back(cell);
+  std::sort(cells.begin(), cells.end(), IsBefore);
   return cells;
 }
 

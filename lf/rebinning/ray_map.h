@@ -54,6 +54,9 @@ class RayMap {
   // expected_cells  there is memory for these from the beginning, up to max_cells
   explicit RayMap(size_t max_cells, size_t expected_cells = SIZE_MAX);
 
+  // The same for a map that was written to a file (ray_map_file.h): Restore() brings its cells.
+  RayMap(size_t max_cells, size_t expected_cells, uint64_t limit, bool is_too_coarse);
+
   static size_t ShardOf(CellKey cell) { return MixBits(cell) % kShards; }
 
   // Adds rays to the cells that they are in. All are of the shard. Shards may be added to at the
@@ -61,6 +64,10 @@ class RayMap {
   void Add(size_t shard, std::span<const BinnedRay> rays);
   // The same, but makes no new cells.
   void AddToThoseThere(size_t shard, std::span<const BinnedRay> rays);
+
+  // Puts back cells that another map of this limit had. All are of the shard, different, and none
+  // is there. Shards may be restored at the same time.
+  void Restore(size_t shard, std::span<const BinnedCell> cells);
 
   // Drops cells of the largest hashes until there are no more than max_cells.
   void Trim(ThreadPool& pool);
@@ -71,6 +78,8 @@ class RayMap {
 
   // Whether a cell may still be made: rays of others need not be looked at.
   bool MayHold(CellKey cell) const { return MixBits(cell) < limit_; }
+  // The hash that those of all cells are below.
+  uint64_t limit() const { return limit_; }
 
   // Whether some cell got more rays than it can hold: its sums are wrong.
   bool is_too_coarse() const;
@@ -82,6 +91,8 @@ class RayMap {
 
   // All cells, by ascending keys: row by row of the uv plane.
   std::vector<BinnedCell> Cells(ThreadPool& pool) const;
+  // Those of a shard, by ascending keys.
+  std::vector<BinnedCell> CellsOf(size_t shard) const;
 
  private:
   // Open addressing: a cell is where its hash says, or behind it, before the next gap.

@@ -319,6 +319,12 @@ bool PointShares::IsAny(const PixelRect& rect, int width_px, int height_px, size
   return false;
 }
 
+PointShares PointShares::OfPoint(size_t point) const {
+  PointShares one{columns, rows, 1, {}};
+  for (size_t i = point; i < values.size(); i += point_count) one.values.push_back(values[i]);
+  return one;
+}
+
 PointShares PointShares::MeansOfSets(const LensPointSets& points) const {
   PointShares means{columns, rows, points.sets.size(), {}};
   for (auto value = values.begin(); value != values.end();)

@@ -10,12 +10,16 @@
 
 #include "lf/core/file.h"
 #include "lf/core/log.h"
+#include "lf/rebinning/ray_map_file.h"
 
 namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kProgress = "progress.";
+constexpr const char* kPlacesDone = "progress.places_done";
+constexpr const char* kRaysExtension = ".rays";
+constexpr const char* kRaysFrames = "rays.frames";
 
 // N of "frame_N.EXTENSION".
 std::optional<FrameId> FrameOf(const fs::path& path) {
@@ -47,7 +51,7 @@ std::vector<fs::path> FilesOf(const fs::path& folder) {
 //   frames  ascending; those of others are left alone
 void RemoveTemporaryFiles(const fs::path& folder, const std::vector<FrameId>& frames,
                           bool is_shared) {
-  constexpr const char* kOurs[] = {".run.", ".report.", ".contact_sheet."};
+  constexpr const char* kOurs[] = {".run.", ".report.", ".contact_sheet.", ".rays_"};
   std::error_code ignored;
   for (const fs::path& path : FilesOf(folder)) {
     const std::string name = path.filename().string();
@@ -65,6 +69,18 @@ void RemoveTemporaryFiles(const fs::path& folder, const std::vector<FrameId>& fr
 fs::path PartialFolder(const RunStateOptions& options) {
   const fs::path partial = options.folder / "partial";
   return options.package.empty() ? partial : partial / options.package;
+}
+
+template <class Number>
+Result<void> NumberOf(const fs::path& path, const PlateEntries& entries, const char* key,
+                      Number* value) {
+  const std::string* text = FindEntry(entries, key);
+  const std::string number = text == nullptr ? "(none)" : *text;
+  const char* const end = number.data() + number.size();
+  const auto [rest, error] = std::from_chars(number.data(), end, *value);
+  if (error == std::errc{} && rest == end) return {};
+  return WithAdvice(
+      InputError(fmt::format("{}: {} is {}, expected a whole number", path.string(), key, number)));
 }
 
 RunInputs Joined(RunInputs a, const RunInputs& b) {
@@ -116,12 +132,13 @@ Result<void> RunState::Look() {
     const std::optional<FrameId> frame = FrameOf(file);
     if (frame && file.extension() == ".plate") plates_.insert(*frame);
     if (frame && file.extension() == ".json") records_.insert(*frame);
+    has_rays_ = has_rays_ || file.extension() == kRaysExtension;
   }
   LF_RETURN_IF_ERROR(CheckOtherPackages());
   if (options_.resume) return Read();
   if (options_.overwrite) {
     RemoveAll();
-  } else if (!plates_.empty() || !records_.empty()) {
+  } else if (HasPlates() || !records_.empty()) {
     return UsageError(
         fmt::format("{}: holds an unfinished render ({} frames finished, {} begun): --resume goes "
                     "on with it, --overwrite removes it and starts anew",
@@ -158,7 +175,9 @@ Result<void> RunState::CheckOtherPackages() const {
 void RunState::RemoveAll() {
   std::error_code ignored;
   for (const fs::path& file : FilesOf(partial_))
-    if (FrameOf(file) || file.filename() == "run.json") fs::remove(file, ignored);
+    if (FrameOf(file) || file.filename() == "run.json" || file.extension() == kRaysExtension)
+      fs::remove(file, ignored);
+  has_rays_ = false;
   plates_.clear();
   records_.clear();
 }
@@ -233,7 +252,7 @@ Result<void> RunState::Check(const std::string& place, FrameId frame, const RunI
 
 PlateEntries RunState::PlateText(FrameId frame, const FrameProgress& progress) const {
   PlateEntries text = Joined(options_.rays, InputsOfCamera(frame, path_.Camera(frame)));
-  text.emplace_back("progress.places_done", fmt::format("{}", progress.places_done));
+  text.emplace_back(kPlacesDone, fmt::format("{}", progress.places_done));
   text.emplace_back("progress.lf_images", fmt::format("{}", progress.rays.image_count));
   text.emplace_back("progress.rays_tested", fmt::format("{}", progress.rays.tested_count));
   text.emplace_back("progress.rays_accepted", fmt::format("{}", progress.rays.accepted_count));
@@ -245,16 +264,10 @@ Result<FrameProgress> RunState::LoadPlate(FrameId frame, SensorPlate* plate) con
   if (!plates_.contains(frame)) return progress;
   const fs::path path = PlatePath(frame);
   LF_ASSIGN_OR_RETURN(PlateReader reader, PlateReader::Open(path));
-  const auto get = [&](const char* key, auto* value) -> Result<void> {
-    const std::string* text = FindEntry(reader.entries(), key);
-    const std::string number = text == nullptr ? "(none)" : *text;
-    const char* const end = number.data() + number.size();
-    const auto [rest, error] = std::from_chars(number.data(), end, *value);
-    if (error == std::errc{} && rest == end) return {};
-    return WithAdvice(InputError(
-        fmt::format("{}: {} is {}, expected a whole number", path.string(), key, number)));
+  const auto get = [&](const char* key, auto* value) {
+    return NumberOf(path, reader.entries(), key, value);
   };
-  LF_RETURN_IF_ERROR(get("progress.places_done", &progress.places_done));
+  LF_RETURN_IF_ERROR(get(kPlacesDone, &progress.places_done));
   LF_RETURN_IF_ERROR(get("progress.lf_images", &progress.rays.image_count));
   LF_RETURN_IF_ERROR(get("progress.rays_tested", &progress.rays.tested_count));
   LF_RETURN_IF_ERROR(get("progress.rays_accepted", &progress.rays.accepted_count));
@@ -271,6 +284,48 @@ Result<void> RunState::SavePlate(FrameId frame, const FrameProgress& progress,
   LF_RETURN_IF_ERROR(WritePlate(PlatePath(frame), PlateText(frame, progress), plate, pool));
   plates_.insert(frame);
   return {};
+}
+
+fs::path RunState::RaysPath(FrameId first, size_t section) const {
+  return partial_ / fmt::format("rays_{:04}_{}{}", first.value, section + 1, kRaysExtension);
+}
+
+Result<std::optional<RunState::Rays>> RunState::LoadRays(FrameId first, size_t section,
+                                                         const std::string& frames,
+                                                         size_t max_cells, ThreadPool& pool) const {
+  const fs::path path = RaysPath(first, section);
+  if (!options_.resume || !fs::exists(path)) return std::optional<Rays>();
+  Result<RaysFile> file = ReadRays(path, max_cells, pool);
+  if (!file) return WithAdvice(file.error());
+  RunInputs recorded, wanted = options_.rays;
+  wanted.emplace_back(kRaysFrames, frames);
+  for (const auto& entry : file->entries)
+    if (!entry.first.starts_with(kProgress)) recorded.push_back(entry);
+  if (const auto difference = FirstDifference(recorded, wanted))
+    return UsageError(fmt::format(
+        "{}: --resume: was made with {} {}, this call has {}; give the same, or another -o, or "
+        "--overwrite in place of --resume to start anew",
+        path.string(), difference->key, difference->recorded, difference->wanted));
+  Rays rays{std::move(file->map), 0};
+  LF_RETURN_IF_ERROR(NumberOf(path, file->entries, kPlacesDone, &rays.places_done));
+  return std::optional<Rays>(std::move(rays));
+}
+
+Result<void> RunState::SaveRays(FrameId first, size_t section, const std::string& frames,
+                                const RayMap& map, uint32_t places_done, ThreadPool& pool) {
+  PlateEntries text = options_.rays;
+  text.emplace_back(kRaysFrames, frames);
+  text.emplace_back(kPlacesDone, fmt::format("{}", places_done));
+  LF_RETURN_IF_ERROR(WriteRays(RaysPath(first, section), text, map, pool));
+  has_rays_ = true;
+  return {};
+}
+
+void RunState::RemoveRays() {
+  std::error_code ignored;
+  for (const fs::path& file : FilesOf(partial_))
+    if (file.extension() == kRaysExtension) fs::remove(file, ignored);
+  has_rays_ = false;
 }
 
 Result<void> RunState::SaveTotals(const RenderReport& totals) {

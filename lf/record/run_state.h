@@ -4,6 +4,7 @@
 //
 //   lock              held by the process at work
 //   run.json          times so far and skipped LF images
+//   rays_0001_1.rays  rebinned rays of the frames from 1 on
 //   frame_0001.plate  the plate of an unfinished frame, what it is made from and how far it is
 //   frame_0001.exr    its picture, about as new
 //   frame_0002.json   the report of a finished frame, and what it is made from
@@ -11,6 +12,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -23,6 +25,7 @@
 #include "lf/path/camera_path.h"
 #include "lf/plate/plate_file.h"
 #include "lf/plate/sensor_plate.h"
+#include "lf/rebinning/ray_map.h"
 #include "lf/record/report.h"
 #include "lf/record/run_inputs.h"
 #include "lf/sequence/frame_file.h"
@@ -55,7 +58,8 @@ class RunState {
   const std::map<FrameId, FrameReport>& finished() const { return finished_; }
   // Times and skipped LF images of earlier runs.
   const RenderReport& earlier() const { return earlier_; }
-  bool HasPlates() const { return !plates_.empty(); }
+  // Of unfinished frames, or rebinned rays for them.
+  bool HasPlates() const { return !plates_.empty() || has_rays_; }
 
   // Adds the rays of the frame's plate, if there is one, and tells how far it is.
   // kInput: damaged.
@@ -63,6 +67,19 @@ class RunState {
   // kOutput; the file before is then intact.
   Result<void> SavePlate(FrameId frame, const FrameProgress& progress, const SensorPlate& plate,
                          ThreadPool& pool);
+  // Rebinned rays of a pass, by its first frame, and what they depend on beside the inputs: of a
+  // section those that LoadRays() finds, none if there are none.
+  // kUsage: of other frames. kInput: damaged, or more than max_cells.
+  struct Rays {
+    RayMap map;
+    uint32_t places_done = 0;
+  };
+  Result<std::optional<Rays>> LoadRays(FrameId first, size_t section, const std::string& frames,
+                                       size_t max_cells, ThreadPool& pool) const;
+  Result<void> SaveRays(FrameId first, size_t section, const std::string& frames, const RayMap& map,
+                        uint32_t places_done, ThreadPool& pool);
+  void RemoveRays();
+
   Result<void> SaveTotals(const RenderReport& totals);
   // To be called when the frame's own file is written: its unfinished files are removed.
   Result<void> SaveFinished(const FrameReport& frame);
@@ -90,6 +107,7 @@ class RunState {
                      bool has_picture) const;
   std::filesystem::path PlatePath(FrameId frame) const;
   std::filesystem::path RecordPath(FrameId frame) const;
+  std::filesystem::path RaysPath(FrameId first, size_t section) const;
   std::filesystem::path ReportPath() const;
 
   RunStateOptions options_;
@@ -98,6 +116,7 @@ class RunState {
   FileLock lock_;
   std::set<FrameId> plates_;   // files that are there
   std::set<FrameId> records_;  // of finished frames
+  bool has_rays_ = false;
   std::map<FrameId, FrameReport> finished_;
   RenderReport earlier_;
 };
