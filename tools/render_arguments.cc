@@ -142,6 +142,7 @@ Result<RenderOptions> RenderArguments::MakeOptions(const CommonOptions& common, 
   for (const RenderMode known : {RenderMode::kRebin, RenderMode::kHybrid})
     if (mode == NameOf(known)) options.mode = known;
   LF_ASSIGN_OR_RETURN(options.rebin, rebin.Make(common.seed));
+  if (options.mode == RenderMode::kRebin) options.lens_weights = LensWeights::kNone;
   if (back_end == "reference") options.back_end = CollectBackEnd::kReference;
   options.version = Version();
   LF_ASSIGN_OR_RETURN(options.dump_every_s, ParseDuration(dump_every, "--dump-every"));

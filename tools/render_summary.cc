@@ -32,6 +32,26 @@ void WarnOfEmptyElements(const RenderReport& report) {
         100 * worst->empty_element_count[1] / element_count);
 }
 
+// How much of the pictures is interpolated, and from what.
+void TellRebinning(const RenderReport& report) {
+  if (!report.rebinning) return;
+  double least = 1, most = 0;
+  for (const FrameReport& frame : report.frames) {
+    least = std::min(least, frame.interpolated_share.value_or(0));
+    most = std::max(most, frame.interpolated_share.value_or(0));
+  }
+  const RebinReport& rebinning = *report.rebinning;
+  const std::string cost =
+      rebinning.looked_at_count == 0
+          ? ""
+          : fmt::format(" ({:.1f} ns each)",
+                        1e9 * rebinning.cpu_s / static_cast<double>(rebinning.looked_at_count));
+  LogInfo("rebinned: {}cells of {}LF pixels{}; {:.1f} to {:.1f} % of a frame is interpolated",
+          ShortNumber(static_cast<double>(rebinning.cell_count)),
+          ShortNumber(static_cast<double>(rebinning.looked_at_count)), cost, 100 * least,
+          100 * most);
+}
+
 // What kAuto made of every lens.
 void TellLensWeights(const RenderReport& report) {
   size_t cells = 0, hats = 0, both = 0;
@@ -99,13 +119,18 @@ void WarnOfLenses(const RenderReport& report) {
 }  // namespace
 
 void SummariseRender(const RenderReport& report, const std::string& look_at) {
+  const uint64_t rays = report.AcceptedRays();
+  const std::string collected =
+      rays == 0 && report.rebinning
+          ? ""
+          : fmt::format("{}rays, {:.3g} M/s per core, ", ShortNumber(static_cast<double>(rays)),
+                        report.MraysPerSecondPerCore());
   LogInfo(
-      "{} frames {}x{} in {}: {}rays from {} of {} LF images, {:.3g} Mrays/s per core, "
-      "peak memory {} MiB",
-      report.frames.size(), report.width, report.height, ShortDuration(report.total_s),
-      ShortNumber(static_cast<double>(report.AcceptedRays())),
+      "{} frames {}x{} in {}: {}{} of {} LF images, peak memory {} MiB", report.frames.size(),
+      report.width, report.height, ShortDuration(report.total_s), collected,
       report.selected_image_count - std::min(report.selected_image_count, report.skipped.size()),
-      report.lf_image_count, report.MraysPerSecondPerCore(), report.peak_memory_bytes >> 20);
+      report.lf_image_count, report.peak_memory_bytes >> 20);
+  TellRebinning(report);
   TellLensWeights(report);
   WarnOfEmptyElements(report);
   WarnOfLenses(report);

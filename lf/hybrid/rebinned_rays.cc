@@ -266,7 +266,7 @@ void RebinnedRays::Rebin(std::span<const BatchImage> images, Section& section) {
       cpu_ns_ += timer.Nanoseconds();
     });
     for (const BinnedRays& of_task : rays) looked_at_ += of_task.looked_at;
-    InsertRays(rays, pool_, section.map.get());
+    InsertRays(rays, pool_, section.map.get(), &cpu_ns_);
     begin = end;
   }
   section.cells.reset();

@@ -472,6 +472,14 @@ RenderReport RenderPass::Totals() const {
   totals.load_cpu_s += collector_->times().load_cpu_s;
   totals.load_wall_s += collector_->times().load_wall_s;
   totals.collect_cpu_s += collector_->times().collect_cpu_s;
+  if (rebinned_) {
+    const RebinnedRays::Facts facts = rebinned_->facts();
+    RebinReport& rebinning = totals.rebinning ? *totals.rebinning : totals.rebinning.emplace();
+    rebinning.slab_count = std::max(rebinning.slab_count, facts.section_count);
+    rebinning.cell_count = std::max<uint64_t>(rebinning.cell_count, facts.cell_count);
+    rebinning.looked_at_count += facts.looked_at;
+    rebinning.cpu_s += facts.cpu_s;
+  }
   for (const SkippedImage& skipped : collector_->skipped())
     if (std::none_of(totals.skipped.begin(), totals.skipped.end(),
                      [&](const SkippedImage& known) { return known.name == skipped.name; }))

@@ -274,13 +274,19 @@ double CoveredShare(const Slab& slab, const PinholeCamera& lf_camera, const Pixe
   return static_cast<double>(covered) / static_cast<double>(rect.pixel_count());
 }
 
-void InsertRays(const std::vector<BinnedRays>& rays, ThreadPool& pool, RayMap* map) {
-  pool.ForEach(RayMap::kShards, [&](size_t shard) {
-    for (const BinnedRays& of_image : rays) map->Add(shard, of_image.kept[shard]);
-  });
+void InsertRays(const std::vector<BinnedRays>& rays, ThreadPool& pool, RayMap* map,
+                std::atomic<int64_t>* cpu_ns) {
+  const auto for_each_shard = [&](const auto& add) {
+    pool.ForEach(RayMap::kShards, [&](size_t shard) {
+      const ThreadCpuTimer timer;
+      for (const BinnedRays& of_image : rays) add(shard, of_image);
+      if (cpu_ns != nullptr) *cpu_ns += timer.Nanoseconds();
+    });
+  };
+  for_each_shard([&](size_t shard, const BinnedRays& from) { map->Add(shard, from.kept[shard]); });
   map->Trim(pool);
-  pool.ForEach(RayMap::kShards, [&](size_t shard) {
-    for (const BinnedRays& of_image : rays) map->AddToThoseThere(shard, of_image.others[shard]);
+  for_each_shard([&](size_t shard, const BinnedRays& from) {
+    if (!from.others[shard].empty()) map->AddToThoseThere(shard, from.others[shard]);
   });
 }
 

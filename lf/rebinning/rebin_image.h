@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <vector>
 
@@ -65,6 +66,8 @@ double CoveredShare(const Slab& slab, const PinholeCamera& lf_camera, const Pixe
 // Puts them into the map, by all threads, and cuts that to its size. Others are added to the cells
 // that are there then: with these it matters which LF images are given together, but not their
 // order.
-void InsertRays(const std::vector<BinnedRays>& rays, ThreadPool& pool, RayMap* map);
+//   cpu_ns  the time that it takes is added, of all threads, if given
+void InsertRays(const std::vector<BinnedRays>& rays, ThreadPool& pool, RayMap* map,
+                std::atomic<int64_t>* cpu_ns = nullptr);
 
 }  // namespace lf

@@ -75,8 +75,10 @@ FrameReport MakeFrameReport(FrameId frame, const FrameRays& rays, const Develope
     std::nth_element(channel_counts.begin(), middle, channel_counts.end());
     report.median_count[channel] = *middle;
     report.min_count[channel] = *std::min_element(channel_counts.begin(), channel_counts.end());
-    report.empty_element_count[channel] = static_cast<uint64_t>(
-        std::count(channel_counts.begin(), channel_counts.end(), uint32_t{0}));
+    const LargeVector<float>& interpolated = developed.interpolated.pixels();
+    for (size_t i = 0; i < channel_counts.size(); ++i)
+      if (counts[i * 3 + channel] == 0 && (interpolated.empty() || interpolated[i] == 0))
+        ++report.empty_element_count[channel];
   }
   return report;
 }
@@ -93,25 +95,30 @@ std::string ToJson(const RenderReport& report) {
     skipped.push_back({{"name", image.name}, {"reason", image.reason}});
   Json frames = Json::array();
   for (const FrameReport& frame : report.frames) frames.push_back(FrameToJson(frame));
-  const Json json = {{"format", "lfreport 1"},
-                     {"version", report.version},
-                     {"inputs", InputsToJson(report.inputs)},
-                     {"estimator", NameOf(report.estimator)},
-                     {"resolution", {report.width, report.height}},
-                     {"threads", report.thread_count},
-                     {"lf_images", report.lf_image_count},
-                     {"lf_images_selected", report.selected_image_count},
-                     {"passes", report.pass_count},
-                     {"seconds", report.total_s},
-                     {"load_cpu_s", report.load_cpu_s},
-                     {"load_wall_s", report.load_wall_s},
-                     {"collect_cpu_s", report.collect_cpu_s},
-                     {"rays_tested", report.TestedRays()},
-                     {"rays_accepted", report.AcceptedRays()},
-                     {"mrays_per_s_per_core", report.MraysPerSecondPerCore()},
-                     {"peak_memory_bytes", report.peak_memory_bytes},
-                     {"skipped_lf_images", std::move(skipped)},
-                     {"frames", std::move(frames)}};
+  Json json = {{"format", "lfreport 1"},
+               {"version", report.version},
+               {"inputs", InputsToJson(report.inputs)},
+               {"estimator", NameOf(report.estimator)},
+               {"resolution", {report.width, report.height}},
+               {"threads", report.thread_count},
+               {"lf_images", report.lf_image_count},
+               {"lf_images_selected", report.selected_image_count},
+               {"passes", report.pass_count},
+               {"seconds", report.total_s},
+               {"load_cpu_s", report.load_cpu_s},
+               {"load_wall_s", report.load_wall_s},
+               {"collect_cpu_s", report.collect_cpu_s},
+               {"rays_tested", report.TestedRays()},
+               {"rays_accepted", report.AcceptedRays()},
+               {"mrays_per_s_per_core", report.MraysPerSecondPerCore()},
+               {"peak_memory_bytes", report.peak_memory_bytes},
+               {"skipped_lf_images", std::move(skipped)},
+               {"frames", std::move(frames)}};
+  if (report.rebinning)
+    json["rebinning"] = {{"slabs", report.rebinning->slab_count},
+                         {"cells", report.rebinning->cell_count},
+                         {"lf_pixels_looked_at", report.rebinning->looked_at_count},
+                         {"cpu_s", report.rebinning->cpu_s}};
   // File names may hold any bytes; those that are no UTF-8 are replaced.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

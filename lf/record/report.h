@@ -30,7 +30,7 @@ struct FrameReport {
   FrameId frame;
   FrameRays rays;
   // Per channel R, G, B.
-  std::array<uint64_t, 3> empty_element_count{};  // without a ray of their own
+  std::array<uint64_t, 3> empty_element_count{};  // without a ray of their own, nor interpolated
   std::array<uint64_t, 3> min_count{};
   std::array<uint64_t, 3> median_count{};
   double develop_s = 0;
@@ -45,6 +45,14 @@ struct FrameReport {
   std::optional<Weighed> weighed = std::nullopt;
   // With rebinned rays: of the picture, how much is interpolated between them.
   std::optional<double> interpolated_share = std::nullopt;
+};
+
+// Of rebinned rays (hybrid/rebinned_rays.h).
+struct RebinReport {
+  size_t slab_count = 0;         // of the pass with the most
+  uint64_t cell_count = 0;       // at the end of that with the most
+  uint64_t looked_at_count = 0;  // LF pixels
+  double cpu_s = 0;              // from LF pixels to cells
 };
 
 struct RenderReport {
@@ -63,6 +71,7 @@ struct RenderReport {
   double load_cpu_s = 0;  // this and the next two as CollectTimes
   double load_wall_s = 0;
   double collect_cpu_s = 0;
+  std::optional<RebinReport> rebinning = std::nullopt;
   uint64_t peak_memory_bytes = 0;
 
   uint64_t TestedRays() const;

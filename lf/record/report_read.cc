@@ -144,6 +144,14 @@ Result<RenderReport> ParseReport(std::string_view text, const std::string& name)
     fields.Get("load_cpu_s", &report.load_cpu_s);
     fields.Get("load_wall_s", &report.load_wall_s);
     fields.Get("collect_cpu_s", &report.collect_cpu_s);
+    if (const Json* item = fields.Find("rebinning")) {
+      Fields rebinning_fields(*item, &fault);
+      RebinReport& rebinning = report.rebinning.emplace();
+      rebinning_fields.Get("slabs", &rebinning.slab_count);
+      rebinning_fields.Get("cells", &rebinning.cell_count);
+      rebinning_fields.Get("lf_pixels_looked_at", &rebinning.looked_at_count);
+      rebinning_fields.Get("cpu_s", &rebinning.cpu_s);
+    }
     for (const Json* item : fields.List("skipped_lf_images")) {
       Fields skipped_fields(*item, &fault);
       SkippedImage& skipped = report.skipped.emplace_back();

@@ -1,0 +1,200 @@
+#!/usr/bin/python3
+"""lfrenderer --mode rebin and hybrid: the same bits for any threads and however often they are
+killed, memory under its bound, honest words.
+
+usage: rebinning_test.py LFRENDERER LFPREPROCESSOR
+"""
+import hashlib
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"
+import cv2
+
+import small_field
+from program_test_case import ProgramTestCase
+
+RENDERER = PREPROCESSOR = None
+
+
+def digests(folder):
+    """sha256 of the frames of a folder"""
+    return {path.name: hashlib.sha256(path.read_bytes()).hexdigest()
+            for path in sorted(folder.glob("frame_*.exr"))}
+
+
+def report(folder):
+    return json.loads((folder / "report.json").read_text())
+
+
+class RebinningTest(ProgramTestCase):
+    def setUp(self):
+        super().setUp()
+        small_field.SIDE = 13  # 169 LF images: decisions at 64 and 128 places
+        self.field = small_field.write_field(self.folder / "field")
+
+    def path(self, **keys):
+        return small_field.write_path(self.folder, **keys)
+
+    def command(self, out, *options):
+        return [RENDERER, self.field, self.folder / "path.yaml", "-o", self.folder / out, "--format",
+                "exr-float", "--no-contact-sheet", *options]
+
+    def render(self, out, *options):
+        self.succeeds(*self.command(out, *options))
+        return digests(self.folder / out)
+
+    def test_the_same_bits_for_any_threads(self):
+        self.path(aperture=0.02)
+        for mode in ("rebin", "hybrid"):
+            for options in ([], ["--kept", "edges", "--seed", "3"], ["--max-rays", "20000"]):
+                expected = self.render("one", "--mode", mode, "--threads", "1", *options)
+                self.assertEqual(len(expected), 3)
+                for threads in ("2", "3"):
+                    shutil.rmtree(self.folder / "many", ignore_errors=True)
+                    self.assertEqual(self.render("many", "--mode", mode, "--threads", threads,
+                                                 *options), expected)
+                shutil.rmtree(self.folder / "one")
+
+    def test_another_seed_keeps_other_rays(self):
+        self.path(aperture=0.02, frames=1)
+        options = ["--mode", "rebin", "--kept", "edges", "--alpha", "0.1"]
+        self.assertNotEqual(self.render("a", *options, "--seed", "1"),
+                            self.render("b", *options, "--seed", "2"))
+
+    # Killed at any moment, also between the files of a state.
+    def test_killed_and_resumed_the_same_bits(self):
+        self.path(aperture=0.02, frames=6)
+        for mode in ("rebin", "hybrid"):
+            options = ["--mode", mode, "--dump-every", "0.001s", "--kept", "edges"]
+            start = time.monotonic()
+            expected = self.render("whole-" + mode, *options)
+            whole_s = time.monotonic() - start
+            kills = 0
+            for attempt in range(12):
+                process = subprocess.Popen(
+                    list(map(str, self.command("cut-" + mode, *options, "--resume"))),
+                    stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+                try:
+                    process.wait(whole_s * (attempt + 2) / 14)
+                except subprocess.TimeoutExpired:
+                    process.send_signal(signal.SIGKILL if attempt % 2 else signal.SIGTERM)
+                    kills += 1
+                process.communicate()
+                if process.returncode == 0:
+                    break
+                # Before it can catch signals it ends by them.
+                self.assertIn(process.returncode, (-signal.SIGKILL, -signal.SIGTERM, 5))
+            self.assertGreater(kills, 2)
+            self.assertEqual(self.render("cut-" + mode, *options, "--resume"), expected)
+            self.assertFalse((self.folder / ("cut-" + mode) / "partial").exists())
+
+    def test_resumed_with_other_choices_is_refused(self):
+        self.path(aperture=0.02)
+        process = subprocess.Popen(
+            list(map(str, self.command("out", "--mode", "rebin", "--dump-every", "0.001s"))),
+            stderr=subprocess.PIPE)
+        partial = self.folder / "out" / "partial"
+        for _ in range(1000):
+            if list(partial.glob("rays_*.rays")):
+                break
+            time.sleep(0.005)
+        process.kill()
+        process.communicate()
+        if not list(partial.glob("rays_*.rays")):
+            self.skipTest("the render was over too soon")
+        self.fails(2, ["--resume", "--overwrite"], *self.command("out", "--mode", "rebin"))
+        self.fails(2, ["rebin.query", "sigma_st 0.5", "sigma_st 0.7"],
+                   *self.command("out", "--mode", "rebin", "--resume", "--sigma-st", "0.7"))
+        rays = next(partial.glob("rays_*.rays"))
+        rays.write_bytes(rays.read_bytes()[:-5])
+        self.fails(3, [rays.name, "remove the file"],
+                   *self.command("out", "--mode", "rebin", "--resume"))
+
+    # A lens that LF cameras fill leaves nothing to interpolate.
+    def test_hybrid_of_a_full_lens_is_what_is_collected(self):
+        path = self.path(aperture=0.045)
+        # All LF cameras see all of it.
+        path.write_text(path.read_text().replace("field_of_view_deg: 50", "field_of_view_deg: 25"))
+        self.render("collect")
+        self.render("hybrid", "--mode", "hybrid")
+        for frame in report(self.folder / "hybrid")["frames"]:
+            self.assertEqual(frame["interpolated_share"], 0)
+        pictures = ["frame_0001.exr", "frame_0003.exr"]
+        for name in pictures:
+            self.assertEqual(self.rgb("collect", name), self.rgb("hybrid", name))
+
+    def rgb(self, out, name):
+        return cv2.imread(str(self.folder / out / name), cv2.IMREAD_UNCHANGED).tobytes()
+
+    # Between LF cameras nothing is collected; all of the frame is interpolated.
+    def test_a_small_lens_between_cameras_is_interpolated(self):
+        self.path(aperture=0.002, x=0.005)
+        words = self.call(*self.command("collect", "--lens-weights", "none"))
+        self.assertNotEqual(words.returncode, 0)
+        self.assertIn("no LF image contributes", words.stderr)
+        for mode in ("rebin", "hybrid"):
+            self.render(mode, "--mode", mode, "--lens-weights", "none")
+            for frame in report(self.folder / mode)["frames"]:
+                self.assertGreater(frame["interpolated_share"], 0.7)
+
+    def test_the_cap_of_rays_and_the_memory_hold(self):
+        self.path(aperture=0.06, frames=2)
+        self.render("out", "--mode", "rebin", "--max-rays", "5000", "-v")
+        self.fails(4, ["--max-rays"], *self.command("no", "--mode", "rebin", "--max-rays",
+                                                    "9000000000"))
+        self.fails(4, ["--memory"], *self.command("no", "--mode", "hybrid", "--memory", "100M"))
+
+    def test_what_rebinning_cannot_do_is_refused(self):
+        self.path()
+        for options in (["--stop-when", "samples>=3"], ["--require", "samples>=3"],
+                        ["--keep-plates"], ["--smooth-below", "2"]):
+            self.fails(2, ["--mode rebin"], *self.command("no", "--mode", "rebin", *options))
+        self.fails(2, ["--lens-sets"], *self.command("no", "--mode", "rebin", "--reparameterise",
+                                                     "off", "--lens-sets", "2"))
+        self.fails(2, ["--slab-forward"],
+                   *self.command("no", "--mode", "rebin", "--slab-forward", "0", "0", "0"))
+
+    def test_slabs_may_be_placed_and_left_as_they_are(self):
+        self.path(aperture=0.02, frames=1)
+        plain = self.render("plain", "--mode", "rebin")
+        for i, options in enumerate((["--reparameterise", "off"],
+                                     ["--slab-distance", "1.5", "--reparameterise", "off"],
+                                     ["--slab-position", "0", "0", "0.1"],
+                                     ["--slab-forward", "0.1", "0", "-1"],
+                                     ["--r-st", "0.004", "--r-uv", "0.02"],
+                                     ["--lens-sets", "2", "--lens-points", "9"],
+                                     ["--average-others", "on", "--kept", "edges"])):
+            other = self.render(f"other{i}", "--mode", "rebin", *options)
+            self.assertNotEqual(plain, other)
+            self.assertGreater(report(self.folder / f"other{i}")["frames"][0]["interpolated_share"],
+                               0.8, options)
+
+    def test_packages_and_broken_images(self):
+        path = self.path(aperture=0.02)
+        (self.folder / "field" / "image_84.png").write_bytes(b"broken")
+        expected = self.render("whole", "--mode", "hybrid")
+        self.assertEqual(len(report(self.folder / "whole")["skipped_lf_images"]), 1)
+        self.succeeds(PREPROCESSOR, self.field, path, "-o", self.folder / "packages")
+        self.succeeds(RENDERER, *sorted((self.folder / "packages").glob("*.lfp")), "-o",
+                      self.folder / "frames", "--mode", "hybrid", "--format", "exr-float",
+                      "--no-contact-sheet")
+        self.assertEqual(len(digests(self.folder / "frames")), len(expected))
+
+    def test_stop_rules_and_plates_go_with_hybrid(self):
+        self.path(aperture=0.045)
+        self.render("plain", "--keep-plates", "--lens-weights", "none")
+        self.render("hybrid", "--keep-plates", "--lens-weights", "none", "--mode", "hybrid",
+                    "--require", "samples>=1")
+        self.render("stopped", "--stop-when", "samples>=2", "--mode", "hybrid")
+
+
+if __name__ == "__main__":
+    RENDERER, PREPROCESSOR = sys.argv[1:3]
+    unittest.main(argv=sys.argv[:1], verbosity=2)
