@@ -127,11 +127,12 @@ def photograph(build, field, density, size, *options):
                     "--noise", "0.01", "--samples", "1", "-q", *options], check=True)
 
 
-def render(build, field, path, out, threads):
+def render(build, field, path, out, threads, *options):
     """One run: seconds, what the system says it used, report."""
     start = time.monotonic()
     process = subprocess.Popen([build / "bin/lfrenderer", field, path, "-o", out, "--threads",
-                                str(threads), "-q", "--no-contact-sheet"], stderr=subprocess.PIPE)
+                                str(threads), "-q", "--no-contact-sheet", *options],
+                               stderr=subprocess.PIPE)
     messages = process.stderr.read().decode()
     _, status, usage = os.wait4(process.pid, 0)
     if status != 0:

@@ -127,12 +127,13 @@ def table_of_captures(renderer, truth_folder, only):
     return table.rows
 
 
-def synthetic_path(calibration, diameter, scale, focus):
-    """The middle of the capture, looking as it does on the whole."""
+def synthetic_path(calibration, diameter, scale, focus, behind=0):
+    """The middle of the capture or so far behind it, looking as it does on the whole."""
     field = json.loads(calibration.read_text())
     poses = np.array([f["transform_matrix"] for f in field["frames"]])
     position = poses[:, :3, 3].mean(axis=0)
     forward, up = -poses[:, :3, 2].mean(axis=0), poses[:, :3, 1].mean(axis=0)
+    position = position - behind * forward
     numbers = lambda v: "[" + ", ".join(repr(float(x)) for x in v) + "]"
     width, height = (round(scale * size) for size in SYNTHETIC_SIZE)
     fov = 2 * np.degrees(np.arctan(0.5 * SYNTHETIC_SIZE[0] / field["fl_x"]))
@@ -169,11 +170,12 @@ class SyntheticScenes:
                      *(["--bayer"] if is_mosaic else []))
         return folder / "transforms.json"
 
-    def truth(self, scene, diameter, scale=1, focus=0.8):
+    def truth(self, scene, diameter, scale=1, focus=0.8, behind=0):
         """(path, true picture)"""
-        name = f"{scene}_{diameter}_{scale}"
+        name = f"{scene}_{diameter}_{scale}_{behind}"
         path = self.folder / (name + ".yaml")
-        path.write_text(synthetic_path(self.calibration(scene), diameter, scale, focus))
+        path.write_text(synthetic_path(self.calibration(scene), diameter, scale, focus,
+                                       behind))
         out = self.folder / ("truth_" + name)
         if not out.exists():
             self.run(scene, "-o", out, "--calibration-only", "--truth", path, "--truth-samples",

@@ -28,10 +28,12 @@ constexpr const char* kExamples = R"(Examples:
   lfrenderer capture/ path.yaml -o frames --resume       # after Ctrl-C, kill, a crash
   lfrenderer capture/ path.yaml -o frames --stop-when "samples>=16"
   lfrenderer packages/package-*.lfp -o frames            # of lfpreprocessor
+  lfrenderer capture/ path.yaml -o frames --mode hybrid  # interpolated where no LF camera's rays pass
 
 DIR receives frame_0001.exr ..., contact_sheet.png and report.json. EXR frames hold linear light
 (R, G, B), the rays of every element (count.R, count.G, count.B; with lens weights the sums of their
-weights), coverage, and with lens weights how many LF images of equal weight there are (effective).
+weights), coverage, with lens weights how many LF images of equal weight there are (effective), and with
+rebinned rays how much of it is interpolated.
 
 Packages have reports of their own, report-package-0000.json, and one that is given alone has its own
 contact sheet: many machines may render theirs into one DIR at the same time.

@@ -18,7 +18,7 @@ constexpr int kLeastPoints = 8, kMostPoints = 256;
 constexpr double kSigmaPerDistance = 0.5;
 // Splats may not be wider (rebinning/splat_tile.h).
 constexpr double kMostSigma_px = 8;
-constexpr int kLeastNodes = 9, kMostNodes = 65;
+constexpr int kLeastNodes = 17, kMostNodes = 65;
 constexpr size_t kMostNodeValues = size_t{1} << 19;  // of all nodes and lens points
 
 double MiddleOf(std::vector<double> values) {
@@ -62,7 +62,7 @@ LensGaps::LensGaps(const ImageIndex& index, const RenderCamera& frame,
   SetPoints(seen_through, options);
   if (!is_collected_) return;
   SetNodes(near, index);
-  FindGaps(near, index, collected, lens_test, places, pool);
+  FindGaps(near, index, collected, lens_test, pool);
 }
 
 // How wide LF pixels are where the focus is, in elements, and at least 1.
@@ -142,8 +142,7 @@ void LensGaps::SetNodes(const std::vector<LfImageId>& near, const ImageIndex& in
 }
 
 void LensGaps::FindGaps(const std::vector<LfImageId>& near, const ImageIndex& index,
-                        const CollectedWeights& collected, bool lens_test, const PlaceRange& places,
-                        ThreadPool& pool) {
+                        const CollectedWeights& collected, bool lens_test, ThreadPool& pool) {
   const RenderCamera& frame = all_.camera;
   const Intrinsics& plate = frame.pinhole.intrinsics;
   const ApertureTest aperture(frame.aperture);
@@ -153,6 +152,14 @@ void LensGaps::FindGaps(const std::vector<LfImageId>& near, const ImageIndex& in
   const double near_w =
       std::max(kCoveredDistances * distance_w,
                std::sqrt(Area(frame.aperture) / static_cast<double>(points.size())));
+  // A point may be covered, and answered, from so far away.
+  std::vector<double> reach2_w2;
+  for (size_t set = 0; set < all_.points.sets.size(); ++set)
+    for (size_t i = 0; i < all_.points.sets[set].size(); ++i) {
+      const double reach_w =
+          std::max(near_w, kReach_sigmas * all_.kernel.sigma_st_w * all_.points.SpreadOf(set, i));
+      reach2_w2.push_back(reach_w * reach_w);
+    }
   struct Camera {
     RayThrough ray;
     RayWeights weights;
@@ -161,11 +168,10 @@ void LensGaps::FindGaps(const std::vector<LfImageId>& near, const ImageIndex& in
   std::vector<Camera> cameras;
   for (const LfImageId id : near) {
     RayWeights weights = collected(id);
-    if (weights.are_none() || !places.Holds(index.PlaceOf(id))) continue;
     cameras.push_back({RayThrough(index.light_field().Camera(id), frame.pinhole.ForwardWorld()),
                        std::move(weights), index.PlaceOf(id)});
   }
-  covered_by_.assign(static_cast<size_t>(columns_) * rows_ * points.size(), UINT32_MAX);
+  covered_from_.assign(static_cast<size_t>(columns_) * rows_ * points.size(), 0);
   pool.ForEach(static_cast<size_t>(columns_) * rows_, [&](size_t node) {
     const double x = static_cast<double>(node % columns_) / std::max(1, columns_ - 1);
     const double y = static_cast<double>(node / columns_) / std::max(1, rows_ - 1);
@@ -175,37 +181,54 @@ void LensGaps::FindGaps(const std::vector<LfImageId>& near, const ImageIndex& in
     const auto element = [](double along, int size_px) {
       return std::min(static_cast<int>(along * size_px), size_px - 1);
     };
-    uint32_t* const covered_by = covered_by_.data() + node * points.size();
+    uint32_t* const covered_from = covered_from_.data() + node * points.size();
     for (const Camera& camera : cameras) {
       const Vec2 through = LensPointOfLine(frame, camera.ray.centre_world(), *focus);
-      if (!through.allFinite() || (lens_test && !aperture.Contains(through)) ||
-          !IsSeenBy(camera.ray, *focus) ||
-          camera.weights.At(element(x, plate.width_px), element(y, plate.height_px)) == 0)
-        continue;
-      for (size_t i = 0; i < points.size(); ++i)
-        if (camera.place < covered_by[i] && (points[i] - through).squaredNorm() <= near_w * near_w)
-          covered_by[i] = camera.place;
+      if (!through.allFinite() || !IsSeenBy(camera.ray, *focus)) continue;
+      const bool is_collected =
+          (!lens_test || aperture.Contains(through)) && !camera.weights.are_none() &&
+          camera.weights.At(element(x, plate.width_px), element(y, plate.height_px)) > 0;
+      for (size_t i = 0; i < points.size(); ++i) {
+        const double distance2_w2 = (points[i] - through).squaredNorm();
+        if (distance2_w2 > reach2_w2[i]) continue;
+        if (covered_from[i] == 0) covered_from[i] = UINT32_MAX;
+        if (is_collected && distance2_w2 <= near_w * near_w)
+          covered_from[i] = std::min(covered_from[i], camera.place + 1);
+      }
     }
   });
-  for (const uint32_t covered_by : covered_by_)
-    if (covered_by != UINT32_MAX) changes_until_ = std::max(changes_until_, covered_by + 1);
+  for (const uint32_t from : covered_from_)
+    if (from != UINT32_MAX) changes_until_ = std::max(changes_until_, from);
+}
+
+bool LensGaps::NodeAsksAt(size_t node, uint32_t place) const {
+  const size_t points = all_.points.point_count();
+  const auto begin = covered_from_.begin() + static_cast<std::ptrdiff_t>(node * points);
+  const auto missing = std::count_if(begin, begin + static_cast<std::ptrdiff_t>(points),
+                                     [place](uint32_t from) { return from > place; });
+  return static_cast<double>(missing) > kLittleMissing * static_cast<double>(points);
 }
 
 FrameQueries LensGaps::QueriesAt(uint32_t place) const {
   FrameQueries queries = all_;
   if (!is_collected_ || !can_be_asked()) return queries;
-  queries.shares = PointShares{columns_, rows_, all_.points.point_count(), {}};
-  queries.shares->values.reserve(covered_by_.size());
-  for (const uint32_t covered_by : covered_by_)
-    queries.shares->values.push_back(covered_by >= place ? 1 : 0);
+  const size_t points = all_.points.point_count();
+  queries.shares = PointShares{columns_, rows_, points, {}};
+  queries.shares->values.assign(covered_from_.size(), 0);
+  for (size_t node = 0; node < static_cast<size_t>(columns_) * rows_; ++node) {
+    if (!NodeAsksAt(node, place)) continue;
+    for (size_t i = node * points; i < (node + 1) * points; ++i)
+      queries.shares->values[i] = covered_from_[i] > place ? 1 : 0;
+  }
   return queries;
 }
 
 bool LensGaps::AsksAt(uint32_t place) const {
   if (!can_be_asked()) return false;
-  return !is_collected_ ||
-         std::any_of(covered_by_.begin(), covered_by_.end(),
-                     [place](uint32_t covered_by) { return covered_by >= place; });
+  if (!is_collected_) return true;
+  for (size_t node = 0; node < static_cast<size_t>(columns_) * rows_; ++node)
+    if (NodeAsksAt(node, place)) return true;
+  return false;
 }
 
 RenderCamera LensGaps::ReachedCamera() const {

@@ -5,7 +5,8 @@
 // the collected LF images have a ray to that element which passes the lens near it: within
 // kCoveredDistances of the distance between LF cameras, or as near as lens points are to each
 // other. What is not covered is asked of rebinned rays. So an aperture larger than the captured
-// band is noticed, and one that falls between LF cameras.
+// band is noticed, and one that falls between LF cameras. Where no LF camera within the reach of
+// the point's kernel sees the element, nothing is asked.
 #pragma once
 
 #include <cstdint>
@@ -23,13 +24,15 @@
 namespace lf {
 
 // In distances between LF cameras around the lens.
-inline constexpr double kCoveredDistances = 1.25;
+inline constexpr double kCoveredDistances = 1.5;
+// Elements that no more than this part of the lens is missing of are left as they are.
+inline constexpr double kLittleMissing = 0.1;
 // Rays of LF cameras farther than this from a lens point have no say in what it sees.
 inline constexpr double kFarthestDistances = 8;
 
 struct QueryOptions {
   double sigma_st = 0.5;     // in distances between LF cameras; wider where these are rare
-  double sigma_uv = 0.4;     // in elements, or in LF pixels where these are larger
+  double sigma_uv = 0.35;    // in elements, or in LF pixels where these are larger
   int lens_point_count = 0;  // in a set; 0: so many that kernels overlap, 8 to 256
   int lens_sets = 1;         // k: sets of k x k elements (lens_points.h)
   uint64_t seed = 0;
@@ -54,7 +57,7 @@ class LensGaps {
   // What is asked for when the LF images at places before this one are collected.
   FrameQueries QueriesAt(uint32_t place) const;
   bool AsksAt(uint32_t place) const;
-  // From this place on what is asked for does not change any more.
+  // From this place on, at the latest, what is asked for does not change any more.
   uint32_t changes_until() const { return changes_until_; }
   static constexpr uint32_t kInTheEnd = UINT32_MAX - 1;
 
@@ -65,17 +68,18 @@ class LensGaps {
   double LfPixelsPerElement() const;
   void SetPoints(const std::vector<Vec2>& seen_through, const QueryOptions& options);
   void SetNodes(const std::vector<LfImageId>& near, const ImageIndex& index);
+  bool NodeAsksAt(size_t node, uint32_t place) const;
   void FindGaps(const std::vector<LfImageId>& near, const ImageIndex& index,
-                const CollectedWeights& collected, bool lens_test, const PlaceRange& places,
-                ThreadPool& pool);
+                const CollectedWeights& collected, bool lens_test, ThreadPool& pool);
 
   LfSampling sampling_;
   FrameQueries all_;
   bool is_collected_ = false;
   int columns_ = 1;  // nodes over the plate
   int rows_ = 1;
-  // The place of the LF image that covers a lens point first, UINT32_MAX if none does.
-  std::vector<uint32_t> covered_by_;  // [rows_][columns_][points]
+  // From which place on a lens point is covered: behind the LF image that does it first;
+  // UINT32_MAX: never; 0: no LF camera within its reach sees the element, nobody could answer.
+  std::vector<uint32_t> covered_from_;  // [rows_][columns_][points]
   uint32_t changes_until_ = 0;
 };
 

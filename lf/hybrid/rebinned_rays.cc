@@ -24,12 +24,12 @@ constexpr double kFitShare = 0.9;
 // What of it is expected to become cells.
 constexpr double kRoom = 1.1, kRoomByEdges = 0.15;
 
-// What is asked for is looked at anew before the LF images at these places: 0 and the powers of two
-// times kDecisionPlaces. The last one up to `place`.
+// What is asked for is looked at anew before the LF images at these places: 0 and the powers of
+// four times kDecisionPlaces. The last one up to `place`.
 uint32_t PhaseOf(uint32_t place) {
   if (place < kDecisionPlaces) return 0;
   uint32_t phase = kDecisionPlaces;
-  while (phase <= place / 2) phase *= 2;
+  while (phase <= place / 4) phase *= 4;
   return phase;
 }
 
@@ -136,7 +136,9 @@ void RebinnedRays::Begin(uint32_t phase, Section& section) {
   for (size_t i = section.plan.begin; i < section.plan.end; ++i)
     if (IsPreviewed(i, phase)) queries.push_back(gaps_[asking_[i]].QueriesAt(phase));
   if (queries.empty() && section.previews.is_empty()) return;
-  section.previews = CoverageMap(section.plan, queries, options_.coverage, pool_);
+  CoverageOptions coarse = options_.coverage;
+  coarse.cells_across = std::max(1, coarse.cells_across / 2);
+  section.previews = CoverageMap(section.plan, queries, coarse, pool_);
   section.cells.reset();
   section.map->DropUnless(
       [&section](CellKey cell) {
@@ -274,8 +276,12 @@ void RebinnedRays::Rebin(std::span<const BatchImage> images, Section& section) {
 
 SplatFrame RebinnedRays::SplatOf(const Section& section, const FrameQueries& queries) const {
   const Intrinsics& plate = queries.camera.pinhole.intrinsics;
-  const LargeVector<FrameRay> rays = FrameRaysOf(section.plan.slab, *section.cells, queries.camera,
-                                                 ReachOf(queries.kernel, queries.points), pool_);
+  const FrameReach reach = ReachOf(queries.kernel, queries.points);
+  AskedSquares squares;
+  if (queries.shares)
+    squares = queries.shares->Squares(plate.width_px, plate.height_px, reach.plate_px);
+  const LargeVector<FrameRay> rays =
+      FrameRaysOf(section.plan.slab, *section.cells, queries.camera, reach, pool_, squares);
   return Splat(rays, plate.width_px, plate.height_px, queries.points, queries.kernel, pool_,
                queries.shares ? &*queries.shares : nullptr);
 }

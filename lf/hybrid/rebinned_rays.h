@@ -4,10 +4,10 @@
 // What a finished frame will ask for is known from calibrations (lens_gaps.h). Of that all rays are
 // kept if there is room for them, else those at edges (Eq. 4.4). Early pictures ask for more: where
 // few LF images are collected yet, rebinned rays, at edges, are a preview. What these ask for is
-// looked at anew before the LF images at places 64, 128, 256, ... : cells that no query can use any
-// more are dropped, and once all that is left is covered, nothing is rebinned. All of this depends
-// on places, not on time: the same rays are kept for any number of threads, however often the work
-// was interrupted.
+// looked at anew before the LF images at places 64, 256, 1024, ... : cells that no query can use
+// any more are dropped, and once all that is left is covered, nothing is rebinned. All of this
+// depends on places, not on time: the same rays are kept for any number of threads, however often
+// the work was interrupted.
 #pragma once
 
 #include <atomic>

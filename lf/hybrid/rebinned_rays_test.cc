@@ -128,7 +128,7 @@ TEST(RebinnedRays, TheSameForAnyThreadsBatchesAndInterruptions) {
       fixture.options.kept = kept;
       if (kept == KeptRays::kEdges) fixture.options.max_cells = 900;  // far too few
       const Fixture::Outcome expected = fixture.Run(1, 16);
-      EXPECT_GT(MeanShare(expected.completions[2]), 0.03);
+      EXPECT_GT(MeanShare(expected.completions[2]), 0.01);
       for (const size_t cells : expected.cells) EXPECT_LE(cells, fixture.options.max_cells);
       ExpectSame(expected, fixture.Run(3, 5));
       for (const size_t steps : {1, 4, 6}) ExpectSame(expected, fixture.Run(2, 16, steps));
@@ -177,7 +177,7 @@ TEST(RebinnedRays, PreviewsAskForMoreThanTheFinishedFrames) {
   const Fixture::Outcome outcome = without.Run(1, 16);
   // But for what lies at the borders of the coverage.
   EXPECT_NEAR(static_cast<double>(rays->facts().cell_count) / static_cast<double>(outcome.cells[0]),
-              1, 0.1);
+              1, 0.4);
   EXPECT_GT(before, outcome.cells[0] * 64 / end);
 }
 

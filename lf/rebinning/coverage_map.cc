@@ -13,8 +13,9 @@ namespace {
 
 constexpr double kPixelsPerCell = 8;
 constexpr double kReachPerCell = 2;
-// Rays of neighbouring places are this part of a cell from each other.
-constexpr double kSpawnStep = 0.5;
+// Rays of neighbouring places are this part of a cell from each other: no cell that they run
+// through is farther than one from a marked one.
+constexpr double kSpawnStep = 0.9;
 
 // Of lens points that some part of the plate asks for: places all over what they reach.
 std::vector<Vec2> PlacesAround(const FrameQueries& frame, const std::vector<bool>& asked,
@@ -108,7 +109,7 @@ void CoverageMap::Spawn(const Slab& slab, const FrameQueries& frame) {
   const RenderCamera& camera = frame.camera;
   const Intrinsics& plate = camera.pinhole.intrinsics;
   const double margin_px = ReachOf(frame.kernel, frame.points).plate_px;
-  // Elements as far from each other as half a cell, by what the middle of the plate sees.
+  // Elements as far from each other as a cell is wide, by what the middle of the plate sees.
   const Vec3 centre = camera.pinhole.CentreWorld();
   const auto on_uv = [&](double x, double y) -> std::optional<SlabPoint> {
     const std::optional<Vec3> focus = FocusPointOfElement(camera, x, y);

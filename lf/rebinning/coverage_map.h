@@ -1,7 +1,7 @@
 // Which rays some frames ask for, so that no others are kept (thesis 4.3.2, "coverage map").
 //
 // The slab's bounds are cut into cells, far wider than those of rays, one bit each. Rays are
-// spawned on the lenses of all frames, denser than these cells, and mark those that they run
+// spawned on the lenses of all frames, as dense as these cells, and mark those that they run
 // through; then what is beside a marked cell is marked, too. It holds what is asked for, and some
 // more: no ray that is within reach of a query is left out.
 #pragma once
@@ -23,7 +23,7 @@ struct CoverageOptions {
   size_t most_bytes = size_t{32} << 20;  // cells are wider where they would take more
   // How many of them the plate is wide; they are never narrower than eight LF pixels. On the st
   // plane they are half as wide as the reach of a lens point.
-  int cells_across = 64;
+  int cells_across = 32;
 };
 
 class CoverageMap {

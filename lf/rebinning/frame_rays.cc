@@ -9,7 +9,7 @@ namespace {
 // One ray after the other, through the same frame.
 class FrameView {
  public:
-  FrameView(const RenderCamera& frame, const FrameReach& reach)
+  FrameView(const RenderCamera& frame, const FrameReach& reach, const AskedSquares& squares)
       : centre_(frame.pinhole.CentreWorld()),
         right_(frame.pinhole.RightWorld()),
         up_(frame.pinhole.UpWorld()),
@@ -20,6 +20,7 @@ class FrameView {
         lens_reach2_w2_((frame.aperture.radius_w + reach.lens_w) *
                         (frame.aperture.radius_w + reach.lens_w)),
         margin_px_(reach.plate_px),
+        squares_(squares),
         width_px_(frame.pinhole.intrinsics.width_px),
         height_px_(frame.pinhole.intrinsics.height_px) {}
 
@@ -43,7 +44,8 @@ class FrameView {
     if (!(element.z() > 0)) return {};
     const double x = element.x() / element.z(), y = element.y() / element.z();
     if (!(x >= -margin_px_ && x <= width_px_ + margin_px_ && y >= -margin_px_ &&
-          y <= height_px_ + margin_px_))
+          y <= height_px_ + margin_px_) ||
+        !IsAsked(x, y))
       return {};
     FrameRay seen;
     seen.lens_x_w = static_cast<float>(lens.x());
@@ -54,11 +56,20 @@ class FrameView {
   }
 
  private:
+  bool IsAsked(double x, double y) const {
+    if (squares_.asked.empty()) return true;
+    const auto square = [](double place, int size_px) {
+      return static_cast<size_t>(std::clamp(place, 0.0, size_px - 1.0)) / AskedSquares::kSide;
+    };
+    return squares_.asked[square(y, height_px_) * squares_.columns + square(x, width_px_)];
+  }
+
   Vec3 centre_, right_, up_, forward_;
   Plane focus_plane_;
   Mat3 plate_from_world_;
   double lens_reach2_w2_;
   double margin_px_;
+  const AskedSquares& squares_;
   int width_px_, height_px_;
 };
 
@@ -94,8 +105,8 @@ LargeVector<FrameRay> RaysOfCells(std::span<const BinnedCell> cells, ThreadPool&
 
 LargeVector<FrameRay> FrameRaysOf(const Slab& slab, std::span<const BinnedCell> cells,
                                   const RenderCamera& frame, const FrameReach& reach,
-                                  ThreadPool& pool) {
-  const FrameView view(frame, reach);
+                                  ThreadPool& pool, const AskedSquares& squares) {
+  const FrameView view(frame, reach, squares);
   return RaysOfCells(
       cells, pool, [&](CellKey cell) { return view.See(RayOfPoint(slab, MiddleOf(slab, cell))); });
 }
@@ -103,7 +114,8 @@ LargeVector<FrameRay> FrameRaysOf(const Slab& slab, std::span<const BinnedCell> 
 LargeVector<FrameRay> FrameRaysThrough(const Vec2& lens_point, const Slab& slab,
                                        std::span<const BinnedCell> cells, const RenderCamera& frame,
                                        const FrameReach& reach, ThreadPool& pool) {
-  const FrameView view(frame, reach);
+  const AskedSquares all;
+  const FrameView view(frame, reach, all);
   const Vec3 lens_world = LensPointWorld(frame, lens_point);
   return RaysOfCells(cells, pool, [&](CellKey cell) -> std::optional<FrameRay> {
     const SlabPoint point = MiddleOf(slab, cell);

@@ -30,11 +30,19 @@ struct FrameReach {
   double plate_px = 0;
 };
 
+// Squares of kSide elements that rays are asked for, all of them by default.
+struct AskedSquares {
+  static constexpr int kSide = 8;
+  int columns = 0;
+  std::vector<bool> asked;  // [rows][columns]; empty: all
+};
+
 // The middle rays of cells that run forward, through the lens's plane within radius + reach.lens_w
-// of its centre, to the plate or reach.plate_px beside it; in the order of the cells.
+// of its centre, to the plate or reach.plate_px beside it, where they are asked for; in the order
+// of the cells.
 LargeVector<FrameRay> FrameRaysOf(const Slab& slab, std::span<const BinnedCell> cells,
                                   const RenderCamera& frame, const FrameReach& reach,
-                                  ThreadPool& pool);
+                                  ThreadPool& pool, const AskedSquares& squares = {});
 
 // The same as a single point of the lens asks for them, without exchanging the slab: a ray is as
 // far from the query as their points on the slab's planes are (Eq. 4.5 as it stands). So each is

@@ -12,7 +12,7 @@ namespace {
 constexpr double kMostTurn_rad = RadiansFromDegrees(30);
 constexpr double kMostCoarser = 1.5;  // than wanted
 constexpr double kStPerDistance = 0.25, kLeastStPerDistance = 1.0 / 256;
-constexpr double kUvPerPixel = 0.5;
+constexpr double kUvPerPixel = 0.25, kUvPerElement = 0.125;
 
 // Places all over the plate, from edge to edge, a reach beyond it.
 template <class Visit>
@@ -150,7 +150,8 @@ class SectionPlanner {
       element = std::min(element, distance / frames_[f].camera.pinhole.intrinsics.fx_px);
     }
     section->pixel_uv_w = lf_pixel;
-    const double uv = choices_.r_uv_w.value_or(kUvPerPixel * std::max(lf_pixel, element));
+    const double uv =
+        choices_.r_uv_w.value_or(std::max(kUvPerPixel * lf_pixel, kUvPerElement * element));
     const double most_st = kStPerDistance * st, least_st = kLeastStPerDistance * st;
     st = most_st;
     for (size_t f = section->begin; f < section->end; ++f)

@@ -3,8 +3,8 @@
 //
 // The st plane is among the positions of the frames and faces as they do; the uv plane is parallel
 // to it, at their focus: half-way, in disparities, between the nearest and the farthest. Cells are
-// half as wide on the uv plane as what one pixel is there, of the LF cameras or of the plate,
-// whichever is more. On the st plane they are a quarter as wide as LF cameras are apart, and so
+// a quarter as wide on the uv plane as an LF pixel there, or an eighth of an element, whichever is
+// more. On the st plane they are a quarter as wide as LF cameras are apart, and so
 // narrow that what is in focus moves by no more than a cell of the uv plane where the focus is
 // pulled to.
 #pragma once

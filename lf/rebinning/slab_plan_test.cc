@@ -59,8 +59,8 @@ TEST(SlabPlan, IsAmongTheFramesAndFacesAsTheyDo) {
   EXPECT_LT((slab.st.origin_world - Vec3(0.05, 0.02, -0.025)).norm(), 0.05);
   EXPECT_NEAR(slab.st.Normal().dot(slab.uv.origin_world - slab.st.origin_world), 2, 0.1);
   EXPECT_LE(slab.r_st_w, 0.002);
-  // Half an element, which is as wide as an LF pixel there.
-  EXPECT_NEAR(slab.r_uv_w, 0.5 * 2 / 90, 0.0006);
+  // An LF pixel is as wide as an element.
+  EXPECT_NEAR(slab.r_uv_w, 0.25 * 2 / 90, 0.0003);
 }
 
 TEST(SlabPlan, HoldsAllRays) {

@@ -319,6 +319,19 @@ bool PointShares::IsAny(const PixelRect& rect, int width_px, int height_px, size
   return false;
 }
 
+AskedSquares PointShares::Squares(int width_px, int height_px, double reach_px) const {
+  const int side = AskedSquares::kSide, reach = static_cast<int>(std::ceil(reach_px));
+  AskedSquares squares;
+  squares.columns = (width_px + side - 1) / side;
+  for (int y = 0; y < height_px; y += side)
+    for (int x = 0; x < width_px; x += side)
+      squares.asked.push_back(
+          IsAny(Intersection({x - reach, y - reach, x + side + reach, y + side + reach},
+                             {0, 0, width_px, height_px}),
+                width_px, height_px, 0, point_count));
+  return squares;
+}
+
 PointShares PointShares::OfPoint(size_t point) const {
   PointShares one{columns, rows, 1, {}};
   for (size_t i = point; i < values.size(); i += point_count) one.values.push_back(values[i]);

@@ -34,6 +34,8 @@ struct PointShares {
 
   // Of `count` points from `first` on, at an element.
   void At(int x, int y, int width_px, int height_px, size_t first, size_t count, float* out) const;
+  // Squares with elements that ask for some, or have such within reach_px.
+  AskedSquares Squares(int width_px, int height_px, double reach_px) const;
   // Of one of them alone.
   PointShares OfPoint(size_t point) const;
   // Of each set, how much of its points is asked for: one after the other.

@@ -1,0 +1,123 @@
+#!/usr/bin/python3
+"""Makes the pictures of doc/rebinning.md from scenes of lfsynth (which lies beside LFRENDERER).
+
+usage: rebinning_pictures.py LFRENDERER FOLDER
+
+FOLDER  receives rebinning_small_lens.jpg   a lens about as wide as the spacing: collected; hybrid;
+                                            how much of that is interpolated; the truth
+                 rebinning_few_images.jpg   every 4th LF image, focus near the lens: collected;
+                                            rebinned; hybrid; the truth
+                 rebinning_kept.jpg         rebinned from all rays; from those at edges, with two xi;
+                                            the truth
+                 rebinning_kernel.jpg       sigma_uv too small for rays at edges; as it is; too
+                                            large; a large sigma_st
+"""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+from lens_pictures import picture, side_by_side
+from lens_weights import cv2
+
+SCENE, COUNT, SIZE, SPACING, TRUTH_SAMPLES = "still-life", 289, (360, 240), 0.003, 400
+
+
+class Capture:
+    def __init__(self, renderer, folder):
+        self.renderer, self.folder = renderer, folder
+        self.lfsynth = pathlib.Path(renderer).with_name("lfsynth")
+        self.run(self.lfsynth, SCENE, "-o", folder, "--count", COUNT, "--size",
+                 "x".join(map(str, SIZE)), "--spacing", SPACING, "--jitter", 0.3)
+        self.field = json.loads((folder / "transforms.json").read_text())
+        self.thinned = folder / "thinned.json"
+        self.thinned.write_text(json.dumps(dict(self.field, frames=self.field["frames"][::4])))
+
+    def run(self, program, *arguments):
+        subprocess.run([program, *map(str, arguments), "-q"], check=True)
+
+    def path(self, distances, focus):
+        """A lens so many spacings wide, half a spacing beside the middle."""
+        poses = np.array([f["transform_matrix"] for f in self.field["frames"]])
+        right, up, back = poses[len(poses) // 2, :3, :3].T
+        position = poses[:, :3, 3].mean(axis=0) + 0.5 * SPACING * right
+        fov = 2 * np.degrees(np.arctan(0.5 * SIZE[0] / self.field["fl_x"]))
+        numbers = lambda v: "[" + ", ".join(repr(float(x)) for x in v) + "]"
+        path = self.folder / f"{distances}-{focus}.yaml"
+        path.write_text(f"""format: lfpath 1
+fps: 25
+frames: 1
+resolution: [{SIZE[0]}, {SIZE[1]}]
+camera:
+  field_of_view_deg: {float(0.8 * fov)!r}
+  focal_length_mm: 50
+  position: {numbers(position)}
+  look_at: {numbers(position - back)}
+  up: {numbers(up)}
+lens:
+  aperture_diameter: {distances * SPACING!r}
+  focus_distance: {focus}
+""")
+        return path
+
+    def truth(self, path):
+        out = self.folder / ("truth-" + path.stem)
+        self.run(self.lfsynth, SCENE, "-o", out, "--calibration-only", "--truth", path,
+                 "--truth-samples", TRUTH_SAMPLES)
+        return next(out.rglob("frame_0001.exr"))
+
+    def frame(self, calibration, path, *options):
+        out = self.folder / "frames"
+        self.run(self.renderer, calibration, path, "-o", out, "--no-contact-sheet", "--overwrite",
+                 *options)
+        return out / "frame_0001.exr"
+
+
+def interpolated(frame):
+    """The AOV as a picture."""
+    text = subprocess.run([sys.executable, "-c", READ_AOV, frame], capture_output=True, check=True)
+    share = np.frombuffer(text.stdout, np.float32).reshape(SIZE[1], SIZE[0])
+    return np.repeat(np.round(255 * share).astype(np.uint8)[..., None], 3, axis=2)
+
+
+READ_AOV = """
+import sys, OpenImageIO as oiio
+image = oiio.ImageBuf(sys.argv[1])
+channel = image.spec().channelnames.index("interpolated")
+sys.stdout.buffer.write(image.get_pixels(oiio.FLOAT)[..., channel].copy().tobytes())
+"""
+
+
+def main():
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    renderer, folder = sys.argv[1], pathlib.Path(sys.argv[2])
+    none = ("--lens-weights", "none")
+    with tempfile.TemporaryDirectory() as temporary:
+        capture = Capture(renderer, pathlib.Path(temporary) / "field")
+        whole = pathlib.Path(temporary) / "field" / "transforms.json"
+        small = capture.path(1.1, 0.8)
+        collected = picture(capture.frame(whole, small, *none))
+        hybrid = capture.frame(whole, small, *none, "--mode", "hybrid")
+        side_by_side(folder / "rebinning_small_lens.jpg",
+                     [collected, picture(hybrid), picture(capture.truth(small))])
+        near = capture.path(12, 0.45)
+        side_by_side(folder / "rebinning_few_images.jpg",
+                     [picture(capture.frame(capture.thinned, near, *none)),
+                      picture(capture.frame(capture.thinned, near, "--mode", "rebin")),
+                      picture(capture.truth(near))])
+        wide = capture.path(5, 0.8)
+        rebin = lambda *options: picture(capture.frame(whole, wide, "--mode", "rebin", *options))
+        edges = ("--kept", "edges")
+        side_by_side(folder / "rebinning_kept.jpg",
+                     [rebin(), rebin(*edges), rebin(*edges, "--xi", "0.2")])
+        side_by_side(folder / "rebinning_kernel.jpg",
+                     [rebin("--sigma-uv", "1.2"), rebin("--sigma-st", "2"),
+                      rebin("--sigma-st", "0.1", "--lens-points", "8")])
+
+
+if __name__ == "__main__":
+    main()
