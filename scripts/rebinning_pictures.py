@@ -3,14 +3,13 @@
 
 usage: rebinning_pictures.py LFRENDERER FOLDER
 
-FOLDER  receives rebinning_small_lens.jpg   a lens about as wide as the spacing: collected; hybrid;
-                                            how much of that is interpolated; the truth
+FOLDER  receives rebinning_small_lens.jpg   a lens narrower than the spacing: collected; hybrid; the
+                                            truth
                  rebinning_few_images.jpg   every 4th LF image, focus near the lens: collected;
-                                            rebinned; hybrid; the truth
-                 rebinning_kept.jpg         rebinned from all rays; from those at edges, with two xi;
-                                            the truth
-                 rebinning_kernel.jpg       sigma_uv too small for rays at edges; as it is; too
-                                            large; a large sigma_st
+                                            rebinned; the truth
+                 rebinning_kept.jpg         rebinned from all rays; from those at edges, with two xi
+                 rebinning_kernel.jpg       a large sigma_uv; a large sigma_st; a small one with few
+                                            lens points
 """
 import json
 import pathlib
@@ -39,14 +38,14 @@ class Capture:
     def run(self, program, *arguments):
         subprocess.run([program, *map(str, arguments), "-q"], check=True)
 
-    def path(self, distances, focus):
-        """A lens so many spacings wide, half a spacing beside the middle."""
+    def path(self, distances, focus, behind=0):
+        """A lens so many spacings wide, half a spacing beside the middle, or behind it."""
         poses = np.array([f["transform_matrix"] for f in self.field["frames"]])
         right, up, back = poses[len(poses) // 2, :3, :3].T
-        position = poses[:, :3, 3].mean(axis=0) + 0.5 * SPACING * right
+        position = poses[:, :3, 3].mean(axis=0) + 0.5 * SPACING * right + behind * back
         fov = 2 * np.degrees(np.arctan(0.5 * SIZE[0] / self.field["fl_x"]))
         numbers = lambda v: "[" + ", ".join(repr(float(x)) for x in v) + "]"
-        path = self.folder / f"{distances}-{focus}.yaml"
+        path = self.folder / f"{distances}-{focus}-{behind}.yaml"
         path.write_text(f"""format: lfpath 1
 fps: 25
 frames: 1
@@ -76,19 +75,6 @@ lens:
         return out / "frame_0001.exr"
 
 
-def interpolated(frame):
-    """The AOV as a picture."""
-    text = subprocess.run([sys.executable, "-c", READ_AOV, frame], capture_output=True, check=True)
-    share = np.frombuffer(text.stdout, np.float32).reshape(SIZE[1], SIZE[0])
-    return np.repeat(np.round(255 * share).astype(np.uint8)[..., None], 3, axis=2)
-
-
-READ_AOV = """
-import sys, OpenImageIO as oiio
-image = oiio.ImageBuf(sys.argv[1])
-channel = image.spec().channelnames.index("interpolated")
-sys.stdout.buffer.write(image.get_pixels(oiio.FLOAT)[..., channel].copy().tobytes())
-"""
 
 
 def main():
@@ -99,7 +85,7 @@ def main():
     with tempfile.TemporaryDirectory() as temporary:
         capture = Capture(renderer, pathlib.Path(temporary) / "field")
         whole = pathlib.Path(temporary) / "field" / "transforms.json"
-        small = capture.path(1.1, 0.8)
+        small = capture.path(0.4, 0.9, behind=0.07)
         collected = picture(capture.frame(whole, small, *none))
         hybrid = capture.frame(whole, small, *none, "--mode", "hybrid")
         side_by_side(folder / "rebinning_small_lens.jpg",

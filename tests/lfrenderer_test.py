@@ -251,7 +251,7 @@ class RendererTest(unittest.TestCase):
         out = self.folder / "out"
         self.fails(2, [], field, path)
         self.fails(2, [], field, "-o", out)
-        self.fails(2, ["--mode rebin", "not available"], field, path, "-o", out, "--mode", "rebin")
+        self.fails(2, ["--mode"], field, path, "-o", out, "--mode", "magic")
         self.fails(2, ["--filter"], field, path, "-o", out, "--filter", "cubic")
         self.fails(2, ["--frames"], field, path, "-o", out, "--frames", "2-9")
         self.fails(2, ["--memory"], field, path, "-o", out, "--memory", "lots")
