@@ -358,8 +358,12 @@ Completion RebinnedRays::Complete(size_t frame, uint32_t place) {
 }
 
 RebinnedRays::Facts RebinnedRays::facts() const {
-  Facts facts{sections_.size(), 0, looked_at_, static_cast<double>(cpu_ns_) * 1e-9, keeps_all_};
-  for (const auto& section : sections_) facts.cell_count += section->map->size();
+  Facts facts{sections_.size(), 0,    looked_at_, static_cast<double>(cpu_ns_) * 1e-9,
+              keeps_all_,       false};
+  for (const auto& section : sections_) {
+    facts.cell_count += section->map->size();
+    facts.is_too_coarse = facts.is_too_coarse || section->map->is_too_coarse();
+  }
   return facts;
 }
 

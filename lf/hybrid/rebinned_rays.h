@@ -98,6 +98,7 @@ class RebinnedRays : public ImageTaker {
     uint64_t looked_at = 0;  // LF pixels
     double cpu_s = 0;
     bool keeps_all = false;
+    bool is_too_coarse = false;  // RayMap::is_too_coarse() of one
   };
   Facts facts() const;
   // The slabs and what is kept of rays, in a sentence each.

@@ -149,10 +149,16 @@ Result<void> Renderer::Begin() {
   const Intrinsics& plate = path_.Camera(frames_.front()).pinhole.intrinsics;
   LF_ASSIGN_OR_RETURN(const size_t rebin_bytes, PlanRebinning());
   // Without plates all frames are in one pass.
-  LF_ASSIGN_OR_RETURN(plan_, PlanMemory(options_.memory_bytes - rebin_bytes, package_.light_field,
-                                        options_.reading.estimator, plate.width_px, plate.height_px,
-                                        options_.mode == RenderMode::kRebin ? 1 : frames_.size(),
-                                        pool_.thread_count()));
+  const Result<MemoryPlan> plan =
+      PlanMemory(options_.memory_bytes - rebin_bytes, package_.light_field,
+                 options_.reading.estimator, plate.width_px, plate.height_px,
+                 options_.mode == RenderMode::kRebin ? 1 : frames_.size(), pool_.thread_count());
+  if (!plan && rebin_bytes > 0)
+    return Error{plan.error().kind,
+                 fmt::format("{} (beside {} MiB for {} rebinned rays: --memory is for both)",
+                             plan.error().message, rebin_bytes >> 20, max_cells_)};
+  if (!plan) return plan.error();
+  plan_ = *plan;
   if (options_.mode == RenderMode::kRebin) plan_.frames_per_pass = frames_.size();
   LF_RETURN_IF_ERROR(CreateFolder(options_.output_folder));
   if (options_.video) {

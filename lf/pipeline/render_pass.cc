@@ -248,6 +248,10 @@ Result<void> RenderPass::Finish() {
       for (const size_t f : together) plates_[f] = SensorPlate(0, 0);
     begin += count;
   }
+  if (rebinned_ && rebinned_->facts().is_too_coarse)
+    LogWarning(
+        "cells of rebinned rays are so wide that some got more LF pixels than they have room for: "
+        "make --r-st or --r-uv smaller");
   if (rebinned_) job_.state.RemoveRays();
   const double earlier_s = job_.totals.total_s;
   job_.totals = Totals();
