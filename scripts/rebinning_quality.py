@@ -57,8 +57,8 @@ def synthetic_cases(renderer, folder):
     for scene in lens_weights.SYNTHETIC_SCENES:
         for distances, behind, words in (
                 (0, 0, "pinhole"), (0.25, 0, "1/4 of the spacing"),
-                (0.25, 0.15, "1/4 of the spacing, behind the capture"),
-                (0.9, 0.15, "0.9 of the spacing, behind the capture"), (3, 0, "3 spacings"),
+                (0.25, 0.03, "1/4 of the spacing, behind the capture"),
+                (0.9, 0.03, "0.9 of the spacing, behind the capture"), (3, 0, "3 spacings"),
                 (8, 0, "8 spacings")):
             path, truth = scenes.truth(scene, distances * spacing, behind=behind)
             yield f"{scene}, lens {words}", scenes.calibration(scene), path, truth
