@@ -158,6 +158,8 @@ class RebinningTest(ProgramTestCase):
             self.fails(2, ["--mode rebin"], *self.command("no", "--mode", "rebin", *options))
         self.fails(2, ["--lens-sets"], *self.command("no", "--mode", "rebin", "--reparameterise",
                                                      "off", "--lens-sets", "2"))
+        self.fails(2, ["--max-rays 1", "1000"],
+                   *self.command("no", "--mode", "rebin", "--max-rays", "1"))
         self.fails(2, ["--slab-forward"],
                    *self.command("no", "--mode", "rebin", "--slab-forward", "0", "0", "0"))
 

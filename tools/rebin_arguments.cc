@@ -74,6 +74,9 @@ Result<RebinPassOptions> RebinArguments::Make(uint64_t seed) const {
   for (const KeptRays known : {KeptRays::kAll, KeptRays::kEdges})
     if (kept == NameOf(known)) made.kept = known;
   made.max_cells = static_cast<size_t>(max_rays);
+  if (max_rays > 0 && made.max_cells < RebinnedRays::kLeastCells)
+    return UsageError(fmt::format("--max-rays {}: expected 0, or {} and more", max_rays,
+                                  RebinnedRays::kLeastCells));
   made.reparameterise = reparameterise == "on";
   if (!made.reparameterise && made.query.lens_sets > 1)
     return UsageError("--reparameterise off: has one set of lens points: leave out --lens-sets");
