@@ -131,20 +131,20 @@ void LensGaps::SetNodes(const std::vector<LfImageId>& near, const ImageIndex& in
     return static_cast<int>(
         std::clamp(std::ceil(moves_w / step_w) + 1, 0.0 + kLeastNodes, 0.0 + kMostNodes));
   };
-  columns_ = nodes(across_w);
-  rows_ = nodes(down_w);
+  int columns = nodes(across_w), rows = nodes(down_w);
   const size_t points = all_.points.point_count();
-  while (static_cast<size_t>(columns_) * rows_ * points > kMostNodeValues &&
-         columns_ * rows_ > kLeastNodes * kLeastNodes) {
-    columns_ = std::max(columns_ * 7 / 8, kLeastNodes);
-    rows_ = std::max(rows_ * 7 / 8, kLeastNodes);
+  while (static_cast<size_t>(columns) * rows * points > kMostNodeValues &&
+         columns * rows > kLeastNodes * kLeastNodes) {
+    columns = std::max(columns * 7 / 8, kLeastNodes);
+    rows = std::max(rows * 7 / 8, kLeastNodes);
   }
+  columns_ = NodeAxis(plate.width_px, columns);
+  rows_ = NodeAxis(plate.height_px, rows);
 }
 
 void LensGaps::FindGaps(const std::vector<LfImageId>& near, const ImageIndex& index,
                         const CollectedWeights& collected, bool lens_test, ThreadPool& pool) {
   const RenderCamera& frame = all_.camera;
-  const Intrinsics& plate = frame.pinhole.intrinsics;
   const ApertureTest aperture(frame.aperture);
   std::vector<Vec2> points;
   for (const auto& set : all_.points.sets) points.insert(points.end(), set.begin(), set.end());
@@ -171,23 +171,19 @@ void LensGaps::FindGaps(const std::vector<LfImageId>& near, const ImageIndex& in
     cameras.push_back({RayThrough(index.light_field().Camera(id), frame.pinhole.ForwardWorld()),
                        std::move(weights), index.PlaceOf(id)});
   }
-  covered_from_.assign(static_cast<size_t>(columns_) * rows_ * points.size(), 0);
-  pool.ForEach(static_cast<size_t>(columns_) * rows_, [&](size_t node) {
-    const double x = static_cast<double>(node % columns_) / std::max(1, columns_ - 1);
-    const double y = static_cast<double>(node / columns_) / std::max(1, rows_ - 1);
-    const std::optional<Vec3> focus =
-        FocusPointOfElement(frame, x * plate.width_px, y * plate.height_px);
+  covered_from_.assign(node_count() * points.size(), 0);
+  pool.ForEach(node_count(), [&](size_t node) {
+    const double x = columns_.node_px(static_cast<int>(node % columns_.count()));
+    const double y = rows_.node_px(static_cast<int>(node / columns_.count()));
+    const std::optional<Vec3> focus = FocusPointOfElement(frame, x, y);
     if (!focus) return;
-    const auto element = [](double along, int size_px) {
-      return std::min(static_cast<int>(along * size_px), size_px - 1);
-    };
     uint32_t* const covered_from = covered_from_.data() + node * points.size();
     for (const Camera& camera : cameras) {
       const Vec2 through = LensPointOfLine(frame, camera.ray.centre_world(), *focus);
       if (!through.allFinite() || !IsSeenBy(camera.ray, *focus)) continue;
-      const bool is_collected =
-          (!lens_test || aperture.Contains(through)) && !camera.weights.are_none() &&
-          camera.weights.At(element(x, plate.width_px), element(y, plate.height_px)) > 0;
+      const bool is_collected = (!lens_test || aperture.Contains(through)) &&
+                                !camera.weights.are_none() &&
+                                camera.weights.At(static_cast<int>(x), static_cast<int>(y)) > 0;
       for (size_t i = 0; i < points.size(); ++i) {
         const double distance2_w2 = (points[i] - through).squaredNorm();
         if (distance2_w2 > reach2_w2[i]) continue;
@@ -215,7 +211,7 @@ FrameQueries LensGaps::QueriesAt(uint32_t place) const {
   const size_t points = all_.points.point_count();
   queries.shares = PointShares{columns_, rows_, points, {}};
   queries.shares->values.assign(covered_from_.size(), 0);
-  for (size_t node = 0; node < static_cast<size_t>(columns_) * rows_; ++node) {
+  for (size_t node = 0; node < node_count(); ++node) {
     if (!NodeAsksAt(node, place)) continue;
     for (size_t i = node * points; i < (node + 1) * points; ++i)
       queries.shares->values[i] = covered_from_[i] > place ? 1 : 0;
@@ -226,7 +222,7 @@ FrameQueries LensGaps::QueriesAt(uint32_t place) const {
 bool LensGaps::AsksAt(uint32_t place) const {
   if (!can_be_asked()) return false;
   if (!is_collected_) return true;
-  for (size_t node = 0; node < static_cast<size_t>(columns_) * rows_; ++node)
+  for (size_t node = 0; node < node_count(); ++node)
     if (NodeAsksAt(node, place)) return true;
   return false;
 }

@@ -68,6 +68,7 @@ class LensGaps {
   double LfPixelsPerElement() const;
   void SetPoints(const std::vector<Vec2>& seen_through, const QueryOptions& options);
   void SetNodes(const std::vector<LfImageId>& near, const ImageIndex& index);
+  size_t node_count() const { return static_cast<size_t>(columns_.count()) * rows_.count(); }
   bool NodeAsksAt(size_t node, uint32_t place) const;
   void FindGaps(const std::vector<LfImageId>& near, const ImageIndex& index,
                 const CollectedWeights& collected, bool lens_test, ThreadPool& pool);
@@ -75,11 +76,11 @@ class LensGaps {
   LfSampling sampling_;
   FrameQueries all_;
   bool is_collected_ = false;
-  int columns_ = 1;  // nodes over the plate
-  int rows_ = 1;
+  NodeAxis columns_{1};  // nodes over the plate
+  NodeAxis rows_{1};
   // From which place on a lens point is covered: behind the LF image that does it first;
   // UINT32_MAX: never; 0: no LF camera within its reach sees the element, nobody could answer.
-  std::vector<uint32_t> covered_from_;  // [rows_][columns_][points]
+  std::vector<uint32_t> covered_from_;  // [rows][columns][points]
   uint32_t changes_until_ = 0;
 };
 

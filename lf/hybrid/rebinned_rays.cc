@@ -278,8 +278,7 @@ SplatFrame RebinnedRays::SplatOf(const Section& section, const FrameQueries& que
   const Intrinsics& plate = queries.camera.pinhole.intrinsics;
   const FrameReach reach = ReachOf(queries.kernel, queries.points);
   AskedSquares squares;
-  if (queries.shares)
-    squares = queries.shares->Squares(plate.width_px, plate.height_px, reach.plate_px);
+  if (queries.shares) squares = queries.shares->Squares(reach.plate_px);
   const LargeVector<FrameRay> rays =
       FrameRaysOf(section.plan.slab, *section.cells, queries.camera, reach, pool_, squares);
   return Splat(rays, plate.width_px, plate.height_px, queries.points, queries.kernel, pool_,
@@ -346,8 +345,8 @@ Completion RebinnedRays::Complete(size_t frame, uint32_t place) {
     const int y = static_cast<int>(row), k = queries.points.k;
     for (int x = 0; x < plate.width_px; ++x) {
       float not_collected = 0;
-      asked.At(x, y, plate.width_px, plate.height_px,
-               static_cast<size_t>(y % k) * k + static_cast<size_t>(x % k), 1, &not_collected);
+      asked.At(x, y, static_cast<size_t>(y % k) * k + static_cast<size_t>(x % k), 1,
+               &not_collected);
       const float interpolated = splat.share.at(x, y);
       if (interpolated > 0)
         completion.share.at(x, y) =

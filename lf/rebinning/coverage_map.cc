@@ -141,8 +141,7 @@ void CoverageMap::Spawn(const Slab& slab, const FrameQueries& frame) {
         const int x_px = std::clamp(static_cast<int>(x), 0, plate.width_px - 1);
         const int y_px = std::clamp(static_cast<int>(y), 0, plate.height_px - 1);
         for (size_t i = 0; i < point_count; ++i)
-          asked[i] = frame.shares->IsAny({x_px, y_px, x_px + 1, y_px + 1}, plate.width_px,
-                                         plate.height_px, i, 1);
+          asked[i] = frame.shares->IsAny({x_px, y_px, x_px + 1, y_px + 1}, i, 1);
       }
       auto found = places_of.find(asked);
       if (found == places_of.end())

@@ -23,7 +23,7 @@ struct CoverageOptions {
   size_t most_bytes = size_t{32} << 20;  // cells are wider where they would take more
   // How many of them the plate is wide; they are never narrower than eight LF pixels. On the st
   // plane they are half as wide as the reach of a lens point.
-  int cells_across = 32;
+  int cells_across = 64;
 };
 
 class CoverageMap {

@@ -3,101 +3,55 @@
 #include <algorithm>
 #include <optional>
 
+#include "lf/rebinning/frame_view.h"
+
 namespace lf {
 namespace {
 
-// One ray after the other, through the same frame.
-class FrameView {
+class SquareTest {
  public:
-  FrameView(const RenderCamera& frame, const FrameReach& reach, const AskedSquares& squares)
-      : centre_(frame.pinhole.CentreWorld()),
-        right_(frame.pinhole.RightWorld()),
-        up_(frame.pinhole.UpWorld()),
-        forward_(frame.pinhole.ForwardWorld()),
-        focus_plane_(frame.focus_plane),
-        plate_from_world_(frame.pinhole.intrinsics.Matrix() *
-                          frame.pinhole.cam_from_world.rotation),
-        lens_reach2_w2_((frame.aperture.radius_w + reach.lens_w) *
-                        (frame.aperture.radius_w + reach.lens_w)),
-        margin_px_(reach.plate_px),
-        squares_(squares),
+  SquareTest(const AskedSquares& squares, const RenderCamera& frame)
+      : squares_(squares),
         width_px_(frame.pinhole.intrinsics.width_px),
         height_px_(frame.pinhole.intrinsics.height_px) {}
 
-  std::optional<FrameRay> See(const Ray& ray) const {
-    const double along = forward_.dot(ray.direction);
-    if (!(along > 0)) return {};
-    const Vec3 from_centre = ray.origin - centre_;
-    const Vec3 on_lens = from_centre - forward_.dot(from_centre) / along * ray.direction;
-    const Vec2 lens(right_.dot(on_lens), up_.dot(on_lens));
-    if (!(lens.squaredNorm() <= lens_reach2_w2_)) return {};
-    return At(lens, ray);
-  }
-
-  // Of a ray that is taken for one through another point of the lens.
-  std::optional<FrameRay> At(const Vec2& lens, const Ray& ray) const {
-    if (!(forward_.dot(ray.direction) > 0)) return {};
-    const double slope = focus_plane_.normal.dot(ray.direction);
-    if (slope == 0) return {};
-    const double lambda = (focus_plane_.offset_w - focus_plane_.normal.dot(ray.origin)) / slope;
-    const Vec3 element = plate_from_world_ * (ray.origin - centre_ + lambda * ray.direction);
-    if (!(element.z() > 0)) return {};
-    const double x = element.x() / element.z(), y = element.y() / element.z();
-    if (!(x >= -margin_px_ && x <= width_px_ + margin_px_ && y >= -margin_px_ &&
-          y <= height_px_ + margin_px_) ||
-        !IsAsked(x, y))
-      return {};
-    FrameRay seen;
-    seen.lens_x_w = static_cast<float>(lens.x());
-    seen.lens_y_w = static_cast<float>(lens.y());
-    seen.x_px = static_cast<float>(x);
-    seen.y_px = static_cast<float>(y);
-    return seen;
-  }
-
- private:
-  bool IsAsked(double x, double y) const {
+  // Of positions beside the plate that of the nearest element.
+  bool IsAsked(double x_px, double y_px) const {
     if (squares_.asked.empty()) return true;
     const auto square = [](double place, int size_px) {
       return static_cast<size_t>(std::clamp(place, 0.0, size_px - 1.0)) / AskedSquares::kSide;
     };
-    return squares_.asked[square(y, height_px_) * squares_.columns + square(x, width_px_)];
+    return squares_.asked[square(y_px, height_px_) * squares_.columns + square(x_px, width_px_)];
   }
 
-  Vec3 centre_, right_, up_, forward_;
-  Plane focus_plane_;
-  Mat3 plate_from_world_;
-  double lens_reach2_w2_;
-  double margin_px_;
+ private:
   const AskedSquares& squares_;
   int width_px_, height_px_;
 };
 
+void Colour(const BinnedCell& cell, FrameRay* ray) {
+  for (int c = 0; c < 3; ++c) ray->rgb[c] = static_cast<float>(cell.Mean(c));
+}
+
 // In the order of the cells.
-//   see(cell)  its ray, but for its colour; none: left out
+//   see(cells, rays)  appends the rays of some of them
 template <class See>
 LargeVector<FrameRay> RaysOfCells(std::span<const BinnedCell> cells, ThreadPool& pool,
                                   const See& see) {
   constexpr size_t kCellsAtOnce = 65536;
-  // Parts are written where all of their cells would have room, and moved together.
-  LargeVector<FrameRay> rays(cells.size());
-  std::vector<size_t> counts((cells.size() + kCellsAtOnce - 1) / kCellsAtOnce);
-  pool.ForEach(counts.size(), [&](size_t i) {
+  std::vector<std::vector<FrameRay>> parts((cells.size() + kCellsAtOnce - 1) / kCellsAtOnce);
+  pool.ForEach(parts.size(), [&](size_t i) {
     const size_t begin = i * kCellsAtOnce;
-    for (const BinnedCell& cell :
-         cells.subspan(begin, std::min(kCellsAtOnce, cells.size() - begin))) {
-      std::optional<FrameRay> ray = see(cell.cell);
-      if (!ray) continue;
-      for (int c = 0; c < 3; ++c) ray->rgb[c] = static_cast<float>(cell.Mean(c));
-      rays[begin + counts[i]++] = *ray;
-    }
+    see(cells.subspan(begin, std::min(kCellsAtOnce, cells.size() - begin)), &parts[i]);
   });
-  auto end = rays.begin();
-  for (size_t i = 0; i < counts.size(); ++i) {
-    const auto part = rays.begin() + static_cast<std::ptrdiff_t>(i * kCellsAtOnce);
-    end = std::move(part, part + static_cast<std::ptrdiff_t>(counts[i]), end);
+  size_t count = 0;
+  for (const auto& part : parts) count += part.size();
+  LargeVector<FrameRay> rays;
+  rays.reserve(count);
+  for (auto& part : parts) {
+    rays.insert(rays.end(), part.begin(), part.end());
+    part = {};
   }
-  rays.erase(end, rays.end());
   return rays;
 }
 
@@ -106,27 +60,51 @@ LargeVector<FrameRay> RaysOfCells(std::span<const BinnedCell> cells, ThreadPool&
 LargeVector<FrameRay> FrameRaysOf(const Slab& slab, std::span<const BinnedCell> cells,
                                   const RenderCamera& frame, const FrameReach& reach,
                                   ThreadPool& pool, const AskedSquares& squares) {
-  const FrameView view(frame, reach, squares);
+  const FrameView view(slab, frame, reach);
+  const SquareTest test(squares, frame);
   return RaysOfCells(
-      cells, pool, [&](CellKey cell) { return view.See(RayOfPoint(slab, MiddleOf(slab, cell))); });
+      cells, pool, [&](std::span<const BinnedCell> part, std::vector<FrameRay>* rays) {
+        SeenCells seen;
+        for (size_t begin = 0; begin < part.size(); begin += SeenCells::kAtOnce) {
+          const auto some = part.subspan(begin, std::min(SeenCells::kAtOnce, part.size() - begin));
+          FindSeenCells(view, some, &seen);
+          for (size_t i = 0; i < seen.count; ++i) {
+            if (!test.IsAsked(seen.x_px[i], seen.y_px[i])) continue;
+            FrameRay ray;
+            ray.lens_x_w = static_cast<float>(seen.lens_x_w[i]);
+            ray.lens_y_w = static_cast<float>(seen.lens_y_w[i]);
+            ray.x_px = static_cast<float>(seen.x_px[i]);
+            ray.y_px = static_cast<float>(seen.y_px[i]);
+            Colour(some[seen.cells[i]], &ray);
+            rays->push_back(ray);
+          }
+        }
+      });
 }
 
 LargeVector<FrameRay> FrameRaysThrough(const Vec2& lens_point, const Slab& slab,
                                        std::span<const BinnedCell> cells, const RenderCamera& frame,
                                        const FrameReach& reach, ThreadPool& pool) {
-  const AskedSquares all;
-  const FrameView view(frame, reach, all);
+  const RayView view(frame, reach);
   const Vec3 lens_world = LensPointWorld(frame, lens_point);
-  return RaysOfCells(cells, pool, [&](CellKey cell) -> std::optional<FrameRay> {
+  const auto see = [&](CellKey cell) -> std::optional<FrameRay> {
     const SlabPoint point = MiddleOf(slab, cell);
-    const Ray ray = RayOfPoint(slab, point);
-    const Ray asked{lens_world, ray.At(1) - lens_world};
+    const Ray asked{lens_world, RayOfPoint(slab, point).At(1) - lens_world};
     const std::optional<SlabPoint> asked_point = Parameterize(slab, asked);
     if (!asked_point) return {};
     const Vec2 off = (point - *asked_point).head<2>();
     if (!(off.squaredNorm() <= reach.lens_w * reach.lens_w)) return {};
     return view.At(lens_point + off, asked);
-  });
+  };
+  return RaysOfCells(cells, pool,
+                     [&](std::span<const BinnedCell> part, std::vector<FrameRay>* rays) {
+                       for (const BinnedCell& cell : part) {
+                         std::optional<FrameRay> ray = see(cell.cell);
+                         if (!ray) continue;
+                         Colour(cell, &*ray);
+                         rays->push_back(*ray);
+                       }
+                     });
 }
 
 }  // namespace lf

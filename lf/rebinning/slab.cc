@@ -5,8 +5,6 @@
 namespace lf {
 namespace {
 
-constexpr int kCellOffset = 32768;
-
 // How far along the ray each plane is; none where they do not come one after the other.
 std::optional<std::array<double, 2>> Parameters(const std::array<double, 2>& distances,
                                                 const std::array<double, 2>& slopes) {

@@ -45,8 +45,10 @@ std::optional<SlabPoint> Parameterize(const Slab& slab, const Ray& ray);
 // The ray from the st to the uv plane.
 Ray RayOfPoint(const Slab& slab, const SlabPoint& point);
 
-// A cell: its four numbers, each of 16 bits, the first the lowest; 32768 is added to each. Never 0.
+// A cell: its four numbers, each of 16 bits, the first the lowest; kCellOffset is added to each.
+// Never 0.
 using CellKey = uint64_t;
+inline constexpr int kCellOffset = 32768;
 inline constexpr int kCellAxes = 4;
 inline constexpr int kMostCells = 32767;  // on either side of the origin, along each axis
 

@@ -156,10 +156,14 @@ TEST(CoverageMap, LeavesOutWhatIsNotAskedFor) {
   frame.points = MakeLensPoints(frame.camera.aperture, 64, 1, 0);
   frame.kernel.sigma_st_w = 0.001;
   const SlabSection section = PlanSlabs(frames, Sampling(1), {})[0];
-  PointShares shares{9, 9, 64, {}};
-  for (int node = 0; node < 81; ++node)
+  PointShares shares{NodeAxis(80, 9), NodeAxis(60, 9), 64, {}};
+  const int columns = shares.columns.count();
+  for (int node = 0; node < static_cast<int>(shares.node_count()); ++node)
     for (const Vec2& point : frame.points.sets[0])
-      shares.values.push_back(node % 9 >= 4 && node / 9 <= 4 && point.x() < 0 ? 1 : 0);
+      shares.values.push_back(shares.columns.node_px(node % columns) >= 40 &&
+                                      shares.rows.node_px(node / columns) <= 30 && point.x() < 0
+                                  ? 1
+                                  : 0);
   frame.shares = shares;
   const CoverageMap map(section, frames, {}, pool);
   const auto covers = [&](double x, double y, double lens_x) {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <map>
 #include <memory>
-#include <numeric>
 
 #include "lf/core/check.h"
 #include "lf/plate/tile_grid.h"
@@ -215,10 +214,9 @@ class TileSplatter {
   // Whether there are any.
   bool FindShares(const GroupedSet& set, const LensPointGroup& group, const PixelRect& rect,
                   const SplatGrid& grid) {
-    const int width_px = frame_->share.width(), height_px = frame_->share.height();
     bool is_any = false;
     for (int i = 0; i < group.count && !is_any; ++i)
-      is_any = shares_->IsAny(rect, width_px, height_px, set.points[group.first + i].number, 1);
+      is_any = shares_->IsAny(rect, set.points[group.first + i].number, 1);
     if (!is_any) return false;
     constexpr size_t kPoints = LensPointGroup::kPoints;
     sums_.shares.assign(static_cast<size_t>(grid.columns) * grid.rows * kPoints, 0.0F);
@@ -226,7 +224,7 @@ class TileSplatter {
     for (int row = 0; row < grid.rows; ++row)
       for (int column = 0; column < grid.columns; ++column, out += kPoints)
         for (int i = 0; i < group.count; ++i)
-          shares_->At(grid.x0 + grid.k * column, grid.y0 + grid.k * row, width_px, height_px,
+          shares_->At(grid.x0 + grid.k * column, grid.y0 + grid.k * row,
                       set.points[group.first + i].number, 1, out + i);
     return true;
   }
@@ -266,88 +264,11 @@ class TileSplatter {
   SplatSums sums_;
 };
 
-// Between which nodes an element is, and how far from the first to the second.
-struct NodePlace {
-  NodePlace(int element, int size_px, int nodes) {
-    if (nodes < 2) return;
-    const double place = (element + 0.5) / size_px * (nodes - 1);
-    first = std::min(static_cast<int>(place), nodes - 2);
-    second = first + 1;
-    fraction = static_cast<float>(place - first);
-  }
-  int first = 0;
-  int second = 0;
-  float fraction = 0;
-};
-
 SplatFrame EmptyFrame(int width_px, int height_px) {
   return {Image<float>(width_px, height_px, 3), Image<float>(width_px, height_px)};
 }
 
 }  // namespace
-
-void PointShares::At(int x, int y, int width_px, int height_px, size_t first, size_t count,
-                     float* out) const {
-  const NodePlace across(x, width_px, columns), down(y, height_px, rows);
-  const auto node = [&](int column, int row) {
-    return values.data() + (static_cast<size_t>(row) * columns + column) * point_count + first;
-  };
-  const float* const corners[4] = {node(across.first, down.first), node(across.second, down.first),
-                                   node(across.first, down.second),
-                                   node(across.second, down.second)};
-  for (size_t i = 0; i < count; ++i) {
-    const float above = corners[0][i] + across.fraction * (corners[1][i] - corners[0][i]);
-    const float below = corners[2][i] + across.fraction * (corners[3][i] - corners[2][i]);
-    out[i] = above + down.fraction * (below - above);
-  }
-}
-
-bool PointShares::IsAny(const PixelRect& rect, int width_px, int height_px, size_t first,
-                        size_t count) const {
-  const int left = NodePlace(rect.x_begin, width_px, columns).first;
-  const int right = NodePlace(rect.x_end - 1, width_px, columns).second;
-  const int bottom = NodePlace(rect.y_end - 1, height_px, rows).second;
-  for (int row = NodePlace(rect.y_begin, height_px, rows).first; row <= bottom; ++row)
-    for (int column = left; column <= right; ++column) {
-      const auto begin =
-          values.begin() + static_cast<std::ptrdiff_t>(
-                               (static_cast<size_t>(row) * columns + column) * point_count + first);
-      if (std::any_of(begin, begin + static_cast<std::ptrdiff_t>(count),
-                      [](float value) { return value > 0; }))
-        return true;
-    }
-  return false;
-}
-
-AskedSquares PointShares::Squares(int width_px, int height_px, double reach_px) const {
-  const int side = AskedSquares::kSide, reach = static_cast<int>(std::ceil(reach_px));
-  AskedSquares squares;
-  squares.columns = (width_px + side - 1) / side;
-  for (int y = 0; y < height_px; y += side)
-    for (int x = 0; x < width_px; x += side)
-      squares.asked.push_back(
-          IsAny(Intersection({x - reach, y - reach, x + side + reach, y + side + reach},
-                             {0, 0, width_px, height_px}),
-                width_px, height_px, 0, point_count));
-  return squares;
-}
-
-PointShares PointShares::OfPoint(size_t point) const {
-  PointShares one{columns, rows, 1, {}};
-  for (size_t i = point; i < values.size(); i += point_count) one.values.push_back(values[i]);
-  return one;
-}
-
-PointShares PointShares::MeansOfSets(const LensPointSets& points) const {
-  PointShares means{columns, rows, points.sets.size(), {}};
-  for (auto value = values.begin(); value != values.end();)
-    for (const auto& set : points.sets) {
-      const auto end = value + static_cast<std::ptrdiff_t>(set.size());
-      means.values.push_back(std::accumulate(value, end, 0.0F) / static_cast<float>(set.size()));
-      value = end;
-    }
-  return means;
-}
 
 FrameReach ReachOf(const QueryKernel& kernel, const LensPointSets& lens_points) {
   return {kReach_sigmas * kernel.sigma_st_w * lens_points.MostSpread(),
@@ -401,7 +322,7 @@ SplatFrame SplatReference(std::span<const FrameRay> rays, int width_px, int heig
       double found = 0;
       for (size_t i = 0; i < set.size(); ++i) {
         float share = 1;
-        if (shares != nullptr) shares->At(x, y, width_px, height_px, firsts[s] + i, 1, &share);
+        if (shares != nullptr) shares->At(x, y, firsts[s] + i, 1, &share);
         const RayQuery& query = *queries.at(lens_points.SpreadOf(s, i));
         const QuerySum sum = query.WithinReach(set[i], Vec2(x + 0.5, y + 0.5));
         if (!(sum.weight > 0)) continue;

@@ -132,16 +132,16 @@ TEST(Splat, PointsMayReachFartherAndBeAskedForInPart) {
   for (const int k : {1, 2}) {
     LensPointSets points = MakeLensPoints({kLensRadius, 0, 0}, 11, k, 9);
     RandomSequence random(7);
-    PointShares shares{4, 3, points.point_count(), {}};
+    PointShares shares{NodeAxis(kWidth, 2), NodeAxis(kHeight, 3), points.point_count(), {}};
     for (const auto& set : points.sets) {
       points.spreads.emplace_back();
       for (size_t i = 0; i < set.size(); ++i)
         points.spreads.back().push_back(i % 3 == 0 ? 1.75 : 1);
     }
-    for (int node = 0; node < shares.columns * shares.rows; ++node)
+    for (size_t node = 0; node < shares.node_count(); ++node)
       for (size_t i = 0; i < shares.point_count; ++i)
         shares.values.push_back(
-            i % 5 == 4 || (i % 5 == 3 && node % 4 < 3) ? 0 : static_cast<float>(node % 4) / 3);
+            i % 5 == 4 || (i % 5 == 3 && node % 2 == 0) ? 0 : static_cast<float>(node % 2));
     const QueryKernel kernel{0.0005, 0.8};
     const SplatFrame fast = Splat(rays, kWidth, kHeight, points, kernel, pool, &shares);
     ExpectSame(fast, SplatReference(rays, kWidth, kHeight, points, kernel, pool, &shares));
