@@ -34,8 +34,9 @@ void RebinArguments::AddTo(CLI::App& app) {
       "on: rays that are not kept are added to cells that are there: less noise, more time")
       ->check(CLI::IsMember({"on", "off"}));
   add("--preview", preview,
-      "hybrid: on, rays are kept for unfinished pictures, too, until enough is collected; off")
-      ->check(CLI::IsMember({"on", "off"}));
+      "hybrid: on, rays are kept for unfinished pictures, too, until enough is collected; off; "
+      "auto: on for frames that need more than 256 LF images")
+      ->check(CLI::IsMember({"auto", "on", "off"}));
   add("--sigma-st", options.query.sigma_st,
       "Of the kernel on the lens, in distances between LF cameras")
       ->check(CLI::Range(0.01, 100.0));
@@ -80,7 +81,8 @@ Result<RebinPassOptions> RebinArguments::Make(uint64_t seed) const {
   made.reparameterise = reparameterise == "on";
   if (!made.reparameterise && made.query.lens_sets > 1)
     return UsageError("--reparameterise off: has one set of lens points: leave out --lens-sets");
-  made.preview = preview == "on";
+  for (const Previews known : {Previews::kOn, Previews::kOff})
+    if (preview == NameOf(known)) made.previews = known;
   made.rebin.averages_others = average_others == "on";
   made.rebin.seed = made.query.seed = seed;
   if (r_st_w > 0) made.slab.r_st_w = r_st_w;

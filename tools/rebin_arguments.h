@@ -12,7 +12,7 @@
 namespace lf {
 
 struct RebinArguments {
-  std::string kept = "auto", preview = "on", average_others = "off", reparameterise = "on";
+  std::string kept = "auto", preview = "auto", average_others = "off", reparameterise = "on";
   RebinPassOptions options;  // what the command line says as it is
   int64_t max_rays = 0;
   double r_st_w = 0, r_uv_w = 0, slab_distance_w = 0;

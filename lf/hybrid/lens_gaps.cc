@@ -1,8 +1,10 @@
 #include "lf/hybrid/lens_gaps.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "lf/camera/ray_through.h"
 #include "lf/collector/around_lens.h"
@@ -164,12 +166,14 @@ void LensGaps::FindGaps(const std::vector<LfImageId>& near, const ImageIndex& in
     RayThrough ray;
     RayWeights weights;
     uint32_t place;
+    std::atomic<bool>* is_collected;
   };
+  const auto collected_ones = std::make_unique<std::atomic<bool>[]>(near.size());
   std::vector<Camera> cameras;
   for (const LfImageId id : near) {
     RayWeights weights = collected(id);
     cameras.push_back({RayThrough(index.light_field().Camera(id), frame.pinhole.ForwardWorld()),
-                       std::move(weights), index.PlaceOf(id)});
+                       std::move(weights), index.PlaceOf(id), &collected_ones[cameras.size()]});
   }
   covered_from_.assign(node_count() * points.size(), 0);
   pool.ForEach(node_count(), [&](size_t node) {
@@ -184,6 +188,7 @@ void LensGaps::FindGaps(const std::vector<LfImageId>& near, const ImageIndex& in
       const bool is_collected = (!lens_test || aperture.Contains(through)) &&
                                 !camera.weights.are_none() &&
                                 camera.weights.At(static_cast<int>(x), static_cast<int>(y)) > 0;
+      if (is_collected) camera.is_collected->store(true, std::memory_order_relaxed);
       for (size_t i = 0; i < points.size(); ++i) {
         const double distance2_w2 = (points[i] - through).squaredNorm();
         if (distance2_w2 > reach2_w2[i]) continue;
@@ -193,6 +198,8 @@ void LensGaps::FindGaps(const std::vector<LfImageId>& near, const ImageIndex& in
       }
     }
   });
+  collected_count_ = static_cast<size_t>(
+      std::count(collected_ones.get(), collected_ones.get() + near.size(), true));
   for (const uint32_t from : covered_from_)
     if (from != UINT32_MAX) changes_until_ = std::max(changes_until_, from);
 }

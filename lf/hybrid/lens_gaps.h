@@ -53,6 +53,9 @@ class LensGaps {
   // Whether there are LF cameras around the lens, whose rays could answer.
   bool can_be_asked() const { return sampling_.camera_distance_w > 0; }
   const LfSampling& sampling() const { return sampling_; }
+  const RenderCamera& camera() const { return all_.camera; }
+  // LF images that collection takes something of, as far as nodes see.
+  size_t collected_count() const { return collected_count_; }
 
   // What is asked for when the LF images at places before this one are collected.
   FrameQueries QueriesAt(uint32_t place) const;
@@ -82,6 +85,7 @@ class LensGaps {
   // UINT32_MAX: never; 0: no LF camera within its reach sees the element, nobody could answer.
   std::vector<uint32_t> covered_from_;  // [rows][columns][points]
   uint32_t changes_until_ = 0;
+  size_t collected_count_ = 0;
 };
 
 }  // namespace lf

@@ -50,6 +50,17 @@ const char* NameOf(KeptRays kept) {
   }
 }
 
+const char* NameOf(Previews previews) {
+  switch (previews) {
+    case Previews::kOn:
+      return "on";
+    case Previews::kOff:
+      return "off";
+    default:
+      return "auto";
+  }
+}
+
 // Consecutive frames with a slab of their own.
 struct RebinnedRays::Section {
   SlabSection plan;        // of asking_ [begin, end)
@@ -76,9 +87,11 @@ RebinnedRays::RebinnedRays(const ImageIndex& index, std::vector<LensGaps> gaps,
   std::vector<FrameQueries> queries;
   std::vector<LfSampling> sampling;
   for (size_t f = 0; f < gaps_.size(); ++f) {
-    if (!gaps_[f].AsksAt(0)) continue;
+    const bool asks_in_the_end = gaps_[f].AsksAt(LensGaps::kInTheEnd);
+    if (!asks_in_the_end && !IsPreviewed(gaps_[f], 0)) continue;
     asking_.push_back(f);
-    reached_.push_back(gaps_[f].ReachedCamera());
+    // Previews are content with LF images that are read anyway.
+    reached_.push_back(asks_in_the_end ? gaps_[f].ReachedCamera() : gaps_[f].camera());
     sampling.push_back(gaps_[f].sampling());
     queries.push_back(gaps_[f].QueriesAt(LensGaps::kInTheEnd));
   }
@@ -125,8 +138,9 @@ void RebinnedRays::MakeMaps(const ImageIndex& index, std::span<const PlaceRange>
         most, static_cast<size_t>(totals[i] * (keeps_all_ ? kRoom : kRoomByEdges)));
 }
 
-bool RebinnedRays::IsPreviewed(size_t asking, uint32_t phase) const {
-  return collects_ && options_.preview && phase < gaps_[asking_[asking]].changes_until();
+bool RebinnedRays::IsPreviewed(const LensGaps& gaps, uint32_t phase) const {
+  return collects_ && options_.previews != Previews::kOff && phase < gaps.changes_until() &&
+         (options_.previews == Previews::kOn || gaps.collected_count() > kPreviewedFrom);
 }
 
 // What only earlier previews asked for is dropped.
@@ -134,7 +148,8 @@ void RebinnedRays::Begin(uint32_t phase, Section& section) {
   section.phase = phase;
   std::vector<FrameQueries> queries;
   for (size_t i = section.plan.begin; i < section.plan.end; ++i)
-    if (IsPreviewed(i, phase)) queries.push_back(gaps_[asking_[i]].QueriesAt(phase));
+    if (IsPreviewed(gaps_[asking_[i]], phase))
+      queries.push_back(gaps_[asking_[i]].QueriesAt(phase));
   if (queries.empty() && section.previews.is_empty()) return;
   CoverageOptions coarse = options_.coverage;
   coarse.cells_across = std::max(1, coarse.cells_across / 2);
@@ -173,7 +188,7 @@ PixelRect RebinnedRays::RectOf(LfImageId id, uint32_t phase, size_t begin, size_
   PixelRect rect;
   for (size_t i = begin; i < end; ++i) {
     const LensGaps& gaps = gaps_[asking_[i]];
-    if (!IsPreviewed(i, phase) && !gaps.AsksAt(LensGaps::kInTheEnd)) continue;
+    if (!IsPreviewed(gaps, phase) && !gaps.AsksAt(LensGaps::kInTheEnd)) continue;
     if (IsWithinAngle(light_field_.cameras[id.value], reached_[i], select_))
       rect = Bounds(rect, overlap.Rect(reached_[i]));
   }

@@ -39,10 +39,20 @@ enum class KeptRays {
 // "auto", "all", "edges"
 const char* NameOf(KeptRays kept);
 
+// Frames that rays are kept of for pictures of an unfinished render, where they collect, too.
+enum class Previews {
+  kAuto,  // of those that collect more than kPreviewedFrom LF images: fewer are there soon
+  kOn,
+  kOff,
+};
+// "auto", "on", "off"
+const char* NameOf(Previews previews);
+inline constexpr size_t kPreviewedFrom = 256;
+
 struct RebinPassOptions {
   RebinOptions rebin;
   KeptRays kept = KeptRays::kAuto;
-  bool preview = true;  // where frames collect, too
+  Previews previews = Previews::kAuto;
   QueryOptions query;
   // Whether rays are told apart in each frame's own lens plane and focus plane, or in those of the
   // slab: then only with one set of lens points.
@@ -106,7 +116,7 @@ class RebinnedRays : public ImageTaker {
 
  private:
   struct Section;
-  bool IsPreviewed(size_t asking, uint32_t phase) const;
+  bool IsPreviewed(const LensGaps& gaps, uint32_t phase) const;
   PixelRect RectOf(LfImageId id, uint32_t phase, size_t begin, size_t end) const;
   void MakeMaps(const ImageIndex& index, std::span<const PlaceRange> places);
   void Begin(uint32_t phase, Section& section);

@@ -23,6 +23,7 @@ struct Fixture {
   Fixture() {
     select.reach = PixelReach::kNeighbours;
     options.max_cells = 4000000;
+    options.previews = Previews::kOn;
     frames[2].aperture.radius_w = 0.0004;  // between the LF cameras
   }
 
@@ -173,7 +174,7 @@ TEST(RebinnedRays, PreviewsAskForMoreThanTheFinishedFrames) {
   rays->Take(std::span(images).subspan(64), end);
   EXPECT_LT(MeanShare(rays->Complete(1, end)), share - 0.1);
   Fixture without;
-  without.options.preview = false;
+  without.options.previews = Previews::kOff;
   const Fixture::Outcome outcome = without.Run(1, 16);
   // But for what lies at the borders of the coverage.
   EXPECT_NEAR(static_cast<double>(rays->facts().cell_count) / static_cast<double>(outcome.cells[0]),

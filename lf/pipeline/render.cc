@@ -44,7 +44,7 @@ RunInputs InputsOfRebinning(const RenderOptions& options, size_t max_cells) {
                                   edges.beta, edges.xi, edges.sigma_px, edges.second_sigma_px)},
       {"rebin.others", rebin.rebin.averages_others ? "averaged" : "left out"},
       {"rebin.seed", fmt::format("{}", rebin.rebin.seed)},
-      {"rebin.preview", rebin.preview ? "on" : "off"},
+      {"rebin.preview", NameOf(rebin.previews)},
       {"rebin.query",
        fmt::format("sigma_st {} sigma_uv {} lens points {} sets {} on {}", rebin.query.sigma_st,
                    rebin.query.sigma_uv, rebin.query.lens_point_count, rebin.query.lens_sets,

@@ -49,8 +49,11 @@ RayMap::RayMap(size_t max_cells, size_t expected_cells, uint64_t limit, bool is_
   shards_[0].is_too_coarse = is_too_coarse;  // which one it was, nobody asks
 }
 
+// To twice the size, but no more than all cells that stay need; what comes before a Trim() may be
+// more than these.
 void RayMap::Grow(Shard& shard) {
-  LargeVector<BinnedCell> slots(shard.slots.size() + shard.slots.size() / 2);
+  const size_t now = shard.slots.size(), most = SlotsFor(MostOfShard(max_cells_));
+  LargeVector<BinnedCell> slots(now < most ? std::min(2 * now, most) : now + now / 4);
   for (const BinnedCell& cell : shard.slots)
     if (cell.cell != 0) *Find(slots, cell.cell, MixBits(cell.cell)) = cell;
   shard.slots = std::move(slots);
@@ -141,15 +144,6 @@ size_t RayMap::size_bytes() const {
   size_t bytes = 0;
   for (const Shard& shard : shards_) bytes += shard.slots.size() * sizeof(BinnedCell);
   return bytes;
-}
-
-size_t RayMap::BytesOf(size_t max_cells, size_t between) {
-  // They may grow, by steps of a half; and one is there twice while it grows.
-  const size_t begin = SlotsFor(MostOfShard(max_cells));
-  size_t slots = begin;
-  while (slots < SlotsFor(MostOfShard(max_cells + between))) slots += slots / 2;
-  const size_t copies = slots > begin ? kShards + 1 : kShards;
-  return copies * slots * sizeof(BinnedCell);
 }
 
 std::vector<BinnedCell> RayMap::Cells(ThreadPool& pool) const {

@@ -86,8 +86,6 @@ class RayMap {
 
   size_t size() const;
   size_t size_bytes() const;
-  // That max_cells may take, at most, with what may come between two calls of Trim().
-  static size_t BytesOf(size_t max_cells, size_t between);
 
   // All cells, by ascending keys: row by row of the uv plane.
   std::vector<BinnedCell> Cells(ThreadPool& pool) const;
@@ -103,7 +101,7 @@ class RayMap {
   };
   template <bool kMakesNew>
   void AddTo(Shard& shard, std::span<const BinnedRay> rays);
-  static void Grow(Shard& shard);
+  void Grow(Shard& shard);
   static void DropUnless(const std::function<bool(CellKey)>& is_wanted, Shard& shard);
 
   size_t max_cells_;
