@@ -62,9 +62,11 @@ LensGaps::LensGaps(const ImageIndex& index, const RenderCamera& frame,
   sampling_.middle_world /= static_cast<double>(near.size());
   sampling_.pixel_rad = MiddleOf(pixel_rad);
   SetPoints(seen_through, options);
-  if (!is_collected_) return;
-  SetNodes(near, index);
-  FindGaps(near, index, collected, lens_test, pool);
+  if (is_collected_) {
+    SetNodes(near, index);
+    FindGaps(near, index, collected, lens_test, pool);
+  }
+  asks_in_the_end_ = AsksAt(kInTheEnd);
 }
 
 // How wide LF pixels are where the focus is, in elements, and at least 1.
@@ -198,10 +200,16 @@ void LensGaps::FindGaps(const std::vector<LfImageId>& near, const ImageIndex& in
       }
     }
   });
-  collected_count_ = static_cast<size_t>(
-      std::count(collected_ones.get(), collected_ones.get() + near.size(), true));
+  for (const Camera& camera : cameras)
+    if (*camera.is_collected) collected_places_.push_back(camera.place);
+  std::sort(collected_places_.begin(), collected_places_.end());
   for (const uint32_t from : covered_from_)
     if (from != UINT32_MAX) changes_until_ = std::max(changes_until_, from);
+}
+
+uint32_t LensGaps::PlaceAfter(size_t count) const {
+  count = std::min(count, collected_places_.size());
+  return count == 0 ? 0 : collected_places_[count - 1] + 1;
 }
 
 bool LensGaps::NodeAsksAt(size_t node, uint32_t place) const {

@@ -55,11 +55,14 @@ class LensGaps {
   const LfSampling& sampling() const { return sampling_; }
   const RenderCamera& camera() const { return all_.camera; }
   // LF images that collection takes something of, as far as nodes see.
-  size_t collected_count() const { return collected_count_; }
+  size_t collected_count() const { return collected_places_.size(); }
+  // The place behind the first `count` of these, or behind all of them.
+  uint32_t PlaceAfter(size_t count) const;
 
   // What is asked for when the LF images at places before this one are collected.
   FrameQueries QueriesAt(uint32_t place) const;
   bool AsksAt(uint32_t place) const;
+  bool asks_in_the_end() const { return asks_in_the_end_; }
   // From this place on, at the latest, what is asked for does not change any more.
   uint32_t changes_until() const { return changes_until_; }
   static constexpr uint32_t kInTheEnd = UINT32_MAX - 1;
@@ -85,7 +88,8 @@ class LensGaps {
   // UINT32_MAX: never; 0: no LF camera within its reach sees the element, nobody could answer.
   std::vector<uint32_t> covered_from_;  // [rows][columns][points]
   uint32_t changes_until_ = 0;
-  size_t collected_count_ = 0;
+  bool asks_in_the_end_ = false;
+  std::vector<uint32_t> collected_places_;  // ascending
 };
 
 }  // namespace lf

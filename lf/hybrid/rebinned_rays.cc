@@ -87,11 +87,10 @@ RebinnedRays::RebinnedRays(const ImageIndex& index, std::vector<LensGaps> gaps,
   std::vector<FrameQueries> queries;
   std::vector<LfSampling> sampling;
   for (size_t f = 0; f < gaps_.size(); ++f) {
-    const bool asks_in_the_end = gaps_[f].AsksAt(LensGaps::kInTheEnd);
-    if (!asks_in_the_end && !IsPreviewed(gaps_[f], 0)) continue;
+    if (!gaps_[f].asks_in_the_end() && !IsPreviewed(gaps_[f], 0)) continue;
     asking_.push_back(f);
     // Previews are content with LF images that are read anyway.
-    reached_.push_back(asks_in_the_end ? gaps_[f].ReachedCamera() : gaps_[f].camera());
+    reached_.push_back(gaps_[f].asks_in_the_end() ? gaps_[f].ReachedCamera() : gaps_[f].camera());
     sampling.push_back(gaps_[f].sampling());
     queries.push_back(gaps_[f].QueriesAt(LensGaps::kInTheEnd));
   }
@@ -180,7 +179,7 @@ void RebinnedRays::Restore(size_t number, RayMap map, uint32_t places_done) {
   section.cells.reset();
 }
 
-PixelRect RebinnedRays::RectOf(LfImageId id, uint32_t phase, size_t begin, size_t end) const {
+PixelRect RebinnedRays::RectOf(LfImageId id, uint32_t place, size_t begin, size_t end) const {
   const PinholeCamera camera = light_field_.Camera(id);
   std::vector<IdealCell> cells;
   if (camera.intrinsics.has_distortion()) cells = MakeIdealCells(camera.intrinsics);
@@ -188,7 +187,9 @@ PixelRect RebinnedRays::RectOf(LfImageId id, uint32_t phase, size_t begin, size_
   PixelRect rect;
   for (size_t i = begin; i < end; ++i) {
     const LensGaps& gaps = gaps_[asking_[i]];
-    if (!IsPreviewed(gaps, phase) && !gaps.AsksAt(LensGaps::kInTheEnd)) continue;
+    const bool is_for_preview =
+        IsPreviewed(gaps, PhaseOf(place)) && place < gaps.PlaceAfter(kPreviewImages);
+    if (!is_for_preview && !gaps.asks_in_the_end()) continue;
     if (IsWithinAngle(light_field_.cameras[id.value], reached_[i], select_))
       rect = Bounds(rect, overlap.Rect(reached_[i]));
   }
@@ -196,7 +197,7 @@ PixelRect RebinnedRays::RectOf(LfImageId id, uint32_t phase, size_t begin, size_
 }
 
 PixelRect RebinnedRays::RectOf(LfImageId id, uint32_t place) const {
-  return RectOf(id, PhaseOf(place), 0, asking_.size());
+  return RectOf(id, place, 0, asking_.size());
 }
 
 std::vector<RenderCamera> RebinnedRays::ReachedCameras() const { return reached_; }
@@ -244,7 +245,7 @@ void RebinnedRays::Rebin(std::span<const BatchImage> images, Section& section) {
   };
   std::vector<PixelRect> rects(images.size());
   pool_.ForEach(images.size(), [&](size_t i) {
-    rects[i] = Intersection(images[i].pixels.rect, RectOf(images[i].id, section.phase,
+    rects[i] = Intersection(images[i].pixels.rect, RectOf(images[i].id, images[i].place,
                                                           section.plan.begin, section.plan.end));
   });
   const bool by_edges = !keeps_all_ || !section.previews.is_empty();

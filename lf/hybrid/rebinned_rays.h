@@ -48,6 +48,9 @@ enum class Previews {
 // "auto", "on", "off"
 const char* NameOf(Previews previews);
 inline constexpr size_t kPreviewedFrom = 256;
+// Of how many LF images of a frame rays are kept for that: they are all over its lens
+// (thesis 4.2.1).
+inline constexpr size_t kPreviewImages = 64;
 
 struct RebinPassOptions {
   RebinOptions rebin;
@@ -117,7 +120,7 @@ class RebinnedRays : public ImageTaker {
  private:
   struct Section;
   bool IsPreviewed(const LensGaps& gaps, uint32_t phase) const;
-  PixelRect RectOf(LfImageId id, uint32_t phase, size_t begin, size_t end) const;
+  PixelRect RectOf(LfImageId id, uint32_t place, size_t begin, size_t end) const;
   void MakeMaps(const ImageIndex& index, std::span<const PlaceRange> places);
   void Begin(uint32_t phase, Section& section);
   SplatFrame SplatOf(const Section& section, const FrameQueries& queries) const;
