@@ -64,7 +64,10 @@ void RayMap::AddTo(Shard& shard, std::span<const BinnedRay> rays) {
   std::array<uint64_t, kAhead> hashes{};
   const auto announce = [&](size_t i) {
     hashes[i % kAhead] = MixBits(rays[i].cell);
-    __builtin_prefetch(&shard.slots[FirstSlot(hashes[i % kAhead], shard.slots.size())], 1);
+    // It may begin in one cache line and end in the next.
+    const BinnedCell* const slot = &shard.slots[FirstSlot(hashes[i % kAhead], shard.slots.size())];
+    __builtin_prefetch(slot, 1);
+    __builtin_prefetch(&slot->count, 1);
   };
   for (size_t i = 0; i < std::min(kAhead, rays.size()); ++i) announce(i);
   for (size_t i = 0; i < rays.size(); ++i) {

@@ -3,66 +3,55 @@
 #include <algorithm>
 
 #include "lf/core/check.h"
-#include "lf/core/random.h"
+#include "lf/rebinning/pixel_chances.h"
 
 namespace lf {
 namespace {
 
-// Sixteen random bits for every pixel of an LF image, four pixels at a time.
-class PixelChances {
+// Colours of a mosaic's pixels that have all of their neighbours, in the same few steps for every
+// pixel: what its place in the pattern is cannot be foreseen.
+class InnerMosaic {
  public:
-  PixelChances(uint64_t seed, LfImageId id) : stream_(MixBits(MixBits(seed) ^ id.value)) {}
-
-  // The columns [begin, end) whose number is below their p, which is in 1 / 65535: that is certain.
-  //   first  number of the pixel in column 0
-  void Choose(uint64_t first, const uint16_t* p, int begin, int end, std::vector<int>* chosen) {
-    chosen->resize(end - begin);
-    size_t count = 0;
-    for (int x = begin; x < end;) {
-      const uint64_t pixel = first + x;
-      uint64_t bits = MixBits(stream_ ^ (pixel / 4)) >> (16 * (pixel % 4));
-      for (const int stop = std::min(end, x + 4 - static_cast<int>(pixel % 4)); x < stop; ++x) {
-        // Written always, counted where it holds: no branch has to be foreseen.
-        (*chosen)[count] = x;
-        count += (bits & 0xffff) * 65535 >> 16 < p[x] ? 1 : 0;
-        bits >>= 16;
+  explicit InnerMosaic(const LfPixels& pixels) {
+    if (pixels.bayer == BayerPattern::kNone) return;
+    const auto stride = static_cast<std::ptrdiff_t>(pixels.radiance.width());
+    for (int place = 0; place < 4; ++place) {
+      const int x = place % 2, y = place / 2, own = BayerChannel(pixels.bayer, x, y);
+      FourOffsets* const of = offsets_[place].data();
+      of[own] = {0, 0, 0, 0};
+      if (own == 1) {
+        const int beside = BayerChannel(pixels.bayer, x + 1, y);
+        of[beside] = {-1, -1, 1, 1};
+        of[2 - beside] = {-stride, -stride, stride, stride};
+      } else {
+        of[1] = {-1, 1, -stride, stride};
+        of[2 - own] = {-stride - 1, -stride + 1, stride - 1, stride + 1};
       }
     }
-    chosen->resize(count);
+  }
+
+  // The means of four, of two, and the pixel itself.
+  std::array<uint16_t, 3> At(const uint16_t* v, int x, int y) const {
+    std::array<uint16_t, 3> rgb;
+    const std::array<FourOffsets, 3>& of = offsets_[2 * (y & 1) + (x & 1)];
+    for (int c = 0; c < 3; ++c) {
+      const uint32_t sum = uint32_t{v[of[c][0]]} + v[of[c][1]] + v[of[c][2]] + v[of[c][3]];
+      rgb[c] = static_cast<uint16_t>((sum + 2) / 4);
+    }
+    return rgb;
   }
 
  private:
-  uint64_t stream_;
+  using FourOffsets = std::array<std::ptrdiff_t, 4>;
+  std::array<std::array<FourOffsets, 3>, 4> offsets_ = {};  // [place in the pattern][channel]
 };
 
-// Where all neighbours are there.
-std::array<uint16_t, 3> RgbInside(const LfPixels& pixels, int x, int y) {
-  const int own = BayerChannel(pixels.bayer, x, y);
-  const auto stride = static_cast<std::ptrdiff_t>(pixels.radiance.width());
-  const uint16_t* const v =
-      pixels.radiance.row(y - pixels.rect.y_begin) + (x - pixels.rect.x_begin);
-  const auto two = [](uint32_t a, uint32_t b) { return static_cast<uint16_t>((a + b + 1) / 2); };
-  const auto four = [](uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
-    return static_cast<uint16_t>((a + b + c + d + 2) / 4);
-  };
-  std::array<uint16_t, 3> rgb{};
-  rgb[own] = v[0];
-  if (own == 1) {
-    const int beside = BayerChannel(pixels.bayer, x + 1, y);
-    rgb[beside] = two(v[-1], v[1]);
-    rgb[2 - beside] = two(v[-stride], v[stride]);
-  } else {
-    rgb[1] = four(v[-1], v[1], v[-stride], v[stride]);
-    rgb[2 - own] = four(v[-stride - 1], v[-stride + 1], v[stride - 1], v[stride + 1]);
-  }
-  return rgb;
-}
-
-std::array<uint16_t, 3> RgbOfMosaic(const LfPixels& pixels, int x, int y) {
+std::array<uint16_t, 3> RgbOfMosaic(const LfPixels& pixels, const InnerMosaic& inner, int x,
+                                    int y) {
   const PixelRect& rect = pixels.rect;
   if (!pixels.any_masked && x > rect.x_begin && x + 1 < rect.x_end && y > rect.y_begin &&
       y + 1 < rect.y_end)
-    return RgbInside(pixels, x, y);
+    return inner.At(pixels.radiance.row(y - rect.y_begin) + (x - rect.x_begin), x, y);
   const int own = BayerChannel(pixels.bayer, x, y);
   std::array<uint32_t, 3> sums{}, counts{};
   for (int dy = -1; dy <= 1; ++dy)
@@ -83,8 +72,8 @@ std::array<uint16_t, 3> RgbOfMosaic(const LfPixels& pixels, int x, int y) {
   return rgb;
 }
 
-std::array<uint16_t, 3> RgbOf(const LfPixels& pixels, int x, int y) {
-  if (pixels.bayer != BayerPattern::kNone) return RgbOfMosaic(pixels, x, y);
+std::array<uint16_t, 3> RgbOf(const LfPixels& pixels, const InnerMosaic& inner, int x, int y) {
+  if (pixels.bayer != BayerPattern::kNone) return RgbOfMosaic(pixels, inner, x, y);
   const uint16_t* const v = pixels.radiance.row(y - pixels.rect.y_begin) +
                             static_cast<size_t>(x - pixels.rect.x_begin) * LfPixels::kRgbLanes;
   return {v[0], v[1], v[2]};
@@ -98,6 +87,7 @@ class ImageRebinner {
                 BinnedRays* rays)
       : forms_(MakeCellForms(slab, lf_camera)),
         pixels_(pixels),
+        inner_(pixels),
         width_px_(lf_camera.intrinsics.width_px),
         chances_(options.seed, id),
         averages_others_(options.averages_others),
@@ -108,13 +98,17 @@ class ImageRebinner {
   template <class Position>
   void Row(const Image<uint16_t>& p, int y, int begin, int end, const Position& position) {
     const uint16_t* const of_row = p.row(y - pixels_.rect.y_begin) - pixels_.rect.x_begin;
-    chances_.Choose(static_cast<uint64_t>(y) * width_px_, of_row, begin, end, &chosen_);
-    for (const int x : chosen_) Add(x, y, position(x), &rays_.kept);
+    chances_.Choose(static_cast<uint64_t>(y) * width_px_ + begin,
+                    {of_row + begin, static_cast<size_t>(end - begin)}, &chosen_);
+    for (const uint32_t i : chosen_) {
+      const int x = begin + static_cast<int>(i);
+      Add(x, y, position(x), &rays_.kept);
+    }
     rays_.looked_at += end - begin;
     if (!averages_others_) return;
     auto next = chosen_.begin();
     for (int x = begin; x < end; ++x) {
-      if (next != chosen_.end() && *next == x)
+      if (next != chosen_.end() && begin + static_cast<int>(*next) == x)
         ++next;
       else if (!IsMasked(x, y))
         Add(x, y, position(x), &rays_.others);
@@ -141,14 +135,15 @@ class ImageRebinner {
     const std::optional<SlabPoint> cells = Parameterize(forms_, position);
     const std::optional<CellKey> key = cells ? KeyOf(*cells) : std::nullopt;
     if (key && map_.MayHold(*key))
-      (*shards)[RayMap::ShardOf(*key)].push_back({*key, RgbOf(pixels_, x, y)});
+      (*shards)[RayMap::ShardOf(*key)].push_back({*key, RgbOf(pixels_, inner_, x, y)});
   }
 
   const SlabForms forms_;
   const LfPixels& pixels_;
+  const InnerMosaic inner_;
   const int width_px_;
-  PixelChances chances_;
-  std::vector<int> chosen_;
+  const PixelChances chances_;
+  std::vector<uint32_t> chosen_;
   const bool averages_others_;
   const RayMap& map_;
   BinnedRays& rays_;

@@ -8,6 +8,7 @@
 
 #include "lf/camera/testing_scenes.h"
 #include "lf/core/random.h"
+#include "lf/rebinning/pixel_chances.h"
 
 namespace lf {
 namespace {
@@ -123,6 +124,34 @@ TEST(RebinImage, KeepsAsManyAsItsProbabilitiesSay) {
       EXPECT_NE(Keys(rays), first);  // another LF image or seed, other rays
   }
   EXPECT_NEAR(sum / 20, expected, 4 * std::sqrt(expected / 20));
+}
+
+TEST(PixelChances, TheFastOnesAreThoseOfSinglePixels) {
+  const PixelChances chances(3, LfImageId{7});
+  RandomSequence random(2);
+  std::vector<uint32_t> chosen;
+  size_t count = 0, total = 0;
+  for (const size_t size : {0, 1, 2, 31, 33, 64, 65, 1023, 1024, 1025, 3000})
+    for (const uint64_t first : {uint64_t{0}, uint64_t{1}, uint64_t{12345678}, uint64_t{7} << 30}) {
+      std::vector<uint16_t> p(size);
+      for (uint16_t& value : p) {
+        value = static_cast<uint16_t>(random.Uniform(0, 65536));
+        if (random.Uniform(0, 1) < 0.2) value = random.Uniform(0, 1) < 0.5 ? 0 : 65535;
+      }
+      std::vector<uint32_t> expected;
+      for (uint32_t i = 0; i < size; ++i) {
+        const bool is_chosen = chances.Chooses(first + i, p[i]);
+        if (is_chosen) expected.push_back(i);
+        if (p[i] == 0 || p[i] == 65535) {
+          EXPECT_EQ(is_chosen, p[i] != 0);
+        }
+      }
+      chances.Choose(first, p, &chosen);
+      EXPECT_EQ(chosen, expected);
+      count += chosen.size();
+      total += size;
+    }
+  EXPECT_NEAR(static_cast<double>(count) / static_cast<double>(total), 0.5, 0.02);
 }
 
 TEST(RebinImage, APartKeepsWhatTheWholeKeepsThere) {
