@@ -48,7 +48,10 @@ inline uint16_t ProbabilityOf(const ProbabilityLaw& law, int32_t laplacian) {
 // The stored values that are asked about: one for each pixel, or for each 2 x 2 of a mosaic.
 class GreyRows {
  public:
-  GreyRows(const LfPixels& pixels, const std::vector<uint16_t>& stored_values);
+  // Of a part of the pixels.
+  GreyRows(const LfPixels& pixels, const PixelRect& part,
+           const std::vector<uint16_t>& stored_values);
+  const PixelRect& plane() const { return plane_; }
   int width() const { return plane_.width(); }
   int height() const { return plane_.height(); }
   void Read(int y, uint16_t* out) const;  // [width]
@@ -61,8 +64,10 @@ class GreyRows {
   PixelRect plane_;  // the pixels, or the 2 x 2 of the whole LF image
 };
 
-// p of every pixel out of that of the grey plane; 0 of those that are masked.
-void SpreadOverPixels(const LfPixels& pixels, Image<uint16_t>* p);
+// p of the pixels of `rect` out of that of a grey plane that holds them; 0 of those that are
+// masked.
+void SpreadOverPixels(const LfPixels& pixels, const PixelRect& rect, const PixelRect& plane,
+                      const Image<uint16_t>& of_plane, Image<uint16_t>* p);
 
 // p of a grey plane; and a plane smoothed, in whole numbers.
 void ProbabilityPlane(const ProbabilityLaw& law, const GreyRows& grey, Image<uint16_t>* p);

@@ -79,10 +79,11 @@ ProbabilityLaw MakeLaw(const ProbabilityOptions& options, bool is_mosaic) {
   return law;
 }
 
-GreyRows::GreyRows(const LfPixels& pixels, const std::vector<uint16_t>& stored_values)
+GreyRows::GreyRows(const LfPixels& pixels, const PixelRect& part,
+                   const std::vector<uint16_t>& stored_values)
     : pixels_(pixels),
       stored_(stored_values.data()),
-      plane_(pixels.bayer == BayerPattern::kNone ? pixels.rect : Quads(pixels.rect)) {
+      plane_(pixels.bayer == BayerPattern::kNone ? part : Quads(part)) {
   LF_CHECK(stored_values.size() == 65536);
 }
 
@@ -99,7 +100,8 @@ uint16_t GreyRows::GreenOfPair(int x, int y) const {
 void GreyRows::Read(int y, uint16_t* out) const {
   const PixelRect& rect = pixels_.rect;
   if (pixels_.bayer == BayerPattern::kNone) {
-    const uint16_t* v = pixels_.radiance.row(y);
+    const uint16_t* v = pixels_.radiance.row(plane_.y_begin + y - rect.y_begin) +
+                        static_cast<size_t>(plane_.x_begin - rect.x_begin) * LfPixels::kRgbLanes;
     for (int x = 0; x < width(); ++x, v += LfPixels::kRgbLanes)
       out[x] = stored_[(v[0] + 2u * v[1] + v[2] + 2) >> 2];
     return;
@@ -123,23 +125,25 @@ void GreyRows::Read(int y, uint16_t* out) const {
   }
 }
 
-void SpreadOverPixels(const LfPixels& pixels, Image<uint16_t>* p) {
-  const PixelRect& rect = pixels.rect;
-  if (pixels.bayer != BayerPattern::kNone) {
-    static thread_local Image<uint16_t> of_plane;
-    std::swap(of_plane, *p);
-    const PixelRect quads = Quads(rect);
-    p->Resize(rect.width(), rect.height(), 1);
-    for (int y = 0; y < rect.height(); ++y) {
-      const uint16_t* const in = of_plane.row(((rect.y_begin + y) >> 1) - quads.y_begin);
-      uint16_t* const out = p->row(y);
-      for (int x = 0; x < rect.width(); ++x) out[x] = in[((rect.x_begin + x) >> 1) - quads.x_begin];
-    }
+void SpreadOverPixels(const LfPixels& pixels, const PixelRect& rect, const PixelRect& plane,
+                      const Image<uint16_t>& of_plane, Image<uint16_t>* p) {
+  p->Resize(rect.width(), rect.height(), 1);
+  const bool is_mosaic = pixels.bayer != BayerPattern::kNone;
+  for (int y = 0; y < rect.height(); ++y) {
+    uint16_t* const out = p->row(y);
+    const int row = rect.y_begin + y;
+    const uint16_t* const in = of_plane.row((is_mosaic ? row >> 1 : row) - plane.y_begin);
+    if (is_mosaic)
+      for (int x = 0; x < rect.width(); ++x) out[x] = in[((rect.x_begin + x) >> 1) - plane.x_begin];
+    else
+      std::copy_n(in + (rect.x_begin - plane.x_begin), rect.width(), out);
   }
   if (!pixels.any_masked) return;
   for (int y = 0; y < rect.height(); ++y)
     for (int x = 0; x < rect.width(); ++x)
-      if (pixels.IsMasked(x, y)) p->at(x, y) = 0;
+      if (pixels.IsMasked(rect.x_begin + x - pixels.rect.x_begin,
+                          rect.y_begin + y - pixels.rect.y_begin))
+        p->at(x, y) = 0;
 }
 
 int PixelsAround(const ProbabilityOptions& options, bool is_mosaic) {
@@ -148,17 +152,27 @@ int PixelsAround(const ProbabilityOptions& options, bool is_mosaic) {
   return is_mosaic ? 2 * around + 1 : around;
 }
 
-void ProbabilityMap(const LfPixels& pixels, const std::vector<uint16_t>& stored_values,
-                    const ProbabilityOptions& options, Image<uint16_t>* p) {
+void ProbabilityMap(const LfPixels& pixels, const PixelRect& rect,
+                    const std::vector<uint16_t>& stored_values, const ProbabilityOptions& options,
+                    Image<uint16_t>* p) {
+  LF_CHECK(Intersection(rect, pixels.rect) == rect || rect.empty());
   p->Resize(0, 0, 1);
-  if (pixels.rect.empty()) return;
-  const ProbabilityLaw law = MakeLaw(options, pixels.bayer != BayerPattern::kNone);
-  ProbabilityPlane(law, GreyRows(pixels, stored_values), p);
+  if (rect.empty()) return;
+  const bool is_mosaic = pixels.bayer != BayerPattern::kNone;
+  const ProbabilityLaw law = MakeLaw(options, is_mosaic);
+  const int around = PixelsAround(options, is_mosaic);
+  const GreyRows grey(pixels,
+                      Intersection({rect.x_begin - around, rect.y_begin - around,
+                                    rect.x_end + around, rect.y_end + around},
+                                   pixels.rect),
+                      stored_values);
+  static thread_local Image<uint16_t> of_plane;
+  ProbabilityPlane(law, grey, &of_plane);
   if (law.second_taps.radius() > 0) {
-    const Image<uint16_t> once = std::move(*p);
-    SmoothedPlane(law.second_taps, once, p);
+    const Image<uint16_t> once = of_plane;
+    SmoothedPlane(law.second_taps, once, &of_plane);
   }
-  SpreadOverPixels(pixels, p);
+  SpreadOverPixels(pixels, rect, grey.plane(), of_plane, p);
 }
 
 }  // namespace lf

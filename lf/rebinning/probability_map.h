@@ -32,20 +32,23 @@ inline constexpr double kMostAlpha = 255;
 // RadianceTable() with a gain of 1.  [65536]
 std::vector<uint16_t> StoredValueTable(const RadianceEncoding& encoding);
 
-// p  in 1 / 65535  [rect.height][rect.width]; its memory is used again
+// p of the pixels of `rect`, a part of pixels.rect, in 1 / 65535  [rect.height][rect.width]; its
+// memory is used again
 // Of a mosaic the means of the two greens of every 2 x 2 pixels (at even positions in the LF image)
 // are taken for the image, sigma still counts LF pixels, and all four pixels have the same p.
 // At the borders of pixels.rect the image goes on as it ends: give some pixels more than those that
 // are asked about (PixelsAround()).
 // Masked pixels have p = 0.
-void ProbabilityMap(const LfPixels& pixels, const std::vector<uint16_t>& stored_values,
-                    const ProbabilityOptions& options, Image<uint16_t>* p);
+void ProbabilityMap(const LfPixels& pixels, const PixelRect& rect,
+                    const std::vector<uint16_t>& stored_values, const ProbabilityOptions& options,
+                    Image<uint16_t>* p);
 
 // How far from a pixel its p depends on others.
 int PixelsAround(const ProbabilityOptions& options, bool is_mosaic);
 
 // ProbabilityMap(), pixel by pixel.
-void ProbabilityMapReference(const LfPixels& pixels, const std::vector<uint16_t>& stored_values,
+void ProbabilityMapReference(const LfPixels& pixels, const PixelRect& rect,
+                             const std::vector<uint16_t>& stored_values,
                              const ProbabilityOptions& options, Image<uint16_t>* p);
 
 }  // namespace lf

@@ -37,26 +37,28 @@ class GreyLaw {
 
 }  // namespace
 
-void ProbabilityMapReference(const LfPixels& pixels, const std::vector<uint16_t>& stored_values,
+void ProbabilityMapReference(const LfPixels& pixels, const PixelRect& rect,
+                             const std::vector<uint16_t>& stored_values,
                              const ProbabilityOptions& options, Image<uint16_t>* p) {
   p->Resize(0, 0, 1);
-  if (pixels.rect.empty()) return;
+  if (rect.empty()) return;
   const ProbabilityLaw law = MakeLaw(options, pixels.bayer != BayerPattern::kNone);
-  const GreyRows rows(pixels, stored_values);
+  const GreyRows rows(pixels, pixels.rect, stored_values);
   Image<uint16_t> grey(rows.width(), rows.height());
   for (int y = 0; y < grey.height(); ++y) rows.Read(y, grey.row(y));
   const GreyLaw plane(law.taps, grey.view());
-  p->Resize(grey.width(), grey.height(), 1);
-  for (int y = 0; y < p->height(); ++y)
-    for (int x = 0; x < p->width(); ++x) p->at(x, y) = ProbabilityOf(law, plane.Laplacian(x, y));
+  Image<uint16_t> of_plane(grey.width(), grey.height());
+  for (int y = 0; y < grey.height(); ++y)
+    for (int x = 0; x < grey.width(); ++x)
+      of_plane.at(x, y) = ProbabilityOf(law, plane.Laplacian(x, y));
   if (law.second_taps.radius() > 0) {
-    const Image<uint16_t> once = *p;
+    const Image<uint16_t> once = of_plane;
     const GreyLaw again(law.second_taps, once.view());
-    for (int y = 0; y < p->height(); ++y)
-      for (int x = 0; x < p->width(); ++x)
-        p->at(x, y) = static_cast<uint16_t>((again.Smooth(x, y) + 8) >> 4);
+    for (int y = 0; y < grey.height(); ++y)
+      for (int x = 0; x < grey.width(); ++x)
+        of_plane.at(x, y) = static_cast<uint16_t>((again.Smooth(x, y) + 8) >> 4);
   }
-  SpreadOverPixels(pixels, p);
+  SpreadOverPixels(pixels, rect, rows.plane(), of_plane, p);
 }
 
 }  // namespace lf

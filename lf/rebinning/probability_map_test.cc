@@ -22,7 +22,7 @@ LfPixels Noise(const PixelRect& rect, BayerPattern bayer, uint64_t seed) {
 Image<uint16_t> MapOf(const LfPixels& pixels, const std::vector<uint16_t>& table,
                       const ProbabilityOptions& options) {
   Image<uint16_t> p;
-  ProbabilityMap(pixels, table, options, &p);
+  ProbabilityMap(pixels, pixels.rect, table, options, &p);
   return p;
 }
 
@@ -45,8 +45,18 @@ TEST(ProbabilityMap, FastIsTheReference) {
           pixels.Mask(0, 0);
           const ProbabilityOptions options{sigma, 0.3, 0.02, 0.1, second};
           Image<uint16_t> judge;
-          ProbabilityMapReference(pixels, table, options, &judge);
+          ProbabilityMapReference(pixels, rect, table, options, &judge);
           ExpectSame(MapOf(pixels, table, options), judge);
+          // A part, and one at the corner, are parts of the whole.
+          const int x = rect.width() / 3, y = rect.height() / 2;
+          for (const PixelRect& part :
+               {PixelRect{rect.x_begin + x, rect.y_begin + y, rect.x_end - x, rect.y_end},
+                PixelRect{rect.x_begin, rect.y_begin, rect.x_begin + 1, rect.y_end}}) {
+            Image<uint16_t> p;
+            ProbabilityMap(pixels, part, table, options, &p);
+            ProbabilityMapReference(pixels, part, table, options, &judge);
+            ExpectSame(p, judge);
+          }
         }
 }
 

@@ -94,12 +94,13 @@ class ImageRebinner {
         map_(map),
         rays_(*rays) {}
 
-  // Of columns [begin, end).  position(x): the ideal one of the pixel.
+  // Of columns [begin, end).
+  //   p            of these
+  //   position(x)  the ideal one of the pixel
   template <class Position>
-  void Row(const Image<uint16_t>& p, int y, int begin, int end, const Position& position) {
-    const uint16_t* const of_row = p.row(y - pixels_.rect.y_begin) - pixels_.rect.x_begin;
+  void Row(const uint16_t* p, int y, int begin, int end, const Position& position) {
     chances_.Choose(static_cast<uint64_t>(y) * width_px_ + begin,
-                    {of_row + begin, static_cast<size_t>(end - begin)}, &chosen_);
+                    {p, static_cast<size_t>(end - begin)}, &chosen_);
     for (const uint32_t i : chosen_) {
       const int x = begin + static_cast<int>(i);
       Add(x, y, position(x), &rays_.kept);
@@ -149,10 +150,16 @@ class ImageRebinner {
   BinnedRays& rays_;
 };
 
-// Pixels of some rows that are covered alike.
+// Probabilities of so many rows are found together: the second level cache holds them and their
+// pixels.
+constexpr int kBandRows = 64;
+static_assert(kBandRows % RebinCoverage::kBlock == 0);
+
+// Pixels of some rows of a band that are covered alike.
 struct PixelRun {
   PixelRect rect;
-  bool is_whole = false;
+  bool is_whole;
+  const IdealPatch* patch;  // that they are in; null without lens distortion
 };
 
 // The squares of an LF image that are covered, those side by side as one run. Squares begin at
@@ -163,11 +170,17 @@ class CoveredRuns {
   CoveredRuns(const Slab& slab, const PinholeCamera& lf_camera, const RebinCoverage* coverage)
       : forms_(MakeSlabForms(slab, lf_camera)), coverage_(coverage) {}
 
+  //   patch           that the rectangle is a part of, or null
   //   position(x, y)  the ideal one of a place in the rectangle
   template <class Position>
-  void Find(const PixelRect& rect, const Position& position, std::vector<PixelRun>* runs) const {
-    if (coverage_ == nullptr && !rect.empty()) runs->push_back({rect, false});
-    if (coverage_ == nullptr) return;
+  void Find(const PixelRect& rect, const IdealPatch* patch, const Position& position,
+            std::vector<PixelRun>* runs) const {
+    if (coverage_ == nullptr) {
+      for (int y = rect.y_begin / kBandRows * kBandRows; y < rect.y_end; y += kBandRows)
+        runs->push_back(
+            {Intersection({rect.x_begin, y, rect.x_end, y + kBandRows}, rect), false, patch});
+      return;
+    }
     constexpr int kBlock = RebinCoverage::kBlock;
     for (int y = rect.y_begin / kBlock * kBlock; y < rect.y_end; y += kBlock) {
       bool continues = false;  // the run before
@@ -184,7 +197,7 @@ class CoveredRuns {
         if (is_covered && continues && runs->back().is_whole == is_whole)
           runs->back().rect.x_end = block.x_end;
         else if (is_covered)
-          runs->push_back({block, is_whole});
+          runs->push_back({block, is_whole, patch});
         continues = is_covered;
       }
     }
@@ -216,42 +229,47 @@ void RebinImage(const Slab& slab, const PinholeCamera& lf_camera, LfImageId id,
   const CoveredRuns covered(slab, lf_camera, coverage);
   if (ideal_pixels == nullptr)
     covered.Find(
-        rect, [](double x, double y) { return Vec3(x, y, 1); }, &runs);
+        rect, nullptr, [](double x, double y) { return Vec3(x, y, 1); }, &runs);
   else
     for (const IdealPatch& patch : ideal_pixels->patches())
       covered.Find(
-          Intersection(patch.rect, rect),
+          Intersection(patch.rect, rect), &patch,
           [&patch](double x, double y) {
             const PixelRect& all = patch.rect;
             return patch.ArcAt(std::clamp((y - all.y_begin) / all.height(), 0.0, 1.0))
                 .At(std::clamp((x - all.x_begin) / all.width(), 0.0, 1.0));
           },
           &runs);
-  if (runs.empty()) return;
-  static thread_local Image<uint16_t> p;
-  if (std::any_of(runs.begin(), runs.end(), [](const PixelRun& run) { return !run.is_whole; }))
-    ProbabilityMap(pixels, stored_values, options.probability, &p);
+  const auto band_of = [](const PixelRun& run) { return run.rect.y_begin / kBandRows; };
+  std::stable_sort(runs.begin(), runs.end(),
+                   [&](const PixelRun& a, const PixelRun& b) { return band_of(a) < band_of(b); });
   ImageRebinner rebinner(slab, lf_camera, id, pixels, options, map, rays);
-  const auto add = [&](const PixelRun& run, int y, const auto& position) {
-    if (run.is_whole)
-      rebinner.WholeRow(y, run.rect.x_begin, run.rect.x_end, position);
-    else
-      rebinner.Row(p, y, run.rect.x_begin, run.rect.x_end, position);
-  };
-  if (ideal_pixels == nullptr) {
-    for (const PixelRun& run : runs)
-      for (int y = run.rect.y_begin; y < run.rect.y_end; ++y)
-        add(run, y, [y](int x) { return Vec3(x + 0.5, y + 0.5, 1); });
-    return;
-  }
-  for (const IdealPatch& patch : ideal_pixels->patches())
-    for (const PixelRun& run : runs) {
-      if (Intersection(run.rect, patch.rect).empty()) continue;
-      for (int y = run.rect.y_begin; y < run.rect.y_end; ++y) {
-        const IdealArc arc = patch.Scanline(y);
-        add(run, y, [&arc](int x) { return arc.At(arc.Parameter(x)); });
+  for (auto begin = runs.begin(); begin != runs.end();) {
+    const auto end = std::find_if(
+        begin, runs.end(), [&](const PixelRun& run) { return band_of(run) != band_of(*begin); });
+    static thread_local Image<uint16_t> p;
+    PixelRect of_p;
+    for (auto run = begin; run != end; ++run)
+      if (!run->is_whole) of_p = Bounds(of_p, run->rect);
+    ProbabilityMap(pixels, of_p, stored_values, options.probability, &p);
+    for (; begin != end; ++begin)
+      for (int y = begin->rect.y_begin; y < begin->rect.y_end; ++y) {
+        const auto add = [&](const auto& position) {
+          const int x = begin->rect.x_begin;
+          if (begin->is_whole)
+            rebinner.WholeRow(y, x, begin->rect.x_end, position);
+          else
+            rebinner.Row(p.row(y - of_p.y_begin) + (x - of_p.x_begin), y, x, begin->rect.x_end,
+                         position);
+        };
+        if (begin->patch == nullptr) {
+          add([y](int x) { return Vec3(x + 0.5, y + 0.5, 1); });
+        } else {
+          const IdealArc arc = begin->patch->Scanline(y);
+          add([&arc](int x) { return arc.At(arc.Parameter(x)); });
+        }
       }
-    }
+  }
 }
 
 double CoveredShare(const Slab& slab, const PinholeCamera& lf_camera, const PixelRect& rect,
@@ -263,7 +281,7 @@ double CoveredShare(const Slab& slab, const PinholeCamera& lf_camera, const Pixe
   const RebinCoverage coverage = {&map, {}};
   CoveredRuns(slab, ideal, &coverage)
       .Find(
-          rect, [](double x, double y) { return Vec3(x, y, 1); }, &runs);
+          rect, nullptr, [](double x, double y) { return Vec3(x, y, 1); }, &runs);
   long long covered = 0;
   for (const PixelRun& run : runs) covered += run.rect.pixel_count();
   return static_cast<double>(covered) / static_cast<double>(rect.pixel_count());

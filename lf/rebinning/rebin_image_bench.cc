@@ -47,7 +47,7 @@ void ProbabilityOnly(benchmark::State& state) {
   const std::vector<uint16_t> table = StoredValueTable({});
   Image<uint16_t> p;
   for (auto _ : state) {
-    ProbabilityMap(pixels, table, {}, &p);
+    ProbabilityMap(pixels, pixels.rect, table, {}, &p);
     benchmark::DoNotOptimize(p.pixels().data());
   }
   state.SetItemsProcessed(state.iterations() * kSide * kSide);

@@ -107,7 +107,7 @@ TEST(RebinImage, KeepsAsManyAsItsProbabilitiesSay) {
   options.probability = {1, 0.5, 0, 0.1, 0};
   double expected = 0;
   Image<uint16_t> map;
-  ProbabilityMap(pixels, table, options.probability, &map);
+  ProbabilityMap(pixels, pixels.rect, table, options.probability, &map);
   for (const uint16_t p : map.pixels()) expected += p / 65535.0;
   double sum = 0;
   std::multiset<CellKey> first;
