@@ -23,7 +23,7 @@ import workloads
 MODES = {
     "collect": (),
     "hybrid": ("--mode", "hybrid"),
-    "hybrid, no previews": ("--mode", "hybrid", "--preview", "off"),
+    "hybrid, previews on": ("--mode", "hybrid", "--preview", "on"),
     "hybrid, a small lens": ("--mode", "hybrid", "--lens-weights", "none"),
 }
 

@@ -30,6 +30,9 @@ void RebinArguments::AddTo(CLI::App& app) {
   add("--probability-sigma", edges.second_sigma_px,
       "LF pixels that probabilities are smoothed by; 0: not")
       ->check(CLI::Range(0.0, kMostSigma_px));
+  add("--colour-sigma", options.rebin.colour_sigma_px,
+      "LF pixels that colours of rays are smoothed by, against noise; 0: as recorded")
+      ->check(CLI::Range(0.0, kMostSigma_px));
   add("--average-others", average_others,
       "on: rays that are not kept are added to cells that are there: less noise, more time")
       ->check(CLI::IsMember({"on", "off"}));
@@ -43,6 +46,9 @@ void RebinArguments::AddTo(CLI::App& app) {
   add("--sigma-uv", options.query.sigma_uv,
       "Of the kernel on the plate, in elements (in LF pixels where these are larger)")
       ->check(CLI::Range(0.05, 8.0));
+  add("--nearest", nearest,
+      "With --back-end reference: of so many rays, however far; 0: of those within 3 sigma")
+      ->check(CLI::Range(0, 1000));
   add("--lens-points", options.query.lens_point_count,
       "Rays asked for each element; 0: so many that their kernels overlap, 8 to 256")
       ->check(CLI::Range(0, 4096));
@@ -71,6 +77,7 @@ Result<RebinPassOptions> RebinArguments::Make(uint64_t seed) const {
   RebinPassOptions made;
   made.rebin = options.rebin;
   made.query = options.query;
+  made.nearest = static_cast<size_t>(nearest);
   made.coverage = options.coverage;
   for (const KeptRays known : {KeptRays::kAll, KeptRays::kEdges})
     if (kept == NameOf(known)) made.kept = known;

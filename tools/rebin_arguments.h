@@ -12,6 +12,7 @@
 namespace lf {
 
 struct RebinArguments {
+  int nearest = 0;
   std::string kept = "auto", preview = "auto", average_others = "off", reparameterise = "on";
   RebinPassOptions options;  // what the command line says as it is
   int64_t max_rays = 0;

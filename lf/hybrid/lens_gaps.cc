@@ -21,7 +21,7 @@ constexpr double kSigmaPerDistance = 0.5;
 // Splats may not be wider (rebinning/splat_tile.h).
 constexpr double kMostSigma_px = 8;
 constexpr int kLeastNodes = 17, kMostNodes = 65;
-constexpr size_t kMostNodeValues = size_t{1} << 19;  // of all nodes and lens points
+constexpr size_t kMostNodeValues = size_t{1} << 17;  // of all nodes and lens points
 
 double MiddleOf(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

@@ -197,7 +197,13 @@ PixelRect RebinnedRays::RectOf(LfImageId id, uint32_t place, size_t begin, size_
 }
 
 PixelRect RebinnedRays::RectOf(LfImageId id, uint32_t place) const {
-  return RectOf(id, place, 0, asking_.size());
+  const PixelRect rect = RectOf(id, place, 0, asking_.size());
+  if (rect.empty()) return rect;
+  const Intrinsics& image = light_field_.Camera(id).intrinsics;
+  const int around = PixelsAround(options_.rebin, true);
+  return Intersection(
+      {rect.x_begin - around, rect.y_begin - around, rect.x_end + around, rect.y_end + around},
+      {0, 0, image.width_px, image.height_px});
 }
 
 std::vector<RenderCamera> RebinnedRays::ReachedCameras() const { return reached_; }
@@ -290,15 +296,22 @@ void RebinnedRays::Rebin(std::span<const BatchImage> images, Section& section) {
   section.cells.reset();
 }
 
-SplatFrame RebinnedRays::SplatOf(const Section& section, const FrameQueries& queries) const {
+SplatFrame RebinnedRays::SplatBy(std::span<const FrameRay> rays, const FrameQueries& queries,
+                                 const LensPointSets& points, const PointShares* shares) const {
   const Intrinsics& plate = queries.camera.pinhole.intrinsics;
+  return options_.is_reference
+             ? SplatReference(rays, plate.width_px, plate.height_px, points, queries.kernel, pool_,
+                              shares, options_.nearest)
+             : Splat(rays, plate.width_px, plate.height_px, points, queries.kernel, pool_, shares);
+}
+
+SplatFrame RebinnedRays::SplatOf(const Section& section, const FrameQueries& queries) const {
   const FrameReach reach = ReachOf(queries.kernel, queries.points);
   AskedSquares squares;
   if (queries.shares) squares = queries.shares->Squares(reach.plate_px);
   const LargeVector<FrameRay> rays =
       FrameRaysOf(section.plan.slab, *section.cells, queries.camera, reach, pool_, squares);
-  return Splat(rays, plate.width_px, plate.height_px, queries.points, queries.kernel, pool_,
-               queries.shares ? &*queries.shares : nullptr);
+  return SplatBy(rays, queries, queries.points, queries.shares ? &*queries.shares : nullptr);
 }
 
 // In the slab as it is: a splat for each lens point, and their mean.
@@ -318,8 +331,7 @@ SplatFrame RebinnedRays::SplatOfPoints(const Section& section, const FrameQuerie
     const LargeVector<FrameRay> rays =
         FrameRaysThrough(points.sets[0][i], section.plan.slab, *section.cells, queries.camera,
                          ReachOf(queries.kernel, point), pool_);
-    const SplatFrame splat = Splat(rays, plate.width_px, plate.height_px, point, queries.kernel,
-                                   pool_, share ? &*share : nullptr);
+    const SplatFrame splat = SplatBy(rays, queries, point, share ? &*share : nullptr);
     pool_.ForEach(static_cast<size_t>(plate.height_px), [&](size_t row) {
       const int y = static_cast<int>(row);
       for (int x = 0; x < plate.width_px; ++x) {

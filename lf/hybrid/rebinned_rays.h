@@ -60,6 +60,9 @@ struct RebinPassOptions {
   // Whether rays are told apart in each frame's own lens plane and focus plane, or in those of the
   // slab: then only with one set of lens points.
   bool reparameterise = true;
+  // By queries of a k-d tree: the judge, far slower. Not 0: of the `nearest` rays.
+  bool is_reference = false;
+  size_t nearest = 0;
   SlabChoices slab;
   CoverageOptions coverage;
   size_t max_cells = 0;  // of all sections
@@ -123,6 +126,8 @@ class RebinnedRays : public ImageTaker {
   PixelRect RectOf(LfImageId id, uint32_t place, size_t begin, size_t end) const;
   void MakeMaps(const ImageIndex& index, std::span<const PlaceRange> places);
   void Begin(uint32_t phase, Section& section);
+  SplatFrame SplatBy(std::span<const FrameRay> rays, const FrameQueries& queries,
+                     const LensPointSets& points, const PointShares* shares) const;
   SplatFrame SplatOf(const Section& section, const FrameQueries& queries) const;
   SplatFrame SplatOfPoints(const Section& section, const FrameQueries& queries) const;
   void FindIdealPixels(std::span<const BatchImage> images);

@@ -42,13 +42,14 @@ RunInputs InputsOfRebinning(const RenderOptions& options, size_t max_cells) {
       {"rebin.kept", NameOf(rebin.kept)},
       {"rebin.edges", fmt::format("alpha {} beta {} xi {} sigma {} then {}", edges.alpha,
                                   edges.beta, edges.xi, edges.sigma_px, edges.second_sigma_px)},
+      {"rebin.colours", fmt::format("sigma {}", rebin.rebin.colour_sigma_px)},
       {"rebin.others", rebin.rebin.averages_others ? "averaged" : "left out"},
       {"rebin.seed", fmt::format("{}", rebin.rebin.seed)},
       {"rebin.preview", NameOf(rebin.previews)},
-      {"rebin.query",
-       fmt::format("sigma_st {} sigma_uv {} lens points {} sets {} on {}", rebin.query.sigma_st,
-                   rebin.query.sigma_uv, rebin.query.lens_point_count, rebin.query.lens_sets,
-                   rebin.reparameterise ? "focus planes" : "slabs")},
+      {"rebin.query", fmt::format("sigma_st {} sigma_uv {} lens points {} sets {} on {} nearest {}",
+                                  rebin.query.sigma_st, rebin.query.sigma_uv,
+                                  rebin.query.lens_point_count, rebin.query.lens_sets,
+                                  rebin.reparameterise ? "focus planes" : "slabs", rebin.nearest)},
       {"rebin.slab", fmt::format("position {} forward {} distance {} r_st {} r_uv {}",
                                  place(rebin.slab.position_world), place(rebin.slab.forward_world),
                                  width(rebin.slab.uv_distance_w), width(rebin.slab.r_st_w),
@@ -97,6 +98,7 @@ class Renderer {
   bool IsWhole() const { return package_.name.empty(); }
   Result<void> Begin();
   Result<void> CheckChoices() const;
+  Result<void> CheckSlab() const;
   Result<size_t> PlanRebinning();
   std::vector<FrameId> FramesToRender();
   Result<void> RunPasses(std::span<const FrameId> frames);
@@ -207,10 +209,15 @@ Result<void> Renderer::CheckChoices() const {
     return UsageError(
         "--mode rebin: nothing is collected, so that --stop-when, --require, --smooth-below and "
         "--keep-plates have no rays: leave them out, or use hybrid");
+  LF_RETURN_IF_ERROR(CheckSlab());
   const std::optional<size_t>& most = package_.choices.max_image_count;
   if (most && (!options_.max_image_count || *options_.max_image_count > *most))
     return UsageError(fmt::format(
         "{}: was made with --max-images {}, and has no more of each frame", package_.name, *most));
+  if (options_.rebin.nearest > 0 && options_.back_end != CollectBackEnd::kReference)
+    return UsageError(
+        "--nearest: only by the k-d tree of --back-end reference, which is far slower: give that, "
+        "or leave it out");
   if (options_.CountsRays() && options_.reading.estimator == Estimator::kBilinear &&
       options_.reading.filter == PixelFilter::kMosaic)
     return UsageError(
@@ -231,6 +238,23 @@ Result<void> Renderer::CheckChoices() const {
   if (options_.lens_weights == LensWeights::kArea)
     for (const FrameId frame : frames_)
       LF_RETURN_IF_ERROR(CheckHasArea(path_.Camera(frame), frame));
+  return {};
+}
+
+// Rays cut both planes of a slab one after the other if they run about as it faces.
+Result<void> Renderer::CheckSlab() const {
+  constexpr double kMost_deg = 60;
+  if (options_.mode == RenderMode::kCollect || !options_.rebin.slab.forward_world) return {};
+  const Vec3 forward = options_.rebin.slab.forward_world->normalized();
+  for (const FrameId frame : frames_) {
+    const double cosine = forward.dot(path_.Camera(frame).pinhole.ForwardWorld());
+    const double off_deg = std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / kPi;
+    if (off_deg > kMost_deg)
+      return UsageError(fmt::format(
+          "--slab-forward {} {} {}: frame {} looks {:.0f} degrees away from it; expected "
+          "a direction within {:.0f} degrees of what all frames look along",
+          forward.x(), forward.y(), forward.z(), frame.value, off_deg, kMost_deg));
+  }
   return {};
 }
 

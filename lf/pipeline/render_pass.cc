@@ -155,6 +155,7 @@ Result<void> RenderPass::PrepareRebinning(std::span<const PlaceRange> places) {
   }
   RebinPassOptions options = job_.options.rebin;
   options.max_cells = job_.max_cells;
+  options.is_reference = job_.options.back_end == CollectBackEnd::kReference;
   rebinned_ = std::make_unique<RebinnedRays>(job_.index, std::move(gaps), places, job_.Collects(),
                                              job_.Select(), options, job_.pool);
   for (const std::string& line : rebinned_->Describe()) LogInfo("{}", line);

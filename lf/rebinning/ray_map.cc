@@ -121,7 +121,7 @@ void RayMap::DropUnless(const std::function<bool(CellKey)>& is_wanted, Shard& sh
 
 void RayMap::Trim(ThreadPool& pool) {
   while (size() > max_cells_) {
-    limit_ -= limit_ / 8;
+    limit_ -= std::max<uint64_t>(1, limit_ / 8);
     const auto may_stay = [this](CellKey cell) { return MayHold(cell); };
     pool.ForEach(kShards, [&](size_t i) { DropUnless(may_stay, shards_[i]); });
   }

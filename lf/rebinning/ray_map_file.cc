@@ -112,8 +112,12 @@ Result<Head> ReadHead(const entry_file::Source& source, const std::string& bytes
   return head;
 }
 
-Result<RaysFile> Read(entry_file::Source& source, size_t max_cells, ThreadPool& pool) {
+using EntryCheck = std::function<Result<void>(const PlateEntries&)>;
+
+Result<RaysFile> Read(entry_file::Source& source, size_t max_cells, ThreadPool& pool,
+                      const EntryCheck& check) {
   LF_ASSIGN_OR_RETURN(entry_file::Front front, entry_file::ReadFront(source, sizeof(Head)));
+  if (check) LF_RETURN_IF_ERROR(check(front.entries));
   LF_ASSIGN_OR_RETURN(const Head head, ReadHead(source, front.head, max_cells));
   RaysFile file = {std::move(front.entries),
                    RayMap(max_cells, head.cell_count, head.limit, head.is_too_coarse != 0)};
@@ -152,15 +156,16 @@ Result<void> WriteRays(const fs::path& path, const PlateEntries& entries, const 
       path, [&](const fs::path& temporary) { return Write(temporary, entries, map, pool); });
 }
 
-Result<RaysFile> ReadRays(const fs::path& path, size_t max_cells, ThreadPool& pool) {
+Result<RaysFile> ReadRays(const fs::path& path, size_t max_cells, ThreadPool& pool,
+                          const EntryCheck& check) {
   LF_ASSIGN_OR_RETURN(const std::unique_ptr<entry_file::Source> source,
                       entry_file::Source::OfFile(path, kKind));
-  return Read(*source, max_cells, pool);
+  return Read(*source, max_cells, pool, check);
 }
 
 Result<RaysFile> ReadRaysOfBytes(std::string_view bytes, const std::string& name, size_t max_cells,
                                  ThreadPool& pool) {
-  return Read(*entry_file::Source::OfBytes(bytes, name, kKind), max_cells, pool);
+  return Read(*entry_file::Source::OfBytes(bytes, name, kKind), max_cells, pool, {});
 }
 
 }  // namespace lf

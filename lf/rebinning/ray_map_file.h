@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -31,7 +32,9 @@ struct RaysFile {
 // bits. Needs up to an eighth of the cells' memory beside the map.
 // kInput: cannot be read, no such file, of another version, more cells than max_cells, or damaged;
 // the message names file and reason.
-Result<RaysFile> ReadRays(const std::filesystem::path& path, size_t max_cells, ThreadPool& pool);
+//   check  is asked about the entries before the cells are read; its error is given back
+Result<RaysFile> ReadRays(const std::filesystem::path& path, size_t max_cells, ThreadPool& pool,
+                          const std::function<Result<void>(const PlateEntries&)>& check = {});
 // The same for a file in memory; `name` is what messages call it.
 Result<RaysFile> ReadRaysOfBytes(std::string_view bytes, const std::string& name, size_t max_cells,
                                  ThreadPool& pool);

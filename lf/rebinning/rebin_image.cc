@@ -4,6 +4,7 @@
 
 #include "lf/core/check.h"
 #include "lf/rebinning/pixel_chances.h"
+#include "lf/rebinning/probability_law.h"
 
 namespace lf {
 namespace {
@@ -72,6 +73,49 @@ std::array<uint16_t, 3> RgbOfMosaic(const LfPixels& pixels, const InnerMosaic& i
   return rgb;
 }
 
+// Colours as means of all pixels around that recorded them, by a Gaussian.
+class ColourFilter {
+ public:
+  explicit ColourFilter(double sigma_px) : taps_(MakeTaps(sigma_px)) {}
+
+  bool is_none() const { return taps_.radius() == 0; }
+  int radius() const { return taps_.radius(); }
+
+  std::array<uint16_t, 3> At(const LfPixels& pixels, int x, int y) const {
+    const PixelRect around =
+        Intersection({x - radius(), y - radius(), x + radius() + 1, y + radius() + 1}, pixels.rect);
+    const bool is_mosaic = pixels.bayer != BayerPattern::kNone;
+    std::array<uint64_t, 3> sums{}, weights{};
+    for (int row = around.y_begin; row < around.y_end; ++row)
+      for (int column = around.x_begin; column < around.x_end; ++column) {
+        const int i = column - pixels.rect.x_begin, k = row - pixels.rect.y_begin;
+        if (pixels.IsMasked(i, k)) continue;
+        const uint64_t weight =
+            uint64_t{taps_.values[std::abs(column - x)]} * taps_.values[std::abs(row - y)];
+        const auto add = [&](int channel, uint16_t value) {
+          sums[channel] += weight * value;
+          weights[channel] += weight;
+        };
+        if (is_mosaic)
+          add(BayerChannel(pixels.bayer, column, row), pixels.radiance.at(i, k));
+        else
+          for (int c = 0; c < 3; ++c) add(c, pixels.radiance.at(i, k, c));
+      }
+    // At a border without a channel: as if it were grey.
+    const int own = is_mosaic ? BayerChannel(pixels.bayer, x, y) : 1;
+    std::array<uint16_t, 3> rgb{};
+    for (int c = 0; c < 3; ++c) {
+      const int from = weights[c] > 0 ? c : own;
+      if (weights[from] > 0)
+        rgb[c] = static_cast<uint16_t>((sums[from] + weights[from] / 2) / weights[from]);
+    }
+    return rgb;
+  }
+
+ private:
+  SmoothingTaps taps_;
+};
+
 std::array<uint16_t, 3> RgbOf(const LfPixels& pixels, const InnerMosaic& inner, int x, int y) {
   if (pixels.bayer != BayerPattern::kNone) return RgbOfMosaic(pixels, inner, x, y);
   const uint16_t* const v = pixels.radiance.row(y - pixels.rect.y_begin) +
@@ -88,6 +132,7 @@ class ImageRebinner {
       : forms_(MakeCellForms(slab, lf_camera)),
         pixels_(pixels),
         inner_(pixels),
+        filter_(options.colour_sigma_px),
         width_px_(lf_camera.intrinsics.width_px),
         chances_(options.seed, id),
         averages_others_(options.averages_others),
@@ -136,12 +181,14 @@ class ImageRebinner {
     const std::optional<SlabPoint> cells = Parameterize(forms_, position);
     const std::optional<CellKey> key = cells ? KeyOf(*cells) : std::nullopt;
     if (key && map_.MayHold(*key))
-      (*shards)[RayMap::ShardOf(*key)].push_back({*key, RgbOf(pixels_, inner_, x, y)});
+      (*shards)[RayMap::ShardOf(*key)].push_back(
+          {*key, filter_.is_none() ? RgbOf(pixels_, inner_, x, y) : filter_.At(pixels_, x, y)});
   }
 
   const SlabForms forms_;
   const LfPixels& pixels_;
   const InnerMosaic inner_;
+  const ColourFilter filter_;
   const int width_px_;
   const PixelChances chances_;
   std::vector<uint32_t> chosen_;
@@ -209,6 +256,11 @@ class CoveredRuns {
 };
 
 }  // namespace
+
+int PixelsAround(const RebinOptions& options, bool is_mosaic) {
+  return std::max({PixelsAround(options.probability, is_mosaic),
+                   ColourFilter(options.colour_sigma_px).radius(), is_mosaic ? 1 : 0});
+}
 
 void BinnedRays::Clear() {
   for (auto& shard : kept) shard.clear();

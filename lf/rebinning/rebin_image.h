@@ -26,7 +26,12 @@ struct RebinOptions {
   // Rays that are not kept are added to the cells that are there: less noise, but every pixel's ray
   // must be found (thesis 5.3).
   bool averages_others = false;
+  // Colours are smoothed by a Gaussian of so many LF pixels, each channel by what recorded it:
+  // against noise, where few rays are kept. At most kMostSigma_px; 0: as recorded.
+  double colour_sigma_px = 0;
 };
+// How far from a pixel what is made of it depends on others.
+int PixelsAround(const RebinOptions& options, bool is_mosaic);
 
 // Rays of some LF images, by the shards of a RayMap. Its memory is used again.
 struct BinnedRays {
@@ -48,7 +53,8 @@ struct RebinCoverage {
 // Adds the rays of the pixels of `rect` that are covered and run through both planes of the slab.
 // All three colours are of the pixel; of a mosaic those that it did not record are the means of its
 // neighbours'.
-//   pixels         at least those of `rect`, and PixelsAround() more where the image has them
+//   pixels         at least those of `rect`, and PixelsAround() more where the image has them: else
+//                  what is made of those at its borders is a little different
 //   stored_values  StoredValueTable() of the light field
 //   ideal_pixels   of a camera with lens distortion, else null
 //   coverage       null: all is covered, by edges

@@ -159,10 +159,11 @@ TEST(RebinImage, APartKeepsWhatTheWholeKeepsThere) {
   RebinOptions options;
   options.probability = {1, 0.5, 0, 0.1, 0};
   options.averages_others = true;
-  for (const BayerPattern bayer : {BayerPattern::kNone, BayerPattern::kGrbg}) {
-    const bool is_mosaic = bayer != BayerPattern::kNone;
+  for (int variant = 0; variant < 4; ++variant) {
+    options.colour_sigma_px = variant < 2 ? 0 : 2.5;
+    const BayerPattern bayer = variant % 2 == 0 ? BayerPattern::kNone : BayerPattern::kGrbg;
     const PixelRect rect{20, 15, 57, 48};
-    const int around = PixelsAround(options.probability, is_mosaic);
+    const int around = PixelsAround(options, bayer != BayerPattern::kNone);
     const PixelRect read{rect.x_begin - around, rect.y_begin - around, rect.x_end + around,
                          rect.y_end + around};
     BinnedRays of_whole, of_part;
@@ -179,6 +180,36 @@ TEST(RebinImage, APartKeepsWhatTheWholeKeepsThere) {
     }
     EXPECT_EQ(CountOf(of_whole.kept) + CountOf(of_whole.others),
               static_cast<size_t>(rect.pixel_count()));
+  }
+}
+
+// Noise is gone where light is even; edges are no sharper than the Gaussian, and what is masked has
+// no say.
+TEST(RebinImage, ColoursMayBeSmoothed) {
+  const std::vector<uint16_t> table = StoredValueTable({});
+  for (const BayerPattern bayer : {BayerPattern::kNone, BayerPattern::kRggb}) {
+    LfPixels pixels({0, 0, 80, 60}, bayer);
+    RandomSequence random(4);
+    for (int y = 0; y < 60; ++y)
+      for (int x = 0; x < 80; ++x)
+        for (int c = 0; c < std::min(3, pixels.radiance.channels()); ++c) {
+          const int channel = bayer == BayerPattern::kNone ? c : BayerChannel(bayer, x, y);
+          pixels.radiance.at(x, y, c) =
+              static_cast<uint16_t>(10000 + 9000 * channel + random.Uniform(-3000, 3000));
+        }
+    for (int c = 0; c < std::min(3, pixels.radiance.channels()); ++c)
+      pixels.radiance.at(40, 30, c) = 65535;
+    pixels.Mask(40, 30);
+    RebinOptions options;
+    options.probability.xi = 0.999;
+    options.colour_sigma_px = 3;
+    BinnedRays rays;
+    RebinImage(TestSlab(), TestCamera(), {5}, pixels, {20, 15, 57, 48}, table, nullptr, options,
+               nullptr, RayMap(10), &rays);
+    EXPECT_GT(CountOf(rays.kept), 1000u);
+    for (const auto& shard : rays.kept)
+      for (const BinnedRay& ray : shard)
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(ray.rgb[c], 10000 + 9000 * c, 1300);
   }
 }
 

@@ -299,8 +299,9 @@ SplatFrame Splat(std::span<const FrameRay> rays, int width_px, int height_px,
 
 SplatFrame SplatReference(std::span<const FrameRay> rays, int width_px, int height_px,
                           const LensPointSets& lens_points, const QueryKernel& kernel,
-                          ThreadPool& pool, const PointShares* shares) {
+                          ThreadPool& pool, const PointShares* shares, size_t nearest) {
   SplatFrame frame = EmptyFrame(width_px, height_px);
+  if (rays.empty()) return frame;
   std::map<double, std::unique_ptr<RayQuery>> queries;  // by spread
   std::vector<size_t> firsts = {0};                     // of sets, in the shares
   for (size_t set = 0; set < lens_points.sets.size(); ++set) {
@@ -323,8 +324,11 @@ SplatFrame SplatReference(std::span<const FrameRay> rays, int width_px, int heig
       for (size_t i = 0; i < set.size(); ++i) {
         float share = 1;
         if (shares != nullptr) shares->At(x, y, firsts[s] + i, 1, &share);
+        if (share == 0) continue;
         const RayQuery& query = *queries.at(lens_points.SpreadOf(s, i));
-        const QuerySum sum = query.WithinReach(set[i], Vec2(x + 0.5, y + 0.5));
+        const Vec2 position_px(x + 0.5, y + 0.5);
+        const QuerySum sum = nearest > 0 ? query.Nearest(set[i], position_px, nearest)
+                                         : query.WithinReach(set[i], position_px);
         if (!(sum.weight > 0)) continue;
         for (int c = 0; c < 3; ++c) rgb[c] += share * sum.rgb[c] / sum.weight;
         found += share;

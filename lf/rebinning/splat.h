@@ -35,8 +35,10 @@ SplatFrame Splat(std::span<const FrameRay> rays, int width_px, int height_px,
 FrameReach ReachOf(const QueryKernel& kernel, const LensPointSets& lens_points);
 
 // The same by queries, one element after the other: the judge.
+//   nearest  not 0: of so many rays, however far, in place of those within reach
 SplatFrame SplatReference(std::span<const FrameRay> rays, int width_px, int height_px,
                           const LensPointSets& lens_points, const QueryKernel& kernel,
-                          ThreadPool& pool, const PointShares* shares = nullptr);
+                          ThreadPool& pool, const PointShares* shares = nullptr,
+                          size_t nearest = 0);
 
 }  // namespace lf

@@ -295,17 +295,21 @@ Result<std::optional<RunState::Rays>> RunState::LoadRays(FrameId first, size_t s
                                                          size_t max_cells, ThreadPool& pool) const {
   const fs::path path = RaysPath(first, section);
   if (!options_.resume || !fs::exists(path)) return std::optional<Rays>();
-  Result<RaysFile> file = ReadRays(path, max_cells, pool);
+  const auto check = [&](const PlateEntries& entries) -> Result<void> {
+    RunInputs recorded, wanted = options_.rays;
+    wanted.emplace_back(kRaysFrames, frames);
+    for (const auto& entry : entries)
+      if (!entry.first.starts_with(kProgress)) recorded.push_back(entry);
+    if (const auto difference = FirstDifference(recorded, wanted))
+      return UsageError(fmt::format(
+          "{}: --resume: was made with {} {}, this call has {}; give the same, or another -o, or "
+          "--overwrite in place of --resume to start anew",
+          path.string(), difference->key, difference->recorded, difference->wanted));
+    return {};
+  };
+  Result<RaysFile> file = ReadRays(path, max_cells, pool, check);
+  if (!file && file.error().kind == ErrorKind::kUsage) return file.error();
   if (!file) return WithAdvice(file.error());
-  RunInputs recorded, wanted = options_.rays;
-  wanted.emplace_back(kRaysFrames, frames);
-  for (const auto& entry : file->entries)
-    if (!entry.first.starts_with(kProgress)) recorded.push_back(entry);
-  if (const auto difference = FirstDifference(recorded, wanted))
-    return UsageError(fmt::format(
-        "{}: --resume: was made with {} {}, this call has {}; give the same, or another -o, or "
-        "--overwrite in place of --resume to start anew",
-        path.string(), difference->key, difference->recorded, difference->wanted));
   Rays rays{std::move(file->map), 0};
   LF_RETURN_IF_ERROR(NumberOf(path, file->entries, kPlacesDone, &rays.places_done));
   return std::optional<Rays>(std::move(rays));
