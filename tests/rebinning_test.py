@@ -16,6 +16,7 @@ import unittest
 
 os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"
 import cv2
+import numpy as np
 
 import small_field
 from program_test_case import ProgramTestCase
@@ -53,7 +54,8 @@ class RebinningTest(ProgramTestCase):
     def test_the_same_bits_for_any_threads(self):
         self.path(aperture=0.02)
         for mode in ("rebin", "hybrid"):
-            for options in ([], ["--kept", "edges", "--seed", "3"], ["--max-rays", "20000"]):
+            for options in ([], ["--kept", "edges", "--seed", "3"], ["--max-rays", "20000"],
+                            ["--preview", "on", "--colour-sigma", "1"]):
                 expected = self.render("one", "--mode", mode, "--threads", "1", *options)
                 self.assertEqual(len(expected), 3)
                 for threads in ("2", "3"):
@@ -72,7 +74,8 @@ class RebinningTest(ProgramTestCase):
     def test_killed_and_resumed_the_same_bits(self):
         self.path(aperture=0.02, frames=6)
         for mode in ("rebin", "hybrid"):
-            options = ["--mode", mode, "--dump-every", "0.001s", "--kept", "edges"]
+            options = ["--mode", mode, "--dump-every", "0.001s", "--kept", "edges", "--preview",
+                       "on"]
             start = time.monotonic()
             expected = self.render("whole-" + mode, *options)
             whole_s = time.monotonic() - start
@@ -162,6 +165,26 @@ class RebinningTest(ProgramTestCase):
                    *self.command("no", "--mode", "rebin", "--max-rays", "1"))
         self.fails(2, ["--slab-forward"],
                    *self.command("no", "--mode", "rebin", "--slab-forward", "0", "0", "0"))
+        self.fails(2, ["--slab-forward 0 0 1", "frame 1 looks 180 degrees away", "within 60 degrees"],
+                   *self.command("no", "--mode", "rebin", "--slab-forward", "0", "0", "1"))
+        self.fails(2, ["--nearest", "--back-end reference"],
+                   *self.command("no", "--mode", "rebin", "--nearest", "4"))
+
+    # Queries of a k-d tree, element by element: within reach they are what splats are; of the
+    # nearest rays there is an answer wherever the lens looks.
+    def test_the_reference_back_end_asks_a_tree(self):
+        self.path(aperture=0.004, frames=1, x=0.005)
+        options = ["--mode", "rebin", "--lens-points", "4"]
+        pictures = {}
+        for name, more in (("fast", []), ("reference", ["--back-end", "reference"]),
+                           ("nearest", ["--back-end", "reference", "--nearest", "1"])):
+            self.render(name, *options, *more)
+            pictures[name] = cv2.imread(str(self.folder / name / "frame_0001.exr"),
+                                        cv2.IMREAD_UNCHANGED)[..., :3].astype(float)
+        self.assertLess(np.sqrt(((pictures["fast"] - pictures["reference"]) ** 2).mean()), 0.1 / 255)
+        off = np.sqrt(((pictures["fast"] - pictures["nearest"]) ** 2).mean())
+        self.assertGreater(off, 1e-4)
+        self.assertLess(off, 0.3)
 
     def test_slabs_may_be_placed_and_left_as_they_are(self):
         self.path(aperture=0.02, frames=1)
