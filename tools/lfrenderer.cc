@@ -28,6 +28,7 @@ constexpr const char* kExamples = R"(Examples:
   lfrenderer capture/ path.yaml -o frames --resume       # after Ctrl-C, kill, a crash
   lfrenderer capture/ path.yaml -o frames --stop-when "samples>=16"
   lfrenderer packages/package-*.lfp -o frames            # of lfpreprocessor
+  lfrenderer capture/ path.yaml -o frames --shard 2/5    # a part of the LF images: see lfmerge
   lfrenderer capture/ path.yaml -o frames --mode hybrid  # interpolated where no LF camera's rays pass
 
 DIR receives frame_0001.exr ..., contact_sheet.png and report.json. EXR frames hold linear light
@@ -115,7 +116,9 @@ int main(int argc, char** argv) {
     if (!rendered.report) return lf::WithResumeCommand(rendered.report.error(), argc, argv);
     const lf::RenderReport& report = *rendered.report;
     std::filesystem::path look_at = arguments.output;
-    if (!arguments.no_contact_sheet)
+    if (rendered.options.shard)
+      look_at /= "partial/shards/" + rendered.options.shard->Name();
+    else if (!arguments.no_contact_sheet)
       look_at /= arguments.HasPackages()
                      ? lf::ContactSheetName({arguments.inputs.begin(), arguments.inputs.end()})
                      : "contact_sheet.png";

@@ -81,6 +81,10 @@ void RenderArguments::AddTo(CLI::App& app) {
          "none: LF images count alike; area: as the part of the lens that is nearest to each; hat: "
          "interpolated, for small lenses and pinholes; auto: area, and hat as the lens closes")
       ->check(CLI::IsMember({"auto", "none", "area", "hat"}));
+  app.add_option("--shard", shard,
+                 "k/K: plates of the k-th of K parts of the LF images, into DIR/partial/shards; "
+                 "lfmerge adds those of all and writes the frames")
+      ->check(NotEmpty());
   app.add_option("--rectangles", rectangles,
                  "off: read and try all pixels of every LF image that may contribute, to measure "
                  "what their rectangles save; the same bits")
@@ -160,6 +164,12 @@ Result<RenderOptions> RenderArguments::MakeOptions(const CommonOptions& common, 
   if (options.reading.filter == PixelFilter::kAuto && !options.CountsRays() &&
       bayer != BayerPattern::kNone)
     options.reading.filter = PixelFilter::kMosaic;
+  if (!shard.empty()) {
+    options.shard = ShardOf(shard);
+    if (!options.shard)
+      return UsageError(
+          fmt::format("--shard \"{}\": expected k/K, such as 2/5: the second of five", shard));
+  }
   options.resume = resume;
   options.overwrite = overwrite;
   options.keep_plates = keep_plates;

@@ -65,9 +65,9 @@ std::optional<FrameLens::Facts> FrameLens::facts() const {
 Image<float> FrameLens::EffectiveCounts() const {
   if (!weights_) return {};
   const Intrinsics& plate = camera_.pinhole.intrinsics;
-  const int step = EffectiveStep();
-  const auto nodes = [step](int size) { return (size + step - 1) / step; };
-  Image<double> sums(nodes(plate.width_px), nodes(plate.height_px), 2);
+  const int step = EffectiveStep(plate);
+  const auto [columns, rows] = EffectiveSquares(plate);
+  Image<double> sums(columns, rows, 2);
   const auto element = [step](int node, int size) {
     return std::min(node * step + step / 2, size - 1);
   };
@@ -98,21 +98,24 @@ Image<float> FrameLens::EffectiveCounts() const {
   return counts;
 }
 
-int FrameLens::EffectiveStep() const {
+int EffectiveStep(const Intrinsics& plate) {
   constexpr int kMostStep = 64, kLeastNodes = 8;
-  const Intrinsics& plate = camera_.pinhole.intrinsics;
   return std::clamp(std::min(plate.width_px, plate.height_px) / kLeastNodes, 1, kMostStep);
 }
 
-Image<float> FrameLens::SpreadOverPlate(const Image<float>& effective_counts) const {
-  const Intrinsics& plate = camera_.pinhole.intrinsics;
+std::pair<int, int> EffectiveSquares(const Intrinsics& plate) {
+  const int step = EffectiveStep(plate);
+  return {(plate.width_px + step - 1) / step, (plate.height_px + step - 1) / step};
+}
+
+Image<float> SpreadOverPlate(const Image<float>& effective_counts, const Intrinsics& plate) {
   Image<float> spread(plate.width_px, plate.height_px);
   // The node before an element, and how far it is to the next one.
   struct Place {
     int node, next;
     float fraction;
   };
-  const auto places = [step = EffectiveStep()](int size, int count) {
+  const auto places = [step = EffectiveStep(plate)](int size, int count) {
     std::vector<Place> of_elements;
     for (int i = 0; i < size; ++i) {
       const float at =

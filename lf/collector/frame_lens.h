@@ -3,6 +3,7 @@
 
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "lf/camera/ray_weight.h"
@@ -59,10 +60,6 @@ class FrameLens {
   // the element sees; 0 where none does. Broken images and masks are not known here.
   // [rows][columns]  Empty without weights.
   Image<float> EffectiveCounts() const;
-  int EffectiveStep() const;
-
-  // The same of every element, interpolated between those that are not 0.  [height][width]
-  Image<float> SpreadOverPlate(const Image<float>& effective_counts) const;
 
  private:
   const LightField& light_field_;
@@ -72,5 +69,11 @@ class FrameLens {
   std::optional<FrameWeights> weights_;
   std::map<uint32_t, size_t> cameras_;  // of weights_, by LF image
 };
+
+int EffectiveStep(const Intrinsics& plate);
+// Columns and rows of squares.
+std::pair<int, int> EffectiveSquares(const Intrinsics& plate);
+// The same of every element, interpolated between those that are not 0.  [height][width]
+Image<float> SpreadOverPlate(const Image<float>& effective_counts, const Intrinsics& plate);
 
 }  // namespace lf

@@ -161,9 +161,9 @@ TEST(FrameLens, EffectiveCountsAreThoseOfTheWeights) {
     for (double* value : {&k.fx_px, &k.fy_px}) *value *= 4;  // sees a small part of the images
     const FrameLens lens(ImageIndex(field), frame, LensWeights::kArea, {}, pool);
     const Image<float> counts = lens.EffectiveCounts();
-    const Image<float> spread = lens.SpreadOverPlate(counts);
+    const Image<float> spread = SpreadOverPlate(counts, k);
     ASSERT_EQ(spread.width(), width);
-    const int step = lens.EffectiveStep();
+    const int step = EffectiveStep(k);
     EXPECT_GE(counts.height(), 8);
     EXPECT_EQ(counts.width(), (width + step - 1) / step);
     double sum = 0, squares = 0;

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "lf/pipeline/frame_metadata.h"
 #include "lf/record/run_inputs.h"
@@ -16,16 +17,6 @@
 
 namespace lf {
 namespace {
-
-DevelopOptions DevelopOptionsFor(const RadianceEncoding& encoding, uint32_t smooth_below) {
-  DevelopOptions options;
-  options.pedestal = encoding.pedestal;
-  options.scale = encoding.Scale();
-  options.white_balance = encoding.white_balance;
-  options.camera_to_srgb = encoding.camera_to_srgb;
-  options.smooth_below = smooth_below;
-  return options;
-}
 
 bool IsExr(FrameFormat format) {
   return format == FrameFormat::kExrHalf || format == FrameFormat::kExrFloat;
@@ -44,6 +35,51 @@ double MedianOfSeen(const LargeVector<float>& values) {
 
 }  // namespace
 
+FrameSheet MakeFrameSheet(FrameId frame, const RenderCamera& camera, const FrameRays& rays,
+                          const FrameLens& lens, const RadianceEncoding& encoding) {
+  FrameSheet sheet;
+  sheet.frame = frame;
+  sheet.camera = camera;
+  sheet.rays = rays;
+  sheet.develop.pedestal = encoding.pedestal;
+  sheet.develop.scale = encoding.Scale();
+  sheet.develop.white_balance = encoding.white_balance;
+  sheet.develop.camera_to_srgb = encoding.camera_to_srgb;
+  if (const std::optional<FrameLens::Facts> facts = lens.facts())
+    sheet.weighed =
+        FrameSheet::Weighed{facts->hat_share, facts->uncovered_share, lens.EffectiveCounts()};
+  return sheet;
+}
+
+Result<FrameReport> WritePicture(const FrameSheet& sheet, const SensorPlate& plate,
+                                 const Completion* completion, const std::filesystem::path& to,
+                                 FrameFormat format, ThreadPool& pool,
+                                 const std::function<bool()>& is_interrupted) {
+  const auto start = std::chrono::steady_clock::now();
+  DevelopOptions develop = sheet.develop;
+  develop.is_interrupted = is_interrupted;
+  develop.completion = completion;
+  DevelopedFrame developed = Develop(plate, develop, pool);
+  if (is_interrupted && is_interrupted())
+    return Error{ErrorKind::kInterrupted, fmt::format("{}: interrupted", to.string())};
+  FrameReport report = MakeFrameReport(sheet.frame, sheet.rays, developed);
+  report.camera = InputsOfCamera(sheet.frame, sheet.camera);
+  if (sheet.weighed) {
+    const Image<float>& counts = sheet.weighed->effective_counts;
+    report.weighed = {MedianOfSeen(counts.pixels()), sheet.weighed->hat_share,
+                      sheet.weighed->uncovered_share};
+    if (IsExr(format))
+      developed.effective_count = SpreadOverPlate(counts, sheet.camera.pinhole.intrinsics);
+  }
+  report.develop_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  LF_RETURN_IF_ERROR(WriteFrame(to, developed, format,
+                                FrameMetadata(sheet.frame, sheet.camera, sheet.rays,
+                                              sheet.estimator, sheet.fps, sheet.version),
+                                is_interrupted));
+  return report;
+}
+
 Result<void> CheckVideoTarget(const std::filesystem::path& path) {
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   std::error_code error;
@@ -56,60 +92,39 @@ Result<void> CheckVideoTarget(const std::filesystem::path& path) {
   return {};
 }
 
-std::filesystem::path FrameOutput::PathOf(FrameId frame) const {
-  return FramePath(options_.output_folder, frame, options_.format);
+FilmFiles FilesOfFilm(const CameraPath& path, const RenderOptions& options) {
+  const Intrinsics& plate = path.Camera(FrameId{1}).pinhole.intrinsics;
+  return {options.output_folder,
+          options.format,
+          plate.width_px,
+          plate.height_px,
+          path.fps,
+          options.signals == nullptr ? nullptr : &options.signals->stop};
 }
 
-Result<FrameReport> FrameOutput::Write(FrameId frame, const FrameRays& rays, const FrameLens& lens,
-                                       const SensorPlate& plate, const Completion* completion,
-                                       const std::filesystem::path& to,
-                                       const std::function<bool()>& is_interrupted) const {
-  const auto start = std::chrono::steady_clock::now();
-  const RenderCamera& camera = path_.Camera(frame);
-  DevelopOptions develop = DevelopOptionsFor(light_field_.encoding, options_.smooth_below);
-  develop.is_interrupted = is_interrupted;
-  develop.completion = completion;
-  DevelopedFrame developed = Develop(plate, develop, pool_);
-  if (is_interrupted && is_interrupted())
-    return Error{ErrorKind::kInterrupted, fmt::format("{}: interrupted", to.string())};
-  FrameReport report = MakeFrameReport(frame, rays, developed);
-  report.camera = InputsOfCamera(frame, camera);
-  if (const std::optional<FrameLens::Facts> facts = lens.facts()) {
-    const Image<float> counts = lens.EffectiveCounts();
-    report.weighed = {MedianOfSeen(counts.pixels()), facts->hat_share, facts->uncovered_share};
-    if (IsExr(options_.format)) developed.effective_count = lens.SpreadOverPlate(counts);
-  }
-  report.develop_s =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  LF_RETURN_IF_ERROR(WriteFrame(
-      to, developed, options_.format,
-      FrameMetadata(frame, camera, rays, options_.reading.estimator, path_.fps, options_.version),
-      is_interrupted));
-  return report;
+std::filesystem::path FilmFiles::PathOf(FrameId frame) const {
+  return FramePath(folder, frame, format);
 }
 
-Result<Image<uint8_t>> FrameOutput::ReadPicture(FrameId frame) const {
+Result<Image<uint8_t>> FilmFiles::ReadPicture(FrameId frame) const {
   LF_ASSIGN_OR_RETURN(Image<uint8_t> picture, ReadDisplayImage(PathOf(frame)));
-  const Intrinsics& plate = path_.Camera(frame).pinhole.intrinsics;
-  if (picture.width() != plate.width_px || picture.height() != plate.height_px)
-    return InputError(
-        fmt::format("{}: has {} x {} pixels, the frame has {} x {}: remove it, and "
-                    "--resume renders it again",
-                    PathOf(frame).string(), picture.width(), picture.height(), plate.width_px,
-                    plate.height_px));
+  if (picture.width() != width_px || picture.height() != height_px)
+    return InputError(fmt::format(
+        "{}: has {} x {} pixels, the frame has {} x {}: remove it, and "
+        "--resume renders it again",
+        PathOf(frame).string(), picture.width(), picture.height(), width_px, height_px));
   return picture;
 }
 
-Result<void> FrameOutput::WriteContactSheet(const std::vector<FrameId>& frames, size_t at_once,
-                                            const std::string& name) const {
+Result<void> FilmFiles::WriteContactSheet(const std::vector<FrameId>& frames, size_t at_once,
+                                          ThreadPool& pool, const std::string& name) const {
   const std::vector<size_t> shown = ContactSheetFrames(frames.size());
-  const Intrinsics& plate = path_.Camera(frames.front()).pinhole.intrinsics;
-  ContactSheet sheet(shown.size(), plate.width_px, plate.height_px);
+  ContactSheet sheet(shown.size(), width_px, height_px);
   for (size_t begin = 0; begin < shown.size(); begin += at_once) {
-    if (options_.signals != nullptr && options_.signals->stop)
+    if (stop != nullptr && *stop)
       return Error{ErrorKind::kInterrupted, "interrupted at the contact sheet"};
     std::vector<std::optional<Error>> errors(std::min(at_once, shown.size() - begin));
-    pool_.ForEach(errors.size(), [&](size_t i) {
+    pool.ForEach(errors.size(), [&](size_t i) {
       if (const auto picture = ReadPicture(frames[shown[begin + i]]); picture)
         sheet.Place(begin + i, *picture);
       else
@@ -118,21 +133,19 @@ Result<void> FrameOutput::WriteContactSheet(const std::vector<FrameId>& frames, 
     for (const std::optional<Error>& error : errors)
       if (error) return *error;
   }
-  return sheet.Write(options_.output_folder / name);
+  return sheet.Write(folder / name);
 }
 
-Result<void> FrameOutput::WriteVideo(const std::vector<FrameId>& frames) const {
-  const Intrinsics& plate = path_.Camera(frames.front()).pinhole.intrinsics;
-  LF_ASSIGN_OR_RETURN(
-      const std::unique_ptr<VideoWriter> video,
-      VideoWriter::Open(*options_.video, plate.width_px, plate.height_px, path_.fps));
+Result<void> FilmFiles::WriteVideo(const std::vector<FrameId>& frames,
+                                   const std::filesystem::path& video) const {
+  LF_ASSIGN_OR_RETURN(const std::unique_ptr<VideoWriter> writer,
+                      VideoWriter::Open(video, width_px, height_px, fps));
   for (const FrameId frame : frames) {
-    if (options_.signals != nullptr && options_.signals->stop)
-      return Error{ErrorKind::kInterrupted, "interrupted at the video"};
+    if (stop != nullptr && *stop) return Error{ErrorKind::kInterrupted, "interrupted at the video"};
     LF_ASSIGN_OR_RETURN(const Image<uint8_t> picture, ReadPicture(frame));
-    LF_RETURN_IF_ERROR(video->Add(picture));
+    LF_RETURN_IF_ERROR(writer->Add(picture));
   }
-  return video->Close();
+  return writer->Close();
 }
 
 }  // namespace lf

@@ -74,8 +74,9 @@ RunStateOptions StateOptions(const Package& package, const RenderOptions& option
   if (!package.name.empty()) picture.emplace_back("picture.film", HashOfCameras(package.path));
   RunInputs rays = InputsOfRays(package.whole, package.light_field.encoding, choices);
   for (auto& input : InputsOfRebinning(options, max_cells)) rays.push_back(std::move(input));
-  return {options.output_folder, package.name,      package.FrameIds(), options.format,
-          options.resume,        options.overwrite, std::move(rays),    std::move(picture)};
+  return {options.output_folder, package.name,       package.FrameIds(),
+          options.format,        options.resume,     options.overwrite,
+          std::move(rays),       std::move(picture), options.shard};
 }
 
 // One render: its inputs, and what passes leave behind.
@@ -88,14 +89,13 @@ class Renderer {
         options_(options),
         pool_(pool),
         progress_(progress),
-        index_(package.light_field, package.places),
-        output_(package.light_field, package.path, options, pool) {}
+        index_(package.light_field, package.places) {}
 
   Result<RenderReport> Run();
 
  private:
   // A section of a film may be black; a film is not.
-  bool IsWhole() const { return package_.name.empty(); }
+  bool IsWhole() const { return package_.name.empty() && !options_.shard; }
   Result<void> Begin();
   Result<void> CheckChoices() const;
   Result<void> CheckSlab() const;
@@ -116,7 +116,6 @@ class Renderer {
   const std::function<void(const RenderProgress&)>& progress_;
   ImageIndex index_;
   std::unique_ptr<LfImageStore> store_;
-  FrameOutput output_;
 
   std::vector<FrameId> frames_;
   MemoryPlan plan_;
@@ -214,6 +213,12 @@ Result<void> Renderer::CheckChoices() const {
   if (most && (!options_.max_image_count || *options_.max_image_count > *most))
     return UsageError(fmt::format(
         "{}: was made with --max-images {}, and has no more of each frame", package_.name, *most));
+  if (options_.shard && (options_.mode != RenderMode::kCollect || options_.stop_at_samples ||
+                         options_.require_samples || options_.keep_plates || options_.video))
+    return UsageError(
+        "--shard: writes plates for lfmerge, of a part of the LF images: leave out --mode rebin "
+        "and "
+        "hybrid, --stop-when, --require, --keep-plates and --video (lfmerge has one)");
   if (options_.rebin.nearest > 0 && options_.back_end != CollectBackEnd::kReference)
     return UsageError(
         "--nearest: only by the k-d tree of --back-end reference, which is far slower: give that, "
@@ -294,7 +299,6 @@ Result<void> Renderer::RunPasses(std::span<const FrameId> frames) {
       pool_,
       *store_,
       plan_,
-      output_,
       *state_,
       clock,
       totals_,
@@ -362,7 +366,7 @@ Result<void> Renderer::RunPass(const RenderJob& job, std::span<const FrameId> fr
   // Passes depend on the memory; what counts as broken must not.
   all_broken_ = all_broken_ && pass.AllBroken();
   const bool is_last = frames_left == frames.size();
-  if (all_broken_ && is_last && !pass.skipped().empty() && !had_plates_ &&
+  if (all_broken_ && is_last && !options_.shard && !pass.skipped().empty() && !had_plates_ &&
       state_->finished().empty()) {
     state_->RemoveAll();  // plates without a ray, should it have taken so long
     return InputError(
@@ -377,15 +381,17 @@ Result<void> Renderer::RunPass(const RenderJob& job, std::span<const FrameId> fr
 }
 
 Result<RenderReport> Renderer::End() {
+  const FilmFiles film = FilesOfFilm(path_, options_);
   std::optional<Error> video_error;
-  if (options_.contact_sheet)
+  if (options_.contact_sheet && !options_.shard)
     if (const Result<void> sheet =
-            output_.WriteContactSheet(frames_, plan_.frames_finished_at_once);
+            film.WriteContactSheet(frames_, plan_.frames_finished_at_once, pool_);
         !sheet)
       return sheet.error().kind == ErrorKind::kInterrupted ? Interrupted() : sheet.error();
   // The frames are what counts: they are finished, and the video's error comes last.
   if (options_.video)
-    if (const Result<void> video = output_.WriteVideo(frames_); !video) video_error = video.error();
+    if (const Result<void> video = film.WriteVideo(frames_, *options_.video); !video)
+      video_error = video.error();
   if (video_error && video_error->kind == ErrorKind::kInterrupted) return Interrupted();
   for (const auto& [frame, report] : state_->finished()) totals_.frames.push_back(report);
   totals_.total_s += NowSeconds() - begin_s_;

@@ -17,6 +17,7 @@
 #include "lf/lens_weights/frame_weights.h"
 #include "lf/package/package.h"
 #include "lf/record/report.h"
+#include "lf/record/shard.h"
 #include "lf/sequence/frame_file.h"
 
 namespace lf {
@@ -43,6 +44,9 @@ struct RenderOptions {
   bool contact_sheet = true;                   // contact_sheet.png beside the frames
   bool keep_plates = false;                    // frame_0001.plate beside the frames
 
+  // Plates of some of the LF images alone, for MergeShards(): no frames, contact sheet or video.
+  // Not with rules that count rays, with rebinned rays or with keep_plates.
+  std::optional<Shard> shard;
   // off: a frame takes only the first so many LF images of the order that contribute to it. No more
   // than the package was made for.
   std::optional<size_t> max_image_count;

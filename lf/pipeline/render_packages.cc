@@ -245,13 +245,13 @@ Result<RenderReport> RenderPackages(const std::vector<fs::path>& paths,
   std::sort(frames.begin(), frames.end());
   std::sort(report.frames.begin(), report.frames.end(),
             [](const FrameReport& a, const FrameReport& b) { return a.frame < b.frame; });
-  const FrameOutput output(last->light_field, last->path, options, pool);
-  if (options.contact_sheet)
-    LF_RETURN_IF_ERROR(output.WriteContactSheet(frames, static_cast<size_t>(pool.thread_count()),
-                                                ContactSheetName(paths)));
-  if (options.video) LF_RETURN_IF_ERROR(output.WriteVideo(frames));
+  const FilmFiles film = FilesOfFilm(last->path, options);
+  if (options.contact_sheet && !options.shard)
+    LF_RETURN_IF_ERROR(film.WriteContactSheet(frames, static_cast<size_t>(pool.thread_count()),
+                                              pool, ContactSheetName(paths)));
+  if (options.video) LF_RETURN_IF_ERROR(film.WriteVideo(frames, *options.video));
   // A section may be black.
-  if (report.AcceptedRays() == 0 && paths.size() == parts.front().film_count)
+  if (report.AcceptedRays() == 0 && !options.shard && paths.size() == parts.front().film_count)
     return InputError(fmt::format("{}: every frame is black: no ray reached them",
                                   options.output_folder.string()));
   return report;

@@ -187,6 +187,10 @@ void RenderPass::SelectForPass(std::span<const PlaceRange> places) {
   select.whole_images = job_.options.whole_images;
   images_ = SelectImages(job_.index, cameras, select, job_.pool, taken);
   DropUnweighted();
+  if (job_.options.shard)
+    std::erase_if(images_, [this](const SelectedImage& image) {
+      return !job_.options.shard->Holds(image.place);
+    });
   if (!rebinned_) return;
   // What the plates do not need is read for rebinned rays alone.
   for (const RenderCamera& camera : rebinned_->ReachedCameras()) cameras.push_back(camera);
@@ -331,19 +335,38 @@ Result<void> RenderPass::FinishFrames(std::span<const size_t> frames) {
   return {};
 }
 
+FrameSheet RenderPass::SheetOf(size_t f) const {
+  FrameSheet sheet =
+      MakeFrameSheet(frames_[f].id, job_.path.Camera(frames_[f].id), ProgressOf(f).rays, lenses_[f],
+                     job_.package.light_field.encoding);
+  sheet.fps = job_.path.fps;
+  sheet.estimator = job_.options.reading.estimator;
+  sheet.version = job_.options.version;
+  sheet.develop.smooth_below = job_.options.smooth_below;
+  return sheet;
+}
+
 // Any thread may call it, for a frame each.
 Result<FrameReport> RenderPass::WriteFiles(size_t f, const Completion* completion) {
   Frame& frame = frames_[f];
   FrameProgress progress = ProgressOf(f);
-  const std::filesystem::path to =
-      FramePath(job_.options.output_folder, frame.id, job_.options.format);
-  if (job_.options.keep_plates) {
+  const std::filesystem::path to = job_.state.FinishedPath(frame.id);
+  if (job_.options.keep_plates || job_.options.shard) {
     // Where a frame ends is no matter of passes.
     progress.places_done =
         frame.is_stopped ? frame.next_decision : std::min(frame.places.end, job_.index.place_end());
     std::filesystem::path plate = to;
-    LF_RETURN_IF_ERROR(WritePlate(plate.replace_extension(".plate"),
-                                  job_.state.PlateText(frame.id, progress), plates_[f], job_.pool));
+    PlateEntries text = job_.state.PlateText(frame.id, progress);
+    for (auto& entry : TextOf(SheetOf(f))) text.push_back(std::move(entry));
+    if (job_.options.shard) text.emplace_back("shard", job_.options.shard->Text());
+    LF_RETURN_IF_ERROR(WritePlate(plate.replace_extension(".plate"), text, plates_[f], job_.pool));
+  }
+  if (job_.options.shard) {
+    FrameReport report;
+    report.frame = frame.id;
+    report.rays = progress.rays;
+    report.camera = InputsOfCamera(frame.id, job_.path.Camera(frame.id));
+    return report;
   }
   LF_ASSIGN_OR_RETURN(FrameReport report,
                       WritePicture(f, completion, to, [this] { return job_.IsStopped(); }));
@@ -358,14 +381,11 @@ Result<FrameReport> RenderPass::WriteFiles(size_t f, const Completion* completio
 Result<FrameReport> RenderPass::WritePicture(size_t f, const Completion* completion,
                                              const std::filesystem::path& to,
                                              const std::function<bool()>& is_interrupted) {
-  const FrameRays rays = ProgressOf(f).rays;
-  if (job_.Collects())
-    return job_.output.Write(frames_[f].id, rays, lenses_[f], plates_[f], completion, to,
-                             is_interrupted);
   const Intrinsics& plate = cameras_[f].pinhole.intrinsics;
-  return job_.output.Write(frames_[f].id, rays, lenses_[f],
-                           SensorPlate(plate.width_px, plate.height_px), completion, to,
-                           is_interrupted);
+  const SensorPlate none =
+      job_.Collects() ? SensorPlate(0, 0) : SensorPlate(plate.width_px, plate.height_px);
+  return lf::WritePicture(SheetOf(f), job_.Collects() ? plates_[f] : none, completion, to,
+                          job_.options.format, job_.pool, is_interrupted);
 }
 
 // A frame that was stopped, or takes some LF images only, is complete where it ends.
@@ -383,7 +403,8 @@ std::vector<Completion> RenderPass::Complete(std::span<const size_t> frames) {
 
 Result<void> RenderPass::Conclude(size_t f, const FrameReport& report) {
   Frame& frame = frames_[f];
-  if (ProgressOf(f).rays.image_count == 0 && report.interpolated_share.value_or(0) == 0) {
+  if (!job_.options.shard && ProgressOf(f).rays.image_count == 0 &&
+      report.interpolated_share.value_or(0) == 0) {
     // The first are told at once; a report has them all.
     constexpr size_t kTold = 10;
     if (++job_.black_count <= kTold)

@@ -34,7 +34,6 @@ struct RenderJob {
   ThreadPool& pool;
   const LfImageStore& store;
   const MemoryPlan& plan;
-  const FrameOutput& output;
   RunState& state;
   DumpClock& clock;
   RenderReport& totals;  // of passes that are done, and of earlier runs; total_s of those alone
@@ -94,6 +93,7 @@ class RenderPass {
   uint32_t PlacesCovered(size_t f) const;
   Result<void> DecideStops();
   Result<void> FinishFrames(std::span<const size_t> frames);
+  FrameSheet SheetOf(size_t f) const;
   Result<FrameReport> WriteFiles(size_t f, const Completion* completion);
   Result<FrameReport> WritePicture(size_t f, const Completion* completion,
                                    const std::filesystem::path& to,

@@ -83,7 +83,8 @@ Result<RenderRate> MeasureRate(const ImageIndex& index, const RenderCamera& fram
       std::filesystem::temp_directory_path() / fmt::format("lf_rate.{}.exr", ::getpid());
   DevelopedFrame developed = Develop(plates[0], develop, alone);
   if (needs_options.lens_weights != LensWeights::kNone)
-    developed.effective_count = lens.SpreadOverPlate(lens.EffectiveCounts());
+    developed.effective_count =
+        SpreadOverPlate(lens.EffectiveCounts(), lens.camera().pinhole.intrinsics);
   const Result<void> written = WriteFrame(file, developed, FrameFormat::kExrHalf, {});
   std::error_code ignored;
   std::filesystem::remove(file, ignored);

@@ -66,9 +66,15 @@ void RemoveTemporaryFiles(const fs::path& folder, const std::vector<FrameId>& fr
   }
 }
 
+// Of the state; empty if it is that of all frames.
+std::string NameOf(const RunStateOptions& options) {
+  if (!options.shard) return options.package;
+  return options.package.empty() ? options.shard->Name()
+                                 : options.package + "." + options.shard->Name();
+}
+
 fs::path PartialFolder(const RunStateOptions& options) {
-  const fs::path partial = options.folder / "partial";
-  return options.package.empty() ? partial : partial / options.package;
+  return options.folder / "partial" / NameOf(options);
 }
 
 template <class Number>
@@ -97,9 +103,16 @@ RunState::~RunState() {
   lock_.Remove();
   std::error_code ignored;
   fs::remove(partial_, ignored);  // fails, as it should, where files are left
-  if (!options_.package.empty()) fs::remove(partial_.parent_path(), ignored);
+  if (!Name().empty()) fs::remove(options_.folder / "partial", ignored);
 }
 
+std::string RunState::Name() const { return NameOf(options_); }
+fs::path RunState::FinishedPath(FrameId frame) const {
+  if (!options_.shard) return FramePath(options_.folder, frame, options_.format);
+  return FramePath(options_.folder / "partial" / "shards" / options_.shard->Name(), frame,
+                   options_.format)
+      .replace_extension(".plate");
+}
 fs::path RunState::PlatePath(FrameId frame) const {
   return FramePath(partial_, frame, options_.format).replace_extension(".plate");
 }
@@ -107,8 +120,7 @@ fs::path RunState::RecordPath(FrameId frame) const {
   return FramePath(partial_, frame, options_.format).replace_extension(".json");
 }
 fs::path RunState::ReportPath() const {
-  return options_.folder /
-         (options_.package.empty() ? "report.json" : "report-" + options_.package + ".json");
+  return options_.folder / (Name().empty() ? "report.json" : "report-" + Name() + ".json");
 }
 fs::path RunState::PicturePath(FrameId frame) const {
   return FramePath(partial_, frame, options_.format);
@@ -121,13 +133,17 @@ Result<std::unique_ptr<RunState>> RunState::Open(const RunStateOptions& options,
   LF_RETURN_IF_ERROR(CreateFolder(partial));
   LF_ASSIGN_OR_RETURN(FileLock lock, FileLock::Take(partial / "lock"));
   std::unique_ptr<RunState> state(new RunState(options, path, std::move(lock)));
+  if (options.shard)
+    LF_RETURN_IF_ERROR(CreateFolder(state->FinishedPath(FrameId{1}).parent_path()));
   LF_RETURN_IF_ERROR(state->Look());
   return state;
 }
 
 Result<void> RunState::Look() {
   RemoveTemporaryFiles(partial_, options_.frames, false);
-  RemoveTemporaryFiles(options_.folder, options_.frames, !options_.package.empty());
+  RemoveTemporaryFiles(options_.folder, options_.frames, !Name().empty());
+  if (options_.shard)
+    RemoveTemporaryFiles(FinishedPath(FrameId{1}).parent_path(), options_.frames, true);
   for (const fs::path& file : FilesOf(partial_)) {
     const std::optional<FrameId> frame = FrameOf(file);
     if (frame && file.extension() == ".plate") plates_.insert(*frame);
@@ -150,13 +166,13 @@ Result<void> RunState::Look() {
     LogWarning("{}: the finished render there is replaced, frame by frame",
                options_.folder.string());
   fs::remove(ReportPath(), ignored);
-  if (options_.package.empty()) fs::remove(options_.folder / "contact_sheet.png", ignored);
+  if (Name().empty()) fs::remove(options_.folder / "contact_sheet.png", ignored);
   return {};
 }
 
 // By their reports: frames of two films in one folder would pass for one.
 Result<void> RunState::CheckOtherPackages() const {
-  if (options_.package.empty()) return {};
+  if (Name().empty()) return {};
   for (const fs::path& file : FilesOf(options_.folder)) {
     const std::string name = file.filename().string();
     if (!name.starts_with("report-") || file.extension() != ".json" || file == ReportPath())
@@ -212,8 +228,7 @@ Result<void> RunState::ReadFinished(const fs::path& path) {
     // Somebody may have removed it to have it rendered again; in another format it is a difference.
     const bool has_format =
         std::find(recorded.begin(), recorded.end(), options_.picture.front()) != recorded.end();
-    if (has_format && !fs::exists(FramePath(options_.folder, frame.frame, options_.format)))
-      continue;
+    if (has_format && !fs::exists(FinishedPath(frame.frame))) continue;
     LF_RETURN_IF_ERROR(Check(path.string(), frame.frame, recorded, true));
     finished_[frame.frame] = std::move(frame);
   }

@@ -8,6 +8,9 @@
 //   frame_0001.plate  the plate of an unfinished frame, what it is made from and how far it is
 //   frame_0001.exr    its picture, about as new
 //   frame_0002.json   the report of a finished frame, and what it is made from
+//
+// Of a shard (shard.h) all of that is in DIR/partial/shard_1_of_5/, or NAME.shard_1_of_5/; its
+// finished frames are plates, DIR/partial/shards/shard_1_of_5/frame_0001.plate.
 #pragma once
 
 #include <filesystem>
@@ -28,6 +31,7 @@
 #include "lf/rebinning/ray_map.h"
 #include "lf/record/report.h"
 #include "lf/record/run_inputs.h"
+#include "lf/record/shard.h"
 #include "lf/sequence/frame_file.h"
 
 namespace lf {
@@ -41,6 +45,7 @@ struct RunStateOptions {
   bool overwrite = false;  // remove what is there
   RunInputs rays;          // InputsOfRays, InputsOfPicture
   RunInputs picture;
+  std::optional<Shard> shard = std::nullopt;
 };
 
 class RunState {
@@ -60,6 +65,9 @@ class RunState {
   const RenderReport& earlier() const { return earlier_; }
   // Of unfinished frames, or rebinned rays for them.
   bool HasPlates() const { return !plates_.empty() || has_rays_; }
+
+  // Where a finished frame is: its picture, or the plate of a shard.
+  std::filesystem::path FinishedPath(FrameId frame) const;
 
   // Adds the rays of the frame's plate, if there is one, and tells how far it is.
   // kInput: damaged.
@@ -109,6 +117,7 @@ class RunState {
   std::filesystem::path RecordPath(FrameId frame) const;
   std::filesystem::path RaysPath(FrameId first, size_t section) const;
   std::filesystem::path ReportPath() const;
+  std::string Name() const;
 
   RunStateOptions options_;
   const CameraPath& path_;

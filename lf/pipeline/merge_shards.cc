@@ -1,0 +1,283 @@
+#include "lf/pipeline/merge_shards.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "lf/core/file.h"
+#include "lf/core/log.h"
+#include "lf/pipeline/frame_output.h"
+#include "lf/pipeline/render_pass.h"
+#include "lf/record/frame_sheet.h"
+#include "lf/sequence/video.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+// One file, as far as it is known before its rays are read.
+struct ShardPlate {
+  fs::path path;
+  Shard shard;
+  FrameSheet sheet;
+  RunInputs inputs;  // what plates of a frame have in common
+  int width_px = 0;
+  int height_px = 0;
+};
+
+Result<std::vector<fs::path>> FilesOf(const std::vector<fs::path>& given) {
+  std::vector<fs::path> files;
+  for (const fs::path& path : given) {
+    std::error_code error;
+    if (!fs::is_directory(path, error)) {
+      files.push_back(path);
+      continue;
+    }
+    const size_t before = files.size();
+    for (auto entry = fs::recursive_directory_iterator(path, error);
+         !error && entry != fs::recursive_directory_iterator(); entry.increment(error))
+      if (entry->path().extension() == ".plate" &&
+          !entry->path().filename().string().starts_with('.'))
+        files.push_back(entry->path());
+    if (error) return InputError(fmt::format("{}: {}", path.string(), error.message()));
+    if (files.size() == before)
+      return InputError(fmt::format(
+          "{}: has no plates: expected files that end in .plate, of lfrenderer --shard or "
+          "--keep-plates",
+          path.string()));
+  }
+  std::sort(files.begin(), files.end());
+  for (size_t i = 1; i < files.size(); ++i)
+    if (files[i] == files[i - 1])
+      return UsageError(fmt::format("{}: is given twice", files[i].string()));
+  return files;
+}
+
+Result<ShardPlate> Look(const fs::path& path) {
+  LF_ASSIGN_OR_RETURN(const PlateReader reader, PlateReader::Open(path));
+  ShardPlate plate;
+  plate.path = path;
+  plate.width_px = reader.width();
+  plate.height_px = reader.height();
+  LF_ASSIGN_OR_RETURN(
+      plate.sheet, FrameSheetOf(reader.entries(), reader.width(), reader.height(), path.string()));
+  if (const std::string* const text = FindEntry(reader.entries(), "shard")) {
+    const std::optional<Shard> shard = ShardOf(*text);
+    if (!shard)
+      return InputError(
+          fmt::format("{}: shard is \"{}\", expected k/K, such as 2/5", path.string(), *text));
+    plate.shard = *shard;
+  }
+  // Rays are what shards differ in.
+  constexpr const char* kOwn[] = {"shard", "sheet.lf_images", "sheet.rays_tested",
+                                  "sheet.rays_accepted"};
+  for (const auto& entry : reader.entries())
+    if (!entry.first.starts_with("progress.") &&
+        std::find(std::begin(kOwn), std::end(kOwn), entry.first) == std::end(kOwn))
+      plate.inputs.push_back(entry);
+  return plate;
+}
+
+// Frames by their number, their shards in order.
+class Merger {
+ public:
+  Merger(const MergeOptions& options, ThreadPool& pool,
+         const std::function<void(const MergeProgress&)>& progress)
+      : options_(options), pool_(pool), progress_(progress) {}
+
+  Result<RenderReport> Run(const std::vector<fs::path>& given) {
+    LF_ASSIGN_OR_RETURN(const std::vector<fs::path> files, FilesOf(given));
+    if (files.empty()) return InputError("no plates");
+    for (const fs::path& file : files) {
+      if (IsStopped()) return Interrupted();
+      LF_ASSIGN_OR_RETURN(ShardPlate plate, Look(file));
+      frames_[plate.sheet.frame].push_back(std::move(plate));
+    }
+    LF_RETURN_IF_ERROR(CheckFrames());
+    if (options_.video) {
+      LF_RETURN_IF_ERROR(CheckVideoTool());
+      LF_RETURN_IF_ERROR(CheckVideoTarget(*options_.video));
+    }
+    LF_RETURN_IF_ERROR(CreateFolder(options_.output_folder));
+    LF_RETURN_IF_ERROR(FindFinished());
+    now_.frame_total = frames_.size();
+    for (const auto& [frame, plates] : frames_) now_.plate_total += plates.size();
+    for (const auto& [frame, plates] : frames_) LF_RETURN_IF_ERROR(WriteFrameOf(plates));
+    return End();
+  }
+
+ private:
+  bool IsStopped() const { return options_.signals != nullptr && options_.signals->stop; }
+  Error Interrupted() const {
+    return {ErrorKind::kInterrupted,
+            fmt::format("interrupted after {} of {} frames; those are kept in {}, --resume goes on",
+                        now_.frame_count, now_.frame_total, options_.output_folder.string())};
+  }
+  fs::path PathOf(FrameId frame) const {
+    return FramePath(options_.output_folder, frame, options_.format);
+  }
+
+  // That all shards of all frames are there, once, and of the same render.
+  Result<void> CheckFrames() {
+    const ShardPlate& first = frames_.begin()->second.front();
+    for (auto& [frame, plates] : frames_) {
+      std::sort(plates.begin(), plates.end(), [](const ShardPlate& a, const ShardPlate& b) {
+        return a.shard.number < b.shard.number;
+      });
+      const ShardPlate& one = plates.front();
+      if (one.width_px != first.width_px || one.height_px != first.height_px)
+        return InputError(fmt::format("{}: has {} x {} elements, {} has {} x {}: not of one film",
+                                      one.path.string(), one.width_px, one.height_px,
+                                      first.path.string(), first.width_px, first.height_px));
+      std::set<uint32_t> there;
+      for (const ShardPlate& plate : plates) {
+        if (plate.shard.count != one.shard.count)
+          return InputError(
+              fmt::format("frame {}: {} is shard {}, {} is shard {}: all must be "
+                          "parts of the same cut",
+                          frame.value, one.path.string(), one.shard.Text(), plate.path.string(),
+                          plate.shard.Text()));
+        if (!there.insert(plate.shard.number).second)
+          return InputError(
+              fmt::format("frame {}: {} is shard {}, and another file is, too: give each once",
+                          frame.value, plate.path.string(), plate.shard.Text()));
+        if (plate.width_px != one.width_px || plate.height_px != one.height_px)
+          return InputError(fmt::format("frame {}: {} has {} x {} elements, {} has {} x {}",
+                                        frame.value, one.path.string(), one.width_px, one.height_px,
+                                        plate.path.string(), plate.width_px, plate.height_px));
+        if (const auto difference = FirstDifference(plate.inputs, one.inputs))
+          return InputError(
+              fmt::format("frame {}: {} was made with {} {}, {} with {}: shards of one render have "
+                          "all in common",
+                          frame.value, plate.path.string(), difference->key, difference->recorded,
+                          one.path.string(), difference->wanted));
+      }
+      std::vector<uint32_t> missing;
+      for (uint32_t k = 1; k <= one.shard.count && missing.size() < 10; ++k)
+        if (!there.contains(k)) missing.push_back(k);
+      if (!missing.empty())
+        return InputError(fmt::format(
+            "frame {}: of {} shards {} are there; missing: {}{} (is their render finished?)",
+            frame.value, one.shard.count, there.size(), fmt::join(missing, ", "),
+            one.shard.count - there.size() > missing.size() ? ", ..." : ""));
+    }
+    return {};
+  }
+
+  Result<void> FindFinished() {
+    const fs::path report = options_.output_folder / "report.json";
+    if (options_.resume && fs::exists(report)) {
+      LF_ASSIGN_OR_RETURN(const RenderReport earlier, ReadReport(report));
+      for (const FrameReport& frame : earlier.frames) reports_[frame.frame] = frame;
+    }
+    for (const auto& [frame, plates] : frames_) {
+      if (!fs::exists(PathOf(frame)) || options_.overwrite) continue;
+      if (!options_.resume)
+        return UsageError(fmt::format(
+            "{}: is there already: --resume keeps such frames, --overwrite replaces them",
+            PathOf(frame).string()));
+      finished_.insert(frame);
+    }
+    return {};
+  }
+
+  Result<void> WriteFrameOf(const std::vector<ShardPlate>& plates) {
+    const ShardPlate& first = plates.front();
+    const FrameId frame = first.sheet.frame;
+    FrameSheet sheet = first.sheet;
+    sheet.rays = {};
+    for (const ShardPlate& plate : plates) {
+      sheet.rays.image_count += plate.sheet.rays.image_count;
+      sheet.rays.tested_count += plate.sheet.rays.tested_count;
+      sheet.rays.accepted_count += plate.sheet.rays.accepted_count;
+    }
+    const bool is_kept = finished_.contains(frame);
+    SensorPlate sum(0, 0);
+    if (!is_kept) sum = SensorPlate(first.width_px, first.height_px);
+    for (const ShardPlate& plate : plates) {
+      if (IsStopped()) return Interrupted();
+      if (!is_kept) {
+        LF_ASSIGN_OR_RETURN(PlateReader reader, PlateReader::Open(plate.path));
+        if (reader.width() != first.width_px || reader.height() != first.height_px)
+          return InputError(
+              fmt::format("{}: is another file than it was before", plate.path.string()));
+        LF_RETURN_IF_ERROR(reader.AddTo(&sum));
+      }
+      ++now_.plate_count;
+      if (progress_) progress_(now_);
+    }
+    if (!is_kept) {
+      const Result<FrameReport> report =
+          WritePicture(sheet, sum, nullptr, PathOf(frame), options_.format, pool_,
+                       [this] { return IsStopped(); });
+      if (!report && report.error().kind == ErrorKind::kInterrupted) return Interrupted();
+      if (!report) return report.error();
+      reports_[frame] = *report;
+    }
+    accepted_count_ += sheet.rays.accepted_count;
+    ++now_.frame_count;
+    if (progress_) progress_(now_);
+    return {};
+  }
+
+  Result<RenderReport> End() {
+    const ShardPlate& first = frames_.begin()->second.front();
+    std::vector<FrameId> frames;
+    for (const auto& [frame, plates] : frames_) frames.push_back(frame);
+    const FilmFiles film = {
+        options_.output_folder, options_.format,
+        first.width_px,         first.height_px,
+        first.sheet.fps,        options_.signals == nullptr ? nullptr : &options_.signals->stop};
+    RenderReport report;
+    report.version = first.sheet.version;
+    for (const auto& entry : first.inputs)
+      if (!entry.first.starts_with("sheet.") && !entry.first.starts_with("frame"))
+        report.inputs.push_back(entry);
+    RunChoices picture;
+    picture.format = NameOf(options_.format);
+    picture.smooth_below = first.sheet.develop.smooth_below;
+    for (auto& entry : InputsOfPicture(picture)) report.inputs.push_back(std::move(entry));
+    report.estimator = first.sheet.estimator;
+    report.width = first.width_px;
+    report.height = first.height_px;
+    report.thread_count = pool_.thread_count();
+    for (const FrameId frame : frames)
+      if (const auto found = reports_.find(frame); found != reports_.end())
+        report.frames.push_back(found->second);
+    report.total_s = NowSeconds() - begin_s_;
+    report.peak_memory_bytes = PeakMemoryBytes();
+    LF_RETURN_IF_ERROR(WriteReport(report, options_.output_folder / "report.json"));
+    if (options_.contact_sheet) LF_RETURN_IF_ERROR(film.WriteContactSheet(frames, 2, pool_));
+    if (options_.video) LF_RETURN_IF_ERROR(film.WriteVideo(frames, *options_.video));
+    if (accepted_count_ == 0)
+      return InputError(fmt::format("{}: every frame is black: no ray reached them",
+                                    options_.output_folder.string()));
+    return report;
+  }
+
+  const MergeOptions& options_;
+  ThreadPool& pool_;
+  const std::function<void(const MergeProgress&)>& progress_;
+  const double begin_s_ = NowSeconds();
+  std::map<FrameId, std::vector<ShardPlate>> frames_;
+  std::map<FrameId, FrameReport> reports_;
+  std::set<FrameId> finished_;
+  MergeProgress now_;
+  uint64_t accepted_count_ = 0;
+};
+
+}  // namespace
+
+Result<RenderReport> MergeShards(const std::vector<fs::path>& plates, const MergeOptions& options,
+                                 ThreadPool& pool,
+                                 const std::function<void(const MergeProgress&)>& progress) {
+  return Merger(options, pool, progress).Run(plates);
+}
+
+}  // namespace lf

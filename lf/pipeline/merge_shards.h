@@ -1,0 +1,47 @@
+// Plates in, frames out: those of the shards of a divided render are added, to the bits of one that
+// was not divided; a plate that was kept is developed again.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "lf/core/parallel.h"
+#include "lf/core/result.h"
+#include "lf/pipeline/render.h"
+#include "lf/record/report.h"
+
+namespace lf {
+
+struct MergeOptions {
+  std::filesystem::path output_folder;
+  FrameFormat format = FrameFormat::kExrHalf;
+  std::optional<std::filesystem::path> video;
+  bool contact_sheet = true;
+  bool resume = false;     // keep the frames that are there
+  bool overwrite = false;  // replace them
+  RenderSignals* signals = nullptr;
+};
+
+struct MergeProgress {
+  size_t plate_count = 0;  // added
+  size_t plate_total = 0;
+  size_t frame_count = 0;
+  size_t frame_total = 0;
+};
+
+//   plates  files, or folders with such files somewhere below them, in any order
+// What all plates say is read first, and compared; then frame by frame: needs the memory of one
+// plate and its picture. Each frame has its file when it is done, and not before.
+// kUsage: frames are there, and neither resume nor overwrite; a video without all frames.
+// kInput: no plates; plates without a sheet (record/frame_sheet.h); a frame whose shards are not
+// all
+//   there, or there twice, or are of different renders: the message names them; a damaged plate;
+//   every frame is black.
+// kOutput: the disk, ffmpeg. kInterrupted: frames that are written stay.
+Result<RenderReport> MergeShards(const std::vector<std::filesystem::path>& plates,
+                                 const MergeOptions& options, ThreadPool& pool,
+                                 const std::function<void(const MergeProgress&)>& progress);
+
+}  // namespace lf

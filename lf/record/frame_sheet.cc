@@ -1,0 +1,204 @@
+#include "lf/record/frame_sheet.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <charconv>
+#include <cmath>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "lf/collector/frame_lens.h"
+
+namespace lf {
+namespace {
+
+// Shortest texts that give the same bits again.
+std::string Words(std::span<const double> numbers) {
+  return fmt::format("{}", fmt::join(numbers, " "));
+}
+
+// The values of keys, one after the other; the first fault is kept, and what follows it is 0.
+class SheetReader {
+ public:
+  SheetReader(const PlateEntries& entries, const std::string& name)
+      : entries_(entries), name_(name) {}
+
+  std::vector<double> Numbers(const char* key, size_t count) {
+    std::vector<double> numbers = AnyNumbers(key);
+    if (numbers.size() != count) Fault(key, fmt::format("{} numbers", count));
+    numbers.resize(count);
+    return numbers;
+  }
+
+  std::vector<double> AnyNumbers(const char* key) {
+    std::vector<double> numbers;
+    const std::string text = Text(key);
+    const char* next = text.data();
+    const char* const end = next + text.size();
+    while (next < end) {
+      double number = 0;
+      const auto [rest, error] = std::from_chars(next, end, number);
+      if (error != std::errc{} || !std::isfinite(number) || (rest < end && *rest != ' ')) {
+        Fault(key, "numbers");
+        break;
+      }
+      numbers.push_back(number);
+      next = rest + 1;
+    }
+    return numbers;
+  }
+
+  uint64_t WholeNumber(const char* key, uint64_t most) {
+    const std::string text = Text(key);
+    uint64_t number = 0;
+    const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc{} || rest != text.data() + text.size() || number > most)
+      Fault(key, fmt::format("a whole number up to {}", most));
+    return number;
+  }
+
+  std::string Text(const char* key) {
+    const std::string* const text = FindEntry(entries_, key);
+    if (text == nullptr && !fault_)
+      fault_ = InputError(fmt::format(
+          "{}: has no {}: it is the plate of an unfinished frame, or of another version; expected "
+          "those of lfrenderer --shard or --keep-plates",
+          name_, key));
+    return text == nullptr ? "" : *text;
+  }
+
+  void Fault(const char* key, const std::string& expected) {
+    if (!fault_)
+      fault_ =
+          InputError(fmt::format("{}: {} is \"{}\", expected {}", name_, key, Text(key), expected));
+  }
+
+  const std::optional<Error>& fault() const { return fault_; }
+
+ private:
+  const PlateEntries& entries_;
+  const std::string& name_;
+  std::optional<Error> fault_;
+};
+
+template <class Matrix>
+std::vector<double> RowsOf(const Matrix& matrix) {
+  std::vector<double> numbers;
+  for (int row = 0; row < matrix.rows(); ++row)
+    for (int column = 0; column < matrix.cols(); ++column) numbers.push_back(matrix(row, column));
+  return numbers;
+}
+
+Mat3 Mat3Of(std::span<const double> rows) {
+  Mat3 matrix;
+  for (int i = 0; i < 9; ++i) matrix(i / 3, i % 3) = rows[i];
+  return matrix;
+}
+
+Vec3 Vec3Of(std::span<const double> v) { return {v[0], v[1], v[2]}; }
+
+}  // namespace
+
+PlateEntries TextOf(const FrameSheet& sheet) {
+  const RenderCamera& camera = sheet.camera;
+  const Intrinsics& k = camera.pinhole.intrinsics;
+  const RigidTransform& pose = camera.pinhole.cam_from_world;
+  const Plane& focus = camera.focus_plane;
+  std::vector<double> develop = {sheet.develop.pedestal, sheet.develop.scale};
+  for (const double gain : sheet.develop.white_balance) develop.push_back(gain);
+  for (const double value : RowsOf(sheet.develop.camera_to_srgb)) develop.push_back(value);
+  std::vector<double> of_pose = RowsOf(pose.rotation);
+  for (const double value : RowsOf(pose.translation)) of_pose.push_back(value);
+  const auto words = [](std::initializer_list<double> numbers) {
+    return Words(std::vector<double>(numbers));
+  };
+  PlateEntries text = {
+      {"sheet.frame", fmt::format("{}", sheet.frame.value)},
+      {"sheet.intrinsics", words({k.fx_px, k.fy_px, k.cx_px, k.cy_px, k.skew_px})},
+      {"sheet.pose", Words(of_pose)},
+      {"sheet.aperture", words({camera.aperture.radius_w, 0.0 + camera.aperture.blades,
+                                camera.aperture.rotation_rad})},
+      {"sheet.focus_plane",
+       words({focus.normal.x(), focus.normal.y(), focus.normal.z(), focus.offset_w})},
+      {"sheet.lens",
+       words({camera.time_s, camera.focal_length_w, camera.sensor_width_w, camera.focus_distance_w,
+              camera.focus_tilt.horizontal_rad, camera.focus_tilt.vertical_rad, camera.unit_m})},
+      {"sheet.fps", words({sheet.fps})},
+      {"sheet.estimator", NameOf(sheet.estimator)},
+      {"sheet.version", sheet.version},
+      {"sheet.develop", Words(develop)},
+      {"sheet.smooth_below", fmt::format("{}", sheet.develop.smooth_below)},
+      {"sheet.lf_images", fmt::format("{}", sheet.rays.image_count)},
+      {"sheet.rays_tested", fmt::format("{}", sheet.rays.tested_count)},
+      {"sheet.rays_accepted", fmt::format("{}", sheet.rays.accepted_count)},
+  };
+  if (sheet.weighed) {
+    const auto& counts = sheet.weighed->effective_counts.pixels();
+    text.emplace_back("sheet.weights",
+                      words({sheet.weighed->hat_share, sheet.weighed->uncovered_share}));
+    text.emplace_back("sheet.effective", fmt::format("{}", fmt::join(counts, " ")));
+  }
+  return text;
+}
+
+Result<FrameSheet> FrameSheetOf(const PlateEntries& entries, int width_px, int height_px,
+                                const std::string& name) {
+  SheetReader reader(entries, name);
+  FrameSheet sheet;
+  sheet.frame.value = static_cast<uint32_t>(reader.WholeNumber("sheet.frame", UINT32_MAX));
+  const std::vector<double> k = reader.Numbers("sheet.intrinsics", 5);
+  Intrinsics& intrinsics = sheet.camera.pinhole.intrinsics;
+  intrinsics = {k[0], k[1], k[2], k[3], k[4], width_px, height_px};
+  if (!(k[0] != 0 && k[1] != 0)) reader.Fault("sheet.intrinsics", "focal lengths that are not 0");
+  const std::vector<double> pose = reader.Numbers("sheet.pose", 12);
+  sheet.camera.pinhole.cam_from_world.rotation = Mat3Of(pose);
+  sheet.camera.pinhole.cam_from_world.translation = Vec3Of(std::span(pose).subspan(9));
+  const std::vector<double> aperture = reader.Numbers("sheet.aperture", 3);
+  if (!(aperture[0] >= 0) || !(aperture[1] == 0 || (aperture[1] >= 3 && aperture[1] <= 1000)))
+    reader.Fault("sheet.aperture", "a radius, 0 or 3 to 1000 blades, and their rotation");
+  else
+    sheet.camera.aperture = {aperture[0], static_cast<int>(aperture[1]), aperture[2]};
+  const std::vector<double> focus = reader.Numbers("sheet.focus_plane", 4);
+  sheet.camera.focus_plane = {Vec3Of(focus), focus[3]};
+  const std::vector<double> lens = reader.Numbers("sheet.lens", 7);
+  sheet.camera.time_s = lens[0];
+  sheet.camera.focal_length_w = lens[1];
+  sheet.camera.sensor_width_w = lens[2];
+  sheet.camera.focus_distance_w = lens[3];
+  sheet.camera.focus_tilt = {lens[4], lens[5]};
+  sheet.camera.unit_m = lens[6];
+  sheet.fps = reader.Numbers("sheet.fps", 1)[0];
+  const std::string estimator = reader.Text("sheet.estimator");
+  sheet.estimator =
+      estimator == NameOf(Estimator::kNearest) ? Estimator::kNearest : Estimator::kBilinear;
+  if (estimator != NameOf(sheet.estimator)) reader.Fault("sheet.estimator", "nearest or bilinear");
+  sheet.version = reader.Text("sheet.version");
+  const std::vector<double> develop = reader.Numbers("sheet.develop", 14);
+  if (!(develop[1] > 0)) reader.Fault("sheet.develop", "a scale above 0 as the second number");
+  sheet.develop.pedestal = develop[0];
+  sheet.develop.scale = develop[1];
+  sheet.develop.white_balance = {develop[2], develop[3], develop[4]};
+  sheet.develop.camera_to_srgb = Mat3Of(std::span(develop).subspan(5));
+  sheet.develop.smooth_below =
+      static_cast<uint32_t>(reader.WholeNumber("sheet.smooth_below", UINT32_MAX));
+  sheet.rays.image_count = reader.WholeNumber("sheet.lf_images", UINT32_MAX);
+  sheet.rays.tested_count = reader.WholeNumber("sheet.rays_tested", UINT64_MAX / 2);
+  sheet.rays.accepted_count = reader.WholeNumber("sheet.rays_accepted", UINT64_MAX / 2);
+  if (FindEntry(entries, "sheet.weights") != nullptr) {
+    const std::vector<double> weights = reader.Numbers("sheet.weights", 2);
+    const auto [columns, rows] = EffectiveSquares(intrinsics);
+    const std::vector<double> counts =
+        reader.Numbers("sheet.effective", static_cast<size_t>(columns) * rows);
+    sheet.weighed = {weights[0], weights[1], Image<float>(columns, rows)};
+    for (size_t i = 0; i < counts.size(); ++i) {
+      if (!(counts[i] >= 0 && counts[i] <= 1e9)) reader.Fault("sheet.effective", "counts");
+      sheet.weighed->effective_counts.pixels()[i] = static_cast<float>(counts[i]);
+    }
+  }
+  if (reader.fault()) return *reader.fault();
+  return sheet;
+}
+
+}  // namespace lf

@@ -1,0 +1,45 @@
+// What a finished plate's file says beside its rays, so that a picture can be made of it anywhere:
+// without the light field and the path (doc/formats/plate.md, keys "sheet.").
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "lf/camera/render_camera.h"
+#include "lf/collector/collect.h"
+#include "lf/core/ids.h"
+#include "lf/core/image.h"
+#include "lf/core/result.h"
+#include "lf/plate/plate_file.h"
+#include "lf/sequence/develop.h"
+
+namespace lf {
+
+struct FrameSheet {
+  FrameId frame;
+  RenderCamera camera;
+  double fps = 0;
+  Estimator estimator = Estimator::kBilinear;
+  std::string version;     // of the program
+  FrameRays rays;          // in the plate
+  DevelopOptions develop;  // all but completion and is_interrupted
+
+  // With lens weights (collector/frame_lens.h).
+  struct Weighed {
+    double hat_share = 0;
+    double uncovered_share = 0;
+    Image<float> effective_counts;
+  };
+  std::optional<Weighed> weighed;
+};
+
+PlateEntries TextOf(const FrameSheet& sheet);
+
+// Numbers come back as the same bits.
+//   width_px, height_px  of the plate
+// kInput: a key is missing, or its value is none; the message begins with `name`.
+Result<FrameSheet> FrameSheetOf(const PlateEntries& entries, int width_px, int height_px,
+                                const std::string& name);
+
+}  // namespace lf

@@ -1,0 +1,85 @@
+#include "lf/record/frame_sheet.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace lf {
+namespace {
+
+FrameSheet Sheet() {
+  FrameSheet sheet;
+  sheet.frame = FrameId{17};
+  RenderCamera& camera = sheet.camera;
+  camera.pinhole.intrinsics = {100.1, 1.0 / 3, 50, 40.7, 1e-9, 96, 64};
+  camera.pinhole.cam_from_world = *LookAlong({0.1, 0.2, 0.3}, {1, 2, 3}, {0, -1, 0});
+  camera.aperture = {0.1, 5, 0.3};
+  camera.focus_plane = FocusPlane(camera.pinhole, 2.2, {0.1, 0.2});
+  camera.time_s = 0.1;
+  camera.focal_length_w = 0.05;
+  camera.sensor_width_w = 0.036;
+  camera.focus_distance_w = 2.2;
+  camera.focus_tilt = {0.1, 0.2};
+  camera.unit_m = 1e-3;
+  sheet.fps = 23.976;
+  sheet.estimator = Estimator::kNearest;
+  sheet.version = "1.2.3";
+  sheet.rays = {12, uint64_t{1} << 40, 34567};
+  sheet.develop.pedestal = 1024;
+  sheet.develop.scale = 65535 / 16.0;
+  sheet.develop.white_balance = {2.1, 1, 1.7};
+  sheet.develop.camera_to_srgb << 1.1, -0.1, 0, 0.2, 0.9, -0.1, 0, 0.3, 0.7;
+  sheet.develop.smooth_below = 3;
+  Image<float> counts(12, 8);
+  for (size_t i = 0; i < counts.pixels().size(); ++i)
+    counts.pixels()[i] = static_cast<float>(i) / 7;
+  sheet.weighed = FrameSheet::Weighed{0.25, 1e-17, counts};
+  return sheet;
+}
+
+TEST(FrameSheet, ComesBackAsTheSameBits) {
+  const FrameSheet sheet = Sheet();
+  const Result<FrameSheet> read = FrameSheetOf(TextOf(sheet), 96, 64, "p");
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(TextOf(*read), TextOf(sheet));
+  EXPECT_EQ(read->frame, sheet.frame);
+  EXPECT_EQ(read->camera.pinhole.intrinsics, sheet.camera.pinhole.intrinsics);
+  EXPECT_EQ(read->camera.pinhole.cam_from_world.rotation,
+            sheet.camera.pinhole.cam_from_world.rotation);
+  EXPECT_EQ(read->camera.focus_plane.normal, sheet.camera.focus_plane.normal);
+  EXPECT_EQ(read->camera.focus_tilt.vertical_rad, 0.2);
+  EXPECT_EQ(read->develop.camera_to_srgb, sheet.develop.camera_to_srgb);
+  EXPECT_EQ(read->rays.tested_count, uint64_t{1} << 40);
+  EXPECT_EQ(read->weighed->effective_counts.pixels(), sheet.weighed->effective_counts.pixels());
+}
+
+TEST(FrameSheet, FaultsAreNamed) {
+  const auto fault = [](const std::string& key, const std::optional<std::string>& value) {
+    PlateEntries entries = TextOf(Sheet());
+    const auto entry = std::find_if(entries.begin(), entries.end(),
+                                    [&](const auto& one) { return one.first == key; });
+    if (value)
+      entry->second = *value;
+    else
+      entries.erase(entry);
+    const Result<FrameSheet> read = FrameSheetOf(entries, 96, 64, "p");
+    return read ? std::string() : read.error().message;
+  };
+  for (const char* key : {"sheet.frame", "sheet.intrinsics", "sheet.pose", "sheet.aperture",
+                          "sheet.focus_plane", "sheet.lens", "sheet.fps", "sheet.estimator",
+                          "sheet.version", "sheet.develop", "sheet.smooth_below", "sheet.lf_images",
+                          "sheet.rays_tested", "sheet.rays_accepted", "sheet.effective"}) {
+    EXPECT_NE(fault(key, {}).find(std::string("p: has no ") + key), std::string::npos) << key;
+    if (std::string(key) == "sheet.version") continue;
+    for (const char* value : {"", "x", "1 2 nan", "1,2", "-1e999"})
+      EXPECT_NE(fault(key, value).find(std::string("p: ") + key + " is \"" + value),
+                std::string::npos)
+          << key << " " << value;
+  }
+  EXPECT_NE(fault("sheet.aperture", "1 2 0"), "");
+  EXPECT_NE(fault("sheet.develop", "0 0 1 1 1 1 0 0 0 1 0 0 0 1"), "");
+  EXPECT_EQ(fault("sheet.weights", {}), "");  // without lens weights
+}
+
+}  // namespace
+}  // namespace lf

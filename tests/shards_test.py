@@ -1,0 +1,151 @@
+#!/usr/bin/python3
+"""lfrenderer --shard and lfmerge: the frames of one machine, to the bit, from parts of the LF images
+in any order; and honest words about what is missing.
+
+usage: shards_test.py LFRENDERER LFMERGE LFPREPROCESSOR
+"""
+import hashlib
+import json
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+import small_field
+from program_test_case import ProgramTestCase
+
+RENDERER = MERGE = PREPROCESSOR = None
+
+
+def digests(folder, pattern="frame_*.exr"):
+    """sha256 of the files of a folder"""
+    return {path.name: hashlib.sha256(path.read_bytes()).hexdigest()
+            for path in sorted(folder.glob(pattern))}
+
+
+class ShardsTest(ProgramTestCase):
+    def setUp(self):
+        super().setUp()
+        small_field.SIDE = 5
+        self.field = small_field.write_field(self.folder / "field")
+        self.path = small_field.write_path(self.folder)
+
+    def render(self, out, *options):
+        self.succeeds(RENDERER, self.field, self.path, "-o", self.folder / out, *options)
+        return digests(self.folder / out)
+
+    def shards(self, out, count, *options, of=None):
+        for number in of or range(1, count + 1):
+            self.succeeds(RENDERER, self.field, self.path, "-o", self.folder / out, "--shard",
+                          f"{number}/{count}", *options)
+        return self.folder / out / "partial" / "shards"
+
+    def merge(self, out, *plates, options=()):
+        self.succeeds(MERGE, *plates, "-o", self.folder / out, *options)
+        return digests(self.folder / out)
+
+    # One shard more than LF images, too: some are empty.
+    def test_any_cut_gives_the_same_bits(self):
+        for weights in ("auto", "none"):
+            options = ["--lens-weights", weights]
+            expected = self.render("whole-" + weights, *options)
+            self.assertEqual(len(expected), 3)
+            for count in (2,) if weights == "none" else (1, 2, 5, 26):
+                out = f"{weights}-{count}"
+                plates = self.shards(out, count, *options)
+                self.assertEqual(digests(self.folder / out), {})
+                self.assertEqual(self.merge(out, plates), expected)
+            report = json.loads((self.folder / out / "report.json").read_text())
+            whole = json.loads((self.folder / f"whole-{weights}" / "report.json").read_text())
+            for frame in report["frames"] + whole["frames"]:
+                frame.pop("develop_s")
+            self.assertEqual(report["frames"], whole["frames"])
+            self.assertEqual(report["inputs"], whole["inputs"])
+
+    def test_the_order_of_plates_does_not_matter_nor_what_shards_are_interrupted(self):
+        expected = self.render("whole", "--keep-plates", "--format", "png16")
+        pictures = digests(self.folder / "whole", "frame_*.png")
+        self.assertEqual(len(pictures), 3)
+        command = [RENDERER, self.field, self.path, "-o", self.folder / "out", "--shard", "2/3",
+                   "--dump-every", "0.001s"]
+        for attempt in range(4):
+            process = subprocess.Popen(list(map(str, command + ["--resume"])),
+                                       stderr=subprocess.DEVNULL)
+            time.sleep(0.03 * (attempt + 1))
+            process.send_signal(signal.SIGKILL if attempt % 2 else signal.SIGTERM)
+            process.communicate()
+        self.succeeds(*command, "--resume")
+        plates = list(self.shards("out", 3, of=(3, 1)).rglob("*.plate"))
+        self.assertEqual(len(plates), 9)
+        self.merge("png", *reversed(plates), options=["--format", "png16"])
+        self.assertEqual(digests(self.folder / "png", "frame_*.png"), pictures)
+        # Plates that were kept are developed again.
+        self.merge("again", *sorted((self.folder / "whole").glob("*.plate")))
+        self.assertEqual(self.merge("exr", *plates), digests(self.folder / "again"))
+        self.assertEqual(expected, {})
+
+    def test_packages_may_be_cut_too(self):
+        expected = self.render("whole")
+        self.succeeds(PREPROCESSOR, self.field, self.path, "-o", self.folder / "packages",
+                      "--packages", "2")
+        packages = sorted((self.folder / "packages").glob("*.lfp"))
+        self.assertEqual(len(packages), 2)
+        for shard in ("1/2", "2/2"):
+            self.succeeds(RENDERER, *packages, "-o", self.folder / "out", "--shard", shard)
+        self.assertEqual(self.merge("out", self.folder / "out" / "partial" / "shards"), expected)
+
+    def test_what_is_missing_double_or_of_another_render_is_named(self):
+        plates = self.shards("out", 3, of=(1, 3))
+        self.fails(3, ["frame 1", "of 3 shards 2 are there", "missing: 2"], MERGE, plates, "-o",
+                   self.folder / "no")
+        self.assertFalse((self.folder / "no").exists())
+        self.shards("out", 3, of=(2,))
+        self.shards("twice", 3, of=(2,))
+        self.fails(3, ["frame 1", "shard 2/3", "give each once"], MERGE, plates,
+                   self.folder / "twice", "-o", self.folder / "no")
+        other = self.shards("other", 3, "--lens-weights", "none", of=(2,))
+        shutil.copytree(other / "shard_2_of_3", plates / "shard_2_of_3", dirs_exist_ok=True)
+        self.fails(3, ["lens_weights", "none"], MERGE, plates, "-o", self.folder / "no")
+        two = self.shards("cut", 2, of=(1,))
+        self.fails(3, ["1/2", "the same cut"], MERGE, two, plates / "shard_1_of_3", "-o",
+                   self.folder / "no")
+        self.fails(3, ["no plates", "--shard"], MERGE, self.folder / "field", "-o",
+                   self.folder / "no")
+        plate = next(plates.rglob("*.plate"))
+        self.fails(2, ["twice"], MERGE, plate, plate, "-o", self.folder / "no")
+        shutil.rmtree(plates / "shard_2_of_3")
+        self.shards("out", 3, "--overwrite", of=(2,))
+        plate.write_bytes(plate.read_bytes()[:-9])
+        self.fails(3, [plate.name, "truncated"], MERGE, plates, "-o", self.folder / "no")
+
+    def test_frames_that_are_there_are_asked_about(self):
+        plates = self.shards("out", 2)
+        expected = self.merge("out", plates)
+        self.fails(2, ["frame_0001.exr", "--resume", "--overwrite"], MERGE, plates, "-o",
+                   self.folder / "out")
+        second = self.folder / "out" / "frame_0002.exr"
+        second.unlink()
+        first = self.folder / "out" / "frame_0001.exr"
+        before = first.stat().st_mtime_ns
+        self.assertEqual(self.merge("out", plates, options=["--resume"]), expected)
+        self.assertEqual(first.stat().st_mtime_ns, before)
+        self.assertEqual(len(json.loads((self.folder / "out" / "report.json").read_text())["frames"]),
+                         3)
+        self.assertEqual(self.merge("out", plates, options=["--overwrite"]), expected)
+        self.assertNotEqual(first.stat().st_mtime_ns, before)
+
+    def test_what_shards_cannot_do_is_refused(self):
+        for options in (["--mode", "hybrid"], ["--stop-when", "samples>=3"], ["--keep-plates"],
+                        ["--video", self.folder / "a.mp4"], ["--require", "samples>=2"]):
+            self.fails(2, ["--shard"], RENDERER, self.field, self.path, "-o", self.folder / "no",
+                       "--shard", "1/2", *options)
+        for shard in ("0/2", "3/2", "1", "1/", "/2", "1/2/3", "a/b", "-1/2", "1/99999999999"):
+            self.fails(2, ["--shard", "expected k/K"], RENDERER, self.field, self.path, "-o",
+                       self.folder / "no", "--shard", shard)
+
+
+if __name__ == "__main__":
+    RENDERER, MERGE, PREPROCESSOR = sys.argv[1:4]
+    unittest.main(argv=sys.argv[:1], verbosity=2)
