@@ -404,8 +404,12 @@ Result<RenderReport> Renderer::End() {
       });
   if (are_all_black && IsWhole())
     return InputError(fmt::format(
-        "{}: every frame is black: no ray of {} LF images reached them (are the images masked?)",
-        options_.output_folder.string(), totals_.selected_image_count));
+        "{}: every frame is black: no ray of {} LF images reached them ({})",
+        options_.output_folder.string(), totals_.selected_image_count,
+        options_.mode == RenderMode::kRebin
+            ? "are the images masked, or do --slab-position, --slab-distance, --r-st or --r-uv not "
+              "fit the scene?"
+            : "are the images masked?"));
   if (video_error) return *video_error;
   return std::move(totals_);
 }
