@@ -6,6 +6,7 @@ usage: shards_test.py LFRENDERER LFMERGE LFPREPROCESSOR
 """
 import hashlib
 import json
+import resource
 import shutil
 import signal
 import subprocess
@@ -28,7 +29,7 @@ def digests(folder, pattern="frame_*.exr"):
 class ShardsTest(ProgramTestCase):
     def setUp(self):
         super().setUp()
-        small_field.SIDE = 5
+        small_field.SIDE = 3
         self.field = small_field.write_field(self.folder / "field")
         self.path = small_field.write_path(self.folder)
 
@@ -52,7 +53,7 @@ class ShardsTest(ProgramTestCase):
             options = ["--lens-weights", weights]
             expected = self.render("whole-" + weights, *options)
             self.assertEqual(len(expected), 3)
-            for count in (2,) if weights == "none" else (1, 2, 5, 26):
+            for count in (2,) if weights == "none" else (1, 2, 5, 10):
                 out = f"{weights}-{count}"
                 plates = self.shards(out, count, *options)
                 self.assertEqual(digests(self.folder / out), {})
@@ -135,6 +136,27 @@ class ShardsTest(ProgramTestCase):
                          3)
         self.assertEqual(self.merge("out", plates, options=["--overwrite"]), expected)
         self.assertNotEqual(first.stat().st_mtime_ns, before)
+
+    # A limit for the size of files stands for a full disk: what is there stays, and nothing is left
+    # of what was begun.
+    def test_a_full_disk_costs_no_frame(self):
+        plates = self.shards("out", 2)
+        expected = self.merge("whole", plates)
+        first = sorted(plates.rglob("frame_0001.plate"))
+        self.assertEqual(len(first), 2)
+        self.merge("cut", *first, options=["--no-contact-sheet"])
+        size = (self.folder / "cut" / "frame_0001.exr").stat().st_size
+        result = subprocess.run(
+            [MERGE, plates, "-o", self.folder / "cut", "--resume"], capture_output=True, text=True,
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size // 2, size // 2)))
+        self.assertEqual(result.returncode, 4, result.stderr)
+        for word in ("frame_0002", "cannot be written"):
+            self.assertIn(word, result.stderr.strip().splitlines()[-1])
+        self.assertEqual(sorted(path.name for path in (self.folder / "cut").iterdir()),
+                         ["frame_0001.exr", "report.json"])
+        self.assertEqual(self.merge("cut", plates, options=["--resume"]), expected)
+        frames = json.loads((self.folder / "cut" / "report.json").read_text())["frames"]
+        self.assertEqual([frame["frame"] for frame in frames], [1, 2, 3])
 
     def test_what_shards_cannot_do_is_refused(self):
         for options in (["--mode", "hybrid"], ["--stop-when", "samples>=3"], ["--keep-plates"],

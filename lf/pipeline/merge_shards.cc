@@ -108,7 +108,12 @@ class Merger {
     LF_RETURN_IF_ERROR(FindFinished());
     now_.frame_total = frames_.size();
     for (const auto& [frame, plates] : frames_) now_.plate_total += plates.size();
-    for (const auto& [frame, plates] : frames_) LF_RETURN_IF_ERROR(WriteFrameOf(plates));
+    for (const auto& [frame, plates] : frames_)
+      if (const Result<void> written = WriteFrameOf(plates); !written) {
+        // What --resume finds, should there be room for it: frames without one are written again.
+        (void)WriteReport(Report(), ReportPath());
+        return written.error();
+      }
     return End();
   }
 
@@ -122,6 +127,8 @@ class Merger {
   fs::path PathOf(FrameId frame) const {
     return FramePath(options_.output_folder, frame, options_.format);
   }
+
+  fs::path ReportPath() const { return options_.output_folder / "report.json"; }
 
   // That all shards of all frames are there, once, and of the same render.
   Result<void> CheckFrames() {
@@ -171,9 +178,8 @@ class Merger {
   }
 
   Result<void> FindFinished() {
-    const fs::path report = options_.output_folder / "report.json";
-    if (options_.resume && fs::exists(report)) {
-      LF_ASSIGN_OR_RETURN(const RenderReport earlier, ReadReport(report));
+    if (options_.resume && fs::exists(ReportPath())) {
+      LF_ASSIGN_OR_RETURN(const RenderReport earlier, ReadReport(ReportPath()));
       for (const FrameReport& frame : earlier.frames) reports_[frame.frame] = frame;
     }
     for (const auto& [frame, plates] : frames_) {
@@ -182,7 +188,7 @@ class Merger {
         return UsageError(fmt::format(
             "{}: is there already: --resume keeps such frames, --overwrite replaces them",
             PathOf(frame).string()));
-      finished_.insert(frame);
+      if (reports_.contains(frame)) finished_.insert(frame);
     }
     return {};
   }
@@ -226,14 +232,8 @@ class Merger {
     return {};
   }
 
-  Result<RenderReport> End() {
+  RenderReport Report() const {
     const ShardPlate& first = frames_.begin()->second.front();
-    std::vector<FrameId> frames;
-    for (const auto& [frame, plates] : frames_) frames.push_back(frame);
-    const FilmFiles film = {
-        options_.output_folder, options_.format,
-        first.width_px,         first.height_px,
-        first.sheet.fps,        options_.signals == nullptr ? nullptr : &options_.signals->stop};
     RenderReport report;
     report.version = first.sheet.version;
     for (const auto& entry : first.inputs)
@@ -247,12 +247,24 @@ class Merger {
     report.width = first.width_px;
     report.height = first.height_px;
     report.thread_count = pool_.thread_count();
-    for (const FrameId frame : frames)
+    for (const auto& [frame, plates] : frames_)
       if (const auto found = reports_.find(frame); found != reports_.end())
         report.frames.push_back(found->second);
     report.total_s = NowSeconds() - begin_s_;
     report.peak_memory_bytes = PeakMemoryBytes();
-    LF_RETURN_IF_ERROR(WriteReport(report, options_.output_folder / "report.json"));
+    return report;
+  }
+
+  Result<RenderReport> End() {
+    const ShardPlate& first = frames_.begin()->second.front();
+    std::vector<FrameId> frames;
+    for (const auto& [frame, plates] : frames_) frames.push_back(frame);
+    const FilmFiles film = {
+        options_.output_folder, options_.format,
+        first.width_px,         first.height_px,
+        first.sheet.fps,        options_.signals == nullptr ? nullptr : &options_.signals->stop};
+    RenderReport report = Report();
+    LF_RETURN_IF_ERROR(WriteReport(report, ReportPath()));
     if (options_.contact_sheet) LF_RETURN_IF_ERROR(film.WriteContactSheet(frames, 2, pool_));
     if (options_.video) LF_RETURN_IF_ERROR(film.WriteVideo(frames, *options_.video));
     if (accepted_count_ == 0)
