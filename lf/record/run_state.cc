@@ -181,8 +181,8 @@ Result<void> RunState::CheckOtherPackages() const {
     if (const auto difference =
             FirstDifference(other.inputs, Joined(options_.rays, options_.picture)))
       return UsageError(fmt::format(
-          "{}: is of a package that was rendered with {} {}, this one has {}: their frames would "
-          "pass for one film; give another -o, or remove what is there",
+          "{}: is of a package or shard that was rendered with {} {}, this one has {}: their frames "
+          "would pass for one film; give another -o, or remove what is there",
           file.string(), difference->key, difference->recorded, difference->wanted));
   }
   return {};
