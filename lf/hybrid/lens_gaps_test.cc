@@ -108,6 +108,40 @@ TEST(LensGaps, GapsAreDifferentAllOverThePlate) {
   EXPECT_LT(share, 0.95);
 }
 
+// Around a lens of three distances about 28 of them; one that sees a part of the plate counts, too.
+TEST(LensGaps, KnowsWhatIsCollectedAndWhen) {
+  const LightField field = Grid();
+  const LensGaps gaps = GapsOf(field, Frame(0.03));
+  size_t inside = 0;
+  for (const LfCamera& camera : field.cameras)
+    inside += camera.cam_from_world.Inverse().translation.norm() <= 0.03 ? 1 : 0;
+  EXPECT_EQ(gaps.collected_count(), inside);
+  EXPECT_EQ(gaps.PlaceAfter(0), 0u);
+  uint32_t before = 0;
+  for (size_t count = 1; count <= inside; ++count) {
+    const uint32_t place = gaps.PlaceAfter(count);
+    EXPECT_GT(place, before);
+    before = place;
+  }
+  EXPECT_EQ(gaps.PlaceAfter(1000), before);
+  EXPECT_LE(before, 144u);
+}
+
+// Where LF images end close to a side of the plate only the elements there ask.
+TEST(LensGaps, ElementsAtARimAskAlone) {
+  RenderCamera frame = Frame(0.03);
+  // LF images are 64 pixels wide at a focal length of 70: 0.457 to either side.
+  frame.pinhole.intrinsics = {80 / 0.47 / 2, 80 / 0.47 / 2, 40, 30, 0, 80, 60};
+  const FrameQueries queries = GapsOf(Grid(), frame).QueriesAt(LensGaps::kInTheEnd);
+  const auto asks = [&](int x, int y) {
+    return queries.shares->IsAny({x, y, x + 1, y + 1}, 0, queries.points.point_count());
+  };
+  EXPECT_TRUE(asks(0, 30));
+  EXPECT_TRUE(asks(79, 30));
+  EXPECT_FALSE(asks(8, 30));
+  EXPECT_FALSE(asks(71, 30));
+}
+
 TEST(LensGaps, WhatTheFrameDoesNotTakeCoversNothing) {
   const LensGaps gaps = GapsOf(Grid(), Frame(0.03), {0, 10});
   EXPECT_TRUE(gaps.AsksAt(LensGaps::kInTheEnd));

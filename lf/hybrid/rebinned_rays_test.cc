@@ -182,6 +182,26 @@ TEST(RebinnedRays, PreviewsAskForMoreThanTheFinishedFrames) {
   EXPECT_GT(before, outcome.cells[0] * 64 / end);
 }
 
+// Of frames that need few LF images there are no previews, unless they are asked for.
+TEST(RebinnedRays, PreviewsAreOfFramesThatTakeLong) {
+  ThreadPool pool(1);
+  Fixture fixture;
+  ASSERT_LT(fixture.field.size(), kPreviewedFrom);
+  const testing::NoiseStore store;
+  const auto looked_at = [&](Previews previews) {
+    fixture.options.previews = previews;
+    const std::unique_ptr<RebinnedRays> rays = fixture.Make(pool);
+    BatchImage image;
+    for (uint32_t i = 0; i < fixture.field.size(); ++i)
+      if (fixture.index.PlaceOf(LfImageId{i}) == 0) image.id = LfImageId{i};
+    EXPECT_TRUE(store.Load(image.id, {0, 0, testing::kWidth, testing::kHeight}, &image.pixels));
+    rays->Take(std::span(&image, 1), 1);
+    return rays->facts().looked_at;
+  };
+  EXPECT_GT(looked_at(Previews::kOn), looked_at(Previews::kAuto));
+  EXPECT_EQ(looked_at(Previews::kOff), looked_at(Previews::kAuto));
+}
+
 TEST(RebinnedRays, WithoutRoomTheRaysAtEdgesAreKept) {
   ThreadPool pool(1);
   Fixture fixture;

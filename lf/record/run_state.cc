@@ -180,10 +180,11 @@ Result<void> RunState::CheckOtherPackages() const {
     LF_ASSIGN_OR_RETURN(const RenderReport other, ReadReport(file));
     if (const auto difference =
             FirstDifference(other.inputs, Joined(options_.rays, options_.picture)))
-      return UsageError(fmt::format(
-          "{}: is of a package or shard that was rendered with {} {}, this one has {}: their frames "
-          "would pass for one film; give another -o, or remove what is there",
-          file.string(), difference->key, difference->recorded, difference->wanted));
+      return UsageError(
+          fmt::format("{}: is of a package or shard that was rendered with {} {}, this one has {}: "
+                      "their frames "
+                      "would pass for one film; give another -o, or remove what is there",
+                      file.string(), difference->key, difference->recorded, difference->wanted));
   }
   return {};
 }
