@@ -8,6 +8,8 @@
 #include "tools/common/program.h"
 #include "tools/common/progress.h"
 
+#include "lf/core/shell_word.h"
+
 namespace lf {
 namespace {
 

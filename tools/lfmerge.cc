@@ -61,9 +61,8 @@ int main(int argc, char** argv) {
     const std::vector<std::filesystem::path> files(plates.begin(), plates.end());
     LF_ASSIGN_OR_RETURN(const lf::RenderReport report,
                         lf::MergeShards(files, options, pool, [&](const lf::MergeProgress& now) {
-                          meter.Update(
-                              now.plate_count, now.plate_total,
-                              fmt::format("frame {}/{}", now.frame_count, now.frame_total));
+                          meter.Update(now.plate_count, now.plate_total,
+                                       {{"frame", now.frame_count, now.frame_total}});
                         }));
     lf::LogInfo("{} frames in {:.1f} s, peak memory {} MiB; look at {}", report.frames.size(),
                 report.total_s, report.peak_memory_bytes >> 20,

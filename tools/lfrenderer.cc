@@ -107,8 +107,8 @@ int main(int argc, char** argv) {
     lf::ProgressMeter meter(lf::ParseProgressStyle(common.progress), unit);
     const auto progress = [&](const lf::RenderProgress& now) {
       meter.Update(now.ray_count, now.ray_total,
-                   fmt::format("LF image {}/{}, frame {}/{}", now.image_count, now.image_total,
-                               now.frame_count, now.frame_total));
+                   {{"LF image", now.image_count, now.image_total},
+                    {"frame", now.frame_count, now.frame_total}});
     };
     const auto render = arguments.HasPackages() ? RenderPackageFiles : RenderLightField;
     LF_ASSIGN_OR_RETURN(const Rendered rendered,

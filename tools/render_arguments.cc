@@ -47,6 +47,10 @@ void RenderArguments::AddTo(CLI::App& app) {
                    "are kept");
   app.add_flag("--overwrite", overwrite, "Remove an unfinished render in DIR")
       ->excludes(resume_flag);
+  app.add_option("--finish", finish,
+                 "With --resume: finish these frames (1-10,20) with the rays that they have; the "
+                 "others go on, and the report says which LF images these are")
+      ->check(NotEmpty());
   app.add_option(
          "--stop-when", stop_when,
          "samples>=N: a frame is finished when 99 % of the elements that LF images see have "
@@ -169,6 +173,9 @@ Result<RenderOptions> RenderArguments::MakeOptions(const CommonOptions& common, 
     if (!options.shard)
       return UsageError(
           fmt::format("--shard \"{}\": expected k/K, such as 2/5: the second of five", shard));
+  }
+  if (!finish.empty()) {
+    LF_ASSIGN_OR_RETURN(options.finish_early, ParseFrameRange(finish, frame_count, "--finish"));
   }
   options.resume = resume;
   options.overwrite = overwrite;

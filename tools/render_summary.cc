@@ -10,6 +10,7 @@
 #include "tools/common/progress.h"
 
 #include "lf/core/log.h"
+#include "lf/core/shell_word.h"
 
 namespace lf {
 namespace {

@@ -14,6 +14,7 @@
 #include "lf/calibration/stanford_name.h"
 #include "lf/capture/distinct_intrinsics.h"
 #include "lf/core/log.h"
+#include "lf/core/shell_word.h"
 #include "lf/imageio/image_file.h"
 
 namespace lf {
@@ -76,22 +77,11 @@ void WarnOfOthers(const fs::path& folder, const Listing& listing) {
              others.size() > kShown ? ", ..." : "");
 }
 
-// A path as a shell takes it.
-std::string ShellWord(const fs::path& path) {
-  const std::string text = path.string();
-  const auto is_plain = [](unsigned char c) {
-    return std::isalnum(c) || std::string_view("/._-+,:@%").find(c) != std::string_view::npos;
-  };
-  if (std::all_of(text.begin(), text.end(), is_plain)) return text;
-  std::string word = "'";
-  for (const char c : text) word += c == '\'' ? "'\\''" : std::string(1, c);
-  return word + "'";
-}
-
 // The call that writes down what the names do not tell, with numbers to start from.
 std::string ImportCommand(const fs::path& folder, const StanfordOptions& options, bool needs_pitch,
                           int width_px) {
-  const std::string word = ShellWord(options.asked_for.empty() ? folder : options.asked_for);
+  const std::string word =
+      ShellWord((options.asked_for.empty() ? folder : options.asked_for).string());
   return fmt::format("lfimport {} -o {}{} --focal-px {}", word, word,
                      needs_pitch ? " --pitch 1" : "",
                      options.focal_px.value_or(static_cast<double>(width_px)));

@@ -18,6 +18,9 @@ class FileLock {
   FileLock& operator=(FileLock&& other) noexcept;
   ~FileLock();  // lets go; the file stays
 
+  // For a program that is to hold the lock with us, as long as either lives.
+  int fd() const { return fd_; }
+
   // Lets go, and removes the file.
   void Remove();
 

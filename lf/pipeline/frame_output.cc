@@ -51,6 +51,18 @@ FrameSheet MakeFrameSheet(FrameId frame, const RenderCamera& camera, const Frame
   return sheet;
 }
 
+namespace {
+
+ImageMetadata MetadataOf(const FrameSheet& sheet) {
+  ImageMetadata metadata = FrameMetadata(sheet.frame, sheet.camera, sheet.rays, sheet.estimator,
+                                         sheet.fps, sheet.version);
+  if (sheet.places_done)
+    metadata.emplace_back("lf:finished_early_before_place", static_cast<int>(*sheet.places_done));
+  return metadata;
+}
+
+}  // namespace
+
 Result<FrameReport> WritePicture(const FrameSheet& sheet, const SensorPlate& plate,
                                  const Completion* completion, const std::filesystem::path& to,
                                  FrameFormat format, ThreadPool& pool,
@@ -64,6 +76,7 @@ Result<FrameReport> WritePicture(const FrameSheet& sheet, const SensorPlate& pla
     return Error{ErrorKind::kInterrupted, fmt::format("{}: interrupted", to.string())};
   FrameReport report = MakeFrameReport(sheet.frame, sheet.rays, developed);
   report.camera = InputsOfCamera(sheet.frame, sheet.camera);
+  report.places_done = sheet.places_done;
   if (sheet.weighed) {
     const Image<float>& counts = sheet.weighed->effective_counts;
     report.weighed = {MedianOfSeen(counts.pixels()), sheet.weighed->hat_share,
@@ -73,23 +86,8 @@ Result<FrameReport> WritePicture(const FrameSheet& sheet, const SensorPlate& pla
   }
   report.develop_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  LF_RETURN_IF_ERROR(WriteFrame(to, developed, format,
-                                FrameMetadata(sheet.frame, sheet.camera, sheet.rays,
-                                              sheet.estimator, sheet.fps, sheet.version),
-                                is_interrupted));
+  LF_RETURN_IF_ERROR(WriteFrame(to, developed, format, MetadataOf(sheet), is_interrupted));
   return report;
-}
-
-Result<void> CheckVideoTarget(const std::filesystem::path& path) {
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  std::error_code error;
-  // The folder of the frames is made if it is missing, another is not.
-  if (!std::filesystem::is_directory(folder, error))
-    return OutputError(
-        fmt::format("--video {}: there is no folder {}", path.string(), folder.string()));
-  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
-    return OutputError(fmt::format("--video {}: exists and is no file", path.string()));
-  return {};
 }
 
 FilmFiles FilesOfFilm(const CameraPath& path, const RenderOptions& options) {

@@ -36,9 +36,6 @@ Result<FrameReport> WritePicture(const FrameSheet& sheet, const SensorPlate& pla
                                  FrameFormat format, ThreadPool& pool,
                                  const std::function<bool()>& is_interrupted);
 
-// Of --video, before the work and not after it: kOutput where the file could not be written.
-Result<void> CheckVideoTarget(const std::filesystem::path& path);
-
 inline constexpr const char* kContactSheet = "contact_sheet.png";
 
 // A film whose frames are files, so that it does not matter when and by whom they were rendered.

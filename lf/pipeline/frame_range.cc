@@ -25,7 +25,8 @@ bool TakeCharacter(std::string_view* text, char character) {
 
 }  // namespace
 
-Result<std::vector<FrameId>> ParseFrameRange(std::string_view text, size_t frame_count) {
+Result<std::vector<FrameId>> ParseFrameRange(std::string_view text, size_t frame_count,
+                                             const char* option) {
   std::set<uint32_t> numbers;
   std::string_view rest = text;
   do {
@@ -35,13 +36,14 @@ Result<std::vector<FrameId>> ParseFrameRange(std::string_view text, size_t frame
     if (good && TakeCharacter(&rest, '-')) good = TakeNumber(&rest, &last);
     if (good && TakeCharacter(&rest, 'x')) good = TakeNumber(&rest, &step);
     if (!good || (!rest.empty() && rest.front() != ','))
-      return UsageError(fmt::format("--frames '{}' is not like 1-100, 1-100x2 or 3,7,9", text));
+      return UsageError(fmt::format("{} \'{}\' is not like 1-100, 1-100x2 or 3,7,9", option, text));
     if (last < first)
-      return UsageError(fmt::format("--frames '{}': ranges go upward: {}-{}", text, last, first));
+      return UsageError(
+          fmt::format("{} \'{}\': ranges go upward: {}-{}", option, text, last, first));
     if (step < 1)
-      return UsageError(fmt::format("--frames '{}': the step after x is at least 1", text));
+      return UsageError(fmt::format("{} \'{}\': the step after x is at least 1", option, text));
     if (first < 1 || last > frame_count)
-      return UsageError(fmt::format("--frames '{}': the path has frames 1-{}", text, frame_count));
+      return UsageError(fmt::format("{} \'{}\': expected frames 1-{}", option, text, frame_count));
     for (uint64_t n = first; n <= last; n += step) numbers.insert(static_cast<uint32_t>(n));
   } while (TakeCharacter(&rest, ','));
   std::vector<FrameId> frames;

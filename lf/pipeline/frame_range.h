@@ -9,7 +9,8 @@
 
 namespace lf {
 
-// Ascending, each once. kUsage: not of this form, or outside 1 .. frame_count.
-Result<std::vector<FrameId>> ParseFrameRange(std::string_view text, size_t frame_count);
+// Ascending, each once. kUsage: not of this form, or outside 1 .. frame_count; names the option.
+Result<std::vector<FrameId>> ParseFrameRange(std::string_view text, size_t frame_count,
+                                             const char* option = "--frames");
 
 }  // namespace lf

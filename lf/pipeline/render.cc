@@ -10,6 +10,7 @@
 #include "lf/collector/memory_plan.h"
 #include "lf/core/file.h"
 #include "lf/core/log.h"
+#include "lf/pipeline/check_options.h"
 #include "lf/pipeline/frame_output.h"
 #include "lf/pipeline/render_pass.h"
 #include "lf/record/run_state.h"
@@ -97,12 +98,12 @@ class Renderer {
   // A section of a film may be black; a film is not.
   bool IsWhole() const { return package_.name.empty() && !options_.shard; }
   Result<void> Begin();
-  Result<void> CheckChoices() const;
-  Result<void> CheckSlab() const;
   Result<size_t> PlanRebinning();
   std::vector<FrameId> FramesToRender();
-  Result<void> RunPasses(std::span<const FrameId> frames);
-  Result<void> RunPass(const RenderJob& job, std::span<const FrameId> frames, size_t frames_left);
+  Result<void> RunPasses(std::vector<FrameId> frames);
+  Result<void> FinishEarly(const RenderJob& job, std::vector<FrameId>* frames);
+  Result<void> RunPass(const RenderJob& job, std::span<const FrameId> frames, size_t frames_left,
+                       bool finishes_early);
   Result<RenderReport> End();
   Result<void> CheckAnyContributes(const RenderJob& job, std::span<const FrameId> frames) const;
   Error NoneContributes() const;
@@ -131,9 +132,9 @@ class Renderer {
 
 Result<RenderReport> Renderer::Run() {
   LF_RETURN_IF_ERROR(Begin());
-  const std::vector<FrameId> frames = FramesToRender();
+  std::vector<FrameId> frames = FramesToRender();
   if (!frames.empty()) {
-    if (const Result<void> result = RunPasses(frames); !result)
+    if (const Result<void> result = RunPasses(std::move(frames)); !result)
       return result.error().kind == ErrorKind::kInterrupted ? Interrupted() : result.error();
   }
   return End();
@@ -142,7 +143,7 @@ Result<RenderReport> Renderer::Run() {
 Result<void> Renderer::Begin() {
   frames_ = options_.frames;
   if (frames_.empty()) frames_ = package_.FrameIds();
-  LF_RETURN_IF_ERROR(CheckChoices());
+  LF_RETURN_IF_ERROR(CheckOptions(package_, options_));
   LF_ASSIGN_OR_RETURN(
       store_, OpenStore(package_.light_field, options_.reading.estimator == Estimator::kBilinear
                                                   ? Mosaics::kToRgb
@@ -203,66 +204,6 @@ Result<size_t> Renderer::PlanRebinning() {
   return bytes;
 }
 
-Result<void> Renderer::CheckChoices() const {
-  if (options_.mode == RenderMode::kRebin && (options_.CountsRays() || options_.keep_plates))
-    return UsageError(
-        "--mode rebin: nothing is collected, so that --stop-when, --require, --smooth-below and "
-        "--keep-plates have no rays: leave them out, or use hybrid");
-  LF_RETURN_IF_ERROR(CheckSlab());
-  const std::optional<size_t>& most = package_.choices.max_image_count;
-  if (most && (!options_.max_image_count || *options_.max_image_count > *most))
-    return UsageError(fmt::format(
-        "{}: was made with --max-images {}, and has no more of each frame", package_.name, *most));
-  if (options_.shard && (options_.mode != RenderMode::kCollect || options_.stop_at_samples ||
-                         options_.require_samples || options_.keep_plates || options_.video))
-    return UsageError(
-        "--shard: writes plates for lfmerge, of a part of the LF images: leave out --mode rebin "
-        "and "
-        "hybrid, --stop-when, --require, --keep-plates and --video (lfmerge has one)");
-  if (options_.rebin.nearest > 0 && options_.back_end != CollectBackEnd::kReference)
-    return UsageError(
-        "--nearest: only by the k-d tree of --back-end reference, which is far slower: give that, "
-        "or leave it out");
-  if (options_.CountsRays() && options_.reading.estimator == Estimator::kBilinear &&
-      options_.reading.filter == PixelFilter::kMosaic)
-    return UsageError(
-        "--filter mosaic: rays count up to 8 times, so that --stop-when, --require and "
-        "--smooth-below have none to count: leave them out, or use bilinear");
-  if (options_.lens_weights == LensWeights::kNone) return {};
-  const char* const name = NameOf(options_.lens_weights);
-  if (!package_.choices.has_neighbours)
-    return UsageError(
-        fmt::format("--lens-weights {}: {} was made with --lens-weights none, and lacks the LF "
-                    "cameras beside the lens: give none, or make it again",
-                    name, package_.name));
-  if (options_.CountsRays())
-    return UsageError(
-        fmt::format("--lens-weights {}: counts are sums of weights, so that --stop-when, --require "
-                    "and --smooth-below have no rays to count: leave them out",
-                    name));
-  if (options_.lens_weights == LensWeights::kArea)
-    for (const FrameId frame : frames_)
-      LF_RETURN_IF_ERROR(CheckHasArea(path_.Camera(frame), frame));
-  return {};
-}
-
-// Rays cut both planes of a slab one after the other if they run about as it faces.
-Result<void> Renderer::CheckSlab() const {
-  constexpr double kMost_deg = 60;
-  if (options_.mode == RenderMode::kCollect || !options_.rebin.slab.forward_world) return {};
-  const Vec3 forward = options_.rebin.slab.forward_world->normalized();
-  for (const FrameId frame : frames_) {
-    const double cosine = forward.dot(path_.Camera(frame).pinhole.ForwardWorld());
-    const double off_deg = std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / kPi;
-    if (off_deg > kMost_deg)
-      return UsageError(fmt::format(
-          "--slab-forward {} {} {}: frame {} looks {:.0f} degrees away from it; expected "
-          "a direction within {:.0f} degrees of what all frames look along",
-          forward.x(), forward.y(), forward.z(), frame.value, off_deg, kMost_deg));
-  }
-  return {};
-}
-
 // Those that are not finished, or lack what is asked for now.
 std::vector<FrameId> Renderer::FramesToRender() {
   std::vector<FrameId> frames;
@@ -284,7 +225,7 @@ std::vector<FrameId> Renderer::FramesToRender() {
   return frames;
 }
 
-Result<void> Renderer::RunPasses(std::span<const FrameId> frames) {
+Result<void> Renderer::RunPasses(std::vector<FrameId> frames) {
   const size_t per_pass = plan_.frames_per_pass;
   totals_.pass_count = (frames.size() + per_pass - 1) / per_pass;
   if (totals_.pass_count > 1)
@@ -310,6 +251,7 @@ Result<void> Renderer::RunPasses(std::span<const FrameId> frames) {
   if (totals_.pass_count > 1 && IsWhole() && !job.Rebins() && !state_->HasPlates() &&
       state_->finished().empty())
     LF_RETURN_IF_ERROR(CheckAnyContributes(job, frames));
+  if (!options_.finish_early.empty()) LF_RETURN_IF_ERROR(FinishEarly(job, &frames));
   // Which rays are kept depends on all frames of a pass: these are the same in a render that goes
   // on.
   const std::span<const FrameId> in_passes = job.Rebins() ? std::span(frames_) : frames;
@@ -319,7 +261,7 @@ Result<void> Renderer::RunPasses(std::span<const FrameId> frames) {
     if (std::all_of(of_pass.begin(), of_pass.end(),
                     [this](FrameId frame) { return state_->finished().contains(frame); }))
       continue;
-    LF_RETURN_IF_ERROR(RunPass(job, of_pass, in_passes.size() - begin));
+    LF_RETURN_IF_ERROR(RunPass(job, of_pass, in_passes.size() - begin, false));
   }
   return {};
 }
@@ -343,12 +285,33 @@ Result<void> Renderer::CheckAnyContributes(const RenderJob& job,
   return {};
 }
 
+// Takes the frames that are finished with what they have out of `frames`.
+Result<void> Renderer::FinishEarly(const RenderJob& job, std::vector<FrameId>* frames) {
+  std::vector<FrameId> early;
+  for (const FrameId frame : options_.finish_early) {
+    const auto found = std::find(frames->begin(), frames->end(), frame);
+    if (found == frames->end()) continue;  // finished, or not asked for
+    if (state_->HasPlate(frame)) {
+      early.push_back(frame);
+      frames->erase(found);
+    } else {
+      LogWarning("--finish: frame {} has no rays yet: it takes all of its LF images", frame.value);
+    }
+  }
+  for (size_t begin = 0; begin < early.size(); begin += plan_.frames_per_pass) {
+    const size_t count = std::min(plan_.frames_per_pass, early.size() - begin);
+    LF_RETURN_IF_ERROR(
+        RunPass(job, std::span(early).subspan(begin, count), frames->size() + count, true));
+  }
+  return {};
+}
+
 Result<void> Renderer::RunPass(const RenderJob& job, std::span<const FrameId> frames,
-                               size_t frames_left) {
+                               size_t frames_left, bool finishes_early) {
   const auto finished_before = std::count_if(frames.begin(), frames.end(), [this](FrameId frame) {
     return state_->finished().contains(frame);
   });
-  RenderPass pass(job, frames);
+  RenderPass pass(job, frames, finishes_early);
   LF_RETURN_IF_ERROR(pass.Prepare());
   const std::vector<SelectedImage>& images = pass.images();
   if (images.empty() && IsWhole() && totals_.pass_count == 1 && !state_->HasPlates() &&

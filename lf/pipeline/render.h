@@ -75,6 +75,9 @@ struct RenderOptions {
   double dump_every_s = 30;  // 0: none but those asked for by signals
   bool resume = false;       // go on with the state in the folder
   bool overwrite = false;    // remove it
+  // Those of these frames that the state has rays of are finished at once, with these: their
+  // reports say before which place of the order. With resume and kCollect; not with shard.
+  std::vector<FrameId> finish_early;  // ascending
 
   std::string version;               // of the program, for the files' metadata
   RenderSignals* signals = nullptr;  // looked at all the time

@@ -120,50 +120,6 @@ void TellOfOthers(size_t given, size_t count) {
                given, count);
 }
 
-// A package file and those of its frames that are wanted.
-struct Part {
-  fs::path path;
-  std::vector<FrameId> frames;
-  uint64_t ray_count = 0;
-  size_t film_count = 1;  // packages of the film
-};
-
-Result<std::vector<Part>> LookAtAll(const std::vector<fs::path>& paths,
-                                    const std::optional<LightFieldPlace>& place,
-                                    const std::vector<FrameId>& wanted) {
-  std::vector<Part> parts;
-  std::optional<Film> film;
-  std::map<FrameId, fs::path> owners;
-  std::map<std::string, fs::path> names;
-  for (const fs::path& path : paths) {
-    LF_ASSIGN_OR_RETURN(const Package package, OpenPackage(path, place));
-    const Film other(package);
-    if (!film) film = other;
-    if (const std::string difference = film->DifferenceTo(other); !difference.empty())
-      return InputError(fmt::format("{}: is of {} than {}: render them into folders of their own",
-                                    path.string(), difference, paths.front().string()));
-    if (const auto [named, is_new] = names.emplace(package.name, path); !is_new)
-      return UsageError(
-          fmt::format("{} and {} have one name: reports and states of both would be "
-                      "called {}",
-                      named->second.string(), path.string(), package.name));
-    Part part{path, {}, 0, package.count};
-    for (const PackageFrame& frame : package.frames) {
-      if (const auto [owner, is_new] = owners.emplace(frame.id, path); !is_new)
-        return UsageError(fmt::format("{} and {} both have frame {}: give one of them",
-                                      owner->second.string(), path.string(), frame.id.value));
-      if (!wanted.empty() && !std::binary_search(wanted.begin(), wanted.end(), frame.id)) continue;
-      part.frames.push_back(frame.id);
-      part.ray_count += frame.ray_count;
-    }
-    if (!part.frames.empty()) parts.push_back(std::move(part));
-  }
-  for (const FrameId frame : wanted)
-    if (!owners.contains(frame))
-      return UsageError(fmt::format("--frames: frame {} is in none of the packages", frame.value));
-  return parts;
-}
-
 }  // namespace
 
 Result<LightFieldPlace> PlaceOf(const std::string& name, const LightField& light_field) {
@@ -191,6 +147,46 @@ Result<Package> OpenPackage(const fs::path& path, const std::optional<LightField
   return package;
 }
 
+Result<std::vector<PackagePart>> LookAtPackages(const std::vector<fs::path>& paths,
+                                                const std::optional<LightFieldPlace>& place,
+                                                const std::vector<FrameId>& wanted) {
+  std::vector<PackagePart> parts;
+  std::optional<Film> film;
+  std::map<FrameId, fs::path> owners;
+  std::map<std::string, fs::path> names;
+  for (const fs::path& path : paths) {
+    LF_ASSIGN_OR_RETURN(const Package package, OpenPackage(path, place));
+    const Film other(package);
+    if (!film) film = other;
+    if (const std::string difference = film->DifferenceTo(other); !difference.empty())
+      return InputError(fmt::format("{}: is of {} than {}: render them into folders of their own",
+                                    path.string(), difference, paths.front().string()));
+    if (const auto [named, is_new] = names.emplace(package.name, path); !is_new)
+      return UsageError(
+          fmt::format("{} and {} have one name: reports and states of both would be "
+                      "called {}",
+                      named->second.string(), path.string(), package.name));
+    PackagePart part{path, {}, true, 0, package.count};
+    for (const PackageFrame& frame : package.frames) {
+      if (const auto [owner, is_new] = owners.emplace(frame.id, path); !is_new)
+        return UsageError(fmt::format("{} and {} both have frame {}: give one of them",
+                                      owner->second.string(), path.string(), frame.id.value));
+      if (!wanted.empty() && !std::binary_search(wanted.begin(), wanted.end(), frame.id)) {
+        part.is_whole = false;
+        continue;
+      }
+      part.frames.push_back(frame.id);
+      part.ray_count += frame.ray_count;
+    }
+    if (!part.frames.empty()) parts.push_back(std::move(part));
+  }
+  for (const FrameId frame : wanted)
+    if (!owners.contains(frame))
+      return UsageError(fmt::format("--frames: frame {} is in none of the packages", frame.value));
+  TellOfOthers(paths.size(), parts.front().film_count);
+  return parts;
+}
+
 // One package alone is likely to be rendered beside others.
 std::string ContactSheetName(const std::vector<fs::path>& paths) {
   return paths.size() == 1 ? fmt::format("contact_sheet-{}.png", paths.front().stem().string())
@@ -201,22 +197,22 @@ Result<RenderReport> RenderPackages(const std::vector<fs::path>& paths,
                                     const std::optional<LightFieldPlace>& place,
                                     const RenderOptions& options, ThreadPool& pool,
                                     const std::function<void(const RenderProgress&)>& progress) {
-  LF_ASSIGN_OR_RETURN(const std::vector<Part> parts, LookAtAll(paths, place, options.frames));
-  TellOfOthers(paths.size(), parts.front().film_count);
+  LF_ASSIGN_OR_RETURN(const std::vector<PackagePart> parts,
+                      LookAtPackages(paths, place, options.frames));
   if (options.video) {
     LF_RETURN_IF_ERROR(CheckVideoTool());
     LF_RETURN_IF_ERROR(CheckVideoTarget(*options.video));
   }
   RenderProgress before;  // of packages that are done
   uint64_t rays_after = 0;
-  for (const Part& part : parts) {
+  for (const PackagePart& part : parts) {
     before.frame_total += part.frames.size();
     rays_after += part.ray_count;
   }
   std::vector<FrameId> frames;
   RenderReport report;
   std::optional<Package> last;
-  for (const Part& part : parts) {
+  for (const PackagePart& part : parts) {
     LF_ASSIGN_OR_RETURN(Package package, OpenPackage(part.path, place));
     if (options.reading.estimator == Estimator::kBilinear)
       MakeRoomForUndershoot(&package.light_field.encoding);

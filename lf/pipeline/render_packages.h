@@ -36,14 +36,30 @@ Result<LightFieldPlace> PlaceOf(const std::string& name, const LightField& light
 Result<Package> OpenPackage(const std::filesystem::path& path,
                             const std::optional<LightFieldPlace>& place = {});
 
+// A package file and those of its frames that are wanted.
+struct PackagePart {
+  std::filesystem::path path;
+  std::vector<FrameId> frames;
+  bool is_whole = true;    // all of its frames
+  uint64_t ray_count = 0;  // of these frames, about
+  size_t film_count = 1;   // packages of the film
+};
+
+// Opens every package and checks that they are of one film. Those without a frame that is wanted
+// are left out; nothing wanted: all frames. A film of which packages are missing is warned about.
+// kUsage: packages that have frames in common, frames that none of them has; kInput: packages of
+// different films or light fields. Else as OpenPackage().
+Result<std::vector<PackagePart>> LookAtPackages(const std::vector<std::filesystem::path>& paths,
+                                                const std::optional<LightFieldPlace>& place,
+                                                const std::vector<FrameId>& wanted);
+
 // contact_sheet.png; of one package alone contact_sheet-NAME.png.
 std::string ContactSheetName(const std::vector<std::filesystem::path>& paths);
 
 // One after the other as by Render(), each with its own report and state; then the contact sheet
 // (ContactSheetName()) and the video of their frames.
 // Reads every package before the first is rendered. Of options.frames each takes its own. The
-// report is that of all. kUsage: packages that have frames in common, frames that none of them has;
-// kInput: packages of different films or light fields. Else as Render() and OpenPackage().
+// report is that of all. Errors as Render() and LookAtPackages().
 Result<RenderReport> RenderPackages(const std::vector<std::filesystem::path>& paths,
                                     const std::optional<LightFieldPlace>& place,
                                     const RenderOptions& options, ThreadPool& pool,

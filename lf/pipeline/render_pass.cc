@@ -19,11 +19,13 @@ SelectOptions RenderJob::Select() const {
   return select;
 }
 
-RenderPass::RenderPass(const RenderJob& job, std::span<const FrameId> frames) : job_(job) {
+RenderPass::RenderPass(const RenderJob& job, std::span<const FrameId> frames, bool finishes_early)
+    : job_(job) {
   for (const FrameId frame : frames) {
     frames_.push_back({});
     frames_.back().id = frame;
     frames_.back().is_finished = job.state.finished().contains(frame);
+    frames_.back().is_early = finishes_early;
   }
 }
 
@@ -126,6 +128,7 @@ Result<void> RenderPass::PreparePlates(std::vector<PlaceRange>* places) {
       continue;
     }
     LF_ASSIGN_OR_RETURN(const FrameProgress start, job_.state.LoadPlate(frame.id, &plates_[f]));
+    if (frame.is_early) taken.end = std::min(taken.end, start.places_done);
     frame.places = {0, taken.end};
     taken.begin = start.places_done;
     frame.earlier_rays = start.rays;
@@ -334,6 +337,7 @@ FrameSheet RenderPass::SheetOf(size_t f) const {
   sheet.estimator = job_.options.reading.estimator;
   sheet.version = job_.options.version;
   sheet.develop.smooth_below = job_.options.smooth_below;
+  if (frames_[f].is_early) sheet.places_done = frames_[f].places.end;
   return sheet;
 }
 

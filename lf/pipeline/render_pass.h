@@ -52,7 +52,8 @@ class RenderPass {
  public:
   // Those that are finished take no part, but for what rebinned rays are kept: that depends on all
   // frames of the pass.
-  RenderPass(const RenderJob& job, std::span<const FrameId> frames);
+  //   finishes_early  with the rays of the state alone
+  RenderPass(const RenderJob& job, std::span<const FrameId> frames, bool finishes_early);
 
   // Plates of an earlier run, and the LF images that are still to be collected. kInput: damaged.
   Result<void> Prepare();
@@ -76,6 +77,7 @@ class RenderPass {
     uint32_t next_decision = 0;    // place
     bool is_finished = false;
     bool is_stopped = false;  // by the rule
+    bool is_early = false;    // finished with what the state has
     double picture_s = 0;     // when its picture was written last
     std::unique_ptr<ReachableElements> reachable;
   };

@@ -134,6 +134,8 @@ PlateEntries TextOf(const FrameSheet& sheet) {
       {"sheet.rays_tested", fmt::format("{}", sheet.rays.tested_count)},
       {"sheet.rays_accepted", fmt::format("{}", sheet.rays.accepted_count)},
   };
+  if (sheet.places_done)
+    text.emplace_back("sheet.finished_early", fmt::format("{}", *sheet.places_done));
   if (sheet.weighed) {
     const auto& counts = sheet.weighed->effective_counts.pixels();
     text.emplace_back("sheet.weights",
@@ -186,6 +188,9 @@ Result<FrameSheet> FrameSheetOf(const PlateEntries& entries, int width_px, int h
   sheet.rays.image_count = reader.WholeNumber("sheet.lf_images", UINT32_MAX);
   sheet.rays.tested_count = reader.WholeNumber("sheet.rays_tested", UINT64_MAX / 2);
   sheet.rays.accepted_count = reader.WholeNumber("sheet.rays_accepted", UINT64_MAX / 2);
+  if (FindEntry(entries, "sheet.finished_early") != nullptr)
+    sheet.places_done =
+        static_cast<uint32_t>(reader.WholeNumber("sheet.finished_early", UINT32_MAX));
   if (FindEntry(entries, "sheet.weights") != nullptr) {
     const std::vector<double> weights = reader.Numbers("sheet.weights", 2);
     const auto [columns, rows] = EffectiveSquares(intrinsics);

@@ -21,8 +21,10 @@ struct FrameSheet {
   RenderCamera camera;
   double fps = 0;
   Estimator estimator = Estimator::kBilinear;
-  std::string version;     // of the program
-  FrameRays rays;          // in the plate
+  std::string version;  // of the program
+  FrameRays rays;       // in the plate
+  // Finished early, with the LF images before this place of the order.
+  std::optional<uint32_t> places_done = std::nullopt;
   DevelopOptions develop;  // all but completion and is_interrupted
 
   // With lens weights (collector/frame_lens.h).

@@ -33,6 +33,7 @@ Json FrameToJson(const FrameReport& frame) {
     json["hat_share"] = frame.weighed->hat_share;
     json["uncovered_share"] = frame.weighed->uncovered_share;
   }
+  if (frame.places_done) json["finished_early_before_place"] = *frame.places_done;
   if (frame.samples)
     json["samples"] = {{"asked", frame.samples->asked},
                        {"share", frame.samples->measured.share},

@@ -43,6 +43,9 @@ struct FrameReport {
     double uncovered_share = 0;  // of the opening (lens_weights/lens_coverage.h)
   };
   std::optional<Weighed> weighed = std::nullopt;
+  // Finished early (RenderOptions::finish_early), with the LF images before this place of the
+  // order.
+  std::optional<uint32_t> places_done = std::nullopt;
   // With rebinned rays: of the picture, how much is interpolated between them.
   std::optional<double> interpolated_share = std::nullopt;
 };

@@ -217,7 +217,8 @@ Result<void> RunState::Read() {
     LF_RETURN_IF_ERROR(CheckPlate(*plate));
     ++plate;
   }
-  if (!finished_.empty() || !plates_.empty())
+  // Where nothing is left to render, it is asked for sheet and video.
+  if (finished_.size() < options_.frames.size() && (!finished_.empty() || !plates_.empty()))
     LogInfo("going on: {} frames are finished, {} begun", finished_.size(), plates_.size());
   return {};
 }

@@ -65,6 +65,7 @@ class RunState {
   const RenderReport& earlier() const { return earlier_; }
   // Of unfinished frames, or rebinned rays for them.
   bool HasPlates() const { return !plates_.empty() || has_rays_; }
+  bool HasPlate(FrameId frame) const { return plates_.contains(frame); }
 
   // Where a finished frame is: its picture, or the plate of a shard.
   std::filesystem::path FinishedPath(FrameId frame) const;

@@ -59,6 +59,18 @@ Result<void> CheckVideoTool() {
   return {};
 }
 
+Result<void> CheckVideoTarget(const fs::path& path) {
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  std::error_code error;
+  // The folder of the frames is made if it is missing, another is not.
+  if (!fs::is_directory(folder, error))
+    return OutputError(
+        fmt::format("--video {}: there is no folder {}", path.string(), folder.string()));
+  if (fs::exists(path, error) && !fs::is_regular_file(path, error))
+    return OutputError(fmt::format("--video {}: exists and is no file", path.string()));
+  return {};
+}
+
 struct VideoWriter::State {
   fs::path path;
   fs::path unfinished;

@@ -12,6 +12,8 @@ namespace lf {
 // Whether ffmpeg can be run and encodes H.264; asked at the start, so that a night's work does not
 // end in vain. kOutput says what to install.
 Result<void> CheckVideoTool();
+// Of --video, before the work and not after it: kOutput where the file could not be written.
+Result<void> CheckVideoTarget(const std::filesystem::path& path);
 
 // Writes an mp4 (H.264, yuv420p, sRGB as BT.709) of 8-bit sRGB pictures, frame by frame; sizes
 // that are odd are cropped by one pixel, which H.264 asks for. The file appears under its name once

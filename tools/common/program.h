@@ -53,9 +53,6 @@ CLI::Validator NotEmpty();
 // A report to stdout, whole. kOutput if it cannot be.
 Result<void> PrintReport(const std::string& text);
 
-// A word of a command line, quoted so that a shell takes it as it is.
-std::string ShellWord(const std::string& word);
-
 // The version of the programs and the library, such as "0.1.0".
 const char* Version();
 

@@ -1,6 +1,7 @@
 #include "tools/common/progress.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -36,21 +37,44 @@ ProgressMeter::~ProgressMeter() {
   if (style_ == ProgressStyle::kBar) LogProgressLine("");
 }
 
+// Cheap, so that callers may ask before they make texts.
+bool ProgressMeter::IsDue() const {
+  if (style_ == ProgressStyle::kNone) return false;
+  const double interval_s = style_ == ProgressStyle::kBar    ? 0.2
+                            : style_ == ProgressStyle::kJson ? 1
+                                                             : 5;
+  return std::chrono::duration<double>(Clock::now() - last_).count() >= interval_s;
+}
+
+void ProgressMeter::Update(uint64_t done, uint64_t total,
+                           const std::vector<ProgressCount>& counts) {
+  if (!IsDue()) return;
+  std::vector<std::string> detail, json;
+  for (const ProgressCount& count : counts) {
+    detail.push_back(fmt::format("{} {}/{}", count.name, count.done, count.total));
+    json.push_back(fmt::format(R"("{}":[{},{}])", count.name, count.done, count.total));
+  }
+  Print(done, total, fmt::format("{}", fmt::join(detail, ", ")),
+        fmt::format(R"(,"counts":{{{}}})", fmt::join(json, ",")));
+}
+
 void ProgressMeter::Update(uint64_t done, uint64_t total, const std::string& detail) {
-  if (style_ == ProgressStyle::kNone || total == 0) return;
-  const Clock::time_point now = Clock::now();
-  const double interval_s = style_ == ProgressStyle::kBar ? 0.2 : 5;
-  if (std::chrono::duration<double>(now - last_).count() < interval_s) return;
-  last_ = now;
-  const double elapsed_s = std::chrono::duration<double>(now - start_).count();
+  if (IsDue()) Print(done, total, detail, "");
+}
+
+void ProgressMeter::Print(uint64_t done, uint64_t total, const std::string& detail,
+                          const std::string& json_counts) {
+  if (total == 0) return;
+  last_ = Clock::now();
+  const double elapsed_s = std::chrono::duration<double>(last_ - start_).count();
   const double share = std::min(1.0, static_cast<double>(done) / static_cast<double>(total));
   const double rate = static_cast<double>(done) / elapsed_s;
   const double left_s = share > 0 ? elapsed_s * (1 - share) / share : 0;
   if (style_ == ProgressStyle::kJson) {
     LogMessage(
         LogLevel::kInfo,
-        fmt::format(R"({{"unit":"{}","done":{},"total":{},"rate":{:.4g},"seconds_left":{:.3g}}})",
-                    unit_, done, total, rate, left_s));
+        fmt::format(R"({{"unit":"{}","done":{},"total":{},"rate":{:.4g},"seconds_left":{:.3g}{}}})",
+                    unit_, done, total, rate, left_s, json_counts));
     return;
   }
   const std::string numbers = fmt::format("{}  {:.0f} %  {}{}/s  {} left", detail, 100 * share,

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace lf {
 
@@ -13,18 +14,30 @@ enum class ProgressStyle { kBar, kPlain, kJson, kNone };
 // From --progress; "auto" is a bar on a terminal, else plain.
 ProgressStyle ParseProgressStyle(const std::string& name);
 
+// How far one thing is, such as "frame" 3 of 10.
+struct ProgressCount {
+  std::string name;
+  uint64_t done = 0;
+  uint64_t total = 0;
+};
+
 class ProgressMeter {
  public:
   // unit: what is counted, e.g. "rays"
   ProgressMeter(ProgressStyle style, std::string unit);
   ~ProgressMeter();
 
-  // done of total units; `detail` is shown before the bar. Cheap: prints at most a few times a
-  // second (bar) or every some seconds (plain, json).
+  // done of total units; `detail` is shown before the numbers. Cheap: prints at most a few times a
+  // second (bar), every second (json) or every some seconds (plain).
   void Update(uint64_t done, uint64_t total, const std::string& detail);
+  // The same with "LF image 3/10, frame 1/4", which json has as "counts": {"frame": [1, 4]}.
+  void Update(uint64_t done, uint64_t total, const std::vector<ProgressCount>& counts);
 
  private:
   using Clock = std::chrono::steady_clock;
+  bool IsDue() const;
+  void Print(uint64_t done, uint64_t total, const std::string& detail,
+             const std::string& json_counts);
   ProgressStyle style_;
   std::string unit_;
   Clock::time_point start_ = Clock::now();

@@ -1,0 +1,20 @@
+// Frames of a job that somebody finds good enough: they are finished with the rays they have, and
+// the others go on (lfrenderer --finish).
+#pragma once
+
+#include <vector>
+
+#include "lf/cluster/job.h"
+#include "lf/core/ids.h"
+#include "lf/core/result.h"
+
+namespace lf {
+
+// Adds frames to those that are to be finished early. kUsage: a frame that is not in the job, or
+// that has no rays yet: it was not begun, or has no checkpoint. Frames that are finished stay.
+Result<void> AskToFinish(const ClusterJob& job, const std::vector<FrameId>& frames);
+
+// Those of a package that were asked for, ascending. kInput: the file is damaged.
+Result<std::vector<FrameId>> FramesToFinish(const ClusterJob& job, const JobPackage& package);
+
+}  // namespace lf

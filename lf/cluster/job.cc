@@ -1,0 +1,172 @@
+#include "lf/cluster/job.h"
+
+#include <fmt/format.h>
+
+#include "lf/core/file.h"
+#include "lf/pipeline/frame_range.h"
+#include "lf/record/json_fields.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr size_t kLimitBytes = size_t{64} << 20;
+constexpr const char* kFormat = "lfjob 1";
+constexpr size_t kMostFrames = 10'000'000;
+
+Json PackageToJson(const JobPackage& package) {
+  return {{"file", package.file.string()},
+          {"name", package.name},
+          {"frames", FrameRangeText(package.frames)},
+          {"is_whole", package.is_whole},
+          {"rays", package.ray_count}};
+}
+
+JobPackage PackageFromJson(const Json& json, std::string* fault) {
+  JsonFields fields(json, fault);
+  JobPackage package;
+  std::string file, frames;
+  fields.Get("file", &file);
+  fields.Get("name", &package.name);
+  fields.Get("frames", &frames);
+  fields.Get("is_whole", &package.is_whole);
+  fields.Get("rays", &package.ray_count);
+  package.file = file;
+  if (!fault->empty()) return package;
+  const auto parsed = ParseFrameRange(frames, kMostFrames);
+  if (parsed)
+    package.frames = *parsed;
+  else
+    *fault = "\"frames\": " + parsed.error().message;
+  // It names files in our folder.
+  if (package.name.empty() || package.name.find('/') != std::string::npos)
+    *fault = fmt::format("\"name\": expected the name of a package, found \"{}\"", package.name);
+  return package;
+}
+
+}  // namespace
+
+const char* NameOf(ClusterEngine engine) {
+  return engine == ClusterEngine::kLocal ? "local" : "slurm";
+}
+
+bool ClusterJob::IsCancelled() const {
+  std::error_code ignored;
+  return fs::exists(CancelFile(), ignored);
+}
+
+ClusterTask PackageTask(const ClusterJob& job, size_t number) {
+  const std::string& name = job.packages[number].name;
+  const fs::path folder = job.Folder() / "packages";
+  return {name, folder / (name + ".json"), folder / (name + ".log"), folder / (name + ".lock")};
+}
+
+ClusterTask FinishingTask(const ClusterJob& job) {
+  const fs::path folder = job.Folder();
+  return {"finish", folder / "finish.json", folder / "finish.log", folder / "finish.lock"};
+}
+
+std::string FrameRangeText(const std::vector<FrameId>& frames) {
+  std::string text;
+  for (size_t begin = 0, end = 0; begin < frames.size(); begin = end) {
+    for (end = begin + 1; end < frames.size(); ++end)
+      if (frames[end].value != frames[end - 1].value + 1) break;
+    if (!text.empty()) text += ',';
+    text += fmt::format("{}", frames[begin].value);
+    if (end - begin > 1) text += fmt::format("-{}", frames[end - 1].value);
+  }
+  return text;
+}
+
+std::string ToJson(const ClusterJob& job) {
+  Json packages = Json::array();
+  for (const JobPackage& package : job.packages) packages.push_back(PackageToJson(package));
+  const Json json = {{"format", kFormat},
+                     {"output_folder", job.output_folder.string()},
+                     {"working_folder", job.working_folder.string()},
+                     {"lfrenderer", job.renderer.string()},
+                     {"lfsubmit", job.submitter.string()},
+                     {"arguments", job.arguments},
+                     {"frame_extension", job.frame_extension},
+                     {"video", job.video ? job.video->string() : ""},
+                     {"contact_sheet", job.contact_sheet},
+                     {"engine", NameOf(job.engine)},
+                     {"at_once", job.at_once},
+                     {"threads", job.thread_count},
+                     {"memory_bytes", job.memory_bytes},
+                     {"most_crashes", job.most_crashes},
+                     {"time_limit_s", job.time_limit_s},
+                     {"sbatch_options", job.sbatch_options},
+                     {"slurm_arrays", job.slurm_array_ids},
+                     {"slurm_finishing", job.slurm_finishing_id},
+                     {"packages", std::move(packages)}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Result<ClusterJob> ParseJob(std::string_view text, const std::string& name) {
+  const Json json = Json::parse(text, nullptr, false);
+  std::string fault, format, engine, video, output, working, renderer, submitter;
+  ClusterJob job;
+  if (json.is_discarded()) {
+    fault = "it is no JSON, or only a part of it";
+  } else {
+    JsonFields fields(json, &fault);
+    fields.Get("format", &format);
+    if (fault.empty() && format != kFormat)
+      fault = fmt::format("\"format\": expected \"{}\", found \"{}\"", kFormat, format);
+    fields.Get("output_folder", &output);
+    fields.Get("working_folder", &working);
+    fields.Get("lfrenderer", &renderer);
+    fields.Get("lfsubmit", &submitter);
+    fields.Get("arguments", &job.arguments);
+    fields.Get("frame_extension", &job.frame_extension);
+    fields.Get("video", &video);
+    fields.Get("contact_sheet", &job.contact_sheet);
+    fields.Get("engine", &engine);
+    fields.Get("at_once", &job.at_once);
+    fields.Get("threads", &job.thread_count);
+    fields.Get("memory_bytes", &job.memory_bytes);
+    fields.Get("most_crashes", &job.most_crashes);
+    fields.Get("time_limit_s", &job.time_limit_s);
+    fields.Get("sbatch_options", &job.sbatch_options);
+    fields.Get("slurm_arrays", &job.slurm_array_ids);
+    fields.Get("slurm_finishing", &job.slurm_finishing_id);
+    for (const Json* item : fields.List("packages"))
+      job.packages.push_back(PackageFromJson(*item, &fault));
+    if (fault.empty() && engine != "local" && engine != "slurm")
+      fault = fmt::format("\"engine\": expected local or slurm, found \"{}\"", engine);
+    if (fault.empty() && job.packages.empty()) fault = "\"packages\": expected some, found none";
+  }
+  if (!fault.empty())
+    return InputError(
+        fmt::format("{}: is no job of lfsubmit: {}; remove it to submit anew", name, fault));
+  job.output_folder = output;
+  job.working_folder = working;
+  job.renderer = renderer;
+  job.submitter = submitter;
+  job.engine = engine == "slurm" ? ClusterEngine::kSlurm : ClusterEngine::kLocal;
+  if (!video.empty()) job.video = video;
+  return job;
+}
+
+Result<void> WriteJob(const ClusterJob& job) {
+  LF_RETURN_IF_ERROR(CreateFolder(job.Folder() / "packages"));
+  return WriteFileAtomically(job.File(), ToJson(job));
+}
+
+Result<ClusterJob> ReadJob(const fs::path& output_folder) {
+  const fs::path file = output_folder / "cluster" / "job.json";
+  std::error_code ignored;
+  if (!fs::exists(file, ignored))
+    return InputError(fmt::format(
+        "{}: no job was submitted into this folder (there is no cluster/job.json): expected the "
+        "DIR of lfsubmit PACKAGES... -o DIR",
+        output_folder.string()));
+  LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(file, kLimitBytes));
+  LF_ASSIGN_OR_RETURN(ClusterJob job, ParseJob(text, file.string()));
+  // The folder may have moved, or have another name on this machine.
+  job.output_folder = fs::absolute(output_folder);
+  return job;
+}
+
+}  // namespace lf

@@ -1,0 +1,59 @@
+#include "lf/cluster/job.h"
+
+#include <gtest/gtest.h>
+
+namespace lf {
+namespace {
+
+ClusterJob SomeJob() {
+  ClusterJob job;
+  job.output_folder = "/films/a film";
+  job.working_folder = "/films";
+  job.renderer = "/bin/lfrenderer";
+  job.submitter = "/bin/lfsubmit";
+  job.packages = {{"/p/package-0000.lfp", "package-0000", {FrameId{1}, FrameId{2}}, true, 10},
+                  {"/p/package-0001.lfp", "package-0001", {FrameId{3}, FrameId{5}}, false, 20}};
+  job.arguments = {"--format", "png16"};
+  job.video = "/films/film.mp4";
+  job.engine = ClusterEngine::kSlurm;
+  job.at_once = 4;
+  job.time_limit_s = 5400;
+  job.sbatch_options = {"--partition=long"};
+  job.slurm_array_ids = {"12", "15"};
+  job.slurm_finishing_id = "16";
+  return job;
+}
+
+TEST(ClusterJob, IsTheSameWhenWrittenAndRead) {
+  const std::string text = ToJson(SomeJob());
+  const Result<ClusterJob> job = ParseJob(text, "job");
+  ASSERT_TRUE(job.has_value()) << job.error().message;
+  EXPECT_EQ(ToJson(*job), text);
+  EXPECT_EQ(job->packages[1].frames, SomeJob().packages[1].frames);
+  EXPECT_EQ(*job->video, "/films/film.mp4");
+}
+
+TEST(ClusterJob, IsRefusedWhereItsNamesWouldLeaveTheFolder) {
+  ClusterJob job = SomeJob();
+  job.packages[0].name = "../../etc/passwd";
+  EXPECT_FALSE(ParseJob(ToJson(job), "job").has_value());
+}
+
+TEST(ClusterJob, OtherTextIsNamedAndExplained) {
+  for (const char* text : {"", "[]", "{}", R"({"format": "lfjob 9"})"}) {
+    const Result<ClusterJob> job = ParseJob(text, "there");
+    ASSERT_FALSE(job.has_value()) << text;
+    EXPECT_TRUE(job.error().message.starts_with("there: ")) << job.error().message;
+  }
+}
+
+TEST(FrameRangeText, JoinsNeighbours) {
+  EXPECT_EQ(FrameRangeText({}), "");
+  EXPECT_EQ(FrameRangeText({FrameId{7}}), "7");
+  EXPECT_EQ(
+      FrameRangeText({FrameId{1}, FrameId{2}, FrameId{3}, FrameId{7}, FrameId{9}, FrameId{10}}),
+      "1-3,7,9-10");
+}
+
+}  // namespace
+}  // namespace lf

@@ -1,0 +1,137 @@
+#include "lf/cluster/resume_job.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "lf/cluster/job_status.h"
+#include "lf/cluster/run_package.h"
+#include "lf/cluster/slurm.h"
+#include "lf/cluster/task_state.h"
+#include "lf/core/file.h"
+#include "lf/core/file_lock.h"
+#include "lf/core/log.h"
+#include "lf/core/shell_word.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+bool IsAtWork(const JobStatus& status) {
+  const auto is_at_work = [](const TaskStatus& task) {
+    return task.state.phase == TaskPhase::kRunning || task.IsQueued();
+  };
+  return is_at_work(status.finishing) ||
+         std::any_of(status.packages.begin(), status.packages.end(), is_at_work);
+}
+
+// The local engine's, which holds it while it runs.
+Result<void> CheckEngineIsIdle(const ClusterJob& job) {
+  LF_RETURN_IF_ERROR(CreateFolder(job.Folder()));
+  const Result<FileLock> lock = FileLock::Take(job.Folder() / "lock");
+  return lock ? Result<void>() : lock.error();
+}
+
+void RemoveFrames(const ClusterJob& job, const JobPackage& package) {
+  std::error_code ignored;
+  for (const FrameId frame : package.frames)
+    fs::remove(job.output_folder / fmt::format("frame_{:04}{}", frame.value, job.frame_extension),
+               ignored);
+  fs::remove(job.output_folder / ("report-" + package.name + ".json"), ignored);
+  fs::remove_all(job.output_folder / "partial" / package.name, ignored);
+}
+
+// Seconds, in steps, so that a signal is heard.
+void SleepOr(const std::atomic<bool>& stop, double seconds) {
+  for (int i = 0; i < 10 * seconds && !stop; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+}
+
+}  // namespace
+
+Result<void> MakeRoomForJob(const ClusterJob& job, bool overwrite) {
+  std::error_code ignored;
+  if (!fs::exists(job.File(), ignored) && !overwrite) return {};
+  const std::string folder = ShellWord(job.output_folder.string());
+  if (!overwrite)
+    return UsageError(fmt::format(
+        "{}: a job was submitted there: lfsubmit --resume {} goes on with it, --status tells how "
+        "far it is, --overwrite removes it and its frames",
+        job.output_folder.string(), folder));
+  LF_RETURN_IF_ERROR(CheckEngineIsIdle(job));
+  if (const auto before = ReadJob(job.output_folder); before && IsAtWork(LookAtJob(*before)))
+    return UsageError(fmt::format("{}: is at work: lfsubmit --cancel {} first",
+                                  job.output_folder.string(), folder));
+  for (const JobPackage& package : job.packages) RemoveFrames(job, package);
+  fs::remove_all(job.Folder(), ignored);
+  return {};
+}
+
+Result<std::vector<size_t>> PrepareResume(const ClusterJob& job) {
+  LF_RETURN_IF_ERROR(CheckEngineIsIdle(job));
+  std::error_code ignored;
+  fs::remove(job.CancelFile(), ignored);
+  if (job.engine == ClusterEngine::kSlurm) LF_RETURN_IF_ERROR(ReleaseInSlurm(job));
+  const JobStatus status = LookAtJob(job);
+  if (!status.queue_error.empty()) return OutputError(status.queue_error);
+  std::vector<size_t> numbers;
+  for (size_t i = 0; i < job.packages.size(); ++i) {
+    const TaskStatus& task = status.packages[i];
+    const bool is_done =
+        task.state.phase == TaskPhase::kDone && task.frames_done == task.frame_total;
+    if (is_done || task.IsQueued() || task.state.phase == TaskPhase::kRunning) continue;
+    numbers.push_back(i);
+    if (task.state.start_count == 0) continue;
+    TaskState state = task.state;
+    state.phase = TaskPhase::kInterrupted;
+    state.crash_count = 0;
+    LF_RETURN_IF_ERROR(WriteTaskState(state, PackageTask(job, i).state));
+  }
+  LogInfo("going on: {} of {} packages are done", status.Count(TaskPhase::kDone),
+          job.packages.size());
+  return numbers;
+}
+
+Result<void> CancelJob(const ClusterJob& job, const std::atomic<bool>& stop) {
+  constexpr double kPatience_s = 180;
+  LF_RETURN_IF_ERROR(WriteFileAtomically(job.CancelFile(), ""));
+  if (job.engine == ClusterEngine::kSlurm) LF_RETURN_IF_ERROR(CancelInSlurm(job));
+  JobStatus status = LookAtJob(job);
+  for (double waited_s = 0; IsAtWork(status) && waited_s < kPatience_s && !stop; waited_s += 1) {
+    SleepOr(stop, 1);
+    // What was requeued in the meantime.
+    if (job.engine == ClusterEngine::kSlurm) LF_RETURN_IF_ERROR(CancelInSlurm(job));
+    status = LookAtJob(job);
+  }
+  const std::string again =
+      fmt::format("lfsubmit --resume {} goes on", ShellWord(job.output_folder.string()));
+  if (IsAtWork(status))
+    return OutputError(fmt::format(
+        "{} packages are still at work: they end as soon as they see {}; lfsubmit --status tells",
+        status.Count(TaskPhase::kRunning), job.CancelFile().string()));
+  LogInfo("cancelled: {} of {} frames are done, and the state of the others is kept; {}",
+          status.frames_done(), status.frame_total(), again);
+  return {};
+}
+
+Result<void> WaitForJob(const ClusterJob& job, const std::atomic<bool>& stop,
+                        const std::function<void()>& look) {
+  while (true) {
+    look();
+    const JobStatus status = LookAtJob(job);
+    if (!IsAtWork(status) && status.queue_error.empty())
+      return OutcomeOf("the finishing task", status.finishing.state);
+    if (job.engine == ClusterEngine::kSlurm)
+      if (const Result<void> released = ReleaseInSlurm(job); !released)
+        LogWarning("{}", released.error().message);
+    SleepOr(stop, 3);
+    if (stop)
+      return Error{ErrorKind::kInterrupted,
+                   fmt::format("no longer waiting; the job goes on: lfsubmit --status {} tells",
+                               ShellWord(job.output_folder.string()))};
+  }
+}
+
+}  // namespace lf

@@ -1,0 +1,293 @@
+#include "lf/cluster/run_package.h"
+
+#include <fcntl.h>
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstring>
+#include <thread>
+
+#include "lf/cluster/command.h"
+#include "lf/cluster/finish_frames.h"
+#include "lf/core/file_lock.h"
+#include "lf/core/log.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr auto kTick = std::chrono::milliseconds(50);
+constexpr int kTicksPerLook = 20;  // at files: that others wrote, perhaps over a network
+
+double SecondsSince1970() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+// One task at work: its lock, log and state.
+class TaskRun {
+ public:
+  TaskRun(const ClusterJob& job, ClusterTask task, std::string node, const std::atomic<bool>& stop)
+      : job_(job), task_(std::move(task)), node_(std::move(node)), stop_(stop) {}
+
+  // Reads the state when the lock is held.
+  Result<void> Begin();
+  TaskState& state() { return state_; }
+  bool IsAskedToEnd() const { return stop_ || job_.IsCancelled(); }
+  Result<void> End(TaskPhase phase, int exit_code, const std::string& message);
+
+  // Runs lfrenderer once. `wants_restart` is asked about once a second; then it is ended, too.
+  Result<CommandEnd> Run(const std::vector<std::string>& words, const fs::path& output,
+                         const std::function<bool()>& wants_restart);
+  std::string LastMessage() const { return ReadProgress(task_.log).message; }
+
+ private:
+  const ClusterJob& job_;
+  const ClusterTask task_;
+  const std::string node_;
+  const std::atomic<bool>& stop_;
+  std::optional<FileLock> lock_;
+  TaskState state_;
+};
+
+// Whoever had it may have died a moment ago, and its lfrenderer be writing a last checkpoint.
+Result<void> TaskRun::Begin() {
+  constexpr double kPatience_s = 120;
+  const double begin_s = SecondsSince1970();
+  while (!lock_) {
+    Result<FileLock> lock = FileLock::Take(task_.lock);
+    if (lock) {
+      lock_ = *std::move(lock);
+    } else if (stop_ || SecondsSince1970() - begin_s > kPatience_s) {
+      return lock.error();
+    } else {
+      std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    }
+  }
+  LF_ASSIGN_OR_RETURN(state_, ReadTaskState(task_.state));
+  return {};
+}
+
+Result<void> TaskRun::End(TaskPhase phase, int exit_code, const std::string& message) {
+  state_.phase = phase;
+  state_.exit_code = exit_code;
+  state_.message = message;
+  state_.end_s = SecondsSince1970();
+  return WriteTaskState(state_, task_.state);
+}
+
+Result<CommandEnd> TaskRun::Run(const std::vector<std::string>& words, const fs::path& output,
+                                const std::function<bool()>& wants_restart) {
+  const auto open = [](const fs::path& path, int flags) {
+    return ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | flags, 0666);
+  };
+  const int log = open(task_.log, O_APPEND);
+  if (log < 0)
+    return OutputError(
+        fmt::format("{}: cannot be written: {}", task_.log.string(), std::strerror(errno)));
+  const std::string header =
+      fmt::format("{}{:%F %T} UTC on {}: start {}\n", kLogStart,
+                  fmt::gmtime(std::chrono::system_clock::now()), node_, state_.start_count + 1);
+  [[maybe_unused]] const ssize_t told = ::write(log, header.data(), header.size());
+  Command::Options options;
+  options.words = words;
+  options.working_folder = job_.working_folder;
+  options.complaints = log;
+  options.output = output.empty() ? -1 : open(output, O_TRUNC);
+  options.kept = lock_->fd();
+  const Result<std::unique_ptr<Command>> command = Command::Start(options);
+  ::close(log);
+  if (options.output >= 0) ::close(options.output);
+  if (!command) return command.error();
+  ++state_.start_count;
+  state_.phase = TaskPhase::kRunning;
+  state_.node = node_;
+  state_.process = (*command)->process();
+  state_.begin_s = SecondsSince1970();
+  state_.message.clear();
+  LF_RETURN_IF_ERROR(WriteTaskState(state_, task_.state));
+  bool is_told = false;
+  for (int tick = 1;; ++tick) {
+    if (const auto end = (*command)->Poll()) return *end;
+    const bool looks = tick % kTicksPerLook == 0;
+    if (!is_told && (stop_ || (looks && (job_.IsCancelled() || wants_restart())))) {
+      (*command)->Signal(SIGTERM);
+      is_told = true;
+    }
+    std::this_thread::sleep_for(kTick);
+  }
+}
+
+std::vector<std::string> RendererWords(const ClusterJob& job, const std::vector<fs::path>& files) {
+  std::vector<std::string> words = {job.renderer.string()};
+  for (const fs::path& file : files) words.push_back(file.string());
+  for (const char* word : {"-o", "", "--resume", "--progress", "json", "--threads", ""})
+    words.emplace_back(word);
+  words[words.size() - 6] = job.output_folder.string();
+  words.back() = fmt::format("{}", job.thread_count);
+  if (job.memory_bytes > 0) {
+    words.emplace_back("--memory");
+    words.push_back(fmt::format("{}", job.memory_bytes));
+  }
+  words.insert(words.end(), job.arguments.begin(), job.arguments.end());
+  return words;
+}
+
+std::vector<std::string> PackageWords(const ClusterJob& job, const JobPackage& package,
+                                      const std::vector<FrameId>& finish) {
+  std::vector<std::string> words = RendererWords(job, {package.file});
+  const auto add = [&](const char* option, const std::vector<FrameId>& frames) {
+    words.emplace_back(option);
+    words.push_back(FrameRangeText(frames));
+  };
+  words.emplace_back("--no-contact-sheet");
+  if (!package.is_whole) add("--frames", package.frames);
+  if (!finish.empty()) add("--finish", finish);
+  return words;
+}
+
+std::string WordsOf(const CommandEnd& end) {
+  return fmt::format("killed by signal {} ({}){}", end.signal, ::strsignal(end.signal),
+                     end.signal == SIGKILL ? ": by somebody, or for taking too much memory" : "");
+}
+
+std::vector<FrameId> MissingFrames(const ClusterJob& job, const JobPackage& package) {
+  std::vector<FrameId> missing;
+  std::error_code ignored;
+  for (const FrameId frame : package.frames) {
+    const std::string name = fmt::format("frame_{:04}{}", frame.value, job.frame_extension);
+    if (!fs::exists(job.output_folder / name, ignored)) missing.push_back(frame);
+  }
+  return missing;
+}
+
+// What is not done, by name; the first that failed decides about the kind.
+Result<void> CheckAllDone(const ClusterJob& job) {
+  std::string words;
+  ErrorKind kind = ErrorKind::kInterrupted;
+  for (size_t i = 0; i < job.packages.size(); ++i) {
+    const ClusterTask task = PackageTask(job, i);
+    const JobPackage& package = job.packages[i];
+    LF_ASSIGN_OR_RETURN(const TaskState state, ReadTaskState(task.state));
+    const std::vector<FrameId> missing = MissingFrames(job, package);
+    if (state.phase == TaskPhase::kDone && missing.empty()) continue;
+    std::string reason = NameOf(state.phase);
+    if (state.phase == TaskPhase::kFailed && kind == ErrorKind::kInterrupted)
+      kind = state.exit_code == 0 ? ErrorKind::kOutput : static_cast<ErrorKind>(state.exit_code);
+    if (!state.message.empty()) reason += fmt::format(" on {}: {}", state.node, state.message);
+    if (state.phase == TaskPhase::kDone) reason = "done, but they are gone";
+    words += fmt::format("{}{} (frames {}: {})", words.empty() ? "" : "; ", task.name,
+                         FrameRangeText(missing.empty() ? package.frames : missing), reason);
+  }
+  if (words.empty()) return {};
+  return Error{kind, fmt::format("{}: not all packages are done: {}; lfsubmit --resume {} goes on "
+                                 "with what is there",
+                                 job.output_folder.string(), words, job.output_folder.string())};
+}
+
+}  // namespace
+
+Result<void> OutcomeOf(const std::string& name, const TaskState& state) {
+  if (state.phase == TaskPhase::kDone) return {};
+  const ErrorKind kind = state.phase != TaskPhase::kFailed ? ErrorKind::kInterrupted
+                         : state.exit_code > 0             ? static_cast<ErrorKind>(state.exit_code)
+                                                           : ErrorKind::kOutput;
+  return Error{kind, fmt::format("{}: {}: {}", name, NameOf(state.phase), state.message)};
+}
+
+Result<TaskState> RunPackage(const ClusterJob& job, size_t number, const std::string& node,
+                             const std::atomic<bool>& stop) {
+  const JobPackage& package = job.packages[number];
+  TaskRun run(job, PackageTask(job, number), node, stop);
+  LF_RETURN_IF_ERROR(run.Begin());
+  TaskState& state = run.state();
+  if (state.phase == TaskPhase::kDone) {
+    if (MissingFrames(job, package).empty()) return state;
+    state.phase = TaskPhase::kInterrupted;  // somebody wants them again
+  }
+  // Nobody runs it, for we have the lock.
+  if (state.phase == TaskPhase::kRunning) {
+    ++state.crash_count;
+    LF_RETURN_IF_ERROR(run.End(TaskPhase::kInterrupted, 0, "its node died"));
+  }
+  while (true) {
+    if (run.IsAskedToEnd()) {
+      LF_RETURN_IF_ERROR(run.End(TaskPhase::kInterrupted, 5, state.message));
+      return state;
+    }
+    if (state.crash_count > job.most_crashes) {
+      LF_RETURN_IF_ERROR(run.End(
+          TaskPhase::kFailed, 4,
+          fmt::format("crashed {} times, the last time: {}", state.crash_count, state.message)));
+      return state;
+    }
+    LF_ASSIGN_OR_RETURN(const std::vector<FrameId> finish, FramesToFinish(job, package));
+    const auto wants_restart = [&] {
+      const auto now = FramesToFinish(job, package);
+      return now && *now != finish;
+    };
+    LF_ASSIGN_OR_RETURN(const CommandEnd end,
+                        run.Run(PackageWords(job, package, finish), {}, wants_restart));
+    if (end.signal != 0) {
+      ++state.crash_count;
+      LF_RETURN_IF_ERROR(run.End(TaskPhase::kInterrupted, 0, WordsOf(end)));
+    } else if (end.exit_code == 0 || end.exit_code == 6) {
+      LF_RETURN_IF_ERROR(
+          run.End(TaskPhase::kDone, end.exit_code, end.exit_code == 0 ? "" : run.LastMessage()));
+      return state;
+    } else if (end.exit_code == 5) {
+      LF_RETURN_IF_ERROR(run.End(TaskPhase::kInterrupted, 5, "interrupted; the state is kept"));
+    } else {
+      LF_RETURN_IF_ERROR(run.End(TaskPhase::kFailed, end.exit_code, run.LastMessage()));
+      return state;
+    }
+  }
+}
+
+Result<void> FinishFilm(const ClusterJob& job, const std::string& node,
+                        const std::atomic<bool>& stop) {
+  TaskRun run(job, FinishingTask(job), node, stop);
+  LF_RETURN_IF_ERROR(run.Begin());
+  const auto fail = [&](const Error& error) -> Error {
+    const TaskPhase phase =
+        error.kind == ErrorKind::kInterrupted ? TaskPhase::kInterrupted : TaskPhase::kFailed;
+    if (const auto ended = run.End(phase, static_cast<int>(error.kind), error.message); !ended)
+      LogWarning("{}", ended.error().message);
+    return error;
+  };
+  if (const Result<void> done = CheckAllDone(job); !done) return fail(done.error());
+  if (run.IsAskedToEnd()) return fail({ErrorKind::kInterrupted, "interrupted"});
+  std::vector<fs::path> files;
+  std::vector<FrameId> frames;
+  bool is_whole = true;
+  for (const JobPackage& package : job.packages) {
+    files.push_back(package.file);
+    frames.insert(frames.end(), package.frames.begin(), package.frames.end());
+    is_whole = is_whole && package.is_whole;
+  }
+  std::sort(frames.begin(), frames.end());
+  std::vector<std::string> words = RendererWords(job, files);
+  words.emplace_back("--json");
+  if (!is_whole) {
+    words.emplace_back("--frames");
+    words.push_back(FrameRangeText(frames));
+  }
+  if (job.video) {
+    words.emplace_back("--video");
+    words.push_back(job.video->string());
+  }
+  if (!job.contact_sheet) words.emplace_back("--no-contact-sheet");
+  const Result<CommandEnd> end = run.Run(words, job.Folder() / "report.json", [] { return false; });
+  if (!end) return fail(end.error());
+  if (end->signal != 0) return fail(OutputError("the finishing task was " + WordsOf(*end)));
+  const std::string last = end->exit_code == 0 ? "" : run.LastMessage();
+  if (end->exit_code != 0 && end->exit_code != 6)
+    return fail({static_cast<ErrorKind>(end->exit_code), last});
+  LF_RETURN_IF_ERROR(run.End(TaskPhase::kDone, end->exit_code, last));
+  if (end->exit_code == 6) return Error{ErrorKind::kBelowRequired, last};
+  return {};
+}
+
+}  // namespace lf

@@ -1,0 +1,25 @@
+#include "lf/core/shell_word.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstring>
+
+namespace lf {
+
+std::string ShellWord(const std::string& word) {
+  const auto is_plain = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || std::strchr("_-./=,:+@%", c);
+  };
+  if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return word;
+  std::string quoted = "'";
+  for (const char c : word) {
+    if (c == '\'')
+      quoted += "'\\''";
+    else
+      quoted += c;
+  }
+  quoted += '\'';
+  return quoted;
+}
+
+}  // namespace lf

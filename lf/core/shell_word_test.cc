@@ -1,0 +1,18 @@
+#include "lf/core/shell_word.h"
+
+#include <gtest/gtest.h>
+
+namespace lf {
+namespace {
+
+TEST(ShellWord, PlainWordsStayAsTheyAre) { EXPECT_EQ(ShellWord("a/b_c-1.lfp"), "a/b_c-1.lfp"); }
+
+TEST(ShellWord, OthersAreQuoted) {
+  EXPECT_EQ(ShellWord("two words"), "'two words'");
+  EXPECT_EQ(ShellWord(""), "''");
+  EXPECT_EQ(ShellWord("$HOME*"), "'$HOME*'");
+  EXPECT_EQ(ShellWord("it's"), "'it'\\''s'");
+}
+
+}  // namespace
+}  // namespace lf

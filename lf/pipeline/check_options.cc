@@ -1,0 +1,84 @@
+#include "lf/pipeline/check_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "lf/collector/frame_lens.h"
+#include "lf/core/geometry.h"
+
+namespace lf {
+namespace {
+
+// Rays cut both planes of a slab one after the other if they run about as it faces.
+Result<void> CheckSlab(const Package& package, const RenderOptions& options,
+                       const std::vector<FrameId>& frames) {
+  constexpr double kMost_deg = 60;
+  if (options.mode == RenderMode::kCollect || !options.rebin.slab.forward_world) return {};
+  const Vec3 forward = options.rebin.slab.forward_world->normalized();
+  for (const FrameId frame : frames) {
+    const double cosine = forward.dot(package.path.Camera(frame).pinhole.ForwardWorld());
+    const double off_deg = std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / kPi;
+    if (off_deg > kMost_deg)
+      return UsageError(fmt::format(
+          "--slab-forward {} {} {}: frame {} looks {:.0f} degrees away from it; expected "
+          "a direction within {:.0f} degrees of what all frames look along",
+          forward.x(), forward.y(), forward.z(), frame.value, off_deg, kMost_deg));
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<void> CheckOptions(const Package& package, const RenderOptions& options) {
+  const std::vector<FrameId> frames = options.frames.empty() ? package.FrameIds() : options.frames;
+  if (options.mode == RenderMode::kRebin && (options.CountsRays() || options.keep_plates))
+    return UsageError(
+        "--mode rebin: nothing is collected, so that --stop-when, --require, --smooth-below and "
+        "--keep-plates have no rays: leave them out, or use hybrid");
+  LF_RETURN_IF_ERROR(CheckSlab(package, options, frames));
+  const std::optional<size_t>& most = package.choices.max_image_count;
+  if (most && (!options.max_image_count || *options.max_image_count > *most))
+    return UsageError(fmt::format(
+        "{}: was made with --max-images {}, and has no more of each frame", package.name, *most));
+  if (!options.finish_early.empty() &&
+      (options.mode != RenderMode::kCollect || options.shard || !options.resume))
+    return UsageError(
+        "--finish: finishes frames with the collected rays that a state has: give --resume, and "
+        "leave out --shard and --mode rebin and hybrid");
+  if (options.shard && (options.mode != RenderMode::kCollect || options.stop_at_samples ||
+                        options.require_samples || options.keep_plates || options.video))
+    return UsageError(
+        "--shard: writes plates for lfmerge, of a part of the LF images: leave out --mode rebin "
+        "and "
+        "hybrid, --stop-when, --require, --keep-plates and --video (lfmerge has one)");
+  if (options.rebin.nearest > 0 && options.back_end != CollectBackEnd::kReference)
+    return UsageError(
+        "--nearest: only by the k-d tree of --back-end reference, which is far slower: give that, "
+        "or leave it out");
+  if (options.CountsRays() && options.reading.estimator == Estimator::kBilinear &&
+      options.reading.filter == PixelFilter::kMosaic)
+    return UsageError(
+        "--filter mosaic: rays count up to 8 times, so that --stop-when, --require and "
+        "--smooth-below have none to count: leave them out, or use bilinear");
+  if (options.lens_weights == LensWeights::kNone) return {};
+  const char* const name = NameOf(options.lens_weights);
+  if (!package.choices.has_neighbours)
+    return UsageError(
+        fmt::format("--lens-weights {}: {} was made with --lens-weights none, and lacks the LF "
+                    "cameras beside the lens: give none, or make it again",
+                    name, package.name));
+  if (options.CountsRays())
+    return UsageError(
+        fmt::format("--lens-weights {}: counts are sums of weights, so that --stop-when, --require "
+                    "and --smooth-below have no rays to count: leave them out",
+                    name));
+  if (options.lens_weights == LensWeights::kArea)
+    for (const FrameId frame : frames)
+      LF_RETURN_IF_ERROR(CheckHasArea(package.path.Camera(frame), frame));
+  return {};
+}
+
+}  // namespace lf

@@ -1,0 +1,113 @@
+// Values out of JSON of our own (reports, jobs), which may be damaged. For files that include
+// nlohmann's JSON anyway.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "lf/record/run_inputs.h"
+
+namespace lf {
+
+using Json = nlohmann::ordered_json;
+
+// Values of one object, by key. What is missing keeps its default; the first value of another kind
+// is the error.
+class JsonFields {
+ public:
+  JsonFields(const Json& object, std::string* fault) : object_(object), fault_(*fault) {
+    if (!object.is_object()) Complain("", "an object");
+  }
+
+  void Get(const char* key, double* value) {
+    if (const Json* json = Find(key)) {
+      if (json->is_number())
+        *value = json->get<double>();
+      else
+        Complain(key, "a number");
+    }
+  }
+  template <class Integer>
+  void Get(const char* key, Integer* value) {
+    if (const Json* json = Find(key)) {
+      if (json->is_number_unsigned() &&
+          json->get<uint64_t>() <= std::numeric_limits<Integer>::max())
+        *value = static_cast<Integer>(json->get<uint64_t>());
+      else
+        Complain(key, "a whole number");
+    }
+  }
+  void Get(const char* key, std::string* value) {
+    if (const Json* json = Find(key)) {
+      if (json->is_string())
+        *value = json->get<std::string>();
+      else
+        Complain(key, "text");
+    }
+  }
+  void Get(const char* key, std::array<uint64_t, 3>* values) {
+    const Json* json = Find(key);
+    if (json == nullptr) return;
+    if (!json->is_array() || json->size() != 3) return Complain(key, "three numbers");
+    for (size_t i = 0; i < 3; ++i) {
+      if (!(*json)[i].is_number_unsigned()) return Complain(key, "three whole numbers");
+      (*values)[i] = (*json)[i].get<uint64_t>();
+    }
+  }
+  void Get(const char* key, RunInputs* inputs) {
+    const Json* json = Find(key);
+    if (json == nullptr) return;
+    if (!json->is_object()) return Complain(key, "an object");
+    for (const auto& [name, value] : json->items()) {
+      if (!value.is_string()) return Complain(key, "texts");
+      inputs->emplace_back(name, value.get<std::string>());
+    }
+  }
+  void Get(const char* key, bool* value) {
+    if (const Json* json = Find(key)) {
+      if (json->is_boolean())
+        *value = json->get<bool>();
+      else
+        Complain(key, "true or false");
+    }
+  }
+  void Get(const char* key, std::vector<std::string>* values) {
+    for (const Json* item : List(key)) {
+      if (!item->is_string()) return Complain(key, "a list of texts");
+      values->push_back(item->get<std::string>());
+    }
+  }
+  // The objects of a list, none if it is missing.
+  std::vector<const Json*> List(const char* key) {
+    std::vector<const Json*> list;
+    const Json* json = Find(key);
+    if (json == nullptr) return list;
+    if (!json->is_array()) {
+      Complain(key, "a list");
+      return list;
+    }
+    for (const Json& item : *json) list.push_back(&item);
+    return list;
+  }
+  const Json* Find(const char* key) const {
+    if (!object_.is_object()) return nullptr;
+    const auto found = object_.find(key);
+    return found == object_.end() ? nullptr : &*found;
+  }
+
+ private:
+  void Complain(const std::string& key, const char* expected) {
+    if (fault_.empty()) fault_ = fmt::format("\"{}\": expected {}", key, expected);
+  }
+
+  const Json& object_;
+  std::string& fault_;
+};
+
+}  // namespace lf

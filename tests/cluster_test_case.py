@@ -1,0 +1,105 @@
+"""Packages of a small light field, frames of it rendered at once, and jobs of them."""
+import hashlib
+import json
+import os
+import pathlib
+import stat
+import subprocess
+import sys
+import time
+
+import small_field
+from program_test_case import ProgramTestCase
+
+RENDERER = PREPROCESSOR = SUBMIT = None
+
+
+def take_programs():
+    """LFRENDERER LFPREPROCESSOR LFSUBMIT from the command line"""
+    global RENDERER, PREPROCESSOR, SUBMIT
+    RENDERER, PREPROCESSOR, SUBMIT = sys.argv[1:4]
+
+
+def digests(folder):
+    """sha256 of the frames of a folder"""
+    return {path.name: hashlib.sha256(path.read_bytes()).hexdigest()
+            for path in sorted(folder.glob("frame_*"))}
+
+
+class ClusterTestCase(ProgramTestCase):
+    packages = 3
+    frames = 9
+    side, pitch = 4, 0.01  # of the LF cameras
+    resolution = None      # that of small_field
+    renders = {}           # frames of one lfrenderer, the same for all tests of a class
+
+    def setUp(self):
+        super().setUp()
+        small_field.SIDE, small_field.PITCH = self.side, self.pitch
+        self.field = small_field.write_field(self.folder / "field")
+        self.path = small_field.write_path(self.folder, frames=self.frames)
+        if self.resolution:
+            self.path.write_text(self.path.read_text().replace("[80, 60]", str(self.resolution)))
+        self.succeeds(PREPROCESSOR, self.field, self.path, "-o", self.folder / "packages",
+                      "--packages", self.packages)
+        self.package_files = sorted((self.folder / "packages").glob("*.lfp"))
+        self.assertEqual(len(self.package_files), self.packages)
+        self.film = self.folder / "film"
+
+    def expected(self):
+        """The frames of one lfrenderer."""
+        if type(self) not in self.renders:
+            self.succeeds(RENDERER, self.field, self.path, "-o", self.folder / "whole")
+            self.renders[type(self)] = digests(self.folder / "whole")
+            self.assertEqual(len(self.renders[type(self)]), self.frames)
+        return self.renders[type(self)]
+
+    def submit(self, *options, code=0, words=()):
+        """Its last line, which has these words."""
+        result = self.call(SUBMIT, *self.package_files, "-o", self.film, *options)
+        self.assertEqual(result.returncode, code, result.stderr)
+        last = result.stderr.strip().splitlines()[-1]
+        for word in words:
+            self.assertIn(word, last)
+        return last
+
+    def status(self):
+        return json.loads(self.succeeds(SUBMIT, "--status", self.film, "--json"))
+
+    def wait_for(self, what, seconds=60):
+        end = time.monotonic() + seconds
+        while not what():
+            self.assertLess(time.monotonic(), end, "waited in vain")
+            time.sleep(0.02)
+
+    def has_begun(self, number):
+        """A package has a checkpoint, and a frame that is not finished."""
+        return any((self.film / "partial" / f"package-{number:04d}").glob("*.plate"))
+
+    def unlucky_renderer(self, script: str) -> pathlib.Path:
+        """A program in place of lfrenderer: bash, $start counts from 1, $package is a name or "finish",
+        and run is the real one."""
+        counter = self.folder / "starts"
+        counter.mkdir(exist_ok=True)
+        program = self.folder / "lfrenderer"
+        program.write_text(f"""#!/bin/bash
+run() {{ exec {RENDERER} "${{arguments[@]}}"; }}
+arguments=("$@")
+package=finish
+[[ $2 == *.lfp ]] || package=$(basename "$1" .lfp)
+echo >> {counter}/$package
+start=$(wc -l < {counter}/$package)
+{script}
+run
+""")
+        program.chmod(program.stat().st_mode | stat.S_IXUSR)
+        return program
+
+    def start(self, *options):
+        """lfsubmit, at work."""
+        process = subprocess.Popen([SUBMIT, *map(str, self.package_files), "-o", str(self.film),
+                                    *map(str, options)], stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.wait)
+        self.addCleanup(lambda: process.poll() is None and os.kill(process.pid, 9))
+        self.addCleanup(process.stderr.close)
+        return process

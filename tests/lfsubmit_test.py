@@ -1,0 +1,223 @@
+#!/usr/bin/python3
+"""lfsubmit on one machine: packages as processes that die, fail, are interrupted, cancelled and gone
+on with, and always the frames of one lfrenderer.
+
+usage: lfsubmit_test.py LFRENDERER LFPREPROCESSOR LFSUBMIT
+"""
+import json
+import os
+import signal
+import subprocess
+import sys
+import unittest
+
+import cluster_test_case
+from cluster_test_case import ClusterTestCase, digests
+
+
+class LocalJobTest(ClusterTestCase):
+    def test_the_frames_are_those_of_one_render(self):
+        self.submit("--jobs", 2, "--video", self.folder / "film.mp4")
+        self.assertEqual(digests(self.film), self.expected())
+        self.assertGreater((self.folder / "film.mp4").stat().st_size, 1000)
+        self.assertTrue((self.film / "contact_sheet.png").exists())
+        self.assertFalse((self.film / "partial").exists())
+        report = json.loads((self.film / "cluster" / "report.json").read_text())
+        self.assertEqual([frame["frame"] for frame in report["frames"]], list(range(1, 10)))
+        status = self.status()
+        self.assertEqual(status["state"], "done")
+        self.assertEqual(status["frames_done"], 9)
+        for package in status["packages"]:
+            self.assertEqual((package["state"], package["frames_done"], package["share"],
+                              package["restarts"]), ("done", 3, 1, 0))
+        table = self.succeeds(cluster_test_case.SUBMIT, "--status", self.film)
+        for words in ("3 of 3 packages done; 9 of 9 frames, 100 %", "package-0002", "finish"):
+            self.assertIn(words, table)
+
+    def test_arguments_of_lfrenderer_follow_two_dashes(self):
+        self.submit("--frames", "2-7x2", "--", "--format", "png16", "--lens-weights", "none")
+        self.assertEqual(sorted(digests(self.film)),
+                         ["frame_0002.png", "frame_0004.png", "frame_0006.png"])
+        self.assertEqual(self.status()["frames"], 3)
+
+    def test_what_dies_or_is_interrupted_is_begun_again(self):
+        renderer = self.unlucky_renderer("""
+            [[ $package == package-0000 && $start == 1 ]] && kill -9 $$
+            [[ $package == package-0000 && $start == 2 ]] && exit 5
+            [[ $package == package-0002 && $start == 1 ]] && kill -SEGV $$""")
+        self.submit("--jobs", 2, "--lfrenderer", renderer)
+        self.assertEqual(digests(self.film), self.expected())
+        packages = self.status()["packages"]
+        self.assertEqual([package["restarts"] for package in packages], [2, 0, 1])
+        self.assertEqual([package["crashes"] for package in packages], [1, 0, 1])
+
+    def test_what_fails_is_named_and_costs_no_other(self):
+        renderer = self.unlucky_renderer("""
+            [[ $package == package-0001 ]] && { echo "error: the disk is on fire" >&2; exit 3; }""")
+        self.submit("--lfrenderer", renderer, code=3,
+                    words=["package-0001", "frames 4-6", "failed", "the disk is on fire",
+                           "--resume"])
+        self.assertEqual(len(digests(self.film)), 6)
+        self.assertFalse((self.film / "contact_sheet.png").exists())
+        status = self.status()
+        self.assertEqual(status["state"], "failed")
+        self.assertEqual([package["state"] for package in status["packages"]],
+                         ["done", "failed", "done"])
+        self.assertEqual(status["packages"][1]["exit_code"], 3)
+        self.assertIn("disk is on fire", status["packages"][1]["message"])
+        self.unlucky_renderer("")  # repaired
+        before = (self.film / "frame_0001.exr").stat().st_mtime_ns
+        self.succeeds(cluster_test_case.SUBMIT, "--resume", self.film)
+        self.assertEqual(digests(self.film), self.expected())
+        self.assertEqual((self.film / "frame_0001.exr").stat().st_mtime_ns, before)
+        self.assertEqual(self.status()["state"], "done")
+
+    def test_what_always_dies_has_failed(self):
+        renderer = self.unlucky_renderer("[[ $package == package-0001 ]] && kill -9 $$")
+        self.submit("--lfrenderer", renderer, "--crashes", 2, code=4,
+                    words=["package-0001", "crashed 3 times", "signal 9"])
+        self.assertEqual((self.folder / "starts" / "package-0001").read_text().count("\n"), 3)
+
+    def test_below_what_was_asked_for_is_told_and_complete(self):
+        last = self.submit("--video", self.folder / "film.mp4", "--", "--require", "samples>=9999",
+                           code=6, words=["9999"])
+        self.assertTrue(last.startswith("error: "))
+        self.assertEqual(len(digests(self.film)), 9)
+        self.assertTrue((self.folder / "film.mp4").exists())
+        self.assertEqual(self.status()["state"], "done")
+
+    def test_frames_that_are_gone_are_rendered_again(self):
+        self.submit()
+        (self.film / "frame_0005.exr").unlink()
+        self.succeeds(cluster_test_case.SUBMIT, "--resume", self.film)
+        self.assertEqual(digests(self.film), self.expected())
+        self.assertEqual([package["restarts"] for package in self.status()["packages"]], [0, 1, 0])
+
+    def test_a_folder_has_one_job(self):
+        self.submit()
+        self.submit(code=2, words=["a job was submitted there", "--resume", "--overwrite"])
+        before = (self.film / "frame_0001.exr").stat().st_mtime_ns
+        self.submit("--overwrite")
+        self.assertNotEqual((self.film / "frame_0001.exr").stat().st_mtime_ns, before)
+        self.assertEqual(digests(self.film), self.expected())
+
+    def test_what_cannot_be_is_said_before_the_work(self):
+        for options, code, words in (
+                (["--", "--format", "jpeg"], 2, ["after --", "jpeg"]),
+                (["--", "--no-such-option"], 2, ["after --", "no-such-option"]),
+                (["--", "--shard", "1/2"], 2, ["--shard", "lfsubmit decides"]),
+                (["--", "--frames=1"], 2, ["--frames=1", "lfsubmit decides"]),
+                (["--", "--mode", "rebin", "--stop-when", "samples>=2"], 2, ["--mode rebin"]),
+                (["--time-limit", "1h"], 2, ["--engine slurm"]),
+                (["--frames", "12"], 2, ["12"]),
+                (["--video", self.folder / "no" / "film.mp4"], 4, ["no folder"]),
+                (["--lfrenderer", self.folder / "no"], 2, ["--lfrenderer"])):
+            self.submit(*options, code=code, words=words)
+            self.assertFalse((self.film / "cluster").exists(), options)
+        submit = cluster_test_case.SUBMIT
+        for words, arguments in ((["no job", "cluster/job.json"], ["--status", self.folder]),
+                                 (["no job"], ["--resume", self.folder / "no"]),
+                                 (["no job"], ["--cancel", self.folder]),
+                                 (["no job"], ["--finish", self.folder, "1"])):
+            self.fails(3, words, submit, *arguments)
+        self.fails(2, ["PACKAGES"], submit)
+        self.fails(2, ["-o DIR is missing"], submit, *self.package_files)
+        self.fails(2, ["at a time"], submit, "--status", self.film, "--cancel", self.film)
+        self.fails(2, ["DIR alone"], submit, *self.package_files, "--status", self.film)
+        self.fails(2, ["is no package", "lfpreprocessor"], submit, self.field, self.path, "-o",
+                   self.film)
+
+    def test_damaged_states_are_named(self):
+        self.submit()
+        state = self.film / "cluster" / "packages" / "package-0001.json"
+        state.write_text(state.read_text()[:20])
+        self.assertIn("package-0001.json", self.status()["packages"][1]["message"])
+        job = self.film / "cluster" / "job.json"
+        job.write_text("[]")
+        self.fails(3, ["job.json", "remove it"], cluster_test_case.SUBMIT, "--status", self.film)
+
+
+class LongLocalJobTest(ClusterTestCase):
+    """Renders of some seconds, which are interrupted."""
+    packages = 2
+    frames = 6
+    side, pitch = 12, 0.004
+    resolution = [320, 240]
+    OPTIONS = ("--jobs", 2, "--threads", 1, "--", "--dump-every", "0.05s")
+
+    def resume(self, *options, code=0):
+        return self.succeeds(cluster_test_case.SUBMIT, "--resume", self.film, *options, code=code)
+
+    def test_a_signal_writes_the_state_of_all_packages(self):
+        for sign in (signal.SIGINT, signal.SIGTERM):
+            process = self.start(*self.OPTIONS)
+            self.wait_for(lambda: self.has_begun(0) and self.has_begun(1))
+            process.send_signal(sign)
+            words = process.communicate()[1].strip().splitlines()[-1]
+            self.assertEqual(process.returncode, 5, words)
+            self.assertIn("--resume", words)
+            status = self.status()
+            self.assertEqual(status["state"], "interrupted")
+            self.assertEqual({package["state"] for package in status["packages"]}, {"interrupted"})
+            self.resume()
+            self.assertEqual(digests(self.film), self.expected())
+            logs = [(self.film / "cluster" / "packages" / f"package-000{k}.log").read_text()
+                    for k in (0, 1)]
+            for log in logs:  # nothing that a checkpoint held is rendered again
+                self.assertRegex(log, r"going on: \d frames are finished, \d begun")
+            subprocess.run(["rm", "-r", self.film], check=True)
+
+    def test_a_killed_lfsubmit_takes_its_renderers_along(self):
+        process = self.start(*self.OPTIONS)
+        self.wait_for(lambda: self.has_begun(0) and self.has_begun(1))
+        os.kill(process.pid, signal.SIGKILL)
+        process.wait()
+        # They get a SIGTERM, and write their states.
+        self.wait_for(lambda: self.status()["state"] == "interrupted")
+        self.assertIn("process is gone", self.status()["packages"][0]["message"])
+        self.resume()
+        self.assertEqual(digests(self.film), self.expected())
+        self.assertEqual([package["crashes"] for package in self.status()["packages"]], [0, 0])
+
+    def test_a_job_is_cancelled_from_elsewhere(self):
+        process = self.start(*self.OPTIONS)
+        self.wait_for(lambda: self.has_begun(0))
+        self.fails(4, ["lock", "another program"], cluster_test_case.SUBMIT, "--resume", self.film)
+        self.succeeds(cluster_test_case.SUBMIT, "--cancel", self.film)
+        words = process.communicate()[1].strip().splitlines()[-1]
+        self.assertEqual(process.returncode, 5, words)
+        self.assertIn("cancelled", words)
+        self.assertTrue(self.status()["cancelled"])
+        self.resume()
+        self.assertFalse(self.status()["cancelled"])
+        self.assertEqual(digests(self.film), self.expected())
+
+    def test_frames_are_finished_early(self):
+        submit = cluster_test_case.SUBMIT
+        process = self.start(*self.OPTIONS)
+        self.wait_for(lambda: self.has_begun(0))
+        process.send_signal(signal.SIGINT)
+        process.communicate()
+        begun = [int(path.stem[6:]) for path in
+                 (self.film / "partial" / "package-0000").glob("frame_*.plate")]
+        self.assertTrue(begun)
+        self.fails(2, ["--finish", "7"], submit, "--finish", self.film, "1,7")
+        frame = max(begun)
+        self.succeeds(submit, "--finish", self.film, frame)
+        self.resume()
+        expected, name = self.expected(), f"frame_{frame:04d}.exr"
+        got = digests(self.film)
+        self.assertEqual(set(got), set(expected))
+        self.assertEqual([other for other in got if got[other] != expected[other]], [name])
+        report = json.loads((self.film / "cluster" / "report.json").read_text())
+        early = {frame["frame"]: frame["finished_early_before_place"] for frame in report["frames"]
+                 if "finished_early_before_place" in frame}
+        self.assertEqual(list(early), [frame])
+        self.assertTrue(0 < early[frame] < self.side ** 2, early)
+        images = {frame["frame"]: frame["lf_images"] for frame in report["frames"]}
+        self.assertLess(images[frame], min(images[other] for other in images if other != frame))
+
+
+if __name__ == "__main__":
+    cluster_test_case.take_programs()
+    unittest.main(argv=sys.argv[:1], verbosity=2)

@@ -1,0 +1,17 @@
+// How far a job is, for people.
+#pragma once
+
+#include <string>
+
+#include "lf/cluster/job.h"
+#include "lf/cluster/job_status.h"
+
+namespace lf {
+
+// One line about the whole, and a table with a row for each package.
+std::string JobTable(const ClusterJob& job, const JobStatus& status);
+
+// "3 of 8 packages done, 2 running; 214 of 480 frames, 47 %".
+std::string JobSummary(const JobStatus& status);
+
+}  // namespace lf

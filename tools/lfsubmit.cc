@@ -1,0 +1,153 @@
+// lfsubmit PACKAGES... -o DIR: renders the packages of a film by many processes or machines.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <iostream>
+#include <string>
+#include <thread>
+
+#include "tools/common/interrupt.h"
+#include "tools/common/program.h"
+#include "tools/common/progress.h"
+#include "tools/job_table.h"
+#include "tools/submit_arguments.h"
+
+#include "lf/cluster/finish_frames.h"
+#include "lf/cluster/job_status.h"
+#include "lf/cluster/resume_job.h"
+#include "lf/cluster/run_locally.h"
+#include "lf/cluster/run_package.h"
+#include "lf/cluster/slurm.h"
+#include "lf/cluster/task_state.h"
+#include "lf/core/file.h"
+#include "lf/core/log.h"
+#include "lf/core/shell_word.h"
+#include "lf/pipeline/frame_range.h"
+#include "lf/sequence/video.h"
+
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  lfpreprocessor capture/ path.yaml -o packages --packages 8
+  lfsubmit packages/*.lfp -o film --jobs 2 --video film.mp4              # on this machine
+  lfsubmit packages/*.lfp -o film --engine slurm --threads 8 --time-limit 2h --sbatch=--partition=long
+  lfsubmit packages/*.lfp -o film -- --format png16 --lens-weights area  # arguments of lfrenderer
+  lfsubmit --status film
+  lfsubmit --finish film 10-20     # these are good enough; the others go on
+  lfsubmit --cancel film           # with Ctrl-C, too, where it runs here
+  lfsubmit --resume film
+
+Each package is a process lfrenderer, which is begun again where it was interrupted or died, and goes
+on with its checkpoint: frames have the bits of one lfrenderer run. DIR/partial has pictures of what
+is not finished. Nothing stays in memory: the job is files in DIR/cluster, with the batch scripts
+(to be read and edited), a state and a log of each package.
+
+A package that fails does not end the others. The exit code is 0 when every frame is there, else that
+of the first package that failed, and the last line names what is missing. See doc/cluster.md.)";
+
+using lf::ClusterJob;
+using lf::Result;
+
+void Show(const ClusterJob& job, lf::ProgressMeter& meter) {
+  const lf::JobStatus status = lf::LookAtJob(job);
+  meter.Update(status.rays_done(), status.ray_total(), lf::JobSummary(status));
+}
+
+// By the engine that the job has, until it is done, or submitted.
+Result<void> Begin(ClusterJob job, const std::vector<size_t>& numbers, bool waits,
+                   const lf::CommonOptions& common) {
+  const std::string folder = lf::ShellWord(job.output_folder.string());
+  const std::atomic<bool>& stop = lf::CatchInterrupts();
+  lf::ProgressMeter meter(lf::ParseProgressStyle(common.progress), "rays");
+  Result<void> outcome;
+  if (job.engine == lf::ClusterEngine::kLocal) {
+    lf::LogInfo("{} packages, {} at a time, {} threads and {} MiB each; lfsubmit --status {} tells",
+                numbers.size(), job.at_once, job.thread_count, job.memory_bytes >> 20, folder);
+    outcome = lf::RunLocally(job, numbers, stop, [&] { Show(job, meter); });
+  } else {
+    LF_RETURN_IF_ERROR(lf::SubmitToSlurm(&job, numbers));
+    lf::LogInfo("submitted: array {} of {} packages, finishing task {}; lfsubmit --status {} tells",
+                job.slurm_array_ids.back(), numbers.size(), job.slurm_finishing_id, folder);
+    if (!waits) return {};
+    outcome = lf::WaitForJob(job, stop, [&] { Show(job, meter); });
+  }
+  if (!outcome) return outcome.error();
+  // What lfrenderer says of the whole film: rays, warnings, where to look.
+  for (const std::string& line : lf::LinesOfLastStart(lf::FinishingTask(job).log))
+    lf::LogInfo("{}", line);
+  if (common.json) return lf::PrintReport(lf::ToJson(job, lf::LookAtJob(job)));
+  return {};
+}
+
+Result<void> Submit(const lf::SubmitArguments& arguments, const lf::CommonOptions& common) {
+  LF_ASSIGN_OR_RETURN(const ClusterJob job, arguments.MakeJob(common));
+  if (job.video) {
+    LF_RETURN_IF_ERROR(lf::CheckVideoTool());
+    LF_RETURN_IF_ERROR(lf::CreateFolder(job.output_folder));
+    LF_RETURN_IF_ERROR(lf::CheckVideoTarget(*job.video));
+  }
+  LF_RETURN_IF_ERROR(lf::MakeRoomForJob(job, arguments.overwrite));
+  LF_RETURN_IF_ERROR(lf::WriteJob(job));
+  std::vector<size_t> numbers(job.packages.size());
+  for (size_t i = 0; i < numbers.size(); ++i) numbers[i] = i;
+  return Begin(job, numbers, arguments.wait, common);
+}
+
+Result<void> Finish(const std::vector<std::string>& words) {
+  LF_ASSIGN_OR_RETURN(const ClusterJob job, lf::ReadJob(words[0]));
+  size_t last = 0;
+  for (const lf::JobPackage& package : job.packages)
+    last = std::max<size_t>(last, package.frames.back().value);
+  LF_ASSIGN_OR_RETURN(const auto frames, lf::ParseFrameRange(words[1], last, "--finish"));
+  LF_RETURN_IF_ERROR(lf::AskToFinish(job, frames));
+  lf::LogInfo(
+      "{} frames are finished with the rays they have when their packages look, within seconds "
+      "where they run; report-*.json say which LF images these are",
+      frames.size());
+  return {};
+}
+
+Result<void> Act(const lf::SubmitArguments& arguments, const lf::CommonOptions& common) {
+  LF_RETURN_IF_ERROR(arguments.Check());
+  if (!arguments.status.empty()) {
+    LF_ASSIGN_OR_RETURN(const ClusterJob job, lf::ReadJob(arguments.status));
+    const lf::JobStatus status = lf::LookAtJob(job);
+    return lf::PrintReport(common.json ? lf::ToJson(job, status) : lf::JobTable(job, status));
+  }
+  if (!arguments.cancel.empty()) {
+    LF_ASSIGN_OR_RETURN(const ClusterJob job, lf::ReadJob(arguments.cancel));
+    return lf::CancelJob(job, lf::CatchInterrupts());
+  }
+  if (!arguments.resume.empty()) {
+    LF_ASSIGN_OR_RETURN(const ClusterJob job, lf::ReadJob(arguments.resume));
+    LF_ASSIGN_OR_RETURN(const std::vector<size_t> numbers, lf::PrepareResume(job));
+    return Begin(job, numbers, arguments.wait, common);
+  }
+  if (!arguments.finish.empty()) return Finish(arguments.finish);
+  if (!arguments.run_finish.empty()) {
+    LF_ASSIGN_OR_RETURN(const ClusterJob job, lf::ReadJob(arguments.run_finish));
+    return lf::FinishFilm(job, lf::NodeName(), lf::CatchInterrupts());
+  }
+  if (!arguments.run_package.empty()) {
+    LF_ASSIGN_OR_RETURN(const ClusterJob job, lf::ReadJob(arguments.run_package[1]));
+    const size_t number = std::strtoull(arguments.run_package[0].c_str(), nullptr, 10);
+    if (number >= job.packages.size())
+      return lf::UsageError(fmt::format("--run-package {}: the job has packages 0 to {}",
+                                        arguments.run_package[0], job.packages.size() - 1));
+    LF_ASSIGN_OR_RETURN(const lf::TaskState state,
+                        lf::RunPackage(job, number, lf::NodeName(), lf::CatchInterrupts()));
+    return lf::OutcomeOf(job.packages[number].name, state);
+  }
+  return Submit(arguments, common);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  lf::Program program("lfsubmit", "Renders the packages of a film by many processes or machines.",
+                      kExamples);
+  lf::SubmitArguments arguments;
+  arguments.AddTo(program.app());
+  program.AddJsonOption("Print the status to stdout");
+  return program.Run(argc, argv, [&] { return Act(arguments, program.common()); });
+}

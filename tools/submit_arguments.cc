@@ -1,0 +1,214 @@
+#include "tools/submit_arguments.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <thread>
+
+#include "tools/common/byte_size.h"
+#include "tools/common/duration.h"
+#include "tools/render_arguments.h"
+
+#include "lf/package/package_file.h"
+#include "lf/pipeline/check_options.h"
+#include "lf/pipeline/render_packages.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+// Of lfrenderer's, those that a job decides about.
+constexpr std::array kOfTheJob = {
+    "-o",        "--output", "--resume", "--overwrite", "--progress",         "--json",
+    "--threads", "--memory", "--frames", "--video",     "--no-contact-sheet", "--shard",
+    "--finish",  "-q",       "--quiet"};
+
+uint64_t MachineMemoryBytes() {
+  const long pages = ::sysconf(_SC_PHYS_PAGES), page_bytes = ::sysconf(_SC_PAGESIZE);
+  return pages > 0 && page_bytes > 0
+             ? static_cast<uint64_t>(pages) * static_cast<uint64_t>(page_bytes)
+             : uint64_t{8} << 30;
+}
+
+int MachineThreads() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+
+// This program's, so that jobs use the programs that were installed together.
+Result<fs::path> ProgramFolder() {
+  std::error_code error;
+  const fs::path self = fs::read_symlink("/proc/self/exe", error);
+  if (error) return OutputError("/proc/self/exe: cannot be read: " + error.message());
+  return self.parent_path();
+}
+
+Result<fs::path> FindRenderer(const std::string& asked_for) {
+  LF_ASSIGN_OR_RETURN(const fs::path folder, ProgramFolder());
+  const fs::path renderer = asked_for.empty() ? folder / "lfrenderer" : fs::absolute(asked_for);
+  if (::access(renderer.c_str(), X_OK) != 0)
+    return UsageError(fmt::format(
+        "{}: is no program: expected lfrenderer beside lfsubmit; say with --lfrenderer where it is",
+        renderer.string()));
+  return renderer;
+}
+
+// What lfrenderer itself would say, before anything waits in a queue.
+Result<RenderOptions> TryArguments(const std::vector<fs::path>& packages, const fs::path& output,
+                                   const std::string& frames,
+                                   const std::vector<std::string>& arguments,
+                                   std::optional<LightFieldPlace>* place) {
+  Program renderer("lfrenderer", "", "");
+  RenderArguments render;
+  render.AddTo(renderer.app());
+  std::vector<std::string> words = {"lfrenderer"};
+  for (const fs::path& package : packages) words.push_back(package.string());
+  words.insert(words.end(), {"-o", output.string()});
+  if (!frames.empty()) words.insert(words.end(), {"--frames", frames});
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  try {
+    renderer.app().parse(static_cast<int>(argv.size()), argv.data());
+  } catch (const CLI::ParseError& error) {
+    return UsageError(fmt::format("the arguments of lfrenderer, after --: {}", error.what()));
+  }
+  LF_RETURN_IF_ERROR(render.Check(renderer.app().count("--seed") > 0));
+  if (!render.light_field.path.empty()) {
+    LF_ASSIGN_OR_RETURN(const LightField light_field, render.light_field.Open());
+    LF_ASSIGN_OR_RETURN(*place, PlaceOf(render.light_field.path, light_field));
+  }
+  LF_ASSIGN_OR_RETURN(const Package first, OpenPackage(packages.front(), *place));
+  LF_ASSIGN_OR_RETURN(RenderOptions options,
+                      render.MakeOptions(renderer.common(), first.light_field.encoding.bayer,
+                                         first.path.frame_count()));
+  if (!options.max_image_count) options.max_image_count = first.choices.max_image_count;
+  LF_RETURN_IF_ERROR(CheckOptions(first, options));
+  return options;
+}
+
+}  // namespace
+
+void SubmitArguments::AddTo(CLI::App& app) {
+  app.add_option("PACKAGES", words,
+                 "Files of lfpreprocessor; after -- arguments of lfrenderer, for all of them");
+  app.add_option("-o,--output", output, "Folder of the frames, which all machines share")
+      ->check(NotEmpty());
+  app.add_option("--engine", engine, "local: processes of this machine, until all is done; slurm")
+      ->check(CLI::IsMember({"local", "slurm"}));
+  app.add_option("--jobs", at_once,
+                 "Packages rendered at the same time; 0: local 1, slurm as many as it has room for")
+      ->check(WholeNumber());
+  app.add_option("--memory", memory,
+                 "Bound of the memory of each lfrenderer; empty: 8G, and of this machine's no more "
+                 "than 80 % for all together");
+  app.add_option("--frames", frames, "Frames to render: 1-100x2, 7, 3-5,9")->check(NotEmpty());
+  app.add_option("--video", video, "Also write the frames as this mp4 (needs ffmpeg)")
+      ->check(NotEmpty());
+  app.add_flag("--no-contact-sheet", no_contact_sheet, "No contact_sheet.png");
+  app.add_option("--crashes", most_crashes,
+                 "A package fails if lfrenderer, or its node, dies more often than this");
+  app.add_option("--lfrenderer", renderer, "The program; empty: the one beside this program");
+  app.add_flag("--overwrite", overwrite, "Remove the job and the frames of these packages in DIR");
+  app.add_option("--time-limit", time_limit,
+                 "slurm: of a task, such as 2h; it is gone on with after it, too")
+      ->check(NotEmpty());
+  app.add_option("--sbatch", sbatch_options,
+                 "slurm: an option of sbatch, such as --sbatch=--partition=long; may be repeated")
+      ->allow_extra_args(false);
+  app.add_flag("--wait", wait, "slurm: wait until the film is done; the exit code is that of it");
+  const char* const there = "A job that is there";
+  app.add_option("--status", status, "DIR: how far it is")->check(NotEmpty())->group(there);
+  app.add_option("--cancel", cancel, "DIR: write the state of all packages and end")
+      ->check(NotEmpty())
+      ->group(there);
+  app.add_option("--resume", resume, "DIR: go on with what is not done")
+      ->check(NotEmpty())
+      ->group(there);
+  app.add_option("--finish", finish,
+                 "DIR FRAMES: finish frames with the rays they have; the others go on")
+      ->expected(2)
+      ->group(there);
+  // For the jobs themselves.
+  app.add_option("--run-package", run_package, "NUMBER DIR")->expected(2)->group("");
+  app.add_option("--run-finish", run_finish, "DIR")->group("");
+}
+
+Result<void> SubmitArguments::Check() const {
+  const int asked = !status.empty() + !cancel.empty() + !resume.empty() + !finish.empty() +
+                    !run_package.empty() + !run_finish.empty();
+  if (asked > 1) return UsageError("one of --status, --cancel, --resume and --finish at a time");
+  if (asked == 1 && !words.empty())
+    return UsageError(fmt::format(
+        "{}: packages are for new jobs: --status, --cancel, --resume and --finish take DIR alone",
+        words.front()));
+  if (asked == 1) return {};
+  if (words.empty() || words.front().starts_with('-'))
+    return UsageError(
+        "expected PACKAGES... -o DIR (files of lfpreprocessor), or --status, --cancel or --resume "
+        "DIR");
+  if (output.empty()) return UsageError("-o DIR is missing: the folder of the frames");
+  if (engine != "slurm" && (!time_limit.empty() || !sbatch_options.empty()))
+    return UsageError("--time-limit and --sbatch are for --engine slurm");
+  return {};
+}
+
+Result<ClusterJob> SubmitArguments::MakeJob(const CommonOptions& common) const {
+  const auto options_begin = std::find_if(
+      words.begin(), words.end(), [](const std::string& word) { return word.starts_with('-'); });
+  std::vector<fs::path> files;
+  for (auto word = words.begin(); word != options_begin; ++word)
+    files.push_back(fs::absolute(*word).lexically_normal());
+  for (const fs::path& file : files)
+    if (!IsPackageName(file))
+      return UsageError(fmt::format(
+          "{}: is no package (a file that ends in .lfp): make some with lfpreprocessor LIGHTFIELD "
+          "PATH.yaml -o packages --packages 8",
+          file.string()));
+  ClusterJob job;
+  job.arguments.assign(options_begin, words.end());
+  for (const std::string& argument : job.arguments)
+    for (const std::string word : kOfTheJob)
+      if (argument == word || argument.starts_with(word + "="))
+        return UsageError(fmt::format(
+            "{}: not among the arguments of lfrenderer: lfsubmit decides about it{}", argument,
+            word.starts_with("--") ? ", and has some of these options itself" : ""));
+  if (common.strict) job.arguments.emplace_back("--strict");
+  job.output_folder = fs::absolute(output).lexically_normal();
+  if (!job.output_folder.has_filename()) job.output_folder = job.output_folder.parent_path();
+  std::error_code error;
+  job.working_folder = fs::current_path(error);
+  LF_ASSIGN_OR_RETURN(job.renderer, FindRenderer(renderer));
+  LF_ASSIGN_OR_RETURN(job.submitter, ProgramFolder());
+  job.submitter /= "lfsubmit";
+  std::optional<LightFieldPlace> place;
+  LF_ASSIGN_OR_RETURN(const RenderOptions options,
+                      TryArguments(files, job.output_folder, frames, job.arguments, &place));
+  LF_ASSIGN_OR_RETURN(const std::vector<PackagePart> parts,
+                      LookAtPackages(files, place, options.frames));
+  for (const PackagePart& part : parts)
+    job.packages.push_back(
+        {part.path, part.path.stem().string(), part.frames, part.is_whole, part.ray_count});
+  job.frame_extension = FramePath("", FrameId{1}, options.format).extension().string();
+  if (!video.empty()) job.video = fs::absolute(video).lexically_normal();
+  job.contact_sheet = !no_contact_sheet;
+  job.engine = engine == "slurm" ? ClusterEngine::kSlurm : ClusterEngine::kLocal;
+  const bool is_local = job.engine == ClusterEngine::kLocal;
+  job.at_once = is_local ? std::clamp<size_t>(at_once, 1, job.packages.size()) : at_once;
+  job.most_crashes = most_crashes;
+  job.thread_count = common.threads;
+  if (job.thread_count == 0)
+    job.thread_count = is_local ? std::max(1, MachineThreads() / static_cast<int>(job.at_once)) : 1;
+  job.memory_bytes = uint64_t{8} << 30;
+  if (!memory.empty()) {
+    LF_ASSIGN_OR_RETURN(job.memory_bytes, ParseByteSize(memory, "--memory"));
+  } else if (is_local) {
+    job.memory_bytes = std::min(job.memory_bytes, MachineMemoryBytes() / 5 * 4 / job.at_once);
+  }
+  if (!time_limit.empty()) {
+    LF_ASSIGN_OR_RETURN(job.time_limit_s, ParseDuration(time_limit, "--time-limit"));
+  }
+  job.sbatch_options = sbatch_options;
+  return job;
+}
+
+}  // namespace lf
