@@ -6,6 +6,7 @@ import pathlib
 import stat
 import subprocess
 import sys
+import tempfile
 import time
 
 import small_field
@@ -31,28 +32,30 @@ class ClusterTestCase(ProgramTestCase):
     frames = 9
     side, pitch = 4, 0.01  # of the LF cameras
     resolution = None      # that of small_field
-    renders = {}           # frames of one lfrenderer, the same for all tests of a class
+
+    @classmethod
+    def setUpClass(cls):
+        """Light field, path, packages and the frames of one lfrenderer, the same for all tests."""
+        temporary = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(temporary.cleanup)
+        folder = pathlib.Path(temporary.name)
+        small_field.SIDE, small_field.PITCH = cls.side, cls.pitch
+        cls.field = small_field.write_field(folder / "field")
+        cls.path = small_field.write_path(folder, frames=cls.frames)
+        if cls.resolution:
+            cls.path.write_text(cls.path.read_text().replace("[80, 60]", str(cls.resolution)))
+        for command in ([PREPROCESSOR, cls.field, cls.path, "-o", folder / "packages", "--packages",
+                         cls.packages],
+                        [RENDERER, cls.field, cls.path, "-o", folder / "whole"]):
+            subprocess.run(list(map(str, command)), check=True, stdout=subprocess.DEVNULL,
+                           stderr=subprocess.DEVNULL)
+        cls.package_files = sorted((folder / "packages").glob("*.lfp"))
+        cls.expected = digests(folder / "whole")
+        assert (len(cls.package_files), len(cls.expected)) == (cls.packages, cls.frames)
 
     def setUp(self):
         super().setUp()
-        small_field.SIDE, small_field.PITCH = self.side, self.pitch
-        self.field = small_field.write_field(self.folder / "field")
-        self.path = small_field.write_path(self.folder, frames=self.frames)
-        if self.resolution:
-            self.path.write_text(self.path.read_text().replace("[80, 60]", str(self.resolution)))
-        self.succeeds(PREPROCESSOR, self.field, self.path, "-o", self.folder / "packages",
-                      "--packages", self.packages)
-        self.package_files = sorted((self.folder / "packages").glob("*.lfp"))
-        self.assertEqual(len(self.package_files), self.packages)
         self.film = self.folder / "film"
-
-    def expected(self):
-        """The frames of one lfrenderer."""
-        if type(self) not in self.renders:
-            self.succeeds(RENDERER, self.field, self.path, "-o", self.folder / "whole")
-            self.renders[type(self)] = digests(self.folder / "whole")
-            self.assertEqual(len(self.renders[type(self)]), self.frames)
-        return self.renders[type(self)]
 
     def submit(self, *options, code=0, words=()):
         """Its last line, which has these words."""
@@ -74,7 +77,7 @@ class ClusterTestCase(ProgramTestCase):
 
     def has_begun(self, number):
         """A package has a checkpoint, and a frame that is not finished."""
-        return any((self.film / "partial" / f"package-{number:04d}").glob("*.plate"))
+        return any((self.film / "partial" / f"package-{number:04d}").glob("frame_*.plate"))
 
     def unlucky_renderer(self, script: str) -> pathlib.Path:
         """A program in place of lfrenderer: bash, $start counts from 1, $package is a name or "finish",

@@ -18,7 +18,7 @@ from cluster_test_case import ClusterTestCase, digests
 class LocalJobTest(ClusterTestCase):
     def test_the_frames_are_those_of_one_render(self):
         self.submit("--jobs", 2, "--video", self.folder / "film.mp4")
-        self.assertEqual(digests(self.film), self.expected())
+        self.assertEqual(digests(self.film), self.expected)
         self.assertGreater((self.folder / "film.mp4").stat().st_size, 1000)
         self.assertTrue((self.film / "contact_sheet.png").exists())
         self.assertFalse((self.film / "partial").exists())
@@ -46,7 +46,7 @@ class LocalJobTest(ClusterTestCase):
             [[ $package == package-0000 && $start == 2 ]] && exit 5
             [[ $package == package-0002 && $start == 1 ]] && kill -SEGV $$""")
         self.submit("--jobs", 2, "--lfrenderer", renderer)
-        self.assertEqual(digests(self.film), self.expected())
+        self.assertEqual(digests(self.film), self.expected)
         packages = self.status()["packages"]
         self.assertEqual([package["restarts"] for package in packages], [2, 0, 1])
         self.assertEqual([package["crashes"] for package in packages], [1, 0, 1])
@@ -68,7 +68,7 @@ class LocalJobTest(ClusterTestCase):
         self.unlucky_renderer("")  # repaired
         before = (self.film / "frame_0001.exr").stat().st_mtime_ns
         self.succeeds(cluster_test_case.SUBMIT, "--resume", self.film)
-        self.assertEqual(digests(self.film), self.expected())
+        self.assertEqual(digests(self.film), self.expected)
         self.assertEqual((self.film / "frame_0001.exr").stat().st_mtime_ns, before)
         self.assertEqual(self.status()["state"], "done")
 
@@ -86,11 +86,21 @@ class LocalJobTest(ClusterTestCase):
         self.assertTrue((self.folder / "film.mp4").exists())
         self.assertEqual(self.status()["state"], "done")
 
+    # Memory that was too little can be more, and one process at a time enough.
+    def test_what_a_job_gets_may_change_when_it_goes_on(self):
+        renderer = self.unlucky_renderer("""
+            [[ "$*" == *"--memory 1073741824"* ]] || { echo "error: too little" >&2; exit 4; }""")
+        self.submit("--memory", "512M", "--lfrenderer", renderer, code=4, words=["too little"])
+        self.succeeds(cluster_test_case.SUBMIT, "--resume", self.film, "--memory", "1G")
+        self.assertEqual(digests(self.film), self.expected)
+        self.fails(2, ["--time-limit", "slurm"], cluster_test_case.SUBMIT, "--resume", self.film,
+                   "--time-limit", "1h")
+
     def test_frames_that_are_gone_are_rendered_again(self):
         self.submit()
         (self.film / "frame_0005.exr").unlink()
         self.succeeds(cluster_test_case.SUBMIT, "--resume", self.film)
-        self.assertEqual(digests(self.film), self.expected())
+        self.assertEqual(digests(self.film), self.expected)
         self.assertEqual([package["restarts"] for package in self.status()["packages"]], [0, 1, 0])
 
     def test_a_folder_has_one_job(self):
@@ -99,7 +109,7 @@ class LocalJobTest(ClusterTestCase):
         before = (self.film / "frame_0001.exr").stat().st_mtime_ns
         self.submit("--overwrite")
         self.assertNotEqual((self.film / "frame_0001.exr").stat().st_mtime_ns, before)
-        self.assertEqual(digests(self.film), self.expected())
+        self.assertEqual(digests(self.film), self.expected)
 
     def test_what_cannot_be_is_said_before_the_work(self):
         for options, code, words in (
@@ -160,7 +170,7 @@ class LongLocalJobTest(ClusterTestCase):
             self.assertEqual(status["state"], "interrupted")
             self.assertEqual({package["state"] for package in status["packages"]}, {"interrupted"})
             self.resume()
-            self.assertEqual(digests(self.film), self.expected())
+            self.assertEqual(digests(self.film), self.expected)
             logs = [(self.film / "cluster" / "packages" / f"package-000{k}.log").read_text()
                     for k in (0, 1)]
             for log in logs:  # nothing that a checkpoint held is rendered again
@@ -176,7 +186,7 @@ class LongLocalJobTest(ClusterTestCase):
         self.wait_for(lambda: self.status()["state"] == "interrupted")
         self.assertIn("process is gone", self.status()["packages"][0]["message"])
         self.resume()
-        self.assertEqual(digests(self.film), self.expected())
+        self.assertEqual(digests(self.film), self.expected)
         self.assertEqual([package["crashes"] for package in self.status()["packages"]], [0, 0])
 
     def test_a_job_is_cancelled_from_elsewhere(self):
@@ -190,7 +200,7 @@ class LongLocalJobTest(ClusterTestCase):
         self.assertTrue(self.status()["cancelled"])
         self.resume()
         self.assertFalse(self.status()["cancelled"])
-        self.assertEqual(digests(self.film), self.expected())
+        self.assertEqual(digests(self.film), self.expected)
 
     def test_frames_are_finished_early(self):
         submit = cluster_test_case.SUBMIT
@@ -205,7 +215,7 @@ class LongLocalJobTest(ClusterTestCase):
         frame = max(begun)
         self.succeeds(submit, "--finish", self.film, frame)
         self.resume()
-        expected, name = self.expected(), f"frame_{frame:04d}.exr"
+        expected, name = self.expected, f"frame_{frame:04d}.exr"
         got = digests(self.film)
         self.assertEqual(set(got), set(expected))
         self.assertEqual([other for other in got if got[other] != expected[other]], [name])

@@ -22,7 +22,6 @@
 #include "lf/core/file.h"
 #include "lf/core/log.h"
 #include "lf/core/shell_word.h"
-#include "lf/pipeline/frame_range.h"
 #include "lf/sequence/video.h"
 
 namespace {
@@ -95,15 +94,11 @@ Result<void> Submit(const lf::SubmitArguments& arguments, const lf::CommonOption
 
 Result<void> Finish(const std::vector<std::string>& words) {
   LF_ASSIGN_OR_RETURN(const ClusterJob job, lf::ReadJob(words[0]));
-  size_t last = 0;
-  for (const lf::JobPackage& package : job.packages)
-    last = std::max<size_t>(last, package.frames.back().value);
-  LF_ASSIGN_OR_RETURN(const auto frames, lf::ParseFrameRange(words[1], last, "--finish"));
-  LF_RETURN_IF_ERROR(lf::AskToFinish(job, frames));
+  LF_ASSIGN_OR_RETURN(const size_t count, lf::AskToFinish(job, words[1]));
   lf::LogInfo(
       "{} frames are finished with the rays they have when their packages look, within seconds "
       "where they run; report-*.json say which LF images these are",
-      frames.size());
+      count);
   return {};
 }
 
@@ -119,7 +114,8 @@ Result<void> Act(const lf::SubmitArguments& arguments, const lf::CommonOptions& 
     return lf::CancelJob(job, lf::CatchInterrupts());
   }
   if (!arguments.resume.empty()) {
-    LF_ASSIGN_OR_RETURN(const ClusterJob job, lf::ReadJob(arguments.resume));
+    LF_ASSIGN_OR_RETURN(ClusterJob job, lf::ReadJob(arguments.resume));
+    LF_RETURN_IF_ERROR(arguments.Change(&job, common));
     LF_ASSIGN_OR_RETURN(const std::vector<size_t> numbers, lf::PrepareResume(job));
     return Begin(job, numbers, arguments.wait, common);
   }

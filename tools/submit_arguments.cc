@@ -11,6 +11,8 @@
 #include "tools/common/duration.h"
 #include "tools/render_arguments.h"
 
+#include "lf/cluster/slurm.h"
+#include "lf/core/shell_word.h"
 #include "lf/package/package_file.h"
 #include "lf/pipeline/check_options.h"
 #include "lf/pipeline/render_packages.h"
@@ -93,10 +95,13 @@ void SubmitArguments::AddTo(CLI::App& app) {
                  "Files of lfpreprocessor; after -- arguments of lfrenderer, for all of them");
   app.add_option("-o,--output", output, "Folder of the frames, which all machines share")
       ->check(NotEmpty());
-  app.add_option("--engine", engine, "local: processes of this machine, until all is done; slurm")
+  app.add_option("--engine", engine,
+                 "local (default): processes of this machine, until all is done; or slurm")
       ->check(CLI::IsMember({"local", "slurm"}));
-  app.add_option("--jobs", at_once,
-                 "Packages rendered at the same time; 0: local 1, slurm as many as it has room for")
+  app.add_option(
+         "--jobs", at_once,
+         "Packages rendered at the same time; default: local 1, slurm as many as it has room "
+         "for")
       ->check(WholeNumber());
   app.add_option("--memory", memory,
                  "Bound of the memory of each lfrenderer; empty: 8G, and of this machine's no more "
@@ -106,7 +111,7 @@ void SubmitArguments::AddTo(CLI::App& app) {
       ->check(NotEmpty());
   app.add_flag("--no-contact-sheet", no_contact_sheet, "No contact_sheet.png");
   app.add_option("--crashes", most_crashes,
-                 "A package fails if lfrenderer, or its node, dies more often than this");
+                 "A package fails if lfrenderer, or its node, dies more often than this (10)");
   app.add_option("--lfrenderer", renderer, "The program; empty: the one beside this program");
   app.add_flag("--overwrite", overwrite, "Remove the job and the frames of these packages in DIR");
   app.add_option("--time-limit", time_limit,
@@ -121,7 +126,10 @@ void SubmitArguments::AddTo(CLI::App& app) {
   app.add_option("--cancel", cancel, "DIR: write the state of all packages and end")
       ->check(NotEmpty())
       ->group(there);
-  app.add_option("--resume", resume, "DIR: go on with what is not done")
+  app.add_option(
+         "--resume", resume,
+         "DIR: go on with what is not done; --engine, --jobs, --threads, --memory, --crashes, "
+         "--time-limit, --sbatch and --lfrenderer may be others now")
       ->check(NotEmpty())
       ->group(there);
   app.add_option("--finish", finish,
@@ -147,9 +155,56 @@ Result<void> SubmitArguments::Check() const {
         "expected PACKAGES... -o DIR (files of lfpreprocessor), or --status, --cancel or --resume "
         "DIR");
   if (output.empty()) return UsageError("-o DIR is missing: the folder of the frames");
-  if (engine != "slurm" && (!time_limit.empty() || !sbatch_options.empty()))
-    return UsageError("--time-limit and --sbatch are for --engine slurm");
   return {};
+}
+
+Result<void> SubmitArguments::TakeResources(ClusterJob* job, const CommonOptions& common,
+                                            bool is_new) const {
+  if (engine) job->engine = *engine == "slurm" ? ClusterEngine::kSlurm : ClusterEngine::kLocal;
+  const bool is_local = job->engine == ClusterEngine::kLocal;
+  if (is_local && (!time_limit.empty() || !sbatch_options.empty()))
+    return UsageError("--time-limit and --sbatch are for --engine slurm");
+  const bool is_anew = is_new || engine || at_once;
+  if (is_anew) {
+    job->at_once = at_once.value_or(0);
+    if (is_local) job->at_once = std::clamp<size_t>(job->at_once, 1, job->packages.size());
+  }
+  if (most_crashes) job->most_crashes = *most_crashes;
+  if (common.threads > 0)
+    job->thread_count = common.threads;
+  else if (is_anew)
+    job->thread_count =
+        is_local ? std::max(1, MachineThreads() / static_cast<int>(job->at_once)) : 1;
+  if (!memory.empty()) {
+    LF_ASSIGN_OR_RETURN(job->memory_bytes, ParseByteSize(memory, "--memory"));
+  } else if (is_anew) {
+    job->memory_bytes = uint64_t{8} << 30;
+    if (is_local)
+      job->memory_bytes = std::min(job->memory_bytes, MachineMemoryBytes() / 5 * 4 / job->at_once);
+  }
+  if (!time_limit.empty()) {
+    LF_ASSIGN_OR_RETURN(job->time_limit_s, ParseDuration(time_limit, "--time-limit"));
+  }
+  if (!sbatch_options.empty()) job->sbatch_options = sbatch_options;
+  return {};
+}
+
+Result<void> SubmitArguments::Change(ClusterJob* job, const CommonOptions& common) const {
+  const ClusterEngine before = job->engine;
+  LF_RETURN_IF_ERROR(TakeResources(job, common, false));
+  if (before == ClusterEngine::kSlurm && job->engine == ClusterEngine::kLocal) {
+    // Where Slurm is not, nobody can be asked: then it is another machine, after the cluster.
+    const auto queue = AskSlurm(*job);
+    if (queue && !queue->empty())
+      return UsageError(
+          fmt::format("--engine local: Slurm still has {} tasks of the job: lfsubmit "
+                      "--cancel {} first",
+                      queue->size(), ShellWord(job->output_folder.string())));
+  }
+  if (!renderer.empty()) {
+    LF_ASSIGN_OR_RETURN(job->renderer, FindRenderer(renderer));
+  }
+  return WriteJob(*job);
 }
 
 Result<ClusterJob> SubmitArguments::MakeJob(const CommonOptions& common) const {
@@ -191,23 +246,7 @@ Result<ClusterJob> SubmitArguments::MakeJob(const CommonOptions& common) const {
   job.frame_extension = FramePath("", FrameId{1}, options.format).extension().string();
   if (!video.empty()) job.video = fs::absolute(video).lexically_normal();
   job.contact_sheet = !no_contact_sheet;
-  job.engine = engine == "slurm" ? ClusterEngine::kSlurm : ClusterEngine::kLocal;
-  const bool is_local = job.engine == ClusterEngine::kLocal;
-  job.at_once = is_local ? std::clamp<size_t>(at_once, 1, job.packages.size()) : at_once;
-  job.most_crashes = most_crashes;
-  job.thread_count = common.threads;
-  if (job.thread_count == 0)
-    job.thread_count = is_local ? std::max(1, MachineThreads() / static_cast<int>(job.at_once)) : 1;
-  job.memory_bytes = uint64_t{8} << 30;
-  if (!memory.empty()) {
-    LF_ASSIGN_OR_RETURN(job.memory_bytes, ParseByteSize(memory, "--memory"));
-  } else if (is_local) {
-    job.memory_bytes = std::min(job.memory_bytes, MachineMemoryBytes() / 5 * 4 / job.at_once);
-  }
-  if (!time_limit.empty()) {
-    LF_ASSIGN_OR_RETURN(job.time_limit_s, ParseDuration(time_limit, "--time-limit"));
-  }
-  job.sbatch_options = sbatch_options;
+  LF_RETURN_IF_ERROR(TakeResources(&job, common, true));
   return job;
 }
 

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,9 +16,10 @@ namespace lf {
 
 struct SubmitArguments {
   std::vector<std::string> words;  // PACKAGES, and after "--" the arguments of lfrenderer
-  std::string output, frames, video, memory, time_limit, renderer, engine = "local";
-  uint64_t at_once = 0;
-  uint32_t most_crashes = 10;
+  std::string output, frames, video, memory, time_limit, renderer;
+  std::optional<std::string> engine;  // local
+  std::optional<uint64_t> at_once;
+  std::optional<uint32_t> most_crashes;
   std::vector<std::string> sbatch_options;
   bool no_contact_sheet = false, overwrite = false, wait = false;
   // Of a job that is there.
@@ -32,6 +34,11 @@ struct SubmitArguments {
 
   // Reads all packages, and tries the arguments of lfrenderer.
   Result<ClusterJob> MakeJob(const CommonOptions& common) const;
+  // What is given of engine, processes, memory and limits, for a job that is gone on with.
+  Result<void> Change(ClusterJob* job, const CommonOptions& common) const;
+
+ private:
+  Result<void> TakeResources(ClusterJob* job, const CommonOptions& common, bool is_new) const;
 };
 
 }  // namespace lf

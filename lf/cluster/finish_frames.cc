@@ -61,7 +61,9 @@ bool HasRays(const ClusterJob& job, const JobPackage& package, FrameId frame) {
 
 }  // namespace
 
-Result<void> AskToFinish(const ClusterJob& job, const std::vector<FrameId>& frames) {
+Result<size_t> AskToFinish(const ClusterJob& job, const std::string& frames_text) {
+  LF_ASSIGN_OR_RETURN(const std::vector<FrameId> frames,
+                      ParseFrameRange(frames_text, LastFrame(job), "--finish"));
   for (const FrameId frame : frames) {
     const auto package =
         std::find_if(job.packages.begin(), job.packages.end(),
@@ -82,7 +84,8 @@ Result<void> AskToFinish(const ClusterJob& job, const std::vector<FrameId>& fram
   std::set_union(before.begin(), before.end(), frames.begin(), frames.end(),
                  std::back_inserter(all));
   const Json json = {{"format", kFormat}, {"frames", FrameRangeText(all)}};
-  return WriteFileAtomically(job.FinishFramesFile(), json.dump(2) + "\n");
+  LF_RETURN_IF_ERROR(WriteFileAtomically(job.FinishFramesFile(), json.dump(2) + "\n"));
+  return frames.size();
 }
 
 Result<std::vector<FrameId>> FramesToFinish(const ClusterJob& job, const JobPackage& package) {

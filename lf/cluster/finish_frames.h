@@ -2,6 +2,7 @@
 // the others go on (lfrenderer --finish).
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "lf/cluster/job.h"
@@ -10,9 +11,10 @@
 
 namespace lf {
 
-// Adds frames to those that are to be finished early. kUsage: a frame that is not in the job, or
-// that has no rays yet: it was not begun, or has no checkpoint. Frames that are finished stay.
-Result<void> AskToFinish(const ClusterJob& job, const std::vector<FrameId>& frames);
+// Adds frames ("10-20", "7") to those that are to be finished early, and gives their number.
+// kUsage: no such text; a frame that is not in the job, or that has no rays yet: it was not begun,
+// or has no checkpoint. Frames that are finished stay.
+Result<size_t> AskToFinish(const ClusterJob& job, const std::string& frames_text);
 
 // Those of a package that were asked for, ascending. kInput: the file is damaged.
 Result<std::vector<FrameId>> FramesToFinish(const ClusterJob& job, const JobPackage& package);

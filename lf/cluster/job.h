@@ -7,6 +7,7 @@
 //   DIR/cluster/packages/NAME.lock       held while it is rendered
 //   DIR/cluster/finish.json .log .lock   the same of the finishing task: video, contact sheet
 //   DIR/cluster/finish_frames.json       frames to be finished early
+//   DIR/cluster/lock                     held by the local engine
 //   DIR/cluster/cancelled                is there when the job is to end
 //   DIR/cluster/*.sbatch, slurm-*.out    of the engine slurm
 #pragma once
@@ -61,6 +62,8 @@ struct ClusterJob {
   std::filesystem::path File() const { return Folder() / "job.json"; }
   std::filesystem::path CancelFile() const { return Folder() / "cancelled"; }
   std::filesystem::path FinishFramesFile() const { return Folder() / "finish_frames.json"; }
+  // Held by the local engine while it runs.
+  std::filesystem::path EngineLock() const { return Folder() / "lock"; }
   bool IsCancelled() const;
 };
 

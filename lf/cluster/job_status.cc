@@ -21,10 +21,10 @@ std::set<std::string> NamesIn(const fs::path& folder) {
   return names;
 }
 
-// Whether a process on this machine, or one that shares its locks, has the task.
-bool IsAtWork(const ClusterTask& task) {
+// By a process on this machine, or one that shares its locks.
+bool IsHeld(const fs::path& lock) {
   std::error_code ignored;
-  return fs::exists(task.lock, ignored) && !FileLock::Take(task.lock);
+  return fs::exists(lock, ignored) && !FileLock::Take(lock);
 }
 
 // What its files say.
@@ -83,7 +83,7 @@ void NoteLost(TaskStatus* task) {
   task->seconds_left.reset();
 }
 
-TaskPhase PhaseOf(const JobStatus& status) {
+TaskPhase PhaseOf(const JobStatus& status, bool is_engine_at_work) {
   std::vector<const TaskStatus*> tasks = {&status.finishing};
   for (const TaskStatus& package : status.packages) tasks.push_back(&package);
   const auto any = [&](auto is) { return std::any_of(tasks.begin(), tasks.end(), is); };
@@ -91,7 +91,7 @@ TaskPhase PhaseOf(const JobStatus& status) {
     return any([=](const TaskStatus* task) { return task->state.phase == phase; });
   };
   if (status.finishing.state.phase == TaskPhase::kDone) return TaskPhase::kDone;
-  if (has(TaskPhase::kRunning)) return TaskPhase::kRunning;
+  if (is_engine_at_work || has(TaskPhase::kRunning)) return TaskPhase::kRunning;
   const bool was_begun = any([](const TaskStatus* task) { return task->state.start_count > 0; });
   if (any([](const TaskStatus* task) { return task->IsQueued(); }))
     return was_begun ? TaskPhase::kRunning : TaskPhase::kWaiting;
@@ -175,11 +175,12 @@ JobStatus LookAtJob(const ClusterJob& job) {
     }
   } else {
     for (size_t i = 0; i < job.packages.size(); ++i)
-      if (status.packages[i].state.phase == TaskPhase::kRunning && !IsAtWork(PackageTask(job, i)))
+      if (status.packages[i].state.phase == TaskPhase::kRunning &&
+          !IsHeld(PackageTask(job, i).lock))
         NoteLost(&status.packages[i]);
-    if (!IsAtWork(FinishingTask(job))) NoteLost(&status.finishing);
+    if (!IsHeld(FinishingTask(job).lock)) NoteLost(&status.finishing);
   }
-  status.phase = PhaseOf(status);
+  status.phase = PhaseOf(status, IsHeld(job.EngineLock()));
   return status;
 }
 

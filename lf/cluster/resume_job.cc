@@ -23,14 +23,14 @@ bool IsAtWork(const JobStatus& status) {
   const auto is_at_work = [](const TaskStatus& task) {
     return task.state.phase == TaskPhase::kRunning || task.IsQueued();
   };
-  return is_at_work(status.finishing) ||
+  return status.phase == TaskPhase::kRunning || is_at_work(status.finishing) ||
          std::any_of(status.packages.begin(), status.packages.end(), is_at_work);
 }
 
 // The local engine's, which holds it while it runs.
 Result<void> CheckEngineIsIdle(const ClusterJob& job) {
   LF_RETURN_IF_ERROR(CreateFolder(job.Folder()));
-  const Result<FileLock> lock = FileLock::Take(job.Folder() / "lock");
+  const Result<FileLock> lock = FileLock::Take(job.EngineLock());
   return lock ? Result<void>() : lock.error();
 }
 

@@ -23,7 +23,7 @@ std::string NodeName() {
 
 Result<void> RunLocally(const ClusterJob& job, const std::vector<size_t>& numbers,
                         const std::atomic<bool>& stop, const std::function<void()>& look) {
-  LF_ASSIGN_OR_RETURN(const FileLock lock, FileLock::Take(job.Folder() / "lock"));
+  LF_ASSIGN_OR_RETURN(const FileLock lock, FileLock::Take(job.EngineLock()));
   const std::string node = NodeName();
   std::atomic<size_t> next = 0, working = 0;
   const auto work = [&] {

@@ -241,8 +241,13 @@ Result<void> CancelInSlurm(const ClusterJob& job) {
   words.insert(words.end(), job.slurm_array_ids.begin(), job.slurm_array_ids.end());
   if (!job.slurm_finishing_id.empty()) words.push_back(job.slurm_finishing_id);
   if (words.size() == 3) return {};
-  const Result<std::string> answer = Ask(words);
-  return answer ? Result<void>() : answer.error();
+  const Result<CommandAnswer> answer = RunCommand(words, kPatience_s);
+  if (!answer) return answer.error();
+  // Where nothing waits it fails without a word.
+  if (answer->exit_code != 0 && !Complaints(*answer).empty())
+    return OutputError(fmt::format("scancel failed with exit code {}: {}", answer->exit_code,
+                                   Complaints(*answer)));
+  return {};
 }
 
 Result<void> ReleaseInSlurm(const ClusterJob& job) {
