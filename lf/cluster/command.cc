@@ -80,6 +80,11 @@ Result<std::unique_ptr<Command>> Command::Start(const Options& options) {
     return OutputError(
         fmt::format("{}: cannot be run: {}", options.words.front(), std::strerror(reason)));
   };
+  std::error_code ignored;
+  if (!options.working_folder.empty() &&
+      !std::filesystem::is_directory(options.working_folder, ignored))
+    return OutputError(fmt::format("{}: cannot be run in the folder {}: it is gone",
+                                   options.words.front(), options.working_folder.string()));
   std::vector<char*> argv;
   for (const std::string& word : options.words) argv.push_back(const_cast<char*>(word.c_str()));
   argv.push_back(nullptr);

@@ -37,7 +37,7 @@ struct JobPackage {
 
 struct ClusterJob {
   std::filesystem::path output_folder;   // DIR
-  std::filesystem::path working_folder;  // of the programs: what relative paths are meant from
+  std::filesystem::path working_folder;  // of the programs: where relative paths begin
   std::filesystem::path renderer;        // lfrenderer
   std::filesystem::path submitter;       // lfsubmit, for scripts
   std::vector<JobPackage> packages;

@@ -6,9 +6,14 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <functional>
+#include <memory>
+#include <optional>
 #include <thread>
+#include <vector>
 
 #include "lf/cluster/command.h"
 #include "lf/cluster/finish_frames.h"
@@ -107,7 +112,9 @@ Result<CommandEnd> TaskRun::Run(const std::vector<std::string>& words, const fs:
   state_.process = (*command)->process();
   state_.begin_s = SecondsSince1970();
   state_.message.clear();
-  LF_RETURN_IF_ERROR(WriteTaskState(state_, task_.state));
+  // What is at work goes on, whatever is known of it.
+  if (const auto written = WriteTaskState(state_, task_.state); !written)
+    LogWarning("{}", written.error().message);
   bool is_told = false;
   for (int tick = 1;; ++tick) {
     if (const auto end = (*command)->Poll()) return *end;
@@ -123,14 +130,10 @@ Result<CommandEnd> TaskRun::Run(const std::vector<std::string>& words, const fs:
 std::vector<std::string> RendererWords(const ClusterJob& job, const std::vector<fs::path>& files) {
   std::vector<std::string> words = {job.renderer.string()};
   for (const fs::path& file : files) words.push_back(file.string());
-  for (const char* word : {"-o", "", "--resume", "--progress", "json", "--threads", ""})
-    words.emplace_back(word);
-  words[words.size() - 6] = job.output_folder.string();
-  words.back() = fmt::format("{}", job.thread_count);
-  if (job.memory_bytes > 0) {
-    words.emplace_back("--memory");
-    words.push_back(fmt::format("{}", job.memory_bytes));
-  }
+  words.insert(words.end(), {"-o", job.output_folder.string(), "--resume", "--progress", "json",
+                             "--threads", fmt::format("{}", job.thread_count)});
+  if (job.memory_bytes > 0)
+    words.insert(words.end(), {"--memory", fmt::format("{}", job.memory_bytes)});
   words.insert(words.end(), job.arguments.begin(), job.arguments.end());
   return words;
 }
@@ -138,13 +141,9 @@ std::vector<std::string> RendererWords(const ClusterJob& job, const std::vector<
 std::vector<std::string> PackageWords(const ClusterJob& job, const JobPackage& package,
                                       const std::vector<FrameId>& finish) {
   std::vector<std::string> words = RendererWords(job, {package.file});
-  const auto add = [&](const char* option, const std::vector<FrameId>& frames) {
-    words.emplace_back(option);
-    words.push_back(FrameRangeText(frames));
-  };
   words.emplace_back("--no-contact-sheet");
-  if (!package.is_whole) add("--frames", package.frames);
-  if (!finish.empty()) add("--finish", finish);
+  if (!package.is_whole) words.insert(words.end(), {"--frames", FrameRangeText(package.frames)});
+  if (!finish.empty()) words.insert(words.end(), {"--finish", FrameRangeText(finish)});
   return words;
 }
 
@@ -228,8 +227,12 @@ Result<TaskState> RunPackage(const ClusterJob& job, size_t number, const std::st
       const auto now = FramesToFinish(job, package);
       return now && *now != finish;
     };
-    LF_ASSIGN_OR_RETURN(const CommandEnd end,
-                        run.Run(PackageWords(job, package, finish), {}, wants_restart));
+    const Result<CommandEnd> ran = run.Run(PackageWords(job, package, finish), {}, wants_restart);
+    if (!ran) {
+      LF_RETURN_IF_ERROR(run.End(TaskPhase::kFailed, 4, ran.error().message));
+      return state;
+    }
+    const CommandEnd end = *ran;
     if (end.signal != 0) {
       ++state.crash_count;
       LF_RETURN_IF_ERROR(run.End(TaskPhase::kInterrupted, 0, WordsOf(end)));
@@ -270,14 +273,8 @@ Result<void> FinishFilm(const ClusterJob& job, const std::string& node,
   std::sort(frames.begin(), frames.end());
   std::vector<std::string> words = RendererWords(job, files);
   words.emplace_back("--json");
-  if (!is_whole) {
-    words.emplace_back("--frames");
-    words.push_back(FrameRangeText(frames));
-  }
-  if (job.video) {
-    words.emplace_back("--video");
-    words.push_back(job.video->string());
-  }
+  if (!is_whole) words.insert(words.end(), {"--frames", FrameRangeText(frames)});
+  if (job.video) words.insert(words.end(), {"--video", job.video->string()});
   if (!job.contact_sheet) words.emplace_back("--no-contact-sheet");
   const Result<CommandEnd> end = run.Run(words, job.Folder() / "report.json", [] { return false; });
   if (!end) return fail(end.error());
