@@ -6,6 +6,7 @@ usage: lfsubmit_test.py LFRENDERER LFPREPROCESSOR LFSUBMIT
 """
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -95,6 +96,23 @@ class LocalJobTest(ClusterTestCase):
         self.assertEqual(digests(self.film), self.expected)
         self.fails(2, ["--time-limit", "slurm"], cluster_test_case.SUBMIT, "--resume", self.film,
                    "--time-limit", "1h")
+
+    def test_packages_and_light_field_may_move(self):
+        renderer = self.unlucky_renderer("[[ $package == package-0001 ]] && exit 3")
+        shutil.copytree(self.field.parent, self.folder / "field")
+        shutil.copytree(self.package_files[0].parent, self.folder / "a")
+        files = sorted((self.folder / "a").glob("*.lfp"))
+        submit = cluster_test_case.SUBMIT
+        self.fails(3, ["package-0001"], submit, *files, "-o", self.film, "--lfrenderer", renderer)
+        (self.folder / "a").rename(self.folder / "b")
+        self.unlucky_renderer("")
+        self.fails(3, ["package-0001", "no such file"], submit, "--resume", self.film)
+        self.fails(2, ["none of the job's packages"], submit, "--resume", self.film, "other.lfp")
+        self.fails(2, ["after --", "--nonsense"], submit, "--resume", self.film, *files, "--",
+                   "--nonsense")
+        self.succeeds(submit, "--resume", self.film, *(self.folder / "b").glob("*.lfp"), "--",
+                      "--lightfield", self.folder / "field")
+        self.assertEqual(digests(self.film), self.expected)
 
     def test_frames_that_are_gone_are_rendered_again(self):
         self.submit()
@@ -190,8 +208,12 @@ class LongLocalJobTest(ClusterTestCase):
         self.assertEqual([package["crashes"] for package in self.status()["packages"]], [0, 0])
 
     def test_a_job_is_cancelled_from_elsewhere(self):
-        process = self.start(*self.OPTIONS)
-        self.wait_for(lambda: self.has_begun(0))
+        renderer = self.unlucky_renderer("""
+            trap 'exit 5' TERM
+            [[ $start == 1 && $package != finish ]] && while :; do sleep 0.05; done""")
+        process = self.start("--lfrenderer", renderer, *self.OPTIONS)
+        self.wait_for(lambda: (self.film / "cluster" / "packages" / "package-0000.json").exists())
+        self.assertEqual(self.status()["state"], "running")
         self.fails(4, ["lock", "another program"], cluster_test_case.SUBMIT, "--resume", self.film)
         self.succeeds(cluster_test_case.SUBMIT, "--cancel", self.film)
         words = process.communicate()[1].strip().splitlines()[-1]

@@ -96,7 +96,7 @@ class SlurmTest(ClusterTestCase):
         self.assertEqual((self.package(0)["restarts"], self.package(0)["crashes"]), (1, 0))
 
     def test_a_job_is_cancelled_and_gone_on_with(self):
-        self.submit(*self.OPTIONS, *self.ARGUMENTS, words=["submitted: array", "--status"])
+        self.submit(*self.OPTIONS, *self.ARGUMENTS, words=["submitted 8 packages", "--status"])
         self.wait_for(lambda: self.has_begun(0))
         table = self.succeeds(cluster_test_case.SUBMIT, "--status", self.film)
         self.assertIn("waits for", table)
@@ -135,6 +135,7 @@ class SlurmTest(ClusterTestCase):
     def test_what_slurm_refuses_is_told(self):
         self.submit(*self.OPTIONS, "--sbatch=--partition=no-such", code=4,
                     words=["sbatch failed", "partition"])
+        self.assertFalse((self.film / "cluster" / "job.json").exists())
         self.assertEqual(self.slurm.call("squeue", "-h"), "")
 
 

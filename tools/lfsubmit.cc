@@ -1,10 +1,9 @@
 // lfsubmit PACKAGES... -o DIR: renders the packages of a film by many processes or machines.
 #include <fmt/format.h>
 
-#include <chrono>
-#include <iostream>
+#include <numeric>
 #include <string>
-#include <thread>
+#include <vector>
 
 #include "tools/common/interrupt.h"
 #include "tools/common/program.h"
@@ -25,7 +24,6 @@
 #include "lf/sequence/video.h"
 
 namespace {
-
 constexpr const char* kExamples = R"(Examples:
   lfpreprocessor capture/ path.yaml -o packages --packages 8
   lfsubmit packages/*.lfp -o film --jobs 2 --video film.mp4              # on this machine
@@ -38,8 +36,7 @@ constexpr const char* kExamples = R"(Examples:
 
 Each package is a process lfrenderer, which is begun again where it was interrupted or died, and goes
 on with its checkpoint: frames have the bits of one lfrenderer run. DIR/partial has pictures of what
-is not finished. Nothing stays in memory: the job is files in DIR/cluster, with the batch scripts
-(to be read and edited), a state and a log of each package.
+is not finished, DIR/cluster the job: batch scripts, and a state and a log of each package.
 
 A package that fails does not end the others. The exit code is 0 when every frame is there, else that
 of the first package that failed, and the last line names what is missing. See doc/cluster.md.)";
@@ -56,17 +53,21 @@ void Show(const ClusterJob& job, lf::ProgressMeter& meter) {
 Result<void> Begin(ClusterJob job, const std::vector<size_t>& numbers, bool waits,
                    const lf::CommonOptions& common) {
   const std::string folder = lf::ShellWord(job.output_folder.string());
-  const std::atomic<bool>& stop = lf::CatchInterrupts();
+  const auto& stop = lf::CatchInterrupts();
   lf::ProgressMeter meter(lf::ParseProgressStyle(common.progress), "rays");
   Result<void> outcome;
   if (job.engine == lf::ClusterEngine::kLocal) {
-    lf::LogInfo("{} packages, {} at a time, {} threads and {} MiB each; lfsubmit --status {} tells",
-                numbers.size(), job.at_once, job.thread_count, job.memory_bytes >> 20, folder);
+    if (!numbers.empty())
+      lf::LogInfo(
+          "{} packages, {} at a time, {} threads and {} MiB each; lfsubmit --status {} tells",
+          numbers.size(), job.at_once, job.thread_count, job.memory_bytes >> 20, folder);
     outcome = lf::RunLocally(job, numbers, stop, [&] { Show(job, meter); });
   } else {
     LF_RETURN_IF_ERROR(lf::SubmitToSlurm(&job, numbers));
-    lf::LogInfo("submitted: array {} of {} packages, finishing task {}; lfsubmit --status {} tells",
-                job.slurm_array_ids.back(), numbers.size(), job.slurm_finishing_id, folder);
+    lf::LogInfo(
+        "submitted {} packages (array {}) and finishing task {}; lfsubmit --status {} tells",
+        numbers.size(), numbers.empty() ? "-" : job.slurm_array_ids.back(), job.slurm_finishing_id,
+        folder);
     if (!waits) return {};
     outcome = lf::WaitForJob(job, stop, [&] { Show(job, meter); });
   }
@@ -88,16 +89,16 @@ Result<void> Submit(const lf::SubmitArguments& arguments, const lf::CommonOption
   LF_RETURN_IF_ERROR(lf::MakeRoomForJob(job, arguments.overwrite));
   LF_RETURN_IF_ERROR(lf::WriteJob(job));
   std::vector<size_t> numbers(job.packages.size());
-  for (size_t i = 0; i < numbers.size(); ++i) numbers[i] = i;
+  std::iota(numbers.begin(), numbers.end(), size_t{0});
   return Begin(job, numbers, arguments.wait, common);
 }
 
-Result<void> Finish(const std::vector<std::string>& words) {
-  LF_ASSIGN_OR_RETURN(const ClusterJob job, lf::ReadJob(words[0]));
-  LF_ASSIGN_OR_RETURN(const size_t count, lf::AskToFinish(job, words[1]));
+Result<void> Finish(const std::string& folder, const std::string& frames) {
+  LF_ASSIGN_OR_RETURN(const ClusterJob job, lf::ReadJob(folder));
+  LF_ASSIGN_OR_RETURN(const size_t count, lf::AskToFinish(job, frames));
   lf::LogInfo(
-      "{} frames are finished with the rays they have when their packages look, within seconds "
-      "where they run; report-*.json say which LF images these are",
+      "{} frames are not finished, and will be with the rays they have, within seconds where their "
+      "packages run; report-*.json say which LF images these are",
       count);
   return {};
 }
@@ -119,7 +120,7 @@ Result<void> Act(const lf::SubmitArguments& arguments, const lf::CommonOptions& 
     LF_ASSIGN_OR_RETURN(const std::vector<size_t> numbers, lf::PrepareResume(job));
     return Begin(job, numbers, arguments.wait, common);
   }
-  if (!arguments.finish.empty()) return Finish(arguments.finish);
+  if (!arguments.finish.empty()) return Finish(arguments.finish[0], arguments.finish[1]);
   if (!arguments.run_finish.empty()) {
     LF_ASSIGN_OR_RETURN(const ClusterJob job, lf::ReadJob(arguments.run_finish));
     return lf::FinishFilm(job, lf::NodeName(), lf::CatchInterrupts());

@@ -14,7 +14,7 @@
 #include "lf/cluster/slurm.h"
 #include "lf/core/shell_word.h"
 #include "lf/package/package_file.h"
-#include "lf/pipeline/check_options.h"
+#include "lf/pipeline/check_render_options.h"
 #include "lf/pipeline/render_packages.h"
 
 namespace lf {
@@ -54,6 +54,34 @@ Result<fs::path> FindRenderer(const std::string& asked_for) {
   return renderer;
 }
 
+// PACKAGES -- ARGUMENTS
+struct Words {
+  std::vector<fs::path> files;
+  std::vector<std::string> arguments;
+};
+
+Result<Words> SplitWords(const std::vector<std::string>& words) {
+  Words split;
+  const auto arguments = std::find_if(
+      words.begin(), words.end(), [](const std::string& word) { return word.starts_with('-'); });
+  for (auto word = words.begin(); word != arguments; ++word) {
+    if (!IsPackageName(*word))
+      return UsageError(fmt::format(
+          "{}: is no package (a file that ends in .lfp): make some with lfpreprocessor LIGHTFIELD "
+          "PATH.yaml -o packages --packages 8",
+          *word));
+    split.files.push_back(fs::absolute(*word).lexically_normal());
+  }
+  split.arguments.assign(arguments, words.end());
+  for (const std::string& argument : split.arguments)
+    for (const std::string word : kOfTheJob)
+      if (argument == word || argument.starts_with(word + "="))
+        return UsageError(fmt::format(
+            "{}: not among the arguments of lfrenderer: lfsubmit decides about it{}", argument,
+            word.starts_with("--") ? ", and has some of these options itself" : ""));
+  return split;
+}
+
 // What lfrenderer itself would say, before anything waits in a queue.
 Result<RenderOptions> TryArguments(const std::vector<fs::path>& packages, const fs::path& output,
                                    const std::string& frames,
@@ -84,7 +112,7 @@ Result<RenderOptions> TryArguments(const std::vector<fs::path>& packages, const 
                       render.MakeOptions(renderer.common(), first.light_field.encoding.bayer,
                                          first.path.frame_count()));
   if (!options.max_image_count) options.max_image_count = first.choices.max_image_count;
-  LF_RETURN_IF_ERROR(CheckOptions(first, options));
+  LF_RETURN_IF_ERROR(CheckRenderOptions(first, options));
   return options;
 }
 
@@ -129,7 +157,8 @@ void SubmitArguments::AddTo(CLI::App& app) {
   app.add_option(
          "--resume", resume,
          "DIR: go on with what is not done; --engine, --jobs, --threads, --memory, --crashes, "
-         "--time-limit, --sbatch and --lfrenderer may be others now")
+         "--time-limit, --sbatch, --lfrenderer, PACKAGES (the same ones elsewhere) and arguments "
+         "may be others now")
       ->check(NotEmpty())
       ->group(there);
   app.add_option("--finish", finish,
@@ -145,10 +174,11 @@ Result<void> SubmitArguments::Check() const {
   const int asked = !status.empty() + !cancel.empty() + !resume.empty() + !finish.empty() +
                     !run_package.empty() + !run_finish.empty();
   if (asked > 1) return UsageError("one of --status, --cancel, --resume and --finish at a time");
-  if (asked == 1 && !words.empty())
-    return UsageError(fmt::format(
-        "{}: packages are for new jobs: --status, --cancel, --resume and --finish take DIR alone",
-        words.front()));
+  if (asked == 1 && resume.empty() && !words.empty())
+    return UsageError(
+        fmt::format("{}: packages are for new jobs and --resume: --status, --cancel and --finish "
+                    "take DIR alone",
+                    words.front()));
   if (asked == 1) return {};
   if (words.empty() || words.front().starts_with('-'))
     return UsageError(
@@ -201,6 +231,24 @@ Result<void> SubmitArguments::Change(ClusterJob* job, const CommonOptions& commo
                       "--cancel {} first",
                       queue->size(), ShellWord(job->output_folder.string())));
   }
+  LF_ASSIGN_OR_RETURN(const Words split, SplitWords(words));
+  for (const fs::path& file : split.files) {
+    const auto package =
+        std::find_if(job->packages.begin(), job->packages.end(),
+                     [&](const JobPackage& known) { return known.name == file.stem().string(); });
+    if (package == job->packages.end())
+      return UsageError(fmt::format("{}: is none of the job's packages", file.string()));
+    package->file = file;
+  }
+  if (!split.arguments.empty()) {
+    std::vector<fs::path> files;
+    for (const JobPackage& package : job->packages) files.push_back(package.file);
+    std::optional<LightFieldPlace> place;
+    LF_RETURN_IF_ERROR(TryArguments(files, job->output_folder, "", split.arguments, &place));
+    job->arguments = split.arguments;
+    std::error_code error;
+    job->working_folder = fs::current_path(error);
+  }
   if (!renderer.empty()) {
     LF_ASSIGN_OR_RETURN(job->renderer, FindRenderer(renderer));
   }
@@ -208,25 +256,10 @@ Result<void> SubmitArguments::Change(ClusterJob* job, const CommonOptions& commo
 }
 
 Result<ClusterJob> SubmitArguments::MakeJob(const CommonOptions& common) const {
-  const auto options_begin = std::find_if(
-      words.begin(), words.end(), [](const std::string& word) { return word.starts_with('-'); });
-  std::vector<fs::path> files;
-  for (auto word = words.begin(); word != options_begin; ++word)
-    files.push_back(fs::absolute(*word).lexically_normal());
-  for (const fs::path& file : files)
-    if (!IsPackageName(file))
-      return UsageError(fmt::format(
-          "{}: is no package (a file that ends in .lfp): make some with lfpreprocessor LIGHTFIELD "
-          "PATH.yaml -o packages --packages 8",
-          file.string()));
   ClusterJob job;
-  job.arguments.assign(options_begin, words.end());
-  for (const std::string& argument : job.arguments)
-    for (const std::string word : kOfTheJob)
-      if (argument == word || argument.starts_with(word + "="))
-        return UsageError(fmt::format(
-            "{}: not among the arguments of lfrenderer: lfsubmit decides about it{}", argument,
-            word.starts_with("--") ? ", and has some of these options itself" : ""));
+  LF_ASSIGN_OR_RETURN(const Words split, SplitWords(words));
+  const std::vector<fs::path>& files = split.files;
+  job.arguments = split.arguments;
   if (common.strict) job.arguments.emplace_back("--strict");
   job.output_folder = fs::absolute(output).lexically_normal();
   if (!job.output_folder.has_filename()) job.output_folder = job.output_folder.parent_path();

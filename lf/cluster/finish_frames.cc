@@ -8,7 +8,7 @@
 #include "lf/core/file.h"
 #include "lf/core/file_lock.h"
 #include "lf/pipeline/frame_range.h"
-#include "lf/record/json_fields.h"
+#include "lf/record/record_fields.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -26,7 +26,7 @@ Result<std::vector<FrameId>> ReadAll(const fs::path& path, size_t last_frame) {
   if (json.is_discarded()) {
     fault = "it is no JSON";
   } else {
-    JsonFields fields(json, &fault);
+    RecordFields fields(json, &fault);
     fields.Get("format", &format);
     fields.Get("frames", &frames);
     if (fault.empty() && format != kFormat) fault = "its \"format\" is another";
@@ -51,12 +51,18 @@ bool Has(const std::vector<FrameId>& frames, FrameId frame) {
   return std::binary_search(frames.begin(), frames.end(), frame);
 }
 
-// A picture, or a checkpoint of one.
-bool HasRays(const ClusterJob& job, const JobPackage& package, FrameId frame) {
-  const std::string stem = fmt::format("frame_{:04}", frame.value);
+bool IsFinished(const ClusterJob& job, FrameId frame) {
   std::error_code ignored;
-  return fs::exists(job.output_folder / (stem + job.frame_extension), ignored) ||
-         fs::exists(job.output_folder / "partial" / package.name / (stem + ".plate"), ignored);
+  return fs::exists(
+      job.output_folder / fmt::format("frame_{:04}{}", frame.value, job.frame_extension), ignored);
+}
+
+// In its checkpoint.
+bool HasRays(const ClusterJob& job, const JobPackage& package, FrameId frame) {
+  std::error_code ignored;
+  return fs::exists(
+      job.output_folder / "partial" / package.name / fmt::format("frame_{:04}.plate", frame.value),
+      ignored);
 }
 
 }  // namespace
@@ -64,6 +70,7 @@ bool HasRays(const ClusterJob& job, const JobPackage& package, FrameId frame) {
 Result<size_t> AskToFinish(const ClusterJob& job, const std::string& frames_text) {
   LF_ASSIGN_OR_RETURN(const std::vector<FrameId> frames,
                       ParseFrameRange(frames_text, LastFrame(job), "--finish"));
+  size_t unfinished_count = 0;
   for (const FrameId frame : frames) {
     const auto package =
         std::find_if(job.packages.begin(), job.packages.end(),
@@ -71,12 +78,15 @@ Result<size_t> AskToFinish(const ClusterJob& job, const std::string& frames_text
     if (package == job.packages.end())
       return UsageError(
           fmt::format("--finish: frame {} is in none of the job's packages", frame.value));
+    if (IsFinished(job, frame)) continue;
+    ++unfinished_count;
     if (!HasRays(job, *package, frame))
       return UsageError(fmt::format(
           "--finish: frame {} has no rays yet: {} was not begun, or has written no checkpoint of "
           "it; wait for {}/partial/{}/frame_{:04}.plate",
           frame.value, package->name, job.output_folder.string(), package->name, frame.value));
   }
+  if (unfinished_count == 0) return unfinished_count;
   LF_ASSIGN_OR_RETURN(const FileLock lock, FileLock::Take(job.Folder() / "finish_frames.lock"));
   LF_ASSIGN_OR_RETURN(const std::vector<FrameId> before,
                       ReadAll(job.FinishFramesFile(), LastFrame(job)));
@@ -85,7 +95,7 @@ Result<size_t> AskToFinish(const ClusterJob& job, const std::string& frames_text
                  std::back_inserter(all));
   const Json json = {{"format", kFormat}, {"frames", FrameRangeText(all)}};
   LF_RETURN_IF_ERROR(WriteFileAtomically(job.FinishFramesFile(), json.dump(2) + "\n"));
-  return frames.size();
+  return unfinished_count;
 }
 
 Result<std::vector<FrameId>> FramesToFinish(const ClusterJob& job, const JobPackage& package) {

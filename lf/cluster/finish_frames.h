@@ -11,9 +11,9 @@
 
 namespace lf {
 
-// Adds frames ("10-20", "7") to those that are to be finished early, and gives their number.
-// kUsage: no such text; a frame that is not in the job, or that has no rays yet: it was not begun,
-// or has no checkpoint. Frames that are finished stay.
+// Adds frames ("10-20", "7") to those that are to be finished early, and tells how many of them are
+// not finished. kUsage: no such text; a frame that is not in the job, or that has no rays yet: it
+// was not begun, or has no checkpoint.
 Result<size_t> AskToFinish(const ClusterJob& job, const std::string& frames_text);
 
 // Those of a package that were asked for, ascending. kInput: the file is damaged.

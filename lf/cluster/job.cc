@@ -4,7 +4,7 @@
 
 #include "lf/core/file.h"
 #include "lf/pipeline/frame_range.h"
-#include "lf/record/json_fields.h"
+#include "lf/record/record_fields.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -23,7 +23,7 @@ Json PackageToJson(const JobPackage& package) {
 }
 
 JobPackage PackageFromJson(const Json& json, std::string* fault) {
-  JsonFields fields(json, fault);
+  RecordFields fields(json, fault);
   JobPackage package;
   std::string file, frames;
   fields.Get("file", &file);
@@ -110,7 +110,7 @@ Result<ClusterJob> ParseJob(std::string_view text, const std::string& name) {
   if (json.is_discarded()) {
     fault = "it is no JSON, or only a part of it";
   } else {
-    JsonFields fields(json, &fault);
+    RecordFields fields(json, &fault);
     fields.Get("format", &format);
     if (fault.empty() && format != kFormat)
       fault = fmt::format("\"format\": expected \"{}\", found \"{}\"", kFormat, format);

@@ -6,7 +6,7 @@
 
 #include "lf/cluster/slurm.h"
 #include "lf/core/file_lock.h"
-#include "lf/record/json_fields.h"
+#include "lf/record/record_fields.h"
 
 namespace lf {
 namespace fs = std::filesystem;

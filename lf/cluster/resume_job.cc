@@ -58,8 +58,9 @@ Result<void> MakeRoomForJob(const ClusterJob& job, bool overwrite) {
   if (!overwrite)
     return UsageError(fmt::format(
         "{}: a job was submitted there: lfsubmit --resume {} goes on with it, --status tells how "
-        "far it is, --overwrite removes it and its frames",
-        job.output_folder.string(), folder));
+        "far it is, --overwrite removes it and its frames (who removes {}/cluster instead submits "
+        "anew, and keeps the frames)",
+        job.output_folder.string(), folder, folder));
   LF_RETURN_IF_ERROR(CheckEngineIsIdle(job));
   if (const auto before = ReadJob(job.output_folder); before && IsAtWork(LookAtJob(*before)))
     return UsageError(fmt::format("{}: is at work: lfsubmit --cancel {} first",
@@ -96,6 +97,10 @@ Result<std::vector<size_t>> PrepareResume(const ClusterJob& job) {
 
 Result<void> CancelJob(const ClusterJob& job, const std::atomic<bool>& stop) {
   constexpr double kPatience_s = 180;
+  if (LookAtJob(job).phase == TaskPhase::kDone) {
+    LogInfo("{}: the film is done: there is nothing to end", job.output_folder.string());
+    return {};
+  }
   LF_RETURN_IF_ERROR(WriteFileAtomically(job.CancelFile(), ""));
   if (job.engine == ClusterEngine::kSlurm) LF_RETURN_IF_ERROR(CancelInSlurm(job));
   JobStatus status = LookAtJob(job);

@@ -12,6 +12,7 @@
 #include "lf/cluster/run_package.h"
 #include "lf/core/file_lock.h"
 #include "lf/core/log.h"
+#include "lf/core/shell_word.h"
 
 namespace lf {
 
@@ -45,7 +46,8 @@ Result<void> RunLocally(const ClusterJob& job, const std::vector<size_t>& number
     if (tick % 5 == 0) look();
   }
   for (std::thread& thread : threads) thread.join();
-  const std::string again = fmt::format("lfsubmit --resume {} goes on", job.output_folder.string());
+  const std::string again =
+      fmt::format("lfsubmit --resume {} goes on", ShellWord(job.output_folder.string()));
   if (job.IsCancelled()) return Error{ErrorKind::kInterrupted, "the job was cancelled; " + again};
   if (stop)
     return Error{ErrorKind::kInterrupted,

@@ -19,6 +19,7 @@
 #include "lf/cluster/finish_frames.h"
 #include "lf/core/file_lock.h"
 #include "lf/core/log.h"
+#include "lf/core/shell_word.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -46,7 +47,8 @@ class TaskRun {
   // Runs lfrenderer once. `wants_restart` is asked about once a second; then it is ended, too.
   Result<CommandEnd> Run(const std::vector<std::string>& words, const fs::path& output,
                          const std::function<bool()>& wants_restart);
-  std::string LastMessage() const { return ReadProgress(task_.log).message; }
+  // What lfrenderer ended with.
+  std::string LastMessage() const;
 
  private:
   const ClusterJob& job_;
@@ -73,6 +75,13 @@ Result<void> TaskRun::Begin() {
   }
   LF_ASSIGN_OR_RETURN(state_, ReadTaskState(task_.state));
   return {};
+}
+
+std::string TaskRun::LastMessage() const {
+  constexpr std::string_view kError = "error: ";
+  std::string message = ReadProgress(task_.log).message;
+  if (message.starts_with(kError)) message.erase(0, kError.size());
+  return message;
 }
 
 Result<void> TaskRun::End(TaskPhase phase, int exit_code, const std::string& message) {
@@ -181,9 +190,10 @@ Result<void> CheckAllDone(const ClusterJob& job) {
                          FrameRangeText(missing.empty() ? package.frames : missing), reason);
   }
   if (words.empty()) return {};
-  return Error{kind, fmt::format("{}: not all packages are done: {}; lfsubmit --resume {} goes on "
-                                 "with what is there",
-                                 job.output_folder.string(), words, job.output_folder.string())};
+  return Error{
+      kind, fmt::format("{}: not all packages are done: {}; lfsubmit --resume {} goes on "
+                        "with what is there",
+                        job.output_folder.string(), words, ShellWord(job.output_folder.string()))};
 }
 
 }  // namespace

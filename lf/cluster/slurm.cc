@@ -81,9 +81,9 @@ std::string OneOf(std::string_view* line) {
 }
 
 std::string AllIds(const ClusterJob& job) {
-  std::string ids = fmt::format("{}", fmt::join(job.slurm_array_ids, ","));
-  if (!job.slurm_finishing_id.empty()) ids += "," + job.slurm_finishing_id;
-  return ids;
+  std::vector<std::string> ids = job.slurm_array_ids;
+  if (!job.slurm_finishing_id.empty()) ids.push_back(job.slurm_finishing_id);
+  return fmt::format("{}", fmt::join(ids, ","));
 }
 
 }  // namespace
@@ -166,6 +166,8 @@ Result<void> SubmitToSlurm(ClusterJob* job, const std::vector<size_t>& numbers) 
     if (job->at_once > 0) array += fmt::format("%{}", job->at_once);
     const Result<std::string> answer =
         Ask({"sbatch", "--parsable", "--array=" + array, packages.string()});
+    std::error_code ignored;
+    if (!answer && job->slurm_array_ids.empty()) fs::remove(job->File(), ignored);
     if (!answer && answer.error().message.find("array") != std::string::npos)
       return OutputError(fmt::format(
           "{} (the array is {}; scontrol show config | grep MaxArraySize tells the largest number "
@@ -182,10 +184,11 @@ Result<void> SubmitToSlurm(ClusterJob* job, const std::vector<size_t>& numbers) 
     if (!ignored) LogWarning("{}", ignored.error().message);
     job->slurm_finishing_id.clear();
   }
-  Result<std::string> finishing =
-      Ask({"sbatch", "--parsable",
-           fmt::format("--dependency=afterany:{}", fmt::join(job->slurm_array_ids, ":")),
-           finish.string()});
+  std::vector<std::string> words = {"sbatch", "--parsable"};
+  if (!job->slurm_array_ids.empty())
+    words.push_back(fmt::format("--dependency=afterany:{}", fmt::join(job->slurm_array_ids, ":")));
+  words.push_back(finish.string());
+  Result<std::string> finishing = Ask(words);
   if (finishing) finishing = JobId(*finishing);
   if (!finishing) {
     if (const auto removed = CancelInSlurm(*job); !removed)

@@ -30,7 +30,8 @@ std::string ArrayText(const std::vector<size_t>& numbers);
 
 // Writes the scripts and submits these packages, and after them (afterany: afterok would wait for
 // ever for a task that was requeued) the finishing task in place of the one that waits. The job
-// gets the ids and is written. kOutput: sbatch refuses; then nothing of it is queued.
+// gets the ids and is written. kOutput: sbatch refuses; then nothing of it is queued, and a job
+// that never was is no more.
 Result<void> SubmitToSlurm(ClusterJob* job, const std::vector<size_t>& numbers);
 
 // Tasks of the job that Slurm still knows; those that are done are not among them. kOutput: squeue

@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "lf/core/file.h"
-#include "lf/record/json_fields.h"
+#include "lf/record/record_fields.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -33,7 +33,7 @@ void TakeProgress(std::string_view line, TaskProgress* progress) {
   if (json.is_discarded() || !json.is_object()) return;
   std::string fault;
   TaskProgress now;
-  JsonFields fields(json, &fault);
+  RecordFields fields(json, &fault);
   fields.Get("unit", &now.unit);
   fields.Get("done", &now.done);
   fields.Get("total", &now.total);
@@ -89,7 +89,7 @@ Result<TaskState> ParseTaskState(std::string_view text, const std::string& name)
   if (json.is_discarded()) {
     fault = "it is no JSON, or only a part of it";
   } else {
-    JsonFields fields(json, &fault);
+    RecordFields fields(json, &fault);
     fields.Get("format", &format);
     if (fault.empty() && format != kFormat)
       fault = fmt::format("\"format\": expected \"{}\", found \"{}\"", kFormat, format);

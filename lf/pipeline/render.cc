@@ -10,7 +10,7 @@
 #include "lf/collector/memory_plan.h"
 #include "lf/core/file.h"
 #include "lf/core/log.h"
-#include "lf/pipeline/check_options.h"
+#include "lf/pipeline/check_render_options.h"
 #include "lf/pipeline/frame_output.h"
 #include "lf/pipeline/render_pass.h"
 #include "lf/record/run_state.h"
@@ -143,7 +143,7 @@ Result<RenderReport> Renderer::Run() {
 Result<void> Renderer::Begin() {
   frames_ = options_.frames;
   if (frames_.empty()) frames_ = package_.FrameIds();
-  LF_RETURN_IF_ERROR(CheckOptions(package_, options_));
+  LF_RETURN_IF_ERROR(CheckRenderOptions(package_, options_));
   LF_ASSIGN_OR_RETURN(
       store_, OpenStore(package_.light_field, options_.reading.estimator == Estimator::kBilinear
                                                   ? Mosaics::kToRgb

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "lf/core/file.h"
-#include "lf/record/json_fields.h"
+#include "lf/record/record_fields.h"
 #include "lf/record/report.h"
 
 namespace lf {
@@ -10,7 +10,7 @@ namespace {
 constexpr size_t kLimitBytes = size_t{256} << 20;
 
 FrameReport FrameFromJson(const Json& json, std::string* fault) {
-  JsonFields fields(json, fault);
+  RecordFields fields(json, fault);
   FrameReport frame;
   fields.Get("frame", &frame.frame.value);
   fields.Get("lf_images", &frame.rays.image_count);
@@ -32,7 +32,7 @@ FrameReport FrameFromJson(const Json& json, std::string* fault) {
   if (fields.Find("finished_early_before_place") != nullptr)
     fields.Get("finished_early_before_place", &frame.places_done.emplace());
   if (const Json* samples = fields.Find("samples")) {
-    JsonFields sample_fields(*samples, fault);
+    RecordFields sample_fields(*samples, fault);
     frame.samples.emplace();
     sample_fields.Get("asked", &frame.samples->asked);
     sample_fields.Get("share", &frame.samples->measured.share);
@@ -52,7 +52,7 @@ Result<RenderReport> ParseReport(std::string_view text, const std::string& name)
   if (json.is_discarded()) {
     fault = "it is no JSON, or only a part of it";
   } else {
-    JsonFields fields(json, &fault);
+    RecordFields fields(json, &fault);
     fields.Get("format", &format);
     if (fault.empty() && format != "lfreport 1") fault = "\"format\": expected \"lfreport 1\"";
     fields.Get("version", &report.version);
@@ -63,7 +63,7 @@ Result<RenderReport> ParseReport(std::string_view text, const std::string& name)
     fields.Get("load_wall_s", &report.load_wall_s);
     fields.Get("collect_cpu_s", &report.collect_cpu_s);
     if (const Json* item = fields.Find("rebinning")) {
-      JsonFields rebinning_fields(*item, &fault);
+      RecordFields rebinning_fields(*item, &fault);
       RebinReport& rebinning = report.rebinning.emplace();
       rebinning_fields.Get("slabs", &rebinning.slab_count);
       rebinning_fields.Get("cells", &rebinning.cell_count);
@@ -71,7 +71,7 @@ Result<RenderReport> ParseReport(std::string_view text, const std::string& name)
       rebinning_fields.Get("cpu_s", &rebinning.cpu_s);
     }
     for (const Json* item : fields.List("skipped_lf_images")) {
-      JsonFields skipped_fields(*item, &fault);
+      RecordFields skipped_fields(*item, &fault);
       SkippedImage& skipped = report.skipped.emplace_back();
       skipped_fields.Get("name", &skipped.name);
       skipped_fields.Get("reason", &skipped.reason);

@@ -1,4 +1,4 @@
-#include "lf/pipeline/check_options.h"
+#include "lf/pipeline/check_render_options.h"
 
 #include <fmt/format.h>
 
@@ -32,7 +32,7 @@ Result<void> CheckSlab(const Package& package, const RenderOptions& options,
 
 }  // namespace
 
-Result<void> CheckOptions(const Package& package, const RenderOptions& options) {
+Result<void> CheckRenderOptions(const Package& package, const RenderOptions& options) {
   const std::vector<FrameId> frames = options.frames.empty() ? package.FrameIds() : options.frames;
   if (options.mode == RenderMode::kRebin && (options.CountsRays() || options.keep_plates))
     return UsageError(

@@ -19,9 +19,9 @@ using Json = nlohmann::ordered_json;
 
 // Values of one object, by key. What is missing keeps its default; the first value of another kind
 // is the error.
-class JsonFields {
+class RecordFields {
  public:
-  JsonFields(const Json& object, std::string* fault) : object_(object), fault_(*fault) {
+  RecordFields(const Json& object, std::string* fault) : object_(object), fault_(*fault) {
     if (!object.is_object()) Complain("", "an object");
   }
 

@@ -10,6 +10,6 @@ namespace lf {
 
 // Render() asks this, too. kUsage, or kInput of a camera without a lens area where weights need
 // one.
-Result<void> CheckOptions(const Package& package, const RenderOptions& options);
+Result<void> CheckRenderOptions(const Package& package, const RenderOptions& options);
 
 }  // namespace lf
