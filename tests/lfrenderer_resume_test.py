@@ -20,6 +20,9 @@ import tempfile
 import time
 import unittest
 
+os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"  # before the import
+import cv2
+import numpy as np
 from PIL import Image
 
 import small_field
@@ -210,6 +213,29 @@ class ResumeTest(unittest.TestCase):
 
     def test_pictures_stand_beside_unfinished_plates(self):
         self.assertTrue(list(self.partial("it's begun").glob("frame_*.exr")))
+
+    # As the picture of the last checkpoint showed it; the others are as if nobody had asked.
+    def test_frames_are_finished_with_the_rays_they_have(self):
+        self.begun("early")
+        path = sorted(self.partial("early").glob("frame_*.exr"))[-1]
+        seen, frame = cv2.imread(str(path), cv2.IMREAD_UNCHANGED), int(path.stem[6:])
+        options = ["--back-end", "reference", "--frames", "1-12", "--finish", f"{frame},20"]
+        self.fails(2, ["--finish", "--resume"], "early", *options, "--overwrite")
+        self.fails(2, ["--finish", "--mode"], "early", *options, "--resume", "--mode", "hybrid")
+        self.fails(2, ["--finish '21'", "1-20"], "early", "--resume", "--finish", "21")
+        self.begun("early again")
+        finished = self.finish("early again", *options, "--resume")
+        early = {path.name, path.with_suffix(".plate").name}
+        self.assertEqual({name for name, digest in finished.items()
+                          if digest != self.expected_reference[name]}, early)
+        self.assertEqual(set(finished), set(self.expected_reference))
+        picture = cv2.imread(str(self.folder / "early again" / path.name), cv2.IMREAD_UNCHANGED)
+        np.testing.assert_array_equal(picture, seen)
+        report = json.loads((self.folder / "early again" / "report.json").read_text())
+        places = {one["frame"]: one["finished_early_before_place"] for one in report["frames"]
+                  if "finished_early_before_place" in one}
+        self.assertEqual(list(places), [frame])
+        self.assertTrue(0 < places[frame] < 169, places)
 
     def test_video_sheet_and_report_of_a_resumed_render_have_all_frames(self):
         self.begun("film")
