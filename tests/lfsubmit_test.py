@@ -121,6 +121,20 @@ class LocalJobTest(ClusterTestCase):
         self.assertEqual(digests(self.film), self.expected)
         self.assertEqual([package["restarts"] for package in self.status()["packages"]], [0, 1, 0])
 
+    def test_a_folder_of_a_job_that_lost_files_is_repaired(self):
+        self.submit("--frames", "1-4")
+        submit = cluster_test_case.SUBMIT
+        self.succeeds(submit, "--resume", self.film)  # is done
+        shutil.rmtree(self.film / "cluster" / "packages")
+        self.assertNotEqual(self.status()["state"], "done")
+        self.succeeds(submit, "--resume", self.film, "--video", self.folder / "film.mp4")
+        self.assertEqual(self.status()["state"], "done")
+        self.assertTrue((self.folder / "film.mp4").exists())
+        self.fails(2, ["new jobs"], submit, "--resume", self.film, "-o", self.folder)
+        self.submit("--", "--help", code=2, words=["--help"])
+        (self.film / "cluster" / "job.json").write_text("")
+        self.submit(code=3, words=["job.json", "remove it to submit anew"])
+
     def test_a_folder_has_one_job(self):
         self.submit()
         self.submit(code=2, words=["a job was submitted there", "--resume", "--overwrite"])
@@ -206,6 +220,15 @@ class LongLocalJobTest(ClusterTestCase):
         self.resume()
         self.assertEqual(digests(self.film), self.expected)
         self.assertEqual([package["crashes"] for package in self.status()["packages"]], [0, 0])
+
+    # Its renderers are still writing their states, and hold their locks.
+    def test_a_killed_lfsubmit_is_gone_on_with_at_once(self):
+        process = self.start(*self.OPTIONS)
+        self.wait_for(lambda: self.has_begun(0) and self.has_begun(1))
+        os.kill(process.pid, signal.SIGKILL)
+        process.wait()
+        self.resume()
+        self.assertEqual(digests(self.film), self.expected)
 
     def test_a_job_is_cancelled_from_elsewhere(self):
         renderer = self.unlucky_renderer("""

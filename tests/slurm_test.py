@@ -88,12 +88,14 @@ class SlurmTest(ClusterTestCase):
         self.wait_for(lambda: self.has_begun(0))
         array = json.loads((self.film / "cluster" / "job.json").read_text())["slurm_arrays"][0]
         self.slurm.call("scancel", "--batch", "--signal=TERM", f"{array}_0")
-        self.wait_for(lambda: self.package(0)["restarts"] == 1 or
+        self.wait_for(lambda: self.package(0)["restarts"] > 0 or
                       self.package(0).get("queue") == "PENDING")
         error = process.communicate(timeout=240)[1]
         self.assertEqual(process.returncode, 0, error)
         self.assertEqual(digests(self.film), self.expected)
-        self.assertEqual((self.package(0)["restarts"], self.package(0)["crashes"]), (1, 0))
+        # Twice if lfrenderer heard of it before its lfsubmit did.
+        self.assertIn(self.package(0)["restarts"], (1, 2))
+        self.assertEqual(self.package(0)["crashes"], 0)
 
     def test_a_job_is_cancelled_and_gone_on_with(self):
         self.submit(*self.OPTIONS, *self.ARGUMENTS, words=["submitted 8 packages", "--status"])

@@ -7,8 +7,8 @@
 
 #include "tools/common/interrupt.h"
 #include "tools/common/program.h"
-#include "tools/common/progress.h"
 #include "tools/job_table.h"
+#include "tools/run_job.h"
 #include "tools/submit_arguments.h"
 
 #include "lf/cluster/finish_frames.h"
@@ -20,7 +20,6 @@
 #include "lf/cluster/task_state.h"
 #include "lf/core/file.h"
 #include "lf/core/log.h"
-#include "lf/core/shell_word.h"
 #include "lf/sequence/video.h"
 
 namespace {
@@ -44,41 +43,6 @@ of the first package that failed, and the last line names what is missing. See d
 using lf::ClusterJob;
 using lf::Result;
 
-void Show(const ClusterJob& job, lf::ProgressMeter& meter) {
-  const lf::JobStatus status = lf::LookAtJob(job);
-  meter.Update(status.rays_done(), status.ray_total(), lf::JobSummary(status));
-}
-
-// By the engine that the job has, until it is done, or submitted.
-Result<void> Begin(ClusterJob job, const std::vector<size_t>& numbers, bool waits,
-                   const lf::CommonOptions& common) {
-  const std::string folder = lf::ShellWord(job.output_folder.string());
-  const auto& stop = lf::CatchInterrupts();
-  lf::ProgressMeter meter(lf::ParseProgressStyle(common.progress), "rays");
-  Result<void> outcome;
-  if (job.engine == lf::ClusterEngine::kLocal) {
-    if (!numbers.empty())
-      lf::LogInfo(
-          "{} packages, {} at a time, {} threads and {} MiB each; lfsubmit --status {} tells",
-          numbers.size(), job.at_once, job.thread_count, job.memory_bytes >> 20, folder);
-    outcome = lf::RunLocally(job, numbers, stop, [&] { Show(job, meter); });
-  } else {
-    LF_RETURN_IF_ERROR(lf::SubmitToSlurm(&job, numbers));
-    lf::LogInfo(
-        "submitted {} packages (array {}) and finishing task {}; lfsubmit --status {} tells",
-        numbers.size(), numbers.empty() ? "-" : job.slurm_array_ids.back(), job.slurm_finishing_id,
-        folder);
-    if (!waits) return {};
-    outcome = lf::WaitForJob(job, stop, [&] { Show(job, meter); });
-  }
-  if (!outcome) return outcome.error();
-  // What lfrenderer says of the whole film: rays, warnings, where to look.
-  for (const std::string& line : lf::LinesOfLastStart(lf::FinishingTask(job).log))
-    lf::LogInfo("{}", line);
-  if (common.json) return lf::PrintReport(lf::ToJson(job, lf::LookAtJob(job)));
-  return {};
-}
-
 Result<void> Submit(const lf::SubmitArguments& arguments, const lf::CommonOptions& common) {
   LF_ASSIGN_OR_RETURN(const ClusterJob job, arguments.MakeJob(common));
   if (job.video) {
@@ -90,7 +54,7 @@ Result<void> Submit(const lf::SubmitArguments& arguments, const lf::CommonOption
   LF_RETURN_IF_ERROR(lf::WriteJob(job));
   std::vector<size_t> numbers(job.packages.size());
   std::iota(numbers.begin(), numbers.end(), size_t{0});
-  return Begin(job, numbers, arguments.wait, common);
+  return lf::RunJob(job, numbers, arguments.wait, common);
 }
 
 Result<void> Finish(const std::string& folder, const std::string& frames) {
@@ -112,13 +76,18 @@ Result<void> Act(const lf::SubmitArguments& arguments, const lf::CommonOptions& 
   }
   if (!arguments.cancel.empty()) {
     LF_ASSIGN_OR_RETURN(const ClusterJob job, lf::ReadJob(arguments.cancel));
-    return lf::CancelJob(job, lf::CatchInterrupts());
+    LF_RETURN_IF_ERROR(lf::CancelJob(job, lf::CatchInterrupts()));
+    return common.json ? lf::PrintReport(lf::ToJson(job, lf::LookAtJob(job))) : Result<void>();
   }
   if (!arguments.resume.empty()) {
     LF_ASSIGN_OR_RETURN(ClusterJob job, lf::ReadJob(arguments.resume));
     LF_RETURN_IF_ERROR(arguments.Change(&job, common));
+    if (arguments.video.empty() && lf::LookAtJob(job).phase == lf::TaskPhase::kDone) {
+      lf::LogInfo("{}: the film is done", job.output_folder.string());
+      return {};
+    }
     LF_ASSIGN_OR_RETURN(const std::vector<size_t> numbers, lf::PrepareResume(job));
-    return Begin(job, numbers, arguments.wait, common);
+    return lf::RunJob(job, numbers, arguments.wait, common);
   }
   if (!arguments.finish.empty()) return Finish(arguments.finish[0], arguments.finish[1]);
   if (!arguments.run_finish.empty()) {

@@ -23,9 +23,9 @@ namespace {
 
 // Of lfrenderer's, those that a job decides about.
 constexpr std::array kOfTheJob = {
-    "-o",        "--output", "--resume", "--overwrite", "--progress",         "--json",
-    "--threads", "--memory", "--frames", "--video",     "--no-contact-sheet", "--shard",
-    "--finish",  "-q",       "--quiet"};
+    "-o",       "--output", "--resume", "--overwrite", "--progress", "--json",
+    "--frames", "--video",  "--shard",  "--finish",    "--threads",  "--memory",
+    "--help",   "-h",       "-q",       "--quiet",     "--version",  "--no-contact-sheet"};
 
 uint64_t MachineMemoryBytes() {
   const long pages = ::sysconf(_SC_PHYS_PAGES), page_bytes = ::sysconf(_SC_PAGESIZE);
@@ -157,7 +157,8 @@ void SubmitArguments::AddTo(CLI::App& app) {
   app.add_option(
          "--resume", resume,
          "DIR: go on with what is not done; --engine, --jobs, --threads, --memory, --crashes, "
-         "--time-limit, --sbatch, --lfrenderer, PACKAGES (the same ones elsewhere) and arguments "
+         "--time-limit, --sbatch, --lfrenderer, --video, PACKAGES (the same ones elsewhere) and "
+         "arguments "
          "may be others now")
       ->check(NotEmpty())
       ->group(there);
@@ -179,11 +180,13 @@ Result<void> SubmitArguments::Check() const {
         fmt::format("{}: packages are for new jobs and --resume: --status, --cancel and --finish "
                     "take DIR alone",
                     words.front()));
+  if (asked == 1 && (!output.empty() || !frames.empty() || overwrite))
+    return UsageError("-o, --frames and --overwrite are for new jobs");
   if (asked == 1) return {};
   if (words.empty() || words.front().starts_with('-'))
     return UsageError(
-        "expected PACKAGES... -o DIR (files of lfpreprocessor), or --status, --cancel or --resume "
-        "DIR");
+        "expected PACKAGES... -o DIR (files of lfpreprocessor), or --status, --cancel, --resume or "
+        "--finish DIR");
   if (output.empty()) return UsageError("-o DIR is missing: the folder of the frames");
   return {};
 }
@@ -252,6 +255,7 @@ Result<void> SubmitArguments::Change(ClusterJob* job, const CommonOptions& commo
   if (!renderer.empty()) {
     LF_ASSIGN_OR_RETURN(job->renderer, FindRenderer(renderer));
   }
+  if (!video.empty()) job->video = fs::absolute(video).lexically_normal();
   return WriteJob(*job);
 }
 

@@ -1,5 +1,7 @@
 #include "lf/cluster/job_status.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <numeric>
 #include <set>
@@ -12,6 +14,8 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
+constexpr double kLongQuiet_s = 10;
+
 // Names in a folder, looked at once: a million questions to a file server are slow.
 std::set<std::string> NamesIn(const fs::path& folder) {
   std::set<std::string> names;
@@ -19,12 +23,6 @@ std::set<std::string> NamesIn(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder, error))
     names.insert(entry.path().filename().string());
   return names;
-}
-
-// By a process on this machine, or one that shares its locks.
-bool IsHeld(const fs::path& lock) {
-  std::error_code ignored;
-  return fs::exists(lock, ignored) && !FileLock::Take(lock);
 }
 
 // What its files say.
@@ -44,7 +42,13 @@ TaskStatus LookAtTask(const ClusterTask& task) {
       progress.total > 0 ? std::optional(progress.total - progress.done) : std::nullopt;
   status.image_done = progress.image_done;
   status.image_total = progress.image_total;
-  if (state->phase != TaskPhase::kRunning || progress.rate <= 0) return status;
+  if (state->phase != TaskPhase::kRunning) return status;
+  // It says how far it is every second; batch systems notice the death of a node later than that.
+  if (progress.quiet_s > kLongQuiet_s) {
+    status.message = fmt::format("nothing heard of it for {:.0f} s", progress.quiet_s);
+    return status;
+  }
+  if (progress.rate <= 0) return status;
   status.unit = progress.unit;
   status.rate = progress.rate;
   status.seconds_left = progress.seconds_left;
@@ -90,7 +94,10 @@ TaskPhase PhaseOf(const JobStatus& status, bool is_engine_at_work) {
   const auto has = [&](TaskPhase phase) {
     return any([=](const TaskStatus* task) { return task->state.phase == phase; });
   };
-  if (status.finishing.state.phase == TaskPhase::kDone) return TaskPhase::kDone;
+  if (status.finishing.state.phase == TaskPhase::kDone &&
+      status.Count(TaskPhase::kDone) == status.packages.size() &&
+      status.frames_done() == status.frame_total())
+    return TaskPhase::kDone;
   if (is_engine_at_work || has(TaskPhase::kRunning)) return TaskPhase::kRunning;
   const bool was_begun = any([](const TaskStatus* task) { return task->state.start_count > 0; });
   if (any([](const TaskStatus* task) { return task->IsQueued(); }))
@@ -176,11 +183,11 @@ JobStatus LookAtJob(const ClusterJob& job) {
   } else {
     for (size_t i = 0; i < job.packages.size(); ++i)
       if (status.packages[i].state.phase == TaskPhase::kRunning &&
-          !IsHeld(PackageTask(job, i).lock))
+          !FileLock::IsHeld(PackageTask(job, i).lock))
         NoteLost(&status.packages[i]);
-    if (!IsHeld(FinishingTask(job).lock)) NoteLost(&status.finishing);
+    if (!FileLock::IsHeld(FinishingTask(job).lock)) NoteLost(&status.finishing);
   }
-  status.phase = PhaseOf(status, IsHeld(job.EngineLock()));
+  status.phase = PhaseOf(status, FileLock::IsHeld(job.EngineLock()));
   return status;
 }
 

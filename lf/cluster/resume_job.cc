@@ -27,11 +27,12 @@ bool IsAtWork(const JobStatus& status) {
          std::any_of(status.packages.begin(), status.packages.end(), is_at_work);
 }
 
-// The local engine's, which holds it while it runs.
 Result<void> CheckEngineIsIdle(const ClusterJob& job) {
-  LF_RETURN_IF_ERROR(CreateFolder(job.Folder()));
-  const Result<FileLock> lock = FileLock::Take(job.EngineLock());
-  return lock ? Result<void>() : lock.error();
+  if (!FileLock::IsHeld(job.EngineLock())) return {};
+  return OutputError(fmt::format(
+      "{}: is locked: another program renders this job; wait for it to end, or lfsubmit "
+      "--cancel {}",
+      job.EngineLock().string(), ShellWord(job.output_folder.string())));
 }
 
 void RemoveFrames(const ClusterJob& job, const JobPackage& package) {
@@ -55,6 +56,8 @@ Result<void> MakeRoomForJob(const ClusterJob& job, bool overwrite) {
   std::error_code ignored;
   if (!fs::exists(job.File(), ignored) && !overwrite) return {};
   const std::string folder = ShellWord(job.output_folder.string());
+  const Result<ClusterJob> before = ReadJob(job.output_folder);
+  if (!overwrite && !before) return before.error();
   if (!overwrite)
     return UsageError(fmt::format(
         "{}: a job was submitted there: lfsubmit --resume {} goes on with it, --status tells how "
@@ -62,7 +65,7 @@ Result<void> MakeRoomForJob(const ClusterJob& job, bool overwrite) {
         "anew, and keeps the frames)",
         job.output_folder.string(), folder, folder));
   LF_RETURN_IF_ERROR(CheckEngineIsIdle(job));
-  if (const auto before = ReadJob(job.output_folder); before && IsAtWork(LookAtJob(*before)))
+  if (before && IsAtWork(LookAtJob(*before)))
     return UsageError(fmt::format("{}: is at work: lfsubmit --cancel {} first",
                                   job.output_folder.string(), folder));
   for (const JobPackage& package : job.packages) RemoveFrames(job, package);
@@ -82,9 +85,10 @@ Result<std::vector<size_t>> PrepareResume(const ClusterJob& job) {
     const TaskStatus& task = status.packages[i];
     const bool is_done =
         task.state.phase == TaskPhase::kDone && task.frames_done == task.frame_total;
-    if (is_done || task.IsQueued() || task.state.phase == TaskPhase::kRunning) continue;
+    if (is_done || task.IsQueued()) continue;
     numbers.push_back(i);
-    if (task.state.start_count == 0) continue;
+    // One that still runs is ending, for nobody drives it any more: it is waited for.
+    if (task.state.start_count == 0 || task.state.phase == TaskPhase::kRunning) continue;
     TaskState state = task.state;
     state.phase = TaskPhase::kInterrupted;
     state.crash_count = 0;

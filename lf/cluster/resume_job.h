@@ -14,8 +14,8 @@ namespace lf {
 // frames of these packages. kUsage: there is one; kOutput: it is at work.
 Result<void> MakeRoomForJob(const ClusterJob& job, bool overwrite);
 
-// Takes back what ended the job, and lists the packages to be begun: those that are not done, at
-// work or queued. Crashes before count no more. kOutput: the local engine is at work.
+// Takes back what ended the job, and lists the packages to be begun: those that are neither
+// done nor queued. Crashes before count no more. kOutput: the local engine is at work.
 Result<std::vector<size_t>> PrepareResume(const ClusterJob& job);
 
 // Asks all packages to write their states and to end, and waits for them, or for `stop`.

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "lf/cluster/run_package.h"
+#include "lf/core/file.h"
 #include "lf/core/file_lock.h"
 #include "lf/core/log.h"
 #include "lf/core/shell_word.h"
@@ -24,6 +25,7 @@ std::string NodeName() {
 
 Result<void> RunLocally(const ClusterJob& job, const std::vector<size_t>& numbers,
                         const std::atomic<bool>& stop, const std::function<void()>& look) {
+  LF_RETURN_IF_ERROR(CreateFolder(job.Folder() / "packages"));
   LF_ASSIGN_OR_RETURN(const FileLock lock, FileLock::Take(job.EngineLock()));
   const std::string node = NodeName();
   std::atomic<size_t> next = 0, working = 0;

@@ -67,6 +67,11 @@ Result<void> TaskRun::Begin() {
     Result<FileLock> lock = FileLock::Take(task_.lock);
     if (lock) {
       lock_ = *std::move(lock);
+    } else if (!FileLock::IsHeld(task_.lock)) {
+      // Let go of in the meantime, or it cannot be made at all.
+      lock = FileLock::Take(task_.lock);
+      if (!lock && !FileLock::IsHeld(task_.lock)) return lock.error();
+      if (lock) lock_ = *std::move(lock);
     } else if (stop_ || SecondsSince1970() - begin_s > kPatience_s) {
       return lock.error();
     } else {
@@ -243,7 +248,9 @@ Result<TaskState> RunPackage(const ClusterJob& job, size_t number, const std::st
       return state;
     }
     const CommandEnd end = *ran;
-    if (end.signal != 0) {
+    if (end.signal == SIGTERM) {
+      LF_RETURN_IF_ERROR(run.End(TaskPhase::kInterrupted, 5, "interrupted before it began"));
+    } else if (end.signal != 0) {
       ++state.crash_count;
       LF_RETURN_IF_ERROR(run.End(TaskPhase::kInterrupted, 0, WordsOf(end)));
     } else if (end.exit_code == 0 || end.exit_code == 6) {

@@ -173,7 +173,10 @@ Result<void> SubmitToSlurm(ClusterJob* job, const std::vector<size_t>& numbers) 
           "{} (the array is {}; scontrol show config | grep MaxArraySize tells the largest number "
           "allowed, plus one: make fewer packages)",
           answer.error().message, array));
-    if (!answer) return answer.error();
+    if (!answer)
+      return OutputError(answer.error().message +
+                         " (--threads, --memory, --time-limit and --sbatch say what each task asks "
+                         "for)");
     LF_ASSIGN_OR_RETURN(std::string id, JobId(*answer));
     job->slurm_array_ids.push_back(std::move(id));
     LF_RETURN_IF_ERROR(WriteJob(*job));

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <chrono>
 #include <fstream>
 
 #include "lf/core/file.h"
@@ -146,7 +147,15 @@ TaskProgress ParseProgress(std::string_view log) {
   return progress;
 }
 
-TaskProgress ReadProgress(const fs::path& log) { return ParseProgress(LastOf(log)); }
+TaskProgress ReadProgress(const fs::path& log) {
+  TaskProgress progress = ParseProgress(LastOf(log));
+  std::error_code error;
+  const auto written = fs::last_write_time(log, error);
+  if (!error)
+    progress.quiet_s =
+        std::chrono::duration<double>(fs::file_time_type::clock::now() - written).count();
+  return progress;
+}
 
 std::vector<std::string> LinesOfLastStart(const fs::path& log) {
   const std::string text = LastOf(log);

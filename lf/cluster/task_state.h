@@ -49,6 +49,7 @@ struct TaskProgress {
   double rate = 0;  // a second
   double seconds_left = 0;
   uint64_t image_done = 0, image_total = 0;  // LF images
+  double quiet_s = 0;                        // since the log grew last
   std::string message;                       // the last line for people
 };
 

@@ -14,6 +14,8 @@ class FileLock {
   // Locks the file, made if it is missing, without waiting. kOutput: another process (its number is
   // in the message) or another FileLock holds it, or it cannot be made.
   static Result<FileLock> Take(const std::filesystem::path& path);
+  // Whether anybody holds it now. A file that is missing, or that we may not read, is not held.
+  static bool IsHeld(const std::filesystem::path& path);
   FileLock(FileLock&& other) noexcept;
   FileLock& operator=(FileLock&& other) noexcept;
   ~FileLock();  // lets go; the file stays

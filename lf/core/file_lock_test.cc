@@ -25,10 +25,13 @@ TEST(FileLock, OneAtATimeAndTheNextWhenItIsLetGo) {
     EXPECT_NE(second.error().message.find("process " + std::to_string(::getpid())),
               std::string::npos);
   }
+  EXPECT_FALSE(FileLock::IsHeld(path));
   Result<FileLock> third = FileLock::Take(path);
   ASSERT_TRUE(third);
+  EXPECT_TRUE(FileLock::IsHeld(path));
   third->Remove();
   EXPECT_FALSE(std::filesystem::exists(path));
+  EXPECT_FALSE(FileLock::IsHeld(path));
 }
 
 TEST(FileLock, DiesWithItsProcess) {

@@ -1,0 +1,53 @@
+#include "tools/run_job.h"
+
+#include <string>
+
+#include "tools/common/interrupt.h"
+#include "tools/common/progress.h"
+#include "tools/job_table.h"
+
+#include "lf/cluster/job_status.h"
+#include "lf/cluster/resume_job.h"
+#include "lf/cluster/run_locally.h"
+#include "lf/cluster/slurm.h"
+#include "lf/cluster/task_state.h"
+#include "lf/core/log.h"
+#include "lf/core/shell_word.h"
+
+namespace lf {
+namespace {
+
+void Show(const ClusterJob& job, ProgressMeter& meter) {
+  const JobStatus status = LookAtJob(job);
+  meter.Update(status.rays_done(), status.ray_total(), JobSummary(status));
+}
+
+}  // namespace
+
+Result<void> RunJob(ClusterJob job, const std::vector<size_t>& numbers, bool waits,
+                    const CommonOptions& common) {
+  const std::string folder = ShellWord(job.output_folder.string());
+  const auto& stop = CatchInterrupts();
+  ProgressMeter meter(ParseProgressStyle(common.progress), "rays");
+  Result<void> outcome;
+  if (job.engine == ClusterEngine::kLocal) {
+    if (!numbers.empty())
+      LogInfo("{} packages, {} at a time, {} threads and {} MiB each; lfsubmit --status {} tells",
+              numbers.size(), job.at_once, job.thread_count, job.memory_bytes >> 20, folder);
+    outcome = RunLocally(job, numbers, stop, [&] { Show(job, meter); });
+  } else {
+    LF_RETURN_IF_ERROR(SubmitToSlurm(&job, numbers));
+    LogInfo("submitted {} packages (array {}) and finishing task {}; lfsubmit --status {} tells",
+            numbers.size(), numbers.empty() ? "-" : job.slurm_array_ids.back(),
+            job.slurm_finishing_id, folder);
+    if (!waits) return {};
+    outcome = WaitForJob(job, stop, [&] { Show(job, meter); });
+  }
+  if (!outcome) return outcome.error();
+  // What lfrenderer says of the whole film: rays, warnings, where to look.
+  for (const std::string& line : LinesOfLastStart(FinishingTask(job).log)) LogInfo("{}", line);
+  if (common.json) return PrintReport(ToJson(job, LookAtJob(job)));
+  return {};
+}
+
+}  // namespace lf

@@ -1,0 +1,18 @@
+// A job at work, before the eyes of whoever called lfsubmit.
+#pragma once
+
+#include <vector>
+
+#include "tools/common/program.h"
+
+#include "lf/cluster/job.h"
+#include "lf/core/result.h"
+
+namespace lf {
+
+// Has these packages rendered by the engine that the job has: until the film is done, or, where
+// that is Slurm and nobody waits, until they are submitted.
+Result<void> RunJob(ClusterJob job, const std::vector<size_t>& numbers, bool waits,
+                    const CommonOptions& common);
+
+}  // namespace lf
