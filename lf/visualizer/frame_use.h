@@ -1,0 +1,45 @@
+// Which LF cameras a frame uses, and why it does not use the others: what selection decides
+// (thesis 4.2.1), for people to look at.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "lf/camera/render_camera.h"
+#include "lf/core/geometry.h"
+#include "lf/core/ids.h"
+#include "lf/core/parallel.h"
+#include "lf/lens_weights/frame_weights.h"
+#include "lf/preprocess/frame_needs.h"
+#include "lf/selection/image_index.h"
+
+namespace lf {
+
+// In the order in which they are asked: a camera has the first that holds.
+enum class CameraUse : uint8_t {
+  kUsed,      // pixels of its LF image are rays of the frame
+  kOutside,   // it stands where no ray through lens and sensor plate passes (Fig. 4.4)
+  kAngle,     // it looks along another direction than --max-angle allows
+  kSeesNone,  // it stands well, but no pixel of its LF image sees the lens and what is filmed
+              // (Fig. 4.5)
+  kLimit,     // it comes after the first --max-images of the order
+  kNoWeight,  // no point of the lens is nearest to it (doc/lens-integral.md)
+};
+inline constexpr size_t kCameraUseCount = 6;
+// "used", "outside", "angle", "sees-none", "limit", "no-weight"
+std::string_view NameOf(CameraUse use);
+
+struct FrameUse {
+  std::vector<CameraUse> of_cameras;        // of each LF camera
+  std::vector<FrameNeeds::Image> used;      // by ascending places of the order
+  std::optional<double> camera_distance_w;  // about, around the lens; with lens weights
+};
+
+// As a render of the frame with these options would decide. Asks every LF camera, one after the
+// other: some milliseconds for a hundred thousand.
+FrameUse UseOfCameras(const ImageIndex& index, const RenderCamera& frame,
+                      const NeedsOptions& options, ThreadPool& pool);
+
+}  // namespace lf

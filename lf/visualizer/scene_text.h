@@ -1,0 +1,31 @@
+// Light field, path and selection as plain text, for scripts that plot them (thesis 4.5).
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lf/capture/light_field.h"
+#include "lf/core/ids.h"
+#include "lf/core/result.h"
+#include "lf/path/camera_path.h"
+#include "lf/visualizer/frame_use.h"
+
+namespace lf {
+
+// Lines of words, numbers in world units with as many digits as give the same bits again:
+//
+//   lf_camera ID X Y Z                 every LF camera, ID from 0
+//   render_camera FRAME X Y Z          every frame asked for
+//   collected FRAME ID SHARE           LF cameras that the frame uses, by ascending ID, and what
+//   share
+//                                      of the pixels of the LF image lies in its rectangle
+//
+//   emit  takes the text in parts; its first error ends it
+Result<void> WriteSceneText(const LightField& light_field, const CameraPath& path,
+                            const std::vector<FrameId>& frames, uint64_t seed,
+                            const NeedsOptions& options, ThreadPool& pool,
+                            const std::function<Result<void>(const std::string&)>& emit);
+
+}  // namespace lf

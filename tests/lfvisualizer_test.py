@@ -1,0 +1,63 @@
+#!/usr/bin/python3
+"""lfvisualizer --text: what it says of cameras is what the light field, the path and a render say.
+
+usage: lfvisualizer_test.py LFVISUALIZER LFRENDERER
+"""
+import json
+import sys
+import unittest
+
+import small_field
+from program_test_case import ProgramTestCase
+
+VISUALIZER = RENDERER = None
+
+
+class VisualizerTest(ProgramTestCase):
+    def setUp(self):
+        super().setUp()
+        small_field.SIDE = 5
+        self.field = small_field.write_field(self.folder / "field")
+        self.path = small_field.write_path(self.folder)
+
+    def lines(self, *options):
+        """words of the lines, by their first"""
+        words = {"lf_camera": [], "render_camera": [], "collected": []}
+        for line in self.succeeds(VISUALIZER, self.field, self.path, "--text",
+                                  *options).splitlines():
+            first, *rest = line.split()
+            words[first].append([float(word) for word in rest])
+        return words
+
+    def test_cameras_are_where_the_light_field_and_the_path_say(self):
+        words = self.lines()
+        frames = json.loads(self.field.read_text())["frames"]
+        self.assertEqual(len(words["lf_camera"]), len(frames))
+        for (index, *place), frame in zip(words["lf_camera"], frames):
+            expected = [row[3] for row in frame["transform_matrix"][:3]]
+            for got, wanted in zip(place, expected):
+                self.assertAlmostEqual(got, wanted, 12, index)
+        self.assertEqual([line[0] for line in words["render_camera"]], [1, 2, 3])
+
+    # As many as lfrenderer takes, with weights and without.
+    def test_what_is_collected_is_what_a_render_collects(self):
+        for weights in ("auto", "none"):
+            words = self.lines("--lens-weights", weights, "--frames", "1,3")
+            out = self.folder / weights
+            self.succeeds(RENDERER, self.field, self.path, "-o", out, "--lens-weights", weights)
+            for frame in json.loads((out / "report.json").read_text())["frames"]:
+                collected = [line for line in words["collected"] if line[0] == frame["frame"]]
+                self.assertEqual(len(collected), 0 if frame["frame"] == 2 else frame["lf_images"])
+                self.assertTrue(all(0 < share <= 1 for _, _, share in collected))
+        few = self.lines("--max-images", 3)["collected"]
+        self.assertLessEqual(len([line for line in few if line[0] == 1]), 3)
+
+    def test_what_is_missing_or_wrong_is_told(self):
+        self.fails(2, ["--text"], VISUALIZER, self.field, self.path)
+        self.fails(2, ["--frames '7'"], VISUALIZER, self.field, self.path, "--text", "--frames", 7)
+        self.fails(3, ["nowhere"], VISUALIZER, self.folder / "nowhere", self.path, "--text")
+
+
+if __name__ == "__main__":
+    VISUALIZER, RENDERER = sys.argv[1:3]
+    unittest.main(argv=sys.argv[:1], verbosity=2)
