@@ -21,16 +21,9 @@ Result<std::vector<FrameId>> ReadAll(const fs::path& path, size_t last_frame) {
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return std::vector<FrameId>();
   LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(path, kLimitBytes));
-  const Json json = Json::parse(text, nullptr, false);
-  std::string fault, format, frames;
-  if (json.is_discarded()) {
-    fault = "it is no JSON";
-  } else {
-    RecordFields fields(json, &fault);
-    fields.Get("format", &format);
-    fields.Get("frames", &frames);
-    if (fault.empty() && format != kFormat) fault = "its \"format\" is another";
-  }
+  std::string fault, frames;
+  const Json json = ParseRecord(text, kFormat, &fault);
+  RecordFields(json, &fault).Get("frames", &frames);
   if (fault.empty()) {
     const auto parsed = ParseFrameRange(frames, last_frame);
     if (parsed) return parsed;
@@ -94,7 +87,7 @@ Result<size_t> AskToFinish(const ClusterJob& job, const std::string& frames_text
   std::set_union(before.begin(), before.end(), frames.begin(), frames.end(),
                  std::back_inserter(all));
   const Json json = {{"format", kFormat}, {"frames", FrameRangeText(all)}};
-  LF_RETURN_IF_ERROR(WriteFileAtomically(job.FinishFramesFile(), json.dump(2) + "\n"));
+  LF_RETURN_IF_ERROR(WriteFileAtomically(job.FinishFramesFile(), RecordText(json)));
   return unfinished_count;
 }
 

@@ -100,20 +100,15 @@ std::string ToJson(const ClusterJob& job) {
                      {"slurm_arrays", job.slurm_array_ids},
                      {"slurm_finishing", job.slurm_finishing_id},
                      {"packages", std::move(packages)}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return RecordText(json);
 }
 
 Result<ClusterJob> ParseJob(std::string_view text, const std::string& name) {
-  const Json json = Json::parse(text, nullptr, false);
-  std::string fault, format, engine, video, output, working, renderer, submitter;
+  std::string fault, engine, video, output, working, renderer, submitter;
   ClusterJob job;
-  if (json.is_discarded()) {
-    fault = "it is no JSON, or only a part of it";
-  } else {
+  const Json json = ParseRecord(text, kFormat, &fault);
+  if (fault.empty()) {
     RecordFields fields(json, &fault);
-    fields.Get("format", &format);
-    if (fault.empty() && format != kFormat)
-      fault = fmt::format("\"format\": expected \"{}\", found \"{}\"", kFormat, format);
     fields.Get("output_folder", &output);
     fields.Get("working_folder", &working);
     fields.Get("lfrenderer", &renderer);

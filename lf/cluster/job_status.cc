@@ -206,7 +206,7 @@ std::string ToJson(const ClusterJob& job, const JobStatus& status) {
                {"finishing", TaskToJson(status.finishing)}};
   if (const auto left_s = status.seconds_left()) json["seconds_left"] = *left_s;
   if (!status.queue_error.empty()) json["queue_error"] = status.queue_error;
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return RecordText(json);
 }
 
 }  // namespace lf

@@ -80,20 +80,15 @@ std::string ToJson(const TaskState& state) {
                      {"message", state.message},
                      {"begin_s", state.begin_s},
                      {"end_s", state.end_s}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return RecordText(json);
 }
 
 Result<TaskState> ParseTaskState(std::string_view text, const std::string& name) {
-  const Json json = Json::parse(text, nullptr, false);
-  std::string fault, format, phase;
+  std::string fault, phase;
   TaskState state;
-  if (json.is_discarded()) {
-    fault = "it is no JSON, or only a part of it";
-  } else {
+  const Json json = ParseRecord(text, kFormat, &fault);
+  if (fault.empty()) {
     RecordFields fields(json, &fault);
-    fields.Get("format", &format);
-    if (fault.empty() && format != kFormat)
-      fault = fmt::format("\"format\": expected \"{}\", found \"{}\"", kFormat, format);
     fields.Get("phase", &phase);
     fields.Get("node", &state.node);
     fields.Get("process", &state.process);

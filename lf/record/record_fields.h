@@ -9,6 +9,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "lf/record/run_inputs.h"
@@ -109,5 +111,23 @@ class RecordFields {
   const Json& object_;
   std::string& fault_;
 };
+
+// The object of a text whose "format" is the one expected. Else empty, and the fault says why.
+inline Json ParseRecord(std::string_view text, const char* format, std::string* fault) {
+  Json json = Json::parse(text, nullptr, false);
+  std::string found;
+  if (json.is_discarded())
+    *fault = "it is no JSON, or only a part of it";
+  else
+    RecordFields(json, fault).Get("format", &found);
+  if (fault->empty() && found != format)
+    *fault = fmt::format("\"format\": expected \"{}\", found \"{}\"", format, found);
+  return fault->empty() ? std::move(json) : Json::object();
+}
+
+// As text. Names may hold any bytes; those that are no UTF-8 are replaced.
+inline std::string RecordText(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
 
 }  // namespace lf

@@ -3,14 +3,12 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "lf/core/file.h"
+#include "lf/record/record_fields.h"
 
 namespace lf {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json InputsToJson(const RunInputs& inputs) {
   Json json = Json::object();
@@ -120,8 +118,7 @@ std::string ToJson(const RenderReport& report) {
                          {"cells", report.rebinning->cell_count},
                          {"lf_pixels_looked_at", report.rebinning->looked_at_count},
                          {"cpu_s", report.rebinning->cpu_s}};
-  // File names may hold any bytes; those that are no UTF-8 are replaced.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return RecordText(json);
 }
 
 Result<void> WriteReport(const RenderReport& report, const std::filesystem::path& path) {

@@ -45,16 +45,11 @@ FrameReport FrameFromJson(const Json& json, std::string* fault) {
 }  // namespace
 
 Result<RenderReport> ParseReport(std::string_view text, const std::string& name) {
-  const Json json = Json::parse(text, nullptr, false);
   std::string fault;
-  std::string format;
   RenderReport report;
-  if (json.is_discarded()) {
-    fault = "it is no JSON, or only a part of it";
-  } else {
+  const Json json = ParseRecord(text, "lfreport 1", &fault);
+  if (fault.empty()) {
     RecordFields fields(json, &fault);
-    fields.Get("format", &format);
-    if (fault.empty() && format != "lfreport 1") fault = "\"format\": expected \"lfreport 1\"";
     fields.Get("version", &report.version);
     fields.Get("inputs", &report.inputs);
     fields.Get("lf_images_selected", &report.selected_image_count);
