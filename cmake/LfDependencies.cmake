@@ -10,7 +10,7 @@ find_package(fmt 9 REQUIRED)
 find_package(CLI11 2 REQUIRED)
 find_package(hwy 1.0 REQUIRED)
 find_package(SQLite3 3.40 REQUIRED)
-# Debian's packages of these two have no files for CMake.
+# Debian's packages of these have no files for CMake.
 find_path(LF_ZSTD_INCLUDE zstd.h REQUIRED)
 find_library(LF_ZSTD_LIBRARY zstd REQUIRED)
 add_library(lf_zstd INTERFACE)
@@ -21,6 +21,11 @@ find_library(LF_XXHASH_LIBRARY xxhash REQUIRED)
 add_library(lf_xxhash INTERFACE)
 target_include_directories(lf_xxhash SYSTEM INTERFACE ${LF_XXHASH_INCLUDE})
 target_link_libraries(lf_xxhash INTERFACE ${LF_XXHASH_LIBRARY})
+find_path(LF_HTTPLIB_INCLUDE httplib.h REQUIRED)
+find_library(LF_HTTPLIB_LIBRARY cpp-httplib REQUIRED)
+add_library(lf_httplib INTERFACE)
+target_include_directories(lf_httplib SYSTEM INTERFACE ${LF_HTTPLIB_INCLUDE})
+target_link_libraries(lf_httplib INTERFACE ${LF_HTTPLIB_LIBRARY})
 # Header only.
 find_path(LF_NANOFLANN_INCLUDE nanoflann.hpp REQUIRED)
 # libjpeg-turbo; the compiler will tell if it is another one, which cannot decode a part.

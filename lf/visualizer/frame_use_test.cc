@@ -5,36 +5,11 @@
 #include <algorithm>
 #include <string>
 
-#include "lf/capture/light_field.h"
 #include "lf/visualizer/scene_text.h"
+#include "lf/visualizer/test_grid.h"
 
 namespace lf {
 namespace {
-
-// 21 x 21 parallel LF cameras 5 mm apart, looking along z.
-LightField Grid() {
-  LightField field;
-  field.intrinsics = {{70, 70, 32, 24, 0, 64, 48}};
-  for (int i = 0; i < 441; ++i) {
-    LfCamera camera;
-    camera.cam_from_world =
-        *LookAlong({0.005 * (i % 21 - 10), 0.005 * (i / 21 - 10), 0}, {0, 0, 1}, {0, -1, 0});
-    field.cameras.push_back(camera);
-    field.image_names.push_back(std::to_string(i));
-  }
-  return field;
-}
-
-// In the middle of the grid's plane.
-RenderCamera Frame(int blades = 0) {
-  RenderCamera frame;
-  frame.pinhole.intrinsics = {80, 80, 40, 30, 0, 80, 60};
-  frame.pinhole.cam_from_world = *LookAlong({0, 0, 0}, {0, 0, 1}, {0, -1, 0});
-  frame.aperture = {0.0301, blades, 0};
-  frame.focus_distance_w = 1;
-  frame.focus_plane = FocusPlane(frame.pinhole, 1, {});
-  return frame;
-}
 
 NeedsOptions Unweighted() {
   NeedsOptions options;
@@ -47,10 +22,10 @@ size_t Count(const FrameUse& use, CameraUse wanted) {
 }
 
 TEST(UseOfCameras, UsedAreThoseThatSelectionTakes) {
-  const LightField field = Grid();
+  const LightField field = testing::GridField();
   const ImageIndex index(field);
   ThreadPool pool(2);
-  const RenderCamera frame = Frame();
+  const RenderCamera frame = testing::GridFrame();
   const FrameUse use = UseOfCameras(index, frame, Unweighted(), pool);
   const auto selected = SelectImages(index, {&frame, 1}, {}, pool);
   ASSERT_EQ(use.used.size(), selected.size());
@@ -64,10 +39,10 @@ TEST(UseOfCameras, UsedAreThoseThatSelectionTakes) {
 
 // Figure 5.1 of the thesis: the lens stands in the plane of the LF cameras.
 TEST(UseOfCameras, OfATriangularApertureAreATriangle) {
-  const LightField field = Grid();
+  const LightField field = testing::GridField();
   const ImageIndex index(field);
   ThreadPool pool(1);
-  const RenderCamera frame = Frame(3);
+  const RenderCamera frame = testing::GridFrame(3);
   const FrameUse use = UseOfCameras(index, frame, Unweighted(), pool);
   for (uint32_t i = 0; i < field.size(); ++i) {
     const Vec3 centre = field.Camera(LfImageId{i}).CentreWorld();
@@ -78,7 +53,7 @@ TEST(UseOfCameras, OfATriangularApertureAreATriangle) {
 }
 
 TEST(UseOfCameras, TheOthersHaveReasons) {
-  LightField field = Grid();
+  LightField field = testing::GridField();
   const uint32_t middle = 220;
   field.cameras[middle].cam_from_world = *LookAlong({0, 0, 0}, {0, 0, -1}, {0, -1, 0});
   field.cameras[middle + 1].cam_from_world = *LookAlong({0.005, 0, 0}, {0.2, 0, 1}, {0, -1, 0});
@@ -86,21 +61,21 @@ TEST(UseOfCameras, TheOthersHaveReasons) {
   ThreadPool pool(1);
   NeedsOptions options = Unweighted();
   options.select.max_angle_rad = 0.1;
-  FrameUse use = UseOfCameras(index, Frame(), options, pool);
+  FrameUse use = UseOfCameras(index, testing::GridFrame(), options, pool);
   EXPECT_EQ(use.of_cameras[0], CameraUse::kOutside);
   EXPECT_EQ(use.of_cameras[middle + 1], CameraUse::kAngle);
   options.select.max_angle_rad.reset();
   options.max_image_count = 20;
-  use = UseOfCameras(index, Frame(), options, pool);
+  use = UseOfCameras(index, testing::GridFrame(), options, pool);
   EXPECT_EQ(use.of_cameras[middle], CameraUse::kSeesNone);
   EXPECT_EQ(Count(use, CameraUse::kUsed), 20u);
   EXPECT_GT(Count(use, CameraUse::kLimit), 50u);
 }
 
 TEST(SceneText, HasALineForEverythingThatStandsSomewhere) {
-  const LightField field = Grid();
+  const LightField field = testing::GridField();
   CameraPath path;
-  path.cameras = {Frame(), Frame(3)};
+  path.cameras = {testing::GridFrame(), testing::GridFrame(3)};
   ThreadPool pool(1);
   std::string text;
   const auto emit = [&](const std::string& part) -> Result<void> {

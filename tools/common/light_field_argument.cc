@@ -1,5 +1,7 @@
 #include "tools/common/light_field_argument.h"
 
+#include <fmt/format.h>
+
 namespace lf {
 
 void LightFieldArgument::AddTo(CLI::App& app) {
@@ -32,5 +34,13 @@ OpenOptions LightFieldArgument::Options() const {
 }
 
 Result<LightField> LightFieldArgument::Open() const { return OpenLightField(path, Options()); }
+
+std::vector<std::string> LightFieldArgument::Words() const {
+  std::vector<std::string> words;
+  if (focal_px > 0) words.insert(words.end(), {"--focal-px", fmt::format("{}", focal_px)});
+  if (fov_deg > 0) words.insert(words.end(), {"--fov-deg", fmt::format("{}", fov_deg)});
+  if (!images.empty()) words.insert(words.end(), {"--images", images});
+  return words;
+}
 
 }  // namespace lf

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 #include "lf/calibration/open_light_field.h"
 
@@ -20,6 +21,8 @@ struct LightFieldArgument {
   void AddOptionsTo(CLI::App& app);
   OpenOptions Options() const;
   Result<LightField> Open() const;
+  // The options as they were given, for another program.
+  std::vector<std::string> Words() const;
 };
 
 }  // namespace lf

@@ -1,0 +1,80 @@
+#include "lf/visualizer/watched_render.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "lf/imageio/image_file.h"
+#include "lf/imageio/test_folder.h"
+
+namespace lf {
+namespace {
+
+namespace fs = std::filesystem;
+
+class WatchedRenderTest : public FolderTest {
+ protected:
+  // Elements (x, y) with R x, G y, B 1, and x + y rays.
+  void Write(const std::string& name) {
+    const int width = 6, height = 4;
+    Image<float> colours(width, height, 3, 1.0f);
+    Image<uint32_t> counts(width, height);
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        colours.at(x, y, 0) = static_cast<float>(x);
+        colours.at(x, y, 1) = static_cast<float>(y);
+        counts.at(x, y) = static_cast<uint32_t>(x + y);
+      }
+    std::vector<ExrChannel> channels;
+    for (int c = 0; c < 3; ++c) channels.push_back({{"RGB"[c]}, colours.view(), c});
+    for (int c = 0; c < 3; ++c)
+      channels.push_back({std::string("count.") + "RGB"[c], counts.view()});
+    fs::create_directories((folder_ / name).parent_path());
+    const auto written = WriteExr(folder_ / name, channels);
+    ASSERT_TRUE(written) << written.error().message;
+  }
+};
+
+TEST_F(WatchedRenderTest, FindsFinishedFramesAndTheNewestOfOthers) {
+  Write("frame_0001.exr");
+  Write("partial/frame_0001.exr");
+  Write("partial/package-0001/frame_0003.exr");
+  Write("partial/frame_0002.exr");
+  Write("cluster/frame_0009.exr");
+  Write("frame_x.exr");
+  const auto frames = LookAtRender(folder_);
+  ASSERT_EQ(frames.size(), 3u);
+  EXPECT_EQ(frames[0].picture, folder_ / "frame_0001.exr");
+  EXPECT_TRUE(frames[0].is_finished);
+  EXPECT_FALSE(frames[1].is_finished);
+  EXPECT_EQ(frames[2].frame, FrameId{3});
+  EXPECT_GT(frames[2].changed_ns, 0);
+  EXPECT_TRUE(LookAtRender(folder_ / "nowhere").empty());
+}
+
+TEST_F(WatchedRenderTest, ReadsLightAndRays) {
+  Write("frame_0001.exr");
+  const auto picture = ReadGrowingPicture(folder_ / "frame_0001.exr", 3);
+  ASSERT_TRUE(picture) << picture.error().message;
+  EXPECT_EQ(picture->full_width_px, 6);
+  EXPECT_TRUE(picture->has_rays);
+  ASSERT_EQ(picture->elements.width(), 3);
+  ASSERT_EQ(picture->elements.height(), 2);
+  EXPECT_FLOAT_EQ(picture->elements.at(1, 1, 0), 2.5f);
+  EXPECT_FLOAT_EQ(picture->elements.at(1, 1, 1), 2.5f);
+  EXPECT_FLOAT_EQ(picture->elements.at(1, 1, 3), 5.0f);
+}
+
+TEST_F(WatchedRenderTest, PngFilesTellNoRays) {
+  const Image<uint8_t> white(4, 4, 3, 255);
+  ASSERT_TRUE(WriteImage(folder_ / "frame_0001.png", white.view()));
+  const auto picture = ReadGrowingPicture(folder_ / "frame_0001.png", 100);
+  ASSERT_TRUE(picture);
+  EXPECT_FALSE(picture->has_rays);
+  EXPECT_FLOAT_EQ(picture->elements.at(3, 3, 2), 1.0f);
+  EXPECT_FLOAT_EQ(picture->elements.at(3, 3, 3), -1.0f);
+}
+
+}  // namespace
+}  // namespace lf

@@ -1,0 +1,98 @@
+#include "tools/visualizer/export_page.h"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+#include "tools/visualizer/page_answers.h"
+#include "tools/visualizer/page_files.h"
+
+#include "lf/core/file.h"
+#include "lf/core/log.h"
+
+namespace lf {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Exporter {
+ public:
+  Exporter(PageScene& scene, const fs::path& folder) : scene_(scene), folder_(folder) {}
+
+  Result<void> Write(const std::string& name, std::string_view bytes) {
+    const fs::path path = folder_ / name;
+    LF_RETURN_IF_ERROR(CreateFolder(path.parent_path()));
+    LF_RETURN_IF_ERROR(WriteFileAtomically(path, bytes));
+    ++facts.file_count;
+    facts.byte_count += bytes.size();
+    return {};
+  }
+  // What the page would be told under this name. LF images that cannot be read are left out.
+  Result<void> WriteAnswer(const std::string& name) {
+    const PageAnswer answer = Answer(scene_, name);
+    if (answer.status == 200) return Write(name, answer.body);
+    LogWarning("{}: {}", name, answer.body);
+    ++facts.unreadable_count;
+    return {};
+  }
+
+  ExportFacts facts;
+
+ private:
+  PageScene& scene_;
+  const fs::path& folder_;
+};
+
+}  // namespace
+
+Result<ExportFacts> ExportPage(PageScene& scene, const fs::path& folder, size_t most_images,
+                               const std::atomic<bool>& interrupted,
+                               const std::function<void(size_t, size_t)>& progress) {
+  std::error_code error;
+  if (fs::exists(folder, error) && !fs::is_empty(folder, error))
+    return UsageError(fmt::format("--export {}: something is there already; give a new folder",
+                                  folder.string()));
+  if (PageFiles().empty())
+    return OutputError("this lfvisualizer was built without its page: Node.js and npm were missing");
+  Exporter exporter(scene, folder);
+  PathDraft& draft = *scene.first_draft();
+  const std::string base = fmt::format("path/{}/", draft.id);
+  const std::shared_ptr<FilmUse> film = scene.FilmOf(draft);
+  film->Wait();
+  const std::vector<uint16_t> frames_of_image = film->Get().frames_of_image;
+  std::vector<uint32_t> images;
+  for (uint32_t i = 0; i < frames_of_image.size(); ++i)
+    if (frames_of_image[i] > 0) images.push_back(i);
+  // Evenly among them.
+  const size_t image_count = std::min(images.size(), most_images);
+  const size_t total = draft.path->frame_count() + image_count;
+  size_t done = 0;
+  const auto step = [&]() -> Result<void> {
+    progress(++done, total);
+    if (interrupted) return Error{ErrorKind::kInterrupted, "interrupted; the export is not whole"};
+    return {};
+  };
+  for (const char* name : {"cameras.bin"}) LF_RETURN_IF_ERROR(exporter.WriteAnswer(name));
+  for (const char* name : {"path.json", "path.yaml", "frames.bin", "film.json", "film.bin"})
+    LF_RETURN_IF_ERROR(exporter.WriteAnswer(base + name));
+  for (size_t i = 1; i <= draft.path->frame_count(); ++i) {
+    LF_RETURN_IF_ERROR(exporter.WriteAnswer(fmt::format("{}use/{}.bin", base, i)));
+    LF_RETURN_IF_ERROR(exporter.WriteAnswer(fmt::format("{}density/{}.json", base, i)));
+    LF_RETURN_IF_ERROR(step());
+  }
+  for (size_t i = 0; i < image_count; ++i) {
+    const uint32_t id = images[i * images.size() / image_count];
+    LF_RETURN_IF_ERROR(exporter.WriteAnswer(fmt::format("camera/{}.json", id)));
+    LF_RETURN_IF_ERROR(exporter.WriteAnswer(fmt::format("image/{}/{}.jpg", kLargeSide_px, id)));
+    LF_RETURN_IF_ERROR(step());
+  }
+  exporter.facts.image_count = image_count;
+  // The page last: what is not whole does not open.
+  LF_RETURN_IF_ERROR(exporter.Write("scene.json", SceneJson(scene, {.is_server = false})));
+  for (const PageFile& file : PageFiles())
+    LF_RETURN_IF_ERROR(exporter.Write(file.name, file.bytes));
+  return exporter.facts;
+}
+
+}  // namespace lf

@@ -1,0 +1,115 @@
+#include "tools/visualizer/page_answers.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <optional>
+#include <vector>
+
+#include "tools/visualizer/render_folder.h"
+
+#include "lf/imageio/write_jpeg.h"
+#include "lf/visualizer/lf_picture.h"
+#include "lf/visualizer/scene_bytes.h"
+
+namespace lf {
+namespace {
+
+constexpr int kJpegQuality = 88;
+constexpr const char* kBytes = "application/octet-stream";
+
+// Of "path/0123/use/7.bin": the parts between slashes, the last without its ending.
+struct Name {
+  std::vector<std::string> parts;
+  std::string ending;  // ".bin"
+};
+
+Name Split(std::string_view text) {
+  Name name;
+  const size_t dot = text.rfind('.');
+  if (dot != std::string_view::npos) {
+    name.ending = text.substr(dot);
+    text = text.substr(0, dot);
+  }
+  while (true) {
+    const size_t slash = text.find('/');
+    name.parts.emplace_back(text.substr(0, slash));
+    if (slash == std::string_view::npos) return name;
+    text = text.substr(slash + 1);
+  }
+}
+
+// A decimal number below `end`, at least `begin`.
+std::optional<uint32_t> NumberOf(const std::string& text, size_t begin, size_t end) {
+  uint32_t number = 0;
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || rest != text.data() + text.size()) return std::nullopt;
+  if (number < begin || number >= end) return std::nullopt;
+  return number;
+}
+
+PageAnswer NotFound() { return Refusal(404, "there is nothing of this name"); }
+
+PageAnswer JsonAnswer(std::string body) { return {200, "application/json", std::move(body)}; }
+PageAnswer BytesAnswer(std::string body) { return {200, kBytes, std::move(body)}; }
+
+PageAnswer OfImage(PageScene& scene, const Name& name) {
+  if (name.parts.size() != 3 || name.ending != ".jpg") return NotFound();
+  const auto side = NumberOf(name.parts[1], 1, kLargeSide_px + 1);
+  const auto id = NumberOf(name.parts[2], 0, scene.light_field().size());
+  if (!id || (side != kSmallSide_px && side != kLargeSide_px)) return NotFound();
+  const auto picture = LfPicture(scene.light_field(), scene.store(), LfImageId{*id},
+                                 static_cast<int>(*side));
+  if (!picture) return Refusal(picture.error());
+  auto jpeg = EncodeJpeg(picture->view(), kJpegQuality);
+  if (!jpeg) return Refusal(jpeg.error());
+  return {200, "image/jpeg", *std::move(jpeg)};
+}
+
+PageAnswer OfFrame(PageScene& scene, PathDraft& draft, const Name& name) {
+  const std::string& kind = name.parts[2];
+  const auto frame_number = NumberOf(name.parts[3], 1, draft.path->frame_count() + 1);
+  if (!frame_number) return NotFound();
+  const FrameId frame{*frame_number};
+  if (name.parts.size() == 4 && kind == "use" && name.ending == ".bin")
+    return BytesAnswer(FrameUseBytes(scene.light_field(), scene.UseOf(draft, frame)));
+  if (name.parts.size() == 4 && kind == "density" && name.ending == ".json")
+    return JsonAnswer(DensityJson(scene, draft, frame));
+  if (name.parts.size() == 5 && kind == "overlap" && name.ending == ".json") {
+    const auto id = NumberOf(name.parts[4], 0, scene.light_field().size());
+    if (id) return JsonAnswer(OverlapJson(scene, draft, frame, LfImageId{*id}));
+  }
+  return NotFound();
+}
+
+PageAnswer OfPath(PageScene& scene, const Name& name) {
+  if (name.parts.size() < 3) return NotFound();
+  const std::shared_ptr<PathDraft> draft = scene.FindDraft(name.parts[1]);
+  if (!draft) return Refusal(410, "this path is not known any more: send it again");
+  if (name.parts.size() > 3) return OfFrame(scene, *draft, name);
+  const std::string file = name.parts[2] + name.ending;
+  if (file == "path.json") return JsonAnswer(PathHeadJson(*draft));
+  if (file == "path.yaml") return {200, "text/plain; charset=utf-8", draft->text};
+  if (file == "frames.bin") return BytesAnswer(FramesBytes(*draft->path));
+  if (file == "film.json") return JsonAnswer(FilmJson(scene.FilmOf(*draft)->Get()));
+  if (file == "film.bin") return BytesAnswer(FilmUseBytes(scene.FilmOf(*draft)->Get()));
+  return NotFound();
+}
+
+}  // namespace
+
+PageAnswer Answer(PageScene& scene, std::string_view name) {
+  if (name == "scene.json") return JsonAnswer(SceneJson(scene, {}));
+  if (name == "cameras.bin") return BytesAnswer(CamerasBytes(scene.light_field()));
+  const Name split = Split(name);
+  if (split.parts[0] == "image") return OfImage(scene, split);
+  if (split.parts[0] == "path") return OfPath(scene, split);
+  if (split.parts[0] == "camera" && split.parts.size() == 2 && split.ending == ".json")
+    if (const auto id = NumberOf(split.parts[1], 0, scene.light_field().size()))
+      return JsonAnswer(CameraJson(scene, LfImageId{*id}));
+  if (split.parts[0] == "watch" && !scene.arguments().watch.empty())
+    return AnswerOfRender(scene.arguments().watch, name.substr(std::min(name.size(), size_t{6})));
+  return NotFound();
+}
+
+}  // namespace lf

@@ -1,0 +1,20 @@
+// The files of the page, which the build has put into this program (cmake/LfPage.cmake).
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace lf {
+
+struct PageFile {
+  const char* name;  // index.html
+  const char* type;  // text/html; charset=utf-8
+  std::string_view bytes;
+};
+
+// None in a build without Node.js and npm.
+std::span<const PageFile> PageFiles();
+// Null: there is none.
+const PageFile* FindPageFile(std::string_view name);
+
+}  // namespace lf

@@ -1,0 +1,153 @@
+// The answers that are JSON.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tools/common/program.h"
+#include "tools/visualizer/page_answers.h"
+
+#include "lf/preprocess/frame_density.h"
+#include "lf/selection/ideal_cells.h"
+#include "lf/selection/overlap.h"
+#include "lf/visualizer/overlap_outline.h"
+#include "lf/visualizer/scene_bytes.h"
+
+namespace lf {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Names may hold any bytes; what is infinite becomes null.
+std::string Text(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+Json OfVector(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+Json OfPackages(const PageScene& scene) {
+  Json packages = Json::array();
+  for (const auto& package : scene.packages()) {
+    Json frames = Json::array();
+    for (const FrameId frame : package->FrameIds()) frames.push_back(frame.value);
+    packages.push_back({{"name", package->name}, {"frames", std::move(frames)}});
+  }
+  return packages;
+}
+
+// Directions through the corners of the image, at depth 1, in the world; without distortion.
+Json CornersOf(const PinholeCamera& camera) {
+  PinholeCamera straight = camera;
+  straight.intrinsics.distortion = {};
+  const double w = camera.intrinsics.width_px, h = camera.intrinsics.height_px;
+  Json corners = Json::array();
+  for (const Vec2& corner : {Vec2(0, 0), Vec2(w, 0), Vec2(w, h), Vec2(0, h)})
+    corners.push_back(OfVector(RayOfPixel(straight, corner.x(), corner.y()).direction));
+  return corners;
+}
+
+}  // namespace
+
+PageAnswer Refusal(int status, const std::string& message) {
+  return {status, "application/json", Text({{"error", message}})};
+}
+
+PageAnswer Refusal(const Error& error) {
+  return Refusal(error.kind == ErrorKind::kOutput ? 507 : 422, error.message);
+}
+
+std::string PathHeadJson(const PathDraft& draft) {
+  const CameraPath& path = *draft.path;
+  const Intrinsics& k = path.cameras.front().pinhole.intrinsics;
+  return Text({{"id", draft.id},
+               {"frames", path.frame_count()},
+               {"fps", path.fps},
+               {"unit_m", path.unit_m},
+               {"width", k.width_px},
+               {"height", k.height_px}});
+}
+
+std::string SceneJson(const PageScene& scene, const PageAbilities& abilities) {
+  const LightField& field = scene.light_field();
+  const PageArguments& arguments = scene.arguments();
+  Json json = {
+      {"version", Version()},
+      {"light_field",
+       {{"name", arguments.light_field},
+        {"images", field.size()},
+        {"unit_m", field.unit_m},
+        {"origin", OfVector(SceneOrigin(field))},
+        {"options", arguments.light_field_options}}},
+      {"path", Json::parse(PathHeadJson(*scene.first_draft()))},
+      {"path_file", arguments.path.string()},
+      {"options",
+       {{"estimator", arguments.estimator},
+        {"lens_weights", arguments.lens_weights},
+        {"max_angle_deg", arguments.max_angle_deg},
+        {"max_images", arguments.needs.max_image_count.value_or(0)},
+        {"seed", arguments.seed}}},
+      {"packages", OfPackages(scene)},
+      {"packages_note", scene.packages_note()},
+      {"watch", arguments.watch.string()},
+      {"server", abilities.is_server}};
+  if (field.depth_range)
+    json["light_field"]["depths"] = {field.depth_range->near_w, field.depth_range->far_w};
+  return Text(json);
+}
+
+std::string FilmJson(const FilmUse::Facts& facts) {
+  return Text({{"done", facts.frames_done},
+               {"total", facts.image_counts.size()},
+               {"images", facts.image_counts},
+               {"rays", facts.ray_counts}});
+}
+
+std::string DensityJson(PageScene& scene, const PathDraft& draft, FrameId frame) {
+  const FrameDensity density =
+      DensityOf(scene.index(), draft.path->Camera(frame), scene.light_field().depth_range);
+  return Text({{"cameras_in_lens", density.cameras_in_lens},
+               {"camera_distance", density.camera_distance_w},
+               {"uncovered_share", density.uncovered_share},
+               {"least_aperture", density.least_aperture_w},
+               {"depths", {density.depths.near_w, density.depths.far_w}},
+               {"depths_known", scene.light_field().depth_range.has_value()},
+               {"near_displacement_px", density.near_displacement_px},
+               {"far_displacement_px", density.far_displacement_px}});
+}
+
+std::string CameraJson(const PageScene& scene, LfImageId id) {
+  const LightField& field = scene.light_field();
+  const PinholeCamera camera = field.Camera(id);
+  const Intrinsics& k = camera.intrinsics;
+  return Text({{"id", id.value},
+               {"name", field.image_names[id.value]},
+               {"centre", OfVector(camera.CentreWorld())},
+               {"forward", OfVector(camera.ForwardWorld())},
+               {"up", OfVector(camera.UpWorld())},
+               {"corners", CornersOf(camera)},
+               {"width", k.width_px},
+               {"height", k.height_px},
+               {"focal_px", k.fx_px},
+               {"distorted", k.has_distortion()}});
+}
+
+std::string OverlapJson(PageScene& scene, const PathDraft& draft, FrameId frame, LfImageId id) {
+  const PinholeCamera camera = scene.light_field().Camera(id);
+  const RenderCamera& render = draft.path->Camera(frame);
+  const std::vector<IdealCell> cells = camera.intrinsics.has_distortion()
+                                           ? MakeIdealCells(camera.intrinsics)
+                                           : std::vector<IdealCell>();
+  const PixelRect rect =
+      ContributingRect(camera, render, cells, scene.arguments().needs.select.reach);
+  Json outlines = Json::array();
+  for (const auto& polygon : OverlapOutlines(camera, render)) {
+    Json corners = Json::array();
+    for (const Vec2& corner : polygon) corners.push_back({corner.x(), corner.y()});
+    outlines.push_back(std::move(corners));
+  }
+  Json json = {{"outlines", std::move(outlines)}};
+  if (!rect.empty()) json["rect"] = {rect.x_begin, rect.y_begin, rect.x_end, rect.y_end};
+  return Text(json);
+}
+
+}  // namespace lf

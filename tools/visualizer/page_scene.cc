@@ -1,0 +1,130 @@
+#include "tools/visualizer/page_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "lf/core/file.h"
+#include "lf/core/hash.h"
+#include "lf/core/log.h"
+#include "lf/package/package_file.h"
+#include "lf/path/path_yaml.h"
+#include "lf/record/run_inputs.h"
+#include "lf/store/open_store.h"
+
+namespace lf {
+namespace {
+
+constexpr size_t kMostDrafts = 8;
+
+}  // namespace
+
+std::string IdOfText(std::string_view text) { return fmt::format("{:016x}", HashBytes(text)); }
+
+PageScene::PageScene(LightField light_field, PageArguments arguments)
+    : arguments_(std::move(arguments)),
+      light_field_(std::move(light_field)),
+      pool_(arguments_.threads),
+      index_(light_field_, arguments_.seed) {}
+
+Result<std::unique_ptr<PageScene>> PageScene::Open(LightField light_field,
+                                                   PageArguments arguments) {
+  std::unique_ptr<PageScene> scene(new PageScene(std::move(light_field), std::move(arguments)));
+  LF_ASSIGN_OR_RETURN(scene->store_, OpenStore(scene->light_field_, Mosaics::kToRgb));
+  LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(scene->arguments_.path));
+  LF_ASSIGN_OR_RETURN(scene->first_draft_, scene->AddDraft(text));
+  LF_RETURN_IF_ERROR(scene->OpenPackages());
+  return scene;
+}
+
+Result<void> PageScene::OpenPackages() {
+  for (const std::string& name : arguments_.packages) {
+    LF_ASSIGN_OR_RETURN(Package read, ReadPackage(name));
+    if (read.whole.image_count != light_field_.size())
+      return InputError(fmt::format("{}: is of a light field of {} LF images, {} has {}", name,
+                                    read.whole.image_count, arguments_.light_field,
+                                    light_field_.size()));
+    if (HashOfCameras(read.path) != HashOfCameras(*first_draft_->path)) {
+      packages_note_ = fmt::format(
+          "{} is of another path than {}: packages are left aside. lfpreprocessor makes new ones.",
+          read.name, arguments_.path.string());
+      LogWarning("{}", packages_note_);
+      packages_.clear();
+      package_indices_.clear();
+      return {};
+    }
+    auto package = std::make_unique<Package>(std::move(read));
+    package_indices_.push_back(
+        std::make_unique<ImageIndex>(package->light_field, package->places));
+    packages_.push_back(std::move(package));
+  }
+  return {};
+}
+
+Result<std::shared_ptr<PathDraft>> PageScene::AddDraft(const std::string& text) {
+  const std::string id = IdOfText(text);
+  if (std::shared_ptr<PathDraft> known = FindDraft(id)) return known;
+  LF_ASSIGN_OR_RETURN(CameraPath path, ParsePathYaml(text, arguments_.path.filename().string(),
+                                                     light_field_.unit_m));
+  auto draft = std::make_shared<PathDraft>();
+  draft->id = id;
+  draft->text = text;
+  draft->path = std::make_shared<const CameraPath>(std::move(path));
+  std::list<std::shared_ptr<PathDraft>> forgotten;  // their threads end outside the lock
+  const std::lock_guard lock(mutex_);
+  drafts_.push_front(draft);
+  while (drafts_.size() > kMostDrafts)
+    forgotten.splice(forgotten.end(), drafts_, std::prev(drafts_.end()));
+  return draft;
+}
+
+std::shared_ptr<PathDraft> PageScene::FindDraft(const std::string& id) {
+  if (first_draft_ && first_draft_->id == id) return first_draft_;
+  const std::lock_guard lock(mutex_);
+  const auto found = std::find_if(drafts_.begin(), drafts_.end(),
+                                  [&](const auto& draft) { return draft->id == id; });
+  return found == drafts_.end() ? nullptr : *found;
+}
+
+FrameUse PageScene::UseOf(const PathDraft& draft, FrameId frame) {
+  const RenderCamera& camera = draft.path->Camera(frame);
+  FrameUse use = UseOfCameras(index_, camera, arguments_.needs, pool_);
+  if (&draft != first_draft_.get()) return use;
+  for (size_t i = 0; i < packages_.size(); ++i) {
+    const Package& package = *packages_[i];
+    const std::vector<FrameId> frames = package.FrameIds();
+    if (!std::binary_search(frames.begin(), frames.end(), frame)) continue;
+    NeedsOptions options = arguments_.needs;
+    options.max_image_count = package.choices.max_image_count;
+    options.select.max_angle_rad = package.choices.max_angle_rad;
+    FrameNeeds needs = NeedsOf(*package_indices_[i], camera, options, pool_);
+    for (CameraUse& one : use.of_cameras)
+      if (one == CameraUse::kUsed) one = CameraUse::kLimit;
+    for (FrameNeeds::Image& image : needs.images) {
+      image.id = LfImageId{package.images[image.id.value].id};
+      use.of_cameras[image.id.value] = CameraUse::kUsed;
+    }
+    use.used = std::move(needs.images);
+  }
+  return use;
+}
+
+std::shared_ptr<FilmUse> PageScene::FilmOf(PathDraft& draft) {
+  std::vector<std::shared_ptr<FilmUse>> left;  // their threads end outside the lock
+  const std::lock_guard lock(mutex_);
+  for (const auto& other : drafts_)
+    if (other.get() != &draft && other->film) left.push_back(std::exchange(other->film, nullptr));
+  if (!draft.film)
+    draft.film = std::make_shared<FilmUse>(
+        index_, draft.path, arguments_.needs, pool_,
+        [this, id = draft.id] { events_.Post("film", "{\"path\":\"" + id + "\"}"); });
+  return draft.film;
+}
+
+Result<std::string> PageScene::IdOnDisk() const {
+  LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(arguments_.path));
+  return IdOfText(text);
+}
+
+}  // namespace lf

@@ -1,0 +1,99 @@
+// Everything that the page may ask about: the light field, the path and its drafts, packages, the
+// render that is watched.
+#pragma once
+
+#include <filesystem>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/visualizer/event_board.h"
+
+#include "lf/capture/light_field.h"
+#include "lf/core/parallel.h"
+#include "lf/core/result.h"
+#include "lf/package/package.h"
+#include "lf/path/camera_path.h"
+#include "lf/selection/image_index.h"
+#include "lf/store/lf_image_store.h"
+#include "lf/visualizer/film_use.h"
+#include "lf/visualizer/frame_use.h"
+
+namespace lf {
+
+// How lfvisualizer was called.
+struct PageArguments {
+  std::string light_field;                    // LIGHTFIELD as it was given
+  std::vector<std::string> light_field_options;  // --fov-deg 60 ...
+  std::filesystem::path path;                 // PATH.yaml
+  std::vector<std::string> packages;
+  std::filesystem::path watch;  // DIR of a render; empty: none
+  NeedsOptions needs;
+  std::string estimator = "bilinear", lens_weights = "auto";
+  double max_angle_deg = 0;
+  uint64_t seed = 0;
+  int threads = 0;
+};
+
+// A path as it is being shaped: its text, checked by the parser of the programs.
+struct PathDraft {
+  std::string id;  // of the text: 16 hexadecimal digits
+  std::string text;
+  std::shared_ptr<const CameraPath> path;
+  std::shared_ptr<FilmUse> film;  // begun when it is asked for
+};
+
+class PageScene {
+ public:
+  // kInput: path, packages, packed stores. Packages of another film are left aside with a warning.
+  static Result<std::unique_ptr<PageScene>> Open(LightField light_field, PageArguments arguments);
+
+  const PageArguments& arguments() const { return arguments_; }
+  const LightField& light_field() const { return light_field_; }
+  const LfImageStore& store() const { return *store_; }
+  const ImageIndex& index() const { return index_; }
+  ThreadPool& pool() { return pool_; }
+  EventBoard& events() { return events_; }
+  const std::vector<std::unique_ptr<Package>>& packages() const { return packages_; }
+  const std::string& packages_note() const { return packages_note_; }
+
+  // The path of the file as it was read.
+  std::shared_ptr<PathDraft> first_draft() const { return first_draft_; }
+  // kInput: what the programs would say of it, too.
+  Result<std::shared_ptr<PathDraft>> AddDraft(const std::string& text);
+  // The last few are kept, and the first; null: not known (any more).
+  std::shared_ptr<PathDraft> FindDraft(const std::string& id);
+
+  // Of the package that the frame is in, if the draft is the first.
+  FrameUse UseOf(const PathDraft& draft, FrameId frame);
+  // Begins to ask all frames of the draft, and leaves off asking those of others.
+  std::shared_ptr<FilmUse> FilmOf(PathDraft& draft);
+
+  // PATH.yaml as it is on the disk now; its id.
+  Result<std::string> IdOnDisk() const;
+
+ private:
+  PageScene(LightField light_field, PageArguments arguments);
+  Result<void> OpenPackages();
+
+  PageArguments arguments_;
+  LightField light_field_;
+  ThreadPool pool_;
+  ImageIndex index_;
+  std::unique_ptr<LfImageStore> store_;
+  std::vector<std::unique_ptr<Package>> packages_;
+  std::vector<std::unique_ptr<ImageIndex>> package_indices_;
+  std::string packages_note_;
+  EventBoard events_;
+  std::mutex mutex_;  // of the drafts
+  std::shared_ptr<PathDraft> first_draft_;
+  std::list<std::shared_ptr<PathDraft>> drafts_;  // the newest first
+};
+
+// 16 hexadecimal digits.
+std::string IdOfText(std::string_view text);
+
+}  // namespace lf

@@ -1,0 +1,42 @@
+#include "tools/visualizer/render_folder.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "lf/visualizer/scene_bytes.h"
+#include "lf/visualizer/watched_render.h"
+
+namespace lf {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kPictureSide_px = 1280;
+
+}  // namespace
+
+std::string RenderJson(const std::filesystem::path& folder) {
+  Json frames = Json::array();
+  for (const WatchedFrame& frame : LookAtRender(folder))
+    // As text: the page compares it, and its numbers have 53 bits.
+    frames.push_back({{"frame", frame.frame.value},
+                      {"finished", frame.is_finished},
+                      {"changed", std::to_string(frame.changed_ns)},
+                      {"changed_s", frame.changed_ns / 1'000'000'000}});
+  const Json json = {{"folder", folder.string()}, {"frames", std::move(frames)}};
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+PageAnswer AnswerOfRender(const std::filesystem::path& folder, std::string_view name) {
+  if (name == "frames.json") return {200, "application/json", RenderJson(folder)};
+  for (const WatchedFrame& frame : LookAtRender(folder)) {
+    if (name != fmt::format("{}.bin", frame.frame.value)) continue;
+    const auto picture = ReadGrowingPicture(frame.picture, kPictureSide_px);
+    if (!picture) return Refusal(picture.error());
+    return {200, "application/octet-stream", PictureBytes(*picture)};
+  }
+  return Refusal(404, "there is no such frame yet");
+}
+
+}  // namespace lf

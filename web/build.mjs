@@ -1,0 +1,34 @@
+// Bundles the page: index.html, page.js, page.css.
+//
+// usage: node build.mjs FOLDER
+import { copyFile, mkdir } from "node:fs/promises";
+import path from "node:path";
+import { fileURLToPath } from "node:url";
+import { build } from "esbuild";
+
+const web = path.dirname(fileURLToPath(import.meta.url));
+const folder = process.argv[2];
+if (!folder) {
+  console.error("usage: node build.mjs FOLDER");
+  process.exit(2);
+}
+
+await mkdir(folder, { recursive: true });
+await build({
+  entryPoints: { page: path.join(web, "src/main.ts") },
+  bundle: true,
+  minify: true,
+  format: "iife",
+  target: "es2022",
+  legalComments: "inline",
+  outdir: folder,
+  logLevel: "warning",
+});
+await build({
+  entryPoints: { page: path.join(web, "src/page.css") },
+  bundle: true,
+  minify: true,
+  outdir: folder,
+  logLevel: "warning",
+});
+await copyFile(path.join(web, "src/index.html"), path.join(folder, "index.html"));

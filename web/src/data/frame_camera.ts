@@ -1,0 +1,102 @@
+// The thin-lens camera of a frame, and where its rays go.
+
+import type { Vec3 } from "./scene";
+
+const NUMBERS = 31;
+
+export interface FrameCamera {
+  centre: Vec3;
+  right: Vec3;
+  up: Vec3;
+  forward: Vec3;
+  fx: number;
+  fy: number;
+  cx: number;
+  cy: number;
+  radius: number;
+  rotation: number;
+  blades: number;
+  normal: Vec3;
+  offset: number;
+  time: number;
+  focalLength: number;
+  sensorWidth: number;
+  focusDistance: number;
+  tiltHorizontal: number;
+  tiltVertical: number;
+  width: number;
+  height: number;
+}
+
+export function readFrames(bytes: ArrayBuffer): FrameCamera[] {
+  const numbers = new Float64Array(bytes);
+  const frames: FrameCamera[] = [];
+  for (let at = 0; at + NUMBERS <= numbers.length; at += NUMBERS) {
+    const n = numbers.subarray(at, at + NUMBERS);
+    const vector = (i: number): Vec3 => [n[i], n[i + 1], n[i + 2]];
+    frames.push({
+      centre: vector(0),
+      right: vector(3),
+      up: vector(6),
+      forward: vector(9),
+      fx: n[12],
+      fy: n[13],
+      cx: n[14],
+      cy: n[15],
+      radius: n[16],
+      rotation: n[17],
+      blades: n[18],
+      normal: vector(19),
+      offset: n[22],
+      time: n[23],
+      focalLength: n[24],
+      sensorWidth: n[25],
+      focusDistance: n[26],
+      tiltHorizontal: n[27],
+      tiltVertical: n[28],
+      width: n[29],
+      height: n[30],
+    });
+  }
+  return frames;
+}
+
+export const add = (a: Vec3, b: Vec3, scale = 1): Vec3 => [
+  a[0] + b[0] * scale,
+  a[1] + b[1] * scale,
+  a[2] + b[2] * scale,
+];
+export const dot = (a: Vec3, b: Vec3): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+
+// The ray of an element through the lens centre; length 1 along the optical axis.
+export function elementDirection(camera: FrameCamera, x: number, y: number): Vec3 {
+  const sideways = add(camera.forward, camera.right, (x - camera.cx) / camera.fx);
+  return add(sideways, camera.up, -(y - camera.cy) / camera.fy);
+}
+
+// Where the element is sharp; a tilted plane's horizon is drawn at `mostDepths` focus distances.
+export function focusPoint(camera: FrameCamera, x: number, y: number, mostDepths = 4): Vec3 {
+  const direction = elementDirection(camera, x, y);
+  const towards = dot(camera.normal, direction);
+  const far = mostDepths * camera.focusDistance;
+  let depth = (camera.offset - dot(camera.normal, camera.centre)) / towards;
+  if (!(depth > 0) || depth > far) depth = far;
+  return add(camera.centre, direction, depth);
+}
+
+// Corners of the opening (of a disk, points of its rim), counter-clockwise for the photographer,
+// the first straight up at rotation 0.
+export function lensRim(camera: FrameCamera, diskPoints = 48): Vec3[] {
+  const count = camera.blades >= 3 ? camera.blades : diskPoints;
+  const rim: Vec3[] = [];
+  for (let i = 0; i < count; ++i) {
+    const angle = camera.rotation + (2 * Math.PI * i) / count;
+    const sideways = add(camera.centre, camera.right, -camera.radius * Math.sin(angle));
+    rim.push(add(sideways, camera.up, camera.radius * Math.cos(angle)));
+  }
+  return rim;
+}
+
+export function fNumber(camera: FrameCamera): number {
+  return camera.focalLength / (2 * camera.radius);
+}

@@ -1,0 +1,85 @@
+// scene.json and what hangs on it (doc/formats/page_data.md).
+
+export type Vec3 = [number, number, number];
+
+export interface PathHead {
+  id: string;
+  frames: number;
+  fps: number;
+  unit_m: number;
+  width: number;
+  height: number;
+}
+
+export interface SceneFacts {
+  version: string;
+  light_field: {
+    name: string;
+    images: number;
+    unit_m: number;
+    options: string[];
+    origin: Vec3;
+    depths?: [number, number];
+  };
+  path: PathHead;
+  path_file: string;
+  options: {
+    estimator: string;
+    lens_weights: string;
+    max_angle_deg: number;
+    max_images: number;
+    seed: number;
+  };
+  packages: { name: string; frames: number[] }[];
+  packages_note: string;
+  watch: string;
+  server: boolean;
+}
+
+export interface FilmFacts {
+  done: number;
+  total: number;
+  images: number[];
+  rays: number[];
+}
+
+export interface DensityFacts {
+  cameras_in_lens: number;
+  camera_distance: number | null;
+  uncovered_share: number;
+  least_aperture: number | null;
+  depths: [number, number | null];
+  depths_known: boolean;
+  near_displacement_px: number | null;
+  far_displacement_px: number | null;
+}
+
+export interface CameraFacts {
+  id: number;
+  name: string;
+  centre: Vec3;
+  forward: Vec3;
+  up: Vec3;
+  corners: Vec3[];
+  width: number;
+  height: number;
+  focal_px: number;
+  distorted: boolean;
+}
+
+export interface OverlapFacts {
+  rect?: [number, number, number, number];
+  outlines: [number, number][][];
+}
+
+export interface RenderFacts {
+  folder: string;
+  frames: { frame: number; finished: boolean; changed: string; changed_s: number }[];
+}
+
+export interface PickedFocus {
+  point: Vec3;
+  focus_distance: number;
+  certainty: number;
+  cameras: number[];
+}

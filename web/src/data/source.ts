@@ -1,0 +1,77 @@
+// What the page reads: names below the folder it was opened from, of a server or of exported files.
+
+export class SourceError extends Error {
+  constructor(
+    message: string,
+    readonly status: number,
+    readonly line: number | null = null,
+  ) {
+    super(message);
+  }
+}
+
+async function refusal(response: Response): Promise<SourceError> {
+  const text = await response.text();
+  try {
+    const json = JSON.parse(text);
+    if (typeof json.error === "string")
+      return new SourceError(json.error, response.status, json.line ?? null);
+  } catch {
+    // Not of our server: told below.
+  }
+  return new SourceError(`${response.status} ${response.statusText}`, response.status);
+}
+
+async function ask(name: string, options?: RequestInit): Promise<Response> {
+  let response: Response;
+  try {
+    response = await fetch(name, options);
+  } catch {
+    throw new SourceError("lfvisualizer does not answer: has it been ended?", 0);
+  }
+  if (!response.ok) throw await refusal(response);
+  return response;
+}
+
+export async function getJson<T>(name: string): Promise<T> {
+  return (await ask(name)).json();
+}
+
+export async function getText(name: string): Promise<string> {
+  return (await ask(name)).text();
+}
+
+let bytesReceived = 0;
+
+// Of all arrays so far, for those who measure.
+export function receivedBytes(): number {
+  return bytesReceived;
+}
+
+export async function getBytes(name: string): Promise<ArrayBuffer> {
+  const bytes = await (await ask(name)).arrayBuffer();
+  bytesReceived += bytes.byteLength;
+  return bytes;
+}
+
+export async function post<T>(name: string, body: object): Promise<T> {
+  return (
+    await ask(name, {
+      method: "POST",
+      headers: { "Content-Type": "application/json" },
+      body: JSON.stringify(body),
+    })
+  ).json();
+}
+
+// Server-sent events by their kind. The browser connects again by itself.
+export function listen(
+  handlers: Record<string, (data: string) => void>,
+  onConnection: (isThere: boolean) => void,
+): void {
+  const source = new EventSource("events");
+  for (const [kind, handler] of Object.entries(handlers))
+    source.addEventListener(kind, (event) => handler((event as MessageEvent<string>).data));
+  source.addEventListener("open", () => onConnection(true));
+  source.addEventListener("error", () => onConnection(false));
+}

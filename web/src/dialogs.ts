@@ -1,0 +1,116 @@
+// Dialogs: the commands that make this film, the keys, a question.
+
+import { byId, element } from "./element";
+import { filmCommands, preprocessorCommand } from "./path/commands";
+import type { State } from "./state";
+
+function open(...children: (HTMLElement | string)[]): HTMLDialogElement {
+  const dialog = byId<HTMLDialogElement>("dialog");
+  dialog.replaceChildren(...children);
+  if (!dialog.open) dialog.showModal();
+  return dialog;
+}
+
+const closeButton = () =>
+  element(
+    "div",
+    { class: "row" },
+    element("button", { click: () => byId<HTMLDialogElement>("dialog").close() }, "Close"),
+  );
+
+function lightFieldOptions(words: string[]): Record<string, string | number> {
+  const options: Record<string, string | number> = {};
+  for (let i = 0; i + 1 < words.length; i += 2) {
+    if (words[i] === "--focal-px") options.focalPx = Number(words[i + 1]);
+    if (words[i] === "--fov-deg") options.fovDeg = Number(words[i + 1]);
+    if (words[i] === "--images") options.images = words[i + 1];
+  }
+  return options;
+}
+
+export function showCommands(state: State): void {
+  const { scene } = state;
+  const options = {
+    ...lightFieldOptions(scene.light_field.options),
+    maxImages: scene.options.max_images,
+    maxAngle: scene.options.max_angle_deg,
+    seed: scene.options.seed,
+    lensWeights: scene.options.lens_weights as "auto",
+    estimator: (scene.options.estimator === "bilinear" ? "auto" : "nearest") as "auto",
+  };
+  const request = { lightField: scene.light_field.name, pathFile: scene.path_file, options };
+  const output = scene.watch || "frames";
+  const blocks: [string, string][] = [
+    ["What it will take: images, bytes, rays, memory, time", preprocessorCommand(request)],
+    ["On this machine", filmCommands({ ...request, output }).join("\n")],
+    [
+      "In packages, for several machines (lfsubmit, Slurm)",
+      filmCommands({ ...request, output, packageFolder: "packages" }).join("\n"),
+    ],
+  ];
+  open(
+    element("h2", {}, "Commands that make this film"),
+    state.isChanged
+      ? element("p", { class: "bad" }, "The path has changes that are not saved: save it first.")
+      : "",
+    ...blocks.flatMap(([label, text]) => {
+      const copy = element("button", {}, "Copy");
+      copy.addEventListener("click", async () => {
+        await navigator.clipboard.writeText(text);
+        copy.textContent = "Copied";
+      });
+      return [element("div", { class: "row", style: "justify-content:space-between" }, label, copy),
+              element("pre", {}, text)];
+    }),
+    closeButton(),
+  );
+}
+
+const KEYS: [string, string][] = [
+  ["Space", "play, pause"],
+  ["← →", "a frame back, on; with Shift ten"],
+  ["Home End", "first and last frame"],
+  ["[ ]", "LF images that this frame takes, one by one"],
+  ["1 … 5", "views: overview, aperture, side, top, through the lens"],
+  ["K", "a key of the focus distance at this frame"],
+  ["P", "preview of this frame"],
+  ["Ctrl+Z, Ctrl+Shift+Z", "undo, redo"],
+  ["Ctrl+S", "save the path"],
+  ["?", "these keys"],
+];
+
+export function showKeys(): void {
+  open(
+    element("h2", {}, "Keys"),
+    element(
+      "table",
+      {},
+      ...KEYS.map(([keys, what]) =>
+        element("tr", {}, element("td", {}, element("kbd", {}, keys)), element("td", {}, what)),
+      ),
+    ),
+    element(
+      "p",
+      { class: "muted" },
+      "In space: drag to turn, wheel to come nearer, right button to shift, click an LF camera " +
+        "to see its image. In pictures: click to focus there. In the timeline: drag diamonds.",
+    ),
+    closeButton(),
+  );
+}
+
+export function ask(question: string, yes: string): Promise<boolean> {
+  return new Promise((resolve) => {
+    const dialog = open(
+      element("p", {}, question),
+      element(
+        "div",
+        { class: "row" },
+        element("button", { click: () => dialog.close() }, "Cancel"),
+        element("button", { class: "primary", click: () => dialog.close("yes") }, yes),
+      ),
+    );
+    dialog.returnValue = "";
+    dialog.addEventListener("close", () => resolve(dialog.returnValue === "yes"), { once: true });
+  });
+}

@@ -1,0 +1,69 @@
+// What the colours of LF cameras mean, how many there are of each, and which are shown.
+
+import { countsOf, IN_OTHER_FRAME, USED } from "./data/frame_use";
+import { element } from "./element";
+import type { State } from "./state";
+import { USE_STYLES } from "./view/palette";
+import type { SpaceView } from "./view/space_view";
+import { shortNumber } from "./words";
+
+export class Legend {
+  private readonly counts: HTMLElement[] = [];
+  private readonly rows: HTMLElement[] = [];
+  private readonly dots: HTMLElement[] = [];
+
+  constructor(
+    root: HTMLElement,
+    private readonly state: State,
+    view: SpaceView,
+  ) {
+    const order = [USED, IN_OTHER_FRAME, 1, 3, 2, 4, 5];
+    for (const kind of order) {
+      const style = USE_STYLES[kind];
+      const box = element("input", { type: "checkbox", checked: true, "data-use": style.name });
+      box.addEventListener("change", () => {
+        view.points.show(kind, box.checked);
+        view.draw();
+      });
+      this.dots[kind] = element("i");
+      this.counts[kind] = element("b", {}, "0");
+      this.rows[kind] = element(
+        "label",
+        { title: style.help },
+        box,
+        this.dots[kind],
+        style.label,
+        this.counts[kind],
+      );
+      root.append(this.rows[kind]);
+    }
+    state.on(["use", "film"], () => this.update());
+    state.on(["theme"], () => this.colour());
+    this.colour();
+  }
+
+  private colour(): void {
+    USE_STYLES.forEach((style, kind) => {
+      const colour = this.state.isDark ? style.dark : style.light;
+      this.dots[kind].style.background = `rgb(${colour.join(" ")})`;
+    });
+  }
+
+  private update(): void {
+    const { use, framesOfCamera } = this.state;
+    if (!use) return;
+    const counts = countsOf(use);
+    counts.push(0);
+    if (framesOfCamera)
+      use.ofCameras.forEach((kind, i) => {
+        if (kind === USED || framesOfCamera[i] === 0) return;
+        --counts[kind];
+        ++counts[IN_OTHER_FRAME];
+      });
+    counts.forEach((count, kind) => {
+      this.counts[kind].textContent = shortNumber(count);
+      // What there is none of is no use to know, but for the main ones.
+      this.rows[kind].style.display = count > 0 || kind === USED ? "" : "none";
+    });
+  }
+}

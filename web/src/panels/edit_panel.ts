@@ -1,0 +1,412 @@
+// Shaping the path: values and keys of each quantity at this frame, whole movements, the file.
+
+import { add } from "../data/frame_camera";
+import { element } from "../element";
+import { dolly, focusPull, orbit } from "../path/generators";
+import type { Quantity } from "../path/path_document";
+import type { PathValue } from "../path/path_quantities";
+import type { State } from "../state";
+import { precise, seconds, vector } from "../words";
+
+interface Field {
+  label: string;
+  // In the order of what the file may have; the first that it has is shown.
+  names: string[];
+  parts: string[]; // of a value; one: a number
+  // Of this frame, where the camera tells; else what the file says.
+  now?: (state: State) => PathValue | null;
+}
+
+const FIELDS: Field[] = [
+  { label: "Position", names: ["position"], parts: ["x", "y", "z"], now: (s) => s.camera.centre },
+  {
+    label: "Looks at",
+    names: ["look_at", "orientation", "quaternion"],
+    parts: ["x", "y", "z"],
+  },
+  {
+    label: "Aperture",
+    names: ["aperture_diameter", "f_number"],
+    parts: ["diameter"],
+    now: (s) => 2 * s.camera.radius,
+  },
+  {
+    label: "Focus distance",
+    names: ["focus_distance", "focus_point"],
+    parts: ["distance"],
+    now: (s) => s.camera.focusDistance,
+  },
+  {
+    label: "Focus tilt",
+    names: ["focus_tilt"],
+    parts: ["horizontal", "vertical"],
+    now: (s) => ({
+      horizontal: (s.camera.tiltHorizontal * 180) / Math.PI,
+      vertical: (s.camera.tiltVertical * 180) / Math.PI,
+    }),
+  },
+  {
+    label: "Focal length",
+    names: ["focal_length", "field_of_view"],
+    parts: ["length"],
+    now: (s) => s.camera.focalLength,
+  },
+  { label: "Blade rotation", names: ["blade_rotation"], parts: ["degrees"] },
+];
+
+const PART_LABELS: Record<string, string> = { diameter: "", distance: "", length: "", degrees: "°" };
+
+function partsOf(value: PathValue): [string, number][] {
+  if (typeof value === "number") return [["", value]];
+  if (Array.isArray(value)) return value.map((x, i) => ["xyzw"[i] ?? "", x]);
+  return Object.entries(value);
+}
+
+function withPart(value: PathValue, index: number, x: number): PathValue {
+  if (typeof value === "number") return x;
+  if (Array.isArray(value)) return value.map((old, i) => (i === index ? x : old));
+  const name = Object.keys(value)[index];
+  return { ...value, [name]: x };
+}
+
+export function valueText(value: PathValue): string {
+  if (typeof value === "number") return precise(value, 5);
+  return Array.isArray(value) ? vector(value) : vector(Object.values(value));
+}
+
+export class EditPanel {
+  private readonly fields = element("div");
+  private readonly text = element("textarea", {
+    spellcheck: "false",
+    "aria-label": "The path file",
+  });
+  private readonly verdict = element("p", { role: "status" });
+  private readonly opened = new Set<string>();
+
+  constructor(
+    private readonly root: HTMLElement,
+    private readonly state: State,
+  ) {
+    if (!state.scene.server) {
+      root.append(
+        element(
+          "p",
+          { class: "muted" },
+          "These are exported files: the path can be looked at here, and edited where " +
+            "lfvisualizer runs.",
+        ),
+      );
+      return;
+    }
+    this.text.addEventListener("input", () => state.setText(this.text.value));
+    this.text.addEventListener("blur", () => state.history.seal());
+    const file = element("details", {}, element("summary", {}, "The file"), this.text);
+    root.append(this.fields, this.constants(), this.movements(), file, this.verdict);
+    state.on(["path", "frame", "text"], () => this.draw());
+  }
+
+  shown(): void {
+    this.draw();
+  }
+
+  private draw(): void {
+    const { state } = this;
+    if (this.root.hidden || !state.scene.server || state.cameras.length === 0) return;
+    this.verdict.textContent = state.invalid ?? "";
+    this.verdict.className = state.invalid ? "bad" : "muted";
+    if (document.activeElement !== this.text) this.text.value = state.document.text();
+    // What is being typed stays.
+    if (this.fields.contains(document.activeElement) && document.activeElement instanceof
+        HTMLInputElement)
+      return;
+    this.redrawFields();
+  }
+
+  private redrawFields(): void {
+    this.fields.replaceChildren(
+      element("h2", {}, `At frame ${this.state.frame}, ${seconds(this.state.time)}`),
+      ...FIELDS.map((field) => this.field(field)),
+    );
+  }
+
+  private quantityOf(field: Field): Quantity | null {
+    const { document: path } = this.state;
+    try {
+      const given = field.names.map((name) => path.quantity(name)).find((one) => one.given);
+      return given ?? path.quantity(field.names[0]);
+    } catch (error) {
+      this.verdict.textContent = String(error);
+      return null;
+    }
+  }
+
+  private keyNow(quantity: Quantity): number | null {
+    const half = 0.5 / this.state.path.fps;
+    const near = (time: number) => Math.abs(time - this.state.time) < half;
+    if (quantity.baseIsKey && near(0)) return -1;
+    const index = quantity.keyframes.findIndex((key) => near(key.time));
+    return index < 0 ? null : index;
+  }
+
+  private valueNow(field: Field, quantity: Quantity): PathValue | null {
+    const key = this.keyNow(quantity);
+    if (key !== null) return key < 0 ? quantity.base! : quantity.keyframes[key].value;
+    if (field.now && quantity.name === field.names[0]) return field.now(this.state);
+    const before = quantity.keyframes.filter((one) => one.time <= this.state.time).pop();
+    return before?.value ?? quantity.base ?? quantity.keyframes[0]?.value ?? null;
+  }
+
+  private field(field: Field): HTMLElement {
+    const { state } = this;
+    const quantity = this.quantityOf(field);
+    if (!quantity) return element("div");
+    const value =
+      this.valueNow(field, quantity) ?? (field.parts.length === 1 ? 0 : field.parts.map(() => 0));
+    const key = this.keyNow(quantity);
+    const isMoving = quantity.hasAccelerations;
+    const inputs = partsOf(value).map(([name, x], i) => {
+      const label = PART_LABELS[field.parts[i]] ?? name;
+      const input = element("input", {
+        type: "number",
+        step: "any",
+        class: "vector",
+        value: Number(x.toPrecision(6)),
+        disabled: isMoving,
+        "aria-label": `${field.label} ${name}`,
+        "data-quantity": quantity.name,
+        title: label,
+      });
+      input.addEventListener("change", () => {
+        if (input.value === "" || !Number.isFinite(input.valueAsNumber)) return;
+        const changed = withPart(value, i, input.valueAsNumber);
+        state.edit(`change ${field.label.toLowerCase()}`, (path) => {
+          if (quantity.keyframes.length > 0 || quantity.baseIsKey)
+            path.setKeyframe(quantity.name, state.time, changed);
+          else path.setBase(quantity.name, changed);
+        });
+        input.blur();
+        this.redrawFields();
+      });
+      return input;
+    });
+    const addKey = element(
+      "button",
+      {
+        disabled: isMoving || key !== null,
+        "data-add-key": quantity.name,
+        title: "A key of this value at this frame",
+        click: () =>
+          state.edit(`add a key of ${field.label.toLowerCase()}`, (path) =>
+            path.setKeyframe(quantity.name, state.time, value),
+          ),
+      },
+      "◆ Key",
+    );
+    const summary = element(
+      "summary",
+      {},
+      field.label,
+      key === null ? null : element("span", { class: "key-dot", title: "a key" }, "◆"),
+      element("span", { class: "now" }, valueText(value)),
+    );
+    const unit = quantity.unit === "degrees" ? "degrees" : quantity.unit === "length" ? "world units" : "";
+    const details = element(
+      "details",
+      { open: this.opened.has(field.label) },
+      summary,
+      element("div", { class: "row" }, ...inputs, addKey),
+      element(
+        "p",
+        { class: "muted" },
+        `${quantity.name.replaceAll("_", " ")}${unit ? `, ${unit}` : ""}`,
+      ),
+      isMoving ? this.movesOtherwise(quantity) : this.keyList(quantity),
+    );
+    details.addEventListener("toggle", () => {
+      if (details.open) this.opened.add(field.label);
+      else this.opened.delete(field.label);
+    });
+    return details;
+  }
+
+  private movesOtherwise(quantity: Quantity): HTMLElement {
+    return element(
+      "p",
+      {},
+      "Moves by speed and accelerations. ",
+      element(
+        "button",
+        {
+          click: () =>
+            this.state.edit(`stop ${quantity.name}`, (path) => path.removeMotion(quantity.name)),
+        },
+        "Use keys instead",
+      ),
+    );
+  }
+
+  private keyList(quantity: Quantity): HTMLElement {
+    const { state } = this;
+    const keys = quantity.keyframes.map((key, index) => ({ ...key, index }));
+    if (quantity.baseIsKey)
+      keys.unshift({ time: 0, value: quantity.base!, interpolation: "smooth", index: -1 });
+    const now = this.keyNow(quantity);
+    return element(
+      "ul",
+      { class: "keys" },
+      ...keys.map((key) => {
+        const kind = element(
+          "select",
+          {
+            "aria-label": `How the value gets to ${seconds(key.time)}`,
+            disabled: key.index < 0,
+            change: () =>
+              state.edit("change an interpolation", (path) =>
+                path.setKeyframe(
+                  quantity.name,
+                  key.time,
+                  key.value,
+                  kind.value as typeof key.interpolation,
+                ),
+              ),
+          },
+          ...["smooth", "linear", "step"].map((name) =>
+            element("option", { value: name, selected: name === key.interpolation }, name),
+          ),
+        );
+        return element(
+          "li",
+          { class: key.index === now ? "now" : "" },
+          element(
+            "button",
+            { click: () => state.setFrame(1 + Math.round(key.time * state.path.fps)) },
+            seconds(key.time),
+          ),
+          element("span", { class: "value" }, valueText(key.value)),
+          kind,
+          element(
+            "button",
+            {
+              "aria-label": `Delete the key at ${seconds(key.time)}`,
+              click: () =>
+                state.edit(`delete a key of ${quantity.name}`, (path) =>
+                  path.deleteKeyframe(quantity.name, key.index),
+                ),
+            },
+            "✕",
+          ),
+        );
+      }),
+    );
+  }
+
+  private constants(): HTMLElement {
+    const { state } = this;
+    const blades = element("input", {
+      type: "number",
+      min: 0,
+      max: 64,
+      step: 1,
+      "aria-label": "Blades",
+    });
+    blades.addEventListener("change", () =>
+      state.edit("change blades", (path) => path.setConstant("blades", blades.valueAsNumber)),
+    );
+    const frames = element("input", { type: "number", min: 1, step: 1, "aria-label": "Frames" });
+    frames.addEventListener("change", () =>
+      state.edit("change the film's length", (path) =>
+        path.setConstant("frames", frames.valueAsNumber),
+      ),
+    );
+    state.on(["path"], () => {
+      blades.value = String(state.camera.blades);
+      frames.value = String(state.path.frames);
+    });
+    return element(
+      "div",
+      {},
+      element("div", { class: "row" }, element("label", {}, "Blades"), blades, "0: a disk"),
+      element("div", { class: "row" }, element("label", {}, "Frames"), frames),
+    );
+  }
+
+  // ------------------------------------------------------------------------------ whole movements
+
+  private number(label: string, value: () => number): HTMLInputElement {
+    const input = element("input", { type: "number", step: "any", "aria-label": label });
+    const fill = () => {
+      if (input.dataset.touched !== "yes") input.value = String(Number(value().toPrecision(4)));
+    };
+    input.addEventListener("input", () => (input.dataset.touched = "yes"));
+    this.state.on(["path", "frame"], fill);
+    return input;
+  }
+
+  private apply(generate: (path: State["document"]) => string): void {
+    const { state } = this;
+    let label = "a movement";
+    state.edit("a movement", (path) => {
+      label = generate(path);
+    });
+    if (!state.message?.isError) state.say(label);
+  }
+
+  private movements(): HTMLElement {
+    const { state } = this;
+    const row = (label: string, ...inputs: (HTMLElement | string)[]) =>
+      element("div", { class: "row" }, element("label", {}, label), ...inputs);
+    const rest = () => Math.max(1, (state.path.frames - state.frame) / state.path.fps);
+
+    const angle = this.number("Degrees of the orbit", () => 20);
+    const orbitSeconds = this.number("Seconds of the orbit", rest);
+    const way = this.number("Way of the dolly, forward", () => 0.2 * state.camera.focusDistance);
+    const dollySeconds = this.number("Seconds of the dolly", rest);
+    const focus = this.number("Focus distance at the end", () => 1.5 * state.camera.focusDistance);
+    const focusSeconds = this.number("Seconds of the focus pull", rest);
+
+    const makeOrbit = () =>
+      this.apply((path) => {
+        const { camera } = state;
+        return orbit(path, {
+          centre: add(camera.centre, camera.forward, camera.focusDistance),
+          axis: camera.up,
+          startPosition: camera.centre,
+          degrees: angle.valueAsNumber,
+          seconds: orbitSeconds.valueAsNumber,
+        });
+      });
+    const makeDolly = () =>
+      this.apply((path) => {
+        const { camera } = state;
+        return dolly(path, {
+          from: camera.centre,
+          to: add(camera.centre, camera.forward, way.valueAsNumber),
+          seconds: dollySeconds.valueAsNumber,
+        });
+      });
+    const makePull = () =>
+      this.apply((path) =>
+        focusPull(path, {
+          from: state.camera.focusDistance,
+          to: focus.valueAsNumber,
+          seconds: focusSeconds.valueAsNumber,
+        }),
+      );
+    return element(
+      "details",
+      {},
+      element("summary", {}, "Movements, from this frame's camera"),
+      element("p", { class: "muted" }, "Each replaces how the camera, or the focus, moved before."),
+      row("Orbit", angle, "° in", orbitSeconds, "s", element("button", { click: makeOrbit }, "Apply")),
+      row("Dolly", way, "in", dollySeconds, "s", element("button", { click: makeDolly }, "Apply")),
+      row(
+        "Focus to",
+        focus,
+        "in",
+        focusSeconds,
+        "s",
+        element("button", { click: makePull }, "Apply"),
+      ),
+    );
+  }
+}

@@ -1,0 +1,143 @@
+// What this frame is and needs: the lens, the LF images, how densely they stand.
+
+import { fNumber } from "../data/frame_camera";
+import { element } from "../element";
+import type { State } from "../state";
+import { length, millimetres, percent, plural, precise, shortNumber, vector } from "../words";
+
+type Rows = [string, string | Node][];
+
+function list(rows: Rows): HTMLElement {
+  return element(
+    "dl",
+    {},
+    ...rows.flatMap(([term, value]) => [element("dt", {}, term), element("dd", {}, value)]),
+  );
+}
+
+export class FramePanel {
+  constructor(
+    private readonly root: HTMLElement,
+    private readonly state: State,
+  ) {
+    state.on(["path", "frame", "use", "density", "film"], () => this.draw());
+  }
+
+  private draw(): void {
+    if (this.root.hidden || this.state.cameras.length === 0) return;
+    this.root.replaceChildren(
+      element("h2", {}, `Frame ${this.state.frame}`),
+      this.lens(),
+      element("h2", {}, "What it takes"),
+      this.needs(),
+      element("h2", {}, "How densely LF cameras stand"),
+      ...this.density(),
+    );
+  }
+
+  shown(): void {
+    this.draw();
+  }
+
+  private lens(): HTMLElement {
+    const { camera, path } = this.state;
+    const opening = 2 * camera.radius;
+    const rows: Rows = [
+      ["Position", vector(camera.centre)],
+      ["Focal length", millimetres(camera.focalLength, path.unit_m)],
+      [
+        "Aperture",
+        opening === 0
+          ? "0, a pinhole"
+          : `${millimetres(opening, path.unit_m)}, f/${precise(fNumber(camera), 3)}`,
+      ],
+      ["Shape", camera.blades >= 3 ? plural(camera.blades, "blade") : "a disk"],
+      ["Focus distance", length(camera.focusDistance)],
+    ];
+    if (camera.tiltHorizontal !== 0 || camera.tiltVertical !== 0) {
+      const degrees = (radians: number) => `${precise((radians * 180) / Math.PI, 3)}°`;
+      rows.push(["Focus tilt", `${degrees(camera.tiltHorizontal)}, ${degrees(camera.tiltVertical)}`]);
+    }
+    const view = (2 * Math.atan(camera.width / 2 / camera.fx) * 180) / Math.PI;
+    rows.push(["Field of view", `${precise(view, 3)}°`]);
+    rows.push(["Plate", `${camera.width} × ${camera.height}`]);
+    return list(rows);
+  }
+
+  private needs(): HTMLElement {
+    const { use, frame, film, path, scene } = this.state;
+    if (!use || use.frame !== frame) return element("p", { class: "muted" }, "being found …");
+    const share = use.shares.reduce((sum, one) => sum + one, 0) / Math.max(1, use.shares.length);
+    const rows: Rows = [
+      ["LF images", `${use.ids.length.toLocaleString("en-US")} of ${shortNumber(use.ofCameras.length)}`],
+      ["Pixels of each", use.ids.length > 0 ? `${percent(share)} on average` : "none"],
+    ];
+    if (film && film.done >= frame)
+      rows.push(["Rays to be read", shortNumber(film.rays[frame - 1])], [
+        "For each element",
+        `about ${precise(film.rays[frame - 1] / (path.width * path.height), 3)}`,
+      ]);
+    const holder = scene.packages.find((one) => one.frames.includes(frame));
+    if (holder && path.id === scene.path.id) rows.push(["Package", holder.name]);
+    if (use.ids.length === 0)
+      return element(
+        "p",
+        { class: "bad" },
+        "No LF image has a ray for this frame: it is black. Does the camera look from where the " +
+          "light field was captured, and the way it was?",
+      );
+    return list(rows);
+  }
+
+  private density(): (HTMLElement | string)[] {
+    const { density, camera, path } = this.state;
+    if (!density) return [element("p", { class: "muted" }, "being found …")];
+    const rows: Rows = [["LF cameras in the lens", shortNumber(density.cameras_in_lens)]];
+    if (density.camera_distance)
+      rows.push(["From one to the next", millimetres(density.camera_distance, path.unit_m)]);
+    const ends: [string, number | null, number | null][] = [
+      ["Nearest", density.depths[0], density.near_displacement_px],
+      ["Farthest", density.depths[1], density.far_displacement_px],
+    ];
+    for (const [label, depth, displacement] of ends)
+      if (depth !== null && displacement !== null)
+        rows.push([`${label}, at ${length(depth)}`, verdict(displacement)]);
+    const words: HTMLElement[] = [list(rows)];
+    words.push(
+      element(
+        "p",
+        { class: "muted" },
+        density.depths_known
+          ? "How far apart two neighbouring LF cameras show the same point: up to about an " +
+              "element it is blur, above four double edges."
+          : "The light field does not say how deep the scene is: asked a quarter before and " +
+              "behind the focus distance.",
+      ),
+    );
+    if (density.uncovered_share > 0.005)
+      words.push(
+        element(
+          "p",
+          { class: "bad" },
+          `${percent(density.uncovered_share)} of the opening has no LF cameras: bokeh are cut off.`,
+        ),
+      );
+    if (density.least_aperture !== null && density.least_aperture > 2 * camera.radius)
+      words.push(
+        element(
+          "p",
+          { class: "bad" },
+          `Some elements have no ray of their own below an aperture of ${millimetres(
+            density.least_aperture,
+            path.unit_m,
+          )}.`,
+        ),
+      );
+    return words;
+  }
+}
+
+function verdict(displacement: number): HTMLElement {
+  const name = displacement <= 1.5 ? "good" : displacement <= 4 ? "" : "bad";
+  return element("span", { class: name }, `${precise(displacement, 2)} elements`);
+}

@@ -1,0 +1,59 @@
+// A picture that a person may click to focus there.
+
+import type { PickedFocus } from "../data/scene";
+import { post } from "../data/source";
+import { element } from "../element";
+import type { State } from "../state";
+import { length, percent } from "../words";
+
+export interface PickRequest {
+  camera?: number; // an LF camera; else the frame
+  x: number;
+  y: number;
+}
+
+// Asks for the distance of what is seen there, and focuses on it from this frame on: at a key of
+// the focus if there are keys, else all the film long.
+export async function focusThere(state: State, request: PickRequest): Promise<void> {
+  state.say("Comparing LF images …");
+  try {
+    const picked = await post<PickedFocus>("focus", {
+      path: state.path.id,
+      frame: state.frame,
+      ...request,
+    });
+    state.edit("focus there", (document) => {
+      const focus = document.quantity("focus_distance");
+      if (!focus.given) document.useFocusDistance(picked.focus_distance);
+      else if (focus.keyframes.length > 0)
+        document.setKeyframe("focus_distance", state.time, picked.focus_distance);
+      else if (focus.hasAccelerations) document.removeMotion("focus_distance", picked.focus_distance);
+      else document.setBase("focus_distance", picked.focus_distance);
+    });
+    state.say(
+      `Focused at ${length(picked.focus_distance)}, from ${picked.cameras.length} LF images ` +
+        `(certain to ${percent(picked.certainty)})`,
+    );
+  } catch (error) {
+    state.fail(error);
+  }
+}
+
+// Calls `pick` with the place in the picture's own coordinates, and marks it.
+export function makePickable(
+  frame: HTMLElement,
+  size: () => [number, number],
+  pick: (x: number, y: number) => void,
+): void {
+  frame.classList.add("pickable");
+  frame.title = "Click to focus there";
+  frame.addEventListener("click", (event) => {
+    const box = frame.getBoundingClientRect();
+    const x = (event.clientX - box.left) / box.width;
+    const y = (event.clientY - box.top) / box.height;
+    frame.querySelector(".mark")?.remove();
+    frame.append(element("div", { class: "mark", style: `left:${100 * x}%;top:${100 * y}%` }));
+    const [width, height] = size();
+    pick(x * width, y * height);
+  });
+}

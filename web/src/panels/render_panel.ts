@@ -1,0 +1,284 @@
+// Frames as they grow: of a render that is watched, or a small preview of this frame.
+
+import type { RenderFacts } from "../data/scene";
+import { getBytes, post } from "../data/source";
+import {
+  develop,
+  heatColour,
+  heatMap,
+  rayRange,
+  readPicture,
+  type GrowingPicture,
+} from "../data/growing_picture";
+import { element } from "../element";
+import { PathDocument } from "../path/path_document";
+import type { State } from "../state";
+import { precise, shortNumber } from "../words";
+import { focusThere, makePickable } from "./picture_view";
+
+const PREVIEW_WIDTH = 384;
+
+export class RenderPanel {
+  private readonly canvas = element("canvas");
+  private readonly box = element("div", { class: "picture" }, this.canvas);
+  private readonly exposure = element("input", {
+    type: "range",
+    min: -6,
+    max: 6,
+    step: 0.25,
+    value: 0,
+    "aria-label": "Exposure, stops",
+  });
+  private readonly stops = element("span", {}, "0 stops");
+  private readonly rays = element("button", { "aria-pressed": "false" }, "Rays per element");
+  private readonly scale = element("div");
+  private readonly status = element("p", { role: "status" });
+  private readonly strip = element("div", { class: "strip" });
+  private readonly about = element("div");
+  private source: "preview" | "watch";
+  private picture: GrowingPicture | null = null;
+  private shownName = "";
+  private loading = false;
+  private readonly sources = element("div", { class: "row group" });
+
+  constructor(
+    private readonly root: HTMLElement,
+    private readonly state: State,
+  ) {
+    this.source = state.scene.watch ? "watch" : "preview";
+    if (!state.scene.server) {
+      root.append(
+        element("p", { class: "muted" }, "These are exported files, without a render to watch."),
+      );
+      return;
+    }
+    const reset = element("button", { click: () => this.setStops(0) }, "Reset");
+    this.exposure.addEventListener("input", () => this.setStops(Number(this.exposure.value)));
+    this.rays.addEventListener("click", () => {
+      this.rays.setAttribute("aria-pressed", String(!this.showsRays()));
+      this.drawPicture();
+    });
+    root.append(
+      this.sources,
+      this.about,
+      this.box,
+      this.status,
+      element(
+        "div",
+        { class: "row" },
+        element("label", {}, "Exposure"),
+        this.exposure,
+        this.stops,
+        reset,
+      ),
+      element("div", { class: "row" }, this.rays),
+      this.scale,
+      this.strip,
+    );
+    makePickable(
+      this.box,
+      () => [this.state.camera.width, this.state.camera.height],
+      (x, y) => void focusThere(this.state, { x, y }),
+    );
+    state.on(["preview", "watch", "frame", "path"], () => this.update());
+  }
+
+  shown(): void {
+    this.update();
+  }
+
+  // A render of this frame with a small plate, as the path is now.
+  async start(): Promise<void> {
+    const { state } = this;
+    const document = PathDocument.parse(state.document.text(), state.scene.light_field.unit_m);
+    const { width, height } = state.camera;
+    const factor = Math.min(1, PREVIEW_WIDTH / Math.max(width, height));
+    document.setConstant("resolution", [
+      Math.max(1, Math.round(width * factor)),
+      Math.max(1, Math.round(height * factor)),
+    ]);
+    this.source = "preview";
+    this.picture = null;
+    this.shownName = "";
+    try {
+      await post("preview", { text: document.text(), frame: state.frame });
+    } catch (error) {
+      state.fail(error);
+    }
+    this.update();
+  }
+
+  private showsRays(): boolean {
+    return this.rays.getAttribute("aria-pressed") === "true";
+  }
+
+  private setStops(stops: number): void {
+    this.exposure.value = String(stops);
+    this.stops.textContent = `${stops > 0 ? "+" : ""}${precise(stops, 3)} stops`;
+    this.drawPicture();
+  }
+
+  private setSource(source: "preview" | "watch"): void {
+    this.source = source;
+    this.picture = null;
+    this.shownName = "";
+    this.update();
+  }
+
+  private update(): void {
+    const { state } = this;
+    if (this.root.hidden || !state.scene.server) return;
+    this.drawSources();
+    if (this.source === "watch") this.updateWatch();
+    else this.updatePreview();
+    this.box.hidden = this.picture === null;
+  }
+
+  private drawSources(): void {
+    const { state } = this;
+    const button = (name: "preview" | "watch", label: string) =>
+      element(
+        "button",
+        { "aria-pressed": String(this.source === name), click: () => this.setSource(name) },
+        label,
+      );
+    this.sources.replaceChildren(
+      ...(state.scene.watch ? [button("watch", "Watched render")] : []),
+      button("preview", "Preview"),
+    );
+  }
+
+  private updatePreview(): void {
+    const { state } = this;
+    const { preview } = state;
+    const isBusy = preview?.state === "rendering";
+    this.strip.replaceChildren();
+    this.about.replaceChildren(
+      element(
+        "div",
+        { class: "row" },
+        element(
+          "button",
+          { class: "primary", id: "start-preview", click: () => void this.start() },
+          `Render frame ${state.frame} small`,
+        ),
+        isBusy
+          ? element("button", { click: () => void post("preview/stop", {}) }, "Stop")
+          : null,
+      ),
+    );
+    if (!preview) {
+      this.status.textContent = "lfrenderer renders it here, as the path is now, saved or not.";
+      return;
+    }
+    const words = {
+      rendering: `Frame ${preview.frame} is being rendered …`,
+      finished: `Frame ${preview.frame}, finished`,
+      stopped: `Frame ${preview.frame}, stopped`,
+      failed: preview.message,
+    };
+    this.status.textContent = words[preview.state];
+    this.status.className = preview.state === "failed" ? "bad" : "muted";
+    if (preview.changed) void this.load(`preview/${preview.frame}.bin`, preview.changed);
+  }
+
+  private updateWatch(): void {
+    const { state } = this;
+    const watch = state.watch;
+    this.about.replaceChildren(
+      element("p", { class: "muted", style: "overflow-wrap:anywhere" }, state.scene.watch),
+    );
+    if (!watch || watch.frames.length === 0) {
+      this.picture = null;
+      this.strip.replaceChildren();
+      this.status.textContent =
+        "No frames lie there yet. The first picture comes with lfrenderer's first checkpoint.";
+      return;
+    }
+    this.drawStrip(watch);
+    const frame = watch.frames.find((one) => one.frame === state.frame);
+    if (!frame) {
+      this.picture = null;
+      this.status.textContent = `Frame ${state.frame} has no picture yet.`;
+      return;
+    }
+    const age = Math.max(0, Math.round(Date.now() / 1000 - frame.changed_s));
+    this.status.textContent = frame.finished
+      ? `Frame ${frame.frame}, finished`
+      : `Frame ${frame.frame} grows; this is of ${age < 2 ? "now" : `${age} s ago`}`;
+    this.status.className = "muted";
+    void this.load(`watch/${frame.frame}.bin`, frame.changed);
+  }
+
+  private drawStrip(watch: RenderFacts): void {
+    const { state } = this;
+    const finished = watch.frames.filter((one) => one.finished).length;
+    this.strip.replaceChildren(
+      element(
+        "span",
+        { style: "flex-basis:100%" },
+        `${finished} of ${state.path.frames} frames finished, ${watch.frames.length - finished} begun`,
+      ),
+      ...watch.frames.slice(0, 600).map((one) =>
+        element(
+          "button",
+          {
+            class: one.finished ? "" : "growing",
+            "aria-pressed": String(one.frame === state.frame),
+            title: one.finished ? "finished" : "begun",
+            click: () => state.setFrame(one.frame),
+          },
+          String(one.frame),
+        ),
+      ),
+    );
+  }
+
+  // version: a picture that is there already is not read again.
+  private async load(name: string, version: string): Promise<void> {
+    const wanted = `${name}?${version}`;
+    if (wanted === this.shownName || this.loading) return;
+    this.loading = true;
+    try {
+      this.picture = readPicture(await getBytes(wanted));
+      this.shownName = wanted;
+      this.box.hidden = false;
+      this.drawPicture();
+    } catch (error) {
+      // A checkpoint may be replaced while it is read; the next one comes.
+      if (!(error instanceof Error && /no such frame/.test(error.message))) this.state.fail(error);
+    } finally {
+      this.loading = false;
+    }
+  }
+
+  private drawPicture(): void {
+    const { picture, canvas } = this;
+    if (!picture) return;
+    canvas.width = picture.width;
+    canvas.height = picture.height;
+    canvas.dataset.version = this.shownName;
+    const context = canvas.getContext("2d")!;
+    this.rays.disabled = !picture.hasRays;
+    if (this.showsRays() && picture.hasRays) {
+      const range = rayRange(picture);
+      context.putImageData(heatMap(picture, range.most), 0, 0);
+      const colours = [0, 0.2, 0.4, 0.6, 0.8, 1].map((x) => `rgb(${heatColour(x).join(" ")})`);
+      this.scale.replaceChildren(
+        element("div", {
+          class: "bar",
+          style: `background:linear-gradient(90deg,${colours.join(",")})`,
+        }),
+        element(
+          "p",
+          { class: "muted" },
+          `Rays of each element: least ${shortNumber(range.least)}, median ` +
+            `${shortNumber(range.median)}, most ${shortNumber(range.most)}. Without any: green.`,
+        ),
+      );
+    } else {
+      this.scale.replaceChildren();
+      context.putImageData(develop(picture, Number(this.exposure.value)), 0, 0);
+    }
+  }
+}

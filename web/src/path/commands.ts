@@ -1,0 +1,188 @@
+// The shell commands that film a path: what a person copies, so defaults are left out.
+
+export interface LightFieldOptions {
+  focalPx?: number;
+  fovDeg?: number;
+  images?: string;
+}
+
+// Of both programs; `seed` decides the order of LF images.
+export interface SharedOptions extends LightFieldOptions {
+  frames?: string;
+  memory?: string;
+  maxImages?: number;
+  lensWeights?: "auto" | "none" | "area" | "hat";
+  estimator?: "auto" | "nearest" | "bilinear";
+  overwrite?: boolean;
+  threads?: number;
+  seed?: number;
+  strict?: boolean;
+}
+
+export interface PreprocessorOptions extends SharedOptions {
+  packages?: number;
+  framesPerPackage?: number;
+  balance?: "rays" | "frames";
+  order?: "shuffle" | "round-robin" | "area";
+  maxAngle?: number;  // degrees
+  depths?: readonly [number, number];
+}
+
+export interface RendererOptions extends SharedOptions {
+  format?: "exr" | "exr-float" | "png" | "png16";
+  video?: string;
+  noContactSheet?: boolean;
+  dumpEvery?: string;
+  resume?: boolean;
+  stopWhen?: string;
+  require?: string;
+  keepPlates?: boolean;
+  smoothBelow?: number;
+  mode?: "collect" | "rebin" | "hybrid";
+  filter?: "auto" | "nearest" | "bilinear" | "bicubic" | "mosaic";
+}
+
+export interface PreprocessorRequest {
+  lightField: string;
+  pathFile: string;
+  output?: string;  // folder of the packages; without it --plan, which writes nothing
+  options?: PreprocessorOptions;
+}
+
+export interface RendererRequest {
+  lightField: string;
+  pathFile: string;
+  output: string;   // folder of the frames
+  options?: RendererOptions;
+}
+
+export interface PackageRequest {
+  packageFolder: string;
+  output: string;
+  options?: RendererOptions;
+}
+
+export interface FilmRequest {
+  lightField: string;
+  pathFile: string;
+  output: string;
+  packageFolder?: string;
+  options?: RendererOptions & PreprocessorOptions;
+}
+
+type Value = string | number | boolean | readonly number[] | undefined;
+
+// An option that has its default is not written.
+interface Flag {
+  flag: string;
+  initial?: Value;
+  isFile?: boolean;
+}
+
+const kLightField: Record<string, Flag> = {
+  focalPx: { flag: "--focal-px", initial: 0 },
+  fovDeg: { flag: "--fov-deg", initial: 0 },
+  images: { flag: "--images", isFile: true },
+};
+
+const kShared: Record<string, Flag> = {
+  overwrite: { flag: "--overwrite" },
+  frames: { flag: "--frames" },
+  memory: { flag: "--memory", initial: "8G" },
+  maxImages: { flag: "--max-images", initial: 0 },
+  lensWeights: { flag: "--lens-weights", initial: "auto" },
+  estimator: { flag: "--estimator", initial: "auto" },
+};
+
+const kCommon: Record<string, Flag> = {
+  threads: { flag: "--threads", initial: 0 },
+  seed: { flag: "--seed", initial: 0 },
+  strict: { flag: "--strict" },
+};
+
+const kPreprocessor: Record<string, Flag> = {
+  ...kLightField,
+  ...kShared,
+  packages: { flag: "--packages", initial: 0 },
+  framesPerPackage: { flag: "--frames-per-package", initial: 0 },
+  balance: { flag: "--balance", initial: "rays" },
+  order: { flag: "--order", initial: "shuffle" },
+  maxAngle: { flag: "--max-angle", initial: 0 },
+  depths: { flag: "--depths" },
+  ...kCommon,
+};
+
+const kRenderer: Record<string, Flag> = {
+  ...kLightField,
+  ...kShared,
+  resume: { flag: "--resume" },
+  format: { flag: "--format", initial: "exr" },
+  video: { flag: "--video", isFile: true },
+  noContactSheet: { flag: "--no-contact-sheet" },
+  dumpEvery: { flag: "--dump-every", initial: "30s" },
+  stopWhen: { flag: "--stop-when" },
+  require: { flag: "--require" },
+  keepPlates: { flag: "--keep-plates" },
+  smoothBelow: { flag: "--smooth-below", initial: 0 },
+  mode: { flag: "--mode", initial: "collect" },
+  filter: { flag: "--filter", initial: "auto" },
+  ...kCommon,
+};
+
+// Packages have these from lfpreprocessor; lfrenderer refuses some of them.
+const kInPackages = ["focalPx", "fovDeg", "images", "seed", "maxImages", "frames"];
+
+export function preprocessorCommand(request: PreprocessorRequest): string {
+  const target = request.output === undefined ? ["--plan"] : ["-o", quoteFile(request.output)];
+  return ["lfpreprocessor", quoteFile(request.lightField), quoteFile(request.pathFile), ...target,
+          ...flags(kPreprocessor, request.options ?? {},
+                   request.output === undefined ? ["overwrite"] : [])].join(" ");
+}
+
+// There is no --max-angle here: only packages can do without LF cameras (filmCommands).
+export function rendererCommand(request: RendererRequest | PackageRequest): string {
+  const isPackages = "packageFolder" in request;
+  const input = isPackages
+    ? [`${quoteFile(request.packageFolder.replace(/\/+$/, ""))}/package-*.lfp`]
+    : [quoteFile(request.lightField), quoteFile(request.pathFile)];
+  return ["lfrenderer", ...input, "-o", quoteFile(request.output),
+          ...flags(kRenderer, request.options ?? {}, isPackages ? kInPackages : [])].join(" ");
+}
+
+// One command, or two where LF cameras are left out or a folder of packages is asked for.
+export function filmCommands(request: FilmRequest): string[] {
+  const options = request.options ?? {};
+  const folder = request.packageFolder ?? ((options.maxAngle ?? 0) > 0 ? "packages" : undefined);
+  if (folder === undefined) return [rendererCommand(request)];
+  return [
+    preprocessorCommand({ lightField: request.lightField, pathFile: request.pathFile,
+                          output: folder, options }),
+    rendererCommand({ packageFolder: folder, output: request.output, options }),
+  ];
+}
+
+// One word of a POSIX shell.
+export function quote(word: string): string {
+  if (/^[A-Za-z0-9_@%+:,./-]+$/.test(word)) return word;
+  return `'${word.replace(/'/g, "'\\''")}'`;
+}
+
+// The name of a file that is neither taken for an option nor, in brackets, for a list.
+export function quoteFile(name: string): string {
+  return quote(/^[-[]/.test(name) ? `./${name}` : name);
+}
+
+function flags(table: Record<string, Flag>, options: object, leftOut: readonly string[]): string[] {
+  const given = options as Record<string, Value>;
+  const words: string[] = [];
+  for (const [name, { flag, initial, isFile }] of Object.entries(table)) {
+    const value = leftOut.includes(name) ? undefined : given[name];
+    if (value === undefined || value === "" || value === false || value === initial) continue;
+    if (typeof value === "boolean") words.push(flag);
+    else if (typeof value === "object") words.push(flag, ...value.map((x) => quote(String(x))));
+    else if (isFile) words.push(flag, quoteFile(String(value)));
+    else if (String(value).startsWith("-")) words.push(quote(`${flag}=${value}`));
+    else words.push(flag, quote(String(value)));
+  }
+  return words;
+}

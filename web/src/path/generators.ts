@@ -1,0 +1,154 @@
+// Whole movements written into a path: they replace how a quantity moved before, and make the film
+// long enough. Each returns what the edit is called.
+import type { Keyframe, PathDocument } from "./path_document";
+
+type Vector = readonly [number, number, number] | readonly number[];
+
+export interface OrbitOptions {
+  centre: Vector;         // world units; the axis goes through it, and the camera looks at it
+  axis: Vector;           // any length; also the picture's upper side, unless that is along it
+  startPosition: Vector;  // of the camera, off the axis
+  degrees: number;        // right-handed about the axis
+  seconds: number;
+  start?: number;         // seconds; 0 if not given
+}
+
+export interface DollyOptions {
+  from: Vector;
+  to: Vector;
+  seconds: number;
+  start?: number;
+}
+
+export interface FocusPullOptions {
+  from: number;           // focus distances, world units
+  to: number;
+  seconds: number;        // of the pull itself
+  hold?: number;          // seconds before and after it
+}
+
+// Between keys so far apart the Catmull-Rom curve keeps within 0.13 % of the radius on the circle.
+// The first and the last stretch decide, where the curve begins along the chord: 2/27 angle^2.
+const kOrbitStep_deg = 7.5;
+const kResolution = 1e-5;  // of a movement's size: how exactly it is written at least
+
+export function orbit(path: PathDocument, options: OrbitOptions): string {
+  const { degrees, seconds, start = 0 } = options;
+  checkDuration(seconds, start);
+  if (!Number.isFinite(degrees) || degrees === 0)
+    throw new Error("An orbit needs an angle other than 0");
+  const axis = normalised(options.axis, "The axis of an orbit");
+  const arm = subtract(options.startPosition, options.centre);
+  const height = dot(arm, axis);
+  const radial = subtract(arm, scaled(axis, height));
+  const radius = Math.hypot(...radial);
+  if (!(radius > 1e-9 * Math.hypot(...arm)))
+    throw new Error("An orbit starts beside its axis, not on it");
+  const hub = add(options.centre, scaled(axis, height));
+  const sideways = cross(axis, radial);
+  const count = Math.max(2, Math.ceil(Math.abs(degrees) / kOrbitStep_deg - 1e-9));
+  const keyframes: Keyframe[] = [];
+  for (let i = 0; i <= count; ++i) {
+    const angle = (degrees * i) / count * Math.PI / 180;
+    const value = add(hub, add(scaled(radial, Math.cos(angle)),
+                               scaled(sideways, Math.sin(angle))));
+    keyframes.push({ time: start + (seconds * i) / count, value, interpolation: "smooth" });
+  }
+  path.edit(() => {
+    refine(path, radius);
+    path.removeMotion("position");
+    path.setKeyframes("position", keyframes);
+    path.useLookAt([...options.centre]);
+    path.removeMotion("look_at", [...options.centre]);
+    if (path.constant("follow") === "direction") path.removeConstant("follow");
+    standUpright(path, axis);
+    coverSeconds(path, start + seconds);
+  });
+  return `Orbit of ${round(degrees)}° in ${round(seconds)} s`;
+}
+
+// Straight on, at a constant speed.
+export function dolly(path: PathDocument, options: DollyOptions): string {
+  const { from, to, seconds, start = 0 } = options;
+  checkDuration(seconds, start);
+  path.edit(() => {
+    refine(path, Math.hypot(...subtract(to, from)));
+    path.removeMotion("position", [...from]);
+    if (start > 0) path.setKeyframe("position", start, [...from]);
+    path.setKeyframe("position", start + seconds, [...to], start > 0 ? "linear" : undefined);
+    coverSeconds(path, start + seconds);
+  });
+  return `Dolly in ${round(seconds)} s`;
+}
+
+export function focusPull(path: PathDocument, options: FocusPullOptions): string {
+  const { from, to, seconds, hold = 0 } = options;
+  checkDuration(seconds, hold);
+  path.edit(() => {
+    path.useFocusDistance(from);
+    path.removeMotion("focus_distance", from);
+    if (hold > 0) path.setKeyframe("focus_distance", hold, from);
+    path.setKeyframe("focus_distance", hold + seconds, to);
+    coverSeconds(path, hold + seconds + hold);
+  });
+  return `Focus pull in ${round(seconds)} s`;
+}
+
+function refine(path: PathDocument, size_w: number): void {
+  if (size_w > 0) path.resolution_w = Math.min(path.resolution_w, kResolution * size_w);
+}
+
+// The film becomes longer, never shorter. Frame i is at (i - 1) / fps.
+function coverSeconds(path: PathDocument, seconds: number): void {
+  const fps = path.constant("fps");
+  const frames = path.constant("frames");
+  if (typeof fps !== "number" || !(fps > 0)) throw new Error("The path has no frames per second");
+  const needed = Math.ceil(seconds * fps - 1e-6) + 1;
+  if (typeof frames !== "number" || frames < needed) path.setConstant("frames", needed);
+}
+
+// `up` along the axis can never be where the camera looks, whatever the file had; of the axis's two
+// directions the one that is nearer to that.
+function standUpright(path: PathDocument, axis: Vector): void {
+  const given = path.constant("up");
+  const up = Array.isArray(given) && Math.hypot(...given) > 0 ? given : [0, -1, 0];
+  const cosine = dot(axis, up) / Math.hypot(...up);
+  if (Math.abs(cosine) > 1 - 1e-9) return;
+  path.setConstant("up", scaled(axis, cosine < 0 ? -1 : 1));
+}
+
+function checkDuration(seconds: number, start: number): void {
+  if (!(seconds > 0 && seconds < 1e9))
+    throw new Error(`A movement takes more than 0 seconds, not ${seconds}`);
+  if (!(start >= 0 && start < 1e9)) throw new Error(`A film starts at 0 s, not at ${start} s`);
+}
+
+function round(x: number): number {
+  return Number(x.toPrecision(4));
+}
+
+function add(a: Vector, b: Vector): number[] {
+  return [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+}
+
+function subtract(a: Vector, b: Vector): number[] {
+  return [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+}
+
+function scaled(a: Vector, factor: number): number[] {
+  return [a[0] * factor, a[1] * factor, a[2] * factor];
+}
+
+function dot(a: Vector, b: Vector): number {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+function cross(a: Vector, b: Vector): number[] {
+  return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+}
+
+function normalised(a: Vector, what: string): number[] {
+  const length = Math.hypot(...a);
+  if (!(length > 0)) throw new Error(`${what} has a direction, not [0, 0, 0]`);
+  return scaled(a, 1 / length);
+}

@@ -1,0 +1,85 @@
+// What can be undone: the texts of a path, each with what the edit that led to it was.
+
+interface Entry {
+  text: string;
+  label: string;
+  open: boolean;  // the next push of the same drag replaces its text
+}
+
+export class History {
+  private entries: Entry[];
+  private at = 0;
+
+  // most  edits that can be undone; older ones are forgotten
+  constructor(text: string, private readonly most = 200) {
+    this.entries = [{ text, label: "", open: false }];
+  }
+
+  get text(): string {
+    return this.entries[this.at].text;
+  }
+
+  // merge: the edit belongs to a drag: it joins the one before, if that was pushed with `merge` and
+  // the same label, and neither seal() nor undo() or redo() came between. A text that is the
+  // present one changes nothing.
+  push(text: string, label: string, options: { merge?: boolean } = {}): void {
+    const merge = options.merge ?? false;
+    if (text === this.text) return;
+    this.entries.length = this.at + 1;
+    const last = this.entries[this.at];
+    if (merge && last.open && last.label === label) {
+      last.text = text;
+      return;
+    }
+    last.open = false;
+    this.entries.push({ text, label, open: merge });
+    this.entries.splice(0, this.entries.length - 1 - this.most);
+    this.at = this.entries.length - 1;
+  }
+
+  // The drag is over: what follows is an edit of its own.
+  seal(): void {
+    this.entries[this.at].open = false;
+  }
+
+  get canUndo(): boolean {
+    return this.at > 0;
+  }
+
+  get canRedo(): boolean {
+    return this.at + 1 < this.entries.length;
+  }
+
+  // Of the edit that undo() would take back; undefined if there is none.
+  get undoLabel(): string | undefined {
+    return this.canUndo ? this.entries[this.at].label : undefined;
+  }
+
+  get redoLabel(): string | undefined {
+    return this.entries[this.at + 1]?.label;
+  }
+
+  // Of all edits kept, the oldest first; the first `done` of them are in the present text.
+  get labels(): string[] {
+    return this.entries.slice(1).map((entry) => entry.label);
+  }
+
+  get done(): number {
+    return this.at;
+  }
+
+  // The text to show now; undefined if there is nothing to undo.
+  undo(): string | undefined {
+    if (!this.canUndo) return undefined;
+    --this.at;
+    this.seal();
+    return this.text;
+  }
+
+  redo(): string | undefined {
+    if (!this.canRedo) return undefined;
+    ++this.at;
+    this.seal();
+    return this.text;
+  }
+}

@@ -1,0 +1,192 @@
+// What a path file may say (doc/formats/path.md): its quantities, which may move, and its
+// constants. And how their values are checked and written.
+
+export type Section = "camera" | "lens";
+export type Unit = "length" | "degrees" | "none";
+export type Shape = "number" | "point" | "tilt" | "angles" | "quaternion";
+
+// Number, [x, y, z] or [w, x, y, z], {horizontal, vertical} or {yaw, pitch, roll}. Lengths are
+// world units, angles degrees.
+export type PathValue = number | number[] | Record<string, number>;
+
+export interface QuantitySpec {
+  name: string;          // without the ending of a unit
+  keys: string[];        // as they may stand in a file; the first is written where none does
+  section: Section;
+  unit: Unit;
+  shape: Shape;
+  above?: number;        // every component, exclusive
+  below?: number;
+  least?: number;        // inclusive
+  zeroIfNotGiven?: boolean;
+  rivals: string[];      // quantities that say the same in another way: one of them is given
+  freeWithoutSensor?: boolean;  // the rivals may stand together if the sensor's width is not given
+}
+
+interface SpecOptions {
+  shape?: Shape;
+  above?: number;
+  below?: number;
+  least?: number;
+  zeroIfNotGiven?: boolean;
+  rivals?: string[];
+  freeWithoutSensor?: boolean;
+}
+
+function length(section: Section, name: string, millimetres: boolean,
+                options: SpecOptions): QuantitySpec {
+  const keys = millimetres ? [`${name}_mm`, name] : [name, `${name}_mm`];
+  return { name, keys, section, unit: "length", shape: "number", rivals: [], ...options };
+}
+
+function degrees(section: Section, name: string, options: SpecOptions): QuantitySpec {
+  return { name, keys: [`${name}_deg`], section, unit: "degrees", shape: "number", rivals: [],
+           ...options };
+}
+
+function plain(section: Section, name: string, options: SpecOptions): QuantitySpec {
+  return { name, keys: [name], section, unit: "none", shape: "number", rivals: [], ...options };
+}
+
+// In the order in which they are written.
+export const kQuantities: readonly QuantitySpec[] = [
+  length("camera", "position", false, { shape: "point" }),
+  length("camera", "look_at", false,
+         { shape: "point", rivals: ["orientation", "quaternion"] }),
+  plain("camera", "orientation", { shape: "angles", rivals: ["look_at", "quaternion"] }),
+  plain("camera", "quaternion", { shape: "quaternion", rivals: ["look_at", "orientation"] }),
+  degrees("camera", "roll", { zeroIfNotGiven: true }),
+  length("camera", "focal_length", true,
+         { above: 0, rivals: ["field_of_view"], freeWithoutSensor: true }),
+  degrees("camera", "field_of_view",
+          { above: 0, below: 180, rivals: ["focal_length"], freeWithoutSensor: true }),
+  length("lens", "aperture_diameter", true, { least: 0, rivals: ["f_number"] }),
+  plain("lens", "f_number", { above: 0, rivals: ["aperture_diameter"] }),
+  length("lens", "focus_distance", false, { above: 0, rivals: ["focus_point"] }),
+  length("lens", "focus_point", false, { shape: "point", rivals: ["focus_distance"] }),
+  degrees("lens", "focus_tilt",
+          { shape: "tilt", above: -90, below: 90, zeroIfNotGiven: true }),
+  degrees("lens", "blade_rotation", { zeroIfNotGiven: true }),
+];
+
+export interface ConstantSpec {
+  keys: string[];
+  section?: Section;     // none: at the root
+  unit: Unit;
+  kind: "number" | "integer" | "numbers" | "word" | "boolean";
+  count?: number;        // of numbers
+}
+
+export type ConstantValue = number | number[] | string | boolean;
+
+export const kConstants: Readonly<Record<string, ConstantSpec>> = {
+  fps: { keys: ["fps"], unit: "none", kind: "number" },
+  frames: { keys: ["frames"], unit: "none", kind: "integer" },
+  resolution: { keys: ["resolution"], unit: "none", kind: "numbers", count: 2 },
+  unit_m: { keys: ["unit_m"], unit: "none", kind: "number" },
+  sensor_width: { keys: ["sensor_width_mm", "sensor_width"], section: "camera", unit: "length",
+                  kind: "number" },
+  up: { keys: ["up"], section: "camera", unit: "none", kind: "numbers", count: 3 },
+  follow: { keys: ["follow"], section: "camera", unit: "none", kind: "word" },
+  breathing: { keys: ["breathing"], section: "lens", unit: "none", kind: "boolean" },
+  blades: { keys: ["blades"], section: "lens", unit: "none", kind: "integer" },
+  blade_rotation_per_stop: { keys: ["blade_rotation_per_stop_deg"], section: "lens",
+                             unit: "none", kind: "number" },
+};
+
+export function withoutUnit(name: string): string {
+  return name.replace(/_(mm|deg)$/, "");
+}
+
+export function quantitySpec(name: string): QuantitySpec {
+  const spec = kQuantities.find((candidate) => candidate.name === withoutUnit(name));
+  if (!spec) throw new Error(`A path has no quantity '${name}'`);
+  return spec;
+}
+
+export function constantSpec(name: string): ConstantSpec {
+  const spec = kConstants[withoutUnit(name)];
+  if (!spec) throw new Error(`A path has no constant '${name}'`);
+  return spec;
+}
+
+// The names of a value's components; none for a number, indices for a list.
+export function componentNames(shape: Shape): string[] {
+  switch (shape) {
+    case "number": return [];
+    case "point": return ["0", "1", "2"];
+    case "quaternion": return ["0", "1", "2", "3"];
+    case "tilt": return ["horizontal", "vertical"];
+    case "angles": return ["yaw", "pitch", "roll"];
+  }
+}
+
+export function zeroOf(shape: Shape): PathValue {
+  const names = componentNames(shape);
+  if (names.length === 0) return 0;
+  if (shape === "point" || shape === "quaternion") return names.map(() => 0);
+  return Object.fromEntries(names.map((name) => [name, 0]));
+}
+
+// A value of a file, every number times `scale`. Throws if its shape is wrong; components of
+// tilts and angles that are left out are 0.
+export function readValue(raw: unknown, label: string, shape: Shape, scale: number): PathValue {
+  const number = (x: unknown): number => {
+    if (typeof x !== "number" || !Number.isFinite(x))
+      throw new Error(`${label}: expected a number, found ${JSON.stringify(x) ?? "nothing"}`);
+    return x * scale;
+  };
+  if (shape === "number") return number(raw);
+  const names = componentNames(shape);
+  if (shape === "point" || shape === "quaternion") {
+    if (!Array.isArray(raw) || raw.length !== names.length)
+      throw new Error(`${label}: expected ${names.length} numbers in brackets`);
+    return raw.map(number);
+  }
+  if (typeof raw !== "object" || raw === null || Array.isArray(raw))
+    throw new Error(`${label}: expected {${names.join(", ")}}`);
+  const given = raw as Record<string, unknown>;
+  return Object.fromEntries(names.map((name) => [name, number(given[name] ?? 0)]));
+}
+
+// Throws what a person can read if the renderer would refuse the value.
+export function checkValue(value: PathValue, spec: QuantitySpec): void {
+  const read = readValue(value, spec.name, spec.shape, 1);
+  const components = typeof read === "number" ? [read] : Object.values(read);
+  for (const x of components) {
+    const wrong = spec.above !== undefined && x <= spec.above ? `above ${spec.above}`
+      : spec.below !== undefined && x >= spec.below ? `below ${spec.below}`
+      : spec.least !== undefined && x < spec.least ? `${spec.least} or more`
+      : Math.abs(x) > 1e9 ? "within 1e9"
+      : undefined;
+    if (wrong) throw new Error(`${spec.name}: ${writeNumber(x)} must be ${wrong}`);
+  }
+  if (spec.shape === "quaternion" && Math.abs(Math.hypot(...components) - 1) > 0.01)
+    throw new Error("quaternion: a rotation [w, x, y, z] has length 1");
+}
+
+// Six significant digits, more where these do not reach the resolution.
+export function writeNumber(x: number, resolution = 0): string {
+  const digits = resolution > 0 && x !== 0
+    ? Math.ceil(Math.log10(Math.abs(x) / resolution)) : 0;
+  const rounded = Number(x.toPrecision(Math.min(15, Math.max(6, digits))));
+  return rounded === 0 ? "0" : String(rounded);  // not "-0"
+}
+
+// To the microsecond, which is the least distance of two keyframes.
+export function writeTime(time: number): string {
+  return String(Number(time.toFixed(6)));
+}
+
+// In brackets, every number divided by `scale`.
+export function writeValue(value: PathValue, scale = 1, resolution = 0): string {
+  const number = (x: number, largest: number): string =>
+    // What is left of sines and cosines of right angles.
+    Math.abs(x) < 1e-9 * largest ? "0" : writeNumber(x / scale, resolution / scale);
+  if (typeof value === "number") return number(value, 0);
+  const components = Object.values(value);
+  const largest = Math.max(...components.map(Math.abs));
+  const written = components.map((x) => number(x, largest));
+  if (Array.isArray(value)) return `[${written.join(", ")}]`;
+  return `{${Object.keys(value).map((name, i) => `${name}: ${written[i]}`).join(", ")}}`;
+}

@@ -1,0 +1,412 @@
+// A YAML text that is edited in place: what an edit does not touch keeps its bytes. The package
+// `yaml` says where everything stands; writing its document anew would move comments and change
+// how numbers look, so edits replace stretches of the text instead.
+import {
+  Alias, Document, isAlias, isMap, isScalar, isSeq, parseDocument, visit,
+} from "yaml";
+import type { Node, Pair, Scalar, YAMLMap, YAMLSeq } from "yaml";
+
+// From the root: keys of maps, indices of lists.
+export type YamlPath = readonly (string | number)[];
+
+interface Change {
+  begin: number;
+  end: number;
+  text: string;
+}
+
+const kLongestLine = 100;  // a list in brackets that grows beyond becomes one of an item per line
+
+type Container = YAMLMap<Node, Node | null> | YAMLSeq<Node>;
+
+export class YamlText {
+  private current = "";
+  private document!: Document.Parsed;
+
+  // Throws an Error with line and column if this is no YAML with keys at its root.
+  constructor(text: string) {
+    this.set(text);
+  }
+
+  get text(): string {
+    return this.current;
+  }
+
+  // Takes the text only if it is valid.
+  set(text: string): void {
+    const document = parseDocument(text);
+    if (document.errors.length > 0) throw new Error(document.errors[0].message);
+    if (!isMap(document.contents)) throw new Error("A path file has keys, such as 'fps: 30'");
+    this.document = document;
+    this.current = text;
+  }
+
+  has(path: YamlPath): boolean {
+    return this.find(path) !== undefined;
+  }
+
+  // The value as plain numbers, texts, arrays and objects; undefined if the path leads nowhere.
+  value(path: YamlPath): unknown {
+    const node = this.find(path);
+    return node === undefined ? undefined : node === null ? null : node.toJS(this.document);
+  }
+
+  keys(path: YamlPath): string[] {
+    const map = this.resolved(this.find(path));
+    return isMap(map) ? map.items.map((pair) => keyOf(pair as Pair<Node, Node>)) : [];
+  }
+
+  // Replaces a value that is there. An anchor before it stays, so that aliases follow.
+  replace(path: YamlPath, text: string): void {
+    this.own(path.slice(0, -1));
+    const node = this.find(path);
+    if (node === undefined) throw missing(path);
+    const isKeyed = typeof path[path.length - 1] === "string";
+    if (node === null || (isEmptyNode(node) && isKeyed)) {
+      const end = this.endOfPair(this.pair(path));
+      const colon = this.current[end - 1] === ":" ? "" : ":";
+      this.apply([{ begin: end, end, text: `${colon} ${text}` }]);
+    } else if (isBlock(node) && isKeyed) {
+      this.apply(this.blockToFlow(path, node, text));
+    } else {
+      this.apply([{ begin: node.range![0], end: this.endOf(node), text }]);
+    }
+  }
+
+  // Adds a key to the map at `path`: after the key `after`, or as the last. A value of many items
+  // becomes a list of one per line where the map itself is of one key per line.
+  add(path: YamlPath, key: string, value: string | readonly string[], after?: string): void {
+    this.own(path);
+    const node = this.find(path);
+    const flow = Array.isArray(value) ? `[${value.join(", ")}]` : (value as string);
+    if (node === undefined) throw missing(path);
+    if (node === null || isEmptyNode(node) || isEmptyFlowMap(node)) {
+      this.addFirst(path, node, key, value);
+      return;
+    }
+    if (!isMap(node)) throw new Error(`'${path.join(".")}' should have keys`);
+    const map = node as YAMLMap<Node, Node | null>;
+    const found = map.items.find((pair) => keyOf(pair) === after);
+    const previous = found ?? map.items[map.items.length - 1];
+    const end = this.endOfPair(previous);
+    if (map.flow) {
+      this.apply([{ begin: end, end, text: `, ${key}: ${flow}` }]);
+      return;
+    }
+    const indent = this.column(map.items[0].key.range![0]);
+    this.insertLines(this.lineEnd(end), this.pairLines(indent, key, value));
+  }
+
+  // Removes a key with its value; a map that is left without keys becomes {}.
+  remove(path: YamlPath): void {
+    const parent = path.slice(0, -1);
+    this.own(parent);
+    const node = this.find(path);
+    if (node === undefined) return;
+    const pair = this.pair(path);
+    const map = this.resolved(this.find(parent)) as YAMLMap<Node, Node | null>;
+    if (map.items.length === 1 && parent.length > 0 && !map.flow) {
+      this.replace(parent, "{}");
+      return;
+    }
+    if (map.flow) {
+      this.apply([this.fromFlow(map.items, map.items.indexOf(pair))]);
+      return;
+    }
+    const begin = this.lineStart(pair.key.range![0]);
+    if (this.current.slice(begin, pair.key.range![0]).trim() !== "")
+      throw new Error(`'${path.join(".")}' cannot be removed from a list in this form`);
+    this.apply([{ begin, end: this.nextLine(this.endOfPair(pair)), text: "" }]);
+  }
+
+  // Inserts before the item that has this index now.
+  insertItem(path: YamlPath, index: number, text: string): void {
+    this.own(path);
+    const list = this.list(path);
+    if (list.flow) {
+      this.insertFlowItem(path, list, index, text);
+      return;
+    }
+    const column = this.column(list.range![0]);
+    const line = `${" ".repeat(column)}- ${text}`;
+    if (index > 0) {
+      // Comments above the next item stay with it.
+      this.insertLines(this.lineEnd(this.endOf(list.items[index - 1])), [line]);
+    } else {
+      const begin = this.dashLine(list, 0);
+      this.apply([{ begin, end: begin, text: line + this.eol() }]);
+    }
+  }
+
+  // Removes an item; with the last one goes the key of the list.
+  removeItem(path: YamlPath, index: number): void {
+    this.own(path);
+    const list = this.list(path);
+    if (list.items.length === 1) {
+      this.remove(path);
+    } else if (list.flow) {
+      this.apply([this.fromFlow(list.items, index)]);
+    } else {
+      const begin = this.dashLine(list, index);
+      this.apply([{ begin, end: this.nextLine(this.endOf(list.items[index])), text: "" }]);
+    }
+  }
+
+  // As it stands in the text, on one line: what is in lines there comes in brackets.
+  flowText(path: YamlPath): string {
+    const node = this.find(path);
+    if (!node) return "null";
+    return this.flowOf(node);
+  }
+
+  // -------------------------------------------------------------------------- where things stand
+
+  // The node as written, an alias included; null for a key without a value.
+  private find(path: YamlPath): Node | null | undefined {
+    let node: Node | null | undefined = this.document.contents as Node;
+    for (const step of path) {
+      const parent = this.resolved(node);
+      if (isMap(parent) && typeof step === "string") {
+        const pair = (parent as YAMLMap<Node, Node | null>).items.find((p) => keyOf(p) === step);
+        node = pair === undefined ? undefined : pair.value;
+      } else if (isSeq(parent) && typeof step === "number") {
+        node = parent.items[step] as Node | undefined;
+      } else {
+        return undefined;
+      }
+    }
+    return node;
+  }
+
+  private resolved(node: Node | null | undefined): Node | null | undefined {
+    return isAlias(node) ? (node.resolve(this.document) as Node | undefined) : node;
+  }
+
+  private pair(path: YamlPath): Pair<Node, Node | null> {
+    const map = this.resolved(this.find(path.slice(0, -1))) as YAMLMap<Node, Node | null>;
+    return map.items.find((pair) => keyOf(pair) === path[path.length - 1])!;
+  }
+
+  private list(path: YamlPath): YAMLSeq<Node> {
+    const node = this.find(path);
+    if (!isSeq(node)) throw new Error(`'${path.join(".")}' should be a list`);
+    return node as YAMLSeq<Node>;
+  }
+
+  // With its anchor, which stands outside a node's range.
+  private startOf(node: Node): number {
+    const begin = node.range![0];
+    const anchor = isAlias(node) ? undefined : (node as Scalar).anchor;
+    return anchor ? this.current.lastIndexOf(`&${anchor}`, begin) : begin;
+  }
+
+  // After the last character of content: comments and blank lines behind do not count.
+  private endOf(node: Node): number {
+    if (isBlock(node)) {
+      const last = (node as Container).items[(node as Container).items.length - 1];
+      return isMap(node) ? this.endOfPair(last as Pair<Node, Node | null>)
+                         : this.endOf(last as Node);
+    }
+    let end = node.range![1];
+    while (end > node.range![0] && /\s/.test(this.current[end - 1])) --end;
+    return end;
+  }
+
+  private endOfPair(pair: Pair<Node, Node | null>): number {
+    if (pair.value && !isEmptyNode(pair.value)) return this.endOf(pair.value);
+    const end = pair.key.range![1];
+    return this.current.startsWith(":", end) ? end + 1 : end;
+  }
+
+  private lineStart(offset: number): number {
+    return this.current.lastIndexOf("\n", offset - 1) + 1;
+  }
+
+  // Of the line's characters, before its line break.
+  private lineEnd(offset: number): number {
+    const end = this.current.indexOf("\n", offset);
+    if (end < 0) return this.current.length;
+    return end > offset && this.current[end - 1] === "\r" ? end - 1 : end;
+  }
+
+  private nextLine(offset: number): number {
+    const end = this.current.indexOf("\n", offset);
+    return end < 0 ? this.current.length : end + 1;
+  }
+
+  private column(offset: number): number {
+    return offset - this.lineStart(offset);
+  }
+
+  private eol(): string {
+    return this.current.includes("\r\n") ? "\r\n" : "\n";
+  }
+
+  // Start of the line with the dash of an item.
+  private dashLine(list: YAMLSeq<Node>, index: number): number {
+    const column = this.column(list.range![0]);
+    let line = this.lineStart(this.startOf(list.items[index]));
+    while (!/^ *-$/.test(this.current.slice(line, line + column + 1))) {
+      if (line === 0) throw new Error("A list in this form cannot be edited");
+      line = this.lineStart(line - 1);
+    }
+    return line;
+  }
+
+  // --------------------------------------------------------------------------------- the changes
+
+  // Lines after the one that ends at `end`.
+  private insertLines(end: number, lines: readonly string[]): void {
+    const text = lines.map((line) => this.eol() + line).join("");
+    this.apply([{ begin: end, end, text }]);
+  }
+
+  private pairLines(indent: number, key: string, value: string | readonly string[]): string[] {
+    const space = " ".repeat(indent);
+    if (!Array.isArray(value)) return [`${space}${key}: ${value as string}`];
+    return [`${space}${key}:`, ...(value as string[]).map((item) => `${space}  - ${item}`)];
+  }
+
+  private addFirst(path: YamlPath, node: Node | null, key: string,
+                   value: string | readonly string[]): void {
+    const pair = this.pair(path);
+    const keyStart = pair.key.range![0];
+    if (this.current.slice(this.lineStart(keyStart), keyStart).trim() !== "") {
+      const flow = Array.isArray(value) ? `[${value.join(", ")}]` : (value as string);
+      this.replace(path, `{${key}: ${flow}}`);
+      return;
+    }
+    if (node && !isEmptyNode(node)) {
+      const begin = this.startOf(node) - (this.current[this.startOf(node) - 1] === " " ? 1 : 0);
+      this.apply([{ begin, end: this.endOf(node), text: "" }]);
+    }
+    const key_node = this.pair(path).key;
+    this.insertLines(this.lineEnd(key_node.range![1]),
+                     this.pairLines(this.column(key_node.range![0]) + 2, key, value));
+  }
+
+  // A value of several lines becomes one beside its key.
+  private blockToFlow(path: YamlPath, node: Node, text: string): Change[] {
+    const key = this.pair(path).key;
+    let end = key.range![1] + 1;
+    const anchor = (node as Container).anchor;
+    if (anchor) end = this.startOf(node) + anchor.length + 1;
+    return [
+      { begin: end, end, text: ` ${text}` },
+      { begin: this.lineStart(node.range![0]), end: this.nextLine(this.endOf(node)), text: "" },
+    ];
+  }
+
+  private fromFlow(items: readonly (Node | Pair<Node, Node | null>)[], index: number): Change {
+    const begin = (item: Node | Pair<Node, Node | null>): number =>
+      this.startOf("key" in item ? item.key : item);
+    const end = (item: Node | Pair<Node, Node | null>): number =>
+      "key" in item ? this.endOfPair(item) : this.endOf(item);
+    if (index + 1 < items.length)
+      return { begin: begin(items[index]), end: begin(items[index + 1]), text: "" };
+    if (index > 0) return { begin: end(items[index - 1]), end: end(items[index]), text: "" };
+    return { begin: begin(items[index]), end: end(items[index]), text: "" };
+  }
+
+  private insertFlowItem(path: YamlPath, list: YAMLSeq<Node>, index: number, text: string): void {
+    const begin = list.range![0];
+    const source = this.current.slice(begin, this.endOf(list));
+    const long = this.column(begin) + source.length + text.length + 2 > kLongestLine;
+    if (long && !source.includes("\n") && list.items.length > 0 && !list.anchor &&
+        this.ownsItsLine(path)) {
+      const items = list.items.map((item) => this.current.slice(this.startOf(item),
+                                                                this.endOf(item)));
+      items.splice(index, 0, text);
+      const space = " ".repeat(this.column(this.pair(path).key.range![0]) + 2);
+      const end = this.endOf(list);
+      this.apply([
+        // A comment behind the list stays on the line of its key.
+        { begin: begin - (this.current[begin - 1] === " " ? 1 : 0), end, text: "" },
+        { begin: this.lineEnd(end), end: this.lineEnd(end),
+          text: items.map((item) => `${this.eol()}${space}- ${item}`).join("") },
+      ], true);
+      return;
+    }
+    if (list.items.length === 0) {
+      this.apply([{ begin: begin + 1, end: begin + 1, text }]);
+    } else if (index > 0) {
+      const end = this.endOf(list.items[index - 1]);
+      this.apply([{ begin: end, end, text: `, ${text}` }]);
+    } else {
+      const first = this.startOf(list.items[0]);
+      this.apply([{ begin: first, end: first, text: `${text}, ` }]);
+    }
+  }
+
+  // Whether a key begins its line and its value ends it, but for a comment.
+  private ownsItsLine(path: YamlPath): boolean {
+    const pair = this.pair(path);
+    const begin = pair.key.range![0];
+    const end = this.endOfPair(pair);
+    return this.current.slice(this.lineStart(begin), begin).trim() === "" &&
+           /^\s*(#.*)?$/.test(this.current.slice(end, this.lineEnd(end)));
+  }
+
+  // Every alias on the path becomes a copy: an edit behind it must not reach its anchor.
+  private own(path: YamlPath): void {
+    for (let length = 1; length <= path.length; ++length) {
+      const node = this.find(path.slice(0, length));
+      if (isAlias(node))
+        this.apply([{ begin: node.range![0], end: node.range![1], text: this.flowOf(node) }]);
+    }
+  }
+
+  private flowOf(node: Node): string {
+    const target = this.resolved(node);
+    if (!target) return "null";
+    const source = this.current.slice(target.range![0], this.endOf(target));
+    if (!isBlock(target) && !/[\n&*]/.test(source)) return source;
+    const copy = new Document(target.toJS(this.document));
+    return copy.toString({ collectionStyle: "flow", flowCollectionPadding: false, lineWidth: 0 })
+      .trim();
+  }
+
+  // Aliases of what is taken out become copies of it, unless the changes bring it elsewhere.
+  private apply(changes: Change[], keepsAnchors = false): void {
+    const all = keepsAnchors ? changes : [...changes, ...this.orphans(changes)];
+    all.sort((a, b) => b.begin - a.begin || b.end - a.end);
+    let text = this.current;
+    for (const { begin, end, text: inserted } of all)
+      text = text.slice(0, begin) + inserted + text.slice(end);
+    this.set(text);
+  }
+
+  private orphans(changes: readonly Change[]): Change[] {
+    const inside = (offset: number): boolean =>
+      changes.some(({ begin, end }) => begin <= offset && offset < end);
+    const copies: Change[] = [];
+    visit(this.document, {
+      Alias: (_, alias: Alias) => {
+        const target = this.resolved(alias);
+        if (!target || inside(alias.range![0]) || !inside(this.startOf(target))) return;
+        copies.push({ begin: alias.range![0], end: alias.range![1], text: this.flowOf(alias) });
+      },
+    });
+    return copies;
+  }
+}
+
+function missing(path: YamlPath): Error {
+  return new Error(`The path has no '${path.join(".")}'`);
+}
+
+function keyOf(pair: Pair<Node, Node | null>): string {
+  return isScalar(pair.key) ? String(pair.key.value) : "";
+}
+
+function isBlock(node: Node): boolean {
+  return (isMap(node) || isSeq(node)) && !node.flow;
+}
+
+function isEmptyNode(node: Node): boolean {
+  return isScalar(node) && node.range![0] === node.range![1];
+}
+
+function isEmptyFlowMap(node: Node): boolean {
+  return isMap(node) && node.flow === true && node.items.length === 0;
+}

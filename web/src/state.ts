@@ -1,0 +1,287 @@
+// What the page shows: the light field, the path as it is being shaped, the frame, the LF camera
+// that is looked at. Views listen, and ask for changes here alone.
+
+import { readFrames, type FrameCamera } from "./data/frame_camera";
+import { readFrameUse, type FrameUse } from "./data/frame_use";
+import type {
+  CameraFacts,
+  DensityFacts,
+  FilmFacts,
+  PathHead,
+  RenderFacts,
+  SceneFacts,
+} from "./data/scene";
+import { getBytes, getJson, getText, post, SourceError } from "./data/source";
+import { History } from "./path/history";
+import { PathDocument } from "./path/path_document";
+
+export type Change =
+  | "path" // the path is another: cameras of all frames
+  | "text" // its text is, whether it is a path or not
+  | "frame"
+  | "use" // of the frame has come
+  | "film"
+  | "density"
+  | "selected"
+  | "watch"
+  | "preview"
+  | "theme"
+  | "message";
+
+export interface PreviewFacts {
+  frame: number;
+  state: "rendering" | "finished" | "stopped" | "failed";
+  message: string;
+  changed: string;
+}
+
+const MOST_USES_BYTES = 96 << 20; // of frames that were looked at
+
+export class State {
+  path!: PathHead;
+  cameras: FrameCamera[] = [];
+  frame = 1;
+  use: FrameUse | null = null;
+  density: DensityFacts | null = null;
+  film: FilmFacts | null = null;
+  framesOfCamera: Uint16Array | null = null;
+  selected: CameraFacts | null = null;
+  watch: RenderFacts | null = null;
+  preview: PreviewFacts | null = null;
+  message: { text: string; isError: boolean } | null = null;
+  document!: PathDocument;
+  history!: History;
+  invalid: string | null = null; // why the text is no path
+  isDark = true;
+
+  private savedText = "";
+  private savedId = "";
+  private readonly listeners = new Map<Change, (() => void)[]>();
+  private uses = new Map<string, ArrayBuffer>();
+  private usesBytes = 0;
+  private checking = 0;
+  private filmAsked = "";
+
+  constructor(
+    readonly scene: SceneFacts,
+    readonly positions: Float32Array,
+  ) {}
+
+  on(changes: Change[], listener: () => void): void {
+    for (const change of changes)
+      this.listeners.set(change, [...(this.listeners.get(change) ?? []), listener]);
+  }
+
+  emit(change: Change): void {
+    for (const listener of this.listeners.get(change) ?? []) listener();
+  }
+
+  say(text: string, isError = false): void {
+    this.message = text ? { text, isError } : null;
+    this.emit("message");
+  }
+
+  fail(error: unknown): void {
+    this.say(error instanceof Error ? error.message : String(error), true);
+  }
+
+  get camera(): FrameCamera {
+    return this.cameras[this.frame - 1];
+  }
+  get time(): number {
+    return (this.frame - 1) / this.path.fps;
+  }
+  get isChanged(): boolean {
+    return this.document.text() !== this.savedText;
+  }
+
+  // ------------------------------------------------------------------------------------ the path
+
+  async open(): Promise<void> {
+    const text = await getText(`path/${this.scene.path.id}/path.yaml`);
+    this.savedText = text;
+    this.savedId = this.scene.path.id;
+    this.history = new History(text);
+    this.document = PathDocument.parse(text, this.scene.light_field.unit_m);
+    await this.take(this.scene.path);
+    this.emit("text");
+  }
+
+  private async take(head: PathHead): Promise<void> {
+    const cameras = readFrames(await getBytes(`path/${head.id}/frames.bin`));
+    this.path = head;
+    this.cameras = cameras;
+    this.frame = Math.min(this.frame, head.frames);
+    this.film = null;
+    this.emit("path");
+    await this.askFrame();
+    void this.askFilm();
+  }
+
+  // Edits the path by `change`, which may refuse; then has the parser of the programs check it.
+  // merge: one step of undo with the edit before of the same label.
+  edit(label: string, change: (document: PathDocument) => void, merge = false): void {
+    try {
+      change(this.document);
+    } catch (error) {
+      this.fail(error);
+      return;
+    }
+    this.history.push(this.document.text(), label, { merge });
+    void this.check();
+  }
+
+  undo(): void {
+    this.travel(this.history.undo());
+  }
+  redo(): void {
+    this.travel(this.history.redo());
+  }
+  private travel(text: string | null | undefined): void {
+    if (typeof text !== "string") return;
+    this.document = PathDocument.parse(text, this.scene.light_field.unit_m);
+    void this.check();
+  }
+
+  // The text as a person has typed it.
+  setText(text: string): boolean {
+    try {
+      this.document = PathDocument.parse(text, this.scene.light_field.unit_m);
+    } catch (error) {
+      this.invalid = error instanceof Error ? error.message : String(error);
+      this.emit("text");
+      return false;
+    }
+    this.history.push(text, "edit the text", { merge: true });
+    void this.check();
+    return true;
+  }
+
+  private async check(): Promise<void> {
+    const number = ++this.checking;
+    const text = this.document.text();
+    this.emit("text");
+    try {
+      const head = await post<PathHead>("check", { text });
+      if (number !== this.checking) return;
+      this.invalid = null;
+      this.say("");
+      if (head.id !== this.path.id) await this.take(head);
+    } catch (error) {
+      if (number !== this.checking) return;
+      this.invalid = error instanceof Error ? error.message : String(error);
+    }
+    this.emit("text");
+  }
+
+  async save(force = false): Promise<"saved" | "changed" | "failed"> {
+    const text = this.document.text();
+    try {
+      const answer = await post<{ id: string }>("save", { text, expected: this.savedId, force });
+      this.savedText = text;
+      this.savedId = answer.id;
+      this.say(`Saved ${this.scene.path_file}`);
+      this.emit("text");
+      return "saved";
+    } catch (error) {
+      if (error instanceof SourceError && error.status === 409) return "changed";
+      this.fail(error);
+      return "failed";
+    }
+  }
+
+  // The file is another than was read or saved here.
+  fileHasChanged(id: string): void {
+    if (id !== this.savedId)
+      this.say(`${this.scene.path_file} has been changed by another program.`);
+  }
+
+  // ----------------------------------------------------------------------------------- the frame
+
+  setFrame(frame: number): void {
+    const wanted = Math.max(1, Math.min(this.path.frames, Math.round(frame)));
+    if (wanted === this.frame) return;
+    this.frame = wanted;
+    this.emit("frame");
+    void this.askFrame();
+  }
+
+  private async bytesOfUse(frame: number): Promise<ArrayBuffer> {
+    const name = `path/${this.path.id}/use/${frame}.bin`;
+    const known = this.uses.get(name);
+    if (known) return known;
+    const bytes = await getBytes(name);
+    this.uses.set(name, bytes);
+    this.usesBytes += bytes.byteLength;
+    for (const [old, oldBytes] of this.uses) {
+      if (this.usesBytes <= MOST_USES_BYTES || old === name) break;
+      this.uses.delete(old);
+      this.usesBytes -= oldBytes.byteLength;
+    }
+    return bytes;
+  }
+
+  async askFrame(): Promise<void> {
+    const { frame, path } = this;
+    const isStill = () => frame === this.frame && path === this.path;
+    try {
+      const bytes = await this.bytesOfUse(frame);
+      if (!isStill()) return;
+      this.use = readFrameUse(frame, bytes);
+      this.emit("use");
+      const density = await getJson<DensityFacts>(`path/${path.id}/density/${frame}.json`);
+      if (!isStill()) return;
+      this.density = density;
+      this.emit("density");
+    } catch (error) {
+      // A path that is forgotten by the server is sent again.
+      if (error instanceof SourceError && error.status === 410) void this.check();
+      else if (isStill()) this.fail(error);
+    }
+  }
+
+  async askFilm(): Promise<void> {
+    const { id } = this.path;
+    if (this.filmAsked === id) return;
+    this.filmAsked = id;
+    try {
+      const film = await getJson<FilmFacts>(`path/${id}/film.json`);
+      const counts = await getBytes(`path/${id}/film.bin`);
+      if (id !== this.path.id) return;
+      this.film = film;
+      this.framesOfCamera = new Uint16Array(counts);
+      this.emit("film");
+    } catch {
+      // The curves stay empty; the frame tells what is wrong.
+    } finally {
+      this.filmAsked = "";
+    }
+  }
+
+  // ------------------------------------------------------------------------------- the LF camera
+
+  async select(id: number | null): Promise<void> {
+    if (id === null) {
+      this.selected = null;
+      this.emit("selected");
+      return;
+    }
+    try {
+      this.selected = await getJson<CameraFacts>(`camera/${id}.json`);
+      this.emit("selected");
+    } catch (error) {
+      if (this.scene.server) this.fail(error);
+      else this.say("Of this LF camera the exported page has no image.");
+    }
+  }
+
+  // Another of those that the frame takes.
+  selectNext(step: number): void {
+    const ids = this.use ? [...this.use.ids].sort((a, b) => a - b) : [];
+    if (ids.length === 0) return;
+    const current = this.selected?.id ?? -1;
+    const at = ids.indexOf(current);
+    const next = at < 0 ? 0 : (at + step + ids.length) % ids.length;
+    void this.select(ids[next]);
+  }
+}

@@ -1,0 +1,309 @@
+// The film: play and scrub, and what changes over its frames. Keys of the path are diamonds that
+// can be dragged.
+
+import { fNumber } from "./data/frame_camera";
+import { byId, cssColour, element, fitCanvas } from "./element";
+import type { Quantity } from "./path/path_document";
+import type { State } from "./state";
+import { millimetres, precise, seconds, shortNumber } from "./words";
+
+interface Row {
+  label: string;
+  colour: string;
+  quantities: string[]; // whose keys it shows
+  values(): (number | null)[];
+  text(frame: number): string;
+}
+
+const LABELS = 118; // pixels left of the curves
+const MARGIN = 12;
+
+interface Key {
+  quantity: Quantity;
+  index: number;
+  time: number;
+  x: number;
+  y: number;
+}
+
+export class Timeline {
+  private readonly canvas = byId<HTMLCanvasElement>("curves");
+  private readonly still = document.createElement("canvas"); // all but the frame's mark
+  private readonly play = byId<HTMLButtonElement>("play");
+  private readonly range = byId<HTMLInputElement>("scrub");
+  private readonly clock = byId("clock");
+  private readonly rows: Row[];
+  private keys: Key[] = [];
+  private playing = 0;
+  private dragged: { key: Key; time: number } | null = null;
+
+  constructor(private readonly state: State) {
+    this.rows = this.makeRows();
+    this.play.addEventListener("click", () => this.toggle());
+    this.range.addEventListener("input", () => state.setFrame(Number(this.range.value)));
+    byId("first").addEventListener("click", () => state.setFrame(1));
+    byId("last").addEventListener("click", () => state.setFrame(state.path.frames));
+    this.listenForScrubs();
+    new ResizeObserver(() => this.drawAll()).observe(this.canvas);
+    state.on(["path", "film", "theme", "text"], () => this.drawAll());
+    state.on(["frame", "use"], () => this.drawMark());
+  }
+
+  private makeRows(): Row[] {
+    const { state } = this;
+    const unit = () => state.path.unit_m;
+    const ofFilm = (counts: number[] | undefined) =>
+      counts?.map((count, i) => (i < state.film!.done ? count : null)) ?? [];
+    return [
+      {
+        label: "Aperture",
+        colour: "--curve-1",
+        quantities: ["aperture_diameter", "f_number", "blade_rotation_deg"],
+        values: () => state.cameras.map((camera) => 2 * camera.radius),
+        text: (i) => {
+          const camera = state.cameras[i];
+          if (camera.radius === 0) return "pinhole";
+          return `f/${precise(fNumber(camera), 3)}  ${millimetres(2 * camera.radius, unit())}`;
+        },
+      },
+      {
+        label: "Focus distance",
+        colour: "--curve-2",
+        quantities: ["focus_distance", "focus_point", "focus_tilt_deg"],
+        values: () => state.cameras.map((camera) => camera.focusDistance),
+        text: (i) => precise(state.cameras[i].focusDistance, 4),
+      },
+      {
+        label: "LF images",
+        colour: "--curve-3",
+        quantities: [],
+        values: () => ofFilm(state.film?.images),
+        text: (i) =>
+          state.use && state.use.frame === i + 1
+            ? shortNumber(state.use.ids.length)
+            : shortNumber(state.film?.images[i] ?? 0),
+      },
+      {
+        label: "Rays per element",
+        colour: "--curve-4",
+        quantities: ["position", "look_at", "orientation", "quaternion", "focal_length"],
+        values: () =>
+          ofFilm(state.film?.rays).map((rays) =>
+            rays === null ? null : rays / (state.path.width * state.path.height),
+          ),
+        text: (i) => {
+          if (!state.film || i >= state.film.done) return "…";
+          const rays = state.film.rays[i] / (state.path.width * state.path.height);
+          return `about ${precise(rays, 3)}`;
+        },
+      },
+    ];
+  }
+
+  // ----------------------------------------------------------------------------------- playing
+
+  toggle(): void {
+    if (this.playing) return this.stop();
+    const { state } = this;
+    if (state.frame === state.path.frames) state.setFrame(1);
+    const begin = performance.now() - (1000 * (state.frame - 1)) / state.path.fps;
+    const step = () => {
+      const frame = 1 + Math.floor(((performance.now() - begin) * state.path.fps) / 1000);
+      state.setFrame(frame);
+      if (frame >= state.path.frames) return this.stop();
+      this.playing = requestAnimationFrame(step);
+    };
+    this.playing = requestAnimationFrame(step);
+    this.play.textContent = "❚❚";
+    this.play.setAttribute("aria-label", "Pause");
+  }
+
+  stop(): void {
+    cancelAnimationFrame(this.playing);
+    this.playing = 0;
+    this.play.textContent = "▶";
+    this.play.setAttribute("aria-label", "Play");
+  }
+
+  // -------------------------------------------------------------------------------- the pointer
+
+  private width(): number {
+    return Math.max(1, this.canvas.clientWidth - LABELS - MARGIN);
+  }
+  private xOf(time: number): number {
+    const { path } = this.state;
+    return LABELS + (path.frames > 1 ? (time * path.fps * this.width()) / (path.frames - 1) : 0);
+  }
+  private timeOf(x: number): number {
+    const { path } = this.state;
+    const frames = ((x - LABELS) / this.width()) * (path.frames - 1);
+    return Math.max(0, Math.min(path.frames - 1, Math.round(frames))) / path.fps;
+  }
+
+  private listenForScrubs(): void {
+    const { canvas, state } = this;
+    canvas.addEventListener("pointerdown", (event) => {
+      canvas.setPointerCapture(event.pointerId);
+      this.stop();
+      const key = this.keyAt(event.offsetX, event.offsetY);
+      this.dragged = key && { key, time: key.time };
+      state.setFrame(1 + Math.round((key?.time ?? this.timeOf(event.offsetX)) * state.path.fps));
+    });
+    canvas.addEventListener("pointermove", (event) => {
+      canvas.style.cursor = this.keyAt(event.offsetX, event.offsetY) ? "ew-resize" : "crosshair";
+      if (event.buttons === 0) return;
+      const time = this.timeOf(event.offsetX);
+      state.setFrame(1 + Math.round(time * state.path.fps));
+      if (this.dragged) {
+        this.dragged.time = time;
+        this.drawMark();
+      }
+    });
+    canvas.addEventListener("pointerup", () => {
+      const dragged = this.dragged;
+      this.dragged = null;
+      if (!dragged || !state.scene.server) return;
+      const { key, time } = dragged;
+      if (Math.abs(time - key.time) * state.path.fps < 0.5) return;
+      state.edit(`move a key of ${key.quantity.name}`, (document) =>
+        document.moveKeyframe(key.quantity.name, key.index, round(time)),
+      );
+    });
+  }
+
+  private keyAt(x: number, y: number): Key | null {
+    return this.keys.find((key) => Math.hypot(key.x - x, key.y - y) < 8) ?? null;
+  }
+
+  // ----------------------------------------------------------------------------------- drawing
+
+  private rowHeight(): number {
+    return this.canvas.clientHeight / this.rows.length;
+  }
+
+  private findKeys(): void {
+    this.keys = [];
+    const height = this.rowHeight();
+    this.rows.forEach((row, i) => {
+      for (const name of row.quantities) {
+        let quantity: Quantity;
+        try {
+          quantity = this.state.document.quantity(name);
+        } catch {
+          continue; // The text is being written.
+        }
+        const keys = quantity.keyframes.map((key, index) => ({ index, time: key.time }));
+        if (quantity.baseIsKey) keys.unshift({ index: -1, time: 0 });
+        for (const { index, time } of keys)
+          this.keys.push({ quantity, index, time, x: this.xOf(time), y: (i + 1) * height - 8 });
+      }
+    });
+  }
+
+  private drawAll(): void {
+    const { state, canvas } = this;
+    if (state.cameras.length === 0) return;
+    this.range.max = String(state.path.frames);
+    this.findKeys();
+    fitCanvas(canvas);
+    this.still.width = canvas.width;
+    this.still.height = canvas.height;
+    const ratio = canvas.width / Math.max(1, canvas.clientWidth);
+    const context = this.still.getContext("2d")!;
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    context.clearRect(0, 0, canvas.clientWidth, canvas.clientHeight);
+    context.font = "12px system-ui, sans-serif";
+    const height = this.rowHeight();
+    this.rows.forEach((row, i) => this.drawRow(context, row, i * height, height));
+    this.drawMark();
+  }
+
+  private drawRow(
+    context: CanvasRenderingContext2D,
+    row: Row,
+    top: number,
+    height: number,
+  ): void {
+    context.fillStyle = cssColour("--line");
+    context.fillRect(LABELS, top + height - 1, this.width(), 1);
+    context.fillStyle = cssColour("--muted");
+    context.fillText(row.label, 8, top + height / 2 - 3);
+    const values = row.values();
+    const known = values.filter((value): value is number => value !== null);
+    if (known.length === 0) return;
+    const most = known.reduce((a, b) => Math.max(a, b), -Infinity);
+    const least = known.reduce((a, b) => Math.min(a, b), Infinity);
+    const base = most - least < 1e-9 * Math.abs(most) ? 0 : least - 0.15 * (most - least);
+    const yOf = (value: number) =>
+      top + height - 4 - ((value - base) / (most - base || 1)) * (height - 10);
+    context.strokeStyle = cssColour(row.colour);
+    context.lineWidth = 1.5;
+    context.beginPath();
+    let isDown = false;
+    const step = Math.max(1, Math.floor(values.length / (2 * this.width())));
+    for (let i = 0; i < values.length; i += step) {
+      const value = values[i];
+      if (value === null) {
+        isDown = false;
+        continue;
+      }
+      const x = this.xOf(i / this.state.path.fps);
+      if (isDown) context.lineTo(x, yOf(value));
+      else context.moveTo(x, yOf(value));
+      if (values.length === 1) context.lineTo(x + this.width(), yOf(value));
+      isDown = true;
+    }
+    context.stroke();
+    for (const key of this.keys)
+      if (key.y > top && key.y < top + height)
+        drawDiamond(context, key.x, key.y, cssColour(row.colour));
+  }
+
+  private drawMark(): void {
+    const { state, canvas } = this;
+    if (state.cameras.length === 0) return;
+    const context = canvas.getContext("2d")!;
+    context.setTransform(1, 0, 0, 1, 0, 0);
+    context.clearRect(0, 0, canvas.width, canvas.height);
+    context.drawImage(this.still, 0, 0);
+    const ratio = canvas.width / Math.max(1, canvas.clientWidth);
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    const x = this.xOf(state.time);
+    context.fillStyle = cssColour("--accent");
+    context.fillRect(Math.round(x) - 0.5, 0, 1.5, canvas.clientHeight);
+    context.font = "12px system-ui, sans-serif";
+    const height = this.rowHeight();
+    context.fillStyle = cssColour("--text");
+    this.rows.forEach((row, i) =>
+      context.fillText(row.text(state.frame - 1), 8, i * height + height / 2 + 12),
+    );
+    if (this.dragged)
+      drawDiamond(context, this.xOf(this.dragged.time), this.dragged.key.y, cssColour("--text"));
+    this.range.value = String(state.frame);
+    this.range.setAttribute("aria-valuetext", `frame ${state.frame} of ${state.path.frames}`);
+    this.clock.replaceChildren(
+      element("b", {}, `${state.frame}`),
+      ` / ${state.path.frames}`,
+      element("span", {}, seconds(state.time)),
+    );
+  }
+}
+
+function round(time: number): number {
+  return Math.round(time * 1e6) / 1e6;
+}
+
+function drawDiamond(
+  context: CanvasRenderingContext2D,
+  x: number,
+  y: number,
+  colour: string,
+): void {
+  context.fillStyle = colour;
+  context.beginPath();
+  context.moveTo(x, y - 5);
+  context.lineTo(x + 5, y);
+  context.lineTo(x, y + 5);
+  context.lineTo(x - 5, y);
+  context.fill();
+}

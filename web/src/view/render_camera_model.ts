@@ -1,0 +1,137 @@
+// The render camera of a frame in the scene: lens with its blades, viewing frustum to the focus
+// plane, the plane itself, the widened frustum, and the depths of the scene.
+
+import * as THREE from "three";
+
+import {
+  add,
+  elementDirection,
+  focusPoint,
+  lensRim,
+  type FrameCamera,
+} from "../data/frame_camera";
+import type { DensityFacts, Vec3 } from "../data/scene";
+import { closed, Faces, Lines } from "./lines";
+
+const GRID = 6; // of the focus plane, cells along its width
+const BEHIND = 0.35; // how far the widened frustum is drawn behind the lens, in focus distances
+const BEYOND = 1.5; // and in front
+
+export class RenderCameraModel {
+  readonly object = new THREE.Group();
+  readonly widened = new THREE.Group();
+  readonly depths = new THREE.Group();
+  private readonly lensFace = new Faces(0.28);
+  private readonly lensLines = new Lines(1);
+  private readonly frustum = new Lines(0.9);
+  private readonly focusFace = new Faces(0.13);
+  private readonly focusLines = new Lines(0.5);
+  private readonly widenedLines = new Lines(0.22);
+  private readonly depthLines = [new Lines(0.9), new Lines(0.9)];
+  private readonly depthFaces = [new Faces(0.08), new Faces(0.08)];
+
+  constructor(private readonly origin: Vec3) {
+    this.widened.add(this.widenedLines.object);
+    for (const part of [...this.depthLines, ...this.depthFaces]) this.depths.add(part.object);
+    for (const part of [
+      this.focusFace,
+      this.focusLines,
+      this.frustum,
+      this.lensFace,
+      this.lensLines,
+    ])
+      this.object.add(part.object);
+    this.object.add(this.widened, this.depths);
+  }
+
+  setTheme(isDark: boolean): void {
+    const lens = isDark ? 0x7fe3ff : 0x006f94;
+    const frame = isDark ? 0xe8ecf4 : 0x30343c;
+    const focus = isDark ? 0x63d68a : 0x0a7f3a;
+    this.lensFace.material.color.setHex(lens);
+    this.lensLines.material.color.setHex(lens);
+    this.frustum.material.color.setHex(frame);
+    this.focusFace.material.color.setHex(focus);
+    this.focusLines.material.color.setHex(focus);
+    this.widenedLines.material.color.setHex(lens);
+  }
+
+  set(camera: FrameCamera, smallest: number): void {
+    const { origin } = this;
+    // A pinhole is drawn, too.
+    const rim = lensRim(camera.radius > 0 ? camera : { ...camera, radius: smallest });
+    this.lensFace.setPolygon(rim, origin);
+    this.lensLines.set(closed(rim), origin);
+
+    const { width, height } = camera;
+    const corners = ([[0, 0], [width, 0], [width, height], [0, height]] as const).map(([x, y]) =>
+      focusPoint(camera, x, y),
+    );
+    const axis = focusPoint(camera, camera.cx, camera.cy);
+    this.frustum.set(
+      [
+        ...corners.flatMap((corner) => [camera.centre, corner]),
+        ...closed(corners),
+        // Which way is up.
+        ...closed([
+          focusPoint(camera, width * 0.46, 0),
+          focusPoint(camera, width * 0.54, 0),
+          add(focusPoint(camera, width * 0.5, 0), camera.up, 0.045 * camera.focusDistance),
+        ]),
+      ],
+      origin,
+    );
+    this.focusFace.setPolygon(corners, origin);
+    const lines: Vec3[] = [camera.centre, axis];
+    for (let i = 1; i < GRID; ++i) {
+      lines.push(focusPoint(camera, (width * i) / GRID, 0));
+      lines.push(focusPoint(camera, (width * i) / GRID, height));
+    }
+    const rows = Math.max(2, Math.round((GRID * height) / width));
+    for (let i = 1; i < rows; ++i) {
+      lines.push(focusPoint(camera, 0, (height * i) / rows));
+      lines.push(focusPoint(camera, width, (height * i) / rows));
+    }
+    this.focusLines.set(lines, origin);
+
+    const few = lensRim({ ...camera, radius: Math.max(camera.radius, smallest) }, 12);
+    const rays: Vec3[] = [];
+    for (const point of few)
+      for (const corner of corners) {
+        const along = add(corner, point, -1);
+        rays.push(add(point, along, -BEHIND), add(point, along, BEYOND));
+      }
+    this.widenedLines.set(rays, origin);
+  }
+
+  // The nearest and the farthest of the scene, coloured by how far apart neighbouring LF cameras
+  // show it: green while that is no more than an element and a half, red above four.
+  setDensity(camera: FrameCamera, density: DensityFacts | null): void {
+    this.depths.visible = density !== null;
+    if (!density) return;
+    const far = Math.min(density.depths[1] ?? Infinity, 4 * camera.focusDistance);
+    const ends: [number, number | null][] = [
+      [density.depths[0], density.near_displacement_px],
+      [far, density.far_displacement_px],
+    ];
+    ends.forEach(([depth, displacement], i) => {
+      const corners = (
+        [
+          [0, 0],
+          [camera.width, 0],
+          [camera.width, camera.height],
+          [0, camera.height],
+        ] as const
+      ).map(([x, y]) => add(camera.centre, elementDirection(camera, x, y), depth));
+      const colour = displacementColour(displacement ?? Infinity);
+      this.depthLines[i].set(closed(corners), this.origin);
+      this.depthLines[i].material.color.set(colour);
+      this.depthFaces[i].setPolygon(corners, this.origin);
+      this.depthFaces[i].material.color.set(colour);
+    });
+  }
+}
+
+export function displacementColour(pixels: number): string {
+  return pixels <= 1.5 ? "#4fbf6b" : pixels <= 4 ? "#e0a526" : "#e0524a";
+}
