@@ -2,10 +2,12 @@
 
 #include <cctype>
 #include <charconv>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "lf/core/file.h"
+#include "lf/visualizer/focus_pick.h"
 
 namespace lf {
 namespace {
@@ -76,6 +78,35 @@ PageAnswer StartPreview(PageScene& scene, PreviewRender& preview, const Json& js
   return JsonAnswer(Json::object());
 }
 
+PageAnswer PickFocus(PageScene& scene, const Json& json) {
+  const std::shared_ptr<PathDraft> draft = scene.FindDraft(TextOf(json, "path"));
+  if (!draft) return Refusal(410, "this path is not known any more: send it again");
+  const auto frame = FrameOf(json, *draft->path);
+  const double x = NumberOf(json, "x"), y = NumberOf(json, "y");
+  if (!frame || !std::isfinite(x) || !std::isfinite(y))
+    return Refusal(422, "expected a frame of the path, \"x\" and \"y\"");
+  const RenderCamera& camera = draft->path->Camera(*frame);
+  std::optional<Ray> ray = RayOfPixel(camera.pinhole, x, y);
+  if (json.contains("camera")) {
+    const double id = NumberOf(json, "camera");
+    if (!(id >= 0 && id < static_cast<double>(scene.light_field().size())))
+      return Refusal(422, "\"camera\": expected one of the LF cameras");
+    ray = RayOfLfPixel(scene.light_field().Camera(LfImageId{static_cast<uint32_t>(id)}), x, y);
+    if (!ray) return Refusal(422, "no ray arrives at this pixel of the LF image");
+  }
+  const auto pick = FindFocus(scene.light_field(), scene.store(), camera, *ray, scene.pool());
+  if (!pick) return Refusal(pick.error());
+  const double distance_w = FocusDistanceThrough(camera, pick->point_world);
+  if (!(distance_w > 0)) return Refusal(422, "this lies behind the render camera");
+  const Vec3& point = pick->point_world;
+  Json cameras = Json::array();
+  for (const LfImageId id : pick->images) cameras.push_back(id.value);
+  return JsonAnswer({{"point", {point.x(), point.y(), point.z()}},
+                     {"focus_distance", distance_w},
+                     {"certainty", pick->certainty},
+                     {"cameras", std::move(cameras)}});
+}
+
 }  // namespace
 
 PageAnswer Edit(PageScene& scene, PreviewRender& preview, std::string_view name,
@@ -89,6 +120,7 @@ PageAnswer Edit(PageScene& scene, PreviewRender& preview, std::string_view name,
   }
   if (name == "save") return Save(scene, json);
   if (name == "preview") return StartPreview(scene, preview, json);
+  if (name == "focus") return PickFocus(scene, json);
   if (name == "preview/stop") {
     preview.Stop();
     return JsonAnswer(Json::object());

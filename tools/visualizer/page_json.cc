@@ -8,8 +8,6 @@
 #include "tools/visualizer/page_answers.h"
 
 #include "lf/preprocess/frame_density.h"
-#include "lf/selection/ideal_cells.h"
-#include "lf/selection/overlap.h"
 #include "lf/visualizer/overlap_outline.h"
 #include "lf/visualizer/scene_bytes.h"
 
@@ -133,20 +131,16 @@ std::string CameraJson(const PageScene& scene, LfImageId id) {
 
 std::string OverlapJson(PageScene& scene, const PathDraft& draft, FrameId frame, LfImageId id) {
   const PinholeCamera camera = scene.light_field().Camera(id);
-  const RenderCamera& render = draft.path->Camera(frame);
-  const std::vector<IdealCell> cells = camera.intrinsics.has_distortion()
-                                           ? MakeIdealCells(camera.intrinsics)
-                                           : std::vector<IdealCell>();
-  const PixelRect rect =
-      ContributingRect(camera, render, cells, scene.arguments().needs.select.reach);
   Json outlines = Json::array();
-  for (const auto& polygon : OverlapOutlines(camera, render)) {
+  for (const auto& polygon : OverlapOutlines(camera, draft.path->Camera(frame))) {
     Json corners = Json::array();
     for (const Vec2& corner : polygon) corners.push_back({corner.x(), corner.y()});
     outlines.push_back(std::move(corners));
   }
   Json json = {{"outlines", std::move(outlines)}};
-  if (!rect.empty()) json["rect"] = {rect.x_begin, rect.y_begin, rect.x_end, rect.y_end};
+  for (const FrameNeeds::Image& image : scene.UseOf(draft, frame).used)
+    if (image.id == id)
+      json["rect"] = {image.rect.x_begin, image.rect.y_begin, image.rect.x_end, image.rect.y_end};
   return Text(json);
 }
 

@@ -33,7 +33,6 @@ async function start(): Promise<void> {
   document.title = `${scene.light_field.name} — lfvisualizer`;
   byId("what").textContent =
     `${scene.light_field.name} · ${plural(scene.light_field.images, "LF image")} · ${scene.path_file}`;
-  await Promise.resolve();
 
   const view = new SpaceView(
     byId<HTMLCanvasElement>("scene"),
@@ -52,10 +51,9 @@ async function start(): Promise<void> {
   wireKeys(state, view, timeline, panels.render, show);
   wireMessages(state);
   wireTheme(state, view);
+  await state.open();
   if (scene.server) wireNews(state);
   if (scene.packages_note) state.say(scene.packages_note);
-
-  await state.open();
   view.look("overview");
   state.emit("theme");
   // For those who measure and test.

@@ -11,6 +11,7 @@ interface Row {
   label: string;
   colour: string;
   quantities: string[]; // whose keys it shows
+  fromZero: boolean;
   values(): (number | null)[];
   text(frame: number): string;
 }
@@ -56,9 +57,18 @@ export class Timeline {
       counts?.map((count, i) => (i < state.film!.done ? count : null)) ?? [];
     return [
       {
+        label: "Camera's speed",
+        colour: "--curve-0",
+        quantities: ["position", "look_at", "orientation", "quaternion", "focal_length"],
+        fromZero: true,
+        values: () => state.cameras.map((_, i) => this.speed(i)),
+        text: (i) => `${precise(this.speed(i), 3)} / s`,
+      },
+      {
         label: "Aperture",
         colour: "--curve-1",
-        quantities: ["aperture_diameter", "f_number", "blade_rotation_deg"],
+        quantities: ["aperture_diameter", "f_number", "blade_rotation"],
+        fromZero: true,
         values: () => state.cameras.map((camera) => 2 * camera.radius),
         text: (i) => {
           const camera = state.cameras[i];
@@ -69,7 +79,8 @@ export class Timeline {
       {
         label: "Focus distance",
         colour: "--curve-2",
-        quantities: ["focus_distance", "focus_point", "focus_tilt_deg"],
+        quantities: ["focus_distance", "focus_point", "focus_tilt"],
+        fromZero: false,
         values: () => state.cameras.map((camera) => camera.focusDistance),
         text: (i) => precise(state.cameras[i].focusDistance, 4),
       },
@@ -77,6 +88,7 @@ export class Timeline {
         label: "LF images",
         colour: "--curve-3",
         quantities: [],
+        fromZero: true,
         values: () => ofFilm(state.film?.images),
         text: (i) =>
           state.use && state.use.frame === i + 1
@@ -86,7 +98,8 @@ export class Timeline {
       {
         label: "Rays per element",
         colour: "--curve-4",
-        quantities: ["position", "look_at", "orientation", "quaternion", "focal_length"],
+        quantities: [],
+        fromZero: true,
         values: () =>
           ofFilm(state.film?.rays).map((rays) =>
             rays === null ? null : rays / (state.path.width * state.path.height),
@@ -98,6 +111,14 @@ export class Timeline {
         },
       },
     ];
+  }
+
+  // World units per second, towards the next frame.
+  private speed(index: number): number {
+    const { cameras, path } = this.state;
+    const a = cameras[Math.max(0, Math.min(index, cameras.length - 2))].centre;
+    const b = cameras[Math.min(index + 1, cameras.length - 1)].centre;
+    return Math.hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]) * path.fps;
   }
 
   // ----------------------------------------------------------------------------------- playing
@@ -114,14 +135,14 @@ export class Timeline {
       this.playing = requestAnimationFrame(step);
     };
     this.playing = requestAnimationFrame(step);
-    this.play.textContent = "❚❚";
+    this.play.dataset.playing = "yes";
     this.play.setAttribute("aria-label", "Pause");
   }
 
   stop(): void {
     cancelAnimationFrame(this.playing);
     this.playing = 0;
-    this.play.textContent = "▶";
+    this.play.dataset.playing = "no";
     this.play.setAttribute("aria-label", "Play");
   }
 
@@ -233,7 +254,8 @@ export class Timeline {
     if (known.length === 0) return;
     const most = known.reduce((a, b) => Math.max(a, b), -Infinity);
     const least = known.reduce((a, b) => Math.min(a, b), Infinity);
-    const base = most - least < 1e-9 * Math.abs(most) ? 0 : least - 0.15 * (most - least);
+    const isLevel = most - least < 1e-9 * Math.abs(most);
+    const base = row.fromZero || isLevel ? 0 : least - 0.15 * (most - least);
     const yOf = (value: number) =>
       top + height - 4 - ((value - base) / (most - base || 1)) * (height - 10);
     context.strokeStyle = cssColour(row.colour);

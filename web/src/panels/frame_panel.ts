@@ -139,5 +139,6 @@ export class FramePanel {
 
 function verdict(displacement: number): HTMLElement {
   const name = displacement <= 1.5 ? "good" : displacement <= 4 ? "" : "bad";
-  return element("span", { class: name }, `${precise(displacement, 2)} elements`);
+  const text = precise(displacement, 2);
+  return element("span", { class: name }, `${text} ${text === "1" ? "element" : "elements"}`);
 }

@@ -137,8 +137,10 @@ export class ImagePanel {
         element(
           "p",
           { class: "muted" },
-          `The rectangle that is read: ${x1 - x0} × ${y1 - y0} pixels, ${percent(share)} of the ` +
-            "image. Within the outline it shows the lens and what is filmed at once.",
+          `The rectangle that is read: ${x1 - x0} × ${y1 - y0} pixels, ${percent(share)} of the image. ` +
+            (overlap.outlines.length > 0
+              ? "Within the outline it shows the lens and what is filmed at once."
+              : "It stands beside the lens, and counts for the part that is nearest to it."),
         ),
       );
     } else {

@@ -110,7 +110,7 @@ export class YamlText {
       return;
     }
     if (map.flow) {
-      this.apply([this.fromFlow(map.items, map.items.indexOf(pair))]);
+      this.apply(this.fromFlow(map.items, map.items.indexOf(pair)));
       return;
     }
     const begin = this.lineStart(pair.key.range![0]);
@@ -145,7 +145,7 @@ export class YamlText {
     if (list.items.length === 1) {
       this.remove(path);
     } else if (list.flow) {
-      this.apply([this.fromFlow(list.items, index)]);
+      this.apply(this.fromFlow(list.items, index));
     } else {
       const begin = this.dashLine(list, index);
       this.apply([{ begin, end: this.nextLine(this.endOf(list.items[index])), text: "" }]);
@@ -215,7 +215,8 @@ export class YamlText {
   private endOfPair(pair: Pair<Node, Node | null>): number {
     if (pair.value && !isEmptyNode(pair.value)) return this.endOf(pair.value);
     const end = pair.key.range![1];
-    return this.current.startsWith(":", end) ? end + 1 : end;
+    const colon = /^\s*:/.exec(this.current.slice(end));
+    return colon ? end + colon[0].length : end;
   }
 
   private lineStart(offset: number): number {
@@ -287,8 +288,7 @@ export class YamlText {
 
   // A value of several lines becomes one beside its key.
   private blockToFlow(path: YamlPath, node: Node, text: string): Change[] {
-    const key = this.pair(path).key;
-    let end = key.range![1] + 1;
+    let end = this.current.indexOf(":", this.pair(path).key.range![1]) + 1;
     const anchor = (node as Container).anchor;
     if (anchor) end = this.startOf(node) + anchor.length + 1;
     return [
@@ -297,15 +297,26 @@ export class YamlText {
     ];
   }
 
-  private fromFlow(items: readonly (Node | Pair<Node, Node | null>)[], index: number): Change {
-    const begin = (item: Node | Pair<Node, Node | null>): number =>
-      this.startOf("key" in item ? item.key : item);
-    const end = (item: Node | Pair<Node, Node | null>): number =>
-      "key" in item ? this.endOfPair(item) : this.endOf(item);
-    if (index + 1 < items.length)
-      return { begin: begin(items[index]), end: begin(items[index + 1]), text: "" };
-    if (index > 0) return { begin: end(items[index - 1]), end: end(items[index]), text: "" };
-    return { begin: begin(items[index]), end: end(items[index]), text: "" };
+  private fromFlow(items: readonly (Node | Pair<Node, Node | null>)[], index: number): Change[] {
+    const item = items[index];
+    const begin = this.startOf("key" in item ? item.key : item);
+    const end = this.endOfItem(item);
+    if (index + 1 < items.length) {
+      const next = items[index + 1];
+      return [{ begin, end: this.startOf("key" in next ? next.key : next), text: "" }];
+    }
+    if (index === 0) return [{ begin, end, text: "" }];
+    const before = this.endOfItem(items[index - 1]);
+    const between = this.current.slice(before, begin);
+    if (!between.includes("\n")) return [{ begin: before, end, text: "" }];
+    // On a line of its own: what stands behind the item before stays, but for the comma.
+    const comma = between.indexOf(",");
+    return [{ begin: before + comma, end: before + comma + 1, text: "" },
+            { begin, end, text: "" }];
+  }
+
+  private endOfItem(item: Node | Pair<Node, Node | null>): number {
+    return "key" in item ? this.endOfPair(item) : this.endOf(item);
   }
 
   private insertFlowItem(path: YamlPath, list: YAMLSeq<Node>, index: number, text: string): void {

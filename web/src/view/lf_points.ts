@@ -13,7 +13,7 @@ uniform vec3 colours[${USE_STYLES.length}];
 uniform float sizes[${USE_STYLES.length}];
 uniform float shown[${USE_STYLES.length}];
 uniform float pixelRatio;
-uniform float crowding;
+uniform float room;
 varying vec3 colour;
 varying float isUsed;
 void main() {
@@ -24,7 +24,7 @@ void main() {
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
   // What is used lies before the rest, whatever stands where.
   if (kind == ${USED}) gl_Position.z -= 1e-4 * gl_Position.w;
-  gl_PointSize = max(1.0, sizes[kind] * crowding * pixelRatio);
+  gl_PointSize = max(1.0, sizes[kind] * room * pixelRatio);
   if (shown[kind] < 0.5) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
 }`;
 
@@ -63,7 +63,7 @@ export class LfPoints {
         sizes: { value: USE_STYLES.map((style) => style.size) },
         shown: { value: USE_STYLES.map(() => 1) },
         pixelRatio: { value: 1 },
-        crowding: { value: count > 200_000 ? 0.45 : count > 20_000 ? 0.7 : 1 },
+        room: { value: 1 },
       },
     });
     this.object = new THREE.Points(geometry, this.material);
@@ -78,6 +78,12 @@ export class LfPoints {
 
   setPixelRatio(ratio: number): void {
     this.material.uniforms.pixelRatio.value = ratio;
+  }
+
+  // spacing: about how far apart neighbours are on the screen, CSS pixels. Points fill a part of it:
+  // a crowd stays a texture, single ones can be clicked.
+  setSpacing(spacing: number): void {
+    this.material.uniforms.room.value = Math.max(0.3, Math.min(2.6, (0.62 * spacing) / 6));
   }
 
   show(kind: number, isShown: boolean): void {

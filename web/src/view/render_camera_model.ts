@@ -104,6 +104,14 @@ export class RenderCameraModel {
     this.widenedLines.set(rays, origin);
   }
 
+  // Lens alone, else frustum, focus plane and all.
+  showFocus(isShown: boolean): void {
+    for (const part of [this.focusFace, this.focusLines, this.frustum])
+      part.object.visible = isShown;
+    this.widened.visible = isShown;
+    for (const part of [...this.depthLines, ...this.depthFaces]) part.object.visible = isShown;
+  }
+
   // The nearest and the farthest of the scene, coloured by how far apart neighbouring LF cameras
   // show it: green while that is no more than an element and a half, red above four.
   setDensity(camera: FrameCamera, density: DensityFacts | null): void {

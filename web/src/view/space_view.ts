@@ -3,7 +3,7 @@
 import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
-import { add, type FrameCamera } from "../data/frame_camera";
+import { add, focusPoint, type FrameCamera } from "../data/frame_camera";
 import type { CameraFacts, Vec3 } from "../data/scene";
 import { cssColour } from "../element";
 import { LfPoints } from "./lf_points";
@@ -25,9 +25,11 @@ export class SpaceView {
   private readonly chosenFace = new Faces(0.12);
   private readonly ring: THREE.Points;
   private readonly size: number; // of the light field
+  private readonly spacing: number; // of its cameras, about
   private pending = false;
   private frameCamera: FrameCamera | null = null;
   private through = false;
+  private showsChosen = true; // its frustum, and not its place alone
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
@@ -37,8 +39,12 @@ export class SpaceView {
   ) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
     this.points = new LfPoints(positions);
+    this.points.object.geometry.computeBoundingSphere();
+    this.points.object.geometry.computeBoundingBox();
     this.model = new RenderCameraModel(origin);
     this.size = extentOf(positions);
+    // As if they filled a square; what fills a volume is denser on the screen.
+    this.spacing = (0.7 * this.size) / Math.max(1, Math.sqrt(positions.length / 3) - 1);
     this.ring = dots(11, 0xffffff);
     this.ring.visible = false;
     this.keyPoints = dots(7, 0xffffff);
@@ -115,8 +121,7 @@ export class SpaceView {
   // The LF camera that is looked at: its frustum, as far as the focus plane.
   setChosen(facts: CameraFacts | null): void {
     this.ring.visible = facts !== null;
-    this.chosen.object.visible = facts !== null;
-    this.chosenFace.object.visible = facts !== null;
+    this.showChosen();
     if (facts) {
       const depth = 0.6 * (this.frameCamera?.focusDistance ?? this.size);
       const corners = facts.corners.map((direction) => add(facts.centre, direction, depth));
@@ -130,45 +135,101 @@ export class SpaceView {
     this.draw();
   }
 
+  private showChosen(): void {
+    this.chosen.object.visible = this.chosenFace.object.visible =
+      this.ring.visible && this.showsChosen;
+  }
+
   look(preset: Preset): void {
     const frame = this.frameCamera;
     if (!frame) return;
     this.through = preset === "through";
-    const local = (p: Vec3) => new THREE.Vector3(...add(p, this.origin, -1));
     const up = new THREE.Vector3(...frame.up);
     const forward = new THREE.Vector3(...frame.forward);
     const right = new THREE.Vector3(...frame.right);
-    const centre = local(frame.centre);
-    const view = (2 * Math.atan(frame.height / 2 / frame.fy) * 180) / Math.PI;
-    this.camera.fov = preset === "through" ? Math.min(100, view * 1.08) : 40;
+    const centre = new THREE.Vector3(...add(frame.centre, this.origin, -1));
+    // What lies behind the lens would only cover what it takes.
+    this.model.showFocus(preset !== "aperture");
+    this.showsChosen = preset !== "aperture";
+    this.showChosen();
+    this.camera.fov = 40;
     this.camera.up.copy(up);
-    const target = centre.clone();
-    const span = Math.max(this.size, 2.4 * frame.radius, 0.25 * frame.focusDistance);
-    if (preset === "aperture") {
-      const reach = Math.max(3.2 * frame.radius, this.size * 0.12);
-      this.camera.position.copy(centre).addScaledVector(forward, -reach / 0.66);
-    } else if (preset === "side" || preset === "top") {
-      target.addScaledVector(forward, 0.45 * frame.focusDistance);
-      const away = preset === "side" ? right.clone().negate() : up.clone();
-      if (preset === "top") this.camera.up.copy(forward);
-      this.camera.position
-        .copy(target)
-        .addScaledVector(away, 1.15 * Math.max(span, frame.focusDistance));
-    } else if (preset === "through") {
+    let target = centre.clone();
+    if (preset === "through") {
+      const view = (2 * Math.atan(frame.height / 2 / frame.fy) * 180) / Math.PI;
+      this.camera.fov = Math.min(100, view * 1.08);
       target.addScaledVector(forward, frame.focusDistance);
       this.camera.position.copy(centre).addScaledVector(forward, -0.02 * frame.focusDistance);
+    } else if (preset === "aperture") {
+      const reach = Math.max(1.5 * frame.radius, this.size * 0.06);
+      this.camera.position.copy(centre).addScaledVector(forward, -this.distanceFor(reach));
+    } else if (preset === "overview") {
+      // From behind the lens, so near that the LF cameras are seen, so far that the focus plane is.
+      this.camera.fov = 50;
+      target.addScaledVector(forward, 0.3 * frame.focusDistance);
+      const offset = centre
+        .clone()
+        .sub(target)
+        .addScaledVector(forward, -1.1 * this.size)
+        .addScaledVector(right, 1.1 * this.size)
+        .addScaledVector(up, 0.6 * this.size);
+      this.camera.updateProjectionMatrix();
+      for (let i = 0; i < 40; ++i) {
+        this.camera.position.copy(target).add(offset);
+        this.camera.lookAt(target);
+        this.camera.updateMatrixWorld();
+        if (this.everything(frame).every((corner) => isWithin(corner, this.camera))) break;
+        offset.multiplyScalar(1.06);
+      }
     } else {
-      target.addScaledVector(forward, 0.42 * frame.focusDistance);
+      if (preset === "top") this.camera.up.copy(forward);
+      const sphere = new THREE.Box3().setFromPoints(this.everything(frame)).getBoundingSphere(
+        new THREE.Sphere(),
+      );
+      target = sphere.center;
       this.camera.position
-        .copy(centre)
-        .addScaledVector(forward, -0.75 * Math.max(span, 0.6 * frame.focusDistance))
-        .addScaledVector(right, -0.8 * Math.max(span, 0.6 * frame.focusDistance))
-        .addScaledVector(up, 0.55 * Math.max(span, 0.6 * frame.focusDistance));
+        .copy(target)
+        .addScaledVector(preset === "side" ? right : up, this.distanceFor(0.9 * sphere.radius) *
+          (preset === "side" ? -1 : 1));
     }
     this.controls.target.copy(target);
     this.camera.updateProjectionMatrix();
     this.controls.update();
     this.draw();
+  }
+
+  // From where a sphere of this radius fills the view.
+  private distanceFor(radius: number): number {
+    const half = (this.camera.fov * Math.PI) / 360;
+    const narrower = Math.min(half, Math.atan(Math.tan(half) * this.camera.aspect));
+    return radius / Math.sin(narrower);
+  }
+
+  // Corners of the light field and of the focus plane.
+  private everything(frame: FrameCamera): THREE.Vector3[] {
+    const box = this.points.object.geometry.boundingBox!;
+    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map(
+      (i) =>
+        new THREE.Vector3(
+          i & 1 ? box.max.x : box.min.x,
+          i & 2 ? box.max.y : box.min.y,
+          i & 4 ? box.max.z : box.min.z,
+        ),
+    );
+    for (const [x, y] of [
+      [0, 0],
+      [frame.width, 0],
+      [frame.width, frame.height],
+      [0, frame.height],
+    ])
+      corners.push(new THREE.Vector3(...add(focusPoint(frame, x, y), this.origin, -1)));
+    return corners;
+  }
+
+  private distanceToField(): number {
+    const sphere = this.points.object.geometry.boundingSphere;
+    const middle = sphere ? sphere.center : new THREE.Vector3();
+    return Math.max(1e-6, this.camera.position.distanceTo(middle));
   }
 
   resize(): void {
@@ -192,14 +253,30 @@ export class SpaceView {
       this.camera.near = Math.max(1e-6, distance * 1e-3);
       this.camera.far = distance * 50 + 20 * this.size;
       this.camera.updateProjectionMatrix();
+      const perUnit =
+        this.canvas.clientHeight /
+        (2 * Math.tan((this.camera.fov * Math.PI) / 360) * this.distanceToField());
+      this.points.setSpacing(this.spacing * perUnit);
       this.renderer.render(this.scene, this.camera);
     });
   }
 }
 
+function isWithin(point: THREE.Vector3, camera: THREE.Camera): boolean {
+  const seen = point.clone().project(camera);
+  return Math.abs(seen.x) < 0.96 && Math.abs(seen.y) < 0.94 && seen.z < 1;
+}
+
+// Round points that nothing hides.
 function dots(size: number, colour: number): THREE.Points {
   const material = new THREE.PointsMaterial({ size, color: colour, sizeAttenuation: false });
   material.depthTest = false;
+  material.onBeforeCompile = (shader) => {
+    shader.fragmentShader = shader.fragmentShader.replace(
+      "#include <clipping_planes_fragment>",
+      "if (length(gl_PointCoord - 0.5) > 0.5) discard;\n#include <clipping_planes_fragment>",
+    );
+  };
   const points = new THREE.Points(new THREE.BufferGeometry(), material);
   points.frustumCulled = false;
   points.renderOrder = 1;

@@ -422,6 +422,6 @@ test("places far from the origin keep their tenths of a millimetre", () => {
 test("a text that is no path says where", () => {
   assert.throws(() => PathDocument.parse("camera: {position: [0, 0"), /line 1/);
   assert.throws(() => PathDocument.parse("- 1\n"), /has keys/);
-  assert.throws(() => PathDocument.parse(kSmall.replace("400 ", "four ")).quantity("focus_distance"),
-                /lens.focus_distance_mm: expected a number/);
+  const wrong = PathDocument.parse(kSmall.replace("400 ", "four "));
+  assert.throws(() => wrong.quantity("focus_distance"), /lens.focus_distance_mm: expected a number/);
 });

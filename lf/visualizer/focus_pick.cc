@@ -1,0 +1,318 @@
+#include "lf/visualizer/focus_pick.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "lf/camera/distortion.h"
+#include "lf/camera/ideal_pixels.h"
+#include "lf/camera/ray_through.h"
+
+namespace lf {
+namespace {
+
+constexpr int kHalfPatch = 5;  // elements or LF pixels, what is larger
+constexpr int kPatchSide = 2 * kHalfPatch + 1;
+constexpr int kPatchSize = kPatchSide * kPatchSide;
+constexpr double kStep_px = 0.5;         // of the largest displacement, from depth to depth
+constexpr double kMostDisplaced = 0.45;  // of the LF image's width, at the nearest depth asked
+constexpr double kLeastTexture = 0.004;  // standard deviation in a patch, of the root of light
+constexpr double kLeastAgreement = 0.6;  // correlation
+constexpr size_t kLeastViews = 3;        // beside the reference
+constexpr double kAgreeing = 0.6;        // of the views: the others may be hidden from the point
+constexpr double kLeastCosine = 0.5;     // between optical axis and ray
+
+using Patch = std::array<float, kPatchSize>;
+
+struct View {
+  LfImageId id;
+  RayThrough rays;
+  double offset_w = 0;  // from the ray, in its normal plane
+  LfPixels pixels = {};
+};
+
+// In front of the picture that the person has clicked in.
+struct SearchRay {
+  Vec3 origin, direction, right, up;  // of length 1
+  double angle_px = 0;                // radians that a pixel of the patch is wide
+
+  Vec3 At(double depth_w, double x, double y) const {
+    return origin + depth_w * (direction + angle_px * (x * right + y * up));
+  }
+};
+
+SearchRay MakeSearchRay(const RenderCamera& frame, const Ray& ray, double lf_focal_px) {
+  SearchRay search;
+  search.origin = ray.origin;
+  search.direction = ray.direction.normalized();
+  search.right = (frame.pinhole.RightWorld() -
+                  search.direction * search.direction.dot(frame.pinhole.RightWorld()))
+                     .normalized();
+  search.up = search.right.cross(search.direction);
+  search.angle_px = std::max(1 / lf_focal_px, 1 / frame.pinhole.intrinsics.fx_px);
+  return search;
+}
+
+// Where LF cameras are wanted: at the ray, on a ring of the lens's width, and half way.
+std::vector<Vec2> WantedPlaces(double radius_w) {
+  std::vector<Vec2> places = {Vec2::Zero()};
+  for (int i = 0; i < 12; ++i) {
+    const bool is_outer = i < 8;
+    const double angle = is_outer ? kPi / 4 * i : kPi / 2 * i + kPi / 4;
+    const double distance = is_outer ? radius_w : 0.5 * radius_w;
+    places.push_back({distance * std::cos(angle), distance * std::sin(angle)});
+  }
+  return places;
+}
+
+// One LF camera for each place, within a ring that holds at least eight.
+std::vector<View> ChooseViews(const LightField& field, const SearchRay& search, double radius_w) {
+  struct Candidate {
+    LfImageId id;
+    Vec2 place;
+    double behind_w;  // along the ray
+  };
+  std::vector<Candidate> candidates;
+  for (uint32_t i = 0; i < field.size(); ++i) {
+    const PinholeCamera camera = field.Camera(LfImageId{i});
+    if (camera.ForwardWorld().dot(search.direction) < kLeastCosine) continue;
+    const Vec3 offset = camera.CentreWorld() - search.origin;
+    candidates.push_back({LfImageId{i},
+                          {search.right.dot(offset), search.up.dot(offset)},
+                          std::abs(search.direction.dot(offset))});
+  }
+  const auto distance = [](const Candidate& one, const Vec2& place) {
+    return (one.place - place).norm() + one.behind_w;
+  };
+  if (candidates.size() > 1) {
+    std::vector<double> near;
+    for (const Candidate& one : candidates) near.push_back(distance(one, Vec2::Zero()));
+    const size_t eighth = std::min<size_t>(near.size() - 1, 8);
+    std::nth_element(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(eighth), near.end());
+    radius_w = std::max(radius_w, near[eighth]);
+  }
+  std::vector<View> views;
+  for (const Vec2& place : WantedPlaces(radius_w)) {
+    const auto nearest = std::min_element(candidates.begin(), candidates.end(),
+                                          [&](const Candidate& a, const Candidate& b) {
+                                            return distance(a, place) < distance(b, place);
+                                          });
+    if (nearest == candidates.end()) break;
+    const bool is_there = std::any_of(views.begin(), views.end(),
+                                      [&](const View& view) { return view.id == nearest->id; });
+    if (!is_there)
+      views.push_back({nearest->id, RayThrough(field.Camera(nearest->id), search.direction),
+                       nearest->place.norm()});
+  }
+  return views;
+}
+
+// Bilinear, the root of light (as even as noise is); none where the image has no value.
+std::optional<float> ValueAt(const LfPixels& pixels, const Vec2& place) {
+  const double x = place.x() - 0.5 - pixels.rect.x_begin, y = place.y() - 0.5 - pixels.rect.y_begin;
+  const int column = static_cast<int>(std::floor(x)), row = static_cast<int>(std::floor(y));
+  if (column < 0 || row < 0 || column + 1 >= pixels.rect.width() ||
+      row + 1 >= pixels.rect.height())
+    return std::nullopt;
+  const double u = x - column, v = y - row;
+  const double weights[4] = {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v};
+  double sum = 0;
+  for (int i = 0; i < 4; ++i) {
+    const int at_x = column + i % 2, at_y = row + i / 2;
+    if (pixels.IsMasked(at_x, at_y)) return std::nullopt;
+    for (int c = 0; c < 3; ++c) sum += weights[i] * pixels.radiance.at(at_x, at_y, c);
+  }
+  return static_cast<float>(std::sqrt(sum / (3 * 65535.0)));
+}
+
+// Around the point at a depth as the view sees it, mean 0; its standard deviation, or none.
+std::optional<double> Look(const View& view, const SearchRay& search, double depth_w,
+                           Patch* patch) {
+  double sum = 0, squares = 0;
+  for (int i = 0; i < kPatchSize; ++i) {
+    const Vec3 point = search.At(depth_w, i % kPatchSide - kHalfPatch,
+                                 kHalfPatch - i / kPatchSide);
+    const std::optional<Vec2> place = view.rays.RecordedAt(point - view.rays.centre_world());
+    if (!place) return std::nullopt;
+    const std::optional<float> value = ValueAt(view.pixels, *place);
+    if (!value) return std::nullopt;
+    (*patch)[static_cast<size_t>(i)] = *value;
+    sum += *value;
+  }
+  const auto mean = static_cast<float>(sum / kPatchSize);
+  for (float& value : *patch) {
+    value -= mean;
+    squares += static_cast<double>(value) * value;
+  }
+  return std::sqrt(squares / kPatchSize);
+}
+
+struct Agreement {
+  double score = -1;   // correlation of the views with the reference; -1: not seen
+  double texture = 0;  // of the reference
+};
+
+Agreement AgreementAt(std::span<const View> views, const SearchRay& search, double depth_w) {
+  Patch reference, other;
+  const std::optional<double> texture = Look(views[0], search, depth_w, &reference);
+  if (!texture) return {};
+  std::vector<double> correlations;
+  for (const View& view : views.subspan(1)) {
+    const std::optional<double> deviation = Look(view, search, depth_w, &other);
+    if (!deviation) continue;
+    double product = 0;
+    for (int i = 0; i < kPatchSize; ++i)
+      product += static_cast<double>(reference[static_cast<size_t>(i)]) *
+                 other[static_cast<size_t>(i)];
+    // Noise alone correlates with nothing.
+    const double scale = kPatchSize * std::max(*texture, kLeastTexture / 4) *
+                         std::max(*deviation, kLeastTexture / 4);
+    correlations.push_back(product / scale);
+  }
+  if (correlations.size() < kLeastViews) return {-1, *texture};
+  std::sort(correlations.rbegin(), correlations.rend());
+  const auto count = static_cast<size_t>(
+      std::ceil(kAgreeing * static_cast<double>(correlations.size())));
+  double sum = 0;
+  for (size_t i = 0; i < count; ++i) sum += correlations[i];
+  return {sum / static_cast<double>(count), *texture};
+}
+
+// Depths that are asked: evenly in 1 / depth, from the nearest that the views see side by side.
+struct Sweep {
+  double nearest_per_w = 0, step_per_w = 0;
+  size_t count = 0;
+
+  double Depth(double index) const {
+    return 1 / std::max(1e-12, nearest_per_w - step_per_w * index);
+  }
+};
+
+Sweep MakeSweep(std::span<const View> views) {
+  double baseline_w = 0;
+  for (const View& view : views) baseline_w = std::max(baseline_w, view.offset_w);
+  const Intrinsics& k = views[0].rays.intrinsics();
+  const double px_per_w = std::max(1e-12, k.fx_px * baseline_w);  // displacement at 1 / depth 1
+  Sweep sweep;
+  sweep.nearest_per_w = kMostDisplaced * k.width_px / px_per_w;
+  sweep.step_per_w = kStep_px / px_per_w;
+  sweep.count = static_cast<size_t>(sweep.nearest_per_w / sweep.step_per_w);
+  return sweep;
+}
+
+// The part of the LF image that the sweep looks at.
+PixelRect PartOf(const View& view, const SearchRay& search, const Sweep& sweep) {
+  const Intrinsics& k = view.rays.intrinsics();
+  PixelRect part;
+  for (size_t i = 0; i < sweep.count; i += 4)
+    for (const double y : {-kHalfPatch, kHalfPatch})
+      for (const double x : {-kHalfPatch, kHalfPatch}) {
+        const Vec3 point = search.At(sweep.Depth(static_cast<double>(i)), x, y);
+        const auto place = view.rays.RecordedAt(point - view.rays.centre_world());
+        if (!place || !(place->cwiseAbs().maxCoeff() < 1e6)) continue;
+        const int at_x = static_cast<int>(std::floor(place->x()));
+        const int at_y = static_cast<int>(std::floor(place->y()));
+        part = Bounds(part, {at_x - 4, at_y - 4, at_x + 5, at_y + 5});
+      }
+  return Intersection(part, {0, 0, k.width_px, k.height_px});
+}
+
+// Reads what is needed of them; those that cannot be read are left out.
+Result<void> LoadViews(const LightField& field, const LfImageStore& store, const SearchRay& search,
+                       const Sweep& sweep, ThreadPool& pool, std::vector<View>* views) {
+  std::vector<std::optional<Error>> errors(views->size());
+  pool.ForEach(views->size(), [&](size_t i) {
+    View& view = (*views)[i];
+    const PixelRect part = PartOf(view, search, sweep);
+    if (part.empty()) return;
+    auto pixels = LoadWithoutThrowing(store, view.id, part, field.ImagePath(view.id).string(),
+                                      LfPixels());
+    if (pixels)
+      view.pixels = *std::move(pixels);
+    else
+      errors[i] = pixels.error();
+  });
+  std::erase_if(*views, [](const View& view) { return view.pixels.rect.empty(); });
+  if (views->size() > kLeastViews) return {};
+  for (const auto& error : errors)
+    if (error) return *error;
+  return InputError("fewer than four LF cameras around see this: its distance cannot be told");
+}
+
+}  // namespace
+
+std::optional<Ray> RayOfLfPixel(const PinholeCamera& lf_camera, double x_px, double y_px) {
+  const std::optional<Vec3> ideal = IdealPosition(
+      lf_camera.intrinsics, DistortionMap(lf_camera.intrinsics.distortion), x_px, y_px);
+  if (!ideal) return std::nullopt;
+  return Ray{lf_camera.CentreWorld(), lf_camera.cam_from_world.rotation.transpose() *
+                                          (lf_camera.intrinsics.InverseMatrix() * *ideal)};
+}
+
+Result<FocusPick> FindFocus(const LightField& light_field, const LfImageStore& store,
+                            const RenderCamera& frame, const Ray& ray, ThreadPool& pool) {
+  const double focal_px = light_field.intrinsics.empty() ? 1 : light_field.intrinsics[0].fx_px;
+  const SearchRay search = MakeSearchRay(frame, ray, focal_px);
+  std::vector<View> views = ChooseViews(light_field, search, frame.aperture.radius_w);
+  if (views.size() <= kLeastViews)
+    return InputError("fewer than four LF cameras look this way: the distance cannot be told");
+  const Sweep sweep = MakeSweep(views);
+  LF_RETURN_IF_ERROR(LoadViews(light_field, store, search, sweep, pool, &views));
+
+  std::vector<Agreement> agreements(sweep.count);
+  constexpr size_t kDepthsPerTask = 16;
+  pool.ForEach((sweep.count + kDepthsPerTask - 1) / kDepthsPerTask, [&](size_t task) {
+    const size_t end = std::min(sweep.count, (task + 1) * kDepthsPerTask);
+    for (size_t i = task * kDepthsPerTask; i < end; ++i)
+      agreements[i] = AgreementAt(views, search, sweep.Depth(static_cast<double>(i)));
+  });
+  size_t best = 0;
+  double texture = 0;
+  for (size_t i = 0; i < agreements.size(); ++i) {
+    texture = std::max(texture, agreements[i].texture);
+    if (agreements[i].score > agreements[best].score) best = i;
+  }
+  if (texture < kLeastTexture || agreements.empty())
+    return InputError(
+        "nothing to focus on: the surroundings look alike at all distances. Click on an edge or a "
+        "texture");
+  const double score = agreements[best].score;
+  if (score < kLeastAgreement || agreements[best].texture < kLeastTexture)
+    return InputError(
+        "the LF images around do not agree on a distance here. Click on an edge or a texture, away "
+        "from outlines of things in front");
+  // The best of the other peaks.
+  double rival = 0;
+  constexpr size_t kPeakWidth = 4;
+  for (size_t i = 1; i + 1 < agreements.size(); ++i)
+    if ((i + kPeakWidth < best || i > best + kPeakWidth) &&
+        agreements[i].score >= agreements[i - 1].score &&
+        agreements[i].score >= agreements[i + 1].score)
+      rival = std::max(rival, agreements[i].score);
+  // The top of the parabola through the best and its neighbours.
+  double place = static_cast<double>(best);
+  if (best > 0 && best + 1 < agreements.size()) {
+    const double before = agreements[best - 1].score, after = agreements[best + 1].score;
+    const double bend = before - 2 * score + after;
+    if (before >= 0 && after >= 0 && bend < 0) place += 0.5 * (before - after) / bend;
+  }
+  FocusPick pick;
+  pick.point_world = search.At(sweep.Depth(place), 0, 0);
+  pick.certainty = std::clamp((score - kLeastAgreement) / (0.95 - kLeastAgreement), 0.0, 1.0) *
+                   std::clamp((score - rival) / 0.15, 0.0, 1.0);
+  for (const View& view : views) pick.images.push_back(view.id);
+  return pick;
+}
+
+double FocusDistanceThrough(const RenderCamera& frame, const Vec3& point_world) {
+  const Vec3 offset = point_world - frame.pinhole.CentreWorld();
+  return frame.pinhole.ForwardWorld().dot(offset) -
+         frame.pinhole.RightWorld().dot(offset) * std::tan(frame.focus_tilt.horizontal_rad) -
+         frame.pinhole.UpWorld().dot(offset) * std::tan(frame.focus_tilt.vertical_rad);
+}
+
+}  // namespace lf

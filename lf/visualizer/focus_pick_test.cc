@@ -1,0 +1,148 @@
+#include "lf/visualizer/focus_pick.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lf/camera/distortion.h"
+#include "lf/camera/ideal_pixels.h"
+
+namespace lf {
+namespace {
+
+constexpr int kSide = 9;
+constexpr double kSpacing_w = 0.02, kNear_w = 1.2, kFar_w = 2;
+
+// Waves without period, in [0.2, 0.8].
+double Texture(double x, double y) {
+  return 0.5 + 0.1 * (std::sin(31 * x + 17 * y) + std::sin(53 * y - 29 * x * x) +
+                      std::sin(71 * x + 5 * y * y));
+}
+
+// A wall, and half a wall before it where x < 0. The wall's right end (x > 0.6) is white.
+double Light(const Ray& ray) {
+  const Vec3 near = ray.At((kNear_w - ray.origin.z()) / ray.direction.z());
+  if (near.x() < 0) return Texture(near.x(), near.y());
+  const Vec3 far = ray.At((kFar_w - ray.origin.z()) / ray.direction.z());
+  return far.x() > 0.6 ? 0.9 : Texture(far.x() + 3, far.y());
+}
+
+// Draws what is asked for. The gain of the images differs.
+class WallStore : public LfImageStore {
+ public:
+  explicit WallStore(const LightField& field) : field_(field) {}
+  Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override {
+    if (is_broken) return InputError("wall.png: not found");
+    const PinholeCamera camera = field_.Camera(id);
+    const double gain = 1 - 0.02 * (id.value % 5);
+    pixels->Reset(rect, BayerPattern::kNone);
+    for (int y = 0; y < rect.height(); ++y)
+      for (int x = 0; x < rect.width(); ++x) {
+        const auto ray = RayOfLfPixel(camera, rect.x_begin + x + 0.5, rect.y_begin + y + 0.5);
+        for (int c = 0; c < 3; ++c)
+          pixels->radiance.at(x, y, c) =
+              static_cast<uint16_t>(ray ? 65535 * gain * Light(*ray) : 0);
+        pixels->radiance.at(x, y, LfPixels::kRayLane) = 1;
+      }
+    return {};
+  }
+
+  bool is_broken = false;
+
+ private:
+  const LightField& field_;
+};
+
+LightField Wall(const Distortion& distortion = {}) {
+  LightField field;
+  field.intrinsics = {{300, 300, 160, 120, 0, 320, 240, distortion}};
+  for (int i = 0; i < kSide * kSide; ++i) {
+    LfCamera camera;
+    const double x = kSpacing_w * (i % kSide - kSide / 2), y = kSpacing_w * (i / kSide - kSide / 2);
+    camera.cam_from_world = *LookAlong({x, y, 0}, {0, 0, 1}, {0, -1, 0});
+    field.cameras.push_back(camera);
+    field.image_names.push_back("wall.png");
+  }
+  return field;
+}
+
+// Between the LF cameras; the lens is 0.12 wide.
+RenderCamera Frame() {
+  RenderCamera frame;
+  frame.pinhole.intrinsics = {300, 300, 160, 120, 0, 320, 240};
+  frame.pinhole.cam_from_world = *LookAlong({0.009, 0.004, 0}, {0, 0, 1}, {0, -1, 0});
+  frame.aperture.radius_w = 0.06;
+  frame.focus_tilt = {0.1, 0.2};
+  return frame;
+}
+
+Result<FocusPick> PickInFrame(const LightField& field, double x_px, double y_px) {
+  ThreadPool pool(2);
+  return FindFocus(field, WallStore(field), Frame(), RayOfPixel(Frame().pinhole, x_px, y_px), pool);
+}
+
+TEST(FocusPick, FindsBothWalls) {
+  const LightField field = Wall();
+  for (const double y : {60.0, 130.0, 190.0}) {
+    const auto far = PickInFrame(field, 200, y);
+    ASSERT_TRUE(far) << far.error().message;
+    EXPECT_NEAR(far->point_world.z(), kFar_w, 0.01 * kFar_w);
+    EXPECT_GT(far->certainty, 0.4);
+    EXPECT_GE(far->images.size(), 8u);
+    const auto near = PickInFrame(field, 80, y);
+    ASSERT_TRUE(near) << near.error().message;
+    EXPECT_NEAR(near->point_world.z(), kNear_w, 0.01 * kNear_w);
+  }
+}
+
+// Beside the edge half of the LF cameras see the wall in front.
+TEST(FocusPick, AgreesWithThoseThatSeeThePoint) {
+  const auto far = PickInFrame(Wall(), 176, 120);
+  ASSERT_TRUE(far) << far.error().message;
+  EXPECT_NEAR(far->point_world.z(), kFar_w, 0.03 * kFar_w);
+}
+
+TEST(FocusPick, StartsFromPixelsOfLfImages) {
+  for (const Distortion& distortion :
+       {Distortion(), Distortion{DistortionModel::kRadialTangential, {-0.12, 0.03}}}) {
+    const LightField field = Wall(distortion);
+    ThreadPool pool(1);
+    const LfImageId id{33};
+    const auto ray = RayOfLfPixel(field.Camera(id), 60, 70);
+    ASSERT_TRUE(ray);
+    const auto pick = FindFocus(field, WallStore(field), Frame(), *ray, pool);
+    ASSERT_TRUE(pick) << pick.error().message;
+    EXPECT_EQ(pick->images[0], id);
+    EXPECT_NEAR(pick->point_world.z(), kNear_w, 0.01 * kNear_w);
+  }
+}
+
+TEST(FocusPick, SaysWhyThereIsNone) {
+  const auto white = PickInFrame(Wall(), 290, 120);
+  ASSERT_FALSE(white);
+  EXPECT_NE(white.error().message.find("texture"), std::string::npos) << white.error().message;
+
+  LightField few = Wall();
+  few.cameras.resize(3);
+  EXPECT_FALSE(PickInFrame(few, 200, 120));
+
+  const LightField field = Wall();
+  WallStore store(field);
+  store.is_broken = true;
+  ThreadPool pool(1);
+  const auto broken =
+      FindFocus(field, store, Frame(), RayOfPixel(Frame().pinhole, 200, 120), pool);
+  ASSERT_FALSE(broken);
+  EXPECT_NE(broken.error().message.find("wall.png"), std::string::npos);
+}
+
+TEST(FocusPick, TiltedPlanesHoldThePoint) {
+  RenderCamera frame = Frame();
+  const Vec3 point(0.3, -0.2, 1.7);
+  const double distance_w = FocusDistanceThrough(frame, point);
+  const Plane plane = FocusPlane(frame.pinhole, distance_w, frame.focus_tilt);
+  EXPECT_NEAR(plane.normal.dot(point), plane.offset_w, 1e-12);
+}
+
+}  // namespace
+}  // namespace lf
