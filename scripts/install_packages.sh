@@ -21,9 +21,14 @@ fi
 # "ii": wanted and installed. dpkg-query exits 1 when it does not know some of the names.
 installed=" $(dpkg-query -W -f='${db:Status-Abbrev}${Package}\n' "${wanted[@]}" 2>/dev/null |
   sed -n 's/^ii  *//p' | tr '\n' ' ') " || [[ -n $installed ]]
+# Node.js comes from elsewhere on many machines, with an npm that Debian's will not stand beside.
+is_there() {
+  [[ $installed == *" $1 "* ]] || { [[ $1 == npm ]] && command -v npm >/dev/null; } ||
+    { [[ $1 == nodejs ]] && command -v node >/dev/null; }
+}
 missing=()
 for package in "${wanted[@]}"; do
-  [[ $installed == *" $package "* ]] || missing+=("$package")
+  is_there "$package" || missing+=("$package")
 done
 if ((${#missing[@]} == 0)); then exit 0; fi
 

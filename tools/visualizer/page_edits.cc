@@ -35,7 +35,7 @@ std::optional<FrameId> FrameOf(const Json& json, const CameraPath& path) {
 }
 
 // With the line and column that the parser names: "path.yaml:12:5: ...".
-PageAnswer Refused(const Error& error, const std::string& file) {
+PageAnswer RefusedPath(const Error& error, const std::string& file) {
   Json json = {{"error", error.message}};
   if (error.message.starts_with(file + ":")) {
     const char* at = error.message.data() + file.size() + 1;
@@ -48,21 +48,20 @@ PageAnswer Refused(const Error& error, const std::string& file) {
       at = rest + 1;
     }
   }
-  PageAnswer answer = JsonAnswer(json);
-  answer.status = 422;
-  return answer;
+  return JsonAnswer(json);
 }
 
 PageAnswer Save(PageScene& scene, const Json& json) {
   const std::string text = TextOf(json, "text");
   const auto draft = scene.AddDraft(text);
-  if (!draft) return Refused(draft.error(), scene.arguments().path.filename().string());
+  if (!draft) return RefusedPath(draft.error(), scene.arguments().path.filename().string());
   const auto force = json.find("force");
   const bool is_forced = force != json.end() && force->is_boolean() && force->get<bool>();
   const auto on_disk = scene.IdOnDisk();
   if (!is_forced && on_disk && *on_disk != TextOf(json, "expected"))
-    return Refusal(409, scene.arguments().path.string() +
-                            " has been changed by another program since it was opened here");
+    return JsonAnswer({{"error", scene.arguments().path.string() +
+                                     " has been changed by another program since it was opened here"},
+                       {"conflict", true}});
   if (const auto written = WriteFileAtomically(scene.arguments().path, text); !written)
     return Refusal(written.error());
   return JsonAnswer({{"id", (*draft)->id}});
@@ -71,7 +70,7 @@ PageAnswer Save(PageScene& scene, const Json& json) {
 PageAnswer StartPreview(PageScene& scene, PreviewRender& preview, const Json& json) {
   const std::string text = TextOf(json, "text");
   const auto draft = scene.AddDraft(text);
-  if (!draft) return Refused(draft.error(), scene.arguments().path.filename().string());
+  if (!draft) return RefusedPath(draft.error(), scene.arguments().path.filename().string());
   const auto frame = FrameOf(json, *(*draft)->path);
   if (!frame) return Refusal(422, "\"frame\": expected one of the path's");
   preview.Start(text, *frame);
@@ -92,12 +91,12 @@ PageAnswer PickFocus(PageScene& scene, const Json& json) {
     if (!(id >= 0 && id < static_cast<double>(scene.light_field().size())))
       return Refusal(422, "\"camera\": expected one of the LF cameras");
     ray = RayOfLfPixel(scene.light_field().Camera(LfImageId{static_cast<uint32_t>(id)}), x, y);
-    if (!ray) return Refusal(422, "no ray arrives at this pixel of the LF image");
+    if (!ray) return JsonAnswer({{"error", "no ray arrives at this pixel of the LF image"}});
   }
   const auto pick = FindFocus(scene.light_field(), scene.store(), camera, *ray, scene.pool());
-  if (!pick) return Refusal(pick.error());
+  if (!pick) return JsonAnswer({{"error", pick.error().message}});
   const double distance_w = FocusDistanceThrough(camera, pick->point_world);
-  if (!(distance_w > 0)) return Refusal(422, "this lies behind the render camera");
+  if (!(distance_w > 0)) return JsonAnswer({{"error", "this lies behind the render camera"}});
   const Vec3& point = pick->point_world;
   Json cameras = Json::array();
   for (const LfImageId id : pick->images) cameras.push_back(id.value);
@@ -115,7 +114,7 @@ PageAnswer Edit(PageScene& scene, PreviewRender& preview, std::string_view name,
   if (!json.is_object()) return Refusal(400, "expected a JSON object");
   if (name == "check") {
     const auto draft = scene.AddDraft(TextOf(json, "text"));
-    if (!draft) return Refused(draft.error(), scene.arguments().path.filename().string());
+    if (!draft) return RefusedPath(draft.error(), scene.arguments().path.filename().string());
     return {200, "application/json", PathHeadJson(**draft)};
   }
   if (name == "save") return Save(scene, json);

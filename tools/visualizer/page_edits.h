@@ -10,10 +10,11 @@
 
 namespace lf {
 
-// By names, with JSON bodies:
-//   check         {"text"} -> the head of the path (PathHeadJson), or 422 with "line", "column"
+// By names, with JSON bodies. What a person does wrong is answered as well, with "error": HTTP's own
+// errors are for requests that no page makes.
+//   check         {"text"} -> the head of the path (PathHeadJson), or "error", "line", "column"
 //   save          {"text", "expected": id of PATH.yaml's text as the page knows it, "force"}
-//                 -> {"id"}; 409 where the file is another meanwhile
+//                 -> {"id"}; "conflict" with "error" where the file is another meanwhile
 //   preview       {"text", "frame"} -> {}; how it goes is told by events
 //   preview/stop  {} -> {}
 //   focus         {"path": id, "frame", "x", "y"} in elements, or with "camera", in its pixels

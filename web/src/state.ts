@@ -184,7 +184,7 @@ export class State {
       this.emit("text");
       return "saved";
     } catch (error) {
-      if (error instanceof SourceError && error.status === 409) return "changed";
+      if (error instanceof SourceError && error.isConflict) return "changed";
       this.fail(error);
       return "failed";
     }

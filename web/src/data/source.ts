@@ -4,7 +4,7 @@ export class SourceError extends Error {
   constructor(
     message: string,
     readonly status: number,
-    readonly line: number | null = null,
+    readonly isConflict = false,
   ) {
     super(message);
   }
@@ -15,7 +15,7 @@ async function refusal(response: Response): Promise<SourceError> {
   try {
     const json = JSON.parse(text);
     if (typeof json.error === "string")
-      return new SourceError(json.error, response.status, json.line ?? null);
+      return new SourceError(json.error, response.status);
   } catch {
     // Not of our server: told below.
   }
@@ -54,14 +54,17 @@ export async function getBytes(name: string): Promise<ArrayBuffer> {
   return bytes;
 }
 
+// What a person has done wrong is an answer as well; it is thrown.
 export async function post<T>(name: string, body: object): Promise<T> {
-  return (
-    await ask(name, {
-      method: "POST",
-      headers: { "Content-Type": "application/json" },
-      body: JSON.stringify(body),
-    })
-  ).json();
+  const response = await ask(name, {
+    method: "POST",
+    headers: { "Content-Type": "application/json" },
+    body: JSON.stringify(body),
+  });
+  const json = await response.json();
+  if (typeof json.error === "string")
+    throw new SourceError(json.error, response.status, json.conflict === true);
+  return json;
 }
 
 // Server-sent events by their kind. The browser connects again by itself.

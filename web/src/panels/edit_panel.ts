@@ -56,6 +56,14 @@ const FIELDS: Field[] = [
 
 const PART_LABELS: Record<string, string> = { diameter: "", distance: "", length: "", degrees: "°" };
 
+const NAMES: Record<string, string> = {
+  orientation: "Orientation",
+  quaternion: "Quaternion",
+  f_number: "F-number",
+  focus_point: "Focus point",
+  field_of_view: "Field of view",
+};
+
 function partsOf(value: PathValue): [string, number][] {
   if (typeof value === "number") return [["", value]];
   if (Array.isArray(value)) return value.map((x, i) => ["xyzw"[i] ?? "", x]);
@@ -98,8 +106,17 @@ export class EditPanel {
       );
       return;
     }
-    this.text.addEventListener("input", () => state.setText(this.text.value));
-    this.text.addEventListener("blur", () => state.history.seal());
+    let typing = 0;
+    const take = () => state.setText(this.text.value);
+    this.text.addEventListener("input", () => {
+      clearTimeout(typing);
+      typing = window.setTimeout(take, 150);
+    });
+    this.text.addEventListener("blur", () => {
+      clearTimeout(typing);
+      if (this.text.value !== state.document.text()) take();
+      state.history.seal();
+    });
     const file = element("details", {}, element("summary", {}, "The file"), this.text);
     root.append(this.fields, this.constants(), this.movements(), file, this.verdict);
     state.on(["path", "frame", "text"], () => this.draw());
@@ -205,7 +222,7 @@ export class EditPanel {
     const summary = element(
       "summary",
       {},
-      field.label,
+      NAMES[quantity.name] ?? field.label,
       key === null ? null : element("span", { class: "key-dot", title: "a key" }, "◆"),
       element("span", { class: "now" }, valueText(value)),
     );

@@ -7,7 +7,7 @@ import { element } from "../element";
 import type { State } from "../state";
 import { USE_STYLES } from "../view/palette";
 import { percent, plural, precise, vector } from "../words";
-import { focusThere, makePickable } from "./picture_view";
+import { enlargeButton, focusThere, makePickable } from "./picture_view";
 
 const SVG = "http://www.w3.org/2000/svg";
 
@@ -26,7 +26,7 @@ export class ImagePanel {
     const previous = element("button", { click: () => state.selectNext(-1) }, "‹ Previous");
     const next = element("button", { click: () => state.selectNext(1) }, "Next ›");
     root.append(this.about, this.picture, this.facts);
-    root.append(element("div", { class: "row" }, previous, next));
+    root.append(element("div", { class: "row" }, previous, next, enlargeButton(this.picture)));
     this.image.addEventListener("error", () => {
       if (this.state.selected) this.image.alt = "This LF image cannot be read.";
     });
@@ -66,6 +66,7 @@ export class ImagePanel {
     this.image.alt = `LF image ${selected.name}`;
     this.image.src = `image/1280/${selected.id}.jpg`;
     this.picture.style.aspectRatio = `${selected.width} / ${selected.height}`;
+    this.picture.style.setProperty("--ratio", String(selected.width / selected.height));
     this.picture.querySelector(".mark")?.remove();
     this.drawing.setAttribute("viewBox", `0 0 ${selected.width} ${selected.height}`);
     this.drawing.replaceChildren();

@@ -2,7 +2,7 @@
 
 import type { PickedFocus } from "../data/scene";
 import { post } from "../data/source";
-import { element } from "../element";
+import { byId, element } from "../element";
 import type { State } from "../state";
 import { length, percent } from "../words";
 
@@ -56,4 +56,21 @@ export function makePickable(
     const [width, height] = size();
     pick(x * width, y * height);
   });
+}
+
+// A button that shows the picture over the whole space, and back.
+export function enlargeButton(picture: HTMLElement): HTMLButtonElement {
+  const place = document.createComment("");
+  const button = element("button", { "aria-pressed": "false" }, "Large");
+  button.addEventListener("click", () => {
+    const isLarge = picture.classList.toggle("large");
+    button.setAttribute("aria-pressed", String(isLarge));
+    if (isLarge) {
+      picture.replaceWith(place);
+      byId("space").append(picture);
+    } else {
+      place.replaceWith(picture);
+    }
+  });
+  return button;
 }

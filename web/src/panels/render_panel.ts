@@ -14,7 +14,7 @@ import { element } from "../element";
 import { PathDocument } from "../path/path_document";
 import type { State } from "../state";
 import { precise, shortNumber } from "../words";
-import { focusThere, makePickable } from "./picture_view";
+import { enlargeButton, focusThere, makePickable } from "./picture_view";
 
 const PREVIEW_WIDTH = 384;
 
@@ -71,7 +71,7 @@ export class RenderPanel {
         this.stops,
         reset,
       ),
-      element("div", { class: "row" }, this.rays),
+      element("div", { class: "row" }, this.rays, enlargeButton(this.box)),
       this.scale,
       this.strip,
     );
@@ -257,6 +257,7 @@ export class RenderPanel {
     if (!picture) return;
     canvas.width = picture.width;
     canvas.height = picture.height;
+    this.box.style.setProperty("--ratio", String(picture.width / picture.height));
     canvas.dataset.version = this.shownName;
     const context = canvas.getContext("2d")!;
     this.rays.disabled = !picture.hasRays;

@@ -84,14 +84,14 @@ export class PathDocument {
     const speed = speedKey === undefined ? undefined
       : this.read(spec, [spec.section, speedKey], speedKey);
     const accelerations = this.readAccelerations(spec);
+    const hasAccelerations = speed !== undefined || accelerations.length > 0;
     return {
       name: spec.name, key, section: spec.section, unit: spec.unit, shape: spec.shape,
       worldPerFile: this.scale(spec.unit, key),
-      given: section !== undefined || list !== undefined, base, keyframes,
+      given: section !== undefined || list !== undefined || hasAccelerations, base, keyframes,
       baseIsKey: base !== undefined && keyframes.length > 0 &&
                  keyframes[0].time >= kLeastKeyDistance_s,
-      speed, accelerations,
-      hasAccelerations: speed !== undefined || accelerations.length > 0,
+      speed, accelerations, hasAccelerations,
     };
   }
 

@@ -244,21 +244,26 @@ export class SpaceView {
     this.draw();
   }
 
+  // With the next picture of the screen.
   draw(): void {
     if (this.pending) return;
     this.pending = true;
     requestAnimationFrame(() => {
       this.pending = false;
-      const distance = this.camera.position.distanceTo(this.controls.target);
-      this.camera.near = Math.max(1e-6, distance * 1e-3);
-      this.camera.far = distance * 50 + 20 * this.size;
-      this.camera.updateProjectionMatrix();
-      const perUnit =
-        this.canvas.clientHeight /
-        (2 * Math.tan((this.camera.fov * Math.PI) / 360) * this.distanceToField());
-      this.points.setSpacing(this.spacing * perUnit);
-      this.renderer.render(this.scene, this.camera);
+      this.render();
     });
+  }
+
+  render(): void {
+    const distance = this.camera.position.distanceTo(this.controls.target);
+    this.camera.near = Math.max(1e-6, distance * 1e-3);
+    this.camera.far = distance * 50 + 20 * this.size;
+    this.camera.updateProjectionMatrix();
+    const pixelsPerUnit =
+      this.canvas.clientHeight /
+      (2 * Math.tan((this.camera.fov * Math.PI) / 360) * this.distanceToField());
+    this.points.setSpacing(this.spacing * pixelsPerUnit);
+    this.renderer.render(this.scene, this.camera);
   }
 }
 

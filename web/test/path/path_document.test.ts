@@ -423,5 +423,6 @@ test("a text that is no path says where", () => {
   assert.throws(() => PathDocument.parse("camera: {position: [0, 0"), /line 1/);
   assert.throws(() => PathDocument.parse("- 1\n"), /has keys/);
   const wrong = PathDocument.parse(kSmall.replace("400 ", "four "));
-  assert.throws(() => wrong.quantity("focus_distance"), /lens.focus_distance_mm: expected a number/);
+  assert.throws(() => wrong.quantity("focus_distance"),
+                /lens.focus_distance_mm: expected a number/);
 });

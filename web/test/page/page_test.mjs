@@ -1,0 +1,389 @@
+// The page in a browser: what a person sees and does, and what the programs then read.
+//
+// usage: LF_BIN=build/release/bin LF_TEST_DATA=../shared node web/test/page/page_test.mjs
+// Exit code 77: there is no browser.
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import { existsSync } from "node:fs";
+import { readFile, writeFile } from "node:fs/promises";
+import { request } from "node:http";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+
+import {
+  DATA, findBrowser, openBrowser, openPage, program, run, serve, serveFiles, temporaryFolder, until,
+} from "./visualizer.mjs";
+
+if (!findBrowser()) {
+  console.log("Chromium is missing: nothing is tested");
+  process.exit(77);
+}
+
+const SHOP = join(DATA, "data/blender-shop/images");
+const withShop = { skip: DATA && existsSync(SHOP) ? false : "blender-shop is not there" };
+
+const SHOP_PATH = `# Through the shop, with a wide triangle.
+format: lfpath 1
+fps: 24
+frames: 49
+resolution: [240, 160]
+camera:
+  focal_length_mm: 30
+  position: [-0.06, 0, 0]
+  orientation: {yaw: 0}
+lens:
+  aperture_diameter: 0.56   # of 0.8
+  focus_distance: 8.12      # the sign
+  blades: 3
+keyframes:
+  position: [{time: 0, value: [-0.06, 0, 0]}, {time: 2, value: [0.06, 0, 0]}]
+  focus_distance: [{time: 0.5, value: 8.12}, {time: 1.5, value: 6.3}]   # to the robot
+`;
+
+const CHART_PATH = `format: lfpath 1
+fps: 10
+frames: 11
+resolution: [96, 64]
+camera:
+  field_of_view_deg: 50
+  position: [0, 0, -1]      # where the middle camera stands
+  look_at: [0, 0, 0]
+lens:
+  aperture_diameter_mm: 12
+  focus_distance: 1
+keyframes:
+  # There and back.
+  focus_distance: [{time: 0, value: 1}, {time: 1, value: 1.2}]
+`;
+
+let browser, temporary, chart, pathCount = 0;
+
+before(async () => {
+  browser = await openBrowser();
+  temporary = await temporaryFolder();
+  chart = join(temporary.folder, "chart");
+  await run("lfsynth", ["chart", "-o", chart, "--count", "81", "--size", "120x80", "-q"]);
+});
+
+after(async () => {
+  await browser?.close();
+  await temporary?.remove();
+});
+
+async function writePath(text) {
+  const path = join(temporary.folder, `path-${++pathCount}.yaml`);
+  await writeFile(path, text);
+  return path;
+}
+
+// Serves, opens, and in the end sees that nothing has complained and that Ctrl-C ends it.
+async function withPage(words, body, options) {
+  const server = await serve(words);
+  try {
+    const { page, faults, close } = await openPage(browser, server.address, options);
+    await body(page, server.address);
+    assert.deepEqual(faults, []);
+    await close();
+  } finally {
+    assert.equal(await server.stop(), 0);
+  }
+}
+
+async function withChart(body, text = CHART_PATH, words = []) {
+  const path = await writePath(text);
+  await withPage([chart, path, ...words], (page, address) => body(page, path, address));
+}
+
+// A request as it is written, which browsers and fetch() would tidy up.
+function rawStatus(address, path, headers = {}) {
+  const { hostname, port } = new URL(address);
+  return new Promise((resolve, reject) => {
+    request({ hostname, port, path, headers }, (response) => {
+      response.resume();
+      resolve(response.statusCode);
+    })
+      .on("error", reject)
+      .end();
+  });
+}
+
+test("what a frame takes is what the program says", withShop, async () => {
+  const path = await writePath(SHOP_PATH);
+  const { output } = await run("lfvisualizer", [SHOP, path, "--text", "--frames", "1,25", "-q"]);
+  const collected = (frame) =>
+    output
+      .split("\n")
+      .map((line) => line.split(" "))
+      .filter(([word, number]) => word === "collected" && Number(number) === frame)
+      .map(([, , id]) => Number(id));
+  await withPage([SHOP, path], async (page) => {
+    await until(page, "app.state.use && app.state.use.frame === 1");
+    const ids = () => page.evaluate(() => [...window.lfvisualizer.state.use.ids].sort((a, b) => a - b));
+    assert.deepEqual(await ids(), collected(1));
+    assert.equal(
+      await page.textContent("#legend label:first-child b"),
+      String(collected(1).length),
+    );
+    await page.evaluate(() => window.lfvisualizer.state.setFrame(25));
+    await until(page, "app.state.use.frame === 25");
+    assert.deepEqual(await ids(), collected(25));
+    await until(page, "app.state.film && app.state.film.done === 49");
+    const film = await page.evaluate(() => window.lfvisualizer.state.film);
+    assert.equal(film.images[24], collected(25).length);
+  });
+});
+
+// Thesis, Figure 5.1.
+test("the LF cameras of a triangular aperture form a triangle", withShop, async () => {
+  const path = await writePath(SHOP_PATH.replace("-0.06, 0, 0]\n", "0, 0, 0]\n").replace(
+    /  position: \[\{.*\n/, ""));
+  await withPage([SHOP, path, "--lens-weights", "none"], async (page) => {
+    await until(page, "app.state.use");
+    await page.keyboard.press("2");
+    const { used, all, lens } = await page.evaluate(() => {
+      const { state } = window.lfvisualizer;
+      const place = (id) => [state.positions[3 * id], -state.positions[3 * id + 1]];
+      return {
+        used: [...state.use.ids].map(place),
+        all: Array.from({ length: state.positions.length / 3 }, (_, id) => place(id)),
+        lens: { radius: state.camera.radius, blades: state.camera.blades },
+      };
+    });
+    assert.equal(lens.blades, 3);
+    // Inside by the distances from its three edges: normals down, and 30 degrees above right, left.
+    const inside = ([x, y], margin) =>
+      [[0, -1], [Math.cos(Math.PI / 6), 0.5], [-Math.cos(Math.PI / 6), 0.5]].every(
+        ([nx, ny]) => nx * x + ny * y <= lens.radius / 2 + margin);
+    assert.ok(used.length > 80, `${used.length}`);
+    for (const place of used) assert.ok(inside(place, 1e-6), `${place}`);
+    assert.equal(used.length, all.filter((place) => inside(place, 1e-6)).length);
+  });
+});
+
+test("keys and the timeline move through the film", async () => {
+  await withChart(async (page) => {
+    await page.keyboard.press("ArrowRight");
+    await page.keyboard.press("ArrowRight");
+    await until(page, "app.state.frame === 3 && app.state.use.frame === 3");
+    assert.match(await page.textContent("#clock"), /^3 \/ 11/);
+    await page.keyboard.press("End");
+    await until(page, "app.state.frame === 11");
+    await page.keyboard.press("Shift+ArrowLeft");
+    await until(page, "app.state.frame === 1");
+    await page.keyboard.press("Space");
+    await until(page, "app.state.frame > 4");
+    await until(page, "app.state.frame === 11");
+    const box = await page.locator("#curves").boundingBox();
+    await page.mouse.click(box.x + 118 + (box.width - 130) / 2, box.y + 20);
+    await until(page, "app.state.frame === 6");
+    await page.keyboard.press("]");
+    await until(page, "app.state.selected !== null");
+    await page.waitForFunction(() => document.querySelector(".picture img").naturalWidth === 120);
+    await page.waitForSelector(".picture svg polygon, .picture svg rect");
+  });
+});
+
+test("a click on a point shows its LF image", async () => {
+  await withChart(async (page) => {
+    await until(page, "app.state.use");
+    await page.keyboard.press("2");
+    await page.waitForTimeout(300);
+    const box = await page.locator("#scene").boundingBox();
+    await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
+    await until(page, "app.state.selected !== null");
+    assert.equal(await page.evaluate(() => window.lfvisualizer.state.selected.id), 40);
+    assert.equal(await page.getAttribute("[data-tab=image]", "aria-selected"), "true");
+  });
+});
+
+test("a key is edited, saved with its comments, and rendered", async () => {
+  await withChart(async (page, path) => {
+    await page.keyboard.press("End");
+    await page.click("[data-tab=edit]");
+    await page.click("summary:has-text('Focus distance')");
+    await page.fill("[data-quantity=focus_distance]", "1.4");
+    await page.keyboard.press("Enter");
+    await until(page, "Math.abs(app.state.cameras[10].focusDistance - 1.4) < 1e-9");
+    await page.keyboard.press("ArrowLeft");
+    await page.click("summary:has-text('Aperture')");
+    await page.fill("[data-quantity=aperture_diameter]", "0.02");
+    await page.keyboard.press("Enter");
+    await until(page, "Math.abs(app.state.cameras[0].radius - 0.01) < 1e-9");
+    await page.click("#undo");
+    await until(page, "Math.abs(app.state.cameras[0].radius - 0.006) < 1e-9");
+    await page.click("#redo");
+    await until(page, "Math.abs(app.state.cameras[0].radius - 0.01) < 1e-9");
+    assert.equal(await readFile(path, "utf8"), CHART_PATH);
+    await page.keyboard.press("Control+s");
+    await until(page, "!app.state.isChanged");
+    const saved = await readFile(path, "utf8");
+    assert.equal(saved, CHART_PATH.replace("value: 1.2", "value: 1.4").replace(
+      "aperture_diameter_mm: 12", "aperture_diameter_mm: 20"));
+    await run("lfrenderer", [chart, path, "-o", `${path}.frames`, "--frames", "11", "-q",
+                             "--no-contact-sheet"]);
+    const report = JSON.parse(await readFile(`${path}.frames/report.json`, "utf8"));
+    assert.match(JSON.stringify(report.frames[0]), /"frame.focus_distance_w":"1.4"/);
+  });
+});
+
+test("what is no path is told with its line and not saved", async () => {
+  await withChart(async (page, path) => {
+    await page.click("[data-tab=edit]");
+    await page.click("summary:has-text('The file')");
+    await page.fill("textarea", CHART_PATH.replace("focus_distance: 1\n", "focus_distanc: 1\n"));
+    await page.waitForFunction(() =>
+      /:11:.*focus_distanc/.test(document.querySelector("aside p.bad")?.textContent ?? ""));
+    assert.ok(await page.isDisabled("#save"));
+    await page.fill("textarea", CHART_PATH.replace("fps: 10", "fps: 20"));
+    await until(page, "app.state.path.fps === 20 && app.state.invalid === null");
+    // Another program writes the file meanwhile.
+    await writeFile(path, `${CHART_PATH}# mine\n`);
+    await page.click("#save");
+    await page.click("dialog button:has-text('Cancel')");
+    assert.match(await readFile(path, "utf8"), /# mine/);
+    await page.click("#save");
+    await page.click("dialog button:has-text('Write over it')");
+    await until(page, "!app.state.isChanged");
+    assert.match(await readFile(path, "utf8"), /fps: 20/);
+  });
+});
+
+test("movements are made, and commands are those of the programs", async () => {
+  await withChart(async (page) => {
+    await page.click("[data-tab=edit]");
+    await page.click("summary:has-text('Movements')");
+    await page.fill("[aria-label='Degrees of the orbit']", "10");
+    await page.fill("[aria-label='Seconds of the orbit']", "2");
+    await page.click(".row:has([aria-label='Degrees of the orbit']) button");
+    await until(page, "app.state.path.frames === 21");
+    const radii = await page.evaluate(() =>
+      window.lfvisualizer.state.cameras.map((camera) => Math.hypot(...camera.centre)));
+    for (const radius of radii) assert.ok(Math.abs(radius - 1) < 0.002, `${radius}`);
+    await page.keyboard.press("Escape");
+    await page.click("#commands");
+    assert.match(await page.textContent("dialog"), /lfrenderer .*chart .*path-\d+\.yaml -o frames/);
+    assert.match(await page.textContent("dialog"), /not saved/);
+  });
+});
+
+test("a preview comes in, and a click on it focuses there", async () => {
+  await withChart(async (page) => {
+    await page.keyboard.press("p");
+    await until(page, "app.state.preview && app.state.preview.state === 'finished'");
+    await page.waitForSelector(".picture canvas[data-version^='preview/1.bin']");
+    const lightest = () => page.evaluate(() => {
+      const canvas = document.querySelector(".picture canvas[data-version]");
+      const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+      return data.reduce((most, value, i) => (i % 4 === 0 ? Math.max(most, value) : most), 0);
+    });
+    assert.ok((await lightest()) > 200);
+    await page.locator("[aria-label='Exposure, stops']").fill("-6");
+    assert.ok((await lightest()) < 60);
+    // The star in the middle is at 1.
+    const box = await page.locator(".picture:has(canvas)").boundingBox();
+    await page.mouse.click(box.x + (box.width * 56) / 96, box.y + (box.height * 40) / 64);
+    await until(page, "app.state.isChanged");
+    await until(page, "Math.abs(app.state.camera.focusDistance - 1) < 0.05");
+  }, CHART_PATH.replace("time: 0, value: 1}", "time: 0, value: 1.15}"));
+});
+
+test("frames of a render are seen while they grow", async () => {
+  const path = await writePath(CHART_PATH.replace("[96, 64]", "[960, 640]"));
+  const frames = `${path}.frames`;
+  await withPage([chart, path, "--watch", frames], async (page) => {
+    assert.match(await page.textContent("aside"), /No frames lie there yet/);
+    const renderer = spawn(program("lfrenderer"), [chart, path, "-o", frames, "--dump-every", "1s",
+      "--threads", "1", "--frames", "1-3", "--back-end", "reference", "-q", "--no-contact-sheet"]);
+    const ended = new Promise((resolve) => renderer.on("close", resolve));
+    await until(page, "app.state.watch && app.state.watch.frames.some((one) => !one.finished)");
+    await page.waitForSelector(".picture canvas[data-version^='watch/1.bin']");
+    const first = await page.getAttribute(".picture canvas", "data-version");
+    assert.equal(await ended, 0);
+    await until(page, "app.state.watch.frames.filter((one) => one.finished).length === 3");
+    await page.waitForFunction(
+      (old) => document.querySelector(".picture canvas").dataset.version !== old, first);
+    await page.click("text=Rays per element");
+    assert.match(await page.textContent("aside"), /Rays of each element: least/);
+  });
+});
+
+test("nobody is answered without the token, and nothing outside is given", async () => {
+  await withChart(async (page, path, address) => {
+    const { pathname, port } = new URL(address);
+    assert.equal(await rawStatus(address, `${pathname}scene.json`), 200);
+    const refused = [
+      "/", "/scene.json", `/${"0".repeat(32)}/scene.json`, pathname.slice(0, -2),
+      `${pathname}../scene.json`, `${pathname}../../etc/passwd`,
+      `${pathname}%2e%2e/%2e%2e/etc/passwd`, `${pathname}image/..%5c..%5cpasswd`,
+    ];
+    for (const target of refused) assert.equal(await rawStatus(address, target), 403, target);
+    assert.equal(await rawStatus(address, pathname, { Host: `evil.example:${port}` }), 403);
+    for (const target of ["etc/passwd", "image/1280/81.jpg", "image/9/1.jpg", "camera/-1.json",
+                          "path/x/use/1.bin", "watch/frames.json", "camera/1.yaml"])
+      assert.ok([404, 410].includes(await rawStatus(address, pathname + target)), target);
+  });
+});
+
+test("an exported page opens from a plain web server", async () => {
+  const path = await writePath(CHART_PATH);
+  const site = join(temporary.folder, "site");
+  const { output } = await run("lfvisualizer", [chart, path, "--export", site, "-q"]);
+  assert.match(output, /site: \d+ files/);
+  await run("lfvisualizer", [chart, path, "--export", site, "-q"], 2);
+  const server = await serveFiles(site);
+  const { page, faults, close } = await openPage(browser, server.address);
+  await until(page, "app.state.use");
+  await page.keyboard.press("End");
+  await until(page, "app.state.frame === 11 && app.state.use.frame === 11");
+  await page.keyboard.press("]");
+  await until(page, "app.state.selected !== null");
+  await page.waitForFunction(() => document.querySelector(".picture img").naturalWidth === 120);
+  await page.click("[data-tab=edit]");
+  assert.match(await page.textContent("aside"), /exported files/);
+  assert.ok(await page.isHidden("#save"));
+  assert.deepEqual(faults, []);
+  await close();
+  await server.close();
+});
+
+test("a frame without LF images says so", async () => {
+  await withChart(async (page) => {
+    await until(page, "app.state.use");
+    assert.match(await page.textContent("#empty"), /takes no LF image/);
+    assert.match(await page.textContent("aside"), /it is black/);
+  }, CHART_PATH.replace("look_at: [0, 0, 0]", "look_at: [0, 0, -2]"));
+});
+
+test("packages say which frames are theirs; those of another path are left aside", async () => {
+  const path = await writePath(CHART_PATH);
+  const packages = join(temporary.folder, "packages");
+  await run("lfpreprocessor", [chart, path, "-o", packages, "--packages", "2", "-q",
+                               "--max-images", "9"]);
+  const words = [chart, path, join(packages, "package-0000.lfp"),
+                 join(packages, "package-0001.lfp")];
+  await withPage(words, async (page) => {
+    await until(page, "app.state.use");
+    assert.equal(await page.evaluate(() => window.lfvisualizer.state.use.ids.length), 9);
+    assert.match(await page.textContent("aside"), /Packagepackage-0000/);
+  });
+  await writeFile(path, CHART_PATH.replace("frames: 11", "frames: 12"));
+  await withPage(words, async (page) => {
+    assert.match(await page.textContent("#message"), /another path/);
+  });
+});
+
+test("it is readable in light and in a small window", async () => {
+  const path = await writePath(CHART_PATH);
+  await withPage([chart, path], async (page) => {
+    await until(page, "app.state.use");
+    const isWithin = await page.evaluate(() =>
+      document.documentElement.scrollWidth <= innerWidth &&
+      document.documentElement.scrollHeight <= innerHeight);
+    assert.ok(isWithin);
+    assert.equal(await page.getAttribute("html", "data-theme"), "light");
+    await page.click("#theme");
+    assert.equal(await page.getAttribute("html", "data-theme"), "dark");
+    for (const button of await page.locator("button:visible").all())
+      assert.ok((await button.getAttribute("aria-label")) ?? (await button.textContent()));
+  }, { viewport: { width: 1000, height: 600 }, colorScheme: "light" });
+});
