@@ -53,7 +53,10 @@ class VisualizerTest(ProgramTestCase):
         self.assertLessEqual(len([line for line in few if line[0] == 1]), 3)
 
     def test_what_is_missing_or_wrong_is_told(self):
-        self.fails(2, ["--text"], VISUALIZER, self.field, self.path)
+        self.fails(2, ["--frames", "--text"], VISUALIZER, self.field, self.path, "--frames", 1)
+        self.fails(2, ["--serve", "--text"], VISUALIZER, self.field, self.path, "--text", "--serve",
+                   0)
+        self.fails(3, ["lfpath"], VISUALIZER, self.field, self.field)
         self.fails(2, ["--frames '7'"], VISUALIZER, self.field, self.path, "--text", "--frames", 7)
         self.fails(3, ["nowhere"], VISUALIZER, self.folder / "nowhere", self.path, "--text")
 

@@ -46,8 +46,8 @@ void AddOptions(CLI::App& app, Arguments& a) {
   a.light_field.AddTo(app);
   app.add_option("PATH", a.path, "Camera path (doc/formats/path.md)")->required();
   app.add_option("PACKAGE", a.page.packages, "Packages that lfpreprocessor has made of it");
-  auto* text = app.add_flag("--text", a.text,
-                            "Print LF cameras, render cameras and collected LF cameras");
+  auto* text =
+      app.add_flag("--text", a.text, "Print LF cameras, render cameras and collected LF cameras");
   app.add_option("--frames", a.frames, "Only these frames: 1-100x2, 7, 3-5,9")
       ->needs(text)
       ->check(lf::NotEmpty());
@@ -117,10 +117,9 @@ lf::Result<void> Run(Arguments& a, const lf::CommonOptions& common) {
         const lf::ExportFacts facts,
         lf::ExportPage(*scene, a.export_folder, a.export_images, interrupted,
                        [&](size_t done, size_t total) { meter.Update(done, total, "exporting"); }));
-    return lf::PrintReport(fmt::format("{}: {} files, {}B, {} LF images\n", a.export_folder,
-                                       facts.file_count,
-                                       lf::ShortNumber(static_cast<double>(facts.byte_count)),
-                                       facts.image_count));
+    return lf::PrintReport(
+        fmt::format("{}: {} files, {}B, {} LF images\n", a.export_folder, facts.file_count,
+                    lf::ShortNumber(static_cast<double>(facts.byte_count)), facts.image_count));
   }
   LF_ASSIGN_OR_RETURN(const auto server, lf::PageServer::Open(*scene, a.port));
   LF_RETURN_IF_ERROR(lf::PrintReport(server->address() + "\n"));

@@ -1,7 +1,7 @@
 // Bundles the page: index.html, page.js, page.css.
 //
 // usage: node build.mjs FOLDER
-import { copyFile, mkdir } from "node:fs/promises";
+import { copyFile, mkdir, readFile } from "node:fs/promises";
 import path from "node:path";
 import { fileURLToPath } from "node:url";
 import { build } from "esbuild";
@@ -13,6 +13,14 @@ if (!folder) {
   process.exit(2);
 }
 
+// Of what the bundle holds, which asks for it.
+const licences = await Promise.all(
+  ["three", "yaml"].map(async (name) => {
+    const text = await readFile(path.join(web, "node_modules", name, "LICENSE"), "utf8");
+    return `${name}\n\n${text.trim()}`;
+  }),
+);
+
 await mkdir(folder, { recursive: true });
 await build({
   entryPoints: { page: path.join(web, "src/main.ts") },
@@ -20,7 +28,7 @@ await build({
   minify: true,
   format: "iife",
   target: "es2022",
-  legalComments: "inline",
+  banner: { js: `/*\n${licences.join("\n\n")}\n*/` },
   outdir: folder,
   logLevel: "warning",
 });

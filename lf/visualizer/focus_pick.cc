@@ -115,8 +115,7 @@ std::vector<View> ChooseViews(const LightField& field, const SearchRay& search, 
 std::optional<float> ValueAt(const LfPixels& pixels, const Vec2& place) {
   const double x = place.x() - 0.5 - pixels.rect.x_begin, y = place.y() - 0.5 - pixels.rect.y_begin;
   const int column = static_cast<int>(std::floor(x)), row = static_cast<int>(std::floor(y));
-  if (column < 0 || row < 0 || column + 1 >= pixels.rect.width() ||
-      row + 1 >= pixels.rect.height())
+  if (column < 0 || row < 0 || column + 1 >= pixels.rect.width() || row + 1 >= pixels.rect.height())
     return std::nullopt;
   const double u = x - column, v = y - row;
   const double weights[4] = {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v};
@@ -134,8 +133,7 @@ std::optional<double> Look(const View& view, const SearchRay& search, double dep
                            Patch* patch) {
   double sum = 0, squares = 0;
   for (int i = 0; i < kPatchSize; ++i) {
-    const Vec3 point = search.At(depth_w, i % kPatchSide - kHalfPatch,
-                                 kHalfPatch - i / kPatchSide);
+    const Vec3 point = search.At(depth_w, i % kPatchSide - kHalfPatch, kHalfPatch - i / kPatchSide);
     const std::optional<Vec2> place = view.rays.RecordedAt(point - view.rays.centre_world());
     if (!place) return std::nullopt;
     const std::optional<float> value = ValueAt(view.pixels, *place);
@@ -166,8 +164,8 @@ Agreement AgreementAt(std::span<const View> views, const SearchRay& search, doub
     if (!deviation) continue;
     double product = 0;
     for (int i = 0; i < kPatchSize; ++i)
-      product += static_cast<double>(reference[static_cast<size_t>(i)]) *
-                 other[static_cast<size_t>(i)];
+      product +=
+          static_cast<double>(reference[static_cast<size_t>(i)]) * other[static_cast<size_t>(i)];
     // Noise alone correlates with nothing.
     const double scale = kPatchSize * std::max(*texture, kLeastTexture / 4) *
                          std::max(*deviation, kLeastTexture / 4);
@@ -175,8 +173,8 @@ Agreement AgreementAt(std::span<const View> views, const SearchRay& search, doub
   }
   if (correlations.size() < kLeastViews) return {-1, *texture};
   std::sort(correlations.rbegin(), correlations.rend());
-  const auto count = static_cast<size_t>(
-      std::ceil(kAgreeing * static_cast<double>(correlations.size())));
+  const auto count =
+      static_cast<size_t>(std::ceil(kAgreeing * static_cast<double>(correlations.size())));
   double sum = 0;
   for (size_t i = 0; i < count; ++i) sum += correlations[i];
   return {sum / static_cast<double>(count), *texture};
@@ -229,8 +227,8 @@ Result<void> LoadViews(const LightField& field, const LfImageStore& store, const
     View& view = (*views)[i];
     const PixelRect part = PartOf(view, search, sweep);
     if (part.empty()) return;
-    auto pixels = LoadWithoutThrowing(store, view.id, part, field.ImagePath(view.id).string(),
-                                      LfPixels());
+    auto pixels =
+        LoadWithoutThrowing(store, view.id, part, field.ImagePath(view.id).string(), LfPixels());
     if (pixels)
       view.pixels = *std::move(pixels);
     else

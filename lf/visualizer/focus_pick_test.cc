@@ -130,8 +130,7 @@ TEST(FocusPick, SaysWhyThereIsNone) {
   WallStore store(field);
   store.is_broken = true;
   ThreadPool pool(1);
-  const auto broken =
-      FindFocus(field, store, Frame(), RayOfPixel(Frame().pinhole, 200, 120), pool);
+  const auto broken = FindFocus(field, store, Frame(), RayOfPixel(Frame().pinhole, 200, 120), pool);
   ASSERT_FALSE(broken);
   EXPECT_NE(broken.error().message.find("wall.png"), std::string::npos);
 }

@@ -17,8 +17,8 @@ uint8_t DisplayValue(double linear) {
   static const std::vector<uint8_t> values = [] {
     std::vector<uint8_t> table(kSteps + 1);
     for (int i = 0; i <= kSteps; ++i)
-      table[i] = static_cast<uint8_t>(
-          std::lround(255 * SrgbFromLinear(static_cast<double>(i) / kSteps)));
+      table[i] =
+          static_cast<uint8_t>(std::lround(255 * SrgbFromLinear(static_cast<double>(i) / kSteps)));
     return table;
   }();
   return values[static_cast<size_t>(std::clamp(linear, 0.0, 1.0) * kSteps + 0.5)];
@@ -40,24 +40,24 @@ Result<Image<uint8_t>> LfPicture(const LightField& light_field, const LfImageSto
                                  LfImageId id, int max_side_px) {
   const Intrinsics& k = light_field.Camera(id).intrinsics;
   const PixelRect whole = {0, 0, k.width_px, k.height_px};
-  LF_ASSIGN_OR_RETURN(const LfPixels pixels,
-                      LoadWithoutThrowing(store, id, whole, light_field.ImagePath(id).string(),
-                                          LfPixels()));
-  const int factor = std::max(1, (std::max(k.width_px, k.height_px) + max_side_px - 1) /
-                                     std::max(1, max_side_px));
+  LF_ASSIGN_OR_RETURN(
+      const LfPixels pixels,
+      LoadWithoutThrowing(store, id, whole, light_field.ImagePath(id).string(), LfPixels()));
+  const int factor =
+      std::max(1, (std::max(k.width_px, k.height_px) + max_side_px - 1) / std::max(1, max_side_px));
   const RadianceEncoding& encoding = light_field.encoding;
-  Image<uint8_t> picture((k.width_px + factor - 1) / factor, (k.height_px + factor - 1) / factor,
-                         3, kMaskedGrey);
+  Image<uint8_t> picture((k.width_px + factor - 1) / factor, (k.height_px + factor - 1) / factor, 3,
+                         kMaskedGrey);
   for (int y = 0; y < picture.height(); ++y)
     for (int x = 0; x < picture.width(); ++x) {
-      const PixelRect square = Intersection(
-          pixels.rect, {x * factor, y * factor, (x + 1) * factor, (y + 1) * factor});
+      const PixelRect square =
+          Intersection(pixels.rect, {x * factor, y * factor, (x + 1) * factor, (y + 1) * factor});
       const std::array<double, 4> sum = SumOf(pixels, square);
       if (!(sum[3] > 0)) continue;
       Vec3 colour;
       for (int c = 0; c < 3; ++c)
-        colour[c] = (sum[c] / sum[3] - encoding.pedestal) / encoding.Scale() *
-                    encoding.white_balance[c];
+        colour[c] =
+            (sum[c] / sum[3] - encoding.pedestal) / encoding.Scale() * encoding.white_balance[c];
       const Vec3 developed = encoding.camera_to_srgb * colour;
       for (int c = 0; c < 3; ++c) picture.at(x, y, c) = DisplayValue(developed[c]);
     }

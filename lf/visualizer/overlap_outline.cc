@@ -61,10 +61,10 @@ Polygon Bent(const Polygon& ideal, const Intrinsics& k, const DistortionMap& map
       const Vec2 q = a + (b - a) * (static_cast<double>(step) / kEdgeSteps);
       const std::optional<Vec2> d = map.Distort(inverse * Vec3(q.x(), q.y(), 1));
       if (!d) continue;
-      bent.push_back({std::clamp(k.fx_px * d->x() + k.skew_px * d->y() + k.cx_px, 0.0,
-                                 static_cast<double>(k.width_px)),
-                      std::clamp(k.fy_px * d->y() + k.cy_px, 0.0,
-                                 static_cast<double>(k.height_px))});
+      bent.push_back(
+          {std::clamp(k.fx_px * d->x() + k.skew_px * d->y() + k.cx_px, 0.0,
+                      static_cast<double>(k.width_px)),
+           std::clamp(k.fy_px * d->y() + k.cy_px, 0.0, static_cast<double>(k.height_px))});
     }
   }
   return bent;

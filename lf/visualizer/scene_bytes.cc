@@ -1,5 +1,6 @@
 #include "lf/visualizer/scene_bytes.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -8,8 +9,6 @@
 #include <limits>
 #include <span>
 #include <vector>
-
-#include <Eigen/Core>
 
 namespace lf {
 namespace {
@@ -56,15 +55,15 @@ std::string FramesBytes(const CameraPath& path) {
     AddVector(&numbers, camera.pinhole.UpWorld());
     AddVector(&numbers, camera.pinhole.ForwardWorld());
     const Intrinsics& k = camera.pinhole.intrinsics;
-    numbers.insert(numbers.end(), {k.fx_px, k.fy_px, k.cx_px, k.cy_px, camera.aperture.radius_w,
-                                   camera.aperture.rotation_rad,
-                                   static_cast<double>(camera.aperture.blades)});
-    AddVector(&numbers, camera.focus_plane.normal);
     numbers.insert(numbers.end(),
-                   {camera.focus_plane.offset_w, camera.time_s, camera.focal_length_w,
-                    camera.sensor_width_w, camera.focus_distance_w,
-                    camera.focus_tilt.horizontal_rad, camera.focus_tilt.vertical_rad,
-                    static_cast<double>(k.width_px), static_cast<double>(k.height_px)});
+                   {k.fx_px, k.fy_px, k.cx_px, k.cy_px, camera.aperture.radius_w,
+                    camera.aperture.rotation_rad, static_cast<double>(camera.aperture.blades)});
+    AddVector(&numbers, camera.focus_plane.normal);
+    numbers.insert(
+        numbers.end(),
+        {camera.focus_plane.offset_w, camera.time_s, camera.focal_length_w, camera.sensor_width_w,
+         camera.focus_distance_w, camera.focus_tilt.horizontal_rad, camera.focus_tilt.vertical_rad,
+         static_cast<double>(k.width_px), static_cast<double>(k.height_px)});
   }
   std::string bytes;
   Append<double>(&bytes, numbers);

@@ -14,15 +14,17 @@
 
 namespace lf {
 
-// Near the LF cameras: the world's own origin may be so far away that floats cannot tell them apart.
+// Near the LF cameras: the world's own origin may be so far away that floats cannot tell them
+// apart.
 Vec3 SceneOrigin(const LightField& light_field);
 
 // float x, y, z of every LF camera from SceneOrigin(), world units: 12 bytes each.
 std::string CamerasBytes(const LightField& light_field);
 
 // double numbers of every frame's camera: centre, right, up, forward (12); fx, fy, cx, cy; radius,
-// rotation and blades of the aperture; normal and offset of the focus plane (4); time, focal length,
-// sensor width, focus distance, horizontal and vertical tilt; width and height of the plate.
+// rotation and blades of the aperture; normal and offset of the focus plane (4); time, focal
+// length, sensor width, focus distance, horizontal and vertical tilt; width and height of the
+// plate.
 inline constexpr size_t kFrameNumbers = 31;
 std::string FramesBytes(const CameraPath& path);
 

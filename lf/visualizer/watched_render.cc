@@ -79,8 +79,8 @@ Image<float> Shrunken(const Image<T>& image, const std::array<int, 3>& count_cha
   const bool has_rays = count_channels[0] >= 0;
   const int factor = std::max(
       1, (std::max(image.width(), image.height()) + max_side_px - 1) / std::max(1, max_side_px));
-  Image<float> small((image.width() + factor - 1) / factor,
-                     (image.height() + factor - 1) / factor, 4);
+  Image<float> small((image.width() + factor - 1) / factor, (image.height() + factor - 1) / factor,
+                     4);
   for (int y = 0; y < small.height(); ++y)
     for (int x = 0; x < small.width(); ++x) {
       std::array<float, 4> sum = {};

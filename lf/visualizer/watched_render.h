@@ -1,4 +1,5 @@
-// The frames of a render that is at work, or done: what lies in lfrenderer's DIR (doc/checkpoints.md).
+// The frames of a render that is at work, or done: what lies in lfrenderer's DIR
+// (doc/checkpoints.md).
 #pragma once
 
 #include <cstdint>

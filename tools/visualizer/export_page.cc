@@ -51,10 +51,11 @@ Result<ExportFacts> ExportPage(PageScene& scene, const fs::path& folder, size_t 
                                const std::function<void(size_t, size_t)>& progress) {
   std::error_code error;
   if (fs::exists(folder, error) && !fs::is_empty(folder, error))
-    return UsageError(fmt::format("--export {}: something is there already; give a new folder",
-                                  folder.string()));
+    return UsageError(
+        fmt::format("--export {}: something is there already; give a new folder", folder.string()));
   if (PageFiles().empty())
-    return OutputError("this lfvisualizer was built without its page: Node.js and npm were missing");
+    return OutputError(
+        "this lfvisualizer was built without its page: Node.js and npm were missing");
   Exporter exporter(scene, folder);
   PathDraft& draft = *scene.first_draft();
   const std::string base = fmt::format("path/{}/", draft.id);

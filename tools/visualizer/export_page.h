@@ -19,8 +19,8 @@ struct ExportFacts {
   size_t unreadable_count = 0;
 };
 
-// All that the page reads of the path: cameras, frames, what each takes, and LF images that the film
-// takes, the first `most_images` of its order. Nothing can be edited there.
+// All that the page reads of the path: cameras, frames, what each takes, and LF images that the
+// film takes, the first `most_images` of its order. Nothing can be edited there.
 //   folder  new or empty
 // kUsage: something is there. kOutput: the disk; a build without the page. kInterrupted.
 Result<ExportFacts> ExportPage(PageScene& scene, const std::filesystem::path& folder,

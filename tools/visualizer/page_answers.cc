@@ -58,8 +58,8 @@ PageAnswer OfImage(PageScene& scene, const Name& name) {
   const auto side = NumberOf(name.parts[1], 1, kLargeSide_px + 1);
   const auto id = NumberOf(name.parts[2], 0, scene.light_field().size());
   if (!id || (side != kSmallSide_px && side != kLargeSide_px)) return NotFound();
-  const auto picture = LfPicture(scene.light_field(), scene.store(), LfImageId{*id},
-                                 static_cast<int>(*side));
+  const auto picture =
+      LfPicture(scene.light_field(), scene.store(), LfImageId{*id}, static_cast<int>(*side));
   if (!picture) return Refusal(picture.error());
   auto jpeg = EncodeJpeg(picture->view(), kJpegQuality);
   if (!jpeg) return Refusal(jpeg.error());

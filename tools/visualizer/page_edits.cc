@@ -59,9 +59,10 @@ PageAnswer Save(PageScene& scene, const Json& json) {
   const bool is_forced = force != json.end() && force->is_boolean() && force->get<bool>();
   const auto on_disk = scene.IdOnDisk();
   if (!is_forced && on_disk && *on_disk != TextOf(json, "expected"))
-    return JsonAnswer({{"error", scene.arguments().path.string() +
-                                     " has been changed by another program since it was opened here"},
-                       {"conflict", true}});
+    return JsonAnswer(
+        {{"error", scene.arguments().path.string() +
+                       " has been changed by another program since it was opened here"},
+         {"conflict", true}});
   if (const auto written = WriteFileAtomically(scene.arguments().path, text); !written)
     return Refusal(written.error());
   return JsonAnswer({{"id", (*draft)->id}});

@@ -10,8 +10,8 @@
 
 namespace lf {
 
-// By names, with JSON bodies. What a person does wrong is answered as well, with "error": HTTP's own
-// errors are for requests that no page makes.
+// By names, with JSON bodies. What a person does wrong is answered as well, with "error": HTTP's
+// own errors are for requests that no page makes.
 //   check         {"text"} -> the head of the path (PathHeadJson), or "error", "line", "column"
 //   save          {"text", "expected": id of PATH.yaml's text as the page knows it, "force"}
 //                 -> {"id"}; "conflict" with "error" where the file is another meanwhile

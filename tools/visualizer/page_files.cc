@@ -4,11 +4,11 @@
 
 #ifdef LF_PAGE_FOLDER
 // As a section of the program: compilers take seconds for a megabyte of numbers.
-#define LF_EMBED(symbol, file)                                   \
-  asm(".section .rodata\n.global " #symbol "_begin\n" #symbol    \
-      "_begin:\n.incbin \"" LF_PAGE_FOLDER "/" file              \
-      "\"\n.global " #symbol "_end\n" #symbol "_end:\n.byte 0\n" \
-      ".previous\n");                                            \
+#define LF_EMBED(symbol, file)                                                                     \
+  asm(".section .rodata\n.global " #symbol "_begin\n" #symbol "_begin:\n.incbin \"" LF_PAGE_FOLDER \
+      "/" file "\"\n.global " #symbol "_end\n" #symbol                                             \
+      "_end:\n.byte 0\n"                                                                           \
+      ".previous\n");                                                                              \
   extern "C" const char symbol##_begin[], symbol##_end[]
 LF_EMBED(lf_page_html, "index.html");
 LF_EMBED(lf_page_script, "page.js");

@@ -68,26 +68,25 @@ std::string PathHeadJson(const PathDraft& draft) {
 std::string SceneJson(const PageScene& scene, const PageAbilities& abilities) {
   const LightField& field = scene.light_field();
   const PageArguments& arguments = scene.arguments();
-  Json json = {
-      {"version", Version()},
-      {"light_field",
-       {{"name", arguments.light_field},
-        {"images", field.size()},
-        {"unit_m", field.unit_m},
-        {"origin", OfVector(SceneOrigin(field))},
-        {"options", arguments.light_field_options}}},
-      {"path", Json::parse(PathHeadJson(*scene.first_draft()))},
-      {"path_file", arguments.path.string()},
-      {"options",
-       {{"estimator", arguments.estimator},
-        {"lens_weights", arguments.lens_weights},
-        {"max_angle_deg", arguments.max_angle_deg},
-        {"max_images", arguments.needs.max_image_count.value_or(0)},
-        {"seed", arguments.seed}}},
-      {"packages", OfPackages(scene)},
-      {"packages_note", scene.packages_note()},
-      {"watch", arguments.watch.string()},
-      {"server", abilities.is_server}};
+  Json json = {{"version", Version()},
+               {"light_field",
+                {{"name", arguments.light_field},
+                 {"images", field.size()},
+                 {"unit_m", field.unit_m},
+                 {"origin", OfVector(SceneOrigin(field))},
+                 {"options", arguments.light_field_options}}},
+               {"path", Json::parse(PathHeadJson(*scene.first_draft()))},
+               {"path_file", arguments.path.string()},
+               {"options",
+                {{"estimator", arguments.estimator},
+                 {"lens_weights", arguments.lens_weights},
+                 {"max_angle_deg", arguments.max_angle_deg},
+                 {"max_images", arguments.needs.max_image_count.value_or(0)},
+                 {"seed", arguments.seed}}},
+               {"packages", OfPackages(scene)},
+               {"packages_note", scene.packages_note()},
+               {"watch", arguments.watch.string()},
+               {"server", abilities.is_server}};
   if (field.depth_range)
     json["light_field"]["depths"] = {field.depth_range->near_w, field.depth_range->far_w};
   return Text(json);

@@ -26,9 +26,9 @@ namespace lf {
 
 // How lfvisualizer was called.
 struct PageArguments {
-  std::string light_field;                    // LIGHTFIELD as it was given
+  std::string light_field;                       // LIGHTFIELD as it was given
   std::vector<std::string> light_field_options;  // --fov-deg 60 ...
-  std::filesystem::path path;                 // PATH.yaml
+  std::filesystem::path path;                    // PATH.yaml
   std::vector<std::string> packages;
   std::filesystem::path watch;  // DIR of a render; empty: none
   NeedsOptions needs;

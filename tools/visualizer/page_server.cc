@@ -83,13 +83,14 @@ bool PageServer::Parts::IsAllowed(const httplib::Request& request,
   const std::string_view path = request.path;
   if (path.size() < token.size() + 2 || path[0] != '/' || path[token.size() + 1] != '/' ||
       !AreEqual(path.substr(1, token.size()), token)) {
-    Send(Refusal(403, "the address has no token, or a wrong one: open the one that lfvisualizer "
-                      "has printed"),
+    Send(Refusal(403,
+                 "the address has no token, or a wrong one: open the one that lfvisualizer "
+                 "has printed"),
          response);
     return false;
   }
-  for (const std::string_view text : {std::string_view(request.path),
-                                      std::string_view(request.target)})
+  for (const std::string_view text :
+       {std::string_view(request.path), std::string_view(request.target)})
     if (text.find("..") != std::string_view::npos || text.find('\\') != std::string_view::npos ||
         text.find('\0') != std::string_view::npos) {
       Send(Refusal(403, "there is nothing outside"), response);
@@ -161,9 +162,9 @@ void PageServer::Parts::Route() {
   });
   server.Post(".*", [this](const httplib::Request& request, httplib::Response& response) {
     if (!IsAllowed(request, response)) return;
-    Send(Edit(scene, preview, std::string_view(request.path).substr(token.size() + 2),
-              request.body),
-         response);
+    Send(
+        Edit(scene, preview, std::string_view(request.path).substr(token.size() + 2), request.body),
+        response);
   });
 }
 
@@ -191,8 +192,9 @@ PageServer::~PageServer() = default;
 
 Result<std::unique_ptr<PageServer>> PageServer::Open(PageScene& scene, int port) {
   if (FindPageFile("index.html") == nullptr)
-    return OutputError("this lfvisualizer was built without its page: Node.js and npm were missing. "
-                       "--text works");
+    return OutputError(
+        "this lfvisualizer was built without its page: Node.js and npm were missing. "
+        "--text works");
   LF_ASSIGN_OR_RETURN(std::string token, MakeToken());
   auto parts = std::make_unique<Parts>(scene, std::move(token));
   parts->Route();

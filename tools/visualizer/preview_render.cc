@@ -98,8 +98,7 @@ fs::path PreviewRender::folder() const {
 
 bool PreviewRender::IsSuperseded() {
   std::unique_lock lock(mutex_);
-  return changed_.wait_for(lock, kBetweenLooks,
-                           [&] { return is_ending_ || is_stopped_ || wish_; });
+  return changed_.wait_for(lock, kBetweenLooks, [&] { return is_ending_ || is_stopped_ || wish_; });
 }
 
 void PreviewRender::Run() {
@@ -158,10 +157,8 @@ void PreviewRender::Say(const Wish& wish, const std::string& state, const std::s
   std::string changed;
   const auto render = nlohmann::json::parse(RenderJson(folder()), nullptr, false);
   if (render.is_object() && !render["frames"].empty()) changed = render["frames"][0]["changed"];
-  const nlohmann::ordered_json json = {{"frame", wish.frame.value},
-                                       {"state", state},
-                                       {"message", message},
-                                       {"changed", changed}};
+  const nlohmann::ordered_json json = {
+      {"frame", wish.frame.value}, {"state", state}, {"message", message}, {"changed", changed}};
   events_.Post("preview", json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
