@@ -74,7 +74,7 @@ for (const count of counts.length > 0 ? counts : [1_000, 100_000, 1_000_000]) {
     for (let i = 0; i < 10; ++i) view.render();
     return (performance.now() - start) / 10;
   });
-  const spread = script.toSorted((a, b) => a - b)[Math.floor(0.95 * script.length)];
+  const spread = [...script].sort((a, b) => a - b)[Math.floor(0.95 * script.length)];
   console.log([
     String(count).padStart(10), open_s.toFixed(2).padStart(7), (sent / 1e6).toFixed(1).padStart(8),
     `${median(script).toFixed(1)}, ${spread.toFixed(1)}`.padStart(24),

@@ -5,7 +5,7 @@
 # usage: scripts/check_bare_debian.sh FOLDER [COMMAND...]     (root; default: ./test, then ./demo)
 #
 # FOLDER takes the base system (kept: the next run starts from it), the system of this run and the
-# log of every step. Mirror and proxy are those of this machine's apt. Commands run as root, then
+# log of every step. Mirror and proxy are those of this machine's apt, certificates its Node.js's. Commands run as root, then
 # once more as an ordinary user, who must need no rights any more; before the first one, an
 # ordinary user must be told what to install.
 set -euo pipefail
@@ -52,6 +52,11 @@ rm -rf --one-file-system "$root"
 cp -a "$base" "$root"
 apt-config dump Acquire | sed -nE '/::proxy|check-(valid|date)/Ip' >"$root/etc/apt/apt.conf.d/90host"
 cp -L /etc/resolv.conf "$root/etc/resolv.conf"
+certificates=
+if [[ -r ${NODE_EXTRA_CA_CERTS:-} ]]; then
+  certificates=/etc/ssl/extra.pem
+  install -D -m 644 "$NODE_EXTRA_CA_CERTS" "$root$certificates"
+fi
 mount -t proc proc "$root/proc"
 mount --rbind /dev "$root/dev"
 chroot "$root" useradd --create-home --shell /bin/bash user
@@ -67,6 +72,7 @@ inside() {
   if [[ $user != root ]]; then home=/home/$user; fi
   chroot --userspec="$user:$user" "$root" env -i HOME="$home" USER="$user" LANG=C.UTF-8 \
     PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin CI="${CI:-}" \
+    NODE_EXTRA_CA_CERTS="$certificates" \
     bash -c 'cd "$0" && exec "$@"' "$checkout" "$@"
 }
 

@@ -1,16 +1,17 @@
 #!/usr/bin/python3
 """lfvisualizer --text: what it says of cameras is what the light field, the path and a render say.
 
-usage: lfvisualizer_test.py LFVISUALIZER LFRENDERER
+usage: lfvisualizer_test.py LFVISUALIZER LFRENDERER [pageless]
 """
 import json
+import socket
 import sys
 import unittest
 
 import small_field
 from program_test_case import ProgramTestCase
 
-VISUALIZER = RENDERER = None
+VISUALIZER = RENDERER = PAGELESS = None
 
 
 class VisualizerTest(ProgramTestCase):
@@ -52,6 +53,13 @@ class VisualizerTest(ProgramTestCase):
         few = self.lines("--max-images", 3)["collected"]
         self.assertLessEqual(len([line for line in few if line[0] == 1]), 3)
 
+    # In a build without the page, that is what is told.
+    def test_a_port_that_is_taken_is_told(self):
+        with socket.create_server(("127.0.0.1", 0)) as taken:
+            port = taken.getsockname()[1]
+            self.fails(4, ["page" if PAGELESS else f"--serve {port}"], VISUALIZER, self.field,
+                       self.path, "--serve", port)
+
     def test_what_is_missing_or_wrong_is_told(self):
         self.fails(2, ["--frames", "--text"], VISUALIZER, self.field, self.path, "--frames", 1)
         self.fails(2, ["--serve", "--text"], VISUALIZER, self.field, self.path, "--text", "--serve",
@@ -63,4 +71,5 @@ class VisualizerTest(ProgramTestCase):
 
 if __name__ == "__main__":
     VISUALIZER, RENDERER = sys.argv[1:3]
+    PAGELESS = "pageless" in sys.argv
     unittest.main(argv=sys.argv[:1], verbosity=2)

@@ -273,7 +273,7 @@ function wireNews(state: State): void {
       path: (data) => state.fileHasChanged((JSON.parse(data) as { id: string }).id),
     },
     (isThere) => {
-      link.textContent = isThere ? "" : "lfvisualizer does not answer";
+      link.textContent = isThere ? "" : "lfvisualizer has been ended";
       link.className = isThere ? "" : "bad";
       if (isThere && wasGone) void state.askFrame();
       wasGone = !isThere;

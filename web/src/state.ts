@@ -61,6 +61,7 @@ export class State {
   private usesBytes = 0;
   private checking = 0;
   private filmAsked = "";
+  private filmIsStale = false;
 
   constructor(
     readonly scene: SceneFacts,
@@ -242,7 +243,9 @@ export class State {
 
   async askFilm(): Promise<void> {
     const { id } = this.path;
-    if (this.filmAsked === id) return;
+    // News that come while an answer is under way may be newer than it.
+    this.filmIsStale = this.filmAsked === id;
+    if (this.filmIsStale) return;
     this.filmAsked = id;
     try {
       const film = await getJson<FilmFacts>(`path/${id}/film.json`);
@@ -254,7 +257,8 @@ export class State {
     } catch {
       // The curves stay empty; the frame tells what is wrong.
     } finally {
-      this.filmAsked = "";
+      if (this.filmAsked === id) this.filmAsked = "";
+      if (this.filmIsStale) void this.askFilm();
     }
   }
 

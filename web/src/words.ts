@@ -27,12 +27,13 @@ export function seconds(value: number): string {
   return `${value.toFixed(2)} s`;
 }
 
-// World units; in millimetres as well for what belongs to the lens.
+// World units; for what belongs to the lens, millimetres, or metres where it is a giant's.
 export function length(value: number): string {
   return precise(value, 4);
 }
 
 export function millimetres(value: number, unit_m: number): string {
+  if (Math.abs(value * unit_m) >= 1) return `${precise(value * unit_m, 3)} m`;
   return `${precise(value * unit_m * 1000, 3)} mm`;
 }
 

@@ -174,7 +174,8 @@ export class SpaceView {
         .addScaledVector(right, 1.1 * this.size)
         .addScaledVector(up, 0.6 * this.size);
       this.camera.updateProjectionMatrix();
-      for (let i = 0; i < 40; ++i) {
+      offset.multiplyScalar(0.3);
+      for (let i = 0; i < 60; ++i) {
         this.camera.position.copy(target).add(offset);
         this.camera.lookAt(target);
         this.camera.updateMatrixWorld();

@@ -354,6 +354,16 @@ test("a frame without LF images says so", async () => {
   }, CHART_PATH.replace("look_at: [0, 0, 0]", "look_at: [0, 0, -2]"));
 });
 
+test("a film may have one frame, and a lens no opening", async () => {
+  await withChart(async (page) => {
+    await until(page, "app.state.film && app.state.film.done === 1");
+    assert.match(await page.textContent("aside"), /0, a pinhole/);
+    await page.keyboard.press("Space");
+    await page.keyboard.press("ArrowRight");
+    await until(page, "app.state.frame === 1");
+  }, CHART_PATH.replace("frames: 11", "frames: 1").replace("mm: 12", "mm: 0"));
+});
+
 test("packages say which frames are theirs; those of another path are left aside", async () => {
   const path = await writePath(CHART_PATH);
   const packages = join(temporary.folder, "packages");
