@@ -60,6 +60,7 @@ export class State {
   private uses = new Map<string, ArrayBuffer>();
   private usesBytes = 0;
   private checking = 0;
+  private selectedId: number | null = null; // its facts may be under way
   private filmAsked = "";
   private filmIsStale = false;
 
@@ -265,15 +266,19 @@ export class State {
   // ------------------------------------------------------------------------------- the LF camera
 
   async select(id: number | null): Promise<void> {
+    this.selectedId = id;
     if (id === null) {
       this.selected = null;
       this.emit("selected");
       return;
     }
     try {
-      this.selected = await getJson<CameraFacts>(`camera/${id}.json`);
+      const selected = await getJson<CameraFacts>(`camera/${id}.json`);
+      if (id !== this.selectedId) return;
+      this.selected = selected;
       this.emit("selected");
     } catch (error) {
+      if (id !== this.selectedId) return;
       if (this.scene.server) this.fail(error);
       else this.say("Of this LF camera the exported page has no image.");
     }
@@ -283,7 +288,7 @@ export class State {
   selectNext(step: number): void {
     const ids = this.use ? [...this.use.ids].sort((a, b) => a - b) : [];
     if (ids.length === 0) return;
-    const current = this.selected?.id ?? -1;
+    const current = this.selectedId ?? -1;
     const at = ids.indexOf(current);
     const next = at < 0 ? 0 : (at + step + ids.length) % ids.length;
     void this.select(ids[next]);

@@ -17,6 +17,7 @@ export class ImagePanel {
   private readonly picture = element("div", { class: "picture" });
   private readonly facts = element("div");
   private readonly about = element("div");
+  private asked = 0;
 
   constructor(
     private readonly root: HTMLElement,
@@ -74,6 +75,7 @@ export class ImagePanel {
 
   private async drawOverlap(): Promise<void> {
     const { selected, use, path, frame, scene } = this.state;
+    const number = ++this.asked;
     if (!selected || this.root.hidden) return;
     const kind = use?.ofCameras[selected.id];
     const style = USE_STYLES[kind ?? 0];
@@ -101,10 +103,10 @@ export class ImagePanel {
       const overlap = await getJson<OverlapFacts>(
         `path/${path.id}/overlap/${frame}/${selected.id}.json`,
       );
-      if (selected === this.state.selected && frame === this.state.frame)
-        this.drawShapes(overlap, selected.width, selected.height);
+      if (number === this.asked) this.drawShapes(overlap, selected.width, selected.height);
     } catch {
-      this.drawing.replaceChildren(); // The frame's own request tells what is wrong.
+      // The frame's own request tells what is wrong.
+      if (number === this.asked) this.drawing.replaceChildren();
     }
   }
 

@@ -15,6 +15,7 @@ export interface PickRequest {
 // Asks for the distance of what is seen there, and focuses on it from this frame on: at a key of
 // the focus if there are keys, else all the film long.
 export async function focusThere(state: State, request: PickRequest): Promise<void> {
+  const { time } = state; // of the frame that was clicked, wherever the timeline is by then
   state.say("Comparing LF images …");
   try {
     const picked = await post<PickedFocus>("focus", {
@@ -26,7 +27,7 @@ export async function focusThere(state: State, request: PickRequest): Promise<vo
       const focus = document.quantity("focus_distance");
       if (!focus.given) document.useFocusDistance(picked.focus_distance);
       else if (focus.keyframes.length > 0)
-        document.setKeyframe("focus_distance", state.time, picked.focus_distance);
+        document.setKeyframe("focus_distance", time, picked.focus_distance);
       else if (focus.hasAccelerations) document.removeMotion("focus_distance", picked.focus_distance);
       else document.setBase("focus_distance", picked.focus_distance);
     });

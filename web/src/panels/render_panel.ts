@@ -38,7 +38,8 @@ export class RenderPanel {
   private source: "preview" | "watch";
   private picture: GrowingPicture | null = null;
   private shownName = "";
-  private loading = false;
+  private wantedName = "";
+  private isLoading = false;
   private readonly sources = element("div", { class: "row group" });
 
   constructor(
@@ -98,8 +99,7 @@ export class RenderPanel {
       Math.max(1, Math.round(height * factor)),
     ]);
     this.source = "preview";
-    this.picture = null;
-    this.shownName = "";
+    this.showNothing();
     try {
       await post("preview", { text: document.text(), frame: state.frame });
     } catch (error) {
@@ -120,8 +120,7 @@ export class RenderPanel {
 
   private setSource(source: "preview" | "watch"): void {
     this.source = source;
-    this.picture = null;
-    this.shownName = "";
+    this.showNothing();
     this.update();
   }
 
@@ -189,7 +188,7 @@ export class RenderPanel {
       element("p", { class: "muted", style: "overflow-wrap:anywhere" }, state.scene.watch),
     );
     if (!watch || watch.frames.length === 0) {
-      this.picture = null;
+      this.showNothing();
       this.strip.replaceChildren();
       this.status.textContent =
         "No frames lie there yet. The first picture comes with lfrenderer's first checkpoint.";
@@ -198,7 +197,7 @@ export class RenderPanel {
     this.drawStrip(watch);
     const frame = watch.frames.find((one) => one.frame === state.frame);
     if (!frame) {
-      this.picture = null;
+      this.showNothing();
       this.status.textContent = `Frame ${state.frame} has no picture yet.`;
       return;
     }
@@ -234,21 +233,33 @@ export class RenderPanel {
     );
   }
 
-  // version: a picture that is there already is not read again.
+  private showNothing(): void {
+    this.picture = null;
+    this.shownName = "";
+    this.wantedName = "";
+  }
+
+  // version: a picture that is there already is not read again. One is read at a time; what is
+  // wanted when it has come, a newer version or another frame, is read after it.
   private async load(name: string, version: string): Promise<void> {
     const wanted = `${name}?${version}`;
-    if (wanted === this.shownName || this.loading) return;
-    this.loading = true;
+    this.wantedName = wanted;
+    if (wanted === this.shownName || this.isLoading) return;
+    this.isLoading = true;
     try {
-      this.picture = readPicture(await getBytes(wanted));
-      this.shownName = wanted;
-      this.box.hidden = false;
-      this.drawPicture();
+      const picture = readPicture(await getBytes(wanted));
+      if (this.wantedName.startsWith(`${name}?`)) {
+        this.picture = picture;
+        this.shownName = wanted;
+        this.drawPicture();
+      }
     } catch (error) {
       // A checkpoint may be replaced while it is read; the next one comes.
       if (!(error instanceof Error && /no such frame/.test(error.message))) this.state.fail(error);
     } finally {
-      this.loading = false;
+      this.isLoading = false;
+      if (this.wantedName !== wanted) this.update();
+      else this.box.hidden = this.picture === null;
     }
   }
 

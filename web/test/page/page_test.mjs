@@ -288,11 +288,15 @@ test("a preview comes in, and a click on it focuses there", async () => {
 });
 
 test("frames of a render are seen while they grow", async () => {
-  const path = await writePath(CHART_PATH.replace("[96, 64]", "[960, 640]"));
+  // All 225 LF images take part, and between every 64 of them there may be a checkpoint.
+  const many = join(temporary.folder, "many");
+  await run("lfsynth", ["chart", "-o", many, "--count", "225", "--size", "60x40", "-q"]);
+  const path = await writePath(
+    CHART_PATH.replace("[96, 64]", "[320, 216]").replace("_mm: 12", "_mm: 60"));
   const frames = `${path}.frames`;
-  await withPage([chart, path, "--watch", frames], async (page) => {
+  await withPage([many, path, "--watch", frames], async (page) => {
     assert.match(await page.textContent("aside"), /No frames lie there yet/);
-    const renderer = spawn(program("lfrenderer"), [chart, path, "-o", frames, "--dump-every", "1s",
+    const renderer = spawn(program("lfrenderer"), [many, path, "-o", frames, "--dump-every", "1s",
       "--threads", "1", "--frames", "1-3", "--back-end", "reference", "-q", "--no-contact-sheet"]);
     const ended = new Promise((resolve) => renderer.on("close", resolve));
     await until(page, "app.state.watch && app.state.watch.frames.some((one) => !one.finished)");
@@ -304,6 +308,16 @@ test("frames of a render are seen while they grow", async () => {
       (old) => document.querySelector(".picture canvas").dataset.version !== old, first);
     await page.click("text=Rays per element");
     assert.match(await page.textContent("aside"), /Rays of each element: least/);
+    // The picture is that of the frame also where another was being read, or none was there.
+    const show = (frame) => page.evaluate(`lfvisualizer.state.setFrame(${frame})`);
+    await show(2);
+    await show(3);
+    await page.waitForSelector(".picture canvas[data-version^='watch/3.bin']");
+    await show(5);
+    await page.waitForSelector("text=Frame 5 has no picture yet");
+    assert.equal(await page.isVisible(".picture canvas"), false);
+    await show(3);
+    await page.waitForSelector(".picture canvas", { state: "visible" });
   });
 });
 
