@@ -24,10 +24,11 @@ FrameReport FrameFromJson(const Json& json, std::string* fault) {
   if (fields.Find("interpolated_share") != nullptr)
     fields.Get("interpolated_share", &frame.interpolated_share.emplace());
   if (fields.Find("effective_lf_images") != nullptr) {
-    FrameReport::Weighed& weighed = frame.weighed.emplace();
+    FrameReport::Weighed weighed;
     fields.Get("effective_lf_images", &weighed.effective_count);
     fields.Get("hat_share", &weighed.hat_share);
     fields.Get("uncovered_share", &weighed.uncovered_share);
+    frame.weighed = weighed;
   }
   if (fields.Find("finished_early_before_place") != nullptr)
     fields.Get("finished_early_before_place", &frame.places_done.emplace());
