@@ -114,6 +114,8 @@ Result<void> WriteAtomically(const fs::path& path,
   LF_ASSIGN_OR_RETURN(const fs::path target, WriteTarget(path));
   const fs::path temporary = TemporaryName(target);
   Result<void> result = write(temporary);
+  struct stat old {};
+  if (result && ::stat(target.c_str(), &old) == 0) ::chmod(temporary.c_str(), old.st_mode & 0777);
   if (result) result = RenameFlushed(temporary, target);
   if (!result) ::unlink(temporary.c_str());
   return result;

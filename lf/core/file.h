@@ -23,7 +23,8 @@ void AnnounceRead(const std::filesystem::path& path);
 
 // Writes a file under a temporary name in the same folder, flushes it to the disk and renames it:
 // readers see the old file or the new one, never a part. After a failure the old file is intact
-// and the temporary one is gone. A link is followed. kOutput with the system's reason (disk full,
+// and the temporary one is gone. A link is followed, and who may read and write the old file may so
+// the new one. kOutput with the system's reason (disk full,
 // no permission), or if something that is no file has the name.
 Result<void> WriteFileAtomically(const std::filesystem::path& path, std::string_view bytes);
 

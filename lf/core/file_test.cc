@@ -75,6 +75,14 @@ TEST_F(FileTest, ALinkIsFollowed) {
   EXPECT_EQ(*ReadFile(folder_ / "real"), "new");
 }
 
+TEST_F(FileTest, PermissionsStay) {
+  const auto path = folder_ / "private";
+  ASSERT_TRUE(WriteFileAtomically(path, "old"));
+  fs::permissions(path, fs::perms::owner_read);
+  ASSERT_TRUE(WriteFileAtomically(path, "new"));
+  EXPECT_EQ(fs::status(path).permissions(), fs::perms::owner_read);
+}
+
 TEST_F(FileTest, AFolderCannotReplaceAFile) {
   ASSERT_TRUE(WriteFileAtomically(folder_ / "a", "x"));
   EXPECT_EQ(CreateFolder(folder_ / "a").error().kind, ErrorKind::kOutput);

@@ -1,8 +1,10 @@
 #include "tools/visualizer/page_edits.h"
 
-#include <cctype>
+#include <unistd.h>
+
 #include <charconv>
 #include <cmath>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -55,6 +57,8 @@ PageAnswer Save(PageScene& scene, const Json& json) {
   const std::string text = TextOf(json, "text");
   const auto draft = scene.AddDraft(text);
   if (!draft) return RefusedPath(draft.error(), scene.arguments().path.filename().string());
+  static std::mutex one_page_at_a_time;  // what another has written is seen
+  const std::lock_guard lock(one_page_at_a_time);
   const auto force = json.find("force");
   const bool is_forced = force != json.end() && force->is_boolean() && force->get<bool>();
   const auto on_disk = scene.IdOnDisk();
@@ -63,6 +67,8 @@ PageAnswer Save(PageScene& scene, const Json& json) {
         {{"error", scene.arguments().path.string() +
                        " has been changed by another program since it was opened here"},
          {"conflict", true}});
+  if (on_disk && ::access(scene.arguments().path.c_str(), W_OK) != 0)
+    return JsonAnswer({{"error", scene.arguments().path.string() + " is write-protected"}});
   if (const auto written = WriteFileAtomically(scene.arguments().path, text); !written)
     return Refusal(written.error());
   return JsonAnswer({{"id", (*draft)->id}});
