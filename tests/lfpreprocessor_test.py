@@ -119,9 +119,16 @@ class PackagesTest(ProgramTestCase):
             out, expected = self.folder / f"out{weights}", self.folder / f"expected{weights}"
             self.succeeds(RENDERER, *files, "-o", out, "-q", *options, "--format", "png16")
             self.succeeds(RENDERER, fewer, path, "-o", expected, "-q", *options, "--format", "png16")
+            direct = self.folder / f"direct{weights}"
+            self.succeeds(RENDERER, field, path, "-o", direct, "-q", *options, "--format", "png16",
+                          "--max-angle", "2")
             for name in ("frame_0001.png", "frame_0006.png"):
-                with Image.open(out / name) as a, Image.open(expected / name) as b:
+                with (Image.open(out / name) as a, Image.open(expected / name) as b,
+                      Image.open(direct / name) as c):
                     self.assertEqual(a.tobytes(), b.tobytes())
+                    self.assertEqual(a.tobytes(), c.tobytes())
+            self.fails(2, ["--max-angle", "leave it out"], RENDERER, *files, "-o", out,
+                       "--overwrite", "--max-angle", "2")
 
     def test_frames_of_a_package_may_be_asked_for(self):
         field, path = self.film()

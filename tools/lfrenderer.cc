@@ -15,6 +15,7 @@
 #include "tools/render_arguments.h"
 #include "tools/render_summary.h"
 
+#include "lf/core/geometry.h"
 #include "lf/path/path_yaml.h"
 #include "lf/pipeline/render.h"
 #include "lf/pipeline/render_packages.h"
@@ -65,8 +66,9 @@ lf::Result<Rendered> RenderLightField(const lf::RenderArguments& arguments,
   options.signals = signals;
   if (options.reading.estimator == lf::Estimator::kBilinear)
     lf::MakeRoomForUndershoot(&light_field.encoding);
-  const lf::Package package =
-      lf::PackageOfAll(std::move(light_field), std::move(path), common.seed);
+  lf::Package package = lf::PackageOfAll(std::move(light_field), std::move(path), common.seed);
+  if (arguments.max_angle_deg > 0)
+    package.choices.max_angle_rad = lf::RadiansFromDegrees(arguments.max_angle_deg);
   return Rendered{lf::Render(package, options, pool, progress), options};
 }
 

@@ -37,6 +37,10 @@ void RenderArguments::AddTo(CLI::App& app) {
   app.add_option("--max-images", max_images,
                  "Use only so many LF images for each frame, the first of a shuffled order; 0: all")
       ->check(WholeNumber());
+  app.add_option("--max-angle", max_angle_deg,
+                 "Only LF cameras whose optical axes differ by at most so many degrees from the "
+                 "frame's; 0: all")
+      ->check(CLI::Range(0., 180.));
   app.add_option(
       "--dump-every", dump_every,
       "Write the state so often, such as 30s, 10m, 1h; seldomer if it would take more than "
@@ -107,6 +111,10 @@ Result<void> RenderArguments::Check(bool seed_given) const {
   if (HasPackages()) {
     if (seed_given)
       return UsageError("--seed: packages have the order that they were made with: leave it out");
+    if (max_angle_deg > 0)
+      return UsageError(
+          "--max-angle: packages have the LF cameras that they were made with: leave it out, or "
+          "make them again by lfpreprocessor --max-angle");
     if (light_field.path.empty() &&
         (light_field.focal_px > 0 || light_field.fov_deg > 0 || !light_field.images.empty()))
       return UsageError(

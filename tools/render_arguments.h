@@ -26,6 +26,7 @@ struct RenderArguments {
   std::string rectangles = "on", dump_every = "30s", stop_when, require, shard, finish;
   RebinArguments rebin;
   int64_t max_images = 0;
+  double max_angle_deg = 0;  // 0: any
   uint32_t smooth_below = 0;
   bool no_contact_sheet = false, resume = false, overwrite = false, keep_plates = false;
 

@@ -48,6 +48,7 @@ std::vector<std::string> WordsOf(const PageArguments& arguments, const fs::path&
   add({"--estimator", arguments.estimator, "--lens-weights", arguments.lens_weights});
   if (arguments.needs.max_image_count)
     add({"--max-images", std::to_string(*arguments.needs.max_image_count)});
+  if (arguments.max_angle_deg > 0) add({"--max-angle", fmt::format("{}", arguments.max_angle_deg)});
   return words;
 }
 

@@ -11,6 +11,7 @@ export interface SharedOptions extends LightFieldOptions {
   frames?: string;
   memory?: string;
   maxImages?: number;
+  maxAngle?: number;  // degrees
   lensWeights?: "auto" | "none" | "area" | "hat";
   estimator?: "auto" | "nearest" | "bilinear";
   overwrite?: boolean;
@@ -24,7 +25,6 @@ export interface PreprocessorOptions extends SharedOptions {
   framesPerPackage?: number;
   balance?: "rays" | "frames";
   order?: "shuffle" | "round-robin" | "area";
-  maxAngle?: number;  // degrees
   depths?: readonly [number, number];
 }
 
@@ -90,6 +90,7 @@ const kShared: Record<string, Flag> = {
   frames: { flag: "--frames" },
   memory: { flag: "--memory", initial: "8G" },
   maxImages: { flag: "--max-images", initial: 0 },
+  maxAngle: { flag: "--max-angle", initial: 0 },
   lensWeights: { flag: "--lens-weights", initial: "auto" },
   estimator: { flag: "--estimator", initial: "auto" },
 };
@@ -107,7 +108,6 @@ const kPreprocessor: Record<string, Flag> = {
   framesPerPackage: { flag: "--frames-per-package", initial: 0 },
   balance: { flag: "--balance", initial: "rays" },
   order: { flag: "--order", initial: "shuffle" },
-  maxAngle: { flag: "--max-angle", initial: 0 },
   depths: { flag: "--depths" },
   ...kCommon,
 };
@@ -130,7 +130,8 @@ const kRenderer: Record<string, Flag> = {
 };
 
 // Packages have these from lfpreprocessor; lfrenderer refuses some of them.
-const kInPackages = ["focalPx", "fovDeg", "images", "seed", "maxImages", "frames"];
+const kInPackages = ["focalPx", "fovDeg", "images", "seed", "maxImages", "maxAngle",
+                     "frames"];
 
 export function preprocessorCommand(request: PreprocessorRequest): string {
   const target = request.output === undefined ? ["--plan"] : ["-o", quoteFile(request.output)];
@@ -139,7 +140,6 @@ export function preprocessorCommand(request: PreprocessorRequest): string {
                    request.output === undefined ? ["overwrite"] : [])].join(" ");
 }
 
-// There is no --max-angle here: only packages can do without LF cameras (filmCommands).
 export function rendererCommand(request: RendererRequest | PackageRequest): string {
   const isPackages = "packageFolder" in request;
   const input = isPackages
@@ -149,10 +149,10 @@ export function rendererCommand(request: RendererRequest | PackageRequest): stri
           ...flags(kRenderer, request.options ?? {}, isPackages ? kInPackages : [])].join(" ");
 }
 
-// One command, or two where LF cameras are left out or a folder of packages is asked for.
+// One command, or two where a folder of packages is asked for.
 export function filmCommands(request: FilmRequest): string[] {
   const options = request.options ?? {};
-  const folder = request.packageFolder ?? ((options.maxAngle ?? 0) > 0 ? "packages" : undefined);
+  const folder = request.packageFolder;
   if (folder === undefined) return [rendererCommand(request)];
   return [
     preprocessorCommand({ lightField: request.lightField, pathFile: request.pathFile,

@@ -284,7 +284,7 @@ test("a preview comes in, and a click on it focuses there", async () => {
     await page.mouse.click(box.x + (box.width * 56) / 96, box.y + (box.height * 40) / 64);
     await until(page, "app.state.isChanged");
     await until(page, "Math.abs(app.state.camera.focusDistance - 1) < 0.05");
-  }, CHART_PATH.replace("time: 0, value: 1}", "time: 0, value: 1.15}"));
+  }, CHART_PATH.replace("time: 0, value: 1}", "time: 0, value: 1.15}"), ["--max-angle", "45"]);
 });
 
 test("frames of a render are seen while they grow", async () => {

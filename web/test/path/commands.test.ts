@@ -27,16 +27,20 @@ test("options are written as the programs know them", () => {
                "--stop-when 'samples>=16'");
   assert.equal(preprocessorCommand({ ...request, output: "packages", options: {
     maxAngle: 30, packages: 4, depths: [0.3, 2] } }),
-               "lfpreprocessor capture path.yaml -o packages --packages 4 --max-angle 30 " +
+               "lfpreprocessor capture path.yaml -o packages --max-angle 30 --packages 4 " +
                "--depths 0.3 2");
 });
 
-test("a largest angle takes packages, which lfrenderer films", () => {
-  assert.deepEqual(filmCommands({ ...request, options: { maxAngle: 20, maxImages: 50, seed: 3,
-                                                         lensWeights: "none" } }), [
-    "lfpreprocessor capture path.yaml -o packages --max-images 50 --lens-weights none " +
-      "--max-angle 20 --seed 3",
+test("packages decide about LF images, which lfrenderer films", () => {
+  const options = { maxAngle: 20, maxImages: 50, seed: 3, lensWeights: "none" as const };
+  assert.deepEqual(filmCommands({ ...request, packageFolder: "packages", options }), [
+    "lfpreprocessor capture path.yaml -o packages --max-images 50 --max-angle 20 " +
+      "--lens-weights none --seed 3",
     "lfrenderer packages/package-*.lfp -o frames --lens-weights none",
+  ]);
+  assert.deepEqual(filmCommands({ ...request, options }), [
+    "lfrenderer capture path.yaml -o frames --max-images 50 --max-angle 20 " +
+      "--lens-weights none --seed 3",
   ]);
   assert.deepEqual(filmCommands(request), ["lfrenderer capture path.yaml -o frames"]);
   assert.equal(filmCommands({ ...request, packageFolder: "my packages/" })[1],
@@ -61,7 +65,8 @@ test("the programs understand the options", () => {
   const commands = [
     rendererCommand({ ...missing, options: {
       focalPx: 100, fovDeg: 40, images: "-i", overwrite: true, frames: "1-3", memory: "1G",
-      maxImages: 3, lensWeights: "area", estimator: "bilinear", format: "png", video: "-v.mp4",
+      maxImages: 3, maxAngle: 3, lensWeights: "area", estimator: "bilinear", format: "png",
+      video: "-v.mp4",
       noContactSheet: true, dumpEvery: "1h", stopWhen: "samples>=2", require: "samples>=1",
       keepPlates: true, smoothBelow: 2, mode: "hybrid", filter: "bicubic", threads: 1, seed: 2,
       strict: true } }),
