@@ -60,7 +60,7 @@ struct PageServer::Parts {
 
   void Route();
   bool IsAllowed(const httplib::Request& request, httplib::Response& response) const;
-  void Get(std::string_view name, const httplib::Request& request, httplib::Response& response);
+  void Get(std::string_view name, httplib::Response& response);
   void Stream(httplib::Response& response);
   void Watch();
 
@@ -122,8 +122,7 @@ void PageServer::Parts::Stream(httplib::Response& response) {
       [this](bool) { --stream_count; });
 }
 
-void PageServer::Parts::Get(std::string_view name, const httplib::Request&,
-                            httplib::Response& response) {
+void PageServer::Parts::Get(std::string_view name, httplib::Response& response) {
   if (name == "events") return Stream(response);
   if (const PageFile* file = FindPageFile(name.empty() ? "index.html" : name)) {
     response.set_content(file->bytes.data(), file->bytes.size(), file->type);
@@ -158,7 +157,7 @@ void PageServer::Parts::Route() {
       });
   server.Get(".*", [this](const httplib::Request& request, httplib::Response& response) {
     if (!IsAllowed(request, response)) return;
-    Get(std::string_view(request.path).substr(token.size() + 2), request, response);
+    Get(std::string_view(request.path).substr(token.size() + 2), response);
   });
   server.Post(".*", [this](const httplib::Request& request, httplib::Response& response) {
     if (!IsAllowed(request, response)) return;
