@@ -7,6 +7,7 @@
 #include <array>
 #include <chrono>
 #include <exception>
+#include <memory>
 #include <thread>
 #include <utility>
 
@@ -45,9 +46,22 @@ bool AreEqual(std::string_view a, std::string_view b) {
   return difference == 0;
 }
 
+// As they are: httplib would compress what set_content() is given, for seconds where a browser
+// takes brotli, and bytes do not leave this machine.
+void SendBytes(std::string_view bytes, const char* type, std::shared_ptr<const std::string> owner,
+               httplib::Response& response) {
+  if (bytes.empty()) return response.set_content("", type);
+  response.set_content_provider(
+      bytes.size(), type,
+      [bytes, owner = std::move(owner)](size_t offset, size_t length, httplib::DataSink& sink) {
+        return sink.write(bytes.data() + offset, length);
+      });
+}
+
 void Send(PageAnswer answer, httplib::Response& response) {
   response.status = answer.status;
-  response.set_content(std::move(answer.body), answer.type);
+  const auto body = std::make_shared<const std::string>(std::move(answer.body));
+  SendBytes(*body, answer.type.c_str(), body, response);
 }
 
 }  // namespace
@@ -125,8 +139,7 @@ void PageServer::Parts::Stream(httplib::Response& response) {
 void PageServer::Parts::Get(std::string_view name, httplib::Response& response) {
   if (name == "events") return Stream(response);
   if (const PageFile* file = FindPageFile(name.empty() ? "index.html" : name)) {
-    response.set_content(file->bytes.data(), file->bytes.size(), file->type);
-    return;
+    return SendBytes(file->bytes, file->type, nullptr, response);
   }
   constexpr std::string_view kPreview = "preview/";
   if (name.starts_with(kPreview))
