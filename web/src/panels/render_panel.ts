@@ -98,8 +98,7 @@ export class RenderPanel {
       Math.max(1, Math.round(width * factor)),
       Math.max(1, Math.round(height * factor)),
     ]);
-    this.source = "preview";
-    this.showNothing();
+    if (this.source !== "preview") this.setSource("preview");
     try {
       await post("preview", { text: document.text(), frame: state.frame });
     } catch (error) {
@@ -179,6 +178,7 @@ export class RenderPanel {
     this.status.textContent = words[preview.state];
     this.status.className = preview.state === "failed" ? "bad" : "muted";
     if (preview.changed) void this.load(`preview/${preview.frame}.bin`, preview.changed);
+    else if (preview.state === "failed") this.showNothing();
   }
 
   private updateWatch(): void {
@@ -255,7 +255,11 @@ export class RenderPanel {
       }
     } catch (error) {
       // A checkpoint may be replaced while it is read; the next one comes.
-      if (!(error instanceof Error && /no such frame/.test(error.message))) this.state.fail(error);
+      if (!(error instanceof Error && /no such frame/.test(error.message))) {
+        this.picture = null; // what is shown is of another frame
+        this.shownName = "";
+        this.state.fail(error);
+      }
     } finally {
       this.isLoading = false;
       if (this.wantedName !== wanted) this.update();

@@ -268,9 +268,11 @@ export class SpaceView {
   }
 }
 
+// However far: what is drawn reaches as far as it must.
 function isWithin(point: THREE.Vector3, camera: THREE.Camera): boolean {
+  const isBefore = point.clone().applyMatrix4(camera.matrixWorldInverse).z < 0;
   const seen = point.clone().project(camera);
-  return Math.abs(seen.x) < 0.96 && Math.abs(seen.y) < 0.94 && seen.z < 1;
+  return isBefore && Math.abs(seen.x) < 0.96 && Math.abs(seen.y) < 0.94;
 }
 
 // Round points that nothing hides.
