@@ -90,7 +90,7 @@ Result<ExportFacts> ExportPage(PageScene& scene, const fs::path& folder, size_t 
   }
   exporter.facts.image_count = image_count;
   // The page last: what is not whole does not open.
-  LF_RETURN_IF_ERROR(exporter.Write("scene.json", SceneJson(scene, {.is_server = false})));
+  LF_RETURN_IF_ERROR(exporter.Write("scene.json", SceneJson(scene, draft, {.is_server = false})));
   for (const PageFile& file : PageFiles())
     LF_RETURN_IF_ERROR(exporter.Write(file.name, file.bytes));
   return exporter.facts;

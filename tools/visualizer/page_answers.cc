@@ -53,6 +53,14 @@ PageAnswer NotFound() { return Refusal(404, "there is nothing of this name"); }
 PageAnswer JsonAnswer(std::string body) { return {200, "application/json", std::move(body)}; }
 PageAnswer BytesAnswer(std::string body) { return {200, kBytes, std::move(body)}; }
 
+// With the path as its file is now; if that has a fault, which news tell, as it was in the
+// beginning.
+PageAnswer OfScene(PageScene& scene) {
+  if (const auto text = scene.TextOnDisk())
+    if (const auto draft = scene.AddDraft(*text)) return JsonAnswer(SceneJson(scene, **draft, {}));
+  return JsonAnswer(SceneJson(scene, *scene.first_draft(), {}));
+}
+
 PageAnswer OfImage(PageScene& scene, const Name& name) {
   if (name.parts.size() != 3 || name.ending != ".jpg") return NotFound();
   const auto side = NumberOf(name.parts[1], 1, kLargeSide_px + 1);
@@ -99,7 +107,7 @@ PageAnswer OfPath(PageScene& scene, const Name& name) {
 }  // namespace
 
 PageAnswer Answer(PageScene& scene, std::string_view name) {
-  if (name == "scene.json") return JsonAnswer(SceneJson(scene, {}));
+  if (name == "scene.json") return OfScene(scene);
   if (name == "cameras.bin") return BytesAnswer(CamerasBytes(scene.light_field()));
   const Name split = Split(name);
   if (split.parts[0] == "image") return OfImage(scene, split);

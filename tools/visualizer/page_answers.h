@@ -27,7 +27,11 @@ struct PageAbilities {
 };
 
 // scene.json: what there is, and under which names the rest is found.
-std::string SceneJson(const PageScene& scene, const PageAbilities& abilities);
+//   draft  the path to begin with
+std::string SceneJson(const PageScene& scene, const PathDraft& draft,
+                      const PageAbilities& abilities);
+// {"id": ..., "fault": ...} of what PATH.yaml has become; its text is a draft if there is no fault.
+std::string PathNewsJson(PageScene& scene, const std::string& text);
 // {"id": ..., "frames": ..., ...} of a path.
 std::string PathHeadJson(const PathDraft& draft);
 // {"done": frames, "total": frames, "images": [...], "rays": [...]}

@@ -61,8 +61,8 @@ PageAnswer Save(PageScene& scene, const Json& json) {
   const std::lock_guard lock(one_page_at_a_time);
   const auto force = json.find("force");
   const bool is_forced = force != json.end() && force->is_boolean() && force->get<bool>();
-  const auto on_disk = scene.IdOnDisk();
-  if (!is_forced && on_disk && *on_disk != TextOf(json, "expected"))
+  const auto on_disk = scene.TextOnDisk();
+  if (!is_forced && on_disk && IdOfText(*on_disk) != TextOf(json, "expected"))
     return JsonAnswer(
         {{"error", scene.arguments().path.string() +
                        " has been changed by another program since it was opened here"},

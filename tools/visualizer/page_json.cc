@@ -65,7 +65,13 @@ std::string PathHeadJson(const PathDraft& draft) {
                {"height", k.height_px}});
 }
 
-std::string SceneJson(const PageScene& scene, const PageAbilities& abilities) {
+std::string PathNewsJson(PageScene& scene, const std::string& text) {
+  const auto draft = scene.AddDraft(text);
+  return Text({{"id", IdOfText(text)}, {"fault", draft ? "" : draft.error().message}});
+}
+
+std::string SceneJson(const PageScene& scene, const PathDraft& draft,
+                      const PageAbilities& abilities) {
   const LightField& field = scene.light_field();
   const PageArguments& arguments = scene.arguments();
   Json json = {{"version", Version()},
@@ -75,7 +81,7 @@ std::string SceneJson(const PageScene& scene, const PageAbilities& abilities) {
                  {"unit_m", field.unit_m},
                  {"origin", OfVector(SceneOrigin(field))},
                  {"options", arguments.light_field_options}}},
-               {"path", Json::parse(PathHeadJson(*scene.first_draft()))},
+               {"path", Json::parse(PathHeadJson(draft))},
                {"path_file", arguments.path.string()},
                {"options",
                 {{"estimator", arguments.estimator},

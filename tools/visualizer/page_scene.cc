@@ -45,7 +45,7 @@ Result<void> PageScene::OpenPackages() {
       return InputError(fmt::format("{}: is of a light field of {} LF images, {} has {}", name,
                                     read.whole.image_count, arguments_.light_field,
                                     light_field_.size()));
-    if (HashOfCameras(read.path) != HashOfCameras(*first_draft_->path)) {
+    if (HashOfCameras(read.path) != first_draft_->cameras_hash) {
       packages_note_ = fmt::format(
           "{} is of another path than {}: packages are left aside. lfpreprocessor makes new ones.",
           read.name, arguments_.path.string());
@@ -70,6 +70,7 @@ Result<std::shared_ptr<PathDraft>> PageScene::AddDraft(const std::string& text) 
   draft->id = id;
   draft->text = text;
   draft->path = std::make_shared<const CameraPath>(std::move(path));
+  draft->cameras_hash = HashOfCameras(*draft->path);
   std::list<std::shared_ptr<PathDraft>> forgotten;  // their threads end outside the lock
   const std::lock_guard lock(mutex_);
   drafts_.push_front(draft);
@@ -89,7 +90,7 @@ std::shared_ptr<PathDraft> PageScene::FindDraft(const std::string& id) {
 FrameUse PageScene::UseOf(const PathDraft& draft, FrameId frame) {
   const RenderCamera& camera = draft.path->Camera(frame);
   FrameUse use = UseOfCameras(index_, camera, arguments_.needs, pool_);
-  if (&draft != first_draft_.get()) return use;
+  if (draft.cameras_hash != first_draft_->cameras_hash) return use;
   for (size_t i = 0; i < packages_.size(); ++i) {
     const Package& package = *packages_[i];
     const std::vector<FrameId> frames = package.FrameIds();
@@ -121,9 +122,6 @@ std::shared_ptr<FilmUse> PageScene::FilmOf(PathDraft& draft) {
   return draft.film;
 }
 
-Result<std::string> PageScene::IdOnDisk() const {
-  LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(arguments_.path));
-  return IdOfText(text);
-}
+Result<std::string> PageScene::TextOnDisk() const { return ReadFile(arguments_.path); }
 
 }  // namespace lf

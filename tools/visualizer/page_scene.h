@@ -43,6 +43,7 @@ struct PathDraft {
   std::string id;  // of the text: 16 hexadecimal digits
   std::string text;
   std::shared_ptr<const CameraPath> path;
+  std::string cameras_hash;       // as packages have it
   std::shared_ptr<FilmUse> film;  // begun when it is asked for
 };
 
@@ -67,13 +68,13 @@ class PageScene {
   // The last few are kept, and the first; null: not known (any more).
   std::shared_ptr<PathDraft> FindDraft(const std::string& id);
 
-  // Of the package that the frame is in, if the draft is the first.
+  // Of the package that the frame is in, if the draft has its cameras.
   FrameUse UseOf(const PathDraft& draft, FrameId frame);
   // Begins to ask all frames of the draft, and leaves off asking those of others.
   std::shared_ptr<FilmUse> FilmOf(PathDraft& draft);
 
-  // PATH.yaml as it is on the disk now; its id.
-  Result<std::string> IdOnDisk() const;
+  // PATH.yaml as it is on the disk now.
+  Result<std::string> TextOnDisk() const;
 
  private:
   PageScene(LightField light_field, PageArguments arguments);

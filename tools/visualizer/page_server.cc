@@ -193,9 +193,9 @@ void PageServer::Parts::Watch() {
       const std::string now = RenderJson(scene.arguments().watch);
       if (now != std::exchange(seen, now)) scene.events().Post("watch", now);
     }
-    const auto on_disk = scene.IdOnDisk();
-    if (on_disk && *on_disk != std::exchange(path_id, *on_disk))
-      scene.events().Post("path", "{\"id\":\"" + path_id + "\"}");
+    const auto text = scene.TextOnDisk();
+    if (text && IdOfText(*text) != std::exchange(path_id, IdOfText(*text)))
+      scene.events().Post("path", PathNewsJson(scene, *text));
   }
 }
 

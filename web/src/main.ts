@@ -1,6 +1,6 @@
 // The page of lfvisualizer: put together and wired.
 
-import type { RenderFacts, SceneFacts, Vec3 } from "./data/scene";
+import type { PathNews, RenderFacts, SceneFacts, Vec3 } from "./data/scene";
 import { getBytes, getJson, listen, receivedBytes } from "./data/source";
 import { ask, showCommands, showKeys } from "./dialogs";
 import { byId, element } from "./element";
@@ -270,7 +270,7 @@ function wireNews(state: State): void {
         state.emit("preview");
       },
       film: () => void state.askFilm(),
-      path: (data) => state.fileHasChanged((JSON.parse(data) as { id: string }).id),
+      path: (data) => void state.fileHasChanged(JSON.parse(data) as PathNews),
     },
     (isThere) => {
       link.textContent = isThere ? "" : "lfvisualizer has been ended";

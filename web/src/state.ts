@@ -8,6 +8,7 @@ import type {
   DensityFacts,
   FilmFacts,
   PathHead,
+  PathNews,
   RenderFacts,
   SceneFacts,
 } from "./data/scene";
@@ -60,6 +61,7 @@ export class State {
   private uses = new Map<string, ArrayBuffer>();
   private usesBytes = 0;
   private checking = 0;
+  private isSaving = false;
   private selectedId: number | null = null; // its facts may be under way
   private filmAsked = "";
   private filmIsStale = false;
@@ -178,6 +180,7 @@ export class State {
 
   async save(force = false): Promise<"saved" | "changed" | "failed"> {
     const text = this.document.text();
+    this.isSaving = true;
     try {
       const answer = await post<{ id: string }>("save", { text, expected: this.savedId, force });
       this.savedText = text;
@@ -189,13 +192,28 @@ export class State {
       if (error instanceof SourceError && error.isConflict) return "changed";
       this.fail(error);
       return "failed";
+    } finally {
+      this.isSaving = false;
     }
   }
 
-  // The file is another than was read or saved here.
-  fileHasChanged(id: string): void {
-    if (id !== this.savedId)
-      this.say(`${this.scene.path_file} has been changed by another program.`);
+  // Another program has written the file: it is shown, unless edits would be lost.
+  async fileHasChanged(news: PathNews): Promise<void> {
+    if (news.id === this.savedId || this.isSaving) return;
+    const what = `${this.scene.path_file} has been changed by another program`;
+    if (news.fault) return this.say(`${what}, and has a fault: ${news.fault}`, true);
+    try {
+      const text = this.isChanged ? "" : await getText(`path/${news.id}/path.yaml`);
+      if (this.isChanged) return this.say(`${what}. Here are edits that are not saved.`);
+      this.document = PathDocument.parse(text, this.scene.light_field.unit_m);
+      this.history.push(text, "what another program wrote");
+      this.savedText = text;
+      this.savedId = news.id;
+      await this.check();
+      this.say(`${what}: this is what it says now.`);
+    } catch (error) {
+      this.fail(error);
+    }
   }
 
   // ----------------------------------------------------------------------------------- the frame

@@ -11,6 +11,12 @@ export interface PathHead {
   height: number;
 }
 
+// What the file of the path has become.
+export interface PathNews {
+  id: string;
+  fault: string; // empty: none
+}
+
 export interface SceneFacts {
   version: string;
   light_field: {

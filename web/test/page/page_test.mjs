@@ -226,6 +226,37 @@ test("a key is edited, saved with its comments, and rendered", async () => {
   });
 });
 
+test("a page shows the file as it is now, and loses no edit to another program", async () => {
+  await withChart(async (page, path) => {
+    const focusThere = () => page.evaluate("lfvisualizer.state.cameras[10].focusDistance");
+    const message = (words) => page.waitForSelector(`#message:has-text("${words}")`);
+    await writeFile(path, CHART_PATH.replace("value: 1.2", "value: 1.3"));
+    await message("this is what it says now");
+    assert.equal(await focusThere(), 1.3);
+    assert.equal(await page.evaluate("lfvisualizer.state.isChanged"), false);
+    await page.click("#undo");
+    await until(page, "app.state.cameras[10].focusDistance === 1.2");
+    await writeFile(path, CHART_PATH.replace("value: 1.2", "value: 1.5"));
+    await message("edits that are not saved");
+    assert.equal(await focusThere(), 1.2);
+    await page.click("#save");
+    await page.click("button:text-is('Write over it')");
+    await until(page, "!app.state.isChanged");
+    assert.equal(await readFile(path, "utf8"), CHART_PATH);
+    await writeFile(path, CHART_PATH.replace("frames: 11", "frames: 5"));
+    await message("this is what it says now");
+    await page.reload();
+    await page.waitForSelector("body[data-ready=yes]");
+    assert.equal(await page.evaluate("lfvisualizer.state.path.frames"), 5);
+    await writeFile(path, "format: lfpath 1\nfps: none\n");
+    await message("has a fault: path");
+    await page.reload();
+    await page.waitForSelector("body[data-ready=yes]");
+    await message("has a fault: path");
+    assert.equal(await focusThere(), 1.2);
+  });
+});
+
 test("what is no path is told with its line and not saved", async () => {
   await withChart(async (page, path) => {
     await page.click("[data-tab=edit]");
