@@ -124,15 +124,17 @@ export class State {
 
   // Edits the path by `change`, which may refuse; then has the parser of the programs check it.
   // merge: one step of undo with the edit before of the same label.
-  edit(label: string, change: (document: PathDocument) => void, merge = false): void {
+  // False: it has refused.
+  edit(label: string, change: (document: PathDocument) => void, merge = false): boolean {
     try {
       change(this.document);
     } catch (error) {
       this.fail(error);
-      return;
+      return false;
     }
     this.history.push(this.document.text(), label, { merge });
     void this.check();
+    return true;
   }
 
   undo(): void {

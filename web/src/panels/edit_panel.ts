@@ -88,7 +88,7 @@ export class EditPanel {
     spellcheck: "false",
     "aria-label": "The path file",
   });
-  private readonly verdict = element("p", { role: "status" });
+  private readonly verdict = element("p", { role: "status", id: "verdict" });
   private readonly opened = new Set<string>();
 
   constructor(
@@ -319,31 +319,28 @@ export class EditPanel {
 
   private constants(): HTMLElement {
     const { state } = this;
-    const blades = element("input", {
-      type: "number",
-      min: 0,
-      max: 64,
-      step: 1,
-      "aria-label": "Blades",
-    });
-    blades.addEventListener("change", () =>
-      state.edit("change blades", (path) => path.setConstant("blades", blades.valueAsNumber)),
-    );
-    const frames = element("input", { type: "number", min: 1, step: 1, "aria-label": "Frames" });
-    frames.addEventListener("change", () =>
-      state.edit("change the film's length", (path) =>
-        path.setConstant("frames", frames.valueAsNumber),
-      ),
-    );
-    state.on(["path"], () => {
-      blades.value = String(state.camera.blades);
-      frames.value = String(state.path.frames);
-    });
+    const constant = (label: string, name: string, now: () => number) => {
+      const input = element("input", { type: "number", min: 0, step: 1, "aria-label": label });
+      const fill = () => (input.value = String(now()));
+      input.addEventListener("change", () => {
+        const wanted = input.valueAsNumber;
+        if (!Number.isFinite(wanted) ||
+            !state.edit(`change ${name}`, (path) => path.setConstant(name, wanted)))
+          fill();
+      });
+      state.on(["path"], fill);
+      return [element("label", {}, label), input];
+    };
     return element(
       "div",
       {},
-      element("div", { class: "row" }, element("label", {}, "Blades"), blades, "0: a disk"),
-      element("div", { class: "row" }, element("label", {}, "Frames"), frames),
+      element(
+        "div",
+        { class: "row" },
+        ...constant("Blades", "blades", () => state.camera.blades),
+        "0: a disk",
+      ),
+      element("div", { class: "row" }, ...constant("Frames", "frames", () => state.path.frames)),
     );
   }
 

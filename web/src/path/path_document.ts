@@ -492,6 +492,7 @@ function checkConstant(name: string, spec: ConstantSpec, value: ConstantValue): 
     word: typeof value === "string" && /^[a-z_]+$/.test(value),
     boolean: typeof value === "boolean",
   }[spec.kind];
-  const expected = spec.kind === "numbers" ? `${spec.count} numbers` : `a ${spec.kind}`;
+  const expected = spec.kind === "numbers" ? `${spec.count} numbers`
+    : spec.kind === "integer" ? "a whole number" : `a ${spec.kind}`;
   if (!fits) throw new Error(`${name}: expected ${expected}, found ${JSON.stringify(value)}`);
 }
