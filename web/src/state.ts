@@ -61,6 +61,7 @@ export class State {
   private uses = new Map<string, ArrayBuffer>();
   private usesBytes = 0;
   private checking = 0;
+  private taking = 0;
   private isSaving = false;
   private selectedId: number | null = null; // its facts may be under way
   private filmAsked = "";
@@ -112,7 +113,9 @@ export class State {
   }
 
   private async take(head: PathHead): Promise<void> {
+    const number = ++this.taking;
     const cameras = readFrames(await getBytes(`path/${head.id}/frames.bin`));
+    if (number !== this.taking) return; // a later edit's have come first
     this.path = head;
     this.cameras = cameras;
     this.frame = Math.min(this.frame, head.frames);
