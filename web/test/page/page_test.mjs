@@ -160,6 +160,19 @@ test("the LF cameras of a triangular aperture form a triangle", withShop, async 
   });
 });
 
+test("the overview shows a rig of centimetres and what it sees a metre away", async () => {
+  await withChart(async (page) => {
+    const [ax, ay, bx, by] = await page.evaluate(`(() => {
+      const { camera, points } = window.lfvisualizer.view;
+      const { min, max } = points.object.geometry.boundingBox;
+      const a = min.clone().project(camera), b = max.clone().project(camera);
+      return [a.x, a.y, b.x, b.y];
+    })()`);
+    for (const one of [ax, ay, bx, by]) assert.ok(Math.abs(one) < 1);
+    assert.ok(Math.hypot(bx - ax, by - ay) > 0.3);
+  });
+});
+
 test("keys and the timeline move through the film", async () => {
   await withChart(async (page) => {
     await page.keyboard.press("ArrowRight");
@@ -265,6 +278,11 @@ test("what is no path is told with its line and not saved", async () => {
     await page.waitForFunction(() =>
       /:11:.*focus_distanc/.test(document.querySelector("aside p.bad")?.textContent ?? ""));
     assert.ok(await page.isDisabled("#save"));
+    // Refused before it is in the text: the field is as it was.
+    await page.fill("[aria-label=Blades]", "2.5");
+    await page.keyboard.press("Enter");
+    await page.waitForSelector("#message:has-text('expected a whole number, found 2.5')");
+    assert.equal(await page.inputValue("[aria-label=Blades]"), "0");
     await page.fill("textarea", CHART_PATH.replace("fps: 10", "fps: 20"));
     await until(page, "app.state.path.fps === 20 && app.state.invalid === null");
     // Another program writes the file meanwhile.
