@@ -4,7 +4,9 @@
 usage: lfvisualizer_test.py LFVISUALIZER LFRENDERER [pageless]
 """
 import json
+import signal
 import socket
+import subprocess
 import sys
 import unittest
 
@@ -60,7 +62,19 @@ class VisualizerTest(ProgramTestCase):
             self.fails(4, ["page" if PAGELESS else f"--serve {port}"], VISUALIZER, self.field,
                        self.path, "--serve", port)
 
+    @unittest.skipIf("pageless" in sys.argv, "it has no page")
+    def test_a_port_has_one_server(self):
+        with subprocess.Popen([VISUALIZER, self.field, self.path, "-q"], stdout=subprocess.PIPE,
+                              text=True) as server:
+            port = server.stdout.readline().split(":")[2].split("/")[0]
+            self.fails(4, [f"--serve {port}"], VISUALIZER, self.field, self.path, "--serve", port)
+            server.send_signal(signal.SIGINT)
+            self.assertEqual(server.wait(), 0)
+
     def test_what_is_missing_or_wrong_is_told(self):
+        self.fails(2, ["--text", "packages"], VISUALIZER, self.field, self.path, "no.lfp", "--text")
+        self.fails(2, ["--export", "--watch"], VISUALIZER, self.field, self.path, "--export", "x",
+                   "--watch", "y")
         self.fails(2, ["--frames", "--text"], VISUALIZER, self.field, self.path, "--frames", 1)
         self.fails(2, ["--serve", "--text"], VISUALIZER, self.field, self.path, "--text", "--serve",
                    0)

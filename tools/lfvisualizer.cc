@@ -51,15 +51,18 @@ void AddOptions(CLI::App& app, Arguments& a) {
   app.add_option("--frames", a.frames, "Only these frames: 1-100x2, 7, 3-5,9")
       ->needs(text)
       ->check(lf::NotEmpty());
-  app.add_option("--serve", a.port, "Port of the page; 0: any that is free")
-      ->excludes(text)
-      ->check(CLI::Range(0, 65535));
-  app.add_option("--watch", a.watch, "DIR of an lfrenderer: show its frames as they grow")
-      ->excludes(text)
-      ->check(lf::NotEmpty());
+  auto* serve = app.add_option("--serve", a.port, "Port of the page; 0: any that is free")
+                    ->excludes(text)
+                    ->check(CLI::Range(0, 65535));
+  auto* watch =
+      app.add_option("--watch", a.watch, "DIR of an lfrenderer: show its frames as they grow")
+          ->excludes(text)
+          ->check(lf::NotEmpty());
   auto* to_files = app.add_option("--export", a.export_folder,
                                   "Write the page and its data into a new folder, and end")
                        ->excludes(text)
+                       ->excludes(serve)
+                       ->excludes(watch)
                        ->check(lf::NotEmpty());
   app.add_option("--export-images", a.export_images,
                  "The most LF images that go with it, of those that frames take")
@@ -100,6 +103,8 @@ lf::Result<void> PrintText(const Arguments& a, const lf::CommonOptions& common) 
 }
 
 lf::Result<void> Run(Arguments& a, const lf::CommonOptions& common) {
+  if (a.text && !a.page.packages.empty())
+    return lf::UsageError("--text tells what a path takes of a light field: leave packages out");
   if (a.text) return PrintText(a, common);
   const std::atomic<bool>& interrupted = lf::CatchInterrupts();
   a.page.light_field = a.light_field.path;

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "tools/visualizer/page_answers.h"
@@ -15,6 +17,8 @@ namespace lf {
 namespace {
 
 namespace fs = std::filesystem;
+
+Error Interrupted() { return {ErrorKind::kInterrupted, "interrupted; the export is not whole"}; }
 
 class Exporter {
  public:
@@ -60,24 +64,29 @@ Result<ExportFacts> ExportPage(PageScene& scene, const fs::path& folder, size_t 
   PathDraft& draft = *scene.first_draft();
   const std::string base = fmt::format("path/{}/", draft.id);
   const std::shared_ptr<FilmUse> film = scene.FilmOf(draft);
-  film->Wait();
+  const size_t frame_count = draft.path->frame_count();
+  for (size_t asked = 0; asked < frame_count; asked = film->Get().frames_done) {
+    progress(asked, 2 * frame_count);
+    if (interrupted) return Interrupted();
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
   const std::vector<uint16_t> frames_of_image = film->Get().frames_of_image;
   std::vector<uint32_t> images;
   for (uint32_t i = 0; i < frames_of_image.size(); ++i)
     if (frames_of_image[i] > 0) images.push_back(i);
   // Evenly among them.
   const size_t image_count = std::min(images.size(), most_images);
-  const size_t total = draft.path->frame_count() + image_count;
-  size_t done = 0;
+  const size_t total = 2 * frame_count + image_count;
+  size_t done = frame_count;
   const auto step = [&]() -> Result<void> {
     progress(++done, total);
-    if (interrupted) return Error{ErrorKind::kInterrupted, "interrupted; the export is not whole"};
+    if (interrupted) return Interrupted();
     return {};
   };
   for (const char* name : {"cameras.bin"}) LF_RETURN_IF_ERROR(exporter.WriteAnswer(name));
   for (const char* name : {"path.json", "path.yaml", "frames.bin", "film.json", "film.bin"})
     LF_RETURN_IF_ERROR(exporter.WriteAnswer(base + name));
-  for (size_t i = 1; i <= draft.path->frame_count(); ++i) {
+  for (size_t i = 1; i <= frame_count; ++i) {
     LF_RETURN_IF_ERROR(exporter.WriteAnswer(fmt::format("{}use/{}.bin", base, i)));
     LF_RETURN_IF_ERROR(exporter.WriteAnswer(fmt::format("{}density/{}.json", base, i)));
     LF_RETURN_IF_ERROR(step());

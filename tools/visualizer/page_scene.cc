@@ -17,6 +17,7 @@ namespace lf {
 namespace {
 
 constexpr size_t kMostDrafts = 8;
+constexpr uint64_t kMostFilms = 3;
 
 }  // namespace
 
@@ -84,7 +85,9 @@ std::shared_ptr<PathDraft> PageScene::FindDraft(const std::string& id) {
   const std::lock_guard lock(mutex_);
   const auto found = std::find_if(drafts_.begin(), drafts_.end(),
                                   [&](const auto& draft) { return draft->id == id; });
-  return found == drafts_.end() ? nullptr : *found;
+  if (found == drafts_.end()) return nullptr;
+  drafts_.splice(drafts_.begin(), drafts_, found);
+  return drafts_.front();
 }
 
 FrameUse PageScene::UseOf(const PathDraft& draft, FrameId frame) {
@@ -113,12 +116,14 @@ FrameUse PageScene::UseOf(const PathDraft& draft, FrameId frame) {
 std::shared_ptr<FilmUse> PageScene::FilmOf(PathDraft& draft) {
   std::vector<std::shared_ptr<FilmUse>> left;  // their threads end outside the lock
   const std::lock_guard lock(mutex_);
+  if (draft.film) return draft.film;
+  draft.film_number = ++films_begun_;
   for (const auto& other : drafts_)
-    if (other.get() != &draft && other->film) left.push_back(std::exchange(other->film, nullptr));
-  if (!draft.film)
-    draft.film = std::make_shared<FilmUse>(
-        index_, draft.path, arguments_.needs, pool_,
-        [this, id = draft.id] { events_.Post("film", "{\"path\":\"" + id + "\"}"); });
+    if (other->film && other->film_number + kMostFilms <= films_begun_)
+      left.push_back(std::exchange(other->film, nullptr));
+  draft.film = std::make_shared<FilmUse>(
+      index_, draft.path, arguments_.needs, pool_,
+      [this, id = draft.id] { events_.Post("film", "{\"path\":\"" + id + "\"}"); });
   return draft.film;
 }
 

@@ -45,6 +45,7 @@ struct PathDraft {
   std::shared_ptr<const CameraPath> path;
   std::string cameras_hash;       // as packages have it
   std::shared_ptr<FilmUse> film;  // begun when it is asked for
+  uint64_t film_number = 0;       // of those begun
 };
 
 class PageScene {
@@ -65,12 +66,13 @@ class PageScene {
   std::shared_ptr<PathDraft> first_draft() const { return first_draft_; }
   // kInput: what the programs would say of it, too.
   Result<std::shared_ptr<PathDraft>> AddDraft(const std::string& text);
-  // The last few are kept, and the first; null: not known (any more).
+  // The last few that were asked for are kept, and the first; null: not known (any more).
   std::shared_ptr<PathDraft> FindDraft(const std::string& id);
 
   // Of the package that the frame is in, if the draft has its cameras.
   FrameUse UseOf(const PathDraft& draft, FrameId frame);
-  // Begins to ask all frames of the draft, and leaves off asking those of others.
+  // Begins to ask all frames of the draft. The last few films go on, for as many pages; others are
+  // left off.
   std::shared_ptr<FilmUse> FilmOf(PathDraft& draft);
 
   // PATH.yaml as it is on the disk now.
@@ -89,7 +91,8 @@ class PageScene {
   std::vector<std::unique_ptr<ImageIndex>> package_indices_;
   std::string packages_note_;
   EventBoard events_;
-  std::mutex mutex_;  // of the drafts
+  std::mutex mutex_;  // of the drafts and their films
+  uint64_t films_begun_ = 0;
   std::shared_ptr<PathDraft> first_draft_;
   std::list<std::shared_ptr<PathDraft>> drafts_;  // the newest first
 };

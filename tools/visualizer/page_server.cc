@@ -148,6 +148,11 @@ void PageServer::Parts::Get(std::string_view name, httplib::Response& response) 
 }
 
 void PageServer::Parts::Route() {
+  // httplib's own choice would share the port with another lfvisualizer.
+  server.set_socket_options([](socket_t socket) {
+    const int yes = 1;
+    ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
+  });
   server.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
   server.set_payload_max_length(kMostBytes);
   server.set_tcp_nodelay(true);

@@ -133,6 +133,7 @@ function wireView(state: State, view: SpaceView): void {
 }
 
 async function save(state: State): Promise<void> {
+  state.emit("saving");
   if ((await state.save()) !== "changed") return;
   const isSure = await ask(
     `${state.scene.path_file} has been changed by another program since it was opened here. ` +
@@ -269,7 +270,9 @@ function wireNews(state: State): void {
         state.preview = JSON.parse(data) as PreviewFacts;
         state.emit("preview");
       },
-      film: () => void state.askFilm(),
+      film: (data) => {
+        if ((JSON.parse(data) as { path: string }).path === state.path.id) void state.askFilm();
+      },
       path: (data) => void state.fileHasChanged(JSON.parse(data) as PathNews),
     },
     (isThere) => {

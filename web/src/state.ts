@@ -26,6 +26,7 @@ export type Change =
   | "selected"
   | "watch"
   | "preview"
+  | "saving" // is about to be: what is being typed belongs to it
   | "theme"
   | "message";
 
@@ -63,6 +64,10 @@ export class State {
   private checking = 0;
   private taking = 0;
   private isSaving = false;
+  private broken: string | null = null; // why what has been typed is no YAML
+  private news: PathNews | null = null; // of the file, which edits that are not saved keep away
+  private fileHasFault = false;
+  private bytesThatSavingLoses = false;
   private selectedId: number | null = null; // its facts may be under way
   private filmAsked = "";
   private filmIsStale = false;
@@ -103,7 +108,9 @@ export class State {
   // ------------------------------------------------------------------------------------ the path
 
   async open(): Promise<void> {
-    const text = await getText(`path/${this.scene.path.id}/path.yaml`);
+    const bytes = await getBytes(`path/${this.scene.path.id}/path.yaml`);
+    const text = new TextDecoder().decode(bytes);
+    this.bytesThatSavingLoses = text.includes("\uFFFD");
     this.savedText = text;
     this.savedId = this.scene.path.id;
     this.history = new History(text);
@@ -157,7 +164,9 @@ export class State {
     try {
       this.document = PathDocument.parse(text, this.scene.light_field.unit_m);
     } catch (error) {
-      this.invalid = error instanceof Error ? error.message : String(error);
+      ++this.checking; // what is under way is of another text
+      this.broken = error instanceof Error ? error.message : String(error);
+      this.invalid = this.broken;
       this.emit("text");
       return false;
     }
@@ -169,27 +178,39 @@ export class State {
   private async check(): Promise<void> {
     const number = ++this.checking;
     const text = this.document.text();
+    this.broken = null;
     this.emit("text");
     try {
       const head = await post<PathHead>("check", { text });
       if (number !== this.checking) return;
       this.invalid = null;
-      this.say("");
+      if (this.message?.isError) this.say("");
       if (head.id !== this.path.id) await this.take(head);
     } catch (error) {
       if (number !== this.checking) return;
       this.invalid = error instanceof Error ? error.message : String(error);
     }
     this.emit("text");
+    if (this.news && !this.isChanged) void this.fileHasChanged(this.news);
   }
 
   async save(force = false): Promise<"saved" | "changed" | "failed"> {
+    if (this.broken) {
+      this.say(`Not saved: ${this.broken}`, true);
+      return "failed";
+    }
+    if (this.bytesThatSavingLoses) {
+      this.say(`Not saved: ${this.scene.path_file} has bytes that are no UTF-8, which would be ` +
+        "lost. Convert it first, such as by iconv, and load this page again.", true);
+      return "failed";
+    }
     const text = this.document.text();
     this.isSaving = true;
     try {
       const answer = await post<{ id: string }>("save", { text, expected: this.savedId, force });
       this.savedText = text;
       this.savedId = answer.id;
+      this.news = null;
       this.say(`Saved ${this.scene.path_file}`);
       this.emit("text");
       return "saved";
@@ -204,12 +225,18 @@ export class State {
 
   // Another program has written the file: it is shown, unless edits would be lost.
   async fileHasChanged(news: PathNews): Promise<void> {
+    this.news = null;
+    if (news.id === this.savedId && this.fileHasFault) this.say("");
+    this.fileHasFault = news.id !== this.savedId && news.fault !== "";
     if (news.id === this.savedId || this.isSaving) return;
     const what = `${this.scene.path_file} has been changed by another program`;
     if (news.fault) return this.say(`${what}, and has a fault: ${news.fault}`, true);
     try {
       const text = this.isChanged ? "" : await getText(`path/${news.id}/path.yaml`);
-      if (this.isChanged) return this.say(`${what}. Here are edits that are not saved.`);
+      if (this.isChanged) {
+        this.news = news;
+        return this.say(`${what}. Here are edits that are not saved.`);
+      }
       this.document = PathDocument.parse(text, this.scene.light_field.unit_m);
       this.history.push(text, "what another program wrote");
       this.savedText = text;
@@ -246,7 +273,7 @@ export class State {
     return bytes;
   }
 
-  async askFrame(): Promise<void> {
+  async askFrame(isSecond = false): Promise<void> {
     const { frame, path } = this;
     const isStill = () => frame === this.frame && path === this.path;
     try {
@@ -260,7 +287,8 @@ export class State {
       this.emit("density");
     } catch (error) {
       // A path that is forgotten by the server is sent again.
-      if (error instanceof SourceError && error.status === 410) void this.check();
+      if (error instanceof SourceError && error.status === 410 && !isSecond)
+        void this.check().then(() => (isStill() ? this.askFrame(true) : undefined));
       else if (isStill()) this.fail(error);
     }
   }

@@ -67,14 +67,23 @@ export async function post<T>(name: string, body: object): Promise<T> {
   return json;
 }
 
-// Server-sent events by their kind. The browser connects again by itself.
+// Server-sent events by their kind. The browser connects again by itself. A page that is not seen
+// gives its connection up: browsers have six for all pages of an address.
 export function listen(
   handlers: Record<string, (data: string) => void>,
   onConnection: (isThere: boolean) => void,
 ): void {
-  const source = new EventSource("events");
-  for (const [kind, handler] of Object.entries(handlers))
-    source.addEventListener(kind, (event) => handler((event as MessageEvent<string>).data));
-  source.addEventListener("open", () => onConnection(true));
-  source.addEventListener("error", () => onConnection(false));
+  let source: EventSource | null = null;
+  const connect = () => {
+    if (source && !document.hidden) return;
+    source?.close();
+    source = document.hidden ? null : new EventSource("events");
+    if (!source) return;
+    for (const [kind, handler] of Object.entries(handlers))
+      source.addEventListener(kind, (event) => handler((event as MessageEvent<string>).data));
+    source.addEventListener("open", () => onConnection(true));
+    source.addEventListener("error", () => onConnection(false));
+  };
+  document.addEventListener("visibilitychange", connect);
+  connect();
 }

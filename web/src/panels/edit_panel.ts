@@ -13,8 +13,8 @@ interface Field {
   // In the order of what the file may have; the first that it has is shown.
   names: string[];
   parts: string[]; // of a value; one: a number
-  // Of this frame, where the camera tells; else what the file says.
-  now?: (state: State) => PathValue | null;
+  // Of this frame, where the camera tells what `name` is between keys.
+  now?: (state: State, name: string) => PathValue | null;
 }
 
 const FIELDS: Field[] = [
@@ -23,18 +23,25 @@ const FIELDS: Field[] = [
     label: "Looks at",
     names: ["look_at", "orientation", "quaternion"],
     parts: ["x", "y", "z"],
+    now: (s, name) =>
+      name === "look_at" ? add(s.camera.centre, s.camera.forward, s.camera.focusDistance) : null,
   },
+  { label: "Roll", names: ["roll"], parts: ["degrees"] },
   {
     label: "Aperture",
     names: ["aperture_diameter", "f_number"],
     parts: ["diameter"],
-    now: (s) => 2 * s.camera.radius,
+    now: ({ camera }, name) =>
+      name === "f_number" ? camera.focalLength / (2 * camera.radius) : 2 * camera.radius,
   },
   {
     label: "Focus distance",
     names: ["focus_distance", "focus_point"],
     parts: ["distance"],
-    now: (s) => s.camera.focusDistance,
+    now: ({ camera }, name) =>
+      name === "focus_point"
+        ? add(camera.centre, camera.forward, camera.focusDistance)
+        : camera.focusDistance,
   },
   {
     label: "Focus tilt",
@@ -49,7 +56,8 @@ const FIELDS: Field[] = [
     label: "Focal length",
     names: ["focal_length", "field_of_view"],
     parts: ["length"],
-    now: (s) => s.camera.focalLength,
+    now: ({ camera }, name) =>
+      name === "field_of_view" ? null : camera.focalLength,
   },
   { label: "Blade rotation", names: ["blade_rotation"], parts: ["degrees"] },
 ];
@@ -90,6 +98,9 @@ export class EditPanel {
   });
   private readonly verdict = element("p", { role: "status", id: "verdict" });
   private readonly opened = new Set<string>();
+  private typing = 0; // the timer
+  private filledWith = ""; // the document that the text is of
+  private isSettling = false;
 
   constructor(
     private readonly root: HTMLElement,
@@ -106,17 +117,15 @@ export class EditPanel {
       );
       return;
     }
-    let typing = 0;
-    const take = () => state.setText(this.text.value);
     this.text.addEventListener("input", () => {
-      clearTimeout(typing);
-      typing = window.setTimeout(take, 150);
+      clearTimeout(this.typing);
+      this.typing = window.setTimeout(() => this.takeText(), 150);
     });
     this.text.addEventListener("blur", () => {
-      clearTimeout(typing);
-      if (this.text.value !== state.document.text()) take();
+      this.takeText();
       state.history.seal();
     });
+    state.on(["saving"], () => this.takeText());
     const file = element("details", {}, element("summary", {}, "The file"), this.text);
     root.append(this.fields, this.constants(), this.movements(), file, this.verdict);
     state.on(["path", "frame", "text"], () => this.draw());
@@ -126,24 +135,47 @@ export class EditPanel {
     this.draw();
   }
 
+  // What has been typed since it was taken last. (An area of text knows no line ends but its own.)
+  private takeText(): void {
+    if (this.typing === 0) return;
+    clearTimeout(this.typing);
+    this.typing = 0;
+    const { state } = this;
+    const lineEnd = state.document.text().includes("\r\n") ? "\r\n" : "\n";
+    if (state.setText(this.text.value.replaceAll("\n", lineEnd)))
+      this.filledWith = state.document.text();
+  }
+
   private draw(): void {
     const { state } = this;
     if (this.root.hidden || !state.scene.server || state.cameras.length === 0) return;
     this.verdict.textContent = state.invalid ?? "";
     this.verdict.className = state.invalid ? "bad" : "muted";
-    if (document.activeElement !== this.text) this.text.value = state.document.text();
-    // What is being typed stays.
-    if (this.fields.contains(document.activeElement) && document.activeElement instanceof
-        HTMLInputElement)
-      return;
+    // What is being typed, or is no YAML yet, stays until the document is another.
+    const text = state.document.text();
+    if (this.typing === 0 && text !== this.filledWith) {
+      this.text.value = text;
+      this.filledWith = text;
+    }
+    if (this.isSettling) return;
+    const focused = document.activeElement;
+    const isTyped = focused instanceof HTMLInputElement && focused.value !== focused.defaultValue;
+    if (isTyped && this.fields.contains(focused)) return; // stays
     this.redrawFields();
   }
 
   private redrawFields(): void {
+    const focused = this.fields.contains(document.activeElement)
+      ? document.activeElement?.getAttribute("aria-label")
+      : null;
     this.fields.replaceChildren(
       element("h2", {}, `At frame ${this.state.frame}, ${seconds(this.state.time)}`),
       ...FIELDS.map((field) => this.field(field)),
     );
+    if (!focused) return;
+    const again = this.fields.querySelector<HTMLElement>(`[aria-label="${focused}"]`);
+    again?.focus();
+    if (again instanceof HTMLInputElement) again.select();
   }
 
   private quantityOf(field: Field): Quantity | null {
@@ -165,29 +197,41 @@ export class EditPanel {
     return index < 0 ? null : index;
   }
 
+  // Null: somewhere between keys.
   private valueNow(field: Field, quantity: Quantity): PathValue | null {
     const key = this.keyNow(quantity);
     if (key !== null) return key < 0 ? quantity.base! : quantity.keyframes[key].value;
-    if (field.now && quantity.name === field.names[0]) return field.now(this.state);
-    const before = quantity.keyframes.filter((one) => one.time <= this.state.time).pop();
-    return before?.value ?? quantity.base ?? quantity.keyframes[0]?.value ?? null;
+    const { keyframes, base } = quantity;
+    if (keyframes.length === 0 && base !== undefined) return base;
+    const now = field.now?.(this.state, quantity.name) ?? null;
+    if (now !== null) return now;
+    const { time } = this.state;
+    const last = keyframes.at(-1);
+    if (last && time >= last.time) return last.value;
+    if (keyframes.length > 0 && !quantity.baseIsKey && time <= keyframes[0].time)
+      return keyframes[0].value;
+    return keyframes.length === 0 ? (field.parts.length === 1 ? 0 : field.parts.map(() => 0)) : null;
   }
 
   private field(field: Field): HTMLElement {
     const { state } = this;
     const quantity = this.quantityOf(field);
     if (!quantity) return element("div");
-    const value =
-      this.valueNow(field, quantity) ?? (field.parts.length === 1 ? 0 : field.parts.map(() => 0));
+    const known = this.valueNow(field, quantity);
+    const value = known ?? quantity.keyframes[0].value;
     const key = this.keyNow(quantity);
-    const isMoving = quantity.hasAccelerations;
+    // What is shown is of this frame, or of the key that is nearest to it, wherever the timeline is
+    // when the value has been typed.
+    const time =
+      key === null ? state.time : key < 0 ? 0 : quantity.keyframes[key].time;
+    const isMoving = quantity.hasAccelerations || known === null;
     const inputs = partsOf(value).map(([name, x], i) => {
       const label = PART_LABELS[field.parts[i]] ?? name;
       const input = element("input", {
         type: "number",
         step: "any",
         class: "vector",
-        value: Number(x.toPrecision(6)),
+        value: known === null ? "" : Number(x.toPrecision(6)),
         disabled: isMoving,
         "aria-label": `${field.label} ${name}`,
         "data-quantity": quantity.name,
@@ -196,13 +240,20 @@ export class EditPanel {
       input.addEventListener("change", () => {
         if (input.value === "" || !Number.isFinite(input.valueAsNumber)) return;
         const changed = withPart(value, i, input.valueAsNumber);
+        // The fields stay until the focus is where it will be.
+        this.isSettling = true;
+        setTimeout(() => {
+          this.isSettling = false;
+          this.redrawFields();
+        });
         state.edit(`change ${field.label.toLowerCase()}`, (path) => {
           if (quantity.keyframes.length > 0 || quantity.baseIsKey)
-            path.setKeyframe(quantity.name, state.time, changed);
+            path.setKeyframe(quantity.name, time, changed);
           else path.setBase(quantity.name, changed);
         });
-        input.blur();
-        this.redrawFields();
+      });
+      input.addEventListener("keydown", (event) => {
+        if (event.key === "Enter") input.blur();
       });
       return input;
     });
@@ -214,7 +265,7 @@ export class EditPanel {
         title: "A key of this value at this frame",
         click: () =>
           state.edit(`add a key of ${field.label.toLowerCase()}`, (path) =>
-            path.setKeyframe(quantity.name, state.time, value),
+            path.setKeyframe(quantity.name, time, value),
           ),
       },
       "◆ Key",
@@ -224,7 +275,7 @@ export class EditPanel {
       {},
       NAMES[quantity.name] ?? field.label,
       key === null ? null : element("span", { class: "key-dot", title: "a key" }, "◆"),
-      element("span", { class: "now" }, valueText(value)),
+      element("span", { class: "now" }, known === null ? "between keys" : valueText(value)),
     );
     const unit = quantity.unit === "degrees" ? "degrees" : quantity.unit === "length" ? "world units" : "";
     const details = element(
@@ -237,7 +288,7 @@ export class EditPanel {
         { class: "muted" },
         `${quantity.name.replaceAll("_", " ")}${unit ? `, ${unit}` : ""}`,
       ),
-      isMoving ? this.movesOtherwise(quantity) : this.keyList(quantity),
+      quantity.hasAccelerations ? this.movesOtherwise(quantity) : this.keyList(quantity),
     );
     details.addEventListener("toggle", () => {
       if (details.open) this.opened.add(field.label);
@@ -385,6 +436,7 @@ export class EditPanel {
           centre: add(camera.centre, camera.forward, camera.focusDistance),
           axis: camera.up,
           startPosition: camera.centre,
+          start: state.time,
           degrees: angle.valueAsNumber,
           seconds: orbitSeconds.valueAsNumber,
         });
@@ -395,6 +447,7 @@ export class EditPanel {
         return dolly(path, {
           from: camera.centre,
           to: add(camera.centre, camera.forward, way.valueAsNumber),
+          start: state.time,
           seconds: dollySeconds.valueAsNumber,
         });
       });
@@ -403,6 +456,7 @@ export class EditPanel {
         focusPull(path, {
           from: state.camera.focusDistance,
           to: focus.valueAsNumber,
+          start: state.time,
           seconds: focusSeconds.valueAsNumber,
         }),
       );
@@ -410,7 +464,11 @@ export class EditPanel {
       "details",
       {},
       element("summary", {}, "Movements, from this frame's camera"),
-      element("p", { class: "muted" }, "Each replaces how the camera, or the focus, moved before."),
+      element(
+        "p",
+        { class: "muted" },
+        "From this frame on; each replaces how the camera, or the focus, moved in the whole film.",
+      ),
       row("Orbit", angle, "° in", orbitSeconds, "s", element("button", { click: makeOrbit }, "Apply")),
       row("Dolly", way, "in", dollySeconds, "s", element("button", { click: makeDolly }, "Apply")),
       row(

@@ -23,16 +23,19 @@ export async function focusThere(state: State, request: PickRequest): Promise<vo
       frame: state.frame,
       ...request,
     });
-    state.edit("focus there", (document) => {
+    let instead = "";
+    const isTaken = state.edit("focus there", (document) => {
       const focus = document.quantity("focus_distance");
+      if (!focus.given || focus.hasAccelerations) instead = ", instead of how the focus was given";
       if (!focus.given) document.useFocusDistance(picked.focus_distance);
       else if (focus.keyframes.length > 0)
         document.setKeyframe("focus_distance", time, picked.focus_distance);
       else if (focus.hasAccelerations) document.removeMotion("focus_distance", picked.focus_distance);
       else document.setBase("focus_distance", picked.focus_distance);
     });
+    if (!isTaken) return;
     state.say(
-      `Focused at ${length(picked.focus_distance)}, from ${picked.cameras.length} LF images ` +
+      `Focused at ${length(picked.focus_distance)}${instead}, from ${picked.cameras.length} LF images ` +
         `(certain to ${percent(picked.certainty)})`,
     );
   } catch (error) {
@@ -62,7 +65,10 @@ export function makePickable(
 // A button that shows the picture over the whole space, and back.
 export function enlargeButton(picture: HTMLElement): HTMLButtonElement {
   const place = document.createComment("");
-  const button = element("button", { "aria-pressed": "false" }, "Large");
+  const button = element("button", { "aria-pressed": "false", title: "Esc: back" }, "Large");
+  window.addEventListener("keydown", (event) => {
+    if (event.key === "Escape" && picture.classList.contains("large")) button.click();
+  });
   button.addEventListener("click", () => {
     const isLarge = picture.classList.toggle("large");
     button.setAttribute("aria-pressed", String(isLarge));

@@ -1,5 +1,6 @@
 // Frames as they grow: of a render that is watched, or a small preview of this frame.
 
+import type { FrameCamera } from "../data/frame_camera";
 import type { RenderFacts } from "../data/scene";
 import { getBytes, post } from "../data/source";
 import {
@@ -39,6 +40,8 @@ export class RenderPanel {
   private picture: GrowingPicture | null = null;
   private shownName = "";
   private wantedName = "";
+  private fault = ""; // why the last could not be read
+  private previewed: FrameCamera | null = null;
   private isLoading = false;
   private readonly sources = element("div", { class: "row group" });
 
@@ -79,13 +82,27 @@ export class RenderPanel {
     makePickable(
       this.box,
       () => [this.state.camera.width, this.state.camera.height],
-      (x, y) => void focusThere(this.state, { x, y }),
+      (x, y) => this.focusAt(x, y),
     );
     state.on(["preview", "watch", "frame", "path"], () => this.update());
   }
 
   shown(): void {
     this.update();
+  }
+
+  // Where the picture is of what the frame sees now.
+  private focusAt(x: number, y: number): void {
+    const { state, picture, previewed } = this;
+    const { camera } = state;
+    if (!picture) return;
+    if (this.source === "preview" && !(previewed && seeAlike(previewed, camera)))
+      return state.say("The preview is of another view than this frame's: render it again.");
+    if (this.source === "watch" &&
+        (picture.fullWidth !== camera.width || picture.fullHeight !== camera.height))
+      return state.say(`This picture is of another path: it has ${picture.fullWidth} × ` +
+        `${picture.fullHeight} elements, and the frame ${camera.width} × ${camera.height}.`);
+    void focusThere(state, { x, y });
   }
 
   // A render of this frame with a small plate, as the path is now.
@@ -99,6 +116,7 @@ export class RenderPanel {
       Math.max(1, Math.round(height * factor)),
     ]);
     if (this.source !== "preview") this.setSource("preview");
+    this.previewed = state.camera;
     try {
       await post("preview", { text: document.text(), frame: state.frame });
     } catch (error) {
@@ -211,14 +229,15 @@ export class RenderPanel {
 
   private drawStrip(watch: RenderFacts): void {
     const { state } = this;
-    const finished = watch.frames.filter((one) => one.finished).length;
+    const frames = watch.frames.filter((one) => one.frame <= state.path.frames);
+    const finished = frames.filter((one) => one.finished).length;
     this.strip.replaceChildren(
       element(
         "span",
         { style: "flex-basis:100%" },
-        `${finished} of ${state.path.frames} frames finished, ${watch.frames.length - finished} begun`,
+        `${finished} of ${state.path.frames} frames finished, ${frames.length - finished} begun`,
       ),
-      ...watch.frames.slice(0, 600).map((one) =>
+      ...frames.slice(0, 600).map((one) =>
         element(
           "button",
           {
@@ -250,6 +269,7 @@ export class RenderPanel {
       const picture = readPicture(await getBytes(wanted));
       if (this.wantedName.startsWith(`${name}?`)) {
         this.picture = picture;
+        if (this.fault && this.state.message?.text === this.fault) this.state.say("");
         this.shownName = wanted;
         this.drawPicture();
       }
@@ -259,6 +279,7 @@ export class RenderPanel {
         this.picture = null; // what is shown is of another frame
         this.shownName = "";
         this.state.fail(error);
+        this.fault = this.state.message?.text ?? "";
       }
     } finally {
       this.isLoading = false;
@@ -297,4 +318,13 @@ export class RenderPanel {
       context.putImageData(develop(picture, Number(this.exposure.value)), 0, 0);
     }
   }
+}
+
+// Whether a place in the picture of one is the same place in that of the other: focus and lens may
+// differ.
+function seeAlike(a: FrameCamera, b: FrameCamera): boolean {
+  const view = ({ centre, forward, up, fx, fy, cx, cy, width, height }: FrameCamera) =>
+    [...centre, ...forward, ...up, fx, fy, cx, cy, width, height];
+  const [ofA, ofB] = [view(a), view(b)];
+  return ofA.every((x, i) => Math.abs(x - ofB[i]) <= 1e-9 * (1 + Math.abs(x)));
 }

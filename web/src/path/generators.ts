@@ -25,6 +25,7 @@ export interface FocusPullOptions {
   to: number;
   seconds: number;        // of the pull itself
   hold?: number;          // seconds before and after it
+  start?: number;         // seconds before it, if not those
 }
 
 // Between keys so far apart the Catmull-Rom curve keeps within 0.13 % of the radius on the circle.
@@ -82,14 +83,14 @@ export function dolly(path: PathDocument, options: DollyOptions): string {
 }
 
 export function focusPull(path: PathDocument, options: FocusPullOptions): string {
-  const { from, to, seconds, hold = 0 } = options;
-  checkDuration(seconds, hold);
+  const { from, to, seconds, hold = 0, start = hold } = options;
+  checkDuration(seconds, start);
   path.edit(() => {
     path.useFocusDistance(from);
     path.removeMotion("focus_distance", from);
-    if (hold > 0) path.setKeyframe("focus_distance", hold, from);
-    path.setKeyframe("focus_distance", hold + seconds, to);
-    coverSeconds(path, hold + seconds + hold);
+    if (start > 0) path.setKeyframe("focus_distance", start, from);
+    path.setKeyframe("focus_distance", start + seconds, to);
+    coverSeconds(path, start + seconds + hold);
   });
   return `Focus pull in ${round(seconds)} s`;
 }

@@ -297,6 +297,51 @@ test("what is no path is told with its line and not saved", async () => {
   });
 });
 
+test("what is typed is saved as it is seen, and at the frame at which it was begun", async () => {
+  const text = CHART_PATH.replaceAll("\n", "\r\n").replace(
+    "keyframes:", "keyframes:\r\n  position: [{time: 0, value: [0, 0, -1]}, {time: 1, value: [0.1, 0.2, -0.9]}]");
+  await withChart(async (page, path) => {
+    await page.click("[data-tab=edit]");
+    await page.click("summary:has-text('The file')");
+    // Touched, not typed into: shows what comes, and is no edit.
+    await page.click("textarea");
+    await writeFile(path, text.replace("fps: 10", "fps: 20"));
+    await until(page, "app.state.path.fps === 20");
+    assert.match(await page.inputValue("textarea"), /fps: 20/);
+    await page.click("h2:has-text('At frame')");
+    assert.equal(await page.evaluate("lfvisualizer.state.isChanged"), false);
+    // Saved at once, with the file's own ends of lines.
+    await page.fill("textarea", (await page.inputValue("textarea")).replace("fps: 20", "fps: 10"));
+    await page.keyboard.press("Control+s");
+    await until(page, "!app.state.isChanged && app.state.path.fps === 10");
+    assert.equal(await readFile(path, "utf8"), text);
+    // No YAML yet: stays to be mended, and is not saved.
+    const broken = (await page.inputValue("textarea")).replace("[96, 64]", "[96, 64");
+    await page.fill("textarea", broken);
+    await page.click("h2:has-text('At frame')");
+    await page.keyboard.press("Control+s");
+    await page.waitForSelector("#message:has-text('Not saved')");
+    assert.equal(await page.inputValue("textarea"), broken);
+    assert.equal(await readFile(path, "utf8"), text);
+    await page.fill("textarea", text.replaceAll("\r", ""));
+    await until(page, "app.state.invalid === null");
+    // The timeline moves on while a number is being typed.
+    await page.click("summary:has-text('Position')");
+    await page.fill("[aria-label='Position x']", "0.05");
+    await page.evaluate("lfvisualizer.state.setFrame(11)");
+    await page.keyboard.press("Tab");
+    await until(page, "Math.abs(app.state.cameras[0].centre[0] - 0.05) < 1e-9");
+    assert.equal(await page.evaluate("document.activeElement.ariaLabel"), "Position y");
+    const last = await page.evaluate("lfvisualizer.state.cameras[10].centre");
+    [0.1, 0.2, -0.9].forEach((x, i) => assert.ok(Math.abs(last[i] - x) < 1e-9, String(last)));
+    // Between keys the value is the frame's own.
+    await page.evaluate("lfvisualizer.state.setFrame(6)");
+    await page.click("summary:has-text('Focus distance')");
+    const now = await page.evaluate("lfvisualizer.state.camera.focusDistance");
+    assert.ok(Math.abs(await page.inputValue("[data-quantity=focus_distance]") - now) < 1e-5);
+  }, text);
+});
+
 test("movements are made, and commands are those of the programs", async () => {
   await withChart(async (page) => {
     await page.click("[data-tab=edit]");
