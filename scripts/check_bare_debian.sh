@@ -59,6 +59,7 @@ if [[ -r ${NODE_EXTRA_CA_CERTS:-} ]]; then
 fi
 mount -t proc proc "$root/proc"
 mount --rbind /dev "$root/dev"
+mount --rbind /sys "$root/sys" # cgroups, without which Slurm's nodes end
 chroot "$root" useradd --create-home --shell /bin/bash user
 git clone --quiet --no-local "$repository" "$root$checkout"
 chroot "$root" chown -R user:user /home/user

@@ -64,8 +64,13 @@ def find(program):
     return shutil.which(program, path=os.environ.get("PATH", "") + ":/usr/sbin:/usr/local/sbin")
 
 
-def missing_programs():
-    return [program for program in PROGRAMS if find(program) is None]
+def missing():
+    """What it needs and this machine lacks."""
+    lacking = [program for program in PROGRAMS if find(program) is None]
+    # Even where nothing is limited by them.
+    if not os.path.ismount("/sys/fs/cgroup"):
+        lacking.append("cgroups mounted at /sys/fs/cgroup")
+    return lacking
 
 
 def free_ports(count):
@@ -205,8 +210,8 @@ def main():
     parser.add_argument("--nodes", type=int, default=4)
     parser.add_argument("--cpus", type=int, default=1, help="of each node")
     arguments = parser.parse_args()
-    if missing_programs():
-        raise SystemExit(f"error: not installed: {', '.join(missing_programs())} "
+    if missing():
+        raise SystemExit(f"error: missing: {', '.join(missing())} "
                          "(apt-get install slurmctld slurmd slurm-client munge)")
     slurm = PrivateSlurm(arguments.folder, arguments.nodes, arguments.cpus)
     try:

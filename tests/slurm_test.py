@@ -15,7 +15,7 @@ import unittest
 
 import cluster_test_case
 from cluster_test_case import ClusterTestCase, digests
-from private_slurm import PrivateSlurm, missing_programs
+from private_slurm import PrivateSlurm, missing
 
 
 class SlurmTest(ClusterTestCase):
@@ -143,7 +143,7 @@ class SlurmTest(ClusterTestCase):
 
 if __name__ == "__main__":
     cluster_test_case.take_programs()
-    if missing_programs():
-        print(f"SKIPPED: not installed: {', '.join(missing_programs())}")
+    if missing():
+        print(f"SKIPPED: missing: {', '.join(missing())}")
         sys.exit(77)
     unittest.main(argv=sys.argv[:1], verbosity=2)
