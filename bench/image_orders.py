@@ -4,14 +4,13 @@
 usage: bench/image_orders.py BUILD_DIR [--density 1] [--size 480x320] [--write PAGE]
 
 The movement `bokeh` of Table 5.1, whose lens opens and closes, through a grid as dense as the thesis's band
-(calibration only). After a tenth of the LF images: the rays of each frame, as pixels of rectangles that the
+(calibration only). After a tenth of the LF images: the rays of each frame, as pixels of rectangles that its
 package tells, and their spread over the frames.
 """
 import argparse
 import pathlib
 import sqlite3
 import statistics
-import struct
 import subprocess
 import tempfile
 
@@ -19,16 +18,18 @@ import record as results
 from workloads import WORKLOADS, path_yaml, photograph
 
 
-def filled_after_a_tenth(package):
-    """rays of each frame"""
-    with sqlite3.connect(f"file:{package}?immutable=1", uri=True) as database:
-        blobs = [blob for blob, in database.execute("select rectangles from rectangles order by place")]
-        frames = [frame for frame, in database.execute("select frame from frames where rays > 0")]
-    rays = dict.fromkeys(frames, 0)
-    for blob in blobs[:len(blobs) // 10]:
-        for frame, x_begin, y_begin, x_end, y_end in struct.iter_unpack("<5i", blob[:-8]):
-            rays[frame] += (x_end - x_begin) * (y_end - y_begin)
-    return list(rays.values())
+def filled_after_a_tenth(packages):
+    """rays of each frame that has any
+
+    packages  of one frame each: what they need of LF images is what that frame needs
+    """
+    frames = []
+    for package in packages:
+        with sqlite3.connect(f"file:{package}?immutable=1", uri=True) as database:
+            frames.append(dict(database.execute("select place, rays from lf_images where frames > 0")))
+    places = sorted(set().union(*frames))
+    first = set(places[:len(places) // 10])
+    return [sum(rays for place, rays in frame.items() if place in first) for frame in frames if frame]
 
 
 def main():
@@ -53,9 +54,9 @@ def main():
         for order in ("shuffle", "round-robin", "area"):
             out = folder / order
             subprocess.run([build / "bin/lfpreprocessor", field, path, "-o", out, "-q", "--order", order,
-                            "--packages", "1", "--lens-weights", "none"], check=True,
+                            "--frames-per-package", "1", "--lens-weights", "none"], check=True,
                            stdout=subprocess.DEVNULL)
-            rays = filled_after_a_tenth(out / "package-0000.lfp")
+            rays = filled_after_a_tenth(sorted(out.glob("*.lfp")))
             lines.append(
                 f"| {order} | {rays.count(0)} of {len(rays)} | {min(rays) / 1e6:.2f}, "
                 f"{statistics.median(rays) / 1e6:.2f}, {max(rays) / 1e6:.2f} | "

@@ -364,14 +364,19 @@ class PackagesTest(ProgramTestCase):
             self.assertEqual(db.execute("pragma integrity_check").fetchone(), ("ok",))
             frames = db.execute("select frame, rays from frames where is_rendered").fetchall()
             self.assertEqual([frame for frame, _ in frames], [4, 5, 6])
-            rays = {frame: 0 for frame, _ in frames}
             places = [place for place, in db.execute("select place from lf_images")]
             self.assertEqual(sorted(places), list(range(SIDE * SIDE)))
-            for blob, in db.execute("select rectangles from rectangles"):
-                for frame, x0, y0, x1, y1 in struct.iter_unpack("<5i", blob[:-8]):
-                    self.assertTrue(0 <= x0 < x1 <= WIDTH and 0 <= y0 < y1 <= HEIGHT)
-                    rays[frame] += (x1 - x0) * (y1 - y0)
-            self.assertEqual(sorted(rays.items()), frames)
+            for x0, y0, x1, y1, count, rays in db.execute(
+                    "select x_begin, y_begin, x_end, y_end, frames, rays from lf_images where frames > 0"):
+                self.assertTrue(0 <= x0 < x1 <= WIDTH and 0 <= y0 < y1 <= HEIGHT)
+                self.assertTrue(0 < rays <= count * (x1 - x0) * (y1 - y0))
+            self.assertEqual(db.execute("select sum(rays) from lf_images").fetchone()[0],
+                             sum(rays for _, rays in frames))
+            # Around every frame of the film, that of other packages, too.
+            for distance, blob in db.execute("select camera_distance, surroundings from frames"):
+                numbers = struct.unpack("<6d", blob[:-8])
+                self.assertEqual(numbers[0], distance)
+                self.assertTrue(all(number > 0 for number in (*numbers[:2], numbers[5])), numbers)
 
 
 if __name__ == "__main__":

@@ -210,7 +210,9 @@ std::string ForecastText(const PreprocessReport& report, const CameraPath& path,
                         "ns per ray, {:.3g} ms per frame, measured on a few)",
                         ShortDuration(cpu_s / facts.thread_count), facts.thread_count,
                         1e3 * report.rate->load_s, 1e9 * report.rate->collect_s,
-                        1e3 * report.rate->finish_s)
+                        1e3 * report.rate->finish_s) +
+                (facts.rebins ? "; making frames of rebinned rays takes longer, and is not in it"
+                              : "")
           : "not known: " + report.rate_error,
       &lines);
   AddLine(

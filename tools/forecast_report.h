@@ -13,6 +13,7 @@ struct ForecastFacts {
   std::string light_field;     // as the user called it
   std::string output;          // folder of the packages; empty: a plan
   std::string render_options;  // that lfrenderer wants for them
+  bool rebins = false;         // RenderMode::kRebin or kHybrid
   ImageOrder order = ImageOrder::kShuffle;
   uint64_t seed = 0;
   int thread_count = 1;

@@ -31,7 +31,7 @@ Rendered from packages, frames have the same bits as those of lfrenderer LIGHTFI
 struct Arguments {
   lf::LightFieldArgument light_field;
   std::string path, output, frames, memory = "8G", order = "shuffle", balance = "rays";
-  std::string estimator = "auto", lens_weights = "auto";
+  std::string estimator = "auto", lens_weights = "auto", mode = "collect";
   int64_t packages = 0, frames_per_package = 0, max_images = 0;
   double max_angle_deg = 0;
   std::vector<double> depths;
@@ -71,9 +71,13 @@ void AddOptions(CLI::App& app, Arguments& a) {
                  "Only LF cameras whose optical axes differ by at most so many degrees from the "
                  "frame's; 0: all")
       ->check(CLI::Range(0., 180.));
+  app.add_option("--mode", a.mode,
+                 "Mode of the render to come, as of lfrenderer: decides which LF images and pixels "
+                 "frames need, the forecast, and what lfcompressor --needed-pixels keeps")
+      ->check(CLI::IsMember({"collect", "rebin", "hybrid"}));
   app.add_option("--lens-weights", a.lens_weights,
-                 "Of the render to come, as of lfrenderer; none: packages without the LF cameras "
-                 "beside the lens, which cannot be weighed")
+                 "Lens weights of the render to come, as of lfrenderer; none, with --mode collect: "
+                 "packages lack the LF cameras beside the lens, and can be rendered so alone")
       ->check(CLI::IsMember({"auto", "none", "area", "hat"}));
   app.add_option("--estimator", a.estimator, "Of the render to come, for the forecast")
       ->check(CLI::IsMember({"auto", "nearest", "bilinear"}));
@@ -107,6 +111,11 @@ lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::Comm
   for (const lf::LensWeights weights :
        {lf::LensWeights::kAuto, lf::LensWeights::kArea, lf::LensWeights::kHat})
     if (a.lens_weights == lf::NameOf(weights)) options.lens_weights = weights;
+  for (const lf::RenderMode known : {lf::RenderMode::kRebin, lf::RenderMode::kHybrid})
+    if (a.mode == lf::NameOf(known)) options.mode = known;
+  // As lfrenderer, unasked: nothing is collected that could be weighed.
+  if (options.mode == lf::RenderMode::kRebin && options.lens_weights == lf::LensWeights::kAuto)
+    options.lens_weights = lf::LensWeights::kNone;
   LF_ASSIGN_OR_RETURN(options.memory_bytes, lf::ParseByteSize(a.memory, "--memory"));
   if (a.packages > 0) options.package_count = static_cast<size_t>(a.packages);
   if (a.frames_per_package > 0)
@@ -148,7 +157,10 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   facts.seed = options.seed;
   facts.thread_count = pool.thread_count();
   facts.read_s = read_s;
-  if (options.lens_weights == lf::LensWeights::kNone) facts.render_options = " --lens-weights none";
+  facts.rebins = lf::Rebins(options.mode);
+  if (facts.rebins) facts.render_options = fmt::format(" --mode {}", a.mode);
+  if (options.lens_weights == lf::LensWeights::kNone && options.mode != lf::RenderMode::kRebin)
+    facts.render_options += " --lens-weights none";
   facts.are_depths_known = options.depths || light_field.depth_range;
   return lf::PrintReport(common.json ? lf::ForecastJson(report, path, facts)
                                      : lf::ForecastText(report, path, facts));

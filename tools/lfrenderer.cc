@@ -69,6 +69,7 @@ lf::Result<Rendered> RenderLightField(const lf::RenderArguments& arguments,
   lf::Package package = lf::PackageOfAll(std::move(light_field), std::move(path), common.seed);
   if (arguments.max_angle_deg > 0)
     package.choices.max_angle_rad = lf::RadiansFromDegrees(arguments.max_angle_deg);
+  LF_RETURN_IF_ERROR(lf::PutInOrder(*lf::ImageOrderOf(arguments.order), options, pool, &package));
   return Rendered{lf::Render(package, options, pool, progress), options};
 }
 
@@ -80,13 +81,14 @@ lf::Result<Rendered> RenderPackageFiles(const lf::RenderArguments& arguments,
     LF_ASSIGN_OR_RETURN(const lf::LightField light_field, arguments.light_field.Open());
     LF_ASSIGN_OR_RETURN(place, lf::PlaceOf(arguments.light_field.path, light_field));
   }
-  const std::vector<std::filesystem::path> files(arguments.inputs.begin(), arguments.inputs.end());
-  LF_ASSIGN_OR_RETURN(const lf::Package first, lf::OpenPackage(files.front(), place));
   LF_ASSIGN_OR_RETURN(
-      lf::RenderOptions options,
-      arguments.MakeOptions(common, first.light_field.encoding.bayer, first.path.frame_count()));
+      lf::PackagedFilm film,
+      lf::OpenPackages({arguments.inputs.begin(), arguments.inputs.end()}, std::move(place)));
+  LF_ASSIGN_OR_RETURN(lf::RenderOptions options,
+                      arguments.MakeOptions(common, film.first.light_field.encoding.bayer,
+                                            film.first.path.frame_count()));
   options.signals = signals;
-  return Rendered{lf::RenderPackages(files, place, options, pool, progress), options};
+  return Rendered{lf::RenderPackages(std::move(film), options, pool, progress), options};
 }
 
 }  // namespace

@@ -41,6 +41,11 @@ void RenderArguments::AddTo(CLI::App& app) {
                  "Only LF cameras whose optical axes differ by at most so many degrees from the "
                  "frame's; 0: all")
       ->check(CLI::Range(0., 180.));
+  app.add_option("--order", order,
+                 "Order of the LF images, which matters where --max-images or --stop-when end a "
+                 "frame early: shuffle, by --seed; round-robin, so that all frames fill equally; "
+                 "area, most rays first")
+      ->check(CLI::IsMember({"shuffle", "round-robin", "area"}));
   app.add_option(
       "--dump-every", dump_every,
       "Write the state so often, such as 30s, 10m, 1h; seldomer if it would take more than "
@@ -111,6 +116,10 @@ Result<void> RenderArguments::Check(bool seed_given) const {
   if (HasPackages()) {
     if (seed_given)
       return UsageError("--seed: packages have the order that they were made with: leave it out");
+    if (order != "shuffle")
+      return UsageError(
+          "--order: packages have the order that they were made with: leave it out, or make them "
+          "again by lfpreprocessor --order");
     if (max_angle_deg > 0)
       return UsageError(
           "--max-angle: packages have the LF cameras that they were made with: leave it out, or "

@@ -23,7 +23,8 @@ struct RenderArguments {
   LightFieldArgument light_field;   // with packages: where theirs is, or nothing
   std::string output, video, frames, memory = "8G", format = "exr", mode = "collect";
   std::string estimator = "auto", filter = "auto", lens_weights = "auto", back_end = "fast";
-  std::string rectangles = "on", dump_every = "30s", stop_when, require, shard, finish;
+  std::string order = "shuffle", rectangles = "on", dump_every = "30s", stop_when, require, shard,
+              finish;
   RebinArguments rebin;
   int64_t max_images = 0;
   double max_angle_deg = 0;  // 0: any

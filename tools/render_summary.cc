@@ -51,6 +51,11 @@ void TellRebinning(const RenderReport& report) {
           ShortNumber(static_cast<double>(rebinning.cell_count)),
           ShortNumber(static_cast<double>(rebinning.looked_at_count)), cost, 100 * least,
           100 * most);
+  if (rebinning.kept != "all")
+    LogInfo(
+        "rebinned: {}, so that the picture depends on --max-rays and on which frames are rendered "
+        "together",
+        rebinning.kept == "edges" ? "rays at edges were kept" : "there was no room for all rays");
 }
 
 // What kAuto made of every lens.

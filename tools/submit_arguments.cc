@@ -85,8 +85,7 @@ Result<Words> SplitWords(const std::vector<std::string>& words) {
 // What lfrenderer itself would say, before anything waits in a queue.
 Result<RenderOptions> TryArguments(const std::vector<fs::path>& packages, const fs::path& output,
                                    const std::string& frames,
-                                   const std::vector<std::string>& arguments,
-                                   std::optional<LightFieldPlace>* place) {
+                                   const std::vector<std::string>& arguments, PackagedFilm* film) {
   Program renderer("lfrenderer", "", "");
   RenderArguments render;
   render.AddTo(renderer.app());
@@ -103,11 +102,13 @@ Result<RenderOptions> TryArguments(const std::vector<fs::path>& packages, const 
     return UsageError(fmt::format("the arguments of lfrenderer, after --: {}", error.what()));
   }
   LF_RETURN_IF_ERROR(render.Check(renderer.app().count("--seed") > 0));
+  std::optional<LightFieldPlace> place;
   if (!render.light_field.path.empty()) {
     LF_ASSIGN_OR_RETURN(const LightField light_field, render.light_field.Open());
-    LF_ASSIGN_OR_RETURN(*place, PlaceOf(render.light_field.path, light_field));
+    LF_ASSIGN_OR_RETURN(place, PlaceOf(render.light_field.path, light_field));
   }
-  LF_ASSIGN_OR_RETURN(const Package first, OpenPackage(packages.front(), *place));
+  LF_ASSIGN_OR_RETURN(*film, OpenPackages(packages, std::move(place)));
+  const Package& first = film->first;
   LF_ASSIGN_OR_RETURN(RenderOptions options,
                       render.MakeOptions(renderer.common(), first.light_field.encoding.bayer,
                                          first.path.frame_count()));
@@ -246,8 +247,8 @@ Result<void> SubmitArguments::Change(ClusterJob* job, const CommonOptions& commo
   if (!split.arguments.empty()) {
     std::vector<fs::path> files;
     for (const JobPackage& package : job->packages) files.push_back(package.file);
-    std::optional<LightFieldPlace> place;
-    LF_RETURN_IF_ERROR(TryArguments(files, job->output_folder, "", split.arguments, &place));
+    PackagedFilm film;
+    LF_RETURN_IF_ERROR(TryArguments(files, job->output_folder, "", split.arguments, &film));
     job->arguments = split.arguments;
     std::error_code error;
     job->working_folder = fs::current_path(error);
@@ -272,11 +273,10 @@ Result<ClusterJob> SubmitArguments::MakeJob(const CommonOptions& common) const {
   LF_ASSIGN_OR_RETURN(job.renderer, FindRenderer(renderer));
   LF_ASSIGN_OR_RETURN(job.submitter, ProgramFolder());
   job.submitter /= "lfsubmit";
-  std::optional<LightFieldPlace> place;
+  PackagedFilm film;
   LF_ASSIGN_OR_RETURN(const RenderOptions options,
-                      TryArguments(files, job.output_folder, frames, job.arguments, &place));
-  LF_ASSIGN_OR_RETURN(const std::vector<PackagePart> parts,
-                      LookAtPackages(files, place, options.frames));
+                      TryArguments(files, job.output_folder, frames, job.arguments, &film));
+  LF_ASSIGN_OR_RETURN(const std::vector<PackagePart> parts, PartsWith(film, options.frames));
   for (const PackagePart& part : parts)
     job.packages.push_back(
         {part.path, part.path.stem().string(), part.frames, part.is_whole, part.ray_count});

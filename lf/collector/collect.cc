@@ -90,6 +90,7 @@ class FrameCollector::State {
   Batch BatchFrom(size_t from) const;
   std::vector<BatchFrame> FramesOf(const Batch& batch) const;
   void AnnounceUpTo(size_t end);
+  PixelRect RectOf(const Batch& batch, const SelectedImage& image) const;
   void Load(const Batch& batch, Loading* loading);
   Result<void> FinishLoading(Batch* batch);
   LfPixels TakeSpare();
@@ -215,14 +216,22 @@ void FrameCollector::State::AnnounceUpTo(size_t end) {
   for (; announced_ < end && !IsInterrupted(); ++announced_) store_.Announce(order_[announced_].id);
 }
 
+// Returns the pixels that the frames of the batch need of an LF image. Selection has found them
+// already where all frames take the batch.
+PixelRect FrameCollector::State::RectOf(const Batch& batch, const SelectedImage& image) const {
+  if (batch.frames.empty()) return image.rect;
+  std::vector<size_t> frames;
+  for (const size_t frame : batch.frames)
+    if (places_[frame].Holds(image.place)) frames.push_back(frame);
+  return collector_.RectOf(image.id, frames);
+}
+
 void FrameCollector::State::Load(const Batch& batch, Loading* loading) {
   if (loading->pixels || IsInterrupted()) return;
   const Clock::time_point start = Clock::now();
   const ThreadCpuTimer timer;
   const SelectedImage& selected = order_[loading->index];
-  // Those of all frames where all take it.
-  PixelRect rect =
-      batch.frames.empty() ? selected.rect : collector_.RectOf(selected.id, batch.frames);
+  PixelRect rect = RectOf(batch, selected);
   if (TakerWants(selected.place + 1))
     rect = Bounds(rect, options_.taker->RectOf(selected.id, selected.place));
   loading->pixels =

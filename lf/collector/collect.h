@@ -79,8 +79,8 @@ struct CollectTimes {
 // leaves the plates as if it had not been there.
 class FrameCollector {
  public:
-  // order   by ascending places, with all LF images that the frames take, their rectangles over
-  //         the frames that take them
+  // order   LF images that the frames take, by ascending places, each with the bounds of the pixels
+  //         that they need: SelectImages() with options.weights as SelectOptions::takes
   // places  what each frame takes: begin is how far its plate is already; empty: every frame all
   // plates  one per frame; only Step() writes them
   // All that is referred to must outlive the collector; `options` and `places` are copied.

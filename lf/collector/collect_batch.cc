@@ -111,12 +111,15 @@ PixelRect BatchCollector::RectOf(const BatchImage& image, const RenderCamera& fr
 
 PixelRect BatchCollector::RectOf(LfImageId id, std::span<const size_t> frames) const {
   const PinholeCamera camera = light_field_.Camera(id);
+  const auto takes = [&](size_t frame) { return !WeightsOf(frame, id).are_none(); };
+  if (std::none_of(frames.begin(), frames.end(), takes)) return {};
   if (whole_images_) return {0, 0, camera.intrinsics.width_px, camera.intrinsics.height_px};
   std::vector<IdealCell> cells;
   if (camera.intrinsics.has_distortion()) cells = MakeIdealCells(camera.intrinsics);
   const ImageOverlap overlap(camera, cells, ReachOf(reading_.estimator));
   PixelRect rect;
-  for (const size_t frame : frames) rect = Bounds(rect, overlap.Rect(frames_[frame]));
+  for (const size_t frame : frames)
+    if (takes(frame)) rect = Bounds(rect, overlap.Rect(frames_[frame]));
   return rect;
 }
 

@@ -100,7 +100,8 @@ class BatchCollector {
   void Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>& frames,
            const OtherItems& other_items, const std::atomic<bool>* interrupted);
 
-  // The pixels of an LF image that some of `frames` need.
+  // Returns the bounds of the pixels of an LF image that some of `frames` need. Frames in which the
+  // image has no weight need none.
   PixelRect RectOf(LfImageId id, std::span<const size_t> frames) const;
 
   // CPU seconds spent on batches so far, all threads, other items left out.

@@ -51,6 +51,14 @@ RayWeights FrameLens::WeightsOf(LfImageId id) const {
                     });
 }
 
+bool FrameLens::Takes(LfImageId id) const {
+  if (!weights_) return IsWithinAngle(light_field_.cameras[id.value], camera_, select_);
+  const auto found = cameras_.find(id.value);
+  if (found == cameras_.end() || !weights_->TakesPart(found->second)) return false;
+  // A share may be so small that its weight is rounded to 0.
+  return !weights_->is_constant() || weights_->At(found->second, 0, 0) > 0;
+}
+
 std::vector<LfImageId> FrameLens::near() const {
   std::vector<LfImageId> ids;
   for (const auto& [id, camera] : cameras_) ids.push_back(LfImageId{id});

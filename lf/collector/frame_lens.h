@@ -43,6 +43,9 @@ class FrameLens {
   // Refer to this object. 0 beyond the angle that selection allows.
   RayWeights WeightsOf(LfImageId id) const;
 
+  // Returns false if WeightsOf() is 0 all over the plate.
+  bool Takes(LfImageId id) const;
+
   // LF images that were asked for their share, ascending, and how far apart their cameras are
   // around the lens; with weights.
   std::vector<LfImageId> near() const;

@@ -13,101 +13,33 @@
 namespace lf {
 namespace {
 
-// Kernels overlap where lens points are so many sigmas apart.
-constexpr double kPointDistance_sigmas = 3;
-constexpr int kLeastPoints = 8, kMostPoints = 256;
-// Where LF cameras are rare, a kernel is as wide as this part of the way to the nearest.
-constexpr double kSigmaPerDistance = 0.5;
-// Splats may not be wider (rebinning/splat_tile.h).
-constexpr double kMostSigma_px = 8;
 constexpr int kLeastNodes = 17, kMostNodes = 65;
 constexpr size_t kMostNodeValues = size_t{1} << 17;  // of all nodes and lens points
-
-double MiddleOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 
 LensGaps::LensGaps(const ImageIndex& index, const RenderCamera& frame,
                    const CollectedWeights& collected, bool lens_test, const PlaceRange& places,
-                   const SelectOptions& select, const QueryOptions& options, ThreadPool& pool)
+                   const SelectOptions& select, const QueryOptions& options, ThreadPool& pool,
+                   std::optional<double> camera_distance_w)
     : is_collected_(static_cast<bool>(collected)) {
   all_.camera = frame;
-  sampling_.camera_distance_w = CameraDistanceAround(index, frame);
+  const double distance_w =
+      camera_distance_w ? *camera_distance_w : CameraDistanceAround(index, frame);
+  if (!(distance_w > 0)) return;
+  std::vector<SelectedImage> images = ImagesNearLens(index, frame, distance_w, select, pool);
+  std::erase_if(images,
+                [&places](const SelectedImage& image) { return !places.Holds(image.place); });
+  sampling_ = SamplingOf(index, frame, images, distance_w);
   if (!can_be_asked()) return;
-  RenderCamera grown = frame;
-  grown.aperture = {frame.aperture.radius_w + kFarthestDistances * sampling_.camera_distance_w, 0,
-                    0};
-  std::vector<LfImageId> near;
-  std::vector<double> pixel_rad;
-  std::vector<Vec2> seen_through;  // by the middle of the plate
-  const Intrinsics& plate = frame.pinhole.intrinsics;
-  const std::optional<Vec3> focus =
-      FocusPointOfElement(frame, 0.5 * plate.width_px, 0.5 * plate.height_px);
-  for (const SelectedImage& image : SelectImages(index, std::span(&grown, 1), select, pool)) {
-    if (!places.Holds(image.place)) continue;
-    const PinholeCamera lf_camera = index.light_field().Camera(image.id);
-    near.push_back(image.id);
-    pixel_rad.push_back(1 / lf_camera.intrinsics.fx_px);
-    sampling_.middle_world += lf_camera.CentreWorld();
-    if (focus) seen_through.push_back(LensPointOfLine(frame, lf_camera.CentreWorld(), *focus));
-  }
-  if (near.empty()) {
-    sampling_ = {};
-    return;
-  }
-  sampling_.middle_world /= static_cast<double>(near.size());
-  sampling_.pixel_rad = MiddleOf(pixel_rad);
-  SetPoints(seen_through, options);
+  all_ = QueriesOf(frame, sampling_, options, SeenThrough(index, frame, images));
   if (is_collected_) {
+    std::vector<LfImageId> near;
+    for (const SelectedImage& image : images) near.push_back(image.id);
     SetNodes(near, index);
     FindGaps(near, index, collected, lens_test, pool);
   }
   asks_in_the_end_ = AsksAt(kInTheEnd);
-}
-
-// How wide LF pixels are where the focus is, in elements, and at least 1.
-double LensGaps::LfPixelsPerElement() const {
-  const RenderCamera& frame = all_.camera;
-  const Intrinsics& plate = frame.pinhole.intrinsics;
-  const std::optional<Vec3> focus =
-      FocusPointOfElement(frame, 0.5 * plate.width_px, 0.5 * plate.height_px);
-  if (!focus) return 1;
-  const Vec3 forward = frame.pinhole.ForwardWorld();
-  const double lf_pixel_w =
-      sampling_.pixel_rad * std::abs(forward.dot(*focus - sampling_.middle_world));
-  const double element_w = forward.dot(*focus - frame.pinhole.CentreWorld()) / plate.fx_px;
-  return std::max(1.0, lf_pixel_w / element_w);
-}
-
-void LensGaps::SetPoints(const std::vector<Vec2>& seen_through, const QueryOptions& options) {
-  const RenderCamera& frame = all_.camera;
-  const double area_w2 = Area(frame.aperture);
-  const double sigma_w = options.sigma_st * sampling_.camera_distance_w;
-  const double apart_w = kPointDistance_sigmas / 2 * sigma_w;
-  int count = options.lens_point_count;
-  if (count == 0)
-    count = static_cast<int>(std::clamp(std::ceil(area_w2 / (kPi * apart_w * apart_w)),
-                                        0.0 + kLeastPoints, 0.0 + kMostPoints));
-  all_.points = MakeLensPoints(frame.aperture, count, options.lens_sets, options.seed);
-  all_.kernel = {sigma_w, std::min(options.sigma_uv * LfPixelsPerElement(), kMostSigma_px)};
-  // What few points must stand for, and what is far from LF cameras, is smoothed more.
-  const double few = 0.5 * std::sqrt(area_w2 / count) / sigma_w;
-  for (const auto& set : all_.points.sets) {
-    all_.points.spreads.emplace_back();
-    for (const Vec2& point : set) {
-      double nearest_w = std::numeric_limits<double>::infinity();
-      for (const Vec2& other : seen_through)
-        nearest_w = std::min(nearest_w, (other - point).norm());
-      const double most_w = kFarthestDistances * sampling_.camera_distance_w;
-      nearest_w = std::min(nearest_w, most_w);
-      all_.points.spreads.back().push_back(
-          std::max({1.0, few, kSigmaPerDistance * nearest_w / sigma_w}));
-    }
-  }
 }
 
 // So many that from node to node lens points of an LF camera move by half of what a point covers.
@@ -130,7 +62,7 @@ void LensGaps::SetNodes(const std::vector<LfImageId>& near, const ImageIndex& in
     if (middle && right) across_w = std::max(across_w, 2 * (*right - *middle).norm());
     if (middle && below) down_w = std::max(down_w, 2 * (*below - *middle).norm());
   }
-  const double step_w = 0.5 * kCoveredDistances * sampling_.camera_distance_w;
+  const double step_w = 0.5 * kCoveredDistances * sampling_.lf.camera_distance_w;
   const auto nodes = [step_w](double moves_w) {
     return static_cast<int>(
         std::clamp(std::ceil(moves_w / step_w) + 1, 0.0 + kLeastNodes, 0.0 + kMostNodes));
@@ -152,7 +84,7 @@ void LensGaps::FindGaps(const std::vector<LfImageId>& near, const ImageIndex& in
   const ApertureTest aperture(frame.aperture);
   std::vector<Vec2> points;
   for (const auto& set : all_.points.sets) points.insert(points.end(), set.begin(), set.end());
-  const double distance_w = sampling_.camera_distance_w;
+  const double distance_w = sampling_.lf.camera_distance_w;
   const double near_w =
       std::max(kCoveredDistances * distance_w,
                std::sqrt(Area(frame.aperture) / static_cast<double>(points.size())));
@@ -244,7 +176,14 @@ bool LensGaps::AsksAt(uint32_t place) const {
 
 RenderCamera LensGaps::ReachedCamera() const {
   RenderCamera camera = all_.camera;
-  camera.aperture = {camera.aperture.radius_w + ReachOf(all_.kernel, all_.points).lens_w, 0, 0};
+  const FrameReach reach = ReachOf(all_.kernel, all_.points);
+  camera.aperture = {camera.aperture.radius_w + reach.lens_w, 0, 0};
+  const int margin_px = static_cast<int>(std::ceil(reach.plate_px));
+  Intrinsics& plate = camera.pinhole.intrinsics;
+  plate.width_px += 2 * margin_px;
+  plate.height_px += 2 * margin_px;
+  plate.cx_px += margin_px;
+  plate.cy_px += margin_px;
   return camera;
 }
 

@@ -11,13 +11,14 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "lf/camera/ray_weight.h"
 #include "lf/camera/render_camera.h"
 #include "lf/core/parallel.h"
+#include "lf/hybrid/frame_sampling.h"
 #include "lf/rebinning/frame_queries.h"
-#include "lf/rebinning/slab_plan.h"
 #include "lf/selection/image_index.h"
 #include "lf/selection/select.h"
 
@@ -27,17 +28,6 @@ namespace lf {
 inline constexpr double kCoveredDistances = 1.5;
 // Elements that no more than this part of the lens is missing of are left as they are.
 inline constexpr double kLittleMissing = 0.1;
-// Rays of LF cameras farther than this from a lens point have no say in what it sees.
-inline constexpr double kFarthestDistances = 8;
-
-struct QueryOptions {
-  double sigma_st = 0.5;     // in distances between LF cameras; wider where these are rare
-  double sigma_uv = 0.35;    // in elements, or in LF pixels where these are larger
-  int lens_point_count = 0;  // in a set; 0: so many that kernels overlap, 8 to 256
-  int lens_sets = 1;         // k: sets of k x k elements (lens_points.h)
-  uint64_t seed = 0;
-};
-
 // What collection takes of an LF image in the frame: none if it never does.
 using CollectedWeights = std::function<RayWeights(LfImageId id)>;
 
@@ -46,13 +36,16 @@ class LensGaps {
   // collected  empty: nothing is collected, everything is asked for
   // lens_test  whether only rays inside the opening are collected: without lens weights
   // places     that the frame takes
+  // camera_distance_w  CameraDistanceAround() in the whole light field, where the index is of a
+  // part
   LensGaps(const ImageIndex& index, const RenderCamera& frame, const CollectedWeights& collected,
            bool lens_test, const PlaceRange& places, const SelectOptions& select,
-           const QueryOptions& options, ThreadPool& pool);
+           const QueryOptions& options, ThreadPool& pool,
+           std::optional<double> camera_distance_w = {});
 
   // Whether there are LF cameras around the lens, whose rays could answer.
-  bool can_be_asked() const { return sampling_.camera_distance_w > 0; }
-  const LfSampling& sampling() const { return sampling_; }
+  bool can_be_asked() const { return sampling_.lf.camera_distance_w > 0; }
+  const FrameSampling& sampling() const { return sampling_; }
   const RenderCamera& camera() const { return all_.camera; }
   // LF images that collection takes something of, as far as nodes see.
   size_t collected_count() const { return collected_places_.size(); }
@@ -67,19 +60,18 @@ class LensGaps {
   uint32_t changes_until() const { return changes_until_; }
   static constexpr uint32_t kInTheEnd = UINT32_MAX - 1;
 
-  // The frame's camera with a lens that holds all that its points reach.
+  // Returns the frame's camera with a lens and a plate that hold all that its queries reach: rays
+  // that pass beside the plate have a say in the elements at its edge.
   RenderCamera ReachedCamera() const;
 
  private:
-  double LfPixelsPerElement() const;
-  void SetPoints(const std::vector<Vec2>& seen_through, const QueryOptions& options);
   void SetNodes(const std::vector<LfImageId>& near, const ImageIndex& index);
   size_t node_count() const { return static_cast<size_t>(columns_.count()) * rows_.count(); }
   bool NodeAsksAt(size_t node, uint32_t place) const;
   void FindGaps(const std::vector<LfImageId>& near, const ImageIndex& index,
                 const CollectedWeights& collected, bool lens_test, ThreadPool& pool);
 
-  LfSampling sampling_;
+  FrameSampling sampling_;
   FrameQueries all_;
   bool is_collected_ = false;
   NodeAxis columns_{1};  // nodes over the plate

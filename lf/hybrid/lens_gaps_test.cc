@@ -49,7 +49,7 @@ double AskedShare(const FrameQueries& queries) {
 TEST(LensGaps, ALensThatIsFullOfCamerasHasNone) {
   const LensGaps gaps = GapsOf(Grid(), Frame(0.03));
   EXPECT_TRUE(gaps.can_be_asked());
-  EXPECT_NEAR(gaps.sampling().camera_distance_w, 0.01, 0.002);
+  EXPECT_NEAR(gaps.sampling().lf.camera_distance_w, 0.01, 0.002);
   EXPECT_FALSE(gaps.AsksAt(LensGaps::kInTheEnd));
   EXPECT_FALSE(gaps.QueriesAt(LensGaps::kInTheEnd).AsksForAny());
 }

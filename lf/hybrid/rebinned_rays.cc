@@ -24,15 +24,6 @@ constexpr double kFitShare = 0.9;
 // What of it is expected to become cells.
 constexpr double kRoom = 1.1, kRoomByEdges = 0.15;
 
-// What is asked for is looked at anew before the LF images at these places: 0 and the powers of
-// four times kDecisionPlaces. The last one up to `place`.
-uint32_t PhaseOf(uint32_t place) {
-  if (place < kDecisionPlaces) return 0;
-  uint32_t phase = kDecisionPlaces;
-  while (phase <= place / 4) phase *= 4;
-  return phase;
-}
-
 bool Covers(const CoverageMap& map, const Slab& slab, CellKey cell) {
   return map.Covers(MiddleOf(slab, cell));
 }
@@ -50,17 +41,6 @@ const char* NameOf(KeptRays kept) {
   }
 }
 
-const char* NameOf(Previews previews) {
-  switch (previews) {
-    case Previews::kOn:
-      return "on";
-    case Previews::kOff:
-      return "off";
-    default:
-      return "auto";
-  }
-}
-
 // Consecutive frames with a slab of their own.
 struct RebinnedRays::Section {
   SlabSection plan;        // of asking_ [begin, end)
@@ -72,37 +52,48 @@ struct RebinnedRays::Section {
   std::optional<std::vector<BinnedCell>> cells = {};  // of the map as it is, once asked for
 };
 
-RebinnedRays::RebinnedRays(const ImageIndex& index, std::vector<LensGaps> gaps,
+RebinnedRays::RebinnedRays(const ImageIndex& index, const FilmSlabs& slabs,
+                           std::span<const FrameId> frames, std::vector<LensGaps> gaps,
                            std::span<const PlaceRange> places, bool collects,
                            const SelectOptions& select, const RebinPassOptions& options,
                            ThreadPool& pool)
     : light_field_(index.light_field()),
       gaps_(std::move(gaps)),
-      collects_(collects),
       select_(select),
       options_(options),
       pool_(pool),
       stored_values_(StoredValueTable(light_field_.encoding)) {
-  LF_CHECK(places.size() == gaps_.size());
-  std::vector<FrameQueries> queries;
-  std::vector<LfSampling> sampling;
+  LF_CHECK(places.size() == gaps_.size() && frames.size() == gaps_.size());
   for (size_t f = 0; f < gaps_.size(); ++f) {
-    if (!gaps_[f].asks_in_the_end() && !IsPreviewed(gaps_[f], 0)) continue;
+    const AskedPixels asked(gaps_[f], collects, options_.previews);
+    if (!asked.AsksForAny() || !slabs.SlabOf(frames[f])) continue;
     asking_.push_back(f);
-    // Previews are content with LF images that are read anyway.
-    reached_.push_back(gaps_[f].asks_in_the_end() ? gaps_[f].ReachedCamera() : gaps_[f].camera());
-    sampling.push_back(gaps_[f].sampling());
-    queries.push_back(gaps_[f].QueriesAt(LensGaps::kInTheEnd));
+    asked_.push_back(asked);
   }
-  const std::vector<SlabSection> plans = PlanSlabs(queries, sampling, options_.slab);
-  for (const SlabSection& plan : plans) {
-    const auto of_section = std::span(queries).subspan(plan.begin, plan.end - plan.begin);
-    sections_.push_back(std::make_unique<Section>());
-    sections_.back()->plan = plan;
-    sections_.back()->in_the_end = CoverageMap(plan, of_section, options_.coverage, pool_);
-  }
+  MakeSections(slabs, frames);
   MakeMaps(index, places);
   for (const auto& section : sections_) Begin(0, *section);
+}
+
+// Frames of one slab are a section. Its bounds are those of its frames in this pass, so that
+// coverage maps are no coarser than these want.
+void RebinnedRays::MakeSections(const FilmSlabs& slabs, std::span<const FrameId> frames) {
+  for (size_t begin = 0; begin < asking_.size();) {
+    const size_t slab = *slabs.SlabOf(frames[asking_[begin]]);
+    std::vector<FrameQueries> queries;
+    size_t end = begin;
+    for (; end < asking_.size() && *slabs.SlabOf(frames[asking_[end]]) == slab; ++end)
+      queries.push_back(gaps_[asking_[end]].QueriesAt(LensGaps::kInTheEnd));
+    auto section = std::make_unique<Section>();
+    section->plan = slabs.section(slab);
+    section->plan.begin = begin;
+    section->plan.end = end;
+    if (const std::optional<SlabBounds> bounds = BoundsOf(section->plan.slab, queries))
+      section->plan.bounds = *bounds;
+    section->in_the_end = CoverageMap(section->plan, queries, options_.coverage, pool_);
+    sections_.push_back(std::move(section));
+    begin = end;
+  }
 }
 
 RebinnedRays::~RebinnedRays() = default;
@@ -112,7 +103,8 @@ RebinnedRays::~RebinnedRays() = default;
 void RebinnedRays::MakeMaps(const ImageIndex& index, std::span<const PlaceRange> places) {
   std::vector<PlaceRange> taken;
   for (const size_t f : asking_) taken.push_back({0, places[f].end});
-  const std::vector<SelectedImage> images = SelectImages(index, reached_, select_, pool_, taken);
+  const std::vector<SelectedImage> images =
+      SelectImages(index, ReachedCameras(), select_, pool_, taken);
   const size_t step = 1 + images.size() / kEstimatedFrom;
   const size_t asked = (images.size() + step - 1) / step;
   std::vector<double> totals;  // of sections
@@ -137,18 +129,12 @@ void RebinnedRays::MakeMaps(const ImageIndex& index, std::span<const PlaceRange>
         most, static_cast<size_t>(totals[i] * (keeps_all_ ? kRoom : kRoomByEdges)));
 }
 
-bool RebinnedRays::IsPreviewed(const LensGaps& gaps, uint32_t phase) const {
-  return collects_ && options_.previews != Previews::kOff && phase < gaps.changes_until() &&
-         (options_.previews == Previews::kOn || gaps.collected_count() > kPreviewedFrom);
-}
-
 // What only earlier previews asked for is dropped.
 void RebinnedRays::Begin(uint32_t phase, Section& section) {
   section.phase = phase;
   std::vector<FrameQueries> queries;
   for (size_t i = section.plan.begin; i < section.plan.end; ++i)
-    if (IsPreviewed(gaps_[asking_[i]], phase))
-      queries.push_back(gaps_[asking_[i]].QueriesAt(phase));
+    if (asked_[i].IsPreviewed(phase)) queries.push_back(gaps_[asking_[i]].QueriesAt(phase));
   if (queries.empty() && section.previews.is_empty()) return;
   CoverageOptions coarse = options_.coverage;
   coarse.cells_across = std::max(1, coarse.cells_across / 2);
@@ -185,28 +171,21 @@ PixelRect RebinnedRays::RectOf(LfImageId id, uint32_t place, size_t begin, size_
   if (camera.intrinsics.has_distortion()) cells = MakeIdealCells(camera.intrinsics);
   const ImageOverlap overlap(camera, cells, select_.reach);
   PixelRect rect;
-  for (size_t i = begin; i < end; ++i) {
-    const LensGaps& gaps = gaps_[asking_[i]];
-    const bool is_for_preview =
-        IsPreviewed(gaps, PhaseOf(place)) && place < gaps.PlaceAfter(kPreviewImages);
-    if (!is_for_preview && !gaps.asks_in_the_end()) continue;
-    if (IsWithinAngle(light_field_.cameras[id.value], reached_[i], select_))
-      rect = Bounds(rect, overlap.Rect(reached_[i]));
-  }
+  for (size_t i = begin; i < end; ++i)
+    rect = Bounds(rect, asked_[i].RectOf(light_field_.cameras[id.value], overlap, place, select_));
   return rect;
 }
 
 PixelRect RebinnedRays::RectOf(LfImageId id, uint32_t place) const {
-  const PixelRect rect = RectOf(id, place, 0, asking_.size());
-  if (rect.empty()) return rect;
-  const Intrinsics& image = light_field_.Camera(id).intrinsics;
-  const int around = PixelsAround(options_.rebin, true);
-  return Intersection(
-      {rect.x_begin - around, rect.y_begin - around, rect.x_end + around, rect.y_end + around},
-      {0, 0, image.width_px, image.height_px});
+  return GrownBy(RectOf(id, place, 0, asking_.size()), PixelsAround(options_.rebin, true),
+                 light_field_.Camera(id).intrinsics);
 }
 
-std::vector<RenderCamera> RebinnedRays::ReachedCameras() const { return reached_; }
+std::vector<RenderCamera> RebinnedRays::ReachedCameras() const {
+  std::vector<RenderCamera> cameras;
+  for (const AskedPixels& asked : asked_) cameras.push_back(asked.camera());
+  return cameras;
+}
 
 void RebinnedRays::FindIdealPixels(std::span<const BatchImage> images) {
   std::map<uint32_t, std::shared_ptr<const IdealPixels>> in_use;
@@ -350,7 +329,7 @@ SplatFrame RebinnedRays::SplatOfPoints(const Section& section, const FrameQuerie
 }
 
 Completion RebinnedRays::Complete(size_t frame, uint32_t place) {
-  const Intrinsics& plate = gaps_[frame].ReachedCamera().pinhole.intrinsics;
+  const Intrinsics& plate = gaps_[frame].camera().pinhole.intrinsics;
   Completion completion{Image<float>(plate.width_px, plate.height_px, 3),
                         Image<float>(plate.width_px, plate.height_px)};
   const auto found = std::lower_bound(asking_.begin(), asking_.end(), frame);
@@ -385,10 +364,11 @@ Completion RebinnedRays::Complete(size_t frame, uint32_t place) {
 }
 
 RebinnedRays::Facts RebinnedRays::facts() const {
-  Facts facts{sections_.size(), 0,    looked_at_, static_cast<double>(cpu_ns_) * 1e-9,
-              keeps_all_,       false};
+  Facts facts{sections_.size(), 0,     looked_at_, static_cast<double>(cpu_ns_) * 1e-9,
+              keeps_all_,       false, false};
   for (const auto& section : sections_) {
     facts.cell_count += section->map->size();
+    facts.is_full = facts.is_full || section->map->limit() < UINT64_MAX;
     facts.is_too_coarse = facts.is_too_coarse || section->map->is_too_coarse();
   }
   return facts;

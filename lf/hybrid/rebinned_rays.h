@@ -21,6 +21,8 @@
 #include "lf/capture/light_field.h"
 #include "lf/collector/image_taker.h"
 #include "lf/core/parallel.h"
+#include "lf/hybrid/asked_pixels.h"
+#include "lf/hybrid/film_slabs.h"
 #include "lf/hybrid/lens_gaps.h"
 #include "lf/rebinning/coverage_map.h"
 #include "lf/rebinning/ray_map.h"
@@ -38,19 +40,6 @@ enum class KeptRays {
 };
 // "auto", "all", "edges"
 const char* NameOf(KeptRays kept);
-
-// Frames that rays are kept of for pictures of an unfinished render, where they collect, too.
-enum class Previews {
-  kAuto,  // of those that collect more than kPreviewedFrom LF images: fewer are there soon
-  kOn,
-  kOff,
-};
-// "auto", "on", "off"
-const char* NameOf(Previews previews);
-inline constexpr size_t kPreviewedFrom = 256;
-// Of how many LF images of a frame rays are kept for that: they are all over its lens
-// (thesis 4.2.1).
-inline constexpr size_t kPreviewImages = 64;
 
 struct RebinPassOptions {
   RebinOptions rebin;
@@ -71,12 +60,13 @@ struct RebinPassOptions {
 class RebinnedRays : public ImageTaker {
  public:
   // All that is referred to must outlive it.
-  //   gaps      one per frame
-  //   places    that each frame takes
+  //   slabs     of the film
+  //   frames    of the pass, ascending
+  //   gaps      one per frame, and so are places, which the frame takes
   //   collects  whether the frames collect, too
-  RebinnedRays(const ImageIndex& index, std::vector<LensGaps> gaps,
-               std::span<const PlaceRange> places, bool collects, const SelectOptions& select,
-               const RebinPassOptions& options, ThreadPool& pool);
+  RebinnedRays(const ImageIndex& index, const FilmSlabs& slabs, std::span<const FrameId> frames,
+               std::vector<LensGaps> gaps, std::span<const PlaceRange> places, bool collects,
+               const SelectOptions& select, const RebinPassOptions& options, ThreadPool& pool);
   ~RebinnedRays() override;
 
   uint32_t places_done() const override;
@@ -113,7 +103,8 @@ class RebinnedRays : public ImageTaker {
     size_t cell_count = 0;
     uint64_t looked_at = 0;  // LF pixels
     double cpu_s = 0;
-    bool keeps_all = false;
+    bool keeps_all = false;      // rays that finished frames ask for, not those at edges alone
+    bool is_full = false;        // cells were dropped, as there were more than max_cells
     bool is_too_coarse = false;  // RayMap::is_too_coarse() of one
   };
   Facts facts() const;
@@ -122,7 +113,7 @@ class RebinnedRays : public ImageTaker {
 
  private:
   struct Section;
-  bool IsPreviewed(const LensGaps& gaps, uint32_t phase) const;
+  void MakeSections(const FilmSlabs& slabs, std::span<const FrameId> frames);
   PixelRect RectOf(LfImageId id, uint32_t place, size_t begin, size_t end) const;
   void MakeMaps(const ImageIndex& index, std::span<const PlaceRange> places);
   void Begin(uint32_t phase, Section& section);
@@ -135,13 +126,12 @@ class RebinnedRays : public ImageTaker {
 
   const LightField& light_field_;
   const std::vector<LensGaps> gaps_;
-  const bool collects_;
   const SelectOptions select_;
   const RebinPassOptions options_;
   ThreadPool& pool_;
   const std::vector<uint16_t> stored_values_;
-  std::vector<size_t> asking_;         // frames that LF cameras could answer
-  std::vector<RenderCamera> reached_;  // of these
+  std::vector<size_t> asking_;      // frames that LF cameras could answer
+  std::vector<AskedPixels> asked_;  // by these
   std::vector<std::unique_ptr<Section>> sections_;
   std::map<uint32_t, std::shared_ptr<const IdealPixels>> ideal_pixels_;  // by index of intrinsics
   bool keeps_all_ = false;

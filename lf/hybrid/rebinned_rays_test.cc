@@ -34,8 +34,15 @@ struct Fixture {
     for (const RenderCamera& frame : frames)
       gaps.emplace_back(index, frame, collected, true, PlaceRange(), select, options.query, pool);
     const std::vector<PlaceRange> places(frames.size());
-    return std::make_unique<RebinnedRays>(index, std::move(gaps), places, collects, select, options,
-                                          pool);
+    std::vector<FrameSampling> sampling;
+    std::vector<FrameId> ids;
+    for (const RenderCamera& frame : frames) {
+      sampling.push_back(SamplingOf(index, frame, select, pool));
+      ids.push_back(FrameId{static_cast<uint32_t>(sampling.size())});
+    }
+    const FilmSlabs slabs(frames, sampling, options.query, options.slab);
+    return std::make_unique<RebinnedRays>(index, slabs, ids, std::move(gaps), places, collects,
+                                          select, options, pool);
   }
 
   struct Outcome {

@@ -21,11 +21,17 @@ namespace lf {
 
 struct PackageFrame {
   FrameId id;
-  // About how far apart LF cameras around the lens are (lens_weights/frame_weights.h), measured in
-  // the whole light field, of which the package may lack some. None: to be measured.
-  std::optional<double> camera_distance_w;
   uint64_t image_count = 0;  // LF images with a ray, about
   uint64_t ray_count = 0;    // pixels of their rectangles
+};
+
+// How densely the light field was recorded around the lens of a frame (hybrid/frame_sampling.h),
+// measured in the whole light field, of which the package may lack some LF cameras.
+struct FrameSurroundings {
+  double camera_distance_w = 0;  // about how far apart LF cameras are; 0: there is none
+  double pixel_rad = 0;          // what one LF pixel sees
+  Vec3 middle_world = Vec3::Zero();
+  double hole_w = 0;  // from a point of the lens to the nearest LF camera, at most
 };
 
 // What selection decided with, and a render of the package cannot decide anew.
@@ -34,17 +40,22 @@ struct PackageChoices {
   uint64_t seed = 0;
   std::optional<size_t> max_image_count;  // of the LF images of a frame, the first
   std::optional<double> max_angle_rad;    // between the optical axes of LF camera and frame
-  // Whether LF cameras beside the lens are there, against which lens weights measure.
+  // Whether LF cameras beside the lens are there: lens weights measure against them, and rebinned
+  // rays are made of their LF images.
   bool has_neighbours = true;
+  // The mode of the render that `rect` and `frame_count` of images are for, "collect", "rebin" or
+  // "hybrid" (hybrid/render_mode.h). With neighbours a package can be rendered in any mode, if the
+  // LF images are whole.
+  std::string mode = "collect";
 };
 
-// Of an LF image, for those who read pixels ahead, and for people.
+// What the frames of a package need of an LF image.
 struct PackageImage {
-  uint32_t id = 0;          // in the whole light field, from 0
-  uint64_t file_bytes = 0;  // size of the image file when the package was made; 0: not there
-  PixelRect rect;           // bounds of its rectangles
-  uint32_t frame_count = 0;
-  uint64_t ray_count = 0;
+  uint32_t id = 0;           // in the whole light field, from 0
+  uint64_t file_bytes = 0;   // size of the image file when the package was made; 0: not there
+  PixelRect rect;            // bounds of the pixels that are read
+  uint32_t frame_count = 0;  // frames that need it; 0: a neighbour
+  uint64_t ray_count = 0;    // pixels that are tried as rays, in all of these frames
 };
 
 struct Package {
@@ -58,9 +69,11 @@ struct Package {
   LightFieldIdentity whole;          // the light field that this is a part of
   PackageChoices choices;
   std::vector<PackageImage> images;  // as light_field.cameras; empty in memory
+  // Of all frames of the film, [frame - 1]; empty: to be measured, in a light field that is whole.
+  std::vector<FrameSurroundings> surroundings;
 
   std::vector<FrameId> FrameIds() const;
-  // camera_distance_w of the frame, which must be one of the package's.
+  // camera_distance_w around a frame of the film; none: to be measured.
   std::optional<double> CameraDistance(FrameId frame) const;
 };
 

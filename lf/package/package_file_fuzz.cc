@@ -27,11 +27,11 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size_bytes) {
       LF_CHECK(field.cameras[i].intrinsics_index < field.intrinsics.size());
       LF_CHECK(package->places.of_images[i] < package->places.end);
       LF_CHECK(field.cameras[i].cam_from_world.translation.allFinite());
-      const auto rects = lf::ReadFrameRects(path, package->places.of_images[i]);
-      LF_CHECK(rects || !rects.error().message.empty());
     }
     for (const lf::PackageFrame& frame : package->frames)
       LF_CHECK(std::isfinite(package->path.Camera(frame.id).aperture.radius_w));
+    for (const lf::FrameSurroundings& around : package->surroundings)
+      LF_CHECK(around.camera_distance_w >= 0 && around.middle_world.allFinite());
   } else {
     LF_CHECK(package.error().message.starts_with(path.string() + ": "));
   }

@@ -20,7 +20,7 @@ Package TestPackage() {
   package.number = 4;
   package.count = 8;
   package.whole = {1000, "0123456789abcdef", "fedcba9876543210"};
-  package.choices = {ImageOrder::kRoundRobin, UINT64_MAX, 17, 0.25, true};
+  package.choices = {ImageOrder::kRoundRobin, UINT64_MAX, 17, 0.25, true, "hybrid"};
   package.places.end = 1000;
   LightField& field = package.light_field;
   field.folder = "/nowhere/images";
@@ -51,21 +51,15 @@ Package TestPackage() {
   package.path.unit_m = 0.01;
   for (uint32_t f = 0; f < 12; ++f) {
     package.path.cameras.push_back(testing::RandomCameraPair(f).render_camera);
+    package.surroundings.push_back({f / 7.0, 0.01 + f, {1.0 / 3, f * 0.1, -2}, f / 9.0});
     if (f % 3 != 0) continue;
     PackageFrame frame;
     frame.id = FrameId{f + 1};
-    if (f > 0) frame.camera_distance_w = 1.0 / (f + 1);
     frame.image_count = f;
     frame.ray_count = uint64_t{f} << 40;
     package.frames.push_back(frame);
   }
   return package;
-}
-
-std::vector<FrameRect> RectsOf(LfImageId id) {
-  if (id.value >= 35) return {};
-  const int i = static_cast<int>(id.value);
-  return {{FrameId{1}, {i, 0, i + 5, 7}}, {FrameId{7}, {1, 2, 3, 50 + i}}};
 }
 
 class PackageFileTest : public ::testing::Test {
@@ -80,7 +74,7 @@ class PackageFileTest : public ::testing::Test {
   ~PackageFileTest() override { fs::remove_all(folder_); }
 
   void Write(const Package& package) {
-    const Result<void> written = WritePackage(path_, package, RectsOf, {"1.2.3", "../field"});
+    const Result<void> written = WritePackage(path_, package, {"1.2.3", "../field"});
     ASSERT_TRUE(written) << written.error().message;
   }
   std::string Fault(const std::string& bytes, bool check_seal = true) {
@@ -110,6 +104,7 @@ TEST_F(PackageFileTest, ReadsWhatWasWrittenToTheBit) {
   EXPECT_EQ(read->choices.max_image_count, package.choices.max_image_count);
   EXPECT_EQ(read->choices.max_angle_rad, package.choices.max_angle_rad);
   EXPECT_EQ(read->choices.has_neighbours, package.choices.has_neighbours);
+  EXPECT_EQ(read->choices.mode, package.choices.mode);
   EXPECT_EQ(read->places.of_images, package.places.of_images);
   EXPECT_EQ(read->places.end, package.places.end);
 
@@ -135,8 +130,6 @@ TEST_F(PackageFileTest, ReadsWhatWasWrittenToTheBit) {
     EXPECT_EQ(read->images[i].rect, package.images[i].rect);
     EXPECT_EQ(read->images[i].frame_count, package.images[i].frame_count);
     EXPECT_EQ(read->images[i].ray_count, package.images[i].ray_count);
-    EXPECT_EQ(*ReadFrameRects(path_, package.places.of_images[i]),
-              RectsOf(LfImageId{static_cast<uint32_t>(i)}));
   }
 
   EXPECT_EQ(read->path.fps, package.path.fps);
@@ -155,9 +148,18 @@ TEST_F(PackageFileTest, ReadsWhatWasWrittenToTheBit) {
     EXPECT_EQ(c.focus_tilt.vertical_rad, d.focus_tilt.vertical_rad);
     EXPECT_EQ(c.unit_m, d.unit_m);
   }
+  ASSERT_EQ(read->surroundings.size(), package.surroundings.size());
+  for (size_t f = 0; f < package.surroundings.size(); ++f) {
+    const FrameSurroundings &a_frame = read->surroundings[f], &b_frame = package.surroundings[f];
+    EXPECT_EQ(a_frame.camera_distance_w, b_frame.camera_distance_w);
+    EXPECT_EQ(a_frame.pixel_rad, b_frame.pixel_rad);
+    EXPECT_EQ(a_frame.middle_world, b_frame.middle_world);
+    EXPECT_EQ(a_frame.hole_w, b_frame.hole_w);
+    EXPECT_EQ(read->CameraDistance(FrameId{static_cast<uint32_t>(f) + 1}),
+              b_frame.camera_distance_w);
+  }
   EXPECT_EQ(read->FrameIds(), package.FrameIds());
   for (size_t f = 0; f < package.frames.size(); ++f) {
-    EXPECT_EQ(read->frames[f].camera_distance_w, package.frames[f].camera_distance_w);
     EXPECT_EQ(read->frames[f].image_count, package.frames[f].image_count);
     EXPECT_EQ(read->frames[f].ray_count, package.frames[f].ray_count);
   }
@@ -192,8 +194,8 @@ TEST_F(PackageFileTest, CutAndForeignFilesAreErrors) {
     EXPECT_NE(Fault(whole.substr(0, size)), "") << size;
   EXPECT_NE(Fault("no package"), "");
   std::string newer = whole;
-  newer[63] = 2;  // user_version, big-endian at 60
-  EXPECT_NE(Fault(newer).find("of version 2, which a newer"), std::string::npos) << Fault(newer);
+  newer[63] = 3;  // user_version, big-endian at 60
+  EXPECT_NE(Fault(newer).find("of version 3, which a newer"), std::string::npos) << Fault(newer);
   std::string other = whole;
   other[71] = 'X';  // application_id, at 68
   EXPECT_NE(Fault(other).find("is no package"), std::string::npos);
@@ -214,7 +216,7 @@ TEST_F(PackageFileTest, TheFolderMayMoveWithThePackages) {
 
 TEST_F(PackageFileTest, NothingIsLeftWhereItCannotBeWritten) {
   path_ = folder_ / "no" / "folder" / "package-0003.lfp";
-  const Result<void> written = WritePackage(path_, TestPackage(), RectsOf, {});
+  const Result<void> written = WritePackage(path_, TestPackage(), {});
   ASSERT_FALSE(written);
   EXPECT_EQ(written.error().kind, ErrorKind::kOutput);
 }

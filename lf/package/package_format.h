@@ -9,7 +9,7 @@
 
 namespace lf {
 
-inline constexpr DatabaseFormat kPackageFormat = {"package", 0x4C465047 /* "LFPG" */, 1, 4096};
+inline constexpr DatabaseFormat kPackageFormat = {"package", 0x4C465047 /* "LFPG" */, 2, 4096};
 
 // All that a frame's camera is, exact: fx, fy, cx, cy, skew, width, height; pose; radius, blades
 // and rotation of the aperture; normal and offset of the focus plane; time, focal length, sensor
@@ -18,7 +18,7 @@ inline constexpr size_t kCameraNumbers = 33;
 std::array<double, kCameraNumbers> NumbersOfCamera(const RenderCamera& camera);
 RenderCamera CameraOfNumbers(std::span<const double, kCameraNumbers> numbers);
 
-// Of a rectangle: frame, x_begin, y_begin, x_end, y_end.
-inline constexpr size_t kRectNumbers = 5;
+// FrameSurroundings in the order of its fields.
+inline constexpr size_t kSurroundingsNumbers = 6;
 
 }  // namespace lf

@@ -45,6 +45,7 @@ class Reader {
   Result<void> ReadImages();
   Result<void> ReadImage(const Statement& row);
   Result<void> ReadFrames();
+  Result<void> ReadSurroundings(const std::vector<double>& numbers, int64_t frame);
   fs::path Folder() const;
 
   Database database_;
@@ -100,6 +101,9 @@ Result<void> Reader::ReadChoices() {
   constexpr const char* kAnswers[] = {"no", "yes"};
   LF_ASSIGN_OR_RETURN(const int has_neighbours, settings_.Word("lens_neighbours", kAnswers));
   choices.has_neighbours = has_neighbours == 1;
+  constexpr const char* kModes[] = {"collect", "rebin", "hybrid"};
+  LF_ASSIGN_OR_RETURN(const int mode, settings_.Word("mode", kModes));
+  choices.mode = kModes[mode];
   return {};
 }
 
@@ -163,11 +167,27 @@ Result<void> Reader::ReadImage(const Statement& row) {
   return {};
 }
 
+// All frames of a film have them, or none has.
+Result<void> Reader::ReadSurroundings(const std::vector<double>& numbers, int64_t frame) {
+  const size_t before = static_cast<size_t>(frame) - 1;
+  if (numbers.empty() && package_.surroundings.empty()) return {};
+  const bool are_sane = numbers.size() == kSurroundingsNumbers &&
+                        std::all_of(numbers.begin(), numbers.end(),
+                                    [](double x) { return std::abs(x) <= kMostNumber; }) &&
+                        numbers[0] >= 0 && numbers[1] >= 0 && numbers[5] >= 0 &&
+                        (numbers[0] == 0 || numbers[1] > 0);
+  if (!are_sane || package_.surroundings.size() != before)
+    return Damaged(fmt::format("the LF cameras around frame {} are not described", frame));
+  package_.surroundings.push_back(
+      {numbers[0], numbers[1], {numbers[2], numbers[3], numbers[4]}, numbers[5]});
+  return {};
+}
+
 Result<void> Reader::ReadFrames() {
   CameraPath& film = package_.path;
   LF_RETURN_IF_ERROR(ForEachRow(
       database_,
-      "select frame, camera, is_rendered, lf_images, rays, camera_distance from frames "
+      "select frame, camera, is_rendered, lf_images, rays, surroundings from frames "
       "order by frame",
       [&](const Statement& row) -> Result<void> {
         LF_ASSIGN_OR_RETURN(const int64_t number, row.Integer(0, 1, kMostFrames));
@@ -195,17 +215,20 @@ Result<void> Reader::ReadFrames() {
         LF_ASSIGN_OR_RETURN(const int64_t is_rendered, row.Integer(2, 0, 1));
         LF_ASSIGN_OR_RETURN(const int64_t images, row.Integer(3, 0, kMostImages));
         LF_ASSIGN_OR_RETURN(const int64_t rays, row.Integer(4, 0, INT64_MAX));
-        LF_ASSIGN_OR_RETURN(const double distance, row.Real(5));
+        LF_ASSIGN_OR_RETURN(const std::string_view surroundings, row.Blob(5));
+        LF_RETURN_IF_ERROR(ReadSurroundings(NumbersOf<double>(surroundings), number));
         if (is_rendered == 0) return {};
         PackageFrame frame;
         frame.id = FrameId{static_cast<uint32_t>(number)};
         frame.image_count = static_cast<uint64_t>(images);
         frame.ray_count = static_cast<uint64_t>(rays);
-        if (distance >= 0) frame.camera_distance_w = distance;
         package_.frames.push_back(frame);
         return {};
       }));
   if (package_.frames.empty()) return Damaged("it has no frame to render");
+  const bool has_all = package_.surroundings.size() == film.frame_count();
+  if (package_.choices.has_neighbours ? !has_all : !package_.surroundings.empty())
+    return Damaged("it does not describe the LF cameras around its frames");
   return {};
 }
 
@@ -217,22 +240,6 @@ Result<Package> ReadPackage(const fs::path& path, const ReadPackageOptions& opti
   LF_ASSIGN_OR_RETURN(Database database, Database::Open(path, kPackageFormat));
   if (options.check_seal) LF_RETURN_IF_ERROR(CheckSeal(path, kPackageFormat.name));
   return Reader(std::move(database), path).Read();
-}
-
-Result<std::vector<FrameRect>> ReadFrameRects(const fs::path& path, uint32_t place) {
-  LF_ASSIGN_OR_RETURN(Database database, Database::Open(path, kPackageFormat));
-  LF_ASSIGN_OR_RETURN(Statement select,
-                      database.Prepare("select rectangles from rectangles where place = ?"));
-  select.Bind(0, int64_t{place});
-  LF_ASSIGN_OR_RETURN(const bool has_row, select.Step());
-  std::vector<FrameRect> rects;
-  if (!has_row) return rects;
-  LF_ASSIGN_OR_RETURN(const std::string_view bytes, select.Blob(0));
-  const std::vector<int32_t> numbers = NumbersOf<int32_t>(bytes);
-  for (size_t i = 0; i + kRectNumbers <= numbers.size(); i += kRectNumbers)
-    rects.push_back({FrameId{static_cast<uint32_t>(numbers[i])},
-                     {numbers[i + 1], numbers[i + 2], numbers[i + 3], numbers[i + 4]}});
-  return rects;
 }
 
 }  // namespace lf

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
+#include <vector>
 
 #include "lf/calibration_tables/calibration_tables.h"
 #include "lf/calibration_tables/stored_numbers.h"
@@ -20,20 +22,16 @@ constexpr const char* kTables = R"(
 create table lf_images (place integer primary key, id integer, name text, mask text,
   intrinsics integer, gain real, x real, y real, z real, pose blob, file_bytes integer,
   x_begin integer, y_begin integer, x_end integer, y_end integer, frames integer, rays integer);
-create table rectangles (place integer primary key, rectangles blob);
 create table frames (frame integer primary key, time_s real, x real, y real, z real,
   aperture_diameter real, focus_distance real, camera blob, is_rendered integer,
-  lf_images integer, rays integer, camera_distance real);
+  lf_images integer, rays integer, camera_distance real, surroundings blob);
 begin;
 )";
 
 class Writer {
  public:
-  Writer(Database database, const Package& package, const FrameRects& rects)
-      : database_(std::move(database)),
-        package_(package),
-        light_field_(package.light_field),
-        rects_(rects) {}
+  Writer(Database database, const Package& package)
+      : database_(std::move(database)), package_(package), light_field_(package.light_field) {}
 
   Result<void> Write(const fs::path& final_path, const PackageNotes& notes) {
     LF_RETURN_IF_ERROR(database_.Execute(kSettingsTable));
@@ -71,6 +69,7 @@ class Writer {
         {"max_images", choices.max_image_count ? fmt::format("{}", *choices.max_image_count) : ""},
         {"max_angle_rad", choices.max_angle_rad ? fmt::format("{}", *choices.max_angle_rad) : ""},
         {"lens_neighbours", choices.has_neighbours ? "yes" : "no"},
+        {"mode", choices.mode},
         {"fps", fmt::format("{}", package_.path.fps)},
         {"path_unit_m", fmt::format("{}", package_.path.unit_m)}};
     settings.insert(settings.end(), pixels.begin(), pixels.end());
@@ -84,8 +83,6 @@ class Writer {
     LF_ASSIGN_OR_RETURN(Statement image,
                         database_.Prepare("insert into lf_images values "
                                           "(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"));
-    LF_ASSIGN_OR_RETURN(Statement rectangles,
-                        database_.Prepare("insert into rectangles values (?, ?)"));
     std::vector<uint32_t> order(light_field_.size());
     std::iota(order.begin(), order.end(), 0U);
     std::sort(order.begin(), order.end(), [this](uint32_t a, uint32_t b) {
@@ -94,13 +91,6 @@ class Writer {
     for (const uint32_t i : order) {
       const int64_t place = package_.places.of_images[i];
       LF_RETURN_IF_ERROR(WriteImage(&image, i, place));
-      std::vector<int32_t> numbers;
-      for (const auto& [frame, rect] : rects_(LfImageId{i}))
-        numbers.insert(numbers.end(), {static_cast<int32_t>(frame.value), rect.x_begin,
-                                       rect.y_begin, rect.x_end, rect.y_end});
-      if (numbers.empty()) continue;  // a neighbour
-      rectangles.Bind(0, place).BindBlob(1, BytesOf(std::span<const int32_t>(numbers)));
-      LF_RETURN_IF_ERROR(rectangles.Run());
     }
     return {};
   }
@@ -123,7 +113,7 @@ class Writer {
   Result<void> WriteFrames() {
     LF_ASSIGN_OR_RETURN(
         Statement insert,
-        database_.Prepare("insert into frames values (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"));
+        database_.Prepare("insert into frames values (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"));
     auto rendered = package_.frames.begin();
     for (uint32_t n = 1; n <= package_.path.frame_count(); ++n) {
       const RenderCamera& camera = package_.path.Camera(FrameId{n});
@@ -138,27 +128,40 @@ class Writer {
       insert.BindBlob(7, BytesOf(std::span<const double>(numbers)));
       insert.Bind(8, int64_t{is_rendered}).Bind(9, static_cast<int64_t>(frame.image_count));
       insert.Bind(10, static_cast<int64_t>(frame.ray_count));
-      // -1: not known.
-      insert.Bind(11, frame.camera_distance_w ? *frame.camera_distance_w : -1.0);
+      const std::optional<double> distance_w = package_.CameraDistance(FrameId{n});
+      insert.Bind(11, distance_w ? *distance_w : -1.0);  // -1: not known
+      const std::vector<double> surroundings = SurroundingsOf(n);
+      insert.BindBlob(12, BytesOf(std::span<const double>(surroundings)));
       LF_RETURN_IF_ERROR(insert.Run());
     }
     return {};
   }
 
+  // None where they were not measured.
+  std::vector<double> SurroundingsOf(uint32_t frame) const {
+    if (package_.surroundings.empty()) return {};
+    const FrameSurroundings& around = package_.surroundings[frame - 1];
+    const Vec3& middle = around.middle_world;
+    return {around.camera_distance_w,
+            around.pixel_rad,
+            middle.x(),
+            middle.y(),
+            middle.z(),
+            around.hole_w};
+  }
+
   Database database_;
   const Package& package_;
   const LightField& light_field_;
-  const FrameRects& rects_;
 };
 
 }  // namespace
 
-Result<void> WritePackage(const fs::path& path, const Package& package, const FrameRects& rects,
-                          const PackageNotes& notes) {
+Result<void> WritePackage(const fs::path& path, const Package& package, const PackageNotes& notes) {
   return WriteAtomically(path, [&](const fs::path& temporary) -> Result<void> {
     {
       LF_ASSIGN_OR_RETURN(Database database, Database::Create(temporary, kPackageFormat));
-      LF_RETURN_IF_ERROR(Writer(std::move(database), package, rects).Write(path, notes));
+      LF_RETURN_IF_ERROR(Writer(std::move(database), package).Write(path, notes));
     }
     return SealFile(temporary);
   });

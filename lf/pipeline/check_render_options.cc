@@ -39,6 +39,17 @@ Result<void> CheckRenderOptions(const Package& package, const RenderOptions& opt
         "--mode rebin: nothing is collected, so that --stop-when, --require, --smooth-below and "
         "--keep-plates have no rays: leave them out, or use hybrid");
   LF_RETURN_IF_ERROR(CheckSlab(package, options, frames));
+  if (Rebins(options.mode) && !package.choices.has_neighbours)
+    return UsageError(fmt::format(
+        "--mode {}: {} was made by lfpreprocessor --lens-weights none, and lacks the LF cameras "
+        "beside the lens: make it again with --mode {}, or without --lens-weights none",
+        NameOf(options.mode), package.name, NameOf(options.mode)));
+  if (Rebins(options.mode) && (options.max_image_count || package.choices.max_image_count))
+    return UsageError(
+        fmt::format("--max-images: with --mode {} rebinned rays are shared by frames, so that no "
+                    "limit of each frame's LF images can be kept: leave it out, or use --mode "
+                    "collect",
+                    NameOf(options.mode)));
   const std::optional<size_t>& most = package.choices.max_image_count;
   if (most && (!options.max_image_count || *options.max_image_count > *most))
     return UsageError(fmt::format(

@@ -5,29 +5,31 @@
 #include <algorithm>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <span>
+#include <vector>
 
-#include "lf/collector/memory_plan.h"
 #include "lf/core/file.h"
 #include "lf/core/log.h"
+#include "lf/hybrid/film_slabs.h"
+#include "lf/hybrid/render_memory.h"
 #include "lf/pipeline/check_render_options.h"
 #include "lf/pipeline/frame_output.h"
 #include "lf/pipeline/render_pass.h"
+#include "lf/preprocess/film_order.h"
+#include "lf/preprocess/frame_needs.h"
 #include "lf/record/run_state.h"
 #include "lf/sequence/video.h"
 #include "lf/store/open_store.h"
 
 namespace lf {
 
-const char* NameOf(RenderMode mode) {
-  constexpr const char* kNames[] = {"collect", "rebin", "hybrid"};
-  return kNames[static_cast<int>(mode)];
-}
-
 namespace {
 
 // Collected rays do not depend on any of it.
-RunInputs InputsOfRebinning(const RenderOptions& options, size_t max_cells) {
+//   film  hash of all of its cameras, on which slabs depend
+RunInputs InputsOfRebinning(const RenderOptions& options, size_t max_cells,
+                            const std::string& film) {
   if (options.mode == RenderMode::kCollect) return {};
   const RebinPassOptions& rebin = options.rebin;
   const ProbabilityOptions& edges = rebin.rebin.probability;
@@ -39,6 +41,7 @@ RunInputs InputsOfRebinning(const RenderOptions& options, size_t max_cells) {
   };
   return {
       {"mode", NameOf(options.mode)},
+      {"rebin.film", film},
       {"rebin.max_rays", fmt::format("{}", max_cells)},
       {"rebin.kept", NameOf(rebin.kept)},
       {"rebin.edges", fmt::format("alpha {} beta {} xi {} sigma {} then {}", edges.alpha,
@@ -74,7 +77,8 @@ RunStateOptions StateOptions(const Package& package, const RenderOptions& option
   RunInputs picture = InputsOfPicture(choices);
   if (!package.name.empty()) picture.emplace_back("picture.film", HashOfCameras(package.path));
   RunInputs rays = InputsOfRays(package.whole, package.light_field.encoding, choices);
-  for (auto& input : InputsOfRebinning(options, max_cells)) rays.push_back(std::move(input));
+  for (auto& input : InputsOfRebinning(options, max_cells, HashOfCameras(package.path)))
+    rays.push_back(std::move(input));
   return {options.output_folder, package.name,       package.FrameIds(),
           options.format,        options.resume,     options.overwrite,
           std::move(rays),       std::move(picture), options.shard};
@@ -98,7 +102,8 @@ class Renderer {
   // A section of a film may be black; a film is not.
   bool IsWhole() const { return package_.name.empty() && !options_.shard; }
   Result<void> Begin();
-  Result<size_t> PlanRebinning();
+  Result<void> PlanSlabs();
+  Result<void> CheckStore() const;
   std::vector<FrameId> FramesToRender();
   Result<void> RunPasses(std::vector<FrameId> frames);
   Result<void> FinishEarly(const RenderJob& job, std::vector<FrameId>* frames);
@@ -121,6 +126,7 @@ class Renderer {
   std::vector<FrameId> frames_;
   MemoryPlan plan_;
   size_t max_cells_ = 0;  // of rebinned rays
+  std::optional<FilmSlabs> slabs_;
   std::unique_ptr<RunState> state_;
   RenderProgress done_;
   RenderReport totals_;
@@ -148,20 +154,15 @@ Result<void> Renderer::Begin() {
       store_, OpenStore(package_.light_field, options_.reading.estimator == Estimator::kBilinear
                                                   ? Mosaics::kToRgb
                                                   : Mosaics::kAsRecorded));
+  LF_RETURN_IF_ERROR(CheckStore());
   const Intrinsics& plate = path_.Camera(frames_.front()).pinhole.intrinsics;
-  LF_ASSIGN_OR_RETURN(const size_t rebin_bytes, PlanRebinning());
-  // Without plates all frames are in one pass.
-  const Result<MemoryPlan> plan =
-      PlanMemory(options_.memory_bytes - rebin_bytes, package_.light_field,
-                 options_.reading.estimator, plate.width_px, plate.height_px,
-                 options_.mode == RenderMode::kRebin ? 1 : frames_.size(), pool_.thread_count());
-  if (!plan && rebin_bytes > 0)
-    return Error{plan.error().kind,
-                 fmt::format("{} (beside {} MiB for {} rebinned rays: --memory is for both)",
-                             plan.error().message, rebin_bytes >> 20, max_cells_)};
-  if (!plan) return plan.error();
-  plan_ = *plan;
-  if (options_.mode == RenderMode::kRebin) plan_.frames_per_pass = frames_.size();
+  LF_ASSIGN_OR_RETURN(
+      const RenderMemory memory,
+      PlanRenderMemory(options_.memory_bytes, options_.mode, options_.rebin.max_cells,
+                       package_.light_field, options_.reading.estimator, plate.width_px,
+                       plate.height_px, frames_.size(), pool_.thread_count()));
+  plan_ = memory.plan;
+  max_cells_ = memory.max_cells;
   LF_RETURN_IF_ERROR(CreateFolder(options_.output_folder));
   if (options_.video) {
     LF_RETURN_IF_ERROR(CheckVideoTool());
@@ -188,20 +189,42 @@ Result<void> Renderer::Begin() {
   return {};
 }
 
-// What is set aside for rebinned rays.
-Result<size_t> Renderer::PlanRebinning() {
-  if (options_.mode == RenderMode::kCollect) return size_t{0};
-  const size_t part = options_.memory_bytes / (options_.mode == RenderMode::kRebin ? 2 : 4);
-  max_cells_ = options_.rebin.max_cells;
-  if (max_cells_ == 0)
-    max_cells_ = (part - std::min(part, RebinnedRays::BytesOf(0))) / RebinnedRays::kBytesPerCell;
-  const size_t bytes = RebinnedRays::BytesOf(max_cells_);
-  if (max_cells_ < RebinnedRays::kLeastCells || bytes > options_.memory_bytes)
-    return OutputError(fmt::format(
-        "--memory {} MiB has no room for {} rebinned rays, which take {} MiB: give more, or fewer "
-        "--max-rays",
-        options_.memory_bytes >> 20, std::max(max_cells_, RebinnedRays::kLeastCells), bytes >> 20));
-  return bytes;
+// Better known before a night's work than after it, frame by frame.
+Result<void> Renderer::CheckStore() const {
+  if (!store_->IsPartial()) return {};
+  const NeedsOptions needs = NeedsOfRender(package_, options_);
+  for (const FrameId frame : frames_) {
+    const std::optional<FrameSampling> sampling =
+        package_.surroundings.empty()
+            ? std::nullopt
+            : std::optional(SamplingOf(package_.surroundings[frame.value - 1]));
+    const FrameNeeds wanted = NeedsOf(index_, path_.Camera(frame), needs, pool_, sampling);
+    if (needs.select.interrupted != nullptr && *needs.select.interrupted) return {};
+    for (const FrameNeeds::Image& image : wanted.images) {
+      if (store_->Keeps(image.id, image.rect)) continue;
+      return InputError(fmt::format(
+          "{}: frame {} reads pixels of {} that are not in this packed store: it was made for "
+          "other frames, or for another --mode, --estimator or --lens-weights; compress packages "
+          "again that lfpreprocessor made with these, or without --needed-pixels",
+          package_.light_field.folder.string(), frame.value,
+          package_.light_field.image_names[image.id.value]));
+    }
+  }
+  return {};
+}
+
+// Slabs are those of the whole film, so that a frame has the same one in any package and any pass.
+Result<void> Renderer::PlanSlabs() {
+  if (!Rebins(options_.mode)) return {};
+  std::vector<FrameSampling> sampling;
+  for (const FrameSurroundings& around : package_.surroundings)
+    sampling.push_back(SamplingOf(around));
+  if (sampling.empty()) {
+    LF_ASSIGN_OR_RETURN(
+        sampling, SamplingOfFilm(index_, path_, NeedsOfRender(package_, options_).select, pool_));
+  }
+  slabs_.emplace(path_.cameras, sampling, options_.rebin.query, options_.rebin.slab);
+  return {};
 }
 
 // Those that are not finished, or lack what is asked for now.
@@ -226,6 +249,7 @@ std::vector<FrameId> Renderer::FramesToRender() {
 }
 
 Result<void> Renderer::RunPasses(std::vector<FrameId> frames) {
+  LF_RETURN_IF_ERROR(PlanSlabs());
   const size_t per_pass = plan_.frames_per_pass;
   totals_.pass_count = (frames.size() + per_pass - 1) / per_pass;
   if (totals_.pass_count > 1)
@@ -244,6 +268,7 @@ Result<void> Renderer::RunPasses(std::vector<FrameId> frames) {
       clock,
       totals_,
       max_cells_,
+      slabs_ ? &*slabs_ : nullptr,
       begin_s_,
       black_count_,
       [this](const CollectProgress& pass, size_t finished_count) { Report(pass, finished_count); }};
@@ -360,12 +385,7 @@ Result<RenderReport> Renderer::End() {
   totals_.total_s += NowSeconds() - begin_s_;
   totals_.peak_memory_bytes = PeakMemoryBytes();
   LF_RETURN_IF_ERROR(state_->Close(totals_));
-  const bool are_all_black =
-      totals_.AcceptedRays() == 0 &&
-      std::all_of(totals_.frames.begin(), totals_.frames.end(), [](const FrameReport& frame) {
-        return frame.interpolated_share.value_or(0) == 0;
-      });
-  if (are_all_black && IsWhole())
+  if (totals_.IsBlack() && IsWhole())
     return InputError(fmt::format(
         "{}: every frame is black: no ray of {} LF images reached them ({})",
         options_.output_folder.string(), totals_.selected_image_count,
@@ -396,6 +416,27 @@ void Renderer::Report(const CollectProgress& pass, size_t finished_count) const 
 }
 
 }  // namespace
+
+NeedsOptions NeedsOfRender(const Package& package, const RenderOptions& options) {
+  NeedsOptions needs;
+  needs.select.reach = ReachOf(options.reading.estimator);
+  needs.select.max_angle_rad = package.choices.max_angle_rad;
+  if (options.signals != nullptr) needs.select.interrupted = &options.signals->stop;
+  needs.lens_weights = options.lens_weights;
+  needs.max_image_count = options.max_image_count;
+  needs.mode = options.mode;
+  needs.rebin = options.rebin;
+  return needs;
+}
+
+Result<void> PutInOrder(ImageOrder order, const RenderOptions& options, ThreadPool& pool,
+                        Package* package) {
+  LF_ASSIGN_OR_RETURN(package->places,
+                      PlacesOfFilm(order, package->choices.seed, package->light_field,
+                                   package->path, NeedsOfRender(*package, options), pool));
+  package->choices.order = order;
+  return {};
+}
 
 Result<RenderReport> Render(const Package& package, const RenderOptions& options, ThreadPool& pool,
                             const std::function<void(const RenderProgress&)>& progress) {

@@ -14,8 +14,10 @@
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
 #include "lf/hybrid/rebinned_rays.h"
+#include "lf/hybrid/render_mode.h"
 #include "lf/lens_weights/frame_weights.h"
 #include "lf/package/package.h"
+#include "lf/preprocess/frame_needs.h"
 #include "lf/record/report.h"
 #include "lf/record/shard.h"
 #include "lf/sequence/frame_file.h"
@@ -29,12 +31,6 @@ struct RenderSignals {
   std::atomic<bool> stop = false;       // write the state and end
   std::atomic<bool> save = false;       // write the state and go on
 };
-
-// What frames are made of: collected rays, rebinned rays, or collected ones, completed by rebinned
-// rays where the lens got none (doc/rebinning.md).
-enum class RenderMode { kCollect, kRebin, kHybrid };
-// "collect", "rebin", "hybrid"
-const char* NameOf(RenderMode mode);
 
 struct RenderOptions {
   std::filesystem::path output_folder;
@@ -94,6 +90,14 @@ struct RenderProgress {
   size_t image_count = 0;  // LF images read, and to be read in all passes
   size_t image_total = 0;
 };
+
+// Returns what decides which LF images frames of the package need (preprocess/frame_needs.h).
+NeedsOptions NeedsOfRender(const Package& package, const RenderOptions& options);
+
+// Gives the LF images of a whole light field the order for the film and the options.
+// kInterrupted.
+Result<void> PutInOrder(ImageOrder order, const RenderOptions& options, ThreadPool& pool,
+                        Package* package);
 
 // Renders the frames into output_folder: frame_0001.exr ..., contact_sheet.png, report.json, and
 // the video. Of a package that has a name, the report is report-NAME.json and the state its own, so

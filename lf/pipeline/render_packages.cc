@@ -120,6 +120,32 @@ void TellOfOthers(size_t given, size_t count) {
                given, count);
 }
 
+// None of it if the file cannot be asked: then it is opened again.
+void Stamp(PackagePart* part) {
+  std::error_code error;
+  part->file_bytes = fs::file_size(part->path, error);
+  if (error) part->file_bytes = 0;
+  part->file_time = fs::last_write_time(part->path, error);
+}
+
+void MoveTo(const std::optional<LightFieldPlace>& place, Package* package) {
+  if (place) package->light_field.folder = place->folder;
+}
+
+// What was checked need not be checked again, but where the file is another one.
+Result<Package> OpenAgain(const PackagePart& part, PackagedFilm* film) {
+  PackagePart now;
+  now.path = part.path;
+  Stamp(&now);
+  const bool is_same =
+      now.file_bytes == part.file_bytes && now.file_bytes > 0 && now.file_time == part.file_time;
+  if (!is_same) return OpenPackage(part.path, film->place);
+  if (part.path == film->paths.front()) return std::move(film->first);
+  LF_ASSIGN_OR_RETURN(Package package, ReadPackage(part.path, {.check_seal = false}));
+  MoveTo(film->place, &package);
+  return package;
+}
+
 }  // namespace
 
 Result<LightFieldPlace> PlaceOf(const std::string& name, const LightField& light_field) {
@@ -140,50 +166,76 @@ Result<Package> OpenPackage(const fs::path& path, const std::optional<LightField
           "{} of {}",
           path.string(), place->name, package.whole.image_count, package.whole.calibration,
           place->identity.image_count, place->identity.calibration));
-    package.light_field.folder = place->folder;
   }
+  MoveTo(place, &package);
   const auto check = HoldsPackedStore(package.light_field) ? CheckCodes : CheckImageFiles;
   LF_RETURN_IF_ERROR(check(path, package));
+  LogDebug("{}: read and checked, {} frames, {} LF cameras", path.string(), package.frames.size(),
+           package.light_field.size());
   return package;
 }
 
-Result<std::vector<PackagePart>> LookAtPackages(const std::vector<fs::path>& paths,
-                                                const std::optional<LightFieldPlace>& place,
-                                                const std::vector<FrameId>& wanted) {
-  std::vector<PackagePart> parts;
-  std::optional<Film> film;
+Result<PackagedFilm> OpenPackages(std::vector<fs::path> paths,
+                                  std::optional<LightFieldPlace> place) {
+  PackagedFilm film{std::move(paths), std::move(place), {}, 1, {}};
+  std::optional<Film> of_first;
   std::map<FrameId, fs::path> owners;
   std::map<std::string, fs::path> names;
-  for (const fs::path& path : paths) {
-    LF_ASSIGN_OR_RETURN(const Package package, OpenPackage(path, place));
+  for (const fs::path& path : film.paths) {
+    PackagePart part;
+    part.path = path;
+    Stamp(&part);
+    LF_ASSIGN_OR_RETURN(Package package, OpenPackage(path, film.place));
     const Film other(package);
-    if (!film) film = other;
-    if (const std::string difference = film->DifferenceTo(other); !difference.empty())
+    if (!of_first) of_first = other;
+    if (const std::string difference = of_first->DifferenceTo(other); !difference.empty())
       return InputError(fmt::format("{}: is of {} than {}: render them into folders of their own",
-                                    path.string(), difference, paths.front().string()));
+                                    path.string(), difference, film.paths.front().string()));
     if (const auto [named, is_new] = names.emplace(package.name, path); !is_new)
       return UsageError(
           fmt::format("{} and {} have one name: reports and states of both would be "
                       "called {}",
                       named->second.string(), path.string(), package.name));
-    PackagePart part{path, {}, true, 0, package.count};
     for (const PackageFrame& frame : package.frames) {
       if (const auto [owner, is_new] = owners.emplace(frame.id, path); !is_new)
         return UsageError(fmt::format("{} and {} both have frame {}: give one of them",
                                       owner->second.string(), path.string(), frame.id.value));
-      if (!wanted.empty() && !std::binary_search(wanted.begin(), wanted.end(), frame.id)) {
-        part.is_whole = false;
-        continue;
-      }
       part.frames.push_back(frame.id);
       part.ray_count += frame.ray_count;
     }
+    if (film.parts.empty()) {
+      film.film_count = package.count;
+      film.first = std::move(package);
+    }
+    film.parts.push_back(std::move(part));
+  }
+  return film;
+}
+
+Result<std::vector<PackagePart>> PartsWith(const PackagedFilm& film,
+                                           const std::vector<FrameId>& wanted) {
+  std::vector<PackagePart> parts;
+  size_t found_count = 0;
+  for (const PackagePart& whole : film.parts) {
+    PackagePart part = whole;
+    if (!wanted.empty())
+      std::erase_if(part.frames, [&](FrameId frame) {
+        return !std::binary_search(wanted.begin(), wanted.end(), frame);
+      });
+    part.is_whole = part.frames.size() == whole.frames.size();
+    part.ray_count =
+        whole.ray_count * part.frames.size() / std::max<size_t>(1, whole.frames.size());
+    found_count += part.frames.size();
     if (!part.frames.empty()) parts.push_back(std::move(part));
   }
-  for (const FrameId frame : wanted)
-    if (!owners.contains(frame))
-      return UsageError(fmt::format("--frames: frame {} is in none of the packages", frame.value));
-  TellOfOthers(paths.size(), parts.front().film_count);
+  if (!wanted.empty() && found_count < wanted.size())
+    for (const FrameId frame : wanted)
+      if (std::none_of(parts.begin(), parts.end(), [frame](const PackagePart& part) {
+            return std::binary_search(part.frames.begin(), part.frames.end(), frame);
+          }))
+        return UsageError(
+            fmt::format("--frames: frame {} is in none of the packages", frame.value));
+  TellOfOthers(film.paths.size(), film.film_count);
   return parts;
 }
 
@@ -193,12 +245,10 @@ std::string ContactSheetName(const std::vector<fs::path>& paths) {
                            : kContactSheet;
 }
 
-Result<RenderReport> RenderPackages(const std::vector<fs::path>& paths,
-                                    const std::optional<LightFieldPlace>& place,
-                                    const RenderOptions& options, ThreadPool& pool,
+Result<RenderReport> RenderPackages(PackagedFilm film, const RenderOptions& options,
+                                    ThreadPool& pool,
                                     const std::function<void(const RenderProgress&)>& progress) {
-  LF_ASSIGN_OR_RETURN(const std::vector<PackagePart> parts,
-                      LookAtPackages(paths, place, options.frames));
+  LF_ASSIGN_OR_RETURN(const std::vector<PackagePart> parts, PartsWith(film, options.frames));
   if (options.video) {
     LF_RETURN_IF_ERROR(CheckVideoTool());
     LF_RETURN_IF_ERROR(CheckVideoTarget(*options.video));
@@ -213,7 +263,7 @@ Result<RenderReport> RenderPackages(const std::vector<fs::path>& paths,
   RenderReport report;
   std::optional<Package> last;
   for (const PackagePart& part : parts) {
-    LF_ASSIGN_OR_RETURN(Package package, OpenPackage(part.path, place));
+    LF_ASSIGN_OR_RETURN(Package package, OpenAgain(part, &film));
     if (options.reading.estimator == Estimator::kBilinear)
       MakeRoomForUndershoot(&package.light_field.encoding);
     RenderOptions of_part = options;
@@ -241,13 +291,13 @@ Result<RenderReport> RenderPackages(const std::vector<fs::path>& paths,
   std::sort(frames.begin(), frames.end());
   std::sort(report.frames.begin(), report.frames.end(),
             [](const FrameReport& a, const FrameReport& b) { return a.frame < b.frame; });
-  const FilmFiles film = FilesOfFilm(last->path, options);
+  const FilmFiles files = FilesOfFilm(last->path, options);
   if (options.contact_sheet && !options.shard)
-    LF_RETURN_IF_ERROR(film.WriteContactSheet(frames, static_cast<size_t>(pool.thread_count()),
-                                              pool, ContactSheetName(paths)));
-  if (options.video) LF_RETURN_IF_ERROR(film.WriteVideo(frames, *options.video));
+    LF_RETURN_IF_ERROR(files.WriteContactSheet(frames, static_cast<size_t>(pool.thread_count()),
+                                               pool, ContactSheetName(film.paths)));
+  if (options.video) LF_RETURN_IF_ERROR(files.WriteVideo(frames, *options.video));
   // A section may be black.
-  if (report.AcceptedRays() == 0 && !options.shard && paths.size() == parts.front().film_count)
+  if (report.IsBlack() && !options.shard && film.paths.size() == film.film_count)
     return InputError(fmt::format("{}: every frame is black: no ray reached them",
                                   options.output_folder.string()));
   return report;

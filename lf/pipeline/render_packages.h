@@ -1,6 +1,7 @@
 // Package files in, one image sequence out.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -36,33 +37,48 @@ Result<LightFieldPlace> PlaceOf(const std::string& name, const LightField& light
 Result<Package> OpenPackage(const std::filesystem::path& path,
                             const std::optional<LightFieldPlace>& place = {});
 
-// A package file and those of its frames that are wanted.
+// A package file and frames of it.
 struct PackagePart {
   std::filesystem::path path;
   std::vector<FrameId> frames;
   bool is_whole = true;    // all of its frames
   uint64_t ray_count = 0;  // of these frames, about
-  size_t film_count = 1;   // packages of the film
+  // Size and time of the file when it was checked: as long as they are the same, it is.
+  uint64_t file_bytes = 0;
+  std::filesystem::file_time_type file_time = {};
 };
 
-// Opens every package and checks that they are of one film. Those without a frame that is wanted
-// are left out; nothing wanted: all frames. A film of which packages are missing is warned about.
-// kUsage: packages that have frames in common, frames that none of them has; kInput: packages of
-// different films or light fields. Else as OpenPackage().
-Result<std::vector<PackagePart>> LookAtPackages(const std::vector<std::filesystem::path>& paths,
-                                                const std::optional<LightFieldPlace>& place,
-                                                const std::vector<FrameId>& wanted);
+// Packages that are rendered into one folder.
+struct PackagedFilm {
+  std::vector<std::filesystem::path> paths;
+  std::optional<LightFieldPlace> place;
+  std::vector<PackagePart> parts;  // as paths
+  size_t film_count = 1;           // packages of the film, more of which there may be elsewhere
+  Package first;                   // of paths.front()
+};
+
+// Opens every package once, as OpenPackage(), and checks that they are of one film.
+// kUsage: packages that have frames or a name in common; kInput: packages of different films or
+// light fields. Else as OpenPackage().
+Result<PackagedFilm> OpenPackages(std::vector<std::filesystem::path> paths,
+                                  std::optional<LightFieldPlace> place);
+
+// Returns the parts with frames that are wanted; nothing wanted: all frames. Warns about a film of
+// which packages are missing.
+// kUsage: frames that none of the packages has.
+Result<std::vector<PackagePart>> PartsWith(const PackagedFilm& film,
+                                           const std::vector<FrameId>& wanted);
 
 // contact_sheet.png; of one package alone contact_sheet-NAME.png.
 std::string ContactSheetName(const std::vector<std::filesystem::path>& paths);
 
-// One after the other as by Render(), each with its own report and state; then the contact sheet
-// (ContactSheetName()) and the video of their frames.
-// Reads every package before the first is rendered. Of options.frames each takes its own. The
-// report is that of all. Errors as Render() and LookAtPackages().
-Result<RenderReport> RenderPackages(const std::vector<std::filesystem::path>& paths,
-                                    const std::optional<LightFieldPlace>& place,
-                                    const RenderOptions& options, ThreadPool& pool,
+// Renders one package after the other as by Render(), each with its own report and state; then the
+// contact sheet (ContactSheetName()) and the video of their frames.
+// Of options.frames each takes its own. The report is that of all. A package that was changed since
+// the film was opened is opened again, with all checks.
+// kInput: every frame of a whole film is black. Else errors as Render() and PartsWith().
+Result<RenderReport> RenderPackages(PackagedFilm film, const RenderOptions& options,
+                                    ThreadPool& pool,
                                     const std::function<void(const RenderProgress&)>& progress);
 
 }  // namespace lf

@@ -7,8 +7,9 @@
 #include <optional>
 
 #include "lf/capture/value_hasher.h"
-#include "lf/collector/around_lens.h"
 #include "lf/core/log.h"
+#include "lf/hybrid/frame_sampling.h"
+#include "lf/preprocess/frame_needs.h"
 
 namespace lf {
 SelectOptions RenderJob::Select() const {
@@ -38,13 +39,12 @@ void RenderPass::FindLenses() {
   }
 }
 
-// Those that take part in some frame.
-void RenderPass::DropUnweighted() {
-  if (job_.options.lens_weights == LensWeights::kNone) return;
-  std::erase_if(images_, [this](const SelectedImage& image) {
-    return std::all_of(lenses_.begin(), lenses_.end(),
-                       [&](const FrameLens& lens) { return lens.WeightsOf(image.id).are_none(); });
-  });
+// Selects the LF images with rays that count in a frame of this pass.
+SelectOptions RenderPass::SelectCollected() const {
+  SelectOptions select = job_.Select();
+  if (job_.options.lens_weights != LensWeights::kNone)
+    select.takes = [this](size_t f, LfImageId id) { return lenses_[f].Takes(id); };
+  return select;
 }
 
 Result<void> RenderPass::Prepare() {
@@ -52,8 +52,8 @@ Result<void> RenderPass::Prepare() {
   if (job_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
   std::vector<PlaceRange> places(frames_.size());
   if (job_.options.max_image_count)
-    places = PlacesOfFirst(*job_.options.max_image_count, job_.index, CamerasToCountBy(),
-                           job_.Select(), job_.pool);
+    places = PlacesOfFirst(*job_.options.max_image_count, job_.index, cameras_, SelectCollected(),
+                           job_.pool);
   if (job_.Rebins()) LF_RETURN_IF_ERROR(PrepareRebinning(places));
   if (job_.Collects()) LF_RETURN_IF_ERROR(PreparePlates(&places));
   SelectForPass(places);
@@ -102,15 +102,6 @@ Result<void> RenderPass::Prepare() {
   return {};
 }
 
-// Rebinned rays are asked of LF images beside the lens, too.
-std::vector<RenderCamera> RenderPass::CamerasToCountBy() const {
-  std::vector<RenderCamera> cameras = cameras_;
-  if (job_.Collects()) return cameras;
-  for (RenderCamera& camera : cameras)
-    camera.aperture.radius_w += CameraDistanceAround(job_.index, camera);
-  return cameras;
-}
-
 Result<void> RenderPass::PreparePlates(std::vector<PlaceRange>* places) {
   // By all threads, since whoever clears a plate waits for its memory.
   for (size_t f = 0; f < frames_.size(); ++f) plates_.emplace_back(0, 0);
@@ -137,21 +128,40 @@ Result<void> RenderPass::PreparePlates(std::vector<PlaceRange>* places) {
   return {};
 }
 
+// A package has the LF cameras that the default options reach.
+Result<void> RenderPass::CheckReach(const LensGaps& gaps, FrameId frame) const {
+  if (job_.package.surroundings.empty() || !gaps.asks_in_the_end()) return {};
+  const RenderCamera& camera = job_.path.Camera(frame);
+  const double reached_w = gaps.ReachedCamera().aperture.radius_w - camera.aperture.radius_w;
+  const double known_w =
+      NeighbourReach_w(camera, SamplingOf(job_.package.surroundings[frame.value - 1]));
+  if (reached_w <= known_w * (1 + 1e-9)) return {};
+  return UsageError(fmt::format(
+      "--sigma-st, --lens-points: frame {} asks for rays up to {:.3g} world units beside its lens, "
+      "and {} has LF cameras up to {:.3g}: leave them out, or render the light field itself",
+      frame.value, reached_w, job_.package.name, known_w));
+}
+
 Result<void> RenderPass::PrepareRebinning(std::span<const PlaceRange> places) {
   std::vector<LensGaps> gaps;
+  std::vector<FrameId> ids;
   for (size_t f = 0; f < frames_.size(); ++f) {
     if (job_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
+    const FrameId id = frames_[f].id;
     CollectedWeights collected;
-    if (job_.Collects()) collected = [&, f](LfImageId id) { return lenses_[f].WeightsOf(id); };
-    gaps.emplace_back(job_.index, job_.path.Camera(frames_[f].id), collected,
+    if (job_.Collects())
+      collected = [&, f](LfImageId image) { return lenses_[f].WeightsOf(image); };
+    gaps.emplace_back(job_.index, job_.path.Camera(id), collected,
                       job_.options.lens_weights == LensWeights::kNone, places[f], job_.Select(),
-                      job_.options.rebin.query, job_.pool);
+                      job_.options.rebin.query, job_.pool, job_.package.CameraDistance(id));
+    LF_RETURN_IF_ERROR(CheckReach(gaps.back(), id));
+    ids.push_back(id);
   }
   RebinPassOptions options = job_.options.rebin;
   options.max_cells = job_.max_cells;
   options.is_reference = job_.options.back_end == CollectBackEnd::kReference;
-  rebinned_ = std::make_unique<RebinnedRays>(job_.index, std::move(gaps), places, job_.Collects(),
-                                             job_.Select(), options, job_.pool);
+  rebinned_ = std::make_unique<RebinnedRays>(job_.index, *job_.slabs, ids, std::move(gaps), places,
+                                             job_.Collects(), job_.Select(), options, job_.pool);
   for (const std::string& line : rebinned_->Describe()) LogInfo("{}", line);
   ValueHasher numbers;
   for (const Frame& frame : frames_) numbers.Add(frame.id.value);
@@ -169,35 +179,40 @@ Result<void> RenderPass::PrepareRebinning(std::span<const PlaceRange> places) {
   return {};
 }
 
-// For plates, and for rebinned rays.
+// Selects the LF images of the pass: for plates, each with the pixels that are collected of it, and
+// for rebinned rays, which ask for their pixels when an image is loaded (ImageTaker).
 void RenderPass::SelectForPass(std::span<const PlaceRange> places) {
-  std::vector<RenderCamera> cameras;
-  std::vector<PlaceRange> taken;
+  images_.clear();
   if (job_.Collects()) {
-    cameras = cameras_;
-    taken.assign(places.begin(), places.end());
+    SelectOptions select = SelectCollected();
+    select.whole_images = job_.options.whole_images;
+    images_ = SelectImages(job_.index, cameras_, select, job_.pool, places);
   }
-  SelectOptions select = job_.Select();
-  select.whole_images = job_.options.whole_images;
-  images_ = SelectImages(job_.index, cameras, select, job_.pool, taken);
-  DropUnweighted();
   if (job_.options.shard)
     std::erase_if(images_, [this](const SelectedImage& image) {
       return !job_.options.shard->Holds(image.place);
     });
-  if (!rebinned_) return;
-  // What the plates do not need is read for rebinned rays alone.
-  for (const RenderCamera& camera : rebinned_->ReachedCameras()) cameras.push_back(camera);
+  if (rebinned_) AddRebinnedImages(places);
+}
+
+void RenderPass::AddRebinnedImages(std::span<const PlaceRange> places) {
+  std::vector<PlaceRange> taken;
   for (const size_t f : rebinned_->asking_frames())
     taken.push_back({rebinned_->places_done(), places[f].end});
-  std::vector<SelectedImage> all = SelectImages(job_.index, cameras, select, job_.pool, taken);
-  std::erase_if(all, [this](const SelectedImage& image) {
-    const auto for_plates = std::lower_bound(
-        images_.begin(), images_.end(), image.place,
-        [](const SelectedImage& one, uint32_t place) { return one.place < place; });
-    const bool is_for_plates = for_plates != images_.end() && for_plates->place == image.place;
-    return !is_for_plates && rebinned_->RectOf(image.id, image.place).empty();
-  });
+  const auto is_before = [](const SelectedImage& a, const SelectedImage& b) {
+    return a.place < b.place;
+  };
+  std::vector<SelectedImage> all;
+  const std::vector<SelectedImage> asked =
+      SelectImages(job_.index, rebinned_->ReachedCameras(), job_.Select(), job_.pool, taken);
+  for (SelectedImage image : asked) {
+    if (std::binary_search(images_.begin(), images_.end(), image, is_before)) continue;
+    if (rebinned_->RectOf(image.id, image.place).empty()) continue;
+    image.rect = {};  // nothing is collected of it
+    all.push_back(image);
+  }
+  const auto middle = all.insert(all.end(), images_.begin(), images_.end());
+  std::inplace_merge(all.begin(), middle, all.end(), is_before);
   images_ = std::move(all);
 }
 
@@ -428,6 +443,10 @@ RenderReport RenderPass::Totals() const {
     rebinning.cell_count = std::max<uint64_t>(rebinning.cell_count, facts.cell_count);
     rebinning.looked_at_count += facts.looked_at;
     rebinning.cpu_s += facts.cpu_s;
+    if (facts.is_full)
+      rebinning.kept = "some";
+    else if (!facts.keeps_all && rebinning.kept == "all")
+      rebinning.kept = "edges";
   }
   for (const SkippedImage& skipped : collector_->skipped())
     if (std::none_of(totals.skipped.begin(), totals.skipped.end(),

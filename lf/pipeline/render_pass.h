@@ -36,14 +36,15 @@ struct RenderJob {
   const MemoryPlan& plan;
   RunState& state;
   DumpClock& clock;
-  RenderReport& totals;  // of passes that are done, and of earlier runs; total_s of those alone
-  size_t max_cells;      // of rebinned rays
-  double begin_s;        // of this run
-  size_t& black_count;   // frames that no LF image contributes to
+  RenderReport& totals;    // of passes that are done, and of earlier runs; total_s of those alone
+  size_t max_cells;        // of rebinned rays
+  const FilmSlabs* slabs;  // of these; null without
+  double begin_s;          // of this run
+  size_t& black_count;     // frames that no LF image contributes to
   std::function<void(const CollectProgress&, size_t finished_count)> progress;
 
-  bool Collects() const { return options.mode != RenderMode::kRebin; }
-  bool Rebins() const { return options.mode != RenderMode::kCollect; }
+  bool Collects() const { return lf::Collects(options.mode); }
+  bool Rebins() const { return lf::Rebins(options.mode); }
   bool IsStopped() const { return options.signals != nullptr && options.signals->stop; }
   SelectOptions Select() const;
 };
@@ -83,11 +84,12 @@ class RenderPass {
   };
 
   void FindLenses();
-  void DropUnweighted();
-  std::vector<RenderCamera> CamerasToCountBy() const;
+  SelectOptions SelectCollected() const;
   Result<void> PreparePlates(std::vector<PlaceRange>* places);
+  Result<void> CheckReach(const LensGaps& gaps, FrameId frame) const;
   Result<void> PrepareRebinning(std::span<const PlaceRange> places);
   void SelectForPass(std::span<const PlaceRange> places);
+  void AddRebinnedImages(std::span<const PlaceRange> places);
   // What rebinned rays say of each frame, one after the other; empty without them.
   std::vector<Completion> Complete(std::span<const size_t> frames);
   FrameProgress ProgressOf(size_t f) const;

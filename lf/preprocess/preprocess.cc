@@ -9,9 +9,10 @@
 #include <numeric>
 
 #include "lf/collector/frame_lens.h"
-#include "lf/collector/memory_plan.h"
 #include "lf/core/file.h"
+#include "lf/hybrid/render_memory.h"
 #include "lf/package/package_file.h"
+#include "lf/preprocess/film_order.h"
 #include "lf/preprocess/frame_needs.h"
 #include "lf/preprocess/split_film.h"
 #include "lf/store/open_store.h"
@@ -21,9 +22,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kExtension = ".lfp";
-
-// Of what a package's frames need, while it is made: a quarter of the memory.
-constexpr uint64_t kPairBytes = sizeof(FrameNeeds::Image) + sizeof(FrameRect);
 
 double SecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -43,16 +41,25 @@ std::vector<fs::path> PackagesIn(const fs::path& folder, const char* prefix = "p
 // The LF images of a package while frame after frame is added.
 class Gathering {
  public:
-  void Add(FrameId frame, const FrameNeeds& needs) {
-    for (const FrameNeeds::Image& image : needs.images)
-      rects_[image.id].push_back({frame, image.rect});
-    for (const LfImageId id : needs.neighbours) rects_[id];
+  struct Image {
+    PixelRect rect;  // bounds of what the frames read of it
+    uint32_t frame_count = 0;
+    uint64_t ray_count = 0;
+  };
+  void Add(const FrameNeeds& needs) {
+    for (const FrameNeeds::Image& image : needs.images) {
+      Image& all = images_[image.id];
+      all.rect = Bounds(all.rect, image.rect);
+      all.frame_count += 1;
+      all.ray_count += image.ray_count;
+    }
+    for (const LfImageId id : needs.neighbours) images_[id];
   }
-  // By ascending ids; those without rectangles are neighbours.
-  const std::map<LfImageId, std::vector<FrameRect>>& rects() const { return rects_; }
+  // By ascending ids; an image that no frame reads is a neighbour.
+  const std::map<LfImageId, Image>& images() const { return images_; }
 
  private:
-  std::map<LfImageId, std::vector<FrameRect>> rects_;
+  std::map<LfImageId, Image> images_;
 };
 
 class Preprocessor {
@@ -69,6 +76,7 @@ class Preprocessor {
     needs_.select.max_angle_rad = options.max_angle_rad;
     needs_.select.interrupted = options.interrupted;
     needs_.lens_weights = options.lens_weights;
+    needs_.mode = options.mode;
     needs_.max_image_count = options.max_image_count;
   }
 
@@ -76,9 +84,12 @@ class Preprocessor {
 
  private:
   Result<void> Begin();
+  Result<void> CheckOptions() const;
   Result<void> MakeIndex();
   Result<void> ForecastFrames();
+  Result<void> DescribeSurroundings(const std::map<FrameId, FrameSampling>& sampling);
   Result<void> Measure();
+  Result<MemoryPlan> MemoryOf(const LightField& light_field, size_t frame_count) const;
   Result<std::vector<Section>> Split() const;
   Result<void> MakePackage(size_t number, const Section& section, size_t count);
   Package PackageOf(const Section& section, const Gathering& gathering) const;
@@ -108,7 +119,7 @@ class Preprocessor {
   LightFieldIdentity whole_;
   ImagePlaces places_;
   std::optional<ImageIndex> index_;
-  std::vector<uint64_t> pairs_;  // of a frame: LF images and neighbours
+  std::vector<FrameSurroundings> surroundings_;  // [frame - 1] of the film
   size_t done_ = 0;
   std::vector<fs::path> written_;
   PreprocessReport report_;
@@ -136,9 +147,7 @@ Result<void> Preprocessor::Begin() {
   frames_ = options_.frames;
   if (frames_.empty())
     for (uint32_t n = 1; n <= path_.frame_count(); ++n) frames_.push_back(FrameId{n});
-  if (options_.lens_weights == LensWeights::kArea)
-    for (const FrameId frame : frames_)
-      LF_RETURN_IF_ERROR(CheckHasArea(path_.Camera(frame), frame));
+  LF_RETURN_IF_ERROR(CheckOptions());
   if (options_.output_folder) {
     const std::vector<fs::path> there = PackagesIn(*options_.output_folder);
     if (!there.empty() && !options_.overwrite)
@@ -154,35 +163,56 @@ Result<void> Preprocessor::Begin() {
   return {};
 }
 
+Result<void> Preprocessor::CheckOptions() const {
+  if (Rebins(options_.mode) && options_.max_image_count)
+    return UsageError(
+        "--max-images: rebinned rays are shared by frames, so that no limit of each frame's LF "
+        "images can be kept: leave it out, or use --mode collect");
+  if (!Collects(options_.mode) && options_.lens_weights != LensWeights::kNone)
+    return UsageError(fmt::format(
+        "--lens-weights {}: --mode rebin collects no rays that could be weighed: leave it out",
+        NameOf(options_.lens_weights)));
+  if (options_.lens_weights == LensWeights::kArea)
+    for (const FrameId frame : frames_)
+      LF_RETURN_IF_ERROR(CheckHasArea(path_.Camera(frame), frame));
+  return {};
+}
+
 Result<void> Preprocessor::MakeIndex() {
   const auto start = std::chrono::steady_clock::now();
-  places_ = ShuffledPlaces(light_field_.size(), options_.seed);
+  const Result<ImagePlaces> places =
+      PlacesOfFilm(options_.order, options_.seed, light_field_, path_, needs_, pool_);
+  LF_RETURN_IF_ERROR(CheckInterrupted());
+  if (!places) return places.error();
+  places_ = *places;
   index_.emplace(light_field_, places_);
-  if (options_.order != ImageOrder::kShuffle) {
-    std::vector<std::vector<ImageRays>> taken;
-    for (const FrameId frame : frames_) {
-      LF_RETURN_IF_ERROR(CheckInterrupted());
-      taken.emplace_back();
-      const RenderCamera& camera = path_.Camera(frame);
-      for (const SelectedImage& image :
-           SelectImages(*index_, std::span(&camera, 1), needs_.select, pool_))
-        taken.back().push_back({image.id, image.ray_count});
-    }
-    LF_RETURN_IF_ERROR(CheckInterrupted());
-    places_ = PlacesInOrder(options_.order, light_field_.size(), options_.seed, taken);
-    index_.emplace(light_field_, places_);
-  }
   report_.index_s = SecondsSince(start);
+  return {};
+}
+
+// Slabs of rebinned rays are planned for the whole film, whichever of its frames are packed.
+Result<void> Preprocessor::DescribeSurroundings(const std::map<FrameId, FrameSampling>& sampling) {
+  if (!needs_.HasNeighbours()) return {};
+  for (uint32_t n = 1; n <= path_.frame_count(); ++n) {
+    const auto known = sampling.find(FrameId{n});
+    surroundings_.push_back(
+        SurroundingsOf(known != sampling.end()
+                           ? known->second
+                           : SamplingOf(*index_, path_.Camera(FrameId{n}), needs_.select, pool_)));
+    LF_RETURN_IF_ERROR(CheckInterrupted());
+  }
   return {};
 }
 
 Result<void> Preprocessor::ForecastFrames() {
   const auto start = std::chrono::steady_clock::now();
+  std::map<FrameId, FrameSampling> sampling;
   for (const FrameId frame : frames_) {
     LF_ASSIGN_OR_RETURN(const FrameNeeds needs, Needs(frame));
-    pairs_.push_back(needs.images.size() + needs.neighbours.size());
     report_.frames.push_back({frame, needs.images.size(), needs.RayCount(), {}});
+    if (needs.sampling) sampling[frame] = *needs.sampling;
   }
+  LF_RETURN_IF_ERROR(DescribeSurroundings(sampling));
   report_.select_s += SecondsSince(start);
   const auto density_start = std::chrono::steady_clock::now();
   // One frame costs little, but asks one thread only.
@@ -222,12 +252,18 @@ Result<void> Preprocessor::Measure() {
   return {};
 }
 
-Result<std::vector<Section>> Preprocessor::Split() const {
+Result<MemoryPlan> Preprocessor::MemoryOf(const LightField& light_field, size_t frame_count) const {
   const Intrinsics& plate = path_.Camera(frames_.front()).pinhole.intrinsics;
-  LF_ASSIGN_OR_RETURN(
-      const MemoryPlan memory,
-      PlanMemory(options_.memory_bytes, light_field_, options_.reading.estimator, plate.width_px,
-                 plate.height_px, frames_.size(), pool_.thread_count()));
+  LF_ASSIGN_OR_RETURN(RenderMemory memory,
+                      PlanRenderMemory(options_.memory_bytes, options_.mode, 0, light_field,
+                                       options_.reading.estimator, plate.width_px, plate.height_px,
+                                       frame_count, pool_.thread_count()));
+  memory.plan.total_bytes += memory.rebin_bytes;
+  return memory.plan;
+}
+
+Result<std::vector<Section>> Preprocessor::Split() const {
+  LF_ASSIGN_OR_RETURN(const MemoryPlan memory, MemoryOf(light_field_, frames_.size()));
   std::vector<uint64_t> costs;
   for (const FrameForecast& frame : report_.frames)
     costs.push_back(options_.balance == PackageBalance::kRays ? frame.ray_count : 1);
@@ -238,25 +274,19 @@ Result<std::vector<Section>> Preprocessor::Split() const {
       sections.push_back({begin, std::min(frames_.size(), begin + *options_.frames_per_package)});
     return sections;
   }
-  std::vector<uint64_t> sizes;
-  for (const uint64_t pairs : pairs_) sizes.push_back(pairs * kPairBytes);
-  return SplitToFit(costs, memory.frames_per_pass, sizes, options_.memory_bytes / 4);
+  return SplitToFit(costs, memory.frames_per_pass);
 }
 
 Result<void> Preprocessor::MakePackage(size_t number, const Section& section, size_t count) {
   const auto start = std::chrono::steady_clock::now();
   Gathering gathering;
-  std::vector<std::optional<double>> distances_w;
   for (size_t f = section.begin; f < section.end; ++f) {
     LF_ASSIGN_OR_RETURN(const FrameNeeds needs, Needs(frames_[f]));
-    distances_w.push_back(needs.camera_distance_w);
-    gathering.Add(frames_[f], needs);
+    gathering.Add(needs);
   }
   Package package = PackageOf(section, gathering);
   package.number = number + 1;
   package.count = count;
-  for (size_t i = 0; i < distances_w.size(); ++i)
-    package.frames[i].camera_distance_w = distances_w[i];
   report_.select_s += SecondsSince(start);
 
   for (size_t i = 0; i < package.images.size(); ++i) {
@@ -282,11 +312,8 @@ Result<void> Preprocessor::MakePackage(size_t number, const Section& section, si
         fs::remove(old, ignored);
       }
   written_.push_back(*options_.output_folder / (report_.packages.back().name + kExtension));
-  std::vector<const std::vector<FrameRect>*> rects;
-  for (const auto& [id, of_image] : gathering.rects()) rects.push_back(&of_image);
-  LF_RETURN_IF_ERROR(WritePackage(written_.back(), package,
-                                  [&rects](LfImageId id) { return *rects[id.value]; },
-                                  {options_.version, options_.light_field_name}));
+  LF_RETURN_IF_ERROR(
+      WritePackage(written_.back(), package, {options_.version, options_.light_field_name}));
   report_.write_s += SecondsSince(write_start);
   return {};
 }
@@ -294,12 +321,12 @@ Result<void> Preprocessor::MakePackage(size_t number, const Section& section, si
 Package Preprocessor::PackageOf(const Section& section, const Gathering& gathering) const {
   Package package;
   package.whole = whole_;
-  package.choices = {options_.order, options_.seed, options_.max_image_count,
-                     options_.max_angle_rad, options_.lens_weights != LensWeights::kNone};
+  package.choices = {options_.order,         options_.seed,          options_.max_image_count,
+                     options_.max_angle_rad, needs_.HasNeighbours(), NameOf(options_.mode)};
   package.path = path_;
+  package.surroundings = surroundings_;
   for (size_t f = section.begin; f < section.end; ++f)
     package.frames.push_back({.id = frames_[f],
-                              .camera_distance_w = std::nullopt,
                               .image_count = report_.frames[f].image_count,
                               .ray_count = report_.frames[f].ray_count});
   LightField& part = package.light_field;
@@ -309,7 +336,7 @@ Package Preprocessor::PackageOf(const Section& section, const Gathering& gatheri
   part.depth_range = light_field_.depth_range;
   package.places.end = places_.end;
   std::map<uint32_t, uint32_t> intrinsics;  // by index in the whole light field
-  for (const auto& [id, rects] : gathering.rects()) {
+  for (const auto& [id, gathered] : gathering.images()) {
     LfCamera camera = light_field_.cameras[id.value];
     const auto [known, is_new] = intrinsics.try_emplace(
         camera.intrinsics_index, static_cast<uint32_t>(part.intrinsics.size()));
@@ -322,11 +349,9 @@ Package Preprocessor::PackageOf(const Section& section, const Gathering& gatheri
     package.places.of_images.push_back(places_.of_images[id.value]);
     PackageImage image;
     image.id = id.value;
-    image.frame_count = static_cast<uint32_t>(rects.size());
-    for (const FrameRect& rect : rects) {
-      image.rect = Bounds(image.rect, rect.rect);
-      image.ray_count += static_cast<uint64_t>(rect.rect.pixel_count());
-    }
+    image.rect = gathered.rect;
+    image.frame_count = gathered.frame_count;
+    image.ray_count = gathered.ray_count;
     package.images.push_back(image);
   }
   const std::vector<uint64_t> sizes = FileSizes(package);
@@ -353,11 +378,8 @@ Result<void> Preprocessor::Forecast(const Package& package, PackageForecast* for
     forecast->read_bytes += image.file_bytes;
     forecast->ray_count += image.ray_count;
   }
-  const Intrinsics& plate = path_.Camera(frames_.front()).pinhole.intrinsics;
-  LF_ASSIGN_OR_RETURN(
-      const MemoryPlan memory,
-      PlanMemory(options_.memory_bytes, package.light_field, options_.reading.estimator,
-                 plate.width_px, plate.height_px, package.frames.size(), pool_.thread_count()));
+  LF_ASSIGN_OR_RETURN(const MemoryPlan memory,
+                      MemoryOf(package.light_field, package.frames.size()));
   forecast->memory_bytes = memory.total_bytes;
   forecast->pass_count =
       (package.frames.size() + memory.frames_per_pass - 1) / memory.frames_per_pass;

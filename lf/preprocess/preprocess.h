@@ -16,6 +16,7 @@
 #include "lf/core/ids.h"
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
+#include "lf/hybrid/render_mode.h"
 #include "lf/lens_weights/frame_weights.h"
 #include "lf/package/package.h"
 #include "lf/path/camera_path.h"
@@ -40,6 +41,9 @@ struct PreprocessOptions {
   // for kNone have no neighbours to weigh against.
   RayReading reading = {.estimator = Estimator::kBilinear};
   LensWeights lens_weights = LensWeights::kAuto;
+  // What frames need, and so the forecast and what lfcompressor --needed-pixels keeps, is that of
+  // the mode. Whole LF images serve every mode.
+  RenderMode mode = RenderMode::kCollect;
 
   // How many packages: so many; of so many frames; or, by default, so few that the plates of each
   // are in memory_bytes together.
@@ -88,7 +92,8 @@ struct PreprocessReport {
   double write_s = 0;
 };
 
-// kUsage: packages are there, lenses that kArea cannot weigh. kInput: no LF image contributes to
+// kUsage: packages are there, lenses that kArea cannot weigh, lens weights with RenderMode::kRebin,
+// max_image_count with rebinned rays. kInput: no LF image contributes to
 // any frame; one is missing, if strict. kOutput: the disk, less memory than one frame needs.
 // kInterrupted. After an error none of the packages is there.
 Result<PreprocessReport> Preprocess(const LightField& light_field, const CameraPath& path,

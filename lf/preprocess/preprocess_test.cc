@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
+#include <optional>
 #include <set>
 
 #include "lf/collector/frame_lens.h"
@@ -73,7 +73,7 @@ void PreprocessTest::ExpectPackageIsAsGoodAsTheWhole(const Package& package,
   EXPECT_EQ(package.whole, IdentityOf(field_));
   for (size_t i = 0; i < package.images.size(); ++i)
     EXPECT_EQ(package.places.of_images[i], whole.PlaceOf(LfImageId{package.images[i].id}));
-  std::map<uint32_t, std::vector<FrameRect>> rects;  // by LF image of the whole
+  std::map<uint32_t, PackageImage> images;  // by LF image of the whole
   for (const PackageFrame& frame : package.frames) {
     const RenderCamera& camera = film_.Camera(frame.id);
     const FrameLens lens(whole, camera, needs.lens_weights, needs.select, pool_);
@@ -84,7 +84,10 @@ void PreprocessTest::ExpectPackageIsAsGoodAsTheWhole(const Package& package,
     EXPECT_EQ(frame.ray_count, wanted.RayCount());
     EXPECT_EQ(frame.image_count, wanted.images.size());
     for (const FrameNeeds::Image& image : wanted.images) {
-      rects[image.id.value].push_back({frame.id, image.rect});
+      PackageImage& all = images[image.id.value];
+      all.rect = Bounds(all.rect, image.rect);
+      all.frame_count += 1;
+      all.ray_count += image.ray_count;
       const auto found =
           std::find_if(package.images.begin(), package.images.end(),
                        [&](const PackageImage& known) { return known.id == image.id.value; });
@@ -94,23 +97,23 @@ void PreprocessTest::ExpectPackageIsAsGoodAsTheWhole(const Package& package,
         for (int x = 0; x < 80; x += 9)
           ASSERT_EQ(lens.WeightsOf(image.id).At(x, y), again.WeightsOf(id).At(x, y));
     }
-    // And no other has weight.
-    const std::vector<PlaceRange> places =
-        needs.max_image_count ? PlacesOfFirst(*needs.max_image_count, part,
-                                              std::span(&again.camera(), 1), needs.select, pool_)
-                              : std::vector<PlaceRange>(1);
-    size_t count = 0;
-    for (const SelectedImage& image :
-         SelectImages(part, std::span(&again.camera(), 1), needs.select, pool_, places))
-      count += again.WeightsOf(image.id).are_none() ? 0 : 1;
-    EXPECT_EQ(count, wanted.images.size());
+    // The package has what is needed to find the same again.
+    const std::optional<FrameSampling> sampling =
+        package.surroundings.empty()
+            ? std::nullopt
+            : std::optional(SamplingOf(package.surroundings[frame.id.value - 1]));
+    const FrameNeeds found = NeedsOf(part, package.path.Camera(frame.id), needs, pool_, sampling);
+    ASSERT_EQ(found.images.size(), wanted.images.size());
+    for (size_t i = 0; i < found.images.size(); ++i) {
+      EXPECT_EQ(package.images[found.images[i].id.value].id, wanted.images[i].id.value);
+      EXPECT_EQ(found.images[i].rect, wanted.images[i].rect);
+    }
   }
   for (const PackageImage& image : package.images) {
-    const auto expected = rects[image.id];
-    EXPECT_EQ(
-        *ReadFrameRects(folder_ / (package.name + ".lfp"), whole.PlaceOf(LfImageId{image.id})),
-        expected);
-    EXPECT_EQ(image.frame_count, expected.size());
+    const PackageImage& expected = images[image.id];
+    EXPECT_EQ(image.rect, expected.rect);
+    EXPECT_EQ(image.frame_count, expected.frame_count);
+    EXPECT_EQ(image.ray_count, expected.ray_count);
   }
 }
 
@@ -143,6 +146,43 @@ TEST_F(PreprocessTest, PackagesHaveWhatTheirFramesNeed) {
       EXPECT_FALSE(report.rate);  // there are no files
       EXPECT_NE(report.rate_error, "");
     }
+}
+
+// What rebinned rays are made of, also where no LF camera's rays pass the lens.
+TEST_F(PreprocessTest, PackagesHaveWhatTheModeNeeds) {
+  for (RenderCamera& camera : film_.cameras) camera.aperture.radius_w *= 0.2;
+  std::map<RenderMode, uint64_t> rays;
+  for (const RenderMode mode : {RenderMode::kCollect, RenderMode::kRebin, RenderMode::kHybrid}) {
+    options_.mode = mode;
+    options_.lens_weights = LensWeights::kNone;
+    options_.overwrite = true;
+    NeedsOptions needs;
+    needs.select.reach = PixelReach::kNeighbours;
+    needs.lens_weights = LensWeights::kNone;
+    needs.mode = mode;
+    for (const PackageForecast& forecast : Run().packages) {
+      const Package package = Read(forecast);
+      EXPECT_EQ(package.choices.mode, NameOf(mode));
+      EXPECT_EQ(package.choices.has_neighbours, Rebins(mode));
+      ExpectPackageIsAsGoodAsTheWhole(package, needs);
+      rays[mode] += forecast.ray_count;
+    }
+  }
+  EXPECT_GT(rays[RenderMode::kRebin], rays[RenderMode::kCollect]);
+  EXPECT_GT(rays[RenderMode::kHybrid], rays[RenderMode::kCollect]);
+}
+
+TEST_F(PreprocessTest, WhatRebinnedRaysCannotHaveIsRefused) {
+  options_.mode = RenderMode::kRebin;
+  for (const bool has_weights : {true, false}) {
+    options_.lens_weights = has_weights ? LensWeights::kAuto : LensWeights::kNone;
+    if (!has_weights) options_.max_image_count = 5;
+    const Result<PreprocessReport> report = Preprocess(field_, film_, options_, pool_, nullptr);
+    ASSERT_FALSE(report);
+    EXPECT_EQ(report.error().kind, ErrorKind::kUsage);
+    EXPECT_NE(report.error().message.find(has_weights ? "--lens-weights" : "--max-images"),
+              std::string::npos);
+  }
 }
 
 TEST_F(PreprocessTest, FramesAndSectionsAsAsked) {

@@ -1,7 +1,6 @@
 #include "lf/preprocess/split_film.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace lf {
 
@@ -29,14 +28,8 @@ std::vector<Section> SplitByCost(std::span<const uint64_t> costs, size_t count) 
   return sections;
 }
 
-std::vector<Section> SplitToFit(std::span<const uint64_t> costs, size_t most_frames,
-                                std::span<const uint64_t> sizes, uint64_t most_size) {
-  const auto fits = [&](const Section& section) {
-    if (section.size() == 1) return true;
-    const auto part = sizes.subspan(section.begin, section.size());
-    return section.size() <= most_frames &&
-           std::accumulate(part.begin(), part.end(), uint64_t{0}) <= most_size;
-  };
+std::vector<Section> SplitToFit(std::span<const uint64_t> costs, size_t most_frames) {
+  const auto fits = [&](const Section& section) { return section.size() <= most_frames; };
   size_t count = (costs.size() + most_frames - 1) / most_frames;
   while (true) {
     std::vector<Section> sections = SplitByCost(costs, count);

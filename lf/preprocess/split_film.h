@@ -21,9 +21,7 @@ struct Section {
 // frames share LF images, so that sections are never taken apart.
 std::vector<Section> SplitByCost(std::span<const uint64_t> costs, size_t count);
 
-// As few of about equal cost as have at most most_frames frames each, and at most most_size of what
-// each frame adds (a frame that is larger alone has a section to itself).
-std::vector<Section> SplitToFit(std::span<const uint64_t> costs, size_t most_frames,
-                                std::span<const uint64_t> sizes, uint64_t most_size);
+// As few of about equal cost as have at most most_frames frames each.
+std::vector<Section> SplitToFit(std::span<const uint64_t> costs, size_t most_frames);
 
 }  // namespace lf

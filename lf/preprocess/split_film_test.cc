@@ -61,16 +61,12 @@ TEST(SplitFilm, OneCostlyFrameIsAloneAndTheOthersAreShared) {
 
 TEST(SplitFilm, SectionsFit) {
   const std::vector<uint64_t> costs(100, 5);
-  std::vector<uint64_t> sizes(100, 1);
-  EXPECT_EQ(SplitToFit(costs, 25, sizes, 1000).size(), 4u);
-  EXPECT_EQ(SplitToFit(costs, 1000, sizes, 1000).size(), 1u);
-  for (const Section& section : SplitToFit(costs, 24, sizes, 1000)) EXPECT_LE(section.size(), 24u);
-  for (const Section& section : SplitToFit(costs, 1000, sizes, 10)) EXPECT_LE(section.size(), 10u);
-  sizes[50] = 100;  // does not fit anywhere
-  const auto sections = SplitToFit(costs, 1000, sizes, 20);
-  EXPECT_TRUE(std::any_of(sections.begin(), sections.end(), [](const Section& s) {
-    return s == Section{50, 51};
-  }));
+  EXPECT_EQ(SplitToFit(costs, 25).size(), 4u);
+  EXPECT_EQ(SplitToFit(costs, 1000).size(), 1u);
+  for (const Section& section : SplitToFit(costs, 24)) EXPECT_LE(section.size(), 24u);
+  std::vector<uint64_t> uneven(100, 1);
+  uneven[50] = 10000;
+  for (const Section& section : SplitToFit(uneven, 30)) EXPECT_LE(section.size(), 30u);
 }
 
 }  // namespace

@@ -98,40 +98,20 @@ class SectionPlanner {
     return 2 / (1 / least + 1 / most);
   }
 
-  // Puts the origins in their middle. Whether all rays cut the planes.
+  // Puts the origins in their middle. Returns whether all rays cut the planes.
   bool SetBounds(SlabSection* section) const {
-    constexpr double kInf = std::numeric_limits<double>::infinity();
-    SlabPoint low = SlabPoint::Constant(kInf), high = SlabPoint::Constant(-kInf);
     bool all_cut = true;
-    for (size_t f = section->begin; f < section->end; ++f) {
-      const FrameQueries& frame = frames_[f];
-      const double reach_w =
-          frame.camera.aperture.radius_w + ReachOf(frame.kernel, frame.points).lens_w;
-      ForEachPlace(frame, [&](const Vec3& focus) {
-        for (const Vec2& corner : {Vec2(-1, -1), Vec2(1, -1), Vec2(-1, 1), Vec2(1, 1)}) {
-          const Vec3 lens = LensPointWorld(frame.camera, reach_w * corner);
-          const std::optional<SlabPoint> point =
-              Parameterize(section->slab, Ray{lens, focus - lens});
-          if (!point || !point->allFinite()) {
-            all_cut = false;
-            continue;
-          }
-          low = low.cwiseMin(*point);
-          high = high.cwiseMax(*point);
-        }
-      });
-    }
-    if (!(low.array() <= high.array()).all()) {
-      section->bounds = {};
-      return false;
-    }
-    const SlabPoint middle = (low + high) / 2;
+    const std::optional<SlabBounds> bounds = BoundsOf(
+        section->slab, frames_.subspan(section->begin, section->end - section->begin), &all_cut);
+    section->bounds = {};
+    if (!bounds) return false;
+    const SlabPoint middle = (bounds->low + bounds->high) / 2;
     for (int plane = 0; plane < 2; ++plane) {
       SlabPlane& to_move = plane == 0 ? section->slab.st : section->slab.uv;
       to_move.origin_world +=
           middle[2 * plane] * to_move.axis_a + middle[2 * plane + 1] * to_move.axis_b;
     }
-    section->bounds = {low - middle, high - middle};
+    section->bounds = {bounds->low - middle, bounds->high - middle};
     return all_cut;
   }
 
@@ -174,6 +154,30 @@ class SectionPlanner {
 };
 
 }  // namespace
+
+std::optional<SlabBounds> BoundsOf(const Slab& slab, std::span<const FrameQueries> frames,
+                                   bool* all_cut) {
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  SlabBounds bounds{SlabPoint::Constant(kInf), SlabPoint::Constant(-kInf)};
+  for (const FrameQueries& frame : frames) {
+    const double reach_w =
+        frame.camera.aperture.radius_w + ReachOf(frame.kernel, frame.points).lens_w;
+    ForEachPlace(frame, [&](const Vec3& focus) {
+      for (const Vec2& corner : {Vec2(-1, -1), Vec2(1, -1), Vec2(-1, 1), Vec2(1, 1)}) {
+        const Vec3 lens = LensPointWorld(frame.camera, reach_w * corner);
+        const std::optional<SlabPoint> point = Parameterize(slab, Ray{lens, focus - lens});
+        if (point && point->allFinite()) {
+          bounds.low = bounds.low.cwiseMin(*point);
+          bounds.high = bounds.high.cwiseMax(*point);
+        } else if (all_cut != nullptr) {
+          *all_cut = false;
+        }
+      }
+    });
+  }
+  if (!(bounds.low.array() <= bounds.high.array()).all()) return std::nullopt;
+  return bounds;
+}
 
 std::vector<SlabSection> PlanSlabs(std::span<const FrameQueries> frames,
                                    std::span<const LfSampling> sampling,

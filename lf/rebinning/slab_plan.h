@@ -56,4 +56,10 @@ std::vector<SlabSection> PlanSlabs(std::span<const FrameQueries> frames,
                                    std::span<const LfSampling> sampling,
                                    const SlabChoices& choices);
 
+// Returns the bounds on the slab of all rays that the frames ask for, reach and all; none if no ray
+// cuts both planes.
+//   all_cut  becomes false if some ray does not; may be null
+std::optional<SlabBounds> BoundsOf(const Slab& slab, std::span<const FrameQueries> frames,
+                                   bool* all_cut = nullptr);
+
 }  // namespace lf

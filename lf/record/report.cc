@@ -54,6 +54,13 @@ uint64_t RenderReport::AcceptedRays() const {
   return count;
 }
 
+bool RenderReport::IsBlack() const {
+  return AcceptedRays() == 0 &&
+         std::all_of(frames.begin(), frames.end(), [](const FrameReport& frame) {
+           return frame.interpolated_share.value_or(0) == 0;
+         });
+}
+
 double RenderReport::MraysPerSecondPerCore() const {
   return collect_cpu_s > 0 ? static_cast<double>(AcceptedRays()) / 1e6 / collect_cpu_s : 0;
 }
@@ -117,6 +124,7 @@ std::string ToJson(const RenderReport& report) {
     json["rebinning"] = {{"slabs", report.rebinning->slab_count},
                          {"cells", report.rebinning->cell_count},
                          {"lf_pixels_looked_at", report.rebinning->looked_at_count},
+                         {"kept", report.rebinning->kept},
                          {"cpu_s", report.rebinning->cpu_s}};
   return RecordText(json);
 }

@@ -56,6 +56,9 @@ struct RebinReport {
   uint64_t cell_count = 0;       // at the end of that with the most
   uint64_t looked_at_count = 0;  // LF pixels
   double cpu_s = 0;              // from LF pixels to cells
+  // "all" that frames ask for, "edges" of them, or "some": more than there was room for. Unless it
+  // is "all" the picture of a frame depends on which frames are rendered with it.
+  std::string kept = "all";
 };
 
 struct RenderReport {
@@ -79,6 +82,8 @@ struct RenderReport {
 
   uint64_t TestedRays() const;
   uint64_t AcceptedRays() const;
+  // Returns whether no frame has any light: neither collected nor interpolated.
+  bool IsBlack() const;
   // Millions of accepted rays per CPU second of collection.
   double MraysPerSecondPerCore() const;
 };

@@ -65,6 +65,7 @@ Result<RenderReport> ParseReport(std::string_view text, const std::string& name)
       rebinning_fields.Get("cells", &rebinning.cell_count);
       rebinning_fields.Get("lf_pixels_looked_at", &rebinning.looked_at_count);
       rebinning_fields.Get("cpu_s", &rebinning.cpu_s);
+      rebinning_fields.Get("kept", &rebinning.kept);
     }
     for (const Json* item : fields.List("skipped_lf_images")) {
       RecordFields skipped_fields(*item, &fault);

@@ -74,6 +74,7 @@ class Selector {
   Selector(const ImageIndex& index, std::span<const RenderCamera> frames, size_t first_frame,
            const SelectOptions& options, std::span<const PlaceRange> places)
       : index_(index),
+        first_frame_(first_frame),
         options_(options),
         places_(places.empty() ? places : places.subspan(first_frame, frames.size())) {
     for (const RenderCamera& frame : frames) {
@@ -106,6 +107,7 @@ class Selector {
         if (!places_.empty() && !places_[f].Holds(image.place)) continue;
         if (visit.all_inside == 0 && regions_[f].Misses(camera.CentreWorld())) continue;
         if (!IsWithinAngle(lf_camera, outlines_[f].camera, options_)) continue;
+        if (options_.takes && !options_.takes(first_frame_ + f, id)) continue;
         PixelRect rect = WholeImage(camera.intrinsics);
         if (!options_.whole_images) {
           if (!overlap) overlap.emplace(camera, cells->Of(light_field, id), options_.reach);
@@ -122,6 +124,7 @@ class Selector {
 
  private:
   const ImageIndex& index_;
+  const size_t first_frame_;
   const SelectOptions& options_;
   std::span<const PlaceRange> places_;
   std::vector<SeenRegion> regions_;
@@ -219,6 +222,7 @@ std::vector<PlaceRange> PlacesOfFirst(size_t image_count, const ImageIndex& inde
     for (const auto& [place, id] : places) {
       if (IsInterrupted(options)) return;
       if (!IsWithinAngle(light_field.cameras[id.value], frames[f], options)) continue;
+      if (options.takes && !options.takes(f, id)) continue;
       const PixelRect rect = ContributingRect(light_field.Camera(id), frames[f],
                                               cells.Of(light_field, id), options.reach);
       found += rect.empty() ? 0 : 1;

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -44,6 +46,11 @@ struct SelectOptions {
   // rays: in the thesis those that look at the render camera, here a choice of the user's. None: no
   // LF camera is.
   std::optional<double> max_angle_rad = {};
+  // Returns false if the frame takes no ray of the LF image although the geometry would allow it,
+  // because the image has no lens weight there. Empty: no image is left out. Any thread may call
+  // it.
+  //   frame  index into the frames that are selected for
+  std::function<bool(size_t frame, LfImageId id)> takes = {};
   // Once it is true, the rest is left out and the answer is of no use.
   const std::atomic<bool>* interrupted = nullptr;
 };
@@ -61,7 +68,7 @@ std::vector<SelectedImage> SelectImages(const ImageIndex& index,
                                         std::span<const PlaceRange> places = {});
 
 // For each frame, the places of its first `image_count` contributing LF images: [0, end). A frame
-// with fewer takes all places.
+// with fewer takes all places. An LF image that options.takes leaves out is not counted.
 std::vector<PlaceRange> PlacesOfFirst(size_t image_count, const ImageIndex& index,
                                       std::span<const RenderCamera> frames,
                                       const SelectOptions& options, ThreadPool& pool);

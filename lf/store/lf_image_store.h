@@ -28,6 +28,12 @@ class LfImageStore {
   // Whether the file is there, whatever it holds: a disk may be unmounted during a night's work.
   virtual bool IsThere(LfImageId /*id*/) const { return true; }
 
+  // Returns whether pixels of LF images were left out on purpose when the store was made: then
+  // Keeps() tells which.
+  virtual bool IsPartial() const { return false; }
+  // Returns false if some of these pixels, cut to the image, were left out on purpose.
+  virtual bool Keeps(LfImageId /*id*/, const PixelRect& /*rect*/) const { return true; }
+
   // What loading reads: the size of the file, or of the code in a packed store; 0: not there, or
   // not known.
   virtual uint64_t StoredBytes(LfImageId /*id*/) const { return 0; }

@@ -12,6 +12,7 @@
 #include "lf/store/image_reading.h"
 #include "lf/store/load_mosaics.h"
 #include "lf/store/ordered_half.h"
+#include "lf/store/recorded_image.h"
 
 namespace lf {
 namespace {
@@ -102,6 +103,23 @@ Result<std::unique_ptr<PackedStore>> PackedStore::Open(const LightField& light_f
     store->curve_.emplace(levels.black, levels.white);
   }
   return store;
+}
+
+bool PackedStore::IsPartial() const {
+  for (uint32_t i = 0; i < codes_.size(); ++i) {
+    const Intrinsics& k = light_field_.intrinsics[light_field_.cameras[i].intrinsics_index];
+    if (!Keeps(LfImageId{i}, {0, 0, k.width_px, k.height_px})) return true;
+  }
+  return false;
+}
+
+bool PackedStore::Keeps(LfImageId id, const PixelRect& rect) const {
+  const PackedCode& code = codes_[id.value];
+  if (!code.is_listed()) return false;
+  const Intrinsics& k = light_field_.intrinsics[light_field_.cameras[id.value].intrinsics_index];
+  const PixelRect read = mosaics_ == Mosaics::kToRgb ? RectToRecord(light_field_, id, rect) : rect;
+  const PixelRect inside = Intersection(read, {0, 0, k.width_px, k.height_px});
+  return code.bytes == 0 || inside.empty() || Intersection(inside, code.rect) == inside;
 }
 
 Result<void> PackedStore::Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const {

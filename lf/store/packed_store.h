@@ -32,6 +32,10 @@ class PackedStore : public LfImageStore {
   // The pixels of `rect`, cut to the image. kInput as LfImageStore says, naming store and image:
   // what is not in the store, pixels beyond those that were coded, damage.
   Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override;
+  // An LF image without a code, which was missing or broken when the store was made, was not left
+  // out on purpose.
+  bool IsPartial() const override;
+  bool Keeps(LfImageId id, const PixelRect& rect) const override;
   // Whether there is a code, by the store's table.
   bool IsThere(LfImageId id) const override { return codes_[id.value].bytes > 0; }
   uint64_t StoredBytes(LfImageId id) const override { return codes_[id.value].bytes; }

@@ -49,16 +49,13 @@ FrameUse UseOfCameras(const ImageIndex& index, const RenderCamera& frame,
                       const NeedsOptions& options, ThreadPool& pool) {
   FrameNeeds needs = NeedsOf(index, frame, options, pool);
   FrameUse use;
-  use.camera_distance_w = needs.camera_distance_w;
+  use.camera_distance_w = needs.camera_distance_w();
   use.used = std::move(needs.images);
-  // Some that are selected have no weight; the limit holds for those that are selected.
+  // The limit ends the frame behind the last LF image that it takes.
   std::vector<bool> is_late(index.light_field().size(), false);
-  if (options.max_image_count) {
-    const RenderCamera camera = frame;
-    const PlaceRange places =
-        PlacesOfFirst(*options.max_image_count, index, {&camera, 1}, options.select, pool).front();
-    for (uint32_t i = 0; i < is_late.size(); ++i)
-      is_late[i] = !places.Holds(index.PlaceOf(LfImageId{i}));
+  if (options.max_image_count && !use.used.empty() && use.used.size() >= *options.max_image_count) {
+    const uint32_t last = index.PlaceOf(use.used.back().id);
+    for (uint32_t i = 0; i < is_late.size(); ++i) is_late[i] = index.PlaceOf(LfImageId{i}) > last;
   }
   const Reasons reasons(index, frame, options);
   use.of_cameras.assign(is_late.size(), CameraUse::kOutside);

@@ -1,0 +1,48 @@
+#include "lf/hybrid/render_memory.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "lf/hybrid/rebinned_rays.h"
+
+namespace lf {
+namespace {
+
+Result<void> SetAsideForRays(size_t memory_bytes, RenderMode mode, size_t max_cells,
+                             RenderMemory* memory) {
+  const size_t part = memory_bytes / (mode == RenderMode::kRebin ? 2 : 4);
+  if (max_cells == 0)
+    max_cells = (part - std::min(part, RebinnedRays::BytesOf(0))) / RebinnedRays::kBytesPerCell;
+  memory->max_cells = max_cells;
+  memory->rebin_bytes = RebinnedRays::BytesOf(max_cells);
+  if (max_cells >= RebinnedRays::kLeastCells && memory->rebin_bytes <= memory_bytes) return {};
+  return OutputError(fmt::format(
+      "--memory {} MiB has no room for {} rebinned rays, which take {} MiB: give more, or fewer "
+      "--max-rays",
+      memory_bytes >> 20, std::max(max_cells, RebinnedRays::kLeastCells),
+      memory->rebin_bytes >> 20));
+}
+
+}  // namespace
+
+Result<RenderMemory> PlanRenderMemory(size_t memory_bytes, RenderMode mode, size_t max_cells,
+                                      const LightField& light_field, Estimator estimator,
+                                      int plate_width, int plate_height, size_t frame_count,
+                                      int thread_count) {
+  RenderMemory memory;
+  if (Rebins(mode)) LF_RETURN_IF_ERROR(SetAsideForRays(memory_bytes, mode, max_cells, &memory));
+  const Result<MemoryPlan> plan =
+      PlanMemory(memory_bytes - memory.rebin_bytes, light_field, estimator, plate_width,
+                 plate_height, Collects(mode) ? frame_count : 1, thread_count);
+  if (!plan && memory.rebin_bytes > 0)
+    return Error{plan.error().kind,
+                 fmt::format("{} (beside {} MiB for {} rebinned rays: --memory is for both)",
+                             plan.error().message, memory.rebin_bytes >> 20, memory.max_cells)};
+  if (!plan) return plan.error();
+  memory.plan = *plan;
+  if (!Collects(mode)) memory.plan.frames_per_pass = frame_count;
+  return memory;
+}
+
+}  // namespace lf

@@ -1,0 +1,29 @@
+// How --memory is shared in each mode: rebinned rays, and what collection needs beside them.
+#pragma once
+
+#include <cstddef>
+
+#include "lf/capture/light_field.h"
+#include "lf/collector/collect_batch.h"
+#include "lf/collector/memory_plan.h"
+#include "lf/core/result.h"
+#include "lf/hybrid/render_mode.h"
+
+namespace lf {
+
+struct RenderMemory {
+  MemoryPlan plan;
+  size_t max_cells = 0;    // of rebinned rays; 0 with RenderMode::kCollect
+  size_t rebin_bytes = 0;  // that these take, beside plan.total_bytes
+};
+
+//   max_cells    RebinPassOptions::max_cells; 0: as many as fit in half of the memory with kRebin,
+//                or a quarter with kHybrid
+//   frame_count  that are to be rendered. Without plates (kRebin) all are in one pass.
+// kOutput: less memory than one frame needs; the message names the least that is.
+Result<RenderMemory> PlanRenderMemory(size_t memory_bytes, RenderMode mode, size_t max_cells,
+                                      const LightField& light_field, Estimator estimator,
+                                      int plate_width, int plate_height, size_t frame_count,
+                                      int thread_count);
+
+}  // namespace lf

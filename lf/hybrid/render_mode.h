@@ -1,0 +1,17 @@
+// What the frames of a render are made of (doc/rebinning.md).
+#pragma once
+
+namespace lf {
+
+//   kCollect  collected rays
+//   kRebin    rays interpolated between rebinned ones
+//   kHybrid   collected rays, completed by rebinned ones where the lens got none
+enum class RenderMode { kCollect, kRebin, kHybrid };
+
+// "collect", "rebin", "hybrid"
+const char* NameOf(RenderMode mode);
+
+inline bool Collects(RenderMode mode) { return mode != RenderMode::kRebin; }
+inline bool Rebins(RenderMode mode) { return mode != RenderMode::kCollect; }
+
+}  // namespace lf
