@@ -34,6 +34,55 @@ Vec3 RandomDirection(uint64_t index, double widest_rad) {
   return Vec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
 }
 
+// The formulas of distortion.h, written with powers instead of nested products.
+Vec2 ByFormula(const Distortion& distortion, const Vec3& direction) {
+  const std::array<double, 8>& p = distortion.parameters;
+  const double x = direction.x() / direction.z(), y = direction.y() / direction.z();
+  const double r = std::hypot(x, y);
+  const double theta = std::atan2(std::hypot(direction.x(), direction.y()), direction.z());
+  switch (distortion.model) {
+    case DistortionModel::kNone:
+      return {x, y};
+    case DistortionModel::kRadialTangential: {
+      const double above =
+          1 + p[0] * std::pow(r, 2) + p[1] * std::pow(r, 4) + p[4] * std::pow(r, 6);
+      const double below =
+          1 + p[5] * std::pow(r, 2) + p[6] * std::pow(r, 4) + p[7] * std::pow(r, 6);
+      return {x * above / below + 2 * p[2] * x * y + p[3] * (r * r + 2 * x * x),
+              y * above / below + p[2] * (r * r + 2 * y * y) + 2 * p[3] * x * y};
+    }
+    case DistortionModel::kFisheye: {
+      double rd = theta;
+      for (int i = 0; i < 4; ++i) rd += p[i] * std::pow(theta, 2 * i + 3);
+      return rd / std::hypot(direction.x(), direction.y()) * direction.head<2>();
+    }
+    case DistortionModel::kFov:
+      return std::atan(2 * r * std::tan(p[0] / 2)) / (p[0] * r) * Vec2(x, y);
+  }
+  return Vec2::Zero();
+}
+
+TEST(Distortion, FollowsTheFormulaOfEveryModel) {
+  for (const Lens& lens : Lenses()) {
+    const DistortionMap map(lens.distortion);
+    for (uint64_t i = 0; i < 2000; ++i) {
+      const Vec3 direction = 3 * RandomDirection(i, lens.widest_rad);
+      EXPECT_LE((*map.Distort(direction) - ByFormula(lens.distortion, direction)).norm(), 1e-12)
+          << lens.name << " " << direction.transpose();
+    }
+  }
+}
+
+// Thesis 2.2.4: (x, y) times 1 + k1 r^2 + k2 r^4. At (0.3, 0.4), r^2 is 0.25, so that k1 = -0.2 and
+// k2 = 0.08 give 1 - 0.05 + 0.005; p1 = 0.01 and p2 = -0.02 add (-0.0062, 0.0009).
+TEST(Distortion, AKnownPointIsBentByTheNumbersOfTheThesis) {
+  const DistortionMap radial({DistortionModel::kRadialTangential, {-0.2, 0.08}});
+  EXPECT_LE((*radial.Distort({0.6, 0.8, 2}) - Vec2(0.2865, 0.382)).norm(), 1e-15);
+  const DistortionMap both({DistortionModel::kRadialTangential, {-0.2, 0.08, 0.01, -0.02}});
+  EXPECT_LE((*both.Distort({0.6, 0.8, 2}) - Vec2(0.2803, 0.3829)).norm(), 1e-15);
+  EXPECT_LE((*both.Undistort({0.2803, 0.3829}) - Vec3(0.3, 0.4, 1)).norm(), 1e-12);
+}
+
 TEST(Distortion, BothDirectionsAreInverse) {
   constexpr double kFocal_px = 1000;
   for (const Lens& lens : Lenses()) {

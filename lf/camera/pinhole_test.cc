@@ -24,6 +24,52 @@ TEST(Pinhole, ProjectionUndoesTheRay) {
   }
 }
 
+// P = K [R|t] of SkewedCamera(), every entry written out (thesis Eq. 2.5, 2.6).
+Eigen::Matrix<double, 3, 4> CameraMatrix(const PinholeCamera& camera) {
+  Mat3 k;
+  k << 500, 3, 321.5,  // fx, s, cx
+      0, 480, 238.25,  // fy, cy
+      0, 0, 1;
+  Eigen::Matrix<double, 3, 4> extrinsic;
+  extrinsic << camera.cam_from_world.rotation, camera.cam_from_world.translation;
+  return k * extrinsic;
+}
+
+TEST(Pinhole, ProjectsByTheCameraMatrix) {
+  const PinholeCamera camera = SkewedCamera();
+  const Eigen::Matrix<double, 3, 4> p = CameraMatrix(camera);
+  for (uint64_t i = 0; i < 1000; ++i) {
+    const Vec3 point = camera.CentreWorld() + camera.ForwardWorld() +
+                       Vec3(RandomUnit(2, 0, i), RandomUnit(2, 1, i), RandomUnit(2, 2, i)) / 2;
+    const Vec3 image = p * point.homogeneous();  // thesis Eq. 2.7: (x', y', w)
+    const Vec2 expected(image.x() / image.z(), image.y() / image.z());
+    EXPECT_NEAR((*Project(camera, point) - expected).norm(), 0, 1e-9);
+  }
+  // A camera at the origin sees (x, y, z) at (fx x/z + s y/z + cx, fy y/z + cy).
+  PinholeCamera at_origin;
+  at_origin.intrinsics = camera.intrinsics;
+  EXPECT_NEAR((*Project(at_origin, {1, -2, 4}) - Vec2(445, -1.75)).norm(), 0, 1e-12);
+}
+
+// p_camera = K^-1 p, then the inverse of the 4 x 4 matrix of Eq. 4.2, by a general inverse.
+TEST(Pinhole, RaysGoThroughThePointsOfTheInverseMatrices) {
+  const PinholeCamera camera = SkewedCamera();
+  Eigen::Matrix4d extrinsic = Eigen::Matrix4d::Identity();
+  extrinsic.topLeftCorner<3, 3>() = camera.cam_from_world.rotation;
+  extrinsic.topRightCorner<3, 1>() = camera.cam_from_world.translation;
+  Mat3 k;
+  k << 500, 3, 321.5, 0, 480, 238.25, 0, 0, 1;
+  for (uint64_t i = 0; i < 200; ++i) {
+    const Vec2 pixel(640 * RandomUnit(4, 0, i), 480 * RandomUnit(4, 1, i));
+    const Vec3 p_camera = k.inverse() * Vec3(pixel.x(), pixel.y(), 1);
+    const Vec3 p_world = (extrinsic.inverse() * p_camera.homogeneous()).head<3>();
+    const Vec3 centre = extrinsic.inverse().topRightCorner<3, 1>();
+    const Ray ray = RayOfPixel(camera, pixel.x(), pixel.y());
+    EXPECT_NEAR((ray.origin - centre).norm(), 0, 1e-12);
+    EXPECT_NEAR((ray.At(1) - p_world).norm(), 0, 1e-12);
+  }
+}
+
 TEST(Pinhole, TheDirectionOfARayIsOneDeep) {
   const PinholeCamera camera = SkewedCamera();
   const Ray ray = RayOfPixel(camera, 12, 400);
@@ -38,7 +84,10 @@ TEST(Pinhole, PointsBehindAreNotSeen) {
 
 TEST(Pinhole, InverseMatrixInverts) {
   const Intrinsics k = SkewedCamera().intrinsics;
-  EXPECT_NEAR((k.Matrix() * k.InverseMatrix() - Mat3::Identity()).norm(), 0, 1e-12);
+  Mat3 expected;  // thesis Eq. 2.5
+  expected << 500, 3, 321.5, 0, 480, 238.25, 0, 0, 1;
+  EXPECT_EQ(k.Matrix(), expected);
+  EXPECT_NEAR((expected * k.InverseMatrix() - Mat3::Identity()).norm(), 0, 1e-12);
 }
 
 TEST(Pinhole, LookAlongPutsUpAboveAndRightToTheRight) {

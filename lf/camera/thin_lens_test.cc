@@ -33,11 +33,40 @@ TEST(ThinLens, BlurReachesItsLimitAtTheEndsOfTheDepthOfField) {
   EXPECT_EQ(BlurOnFocusPlane(0.02, 2, 2), 0);
 }
 
+TEST(ThinLens, TheFNumberIsFocalLengthOverDiameter) {
+  EXPECT_DOUBLE_EQ(FNumber(0.05, 0.025), 2);
+  EXPECT_DOUBLE_EQ(FNumber(0.085, 0.0302), 0.085 / 0.0302);
+  EXPECT_TRUE(std::isinf(FNumber(0.05, 0)));
+  // A stop is a factor of sqrt(2) of N: the opening has half the area (thesis 2.2.6).
+  const double d = 0.02, stopped_down = 0.05 / (std::sqrt(2.0) * FNumber(0.05, d));
+  EXPECT_NEAR(stopped_down * stopped_down / (d * d), 0.5, 1e-12);
+}
+
+// z = d / b |b - b_plate| on the plate (thesis Eq. 2.9), with b where the point's own image lies;
+// one unit on the plate is g / b_plate on the focus plane.
+TEST(ThinLens, BlurIsTheCircleOfConfusionSeenOnTheFocusPlane) {
+  const double f = 0.05, d = 0.02;
+  for (const double g : {0.3, 2.0})
+    for (const double depth : {0.1, 0.29, 1.0, 2.5, 100.0}) {
+      const double b = 1 / (1 / f - 1 / depth), b_plate = 1 / (1 / f - 1 / g);
+      const double on_plate = d / b * std::abs(b - b_plate);
+      EXPECT_NEAR(BlurOnFocusPlane(d, g, depth), on_plate * g / b_plate, 1e-12);
+    }
+}
+
+// r f g^2 / (d f^2) on either side of the focus plane, for g >> f (thesis Eq. 2.10).
+TEST(ThinLens, TheDepthOfFieldComesNearTheThesissApproximation) {
+  const double f = 0.05, d = 0.02, g = 5, pixel = 2e-6;
+  const double approximation = pixel * f * g * g / (d * f * f);
+  const double limit = pixel * g / *ImageDistance(f, g);  // a pixel, on the focus plane
+  const DepthRange range = DepthOfField(d, g, limit);
+  EXPECT_NEAR(g - range.near_w, approximation, 0.03 * approximation);
+  EXPECT_NEAR(range.far_w - g, approximation, 0.03 * approximation);
+}
+
 TEST(ThinLens, PinholesAndSmallLensesAreSharpToInfinity) {
   EXPECT_TRUE(std::isinf(DepthOfField(0, 2, 0.001).far_w));
   EXPECT_TRUE(std::isinf(DepthOfField(0.001, 2, 0.001).far_w));
-  EXPECT_TRUE(std::isinf(FNumber(0.05, 0)));
-  EXPECT_DOUBLE_EQ(FNumber(0.05, 0.025), 2);
 }
 
 }  // namespace

@@ -18,6 +18,14 @@ TEST(SensorPlate, HoldsTheMostRaysOfTheBrightestLight) {
   EXPECT_EQ(plate.At(0, 0, 2), ElementSum{});
 }
 
+// Three sums and three counts, as in width x height x 6 x 4 B (thesis 5.2); rays take no more.
+TEST(SensorPlate, TakesTheBytesOfTheThesis) {
+  SensorPlate plate(1920, 1080);
+  EXPECT_EQ(plate.size_bytes(), size_t{1920} * 1080 * 6 * 4);
+  for (int ray = 0; ray < 1000; ++ray) plate.AddRay(7, 9, 1, 65535);
+  EXPECT_EQ(plate.size_bytes(), size_t{1920} * 1080 * 6 * 4);
+}
+
 TEST(SensorPlate, LosesNothingWhenWordsArePromoted) {
   SensorPlate plate(4, 4, 10);  // words hold ten rays
   ElementSum expected[4][4][3] = {};

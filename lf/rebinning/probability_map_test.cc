@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "lf/core/random.h"
@@ -79,6 +80,77 @@ TEST(ProbabilityMap, AnEdgeIsLikelyAndFlatIsXi) {
   EXPECT_EQ(p.at(19, 10), p.at(20, 10));
   // What does not pass beta is not kept at all.
   EXPECT_EQ(MapOf(pixels, table, {1, 4, 0.01, 0.25, 0}).at(3, 10), 0);
+}
+
+// Thesis Eq. 2.15 to 2.17 and 4.4 in real numbers: a Gaussian of two dimensions, the Laplacian of
+// what it leaves, and min(1, |LoG| alpha + xi) from beta on. Cells of the plane beyond the border
+// are those of the border.
+class RealProbabilities {
+ public:
+  RealProbabilities(const Image<double>& grey, double sigma)
+      : smooth_(grey.width(), grey.height()) {
+    const int radius = static_cast<int>(std::ceil(3 * sigma));
+    for (int y = 0; y < grey.height(); ++y)
+      for (int x = 0; x < grey.width(); ++x) {
+        double sum = 0, weights = 0;
+        for (int v = -radius; v <= radius; ++v)
+          for (int u = -radius; u <= radius; ++u) {
+            const double weight =
+                std::exp(-(u * u + v * v) / (2 * sigma * sigma)) / (2 * kPi * sigma * sigma);
+            sum += weight * grey.at(std::clamp(x + u, 0, grey.width() - 1),
+                                    std::clamp(y + v, 0, grey.height() - 1));
+            weights += weight;
+          }
+        smooth_.at(x, y) = sum / weights;
+      }
+  }
+  double At(int x, int y, const ProbabilityOptions& options) const {
+    const auto at = [this](int u, int v) {
+      return smooth_.at(std::clamp(u, 0, smooth_.width() - 1),
+                        std::clamp(v, 0, smooth_.height() - 1));
+    };
+    const double across = at(x - 1, y) - 2 * at(x, y) + at(x + 1, y);
+    const double down = at(x, y - 1) - 2 * at(x, y) + at(x, y + 1);
+    const double change = std::abs(across + down);
+    return change >= options.beta ? std::min(1.0, change * options.alpha + options.xi) : 0;
+  }
+
+ private:
+  Image<double> smooth_;
+};
+
+TEST(ProbabilityMap, IsTheThesissEquationsInRealNumbers) {
+  RadianceEncoding linear;
+  linear.transfer = Transfer::kLinear;
+  const std::vector<uint16_t> table = StoredValueTable(linear);
+  const LfPixels pixels = Noise({0, 0, 48, 40}, BayerPattern::kNone, 11);
+  Image<double> grey(48, 40);
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 48; ++x)
+      grey.at(x, y) = (pixels.radiance.at(x, y, 0) + 2.0 * pixels.radiance.at(x, y, 1) +
+                       pixels.radiance.at(x, y, 2)) /
+                      (4 * 65535.0);
+  for (const double sigma : {0.6, 1.0, 2.0}) {
+    const RealProbabilities real(grey, sigma);
+    const ProbabilityOptions options{sigma, sigma > 1 ? 20.0 : 2.0, 0.02, 0.1, 0};
+    const Image<uint16_t> p = MapOf(pixels, table, options);
+    int likely = 0, unlikely = 0, out = 0;
+    for (int y = 0; y < 40; ++y)
+      for (int x = 0; x < 48; ++x) {
+        const double expected = real.At(x, y, options);
+        // Whole numbers may put what is near beta on its other side.
+        ProbabilityOptions lower = options, higher = options;
+        lower.beta -= 0.002, higher.beta += 0.002;
+        if (real.At(x, y, lower) != real.At(x, y, higher)) continue;
+        EXPECT_NEAR(p.at(x, y) / 65535.0, expected, 0.002 * options.alpha) << sigma;
+        likely += expected == 1, unlikely += expected == 0, ++out;
+      }
+    EXPECT_GT(out, 1700);
+    EXPECT_GT(unlikely, 20);
+    if (sigma == 0.6) {
+      EXPECT_GT(likely, 20);
+    }
+  }
 }
 
 // The rectangle that was read must not decide which rays are kept, away from its borders.

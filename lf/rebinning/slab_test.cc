@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "lf/core/random.h"
 
 namespace lf {
@@ -75,6 +77,22 @@ TEST(Slab, ACellHoldsItsMiddleAndWhatIsAround) {
     EXPECT_EQ(CellOf(slab, middle), key);
     for (int k = 0; k < kCellAxes; ++k)
       EXPECT_LE(std::abs(middle[k] - point[k]), (k < 2 ? slab.r_st_w : slab.r_uv_w) / 2 + 1e-9);
+  }
+}
+
+// (floor(s / r), floor(t / r), floor(u / r), floor(v / r)), thesis Eq. 4.3.
+TEST(Slab, ACellIsTheFloorsOfItsPoint) {
+  const Slab slab = TiltedSlab();
+  RandomSequence random(4);
+  for (int i = 0; i < 500; ++i) {
+    const SlabPoint point(random.Uniform(-2, 2), random.Uniform(-2, 2), random.Uniform(-2, 2),
+                          random.Uniform(-2, 2));
+    const auto key = CellOf(slab, point);
+    ASSERT_TRUE(key);
+    for (int k = 0; k < kCellAxes; ++k) {
+      const int number = static_cast<int>(*key >> (16 * k) & 0xffff) - kCellOffset;
+      EXPECT_EQ(number, static_cast<int>(std::floor(point[k] / (k < 2 ? 0.01 : 0.003))));
+    }
   }
 }
 

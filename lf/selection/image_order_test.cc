@@ -84,6 +84,43 @@ TEST(ImageOrder, RoundRobinFillsFramesEqually) {
   EXPECT_LT(in_turn, 0.1);
 }
 
+// Each image taken must be wanted by a frame that has the fewest rays of all frames whose images
+// are not all taken yet. Counted here from the film alone.
+TEST(ImageOrder, RoundRobinServesTheFrameWithTheFewestRays) {
+  const auto frames = Film();
+  const std::vector<uint32_t> ids = Ids(PlacesInOrder(ImageOrder::kRoundRobin, kImages, 3, frames));
+  std::vector<uint64_t> rays(kFrames, 0);
+  std::vector<size_t> waiting(kFrames);
+  for (size_t f = 0; f < kFrames; ++f) waiting[f] = frames[f].size();
+  size_t taken = 0;
+  for (const uint32_t id : ids) {
+    uint64_t fewest = UINT64_MAX, fewest_of_takers = UINT64_MAX;
+    for (size_t f = 0; f < kFrames; ++f)
+      if (waiting[f] > 0) fewest = std::min(fewest, rays[f]);
+    for (size_t f = 0; f < kFrames; ++f)
+      for (const ImageRays& image : frames[f])
+        if (image.id.value == id) {
+          fewest_of_takers = std::min(fewest_of_takers, rays[f]);
+          --waiting[f];
+        }
+    if (fewest == UINT64_MAX) break;  // only images that no frame takes are left
+    ASSERT_EQ(fewest_of_takers, fewest) << "image " << id << " at place " << taken;
+    for (size_t f = 0; f < kFrames; ++f)
+      for (const ImageRays& image : frames[f])
+        if (image.id.value == id) rays[f] += image.ray_count;
+    ++taken;
+  }
+  EXPECT_GT(taken, kImages / 2);
+}
+
+// Frames 1 and 2 take 30 + 40 rays of image 3, 60 of image 0, 50 of image 2 and none of image 1.
+TEST(ImageOrder, AreaCountsTheRaysOfAllFramesTogether) {
+  const std::vector<std::vector<ImageRays>> frames = {{{LfImageId{3}, 30}, {LfImageId{0}, 60}},
+                                                      {{LfImageId{2}, 50}, {LfImageId{3}, 40}}};
+  EXPECT_EQ(Ids(PlacesInOrder(ImageOrder::kArea, 4, 3, frames)),
+            (std::vector<uint32_t>{3, 0, 2, 1}));
+}
+
 TEST(ImageOrder, AreaTakesTheLargestFirst) {
   const auto frames = Film();
   std::vector<uint64_t> rays(kImages, 0);
