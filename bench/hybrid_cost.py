@@ -2,12 +2,17 @@
 """What rebinned rays cost: workloads of bench/workloads.py collected alone, and as hybrids.
 
 usage: bench/hybrid_cost.py BUILD_DIR [--density 0.05] [--size 480x320] [--runs 5]
-                            [--only stack,short,sharp] [--field DIR] [--name NAME] [--write PAGE]
+                            [--only stack,short,sharp,long,bokeh] [--frames-share 1] [--field DIR]
+                            [--name NAME] [--write PAGE]
        bench/hybrid_cost.py --again JSON [--write PAGE]
 
-All are rendered in turns, by one thread, so that a busy machine disturbs all alike. CPU seconds are
-those of the whole program. ns per LF pixel are of the LF pixels that rebinning looked at: their
-probabilities, the choice, and the cells of those that are kept.
+All five movements of Table 5.1 are rendered in turns, by one thread, so that a busy machine disturbs
+all alike. CPU seconds are those of the whole program. Each hybrid is compared with its own
+collection: by the thesis's estimator and without lens weights, as in Table 5.2, and by the default.
+ns per LF pixel are of the LF pixels that rebinning looked at: their probabilities, the choice, and
+the cells of those that are kept.
+
+--frames-share S  only this share of the frames of each movement, over the same path
 
 --field DIR  keep the light field there, or take the one that is there
 """
@@ -20,20 +25,30 @@ import tempfile
 import record as results
 import workloads
 
+DEFAULT = ("--estimator", "bilinear", "--filter", "mosaic", "--lens-weights", "auto")
+THESIS = ("--estimator", "nearest", "--lens-weights", "none")
+UNWEIGHTED = ("--estimator", "bilinear", "--filter", "mosaic", "--lens-weights", "none")
+# mode: what it is compared with, and the options of lfrenderer
 MODES = {
-    "collect": (),
-    "hybrid": ("--mode", "hybrid"),
-    "hybrid, previews on": ("--mode", "hybrid", "--preview", "on"),
-    "hybrid, a small lens": ("--mode", "hybrid", "--lens-weights", "none"),
+    "collect, thesis's estimator": (None, ("--mode", "collect", *THESIS)),
+    "hybrid, thesis's estimator": ("collect, thesis's estimator", ("--mode", "hybrid", *THESIS)),
+    "collect (the default)": (None, ("--mode", "collect", *DEFAULT)),
+    "hybrid": ("collect (the default)", ("--mode", "hybrid", "--preview", "auto", *DEFAULT)),
+    "hybrid, previews on": ("collect (the default)", ("--mode", "hybrid", "--preview", "on", *DEFAULT)),
+    "hybrid, a small lens": (None, ("--mode", "hybrid", "--preview", "auto", *UNWEIGHTED)),
 }
+# Table 5.2: minutes of "Ray Collect" and of "Ray Collect & Rebinning".
+THESIS_MINUTES = {"stack": (22 + 33 / 60, 23 + 38 / 60), "short": (36.5, 41 + 17 / 60),
+                  "sharp": (5 + 25 / 60, 6 + 53 / 60), "long": (244.7, 271 + 35 / 60),
+                  "bokeh": (310 + 21 / 60, 438.3)}
 
 
-def measure(build, field, folder, name, size, runs):
+def measure(build, field, folder, name, size, runs, frames_share):
     rows = []
-    for mode, options in MODES.items():
+    for mode, (_, options) in MODES.items():
         rows.append({"workload": name, "mode": mode, "cpu_s": [], "seconds": [], "options": options})
     for row in rows:
-        workload = dict(workloads.WORKLOADS[name])
+        workload = dict(workloads.WORKLOADS[name], frames_share=frames_share)
         if "small" in row["mode"]:
             workload["aperture_mm"] = (0.5, 0.5)
         row["path"] = folder / f"{len(row['mode'])}-{name}.yaml"
@@ -53,20 +68,25 @@ def measure(build, field, folder, name, size, runs):
 
 
 def table(record):
-    lines = ["| workload | mode | LF images | CPU s | as collected | LF pixels looked at | ns each | "
-             "cells | interpolated |", "| --- " * 9 + "|"]
-    base = {}
+    lines = ["| workload | mode | LF images | CPU s | to its collection (thesis) | LF pixels looked at | "
+             "ns each | cells | interpolated |", "| --- " * 9 + "|"]
+    cpu_s = {(row["workload"], row["mode"]): statistics.median(row["cpu_s"]) for row in record["rows"]}
     for row in record["rows"]:
-        cpu = statistics.median(row["cpu_s"])
-        base.setdefault(row["workload"], cpu)
+        name, mode = row["workload"], row["mode"]
+        cpu, base = cpu_s[name, mode], MODES[mode][0]
         rebinning = row["report"]["rebinning"] or {"lf_pixels_looked_at": 0, "cpu_s": 0, "cells": 0}
         looked_at = rebinning["lf_pixels_looked_at"]
-        ratio = "" if "small" in row["mode"] else f"{cpu / base[row['workload']]:.2f}"
+        ratio = f"{cpu / cpu_s[name, base]:.2f}" if base else ""
+        if base and "thesis" in mode:
+            collected, both = THESIS_MINUTES[name]
+            ratio += f" ({both / collected:.2f})"
         lines.append(
-            f"| {row['workload']} | {row['mode']} | {row['report']['lf_images_selected']} | {cpu:.2f} | "
+            f"| {name} | {mode} | {row['report']['lf_images_selected']} | {cpu:.2f} | "
             f"{ratio} | {looked_at / 1e6:.1f} M | "
             + (f"{1e9 * rebinning['cpu_s'] / looked_at:.1f}" if looked_at else "-")
             + f" | {rebinning['cells'] / 1e6:.2f} M | {100 * max(row['interpolated']):.0f} % |")
+    lines += ["", "Options of each mode:", ""]
+    lines += [f"- {mode}: `{' '.join(options)}`" for mode, (_, options) in MODES.items()]
     return lines
 
 
@@ -77,7 +97,8 @@ def main():
     parser.add_argument("--density", type=float, default=0.05)
     parser.add_argument("--size", default="480x320")
     parser.add_argument("--runs", type=int, default=5)
-    parser.add_argument("--only", default="stack,short,sharp")
+    parser.add_argument("--only", default=",".join(workloads.WORKLOADS))
+    parser.add_argument("--frames-share", type=float, default=1)
     parser.add_argument("--field", type=pathlib.Path)
     results.add_options(parser)
     arguments = parser.parse_args()
@@ -87,18 +108,22 @@ def main():
         build = arguments.build.resolve()
         size = [int(length) // 2 for length in arguments.size.split("x")]
         record = results.context()
-        record.update(density=arguments.density, size=arguments.size, runs=arguments.runs, rows=[])
+        record.update(density=arguments.density, size=arguments.size, runs=arguments.runs,
+                      frames_share=arguments.frames_share, rows=[])
         with tempfile.TemporaryDirectory() as temporary:
             folder = pathlib.Path(temporary)
             field = arguments.field or folder / "field"
             workloads.photograph(build, field, arguments.density, arguments.size)
             for name in arguments.only.split(","):
-                record["rows"] += measure(build, field, folder, name, size, arguments.runs)
+                record["rows"] += measure(build, field, folder, name, size, arguments.runs,
+                                          arguments.frames_share)
     else:
         parser.error("BUILD_DIR or --again is needed")
+    share = record.get("frames_share", 1)
     text = "\n".join([results.sentence(record) + f" LF images {record['size']}, frames half as large, "
-                      f"{record['density']:g} of the thesis's LF cameras, medians of {record['runs']} "
-                      "runs, one thread.", ""] + table(record)) + "\n"
+                      f"{record['density']:g} of the thesis's LF cameras, "
+                      + (f"{share:g} of its frames, " if share != 1 else "")
+                      + f"medians of {record['runs']} runs, one thread.", ""] + table(record)) + "\n"
     results.publish(arguments, "hybrid_cost.py", record, text)
 
 

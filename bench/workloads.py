@@ -83,7 +83,11 @@ def keys(times, values):
 
 
 def path_yaml(workload, size, focal_mm=36):
+    """The camera path. workload["frames_share"], if it is there, keeps so many of the frames: the
+    camera goes the same way in the same time, at fewer frames a second."""
     seconds = (workload["frames"] - 1) / FPS
+    frames = max(2, round(workload["frames"] * workload.get("frames_share", 1)))
+    fps = (frames - 1) / seconds
     points = winding_path(workload)
     (x, y), (near, far), (narrow, wide) = points[0], workload["focus_m"], workload["aperture_mm"]
     moves = {}
@@ -101,8 +105,8 @@ def path_yaml(workload, size, focal_mm=36):
         moves["aperture_diameter_mm"] = keys(times, [(narrow, wide)[i % 2] for i in range(len(times))])
     movement = "keyframes:\n" + "".join(f"  {key}: {value}\n" for key, value in moves.items())
     return f"""format: lfpath 1
-fps: {FPS}
-frames: {workload['frames']}
+fps: {fps:.6f}
+frames: {frames}
 resolution: [{size[0]}, {size[1]}]
 camera:
   sensor_width_mm: 36
