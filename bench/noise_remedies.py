@@ -34,7 +34,8 @@ import quality
 from lens_weights import cv2, np
 from rebinning_quality import ground_truth_cases
 
-EDGES = "--mode rebin --kept edges"
+FULL = "--mode rebin --estimator bilinear --filter bicubic --lens-weights auto"
+EDGES = FULL + " --kept edges"
 WIDE = EDGES + " --r-st {pitch} --r-uv {pixel}"
 # name: options of lfrenderer. Widths of cells are filled in: {pitch} from LF camera to LF camera, {pixel} what an LF
 # pixel is wide in the focus plane.
@@ -47,7 +48,7 @@ REMEDIES = {
     "four times as many rays": EDGES + " --xi 0.2",
     "wide cells": WIDE + " --average-others off",
     "wide cells, others averaged": WIDE + " --average-others on",
-    "all rays": "--mode rebin --kept all",
+    "all rays": FULL + " --kept all",
     "collected, nearest (the thesis's way)": "--mode collect --estimator nearest --lens-weights none",
     "collected (the default)": "--mode collect --estimator bilinear --filter bicubic --lens-weights auto",
 }
