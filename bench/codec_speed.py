@@ -1,16 +1,17 @@
 #!/usr/bin/python3
 """How fast LF images are coded and decoded: 2048 x 2048 RGGB mosaics of 8 bits, one thread.
 
-usage: bench/codec_speed.py BUILD_DIR [--data ../shared] [--runs 5] [--write doc/codec.md]
+usage: bench/codec_speed.py BUILD_DIR [--data ../shared] [--runs 5] [--name NAME] [--write doc/codec.md]
+       bench/codec_speed.py --again JSON [--write doc/codec.md]
 
 Pictures of `blender-shop` (the densest) and of `beer-colmap` (photographs) side by side, and the picture of waves and noise
-that lf_codec_bench draws. MB/s are of pixels, 10^6 bytes; CPU time, medians.
+that lf_codec_bench draws. Each is coded by the thesis's scheme, by the default's, and without loss. MB/s are of pixels,
+10^6 bytes; CPU time, medians.
 """
 import argparse
 import json
 import os
 import pathlib
-import subprocess
 import tempfile
 
 import cv2
@@ -22,7 +23,7 @@ PROFILES = ("thesis, 1 level, threshold 8", "default", "lossless")
 
 
 def mosaic_of(files):
-    """2048 x 2048 of as many pictures as that takes"""
+    """2048 x 2048 of as many pictures as that takes."""
     pictures = [cv2.imread(str(file)) for file in files]
     height, width = pictures[0].shape[:2]
     across, down = -(-2048 // width), -(-2048 // height)
@@ -35,32 +36,45 @@ def mosaic_of(files):
     return mosaic
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("build", type=pathlib.Path)
-    parser.add_argument("--data", type=pathlib.Path, default=pathlib.Path("../shared"))
-    parser.add_argument("--runs", type=int, default=5)
-    results.add_options(parser)
-    arguments = parser.parse_args()
-    bench = arguments.build.resolve() / "lf/codec/lf_codec_bench"
-    lines = ["| content | profile | ratio | coded, MB/s | decoded, MB/s |", "|" + " --- |" * 5]
-    record = results.context()
+def measure(build, data, runs):
+    rows = []
     with tempfile.TemporaryDirectory() as temporary:
         for name in ("blender-shop", "beer-colmap", "drawn"):
             environment = dict(os.environ)
             environment.pop("LF_BENCH_IMAGE", None)
             if name != "drawn":
                 image = pathlib.Path(temporary) / "mosaic.raw"
-                mosaic_of(sorted((arguments.data / "data" / name / "images").glob("*.jpg"))).tofile(image)
+                mosaic_of(sorted((data / "data" / name / "images").glob("*.jpg"))).tofile(image)
                 environment["LF_BENCH_IMAGE"] = str(image)
-            report = json.loads(subprocess.run(
-                [bench, "--benchmark_filter=Mosaic", f"--benchmark_repetitions={arguments.runs}", "--benchmark_format=json",
-                 "--benchmark_min_time=0.3"], check=True, capture_output=True, text=True, env=environment).stdout)
+            report = json.loads(results.call(
+                [build / "lf/codec/lf_codec_bench", "--benchmark_filter=Mosaic", f"--benchmark_repetitions={runs}",
+                 "--benchmark_format=json", "--benchmark_min_time=0.3"], env=environment))
             found = {b["run_name"]: b for b in report["benchmarks"] if b.get("aggregate_name") == "median"}
             for number, profile in enumerate(PROFILES):
                 coded, decoded = (found[f"{what}Mosaic/profile:{number}"] for what in ("Encode", "Decode"))
-                lines.append(f"| {name} | {profile} | {decoded['ratio']:.2f} | {coded['bytes_per_second'] / 1e6:.0f} | "
-                             f"{decoded['bytes_per_second'] / 1e6:.0f} |")
+                rows.append({"content": name, "profile": profile, "ratio": decoded["ratio"],
+                             "coded_bytes_per_s": coded["bytes_per_second"],
+                             "decoded_bytes_per_s": decoded["bytes_per_second"]})
+    return rows
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=pathlib.Path, nargs="?")
+    parser.add_argument("--data", type=pathlib.Path, default=pathlib.Path("../shared"))
+    parser.add_argument("--runs", type=int, default=5)
+    results.add_options(parser)
+    arguments = parser.parse_args()
+    if arguments.again:
+        record = json.loads(arguments.again.read_text())
+    elif arguments.build:
+        record = results.context()
+        record["rows"] = measure(arguments.build.resolve(), arguments.data, arguments.runs)
+    else:
+        parser.error("BUILD_DIR or --again is needed")
+    lines = ["| content | profile | ratio | coded, MB/s | decoded, MB/s |", "|" + " --- |" * 5]
+    lines += [f"| {row['content']} | {row['profile']} | {row['ratio']:.2f} | {row['coded_bytes_per_s'] / 1e6:.0f} | "
+              f"{row['decoded_bytes_per_s'] / 1e6:.0f} |" for row in record["rows"]]
     results.publish(arguments, "codec_speed.py", record, results.sentence(record) + "\n\n" + "\n".join(lines) + "\n")
 
 

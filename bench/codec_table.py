@@ -1,13 +1,16 @@
 #!/usr/bin/python3
 """Table 5.3 of the thesis again: how small LF images become, and what that does to rendered frames.
 
-usage: bench/codec_table.py BUILD_DIR [--data ../shared] [--only shop,synth,noisy] [--no-peers]
-                            [--write doc/codec.md] [--pictures doc/images]
+usage: bench/codec_table.py BUILD_DIR [--data ../shared] [--only shop,synth,noisy] [--no-peers] [--views 7]
+                            [--size 480x320] [--frames 1-50x12] [--name NAME] [--write doc/codec.md]
+                            [--pictures doc/images]
+       bench/codec_table.py --again JSON [--write doc/codec.md]
 
-Light fields of RGGB mosaics: `shop`, the 9 x 9 views in the middle of blender-shop, of whose colours every pixel
-keeps one (8 bits, sRGB); `synth` and `noisy`, the still life of lfsynth (16 bits, linear), without and with
-sensor noise. Each is coded by `lfcompressor` with many settings, and frames of a focus pull are rendered
-from the store and from the originals. The thesis's bytes are also given to xz, bzip2 and zstd -19 (by an
+Light fields of RGGB mosaics: `shop`, the 7 x 7 views (--views) in the middle of blender-shop, of whose colours every
+pixel keeps one (8 bits, sRGB); `synth` and `noisy`, as many LF images of lfsynth's still life, of --size (16 bits,
+linear), without and with sensor noise. Each is coded by `lfcompressor` with many settings, and frames of a focus pull
+are rendered from the store and from the originals: all of them by plain interpolation without lens weights, those
+of our own codec by the defaults, too. The thesis's bytes are also given to xz, bzip2 and zstd -19 (by an
 implementation of the thesis's scheme of its own, in NumPy, on three LF images): "best" takes the shortest.
 Peers code the four planes of each mosaic side by side as one grey picture: JPEG and JPEG 2000 by OpenCV,
 PNG, and JPEG XL where `cjxl` is installed (libjxl-tools).
@@ -32,7 +35,8 @@ import zstandard
 
 import record as results
 
-FRAMES = "1-50x12"
+WAYS = {"none": ("--mode", "collect", "--estimator", "bilinear", "--filter", "bilinear", "--lens-weights", "none"),
+        "default": ()}
 THESIS = [(1, t) for t in (0.5, 1, 2, 4, 8, 16)] + [(2, t) for t in (0.5, 1, 2, 4, 8)] + \
          [(3, t) for t in (0.5, 1, 2, 4)]
 TABLE_5_3 = {(1, 2): 11.7, (1, 4): 13.7, (1, 8): 15.1, (2, 0.5): 7.5, (2, 2): 21.1, (2, 4): 30.6, (3, 4): 44.6}
@@ -40,7 +44,7 @@ DEFAULT = (1, 1.5, 2, 3, 4, 6, 8, 12, 16)
 
 
 def run(*words, **more):
-    return subprocess.run([str(word) for word in words], check=True, capture_output=True, text=True, **more).stdout
+    return results.call(words, **more)
 
 
 def mosaic_of(picture):
@@ -54,22 +58,24 @@ def mosaic_of(picture):
 
 
 class Content:
-    """a light field of mosaics, a path, and its frames from the originals"""
+    """A light field of mosaics, a path, and its frames from the originals."""
 
-    def __init__(self, build, data, name, folder):
-        self.build, self.folder, self.name = build, folder, name
+    def __init__(self, arguments, name, folder):
+        build, data, reach = arguments.build.resolve(), arguments.data, arguments.views // 2
+        self.build, self.folder, self.name, self.range = build, folder, name, arguments.frames
         self.field = folder / "field"
         if name == "shop":
             (folder / "mosaics").mkdir(parents=True)
             for file in sorted((data / "data/blender-shop/images").glob("*.jpg")):
                 row, column = (int(word) for word in file.stem.split("_")[1:3])
-                if abs(row - 13) <= 4 and abs(column - 13) <= 4:
+                if abs(row - 13) <= reach and abs(column - 13) <= reach:
                     cv2.imwrite(str(folder / "mosaics" / (file.stem + ".png")), mosaic_of(cv2.imread(str(file))))
             run(build / "bin/lfimport", folder / "mosaics", "-o", self.field, "--bayer", "RGGB", "-q")
             calibration = self.field / "transforms.json"  # mosaics are linear unless they say otherwise
             calibration.write_text(json.dumps(json.loads(calibration.read_text()) | {"lf_transfer": "sRGB"}))
         else:
-            run(build / "bin/lfsynth", "still-life", "-o", self.field, "--count", 81, "--size", "960x640", "--bayer",
+            run(build / "bin/lfsynth", "still-life", "-o", self.field, "--count", arguments.views ** 2, "--size",
+                arguments.size, "--bayer",
                 "--noise", 0.005 if name == "noisy" else 0, "-q")
         self.path = folder / "path.yaml"
         run(build / "bin/lfexample", self.field, "-o", self.path, "--move", "focus-pull", "-q")
@@ -77,31 +83,32 @@ class Content:
         self.images = [self.field / frame["file_path"] for frame in calibration["frames"]]
         self.bits = 8 if cv2.imread(str(self.images[0]), cv2.IMREAD_UNCHANGED).dtype == np.uint8 else 16
         self.pixel_bytes = sum(cv2.imread(str(i), cv2.IMREAD_UNCHANGED).nbytes for i in self.images)
-        self.frames = self.render(self.field)
+        self.frames = {way: self.render(self.field, way) for way in WAYS}
 
-    def render(self, light_field):
+    def render(self, light_field, way="none"):
         out = self.folder / "frames"
         shutil.rmtree(out, ignore_errors=True)
-        run(self.build / "bin/lfrenderer", light_field, self.path, "-o", out, "--frames", FRAMES, "--format", "png16",
-            "--no-contact-sheet", "-q")
+        run(self.build / "bin/lfrenderer", light_field, self.path, "-o", out, "--frames", self.range, "--format",
+            "png16", "--no-contact-sheet", "-q", *WAYS[way])
         return [cv2.imread(str(f), cv2.IMREAD_UNCHANGED) for f in sorted(out.glob("frame_*.png"))]
 
-    def frame_psnr(self, frames):
-        error = np.mean([np.mean((a.astype(float) - b) ** 2) for a, b in zip(self.frames, frames)])
+    def frame_psnr(self, frames, way="none"):
+        error = np.mean([np.mean((a.astype(float) - b) ** 2) for a, b in zip(self.frames[way], frames)])
         return 10 * math.log10(65535 ** 2 / error) if error > 0 else math.inf
 
-    def code(self, *options):
-        """one row: the report of lfcompressor, and what becomes of frames"""
+    def code(self, *options, and_by_defaults=False):
+        """One row: the report of lfcompressor, and what becomes of frames."""
         store = self.folder / "field.lfs"
         report = json.loads(run(self.build / "bin/lfcompressor", self.field, "-o", store, "--overwrite", "--json",
                                 "--progress", "none", *options))
         frames = self.render(store)
-        return {"ratio": report["ratio"], "psnr": float(str(report["psnr_db"]).replace("exact", "inf")),
+        default_psnr = self.frame_psnr(self.render(store, "default"), "default") if and_by_defaults else None
+        return {"default_psnr": default_psnr, "ratio": report["ratio"], "psnr": float(str(report["psnr_db"]).replace("exact", "inf")),
                 "frame_psnr": self.frame_psnr(frames), "cpu_s": report["encode_cpu_s"],
                 "bytes": report["code_bytes"], "total_s": report["total_s"]}, frames
 
     def peer(self, coder):
-        """the same for an encoder: coder(picture) -> bytes, decoded picture"""
+        """The same of an encoder: coder(picture) -> bytes, decoded picture."""
         folder = self.folder / "peer"
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir()
@@ -251,14 +258,14 @@ def measure(content, with_peers, pictures):
         rows.append(row)
         print(content.name, row, flush=True)
     for threshold in DEFAULT:
-        row, frames = content.code("--threshold", threshold)
+        row, frames = content.code("--threshold", threshold, and_by_defaults=True)
         if content.name == "shop" and threshold == 8:
             drawn.append(frames[1])
         rows.append(row | {"profile": "default", "levels": 4, "threshold": threshold, "best": row["ratio"]})
         print(content.name, rows[-1], flush=True)
     if pictures and content.name == "shop":
         draw(drawn, pictures / "codec_artefacts.jpg")
-    row, _ = content.code("--profile", "lossless")
+    row, _ = content.code("--profile", "lossless", and_by_defaults=True)
     rows.append(row | {"profile": "lossless", "levels": 4, "threshold": None, "best": row["ratio"]})
     if with_peers:
         peers, lossless = peers_of(content)
@@ -285,8 +292,8 @@ def draw(frames, path):
 
 
 def table_of(name, rows):
-    lines = [f"**{name}**", "", "| profile | levels | threshold | ratio (thesis) | size, MB | CPU s | PSNR of images | of frames |",
-             "|" + " --- |" * 8]
+    lines = [f"**{name}**", "", "| profile | levels | threshold | ratio (thesis) | size, MB | CPU s | PSNR of images | of frames | "
+             "of frames by the defaults |", "|" + " --- |" * 9]
     for row in rows:
         is_thesis = row["profile"] == "thesis"
         if is_thesis and ((row["levels"], row["threshold"]) not in TABLE_5_3 or row["quantizer"] != "8bit"):
@@ -295,7 +302,8 @@ def table_of(name, rows):
         if row["profile"] == "thesis":
             ratio += f", best {row['best']:.1f} ({TABLE_5_3[row['levels'], row['threshold']]})"
         lines.append(f"| {row['profile']} | {row['levels'] or '-'} | {row['threshold'] or '-'} | {ratio} | "
-                     f"{row['bytes'] / 1e6:.2f} | {row['cpu_s']:.1f} | {number(row['psnr'])} | {number(row['frame_psnr'])} |")
+                     f"{row['bytes'] / 1e6:.2f} | {row['cpu_s']:.1f} | {number(row['psnr'])} | {number(row['frame_psnr'])} | "
+                     f"{number(row['default_psnr']) if row.get('default_psnr') else ''} |")
     thesis, ours = ([r for r in rows if r["profile"] == p] for p in ("thesis", "default"))
     lines += ["", "| at equal PSNR | dB | thesis, best coder | default | default / thesis |" + "".join(
         f" {p} |" for p in ("JPEG", "JPEG 2000", "JPEG XL")), "|" + " --- |" * 8]
@@ -310,21 +318,26 @@ def table_of(name, rows):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("build", type=pathlib.Path, nargs="?")
     parser.add_argument("--data", type=pathlib.Path, default=pathlib.Path("../shared"))
     parser.add_argument("--only", default="shop,synth,noisy")
     parser.add_argument("--no-peers", action="store_true")
+    parser.add_argument("--views", type=int, default=7, help="along an edge of the grid; an odd number")
+    parser.add_argument("--size", default="480x320", help="of LF images of lfsynth")
+    parser.add_argument("--frames", default="1-50x12")
     parser.add_argument("--pictures", type=pathlib.Path, help="folder of pictures of artefacts")
     results.add_options(parser)
     arguments = parser.parse_args()
     if arguments.again:
         record = json.loads(arguments.again.read_text())
-    else:
-        record = results.context() | {"rows": {}}
+    elif arguments.build:
+        record = results.context() | {"views": arguments.views, "size": arguments.size, "rows": {}}
         with tempfile.TemporaryDirectory() as temporary:
             for name in arguments.only.split(","):
-                content = Content(arguments.build.resolve(), arguments.data, name, pathlib.Path(temporary) / name)
+                content = Content(arguments, name, pathlib.Path(temporary) / name)
                 record["rows"][name] = measure(content, not arguments.no_peers, arguments.pictures)
+    else:
+        parser.error("BUILD_DIR or --again is needed")
     text = results.sentence(record) + "\n\n" + "\n".join(
         table_of(name, rows) for name, rows in record["rows"].items())
     results.publish(arguments, "codec_table.py", record, text)

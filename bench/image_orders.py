@@ -1,17 +1,19 @@
 #!/usr/bin/python3
 """How evenly the orders of LF images fill the frames of a film, as lfpreprocessor plans it.
 
-usage: bench/image_orders.py BUILD_DIR [--density 1] [--size 480x320] [--write PAGE]
+usage: bench/image_orders.py BUILD_DIR [--density 1] [--size 480x320] [--name NAME] [--write PAGE]
+       bench/image_orders.py --again JSON [--write PAGE]
 
 The movement `bokeh` of Table 5.1, whose lens opens and closes, through a grid as dense as the thesis's band
-(calibration only). After a tenth of the LF images: the rays of each frame, as pixels of rectangles that its
-package tells, and their spread over the frames.
+(calibration only). Packages are made without lens weights and by the default. After a tenth of the LF images: the
+rays of each frame, as pixels of rectangles that its package tells, and their spread over the frames.
 """
 import argparse
+import itertools
+import json
 import pathlib
 import sqlite3
 import statistics
-import subprocess
 import tempfile
 
 import record as results
@@ -19,7 +21,7 @@ from workloads import WORKLOADS, path_yaml, photograph
 
 
 def filled_after_a_tenth(packages):
-    """rays of each frame that has any
+    """Rays of each frame that has any.
 
     packages  of one frame each: what they need of LF images is what that frame needs
     """
@@ -32,37 +34,52 @@ def filled_after_a_tenth(packages):
     return [sum(rays for place, rays in frame.items() if place in first) for frame in frames if frame]
 
 
+WEIGHTS = {"none": ("--estimator", "bilinear", "--lens-weights", "none"), "default": ()}
+
+
+def measure(build, folder, density, size):
+    field, path = folder / "field", folder / "bokeh.yaml"
+    photograph(build, field, density, size, "--calibration-only")
+    path.write_text(path_yaml(WORKLOADS["bokeh"], [int(length) // 2 for length in size.split("x")]))
+    rows = []
+    for weights, order in itertools.product(WEIGHTS, ("shuffle", "round-robin", "area")):
+        out = folder / f"{order}-{weights}"
+        results.call([build / "bin/lfpreprocessor", field, path, "-o", out, "-q", "--order", order,
+                      "--frames-per-package", 1,
+                      *WEIGHTS[weights]])
+        rows.append({"order": order, "weights": weights, "rays": filled_after_a_tenth(sorted(out.glob("*.lfp")))})
+    return rows
+
+
+def table(record):
+    lines = ["| order | lens weights | frames without a ray | rays of a frame: least, median, most, M | "
+             "standard deviation / mean |", "|" + " --- |" * 5]
+    for row in record["rows"]:
+        rays = row["rays"]
+        lines.append(f"| {row['order']} | {row['weights']} | {rays.count(0)} of {len(rays)} | {min(rays) / 1e6:.2f}, "
+                     f"{statistics.median(rays) / 1e6:.2f}, {max(rays) / 1e6:.2f} | "
+                     f"{statistics.pstdev(rays) / statistics.mean(rays):.2f} |")
+    return lines
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("build", type=pathlib.Path, nargs="?")
     parser.add_argument("--density", type=float, default=1)
     parser.add_argument("--size", default="480x320")
-    parser.add_argument("--write", type=pathlib.Path, metavar="PAGE")
-    parser.set_defaults(name=None)
+    results.add_options(parser)
     arguments = parser.parse_args()
-    build = arguments.build.resolve()
-    size = [int(length) // 2 for length in arguments.size.split("x")]
-    lines = ["| order | frames without a ray | rays of a frame: least, median, most, M | standard deviation / mean |",
-             "|" + " --- |" * 4]
-    with tempfile.TemporaryDirectory() as temporary:
-        folder = pathlib.Path(temporary)
-        field = folder / "field"
-        photograph(build, field, arguments.density, arguments.size, "--calibration-only")
-        path = folder / "bokeh.yaml"
-        path.write_text(path_yaml(WORKLOADS["bokeh"], size))
-        for order in ("shuffle", "round-robin", "area"):
-            out = folder / order
-            subprocess.run([build / "bin/lfpreprocessor", field, path, "-o", out, "-q", "--order", order,
-                            "--frames-per-package", "1", "--lens-weights", "none"], check=True,
-                           stdout=subprocess.DEVNULL)
-            rays = filled_after_a_tenth(sorted(out.glob("*.lfp")))
-            lines.append(
-                f"| {order} | {rays.count(0)} of {len(rays)} | {min(rays) / 1e6:.2f}, "
-                f"{statistics.median(rays) / 1e6:.2f}, {max(rays) / 1e6:.2f} | "
-                f"{statistics.pstdev(rays) / statistics.mean(rays):.2f} |")
-    record = results.context()
-    text = "\n".join([results.sentence(record), ""] + lines) + "\n"
+    if arguments.again:
+        record = json.loads(arguments.again.read_text())
+    elif arguments.build:
+        record = results.context() | {"density": arguments.density, "size": arguments.size}
+        with tempfile.TemporaryDirectory() as temporary:
+            record["rows"] = measure(arguments.build.resolve(), pathlib.Path(temporary), arguments.density,
+                                     arguments.size)
+    else:
+        parser.error("BUILD_DIR or --again is needed")
+    text = "\n".join([results.sentence(record), ""] + table(record)) + "\n"
     results.publish(arguments, "image_orders.py", record, text)
 
 

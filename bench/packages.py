@@ -1,36 +1,36 @@
 #!/usr/bin/python3
 """What packages and rectangles are worth, on movements of Table 5.1 (workloads.py).
 
-usage: bench/packages.py BUILD_DIR [--density 0.03] [--size 480x320] [--runs 5] [--field DIR]
+usage: bench/packages.py BUILD_DIR [--density 0.03] [--size 480x320] [--runs 3] [--field DIR]
                          [--packages 4] [--name NAME] [--write PAGE]
        bench/packages.py --again JSON [--write PAGE]
 
-The movement `long` is cut into packages by rays and by frames, and each package is rendered by itself,
-with all threads: the longest decides when a film on so many machines is ready. `short` is rendered with
-rectangles and without, by a lens that sees as much as the LF cameras and by one of twice their focal length,
-without lens weights. Without them every LF image
-that may give rays to some frame is tried whole in all frames, as in the thesis. The frames of all runs are compared: they must have the same bits.
+The movement `long` is cut into packages by rays and by frames, and each package is rendered by itself, with all
+threads: the longest decides when a film on so many machines is ready. It is rendered as the thesis does (nearest,
+without lens weights) and by the defaults. `short` is rendered with rectangles and without, by a lens that sees as
+much as the LF cameras and by one of twice their focal length: by nearest and bilinear without lens weights, and
+by the defaults (the longer lens alone). Without rectangles every LF image that may give rays to some frame is tried
+whole in all frames, as in the thesis; such a render is not repeated. Frames of all runs are compared: they must
+have the same bits.
 """
 import argparse
 import hashlib
-import itertools
 import json
 import pathlib
 import statistics
-import subprocess
 import tempfile
-import time
 
 import record as results
-from workloads import WORKLOADS, path_yaml, photograph
+from workloads import WAYS, WORKLOADS, path_yaml, photograph
 
-
-def call(*words):
-    subprocess.run(list(map(str, words)), check=True, stdout=subprocess.DEVNULL)
+# What packages are made with, so that their forecast is of the render to come.
+PREPROCESSING = {"nearest": ("--estimator", "nearest", "--lens-weights", "none"), "default": ()}
+# Of `short`: way, focal length.
+RECTANGLES = (("nearest", 36), ("nearest", 72), ("bilinear", 72), ("default", 72))
 
 
 def digest(folder):
-    """of all frames: their pixels' files, whoever wrote them when"""
+    """Of the bytes of all frames."""
     whole = hashlib.sha256()
     for frame in sorted(folder.glob("frame_*")):
         whole.update(hashlib.sha256(frame.read_bytes()).digest())
@@ -38,34 +38,30 @@ def digest(folder):
 
 
 def render(build, inputs, out, *options):
-    for report in out.glob("report*.json"):  # of the run before, which is told otherwise
+    """Seconds of one run."""
+    for report in out.glob("report*.json"):  # of another run, which --resume alone would take up
         report.unlink()
-    start = time.monotonic()
-    call(build / "bin/lfrenderer", *inputs, "-o", out, "-q", "--no-contact-sheet", *options)
-    return time.monotonic() - start
+    used = results.timed([build / "bin/lfrenderer", *inputs, "-o", out, "-q", "--no-contact-sheet", *options])
+    return used["seconds"]
 
 
-def measure_packages(build, field, folder, size, count, balance, runs):
-    """estimated rays, frames and the median seconds of each package"""
+def measure_packages(build, field, folder, size, count, balance, way, runs):
+    """Estimated rays, frames and the median seconds of each package."""
     path = folder / "long.yaml"
     path.write_text(path_yaml(WORKLOADS["long"], size))
-    packages = folder / f"packages-{balance}"
-    call(build / "bin/lfpreprocessor", field, path, "-o", packages, "-q", "--packages", count,
-         "--balance", balance)
-    plan = json.loads(subprocess.run(
-        [build / "bin/lfpreprocessor", field, path, "--plan", "-q", "--json", "--packages",
-         str(count), "--balance", balance], check=True, capture_output=True).stdout)
+    packages, parts, whole = (folder / f"{what}-{balance}-{way}" for what in ("packages", "parts", "whole"))
+    plan = json.loads(results.call([build / "bin/lfpreprocessor", field, path, "-o", packages, "-q", "--json",
+                                    "--packages", count, "--balance", balance, *PREPROCESSING[way]]))
     files = sorted(packages.glob("*.lfp"))
     seconds = [[] for _ in files]
-    for run in range(runs):
-        for i, file in enumerate(files):
-            seconds[i].append(render(build, [file], folder / f"parts-{balance}"))
-    whole = folder / "whole"
-    if not whole.exists():
-        render(build, [field, path], whole)
-    if digest(whole) != digest(folder / f"parts-{balance}"):
-        raise SystemExit("packages give other frames than the whole film")
-    return {"balance": balance,
+    for _ in range(runs):
+        for times, file in zip(seconds, files):
+            times.append(render(build, [file], parts, *WAYS[way]))
+    if balance == "rays":  # the other is compared with the same whole
+        render(build, [field, path], whole, *WAYS[way])
+    if digest(folder / f"whole-rays-{way}") != digest(parts):
+        raise SystemExit(f"packages give other frames than the whole film ({balance}, {way})")
+    return {"balance": balance, "way": way,
             "frames": [len(package["frames"]) for package in plan["packages"]],
             "rays": [package["rays"] for package in plan["packages"]],
             "forecast_cpu_s": [package["cpu_s"] for package in plan["packages"]],
@@ -75,49 +71,47 @@ def measure_packages(build, field, folder, size, count, balance, runs):
 def measure_rectangles(build, field, folder, size, runs):
     path = folder / "short.yaml"
     rows = []
-    for estimator, focal_mm in itertools.product(("nearest", "bilinear"), (36, 72)):
+    for way, focal_mm in RECTANGLES:
         path.write_text(path_yaml(WORKLOADS["short"], size, focal_mm))
         seconds, frames, collect = {"on": [], "off": []}, {}, {}
-        for _ in range(runs):
-            for choice in seconds:
+        for run in range(runs):
+            for choice in ("on", "off") if run == 0 else ("on",):
                 out = folder / f"short-{choice}"
-                seconds[choice].append(render(build, [field, path], out, "--rectangles", choice,
-                                              "--estimator", estimator, "--lens-weights", "none"))
+                seconds[choice].append(render(build, [field, path], out, "--rectangles", choice, *WAYS[way]))
                 frames[choice] = digest(out)
                 report = json.loads((out / "report.json").read_text())
                 collect[choice] = {key: report[key] for key in
-                                   ("lf_images_selected", "load_cpu_s", "collect_cpu_s",
-                                    "rays_tested")}
+                                   ("lf_images_selected", "load_cpu_s", "collect_cpu_s", "rays_tested")}
         if frames["on"] != frames["off"]:
-            raise SystemExit("frames differ without rectangles")
-        rows.append({"estimator": estimator, "focal_mm": focal_mm, **{
+            raise SystemExit(f"frames differ without rectangles ({way}, {focal_mm} mm)")
+        rows.append({"way": way, "focal_mm": focal_mm, **{
             choice: {"seconds": round(statistics.median(seconds[choice]), 3), **collect[choice]}
             for choice in seconds}})
     return rows
 
 
 def table(record):
-    lines = ["| `long`, balanced by | frames | estimated rays, M | largest / mean | seconds alone | longest / "
-             "mean | shortest / longest |", "|" + " --- |" * 7]
+    lines = ["| `long`, way | balanced by | frames | estimated rays, M | largest / mean | seconds alone | longest / "
+             "mean | shortest / longest |", "|" + " --- |" * 8]
     for row in record["packages"]:
         mean = lambda values: sum(values) / len(values)
         lines.append(
-            f"| {row['balance']} | {', '.join(map(str, row['frames']))} | "
+            f"| {row['way']} | {row['balance']} | {', '.join(map(str, row['frames']))} | "
             f"{', '.join(f'{rays / 1e6:.0f}' for rays in row['rays'])} | "
             f"{max(row['rays']) / mean(row['rays']):.3f} | "
             f"{', '.join(f'{s:.2f}' for s in row['seconds'])} | "
             f"{max(row['seconds']) / mean(row['seconds']):.2f} | "
             f"{min(row['seconds']) / max(row['seconds']):.2f} |")
-    lines += ["", "| `short`, estimator | focal length | rectangles | LF images | Mpx tried | seconds | CPU s: decoding, "
+    lines += ["", "| `short`, way | focal length | rectangles | LF images | Mpx tried | seconds | CPU s: decoding, "
               "collecting |", "|" + " --- |" * 7]
     for row in record["rectangles"]:
         for choice in ("on", "off"):
             part = row[choice]
             lines.append(
-                f"| {row['estimator']} | {row['focal_mm']} mm | {choice} | {part['lf_images_selected']} | "
+                f"| {row['way']} | {row['focal_mm']} mm | {choice} | {part['lf_images_selected']} | "
                 f"{part['rays_tested'] / 1e6:.0f} | {part['seconds']:.2f} | "
                 f"{part['load_cpu_s']:.2f}, {part['collect_cpu_s']:.2f} |")
-        lines.append(f"| {row['estimator']} | {row['focal_mm']} mm | off / on | | | "
+        lines.append(f"| {row['way']} | {row['focal_mm']} mm | off / on | | | "
                      f"{row['off']['seconds'] / row['on']['seconds']:.2f} | |")
     return lines
 
@@ -128,7 +122,7 @@ def main():
     parser.add_argument("build", type=pathlib.Path, nargs="?")
     parser.add_argument("--density", type=float, default=0.03)
     parser.add_argument("--size", default="480x320")
-    parser.add_argument("--runs", type=int, default=5)
+    parser.add_argument("--runs", type=int, default=3)
     parser.add_argument("--packages", type=int, default=4)
     parser.add_argument("--field", type=pathlib.Path)
     results.add_options(parser)
@@ -145,8 +139,8 @@ def main():
             field = arguments.field or folder / "field"
             photograph(build, field, arguments.density, arguments.size)
             record["packages"] = [
-                measure_packages(build, field, folder, size, arguments.packages, balance,
-                                 arguments.runs) for balance in ("rays", "frames")]
+                measure_packages(build, field, folder, size, arguments.packages, balance, way, arguments.runs)
+                for way in PREPROCESSING for balance in ("rays", "frames")]
             record["rectangles"] = measure_rectangles(build, field, folder, size, arguments.runs)
     else:
         parser.error("BUILD_DIR or --again is needed")

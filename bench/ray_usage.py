@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """Draws Figure 5.5 of the thesis: which share of the pixels that are tried are rays that a plate accepts.
 
-usage: bench/ray_usage.py BUILD_DIR [--density 1] [--size 480x320] [--write PAGE]
+usage: bench/ray_usage.py BUILD_DIR [--density 1] [--size 480x320] [--name NAME] [--write PAGE]
+       bench/ray_usage.py --again JSON [--write PAGE]
 
 The movement `short` of Table 5.1 through an LF camera grid as dense as the thesis's (calibration only: the
 law's spans tell, without pixels). LF images are ordered by their usage, accepted / tried, over all frames.
@@ -9,8 +10,8 @@ Writes doc/images/ray_usage.svg, and with --write the figures into PAGE.
 """
 import argparse
 import csv
+import json
 import pathlib
-import subprocess
 import tempfile
 
 import record as results
@@ -27,8 +28,7 @@ def usage(build, density, size):
         photograph(build, folder / "field", density, size, "--calibration-only")
         path = folder / "short.yaml"
         path.write_text(path_yaml(WORKLOADS["short"], [int(n) // 2 for n in size.split("x")]))
-        text = subprocess.run([build / "bench/lf_ray_usage", folder / "field", path], check=True,
-                              capture_output=True, text=True).stdout
+        text = results.call([build / "bench/lf_ray_usage", folder / "field", path])
     return [tuple(map(int, row)) for row in list(csv.reader(text.splitlines()))[1:]]
 
 
@@ -66,29 +66,35 @@ def draw(images):
     PICTURE.write_text("\n".join(lines + ["</svg>"]) + "\n")
 
 
+def row_of(images, tried):
+    """What is tried of the LF images, whole (0) or by rectangles (1)."""
+    return {"images": len(images), "empty": sum(image[2] == 0 for image in images),
+            "tried": sum(image[tried] for image in images), "accepted": sum(image[2] for image in images)}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("build", type=pathlib.Path, nargs="?")
     parser.add_argument("--density", type=float, default=1)
     parser.add_argument("--size", default="480x320")
-    parser.add_argument("--write", type=pathlib.Path, metavar="PAGE")
-    parser.set_defaults(name=None)
+    results.add_options(parser)
     arguments = parser.parse_args()
-    images = usage(arguments.build.resolve(), arguments.density, arguments.size)
-    draw(images)
-    selected = [image for image in images if image[1] > 0]
-    empty = sum(1 for _, _, accepted in selected if accepted == 0)
-    whole, rectangles, accepted = (sum(image[k] for image in images) for k in range(3))
-    record = results.context()
-    text = (f"{results.sentence(record)} LF images {arguments.size}.\n\n"
-            "| | LF images | of them without a ray | pixels tried | accepted |\n"
-            "| --- | --- | --- | --- | --- |\n"
-            f"| widened frustum, whole LF images | {len(images)} | "
-            f"{sum(1 for image in images if image[2] == 0)} | {whole / 1e9:.2f} G | "
-            f"{100 * accepted / whole:.1f} % |\n"
-            f"| rectangles | {len(selected)} | {empty} | {rectangles / 1e9:.2f} G | "
-            f"{100 * accepted / rectangles:.1f} % |\n")
+    if arguments.again:
+        record = json.loads(arguments.again.read_text())
+    elif arguments.build:
+        record = results.context() | {"density": arguments.density, "size": arguments.size}
+        images = usage(arguments.build.resolve(), arguments.density, arguments.size)
+        draw(images)
+        record["frustum"] = row_of(images, 0)
+        record["rectangles"] = row_of([image for image in images if image[1] > 0], 1)
+    else:
+        parser.error("BUILD_DIR or --again is needed")
+    lines = ["| | LF images | of them without a ray | pixels tried | accepted |", "| --- | --- | --- | --- | --- |"]
+    for what, row in (("widened frustum, whole LF images", record["frustum"]), ("rectangles", record["rectangles"])):
+        lines.append(f"| {what} | {row['images']} | {row['empty']} | {row['tried'] / 1e9:.2f} G | "
+                     f"{100 * row['accepted'] / row['tried']:.1f} % |")
+    text = "\n".join([f"{results.sentence(record)} LF images {record['size']}.", ""] + lines) + "\n"
     results.publish(arguments, "ray_usage.py", record, text)
 
 

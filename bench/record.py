@@ -1,12 +1,44 @@
-"""What a result says besides its figures: commit, machine, day; and where it is kept."""
+"""The record of a table: its figures, and all that is needed to judge them and to make them again.
+
+A script that makes a table does four things:
+
+    results.add_options(parser)                        # --name, --write, --again
+    record = results.context()                         # before anything is measured
+    results.call([build / "bin/lfsynth", "chart", ...])           # runs, and notes the command
+    used = results.timed([build / "bin/lfrenderer", field, ...])  # the same, measured; or results.note() and run it
+    results.publish(arguments, "script.py", record, text)         # prints, writes bench/results/ and the page
+
+The record, bench/results/NAME.json, has
+
+    table     the words of the marker in the page: <!-- table: bench/script.py -->
+    commit    of what was compiled and of the scripts; "with changes" if they were changed since
+    date, machine, load when started
+    commands  each different command, with its options; of paths the last part alone
+    defaults  the lines of bench/defaults.txt of the programs among the commands, as these programs say them
+    defaults_hash   of these lines
+    and what the script adds: its rows
+
+NAME.md beside it is the text between the markers. scripts/check_house.py . tables compares all of them.
+"""
 import datetime
 import json
 import os
 import pathlib
 import re
+import shlex
 import subprocess
+import sys
+import tempfile
+
+import defaults
 
 HERE = pathlib.Path(__file__).resolve().parent
+END = "<!-- end of table -->"
+# What figures depend on: what is compiled, and the scripts that measure.
+SOURCES = ("../lf", "../tools", "../cmake", "../CMakeLists.txt", "*.cc", "*.h", "*.py", "../scripts/*.py")
+
+_commands = []  # of this run, each once
+_programs = {}  # name -> path
 
 
 def git(*words):
@@ -14,8 +46,8 @@ def git(*words):
 
 
 def commit():
-    """of what was compiled; says so if that was changed since"""
-    changed = git("status", "--porcelain", "--", "../lf", "../tools", "*.cc", "*.h")
+    """HEAD; says so if sources were changed since."""
+    changed = git("status", "--porcelain", "--", *SOURCES)
     return git("rev-parse", "--short", "HEAD") + (" with changes" if changed else "")
 
 
@@ -37,6 +69,51 @@ def sentence(record):
             f"load {record['load']} when started.")
 
 
+def shown(word):
+    """A word of a command as records show it: the last part of a path, without the machine's folders."""
+    word = str(word)
+    return pathlib.Path(word).name if word.startswith(("/", "./", "../")) else word
+
+
+def note(words):
+    """Notes a command that is about to be run; returns its words as text."""
+    words = [str(word) for word in words]
+    text = shlex.join(map(shown, words))
+    if text not in _commands:
+        _commands.append(text)
+    program = pathlib.Path(words[0])
+    if program.name in defaults.PROGRAMS:
+        _programs[program.name] = program.resolve()
+    return words
+
+
+def call(words, **more):
+    """Runs a command and notes it. Ends the script if it fails, with what it said. Returns its standard output."""
+    done = subprocess.run(note(words), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **more)
+    if done.returncode != 0:
+        raise SystemExit(f"{shlex.join(map(str, words))} ended with {done.returncode}:\n{done.stderr}")
+    return done.stdout
+
+
+def timed(words, watch=None, folder=None, codes=(0,)):
+    """Runs a command, notes it, and returns what the system says of it:
+
+    seconds, cpu_s, peak_bytes     of this process alone (measured.py says why that is not obvious)
+    open_files, folder_bytes       the most seen, every `watch` seconds, of its open files and of the bytes
+                                   that `folder` takes on the disk; 0 without `watch`
+    stdout                         what it printed
+
+    Ends the script if the exit code is not among `codes`.
+    """
+    with tempfile.NamedTemporaryFile() as result:
+        done = subprocess.run([sys.executable, "-I", "-S", HERE / "measured.py", result.name, str(watch or 0),
+                               str(folder or "-"), *note(words)],
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        if done.returncode not in codes:
+            raise SystemExit(f"{shlex.join(map(str, words))} ended with {done.returncode}:\n{done.stderr}")
+        return json.load(open(result.name)) | {"stdout": done.stdout}
+
+
 def save(name, record, text):
     folder = HERE / "results"
     folder.mkdir(exist_ok=True)
@@ -45,20 +122,42 @@ def save(name, record, text):
 
 
 def add_options(parser):
-    parser.add_argument("--name", help="write bench/results/NAME.md and NAME.json")
-    parser.add_argument("--again", type=pathlib.Path, metavar="JSON", help="of an earlier run")
+    parser.add_argument("--name", help="write bench/results/NAME.md and NAME.json; with --write the name of the "
+                                       "script unless given")
+    parser.add_argument("--again", type=pathlib.Path, metavar="JSON", help="of an earlier run: measure nothing")
     parser.add_argument("--write", type=pathlib.Path, metavar="PAGE",
-                        help="put the table into this page, between its markers")
+                        help="put the table into this page, between its markers, and keep its record")
+
+
+def marker_of(script):
+    """The words of the marker: scripts of bench/ go without their folder."""
+    return script if script.startswith("scripts/") else f"bench/{script}"
+
+
+def name_of(script):
+    """The name of the record of "scripts/lens_weights.py captures": lens_weights-captures."""
+    return re.sub(r"[^\w.]+", "-", pathlib.Path(script).name.replace(".py", "")).strip("-")
 
 
 def publish(arguments, script, record, text):
-    """Prints the table, and writes it where the options say."""
+    """Prints the table, and writes it where the options say.
+
+    script  "name.py", "name.py WORDS", or "scripts/name.py WORDS": what the page's marker names
+    """
     print(text)
-    if arguments.name:
-        save(arguments.name, record, text)
+    record.setdefault("table", marker_of(script))
+    record.setdefault("commands", list(_commands))
+    if "defaults" not in record:
+        record["defaults"] = defaults.of_programs(list(_programs.values()))
+        record["defaults_hash"] = defaults.hash_of(record["defaults"])
+    name = arguments.name or (arguments.write and name_of(script))
+    if name:
+        save(name, record, text)
     if arguments.write:
         page = arguments.write.read_text()
-        begin, end = f"<!-- table: bench/{script} -->", "<!-- end of table -->"
+        begin = f"<!-- table: {record['table']} -->"
+        if page.count(begin) != 1:
+            raise SystemExit(f"{arguments.write}: expected one line {begin}, found {page.count(begin)}")
         before, rest = page.split(begin)
-        after = rest.split(end, 1)[1]
-        arguments.write.write_text(f"{before}{begin}\n{text}{end}{after}")
+        after = rest.split(END, 1)[1]
+        arguments.write.write_text(f"{before}{begin}\n{text}{END}{after}")

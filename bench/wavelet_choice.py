@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """Which transform, quantiser and packing: prototypes in NumPy, before any was built (doc/codec.md).
 
-usage: bench/wavelet_choice.py [--data ../shared] [--write doc/codec.md]
+usage: bench/wavelet_choice.py [--data ../shared] [--name NAME] [--write doc/codec.md]
+       bench/wavelet_choice.py --again JSON [--write doc/codec.md]
 
 One LF image each of `blender-shop` and of `beer-colmap`, as RGGB mosaics of 8 bits. Ratios at equal PSNR (found by
 bisection of the step). All but the thesis's scheme: uniform quantisers with a dead zone, steps such that every
@@ -9,8 +10,10 @@ band gives the same error per coefficient; coefficients packed one, two or four 
 shorter (escapes apart), zstd -1. The whole image is one tile.
 """
 import argparse
+import json
 import lzma
 import pathlib
+import sys
 
 import cv2
 import numpy as np
@@ -201,37 +204,55 @@ ROWS = [("thesis: planes of colours, Haar, xz", None)] + [
     (f"5/3, 5/3, {levels} levels", Scheme("5/3", "5/3", levels)) for levels in (2, 4)]
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--data", type=pathlib.Path, default=pathlib.Path("../shared"))
-    results.add_options(parser)
-    arguments = parser.parse_args()
+TARGETS_DB = (40, 45)
+
+
+def mosaics_of(data):
+    """One RGGB mosaic of each light field."""
     mosaics = {}
     for name, pattern in (("blender-shop", "*_13_13_*"), ("beer-colmap", "*")):
-        files = sorted((arguments.data / "data" / name / "images").glob(pattern + ".jpg"))
+        files = sorted((data / "data" / name / "images").glob(pattern + ".jpg"))
         picture = cv2.imread(str(files[len(files) // 2]))
         height, width = (n // 16 * 16 for n in picture.shape[:2])
         mosaic = np.empty((height, width))
         for y, x, channel in ((0, 0, 2), (0, 1, 1), (1, 0, 1), (1, 1, 0)):
             mosaic[y::2, x::2] = picture[y:height:2, x:width:2, channel]
         mosaics[name] = mosaic
-    columns = [(name, target) for name in mosaics for target in (40, 45)]
-    lines = ["| planes, wavelet | " + " | ".join(f"{name}, {target} dB" for name, target in columns) + " |",
-             "|" + " --- |" * (1 + len(columns))]
+    return mosaics
+
+
+def measure(data):
+    """One row for each scheme: its ratios in the order of the columns, None where they are out of reach."""
+    rows = []
+    mosaics = mosaics_of(data)
     for words, scheme in ROWS:
-        row = []
-        for name, target in columns:
-            mosaic = mosaics[name]
+        ratios = []
+        for mosaic, target in ((mosaic, target) for mosaic in mosaics.values() for target in TARGETS_DB):
             if scheme:
-                ratio = ratio_at(mosaic, target, lambda step: scheme.code(mosaic, step))
+                ratios.append(ratio_at(mosaic, target, lambda step: scheme.code(mosaic, step)))
             else:
-                ratios = [ratio_at(mosaic, target, lambda t: thesis(mosaic, t, levels)) for levels in (1, 2, 3)]
-                ratio = max((r for r in ratios if r), default=None)
-            row.append("-" if ratio is None else f"{ratio:.2f}")
-        lines.append(f"| {words} | " + " | ".join(row) + " |")
-        print(lines[-1], flush=True)
-    record = results.context()
-    results.publish(arguments, "wavelet_choice.py", record, "\n".join(lines) + "\n")
+                found = [ratio_at(mosaic, target, lambda t: thesis(mosaic, t, levels)) for levels in (1, 2, 3)]
+                ratios.append(max((r for r in found if r), default=None))
+        rows.append({"scheme": words, "ratios": ratios})
+        print(rows[-1], file=sys.stderr, flush=True)
+    return {"contents": list(mosaics), "rows": rows}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--data", type=pathlib.Path, default=pathlib.Path("../shared"))
+    results.add_options(parser)
+    arguments = parser.parse_args()
+    if arguments.again:
+        record = json.loads(arguments.again.read_text())
+    else:
+        record = results.context() | measure(arguments.data)
+    columns = [f"{name}, {target} dB" for name in record["contents"] for target in TARGETS_DB]
+    lines = ["| planes, wavelet | " + " | ".join(columns) + " |", "|" + " --- |" * (1 + len(columns))]
+    for row in record["rows"]:
+        lines.append(f"| {row['scheme']} | " + " | ".join("-" if ratio is None else f"{ratio:.2f}"
+                                                         for ratio in row["ratios"]) + " |")
+    results.publish(arguments, "wavelet_choice.py", record, results.sentence(record) + "\n\n" + "\n".join(lines) + "\n")
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """Times whole renders: the five camera movements of Table 5.1 of the thesis, thinned out.
 
-usage: bench/workloads.py BUILD_DIR [--density 0.03] [--size 480x320] [--runs 3] [--threads 1,2]
-                          [--only stack,short] [--field DIR] [--name NAME] [--write PAGE]
+usage: bench/workloads.py BUILD_DIR [--density 0.03] [--size 480x320] [--runs 3] [--most-seconds 15]
+                          [--threads 1,2] [--only stack,short] [--field DIR] [--name NAME] [--write PAGE]
        bench/workloads.py --again JSON [--write PAGE]
 
 Lengths, times, frames, apertures and focus distances are the thesis's; of its LF cameras
@@ -11,27 +11,34 @@ rays of four times as many LF cameras. lfsynth photographs a planar grid
 of noisy raw Bayer mosaics. A path sweeps the area that makes the LF images it needs the thesis's
 number times the density; the grid is a square where the thesis had a band, so long paths wind.
 
-Workloads are rendered `runs` times per number of threads, in turn, so that a busy machine disturbs
-all alike. Seconds and peak memory are those of the whole program, CPU seconds those of the last run,
-ns/ray is collection alone.
+Each workload is rendered in three ways: as the thesis does (nearest, without lens weights), by plain
+interpolation (bilinear, without lens weights), and by the defaults. Ways and numbers of threads take turns, so
+that a busy machine disturbs all alike; each is repeated up to `runs` times, but not beyond --most-seconds.
+Seconds and peak memory are those of the whole program, CPU seconds those of the last run, ns/ray is collection alone.
 
 --field DIR  keep the light field there, or take the one that is there
 """
 import argparse
 import json
 import math
-import os
 import pathlib
 import statistics
-import subprocess
+import sys
 import tempfile
-import time
+import types
 
 import record as results
 
 PER_MM2 = 66    # LF cameras: 827 within a disk of 4 mm (stack)
 DISTANCE_M = 1  # from the grid to the middle of the scene
 FPS = 30
+
+# How a table renders: each choice named, and the defaults beside them.
+WAYS = {
+    "nearest": ("--mode", "collect", "--estimator", "nearest", "--lens-weights", "none"),
+    "bilinear": ("--mode", "collect", "--estimator", "bilinear", "--filter", "bilinear", "--lens-weights", "none"),
+    "default": (),
+}
 
 # Table 5.1. focus: metres, from the first frame to the last; a changing aperture opens and closes
 # every ten seconds.
@@ -126,53 +133,50 @@ def photograph(build, field, density, size, *options):
         return
     spacing_m = 0.001 / math.sqrt(density * PER_MM2)
     count = round(SIDE_MM ** 2 * PER_MM2 * density)
-    subprocess.run([build / "bin/lfsynth", "chart", "-o", field, "--count", str(count), "--size", size,
-                    "--spacing", f"{spacing_m:.8f}", "--distance", str(DISTANCE_M), "--bayer",
-                    "--noise", "0.01", "--samples", "1", "-q", *options], check=True)
+    results.call([build / "bin/lfsynth", "chart", "-o", field, "--count", count, "--size", size, "--spacing",
+                  f"{spacing_m:.8f}", "--distance", DISTANCE_M, "--bayer", "--noise", "0.01", "--samples", "1", "-q",
+                  *options])
 
 
 def render(build, field, path, out, threads, *options):
     """One run: seconds, what the system says it used, report."""
-    start = time.monotonic()
-    process = subprocess.Popen([build / "bin/lfrenderer", field, path, "-o", out, "--threads",
-                                str(threads), "-q", "--no-contact-sheet", *options],
-                               stderr=subprocess.PIPE)
-    messages = process.stderr.read().decode()
-    _, status, usage = os.wait4(process.pid, 0)
-    if status != 0:
-        raise SystemExit(f"lfrenderer failed on {path.name}: {messages}")
-    seconds = time.monotonic() - start
-    return seconds, usage, json.loads((out / "report.json").read_text())
+    used = results.timed([build / "bin/lfrenderer", field, path, "-o", out, "--threads", threads, "-q",
+                          "--no-contact-sheet", *options])
+    usage = types.SimpleNamespace(ru_utime=used["cpu_s"], ru_stime=0.0, ru_maxrss=used["peak_bytes"] // 1024)
+    return used["seconds"], usage, json.loads((out / "report.json").read_text())
 
 
-def measure(build, field, folder, name, size, runs, threads):
-    """The rows of one workload, one for each number of threads."""
+def measure(build, field, folder, name, size, runs, most_s, threads):
+    """The rows of one workload, one for each way and number of threads."""
     path = folder / f"{name}.yaml"
     path.write_text(path_yaml(WORKLOADS[name], size))
-    rows = {n: {"workload": name, "threads": n, "seconds": [], "peak_bytes": 0} for n in threads}
+    rows = [{"workload": name, "way": way, "threads": n, "seconds": [], "peak_bytes": 0}
+            for way in WAYS for n in threads]
     for _ in range(runs):
-        for n in threads:
-            seconds, usage, report = render(build, field, path, folder / "out", n)
-            row = rows[n]
+        for row in rows:
+            done = row["seconds"]
+            if done and sum(done) * (len(done) + 1) / len(done) > most_s:
+                continue
+            seconds, usage, report = render(build, field, path, folder / "out", row["threads"], *WAYS[row["way"]])
             row["seconds"].append(round(seconds, 3))
             row["peak_bytes"] = max(row["peak_bytes"], usage.ru_maxrss * 1024)
             row["cpu_s"] = round(usage.ru_utime + usage.ru_stime, 3)
             for key in ("lf_images_selected", "rays_accepted", "load_cpu_s", "collect_cpu_s"):
                 row[key] = report[key]
-    return list(rows.values())
+            print(f"{name}, {row['way']}, {row['threads']} threads: {seconds:.2f} s", file=sys.stderr, flush=True)
+    return rows
 
 
 def table(record):
-    lines = ["| workload | frames | LF images (aim) | Grays | threads | seconds: min, median, max | "
-             "CPU s: decoding, collecting, rest | ns/ray | peak MiB |",
-             "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
+    lines = ["| workload | way | frames | LF images (aim) | Grays | threads | runs | seconds: min, median, max | "
+             "CPU s: decoding, collecting, rest | ns/ray | peak MiB |", "|" + " --- |" * 11]
     for row in record["rows"]:
         workload, seconds = WORKLOADS[row["workload"]], row["seconds"]
         load, collect = row["load_cpu_s"], row["collect_cpu_s"]
         lines.append(
-            f"| {row['workload']} | {workload['frames']} | {row['lf_images_selected']} "
+            f"| {row['workload']} | {row['way']} | {workload['frames']} | {row['lf_images_selected']} "
             f"({workload['images'] * record['density']:.0f}) | {row['rays_accepted'] / 1e9:.2f} | "
-            f"{row['threads']} | {min(seconds):.2f}, {statistics.median(seconds):.2f}, "
+            f"{row['threads']} | {len(seconds)} | {min(seconds):.2f}, {statistics.median(seconds):.2f}, "
             f"{max(seconds):.2f} | {load:.2f}, {collect:.2f}, {row['cpu_s'] - load - collect:.2f} | "
             f"{collect / row['rays_accepted'] * 1e9:.2f} | {row['peak_bytes'] >> 20} |")
     return lines
@@ -185,6 +189,8 @@ def main():
     parser.add_argument("--density", type=float, default=0.03)
     parser.add_argument("--size", default="480x320")
     parser.add_argument("--runs", type=int, default=3)
+    parser.add_argument("--most-seconds", type=float, default=15, metavar="S",
+                        help="not a further run of a way beyond this")
     parser.add_argument("--threads", default="1,2")
     parser.add_argument("--only", default=",".join(WORKLOADS))
     parser.add_argument("--field", type=pathlib.Path)
@@ -203,11 +209,11 @@ def main():
             photograph(build, field, arguments.density, arguments.size)
             for name in arguments.only.split(","):
                 record["rows"] += measure(build, field, folder, name, size, arguments.runs,
-                                          list(map(int, arguments.threads.split(","))))
+                                          arguments.most_seconds, list(map(int, arguments.threads.split(","))))
     else:
         parser.error("BUILD_DIR or --again is needed")
     text = "\n".join([results.sentence(record) + f" LF images {record['size']}, frames half "
-                      f"as large, {record['density']:g} of the thesis's LF cameras, {record['runs']} runs.", ""] +
+                      f"as large, {record['density']:g} of the thesis's LF cameras.", ""] +
                      table(record)) + "\n"
     results.publish(arguments, "workloads.py", record, text)
 

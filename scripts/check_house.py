@@ -8,12 +8,18 @@ usage: check_house.py REPOSITORY CHECK
   links    in every Markdown page: links lead to files and headings that exist, `paths` in
            backticks exist, and `folder.Suite.Test` and `tests.name` are tests that exist
   pages    the pages of doc/ that comments in sources refer to exist
+  tables   every table of figures in doc/ has a record in bench/results/ that fits it, made with the
+           defaults that bench/defaults.txt lists today (table_rules.py)
+  commits  the commits that tables were made from are ancestors of HEAD. Exits with 77, skipped, where
+           there is no history to look into
 """
 import functools
 import pathlib
 import re
 import subprocess
 import sys
+
+import table_rules
 
 SOURCES = {".cc", ".h", ".cu", ".py", ".sh", ".cmake", ".txt", ""}
 LINE_LIMIT = 500
@@ -129,8 +135,17 @@ def check_pages(root, files):
                     yield f"{path.relative_to(root)}:{number}: the page {name} does not exist"
 
 
+def check_tables(root, files):
+    return table_rules.check_tables(root, files, text_lines)
+
+
+def check_commits(root, files):
+    return table_rules.check_commits(root, files, text_lines)
+
+
 CHECKS = {"lengths": check_lengths, "paths": check_paths, "links": check_links,
-          "pages": check_pages}
+          "pages": check_pages, "tables": check_tables, "commits": check_commits}
+SKIPPED = 77
 
 
 def main() -> int:
@@ -142,6 +157,10 @@ def main() -> int:
     if not files:
         print(f"{root}: no files", file=sys.stderr)
         return 1
+    unknown = table_rules.why_no_history(root) if sys.argv[2] == "commits" else ""
+    if unknown:
+        print(f"skipped: the commits of tables cannot be looked up: {unknown}")
+        return SKIPPED
     faults = list(CHECKS[sys.argv[2]](root, files))
     print("\n".join(faults) or f"{len(files)} files, no fault")
     return 1 if faults else 0

@@ -2,8 +2,9 @@
 """Renders light fields whose true thin-lens pictures are known, by every estimator and with every
 kind of lens weights, and prints the tables of doc/lens-integral.md.
 
-usage: lens_weights.py LFRENDERER GROUNDTRUTH [--write doc/lens-integral.md] [--only SUBSTRING]
+usage: lens_weights.py LFRENDERER GROUNDTRUTH [--name NAME] [--write doc/lens-integral.md] [--only SUBSTRING]
                        [--tables captures,lenses,magnifications,mosaics]
+       lens_weights.py --again JSON [--write doc/lens-integral.md]
 
 GROUNDTRUTH     as for quality.py
 captures        thinned captures of the ground truth cases; LF images are dropped at random, but
@@ -11,8 +12,11 @@ captures        thinned captures of the ground truth cases; LF images are droppe
 lenses          lenses as small as pinholes, in two scenes of lfsynth (beside LFRENDERER)
 magnifications  the same scenes with frames finer and coarser than their LF images
 mosaics         mosaics instead of RGB images (doc/quality.md); not unless asked for
+
+Each table has a record of its own; NAME-captures and so on if there are several.
 """
 import argparse
+import copy
 import json
 import os
 import pathlib
@@ -26,6 +30,7 @@ import cv2
 import numpy as np
 
 import quality
+from quality import results
 
 PINHOLE_FOCUS_M = 0.5  # the truth of a pinhole has no focus plane
 SEED = 5
@@ -33,6 +38,9 @@ SYNTHETIC_SCENES = ("still-life", "chart")
 SYNTHETIC_SIZE = (320, 212)
 SYNTHETIC_SPACING = 0.003
 TRUTH_SAMPLES = 256
+COLLECT = "--mode collect --estimator"
+# auto is the default, and names nothing.
+WEIGHTS = {w: f"{COLLECT} bilinear --filter bicubic --lens-weights {w}" for w in ("none", "area", "hat")} | {"auto": ""}
 
 
 def linear_exr(path):
@@ -49,7 +57,7 @@ def linear_pfm(path):
 
 
 def psnr(truth, picture):
-    """dB in linear light, up to display white"""
+    """PSNR in linear light, up to display white, dB."""
     error = np.clip(truth, 0, 1) - np.clip(picture, 0, 1)
     return -10 * np.log10(np.mean(error ** 2))
 
@@ -58,15 +66,15 @@ def decibels(renderer, truth, calibration, path, options):
     """(PSNR, LF images that took part); None without a ray"""
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
-        result = subprocess.run([renderer, calibration, path, "-o", folder, "--format", "exr-float",
-                                 "-q", "--no-contact-sheet", *options.split()],
-                                stderr=subprocess.PIPE, text=True)
+        result = subprocess.run(
+            results.note([renderer, calibration, path, "-o", folder / "frames", "--format", "exr-float", "-q",
+                          "--no-contact-sheet", *options.split()]), stderr=subprocess.PIPE, text=True)
         if "no LF image contributes" in result.stderr or "has no area" in result.stderr:
             return None, 0
         if result.returncode != 0:
             sys.exit(result.stderr)
-        report = json.loads((folder / "report.json").read_text())
-        return (psnr(truth, linear_exr(folder / "frame_0001.exr")),
+        report = json.loads((folder / "frames" / "report.json").read_text())
+        return (psnr(truth, linear_exr(folder / "frames" / "frame_0001.exr")),
                 report["frames"][0]["lf_images"])
 
 
@@ -75,12 +83,30 @@ def text(found):
 
 
 class Table:
+    """Rows of cells, as they are found."""
+
     def __init__(self, *columns):
-        self.rows = ["| " + " | ".join(columns) + " |", "| --- " * len(columns) + "|"]
+        self.columns, self.rows = columns, []
 
     def add(self, *cells):
-        self.rows.append("| " + " | ".join(map(str, cells)) + " |")
-        print(self.rows[-1], flush=True)
+        self.rows.append([str(cell) for cell in cells])
+        print(*cells, sep=" | ", file=sys.stderr, flush=True)
+
+    def publish(self, arguments, words, record):
+        """words: of the marker, after scripts/."""
+        line = lambda cells: "| " + " | ".join(cells) + " |"
+        record |= {"columns": list(self.columns), "rows": self.rows}
+        text = [results.sentence(record), "", line(self.columns), "| --- " * len(self.columns) + "|",
+                *map(line, self.rows)]
+        results.publish(arguments, f"scripts/{words}", record, "\n".join(text) + "\n")
+
+
+def publish_again(arguments):
+    """The table of an earlier run, from its record."""
+    record = json.loads(arguments.again.read_text())
+    table = Table(*record["columns"])
+    table.rows = record["rows"]
+    table.publish(arguments, record["table"].removeprefix("scripts/"), record)
 
 
 def captures(case, frames):
@@ -101,8 +127,7 @@ def captures(case, frames):
 
 
 def table_of_captures(renderer, truth_folder, only):
-    weights = ("none", "area", "hat", "auto")
-    table = Table("case", "capture", "LF images", *weights)
+    table = Table("case", "capture", "LF images", *WEIGHTS)
     for case in json.loads((truth_folder / "cases.json").read_text())["cases"]:
         if only not in case["name"]:
             continue
@@ -121,10 +146,10 @@ def table_of_captures(renderer, truth_folder, only):
                 (folder / "transforms.json").write_text(json.dumps(dict(field, frames=frames)))
                 (folder / "path.yaml").write_text(quality.path_yaml(case))
                 found = {w: decibels(renderer, truth, folder / "transforms.json",
-                                     folder / "path.yaml", "--lens-weights " + w) for w in weights}
+                                     folder / "path.yaml", options) for w, options in WEIGHTS.items()}
             table.add(case["name"], name, f"{found['none'][1]} ({found['auto'][1]} weighed)",
-                      *(text(found[w]) for w in weights))
-    return table.rows
+                      *(text(found[w]) for w in WEIGHTS))
+    return table
 
 
 def synthetic_path(calibration, diameter, scale, focus, behind=0):
@@ -159,8 +184,9 @@ class SyntheticScenes:
     def __init__(self, renderer, folder):
         self.lfsynth = pathlib.Path(renderer).with_name("lfsynth")
         self.folder = folder
+
     def run(self, *arguments):
-        subprocess.run([self.lfsynth, *map(str, arguments), "-q"], check=True)
+        results.call([self.lfsynth, *arguments, "-q"])
 
     def calibration(self, scene, is_mosaic=False):
         folder = self.folder / (scene + ("-mosaic" if is_mosaic else ""))
@@ -184,41 +210,39 @@ class SyntheticScenes:
 
 
 def table_of_lenses(renderer, scenes, only):
-    weights = ("none", "area", "hat", "auto")
-    table = Table("scene", "diameter, in camera distances", "LF images", *weights)
+    table = Table("scene", "diameter, in camera distances", "LF images", *WEIGHTS)
     for scene in SYNTHETIC_SCENES:
         if only not in scene:
             continue
         for distances in (0, 0.25, 0.5, 1, 1.5, 2, 3, 8):
             path, truth = scenes.truth(scene, distances * SYNTHETIC_SPACING)
-            found = {w: decibels(renderer, truth, scenes.calibration(scene), path,
-                                 "--lens-weights " + w) for w in weights}
+            found = {w: decibels(renderer, truth, scenes.calibration(scene), path, options)
+                     for w, options in WEIGHTS.items()}
             table.add(scene, distances or "pinhole",
                       f"{found['none'][1]} ({found['auto'][1]} weighed)",
-                      *(text(found[w]) for w in weights))
-    return table.rows
+                      *(text(found[w]) for w in WEIGHTS))
+    return table
 
 
 def table_of_magnifications(renderer, scenes, only):
-    estimators = {"nearest": "--estimator nearest",
-                  "bilinear": "--estimator bilinear --filter bilinear",
-                  "bicubic": "--estimator bilinear --filter bicubic"}
-    columns = [(e, w) for e in estimators for w in ("none", "area")] + [("auto", "auto")]
-    table = Table("scene", "elements per LF pixel", *(", ".join(dict.fromkeys(c)) for c in columns))
+    estimators = {"nearest": "nearest", "bilinear": "bilinear --filter bilinear", "bicubic": "bilinear --filter bicubic"}
+    columns = {f"{e}, {w}": f"{COLLECT} {words} --lens-weights {w}" for e, words in estimators.items()
+               for w in ("none", "area")} | {"auto": ""}
+    table = Table("scene", "elements per LF pixel", *columns)
     for scene in SYNTHETIC_SCENES:
         if only not in scene:
             continue
         for scale in (0.4, 0.8, 1.2, 1.6):  # the frame sees 0.8 of what LF images do
             path, truth = scenes.truth(scene, 8 * SYNTHETIC_SPACING, scale)
             table.add(scene, f"{scale / 0.8:g}",
-                      *(text(decibels(renderer, truth, scenes.calibration(scene), path,
-                                      f"{estimators.get(e, '')} --lens-weights {w}"))
-                        for e, w in columns))
-    return table.rows
+                      *(text(decibels(renderer, truth, scenes.calibration(scene), path, options))
+                        for options in columns.values()))
+    return table
 
 
 def table_of_mosaics(renderer, scenes, only):
-    ways = {"nearest": "--estimator nearest", "demosaicked": "--filter bicubic", "default": ""}
+    ways = {"nearest": f"{COLLECT} nearest --lens-weights auto",
+            "demosaicked": f"{COLLECT} bilinear --filter bicubic --lens-weights auto", "default": ""}
     table = Table("scene", "diameter, in camera distances", "elements per LF pixel", "RGB", *ways)
     for scene in (*SYNTHETIC_SCENES, "lights"):
         if only not in scene:
@@ -230,36 +254,38 @@ def table_of_mosaics(renderer, scenes, only):
             table.add(scene, distances, f"{scale / 0.8:g}", text(rgb),
                       *(text(decibels(renderer, truth, mosaics, path, way))
                         for way in ways.values()))
-    return table.rows
+    return table
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("renderer")
-    parser.add_argument("groundtruth", type=pathlib.Path)
-    parser.add_argument("--write", type=pathlib.Path)
+    parser.add_argument("renderer", type=pathlib.Path, nargs="?")
+    parser.add_argument("groundtruth", type=pathlib.Path, nargs="?")
     parser.add_argument("--only", default="", help="cases or scenes whose names have it")
     parser.add_argument("--tables", default="captures,lenses,magnifications")
     parser.add_argument("--scenes", type=pathlib.Path,
                         help="keep the scenes of lfsynth here, and use what is there")
+    results.add_options(parser)
     a = parser.parse_args()
-    wanted = a.tables.split(",")
-    tables = {}
-    if "captures" in wanted:
-        tables["captures"] = table_of_captures(a.renderer, a.groundtruth, a.only)
-    if {"lenses", "magnifications", "mosaics"} & set(wanted):
-        with tempfile.TemporaryDirectory() as temporary:
-            scenes = SyntheticScenes(a.renderer, a.scenes or pathlib.Path(temporary))
-            if "lenses" in wanted:
-                tables["lenses"] = table_of_lenses(a.renderer, scenes, a.only)
-            if "magnifications" in wanted:
-                tables["magnifications"] = table_of_magnifications(a.renderer, scenes, a.only)
-            if "mosaics" in wanted:
-                tables["mosaics"] = table_of_mosaics(a.renderer, scenes, a.only)
-    if a.write:
-        for name, rows in tables.items():
-            quality.write_table(a.write, "lens_weights.py " + name, rows)
+    if a.again:
+        publish_again(a)
+        return 0
+    if not a.groundtruth:
+        parser.error("LFRENDERER GROUNDTRUTH or --again is needed")
+    with tempfile.TemporaryDirectory() as temporary:
+        scenes = SyntheticScenes(a.renderer, a.scenes or pathlib.Path(temporary))
+        tables = {"captures": lambda: table_of_captures(a.renderer, a.groundtruth, a.only),
+                  "lenses": lambda: table_of_lenses(a.renderer, scenes, a.only),
+                  "magnifications": lambda: table_of_magnifications(a.renderer, scenes, a.only),
+                  "mosaics": lambda: table_of_mosaics(a.renderer, scenes, a.only)}
+        names = a.tables.split(",")
+        for name in names:
+            record = results.context()
+            arguments = copy.copy(a)
+            if a.name and len(names) > 1:
+                arguments.name = f"{a.name}-{name}"
+            tables[name]().publish(arguments, "lens_weights.py " + name, record)
     return 0
 
 

@@ -2,7 +2,8 @@
 """Renders the ground truth cases, compares them with true thin-lens pictures and prints the table
 of doc/quality.md.
 
-usage: quality.py LFRENDERER GROUNDTRUTH [--write doc/quality.md] [--check] [--keep DIR]
+usage: quality.py LFRENDERER GROUNDTRUTH [--name NAME] [--write doc/quality.md] [--check] [--keep DIR]
+       quality.py --again JSON [--write doc/quality.md]
 
 GROUNDTRUTH  folder with cases.json, gt/, data/, compare.py and exr2pfm.py
 --check      exit 1 if a case falls more than 0.3 dB below the columns of its README: scatter for
@@ -22,9 +23,12 @@ import tempfile
 import numpy as np
 from PIL import Image
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "bench"))
+import record as results
+
 ALLOWED_LOSS_DB = 0.3
-THESIS = "--estimator nearest --lens-weights none"
-BILINEAR = "--estimator bilinear --filter bilinear --lens-weights none"
+THESIS = "--mode collect --estimator nearest --lens-weights none"
+BILINEAR = "--mode collect --estimator bilinear --filter bilinear --lens-weights none"
 
 
 def camera_axes(case):
@@ -83,11 +87,8 @@ def mosaic(calibration, folder):
 
 
 def render(renderer, calibration, path, folder, options):
-    result = subprocess.run([renderer, calibration, path, "-o", folder, "--format", "exr-float",
-                             "-q", "--no-contact-sheet", *options.split()],
-                            stderr=subprocess.PIPE, text=True)
-    if result.returncode != 0:
-        sys.exit(result.stderr)
+    results.call([renderer, calibration, path, "-o", folder, "--format", "exr-float", "-q", "--no-contact-sheet",
+                  *options.split()])
     report = json.loads((folder / "report.json").read_text())
     return folder / "frame_0001.exr", report["frames"][0]["lf_images"]
 
@@ -111,64 +112,75 @@ def reference_columns(truth_folder):
     return columns
 
 
-def write_table(page, script, lines):
-    """Puts the lines where the page has the script's table."""
-    begin, end = f"<!-- table: scripts/{script} -->", "<!-- end of table -->"
-    before, rest = page.read_text().split(begin)
-    after = rest.split(end, 1)[1]
-    page.write_text("\n".join([before + begin, *lines, end + after]))
+COLUMNS = ("nearest", "scatter", "bilinear", "gather", "default", "bayer_nearest", "bayer_default")
+
+
+def measure(renderer, truth, folder):
+    """One row for each case: {column: dB}, and how many LF images took part."""
+    references, bayer, rows = reference_columns(truth), {}, []
+    for case in json.loads((truth / "cases.json").read_text())["cases"]:
+        if not case["aperture_diameter_m"]:
+            continue  # a pinhole: no recorded ray passes it
+        name, calibration = case["name"], truth / case["light_field"]
+        work = folder / name
+        work.mkdir(parents=True, exist_ok=True)
+        path = work / "path.yaml"
+        path.write_text(path_yaml(case))
+        if calibration not in bayer:
+            bayer[calibration] = mosaic(calibration, folder / ("bayer_" + calibration.parent.name))
+        row = {"case": name, "scatter": references[name][0], "gather": references[name][1]}
+        for column, light_field, options in (
+                ("nearest", calibration, THESIS), ("bilinear", calibration, BILINEAR), ("default", calibration, ""),
+                ("bayer_nearest", bayer[calibration], THESIS), ("bayer_default", bayer[calibration], "")):
+            frame, images = render(renderer, light_field, path, work / column, options)
+            row[column] = psnr(truth, case, frame)
+            row.setdefault("lf_images", images)
+        rows.append(row)
+        print(row, file=sys.stderr, flush=True)
+    return rows
+
+
+def table(rows):
+    lines = ["| case | LF images | nearest | reference | bilinear | reference | default | Bayer, nearest | "
+             "Bayer, default |", "| --- " * 9 + "|"]
+    return lines + [f"| {row['case']} | {row['lf_images']} | " + " | ".join(f"{row[column]:.2f}" for column in COLUMNS) +
+                    " |" for row in rows]
+
+
+def faults_of(rows):
+    """The cases that are too far below the reference."""
+    for row in rows:
+        for column, least in (("nearest", row["scatter"]), ("bilinear", row["gather"]),
+                              ("default", max(row["scatter"], row["gather"]))):
+            if row[column] < least - ALLOWED_LOSS_DB:
+                yield f"{row['case']}, {column}: {row[column]:.2f} dB, below {least:.2f} - {ALLOWED_LOSS_DB}"
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("renderer")
-    parser.add_argument("groundtruth", type=pathlib.Path)
-    parser.add_argument("--write", type=pathlib.Path)
+    parser.add_argument("renderer", type=pathlib.Path, nargs="?")
+    parser.add_argument("groundtruth", type=pathlib.Path, nargs="?")
     parser.add_argument("--check", action="store_true")
     parser.add_argument("--keep", type=pathlib.Path)
+    results.add_options(parser)
     arguments = parser.parse_args()
-    truth = arguments.groundtruth
-    if not (truth / "cases.json").exists():
-        print(f"skipped: no ground truth at {truth} (set LF_TEST_DATA)")
-        return 77
-    references = reference_columns(truth)
-    rows, faults = [], []
-    with tempfile.TemporaryDirectory() as temporary:
-        folder = arguments.keep or pathlib.Path(temporary)
-        bayer = {}
-        for case in json.loads((truth / "cases.json").read_text())["cases"]:
-            if not case["aperture_diameter_m"]:
-                continue  # a pinhole: no recorded ray passes it
-            name, calibration = case["name"], truth / case["light_field"]
-            work = folder / name
-            work.mkdir(parents=True, exist_ok=True)
-            path = work / "path.yaml"
-            path.write_text(path_yaml(case))
-            if calibration not in bayer:
-                bayer[calibration] = mosaic(calibration, folder / ("bayer_" + calibration.parent.name))
-            def decibels(light_field, name, options):
-                frame, images = render(arguments.renderer, light_field, path, work / name, options)
-                return psnr(truth, case, frame), images
-
-            nearest, images = decibels(calibration, "nearest", THESIS)
-            bilinear, _ = decibels(calibration, "bilinear", BILINEAR)
-            default, _ = decibels(calibration, "default", "")
-            bayer_nearest, _ = decibels(bayer[calibration], "bayer_nearest", THESIS)
-            bayer_default, _ = decibels(bayer[calibration], "bayer", "")
-            scatter, gather = references[name]
-            rows.append(f"| {name} | {images} | {nearest:.2f} | {scatter:.2f} | {bilinear:.2f} | "
-                        f"{gather:.2f} | {default:.2f} | {bayer_nearest:.2f} | {bayer_default:.2f} |")
-            print(rows[-1], flush=True)
-            for what, db, least in (("nearest", nearest, scatter), ("bilinear", bilinear, gather),
-                                    ("default", default, max(scatter, gather))):
-                if db < least - ALLOWED_LOSS_DB:
-                    faults.append(f"{name}, {what}: {db:.2f} dB, below {least:.2f} - "
-                                  f"{ALLOWED_LOSS_DB}")
-    if arguments.write:
-        write_table(arguments.write, "quality.py",
-                    ["| case | LF images | nearest | reference | bilinear | reference | default | "
-                     "Bayer, nearest | Bayer, default |", "| --- " * 9 + "|"] + rows)
+    if arguments.again:
+        record = json.loads(arguments.again.read_text())
+    elif arguments.groundtruth:
+        if not (arguments.groundtruth / "cases.json").exists():
+            print(f"skipped: no ground truth at {arguments.groundtruth} (set LF_TEST_DATA)")
+            return 77
+        record = results.context()
+        with tempfile.TemporaryDirectory() as temporary:
+            record["rows"] = measure(arguments.renderer, arguments.groundtruth,
+                                     arguments.keep or pathlib.Path(temporary))
+    else:
+        parser.error("LFRENDERER GROUNDTRUTH or --again is needed")
+    rows = record["rows"]
+    results.publish(arguments, "scripts/quality.py", record,
+                    "\n".join([results.sentence(record), ""] + table(rows)) + "\n")
+    faults = list(faults_of(rows))
     print("\n".join(faults) or f"{len(rows)} cases, none more than {ALLOWED_LOSS_DB} dB below")
     return 1 if arguments.check and (faults or not rows) else 0
 

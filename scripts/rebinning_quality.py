@@ -2,8 +2,9 @@
 """Renders light fields whose true thin-lens pictures are known with collected rays, rebinned rays
 and both, and prints the table of doc/rebinning.md.
 
-usage: rebinning_quality.py LFRENDERER GROUNDTRUTH [--write doc/rebinning.md] [--only SUBSTRING]
+usage: rebinning_quality.py LFRENDERER GROUNDTRUTH [--name NAME] [--write doc/rebinning.md] [--only SUBSTRING]
                             [--check]
+       rebinning_quality.py --again JSON [--write doc/rebinning.md]
 
 GROUNDTRUTH  as for quality.py
 --check      exit 1 if a hybrid frame is more than 0.05 dB below the one that is collected, or, of
@@ -18,13 +19,15 @@ import tempfile
 
 import lens_weights
 import quality
+from quality import results
 
+# "with lens weights" is the default; "hybrid" is it, but for its mode.
 COLUMNS = {
-    "collected, nearest": "--estimator nearest --lens-weights none",
-    "collected": "--lens-weights none",
+    "collected, nearest": "--mode collect --estimator nearest --lens-weights none",
+    "collected": "--mode collect --estimator bilinear --filter bicubic --lens-weights none",
     "with lens weights": "",
     "rebinned": "--mode rebin",
-    "hybrid, no weights": "--mode hybrid --lens-weights none",
+    "hybrid, no weights": "--mode hybrid --estimator bilinear --filter bicubic --lens-weights none",
     "hybrid": "--mode hybrid",
 }
 
@@ -94,16 +97,22 @@ def faults_of(name, found):
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("renderer")
-    parser.add_argument("groundtruth", type=pathlib.Path)
-    parser.add_argument("--write", type=pathlib.Path)
+    parser.add_argument("renderer", type=pathlib.Path, nargs="?")
+    parser.add_argument("groundtruth", type=pathlib.Path, nargs="?")
     parser.add_argument("--only", default="")
     parser.add_argument("--check", action="store_true")
+    results.add_options(parser)
     arguments = parser.parse_args()
+    if arguments.again:
+        lens_weights.publish_again(arguments)
+        return 0
+    if not arguments.groundtruth:
+        parser.error("LFRENDERER GROUNDTRUTH or --again is needed")
     if not (arguments.groundtruth / "cases.json").exists():
         print(f"skipped: no ground truth at {arguments.groundtruth} (set LF_TEST_DATA)")
         return 77
     table = lens_weights.Table("case", *COLUMNS)
+    record = results.context() | {"options": COLUMNS}
     faults = []
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
@@ -117,8 +126,7 @@ def main():
                      for column, options in COLUMNS.items()}
             table.add(name, *(lens_weights.text(found[column]) for column in COLUMNS))
             faults += faults_of(name, found)
-    if arguments.write:
-        quality.write_table(arguments.write, "rebinning_quality.py", table.rows)
+    table.publish(arguments, "rebinning_quality.py", record)
     for fault in faults:
         print("fault:", fault)
     return 1 if arguments.check and faults else 0

@@ -3,6 +3,8 @@
 
 usage: check_house_test.py REPOSITORY
 """
+import hashlib
+import json
 import pathlib
 import subprocess
 import sys
@@ -72,10 +74,99 @@ class PlantedFaults(unittest.TestCase):
         self.expect("check_includes.py",
                     faults=["lf/core/a.cc:1", "lf/core/a.cc:2", "lf/camera/b.h:2"])
 
+    RENDERS = ["lfrenderer f p.yaml -o out --mode collect --estimator nearest --lens-weights none",
+               "lfrenderer f p.yaml -o out"]
+    DEFAULTS = ["lfrenderer --mode collect", "lfrenderer --estimator auto", "lfrenderer --lens-weights auto"]
+
+    def plant_table(self, name, text="| a |\n| --- |\n| 1.25 s |\n", **changed):
+        """A page with one table, and its record."""
+        record = {"table": f"bench/{name}.py", "commit": "abc", "date": "2026-01-01", "machine": "m", "load": 0,
+                  "commands": self.RENDERS, "defaults": self.DEFAULTS} | changed
+        record.setdefault("defaults_hash",
+                          hashlib.sha256("\n".join(record["defaults"]).encode()).hexdigest()[:16])
+        self.plant(f"doc/{name}.md", f"# Page\n<!-- table: bench/{name}.py -->\n{text}<!-- end of table -->\n")
+        self.plant(f"bench/results/{name}.json", json.dumps(record))
+        self.plant(f"bench/results/{name}.md", text)
+        self.plant("bench/defaults.txt", "# Listed.\n" + "\n".join(self.DEFAULTS) + "\n")
+
+    def test_tables_fit_their_records_and_the_defaults_of_today(self):
+        self.plant_table("fine")
+        self.plant_table("more", defaults=self.DEFAULTS[:1])  # options that are new since
+        self.expect("check_house.py", "tables", faults=[])
+        self.plant_table("old", defaults=["lfrenderer --mode rebin", *self.DEFAULTS[1:]])
+        self.plant_table("edited")
+        self.plant("bench/results/edited.md", "| a |\n| --- |\n| 1.24 s |\n")
+        self.plant_table("hash", defaults_hash="0" * 16)
+        self.plant_table("unnamed", commands=self.RENDERS[1:])
+        self.plant_table("no-default", commands=self.RENDERS[:1])
+        self.plant_table("named-default", commands=[*self.RENDERS[:1],
+                                                    "lfrenderer f p.yaml -o o --mode collect --lens-weights auto"])
+        self.plant_table("bare")
+        (self.root / "bench/results/bare.json").unlink()
+        self.plant("bench/results/lonely.json", json.dumps({"table": "bench/lonely.py"}))
+        self.plant("bench/results/broken.json", "{}")
+        self.expect("check_house.py", "tables", faults=[
+            "doc/old.md:2: made when a default was 'lfrenderer --mode rebin'", "doc/edited.md:2: the table is not that",
+            "doc/hash.md:2: bench/results/hash.json: defaults_hash",
+            "doc/unnamed.md:2: bench/results/unnamed.json: none of its renders names --mode",
+            "doc/no-default.md:2: bench/results/no-default.json: none of its renders is that of the defaults",
+            "doc/bare.md:2: no record", "bench/results/lonely.json: no page shows",
+            "bench/results/broken.json: not the record"])
+
+    def test_tables_of_figures_need_markers(self):
+        figures = "| a | b |\n| --- | --- |\n| 1.5 s | 3 ms |\n| 7 MiB | 2.25 |\n"
+        self.plant("doc/bare.md", figures)
+        self.plant("doc/said.md", "<!-- table by hand: a history -->\n\n" + figures)
+        self.plant("doc/few.md", "| a | b |\n| --- | --- |\n| 1.5 s | 3 ms |\n| Eq. 2.25 | Fig. 2.25, 2.26 |\n")
+        self.plant("doc/open.md", "<!-- table: bench/x.py -->\n")
+        self.plant("doc/closed.md", "<!-- end of table -->\n")
+        self.expect("check_house.py", "tables", faults=[
+            "doc/bare.md:1: a table of figures without markers", "doc/open.md:1: the table has no line",
+            "doc/closed.md:1: a table ends that has no beginning"])
+
+    def git(self, *words):
+        done = subprocess.run(["git", "-c", "user.name=a", "-c", "user.email=a@example.org", *words], cwd=self.root,
+                              check=True, capture_output=True, text=True)
+        return done.stdout.strip()
+
+    def test_tables_are_made_from_commits_behind_head(self):
+        self.plant_table("fine")
+        code, lines = run("check_house.py", self.root, "commits")
+        self.assertEqual(code, 77, lines)  # no repository: nothing to look into
+        self.assertIn("skipped", lines[0])
+        self.git("init", "-q")
+        self.git("commit", "-q", "--allow-empty", "-m", "first")
+        first = self.git("rev-parse", "--short", "HEAD")
+        self.git("checkout", "-q", "-b", "beside")
+        self.git("commit", "-q", "--allow-empty", "-m", "beside")
+        beside = self.git("rev-parse", "--short", "HEAD")
+        self.git("checkout", "-q", "-")
+        self.git("commit", "-q", "--allow-empty", "-m", "second")
+        self.plant_table("fine", commit=first)
+        self.plant_table("beside", commit=beside)
+        self.plant_table("changed", commit=f"{first} with changes")
+        self.plant_table("unknown", commit="0123456")
+        self.git("add", ".")
+        self.expect("check_house.py", "commits", faults=[f"doc/beside.md:2: made from commit {beside}, which HEAD",
+                                                         f"doc/changed.md:2: made from commit {first} with changes",
+                                                         "doc/unknown.md:2: made from commit 0123456, which HEAD"])
+
+    def test_a_shallow_clone_cannot_tell_commits(self):
+        self.plant_table("fine")
+        self.git("init", "-q")
+        for message in ("first", "second"):
+            self.git("add", ".")
+            self.git("commit", "-q", "--allow-empty", "-m", message)
+        clone = self.root / "clone"
+        self.git("clone", "-q", "--depth", "1", f"file://{self.root}", str(clone))
+        code, lines = run("check_house.py", clone, "commits")
+        self.assertEqual(code, 77, lines)
+        self.assertIn("shallow", lines[0])
+
     def test_a_clean_house_has_no_faults(self):
         self.plant("lf/core/CMakeLists.txt", "lf_folder(core SOURCES a.cc)\n")
         self.plant("lf/core/a.cc", "#include <vector>\n")
-        for check in ("lengths", "paths", "links", "pages"):
+        for check in ("lengths", "paths", "links", "pages", "tables"):
             self.expect("check_house.py", check, faults=[])
         self.expect("check_includes.py", faults=[])
 

@@ -1,0 +1,139 @@
+#!/usr/bin/python3
+"""Makes the tables of doc/ again, one after the other, each with its record in bench/results/.
+
+usage: bench/tables.py BUILD_DIR [--only NAME,...] [--resume] [--tiny] [--data ../shared]
+       bench/tables.py --list
+
+--only    these tables alone (names of --list)
+--resume  leave out tables whose record is of these sources and these defaults already
+--tiny    run every script with settings of a few seconds, and write nothing: do they work?
+--data    folder with data/blender-shop, data/beer-colmap and groundtruth
+
+Sources must be committed: a record names the commit that it was made from. A table that fails is told at the end; the
+others are made all the same. bench/run tables builds first. On two free cores all of it takes about 35 minutes.
+"""
+import argparse
+import json
+import pathlib
+import shlex
+import subprocess
+import sys
+import time
+
+import defaults
+import record as results
+
+ROOT = results.HERE.parent
+# name of the record: (page, script with its words, words of --tiny)
+TABLES = {
+    "workloads": ("performance", "bench/workloads.py {build}",
+                  "--density 0.005 --size 48x32 --runs 1 --threads 2 --only stack"),
+    "opencv-blender-shop": ("performance", "bench/compare_opencv.py {build} {data}/data/blender-shop",
+                            "--frames 1 --rounds 1"),
+    "million_cameras": ("performance", "bench/million_cameras.py {build}", "--counts 1000 --frames 3 --runs 1"),
+    "packages": ("performance", "bench/packages.py {build}", "--density 0.005 --size 48x32 --runs 1"),
+    "hybrid_cost": ("rebinning", "bench/hybrid_cost.py {build} --runs 1",
+                    "--density 0.005 --size 48x32 --only stack"),
+    "codec_speed": ("codec", "bench/codec_speed.py {build} --data {data} --runs 3", "--runs 1"),
+    "scale": ("performance", "bench/scale.py {build}", "--counts 100,200 --weighed 100 --frames 5 --packages 2"),
+    "memory_bound": ("performance", "bench/memory_bound.py {build} {data}/data/blender-shop", "--frames 1 --images 4"),
+    "packed_stores": ("codec", "bench/packed_stores.py {build}", "--count 4 --size 64x64 --runs 1"),
+    "codec": ("codec", "bench/codec_table.py {build} --data {data} --pictures doc/images",
+              "--only synth --views 3 --size 64x48 --frames 1"),
+    "quality": ("quality", "scripts/quality.py {build}/bin/lfrenderer {data}/groundtruth", ""),
+    "rebinning_quality": ("rebinning", "scripts/rebinning_quality.py {build}/bin/lfrenderer {data}/groundtruth",
+                          "--only band_d3"),
+    "lens_weights-captures": ("lens-integral",
+                              "scripts/lens_weights.py {build}/bin/lfrenderer {data}/groundtruth --tables captures",
+                              "--only band_d3"),
+    "lens_weights-lenses": ("lens-integral",
+                            "scripts/lens_weights.py {build}/bin/lfrenderer {data}/groundtruth --tables lenses",
+                            "--only nothing"),
+    "lens_weights-magnifications": ("lens-integral",
+                                    "scripts/lens_weights.py {build}/bin/lfrenderer {data}/groundtruth "
+                                    "--tables magnifications", "--only nothing"),
+    "lens_weights-mosaics": ("quality",
+                             "scripts/lens_weights.py {build}/bin/lfrenderer {data}/groundtruth --tables mosaics",
+                             "--only nothing"),
+    "image_orders": ("performance", "bench/image_orders.py {build}", "--density 0.002"),
+    "forecast_table": ("cluster", "bench/forecast_table.py {build}", "--count 10000 --packages 1,4"),
+    "ray_usage": ("quality", "bench/ray_usage.py {build}", "--density 0.001"),
+    "selection_table": ("performance", "bench/selection_table.py {build}", ""),
+    "rebinning_peers": ("rebinning", "bench/rebinning_peers.py {build}", "--runs 1"),
+    "kernels": ("performance", "bench/kernel_table.py {build} --rounds 3", "--cases disk --rounds 1"),
+    "kernels-of-elements": ("performance", "bench/kernel_table.py {build} --rounds 3 --cases "
+                            "'disk|rgb|bilinear|bicubic|mosaic|bilinear_0.5'", "--cases disk --rounds 1"),
+    "wavelet_choice": ("codec", "bench/wavelet_choice.py --data {data}", None),
+}
+
+def command_of(name, arguments):
+    page, script, tiny = TABLES[name]
+    words = shlex.split(script.format(build=arguments.build, data=arguments.data))
+    if arguments.tiny:
+        words = [word for i, word in enumerate(words) if "--pictures" not in words[max(0, i - 1):i + 1]]
+        return words + shlex.split(tiny)
+    return words + ["--name", name, "--write", f"doc/{page}.md"]
+
+
+def is_fresh(name, build):
+    """Whether the record is of these sources and of what the programs say today."""
+    path = results.HERE / "results" / f"{name}.json"
+    try:
+        record = json.loads(path.read_text())
+        commit, lines = record["commit"], record["defaults"]
+    except (OSError, ValueError, KeyError):
+        return False
+    same = subprocess.run(["git", "diff", "--quiet", commit, "HEAD", "--", *results.SOURCES], cwd=results.HERE,
+                          capture_output=True)
+    today = defaults.of_programs([build / "bin" / name for name in defaults.PROGRAMS])
+    return same.returncode == 0 and set(lines) <= set(today)
+
+
+def make(names, arguments):
+    """Runs the scripts; returns the names of those that failed."""
+    failed = []
+    for number, name in enumerate(names, 1):
+        if arguments.tiny and TABLES[name][2] is None:
+            print(f"[{number}/{len(names)}] {name}: no tiny settings, left out", flush=True)
+            continue
+        if arguments.resume and is_fresh(name, arguments.build.resolve()):
+            print(f"[{number}/{len(names)}] {name}: is of these sources", flush=True)
+            continue
+        words = command_of(name, arguments)
+        print(f"[{number}/{len(names)}] {name}: {shlex.join(words)}", flush=True)
+        begin = time.monotonic()
+        done = subprocess.run([ROOT / words[0], *words[1:]], cwd=ROOT)
+        print(f"[{number}/{len(names)}] {name}: {time.monotonic() - begin:.0f} s, exit code {done.returncode}", flush=True)
+        if done.returncode != 0:
+            failed.append(name)
+    return failed
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=pathlib.Path, nargs="?")
+    parser.add_argument("--only", default=",".join(TABLES))
+    parser.add_argument("--resume", action="store_true")
+    parser.add_argument("--tiny", action="store_true")
+    parser.add_argument("--data", type=pathlib.Path, default=pathlib.Path("../shared"))
+    parser.add_argument("--list", action="store_true")
+    arguments = parser.parse_args()
+    if arguments.list:
+        print("\n".join(f"{name:28} doc/{page}.md  {script}" for name, (page, script, _) in TABLES.items()))
+        return 0
+    if not arguments.build:
+        parser.error("BUILD_DIR or --list is needed")
+    names = arguments.only.split(",")
+    unknown = [name for name in names if name not in TABLES]
+    if unknown:
+        parser.error(f"--only {','.join(unknown)}: expected names of --list")
+    if not arguments.tiny and "changes" in results.commit():
+        print("error: sources are not committed: a record could not say what it was made from", file=sys.stderr)
+        return 1
+    failed = make(names, arguments)
+    print(f"{len(names) - len(failed)} of {len(names)} done" + (f"; failed: {', '.join(failed)}" if failed else ""))
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,207 @@
+"""The rules of tables of figures, for check_house.py: each has a record, which says when, by which programs and by
+which commands it was made (bench/record.py).
+
+A table of a page stands between <!-- table: SCRIPT --> and <!-- end of table -->. A table of figures that is not
+made by a script is preceded by <!-- table by hand: WHY -->.
+"""
+import hashlib
+import json
+import pathlib
+import re
+import shlex
+import subprocess
+
+RECORDS, LISTING = "bench/results", "bench/defaults.txt"
+BEGIN = re.compile(r"^<!-- table: (.+?) -->$")
+END = "<!-- end of table -->"
+BY_HAND = re.compile(r"^<!-- table by hand: .+ -->$")
+# A measured value: a number and its unit, or a number with two decimals.
+FIGURE = re.compile(r"(?<![\w.-])\d[\d,.]*(?:(?: to [\d.]+)? ?(?:ns|µs|ms|s|h|min|dB|MB|GB|MiB|GiB|MB/s|GB/s|M/s|"
+                    r"CPU s|x|×)(?![\w-])|(?<=\d\.\d\d)(?![\w.]))")
+REFERENCE = re.compile(r"\b(?:Eq|Fig|Figures?|Tables?)\b\.?[\d\s.,–-]+")  # 2.18 is no figure there
+FEWEST_FIGURES = 4
+# What a render depends on most: one command of a table names all of them, another one none.
+CHOICES = ("--mode", "--estimator", "--lens-weights")
+RENDERERS = ("lfrenderer", "lfsubmit")
+
+
+class Table:
+    """A table between markers: the page, the line of its first marker, the marker's words, the text."""
+
+    def __init__(self, page, line, words, text):
+        self.page, self.line, self.words, self.text = page, line, words, text
+
+
+def tables_of(root, page, lines):
+    """The tables of a page, and the faults of its markers."""
+    tables, faults, begin = [], [], None
+    for number, line in enumerate(lines, 1):
+        match = BEGIN.match(line)
+        if match and begin:
+            faults.append((number, f"a table begins within that of line {begin[0]}"))
+        if match:
+            begin = (number, match[1])
+        elif line == END and begin:
+            tables.append(Table(page.relative_to(root), *begin, "\n".join(lines[begin[0]:number - 1]) + "\n"))
+            begin = None
+        elif line == END:
+            faults.append((number, "a table ends that has no beginning"))
+    if begin:
+        faults.append((begin[0], f"the table has no line {END}"))
+    return tables, faults
+
+
+def tables_without_markers(lines):
+    """The first lines of tables that have figures, and neither markers nor a word why."""
+    inside, begin, figures, by_hand = False, None, 0, False
+    for number, line in enumerate([*lines, ""], 1):
+        if line.startswith("|"):
+            begin = begin or number
+            figures += len(FIGURE.findall(REFERENCE.sub("", line)))
+        else:
+            if begin and figures >= FEWEST_FIGURES and not inside and not by_hand:
+                yield begin
+            if line.strip():  # an empty line may stand between the word and the table
+                by_hand = bool(BY_HAND.match(line))
+            if BEGIN.match(line) or line == END:
+                inside = line != END
+            begin, figures = None, 0
+
+
+def is_page(root, path):
+    return path.suffix == ".md" and path.relative_to(root).parts[0] == "doc"
+
+
+def records_of(root, files):
+    """{marker's words: (file, record)}, and the faults of the records' files."""
+    records, faults = {}, []
+    for path in files:
+        if path.suffix != ".json" or path.parent != root / RECORDS:
+            continue
+        name = path.relative_to(root)
+        try:
+            record = json.loads(path.read_text())
+            words = record["table"]
+        except (ValueError, KeyError) as error:
+            faults.append(f"{name}: not the record of a table: {error!r}")
+            continue
+        if words in records:
+            faults.append(f"{name}: {records[words][0].relative_to(root)} is of the same table, {words}")
+        records[words] = (path, record)
+    return records, faults
+
+
+def default_values(record):
+    """{"--estimator": {"auto", "bilinear"}, ...}: what --help shows, and what small renders said of themselves."""
+    values = {choice: set() for choice in (*CHOICES, "--filter")}
+    for line in record["defaults"]:
+        program, _, rest = line.partition(" ")
+        words = rest.split()
+        if program == "lfrenderer" and words[0] in values:
+            values[words[0]].add(words[1])
+        elif program == "lfrenderer" and words[0].endswith(":"):
+            for key, value in (part.split() for part in rest.partition(": ")[2].split(", ")):
+                values.get("--" + key.replace("_", "-"), set()).add(value)
+    return values
+
+
+def missing_choices(record):
+    """What the commands of a record lack: the choices named, and the defaults beside them."""
+    renders = [shlex.split(command) for command in record["commands"]]
+    renders = [words for words in renders if words[0] in RENDERERS]
+    if not renders:
+        return
+    if not any(set(CHOICES) <= set(words) for words in renders):
+        yield f"none of its renders names {', '.join(CHOICES)}"
+    values = default_values(record)
+    if not any(all(words[i + 1] in values[word] for i, word in enumerate(words[:-1]) if word in values)
+               for words in renders):
+        yield "none of its renders is that of the defaults"
+
+
+def changed_defaults(record, today):
+    return [line for line in record["defaults"] if line not in today]
+
+
+def faults_of(root, table, records, today):
+    """What is wrong with one table."""
+    if table.words not in records:
+        yield f"no record in {RECORDS} is of this table: make it again"
+        return
+    path, record = records[table.words]
+    name = path.relative_to(root)
+    absent = [key for key in ("commit", "date", "machine", "load", "commands", "defaults", "defaults_hash")
+              if key not in record]
+    if absent:
+        yield f"{name} has no {', '.join(absent)}: make the table again"
+        return
+    text = path.with_suffix(".md")
+    if not text.exists() or text.read_text() != table.text:
+        yield f"the table is not that of {text.relative_to(root)}: tables are not edited"
+    if hashlib.sha256("\n".join(record["defaults"]).encode()).hexdigest()[:16] != record["defaults_hash"]:
+        yield f"{name}: defaults_hash is not that of its defaults"
+    changed = changed_defaults(record, today)
+    if changed:
+        more = f" and {len(changed) - 1} more" if len(changed) > 1 else ""
+        yield f"made when a default was '{changed[0]}'{more}, which is another one today: make it again"
+    for fault in missing_choices(record):
+        yield f"{name}: {fault}"
+
+
+def all_tables(root, files, text_lines):
+    """Tables of all pages, and the faults of their markers, as lines."""
+    tables, faults = [], []
+    for page in filter(lambda path: is_page(root, path), files):
+        of_page, wrong = tables_of(root, page, text_lines(page))
+        tables += of_page
+        faults += [f"{page.relative_to(root)}:{number}: {fault}" for number, fault in wrong]
+    return tables, faults
+
+
+def check_tables(root, files, text_lines):
+    """Every table of figures has a record that fits it and the programs of today."""
+    tables, faults = all_tables(root, files, text_lines)
+    yield from faults
+    for page in filter(lambda path: is_page(root, path), files):
+        for number in tables_without_markers(text_lines(page)):
+            yield (f"{page.relative_to(root)}:{number}: a table of figures without markers: make it by a script, "
+                   "or say why not in a line <!-- table by hand: ... --> before it")
+    records, faults = records_of(root, files)
+    yield from faults
+    listing = root / LISTING
+    today = set(listing.read_text().splitlines()) if listing.exists() else set()
+    for table in tables:
+        for fault in faults_of(root, table, records, today):
+            yield f"{table.page}:{table.line}: {fault}"
+    shown = {table.words for table in tables}
+    for words, (path, _) in records.items():
+        if words not in shown:
+            yield f"{path.relative_to(root)}: no page shows its table, {words}"
+
+
+def git(root, *words):
+    return subprocess.run(["git", "-C", root, *words], capture_output=True, text=True)
+
+
+def why_no_history(root):
+    """A reason why commits cannot be looked up; empty if they can."""
+    top = git(root, "rev-parse", "--show-toplevel")
+    if top.returncode != 0 or pathlib.Path(top.stdout.strip()).resolve() != root.resolve():
+        return "this is no clone of the repository, but its files alone"
+    if git(root, "rev-parse", "--is-shallow-repository").stdout.strip() == "true":
+        return "this clone is shallow: git fetch --unshallow"
+    return ""
+
+
+def check_commits(root, files, text_lines):
+    """Every table was made from a commit that HEAD has behind it."""
+    tables, _ = all_tables(root, files, text_lines)
+    records, _ = records_of(root, files)
+    for table in tables:
+        if table.words not in records:
+            continue  # a fault of check_tables
+        words = str(records[table.words][1].get("commit", "(none)"))
+        if git(root, "merge-base", "--is-ancestor", words.split()[0], "HEAD").returncode != 0:
+            yield f"{table.page}:{table.line}: made from commit {words}, which HEAD has not behind it: make it again"
+        elif "with changes" in words:
+            yield f"{table.page}:{table.line}: made from commit {words}, which nobody else has: make it again"
