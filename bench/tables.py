@@ -56,7 +56,7 @@ TABLES = {
                              "scripts/lens_weights.py {build}/bin/lfrenderer {data}/groundtruth --tables mosaics",
                              "--only nothing"),
     "image_orders": ("performance", "bench/image_orders.py {build}", "--density 0.002"),
-    "forecast_table": ("cluster", "bench/forecast_table.py {build}", "--count 10000 --packages 1,4"),
+    "forecast_table": ("cluster", "bench/forecast_table.py {build}", "--count 400 --packages 1,2"),
     "ray_usage": ("quality", "bench/ray_usage.py {build}", "--density 0.001"),
     "selection_table": ("performance", "bench/selection_table.py {build}", ""),
     "rebinning_peers": ("rebinning", "bench/rebinning_peers.py {build}", "--runs 1"),
