@@ -28,9 +28,9 @@ def run(build, rounds, cases):
     """{case: {contender: [ns per ray of round 0, 1, ...]}}, {case: how our frame differs from the
     reference's}, and what was compiled with"""
     with tempfile.NamedTemporaryFile(suffix=".json") as out:
-        subprocess.run(results.note([build / "bench/lf_collection_peers_bench", f"--rounds={rounds}",
-                                     f"--benchmark_filter=^({cases})/", "--benchmark_out_format=json"]) +
-                       [f"--benchmark_out={out.name}"], check=True, stdout=sys.stderr)
+        subprocess.run([build / "bench/lf_collection_peers_bench", f"--rounds={rounds}",
+                        f"--benchmark_filter=^({cases})/", f"--benchmark_out={out.name}",
+                        "--benchmark_out_format=json"], check=True, stdout=sys.stderr)
         report = json.load(open(out.name))
     result, agreement = {}, {}
     for row in report["benchmarks"]:

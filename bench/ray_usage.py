@@ -6,7 +6,7 @@ usage: bench/ray_usage.py BUILD_DIR [--density 1] [--size 480x320] [--name NAME]
 
 The movement `short` of Table 5.1 through an LF camera grid as dense as the thesis's (calibration only: the
 law's spans tell, without pixels). LF images are ordered by their usage, accepted / tried, over all frames.
-Writes doc/images/ray_usage.svg, and with --write the figures into PAGE.
+With --write the figures go into PAGE, and the picture into doc/images/ray_usage.svg.
 """
 import argparse
 import csv
@@ -85,7 +85,8 @@ def main():
     elif arguments.build:
         record = results.context() | {"density": arguments.density, "size": arguments.size}
         images = usage(arguments.build.resolve(), arguments.density, arguments.size)
-        draw(images)
+        if arguments.write:  # the picture belongs to the page
+            draw(images)
         record["frustum"] = row_of(images, 0)
         record["rectangles"] = row_of([image for image in images if image[1] > 0], 1)
     else:

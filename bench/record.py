@@ -4,15 +4,17 @@ A script that makes a table does four things:
 
     results.add_options(parser)                        # --name, --write, --again
     record = results.context()                         # before anything is measured
-    results.call([build / "bin/lfsynth", "chart", ...])           # runs, and notes the command
-    used = results.timed([build / "bin/lfrenderer", field, ...])  # the same, measured; or results.note() and run it
+    results.call([build / "bin/lfsynth", "chart", ...])           # runs a program; fails with what it said
+    used = results.timed([build / "bin/lfrenderer", field, ...])  # the same, measured
     results.publish(arguments, "script.py", record, text)         # prints, writes bench/results/ and the page
 
-The record, bench/results/NAME.json, has
+Every call of our programs and benchmarks is noted, however a script makes it. The record,
+bench/results/NAME.json, has
 
     table     the words of the marker in the page: <!-- table: bench/script.py -->
     commit    of what was compiled and of the scripts; "with changes" if they were changed since
     date, machine, load when started
+    made_by   the command line of the script
     commands  each different command, with its options; of paths the last part alone
     defaults  the lines of bench/defaults.txt of the programs among the commands, as these programs say them
     defaults_hash   of these lines
@@ -39,6 +41,7 @@ SOURCES = ("../lf", "../tools", "../cmake", "../CMakeLists.txt", "*.cc", "*.h", 
 
 _commands = []  # of this run, each once
 _programs = {}  # name -> path
+_is_noting = True
 
 
 def git(*words):
@@ -71,8 +74,8 @@ def sentence(record):
 
 def shown(word):
     """A word of a command as records show it: the last part of a path, without the machine's folders."""
-    word = str(word)
-    return pathlib.Path(word).name if word.startswith(("/", "./", "../")) else word
+    option, equals, value = str(word).rpartition("=")
+    return option + equals + (pathlib.Path(value).name if value.startswith(("/", "./", "../")) else value)
 
 
 def note(words):
@@ -87,9 +90,23 @@ def note(words):
     return words
 
 
+def _note_call(event, details):
+    """Of Python's audit events: a process that is about to be started."""
+    if event != "subprocess.Popen" or not _is_noting:
+        return
+    words = details[1] if isinstance(details[1], (list, tuple)) else [details[1]]
+    name = pathlib.Path(os.fsdecode(words[0])).name
+    if name in defaults.PROGRAMS or name.startswith("lf_"):
+        note([os.fsdecode(word) for word in words])
+
+
+sys.addaudithook(_note_call)
+
+
 def call(words, **more):
-    """Runs a command and notes it. Ends the script if it fails, with what it said. Returns its standard output."""
-    done = subprocess.run(note(words), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **more)
+    """Runs a command. Ends the script if it fails, with what it said. Returns its standard output."""
+    done = subprocess.run([str(word) for word in words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                          **more)
     if done.returncode != 0:
         raise SystemExit(f"{shlex.join(map(str, words))} ended with {done.returncode}:\n{done.stderr}")
     return done.stdout
@@ -144,8 +161,11 @@ def publish(arguments, script, record, text):
 
     script  "name.py", "name.py WORDS", or "scripts/name.py WORDS": what the page's marker names
     """
+    global _is_noting
+    _is_noting = False  # what is asked for the defaults is no command of the table
     print(text)
     record.setdefault("table", marker_of(script))
+    record.setdefault("made_by", shlex.join(map(shown, sys.argv)))
     record.setdefault("commands", list(_commands))
     if "defaults" not in record:
         record["defaults"] = defaults.of_programs(list(_programs.values()))

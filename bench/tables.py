@@ -34,6 +34,10 @@ TABLES = {
     "packages": ("performance", "bench/packages.py {build}", "--density 0.005 --size 48x32 --runs 1"),
     "hybrid_cost": ("rebinning", "bench/hybrid_cost.py {build} --runs 1",
                     "--density 0.005 --size 48x32 --only stack"),
+    "simultaneous_packages": ("performance", "bench/simultaneous_packages.py {build}",
+                              "--density 0.005 --size 48x32 --packages 1,2 --runs 1"),
+    "noise_remedies": ("rebinning", "bench/noise_remedies.py {build} {data}/groundtruth", "--only nothing"),
+    "noise_rule": ("checkpoints", "bench/noise_rule.py {build} --data {data}", None),
     "codec_speed": ("codec", "bench/codec_speed.py {build} --data {data} --runs 3", "--runs 1"),
     "scale": ("performance", "bench/scale.py {build}", "--counts 100,200 --weighed 100 --frames 5 --packages 2"),
     "memory_bound": ("performance", "bench/memory_bound.py {build} {data}/data/blender-shop", "--frames 1 --images 4"),
@@ -101,6 +105,10 @@ def make(names, arguments):
             continue
         words = command_of(name, arguments)
         print(f"[{number}/{len(names)}] {name}: {shlex.join(words)}", flush=True)
+        if not (ROOT / words[0]).exists():
+            print(f"[{number}/{len(names)}] {name}: {words[0]} does not exist", flush=True)
+            failed.append(name)
+            continue
         begin = time.monotonic()
         done = subprocess.run([ROOT / words[0], *words[1:]], cwd=ROOT)
         print(f"[{number}/{len(names)}] {name}: {time.monotonic() - begin:.0f} s, exit code {done.returncode}", flush=True)

@@ -67,8 +67,8 @@ def decibels(renderer, truth, calibration, path, options):
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
         result = subprocess.run(
-            results.note([renderer, calibration, path, "-o", folder / "frames", "--format", "exr-float", "-q",
-                          "--no-contact-sheet", *options.split()]), stderr=subprocess.PIPE, text=True)
+            [renderer, calibration, path, "-o", folder / "frames", "--format", "exr-float", "-q", "--no-contact-sheet",
+             *options.split()], stderr=subprocess.PIPE, text=True)
         if "no LF image contributes" in result.stderr or "has no area" in result.stderr:
             return None, 0
         if result.returncode != 0:
