@@ -1,0 +1,390 @@
+"""Renders one cell of the matrix (doc/matrix.md), and compares it with its plain render."""
+import hashlib
+import json
+import random
+import re
+import shutil
+import signal
+import subprocess
+import time
+from typing import NamedTuple
+
+from matrix_world import (MOST_IMAGES, MOST_RAYS, FRAMES, ProgramFailed, World, is_of_packages,
+                          last_line, once, run)
+
+SHARDS = 2
+DUMP_OFTEN = ["--dump-every", "0.001s"]
+MODES = {
+    "nearest": ["--estimator", "nearest"],
+    "nearest none": ["--estimator", "nearest", "--lens-weights", "none"],
+    "bilinear": [],
+    "bilinear none": ["--lens-weights", "none"],
+    "bilinear area": ["--lens-weights", "area"],
+    "bilinear hat": ["--lens-weights", "hat"],
+    "rebin": ["--mode", "rebin", "--max-rays", MOST_RAYS],
+    "hybrid": ["--mode", "hybrid", "--max-rays", MOST_RAYS],
+    "hybrid none": ["--mode", "hybrid", "--lens-weights", "none", "--max-rays", MOST_RAYS],
+}
+RUNS = {  # the options of rules, which decide what the frames are
+    "once": [], "killed": [], "interrupted": [], "small": [], "finish": [],
+    "samples": ["--stop-when", "samples>=1"],
+    "noise": ["--stop-when", "noise<=0.02"],
+    "noise killed": ["--stop-when", "noise<=0.02"],
+    "max-images": ["--max-images", MOST_IMAGES],
+    "round-robin": ["--order", "round-robin", "--max-images", MOST_IMAGES],
+    "area": ["--order", "area", "--max-images", MOST_IMAGES],
+}
+INPUTS = ("folder", "store", "lossy store", "store of packages", "lossy store of packages",
+          "needed pixels", "lossy needed pixels")
+CUTS = ("whole", "packages", "moved packages", "shards", "shards of packages", "lfsubmit")
+FIELDS = ("rgb", "mosaic", "flawed", "flawed mosaic")
+VALUES = {"field": FIELDS, "input": INPUTS, "cut": CUTS, "mode": tuple(MODES), "run": tuple(RUNS)}
+
+
+class Step(NamedTuple):
+    words: list   # of a program
+    resume: list  # the same after an interruption
+
+
+class Rendered(NamedTuple):
+    exit_code: int
+    last_line: str
+    digests: dict = {}   # SHA-256 of the frames' files
+    facts: dict = {}     # what reports say of each frame
+    skipped: list = []   # names of LF images
+    early: dict = {}     # frames that were finished early, before which place
+    early_pixels: dict = {}  # pixels_of() these
+    seconds: float = 0
+
+
+class Difference(Exception):
+    """What is wrong with a cell."""
+
+
+def render_mode(mode):
+    return mode.split()[0] if mode.split()[0] in ("rebin", "hybrid") else "collect"
+
+
+def is_order(run_name):
+    return run_name in ("round-robin", "area")
+
+
+class Matrix(World):
+    """Renders cells. May be asked by several threads."""
+
+    # What a cell calls
+
+    def steps(self, cell, out):
+        """Returns the calls that render a cell into a folder, without what its run adds."""
+        options = [*MODES[cell.mode], *RUNS[cell.run]]
+        order = tuple(RUNS[cell.run]) if is_order(cell.run) else ()
+        from_packages = cell.cut in ("packages", "moved packages", "shards of packages", "lfsubmit")
+        if not from_packages:
+            inputs = [self.input_of(cell), self.path_of(cell.field)]
+        else:
+            if order:  # lfpreprocessor has both, and packages keep them
+                options = MODES[cell.mode]
+            source = "folder" if self.is_moved(cell) else cell.input
+            inputs = self.packages(cell.field, source, render_mode(cell.mode), order)
+        moved = ["--lightfield", self.input_of(cell)] if self.is_moved(cell) else []
+        if cell.cut == "lfsubmit":
+            words = [self.program("lfsubmit"), *inputs, "-o", out, "--no-contact-sheet",
+                     "--lfrenderer", self.program("lfrenderer"), "--jobs", 2, "--", *moved, *options]
+            return [Step(words, [self.program("lfsubmit"), "--resume", out])]
+        words = [self.program("lfrenderer"), *inputs, "-o", out, *moved, *options]
+        if "shards" not in cell.cut:
+            words += ["--no-contact-sheet"]
+            return [Step(words, [*words, "--resume"])]
+        parts = [[*words, "--shard", f"{k}/{SHARDS}"] for k in range(1, SHARDS + 1)]
+        merge = [self.program("lfmerge"), out / "partial" / "shards", "-o", out,
+                 "--no-contact-sheet"]
+        return [*(Step(part, [*part, "--resume"]) for part in parts),
+                Step(merge, [*merge, "--resume"])]
+
+    def is_moved(self, cell):
+        """Whether packages of the folder read another input."""
+        return cell.cut == "moved packages" or (
+            cell.cut == "lfsubmit" and is_of_packages(cell.input))
+
+    def input_of(self, cell):
+        return self.input(cell.field, cell.input, render_mode(cell.mode))
+
+    # The plain render
+
+    def plain_cell(self, cell):
+        """Returns the cell, cut whole or moved packages and run without an interruption, whose
+        frames a cell must have."""
+        source, cut = cell.input, "whole"
+        run_name = {"killed": "once", "interrupted": "once", "small": "once", "finish": "once",
+                    "noise killed": "noise"}.get(cell.run, cell.run)
+        has_own_order = is_of_packages(source) and not self.is_moved(cell)
+        if has_own_order and cell.mode in ("nearest none", "bilinear none") and run_name == "once":
+            has_own_order = source == "lossy needed pixels"
+        if not has_own_order:
+            if "lossy" not in source:
+                source = "folder"
+            elif source != "lossy needed pixels":
+                source = "lossy store"
+            else:
+                cut = "moved packages"
+        return cell._replace(input=source, cut=cut, run=run_name)
+
+    @once
+    def plain(self, cell):
+        """Returns the frames that cells like this one must have."""
+        plain = self.render_once(cell)
+        if plain.exit_code not in (0, 6):
+            raise ProgramFailed("the plain render", plain.exit_code, plain.last_line)
+        return plain
+
+    def render_once(self, cell):
+        out = self.new_folder("plain")
+        start = time.monotonic()
+        step, = self.steps(cell, out)
+        exit_code, last = run(step.words)
+        rendered = self.look_at(cell, out, exit_code, last, time.monotonic() - start)
+        shutil.rmtree(out)
+        return rendered
+
+    @once
+    def pixels_before(self, cell, frame, place):
+        """Returns pixels_of() a frame where the files of all LF images from a place of the order on
+        are missing: lens weights know of cameras, and not of files."""
+        folder = self.new_folder("before")
+        source = self.folder_of(cell.field)
+        gone = {name for name, at in self.places_of(cell.field).items() if at >= place}
+        for path in source.iterdir():
+            if path.name not in gone:
+                (folder / path.name).hardlink_to(path)
+        light_field = folder
+        if cell.input != "folder":
+            light_field = folder / "a.lfs"
+            self.make("lfcompressor", folder, "-o", light_field)
+        out = folder / "out"
+        self.make("lfrenderer", light_field, self.path_of(cell.field), "-o", out, "--frames", frame,
+                  *MODES[cell.mode])
+        pixels = pixels_of(out / f"frame_{frame:04d}.exr")
+        shutil.rmtree(folder)
+        return pixels
+
+    # The cell
+
+    def render(self, cell, out, shall_be_refused):
+        """Renders a cell as its run says. Interruptions of what is refused would tell nothing."""
+        steps = self.steps(cell, out)
+        if shall_be_refused:
+            finish = ["--resume", "--finish", f"1-{FRAMES}"] if cell.run == "finish" else []
+            return self.ended(cell, out, [step._replace(words=[*step.words, *finish])
+                                          for step in steps])
+        if cell.run in ("killed", "noise killed"):
+            return self.resumed(cell, out, steps, [signal.SIGKILL] * 2, [])
+        if cell.run == "interrupted":
+            return self.resumed(cell, out, steps, [signal.SIGTERM], ["--threads", 3])
+        if cell.run == "finish":
+            return self.finished_early(cell, out, steps)
+        if cell.run == "small":
+            return self.in_small_memory(cell, out, steps)
+        return self.ended(cell, out, steps)
+
+    def ended(self, cell, out, steps):
+        """Runs steps until one fails."""
+        exit_code, last = 0, ""
+        for step in steps:
+            exit_code, last = run(step.words)
+            if exit_code not in (0, 6):
+                break
+        return self.look_at(cell, out, exit_code, last)
+
+    def in_small_memory(self, cell, out, steps):
+        """Runs steps with the least memory that their error messages name."""
+        memory_mib = 2
+        for _ in range(5):
+            exit_code, last = 0, ""
+            for step in steps:
+                options = ["--threads", 3, "--memory", f"{memory_mib}M"]
+                if step.words[0].endswith("lfmerge"):
+                    options = ["--threads", 3]
+                exit_code, last = run(with_options(step.words, options))
+                if exit_code not in (0, 6):
+                    break
+            named = [int(mib) for mib in re.findall(r"(?:at least|take) (\d+) MiB", last)]
+            if exit_code != 4 or not named:
+                break
+            memory_mib = max(named) + (150 if "take" in last else 0)
+            shutil.rmtree(out, ignore_errors=True)
+        return self.look_at(cell, out, exit_code, last)
+
+    def resumed(self, cell, out, steps, signals, options):
+        """Runs the first step, which is ended by each signal, and then all steps to their end."""
+        seconds = self.plain(self.plain_cell(cell)).seconds
+        chance = random.Random(cell.name)
+        words = [*steps[0].words, *DUMP_OFTEN]
+        resume = steps[0].resume if cell.cut == "lfsubmit" else [*steps[0].resume, *DUMP_OFTEN]
+        for sign in signals:
+            self.interrupt(words, out, chance.uniform(0, 0.7) * seconds, sign)
+            if cell.cut != "lfsubmit" or (out / "cluster" / "job.json").exists():
+                words = resume
+        return self.ended(cell, out, [Step(with_options(words, options), []), *steps[1:]])
+
+    def interrupt(self, words, out, seconds, sign, has_begun=None):
+        """Starts a program and sends it a signal some seconds after it has begun. Returns exit code
+        and last line."""
+        has_begun = has_begun or is_at_work
+        process = subprocess.Popen([str(word) for word in words], stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.PIPE, text=True)
+        while process.poll() is None and not has_begun(out):
+            time.sleep(0.001)
+        try:
+            process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            process.send_signal(sign)
+        _, text = process.communicate(timeout=60)
+        return process.returncode, last_line(text)
+
+    def finished_early(self, cell, out, steps):
+        """Interrupts a render when it has a state, and has all frames finished that it has begun."""
+        step = steps[0]
+        for attempt in range(12):
+            exit_code, last = self.interrupt([*step.words, *DUMP_OFTEN], out, 0.005 * attempt,
+                                             signal.SIGTERM, has_state)
+            if exit_code not in (0, 5, 6):
+                return self.look_at(cell, out, exit_code, last)
+            if exit_code == 5 and has_state(out):
+                break
+            shutil.rmtree(out)
+            out.mkdir()
+        else:
+            raise Difference("could not be interrupted between begin and end")
+        pictures = {int(path.stem[6:]): pixels_of(path)
+                    for path in out.glob("partial/**/frame_*.exr")}
+        begun = sorted({int(path.stem[6:]) for path in out.glob("partial/**/frame_*.plate")})
+        frames = ",".join(map(str, begun)) or f"1-{FRAMES}"
+        if cell.cut == "lfsubmit":
+            exit_code, last = run([self.program("lfsubmit"), "--finish", out, frames])
+            if exit_code == 0:
+                exit_code, last = run(step.resume)
+        else:
+            exit_code, last = run([*step.resume, "--finish", frames])
+        rendered = self.look_at(cell, out, exit_code, last)
+        for frame in set(rendered.early) & set(pictures):
+            if rendered.early_pixels[frame] != pictures[frame]:
+                raise Difference(f"frame {frame}, finished early, is not the picture that was left")
+        return rendered
+
+    # What has become of it
+
+    def look_at(self, cell, out, exit_code, last, seconds=0):
+        digests = {path.name: hashlib.sha256(path.read_bytes()).hexdigest()
+                   for path in sorted(out.glob("frame_*.exr"))}
+        if exit_code not in (0, 6):
+            return Rendered(exit_code, last, digests)
+        pattern = {"packages": "report-package-*.json", "moved packages": "report-package-*.json",
+                   "lfsubmit": "cluster/report.json"}.get(cell.cut, "report.json")
+        facts, skipped, early = {}, set(), {}
+        for path in sorted(out.glob(pattern)):
+            report = json.loads(path.read_text())
+            skipped |= {image["name"] for image in report["skipped_lf_images"]}
+            for frame in report["frames"]:
+                facts[frame["frame"]] = {key: frame[key] for key in
+                                         ("lf_images", "rays_accepted") if key in frame}
+                if "finished_early_before_place" in frame:
+                    early[frame["frame"]] = frame["finished_early_before_place"]
+        pixels = {frame: pixels_of(out / f"frame_{frame:04d}.exr") for frame in early}
+        return Rendered(exit_code, last, digests, facts, sorted(skipped), early, pixels, seconds)
+
+    def check(self, cell, refusals):
+        """Renders a cell. Returns "same" or "refused"; raises Difference."""
+        out = self.new_folder("cell")
+        try:
+            try:
+                rendered = self.render(cell, out, bool(refusals))
+            except ProgramFailed as failure:
+                rendered = Rendered(failure.exit_code, str(failure.last_line))
+            if refusals:
+                return self.check_refused(rendered, refusals)
+            return self.check_same(cell, rendered)
+        finally:
+            shutil.rmtree(out, ignore_errors=True)
+
+    def check_refused(self, rendered, refusals):
+        if rendered.exit_code in (0, 6):
+            raise Difference(f"is not refused: exit code {rendered.exit_code}")
+        faults = [refusal.misses(rendered.exit_code, rendered.last_line) for refusal in refusals]
+        if all(faults):
+            raise Difference(f"{faults[0]}: {rendered.last_line}")
+        if rendered.digests:
+            raise Difference(f"{len(rendered.digests)} frames were written before it was refused: "
+                             f"{rendered.last_line}")
+        return "refused"
+
+    def check_same(self, cell, rendered):
+        if rendered.exit_code not in (0, 6):
+            raise Difference(f"exit code {rendered.exit_code}: {rendered.last_line}")
+        plain_cell = self.plain_cell(cell)
+        plain = self.plain(plain_cell)
+        if set(rendered.digests) != set(plain.digests):
+            raise Difference(f"frames {sorted(rendered.digests)}, expected {sorted(plain.digests)}")
+        if cell.run == "finish" and not rendered.early:
+            raise Difference("no frame was finished early")
+        wrong = [name for name, digest in plain.digests.items()
+                 if rendered.digests[name] != digest and int(name[6:10]) not in rendered.early]
+        if wrong:
+            raise Difference(f"{len(wrong)} of {len(plain.digests)} frames have other bits: "
+                             f"{', '.join(name[6:10].lstrip('0') for name in wrong)}")
+        if cell.run == "finish":
+            self.check_early(plain_cell, rendered)
+        else:
+            self.check_facts(plain, rendered)
+        if rendered.exit_code != (6 if rendered.skipped else 0):
+            raise Difference(f"exit code {rendered.exit_code} with {len(rendered.skipped)} skipped "
+                             f"LF images: {rendered.last_line}")
+        return "same"
+
+    def check_facts(self, plain, rendered):
+        if rendered.facts != plain.facts:
+            frame = next(frame for frame in plain.facts
+                         if rendered.facts.get(frame) != plain.facts[frame])
+            raise Difference(f"the report says of frame {frame} {rendered.facts.get(frame)}, "
+                             f"expected {plain.facts[frame]}")
+        if rendered.skipped != plain.skipped:
+            raise Difference(f"skipped LF images {rendered.skipped}, expected {plain.skipped}")
+
+    def check_early(self, plain_cell, rendered):
+        """Compares frames that were finished early with those of the LF images that they say.
+        Rebinned rays depend on how a render went, and stores of packages have an order that is
+        written nowhere."""
+        if (render_mode(plain_cell.mode) != "collect" or is_of_packages(plain_cell.input)):
+            return
+        for frame, place in list(rendered.early.items())[:2]:
+            if rendered.early_pixels[frame] != self.pixels_before(plain_cell, frame, place):
+                raise Difference(f"frame {frame}, finished early before place {place}, has other "
+                                 "bits than without the LF images from there on")
+
+
+def pixels_of(path):
+    """Returns the SHA-256 of all channels of an EXR file, without its header."""
+    exr = path.read_bytes()
+    at = 8
+    while exr[at]:  # name, type, size and value of each attribute
+        for _ in range(2):
+            at = exr.index(b"\0", at) + 1
+        at += 4 + int.from_bytes(exr[at:at + 4], "little")
+    first_chunk = int.from_bytes(exr[at + 1:at + 9], "little")  # the table of offsets begins so
+    return hashlib.sha256(exr[first_chunk:]).hexdigest()
+
+
+def with_options(words, options):
+    """Returns a call with more options of its program."""
+    words = list(words)
+    at = words.index("--") if "--" in words else len(words)
+    return [*words[:at], *options, *words[at:]]
+
+
+def is_at_work(out):
+    """Whether a render in a folder has begun: from then on it answers signals."""
+    return any(out.glob("partial/**/lock")) or any(out.glob("frame_*"))
+
+
+def has_state(out):
+    """Whether an unfinished frame, or rebinned rays, are on the disk."""
+    return any(out.glob("partial/**/frame_*.plate")) or any(out.glob("partial/**/*.rays"))

@@ -1,0 +1,217 @@
+"""The films of the matrix (doc/matrix.md): captures, camera paths, packed stores and packages, each
+made when it is first asked for."""
+import contextlib
+import functools
+import json
+import pathlib
+import sqlite3
+import subprocess
+import threading
+
+import numpy as np
+from PIL import Image
+
+import small_field
+from small_field import HEIGHT, WIDTH
+
+FRAMES, PACKAGES = 9, 3
+SIDE = 13  # 169 LF cameras: rules are asked at 64 and 128 places of the order
+MOST_IMAGES = 40
+MOST_RAYS = 200000  # that rebin and hybrid keep
+BROKEN, MISSING, MASKED, BRIGHTER = 83, 97, (70, 86), 85  # LF images with flaws, near the middle
+
+PATH_YAML = """format: lfpath 1
+fps: 25
+frames: {frames}
+resolution: [160, 120]
+camera:
+  field_of_view_deg: 44
+  focal_length_mm: 35
+  position: [-0.025, 0, 0]
+  look_at: [0, 0, -1]
+  up: [0, 1, 0]
+lens:
+  aperture_diameter: {first}
+  focus_distance: 0.8
+keyframes:
+  position: [{{time: 0, value: [-0.025, -0.01, 0]}}, {{time: 0.16, value: [0.005, 0.01, -0.01]}},
+             {{time: 0.32, value: [0.03, 0, 0.005]}}]
+  field_of_view_deg: [{{time: 0, value: 44}}, {{time: 0.32, value: 36}}]
+  aperture_diameter: [{{time: 0, value: {first}}}, {{time: 0.16, value: 0.08}},
+                      {{time: 0.32, value: {last}}}]
+  focus_distance: [{{time: 0, value: 0.8}}, {{time: 0.32, value: 2}}]
+"""
+
+
+class ProgramFailed(Exception):
+    """A program ended with another exit code than 0 and 6."""
+
+    def __init__(self, program, exit_code, last_line):
+        super().__init__(f"{program}: exit code {exit_code}: {last_line}")
+        self.exit_code, self.last_line = exit_code, last_line
+
+
+def run(words, seconds=120):
+    """Returns exit code and last line of stderr of a program."""
+    done = subprocess.run([str(word) for word in words], stdout=subprocess.DEVNULL,
+                          stderr=subprocess.PIPE, text=True, timeout=seconds)
+    return done.returncode, last_line(done.stderr)
+
+
+def last_line(text):
+    return (text.strip().splitlines() or [""])[-1]
+
+
+def once(method):
+    """Computes a method once for each of its arguments; threads that ask meanwhile wait."""
+    @functools.wraps(method)
+    def wrapped(self, *arguments):
+        with self.lock:
+            lock = self.locks.setdefault((method.__name__, arguments), threading.Lock())
+        with lock:
+            key = (method.__name__, arguments)
+            if key not in self.made:
+                try:
+                    self.made[key] = method(self, *arguments)
+                except ProgramFailed as failure:
+                    self.made[key] = failure
+        if isinstance(self.made[key], ProgramFailed):
+            raise self.made[key]
+        return self.made[key]
+    return wrapped
+
+
+def picture_of(field, index):
+    """A smooth picture with noise, another for each LF image."""
+    y, x = np.mgrid[0:HEIGHT, 0:WIDTH]
+    waves = 120 + 70 * np.sin(x / 6 + index / 40) * np.cos(y / 5 - index % SIDE / 9)
+    noise = np.random.default_rng(index).normal(0, 3, (HEIGHT, WIDTH, 3))
+    rgb = np.clip(waves[..., None] + [0, 15, -20] + noise, 0, 255)
+    if "mosaic" in field:
+        return (rgb[..., 1] * 200).astype(np.uint16)
+    return rgb.astype(np.uint8)
+
+
+def write_capture(folder, field):
+    small_field.SIDE = SIDE
+    keys = {}
+    if "mosaic" in field:
+        keys = {"lf_bayer": "RGGB", "lf_transfer": "linear", "lf_black_level": 100,
+                "lf_white_level": 52000, "lf_white_balance": [2, 1, 1.5],
+                "camera_model": "OPENCV", "k1": 0.03, "k2": -0.01, "p1": 0.001, "p2": 0.0}
+    calibration = small_field.write_field(folder, functools.partial(picture_of, field), **keys)
+    if "flawed" in field:
+        add_flaws(calibration)
+    return calibration
+
+
+def add_flaws(calibration):
+    folder, text = calibration.parent, json.loads(calibration.read_text())
+    frames = text["frames"]
+    (folder / frames[BROKEN]["file_path"]).write_text("no picture")
+    (folder / frames[MISSING]["file_path"]).unlink()
+    for number, index in enumerate(MASKED):
+        mask = np.full((HEIGHT, WIDTH), 255, np.uint8)
+        mask[:, number * WIDTH // 2:(number + 1) * WIDTH // 2] = 0
+        Image.fromarray(mask).save(folder / f"mask_{number}.png")
+        frames[index]["lf_mask"] = f"mask_{number}.png"
+    frames[BRIGHTER]["lf_gain"] = 1.25
+    calibration.write_text(json.dumps(text))
+
+
+class World:
+    """Everything that cells are rendered from, in one folder.
+
+    programs  the folder of lfrenderer and the others
+    """
+
+    def __init__(self, programs, folder):
+        self.programs, self.folder = pathlib.Path(programs), pathlib.Path(folder)
+        self.lock, self.locks, self.made = threading.Lock(), {}, {}
+        self.count = 0
+
+    def program(self, name):
+        return str(self.programs / name)
+
+    def new_folder(self, name):
+        with self.lock:
+            self.count += 1
+            folder = self.folder / f"{self.count:05d} {name}"
+        folder.mkdir(parents=True)
+        return folder
+
+    def make(self, program, *words):
+        """Runs a program that may leave out LF images that are broken."""
+        exit_code, last = run([self.program(program), *words, "--progress", "none"])
+        if exit_code not in (0, 6):
+            raise ProgramFailed(program, exit_code, last)
+
+    @once
+    def knows(self, program, option):
+        """Whether a program has an option."""
+        done = subprocess.run([self.program(program), "--help"], capture_output=True, text=True)
+        return option in done.stdout
+
+    @once
+    def folder_of(self, field):
+        return write_capture(self.new_folder(field) / "capture", field).parent
+
+    @once
+    def path_of(self, field):
+        has_pinhole = field in ("rgb", "flawed mosaic")
+        path = self.folder_of(field).parent / "path.yaml"
+        path.write_text(PATH_YAML.format(frames=FRAMES, first=0 if has_pinhole else 0.012,
+                                         last=0.015 if has_pinhole else 0.02))
+        return path
+
+    @once
+    def packages(self, field, source, mode, order):
+        """Returns the packages of a film.
+
+        source  a value of the axis input
+        mode    collect, rebin, hybrid
+        order   options of lfpreprocessor, a tuple
+        """
+        folder = self.new_folder(f"packages of {field} {source} {mode}")
+        words = [self.input(field, source, mode), self.path_of(field), "-o", folder, "--packages",
+                 PACKAGES, *order]
+        if mode != "collect" and self.knows("lfpreprocessor", "--mode"):
+            words += ["--mode", mode]
+        self.make("lfpreprocessor", *words)
+        files = tuple(sorted(folder.glob("*.lfp")))
+        if len(files) != PACKAGES:
+            raise ValueError(f"{folder}: {len(files)} packages, expected {PACKAGES}")
+        return files
+
+    @once
+    def places_of(self, field):
+        """Returns the place in the order of each LF image, by name, of those that some frame takes."""
+        places = {}
+        for file in self.packages(field, "folder", "collect", ()):
+            with contextlib.closing(
+                    sqlite3.connect(f"file:{file}?immutable=1", uri=True)) as package:
+                places.update(package.execute("select name, place from lf_images where frames > 0"))
+        return places
+
+    def input(self, field, source, mode):
+        """Returns what is given as LIGHTFIELD. Stores of packages are of those for a mode."""
+        if source == "folder":
+            return self.folder_of(field)
+        return self.store(field, source, mode if is_of_packages(source) else "any")
+
+    @once
+    def store(self, field, source, mode):
+        if is_of_packages(source):
+            words = [*self.packages(field, "folder", mode, ())]
+            words += ["--needed-pixels"] if "needed" in source else []
+        else:
+            words = [self.folder_of(field)]
+        store = self.new_folder(f"{source} of {field}") / "a.lfs"
+        profile = "default" if "lossy" in source else "lossless"
+        self.make("lfcompressor", *words, "-o", store, "--profile", profile)
+        return store
+
+
+def is_of_packages(source):
+    """Whether an input is a store of what packages need."""
+    return "packages" in source or "needed" in source
