@@ -5,7 +5,7 @@ import traceback
 from typing import NamedTuple
 
 from matrix_page import Cell
-from matrix_ways import Difference
+from matrix_world import Difference
 
 
 class Outcome(NamedTuple):

@@ -9,8 +9,8 @@ import subprocess
 import time
 from typing import NamedTuple
 
-from matrix_world import (MOST_IMAGES, MOST_RAYS, FRAMES, ProgramFailed, World, is_of_packages,
-                          last_line, once, run)
+from matrix_world import (BROKEN, FRAMES, MISSING, MOST_IMAGES, MOST_RAYS, Difference,
+                          ProgramFailed, World, is_of_packages, last_line, once, run)
 
 SHARDS = 2
 DUMP_OFTEN = ["--dump-every", "0.001s"]
@@ -55,10 +55,6 @@ class Rendered(NamedTuple):
     early: dict = {}     # frames that were finished early, before which place
     early_pixels: dict = {}  # pixels_of() these
     seconds: float = 0
-
-
-class Difference(Exception):
-    """What is wrong with a cell."""
 
 
 def render_mode(mode):
@@ -134,7 +130,13 @@ class Matrix(World):
         """Returns the frames that cells like this one must have."""
         plain = self.render_once(cell)
         if plain.exit_code not in (0, 6):
-            raise ProgramFailed("the plain render", plain.exit_code, plain.last_line)
+            raise Difference(f"the plain render: exit code {plain.exit_code}: {plain.last_line}")
+        if len(plain.digests) != FRAMES:
+            raise Difference(f"the plain render has {len(plain.digests)} frames")
+        unasked = set(plain.skipped) - {self.name_of(index) for index in (BROKEN, MISSING)}
+        if unasked or (plain.skipped and "flawed" not in cell.field):
+            raise Difference(f"the plain render skipped {len(plain.skipped)} LF images that are not "
+                             f"broken, the first: {min(unasked or plain.skipped)}")
         return plain
 
     def render_once(self, cell):
@@ -142,18 +144,17 @@ class Matrix(World):
         start = time.monotonic()
         step, = self.steps(cell, out)
         exit_code, last = run(step.words)
-        rendered = self.look_at(cell, out, exit_code, last, time.monotonic() - start)
+        plain = self.look_at(cell, out, exit_code, last, time.monotonic() - start)
         shutil.rmtree(out)
-        return rendered
+        return plain
 
     @once
-    def pixels_before(self, cell, frame, place):
-        """Returns pixels_of() a frame where the files of all LF images from a place of the order on
-        are missing: lens weights know of cameras, and not of files."""
+    def pixels_before(self, cell, place):
+        """Returns pixels_of() all frames where the files of all LF images from a place of the order
+        on are missing: lens weights know of cameras, and not of files."""
         folder = self.new_folder("before")
-        source = self.folder_of(cell.field)
         gone = {name for name, at in self.places_of(cell.field).items() if at >= place}
-        for path in source.iterdir():
+        for path in self.folder_of(cell.field).iterdir():
             if path.name not in gone:
                 (folder / path.name).hardlink_to(path)
         light_field = folder
@@ -161,9 +162,9 @@ class Matrix(World):
             light_field = folder / "a.lfs"
             self.make("lfcompressor", folder, "-o", light_field)
         out = folder / "out"
-        self.make("lfrenderer", light_field, self.path_of(cell.field), "-o", out, "--frames", frame,
-                  *MODES[cell.mode])
-        pixels = pixels_of(out / f"frame_{frame:04d}.exr")
+        self.make("lfrenderer", light_field, self.path_of(cell.field), "-o", out,
+                  "--no-contact-sheet", *MODES[cell.mode])
+        pixels = {frame: pixels_of(out / f"frame_{frame:04d}.exr") for frame in range(1, FRAMES + 1)}
         shutil.rmtree(folder)
         return pixels
 
@@ -353,10 +354,10 @@ class Matrix(World):
         """Compares frames that were finished early with those of the LF images that they say.
         Rebinned rays depend on how a render went, and stores of packages have an order that is
         written nowhere."""
-        if (render_mode(plain_cell.mode) != "collect" or is_of_packages(plain_cell.input)):
+        if render_mode(plain_cell.mode) != "collect" or is_of_packages(plain_cell.input):
             return
-        for frame, place in list(rendered.early.items())[:2]:
-            if rendered.early_pixels[frame] != self.pixels_before(plain_cell, frame, place):
+        for frame, place in rendered.early.items():
+            if rendered.early_pixels[frame] != self.pixels_before(plain_cell, place)[frame]:
                 raise Difference(f"frame {frame}, finished early before place {place}, has other "
                                  "bits than without the LF images from there on")
 

@@ -43,6 +43,10 @@ keyframes:
 """
 
 
+class Difference(Exception):
+    """What is wrong with a cell."""
+
+
 class ProgramFailed(Exception):
     """A program ended with another exit code than 0 and 6."""
 
@@ -73,9 +77,9 @@ def once(method):
             if key not in self.made:
                 try:
                     self.made[key] = method(self, *arguments)
-                except ProgramFailed as failure:
+                except (Difference, ProgramFailed) as failure:
                     self.made[key] = failure
-        if isinstance(self.made[key], ProgramFailed):
+        if isinstance(self.made[key], Exception):
             raise self.made[key]
         return self.made[key]
     return wrapped
@@ -155,6 +159,10 @@ class World:
     @once
     def folder_of(self, field):
         return write_capture(self.new_folder(field) / "capture", field).parent
+
+    @staticmethod
+    def name_of(index):
+        return f"image_{index:02d}.png"
 
     @once
     def path_of(self, field):
