@@ -18,6 +18,17 @@ FRAMES, PACKAGES = 9, 3
 SIDE = 13  # 169 LF cameras: rules are asked at 64 and 128 places of the order
 MOST_IMAGES = 40
 MOST_RAYS = 200000  # that rebin and hybrid keep
+MODES = {
+    "nearest": ["--estimator", "nearest"],
+    "nearest none": ["--estimator", "nearest", "--lens-weights", "none"],
+    "bilinear": [],
+    "bilinear none": ["--lens-weights", "none"],
+    "bilinear area": ["--lens-weights", "area"],
+    "bilinear hat": ["--lens-weights", "hat"],
+    "rebin": ["--mode", "rebin", "--max-rays", MOST_RAYS],
+    "hybrid": ["--mode", "hybrid", "--max-rays", MOST_RAYS],
+    "hybrid none": ["--mode", "hybrid", "--lens-weights", "none", "--max-rays", MOST_RAYS],
+}
 BROKEN, MISSING, MASKED, BRIGHTER = 83, 97, (70, 86), 85  # LF images with flaws, near the middle
 
 PATH_YAML = """format: lfpath 1
@@ -177,28 +188,32 @@ class World:
         """Returns the packages of a film.
 
         source  a value of the axis input
-        mode    collect, rebin, hybrid
+        mode    a value of the axis mode, or "default"
         order   options of lfpreprocessor, a tuple
         """
         folder = self.new_folder(f"packages of {field} {source} {mode}")
-        words = [self.input(field, source, mode), self.path_of(field), "-o", folder, "--packages",
-                 PACKAGES, *order]
-        if mode != "collect" and self.knows("lfpreprocessor", "--mode"):
-            words += ["--mode", mode]
-        self.make("lfpreprocessor", *words)
+        self.make("lfpreprocessor", self.input(field, source, mode), self.path_of(field), "-o", folder,
+                  "--packages", PACKAGES, *order, *self.package_options(mode))
         files = tuple(sorted(folder.glob("*.lfp")))
         if len(files) != PACKAGES:
             raise ValueError(f"{folder}: {len(files)} packages, expected {PACKAGES}")
         return files
 
+    def package_options(self, mode):
+        """Returns the options of a mode that packages are made for."""
+        options = MODES[mode] if mode != "default" else []
+        return [word for name, value in zip(options[::2], options[1::2]) for word in (name, value)
+                if name in ("--estimator", "--lens-weights") or
+                (name == "--mode" and self.knows("lfpreprocessor", "--mode"))]
+
     @once
     def places_of(self, field):
-        """Returns the place in the order of each LF image, by name, of those that some frame takes."""
+        """Returns the place in the order of each LF image that some frame may take, by name."""
         places = {}
-        for file in self.packages(field, "folder", "collect", ()):
+        for file in self.packages(field, "folder", "default", ()):
             with contextlib.closing(
                     sqlite3.connect(f"file:{file}?immutable=1", uri=True)) as package:
-                places.update(package.execute("select name, place from lf_images where frames > 0"))
+                places.update(package.execute("select name, place from lf_images"))
         return places
 
     def input(self, field, source, mode):
