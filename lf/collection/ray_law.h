@@ -8,15 +8,9 @@
 #include "lf/camera/pinhole.h"
 #include "lf/camera/render_camera.h"
 #include "lf/core/geometry.h"
+#include "lf/plate/tile_grid.h"
 
 namespace lf {
-
-// Element of the sensor plate.
-struct PlateElement {
-  int x = 0;
-  int y = 0;
-  friend bool operator==(const PlateElement&, const PlateElement&) = default;
-};
 
 // Whether the LF camera stands in the lens plane to rounding: then all its rays cross the lens at
 // one point (doc/ray.md, Geometry 6).

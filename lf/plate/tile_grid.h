@@ -8,6 +8,13 @@
 
 namespace lf {
 
+// An element of a plate, by its column and row.
+struct PlateElement {
+  int x = 0;
+  int y = 0;
+  friend bool operator==(const PlateElement&, const PlateElement&) = default;
+};
+
 // Tiles are counted row by row; those at the right and lower border may be smaller.
 struct TileGrid {
   int plate_width = 0;

@@ -8,12 +8,64 @@ namespace {
 // Rows of a plate are too far apart for the processor to foresee.
 void Prefetch(const uint64_t* words) { __builtin_prefetch(words, 1); }
 
+void AddTo(ElementSum* total, const ElementSum& sum) {
+  total->sum += sum.sum;
+  total->count += sum.count;
+}
+
 }  // namespace
 
-void TileSums::Begin(PlateTile* tile) {
+void TileSums::Begin(PlateTile* tile, std::span<const PlateElement> watched) {
   LF_CHECK(mosaic_limit_ <= tile->max_reserve());
   LF_CHECK(!has_rgb_ && !has_counted_ && !has_mosaic_);
   tile_ = tile;
+  watched_ = watched;
+  watched_flushed_.assign(watched.size() * SensorPlate::kChannels, {});
+}
+
+ElementSum TileSums::Added(size_t index, int channel) const {
+  LF_DCHECK(index < watched_.size());
+  ElementSum total = watched_flushed_[index * SensorPlate::kChannels + channel];
+  AddTo(&total, PendingRgb(watched_[index], channel));
+  AddTo(&total, PendingCounted(watched_[index], channel));
+  AddTo(&total, PendingMosaic(watched_[index], channel));
+  return total;
+}
+
+ElementSum TileSums::PendingRgb(const PlateElement& element, int channel) const {
+  if (!has_rgb_) return {};
+  const auto row = static_cast<ptrdiff_t>(element.y - rect().y_begin) * stride();
+  const Element& sums = elements_[row + element.x - rect().x_begin];
+  return {sums.rgb_rays[channel], sums.rgb_rays[3]};
+}
+
+ElementSum TileSums::PendingCounted(const PlateElement& element, int channel) const {
+  if (!has_counted_) return {};
+  const auto row = static_cast<ptrdiff_t>(element.y - rect().y_begin) * stride();
+  const CountedElement& sums = counted_[row + element.x - rect().x_begin];
+  return {sums.rgb[channel], sums.counts[channel]};
+}
+
+// As FlushMosaic() finds it: red or blue and one of the greens at every element.
+ElementSum TileSums::PendingMosaic(const PlateElement& element, int channel) const {
+  if (!has_mosaic_) return {};
+  const int x = element.x - rect().x_begin;
+  const auto row = static_cast<ptrdiff_t>(element.y - rect().y_begin) * kMosaicRows;
+  const auto word = [&](int kind) { return words_[kMargin + (row + kind) * stride() + x]; };
+  const int colour_first = x % 2 == 0 ? kRedFirst : kGreenFirst;
+  const int green_first = x % 2 == 0 ? kGreenFirst : kRedFirst;
+  uint64_t packed = 0;
+  if (channel == 0) packed = word(colour_first);
+  if (channel == 1) packed = word(green_first) + word(green_first + kBlueFirst);
+  if (channel == 2) packed = word(colour_first + kBlueFirst);
+  return {packed & SensorPlate::kSumMask, packed >> SensorPlate::kSumBits};
+}
+
+template <class Pending>
+void TileSums::KeepWatched(const Pending& pending) {
+  for (size_t i = 0; i < watched_.size(); ++i)
+    for (int c = 0; c < SensorPlate::kChannels; ++c)
+      AddTo(&watched_flushed_[i * SensorPlate::kChannels + c], pending(watched_[i], c));
 }
 
 void TileSums::MakeRgbRoom(uint32_t rays) {
@@ -51,6 +103,7 @@ void TileSums::Flush() {
 
 void TileSums::FlushRgb() {
   if (!has_rgb_) return;
+  KeepWatched([this](const PlateElement& element, int c) { return PendingRgb(element, c); });
   tile_->Reserve(ray_limit_ - rgb_headroom_);
   for (int y = rect().y_begin; y < rect().y_end; ++y) {
     Element* element = elements_.data() + static_cast<ptrdiff_t>(y - rect().y_begin) * stride();
@@ -71,6 +124,7 @@ void TileSums::FlushRgb() {
 
 void TileSums::FlushCounted() {
   if (!has_counted_) return;
+  KeepWatched([this](const PlateElement& element, int c) { return PendingCounted(element, c); });
   tile_->Reserve(ray_limit_ - counted_headroom_);
   for (int y = rect().y_begin; y < rect().y_end; ++y) {
     CountedElement* element =
@@ -90,6 +144,7 @@ void TileSums::FlushCounted() {
 
 void TileSums::FlushMosaic() {
   if (!has_mosaic_) return;
+  KeepWatched([this](const PlateElement& element, int c) { return PendingMosaic(element, c); });
   tile_->Reserve(mosaic_limit_ - mosaic_headroom_);
   const int width = rect().width();
   for (int y = rect().y_begin; y < rect().y_end; ++y) {

@@ -5,6 +5,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "lf/core/large_vector.h"
 #include "lf/plate/sensor_plate.h"
@@ -53,8 +55,10 @@ class TileSums {
       : ray_limit_(ray_limit),
         mosaic_limit_(ray_limit == kMaxRays ? SensorPlate::kMaxCount : ray_limit) {}
 
-  // What is added from here on, until Flush(), belongs to `tile`.
-  void Begin(PlateTile* tile);
+  // Makes `tile` the owner of everything that is added from here on until Flush().
+  //   watched  elements of the tile whose sums Added() tells; they must live until the last call of
+  //            Added(). Without them nothing is kept beside the sums.
+  void Begin(PlateTile* tile, std::span<const PlateElement> watched = {});
   const PixelRect& rect() const { return tile_->rect(); }
 
   // Words or elements from one row to the next: a cache line more than they are wide, since columns
@@ -88,6 +92,11 @@ class TileSums {
   // Adds everything to the plate; the sums are 0 again.
   void Flush();
 
+  // Returns the sum and count that were added to a watched element since Begin(), exact, in
+  // whichever of the three layouts and however often the sums were flushed meanwhile.
+  //   index  of the element among those given to Begin()
+  ElementSum Added(size_t index, int channel) const;
+
  private:
   void MakeRgbRoom(uint32_t rays);
   void MakeCountedRoom(uint32_t rays);
@@ -95,6 +104,12 @@ class TileSums {
   void FlushRgb();
   void FlushCounted();
   void FlushMosaic();
+  // Sums that are not flushed yet, one function for each layout; 0 where the layout is not in use.
+  ElementSum PendingRgb(const PlateElement& element, int channel) const;
+  ElementSum PendingCounted(const PlateElement& element, int channel) const;
+  ElementSum PendingMosaic(const PlateElement& element, int channel) const;
+  template <class Pending>
+  void KeepWatched(const Pending& pending);
 
   uint32_t ray_limit_;
   uint32_t mosaic_limit_;  // what the plate's words hold
@@ -110,6 +125,8 @@ class TileSums {
   LargeVector<Element> elements_;
   LargeVector<CountedElement> counted_;
   LargeVector<uint64_t> words_;
+  std::span<const PlateElement> watched_;
+  std::vector<ElementSum> watched_flushed_;  // [watched][channel], since Begin()
 };
 
 }  // namespace lf

@@ -87,5 +87,56 @@ TEST(TileSums, RaysMayCountDifferentlyInEachColour) {
   EXPECT_EQ(plate, expected);
 }
 
+// All three layouts in one tile, on a plate that has rays of earlier tiles and words that move to
+// its wide table meanwhile.
+TEST(TileSums, TellsWhatWasAddedToWatchedElements) {
+  SensorPlate plate(23, 9, 60), added(23, 9);
+  plate.Add(5, 4, 1, {300, 55});
+  PlateTile tile(&plate, {2, 3, 21, 8});
+  const std::vector<PlateElement> watched = {{2, 3}, {5, 4}, {6, 4}, {20, 7}, {19, 7}};
+  TileSums sums(50);  // flushed now and then
+  const auto expect_added = [&](uint64_t ray) {
+    for (size_t i = 0; i < watched.size(); ++i)
+      for (int c = 0; c < 3; ++c)
+        EXPECT_EQ(sums.Added(i, c), added.At(watched[i].x, watched[i].y, c)) << ray << " " << i;
+  };
+  sums.Begin(&tile, watched);
+  for (uint64_t ray = 0; ray < 900; ++ray) {
+    const auto random = [&](uint64_t index, int end) {
+      return static_cast<int>(RandomUnit(ray, index, 0) * end);
+    };
+    const PlateElement& element = watched[static_cast<size_t>(random(0, 5))];
+    const int x = element.x - 2, y = element.y - 3, channel = random(2, 3);
+    const auto v = static_cast<uint16_t>(random(3, 65536));
+    if (ray % 3 == 0) {
+      TileSums::Element& rgb = sums.ReserveRgb(1)[y * sums.stride() + x];
+      rgb.rgb_rays[channel] += v;
+      ++rgb.rgb_rays[3];
+      for (int c = 0; c < 3; ++c)
+        added.AddRay(element.x, element.y, c, c == channel ? v : uint16_t{0});
+    } else if (ray % 3 == 1) {
+      TileSums::CountedElement& counted = sums.ReserveCounted(8)[y * sums.stride() + x];
+      counted.rgb[channel] += 8u * v;
+      counted.counts[channel] += 8;
+      added.Add(element.x, element.y, channel, {uint64_t{v} * 8, 8});
+    } else {
+      const std::vector<size_t> words = WordsOf(sums, x, y, channel);
+      sums.ReserveMosaic(1)[words[ray % words.size()]] += SensorPlate::kOneRay | v;
+      added.AddRay(element.x, element.y, channel, v);
+    }
+    if (ray % 7 == 0) expect_added(ray);
+  }
+  sums.Flush();
+  expect_added(900);
+  EXPECT_FALSE(plate.wide().empty());
+  SensorPlate total(23, 9);
+  total.Add(5, 4, 1, {300, 55});
+  total.Merge(added);
+  EXPECT_EQ(plate, total);
+  sums.Begin(&tile, watched);
+  EXPECT_EQ(sums.Added(0, 0), ElementSum{});
+  sums.Flush();
+}
+
 }  // namespace
 }  // namespace lf
