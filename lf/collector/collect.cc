@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "lf/collector/noise_rule.h"
 #include "lf/core/log.h"
 #include "lf/selection/overlap.h"
 
@@ -51,7 +52,7 @@ class FrameCollector::State {
         options_(options),
         pool_(pool),
         collector_(light_field, frames, options.reading, options.back_end, options.weights,
-                   options.plan_bytes, options.whole_images, pool, plates),
+                   options.plan_bytes, options.whole_images, pool, plates, options.moments),
         places_(places.begin(), places.end()),
         progress_(frames.size()),
         is_stopped_(frames.size(), false) {
@@ -184,7 +185,9 @@ Batch FrameCollector::State::BatchFrom(size_t from) const {
   batch.begin = batch.end = FirstWanted(from);
   if (batch.begin == order_.size()) return batch;
   const uint32_t cut = options_.decision_places;
-  const uint32_t decision = cut == 0 ? UINT32_MAX : (order_[batch.begin].place / cut + 1) * cut;
+  const uint32_t first = order_[batch.begin].place;
+  uint32_t decision = cut == 0 ? UINT32_MAX : (first / cut + 1) * cut;
+  if (options_.cuts_for_noise) decision = std::min(decision, NoiseDecisionAfter(first));
   const size_t most = batch.begin + static_cast<size_t>(options_.batch_image_count);
   uint64_t rays = 0, frame_rays = 0;
   for (; batch.end < std::min(order_.size(), most); ++batch.end) {

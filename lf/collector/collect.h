@@ -41,6 +41,11 @@ struct CollectOptions {
   // No batch goes across a multiple of it, in places: there stop rules may be decided, for every
   // frame alike. 0: no rule, batches are not cut. Else a multiple of kDecisionPlaces.
   uint32_t decision_places = kDecisionPlaces;
+  // Ends batches at all places where noise is asked for (noise_rule.h), too.
+  bool cuts_for_noise = false;
+  // Moments of the frames' plates, one per frame, kept with them: those of a frame are of the LF
+  // images in its plate. Null: none are kept.
+  std::vector<NoiseMoments>* moments = nullptr;
   FrameImageWeights weights;
   // Takes part in all batches beside the frames, if given; the plates are the same.
   ImageTaker* taker = nullptr;

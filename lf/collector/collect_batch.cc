@@ -59,7 +59,8 @@ size_t PlanBytes(Estimator estimator, bool has_distortion, int image_width, int 
 BatchCollector::BatchCollector(const LightField& light_field, std::span<const RenderCamera> frames,
                                const RayReading& reading, CollectBackEnd back_end,
                                FrameImageWeights weights, size_t plan_bytes, bool whole_images,
-                               ThreadPool& pool, std::vector<SensorPlate>* plates)
+                               ThreadPool& pool, std::vector<SensorPlate>* plates,
+                               std::vector<NoiseMoments>* moments)
     : light_field_(light_field),
       frames_(frames),
       reading_(reading),
@@ -68,8 +69,10 @@ BatchCollector::BatchCollector(const LightField& light_field, std::span<const Re
       plan_bytes_(plan_bytes),
       whole_images_(whole_images),
       pool_(pool),
-      plates_(*plates) {
+      plates_(*plates),
+      moments_(moments) {
   LF_CHECK(plates->size() == frames.size());
+  LF_CHECK(moments == nullptr || moments->size() == frames.size());
   for (SensorPlate& plate : plates_)
     tiles_.push_back(CutIntoTiles(&plate, TileSums::GridOf(plate.width(), plate.height())));
 }
@@ -210,14 +213,19 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
   const auto collect = [&](const Task& task) {
     if (!gates[task.taker].IsOpen(interrupted)) return;
     thread_local TileSums sums;
-    sums.Begin(&tiles_[frames[task.taker].frame][task.tile]);
+    PlateTile& tile = tiles_[frames[task.taker].frame][task.tile];
+    NoiseTally tally(MomentsOf(frames[task.taker].frame), tile.rect());
+    sums.Begin(&tile, tally.elements());
     for (size_t k = 0; k < batch.size(); ++k) {
       Share& share = shares_[task.taker * batch.size() + k];
       if (share.rect.empty()) continue;
-      share.accepted_count +=
+      const uint64_t accepted =
           reading_.estimator == Estimator::kBilinear
               ? GatherTile(share.gather, batch[k].pixels, &sums, share.weights)
               : ScatterTile(share.scatter, task.tile, batch[k].pixels, &sums, share.weights);
+      share.accepted_count += accepted;
+      if (accepted > 0)
+        tally.TakeImage([&](size_t element, int c) { return sums.Added(element, c); });
     }
     sums.Flush();
   };
@@ -247,6 +255,11 @@ void BatchCollector::AddByReference(const std::vector<BatchImage>& batch, BatchF
   const ThreadCpuTimer timer;
   const RenderCamera& camera = frames_[frame->frame];
   SensorPlate& plate = plates_[frame->frame];
+  NoiseTally tally(MomentsOf(frame->frame), {0, 0, plate.width(), plate.height()});
+  const auto total_of = [&](size_t element, int c) {
+    return plate.At(tally.elements()[element].x, tally.elements()[element].y, c);
+  };
+  tally.Start(total_of);
   for (const BatchImage& image : batch) {
     const PixelRect rect = RectOf(image, camera);
     if (rect.empty() || !frame->places.Holds(image.place)) continue;
@@ -257,6 +270,7 @@ void BatchCollector::AddByReference(const std::vector<BatchImage>& batch, BatchF
         reading_.estimator == Estimator::kBilinear
             ? GatherReference(lf_camera, image.pixels, camera, &plate, weights, reading_.filter)
             : ScatterReference(lf_camera, image.pixels, camera, rect, &plate, weights);
+    tally.TakeImage(total_of);
     frame->rays.accepted_count += accepted;
     Count(rect, accepted > 0, &frame->rays);
   }

@@ -20,6 +20,7 @@
 #include "lf/collection/gather.h"
 #include "lf/collection/gather_sampling.h"
 #include "lf/collection/scatter.h"
+#include "lf/collector/noise_moments.h"
 #include "lf/core/ids.h"
 #include "lf/core/parallel.h"
 #include "lf/plate/sensor_plate.h"
@@ -89,10 +90,11 @@ class BatchCollector {
  public:
   // plan_bytes    of frames planned together; one may take more
   // whole_images  instead of their rectangles
+  // moments       one per frame, of plates of their sizes; null: none are kept
   BatchCollector(const LightField& light_field, std::span<const RenderCamera> frames,
                  const RayReading& reading, CollectBackEnd back_end, FrameImageWeights weights,
                  size_t plan_bytes, bool whole_images, ThreadPool& pool,
-                 std::vector<SensorPlate>* plates);
+                 std::vector<SensorPlate>* plates, std::vector<NoiseMoments>* moments = nullptr);
 
   // Adds the images to the plates of `frames`, whose order may change, and runs the other items.
   // Once *interrupted is true no further frame is begun, and those begun are finished; other items
@@ -120,6 +122,9 @@ class BatchCollector {
   RayWeights WeightsOf(size_t frame, LfImageId id) const {
     return weights_ ? weights_(frame, id) : RayWeights();
   }
+  NoiseMoments* MomentsOf(size_t frame) const {
+    return moments_ == nullptr ? nullptr : &(*moments_)[frame];
+  }
   void UndoDistortion(std::vector<BatchImage>& batch);
   std::span<BatchFrame> FramesThatMayTake(const std::vector<BatchImage>& batch,
                                           std::span<BatchFrame> frames);
@@ -137,6 +142,7 @@ class BatchCollector {
   bool whole_images_;
   ThreadPool& pool_;
   std::vector<SensorPlate>& plates_;
+  std::vector<NoiseMoments>* moments_;
   std::vector<std::vector<PlateTile>> tiles_;
   std::deque<Share> shares_;  // of (frame, LF image); their memory serves batch after batch
   // By index of intrinsics; those of the last batch.

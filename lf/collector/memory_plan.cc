@@ -69,7 +69,7 @@ ImageNeed NeedOf(const LightField& light_field, Estimator estimator, int plate_w
 
 Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field,
                               Estimator estimator, int plate_width, int plate_height,
-                              size_t frame_count, int thread_count) {
+                              size_t frame_count, int thread_count, size_t bytes_per_frame) {
   const size_t element_count = static_cast<size_t>(plate_width) * plate_height;
   const ImageNeed need = NeedOf(light_field, estimator, plate_width, plate_height);
   MemoryPlan plan;
@@ -82,7 +82,8 @@ Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field
       element_count * (kDevelopBytesPerElement + sheet_pictures * kSheetBytesPerElement) +
       static_cast<size_t>(thread_count) * (need.decode_bytes + kTileBytes);
   const size_t pair_bytes = 2 * need.kept_bytes + need.plan_bytes;  // an image of each batch
-  const size_t least = set_aside + plan.plate_bytes + pair_bytes;
+  const size_t frame_bytes = plan.plate_bytes + bytes_per_frame;
+  const size_t least = set_aside + frame_bytes + pair_bytes;
   if (memory_bytes < least)
     return OutputError(fmt::format(
         "--memory {} MiB is not enough for one {}x{} plate and two LF images: at least {} MiB",
@@ -102,8 +103,8 @@ Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field
       1 + (images_bytes - plan.plan_bytes) / (element_count * kDevelopBytesPerElement));
   const size_t plates_bytes = free_bytes - std::min(free_bytes, images_bytes);
   plan.frames_per_pass =
-      std::clamp<size_t>(plates_bytes / plan.plate_bytes, 1, std::max<size_t>(1, frame_count));
-  plan.total_bytes = set_aside + images_bytes + plan.frames_per_pass * plan.plate_bytes;
+      std::clamp<size_t>(plates_bytes / frame_bytes, 1, std::max<size_t>(1, frame_count));
+  plan.total_bytes = set_aside + images_bytes + plan.frames_per_pass * frame_bytes;
   return plan;
 }
 

@@ -24,8 +24,9 @@ struct MemoryPlan {
 // are cut into passes. Batches are no larger than pays: of 16 LF images, or two for each thread, or
 // of as many pixels as eight plates have (64 images at most), whichever is more. kOutput: not
 // enough for one plate and two LF images; the message names the least that is.
+//   bytes_per_frame  kept beside each plate, such as moments (noise_moments.h)
 Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field,
                               Estimator estimator, int plate_width, int plate_height,
-                              size_t frame_count, int thread_count);
+                              size_t frame_count, int thread_count, size_t bytes_per_frame = 0);
 
 }  // namespace lf

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <map>
 #include <string_view>
+#include <utility>
 
 #include "lf/camera/distortion.h"
 #include "lf/camera/ray_through.h"
@@ -20,6 +21,7 @@ namespace {
 struct Viewer {
   RayThrough ray;
   double border_px;  // of the image, which rays keep away from
+  RayWeights weights;
 };
 
 // Of all that an element's ray is made of, about.
@@ -62,7 +64,7 @@ Result<uint32_t> ParseSampleRule(const std::string& text, const std::string& opt
   uint32_t samples = 0;
   const char* const end = text.data() + text.size();
   if (!text.starts_with(kStart))
-    return UsageError(fmt::format("{} '{}' is not like samples>=8", option, text));
+    return UsageError(fmt::format("{} '{}' is not like samples>=8 or noise<=0.002", option, text));
   const auto [rest, error] = std::from_chars(text.data() + kStart.size(), end, samples);
   if (error != std::errc{} || rest != end || samples < 1 || samples > SensorPlate::kMaxCount)
     return UsageError(fmt::format("{} '{}': expected samples>=N with N from 1 to {}", option, text,
@@ -72,7 +74,8 @@ Result<uint32_t> ParseSampleRule(const std::string& text, const std::string& opt
 
 ReachableElements::ReachableElements(const ImageIndex& index, const RenderCamera& camera,
                                      const PlaceRange& places, const SelectOptions& select,
-                                     PixelFilter filter, ThreadPool& pool) {
+                                     PixelFilter filter, ThreadPool& pool,
+                                     const std::function<RayWeights(LfImageId)>& weights) {
   const std::vector<RenderCamera> frames = {camera};
   const std::vector<PlaceRange> ranges = {places};
   const std::vector<SelectedImage> images = SelectImages(index, frames, select, pool, ranges);
@@ -81,12 +84,15 @@ ReachableElements::ReachableElements(const ImageIndex& index, const RenderCamera
   std::map<uint32_t, DistortionMap> maps;
   std::vector<Viewer> viewers;
   for (const SelectedImage& image : images) {
+    RayWeights counts = weights ? weights(image.id) : RayWeights();
+    if (counts.are_none()) continue;
     const PinholeCamera lf_camera = light_field.Camera(image.id);
     const auto map = maps.try_emplace(light_field.cameras[image.id.value].intrinsics_index,
                                       lf_camera.intrinsics.distortion);
     viewers.push_back(
         {RayThrough(lf_camera, camera.pinhole.ForwardWorld(), map.first->second),
-         select.reach == PixelReach::kNeighbours ? BorderOf(lf_camera, camera, filter) : 0});
+         select.reach == PixelReach::kNeighbours ? BorderOf(lf_camera, camera, filter) : 0,
+         std::move(counts)});
   }
   const int width = camera.pinhole.intrinsics.width_px;
   const int height = camera.pinhole.intrinsics.height_px;
@@ -100,8 +106,9 @@ ReachableElements::ReachableElements(const ImageIndex& index, const RenderCamera
       const std::optional<Vec3> point = FocusPointOfElement(camera, x + 0.5, y + 0.5);
       if (!point) continue;
       is_reachable_[row * columns_ + column] =
-          std::any_of(viewers.begin(), viewers.end(),
-                      [&](const Viewer& viewer) { return Sees(viewer, camera, *point); });
+          std::any_of(viewers.begin(), viewers.end(), [&](const Viewer& viewer) {
+            return Sees(viewer, camera, *point) && viewer.weights.At(x, y) > 0;
+          });
     }
   });
   for (int y = 0; y < height; ++y)

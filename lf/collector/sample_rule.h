@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "lf/camera/ray_weight.h"
 #include "lf/camera/render_camera.h"
 #include "lf/capture/light_field.h"
 #include "lf/collection/gather_sampling.h"
@@ -31,8 +33,11 @@ class ReachableElements {
 
   // places  which LF images of the index's order count
   // filter  where select.reach is that of bilinear
+  // weights  what an LF image counts in the frame; empty: rays through the lens count 1. Rays that
+  //          count 0 reach nothing.
   ReachableElements(const ImageIndex& index, const RenderCamera& camera, const PlaceRange& places,
-                    const SelectOptions& select, PixelFilter filter, ThreadPool& pool);
+                    const SelectOptions& select, PixelFilter filter, ThreadPool& pool,
+                    const std::function<RayWeights(LfImageId)>& weights = {});
 
   bool Holds(int x, int y) const {
     return is_reachable_[static_cast<size_t>(y / kGrid) * columns_ + x / kGrid] != 0;
