@@ -27,7 +27,7 @@ constexpr const char* kExamples = R"(Examples:
   lfrenderer capture/ path.yaml -o frames --format png16 --video film.mp4
   lfrenderer capture/ path.yaml -o preview --frames 1-100x10 --max-images 200
   lfrenderer capture/ path.yaml -o frames --resume       # after Ctrl-C, kill, a crash
-  lfrenderer capture/ path.yaml -o frames --stop-when "samples>=16"
+  lfrenderer capture/ path.yaml -o frames --stop-when "noise<=0.002"
   lfrenderer packages/package-*.lfp -o frames            # of lfpreprocessor
   lfrenderer capture/ path.yaml -o frames --shard 2/5    # a part of the LF images: see lfmerge
   lfrenderer capture/ path.yaml -o frames --mode hybrid  # interpolated where no LF camera's rays pass
@@ -129,6 +129,7 @@ int main(int argc, char** argv) {
     lf::SummariseRender(report, look_at.string());
     if (common.json && !(std::cout << lf::ToJson(report) << std::flush))
       return lf::OutputError("--json: the report cannot be written to stdout");
-    return lf::CheckRequired(report, rendered.options.require_samples);
+    LF_RETURN_IF_ERROR(lf::CheckRequired(report, rendered.options.require_samples));
+    return lf::CheckRequiredNoise(report, rendered.options.require_noise);
   });
 }

@@ -7,6 +7,7 @@
 #include "tools/common/byte_size.h"
 #include "tools/common/duration.h"
 
+#include "lf/collector/noise_rule.h"
 #include "lf/core/log.h"
 #include "lf/package/package_file.h"
 #include "lf/pipeline/frame_range.h"
@@ -62,10 +63,16 @@ void RenderArguments::AddTo(CLI::App& app) {
       ->check(NotEmpty());
   app.add_option(
          "--stop-when", stop_when,
-         "samples>=N: a frame is finished when 99 % of the elements that LF images see have "
-         "N rays in every channel")
+         "Finish a frame when it is good enough. noise<=X: when the noise of 90 % of the elements "
+         "that LF images see is at most X, the standard error of their mean in linear light with "
+         "white as 1 (0.002 is half a level of 255 in a mid-grey); with every mode and all lens "
+         "weights; "
+         "rebin measures it by a plate of 24 bytes for each element of every frame. samples>=N: "
+         "when 99 % of them have N rays in every channel; lens weights are then none")
       ->check(NotEmpty());
-  app.add_option("--require", require, "samples>=N: exit code 6 if a frame has fewer in the end")
+  app.add_option("--require", require,
+                 "noise<=X or samples>=N: exit code 6 if a frame has more noise or fewer rays in "
+                 "the end")
       ->check(NotEmpty());
   app.add_flag("--keep-plates", keep_plates,
                "Also write each frame's sums and counts: frame_0001.plate");
@@ -172,15 +179,22 @@ Result<RenderOptions> RenderArguments::MakeOptions(const CommonOptions& common, 
   options.version = Version();
   LF_ASSIGN_OR_RETURN(options.dump_every_s, ParseDuration(dump_every, "--dump-every"));
   if (!stop_when.empty()) {
-    LF_ASSIGN_OR_RETURN(options.stop_at_samples, ParseSampleRule(stop_when, "--stop-when"));
+    if (IsNoiseRule(stop_when)) {
+      LF_ASSIGN_OR_RETURN(options.stop_at_noise, ParseNoiseRule(stop_when, "--stop-when"));
+    } else {
+      LF_ASSIGN_OR_RETURN(options.stop_at_samples, ParseSampleRule(stop_when, "--stop-when"));
+    }
   }
   if (!require.empty()) {
-    LF_ASSIGN_OR_RETURN(options.require_samples, ParseSampleRule(require, "--require"));
+    if (IsNoiseRule(require)) {
+      LF_ASSIGN_OR_RETURN(options.require_noise, ParseNoiseRule(require, "--require"));
+    } else {
+      LF_ASSIGN_OR_RETURN(options.require_samples, ParseSampleRule(require, "--require"));
+    }
   }
   if (options.lens_weights == LensWeights::kAuto && options.CountsRays()) {
     options.lens_weights = LensWeights::kNone;
-    LogInfo(
-        "--lens-weights auto: none, since --stop-when, --require and --smooth-below count rays");
+    LogInfo("--lens-weights auto: none, since samples>=N and --smooth-below count rays");
   }
   if (options.reading.filter == PixelFilter::kAuto && !options.CountsRays() &&
       bayer != BayerPattern::kNone)

@@ -78,6 +78,23 @@ void TellLensWeights(const RenderReport& report) {
         cells, hats, both);
 }
 
+// With how many LF images frames came to the noise that was asked for.
+void TellNoise(const RenderReport& report) {
+  uint64_t fewest = UINT64_MAX, most = 0;
+  size_t measured = 0, met = 0;
+  for (const FrameReport& frame : report.frames) {
+    if (!frame.noise) continue;
+    ++measured;
+    if (!frame.noise->reached || *frame.noise->reached > frame.noise->asked) continue;
+    ++met;
+    fewest = std::min(fewest, frame.noise->image_count);
+    most = std::max(most, frame.noise->image_count);
+  }
+  if (measured == 0) return;
+  const std::string images = met == 0 ? "" : fmt::format(", with {} to {} LF images", fewest, most);
+  LogInfo("noise: {} of {} frames have what was asked for or less{}", met, measured, images);
+}
+
 // Which frames show it, for a message: "3 of 40 frames, most of all frame 7".
 template <class Badness>
 void WarnOfFrames(const RenderReport& report, double limit, const Badness& badness,
@@ -138,6 +155,7 @@ void SummariseRender(const RenderReport& report, const std::string& look_at) {
       report.lf_image_count, report.peak_memory_bytes >> 20);
   TellRebinning(report);
   TellLensWeights(report);
+  TellNoise(report);
   WarnOfEmptyElements(report);
   WarnOfLenses(report);
   if (!report.skipped.empty())
@@ -181,6 +199,29 @@ Result<void> CheckRequired(const RenderReport& report, std::optional<uint32_t> s
       fmt::format("--require samples>={}: {} of {} frames have them in less than 99 % of "
                   "the elements that LF images see: {}{}",
                   *samples, count, report.frames.size(), frames, count > kNamed ? ", ..." : "")};
+}
+
+Result<void> CheckRequiredNoise(const RenderReport& report, std::optional<double> noise) {
+  if (!noise) return {};
+  constexpr size_t kNamed = 10;
+  size_t count = 0;
+  std::string frames;
+  for (const FrameReport& frame : report.frames) {
+    const std::optional<double> reached = frame.noise ? frame.noise->reached : std::nullopt;
+    if (reached && *reached <= *noise) continue;
+    if (++count > kNamed) continue;
+    if (!frames.empty()) frames += ", ";
+    frames += fmt::format("frame {} ({})", frame.frame.value,
+                          reached ? fmt::format("{:.3g}", *reached)
+                                  : std::string("not measurable: fewer than two LF images"));
+  }
+  if (count == 0) return {};
+  return Error{
+      ErrorKind::kBelowRequired,
+      fmt::format("--require noise<={}: {} of {} frames have more in more than a tenth of "
+                  "the elements that LF images see: {}{}; a wider aperture or more LF "
+                  "images lower it",
+                  *noise, count, report.frames.size(), frames, count > kNamed ? ", ..." : "")};
 }
 
 }  // namespace lf

@@ -20,4 +20,8 @@ Error WithResumeCommand(Error error, int argc, char** argv);
 // kBelowRequired if frames have fewer samples than were asked for; names them.
 Result<void> CheckRequired(const RenderReport& report, std::optional<uint32_t> samples);
 
+// Returns kBelowRequired if frames have more noise than was asked for, or none that could be
+// measured; names them.
+Result<void> CheckRequiredNoise(const RenderReport& report, std::optional<double> noise);
+
 }  // namespace lf

@@ -29,18 +29,28 @@ Result<void> SetAsideForRays(size_t memory_bytes, RenderMode mode, size_t max_ce
 Result<RenderMemory> PlanRenderMemory(size_t memory_bytes, RenderMode mode, size_t max_cells,
                                       const LightField& light_field, Estimator estimator,
                                       int plate_width, int plate_height, size_t frame_count,
-                                      int thread_count) {
+                                      int thread_count, size_t measured_bytes) {
   RenderMemory memory;
+  const bool has_plates = Collects(mode) || measured_bytes > 0;
   if (Rebins(mode)) LF_RETURN_IF_ERROR(SetAsideForRays(memory_bytes, mode, max_cells, &memory));
   const Result<MemoryPlan> plan =
       PlanMemory(memory_bytes - memory.rebin_bytes, light_field, estimator, plate_width,
-                 plate_height, Collects(mode) ? frame_count : 1, thread_count);
+                 plate_height, has_plates ? frame_count : 1, thread_count, measured_bytes);
   if (!plan && memory.rebin_bytes > 0)
     return Error{plan.error().kind,
                  fmt::format("{} (beside {} MiB for {} rebinned rays: --memory is for both)",
                              plan.error().message, memory.rebin_bytes >> 20, memory.max_cells)};
   if (!plan) return plan.error();
   memory.plan = *plan;
+  // Which rays are kept depends on all frames of a pass, and must not depend on a rule.
+  if (!Collects(mode) && has_plates && plan->frames_per_pass < frame_count)
+    return OutputError(fmt::format(
+        "--mode rebin: \"noise<=X\" is measured by a plate of {} MiB for each frame, and --memory "
+        "{} "
+        "MiB has room for {} of {} (beside {} MiB for {} rebinned rays): give more, or fewer "
+        "--max-rays, or render fewer --frames at a time",
+        plan->plate_bytes >> 20, memory_bytes >> 20, plan->frames_per_pass, frame_count,
+        memory.rebin_bytes >> 20, memory.max_cells));
   if (!Collects(mode)) memory.plan.frames_per_pass = frame_count;
   return memory;
 }

@@ -19,11 +19,13 @@ struct RenderMemory {
 
 //   max_cells    RebinPassOptions::max_cells; 0: as many as fit in half of the memory with kRebin,
 //                or a quarter with kHybrid
-//   frame_count  that are to be rendered. Without plates (kRebin) all are in one pass.
+//   frame_count  that are to be rendered. With kRebin all are in one pass.
+//   measured_bytes  kept beside the plate of each frame where noise is measured: then frames of
+//                   kRebin have plates, too; 0: it is not
 // kOutput: less memory than one frame needs; the message names the least that is.
 Result<RenderMemory> PlanRenderMemory(size_t memory_bytes, RenderMode mode, size_t max_cells,
                                       const LightField& light_field, Estimator estimator,
                                       int plate_width, int plate_height, size_t frame_count,
-                                      int thread_count);
+                                      int thread_count, size_t measured_bytes = 0);
 
 }  // namespace lf

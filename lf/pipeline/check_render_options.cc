@@ -36,8 +36,10 @@ Result<void> CheckRenderOptions(const Package& package, const RenderOptions& opt
   const std::vector<FrameId> frames = options.frames.empty() ? package.FrameIds() : options.frames;
   if (options.mode == RenderMode::kRebin && (options.CountsRays() || options.keep_plates))
     return UsageError(
-        "--mode rebin: nothing is collected, so that --stop-when, --require, --smooth-below and "
-        "--keep-plates have no rays: leave them out, or use hybrid");
+        "--mode rebin: frames are not made of collected rays, so that \"samples>=N\" of "
+        "--stop-when "
+        "and --require, --smooth-below and --keep-plates have none: leave them out, or use hybrid "
+        "(\"noise<=X\" goes with every mode)");
   LF_RETURN_IF_ERROR(CheckSlab(package, options, frames));
   if (Rebins(options.mode) && !package.choices.has_neighbours)
     return UsageError(fmt::format(
@@ -59,12 +61,13 @@ Result<void> CheckRenderOptions(const Package& package, const RenderOptions& opt
     return UsageError(
         "--finish: finishes frames with the collected rays that a state has: give --resume, and "
         "leave out --shard and --mode rebin and hybrid");
-  if (options.shard && (options.mode != RenderMode::kCollect || options.stop_at_samples ||
-                        options.require_samples || options.keep_plates || options.video))
+  if (options.shard &&
+      (options.mode != RenderMode::kCollect || options.stop_at_samples || options.require_samples ||
+       options.MeasuresNoise() || options.keep_plates || options.video))
     return UsageError(
-        "--shard: writes plates for lfmerge, of a part of the LF images: leave out --mode rebin "
-        "and "
-        "hybrid, --stop-when, --require, --keep-plates and --video (lfmerge has one)");
+        "--shard: writes plates for lfmerge, of a part of the LF images, and no shard knows what "
+        "the others have: leave out --mode rebin and hybrid, --stop-when, --require, --keep-plates "
+        "and --video (lfmerge has one)");
   if (options.rebin.nearest > 0 && options.back_end != CollectBackEnd::kReference)
     return UsageError(
         "--nearest: only by the k-d tree of --back-end reference, which is far slower: give that, "
@@ -72,8 +75,9 @@ Result<void> CheckRenderOptions(const Package& package, const RenderOptions& opt
   if (options.CountsRays() && options.reading.estimator == Estimator::kBilinear &&
       options.reading.filter == PixelFilter::kMosaic)
     return UsageError(
-        "--filter mosaic: rays count up to 8 times, so that --stop-when, --require and "
-        "--smooth-below have none to count: leave them out, or use bilinear");
+        "--filter mosaic: rays count up to 8 times, so that \"samples>=N\" of --stop-when and "
+        "--require, and --smooth-below, have none to count: leave them out, or use bilinear "
+        "(\"noise<=X\" goes with every filter)");
   if (options.lens_weights == LensWeights::kNone) return {};
   const char* const name = NameOf(options.lens_weights);
   if (!package.choices.has_neighbours)
@@ -83,8 +87,9 @@ Result<void> CheckRenderOptions(const Package& package, const RenderOptions& opt
                     name, package.name));
   if (options.CountsRays())
     return UsageError(
-        fmt::format("--lens-weights {}: counts are sums of weights, so that --stop-when, --require "
-                    "and --smooth-below have no rays to count: leave them out",
+        fmt::format("--lens-weights {}: counts are sums of weights, so that \"samples>=N\" of "
+                    "--stop-when and --require, and --smooth-below, have no rays to count: leave "
+                    "them out (\"noise<=X\" goes with lens weights)",
                     name));
   if (options.lens_weights == LensWeights::kArea)
     for (const FrameId frame : frames)

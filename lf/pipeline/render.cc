@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "lf/collector/noise_moments.h"
 #include "lf/core/file.h"
 #include "lf/core/log.h"
 #include "lf/hybrid/film_slabs.h"
@@ -72,6 +73,7 @@ RunStateOptions StateOptions(const Package& package, const RenderOptions& option
   choices.max_image_count = options.max_image_count;
   choices.max_angle_rad = package.choices.max_angle_rad;
   choices.stop_at_samples = options.stop_at_samples;
+  choices.stop_at_noise = options.stop_at_noise;
   choices.format = NameOf(options.format);
   choices.smooth_below = options.smooth_below;
   RunInputs picture = InputsOfPicture(choices);
@@ -160,7 +162,8 @@ Result<void> Renderer::Begin() {
       const RenderMemory memory,
       PlanRenderMemory(options_.memory_bytes, options_.mode, options_.rebin.max_cells,
                        package_.light_field, options_.reading.estimator, plate.width_px,
-                       plate.height_px, frames_.size(), pool_.thread_count()));
+                       plate.height_px, frames_.size(), pool_.thread_count(),
+                       options_.MeasuresNoise() ? NoiseMoments::kMostBytes : 0));
   plan_ = memory.plan;
   max_cells_ = memory.max_cells;
   LF_RETURN_IF_ERROR(CreateFolder(options_.output_folder));
@@ -235,11 +238,14 @@ std::vector<FrameId> Renderer::FramesToRender() {
     if (finished != state_->finished().end()) {
       std::filesystem::path plate = FramePath(options_.output_folder, frame, options_.format);
       const bool lacks_samples = options_.require_samples && !finished->second.samples;
+      const bool lacks_noise = options_.require_noise && !finished->second.noise;
       const bool lacks_plate =
           options_.keep_plates && !std::filesystem::exists(plate.replace_extension(".plate"));
-      if (!lacks_samples && !lacks_plate) continue;
+      if (!lacks_samples && !lacks_noise && !lacks_plate) continue;
       LogInfo("frame {} is rendered again, for {}", frame.value,
-              lacks_samples ? "--require: its samples were not measured" : "--keep-plates");
+              lacks_samples ? "--require: its samples were not measured"
+              : lacks_noise ? "--require: its noise was not measured"
+                            : "--keep-plates");
       state_->Forget(frame);
     }
     frames.push_back(frame);

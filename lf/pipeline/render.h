@@ -51,7 +51,13 @@ struct RenderOptions {
   // them), so that the frame has the same bits in any run.
   std::optional<uint32_t> stop_at_samples;
   std::optional<uint32_t> require_samples;  // off: measured, and in the report of each frame
-  uint32_t smooth_below = 0;                // sequence/develop.h
+  // off: a frame is finished when its noise is no more than this (noise_rule.h), in linear radiance
+  // with the light field's white as 1. Decided at the places of NoiseDecisionAfter(). For every
+  // mode, estimator, filter and weights: with kRebin frames collect what noise is measured by, and
+  // their pictures do without. Not with shard.
+  std::optional<double> stop_at_noise;
+  std::optional<double> require_noise;  // off: measured, and in the report of each frame
+  uint32_t smooth_below = 0;            // sequence/develop.h
   size_t memory_bytes = size_t{8} << 30;
   bool strict = false;
   bool whole_images = false;  // SelectOptions; the same bits, but slower
@@ -80,6 +86,8 @@ struct RenderOptions {
 
   // Whether something asks how many rays elements have.
   bool CountsRays() const { return stop_at_samples || require_samples || smooth_below > 0; }
+  // Whether something asks how much LF images differ in elements.
+  bool MeasuresNoise() const { return stop_at_noise || require_noise; }
 };
 
 struct RenderProgress {

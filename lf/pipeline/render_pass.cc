@@ -55,7 +55,8 @@ Result<void> RenderPass::Prepare() {
     places = PlacesOfFirst(*job_.options.max_image_count, job_.index, cameras_, SelectCollected(),
                            job_.pool);
   if (job_.Rebins()) LF_RETURN_IF_ERROR(PrepareRebinning(places));
-  if (job_.Collects()) LF_RETURN_IF_ERROR(PreparePlates(&places));
+  if (job_.HasPlates()) LF_RETURN_IF_ERROR(PreparePlates(&places));
+  if (rebinned_ && HasStopRule()) ForgetRaysAhead(places);
   SelectForPass(places);
   if (job_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
   job_.totals.selected_image_count = std::max(job_.totals.selected_image_count, images_.size());
@@ -76,26 +77,13 @@ Result<void> RenderPass::Prepare() {
     collect.taker = rebinned_.get();
     collect.decision_places = kDecisionPlaces;
   }
-  if (job_.options.stop_at_samples) {
-    // Those of all frames are multiples of the least.
-    collect.decision_places = rebinned_ ? kDecisionPlaces : UINT32_MAX;
-    for (size_t f = 0; f < frames_.size(); ++f) {
-      if (job_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
-      if (frames_[f].is_finished) continue;
-      const uint32_t decision =
-          DecisionPlaces(job_.index.place_end(), ReachableOf(f).image_count());
-      frames_[f].decision_places = decision;
-      frames_[f].next_decision =
-          std::max(1u, (places[f].begin + decision - 1) / decision) * decision;
-      collect.decision_places = std::min(collect.decision_places, decision);
-    }
-    if (job_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
-  }
+  if (HasStopRule()) LF_RETURN_IF_ERROR(PrepareStops(places, &collect));
+  if (job_.options.MeasuresNoise()) collect.moments = &moments_;
   const auto collected =
-      job_.Collects() ? std::span<const RenderCamera>(cameras_) : std::span<const RenderCamera>();
+      job_.HasPlates() ? std::span<const RenderCamera>(cameras_) : std::span<const RenderCamera>();
   collector_ = std::make_unique<FrameCollector>(
       job_.package.light_field, job_.store, collected, images_,
-      job_.Collects() ? std::span<const PlaceRange>(places) : std::span<const PlaceRange>(),
+      job_.HasPlates() ? std::span<const PlaceRange>(places) : std::span<const PlaceRange>(),
       collect, job_.pool, &plates_);
   for (size_t f = 0; f < collected.size(); ++f)
     if (frames_[f].is_finished) collector_->Stop(f);
@@ -105,6 +93,7 @@ Result<void> RenderPass::Prepare() {
 Result<void> RenderPass::PreparePlates(std::vector<PlaceRange>* places) {
   // By all threads, since whoever clears a plate waits for its memory.
   for (size_t f = 0; f < frames_.size(); ++f) plates_.emplace_back(0, 0);
+  if (job_.options.MeasuresNoise()) moments_.resize(frames_.size());
   job_.pool.ForEach(frames_.size(), [this](size_t f) {
     const Intrinsics& plate = cameras_[f].pinhole.intrinsics;
     if (!job_.IsStopped() && !frames_[f].is_finished)
@@ -118,7 +107,7 @@ Result<void> RenderPass::PreparePlates(std::vector<PlaceRange>* places) {
       taken.begin = taken.end;
       continue;
     }
-    LF_ASSIGN_OR_RETURN(const FrameProgress start, job_.state.LoadPlate(frame.id, &plates_[f]));
+    LF_ASSIGN_OR_RETURN(const FrameProgress start, LoadPlate(f));
     if (frame.is_early) taken.end = std::min(taken.end, start.places_done);
     frame.places = {0, taken.end};
     taken.begin = start.places_done;
@@ -126,6 +115,25 @@ Result<void> RenderPass::PreparePlates(std::vector<PlaceRange>* places) {
     frame.saved_places = start.places_done;
   }
   return {};
+}
+
+// A plate whose moments nobody kept is of no use where noise is measured, unless it is finished as
+// it is.
+Result<FrameProgress> RenderPass::LoadPlate(size_t f) {
+  Frame& frame = frames_[f];
+  if (!job_.options.MeasuresNoise()) return job_.state.LoadPlate(frame.id, &plates_[f]);
+  const int width = plates_[f].width(), height = plates_[f].height();
+  std::optional<NoiseMoments> moments;
+  LF_ASSIGN_OR_RETURN(FrameProgress start, job_.state.LoadPlate(frame.id, &plates_[f], &moments));
+  frame.has_noise = moments || start.places_done == 0;
+  if (!frame.has_noise && !frame.is_early) {
+    LogInfo("frame {} is begun anew, since its noise was not measured before", frame.id.value);
+    plates_[f] = SensorPlate(width, height);
+    start = {};
+    frame.has_noise = true;
+  }
+  moments_[f] = moments ? *std::move(moments) : NoiseMoments(width, height);
+  return start;
 }
 
 // A package has the LF cameras that the default options reach.
@@ -183,7 +191,7 @@ Result<void> RenderPass::PrepareRebinning(std::span<const PlaceRange> places) {
 // for rebinned rays, which ask for their pixels when an image is loaded (ImageTaker).
 void RenderPass::SelectForPass(std::span<const PlaceRange> places) {
   images_.clear();
-  if (job_.Collects()) {
+  if (job_.HasPlates()) {
     SelectOptions select = SelectCollected();
     select.whole_images = job_.options.whole_images;
     images_ = SelectImages(job_.index, cameras_, select, job_.pool, places);
@@ -237,7 +245,7 @@ Result<void> RenderPass::Collect() {
       LF_RETURN_IF_ERROR(Save(std::numeric_limits<double>::infinity()));
       LogInfo("the state is written, as the signal asked for");
     }
-    if (step && !*step) return {};
+    if ((step && !*step) || (HasStopRule() && AreAllFinished())) return {};
     LF_RETURN_IF_ERROR(SaveWhenDue());
   }
 }
@@ -258,7 +266,7 @@ Result<void> RenderPass::Finish() {
     const size_t count = std::min(job_.plan.frames_finished_at_once, left.size() - begin);
     const auto together = std::span(left).subspan(begin, count);
     LF_RETURN_IF_ERROR(FinishFrames(together));
-    if (job_.Collects())
+    if (job_.HasPlates())
       for (const size_t f : together) plates_[f] = SensorPlate(0, 0);
     begin += count;
   }
@@ -275,56 +283,14 @@ Result<void> RenderPass::Finish() {
 
 // All rays of its plate, whenever they were collected.
 FrameProgress RenderPass::ProgressOf(size_t f) const {
-  if (!job_.Collects()) return {rebinned_->places_done(), {}};
+  if (!job_.HasPlates()) return {rebinned_->places_done(), {}};
   FrameProgress progress = collector_->frames()[f];
+  if (frames_[f].is_stopped) progress.places_done = frames_[f].next_decision;
   const FrameRays& earlier = frames_[f].earlier_rays;
   progress.rays.image_count += earlier.image_count;
   progress.rays.tested_count += earlier.tested_count;
   progress.rays.accepted_count += earlier.accepted_count;
   return progress;
-}
-
-const ReachableElements& RenderPass::ReachableOf(size_t f) {
-  Frame& frame = frames_[f];
-  if (!frame.reachable)
-    frame.reachable =
-        std::make_unique<ReachableElements>(job_.index, cameras_[f], frame.places, job_.Select(),
-                                            job_.options.reading.filter, job_.pool);
-  return *frame.reachable;
-}
-
-// Its plate is what it would be with all places before this one done: no LF image of the pass lies
-// between.
-uint32_t RenderPass::PlacesCovered(size_t f) const {
-  const auto next = std::lower_bound(
-      images_.begin(), images_.end(), collector_->frames()[f].places_done,
-      [](const SelectedImage& image, uint32_t place) { return image.place < place; });
-  return next == images_.end() ? job_.index.place_end() : next->place;
-}
-
-// Asks every frame at the first multiple of its decision_places after an LF image it took, with
-// exactly the rays of the places before: batches do not go across, and where there is a gap in the
-// order of this pass, nothing is added. So the answers do not depend on what other frames take.
-// An earlier run that was interrupted may have asked already; the answer is the same.
-Result<void> RenderPass::DecideStops() {
-  if (!job_.options.stop_at_samples) return {};
-  bool are_totals_saved = false;
-  for (size_t f = 0; f < frames_.size(); ++f) {
-    Frame& frame = frames_[f];
-    const uint32_t covered = PlacesCovered(f);
-    if (frame.is_finished || covered < frame.next_decision) continue;
-    const bool is_met = HasSamples(plates_[f], ReachableOf(f), *job_.options.stop_at_samples);
-    if (!is_met) {
-      frame.next_decision = (covered / frame.decision_places + 1) * frame.decision_places;
-      continue;
-    }
-    collector_->Stop(f);
-    frame.is_stopped = true;
-    if (!are_totals_saved) LF_RETURN_IF_ERROR(job_.state.SaveTotals(Totals()));
-    are_totals_saved = true;
-    LF_RETURN_IF_ERROR(FinishFrames({&f, 1}));
-  }
-  return {};
 }
 
 // At the same time: encoders keep one thread busy each. What is finished is kept, whatever becomes
@@ -345,9 +311,9 @@ Result<void> RenderPass::FinishFrames(std::span<const size_t> frames) {
 }
 
 FrameSheet RenderPass::SheetOf(size_t f) const {
-  FrameSheet sheet =
-      MakeFrameSheet(frames_[f].id, job_.path.Camera(frames_[f].id), ProgressOf(f).rays, lenses_[f],
-                     job_.package.light_field.encoding);
+  FrameSheet sheet = MakeFrameSheet(frames_[f].id, job_.path.Camera(frames_[f].id),
+                                    job_.Collects() ? ProgressOf(f).rays : FrameRays(), lenses_[f],
+                                    job_.package.light_field.encoding);
   sheet.fps = job_.path.fps;
   sheet.estimator = job_.options.reading.estimator;
   sheet.version = job_.options.version;
@@ -366,7 +332,8 @@ Result<FrameReport> RenderPass::WriteFiles(size_t f, const Completion* completio
     progress.places_done =
         frame.is_stopped ? frame.next_decision : std::min(frame.places.end, job_.index.place_end());
     std::filesystem::path plate = to;
-    PlateEntries text = job_.state.PlateText(frame.id, progress);
+    PlateEntries text =
+        job_.state.PlateText(frame.id, progress, frame.has_noise ? &moments_[f] : nullptr);
     for (auto& entry : TextOf(SheetOf(f))) text.push_back(std::move(entry));
     if (job_.options.shard) text.emplace_back("shard", job_.options.shard->Text());
     LF_RETURN_IF_ERROR(WritePlate(plate.replace_extension(".plate"), text, plates_[f], job_.pool));
@@ -380,11 +347,7 @@ Result<FrameReport> RenderPass::WriteFiles(size_t f, const Completion* completio
   }
   LF_ASSIGN_OR_RETURN(FrameReport report,
                       WritePicture(f, completion, to, [this] { return job_.IsStopped(); }));
-  const auto asked =
-      job_.options.require_samples ? job_.options.require_samples : job_.options.stop_at_samples;
-  if (asked)
-    report.samples = FrameSamples{*asked, MeasureSamples(plates_[f], ReachableOf(f), *asked)};
-  if (asked && job_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
+  LF_RETURN_IF_ERROR(Measure(f, &report));
   return report;
 }
 
@@ -403,8 +366,7 @@ std::vector<Completion> RenderPass::Complete(std::span<const size_t> frames) {
   std::vector<Completion> completions;
   if (!rebinned_) return completions;
   for (const size_t f : frames) {
-    const uint32_t done =
-        job_.Collects() ? collector_->frames()[f].places_done : rebinned_->places_done();
+    const uint32_t done = ProgressOf(f).places_done;
     const bool is_all = done >= std::min(frames_[f].places.end, job_.index.place_end());
     completions.push_back(rebinned_->Complete(f, is_all ? LensGaps::kInTheEnd : done));
   }
@@ -413,7 +375,7 @@ std::vector<Completion> RenderPass::Complete(std::span<const size_t> frames) {
 
 Result<void> RenderPass::Conclude(size_t f, const FrameReport& report) {
   Frame& frame = frames_[f];
-  if (!job_.options.shard && ProgressOf(f).rays.image_count == 0 &&
+  if (!job_.options.shard && report.rays.image_count == 0 &&
       report.interpolated_share.value_or(0) == 0) {
     // The first are told at once; a report has them all.
     constexpr size_t kTold = 10;

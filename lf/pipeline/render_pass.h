@@ -12,6 +12,7 @@
 #include "lf/collector/collect.h"
 #include "lf/collector/frame_lens.h"
 #include "lf/collector/memory_plan.h"
+#include "lf/collector/noise_moments.h"
 #include "lf/collector/sample_rule.h"
 #include "lf/pipeline/frame_output.h"
 #include "lf/pipeline/render.h"
@@ -44,6 +45,8 @@ struct RenderJob {
   std::function<void(const CollectProgress&, size_t finished_count)> progress;
 
   bool Collects() const { return lf::Collects(options.mode); }
+  // Whether frames have plates: for their pictures, or to measure noise by.
+  bool HasPlates() const { return Collects() || options.MeasuresNoise(); }
   bool Rebins() const { return lf::Rebins(options.mode); }
   bool IsStopped() const { return options.signals != nullptr && options.signals->stop; }
   SelectOptions Select() const;
@@ -77,7 +80,8 @@ class RenderPass {
     uint32_t decision_places = 0;  // with a stop rule: it is asked at multiples of this
     uint32_t next_decision = 0;    // place
     bool is_finished = false;
-    bool is_stopped = false;  // by the rule
+    bool is_stopped = false;  // by the rule, with the LF images before next_decision
+    bool has_noise = false;   // the moments are of all LF images in its plate
     bool is_early = false;    // finished with what the state has
     double picture_s = 0;     // when its picture was written last
     std::unique_ptr<ReachableElements> reachable;
@@ -87,6 +91,7 @@ class RenderPass {
   SelectOptions SelectCollected() const;
   Result<void> PreparePlates(std::vector<PlaceRange>* places);
   Result<void> CheckReach(const LensGaps& gaps, FrameId frame) const;
+  Result<FrameProgress> LoadPlate(size_t f);
   Result<void> PrepareRebinning(std::span<const PlaceRange> places);
   void SelectForPass(std::span<const PlaceRange> places);
   void AddRebinnedImages(std::span<const PlaceRange> places);
@@ -94,8 +99,16 @@ class RenderPass {
   std::vector<Completion> Complete(std::span<const size_t> frames);
   FrameProgress ProgressOf(size_t f) const;
   const ReachableElements& ReachableOf(size_t f);
-  uint32_t PlacesCovered(size_t f) const;
+  bool HasStopRule() const { return job_.options.stop_at_samples || job_.options.stop_at_noise; }
+  Result<void> PrepareStops(std::span<const PlaceRange> places, CollectOptions* collect);
+  void ForgetRaysAhead(std::span<const PlaceRange> places);
+  uint32_t PlacesCovered(uint32_t places_done) const;
+  double NoiseOf(size_t f);
+  bool IsEnough(size_t f);
+  uint32_t DecisionFrom(size_t f, uint32_t place) const;
   Result<void> DecideStops();
+  bool AreAllFinished() const;
+  Result<void> Measure(size_t f, FrameReport* report);
   Result<void> FinishFrames(std::span<const size_t> frames);
   FrameSheet SheetOf(size_t f) const;
   Result<FrameReport> WriteFiles(size_t f, const Completion* completion);
@@ -115,6 +128,7 @@ class RenderPass {
   std::vector<FrameLens> lenses_;      // one per frame, and so are cameras and plates
   std::vector<RenderCamera> cameras_;  // with these lenses
   std::vector<SensorPlate> plates_;
+  std::vector<NoiseMoments> moments_;  // of these, where noise is measured
   std::vector<SelectedImage> images_;
   std::unique_ptr<FrameCollector> collector_;
   std::unique_ptr<RebinnedRays> rebinned_;   // where it rebins

@@ -22,8 +22,9 @@ Result<void> RenderPass::Save(double picture_budget_s) {
     Frame& frame = frames_[f];
     const FrameProgress progress = ProgressOf(f);
     if (frame.is_finished || progress.places_done == frame.saved_places) continue;
-    if (job_.Collects())
-      LF_RETURN_IF_ERROR(job_.state.SavePlate(frame.id, progress, plates_[f], job_.pool));
+    if (job_.HasPlates())
+      LF_RETURN_IF_ERROR(job_.state.SavePlate(frame.id, progress, plates_[f], job_.pool,
+                                              frame.has_noise ? &moments_[f] : nullptr));
     frame.saved_places = progress.places_done;
   }
   LF_RETURN_IF_ERROR(SaveRays());

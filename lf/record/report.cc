@@ -36,6 +36,12 @@ Json FrameToJson(const FrameReport& frame) {
     json["samples"] = {{"asked", frame.samples->asked},
                        {"share", frame.samples->measured.share},
                        {"most_have", frame.samples->measured.most_have}};
+  if (frame.noise) {
+    Json& noise = json["noise"] = {{"asked", frame.noise->asked},
+                                   {"places", frame.noise->places},
+                                   {"lf_images", frame.noise->image_count}};
+    if (frame.noise->reached) noise["reached"] = *frame.noise->reached;
+  }
   json["inputs"] = InputsToJson(frame.camera);
   return json;
 }

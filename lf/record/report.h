@@ -26,6 +26,14 @@ struct FrameSamples {
   SampleShare measured;
 };
 
+// With --stop-when or --require "noise<=X" (collector/noise_rule.h).
+struct FrameNoise {
+  double asked = 0;               // X, in linear radiance
+  std::optional<double> reached;  // none: too few LF images, or nothing can be reached
+  uint32_t places = 0;            // measured with the LF images before this place of the order
+  uint64_t image_count = 0;       // of these, LF images with rays in the frame
+};
+
 struct FrameReport {
   FrameId frame;
   FrameRays rays;
@@ -48,6 +56,7 @@ struct FrameReport {
   std::optional<uint32_t> places_done = std::nullopt;
   // With rebinned rays: of the picture, how much is interpolated between them.
   std::optional<double> interpolated_share = std::nullopt;
+  std::optional<FrameNoise> noise = std::nullopt;  // where it was asked for
 };
 
 // Of rebinned rays (hybrid/rebinned_rays.h).

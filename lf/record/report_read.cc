@@ -39,6 +39,15 @@ FrameReport FrameFromJson(const Json& json, std::string* fault) {
     sample_fields.Get("share", &frame.samples->measured.share);
     sample_fields.Get("most_have", &frame.samples->measured.most_have);
   }
+  if (const Json* noise = fields.Find("noise")) {
+    RecordFields noise_fields(*noise, fault);
+    frame.noise.emplace();
+    noise_fields.Get("asked", &frame.noise->asked);
+    noise_fields.Get("places", &frame.noise->places);
+    noise_fields.Get("lf_images", &frame.noise->image_count);
+    if (noise_fields.Find("reached") != nullptr)
+      noise_fields.Get("reached", &frame.noise->reached.emplace());
+  }
   if (frame.frame.value == 0 && fault->empty()) *fault = "\"frame\": expected a number from 1";
   return frame;
 }

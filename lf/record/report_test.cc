@@ -42,6 +42,7 @@ TEST(Report, ReadsBackWhatItWrote) {
   frame.median_count = {7, 8, 9};
   frame.samples = FrameSamples{8, {0.25, 3}};
   frame.weighed = {12.5, 0.25, 0.75};
+  frame.noise = FrameNoise{0.002, 0.0019, 72, 70};
   frame.camera = {{"frame", "7"}};
   report.frames = {frame, {FrameId{9}, {}, {}, {}, {}, 0, {}, {}}};
   const Result<RenderReport> read = ParseReport(ToJson(report), "x");
@@ -56,6 +57,11 @@ TEST(Report, ReadsBackWhatItWrote) {
   EXPECT_EQ(read->frames[0].median_count, frame.median_count);
   EXPECT_EQ(read->frames[0].samples->measured.share, 0.25);
   EXPECT_EQ(read->frames[0].samples->measured.most_have, 3u);
+  EXPECT_EQ(read->frames[0].noise->asked, 0.002);
+  EXPECT_EQ(read->frames[0].noise->reached, 0.0019);
+  EXPECT_EQ(read->frames[0].noise->places, 72u);
+  EXPECT_EQ(read->frames[0].noise->image_count, 70u);
+  EXPECT_FALSE(read->frames[1].noise);
   EXPECT_EQ(read->frames[0].camera, frame.camera);
   EXPECT_FALSE(read->frames[1].samples);
   ASSERT_TRUE(read->frames[0].weighed);

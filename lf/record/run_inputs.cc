@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "lf/capture/value_hasher.h"
+#include "lf/collector/noise_rule.h"
 
 namespace lf {
 namespace {
@@ -38,6 +39,11 @@ std::string ColoursText(const RadianceEncoding& encoding) {
                      encoding.white_balance[1], encoding.white_balance[2], hasher.Text());
 }
 
+std::string StopText(const RunChoices& choices) {
+  if (choices.stop_at_noise) return TextOfNoiseRule(*choices.stop_at_noise);
+  return choices.stop_at_samples ? fmt::format("samples>={}", *choices.stop_at_samples) : "never";
+}
+
 std::string Text(const Vec3& v) { return fmt::format("{} {} {}", v.x(), v.y(), v.z()); }
 
 std::string CameraHash(const RenderCamera& camera) {
@@ -69,8 +75,7 @@ RunInputs InputsOfRays(const LightFieldIdentity& light_field, const RadianceEnco
       {"max_angle_deg", choices.max_angle_rad
                             ? fmt::format("{}", DegreesFromRadians(*choices.max_angle_rad))
                             : "any"},
-      {"stop_when",
-       choices.stop_at_samples ? fmt::format("samples>={}", *choices.stop_at_samples) : "never"},
+      {"stop_when", StopText(choices)},
       {"light_field.images", fmt::format("{}", light_field.image_count)},
       {"light_field.names", light_field.names},
       {"light_field.calibration", light_field.calibration},

@@ -30,7 +30,8 @@ struct RunChoices {
   LensWeights lens_weights = LensWeights::kNone;
   std::optional<size_t> max_image_count;
   std::optional<double> max_angle_rad;
-  std::optional<uint32_t> stop_at_samples;
+  std::optional<uint32_t> stop_at_samples;  // one of these two rules at most
+  std::optional<double> stop_at_noise;
   std::string format = "exr";
   uint32_t smooth_below = 0;
 };

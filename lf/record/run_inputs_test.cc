@@ -38,6 +38,7 @@ TEST(RunInputs, EveryInputMakesADifferenceAndItsKeyNamesIt) {
       {"max_angle_deg", [](Inputs& i) { i.choices.max_angle_rad = 1; }},
       {"max_images", [](Inputs& i) { i.choices.max_image_count = 9; }},
       {"stop_when", [](Inputs& i) { i.choices.stop_at_samples = 9; }},
+      {"stop_when", [](Inputs& i) { i.choices.stop_at_noise = 0.002; }},
       {"picture.format", [](Inputs& i) { i.choices.format = "png"; }},
       {"picture.smooth_below", [](Inputs& i) { i.choices.smooth_below = 2; }},
       {"light_field.images", [](Inputs& i) { i.field.cameras.pop_back(); }},

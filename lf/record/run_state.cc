@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::string_view kProgress = "progress.";
 constexpr const char* kPlacesDone = "progress.places_done";
+constexpr const char* kNoise = "progress.noise";
 constexpr const char* kRaysExtension = ".rays";
 constexpr const char* kRaysFrames = "rays.frames";
 
@@ -267,16 +268,19 @@ Result<void> RunState::Check(const std::string& place, FrameId frame, const RunI
   return {};
 }
 
-PlateEntries RunState::PlateText(FrameId frame, const FrameProgress& progress) const {
+PlateEntries RunState::PlateText(FrameId frame, const FrameProgress& progress,
+                                 const NoiseMoments* moments) const {
   PlateEntries text = Joined(options_.rays, InputsOfCamera(frame, path_.Camera(frame)));
   text.emplace_back(kPlacesDone, fmt::format("{}", progress.places_done));
   text.emplace_back("progress.lf_images", fmt::format("{}", progress.rays.image_count));
   text.emplace_back("progress.rays_tested", fmt::format("{}", progress.rays.tested_count));
   text.emplace_back("progress.rays_accepted", fmt::format("{}", progress.rays.accepted_count));
+  if (moments != nullptr) text.emplace_back(kNoise, moments->Text());
   return text;
 }
 
-Result<FrameProgress> RunState::LoadPlate(FrameId frame, SensorPlate* plate) const {
+Result<FrameProgress> RunState::LoadPlate(FrameId frame, SensorPlate* plate,
+                                          std::optional<NoiseMoments>* moments) const {
   FrameProgress progress;
   if (!plates_.contains(frame)) return progress;
   const fs::path path = PlatePath(frame);
@@ -293,12 +297,21 @@ Result<FrameProgress> RunState::LoadPlate(FrameId frame, SensorPlate* plate) con
                                   reader.width(), reader.height(), plate->width(),
                                   plate->height()));
   if (const Result<void> added = reader.AddTo(plate); !added) return WithAdvice(added.error());
+  const std::string* const noise = FindEntry(reader.entries(), kNoise);
+  if (moments == nullptr || noise == nullptr) return progress;
+  Result<NoiseMoments> read = NoiseMoments::Read(*noise, *plate);
+  if (!read)
+    return WithAdvice(InputError(
+        fmt::format("{}: {} is damaged: {}", path.string(), kNoise, read.error().message)));
+  *moments = *std::move(read);
   return progress;
 }
 
 Result<void> RunState::SavePlate(FrameId frame, const FrameProgress& progress,
-                                 const SensorPlate& plate, ThreadPool& pool) {
-  LF_RETURN_IF_ERROR(WritePlate(PlatePath(frame), PlateText(frame, progress), plate, pool));
+                                 const SensorPlate& plate, ThreadPool& pool,
+                                 const NoiseMoments* moments) {
+  LF_RETURN_IF_ERROR(
+      WritePlate(PlatePath(frame), PlateText(frame, progress, moments), plate, pool));
   plates_.insert(frame);
   return {};
 }

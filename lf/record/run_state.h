@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "lf/collector/collect.h"
+#include "lf/collector/noise_moments.h"
 #include "lf/core/file_lock.h"
 #include "lf/core/ids.h"
 #include "lf/core/parallel.h"
@@ -71,11 +72,15 @@ class RunState {
   std::filesystem::path FinishedPath(FrameId frame) const;
 
   // Adds the rays of the frame's plate, if there is one, and tells how far it is.
+  //   plate    empty, of the frame's size
+  //   moments  gets the moments that were saved with it, if it is given and there are any
   // kInput: damaged.
-  Result<FrameProgress> LoadPlate(FrameId frame, SensorPlate* plate) const;
-  // kOutput; the file before is then intact.
+  Result<FrameProgress> LoadPlate(FrameId frame, SensorPlate* plate,
+                                  std::optional<NoiseMoments>* moments = nullptr) const;
+  // Writes the frame's plate, and its moments, unless null, into the same file, so that both are
+  // always of the same LF images. kOutput; the file before is then intact.
   Result<void> SavePlate(FrameId frame, const FrameProgress& progress, const SensorPlate& plate,
-                         ThreadPool& pool);
+                         ThreadPool& pool, const NoiseMoments* moments = nullptr);
   // Rebinned rays of a pass, by its first frame, and what they depend on beside the inputs: of a
   // section those that LoadRays() finds, none if there are none.
   // kUsage: of other frames. kInput: damaged, or more than max_cells.
@@ -95,8 +100,10 @@ class RunState {
   // A finished frame that is to be rendered anew.
   void Forget(FrameId frame) { finished_.erase(frame); }
 
-  // What a plate's file says, for one that is kept.
-  PlateEntries PlateText(FrameId frame, const FrameProgress& progress) const;
+  // Returns what a plate's file says beside its rays, also of one that is kept.
+  //   moments  null: none
+  PlateEntries PlateText(FrameId frame, const FrameProgress& progress,
+                         const NoiseMoments* moments = nullptr) const;
   std::filesystem::path PicturePath(FrameId frame) const;
 
   // Nothing that is there is of use: removes it.

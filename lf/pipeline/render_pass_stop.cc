@@ -1,0 +1,144 @@
+// Rules that stop frames of a pass, or measure them in the end.
+#include <algorithm>
+#include <cmath>
+
+#include "lf/collector/noise_rule.h"
+#include "lf/core/log.h"
+#include "lf/pipeline/render_pass.h"
+
+namespace lf {
+
+const ReachableElements& RenderPass::ReachableOf(size_t f) {
+  Frame& frame = frames_[f];
+  if (!frame.reachable) {
+    std::function<RayWeights(LfImageId)> weights;
+    if (job_.options.lens_weights != LensWeights::kNone)
+      weights = [this, f](LfImageId id) { return lenses_[f].WeightsOf(id); };
+    frame.reachable =
+        std::make_unique<ReachableElements>(job_.index, cameras_[f], frame.places, job_.Select(),
+                                            job_.options.reading.filter, job_.pool, weights);
+  }
+  return *frame.reachable;
+}
+
+// Batches end at the places where some frame is asked, and rebinned rays have places of their own
+// that no batch may cross.
+Result<void> RenderPass::PrepareStops(std::span<const PlaceRange> places, CollectOptions* collect) {
+  collect->cuts_for_noise = job_.options.stop_at_noise.has_value();
+  for (size_t f = 0; f < frames_.size(); ++f) {
+    Frame& frame = frames_[f];
+    if (job_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
+    if (frame.is_finished) continue;
+    const ReachableElements& reachable = ReachableOf(f);
+    if (job_.options.stop_at_samples) {
+      // Those of all frames are multiples of the least.
+      frame.decision_places = DecisionPlaces(job_.index.place_end(), reachable.image_count());
+      collect->decision_places = collect->decision_places == 0
+                                     ? frame.decision_places
+                                     : std::min(collect->decision_places, frame.decision_places);
+    }
+    frame.next_decision = DecisionFrom(f, std::max(places[f].begin, 1U));
+  }
+  if (job_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
+  return {};
+}
+
+// The first place from `place` on, which is above 0, where the frame is asked.
+uint32_t RenderPass::DecisionFrom(size_t f, uint32_t place) const {
+  if (job_.options.stop_at_noise) return NoiseDecisionAfter(place - 1);
+  const uint32_t step = frames_[f].decision_places;
+  return (place + step - 1) / step * step;
+}
+
+// A frame that stops is completed by the rebinned rays of the same LF images. States are written
+// plates first, so that rebinned rays may lag behind them, and catch up. Where a plate was removed
+// they are ahead of it: then they are made anew from the first LF image.
+void RenderPass::ForgetRaysAhead(std::span<const PlaceRange> places) {
+  uint32_t least = UINT32_MAX;
+  for (size_t f = 0; f < frames_.size(); ++f)
+    if (!frames_[f].is_finished) least = std::min(least, places[f].begin);
+  for (size_t i = 0; i < rebinned_->section_count(); ++i) {
+    if (rebinned_->places_done(i) <= least) continue;
+    LogInfo("rebinned rays are made anew, since a frame is not as far as they are");
+    rebinned_->Restore(i, RayMap(rebinned_->max_cells_per_section(), 0), 0);
+    saved_rays_places_[i] = 0;
+  }
+}
+
+// What is done up to a place is what it would be with all places before the returned one done: no
+// LF image of the pass lies between.
+uint32_t RenderPass::PlacesCovered(uint32_t places_done) const {
+  const auto next = std::lower_bound(
+      images_.begin(), images_.end(), places_done,
+      [](const SelectedImage& image, uint32_t place) { return image.place < place; });
+  return next == images_.end() ? job_.index.place_end() : next->place;
+}
+
+// In radiance; infinity where it cannot be told.
+double RenderPass::NoiseOf(size_t f) {
+  return MeasureNoise(plates_[f], moments_[f], ReachableOf(f)) /
+         job_.package.light_field.encoding.Scale();
+}
+
+bool RenderPass::IsEnough(size_t f) {
+  if (job_.options.stop_at_noise) return NoiseOf(f) <= *job_.options.stop_at_noise;
+  return HasSamples(plates_[f], ReachableOf(f), *job_.options.stop_at_samples);
+}
+
+// Asks every frame at the first place of its decisions after an LF image it took, with exactly the
+// rays of the places before: batches do not go across, and where there is a gap in the order of
+// this pass, nothing is added. So the answers do not depend on what other frames take. An earlier
+// run that was interrupted may have asked already; the answer is the same. All frames are asked
+// before one is finished, which may be interrupted.
+Result<void> RenderPass::DecideStops() {
+  if (!HasStopRule()) return {};
+  std::vector<size_t> stopped;
+  for (size_t f = 0; f < frames_.size(); ++f) {
+    Frame& frame = frames_[f];
+    // What is finished early is so with the LF images it has.
+    if (frame.is_finished || frame.is_early) continue;
+    if (!frame.is_stopped) {
+      const uint32_t covered = PlacesCovered(collector_->frames()[f].places_done);
+      if (covered < frame.next_decision) continue;
+      // Rebinned rays catch up after an interruption; they are asked for where the frame stops.
+      if (rebinned_ && PlacesCovered(rebinned_->places_done()) < frame.next_decision) continue;
+      if (!IsEnough(f)) {
+        frame.next_decision = DecisionFrom(f, covered + 1);
+        continue;
+      }
+      collector_->Stop(f);
+      frame.is_stopped = true;
+    }
+    stopped.push_back(f);
+  }
+  if (!stopped.empty()) LF_RETURN_IF_ERROR(job_.state.SaveTotals(Totals()));
+  for (const size_t f : stopped) LF_RETURN_IF_ERROR(FinishFrames({&f, 1}));
+  return {};
+}
+
+bool RenderPass::AreAllFinished() const {
+  return std::all_of(frames_.begin(), frames_.end(),
+                     [](const Frame& frame) { return frame.is_finished; });
+}
+
+// For the report of a frame. Any thread may call it, for a frame each.
+Result<void> RenderPass::Measure(size_t f, FrameReport* report) {
+  const RenderOptions& options = job_.options;
+  const Frame& frame = frames_[f];
+  const auto samples = options.require_samples ? options.require_samples : options.stop_at_samples;
+  if (samples)
+    report->samples = FrameSamples{*samples, MeasureSamples(plates_[f], ReachableOf(f), *samples)};
+  const auto noise = options.require_noise ? options.require_noise : options.stop_at_noise;
+  if (noise && frame.has_noise) {
+    FrameNoise& measured = report->noise.emplace();
+    measured.asked = *noise;
+    if (const double reached = NoiseOf(f); std::isfinite(reached)) measured.reached = reached;
+    measured.places =
+        frame.is_stopped ? frame.next_decision : std::min(frame.places.end, job_.index.place_end());
+    measured.image_count = ProgressOf(f).rays.image_count;
+  }
+  if ((samples || noise) && job_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
+  return {};
+}
+
+}  // namespace lf
