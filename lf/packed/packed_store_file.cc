@@ -196,6 +196,11 @@ Result<DisplayLevels> ReadDisplayLevels(const fs::path& path) {
   return DisplayLevels{levels[0], levels[1]};
 }
 
+Result<std::string> ReadCodecSettings(const fs::path& path) {
+  LF_ASSIGN_OR_RETURN(const OpenedStore store, OpenComplete(path));
+  return store.settings.Text("codec");
+}
+
 Result<LightFieldIdentity> ReadWholeIdentity(const fs::path& path) {
   LF_ASSIGN_OR_RETURN(const OpenedStore store, OpenComplete(path));
   return WholeIdentity(store.settings);

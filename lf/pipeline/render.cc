@@ -14,6 +14,7 @@
 #include "lf/core/log.h"
 #include "lf/hybrid/film_slabs.h"
 #include "lf/hybrid/render_memory.h"
+#include "lf/packed/packed_store_file.h"
 #include "lf/pipeline/check_render_options.h"
 #include "lf/pipeline/frame_output.h"
 #include "lf/pipeline/render_pass.h"
@@ -62,9 +63,18 @@ RunInputs InputsOfRebinning(const RenderOptions& options, size_t max_cells,
       {"rebin.coverage", fmt::format("{} cells across", rebin.coverage.cells_across)}};
 }
 
+// Returns how the pixels of LF images differ from those that were recorded.
+Result<std::string> PixelsOf(const LightField& light_field) {
+  const std::string as_recorded = RunChoices().pixels;
+  if (!HoldsPackedStore(light_field)) return as_recorded;
+  LF_ASSIGN_OR_RETURN(std::string codec, ReadCodecSettings(light_field.folder));
+  return codec.starts_with(kLossless) ? as_recorded : codec;
+}
+
 RunStateOptions StateOptions(const Package& package, const RenderOptions& options,
-                             size_t max_cells) {
+                             const std::string& pixels, size_t max_cells) {
   RunChoices choices;
+  choices.pixels = pixels;
   choices.reading = options.reading;
   choices.lens_weights = options.lens_weights;
   choices.back_end = options.back_end;
@@ -171,7 +181,8 @@ Result<void> Renderer::Begin() {
     LF_RETURN_IF_ERROR(CheckVideoTool());
     LF_RETURN_IF_ERROR(CheckVideoTarget(*options_.video));
   }
-  const RunStateOptions state_options = StateOptions(package_, options_, max_cells_);
+  LF_ASSIGN_OR_RETURN(const std::string pixels, PixelsOf(package_.light_field));
+  const RunStateOptions state_options = StateOptions(package_, options_, pixels, max_cells_);
   LF_ASSIGN_OR_RETURN(state_, RunState::Open(state_options, path_));
   had_plates_ = state_->HasPlates();
   totals_ = state_->earlier();
@@ -437,6 +448,7 @@ NeedsOptions NeedsOfRender(const Package& package, const RenderOptions& options)
 
 Result<void> PutInOrder(ImageOrder order, const RenderOptions& options, ThreadPool& pool,
                         Package* package) {
+  LF_RETURN_IF_ERROR(CheckRenderOptions(*package, options));
   LF_ASSIGN_OR_RETURN(package->places,
                       PlacesOfFilm(order, package->choices.seed, package->light_field,
                                    package->path, NeedsOfRender(*package, options), pool));

@@ -103,7 +103,7 @@ struct RenderProgress {
 NeedsOptions NeedsOfRender(const Package& package, const RenderOptions& options);
 
 // Gives the LF images of a whole light field the order for the film and the options.
-// kInterrupted.
+// kUsage: options that cannot be together. kInterrupted.
 Result<void> PutInOrder(ImageOrder order, const RenderOptions& options, ThreadPool& pool,
                         Package* package);
 

@@ -79,6 +79,7 @@ RunInputs InputsOfRays(const LightFieldIdentity& light_field, const RadianceEnco
       {"light_field.images", fmt::format("{}", light_field.image_count)},
       {"light_field.names", light_field.names},
       {"light_field.calibration", light_field.calibration},
+      {"light_field.pixels", choices.pixels},
       {"light_field.encoding", EncodingText(encoding)},
       {"light_field.colours", ColoursText(encoding)}};
 }

@@ -32,6 +32,8 @@ struct RunChoices {
   std::optional<double> max_angle_rad;
   std::optional<uint32_t> stop_at_samples;  // one of these two rules at most
   std::optional<double> stop_at_noise;
+  // "as recorded", or how a lossy codec changed them: other pixels give other frames.
+  std::string pixels = "as recorded";
   std::string format = "exr";
   uint32_t smooth_below = 0;
 };
