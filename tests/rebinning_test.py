@@ -98,6 +98,45 @@ class RebinningTest(ProgramTestCase):
             self.assertEqual(self.render("cut-" + mode, *options, "--resume"), expected)
             self.assertFalse((self.folder / ("cut-" + mode) / "partial").exists())
 
+    def interrupted(self, out, *options):
+        """A render that was ended when its state had rays and pictures; none if it was too fast."""
+        process = subprocess.Popen(list(map(str, self.command(out, *options))),
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        partial = self.folder / out / "partial"
+        while process.poll() is None and not (list(partial.glob("rays_*.rays"))
+                                              and list(partial.glob("frame_*.exr"))):
+            time.sleep(0.002)
+        process.send_signal(signal.SIGTERM)
+        process.communicate()
+        return partial if process.returncode == 5 else None
+
+    def test_frames_are_finished_early_with_the_rays_of_the_state(self):
+        self.path(aperture=0.006, frames=6)
+        for mode in ("rebin", "hybrid"):
+            options = ["--mode", mode, "--dump-every", "0.001s", "--threads", "1", "--back-end",
+                       "reference" if mode == "hybrid" else "fast"]
+            expected = self.render("whole-" + mode, *options)
+            for attempt in range(20):
+                partial = self.interrupted(f"{mode}-{attempt}", *options)
+                pictures = {picture.name: cv2.imread(str(picture), cv2.IMREAD_UNCHANGED)
+                            for picture in partial.glob("frame_*.exr")} if partial else {}
+                unfinished = sorted(set(pictures) - set(digests(self.folder / f"{mode}-{attempt}")))
+                if unfinished:
+                    break
+            self.assertTrue(unfinished, mode)
+            early = unfinished[-1]
+            out = f"{mode}-{attempt}"
+            frames = self.render(out, *options, "--resume", "--finish", str(int(early[6:10])))
+            self.assertEqual({name: bits for name, bits in frames.items() if name != early},
+                             {name: bits for name, bits in expected.items() if name != early})
+            told = {frame["frame"]: frame.get("finished_early_before_place")
+                    for frame in report(self.folder / out)["frames"]}
+            place = told.pop(int(early[6:10]))
+            self.assertTrue(0 < place <= 169, place)
+            self.assertEqual(set(told.values()), {None})
+            picture = cv2.imread(str(self.folder / out / early), cv2.IMREAD_UNCHANGED)
+            np.testing.assert_array_equal(picture, pictures[early])
+
     def test_resumed_with_other_choices_is_refused(self):
         self.path(aperture=0.02)
         process = subprocess.Popen(

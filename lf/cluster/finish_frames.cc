@@ -50,12 +50,15 @@ bool IsFinished(const ClusterJob& job, FrameId frame) {
       job.output_folder / fmt::format("frame_{:04}{}", frame.value, job.frame_extension), ignored);
 }
 
-// In its checkpoint.
+// Returns whether the package's checkpoint has rays of the frame: its plate, or rebinned rays, which
+// all frames share.
 bool HasRays(const ClusterJob& job, const JobPackage& package, FrameId frame) {
+  const fs::path checkpoint = job.output_folder / "partial" / package.name;
   std::error_code ignored;
-  return fs::exists(
-      job.output_folder / "partial" / package.name / fmt::format("frame_{:04}.plate", frame.value),
-      ignored);
+  if (fs::exists(checkpoint / fmt::format("frame_{:04}.plate", frame.value), ignored)) return true;
+  for (const auto& entry : fs::directory_iterator(checkpoint, ignored))
+    if (entry.path().extension() == ".rays") return true;
+  return false;
 }
 
 }  // namespace

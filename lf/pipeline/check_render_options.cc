@@ -56,11 +56,10 @@ Result<void> CheckRenderOptions(const Package& package, const RenderOptions& opt
   if (most && (!options.max_image_count || *options.max_image_count > *most))
     return UsageError(fmt::format(
         "{}: was made with --max-images {}, and has no more of each frame", package.name, *most));
-  if (!options.finish_early.empty() &&
-      (options.mode != RenderMode::kCollect || options.shard || !options.resume))
+  if (!options.finish_early.empty() && (options.shard || !options.resume))
     return UsageError(
-        "--finish: finishes frames with the collected rays that a state has: give --resume, and "
-        "leave out --shard and --mode rebin and hybrid");
+        "--finish: finishes frames with the rays that a state has: give --resume, and leave out "
+        "--shard, whose parts would end at different LF images");
   if (options.shard &&
       (options.mode != RenderMode::kCollect || options.stop_at_samples || options.require_samples ||
        options.MeasuresNoise() || options.keep_plates || options.video))

@@ -118,9 +118,10 @@ class Renderer {
   Result<void> CheckStore() const;
   std::vector<FrameId> FramesToRender();
   Result<void> RunPasses(std::vector<FrameId> frames);
+  std::vector<FrameId> EarlyOf(const RenderJob& job, std::span<const FrameId> frames) const;
   Result<void> FinishEarly(const RenderJob& job, std::vector<FrameId>* frames);
   Result<void> RunPass(const RenderJob& job, std::span<const FrameId> frames, size_t frames_left,
-                       bool finishes_early);
+                       std::span<const FrameId> early);
   Result<RenderReport> End();
   Result<void> CheckAnyContributes(const RenderJob& job, std::span<const FrameId> frames) const;
   Error NoneContributes() const;
@@ -293,7 +294,7 @@ Result<void> Renderer::RunPasses(std::vector<FrameId> frames) {
   if (totals_.pass_count > 1 && IsWhole() && !job.Rebins() && !state_->HasPlates() &&
       state_->finished().empty())
     LF_RETURN_IF_ERROR(CheckAnyContributes(job, frames));
-  if (!options_.finish_early.empty()) LF_RETURN_IF_ERROR(FinishEarly(job, &frames));
+  if (!job.Rebins()) LF_RETURN_IF_ERROR(FinishEarly(job, &frames));
   // Which rays are kept depends on all frames of a pass: these are the same in a render that goes
   // on.
   const std::span<const FrameId> in_passes = job.Rebins() ? std::span(frames_) : frames;
@@ -303,7 +304,9 @@ Result<void> Renderer::RunPasses(std::vector<FrameId> frames) {
     if (std::all_of(of_pass.begin(), of_pass.end(),
                     [this](FrameId frame) { return state_->finished().contains(frame); }))
       continue;
-    LF_RETURN_IF_ERROR(RunPass(job, of_pass, in_passes.size() - begin, false));
+    const std::vector<FrameId> early =
+        job.Rebins() ? EarlyOf(job, of_pass) : std::vector<FrameId>();
+    LF_RETURN_IF_ERROR(RunPass(job, of_pass, in_passes.size() - begin, early));
   }
   return {};
 }
@@ -327,33 +330,43 @@ Result<void> Renderer::CheckAnyContributes(const RenderJob& job,
   return {};
 }
 
-// Takes the frames that are finished with what they have out of `frames`.
-Result<void> Renderer::FinishEarly(const RenderJob& job, std::vector<FrameId>* frames) {
+// Returns the frames of the pass that are to be finished with what the state has of them.
+std::vector<FrameId> Renderer::EarlyOf(const RenderJob& job,
+                                       std::span<const FrameId> frames) const {
   std::vector<FrameId> early;
   for (const FrameId frame : options_.finish_early) {
-    const auto found = std::find(frames->begin(), frames->end(), frame);
-    if (found == frames->end()) continue;  // finished, or not asked for
-    if (state_->HasPlate(frame)) {
+    if (std::find(frames.begin(), frames.end(), frame) == frames.end()) continue;
+    if (state_->finished().contains(frame)) continue;
+    // Without collection a pass knows itself which rays it has.
+    if (!job.Collects() || state_->HasPlate(frame))
       early.push_back(frame);
-      frames->erase(found);
-    } else {
+    else
       LogWarning("--finish: frame {} has no rays yet: it takes all of its LF images", frame.value);
-    }
   }
+  return early;
+}
+
+// Finishes collected frames in passes of their own, so that they need not wait for others, and
+// takes them out of `frames`.
+Result<void> Renderer::FinishEarly(const RenderJob& job, std::vector<FrameId>* frames) {
+  const std::vector<FrameId> early = EarlyOf(job, *frames);
+  std::erase_if(*frames, [&early](FrameId frame) {
+    return std::binary_search(early.begin(), early.end(), frame);
+  });
   for (size_t begin = 0; begin < early.size(); begin += plan_.frames_per_pass) {
     const size_t count = std::min(plan_.frames_per_pass, early.size() - begin);
-    LF_RETURN_IF_ERROR(
-        RunPass(job, std::span(early).subspan(begin, count), frames->size() + count, true));
+    const std::span<const FrameId> of_pass = std::span(early).subspan(begin, count);
+    LF_RETURN_IF_ERROR(RunPass(job, of_pass, frames->size() + count, of_pass));
   }
   return {};
 }
 
 Result<void> Renderer::RunPass(const RenderJob& job, std::span<const FrameId> frames,
-                               size_t frames_left, bool finishes_early) {
+                               size_t frames_left, std::span<const FrameId> early) {
   const auto finished_before = std::count_if(frames.begin(), frames.end(), [this](FrameId frame) {
     return state_->finished().contains(frame);
   });
-  RenderPass pass(job, frames, finishes_early);
+  RenderPass pass(job, frames, early);
   LF_RETURN_IF_ERROR(pass.Prepare());
   const std::vector<SelectedImage>& images = pass.images();
   if (images.empty() && IsWhole() && totals_.pass_count == 1 && !state_->HasPlates() &&

@@ -78,7 +78,7 @@ struct RenderOptions {
   bool resume = false;       // go on with the state in the folder
   bool overwrite = false;    // remove it
   // Those of these frames that the state has rays of are finished at once, with these: their
-  // reports say before which place of the order. With resume and kCollect; not with shard.
+  // reports say before which place of the order. With resume; not with shard.
   std::vector<FrameId> finish_early;  // ascending
 
   std::string version;               // of the program, for the files' metadata

@@ -20,13 +20,14 @@ SelectOptions RenderJob::Select() const {
   return select;
 }
 
-RenderPass::RenderPass(const RenderJob& job, std::span<const FrameId> frames, bool finishes_early)
+RenderPass::RenderPass(const RenderJob& job, std::span<const FrameId> frames,
+                       std::span<const FrameId> early)
     : job_(job) {
   for (const FrameId frame : frames) {
     frames_.push_back({});
     frames_.back().id = frame;
     frames_.back().is_finished = job.state.finished().contains(frame);
-    frames_.back().is_early = finishes_early;
+    frames_.back().is_early = std::binary_search(early.begin(), early.end(), frame);
   }
 }
 
@@ -225,9 +226,10 @@ void RenderPass::AddRebinnedImages(std::span<const PlaceRange> places) {
 }
 
 Result<void> RenderPass::Collect() {
+  LF_RETURN_IF_ERROR(FinishEarlyFrames());
   // Frames that an earlier run left where the rule is to be asked.
   LF_RETURN_IF_ERROR(DecideStops());
-  while (true) {
+  while (!AreAllFinished()) {
     const Result<bool> step = collector_->Step();
     if (!step && step.error().kind != ErrorKind::kInterrupted) {
       // Plates are as after the last step: nothing of them need be lost.
@@ -245,9 +247,30 @@ Result<void> RenderPass::Collect() {
       LF_RETURN_IF_ERROR(Save(std::numeric_limits<double>::infinity()));
       LogInfo("the state is written, as the signal asked for");
     }
-    if ((step && !*step) || (HasStopRule() && AreAllFinished())) return {};
+    if (step && !*step) return {};
     LF_RETURN_IF_ERROR(SaveWhenDue());
   }
+  return {};
+}
+
+// What the state has of them does not become more: they need not wait for the others.
+Result<void> RenderPass::FinishEarlyFrames() {
+  for (size_t f = 0; f < frames_.size(); ++f) {
+    Frame& frame = frames_[f];
+    if (!frame.is_early || frame.is_finished) continue;
+    if (!job_.Collects()) {
+      const uint32_t places_done = rebinned_->places_done();
+      if (places_done == 0) {
+        LogWarning("--finish: frame {} has no rays yet: it takes all of its LF images",
+                   frame.id.value);
+        frame.is_early = false;
+        continue;
+      }
+      frame.places.end = places_done;
+    }
+    LF_RETURN_IF_ERROR(FinishFrames({&f, 1}));
+  }
+  return {};
 }
 
 bool RenderPass::AllBroken() const {
@@ -361,13 +384,15 @@ Result<FrameReport> RenderPass::WritePicture(size_t f, const Completion* complet
                           job_.options.format, job_.pool, is_interrupted);
 }
 
-// A frame that was stopped, or takes some LF images only, is complete where it ends.
+// A frame that takes some LF images only is complete where it ends. One that was stopped, or is
+// finished early, has gaps that nobody fills any more.
 std::vector<Completion> RenderPass::Complete(std::span<const size_t> frames) {
   std::vector<Completion> completions;
   if (!rebinned_) return completions;
   for (const size_t f : frames) {
     const uint32_t done = ProgressOf(f).places_done;
-    const bool is_all = done >= std::min(frames_[f].places.end, job_.index.place_end());
+    const bool is_all =
+        !frames_[f].is_early && done >= std::min(frames_[f].places.end, job_.index.place_end());
     completions.push_back(rebinned_->Complete(f, is_all ? LensGaps::kInTheEnd : done));
   }
   return completions;

@@ -56,8 +56,8 @@ class RenderPass {
  public:
   // Those that are finished take no part, but for what rebinned rays are kept: that depends on all
   // frames of the pass.
-  //   finishes_early  with the rays of the state alone
-  RenderPass(const RenderJob& job, std::span<const FrameId> frames, bool finishes_early);
+  //   early  of these, ascending, those that are finished with the rays of the state alone
+  RenderPass(const RenderJob& job, std::span<const FrameId> frames, std::span<const FrameId> early);
 
   // Plates of an earlier run, and the LF images that are still to be collected. kInput: damaged.
   Result<void> Prepare();
@@ -110,6 +110,7 @@ class RenderPass {
   bool AreAllFinished() const;
   Result<void> Measure(size_t f, FrameReport* report);
   Result<void> FinishFrames(std::span<const size_t> frames);
+  Result<void> FinishEarlyFrames();
   FrameSheet SheetOf(size_t f) const;
   Result<FrameReport> WriteFiles(size_t f, const Completion* completion);
   Result<FrameReport> WritePicture(size_t f, const Completion* completion,
