@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lf/collector/collect.h"
+#include "lf/core/log.h"
 
 namespace lf {
 namespace {
@@ -96,6 +97,8 @@ Result<std::vector<double>> DetailAt(const std::vector<double>& distances_w,
     return InputError(
         fmt::format("no LF image lies behind a lens of diameter {:.4g} at the starting camera",
                     aperture_diameter_w));
+  LogDebug("focus sweep: {} planes from {:.4g} to {:.4g} by {} LF images", distances_w.size(),
+           distances_w.front(), distances_w.back(), images.size());
   LF_ASSIGN_OR_RETURN(const CollectStatistics statistics,
                       Collect(light_field, store, frames, images, options, pool, &plates, nullptr));
   if (std::all_of(statistics.frames.begin(), statistics.frames.end(),

@@ -75,8 +75,12 @@ Result<ShardPlate> Look(const fs::path& path) {
     plate.shard = *shard;
   }
   // Rays are what shards differ in.
-  constexpr const char* kOwn[] = {"shard", "sheet.lf_images", "sheet.rays_tested",
-                                  "sheet.rays_accepted"};
+  constexpr const char* kOwn[] = {"shard",
+                                  "sheet.lf_images",
+                                  "sheet.rays_tested",
+                                  "sheet.rays_accepted",
+                                  "sheet.lf_images_skipped",
+                                  "sheet.skipped"};
   for (const auto& entry : reader.entries())
     if (!entry.first.starts_with("progress.") &&
         std::find(std::begin(kOwn), std::end(kOwn), entry.first) == std::end(kOwn))
@@ -100,6 +104,8 @@ class Merger {
       frames_[plate.sheet.frame].push_back(std::move(plate));
     }
     LF_RETURN_IF_ERROR(CheckFrames());
+    LogDebug("{} plates of {} frames, the first in {} shards", files.size(), frames_.size(),
+             frames_.begin()->second.front().shard.count);
     if (options_.video) {
       LF_RETURN_IF_ERROR(CheckVideoTool());
       LF_RETURN_IF_ERROR(CheckVideoTarget(*options_.video));
@@ -226,6 +232,8 @@ class Merger {
       if (!report) return report.error();
       reports_[frame] = *report;
     }
+    LogDebug("frame {}: {} plates, {} rays of {} LF images{}", frame.value, plates.size(),
+             sheet.rays.accepted_count, sheet.rays.image_count, is_kept ? "; kept" : "");
     accepted_count_ += sheet.rays.accepted_count;
     ++now_.frame_count;
     if (progress_) progress_(now_);
@@ -250,9 +258,27 @@ class Merger {
     for (const auto& [frame, plates] : frames_)
       if (const auto found = reports_.find(frame); found != reports_.end())
         report.frames.push_back(found->second);
+    AddImages(&report);
     report.total_s = NowSeconds() - begin_s_;
     report.peak_memory_bytes = PeakMemoryBytes();
     return report;
+  }
+
+  // Counts the LF images of the frame that takes most, and names those that plates lack.
+  void AddImages(RenderReport* report) const {
+    for (const auto& [frame, plates] : frames_) {
+      uint64_t count = 0;
+      for (const ShardPlate& plate : plates) {
+        count += plate.sheet.rays.image_count + plate.sheet.skipped_count;
+        std::vector<SkippedImage> skipped;
+        for (const std::string& name : plate.sheet.skipped)
+          skipped.push_back({name, fmt::format("{}: was rendered without it, since it was missing "
+                                               "or broken",
+                                               plate.path.string())});
+        report->AddSkipped(skipped);
+      }
+      report->selected_image_count = std::max<size_t>(report->selected_image_count, count);
+    }
   }
 
   Result<RenderReport> End() {

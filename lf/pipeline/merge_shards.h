@@ -33,7 +33,9 @@ struct MergeProgress {
 
 //   plates  files, or folders with such files somewhere below them, in any order
 // What all plates say is read first, and compared; then frame by frame: needs the memory of one
-// plate and its picture. Each frame has its file when it is done, and not before.
+// plate and its picture. Each frame has its file when it is done, and not before. The report names
+// the LF images that the plates' renders left out (as many as the plates do: frame_sheet.h); its
+// selected_image_count is that of the frame that takes most, with those.
 // kUsage: frames are there, and neither resume nor overwrite; a video without all frames.
 // kInput: no plates; plates without a sheet (record/frame_sheet.h); a frame whose shards are not
 // all

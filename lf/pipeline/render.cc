@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "lf/collection/simd_target.h"
 #include "lf/collector/noise_moments.h"
 #include "lf/core/file.h"
 #include "lf/core/log.h"
@@ -116,6 +117,7 @@ class Renderer {
   Result<void> Begin();
   Result<void> PlanSlabs();
   Result<void> CheckStore() const;
+  void TellPlan() const;
   std::vector<FrameId> FramesToRender();
   Result<void> RunPasses(std::vector<FrameId> frames);
   std::vector<FrameId> EarlyOf(const RenderJob& job, std::span<const FrameId> frames) const;
@@ -187,6 +189,8 @@ Result<void> Renderer::Begin() {
   LF_ASSIGN_OR_RETURN(state_, RunState::Open(state_options, path_));
   had_plates_ = state_->HasPlates();
   totals_ = state_->earlier();
+  // Where nothing of the earlier run is kept, LF images that it skipped are tried again.
+  if (!had_plates_ && state_->finished().empty()) totals_.skipped.clear();
   if (options_.strict && !totals_.skipped.empty())
     return InputError(fmt::format(
         "--strict: the render that --resume goes on with skipped {} LF images, the first: {}",
@@ -201,7 +205,28 @@ Result<void> Renderer::Begin() {
   totals_.thread_count = pool_.thread_count();
   totals_.lf_image_count = package_.whole.image_count;
   done_.frame_total = frames_.size();
+  TellPlan();
   return {};
+}
+
+// Logs what the render is about to do, for debugging.
+void Renderer::TellPlan() const {
+  LogDebug(
+      "rays: mode {}, estimator {}, filter {}, lens weights {}, back end {}; instruction set {}, "
+      "{} threads",
+      NameOf(options_.mode), NameOf(options_.reading.estimator), NameOf(options_.reading.filter),
+      NameOf(options_.lens_weights),
+      options_.back_end == CollectBackEnd::kFast ? "fast" : "reference", SimdTargets().front(),
+      pool_.thread_count());
+  LogDebug(
+      "memory: {} of {} MiB; up to {} of {} frames a pass with plates of {} KiB, two batches of up "
+      "to {} LF images of {} KiB, {} MiB of planned rays, {} rebinned rays",
+      plan_.total_bytes >> 20, options_.memory_bytes >> 20, plan_.frames_per_pass, frames_.size(),
+      plan_.plate_bytes >> 10, plan_.batch_image_count, plan_.image_bytes >> 10,
+      plan_.plan_bytes >> 20, max_cells_);
+  LogDebug("state: {} frames are finished, {}; {} LF images were left out before",
+           state_->finished().size(), had_plates_ ? "others are begun" : "none is begun",
+           totals_.skipped.size());
 }
 
 // Better known before a night's work than after it, frame by frame.
@@ -377,6 +402,8 @@ Result<void> Renderer::RunPass(const RenderJob& job, std::span<const FrameId> fr
   const uint64_t rays = std::accumulate(
       images.begin(), images.end(), uint64_t{0},
       [](uint64_t sum, const SelectedImage& image) { return sum + image.ray_count; });
+  LogDebug("pass over {} LF images for {} frames, {} to {}: {} pixels to be tried", images.size(),
+           frames.size(), frames.front().value, frames.back().value, rays);
   done_.image_total = done_.image_count + images.size() * passes_left;
   done_.ray_total = done_.ray_count + rays * passes_left;
   LF_RETURN_IF_ERROR(pass.Collect());

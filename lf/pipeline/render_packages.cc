@@ -98,10 +98,7 @@ Result<void> CheckImageFiles(const fs::path& path, const Package& package) {
 RenderReport Joined(RenderReport all, const RenderReport& part) {
   if (all.frames.empty() && all.version.empty()) return part;
   all.frames.insert(all.frames.end(), part.frames.begin(), part.frames.end());
-  for (const SkippedImage& skipped : part.skipped)
-    if (std::none_of(all.skipped.begin(), all.skipped.end(),
-                     [&](const SkippedImage& known) { return known.name == skipped.name; }))
-      all.skipped.push_back(skipped);
+  all.AddSkipped(part.skipped);
   all.selected_image_count = std::max(all.selected_image_count, part.selected_image_count);
   all.pass_count += part.pass_count;
   all.total_s += part.total_s;
@@ -285,6 +282,7 @@ Result<RenderReport> RenderPackages(PackagedFilm film, const RenderOptions& opti
     before.frame_count += part.frames.size();
     before.ray_count = now.ray_count;
     report = Joined(std::move(report), done);
+    report.packages.push_back({package.name, done.selected_image_count, done.skipped.size()});
     frames.insert(frames.end(), part.frames.begin(), part.frames.end());
     last = std::move(package);
   }

@@ -9,6 +9,7 @@
 #include "lf/capture/value_hasher.h"
 #include "lf/core/log.h"
 #include "lf/hybrid/frame_sampling.h"
+#include "lf/pipeline/skipped_images.h"
 #include "lf/preprocess/frame_needs.h"
 
 namespace lf {
@@ -357,7 +358,12 @@ Result<FrameReport> RenderPass::WriteFiles(size_t f, const Completion* completio
     std::filesystem::path plate = to;
     PlateEntries text =
         job_.state.PlateText(frame.id, progress, frame.has_noise ? &moments_[f] : nullptr);
-    for (auto& entry : TextOf(SheetOf(f))) text.push_back(std::move(entry));
+    FrameSheet sheet = SheetOf(f);
+    sheet.skipped =
+        SkippedOf(Totals().skipped, job_.index,
+                  {lenses_[f], {0, progress.places_done}, job_.Select().reach, job_.options.shard});
+    sheet.skipped_count = sheet.skipped.size();
+    for (auto& entry : TextOf(sheet)) text.push_back(std::move(entry));
     if (job_.options.shard) text.emplace_back("shard", job_.options.shard->Text());
     LF_RETURN_IF_ERROR(WritePlate(plate.replace_extension(".plate"), text, plates_[f], job_.pool));
   }
@@ -410,6 +416,8 @@ Result<void> RenderPass::Conclude(size_t f, const FrameReport& report) {
       LogWarning("more frames are black; report.json has the LF images of every frame");
   }
   LF_RETURN_IF_ERROR(job_.state.SaveFinished(report));
+  LogDebug("frame {}: written, with {} rays of {} LF images", frame.id.value,
+           report.rays.accepted_count, report.rays.image_count);
   frame.is_finished = true;
   ++finished_count_;
   job_.progress(done_, finished_count_);
@@ -435,10 +443,7 @@ RenderReport RenderPass::Totals() const {
     else if (!facts.keeps_all && rebinning.kept == "all")
       rebinning.kept = "edges";
   }
-  for (const SkippedImage& skipped : collector_->skipped())
-    if (std::none_of(totals.skipped.begin(), totals.skipped.end(),
-                     [&](const SkippedImage& known) { return known.name == skipped.name; }))
-      totals.skipped.push_back(skipped);
+  totals.AddSkipped(collector_->skipped());
   return totals;
 }
 

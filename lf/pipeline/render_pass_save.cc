@@ -74,6 +74,8 @@ Result<void> RenderPass::SaveWhenDue() {
   const double begin_s = NowSeconds();
   if (!job_.clock.IsDue(begin_s)) return {};
   LF_RETURN_IF_ERROR(Save(kPictureShare * (begin_s - job_.clock.last_s())));
+  LogDebug("checkpoint after {} of {} LF images: {:.2f} s", done_.image_count, images_.size(),
+           NowSeconds() - begin_s);
   if (job_.clock.Done(begin_s, NowSeconds()))
     LogInfo(
         "a checkpoint took {:.1f} s: the next one follows after {:.0f} s, so that they cost no "

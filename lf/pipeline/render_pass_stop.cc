@@ -106,6 +106,7 @@ Result<void> RenderPass::DecideStops() {
         frame.next_decision = DecisionFrom(f, covered + 1);
         continue;
       }
+      LogDebug("frame {}: the stop rule is met at place {}", frame.id.value, frame.next_decision);
       collector_->Stop(f);
       frame.is_stopped = true;
     }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lf/collector/frame_lens.h"
+#include "lf/record/record_fields.h"
 
 namespace lf {
 namespace {
@@ -17,6 +18,21 @@ namespace {
 // Shortest texts that give the same bits again.
 std::string Words(std::span<const double> numbers) {
   return fmt::format("{}", fmt::join(numbers, " "));
+}
+
+// A list in JSON, in ASCII, which has no control characters: names may hold any bytes.
+std::string NamesText(const std::vector<std::string>& names) {
+  constexpr size_t kMostBytes = size_t{256} << 10;
+  const auto text_of = [](const Json& json) {
+    return json.dump(-1, ' ', true, Json::error_handler_t::replace);
+  };
+  std::string text;
+  for (const std::string& name : names) {
+    const std::string word = text_of(Json(name));
+    if (text.size() + word.size() > kMostBytes) break;
+    text += (text.empty() ? "" : ",") + word;
+  }
+  return "[" + text + "]";
 }
 
 // The values of keys, one after the other; the first fault is kept, and what follows it is 0.
@@ -57,6 +73,17 @@ class SheetReader {
     if (error != std::errc{} || rest != text.data() + text.size() || number > most)
       Fault(key, fmt::format("a whole number up to {}", most));
     return number;
+  }
+
+  std::vector<std::string> Names(const char* key) {
+    std::vector<std::string> names;
+    const Json json = Json::parse(Text(key), nullptr, false);
+    if (!json.is_array()) Fault(key, "a list of names");
+    for (const Json& item : json.is_array() ? json : Json::array()) {
+      if (!item.is_string()) Fault(key, "a list of names");
+      if (item.is_string()) names.push_back(item.get<std::string>());
+    }
+    return names;
   }
 
   std::string Text(const char* key) {
@@ -136,6 +163,10 @@ PlateEntries TextOf(const FrameSheet& sheet) {
   };
   if (sheet.places_done)
     text.emplace_back("sheet.finished_early", fmt::format("{}", *sheet.places_done));
+  if (sheet.skipped_count > 0) {
+    text.emplace_back("sheet.lf_images_skipped", fmt::format("{}", sheet.skipped_count));
+    text.emplace_back("sheet.skipped", NamesText(sheet.skipped));
+  }
   if (sheet.weighed) {
     const auto& counts = sheet.weighed->effective_counts.pixels();
     text.emplace_back("sheet.weights",
@@ -191,6 +222,12 @@ Result<FrameSheet> FrameSheetOf(const PlateEntries& entries, int width_px, int h
   if (FindEntry(entries, "sheet.finished_early") != nullptr)
     sheet.places_done =
         static_cast<uint32_t>(reader.WholeNumber("sheet.finished_early", UINT32_MAX));
+  if (FindEntry(entries, "sheet.lf_images_skipped") != nullptr) {
+    sheet.skipped_count = reader.WholeNumber("sheet.lf_images_skipped", UINT32_MAX);
+    sheet.skipped = reader.Names("sheet.skipped");
+    if (sheet.skipped.size() > sheet.skipped_count)
+      reader.Fault("sheet.skipped", fmt::format("at most {} names", sheet.skipped_count));
+  }
   if (FindEntry(entries, "sheet.weights") != nullptr) {
     const std::vector<double> weights = reader.Numbers("sheet.weights", 2);
     const auto [columns, rows] = EffectiveSquares(intrinsics);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "lf/camera/render_camera.h"
 #include "lf/collector/collect.h"
@@ -25,6 +26,10 @@ struct FrameSheet {
   FrameRays rays;       // in the plate
   // Finished early, with the LF images before this place of the order.
   std::optional<uint32_t> places_done = std::nullopt;
+  // LF images that the frame takes and that are missing or broken: how many, and their names. A
+  // file has only as many names as fit in 256 KiB.
+  uint64_t skipped_count = 0;
+  std::vector<std::string> skipped = {};
   DevelopOptions develop;  // all but completion and is_interrupted
 
   // With lens weights (collector/frame_lens.h).

@@ -53,6 +53,42 @@ TEST(FrameSheet, ComesBackAsTheSameBits) {
   EXPECT_EQ(read->weighed->effective_counts.pixels(), sheet.weighed->effective_counts.pixels());
 }
 
+TEST(FrameSheet, NamesOfLfImagesThatAreMissingComeBackInAnyBytes) {
+  FrameSheet sheet = Sheet();
+  sheet.skipped = {"a, b.png", "c\n\"d\".png", "\xc3\xa9.png"};
+  sheet.skipped_count = 5;
+  const PlateEntries text = TextOf(sheet);
+  for (const auto& [key, value] : text)
+    EXPECT_TRUE(std::all_of(value.begin(), value.end(), [](char c) { return c >= ' '; })) << key;
+  const Result<FrameSheet> read = FrameSheetOf(text, 96, 64, "p");
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->skipped_count, 5u);
+  EXPECT_EQ(read->skipped, sheet.skipped);
+  // As many names as a plate's text has room for; the count stays.
+  sheet.skipped.assign(100'000, "a_name_of_some_length.png");
+  sheet.skipped_count = sheet.skipped.size();
+  const Result<FrameSheet> many = FrameSheetOf(TextOf(sheet), 96, 64, "p");
+  ASSERT_TRUE(many);
+  EXPECT_EQ(many->skipped_count, 100'000u);
+  EXPECT_GT(many->skipped.size(), 1000u);
+  EXPECT_LT(FindEntry(TextOf(sheet), "sheet.skipped")->size(), size_t{300} << 10);
+}
+
+TEST(FrameSheet, ListsOfMissingLfImagesAreChecked) {
+  const auto fault = [](const std::string& count, const std::string& names) {
+    PlateEntries entries = TextOf(Sheet());
+    entries.emplace_back("sheet.lf_images_skipped", count);
+    entries.emplace_back("sheet.skipped", names);
+    const Result<FrameSheet> read = FrameSheetOf(entries, 96, 64, "p");
+    return read ? std::string() : read.error().message;
+  };
+  EXPECT_EQ(fault("1", "[\"a\"]"), "");
+  for (const char* names : {"", "a", "[1]", "{}", "[\"a\""})
+    EXPECT_NE(fault("1", names).find("p: sheet.skipped is"), std::string::npos) << names;
+  EXPECT_NE(fault("1", "[\"a\",\"b\"]").find("at most 1 names"), std::string::npos);
+  EXPECT_NE(fault("-1", "[]").find("p: sheet.lf_images_skipped is"), std::string::npos);
+}
+
 TEST(FrameSheet, FaultsAreNamed) {
   const auto fault = [](const std::string& key, const std::optional<std::string>& value) {
     PlateEntries entries = TextOf(Sheet());

@@ -3,6 +3,8 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <numeric>
+#include <unordered_set>
 
 #include "lf/core/file.h"
 #include "lf/record/record_fields.h"
@@ -71,6 +73,14 @@ double RenderReport::MraysPerSecondPerCore() const {
   return collect_cpu_s > 0 ? static_cast<double>(AcceptedRays()) / 1e6 / collect_cpu_s : 0;
 }
 
+void RenderReport::AddSkipped(std::span<const SkippedImage> images) {
+  if (images.empty()) return;
+  std::unordered_set<std::string> known;
+  for (const SkippedImage& image : skipped) known.insert(image.name);
+  for (const SkippedImage& image : images)
+    if (known.insert(image.name).second) skipped.push_back(image);
+}
+
 FrameReport MakeFrameReport(FrameId frame, const FrameRays& rays, const DevelopedFrame& developed) {
   FrameReport report;
   report.frame = frame;
@@ -124,8 +134,13 @@ std::string ToJson(const RenderReport& report) {
                {"rays_accepted", report.AcceptedRays()},
                {"mrays_per_s_per_core", report.MraysPerSecondPerCore()},
                {"peak_memory_bytes", report.peak_memory_bytes},
+               {"lf_images_skipped", report.skipped.size()},
                {"skipped_lf_images", std::move(skipped)},
                {"frames", std::move(frames)}};
+  for (const PackageReport& package : report.packages)
+    json["packages"].push_back({{"name", package.name},
+                                {"lf_images_selected", package.selected_image_count},
+                                {"lf_images_skipped", package.skipped_image_count}});
   if (report.rebinning)
     json["rebinning"] = {{"slabs", report.rebinning->slab_count},
                          {"cells", report.rebinning->cell_count},

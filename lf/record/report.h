@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -70,6 +71,13 @@ struct RebinReport {
   std::string kept = "all";
 };
 
+// One of several packages that were rendered by one call.
+struct PackageReport {
+  std::string name;
+  size_t selected_image_count = 0;  // as RenderReport
+  size_t skipped_image_count = 0;
+};
+
 struct RenderReport {
   std::string version;
   RunInputs inputs;  // of rays and pictures, the same for all frames
@@ -81,7 +89,9 @@ struct RenderReport {
   size_t selected_image_count = 0;  // read, largest pass
   size_t pass_count = 0;
   std::vector<FrameReport> frames;
+  // LF images that were left out because they are missing or broken, each once.
   std::vector<SkippedImage> skipped;
+  std::vector<PackageReport> packages;  // empty unless RenderPackages() was called
   double total_s = 0;
   double load_cpu_s = 0;  // this and the next two as CollectTimes
   double load_wall_s = 0;
@@ -95,6 +105,8 @@ struct RenderReport {
   bool IsBlack() const;
   // Millions of accepted rays per CPU second of collection.
   double MraysPerSecondPerCore() const;
+  // Adds those that are not known by their name yet.
+  void AddSkipped(std::span<const SkippedImage> images);
 };
 
 // Counts of the developed frame.

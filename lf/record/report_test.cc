@@ -28,6 +28,20 @@ TEST(Report, IsJsonEvenWithNamesThatAreNoText) {
   EXPECT_EQ(json["skipped_lf_images"][0]["reason"], "broken");
 }
 
+TEST(Report, CountsEveryLfImageThatWasLeftOutOnce) {
+  RenderReport report;
+  const std::vector<SkippedImage> images = {{"a.png", "broken", 0}, {"b.png", "is gone", 3}};
+  report.AddSkipped(images);
+  report.AddSkipped(std::vector<SkippedImage>{{"b.png", "later", 3}, {"c.png", "broken", 1}});
+  report.packages = {{"package-0000", 25, 2}, {"package-0001", 20, 0}};
+  const auto json = nlohmann::json::parse(ToJson(report));
+  EXPECT_EQ(json["lf_images_skipped"], 3);
+  EXPECT_EQ(json["skipped_lf_images"][1]["reason"], "is gone");
+  EXPECT_EQ(json["packages"].size(), 2u);
+  EXPECT_EQ(json["packages"][0]["lf_images_skipped"], 2);
+  EXPECT_EQ(json["packages"][1]["lf_images_selected"], 20);
+}
+
 TEST(Report, ReadsBackWhatItWrote) {
   RenderReport report;
   report.inputs = {{"seed", "5"}, {"estimator", "nearest"}};
