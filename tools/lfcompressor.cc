@@ -170,6 +170,11 @@ int main(int argc, char** argv) {
                       "Codes the LF images of a light field, or what packages need of it, into a "
                       "packed store.",
                       kExamples);
+  program.AddCommonOptions({.threads = true,
+                            .strict = "An LF image that cannot be read is an error, not left out",
+                            .progress = true,
+                            .verbose = true,
+                            .quiet = true});
   AddOptions(program.app(), arguments);
   program.AddJsonOption("The report as JSON");
   return program.Run(argc, argv, [&] { return Run(arguments, program.common()); });

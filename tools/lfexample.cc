@@ -27,6 +27,7 @@ at the sharpest of a sweep of planes. Render it with: lfrenderer LIGHTFIELD PATH
 int main(int argc, char** argv) {
   lf::Program program("lfexample", "Writes a commented, working camera path for a light field.",
                       kExamples);
+  program.AddCommonOptions({.threads = true, .verbose = true, .quiet = true});
   lf::LightFieldArgument input;
   std::string output, move = "focus-pull";
   int camera = -1;

@@ -167,6 +167,12 @@ int main(int argc, char** argv) {
                       "Reports what a light field is and what looks wrong in it, and writes it as "
                       "the native transforms.json.",
                       kExamples);
+  program.AddCommonOptions(
+      {.threads = true,
+       .strict = "Missing and broken images are an error, and nothing is written",
+       .progress = true,
+       .verbose = true,
+       .quiet = true});
   AddOptions(program.app(), arguments);
   program.AddJsonOption("The report as JSON, with all digits");
   return program.Run(argc, argv, [&] { return Import(arguments, program.common()); });

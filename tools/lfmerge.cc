@@ -31,6 +31,7 @@ The memory is that of one frame. Plates stay where they are.)";
 int main(int argc, char** argv) {
   lf::Program program("lfmerge", "Adds the plates of a divided render and writes its frames.",
                       kExamples);
+  program.AddCommonOptions({.threads = true, .progress = true, .verbose = true, .quiet = true});
   std::vector<std::string> plates;
   std::string output, format = "exr", video;
   bool no_contact_sheet = false;

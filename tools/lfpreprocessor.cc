@@ -174,6 +174,12 @@ int main(int argc, char** argv) {
                       "Selects what a film needs of a light field, and cuts it into packages for "
                       "many machines.",
                       kExamples);
+  program.AddCommonOptions({.threads = true,
+                            .seed = "Seed of the order of the LF images",
+                            .strict = "A file that packages need and that is missing is an error",
+                            .progress = true,
+                            .verbose = true,
+                            .quiet = true});
   AddOptions(program.app(), arguments);
   program.AddJsonOption("The report as JSON");
   return program.Run(argc, argv, [&] { return Run(arguments, program.common()); });

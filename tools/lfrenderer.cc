@@ -98,6 +98,7 @@ int main(int argc, char** argv) {
                       "Films a densely recorded light field with a thin-lens camera on a path.",
                       kExamples);
   lf::RenderArguments arguments;
+  program.AddCommonOptions(lf::RenderArguments::Common());
   arguments.AddTo(program.app());
   program.AddJsonOption("Print the report to stdout");
 

@@ -112,6 +112,11 @@ Result<void> Act(const lf::SubmitArguments& arguments, const lf::CommonOptions& 
 int main(int argc, char** argv) {
   lf::Program program("lfsubmit", "Renders the packages of a film by many processes or machines.",
                       kExamples);
+  program.AddCommonOptions({.threads = true,
+                            .strict = "For lfrenderer: a broken LF image is an error, not left out",
+                            .progress = true,
+                            .verbose = true,
+                            .quiet = true});
   lf::SubmitArguments arguments;
   arguments.AddTo(program.app());
   program.AddJsonOption("Print the status to stdout");

@@ -128,6 +128,10 @@ lf::Result<lf::LfImageFormat> FormatOf(const Arguments& a) {
 
 int main(int argc, char** argv) {
   lf::Program program("lfsynth", "Photographs a synthetic scene as a light field.", kExamples);
+  program.AddCommonOptions({.threads = true,
+                            .seed = "Seed of poses (--jitter) and of noise (--noise)",
+                            .progress = true,
+                            .quiet = true});
   Arguments a;
   AddOptions(program.app(), a);
   return program.Run(argc, argv, [&]() -> lf::Result<void> {

@@ -138,6 +138,11 @@ int main(int argc, char** argv) {
   Arguments arguments;
   lf::Program program("lfvisualizer", "Shows what was captured and what a camera path needs of it.",
                       kExamples);
+  program.AddCommonOptions({.threads = true,
+                            .seed = "Seed of the order of the LF images",
+                            .progress = true,
+                            .verbose = true,
+                            .quiet = true});
   AddOptions(program.app(), arguments);
   return program.Run(argc, argv, [&] { return Run(arguments, program.common()); });
 }

@@ -115,6 +115,15 @@ void RenderArguments::AddTo(CLI::App& app) {
   rebin.AddTo(app);
 }
 
+OfferedOptions RenderArguments::Common() {
+  return {.threads = true,
+          .seed = "Seed of the order of the LF images, and of which rays are rebinned",
+          .strict = "A broken LF image is an error, not left out",
+          .progress = true,
+          .verbose = true,
+          .quiet = true};
+}
+
 bool RenderArguments::HasPackages() const {
   return std::all_of(inputs.begin(), inputs.end(), IsPackageName);
 }

@@ -32,6 +32,8 @@ struct RenderArguments {
   bool no_contact_sheet = false, resume = false, overwrite = false, keep_plates = false;
 
   void AddTo(CLI::App& app);
+  // The common options of lfrenderer.
+  static OfferedOptions Common();
 
   // Whether all inputs are packages: files that end in .lfp.
   bool HasPackages() const;

@@ -88,6 +88,7 @@ Result<RenderOptions> TryArguments(const std::vector<fs::path>& packages, const 
                                    const std::vector<std::string>& arguments, PackagedFilm* film) {
   Program renderer("lfrenderer", "", "");
   RenderArguments render;
+  renderer.AddCommonOptions(RenderArguments::Common());
   render.AddTo(renderer.app());
   std::vector<std::string> words = {"lfrenderer"};
   for (const fs::path& package : packages) words.push_back(package.string());

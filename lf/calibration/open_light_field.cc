@@ -14,6 +14,7 @@
 #include "lf/calibration/read_stanford.h"
 #include "lf/capture/raw_encoding.h"
 #include "lf/colmap/read_colmap.h"
+#include "lf/core/log.h"
 #include "lf/native/transforms_json.h"
 #include "lf/packed/packed_store_file.h"
 
@@ -75,6 +76,7 @@ Result<void> CheckNoImagesFolder(const fs::path& path, const OpenOptions& option
 
 Result<LightField> OpenAos(const fs::path& path, const OpenOptions& options) {
   LF_RETURN_IF_ERROR(CheckNoStanfordOptions(path, options));
+  LogDebug("{}: opened as poses of Airborne Optical Sectioning", path.string());
   return ReadAos(path, {.fov_deg = options.fov_deg, .images_folder = options.images_folder});
 }
 
@@ -88,6 +90,7 @@ Result<LightField> OpenPackedStore(const fs::path& path, const OpenOptions& opti
         fmt::format("--bayer: {} is a packed store, whose pixels are coded as what "
                     "they are: import its light field with it, and compress again",
                     path.string()));
+  LogDebug("{}: opened as a packed store", path.string());
   LF_ASSIGN_OR_RETURN(PackedStoreFacts facts, ReadPackedStore(path));
   return std::move(facts.light_field);
 }
@@ -104,6 +107,10 @@ std::optional<Result<LightField>> OpenFile(const fs::path& path, const OpenOptio
   if (Result<void> result = CheckNoStanfordOptions(path, options); !result) return result.error();
   if (Result<void> result = CheckNoFov(path, options); !result) return result.error();
   if (Result<void> result = CheckNoImagesFolder(path, options); !result) return result.error();
+  LogDebug("{}: opened as {}", path.string(),
+           read == ReadLlff             ? "LLFF poses"
+           : read == ReadTransformsJson ? "transforms.json"
+                                        : "Middlebury parameters");
   return read(path);
 }
 
@@ -125,6 +132,7 @@ Result<std::optional<fs::path>> CalibrationIn(const fs::path& folder) {
 Result<LightField> OpenColmap(const fs::path& model_folder, const OpenOptions& options) {
   LF_RETURN_IF_ERROR(CheckNoStanfordOptions(model_folder, options));
   LF_RETURN_IF_ERROR(CheckNoFov(model_folder, options));
+  LogDebug("{}: opened as a COLMAP model", model_folder.string());
   return ReadColmapModel(model_folder, options.images_folder);
 }
 
@@ -132,6 +140,7 @@ Result<LightField> OpenStanford(const fs::path& folder, const OpenOptions& optio
                                 const fs::path& asked_for) {
   LF_RETURN_IF_ERROR(CheckNoFov(folder, options));
   LF_RETURN_IF_ERROR(CheckNoImagesFolder(folder, options));
+  LogDebug("{}: opened as images with Stanford names", folder.string());
   return ReadStanfordFolder(folder, {.focal_px = options.focal_px,
                                      .pitch_w = options.pitch_w,
                                      .plane_distance_w = options.plane_distance_w,
@@ -228,6 +237,13 @@ Result<LightField> OpenLightField(const fs::path& path, const OpenOptions& optio
   LF_ASSIGN_OR_RETURN(LightField light_field, OpenCalibration(path, options));
   if (!HoldsPackedStore(light_field))
     LF_RETURN_IF_ERROR(CompleteEncoding(options, path, &light_field));
+  const Intrinsics& first = light_field.Camera({0}).intrinsics;
+  LogDebug("{}: {} LF images in {}, the first of {} x {} pixels{}, {} distinct intrinsics{}{}",
+           path.string(), light_field.size(), light_field.folder.string(), first.width_px,
+           first.height_px, first.has_distortion() ? " with lens distortion" : "",
+           light_field.intrinsics.size(),
+           light_field.encoding.bayer == BayerPattern::kNone ? "" : ", mosaics",
+           light_field.mask_names.empty() ? "" : ", masks");
   return light_field;
 }
 

@@ -51,20 +51,27 @@ Program::Program(std::string name, std::string description, std::string examples
   app_.footer("\n" + std::move(examples));
   app_.set_version_flag("--version", app_.get_name() + " " + Version());
   app_.option_defaults()->always_capture_default();
-  app_.add_option("--threads", common_.threads, "Threads to use; 0: all of the machine's")
-      ->check(CLI::Range(0, 512))
-      ->group("Common");
-  app_.add_option("--seed", common_.seed, "Seed of everything random")
-      ->check(WholeNumber())
-      ->group("Common");
-  app_.add_flag("--strict", common_.strict, "A broken LF image is an error, not skipped")
-      ->group("Common");
-  app_.add_option("--progress", common_.progress,
-                  "bar, plain, json (one object per line on stderr) or none")
-      ->check(CLI::IsMember({"auto", "bar", "plain", "json", "none"}))
-      ->group("Common");
-  app_.add_flag("-v,--verbose", verbosity_, "Say more")->group("Common");
-  app_.add_flag("-q,--quiet", quiet_, "Say only warnings and errors")->group("Common");
+}
+
+void Program::AddCommonOptions(const OfferedOptions& offered) {
+  constexpr const char* kGroup = "Common";
+  if (offered.threads)
+    app_.add_option("--threads", common_.threads, "Threads to use; 0: all of the machine's")
+        ->check(CLI::Range(0, 512))
+        ->group(kGroup);
+  if (offered.seed)
+    app_.add_option("--seed", common_.seed, offered.seed)->check(WholeNumber())->group(kGroup);
+  if (offered.strict) app_.add_flag("--strict", common_.strict, offered.strict)->group(kGroup);
+  if (offered.progress)
+    app_.add_option("--progress", common_.progress,
+                    "How progress is shown on stderr: auto (bar on a terminal, else plain), bar, "
+                    "plain (a line now and then), json (one object per line) or none")
+        ->check(CLI::IsMember({"auto", "bar", "plain", "json", "none"}))
+        ->group(kGroup);
+  if (offered.verbose)
+    app_.add_flag("-v,--verbose", verbosity_, "Say more, for debugging")->group(kGroup);
+  if (offered.quiet)
+    app_.add_flag("-q,--quiet", quiet_, "Say only warnings and errors")->group(kGroup);
 }
 
 void Program::AddJsonOption(const std::string& what) {

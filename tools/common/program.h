@@ -2,6 +2,7 @@
 //
 //   int main(int argc, char** argv) {
 //     lf::Program program("lfexample", "Writes a camera path ...", "Examples:\n  lfexample ...");
+//     program.AddCommonOptions({.threads = true, .verbose = true});
 //     program.app().add_option("LIGHTFIELD", light_field, "...")->required();
 //     return program.Run(argc, argv, [&]() -> lf::Result<void> { ... });
 //   }
@@ -19,13 +20,24 @@
 
 namespace lf {
 
+// Values of the common options. An option that the program does not offer keeps its default.
 struct CommonOptions {
   int threads = 0;  // 0: all
   uint64_t seed = 0;
   bool strict = false;
   std::string progress =
-      "auto";         // auto, bar, plain, json, none; auto: bar on a terminal, else plain
-  bool json = false;  // only where AddJsonOption() was called
+      "auto";  // auto, bar, plain, json, none; auto: bar on a terminal, else plain
+  bool json = false;
+};
+
+// The common options that a program offers: those that it obeys. Others are refused as unknown.
+struct OfferedOptions {
+  bool threads = false;
+  const char* seed = nullptr;    // what it decides about, for --help; null: not offered
+  const char* strict = nullptr;  // what becomes an error
+  bool progress = false;
+  bool verbose = false;  // the program, or what it calls, uses LogDebug()
+  bool quiet = false;    // it uses LogInfo(), or has progress
 };
 
 class Program {
@@ -34,6 +46,7 @@ class Program {
 
   CLI::App& app() { return app_; }
   const CommonOptions& common() const { return common_; }
+  void AddCommonOptions(const OfferedOptions& offered);
   void AddJsonOption(const std::string& what);
 
   // Parses the command line, runs `body` and returns the exit code for main().
