@@ -107,7 +107,7 @@ class LfImagesTest(unittest.TestCase):
             (folder / f"{index}.dng").write_bytes(dng(self.mosaic(index), pattern))
             return f"{index}.dng"
         result, out = self.run_renderer(self.field("mixed", write))
-        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(result.returncode, 6, result.stderr)
         skipped = json.loads((out / "report.json").read_text())["skipped_lf_images"]
         self.assertEqual(len(skipped), 1)
         self.assertIn("its mosaic is GRBG, but that of the light field is RGGB", str(skipped))

@@ -42,8 +42,8 @@ class StoreTest(ProgramTestCase):
     def compress(self, *arguments):
         return self.succeeds(COMPRESSOR, *arguments)
 
-    def report(self, *arguments):
-        return json.loads(self.compress(*arguments, "--json"))
+    def report(self, *arguments, code=0):
+        return json.loads(self.succeeds(COMPRESSOR, *arguments, "--json", code=code))
 
     def names(self):
         return sorted(path.name for path in self.folder.iterdir() if path.name.startswith("a"))
@@ -177,7 +177,7 @@ class CompressorTest(StoreTest):
         field = write_field(self.folder / "field", smooth)
         (self.folder / "field/image_07.png").write_text("no picture")
         self.fails(3, ["image_07.png"], COMPRESSOR, field, "-o", self.store, "--strict")
-        report = self.report(field, "-o", self.store, "--overwrite", "--verify")
+        report = self.report(field, "-o", self.store, "--overwrite", "--verify", code=6)
         self.assertEqual([skipped["name"] for skipped in report["skipped"]], ["image_07.png"])
         self.assertEqual((report["coded"], report["verified"]), (24, 24))
         for image in (self.folder / "field").glob("*.png"):
@@ -191,8 +191,8 @@ class CompressorTest(StoreTest):
             code = bytearray(database.execute("select code from blobs where id = 12").fetchone()[0])
             code[len(code) // 2] ^= 16
             database.execute("update blobs set code = ? where id = 12", (bytes(code),))
-        result = self.call(RENDERER, self.store, path, "-o", self.folder / "out")
-        self.assertEqual(result.returncode, 0, result.stderr)
+        self.fails(6, ["1 of 25 LF images were left out", "image_12.png"], RENDERER, self.store, path,
+                   "-o", self.folder / "out")
         report = json.loads((self.folder / "out/report.json").read_text())
         self.assertEqual([skipped["name"] for skipped in report["skipped_lf_images"]], ["image_12.png"])
         self.fails(3, ["a.lfs", "image_12.png"], RENDERER, self.store, path, "-o",

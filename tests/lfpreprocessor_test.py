@@ -290,8 +290,8 @@ class PackagesTest(ProgramTestCase):
     def test_missing_lf_images_are_told(self):
         field, path = self.film()
         (self.folder / "field" / "image_03.png").unlink()
-        text = self.succeeds(PREPROCESSOR, field, path, "--plan")
-        self.assertIn("1 LF images that packages need are not there", text)
+        text = self.succeeds(PREPROCESSOR, field, path, "--plan", code=6)
+        self.assertIn("1 of 25 LF images that packages need are not there", text)
         self.fails(3, ["--strict", "image_03.png"], PREPROCESSOR, field, path, "-o",
                    self.folder / "strict", "--strict")
         self.assertEqual(list((self.folder / "strict").glob("*.lfp")), [])

@@ -33,11 +33,11 @@ class RendererTest(unittest.TestCase):
         return subprocess.run([RENDERER, *map(str, arguments)], capture_output=True, text=True,
                               timeout=120)
 
-    def render(self, field, path, name, *options):
-        """Frames' digests and report of a run that must succeed."""
+    def render(self, field, path, name, *options, code=0):
+        """Frames' digests and report of a run that must end with this code."""
         out = self.folder / name
         result = self.run_renderer(field, path, "-o", out, "--format", "exr-float", *options)
-        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(result.returncode, code, result.stderr)
         digests = [hashlib.sha256(frame.read_bytes()).hexdigest()
                    for frame in sorted(out.glob("frame_*.exr"))]
         return digests, json.loads((out / "report.json").read_text())
@@ -207,7 +207,7 @@ class RendererTest(unittest.TestCase):
         broken = self.folder / "field" / "image_12.png"
         broken.write_bytes(broken.read_bytes()[:900])
         out = self.folder / "broken"
-        digests, report = self.render(field, path, "broken", *alike)
+        digests, report = self.render(field, path, "broken", *alike, code=6)
         self.assertEqual([s["name"] for s in report["skipped_lf_images"]], ["image_12.png"])
         self.assertEqual(digests, expected)
         self.fails(3, ["image_12.png"], field, path, "-o", out, "--strict")
@@ -227,7 +227,7 @@ class RendererTest(unittest.TestCase):
         (field.parent / "image_12.png").write_bytes(b"")
         path = write_path(self.folder, frames=12)
         for index, memory in enumerate([["--memory", "1G"], self.least_memory(field, path)]):
-            _, report = self.render(field, path, f"out{index}", *memory)
+            _, report = self.render(field, path, f"out{index}", *memory, code=6)
             self.assertEqual(len(report["skipped_lf_images"]), 1)
 
     def test_an_interrupt_ends_it_with_code_5(self):

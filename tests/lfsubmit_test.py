@@ -73,6 +73,60 @@ class LocalJobTest(ClusterTestCase):
         self.assertEqual((self.film / "frame_0001.exr").stat().st_mtime_ns, before)
         self.assertEqual(self.status()["state"], "done")
 
+    def break_images(self, *indices):
+        """until the test ends"""
+        for index in indices:
+            image = self.field.parent / f"image_{index:02d}.png"
+            whole = image.read_bytes()
+            image.write_bytes(whole[:900])
+            self.addCleanup(image.write_bytes, whole)
+
+    def test_images_that_are_left_out_end_it_with_6_and_cost_no_retry(self):
+        self.break_images(5, 10)
+        last = self.submit("--jobs", 2, code=6,
+                           words=["error: 2 LF images were left out", "2 of 16 in package-0000",
+                                  "2 of 16 in package-0002", "--allow-missing 2", "--resume"])
+        self.assertEqual(len(digests(self.film)), 9)
+        self.assertTrue((self.film / "contact_sheet.png").exists())
+        report = json.loads((self.film / "cluster" / "report.json").read_text())
+        self.assertEqual(report["lf_images_skipped"], 2)
+        status = self.status()
+        self.assertEqual((status["state"], status["finishing"]["exit_code"]), ("done", 6))
+        for package in status["packages"]:
+            self.assertEqual((package["state"], package["exit_code"], package["restarts"]),
+                             ("done", 6, 0))
+            self.assertIn("2 of 16 LF images were left out", package["message"])
+        # It stays so until somebody accepts it; the packages are not rendered again.
+        submit = cluster_test_case.SUBMIT
+        self.fails(6, [last.split(";")[0].removeprefix("error: ")], submit, "--resume", self.film)
+        self.fails(6, ["2 LF images"], submit, "--resume", self.film, "--", "--allow-missing", 1)
+        self.succeeds(submit, "--resume", self.film, "--", "--allow-missing", 2)
+        status = self.status()
+        self.assertEqual(status["finishing"]["exit_code"], 0)
+        self.assertEqual([package["restarts"] for package in status["packages"]], [0, 0, 0])
+        self.succeeds(submit, "--resume", self.film)
+
+    def test_images_that_are_left_out_may_be_accepted_beforehand(self):
+        self.break_images(5, 10)
+        result = self.call(cluster_test_case.SUBMIT, *self.package_files, "-o", self.film, "--",
+                           "--allow-missing", "13%")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("warning: 2 LF images were left out", result.stderr)
+        self.assertEqual([package["exit_code"] for package in self.status()["packages"]], [0, 0, 0])
+        self.submit("--overwrite", "--json", "--", "--allow-missing", "12%", code=6)
+        self.submit("--overwrite", "--", "--allow-missing", "2 %", code=2,
+                    words=["--allow-missing 2 %"])
+
+    def test_the_end_of_the_finishing_task_is_that_of_the_film(self):
+        for code, phase in ((4, "failed"), (3, "failed"), (1, "failed"), (6, "done"),
+                            (5, "interrupted")):
+            renderer = self.unlucky_renderer(
+                f"[[ $package == finish ]] && {{ echo 'error: so it ends' >&2; exit {code}; }}")
+            self.submit("--overwrite", "--lfrenderer", renderer, code=code, words=["so it ends"])
+            finishing = self.status()["finishing"]
+            self.assertEqual((finishing["exit_code"], finishing["state"]), (code, phase))
+            self.assertEqual(digests(self.film), self.expected)
+
     def test_what_always_dies_has_failed(self):
         renderer = self.unlucky_renderer("[[ $package == package-0001 ]] && kill -9 $$")
         self.submit("--lfrenderer", renderer, "--crashes", 2, code=4,

@@ -47,8 +47,8 @@ class RebinningTest(ProgramTestCase):
         return [RENDERER, self.field, self.folder / "path.yaml", "-o", self.folder / out, "--format",
                 "exr-float", "--no-contact-sheet", *options]
 
-    def render(self, out, *options):
-        self.succeeds(*self.command(out, *options))
+    def render(self, out, *options, code=0):
+        self.succeeds(*self.command(out, *options), code=code)
         return digests(self.folder / out)
 
     def test_the_same_bits_for_any_threads(self):
@@ -98,17 +98,20 @@ class RebinningTest(ProgramTestCase):
             self.assertEqual(self.render("cut-" + mode, *options, "--resume"), expected)
             self.assertFalse((self.folder / ("cut-" + mode) / "partial").exists())
 
-    def interrupted(self, out, *options):
-        """A render that was ended when its state had rays and pictures; none if it was too fast."""
+    def interrupted(self, out, delay_s, *options):
+        """Pictures of the unfinished frames of a render that was ended while it was at work."""
         process = subprocess.Popen(list(map(str, self.command(out, *options))),
                                    stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
         partial = self.folder / out / "partial"
-        while process.poll() is None and not (list(partial.glob("rays_*.rays"))
-                                              and list(partial.glob("frame_*.exr"))):
+        while process.poll() is None and not (partial / "lock").exists():
             time.sleep(0.002)
+        time.sleep(delay_s)
         process.send_signal(signal.SIGTERM)
         process.communicate()
-        return partial if process.returncode == 5 else None
+        if process.returncode != 5:
+            return {}
+        return {path.name: cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
+                for path in partial.glob("frame_*.exr")}
 
     def test_frames_are_finished_early_with_the_rays_of_the_state(self):
         self.path(aperture=0.006, frames=6)
@@ -116,10 +119,8 @@ class RebinningTest(ProgramTestCase):
             options = ["--mode", mode, "--dump-every", "0.001s", "--threads", "1", "--back-end",
                        "reference" if mode == "hybrid" else "fast"]
             expected = self.render("whole-" + mode, *options)
-            for attempt in range(20):
-                partial = self.interrupted(f"{mode}-{attempt}", *options)
-                pictures = {picture.name: cv2.imread(str(picture), cv2.IMREAD_UNCHANGED)
-                            for picture in partial.glob("frame_*.exr")} if partial else {}
+            for attempt in range(30):
+                pictures = self.interrupted(f"{mode}-{attempt}", 0.02 * attempt, *options)
                 unfinished = sorted(set(pictures) - set(digests(self.folder / f"{mode}-{attempt}")))
                 if unfinished:
                     break
@@ -243,12 +244,12 @@ class RebinningTest(ProgramTestCase):
     def test_packages_and_broken_images(self):
         path = self.path(aperture=0.02)
         (self.folder / "field" / "image_84.png").write_bytes(b"broken")
-        expected = self.render("whole", "--mode", "hybrid")
+        expected = self.render("whole", "--mode", "hybrid", code=6)
         self.assertEqual(len(report(self.folder / "whole")["skipped_lf_images"]), 1)
         self.succeeds(PREPROCESSOR, self.field, path, "-o", self.folder / "packages")
         self.succeeds(RENDERER, *sorted((self.folder / "packages").glob("*.lfp")), "-o",
                       self.folder / "frames", "--mode", "hybrid", "--format", "exr-float",
-                      "--no-contact-sheet")
+                      "--no-contact-sheet", code=6)
         self.assertEqual(len(digests(self.folder / "frames")), len(expected))
 
     def test_stop_rules_and_plates_go_with_hybrid(self):

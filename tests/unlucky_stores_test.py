@@ -142,10 +142,11 @@ class UnluckyStoresTest(StoreTest):
 
     def test_skipped_images_are_warned_of(self):
         (self.folder / "field/image_03.png").write_text("no picture")
-        result = self.call(self.compressor, self.field, "-o", self.store)
+        result = self.call(self.compressor, self.field, "-o", self.store, "--allow-missing", 1)
         self.assertEqual(result.returncode, 0)
         self.assertIn("24 LF images of 25", result.stdout)
-        self.assertIn("warning: 1 of 25 LF images were skipped: image_03.png", result.stderr)
+        self.assertIn("1 of 25 LF images have no code", result.stderr)
+        self.assertIn("image_03.png", result.stderr)
         for image in (self.folder / "field").glob("*.png"):
             image.write_text("no picture")
         self.fails(3, ["none of the 25"], self.compressor, self.field, "-o", self.folder / "b.lfs")

@@ -78,6 +78,18 @@ std::string CompressText(const CompressReport& report, const CompressOptions& op
   return text;
 }
 
+MissingImages MissingOf(const CompressReport& report, const CompressOptions& options) {
+  MissingImages missing{report.skipped.size(), report.image_count, "",
+                        "once they are mended, --overwrite codes all anew"};
+  if (missing.count > 0)
+    missing.what = fmt::format(
+        "{}: {} of {} LF images have no code, since they are missing or broken; the "
+        "first: {}: {}",
+        options.store.string(), missing.count, missing.asked, report.skipped.front().name,
+        report.skipped.front().reason);
+  return missing;
+}
+
 std::string CompressJson(const CompressReport& report, const CompressOptions& options) {
   using Json = nlohmann::ordered_json;
   const auto decibels = [](double db) { return std::isinf(db) ? Json("exact") : Json(db); };
@@ -105,6 +117,7 @@ std::string CompressJson(const CompressReport& report, const CompressOptions& op
   json["total_s"] = report.total_s;
   json["rounded_to_half"] = report.rounded_count;
   if (report.verified_count) json["verified"] = *report.verified_count;
+  json["lf_images_skipped"] = report.skipped.size();
   json["skipped"] = Json::array();
   for (const CompressReport::Skipped& skipped : report.skipped)
     json["skipped"].push_back({{"name", skipped.name}, {"reason", skipped.reason}});

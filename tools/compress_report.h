@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "tools/common/allow_missing.h"
+
 #include "lf/compress/compress.h"
 
 namespace lf {
@@ -13,5 +15,8 @@ std::string ProgressDetail(const CompressProgress& now);
 // Ratio, quality, speed; skipped LF images; what to do next.
 std::string CompressText(const CompressReport& report, const CompressOptions& options);
 std::string CompressJson(const CompressReport& report, const CompressOptions& options);
+
+// The LF images that have no code in the store, of those to be coded.
+MissingImages MissingOf(const CompressReport& report, const CompressOptions& options);
 
 }  // namespace lf

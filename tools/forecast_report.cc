@@ -117,13 +117,20 @@ std::string DepthsInOne(const RenderCamera& camera, const FrameDensity& density)
 
 }  // namespace
 
+MissingImages MissingOf(const PreprocessReport& report) {
+  MissingImages missing{report.missing_count, report.needed_count, "",
+                        "renders of these packages leave them out unless they are mended before"};
+  if (missing.count > 0)
+    missing.what =
+        fmt::format("{} of {} LF images that packages need are not there, or empty; the first: {}",
+                    missing.count, missing.asked, report.first_missing);
+  return missing;
+}
+
 std::vector<std::string> DensityWarnings(const PreprocessReport& report, const CameraPath& path,
                                          const ForecastFacts& facts) {
   std::vector<std::string> warnings;
-  if (report.missing_count > 0)
-    warnings.push_back(
-        fmt::format("{} LF images that packages need are not there, or empty; the first: {}",
-                    report.missing_count, report.first_missing));
+  if (report.missing_count > 0) warnings.push_back(MissingOf(report).what);
   const FrameForecast& sparse =
       Worst(report, [](const FrameForecast& frame) { return frame.density.MostDisplacement_px(); });
   const double most_px = sparse.density.MostDisplacement_px();
@@ -238,6 +245,8 @@ std::string ForecastJson(const PreprocessReport& report, const CameraPath& path,
   json["light_field"] = facts.light_field;
   json["output"] = facts.output.empty() ? Json() : Json(facts.output);
   json["lf_images"] = report.light_field_image_count;
+  json["lf_images_needed"] = report.needed_count;
+  json["lf_images_missing"] = report.missing_count;
   json["order"] = NameOf(facts.order);
   json["seed"] = facts.seed;
   json["unit_m"] = path.unit_m;
@@ -259,6 +268,7 @@ std::string ForecastJson(const PreprocessReport& report, const CameraPath& path,
     json["packages"].push_back({{"name", package.name},
                                 {"frames", std::move(frames)},
                                 {"lf_images", package.image_count},
+                                {"lf_images_missing", package.missing_count},
                                 {"neighbours", package.neighbour_count},
                                 {"rays", package.ray_count},
                                 {"bytes_to_read", package.read_bytes},

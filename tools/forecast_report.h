@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "tools/common/allow_missing.h"
+
 #include "lf/path/camera_path.h"
 #include "lf/preprocess/preprocess.h"
 
@@ -24,6 +26,9 @@ struct ForecastFacts {
 // What a capture is too sparse for, in plain words: what to expect, why, and what would work.
 std::vector<std::string> DensityWarnings(const PreprocessReport& report, const CameraPath& path,
                                          const ForecastFacts& facts);
+
+// The files that packages need and that are not there.
+MissingImages MissingOf(const PreprocessReport& report);
 
 // A line per fact, a table of packages, one of some frames, then the warnings.
 std::string ForecastText(const PreprocessReport& report, const CameraPath& path,

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/common/allow_missing.h"
 #include "tools/common/byte_size.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/light_field_argument.h"
@@ -30,7 +31,10 @@ constexpr const char* kExamples = R"(Examples:
 
 STORE.lfs holds the LF images, coded one by one, and their calibration: one file that every program
 takes as LIGHTFIELD (doc/formats/packed_store.md). Until it is whole it is STORE.lfs.unfinished: Ctrl-C,
-kill -9 or a crash lose two seconds of work, and --resume goes on.)";
+kill -9 or a crash lose two seconds of work, and --resume goes on.
+
+LF images that are missing or broken have no code, and the exit code is then 6. --resume tries them again
+while the store is unfinished; a store that is finished is made anew by --overwrite.)";
 
 struct Arguments {
   std::vector<std::string> inputs;
@@ -39,6 +43,7 @@ struct Arguments {
   int levels = 0;
   double threshold = -1, target_psnr = 0;
   bool needed_pixels = false, resume = false, overwrite = false, verify = false;
+  lf::AllowMissing allow_missing;
 };
 
 void AddOptions(CLI::App& app, Arguments& a) {
@@ -84,6 +89,7 @@ void AddOptions(CLI::App& app, Arguments& a) {
       "--verify", a.verify,
       "Compare the calibration, read all codes back, compare and decode them; a store that "
       "is there is checked alone");
+  a.allow_missing.AddTo(app, "those to be coded");
 }
 
 bool HasPackages(const Arguments& a) {
@@ -149,6 +155,7 @@ lf::Result<lf::CompressSource> OpenSource(const Arguments& a) {
 
 lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   const std::atomic<bool>& interrupted = lf::CatchInterrupts();
+  LF_ASSIGN_OR_RETURN(const lf::MissingLimit limit, a.allow_missing.Limit());
   LF_ASSIGN_OR_RETURN(lf::CompressOptions options, MakeOptions(a, common));
   LF_ASSIGN_OR_RETURN(const lf::CompressSource source, OpenSource(a));
   options.interrupted = &interrupted;
@@ -158,8 +165,9 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
                       lf::Compress(source, options, pool, [&](const lf::CompressProgress& now) {
                         meter.Update(now.done, now.total, lf::ProgressDetail(now));
                       }));
-  return lf::PrintReport(common.json ? lf::CompressJson(report, options)
-                                     : lf::CompressText(report, options));
+  LF_RETURN_IF_ERROR(lf::PrintReport(common.json ? lf::CompressJson(report, options)
+                                                 : lf::CompressText(report, options)));
+  return lf::EndWithMissing(lf::MissingOf(report, options), limit);
 }
 
 }  // namespace

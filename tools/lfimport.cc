@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/common/allow_missing.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/light_field_argument.h"
 #include "tools/common/program.h"
@@ -26,8 +27,8 @@ constexpr const char* kExamples = R"(Examples:
 
 Writes DIR/transforms.json, which names the images where they lie; nothing is copied. A
 transforms.json that lfimport did not write, or that was changed since, is replaced only with
---force. Exit code 6: done, but images are missing or broken; with --strict that is an error, and
-nothing is written. The report: doc/formats/import_report.md.)";
+--force. Exit code 6: done, but more images are missing or broken than --allow-missing accepts; with
+--strict one is an error, and nothing is written. The report: doc/formats/import_report.md.)";
 
 struct Arguments {
   lf::LightFieldArgument light_field;
@@ -35,6 +36,7 @@ struct Arguments {
   double plane_distance = 0, scale = 1, unit_m = 0, distance = 0;
   bool flip_x = false, flip_y = false, force = false;
   std::vector<std::string> exclude;
+  lf::AllowMissing allow_missing;
 };
 
 void AddOptions(CLI::App& app, Arguments& a) {
@@ -60,6 +62,7 @@ void AddOptions(CLI::App& app, Arguments& a) {
       ->check(CLI::IsMember({"RGGB", "BGGR", "GRBG", "GBRG"}));
   app.add_option("--check", a.check, "How to check the images: none, headers or pixels (slow)")
       ->check(CLI::IsMember({"none", "headers", "pixels"}));
+  a.allow_missing.AddTo(app, "those of the light field");
   app.add_option("--distance", a.distance,
                  "Distance to the scene in world units, for the density; 0: from the calibration")
       ->check(CLI::NonNegativeNumber);
@@ -122,6 +125,7 @@ lf::Result<lf::LightField> OpenChanged(const Arguments& a, size_t* excluded_coun
 
 lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {
   const std::atomic<bool>& interrupted = lf::CatchInterrupts();
+  LF_ASSIGN_OR_RETURN(const lf::MissingLimit limit, a.allow_missing.Limit());
   if (!a.output.empty())
     LF_RETURN_IF_ERROR(lf::CheckMayWrite(a.light_field.path, a.output, a.force));
   lf::ImportReport report;
@@ -152,11 +156,13 @@ lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {
   LF_RETURN_IF_ERROR(
       lf::PrintReport(common.json ? lf::ReportJson(report) : lf::ReportText(report)));
   if (fault_count == 0) return {};
-  const std::string what = fmt::format(
-      "{} of {} images are missing, {} broken; {}", report.faults->missing.size(),
-      light_field.size(), report.faults->broken.size(),
-      refuses ? "nothing was written" : "rendering skips them, --exclude leaves them out");
-  return lf::Error{refuses ? lf::ErrorKind::kInput : lf::ErrorKind::kBelowRequired, what};
+  const std::string what =
+      fmt::format("{} of {} images are missing, {} broken", report.faults->missing.size(),
+                  light_field.size(), report.faults->broken.size());
+  if (refuses) return lf::InputError(what + "; nothing was written");
+  return lf::EndWithMissing(
+      {fault_count, light_field.size(), what, "rendering skips them, --exclude leaves them out"},
+      limit);
 }
 
 }  // namespace

@@ -6,9 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "tools/common/allow_missing.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/program.h"
 #include "tools/common/progress.h"
+#include "tools/render_end.h"
 
 #include "lf/core/log.h"
 #include "lf/pipeline/merge_shards.h"
@@ -24,7 +26,8 @@ constexpr const char* kExamples = R"(Examples:
 
 The frames are those of a render that was not divided, to the bit; the order of the plates does not
 matter. Plates are read twice, what they say first: a shard that is missing is known before the work.
-The memory is that of one frame. Plates stay where they are.)";
+The memory is that of one frame. Plates stay where they are. Where their renders left out LF images that
+were missing or broken, the exit code is 6.)";
 
 }  // namespace
 
@@ -35,6 +38,7 @@ int main(int argc, char** argv) {
   std::vector<std::string> plates;
   std::string output, format = "exr", video;
   bool no_contact_sheet = false;
+  lf::AllowMissing allow_missing;
   lf::MergeOptions options;
   CLI::App& app = program.app();
   app.add_option("PLATES", plates,
@@ -48,10 +52,12 @@ int main(int argc, char** argv) {
   app.add_flag("--no-contact-sheet", no_contact_sheet, "Do not write contact_sheet.png");
   app.add_flag("--resume", options.resume, "Keep the frames that are there, write the others");
   app.add_flag("--overwrite", options.overwrite, "Write all frames anew")->excludes("--resume");
+  allow_missing.AddTo(app, "those of the frame that takes most");
   program.AddJsonOption("Print the report to stdout");
 
   return program.Run(argc, argv, [&]() -> lf::Result<void> {
     const lf::CommonOptions& common = program.common();
+    LF_ASSIGN_OR_RETURN(const lf::MissingLimit limit, allow_missing.Limit());
     options.signals = &lf::CatchRenderSignals();
     options.output_folder = output;
     options.format = *lf::ParseFrameFormat(format);
@@ -68,7 +74,11 @@ int main(int argc, char** argv) {
     lf::LogInfo("{} frames in {:.1f} s, peak memory {} MiB; look at {}", report.frames.size(),
                 report.total_s, report.peak_memory_bytes >> 20,
                 (options.output_folder / (no_contact_sheet ? "" : "contact_sheet.png")).string());
-    if (common.json) return lf::PrintReport(lf::ToJson(report));
-    return {};
+    if (common.json) LF_RETURN_IF_ERROR(lf::PrintReport(lf::ToJson(report)));
+    return lf::EndWithMissing(
+        lf::MissingOf(report,
+                      "once they are mended, render their shards anew without --resume, and merge "
+                      "with --overwrite"),
+        limit);
   });
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/common/allow_missing.h"
 #include "tools/common/byte_size.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/light_field_argument.h"
@@ -36,6 +37,7 @@ struct Arguments {
   double max_angle_deg = 0;
   std::vector<double> depths;
   bool plan = false, overwrite = false;
+  lf::AllowMissing allow_missing;
 };
 
 void AddOptions(CLI::App& app, Arguments& a) {
@@ -81,6 +83,7 @@ void AddOptions(CLI::App& app, Arguments& a) {
       ->check(CLI::IsMember({"auto", "none", "area", "hat"}));
   app.add_option("--estimator", a.estimator, "Of the render to come, for the forecast")
       ->check(CLI::IsMember({"auto", "nearest", "bilinear"}));
+  a.allow_missing.AddTo(app, "those that packages need");
   app.add_option("--depths", a.depths,
                  "NEAR FAR of the scene, world units from the LF cameras, for the density report; "
                  "without it those that the light field tells")
@@ -135,6 +138,7 @@ lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::Comm
 
 lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   const std::atomic<bool>& interrupted = lf::CatchInterrupts();
+  LF_ASSIGN_OR_RETURN(const lf::MissingLimit limit, a.allow_missing.Limit());
   const auto start = std::chrono::steady_clock::now();
   LF_ASSIGN_OR_RETURN(const lf::LightField light_field, a.light_field.Open());
   const double read_s =
@@ -162,8 +166,9 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   if (options.lens_weights == lf::LensWeights::kNone && options.mode != lf::RenderMode::kRebin)
     facts.render_options += " --lens-weights none";
   facts.are_depths_known = options.depths || light_field.depth_range;
-  return lf::PrintReport(common.json ? lf::ForecastJson(report, path, facts)
-                                     : lf::ForecastText(report, path, facts));
+  LF_RETURN_IF_ERROR(lf::PrintReport(common.json ? lf::ForecastJson(report, path, facts)
+                                                 : lf::ForecastText(report, path, facts)));
+  return lf::EndWithMissing(lf::MissingOf(report), limit);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "tools/common/program.h"
 #include "tools/common/progress.h"
 #include "tools/render_arguments.h"
+#include "tools/render_end.h"
 #include "tools/render_summary.h"
 
 #include "lf/core/geometry.h"
@@ -130,7 +131,9 @@ int main(int argc, char** argv) {
     lf::SummariseRender(report, look_at.string());
     if (common.json && !(std::cout << lf::ToJson(report) << std::flush))
       return lf::OutputError("--json: the report cannot be written to stdout");
-    LF_RETURN_IF_ERROR(lf::CheckRequired(report, rendered.options.require_samples));
-    return lf::CheckRequiredNoise(report, rendered.options.require_noise);
+    lf::Result<void> required = lf::CheckRequired(report, rendered.options.require_samples);
+    if (required) required = lf::CheckRequiredNoise(report, rendered.options.require_noise);
+    LF_ASSIGN_OR_RETURN(const lf::MissingLimit limit, arguments.allow_missing.Limit());
+    return lf::EndOfRender(report, limit, required);
   });
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/common/allow_missing.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/light_field_argument.h"
 #include "tools/common/program.h"
@@ -40,6 +41,7 @@ struct Arguments {
   int port = 0;
   uint64_t max_images = 0, export_images = 400;
   bool text = false;
+  lf::AllowMissing allow_missing;
 };
 
 void AddOptions(CLI::App& app, Arguments& a) {
@@ -68,6 +70,7 @@ void AddOptions(CLI::App& app, Arguments& a) {
                  "The most LF images that go with it, of those that frames take")
       ->needs(to_files)
       ->capture_default_str();
+  a.allow_missing.AddTo(app, "those that go with the export")->needs(to_files);
   app.add_option("--max-images", a.max_images, "As of lfrenderer; 0: all")
       ->check(lf::WholeNumber());
   app.add_option("--max-angle", a.page.max_angle_deg, "As of lfpreprocessor, degrees; 0: any")
@@ -102,10 +105,19 @@ lf::Result<void> PrintText(const Arguments& a, const lf::CommonOptions& common) 
                             lf::PrintReport);
 }
 
+lf::MissingImages MissingOf(const lf::ExportFacts& facts) {
+  return {facts.missing_count, facts.image_count,
+          fmt::format("{} of {} LF images are not in the export, since they are missing or broken; "
+                      "the first: {}",
+                      facts.missing_count, facts.image_count, facts.first_missing),
+          "once they are mended, export again"};
+}
+
 lf::Result<void> Run(Arguments& a, const lf::CommonOptions& common) {
   if (a.text && !a.page.packages.empty())
     return lf::UsageError("--text tells what a path takes of a light field: leave packages out");
   if (a.text) return PrintText(a, common);
+  LF_ASSIGN_OR_RETURN(const lf::MissingLimit limit, a.allow_missing.Limit());
   const std::atomic<bool>& interrupted = lf::CatchInterrupts();
   a.page.light_field = a.light_field.path;
   a.page.light_field_options = a.light_field.Words();
@@ -122,9 +134,11 @@ lf::Result<void> Run(Arguments& a, const lf::CommonOptions& common) {
         const lf::ExportFacts facts,
         lf::ExportPage(*scene, a.export_folder, a.export_images, interrupted,
                        [&](size_t done, size_t total) { meter.Update(done, total, "exporting"); }));
-    return lf::PrintReport(
+    LF_RETURN_IF_ERROR(lf::PrintReport(
         fmt::format("{}: {} files, {}B, {} LF images\n", a.export_folder, facts.file_count,
-                    lf::ShortNumber(static_cast<double>(facts.byte_count)), facts.image_count));
+                    lf::ShortNumber(static_cast<double>(facts.byte_count)),
+                    facts.image_count - facts.missing_count)));
+    return lf::EndWithMissing(MissingOf(facts), limit);
   }
   LF_ASSIGN_OR_RETURN(const auto server, lf::PageServer::Open(*scene, a.port));
   LF_RETURN_IF_ERROR(lf::PrintReport(server->address() + "\n"));

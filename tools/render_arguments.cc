@@ -74,6 +74,7 @@ void RenderArguments::AddTo(CLI::App& app) {
                  "noise<=X or samples>=N: exit code 6 if a frame has more noise or fewer rays in "
                  "the end")
       ->check(NotEmpty());
+  allow_missing.AddTo(app, "those that the largest pass reads, of packages in each by itself");
   app.add_flag("--keep-plates", keep_plates,
                "Also write each frame's sums and counts: frame_0001.plate");
   app.add_option("--smooth-below", smooth_below,
@@ -129,6 +130,7 @@ bool RenderArguments::HasPackages() const {
 }
 
 Result<void> RenderArguments::Check(bool seed_given) const {
+  LF_RETURN_IF_ERROR(allow_missing.Limit());
   if (HasPackages()) {
     if (seed_given)
       return UsageError("--seed: packages have the order that they were made with: leave it out");

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/common/allow_missing.h"
 #include "tools/common/light_field_argument.h"
 #include "tools/common/program.h"
 #include "tools/rebin_arguments.h"
@@ -26,6 +27,7 @@ struct RenderArguments {
   std::string order = "shuffle", rectangles = "on", dump_every = "30s", stop_when, require, shard,
               finish;
   RebinArguments rebin;
+  AllowMissing allow_missing;
   int64_t max_images = 0;
   double max_angle_deg = 0;  // 0: any
   uint32_t smooth_below = 0;

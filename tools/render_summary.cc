@@ -158,8 +158,6 @@ void SummariseRender(const RenderReport& report, const std::string& look_at) {
   TellNoise(report);
   WarnOfEmptyElements(report);
   WarnOfLenses(report);
-  if (!report.skipped.empty())
-    LogWarning("{} LF images were skipped; the report names them", report.skipped.size());
   LogInfo("look at {}", look_at);
 }
 

@@ -10,8 +10,8 @@
 
 namespace lf {
 
-// Counts, speed and memory; then what a person should know: thin frames, skipped LF images, and
-// where to look.
+// Counts, speed and memory; then what a person should know: thin frames, and where to look.
+// EndOfRender() tells the LF images that were left out (render_end.h).
 void SummariseRender(const RenderReport& report, const std::string& look_at);
 
 // An interruption says with which call the render goes on.

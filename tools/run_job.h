@@ -11,7 +11,8 @@
 namespace lf {
 
 // Has these packages rendered by the engine that the job has: until the film is done, or, where
-// that is Slurm and nobody waits, until they are submitted.
+// that is Slurm and nobody waits, until they are submitted. kBelowRequired if the film is done, but
+// LF images were left out, or frames are below what was required.
 Result<void> RunJob(ClusterJob job, const std::vector<size_t>& numbers, bool waits,
                     const CommonOptions& common);
 

@@ -193,6 +193,11 @@ Result<void> SubmitArguments::Check() const {
   return {};
 }
 
+bool SubmitArguments::HasRendererArguments() const {
+  return std::any_of(words.begin(), words.end(),
+                     [](const std::string& word) { return word.starts_with('-'); });
+}
+
 Result<void> SubmitArguments::TakeResources(ClusterJob* job, const CommonOptions& common,
                                             bool is_new) const {
   if (engine) job->engine = *engine == "slurm" ? ClusterEngine::kSlurm : ClusterEngine::kLocal;

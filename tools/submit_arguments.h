@@ -31,6 +31,8 @@ struct SubmitArguments {
   void AddTo(CLI::App& app);
   // One thing at a time.
   Result<void> Check() const;
+  // True if there are arguments of lfrenderer.
+  bool HasRendererArguments() const;
 
   // Reads all packages, and tries the arguments of lfrenderer.
   Result<ClusterJob> MakeJob(const CommonOptions& common) const;

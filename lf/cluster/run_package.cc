@@ -32,6 +32,13 @@ double SecondsSince1970() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
+// A command as a shell takes it.
+std::string ShellLine(const std::vector<std::string>& words) {
+  std::string line;
+  for (const std::string& word : words) line += (line.empty() ? "" : " ") + ShellWord(word);
+  return line;
+}
+
 // One task at work: its lock, log and state.
 class TaskRun {
  public:
@@ -121,6 +128,8 @@ Result<CommandEnd> TaskRun::Run(const std::vector<std::string>& words, const fs:
   if (options.output >= 0) ::close(options.output);
   if (!command) return command.error();
   ++state_.start_count;
+  LogDebug("{}: start {}, process {}: {}", task_.name, state_.start_count, (*command)->process(),
+           ShellLine(words));
   state_.phase = TaskPhase::kRunning;
   state_.node = node_;
   state_.process = (*command)->process();
@@ -131,7 +140,12 @@ Result<CommandEnd> TaskRun::Run(const std::vector<std::string>& words, const fs:
     LogWarning("{}", written.error().message);
   bool is_told = false;
   for (int tick = 1;; ++tick) {
-    if (const auto end = (*command)->Poll()) return *end;
+    if (const auto end = (*command)->Poll()) {
+      LogDebug("{}: ended, {}", task_.name,
+               end->signal != 0 ? fmt::format("by signal {}", end->signal)
+                                : fmt::format("with exit code {}", end->exit_code));
+      return *end;
+    }
     const bool looks = tick % kTicksPerLook == 0;
     if (!is_told && (stop_ || (looks && (job_.IsCancelled() || wants_restart())))) {
       (*command)->Signal(SIGTERM);
@@ -204,6 +218,9 @@ Result<void> CheckAllDone(const ClusterJob& job) {
 }  // namespace
 
 Result<void> OutcomeOf(const std::string& name, const TaskState& state) {
+  constexpr int kBelow = static_cast<int>(ErrorKind::kBelowRequired);
+  if (state.phase == TaskPhase::kDone && state.exit_code == kBelow)
+    return Error{ErrorKind::kBelowRequired, fmt::format("{}: {}", name, state.message)};
   if (state.phase == TaskPhase::kDone) return {};
   const ErrorKind kind = state.phase != TaskPhase::kFailed ? ErrorKind::kInterrupted
                          : state.exit_code > 0             ? static_cast<ErrorKind>(state.exit_code)
@@ -300,8 +317,11 @@ Result<void> FinishFilm(const ClusterJob& job, const std::string& node,
   if (end->exit_code != 0 && end->exit_code != 6)
     return fail({static_cast<ErrorKind>(end->exit_code), last});
   LF_RETURN_IF_ERROR(run.End(TaskPhase::kDone, end->exit_code, last));
-  if (end->exit_code == 6) return Error{ErrorKind::kBelowRequired, last};
-  return {};
+  if (end->exit_code == 0) return {};
+  return Error{ErrorKind::kBelowRequired,
+               fmt::format("{}; lfsubmit --resume {} -- ARGUMENTS judges the film again by other "
+                           "arguments of lfrenderer, and --overwrite renders it anew",
+                           last, ShellWord(job.output_folder.string()))};
 }
 
 }  // namespace lf

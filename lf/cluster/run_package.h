@@ -23,7 +23,8 @@ namespace lf {
 Result<TaskState> RunPackage(const ClusterJob& job, size_t number, const std::string& node,
                              const std::atomic<bool>& stop);
 
-// The error that a task's end means for whoever runs it; none when it is done.
+// The error that a task's end means for whoever runs it. kBelowRequired if it is done, but
+// lfrenderer ended so; none if it is done otherwise.
 Result<void> OutcomeOf(const std::string& name, const TaskState& state);
 
 // Makes sure that every frame is there, then writes contact sheet and video by lfrenderer. The

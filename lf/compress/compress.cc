@@ -79,6 +79,7 @@ class Compressor {
 
  private:
   Result<void> Look();
+  Result<void> FindSkipped();
   Result<void> ChooseThreshold();
   Result<void> Write(FileLock lock);
   Result<void> CheckFiles(const PackedStoreWriter& writer);
@@ -198,6 +199,8 @@ Result<void> Compressor::Write(FileLock lock) {
   report_.resumed_count = source_.light_field.size() - ids.size();
   now_.total = source_.light_field.size();
   now_.done = report_.resumed_count;
+  LogDebug("{}: {} LF images to be coded, {} are; codec {}; {} threads", options_.store.string(),
+           ids.size(), report_.resumed_count, NameOf(settings_), pool_.thread_count());
   pool_.ForEach(ids.size(), [&](size_t i) { AddOne(&writer, ids[i]); });
   std::sort(report_.skipped.begin(), report_.skipped.end(),
             [](const auto& a, const auto& b) { return a.name < b.name; });
@@ -215,10 +218,6 @@ Result<void> Compressor::Write(FileLock lock) {
     return InputError(fmt::format("none of the {} LF images can be read; the first: {}",
                                   report_.skipped.size(), report_.skipped.front().reason));
   }
-  if (!report_.skipped.empty())
-    LogWarning("{} of {} LF images were skipped: {} ({})", report_.skipped.size(),
-               source_.light_field.size(), report_.skipped.front().name,
-               report_.skipped.front().reason);
   return writer.Finish();
 }
 
@@ -238,7 +237,17 @@ Result<void> Compressor::Verify() {
   return {};
 }
 
-// Whether there is a store, and what is to be done with it.
+// Names the LF images without a code in a store that was there.
+Result<void> Compressor::FindSkipped() {
+  const std::vector<std::string>& names = source_.light_field.image_names;
+  LF_ASSIGN_OR_RETURN(const std::vector<PackedCode> codes, FindCodes(options_.store, names));
+  for (size_t i = 0; i < names.size(); ++i)
+    if (codes[i].bytes == 0)
+      report_.skipped.push_back({names[i], "it could not be read when the store was made"});
+  return {};
+}
+
+// Finds out if there is a store, and what is to be done with it.
 Result<void> Compressor::Look() {
   const fs::path& store = options_.store;
   LF_ASSIGN_OR_RETURN(const bool is_there, IsThere(store));
@@ -266,6 +275,7 @@ Result<void> Compressor::ChooseThreshold() {
     LF_ASSIGN_OR_RETURN(settings_.threshold,
                         FindThreshold(source_, settings_, *options_.target_psnr_db, pool_,
                                       [this] { return IsInterrupted(); }));
+    LogDebug("--target-psnr {}: threshold {}", *options_.target_psnr_db, settings_.threshold);
   }
   report_.threshold = settings_.threshold;
   return {};
@@ -283,10 +293,12 @@ Result<CompressReport> Compressor::Run() {
     LF_RETURN_IF_ERROR(Look());  // another one may have finished it meanwhile
   }
   LF_RETURN_IF_ERROR(ChooseThreshold());
-  if (report_.was_there)
+  if (report_.was_there) {
     LF_RETURN_IF_ERROR(CheckStoreFacts(source_, Verification()));
-  else
+    LF_RETURN_IF_ERROR(FindSkipped());
+  } else {
     LF_RETURN_IF_ERROR(Write(std::move(*held.lock)));
+  }
   if (options_.verify) LF_RETURN_IF_ERROR(Verify());
   report_.store_bytes = StoreBytes(options_.store);
   report_.total_s = Now() - begin_s;

@@ -54,7 +54,7 @@ struct CompressReport {
     std::string name;
     std::string reason;
   };
-  std::vector<Skipped> skipped;
+  std::vector<Skipped> skipped;  // LF images without a code, also in a store that was there
 
   // Of the LF images that this call coded.
   size_t coded_count = 0;

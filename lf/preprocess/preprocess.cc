@@ -10,6 +10,7 @@
 
 #include "lf/collector/frame_lens.h"
 #include "lf/core/file.h"
+#include "lf/core/log.h"
 #include "lf/hybrid/render_memory.h"
 #include "lf/package/package_file.h"
 #include "lf/preprocess/film_order.h"
@@ -94,6 +95,7 @@ class Preprocessor {
   Result<void> MakePackage(size_t number, const Section& section, size_t count);
   Package PackageOf(const Section& section, const Gathering& gathering) const;
   std::vector<uint64_t> FileSizes(const Package& package) const;
+  Result<void> CountMissing(const Package& package, PackageForecast* forecast);
   Result<void> Forecast(const Package& package, PackageForecast* forecast) const;
 
   Result<void> CheckInterrupted() const {
@@ -121,6 +123,7 @@ class Preprocessor {
   std::optional<ImageIndex> index_;
   std::vector<FrameSurroundings> surroundings_;  // [frame - 1] of the film
   size_t done_ = 0;
+  std::vector<bool> is_counted_;  // LF images of packages that are done
   std::vector<fs::path> written_;
   PreprocessReport report_;
 };
@@ -187,6 +190,8 @@ Result<void> Preprocessor::MakeIndex() {
   places_ = *places;
   index_.emplace(light_field_, places_);
   report_.index_s = SecondsSince(start);
+  LogDebug("order {} of {} LF images by seed {}, and their octree: {:.2f} s",
+           NameOf(options_.order), light_field_.size(), options_.seed, report_.index_s);
   return {};
 }
 
@@ -289,17 +294,9 @@ Result<void> Preprocessor::MakePackage(size_t number, const Section& section, si
   package.count = count;
   report_.select_s += SecondsSince(start);
 
-  for (size_t i = 0; i < package.images.size(); ++i) {
-    const PackageImage& image = package.images[i];
-    if (image.frame_count == 0 || image.file_bytes > 0) continue;
-    if (report_.missing_count++ == 0)
-      report_.first_missing =
-          package.light_field.ImagePath(LfImageId{static_cast<uint32_t>(i)}).string();
-    if (options_.strict)
-      return InputError(fmt::format("--strict: {}: is not there, or empty", report_.first_missing));
-  }
   PackageForecast forecast;
   forecast.name = fmt::format("package-{:04}", number);
+  LF_RETURN_IF_ERROR(CountMissing(package, &forecast));
   LF_RETURN_IF_ERROR(Forecast(package, &forecast));
   report_.packages.push_back(std::move(forecast));
   if (!options_.output_folder) return {};
@@ -315,6 +312,29 @@ Result<void> Preprocessor::MakePackage(size_t number, const Section& section, si
   LF_RETURN_IF_ERROR(
       WritePackage(written_.back(), package, {options_.version, options_.light_field_name}));
   report_.write_s += SecondsSince(write_start);
+  LogDebug("{}: {} frames, {} LF images, {} neighbours: written in {:.2f} s",
+           written_.back().string(), package.frames.size(), report_.packages.back().image_count,
+           report_.packages.back().neighbour_count, SecondsSince(write_start));
+  return {};
+}
+
+// Counts files that are not there, of the package and of the film.
+Result<void> Preprocessor::CountMissing(const Package& package, PackageForecast* forecast) {
+  is_counted_.resize(light_field_.size(), false);
+  for (size_t i = 0; i < package.images.size(); ++i) {
+    const PackageImage& image = package.images[i];
+    if (image.frame_count == 0) continue;
+    const bool is_missing = image.file_bytes == 0, is_known = is_counted_[image.id];
+    is_counted_[image.id] = true;
+    if (is_missing) ++forecast->missing_count;
+    if (is_known) continue;
+    ++report_.needed_count;
+    if (is_missing && report_.missing_count++ == 0)
+      report_.first_missing =
+          package.light_field.ImagePath(LfImageId{static_cast<uint32_t>(i)}).string();
+    if (is_missing && options_.strict)
+      return InputError(fmt::format("--strict: {}: is not there, or empty", report_.first_missing));
+  }
   return {};
 }
 

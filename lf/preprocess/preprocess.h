@@ -70,6 +70,7 @@ struct PackageForecast {
   std::string name;  // package-0000
   std::vector<FrameId> frames;
   size_t image_count = 0;      // LF images to be read
+  size_t missing_count = 0;    // of these, files that are not there, or are empty
   size_t neighbour_count = 0;  // LF cameras that lens weights are measured against besides
   uint64_t read_bytes = 0;     // of their files
   uint64_t ray_count = 0;
@@ -80,8 +81,9 @@ struct PackageForecast {
 
 struct PreprocessReport {
   size_t light_field_image_count = 0;
-  size_t missing_count = 0;   // files that are needed and not there, counted for each package
-  std::string first_missing;  // of them
+  size_t needed_count = 0;    // LF images that packages need, each counted once
+  size_t missing_count = 0;   // of these, files that are not there, or are empty
+  std::string first_missing;  // its path
   std::vector<FrameForecast> frames;
   std::vector<PackageForecast> packages;
   std::optional<RenderRate> rate;

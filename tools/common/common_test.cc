@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "tools/common/allow_missing.h"
 #include "tools/common/byte_size.h"
 #include "tools/common/duration.h"
 #include "tools/common/program.h"
@@ -22,6 +23,56 @@ TEST(ByteSize, RefusesTheRestAndNamesTheOption) {
     EXPECT_EQ(size.error().kind, ErrorKind::kUsage);
     EXPECT_NE(size.error().message.find("--memory"), std::string::npos);
   }
+}
+
+TEST(MissingLimit, ANumberIsOfImagesWhateverWasAskedFor) {
+  const Result<MissingLimit> three = MissingLimit::Parse("3");
+  ASSERT_TRUE(three);
+  EXPECT_FALSE(three->is_share());
+  EXPECT_TRUE(three->Allows(3, 1'000'000));
+  EXPECT_TRUE(three->Allows(3, 3));
+  EXPECT_FALSE(three->Allows(4, 1'000'000));
+  EXPECT_TRUE(MissingLimit().Allows(0, 5));
+  EXPECT_FALSE(MissingLimit().Allows(1, 1'000'000));
+}
+
+TEST(MissingLimit, APercentageIsExact) {
+  const auto allows = [](const char* text, uint64_t missing, uint64_t asked) {
+    return MissingLimit::Parse(text)->Allows(missing, asked);
+  };
+  EXPECT_TRUE(allows("2%", 3, 150));
+  EXPECT_FALSE(allows("2%", 3, 149));
+  EXPECT_TRUE(allows("0.07%", 7, 10'000));  // not so in binary fractions: 0.07 * 100 > 7
+  EXPECT_FALSE(allows("0.069999%", 7, 10'000));
+  EXPECT_TRUE(allows("100%", 9, 9));
+  EXPECT_FALSE(allows("99.999999%", 4'000'000'000, 4'000'000'000));
+  EXPECT_TRUE(allows("0%", 0, 10));
+  EXPECT_FALSE(allows("0%", 1, UINT32_MAX));
+  EXPECT_FALSE(allows("100%", 1, 0));
+}
+
+TEST(MissingLimit, RefusesTheRestAndNamesTheOption) {
+  for (const char* text :
+       {"",    "%",   "-1",         "x",     "1.5",   "3 ",          " 3",
+        "+3",  "1e2", "0x3",        "2 %",   "-2%",   "100.000001%", "101%",
+        "1.%", ".5%", "1.2345678%", "1..2%", "1.-2%", "nan%",        "99999999999999999999"}) {
+    const Result<MissingLimit> limit = MissingLimit::Parse(text);
+    ASSERT_FALSE(limit) << text;
+    EXPECT_EQ(limit.error().kind, ErrorKind::kUsage);
+    EXPECT_NE(limit.error().message.find("--allow-missing"), std::string::npos);
+  }
+}
+
+TEST(MissingLimit, DecidesHowAProgramEnds) {
+  const MissingImages missing{3, 25, "3 of 25 LF images were left out", "mend them"};
+  EXPECT_TRUE(EndWithMissing(missing, *MissingLimit::Parse("3")));
+  EXPECT_TRUE(EndWithMissing(missing, *MissingLimit::Parse("12%")));
+  EXPECT_TRUE(EndWithMissing({0, 0, "", ""}, MissingLimit()));
+  const Result<void> end = EndWithMissing(missing, *MissingLimit::Parse("2"));
+  ASSERT_FALSE(end);
+  EXPECT_EQ(end.error().kind, ErrorKind::kBelowRequired);
+  EXPECT_EQ(end.error().message,
+            "3 of 25 LF images were left out; --allow-missing 3 would accept that; mend them");
 }
 
 TEST(Duration, ReadsTimesAsPeopleWriteThem) {

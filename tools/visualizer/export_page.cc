@@ -32,12 +32,20 @@ class Exporter {
     facts.byte_count += bytes.size();
     return {};
   }
-  // What the page would be told under this name. LF images that cannot be read are left out.
+  // Writes what the page would be told under this name.
   Result<void> WriteAnswer(const std::string& name) {
     const PageAnswer answer = Answer(scene_, name);
     if (answer.status == 200) return Write(name, answer.body);
     LogWarning("{}: {}", name, answer.body);
-    ++facts.unreadable_count;
+    return {};
+  }
+  // Writes an LF image. One that cannot be read is left out and counted.
+  Result<void> WriteImage(uint32_t id) {
+    const std::string name = fmt::format("image/{}/{}.jpg", kLargeSide_px, id);
+    const PageAnswer answer = Answer(scene_, name);
+    ++facts.image_count;
+    if (answer.status == 200) return Write(name, answer.body);
+    if (facts.missing_count++ == 0) facts.first_missing = answer.body;
     return {};
   }
 
@@ -94,10 +102,9 @@ Result<ExportFacts> ExportPage(PageScene& scene, const fs::path& folder, size_t 
   for (size_t i = 0; i < image_count; ++i) {
     const uint32_t id = images[i * images.size() / image_count];
     LF_RETURN_IF_ERROR(exporter.WriteAnswer(fmt::format("camera/{}.json", id)));
-    LF_RETURN_IF_ERROR(exporter.WriteAnswer(fmt::format("image/{}/{}.jpg", kLargeSide_px, id)));
+    LF_RETURN_IF_ERROR(exporter.WriteImage(id));
     LF_RETURN_IF_ERROR(step());
   }
-  exporter.facts.image_count = image_count;
   // The page last: what is not whole does not open.
   LF_RETURN_IF_ERROR(exporter.Write("scene.json", SceneJson(scene, draft, {.is_server = false})));
   for (const PageFile& file : PageFiles())

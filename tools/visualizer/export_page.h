@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <string>
 
 #include "tools/visualizer/page_scene.h"
 
@@ -15,8 +16,9 @@ namespace lf {
 struct ExportFacts {
   size_t file_count = 0;
   uint64_t byte_count = 0;
-  size_t image_count = 0;  // LF images, those that the film takes
-  size_t unreadable_count = 0;
+  size_t image_count = 0;     // LF images, those that the film takes
+  size_t missing_count = 0;   // of these, how many cannot be read and were left out
+  std::string first_missing;  // why
 };
 
 // All that the page reads of the path: cameras, frames, what each takes, and LF images that the

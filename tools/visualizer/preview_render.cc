@@ -149,6 +149,9 @@ void PreviewRender::Render(const Wish& wish) {
     if (now != std::exchange(seen, now)) Say(wish, "rendering", "");
   }
   if (end->exit_code == 0 && end->signal == 0) return Say(wish, "finished", "");
+  // The picture is whole but for LF images that are missing or broken.
+  constexpr int kBelow = static_cast<int>(ErrorKind::kBelowRequired);
+  if (end->exit_code == kBelow) return Say(wish, "finished", LastLine(complaints));
   Say(wish, "failed",
       end->signal != 0 ? fmt::format("lfrenderer died of signal {}", end->signal)
                        : LastLine(complaints));

@@ -1,0 +1,84 @@
+#include "tools/common/allow_missing.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "lf/core/log.h"
+
+namespace lf {
+namespace {
+
+constexpr uint64_t kMillion = 1'000'000;
+constexpr size_t kMostDecimals = 6;
+
+// Digits alone; false if there are others, none, or too many.
+bool ReadDigits(std::string_view text, uint64_t* value) {
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, *value);
+  return error == std::errc{} && rest == end;
+}
+
+// "2.5" as millionths of a percent, 0 to 100.
+bool ReadPercentage(std::string_view text, uint64_t* millionths) {
+  const size_t point = text.find('.');
+  uint64_t whole = 0, decimals = 0;
+  if (!ReadDigits(text.substr(0, point), &whole) || whole > 100) return false;
+  if (point != std::string_view::npos) {
+    const std::string_view after = text.substr(point + 1);
+    if (after.size() > kMostDecimals || !ReadDigits(after, &decimals)) return false;
+    for (size_t i = after.size(); i < kMostDecimals; ++i) decimals *= 10;
+  }
+  *millionths = whole * kMillion + decimals;
+  return *millionths <= 100 * kMillion;
+}
+
+}  // namespace
+
+Result<MissingLimit> MissingLimit::Parse(const std::string& text) {
+  MissingLimit limit;
+  limit.text_ = text;
+  limit.is_share_ = text.ends_with('%');
+  const std::string_view number = std::string_view(text).substr(0, text.size() - limit.is_share_);
+  if (limit.is_share_ ? ReadPercentage(number, &limit.value_) : ReadDigits(number, &limit.value_))
+    return limit;
+  return UsageError(
+      fmt::format("--allow-missing {}: expected a number of LF images, such as 3, or a percentage "
+                  "from 0% to 100% with at most {} decimals, such as 2%",
+                  text.empty() ? "(nothing)" : text, kMostDecimals));
+}
+
+bool MissingLimit::Allows(uint64_t missing, uint64_t asked) const {
+  if (!is_share_) return missing <= value_;
+  // No light field has more LF images, so that the products below fit into 64 bits.
+  const uint64_t most = UINT32_MAX;
+  return std::min(missing, most) * 100 * kMillion <= std::min(asked, most) * value_;
+}
+
+CLI::Option* AllowMissing::AddTo(CLI::App& app, const std::string& asked) {
+  return app
+      .add_option("--allow-missing", text,
+                  fmt::format("N or P%: accept that so many LF images are left out because they "
+                              "are missing or broken, P% of {}; more end with exit code 6",
+                              asked))
+      ->type_name("N|PERCENT");
+}
+
+Result<void> EndWithMissing(const MissingImages& missing, const MissingLimit& limit) {
+  return EndWithMissing(missing, limit, limit.Allows(missing.count, missing.asked));
+}
+
+Result<void> EndWithMissing(const MissingImages& missing, const MissingLimit& limit,
+                            bool is_accepted) {
+  if (missing.count == 0) return {};
+  if (is_accepted) {
+    LogWarning("{}; --allow-missing {} accepts that", missing.what, limit.text());
+    return {};
+  }
+  return Error{ErrorKind::kBelowRequired,
+               fmt::format("{}; --allow-missing {} would accept that; {}", missing.what,
+                           missing.count, missing.advice)};
+}
+
+}  // namespace lf
