@@ -71,6 +71,17 @@ class VisualizerTest(ProgramTestCase):
             server.send_signal(signal.SIGINT)
             self.assertEqual(server.wait(), 0)
 
+    @unittest.skipIf("pageless" in sys.argv, "it has no page")
+    def test_an_export_counts_the_lf_images_that_it_lacks(self):
+        next(iter(sorted(self.field.parent.glob("*12.png")))).write_text("no picture")
+        self.fails(6, ["1 of ", "LF images are not in the export", "12.png", "--allow-missing 1"],
+                   VISUALIZER, self.field, self.path, "--export", self.folder / "site")
+        self.assertTrue((self.folder / "site" / "index.html").exists())
+        self.succeeds(VISUALIZER, self.field, self.path, "--export", self.folder / "again",
+                      "--allow-missing", 1)
+        self.fails(2, ["--allow-missing", "--export"], VISUALIZER, self.field, self.path, "--text",
+                   "--allow-missing", 1)
+
     def test_what_is_missing_or_wrong_is_told(self):
         self.fails(2, ["--text", "packages"], VISUALIZER, self.field, self.path, "no.lfp", "--text")
         self.fails(2, ["--export", "--watch"], VISUALIZER, self.field, self.path, "--export", "x",
