@@ -12,6 +12,8 @@ import shlex
 import subprocess
 
 RECORDS, LISTING = "bench/results", "bench/defaults.txt"
+# Tables that still have to be made again, and files of results that are no records: one a line.
+STALE = "bench/stale_tables.txt"
 BEGIN = re.compile(r"^<!-- table: (.+?) -->$")
 END = "<!-- end of table -->"
 BY_HAND = re.compile(r"^<!-- table by hand: .+ -->$")
@@ -158,6 +160,12 @@ def all_tables(root, files, text_lines):
     return tables, faults
 
 
+def stale_tables(root):
+    path = root / STALE
+    lines = path.read_text().splitlines() if path.exists() else []
+    return {line for line in lines if line and not line.startswith("#")}
+
+
 def check_tables(root, files, text_lines):
     """Every table of figures has a record that fits it and the programs of today."""
     tables, faults = all_tables(root, files, text_lines)
@@ -166,13 +174,20 @@ def check_tables(root, files, text_lines):
         for number in tables_without_markers(text_lines(page)):
             yield (f"{page.relative_to(root)}:{number}: a table of figures without markers: make it by a script, "
                    "or say why not in a line <!-- table by hand: ... --> before it")
+    stale = stale_tables(root)
     records, faults = records_of(root, files)
-    yield from faults
+    yield from (fault for fault in faults if fault.split(":")[0] not in stale)
     listing = root / LISTING
     today = set(listing.read_text().splitlines()) if listing.exists() else set()
     for table in tables:
-        for fault in faults_of(root, table, records, today):
+        faults = list(faults_of(root, table, records, today))
+        if table.words in stale:
+            faults = [] if faults else [f"{STALE} lists it, and it is not stale: remove the line"]
+        for fault in faults:
             yield f"{table.page}:{table.line}: {fault}"
+    known = {table.words for table in tables} | {str(path.relative_to(root)) for path in files}
+    for name in sorted(stale - known):
+        yield f"{STALE}: {name}: there is no such table or file: remove the line"
     shown = {table.words for table in tables}
     for words, (path, _) in records.items():
         if words not in shown:

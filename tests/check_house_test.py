@@ -113,6 +113,18 @@ class PlantedFaults(unittest.TestCase):
             "doc/bare.md:2: no record", "bench/results/lonely.json: no page shows",
             "bench/results/broken.json: not the record"])
 
+    def test_stale_tables_are_listed_and_no_others(self):
+        self.plant_table("bare")
+        (self.root / "bench/results/bare.json").unlink()
+        self.plant("bench/results/broken.json", "{}")
+        listed = "# Listed.\nbench/bare.py\nbench/results/broken.json\n"
+        self.plant("bench/stale_tables.txt", listed)
+        self.expect("check_house.py", "tables", faults=[])
+        self.plant_table("fine")
+        self.plant("bench/stale_tables.txt", listed + "bench/fine.py\nbench/gone.py\n")
+        self.expect("check_house.py", "tables", faults=[
+            "doc/fine.md:2: bench/stale_tables.txt lists it", "bench/stale_tables.txt: bench/gone.py: there is no"])
+
     def test_tables_of_figures_need_markers(self):
         figures = "| a | b |\n| --- | --- |\n| 1.5 s | 3 ms |\n| 7 MiB | 2.25 |\n"
         self.plant("doc/bare.md", figures)
