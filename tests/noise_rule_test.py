@@ -257,8 +257,9 @@ class NoiseRuleTest(ProgramTestCase):
             return np.random.default_rng(index).integers(0, 256, shape, dtype=np.uint8)
         self.field = small_field.write_field(self.folder / "mosaics", picture, **bayer)
         (self.folder / "mosaics" / "image_84.png").write_bytes(b"broken")
-        for options in (["--stop-when", "noise<=0.08"],
-                        ["--stop-when", "noise<=0.14", "--estimator", "nearest"]):
+        for options in (["--stop-when", "noise<=0.08", "--allow-missing", "1"],
+                        ["--stop-when", "noise<=0.14", "--allow-missing", "1", "--estimator",
+                         "nearest"]):
             name = f"mosaic{len(options)}"
             expected = self.render(name, *options, "--threads", "1", "--keep-plates")
             self.assertEqual(self.render(name + "-2", *options, "--threads", "3", "--keep-plates"),
@@ -267,7 +268,7 @@ class NoiseRuleTest(ProgramTestCase):
             inputs = report(self.folder / name)["inputs"]
             self.assertEqual((inputs["lens_weights"], inputs["filter"]),
                              ("auto", "none" if "nearest" in options else "mosaic"))
-        self.render("limit", "--stop-when", "noise<=0.001", "--max-images", "20")
+        self.render("limit", "--allow-missing", "1", "--stop-when", "noise<=0.001", "--max-images", "20")
         for noise in noises(self.folder / "limit"):
             self.assertLessEqual(noise["lf_images"], 20)
             self.assertGreater(noise["reached"], 0.001)

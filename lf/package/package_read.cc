@@ -216,8 +216,9 @@ Result<void> Reader::ReadFrames() {
         LF_ASSIGN_OR_RETURN(const int64_t images, row.Integer(3, 0, kMostImages));
         LF_ASSIGN_OR_RETURN(const int64_t rays, row.Integer(4, 0, INT64_MAX));
         LF_ASSIGN_OR_RETURN(const std::string_view surroundings, row.Blob(5));
-        LF_RETURN_IF_ERROR(ReadSurroundings(NumbersOf<double>(surroundings), number));
-        if (is_rendered == 0) return {};
+        // Not by LF_RETURN_IF_ERROR, within which this function is called.
+        const auto read = ReadSurroundings(NumbersOf<double>(surroundings), number);
+        if (!read || is_rendered == 0) return read;
         PackageFrame frame;
         frame.id = FrameId{static_cast<uint32_t>(number)};
         frame.image_count = static_cast<uint64_t>(images);

@@ -70,9 +70,10 @@ struct DisplayLevels {
 // kInput: as ReadPackedStore(); it has none.
 Result<DisplayLevels> ReadDisplayLevels(const std::filesystem::path& path);
 
-// PackedStoreFacts::codec alone. Settings that begin with kLossless give back what was recorded.
+// PackedStoreFacts::codec alone. Settings that begin with kLosslessCodec give back what was
+// recorded.
 Result<std::string> ReadCodecSettings(const std::filesystem::path& path);
-inline constexpr std::string_view kLossless = "lossless";
+inline constexpr std::string_view kLosslessCodec = "lossless";
 
 // PackedStoreFacts::whole alone.
 Result<LightFieldIdentity> ReadWholeIdentity(const std::filesystem::path& path);

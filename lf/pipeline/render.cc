@@ -69,7 +69,7 @@ Result<std::string> PixelsOf(const LightField& light_field) {
   const std::string as_recorded = RunChoices().pixels;
   if (!HoldsPackedStore(light_field)) return as_recorded;
   LF_ASSIGN_OR_RETURN(std::string codec, ReadCodecSettings(light_field.folder));
-  return codec.starts_with(kLossless) ? as_recorded : codec;
+  return codec.starts_with(kLosslessCodec) ? as_recorded : codec;
 }
 
 RunStateOptions StateOptions(const Package& package, const RenderOptions& options,
@@ -473,28 +473,6 @@ void Renderer::Report(const CollectProgress& pass, size_t finished_count) const 
 }
 
 }  // namespace
-
-NeedsOptions NeedsOfRender(const Package& package, const RenderOptions& options) {
-  NeedsOptions needs;
-  needs.select.reach = ReachOf(options.reading.estimator);
-  needs.select.max_angle_rad = package.choices.max_angle_rad;
-  if (options.signals != nullptr) needs.select.interrupted = &options.signals->stop;
-  needs.lens_weights = options.lens_weights;
-  needs.max_image_count = options.max_image_count;
-  needs.mode = options.mode;
-  needs.rebin = options.rebin;
-  return needs;
-}
-
-Result<void> PutInOrder(ImageOrder order, const RenderOptions& options, ThreadPool& pool,
-                        Package* package) {
-  LF_RETURN_IF_ERROR(CheckRenderOptions(*package, options));
-  LF_ASSIGN_OR_RETURN(package->places,
-                      PlacesOfFilm(order, package->choices.seed, package->light_field,
-                                   package->path, NeedsOfRender(*package, options), pool));
-  package->choices.order = order;
-  return {};
-}
 
 Result<RenderReport> Render(const Package& package, const RenderOptions& options, ThreadPool& pool,
                             const std::function<void(const RenderProgress&)>& progress) {
