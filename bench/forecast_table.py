@@ -42,7 +42,7 @@ def measure(arguments, folder):
     rows = []
     counts = list(map(int, arguments.packages.split(",")))
     for way, options in WAYS.items():
-        # What weights are takes minutes to find for 900 frames: the default has the last row alone.
+        # Finding the lens weights of 900 frames takes minutes: the default has the last row alone.
         for count in counts if way != "default" else counts[-1:]:
             used = results.timed([programs / "lfpreprocessor", field, path, "--plan", "--packages", count, "--memory",
                                   "8G", "--json", "-q", *options])

@@ -23,9 +23,9 @@ import tempfile
 import record as results
 from workloads import WAYS, WORKLOADS, path_yaml, photograph
 
-# What packages are made with, so that their forecast is of the render to come.
+# Options of lfpreprocessor, so that its forecast is of the render to come.
 PREPROCESSING = {"nearest": ("--estimator", "nearest", "--lens-weights", "none"), "default": ()}
-# Of `short`: way, focal length.
+# Way and focal length of the renders of `short`.
 RECTANGLES = (("nearest", 36), ("nearest", 72), ("bilinear", 72), ("default", 72))
 
 

@@ -32,7 +32,7 @@ def measure(build, runs):
         if run["aggregate_name"] == "median":
             name, cells = run["run_name"].split("/")[:2]
             found.setdefault(name, {})[cells] = run["cpu_time"] * {"ms": 1e-3, "us": 1e-6, "ns": 1e-9}[run["time_unit"]]
-    # Of the strip of rows to the whole frame.
+    # Scales the strip of rows to the whole frame.
     found["FrameByQueries"] = {cells: s * HEIGHT / constant("kStrip") for cells, s in found["FrameByQueries"].items()}
     return found
 

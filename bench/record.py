@@ -36,7 +36,7 @@ import defaults
 
 HERE = pathlib.Path(__file__).resolve().parent
 END = "<!-- end of table -->"
-# What figures depend on: what is compiled, and the scripts that measure.
+# Figures depend on these: sources that are compiled, and the scripts that measure.
 SOURCES = ("../lf", "../tools", "../cmake", "../CMakeLists.txt", "*.cc", "*.h", "*.py", "../scripts/*.py")
 
 _commands = []  # of this run, each once

@@ -13,7 +13,7 @@ import pathlib
 
 import record as results
 
-# What the benchmark calls it -> column.
+# Name of the benchmark -> column.
 KINDS = {"Select": "octree", "AskEveryCamera<false>": "in_full", "AskEveryCamera<true>": "quickly"}
 
 

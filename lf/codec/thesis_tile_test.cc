@@ -115,7 +115,7 @@ class ThesisCodec {
   double low_ = 1e9, high_ = -1e9;
 };
 
-// Where a plane has its pixels. Those of a mosaic are sorted by their place among two by two
+// Tells where a plane has its pixels. Pixels of a mosaic are sorted by their place among two by two
 // (Figure 4.6), those of other images by channel.
 struct Sorting {
   int first_x, first_y, pitch, channel;

@@ -20,7 +20,7 @@ namespace lf {
 // Returns X of "noise<=X", above 0 and at most 1000. kUsage: the text is no such rule; the message
 // names the option.
 Result<double> ParseNoiseRule(const std::string& text, const std::string& option);
-// Whether a text is meant as such a rule, right or wrong.
+// Returns whether a text is meant as such a rule, right or wrong.
 bool IsNoiseRule(const std::string& text);
 // The rule as text, with as many digits as give the same X again.
 std::string TextOfNoiseRule(double noise);

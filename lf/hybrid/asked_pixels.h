@@ -24,11 +24,11 @@ enum class Previews {
 // "auto", "on", "off"
 const char* NameOf(Previews previews);
 inline constexpr size_t kPreviewedFrom = 256;
-// Of how many LF images of a frame rays are kept for that: they are all over its lens
+// Number of LF images of a frame whose rays are kept for that: they are all over its lens
 // (thesis 4.2.1).
 inline constexpr size_t kPreviewImages = 64;
 
-// What is asked for is looked at anew before the LF images at these places: 0 and the powers of
+// Queries are looked at anew before the LF images at these places: 0 and the powers of
 // four times kDecisionPlaces (collector/collect.h). The last one up to `place`.
 uint32_t PhaseOf(uint32_t place);
 

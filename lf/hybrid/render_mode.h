@@ -1,4 +1,4 @@
-// What the frames of a render are made of (doc/rebinning.md).
+// Modes of a render: the rays that its frames are made of (doc/rebinning.md).
 #pragma once
 
 namespace lf {

@@ -40,7 +40,7 @@ struct PackageChoices {
   uint64_t seed = 0;
   std::optional<size_t> max_image_count;  // of the LF images of a frame, the first
   std::optional<double> max_angle_rad;    // between the optical axes of LF camera and frame
-  // Whether LF cameras beside the lens are there: lens weights measure against them, and rebinned
+  // True if LF cameras beside the lens are there: lens weights measure against them, and rebinned
   // rays are made of their LF images.
   bool has_neighbours = true;
   // The mode of the render that `rect` and `frame_count` of images are for, "collect", "rebin" or
@@ -49,7 +49,7 @@ struct PackageChoices {
   std::string mode = "collect";
 };
 
-// What the frames of a package need of an LF image.
+// The part of an LF image that the frames of a package need.
 struct PackageImage {
   uint32_t id = 0;           // in the whole light field, from 0
   uint64_t file_bytes = 0;   // size of the image file when the package was made; 0: not there
@@ -69,7 +69,8 @@ struct Package {
   LightFieldIdentity whole;          // the light field that this is a part of
   PackageChoices choices;
   std::vector<PackageImage> images;  // as light_field.cameras; empty in memory
-  // Of all frames of the film, [frame - 1]; empty: to be measured, in a light field that is whole.
+  // One for each frame of the film, [frame - 1]; empty: to be measured, in a light field that is
+  // whole.
   std::vector<FrameSurroundings> surroundings;
 
   std::vector<FrameId> FrameIds() const;

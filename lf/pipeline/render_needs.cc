@@ -1,4 +1,4 @@
-// What a render's options say of the needs of its frames.
+// Derives the needs of frames from the options of a render.
 #include "lf/pipeline/check_render_options.h"
 #include "lf/pipeline/render.h"
 #include "lf/preprocess/film_order.h"

@@ -129,7 +129,7 @@ void MoveTo(const std::optional<LightFieldPlace>& place, Package* package) {
   if (place) package->light_field.folder = place->folder;
 }
 
-// What was checked need not be checked again, but where the file is another one.
+// A package is checked again only if its file has changed.
 Result<Package> OpenAgain(const PackagePart& part, PackagedFilm* film) {
   PackagePart now;
   now.path = part.path;

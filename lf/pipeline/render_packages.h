@@ -74,9 +74,9 @@ std::string ContactSheetName(const std::vector<std::filesystem::path>& paths);
 
 // Renders one package after the other as by Render(), each with its own report and state; then the
 // contact sheet (ContactSheetName()) and the video of their frames.
-// Of options.frames each takes its own. The report is that of all. A package that was changed since
-// the film was opened is opened again, with all checks.
-// kInput: every frame of a whole film is black. Else errors as Render() and PartsWith().
+// Each package takes its own of options.frames. The report is that of all. A package that was
+// changed since the film was opened is opened again, with all checks. kInput: every frame of a
+// whole film is black. Else errors as Render() and PartsWith().
 Result<RenderReport> RenderPackages(PackagedFilm film, const RenderOptions& options,
                                     ThreadPool& pool,
                                     const std::function<void(const RenderProgress&)>& progress);

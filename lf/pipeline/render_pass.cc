@@ -254,7 +254,7 @@ Result<void> RenderPass::Collect() {
   return {};
 }
 
-// What the state has of them does not become more: they need not wait for the others.
+// The state has all rays that these frames will get: they need not wait for the others.
 Result<void> RenderPass::FinishEarlyFrames() {
   for (size_t f = 0; f < frames_.size(); ++f) {
     Frame& frame = frames_[f];

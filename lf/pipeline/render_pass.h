@@ -45,7 +45,7 @@ struct RenderJob {
   std::function<void(const CollectProgress&, size_t finished_count)> progress;
 
   bool Collects() const { return lf::Collects(options.mode); }
-  // Whether frames have plates: for their pictures, or to measure noise by.
+  // Returns whether frames have plates: for their pictures, or to measure noise by.
   bool HasPlates() const { return Collects() || options.MeasuresNoise(); }
   bool Rebins() const { return lf::Rebins(options.mode); }
   bool IsStopped() const { return options.signals != nullptr && options.signals->stop; }

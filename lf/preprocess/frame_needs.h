@@ -54,7 +54,7 @@ struct FrameNeeds {
   uint64_t RayCount() const;
 };
 
-// The same as a package has it.
+// Both convert to and from the form that a package stores.
 FrameSurroundings SurroundingsOf(const FrameSampling& sampling);
 FrameSampling SamplingOf(const FrameSurroundings& surroundings);
 

@@ -41,8 +41,8 @@ struct PreprocessOptions {
   // for kNone have no neighbours to weigh against.
   RayReading reading = {.estimator = Estimator::kBilinear};
   LensWeights lens_weights = LensWeights::kAuto;
-  // What frames need, and so the forecast and what lfcompressor --needed-pixels keeps, is that of
-  // the mode. Whole LF images serve every mode.
+  // Decides what frames need, and so the forecast and what lfcompressor --needed-pixels keeps.
+  // Whole LF images serve every mode.
   RenderMode mode = RenderMode::kCollect;
 
   // How many packages: so many; of so many frames; or, by default, so few that the plates of each

@@ -148,7 +148,7 @@ TEST_F(PreprocessTest, PackagesHaveWhatTheirFramesNeed) {
     }
 }
 
-// What rebinned rays are made of, also where no LF camera's rays pass the lens.
+// Packages have the LF images of rebinned rays, also where no LF camera's rays pass the lens.
 TEST_F(PreprocessTest, PackagesHaveWhatTheModeNeeds) {
   for (RenderCamera& camera : film_.cameras) camera.aperture.radius_w *= 0.2;
   std::map<RenderMode, uint64_t> rays;
