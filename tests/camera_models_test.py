@@ -62,6 +62,33 @@ def by_numpy_fov(parameters, points):
     return u * (rd / r)[:, None] * F + C
 
 
+def by_numpy_division(parameters, points):
+    """the smaller root of k r rd^2 - rd + r = 0"""
+    u = points[:, :2] / points[:, 2:]
+    r = np.hypot(*u.T)
+    k, = parameters
+    rd = (1 - np.sqrt(1 - 4 * k * r * r)) / (2 * k * r)
+    return u * (rd / r)[:, None] * F + C
+
+
+def by_numpy_eucm(parameters, points):
+    alpha, beta = parameters
+    rho = np.sqrt(beta * (points[:, 0] ** 2 + points[:, 1] ** 2) + points[:, 2] ** 2)
+    return points[:, :2] / (alpha * rho + (1 - alpha) * points[:, 2])[:, None] * F + C
+
+
+def by_numpy_thin_prism(parameters, points):
+    k1, k2, p1, p2, k3, k4, sx1, sy1 = parameters
+    across = np.hypot(points[:, 0], points[:, 1])
+    theta = np.arctan2(across, points[:, 2])
+    u, v = (points[:, :2] / across[:, None] * theta[:, None]).T
+    s = theta ** 2
+    radial = k1 * s + k2 * s ** 2 + k3 * s ** 3 + k4 * s ** 4
+    x = u + u * radial + 2 * p1 * u * v + p2 * (s + 2 * u * u) + sx1 * s
+    y = v + v * radial + 2 * p2 * u * v + p1 * (s + 2 * v * v) + sy1 * s
+    return np.stack([x, y], 1) * F + C
+
+
 # COLMAP's name: model, parameters, half angle tested, judge
 MODELS = {
     "PINHOLE": ("none", [], 1.3, lambda p, x: x[:, :2] / x[:, 2:] * F + C),
@@ -75,6 +102,13 @@ MODELS = {
                                       by_numpy_fisheye),
     "SIMPLE_RADIAL_FISHEYE": ("fisheye", [0.03], 1.5, lambda p, x: by_opencv_fisheye([*p, 0, 0, 0], x)),
     "RADIAL_FISHEYE": ("fisheye", [0.03, -0.01], 1.5, lambda p, x: by_opencv_fisheye([*p, 0, 0], x)),
+    "FISHEYE": ("fisheye", [], 1.7, by_numpy_fisheye),
+    "DIVISION, barrel": ("division", [-0.3], 1.3, by_numpy_division),
+    "DIVISION, pincushion": ("division", [0.2], 0.8, by_numpy_division),
+    "EUCM": ("unified", [0.6, 1.1], 1.3, by_numpy_eucm),
+    "EUCM, almost a pinhole": ("unified", [0.05, 2], 1.2, by_numpy_eucm),
+    "THIN_PRISM_FISHEYE": ("thin-prism", [-0.02, 0.004, 1e-3, -2e-3, -0.002, 3e-4, 2e-3, -1e-3], 1.2,
+                           by_numpy_thin_prism),
     "FOV": ("fov", [0.93], 1.5, by_numpy_fov),
 }
 

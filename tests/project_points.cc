@@ -28,6 +28,12 @@ int main() {
     k.distortion.model = lf::DistortionModel::kFisheye;
   else if (model == "fov")
     k.distortion.model = lf::DistortionModel::kFov;
+  else if (model == "division")
+    k.distortion.model = lf::DistortionModel::kDivision;
+  else if (model == "unified")
+    k.distortion.model = lf::DistortionModel::kUnified;
+  else if (model == "thin-prism")
+    k.distortion.model = lf::DistortionModel::kThinPrism;
   else if (model != "none")
     return Fail("unknown model");
   for (double& parameter : k.distortion.parameters) std::cin >> parameter;

@@ -59,11 +59,9 @@ bool IsCamera(const Intrinsics& k) {
          int64_t{k.width_px} * k.height_px <= kMostPixels;
 }
 
-bool IsDistortion(const Distortion& distortion) {
-  if (distortion.model == DistortionModel::kFov &&
-      !(distortion.parameters[0] > 0 && distortion.parameters[0] < kPi))
-    return false;
-  return std::all_of(distortion.parameters.begin(), distortion.parameters.end(),
+bool IsStoredDistortion(const Distortion& distortion) {
+  return IsDistortion(distortion) &&
+         std::all_of(distortion.parameters.begin(), distortion.parameters.end(),
                      [](double p) { return std::abs(p) <= 1e6; });
 }
 

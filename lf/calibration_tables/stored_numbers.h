@@ -51,6 +51,6 @@ inline bool IsWithin(double value, double low, double high) {
 bool IsPose(const RigidTransform& pose);
 // Without its distortion.
 bool IsCamera(const Intrinsics& k);
-bool IsDistortion(const Distortion& distortion);
+bool IsStoredDistortion(const Distortion& distortion);
 
 }  // namespace lf

@@ -43,7 +43,7 @@ class RadialCurve {
 // theta (1 + k1 theta^2 + ...)
 class FisheyeCurve {
  public:
-  explicit FisheyeCurve(const std::array<double, 8>& p) : k_{p[0], p[1], p[2], p[3]} {}
+  explicit FisheyeCurve(const std::array<double, 4>& k) : k_(k) {}
   ValueAndSlope operator()(double theta) const {
     const double s = theta * theta;
     return {theta * (1 + s * (k_[0] + s * (k_[1] + s * (k_[2] + s * k_[3])))),
@@ -54,6 +54,13 @@ class FisheyeCurve {
  private:
   std::array<double, 4> k_;
 };
+
+std::array<double, 4> FirstFour(const std::array<double, 8>& p) { return {p[0], p[1], p[2], p[3]}; }
+
+// The radial part of kThinPrism.
+FisheyeCurve ThinPrismCurve(const std::array<double, 8>& p) {
+  return FisheyeCurve({p[0], p[1], p[4], p[5]});
+}
 
 // The end of the first stretch on which the curve grows, at most `end`; position(i / steps) samples
 // the stretch from 0 to `end`.
@@ -114,6 +121,43 @@ Bent Bend(const std::array<double, 8>& p, const RadialCurve& curve, const Vec2& 
   return bent;
 }
 
+// The two-dimensional map of kThinPrism, from (u, v), and its derivatives.
+Bent BendThinPrism(const std::array<double, 8>& p, const Vec2& at) {
+  const double u = at.x(), v = at.y(), s = u * u + v * v;
+  const double p1 = p[2], p2 = p[3], sx1 = p[6], sy1 = p[7];
+  const double radial = 1 + s * (p[0] + s * (p[1] + s * (p[4] + s * p[5])));
+  const double slope = p[0] + s * (2 * p[1] + s * (3 * p[4] + s * 4 * p[5]));
+  Bent bent;
+  bent.value = {u * radial + 2 * p1 * u * v + p2 * (s + 2 * u * u) + sx1 * s,
+                v * radial + 2 * p2 * u * v + p1 * (s + 2 * v * v) + sy1 * s};
+  const double cross = 2 * u * v * slope + 2 * p1 * u + 2 * p2 * v;
+  bent.jacobian << radial + 2 * u * u * slope + 2 * p1 * v + 6 * p2 * u + 2 * sx1 * u,
+      cross + 2 * sx1 * v,  //
+      cross + 2 * sy1 * u, radial + 2 * v * v * slope + 6 * p1 * v + 2 * p2 * u + 2 * sy1 * v;
+  return bent;
+}
+
+// The place, at most `limit` from the middle, that bend(place) takes to `distorted`, from `start`
+// by Newton's method.
+template <class BendIt>
+std::optional<Vec2> Unbend(const BendIt& bend, const Vec2& distorted, Vec2 start, double limit) {
+  constexpr double kAccurate = 1e-12;
+  Vec2& u = start;
+  for (int step = 0; step < 50; ++step) {
+    const Bent bent = bend(u);
+    const Vec2 error = bent.value - distorted;
+    const double determinant = bent.jacobian.determinant();
+    if (!(determinant > 0)) return std::nullopt;
+    const Vec2 correction = bent.jacobian.inverse() * error;
+    u -= correction;
+    if (!(correction.norm() <= 1e-15 * (1 + u.norm()))) continue;
+    if (u.norm() > limit) return std::nullopt;
+    return u;
+  }
+  if (!((bend(u).value - distorted).norm() <= kAccurate) || u.norm() > limit) return std::nullopt;
+  return u;
+}
+
 std::optional<Vec2> UnbendRadialTangential(const std::array<double, 8>& p, const Vec2& distorted,
                                            double limit, double distorted_limit) {
   const RadialCurve curve(p);
@@ -126,28 +170,44 @@ std::optional<Vec2> UnbendRadialTangential(const std::array<double, 8>& p, const
     const double r = rd > 0.999 * distorted_limit ? SolveRadius(curve, rd, limit) : start;
     return distorted * (r / rd);
   }
-  Vec2 u = rd > 0 ? Vec2(distorted * (start / rd)) : Vec2(0, 0);
-  constexpr double kAccurate = 1e-12;
-  for (int step = 0; step < 50; ++step) {
-    const Bent bent = Bend(p, curve, u);
-    const Vec2 error = bent.value - distorted;
-    const double determinant = bent.jacobian.determinant();
-    if (!(determinant > 0)) return std::nullopt;
-    const Vec2 correction = bent.jacobian.inverse() * error;
-    u -= correction;
-    if (!(correction.norm() <= 1e-15 * (1 + u.norm()))) continue;
-    if (u.norm() > limit) return std::nullopt;
-    return u;
-  }
-  if (!((Bend(p, curve, u).value - distorted).norm() <= kAccurate) || u.norm() > limit)
-    return std::nullopt;
-  return u;
+  const Vec2 u = rd > 0 ? Vec2(distorted * (start / rd)) : Vec2(0, 0);
+  return Unbend([&](const Vec2& at) { return Bend(p, curve, at); }, distorted, u, limit);
+}
+
+std::optional<Vec2> UnbendThinPrism(const std::array<double, 8>& p, const Vec2& distorted,
+                                    double limit, double distorted_limit) {
+  const double rd = distorted.norm();
+  const double theta = SolveRadius(ThinPrismCurve(p), std::min(rd, 0.999 * distorted_limit), limit);
+  const Vec2 u = rd > 0 ? Vec2(distorted * (theta / rd)) : Vec2(0, 0);
+  return Unbend([&](const Vec2& at) { return BendThinPrism(p, at); }, distorted, u, limit);
+}
+
+// Returns where an ideal fish-eye sees a direction: (x, y) theta / r.
+std::optional<Vec2> Equidistant(const Vec3& direction, double limit) {
+  const double across = direction.head<2>().norm();
+  const double theta = std::atan2(across, direction.z());
+  if (!(theta <= limit)) return std::nullopt;
+  if (across == 0) return direction.z() > 0 ? std::optional(Vec2(0, 0)) : std::nullopt;
+  return Vec2(direction.head<2>() * (theta / across));
 }
 
 }  // namespace
 
+bool IsDistortion(const Distortion& distortion) {
+  const std::array<double, 8>& p = distortion.parameters;
+  switch (distortion.model) {
+    case DistortionModel::kFov:
+      return p[0] > 0 && p[0] < kPi;
+    case DistortionModel::kUnified:
+      return p[0] >= 0 && p[0] <= 1 && p[1] > 0;
+    default:
+      return true;
+  }
+}
+
 DistortionMap::DistortionMap(const Distortion& distortion)
     : distortion_(distortion), limit_(kInfinity), distorted_limit_(kInfinity) {
+  LF_CHECK(IsDistortion(distortion));
   const std::array<double, 8>& p = distortion.parameters;
   switch (distortion.model) {
     case DistortionModel::kNone:
@@ -160,15 +220,31 @@ DistortionMap::DistortionMap(const Distortion& distortion)
       return;
     }
     case DistortionModel::kFisheye: {
-      const FisheyeCurve curve(p);
+      const FisheyeCurve curve(FirstFour(p));
       limit_ = GrowthLimit(curve, [](double t) { return t * kPi; });
       distorted_limit_ = curve(limit_).value;
       return;
     }
     case DistortionModel::kFov:
-      LF_CHECK(p[0] > 0 && p[0] < kPi);
       distorted_limit_ = 0.5 * kPi / p[0];
       return;
+    case DistortionModel::kDivision:
+      // r(rd) turns back there, or grows beyond all bounds.
+      distorted_limit_ = p[0] == 0 ? kInfinity : 1 / std::sqrt(std::abs(p[0]));
+      if (p[0] > 0) limit_ = 0.5 * distorted_limit_;
+      return;
+    case DistortionModel::kUnified: {
+      // rd of r without end.
+      const double far = p[0] * std::sqrt(p[1]);
+      distorted_limit_ = far > 0 ? 1 / far : kInfinity;
+      return;
+    }
+    case DistortionModel::kThinPrism: {
+      const FisheyeCurve curve = ThinPrismCurve(p);
+      limit_ = GrowthLimit(curve, [](double t) { return t * kPi; });
+      distorted_limit_ = curve(limit_).value;
+      return;
+    }
   }
 }
 
@@ -180,7 +256,13 @@ std::optional<Vec2> DistortionMap::Distort(const Vec3& direction) const {
     const double theta = std::atan2(across, z);
     if (!(theta <= limit_)) return std::nullopt;
     if (across == 0) return z > 0 ? std::optional(Vec2(0, 0)) : std::nullopt;
-    return Vec2(direction.head<2>() * (FisheyeCurve(p)(theta).value / across));
+    return Vec2(direction.head<2>() * (FisheyeCurve(FirstFour(p))(theta).value / across));
+  }
+  if (distortion_.model == DistortionModel::kThinPrism) {
+    const std::optional<Vec2> at = Equidistant(direction, limit_);
+    if (!at) return std::nullopt;
+    const Bent bent = BendThinPrism(p, *at);
+    return bent.jacobian.determinant() > 0 ? std::optional(bent.value) : std::nullopt;
   }
   if (!(z > 0)) return std::nullopt;
   const Vec2 u = direction.head<2>() / z;
@@ -198,6 +280,13 @@ std::optional<Vec2> DistortionMap::Distort(const Vec3& direction) const {
       const double factor = r < 1e-9 ? scale / p[0] : std::atan(r * scale) / (r * p[0]);
       return Vec2(u * factor);
     }
+    case DistortionModel::kDivision: {
+      const double root = 1 - 4 * p[0] * u.squaredNorm();
+      if (!(root > 0)) return std::nullopt;
+      return Vec2(u * (2 / (1 + std::sqrt(root))));
+    }
+    case DistortionModel::kUnified:
+      return Vec2(u / (p[0] * std::sqrt(p[1] * u.squaredNorm() + 1) + 1 - p[0]));
     default:
       return u;
   }
@@ -220,7 +309,7 @@ std::optional<Vec3> DistortionMap::Undistort(const Vec2& distorted) const {
     }
     case DistortionModel::kFisheye: {
       if (rd > distorted_limit_) return std::nullopt;
-      const double theta = SolveRadius(FisheyeCurve(p), rd, limit_);
+      const double theta = SolveRadius(FisheyeCurve(FirstFour(p)), rd, limit_);
       const double factor = sine_per(theta, 1);
       return Vec3(distorted.x() * factor, distorted.y() * factor, std::cos(theta));
     }
@@ -230,6 +319,23 @@ std::optional<Vec3> DistortionMap::Undistort(const Vec2& distorted) const {
       const double factor = sine_per(angle, p[0]);
       return Vec3(distorted.x() * factor, distorted.y() * factor,
                   std::cos(angle) * 2 * std::tan(0.5 * p[0]));
+    }
+    case DistortionModel::kDivision:
+      if (!(rd < distorted_limit_)) return std::nullopt;
+      return Vec3(distorted.x(), distorted.y(), 1 + p[0] * rd * rd);
+    case DistortionModel::kUnified: {
+      if (!(rd < distorted_limit_)) return std::nullopt;
+      const double root = 1 - (2 * p[0] - 1) * p[1] * rd * rd;
+      const double depth =
+          (1 - p[1] * p[0] * p[0] * rd * rd) / (p[0] * std::sqrt(std::max(0.0, root)) + 1 - p[0]);
+      return depth > 0 ? std::optional(Vec3(distorted.x(), distorted.y(), depth)) : std::nullopt;
+    }
+    case DistortionModel::kThinPrism: {
+      const std::optional<Vec2> at = UnbendThinPrism(p, distorted, limit_, distorted_limit_);
+      if (!at) return std::nullopt;
+      const double theta = at->norm();
+      const double factor = theta < 1e-12 ? 1 : std::sin(theta) / theta;
+      return Vec3(at->x() * factor, at->y() * factor, std::cos(theta));
     }
   }
   return Vec3(distorted.x(), distorted.y(), 1);

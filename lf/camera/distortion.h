@@ -1,7 +1,6 @@
 // How a real lens bends rays: between a direction before the camera and the *distorted* normalised
 // position (xd, yd), which K then turns into pixels: x_px = fx xd + skew yd + cx, y_px = fy yd +
-// cy. Formulas and parameter order are those of OpenCV and COLMAP, whose models all are among
-// these.
+// cy. Formulas and parameter order are those of OpenCV and COLMAP.
 #pragma once
 
 #include <array>
@@ -22,11 +21,25 @@ enum class DistortionModel : uint8_t {
   kRadialTangential,
   // k1 k2 k3 k4; with the angle theta from the optical axis:
   //   rd = theta (1 + k1 theta^2 + k2 theta^4 + k3 theta^6 + k4 theta^8)
-  // (OpenCV fisheye; COLMAP: OPENCV_FISHEYE, SIMPLE_RADIAL_FISHEYE, RADIAL_FISHEYE)
+  // (OpenCV fisheye; COLMAP: OPENCV_FISHEYE, SIMPLE_RADIAL_FISHEYE, RADIAL_FISHEYE,
+  // SIMPLE_FISHEYE, FISHEYE)
   kFisheye,
   // omega, the field of view of an ideal fish-eye lens: rd = atan(2 r tan(omega / 2)) / omega
   // (Devernay and Faugeras 2001; COLMAP: FOV)
   kFov,
+  // k; the distorted radius tells the undistorted one (Fitzgibbon 2001): r = rd / (1 + k rd^2)
+  // (COLMAP: SIMPLE_DIVISION, DIVISION)
+  kDivision,
+  // alpha beta, a unified model (Khomutenko, Garcia and Martinet 2016); alpha in [0, 1], beta > 0:
+  //   (xd, yd) = (x, y) / (alpha sqrt(beta r^2 + 1) + 1 - alpha)
+  // (COLMAP: EUCM)
+  kUnified,
+  // k1 k2 p1 p2 k3 k4 sx1 sy1; with (u, v) = (x, y) theta / r and s = theta^2:
+  //   xd = u radial + 2 p1 u v + p2 (s + 2 u^2) + sx1 s
+  //   yd = v radial + 2 p2 u v + p1 (s + 2 v^2) + sy1 s
+  //   radial = 1 + k1 s + k2 s^2 + k3 s^3 + k4 s^4
+  // (COLMAP: THIN_PRISM_FISHEYE)
+  kThinPrism,
 };
 
 struct Distortion {
@@ -36,13 +49,17 @@ struct Distortion {
   friend bool operator==(const Distortion&, const Distortion&) = default;
 };
 
+// Returns whether the parameters are those of a lens: omega in (0, pi), alpha in [0, 1], beta above
+// 0.
+bool IsDistortion(const Distortion& distortion);
+
 // Both directions of a distortion, prepared for many points.
 //
 // A polynomial is a lens only as far as it grows: beyond the first angle where it turns back, or
 // where a denominator vanishes, a pixel has no ray and a direction no pixel.
 class DistortionMap {
  public:
-  // parameters: finite; omega in (0, pi)
+  // parameters: finite and IsDistortion()
   explicit DistortionMap(const Distortion& distortion);
 
   // (xd, yd) of a direction; none where the lens has no image of it. Only a fish-eye sees
@@ -56,7 +73,7 @@ class DistortionMap {
 
  private:
   Distortion distortion_;
-  double limit_;            // of r = tan(theta); of theta for kFisheye; not used for kFov
+  double limit_;            // of r = tan(theta); of theta for fish-eyes; not used for kFov
   double distorted_limit_;  // of rd
 };
 

@@ -19,13 +19,19 @@ struct Lens {
 
 std::vector<Lens> Lenses() {
   using enum DistortionModel;
-  return {{"none", {}, 1.4},
-          {"simple radial", {kRadialTangential, {0.035}}, 0.9},
-          {"barrel", {kRadialTangential, {-0.25, 0.07}}, 0.7},
-          {"tangential", {kRadialTangential, {-0.28, 0.09, 0.002, -0.003}}, 0.7},
-          {"rational", {kRadialTangential, {0.3, -0.1, 5e-4, -2e-4, 0.02, 0.6, -0.05, 0.01}}, 0.8},
-          {"fish-eye", {kFisheye, {-0.02, 0.004, -0.002, 3e-4}}, 1.7},
-          {"fov", {kFov, {0.93}}, 1.5}};
+  return {
+      {"none", {}, 1.4},
+      {"simple radial", {kRadialTangential, {0.035}}, 0.9},
+      {"barrel", {kRadialTangential, {-0.25, 0.07}}, 0.7},
+      {"tangential", {kRadialTangential, {-0.28, 0.09, 0.002, -0.003}}, 0.7},
+      {"rational", {kRadialTangential, {0.3, -0.1, 5e-4, -2e-4, 0.02, 0.6, -0.05, 0.01}}, 0.8},
+      {"fish-eye", {kFisheye, {-0.02, 0.004, -0.002, 3e-4}}, 1.7},
+      {"fov", {kFov, {0.93}}, 1.5},
+      {"equidistant", {kFisheye, {}}, 1.7},
+      {"division, barrel", {kDivision, {-0.3}}, 1.3},
+      {"division, pincushion", {kDivision, {0.2}}, 0.8},
+      {"unified", {kUnified, {0.6, 1.1}}, 1.3},
+      {"thin prism", {kThinPrism, {-0.02, 0.004, 1e-3, -2e-3, -0.002, 3e-4, 2e-3, -1e-3}}, 1.2}};
 }
 
 Vec3 RandomDirection(uint64_t index, double widest_rad) {
@@ -58,6 +64,18 @@ Vec2 ByFormula(const Distortion& distortion, const Vec3& direction) {
     }
     case DistortionModel::kFov:
       return std::atan(2 * r * std::tan(p[0] / 2)) / (p[0] * r) * Vec2(x, y);
+    case DistortionModel::kDivision:
+      return (1 - std::sqrt(1 - 4 * p[0] * r * r)) / (2 * p[0] * r * r) * Vec2(x, y);
+    case DistortionModel::kUnified:
+      return Vec2(x, y) / (p[0] * std::sqrt(p[1] * r * r + 1) + 1 - p[0]);
+    case DistortionModel::kThinPrism: {
+      const Vec2 at = theta / std::hypot(direction.x(), direction.y()) * direction.head<2>();
+      const double u = at.x(), v = at.y(), s = theta * theta;
+      const double radial =
+          p[0] * s + p[1] * std::pow(s, 2) + p[4] * std::pow(s, 3) + p[5] * std::pow(s, 4);
+      return {u + u * radial + 2 * p[2] * u * v + p[3] * (s + 2 * u * u) + p[6] * s,
+              v + v * radial + 2 * p[3] * u * v + p[2] * (s + 2 * v * v) + p[7] * s};
+    }
   }
   return Vec2::Zero();
 }
@@ -140,10 +158,38 @@ TEST(Distortion, WithTangentialTermsTooNoRayArrivesBeyondTheFold) {
   EXPECT_FALSE(map.Distort({3, 0, 1}));
 }
 
+TEST(Distortion, OnlyLensesAreDistortions) {
+  using enum DistortionModel;
+  EXPECT_TRUE(IsDistortion({kUnified, {0.5, 1}}));
+  EXPECT_FALSE(IsDistortion({kUnified, {1.1, 1}}));
+  EXPECT_FALSE(IsDistortion({kUnified, {0.5, 0}}));
+  EXPECT_FALSE(IsDistortion({kFov, {0}}));
+  EXPECT_FALSE(IsDistortion({kFov, {4}}));
+  EXPECT_TRUE(IsDistortion({kDivision, {-7}}));
+}
+
+TEST(Distortion, DivisionAndUnifiedLensesEndWhereTheyTurnBack) {
+  using enum DistortionModel;
+  const DistortionMap pincushion({kDivision, {0.25}});  // r turns back at rd = 2, r = 1
+  EXPECT_TRUE(pincushion.Distort({0.999, 0, 1}));
+  EXPECT_FALSE(pincushion.Distort({1.001, 0, 1}));
+  EXPECT_TRUE(pincushion.Undistort({1.999, 0}));
+  EXPECT_FALSE(pincushion.Undistort({2.001, 0}));
+  const DistortionMap barrel({kDivision, {-0.25}});  // 90 degrees at rd = 2
+  EXPECT_NEAR(barrel.Distort({1e9, 0, 1})->x(), 2, 1e-6);
+  EXPECT_FALSE(barrel.Undistort({0, 2.001}));
+  const DistortionMap unified({kUnified, {0.5, 4}});  // 90 degrees at rd = 1
+  EXPECT_NEAR(unified.Distort({1e9, 0, 1})->x(), 1, 1e-6);
+  EXPECT_TRUE(unified.Undistort({0.999, 0}));
+  EXPECT_FALSE(unified.Undistort({1.001, 0}));
+}
+
 TEST(Distortion, OnlyAFishEyeSeesBehindItself) {
   for (const Lens& lens : Lenses()) {
     const bool sees = DistortionMap(lens.distortion).Distort({1, 0, -0.1}).has_value();
-    EXPECT_EQ(sees, lens.distortion.model == DistortionModel::kFisheye) << lens.name;
+    EXPECT_EQ(sees, lens.distortion.model == DistortionModel::kFisheye ||
+                        lens.distortion.model == DistortionModel::kThinPrism)
+        << lens.name;
   }
 }
 

@@ -30,13 +30,13 @@ constexpr ColmapCameraModel kModels[] = {
     {"FOV", 7, 5},
     {"SIMPLE_RADIAL_FISHEYE", 8, 4},
     {"RADIAL_FISHEYE", 9, 5},
-    {"THIN_PRISM_FISHEYE", 10, 0},
+    {"THIN_PRISM_FISHEYE", 10, 12},
     {"RAD_TAN_THIN_PRISM_FISHEYE", 11, 0},
-    {"SIMPLE_DIVISION", 12, 0},
-    {"DIVISION", 13, 0},
-    {"SIMPLE_FISHEYE", 14, 0},
-    {"FISHEYE", 15, 0},
-    {"EUCM", 16, 0},
+    {"SIMPLE_DIVISION", 12, 4},
+    {"DIVISION", 13, 5},
+    {"SIMPLE_FISHEYE", 14, 3},
+    {"FISHEYE", 15, 4},
+    {"EUCM", 16, 6},
     {"EQUIRECTANGULAR", 17, 0},
 };
 
@@ -63,6 +63,9 @@ bool HasOneFocalLength(std::string_view model) {
 DistortionModel DistortionModelOf(std::string_view model) {
   if (model.ends_with("PINHOLE")) return DistortionModel::kNone;
   if (model == "FOV") return DistortionModel::kFov;
+  if (model == "EUCM") return DistortionModel::kUnified;
+  if (model == "THIN_PRISM_FISHEYE") return DistortionModel::kThinPrism;
+  if (model.ends_with("DIVISION")) return DistortionModel::kDivision;
   if (model.ends_with("FISHEYE")) return DistortionModel::kFisheye;
   return DistortionModel::kRadialTangential;
 }
@@ -84,8 +87,14 @@ Result<Distortion> DistortionOf(std::string_view model, std::span<const double> 
       return InputError(fmt::format("has omega {}: expected an angle below pi", omega));
     if (omega < kMinOmega) return Distortion{};
   }
-  const bool is_radial = distortion.model == DistortionModel::kRadialTangential;
-  if (is_radial &&
+  if (!IsDistortion(distortion))
+    return InputError(fmt::format("has alpha {} and beta {}: expected 0 to 1, and above 0",
+                                  distortion.parameters[0], distortion.parameters[1]));
+  if (distortion.model == DistortionModel::kUnified && distortion.parameters[0] == 0)
+    return Distortion{};
+  const bool is_of_pinhole = distortion.model == DistortionModel::kRadialTangential ||
+                             distortion.model == DistortionModel::kDivision;
+  if (is_of_pinhole &&
       std::all_of(coefficients.begin(), coefficients.end(), [](double k) { return k == 0; }))
     return Distortion{};
   return distortion;

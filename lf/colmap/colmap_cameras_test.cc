@@ -52,6 +52,15 @@ TEST(ColmapCameras, EveryModelIsADistortion) {
       {"FOV", 7, {500, 501, 320, 240, 0.9}, Expected(500, 501, {kFov, {0.9}})},
       {"SIMPLE_RADIAL_FISHEYE", 8, {500, 320, 240, 0.1}, Expected(500, 500, {kFisheye, {0.1}})},
       {"RADIAL_FISHEYE", 9, {500, 320, 240, 0.1, 0.2}, Expected(500, 500, {kFisheye, {0.1, 0.2}})},
+      {"THIN_PRISM_FISHEYE",
+       10,
+       {500, 501, 320, 240, 1, 2, 3, 4, 5, 6, 7, 8},
+       Expected(500, 501, {kThinPrism, {1, 2, 3, 4, 5, 6, 7, 8}})},
+      {"SIMPLE_DIVISION", 12, {500, 320, 240, -0.1}, Expected(500, 500, {kDivision, {-0.1}})},
+      {"DIVISION", 13, {500, 501, 320, 240, -0.1}, Expected(500, 501, {kDivision, {-0.1}})},
+      {"SIMPLE_FISHEYE", 14, {500, 320, 240}, Expected(500, 500, {kFisheye, {}})},
+      {"FISHEYE", 15, {500, 501, 320, 240}, Expected(500, 501, {kFisheye, {}})},
+      {"EUCM", 16, {500, 501, 320, 240, 0.6, 1.1}, Expected(500, 501, {kUnified, {0.6, 1.1}})},
   };
   for (const auto& row : table) {
     const Result<Intrinsics> intrinsics = Read(row.name, row.parameters);
@@ -67,6 +76,10 @@ TEST(ColmapCameras, WhatBendsNothingIsAPinhole) {
   EXPECT_EQ(*Read("OPENCV", {500, 500, 320, 240, 0, -0.0, 0, 0}), pinhole);
   EXPECT_EQ(*Read("FOV", {500, 500, 320, 240, 0}), pinhole);
   EXPECT_EQ(*Read("FOV", {500, 500, 320, 240, 5e-324}), pinhole);
+  EXPECT_EQ(*Read("DIVISION", {500, 500, 320, 240, 0}), pinhole);
+  EXPECT_EQ(*Read("EUCM", {500, 500, 320, 240, 0, 1}), pinhole);
+  EXPECT_NE(ErrorOf(Read("EUCM", {500, 500, 320, 240, 1.2, 1})).find("has alpha 1.2"),
+            std::string::npos);
   // A fish-eye without coefficients bends: rd = theta.
   EXPECT_TRUE(Read("OPENCV_FISHEYE", {500, 500, 320, 240, 0, 0, 0, 0})->has_distortion());
 }
@@ -79,14 +92,13 @@ TEST(ColmapCameras, TheSignOfOmegaDoesNotMatter) {
 
 TEST(ColmapCameras, OtherModelsAreNamedWithAWayOut) {
   for (const char* name :
-       {"THIN_PRISM_FISHEYE", "RAD_TAN_THIN_PRISM_FISHEYE", "SIMPLE_DIVISION", "DIVISION",
-        "SIMPLE_FISHEYE", "FISHEYE", "EUCM", "EQUIRECTANGULAR", "opencv", "", "OPENCV2"}) {
+       {"RAD_TAN_THIN_PRISM_FISHEYE", "EQUIRECTANGULAR", "opencv", "", "OPENCV2"}) {
     const Result<ColmapCameraModel> model = FindColmapCameraModel(name);
     ASSERT_FALSE(model) << name;
     EXPECT_NE(model.error().message.find(name), std::string::npos);
     EXPECT_NE(model.error().message.find("colmap image_undistorter"), std::string::npos);
   }
-  EXPECT_NE(FindColmapCameraModel(10).error().message.find("THIN_PRISM_FISHEYE"),
+  EXPECT_NE(FindColmapCameraModel(11).error().message.find("THIN_PRISM_FISHEYE"),
             std::string::npos);
   EXPECT_NE(FindColmapCameraModel(18).error().message.find("number 18"), std::string::npos);
   EXPECT_NE(FindColmapCameraModel(-1).error().message.find("number -1"), std::string::npos);

@@ -75,8 +75,9 @@ TEST(ColmapText, BrokenCamerasAreNamedWithTheirLine) {
              "m/cameras.txt:2: CAMERA_ID is \"x\": expected a whole number from 0 to 4294967295");
   EXPECT_HAS(ErrorOfCameras("4294967296 PINHOLE 8 6 10 11 4 3"), "m/cameras.txt:1: CAMERA_ID is");
   EXPECT_HAS(ErrorOfCameras("-1 PINHOLE 8 6 10 11 4 3"), "CAMERA_ID is \"-1\"");
-  EXPECT_HAS(ErrorOfCameras("3 EUCM 8 6 1 1 4 3 1 1"),
-             "m/cameras.txt:1: camera 3 has the camera model EUCM, which is not supported: undist");
+  EXPECT_HAS(ErrorOfCameras("3 EQUIRECTANGULAR 8 6 1 1 4 3 1 1"),
+             "m/cameras.txt:1: camera 3 has the camera model EQUIRECTANGULAR, which is not "
+             "supported: undist");
   EXPECT_HAS(ErrorOfCameras("3"), "camera 3 has the camera model \"\"");
   EXPECT_HAS(ErrorOfCameras("3 PINHOLE 8"), "HEIGHT is missing");
   EXPECT_HAS(ErrorOfCameras("3 PINHOLE 8 6.5 10 11 4 3"), "HEIGHT is \"6.5\"");

@@ -21,9 +21,14 @@ constexpr NumberRule kOmega = {"the lens's field of view in radians, above 0 and
 constexpr const char* kRadialTangentialKeys[] = {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
 constexpr const char* kFisheyeKeys[] = {"k1", "k2", "k3", "k4"};
 constexpr const char* kOmegaKey = "lf_fov_omega";
+constexpr const char* kDivisionKeys[] = {"k1"};
+constexpr const char* kUnifiedKeys[] = {"lf_eucm_alpha", "lf_eucm_beta"};
+constexpr const char* kThinPrismKeys[] = {"k1", "k2", "p1", "p2", "k3", "k4", "lf_sx1", "lf_sy1"};
 
 // All of them, as DistortionKeys::values.
-constexpr std::array kKeys = {"k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2", kOmegaKey};
+constexpr std::array kKeys = {"k1",           "k2",     "k3",    "k4",      "k5",
+                              "k6",           "p1",     "p2",    kOmegaKey, "lf_eucm_alpha",
+                              "lf_eucm_beta", "lf_sx1", "lf_sy1"};
 static_assert(kKeys.size() == std::tuple_size_v<decltype(DistortionKeys::values)>);
 
 constexpr CameraModelName kModels[] = {
@@ -37,6 +42,12 @@ constexpr CameraModelName kModels[] = {
     {"SIMPLE_RADIAL_FISHEYE", DistortionModel::kFisheye, 1},
     {"RADIAL_FISHEYE", DistortionModel::kFisheye, 2},
     {"FOV", DistortionModel::kFov, 1},
+    {"SIMPLE_FISHEYE", DistortionModel::kFisheye, 0},
+    {"FISHEYE", DistortionModel::kFisheye, 0},
+    {"SIMPLE_DIVISION", DistortionModel::kDivision, 1},
+    {"DIVISION", DistortionModel::kDivision, 1},
+    {"EUCM", DistortionModel::kUnified, 2},
+    {"THIN_PRISM_FISHEYE", DistortionModel::kThinPrism, 8},
 };
 
 const CameraModelName& ModelNamed(std::string_view name) {
@@ -58,7 +69,9 @@ Result<CameraModelName> ResolveModel(const DistortionKeys& frame, const Distorti
   const std::optional<bool> is_fisheye = frame.is_fisheye ? frame.is_fisheye : top.is_fisheye;
   if (!index) return ModelNamed(is_fisheye.value_or(false) ? "OPENCV_FISHEYE" : "OPENCV");
   const CameraModelName& model = kModels[*index];
-  if (is_fisheye && *is_fisheye != (model.model == DistortionModel::kFisheye))
+  const bool is_of_fisheye =
+      model.model == DistortionModel::kFisheye || model.model == DistortionModel::kThinPrism;
+  if (is_fisheye && *is_fisheye != is_of_fisheye)
     return fields.Fault(fmt::format(
         "\"is_fisheye\" is {}, \"camera_model\" is \"{}\": they contradict each other, remove "
         "is_fisheye",
@@ -92,6 +105,12 @@ std::span<const char* const> ParameterKeys(DistortionModel model) {
       return kFisheyeKeys;
     case DistortionModel::kFov:
       return kFovKeys;
+    case DistortionModel::kDivision:
+      return kDivisionKeys;
+    case DistortionModel::kUnified:
+      return kUnifiedKeys;
+    case DistortionModel::kThinPrism:
+      return kThinPrismKeys;
     case DistortionModel::kNone:
       break;
   }
@@ -113,6 +132,12 @@ CameraModelName CameraModelOf(const Distortion& distortion) {
       return ModelNamed("OPENCV_FISHEYE");
     case DistortionModel::kFov:
       return ModelNamed("FOV");
+    case DistortionModel::kDivision:
+      return ModelNamed("DIVISION");
+    case DistortionModel::kUnified:
+      return ModelNamed("EUCM");
+    case DistortionModel::kThinPrism:
+      return ModelNamed("THIN_PRISM_FISHEYE");
   }
   return ModelNamed("PINHOLE");
 }
@@ -152,8 +177,17 @@ Result<Distortion> ResolveDistortion(const DistortionKeys& frame, const Distorti
     return fields.Fault(
         fmt::format("\"camera_model\" is \"FOV\", but \"{}\" is missing: expected {}", kOmegaKey,
                     kOmega.expected));
+  if (!IsDistortion(distortion))
+    return fields.Fault(
+        fmt::format("\"camera_model\" is \"{}\" with lf_eucm_alpha {} and lf_eucm_beta {}: "
+                    "expected 0 to 1, and "
+                    "above 0",
+                    model.name, distortion.parameters[0], distortion.parameters[1]));
+  if (model.model == DistortionModel::kUnified && distortion.parameters[0] == 0)
+    return Distortion{};
   const auto is_zero = [](double x) { return x == 0; };
-  if (model.model == DistortionModel::kRadialTangential &&
+  if ((model.model == DistortionModel::kRadialTangential ||
+       model.model == DistortionModel::kDivision) &&
       std::all_of(distortion.parameters.begin(), distortion.parameters.end(), is_zero))
     return Distortion{};
   return distortion;

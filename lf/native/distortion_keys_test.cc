@@ -54,6 +54,13 @@ TEST(DistortionKeys, EveryCameraModelPutsItsParametersInTheirPlaces) {
   EXPECT_EQ(Parsed(R"("camera_model": "SIMPLE_RADIAL_FISHEYE", "k1": 1, )"),
             (Distortion{kFisheye, {1}}));
   EXPECT_EQ(Parsed(R"("camera_model": "FOV", "lf_fov_omega": 0.9, )"), (Distortion{kFov, {0.9}}));
+  EXPECT_EQ(Parsed(R"("camera_model": "FISHEYE", )"), (Distortion{kFisheye, {}}));
+  EXPECT_EQ(Parsed(R"("camera_model": "DIVISION", "k1": -0.2, )"), (Distortion{kDivision, {-0.2}}));
+  EXPECT_EQ(Parsed(R"("camera_model": "EUCM", "lf_eucm_alpha": 0.5, "lf_eucm_beta": 2, )"),
+            (Distortion{kUnified, {0.5, 2}}));
+  EXPECT_EQ(Parsed(R"("camera_model": "EUCM", "lf_eucm_beta": 2, )"), Distortion{});
+  EXPECT_EQ(Parsed(R"("camera_model": "THIN_PRISM_FISHEYE", "k3": 0.1, "lf_sy1": 0.2, )"),
+            (Distortion{kThinPrism, {0, 0, 0, 0, 0.1, 0, 0, 0.2}}));
   EXPECT_EQ(Parsed(R"("camera_model": "PINHOLE", "k1": 0, "p2": 0.0, )"), Distortion{});
   EXPECT_EQ(Parsed(R"("camera_model": "SIMPLE_PINHOLE", )"), Distortion{});
 }
@@ -106,6 +113,7 @@ TEST(DistortionKeys, ParametersThatTheModelLacksAreErrors) {
   ExpectError(R"("camera_model": "OPENCV_FISHEYE", "p2": 0.1, )", "", {"\"p2\" is 0.1"});
   ExpectError(R"("camera_model": "SIMPLE_RADIAL_FISHEYE", "k2": 0.1, )", "", {"\"k2\" is 0.1"});
   ExpectError(R"("is_fisheye": true, "k5": 0.1, )", "", {"\"k5\"", "OPENCV_FISHEYE"});
+  ExpectError(R"("camera_model": "EUCM", "lf_eucm_alpha": 0.5, )", "", {"lf_eucm_beta 0"});
   ExpectError(R"("camera_model": "OPENCV", "lf_fov_omega": 0.9, )", "",
               {"\"lf_fov_omega\" is 0.9"});
   ExpectError(R"("camera_model": "FOV", "lf_fov_omega": 0.9, "k1": 1, )", "", {"\"k1\" is 1"});

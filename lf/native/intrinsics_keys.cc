@@ -41,7 +41,8 @@ std::optional<double> Focal(const IntrinsicsKeys& frame, const IntrinsicsKeys& t
 uint64_t HashOfIntrinsicsKeys(const IntrinsicsKeys& keys) {
   constexpr double kMissing = 1e300;  // no value that is read
   const DistortionKeys& distortion = keys.distortion;
-  std::array<double, 20> numbers = {
+  constexpr size_t kOthers = 11;
+  std::array<double, kOthers + std::tuple_size_v<decltype(DistortionKeys::values)>> numbers = {
       static_cast<double>(distortion.camera_model.value_or(UINT8_MAX)),
       distortion.is_fisheye ? *distortion.is_fisheye : kMissing};
   size_t i = 2;
