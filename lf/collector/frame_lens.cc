@@ -67,7 +67,7 @@ std::vector<LfImageId> FrameLens::near() const {
 
 std::optional<FrameLens::Facts> FrameLens::facts() const {
   if (!weights_) return std::nullopt;
-  return Facts{weights_->hat_share(), weights_->uncovered_share()};
+  return Facts{weights_->hat_share(), weights_->coverage()};
 }
 
 Image<float> FrameLens::EffectiveCounts() const {

@@ -14,6 +14,7 @@
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
 #include "lf/lens_weights/frame_weights.h"
+#include "lf/lens_weights/lens_coverage.h"
 #include "lf/selection/select.h"
 
 namespace lf {
@@ -53,8 +54,8 @@ class FrameLens {
 
   // What the weights are like; none without weights.
   struct Facts {
-    double hat_share = 0;        // FrameWeights::hat_share()
-    double uncovered_share = 0;  // of the opening (lens_weights/lens_coverage.h)
+    double hat_share = 0;  // FrameWeights::hat_share()
+    LensCoverage coverage;
   };
   std::optional<Facts> facts() const;
 

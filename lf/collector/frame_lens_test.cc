@@ -148,7 +148,7 @@ TEST(FrameLens, ImagesBesideTheLensTakePartAndThoseFarAwayDoNot) {
   EXPECT_GT(none, 100u);
   ASSERT_TRUE(lens.facts());
   EXPECT_EQ(lens.facts()->hat_share, 0);
-  EXPECT_LT(lens.facts()->uncovered_share, 0.1);
+  EXPECT_LT(lens.facts()->coverage.uncovered_share, 0.1);
 }
 
 // Against sums over the weights themselves, where every image holds all of the frame.

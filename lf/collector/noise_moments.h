@@ -1,5 +1,5 @@
-// How much LF images differ in elements of a frame: exact second moments, kept for some elements
-// that are spread over the plate, for the standard error of an element's mean.
+// Exact second moments of what LF images add to an element, for the standard error of the element's
+// mean. They are kept for some elements that are spread over the plate.
 //
 // Rays of one LF image are alike: neighbouring pixels, or several samples of one pixel. So the LF
 // image is the independent unit. Image i adds the sum S_i and the count W_i to an element and

@@ -1,4 +1,4 @@
-// How much noise a frame has, measured so that it may stop, or be refused: "noise<=0.002".
+// The noise of a frame, and the rule "noise<=0.002" that stops or refuses the frame by it.
 //
 // The noise of a frame is that which kMostNoiseElements of its reachable elements stay below: of
 // the elements that NoiseMoments measures and ReachableElements holds, the 90th percentile of the

@@ -15,7 +15,7 @@ namespace {
 // Kernels overlap where lens points are so many sigmas apart.
 constexpr double kPointDistance_sigmas = 3;
 constexpr int kLeastPoints = 8, kMostPoints = 256;
-// Where LF cameras are rare, a kernel is as wide as this part of the way to the nearest.
+// Width of a kernel where LF cameras are rare, in distances to the nearest one.
 constexpr double kSigmaPerDistance = 0.5;
 // Splats may not be wider (rebinning/splat_tile.h).
 constexpr double kMostSigma_px = 8;

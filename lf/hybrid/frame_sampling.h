@@ -1,5 +1,5 @@
-// How densely a light field was recorded around the lens of a frame, and what a frame asks rebinned
-// rays for, which follows from it. Known from calibrations alone.
+// The density of LF cameras around the lens of a frame, and what the frame therefore asks rebinned
+// rays for. Both follow from calibrations alone.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// How --memory is shared in each mode: rebinned rays, and what collection needs beside them.
+// Shares of --memory in each mode: for rebinned rays, and for collection beside them.
 #pragma once
 
 #include <cstddef>

@@ -41,21 +41,27 @@ ConvexPolygon ConvexPolygon::SquareAround(const Vec2& middle, double half_side) 
 }
 
 bool ConvexPolygon::Clip(const Vec2& normal, double offset) {
-  if (std::all_of(vertices_.begin(), vertices_.end(),
-                  [&](const Vec2& v) { return normal.dot(v) <= offset; }))
-    return false;
-  std::vector<Vec2> kept;
-  kept.reserve(vertices_.size() + 1);
-  for (size_t i = 0; i < vertices_.size(); ++i) {
-    const Vec2& a = vertices_[i];
-    const Vec2& b = vertices_[(i + 1) % vertices_.size()];
-    const double past_a = normal.dot(a) - offset, past_b = normal.dot(b) - offset;
-    if (past_a <= 0) kept.push_back(a);
-    if ((past_a < 0 && past_b > 0) || (past_a > 0 && past_b < 0))
-      kept.push_back(a + past_a / (past_a - past_b) * (b - a));
+  // A frame clips millions of times: these keep their memory.
+  thread_local std::vector<double> past;
+  thread_local std::vector<Vec2> kept;
+  past.clear();
+  bool is_all = true;
+  for (const Vec2& v : vertices_) {
+    past.push_back(normal.dot(v) - offset);
+    is_all &= past.back() <= 0;
   }
-  vertices_ = std::move(kept);
-  if (vertices_.size() < 3) vertices_.clear();
+  if (is_all) return false;
+  kept.clear();
+  for (size_t i = 0; i < vertices_.size(); ++i) {
+    const size_t next = i + 1 < vertices_.size() ? i + 1 : 0;
+    const Vec2& a = vertices_[i];
+    const Vec2& b = vertices_[next];
+    if (past[i] <= 0) kept.push_back(a);
+    if ((past[i] < 0 && past[next] > 0) || (past[i] > 0 && past[next] < 0))
+      kept.push_back(a + past[i] / (past[i] - past[next]) * (b - a));
+  }
+  if (kept.size() < 3) kept.clear();
+  vertices_.assign(kept.begin(), kept.end());
   return true;
 }
 

@@ -9,6 +9,7 @@ namespace lf {
 
 class ConvexPolygon {
  public:
+  ConvexPolygon() = default;
   // Counter-clockwise.
   explicit ConvexPolygon(std::vector<Vec2> vertices) : vertices_(std::move(vertices)) {}
 

@@ -149,8 +149,7 @@ FrameWeights::FrameWeights(const RenderCamera& frame, std::span<const Vec3> cent
   if (kind == LensWeights::kAuto) hat_share_ = AutoHatShare(2 * frame.aperture.radius_w, distance);
   if (const std::optional<Vec3> focus =
           FocusPointOfElement(frame, 0.5 * width_px_, 0.5 * height_px_))
-    uncovered_share_ =
-        UncoveredShare(PointsAt(frame, centres_world, *focus).points, frame.aperture);
+    coverage_ = CoverageOf(PointsAt(frame, centres_world, *focus).points, frame.aperture);
   SetGrid(frame, centres_world, distance);
   std::vector<Node> nodes(static_cast<size_t>(columns_) * rows_);
   pool.ForEach(nodes.size(), [&](size_t n) {
@@ -183,7 +182,8 @@ FrameWeights::Node FrameWeights::MakeNode(const RenderCamera& frame,
   const auto mix = [&](const std::vector<double>& part, double by) {
     for (size_t k = 0; k < shares.size(); ++k) shares[k] += by * part[k];
   };
-  if (hat_share_ < 1) mix(CellShares(seen.points, frame.aperture), 1 - hat_share_);
+  if (hat_share_ < 1)
+    mix(CellShares(seen.points, frame.aperture, CoveredBy(seen.points)), 1 - hat_share_);
   if (hat_share_ > 0) mix(HatShares(seen.points, frame.aperture), hat_share_);
   for (size_t k = 0; k < shares.size(); ++k) {
     if (!(shares[k] > kLeastShare)) continue;

@@ -15,6 +15,7 @@
 #include "lf/camera/render_camera.h"
 #include "lf/core/geometry.h"
 #include "lf/core/parallel.h"
+#include "lf/lens_weights/lens_coverage.h"
 
 namespace lf {
 
@@ -24,6 +25,9 @@ namespace lf {
 //   kHat   by hats, for lenses as narrow as pinholes
 //   kAuto  by the one or the other, or by both where the lens is between them: AutoHatShare()
 enum class LensWeights { kNone, kArea, kHat, kAuto };
+
+// The version of doc/lens-integral.md: raised when LF cameras get other weights.
+inline constexpr int kLensWeightsVersion = 2;
 
 // "none", "area", "hat", "auto"
 const char* NameOf(LensWeights weights);
@@ -63,7 +67,7 @@ class FrameWeights {
   double hat_share() const { return hat_share_; }
 
   // As seen from the middle of the plate (lens_coverage.h).
-  double uncovered_share() const { return uncovered_share_; }
+  const LensCoverage& coverage() const { return coverage_; }
 
   // Of the grid, from edge to edge of the plate; 1: its middle.
   int columns() const { return columns_; }
@@ -95,7 +99,7 @@ class FrameWeights {
   void SetPlaces();
 
   double hat_share_ = 0;
-  double uncovered_share_ = 1;
+  LensCoverage coverage_;
   int width_px_;
   int height_px_;
   int columns_ = 1;

@@ -17,9 +17,10 @@ ConvexPolygon CellOf(const Vec2& place, std::span<const Vec2> points, const Poin
   double reach = 2 * around.FarthestFrom(place);  // how far a point may be to cut it further
   for (int ring = 0; ring <= grid.ring_count() && !around.empty(); ++ring) {
     if (grid.LeastDistanceOf(ring) > reach) break;
+    const double reach2 = reach * reach;
     grid.ForEachInRing(place, ring, [&](size_t i) {
-      if (around.empty()) return;
       const Vec2 across = points[i] - place;
+      if (across.squaredNorm() > reach2 || around.empty()) return;
       if (across == Vec2::Zero())
         same(i);
       else if (around.Clip(across, across.dot(0.5 * (place + points[i]))))

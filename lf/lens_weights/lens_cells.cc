@@ -43,18 +43,19 @@ class HatMaker {
         place, kFar * (grid_.DistanceToNearest(place) + grid_.bucket_size()));
   }
 
-  // Those at the same place share what is nearest to them.
-  double TakenFrom(size_t i, ConvexPolygon cell) const {
+  // Points at the same place share what is nearest to them.
+  double TakenFrom(size_t i, const ConvexPolygon& cell) {
     int sharing = 1;
+    part_ = cell;
     for (const size_t other : neighbours_) {
       if (other == i) continue;
       const Vec2 across = points_[other] - points_[i];
       if (across == Vec2::Zero())
         ++sharing;
       else
-        cell.Clip(across, across.dot(0.5 * (points_[i] + points_[other])));
+        part_.Clip(across, across.dot(0.5 * (points_[i] + points_[other])));
     }
-    return cell.Area() / sharing;
+    return part_.Area() / sharing;
   }
 
   std::span<const Vec2> points_;
@@ -62,6 +63,7 @@ class HatMaker {
   std::vector<size_t> neighbours_;
   std::vector<size_t> same_;
   std::vector<double> taken_;
+  ConvexPolygon part_;  // keeps its memory
 };
 
 // For a point beside the opening, one near where the opening is nearest to it.
@@ -82,12 +84,13 @@ std::optional<Vec2> PointAtRim(const Vec2& point, std::span<const Vec2> points,
 
 }  // namespace
 
-std::vector<double> CellShares(std::span<const Vec2> points, const Aperture& aperture) {
+std::vector<double> CellShares(std::span<const Vec2> points, const Aperture& aperture,
+                               const CoveredRegion& covered) {
   LF_CHECK(aperture.radius_w > 0);
   const bool is_disk = aperture.blades == 0;
-  const ConvexPolygon opening = is_disk
-                                    ? ConvexPolygon::SquareAround(Vec2::Zero(), aperture.radius_w)
-                                    : ConvexPolygon(Vertices(aperture));
+  ConvexPolygon opening = is_disk ? ConvexPolygon::SquareAround(Vec2::Zero(), aperture.radius_w)
+                                  : ConvexPolygon(Vertices(aperture));
+  covered.Clip(&opening);
   const PointGrid grid(points);
   std::vector<double> shares;
   shares.reserve(points.size());

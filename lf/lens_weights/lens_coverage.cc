@@ -28,7 +28,7 @@ std::vector<Vec2> OneOfEachPlace(std::span<const Vec2> points, double distance) 
 
 // Distance to the nearest neighbour, the middle one by the area that it stands for: cameras that
 // crowd in a corner do not decide. 0 without two points.
-double DistanceOfMost(const std::vector<Vec2>& points) {
+double DistanceOfDistinct(const std::vector<Vec2>& points) {
   const PointGrid grid(points);
   std::vector<double> distances;
   double area = 0;
@@ -47,17 +47,31 @@ double DistanceOfMost(const std::vector<Vec2>& points) {
 
 }  // namespace
 
-double UncoveredShare(std::span<const Vec2> points, const Aperture& aperture) {
+double DistanceOfMost(std::span<const Vec2> points) {
+  if (points.empty()) return 0;
+  return DistanceOfDistinct(OneOfEachPlace(points, PointGrid(points).bucket_size()));
+}
+
+CoveredRegion CoveredBy(std::span<const Vec2> points) {
+  const double distance = DistanceOfMost(points);
+  return distance > 0 ? CoveredRegion(points, distance / 2) : CoveredRegion();
+}
+
+LensCoverage CoverageOf(std::span<const Vec2> points, const Aperture& aperture) {
   constexpr int kSamples = 256;
+  const double distance = DistanceOfMost(points);
+  if (distance == 0) return {};
   const PointGrid grid(points);
-  const double distance = DistanceOfMost(OneOfEachPlace(points, grid.bucket_size()));
-  if (distance == 0) return 1;
+  // Hats, of lenses narrower than that, have no end.
+  const bool is_cut = 2 * aperture.radius_w > distance;
+  const CoveredRegion region = CoveredBy(points);
   const double far = kFarDistances * distance;
   const std::vector<Vec2> places = SampleLens(aperture, aperture.radius_w > 0 ? kSamples : 1);
   const auto uncovered = std::count_if(places.begin(), places.end(), [&](const Vec2& place) {
-    return grid.DistanceToNearest(place) > far;
+    return (is_cut && !region.Contains(place)) || grid.DistanceToNearest(place) > far;
   });
-  return static_cast<double>(uncovered) / static_cast<double>(places.size());
+  return {static_cast<double>(uncovered) / static_cast<double>(places.size()),
+          2 * region.LargestRadius_w()};
 }
 
 }  // namespace lf

@@ -25,8 +25,8 @@ struct PackageFrame {
   uint64_t ray_count = 0;    // pixels of their rectangles
 };
 
-// How densely the light field was recorded around the lens of a frame (hybrid/frame_sampling.h),
-// measured in the whole light field, of which the package may lack some LF cameras.
+// Density of LF cameras around the lens of a frame (hybrid/frame_sampling.h). It is measured in the
+// whole light field, because the package may lack some LF cameras.
 struct FrameSurroundings {
   double camera_distance_w = 0;  // about how far apart LF cameras are; 0: there is none
   double pixel_rad = 0;          // what one LF pixel sees

@@ -37,9 +37,10 @@ struct PackedStorePlan {
 // One LF image, to be added.
 struct CodedImage {
   StoredValues values = StoredValues::kUint8;
-  PixelRect rect;             // of the LF image: what the code is of; some of it
-  std::string code;           // of the colours, or the mosaic (codec/lf_image_codec.h)
-  std::string mask;           // of a grey picture of the same size, 0: masked; empty: nothing is
+  PixelRect rect;    // of the LF image: what the code is of; some of it
+  std::string code;  // of the colours, or the mosaic (codec/lf_image_codec.h)
+  std::string mask;  // of a grey picture of the same size: of 8 bits, 0: masked; of 16 bits,
+                     // opacities (store/opacities.h); empty: nothing is
   uint64_t source_bytes = 0;  // of the files that it was made from; for people
 };
 

@@ -80,7 +80,7 @@ FrameDensity DensityOf(const ImageIndex& index, const RenderCamera& frame,
     points.push_back(point);
     density.cameras_in_lens += Contains(frame.aperture, point) ? 1 : 0;
   }
-  density.uncovered_share = UncoveredShare(points, frame.aperture);
+  density.coverage = CoverageOf(points, frame.aperture);
 
   for (const double x : kPlaces)
     for (const double y : kPlaces)

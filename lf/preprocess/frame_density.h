@@ -15,6 +15,7 @@
 
 #include "lf/camera/render_camera.h"
 #include "lf/core/geometry.h"
+#include "lf/lens_weights/lens_coverage.h"
 #include "lf/selection/image_index.h"
 
 namespace lf {
@@ -22,7 +23,7 @@ namespace lf {
 struct FrameDensity {
   size_t cameras_in_lens = 0;    // as the middle of the plate sees it
   double camera_distance_w = 0;  // s, in the lens plane
-  double uncovered_share = 0;    // of the opening (lens_weights/lens_coverage.h): bokeh are cut off
+  LensCoverage coverage;         // bokeh are cut off where the lens is not covered
   // Diameter of the smallest lens with which each of nine places of the plate has a ray; infinite
   // where none of the LF cameras around sees one of them.
   double least_aperture_w = 0;

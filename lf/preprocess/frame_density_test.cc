@@ -37,7 +37,7 @@ TEST(FrameDensity, OfAGridInTheLensPlane) {
   const FrameDensity density = DensityOf(index, Frame(0.0301, 0, 0, 0), DepthRange{1, 4});
   EXPECT_EQ(density.cameras_in_lens, 29u);  // integer points within radius 3
   EXPECT_NEAR(density.camera_distance_w, 0.01, 0.001);
-  EXPECT_LT(density.uncovered_share, 0.01);
+  EXPECT_LT(density.coverage.uncovered_share, 0.01);
   EXPECT_EQ(density.least_aperture_w, 0);  // one stands in the lens centre
   EXPECT_NEAR(density.near_displacement_px, 400 * density.camera_distance_w * 0.5, 1e-9);
   EXPECT_NEAR(density.far_displacement_px, 400 * density.camera_distance_w * 0.25, 1e-9);
@@ -64,7 +64,7 @@ TEST(FrameDensity, OfAFrameBeforeTheGrid) {
 TEST(FrameDensity, BesideTheCaptureTheLensIsUncovered) {
   const LightField grid = Grid();
   const ImageIndex index(grid);
-  EXPECT_NEAR(DensityOf(index, Frame(0.1, 0.22, 0, 0), {}).uncovered_share, 0.5, 0.05);
+  EXPECT_NEAR(DensityOf(index, Frame(0.1, 0.22, 0, 0), {}).coverage.uncovered_share, 0.6, 0.05);
 }
 
 TEST(FrameDensity, WithoutDepthsAQuarterBeforeAndBehindTheFocusIsAsked) {

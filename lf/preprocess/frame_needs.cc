@@ -1,5 +1,7 @@
 #include "lf/preprocess/frame_needs.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 #include <span>
@@ -183,6 +185,19 @@ FrameSampling SamplingOf(const FrameSurroundings& surroundings) {
 FrameNeeds NeedsOf(const ImageIndex& index, const RenderCamera& frame, const NeedsOptions& options,
                    ThreadPool& pool, const std::optional<FrameSampling>& sampling) {
   return NeedsFinder(index, frame, options, pool, sampling).Find();
+}
+
+Result<void> CheckKept(const LfImageStore& store, const LightField& light_field, FrameId frame,
+                       const FrameNeeds& needs) {
+  for (const FrameNeeds::Image& image : needs.images)
+    if (!store.Keeps(image.id, image.rect))
+      return InputError(fmt::format(
+          "{}: frame {} reads pixels of {} that are not in this packed store: it was made for "
+          "other frames, or for another --mode, --estimator or --lens-weights; make packages with "
+          "these from the light field that was compressed, and compress them again, or compress "
+          "without --needed-pixels",
+          light_field.folder.string(), frame.value, light_field.image_names[image.id.value]));
+  return {};
 }
 
 }  // namespace lf

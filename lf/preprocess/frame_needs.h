@@ -13,6 +13,7 @@
 #include "lf/core/geometry.h"
 #include "lf/core/ids.h"
 #include "lf/core/parallel.h"
+#include "lf/core/result.h"
 #include "lf/hybrid/frame_sampling.h"
 #include "lf/hybrid/rebinned_rays.h"
 #include "lf/hybrid/render_mode.h"
@@ -20,6 +21,7 @@
 #include "lf/package/package.h"
 #include "lf/selection/image_index.h"
 #include "lf/selection/select.h"
+#include "lf/store/lf_image_store.h"
 
 namespace lf {
 
@@ -61,5 +63,11 @@ FrameSampling SamplingOf(const FrameSurroundings& surroundings);
 //   sampling  in the whole light field, where the index is of a part
 FrameNeeds NeedsOf(const ImageIndex& index, const RenderCamera& frame, const NeedsOptions& options,
                    ThreadPool& pool, const std::optional<FrameSampling>& sampling = {});
+
+// kInput if the frame reads pixels that were cut off when the packed store was made
+// (lfcompressor --needed-pixels). LF images that are missing or broken are no error here.
+//   store  as it is read: with mosaics to RGB if the estimator is bilinear
+Result<void> CheckKept(const LfImageStore& store, const LightField& light_field, FrameId frame,
+                       const FrameNeeds& needs);
 
 }  // namespace lf

@@ -23,6 +23,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kExtension = ".lfp";
+// 300 frames of 20,000 LF images each.
+constexpr uint64_t kMostKeptBytes = uint64_t{256} << 20;
 
 double SecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -102,13 +104,20 @@ class Preprocessor {
     if (options_.interrupted == nullptr || !*options_.interrupted) return {};
     return Error{ErrorKind::kInterrupted, "interrupted: no package is kept"};
   }
-  // What was found when the interruption came is not all.
+  // Needs that were found when an interruption came are not complete.
   Result<FrameNeeds> Needs(FrameId frame) {
-    FrameNeeds needs = NeedsOf(*index_, path_.Camera(frame), needs_, pool_);
+    FrameNeeds needs;
+    if (const auto kept = kept_needs_.find(frame); kept != kept_needs_.end()) {
+      needs = std::move(kept->second);
+      kept_needs_.erase(kept);
+    } else {
+      needs = NeedsOf(*index_, path_.Camera(frame), needs_, pool_);
+    }
     LF_RETURN_IF_ERROR(CheckInterrupted());
     if (progress_) progress_(++done_, 2 * frames_.size());
     return needs;
   }
+  void Keep(FrameId frame, FrameNeeds needs);
 
   const LightField& light_field_;
   const CameraPath& path_;
@@ -117,10 +126,13 @@ class Preprocessor {
   const std::function<void(size_t, size_t)>& progress_;
   NeedsOptions needs_;
   std::vector<FrameId> frames_;
-  std::unique_ptr<LfImageStore> store_;  // for sizes
+  std::unique_ptr<LfImageStore> store_;  // asked for sizes and for what it keeps
   LightFieldIdentity whole_;
   ImagePlaces places_;
   std::optional<ImageIndex> index_;
+  // Needs of the forecast, which packages ask for again, while they take less than kMostKeptBytes.
+  std::map<FrameId, FrameNeeds> kept_needs_;
+  uint64_t kept_bytes_ = 0;
   std::vector<FrameSurroundings> surroundings_;  // [frame - 1] of the film
   size_t done_ = 0;
   std::vector<bool> is_counted_;  // LF images of packages that are done
@@ -160,7 +172,10 @@ Result<void> Preprocessor::Begin() {
                       options_.output_folder->string(), there.size()));
     LF_RETURN_IF_ERROR(CreateFolder(*options_.output_folder));
   }
-  LF_ASSIGN_OR_RETURN(store_, OpenStore(light_field_, Mosaics::kAsRecorded));
+  LF_ASSIGN_OR_RETURN(store_,
+                      OpenStore(light_field_, options_.reading.estimator == Estimator::kBilinear
+                                                  ? Mosaics::kToRgb
+                                                  : Mosaics::kAsRecorded));
   report_.light_field_image_count = light_field_.size();
   whole_ = IdentityOf(light_field_);
   return {};
@@ -213,9 +228,11 @@ Result<void> Preprocessor::ForecastFrames() {
   const auto start = std::chrono::steady_clock::now();
   std::map<FrameId, FrameSampling> sampling;
   for (const FrameId frame : frames_) {
-    LF_ASSIGN_OR_RETURN(const FrameNeeds needs, Needs(frame));
+    LF_ASSIGN_OR_RETURN(FrameNeeds needs, Needs(frame));
+    LF_RETURN_IF_ERROR(CheckKept(*store_, light_field_, frame, needs));
     report_.frames.push_back({frame, needs.images.size(), needs.RayCount(), {}});
     if (needs.sampling) sampling[frame] = *needs.sampling;
+    Keep(frame, std::move(needs));
   }
   LF_RETURN_IF_ERROR(DescribeSurroundings(sampling));
   report_.select_s += SecondsSince(start);
@@ -237,6 +254,14 @@ Result<void> Preprocessor::ForecastFrames() {
         "capture?)",
         frames_.front().value, frames_.back().value));
   return {};
+}
+
+void Preprocessor::Keep(FrameId frame, FrameNeeds needs) {
+  const uint64_t bytes = needs.images.capacity() * sizeof(FrameNeeds::Image) +
+                         needs.neighbours.capacity() * sizeof(LfImageId);
+  if (kept_bytes_ + bytes > kMostKeptBytes) return;
+  kept_bytes_ += bytes;
+  kept_needs_.emplace(frame, std::move(needs));
 }
 
 // By the frame that has the median number of rays.

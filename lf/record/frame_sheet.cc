@@ -157,6 +157,7 @@ PlateEntries TextOf(const FrameSheet& sheet) {
       {"sheet.version", sheet.version},
       {"sheet.develop", Words(develop)},
       {"sheet.smooth_below", fmt::format("{}", sheet.develop.smooth_below)},
+      {"sheet.fill_radius", fmt::format("{}", sheet.develop.fill_radius_px)},
       {"sheet.lf_images", fmt::format("{}", sheet.rays.image_count)},
       {"sheet.rays_tested", fmt::format("{}", sheet.rays.tested_count)},
       {"sheet.rays_accepted", fmt::format("{}", sheet.rays.accepted_count)},
@@ -170,7 +171,8 @@ PlateEntries TextOf(const FrameSheet& sheet) {
   if (sheet.weighed) {
     const auto& counts = sheet.weighed->effective_counts.pixels();
     text.emplace_back("sheet.weights",
-                      words({sheet.weighed->hat_share, sheet.weighed->uncovered_share}));
+                      words({sheet.weighed->hat_share, sheet.weighed->coverage.uncovered_share,
+                             sheet.weighed->coverage.fitting_diameter_w}));
     text.emplace_back("sheet.effective", fmt::format("{}", fmt::join(counts, " ")));
   }
   return text;
@@ -216,6 +218,8 @@ Result<FrameSheet> FrameSheetOf(const PlateEntries& entries, int width_px, int h
   sheet.develop.camera_to_srgb = Mat3Of(std::span(develop).subspan(5));
   sheet.develop.smooth_below =
       static_cast<uint32_t>(reader.WholeNumber("sheet.smooth_below", UINT32_MAX));
+  sheet.develop.fill_radius_px =
+      static_cast<int>(reader.WholeNumber("sheet.fill_radius", kMostFillRadius_px));
   sheet.rays.image_count = reader.WholeNumber("sheet.lf_images", UINT32_MAX);
   sheet.rays.tested_count = reader.WholeNumber("sheet.rays_tested", UINT64_MAX / 2);
   sheet.rays.accepted_count = reader.WholeNumber("sheet.rays_accepted", UINT64_MAX / 2);
@@ -229,11 +233,11 @@ Result<FrameSheet> FrameSheetOf(const PlateEntries& entries, int width_px, int h
       reader.Fault("sheet.skipped", fmt::format("at most {} names", sheet.skipped_count));
   }
   if (FindEntry(entries, "sheet.weights") != nullptr) {
-    const std::vector<double> weights = reader.Numbers("sheet.weights", 2);
+    const std::vector<double> weights = reader.Numbers("sheet.weights", 3);
     const auto [columns, rows] = EffectiveSquares(intrinsics);
     const std::vector<double> counts =
         reader.Numbers("sheet.effective", static_cast<size_t>(columns) * rows);
-    sheet.weighed = {weights[0], weights[1], Image<float>(columns, rows)};
+    sheet.weighed = {weights[0], {weights[1], weights[2]}, Image<float>(columns, rows)};
     for (size_t i = 0; i < counts.size(); ++i) {
       if (!(counts[i] >= 0 && counts[i] <= 1e9)) reader.Fault("sheet.effective", "counts");
       sheet.weighed->effective_counts.pixels()[i] = static_cast<float>(counts[i]);

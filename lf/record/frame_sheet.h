@@ -12,6 +12,7 @@
 #include "lf/core/ids.h"
 #include "lf/core/image.h"
 #include "lf/core/result.h"
+#include "lf/lens_weights/lens_coverage.h"
 #include "lf/plate/plate_file.h"
 #include "lf/sequence/develop.h"
 
@@ -35,7 +36,7 @@ struct FrameSheet {
   // With lens weights (collector/frame_lens.h).
   struct Weighed {
     double hat_share = 0;
-    double uncovered_share = 0;
+    LensCoverage coverage;
     Image<float> effective_counts;
   };
   std::optional<Weighed> weighed;

@@ -30,10 +30,11 @@ FrameSheet Sheet() {
   sheet.develop.white_balance = {2.1, 1, 1.7};
   sheet.develop.camera_to_srgb << 1.1, -0.1, 0, 0.2, 0.9, -0.1, 0, 0.3, 0.7;
   sheet.develop.smooth_below = 3;
+  sheet.develop.fill_radius_px = 7;
   Image<float> counts(12, 8);
   for (size_t i = 0; i < counts.pixels().size(); ++i)
     counts.pixels()[i] = static_cast<float>(i) / 7;
-  sheet.weighed = FrameSheet::Weighed{0.25, 1e-17, counts};
+  sheet.weighed = FrameSheet::Weighed{0.25, {1e-17, 0.1}, counts};
   return sheet;
 }
 
@@ -101,10 +102,11 @@ TEST(FrameSheet, FaultsAreNamed) {
     const Result<FrameSheet> read = FrameSheetOf(entries, 96, 64, "p");
     return read ? std::string() : read.error().message;
   };
-  for (const char* key : {"sheet.frame", "sheet.intrinsics", "sheet.pose", "sheet.aperture",
-                          "sheet.focus_plane", "sheet.lens", "sheet.fps", "sheet.estimator",
-                          "sheet.version", "sheet.develop", "sheet.smooth_below", "sheet.lf_images",
-                          "sheet.rays_tested", "sheet.rays_accepted", "sheet.effective"}) {
+  for (const char* key :
+       {"sheet.frame", "sheet.intrinsics", "sheet.pose", "sheet.aperture", "sheet.focus_plane",
+        "sheet.lens", "sheet.fps", "sheet.estimator", "sheet.version", "sheet.develop",
+        "sheet.smooth_below", "sheet.fill_radius", "sheet.lf_images", "sheet.rays_tested",
+        "sheet.rays_accepted", "sheet.effective"}) {
     EXPECT_NE(fault(key, {}).find(std::string("p: has no ") + key), std::string::npos) << key;
     if (std::string(key) == "sheet.version") continue;
     for (const char* value : {"", "x", "1 2 nan", "1,2", "-1e999"})

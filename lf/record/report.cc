@@ -31,7 +31,8 @@ Json FrameToJson(const FrameReport& frame) {
   if (frame.weighed) {
     json["effective_lf_images"] = frame.weighed->effective_count;
     json["hat_share"] = frame.weighed->hat_share;
-    json["uncovered_share"] = frame.weighed->uncovered_share;
+    json["uncovered_share"] = frame.weighed->coverage.uncovered_share;
+    json["fitting_aperture_w"] = frame.weighed->coverage.fitting_diameter_w;
   }
   if (frame.places_done) json["finished_early_before_place"] = *frame.places_done;
   if (frame.samples)

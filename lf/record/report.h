@@ -16,6 +16,7 @@
 #include "lf/collector/sample_rule.h"
 #include "lf/core/ids.h"
 #include "lf/core/result.h"
+#include "lf/lens_weights/lens_coverage.h"
 #include "lf/record/run_inputs.h"
 #include "lf/sequence/develop.h"
 
@@ -49,7 +50,7 @@ struct FrameReport {
   struct Weighed {
     double effective_count = 0;  // median over what LF images see (collector/frame_lens.h)
     double hat_share = 0;        // the part of hats in the weights
-    double uncovered_share = 0;  // of the opening (lens_weights/lens_coverage.h)
+    LensCoverage coverage;
   };
   std::optional<Weighed> weighed = std::nullopt;
   // Finished early (RenderOptions::finish_early), with the LF images before this place of the
@@ -86,6 +87,7 @@ struct RenderReport {
   int height = 0;
   int thread_count = 0;
   size_t lf_image_count = 0;        // of the light field
+  bool has_masks = false;           // LF images of it, by files or alpha; not recorded
   size_t selected_image_count = 0;  // read, largest pass
   size_t pass_count = 0;
   std::vector<FrameReport> frames;

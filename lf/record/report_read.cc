@@ -27,7 +27,8 @@ FrameReport FrameFromJson(const Json& json, std::string* fault) {
     FrameReport::Weighed weighed;
     fields.Get("effective_lf_images", &weighed.effective_count);
     fields.Get("hat_share", &weighed.hat_share);
-    fields.Get("uncovered_share", &weighed.uncovered_share);
+    fields.Get("uncovered_share", &weighed.coverage.uncovered_share);
+    fields.Get("fitting_aperture_w", &weighed.coverage.fitting_diameter_w);
     frame.weighed = weighed;
   }
   if (fields.Find("finished_early_before_place") != nullptr)

@@ -81,7 +81,7 @@ TEST(Report, ReadsBackWhatItWrote) {
   ASSERT_TRUE(read->frames[0].weighed);
   EXPECT_EQ(read->frames[0].weighed->effective_count, 12.5);
   EXPECT_EQ(read->frames[0].weighed->hat_share, 0.25);
-  EXPECT_EQ(read->frames[0].weighed->uncovered_share, 0.75);
+  EXPECT_EQ(read->frames[0].weighed->coverage.uncovered_share, 0.75);
   EXPECT_FALSE(read->frames[1].weighed);
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "lf/capture/value_hasher.h"
 #include "lf/collector/noise_rule.h"
@@ -20,14 +21,22 @@ std::string EncodingText(const RadianceEncoding& encoding) {
   hasher.Add(encoding.white_level.value_or(-1));
   hasher.Add(encoding.max_radiance);
   hasher.Add(encoding.pedestal);
+  std::string alpha;
+  if (encoding.AlphaIsLight()) {
+    const std::array<double, 3> behind = encoding.Background();
+    hasher.Add(static_cast<double>(*encoding.alpha));
+    for (const double value : behind) hasher.Add(value);
+    alpha = fmt::format(" alpha {} over {} {} {}", NameOf(*encoding.alpha), behind[0], behind[1],
+                        behind[2]);
+  }
   constexpr const char* kTransfers[] = {"srgb", "linear", "response"};
   return fmt::format(
-      "{}{} black {} white {} max {} pedestal {} ({})",
+      "{}{} black {} white {} max {} pedestal {}{} ({})",
       kTransfers[static_cast<int>(encoding.transfer)],
       encoding.bayer == BayerPattern::kNone ? std::string()
                                             : fmt::format(" {}", NameOf(encoding.bayer)),
       encoding.black_level, encoding.white_level ? fmt::format("{}", *encoding.white_level) : "-",
-      encoding.max_radiance, encoding.pedestal, hasher.Text());
+      encoding.max_radiance, encoding.pedestal, alpha, hasher.Text());
 }
 
 // Developing: what is done to colours.
@@ -68,6 +77,9 @@ RunInputs InputsOfRays(const LightFieldIdentity& light_field, const RadianceEnco
       {"filter",
        choices.reading.estimator == Estimator::kBilinear ? NameOf(choices.reading.filter) : "none"},
       {"lens_weights", NameOf(choices.lens_weights)},
+      {"lens_weights.law", choices.lens_weights == LensWeights::kNone
+                               ? "none"
+                               : fmt::format("{}", kLensWeightsVersion)},
       {"back_end", choices.back_end == CollectBackEnd::kFast ? "fast" : "reference"},
       {"order", NameOf(choices.order)},
       {"seed", fmt::format("{}", choices.seed)},
@@ -103,7 +115,8 @@ RunInputs InputsOfCamera(FrameId frame, const RenderCamera& camera) {
 
 RunInputs InputsOfPicture(const RunChoices& choices) {
   return {{"picture.format", choices.format},
-          {"picture.smooth_below", fmt::format("{}", choices.smooth_below)}};
+          {"picture.smooth_below", fmt::format("{}", choices.smooth_below)},
+          {"picture.fill_radius", fmt::format("{}", choices.fill_radius_px)}};
 }
 
 std::string HashOfCameras(const CameraPath& path) {

@@ -15,13 +15,14 @@
 #include "lf/lens_weights/frame_weights.h"
 #include "lf/path/camera_path.h"
 #include "lf/selection/image_order.h"
+#include "lf/sequence/develop.h"
 
 namespace lf {
 
 // (key, value), in the order written; keys as in plate/plate_file.h.
 using RunInputs = std::vector<std::pair<std::string, std::string>>;
 
-// The options that decide about the rays of a frame, and (the last two) about its picture.
+// The options that decide about the rays of a frame, and (the last three) about its picture.
 struct RunChoices {
   RayReading reading;
   CollectBackEnd back_end = CollectBackEnd::kFast;
@@ -36,6 +37,7 @@ struct RunChoices {
   std::string pixels = "as recorded";
   std::string format = "exr";
   uint32_t smooth_below = 0;
+  int fill_radius_px = kFillRadius_px;
 };
 
 // The version of doc/ray.md: raised when the same inputs give other rays.

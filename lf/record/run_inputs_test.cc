@@ -41,6 +41,7 @@ TEST(RunInputs, EveryInputMakesADifferenceAndItsKeyNamesIt) {
       {"stop_when", [](Inputs& i) { i.choices.stop_at_noise = 0.002; }},
       {"picture.format", [](Inputs& i) { i.choices.format = "png"; }},
       {"picture.smooth_below", [](Inputs& i) { i.choices.smooth_below = 2; }},
+      {"picture.fill_radius", [](Inputs& i) { i.choices.fill_radius_px = 32; }},
       {"light_field.images", [](Inputs& i) { i.field.cameras.pop_back(); }},
       {"light_field.names", [](Inputs& i) { i.field.image_names[3] += "x"; }},
       {"light_field.names", [](Inputs& i) { i.field.mask_names.assign(49, "m.png"); }},
