@@ -191,6 +191,9 @@ class FormatsTest(unittest.TestCase):
         self.check(write_formats.aos, self.square, ["--fov-deg", repr(float(fov))],
                    reads_itself=False)
 
+    def test_hci(self):
+        self.check(write_formats.hci, self.parallel)
+
     def test_stanford(self):
         self.check(write_formats.stanford, self.parallel)
 

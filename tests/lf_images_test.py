@@ -250,7 +250,8 @@ class LfImagesTest(unittest.TestCase):
             Image.fromarray(image, "LA").save(folder / f"{index}l.png")
             return f"{index}l.png"
         expected = self.digest(self.field("grey", plain, self.mask_as_png))
-        self.assertEqual(self.digest(self.field("palette", palette)), expected)
+        self.assertEqual(self.digest(self.field("palette", palette, lf_alpha="mask")), expected)
+        self.assertNotEqual(self.digest(self.field("palette_light", palette)), expected)
         self.assertEqual(self.digest(self.field("grey_alpha", grey_alpha)), expected)
 
     # Orientation
@@ -280,13 +281,18 @@ class LfImagesTest(unittest.TestCase):
                              self.digest(self.field(f"plain{orientation}", as_calibrated)),
                              orientation)
 
-    def test_pictures_of_another_size_say_what_to_do(self):
-        def half(index, folder):
-            Image.fromarray(noise(index, (HEIGHT // 2, WIDTH // 2, 3))).save(folder / f"{index}h.png")
-            return f"{index}h.png"
-        result, _ = self.run_renderer(self.field("half", half))
+    def test_pictures_of_another_size_are_scaled_or_say_what_to_do(self):
+        def smaller(index, folder, numerator, denominator):
+            size = (HEIGHT * numerator // denominator, WIDTH * numerator // denominator, 3)
+            Image.fromarray(noise(index, size)).save(folder / f"{index}s.png")
+            return f"{index}s.png"
+        # A whole factor scales the intrinsics, and says so; any other is no reduction of the same pixels.
+        result, _ = self.run_renderer(self.field("half", lambda k, folder: smaller(k, folder, 1, 2)))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("intrinsics are scaled", result.stderr)
+        result, _ = self.run_renderer(self.field("more", lambda k, folder: smaller(k, folder, 3, 4)))
         self.assertEqual(result.returncode, 3, result.stderr)
-        self.assertIn("resized by 0.5", result.stderr)
+        self.assertIn("resized by 0.75", result.stderr)
 
 
 if __name__ == "__main__":

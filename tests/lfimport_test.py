@@ -269,7 +269,17 @@ class ImportTest(unittest.TestCase):
         after = poses(grid / "transforms.json")
         # OpenGL's y is up in the camera, but the world stays x right, y down.
         np.testing.assert_allclose(after["out_02_03.png"][:3, 3], [1.5, 1, 0], atol=0)
-        self.fails(2, ["remove it first"], grid, "-o", grid, "--pitch", 2, "--focal-px", 32)
+        # Again with another pitch: what lfimport wrote is not in the way.
+        again = self.run_tool(IMPORT, grid, "-o", grid, "--pitch", 2, "--focal-px", 32)
+        self.assertIn("is read again", again.stderr)
+        np.testing.assert_allclose(poses(grid / "transforms.json")["out_02_03.png"][:3, 3], [3, 2, 0])
+        # The report alone, and another folder, are of what other programs read: the file.
+        self.assertAlmostEqual(self.report(grid)["spacing_w"]["median"], 2)
+        self.run_tool(IMPORT, grid, "-o", self.folder / "copy")
+        np.testing.assert_allclose(
+            poses(self.folder / "copy" / "transforms.json")["out_02_03.png"][:3, 3], [3, 2, 0])
+        (grid / "transforms.json").write_text((grid / "transforms.json").read_text() + "\n")
+        self.fails(2, ["is what would be read", "--force"], grid, "-o", grid)
 
     def test_poses_without_a_field_of_view_need_it(self):
         folder = self.folder / "aos"

@@ -180,3 +180,25 @@ def stanford_without_positions(field, source, folder):
     copy_images(field, source, folder,
                 lambda index, _: f"out_{places[index][0]:02}_{places[index][1]:02}.png")
     return folder
+
+
+def hci(field, source, folder):
+    """The 4D Light Field Benchmark: a grid row by row from the upper left; its plane at infinity."""
+    places = grid(field)
+    rows, columns = (max(place[axis] for place in places) + 1 for axis in (0, 1))
+    copy_images(field, source, folder, lambda index, _:
+                f"input_Cam{places[index][0] * columns + places[index][1]:03}.png")
+    xs = sorted({round(frame["transform_matrix"][0][3], 9) for frame in field["frames"]})
+    (folder / "parameters.cfg").write_text(f"""[intrinsics]
+focal_length_mm = {field["fl_x"] * 35 / max(field["w"], field["h"])!r}
+image_resolution_x_px = {field["w"]}
+image_resolution_y_px = {field["h"]}
+sensor_size_mm = 35
+
+[extrinsics]
+num_cams_x = {columns}
+num_cams_y = {rows}
+baseline_mm = {1000 * (xs[1] - xs[0])!r}
+focus_distance_m = 0
+""")
+    return folder

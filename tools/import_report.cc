@@ -21,6 +21,12 @@ const char* NameOf(DistortionModel model) {
       return "fisheye";
     case DistortionModel::kFov:
       return "fov";
+    case DistortionModel::kDivision:
+      return "division";
+    case DistortionModel::kUnified:
+      return "unified";
+    case DistortionModel::kThinPrism:
+      return "thin-prism fisheye";
   }
   LF_CHECK(false);
 }
@@ -165,6 +171,7 @@ std::string ReportText(const ImportReport& report) {
                         Brief(capture.depth_range->far_w)),
             &lines);
   AddLine("unit", fmt::format("1 world unit is {} m", capture.unit_m), &lines);
+  if (capture.alpha) AddLine("alpha", TextOfAlpha(*capture.alpha, capture.background), &lines);
   if (capture.density)
     AddDensity(*capture.density, &lines);
   else if (capture.spacing_w)
@@ -199,6 +206,11 @@ std::string ReportJson(const ImportReport& report) {
   json["axes_meet_at_w"] = OrNull(capture.meeting_point_w);
   json["depth_range_w"] = OrNull(capture.depth_range);
   json["unit_m"] = capture.unit_m;
+  json["alpha"] = nullptr;
+  if (capture.alpha) {
+    json["alpha"] = {{"meaning", NameOf(*capture.alpha)}};
+    if (*capture.alpha != AlphaMeaning::kMask) json["alpha"]["background"] = capture.background;
+  }
   json["density"] = OrNull(capture.density);
   json["warnings"] = Json::array();
   for (const CaptureWarning& warning : capture.warnings)

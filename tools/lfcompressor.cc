@@ -140,6 +140,7 @@ lf::Result<lf::CompressSource> OpenSource(const Arguments& a) {
     LF_ASSIGN_OR_RETURN(lf::LightField light_field, argument.Open());
     return lf::SourceOfAll(std::move(light_field));
   }
+  LF_RETURN_IF_ERROR(a.light_field.CheckWithPackages());
   std::optional<lf::LightFieldPlace> place;
   if (!a.light_field.path.empty()) {
     LF_ASSIGN_OR_RETURN(const lf::LightField light_field, a.light_field.Open());

@@ -25,7 +25,8 @@ constexpr const char* kExamples = R"(Examples:
   lfimport cards/ -o cards --pitch 1 --focal-px 768 --plane-distance 100
   lfimport capture/ --json --distance 1.5 | jq .density
 
-Writes DIR/transforms.json, which names the images where they lie; nothing is copied. A
+Writes DIR/transforms.json, which names the images where they lie; nothing is copied. Where DIR is
+LIGHTFIELD itself and has such a file already, what that was made from is read again. A
 transforms.json that lfimport did not write, or that was changed since, is replaced only with
 --force. Exit code 6: done, but more images are missing or broken than --allow-missing accepts; with
 --strict one is an error, and nothing is written. The report: doc/formats/import_report.md.)";
@@ -89,14 +90,23 @@ lf::Result<lf::Vec2> ParsePitch(const std::string& text) {
   return lf::UsageError(fmt::format("--pitch {}: expected P or PX,PY", text));
 }
 
+// Returns whether the folder that is read holds the transforms.json that is written, and what that
+// was made from.
+bool WritesAgain(const Arguments& a) {
+  std::error_code error;
+  return !a.output.empty() && std::filesystem::equivalent(a.light_field.path, a.output, error) &&
+         lf::HoldsOwnAndItsSource(a.light_field.path);
+}
+
 lf::Result<lf::OpenOptions> MakeOpenOptions(const Arguments& a) {
-  lf::OpenOptions options = a.light_field.Options();
+  LF_ASSIGN_OR_RETURN(lf::OpenOptions options, a.light_field.Options());
   if (!a.pitch.empty()) {
     LF_ASSIGN_OR_RETURN(options.pitch_w, ParsePitch(a.pitch));
   }
   if (a.plane_distance > 0) options.plane_distance_w = a.plane_distance;
   options.flip_x = a.flip_x;
   options.flip_y = a.flip_y;
+  options.passes_over_own = WritesAgain(a);
   options.bayer = lf::BayerPatternOf(a.bayer);
   return options;
 }
@@ -127,7 +137,8 @@ lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {
   const std::atomic<bool>& interrupted = lf::CatchInterrupts();
   LF_ASSIGN_OR_RETURN(const lf::MissingLimit limit, a.allow_missing.Limit());
   if (!a.output.empty())
-    LF_RETURN_IF_ERROR(lf::CheckMayWrite(a.light_field.path, a.output, a.force));
+    LF_RETURN_IF_ERROR(
+        lf::CheckMayWrite(WritesAgain(a) ? "" : a.light_field.path, a.output, a.force));
   lf::ImportReport report;
   report.light_field = a.light_field.path;
   LF_ASSIGN_OR_RETURN(lf::LightField light_field, OpenChanged(a, &report.excluded_count));

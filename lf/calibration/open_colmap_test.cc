@@ -207,9 +207,14 @@ TEST_F(ReadColmapTest, OptionsOfOtherKindsAreUsageErrors) {
   OpenOptions options;
   options.focal_px = 7;
   EXPECT_EQ(OpenLightField(folder_, options).error().kind, ErrorKind::kUsage);
-  Write(folder_ / "transforms.json", "{}");
-  options = {.images_folder = "images"};
-  EXPECT_EQ(OpenLightField(folder_, options).error().kind, ErrorKind::kUsage);
+}
+
+TEST_F(ReadColmapTest, ImagesUnderOtherSuffixesAreFoundInTheProject) {
+  WriteModel(folder_ / "sparse/0");
+  Write(folder_ / "photos/half/A.JPG");
+  const Result<LightField> light_field = Open(folder_);
+  ASSERT_TRUE(light_field) << light_field.error().message;
+  EXPECT_EQ(light_field->ImagePath({0}), folder_ / "photos/half/A.JPG");
 }
 
 TEST_F(ReadColmapTest, ATransformsJsonGoesFirst) {

@@ -1,6 +1,7 @@
 #include "lf/calibration/open_light_field.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <string>
@@ -9,9 +10,11 @@
 #include <vector>
 
 #include "lf/calibration/read_aos.h"
+#include "lf/calibration/read_hci.h"
 #include "lf/calibration/read_llff.h"
 #include "lf/calibration/read_middlebury.h"
 #include "lf/calibration/read_stanford.h"
+#include "lf/capture/alpha_evidence.h"
 #include "lf/capture/raw_encoding.h"
 #include "lf/colmap/read_colmap.h"
 #include "lf/core/log.h"
@@ -69,8 +72,7 @@ Result<void> CheckNoFov(const fs::path& path, const OpenOptions& options) {
 Result<void> CheckNoImagesFolder(const fs::path& path, const OpenOptions& options) {
   if (!options.images_folder) return {};
   return UsageError(fmt::format(
-      "--images is for COLMAP models and poses of Airborne Optical Sectioning, which do "
-      "not say where their images are; {} does",
+      "--images is for calibrations whose image files are elsewhere; {} is where its own are",
       path.string()));
 }
 
@@ -102,22 +104,22 @@ std::optional<Result<LightField>> OpenFile(const fs::path& path, const OpenOptio
   Result<LightField> (*read)(const fs::path&) = nullptr;
   if (path.extension() == ".json") read = ReadTransformsJson;
   if (path.extension() == ".npy") read = ReadLlff;
+  if (path.extension() == ".cfg") read = ReadHci;
   if (IsMiddleburyName(path.filename().string())) read = ReadMiddlebury;
   if (!read) return std::nullopt;
   if (Result<void> result = CheckNoStanfordOptions(path, options); !result) return result.error();
   if (Result<void> result = CheckNoFov(path, options); !result) return result.error();
-  if (Result<void> result = CheckNoImagesFolder(path, options); !result) return result.error();
   LogDebug("{}: opened as {}", path.string(),
            read == ReadLlff             ? "LLFF poses"
+           : read == ReadHci            ? "parameters of the 4D Light Field Benchmark"
            : read == ReadTransformsJson ? "transforms.json"
                                         : "Middlebury parameters");
   return read(path);
 }
 
-// The file in a folder that describes its light field, if any.
-Result<std::optional<fs::path>> CalibrationIn(const fs::path& folder) {
+// The file in a folder that describes its light field, if any, beside transforms.json.
+Result<std::optional<fs::path>> OtherCalibrationIn(const fs::path& folder) {
   std::error_code error;
-  if (fs::exists(folder / kCalibrationName, error)) return std::optional(folder / kCalibrationName);
   const std::vector<fs::path> middlebury = MiddleburyFiles(folder);
   if (middlebury.size() > 1)
     return InputError(fmt::format("{}: holds {} and {}: name the file itself to read it",
@@ -125,8 +127,15 @@ Result<std::optional<fs::path>> CalibrationIn(const fs::path& folder) {
                                   middlebury[1].filename().string()));
   if (!middlebury.empty()) return std::optional(middlebury[0]);
   if (fs::exists(folder / kLlffName, error)) return std::optional(folder / kLlffName);
+  if (IsHciFile(folder / kHciName)) return std::optional(folder / kHciName);
   if (IsAosFile(folder / kAosName)) return std::optional(folder / kAosName);
   return std::optional<fs::path>();
+}
+
+Result<std::optional<fs::path>> CalibrationIn(const fs::path& folder) {
+  std::error_code error;
+  if (fs::exists(folder / kCalibrationName, error)) return std::optional(folder / kCalibrationName);
+  return OtherCalibrationIn(folder);
 }
 
 Result<LightField> OpenColmap(const fs::path& model_folder, const OpenOptions& options) {
@@ -169,6 +178,61 @@ Result<void> CompleteEncoding(const OpenOptions& options, const fs::path& path,
       path.string(), light_field->ImagePath({0}).string()));
 }
 
+// Finds image files that were moved, renamed or made smaller after they were calibrated.
+Result<void> FindImages(const OpenOptions& options, const fs::path& path, LightField* light_field) {
+  const std::string name = light_field->image_names[0];
+  LF_ASSIGN_OR_RETURN(const size_t found_count, FindImageFiles(options.images_folder, light_field));
+  // COLMAP models may be planned with before their images are there.
+  if (found_count == 0 && options.images_folder && light_field->folder != *options.images_folder)
+    return InputError(fmt::format(
+        "--images {}: holds no image named as the LF images of {}, such as {}, in any folder below "
+        "it",
+        options.images_folder->string(), path.string(), name));
+  const Intrinsics before = light_field->intrinsics[0];
+  LF_ASSIGN_OR_RETURN(const double factor, FitToImageFiles(options.image_scale, light_field));
+  if (factor != 1)
+    LogInfo(
+        "{}: image files are {:.4g} times as large as they were calibrated, such as {} x {} "
+        "pixels instead of {} x {}: intrinsics are scaled (--image-scale)",
+        path.string(), factor, light_field->intrinsics[0].width_px,
+        light_field->intrinsics[0].height_px, before.width_px, before.height_px);
+  return {};
+}
+
+// Decides what alpha means: as asked for, else as the calibration says, else by the pixels.
+Result<void> CompleteAlpha(const OpenOptions& options, const fs::path& path,
+                           LightField* light_field) {
+  RadianceEncoding& encoding = light_field->encoding;
+  const bool was_light = encoding.AlphaIsLight();
+  if (options.alpha && HoldsPackedStore(*light_field) &&
+      was_light != (*options.alpha != AlphaMeaning::kMask))
+    return UsageError(fmt::format(
+        "--image-alpha {}: {} is a packed store, in which alpha was coded as {}: compress its "
+        "light field again with this option",
+        NameOf(*options.alpha), path.string(), was_light ? "light" : "a mask"));
+  if (options.alpha) encoding.alpha = options.alpha;
+  if (options.background) encoding.background = options.background;
+  if (!encoding.alpha && !HoldsPackedStore(*light_field) && encoding.bayer == BayerPattern::kNone) {
+    if (const std::optional<AlphaEvidence> found = FindAlphaEvidence(*light_field)) {
+      encoding.alpha = found->meaning;
+      if (encoding.AlphaIsLight() && !encoding.background) encoding.background = found->background;
+      LogInfo("{}: alpha is taken as {}, as the pixels of {} tell (--image-alpha)", path.string(),
+              TextOfAlpha(*encoding.alpha, encoding.Background()), found->image_name);
+    }
+  }
+  if (!encoding.background) return {};
+  if (!encoding.AlphaIsLight())
+    return UsageError(fmt::format(
+        "--background: there is nothing behind the LF images of {}, whose alpha is {}: state "
+        "--image-alpha straight or premultiplied",
+        path.string(), encoding.alpha ? "a mask" : "not known or not there"));
+  const auto& behind = *encoding.background;
+  if (*std::max_element(behind.begin(), behind.end()) > encoding.max_radiance)
+    return UsageError(fmt::format("the background {} of {} is brighter than lf_max_radiance, {}",
+                                  fmt::join(behind, ","), path.string(), encoding.max_radiance));
+  return {};
+}
+
 bool HoldsLightField(const fs::path& folder) {
   std::error_code error;
   if (fs::exists(folder / kCalibrationName, error)) return true;
@@ -203,17 +267,23 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
     if (std::optional<Result<LightField>> opened = OpenFile(path, options)) return *opened;
     return InputError(
         fmt::format("{}: is not a light field: expected a transforms.json, a NAME_par.txt "
-                    "(Middlebury), a poses_bounds.npy (LLFF), a poses.json (AOS), a packed store "
+                    "(Middlebury), a poses_bounds.npy (LLFF), a parameters.cfg (4D Light Field "
+                    "Benchmark), a poses.json (AOS), a packed store "
                     "(STORE.lfs) or the folder of one, the folder of a COLMAP model, or a folder "
                     "of images",
                     path.string()));
   }
+  const bool passes_over = options.passes_over_own && HoldsOwnAndItsSource(path);
+  if (passes_over)
+    LogInfo("{}: was written by lfimport: what it was made from is read again",
+            (path / kCalibrationName).string());
   // Before poses_bounds.npy, which is made of such a model and leaves out the distortion.
-  if (!fs::exists(path / kCalibrationName, error)) {
+  if (passes_over || !fs::exists(path / kCalibrationName, error)) {
     LF_ASSIGN_OR_RETURN(const std::optional<fs::path> model, FindColmapModel(path));
     if (model) return OpenColmap(*model, options);
   }
-  LF_ASSIGN_OR_RETURN(const std::optional<fs::path> calibration, CalibrationIn(path));
+  LF_ASSIGN_OR_RETURN(const std::optional<fs::path> calibration,
+                      passes_over ? OtherCalibrationIn(path) : CalibrationIn(path));
   if (calibration) return *OpenFile(*calibration, options);
   for (const fs::path& folder : {path, path / kImagesName})
     if (HoldsStanfordNames(folder)) return OpenStanford(folder, options, path);
@@ -225,18 +295,33 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
                                   stores[1].filename().string()));
   return InputError(fmt::format(
       "{}: holds no light field: looked for {}, a COLMAP model in it or in sparse/0, NAME_par.txt, "
-      "{}, {} (AOS), one packed store NAME.lfs, and for images named "
+      "{}, {}, {} (AOS), one packed store NAME.lfs, and for images named "
       "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext or NAME_ROW_COL.ext in it and in {}/{}{}",
-      path.string(), kCalibrationName, kLlffName, kAosName, kImagesName, OtherCalibrations(path),
-      LightFieldsBelow(path)));
+      path.string(), kCalibrationName, kLlffName, kHciName, kAosName, kImagesName,
+      OtherCalibrations(path), LightFieldsBelow(path)));
 }
 
 }  // namespace
 
+bool HoldsOwnAndItsSource(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::exists(folder / kCalibrationName, error)) return false;
+  const Result<bool> is_own = IsAsWritten(folder / kCalibrationName, kImportProgram);
+  if (!is_own || !*is_own) return false;
+  const Result<std::optional<fs::path>> model = FindColmapModel(folder);
+  if (model && *model) return true;
+  const Result<std::optional<fs::path>> other = OtherCalibrationIn(folder);
+  return (other && *other) || HoldsStanfordNames(folder) ||
+         HoldsStanfordNames(folder / kImagesName);
+}
+
 Result<LightField> OpenLightField(const fs::path& path, const OpenOptions& options) {
   LF_ASSIGN_OR_RETURN(LightField light_field, OpenCalibration(path, options));
-  if (!HoldsPackedStore(light_field))
+  if (!HoldsPackedStore(light_field)) {
+    LF_RETURN_IF_ERROR(FindImages(options, path, &light_field));
     LF_RETURN_IF_ERROR(CompleteEncoding(options, path, &light_field));
+  }
+  LF_RETURN_IF_ERROR(CompleteAlpha(options, path, &light_field));
   const Intrinsics& first = light_field.Camera({0}).intrinsics;
   LogDebug("{}: {} LF images in {}, the first of {} x {} pixels{}, {} distinct intrinsics{}{}",
            path.string(), light_field.size(), light_field.folder.string(), first.width_px,

@@ -43,6 +43,24 @@ TEST_F(OpenLightFieldTest, TakesStanfordNamesInTheFolderOrInItsImages) {
   EXPECT_EQ(OpenLightField(folder_, {.focal_px = 7})->intrinsics[0].fx_px, 7);
 }
 
+TEST_F(OpenLightFieldTest, TakesTheSizeOfMostImages) {
+  std::string frames;
+  for (int i = 0; i < 20; ++i) {
+    const Image<uint8_t> image(i < 2 ? 16 : 8, i < 2 ? 12 : 6, 3);
+    const std::string name = fmt::format("{:02}.png", i);
+    ASSERT_TRUE(WriteImage(folder_ / name, image.view()));
+    frames += fmt::format(
+        R"({}{{"file_path": "{}", "transform_matrix": [[1,0,0,{}],[0,1,0,2],[0,0,1,3]]}})",
+        i > 0 ? ", " : "", name, i);
+  }
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "transforms.json",
+                                  "{\"camera_angle_x\": 1, \"frames\": [" + frames + "]}"));
+  const Result<LightField> light_field = OpenLightField(folder_);
+  ASSERT_TRUE(light_field) << light_field.error().message;
+  EXPECT_EQ(light_field->intrinsics[0].width_px, 8);
+  EXPECT_EQ(light_field->intrinsics[0].height_px, 6);
+}
+
 TEST_F(OpenLightFieldTest, TakesBlendersFormWithTheSizeFromTheFirstImage) {
   fs::create_directories(folder_ / "train");
   const fs::path path = folder_ / "transforms_train.json";

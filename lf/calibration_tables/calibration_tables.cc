@@ -13,8 +13,9 @@
 namespace lf {
 namespace {
 
-// "none", "radial_tangential", "fisheye", "fov": by DistortionModel.
-constexpr const char* kModelNames[] = {"none", "radial_tangential", "fisheye", "fov"};
+// The names are in the order of DistortionModel.
+constexpr const char* kModelNames[] = {"none",     "radial_tangential", "fisheye",   "fov",
+                                       "division", "unified",           "thin_prism"};
 // By Transfer.
 constexpr const char* kTransferNames[] = {"srgb", "linear", "response"};
 
@@ -38,9 +39,24 @@ Result<Intrinsics> ReadIntrinsicsRow(const Settings& settings, const Statement& 
     return settings.Damaged(fmt::format("a lens distortion is {} {}", model, parameters));
   k.distortion.model = static_cast<DistortionModel>(name - std::begin(kModelNames));
   std::copy(numbers->begin(), numbers->end(), k.distortion.parameters.begin());
-  if (!IsCamera(k) || !IsDistortion(k.distortion))
+  if (!IsCamera(k) || !IsStoredDistortion(k.distortion))
     return settings.Damaged("intrinsics that no camera has");
   return k;
+}
+
+// Both are missing in files that were written before they were known.
+Result<void> ReadAlpha(const Settings& settings, RadianceEncoding* encoding) {
+  encoding->alpha = AlphaMeaningOf(settings.Text("alpha"));
+  if (!encoding->alpha && !settings.Text("alpha").empty())
+    return settings.Wrong("alpha", "mask, straight or premultiplied");
+  if (settings.Text("background").empty()) return {};
+  LF_ASSIGN_OR_RETURN(const std::vector<double> background, settings.Numbers("background", 3, 3));
+  encoding->background.emplace();
+  for (size_t c = 0; c < 3; ++c) {
+    if (!IsWithin(background[c], 0, kMostNumber)) return settings.Wrong("background", "radiances");
+    (*encoding->background)[c] = background[c];
+  }
+  return {};
 }
 
 }  // namespace
@@ -58,6 +74,9 @@ SettingList SettingsOfPixels(const LightField& light_field) {
           {"white_level", encoding.white_level ? fmt::format("{}", *encoding.white_level) : ""},
           {"max_radiance", fmt::format("{}", encoding.max_radiance)},
           {"pedestal", fmt::format("{}", encoding.pedestal)},
+          {"alpha", encoding.alpha ? NameOf(*encoding.alpha) : ""},
+          {"background",
+           encoding.background ? fmt::format("{}", fmt::join(*encoding.background, " ")) : ""},
           {"white_balance", fmt::format("{}", fmt::join(encoding.white_balance, " "))},
           {"camera_to_srgb", fmt::format("{} {} {} {} {} {} {} {} {}", m(0, 0), m(0, 1), m(0, 2),
                                          m(1, 0), m(1, 1), m(1, 2), m(2, 0), m(2, 1), m(2, 2))}};
@@ -86,6 +105,7 @@ Result<void> ReadPixelSettings(const Settings& settings, LightField* light_field
   }
   LF_ASSIGN_OR_RETURN(encoding.max_radiance, settings.Number("max_radiance", 1e-9, kMostNumber));
   LF_ASSIGN_OR_RETURN(encoding.pedestal, settings.Number("pedestal", 0, 65535));
+  LF_RETURN_IF_ERROR(ReadAlpha(settings, &encoding));
   LF_ASSIGN_OR_RETURN(const std::vector<double> balance, settings.Numbers("white_balance", 3, 3));
   std::copy(balance.begin(), balance.end(), encoding.white_balance.begin());
   LF_ASSIGN_OR_RETURN(const std::vector<double> matrix, settings.Numbers("camera_to_srgb", 9, 9));

@@ -4,7 +4,9 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace lf {
@@ -85,16 +87,38 @@ double MedianSpacing(const LightField& light_field) {
   return Percentile(std::move(nearest), 0.5);
 }
 
-LfImageId MiddleCamera(const LightField& light_field) {
+LfImageId MiddleCamera(const LightField& light_field,
+                       const std::function<bool(LfImageId)>& is_wanted) {
   LF_CHECK(light_field.size() > 0);
   const std::vector<Vec3> centres = Centres(light_field);
   Vec3 mean = Vec3::Zero();
   for (const Vec3& centre : centres) mean += centre / static_cast<double>(centres.size());
-  const auto nearest =
-      std::min_element(centres.begin(), centres.end(), [&](const Vec3& a, const Vec3& b) {
-        return (a - mean).squaredNorm() < (b - mean).squaredNorm();
-      });
-  return LfImageId{static_cast<uint32_t>(nearest - centres.begin())};
+  // The nearest is at the top; of equally near ones the first.
+  std::vector<std::pair<double, uint32_t>> heap;
+  for (uint32_t i = 0; i < centres.size(); ++i)
+    heap.emplace_back((centres[i] - mean).squaredNorm(), i);
+  std::make_heap(heap.begin(), heap.end(), std::greater<>());
+  const LfImageId nearest{heap.front().second};
+  for (; is_wanted && !heap.empty(); heap.pop_back()) {
+    if (is_wanted(LfImageId{heap.front().second})) return {heap.front().second};
+    std::pop_heap(heap.begin(), heap.end(), std::greater<>());
+  }
+  return nearest;
+}
+
+Vec3 MeanUpWorld(const LightField& light_field) {
+  constexpr double kLeastInCommon = 0.1;
+  Vec3 mean = Vec3::Zero();
+  for (const LfCamera& camera : light_field.cameras)
+    mean -=
+        camera.cam_from_world.rotation.row(1).transpose() / static_cast<double>(light_field.size());
+  return mean.norm() < kLeastInCommon ? Vec3::Zero() : Vec3(mean.normalized());
+}
+
+double RollOf(const PinholeCamera& camera, const Vec3& up_world) {
+  constexpr double kLeastAcross = 0.1;
+  const Vec2 across(camera.RightWorld().dot(up_world), camera.UpWorld().dot(up_world));
+  return across.norm() < kLeastAcross ? 0 : std::abs(std::atan2(across.x(), across.y()));
 }
 
 Ray CentralRay(const PinholeCamera& camera) {

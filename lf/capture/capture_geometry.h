@@ -1,6 +1,7 @@
 // What the poses alone tell of a capture: how dense it is, what it looks at.
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "lf/camera/pinhole.h"
@@ -13,8 +14,18 @@ namespace lf {
 // cameras spread over the light field. 0 for fewer than two.
 double MedianSpacing(const LightField& light_field);
 
-// The LF camera nearest to the mean position. The light field must have one.
-LfImageId MiddleCamera(const LightField& light_field);
+// The LF camera nearest to the mean position, of those that are wanted, which are asked from the
+// nearest on. If none is: the nearest of all. The light field must have one.
+LfImageId MiddleCamera(const LightField& light_field,
+                       const std::function<bool(LfImageId)>& is_wanted = {});
+
+// The direction that is up for most: the mean of the cameras' own, of length 1; 0 if they have none
+// in common.
+Vec3 MeanUpWorld(const LightField& light_field);
+
+// Returns how much the camera leans to the side: the angle, from 0 on, between its up direction and
+// the part of `up_world` that its image shows. It is 0 if the camera looks along that.
+double RollOf(const PinholeCamera& camera, const Vec3& up_world);
 
 // The ray through the middle of the image, of length 1: the optical axis, but for cameras with an
 // off-axis principal point, as rectified slabs have. (Of lenses with distortion: the optical axis.)

@@ -98,5 +98,41 @@ TEST(CaptureGeometry, ReachFollowsTheShapeOfTheCapture) {
   EXPECT_NEAR(reach.up_w, 0.5, 0.1001);
 }
 
+TEST(CaptureGeometry, RollIsTheAngleToTheDirectionThatIsUpForMost) {
+  LightField field;
+  for (const double roll_deg : {0.0, 10.0, -10.0, 0.0}) {
+    const double roll = RadiansFromDegrees(roll_deg);
+    LfCamera camera;
+    camera.cam_from_world =
+        *LookAlong({0, 0, 0}, {0, -0.5, 1}, {std::sin(roll), std::cos(roll), 0});
+    field.cameras.push_back(camera);
+  }
+  field.intrinsics = {{10, 10, 5, 5, 0, 10, 10}};
+  const Vec3 up = MeanUpWorld(field);
+  EXPECT_NEAR(up.norm(), 1, 1e-12);
+  EXPECT_NEAR(RollOf(field.Camera({0}), up), 0, 1e-9);
+  EXPECT_NEAR(RollOf(field.Camera({1}), up), RollOf(field.Camera({2}), up), 1e-9);
+  // Seen from 27 degrees above.
+  const double expected = std::atan(std::tan(RadiansFromDegrees(10)) / std::cos(std::atan(0.5)));
+  EXPECT_NEAR(RollOf(field.Camera({1}), up), expected, RadiansFromDegrees(0.5));
+  // Cameras that look up and down along it are level.
+  EXPECT_EQ(RollOf(field.Camera({0}), field.Camera({0}).ForwardWorld()), 0);
+  field.cameras.resize(2);
+  field.cameras[1].cam_from_world = *LookAlong({0, 0, 0}, {0, 0.5, 1}, {0, -1, 0});
+  EXPECT_LT(MeanUpWorld(field).norm(), 1 + 1e-12);
+}
+
+TEST(CaptureGeometry, TheMiddleCameraIsOneThatIsWanted) {
+  LightField field;
+  for (int i = 0; i < 9; ++i) {
+    LfCamera camera;
+    camera.cam_from_world.translation = {-0.1 * i, 0, 0};
+    field.cameras.push_back(camera);
+  }
+  EXPECT_EQ(MiddleCamera(field).value, 4u);
+  EXPECT_EQ(MiddleCamera(field, [](LfImageId id) { return id.value % 4 == 2; }).value, 2u);
+  EXPECT_EQ(MiddleCamera(field, [](LfImageId) { return false; }).value, 4u);
+}
+
 }  // namespace
 }  // namespace lf

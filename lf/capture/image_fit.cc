@@ -16,6 +16,13 @@ std::string Advice(const ImageFileInfo& info, bool is_mosaic, const Intrinsics& 
                      : "it is turned by 90 degrees, and no orientation tag says so: use the images "
                        "that were calibrated";
   const double factor = static_cast<double>(info.width) / k.width_px;
+  // Undistortion leaves out some pixels of each side, in about the picture's proportions.
+  constexpr double kLeastOfCrops = 0.9;
+  if (factor >= kLeastOfCrops && factor < 1 && info.height <= k.height_px)
+    return fmt::format(
+        "{} columns and {} rows are missing: it is cropped, as undistortion does, or resized by "
+        "{:.4g}: use the images that were calibrated, or the calibration of these",
+        k.width_px - info.width, k.height_px - info.height, factor);
   if (std::abs(k.height_px * factor - info.height) <= 1)
     return fmt::format(
         "it is resized by {:.4g}: use the images that were calibrated, or multiply w, h, fl_x, "

@@ -46,5 +46,17 @@ TEST(ImageFit, OtherSizesAreErrorsThatSayWhatToDo) {
   ExpectAdvice(Fit(1920, 1078, 1), "cropped");
 }
 
+TEST(ImageFit, CropsOfUndistortionAreNotCalledResized) {
+  ImageFileInfo info;
+  info.width = 988;
+  info.height = 741;
+  const Intrinsics calibrated = {900, 900, 500, 375, 0, 1000, 750};
+  const Result<ImageFit> fit = FitToCalibration(info, false, calibrated, "a.png");
+  ASSERT_FALSE(fit);
+  EXPECT_NE(fit.error().message.find("12 columns and 9 rows are missing: it is cropped"),
+            std::string::npos)
+      << fit.error().message;
+}
+
 }  // namespace
 }  // namespace lf

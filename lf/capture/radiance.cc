@@ -1,5 +1,7 @@
 #include "lf/capture/radiance.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -11,6 +13,8 @@ namespace lf {
 namespace {
 
 constexpr const char* kBayerNames[] = {"", "RGGB", "BGGR", "GRBG", "GBRG"};
+// The names are in the order of AlphaMeaning.
+constexpr const char* kAlphaNames[] = {"mask", "straight", "premultiplied"};
 
 double LargestStorable(int bits) { return bits == 8 ? 255 : 65535; }
 
@@ -51,6 +55,24 @@ std::optional<BayerPattern> BayerPatternOf(const std::string& name) {
   for (int i = 1; i < 5; ++i)
     if (name == kBayerNames[i]) return static_cast<BayerPattern>(i);
   return std::nullopt;
+}
+
+const char* NameOf(AlphaMeaning alpha) { return kAlphaNames[static_cast<int>(alpha)]; }
+
+std::optional<AlphaMeaning> AlphaMeaningOf(const std::string& name) {
+  for (int i = 0; i < 3; ++i)
+    if (name == kAlphaNames[i]) return static_cast<AlphaMeaning>(i);
+  return std::nullopt;
+}
+
+std::string TextOfAlpha(AlphaMeaning alpha, const std::array<double, 3>& background) {
+  if (alpha == AlphaMeaning::kMask) return "a mask";
+  const auto [r, g, b] = background;
+  const auto all = [&](double value) { return r == value && g == value && b == value; };
+  return fmt::format("{} light over {}", NameOf(alpha),
+                     all(0)   ? "black"
+                     : all(1) ? "white"
+                              : fmt::format("{:.4g}, {:.4g}, {:.4g}", r, g, b));
 }
 
 double LinearFromSrgb(double srgb) {

@@ -24,6 +24,13 @@ enum class Transfer : uint8_t {
   kResponse,  // a measured curve: linear radiance at evenly spaced stored values
 };
 
+// AlphaMeaning says what the alpha of LF images tells of their pixels.
+enum class AlphaMeaning : uint8_t {
+  kMask,           // pixels whose alpha is below one half send no ray; colours are as stored
+  kStraight,       // how much of the light behind is covered; colours are those of what covers it
+  kPremultiplied,  // the same; the radiance of colours is multiplied with alpha already
+};
+
 // How the pixels of a light field are stored (keys lf_*, doc/formats/transforms_json.md).
 // Float files hold radiance itself: transfer and levels do not apply to them.
 struct RadianceEncoding {
@@ -34,11 +41,17 @@ struct RadianceEncoding {
   std::optional<double> white_level;  // stored value of radiance 1; default: the largest storable
   double max_radiance = 1;            // radiance (after gain) that v = 65535 stands for
   double pedestal = 0;                // v of no light: 1024 for raw data, 0 otherwise
+  std::optional<AlphaMeaning> alpha;  // default: kMask
+  // Radiance of R, G and B behind what alpha does not cover; default: black.
+  std::optional<std::array<double, 3>> background;
   std::array<double, 3> white_balance = {1, 1, 1};  // applied on developing
   Mat3 camera_to_srgb = Mat3::Identity();           // linear sRGB = M * white balanced camera RGB
 
   // v per unit of radiance.
   double Scale() const { return (65535 - pedestal) / max_radiance; }
+  // Returns whether pixels are composed with the background (store/opacities.h).
+  bool AlphaIsLight() const { return alpha.value_or(AlphaMeaning::kMask) != AlphaMeaning::kMask; }
+  std::array<double, 3> Background() const { return background.value_or(std::array{0., 0., 0.}); }
 };
 
 // Bicubic interpolation and demosaicking undershoot beside bright lights, as they overshoot on
@@ -50,6 +63,14 @@ void MakeRoomForUndershoot(RadianceEncoding* encoding);
 // "RGGB", ... as in lf_bayer, and back; "" for kNone, and none for other words.
 const char* NameOf(BayerPattern bayer);
 std::optional<BayerPattern> BayerPatternOf(const std::string& name);
+
+// "mask", "straight", "premultiplied", as in lf_alpha, and back; none for other words.
+const char* NameOf(AlphaMeaning alpha);
+std::optional<AlphaMeaning> AlphaMeaningOf(const std::string& name);
+
+// For people: "a mask", "straight light over black", "premultiplied light over 1, 0.5, 0".
+//   background  as RadianceEncoding::background; not of a mask
+std::string TextOfAlpha(AlphaMeaning alpha, const std::array<double, 3>& background);
 
 // Linear light of an sRGB value in [0, 1], and back.
 double LinearFromSrgb(double srgb);

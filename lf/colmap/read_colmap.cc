@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "lf/capture/find_images.h"
 #include "lf/colmap/colmap_binary.h"
 #include "lf/colmap/colmap_scene.h"
 #include "lf/colmap/colmap_text.h"
@@ -134,6 +135,21 @@ Result<fs::path> FindImages(const fs::path& model_folder, std::span<const std::s
                   model_folder.string(), names.front(), tried));
 }
 
+// The folder above sparse/0 or the like.
+fs::path ProjectFolder(const fs::path& model_folder) {
+  const auto name_of = [](const fs::path& folder) {
+    const fs::path clean = folder.lexically_normal();
+    return (clean.has_filename() ? clean : clean.parent_path()).filename().string();
+  };
+  fs::path folder = model_folder;
+  const std::string name = name_of(folder);
+  if (!name.empty() && name.find_first_not_of("0123456789") == std::string::npos)
+    folder = Above(folder);
+  for (const char* const usual : {"sparse", "colmap"})
+    if (name_of(folder) == usual) folder = Above(folder);
+  return folder;
+}
+
 // The folder masks beside the images, as names that are relative to that folder where possible.
 std::optional<fs::path> FindMasks(const fs::path& images_folder) {
   const fs::path masks = Above(images_folder) / "masks";
@@ -210,8 +226,12 @@ Result<LightField> ReadColmapModel(const fs::path& model_folder,
   LF_ASSIGN_OR_RETURN(LightField light_field, ParseColmapModel(std::move(streams)));
   if (images_folder) {
     light_field.folder = *images_folder;
+  } else if (const auto folder = FindImages(model_folder, light_field.image_names)) {
+    light_field.folder = *folder;
   } else {
-    LF_ASSIGN_OR_RETURN(light_field.folder, FindImages(model_folder, light_field.image_names));
+    light_field.folder = ProjectFolder(model_folder);
+    LF_ASSIGN_OR_RETURN(const size_t found_count, FindImageFiles({}, &light_field));
+    if (found_count == 0) return folder.error();
   }
   AddMasks(&light_field);
   return light_field;

@@ -24,7 +24,8 @@ Result<std::optional<std::filesystem::path>> FindColmapModel(const std::filesyst
 //
 //   images_folder  where the image files are, not checked; if not given, searched: `images` in the
 //                  model folder and in the three above it, then these themselves; the first in
-//                  which the first image exists
+//                  which the first image exists; else by their names below the folder that
+//                  holds the model or its sparse/0 (capture/find_images.h)
 //
 // mask_names come from masks/NAME.png beside the folder of images, where such files exist;
 // depth_range from the points (the 1st and 99th percentile of the depths along the optical axes of

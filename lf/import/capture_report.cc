@@ -136,6 +136,8 @@ CaptureReport ReportCapture(const LightField& light_field, const CaptureReportOp
   report.groups = GroupCameras(light_field);
   report.depth_range = light_field.depth_range;
   report.unit_m = light_field.unit_m;
+  report.alpha = light_field.encoding.alpha;
+  report.background = light_field.encoding.Background();
 
   std::vector<Vec3> positions;
   Eigen::AlignedBox3d box;

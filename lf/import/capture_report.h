@@ -2,6 +2,7 @@
 // file is read.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -65,7 +66,9 @@ struct CaptureReport {
   std::optional<Vec3> meeting_point_w;  // AxesMeetingPoint()
   std::optional<DepthRange> depth_range;
   double unit_m = 1;
-  std::optional<Density> density;  // where a distance is known
+  std::optional<AlphaMeaning> alpha;             // of the images, where that is known
+  std::array<double, 3> background = {0, 0, 0};  // behind it, where alpha is light
+  std::optional<Density> density;                // where a distance is known
   std::vector<CaptureWarning> warnings;
 };
 

@@ -13,7 +13,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kCalibrationName = "transforms.json";
-constexpr const char* kWriter = "lfimport";
 
 Result<fs::path> Canonical(const fs::path& folder) {
   std::error_code error;
@@ -58,10 +57,10 @@ Result<void> CheckMayWrite(const fs::path& source, const fs::path& folder, bool 
   const fs::path read = fs::is_directory(source, error) ? source / kCalibrationName : source;
   if (fs::exists(read, error) && fs::equivalent(read, path, error))
     return UsageError(fmt::format(
-        "{} is what would be read: write to another folder, or replace it (--force); to read what "
-        "it was made from again, remove it first",
+        "{} is what would be read, and what it was made from is not here: write to another folder, "
+        "or replace it (--force)",
         path.string()));
-  LF_ASSIGN_OR_RETURN(const bool is_ours, IsAsWritten(path, kWriter));
+  LF_ASSIGN_OR_RETURN(const bool is_ours, IsAsWritten(path, kImportProgram));
   if (is_ours) return {};
   return UsageError(
       fmt::format("{} was not written by lfimport, or was changed since: write to another folder, "
@@ -80,7 +79,7 @@ Result<std::string> WriteNativeFolder(const fs::path& folder, LightField* light_
   LF_RETURN_IF_ERROR(CreateFolder(folder));
   LF_RETURN_IF_ERROR(MoveToFolder(folder, light_field));
   const fs::path path = folder / kCalibrationName;
-  LF_RETURN_IF_ERROR(WriteTransformsJson(*light_field, path, kWriter));
+  LF_RETURN_IF_ERROR(WriteTransformsJson(*light_field, path, kImportProgram));
   return path.string();
 }
 

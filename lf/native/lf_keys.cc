@@ -15,6 +15,8 @@ constexpr NumberRule kBalance = {"above 0 and at most 1000",
                                  [](double x) { return x > 0 && x <= 1000; }};
 constexpr NumberRule kMatrixEntry = {"within +-1000", [](double x) { return std::abs(x) <= 1000; }};
 constexpr NumberRule kRadiance = {"within +-1e6", [](double x) { return std::abs(x) <= 1e6; }};
+constexpr NumberRule kLight = {"radiances from 0 to 1e6",
+                               [](double x) { return x >= 0 && x <= 1e6; }};
 constexpr NumberRule kMaxRadiance = {"a radiance from 1e-6 to 1e6",
                                      [](double x) { return x >= 1e-6 && x <= 1e6; }};
 constexpr NumberRule kPedestal = {"a whole number from 0 to 32767", [](double x) {
@@ -80,6 +82,23 @@ Result<void> ReadColour(const JsonFields& top, RadianceEncoding* encoding) {
   return {};
 }
 
+Result<void> ReadAlpha(const JsonFields& top, RadianceEncoding* encoding) {
+  LF_ASSIGN_OR_RETURN(const std::optional<std::string> name, top.Text("lf_alpha"));
+  if (name) encoding->alpha = AlphaMeaningOf(*name);
+  if (name && !encoding->alpha)
+    return top.Wrong("lf_alpha", "\"mask\", \"straight\" or \"premultiplied\"");
+  LF_ASSIGN_OR_RETURN(const std::optional<std::vector<double>> background,
+                      top.Numbers("lf_background", 3, 3, kLight));
+  if (!background) return {};
+  if (encoding->alpha == AlphaMeaning::kMask)
+    return top.Fault(
+        "\"lf_background\" needs lf_alpha \"straight\" or \"premultiplied\": a mask "
+        "has nothing behind it");
+  encoding->background.emplace();
+  std::copy(background->begin(), background->end(), encoding->background->begin());
+  return {};
+}
+
 // What the first of camera raw files tells of what is not stated.
 Result<RadianceEncoding> DefaultEncoding(const JsonFields& top, const LightField& light_field,
                                          const RawFactsSource& raw_facts) {
@@ -103,6 +122,7 @@ Result<RadianceEncoding> ReadEncoding(const JsonFields& top, const LightField& l
   LF_RETURN_IF_ERROR(ReadTransfer(top, &encoding));
   LF_RETURN_IF_ERROR(ReadLevels(top, &encoding));
   LF_RETURN_IF_ERROR(ReadColour(top, &encoding));
+  LF_RETURN_IF_ERROR(ReadAlpha(top, &encoding));
   LF_ASSIGN_OR_RETURN(const std::optional<double> max_radiance,
                       top.Number("lf_max_radiance", kMaxRadiance));
   LF_ASSIGN_OR_RETURN(const std::optional<double> pedestal, top.Number("lf_pedestal", kPedestal));

@@ -193,7 +193,8 @@ class Reader {
     return {};
   }
 
-  // Of the first image, for all: asked for once.
+  // That of most of up to 15 images, evenly spread, for all: asked for once. Of equally many, the
+  // first.
   Result<std::array<int, 2>> DefaultSize() {
     constexpr const char* kAdvice =
         "add \"w\" and \"h\", in pixels, at the top level (e.g. \"w\": 800, \"h\": 800)";
@@ -201,14 +202,34 @@ class Reader {
       if (!image_size_)
         return InputError(
             fmt::format("{}: the image size is missing: {}", path_.string(), kAdvice));
-      const auto size = image_size_(light_field_.ImagePath({0}));
-      if (!size)
-        return InputError(fmt::format(
-            "{}: the image size is missing, and the first image does not tell it: {}; {}",
-            path_.string(), size.error().message, kAdvice));
-      default_size_ = *size;
+      LF_ASSIGN_OR_RETURN(default_size_, SizeOfMost(kAdvice));
     }
     return *default_size_;
+  }
+
+  Result<std::array<int, 2>> SizeOfMost(const char* advice) {
+    constexpr size_t kMostAsked = 15;
+    const size_t count = std::min(kMostAsked, light_field_.size());
+    std::vector<std::array<int, 2>> sizes;
+    std::optional<Error> fault;  // of the first image
+    for (size_t i = 0; i < count; ++i) {
+      const auto index = static_cast<uint32_t>(i * light_field_.size() / count);
+      const auto size = image_size_(light_field_.ImagePath(LfImageId{index}));
+      if (size)
+        sizes.push_back(*size);
+      else if (!fault)
+        fault = size.error();
+    }
+    if (sizes.empty())
+      return InputError(
+          fmt::format("{}: the image size is missing, and the images do not tell it: {}; {}",
+                      path_.string(), fault->message, advice));
+    const auto count_of = [&](const std::array<int, 2>& size) {
+      return std::count(sizes.begin(), sizes.end(), size);
+    };
+    return *std::max_element(sizes.begin(), sizes.end(), [&](const auto& a, const auto& b) {
+      return count_of(a) < count_of(b);
+    });
   }
 
   Result<void> ResolveAllIntrinsics(const JsonFields& fields) {

@@ -168,19 +168,18 @@ TEST(TransformsJson, ReadsTheDepthRange) {
   ExpectError(range("[1, 2, 3]"), {"lf_depth_range", "a list of 2 numbers"});
 }
 
-TEST(TransformsJson, AMissingSizeIsThatOfTheFirstImage) {
+TEST(TransformsJson, AMissingSizeIsThatOfMostImagesAskedForOnce) {
   const std::string frame = std::string(R"("transform_matrix": )") + kUnturned + "}";
   const std::string text = R"({"camera_angle_x": 1, "frames": [{"file_path": "./train/r_0", )" +
                            frame + R"(, {"file_path": "b", "w": 100, "fl_x": 7, )" + frame + "]}";
-  int asked = 0;
+  std::vector<std::string> asked;
   const auto size = [&asked](const std::filesystem::path& image) {
-    ++asked;
-    EXPECT_EQ(image, "d/./train/r_0.png");
-    return std::array{800, 600};
+    asked.push_back(image.string());
+    return asked.size() == 1 ? std::array{800, 600} : std::array{80, 60};
   };
   const Result<LightField> light_field = ParseTransformsJson(text, "d/t.json", size);
   ASSERT_TRUE(light_field) << light_field.error().message;
-  EXPECT_EQ(asked, 1);
+  EXPECT_EQ(asked, (std::vector<std::string>{"d/./train/r_0.png", "d/b.png"}));
   const Intrinsics k = light_field->Camera({0}).intrinsics;
   EXPECT_EQ(k.width_px, 800);
   EXPECT_EQ(k.height_px, 600);
@@ -311,7 +310,8 @@ TEST(TransformsJson, ReadsHowStoredNumbersBecomeLight) {
       OneFrame(kIntrinsics + R"("lf_bayer": "GBRG", "lf_transfer": "linear", "lf_black_level": 512,
                        "lf_white_level": 16383, "lf_white_balance": [2, 1, 1.5],
                        "lf_camera_to_srgb": [[1,2,3],[0,1,4],[5,6,1]], "lf_max_radiance": 2,
-                       "lf_pedestal": 2048, "lf_unit_m": 0.001, )",
+                       "lf_pedestal": 2048, "lf_unit_m": 0.001, "lf_alpha": "premultiplied",
+                       "lf_background": [0, 0.5, 2], )",
                R"("lf_gain": 1.25, "lf_mask": "masks/a.png", )"));
   const RadianceEncoding& encoding = light_field.encoding;
   EXPECT_EQ(encoding.bayer, BayerPattern::kGbrg);
@@ -323,6 +323,8 @@ TEST(TransformsJson, ReadsHowStoredNumbersBecomeLight) {
   EXPECT_EQ(encoding.camera_to_srgb(2, 0), 5);
   EXPECT_EQ(encoding.max_radiance, 2);
   EXPECT_EQ(encoding.pedestal, 2048);
+  EXPECT_EQ(encoding.alpha, AlphaMeaning::kPremultiplied);
+  EXPECT_EQ(encoding.background, (std::array<double, 3>{0, 0.5, 2}));
   EXPECT_EQ(light_field.unit_m, 0.001);
   EXPECT_EQ(light_field.cameras[0].gain, 1.25f);
   EXPECT_EQ(light_field.mask_names, std::vector<std::string>{"masks/a.png"});
@@ -334,6 +336,8 @@ TEST(TransformsJson, EncodingHasTheDocumentedDefaults) {
   EXPECT_EQ(plain.pedestal, 0);
   EXPECT_EQ(plain.max_radiance, 1);
   EXPECT_FALSE(plain.white_level);
+  EXPECT_FALSE(plain.alpha);
+  EXPECT_FALSE(plain.background);
   const RadianceEncoding raw =
       Parsed(OneFrame(kIntrinsics + R"("lf_bayer": "RGGB", "lf_black_level": 64, )")).encoding;
   EXPECT_EQ(raw.transfer, Transfer::kLinear);
@@ -375,6 +379,10 @@ TEST(TransformsJson, WrongLfValuesAreErrors) {
   expect(R"("lf_max_radiance": 0, )", "lf_max_radiance");
   expect(R"("lf_pedestal": 10.5, )", "whole number");
   expect(R"("lf_pedestal": 65535, )", "lf_pedestal");
+  expect(R"("lf_alpha": "associated", )", "\"mask\", \"straight\" or \"premultiplied\"");
+  expect(R"("lf_background": [1, 1], )", "a list of 3 numbers");
+  expect(R"("lf_background": [1, -1, 1], )", "radiances from 0");
+  expect(R"("lf_background": [1, 1, 1], "lf_alpha": "mask", )", "nothing behind it");
   expect(R"("lf_unit_m": 0, )", "lf_unit_m");
   ExpectError(OneFrame(kIntrinsics, R"("lf_gain": 0, )"), {"frames[0]", "\"lf_gain\" is 0"});
   ExpectError(OneFrame(kIntrinsics, R"("lf_mask": 3, )"), {"\"lf_mask\" is 3"});

@@ -129,6 +129,12 @@ void AddEncoding(const RadianceEncoding& encoding, JsonText* json) {
   if (encoding.white_level) add_number("lf_white_level", *encoding.white_level);
   add_number("lf_max_radiance", encoding.max_radiance);
   add_number("lf_pedestal", encoding.pedestal);
+  if (encoding.alpha) json->Add("\"lf_alpha\": \"{}\",\n", NameOf(*encoding.alpha));
+  if (encoding.background) {
+    json->Add("\"lf_background\": ");
+    json->AddNumbers(*encoding.background);
+    json->Add(",\n");
+  }
   json->Add("\"lf_white_balance\": ");
   json->AddNumbers(encoding.white_balance);
   json->Add(",\n\"lf_camera_to_srgb\": ");

@@ -51,6 +51,8 @@ LightField RandomLightField(size_t count) {
   light_field.encoding.white_level = 16383;
   light_field.encoding.max_radiance = 1.1;
   light_field.encoding.pedestal = 1024;
+  light_field.encoding.alpha = AlphaMeaning::kStraight;
+  light_field.encoding.background = {0.1, 1.0 / 3, 1};
   light_field.encoding.white_balance = {2.0 / 3, 1, 1.7};
   light_field.encoding.camera_to_srgb << 1.6, -0.5, -0.1, -0.2, 1.5, -0.3, 0.0, -0.5, 1.5;
   light_field.unit_m = 0.001;
@@ -83,6 +85,8 @@ TEST_F(WriteTransformsJsonTest, ReadsBackBitForBit) {
   EXPECT_EQ(a.black_level, b.black_level);
   EXPECT_EQ(a.white_level, b.white_level);
   EXPECT_EQ(a.max_radiance, b.max_radiance);
+  EXPECT_EQ(a.alpha, b.alpha);
+  EXPECT_EQ(a.background, b.background);
   EXPECT_EQ(a.pedestal, b.pedestal);
   EXPECT_EQ(a.white_balance, b.white_balance);
   EXPECT_EQ(a.camera_to_srgb, b.camera_to_srgb);
@@ -100,6 +104,9 @@ TEST_F(WriteTransformsJsonTest, KeepsEveryLensAndSkewWhicheverComesFirst) {
       {DistortionModel::kFisheye, {0.1 + 0.2, 0, -0.01, 0.007, 0, 0, 0, 0}},
       {DistortionModel::kFisheye, {}},
       {DistortionModel::kFov, {2.0 / 3, 0, 0, 0, 0, 0, 0, 0}},
+      {DistortionModel::kDivision, {-1.0 / 3, 0, 0, 0, 0, 0, 0, 0}},
+      {DistortionModel::kUnified, {0.1 + 0.2, 1.0 / 3, 0, 0, 0, 0, 0, 0}},
+      {DistortionModel::kThinPrism, {0.1, 1.0 / 3, 1e-3, 2e-3, 3e-3, 4e-3, 5e-3, 6e-3}},
   };
   constexpr size_t kCount = std::size(lenses);
   for (size_t first = 0; first < kCount; ++first) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lf/sequence/develop.h"
+
 namespace lf {
 namespace {
 
@@ -39,8 +41,14 @@ ChannelFill::ChannelFill(const Image<float>& mean, const Image<uint32_t>& ray_co
       if (!ray_sums_.empty()) ray_sums_[here] = ray_sums_[above] + row.rays;
     }
   }
-  for (int64_t distance2 = 0; distance2 <= int64_t{fill_radius_px_} * fill_radius_px_; ++distance2)
+  const int64_t most_px =
+      rays_needed > 1 ? std::max(fill_radius_px_, kSmoothRadius_px) : fill_radius_px_;
+  for (int64_t distance2 = 0; distance2 <= most_px * most_px; ++distance2)
     weights_.push_back(1 / (distance2 == 0 ? kOwnDistance : std::sqrt(distance2)));
+}
+
+int ChannelFill::RadiusAt(int x, int y) const {
+  return ray_count_.at(x, y, channel_) > 0 ? kSmoothRadius_px : fill_radius_px_;
 }
 
 bool ChannelFill::IsEnough(const Collected& collected) const {
@@ -58,16 +66,16 @@ ChannelFill::Collected ChannelFill::InSquare(int x, int y, int half_side) const 
   return {elements, ray_sums_[d] - ray_sums_[b] - ray_sums_[c] + ray_sums_[a]};
 }
 
-// The least half side whose square around (x, y) holds enough; none up to the fill radius:
-// fill_radius_px + 1. Doubling first, as most elements find enough close by.
-int ChannelFill::SmallestSquare(int x, int y) const {
-  if (!IsEnough(InSquare(x, y, fill_radius_px_))) return fill_radius_px_ + 1;
+// Returns the least half side whose square around (x, y) holds enough; `most` + 1 if that of
+// `most` does not. Doubles first, as most elements find enough close by.
+int ChannelFill::SmallestSquare(int x, int y, int most) const {
+  if (!IsEnough(InSquare(x, y, most))) return most + 1;
   int too_small = 0, enough = 1;  // one element is never enough
-  while (enough < fill_radius_px_ && !IsEnough(InSquare(x, y, enough))) {
+  while (enough < most && !IsEnough(InSquare(x, y, enough))) {
     too_small = enough;
     enough *= 2;
   }
-  enough = std::min(enough, fill_radius_px_);
+  enough = std::min(enough, most);
   while (enough - too_small > 1) {
     const int middle = (enough + too_small) / 2;
     (IsEnough(InSquare(x, y, middle)) ? enough : too_small) = middle;
@@ -120,12 +128,11 @@ int64_t ChannelFill::SmallestDisk(Scratch& scratch) const {
 }
 
 float ChannelFill::At(int x, int y, Scratch& scratch) const {
-  const int square = SmallestSquare(x, y);
-  if (square > fill_radius_px_ && InSquare(x, y, fill_radius_px_).elements == 0) return 0;
+  const int most = RadiusAt(x, y);
+  const int square = SmallestSquare(x, y, most);
+  if (square > most && InSquare(x, y, most).elements == 0) return 0;
   // A square of half side k lies within the disk of radius k sqrt(2).
-  FindNeighbours(x, y,
-                 std::min(2 * int64_t{square} * square, int64_t{fill_radius_px_} * fill_radius_px_),
-                 scratch);
+  FindNeighbours(x, y, std::min(2 * int64_t{square} * square, int64_t{most} * most), scratch);
   const int64_t radius2 = SmallestDisk(scratch);
   double sum = 0, weights = 0;
   for (const Neighbour& neighbour : scratch.neighbours_) {

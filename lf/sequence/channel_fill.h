@@ -15,6 +15,7 @@ class ChannelFill {
   // mean, ray_count  [height][width][channels]; own average and rays of every element; must
   //                  outlive this
   // rays_needed      what the rays around an element must add up to; at least 1
+  // fill_radius_px   how far elements without a ray look, DevelopOptions
   // is_interrupted   asked before each row; once it is true, this is of no use
   ChannelFill(const Image<float>& mean, const Image<uint32_t>& ray_count, int channel,
               uint32_t rays_needed, int fill_radius_px,
@@ -39,10 +40,12 @@ class ChannelFill {
     int64_t distance2;
   };
 
+  // How far the element looks.
+  int RadiusAt(int x, int y) const;
   bool IsEnough(const Collected& collected) const;
   size_t SumIndex(int x, int y) const { return (static_cast<size_t>(width_) + 1) * y + x; }
   Collected InSquare(int x, int y, int half_side) const;
-  int SmallestSquare(int x, int y) const;
+  int SmallestSquare(int x, int y, int most) const;
   void FindNeighbours(int x, int y, int64_t radius2, Scratch& scratch) const;
   int64_t SmallestDisk(Scratch& scratch) const;
 

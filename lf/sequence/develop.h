@@ -20,18 +20,23 @@ struct Completion {
       share;  // [height][width] of it in an element that has rays, too; 0: nothing is known
 };
 
+// Closes the gaps between the rays of mosaics and of LF pixels that are larger than elements.
+inline constexpr int kFillRadius_px = 2;
+inline constexpr int kMostFillRadius_px = 4096;
+// Elements that are smoothed take light from collected ones at most this far away.
+inline constexpr int kSmoothRadius_px = 32;
+
 struct DevelopOptions {
   double pedestal = 0;  // radiance = (sum / count - pedestal) / scale
   double scale = 65535;
   std::array<double, 3> white_balance = {1, 1, 1};
   Mat3 camera_to_srgb = Mat3::Identity();
 
-  // Elements with fewer rays than this in a channel are smoothed; 0 and 1: only empty ones are
-  // filled.
+  // Elements with fewer rays than this in a channel, but with some, are smoothed. 0 and 1: none.
   uint32_t smooth_below = 0;
-  // No light comes from further away than this: a channel of an element without a collected one
-  // that near stays black; light that nobody recorded is not invented.
-  int fill_radius_px = 32;
+  // A channel without a ray takes light from collected elements at most this far away, and stays
+  // black if there is none: light that nobody recorded is not invented. 0: nothing is filled.
+  int fill_radius_px = kFillRadius_px;
 
   // Mixed with what was collected, if given; stands for what was not.
   const Completion* completion = nullptr;
@@ -59,9 +64,10 @@ struct DevelopedFrame {
 //   sum_i v_i / d_i  /  sum_i 1 / d_i      (Shepard 1968; d between element centres, in elements)
 //
 // over all that lie within the smallest radius that holds at least 4 of them and at least
-// smooth_below rays, but never beyond fill_radius_px, where fewer must do. Their own value, if they
-// have one, is among them at d = 0.5. Then white balance and camera_to_srgb. Counts above 2^32 - 1
-// are given as that. The same bits for any thread count.
+// smooth_below rays, but never beyond fill_radius_px (of those without a ray) or kSmoothRadius_px,
+// where fewer must do. Their own value, if they have one, is among them at d = 0.5. Then white
+// balance and camera_to_srgb. Counts above 2^32 - 1 are given as that. The same bits for any thread
+// count.
 DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, ThreadPool& pool);
 
 }  // namespace lf

@@ -37,6 +37,7 @@ double BruteForce(const SensorPlate& plate, int x, int y, int channel,
   const ElementSum own = plate.At(x, y, channel);
   if (own.count >= needed) return value(own);
 
+  const int radius = own.count > 0 ? kSmoothRadius_px : options.fill_radius_px;
   struct Neighbour {
     int distance2;
     ElementSum rays;
@@ -46,8 +47,7 @@ double BruteForce(const SensorPlate& plate, int x, int y, int channel,
     for (int u = 0; u < plate.width(); ++u) {
       const int distance2 = (u - x) * (u - x) + (v - y) * (v - y);
       const ElementSum rays = plate.At(u, v, channel);
-      if (rays.count > 0 && distance2 <= options.fill_radius_px * options.fill_radius_px)
-        neighbours.push_back({distance2, rays});
+      if (rays.count > 0 && distance2 <= radius * radius) neighbours.push_back({distance2, rays});
     }
   std::sort(neighbours.begin(), neighbours.end(),
             [](const Neighbour& a, const Neighbour& b) { return a.distance2 < b.distance2; });
@@ -106,6 +106,7 @@ TEST(Develop, AUniformSceneStaysUniformWhereverItHasHoles) {
   ThreadPool pool(2);
   DevelopOptions options;
   options.smooth_below = 3;
+  options.fill_radius_px = 32;
   const DevelopedFrame frame = Develop(plate, options, pool);
   for (const float value : frame.rgb.pixels()) ASSERT_NEAR(value, 0.2, 1e-6);
 }
@@ -178,7 +179,7 @@ TEST(Develop, AnInterruptionIsAnsweredWithinSomeElements) {
   const SensorPlate plate = RandomPlate(width, height, 0.4, 3, 8);
   ThreadPool pool(1);
   DevelopOptions options;
-  options.smooth_below = 100;  // all are filled
+  options.smooth_below = 100;  // all are smoothed or filled
   int asked = 0, last = 0;
   options.is_interrupted = [&] { return ++asked == last; };
   const DevelopedFrame whole = Develop(plate, options, pool);

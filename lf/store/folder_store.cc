@@ -7,6 +7,7 @@
 #include "lf/core/file.h"
 #include "lf/store/image_reading.h"
 #include "lf/store/load_mosaics.h"
+#include "lf/store/opacities.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -48,6 +49,12 @@ Result<void> FolderStore::LoadRecorded(ImagePart* part, LfImageId id, const Pixe
   LF_ASSIGN_OR_RETURN(const ChannelUse use, ReadStoredPixels(light_field_, id, wanted, part));
   pixels->Reset(inside, light_field_.encoding.bayer);
   ConvertRadiance(*part, use.colours, tables_, light_field_.encoding, camera.gain, pixels);
+  if (use.alpha && light_field_.encoding.AlphaIsLight()) {
+    LF_ASSIGN_OR_RETURN(const Image<uint16_t> opacities,
+                        ReadOpacities(light_field_, id, *part, use, inside));
+    ComposeWithBackground(opacities, inside, light_field_.encoding, pixels);
+    return {};
+  }
   return ForEachMasked(light_field_, id, *part, use, inside,
                        [&](int x, int y) { pixels->Mask(x - inside.x_begin, y - inside.y_begin); });
 }

@@ -17,8 +17,10 @@ namespace lf {
 //   - integers through its table, of 8 or 16 bits; floats are radiance already, and quantised;
 //   - with a Bayer pattern a file has one channel, and gives a mosaic, or RGB pixels made of it
 //     (demosaic.h); without, it is RGB, or grey, which counts for all three;
-//   - pixels whose alpha is below one half are masked, and so are those that are 0 in the first
-//     channel of the image's mask file. Further channels are not used;
+//   - by RadianceEncoding::alpha, pixels whose alpha is below one half are masked, or all are
+//   composed
+//     with the background (opacities.h); pixels that are 0 in the first channel of the image's mask
+//     file are masked. Further channels are not used;
 //   - pictures and masks are taken as stored, or turned by 90 degrees as their orientation tag says
 //     where the calibration is of the turned picture (capture/image_fit.h).
 // While one image loads, the file, its stored values and the result are in memory together; the

@@ -13,21 +13,6 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-// With or without a layer of an EXR file before it.
-bool IsAlpha(const std::string& channel_name) {
-  const std::string name = channel_name.substr(channel_name.rfind('.') + 1);
-  return name == "A" || name == "alpha" || name == "Alpha";
-}
-
-ChannelUse UseOf(const ImageFileInfo& info) {
-  ChannelUse use;
-  use.channels = info.channels;
-  use.colours = use.channels >= 3 ? 3 : 1;
-  if (use.channels > use.colours && IsAlpha(info.channel_names[use.colours]))
-    use.alpha = use.colours;
-  return use;
-}
-
 // At least the pixels `rect` of the picture that the calibration is of, and where they lie in it.
 Result<void> ReadFitting(const fs::path& path, bool is_mosaic, const Intrinsics& intrinsics,
                          const PixelRect& rect, ImagePart* part) {

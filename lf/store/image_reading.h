@@ -4,10 +4,10 @@
 
 #include <cstddef>
 #include <limits>
-#include <optional>
 #include <type_traits>
 #include <variant>
 
+#include "lf/capture/channel_use.h"
 #include "lf/capture/light_field.h"
 #include "lf/core/check.h"
 #include "lf/core/geometry.h"
@@ -16,13 +16,6 @@
 #include "lf/imageio/image_file.h"
 
 namespace lf {
-
-// Which channels of a file are what.
-struct ChannelUse {
-  int channels = 1;
-  int colours = 1;  // 1: grey or mosaic; 3: R, G, B; they come first
-  std::optional<int> alpha;
-};
 
 // At least the pixels `wanted`, some within the picture that the calibration is of, and where they
 // lie in it; checked against calibration and encoding. kInput, naming the file.
@@ -60,12 +53,14 @@ void ForEachTransparent(const ImagePart& part, int alpha, const PixelRect& rect,
       part.image);
 }
 
-// Those that are masked at all: by alpha, and by the mask file if there is one, which is read.
+// Calls mask(x, y) for the pixels that are masked at all: by alpha where that is a mask, and by the
+// mask file if there is one, which is read.
 template <class Mask>
 Result<void> ForEachMasked(const LightField& light_field, LfImageId id, const ImagePart& part,
                            const ChannelUse& use, const PixelRect& rect, const Mask& mask) {
   if (rect.empty()) return {};
-  if (use.alpha) ForEachTransparent(part, *use.alpha, rect, mask);
+  if (use.alpha && !light_field.encoding.AlphaIsLight())
+    ForEachTransparent(part, *use.alpha, rect, mask);
   ImagePart file;
   LF_ASSIGN_OR_RETURN(const bool has_file, ReadMaskFile(light_field, id, rect, &file));
   if (!has_file) return {};

@@ -11,6 +11,7 @@
 #include "lf/core/check.h"
 #include "lf/store/image_reading.h"
 #include "lf/store/load_mosaics.h"
+#include "lf/store/opacities.h"
 #include "lf/store/ordered_half.h"
 #include "lf/store/recorded_image.h"
 
@@ -179,13 +180,25 @@ Result<void> PackedStore::LoadRecorded(Loading* loading, LfImageId id, const Pix
   TakeBack(&loading->part, &loading->decoded, &loading->floats);
 
   if (bytes->mask.empty()) return {};
-  if (const auto ok = CheckCode(bytes->mask, 8, PixelLayout::kGrey, false, code.rect); !ok)
+  const bool is_light = encoding.AlphaIsLight() && !is_mosaic;
+  const int mask_bits = is_light ? 16 : 8;
+  if (const auto info = ReadCodeInfo(bytes->mask); info && info->bits != mask_bits)
+    return InputError(fmt::format(
+        "{}: alpha is coded in the packed store as {}, and asked for as {}: compress the light "
+        "field again with this --image-alpha",
+        name, is_light ? "a mask" : "light", is_light ? "light" : "a mask"));
+  if (const auto ok = CheckCode(bytes->mask, mask_bits, PixelLayout::kGrey, false, code.rect); !ok)
     return named(ok.error());
   if (const auto ok = DecodeImage(bytes->mask, wanted, &loading->mask); !ok)
     return named(ok.error());
+  const PixelRect mask_rect = Moved(loading->mask.rect, code.rect.x_begin, code.rect.y_begin);
+  if (is_light) {
+    ComposeWithBackground(std::get<Image<uint16_t>>(loading->mask.pixels), mask_rect, encoding,
+                          pixels);
+    return {};
+  }
   ForEachUnkept(
-      std::get<Image<uint8_t>>(loading->mask.pixels),
-      Moved(loading->mask.rect, code.rect.x_begin, code.rect.y_begin), 0,
+      std::get<Image<uint8_t>>(loading->mask.pixels), mask_rect, 0,
       [](uint8_t value) { return value >= kMaskedBelow; }, inside,
       [&](int x, int y) { pixels->Mask(x - inside.x_begin, y - inside.y_begin); });
   return {};

@@ -49,6 +49,13 @@ class PackedStoreTest : public FolderTest {
       AddImage(name, i % 3 == 2 ? 0.75f : 1.f);
     }
   }
+  void MaskRow7OfImage2() {
+    field_.mask_names.resize(field_.size());
+    field_.mask_names[2] = "mask.png";
+    Image<uint8_t> mask(kWidth, kHeight, 1, 255);
+    for (int x = 0; x < kWidth; ++x) mask.at(x, 7) = 0;
+    ASSERT_TRUE(WriteImage(folder_ / "mask.png", mask.view()));
+  }
   // All images, or the rectangle of each, without loss.
   void Pack(const PixelRect& rect = kWhole, uint64_t shard_bytes = 0) {
     PackedStorePlan plan;
@@ -120,15 +127,44 @@ TEST_F(PackedStoreTest, GreyHasTheBitsOfTheFolder) {
 
 TEST_F(PackedStoreTest, AlphaAndMaskFilesBecomeMasks) {
   AddImages<uint8_t>(4);
-  field_.mask_names.resize(field_.size());
-  field_.mask_names[2] = "mask.png";
-  Image<uint8_t> mask(kWidth, kHeight, 1, 255);
-  for (int x = 0; x < kWidth; ++x) mask.at(x, 7) = 0;
-  ASSERT_TRUE(WriteImage(folder_ / "mask.png", mask.view()));
+  MaskRow7OfImage2();
   Pack();
   EXPECT_TRUE(packed_.mask_names.empty());
   ExpectTheBitsOfTheFolder();
   EXPECT_TRUE(Loaded(*Opened(), {2}, kWhole).IsMasked(4, 7));
+}
+
+TEST_F(PackedStoreTest, AlphaThatIsLightHasTheBitsOfTheFolder) {
+  for (const AlphaMeaning alpha : {AlphaMeaning::kStraight, AlphaMeaning::kPremultiplied}) {
+    field_.encoding.alpha = alpha;
+    field_.encoding.background = {0.5, 0.25, 1};
+    AddImages<uint16_t>(4);
+    MaskRow7OfImage2();
+    Pack();
+    EXPECT_EQ(packed_.encoding.alpha, alpha);
+    EXPECT_EQ(packed_.encoding.background, field_.encoding.background);
+    ExpectTheBitsOfTheFolder();
+    EXPECT_TRUE(Loaded(*Opened(), {2}, kWhole).IsMasked(4, 7));
+    // The background is taken when images are loaded, not when they are coded.
+    field_.encoding.background = packed_.encoding.background = {0, 0, 0};
+    ExpectTheBitsOfTheFolder();
+    field_.mask_names.clear();
+    field_.image_names.clear();
+    field_.cameras.clear();
+  }
+}
+
+TEST_F(PackedStoreTest, AlphaIsNotTakenForWhatItWasNotCodedAs) {
+  AddImages<uint8_t>(4);
+  Pack();
+  packed_.encoding.alpha = AlphaMeaning::kStraight;
+  EXPECT_NE(ErrorOf(*Opened(), {0}).find("coded in the packed store as a mask, and asked for as"),
+            std::string::npos);
+  field_.encoding.alpha = AlphaMeaning::kStraight;
+  Pack();
+  packed_.encoding.alpha = AlphaMeaning::kMask;
+  EXPECT_NE(ErrorOf(*Opened(), {0}).find("coded in the packed store as light, and asked for as"),
+            std::string::npos);
 }
 
 TEST_F(PackedStoreTest, MosaicsHaveTheBitsOfTheFolderAsRecordedAndAsRgb) {

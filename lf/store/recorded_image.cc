@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <span>
 #include <system_error>
 #include <utility>
 #include <variant>
 
 #include "lf/store/demosaic.h"
 #include "lf/store/image_reading.h"
+#include "lf/store/opacities.h"
 #include "lf/store/ordered_half.h"
 
 namespace lf {
@@ -81,12 +83,19 @@ Result<RecordedImage> ReadRecordedImage(const LightField& light_field, LfImageId
   image.layout = light_field.encoding.bayer != BayerPattern::kNone ? PixelLayout::kMosaic
                  : use.colours == 3                                ? PixelLayout::kRgb
                                                                    : PixelLayout::kGrey;
+  image.source_bytes = SourceBytesOf(light_field, id);
+  if (use.alpha && light_field.encoding.AlphaIsLight()) {
+    LF_ASSIGN_OR_RETURN(image.opacities, ReadOpacities(light_field, id, part, use, image.rect));
+    const std::span<const uint16_t> all = image.opacities.pixels();
+    if (std::all_of(all.begin(), all.end(), [](uint16_t o) { return o > kMostOpacity; }))
+      image.opacities = {};
+    return image;
+  }
   LF_RETURN_IF_ERROR(ForEachMasked(light_field, id, part, use, image.rect, [&image](int x, int y) {
     if (image.mask.empty())
       image.mask = Image<uint8_t>(image.rect.width(), image.rect.height(), 1, 255);
     image.mask.at(x - image.rect.x_begin, y - image.rect.y_begin) = 0;
   }));
-  image.source_bytes = SourceBytesOf(light_field, id);
   return image;
 }
 
@@ -105,6 +114,8 @@ CodedImage CodeOf(const RecordedImage& image, const CodecSettings& settings) {
   CodecSettings of_mask;
   of_mask.profile = CodecProfile::kLossless;
   if (!image.mask.empty()) coded.mask = EncodeImage(image.mask, PixelLayout::kGrey, of_mask);
+  if (!image.opacities.empty())
+    coded.mask = EncodeImage(image.opacities, PixelLayout::kGrey, of_mask);
   coded.source_bytes = image.source_bytes;
   return coded;
 }

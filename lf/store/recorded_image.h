@@ -21,13 +21,15 @@ struct RecordedImage {
   // kUint8 or kUint16; kHalf: of float files, as integers in order (ordered_half.h).
   StoredValues values = StoredValues::kUint8;
   PixelRect rect;
-  Image<uint8_t> mask;        // empty: nothing is masked; else [height][width]: 0 masked, 255
+  Image<uint8_t> mask;  // empty: nothing is masked; else [height][width]: 0 masked, 255
+  // These take the place of the mask if alpha is light (opacities.h); empty: all is opaque.
+  Image<uint16_t> opacities;
   bool is_rounded = false;    // a float that half cannot hold exactly: it is the nearest half
   uint64_t source_bytes = 0;  // of the image's file and its mask's
 };
 
-// The pixels of `rect`, cut to the image, as the calibration has them (turned upright). What is
-// masked by alpha or mask file (folder_store.h) is in the mask.
+// The pixels of `rect`, cut to the image, as the calibration has them (turned upright), not
+// composed with a background. What is masked by alpha or mask file (folder_store.h) is in the mask.
 // Floats become half floats, rounded to nearest where they are not; no light where they are NaN.
 // Loaded again they are quantised as the floats themselves would be.
 // kInput: as FolderStore::Load(); nothing of `rect` lies in the image.
@@ -41,7 +43,7 @@ uint64_t SourceBytesOf(const LightField& light_field, LfImageId id);
 // which RGB pixels are made from.
 PixelRect RectToRecord(const LightField& light_field, LfImageId id, const PixelRect& rect);
 
-// Its codes: of the pixels by `settings`, of the mask without loss.
+// Its codes: of the pixels by `settings`, of mask or opacities without loss.
 CodedImage CodeOf(const RecordedImage& image, const CodecSettings& settings);
 
 }  // namespace lf

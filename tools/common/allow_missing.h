@@ -1,5 +1,5 @@
-// How many LF images a program may leave out, because they are missing or broken, and still end
-// with exit code 0: the option --allow-missing N|PERCENT.
+// The option --allow-missing N|PERCENT: the number of LF images that a program may leave out
+// because they are missing or broken, and still end with exit code 0.
 #pragma once
 
 #include <CLI/CLI.hpp>

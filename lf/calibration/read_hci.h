@@ -1,0 +1,31 @@
+// Folders of the 4D Light Field Benchmark (HCI, Konstanz): parameters.cfg beside input_Cam000.png,
+// input_Cam001.png ... (doc/formats/hci.md).
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "lf/capture/light_field.h"
+#include "lf/core/result.h"
+
+namespace lf {
+
+inline constexpr const char* kHciName = "parameters.cfg";
+
+// A grid of parallel cameras, numbered row by row from the upper left, as the benchmark's Blender
+// add-on places them. World: x right, y down, z into the scene, metres, the middle of the grid as
+// origin. With F = focal_length_mm / sensor_size_mm * max(width, height) pixels and the focus
+// distance Z0, at which nothing moves from image to image, the camera at (x, y) has its principal
+// point at (w / 2 + F x / Z0, h / 2 + F y / Z0); Z0 = 0: in the middle. The depth range follows
+// from disp_min and disp_max, rounded to a tenth of a pixel there, where both lie before infinity.
+//   text  the file's content
+//   path  its name for messages; its folder becomes LightField::folder
+// kInput names the file, the key, the value found and what was expected.
+Result<LightField> ParseHci(std::string_view text, const std::filesystem::path& path);
+
+Result<LightField> ReadHci(const std::filesystem::path& path);
+
+// Returns whether the file states a grid of cameras. Other programs write a parameters.cfg, too.
+bool IsHciFile(const std::filesystem::path& path);
+
+}  // namespace lf
