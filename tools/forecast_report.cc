@@ -18,7 +18,6 @@ using Json = nlohmann::ordered_json;
 
 // Elements that an eye takes for one edge.
 constexpr double kDoubleEdge_px = 2;
-constexpr double kMuchUncovered = 0.1;
 
 // "31.2 mm", "2.05 m", "1.2 km"
 std::string Length(double length_w, double unit_m) {
@@ -100,9 +99,16 @@ void AddDensity(const PreprocessReport& report, const CameraPath& path, std::str
         "{:>7} {:>10} {:>10} {:>12} {:>10} {:>10.1f} px {:>10.1f} px {:>10.0f} % {:>14}\n",
         frame.frame.value, frame.image_count, ShortNumber(static_cast<double>(frame.ray_count)),
         density.cameras_in_lens, Length(density.camera_distance_w, path.unit_m),
-        density.near_displacement_px, density.far_displacement_px, 100 * density.uncovered_share,
-        Length(density.least_aperture_w, path.unit_m));
+        density.near_displacement_px, density.far_displacement_px,
+        100 * density.coverage.uncovered_share, Length(density.least_aperture_w, path.unit_m));
   }
+}
+
+// Advice to go with others: "an aperture of at most 30 mm, or ".
+std::string FittingAperture(const LensCoverage& coverage, const CameraPath& path) {
+  if (coverage.fitting_diameter_w == 0) return "";
+  return fmt::format("an aperture of at most {}, or ",
+                     Length(coverage.fitting_diameter_w, path.unit_m));
 }
 
 // Where copies are less than kDoubleEdge_px apart, along the frame's axis.
@@ -167,13 +173,14 @@ std::vector<std::string> DensityWarnings(const PreprocessReport& report, const C
                     black_count, report.frames.size(), black->frame.value,
                     Length(black->density.least_aperture_w, path.unit_m),
                     Length(2 * path.Camera(black->frame).aperture.radius_w, path.unit_m)));
-  const FrameForecast& uncovered =
-      Worst(report, [](const FrameForecast& frame) { return frame.density.uncovered_share; });
-  if (uncovered.density.uncovered_share > kMuchUncovered)
+  const FrameForecast& uncovered = Worst(
+      report, [](const FrameForecast& frame) { return frame.density.coverage.uncovered_share; });
+  if (uncovered.density.coverage.uncovered_share > kMuchUncovered)
     warnings.push_back(fmt::format(
-        "frame {}: {:.0f} % of its lens are where no LF camera was: bokeh are cut off there. What "
-        "would work: a smaller aperture, or a path nearer to the middle of the capture",
-        uncovered.frame.value, 100 * uncovered.density.uncovered_share));
+        "frame {}: {:.0f} % of its lens are beyond the capture: they stay empty, and bokeh are cut "
+        "off there. What would work: {}a path nearer to the middle of the capture",
+        uncovered.frame.value, 100 * uncovered.density.coverage.uncovered_share,
+        FittingAperture(uncovered.density.coverage, path)));
   return warnings;
 }
 
@@ -284,7 +291,8 @@ std::string ForecastJson(const PreprocessReport& report, const CameraPath& path,
                               {"rays", frame.ray_count},
                               {"cameras_in_lens", density.cameras_in_lens},
                               {"camera_distance", density.camera_distance_w},
-                              {"uncovered_share", density.uncovered_share},
+                              {"uncovered_share", density.coverage.uncovered_share},
+                              {"fitting_aperture_w", density.coverage.fitting_diameter_w},
                               {"least_aperture", finite(density.least_aperture_w)},
                               {"depths", {density.depths.near_w, density.depths.far_w}},
                               {"near_displacement_px", density.near_displacement_px},

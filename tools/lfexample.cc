@@ -1,6 +1,9 @@
 // lfexample LIGHTFIELD -o PATH.yaml: a first camera path, ready to render.
+#include <charconv>
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "tools/common/light_field_argument.h"
 #include "tools/common/program.h"
@@ -19,8 +22,50 @@ constexpr const char* kExamples = R"(Examples:
   lfexample capture/transforms.json -o orbit.yaml --move orbit --camera 364
   lfexample capture/ -o path.yaml --focus 8.12
 
-The path starts at an LF camera and focuses where the optical axes meet; where they are parallel,
-at the sharpest of a sweep of planes. Render it with: lfrenderer LIGHTFIELD PATH.yaml -o DIR)";
+The path starts at an LF camera and focuses on what most of its image shows, found by comparing it
+with the images around; a warning says where that is not sure, and what to try. Render it with:
+lfrenderer LIGHTFIELD PATH.yaml -o DIR)";
+
+// Returns the LF camera nearest to the middle that is nearly level, since levelling a picture crops
+// it, and whose image can be read.
+lf::LfImageId FindMiddleCamera(const lf::LightField& light_field, const lf::LfImageStore& store) {
+  const auto is_readable = [&](lf::LfImageId id) {
+    return lf::LoadWithoutThrowing(store, id, {0, 0, 1, 1}, "", lf::LfPixels()).has_value();
+  };
+  const lf::Vec3 up = lf::MeanUpWorld(light_field);
+  const double most_rad = lf::RadiansFromDegrees(3);
+  const auto is_level = [&](lf::LfImageId id) {
+    return lf::RollOf(light_field.Camera(id), up) <= most_rad;
+  };
+  const lf::LfImageId level = lf::MiddleCamera(
+      light_field, [&](lf::LfImageId id) { return is_level(id) && is_readable(id); });
+  return is_level(level) && is_readable(level) ? level : lf::MiddleCamera(light_field, is_readable);
+}
+
+// Finds a camera by its number, or by the name of its image: the whole name, its last part, or that
+// without the suffix.
+lf::Result<lf::LfImageId> FindCamera(const lf::LightField& light_field,
+                                     const lf::LfImageStore& store, const std::string& text) {
+  if (text == "-1") return FindMiddleCamera(light_field, store);
+  const auto matches = [&](const std::string& name) {
+    const std::filesystem::path path(name);
+    return name == text || path.filename() == text || path.stem() == text;
+  };
+  std::vector<uint32_t> found;
+  for (uint32_t i = 0; i < light_field.size(); ++i)
+    if (matches(light_field.image_names[i])) found.push_back(i);
+  if (found.size() > 1)
+    return lf::UsageError(fmt::format("--camera {}: {} LF images have this name, such as {} and {}",
+                                      text, found.size(), light_field.image_names[found[0]],
+                                      light_field.image_names[found[1]]));
+  if (found.size() == 1) return lf::LfImageId{found[0]};
+  uint32_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error == std::errc() && end == text.data() + text.size()) return lf::LfImageId{number};
+  return lf::UsageError(
+      fmt::format("--camera {}: is no number, and no LF image has this name; one is named {}", text,
+                  light_field.image_names[0]));
+}
 
 }  // namespace
 
@@ -29,14 +74,14 @@ int main(int argc, char** argv) {
                       kExamples);
   program.AddCommonOptions({.threads = true, .verbose = true, .quiet = true});
   lf::LightFieldArgument input;
-  std::string output, move = "focus-pull";
-  int camera = -1;
+  std::string output, move = "focus-pull", camera = "-1";
   double focus = 0;
   CLI::App& app = program.app();
   input.AddTo(app);
   app.add_option("-o,--output", output, "PATH.yaml to write")->required();
-  app.add_option("--camera", camera, "LF camera to start at, from 0; -1: the middle one")
-      ->check(CLI::Range(-1, 2'000'000'000));
+  app.add_option("--camera", camera,
+                 "LF camera to start at: its number from 0, or the name of its image; -1: the one "
+                 "nearest to the middle that is level and can be read");
   app.add_option("--move", move, "static, orbit, dolly or focus-pull")
       ->check(CLI::IsMember({"static", "orbit", "dolly", "focus-pull"}));
   app.add_option("--focus", focus, "Focus distance in world units; 0: found by itself")
@@ -45,13 +90,12 @@ int main(int argc, char** argv) {
   return program.Run(argc, argv, [&]() -> lf::Result<void> {
     LF_ASSIGN_OR_RETURN(const lf::LightField light_field, input.Open());
     lf::ExampleOptions options;
-    options.camera =
-        camera >= 0 ? lf::LfImageId{static_cast<uint32_t>(camera)} : lf::MiddleCamera(light_field);
     options.move = *lf::ParseExampleMove(move);
     if (focus > 0) options.focus_distance_w = focus;
     lf::ThreadPool pool(program.common().threads);
     LF_ASSIGN_OR_RETURN(const std::unique_ptr<lf::LfImageStore> store,
                         lf::OpenStore(light_field, lf::Mosaics::kToRgb));
+    LF_ASSIGN_OR_RETURN(options.camera, FindCamera(light_field, *store, camera));
     LF_ASSIGN_OR_RETURN(const lf::ExamplePath example,
                         lf::MakeExamplePath(light_field, *store, options, pool));
     // A path that would not render is a bug of ours, found here and not by the renderer.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 
 #include "tools/common/byte_size.h"
 #include "tools/common/duration.h"
@@ -11,8 +12,24 @@
 #include "lf/core/log.h"
 #include "lf/package/package_file.h"
 #include "lf/pipeline/frame_range.h"
+#include "lf/sequence/develop.h"
 
 namespace lf {
+namespace {
+
+// Reads the value of --fill.
+Result<int> ParseFill(const std::string& text) {
+  if (text == "off") return 0;
+  int radius_px = -1;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), radius_px);
+  if (error == std::errc() && end == text.data() + text.size() && radius_px >= 0 &&
+      radius_px <= kMostFillRadius_px)
+    return radius_px;
+  return UsageError(fmt::format("--fill {}: expected a number of elements from 0 to {}, or off",
+                                text, kMostFillRadius_px));
+}
+
+}  // namespace
 
 void RenderArguments::AddTo(CLI::App& app) {
   app.add_option(
@@ -78,7 +95,13 @@ void RenderArguments::AddTo(CLI::App& app) {
   app.add_flag("--keep-plates", keep_plates,
                "Also write each frame's sums and counts: frame_0001.plate");
   app.add_option("--smooth-below", smooth_below,
-                 "Smooth elements with fewer rays than this; empty ones are always filled");
+                 "Smooth elements with fewer rays than this, over up to 32 elements");
+  app.add_option("--fill", fill,
+                 "RADIUS or off: an element that no ray reached takes the light of collected ones "
+                 "at most RADIUS elements away; it is black if there is none, and its coverage is "
+                 "below 1 in any case")
+      ->type_name("RADIUS")
+      ->check(NotEmpty());
   app.add_option(
          "--mode", mode,
          "collect: frames are the rays that were recorded; rebin: interpolated between rays "
@@ -142,12 +165,7 @@ Result<void> RenderArguments::Check(bool seed_given) const {
       return UsageError(
           "--max-angle: packages have the LF cameras that they were made with: leave it out, or "
           "make them again by lfpreprocessor --max-angle");
-    if (light_field.path.empty() &&
-        (light_field.focal_px > 0 || light_field.fov_deg > 0 || !light_field.images.empty()))
-      return UsageError(
-          "--focal-px, --fov-deg and --images are for a light field: packages have their "
-          "calibration; if the images have moved, --lightfield says where it is now");
-    return {};
+    return light_field.CheckWithPackages();
   }
   if (std::any_of(inputs.begin(), inputs.end(), IsPackageName))
     return UsageError("expected LIGHTFIELD PATH.yaml, or packages alone: PACKAGE...");
@@ -173,6 +191,7 @@ Result<RenderOptions> RenderArguments::MakeOptions(const CommonOptions& common, 
   options.contact_sheet = !no_contact_sheet;
   if (max_images > 0) options.max_image_count = static_cast<size_t>(max_images);
   options.smooth_below = smooth_below;
+  LF_ASSIGN_OR_RETURN(options.fill_radius_px, ParseFill(fill));
   LF_ASSIGN_OR_RETURN(options.memory_bytes, ParseByteSize(memory, "--memory"));
   options.strict = common.strict;
   options.whole_images = rectangles == "off";

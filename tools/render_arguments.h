@@ -25,7 +25,7 @@ struct RenderArguments {
   std::string output, video, frames, memory = "8G", format = "exr", mode = "collect";
   std::string estimator = "auto", filter = "auto", lens_weights = "auto", back_end = "fast";
   std::string order = "shuffle", rectangles = "on", dump_every = "30s", stop_when, require, shard,
-              finish;
+              finish, fill = "2";
   RebinArguments rebin;
   AllowMissing allow_missing;
   int64_t max_images = 0;

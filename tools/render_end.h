@@ -1,5 +1,5 @@
-// How a render ends when everything is written: LF images that were left out, and frames below what
-// was asked for.
+// The end of a render, when everything is written: LF images that were left out and frames below
+// the required quality decide about its exit code.
 #pragma once
 
 #include "tools/common/allow_missing.h"

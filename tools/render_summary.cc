@@ -15,6 +15,19 @@
 namespace lf {
 namespace {
 
+// Why elements of a frame have no ray, and what would help.
+std::string CauseOfEmptyElements(const RenderReport& report, const FrameReport& frame) {
+  if (!report.skipped.empty()) return "LF images are missing or broken, see below";
+  if (frame.weighed && frame.weighed->coverage.uncovered_share > kMuchUncovered)
+    return "the lens is beyond the capture, see below";
+  if (report.has_masks)
+    return "masks, or alpha that is taken as one (--image-alpha), leave out what is there";
+  if (!frame.weighed)
+    return "the lens holds no LF camera that sees them: open it, or leave --lens-weights at auto";
+  return "they look past what the LF cameras saw: at the capture's edge a frame must be narrower, "
+         "or the camera nearer to the middle";
+}
+
 // The share of elements without a ray, once for all frames.
 void WarnOfEmptyElements(const RenderReport& report) {
   const double element_count = static_cast<double>(report.width) * report.height;
@@ -28,9 +41,9 @@ void WarnOfEmptyElements(const RenderReport& report) {
   if (thin_count > 0)
     LogWarning(
         "{} of {} frames have elements that no ray reached, most of all frame {}: "
-        "{:.0f} %. Was the camera within the capture, the lens wider than the spacing?",
+        "{:.0f} %: {}",
         thin_count, report.frames.size(), worst->frame.value,
-        100 * worst->empty_element_count[1] / element_count);
+        100 * worst->empty_element_count[1] / element_count, CauseOfEmptyElements(report, *worst));
 }
 
 // How much of the pictures is interpolated, and from what.
@@ -110,17 +123,20 @@ void WarnOfFrames(const RenderReport& report, double limit, const Badness& badne
 }
 
 void WarnOfLenses(const RenderReport& report) {
-  constexpr double kFewImages = 3.95, kMuchUncovered = 0.5;
+  constexpr double kFewImages = 3.95;
   WarnOfFrames(
-      report, kMuchUncovered, [](const auto& weighed) { return weighed.uncovered_share; },
+      report, kMuchUncovered, [](const auto& weighed) { return weighed.coverage.uncovered_share; },
       [&](size_t count, const FrameReport& worst) {
+        const LensCoverage& coverage = worst.weighed->coverage;
         LogWarning(
-            "in {} of {} frames half of the lens and more is farther than two camera distances "
-            "from every LF camera, most of all in frame {}: {:.0f} %. What was not recorded is "
-            "stood "
-            "for by the LF images at the border of the capture: bokeh has their shape. A smaller "
-            "aperture, or a camera nearer to the middle of the capture, would show the truth",
-            count, report.frames.size(), worst.frame.value, 100 * worst.weighed->uncovered_share);
+            "in {} of {} frames a part of the lens is beyond the capture, most of all in frame {}: "
+            "{:.0f} %. It stays empty, and bokeh are cut off there. {}a camera nearer to the "
+            "middle of the capture would show the truth",
+            count, report.frames.size(), worst.frame.value, 100 * coverage.uncovered_share,
+            coverage.fitting_diameter_w > 0
+                ? fmt::format("An aperture of at most {:.4g} world units, or ",
+                              coverage.fitting_diameter_w)
+                : "Only ");
       });
   // Hats are few by their nature, and frames that nobody sees are black: both are told otherwise.
   WarnOfFrames(

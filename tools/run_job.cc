@@ -44,8 +44,7 @@ Result<void> RunJob(ClusterJob job, const std::vector<size_t>& numbers, bool wai
     outcome = WaitForJob(job, stop, [&] { Show(job, meter); });
   }
   if (!outcome && outcome.error().kind != ErrorKind::kBelowRequired) return outcome.error();
-  // What lfrenderer says of the whole film: rays, warnings, where to look. Its error is the
-  // outcome.
+  // lfrenderer reports on the whole film: rays, warnings, where to look. Its error is the outcome.
   for (const std::string& line : LinesOfLastStart(FinishingTask(job).log))
     if (!line.starts_with("error: ")) LogInfo("{}", line);
   if (common.json) LF_RETURN_IF_ERROR(PrintReport(ToJson(job, LookAtJob(job))));

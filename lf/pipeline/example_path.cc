@@ -4,16 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
+#include "lf/camera/ray_through.h"
 #include "lf/capture/capture_geometry.h"
 #include "lf/core/log.h"
-#include "lf/pipeline/focus_sweep.h"
+#include "lf/focus/find_subject.h"
 
 namespace lf {
 namespace {
 
-constexpr double kSpacingsPerAperture = 8;
-constexpr double kSpacingsPerSweep = 24;  // a wider lens tells depths apart better
+constexpr double kMostSpacings = 8, kLeastSpacings = 2.5;  // of the aperture
+constexpr double kSharpSpacings = 0.02;  // within it the LF camera at its middle is alone
+constexpr double kMostRoll_deg = 30;
 constexpr int kFrameCount = 50;
 constexpr int kFps = 25;
 constexpr double kDuration_s = static_cast<double>(kFrameCount - 1) / kFps;
@@ -26,30 +29,136 @@ std::string Text(const Vec3& v) {
 struct Focus {
   double distance_w = 0;
   std::string reason;
+  bool is_sure = true;
+  // The scene lies between these, if that is known; else they are equal.
+  double near_w = 0, far_w = 0;
 };
 
-Result<Focus> ChooseFocus(const LightField& light_field, const LfImageStore& store,
-                          const ExampleOptions& options, double aperture_diameter_w,
-                          double spacing_w, const Reach& reach, ThreadPool& pool) {
-  if (options.focus_distance_w) return Focus{*options.focus_distance_w, "as asked for"};
-  const PinholeCamera camera = light_field.Camera(options.camera);
+// Returns a focus if the pictures do not tell one.
+Focus GuessFocus(const LightField& light_field, const PinholeCamera& camera, double spacing_w,
+                 const std::vector<SubjectDepth>& depths) {
   if (const std::optional<Vec3> point = AxesMeetingPoint(light_field)) {
     const double depth_w = camera.ForwardWorld().dot(*point - camera.CentreWorld());
-    if (depth_w > spacing_w) return Focus{depth_w, "where the optical axes meet"};
+    if (depth_w > spacing_w) return {depth_w, "where the optical axes meet"};
   }
-  // The depths at which neighbours see things between 8 and a tenth of a pixel apart.
-  const double widest_w = 2 * std::max(reach.right_w, reach.up_w);
-  const double sweep_diameter_w =
-      std::max(aperture_diameter_w, std::min(kSpacingsPerSweep * spacing_w, widest_w));
-  LogInfo("the optical axes are parallel: looking for the sharpest plane");
-  const double disparity_w_px = camera.intrinsics.fx_px * spacing_w;
-  const double near_w = disparity_w_px / 8;
-  const double far_w = disparity_w_px / 0.1;
-  LF_ASSIGN_OR_RETURN(
-      const double distance_w,
-      SharpestFocusDistance(light_field, store, camera, sweep_diameter_w, near_w, far_w, pool));
-  return Focus{distance_w,
-               "the sharpest of a sweep of planes, since the optical axes are parallel"};
+  if (const std::optional<DepthRange>& range = light_field.depth_range)
+    return {2 / (1 / range->near_w + 1 / range->far_w), "the middle of the depth range"};
+  if (!depths.empty()) return {depths[0].distance_w, "where some LF images agree"};
+  return {camera.intrinsics.fx_px * spacing_w, "where neighbours see things a pixel apart"};
+}
+
+std::string WhyNotSure(const Subject& subject) {
+  if (subject.textured_count == 0) return "the LF image has no texture";
+  return fmt::format("the LF images around agree on a depth at {} of {} textured places",
+                     subject.place_count, subject.textured_count);
+}
+
+void WarnOfGuess(const Focus& focus, const Subject& subject,
+                 const std::vector<SubjectDepth>& depths) {
+  std::string others;
+  for (const SubjectDepth& depth : depths) others += fmt::format(", {:.4g}", depth.distance_w);
+  LogWarning(
+      "not sure what to focus on ({}): focused at {:.4g}, {}{}. So that the first frame is "
+      "sharp, its lens holds one LF camera: state --focus, and a wider aperture in the path",
+      WhyNotSure(subject), focus.distance_w, focus.reason,
+      others.empty() ? "" : "; it may also be at " + others.substr(2));
+}
+
+Result<Focus> ChooseFocus(const LightField& light_field, const LfImageStore& store,
+                          const ExampleOptions& options, double spacing_w, ThreadPool& pool) {
+  if (options.focus_distance_w) return Focus{*options.focus_distance_w, "as asked for"};
+  LF_ASSIGN_OR_RETURN(const Subject subject, FindSubject(light_field, store, options.camera, pool));
+  std::vector<SubjectDepth> depths = subject.depths;
+  bool is_sure = subject.is_sure;
+  if (const std::optional<DepthRange>& range = light_field.depth_range) {
+    constexpr double kMargin = 1.2;
+    const auto is_outside = [&](const SubjectDepth& depth) {
+      return depth.distance_w < range->near_w / kMargin ||
+             depth.distance_w > range->far_w * kMargin;
+    };
+    is_sure = is_sure && !is_outside(depths[0]);
+    std::erase_if(depths, is_outside);
+  }
+  Focus focus =
+      is_sure ? Focus{depths[0].distance_w, fmt::format("where {} of {} places of the image lie",
+                                                        depths[0].place_count, subject.place_count)}
+              : GuessFocus(light_field, light_field.Camera(options.camera), spacing_w, depths);
+  if (!is_sure) WarnOfGuess(focus, subject, depths);
+  focus.is_sure = is_sure;
+  focus.near_w = is_sure ? std::min(subject.near_w, focus.distance_w) : focus.distance_w;
+  focus.far_w = is_sure ? std::max(subject.far_w, focus.distance_w) : focus.distance_w;
+  return focus;
+}
+
+// Returns the diameter in spacings. Neighbours see what is away from the focus a few pixels apart:
+// so far are the copies apart into which its blur falls. Up to kGoodCopies_px nobody sees that;
+// beyond it, a narrower lens blurs less. Beyond kMostCopies_px, or if the focus may be wrong, only
+// a lens that holds one LF camera gives a picture.
+double SpacingsOfAperture(const Focus& focus, double fx_px, double spacing_w) {
+  constexpr double kGoodCopies_px = 3, kMostCopies_px = 16;
+  if (!focus.is_sure) return kSharpSpacings;
+  constexpr double kUnknownRange = 0.25;  // nearer than the focus
+  const double near_w = std::min(focus.near_w, focus.distance_w);
+  const double nearest_per_w = 1 / near_w - 1 / focus.distance_w;
+  const double farthest_per_w = 1 / focus.distance_w - 1 / std::max(focus.far_w, focus.distance_w);
+  double range_per_w = std::max(nearest_per_w, farthest_per_w);
+  if (!(range_per_w > 0)) range_per_w = kUnknownRange / focus.distance_w;
+  const double copies_px = fx_px * spacing_w * range_per_w;
+  if (copies_px > kMostCopies_px) return kSharpSpacings;
+  return std::clamp(kMostSpacings * kGoodCopies_px / std::max(copies_px, 1e-9), kLeastSpacings,
+                    kMostSpacings);
+}
+
+// The up direction that keeps the horizon level, if the cameras tell one.
+Vec3 LevelUp(const LightField& light_field, const PinholeCamera& camera) {
+  const Vec3 up = MeanUpWorld(light_field);
+  const double roll_rad = RollOf(camera, up);
+  if (up == Vec3::Zero() || roll_rad > RadiansFromDegrees(kMostRoll_deg)) return camera.UpWorld();
+  const Vec3 forward = camera.ForwardWorld();
+  const Vec3 across = up - forward * forward.dot(up);
+  return roll_rad == 0 ? camera.UpWorld() : Vec3(across.normalized());
+}
+
+// Plates of even size, for video.
+int Even(int size) { return std::max(2, size - size % 2); }
+
+// The largest frame of the LF image's proportions, with elements as large as its pixels are in the
+// middle, that lies within what the LF camera sees.
+Intrinsics InscribedFrame(const PinholeCamera& camera, const Vec3& up_world) {
+  const Intrinsics& k = camera.intrinsics;
+  const RayThrough rays(camera, camera.ForwardWorld());
+  const std::optional<RigidTransform> pose =
+      LookAlong(camera.CentreWorld(), camera.ForwardWorld(), up_world);
+  const auto frame_of = [&](double share) {
+    const int width = Even(static_cast<int>(std::lround(share * k.width_px)));
+    const int height = Even(static_cast<int>(std::lround(share * k.height_px)));
+    return Intrinsics{k.fx_px, k.fx_px, width / 2.0, height / 2.0, 0, width, height};
+  };
+  const auto is_seen = [&](const Intrinsics& frame) {
+    constexpr int kPoints = 16;  // of each side
+    constexpr double kTolerance_px = 0.5;
+    const PinholeCamera pinhole{frame, *pose};
+    for (int i = 0; i <= kPoints; ++i) {
+      const double x = frame.width_px * static_cast<double>(i) / kPoints;
+      const double y = frame.height_px * static_cast<double>(i) / kPoints;
+      const double w = frame.width_px, h = frame.height_px;
+      for (const Vec2& at : {Vec2(x, 0), Vec2(x, h), Vec2(0, y), Vec2(w, y)}) {
+        const auto place = rays.RecordedAt(RayOfPixel(pinhole, at.x(), at.y()).direction);
+        if (!place || place->x() < -kTolerance_px || place->y() < -kTolerance_px ||
+            place->x() > k.width_px + kTolerance_px || place->y() > k.height_px + kTolerance_px)
+          return false;
+      }
+    }
+    return true;
+  };
+  if (!pose || is_seen(frame_of(1))) return frame_of(1);
+  constexpr double kLeastShare = 0.25;
+  double seen = kLeastShare, unseen = 1;
+  for (int i = 0; i < 20; ++i) {
+    const double middle = (seen + unseen) / 2;
+    (is_seen(frame_of(middle)) ? seen : unseen) = middle;
+  }
+  return frame_of(seen);
 }
 
 // The part of the path that moves. At time 0 every quantity has the value it has elsewhere in the
@@ -105,9 +214,6 @@ Movement MakeMovement(ExampleMove move, const PinholeCamera& camera, const Reach
   return movement;
 }
 
-// Plates of even size, for video.
-int Even(int size) { return std::max(2, size - size % 2); }
-
 }  // namespace
 
 std::optional<ExampleMove> ParseExampleMove(std::string_view name) {
@@ -131,29 +237,31 @@ Result<ExamplePath> MakeExamplePath(const LightField& light_field, const LfImage
   const PinholeCamera camera = light_field.Camera(options.camera);
   const double spacing_w = MedianSpacing(light_field);
   const Reach reach = CaptureReach(light_field, camera, 400);
-  const double largest_w = 2 * std::max(reach.right_w, reach.up_w);
+  LF_ASSIGN_OR_RETURN(const Focus focus, ChooseFocus(light_field, store, options, spacing_w, pool));
   ExamplePath example;
-  example.aperture_diameter_w =
-      std::max(2.2 * spacing_w, std::min(kSpacingsPerAperture * spacing_w, largest_w));
-  LF_ASSIGN_OR_RETURN(const Focus focus,
-                      ChooseFocus(light_field, store, options, example.aperture_diameter_w,
-                                  spacing_w, reach, pool));
   example.focus_distance_w = focus.distance_w;
   example.focus_reason = focus.reason;
+  const double spacings = SpacingsOfAperture(focus, camera.intrinsics.fx_px, spacing_w);
+  const double largest_w = 2 * std::max(reach.right_w, reach.up_w);
+  constexpr double kLeastOfBand = 2.2;  // however narrow the capture is
+  example.aperture_diameter_w =
+      std::min(spacings * spacing_w, std::max(kLeastOfBand * spacing_w, largest_w));
 
   const Movement movement =
       MakeMovement(options.move, camera, reach, focus.distance_w, example.aperture_diameter_w);
-  const Intrinsics& k = camera.intrinsics;
+  const Vec3 up = LevelUp(light_field, camera);
+  const Intrinsics frame = InscribedFrame(camera, up);
   const double field_of_view_deg =
-      DegreesFromRadians(2 * std::atan(Even(k.width_px) / (2 * k.fx_px)));
-  const double focal_length_mm = kNominalSensorWidth_mm * k.fx_px / Even(k.width_px);
+      DegreesFromRadians(2 * std::atan(frame.width_px / (2 * frame.fx_px)));
+  const double focal_length_mm = kNominalSensorWidth_mm * frame.fx_px / frame.width_px;
+  const bool is_still = options.move == ExampleMove::kStatic;
   example.yaml = fmt::format(
       "# A camera path for lfrenderer; every key is explained in doc/formats/path.md.\n"
       "# It starts at LF camera {} ({}).\n"
       "format: lfpath 1\n"
       "fps: {}\n"
       "frames: {}\n"
-      "resolution: [{}, {}]            # that of the LF image\n"
+      "resolution: [{}, {}]            # of what the LF image shows\n"
       "camera:\n"
       "  field_of_view_deg: {:.7g}     # horizontal, that of the LF camera\n"
       "  focal_length_mm: {:.5g}         # on a sensor {} mm wide: what f-numbers count from\n"
@@ -166,10 +274,10 @@ Result<ExamplePath> MakeExamplePath(const LightField& light_field, const LfImage
       "  focus_distance: {:.6g}         # {}\n"
       "  blades: 0                     # 5 makes highlights pentagons\n"
       "  focus_tilt_deg: {{horizontal: 0, vertical: 0}}\n",
-      options.camera.value, light_field.image_names[options.camera.value], kFps, kFrameCount,
-      Even(k.width_px), Even(k.height_px), field_of_view_deg, focal_length_mm,
-      kNominalSensorWidth_mm, Text(camera.CentreWorld()),
-      Text(camera.CentreWorld() + focus.distance_w * camera.ForwardWorld()), Text(camera.UpWorld()),
+      options.camera.value, light_field.image_names[options.camera.value], kFps,
+      is_still ? 1 : kFrameCount, frame.width_px, frame.height_px, field_of_view_deg,
+      focal_length_mm, kNominalSensorWidth_mm, Text(camera.CentreWorld()),
+      Text(camera.CentreWorld() + focus.distance_w * camera.ForwardWorld()), Text(up),
       options.move == ExampleMove::kOrbit ? "look_at                # keeps looking at the focus"
                                           : "direction",
       example.aperture_diameter_w, spacing_w, movement.first_focus_distance_w,

@@ -22,8 +22,7 @@ std::optional<ExampleMove> ParseExampleMove(std::string_view name);
 struct ExampleOptions {
   LfImageId camera;  // the path starts where this LF image was taken
   ExampleMove move = ExampleMove::kFocusPull;
-  std::optional<double> focus_distance_w;  // default: where the optical axes meet, else the
-                                           // sharpest of a sweep of planes
+  std::optional<double> focus_distance_w;  // default: found by FindSubject()
 };
 
 struct ExamplePath {
@@ -33,8 +32,16 @@ struct ExamplePath {
   double aperture_diameter_w = 0;
 };
 
-// The lens covers about eight spacings of LF cameras, and no more than the capture does.
-// kInput: a light field of fewer than two cameras, no such camera, broken images.
+// A path that shows something: one frame if nothing moves, else 50.
+// - Focus: at the subject (focus/find_subject.h). Where that is not sure, where the optical axes
+//   meet, or else in the middle of the depth range, at the best depth found, or where neighbours
+//   see things a pixel apart; a warning says so, and what else it could be.
+// - Lens: eight spacings of LF cameras wide, down to 2.5 where these are so far apart that a blur
+//   falls into copies, and no wider than the capture. Where copies are too far apart for any blur,
+//   or the focus is not sure, next to a pinhole: the first frame is what one LF camera sees.
+// - Picture: the largest part of what the LF camera sees, level where the LF cameras' mean up
+//   direction is at most 30 degrees from its own.
+// kInput: a light field of fewer than two cameras, no such camera, its image broken.
 Result<ExamplePath> MakeExamplePath(const LightField& light_field, const LfImageStore& store,
                                     const ExampleOptions& options, ThreadPool& pool);
 

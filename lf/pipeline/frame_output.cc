@@ -46,8 +46,7 @@ FrameSheet MakeFrameSheet(FrameId frame, const RenderCamera& camera, const Frame
   sheet.develop.white_balance = encoding.white_balance;
   sheet.develop.camera_to_srgb = encoding.camera_to_srgb;
   if (const std::optional<FrameLens::Facts> facts = lens.facts())
-    sheet.weighed =
-        FrameSheet::Weighed{facts->hat_share, facts->uncovered_share, lens.EffectiveCounts()};
+    sheet.weighed = FrameSheet::Weighed{facts->hat_share, facts->coverage, lens.EffectiveCounts()};
   return sheet;
 }
 
@@ -80,7 +79,7 @@ Result<FrameReport> WritePicture(const FrameSheet& sheet, const SensorPlate& pla
   if (sheet.weighed) {
     const Image<float>& counts = sheet.weighed->effective_counts;
     report.weighed = {MedianOfSeen(counts.pixels()), sheet.weighed->hat_share,
-                      sheet.weighed->uncovered_share};
+                      sheet.weighed->coverage};
     if (IsExr(format))
       developed.effective_count = SpreadOverPlate(counts, sheet.camera.pinhole.intrinsics);
   }

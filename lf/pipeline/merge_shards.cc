@@ -250,6 +250,7 @@ class Merger {
     RunChoices picture;
     picture.format = NameOf(options_.format);
     picture.smooth_below = first.sheet.develop.smooth_below;
+    picture.fill_radius_px = first.sheet.develop.fill_radius_px;
     for (auto& entry : InputsOfPicture(picture)) report.inputs.push_back(std::move(entry));
     report.estimator = first.sheet.estimator;
     report.width = first.width_px;

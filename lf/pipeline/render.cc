@@ -87,6 +87,7 @@ RunStateOptions StateOptions(const Package& package, const RenderOptions& option
   choices.stop_at_noise = options.stop_at_noise;
   choices.format = NameOf(options.format);
   choices.smooth_below = options.smooth_below;
+  choices.fill_radius_px = options.fill_radius_px;
   RunInputs picture = InputsOfPicture(choices);
   if (!package.name.empty()) picture.emplace_back("picture.film", HashOfCameras(package.path));
   RunInputs rays = InputsOfRays(package.whole, package.light_field.encoding, choices);
@@ -189,7 +190,7 @@ Result<void> Renderer::Begin() {
   LF_ASSIGN_OR_RETURN(state_, RunState::Open(state_options, path_));
   had_plates_ = state_->HasPlates();
   totals_ = state_->earlier();
-  // Where nothing of the earlier run is kept, LF images that it skipped are tried again.
+  // LF images that the earlier run skipped are tried again if nothing of that run is kept.
   if (!had_plates_ && state_->finished().empty()) totals_.skipped.clear();
   if (options_.strict && !totals_.skipped.empty())
     return InputError(fmt::format(
@@ -204,6 +205,9 @@ Result<void> Renderer::Begin() {
   totals_.height = plate.height_px;
   totals_.thread_count = pool_.thread_count();
   totals_.lf_image_count = package_.whole.image_count;
+  const LightField& light_field = package_.light_field;
+  totals_.has_masks =
+      !light_field.mask_names.empty() || light_field.encoding.alpha == AlphaMeaning::kMask;
   done_.frame_total = frames_.size();
   TellPlan();
   return {};
@@ -240,15 +244,7 @@ Result<void> Renderer::CheckStore() const {
             : std::optional(SamplingOf(package_.surroundings[frame.value - 1]));
     const FrameNeeds wanted = NeedsOf(index_, path_.Camera(frame), needs, pool_, sampling);
     if (needs.select.interrupted != nullptr && *needs.select.interrupted) return {};
-    for (const FrameNeeds::Image& image : wanted.images) {
-      if (store_->Keeps(image.id, image.rect)) continue;
-      return InputError(fmt::format(
-          "{}: frame {} reads pixels of {} that are not in this packed store: it was made for "
-          "other frames, or for another --mode, --estimator or --lens-weights; compress packages "
-          "again that lfpreprocessor made with these, or without --needed-pixels",
-          package_.light_field.folder.string(), frame.value,
-          package_.light_field.image_names[image.id.value]));
-    }
+    LF_RETURN_IF_ERROR(CheckKept(*store_, package_.light_field, frame, wanted));
   }
   return {};
 }

@@ -20,6 +20,7 @@
 #include "lf/preprocess/frame_needs.h"
 #include "lf/record/report.h"
 #include "lf/record/shard.h"
+#include "lf/sequence/develop.h"
 #include "lf/sequence/frame_file.h"
 
 namespace lf {
@@ -57,7 +58,8 @@ struct RenderOptions {
   // their pictures do without. Not with shard.
   std::optional<double> stop_at_noise;
   std::optional<double> require_noise;  // off: measured, and in the report of each frame
-  uint32_t smooth_below = 0;            // sequence/develop.h
+  uint32_t smooth_below = 0;            // this and the next: sequence/develop.h
+  int fill_radius_px = kFillRadius_px;
   size_t memory_bytes = size_t{8} << 30;
   bool strict = false;
   bool whole_images = false;  // SelectOptions; the same bits, but slower
@@ -86,7 +88,7 @@ struct RenderOptions {
 
   // Whether something asks how many rays elements have.
   bool CountsRays() const { return stop_at_samples || require_samples || smooth_below > 0; }
-  // Whether something asks how much LF images differ in elements.
+  // Returns true if some option asks how much LF images differ in elements.
   bool MeasuresNoise() const { return stop_at_noise || require_noise; }
 };
 
@@ -99,7 +101,8 @@ struct RenderProgress {
   size_t image_total = 0;
 };
 
-// Returns what decides which LF images frames of the package need (preprocess/frame_needs.h).
+// Returns the options that decide which LF images frames of the package need
+// (preprocess/frame_needs.h).
 NeedsOptions NeedsOfRender(const Package& package, const RenderOptions& options);
 
 // Gives the LF images of a whole light field the order for the film and the options.

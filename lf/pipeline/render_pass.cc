@@ -342,6 +342,7 @@ FrameSheet RenderPass::SheetOf(size_t f) const {
   sheet.estimator = job_.options.reading.estimator;
   sheet.version = job_.options.version;
   sheet.develop.smooth_below = job_.options.smooth_below;
+  sheet.develop.fill_radius_px = job_.options.fill_radius_px;
   if (frames_[f].is_early) sheet.places_done = frames_[f].places.end;
   return sheet;
 }

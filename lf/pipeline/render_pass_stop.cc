@@ -31,7 +31,7 @@ Result<void> RenderPass::PrepareStops(std::span<const PlaceRange> places, Collec
     if (frame.is_finished) continue;
     const ReachableElements& reachable = ReachableOf(f);
     if (job_.options.stop_at_samples) {
-      // Those of all frames are multiples of the least.
+      // The decision places of every frame are multiples of the smallest one.
       frame.decision_places = DecisionPlaces(job_.index.place_end(), reachable.image_count());
       collect->decision_places = collect->decision_places == 0
                                      ? frame.decision_places
@@ -65,8 +65,8 @@ void RenderPass::ForgetRaysAhead(std::span<const PlaceRange> places) {
   }
 }
 
-// What is done up to a place is what it would be with all places before the returned one done: no
-// LF image of the pass lies between.
+// Returns the first place of an LF image of the pass that is not done. A frame with `places_done`
+// is the same as one with all places before it, because no LF image of the pass lies between.
 uint32_t RenderPass::PlacesCovered(uint32_t places_done) const {
   const auto next = std::lower_bound(
       images_.begin(), images_.end(), places_done,
@@ -95,7 +95,7 @@ Result<void> RenderPass::DecideStops() {
   std::vector<size_t> stopped;
   for (size_t f = 0; f < frames_.size(); ++f) {
     Frame& frame = frames_[f];
-    // What is finished early is so with the LF images it has.
+    // A frame that is finished early keeps the LF images it has.
     if (frame.is_finished || frame.is_early) continue;
     if (!frame.is_stopped) {
       const uint32_t covered = PlacesCovered(collector_->frames()[f].places_done);

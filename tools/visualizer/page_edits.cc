@@ -1,5 +1,6 @@
 #include "tools/visualizer/page_edits.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <charconv>
@@ -9,7 +10,7 @@
 #include <optional>
 
 #include "lf/core/file.h"
-#include "lf/visualizer/focus_pick.h"
+#include "lf/focus/focus_pick.h"
 
 namespace lf {
 namespace {
@@ -102,6 +103,11 @@ PageAnswer PickFocus(PageScene& scene, const Json& json) {
   }
   const auto pick = FindFocus(scene.light_field(), scene.store(), camera, *ray, scene.pool());
   if (!pick) return JsonAnswer({{"error", pick.error().message}});
+  if (pick->certainty < kLeastCertainty)
+    return JsonAnswer(
+        {{"error", fmt::format("the distance is certain to {:.0f} % only: click on an edge or a "
+                               "texture, away from outlines of things in front",
+                               100 * pick->certainty)}});
   const double distance_w = FocusDistanceThrough(camera, pick->point_world);
   if (!(distance_w > 0)) return JsonAnswer({{"error", "this lies behind the render camera"}});
   const Vec3& point = pick->point_world;

@@ -110,7 +110,8 @@ std::string DensityJson(PageScene& scene, const PathDraft& draft, FrameId frame)
       DensityOf(scene.index(), draft.path->Camera(frame), scene.light_field().depth_range);
   return Text({{"cameras_in_lens", density.cameras_in_lens},
                {"camera_distance", density.camera_distance_w},
-               {"uncovered_share", density.uncovered_share},
+               {"uncovered_share", density.coverage.uncovered_share},
+               {"fitting_aperture", density.coverage.fitting_diameter_w},
                {"least_aperture", density.least_aperture_w},
                {"depths", {density.depths.near_w, density.depths.far_w}},
                {"depths_known", scene.light_field().depth_range.has_value()},

@@ -93,7 +93,8 @@ export function showKeys(): void {
       "p",
       { class: "muted" },
       "In space: drag to turn, wheel to come nearer, right button to shift, click an LF camera " +
-        "to see its image. In pictures: click to focus there. In the timeline: drag diamonds.",
+        "to see its image. In pictures: click to focus there, Shift-click three " +
+        "places to tilt the focus plane through them. In the timeline: drag diamonds.",
     ),
     closeButton(),
   );

@@ -11,6 +11,7 @@ import type {
   PathNews,
   RenderFacts,
   SceneFacts,
+  Vec3,
 } from "./data/scene";
 import { getBytes, getJson, getText, post, SourceError } from "./data/source";
 import { History } from "./path/history";
@@ -57,6 +58,8 @@ export class State {
   isDark = true;
 
   private savedText = "";
+  // The points that were clicked so far of the three that tilt the focus plane.
+  planePoints: { frame: number; points: Vec3[] } | null = null;
   private savedId = "";
   private readonly listeners = new Map<Change, (() => void)[]>();
   private uses = new Map<string, ArrayBuffer>();

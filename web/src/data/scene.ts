@@ -53,6 +53,7 @@ export interface DensityFacts {
   cameras_in_lens: number;
   camera_distance: number | null;
   uncovered_share: number;
+  fitting_aperture: number;
   least_aperture: number | null;
   depths: [number, number | null];
   depths_known: boolean;

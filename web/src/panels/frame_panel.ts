@@ -114,12 +114,15 @@ export class FramePanel {
               "behind the focus distance.",
       ),
     );
-    if (density.uncovered_share > 0.005)
+    if (density.uncovered_share >= 0.1)
       words.push(
         element(
           "p",
           { class: "bad" },
-          `${percent(density.uncovered_share)} of the opening has no LF cameras: bokeh are cut off.`,
+          `${percent(density.uncovered_share)} of the opening is beyond the capture: bokeh are cut off there. ` +
+            (density.fitting_aperture > 0
+              ? `The largest aperture that fits is ${millimetres(density.fitting_aperture, path.unit_m)}.`
+              : "No aperture fits here: move the camera."),
         ),
       );
     if (density.least_aperture !== null && density.least_aperture > 2 * camera.radius)

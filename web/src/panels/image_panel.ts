@@ -35,7 +35,8 @@ export class ImagePanel {
       makePickable(
         this.picture,
         () => [state.selected!.width, state.selected!.height],
-        (x, y) => void focusThere(state, { camera: state.selected!.id, x, y }),
+        (x, y, isOfPlane) =>
+          void focusThere(state, { camera: state.selected!.id, x, y }, isOfPlane),
       );
     state.on(["selected"], () => this.drawImage());
     state.on(["selected", "use"], () => void this.drawOverlap());

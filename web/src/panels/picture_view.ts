@@ -1,10 +1,14 @@
 // A picture that a person may click to focus there.
 
+import type { FrameCamera } from "../data/frame_camera";
 import type { PickedFocus } from "../data/scene";
 import { post } from "../data/source";
+import { focusThrough } from "../data/tilted_focus";
 import { byId, element } from "../element";
+import type { PathDocument } from "../path/path_document";
+import type { PathValue } from "../path/path_quantities";
 import type { State } from "../state";
-import { length, percent } from "../words";
+import { length, percent, precise } from "../words";
 
 export interface PickRequest {
   camera?: number; // an LF camera; else the frame
@@ -12,10 +16,30 @@ export interface PickRequest {
   y: number;
 }
 
-// Asks for the distance of what is seen there, and focuses on it from this frame on: at a key of
-// the focus if there are keys, else all the film long.
-export async function focusThere(state: State, request: PickRequest): Promise<void> {
-  const { time } = state; // of the frame that was clicked, wherever the timeline is by then
+// Sets a quantity of the focus from a moment on: at a key if there are keys, else all the film long.
+function setFocus(document: PathDocument, name: string, time: number, value: PathValue): void {
+  const quantity = document.quantity(name);
+  if (quantity.keyframes.length > 0) document.setKeyframe(name, time, value);
+  else if (quantity.hasAccelerations) document.removeMotion(name, value);
+  else document.setBase(name, value);
+}
+
+// Returns how the focus was given, if it is not any more.
+function setFocusDistance(document: PathDocument, time: number, distance: number): string {
+  const { given, hasAccelerations } = document.quantity("focus_distance");
+  if (given) setFocus(document, "focus_distance", time, distance);
+  else document.useFocusDistance(distance);
+  return given && !hasAccelerations ? "" : ", instead of how the focus was given";
+}
+
+// Asks for the distance of what is seen there, and focuses on it.
+//   isOfPlane  it is one of three points that the focus plane shall hold
+export async function focusThere(
+  state: State,
+  request: PickRequest,
+  isOfPlane: boolean,
+): Promise<void> {
+  const { time, frame, camera } = state; // of what was clicked, wherever the timeline is by then
   state.say("Comparing LF images …");
   try {
     const picked = await post<PickedFocus>("focus", {
@@ -23,15 +47,10 @@ export async function focusThere(state: State, request: PickRequest): Promise<vo
       frame: state.frame,
       ...request,
     });
+    if (isOfPlane) return addToPlane(state, picked, time, frame, camera);
     let instead = "";
     const isTaken = state.edit("focus there", (document) => {
-      const focus = document.quantity("focus_distance");
-      if (!focus.given || focus.hasAccelerations) instead = ", instead of how the focus was given";
-      if (!focus.given) document.useFocusDistance(picked.focus_distance);
-      else if (focus.keyframes.length > 0)
-        document.setKeyframe("focus_distance", time, picked.focus_distance);
-      else if (focus.hasAccelerations) document.removeMotion("focus_distance", picked.focus_distance);
-      else document.setBase("focus_distance", picked.focus_distance);
+      instead = setFocusDistance(document, time, picked.focus_distance);
     });
     if (!isTaken) return;
     state.say(
@@ -43,14 +62,43 @@ export async function focusThere(state: State, request: PickRequest): Promise<vo
   }
 }
 
-// Calls `pick` with the place in the picture's own coordinates, and marks it.
+// After the third point the focus plane is tilted so that it holds all of them.
+function addToPlane(
+  state: State,
+  picked: PickedFocus,
+  time: number,
+  frame: number,
+  camera: FrameCamera,
+): void {
+  const before = state.planePoints?.frame === frame ? state.planePoints.points : [];
+  const points = [...before, picked.point];
+  state.planePoints = points.length < 3 ? { frame, points } : null;
+  if (points.length < 3)
+    return state.say(`Point ${points.length} of 3 of the focus plane, at ${length(picked.focus_distance)}`);
+  const plane = focusThrough(camera, points);
+  if (!plane)
+    return state.say("These three points lie on a line, or on a plane that the lens cannot focus on.", true);
+  const { distance, horizontal_deg, vertical_deg } = plane;
+  const isTaken = state.edit("tilt the focus plane", (document) => {
+    setFocusDistance(document, time, distance);
+    setFocus(document, "focus_tilt", time, { horizontal: horizontal_deg, vertical: vertical_deg });
+  });
+  if (isTaken)
+    state.say(
+      `Focused through three points: at ${length(distance)}, tilted by ` +
+        `${precise(horizontal_deg, 3)}° and ${precise(vertical_deg, 3)}°`,
+    );
+}
+
+// Calls `pick` with the place in the picture's own coordinates, and marks it. With Shift it is one of
+// three points of a focus plane.
 export function makePickable(
   frame: HTMLElement,
   size: () => [number, number],
-  pick: (x: number, y: number) => void,
+  pick: (x: number, y: number, isOfPlane: boolean) => void,
 ): void {
   frame.classList.add("pickable");
-  frame.title = "Click to focus there";
+  frame.title = "Click to focus there; Shift-click three places to tilt the focus plane through them";
   frame.addEventListener("click", (event) => {
     const box = frame.getBoundingClientRect();
     const x = (event.clientX - box.left) / box.width;
@@ -58,7 +106,7 @@ export function makePickable(
     frame.querySelector(".mark")?.remove();
     frame.append(element("div", { class: "mark", style: `left:${100 * x}%;top:${100 * y}%` }));
     const [width, height] = size();
-    pick(x * width, y * height);
+    pick(x * width, y * height, event.shiftKey);
   });
 }
 

@@ -82,7 +82,7 @@ export class RenderPanel {
     makePickable(
       this.box,
       () => [this.state.camera.width, this.state.camera.height],
-      (x, y) => this.focusAt(x, y),
+      (x, y, isOfPlane) => this.focusAt(x, y, isOfPlane),
     );
     state.on(["preview", "watch", "frame", "path"], () => this.update());
   }
@@ -92,7 +92,7 @@ export class RenderPanel {
   }
 
   // Where the picture is of what the frame sees now.
-  private focusAt(x: number, y: number): void {
+  private focusAt(x: number, y: number, isOfPlane: boolean): void {
     const { state, picture, previewed } = this;
     const { camera } = state;
     if (!picture) return;
@@ -102,7 +102,7 @@ export class RenderPanel {
         (picture.fullWidth !== camera.width || picture.fullHeight !== camera.height))
       return state.say(`This picture is of another path: it has ${picture.fullWidth} × ` +
         `${picture.fullHeight} elements, and the frame ${camera.width} × ${camera.height}.`);
-    void focusThere(state, { x, y });
+    void focusThere(state, { x, y }, isOfPlane);
   }
 
   // A render of this frame with a small plate, as the path is now.

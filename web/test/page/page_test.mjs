@@ -381,6 +381,21 @@ test("a preview comes in, and a click on it focuses there", async () => {
   }, CHART_PATH.replace("time: 0, value: 1}", "time: 0, value: 1.15}"), ["--max-angle", "45"]);
 });
 
+test("three clicks with Shift are asked for before the focus plane is tilted", async () => {
+  await withChart(async (page) => {
+    await page.keyboard.press("p");
+    await until(page, "app.state.preview && app.state.preview.state === 'finished'");
+    await page.waitForSelector(".picture canvas[data-version^='preview/1.bin']");
+    const box = await page.locator(".picture:has(canvas)").boundingBox();
+    await page.keyboard.down("Shift");
+    await page.mouse.click(box.x + (box.width * 56) / 96, box.y + (box.height * 40) / 64);
+    await until(page, "/Point 1 of 3/.test(app.state.message?.text ?? '')");
+    await page.keyboard.up("Shift");
+    assert.equal(await page.evaluate("lfvisualizer.state.isChanged"), false);
+    assert.equal(await page.evaluate("lfvisualizer.state.planePoints.points.length"), 1);
+  }, CHART_PATH.replace("time: 0, value: 1}", "time: 0, value: 1.15}"), ["--max-angle", "45"]);
+});
+
 test("frames of a render are seen while they grow", async () => {
   // All 225 LF images take part, and between every 64 of them there may be a checkpoint.
   const many = join(temporary.folder, "many");

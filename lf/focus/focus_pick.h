@@ -23,6 +23,9 @@ struct FocusPick {
   std::vector<LfImageId> images;  // that were compared; the first one nearest to the ray's origin
 };
 
+// Below it a pick is rather a guess: of patterns that repeat, and of outlines.
+inline constexpr double kLeastCertainty = 0.2;
+
 // Continuous position (x, y) of an LF image, lens distortion undone. None where it has no ray.
 std::optional<Ray> RayOfLfPixel(const PinholeCamera& lf_camera, double x_px, double y_px);
 

@@ -1,4 +1,4 @@
-#include "lf/visualizer/focus_pick.h"
+#include "lf/focus/focus_pick.h"
 
 #include <fmt/format.h>
 

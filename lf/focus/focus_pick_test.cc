@@ -1,4 +1,4 @@
-#include "lf/visualizer/focus_pick.h"
+#include "lf/focus/focus_pick.h"
 
 #include <gtest/gtest.h>
 
@@ -76,6 +76,31 @@ RenderCamera Frame() {
   return frame;
 }
 
+// A wall of a pattern that repeats every 0.05.
+class LatticeStore : public LfImageStore {
+ public:
+  explicit LatticeStore(const LightField& field) : field_(field) {}
+  Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override {
+    pixels->Reset(rect, BayerPattern::kNone);
+    for (int y = 0; y < rect.height(); ++y)
+      for (int x = 0; x < rect.width(); ++x) {
+        const auto ray =
+            *RayOfLfPixel(field_.Camera(id), rect.x_begin + x + 0.5, rect.y_begin + y + 0.5);
+        const Vec3 point = ray.At((kFar_w - ray.origin.z()) / ray.direction.z());
+        constexpr double kWave = 2 * kPi / 0.05;
+        const double light =
+            0.5 + 0.2 * (std::sin(kWave * point.x()) + std::sin(kWave * point.y()));
+        for (int c = 0; c < 3; ++c)
+          pixels->radiance.at(x, y, c) = static_cast<uint16_t>(65535 * light);
+        pixels->radiance.at(x, y, LfPixels::kRayLane) = 1;
+      }
+    return {};
+  }
+
+ private:
+  const LightField& field_;
+};
+
 Result<FocusPick> PickInFrame(const LightField& field, double x_px, double y_px) {
   ThreadPool pool(2);
   return FindFocus(field, WallStore(field), Frame(), RayOfPixel(Frame().pinhole, x_px, y_px), pool);
@@ -141,6 +166,15 @@ TEST(FocusPick, TiltedPlanesHoldThePoint) {
   const double distance_w = FocusDistanceThrough(frame, point);
   const Plane plane = FocusPlane(frame.pinhole, distance_w, frame.focus_tilt);
   EXPECT_NEAR(plane.normal.dot(point), plane.offset_w, 1e-12);
+}
+
+TEST(FocusPick, APatternThatRepeatsIsNotCertain) {
+  ThreadPool pool(2);
+  const LightField field = Wall();
+  const auto pick =
+      FindFocus(field, LatticeStore(field), Frame(), RayOfPixel(Frame().pinhole, 160, 120), pool);
+  if (!pick) return;
+  EXPECT_LT(pick->certainty, kLeastCertainty);
 }
 
 }  // namespace

@@ -1,0 +1,52 @@
+#include "lf/focus/reduced_image.h"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace lf {
+namespace {
+
+// The mean light of one pixel of the reduced image.
+float ReducedPixel(const LfPixels& pixels, int x_begin, int y_begin, int divisor) {
+  double sum = 0;
+  for (int y = y_begin; y < y_begin + divisor; ++y)
+    for (int x = x_begin; x < x_begin + divisor; ++x) {
+      if (pixels.IsMasked(x, y)) return std::numeric_limits<float>::quiet_NaN();
+      for (int c = 0; c < 3; ++c) sum += pixels.radiance.at(x, y, c);
+    }
+  return static_cast<float>(std::sqrt(sum / (3 * 65535.0 * divisor * divisor)));
+}
+
+}  // namespace
+
+float ReducedImage::At(const Vec2& place_px) const {
+  const double x = place_px.x() / divisor - 0.5, y = place_px.y() / divisor - 0.5;
+  if (!(x >= 0 && y >= 0 && x < light.width() - 1 && y < light.height() - 1))
+    return std::numeric_limits<float>::quiet_NaN();
+  const int column = static_cast<int>(x), row = static_cast<int>(y);
+  const auto u = static_cast<float>(x - column), v = static_cast<float>(y - row);
+  const float* upper = light.row(row) + column;
+  const float* lower = light.row(row + 1) + column;
+  return (1 - v) * ((1 - u) * upper[0] + u * upper[1]) + v * ((1 - u) * lower[0] + u * lower[1]);
+}
+
+int DivisorFor(int width_px) { return (width_px + kMostReducedWidth - 1) / kMostReducedWidth; }
+
+Result<ReducedImage> LoadReducedImage(const LightField& light_field, const LfImageStore& store,
+                                      LfImageId id) {
+  const Intrinsics& k = light_field.Camera(id).intrinsics;
+  LF_ASSIGN_OR_RETURN(const LfPixels pixels,
+                      LoadWithoutThrowing(store, id, {0, 0, k.width_px, k.height_px},
+                                          light_field.ImagePath(id).string(), LfPixels()));
+  ReducedImage reduced;
+  reduced.divisor = DivisorFor(k.width_px);
+  const int d = reduced.divisor;
+  reduced.light = Image<float>(k.width_px / d, k.height_px / d, 1);
+  for (int y = 0; y < reduced.light.height(); ++y)
+    for (int x = 0; x < reduced.light.width(); ++x)
+      reduced.light.at(x, y) = ReducedPixel(pixels, x * d, y * d, d);
+  return reduced;
+}
+
+}  // namespace lf

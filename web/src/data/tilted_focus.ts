@@ -1,0 +1,39 @@
+// A focus plane through three points of the scene.
+
+import type { FrameCamera } from "./frame_camera";
+import { add, dot } from "./frame_camera";
+import type { Vec3 } from "./scene";
+
+export interface TiltedFocus {
+  distance: number;      // along the optical axis
+  horizontal_deg: number;
+  vertical_deg: number;
+}
+
+const MOST_TILT_DEG = 85;
+
+// A point x to the right of the axis and y above it is sharp at the depth
+// distance + x tan(horizontal) + y tan(vertical). None where the points lie on a line, or the plane
+// is tilted by more than 85 degrees or meets the axis behind the camera.
+export function focusThrough(camera: FrameCamera, points: readonly Vec3[]): TiltedFocus | null {
+  const [a, b, c] = points.map((point) => {
+    const offset = add(point, camera.centre, -1);
+    return [dot(camera.right, offset), dot(camera.up, offset), dot(camera.forward, offset)];
+  });
+  const u = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
+  const v = [c[0] - a[0], c[1] - a[1], c[2] - a[2]];
+  const area = u[0] * v[1] - u[1] * v[0];
+  const size = Math.max(Math.hypot(u[0], u[1]), Math.hypot(v[0], v[1]));
+  if (!(Math.abs(area) > 1e-3 * size * size)) return null;
+  const horizontal = (u[2] * v[1] - u[1] * v[2]) / area;
+  const vertical = (u[0] * v[2] - u[2] * v[0]) / area;
+  const distance = a[2] - a[0] * horizontal - a[1] * vertical;
+  const degrees = (slope: number): number => (Math.atan(slope) * 180) / Math.PI;
+  const tilted = {
+    distance,
+    horizontal_deg: degrees(horizontal),
+    vertical_deg: degrees(vertical),
+  };
+  const isSteep = Math.max(Math.abs(tilted.horizontal_deg), Math.abs(tilted.vertical_deg)) > MOST_TILT_DEG;
+  return distance > 0 && !isSteep ? tilted : null;
+}
