@@ -17,6 +17,7 @@ import json
 import os
 import pathlib
 import random
+import shlex
 import signal
 import sys
 import tempfile
@@ -25,14 +26,12 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "bench")]
 
+import defaults
 import record
 from covering_cells import covering_cells
 from matrix_page import AXES, Cell, read_page
 from matrix_run import Outcome, try_cells
 from matrix_ways import VALUES, Matrix
-
-MARKERS = "<!-- table: scripts/matrix.py -->", "<!-- end of table -->"
-
 
 def parse():
     parser = argparse.ArgumentParser(description=__doc__,
@@ -48,9 +47,7 @@ def parse():
     parser.add_argument("--keep", type=pathlib.Path, metavar="DIR", help="keep films and frames here")
     for axis in AXES:
         parser.add_argument(f"--{axis}", action="append", choices=VALUES[axis])
-    parser.add_argument("--again", type=pathlib.Path, metavar="JSON", help="of an earlier run")
-    parser.add_argument("--write", type=pathlib.Path, metavar="PAGE",
-                        help="put the summary into this page, between its markers")
+    record.add_options(parser)
     options = parser.parse_args()
     if not options.again and not options.bin:
         parser.error("BIN or --again JSON is needed")
@@ -97,9 +94,12 @@ def tell(done, total, kinds, start_s, tried):
 
 
 def run(options):
-    result = {**record.context(), "cells": 0, "page": hash_of_page()}
     cells = cells_of(options)
-    result["cells"] = len(cells)
+    defaults_today = defaults.of_programs([options.bin.resolve() / name for name in defaults.PROGRAMS])
+    # Cells call programs with thousands of different words: the record names this script alone.
+    result = {**record.context(), "cells": len(cells), "page": hash_of_page(),
+              "commands": [shlex.join(map(record.shown, sys.argv))], "defaults": defaults_today,
+              "defaults_hash": defaults.hash_of(defaults_today)}
     outcomes = begun(options, result)
     known = {outcome.cell for outcome in outcomes}
     todo = [cell for cell in cells if cell not in known]
@@ -155,13 +155,9 @@ def summary(result):
 def main():
     options = parse()
     result = json.loads(options.again.read_text()) if options.again else run(options)
-    text = summary(result)
-    print(text)
-    if options.write:
-        page = options.write.read_text()
-        before, rest = page.split(MARKERS[0])
-        after = rest.split(MARKERS[1], 1)[1]
-        options.write.write_text(f"{before}{MARKERS[0]}\n{text}{MARKERS[1]}{after}")
+    of_all = {key: value for key, value in result.items() if key != "outcomes"}
+    of_all["made_by"] = result["commands"][0]
+    record.publish(options, "scripts/matrix.py", of_all, summary(result))
     return 3 if any(outcome[1] == "wrong" for outcome in result["outcomes"]) else 0
 
 

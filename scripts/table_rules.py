@@ -22,7 +22,7 @@ FIGURE = re.compile(r"(?<![\w.-])\d[\d,.]*(?:(?: to [\d.]+)? ?(?:ns|µs|ms|s|h|m
                     r"CPU s|x|×)(?![\w-])|(?<=\d\.\d\d)(?![\w.]))")
 REFERENCE = re.compile(r"\b(?:Eq|Fig|Figures?|Tables?)\b\.?[\d\s.,–-]+")  # 2.18 is no figure there
 FEWEST_FIGURES = 4
-# What a render depends on most: one command of a table names all of them, another one none.
+# Options that a render depends on most: one command of a table names all of them, another one none.
 CHOICES = ("--mode", "--estimator", "--lens-weights")
 RENDERERS = ("lfrenderer", "lfsubmit")
 
@@ -108,7 +108,7 @@ def default_values(record):
 
 
 def missing_choices(record):
-    """What the commands of a record lack: the choices named, and the defaults beside them."""
+    """Yields what the commands of a record lack: the choices named, and the defaults beside them."""
     renders = [shlex.split(command) for command in record["commands"]]
     renders = [words for words in renders if words[0] in RENDERERS]
     if not renders:
@@ -126,7 +126,7 @@ def changed_defaults(record, today):
 
 
 def faults_of(root, table, records, today):
-    """What is wrong with one table."""
+    """Yields the faults of one table."""
     if table.words not in records:
         yield f"no record in {RECORDS} is of this table: make it again"
         return

@@ -98,6 +98,21 @@ run
         program.chmod(program.stat().st_mode | stat.S_IXUSR)
         return program
 
+    def held_renderer(self) -> pathlib.Path:
+        """Like lfrenderer, but each package's first start stands still as soon as it has begun a frame,
+        until it gets a SIGTERM: so that all packages are at work at once, however busy the machine is."""
+        return self.unlucky_renderer(f"""
+            if [[ $start == 1 && $package != finish ]]; then
+                {RENDERER} "${{arguments[@]}}" & renderer=$!
+                trap 'kill -TERM $renderer; kill -CONT $renderer' TERM
+                while kill -0 $renderer && ! compgen -G "{self.film}/partial/$package/frame_*.plate"
+                do sleep 0.01; done
+                kill -STOP $renderer
+                wait $renderer  # Ended by the signal, which the trap hands on.
+                wait $renderer
+                exit $?
+            fi""")
+
     def start(self, *options):
         """lfsubmit, at work."""
         process = subprocess.Popen([SUBMIT, *map(str, self.package_files), "-o", str(self.film),

@@ -155,7 +155,7 @@ class RendererTest(unittest.TestCase):
         self.assertIn("fewer than 4 LF images", few.stderr)
         huge = self.run_renderer(field, write_path(self.folder, aperture=0.3), "-o",
                                  self.folder / "huge")
-        self.assertIn("farther than two camera distances", huge.stderr)
+        self.assertIn("beyond the capture", huge.stderr)
         counted = self.run_renderer(field, write_path(self.folder), "-o", self.folder / "counted",
                                     "--stop-when", "samples>=2")
         self.assertIn("auto: none", counted.stderr)

@@ -241,12 +241,15 @@ class LongLocalJobTest(ClusterTestCase):
     resolution = [320, 240]
     OPTIONS = ("--jobs", 2, "--threads", 1, "--", "--dump-every", "0.05s")
 
+    def start_held(self):
+        return self.start("--lfrenderer", self.held_renderer(), *self.OPTIONS)
+
     def resume(self, *options, code=0):
         return self.succeeds(cluster_test_case.SUBMIT, "--resume", self.film, *options, code=code)
 
     def test_a_signal_writes_the_state_of_all_packages(self):
         for sign in (signal.SIGINT, signal.SIGTERM):
-            process = self.start(*self.OPTIONS)
+            process = self.start_held()
             self.wait_for(lambda: self.has_begun(0) and self.has_begun(1))
             process.send_signal(sign)
             words = process.communicate()[1].strip().splitlines()[-1]
@@ -261,10 +264,10 @@ class LongLocalJobTest(ClusterTestCase):
                     for k in (0, 1)]
             for log in logs:  # nothing that a checkpoint held is rendered again
                 self.assertRegex(log, r"going on: \d frames are finished, \d begun")
-            subprocess.run(["rm", "-r", self.film], check=True)
+            subprocess.run(["rm", "-r", self.film, self.folder / "starts"], check=True)
 
     def test_a_killed_lfsubmit_takes_its_renderers_along(self):
-        process = self.start(*self.OPTIONS)
+        process = self.start_held()
         self.wait_for(lambda: self.has_begun(0) and self.has_begun(1))
         os.kill(process.pid, signal.SIGKILL)
         process.wait()
@@ -277,7 +280,7 @@ class LongLocalJobTest(ClusterTestCase):
 
     # Its renderers are still writing their states, and hold their locks.
     def test_a_killed_lfsubmit_is_gone_on_with_at_once(self):
-        process = self.start(*self.OPTIONS)
+        process = self.start_held()
         self.wait_for(lambda: self.has_begun(0) and self.has_begun(1))
         os.kill(process.pid, signal.SIGKILL)
         process.wait()
@@ -303,7 +306,7 @@ class LongLocalJobTest(ClusterTestCase):
 
     def test_frames_are_finished_early(self):
         submit = cluster_test_case.SUBMIT
-        process = self.start(*self.OPTIONS)
+        process = self.start_held()
         self.wait_for(lambda: self.has_begun(0))
         process.send_signal(signal.SIGINT)
         process.communicate()

@@ -1,4 +1,4 @@
-"""What doc/matrix.md says: the axes of the matrix, and which of its cells must be refused."""
+"""Reads doc/matrix.md: the axes of the matrix, and the cells that must be refused."""
 import pathlib
 import re
 from typing import NamedTuple

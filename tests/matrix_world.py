@@ -55,7 +55,7 @@ keyframes:
 
 
 class Difference(Exception):
-    """What is wrong with a cell."""
+    """A fault of a cell."""
 
 
 class ProgramFailed(Exception):
@@ -104,33 +104,42 @@ def picture_of(field, index):
     rgb = np.clip(waves[..., None] + [0, 15, -20] + noise, 0, 255)
     if "mosaic" in field:
         return (rgb[..., 1] * 200).astype(np.uint16)
+    if field == "alpha":
+        opacity = 600 - 25 * np.hypot(x - WIDTH / 2 - index % SIDE, y - HEIGHT / 2)
+        rgb = np.dstack([rgb, np.clip(opacity, 0, 255)])
     return rgb.astype(np.uint8)
 
 
 def write_capture(folder, field):
     small_field.SIDE = SIDE
     keys = {}
+    if field == "alpha":
+        keys = {"lf_alpha": "straight", "lf_background": [0.1, 0.3, 0.2]}
     if "mosaic" in field:
         keys = {"lf_bayer": "RGGB", "lf_transfer": "linear", "lf_black_level": 100,
                 "lf_white_level": 52000, "lf_white_balance": [2, 1, 1.5],
                 "camera_model": "OPENCV", "k1": 0.03, "k2": -0.01, "p1": 0.001, "p2": 0.0}
     calibration = small_field.write_field(folder, functools.partial(picture_of, field), **keys)
-    if "flawed" in field:
-        add_flaws(calibration)
+    if "flawed" in field or field == "alpha":
+        add_flaws(field, calibration)
     return calibration
 
 
-def add_flaws(calibration):
-    folder, text = calibration.parent, json.loads(calibration.read_text())
-    frames = text["frames"]
-    (folder / frames[BROKEN]["file_path"]).write_text("no picture")
-    (folder / frames[MISSING]["file_path"]).unlink()
+def add_masks(folder, frames):
     for number, index in enumerate(MASKED):
         mask = np.full((HEIGHT, WIDTH), 255, np.uint8)
         mask[:, number * WIDTH // 2:(number + 1) * WIDTH // 2] = 0
         Image.fromarray(mask).save(folder / f"mask_{number}.png")
         frames[index]["lf_mask"] = f"mask_{number}.png"
     frames[BRIGHTER]["lf_gain"] = 1.25
+
+
+def add_flaws(field, calibration):
+    folder, text = calibration.parent, json.loads(calibration.read_text())
+    add_masks(folder, text["frames"])
+    if "flawed" in field:
+        (folder / text["frames"][BROKEN]["file_path"]).write_text("no picture")
+        (folder / text["frames"][MISSING]["file_path"]).unlink()
     calibration.write_text(json.dumps(text))
 
 
@@ -163,7 +172,7 @@ class World:
 
     @once
     def knows(self, program, option):
-        """Whether a program has an option."""
+        """Returns whether a program has an option."""
         done = subprocess.run([self.program(program), "--help"], capture_output=True, text=True)
         return option in done.stdout
 
@@ -236,5 +245,5 @@ class World:
 
 
 def is_of_packages(source):
-    """Whether an input is a store of what packages need."""
+    """Returns whether an input is a store of what packages need."""
     return "packages" in source or "needed" in source

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What frames need is one thing: packages carry it, stores are cut to it, renders read no more.
+"""Packages, stores of needed pixels and renders agree about what frames need.
 
 usage: needed_pixels_test.py LFCOMPRESSOR LFRENDERER LFPREPROCESSOR LFSUBMIT
 """
@@ -138,6 +138,10 @@ class NeededPixelsTest(ProgramTestCase):
                    RENDERER, *packages, "--lightfield", store, "--mode", "rebin", "-o",
                    self.folder / "none")
         self.assertFalse(list((self.folder / "none").glob("frame_*")))
+        # The store as a light field of its own: packages that could not be rendered are not made.
+        self.fails(3, ["frame 1 reads pixels of", "not in this packed store"],
+                   PREPROCESSOR, store, path, "--mode", "rebin", "-o", self.folder / "made")
+        self.assertFalse(list((self.folder / "made").glob("*.lfp")))
 
     def test_a_lens_without_rays_is_planned_for_the_mode_that_fills_it(self):
         # In the plane of the LF cameras, between four of them.

@@ -205,7 +205,7 @@ class NoiseRuleTest(ProgramTestCase):
             plates[-1].unlink()
             self.assertEqual(self.render(tag + "-cut", *rule, "--resume"), expected, way)
 
-    # What is asked for
+    # --require
 
     def test_require_ends_with_code_6(self):
         for way in ("auto", "hybrid", "rebin"):

@@ -15,7 +15,7 @@ BIN = None
 
 COMMON = ("--threads", "--seed", "--strict", "--progress", "--verbose", "--quiet", "--json",
           "--allow-missing")
-# What each has an effect on:
+# Programs have a common option only if it has this effect:
 #   --threads        the program has a pool of threads, or gives the number to lfrenderer
 #   --seed           poses and noise (lfsynth), the order of LF images, rebinned rays
 #   --strict         a missing or broken LF image is an error
