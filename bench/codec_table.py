@@ -244,7 +244,7 @@ def number(value, digits=1):
 
 
 def measure(content, with_peers, pictures):
-    rows, drawn = [], [content.frames[1]]
+    rows, drawn = [], [content.frames["none"][1]]
     # Of 16 bits the highlights alone take most of 256 values.
     quantizers = ("8bit",) if content.bits == 8 else ("8bit", 4096)
     for quantizer, (levels, threshold) in itertools.product(quantizers, THESIS):

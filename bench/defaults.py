@@ -53,7 +53,7 @@ def options_of(program):
 
 
 def resolved(folder):
-    """What a render that names no options says of itself, for RGB images and for mosaics."""
+    """Returns what a render that names no options reports about itself, for RGB images and for mosaics."""
     lines = []
     with tempfile.TemporaryDirectory() as temporary:
         work = pathlib.Path(temporary)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What lfpreprocessor expects of a light field of a million LF images, cut into more and more packages.
+"""Tabulates what lfpreprocessor forecasts for a light field of a million LF images, cut into more and more packages.
 
 usage: bench/forecast_table.py BUILD_DIR [--count 1000000] [--packages 1,8,64,300] [--name NAME] [--write doc/cluster.md]
        bench/forecast_table.py --again JSON [--write doc/cluster.md]
@@ -73,7 +73,7 @@ def table(record):
     for row in record["rows"]:
         passes = " to ".join(map(str, dict.fromkeys(row["passes"])))
         lines.append(f"| {row['way']} | {row['packages']} | {row['lf_images']:,} | {row['bytes'] / GB:.0f} | "
-                     f"{row['most_bytes'] / GB:.2g} | {duration(row['cpu_s'])} | {duration(row['most_cpu_s'])} | "
+                     f"{row['most_bytes'] / GB:.3g} | {duration(row['cpu_s'])} | {duration(row['most_cpu_s'])} | "
                      f"{row['memory_bytes'] / GB:.1f} GB | {passes} | {row['seconds']:.0f} s |")
     return lines
 

@@ -45,8 +45,7 @@ def measure(build, folder, density, size):
     for weights, order in itertools.product(WEIGHTS, ("shuffle", "round-robin", "area")):
         out = folder / f"{order}-{weights}"
         results.call([build / "bin/lfpreprocessor", field, path, "-o", out, "-q", "--order", order,
-                      "--frames-per-package", 1,
-                      *WEIGHTS[weights]])
+                      "--frames-per-package", 1, "--allow-missing", "100%", *WEIGHTS[weights]])
         rows.append({"order": order, "weights": weights, "rays": filled_after_a_tenth(sorted(out.glob("*.lfp")))})
     return rows
 

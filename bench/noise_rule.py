@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Whether frames that --stop-when "noise<=X" ends have the noise that was asked for, and whether that noise is
-what they differ by from frames of all LF images.
+"""Checks that frames stopped by --stop-when "noise<=X" have the noise that was asked for, and that this noise is
+their difference from frames of all LF images.
 
 usage: bench/noise_rule.py BUILD_DIR [--data ../shared] [--size 480x320] [--noise 0.012,0.009,...]
                            [--only WAY,...] [--name NAME] [--write PAGE]

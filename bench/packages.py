@@ -30,7 +30,7 @@ RECTANGLES = (("nearest", 36), ("nearest", 72), ("bilinear", 72), ("default", 72
 
 
 def digest(folder):
-    """Of the bytes of all frames."""
+    """Returns a digest of the bytes of all frames."""
     whole = hashlib.sha256()
     for frame in sorted(folder.glob("frame_*")):
         whole.update(hashlib.sha256(frame.read_bytes()).digest())
@@ -38,7 +38,7 @@ def digest(folder):
 
 
 def render(build, inputs, out, *options):
-    """Seconds of one run."""
+    """Returns the seconds of one run."""
     for report in out.glob("report*.json"):  # of another run, which --resume alone would take up
         report.unlink()
     used = results.timed([build / "bin/lfrenderer", *inputs, "-o", out, "-q", "--no-contact-sheet", *options])

@@ -91,7 +91,7 @@ def note(words):
 
 
 def _note_call(event, details):
-    """Of Python's audit events: a process that is about to be started."""
+    """Notes a process that Python is about to start (an audit hook)."""
     if event != "subprocess.Popen" or not _is_noting:
         return
     words = details[1] if isinstance(details[1], (list, tuple)) else [details[1]]

@@ -69,7 +69,7 @@ keyframes:
 
 
 def digest(folder):
-    """Of the bytes of all frames."""
+    """Returns a digest of the bytes of all frames."""
     whole = hashlib.sha256()
     for frame in sorted(folder.glob("frame_*")):
         whole.update(hashlib.sha256(frame.read_bytes()).digest())
@@ -181,7 +181,7 @@ def table(record):
 
 
 def goals(record):
-    """What a light field that grows must not do."""
+    """Returns the goals that a growing light field must keep to, and whether they were reached."""
     lines = []
 
     def goal(what, value, is_reached):

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""How long selection takes in the band of the thesis (lf_selection_bench): by the octree, and by asking all.
+"""Times selection in the band of the thesis (lf_selection_bench): by the octree, and by asking every LF image.
 
 usage: bench/selection_table.py BUILD_DIR [--name NAME] [--write PAGE]
        bench/selection_table.py --again JSON [--write PAGE]

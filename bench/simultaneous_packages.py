@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""How much sooner a film is done when its packages are rendered at the same time (thesis, Table 5.2).
+"""Measures how much sooner a film is done when its packages are rendered at the same time (thesis, Table 5.2).
 
 usage: bench/simultaneous_packages.py BUILD_DIR [--movement long] [--density 0.03] [--size 480x320]
                                       [--frames-share 1] [--packages 1,2,4] [--runs 3] [--field DIR]

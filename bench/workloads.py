@@ -33,7 +33,7 @@ PER_MM2 = 66    # LF cameras: 827 within a disk of 4 mm (stack)
 DISTANCE_M = 1  # from the grid to the middle of the scene
 FPS = 30
 
-# How a table renders: each choice named, and the defaults beside them.
+# Ways of rendering: each names every choice; the defaults stand beside them.
 WAYS = {
     "nearest": ("--mode", "collect", "--estimator", "nearest", "--lens-weights", "none"),
     "bilinear": ("--mode", "collect", "--estimator", "bilinear", "--filter", "bilinear", "--lens-weights", "none"),
