@@ -69,15 +69,22 @@ class ClusterTestCase(ProgramTestCase):
     def status(self):
         return json.loads(self.succeeds(SUBMIT, "--status", self.film, "--json"))
 
-    def wait_for(self, what, seconds=60):
+    def wait_for(self, what, seconds=240):
         end = time.monotonic() + seconds
         while not what():
             self.assertLess(time.monotonic(), end, "waited in vain")
             time.sleep(0.02)
 
-    def has_begun(self, number):
-        """A package has a checkpoint, and a frame that is not finished."""
-        return any((self.film / "partial" / f"package-{number:04d}").glob("frame_*.plate"))
+    def is_held(self, number):
+        """A package has a checkpoint, and its renderer stands still (held_renderer)."""
+        if not any((self.film / "partial" / f"package-{number:04d}").glob("frame_*.plate")):
+            return False
+        try:
+            state = json.loads((self.film / "cluster" / "packages" / f"package-{number:04d}.json").read_text())
+            stat = pathlib.Path("/proc", str(state["process"]), "stat").read_text()
+        except (FileNotFoundError, ProcessLookupError):
+            return False
+        return stat.rpartition(")")[2].split()[0] == "T"
 
     def unlucky_renderer(self, script: str) -> pathlib.Path:
         """A program in place of lfrenderer: bash, $start counts from 1, $package is a name or "finish",
@@ -98,19 +105,29 @@ run
         program.chmod(program.stat().st_mode | stat.S_IXUSR)
         return program
 
-    def held_renderer(self) -> pathlib.Path:
-        """Like lfrenderer, but each package's first start stands still as soon as it has begun a frame,
-        until it gets a SIGTERM: so that all packages are at work at once, however busy the machine is."""
+    def held_renderer(self, packages=None) -> pathlib.Path:
+        """Like lfrenderer, but the first start of each of these packages (of all without a list) stands still as
+        soon as it has begun a frame, until a signal is sent to it (see is_held). A test can then count on packages
+        that are at work, however busy the machine is."""
+        names = "|".join(f"package-{number:04d}" for number in packages or range(self.packages))
         return self.unlucky_renderer(f"""
-            if [[ $start == 1 && $package != finish ]]; then
-                {RENDERER} "${{arguments[@]}}" & renderer=$!
-                trap 'kill -TERM $renderer; kill -CONT $renderer' TERM
-                while kill -0 $renderer && ! compgen -G "{self.film}/partial/$package/frame_*.plate"
-                do sleep 0.01; done
-                kill -STOP $renderer
-                wait $renderer  # Ended by the signal, which the trap hands on.
-                wait $renderer
-                exit $?
+            if [[ $start == 1 && $package =~ ^({names})$ ]]; then
+                (trap '' HUP INT TERM
+                # The renderer runs in pulses, so that it gets no further than its first checkpoint.
+                while kill -STOP $$
+                do
+                    compgen -G "{self.film}/partial/$package/frame_*.plate" && break
+                    kill -CONT $$
+                    sleep 0.02
+                done
+                # Continues the renderer when one of the signals 1 to 16 is pending, or after some minutes. A STOP
+                # that it has not yet obeyed is pending, too.
+                for ((i = 0; i < 20000; ++i)); do
+                    grep -qE '^S(ig|hd)Pnd:.*[1-9a-f][0-9a-f]{{0,3}}$' /proc/$$/status && break
+                    kill -0 $$ || break
+                    sleep 0.01
+                done
+                kill -CONT $$) < /dev/null &> /dev/null &
             fi""")
 
     def start(self, *options):

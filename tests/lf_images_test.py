@@ -48,7 +48,7 @@ class LfImagesTest(unittest.TestCase):
     def run_renderer(self, field):
         out = self.folder / "out" / field.parent.name
         result = subprocess.run([RENDERER, field, self.path, "-o", out, "--format", "exr-float"],
-                                capture_output=True, text=True, timeout=120)
+                                capture_output=True, text=True, timeout=400)
         return result, out
 
     def digest(self, field):
@@ -122,7 +122,7 @@ class LfImagesTest(unittest.TestCase):
         self.assertIn("lfimport --bayer", result.stderr)
         native = self.folder / "native"
         result = subprocess.run([IMPORT, field, "-o", native, "--bayer", "BGGR"],
-                                capture_output=True, text=True, timeout=120)
+                                capture_output=True, text=True, timeout=400)
         self.assertEqual(result.returncode, 0, result.stderr)
         keys = {"lf_bayer": "BGGR", "lf_black_level": 512, "lf_white_level": 16383}
         self.assertEqual(self.digest(native / "transforms.json"),

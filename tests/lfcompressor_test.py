@@ -221,7 +221,7 @@ class CompressorTest(StoreTest):
                                    stderr=subprocess.PIPE, text=True, stdout=subprocess.PIPE)
         self.wait_for_work(process)
         process.send_signal(signal.SIGINT)
-        _, errors = process.communicate(timeout=60)
+        _, errors = process.communicate(timeout=240)
         self.assertEqual(process.returncode, 5, errors)
         done = int(re.search(r"interrupted after (\d+) of 3000 LF images", errors)[1])
         self.fails(2, ["unfinished", "--resume"], COMPRESSOR, field, "-o", self.store)

@@ -38,7 +38,7 @@ class ExampleTest(unittest.TestCase):
         self.field = write_field(self.folder / "field", wall)
 
     def run_tool(self, *arguments):
-        return subprocess.run([*map(str, arguments)], capture_output=True, text=True, timeout=120)
+        return subprocess.run([*map(str, arguments)], capture_output=True, text=True, timeout=400)
 
     def example(self, *options):
         path = self.folder / "path.yaml"

@@ -33,7 +33,7 @@ class ImportTest(unittest.TestCase):
         self.folder = pathlib.Path(self.temporary.name)
 
     def run_tool(self, *arguments, code=0):
-        result = subprocess.run([*map(str, arguments)], capture_output=True, text=True, timeout=120)
+        result = subprocess.run([*map(str, arguments)], capture_output=True, text=True, timeout=400)
         self.assertEqual(result.returncode, code, result.stderr)
         return result
 

@@ -31,7 +31,7 @@ class RendererTest(unittest.TestCase):
 
     def run_renderer(self, *arguments):
         return subprocess.run([RENDERER, *map(str, arguments)], capture_output=True, text=True,
-                              timeout=120)
+                              timeout=400)
 
     def render(self, field, path, name, *options, code=0):
         """Frames' digests and report of a run that must end with this code."""
@@ -240,7 +240,7 @@ class RendererTest(unittest.TestCase):
                 break
             time.sleep(0.01)
         process.send_signal(signal.SIGINT)
-        _, words = process.communicate(timeout=60)
+        _, words = process.communicate(timeout=240)
         self.assertEqual(process.returncode, 5, words)
         self.assertIn("interrupted", words.strip().splitlines()[-1])
 

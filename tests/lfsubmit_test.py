@@ -250,7 +250,7 @@ class LongLocalJobTest(ClusterTestCase):
     def test_a_signal_writes_the_state_of_all_packages(self):
         for sign in (signal.SIGINT, signal.SIGTERM):
             process = self.start_held()
-            self.wait_for(lambda: self.has_begun(0) and self.has_begun(1))
+            self.wait_for(lambda: self.is_held(0) and self.is_held(1))
             process.send_signal(sign)
             words = process.communicate()[1].strip().splitlines()[-1]
             self.assertEqual(process.returncode, 5, words)
@@ -268,7 +268,7 @@ class LongLocalJobTest(ClusterTestCase):
 
     def test_a_killed_lfsubmit_takes_its_renderers_along(self):
         process = self.start_held()
-        self.wait_for(lambda: self.has_begun(0) and self.has_begun(1))
+        self.wait_for(lambda: self.is_held(0) and self.is_held(1))
         os.kill(process.pid, signal.SIGKILL)
         process.wait()
         # They get a SIGTERM, and write their states.
@@ -281,7 +281,7 @@ class LongLocalJobTest(ClusterTestCase):
     # Its renderers are still writing their states, and hold their locks.
     def test_a_killed_lfsubmit_is_gone_on_with_at_once(self):
         process = self.start_held()
-        self.wait_for(lambda: self.has_begun(0) and self.has_begun(1))
+        self.wait_for(lambda: self.is_held(0) and self.is_held(1))
         os.kill(process.pid, signal.SIGKILL)
         process.wait()
         self.resume()
@@ -307,7 +307,7 @@ class LongLocalJobTest(ClusterTestCase):
     def test_frames_are_finished_early(self):
         submit = cluster_test_case.SUBMIT
         process = self.start_held()
-        self.wait_for(lambda: self.has_begun(0))
+        self.wait_for(lambda: self.is_held(0) and self.is_held(1))
         process.send_signal(signal.SIGINT)
         process.communicate()
         begun = [int(path.stem[6:]) for path in

@@ -25,7 +25,7 @@ class SynthTest(unittest.TestCase):
         self.folder = pathlib.Path(self.temporary.name)
 
     def run_tool(self, *arguments, code=0):
-        result = subprocess.run([*map(str, arguments)], capture_output=True, text=True, timeout=120)
+        result = subprocess.run([*map(str, arguments)], capture_output=True, text=True, timeout=400)
         self.assertEqual(result.returncode, code, result.stderr)
         self.assertEqual(result.stdout, "")
         return result.stderr
@@ -106,7 +106,7 @@ class SynthTest(unittest.TestCase):
         while not (field / "images" / "0000.exr").exists():
             time.sleep(0.02)
         process.send_signal(signal.SIGINT)
-        words = process.communicate(timeout=60)[1].strip().splitlines()[-1]
+        words = process.communicate(timeout=240)[1].strip().splitlines()[-1]
         self.assertEqual(process.returncode, 5)
         self.assertRegex(words, r"^error: .*stopped after \d+ of 289 images")
         self.assertFalse((field / "transforms.json").exists())

@@ -261,7 +261,7 @@ class Matrix(World):
             process.wait(seconds)
         except subprocess.TimeoutExpired:
             process.send_signal(sign)
-        _, text = process.communicate(timeout=60)
+        _, text = process.communicate(timeout=240)
         return process.returncode, last_line(text)
 
     def finished_early(self, cell, out, steps):

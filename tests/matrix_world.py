@@ -66,7 +66,7 @@ class ProgramFailed(Exception):
         self.exit_code, self.last_line = exit_code, last_line
 
 
-def run(words, seconds=120):
+def run(words, seconds=400):
     """Returns exit code and last line of stderr of a program."""
     done = subprocess.run([str(word) for word in words], stdout=subprocess.DEVNULL,
                           stderr=subprocess.PIPE, text=True, timeout=seconds)

@@ -13,7 +13,7 @@ class ProgramTestCase(unittest.TestCase):
 
     def call(self, program, *arguments):
         return subprocess.run([program, *map(str, arguments)], capture_output=True, text=True,
-                              timeout=120)
+                              timeout=400)
 
     def succeeds(self, program, *arguments, code=0):
         result = self.call(program, *arguments)

@@ -44,8 +44,8 @@ class SlurmTest(ClusterTestCase):
         return self.status()["packages"][number]
 
     def begun(self, number):
-        """state of a package that has a checkpoint"""
-        self.wait_for(lambda: self.has_begun(number))
+        """state of a package that has a checkpoint, and whose renderer is held"""
+        self.wait_for(lambda: self.is_held(number))
         name = f"package-{number:04d}.json"
         return json.loads((self.film / "cluster" / "packages" / name).read_text())
 
@@ -53,7 +53,7 @@ class SlurmTest(ClusterTestCase):
     # end: one call waits for the film, which is that of one lfrenderer.
     def test_the_film_survives_a_node_and_processes(self):
         process = self.start(*self.OPTIONS, "--wait", "--video", self.folder / "film.mp4",
-                             *self.ARGUMENTS)
+                             "--lfrenderer", self.held_renderer(range(4)), *self.ARGUMENTS)
         first = self.begun(0)
         node = int(first["node"].removeprefix("n"))
         self.slurm.kill_node(node)
@@ -84,8 +84,9 @@ class SlurmTest(ClusterTestCase):
 
     # As before a time limit: the batch script hands the signal on, and has its task requeued.
     def test_what_is_told_to_end_is_requeued(self):
-        process = self.start(*self.OPTIONS, "--wait", *self.ARGUMENTS)
-        self.wait_for(lambda: self.has_begun(0))
+        process = self.start(*self.OPTIONS, "--wait", "--lfrenderer", self.held_renderer([0]),
+                             *self.ARGUMENTS)
+        self.wait_for(lambda: self.is_held(0))
         array = json.loads((self.film / "cluster" / "job.json").read_text())["slurm_arrays"][0]
         self.slurm.call("scancel", "--batch", "--signal=TERM", f"{array}_0")
         self.wait_for(lambda: self.package(0)["restarts"] > 0 or
@@ -98,8 +99,8 @@ class SlurmTest(ClusterTestCase):
         self.assertEqual(self.package(0)["crashes"], 0)
 
     def test_a_job_is_cancelled_and_gone_on_with(self):
-        self.submit(*self.OPTIONS, *self.ARGUMENTS, words=["submitted 8 packages", "--status"])
-        self.wait_for(lambda: self.has_begun(0))
+        self.submit(*self.OPTIONS, "--lfrenderer", self.held_renderer([0]), *self.ARGUMENTS, words=["submitted 8 packages", "--status"])
+        self.wait_for(lambda: self.is_held(0))
         table = self.succeeds(cluster_test_case.SUBMIT, "--status", self.film)
         self.assertIn("waits for", table)
         self.succeeds(cluster_test_case.SUBMIT, "--cancel", self.film)
@@ -112,8 +113,9 @@ class SlurmTest(ClusterTestCase):
 
     # Somebody's own scancel is the end, too, and is told apart from a time limit.
     def test_what_is_removed_from_the_queue_stays_away(self):
-        process = self.start(*self.OPTIONS, "--wait", *self.ARGUMENTS)
-        self.wait_for(lambda: self.has_begun(0))
+        process = self.start(*self.OPTIONS, "--wait", "--lfrenderer", self.held_renderer([0]),
+                             *self.ARGUMENTS)
+        self.wait_for(lambda: self.is_held(0))
         array = json.loads((self.film / "cluster" / "job.json").read_text())["slurm_arrays"][0]
         self.slurm.call("scancel", array)
         error = process.communicate(timeout=240)[1]

@@ -40,7 +40,7 @@ class UnluckyStoresTest(StoreTest):
             time.sleep(0.005)
         time.sleep(0.3)
         process.send_signal(how)
-        _, errors = process.communicate(timeout=60)
+        _, errors = process.communicate(timeout=240)
         return process.returncode, errors
 
     # Names that are taken

@@ -94,7 +94,7 @@ export async function openPage(browser, address, options = {}) {
     if (!url.startsWith(address) && !/^(data|blob):/.test(url)) faults.push(`asks for ${url}`);
   });
   await page.goto(address);
-  await page.waitForSelector("body[data-ready=yes]", { timeout: 30_000 });
+  await page.waitForSelector("body[data-ready=yes]", { timeout: 120_000 });
   return { page, faults, close: () => context.close() };
 }
 
@@ -102,7 +102,7 @@ export async function openPage(browser, address, options = {}) {
 // forbids code from strings, so that it is asked from outside.
 export async function until(page, condition) {
   const expression = `(() => { const app = window.lfvisualizer; return Boolean(${condition}); })()`;
-  for (const end = Date.now() + 60_000; Date.now() < end; await page.waitForTimeout(30))
+  for (const end = Date.now() + 240_000; Date.now() < end; await page.waitForTimeout(30))
     if (await page.evaluate(expression)) return;
   throw new Error(`not within a minute: ${condition}`);
 }
