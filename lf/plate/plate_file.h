@@ -52,10 +52,11 @@ class PlateReader {
 
   int width() const { return width_; }
   int height() const { return height_; }
+  bool has_opacity() const { return channels_ > SensorPlate::kChannels; }
   const PlateEntries& entries() const { return entries_; }
 
-  // Adds all rays to a plate of this size; needs about a megabyte beside it. To be called once.
-  // kInput: truncated or damaged; the plate then holds a part and is of no use.
+  // Adds all rays to a plate of this size and these channels; needs about a megabyte beside it. To
+  // be called once. kInput: truncated or damaged; the plate then holds a part and is of no use.
   Result<void> AddTo(SensorPlate* plate);
 
  private:
@@ -67,6 +68,7 @@ class PlateReader {
   std::unique_ptr<entry_file::Source> source_;
   int width_ = 0;
   int height_ = 0;
+  int channels_ = SensorPlate::kChannels;
   int rows_per_chunk_ = 1;
   uint64_t wide_count_ = 0;
   PlateEntries entries_;

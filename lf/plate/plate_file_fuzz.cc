@@ -57,7 +57,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size_bytes) {
   }
   // As callers do, who know the size they expect.
   if (int64_t{reader->width()} * reader->height() > 1 << 20) return 0;
-  lf::SensorPlate plate(reader->width(), reader->height());
+  lf::SensorPlate plate =
+      lf::SensorPlate::WithOpacity(reader->width(), reader->height(), reader->has_opacity());
   const lf::Result<void> added = reader->AddTo(&plate);
   if (!added) {
     LF_CHECK(added.error().message.starts_with("p: "));
@@ -66,7 +67,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size_bytes) {
   uint64_t rays = 0;
   for (int y = 0; y < plate.height(); ++y)
     for (int x = 0; x < plate.width(); ++x)
-      for (int c = 0; c < lf::SensorPlate::kChannels; ++c) {
+      for (int c = 0; c < plate.channels(); ++c) {
         const lf::ElementSum element = plate.At(x, y, c);
         LF_CHECK(element.sum <= 65535 * element.count);
         rays += element.count;

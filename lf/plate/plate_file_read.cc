@@ -45,11 +45,12 @@ Result<void> PlateReader::ReadHead() {
   Head head;
   std::memcpy(&head, front.head.data(), sizeof(head));
   if (head.width < 1 || head.width > kMaxSide || head.height < 1 || head.height > kMaxSide ||
-      head.channels != SensorPlate::kChannels)
+      (head.channels != SensorPlate::kChannels && head.channels != SensorPlate::kChannels + 1))
     return InputError(
-        fmt::format("{}: {} x {} elements of {} channels; expected 3 channels and sides up to {}",
+        fmt::format("{}: {} x {} elements of {} channels; expected 3 or 4 channels and sides up to "
+                    "{}",
                     source_->name(), head.width, head.height, head.channels, kMaxSide));
-  const uint64_t most_rows = 1 + kChunkWords / (uint64_t{head.width} * SensorPlate::kChannels);
+  const uint64_t most_rows = 1 + kChunkWords / (uint64_t{head.width} * head.channels);
   if (head.rows_per_chunk < 1 || head.rows_per_chunk > most_rows)
     return InputError(fmt::format("{}: chunks of {} rows; expected 1 to {}", source_->name(),
                                   head.rows_per_chunk, most_rows));
@@ -65,13 +66,15 @@ Result<void> PlateReader::ReadHead() {
   entries_ = std::move(front.entries);
   width_ = static_cast<int>(head.width);
   height_ = static_cast<int>(head.height);
+  channels_ = static_cast<int>(head.channels);
   rows_per_chunk_ = static_cast<int>(head.rows_per_chunk);
   wide_count_ = head.wide_count;
   return {};
 }
 
 Result<void> PlateReader::AddTo(SensorPlate* plate) {
-  LF_CHECK(plate->width() == width_ && plate->height() == height_);
+  LF_CHECK(plate->width() == width_ && plate->height() == height_ &&
+           plate->channels() == channels_);
   const int chunk_count = (height_ - 1) / rows_per_chunk_ + 1;
   for (int chunk = 0; chunk < chunk_count; ++chunk)
     LF_RETURN_IF_ERROR(AddChunk(static_cast<uint32_t>(chunk), plate));
@@ -84,7 +87,7 @@ Result<void> PlateReader::AddTo(SensorPlate* plate) {
 Result<void> PlateReader::AddChunk(uint32_t chunk, SensorPlate* plate) {
   const int y_begin = static_cast<int>(chunk) * rows_per_chunk_;
   const int y_end = std::min(height_, y_begin + rows_per_chunk_);
-  const size_t row_words = static_cast<size_t>(width_) * SensorPlate::kChannels;
+  const size_t row_words = static_cast<size_t>(width_) * channels_;
   std::vector<uint64_t> words(static_cast<size_t>(y_end - y_begin) * row_words);
   const size_t size = words.size() * sizeof(uint64_t);
   ChunkHead head;
@@ -108,15 +111,15 @@ Result<void> PlateReader::AddChunk(uint32_t chunk, SensorPlate* plate) {
                                           y_begin + static_cast<int>(i / row_words), rays.sum,
                                           rays.count));
     if (rays.count == 0) continue;
-    const auto x = static_cast<int>(i % row_words / SensorPlate::kChannels);
-    plate->Add(x, y_begin + static_cast<int>(i / row_words),
-               static_cast<int>(i % SensorPlate::kChannels), rays);
+    const auto in_row = static_cast<int>(i % row_words);
+    plate->Add(in_row / channels_, y_begin + static_cast<int>(i / row_words), in_row % channels_,
+               rays);
   }
   return {};
 }
 
 Result<void> PlateReader::AddWide(SensorPlate* plate) {
-  const uint64_t row_words = static_cast<uint64_t>(width_) * SensorPlate::kChannels;
+  const uint64_t row_words = static_cast<uint64_t>(width_) * static_cast<uint64_t>(channels_);
   const uint64_t word_count = row_words * static_cast<uint64_t>(height_);
   Hasher hasher;
   uint64_t next_index = 0;
@@ -132,9 +135,9 @@ Result<void> PlateReader::AddWide(SensorPlate* plate) {
         return source_->Damaged(fmt::format("wide word {} (sum {}, count {}) is none", word.index,
                                             word.sum, word.count));
       next_index = word.index + 1;
-      plate->Add(static_cast<int>(word.index % row_words / SensorPlate::kChannels),
-                 static_cast<int>(word.index / row_words),
-                 static_cast<int>(word.index % SensorPlate::kChannels), {word.sum, word.count});
+      const auto in_row = static_cast<int>(word.index % row_words);
+      plate->Add(in_row / channels_, static_cast<int>(word.index / row_words), in_row % channels_,
+                 {word.sum, word.count});
     }
     done += block.size();
   }

@@ -87,6 +87,22 @@ TEST_F(PlateFile, GivesBackEverySumAndCount) {
   }
 }
 
+TEST_F(PlateFile, GivesBackTheFourthChannelWideWordsIncluded) {
+  ThreadPool pool(2);
+  SensorPlate plate = testing::WithNoiseOpacity(317, 211, 7);
+  plate.Add(316, 210, SensorPlate::kOpacityChannel, {uint64_t{61440} << 24, uint64_t{1} << 24});
+  const fs::path path = folder_ / "a.plate";
+  ASSERT_TRUE(WritePlate(path, kEntries, plate, pool));
+  Result<PlateReader> reader = PlateReader::Open(path);
+  ASSERT_TRUE(reader) << reader.error().message;
+  ASSERT_TRUE(reader->has_opacity());
+  SensorPlate read = SensorPlate::WithOpacity(317, 211);
+  ASSERT_TRUE(reader->AddTo(&read));
+  EXPECT_EQ(read, plate);
+  const std::string of_colours = BytesOf(SensorPlate(3, 2));
+  EXPECT_FALSE(PlateReader::OpenBytes(of_colours, "x")->has_opacity());
+}
+
 TEST_F(PlateFile, AddsToWhatIsThere) {
   const SensorPlate a = testing::NoisePlate(50, 40, 1, SensorPlate::kMaxCount, true);
   const SensorPlate b = testing::NoisePlate(50, 40, 2, SensorPlate::kMaxCount, true);
@@ -139,7 +155,7 @@ TEST_F(PlateFile, WhatItSaysIsCheckedBeforeAnythingIsAllocated) {
   ExpectError(WithHead(bytes, [](Head* head) { head->height = 65536, head->rows_per_chunk = 1; }),
               "20 x 65536");
   ExpectError(WithHead(bytes, [](Head* head) { head->width = 65536; }), "chunks of 1092 rows");
-  ExpectError(WithHead(bytes, [](Head* head) { head->channels = 4; }), "4 channels");
+  ExpectError(WithHead(bytes, [](Head* head) { head->channels = 5; }), "5 channels");
   ExpectError(WithHead(bytes, [](Head* head) { head->rows_per_chunk = 0; }), "chunks of 0 rows");
   ExpectError(WithHead(bytes, [](Head* head) { head->rows_per_chunk = 1u << 31; }), "rows");
   ExpectError(WithHead(bytes, [](Head* head) { head->wide_count = uint64_t{1} << 60; }),

@@ -58,7 +58,7 @@ class Compressor {
 
 Result<void> Write(const fs::path& path, const PlateEntries& entries, const SensorPlate& plate,
                    ThreadPool& pool) {
-  const size_t row_words = static_cast<size_t>(plate.width()) * SensorPlate::kChannels;
+  const size_t row_words = static_cast<size_t>(plate.width()) * plate.channels();
   const size_t chunk_rows = std::max<size_t>(1, kChunkWords / std::max<size_t>(1, row_words));
   std::vector<WideWord> wide;
   for (const auto& [index, unused] : plate.wide())
@@ -68,7 +68,7 @@ Result<void> Write(const fs::path& path, const PlateEntries& entries, const Sens
   Head head = {};
   head.width = static_cast<uint32_t>(plate.width());
   head.height = static_cast<uint32_t>(plate.height());
-  head.channels = SensorPlate::kChannels;
+  head.channels = static_cast<uint32_t>(plate.channels());
   head.rows_per_chunk = static_cast<uint32_t>(chunk_rows);
   head.wide_count = wide.size();
   entry_file::OutputFile file(path);

@@ -11,10 +11,17 @@ ElementSum Unpack(uint64_t word) { return {word & SensorPlate::kSumMask, CountOf
 }  // namespace
 
 SensorPlate::SensorPlate(int width, int height, uint32_t count_limit)
+    : SensorPlate(width, height, kChannels, count_limit) {}
+SensorPlate SensorPlate::WithOpacity(int width, int height, bool has_opacity,
+                                     uint32_t count_limit) {
+  return SensorPlate(width, height, kChannels + (has_opacity ? 1 : 0), count_limit);
+}
+SensorPlate::SensorPlate(int width, int height, int channels, uint32_t count_limit)
     : width_(width),
       height_(height),
+      channels_(channels),
       count_limit_(count_limit),
-      packed_(static_cast<size_t>(width) * height * kChannels),
+      packed_(static_cast<size_t>(width) * height * channels),
       wide_mutex_(std::make_unique<std::mutex>()) {
   LF_CHECK(count_limit >= 1 && count_limit <= kMaxCount);
 }
@@ -28,7 +35,7 @@ size_t SensorPlate::size_bytes() const {
 }
 
 ElementSum SensorPlate::At(int x, int y, int channel) const {
-  return AtWord((static_cast<size_t>(y) * width_ + x) * kChannels + channel);
+  return AtWord(IndexOf(x, y, channel));
 }
 
 ElementSum SensorPlate::AtWord(size_t index) const {
@@ -44,7 +51,7 @@ void SensorPlate::AddRay(int x, int y, int channel, uint16_t v) { Add(x, y, chan
 
 void SensorPlate::Add(int x, int y, int channel, const ElementSum& rays) {
   LF_DCHECK(rays.sum <= 65535 * rays.count);
-  const size_t index = (static_cast<size_t>(y) * width_ + x) * kChannels + channel;
+  const size_t index = IndexOf(x, y, channel);
   const ElementSum packed = Unpack(packed_[index]);
   if (packed.count + rays.count <= count_limit_) {
     packed_[index] += rays.count * kOneRay + rays.sum;
@@ -58,20 +65,20 @@ void SensorPlate::Add(int x, int y, int channel, const ElementSum& rays) {
 }
 
 void SensorPlate::Merge(const SensorPlate& other) {
-  LF_CHECK(width_ == other.width_ && height_ == other.height_);
+  LF_CHECK(width_ == other.width_ && height_ == other.height_ && channels_ == other.channels_);
   for (int y = 0; y < height_; ++y)
     for (int x = 0; x < width_; ++x)
-      for (int channel = 0; channel < kChannels; ++channel)
+      for (int channel = 0; channel < channels_; ++channel)
         if (const ElementSum rays = other.At(x, y, channel); rays.count > 0)
           Add(x, y, channel, rays);
 }
 
 bool operator==(const SensorPlate& a, const SensorPlate& b) {
-  if (a.width_ != b.width_ || a.height_ != b.height_) return false;
+  if (a.width_ != b.width_ || a.height_ != b.height_ || a.channels_ != b.channels_) return false;
   if (a.wide_.empty() && b.wide_.empty()) return a.packed_ == b.packed_;
   for (int y = 0; y < a.height_; ++y)
     for (int x = 0; x < a.width_; ++x)
-      for (int channel = 0; channel < SensorPlate::kChannels; ++channel)
+      for (int channel = 0; channel < a.channels_; ++channel)
         if (a.At(x, y, channel) != b.At(x, y, channel)) return false;
   return true;
 }
@@ -79,8 +86,7 @@ bool operator==(const SensorPlate& a, const SensorPlate& b) {
 uint32_t SensorPlate::Promote(const PixelRect& rect, uint32_t count_kept) {
   uint32_t largest = 0;
   for (int y = rect.y_begin; y < rect.y_end; ++y) {
-    const size_t row = static_cast<size_t>(y) * width_;
-    for (size_t i = (row + rect.x_begin) * kChannels; i < (row + rect.x_end) * kChannels; ++i) {
+    for (size_t i = IndexOf(rect.x_begin, y, 0); i < IndexOf(rect.x_end, y, 0); ++i) {
       const uint32_t count = CountOf(packed_[i]);
       if (count <= count_kept) {
         largest = std::max(largest, count);

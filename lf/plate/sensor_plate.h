@@ -6,6 +6,10 @@
 // kOneRay | value; integer addition commutes, so the plate has the same bits for any order, any
 // number of threads and any split of the work. 2^24 - 1 rays of value 65535 just fit; before an
 // element could exceed that, its content moves to a side table of wide words. Nothing wraps.
+//
+// A plate may have a fourth channel, opacity: its words stand behind those of the colours,
+// [height][width][4], and count the same rays. Opacities are values v as
+// capture/lf_pixels.h has them.
 #pragma once
 
 #include <cstddef>
@@ -31,7 +35,8 @@ struct ElementSum {
 
 class SensorPlate {
  public:
-  static constexpr int kChannels = 3;
+  static constexpr int kChannels = 3;  // the colours
+  static constexpr int kOpacityChannel = 3;
   static constexpr int kSumBits = 40;
   static constexpr uint64_t kOneRay = uint64_t{1} << kSumBits;
   static constexpr uint64_t kSumMask = kOneRay - 1;
@@ -39,12 +44,17 @@ class SensorPlate {
 
   // count_limit: the largest count a packed word may hold; below kMaxCount for tests only.
   SensorPlate(int width, int height, uint32_t count_limit = kMaxCount);
+  // A plate with the fourth channel, if `has_opacity`.
+  static SensorPlate WithOpacity(int width, int height, bool has_opacity = true,
+                                 uint32_t count_limit = kMaxCount);
   SensorPlate(SensorPlate&&) noexcept;
   SensorPlate& operator=(SensorPlate&&) noexcept;
   ~SensorPlate();
 
   int width() const { return width_; }
   int height() const { return height_; }
+  int channels() const { return channels_; }
+  bool has_opacity() const { return channels_ > kChannels; }
   size_t size_bytes() const;
 
   // Sum and count of one element and channel, wherever they are kept.
@@ -56,11 +66,11 @@ class SensorPlate {
   // Adds any sum of rays. sum <= 65535 * count.
   void Add(int x, int y, int channel, const ElementSum& rays);
 
-  // Adds another plate of the same size.
+  // Adds another plate of the same size and channels.
   void Merge(const SensorPlate& other);
 
-  // How it is kept, for files: packed words [height][width][3], what is kept beside them by the
-  // index of the word, and the total of both.
+  // How it is kept, for files: packed words [height][width][channels()], what is kept beside them
+  // by the index of the word, and the total of both.
   std::span<const uint64_t> words() const { return packed_; }
   const std::map<size_t, ElementSum>& wide() const { return wide_; }
   ElementSum AtWord(size_t index) const;
@@ -70,12 +80,17 @@ class SensorPlate {
 
  private:
   friend class PlateTile;
+  SensorPlate(int width, int height, int channels, uint32_t count_limit);
+  size_t IndexOf(int x, int y, int channel) const {
+    return (static_cast<size_t>(y) * width_ + x) * channels_ + channel;
+  }
   // Moves packed words of `rect` whose count exceeds `count_kept` to the wide table. Returns the
   // largest count still packed there.
   uint32_t Promote(const PixelRect& rect, uint32_t count_kept);
 
   int width_;
   int height_;
+  int channels_;
   uint32_t count_limit_;
   LargeVector<uint64_t> packed_;
   // Totals are packed + wide. Rare, so one lock does for all tiles.
@@ -92,12 +107,12 @@ class PlateTile {
 
   const PixelRect& rect() const { return rect_; }
 
-  // The tile's words in row y of the plate, [width][3].
+  // The tile's words in row y of the plate, [width][channels()].
   uint64_t* row(int y) {
     LF_DCHECK(y >= rect_.y_begin && y < rect_.y_end);
-    return plate_->packed_.data() +
-           (static_cast<size_t>(y) * plate_->width_ + rect_.x_begin) * SensorPlate::kChannels;
+    return plate_->packed_.data() + plate_->IndexOf(rect_.x_begin, y, 0);
   }
+  int channels() const { return plate_->channels_; }
 
   // The most rays one Reserve() can be asked for.
   uint32_t max_reserve() const { return plate_->count_limit_; }

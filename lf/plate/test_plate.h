@@ -27,4 +27,18 @@ inline SensorPlate NoisePlate(int width, int height, uint64_t seed, uint32_t cou
   return plate;
 }
 
+// Noise in four channels.
+inline SensorPlate WithNoiseOpacity(int width, int height, uint64_t seed) {
+  SensorPlate plate = SensorPlate::WithOpacity(width, height);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      for (int c = 0; c < plate.channels(); ++c) {
+        const uint64_t bits =
+            RandomBits(seed, static_cast<uint64_t>(c), static_cast<uint64_t>(y) * 4096 + x);
+        const uint64_t count = bits % 40;
+        plate.Add(x, y, c, {((bits >> 16) & 0xffff) * count, count});
+      }
+  return plate;
+}
+
 }  // namespace lf::testing

@@ -15,10 +15,13 @@ void AddTo(ElementSum* total, const ElementSum& sum) {
 
 }  // namespace
 
-void TileSums::Begin(PlateTile* tile, std::span<const PlateElement> watched) {
+void TileSums::Begin(PlateTile* tile, std::span<const PlateElement> watched, Target target) {
   LF_CHECK(mosaic_limit_ <= tile->max_reserve());
   LF_CHECK(!has_rgb_ && !has_counted_ && !has_mosaic_);
+  LF_CHECK(target == Target::kColours ||
+           (tile->channels() > SensorPlate::kChannels && watched.empty()));
   tile_ = tile;
+  target_ = target;
   watched_ = watched;
   watched_flushed_.assign(watched.size() * SensorPlate::kChannels, {});
 }
@@ -78,7 +81,7 @@ void TileSums::MakeRgbRoom(uint32_t rays) {
 }
 
 void TileSums::MakeCountedRoom(uint32_t rays) {
-  LF_CHECK(rays <= ray_limit_);
+  LF_CHECK(rays <= ray_limit_ && target_ == Target::kColours);
   FlushCounted();
   const size_t count = static_cast<size_t>(stride()) * rect().height();
   if (counted_.size() < count) counted_.resize(count);
@@ -87,7 +90,7 @@ void TileSums::MakeCountedRoom(uint32_t rays) {
 }
 
 void TileSums::MakeMosaicRoom(uint32_t rays) {
-  LF_CHECK(rays <= mosaic_limit_);
+  LF_CHECK(rays <= mosaic_limit_ && target_ == Target::kColours);
   FlushMosaic();
   const size_t count = static_cast<size_t>(stride()) * rect().height() * kMosaicRows + 2 * kMargin;
   if (words_.size() < count) words_.resize(count);
@@ -105,21 +108,33 @@ void TileSums::FlushRgb() {
   if (!has_rgb_) return;
   KeepWatched([this](const PlateElement& element, int c) { return PendingRgb(element, c); });
   tile_->Reserve(ray_limit_ - rgb_headroom_);
+  if (target_ == Target::kColours)
+    FlushRgbBy([](const Element& element, uint64_t rays, uint64_t* word) {
+      word[0] += rays | element.rgb_rays[0];
+      word[1] += rays | element.rgb_rays[1];
+      word[2] += rays | element.rgb_rays[2];
+    });
+  else
+    FlushRgbBy([](const Element& element, uint64_t rays, uint64_t* word) {
+      word[SensorPlate::kOpacityChannel] += rays | element.rgb_rays[0];
+    });
+  has_rgb_ = false;
+  rgb_headroom_ = 0;
+}
+
+template <class AddTo>
+void TileSums::FlushRgbBy(const AddTo& add_to) {
+  const int channels = tile_->channels();
   for (int y = rect().y_begin; y < rect().y_end; ++y) {
     Element* element = elements_.data() + static_cast<ptrdiff_t>(y - rect().y_begin) * stride();
     uint64_t* word = tile_->row(y);
     const ptrdiff_t ahead = tile_->row(std::min(y + 1, rect().y_end - 1)) - word;
-    for (int x = 0; x < rect().width(); ++x, ++element, word += SensorPlate::kChannels) {
+    for (int x = 0; x < rect().width(); ++x, ++element, word += channels) {
       Prefetch(word + ahead);
-      const uint64_t rays = uint64_t{element->rgb_rays[3]} << SensorPlate::kSumBits;
-      word[0] += rays | element->rgb_rays[0];
-      word[1] += rays | element->rgb_rays[1];
-      word[2] += rays | element->rgb_rays[2];
+      add_to(*element, uint64_t{element->rgb_rays[3]} << SensorPlate::kSumBits, word);
       *element = Element{};
     }
   }
-  has_rgb_ = false;
-  rgb_headroom_ = 0;
 }
 
 void TileSums::FlushCounted() {
@@ -131,7 +146,7 @@ void TileSums::FlushCounted() {
         counted_.data() + static_cast<ptrdiff_t>(y - rect().y_begin) * stride();
     uint64_t* word = tile_->row(y);
     const ptrdiff_t ahead = tile_->row(std::min(y + 1, rect().y_end - 1)) - word;
-    for (int x = 0; x < rect().width(); ++x, ++element, word += SensorPlate::kChannels) {
+    for (int x = 0; x < rect().width(); ++x, ++element, word += tile_->channels()) {
       Prefetch(word + ahead);
       for (int c = 0; c < SensorPlate::kChannels; ++c)
         word[c] += uint64_t{element->counts[c]} << SensorPlate::kSumBits | element->rgb[c];
@@ -144,6 +159,7 @@ void TileSums::FlushCounted() {
 
 void TileSums::FlushMosaic() {
   if (!has_mosaic_) return;
+  LF_CHECK(tile_->channels() == SensorPlate::kChannels);  // mosaics have no opacity
   KeepWatched([this](const PlateElement& element, int c) { return PendingMosaic(element, c); });
   tile_->Reserve(mosaic_limit_ - mosaic_headroom_);
   const int width = rect().width();

@@ -55,10 +55,18 @@ class TileSums {
       : ray_limit_(ray_limit),
         mosaic_limit_(ray_limit == kMaxRays ? SensorPlate::kMaxCount : ray_limit) {}
 
+  // The channels of the plate that sums of RGB LF images go to.
+  enum class Target : uint8_t {
+    kColours,  // R, G and B to theirs
+    kOpacity,  // R to the fourth, for opacities that stand in for each colour
+  };
+
   // Makes `tile` the owner of everything that is added from here on until Flush().
   //   watched  elements of the tile whose sums Added() tells; they must live until the last call of
   //            Added(). Without them nothing is kept beside the sums.
-  void Begin(PlateTile* tile, std::span<const PlateElement> watched = {});
+  //   target   kOpacity: of a plate that has it; RGB alone may be reserved, and nothing is watched
+  void Begin(PlateTile* tile, std::span<const PlateElement> watched = {},
+             Target target = Target::kColours);
   const PixelRect& rect() const { return tile_->rect(); }
 
   // Words or elements from one row to the next: a cache line more than they are wide, since columns
@@ -102,6 +110,8 @@ class TileSums {
   void MakeCountedRoom(uint32_t rays);
   void MakeMosaicRoom(uint32_t rays);
   void FlushRgb();
+  template <class AddTo>
+  void FlushRgbBy(const AddTo& add_to);
   void FlushCounted();
   void FlushMosaic();
   // Sums that are not flushed yet, one function for each layout; 0 where the layout is not in use.
@@ -114,6 +124,7 @@ class TileSums {
   uint32_t ray_limit_;
   uint32_t mosaic_limit_;  // what the plate's words hold
   PlateTile* tile_ = nullptr;
+  Target target_ = Target::kColours;
   bool has_rgb_ = false;
   bool has_counted_ = false;
   bool has_mosaic_ = false;

@@ -60,6 +60,29 @@ TEST(TileSums, MosaicsAndRgbReachThePlate) {
   }
 }
 
+TEST(TileSums, OpacityReachesTheFourthChannelAlone) {
+  SensorPlate plate = SensorPlate::WithOpacity(23, 9), expected = SensorPlate::WithOpacity(23, 9);
+  PlateTile tile(&plate, {2, 3, 22, 8});
+  TileSums sums(50);  // flushed now and then
+  for (const bool is_opacity : {false, true}) {
+    sums.Begin(&tile, {}, is_opacity ? TileSums::Target::kOpacity : TileSums::Target::kColours);
+    for (uint64_t ray = 0; ray < 300; ++ray) {
+      const int x = static_cast<int>(RandomUnit(ray, 0, 0) * 20);
+      const int y = static_cast<int>(RandomUnit(ray, 1, 0) * 5);
+      TileSums::Element& element = sums.ReserveRgb(1)[y * sums.stride() + x];
+      for (int c = 0; c < 3; ++c) {
+        const auto v = static_cast<uint16_t>(is_opacity ? ray * 200 : RandomBits(ray, 2, c));
+        element.rgb_rays[c] += v;
+        if (!is_opacity) expected.AddRay(2 + x, 3 + y, c, v);
+        if (is_opacity && c == 0) expected.AddRay(2 + x, 3 + y, SensorPlate::kOpacityChannel, v);
+      }
+      ++element.rgb_rays[3];
+    }
+    sums.Flush();
+  }
+  EXPECT_EQ(plate, expected);
+}
+
 TEST(TileSums, RaysMayCountDifferentlyInEachColour) {
   SensorPlate plate(23, 9), expected(23, 9);
   PlateTile tile(&plate, {2, 3, 20, 8});
