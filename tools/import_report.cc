@@ -171,7 +171,9 @@ std::string ReportText(const ImportReport& report) {
                         Brief(capture.depth_range->far_w)),
             &lines);
   AddLine("unit", fmt::format("1 world unit is {} m", capture.unit_m), &lines);
-  if (capture.alpha) AddLine("alpha", TextOfAlpha(*capture.alpha, capture.background), &lines);
+  if (capture.alpha)
+    AddLine("alpha", TextOfAlpha(*capture.alpha, capture.background, capture.keeps_opacity),
+            &lines);
   if (capture.density)
     AddDensity(*capture.density, &lines);
   else if (capture.spacing_w)
@@ -209,7 +211,9 @@ std::string ReportJson(const ImportReport& report) {
   json["alpha"] = nullptr;
   if (capture.alpha) {
     json["alpha"] = {{"meaning", NameOf(*capture.alpha)}};
-    if (*capture.alpha != AlphaMeaning::kMask) json["alpha"]["background"] = capture.background;
+    if (*capture.alpha != AlphaMeaning::kMask)
+      json["alpha"]["background"] =
+          capture.keeps_opacity ? Json(kNoBackground) : Json(capture.background);
   }
   json["density"] = OrNull(capture.density);
   json["warnings"] = Json::array();

@@ -211,16 +211,24 @@ Result<void> CompleteAlpha(const OpenOptions& options, const fs::path& path,
         "light field again with this option",
         NameOf(*options.alpha), path.string(), was_light ? "light" : "a mask"));
   if (options.alpha) encoding.alpha = options.alpha;
-  if (options.background) encoding.background = options.background;
+  if (options.background) {
+    encoding.background = options.background;
+    encoding.keeps_opacity = options.keeps_opacity;
+  }
   if (!encoding.alpha && !HoldsPackedStore(*light_field) && encoding.bayer == BayerPattern::kNone) {
     if (const std::optional<AlphaEvidence> found = FindAlphaEvidence(*light_field)) {
       encoding.alpha = found->meaning;
       if (encoding.AlphaIsLight() && !encoding.background) encoding.background = found->background;
       LogInfo("{}: alpha is taken as {}, as the pixels of {} tell (--image-alpha)", path.string(),
-              TextOfAlpha(*encoding.alpha, encoding.Background()), found->image_name);
+              TextOfAlpha(*encoding.alpha, encoding.Background(), encoding.keeps_opacity),
+              found->image_name);
     }
   }
   if (!encoding.background) return {};
+  if (encoding.keeps_opacity && encoding.bayer != BayerPattern::kNone)
+    return UsageError(fmt::format(
+        "--background {}: the LF images of {} are mosaics, which have no alpha: leave it out",
+        kNoBackground, path.string()));
   if (!encoding.AlphaIsLight())
     return UsageError(fmt::format(
         "--background: there is nothing behind the LF images of {}, whose alpha is {}: state "

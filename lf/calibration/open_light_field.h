@@ -30,9 +30,10 @@ struct OpenOptions {
   // These two say what alpha means and what is behind it, and go before the calibration
   // (capture/radiance.h).
   // kUsage: of packed stores, where pixels were coded as the other of mask and light; a background
-  // of images whose alpha is a mask, or brighter than max_radiance.
+  // of images whose alpha is a mask, or brighter than max_radiance; opacity of mosaics.
   std::optional<AlphaMeaning> alpha = {};
   std::optional<std::array<double, 3>> background = {};
+  bool keeps_opacity = false;  // with a background of black, as RadianceEncoding::keeps_opacity
   // A transforms.json is passed over in a folder that HoldsOwnAndItsSource(). lfimport alone sets
   // this, when it writes that file again.
   bool passes_over_own = false;

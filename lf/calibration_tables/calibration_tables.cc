@@ -50,6 +50,11 @@ Result<void> ReadAlpha(const Settings& settings, RadianceEncoding* encoding) {
   if (!encoding->alpha && !settings.Text("alpha").empty())
     return settings.Wrong("alpha", "mask, straight or premultiplied");
   if (settings.Text("background").empty()) return {};
+  if (settings.Text("background") == kNoBackground) {
+    encoding->background.emplace();
+    encoding->keeps_opacity = true;
+    return {};
+  }
   LF_ASSIGN_OR_RETURN(const std::vector<double> background, settings.Numbers("background", 3, 3));
   encoding->background.emplace();
   for (size_t c = 0; c < 3; ++c) {
@@ -75,8 +80,10 @@ SettingList SettingsOfPixels(const LightField& light_field) {
           {"max_radiance", fmt::format("{}", encoding.max_radiance)},
           {"pedestal", fmt::format("{}", encoding.pedestal)},
           {"alpha", encoding.alpha ? NameOf(*encoding.alpha) : ""},
-          {"background",
-           encoding.background ? fmt::format("{}", fmt::join(*encoding.background, " ")) : ""},
+          {"background", !encoding.background ? ""
+                         : encoding.keeps_opacity
+                             ? kNoBackground
+                             : fmt::format("{}", fmt::join(*encoding.background, " "))},
           {"white_balance", fmt::format("{}", fmt::join(encoding.white_balance, " "))},
           {"camera_to_srgb", fmt::format("{} {} {} {} {} {} {} {} {}", m(0, 0), m(0, 1), m(0, 2),
                                          m(1, 0), m(1, 1), m(1, 2), m(2, 0), m(2, 1), m(2, 2))}};

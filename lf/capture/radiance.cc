@@ -65,14 +65,16 @@ std::optional<AlphaMeaning> AlphaMeaningOf(const std::string& name) {
   return std::nullopt;
 }
 
-std::string TextOfAlpha(AlphaMeaning alpha, const std::array<double, 3>& background) {
+std::string TextOfAlpha(AlphaMeaning alpha, const std::array<double, 3>& background,
+                        bool keeps_opacity) {
   if (alpha == AlphaMeaning::kMask) return "a mask";
   const auto [r, g, b] = background;
   const auto all = [&](double value) { return r == value && g == value && b == value; };
   return fmt::format("{} light over {}", NameOf(alpha),
-                     all(0)   ? "black"
-                     : all(1) ? "white"
-                              : fmt::format("{:.4g}, {:.4g}, {:.4g}", r, g, b));
+                     keeps_opacity ? "nothing"
+                     : all(0)      ? "black"
+                     : all(1)      ? "white"
+                                   : fmt::format("{:.4g}, {:.4g}, {:.4g}", r, g, b));
 }
 
 double LinearFromSrgb(double srgb) {

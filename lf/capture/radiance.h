@@ -44,6 +44,8 @@ struct RadianceEncoding {
   std::optional<AlphaMeaning> alpha;  // default: kMask
   // Radiance of R, G and B behind what alpha does not cover; default: black.
   std::optional<std::array<double, 3>> background;
+  // Nothing is behind: `background` is black, and frames have opacity as a channel of their own.
+  bool keeps_opacity = false;
   std::array<double, 3> white_balance = {1, 1, 1};  // applied on developing
   Mat3 camera_to_srgb = Mat3::Identity();           // linear sRGB = M * white balanced camera RGB
 
@@ -51,6 +53,8 @@ struct RadianceEncoding {
   double Scale() const { return (65535 - pedestal) / max_radiance; }
   // Returns whether pixels are composed with the background (store/opacities.h).
   bool AlphaIsLight() const { return alpha.value_or(AlphaMeaning::kMask) != AlphaMeaning::kMask; }
+  // Returns whether LF images have opacities to be collected (LfPixels::opacity).
+  bool HasOpacity() const { return AlphaIsLight() && keeps_opacity; }
   std::array<double, 3> Background() const { return background.value_or(std::array{0., 0., 0.}); }
 };
 
@@ -68,9 +72,14 @@ std::optional<BayerPattern> BayerPatternOf(const std::string& name);
 const char* NameOf(AlphaMeaning alpha);
 std::optional<AlphaMeaning> AlphaMeaningOf(const std::string& name);
 
-// For people: "a mask", "straight light over black", "premultiplied light over 1, 0.5, 0".
-//   background  as RadianceEncoding::background; not of a mask
-std::string TextOfAlpha(AlphaMeaning alpha, const std::array<double, 3>& background);
+// The word for RadianceEncoding::keeps_opacity where others name a background.
+inline constexpr const char* kNoBackground = "none";
+
+// For people: "a mask", "straight light over black", "premultiplied light over 1, 0.5, 0",
+// "straight light over nothing".
+//   background, keeps_opacity  as RadianceEncoding has them; not of a mask
+std::string TextOfAlpha(AlphaMeaning alpha, const std::array<double, 3>& background,
+                        bool keeps_opacity);
 
 // Linear light of an sRGB value in [0, 1], and back.
 double LinearFromSrgb(double srgb);

@@ -138,6 +138,7 @@ CaptureReport ReportCapture(const LightField& light_field, const CaptureReportOp
   report.unit_m = light_field.unit_m;
   report.alpha = light_field.encoding.alpha;
   report.background = light_field.encoding.Background();
+  report.keeps_opacity = light_field.encoding.keeps_opacity;
 
   std::vector<Vec3> positions;
   Eigen::AlignedBox3d box;

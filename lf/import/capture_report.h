@@ -68,6 +68,7 @@ struct CaptureReport {
   double unit_m = 1;
   std::optional<AlphaMeaning> alpha;             // of the images, where that is known
   std::array<double, 3> background = {0, 0, 0};  // behind it, where alpha is light
+  bool keeps_opacity = false;                    // nothing is behind it
   std::optional<Density> density;                // where a distance is known
   std::vector<CaptureWarning> warnings;
 };

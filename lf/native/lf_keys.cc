@@ -87,14 +87,22 @@ Result<void> ReadAlpha(const JsonFields& top, RadianceEncoding* encoding) {
   if (name) encoding->alpha = AlphaMeaningOf(*name);
   if (name && !encoding->alpha)
     return top.Wrong("lf_alpha", "\"mask\", \"straight\" or \"premultiplied\"");
-  LF_ASSIGN_OR_RETURN(const std::optional<std::vector<double>> background,
-                      top.Numbers("lf_background", 3, 3, kLight));
-  if (!background) return {};
+  if (!top.Has("lf_background")) return {};
   if (encoding->alpha == AlphaMeaning::kMask)
     return top.Fault(
         "\"lf_background\" needs lf_alpha \"straight\" or \"premultiplied\": a mask "
         "has nothing behind it");
   encoding->background.emplace();
+  if (!top.HasList("lf_background")) {
+    const Result<std::optional<std::string>> word = top.Text("lf_background");
+    if (!word || *word != kNoBackground)
+      return top.Wrong("lf_background", "three radiances, or \"none\"");
+    encoding->keeps_opacity = true;
+    return {};
+  }
+  LF_ASSIGN_OR_RETURN(const std::optional<std::vector<double>> background,
+                      top.Numbers("lf_background", 3, 3, kLight));
+  if (!background) return {};
   std::copy(background->begin(), background->end(), encoding->background->begin());
   return {};
 }

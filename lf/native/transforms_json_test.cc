@@ -330,6 +330,17 @@ TEST(TransformsJson, ReadsHowStoredNumbersBecomeLight) {
   EXPECT_EQ(light_field.mask_names, std::vector<std::string>{"masks/a.png"});
 }
 
+TEST(TransformsJson, NothingMayBeBehindAlpha) {
+  const RadianceEncoding none =
+      Parsed(OneFrame(kIntrinsics + R"("lf_alpha": "straight", "lf_background": "none", )"))
+          .encoding;
+  EXPECT_TRUE(none.HasOpacity());
+  EXPECT_EQ(none.background, (std::array<double, 3>{0, 0, 0}));
+  EXPECT_FALSE(
+      Parsed(OneFrame(kIntrinsics + R"("lf_alpha": "straight", "lf_background": [0, 0, 0], )"))
+          .encoding.HasOpacity());
+}
+
 TEST(TransformsJson, EncodingHasTheDocumentedDefaults) {
   const RadianceEncoding plain = Parsed(OneFrame(kIntrinsics)).encoding;
   EXPECT_EQ(plain.transfer, Transfer::kSrgb);

@@ -130,7 +130,9 @@ void AddEncoding(const RadianceEncoding& encoding, JsonText* json) {
   add_number("lf_max_radiance", encoding.max_radiance);
   add_number("lf_pedestal", encoding.pedestal);
   if (encoding.alpha) json->Add("\"lf_alpha\": \"{}\",\n", NameOf(*encoding.alpha));
-  if (encoding.background) {
+  if (encoding.background && encoding.keeps_opacity) {
+    json->Add("\"lf_background\": \"{}\",\n", kNoBackground);
+  } else if (encoding.background) {
     json->Add("\"lf_background\": ");
     json->AddNumbers(*encoding.background);
     json->Add(",\n");

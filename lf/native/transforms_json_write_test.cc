@@ -92,6 +92,16 @@ TEST_F(WriteTransformsJsonTest, ReadsBackBitForBit) {
   EXPECT_EQ(a.camera_to_srgb, b.camera_to_srgb);
 }
 
+TEST_F(WriteTransformsJsonTest, KeepsThatNothingIsBehind) {
+  LightField written = RandomLightField(3);
+  written.encoding.bayer = BayerPattern::kNone;
+  written.encoding.background = {0, 0, 0};
+  written.encoding.keeps_opacity = true;
+  const LightField read = WrittenAndRead(written);
+  EXPECT_TRUE(read.encoding.HasOpacity());
+  EXPECT_EQ(read.encoding.background, written.encoding.background);
+}
+
 TEST_F(WriteTransformsJsonTest, KeepsEveryLensAndSkewWhicheverComesFirst) {
   Intrinsics plain{500, 501, 320, 240, 0, 640, 480};
   const Distortion lenses[] = {

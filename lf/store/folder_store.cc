@@ -55,8 +55,11 @@ Result<void> FolderStore::LoadRecorded(ImagePart* part, LfImageId id, const Pixe
     ComposeWithBackground(opacities, inside, light_field_.encoding, pixels);
     return {};
   }
-  return ForEachMasked(light_field_, id, *part, use, inside,
-                       [&](int x, int y) { pixels->Mask(x - inside.x_begin, y - inside.y_begin); });
+  LF_RETURN_IF_ERROR(ForEachMasked(light_field_, id, *part, use, inside, [&](int x, int y) {
+    pixels->Mask(x - inside.x_begin, y - inside.y_begin);
+  }));
+  if (light_field_.encoding.HasOpacity()) SetOpaque(pixels);
+  return {};
 }
 
 uint64_t FolderStore::StoredBytes(LfImageId id) const {

@@ -22,6 +22,15 @@ uint16_t OpacityOf(T alpha) {
   return static_cast<uint16_t>(1 + std::min<uint32_t>(of_16_bits, kMostOpacity));
 }
 
+constexpr uint32_t kOpacityRange = LfPixels::kOpaque - LfPixels::kTransparent;
+
+// The lanes of a pixel that sends rays, of opacity a / kMostOpacity.
+void StoreOpacity(uint32_t a, uint16_t* lanes) {
+  const uint32_t v = LfPixels::kTransparent + (a * kOpacityRange + kMostOpacity / 2) / kMostOpacity;
+  std::fill_n(lanes, LfPixels::kRayLane, static_cast<uint16_t>(v));
+  lanes[LfPixels::kRayLane] = 1;
+}
+
 }  // namespace
 
 Result<Image<uint16_t>> ReadOpacities(const LightField& light_field, LfImageId id,
@@ -58,16 +67,20 @@ void ComposeWithBackground(const Image<uint16_t>& opacities, const PixelRect& op
   std::array<uint32_t, 3> background;
   for (size_t c = 0; c < 3; ++c)
     background[c] = QuantizeRadiance(encoding, encoding.Background()[c], 1);
+  const bool has_opacity = encoding.HasOpacity();
+  if (has_opacity) pixels->opacity.Resize(rect.width(), rect.height(), LfPixels::kRgbLanes);
   for (int y = 0; y < rect.height(); ++y) {
     const uint16_t* opacity = opacities.row(y + rect.y_begin - opacities_rect.y_begin) +
                               (rect.x_begin - opacities_rect.x_begin);
     uint16_t* lanes = pixels->radiance.row(y);
+    uint16_t* kept = has_opacity ? pixels->opacity.row(y) : nullptr;
     for (int x = 0; x < rect.width(); ++x, ++opacity, lanes += LfPixels::kRgbLanes) {
       if (*opacity == kMaskedOpacity) {
         pixels->Mask(x, y);
         continue;
       }
       const uint32_t a = *opacity - 1u;
+      if (has_opacity) StoreOpacity(a, kept + static_cast<ptrdiff_t>(x) * LfPixels::kRgbLanes);
       if (a == kMostOpacity) continue;
       for (size_t c = 0; c < 3; ++c) {
         const uint64_t own =
@@ -78,6 +91,19 @@ void ComposeWithBackground(const Image<uint16_t>& opacities, const PixelRect& op
             std::min<uint64_t>((own + behind + kMostOpacity / 2) / kMostOpacity, 65535));
       }
     }
+  }
+}
+
+void SetOpaque(LfPixels* pixels) {
+  LF_CHECK(pixels->bayer == BayerPattern::kNone);
+  pixels->opacity.Resize(pixels->rect.width(), pixels->rect.height(), LfPixels::kRgbLanes);
+  const LargeVector<uint16_t>& radiance = pixels->radiance.pixels();
+  for (size_t i = 0; i < radiance.size(); i += LfPixels::kRgbLanes) {
+    uint16_t* const lanes = pixels->opacity.pixels().data() + i;
+    if (radiance[i + LfPixels::kRayLane] == 0)
+      std::fill_n(lanes, LfPixels::kRgbLanes, uint16_t{0});
+    else
+      StoreOpacity(kMostOpacity, lanes);
   }
 }
 

@@ -31,9 +31,13 @@ Result<Image<uint16_t>> ReadOpacities(const LightField& light_field, LfImageId i
 //   straight       a v + (1 - a) b
 //   premultiplied  v + (1 - a) (b - pedestal)
 // in integers, rounded to nearest and clipped at 65535, and masks what sends no ray.
-// The pixels are R, G and B.
+// Fills pixels->opacity if the encoding HasOpacity(), rounded to nearest. The pixels are R, G and
+// B.
 //   opacities_rect  the pixels of the LF image that `opacities` are of; pixels->rect is within
 void ComposeWithBackground(const Image<uint16_t>& opacities, const PixelRect& opacities_rect,
                            const RadianceEncoding& encoding, LfPixels* pixels);
+
+// Fills pixels->opacity of an LF image without alpha: what is not masked is opaque.
+void SetOpaque(LfPixels* pixels);
 
 }  // namespace lf

@@ -125,6 +125,50 @@ TEST_F(OpacitiesTest, MaskFilesMaskWhatIsComposed) {
   EXPECT_FALSE(pixels.IsMasked(0, 0));  // though its alpha is below one half
 }
 
+TEST_F(OpacitiesTest, WhereNothingIsBehindOpacityIsKeptAndLightIsAsOverBlack) {
+  const Image<uint8_t> stored = WriteEveryAlpha<uint8_t>(4);
+  const LfPixels over_black = Loaded();
+  EXPECT_TRUE(over_black.opacity.empty());
+  field_.encoding.background = {0, 0, 0};
+  field_.encoding.keeps_opacity = true;
+  Image<uint8_t> mask(kWidth, kHeight, 1, 255);
+  mask.at(3, 4) = 0;
+  ASSERT_TRUE(WriteImage(folder_ / "mask.png", mask.view()));
+  LfPixels pixels = Loaded();
+  EXPECT_EQ(pixels.radiance.pixels(), over_black.radiance.pixels());
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      for (int lane = 0; lane < 3; ++lane)
+        ASSERT_NEAR(pixels.opacity.at(x, y, lane),
+                    LfPixels::kTransparent +
+                        stored.at(x, y, 3) / 255.0 * (LfPixels::kOpaque - LfPixels::kTransparent),
+                    1.4);  // alpha is taken in 65534 steps
+  EXPECT_EQ(pixels.opacity.at(0, 0), LfPixels::kTransparent);
+  EXPECT_EQ(pixels.opacity.at(15, 15), LfPixels::kOpaque);
+  field_.mask_names = {"mask.png"};
+  LfPixels part = Loaded({2, 2, 9, 9});
+  EXPECT_EQ(part.opacity.at(1, 2, LfPixels::kRayLane), 0);
+  EXPECT_EQ(part.opacity.at(1, 1, LfPixels::kRayLane), 1);
+  const LfPixels taken = part.TakeOpacity();
+  EXPECT_TRUE(part.opacity.empty());
+  EXPECT_TRUE(taken.IsMasked(1, 2) && taken.any_masked);
+  EXPECT_EQ(taken.radiance.at(0, 0), pixels.opacity.at(2, 2));
+}
+
+TEST_F(OpacitiesTest, ImagesWithoutAlphaAreOpaqueButForTheirMasks) {
+  field_.encoding.background = {0, 0, 0};
+  field_.encoding.keeps_opacity = true;
+  ASSERT_TRUE(WriteImage(folder_ / "a.png", NoiseImage<uint8_t>(kWidth, kHeight, 3).view()));
+  Image<uint8_t> mask(kWidth, kHeight, 1, 255);
+  mask.at(3, 4) = 0;
+  ASSERT_TRUE(WriteImage(folder_ / "mask.png", mask.view()));
+  field_.mask_names = {"mask.png"};
+  const LfPixels pixels = Loaded();
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      ASSERT_EQ(pixels.opacity.at(x, y), x == 3 && y == 4 ? 0 : LfPixels::kOpaque);
+}
+
 TEST_F(OpacitiesTest, FloatsOutsideOfTheirRangeAreClippedAndNanIsTransparent) {
   field_.image_names = {"a.exr"};
   field_.encoding.background = {1, 1, 1};

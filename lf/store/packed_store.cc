@@ -179,7 +179,10 @@ Result<void> PackedStore::LoadRecorded(Loading* loading, LfImageId id, const Pix
   ConvertRadiance(loading->part, channels, tables_, encoding, camera.gain, pixels);
   TakeBack(&loading->part, &loading->decoded, &loading->floats);
 
-  if (bytes->mask.empty()) return {};
+  if (bytes->mask.empty()) {
+    if (encoding.HasOpacity()) SetOpaque(pixels);
+    return {};
+  }
   const bool is_light = encoding.AlphaIsLight() && !is_mosaic;
   const int mask_bits = is_light ? 16 : 8;
   if (const auto info = ReadCodeInfo(bytes->mask); info && info->bits != mask_bits)

@@ -154,6 +154,29 @@ TEST_F(PackedStoreTest, AlphaThatIsLightHasTheBitsOfTheFolder) {
   }
 }
 
+TEST_F(PackedStoreTest, OpacitiesHaveTheBitsOfTheFolderAlsoOfImagesWithoutAlpha) {
+  for (const int channels : {4, 3}) {
+    field_.encoding.alpha = AlphaMeaning::kStraight;
+    field_.encoding.background = {0, 0, 0};
+    field_.encoding.keeps_opacity = true;
+    AddImages<uint8_t>(channels);
+    MaskRow7OfImage2();
+    Pack();
+    EXPECT_TRUE(packed_.encoding.HasOpacity());
+    ExpectTheBitsOfTheFolder();
+    const FolderStore folder(field_);
+    for (const uint32_t i : {0u, 2u}) {
+      const LfPixels packed = Loaded(*Opened(), {i}, kWhole);
+      EXPECT_EQ(packed.IsMasked(4, 7), i == 2);
+      EXPECT_FALSE(packed.opacity.empty());
+      EXPECT_EQ(packed.opacity.pixels(), Loaded(folder, {i}, kWhole).opacity.pixels());
+    }
+    field_.mask_names.clear();
+    field_.image_names.clear();
+    field_.cameras.clear();
+  }
+}
+
 TEST_F(PackedStoreTest, AlphaIsNotTakenForWhatItWasNotCodedAs) {
   AddImages<uint8_t>(4);
   Pack();

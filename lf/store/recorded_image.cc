@@ -61,6 +61,20 @@ void CutStored(const ImagePart& part, int channels, RecordedImage* image) {
   }
 }
 
+constexpr uint16_t kOpaqueOpacity = kMostOpacity + 1;
+
+Result<RecordedImage> ReadMaskAsOpacities(const LightField& light_field, LfImageId id,
+                                          const ImagePart& part, const ChannelUse& use,
+                                          RecordedImage image) {
+  const PixelRect& rect = image.rect;
+  LF_RETURN_IF_ERROR(ForEachMasked(light_field, id, part, use, rect, [&](int x, int y) {
+    if (image.opacities.empty())
+      image.opacities = Image<uint16_t>(rect.width(), rect.height(), 1, kOpaqueOpacity);
+    image.opacities.at(x - rect.x_begin, y - rect.y_begin) = kMaskedOpacity;
+  }));
+  return image;
+}
+
 uint64_t SizeOf(const fs::path& path) {
   std::error_code error;
   const uint64_t size = fs::file_size(path, error);
@@ -91,6 +105,10 @@ Result<RecordedImage> ReadRecordedImage(const LightField& light_field, LfImageId
       image.opacities = {};
     return image;
   }
+  // Of a light field whose alpha is light, an LF image without alpha is opaque but for its mask
+  // file.
+  if (light_field.encoding.AlphaIsLight() && image.layout != PixelLayout::kMosaic)
+    return ReadMaskAsOpacities(light_field, id, part, use, std::move(image));
   LF_RETURN_IF_ERROR(ForEachMasked(light_field, id, part, use, image.rect, [&image](int x, int y) {
     if (image.mask.empty())
       image.mask = Image<uint8_t>(image.rect.width(), image.rect.height(), 1, 255);
