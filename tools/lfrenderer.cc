@@ -36,7 +36,8 @@ constexpr const char* kExamples = R"(Examples:
 DIR receives frame_0001.exr ..., contact_sheet.png and report.json. EXR frames hold linear light
 (R, G, B), the rays of every element (count.R, count.G, count.B; with lens weights the sums of their
 weights), coverage, with lens weights how many LF images of equal weight there are (effective), and with
-rebinned rays how much of it is interpolated.
+rebinned rays how much of it is interpolated. With --background none they have alpha (A), which colours
+are multiplied with; PNG frames have straight alpha then.
 
 Packages have reports of their own, report-package-0000.json, and one that is given alone has its own
 contact sheet: many machines may render theirs into one DIR at the same time.

@@ -162,7 +162,10 @@ Result<bool> FrameCollector::State::Step() {
   if (!all_done || (takers.empty() && IsInterrupted())) return Interruption();
   if (TakerWants(batch_.place_end)) options_.taker->Take(batch_.images, batch_.place_end);
   images_done_ = batch_.end;
-  for (BatchImage& image : batch_.images) spare_.push_back(std::move(image.pixels));
+  for (BatchImage& image : batch_.images) {
+    image.pixels.opacity = std::move(image.opacity.radiance);
+    spare_.push_back(std::move(image.pixels));
+  }
   batch_ = {};
   return true;
 }
@@ -263,7 +266,9 @@ Result<void> FrameCollector::State::FinishLoading(Batch* batch) {
     const SelectedImage& image = order_[loading.index];
     if (*loading.pixels) {
       whole_ = image.id;
-      batch->images.push_back({image.id, image.place, **std::move(loading.pixels)});
+      LfPixels pixels = **std::move(loading.pixels);
+      LfPixels opacity = pixels.TakeOpacity();
+      batch->images.push_back({image.id, image.place, std::move(pixels), std::move(opacity)});
       continue;
     }
     // Only the image itself may be at fault: what the machine lacks is no reason to go on.

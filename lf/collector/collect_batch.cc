@@ -219,14 +219,17 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
     for (size_t k = 0; k < batch.size(); ++k) {
       Share& share = shares_[task.taker * batch.size() + k];
       if (share.rect.empty()) continue;
-      const uint64_t accepted =
-          reading_.estimator == Estimator::kBilinear
-              ? GatherTile(share.gather, batch[k].pixels, &sums, share.weights)
-              : ScatterTile(share.scatter, task.tile, batch[k].pixels, &sums, share.weights);
+      const uint64_t accepted = AddToTile(share, task.tile, batch[k].pixels, &sums);
       share.accepted_count += accepted;
       if (accepted > 0)
         tally.TakeImage([&](size_t element, int c) { return sums.Added(element, c); });
     }
+    sums.Flush();
+    if (!plates_[frames[task.taker].frame].has_opacity()) return;
+    sums.Begin(&tile, {}, TileSums::Target::kOpacity);
+    for (size_t k = 0; k < batch.size(); ++k)
+      if (Share& share = shares_[task.taker * batch.size() + k]; !share.rect.empty())
+        AddToTile(share, task.tile, batch[k].opacity, &sums);
     sums.Flush();
   };
   // The other items are long ones: what comes last should be short, so that no thread waits.
@@ -251,6 +254,14 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
   }
 }
 
+// Adds the rays of one LF image that land in a tile. Returns how many.
+uint64_t BatchCollector::AddToTile(const Share& share, size_t tile, const LfPixels& pixels,
+                                   TileSums* sums) const {
+  return reading_.estimator == Estimator::kBilinear
+             ? GatherTile(share.gather, pixels, sums, share.weights)
+             : ScatterTile(share.scatter, tile, pixels, sums, share.weights);
+}
+
 void BatchCollector::AddByReference(const std::vector<BatchImage>& batch, BatchFrame* frame) {
   const ThreadCpuTimer timer;
   const RenderCamera& camera = frames_[frame->frame];
@@ -270,12 +281,28 @@ void BatchCollector::AddByReference(const std::vector<BatchImage>& batch, BatchF
         reading_.estimator == Estimator::kBilinear
             ? GatherReference(lf_camera, image.pixels, camera, &plate, weights, reading_.filter)
             : ScatterReference(lf_camera, image.pixels, camera, rect, &plate, weights);
+    if (plate.has_opacity()) AddOpacityByReference(image, rect, camera, weights, &plate);
     tally.TakeImage(total_of);
     frame->rays.accepted_count += accepted;
     Count(rect, accepted > 0, &frame->rays);
   }
   frame->is_done = true;
   cpu_ns_ += timer.Nanoseconds();
+}
+
+// Collects opacity as a colour of a plate of its own, and adds that to the fourth channel.
+void BatchCollector::AddOpacityByReference(const BatchImage& image, const PixelRect& rect,
+                                           const RenderCamera& camera, const RayWeights& weights,
+                                           SensorPlate* plate) const {
+  SensorPlate opacity(plate->width(), plate->height());
+  const PinholeCamera lf_camera = light_field_.Camera(image.id);
+  if (reading_.estimator == Estimator::kBilinear)
+    GatherReference(lf_camera, image.opacity, camera, &opacity, weights, reading_.filter);
+  else
+    ScatterReference(lf_camera, image.opacity, camera, rect, &opacity, weights);
+  for (int y = 0; y < plate->height(); ++y)
+    for (int x = 0; x < plate->width(); ++x)
+      plate->Add(x, y, SensorPlate::kOpacityChannel, opacity.At(x, y, 0));
 }
 
 // Many together where there are many: asking for the time costs more than a pair that misses.

@@ -58,6 +58,7 @@ struct BatchImage {
   LfImageId id;
   uint32_t place = 0;  // in the order of the LF images
   LfPixels pixels;
+  LfPixels opacity = {};  // of these pixels, for plates that have it (LfPixels::TakeOpacity)
   // Filled by BatchCollector: of a camera with lens distortion the first two.
   std::shared_ptr<const std::vector<IdealCell>> cells = nullptr;
   std::shared_ptr<const IdealPixels> ideal_pixels = nullptr;
@@ -130,7 +131,11 @@ class BatchCollector {
                                           std::span<BatchFrame> frames);
   void AddToFrames(const std::vector<BatchImage>& batch, std::span<BatchFrame> frames,
                    const OtherItems& other_items, const std::atomic<bool>* interrupted);
+  uint64_t AddToTile(const Share& share, size_t tile, const LfPixels& pixels, TileSums* sums) const;
   void AddByReference(const std::vector<BatchImage>& batch, BatchFrame* frame);
+  void AddOpacityByReference(const BatchImage& image, const PixelRect& rect,
+                             const RenderCamera& camera, const RayWeights& weights,
+                             SensorPlate* plate) const;
   void ForEachTimed(size_t count, const std::function<void(size_t)>& body);
 
   const LightField& light_field_;

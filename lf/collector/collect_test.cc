@@ -130,6 +130,51 @@ TEST(Collect, TheSameBitsForAnyThreadsBatchesAndOrder) {
       }
 }
 
+// Every LF image with its red as opacity.
+class RedOpacityStore : public LfImageStore {
+ public:
+  Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override {
+    LF_RETURN_IF_ERROR(NoiseStore().Load(id, rect, pixels));
+    if (id.value % 3 == 0) pixels->Mask(0, 0);
+    pixels->opacity = pixels->radiance;
+    for (int y = 0; y < rect.height(); ++y)
+      for (int x = 0; x < rect.width(); ++x)
+        for (int c = 1; c < 3; ++c) pixels->opacity.at(x, y, c) = pixels->opacity.at(x, y, 0);
+    return {};
+  }
+};
+
+TEST(Collect, OpacityIsCollectedByTheRaysAndWeightsOfColours) {
+  const LightField field = testing::NoiseField();
+  const std::vector<RenderCamera> frames = NoiseFrames();
+  for (const Estimator estimator : {Estimator::kNearest, Estimator::kBilinear})
+    for (const CollectBackEnd back_end : {CollectBackEnd::kFast, CollectBackEnd::kReference})
+      for (const bool has_weights : {false, true}) {
+        CollectOptions options;
+        options.reading.estimator = estimator;
+        options.back_end = back_end;
+        options.batch_image_count = 5;
+        if (has_weights)
+          options.weights = [](size_t, LfImageId id) { return RayWeights(1 + id.value % 7); };
+        ThreadPool pool(2);
+        const std::vector<SelectedImage> images =
+            SelectImages(ImageIndex(field), frames, {.reach = ReachOf(estimator)}, pool);
+        std::vector<SensorPlate> plates, colours;
+        for (size_t f = 0; f < frames.size(); ++f) {
+          plates.push_back(SensorPlate::WithOpacity(80, 60));
+          colours.emplace_back(80, 60);
+        }
+        for (std::vector<SensorPlate>* into : {&plates, &colours})
+          ASSERT_TRUE(Collect(field, RedOpacityStore(), frames, images, options, pool, into, {}));
+        for (size_t f = 0; f < frames.size(); ++f)
+          for (int y = 0; y < 60; ++y)
+            for (int x = 0; x < 80; ++x) {
+              ASSERT_EQ(plates[f].At(x, y, SensorPlate::kOpacityChannel), plates[f].At(x, y, 0));
+              for (int c = 0; c < 3; ++c) ASSERT_EQ(plates[f].At(x, y, c), colours[f].At(x, y, c));
+            }
+      }
+}
+
 TEST(Collect, TheReferenceAcceptsTheSameRays) {
   const NoiseStore store;
   CollectOptions options;

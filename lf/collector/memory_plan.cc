@@ -16,6 +16,7 @@ constexpr size_t kProgramBytes = 132 * kMiB;
 
 // Picture, counts, tables for filling, file buffers. Measured: 58.
 constexpr size_t kDevelopBytesPerElement = 64;
+constexpr size_t kOpacityBytes = 16;         // of an element: opacity, its counts and tables
 constexpr size_t kSheetBytesPerElement = 3;  // of each picture kept for the contact sheet
 constexpr size_t kMostSheetPictures = 12;
 
@@ -55,6 +56,7 @@ ImageNeed NeedOf(const LightField& light_field, Estimator estimator, int plate_w
     const size_t pixels = static_cast<size_t>(k.width_px) * k.height_px;
     const size_t bytes_per_pixel =
         (is_rgb ? LfPixels::kRgbLanes * sizeof(uint16_t) : sizeof(uint16_t) + 1) +
+        (light_field.encoding.HasOpacity() ? LfPixels::kRgbLanes * sizeof(uint16_t) : 0) +
         (k.has_distortion() ? kPatchBytesPerPixel : 0);
     need.pixels = std::max(need.pixels, pixels);
     need.kept_bytes = std::max(need.kept_bytes, pixels * bytes_per_pixel);
@@ -73,13 +75,16 @@ Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field
   const size_t element_count = static_cast<size_t>(plate_width) * plate_height;
   const ImageNeed need = NeedOf(light_field, estimator, plate_width, plate_height);
   MemoryPlan plan;
-  plan.plate_bytes = element_count * SensorPlate::kChannels * sizeof(uint64_t);
+  const bool has_opacity = light_field.encoding.HasOpacity();
+  const size_t channels = SensorPlate::kChannels + (has_opacity ? 1 : 0);
+  const size_t develop_bytes = kDevelopBytesPerElement + (has_opacity ? kOpacityBytes : 0);
+  plan.plate_bytes = element_count * channels * sizeof(uint64_t);
   plan.image_bytes = need.kept_bytes;
 
   const size_t sheet_pictures = std::min(frame_count, kMostSheetPictures);
   const size_t set_aside =
       kProgramBytes + light_field.size() * (sizeof(LfCamera) + 128) +
-      element_count * (kDevelopBytesPerElement + sheet_pictures * kSheetBytesPerElement) +
+      element_count * (develop_bytes + sheet_pictures * kSheetBytesPerElement) +
       static_cast<size_t>(thread_count) * (need.decode_bytes + kTileBytes);
   const size_t pair_bytes = 2 * need.kept_bytes + need.plan_bytes;  // an image of each batch
   const size_t frame_bytes = plan.plate_bytes + bytes_per_frame;
@@ -98,9 +103,9 @@ Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field
   plan.plan_bytes =
       std::max(plan.batch_image_count * need.plan_bytes, std::min(kMostPlanBytes, free_bytes / 16));
   const size_t images_bytes = plan.batch_image_count * 2 * need.kept_bytes + plan.plan_bytes;
-  plan.frames_finished_at_once = std::min<size_t>(
-      static_cast<size_t>(thread_count),
-      1 + (images_bytes - plan.plan_bytes) / (element_count * kDevelopBytesPerElement));
+  plan.frames_finished_at_once =
+      std::min<size_t>(static_cast<size_t>(thread_count),
+                       1 + (images_bytes - plan.plan_bytes) / (element_count * develop_bytes));
   const size_t plates_bytes = free_bytes - std::min(free_bytes, images_bytes);
   plan.frames_per_pass =
       std::clamp<size_t>(plates_bytes / frame_bytes, 1, std::max<size_t>(1, frame_count));

@@ -1,6 +1,9 @@
 // Modes of a render: the rays that its frames are made of (doc/rebinning.md).
 #pragma once
 
+#include "lf/capture/radiance.h"
+#include "lf/core/result.h"
+
 namespace lf {
 
 //   kCollect  collected rays
@@ -13,5 +16,8 @@ const char* NameOf(RenderMode mode);
 
 inline bool Collects(RenderMode mode) { return mode != RenderMode::kRebin; }
 inline bool Rebins(RenderMode mode) { return mode != RenderMode::kCollect; }
+
+// kUsage: LF images have opacities (RadianceEncoding::HasOpacity), which rebinned rays do not keep.
+Result<void> CheckOpacity(const RadianceEncoding& encoding, RenderMode mode);
 
 }  // namespace lf

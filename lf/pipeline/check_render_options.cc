@@ -40,6 +40,7 @@ Result<void> CheckRenderOptions(const Package& package, const RenderOptions& opt
         "--stop-when "
         "and --require, --smooth-below and --keep-plates have none: leave them out, or use hybrid "
         "(\"noise<=X\" goes with every mode)");
+  LF_RETURN_IF_ERROR(CheckOpacity(package.light_field.encoding, options.mode));
   LF_RETURN_IF_ERROR(CheckSlab(package, options, frames));
   if (Rebins(options.mode) && !package.choices.has_neighbours)
     return UsageError(fmt::format(

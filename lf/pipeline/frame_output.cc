@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "lf/capture/lf_pixels.h"
 #include "lf/pipeline/frame_metadata.h"
 #include "lf/record/run_inputs.h"
 #include "lf/sequence/contact_sheet.h"
@@ -70,6 +71,8 @@ Result<FrameReport> WritePicture(const FrameSheet& sheet, const SensorPlate& pla
   DevelopOptions develop = sheet.develop;
   develop.is_interrupted = is_interrupted;
   develop.completion = completion;
+  develop.transparent = LfPixels::kTransparent;
+  develop.opaque = LfPixels::kOpaque;
   DevelopedFrame developed = Develop(plate, develop, pool);
   if (is_interrupted && is_interrupted())
     return Error{ErrorKind::kInterrupted, fmt::format("{}: interrupted", to.string())};

@@ -29,6 +29,7 @@ struct ShardPlate {
   RunInputs inputs;  // what plates of a frame have in common
   int width_px = 0;
   int height_px = 0;
+  bool has_opacity = false;
 };
 
 Result<std::vector<fs::path>> FilesOf(const std::vector<fs::path>& given) {
@@ -65,6 +66,7 @@ Result<ShardPlate> Look(const fs::path& path) {
   plate.path = path;
   plate.width_px = reader.width();
   plate.height_px = reader.height();
+  plate.has_opacity = reader.has_opacity();
   LF_ASSIGN_OR_RETURN(
       plate.sheet, FrameSheetOf(reader.entries(), reader.width(), reader.height(), path.string()));
   if (const std::string* const text = FindEntry(reader.entries(), "shard")) {
@@ -211,12 +213,14 @@ class Merger {
     }
     const bool is_kept = finished_.contains(frame);
     SensorPlate sum(0, 0);
-    if (!is_kept) sum = SensorPlate(first.width_px, first.height_px);
+    if (!is_kept)
+      sum = SensorPlate::WithOpacity(first.width_px, first.height_px, first.has_opacity);
     for (const ShardPlate& plate : plates) {
       if (IsStopped()) return Interrupted();
       if (!is_kept) {
         LF_ASSIGN_OR_RETURN(PlateReader reader, PlateReader::Open(plate.path));
-        if (reader.width() != first.width_px || reader.height() != first.height_px)
+        if (reader.width() != first.width_px || reader.height() != first.height_px ||
+            reader.has_opacity() != first.has_opacity)
           return InputError(
               fmt::format("{}: is another file than it was before", plate.path.string()));
         LF_RETURN_IF_ERROR(reader.AddTo(&sum));

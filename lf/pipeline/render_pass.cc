@@ -99,7 +99,8 @@ Result<void> RenderPass::PreparePlates(std::vector<PlaceRange>* places) {
   job_.pool.ForEach(frames_.size(), [this](size_t f) {
     const Intrinsics& plate = cameras_[f].pinhole.intrinsics;
     if (!job_.IsStopped() && !frames_[f].is_finished)
-      plates_[f] = SensorPlate(plate.width_px, plate.height_px);
+      plates_[f] = SensorPlate::WithOpacity(plate.width_px, plate.height_px,
+                                            job_.package.light_field.encoding.HasOpacity());
   });
   for (size_t f = 0; f < frames_.size(); ++f) {
     if (job_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
@@ -130,7 +131,7 @@ Result<FrameProgress> RenderPass::LoadPlate(size_t f) {
   frame.has_noise = moments || start.places_done == 0;
   if (!frame.has_noise && !frame.is_early) {
     LogInfo("frame {} is begun anew, since its noise was not measured before", frame.id.value);
-    plates_[f] = SensorPlate(width, height);
+    plates_[f] = SensorPlate::WithOpacity(width, height, plates_[f].has_opacity());
     start = {};
     frame.has_noise = true;
   }

@@ -182,6 +182,7 @@ Result<void> Preprocessor::Begin() {
 }
 
 Result<void> Preprocessor::CheckOptions() const {
+  LF_RETURN_IF_ERROR(CheckOpacity(light_field_.encoding, options_.mode));
   if (Rebins(options_.mode) && options_.max_image_count)
     return UsageError(
         "--max-images: rebinned rays are shared by frames, so that no limit of each frame's LF "

@@ -48,7 +48,8 @@ Result<RenderRate> MeasureRate(const ImageIndex& index, const RenderCamera& fram
   const LfImageStore& store = *opened;
   const Intrinsics& plate = frame.pinhole.intrinsics;
   std::vector<SensorPlate> plates;
-  plates.emplace_back(plate.width_px, plate.height_px);
+  plates.push_back(
+      SensorPlate::WithOpacity(plate.width_px, plate.height_px, light_field.encoding.HasOpacity()));
   const std::vector<SelectedImage> sample = SampleOf(needs, store);
   if (sample.empty())
     return InputError(

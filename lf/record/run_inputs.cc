@@ -26,8 +26,11 @@ std::string EncodingText(const RadianceEncoding& encoding) {
     const std::array<double, 3> behind = encoding.Background();
     hasher.Add(static_cast<double>(*encoding.alpha));
     for (const double value : behind) hasher.Add(value);
-    alpha = fmt::format(" alpha {} over {} {} {}", NameOf(*encoding.alpha), behind[0], behind[1],
-                        behind[2]);
+    if (encoding.keeps_opacity) hasher.Add(1.0);
+    const std::string over = encoding.keeps_opacity
+                                 ? kNoBackground
+                                 : fmt::format("{} {} {}", behind[0], behind[1], behind[2]);
+    alpha = fmt::format(" alpha {} over {}", NameOf(*encoding.alpha), over);
   }
   constexpr const char* kTransfers[] = {"srgb", "linear", "response"};
   return fmt::format(

@@ -296,6 +296,9 @@ Result<FrameProgress> RunState::LoadPlate(FrameId frame, SensorPlate* plate,
     return InputError(fmt::format("{}: has {} x {} elements, expected {} x {}", path.string(),
                                   reader.width(), reader.height(), plate->width(),
                                   plate->height()));
+  if (reader.has_opacity() != plate->has_opacity())
+    return WithAdvice(InputError(fmt::format("{}: has {} channels, expected {}", path.string(),
+                                             reader.has_opacity() ? 4 : 3, plate->channels())));
   if (const Result<void> added = reader.AddTo(plate); !added) return WithAdvice(added.error());
   const std::string* const noise = FindEntry(reader.entries(), kNoise);
   if (moments == nullptr || noise == nullptr) return progress;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lf/sequence/channel_fill.h"
+#include "lf/sequence/develop_opacity.h"
 
 namespace lf {
 namespace {
@@ -61,6 +62,7 @@ std::array<bool, kChannels> AverageRow(const SensorPlate& plate, const DevelopOp
 
 DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, ThreadPool& pool) {
   LF_CHECK(options.scale > 0 && options.fill_radius_px >= 0);
+  LF_CHECK(options.completion == nullptr || !plate.has_opacity());
   const int width = plate.width(), height = plate.height();
   const uint32_t rays_needed = std::max(options.smooth_below, 1u);
   DevelopedFrame frame{Image<float>(width, height, kChannels),
@@ -94,6 +96,7 @@ DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, 
       fills[c].emplace(mean, count, static_cast<int>(c), rays_needed, options.fill_radius_px, ends);
   });
   if (is_ended) return frame;
+  if (plate.has_opacity()) frame.opacity = DevelopOpacity(plate, options, ends, pool);
 
   const Mat3 srgb_from_camera =
       options.camera_to_srgb *

@@ -38,7 +38,12 @@ struct DevelopOptions {
   // black if there is none: light that nobody recorded is not invented. 0: nothing is filled.
   int fill_radius_px = kFillRadius_px;
 
-  // Mixed with what was collected, if given; stands for what was not.
+  // Of a plate with opacities: opacity = (sum / count - transparent) / (opaque - transparent).
+  double transparent = 0;
+  double opaque = 65535;
+
+  // Mixed with what was collected, if given; stands for what was not. Not of a plate with
+  // opacities.
   const Completion* completion = nullptr;
 
   // Asked by any thread, at least before each row and every 64 elements to be filled, if given.
@@ -50,6 +55,8 @@ struct DevelopedFrame {
   Image<float> rgb;           // [height][width][3] linear light, sRGB primaries
   Image<uint32_t> ray_count;  // [height][width][3]
   Image<float> coverage;      // [height][width] share of the channels with a ray of their own
+  // [height][width] of a plate with opacities, in [0, 1]: rgb is multiplied with it; else empty
+  Image<float> opacity = {};
   // [height][width] with lens weights, where counts are sums of weights: how many LF images of
   // equal weight would make as little noise; else empty
   Image<float> effective_count = {};
@@ -66,7 +73,8 @@ struct DevelopedFrame {
 // over all that lie within the smallest radius that holds at least 4 of them and at least
 // smooth_below rays, but never beyond fill_radius_px (of those without a ray) or kSmoothRadius_px,
 // where fewer must do. Their own value, if they have one, is among them at d = 0.5. Then white
-// balance and camera_to_srgb. Counts above 2^32 - 1 are given as that. The same bits for any thread
+// balance and camera_to_srgb. Opacities are averaged and filled like a colour, by the same
+// neighbours, and clipped. Counts above 2^32 - 1 are given as that. The same bits for any thread
 // count.
 DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, ThreadPool& pool);
 

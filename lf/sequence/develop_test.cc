@@ -66,6 +66,45 @@ double BruteForce(const SensorPlate& plate, int x, int y, int channel,
   return weights > 0 ? sum / weights : 0;
 }
 
+// A plate whose opacity is its red.
+SensorPlate WithRedOpacity(const SensorPlate& colours) {
+  SensorPlate plate = SensorPlate::WithOpacity(colours.width(), colours.height());
+  for (int y = 0; y < plate.height(); ++y)
+    for (int x = 0; x < plate.width(); ++x)
+      for (int c = 0; c < plate.channels(); ++c) plate.Add(x, y, c, colours.At(x, y, c % 3));
+  return plate;
+}
+
+TEST(Develop, OpacityIsAveragedAndFilledLikeAColour) {
+  ThreadPool pool(2);
+  for (const uint32_t smooth_below : {0u, 4u}) {
+    const SensorPlate colours = RandomPlate(50, 37, 0.4, 6, 5);
+    DevelopOptions options;
+    options.smooth_below = smooth_below;
+    const DevelopedFrame frame = Develop(WithRedOpacity(colours), options, pool);
+    const DevelopedFrame plain = Develop(colours, options, pool);
+    EXPECT_EQ(frame.rgb.pixels(), plain.rgb.pixels());
+    EXPECT_EQ(frame.coverage.pixels(), plain.coverage.pixels());
+    EXPECT_TRUE(plain.opacity.empty());
+    for (int y = 0; y < 37; ++y)
+      for (int x = 0; x < 50; ++x)
+        ASSERT_NEAR(frame.opacity.at(x, y), std::clamp(frame.rgb.at(x, y), 0.F, 1.F), 1e-6F);
+  }
+}
+
+TEST(Develop, OpacityIsExactWhereAllRaysAgreeAndNeverOutsideOfItsRange) {
+  ThreadPool pool(1);
+  SensorPlate plate = SensorPlate::WithOpacity(4, 1);
+  const uint64_t values[] = {4096, 61440, 4000, 65535};
+  for (int x = 0; x < 4; ++x)
+    for (int c = 0; c < 4; ++c) plate.Add(x, 0, c, {values[x] * 7, 7});
+  DevelopOptions options;
+  options.transparent = 4096;
+  options.opaque = 61440;
+  const DevelopedFrame frame = Develop(plate, options, pool);
+  for (int x = 0; x < 4; ++x) EXPECT_EQ(frame.opacity.at(x, 0), static_cast<float>(x % 2));
+}
+
 TEST(Develop, AgreesWithTheFormulaForAnyDensity) {
   ThreadPool pool(2);
   uint64_t seed = 1;

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
+#include <string>
+#include <type_traits>
 
 #include "lf/sequence/display.h"
 
@@ -22,6 +25,28 @@ std::optional<Image<float>> DisplayValues(const Image<float>& linear,
   return display;
 }
 
+// Multiplies alpha out of colours, in linear light, as PNG wants them. Black where nothing is
+// there.
+Image<float> StraightOf(const Image<float>& rgb, const Image<float>& opacity) {
+  Image<float> straight = rgb;
+  for (int y = 0; y < rgb.height(); ++y)
+    for (int x = 0; x < rgb.width(); ++x) {
+      const float a = opacity.at(x, y);
+      for (int c = 0; c < 3; ++c) straight.at(x, y, c) = a > 0 ? rgb.at(x, y, c) / a : 0;
+    }
+  return straight;
+}
+
+Image<float> WithAlpha(const Image<float>& display, const Image<float>& opacity) {
+  Image<float> rgba(display.width(), display.height(), 4);
+  for (int y = 0; y < display.height(); ++y)
+    for (int x = 0; x < display.width(); ++x) {
+      for (int c = 0; c < 3; ++c) rgba.at(x, y, c) = display.at(x, y, c);
+      rgba.at(x, y, 3) = opacity.at(x, y);
+    }
+  return rgba;
+}
+
 // What a stored value looks like on an 8-bit display: integers are display values already.
 struct DisplayStep {
   uint8_t operator()(uint8_t display) const { return display; }
@@ -34,13 +59,31 @@ struct DisplayStep {
   }
 };
 
-// The first three channels.
+// A stored straight colour over black: alpha is a share of linear light.
+template <class T>
+uint8_t OverBlack(T display, T alpha) {
+  static const Display8 display8;
+  constexpr double kMost = std::numeric_limits<T>::max();
+  return display8(static_cast<float>(LinearFromDisplay(display / kMost) * (alpha / kMost)));
+}
+
+// The first three channels. Those of files with alpha are multiplied with it already if they are
+// floats (EXR), else not (PNG).
 template <class T>
 Image<uint8_t> Picture(const Image<T>& image) {
   Image<uint8_t> picture(image.width(), image.height(), 3);
+  const bool is_straight = std::is_integral_v<T> && image.channels() == 4;
   for (int y = 0; y < image.height(); ++y)
     for (int x = 0; x < image.width(); ++x)
-      for (int c = 0; c < 3; ++c) picture.at(x, y, c) = DisplayStep{}(image.at(x, y, c));
+      for (int c = 0; c < 3; ++c) {
+        const T value = image.at(x, y, c);
+        if constexpr (std::is_integral_v<T>)
+          picture.at(x, y, c) = is_straight && image.at(x, y, 3) < std::numeric_limits<T>::max()
+                                    ? OverBlack(value, image.at(x, y, 3))
+                                    : DisplayStep{}(value);
+        else
+          picture.at(x, y, c) = DisplayStep{}(value);
+      }
   return picture;
 }
 
@@ -50,6 +93,7 @@ Result<void> WriteExrFrame(const std::filesystem::path& path, const DevelopedFra
   std::vector<ExrChannel> channels;
   for (const auto& [name, channel] : {std::pair("R", 0), std::pair("G", 1), std::pair("B", 2)})
     channels.push_back({name, frame.rgb.view(), channel, as_half});
+  if (!frame.opacity.empty()) channels.push_back({"A", frame.opacity.view(), 0, as_half});
   for (const auto& [name, channel] :
        {std::pair("count.R", 0), std::pair("count.G", 1), std::pair("count.B", 2)})
     channels.push_back({name, frame.ray_count.view(), channel});
@@ -94,10 +138,17 @@ Result<void> WriteFrame(const std::filesystem::path& path, const DevelopedFrame&
     case FrameFormat::kPng16:
       break;
   }
-  const std::optional<Image<float>> display = DisplayValues(frame.rgb, is_interrupted);
+  const bool has_alpha = !frame.opacity.empty();
+  std::optional<Image<float>> display =
+      DisplayValues(has_alpha ? StraightOf(frame.rgb, frame.opacity) : frame.rgb, is_interrupted);
   if (!display)
     return Error{ErrorKind::kInterrupted, fmt::format("{}: interrupted", path.string())};
-  return WriteImage(path, display->view(), {"R", "G", "B"},
+  std::vector<std::string> names = {"R", "G", "B"};
+  if (has_alpha) {
+    names.emplace_back("A");
+    display = WithAlpha(*display, frame.opacity);
+  }
+  return WriteImage(path, display->view(), names,
                     format == FrameFormat::kPng8 ? PixelType::kUint8 : PixelType::kUint16, metadata,
                     is_interrupted);
 }

@@ -16,11 +16,12 @@
 namespace lf {
 
 enum class FrameFormat {
-  kExrHalf,   // exr: R G B count.R count.G count.B coverage; effective with lens weights,
-              // interpolated with rebinned rays; colours half, counts 32-bit integers
+  kExrHalf,   // exr: R G B count.R count.G count.B coverage; A, which R G B are multiplied with,
+              // of plates with opacities; effective with lens weights, interpolated with rebinned
+              // rays; colours half, counts 32-bit integers
   kExrFloat,  // exr-float: the same, colours float
-  kPng8,      // png: sRGB
-  kPng16,     // png16: sRGB, 16 bit
+  kPng8,      // png: sRGB; with opacities also alpha, which colours are divided by
+  kPng16,     // png16: sRGB, 16 bit; likewise
 };
 
 // "exr", "exr-float", "png", "png16"; none for anything else.
@@ -38,7 +39,7 @@ Result<void> WriteFrame(const std::filesystem::path& path, const DevelopedFrame&
                         FrameFormat format, const ImageMetadata& metadata,
                         const std::function<bool()>& is_interrupted = {});
 
-// A frame's picture as 8-bit sRGB, [height][width][3], for contact sheets and video.
+// A frame's picture as 8-bit sRGB, [height][width][3], for contact sheets and video; over black.
 Image<uint8_t> DisplayImage(const DevelopedFrame& frame);
 
 // The same from a frame's file of any format, so that a film can be made again later. kInput: as

@@ -99,6 +99,64 @@ TEST_F(FrameFileTest, AWrittenFrameShowsTheSamePicture) {
   EXPECT_EQ(ReadDisplayImage(folder_ / "none.png").error().kind, ErrorKind::kInput);
 }
 
+DevelopedFrame FrameWithOpacity(int width, int height) {
+  DevelopedFrame frame = RandomFrame(width, height);
+  frame.opacity = Image<float>(width, height);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      frame.opacity.at(x, y) = static_cast<float>((x + y) % 5) / 4;
+      for (int c = 0; c < 3; ++c)
+        frame.rgb.at(x, y, c) =
+            frame.opacity.at(x, y) * static_cast<float>(RandomUnit(9, c, x + 100 * y));
+    }
+  return frame;
+}
+
+TEST_F(FrameFileTest, ExrHasAlphaBesideColoursThatAreMultipliedWithIt) {
+  const DevelopedFrame frame = FrameWithOpacity(11, 6);
+  const auto path = folder_ / "a.exr";
+  ASSERT_TRUE(WriteFrame(path, frame, FrameFormat::kExrFloat, {}));
+  const ImageFileInfo info = ReadImageInfo(path).value();
+  ASSERT_EQ(info.channels, 8);
+  EXPECT_EQ(ChannelNamed(info, "A"), 3);
+  const auto read = std::get<Image<float>>(ReadImage(path).value());
+  for (int y = 0; y < 6; ++y)
+    for (int x = 0; x < 11; ++x) {
+      for (int c = 0; c < 3; ++c) ASSERT_EQ(read.at(x, y, c), frame.rgb.at(x, y, c));
+      ASSERT_EQ(read.at(x, y, 3), frame.opacity.at(x, y));
+    }
+}
+
+TEST_F(FrameFileTest, PngHasStraightColoursAndAlpha) {
+  const DevelopedFrame frame = FrameWithOpacity(11, 6);
+  const auto path = folder_ / "a.png";
+  ASSERT_TRUE(WriteFrame(path, frame, FrameFormat::kPng16, {}));
+  const auto read = std::get<Image<uint16_t>>(ReadImage(path).value());
+  ASSERT_EQ(read.channels(), 4);
+  for (int y = 0; y < 6; ++y)
+    for (int x = 0; x < 11; ++x) {
+      const auto a = static_cast<double>(frame.opacity.at(x, y));
+      ASSERT_NEAR(read.at(x, y, 3), 65535 * a, 0.51);
+      for (int c = 0; c < 3; ++c)
+        ASSERT_NEAR(read.at(x, y, c),
+                    a > 0 ? 65535 * DisplayFromLinear(frame.rgb.at(x, y, c) / a) : 0, 0.52);
+    }
+}
+
+TEST_F(FrameFileTest, FramesWithAlphaAreShownOverBlack) {
+  const DevelopedFrame frame = FrameWithOpacity(40, 30);
+  const Image<uint8_t> picture = DisplayImage(frame);
+  for (const FrameFormat format :
+       {FrameFormat::kExrFloat, FrameFormat::kPng8, FrameFormat::kPng16}) {
+    const auto path = FramePath(folder_, FrameId{1}, format);
+    ASSERT_TRUE(WriteFrame(path, frame, format, {}));
+    const Image<uint8_t> read = ReadDisplayImage(path).value();
+    ASSERT_EQ(read.channels(), 3);
+    for (size_t i = 0; i < picture.pixels().size(); ++i)
+      ASSERT_NEAR(read.pixels()[i], picture.pixels()[i], format == FrameFormat::kExrFloat ? 0 : 1);
+  }
+}
+
 TEST_F(FrameFileTest, MetadataIsInTheFile) {
   const DevelopedFrame frame = RandomFrame(4, 4);
   for (const FrameFormat format : {FrameFormat::kExrHalf, FrameFormat::kPng16}) {

@@ -11,7 +11,7 @@ namespace lf {
 namespace {
 
 Result<std::array<double, 3>> ParseBackground(const std::string& text) {
-  if (text == "black") return std::array<double, 3>{0, 0, 0};
+  if (text == "black" || text == kNoBackground) return std::array<double, 3>{0, 0, 0};
   if (text == "white") return std::array<double, 3>{1, 1, 1};
   std::array<double, 3> rgb = {};
   const char* at = text.data();
@@ -21,8 +21,8 @@ Result<std::array<double, 3>> ParseBackground(const std::string& text) {
     const bool is_followed = c == 2 ? rest == end : rest != end && *rest == ',';
     if (error != std::errc() || !is_followed || !(rgb[c] >= 0 && rgb[c] <= 1e6))
       return UsageError(
-          fmt::format("--background {}: expected black, white, or three radiances from 0 on such "
-                      "as 0.2,0.2,0.3",
+          fmt::format("--background {}: expected black, white, none, or three radiances from 0 on "
+                      "such as 0.2,0.2,0.3",
                       text));
     at = rest + 1;
   }
@@ -62,7 +62,7 @@ void LightFieldArgument::AddOptionsTo(CLI::App& app) {
   app.add_option(
          "--background", background,
          "Light behind images whose alpha is light: black, white, or R,G,B, linear, where 1 "
-         "is display white")
+         "is display white; none: frames have alpha themselves, and light as over black")
       ->check(NotEmpty())
       ->default_str("as recorded, or black");
 }
@@ -72,6 +72,7 @@ Result<OpenOptions> LightFieldArgument::Options() const {
   options.alpha = AlphaMeaningOf(image_alpha);
   if (!background.empty()) {
     LF_ASSIGN_OR_RETURN(options.background, ParseBackground(background));
+    options.keeps_opacity = background == kNoBackground;
   }
   LF_ASSIGN_OR_RETURN(options.image_scale, ParseImageScale(image_scale));
   if (focal_px > 0) options.focal_px = focal_px;
