@@ -31,12 +31,13 @@ Examples:
   lfsynth lights -o raw --bayer --noise 0.01
   lfsynth still-life -o phone --distortion 0.12,-0.25,0.001,-0.002
   lfsynth still-life -o still-life --calibration-only --truth path.yaml
+  lfsynth chart -o cut-out --alpha straight --format png --truth path.yaml
 
 DIR receives images/0000.exr ... and transforms.json; with --truth also truth/frame_0001.exr ...,
 the frames that a real lens would film along a camera path. Lengths are metres.)";
 
 struct Arguments {
-  std::string scene, output, capture = "planar", format = "exr", truth;
+  std::string scene, output, capture = "planar", format = "exr", alpha = "none", truth;
   std::optional<std::pair<int, int>> size_px;
   uint32_t count = 0;
   std::optional<double> spacing, distance;
@@ -78,6 +79,10 @@ void AddOptions(CLI::App& app, Arguments& a) {
       ->excludes("--fisheye");
   app.add_option("--format", a.format, "exr, png (8-bit sRGB) or png16 (linear)")
       ->check(CLI::IsMember({"exr", "png", "png16"}));
+  app.add_option("--alpha", a.alpha,
+                 "Surfaces alone, before a transparent background, with straight or premultiplied "
+                 "alpha in the LF images, and premultiplied in true frames; none: no alpha")
+      ->check(CLI::IsMember({"none", "straight", "premultiplied"}));
   app.add_flag("--bayer", a.bayer, "Raw-like 16-bit RGGB mosaics instead");
   app.add_option("--noise", a.noise, "With --bayer: standard deviation at radiance 1")
       ->check(CLI::Range(0.0, 10.0));
@@ -118,6 +123,10 @@ lf::Distortion DistortionOf(const Arguments& a) {
 lf::Result<lf::LfImageFormat> FormatOf(const Arguments& a) {
   if (a.bayer && a.format != "exr")
     return lf::UsageError("--bayer and --format exclude each other: mosaics are 16-bit PNG");
+  if (a.alpha != "none" && a.bayer)
+    return lf::UsageError("--bayer and --alpha exclude each other: mosaics have no alpha");
+  if (a.alpha != "none" && a.scene == "lights")
+    return lf::UsageError("--alpha: lights has no surfaces: use another scene");
   if (a.noise > 0 && !a.bayer) return lf::UsageError("--noise is for mosaics: add --bayer");
   if (a.bayer) return lf::LfImageFormat::kBayer;
   if (a.format == "png") return lf::LfImageFormat::kPng;
@@ -151,8 +160,12 @@ int main(int argc, char** argv) {
         a.size_px.value_or(std::pair(built_in.width_px, built_in.height_px));
     lf::Intrinsics intrinsics = lf::IntrinsicsFor(built_in, width_px, height_px);
     intrinsics.distortion = DistortionOf(a);
-    const lf::LightField light_field =
+    lf::LightField light_field =
         lf::DescribeLightField(poses, intrinsics, format, built_in.max_radiance, a.output);
+    light_field.encoding.alpha = lf::AlphaMeaningOf(a.alpha);
+    const lf::Surroundings surroundings = light_field.encoding.AlphaIsLight()
+                                              ? lf::Surroundings::kTransparent
+                                              : lf::Surroundings::kShown;
     lf::ThreadPool pool(program.common().threads);
     const lf::Scene scene(built_in.describe());
     if (a.calibration_only) {
@@ -173,7 +186,7 @@ int main(int argc, char** argv) {
     if (a.truth.empty()) return {};
     lf::ProgressMeter meter(style, " frames");
     return lf::WriteTruth(scene, path.cameras, {a.truth_samples, 0}, light_field.folder / "truth",
-                          pool, [&](size_t done) {
+                          pool, surroundings, [&](size_t done) {
                             meter.Update(done, path.frame_count(), "truth");
                             return !lf::CatchInterrupts();
                           });

@@ -139,30 +139,45 @@ SightRow LookAlongRow(const Scene& scene, const PixelRays& rays, const Tiles& ti
   return row;
 }
 
-Rgb MeanOverPixel(const Scene& scene, const PixelRays& rays, const Tiles& tiles,
-                  const std::vector<Vec2>& points, int x, int y) {
+// Light, and the share of rays that it is from.
+using Rgba = Eigen::Array4d;
+
+// What one ray adds to a picture.
+Rgba LightOf(const Scene::Sight& sight, Surroundings surroundings) {
+  if (surroundings == Surroundings::kTransparent && sight.shape == Hit::kNothing)
+    return Rgba::Zero();
+  return {sight.radiance[0], sight.radiance[1], sight.radiance[2], 1};
+}
+
+Rgba MeanOverPixel(const Scene& scene, const PixelRays& rays, const Tiles& tiles,
+                   const std::vector<Vec2>& points, int x, int y, Surroundings surroundings) {
   const auto count = static_cast<int>(points.size());
   const Footprint footprint = rays.FootprintOf(count);
-  Rgb sum = Rgb::Zero();
+  Rgba sum = Rgba::Zero();
   for (const Vec2& point : points)
     if (const std::optional<Ray> ray = rays.Through(x + point.x(), y + point.y()))
-      sum += scene.Look(*ray, footprint, tiles.At(x, y)).radiance;
+      sum += LightOf(scene.Look(*ray, footprint, tiles.At(x, y)), surroundings);
   return sum / count;
 }
 
-void Store(const Rgb& radiance, float* pixel) {
-  for (int channel = 0; channel < 3; ++channel)
-    pixel[channel] = static_cast<float>(radiance[channel]);
+int ChannelsOf(Surroundings surroundings) {
+  return surroundings == Surroundings::kTransparent ? 4 : 3;
+}
+
+void Store(const Rgba& light, int x, int y, Image<float>* picture) {
+  for (int channel = 0; channel < picture->channels(); ++channel)
+    picture->at(x, y, channel) = static_cast<float>(light[channel]);
 }
 
 }  // namespace
 
-Image<float> Photograph(const Scene& scene, const PinholeCamera& camera, int samples) {
+Image<float> Photograph(const Scene& scene, const PinholeCamera& camera, int samples,
+                        Surroundings surroundings) {
   const int width = camera.intrinsics.width_px, height = camera.intrinsics.height_px;
   const PixelRays rays(camera);
   const Tiles tiles(scene, rays, width, height);
   const std::vector<Vec2> points = SquarePoints(SideOf(samples));
-  Image<float> picture(width, height, 3);
+  Image<float> picture(width, height, ChannelsOf(surroundings));
   SightRow above = LookAlongRow(scene, rays, tiles, width, -1);
   SightRow row = LookAlongRow(scene, rays, tiles, width, 0);
   for (int y = 0; y < height; ++y) {
@@ -171,10 +186,10 @@ Image<float> Photograph(const Scene& scene, const PinholeCamera& camera, int sam
       const size_t i = static_cast<size_t>(x) + 1;
       const bool edge = IsEdge(row[i], row[i - 1]) || IsEdge(row[i], row[i + 1]) ||
                         IsEdge(row[i], above[i]) || IsEdge(row[i], below[i]);
-      const Rgb radiance = edge && points.size() > 1
-                               ? MeanOverPixel(scene, rays, tiles, points, x, y)
-                               : row[i].radiance;
-      Store(radiance, &picture.at(x, y));
+      const Rgba light = edge && points.size() > 1
+                             ? MeanOverPixel(scene, rays, tiles, points, x, y, surroundings)
+                             : LightOf(row[i], surroundings);
+      Store(light, x, y, &picture);
     }
     above = std::move(row);
     row = std::move(below);
@@ -183,7 +198,8 @@ Image<float> Photograph(const Scene& scene, const PinholeCamera& camera, int sam
 }
 
 Image<float> ThinLensPhotograph(const Scene& scene, const RenderCamera& camera,
-                                const LensSampling& sampling, ThreadPool& pool) {
+                                const LensSampling& sampling, ThreadPool& pool,
+                                Surroundings surroundings) {
   const Intrinsics& intrinsics = camera.pinhole.intrinsics;
   const std::vector<Vec2> element_points = SquarePoints(SideOf(sampling.samples));
   const auto sample_count = static_cast<int>(element_points.size());
@@ -192,11 +208,11 @@ Image<float> ThinLensPhotograph(const Scene& scene, const RenderCamera& camera,
     lens_points.push_back(LensPointWorld(camera, point));
   const double element_spread = PixelRays(camera.pinhole).FootprintOf(sample_count).spread;
   const double lens_cell_w = kFootprintPerSide * std::sqrt(Area(camera.aperture) / sample_count);
-  Image<float> picture(intrinsics.width_px, intrinsics.height_px, 3);
+  Image<float> picture(intrinsics.width_px, intrinsics.height_px, ChannelsOf(surroundings));
   pool.ForEach(static_cast<size_t>(intrinsics.height_px), [&](size_t row) {
     const int y = static_cast<int>(row);
     for (int x = 0; x < intrinsics.width_px; ++x) {
-      Rgb sum = Rgb::Zero();
+      Rgba sum = Rgba::Zero();
       for (size_t i = 0; i < lens_points.size(); ++i) {
         const std::optional<Vec3> focus_point =
             FocusPointOfElement(camera, x + element_points[i].x(), y + element_points[i].y());
@@ -204,9 +220,9 @@ Image<float> ThinLensPhotograph(const Scene& scene, const RenderCamera& camera,
         const Vec3 direction = *focus_point - lens_points[i];
         // As wide as the sample's part of the lens there, as its part of the element in focus.
         const Footprint footprint{lens_cell_w, -lens_cell_w / direction.norm() - element_spread};
-        sum += scene.RadianceAlong({lens_points[i], direction}, footprint);
+        sum += LightOf(scene.Look({lens_points[i], direction}, footprint), surroundings);
       }
-      Store(sum / sample_count, &picture.at(x, y));
+      Store(sum / sample_count, x, y, &picture);
     }
   });
   return picture;

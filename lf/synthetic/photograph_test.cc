@@ -158,6 +158,52 @@ TEST(Photograph, ALensOfOnePointIsAPinhole) {
     EXPECT_NEAR(lens.pixels()[i], pinhole.pixels()[i], 1e-4F);
 }
 
+// In a white room a white ball is as bright as it is opaque.
+TEST(Photograph, BeforeTransparentSurroundingsAlphaIsTheShareOfRaysThatMeetASurface) {
+  ThreadPool pool(2);
+  const Scene scene = WhiteBall({0.2, 0.1, 4}, 1);
+  const PinholeCamera camera = Camera(60, 40, 60);
+  const Image<float> pinhole = Photograph(scene, camera, 16, Surroundings::kTransparent);
+  const Image<float> lens =
+      ThinLensPhotograph(scene, Lens(camera, 0.1, 0, 2), {64, 0}, pool, Surroundings::kTransparent);
+  for (const Image<float>* picture : {&pinhole, &lens}) {
+    ASSERT_EQ(picture->channels(), 4);
+    int opaque = 0, between = 0;
+    for (int y = 0; y < 40; ++y)
+      for (int x = 0; x < 60; ++x) {
+        const float alpha = picture->at(x, y, 3);
+        ASSERT_NEAR(picture->at(x, y, 1), alpha, 1e-3F);
+        opaque += alpha == 1 ? 1 : 0;
+        between += alpha > 0 && alpha < 1 ? 1 : 0;
+      }
+    EXPECT_GT(opaque, 100);
+    EXPECT_GT(between, 20);
+  }
+}
+
+TEST(Photograph, SurroundingsDoNotChangeTheLightOfOpaquePixels) {
+  const Scene scene(DescribeChart());
+  const PinholeCamera camera = {IntrinsicsFor(*FindBuiltInScene("chart"), 48, 32),
+                                *LookAlong({0, 0, -1}, {0, 0, 1}, -Vec3::UnitY())};
+  const Image<float> shown = Photograph(scene, camera, 4);
+  const Image<float> cut_out = Photograph(scene, camera, 4, Surroundings::kTransparent);
+  int opaque = 0;
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 48; ++x) {
+      const float alpha = cut_out.at(x, y, 3);
+      for (int c = 0; c < 3; ++c) {
+        if (alpha == 1) {
+          ASSERT_NEAR(cut_out.at(x, y, c), shown.at(x, y, c), 1e-6F);
+        } else if (alpha == 0) {
+          ASSERT_EQ(cut_out.at(x, y, c), 0);
+        }
+      }
+      opaque += alpha == 1 ? 1 : 0;
+    }
+  EXPECT_GT(opaque, 200);
+  EXPECT_LT(opaque, 48 * 32 - 100);
+}
+
 TEST(Photograph, PicturesAreTheSameForAnyNumberOfThreads) {
   ThreadPool one(1), three(3);
   const Scene scene(DescribeStillLife());

@@ -32,23 +32,41 @@ uint16_t Stored16(double value) {
   return static_cast<uint16_t>(std::lround(std::clamp(value, 0.0, kLargest16)));
 }
 
+constexpr int kAlphaChannel = 3;
+
 Image<uint16_t> Linear16(ImageView<const float> picture, double white_level) {
   Image<uint16_t> stored(picture.width, picture.height, picture.channels);
   for (int y = 0; y < picture.height; ++y)
-    for (int i = 0; i < picture.width * picture.channels; ++i)
-      stored.row(y)[i] = Stored16(white_level * static_cast<double>(picture.row(y)[i]));
+    for (int x = 0; x < picture.width; ++x)
+      for (int c = 0; c < picture.channels; ++c)
+        stored.at(x, y, c) = Stored16((c == kAlphaChannel ? kLargest16 : white_level) *
+                                      static_cast<double>(picture.at(x, y, c)));
   return stored;
 }
 
 void EncodeSrgb(Image<float>& picture) {
-  for (float& value : picture.pixels())
-    value = static_cast<float>(SrgbFromLinear(std::clamp(static_cast<double>(value), 0.0, 1.0)));
+  for (int y = 0; y < picture.height(); ++y)
+    for (int x = 0; x < picture.width(); ++x)
+      for (int c = 0; c < 3; ++c) {
+        const auto value = static_cast<double>(picture.at(x, y, c));
+        picture.at(x, y, c) = static_cast<float>(SrgbFromLinear(std::clamp(value, 0.0, 1.0)));
+      }
+}
+
+// Divides colours by alpha.
+void MakeStraight(Image<float>& picture) {
+  for (int y = 0; y < picture.height(); ++y)
+    for (int x = 0; x < picture.width(); ++x)
+      if (const float alpha = picture.at(x, y, kAlphaChannel); alpha > 0)
+        for (int c = 0; c < 3; ++c) picture.at(x, y, c) /= alpha;
 }
 
 Result<void> WriteLfImage(const std::filesystem::path& path, Image<float> picture,
                           const RadianceEncoding& encoding, const WriteLightFieldOptions& options,
                           uint64_t image_seed) {
-  const std::vector<std::string> names = {"R", "G", "B"};
+  std::vector<std::string> names = {"R", "G", "B"};
+  if (encoding.AlphaIsLight()) names.emplace_back("A");
+  if (encoding.alpha == AlphaMeaning::kStraight) MakeStraight(picture);
   switch (options.format) {
     case LfImageFormat::kExr:
       return WriteImage(path, picture.view(), names, PixelType::kHalf);
@@ -134,6 +152,9 @@ Image<uint16_t> Mosaic(ImageView<const float> picture, const RadianceEncoding& e
 
 Result<void> WriteLightField(const Scene& scene, const LightField& light_field,
                              const WriteLightFieldOptions& options, ThreadPool& pool) {
+  LF_CHECK(!light_field.encoding.AlphaIsLight() || options.format != LfImageFormat::kBayer);
+  const Surroundings surroundings =
+      light_field.encoding.AlphaIsLight() ? Surroundings::kTransparent : Surroundings::kShown;
   const std::filesystem::path calibration = light_field.folder / "transforms.json";
   LF_RETURN_IF_ERROR(CreateFolder(light_field.folder / "images"));
   std::error_code error;
@@ -147,9 +168,10 @@ Result<void> WriteLightField(const Scene& scene, const LightField& light_field,
   pool.ForEach(light_field.size(), [&](size_t i) {
     if (stopped) return;
     const LfImageId id{static_cast<uint32_t>(i)};
-    const Result<void> written = WriteLfImage(
-        light_field.ImagePath(id), Photograph(scene, light_field.Camera(id), options.samples),
-        light_field.encoding, options, RandomBits(options.seed, 1, i));
+    const Result<void> written =
+        WriteLfImage(light_field.ImagePath(id),
+                     Photograph(scene, light_field.Camera(id), options.samples, surroundings),
+                     light_field.encoding, options, RandomBits(options.seed, 1, i));
     const std::lock_guard lock(mutex);
     if (!written) {
       if (!failure) failure = written.error();

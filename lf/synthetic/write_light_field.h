@@ -47,7 +47,8 @@ struct WriteLightFieldOptions {
   std::function<bool(size_t images_done)> keep_going;
 };
 
-// Photographs the scene with every camera of `light_field` and writes the images, then
+// Photographs the scene with every camera of `light_field` and writes the images: with transparent
+// surroundings (photograph.h) and alpha if its encoding.AlphaIsLight(), which no mosaic has; then
 // light_field.folder/transforms.json: a folder with one is complete. Images in the way are
 // replaced, each at once; an older transforms.json is removed first. The same bytes for any thread
 // count.

@@ -15,12 +15,13 @@
 
 namespace lf {
 
-// Writes folder/frame_0001.exr ..., one per camera: R, G, B as floats, linear light.
+// Writes folder/frame_0001.exr ..., one per camera: R, G, B as floats, linear light; and A, which
+// they are multiplied with, where surroundings are transparent.
 //   keep_going  called after every frame; false stops the work. May be empty
 // kOutput: folder, disk, no permission. kInterrupted: stopped; frames written are complete.
 Result<void> WriteTruth(const Scene& scene, std::span<const RenderCamera> cameras,
                         const LensSampling& sampling, const std::filesystem::path& folder,
-                        ThreadPool& pool,
+                        ThreadPool& pool, Surroundings surroundings = Surroundings::kShown,
                         const std::function<bool(size_t frames_done)>& keep_going = {});
 
 }  // namespace lf

@@ -39,7 +39,8 @@ TEST_F(WriteTruthTest, EveryFrameIsAFileOfItsOwnWithFullPrecision) {
 
 TEST_F(WriteTruthTest, StoppedItKeepsTheFramesThatAreDone) {
   const Result<void> stopped =
-      WriteTruth(scene_, cameras_, {1, 0}, folder_, pool_, [](size_t done) { return done < 2; });
+      WriteTruth(scene_, cameras_, {1, 0}, folder_, pool_, Surroundings::kShown,
+                 [](size_t done) { return done < 2; });
   ASSERT_FALSE(stopped);
   EXPECT_EQ(stopped.error().kind, ErrorKind::kInterrupted);
   EXPECT_NE(stopped.error().message.find("after 2 of 3 frames"), std::string::npos);
