@@ -42,3 +42,10 @@ find_library(LF_OIIO_UTIL_LIBRARY OpenImageIO_Util REQUIRED)
 add_library(lf_oiio INTERFACE)
 target_include_directories(lf_oiio SYSTEM INTERFACE ${LF_OIIO_INCLUDE})
 target_link_libraries(lf_oiio INTERFACE ${LF_OIIO_LIBRARY} ${LF_OIIO_UTIL_LIBRARY})
+
+# LibRaw's library for several threads, libraw_r: several LF images are decoded at the same time.
+find_path(LF_LIBRAW_INCLUDE libraw/libraw.h REQUIRED)
+find_library(LF_LIBRAW_LIBRARY raw_r REQUIRED)
+add_library(lf_libraw INTERFACE)
+target_include_directories(lf_libraw SYSTEM INTERFACE ${LF_LIBRAW_INCLUDE})
+target_link_libraries(lf_libraw INTERFACE ${LF_LIBRAW_LIBRARY})

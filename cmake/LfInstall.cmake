@@ -12,11 +12,11 @@ target_compile_features(lf_installed PUBLIC cxx_std_20)
 # Inline functions of the headers keep their bits, too (cmake/LfFolder.cmake).
 target_compile_options(lf_installed INTERFACE -ffp-contract=off)
 target_include_directories(lf_installed INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
-# An archive carries nothing of what it needs: whoever links it links these. OpenImageIO,
+# An archive carries nothing of what it needs: whoever links it links these. OpenImageIO, raw_r,
 # jpeg, simdjson, zstd, xxhash and sqlite3 by name, see LfDependencies.cmake.
 target_link_libraries(lf_installed PUBLIC Eigen3::Eigen fmt::fmt TBB::tbb Threads::Threads yaml-cpp
-                                          hwy::hwy OpenImageIO OpenImageIO_Util jpeg simdjson
-                                          zstd xxhash sqlite3)
+                                          hwy::hwy OpenImageIO OpenImageIO_Util raw_r jpeg
+                                          simdjson zstd xxhash sqlite3)
 install(TARGETS lf_installed EXPORT lfrendertoolsTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 

@@ -171,6 +171,8 @@ Result<void> CompleteEncoding(const OpenOptions& options, const fs::path& path,
     encoding.bayer = *options.bayer;
   }
   if (!is_raw || encoding.bayer != BayerPattern::kNone) return {};
+  LF_ASSIGN_OR_RETURN(const std::optional<RawFacts> facts, RawFactsOfFirstImage(*light_field));
+  if (facts && facts->is_monochrome) return {};
   return InputError(fmt::format(
       "{}: the camera raw file {} does not tell a Bayer pattern (four letters of R, G, B with the "
       "two G on a diagonal): state \"lf_bayer\": \"RGGB\", or what it is, in transforms.json, or "

@@ -81,6 +81,20 @@ TEST_F(RawEncodingTest, APatternThatNobodyTellsIsAskedFor) {
   EXPECT_EQ(told->encoding.black_level, 256);
 }
 
+TEST_F(RawEncodingTest, ASensorWithoutColourFilterIsGreyLight) {
+  TestDng dng(NoiseImage<uint16_t>(24, 22, 1), "RGGB");
+  dng.Short(262, {34892}).Without(33421).Without(33422).Long(50714, {256}).Long(50717, {4095});
+  const Result<LightField> light_field = Open(dng);
+  ASSERT_TRUE(light_field) << light_field.error().message;
+  EXPECT_EQ(light_field->encoding.bayer, BayerPattern::kNone);
+  EXPECT_EQ(light_field->encoding.transfer, Transfer::kLinear);
+  EXPECT_EQ(light_field->encoding.black_level, 256);
+  ASSERT_TRUE(WriteTransformsJson(*light_field, folder_ / "transforms.json"));
+  const Result<LightField> again = OpenLightField(folder_);
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_EQ(again->encoding.white_level, 4095);
+}
+
 TEST_F(RawEncodingTest, AFirstFileThatTellsNothingIsAnError) {
   ASSERT_TRUE(Open(Dng()));
   ASSERT_TRUE(WriteFileAtomically(folder_ / "a.dng", "no picture"));
@@ -108,6 +122,7 @@ TEST_F(RawEncodingTest, FoldersWithoutAWordOnPixelsAreCompleted) {
 TEST(RawName, IsToldByItsExtension) {
   EXPECT_TRUE(IsRawName("a/b.DNG"));
   EXPECT_TRUE(IsRawName("b.nef"));
+  EXPECT_TRUE(IsRawName("IMG_0001.CR3"));
   EXPECT_FALSE(IsRawName("dng"));
   EXPECT_FALSE(IsRawName("b.dng.tif"));
 }

@@ -7,13 +7,16 @@
 #include <filesystem>
 #include <iterator>
 #include <string_view>
+#include <utility>
 
 #include "lf/core/log.h"
 
 namespace lf {
 
 bool IsRawName(const std::string& file_name) {
-  constexpr std::string_view kExtensions[] = {".dng", ".nef", ".nrw", ".arw", ".sr2", ".pef"};
+  constexpr std::string_view kExtensions[] = {
+      ".dng", ".nef", ".nrw", ".arw", ".sr2", ".pef", ".cr2", ".cr3", ".crw", ".raf",
+      ".orf", ".rw2", ".rwl", ".mrw", ".srw", ".3fr", ".erf", ".mef", ".iiq", ".x3f"};
   std::string extension = std::filesystem::path(file_name).extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return std::find(std::begin(kExtensions), std::end(kExtensions), extension) !=
@@ -26,7 +29,11 @@ Result<std::optional<RawFacts>> RawFactsOfFirstImage(const LightField& light_fie
       "lf_white_balance and lf_camera_to_srgb in a transforms.json";
   if (light_field.image_names.empty() || !IsRawName(light_field.image_names[0]))
     return std::optional<RawFacts>();
-  const Result<ImageFileInfo> info = ReadImageInfo(light_field.ImagePath({0}));
+  Result<ImageFileInfo> info = ReadImageInfo(light_field.ImagePath({0}));
+  if (info && info->raw && !info->raw->black_level) {
+    Result<ImageWithInfo> image = ReadImageWithInfo(light_field.ImagePath({0}));
+    info = image ? Result<ImageFileInfo>(std::move(image->info)) : image.error();
+  }
   if (!info)
     return InputError(
         fmt::format("{}; as the first camera raw file it would tell the pattern, levels and "
@@ -69,7 +76,7 @@ void WarnOfUnknown(const LightField& light_field, const RawFacts& facts, bool le
         "lf_white_level",
         name, facts.black_level ? "white level" : "black and white level",
         facts.black_level ? "65535" : "0 and 65535");
-  if (!colours_stated && !(facts.white_balance && facts.camera_to_srgb))
+  if (!colours_stated && !facts.is_monochrome && !(facts.white_balance && facts.camera_to_srgb))
     LogWarning(
         "{}: this camera raw file does not tell its {}; colours stay those of the sensor: state "
         "lf_white_balance and lf_camera_to_srgb",

@@ -14,15 +14,17 @@ namespace lf {
 // v of no light, by default, where there is a black level: room for the noise below it.
 inline constexpr double kRawPedestal = 1024;
 
-// By the extension, in any case: dng, nef, nrw, arw, sr2, pef.
+// By the extension, in any case: dng, and those of cameras' own formats (cr2, cr3, nef, arw, ...).
 bool IsRawName(const std::string& file_name);
 
-// What the first image says of all, if its name is that of a raw file; else none.
+// What the first image says of all, if its name is that of a raw file; else none. Its pixels are
+// decoded if the header does not tell the black level.
 // kInput: it cannot be read, or is no raw file (the message says what to state instead).
 using RawFactsSource = std::function<Result<std::optional<RawFacts>>(const LightField&)>;
 Result<std::optional<RawFacts>> RawFactsOfFirstImage(const LightField& light_field);
 
-// An encoding of raw files with these facts: linear; without a pattern where they tell none.
+// An encoding of raw files with these facts: linear; without a pattern where they tell none, or
+// where there is no colour filter.
 // Levels and colours that they do not tell stay as they are by default.
 RadianceEncoding EncodingOfRaw(const RawFacts& facts);
 

@@ -1,5 +1,5 @@
 // Image files in and out: PNG, JPEG, TIFF, EXR; camera raw files in. The only place with
-// OpenImageIO and libjpeg.
+// OpenImageIO, libjpeg and LibRaw.
 //
 // All functions may be called by many threads at once; none starts threads of its own.
 #pragma once
@@ -32,6 +32,7 @@ using StoredImage = std::variant<Image<uint8_t>, Image<uint16_t>, Image<float>>;
 struct RawFacts {
   BayerPattern bayer =
       BayerPattern::kNone;            // at pixel (0, 0); kNone: not told, or no Bayer pattern
+  bool is_monochrome = false;         // no colour filter: the pixels are a grey picture
   std::optional<double> black_level;  // the mean, where the file has several
   std::optional<double> white_level;
   std::optional<std::array<double, 3>> white_balance;  // as shot; green is 1
@@ -49,21 +50,22 @@ struct ImageFileInfo {
   std::optional<RawFacts> raw;             // of camera raw files: one channel of 16 bits
 };
 
-// The header alone. kInput as for ReadImage, but a file truncated later goes unnoticed.
+// The header alone. kInput as for ReadImage, but a file truncated later goes unnoticed. The black
+// level of camera raw files other than DNG is not in it: it is measured on covered pixels.
 Result<ImageFileInfo> ReadImageInfo(const std::filesystem::path& path);
 
 // All pixels and channels as stored: no colour conversion, alpha not multiplied in, no rotation.
 // The content decides the format, not the name. The first part of a file with several.
 // Channels of EXR files come in the order R, G, B, A, then the others; where there are none of
 // these names, but one layer has them (beauty.R), its come first. Several such layers are an error.
-// Camera raw files give the mosaic as the sensor recorded it: not demosaicked, brightened, balanced
-// or turned, black not subtracted; cut to the active area where a DNG states one, and through its
-// linearization table. Read are DNG, and others that state a mosaic of 2 x 2 pixels in TIFF tags
-// (NEF, ARW). LibRaw decodes them: damage within compressed ones may go unnoticed, and pictures
-// below 22 pixels are no raw files to it.
+// Camera raw files give the mosaic as the sensor recorded it, and what a monochrome sensor recorded
+// as grey: not demosaicked, brightened, balanced or turned, black not subtracted; cut to the pixels
+// that see light (the active area of a DNG), and through the linearization table of a DNG. LibRaw
+// decodes them: small damage within compressed ones may go unnoticed, and pictures below 22 pixels
+// are no raw files to it.
 // kInput: missing, unreadable, truncated or damaged file (JPEG: whatever libjpeg could only guess),
-// another format (other camera raw files among them), a CMYK JPEG, or larger than 2^30 pixels or
-// 2^32 values, which is checked before pixels are allocated; the message names the file.
+// another format (raw files without a Bayer mosaic among them), a CMYK JPEG, or larger than 2^30
+// pixels or 2^32 values, which is checked before pixels are allocated; the message names the file.
 Result<StoredImage> ReadImage(const std::filesystem::path& path);
 
 // Both at once.

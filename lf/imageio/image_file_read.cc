@@ -15,8 +15,8 @@
 #include "lf/imageio/image_probe.h"
 #include "lf/imageio/layers.h"
 #include "lf/imageio/open_image_io.h"
-#include "lf/imageio/open_raw.h"
 #include "lf/imageio/read_jpeg.h"
+#include "lf/imageio/read_raw.h"
 #include "lf/imageio/stored_value.h"
 
 namespace lf {
@@ -37,17 +37,14 @@ ByteSource SourceOf(OIIO::Filesystem::IOProxy& file) {
 struct FileSource {
   OIIO::Filesystem::IOProxy& file;
   std::string name;
-  std::optional<std::string_view> bytes;  // none: `name` is its path
 };
 
 // A decoder at the start of its pixels.
 struct OpenImage {
   std::string name;
-  std::optional<NamedBytes> raw_bytes;  // what `input` reads, if these; outlives it
   std::unique_ptr<OIIO::ImageInput> input;
   OIIO::ImageSpec spec;
   std::vector<int> channel_order;  // as we give them: indices into the file's order
-  std::optional<RawFacts> raw;
 };
 
 // The stored type of every channel: 8 and 16 for unsigned integers, 32 for what becomes float.
@@ -76,25 +73,10 @@ Result<void> CheckSize(const OIIO::ImageSpec& spec, const std::string& name) {
   return {};
 }
 
-Result<OpenImage> OpenMosaic(const FileSource& source) {
-  LF_ASSIGN_OR_RETURN(const RawMosaic mosaic, ReadRawMosaic(SourceOf(source.file), source.name));
-  OpenImage image{source.name, {}, {}, {}, {0}, {}};
-  std::string path = source.name;
-  if (source.bytes) {
-    LF_ASSIGN_OR_RETURN(NamedBytes bytes, NamedBytes::Create(*source.bytes));
-    path = image.raw_bytes.emplace(std::move(bytes)).path();
-  }
-  LF_ASSIGN_OR_RETURN(OpenRaw raw, OpenRawFile(path, mosaic, source.name));
-  image.input = std::move(raw.input);
-  image.spec = raw.spec;
-  image.raw = raw.facts;
-  return image;
-}
-
 Result<OpenImage> OpenPicture(const FileSource& source, ImageFormat format) {
   ConfigureOpenImageIo();
   const std::string& name = source.name;
-  OpenImage image{name, {}, OIIO::ImageInput::create(PluginName(format)), {}, {}, {}};
+  OpenImage image{name, OIIO::ImageInput::create(PluginName(format)), {}, {}};
   if (!image.input)
     return InputError(fmt::format("{}: this OpenImageIO cannot read {} files: {}", name,
                                   PluginName(format), OIIO::geterror()));
@@ -115,8 +97,7 @@ Result<OpenImage> OpenPicture(const FileSource& source, ImageFormat format) {
 }
 
 Result<OpenImage> Open(const FileSource& source, ImageFormat format) {
-  LF_ASSIGN_OR_RETURN(OpenImage image, format == ImageFormat::kRaw ? OpenMosaic(source)
-                                                                   : OpenPicture(source, format));
+  LF_ASSIGN_OR_RETURN(OpenImage image, OpenPicture(source, format));
   LF_RETURN_IF_ERROR(CheckSize(image.spec, source.name));
   return image;
 }
@@ -124,10 +105,9 @@ Result<OpenImage> Open(const FileSource& source, ImageFormat format) {
 ImageFileInfo InfoOf(const OpenImage& image) {
   const int bits = StoredBits(image.spec);
   ImageFileInfo info{
-      image.spec.width, image.spec.height, image.spec.nchannels, bits, bits == 32, {}, 1,
-      image.raw};
+      image.spec.width, image.spec.height, image.spec.nchannels, bits, bits == 32, {}, 1, {}};
   const int orientation = image.spec.get_int_attribute("Orientation", 1);
-  if (!image.raw && orientation >= 1 && orientation <= 8) info.orientation = orientation;
+  if (orientation >= 1 && orientation <= 8) info.orientation = orientation;
   for (const int channel : image.channel_order)
     info.channel_names.push_back(image.spec.channel_name(channel));
   return info;
@@ -137,8 +117,6 @@ ImageFileInfo InfoOf(const OpenImage& image) {
 Result<void> ReadPixels(OpenImage& image, OIIO::TypeDesc type, void* pixels) {
   const bool read = image.input->read_image(0, 0, 0, image.spec.nchannels, type, pixels);
   const std::string remarks = image.input->geterror();
-  if (!read && image.raw)
-    return InputError(fmt::format("{}: LibRaw cannot decode it: truncated or damaged", image.name));
   LF_RETURN_IF_ERROR(CheckRemarks(remarks, image.name));
   if (!read) return InputError(fmt::format("{}: truncated or damaged", image.name));
   return {};
@@ -203,6 +181,11 @@ Result<ImageFileInfo> InfoFrom(const FileSource& source) {
     LF_ASSIGN_OR_RETURN(const JpegReader jpeg, JpegReader::Open(bytes, source.name));
     return jpeg.info();
   }
+  if (format == ImageFormat::kRaw) {
+    LF_ASSIGN_OR_RETURN(const RawReader raw,
+                        RawReader::Open(bytes, source.file.size(), source.name));
+    return raw.info();
+  }
   LF_ASSIGN_OR_RETURN(const OpenImage image, Open(source, format));
   return InfoOf(image);
 }
@@ -217,10 +200,22 @@ Result<void> PartOfJpeg(const ByteSource& bytes, const std::string& name,
   return {};
 }
 
+Result<void> PartOfRaw(const ByteSource& bytes, const FileSource& source,
+                       const WantedPixels& wanted, ImagePart* part) {
+  LF_ASSIGN_OR_RETURN(RawReader raw, RawReader::Open(bytes, source.file.size(), source.name));
+  if (const auto rect = wanted(raw.info()); !rect) return rect.error();
+  if (!std::holds_alternative<Image<uint16_t>>(part->image)) part->image.emplace<Image<uint16_t>>();
+  LF_RETURN_IF_ERROR(raw.Read(&std::get<Image<uint16_t>>(part->image)));
+  part->info = raw.info();
+  part->rect = {0, 0, part->info.width, part->info.height};
+  return {};
+}
+
 Result<void> PartFrom(const FileSource& source, const WantedPixels& wanted, ImagePart* part) {
   const ByteSource bytes = SourceOf(source.file);
   LF_ASSIGN_OR_RETURN(const ImageFormat format, ProbeImage(bytes, source.name));
   if (format == ImageFormat::kJpeg) return PartOfJpeg(bytes, source.name, wanted, part);
+  if (format == ImageFormat::kRaw) return PartOfRaw(bytes, source, wanted, part);
   if (format == ImageFormat::kPng) LF_RETURN_IF_ERROR(CheckPngIsComplete(bytes, source.name));
   LF_ASSIGN_OR_RETURN(OpenImage image, Open(source, format));
   part->info = InfoOf(image);
@@ -255,12 +250,12 @@ Result<ImageFileInfo> ReadImageInfo(const fs::path& path) {
   OIIO::Filesystem::IOFile file(name, OIIO::Filesystem::IOProxy::Read);
   if (!file.opened())
     return InputError(fmt::format("{}: cannot be read: {}", name, std::strerror(errno)));
-  return WithoutThrowing(name, [&] { return InfoFrom({file, name, {}}); });
+  return WithoutThrowing(name, [&] { return InfoFrom({file, name}); });
 }
 
 Result<ImageFileInfo> ReadImageInfoBytes(std::string_view bytes, const std::string& name) {
   OIIO::Filesystem::IOMemReader file(const_cast<char*>(bytes.data()), bytes.size());
-  return WithoutThrowing(name, [&] { return InfoFrom({file, name, bytes}); });
+  return WithoutThrowing(name, [&] { return InfoFrom({file, name}); });
 }
 
 Result<void> ReadImagePart(const fs::path& path, const WantedPixels& wanted, ImagePart* part) {
@@ -271,7 +266,7 @@ Result<void> ReadImagePart(const fs::path& path, const WantedPixels& wanted, Ima
 Result<void> ReadImagePartBytes(std::string_view bytes, const std::string& name,
                                 const WantedPixels& wanted, ImagePart* part) {
   OIIO::Filesystem::IOMemReader file(const_cast<char*>(bytes.data()), bytes.size());
-  return WithoutThrowing(name, [&] { return PartFrom({file, name, bytes}, wanted, part); });
+  return WithoutThrowing(name, [&] { return PartFrom({file, name}, wanted, part); });
 }
 
 Result<ImageWithInfo> ReadImageWithInfo(const fs::path& path) {

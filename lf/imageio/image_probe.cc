@@ -4,11 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <optional>
 #include <string_view>
 
-#include "lf/imageio/raw_mosaic.h"
+#include "lf/imageio/tiff_directories.h"
 
 namespace lf {
 namespace {
@@ -79,23 +80,29 @@ Result<void> CheckJpeg(const ByteSource& source, const std::string& name) {
       fmt::format("{}: JPEG file without a frame header: truncated or damaged", name));
 }
 
-// The start of a camera raw file that is no TIFF file.
-Result<void> CheckNoOtherRaw(std::span<const uint8_t> start, const std::string& name) {
+// True for the start of a camera raw file that is no TIFF file.
+bool IsOtherRaw(std::span<const uint8_t> start) {
   using namespace std::string_view_literals;
   struct Kind {
     size_t offset;
     std::string_view magic;
-    const char* name;
   };
-  constexpr Kind kKinds[] = {{0, "FUJIFILM"sv, "Fujifilm RAF"}, {0, "FOVb"sv, "Sigma X3F"},
-                             {0, "IIRO"sv, "Olympus ORF"},      {0, "IIRS"sv, "Olympus ORF"},
-                             {0, "MMOR"sv, "Olympus ORF"},      {0, "IIU\0"sv, "Panasonic RW2"},
-                             {0, "\0MRM"sv, "Minolta MRW"},     {4, "ftypcrx "sv, "Canon CR3"}};
+  // Fujifilm RAF, Sigma X3F, Olympus ORF, Panasonic RW2, Minolta MRW, Canon CR3 and CRW.
+  constexpr Kind kKinds[] = {{0, "FUJIFILM"sv}, {0, "FOVb"sv},     {0, "IIRO"sv},
+                             {0, "IIRS"sv},     {0, "MMOR"sv},     {0, "IIU\0"sv},
+                             {0, "\0MRM"sv},    {4, "ftypcrx "sv}, {6, "HEAPCCDR"sv}};
   for (const Kind& kind : kKinds)
     if (start.size() >= kind.offset && StartsWith(start.subspan(kind.offset), kind.magic))
-      return InputError(fmt::format(
-          "{}: is a camera raw file ({}) that is not read; convert it to DNG", name, kind.name));
-  return {};
+      return true;
+  return false;
+}
+
+// True for a camera raw file among TIFF files.
+bool IsRawTiff(const ByteSource& source, std::span<const uint8_t> start) {
+  constexpr int kNewSubfileType = 254, kDngVersion = 50706;
+  if (start.size() >= 10 && start[8] == 'C' && start[9] == 'R') return true;  // Canon CR2
+  const std::optional<TiffDirectory> first = FirstTiffDirectory(source);
+  return first && (first->Has(kDngVersion) || std::fmod(first->Number(kNewSubfileType, 0), 2) == 1);
 }
 
 }  // namespace
@@ -108,7 +115,7 @@ Result<void> CheckPixelCount(uint64_t width, uint64_t height, const std::string&
 }
 
 Result<ImageFormat> ProbeImage(const ByteSource& source, const std::string& name) {
-  std::array<uint8_t, 12> head;
+  std::array<uint8_t, 16> head;
   const auto start = std::span<const uint8_t>(head).first(source(0, head));
   if (start.empty()) return InputError(fmt::format("{}: file is empty", name));
   if (StartsWith(start, "\x89PNG\r\n\x1a\n")) {
@@ -123,11 +130,11 @@ Result<ImageFormat> ProbeImage(const ByteSource& source, const std::string& name
   using namespace std::string_view_literals;
   for (const std::string_view tiff : {"II*\0"sv, "MM\0*"sv, "II+\0"sv, "MM\0+"sv}) {
     if (!StartsWith(start, tiff)) continue;
-    if (IsRawTiff(source)) return ImageFormat::kRaw;
-    return ImageFormat::kTiff;
+    return IsRawTiff(source, start) ? ImageFormat::kRaw : ImageFormat::kTiff;
   }
-  LF_RETURN_IF_ERROR(CheckNoOtherRaw(start, name));
-  return InputError(fmt::format("{}: is not a PNG, JPEG, TIFF, EXR or DNG file", name));
+  if (IsOtherRaw(start)) return ImageFormat::kRaw;
+  return InputError(
+      fmt::format("{}: is not a PNG, JPEG, TIFF, EXR or camera raw file that is read here", name));
 }
 
 Result<void> CheckPngIsComplete(const ByteSource& source, const std::string& name) {

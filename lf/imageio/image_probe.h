@@ -18,9 +18,10 @@ using ByteSource = std::function<size_t(uint64_t offset, std::span<uint8_t> to)>
 
 enum class ImageFormat { kPng, kJpeg, kTiff, kExr, kRaw };
 
-// By content. kRaw: a camera raw file of the TIFF kind, about which raw_mosaic.h knows more.
-// kInput: a format that is not read here (other camera raw files by name), or a PNG or JPEG that
-// claims more than kMaxImagePixels, or more than a file of its length can hold.
+// By content. kRaw: a file as cameras write them. A TIFF file is one if it is a DNG, or leads with
+// a thumbnail, which would pass as TIFF and show the thumbnail. kInput: a format that is not read
+// here, or a PNG or JPEG that claims more than kMaxImagePixels, or more than a file of its length
+// can hold.
 inline constexpr uint64_t kMaxImagePixels = uint64_t{1} << 30;
 Result<ImageFormat> ProbeImage(const ByteSource& source, const std::string& name);
 

@@ -32,7 +32,7 @@ const char* PluginName(ImageFormat format) {
     case ImageFormat::kExr:
       return "openexr";
     case ImageFormat::kRaw:
-      return "raw";
+      break;  // read by LibRaw
   }
   LF_CHECK(false);
 }

@@ -12,7 +12,7 @@ namespace lf {
 // Called before every use; the first call does it.
 void ConfigureOpenImageIo();
 
-// What OpenImageIO calls its coder of the format.
+// Returns what OpenImageIO calls its coder of the format, which must not be kRaw.
 const char* PluginName(ImageFormat format);
 
 // kInput if a decoder remarked anything. libtiff goes on with the next row, and libpng with what it

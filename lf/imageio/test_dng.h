@@ -1,4 +1,5 @@
-// Writes DNG files for tests: one strip of 16-bit pixels, uncompressed, and the tags a test names.
+// Writes DNG files for tests, with the tags a test names: one strip of 16-bit pixels, uncompressed,
+// unless a test asks for packed bits, tiles or lossless JPEG.
 #pragma once
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "lf/core/image.h"
+#include "lf/imageio/test_lossless_jpeg.h"
 
 namespace lf {
 
@@ -16,13 +18,14 @@ namespace lf {
 class TestDng {
  public:
   // pattern: four letters, as lf_bayer
-  TestDng(const Image<uint16_t>& mosaic, const std::string& pattern) {
-    for (const uint16_t value : mosaic.pixels()) Append(value, 2, &pixels_);
+  TestDng(const Image<uint16_t>& mosaic, const std::string& pattern) : mosaic_(mosaic) {
+    parts_.emplace_back();
+    for (const uint16_t value : mosaic.pixels()) Append(value, 2, &parts_[0]);
     const auto width = static_cast<uint32_t>(mosaic.width());
     const auto height = static_cast<uint32_t>(mosaic.height());
     Long(254, {0}).Long(256, {width}).Long(257, {height}).Short(258, {16}).Short(259, {1});
     Short(262, {32803}).Text(271, "lf").Text(272, "test").Long(273, {0}).Short(277, {1});
-    Long(278, {height}).Long(279, {static_cast<uint32_t>(pixels_.size())}).Short(33421, {2, 2});
+    Long(278, {height}).Long(279, {static_cast<uint32_t>(parts_[0].size())}).Short(33421, {2, 2});
     std::string colours;
     for (const char letter : pattern) colours += static_cast<char>(std::string("RGB").find(letter));
     Bytes(33422, colours).Bytes(50706, std::string("\1\4\0\0", 4)).Text(50708, "lf test");
@@ -47,6 +50,40 @@ class TestDng {
     entries_.erase(tag);
     return *this;
   }
+  // Packs the values, which must be below 2^bits, without gaps; every row begins with a new byte.
+  TestDng& Packed(int bits) {
+    parts_.assign(1, "");
+    for (int y = 0; y < mosaic_.height(); ++y) {
+      uint64_t rest = 0;
+      int rest_bits = 0;
+      for (int x = 0; x < mosaic_.width(); ++x) {
+        rest = rest << bits | mosaic_.at(x, y);
+        for (rest_bits += bits; rest_bits >= 8; rest_bits -= 8)
+          parts_[0] += static_cast<char>(rest >> (rest_bits - 8));
+      }
+      if (rest_bits > 0) parts_[0] += static_cast<char>(rest << (8 - rest_bits));
+    }
+    return Short(258, {static_cast<uint32_t>(bits)}).SetParts(278, 273, 279);
+  }
+  // Puts the pixels into tiles of an even width, as lossless JPEG or as they are.
+  TestDng& Tiled(int width, int height, bool is_lossless_jpeg) {
+    parts_.clear();
+    for (int top = 0; top < mosaic_.height(); top += height)
+      for (int left = 0; left < mosaic_.width(); left += width) {
+        Image<uint16_t> tile(width, height, 1);
+        for (int y = 0; y < std::min(height, mosaic_.height() - top); ++y)
+          for (int x = 0; x < std::min(width, mosaic_.width() - left); ++x)
+            tile.at(x, y) = mosaic_.at(left + x, top + y);
+        parts_.emplace_back();
+        if (is_lossless_jpeg)
+          parts_.back() = LosslessJpeg(tile);
+        else
+          for (const uint16_t value : tile.pixels()) Append(value, 2, &parts_.back());
+      }
+    Without(273).Without(278).Without(279).Short(259, {is_lossless_jpeg ? 7u : 1u});
+    Long(322, {static_cast<uint32_t>(width)}).Long(323, {static_cast<uint32_t>(height)});
+    return SetParts(0, 324, 325);
+  }
 
   std::string File() const {
     std::string directory, values;
@@ -59,17 +96,19 @@ class TestDng {
       Append(static_cast<uint64_t>(tag), 2, &directory);
       Append(static_cast<uint64_t>(entry.type), 2, &directory);
       Append(entry.count, 4, &directory);
-      if (tag == 273) {
-        Append(pixels_at, 4, &directory);
-      } else if (entry.bytes.size() > 4) {
+      const std::string bytes = tag == 273 || tag == 324 ? Offsets(pixels_at) : entry.bytes;
+      if (bytes.size() > 4) {
         Append(values_at + values.size(), 4, &directory);
-        values += entry.bytes;
+        values += bytes;
         values.resize(values.size() + values.size() % 2);
       } else {
-        directory += entry.bytes + std::string(4 - entry.bytes.size(), '\0');
+        directory += bytes + std::string(4 - bytes.size(), '\0');
       }
     }
-    return std::string("II*\0\x08\0\0\0", 8) + directory + std::string(4, '\0') + values + pixels_;
+    std::string file =
+        std::string("II*\0\x08\0\0\0", 8) + directory + std::string(4, '\0') + values;
+    for (const std::string& part : parts_) file += part;
+    return file;
   }
 
  private:
@@ -91,8 +130,25 @@ class TestDng {
     return Set(tag, type, values.size(), bytes);
   }
 
+  // The tags of the parts: rows of each (0: none), offsets and sizes.
+  TestDng& SetParts(int rows_tag, int offsets_tag, int sizes_tag) {
+    std::vector<uint32_t> sizes;
+    for (const std::string& part : parts_) sizes.push_back(static_cast<uint32_t>(part.size()));
+    if (rows_tag != 0) Long(rows_tag, {static_cast<uint32_t>(mosaic_.height())});
+    return Long(offsets_tag, std::vector<uint32_t>(sizes.size())).Long(sizes_tag, sizes);
+  }
+  std::string Offsets(size_t pixels_at) const {
+    std::string offsets;
+    for (const std::string& part : parts_) {
+      Append(pixels_at, 4, &offsets);
+      pixels_at += part.size();
+    }
+    return offsets;
+  }
+
+  Image<uint16_t> mosaic_;
   std::map<int, Entry> entries_;
-  std::string pixels_;
+  std::vector<std::string> parts_;  // strips or tiles
 };
 
 }  // namespace lf

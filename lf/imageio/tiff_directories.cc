@@ -3,17 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <deque>
-#include <set>
 #include <span>
 
 namespace lf {
 namespace {
 
-constexpr size_t kMaxDirectoryCount = 64;
 constexpr size_t kMaxEntryCount = 1024;
 constexpr size_t kEntryBytes = 12;
-constexpr int kSubDirectories = 330;
 
 enum TiffType {
   kByte = 1,
@@ -119,10 +115,9 @@ class TiffReader {
 
   uint64_t first() const { return first_; }  // 0: none
 
-  // none: beyond the end of the file, or without a tag. next: offset of the one after it, 0: none.
-  std::optional<TiffDirectory> ReadAt(uint64_t offset, uint64_t* next) const {
+  // Returns none beyond the end of the file, or if there is no tag.
+  std::optional<TiffDirectory> ReadAt(uint64_t offset) const {
     std::array<uint8_t, 2> count_bytes{};
-    *next = 0;
     if (source_(offset, count_bytes) != count_bytes.size()) return std::nullopt;
     const size_t count = Unsigned(count_bytes, little_endian_);
     std::vector<uint8_t> bytes(std::min(count, kMaxEntryCount) * kEntryBytes);
@@ -133,9 +128,6 @@ class TiffReader {
     directory.little_endian_ = little_endian_;
     for (size_t at = 0; at < bytes.size(); at += kEntryBytes)
       AddEntry(std::span(bytes).subspan(at, kEntryBytes), offset + 2 + at, &directory);
-    std::array<uint8_t, 4> next_bytes{};
-    if (source_(offset + 2 + count * kEntryBytes, next_bytes) == next_bytes.size())
-      *next = Unsigned(next_bytes, little_endian_);
     return directory;
   }
 
@@ -158,29 +150,8 @@ class TiffReader {
 
 std::optional<TiffDirectory> FirstTiffDirectory(const ByteSource& source) {
   const TiffReader reader(source);
-  uint64_t next = 0;
   if (reader.first() == 0) return std::nullopt;
-  return reader.ReadAt(reader.first(), &next);
-}
-
-std::vector<TiffDirectory> AllTiffDirectories(const ByteSource& source) {
-  const TiffReader reader(source);
-  std::vector<TiffDirectory> directories;
-  std::deque<uint64_t> offsets = {reader.first()};
-  std::set<uint64_t> seen = {0};
-  while (!offsets.empty() && directories.size() < kMaxDirectoryCount) {
-    const uint64_t offset = offsets.front();
-    offsets.pop_front();
-    if (!seen.insert(offset).second) continue;
-    uint64_t next = 0;
-    std::optional<TiffDirectory> directory = reader.ReadAt(offset, &next);
-    if (!directory) continue;
-    offsets.push_back(next);
-    for (const double inner : directory->Numbers(kSubDirectories, kMaxDirectoryCount))
-      if (inner >= 0 && inner < 4294967296.0) offsets.push_back(static_cast<uint64_t>(inner));
-    directories.push_back(*std::move(directory));
-  }
-  return directories;
+  return reader.ReadAt(reader.first());
 }
 
 }  // namespace lf

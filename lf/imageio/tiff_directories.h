@@ -1,5 +1,5 @@
-// The directories of a TIFF file, read without a decoder: what camera raw files say about
-// themselves. Internal to this folder.
+// The first directory of a TIFF file, read without a decoder: whether it is a camera raw file, and
+// what Exif data say. Internal to this folder.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace lf {
 
-// One directory (IFD): its tags, and where their values are.
+// One directory (IFD): its tags, and where their values are. It has 1024 tags at most.
 class TiffDirectory {
  public:
   bool Has(int tag) const { return entries_.contains(tag); }
@@ -35,9 +35,5 @@ class TiffDirectory {
 
 // The first directory; none in BigTIFF files, which no camera writes. `source` must outlive it.
 std::optional<TiffDirectory> FirstTiffDirectory(const ByteSource& source);
-
-// All directories: the chain, and those within them (SubIFDs), 64 at most, of 1024 tags each at
-// most. Directories that lie beyond the end of the file are left out, loops are not followed.
-std::vector<TiffDirectory> AllTiffDirectories(const ByteSource& source);
 
 }  // namespace lf

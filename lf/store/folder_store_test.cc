@@ -211,6 +211,26 @@ TEST_F(FolderStoreTest, ARawFileMustHaveThePatternOfTheLightField) {
   EXPECT_EQ(Loaded(light_field).bayer, BayerPattern::kRggb);
 }
 
+TEST_F(FolderStoreTest, ARawFileWithoutColourFilterIsGreyLight) {
+  const Image<uint16_t> grey = NoiseImage<uint16_t>(24, 23, 1);
+  ASSERT_TRUE(WriteImage(folder_ / "a.png", grey.view()));
+  TestDng dng(grey, "RGGB");
+  dng.Short(262, {34892}).Without(33421).Without(33422);
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "a.dng", dng.File()));
+  LightField light_field = OneImage();
+  light_field.intrinsics[0].width_px = 24;
+  light_field.intrinsics[0].height_px = 23;
+  light_field.encoding.transfer = Transfer::kLinear;
+  const LfPixels png = Loaded(light_field, {0, 0, 24, 23});
+  light_field.image_names = {"a.dng"};
+  EXPECT_EQ(Loaded(light_field, {0, 0, 24, 23}).radiance.pixels(), png.radiance.pixels());
+  light_field.encoding.bayer = BayerPattern::kRggb;
+  ExpectMentions(ErrorOf(light_field), {"a.dng", "without colour filter", "lf_bayer"});
+  light_field.encoding.bayer = BayerPattern::kNone;
+  light_field.encoding.transfer = Transfer::kSrgb;
+  ExpectMentions(ErrorOf(light_field), {"a.dng", "without colour filter", "sRGB"});
+}
+
 TEST_F(FolderStoreTest, AlphaBelowOneHalfMasks) {
   Image<uint8_t> stored = NoiseImage<uint8_t>(kWidth, kHeight, 4);
   for (int i = 0; i < kWidth * kHeight; ++i) stored.pixels()[4 * i + 3] = i % 2 ? 255 : 128;

@@ -31,8 +31,17 @@ Result<void> ReadFitting(const fs::path& path, bool is_mosaic, const Intrinsics&
   return {};
 }
 
-// A raw file in a light field of anything else would show its mosaic as a grey picture.
+// A raw file in a light field of anything else would show its mosaic as a grey picture, or its
+// light as sRGB.
 Result<void> CheckRaw(const RawFacts& raw, const RadianceEncoding& encoding, const fs::path& path) {
+  if (raw.is_monochrome) {
+    if (encoding.bayer == BayerPattern::kNone && encoding.transfer != Transfer::kSrgb) return {};
+    return InputError(fmt::format(
+        "{}: is a camera raw file of a sensor without colour filter, but the light field {}: raw "
+        "files and other images do not go together",
+        path.string(),
+        encoding.bayer == BayerPattern::kNone ? "is of sRGB images" : "states lf_bayer"));
+  }
   if (encoding.bayer == BayerPattern::kNone)
     return InputError(
         fmt::format("{}: is a camera raw file, but the light field states no lf_bayer: raw files "
