@@ -25,6 +25,7 @@ class HatMaker {
       for (const size_t i : same_) (*shares)[i] += share / static_cast<double>(same_.size());
       return;
     }
+    AddThoseAtTheSamePlaces();
     taken_.clear();
     double total = 0;
     for (const size_t i : neighbours_) {
@@ -36,6 +37,17 @@ class HatMaker {
   }
 
  private:
+  // A second point at the place of a neighbour cuts nothing more, and is a neighbour as well.
+  void AddThoseAtTheSamePlaces() {
+    const size_t met_count = neighbours_.size();
+    for (size_t k = 0; k < met_count; ++k)
+      grid_.ForEachInRing(points_[neighbours_[k]], 0, [&](size_t i) {
+        if (points_[i] == points_[neighbours_[k]] &&
+            std::find(neighbours_.begin(), neighbours_.end(), i) == neighbours_.end())
+          neighbours_.push_back(i);
+      });
+  }
+
   // Beside the cameras cells have no end. Between them they are smaller than this.
   ConvexPolygon Surroundings(const Vec2& place) const {
     constexpr double kFar = 8;

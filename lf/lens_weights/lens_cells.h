@@ -27,7 +27,8 @@ std::vector<double> CellShares(std::span<const Vec2> points, const Aperture& ape
 // is the mean over the opening, by `sample_count` points of it. These are the weights for openings
 // that are small beside the distances of the cameras, pinholes among them: a picture between
 // cameras is interpolated, and moves smoothly from one to the next. Outside of all cameras the
-// nearest ones share alike. The sum is 1 as soon as there is a point.
+// nearest ones share alike. The sum is 1 as soon as there is a point. Points at the same place
+// share alike.
 //   aperture  radius_w >= 0; at 0 one sample is enough
 // Some microseconds a sample.
 std::vector<double> HatShares(std::span<const Vec2> points, const Aperture& aperture,

@@ -106,6 +106,24 @@ TEST(CellShares, PointsAtOnePlaceShareTheirCell) {
   for (const double share : CellShares(all_the_same, kOpenings[2])) EXPECT_NEAR(share, 0.2, 1e-12);
 }
 
+// An exposure bracket is several LF images of one pose.
+TEST(CellShares, EveryImageOfABracketHasAnEqualPartOfTheCell) {
+  const std::vector<Vec2> points = RandomPoints(40, 1.2, 5);
+  std::vector<Vec2> brackets;
+  for (int exposure = 0; exposure < 3; ++exposure)
+    brackets.insert(brackets.end(), points.begin(), points.end());
+  for (const Aperture& aperture : kOpenings) {
+    const auto single_cells = CellShares(points, aperture), cells = CellShares(brackets, aperture);
+    const auto single_hats = HatShares(points, aperture), hats = HatShares(brackets, aperture);
+    for (size_t i = 0; i < brackets.size(); ++i) {
+      EXPECT_NEAR(cells[i], single_cells[i % points.size()] / 3, 1e-12);
+      EXPECT_NEAR(hats[i], hats[i % points.size()], 1e-12);
+      // How far hats reach beyond the outer cameras depends a little on the number of points.
+      EXPECT_NEAR(hats[i], single_hats[i % points.size()] / 3, 1e-3);
+    }
+  }
+}
+
 TEST(CellShares, CamerasOnALineCutTheLensIntoStrips) {
   for (const Vec2& along : {Vec2(1, 0), Vec2(0, 1), Vec2(0.6, 0.8)}) {
     std::vector<Vec2> points;
