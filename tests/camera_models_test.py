@@ -27,7 +27,7 @@ def directions(widest_rad):
 
 
 def project(model, parameters, points):
-    parameters = [*parameters, *[0.0] * (8 - len(parameters))]
+    parameters = [*parameters, *[0.0] * (12 - len(parameters))]
     header = " ".join(map(repr, [*F, *C])) + f" {model} " + " ".join(map(repr, parameters))
     text = header + "\n" + "\n".join(" ".join(repr(float(v)) for v in p) for p in points)
     result = subprocess.run([PROJECT_POINTS], input=text, capture_output=True, text=True)
@@ -89,6 +89,21 @@ def by_numpy_thin_prism(parameters, points):
     return np.stack([x, y], 1) * F + C
 
 
+def by_numpy_rad_tan_thin_prism(parameters, points):
+    """Project Aria's Fisheye624, of an angle in place of a slope as COLMAP has it"""
+    radial, (p0, p1), prism = parameters[:6], parameters[6:8], parameters[8:]
+    across = np.hypot(points[:, 0], points[:, 1])
+    theta = np.arctan2(across, points[:, 2])
+    bent = theta + sum(k * theta ** (2 * i + 3) for i, k in enumerate(radial))
+    a = points[:, :2] / across[:, None] * bent[:, None]
+    q = (a ** 2).sum(1)
+    along = a @ [p0, p1]
+    powers = np.stack([q, q ** 2])
+    x = a[:, 0] * (1 + 2 * along) + p0 * q + prism[:2] @ powers
+    y = a[:, 1] * (1 + 2 * along) + p1 * q + prism[2:] @ powers
+    return np.stack([x, y], 1) * F + C
+
+
 # COLMAP's name: model, parameters, half angle tested, judge
 MODELS = {
     "PINHOLE": ("none", [], 1.3, lambda p, x: x[:, :2] / x[:, 2:] * F + C),
@@ -109,6 +124,18 @@ MODELS = {
     "EUCM, almost a pinhole": ("unified", [0.05, 2], 1.2, by_numpy_eucm),
     "THIN_PRISM_FISHEYE": ("thin-prism", [-0.02, 0.004, 1e-3, -2e-3, -0.002, 3e-4, 2e-3, -1e-3], 1.2,
                            by_numpy_thin_prism),
+    "RAD_TAN_THIN_PRISM_FISHEYE, COLMAP's test": (
+        "radial-tangential-thin-prism",
+        [-0.0232, 0.0924, -0.0591, 0.003, 0.0048, -0.0009, 0.0002, 0.0005, -0.0009, -0.0001, 0.00007,
+         -0.00017], 1.2, by_numpy_rad_tan_thin_prism),
+    "RAD_TAN_THIN_PRISM_FISHEYE, strong terms": (
+        "radial-tangential-thin-prism",
+        [-0.02, 0.006, -0.002, 5e-4, -1e-4, 2e-5, 0.01, -0.02, 0.008, -0.004, -0.006, 0.003], 1.2,
+        by_numpy_rad_tan_thin_prism),
+    "RAD_TAN_THIN_PRISM_FISHEYE, behind itself": (
+        "radial-tangential-thin-prism",
+        [-0.02, 0.004, -0.002, 3e-4, 0, 0, 1e-4, -2e-4, 1e-4, -1e-4, 2e-4, 1e-4], 1.7,
+        by_numpy_rad_tan_thin_prism),
     "FOV": ("fov", [0.93], 1.5, by_numpy_fov),
 }
 

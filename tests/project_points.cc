@@ -1,8 +1,9 @@
 // Projects directions through a camera for camera_models_test.py.
 //
-// stdin   fx fy cx cy  MODEL  p1 .. p8, then X Y Z of each direction
+// stdin   fx fy cx cy  MODEL  p1 .. p12, then X Y Z of each direction
 // stdout  x y of its pixel, and X Y Z of the direction that this pixel's ray has; or "none"
-// MODEL   none, radial-tangential, fisheye or fov
+// MODEL   none, radial-tangential, fisheye, fov, division, unified, thin-prism or
+//         radial-tangential-thin-prism
 #include <cstdio>
 #include <iostream>
 #include <string>
@@ -34,10 +35,12 @@ int main() {
     k.distortion.model = lf::DistortionModel::kUnified;
   else if (model == "thin-prism")
     k.distortion.model = lf::DistortionModel::kThinPrism;
+  else if (model == "radial-tangential-thin-prism")
+    k.distortion.model = lf::DistortionModel::kRadialTangentialThinPrism;
   else if (model != "none")
     return Fail("unknown model");
   for (double& parameter : k.distortion.parameters) std::cin >> parameter;
-  if (!std::cin) return Fail("expected fx fy cx cy MODEL p1 .. p8");
+  if (!std::cin) return Fail("expected fx fy cx cy MODEL p1 .. p12");
   const lf::DistortionMap map(k.distortion);
   for (double x, y, z; std::cin >> x >> y >> z;) {
     const auto distorted = map.Distort({x, y, z});

@@ -27,6 +27,8 @@ const char* NameOf(DistortionModel model) {
       return "unified";
     case DistortionModel::kThinPrism:
       return "thin-prism fisheye";
+    case DistortionModel::kRadialTangentialThinPrism:
+      return "radial-tangential thin-prism fisheye";
   }
   LF_CHECK(false);
 }

@@ -14,8 +14,9 @@ namespace lf {
 namespace {
 
 // The names are in the order of DistortionModel.
-constexpr const char* kModelNames[] = {"none",     "radial_tangential", "fisheye",   "fov",
-                                       "division", "unified",           "thin_prism"};
+constexpr const char* kModelNames[] = {
+    "none",     "radial_tangential", "fisheye",    "fov",
+    "division", "unified",           "thin_prism", "radial_tangential_thin_prism"};
 // By Transfer.
 constexpr const char* kTransferNames[] = {"srgb", "linear", "response"};
 
@@ -34,10 +35,13 @@ Result<Intrinsics> ReadIntrinsicsRow(const Settings& settings, const Statement& 
   LF_ASSIGN_OR_RETURN(const std::string parameters, row.Text(8));
   const auto* const name = std::find(std::begin(kModelNames), std::end(kModelNames), model);
   const auto numbers = ParseNumbers(parameters);
-  if (name == std::end(kModelNames) || !numbers ||
-      numbers->size() != k.distortion.parameters.size())
+  if (name == std::end(kModelNames) || !numbers)
     return settings.Damaged(fmt::format("a lens distortion is {} {}", model, parameters));
   k.distortion.model = static_cast<DistortionModel>(name - std::begin(kModelNames));
+  const size_t expected = StoredParameterCount(k.distortion.model);
+  if (numbers->size() != expected)
+    return settings.Damaged(fmt::format("a lens distortion is {} {}: expected {} parameters", model,
+                                        parameters, expected));
   std::copy(numbers->begin(), numbers->end(), k.distortion.parameters.begin());
   if (!IsCamera(k) || !IsStoredDistortion(k.distortion))
     return settings.Damaged("intrinsics that no camera has");
@@ -131,7 +135,9 @@ Result<void> WriteIntrinsics(const std::vector<Intrinsics>& intrinsics, Database
     insert.Bind(2, int64_t{k.height_px}).Bind(3, k.fx_px).Bind(4, k.fy_px).Bind(5, k.cx_px);
     insert.Bind(6, k.cy_px).Bind(7, k.skew_px);
     insert.Bind(8, std::string_view(kModelNames[static_cast<int>(k.distortion.model)]));
-    const std::string parameters = fmt::format("{}", fmt::join(k.distortion.parameters, " "));
+    const auto stored =
+        std::span(k.distortion.parameters).first(StoredParameterCount(k.distortion.model));
+    const std::string parameters = fmt::format("{}", fmt::join(stored, " "));
     LF_RETURN_IF_ERROR(insert.Bind(9, std::string_view(parameters)).Run());
   }
   return {};

@@ -19,7 +19,7 @@ struct ValueAndSlope {
 // The radial part of kRadialTangential, r * numerator(r^2) / denominator(r^2).
 class RadialCurve {
  public:
-  explicit RadialCurve(const std::array<double, 8>& p)
+  explicit RadialCurve(const DistortionParameters& p)
       : numerator_{p[0], p[1], p[4]}, denominator_{p[5], p[6], p[7]} {}
 
   // radial(s), s = r^2, and its derivative by s.
@@ -55,10 +55,36 @@ class FisheyeCurve {
   std::array<double, 4> k_;
 };
 
-std::array<double, 4> FirstFour(const std::array<double, 8>& p) { return {p[0], p[1], p[2], p[3]}; }
+// The radial part of kRadialTangentialThinPrism, theta (1 + k0 theta^2 + ... + k5 theta^12).
+class LongFisheyeCurve {
+ public:
+  explicit LongFisheyeCurve(const DistortionParameters& p) {
+    std::copy_n(p.begin(), k_.size(), k_.begin());
+  }
+  // Returns the factor of theta, and its derivative by s = theta^2.
+  ValueAndSlope Factor(double s) const {
+    ValueAndSlope factor{0, 0};
+    for (size_t i = k_.size(); i-- > 0;) {
+      factor.slope = factor.slope * s + factor.value;
+      factor.value = factor.value * s + k_[i];
+    }
+    return {1 + s * factor.value, factor.value + s * factor.slope};
+  }
+  ValueAndSlope operator()(double theta) const {
+    const double s = theta * theta;
+    const ValueAndSlope factor = Factor(s);
+    return {theta * factor.value, factor.value + 2 * s * factor.slope};
+  }
+  static bool IsPole(double) { return false; }
+
+ private:
+  std::array<double, 6> k_;
+};
+
+std::array<double, 4> FirstFour(const DistortionParameters& p) { return {p[0], p[1], p[2], p[3]}; }
 
 // The radial part of kThinPrism.
-FisheyeCurve ThinPrismCurve(const std::array<double, 8>& p) {
+FisheyeCurve ThinPrismCurve(const DistortionParameters& p) {
   return FisheyeCurve({p[0], p[1], p[4], p[5]});
 }
 
@@ -108,7 +134,7 @@ struct Bent {
   Eigen::Matrix2d jacobian;
 };
 
-Bent Bend(const std::array<double, 8>& p, const RadialCurve& curve, const Vec2& u) {
+Bent Bend(const DistortionParameters& p, const RadialCurve& curve, const Vec2& u) {
   const double x = u.x(), y = u.y(), s = x * x + y * y;
   const double p1 = p[2], p2 = p[3];
   const ValueAndSlope radial = curve.Factor(s);
@@ -122,7 +148,7 @@ Bent Bend(const std::array<double, 8>& p, const RadialCurve& curve, const Vec2& 
 }
 
 // The two-dimensional map of kThinPrism, from (u, v), and its derivatives.
-Bent BendThinPrism(const std::array<double, 8>& p, const Vec2& at) {
+Bent BendThinPrism(const DistortionParameters& p, const Vec2& at) {
   const double u = at.x(), v = at.y(), s = u * u + v * v;
   const double p1 = p[2], p2 = p[3], sx1 = p[6], sy1 = p[7];
   const double radial = 1 + s * (p[0] + s * (p[1] + s * (p[4] + s * p[5])));
@@ -134,6 +160,27 @@ Bent BendThinPrism(const std::array<double, 8>& p, const Vec2& at) {
   bent.jacobian << radial + 2 * u * u * slope + 2 * p1 * v + 6 * p2 * u + 2 * sx1 * u,
       cross + 2 * sx1 * v,  //
       cross + 2 * sy1 * u, radial + 2 * v * v * slope + 6 * p1 * v + 2 * p2 * u + 2 * sy1 * v;
+  return bent;
+}
+
+// The two-dimensional map of kRadialTangentialThinPrism, from (u, v), and its derivatives.
+Bent BendRadialTangentialThinPrism(const DistortionParameters& p, const Vec2& at) {
+  const double u = at.x(), v = at.y();
+  const ValueAndSlope radial = LongFisheyeCurve(p).Factor(u * u + v * v);
+  const double cross = 2 * u * v * radial.slope;
+  Eigen::Matrix2d inner;                                    // of (a, b) by (u, v)
+  inner << radial.value + 2 * u * u * radial.slope, cross,  //
+      cross, radial.value + 2 * v * v * radial.slope;
+  const double a = u * radial.value, b = v * radial.value, q = a * a + b * b;
+  const double p0 = p[6], p1 = p[7], s0 = p[8], s1 = p[9], s2 = p[10], s3 = p[11];
+  const double slope_x = 2 * (s0 + 2 * s1 * q), slope_y = 2 * (s2 + 2 * s3 * q);
+  Bent bent;
+  bent.value = {a + p0 * (q + 2 * a * a) + 2 * p1 * a * b + q * (s0 + s1 * q),
+                b + p1 * (q + 2 * b * b) + 2 * p0 * a * b + q * (s2 + s3 * q)};
+  Eigen::Matrix2d outer;  // of (xd, yd) by (a, b)
+  outer << 1 + 6 * p0 * a + 2 * p1 * b + slope_x * a, 2 * p0 * b + 2 * p1 * a + slope_x * b,  //
+      2 * p1 * a + 2 * p0 * b + slope_y * a, 1 + 6 * p1 * b + 2 * p0 * a + slope_y * b;
+  bent.jacobian = outer * inner;
   return bent;
 }
 
@@ -158,7 +205,7 @@ std::optional<Vec2> Unbend(const BendIt& bend, const Vec2& distorted, Vec2 start
   return u;
 }
 
-std::optional<Vec2> UnbendRadialTangential(const std::array<double, 8>& p, const Vec2& distorted,
+std::optional<Vec2> UnbendRadialTangential(const DistortionParameters& p, const Vec2& distorted,
                                            double limit, double distorted_limit) {
   const RadialCurve curve(p);
   const double rd = distorted.norm();
@@ -174,12 +221,19 @@ std::optional<Vec2> UnbendRadialTangential(const std::array<double, 8>& p, const
   return Unbend([&](const Vec2& at) { return Bend(p, curve, at); }, distorted, u, limit);
 }
 
-std::optional<Vec2> UnbendThinPrism(const std::array<double, 8>& p, const Vec2& distorted,
-                                    double limit, double distorted_limit) {
+// The direction whose ideal fish-eye image, at most `limit` from the middle, bend() takes to
+// `distorted`; the iteration starts from the radial part alone.
+template <class Curve, class BendIt>
+std::optional<Vec3> UnbendEquidistant(const Curve& curve, const BendIt& bend, const Vec2& distorted,
+                                      double limit, double distorted_limit) {
   const double rd = distorted.norm();
-  const double theta = SolveRadius(ThinPrismCurve(p), std::min(rd, 0.999 * distorted_limit), limit);
-  const Vec2 u = rd > 0 ? Vec2(distorted * (theta / rd)) : Vec2(0, 0);
-  return Unbend([&](const Vec2& at) { return BendThinPrism(p, at); }, distorted, u, limit);
+  const double start = SolveRadius(curve, std::min(rd, 0.999 * distorted_limit), limit);
+  const Vec2 u = rd > 0 ? Vec2(distorted * (start / rd)) : Vec2(0, 0);
+  const std::optional<Vec2> at = Unbend(bend, distorted, u, limit);
+  if (!at) return std::nullopt;
+  const double theta = at->norm();
+  const double factor = theta < 1e-12 ? 1 : std::sin(theta) / theta;
+  return Vec3(at->x() * factor, at->y() * factor, std::cos(theta));
 }
 
 // Returns where an ideal fish-eye sees a direction: (x, y) theta / r.
@@ -194,7 +248,7 @@ std::optional<Vec2> Equidistant(const Vec3& direction, double limit) {
 }  // namespace
 
 bool IsDistortion(const Distortion& distortion) {
-  const std::array<double, 8>& p = distortion.parameters;
+  const DistortionParameters& p = distortion.parameters;
   switch (distortion.model) {
     case DistortionModel::kFov:
       return p[0] > 0 && p[0] < kPi;
@@ -208,7 +262,7 @@ bool IsDistortion(const Distortion& distortion) {
 DistortionMap::DistortionMap(const Distortion& distortion)
     : distortion_(distortion), limit_(kInfinity), distorted_limit_(kInfinity) {
   LF_CHECK(IsDistortion(distortion));
-  const std::array<double, 8>& p = distortion.parameters;
+  const DistortionParameters& p = distortion.parameters;
   switch (distortion.model) {
     case DistortionModel::kNone:
       return;
@@ -245,11 +299,17 @@ DistortionMap::DistortionMap(const Distortion& distortion)
       distorted_limit_ = curve(limit_).value;
       return;
     }
+    case DistortionModel::kRadialTangentialThinPrism: {
+      const LongFisheyeCurve curve(p);
+      limit_ = GrowthLimit(curve, [](double t) { return t * kPi; });
+      distorted_limit_ = curve(limit_).value;
+      return;
+    }
   }
 }
 
 std::optional<Vec2> DistortionMap::Distort(const Vec3& direction) const {
-  const std::array<double, 8>& p = distortion_.parameters;
+  const DistortionParameters& p = distortion_.parameters;
   const double z = direction.z();
   if (distortion_.model == DistortionModel::kFisheye) {
     const double across = direction.head<2>().norm();
@@ -258,10 +318,11 @@ std::optional<Vec2> DistortionMap::Distort(const Vec3& direction) const {
     if (across == 0) return z > 0 ? std::optional(Vec2(0, 0)) : std::nullopt;
     return Vec2(direction.head<2>() * (FisheyeCurve(FirstFour(p))(theta).value / across));
   }
-  if (distortion_.model == DistortionModel::kThinPrism) {
+  const bool is_long = distortion_.model == DistortionModel::kRadialTangentialThinPrism;
+  if (is_long || distortion_.model == DistortionModel::kThinPrism) {
     const std::optional<Vec2> at = Equidistant(direction, limit_);
     if (!at) return std::nullopt;
-    const Bent bent = BendThinPrism(p, *at);
+    const Bent bent = is_long ? BendRadialTangentialThinPrism(p, *at) : BendThinPrism(p, *at);
     return bent.jacobian.determinant() > 0 ? std::optional(bent.value) : std::nullopt;
   }
   if (!(z > 0)) return std::nullopt;
@@ -293,7 +354,7 @@ std::optional<Vec2> DistortionMap::Distort(const Vec3& direction) const {
 }
 
 std::optional<Vec3> DistortionMap::Undistort(const Vec2& distorted) const {
-  const std::array<double, 8>& p = distortion_.parameters;
+  const DistortionParameters& p = distortion_.parameters;
   const double rd = distorted.norm();
   // sin(a) / rd, smooth at 0.
   const auto sine_per = [rd](double a, double slope_at_0) {
@@ -330,13 +391,15 @@ std::optional<Vec3> DistortionMap::Undistort(const Vec2& distorted) const {
           (1 - p[1] * p[0] * p[0] * rd * rd) / (p[0] * std::sqrt(std::max(0.0, root)) + 1 - p[0]);
       return depth > 0 ? std::optional(Vec3(distorted.x(), distorted.y(), depth)) : std::nullopt;
     }
-    case DistortionModel::kThinPrism: {
-      const std::optional<Vec2> at = UnbendThinPrism(p, distorted, limit_, distorted_limit_);
-      if (!at) return std::nullopt;
-      const double theta = at->norm();
-      const double factor = theta < 1e-12 ? 1 : std::sin(theta) / theta;
-      return Vec3(at->x() * factor, at->y() * factor, std::cos(theta));
-    }
+    case DistortionModel::kThinPrism:
+      return UnbendEquidistant(
+          ThinPrismCurve(p), [&p](const Vec2& at) { return BendThinPrism(p, at); }, distorted,
+          limit_, distorted_limit_);
+    case DistortionModel::kRadialTangentialThinPrism:
+      return UnbendEquidistant(
+          LongFisheyeCurve(p),
+          [&p](const Vec2& at) { return BendRadialTangentialThinPrism(p, at); }, distorted, limit_,
+          distorted_limit_);
   }
   return Vec3(distorted.x(), distorted.y(), 1);
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -40,14 +41,29 @@ enum class DistortionModel : uint8_t {
   //   radial = 1 + k1 s + k2 s^2 + k3 s^3 + k4 s^4
   // (COLMAP: THIN_PRISM_FISHEYE)
   kThinPrism,
+  // k0 k1 k2 k3 k4 k5 p0 p1 s0 s1 s2 s3; with (u, v) = (x, y) theta / r and s = theta^2:
+  //   (a, b) = (u, v) (1 + k0 s + k1 s^2 + k2 s^3 + k3 s^4 + k4 s^5 + k5 s^6), q = a^2 + b^2
+  //   xd = a + p0 (q + 2 a^2) + 2 p1 a b + s0 q + s1 q^2
+  //   yd = b + p1 (q + 2 b^2) + 2 p0 a b + s2 q + s3 q^2
+  // (Project Aria: Fisheye624; COLMAP: RAD_TAN_THIN_PRISM_FISHEYE)
+  kRadialTangentialThinPrism,
 };
+
+// Parameters as listed at their model; those that the model does not have are 0.
+using DistortionParameters = std::array<double, 12>;
 
 struct Distortion {
   DistortionModel model = DistortionModel::kNone;
-  std::array<double, 8> parameters = {};  // as listed at the model; the others are 0
+  DistortionParameters parameters = {};
 
   friend bool operator==(const Distortion&, const Distortion&) = default;
 };
+
+// Number of parameters by which files and hashes know a distortion: 12 for
+// kRadialTangentialThinPrism, 8 for every other model, so that neither changed when it was added.
+constexpr size_t StoredParameterCount(DistortionModel model) {
+  return model == DistortionModel::kRadialTangentialThinPrism ? 12 : 8;
+}
 
 // Returns whether the parameters are those of a lens: omega in (0, pi), alpha in [0, 1], beta above
 // 0.

@@ -19,19 +19,22 @@ struct Lens {
 
 std::vector<Lens> Lenses() {
   using enum DistortionModel;
-  return {
-      {"none", {}, 1.4},
-      {"simple radial", {kRadialTangential, {0.035}}, 0.9},
-      {"barrel", {kRadialTangential, {-0.25, 0.07}}, 0.7},
-      {"tangential", {kRadialTangential, {-0.28, 0.09, 0.002, -0.003}}, 0.7},
-      {"rational", {kRadialTangential, {0.3, -0.1, 5e-4, -2e-4, 0.02, 0.6, -0.05, 0.01}}, 0.8},
-      {"fish-eye", {kFisheye, {-0.02, 0.004, -0.002, 3e-4}}, 1.7},
-      {"fov", {kFov, {0.93}}, 1.5},
-      {"equidistant", {kFisheye, {}}, 1.7},
-      {"division, barrel", {kDivision, {-0.3}}, 1.3},
-      {"division, pincushion", {kDivision, {0.2}}, 0.8},
-      {"unified", {kUnified, {0.6, 1.1}}, 1.3},
-      {"thin prism", {kThinPrism, {-0.02, 0.004, 1e-3, -2e-3, -0.002, 3e-4, 2e-3, -1e-3}}, 1.2}};
+  return {{"none", {}, 1.4},
+          {"simple radial", {kRadialTangential, {0.035}}, 0.9},
+          {"barrel", {kRadialTangential, {-0.25, 0.07}}, 0.7},
+          {"tangential", {kRadialTangential, {-0.28, 0.09, 0.002, -0.003}}, 0.7},
+          {"rational", {kRadialTangential, {0.3, -0.1, 5e-4, -2e-4, 0.02, 0.6, -0.05, 0.01}}, 0.8},
+          {"fish-eye", {kFisheye, {-0.02, 0.004, -0.002, 3e-4}}, 1.7},
+          {"fov", {kFov, {0.93}}, 1.5},
+          {"equidistant", {kFisheye, {}}, 1.7},
+          {"division, barrel", {kDivision, {-0.3}}, 1.3},
+          {"division, pincushion", {kDivision, {0.2}}, 0.8},
+          {"unified", {kUnified, {0.6, 1.1}}, 1.3},
+          {"thin prism", {kThinPrism, {-0.02, 0.004, 1e-3, -2e-3, -0.002, 3e-4, 2e-3, -1e-3}}, 1.2},
+          {"radial tangential thin prism",
+           {kRadialTangentialThinPrism,
+            {-0.02, 0.006, -0.002, 5e-4, -1e-4, 2e-5, 0.01, -0.02, 0.008, -0.004, -0.006, 0.003}},
+           1.2}};
 }
 
 Vec3 RandomDirection(uint64_t index, double widest_rad) {
@@ -42,7 +45,7 @@ Vec3 RandomDirection(uint64_t index, double widest_rad) {
 
 // The formulas of distortion.h, written with powers instead of nested products.
 Vec2 ByFormula(const Distortion& distortion, const Vec3& direction) {
-  const std::array<double, 8>& p = distortion.parameters;
+  const DistortionParameters& p = distortion.parameters;
   const double x = direction.x() / direction.z(), y = direction.y() / direction.z();
   const double r = std::hypot(x, y);
   const double theta = std::atan2(std::hypot(direction.x(), direction.y()), direction.z());
@@ -75,6 +78,14 @@ Vec2 ByFormula(const Distortion& distortion, const Vec3& direction) {
           p[0] * s + p[1] * std::pow(s, 2) + p[4] * std::pow(s, 3) + p[5] * std::pow(s, 4);
       return {u + u * radial + 2 * p[2] * u * v + p[3] * (s + 2 * u * u) + p[6] * s,
               v + v * radial + 2 * p[3] * u * v + p[2] * (s + 2 * v * v) + p[7] * s};
+    }
+    case DistortionModel::kRadialTangentialThinPrism: {
+      double bent = theta;
+      for (int i = 0; i < 6; ++i) bent += p[i] * std::pow(theta, 2 * i + 3);
+      const Vec2 at = bent / std::hypot(direction.x(), direction.y()) * direction.head<2>();
+      const double a = at.x(), b = at.y(), q = bent * bent;
+      return {a + p[6] * (q + 2 * a * a) + 2 * p[7] * a * b + p[8] * q + p[9] * q * q,
+              b + p[7] * (q + 2 * b * b) + 2 * p[6] * a * b + p[10] * q + p[11] * q * q};
     }
   }
   return Vec2::Zero();
@@ -188,7 +199,8 @@ TEST(Distortion, OnlyAFishEyeSeesBehindItself) {
   for (const Lens& lens : Lenses()) {
     const bool sees = DistortionMap(lens.distortion).Distort({1, 0, -0.1}).has_value();
     EXPECT_EQ(sees, lens.distortion.model == DistortionModel::kFisheye ||
-                        lens.distortion.model == DistortionModel::kThinPrism)
+                        lens.distortion.model == DistortionModel::kThinPrism ||
+                        lens.distortion.model == DistortionModel::kRadialTangentialThinPrism)
         << lens.name;
   }
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <string_view>
+#include <tuple>
 
 #include "lf/camera/pinhole.h"
 #include "lf/core/distinct.h"
@@ -20,14 +21,15 @@ uint64_t HashOfNumbers(std::array<double, kCount> numbers) {
 }
 
 inline uint64_t HashOfIntrinsics(const Intrinsics& k) {
-  std::array<double, 16> numbers = {k.fx_px,
-                                    k.fy_px,
-                                    k.cx_px,
-                                    k.cy_px,
-                                    k.skew_px,
-                                    static_cast<double>(k.width_px),
-                                    static_cast<double>(k.height_px),
-                                    static_cast<double>(k.distortion.model)};
+  std::array<double, 8 + std::tuple_size_v<DistortionParameters>> numbers = {
+      k.fx_px,
+      k.fy_px,
+      k.cx_px,
+      k.cy_px,
+      k.skew_px,
+      static_cast<double>(k.width_px),
+      static_cast<double>(k.height_px),
+      static_cast<double>(k.distortion.model)};
   std::copy(k.distortion.parameters.begin(), k.distortion.parameters.end(), numbers.begin() + 8);
   return HashOfNumbers(numbers);
 }

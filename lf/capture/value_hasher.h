@@ -36,7 +36,8 @@ class ValueHasher {
     Add(k.width_px);
     Add(k.height_px);
     Add(static_cast<double>(k.distortion.model));
-    for (const double parameter : k.distortion.parameters) Add(parameter);
+    for (size_t i = 0; i < StoredParameterCount(k.distortion.model); ++i)
+      Add(k.distortion.parameters[i]);
   }
   std::string Text() const { return fmt::format("{:016x}", hasher_.Hash()); }
 

@@ -9,7 +9,7 @@ namespace lf {
 namespace {
 
 // Of an entry: with the fewest parameters, an empty name, no 2D points, an empty track.
-constexpr uint64_t kMinCameraSize = 4 + 4 + 8 + 8 + 3 * 8;
+constexpr uint64_t kMinCameraSize = 4 + 4 + 8 + 8 + 2 * 8;
 constexpr uint64_t kMinImageSize = 4 + 7 * 8 + 4 + 1 + 8;
 constexpr uint64_t kMinPointSize = 8 + 3 * 8 + 3 + 8 + 8;
 constexpr uint64_t kPoint2DSize = 8 + 8 + 8;

@@ -94,9 +94,8 @@ TEST(ColmapBinary, BrokenCamerasAreNamed) {
   const auto error = [&](const std::vector<TestCamera>& cameras) {
     return ErrorOf(ParseColmap(true, CamerasBin(cameras), images));
   };
-  EXPECT_HAS(
-      error({{.id = 6, .model = 11, .parameters = std::vector<double>(16)}}),
-      "m/cameras.bin: camera 6 has the camera model RAD_TAN_THIN_PRISM_FISHEYE, which is not");
+  EXPECT_HAS(error({{.id = 6, .model = 17, .parameters = {8, 6}}}),
+             "m/cameras.bin: camera 6 has the camera model EQUIRECTANGULAR, which is a panorama");
   EXPECT_HAS(error({{.model = 77}}), "camera 1 has the camera model number 77");
   EXPECT_HAS(error({{.width = 0}}), "camera 1 has images of 0 x 6 pixels");
   EXPECT_HAS(error({{.parameters = {10, kNan, 4, 3}}}), "10 nan 4 3");

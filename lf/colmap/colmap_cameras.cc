@@ -31,7 +31,7 @@ constexpr ColmapCameraModel kModels[] = {
     {"SIMPLE_RADIAL_FISHEYE", 8, 4},
     {"RADIAL_FISHEYE", 9, 5},
     {"THIN_PRISM_FISHEYE", 10, 12},
-    {"RAD_TAN_THIN_PRISM_FISHEYE", 11, 0},
+    {"RAD_TAN_THIN_PRISM_FISHEYE", 11, 16},
     {"SIMPLE_DIVISION", 12, 4},
     {"DIVISION", 13, 5},
     {"SIMPLE_FISHEYE", 14, 3},
@@ -48,11 +48,19 @@ Error Unsupported(std::string_view what) {
                   what));
 }
 
+Error Panorama(std::string_view model) {
+  return InputError(
+      fmt::format("has the camera model {}, which is a panorama of the whole sphere: LF images are "
+                  "perspective or fish-eye; cut perspective images out of the panoramas and "
+                  "reconstruct with these (COLMAP's python/examples/panorama_sfm.py does both)",
+                  model));
+}
+
 template <class IsIt>
 Result<ColmapCameraModel> Find(const IsIt& is_it, const std::string& unknown) {
   const auto* found = std::find_if(std::begin(kModels), std::end(kModels), is_it);
   if (found == std::end(kModels)) return Unsupported(unknown);
-  if (!found->is_supported()) return Unsupported(found->name);
+  if (!found->is_supported()) return Panorama(found->name);
   return *found;
 }
 
@@ -65,6 +73,7 @@ DistortionModel DistortionModelOf(std::string_view model) {
   if (model == "FOV") return DistortionModel::kFov;
   if (model == "EUCM") return DistortionModel::kUnified;
   if (model == "THIN_PRISM_FISHEYE") return DistortionModel::kThinPrism;
+  if (model == "RAD_TAN_THIN_PRISM_FISHEYE") return DistortionModel::kRadialTangentialThinPrism;
   if (model.ends_with("DIVISION")) return DistortionModel::kDivision;
   if (model.ends_with("FISHEYE")) return DistortionModel::kFisheye;
   return DistortionModel::kRadialTangential;

@@ -18,7 +18,7 @@ struct ColmapCameraModel {
   bool is_supported() const { return parameter_count > 0; }
 };
 
-inline constexpr int kMaxColmapParameterCount = 12;
+inline constexpr int kMaxColmapParameterCount = 16;
 
 // By the number of cameras.bin, or the name of cameras.txt. kInput, naming the model and saying
 // what to do, if it is unknown or cannot be expressed as a Distortion.

@@ -56,6 +56,10 @@ TEST(ColmapCameras, EveryModelIsADistortion) {
        10,
        {500, 501, 320, 240, 1, 2, 3, 4, 5, 6, 7, 8},
        Expected(500, 501, {kThinPrism, {1, 2, 3, 4, 5, 6, 7, 8}})},
+      {"RAD_TAN_THIN_PRISM_FISHEYE",
+       11,
+       {500, 501, 320, 240, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12},
+       Expected(500, 501, {kRadialTangentialThinPrism, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}})},
       {"SIMPLE_DIVISION", 12, {500, 320, 240, -0.1}, Expected(500, 500, {kDivision, {-0.1}})},
       {"DIVISION", 13, {500, 501, 320, 240, -0.1}, Expected(500, 501, {kDivision, {-0.1}})},
       {"SIMPLE_FISHEYE", 14, {500, 320, 240}, Expected(500, 500, {kFisheye, {}})},
@@ -91,17 +95,24 @@ TEST(ColmapCameras, TheSignOfOmegaDoesNotMatter) {
 }
 
 TEST(ColmapCameras, OtherModelsAreNamedWithAWayOut) {
-  for (const char* name :
-       {"RAD_TAN_THIN_PRISM_FISHEYE", "EQUIRECTANGULAR", "opencv", "", "OPENCV2"}) {
+  for (const char* name : {"opencv", "", "OPENCV2"}) {
     const Result<ColmapCameraModel> model = FindColmapCameraModel(name);
     ASSERT_FALSE(model) << name;
     EXPECT_NE(model.error().message.find(name), std::string::npos);
     EXPECT_NE(model.error().message.find("colmap image_undistorter"), std::string::npos);
   }
-  EXPECT_NE(FindColmapCameraModel(11).error().message.find("THIN_PRISM_FISHEYE"),
-            std::string::npos);
   EXPECT_NE(FindColmapCameraModel(18).error().message.find("number 18"), std::string::npos);
   EXPECT_NE(FindColmapCameraModel(-1).error().message.find("number -1"), std::string::npos);
+}
+
+TEST(ColmapCameras, APanoramaIsNoLfImage) {
+  for (const Result<ColmapCameraModel>& model :
+       {FindColmapCameraModel(17), FindColmapCameraModel("EQUIRECTANGULAR")}) {
+    ASSERT_FALSE(model);
+    const std::string& message = model.error().message;
+    EXPECT_NE(message.find("EQUIRECTANGULAR, which is a panorama"), std::string::npos) << message;
+    EXPECT_NE(message.find("perspective or fish-eye"), std::string::npos) << message;
+  }
 }
 
 TEST(ColmapCameras, NumbersOutOfRangeAreErrors) {

@@ -76,7 +76,9 @@ TEST(ColmapText, BrokenCamerasAreNamedWithTheirLine) {
   EXPECT_HAS(ErrorOfCameras("4294967296 PINHOLE 8 6 10 11 4 3"), "m/cameras.txt:1: CAMERA_ID is");
   EXPECT_HAS(ErrorOfCameras("-1 PINHOLE 8 6 10 11 4 3"), "CAMERA_ID is \"-1\"");
   EXPECT_HAS(ErrorOfCameras("3 EQUIRECTANGULAR 8 6 1 1 4 3 1 1"),
-             "m/cameras.txt:1: camera 3 has the camera model EQUIRECTANGULAR, which is not "
+             "m/cameras.txt:1: camera 3 has the camera model EQUIRECTANGULAR, which is a panorama");
+  EXPECT_HAS(ErrorOfCameras("3 OPENCV2 8 6 1 1 4 3 1 1"),
+             "m/cameras.txt:1: camera 3 has the camera model \"OPENCV2\", which is not "
              "supported: undist");
   EXPECT_HAS(ErrorOfCameras("3"), "camera 3 has the camera model \"\"");
   EXPECT_HAS(ErrorOfCameras("3 PINHOLE 8"), "HEIGHT is missing");

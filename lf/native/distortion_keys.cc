@@ -24,11 +24,16 @@ constexpr const char* kOmegaKey = "lf_fov_omega";
 constexpr const char* kDivisionKeys[] = {"k1"};
 constexpr const char* kUnifiedKeys[] = {"lf_eucm_alpha", "lf_eucm_beta"};
 constexpr const char* kThinPrismKeys[] = {"k1", "k2", "p1", "p2", "k3", "k4", "lf_sx1", "lf_sy1"};
+// Key k1 is COLMAP's k0, the factor of theta^2, as in every other model here. The tangential terms
+// have keys of their own because COLMAP's p0 and p1 are OpenCV's p2 and p1.
+constexpr const char* kRadialTangentialThinPrismKeys[] = {
+    "k1", "k2", "k3", "k4", "k5", "k6", "lf_p0", "lf_p1", "lf_s0", "lf_s1", "lf_s2", "lf_s3"};
 
 // All of them, as DistortionKeys::values.
-constexpr std::array kKeys = {"k1",           "k2",     "k3",    "k4",      "k5",
-                              "k6",           "p1",     "p2",    kOmegaKey, "lf_eucm_alpha",
-                              "lf_eucm_beta", "lf_sx1", "lf_sy1"};
+constexpr std::array kKeys = {"k1",           "k2",     "k3",     "k4",      "k5",
+                              "k6",           "p1",     "p2",     kOmegaKey, "lf_eucm_alpha",
+                              "lf_eucm_beta", "lf_sx1", "lf_sy1", "lf_p0",   "lf_p1",
+                              "lf_s0",        "lf_s1",  "lf_s2",  "lf_s3"};
 static_assert(kKeys.size() == std::tuple_size_v<decltype(DistortionKeys::values)>);
 
 constexpr CameraModelName kModels[] = {
@@ -48,6 +53,7 @@ constexpr CameraModelName kModels[] = {
     {"DIVISION", DistortionModel::kDivision, 1},
     {"EUCM", DistortionModel::kUnified, 2},
     {"THIN_PRISM_FISHEYE", DistortionModel::kThinPrism, 8},
+    {"RAD_TAN_THIN_PRISM_FISHEYE", DistortionModel::kRadialTangentialThinPrism, 12},
 };
 
 const CameraModelName& ModelNamed(std::string_view name) {
@@ -69,8 +75,9 @@ Result<CameraModelName> ResolveModel(const DistortionKeys& frame, const Distorti
   const std::optional<bool> is_fisheye = frame.is_fisheye ? frame.is_fisheye : top.is_fisheye;
   if (!index) return ModelNamed(is_fisheye.value_or(false) ? "OPENCV_FISHEYE" : "OPENCV");
   const CameraModelName& model = kModels[*index];
-  const bool is_of_fisheye =
-      model.model == DistortionModel::kFisheye || model.model == DistortionModel::kThinPrism;
+  const bool is_of_fisheye = model.model == DistortionModel::kFisheye ||
+                             model.model == DistortionModel::kThinPrism ||
+                             model.model == DistortionModel::kRadialTangentialThinPrism;
   if (is_fisheye && *is_fisheye != is_of_fisheye)
     return fields.Fault(fmt::format(
         "\"is_fisheye\" is {}, \"camera_model\" is \"{}\": they contradict each other, remove "
@@ -111,6 +118,8 @@ std::span<const char* const> ParameterKeys(DistortionModel model) {
       return kUnifiedKeys;
     case DistortionModel::kThinPrism:
       return kThinPrismKeys;
+    case DistortionModel::kRadialTangentialThinPrism:
+      return kRadialTangentialThinPrismKeys;
     case DistortionModel::kNone:
       break;
   }
@@ -118,7 +127,7 @@ std::span<const char* const> ParameterKeys(DistortionModel model) {
 }
 
 CameraModelName CameraModelOf(const Distortion& distortion) {
-  const std::array<double, 8>& p = distortion.parameters;
+  const DistortionParameters& p = distortion.parameters;
   switch (distortion.model) {
     case DistortionModel::kNone:
       break;
@@ -138,6 +147,8 @@ CameraModelName CameraModelOf(const Distortion& distortion) {
       return ModelNamed("EUCM");
     case DistortionModel::kThinPrism:
       return ModelNamed("THIN_PRISM_FISHEYE");
+    case DistortionModel::kRadialTangentialThinPrism:
+      return ModelNamed("RAD_TAN_THIN_PRISM_FISHEYE");
   }
   return ModelNamed("PINHOLE");
 }

@@ -25,15 +25,15 @@ struct CameraModelName {
 };
 
 // The name a distortion is written with: PINHOLE, OPENCV, FULL_OPENCV, OPENCV_FISHEYE, FOV,
-// DIVISION, EUCM or THIN_PRISM_FISHEYE. parameter_count is that of the parameters to be written;
-// OPENCV has k3 only if it is not 0.
+// DIVISION, EUCM, THIN_PRISM_FISHEYE or RAD_TAN_THIN_PRISM_FISHEYE. parameter_count is that of the
+// parameters to be written; OPENCV has k3 only if it is not 0.
 CameraModelName CameraModelOf(const Distortion& distortion);
 
 // As written; each may be missing.
 struct DistortionKeys {
   std::optional<uint8_t> camera_model;  // into the list of names
   std::optional<bool> is_fisheye;       // instant-ngp
-  std::array<std::optional<double>, 13> values;
+  std::array<std::optional<double>, 19> values;
 
   friend bool operator==(const DistortionKeys&, const DistortionKeys&) = default;
 };

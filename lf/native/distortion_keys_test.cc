@@ -61,6 +61,10 @@ TEST(DistortionKeys, EveryCameraModelPutsItsParametersInTheirPlaces) {
   EXPECT_EQ(Parsed(R"("camera_model": "EUCM", "lf_eucm_beta": 2, )"), Distortion{});
   EXPECT_EQ(Parsed(R"("camera_model": "THIN_PRISM_FISHEYE", "k3": 0.1, "lf_sy1": 0.2, )"),
             (Distortion{kThinPrism, {0, 0, 0, 0, 0.1, 0, 0, 0.2}}));
+  EXPECT_EQ(Parsed(R"("camera_model": "RAD_TAN_THIN_PRISM_FISHEYE", "k1": 1, "k2": 2, "k3": 3,
+                      "k4": 4, "k5": 5, "k6": 6, "lf_p0": 7, "lf_p1": 8, "lf_s0": 9, "lf_s1": 10,
+                      "lf_s2": 11, "lf_s3": 12, )"),
+            (Distortion{kRadialTangentialThinPrism, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}}));
   EXPECT_EQ(Parsed(R"("camera_model": "PINHOLE", "k1": 0, "p2": 0.0, )"), Distortion{});
   EXPECT_EQ(Parsed(R"("camera_model": "SIMPLE_PINHOLE", )"), Distortion{});
 }
@@ -113,6 +117,9 @@ TEST(DistortionKeys, ParametersThatTheModelLacksAreErrors) {
   ExpectError(R"("camera_model": "OPENCV_FISHEYE", "p2": 0.1, )", "", {"\"p2\" is 0.1"});
   ExpectError(R"("camera_model": "SIMPLE_RADIAL_FISHEYE", "k2": 0.1, )", "", {"\"k2\" is 0.1"});
   ExpectError(R"("is_fisheye": true, "k5": 0.1, )", "", {"\"k5\"", "OPENCV_FISHEYE"});
+  ExpectError(R"("camera_model": "RAD_TAN_THIN_PRISM_FISHEYE", "p1": 0.1, )", "",
+              {"\"p1\" is 0.1", "\"RAD_TAN_THIN_PRISM_FISHEYE\" has no such"});
+  ExpectError(R"("camera_model": "OPENCV_FISHEYE", "lf_s3": 0.1, )", "", {"\"lf_s3\" is 0.1"});
   ExpectError(R"("camera_model": "EUCM", "lf_eucm_alpha": 0.5, )", "", {"lf_eucm_beta 0"});
   ExpectError(R"("camera_model": "OPENCV", "lf_fov_omega": 0.9, )", "",
               {"\"lf_fov_omega\" is 0.9"});

@@ -10,14 +10,36 @@
 namespace lf {
 
 // All lf_* keys there are (doc/formats/transforms_json.md).
-inline constexpr const char* kTopLevelLfKeys[] = {
-    "lf_bayer",         "lf_transfer",       "lf_response",     "lf_black_level", "lf_white_level",
-    "lf_white_balance", "lf_camera_to_srgb", "lf_max_radiance", "lf_pedestal",    "lf_unit_m",
-    "lf_depth_range",   "lf_skew",           "lf_fov_omega",    "lf_alpha",       "lf_background",
-    "lf_written_by",    "lf_eucm_alpha",     "lf_eucm_beta",    "lf_sx1",         "lf_sy1"};
-inline constexpr const char* kFrameLfKeys[] = {"lf_gain",      "lf_mask",      "lf_translation",
-                                               "lf_skew",      "lf_fov_omega", "lf_eucm_alpha",
-                                               "lf_eucm_beta", "lf_sx1",       "lf_sy1"};
+inline constexpr const char* kTopLevelLfKeys[] = {"lf_bayer",
+                                                  "lf_transfer",
+                                                  "lf_response",
+                                                  "lf_black_level",
+                                                  "lf_white_level",
+                                                  "lf_white_balance",
+                                                  "lf_camera_to_srgb",
+                                                  "lf_max_radiance",
+                                                  "lf_pedestal",
+                                                  "lf_unit_m",
+                                                  "lf_depth_range",
+                                                  "lf_skew",
+                                                  "lf_fov_omega",
+                                                  "lf_alpha",
+                                                  "lf_background",
+                                                  "lf_written_by",
+                                                  "lf_eucm_alpha",
+                                                  "lf_eucm_beta",
+                                                  "lf_sx1",
+                                                  "lf_sy1",
+                                                  "lf_p0",
+                                                  "lf_p1",
+                                                  "lf_s0",
+                                                  "lf_s1",
+                                                  "lf_s2",
+                                                  "lf_s3"};
+inline constexpr const char* kFrameLfKeys[] = {
+    "lf_gain",       "lf_mask",      "lf_translation", "lf_skew", "lf_fov_omega",
+    "lf_eucm_alpha", "lf_eucm_beta", "lf_sx1",         "lf_sy1",  "lf_p0",
+    "lf_p1",         "lf_s0",        "lf_s1",          "lf_s2",   "lf_s3"};
 
 // Of the top level. Defaults: what camera raw files tell (`raw_facts` is asked where a key they
 // could replace is missing; null: not asked); else sRGB without a Bayer pattern, linear with one.

@@ -117,6 +117,8 @@ TEST_F(WriteTransformsJsonTest, KeepsEveryLensAndSkewWhicheverComesFirst) {
       {DistortionModel::kDivision, {-1.0 / 3, 0, 0, 0, 0, 0, 0, 0}},
       {DistortionModel::kUnified, {0.1 + 0.2, 1.0 / 3, 0, 0, 0, 0, 0, 0}},
       {DistortionModel::kThinPrism, {0.1, 1.0 / 3, 1e-3, 2e-3, 3e-3, 4e-3, 5e-3, 6e-3}},
+      {DistortionModel::kRadialTangentialThinPrism,
+       {0.1, 1.0 / 3, 1e-3, 2e-3, 0, 4e-3, 5e-3, 6e-3, -7e-3, 8e-3, 9e-3, 2.0 / 3}},
   };
   constexpr size_t kCount = std::size(lenses);
   for (size_t first = 0; first < kCount; ++first) {
