@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -101,36 +102,136 @@ TEST_F(ReadColmapTest, EveryModelProjectsAsColmapDoes) {
   EXPECT_EQ(compared_count, 20u * 12u);
 }
 
-// Since COLMAP 3.12 a model also has rigs and frames. Every image still has its own pose.
-TEST_F(ReadColmapTest, RigsAndFramesChangeNothing) {
-  for (const std::string extension : {".bin", ".txt"}) {
-    Copy(extension.c_str());
+// A pose as COLMAP writes it: quaternion w x y z, translation.
+struct ColmapPose {
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+  Vec3 translation = Vec3::Zero();
+
+  std::array<double, 7> Numbers() const {
+    return {rotation.w(),    rotation.x(),    rotation.y(),   rotation.z(),
+            translation.x(), translation.y(), translation.z()};
+  }
+  friend ColmapPose operator*(const ColmapPose& a, const ColmapPose& b) {
+    return {a.rotation * b.rotation, a.rotation * b.translation + a.translation};
+  }
+};
+
+// A model of COLMAP 3.12 and later: rig 7 has the cameras 1 and 4 and an IMU (sensor type 1) whose
+// pose is not known, and was exposed in two frames. Frame 5 comes first and its images have the
+// larger ids. `form` is .bin or .txt; the layout is that of COLMAP's reconstruction_io_*.cc.
+class RigModel {
+ public:
+  RigModel() {
+    const auto turn = [](double x, double y, double z) {
+      return Eigen::Quaterniond(1, x, y, z).normalized();
+    };
+    sensor_from_rig_ = {turn(0.02, 0.3, -0.05), Vec3(-0.4, 0.03, 0.01)};
+    rig_from_world_ = {ColmapPose{turn(0.1, -0.2, 0.3), Vec3(1, 2, 3)},
+                       ColmapPose{turn(-0.3, 0.1, 0.2), Vec3(-2, 0.5, 4)}};
+  }
+
+  static constexpr const char* kNames[2][2] = {{"left/1.png", "right/1.png"},
+                                               {"left/0.png", "right/0.png"}};
+  ColmapPose CamFromWorld(int frame, int camera) const {
+    return camera == 0 ? rig_from_world_[frame] : sensor_from_rig_ * rig_from_world_[frame];
+  }
+
+  std::string Cameras(bool is_binary) const {
+    return is_binary ? CamerasBin({{.id = 1}, {.id = 4, .parameters = {12, 13, 4, 3}}})
+                     : "1 PINHOLE 8 6 10 11 4 3\n4 PINHOLE 8 6 12 13 4 3\n";
+  }
+  std::string Images(bool is_binary) const {
+    std::vector<TestImage> images;
+    std::string text = "# Number of images: 4, mean observations per image: 0\n";
+    for (int frame = 0; frame < 2; ++frame)
+      for (int camera = 0; camera < 2; ++camera) {
+        const std::array<double, 7> pose = CamFromWorld(frame, camera).Numbers();
+        const uint32_t id = ImageId(frame, camera), camera_id = camera == 0 ? 1 : 4;
+        images.push_back({.id = id,
+                          .quaternion = {pose[0], pose[1], pose[2], pose[3]},
+                          .translation = {pose[4], pose[5], pose[6]},
+                          .camera_id = camera_id,
+                          .name = kNames[frame][camera]});
+        text += fmt::format("{} {} {} {}\n\n", id, fmt::join(pose, " "), camera_id,
+                            kNames[frame][camera]);
+      }
+    return is_binary ? ImagesBin(images) : text;
+  }
+  std::string Rigs(bool is_binary) const {
+    const std::array<double, 7> pose = sensor_from_rig_.Numbers();
+    if (!is_binary)
+      return fmt::format("# Number of rigs: 1\n7 3 CAMERA 1 CAMERA 4 1 {} IMU 2 0\n",
+                         fmt::join(pose, " "));
+    PackedBytes file;
+    file.Put(uint64_t{1}).Put(7u).Put(3u).Put(0).Put(1u);
+    file.Put(0).Put(4u).Put(uint8_t{1}).Put(pose);
+    return file.Put(1).Put(2u).Put(uint8_t{0}).bytes();
+  }
+  std::string Frames(bool is_binary) const {
+    PackedBytes file;
+    file.Put(uint64_t{2});
+    std::string text = "# Number of frames: 2\n";
+    for (int frame = 0; frame < 2; ++frame) {
+      const uint32_t frame_id = frame == 0 ? 5 : 6;
+      const std::array<double, 7> pose = rig_from_world_[frame].Numbers();
+      const uint64_t left = ImageId(frame, 0), right = ImageId(frame, 1);
+      file.Put(frame_id).Put(7u).Put(pose).Put(2u);
+      file.Put(0).Put(1u).Put(left).Put(0).Put(4u).Put(right);
+      text += fmt::format("{} 7 {} 2 CAMERA 1 {} CAMERA 4 {}\n", frame_id, fmt::join(pose, " "),
+                          left, right);
+    }
+    return is_binary ? file.bytes() : text;
+  }
+
+ private:
+  static uint32_t ImageId(int frame, int camera) { return frame == 0 ? 12 - camera : 3 - camera; }
+
+  ColmapPose sensor_from_rig_;
+  std::array<ColmapPose, 2> rig_from_world_;
+};
+
+// COLMAP writes cam_from_world of every registered image, which is sensor_from_rig times
+// rig_from_world, also where it knows rigs.
+TEST_F(ReadColmapTest, AnImageOfARigStandsWhereRigAndFramePutIt) {
+  const RigModel model;
+  for (const bool is_binary : {false, true}) {
+    const std::string extension = is_binary ? ".bin" : ".txt";
+    Write(folder_ / ("cameras" + extension), model.Cameras(is_binary));
+    Write(folder_ / ("images" + extension), model.Images(is_binary));
+    Write(folder_ / ("rigs" + extension), model.Rigs(is_binary));
+    Write(folder_ / ("frames" + extension), model.Frames(is_binary));
+    const Result<LightField> light_field = ReadColmapModel(folder_, folder_);
+    ASSERT_TRUE(light_field) << light_field.error().message;
+    ASSERT_EQ(light_field->size(), 4u);
+    for (int frame = 0; frame < 2; ++frame)
+      for (int camera = 0; camera < 2; ++camera) {
+        const auto& names = light_field->image_names;
+        const auto found = std::find(names.begin(), names.end(), RigModel::kNames[frame][camera]);
+        ASSERT_NE(found, names.end());
+        const PinholeCamera read =
+            light_field->Camera({static_cast<uint32_t>(found - names.begin())});
+        const ColmapPose expected = model.CamFromWorld(frame, camera);
+        EXPECT_LE((read.cam_from_world.rotation - expected.rotation.toRotationMatrix()).norm(),
+                  1e-14);
+        EXPECT_LE((read.cam_from_world.translation - expected.translation).norm(), 1e-14);
+        EXPECT_EQ(read.intrinsics.fx_px, camera == 0 ? 10 : 12);
+      }
+  }
+}
+
+TEST_F(ReadColmapTest, WithoutItsRigsAndFramesAModelIsTheSame) {
+  const RigModel model;
+  for (const bool is_binary : {false, true}) {
+    const std::string extension = is_binary ? ".bin" : ".txt";
+    Write(folder_ / ("cameras" + extension), model.Cameras(is_binary));
+    Write(folder_ / ("images" + extension), model.Images(is_binary));
     const Result<LightField> without = ReadColmapModel(folder_, folder_);
     ASSERT_TRUE(without) << without.error().message;
-    if (extension == ".txt") {
-      Write(folder_ / "rigs.txt", "# Rig calib list\n1 1 CAMERA 100\n2 1 CAMERA 97\n");
-      Write(folder_ / "frames.txt",
-            "# Frame list\n1 1 1 0 0 0 0 0 0 1 CAMERA 100 2\n2 2 1 0 0 0 0 0 0 1 CAMERA 97 9\n");
-    } else {
-      // One rig of one camera (type 0), and one frame of it.
-      Write(folder_ / "rigs.bin",
-            PackedBytes().Put(uint64_t{1}).Put(1u).Put(1u).Put(0).Put(100u).bytes());
-      Write(folder_ / "frames.bin", PackedBytes()
-                                        .Put(uint64_t{1})
-                                        .Put(1u)
-                                        .Put(1u)
-                                        .Put(std::array<double, 7>{1})
-                                        .Put(1u)
-                                        .Put(0)
-                                        .Put(100u)
-                                        .Put(uint64_t{2})
-                                        .bytes());
-    }
+    Write(folder_ / ("rigs" + extension), model.Rigs(is_binary));
+    Write(folder_ / ("frames" + extension), model.Frames(is_binary));
     const Result<LightField> with = ReadColmapModel(folder_, folder_);
     ASSERT_TRUE(with) << with.error().message;
     ExpectSame(*with, *without);
-    for (const char* name : {"cameras", "images", "points3D", "rigs", "frames"})
-      fs::remove(folder_ / (name + extension));
   }
 }
 
