@@ -99,6 +99,43 @@ class ExampleTest(unittest.TestCase):
         aperture = float(re.search(r"aperture_diameter: (\S+)", path.read_text()).group(1))
         self.assertLess(aperture, 0.1 * PITCH)
 
+    def colmap(self, depths):
+        """Noise, which no two images share, with a model whose points lie at these depths."""
+        folder = self.folder / "colmap"
+        write_field(folder / "images")
+        (folder / "images" / "transforms.json").unlink()
+        model = folder / "sparse" / "0"
+        model.mkdir(parents=True)
+        (model / "cameras.txt").write_text(
+            f"1 PINHOLE {WIDTH} {HEIGHT} 70 70 {WIDTH / 2} {HEIGHT / 2}\n")
+        (model / "images.txt").write_text("".join(
+            f"{i + 1} 1 0 0 0 {(2 - i % SIDE) * PITCH} {(2 - i // SIDE) * PITCH} 0 1 "
+            f"image_{i:02d}.png\n\n" for i in range(SIDE * SIDE)))
+        random = np.random.default_rng(1)
+        places = random.uniform(-0.4, 0.4, (len(depths), 2))
+        (model / "points3D.txt").write_text("".join(
+            f"{i} {x * depth} {y * depth} {depth} 9 9 9 0.5 {i % 12 + 1} 0 13 0\n"
+            for i, ((x, y), depth) in enumerate(zip(places, depths))))
+        self.field = folder
+
+    def test_points_tell_the_focus_if_the_images_do_not(self):
+        random = np.random.default_rng(2)
+        self.colmap(np.concatenate([random.uniform(0.79, 0.81, 200), random.uniform(0.5, 5, 60)]))
+        path, words = self.example("--move", "static")
+        focus = float(re.search(r"focus_distance: (\S+)", path.read_text()).group(1))
+        self.assertAlmostEqual(focus, 0.8, delta=0.02 * 0.8)
+        self.assertRegex(words, r"focused at 0\.\d+ by the points of the reconstruction, since the LF "
+                                "images around agree")
+        self.assertNotIn("not sure", words)
+        result = self.run_tool(RENDERER, self.field, path, "-o", self.folder / "frames")
+        self.assertEqual(result.returncode, 0, result.stderr)
+
+    def test_points_anywhere_tell_no_focus(self):
+        self.colmap(1 / np.random.default_rng(2).uniform(0.2, 2, 300))
+        _, words = self.example("--move", "static")
+        self.assertIn("warning: not sure what to focus on", words)
+        self.assertRegex(words, r"and \d+ of the \d+ points of the reconstruction that it shows lie at")
+
     def test_the_frame_shows_nothing_that_its_lf_image_does_not(self):
         calibration = json.loads(self.field.read_text())
         calibration["cx"] = WIDTH / 4  # a quarter of the image is left of the axis

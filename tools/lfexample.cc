@@ -23,7 +23,8 @@ constexpr const char* kExamples = R"(Examples:
   lfexample capture/ -o path.yaml --focus 8.12
 
 The path starts at an LF camera and focuses on what most of its image shows, found by comparing it
-with the images around; a warning says where that is not sure, and what to try. Render it with:
+with the images around, or else by the points of a COLMAP model; a warning says where that is not
+sure, and what to try. Render it with:
 lfrenderer LIGHTFIELD PATH.yaml -o DIR)";
 
 // Returns the LF camera nearest to the middle that is nearly level, since levelling a picture crops
@@ -92,6 +93,9 @@ int main(int argc, char** argv) {
     lf::ExampleOptions options;
     options.move = *lf::ParseExampleMove(move);
     if (focus > 0) options.focus_distance_w = focus;
+    options.points_world = [&] {
+      return lf::PointsSeenBy(input.path, light_field, options.camera);
+    };
     lf::ThreadPool pool(program.common().threads);
     LF_ASSIGN_OR_RETURN(const std::unique_ptr<lf::LfImageStore> store,
                         lf::OpenStore(light_field, lf::Mosaics::kToRgb));

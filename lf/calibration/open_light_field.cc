@@ -16,6 +16,7 @@
 #include "lf/calibration/read_stanford.h"
 #include "lf/capture/alpha_evidence.h"
 #include "lf/capture/raw_encoding.h"
+#include "lf/colmap/points_seen.h"
 #include "lf/colmap/read_colmap.h"
 #include "lf/core/log.h"
 #include "lf/native/transforms_json.h"
@@ -323,6 +324,16 @@ bool HoldsOwnAndItsSource(const fs::path& folder) {
   const Result<std::optional<fs::path>> other = OtherCalibrationIn(folder);
   return (other && *other) || HoldsStanfordNames(folder) ||
          HoldsStanfordNames(folder / kImagesName);
+}
+
+Result<std::vector<Vec3>> PointsSeenBy(const fs::path& path, const LightField& light_field,
+                                       LfImageId id) {
+  std::error_code error;
+  if (!fs::is_directory(path, error) || fs::exists(path / kCalibrationName, error))
+    return std::vector<Vec3>();
+  LF_ASSIGN_OR_RETURN(const std::optional<fs::path> model, FindColmapModel(path, /*warns=*/false));
+  if (!model) return std::vector<Vec3>();
+  return ReadColmapPointsSeen(*model, id.value, light_field.Camera(id));
 }
 
 Result<LightField> OpenLightField(const fs::path& path, const OpenOptions& options) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "lf/capture/find_images.h"
 #include "lf/capture/light_field.h"
@@ -66,5 +67,12 @@ bool HoldsOwnAndItsSource(const std::filesystem::path& folder);
 // camera raw files whose Bayer pattern nobody tells.
 Result<LightField> OpenLightField(const std::filesystem::path& path,
                                   const OpenOptions& options = {});
+
+// Returns points of the scene that the image of LF camera `id` shows, in world coordinates, at most
+// 2048: of a light field that OpenLightField() read from a COLMAP model with a points3D file
+// (colmap/points_seen.h). None of any other. The model is read again, a block at a time.
+//   path, light_field  what OpenLightField() was given and returned
+Result<std::vector<Vec3>> PointsSeenBy(const std::filesystem::path& path,
+                                       const LightField& light_field, LfImageId id);
 
 }  // namespace lf

@@ -5,6 +5,8 @@
 #include <array>
 #include <utility>
 
+#include "lf/colmap/points_seen.h"
+
 namespace lf {
 namespace {
 
@@ -139,7 +141,8 @@ Result<void> ReadColmapImagesBinary(ByteStream* stream, ColmapScene* scene) {
   return {};
 }
 
-Result<void> ReadColmapPointsBinary(ByteStream* stream, ColmapScene* scene) {
+template <class Sink>
+Result<void> ReadColmapPointsBinary(ByteStream* stream, Sink* sink) {
   const Place place(*stream, "point");
   LF_ASSIGN_OR_RETURN(const uint64_t count, TakeCount(stream, place, "points", kMinPointSize));
   for (uint64_t i = 0; i < count; ++i) {
@@ -158,15 +161,19 @@ Result<void> ReadColmapPointsBinary(ByteStream* stream, ColmapScene* scene) {
       return place.EntryFault(id, fmt::format("says that {} images see it, but only {} bytes are "
                                               "left: the file is cut off or broken",
                                               track_length, stream->remaining()));
+    if (Result<void> added = sink->AddPoint(id, point_world, track_length > 0); !added)
+      return place.EntryFault(id, added.error().message);
     for (uint64_t entry = 0; entry < track_length; ++entry) {
       std::array<uint32_t, 2> image_and_point2d;
       if (!stream->Take(&image_and_point2d)) return place.CutOff(i, count);
-      if (Result<void> added = scene->AddObservation(id, point_world, image_and_point2d[0]); !added)
+      if (Result<void> added = sink->AddObservation(id, point_world, image_and_point2d[0]); !added)
         return place.EntryFault(id, added.error().message);
     }
   }
   return CheckEnd(*stream, place, "points", count);
 }
+template Result<void> ReadColmapPointsBinary(ByteStream*, ColmapScene*);
+template Result<void> ReadColmapPointsBinary(ByteStream*, ColmapPointsSeen*);
 
 Result<uint64_t> CountColmapImagesBinary(ByteStream* stream) {
   return TakeCount(stream, Place(*stream, "image"), "images", kMinImageSize);

@@ -21,7 +21,9 @@ namespace lf {
 // early or too late, a count beyond what the file can hold (checked before memory is taken).
 Result<void> ReadColmapCamerasBinary(ByteStream* stream, ColmapScene* scene);
 Result<void> ReadColmapImagesBinary(ByteStream* stream, ColmapScene* scene);
-Result<void> ReadColmapPointsBinary(ByteStream* stream, ColmapScene* scene);
+// Sink: ColmapScene or ColmapPointsSeen, which is given points and observations.
+template <class Sink>
+Result<void> ReadColmapPointsBinary(ByteStream* stream, Sink* sink);
 
 // The number of images that the file says it holds.
 Result<uint64_t> CountColmapImagesBinary(ByteStream* stream);

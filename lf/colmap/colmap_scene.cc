@@ -82,6 +82,12 @@ std::optional<uint32_t> ColmapIds::Find(uint32_t id) const {
   return found->second;
 }
 
+std::optional<uint32_t> ColmapIds::IdOf(uint32_t position) const {
+  const auto found = std::find_if(positions_.begin(), positions_.end(),
+                                  [position](const auto& one) { return one.second == position; });
+  return found == positions_.end() ? std::nullopt : std::optional(found->first);
+}
+
 void ColmapScene::ReserveImages(size_t count) {
   light_field_.cameras.reserve(count);
   light_field_.image_names.reserve(count);

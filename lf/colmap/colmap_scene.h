@@ -35,6 +35,8 @@ class ColmapIds {
   // Before the first Find. An id that was added twice, if there is one.
   std::optional<uint32_t> Sort();
   std::optional<uint32_t> Find(uint32_t id) const;
+  // The id whose position this is. It looks at all of them.
+  std::optional<uint32_t> IdOf(uint32_t position) const;
 
  private:
   std::vector<std::pair<uint32_t, uint32_t>> positions_;
@@ -58,8 +60,16 @@ class ColmapScene {
   // Sorts the images by name. No images, or an id or a name twice.
   Result<void> EndImages();
 
+  // A point of the file; its observations follow.
+  Result<void> AddPoint(uint64_t, const Vec3&, bool /*has_track*/) { return {}; }
   // One of the points is seen by an image. The image is unknown.
   Result<void> AddObservation(uint64_t point_id, const Vec3& point_world, uint32_t image_id);
+
+  // The id of the image at a position among all, sorted by name; none beyond the last one. It may
+  // be asked after EndImages(), and takes time in proportion to the number of images.
+  std::optional<uint32_t> ImageIdAt(uint32_t position) const {
+    return image_positions_.IdOf(position);
+  }
 
   size_t image_count() const { return light_field_.cameras.size(); }
   // Empty afterwards.
@@ -75,5 +85,9 @@ class ColmapScene {
   ColmapIds image_positions_;
   DepthSample depths_;
 };
+
+struct ColmapStreams;
+// Reads cameras and images, of either form (read_colmap.cc). The errors are those of their readers.
+Result<ColmapScene> ReadColmapScene(ColmapStreams* streams);
 
 }  // namespace lf

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "lf/colmap/points_seen.h"
 #include "lf/colmap/text_words.h"
 #include "lf/core/log.h"
 
@@ -68,7 +69,8 @@ Result<void> SkipPoints2D(TextWords* words, uint32_t image_id) {
   return {};
 }
 
-Result<void> TakePoint(TextWords* words, ColmapScene* scene) {
+template <class Sink>
+Result<void> TakePoint(TextWords* words, Sink* sink) {
   LF_ASSIGN_OR_RETURN(const uint64_t id, words->Whole("POINT3D_ID", UINT64_MAX));
   Vec3 point_world;
   constexpr const char* kPosition[] = {"X", "Y", "Z"};
@@ -77,10 +79,12 @@ Result<void> TakePoint(TextWords* words, ColmapScene* scene) {
   }
   for (const char* colour : {"R", "G", "B"}) LF_RETURN_IF_ERROR(words->Whole(colour, 255));
   LF_RETURN_IF_ERROR(words->Number("ERROR"));
+  if (Result<void> added = sink->AddPoint(id, point_world, !words->AtLineEnd()); !added)
+    return words->Fault(fmt::format("point {} {}", id, added.error().message));
   while (!words->AtLineEnd()) {
     LF_ASSIGN_OR_RETURN(const uint32_t image_id, TakeId(words, "IMAGE_ID of a track"));
     LF_RETURN_IF_ERROR(TakeId(words, "POINT2D_IDX of a track"));
-    if (Result<void> added = scene->AddObservation(id, point_world, image_id); !added)
+    if (Result<void> added = sink->AddObservation(id, point_world, image_id); !added)
       return words->Fault(fmt::format("point {} {}", id, added.error().message));
   }
   return {};
@@ -116,11 +120,14 @@ Result<void> ReadColmapImagesText(ByteStream* stream, ColmapScene* scene) {
   return {};
 }
 
-Result<void> ReadColmapPointsText(ByteStream* stream, ColmapScene* scene) {
+template <class Sink>
+Result<void> ReadColmapPointsText(ByteStream* stream, Sink* sink) {
   TextWords words(stream);
-  while (words.NextEntry()) LF_RETURN_IF_ERROR(TakePoint(&words, scene));
+  while (words.NextEntry()) LF_RETURN_IF_ERROR(TakePoint(&words, sink));
   return stream->Status();
 }
+template Result<void> ReadColmapPointsText(ByteStream*, ColmapScene*);
+template Result<void> ReadColmapPointsText(ByteStream*, ColmapPointsSeen*);
 
 Result<uint64_t> CountColmapImagesText(ByteStream* stream) {
   TextWords words(stream);

@@ -19,7 +19,9 @@ namespace lf {
 // that are missing, too many or no numbers.
 Result<void> ReadColmapCamerasText(ByteStream* stream, ColmapScene* scene);
 Result<void> ReadColmapImagesText(ByteStream* stream, ColmapScene* scene);
-Result<void> ReadColmapPointsText(ByteStream* stream, ColmapScene* scene);
+// Sink: ColmapScene or ColmapPointsSeen, which is given points and observations.
+template <class Sink>
+Result<void> ReadColmapPointsText(ByteStream* stream, Sink* sink);
 
 // The number of entries in images.txt.
 Result<uint64_t> CountColmapImagesText(ByteStream* stream);

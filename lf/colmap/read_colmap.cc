@@ -74,7 +74,7 @@ std::vector<fs::path> NumberedFolders(const fs::path& folder) {
 }
 
 // The largest of the models 0, 1, ... in a folder.
-Result<std::optional<fs::path>> LargestModel(const fs::path& folder) {
+Result<std::optional<fs::path>> LargestModel(const fs::path& folder, bool warns) {
   std::optional<fs::path> largest;
   uint64_t largest_count = 0, all_count = 0;
   size_t model_count = 0;
@@ -88,7 +88,7 @@ Result<std::optional<fs::path>> LargestModel(const fs::path& folder) {
     largest = candidate;
     largest_count = count;
   }
-  if (model_count > 1)
+  if (warns && model_count > 1)
     LogWarning(
         "{}: holds {} COLMAP models: taking {}, with {} of {} images; name its folder to "
         "take another",
@@ -177,7 +177,7 @@ void AddMasks(LightField* light_field) {
 
 }  // namespace
 
-Result<std::optional<fs::path>> FindColmapModel(const fs::path& path) {
+Result<std::optional<fs::path>> FindColmapModel(const fs::path& path, bool warns) {
   for (const fs::path& folder : {path, path / "sparse", path / "colmap" / "sparse"}) {
     const Result<std::optional<std::string>> extension = ModelExtension(folder);
     // A cameras.txt or images.txt alone may be of any kind, unless it lies in sparse.
@@ -186,27 +186,31 @@ Result<std::optional<fs::path>> FindColmapModel(const fs::path& path) {
     if (extension && *extension) return std::optional<fs::path>(folder);
     // A folder of a million images need not be listed.
     if (folder == path && !IsFolder(path / "0")) continue;
-    LF_ASSIGN_OR_RETURN(std::optional<fs::path> largest, LargestModel(folder));
+    LF_ASSIGN_OR_RETURN(std::optional<fs::path> largest, LargestModel(folder, warns));
     if (largest) return largest;
   }
   return std::optional<fs::path>();
 }
 
-Result<LightField> ParseColmapModel(ColmapStreams streams) {
+Result<ColmapScene> ReadColmapScene(ColmapStreams* streams) {
   ColmapScene scene;
-  const bool is_binary = streams.is_binary;
-  LF_RETURN_IF_ERROR(is_binary ? ReadColmapCamerasBinary(&streams.cameras, &scene)
-                               : ReadColmapCamerasText(&streams.cameras, &scene));
-  LF_RETURN_IF_ERROR(is_binary ? ReadColmapImagesBinary(&streams.images, &scene)
-                               : ReadColmapImagesText(&streams.images, &scene));
+  const bool is_binary = streams->is_binary;
+  LF_RETURN_IF_ERROR(is_binary ? ReadColmapCamerasBinary(&streams->cameras, &scene)
+                               : ReadColmapCamerasText(&streams->cameras, &scene));
+  LF_RETURN_IF_ERROR(is_binary ? ReadColmapImagesBinary(&streams->images, &scene)
+                               : ReadColmapImagesText(&streams->images, &scene));
+  return scene;
+}
+
+Result<LightField> ParseColmapModel(ColmapStreams streams) {
+  LF_ASSIGN_OR_RETURN(ColmapScene scene, ReadColmapScene(&streams));
   if (streams.points)
-    LF_RETURN_IF_ERROR(is_binary ? ReadColmapPointsBinary(&*streams.points, &scene)
-                                 : ReadColmapPointsText(&*streams.points, &scene));
+    LF_RETURN_IF_ERROR(streams.is_binary ? ReadColmapPointsBinary(&*streams.points, &scene)
+                                         : ReadColmapPointsText(&*streams.points, &scene));
   return scene.Take();
 }
 
-Result<LightField> ReadColmapModel(const fs::path& model_folder,
-                                   const std::optional<fs::path>& images_folder) {
+Result<ColmapStreams> OpenColmapStreams(const fs::path& model_folder) {
   LF_ASSIGN_OR_RETURN(const std::optional<std::string> extension, ModelExtension(model_folder));
   if (!extension)
     return InputError(fmt::format(
@@ -223,6 +227,12 @@ Result<LightField> ReadColmapModel(const fs::path& model_folder,
     LF_ASSIGN_OR_RETURN(ByteStream stream, ByteStream::Open(points));
     streams.points.emplace(std::move(stream));
   }
+  return streams;
+}
+
+Result<LightField> ReadColmapModel(const fs::path& model_folder,
+                                   const std::optional<fs::path>& images_folder) {
+  LF_ASSIGN_OR_RETURN(ColmapStreams streams, OpenColmapStreams(model_folder));
   LF_ASSIGN_OR_RETURN(LightField light_field, ParseColmapModel(std::move(streams)));
   if (images_folder) {
     light_field.folder = *images_folder;

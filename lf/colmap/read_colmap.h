@@ -16,10 +16,12 @@ namespace lf {
 // warning; of equals the first. None if there is none.
 // kInput: a cameras file without an images file beside it or the other way round (as text only
 // below `path`, where it is COLMAP's for sure); an images file whose images cannot be counted.
-Result<std::optional<std::filesystem::path>> FindColmapModel(const std::filesystem::path& path);
+//   warns  of several models: false if it has been warned of them
+Result<std::optional<std::filesystem::path>> FindColmapModel(const std::filesystem::path& path,
+                                                             bool warns = true);
 
 // The registered images, sorted by name. .bin goes before .txt. Besides the result, a block
-// of a file and a sample of depths, some 50 bytes for each image and 350 for each camera are in
+// of a file and a sample of depths, some 50 bytes for each image and 380 for each camera are in
 // memory while it reads.
 //
 //   images_folder  where the image files are, not checked; if not given, searched: `images` in the
@@ -43,6 +45,9 @@ struct ColmapStreams {
   std::optional<ByteStream> points;
   bool is_binary = false;
 };
+
+// Opens the three files. kInput: there is no model in the folder.
+Result<ColmapStreams> OpenColmapStreams(const std::filesystem::path& model_folder);
 
 // The calibration alone, without `folder` and masks. Errors as above.
 Result<LightField> ParseColmapModel(ColmapStreams streams);

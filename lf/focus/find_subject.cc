@@ -10,6 +10,7 @@
 #include "lf/camera/ray_through.h"
 #include "lf/capture/capture_geometry.h"
 #include "lf/core/log.h"
+#include "lf/focus/best_depths.h"
 #include "lf/focus/focus_pick.h"
 #include "lf/focus/reduced_image.h"
 
@@ -193,11 +194,6 @@ Peak FindPeak(const Sweep& sweep, std::span<const View> views, const Place& plac
   return peak;
 }
 
-struct FoundDepth {
-  double distance_w = 0, weight = 0;
-  double error = 0;  // relative
-};
-
 std::optional<FoundDepth> DepthOf(const Rings& rings, const Place& place, const Intrinsics& k,
                                   int divisor) {
   double px_per_w = PixelsPerW(rings[0], k, divisor);
@@ -357,53 +353,6 @@ void LoadRings(const LightField& field, const LfImageStore& store, ThreadPool& p
   for (std::vector<View>& ring : *rings)
     std::erase_if(ring, [](const View& view) { return view.image.light.empty(); });
   std::erase_if(*rings, [](const std::vector<View>& ring) { return ring.size() < kLeastViews; });
-}
-
-// A found depth counts around itself by a bell in the logarithm of depth, which is as wide as the
-// depth is uncertain.
-double WidthOf(const FoundDepth& found) { return std::max(0.03, found.error); }
-double ShareAt(double distance_w, const FoundDepth& found) {
-  const double off = std::log(found.distance_w / distance_w) / WidthOf(found);
-  return std::abs(off) < 3 ? std::exp(-0.5 * off * off) : 0;
-}
-
-// The depth around which most lies, refined to the mean of what is near.
-SubjectDepth BestDepth(std::span<const FoundDepth> found, double total_weight) {
-  double best_weight = -1, best_w = 0;
-  for (const FoundDepth& at : found) {
-    double weight = 0;
-    for (const FoundDepth& other : found) weight += other.weight * ShareAt(at.distance_w, other);
-    if (weight > best_weight) {
-      best_weight = weight;
-      best_w = at.distance_w;
-    }
-  }
-  SubjectDepth depth;
-  double sum = 0, weights = 0;
-  for (const FoundDepth& one : found) {
-    const double share = ShareAt(best_w, one);
-    sum += one.weight * share / one.distance_w;
-    weights += one.weight * share;
-    depth.place_count += share > 0.3;
-  }
-  depth.distance_w = weights / sum;
-  depth.share = weights / total_weight;
-  return depth;
-}
-
-// Returns at most three depths, the best first, each away from the better ones.
-std::vector<SubjectDepth> BestDepths(std::vector<FoundDepth> found) {
-  double total_weight = 0;
-  for (const FoundDepth& one : found) total_weight += one.weight;
-  std::vector<SubjectDepth> depths;
-  constexpr size_t kMostDepths = 3;
-  while (depths.size() < kMostDepths && !found.empty()) {
-    depths.push_back(BestDepth(found, total_weight));
-    std::erase_if(found, [&](const FoundDepth& one) {
-      return std::abs(std::log(one.distance_w / depths.back().distance_w)) < 3 * WidthOf(one);
-    });
-  }
-  return depths;
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "lf/capture/capture_geometry.h"
 #include "lf/core/log.h"
 #include "lf/focus/find_subject.h"
+#include "lf/focus/point_subject.h"
 
 namespace lf {
 namespace {
@@ -47,46 +48,68 @@ Focus GuessFocus(const LightField& light_field, const PinholeCamera& camera, dou
   return {camera.intrinsics.fx_px * spacing_w, "where neighbours see things a pixel apart"};
 }
 
-std::string WhyNotSure(const Subject& subject) {
-  if (subject.textured_count == 0) return "the LF image has no texture";
-  return fmt::format("the LF images around agree on a depth at {} of {} textured places",
-                     subject.place_count, subject.textured_count);
+std::string WhyNotSure(const Subject& subject, const Subject& points) {
+  std::string why;
+  if (points.place_count > 0)
+    why = fmt::format(", and {} of the {} points of the reconstruction that it shows lie at one",
+                      points.depths[0].place_count, points.place_count);
+  if (subject.textured_count == 0) return "the LF image has no texture" + why;
+  return fmt::format("the LF images around agree on a depth at {} of {} textured places{}",
+                     subject.place_count, subject.textured_count, why);
 }
 
-void WarnOfGuess(const Focus& focus, const Subject& subject,
+void WarnOfGuess(const Focus& focus, const Subject& subject, const Subject& points,
                  const std::vector<SubjectDepth>& depths) {
   std::string others;
   for (const SubjectDepth& depth : depths) others += fmt::format(", {:.4g}", depth.distance_w);
   LogWarning(
       "not sure what to focus on ({}): focused at {:.4g}, {}{}. So that the first frame is "
       "sharp, its lens holds one LF camera: state --focus, and a wider aperture in the path",
-      WhyNotSure(subject), focus.distance_w, focus.reason,
+      WhyNotSure(subject, points), focus.distance_w, focus.reason,
       others.empty() ? "" : "; it may also be at " + others.substr(2));
+}
+
+// Returns a focus on the best depth.
+//   things  that lie there
+Focus FocusOf(const Subject& subject, const char* things) {
+  const SubjectDepth& best = subject.depths[0];
+  return {best.distance_w,
+          fmt::format("where {} of {} {} lie", best.place_count, subject.place_count, things), true,
+          std::min(subject.near_w, best.distance_w), std::max(subject.far_w, best.distance_w)};
 }
 
 Result<Focus> ChooseFocus(const LightField& light_field, const LfImageStore& store,
                           const ExampleOptions& options, double spacing_w, ThreadPool& pool) {
   if (options.focus_distance_w) return Focus{*options.focus_distance_w, "as asked for"};
   LF_ASSIGN_OR_RETURN(const Subject subject, FindSubject(light_field, store, options.camera, pool));
-  std::vector<SubjectDepth> depths = subject.depths;
-  bool is_sure = subject.is_sure;
-  if (const std::optional<DepthRange>& range = light_field.depth_range) {
+  const auto is_outside = [&](const SubjectDepth& depth) {
     constexpr double kMargin = 1.2;
-    const auto is_outside = [&](const SubjectDepth& depth) {
-      return depth.distance_w < range->near_w / kMargin ||
-             depth.distance_w > range->far_w * kMargin;
-    };
-    is_sure = is_sure && !is_outside(depths[0]);
-    std::erase_if(depths, is_outside);
+    const std::optional<DepthRange>& range = light_field.depth_range;
+    return range && (depth.distance_w < range->near_w / kMargin ||
+                     depth.distance_w > range->far_w * kMargin);
+  };
+  const auto is_sure = [&](const Subject& one) {
+    return one.is_sure && !is_outside(one.depths[0]);
+  };
+  if (is_sure(subject)) return FocusOf(subject, "places of the image");
+  const PinholeCamera camera = light_field.Camera(options.camera);
+  Subject points;
+  if (options.points_world) {
+    LF_ASSIGN_OR_RETURN(const std::vector<Vec3> points_world, options.points_world());
+    points = FindPointSubject(camera, points_world);
   }
-  Focus focus =
-      is_sure ? Focus{depths[0].distance_w, fmt::format("where {} of {} places of the image lie",
-                                                        depths[0].place_count, subject.place_count)}
-              : GuessFocus(light_field, light_field.Camera(options.camera), spacing_w, depths);
-  if (!is_sure) WarnOfGuess(focus, subject, depths);
-  focus.is_sure = is_sure;
-  focus.near_w = is_sure ? std::min(subject.near_w, focus.distance_w) : focus.distance_w;
-  focus.far_w = is_sure ? std::max(subject.far_w, focus.distance_w) : focus.distance_w;
+  if (is_sure(points)) {
+    const Focus focus = FocusOf(points, "points of the reconstruction");
+    LogInfo("focused at {:.4g} by the points of the reconstruction, since {}", focus.distance_w,
+            WhyNotSure(subject, {}));
+    return focus;
+  }
+  std::vector<SubjectDepth> depths = subject.depths;
+  std::erase_if(depths, is_outside);
+  Focus focus = GuessFocus(light_field, camera, spacing_w, depths);
+  WarnOfGuess(focus, subject, points, depths);
+  focus.is_sure = false;
+  focus.near_w = focus.far_w = focus.distance_w;
   return focus;
 }
 

@@ -2,9 +2,11 @@
 // thesis's lrexample).
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "lf/capture/light_field.h"
 #include "lf/core/ids.h"
@@ -23,6 +25,9 @@ struct ExampleOptions {
   LfImageId camera;  // the path starts where this LF image was taken
   ExampleMove move = ExampleMove::kFocusPull;
   std::optional<double> focus_distance_w;  // default: found by FindSubject()
+  // Gives points of the scene that the LF image shows, in world coordinates. It is asked only if
+  // the LF images do not tell the subject; without it there are no points.
+  std::function<Result<std::vector<Vec3>>()> points_world = {};
 };
 
 struct ExamplePath {
@@ -33,9 +38,10 @@ struct ExamplePath {
 };
 
 // A path that shows something: one frame if nothing moves, else 50.
-// - Focus: at the subject (focus/find_subject.h). Where that is not sure, where the optical axes
-//   meet, or else in the middle of the depth range, at the best depth found, or where neighbours
-//   see things a pixel apart; a warning says so, and what else it could be.
+// - Focus: at the subject (focus/find_subject.h). Where that is not sure, at the depth of most
+//   points that a reconstruction has there (focus/point_subject.h). Where these do not tell either,
+//   where the optical axes meet, or else in the middle of the depth range, at the best depth found,
+//   or where neighbours see things a pixel apart; a warning says so, and what else it could be.
 // - Lens: eight spacings of LF cameras wide, down to 2.5 where these are so far apart that a blur
 //   falls into copies, and no wider than the capture. Where copies are too far apart for any blur,
 //   or the focus is not sure, next to a pinhole: the first frame is what one LF camera sees.

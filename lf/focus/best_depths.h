@@ -1,0 +1,20 @@
+// The depths around which most of what was found lies. Internal to focus.
+#pragma once
+
+#include <vector>
+
+#include "lf/focus/find_subject.h"
+
+namespace lf {
+
+struct FoundDepth {
+  double distance_w = 0, weight = 0;
+  double error = 0;  // relative
+};
+
+// Returns at most three depths, the best first, each away from the better ones. A found depth
+// counts around itself by a bell in the logarithm of depth, which is as wide as the depth is
+// uncertain, and 3 % at least.
+std::vector<SubjectDepth> BestDepths(std::vector<FoundDepth> found);
+
+}  // namespace lf

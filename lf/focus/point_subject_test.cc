@@ -1,0 +1,138 @@
+#include "lf/focus/point_subject.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "lf/core/random.h"
+
+namespace lf {
+namespace {
+
+PinholeCamera Camera() {
+  PinholeCamera camera;
+  camera.intrinsics = {500, 500, 320, 240, 0, 640, 480};
+  camera.cam_from_world = *LookAlong({1, -2, 3}, Vec3(0.3, 0.2, -1).normalized(), {0, 1, 0});
+  return camera;
+}
+
+// Draws the points that the camera sees at depths that depth(x, y) tells, of places from -1 to 1;
+// 0 draws none.
+using Depth = std::function<double(RandomSequence* random, double x, double y)>;
+std::vector<Vec3> Draw(int count, const Depth& depth) {
+  const PinholeCamera camera = Camera();
+  RandomSequence random(17);
+  std::vector<Vec3> points;
+  for (int i = 0; i < count; ++i) {
+    const double x = random.Uniform(-1, 1), y = random.Uniform(-1, 1);
+    const double depth_w = depth(&random, x, y);
+    points.push_back(camera.cam_from_world.Inverse() * (depth_w * Vec3(0.64 * x, 0.48 * y, 1)));
+  }
+  return points;
+}
+
+// Errors of a reconstruction: 1 % of the depth.
+double Blurred(RandomSequence* random, double depth_w) {
+  return depth_w * (1 + random->Uniform(-0.01, 0.01));
+}
+
+Depth Wall(double depth_w) {
+  return [=](RandomSequence* random, double, double) { return Blurred(random, depth_w); };
+}
+Depth CardBefore(double card_w, double wall_w, double half = 0.5) {
+  return [=](RandomSequence* random, double x, double y) {
+    return Blurred(random, std::abs(x) < half && std::abs(y) < half ? card_w : wall_w);
+  };
+}
+Depth WithOutliers(Depth depth, double share) {
+  return [=](RandomSequence* random, double x, double y) {
+    if (random->Uniform(0, 1) < share) return std::exp(random->Uniform(-2, 4));
+    return depth(random, x, y);
+  };
+}
+Depth AnywhereBetween(double near_w, double far_w) {
+  return [=](RandomSequence* random, double, double) {
+    return 1 / random->Uniform(1 / far_w, 1 / near_w);
+  };
+}
+Depth Behind(Depth depth) {
+  return [=](RandomSequence* random, double x, double y) { return -depth(random, x, y); };
+}
+
+struct Case {
+  std::string name;
+  std::vector<Vec3> points;
+  double depth_w = 0;      // 0: hopeless
+  bool may_doubt = false;  // "not sure" will do
+};
+
+std::vector<Case> Cases() {
+  return {
+      {"wall", Draw(600, Wall(5)), 5},
+      {"wall, few points", Draw(40, Wall(5)), 5},
+      {"wall, many points", Draw(2048, Wall(0.02)), 0.02},
+      {"wall, far", Draw(300, Wall(4000)), 4000},
+      {"wall, a third outliers", Draw(300, WithOutliers(Wall(2), 0.33)), 2},
+      {"wall, two thirds outliers", Draw(300, WithOutliers(Wall(2), 0.67)), 2, true},
+      {"card before a wall", Draw(600, CardBefore(2, 6)), 2, true},
+      {"card before a near wall", Draw(600, CardBefore(2, 2.6, 0.7)), 2},
+      {"small card before a wall", Draw(600, CardBefore(2, 6, 0.3)), 6, true},
+      {"card with outliers", Draw(400, WithOutliers(CardBefore(3, 9, 0.7), 0.2)), 3},
+      {"large card", Draw(600, CardBefore(1, 8, 0.8)), 1},
+      {"card, few points", Draw(150, CardBefore(2, 6, 0.7)), 2},
+      {"wall, points behind the camera",
+       [] {
+         std::vector<Vec3> points = Draw(200, Wall(4));
+         for (const Vec3& point : Draw(400, Behind(Wall(3)))) points.push_back(point);
+         return points;
+       }(),
+       4},
+      {"hopeless: no points", {}},
+      {"hopeless: too few points", Draw(15, Wall(5))},
+      {"hopeless: all behind the camera", Draw(300, Behind(Wall(5)))},
+      {"hopeless: anywhere", Draw(600, AnywhereBetween(1, 20))},
+      {"hopeless: anywhere, few", Draw(60, AnywhereBetween(1, 20))},
+      {"hopeless: outliers alone", Draw(600, WithOutliers(Wall(5), 1))},
+      {"hopeless: two walls in stripes",
+       Draw(600, [](RandomSequence* random, double x,
+                    double) { return Blurred(random, std::fmod(x + 1, 0.2) < 0.1 ? 2 : 5); })},
+  };
+}
+
+TEST(FindPointSubject, IsRightOrNotSureOnTwentyCaptures) {
+  ASSERT_EQ(Cases().size(), 20u);
+  for (const Case& one : Cases()) {
+    SCOPED_TRACE(one.name);
+    const Subject subject = FindPointSubject(Camera(), one.points);
+    if (one.depth_w == 0) {
+      EXPECT_FALSE(subject.is_sure);
+      continue;
+    }
+    EXPECT_TRUE(subject.is_sure || one.may_doubt);
+    if (subject.is_sure) {
+      EXPECT_NEAR(subject.depths[0].distance_w, one.depth_w, 0.02 * one.depth_w);
+    }
+  }
+}
+
+TEST(FindPointSubject, OffersTheWallBehindTheCard) {
+  const Subject subject = FindPointSubject(Camera(), Draw(600, CardBefore(2, 6, 0.7)));
+  ASSERT_GE(subject.depths.size(), 2u);
+  EXPECT_NEAR(subject.depths[1].distance_w, 6, 0.1);
+  EXPECT_NEAR(subject.near_w, 2, 0.05);
+  EXPECT_NEAR(subject.far_w, 6, 0.1);
+}
+
+TEST(FindPointSubject, PointsOutsideTheImageDoNotCount) {
+  std::vector<Vec3> points;
+  const PinholeCamera camera = Camera();
+  for (int i = 0; i < 100; ++i)
+    points.push_back(camera.cam_from_world.Inverse() * Vec3(5 + 0.01 * i, 0, 3));
+  EXPECT_EQ(FindPointSubject(camera, points).place_count, 0u);
+}
+
+}  // namespace
+}  // namespace lf
