@@ -356,6 +356,55 @@ class PackagesTest(ProgramTestCase):
         write_path(self.folder, aperture=0.2)
         self.assertIn("bokeh are cut off", self.succeeds(PREPROCESSOR, field, path, "--plan"))
 
+    def test_what_a_forecast_advises_takes_its_warnings_away(self):
+        field, path = self.film()
+        text = path.read_text()
+
+        def plan(*options):
+            return json.loads(self.succeeds(PREPROCESSOR, field, path, "--plan", "--json", *options))
+
+        def focused_at(distance):
+            still = text.replace("focus_distance: 0.8", f"focus_distance: {distance!r}")
+            return still[:still.index("keyframes:")]
+
+        depths = ["--depths", "0.3", "4"]
+        path.write_text(focused_at(3.9))
+        warned = plan(*depths)
+        self.assertEqual(len(warned["warnings"]), 1)
+        self.assertRegex(warned["warnings"][0],
+                         "a focus distance between .* and .* in every frame; a scene")
+        advice = warned["advice"]
+        for distance in advice["focus_distance"]:
+            path.write_text(focused_at(distance))
+            self.assertEqual(plan(*depths)["warnings"], [], distance)
+        near, far = advice["focus_distance"]
+        for distance in (0.9 * near, 1.1 * far):  # it does not promise too little
+            path.write_text(focused_at(distance))
+            self.assertEqual(len(plan(*depths)["warnings"]), 1, distance)
+
+        path.write_text(focused_at(3.9))
+        near, far = advice["depths"]
+        self.assertIsNone(far)
+        self.assertEqual(plan("--depths", str(near), "1e6")["warnings"], [])
+        self.assertEqual(len(plan("--depths", str(0.95 * near), "1e6")["warnings"]), 1)
+
+        width, height = advice["resolution"]
+        path.write_text(focused_at(3.9).replace("[80, 60]", f"[{width}, {height}]"))
+        self.assertEqual(plan(*depths)["warnings"], [])
+
+        # No focus is free of double edges from 0.1 to 4.
+        path.write_text(focused_at(0.3))
+        hopeless = plan("--depths", "0.1", "4")
+        self.assertIsNone(hopeless["advice"]["focus_distance"])
+        self.assertNotIn("a focus distance", hopeless["warnings"][0])
+
+        write_path(self.folder, aperture=0.2)
+        wide = plan("--depths", "0.7", "4")
+        self.assertIn("beyond the capture", wide["warnings"][-1])
+        self.assertIn("an aperture of at most", wide["warnings"][-1])
+        write_path(self.folder, aperture=wide["advice"]["largest_aperture"])
+        self.assertEqual(plan("--depths", "0.7", "4")["warnings"], [])
+
     def test_packages_can_be_asked_by_sql(self):
         """the schema of doc/formats/package.md"""
         field, path = self.film()

@@ -5,6 +5,7 @@ usage: wide_lens_test.py LFRENDERER LFPREPROCESSOR
 """
 import json
 import os
+import re
 import sys
 import unittest
 
@@ -65,6 +66,13 @@ class WideLensTest(ProgramTestCase):
         _, messages, report = self.frame(field, 1.8 * COVERED)
         self.assertNotIn("beyond the capture", messages)
         self.assertLess(report["uncovered_share"], 0.01)
+
+    def test_the_advised_aperture_is_not_warned_of(self):
+        field = write_field(self.folder / "field", png16, lf_transfer="linear")
+        _, messages, _ = self.frame(field, 4 * COVERED)
+        advised = float(re.search(r"An aperture of at most (\S+) world units", messages).group(1))
+        _, messages, _ = self.frame(field, advised)
+        self.assertNotIn("beyond the capture", messages)
 
     def test_bokeh_are_even_to_their_rim(self):
         scene = {"scene": lamp, "depths": (3,)}

@@ -8,6 +8,7 @@
 
 #include "tools/common/program.h"
 #include "tools/common/progress.h"
+#include "tools/forecast_advice.h"
 
 #include "lf/core/shell_word.h"
 
@@ -15,20 +16,6 @@ namespace lf {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// Elements that an eye takes for one edge.
-constexpr double kDoubleEdge_px = 2;
-
-// "31.2 mm", "2.05 m", "1.2 km"
-std::string Length(double length_w, double unit_m) {
-  const double length_m = length_w * unit_m;
-  if (!std::isfinite(length_m)) return "-";
-  if (length_m == 0) return "0";
-  const double size = std::abs(length_m);
-  if (size < 1e-3) return fmt::format("{:.3g} um", length_m * 1e6);
-  if (size < 1) return fmt::format("{:.3g} mm", length_m * 1e3);
-  return size < 1e3 ? fmt::format("{:.3g} m", length_m) : fmt::format("{:.3g} km", length_m / 1e3);
-}
 
 std::string Bytes(uint64_t bytes) {
   return bytes < uint64_t{10} << 30 ? fmt::format("{} MiB", bytes >> 20)
@@ -98,27 +85,10 @@ void AddDensity(const PreprocessReport& report, const CameraPath& path, std::str
     *lines += fmt::format(
         "{:>7} {:>10} {:>10} {:>12} {:>10} {:>10.1f} px {:>10.1f} px {:>10.0f} % {:>14}\n",
         frame.frame.value, frame.image_count, ShortNumber(static_cast<double>(frame.ray_count)),
-        density.cameras_in_lens, Length(density.camera_distance_w, path.unit_m),
+        density.cameras_in_lens, LengthText(density.camera_distance_w, path.unit_m),
         density.near_displacement_px, density.far_displacement_px,
-        100 * density.coverage.uncovered_share, Length(density.least_aperture_w, path.unit_m));
+        100 * density.coverage.uncovered_share, LengthText(density.least_aperture_w, path.unit_m));
   }
-}
-
-// Advice to go with others: "an aperture of at most 30 mm, or ".
-std::string FittingAperture(const LensCoverage& coverage, const CameraPath& path) {
-  if (coverage.fitting_diameter_w == 0) return "";
-  return fmt::format("an aperture of at most {}, or ",
-                     Length(coverage.fitting_diameter_w, path.unit_m));
-}
-
-// Where copies are less than kDoubleEdge_px apart, along the frame's axis.
-std::string DepthsInOne(const RenderCamera& camera, const FrameDensity& density) {
-  const double step =
-      kDoubleEdge_px / (camera.pinhole.intrinsics.fx_px * density.camera_distance_w);
-  const double focus = 1 / camera.focus_distance_w;
-  const std::string near = Length(1 / (focus + step), camera.unit_m);
-  if (focus <= step) return fmt::format("behind {}", near);
-  return fmt::format("between {} and {}", near, Length(1 / (focus - step), camera.unit_m));
 }
 
 }  // namespace
@@ -137,6 +107,7 @@ std::vector<std::string> DensityWarnings(const PreprocessReport& report, const C
                                          const ForecastFacts& facts) {
   std::vector<std::string> warnings;
   if (report.missing_count > 0) warnings.push_back(MissingOf(report).what);
+  const ForecastAdvice advice = AdviceOf(report, path, facts.are_depths_known);
   const FrameForecast& sparse =
       Worst(report, [](const FrameForecast& frame) { return frame.density.MostDisplacement_px(); });
   const double most_px = sparse.density.MostDisplacement_px();
@@ -144,19 +115,21 @@ std::vector<std::string> DensityWarnings(const PreprocessReport& report, const C
     const RenderCamera& camera = path.Camera(sparse.frame);
     const FrameDensity& density = sparse.density;
     const Intrinsics& plate = camera.pinhole.intrinsics;
-    const double scale = kDoubleEdge_px / most_px;
     warnings.push_back(fmt::format(
         "frame {}: expect double edges of {:.0f} px at {}{}; LF cameras are {} apart in the lens, "
         "{} "
-        "needed. What would work: a scene that lies {}; frames of {} x {} elements instead of {} x "
+        "needed. What would work: {}a scene that lies {}; frames of {} x {} elements instead of {} "
+        "x "
         "{}; or a capture {:.0f} times as dense along each axis",
-        sparse.frame.value, most_px, Length(density.DepthOfMost_w(), path.unit_m),
+        sparse.frame.value, most_px, LengthText(density.DepthOfMost_w(), path.unit_m),
         facts.are_depths_known ? "" : " (depths of the scene are not known: --depths tells them)",
-        Length(density.camera_distance_w, path.unit_m),
-        Length(density.camera_distance_w / most_px, path.unit_m), DepthsInOne(camera, density),
-        std::max(1, static_cast<int>(plate.width_px * scale)),
-        std::max(1, static_cast<int>(plate.height_px * scale)), plate.width_px, plate.height_px,
-        std::ceil(most_px / kDoubleEdge_px)));
+        LengthText(density.camera_distance_w, path.unit_m),
+        LengthText(density.camera_distance_w / most_px, path.unit_m),
+        advice.focus ? fmt::format("a focus distance {} in every frame; ",
+                                   RangeText(*advice.focus, path.unit_m))
+                     : "",
+        RangeText(advice.depths, path.unit_m), advice.width_px, advice.height_px, plate.width_px,
+        plate.height_px, std::ceil(most_px / kDoubleEdge_px)));
   }
   size_t black_count = 0;
   const FrameForecast* black = nullptr;
@@ -171,8 +144,8 @@ std::vector<std::string> DensityWarnings(const PreprocessReport& report, const C
                     "frame {}; its "
                     "lens would collect rays from a diameter of {} on, and has {}",
                     black_count, report.frames.size(), black->frame.value,
-                    Length(black->density.least_aperture_w, path.unit_m),
-                    Length(2 * path.Camera(black->frame).aperture.radius_w, path.unit_m)));
+                    LengthText(black->density.least_aperture_w, path.unit_m),
+                    LengthText(2 * path.Camera(black->frame).aperture.radius_w, path.unit_m)));
   const FrameForecast& uncovered = Worst(
       report, [](const FrameForecast& frame) { return frame.density.coverage.uncovered_share; });
   if (uncovered.density.coverage.uncovered_share > kMuchUncovered)
@@ -180,7 +153,10 @@ std::vector<std::string> DensityWarnings(const PreprocessReport& report, const C
         "frame {}: {:.0f} % of its lens are beyond the capture: they stay empty, and bokeh are cut "
         "off there. What would work: {}a path nearer to the middle of the capture",
         uncovered.frame.value, 100 * uncovered.density.coverage.uncovered_share,
-        FittingAperture(uncovered.density.coverage, path)));
+        advice.largest_aperture_w > 0
+            ? fmt::format("an aperture of at most {}, or ",
+                          AtMostText(advice.largest_aperture_w, path.unit_m))
+            : ""));
   return warnings;
 }
 
@@ -298,6 +274,14 @@ std::string ForecastJson(const PreprocessReport& report, const CameraPath& path,
                               {"near_displacement_px", density.near_displacement_px},
                               {"far_displacement_px", density.far_displacement_px}});
   }
+  const ForecastAdvice advice = AdviceOf(report, path, facts.are_depths_known);
+  json["advice"] = {
+      {"focus_distance",
+       advice.focus ? Json{advice.focus->near_w, finite(advice.focus->far_w)} : Json()},
+      {"depths", {advice.depths.near_w, finite(advice.depths.far_w)}},
+      {"resolution", {advice.width_px, advice.height_px}},
+      {"largest_aperture",
+       advice.largest_aperture_w > 0 ? finite(advice.largest_aperture_w) : Json()}};
   json["warnings"] = DensityWarnings(report, path, facts);
   return json.dump(2) + "\n";
 }

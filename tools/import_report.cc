@@ -40,7 +40,7 @@ const char* NameOf(DistanceSource source) {
     case DistanceSource::kDepthRange:
       return "depth range";
     case DistanceSource::kMeeting:
-      return "where the axes meet";
+      return "where optical axes pass nearest to one another";
   }
   LF_CHECK(false);
 }
@@ -163,9 +163,10 @@ std::string ReportText(const ImportReport& report) {
           fmt::format("from {} to {}", Brief(capture.box_min_w), Brief(capture.box_max_w)), &lines);
   if (capture.spacing_w)
     AddLine("spacing", Brief(*capture.spacing_w) + " to the nearest neighbour", &lines);
-  AddLine("axes meet",
-          capture.meeting_point_w ? "at " + Brief(*capture.meeting_point_w)
-                                  : "nowhere before the cameras",
+  AddLine("optical axes",
+          capture.meeting_point_w
+              ? "pass nearest to one another at " + Brief(*capture.meeting_point_w)
+              : "do not come near one another before the cameras",
           &lines);
   if (capture.depth_range)
     AddLine("depth range",

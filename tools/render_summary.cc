@@ -128,15 +128,17 @@ void WarnOfLenses(const RenderReport& report) {
       report, kMuchUncovered, [](const auto& weighed) { return weighed.coverage.uncovered_share; },
       [&](size_t count, const FrameReport& worst) {
         const LensCoverage& coverage = worst.weighed->coverage;
+        double fitting_w = coverage.fitting_diameter_w;  // in every frame
+        for (const FrameReport& frame : report.frames)
+          if (frame.weighed)
+            fitting_w = std::min(fitting_w, frame.weighed->coverage.fitting_diameter_w);
         LogWarning(
             "in {} of {} frames a part of the lens is beyond the capture, most of all in frame {}: "
             "{:.0f} %. It stays empty, and bokeh are cut off there. {}a camera nearer to the "
             "middle of the capture would show the truth",
             count, report.frames.size(), worst.frame.value, 100 * coverage.uncovered_share,
-            coverage.fitting_diameter_w > 0
-                ? fmt::format("An aperture of at most {:.4g} world units, or ",
-                              coverage.fitting_diameter_w)
-                : "Only ");
+            fitting_w > 0 ? fmt::format("An aperture of at most {:.4g} world units, or ", fitting_w)
+                          : "Only ");
       });
   // Hats are few by their nature, and frames that nobody sees are black: both are told otherwise.
   WarnOfFrames(
