@@ -15,6 +15,7 @@
 #include "lf/calibration/read_middlebury.h"
 #include "lf/calibration/read_stanford.h"
 #include "lf/capture/alpha_evidence.h"
+#include "lf/capture/image_files.h"
 #include "lf/capture/raw_encoding.h"
 #include "lf/colmap/points_seen.h"
 #include "lf/colmap/read_colmap.h"
@@ -254,6 +255,30 @@ bool HoldsLightField(const fs::path& folder) {
          HoldsStanfordNames(folder / kImagesName) || !PackedStoresIn(folder).empty();
 }
 
+// A hint for whoever has photographs alone.
+std::string PhotographsIn(const fs::path& path) {
+  constexpr size_t kMostEntries = 4096;
+  for (const fs::path& folder : {path, path / kImagesName}) {
+    size_t count = 0, entry_count = 0;
+    std::string first;
+    std::error_code error;
+    for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+      if (++entry_count > kMostEntries) break;
+      const std::string name = it->path().filename().string();
+      if (!IsImageName(name)) continue;
+      ++count;
+      if (first.empty() || name < first) first = name;
+    }
+    if (count > 1)
+      return fmt::format(
+          "; {} holds {}{} images, such as {}, but nothing that says where they were taken: "
+          "reconstruct that first, such as with COLMAP (colmap automatic_reconstructor), which "
+          "writes sparse/0",
+          folder.string(), entry_count > kMostEntries ? "at least " : "", count, first);
+  }
+  return "";
+}
+
 // A hint for whoever is one folder too high.
 std::string LightFieldsBelow(const fs::path& folder) {
   constexpr size_t kMostNames = 5;
@@ -307,9 +332,9 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
   return InputError(fmt::format(
       "{}: holds no light field: looked for {}, a COLMAP model in it or in sparse/0, NAME_par.txt, "
       "{}, {}, {} (AOS), one packed store NAME.lfs, and for images named "
-      "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext or NAME_ROW_COL.ext in it and in {}/{}{}",
+      "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext or NAME_ROW_COL.ext in it and in {}/{}{}{}",
       path.string(), kCalibrationName, kLlffName, kHciName, kAosName, kImagesName,
-      OtherCalibrations(path), LightFieldsBelow(path)));
+      OtherCalibrations(path), LightFieldsBelow(path), PhotographsIn(path)));
 }
 
 }  // namespace

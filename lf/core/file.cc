@@ -9,6 +9,8 @@
 #include <cstring>
 #include <system_error>
 
+#include "lf/core/files_nearby.h"
+
 namespace lf {
 namespace fs = std::filesystem;
 namespace {
@@ -68,8 +70,12 @@ Result<std::string> ReadFile(const fs::path& path, size_t limit_bytes) {
   // Not blocking: a named pipe would wait for its writer.
   const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   struct stat status {};
-  if (file.get() < 0 || ::fstat(file.get(), &status) != 0)
-    return InputError(fmt::format("{}: cannot be read: {}", path.string(), SystemReason()));
+  if (file.get() < 0 || ::fstat(file.get(), &status) != 0) {
+    const bool is_missing = errno == ENOENT || errno == ENOTDIR;
+    const std::string reason = SystemReason();
+    return InputError(fmt::format("{}: cannot be read: {}{}", path.string(), reason,
+                                  is_missing ? FilesNearby(path) : ""));
+  }
   if (!S_ISREG(status.st_mode)) return InputError(fmt::format("{}: is not a file", path.string()));
   if (static_cast<uint64_t>(status.st_size) > limit_bytes)
     return InputError(

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "lf/core/file.h"
+#include "lf/core/files_nearby.h"
 #include "lf/imageio/image_file.h"
 #include "lf/imageio/image_probe.h"
 #include "lf/imageio/layers.h"
@@ -248,8 +249,11 @@ Result<ImageFileInfo> ReadImageInfo(const fs::path& path) {
   if (fs::exists(path, error) && !fs::is_regular_file(path, error))
     return InputError(fmt::format("{}: is not a file", name));
   OIIO::Filesystem::IOFile file(name, OIIO::Filesystem::IOProxy::Read);
-  if (!file.opened())
-    return InputError(fmt::format("{}: cannot be read: {}", name, std::strerror(errno)));
+  if (!file.opened()) {
+    const int reason = errno;
+    return InputError(fmt::format("{}: cannot be read: {}{}", name, std::strerror(reason),
+                                  reason == ENOENT ? FilesNearby(path) : ""));
+  }
   return WithoutThrowing(name, [&] { return InfoFrom({file, name}); });
 }
 

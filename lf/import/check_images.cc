@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "lf/capture/image_fit.h"
+#include "lf/core/files_nearby.h"
 #include "lf/imageio/image_file.h"
 #include "lf/import/check_codes.h"
 #include "lf/packed/packed_store_file.h"
@@ -26,7 +27,8 @@ using Finding = CodeChecker::Fault;
 Finding CheckFile(const fs::path& path, bool is_mosaic, const Intrinsics& k, ImageCheck check) {
   std::error_code error;
   if (!fs::exists(path, error))
-    return {true, fmt::format("{}: {}", path.string(), error ? error.message() : "no such file")};
+    return {true, fmt::format("{}: {}{}", path.string(), error ? error.message() : "no such file",
+                              FilesNearby(path))};
   const Result<ImageFileInfo> info = ReadImageInfo(path);
   if (!info) return {false, info.error().message};
   if (const auto fit = FitToCalibration(*info, is_mosaic, k, path.string()); !fit)

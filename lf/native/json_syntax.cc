@@ -35,11 +35,27 @@ class StreamIterator {
   ByteStream* stream_;
 };
 
+// What the usual mistakes are. The parser says what it found last.
+std::string_view AdviceOn(std::string_view what) {
+  const auto has = [what](std::string_view part) { return what.find(part) != what.npos; };
+  if (has("unexpected end of input") && has("line 1, column 1:")) return "; the file is empty";
+  if (has("unexpected ']'") || has("unexpected '}'; expected string literal"))
+    return "; is there a comma too many before it?";
+  if (has("invalid literal") && (has(" N'") || has(",N'") || has("[N'")))
+    return "; NaN is no number of JSON: which pose or calibration was not found?";
+  if (has("line 1, column 1:") && has("invalid literal"))
+    return "; it has to be text in UTF-8 that begins with {";
+  return "";
+}
+
 }  // namespace
 
 Error IsNotJson(const std::filesystem::path& file, std::string_view what) {
   what.remove_prefix(std::min(what.size(), what.find("] ") + 2));  // the library's name
-  return InputError(fmt::format("{}: is not JSON: {}", file.string(), what));
+  const std::string_view advice = AdviceOn(what);
+  // What was read of another encoding is no text to show.
+  if (advice.find("UTF-8") != advice.npos) what = what.substr(0, what.find("; last read"));
+  return InputError(fmt::format("{}: is not JSON: {}{}", file.string(), what, advice));
 }
 
 Error JsonSyntaxError(ByteStream* stream) {

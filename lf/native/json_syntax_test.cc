@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 
 namespace lf {
@@ -18,6 +19,19 @@ TEST(JsonSyntax, ErrorsNameLineColumnAndWhatIsWrong) {
       "a.json: is not JSON: parse error at line 3, column 5: syntax error while parsing array "
       "- unexpected number literal; expected ']'");
   EXPECT_EQ(ErrorOf("{\"a\": 1e999}").find("a.json: is not JSON: number overflow"), 0u);
+}
+
+TEST(JsonSyntax, UsualMistakesAreNamed) {
+  const auto advice = [](std::string_view text) {
+    const std::string message = ErrorOf(text);
+    return message.substr(std::min(message.size(), message.rfind("; ")));
+  };
+  EXPECT_EQ(advice("{\"frames\": [1, 2,]}"), "; is there a comma too many before it?");
+  EXPECT_EQ(advice("{\"w\": 1, }"), "; is there a comma too many before it?");
+  EXPECT_EQ(advice("[0, NaN, 1]").find("; NaN is no number of JSON"), 0u);
+  EXPECT_EQ(advice("[NaN]").find("; NaN is no number of JSON"), 0u);
+  EXPECT_EQ(advice(""), "; the file is empty");
+  EXPECT_EQ(advice("\xff\xfe{"), "; it has to be text in UTF-8 that begins with {");
 }
 
 TEST(JsonSyntax, NestingTakesNoMemory) {

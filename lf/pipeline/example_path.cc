@@ -259,6 +259,11 @@ Result<ExamplePath> MakeExamplePath(const LightField& light_field, const LfImage
                                   options.camera.value, light_field.size() - 1));
   const PinholeCamera camera = light_field.Camera(options.camera);
   const double spacing_w = MedianSpacing(light_field);
+  if (!(spacing_w > 0))
+    return InputError(fmt::format(
+        "most of the {} LF cameras stand where another one does: were the images listed "
+        "twice, or are the positions missing? lfimport names them",
+        light_field.size()));
   const Reach reach = CaptureReach(light_field, camera, 400);
   LF_ASSIGN_OR_RETURN(const Focus focus, ChooseFocus(light_field, store, options, spacing_w, pool));
   ExamplePath example;

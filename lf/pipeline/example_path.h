@@ -47,7 +47,8 @@ struct ExamplePath {
 //   or the focus is not sure, next to a pinhole: the first frame is what one LF camera sees.
 // - Picture: the largest part of what the LF camera sees, level where the LF cameras' mean up
 //   direction is at most 30 degrees from its own.
-// kInput: a light field of fewer than two cameras, no such camera, its image broken.
+// kInput: a light field of fewer than two cameras, or most of which share their position; no such
+// camera, its image broken.
 Result<ExamplePath> MakeExamplePath(const LightField& light_field, const LfImageStore& store,
                                     const ExampleOptions& options, ThreadPool& pool);
 
