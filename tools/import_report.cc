@@ -4,6 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tools/import_exposure.h"
+
 #include "lf/core/log.h"
 
 namespace lf {
@@ -181,6 +183,12 @@ std::string ReportText(const ImportReport& report) {
     AddDensity(*capture.density, &lines);
   else if (capture.spacing_w)
     AddLine("density", "unknown: give the distance to the scene (--distance)", &lines);
+  if (report.exposure) {
+    AddLine("exposure", ExposureText(*report.exposure), &lines);
+    AddLine("seams", SeamsText(*report.exposure), &lines);
+    if (report.exposure->falloff)
+      AddLine("falloff", FalloffText(*report.exposure->falloff), &lines);
+  }
   for (const CaptureWarning& warning : capture.warnings) {
     lines += fmt::format("\nwarning: {}: {}\n", warning.kind, warning.message);
     if (!warning.names.empty())
@@ -219,6 +227,7 @@ std::string ReportJson(const ImportReport& report) {
           capture.keeps_opacity ? Json(kNoBackground) : Json(capture.background);
   }
   json["density"] = OrNull(capture.density);
+  json["exposure"] = report.exposure ? ExposureJson(*report.exposure) : Json(nullptr);
   json["warnings"] = Json::array();
   for (const CaptureWarning& warning : capture.warnings)
     json["warnings"].push_back({{"kind", warning.kind},

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "lf/exposure/match_exposure.h"
 #include "lf/import/capture_report.h"
 #include "lf/import/check_images.h"
 
@@ -15,7 +16,8 @@ struct ImportReport {
   CaptureReport capture;
   std::optional<ImageFaults> faults;  // none: not checked
   size_t excluded_count = 0;
-  std::string written;  // the transforms.json; "": none
+  std::optional<MatchedExposure> exposure;  // none: not asked for
+  std::string written;                      // the transforms.json; "": none
 };
 
 // Adds the warnings missing-images and broken-images.

@@ -8,6 +8,7 @@
 #include "tools/common/light_field_argument.h"
 #include "tools/common/program.h"
 #include "tools/common/progress.h"
+#include "tools/import_exposure.h"
 #include "tools/import_report.h"
 
 #include "lf/core/file.h"
@@ -23,6 +24,7 @@ constexpr const char* kExamples = R"(Examples:
   lfimport capture/ -o native --exclude 'IMG_01*,IMG_0377.jpg' --scale 0.0213
   lfimport capture/ -o native --exclude @bad.txt --transform upright.txt
   lfimport cards/ -o cards --pitch 1 --focal-px 768 --plane-distance 100
+  lfimport capture/ -o native --match-exposure --vignetting
   lfimport capture/ --json --distance 1.5 | jq .density
 
 Writes DIR/transforms.json, which names the images where they lie; nothing is copied. Where DIR is
@@ -38,6 +40,7 @@ struct Arguments {
   bool flip_x = false, flip_y = false, force = false;
   std::vector<std::string> exclude;
   lf::AllowMissing allow_missing;
+  lf::ExposureArguments exposure;
 };
 
 void AddOptions(CLI::App& app, Arguments& a) {
@@ -67,6 +70,7 @@ void AddOptions(CLI::App& app, Arguments& a) {
   app.add_option("--distance", a.distance,
                  "Distance to the scene in world units, for the density; 0: from the calibration")
       ->check(CLI::NonNegativeNumber);
+  a.exposure.AddTo(app);
   const char* group = "Images named by row and column (doc/formats/stanford.md)";
   app.add_option("--pitch", a.pitch, "World units between columns and rows: P, or PX,PY")
       ->group(group);
@@ -161,6 +165,10 @@ lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {
   if (interrupted)
     return lf::Error{lf::ErrorKind::kInterrupted, "interrupted before anything was written"};
   const bool refuses = fault_count == light_field.size() || (common.strict && fault_count > 0);
+  if (a.exposure.match && !refuses) {
+    LF_ASSIGN_OR_RETURN(report.exposure, lf::MatchAndApply(a.exposure, common, interrupted, pool,
+                                                           &light_field, &report.capture));
+  }
   if (!a.output.empty() && !refuses) {
     LF_ASSIGN_OR_RETURN(report.written, lf::WriteNativeFolder(a.output, &light_field));
   }

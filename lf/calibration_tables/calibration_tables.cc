@@ -38,12 +38,16 @@ Result<Intrinsics> ReadIntrinsicsRow(const Settings& settings, const Statement& 
   if (name == std::end(kModelNames) || !numbers)
     return settings.Damaged(fmt::format("a lens distortion is {} {}", model, parameters));
   k.distortion.model = static_cast<DistortionModel>(name - std::begin(kModelNames));
-  const size_t expected = StoredParameterCount(k.distortion.model);
-  if (numbers->size() != expected)
-    return settings.Damaged(fmt::format("a lens distortion is {} {}: expected {} parameters", model,
-                                        parameters, expected));
-  std::copy(numbers->begin(), numbers->end(), k.distortion.parameters.begin());
-  if (!IsCamera(k) || !IsStoredDistortion(k.distortion))
+  // The vignetting follows the distortion's parameters where there is one.
+  const size_t of_distortion = StoredParameterCount(k.distortion.model);
+  const size_t of_both = of_distortion + k.vignetting.v.size();
+  if (numbers->size() != of_distortion && numbers->size() != of_both)
+    return settings.Damaged(fmt::format("a lens distortion is {} {}: expected {} or {} parameters",
+                                        model, parameters, of_distortion, of_both));
+  const auto rest = numbers->begin() + static_cast<std::ptrdiff_t>(of_distortion);
+  std::copy(numbers->begin(), rest, k.distortion.parameters.begin());
+  std::copy(rest, numbers->end(), k.vignetting.v.begin());
+  if (!IsCamera(k) || !IsStoredDistortion(k.distortion) || !IsFalloff(k))
     return settings.Damaged("intrinsics that no camera has");
   return k;
 }
@@ -137,7 +141,8 @@ Result<void> WriteIntrinsics(const std::vector<Intrinsics>& intrinsics, Database
     insert.Bind(8, std::string_view(kModelNames[static_cast<int>(k.distortion.model)]));
     const auto stored =
         std::span(k.distortion.parameters).first(StoredParameterCount(k.distortion.model));
-    const std::string parameters = fmt::format("{}", fmt::join(stored, " "));
+    std::string parameters = fmt::format("{}", fmt::join(stored, " "));
+    if (!k.vignetting.is_none()) parameters += fmt::format(" {}", fmt::join(k.vignetting.v, " "));
     LF_RETURN_IF_ERROR(insert.Bind(9, std::string_view(parameters)).Run());
   }
   return {};
@@ -162,17 +167,47 @@ void BindCamera(const LightField& light_field, LfImageId id, int parameter, Stat
   const Vec3 centre = light_field.Camera(id).CentreWorld();
   const auto pose = NumbersOfPose(camera.cam_from_world);
   statement->Bind(parameter, int64_t{camera.intrinsics_index});
-  statement->Bind(parameter + 1, double{camera.gain}).Bind(parameter + 2, centre.x());
+  const std::string gains = fmt::format("{}", fmt::join(camera.gain.of_channels, " "));
+  if (camera.gain.are_equal())
+    statement->Bind(parameter + 1, double{camera.gain[0]});
+  else
+    statement->Bind(parameter + 1, std::string_view(gains));
+  statement->Bind(parameter + 2, centre.x());
   statement->Bind(parameter + 3, centre.y()).Bind(parameter + 4, centre.z());
   statement->BindBlob(parameter + 5, BytesOf(std::span<const double>(pose)));
 }
+
+namespace {
+
+// The column holds a number, or a text of three where the channels have gains of their own.
+Result<ChannelGains> ReadGains(const Settings& settings, const Statement& row, int column,
+                               const std::string& name) {
+  ChannelGains gains;
+  std::vector<double> numbers;
+  if (const Result<double> one = row.Real(column)) {
+    numbers.assign(3, *one);
+  } else {
+    LF_ASSIGN_OR_RETURN(const std::string text, row.Text(column));
+    numbers = ParseNumbers(text).value_or(std::vector<double>());
+  }
+  const bool are_gains =
+      numbers.size() == 3 && std::all_of(numbers.begin(), numbers.end(),
+                                         [](double gain) { return IsWithin(gain, 1e-6, 1e6); });
+  if (!are_gains)
+    return settings.Damaged(
+        fmt::format("LF image '{}' has the gain {}", name, fmt::join(numbers, " ")));
+  for (size_t c = 0; c < 3; ++c) gains[c] = static_cast<float>(numbers[c]);
+  return gains;
+}
+
+}  // namespace
 
 Result<LfCamera> ReadCamera(const Settings& settings, const Statement& row, int column,
                             const std::string& name, size_t intrinsics_count) {
   LfCamera camera;
   const auto last = static_cast<int64_t>(intrinsics_count) - 1;
   LF_ASSIGN_OR_RETURN(const int64_t intrinsics, row.Integer(column, 0, last));
-  LF_ASSIGN_OR_RETURN(const double gain, row.Real(column + 1));
+  LF_ASSIGN_OR_RETURN(camera.gain, ReadGains(settings, row, column + 1, name));
   LF_ASSIGN_OR_RETURN(const std::string_view pose, row.Blob(column + 2));
   const std::vector<double> numbers = NumbersOf<double>(pose);
   if (numbers.size() != kPoseNumbers)
@@ -180,10 +215,8 @@ Result<LfCamera> ReadCamera(const Settings& settings, const Statement& row, int 
   camera.cam_from_world = PoseOfNumbers(std::span<const double>(numbers).first<kPoseNumbers>());
   if (!IsPose(camera.cam_from_world))
     return settings.Damaged(fmt::format("the pose of LF image {} is none", name));
-  if (name.empty() || !IsWithin(gain, 1e-6, 1e6))
-    return settings.Damaged(fmt::format("LF image '{}' has the gain {}", name, gain));
+  if (name.empty()) return settings.Damaged("an LF image has no name");
   camera.intrinsics_index = static_cast<uint32_t>(intrinsics);
-  camera.gain = static_cast<float>(gain);
   return camera;
 }
 

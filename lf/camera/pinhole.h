@@ -6,6 +6,7 @@
 
 #include "lf/camera/distortion.h"
 #include "lf/camera/ray.h"
+#include "lf/camera/vignetting.h"
 #include "lf/core/geometry.h"
 
 namespace lf {
@@ -21,6 +22,7 @@ struct Intrinsics {
   int width_px = 0;
   int height_px = 0;
   Distortion distortion = {};  // between the pinhole's rays and K
+  Vignetting vignetting = {};  // of recorded light; recorded radiance is divided by it
 
   bool has_distortion() const { return distortion.model != DistortionModel::kNone; }
   Mat3 Matrix() const;

@@ -21,7 +21,7 @@ uint64_t HashOfNumbers(std::array<double, kCount> numbers) {
 }
 
 inline uint64_t HashOfIntrinsics(const Intrinsics& k) {
-  std::array<double, 8 + std::tuple_size_v<DistortionParameters>> numbers = {
+  std::array<double, 8 + std::tuple_size_v<DistortionParameters> + 3> numbers = {
       k.fx_px,
       k.fy_px,
       k.cx_px,
@@ -31,6 +31,7 @@ inline uint64_t HashOfIntrinsics(const Intrinsics& k) {
       static_cast<double>(k.height_px),
       static_cast<double>(k.distortion.model)};
   std::copy(k.distortion.parameters.begin(), k.distortion.parameters.end(), numbers.begin() + 8);
+  std::copy(k.vignetting.v.begin(), k.vignetting.v.end(), numbers.end() - 3);
   return HashOfNumbers(numbers);
 }
 

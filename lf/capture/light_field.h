@@ -2,6 +2,7 @@
 // Everything but the pixels.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -15,11 +16,26 @@
 
 namespace lf {
 
-// One LF camera: 104 bytes, since a light field may have a million of them.
+// Factors of R, G and B; one number is that of all three.
+struct ChannelGains {
+  ChannelGains(float all = 1) : of_channels{all, all, all} {}  // NOLINT: a number is a gain
+  ChannelGains(float r, float g, float b) : of_channels{r, g, b} {}
+
+  float& operator[](size_t channel) { return of_channels[channel]; }
+  float operator[](size_t channel) const { return of_channels[channel]; }
+  bool are_equal() const {
+    return of_channels[0] == of_channels[1] && of_channels[0] == of_channels[2];
+  }
+  friend bool operator==(const ChannelGains&, const ChannelGains&) = default;
+
+  std::array<float, 3> of_channels;
+};
+
+// One LF camera: 112 bytes, since a light field may have a million of them.
 struct LfCamera {
   RigidTransform cam_from_world;
   uint32_t intrinsics_index = 0;  // into LightField::intrinsics
-  float gain = 1;                 // its radiance is multiplied by this (lf_gain)
+  ChannelGains gain;              // its radiance is multiplied by this (lf_gain)
 };
 
 struct LightField {

@@ -12,7 +12,9 @@ LightFieldIdentity IdentityOf(const LightField& light_field) {
   for (const LfCamera& camera : light_field.cameras) {
     calibration.Add(camera.cam_from_world);
     calibration.Add(static_cast<double>(camera.intrinsics_index));
-    calibration.Add(camera.gain);
+    calibration.Add(camera.gain[0]);
+    if (!camera.gain.are_equal())
+      for (const float gain : camera.gain.of_channels) calibration.Add(gain);
   }
   for (const Intrinsics& k : light_field.intrinsics) calibration.Add(k);
   return {light_field.size(), names.Text(), calibration.Text()};

@@ -99,16 +99,23 @@ bool LevelsFit(const RadianceEncoding& encoding, int bits) {
   return encoding.black_level < white_level && white_level <= LargestStorable(bits);
 }
 
-std::vector<uint16_t> RadianceTable(const RadianceEncoding& encoding, int bits, double gain) {
+std::vector<double> LightTable(const RadianceEncoding& encoding, int bits) {
   LF_CHECK(bits == 8 || bits == 16);
   LF_CHECK(LevelsFit(encoding, bits));
   LF_CHECK(encoding.transfer != Transfer::kResponse || encoding.response.size() >= 2);
   const double range = WhiteLevel(encoding, bits) - encoding.black_level;
-  std::vector<uint16_t> table(size_t{1} << bits);
-  for (size_t stored = 0; stored < table.size(); ++stored) {
-    const double x = (static_cast<double>(stored) - encoding.black_level) / range;
-    table[stored] = QuantizeRadiance(encoding, RadianceOf(encoding, x), gain);
-  }
+  std::vector<double> table(size_t{1} << bits);
+  for (size_t stored = 0; stored < table.size(); ++stored)
+    table[stored] =
+        RadianceOf(encoding, (static_cast<double>(stored) - encoding.black_level) / range);
+  return table;
+}
+
+std::vector<uint16_t> RadianceTable(const RadianceEncoding& encoding, int bits, double gain) {
+  const std::vector<double> light = LightTable(encoding, bits);
+  std::vector<uint16_t> table(light.size());
+  for (size_t stored = 0; stored < table.size(); ++stored)
+    table[stored] = QuantizeRadiance(encoding, light[stored], gain);
   return table;
 }
 

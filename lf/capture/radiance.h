@@ -2,6 +2,8 @@
 //
 // Radiance is linear light, 1 = display white. A kernel sees it as a 16-bit integer
 //   v = clip(round(radiance * gain * scale) + pedestal, 0, 65535)
+// where `gain` is lf_gain of the channel, divided by the falloff of the lens at the pixel's centre
+// where the camera has lf_vignetting (camera/vignetting.h),
 // with one scale and one pedestal for the whole light field, so that sums of any images add.
 // Values below black are noise that must average to black: the pedestal keeps them.
 #pragma once
@@ -98,6 +100,9 @@ bool LevelsFit(const RadianceEncoding& encoding, int bits);
 // goes on with its first slope below black and holds its last value above white.
 // bits: 8 or 16, and LevelsFit().
 std::vector<uint16_t> RadianceTable(const RadianceEncoding& encoding, int bits, double gain);
+
+// The radiance, before gain and falloff, that RadianceTable() makes v of.
+std::vector<double> LightTable(const RadianceEncoding& encoding, int bits);
 
 // v of a float file's radiance. NaN gives the pedestal.
 uint16_t QuantizeRadiance(const RadianceEncoding& encoding, double radiance, double gain);

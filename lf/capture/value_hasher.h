@@ -38,6 +38,8 @@ class ValueHasher {
     Add(static_cast<double>(k.distortion.model));
     for (size_t i = 0; i < StoredParameterCount(k.distortion.model); ++i)
       Add(k.distortion.parameters[i]);
+    if (!k.vignetting.is_none())
+      for (const double v : k.vignetting.v) Add(v);
   }
   std::string Text() const { return fmt::format("{:016x}", hasher_.Hash()); }
 

@@ -4,13 +4,9 @@
 #include <vector>
 
 #include "lf/focus/find_subject.h"
+#include "lf/focus/place_depth.h"
 
 namespace lf {
-
-struct FoundDepth {
-  double distance_w = 0, weight = 0;
-  double error = 0;  // relative
-};
 
 // Returns at most three depths, the best first, each away from the better ones. A found depth
 // counts around itself by a bell in the logarithm of depth, which is as wide as the depth is

@@ -33,20 +33,24 @@ float ReducedImage::At(const Vec2& place_px) const {
 
 int DivisorFor(int width_px) { return (width_px + kMostReducedWidth - 1) / kMostReducedWidth; }
 
+ReducedImage Reduced(const LfPixels& pixels, int divisor) {
+  ReducedImage reduced;
+  reduced.divisor = divisor;
+  const int d = divisor;
+  reduced.light = Image<float>(pixels.rect.width() / d, pixels.rect.height() / d, 1);
+  for (int y = 0; y < reduced.light.height(); ++y)
+    for (int x = 0; x < reduced.light.width(); ++x)
+      reduced.light.at(x, y) = ReducedPixel(pixels, x * d, y * d, d);
+  return reduced;
+}
+
 Result<ReducedImage> LoadReducedImage(const LightField& light_field, const LfImageStore& store,
                                       LfImageId id) {
   const Intrinsics& k = light_field.Camera(id).intrinsics;
   LF_ASSIGN_OR_RETURN(const LfPixels pixels,
                       LoadWithoutThrowing(store, id, {0, 0, k.width_px, k.height_px},
                                           light_field.ImagePath(id).string(), LfPixels()));
-  ReducedImage reduced;
-  reduced.divisor = DivisorFor(k.width_px);
-  const int d = reduced.divisor;
-  reduced.light = Image<float>(k.width_px / d, k.height_px / d, 1);
-  for (int y = 0; y < reduced.light.height(); ++y)
-    for (int x = 0; x < reduced.light.width(); ++x)
-      reduced.light.at(x, y) = ReducedPixel(pixels, x * d, y * d, d);
-  return reduced;
+  return Reduced(pixels, DivisorFor(k.width_px));
 }
 
 }  // namespace lf

@@ -1,4 +1,4 @@
-// LF images as depth is searched in them: grey, a few hundred pixels wide. Internal to focus.
+// LF images as depth is searched in them: grey, a few hundred pixels wide.
 #pragma once
 
 #include <optional>
@@ -29,6 +29,9 @@ struct ReducedImage {
 
 // The divisor of images of this width.
 int DivisorFor(int width_px);
+
+// Of a whole LF image in RGB.
+ReducedImage Reduced(const LfPixels& pixels, int divisor);
 
 // kInput: the image cannot be loaded.
 //   store  one with Mosaics::kToRgb

@@ -34,7 +34,7 @@ Names Left(const Names& patterns) {
   EXPECT_EQ(light_field.cameras.size(), light_field.image_names.size());
   for (size_t i = 0; i < light_field.size(); ++i) {
     EXPECT_EQ(light_field.mask_names[i], "mask_of_" + light_field.image_names[i]);
-    const auto index = static_cast<size_t>(light_field.cameras[i].gain) - 1;
+    const auto index = static_cast<size_t>(light_field.cameras[i].gain[0]) - 1;
     EXPECT_EQ(light_field.image_names[i], kNames[index]);
   }
   return light_field.image_names;

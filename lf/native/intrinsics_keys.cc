@@ -1,7 +1,9 @@
 #include "lf/native/intrinsics_keys.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "lf/capture/distinct_intrinsics.h"
@@ -24,6 +26,9 @@ constexpr NumberRule kSize = {"a whole number of pixels from 1 to 65536", [](dou
 constexpr NumberRule kSkew = {"a number of pixels within +-1e7",
                               [](double x) { return std::abs(x) <= 1e7; }};
 
+constexpr NumberRule kVignetting = {"within +-1e6, such as [-0.3, 0.05, -0.1]",
+                                    [](double x) { return std::abs(x) <= 1e6; }};
+
 using Key = std::optional<double> IntrinsicsKeys::*;
 
 // The focal length along one axis: lengths before angles, the frame before the top level.
@@ -41,7 +46,7 @@ std::optional<double> Focal(const IntrinsicsKeys& frame, const IntrinsicsKeys& t
 uint64_t HashOfIntrinsicsKeys(const IntrinsicsKeys& keys) {
   constexpr double kMissing = 1e300;  // no value that is read
   const DistortionKeys& distortion = keys.distortion;
-  constexpr size_t kOthers = 11;
+  constexpr size_t kOthers = 14;
   std::array<double, kOthers + std::tuple_size_v<decltype(DistortionKeys::values)>> numbers = {
       static_cast<double>(distortion.camera_model.value_or(UINT8_MAX)),
       distortion.is_fisheye ? *distortion.is_fisheye : kMissing};
@@ -50,6 +55,8 @@ uint64_t HashOfIntrinsicsKeys(const IntrinsicsKeys& keys) {
        {keys.fl_x, keys.fl_y, keys.camera_angle_x, keys.camera_angle_y, keys.cx, keys.cy, keys.w,
         keys.h, keys.lf_skew})
     numbers[i++] = key.value_or(kMissing);
+  for (size_t v = 0; v < 3; ++v)
+    numbers[i++] = keys.lf_vignetting ? (*keys.lf_vignetting)[v] : kMissing;
   for (const std::optional<double>& value : distortion.values)
     numbers[i++] = value.value_or(kMissing);
   return HashOfNumbers(numbers);
@@ -75,6 +82,12 @@ Result<IntrinsicsKeys> ReadIntrinsicsKeys(const JsonFields& fields) {
   };
   for (const auto& row : table) {
     LF_ASSIGN_OR_RETURN(keys.*row.key, fields.Number(row.name, row.rule));
+  }
+  LF_ASSIGN_OR_RETURN(const std::optional<std::vector<double>> vignetting,
+                      fields.Numbers("lf_vignetting", 3, 3, kVignetting));
+  if (vignetting) {
+    keys.lf_vignetting.emplace();
+    std::copy(vignetting->begin(), vignetting->end(), keys.lf_vignetting->begin());
   }
   return keys;
 }
@@ -112,6 +125,17 @@ Result<Intrinsics> ResolveIntrinsics(const IntrinsicsKeys& frame, const Intrinsi
   intrinsics.skew_px = value(&IntrinsicsKeys::lf_skew).value_or(0);
   LF_ASSIGN_OR_RETURN(intrinsics.distortion,
                       ResolveDistortion(frame.distortion, top.distortion, fields));
+  const auto& vignetting = frame.lf_vignetting ? frame.lf_vignetting : top.lf_vignetting;
+  if (vignetting) intrinsics.vignetting.v = *vignetting;
+  if (!IsFalloff(intrinsics)) {
+    const FalloffRange range = FalloffRangeOf(intrinsics);
+    return fields.Fault(fmt::format(
+        "\"lf_vignetting\" is [{}], which leaves {:.3g} to {:.3g} of the light in images of {} x "
+        "{} pixels: expected from 1/64 to 64 everywhere in the image; r is 1 half of the diagonal "
+        "from the principal point",
+        fmt::join(intrinsics.vignetting.v, ", "), range.min, range.max, intrinsics.width_px,
+        intrinsics.height_px));
+  }
   return intrinsics;
 }
 

@@ -21,6 +21,7 @@ struct IntrinsicsKeys {
   std::optional<double> cx, cy;                          // px
   std::optional<double> w, h;                            // px
   std::optional<double> lf_skew;                         // px
+  std::optional<std::array<double, 3>> lf_vignetting;
   DistortionKeys distortion;
 
   friend bool operator==(const IntrinsicsKeys&, const IntrinsicsKeys&) = default;
@@ -37,7 +38,8 @@ Result<IntrinsicsKeys> ReadIntrinsicsKeys(const JsonFields& fields);
 // the image centre unless given.
 //   default_size  [width, height], asked for where neither gives w or h; its error is returned
 //   fields        for messages
-// kInput: no focal length, a distortion that is unclear (ResolveDistortion).
+// kInput: no focal length, a distortion that is unclear (ResolveDistortion), a vignetting that
+// leaves no light somewhere in the image.
 using SizeSource = std::function<Result<std::array<int, 2>>()>;
 Result<Intrinsics> ResolveIntrinsics(const IntrinsicsKeys& frame, const IntrinsicsKeys& top,
                                      const SizeSource& default_size, const JsonFields& fields);

@@ -93,6 +93,18 @@ Result<std::optional<double>> JsonFields::Number(const char* key, const NumberRu
   return number;
 }
 
+Result<std::optional<std::vector<double>>> JsonFields::NumberOrNumbers(
+    const char* key, size_t count, const NumberRule& rule) const {
+  const std::optional<element> value = Find(key);
+  if (!value) return std::optional<std::vector<double>>();
+  if (const std::optional<double> number = NumberBy(rule, *value))
+    return std::optional(std::vector<double>(count, *number));
+  std::vector<double> numbers;
+  if (!AppendNumbers(*value, count, count, rule, &numbers))
+    return Wrong(key, fmt::format("{}, or a list of {} of them", rule.expected, count));
+  return std::optional(std::move(numbers));
+}
+
 Result<std::optional<bool>> JsonFields::Bool(const char* key) const {
   const std::optional<element> value = Find(key);
   if (!value) return std::optional<bool>();

@@ -41,6 +41,9 @@ class JsonFields {
   // None where the key is missing or null; kInput where the value has another type or breaks the
   // rule.
   Result<std::optional<double>> Number(const char* key, const NumberRule& rule) const;
+  // A number, or a list of so many: then the list is the number that many times.
+  Result<std::optional<std::vector<double>>> NumberOrNumbers(const char* key, size_t count,
+                                                             const NumberRule& rule) const;
   Result<std::optional<bool>> Bool(const char* key) const;
   Result<std::optional<std::string>> Text(const char* key) const;  // without NUL characters
   // Lists of count_min to count_max numbers.

@@ -35,11 +35,12 @@ inline constexpr const char* kTopLevelLfKeys[] = {"lf_bayer",
                                                   "lf_s0",
                                                   "lf_s1",
                                                   "lf_s2",
-                                                  "lf_s3"};
+                                                  "lf_s3",
+                                                  "lf_vignetting"};
 inline constexpr const char* kFrameLfKeys[] = {
-    "lf_gain",       "lf_mask",      "lf_translation", "lf_skew", "lf_fov_omega",
-    "lf_eucm_alpha", "lf_eucm_beta", "lf_sx1",         "lf_sy1",  "lf_p0",
-    "lf_p1",         "lf_s0",        "lf_s1",          "lf_s2",   "lf_s3"};
+    "lf_gain",      "lf_mask", "lf_translation", "lf_skew",      "lf_fov_omega", "lf_eucm_alpha",
+    "lf_eucm_beta", "lf_sx1",  "lf_sy1",         "lf_p0",        "lf_p1",        "lf_s0",
+    "lf_s1",        "lf_s2",   "lf_s3",          "lf_vignetting"};
 
 // Of the top level. Defaults: what camera raw files tell (`raw_facts` is asked where a key they
 // could replace is missing; null: not asked); else sRGB without a Bayer pattern, linear with one.

@@ -125,8 +125,7 @@ class Reader {
     LF_RETURN_IF_ERROR(fields.CheckLfKeys(kFrameLfKeys, kTopLevelLfKeys, "to the top level"));
     LfCamera camera;
     LF_ASSIGN_OR_RETURN(camera.cam_from_world, ReadPose(fields));
-    LF_ASSIGN_OR_RETURN(const std::optional<double> gain, fields.Number("lf_gain", kGain));
-    camera.gain = static_cast<float>(gain.value_or(1));
+    LF_ASSIGN_OR_RETURN(camera.gain, ReadGains(fields));
     LF_ASSIGN_OR_RETURN(const IntrinsicsKeys keys, ReadIntrinsicsKeys(fields));
     camera.intrinsics_index = distinct_keys_.IndexOf(keys);
     LF_RETURN_IF_ERROR(ReadMask(fields, index));
@@ -135,6 +134,15 @@ class Reader {
     if (!fs::path(*name).has_extension()) *name += ".png";
     light_field_.image_names.push_back(*std::move(name));
     return {};
+  }
+
+  // One factor for all channels, or those of R, G and B.
+  static Result<ChannelGains> ReadGains(const JsonFields& fields) {
+    LF_ASSIGN_OR_RETURN(const std::optional<std::vector<double>> numbers,
+                        fields.NumberOrNumbers("lf_gain", 3, kGain));
+    ChannelGains gains;
+    for (size_t c = 0; numbers && c < 3; ++c) gains[c] = static_cast<float>((*numbers)[c]);
+    return gains;
   }
 
   static Result<RigidTransform> ReadPose(const JsonFields& fields) {

@@ -46,7 +46,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size_bytes) {
     LF_CHECK(camera.cam_from_world.translation.allFinite());
     LF_CHECK(camera.intrinsics.InverseMatrix().allFinite());
     LF_CHECK(camera.intrinsics.width_px > 0 && camera.intrinsics.height_px > 0);
-    LF_CHECK(light_field->cameras[i].gain > 0 && std::isfinite(light_field->cameras[i].gain));
+    for (const float gain : light_field->cameras[i].gain.of_channels)
+      LF_CHECK(gain > 0 && std::isfinite(gain));
   }
   if (light_field->depth_range)
     LF_CHECK(light_field->depth_range->near_w > 0 &&

@@ -59,7 +59,7 @@ TEST(TransformsJson, ReadsPoseIntrinsicsAndName) {
   EXPECT_EQ(camera.UpWorld(), Vec3(0, 1, 0));
   EXPECT_TRUE(light_field.mask_names.empty());
   EXPECT_EQ(light_field.unit_m, 1);
-  EXPECT_EQ(light_field.cameras[0].gain, 1);
+  EXPECT_EQ(light_field.cameras[0].gain, ChannelGains());
 }
 
 TEST(TransformsJson, FocalLengthAndCentreHaveDefaults) {
@@ -326,7 +326,7 @@ TEST(TransformsJson, ReadsHowStoredNumbersBecomeLight) {
   EXPECT_EQ(encoding.alpha, AlphaMeaning::kPremultiplied);
   EXPECT_EQ(encoding.background, (std::array<double, 3>{0, 0.5, 2}));
   EXPECT_EQ(light_field.unit_m, 0.001);
-  EXPECT_EQ(light_field.cameras[0].gain, 1.25f);
+  EXPECT_EQ(light_field.cameras[0].gain, ChannelGains(1.25f));
   EXPECT_EQ(light_field.mask_names, std::vector<std::string>{"masks/a.png"});
 }
 
@@ -339,6 +339,36 @@ TEST(TransformsJson, NothingMayBeBehindAlpha) {
   EXPECT_FALSE(
       Parsed(OneFrame(kIntrinsics + R"("lf_alpha": "straight", "lf_background": [0, 0, 0], )"))
           .encoding.HasOpacity());
+}
+
+TEST(TransformsJson, AGainIsOfAllChannelsOrOfEach) {
+  using Gains = ChannelGains;
+  const auto gains = [](const std::string& keys) {
+    return Parsed(OneFrame(kIntrinsics, keys)).cameras[0].gain;
+  };
+  EXPECT_EQ(gains(""), (Gains{1, 1, 1}));
+  EXPECT_EQ(gains(R"("lf_gain": 1.25, )"), (Gains{1.25f, 1.25f, 1.25f}));
+  EXPECT_EQ(gains(R"("lf_gain": [1.25, 1, 0.5], )"), (Gains{1.25f, 1, 0.5f}));
+  for (const std::string wrong : {"[1, 2]", "[1, 2, 3, 4]", "[1, 0, 1]", "[]", "\"a\""})
+    ExpectError(OneFrame(kIntrinsics, R"("lf_gain": )" + wrong + ", "),
+                {"frames[0]", "lf_gain", "or a list of 3"});
+}
+
+TEST(TransformsJson, TheVignettingOfAFrameGoesBeforeThatOfTheTop) {
+  const std::string top = kIntrinsics + R"("lf_vignetting": [-0.3, 0.05, -0.15], )";
+  const auto vignetting = [](const LightField& field) { return field.intrinsics[0].vignetting; };
+  EXPECT_TRUE(vignetting(Parsed(OneFrame(kIntrinsics))).is_none());
+  EXPECT_EQ(vignetting(Parsed(OneFrame(top))), (Vignetting{{-0.3, 0.05, -0.15}}));
+  EXPECT_EQ(vignetting(Parsed(OneFrame(top, R"("lf_vignetting": [-0.2, 0, 0], )"))),
+            (Vignetting{{-0.2, 0, 0}}));
+}
+
+TEST(TransformsJson, AVignettingLeavesLightEverywhere) {
+  for (const std::string wrong : {"[-0.3, 0.05]", "-0.3", "[-0.3, 0.05, \"a\"]"})
+    ExpectError(OneFrame(kIntrinsics + R"("lf_vignetting": )" + wrong + ", "),
+                {"lf_vignetting", "a list of 3 numbers"});
+  ExpectError(OneFrame(kIntrinsics + R"("lf_vignetting": [-1.1, 0, 0], )"),
+              {"lf_vignetting", "[-1.1, 0, 0]", "leaves -0.1 to 1 of the light", "1/64"});
 }
 
 TEST(TransformsJson, EncodingHasTheDocumentedDefaults) {

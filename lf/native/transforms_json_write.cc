@@ -106,6 +106,11 @@ void AddIntrinsics(const Intrinsics& k, const Intrinsics& top, const char* separ
     json->AddNumber(value);
     json->Add(",{}", separator);
   }
+  if (!k.vignetting.is_none() || !top.vignetting.is_none()) {
+    json->Add("\"lf_vignetting\": ");
+    json->AddNumbers(k.vignetting.v);
+    json->Add(",{}", separator);
+  }
   json->Add("\"w\": {},{}\"h\": {}", k.width_px, separator, k.height_px);
 }
 
@@ -158,6 +163,17 @@ void AddPose(const RigidTransform& cam_from_world, JsonText* json) {
   json->AddNumbers({cam_from_world.translation.data(), 3});
 }
 
+// One number where all channels have the same gain, as most light fields state it.
+void AddGains(const LfCamera& camera, JsonText* json) {
+  const std::array<double, 3> gains = {camera.gain[0], camera.gain[1], camera.gain[2]};
+  if (!camera.gain.are_equal()) {
+    json->Add(", \"lf_gain\": ");
+    json->AddNumbers(gains);
+  } else if (gains[0] != 1) {
+    json->Add(", \"lf_gain\": {}", gains[0]);
+  }
+}
+
 Result<void> AddFrame(const LightField& light_field, size_t index, JsonText* json) {
   const std::string& name = light_field.image_names[index];
   if (!fs::path(name).has_extension())
@@ -174,7 +190,7 @@ Result<void> AddFrame(const LightField& light_field, size_t index, JsonText* jso
     AddIntrinsics(light_field.intrinsics[camera.intrinsics_index],
                   light_field.intrinsics[top_index], " ", json);
   }
-  if (camera.gain != 1) json->Add(", \"lf_gain\": {}", static_cast<double>(camera.gain));
+  AddGains(camera, json);
   if (!light_field.mask_names.empty() && !light_field.mask_names[index].empty()) {
     json->Add(", \"lf_mask\": ");
     LF_RETURN_IF_ERROR(json->AddString(light_field.mask_names[index]));

@@ -38,6 +38,7 @@ LightField RandomLightField(size_t count) {
       camera.cam_from_world.translation[axis] = Number(i, 4 + axis) * std::pow(10, axis * 4 - 4);
     camera.intrinsics_index = i % 3;
     camera.gain = i % 2 ? 1.0f : 0.1f + static_cast<float>(i);
+    if (i % 5 == 0) camera.gain[1] = 1.0f / 3;
     light_field.cameras.push_back(camera);
     light_field.image_names.push_back("images/\"\u00e9\\ " + std::to_string(i) + ".png");
     light_field.mask_names.push_back(i % 4 == 2 ? "mask.png" : "");
@@ -45,6 +46,7 @@ LightField RandomLightField(size_t count) {
   light_field.intrinsics = {{1000.0 / 3, 500.1, 320.5, 0.1 + 0.2, 0, 640, 480},
                             {400, 400, -3, 240, 0, 1, 65536},
                             {1e-3, 1e7, 320, 240, 0, 640, 480}};
+  light_field.intrinsics[2].vignetting.v = {-1.0 / 3, 0.1, -0.05};
   light_field.encoding.bayer = BayerPattern::kGrbg;
   light_field.encoding.transfer = Transfer::kLinear;
   light_field.encoding.black_level = 511.7;

@@ -35,6 +35,8 @@ LightField TestField(uint32_t count = 40) {
     if (i < 10) field.intrinsics.push_back(pair.lf_camera.intrinsics);
     field.cameras.push_back(
         {pair.lf_camera.cam_from_world, i % 10, 0.5f + 0.1f * static_cast<float>(i)});
+    if (i % 4 == 1) field.cameras.back().gain = {1.0f / 3, 1, 2.0f / 3};
+    if (i % 3 == 1 && i < 10) field.intrinsics.back().vignetting.v = {-1e-9 / 3, 0, 0.0025};
     // Not in the order of their names.
     field.image_names.push_back("bänd/ima'ge " + std::to_string((i * 17) % count) + ".png");
     field.mask_names.push_back(i % 2 == 0 ? "" : "mask.png");

@@ -50,6 +50,8 @@ TEST(RunInputs, EveryInputMakesADifferenceAndItsKeyNamesIt) {
       {"light_field.calibration", [](Inputs& i) { i.field.cameras[3].gain = 1.01f; }},
       {"light_field.calibration",
        [](Inputs& i) { i.field.intrinsics[0].distortion.parameters[2] = 1e-9; }},
+      {"light_field.calibration", [](Inputs& i) { i.field.cameras[3].gain[2] = 1.01f; }},
+      {"light_field.calibration", [](Inputs& i) { i.field.intrinsics[0].vignetting.v[1] = 1e-9; }},
       {"light_field.encoding", [](Inputs& i) { i.field.encoding.black_level = 64; }},
       {"light_field.encoding",
        [](Inputs& i) {

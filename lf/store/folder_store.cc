@@ -13,7 +13,7 @@ namespace lf {
 namespace fs = std::filesystem;
 
 FolderStore::FolderStore(const LightField& light_field, Mosaics mosaics)
-    : light_field_(light_field), tables_(light_field.encoding, 1), mosaics_(mosaics) {}
+    : light_field_(light_field), tables_(light_field.encoding, ChannelGains()), mosaics_(mosaics) {}
 
 bool FolderStore::IsThere(LfImageId id) const {
   std::error_code error;
@@ -48,7 +48,7 @@ Result<void> FolderStore::LoadRecorded(ImagePart* part, LfImageId id, const Pixe
   const PixelRect wanted = inside.empty() ? PixelRect{0, 0, 1, 1} : inside;
   LF_ASSIGN_OR_RETURN(const ChannelUse use, ReadStoredPixels(light_field_, id, wanted, part));
   pixels->Reset(inside, light_field_.encoding.bayer);
-  ConvertRadiance(*part, use.colours, tables_, light_field_.encoding, camera.gain, pixels);
+  ConvertRadiance(*part, use.colours, tables_, light_field_.encoding, camera, intrinsics, pixels);
   if (use.alpha && light_field_.encoding.AlphaIsLight()) {
     LF_ASSIGN_OR_RETURN(const Image<uint16_t> opacities,
                         ReadOpacities(light_field_, id, *part, use, inside));

@@ -53,7 +53,7 @@ void ExpectComposed(const LightField& field, const Image<T>& stored, const LfPix
   const double most = std::numeric_limits<T>::max();
   const int colours = stored.channels() - 1;
   const std::vector<uint16_t> table =
-      RadianceTable(encoding, sizeof(T) == 1 ? 8 : 16, field.cameras[0].gain);
+      RadianceTable(encoding, sizeof(T) == 1 ? 8 : 16, field.cameras[0].gain[0]);
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) {
       const double a = stored.at(x, y, colours) / most;

@@ -89,7 +89,7 @@ void TakeBack(ImagePart* part, DecodedPart* decoded, Image<float>* floats) {
 PackedStore::PackedStore(const LightField& light_field, Mosaics mosaics,
                          std::vector<PackedCode> codes)
     : light_field_(light_field),
-      tables_(light_field.encoding, 1),
+      tables_(light_field.encoding, ChannelGains()),
       mosaics_(mosaics),
       codes_(std::move(codes)) {}
 
@@ -176,7 +176,7 @@ Result<void> PackedStore::LoadRecorded(Loading* loading, LfImageId id, const Pix
   MakePart(code.values, code.rect, curve_, &loading->decoded, &loading->floats, &loading->part);
   const int channels =
       std::visit([](const auto& image) { return image.channels(); }, loading->part.image);
-  ConvertRadiance(loading->part, channels, tables_, encoding, camera.gain, pixels);
+  ConvertRadiance(loading->part, channels, tables_, encoding, camera, k, pixels);
   TakeBack(&loading->part, &loading->decoded, &loading->floats);
 
   if (bytes->mask.empty()) {

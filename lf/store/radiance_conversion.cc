@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cstring>
+#include <type_traits>
 #include <variant>
 
 #include "lf/core/check.h"
@@ -11,11 +12,10 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "lane 0 is the low end of a word");
 constexpr uint64_t kOneRay = uint64_t{1} << (16 * LfPixels::kRayLane);
-constexpr uint64_t kGrey = 0x0000'0001'0001'0001;
 
 void StorePixel(uint64_t lanes, uint16_t* out) { std::memcpy(out, &lanes, sizeof(lanes)); }
 
-// rows(in, out, width) converts one row.
+// Calls convert_row(y, in, out, width) for the rows y of the LF image.
 template <class T, class Row>
 void ForEachRow(const Image<T>& stored, const PixelRect& stored_rect, LfPixels* pixels,
                 const Row& convert_row) {
@@ -23,33 +23,32 @@ void ForEachRow(const Image<T>& stored, const PixelRect& stored_rect, LfPixels* 
   LF_CHECK(Intersection(rect, stored_rect) == rect);
   const size_t first = static_cast<size_t>(rect.x_begin - stored_rect.x_begin) * stored.channels();
   for (int y = rect.y_begin; y < rect.y_end; ++y)
-    convert_row(stored.row(y - stored_rect.y_begin) + first, pixels->radiance.row(y - rect.y_begin),
-                rect.width());
+    convert_row(y, stored.row(y - stored_rect.y_begin) + first,
+                pixels->radiance.row(y - rect.y_begin), rect.width());
 }
 
-// v_of(value) is the radiance of a stored value.
+uint64_t Lanes(uint16_t r, uint16_t g, uint16_t b) {
+  return uint64_t{r} | uint64_t{g} << 16 | uint64_t{b} << 32 | kOneRay;
+}
+
+// v_of(channel, value) is the radiance of a stored value.
 template <class T, class ValueOf>
 void ConvertByValue(const Image<T>& stored, const PixelRect& stored_rect, int colours,
                     const ValueOf& v_of, LfPixels* pixels) {
   const int channels = stored.channels();
   if (pixels->bayer != BayerPattern::kNone) {
-    ForEachRow(stored, stored_rect, pixels, [&](const T* in, uint16_t* out, int width) {
-      for (int x = 0; x < width; ++x) out[x] = v_of(in[x]);
+    ForEachRow(stored, stored_rect, pixels, [&](int y, const T* in, uint16_t* out, int width) {
+      const int begin = pixels->rect.x_begin;
+      const int of_columns[2] = {BayerChannel(pixels->bayer, begin, y),
+                                 BayerChannel(pixels->bayer, begin + 1, y)};
+      for (int x = 0; x < width; ++x) out[x] = v_of(of_columns[x % 2], in[x]);
     });
     return;
   }
-  if (colours == 1) {
-    ForEachRow(stored, stored_rect, pixels, [&](const T* in, uint16_t* out, int width) {
-      for (int x = 0; x < width; ++x, in += channels, out += LfPixels::kRgbLanes)
-        StorePixel(v_of(in[0]) * kGrey | kOneRay, out);
-    });
-    return;
-  }
-  ForEachRow(stored, stored_rect, pixels, [&](const T* in, uint16_t* out, int width) {
+  const int second = colours == 1 ? 0 : 1, third = colours == 1 ? 0 : 2;
+  ForEachRow(stored, stored_rect, pixels, [&](int, const T* in, uint16_t* out, int width) {
     for (int x = 0; x < width; ++x, in += channels, out += LfPixels::kRgbLanes)
-      StorePixel(uint64_t{v_of(in[0])} | uint64_t{v_of(in[1])} << 16 | uint64_t{v_of(in[2])} << 32 |
-                     kOneRay,
-                 out);
+      StorePixel(Lanes(v_of(0, in[0]), v_of(1, in[second]), v_of(2, in[third])), out);
   });
 }
 
@@ -57,65 +56,127 @@ void ConvertByValue(const Image<T>& stored, const PixelRect& stored_rect, int co
 void ConvertByLanes(const Image<uint8_t>& stored, const PixelRect& stored_rect,
                     const LaneTable& lanes, LfPixels* pixels) {
   const int channels = stored.channels();
-  ForEachRow(stored, stored_rect, pixels, [&](const uint8_t* in, uint16_t* out, int width) {
+  ForEachRow(stored, stored_rect, pixels, [&](int, const uint8_t* in, uint16_t* out, int width) {
     for (int x = 0; x < width; ++x, in += channels, out += LfPixels::kRgbLanes)
       StorePixel(lanes[0][in[0]] | lanes[1][in[1]] | lanes[2][in[2]], out);
   });
 }
 
-std::vector<uint16_t> TableIfItFits(const RadianceEncoding& encoding, int bits, double gain) {
-  return LevelsFit(encoding, bits) ? RadianceTable(encoding, bits, gain) : std::vector<uint16_t>();
+// light_of(value) is the radiance of a stored value, before gain and falloff.
+template <class T, class LightOf>
+void ConvertWithFalloff(const Image<T>& stored, const PixelRect& stored_rect, int colours,
+                        const LightOf& light_of, const RadianceEncoding& encoding,
+                        const ChannelGains& gains, const Intrinsics& k, LfPixels* pixels) {
+  const int channels = stored.channels(), begin = pixels->rect.x_begin;
+  const bool is_mosaic = pixels->bayer != BayerPattern::kNone;
+  ForEachRow(stored, stored_rect, pixels, [&](int y, const T* in, uint16_t* out, int width) {
+    for (int x = begin; x < begin + width; ++x, in += channels) {
+      const double falloff = k.vignetting.Falloff(RadiusSquared(k, x + 0.5, y + 0.5));
+      const auto v_of = [&](int channel, T value) {
+        return QuantizeRadiance(encoding, light_of(value),
+                                gains[static_cast<size_t>(channel)] / falloff);
+      };
+      if (is_mosaic) {
+        *out++ = v_of(BayerChannel(pixels->bayer, x, y), in[0]);
+        continue;
+      }
+      const int second = colours == 1 ? 0 : 1, third = colours == 1 ? 0 : 2;
+      StorePixel(Lanes(v_of(0, in[0]), v_of(1, in[second]), v_of(2, in[third])), out);
+      out += LfPixels::kRgbLanes;
+    }
+  });
+}
+
+void ConvertFalloff(const ImagePart& part, int colours, const RadianceEncoding& encoding,
+                    const ChannelGains& gains, const Intrinsics& k, LfPixels* pixels) {
+  std::visit(
+      [&]<class T>(const Image<T>& stored) {
+        if constexpr (std::is_floating_point_v<T>) {
+          ConvertWithFalloff(
+              stored, part.rect, colours, [](T value) -> double { return value; }, encoding, gains,
+              k, pixels);
+        } else {
+          const std::vector<double> light = LightTable(encoding, int{8 * sizeof(T)});
+          ConvertWithFalloff(
+              stored, part.rect, colours, [&light](T value) { return light[value]; }, encoding,
+              gains, k, pixels);
+        }
+      },
+      part.image);
 }
 
 void ConvertByTables(const ImagePart& part, int colours, const RadianceTables& tables,
-                     const RadianceEncoding& encoding, double gain, LfPixels* pixels) {
+                     const RadianceEncoding& encoding, const ChannelGains& gains,
+                     LfPixels* pixels) {
   if (const auto* floats = std::get_if<Image<float>>(&part.image)) {
     ConvertByValue(
         *floats, part.rect, colours,
-        [&](float radiance) { return QuantizeRadiance(encoding, radiance, gain); }, pixels);
+        [&](int c, float radiance) {
+          return QuantizeRadiance(encoding, radiance, gains[static_cast<size_t>(c)]);
+        },
+        pixels);
     return;
   }
-  if (const auto* words = std::get_if<Image<uint16_t>>(&part.image)) {
-    const uint16_t* table = tables.of_16bit().data();
+  const auto convert = [&](const auto& image, const std::array<const uint16_t*, 3>& of_channels) {
     ConvertByValue(
-        *words, part.rect, colours, [table](uint16_t value) { return table[value]; }, pixels);
+        image, part.rect, colours,
+        [of_channels](int c, auto value) { return of_channels[static_cast<size_t>(c)][value]; },
+        pixels);
+  };
+  if (const auto* words = std::get_if<Image<uint16_t>>(&part.image)) {
+    convert(*words, {tables.of_16bit(0), tables.of_16bit(1), tables.of_16bit(2)});
     return;
   }
   const auto& bytes = std::get<Image<uint8_t>>(part.image);
-  if (colours == 3 && pixels->bayer == BayerPattern::kNone) {
+  if (colours == 3 && pixels->bayer == BayerPattern::kNone)
     ConvertByLanes(bytes, part.rect, tables.lanes(), pixels);
-    return;
-  }
-  const uint16_t* table = tables.of_8bit().data();
-  ConvertByValue(
-      bytes, part.rect, colours, [table](uint8_t value) { return table[value]; }, pixels);
+  else
+    convert(bytes, {tables.of_8bit(0), tables.of_8bit(1), tables.of_8bit(2)});
+}
+
+std::vector<std::vector<uint16_t>> TablesThatFit(const RadianceEncoding& encoding, int bits,
+                                                 const ChannelGains& gains) {
+  std::vector<std::vector<uint16_t>> tables;
+  if (!LevelsFit(encoding, bits)) return tables;
+  for (size_t c = 0; c < (gains.are_equal() ? 1 : 3); ++c)
+    tables.push_back(RadianceTable(encoding, bits, gains[c]));
+  return tables;
 }
 
 }  // namespace
 
-RadianceTables::RadianceTables(const RadianceEncoding& encoding, double gain, int bits) {
-  if (bits == 16) of_16bit_ = TableIfItFits(encoding, 16, gain);
+RadianceTables::RadianceTables(const RadianceEncoding& encoding, const ChannelGains& gains,
+                               int bits) {
+  if (bits == 16) of_16bit_ = TablesThatFit(encoding, 16, gains);
   if (bits != 8) return;
-  of_8bit_ = TableIfItFits(encoding, 8, gain);
-  for (size_t value = 0; value < of_8bit_.size(); ++value)
+  of_8bit_ = TablesThatFit(encoding, 8, gains);
+  if (of_8bit_.empty()) return;
+  for (size_t value = 0; value < lanes_[0].size(); ++value)
     for (size_t c = 0; c < lanes_.size(); ++c)
-      lanes_[c][value] = uint64_t{of_8bit_[value]} << (16 * c) | (c == 0 ? kOneRay : 0);
+      lanes_[c][value] =
+          uint64_t{of_8bit(static_cast<int>(c))[value]} << (16 * c) | (c == 0 ? kOneRay : 0);
 }
 
-RadianceTables::RadianceTables(const RadianceEncoding& encoding, double gain)
-    : RadianceTables(encoding, gain, 8) {
-  of_16bit_ = TableIfItFits(encoding, 16, gain);
+RadianceTables::RadianceTables(const RadianceEncoding& encoding, const ChannelGains& gains)
+    : RadianceTables(encoding, gains, 8) {
+  of_16bit_ = TablesThatFit(encoding, 16, gains);
 }
 
 void ConvertRadiance(const ImagePart& part, int colours, const RadianceTables& plain,
-                     const RadianceEncoding& encoding, double gain, LfPixels* pixels) {
-  if (gain == 1) {
-    ConvertByTables(part, colours, plain, encoding, gain, pixels);
+                     const RadianceEncoding& encoding, const LfCamera& camera, const Intrinsics& k,
+                     LfPixels* pixels) {
+  const ChannelGains& gains = camera.gain;
+  if (!k.vignetting.is_none()) {
+    ConvertFalloff(part, colours, encoding, gains, k, pixels);
+    return;
+  }
+  if (gains == ChannelGains()) {
+    ConvertByTables(part, colours, plain, encoding, gains, pixels);
     return;
   }
   const int bits =
       std::visit([]<class T>(const Image<T>&) { return int{8 * sizeof(T)}; }, part.image);
-  ConvertByTables(part, colours, RadianceTables(encoding, gain, bits), encoding, gain, pixels);
+  ConvertByTables(part, colours, RadianceTables(encoding, gains, bits), encoding, gains, pixels);
 }
 
 }  // namespace lf

@@ -1,0 +1,375 @@
+#include "lf/exposure/match_exposure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "lf/capture/distinct_intrinsics.h"
+#include "lf/exposure/exposure_views.h"
+#include "lf/exposure/fit_exposure.h"
+#include "lf/focus/place_depth.h"
+
+namespace lf {
+namespace {
+
+constexpr int kWidest_px = 240, kNarrowest_px = 80;  // of the small copies
+constexpr size_t kNearest = 8;           // LF images that are compared whatever rings there are
+constexpr double kLeastCosine = 0.8;     // between optical axes
+constexpr size_t kLeastViews = 2;        // of a ring
+constexpr double kLeastAgreement = 0.8;  // correlation of a view that is compared
+constexpr int kLeastPixels = kPatchSize * 2 / 3;  // of a patch, in both LF images
+constexpr double kDarkest = 0.01;                 // radiance: noise and quantisation are as large
+constexpr double kBright = 0.1;                   // from here on a sample counts in full
+constexpr size_t kMostSamples = 4'000'000;
+constexpr size_t kLeastSamples = 60;  // of an LF image, however many there are
+constexpr size_t kImagesPerRound = 64;
+constexpr size_t kLeastImagesPerCamera = 8;
+constexpr double kLeastCornerLight = 0.05, kMostCornerLight = 1.25;
+
+// Which falloff is each LF image's own.
+struct CameraGroups {
+  std::vector<uint32_t> of_images;
+  std::vector<uint32_t> of_intrinsics;
+  std::vector<Vignetting> known;  // of each group
+};
+
+CameraGroups GroupCameras(const LightField& field) {
+  CameraGroups groups;
+  const bool are_shared = field.size() < kLeastImagesPerCamera * field.intrinsics.size();
+  std::map<std::tuple<int, int, uint32_t>, uint32_t> numbers;
+  for (uint32_t i = 0; i < field.intrinsics.size(); ++i) {
+    const Intrinsics& k = field.intrinsics[i];
+    const auto number = static_cast<uint32_t>(numbers.size());
+    const auto [group, is_new] =
+        numbers.emplace(std::tuple(k.width_px, k.height_px, are_shared ? 0 : i), number);
+    if (is_new) groups.known.push_back(k.vignetting);
+    groups.of_intrinsics.push_back(group->second);
+  }
+  for (const LfCamera& camera : field.cameras)
+    groups.of_images.push_back(groups.of_intrinsics[camera.intrinsics_index]);
+  return groups;
+}
+
+// The LF cameras nearest to one that look the same way.
+std::vector<View> NearestViews(const LightField& field, LfImageId id) {
+  const PinholeCamera camera = field.Camera(id);
+  std::vector<std::pair<double, uint32_t>> others;
+  for (uint32_t i = 0; i < field.size(); ++i) {
+    const RigidTransform& pose = field.cameras[i].cam_from_world;
+    if (i == id.value || pose.rotation.row(2).dot(camera.ForwardWorld()) < kLeastCosine) continue;
+    const Vec3 centre = -(pose.rotation.transpose() * pose.translation);
+    others.emplace_back((centre - camera.CentreWorld()).norm(), i);
+  }
+  const auto end = others.begin() + static_cast<std::ptrdiff_t>(std::min(kNearest, others.size()));
+  std::partial_sort(others.begin(), end, others.end());
+  std::vector<View> views;
+  for (auto other = others.begin(); other != end; ++other)
+    views.push_back({LfImageId{other->second},
+                     RayThrough(field.Camera(LfImageId{other->second}), camera.ForwardWorld()),
+                     other->first});
+  return views;
+}
+
+// Light and places of a patch in two LF images, of the pixels that both have.
+class PatchPair {
+ public:
+  PatchPair(const ExposureView& a, const ExposureView& b, const Intrinsics& of_a,
+            const Intrinsics& of_b)
+      : a_(a), b_(b), of_a_(of_a), of_b_(of_b) {}
+
+  // None if they have too few in common, in all channels.
+  std::optional<ExposureSample> Compare(const Place& place, const PatchGrid& grid,
+                                        const RadianceEncoding& encoding) const {
+    ExposureSample sample;
+    double a_r_squared = 0, b_r_squared = 0, most_light = 0;
+    int places = 0;
+    std::array<int, 3> counts = {};
+    std::array<double, 3> a_sums = {}, b_sums = {};
+    const int divisor = a_.grey->divisor;
+    for (int i = 0; i < kPatchSize; ++i) {
+      const Vec2 at_a =
+          place.at_px + divisor * Vec2(i % kPatchSide - kHalfPatch, i / kPatchSide - kHalfPatch);
+      const Vec2 at_b = grid.At(i);
+      bool is_seen = false;
+      for (int c = 0; c < 3; ++c) {
+        const float light_a = a_.LightAt(at_a, c), light_b = b_.LightAt(at_b, c);
+        if (light_a == 0 || light_b == 0) continue;
+        is_seen = true;
+        ++counts[static_cast<size_t>(c)];
+        a_sums[static_cast<size_t>(c)] += light_a - 1;
+        b_sums[static_cast<size_t>(c)] += light_b - 1;
+      }
+      if (!is_seen) continue;
+      ++places;
+      a_r_squared += RadiusSquared(of_a_, at_a.x(), at_a.y());
+      b_r_squared += RadiusSquared(of_b_, at_b.x(), at_b.y());
+    }
+    if (places < kLeastPixels) return std::nullopt;
+    sample.a_r_squared = static_cast<float>(a_r_squared / places);
+    sample.b_r_squared = static_cast<float>(b_r_squared / places);
+    bool is_any = false;
+    for (size_t c = 0; c < 3; ++c) {
+      const double scale = encoding.max_radiance / kLightSteps / std::max(1, counts[c]);
+      const double least = scale * std::min(a_sums[c], b_sums[c]);
+      const bool is_bright = counts[c] >= kLeastPixels && least >= kDarkest;
+      sample.log_ratio[c] = is_bright ? static_cast<float>(std::log(a_sums[c] / b_sums[c]))
+                                      : std::numeric_limits<float>::quiet_NaN();
+      is_any = is_any || is_bright;
+      most_light = std::max(most_light, least);
+    }
+    if (!is_any) return std::nullopt;
+    sample.weight = static_cast<float>(std::min(1.0, most_light / kBright));
+    return sample;
+  }
+
+ private:
+  const ExposureView& a_;
+  const ExposureView& b_;
+  const Intrinsics& of_a_;
+  const Intrinsics& of_b_;
+};
+
+class Sampler {
+ public:
+  Sampler(const LightField& field, const std::vector<ExposureView>& views)
+      : field_(field), views_(views) {}
+
+  // Samples of one LF image with those around; evenly thinned to the number.
+  std::vector<ExposureSample> SamplesOf(LfImageId id, size_t most) const {
+    std::vector<ExposureSample> samples;
+    const ExposureView& own = views_[id.value];
+    if (!own.grey) return samples;
+    const Rings rings = LoadedRings(ChooseRings(field_, id));
+    const std::vector<View> nearest = Loaded(NearestViews(field_, id));
+    if (rings.empty()) return samples;
+    const Intrinsics& k = IntrinsicsOf(id);
+    for (const Place& place : TexturedPlaces(field_, id, *own.grey)) {
+      const std::optional<FoundDepth> depth = DepthOf(rings, place, k, own.grey->divisor);
+      if (!depth) continue;
+      std::vector<uint32_t> compared;
+      const auto compare = [&](const std::vector<View>& views) {
+        for (const View& view : views) {
+          if (std::find(compared.begin(), compared.end(), view.id.value) != compared.end())
+            continue;
+          compared.push_back(view.id.value);
+          Compare(id, view, place, depth->distance_w, &samples);
+        }
+      };
+      for (const std::vector<View>& ring : rings) compare(ring);
+      compare(nearest);
+    }
+    if (samples.size() <= most) return samples;
+    std::vector<ExposureSample> thinned;
+    for (size_t i = 0; i < most; ++i) thinned.push_back(samples[i * samples.size() / most]);
+    return thinned;
+  }
+
+ private:
+  const Intrinsics& IntrinsicsOf(LfImageId id) const {
+    return field_.intrinsics[field_.cameras[id.value].intrinsics_index];
+  }
+
+  std::vector<View> Loaded(std::vector<View> views) const {
+    for (View& view : views) view.image = views_[view.id.value].grey;
+    std::erase_if(views, [](const View& view) { return view.image == nullptr; });
+    return views;
+  }
+  Rings LoadedRings(Rings rings) const {
+    for (std::vector<View>& ring : rings) ring = Loaded(std::move(ring));
+    std::erase_if(rings, [](const std::vector<View>& ring) { return ring.size() < kLeastViews; });
+    return rings;
+  }
+
+  void Compare(LfImageId id, const View& view, const Place& place, double depth_w,
+               std::vector<ExposureSample>* samples) const {
+    if (CorrelationAt(view, place, depth_w) < kLeastAgreement) return;
+    const PatchPair pair(views_[id.value], views_[view.id.value], IntrinsicsOf(id),
+                         IntrinsicsOf(view.id));
+    std::optional<ExposureSample> sample =
+        pair.Compare(place, *PatchSeenBy(view, place, depth_w), field_.encoding);
+    if (!sample) return;
+    sample->a = id.value;
+    sample->b = view.id.value;
+    samples->push_back(*sample);
+  }
+
+  const LightField& field_;
+  const std::vector<ExposureView>& views_;
+};
+
+// The width of small copies that fit into the memory; 0: not even the narrowest do.
+int WidthWithin(const LightField& field, size_t memory_bytes) {
+  for (int width = kWidest_px; width >= kNarrowest_px; width -= 20) {
+    size_t bytes = 0;
+    for (const LfCamera& camera : field.cameras)
+      bytes += ViewBytes(field.intrinsics[camera.intrinsics_index], width);
+    if (bytes <= memory_bytes) return width;
+  }
+  return 0;
+}
+
+Result<std::vector<ExposureSample>> TakeSamples(const LightField& plain,
+                                                const std::vector<ExposureView>& views,
+                                                const MatchExposureOptions& options,
+                                                ThreadPool& pool) {
+  const Sampler sampler(plain, views);
+  const size_t most = std::max(kLeastSamples, kMostSamples / plain.size());
+  std::vector<ExposureSample> samples;
+  for (size_t begin = 0; begin < plain.size(); begin += kImagesPerRound) {
+    if (options.interrupted && *options.interrupted)
+      return Error{ErrorKind::kInterrupted,
+                   fmt::format("interrupted after comparing the exposure of {} of {} images", begin,
+                               plain.size())};
+    const size_t count = std::min(kImagesPerRound, plain.size() - begin);
+    std::vector<std::vector<ExposureSample>> of_images(count);
+    pool.ForEach(count, [&](size_t i) {
+      of_images[i] = sampler.SamplesOf(LfImageId{static_cast<uint32_t>(begin + i)}, most);
+    });
+    for (const auto& of_image : of_images)
+      samples.insert(samples.end(), of_image.begin(), of_image.end());
+    if (options.progress) options.progress(plain.size() + begin + count, 2 * plain.size());
+  }
+  return samples;
+}
+
+// The mean step that the samples which agree have with the exposure of the calibration.
+double StepBefore(const LightField& field, const std::vector<ExposureSample>& samples,
+                  const ExposureFit& fit, const CameraGroups& groups) {
+  std::vector<std::array<double, 3>> log_gains(field.size());
+  for (size_t i = 0; i < field.size(); ++i)
+    for (size_t c = 0; c < 3; ++c) log_gains[i][c] = std::log(double{field.cameras[i].gain[c]});
+  double sum = 0;
+  size_t count = 0;
+  for (size_t i = 0; i < samples.size(); ++i)
+    for (int c = 0; fit.weights[i] > 0 && c < 3; ++c) {
+      const double left = samples[i].log_ratio[static_cast<size_t>(c)] -
+                          ModelLogRatio(samples[i], c, log_gains, groups.of_images, groups.known);
+      if (std::isnan(left)) continue;
+      sum += std::abs(left);
+      ++count;
+    }
+  return count > 0 ? sum / static_cast<double>(count) : 0;
+}
+
+// The falloffs, if all are such as lenses have, and samples reach far enough out.
+std::optional<FoundFalloff> BelievableFalloff(const LightField& field, const CameraGroups& groups,
+                                              const std::vector<ExposureSample>& samples,
+                                              const ExposureFit& fit) {
+  std::vector<float> radii;
+  for (size_t i = 0; i < samples.size(); ++i)
+    if (fit.weights[i] > 0)
+      radii.push_back(std::max(samples[i].a_r_squared, samples[i].b_r_squared));
+  if (radii.empty()) return std::nullopt;
+  FoundFalloff found;
+  const auto tenth = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() * 9 / 10);
+  std::nth_element(radii.begin(), tenth, radii.end());
+  found.reach = std::sqrt(*tenth);
+  constexpr double kLeastReach = 0.4;
+  if (found.reach < kLeastReach) return std::nullopt;
+  found.corner_min = std::numeric_limits<double>::max();
+  found.corner_max = 0;
+  found.camera_count = fit.falloffs.size();
+  for (size_t i = 0; i < field.intrinsics.size(); ++i) {
+    Intrinsics k = field.intrinsics[i];
+    k.vignetting = fit.falloffs[groups.of_intrinsics[i]];
+    const FalloffRange range = FalloffRangeOf(k);
+    if (range.min < kLeastCornerLight || range.max > kMostCornerLight) return std::nullopt;
+    double corner = 0;
+    for (const int x : {0, k.width_px})
+      for (const int y : {0, k.height_px}) corner = std::max(corner, RadiusSquared(k, x, y));
+    const double share = k.vignetting.Falloff(corner);
+    found.corner_min = std::min(found.corner_min, share);
+    found.corner_max = std::max(found.corner_max, share);
+  }
+  return found;
+}
+
+}  // namespace
+
+LightField WithoutExposure(const LightField& light_field) {
+  LightField plain = light_field;
+  for (LfCamera& camera : plain.cameras) camera.gain = {};
+  for (Intrinsics& k : plain.intrinsics) k.vignetting = {};
+  return plain;
+}
+
+Result<MatchedExposure> MatchExposure(const LightField& light_field, const LfImageStore& store,
+                                      const MatchExposureOptions& options, ThreadPool& pool) {
+  const LightField plain = WithoutExposure(light_field);
+  LoadViewsOptions load;
+  load.width_px = WidthWithin(plain, options.memory_bytes);
+  load.interrupted = options.interrupted;
+  if (options.progress)
+    load.progress = [&](size_t done, size_t total) { options.progress(done, 2 * total); };
+  if (load.width_px == 0)
+    return InputError(fmt::format(
+        "--match-exposure: small copies of {} LF images do not fit into {} MiB: match parts of the "
+        "light field (--exclude)",
+        plain.size(), options.memory_bytes >> 20));
+  LF_ASSIGN_OR_RETURN(const std::vector<ExposureView> views,
+                      LoadExposureViews(plain, store, load, pool));
+  LF_ASSIGN_OR_RETURN(const std::vector<ExposureSample> samples,
+                      TakeSamples(plain, views, options, pool));
+
+  const CameraGroups groups = GroupCameras(light_field);
+  MatchedExposure matched;
+  ExposureFit fit =
+      FitExposure(samples, groups.of_images, groups.known, {.vignetting = options.vignetting});
+  if (options.vignetting) {
+    matched.falloff = BelievableFalloff(light_field, groups, samples, fit);
+    if (!matched.falloff)
+      fit = FitExposure(samples, groups.of_images, groups.known, {.vignetting = false});
+  }
+  if (fit.component_count == 0)
+    return InputError(fmt::format(
+        "--match-exposure: no two of {} LF images show enough of the same places ({} samples): "
+        "exposure is matched where the LF cameras overlap and the scene has texture; state lf_gain "
+        "instead (doc/formats/transforms_json.md)",
+        plain.size(), samples.size()));
+  matched.sample_count = fit.sample_count;
+  matched.component_count = fit.component_count;
+  matched.step_after = fit.step;
+  matched.step_before = StepBefore(light_field, samples, fit, groups);
+  matched.least_gain = std::numeric_limits<float>::max();
+  matched.most_gain = 0;
+  for (uint32_t i = 0; i < plain.size(); ++i) {
+    matched.gains.push_back(light_field.cameras[i].gain);
+    if (!views[i].grey) matched.unreadable.push_back(LfImageId{i});
+    if (views[i].grey && fit.components[i] == kAlone) matched.left_alone.push_back(LfImageId{i});
+    if (fit.components[i] == kAlone) continue;
+    for (size_t c = 0; c < 3; ++c) {
+      const auto gain = static_cast<float>(std::exp(fit.log_gains[i][c]));
+      matched.gains[i][c] = gain;
+      matched.least_gain = std::min(matched.least_gain, gain);
+      matched.most_gain = std::max(matched.most_gain, gain);
+    }
+  }
+  for (size_t i = 0; i < light_field.intrinsics.size(); ++i)
+    matched.falloffs.push_back(matched.falloff ? fit.falloffs[groups.of_intrinsics[i]]
+                                               : light_field.intrinsics[i].vignetting);
+  return matched;
+}
+
+void ApplyExposure(const MatchedExposure& matched, LightField* light_field) {
+  for (size_t i = 0; i < light_field->intrinsics.size(); ++i)
+    light_field->intrinsics[i].vignetting = matched.falloffs[i];
+  double most = 1;
+  for (size_t i = 0; i < light_field->size(); ++i) {
+    LfCamera& camera = light_field->cameras[i];
+    camera.gain = matched.gains[i];
+    const Intrinsics& k = light_field->intrinsics[camera.intrinsics_index];
+    for (const float gain : camera.gain.of_channels)
+      most = std::max(most, gain / FalloffRangeOf(k).min);
+  }
+  if (DefaultMaxRadiance(light_field->image_names) > 1) return;
+  constexpr double kSteps = 100;
+  light_field->encoding.max_radiance =
+      std::max(light_field->encoding.max_radiance, std::ceil(most * kSteps) / kSteps);
+}
+
+}  // namespace lf

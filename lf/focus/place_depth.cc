@@ -1,0 +1,330 @@
+#include "lf/focus/place_depth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "lf/capture/capture_geometry.h"
+#include "lf/focus/focus_pick.h"
+
+namespace lf {
+namespace {
+
+constexpr int kColumns = 16, kRows = 11;   // of cells, in each of which one place is looked at
+constexpr double kLeastTexture = 0.006;    // of a step between pixels in its weakest direction
+constexpr double kLeastDeviation = 0.002;  // noise alone correlates with nothing
+constexpr double kLeastAgreement = 0.65;   // correlation
+constexpr double kAgreeing = 0.6;          // of the views: the others may be hidden from the place
+constexpr size_t kLeastViews = 2;
+constexpr double kStep_px = 0.5;         // of the largest displacement, from depth to depth
+constexpr double kMostDisplaced = 0.45;  // of the image's width, at the nearest depth asked
+constexpr double kLeastMove_px = 1;  // in the reduced image: nearer than infinity, and not still
+constexpr double kStill = 0.9;       // correlation
+constexpr size_t kMostRings = 5;
+constexpr int kViewsPerRing = 6;
+constexpr double kInnerRing = 2;      // in spacings
+constexpr double kRingFactor = 4;     // from ring to ring
+constexpr double kLeastCosine = 0.8;  // between optical axes
+
+// Subtracts the mean; returns the standard deviation, NaN where a value is.
+double Centre(Patch* patch) {
+  double sum = 0, squares = 0;
+  for (const float value : *patch) sum += value;
+  const auto mean = static_cast<float>(sum / kPatchSize);
+  for (float& value : *patch) {
+    value -= mean;
+    squares += static_cast<double>(value) * value;
+  }
+  return std::sqrt(squares / kPatchSize);
+}
+
+// -1 where the other is not seen.
+double Correlation(const Place& place, Patch* other) {
+  const double deviation = Centre(other);
+  if (std::isnan(deviation)) return -1;
+  double product = 0;
+  for (size_t i = 0; i < kPatchSize; ++i)
+    product += static_cast<double>(place.patch[i]) * (*other)[i];
+  return product / (kPatchSize * std::max(place.deviation, kLeastDeviation) *
+                    std::max(deviation, kLeastDeviation));
+}
+
+}  // namespace
+
+std::optional<PatchGrid> PatchSeenBy(const View& view, const Place& place, double depth_w) {
+  const auto at = [&](double x, double y) {
+    return view.rays.RecordedAt(place.At(depth_w, x, y) - view.rays.centre_world());
+  };
+  const auto centre = at(0, 0), right = at(kHalfPatch, 0), down = at(0, kHalfPatch);
+  if (!centre || !right || !down) return std::nullopt;
+  return PatchGrid{*centre, (*right - *centre) / kHalfPatch, (*down - *centre) / kHalfPatch};
+}
+
+double CorrelationAt(const View& view, const Place& place, double depth_w) {
+  const std::optional<PatchGrid> grid = PatchSeenBy(view, place, depth_w);
+  if (!grid) return -1;
+  Patch patch;
+  for (int i = 0; i < kPatchSize; ++i) patch[static_cast<size_t>(i)] = view.image->At(grid->At(i));
+  return Correlation(place, &patch);
+}
+
+namespace {
+
+// The mean of the better ones; -1 where too few see the place.
+double Agreement(std::vector<double>* correlations) {
+  if (correlations->size() < kLeastViews) return -1;
+  std::sort(correlations->rbegin(), correlations->rend());
+  const auto count = std::max(
+      kLeastViews, static_cast<size_t>(kAgreeing * static_cast<double>(correlations->size())));
+  double sum = 0;
+  for (size_t i = 0; i < count; ++i) sum += (*correlations)[i];
+  return sum / static_cast<double>(count);
+}
+
+double AgreementAt(std::span<const View> views, const Place& place, double depth_w) {
+  std::vector<double> correlations;
+  for (const View& view : views)
+    if (const double correlation = CorrelationAt(view, place, depth_w); correlation > -1)
+      correlations.push_back(correlation);
+  return Agreement(&correlations);
+}
+
+// Returns how well the views agree with the place at the place's own pixels.
+double StillAgreement(const Rings& rings, const Place& place, int divisor) {
+  std::vector<double> correlations;
+  for (const std::vector<View>& ring : rings)
+    for (const View& view : ring) {
+      Patch patch;
+      for (int i = 0; i < kPatchSize; ++i)
+        patch[static_cast<size_t>(i)] = view.image->At(
+            place.at_px + divisor * Vec2(i % kPatchSide - kHalfPatch, i / kPatchSide - kHalfPatch));
+      const double correlation = Correlation(place, &patch);
+      if (correlation > -1) correlations.push_back(correlation);
+    }
+  return Agreement(&correlations);
+}
+
+// The largest of the views' displacements from the place's own pixels, in reduced pixels.
+double LargestMove(const Rings& rings, const Place& place, double depth_w, int divisor) {
+  double largest = 0;
+  for (const std::vector<View>& ring : rings)
+    for (const View& view : ring)
+      if (const auto at = view.rays.RecordedAt(place.At(depth_w, 0, 0) - view.rays.centre_world()))
+        largest = std::max(largest, (*at - place.at_px).norm() / divisor);
+  return largest;
+}
+
+// Depths that are asked, evenly in 1 / depth.
+struct Sweep {
+  double from_per_w = 0, step_per_w = 0;
+  size_t count = 0;
+
+  double PerW(double index) const { return from_per_w - step_per_w * index; }
+  double Depth(double index) const { return 1 / std::max(1e-12, PerW(index)); }
+};
+
+// Displacement in reduced pixels at 1 / depth 1.
+double PixelsPerW(std::span<const View> views, const Intrinsics& k, int divisor) {
+  double baseline_w = 0;
+  for (const View& view : views) baseline_w = std::max(baseline_w, view.offset_w);
+  return std::max(1e-12, k.fx_px * baseline_w / divisor);
+}
+
+// The best depth of a sweep.
+struct Peak {
+  double score = -1, rival = -1;        // the rival is the best local maximum elsewhere
+  double per_w = 0;                     // 1 / depth, between the steps
+  double from_per_w = 0, to_per_w = 0;  // all around it that is nearly as good
+};
+
+Peak FindPeak(const Sweep& sweep, std::span<const View> views, const Place& place) {
+  std::vector<double> scores(sweep.count);
+  for (size_t i = 0; i < sweep.count; ++i)
+    scores[i] = AgreementAt(views, place, sweep.Depth(static_cast<double>(i)));
+  const size_t best =
+      static_cast<size_t>(std::max_element(scores.begin(), scores.end()) - scores.begin());
+  Peak peak;
+  peak.score = scores[best];
+  constexpr double kNearlyAsGood = 0.1;
+  const auto is_good = [&](size_t i) { return scores[i] >= peak.score - kNearlyAsGood; };
+  size_t first = best, last = best;
+  while (first > 0 && is_good(first - 1)) --first;
+  while (last + 1 < scores.size() && is_good(last + 1)) ++last;
+  constexpr size_t kPeakWidth = 3;
+  for (size_t i = 1; i + 1 < scores.size(); ++i)
+    if ((i + kPeakWidth < first || i > last + kPeakWidth) && scores[i] >= scores[i - 1] &&
+        scores[i] >= scores[i + 1])
+      peak.rival = std::max(peak.rival, scores[i]);
+  double at = static_cast<double>(best);
+  if (best > 0 && best + 1 < scores.size()) {
+    const double before = scores[best - 1], after = scores[best + 1];
+    const double bend = before - 2 * peak.score + after;
+    if (before > -1 && after > -1 && bend < 0) at += 0.5 * (before - after) / bend;
+  }
+  peak.per_w = sweep.PerW(at);
+  peak.from_per_w = sweep.PerW(static_cast<double>(first) - 1);
+  peak.to_per_w = std::max(0.0, sweep.PerW(static_cast<double>(last) + 1));
+  return peak;
+}
+
+}  // namespace
+
+std::optional<FoundDepth> DepthOf(const Rings& rings, const Place& place, const Intrinsics& k,
+                                  int divisor) {
+  double px_per_w = PixelsPerW(rings[0], k, divisor);
+  Sweep sweep;
+  sweep.from_per_w = kMostDisplaced * k.width_px / divisor / px_per_w;
+  sweep.step_per_w = kStep_px / px_per_w;
+  sweep.count = static_cast<size_t>(sweep.from_per_w / sweep.step_per_w) + 1;
+  Peak peak = FindPeak(sweep, rings[0], place);
+  if (peak.score < kLeastAgreement) return std::nullopt;
+  // Repeated patterns agree at several depths.
+  constexpr double kClear = 0.1, kLeastClear = 0.3;
+  const double clear = std::min(1.0, (peak.score - peak.rival) / kClear);
+  if (clear < kLeastClear) return std::nullopt;
+  double score = peak.score;
+  for (size_t ring = 1; ring < rings.size(); ++ring) {
+    const double finer_px_per_w = PixelsPerW(rings[ring], k, divisor);
+    Sweep finer{peak.from_per_w, kStep_px / finer_px_per_w, 0};
+    finer.count = static_cast<size_t>((peak.from_per_w - peak.to_per_w) / finer.step_per_w) + 1;
+    constexpr size_t kMostSteps = 4000;
+    if (finer.count > kMostSteps) break;
+    const Peak found = FindPeak(finer, rings[ring], place);
+    if (found.score < kLeastAgreement) break;
+    peak = found;
+    px_per_w = finer_px_per_w;
+    score = std::max(score, found.score);
+  }
+  const double moves_px = peak.per_w * px_per_w;
+  if (moves_px < kLeastMove_px) return std::nullopt;
+  const double distance_w = 1 / peak.per_w;
+  if (StillAgreement(rings, place, divisor) >= kStill &&
+      LargestMove(rings, place, distance_w, divisor) >= kLeastMove_px)
+    return std::nullopt;
+  const double agreement = std::clamp((score - kLeastAgreement) / (0.95 - kLeastAgreement), 0., 1.);
+  return FoundDepth{distance_w, place.weight * clear * agreement, 0.25 / moves_px};
+}
+
+namespace {
+
+// The square root of the smaller eigenvalue of the mean of g g^T, g being the gradient: 0 along
+// edges, whose displacement is known across them alone.
+double TextureAt(const Image<float>& light, int x, int y) {
+  double xx = 0, xy = 0, yy = 0;
+  for (int j = y - kHalfPatch; j <= y + kHalfPatch; ++j)
+    for (int i = x - kHalfPatch; i <= x + kHalfPatch; ++i) {
+      const double dx = light.at(i + 1, j) - light.at(i - 1, j);
+      const double dy = light.at(i, j + 1) - light.at(i, j - 1);
+      xx += dx * dx;
+      xy += dx * dy;
+      yy += dy * dy;
+    }
+  const double mean = (xx + yy) / 2;
+  const double least = mean - std::sqrt(std::pow((xx - yy) / 2, 2) + xy * xy);
+  return std::sqrt(std::max(0.0, least) / kPatchSize) / 2;  // NaN stays
+}
+
+// The place of one cell with the most texture.
+std::optional<Place> PlaceIn(const LightField& field, LfImageId camera, const ReducedImage& image,
+                             int column, int row) {
+  const int border = kHalfPatch + 1, width = image.light.width() - 2 * border,
+            height = image.light.height() - 2 * border;
+  if (width < kColumns || height < kRows) return std::nullopt;
+  double best = 0;
+  int best_x = 0, best_y = 0;
+  for (int y = row * height / kRows; y < (row + 1) * height / kRows; y += 3)
+    for (int x = column * width / kColumns; x < (column + 1) * width / kColumns; x += 3)
+      if (const double texture = TextureAt(image.light, x + border, y + border); texture > best) {
+        best = texture;
+        best_x = x + border;
+        best_y = y + border;
+      }
+  if (best < kLeastTexture) return std::nullopt;
+  const PinholeCamera pinhole = field.Camera(camera);
+  const int d = image.divisor;
+  const auto direction = [&](double x, double y) -> std::optional<Vec3> {
+    const std::optional<Ray> ray = RayOfLfPixel(pinhole, x, y);
+    if (!ray) return std::nullopt;
+    const double depth = pinhole.ForwardWorld().dot(ray->direction);
+    return depth > 0 ? std::optional(Vec3(ray->direction / depth)) : std::nullopt;
+  };
+  Place place;
+  place.at_px = Vec2((best_x + 0.5) * d, (best_y + 0.5) * d);
+  const auto centre = direction(place.at_px.x(), place.at_px.y());
+  const auto right = direction(place.at_px.x() + d, place.at_px.y());
+  const auto down = direction(place.at_px.x(), place.at_px.y() + d);
+  if (!centre || !right || !down) return std::nullopt;
+  place.origin = pinhole.CentreWorld();
+  place.direction = *centre;
+  place.right = *right - *centre;
+  place.down = *down - *centre;
+  for (int i = 0; i < kPatchSize; ++i)
+    place.patch[static_cast<size_t>(i)] =
+        image.light.at(best_x + i % kPatchSide - kHalfPatch, best_y + i / kPatchSide - kHalfPatch);
+  place.deviation = Centre(&place.patch);
+  const Intrinsics& k = pinhole.intrinsics;
+  const Vec2 off = (place.at_px - Vec2(k.width_px, k.height_px) / 2) / (0.5 * k.width_px);
+  constexpr double kMiddle = 0.5;  // of half the width
+  place.weight = std::min(1.0, best / (3 * kLeastTexture)) *
+                 std::exp(-0.5 * off.squaredNorm() / (kMiddle * kMiddle));
+  return place;
+}
+
+}  // namespace
+
+std::vector<Place> TexturedPlaces(const LightField& field, LfImageId camera,
+                                  const ReducedImage& image) {
+  std::vector<Place> places;
+  for (int i = 0; i < kColumns * kRows; ++i)
+    if (const auto place = PlaceIn(field, camera, image, i % kColumns, i / kColumns))
+      places.push_back(*place);
+  return places;
+}
+
+Rings ChooseRings(const LightField& field, LfImageId camera) {
+  struct Candidate {
+    LfImageId id;
+    Vec2 place;
+    double distance_w;
+  };
+  const PinholeCamera middle = field.Camera(camera);
+  std::vector<Candidate> candidates;
+  double reach_w = 0;
+  for (uint32_t i = 0; i < field.size(); ++i) {
+    const PinholeCamera other = field.Camera(LfImageId{i});
+    if (i == camera.value || other.ForwardWorld().dot(middle.ForwardWorld()) < kLeastCosine)
+      continue;
+    const Vec3 offset = other.CentreWorld() - middle.CentreWorld();
+    const Vec2 place(middle.RightWorld().dot(offset), middle.UpWorld().dot(offset));
+    candidates.push_back({LfImageId{i}, place, offset.norm()});
+    reach_w = std::max(reach_w, place.norm());
+  }
+  Rings rings;
+  double radius_w = kInnerRing * MedianSpacing(field);
+  for (size_t ring = 0; ring < kMostRings && (ring == 0 || radius_w <= 1.2 * reach_w);
+       ++ring, radius_w *= kRingFactor) {
+    std::vector<View> views;
+    for (int i = 0; i < kViewsPerRing; ++i) {
+      const double angle = 2 * kPi * (i + 0.5 * static_cast<double>(ring % 2)) / kViewsPerRing;
+      const Vec2 wanted(radius_w * std::cos(angle), radius_w * std::sin(angle));
+      const auto nearest = std::min_element(
+          candidates.begin(), candidates.end(), [&](const Candidate& a, const Candidate& b) {
+            return (a.place - wanted).norm() < (b.place - wanted).norm();
+          });
+      if (nearest == candidates.end()) break;
+      const double away = nearest->place.norm() / radius_w;
+      if (ring > 0 && (away < 0.5 || away > 2)) continue;
+      if (nearest->distance_w <= 0) continue;
+      const bool is_there = std::any_of(views.begin(), views.end(),
+                                        [&](const View& view) { return view.id == nearest->id; });
+      if (!is_there)
+        views.push_back({nearest->id, RayThrough(field.Camera(nearest->id), middle.ForwardWorld()),
+                         nearest->place.norm()});
+    }
+    if (ring == 0 || views.size() >= kLeastViews) rings.push_back(std::move(views));
+  }
+  return rings;
+}
+
+}  // namespace lf
