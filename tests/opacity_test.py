@@ -101,7 +101,7 @@ class OpacityTest(ProgramTestCase):
             self.assertGreater(psnr_db(over_black, true_light), LEAST_PSNR_DB)
             self.assertGreater(psnr_db(over_white, true_light + 1 - true_alpha), LEAST_PSNR_DB)
             self.assertGreater(psnr_db(alpha, true_alpha), LEAST_PSNR_DB)
-            # What a compositor makes of it is what is rendered over that background.
+            # A compositor gets the picture that is rendered over that background.
             np.testing.assert_allclose(light + (1 - alpha), over_white, atol=1e-4)
             near = cv2.dilate((true_alpha > 0).astype(np.uint8), np.ones((5, 5)))
             self.assertGreater(np.count_nonzero(near == 0), 50)

@@ -44,7 +44,7 @@ class StrangersTest(ProgramTestCase):
         self.fails(3, words, EXAMPLE, self.field, "-o", self.folder / "p.yaml")
         self.fails(3, words, RENDERER, self.field, self.path, "-o", self.folder / "frames")
 
-    # What does not matter
+    # Oddities that do not matter
 
     def test_names_may_be_of_another_system(self):
         expected = self.renders()
@@ -78,7 +78,7 @@ class StrangersTest(ProgramTestCase):
         self.calibration.write_bytes(b"\xef\xbb\xbf" + self.calibration.read_bytes())
         self.assertEqual(self.renders(), expected)
 
-    # What does, and is told
+    # Mistakes that are told
 
     def test_photographs_alone_are_told_what_they_lack(self):
         self.calibration.unlink()

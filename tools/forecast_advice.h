@@ -1,4 +1,4 @@
-// What a film can be made with instead: figures that take the warnings of a forecast away.
+// Figures for a path that take the warnings of a forecast away.
 #pragma once
 
 #include <optional>

@@ -138,7 +138,7 @@ class FilesBelow {
     return score;
   }
 
-  // Of the first image of a folder; 0 if its header cannot be read.
+  // Size of the first image of a folder; 0 if its header cannot be read.
   int64_t PixelsIn(const fs::path& folder) {
     const auto [entry, is_new] = pixels_.try_emplace(folder.string(), 0);
     if (!is_new) return entry->second;
@@ -155,7 +155,7 @@ class FilesBelow {
   std::unordered_map<std::string, int64_t> pixels_;  // by folder
 };
 
-// Whether so many pixels are `full` divided by `divisor`, rounded in any way.
+// Returns true if so many pixels are `full` divided by `divisor`, rounded in any way.
 bool IsDivided(int full, double divisor, int pixels) {
   return std::abs(full / divisor - pixels) < 1;
 }

@@ -17,9 +17,9 @@ inline constexpr double kRawPedestal = 1024;
 // By the extension, in any case: dng, and those of cameras' own formats (cr2, cr3, nef, arw, ...).
 bool IsRawName(const std::string& file_name);
 
-// What the first image says of all, if its name is that of a raw file; else none. Its pixels are
-// decoded if the header does not tell the black level.
-// kInput: it cannot be read, or is no raw file (the message says what to state instead).
+// Returns the encoding that the first image tells of all, if its name is that of a raw file; else
+// none. Pixels are decoded if the header does not tell the black level. kInput: it cannot be read,
+// or is no raw file (the message says what to state instead).
 using RawFactsSource = std::function<Result<std::optional<RawFacts>>(const LightField&)>;
 Result<std::optional<RawFacts>> RawFactsOfFirstImage(const LightField& light_field);
 

@@ -55,7 +55,7 @@ class ColmapPointsSeen {
 // kInput: errors of ReadColmapModel(); an image beyond the number of images.
 Result<std::vector<Vec3>> ReadColmapPointsSeen(const std::filesystem::path& model_folder,
                                                uint32_t position, const PinholeCamera& camera);
-// The same of streams.
+// Reads the same from streams.
 Result<std::vector<Vec3>> ParseColmapPointsSeen(ColmapStreams streams, uint32_t position,
                                                 const PinholeCamera& camera);
 

@@ -1,4 +1,4 @@
-// What lies where a missing file was expected, for messages: most are named a little otherwise.
+// Files near the place of a missing one, for messages: most are named a little otherwise.
 #pragma once
 
 #include <filesystem>

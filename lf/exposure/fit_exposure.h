@@ -11,7 +11,7 @@
 
 namespace lf {
 
-// What LF images `a` and `b` recorded of the same place of the scene.
+// One place of the scene, as LF images `a` and `b` recorded it.
 struct ExposureSample {
   uint32_t a = 0, b = 0;
   // Means of r^2 over what was recorded (camera/vignetting.h).

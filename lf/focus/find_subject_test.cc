@@ -81,7 +81,7 @@ Light CardBefore(double card_w, double wall_w) {
   };
 }
 
-// The same words in every image, in a corner of it.
+// Draws the same words into a corner of every image.
 Light Watermarked(Light light) {
   return [light = std::move(light)](const Ray& ray, LfImageId id, const Vec2& at) {
     if (at.x() > 150 && at.y() > 100) return Noise(at.x() / 4, at.y() / 4, 9);

@@ -53,7 +53,7 @@ struct Place {
 std::vector<Place> TexturedPlaces(const LightField& field, LfImageId camera,
                                   const ReducedImage& image);
 
-// Where a view records the pixels around a place at a depth: those of the patch lie at
+// The pixels around a place at a depth, as a view records them: those of the patch lie at
 // centre + x step_x + y step_y, in pixels of the view's LF image, for whole x and y within
 // +-kHalfPatch.
 struct PatchGrid {

@@ -30,7 +30,7 @@ struct ReducedImage {
 // The divisor of images of this width.
 int DivisorFor(int width_px);
 
-// Of a whole LF image in RGB.
+// Reduces a whole LF image in RGB.
 ReducedImage Reduced(const LfPixels& pixels, int divisor);
 
 // kInput: the image cannot be loaded.

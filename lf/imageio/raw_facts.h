@@ -1,4 +1,4 @@
-// What LibRaw tells of the pixels of a camera raw file. Internal to imageio.
+// Facts that LibRaw tells of the pixels of a camera raw file. Internal to imageio.
 #pragma once
 
 #include <libraw/libraw.h>

@@ -108,7 +108,7 @@ class QuietLibRaw final : public LibRaw {
   bool is_staggered_ = false;
 };
 
-// What LibRaw found in a file that it refuses.
+// Returns the reason why LibRaw refuses a file.
 std::string ReasonOfRefusal(const QuietLibRaw& raw) {
   constexpr int kLeast_px = 22;
   const auto& sizes = raw.imgdata.sizes;
@@ -221,7 +221,7 @@ class DecodingMarks {
   }
 };
 
-// What LibRaw throws becomes an error of its kind.
+// Turns an exception of LibRaw into an error number of its kind.
 template <class Call>
 int WithoutThrowing(const Call& call) {
   try {

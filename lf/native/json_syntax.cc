@@ -35,7 +35,7 @@ class StreamIterator {
   ByteStream* stream_;
 };
 
-// What the usual mistakes are. The parser says what it found last.
+// Names the usual mistakes. The parser says what it found last.
 std::string_view AdviceOn(std::string_view what) {
   const auto has = [what](std::string_view part) { return what.find(part) != what.npos; };
   if (has("unexpected end of input") && has("line 1, column 1:")) return "; the file is empty";
@@ -53,7 +53,7 @@ std::string_view AdviceOn(std::string_view what) {
 Error IsNotJson(const std::filesystem::path& file, std::string_view what) {
   what.remove_prefix(std::min(what.size(), what.find("] ") + 2));  // the library's name
   const std::string_view advice = AdviceOn(what);
-  // What was read of another encoding is no text to show.
+  // Text of another encoding cannot be shown.
   if (advice.find("UTF-8") != advice.npos) what = what.substr(0, what.find("; last read"));
   return InputError(fmt::format("{}: is not JSON: {}{}", file.string(), what, advice));
 }

@@ -201,8 +201,8 @@ class Reader {
     return {};
   }
 
-  // That of most of up to 15 images, evenly spread, for all: asked for once. Of equally many, the
-  // first.
+  // Returns the size that most of up to 15 evenly spread images have; it is asked for once. Of
+  // equally many, the first.
   Result<std::array<int, 2>> DefaultSize() {
     constexpr const char* kAdvice =
         "add \"w\" and \"h\", in pixels, at the top level (e.g. \"w\": 800, \"h\": 800)";

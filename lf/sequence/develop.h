@@ -38,7 +38,7 @@ struct DevelopOptions {
   // black if there is none: light that nobody recorded is not invented. 0: nothing is filled.
   int fill_radius_px = kFillRadius_px;
 
-  // Of a plate with opacities: opacity = (sum / count - transparent) / (opaque - transparent).
+  // For a plate with opacities: opacity = (sum / count - transparent) / (opaque - transparent).
   double transparent = 0;
   double opaque = 65535;
 

@@ -105,7 +105,7 @@ Result<RecordedImage> ReadRecordedImage(const LightField& light_field, LfImageId
       image.opacities = {};
     return image;
   }
-  // Of a light field whose alpha is light, an LF image without alpha is opaque but for its mask
+  // If alpha is light in this light field, an LF image without alpha is opaque but for its mask
   // file.
   if (light_field.encoding.AlphaIsLight() && image.layout != PixelLayout::kMosaic)
     return ReadMaskAsOpacities(light_field, id, part, use, std::move(image));

@@ -142,7 +142,7 @@ SightRow LookAlongRow(const Scene& scene, const PixelRays& rays, const Tiles& ti
 // Light, and the share of rays that it is from.
 using Rgba = Eigen::Array4d;
 
-// What one ray adds to a picture.
+// The light and opacity that one ray adds to a picture.
 Rgba LightOf(const Scene::Sight& sight, Surroundings surroundings) {
   if (surroundings == Surroundings::kTransparent && sight.shape == Hit::kNothing)
     return Rgba::Zero();

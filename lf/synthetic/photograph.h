@@ -12,7 +12,7 @@
 
 namespace lf {
 
-// What pictures show where no surface is.
+// The background that pictures show where no surface is.
 enum class Surroundings : uint8_t {
   kShown,        // room and lamps. Pictures are R, G, B
   kTransparent,  // nothing, not even lamps; a ray that meets a surface is opaque, glass included.
