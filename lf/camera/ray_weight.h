@@ -1,6 +1,7 @@
 // How much a ray counts (doc/ray.md, "What is added").
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <utility>
@@ -25,6 +26,26 @@ struct WeightBlocks {
   int EndY(int y) const { return ((y + shift_y) / kWeightBlock + 1) * kWeightBlock - shift_y; }
 };
 
+// Near the borders of an LF image its rays count less: its feather is the part of the weight that
+// is left, from 0 at the border to kWholeFeather.
+inline constexpr uint32_t kWholeFeather = 256;
+
+// The weight of one element of a block, whose centre is that of element (i, j) of the block.
+//   weight    of the block
+//   above     feather at the block's upper corners, left and right
+//   below     the same of the lower corners
+// Returns at least 1 where the block has a weight: a recorded ray always counts.
+inline uint32_t FeatheredWeight(uint32_t weight, const uint16_t* above, const uint16_t* below,
+                                int i, int j) {
+  constexpr uint32_t kOne = 2 * kWeightBlock;
+  const auto right = static_cast<uint32_t>(2 * i + 1), down = static_cast<uint32_t>(2 * j + 1);
+  const uint32_t upper = above[0] * (kOne - right) + above[1] * right;
+  const uint32_t lower = below[0] * (kOne - right) + below[1] * right;
+  const uint32_t feather = upper * (kOne - down) + lower * down;
+  constexpr uint32_t kWhole = kWholeFeather * kOne * kOne;
+  return std::max(std::min(weight, 1U), (weight * feather + kWhole / 2) / kWhole);
+}
+
 // What the rays of one LF image count in one frame.
 class RayWeights {
  public:
@@ -33,30 +54,47 @@ class RayWeights {
   // At most kMaxWeight, of `count` blocks side by side, the first of which ends before (end_x,
   // end_y).
   using RowFunction = std::function<void(int end_x, int end_y, int count, uint8_t* weights)>;
-  RayWeights(const WeightBlocks& blocks, RowFunction of_row)
-      : blocks_(blocks), of_row_(std::move(of_row)) {}
+  // The feather, at most kWholeFeather, at the positions (x + kWeightBlock i, y) of the plate, i in
+  // [0, count): corners of blocks. Any thread may call it.
+  using FeatherFunction = std::function<void(int x, int y, int count, uint16_t* feather)>;
+  //   feather_of_row  empty: the image has none
+  RayWeights(const WeightBlocks& blocks, RowFunction of_row, FeatherFunction feather_of_row = {})
+      : blocks_(blocks), of_row_(std::move(of_row)), feather_of_row_(std::move(feather_of_row)) {}
 
   bool are_same() const { return of_row_ == nullptr; }
   uint32_t same() const { return same_; }
   // The image takes no part.
   bool are_none() const { return are_same() && same_ == 0; }
+  bool has_feather() const { return feather_of_row_ != nullptr; }
   const WeightBlocks& blocks() const { return blocks_; }
+
   // Of element (x, y).
   uint32_t At(int x, int y) const {
     if (are_same()) return same_;
     uint8_t weight = 0;
-    of_row_(blocks_.EndX(x), blocks_.EndY(y), 1, &weight);
-    return weight;
+    OfRow(x, y, 1, &weight);
+    if (!has_feather() || weight == 0) return weight;
+    const int begin_x = blocks_.EndX(x) - kWeightBlock, begin_y = blocks_.EndY(y) - kWeightBlock;
+    uint16_t above[2], below[2];
+    feather_of_row_(begin_x, begin_y, 2, above);
+    feather_of_row_(begin_x, begin_y + kWeightBlock, 2, below);
+    return FeatheredWeight(weight, above, below, x - begin_x, y - begin_y);
   }
-  // Of as many blocks from that of element (x, y) on, side by side; not where are_same().
+  // Of as many blocks from that of element (x, y) on, side by side, without feather; not where
+  // are_same().
   void OfRow(int x, int y, int count, uint8_t* weights) const {
     of_row_(blocks_.EndX(x), blocks_.EndY(y), count, weights);
+  }
+  // Of as many corners of blocks; where has_feather().
+  void FeatherOfRow(int x, int y, int count, uint16_t* feather) const {
+    feather_of_row_(x, y, count, feather);
   }
 
  private:
   uint32_t same_ = 1;
   WeightBlocks blocks_;
   RowFunction of_row_;
+  FeatherFunction feather_of_row_;
 };
 
 }  // namespace lf

@@ -27,6 +27,22 @@ RayWeights AnyWeights(uint64_t seed) {
   });
 }
 
+// The same with a feather: whole, none and in part, by columns and rows of corners.
+RayWeights AnyFeatheredWeights(uint64_t seed) {
+  const RayWeights any = AnyWeights(seed);
+  const auto of_row = [any](int end_x, int end_y, int count, uint8_t* weights) {
+    any.OfRow(end_x - 1, end_y - 1, count, weights);
+  };
+  return RayWeights(any.blocks(), of_row, [seed](int x, int y, int count, uint16_t* feather) {
+    for (int i = 0; i < count; ++i) {
+      const auto column = static_cast<uint64_t>(x + i * kWeightBlock + 8) / kWeightBlock;
+      const auto row = static_cast<uint64_t>(y + 8) / kWeightBlock;
+      const uint64_t random = RandomBits(seed, column / 3, row / 3);
+      feather[i] = random % 3 == 0 ? kWholeFeather : random % 3 == 1 ? 0 : random % kWholeFeather;
+    }
+  });
+}
+
 // What `plate` holds, element by element so many times.
 SensorPlate Multiplied(const SensorPlate& plate, const RayWeights& weights) {
   SensorPlate product(plate.width(), plate.height());
@@ -51,6 +67,31 @@ TEST(RayWeights, AreThoseOfBlocks) {
   EXPECT_EQ(RayWeights().At(5, 9), 1u);
   EXPECT_EQ(RayWeights(7).At(5, 9), 7u);
   EXPECT_TRUE(RayWeights(7).are_same());
+}
+
+TEST(RayWeights, FeatherIsInterpolatedBetweenCorners) {
+  // It grows by a 32nd of the weight an element to the right, from 0 at x = 5.
+  const auto weight = [](int, int, int count, uint8_t* weights) {
+    std::fill_n(weights, count, 64);
+  };
+  const RayWeights weights({3, 1}, weight, [](int x, int, int count, uint16_t* feather) {
+    for (int i = 0; i < count; ++i)
+      feather[i] = static_cast<uint16_t>(std::clamp(8 * (x + i * kWeightBlock - 5), 0, 256));
+  });
+  EXPECT_TRUE(weights.has_feather());
+  EXPECT_EQ(weights.At(0, 5), 1u);  // at least 1: a recorded ray counts
+  EXPECT_EQ(weights.At(5, 5), 1u);
+  EXPECT_EQ(weights.At(7, 0), 5u);
+  EXPECT_EQ(weights.At(12, 40), 15u);
+  EXPECT_EQ(weights.At(13, 40), 17u);
+  EXPECT_EQ(weights.At(36, 40), 63u);
+  EXPECT_EQ(weights.At(37, 40), 64u);
+  const uint16_t whole[] = {kWholeFeather, kWholeFeather}, none[] = {0, 0};
+  for (int j = 0; j < kWeightBlock; ++j) {
+    EXPECT_EQ(FeatheredWeight(kMaxWeight, whole, whole, j, j), kMaxWeight);
+    EXPECT_EQ(FeatheredWeight(0, whole, none, j, j), 0u);
+    EXPECT_EQ(FeatheredWeight(160, whole, none, 3, j), static_cast<uint32_t>(150 - 20 * j));
+  }
 }
 
 TEST(RayWeights, RaysAddAndCountSoManyTimes) {
@@ -84,8 +125,8 @@ TEST(RayWeights, RaysAddAndCountSoManyTimes) {
       };
       SensorPlate plain = PlateFor(pair);
       total += collect(1, &plain);
-      for (const RayWeights& weights :
-           {RayWeights(0), RayWeights(2), RayWeights(kMaxWeight), AnyWeights(seed)}) {
+      for (const RayWeights& weights : {RayWeights(0), RayWeights(2), RayWeights(kMaxWeight),
+                                        AnyWeights(seed), AnyFeatheredWeights(seed)}) {
         SensorPlate weighted = PlateFor(pair);
         collect(weights, &weighted);
         EXPECT_EQ(weighted, Multiplied(plain, weights)) << seed;
@@ -101,7 +142,8 @@ TEST(RayWeights, RaysAddAndCountSoManyTimes) {
 TEST(RayWeights, TheReferencesDoTheSame) {
   const testing::CameraPair pair = testing::ParallelPair(1, 2, 0.013, 0.05);
   const LfPixels pixels = testing::NoisePixels(testing::WholeImage(pair), BayerPattern::kNone, 3);
-  for (const RayWeights& weights : {RayWeights(1), RayWeights(100), AnyWeights(2)}) {
+  for (const RayWeights& weights :
+       {RayWeights(1), RayWeights(100), AnyWeights(2), AnyFeatheredWeights(2)}) {
     SensorPlate plain = PlateFor(pair), weighted = PlateFor(pair);
     ScatterReference(pair.lf_camera, pixels, pair.render_camera, pixels.rect, &plain);
     ScatterReference(pair.lf_camera, pixels, pair.render_camera, pixels.rect, &weighted, weights);

@@ -19,7 +19,7 @@ class TileWeights {
   // Nothing is written where weights are the same.
   void Fill(const RayWeights& weights, const PixelRect& tile, int pitch);
 
-  // The least and the largest.
+  // Every weight of the tile lies between the two; where they are equal, all are the same.
   uint32_t least() const { return least_; }
   uint32_t most() const { return most_; }
 
@@ -27,10 +27,17 @@ class TileWeights {
   const uint8_t* data() const { return bytes_.data() + kMargin; }
 
  private:
+  bool FillBlocks(const RayWeights& weights, const PixelRect& tile, int y);
+  void FillRow(const RayWeights& weights, const PixelRect& tile, int y, uint8_t* row) const;
+
   uint32_t least_ = 0;
   uint32_t most_ = 0;
   std::vector<uint8_t> bytes_;
-  std::vector<uint8_t> of_blocks_;  // of a row of blocks
+  // Of a row of blocks: their weights, and the feather at their corners.
+  std::vector<uint8_t> of_blocks_;
+  std::vector<uint16_t> above_;
+  std::vector<uint16_t> below_;
+  int below_y_ = 0;  // where below_ is of
 };
 
 }  // namespace lf

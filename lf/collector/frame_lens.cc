@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "lf/camera/ray_through.h"
 #include "lf/collector/around_lens.h"
+#include "lf/lens_weights/image_feather.h"
 
 namespace lf {
 
@@ -44,10 +47,19 @@ RayWeights FrameLens::WeightsOf(LfImageId id) const {
   const auto found = cameras_.find(id.value);
   if (found == cameras_.end() || !weights_->TakesPart(found->second)) return 0;
   const size_t camera = found->second;
-  if (weights_->is_constant()) return weights_->At(camera, 0, 0);
-  return RayWeights(weights_->BlocksOf(camera),
-                    [this, camera](int end_x, int end_y, int count, uint8_t* weights) {
-                      weights_->OfRow(camera, end_x, end_y, count, weights);
+  RayWeights::RowFunction of_row = [this, camera](int end_x, int end_y, int count,
+                                                  uint8_t* weights) {
+    weights_->OfRow(camera, end_x, end_y, count, weights);
+  };
+  if (weights_->is_constant()) {
+    const auto same = static_cast<uint8_t>(weights_->At(camera, 0, 0));
+    if (same == 0) return 0;
+    of_row = [same](int, int, int count, uint8_t* weights) { std::fill_n(weights, count, same); };
+  }
+  auto feather = std::make_shared<const ImageFeather>(light_field_.Camera(id), camera_);
+  return RayWeights(weights_->BlocksOf(camera), std::move(of_row),
+                    [feather](int x, int y, int count, uint16_t* of_corners) {
+                      feather->OfRow(x, y, count, of_corners);
                     });
 }
 
@@ -88,12 +100,13 @@ Image<float> FrameLens::EffectiveCounts() const {
   for (const auto& [id, camera] : cameras_) {
     if (!weights_->TakesPart(camera)) continue;
     const RayThrough ray(light_field_.Camera(LfImageId{id}), camera_.pinhole.ForwardWorld());
+    const RayWeights weights = WeightsOf(LfImageId{id});
     for (int row = 0; row < sums.height(); ++row)
       for (int column = 0; column < sums.width(); ++column) {
         const std::optional<Vec3>& point = focus[static_cast<size_t>(row) * sums.width() + column];
         if (!point || !IsSeenBy(ray, *point)) continue;
         const double weight =
-            weights_->At(camera, element(column, plate.width_px), element(row, plate.height_px));
+            weights.At(element(column, plate.width_px), element(row, plate.height_px));
         sums.at(column, row, 0) += weight;
         sums.at(column, row, 1) += weight * weight;
       }

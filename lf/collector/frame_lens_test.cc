@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -149,6 +150,63 @@ TEST(FrameLens, ImagesBesideTheLensTakePartAndThoseFarAwayDoNot) {
   ASSERT_TRUE(lens.facts());
   EXPECT_EQ(lens.facts()->hat_share, 0);
   EXPECT_LT(lens.facts()->coverage.uncovered_share, 0.1);
+}
+
+// LF images of even brightness each, that differ by up to a tenth: the picture changes from element
+// to element no more than smoothly where images begin and end.
+TEST(FrameLens, BordersOfLfImagesLeaveNoSeam) {
+  class EvenStore : public testing::NoiseStore {
+   public:
+    Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override {
+      *pixels = LfPixels(rect, BayerPattern::kNone);
+      const double brightness = 0.95 + 0.1 * RandomUnit(12, id.value, 0);
+      for (int y = 0; y < rect.height(); ++y)
+        for (int x = 0; x < rect.width(); ++x)
+          for (int c = 0; c < 3; ++c)
+            pixels->radiance.at(x, y, c) = static_cast<uint16_t>(30000 * brightness);
+      return {};
+    }
+  };
+  ThreadPool pool(2);
+  LightField field = testing::NoiseField(7);
+  field.intrinsics[0] = {700, 700, 320, 240, 0, 640, 480};
+  RenderCamera frame = testing::NoiseFrames()[0];
+  frame.pinhole.intrinsics = {560, 560, 320, 240, 0, 640, 480};  // sees beyond the images
+  std::vector<FrameLens> lenses;
+  lenses.emplace_back(ImageIndex(field), frame, LensWeights::kArea, SelectOptions{}, pool);
+  SelectOptions select;
+  select.reach = ReachOf(Estimator::kBilinear);
+  const RenderCamera& camera = lenses[0].camera();
+  const auto order = SelectImages(ImageIndex(field), {&camera, 1}, select, pool);
+  const auto largest_step = [&](bool has_feather) {
+    std::vector<SensorPlate> plates;
+    plates.emplace_back(640, 480);
+    CollectOptions options;
+    options.reading.estimator = Estimator::kBilinear;
+    options.weights = [&](size_t, LfImageId id) {
+      const RayWeights weights = lenses[0].WeightsOf(id);
+      if (has_feather || weights.are_same()) return weights;
+      return RayWeights(weights.blocks(),
+                        [weights](int end_x, int end_y, int count, uint8_t* of_blocks) {
+                          weights.OfRow(end_x - 1, end_y - 1, count, of_blocks);
+                        });
+    };
+    EXPECT_TRUE(Collect(field, EvenStore(), {&camera, 1}, order, options, pool, &plates, {}));
+    double most = 0;
+    const auto value = [&](int x, int y) {
+      const ElementSum sum = plates[0].At(x, y, 1);
+      return static_cast<double>(sum.sum) / static_cast<double>(sum.count);
+    };
+    for (int y = 60; y < 420; ++y)
+      for (int x = 60; x < 580; ++x)
+        // Farther out only some images end, and weights are too small to be told apart.
+        if (std::min(plates[0].At(x, y, 1).count, plates[0].At(x - 1, y, 1).count) > kMaxWeight)
+          most = std::max(most, std::abs(value(x, y) / value(x - 1, y) - 1));
+    return most;
+  };
+  const double with = largest_step(true), without = largest_step(false);
+  EXPECT_LT(with, 0.005);
+  EXPECT_GT(without, 2.5 * with);
 }
 
 // Against sums over the weights themselves, where every image holds all of the frame.

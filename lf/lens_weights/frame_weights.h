@@ -26,8 +26,8 @@ namespace lf {
 //   kAuto  by the one or the other, or by both where the lens is between them: AutoHatShare()
 enum class LensWeights { kNone, kArea, kHat, kAuto };
 
-// The version of doc/lens-integral.md: raised when LF cameras get other weights.
-inline constexpr int kLensWeightsVersion = 2;
+// The version of doc/lens-integral.md: raised when rays get other weights.
+inline constexpr int kLensWeightsVersion = 3;
 
 // "none", "area", "hat", "auto"
 const char* NameOf(LensWeights weights);
