@@ -88,20 +88,22 @@ class UnevenExposureTest(ProgramTestCase):
                                           "--match-exposure", "--vignetting"))
         return self.folder / "matched", report, exposures
 
-    def expect_gains(self, matched, exposures, percent):
+    def gain_percent(self, matched, exposures):
+        """The largest error of a gain, up to one scale of each channel."""
         frames = json.loads((matched / "transforms.json").read_text())["frames"]
-        left = np.array([frame["lf_gain"] for frame in frames]) * exposures
+        left = np.array([np.ones(3) * frame["lf_gain"] for frame in frames]) * exposures
         left /= np.exp(np.log(left).mean(0))
-        self.assertLess(100 * np.abs(left - 1).max(), percent)
+        return 100 * np.abs(left - 1).max()
 
-    def expect_even(self, field, gain_percent, least_step, frame_percent):
+    def expect_even(self, field, gain_percent, frame_percent, corner):
+        """Returns the matched folder, its frame and the exposures."""
         matched, report, exposures = self.matched(field)
         exposure = report["exposure"]
-        self.assertGreater(exposure["step_before"], least_step)
+        self.assertGreater(exposure["step_before"], 0.05)
         self.assertLess(exposure["step_after"], exposure["step_before"] / 4)
         self.assertEqual(exposure["matched"], len(exposures))
-        self.assertAlmostEqual(exposure["falloff"]["corner_min"], 0.6, delta=0.05)
-        self.expect_gains(matched, exposures, gain_percent)
+        self.assertAlmostEqual(exposure["falloff"]["corner_min"], 0.6, delta=corner)
+        gains = self.gain_percent(matched, exposures)
         # Few LF images share a pixel of this frame, so that every border shows.
         self.succeeds(EXAMPLE, field, "-o", self.folder / "path.yaml", "--move", "static")
         true, before, after = (self.frame(of) for of in (field, self.folder / "uneven", matched))
@@ -109,15 +111,16 @@ class UnevenExposureTest(ProgramTestCase):
         errors = [error_percent(frame, true) for frame in (before, after)]
         print(f"{field.name}: seams {seams[0]:.3f} % -> {seams[1]:.3f} %, frames differ by "
               f"{errors[0]:.2f} % -> {errors[1]:.2f} %, residual {100 * exposure['step_before']:.2f} % -> "
-              f"{100 * exposure['step_after']:.2f} %, corner {exposure['falloff']['corner_min']:.4f}",
-              file=sys.stderr)
+              f"{100 * exposure['step_after']:.2f} %, corner {exposure['falloff']['corner_min']:.4f}, "
+              f"gains to {gains:.2f} %", file=sys.stderr)
+        self.assertLess(gains, gain_percent)
         self.assertLess(errors[1], frame_percent)
-        self.assertLess(errors[1], errors[0] / 2)
+        self.assertLess(errors[1], errors[0] / 8)
         self.assertLess(seams[1], min(0.3, seams[0] / 2))
-        return matched
+        return matched, after, exposures
 
     def test_a_synthetic_field_becomes_even(self):
-        self.expect_even(self.synthetic_field(), 1, 0.05, 2.5)
+        self.expect_even(self.synthetic_field(), 0.3, 0.5, 0.008)
 
     def test_photographs_of_a_shop_become_even(self):
         images = pathlib.Path(DATA) / "data" / "blender-shop" / "images"
@@ -137,7 +140,18 @@ class UnevenExposureTest(ProgramTestCase):
                 [1, 0, 0, float(x) / 1000], [0, 1, 0, -float(y) / 1000], [0, 0, 1, 0], [0, 0, 0, 1]]})
         (field / "transforms.json").write_text(json.dumps(
             {"fl_x": 200, "w": 240, "h": 160, "frames": frames}))
-        self.expect_even(field, 2, 0.05, 3)
+        matched, after, exposures = self.expect_even(field, 0.7, 0.9, 0.03)
+        # The rest is the shop's own: the even photographs, too, are matched by places that shine
+        # and are hidden otherwise in each. Relative to what is found there, all is right to 0.5 %.
+        even = self.folder / "even shop matched"
+        self.succeeds(IMPORTER, field, "-o", even, "--match-exposure", "--vignetting")
+        frames = json.loads((even / "transforms.json").read_text())["frames"]
+        gains = self.gain_percent(matched, exposures / [np.ones(3) * frame["lf_gain"] for frame in frames])
+        error = error_percent(after, self.frame(even))
+        print(f"shop, relative to its even photographs matched: gains to {gains:.2f} %, frames differ by "
+              f"{error:.2f} %", file=sys.stderr)
+        self.assertLess(gains, 0.5)
+        self.assertLess(error, 0.5)
 
     def test_every_way_of_rendering_takes_gain_and_falloff(self):
         matched, _, _ = self.matched(self.synthetic_field())
@@ -151,7 +165,7 @@ class UnevenExposureTest(ProgramTestCase):
         for options in (["--estimator", "bilinear"], ["--mode", "rebin"], ["--mode", "hybrid"]):
             pair = [self.frame(field, *options)
                     for field in (self.folder / "even", matched)]
-            self.assertLess(error_percent(pair[1], pair[0]), 2, options)
+            self.assertLess(error_percent(pair[1], pair[0]), 0.5, options)
 
     def test_a_state_of_another_falloff_is_not_resumed(self):
         matched, _, _ = self.matched(self.synthetic_field())

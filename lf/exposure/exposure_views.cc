@@ -51,18 +51,24 @@ Image<uint16_t> LightOf(const LfPixels& pixels, int divisor, double pedestal, do
 
 }  // namespace
 
-float ExposureView::LightAt(const Vec2& place_px, int channel) const {
+std::array<float, 3> ExposureView::LightsAt(const Vec2& place_px) const {
   const int divisor = grey->divisor;
   const double x = place_px.x() / divisor - 0.5, y = place_px.y() / divisor - 0.5;
-  if (!(x >= 0 && y >= 0 && x < light.width() - 1 && y < light.height() - 1)) return 0;
-  const int column = static_cast<int>(x), row = static_cast<int>(y);
+  // A pixel at the last column or row is there, too, if the place is exactly its centre.
+  if (!(x >= 0 && y >= 0 && x <= light.width() - 1 && y <= light.height() - 1)) return {};
+  const int column = std::min(static_cast<int>(x), light.width() - 2);
+  const int row = std::min(static_cast<int>(y), light.height() - 2);
+  if (column < 0 || row < 0) return {};
   const auto u = static_cast<float>(x - column), v = static_cast<float>(y - row);
-  const auto at = [&](int i, int j) -> float { return light.at(column + i, row + j, channel); };
-  const float values[4] = {at(0, 0), at(1, 0), at(0, 1), at(1, 1)};
-  for (const float value : values)
-    if (value == 0) return 0;
-  return (1 - v) * ((1 - u) * values[0] + u * values[1]) +
-         v * ((1 - u) * values[2] + u * values[3]);
+  const uint16_t* upper = light.row(row) + 3 * column;
+  const uint16_t* lower = light.row(row + 1) + 3 * column;
+  std::array<float, 3> lights;
+  for (size_t c = 0; c < 3; ++c) {
+    if (upper[c] == 0 || upper[c + 3] == 0 || lower[c] == 0 || lower[c + 3] == 0) return {};
+    lights[c] = (1 - v) * ((1 - u) * upper[c] + u * upper[c + 3]) +
+                v * ((1 - u) * lower[c] + u * lower[c + 3]);
+  }
+  return lights;
 }
 
 size_t ViewBytes(const Intrinsics& k, int width_px) {

@@ -2,6 +2,7 @@
 // in. All of a light field are in memory at the same time.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <functional>
@@ -23,8 +24,8 @@ struct ExposureView {
   // what the light field can hold, 0 where one of the LF pixels is masked or clipped.
   Image<uint16_t> light;
 
-  // Light of a channel between pixels; 0 where one of the four around is 0, or beyond the image.
-  float LightAt(const Vec2& place_px, int channel) const;
+  // Light between pixels; 0 where one of the four around is 0, or beyond the image.
+  std::array<float, 3> LightsAt(const Vec2& place_px) const;
 };
 inline constexpr float kLightSteps = 65534;
 

@@ -12,17 +12,27 @@ namespace lf {
 namespace {
 
 constexpr int kRounds = 16;
-constexpr int kHuberRounds = 5;           // before outliers are left out altogether
-constexpr double kHuber = 1.345;          // in standard deviations (95 % efficient on normal noise)
-constexpr double kTukey = 4.685;          // the same
-constexpr double kLeastDeviation = 2e-3;  // of a residual: quantised values are no better
-constexpr double kLeastShare = 0.05;      // of light, within the search
-constexpr double kPriorDeviation = 1;     // of falloff coefficients that samples tell nothing of
-constexpr size_t kLeastPerImage = 12;     // samples that agree, of all channels
-constexpr double kAgrees = 0.1;           // weight
+constexpr int kHuberRounds = 5;        // before outliers are left out altogether
+constexpr double kHuber = 1.345;       // in standard deviations (95 % efficient on normal noise)
+constexpr double kTukey = 4.685;       // the same
+constexpr double kLeastFactor = 0.2;   // of the deviations that samples state
+constexpr double kUnit = 0.01;         // deviation of a sample whose weight is 1
+constexpr double kLeastShare = 0.05;   // of light, within the search
+constexpr double kPriorDeviation = 1;  // of falloff coefficients that samples tell nothing of
+constexpr size_t kLeastPerImage = 12;  // samples that agree, of all channels
+constexpr double kAgrees = 0.1;        // robust weight
 
 double Share(const Vignetting& falloff, double r_squared) {
   return std::max(kLeastShare, falloff.Falloff(r_squared));
+}
+
+// The mean of ln F over values of r^2 with this mean and variance, to the second order.
+double MeanLogShare(const Vignetting& falloff, double r_squared, double variance) {
+  const double share = Share(falloff, r_squared);
+  const auto& [v1, v2, v3] = falloff.v;
+  const double slope = (v1 + r_squared * (2 * v2 + r_squared * 3 * v3)) / share;
+  const double bend = (2 * v2 + 6 * r_squared * v3) / share - slope * slope;
+  return std::log(share) + bend * variance / 2;
 }
 
 // d ln F / d v.
@@ -45,6 +55,7 @@ class Fit {
   ExposureFit Run() {
     residuals_.resize(3 * samples_.size());
     weights_.resize(residuals_.size());
+    agreements_.resize(residuals_.size());
     for (round_ = 0; round_ < kRounds; ++round_) {
       Weigh();
       Step();
@@ -77,17 +88,20 @@ class Fit {
         const double residual = measured - ModelLogRatio(samples_[i], static_cast<int>(c),
                                                          fit_.log_gains, groups_, fit_.falloffs);
         residuals_[3 * i + c] = residual;
-        if (!std::isnan(residual)) sizes.push_back(std::abs(residual));
+        if (!std::isnan(residual)) sizes.push_back(std::abs(residual) / samples_[i].deviation[c]);
       }
     if (sizes.empty()) return;
     const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
     std::nth_element(sizes.begin(), middle, sizes.end());
-    deviation_ = std::max(kLeastDeviation, 1.4826 * *middle);
-    for (size_t i = 0; i < residuals_.size(); ++i)
-      weights_[i] = std::isnan(residuals_[i])
-                        ? 0
-                        : static_cast<float>(RobustWeight(std::abs(residuals_[i]) / deviation_)) *
-                              samples_[i / 3].weight;
+    factor_ = std::max(kLeastFactor, 1.4826 * *middle);
+    for (size_t i = 0; i < residuals_.size(); ++i) {
+      const double deviation = samples_[i / 3].deviation[i % 3];
+      agreements_[i] =
+          std::isnan(residuals_[i])
+              ? 0
+              : static_cast<float>(RobustWeight(std::abs(residuals_[i]) / (deviation * factor_)));
+      weights_[i] = agreements_[i] * static_cast<float>(kUnit * kUnit / (deviation * deviation));
+    }
   }
 
   double RobustWeight(double deviations) const {
@@ -104,7 +118,7 @@ class Fit {
     const auto unknowns =
         static_cast<Eigen::Index>(options_.vignetting ? 3 * fit_.falloffs.size() : 0);
     Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(unknowns, unknowns) *
-                             (deviation_ * deviation_ / (kPriorDeviation * kPriorDeviation));
+                             std::pow(factor_ * kUnit / kPriorDeviation, 2);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(unknowns);
     for (Eigen::Index i = 0; i < unknowns; ++i)
       right[i] = -matrix(i, i) * fit_.falloffs[static_cast<size_t>(i / 3)].v[i % 3];
@@ -186,9 +200,7 @@ class Fit {
     return solved;
   }
 
-  bool Agrees(size_t sample, size_t c) const {
-    return weights_[3 * sample + c] > kAgrees * samples_[sample].weight;
-  }
+  bool Agrees(size_t sample, size_t c) const { return agreements_[3 * sample + c] > kAgrees; }
 
   // Images that enough samples tie to others; what these connect.
   void FindComponents() {
@@ -244,7 +256,7 @@ class Fit {
         if (!Agrees(i, c) || fit_.components[samples_[i].a] == kAlone) continue;
         ++fit_.sample_count;
         sum += std::abs(residuals_[3 * i + c]);
-        fit_.weights[i] = std::max(fit_.weights[i], weights_[3 * i + c]);
+        fit_.weights[i] = std::max(fit_.weights[i], agreements_[3 * i + c]);
       }
     if (fit_.sample_count > 0) fit_.step = sum / static_cast<double>(fit_.sample_count);
   }
@@ -255,8 +267,9 @@ class Fit {
   std::vector<std::array<uint32_t, 2>> pairs_;
   std::vector<uint32_t> pair_of_;  // of each sample
   std::vector<double> residuals_;  // [samples][3]; NaN: no sample of the channel
-  std::vector<float> weights_;     // [samples][3]
-  double deviation_ = 1;
+  std::vector<float> agreements_;  // [samples][3]: robust weights, in [0, 1]
+  std::vector<float> weights_;     // [samples][3]: these, by the inverse variance
+  double factor_ = 1;              // of the deviations that samples state
   int round_ = 0;
   ExposureFit fit_;
 };
@@ -267,9 +280,9 @@ double ModelLogRatio(const ExposureSample& sample, int channel,
                      const std::vector<std::array<double, 3>>& log_gains,
                      const std::vector<uint32_t>& groups, const std::vector<Vignetting>& falloffs) {
   const auto c = static_cast<size_t>(channel);
-  const double share_a = Share(falloffs[groups[sample.a]], sample.a_r_squared);
-  const double share_b = Share(falloffs[groups[sample.b]], sample.b_r_squared);
-  return log_gains[sample.b][c] - log_gains[sample.a][c] + std::log(share_a / share_b);
+  return log_gains[sample.b][c] - log_gains[sample.a][c] +
+         MeanLogShare(falloffs[groups[sample.a]], sample.a_r_squared, sample.a_r_variance) -
+         MeanLogShare(falloffs[groups[sample.b]], sample.b_r_squared, sample.b_r_variance);
 }
 
 ExposureFit FitExposure(const std::vector<ExposureSample>& samples,

@@ -14,11 +14,13 @@ namespace lf {
 // One place of the scene, as LF images `a` and `b` recorded it.
 struct ExposureSample {
   uint32_t a = 0, b = 0;
-  // Means of r^2 over what was recorded (camera/vignetting.h).
+  // Means of r^2 over what was recorded (camera/vignetting.h), and its variances there.
   float a_r_squared = 0, b_r_squared = 0;
+  float a_r_variance = 0, b_r_variance = 0;
   // ln(light of a / light of b) of R, G and B; NaN: dark or clipped in this channel.
   std::array<float, 3> log_ratio = {};
-  float weight = 1;
+  // Standard deviations of these, up to a factor that all samples share.
+  std::array<float, 3> deviation = {0.01f, 0.01f, 0.01f};
 };
 
 struct FitOptions {
@@ -34,9 +36,11 @@ struct ExposureFit {
   // samples agree with those of others.
   std::vector<uint32_t> components;
   uint32_t component_count = 0;
-  size_t sample_count = 0;     // that agree with the result, of all channels
-  double step = 0;             // mean |ln ratio| that is left of these
-  std::vector<float> weights;  // of the samples, in the end: 0 if no channel agrees
+  size_t sample_count = 0;  // that agree with the result, of all channels
+  double step = 0;          // mean |ln ratio| that is left of these
+  // Of the samples, in the end: the weight of the channel that agrees best, in [0, 1]; 0 if none
+  // does.
+  std::vector<float> weights;
 };
 inline constexpr uint32_t kAlone = UINT32_MAX;
 
@@ -44,8 +48,10 @@ inline constexpr uint32_t kAlone = UINT32_MAX;
 //
 //   ln(a / b) = g_b - g_a + ln F_a(r_a) - ln F_b(r_b)
 //
-// Samples that do not fit it (hidden by something in front, shining, watermarked) lose their weight
-// by Huber's and then Tukey's function of their residual. Falloffs of which the samples tell
+// ln F being the mean over what was recorded: that at the mean of r^2, and a term of second order.
+// A sample counts by its inverse variance. Samples that do not fit the model (hidden by something
+// in front, shining, watermarked) lose their weight by Huber's and then Tukey's function of their
+// residual, relative to their deviation. Falloffs of which the samples tell
 // nothing stay 0.
 //   groups  of each LF image: which falloff is its own, from 0
 //   known   falloffs of the groups

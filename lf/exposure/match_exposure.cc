@@ -10,21 +10,21 @@
 #include <utility>
 
 #include "lf/capture/distinct_intrinsics.h"
+#include "lf/exposure/compare_patches.h"
 #include "lf/exposure/exposure_views.h"
 #include "lf/exposure/fit_exposure.h"
+#include "lf/exposure/nearby_cameras.h"
 #include "lf/focus/place_depth.h"
 
 namespace lf {
 namespace {
 
 constexpr int kWidest_px = 240, kNarrowest_px = 80;  // of the small copies
-constexpr size_t kNearest = 8;           // LF images that are compared whatever rings there are
-constexpr double kLeastCosine = 0.8;     // between optical axes
-constexpr size_t kLeastViews = 2;        // of a ring
-constexpr double kLeastAgreement = 0.8;  // correlation of a view that is compared
-constexpr int kLeastPixels = kPatchSize * 2 / 3;  // of a patch, in both LF images
-constexpr double kDarkest = 0.01;                 // radiance: noise and quantisation are as large
-constexpr double kBright = 0.1;                   // from here on a sample counts in full
+constexpr size_t kLeastViews = 2;                    // of a ring
+constexpr double kLeastAgreement = 0.8;              // correlation of a view that is compared
+constexpr size_t kProbed = 6;        // LF images that are searched at all depths first
+constexpr size_t kProbedPlaces = 3;  // one of so many places of these
+constexpr size_t kLeastProbes = 50;  // depths found there
 constexpr size_t kMostSamples = 4'000'000;
 constexpr size_t kLeastSamples = 60;  // of an LF image, however many there are
 constexpr size_t kImagesPerRound = 64;
@@ -55,114 +55,47 @@ CameraGroups GroupCameras(const LightField& field) {
   return groups;
 }
 
-// The LF cameras nearest to one that look the same way.
-std::vector<View> NearestViews(const LightField& field, LfImageId id) {
-  const PinholeCamera camera = field.Camera(id);
-  std::vector<std::pair<double, uint32_t>> others;
-  for (uint32_t i = 0; i < field.size(); ++i) {
-    const RigidTransform& pose = field.cameras[i].cam_from_world;
-    if (i == id.value || pose.rotation.row(2).dot(camera.ForwardWorld()) < kLeastCosine) continue;
-    const Vec3 centre = -(pose.rotation.transpose() * pose.translation);
-    others.emplace_back((centre - camera.CentreWorld()).norm(), i);
-  }
-  const auto end = others.begin() + static_cast<std::ptrdiff_t>(std::min(kNearest, others.size()));
-  std::partial_sort(others.begin(), end, others.end());
-  std::vector<View> views;
-  for (auto other = others.begin(); other != end; ++other)
-    views.push_back({LfImageId{other->second},
-                     RayThrough(field.Camera(LfImageId{other->second}), camera.ForwardWorld()),
-                     other->first});
-  return views;
-}
-
-// Light and places of a patch in two LF images, of the pixels that both have.
-class PatchPair {
- public:
-  PatchPair(const ExposureView& a, const ExposureView& b, const Intrinsics& of_a,
-            const Intrinsics& of_b)
-      : a_(a), b_(b), of_a_(of_a), of_b_(of_b) {}
-
-  // None if they have too few in common, in all channels.
-  std::optional<ExposureSample> Compare(const Place& place, const PatchGrid& grid,
-                                        const RadianceEncoding& encoding) const {
-    ExposureSample sample;
-    double a_r_squared = 0, b_r_squared = 0, most_light = 0;
-    int places = 0;
-    std::array<int, 3> counts = {};
-    std::array<double, 3> a_sums = {}, b_sums = {};
-    const int divisor = a_.grey->divisor;
-    for (int i = 0; i < kPatchSize; ++i) {
-      const Vec2 at_a =
-          place.at_px + divisor * Vec2(i % kPatchSide - kHalfPatch, i / kPatchSide - kHalfPatch);
-      const Vec2 at_b = grid.At(i);
-      bool is_seen = false;
-      for (int c = 0; c < 3; ++c) {
-        const float light_a = a_.LightAt(at_a, c), light_b = b_.LightAt(at_b, c);
-        if (light_a == 0 || light_b == 0) continue;
-        is_seen = true;
-        ++counts[static_cast<size_t>(c)];
-        a_sums[static_cast<size_t>(c)] += light_a - 1;
-        b_sums[static_cast<size_t>(c)] += light_b - 1;
-      }
-      if (!is_seen) continue;
-      ++places;
-      a_r_squared += RadiusSquared(of_a_, at_a.x(), at_a.y());
-      b_r_squared += RadiusSquared(of_b_, at_b.x(), at_b.y());
-    }
-    if (places < kLeastPixels) return std::nullopt;
-    sample.a_r_squared = static_cast<float>(a_r_squared / places);
-    sample.b_r_squared = static_cast<float>(b_r_squared / places);
-    bool is_any = false;
-    for (size_t c = 0; c < 3; ++c) {
-      const double scale = encoding.max_radiance / kLightSteps / std::max(1, counts[c]);
-      const double least = scale * std::min(a_sums[c], b_sums[c]);
-      const bool is_bright = counts[c] >= kLeastPixels && least >= kDarkest;
-      sample.log_ratio[c] = is_bright ? static_cast<float>(std::log(a_sums[c] / b_sums[c]))
-                                      : std::numeric_limits<float>::quiet_NaN();
-      is_any = is_any || is_bright;
-      most_light = std::max(most_light, least);
-    }
-    if (!is_any) return std::nullopt;
-    sample.weight = static_cast<float>(std::min(1.0, most_light / kBright));
-    return sample;
-  }
-
- private:
-  const ExposureView& a_;
-  const ExposureView& b_;
-  const Intrinsics& of_a_;
-  const Intrinsics& of_b_;
-};
-
 class Sampler {
  public:
   Sampler(const LightField& field, const std::vector<ExposureView>& views)
-      : field_(field), views_(views) {}
+      : field_(field), views_(views), nearby_(field) {}
+
+  // Looks at some places of some LF images at all depths; LF images are then searched no nearer
+  // than half of the nearest depth that is found. A full search takes several times as long.
+  void FindNearestDepth(ThreadPool& pool) {
+    const size_t count = std::min(kProbed, field_.size());
+    std::vector<std::vector<double>> depths(count);
+    pool.ForEach(count, [&](size_t i) {
+      const LfImageId id{static_cast<uint32_t>(i * field_.size() / count)};
+      if (!views_[id.value].grey) return;
+      const Rings rings = LoadedRings(nearby_.DepthRings(id));
+      if (rings.empty()) return;
+      const std::vector<Place> places = TexturedPlaces(field_, id, *views_[id.value].grey);
+      for (size_t place = i % kProbedPlaces; place < places.size(); place += kProbedPlaces)
+        if (const auto depth =
+                DepthOf(rings, places[place], IntrinsicsOf(id), views_[id.value].grey->divisor))
+          depths[i].push_back(depth->distance_w);
+    });
+    std::vector<double> all;
+    for (const std::vector<double>& some : depths) all.insert(all.end(), some.begin(), some.end());
+    if (all.size() < kLeastProbes) return;
+    const auto near = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 50);
+    std::nth_element(all.begin(), near, all.end());
+    nearest_w_ = *near / 2;
+  }
 
   // Samples of one LF image with those around; evenly thinned to the number.
   std::vector<ExposureSample> SamplesOf(LfImageId id, size_t most) const {
     std::vector<ExposureSample> samples;
     const ExposureView& own = views_[id.value];
     if (!own.grey) return samples;
-    const Rings rings = LoadedRings(ChooseRings(field_, id));
-    const std::vector<View> nearest = Loaded(NearestViews(field_, id));
+    const Rings rings = LoadedRings(nearby_.DepthRings(id));
     if (rings.empty()) return samples;
+    const std::vector<View> compared = Loaded(nearby_.ComparedViews(id, rings));
     const Intrinsics& k = IntrinsicsOf(id);
-    for (const Place& place : TexturedPlaces(field_, id, *own.grey)) {
-      const std::optional<FoundDepth> depth = DepthOf(rings, place, k, own.grey->divisor);
-      if (!depth) continue;
-      std::vector<uint32_t> compared;
-      const auto compare = [&](const std::vector<View>& views) {
-        for (const View& view : views) {
-          if (std::find(compared.begin(), compared.end(), view.id.value) != compared.end())
-            continue;
-          compared.push_back(view.id.value);
-          Compare(id, view, place, depth->distance_w, &samples);
-        }
-      };
-      for (const std::vector<View>& ring : rings) compare(ring);
-      compare(nearest);
-    }
+    for (const Place& place : TexturedPlaces(field_, id, *own.grey))
+      if (const auto depth = DepthOf(rings, place, k, own.grey->divisor, nearest_w_))
+        Compare(id, place, depth->distance_w, compared, &samples);
     if (samples.size() <= most) return samples;
     std::vector<ExposureSample> thinned;
     for (size_t i = 0; i < most; ++i) thinned.push_back(samples[i * samples.size() / most]);
@@ -185,21 +118,25 @@ class Sampler {
     return rings;
   }
 
-  void Compare(LfImageId id, const View& view, const Place& place, double depth_w,
+  void Compare(LfImageId id, const Place& place, double depth_w, const std::vector<View>& others,
                std::vector<ExposureSample>* samples) const {
-    if (CorrelationAt(view, place, depth_w) < kLeastAgreement) return;
-    const PatchPair pair(views_[id.value], views_[view.id.value], IntrinsicsOf(id),
-                         IntrinsicsOf(view.id));
-    std::optional<ExposureSample> sample =
-        pair.Compare(place, *PatchSeenBy(view, place, depth_w), field_.encoding);
-    if (!sample) return;
-    sample->a = id.value;
-    sample->b = view.id.value;
-    samples->push_back(*sample);
+    const ComparedPatch patch({views_[id.value], IntrinsicsOf(id)}, place,
+                              field_.encoding.max_radiance);
+    for (const View& view : others) {
+      if (CorrelationAt(view, place, depth_w) < kLeastAgreement) continue;
+      std::optional<ExposureSample> sample = patch.CompareWith(
+          {views_[view.id.value], IntrinsicsOf(view.id)}, *PatchSeenBy(view, place, depth_w));
+      if (!sample) continue;
+      sample->a = id.value;
+      sample->b = view.id.value;
+      samples->push_back(*sample);
+    }
   }
 
   const LightField& field_;
   const std::vector<ExposureView>& views_;
+  const NearbyCameras nearby_;
+  double nearest_w_ = 0;  // depth that places are searched from
 };
 
 // The width of small copies that fit into the memory; 0: not even the narrowest do.
@@ -217,7 +154,8 @@ Result<std::vector<ExposureSample>> TakeSamples(const LightField& plain,
                                                 const std::vector<ExposureView>& views,
                                                 const MatchExposureOptions& options,
                                                 ThreadPool& pool) {
-  const Sampler sampler(plain, views);
+  Sampler sampler(plain, views);
+  sampler.FindNearestDepth(pool);
   const size_t most = std::max(kLeastSamples, kMostSamples / plain.size());
   std::vector<ExposureSample> samples;
   for (size_t begin = 0; begin < plain.size(); begin += kImagesPerRound) {

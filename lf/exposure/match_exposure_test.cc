@@ -8,30 +8,20 @@
 
 #include "lf/core/random.h"
 #include "lf/focus/focus_pick.h"
+#include "lf/focus/test_value_noise.h"
 
 namespace lf {
 namespace {
 
-constexpr int kWidth = 240, kHeight = 160, kSide = 5;
+constexpr int kWidth = 240, kHeight = 160;
 constexpr double kFocal_px = 220, kPitch_w = 0.05, kWall_w = 2;
 constexpr Vignetting kTrueFalloff{{-0.3, 0.05, -0.15}};  // 60 % in the corner
-
-// Value noise: smooth between random numbers on a lattice of width 1.
-double Noise(double x, double y, uint64_t seed) {
-  const double column = std::floor(x), row = std::floor(y), u = x - column, v = y - row;
-  const auto at = [&](double i, double j) {
-    return RandomUnit(seed, static_cast<uint64_t>(column + i + 100000),
-                      static_cast<uint64_t>(row + j + 100000));
-  };
-  const double s = u * u * (3 - 2 * u), t = v * v * (3 - 2 * v);
-  return std::lerp(std::lerp(at(0, 0), at(1, 0), s), std::lerp(at(0, 1), at(1, 1), s), t);
-}
 
 // A grid of cameras before a textured wall, exposed unevenly, with the falloff of their lens, noise
 // and a watermark.
 class UnevenStore : public LfImageStore {
  public:
-  UnevenStore() {
+  explicit UnevenStore(int side = 5) {
     field.encoding.transfer = Transfer::kLinear;
     Intrinsics k;
     k.fx_px = k.fy_px = kFocal_px;
@@ -40,10 +30,10 @@ class UnevenStore : public LfImageStore {
     k.width_px = kWidth;
     k.height_px = kHeight;
     field.intrinsics = {k};
-    for (int i = 0; i < kSide * kSide; ++i) {
+    for (int i = 0; i < side * side; ++i) {
       LfCamera camera;
       camera.cam_from_world.translation =
-          -Vec3(kPitch_w * (i % kSide - kSide / 2), kPitch_w * (i / kSide - kSide / 2), 0);
+          -Vec3(kPitch_w * (i % side - side / 2), kPitch_w * (i / side - side / 2), 0);
       field.cameras.push_back(camera);
       field.image_names.push_back("drawn_" + std::to_string(i) + ".png");
       std::array<double, 3> exposure;
@@ -63,18 +53,19 @@ class UnevenStore : public LfImageStore {
         const Ray ray = *RayOfLfPixel(camera, at.x(), at.y());
         const Vec3 point = ray.At((kWall_w - ray.origin.z()) / ray.direction.z());
         const double scale = kFocal_px / 8 / kWall_w;
+        const double grey = 0.4 * ValueNoise(point.x() * scale, point.y() * scale, 5);
         for (size_t c = 0; c < 3; ++c) {
-          double light = is_blank ? 0.3
-                                  : 0.1 + 0.4 * Noise(point.x() * scale, point.y() * scale, 5) +
-                                        0.1 * Noise(point.x() * scale, point.y() * scale, 6 + c);
-          if (has_windows && Noise(point.x() * 3, point.y() * 3, 8) > 0.7) light = 2;
+          double light =
+              is_blank ? 0.3
+                       : 0.1 + grey + 0.1 * ValueNoise(point.x() * scale, point.y() * scale, 6 + c);
+          if (has_windows && ValueNoise(point.x() * 3, point.y() * 3, 8) > 0.7) light = 2;
           light *= exposures[id.value][c] *
                    falloff.Falloff(RadiusSquared(camera.intrinsics, at.x(), at.y()));
           const uint64_t place = (id.value * 1000ull + static_cast<uint64_t>(at.y())) * 1000 +
                                  static_cast<uint64_t>(at.x());
           light += 0.02 * (RandomUnit(2, place, c) - 0.5);
           if (has_watermark && at.x() > 150 && at.y() > 110)
-            light = 0.2 + 0.6 * Noise(at.x() / 4, at.y() / 4, 9);
+            light = 0.2 + 0.6 * ValueNoise(at.x() / 4, at.y() / 4, 9);
           pixels->radiance.at(x, y, static_cast<int>(c)) =
               static_cast<uint16_t>(std::lround(65535 * std::clamp(light, 0., 1.)));
         }
@@ -144,7 +135,7 @@ TEST(MatchExposure, ClippedLightTellsNothing) {
 }
 
 TEST(MatchExposure, AFalloffThatIsStatedIsKept) {
-  UnevenStore store;
+  UnevenStore store(4);
   store.field.intrinsics[0].vignetting = kTrueFalloff;
   const Result<MatchedExposure> matched = Match(store, false);
   ASSERT_TRUE(matched) << matched.error().message;
@@ -154,7 +145,7 @@ TEST(MatchExposure, AFalloffThatIsStatedIsKept) {
 }
 
 TEST(MatchExposure, AnEvenCaptureStaysAsItIs) {
-  UnevenStore store;
+  UnevenStore store(4);
   for (auto& exposure : store.exposures) exposure = {1, 1, 1};
   store.falloff = {};
   const Result<MatchedExposure> matched = Match(store);
@@ -166,7 +157,7 @@ TEST(MatchExposure, AnEvenCaptureStaysAsItIs) {
 }
 
 TEST(MatchExposure, WhatCannotBeReadOrComparedIsLeftAlone) {
-  UnevenStore store;
+  UnevenStore store(4);
   store.broken = LfImageId{7};
   store.field.cameras[7].gain = 2;
   // Turned away.

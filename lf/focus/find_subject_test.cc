@@ -11,6 +11,7 @@
 
 #include "lf/core/random.h"
 #include "lf/focus/focus_pick.h"
+#include "lf/focus/test_value_noise.h"
 
 namespace lf {
 namespace {
@@ -48,22 +49,11 @@ class DrawnStore : public LfImageStore {
   Light light_;
 };
 
-// Value noise: smooth between random numbers on a lattice of width 1.
-double Noise(double x, double y, uint64_t seed) {
-  const double column = std::floor(x), row = std::floor(y), u = x - column, v = y - row;
-  const auto at = [&](double i, double j) {
-    return RandomUnit(seed, static_cast<uint64_t>(column + i + 100000),
-                      static_cast<uint64_t>(row + j + 100000));
-  };
-  const double s = u * u * (3 - 2 * u), t = v * v * (3 - 2 * v);
-  return std::lerp(std::lerp(at(0, 0), at(1, 0), s), std::lerp(at(0, 1), at(1, 1), s), t);
-}
-
 // Detail of the size of a few pixels.
 double Texture(const Ray& ray, double depth_w, uint64_t seed) {
   const Vec3 point = ray.At((depth_w - ray.origin.z()) / ray.direction.z());
   const double scale = kFocal_px / 4 / depth_w;
-  return 0.15 + 0.7 * Noise(point.x() * scale, point.y() * scale, seed);
+  return 0.15 + 0.7 * ValueNoise(point.x() * scale, point.y() * scale, seed);
 }
 
 // A wall that fills the picture.
@@ -84,7 +74,7 @@ Light CardBefore(double card_w, double wall_w) {
 // Draws the same words into a corner of every image.
 Light Watermarked(Light light) {
   return [light = std::move(light)](const Ray& ray, LfImageId id, const Vec2& at) {
-    if (at.x() > 150 && at.y() > 100) return Noise(at.x() / 4, at.y() / 4, 9);
+    if (at.x() > 150 && at.y() > 100) return ValueNoise(at.x() / 4, at.y() / 4, 9);
     return light(ray, id, at);
   };
 }

@@ -27,25 +27,78 @@ constexpr double kInnerRing = 2;      // in spacings
 constexpr double kRingFactor = 4;     // from ring to ring
 constexpr double kLeastCosine = 0.8;  // between optical axes
 
+// Sum over a patch, in as many chains of additions as a processor runs at the same time.
+template <typename Value>
+double SumOf(const Value& value) {
+  constexpr size_t kChains = 9;
+  static_assert(kPatchSize % kChains == 0);
+  std::array<double, kChains> sums = {};
+  for (size_t i = 0; i < kPatchSize; i += kChains)
+    for (size_t chain = 0; chain < kChains; ++chain) sums[chain] += value(i + chain);
+  double sum = 0;
+  for (const double of_chain : sums) sum += of_chain;
+  return sum;
+}
+
 // Subtracts the mean; returns the standard deviation, NaN where a value is.
 double Centre(Patch* patch) {
-  double sum = 0, squares = 0;
-  for (const float value : *patch) sum += value;
+  const double sum = SumOf([&](size_t i) { return static_cast<double>((*patch)[i]); });
   const auto mean = static_cast<float>(sum / kPatchSize);
-  for (float& value : *patch) {
-    value -= mean;
-    squares += static_cast<double>(value) * value;
-  }
+  for (float& value : *patch) value -= mean;
+  const double squares =
+      SumOf([&](size_t i) { return static_cast<double>((*patch)[i]) * (*patch)[i]; });
   return std::sqrt(squares / kPatchSize);
+}
+
+// Reads the patch as ReducedImage::At() does, all pixels at once. False where it ends beyond the
+// image.
+bool Sample(const ReducedImage& image, const PatchGrid& grid, Patch* patch) {
+  const Image<float>& light = image.light;
+  const double scale = 1.0 / image.divisor;
+  const Vec2 step_x = scale * grid.step_x, step_y = scale * grid.step_y;
+  const Vec2 first = scale * grid.centre - Vec2(0.5, 0.5) - kHalfPatch * (step_x + step_y);
+  for (const int i : {0, kPatchSide - 1})
+    for (const int j : {0, kPatchSide - 1}) {
+      const Vec2 corner = first + i * step_x + j * step_y;
+      if (!(corner.x() >= 0 && corner.y() >= 0 && corner.x() < light.width() - 1 &&
+            corner.y() < light.height() - 1))
+        return false;
+    }
+  // Parallel cameras see the place pixel by pixel: all pixels have the same fractions.
+  constexpr double kSamePixel = 1e-7;
+  if ((step_x - Vec2(1, 0)).norm() + (step_y - Vec2(0, 1)).norm() < kSamePixel) {
+    const int column = static_cast<int>(first.x()), row = static_cast<int>(first.y());
+    const auto u = static_cast<float>(first.x() - column), v = static_cast<float>(first.y() - row);
+    for (int j = 0; j < kPatchSide; ++j) {
+      const float* upper = light.row(row + j) + column;
+      const float* lower = light.row(row + j + 1) + column;
+      for (int i = 0; i < kPatchSide; ++i)
+        (*patch)[static_cast<size_t>(j * kPatchSide + i)] =
+            (1 - v) * ((1 - u) * upper[i] + u * upper[i + 1]) +
+            v * ((1 - u) * lower[i] + u * lower[i + 1]);
+    }
+    return true;
+  }
+  for (int j = 0; j < kPatchSide; ++j)
+    for (int i = 0; i < kPatchSide; ++i) {
+      const double x = first.x() + i * step_x.x() + j * step_y.x();
+      const double y = first.y() + i * step_x.y() + j * step_y.y();
+      const int column = static_cast<int>(x), row = static_cast<int>(y);
+      const auto u = static_cast<float>(x - column), v = static_cast<float>(y - row);
+      const float* upper = light.row(row) + column;
+      const float* lower = light.row(row + 1) + column;
+      (*patch)[static_cast<size_t>(j * kPatchSide + i)] =
+          (1 - v) * ((1 - u) * upper[0] + u * upper[1]) + v * ((1 - u) * lower[0] + u * lower[1]);
+    }
+  return true;
 }
 
 // -1 where the other is not seen.
 double Correlation(const Place& place, Patch* other) {
   const double deviation = Centre(other);
   if (std::isnan(deviation)) return -1;
-  double product = 0;
-  for (size_t i = 0; i < kPatchSize; ++i)
-    product += static_cast<double>(place.patch[i]) * (*other)[i];
+  const double product =
+      SumOf([&](size_t i) { return static_cast<double>(place.patch[i]) * (*other)[i]; });
   return product / (kPatchSize * std::max(place.deviation, kLeastDeviation) *
                     std::max(deviation, kLeastDeviation));
 }
@@ -65,8 +118,7 @@ double CorrelationAt(const View& view, const Place& place, double depth_w) {
   const std::optional<PatchGrid> grid = PatchSeenBy(view, place, depth_w);
   if (!grid) return -1;
   Patch patch;
-  for (int i = 0; i < kPatchSize; ++i) patch[static_cast<size_t>(i)] = view.image->At(grid->At(i));
-  return Correlation(place, &patch);
+  return Sample(*view.image, *grid, &patch) ? Correlation(place, &patch) : -1;
 }
 
 namespace {
@@ -171,10 +223,11 @@ Peak FindPeak(const Sweep& sweep, std::span<const View> views, const Place& plac
 }  // namespace
 
 std::optional<FoundDepth> DepthOf(const Rings& rings, const Place& place, const Intrinsics& k,
-                                  int divisor) {
+                                  int divisor, double nearest_w) {
   double px_per_w = PixelsPerW(rings[0], k, divisor);
   Sweep sweep;
   sweep.from_per_w = kMostDisplaced * k.width_px / divisor / px_per_w;
+  if (nearest_w > 0) sweep.from_per_w = std::min(sweep.from_per_w, 1 / nearest_w);
   sweep.step_per_w = kStep_px / px_per_w;
   sweep.count = static_cast<size_t>(sweep.from_per_w / sweep.step_per_w) + 1;
   Peak peak = FindPeak(sweep, rings[0], place);

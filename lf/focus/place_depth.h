@@ -82,7 +82,8 @@ struct FoundDepth {
 //   rings    of views whose images are loaded; at least one, each of at least two views
 //   k        of the camera
 //   divisor  of the reduced images
+//   nearest_w  places are taken to be no nearer; 0: as near as the inner ring's images can show
 std::optional<FoundDepth> DepthOf(const Rings& rings, const Place& place, const Intrinsics& k,
-                                  int divisor);
+                                  int divisor, double nearest_w = 0);
 
 }  // namespace lf

@@ -1,0 +1,51 @@
+// The LF cameras around one, found in a k-d tree of their positions, so that choosing the
+// neighbours of all LF images takes n log n.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "lf/capture/light_field.h"
+#include "lf/core/geometry.h"
+#include "lf/core/ids.h"
+#include "lf/focus/place_depth.h"
+
+namespace lf {
+
+class NearbyCameras {
+ public:
+  // Refers to the light field, which must outlive it.
+  explicit NearbyCameras(const LightField& light_field);
+
+  // Up to `count` LF cameras nearest to a point, the nearest first, that look the same way as
+  // `camera` (within 37 degrees); without `camera` itself.
+  std::vector<uint32_t> Nearest(const Vec3& point_world, size_t count, LfImageId camera) const;
+
+  // Rings of views around `camera` for DepthOf(), each twice as wide as the one before: six views
+  // of each. Depths must be known better than those of ChooseRings(), because a falloff seen at a
+  // wrong displacement comes out too weak. Images are not loaded.
+  Rings DepthRings(LfImageId camera) const;
+
+  // Views whose light is compared with that of `camera`: those of the rings, and the nearest ones.
+  // Each is there once; images are not loaded.
+  std::vector<View> ComparedViews(LfImageId camera, const Rings& rings) const;
+
+ private:
+  std::vector<View> Ring(LfImageId camera, double radius_w, double turn, double least_share) const;
+  View ViewOf(const PinholeCamera& camera, uint32_t other) const;
+  void Split(size_t begin, size_t end);
+  template <typename Visit>
+  void Search(size_t begin, size_t end, const Vec3& point_world, const double& limit,
+              const Visit& visit) const;
+
+  const LightField& field_;
+  std::vector<Vec3> centres_;    // [cameras]
+  std::vector<Vec3> forwards_;   // [cameras]
+  std::vector<uint32_t> order_;  // a balanced tree: the middle of each range is its root
+  std::vector<uint8_t> axes_;    // of each root's split, at its place in order_
+  Vec3 least_ = Vec3::Zero(), most_ = Vec3::Zero();  // corners of the box of all centres
+  double spacing_w_ = 0;
+};
+
+}  // namespace lf
