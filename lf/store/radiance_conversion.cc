@@ -1,6 +1,8 @@
 #include "lf/store/radiance_conversion.h"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <type_traits>
 #include <variant>
@@ -62,28 +64,80 @@ void ConvertByLanes(const Image<uint8_t>& stored, const PixelRect& stored_rect,
   });
 }
 
-// light_of(value) is the radiance of a stored value, before gain and falloff.
+// QuantizeRadiance() with the same bits, of light that is no NaN, without calls.
+class Quantizer {
+ public:
+  explicit Quantizer(const RadianceEncoding& encoding)
+      : scale_(encoding.Scale()), pedestal_(encoding.pedestal) {}
+
+  uint16_t operator()(double light, double gain) const {
+    const double v = std::clamp(light * gain * scale_, -kFarOut, kFarOut);
+    const auto whole = static_cast<int32_t>(v);  // towards 0, so that the rest is exact
+    const double rest = v - whole;
+    const int32_t rounded = whole + (rest >= 0.5) - (rest <= -0.5);
+    return static_cast<uint16_t>(
+        static_cast<int32_t>(std::clamp(rounded + pedestal_, 0.0, 65535.0)));
+  }
+
+ private:
+  static constexpr double kFarOut = 200000;  // beyond all lanes and pedestals
+  double scale_, pedestal_;
+};
+
+// The falloff of a row's pixels, with the bits of Vignetting::Falloff(RadiusSquared()).
+class RowFalloff {
+ public:
+  RowFalloff(const Intrinsics& k, int begin, int width)
+      : k_(k), begin_(begin), falloff_(static_cast<size_t>(width)) {}
+
+  const std::vector<double>& Of(int y) {
+    const double dy = y + 0.5 - k_.cy_px, width = k_.width_px, height = k_.height_px;
+    const double diagonal = width * width + height * height;
+    const Vignetting vignetting = k_.vignetting;
+    for (size_t i = 0; i < falloff_.size(); ++i) {
+      const double dx = begin_ + static_cast<int>(i) + 0.5 - k_.cx_px;
+      falloff_[i] = vignetting.Falloff(4 * (dx * dx + dy * dy) / diagonal);
+    }
+    return falloff_;
+  }
+
+ private:
+  const Intrinsics& k_;
+  const int begin_;
+  std::vector<double> falloff_;
+};
+
+// light_of(value) is the radiance of a stored value, before gain and falloff, and no NaN. Loops run
+// over a row for one channel at a time, so that compilers make vectors of them.
 template <class T, class LightOf>
 void ConvertWithFalloff(const Image<T>& stored, const PixelRect& stored_rect, int colours,
                         const LightOf& light_of, const RadianceEncoding& encoding,
                         const ChannelGains& gains, const Intrinsics& k, LfPixels* pixels) {
   const int channels = stored.channels(), begin = pixels->rect.x_begin;
   const bool is_mosaic = pixels->bayer != BayerPattern::kNone;
+  const Quantizer quantize(encoding);
+  RowFalloff falloffs(k, begin, pixels->rect.width());
+  std::vector<double> light(static_cast<size_t>(pixels->rect.width()));
+  std::vector<uint16_t> values(light.size());
   ForEachRow(stored, stored_rect, pixels, [&](int y, const T* in, uint16_t* out, int width) {
-    for (int x = begin; x < begin + width; ++x, in += channels) {
-      const double falloff = k.vignetting.Falloff(RadiusSquared(k, x + 0.5, y + 0.5));
-      const auto v_of = [&](int channel, T value) {
-        return QuantizeRadiance(encoding, light_of(value),
-                                gains[static_cast<size_t>(channel)] / falloff);
-      };
-      if (is_mosaic) {
-        *out++ = v_of(BayerChannel(pixels->bayer, x, y), in[0]);
-        continue;
+    const std::vector<double>& falloff = falloffs.Of(y);
+    const auto end = static_cast<size_t>(width);
+    if (is_mosaic) {
+      for (size_t i = 0; i < end; ++i) {
+        const int channel = BayerChannel(pixels->bayer, begin + static_cast<int>(i), y);
+        out[i] = quantize(light_of(in[i]), gains[static_cast<size_t>(channel)] / falloff[i]);
       }
-      const int second = colours == 1 ? 0 : 1, third = colours == 1 ? 0 : 2;
-      StorePixel(Lanes(v_of(0, in[0]), v_of(1, in[second]), v_of(2, in[third])), out);
-      out += LfPixels::kRgbLanes;
+      return;
     }
+    for (size_t c = 0; c < 3; ++c) {
+      const T* const of_channel = in + (colours == 1 ? 0 : c);
+      for (size_t i = 0; i < end; ++i)
+        light[i] = light_of(of_channel[i * static_cast<size_t>(channels)]);
+      const double gain = gains[c];
+      for (size_t i = 0; i < end; ++i) values[i] = quantize(light[i], gain / falloff[i]);
+      for (size_t i = 0; i < end; ++i) out[i * LfPixels::kRgbLanes + c] = values[i];
+    }
+    for (size_t i = 0; i < end; ++i) out[i * LfPixels::kRgbLanes + LfPixels::kRayLane] = 1;
   });
 }
 
@@ -93,8 +147,9 @@ void ConvertFalloff(const ImagePart& part, int colours, const RadianceEncoding& 
       [&]<class T>(const Image<T>& stored) {
         if constexpr (std::is_floating_point_v<T>) {
           ConvertWithFalloff(
-              stored, part.rect, colours, [](T value) -> double { return value; }, encoding, gains,
-              k, pixels);
+              stored, part.rect, colours,
+              [](T value) -> double { return std::isnan(value) ? 0 : value; }, encoding, gains, k,
+              pixels);
         } else {
           const std::vector<double> light = LightTable(encoding, int{8 * sizeof(T)});
           ConvertWithFalloff(
