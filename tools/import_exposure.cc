@@ -57,7 +57,8 @@ void ExposureArguments::AddTo(CLI::App& app) {
           ->group(group);
   app.add_flag(
          "--vignetting", vignetting,
-         "And lf_vignetting of each camera: how much light its lens loses towards the corners")
+         "Estimate lf_vignetting of each camera as well: how much light its lens loses towards "
+         "the corners")
       ->needs(option)
       ->group(group);
 }
