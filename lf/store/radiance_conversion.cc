@@ -107,8 +107,7 @@ class RowFalloff {
   std::vector<double> falloff_;
 };
 
-// light_of(value) is the radiance of a stored value, before gain and falloff, and no NaN. Loops run
-// over a row for one channel at a time, so that compilers make vectors of them.
+// light_of(value) is the radiance of a stored value, before gain and falloff, and no NaN.
 template <class T, class LightOf>
 void ConvertWithFalloff(const Image<T>& stored, const PixelRect& stored_rect, int colours,
                         const LightOf& light_of, const RadianceEncoding& encoding,
