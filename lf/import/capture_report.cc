@@ -155,7 +155,7 @@ CaptureReport ReportCapture(const LightField& light_field, const CaptureReportOp
 
   const std::vector<double> nearest_w = NearestDistances(positions, pool);
   report.spacing_w = SpreadOf(nearest_w);
-  Append(WarnOfRepeats(light_field, nearest_w, box.diagonal().norm()), &report);
+  Append(WarnOfRepeats(light_field, nearest_w), &report);
   report.density = DensityOf(report, positions, options);
   if (report.density)
     Append(WarnOfSparseness(*report.density, report.groups[0].width_px, report.spacing_w->median),

@@ -206,6 +206,25 @@ TEST(CaptureReport, RepeatedPositionsAreNamed) {
   EXPECT_NE(report.warnings[0].message.find("2 of 101 cameras"), std::string::npos);
 }
 
+TEST(CaptureReport, OneCameraFarAwayMakesNoOthersRepeated) {
+  LightField field = Grid();
+  field.cameras[7].cam_from_world.translation = Vec3(1e9, 0, 0);
+  EXPECT_EQ(Kinds(ReportOf(field, {.distance_w = 1e12})), Words{});
+  Add(field.cameras[5].cam_from_world, &field);
+  const CaptureReport report = ReportOf(field, {.distance_w = 1e12});
+  ASSERT_EQ(Kinds(report), Words{"repeated-positions"});
+  EXPECT_EQ(report.warnings[0].names, (Words{"5.png", "100.png"}));
+}
+
+TEST(CaptureReport, ImagesThatWereAllListedTwiceAreRepeated) {
+  LightField field = Grid();
+  const size_t count = field.size();
+  for (size_t i = 0; i < count; ++i) Add(LfCamera(field.cameras[i]).cam_from_world, &field);
+  const CaptureReport report = ReportOf(field);
+  ASSERT_EQ(Kinds(report), Words{"repeated-positions"});
+  EXPECT_EQ(report.warnings[0].image_count, 2 * count);
+}
+
 TEST(CaptureReport, OneCameraHasNoSpacing) {
   LightField field;
   Add(RigidTransform{}, &field);

@@ -95,14 +95,24 @@ std::vector<CaptureWarning> WarnOfUpsideDown(const LightField& light_field) {
 }
 
 std::vector<CaptureWarning> WarnOfRepeats(const LightField& light_field,
-                                          std::span<const double> nearest_w, double extent_w) {
-  constexpr double kSamePlace = 1e-9, kRounding = 1e-14;
-  double reach_w = 0;  // of the positions: what rounding leaves of equal ones
-  for (const LfCamera& camera : light_field.cameras)
-    reach_w = std::max(reach_w, camera.cam_from_world.translation.norm());
+                                          std::span<const double> nearest_w) {
+  constexpr double kSamePlace = 1e-8, kRounding = 1e-14;
+  // What rounding leaves of the distance of two equal positions.
+  const auto rounding_w = [&](size_t i) {
+    return kRounding * light_field.cameras[i].cam_from_world.translation.norm();
+  };
+  std::vector<double> apart_w;  // those of cameras that stand alone
+  for (size_t i = 0; i < nearest_w.size(); ++i)
+    if (nearest_w[i] > rounding_w(i)) apart_w.push_back(nearest_w[i]);
+  double typical_w = 0;  // their median: one camera far away does not change it
+  if (!apart_w.empty()) {
+    const auto middle = apart_w.begin() + static_cast<ptrdiff_t>(apart_w.size() / 2);
+    std::nth_element(apart_w.begin(), middle, apart_w.end());
+    typical_w = *middle;
+  }
   std::vector<LfImageId> repeated;
   for (size_t i = 0; i < nearest_w.size(); ++i)
-    if (nearest_w[i] <= kSamePlace * extent_w + kRounding * reach_w) repeated.push_back(IdOf(i));
+    if (nearest_w[i] <= kSamePlace * typical_w + rounding_w(i)) repeated.push_back(IdOf(i));
   if (repeated.empty()) return {};
   return {WarningAbout(light_field, "repeated-positions",
                        fmt::format("{} of {} cameras share their position with another: rays from "

@@ -15,9 +15,10 @@ std::vector<CaptureWarning> WarnOfDirections(const LightField& light_field);
 // upside-down.
 std::vector<CaptureWarning> WarnOfUpsideDown(const LightField& light_field);
 
-// repeated-positions: nearest_w as of NearestDistances(), extent_w the diagonal of the positions.
+// repeated-positions: those whose nearest other camera is closer than 1e-8 of the median.
+//   nearest_w  as of NearestDistances()
 std::vector<CaptureWarning> WarnOfRepeats(const LightField& light_field,
-                                          std::span<const double> nearest_w, double extent_w);
+                                          std::span<const double> nearest_w);
 
 // sparse: for images so wide, with cameras so far apart.
 std::vector<CaptureWarning> WarnOfSparseness(const Density& density, double width_px,
