@@ -167,11 +167,10 @@ class Merger {
                                         frame.value, one.path.string(), one.width_px, one.height_px,
                                         plate.path.string(), plate.width_px, plate.height_px));
         if (const auto difference = FirstDifference(plate.inputs, one.inputs))
-          return InputError(
-              fmt::format("frame {}: {} was made with {} {}, {} with {}: shards of one render have "
-                          "all in common",
-                          frame.value, plate.path.string(), difference->key, difference->recorded,
-                          one.path.string(), difference->wanted));
+          return InputError(fmt::format("frame {}: {}: shards of one render have all in common",
+                                        frame.value,
+                                        difference->Text(plate.path.string() + " was made with",
+                                                         one.path.string() + " with")));
       }
       std::vector<uint32_t> missing;
       for (uint32_t k = 1; k <= one.shard.count && missing.size() < 10; ++k)

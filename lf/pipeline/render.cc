@@ -89,7 +89,7 @@ RunStateOptions StateOptions(const Package& package, const RenderOptions& option
   choices.smooth_below = options.smooth_below;
   choices.fill_radius_px = options.fill_radius_px;
   RunInputs picture = InputsOfPicture(choices);
-  if (!package.name.empty()) picture.emplace_back("picture.film", HashOfCameras(package.path));
+  if (!package.name.empty()) picture.emplace_back(kFilmOfPackage, HashOfCameras(package.path));
   RunInputs rays = InputsOfRays(package.whole, package.light_field.encoding, choices);
   for (auto& input : InputsOfRebinning(options, max_cells, HashOfCameras(package.path)))
     rays.push_back(std::move(input));

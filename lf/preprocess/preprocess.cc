@@ -10,6 +10,7 @@
 
 #include "lf/collector/frame_lens.h"
 #include "lf/core/file.h"
+#include "lf/core/hash.h"
 #include "lf/core/log.h"
 #include "lf/hybrid/render_memory.h"
 #include "lf/package/package_file.h"
@@ -30,13 +31,34 @@ double SecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+// What the names of packages of a part of a film end on, such as -of-frames-1-4; empty for all of
+// it. Packages, reports and states of other parts can so share a folder.
+std::string NameOfPart(const std::vector<FrameId>& frames, size_t film_frame_count) {
+  if (frames.empty() || frames.size() == film_frame_count) return "";
+  std::string ranges;
+  for (size_t begin = 0, end = 0; begin < frames.size(); begin = end) {
+    for (end = begin + 1; end < frames.size(); ++end)
+      if (frames[end].value != frames[end - 1].value + 1) break;
+    ranges += fmt::format("{}{}", ranges.empty() ? "" : "+", frames[begin].value);
+    if (end > begin + 1) ranges += fmt::format("-{}", frames[end - 1].value);
+  }
+  constexpr size_t kLongest = 40;
+  if (ranges.size() > kLongest)
+    ranges = fmt::format("{}-{}-{:08x}", frames.front().value, frames.back().value,
+                         static_cast<uint32_t>(HashBytes(ranges)));
+  return "-of-frames-" + ranges;
+}
+
 // package-0000.lfp, ... of an earlier call; or what it left half written (core/file.h).
-std::vector<fs::path> PackagesIn(const fs::path& folder, const char* prefix = "package-") {
+//   part  only packages of this part; empty: all
+std::vector<fs::path> PackagesIn(const fs::path& folder, const char* prefix,
+                                 const std::string& part) {
   std::vector<fs::path> packages;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error))
     if (entry.path().extension() == kExtension &&
-        entry.path().filename().string().starts_with(prefix))
+        entry.path().filename().string().starts_with(prefix) &&
+        (part.empty() || entry.path().filename().string().find(part + ".") != std::string::npos))
       packages.push_back(entry.path());
   return packages;
 }
@@ -164,7 +186,8 @@ Result<void> Preprocessor::Begin() {
     for (uint32_t n = 1; n <= path_.frame_count(); ++n) frames_.push_back(FrameId{n});
   LF_RETURN_IF_ERROR(CheckOptions());
   if (options_.output_folder) {
-    const std::vector<fs::path> there = PackagesIn(*options_.output_folder);
+    const std::vector<fs::path> there = PackagesIn(
+        *options_.output_folder, "package-", NameOfPart(options_.frames, path_.frame_count()));
     if (!there.empty() && !options_.overwrite)
       return UsageError(
           fmt::format("{}: holds {} packages already: --overwrite replaces them, or give another "
@@ -321,7 +344,8 @@ Result<void> Preprocessor::MakePackage(size_t number, const Section& section, si
   report_.select_s += SecondsSince(start);
 
   PackageForecast forecast;
-  forecast.name = fmt::format("package-{:04}", number);
+  const std::string part = NameOfPart(options_.frames, path_.frame_count());
+  forecast.name = fmt::format("package-{:04}{}", number, part);
   LF_RETURN_IF_ERROR(CountMissing(package, &forecast));
   LF_RETURN_IF_ERROR(Forecast(package, &forecast));
   report_.packages.push_back(std::move(forecast));
@@ -330,7 +354,7 @@ Result<void> Preprocessor::MakePackage(size_t number, const Section& section, si
   const auto write_start = std::chrono::steady_clock::now();
   if (number == 0)
     for (const char* const prefix : {"package-", ".package-"})
-      for (const fs::path& old : PackagesIn(*options_.output_folder, prefix)) {
+      for (const fs::path& old : PackagesIn(*options_.output_folder, prefix, part)) {
         std::error_code ignored;
         fs::remove(old, ignored);
       }

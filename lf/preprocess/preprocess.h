@@ -67,7 +67,7 @@ struct FrameForecast {
 };
 
 struct PackageForecast {
-  std::string name;  // package-0000
+  std::string name;  // package-0000; of a part of the film: package-0000-of-frames-1-4
   std::vector<FrameId> frames;
   size_t image_count = 0;      // LF images to be read
   size_t missing_count = 0;    // of these, files that are not there, or are empty

@@ -11,6 +11,8 @@
 namespace lf {
 namespace {
 
+constexpr const char* kNoInput = "(none)";
+
 // What a reader may want to see, then the hash of all of it.
 std::string EncodingText(const RadianceEncoding& encoding) {
   ValueHasher hasher;
@@ -128,11 +130,21 @@ std::string HashOfCameras(const CameraPath& path) {
   return hasher.Text();
 }
 
+std::string InputDifference::Text(const std::string& one, const std::string& other) const {
+  const auto text_of = [&](const std::string& value) {
+    if (value != kNoInput) return fmt::format("{} {}", key, value);
+    return key == kFilmOfPackage ? std::string("no packages") : "no " + key;
+  };
+  const bool is_in_both = recorded != kNoInput && wanted != kNoInput;
+  return fmt::format("{} {}, {} {}", one, text_of(recorded), other,
+                     is_in_both ? wanted : text_of(wanted));
+}
+
 std::optional<InputDifference> FirstDifference(const RunInputs& recorded, const RunInputs& wanted) {
   const auto value_in = [](const RunInputs& inputs, const std::string& key) -> std::string {
     for (const auto& [name, value] : inputs)
       if (name == key) return value;
-    return "(none)";
+    return kNoInput;
   };
   for (const auto& [key, value] : wanted)
     if (const std::string other = value_in(recorded, key); other != value)

@@ -55,6 +55,9 @@ RunInputs InputsOfCamera(FrameId frame, const RenderCamera& camera);
 // Of its picture alone.
 RunInputs InputsOfPicture(const RunChoices& choices);
 
+// The key of HashOfCameras() in the inputs of packages; other renders lack it.
+inline constexpr const char* kFilmOfPackage = "picture.film";
+
 // All cameras of a film: what packages rendered into one folder must have in common.
 std::string HashOfCameras(const CameraPath& path);
 
@@ -63,6 +66,10 @@ struct InputDifference {
   std::string key;
   std::string recorded;
   std::string wanted;
+
+  // Returns such as "was made with order area, this call has shuffle", where `one` is "was
+  // made with" and `other` "this call has". Input that one side lacks is "no order".
+  std::string Text(const std::string& one, const std::string& other) const;
 };
 std::optional<InputDifference> FirstDifference(const RunInputs& recorded, const RunInputs& wanted);
 

@@ -81,6 +81,15 @@ TEST(RunInputs, WhatOneSideLacksIsADifference) {
   EXPECT_EQ(FirstDifference({{"a", "1"}}, {})->wanted, "(none)");
 }
 
+TEST(RunInputs, DifferencesAreReadable) {
+  const RunInputs packages = {{kFilmOfPackage, "1f"}}, other = {{kFilmOfPackage, "2e"}};
+  EXPECT_EQ(FirstDifference(packages, other)->Text("was made with", "this call has"),
+            "was made with picture.film 1f, this call has 2e");
+  EXPECT_EQ(FirstDifference({}, packages)->Text("was made with", "this call has"),
+            "was made with no packages, this call has picture.film 1f");
+  EXPECT_EQ(FirstDifference({{"a", "1"}}, {})->Text("has", "this has"), "has a 1, this has no a");
+}
+
 TEST(RunInputs, TheFolderMayMove) {
   LightField field = testing::NoiseField();
   const RunInputs before = InputsOfRays(IdentityOf(field), field.encoding, {});

@@ -182,10 +182,9 @@ Result<void> RunState::CheckOtherPackages() const {
     if (const auto difference =
             FirstDifference(other.inputs, Joined(options_.rays, options_.picture)))
       return UsageError(
-          fmt::format("{}: is of a package or shard that was rendered with {} {}, this one has {}: "
-                      "their frames "
-                      "would pass for one film; give another -o, or remove what is there",
-                      file.string(), difference->key, difference->recorded, difference->wanted));
+          fmt::format("{}: is of a package or shard that {}: their frames would pass for one film; "
+                      "give another -o, or remove what is there",
+                      file.string(), difference->Text("was rendered with", "this one has")));
   }
   return {};
 }
@@ -262,9 +261,8 @@ Result<void> RunState::Check(const std::string& place, FrameId frame, const RunI
   if (has_picture) wanted = Joined(wanted, options_.picture);
   wanted = Joined(wanted, InputsOfCamera(frame, path_.Camera(frame)));
   if (const auto difference = FirstDifference(recorded, wanted))
-    return UsageError(fmt::format("{}: --resume: was made with {} {}, this call has {}; {}", place,
-                                  difference->key, difference->recorded, difference->wanted,
-                                  kAdvice));
+    return UsageError(fmt::format("{}: --resume: {}; {}", place,
+                                  difference->Text("was made with", "this call has"), kAdvice));
   return {};
 }
 
@@ -335,9 +333,9 @@ Result<std::optional<RunState::Rays>> RunState::LoadRays(FrameId first, size_t s
       if (!entry.first.starts_with(kProgress)) recorded.push_back(entry);
     if (const auto difference = FirstDifference(recorded, wanted))
       return UsageError(fmt::format(
-          "{}: --resume: was made with {} {}, this call has {}; give the same, or another -o, or "
-          "--overwrite in place of --resume to start anew",
-          path.string(), difference->key, difference->recorded, difference->wanted));
+          "{}: --resume: {}; give the same, or another -o, or --overwrite in place of --resume to "
+          "start anew",
+          path.string(), difference->Text("was made with", "this call has")));
     return {};
   };
   Result<RaysFile> file = ReadRays(path, max_cells, pool, check);
