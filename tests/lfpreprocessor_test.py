@@ -19,7 +19,8 @@ import numpy as np
 from PIL import Image
 
 from program_test_case import ProgramTestCase
-from small_field import HEIGHT, SIDE, WIDTH, write_field, write_path
+from small_field import (HEIGHT, SIDE, WALL_DEPTH, WIDTH, wall, write_field,
+                         write_path)
 
 PREPROCESSOR = RENDERER = None
 
@@ -404,6 +405,49 @@ class PackagesTest(ProgramTestCase):
         self.assertIn("an aperture of at most", wide["warnings"][-1])
         write_path(self.folder, aperture=wide["advice"]["largest_aperture"])
         self.assertEqual(plan("--depths", "0.7", "4")["warnings"], [])
+
+    def test_depths_are_those_that_lf_images_show(self):
+        path = write_path(self.folder)
+        path.write_text(path.read_text().replace("0.8", "0.09"))
+        def plan(field):
+            return json.loads(self.succeeds(PREPROCESSOR, field, path, "--plan", "--json"))
+        shown = plan(write_field(self.folder / "wall", wall))
+        self.assertEqual(shown["depths_from"], "LF images")
+        near, far = shown["frames"][0]["depths"]
+        self.assertTrue(0.85 * WALL_DEPTH < near < WALL_DEPTH < far < 1.15 * WALL_DEPTH, (near, far))
+        nearest, farthest = shown["advice"]["focus_distance"]
+        self.assertLess(nearest, WALL_DEPTH)
+        self.assertTrue(farthest is None or farthest > WALL_DEPTH, farthest)
+        told = plan(write_field(self.folder / "told", wall, lf_depth_range=[0.2, 3]))
+        self.assertEqual((told["depths_from"], told["frames"][0]["depths"]), ("the calibration", [0.2, 3]))
+        noise = plan(write_field(self.folder / "noise"))
+        self.assertIsNone(noise["depths_from"])
+        self.assertIsNone(noise["advice"]["focus_distance"])
+        for words in ("--depths NEAR FAR", "lf_depth_range", "points3D", "no focus distance is advised"):
+            self.assertIn(words, noise["warnings"][0])
+
+    def test_parts_of_a_film_share_a_folder(self):
+        field, path = self.film(frames=5)
+        packages, out = self.folder / "packages", self.folder / "frames"
+        for frames in ("1-2", "3-5"):
+            self.succeeds(PREPROCESSOR, field, path, "-o", packages, "--frames", frames, "--packages", "1")
+            self.fails(2, ["holds 1 packages", "--overwrite"], PREPROCESSOR, field, path, "-o", packages,
+                       "--frames", frames)
+        names = ["package-0000-of-frames-1-2", "package-0000-of-frames-3-5"]
+        self.assertEqual(sorted(file.stem for file in packages.glob("*.lfp")), names)
+        self.succeeds(PREPROCESSOR, field, path, "-o", packages, "--frames", "1-2", "--packages", "2",
+                      "--overwrite")
+        files = sorted(packages.glob("*.lfp"))
+        self.assertEqual([file.stem for file in files], names[:1] + names[1:] + [
+            "package-0001-of-frames-1-2"])
+        for file in files:
+            self.succeeds(RENDERER, file, "-o", out)
+        for file in files:
+            report = json.loads((out / f"report-{file.stem}.json").read_text())
+            self.assertTrue(report["frames"])
+        self.assertEqual(len(list(out.glob("frame_*.exr"))), 5)
+        self.succeeds(PREPROCESSOR, field, path, "-o", packages, "--overwrite", "--packages", "1")
+        self.assertEqual([file.stem for file in packages.glob("*.lfp")], ["package-0000"])
 
     def test_packages_can_be_asked_by_sql(self):
         """the schema of doc/formats/package.md"""

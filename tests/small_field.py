@@ -6,6 +6,7 @@ import numpy as np
 from PIL import Image
 
 WIDTH, HEIGHT, SIDE, PITCH = 64, 48, 5, 0.01
+WALL_DEPTH = 0.25
 
 PATH_YAML = """format: lfpath 1
 fps: 25
@@ -23,6 +24,17 @@ lens:
 keyframes:
   focus_distance: [{{time: 0, value: 0.8}}, {{time: 1, value: 2}}]
 """
+
+
+def wall(index):
+    """A finely textured wall at WALL_DEPTH, as LF camera `index` sees it."""
+    x0 = (index % SIDE - (SIDE - 1) / 2) * PITCH + 0.0003 * (index % 3)
+    y0 = -(index // SIDE - (SIDE - 1) / 2) * PITCH
+    x = x0 + (np.arange(WIDTH) + 0.5 - WIDTH / 2) / 70 * WALL_DEPTH
+    y = y0 + (np.arange(HEIGHT) + 0.5 - HEIGHT / 2) / 70 * WALL_DEPTH
+    cells = np.floor(x / 0.02)[None, :] * 374761 + np.floor(y / 0.02)[:, None] * 668265
+    grey = (np.sin(cells) * 43758.5453) % 1
+    return np.repeat((grey * 200 + 20).astype(np.uint8)[..., None], 3, axis=2)
 
 
 def write_path(folder: pathlib.Path, frames=3, aperture=0.045, x=0) -> pathlib.Path:

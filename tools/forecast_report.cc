@@ -93,6 +93,20 @@ void AddDensity(const PreprocessReport& report, const CameraPath& path, std::str
 
 }  // namespace
 
+namespace {
+
+// What is known of the depths of the scene, and how to give them.
+std::string DepthsText(const ForecastFacts& facts) {
+  if (facts.depths_from == "LF images") return " (depths as LF images tell them)";
+  if (!facts.depths_from.empty()) return "";
+  return " (a quarter off the focus: the depths of the scene are not known, so that no focus "
+         "distance "
+         "is advised. Neither the calibration nor the LF images tell them: give --depths NEAR FAR, "
+         "lf_depth_range in transforms.json, or the points3D of a COLMAP model)";
+}
+
+}  // namespace
+
 MissingImages MissingOf(const PreprocessReport& report) {
   MissingImages missing{report.missing_count, report.needed_count, "",
                         "renders of these packages leave them out unless they are mended before"};
@@ -107,7 +121,7 @@ std::vector<std::string> DensityWarnings(const PreprocessReport& report, const C
                                          const ForecastFacts& facts) {
   std::vector<std::string> warnings;
   if (report.missing_count > 0) warnings.push_back(MissingOf(report).what);
-  const ForecastAdvice advice = AdviceOf(report, path, facts.are_depths_known);
+  const ForecastAdvice advice = AdviceOf(report, path, !facts.depths_from.empty());
   const FrameForecast& sparse =
       Worst(report, [](const FrameForecast& frame) { return frame.density.MostDisplacement_px(); });
   const double most_px = sparse.density.MostDisplacement_px();
@@ -122,8 +136,7 @@ std::vector<std::string> DensityWarnings(const PreprocessReport& report, const C
         "x "
         "{}; or a capture {:.0f} times as dense along each axis",
         sparse.frame.value, most_px, LengthText(density.DepthOfMost_w(), path.unit_m),
-        facts.are_depths_known ? "" : " (depths of the scene are not known: --depths tells them)",
-        LengthText(density.camera_distance_w, path.unit_m),
+        DepthsText(facts), LengthText(density.camera_distance_w, path.unit_m),
         LengthText(density.camera_distance_w / most_px, path.unit_m),
         advice.focus ? fmt::format("a focus distance {} in every frame; ",
                                    RangeText(*advice.focus, path.unit_m))
@@ -233,6 +246,7 @@ std::string ForecastJson(const PreprocessReport& report, const CameraPath& path,
   json["order"] = NameOf(facts.order);
   json["seed"] = facts.seed;
   json["unit_m"] = path.unit_m;
+  json["depths_from"] = facts.depths_from.empty() ? Json() : Json(facts.depths_from);
   json["threads"] = facts.thread_count;
   json["largest_over_mean_rays"] = LargestOverMean(report.packages);
   json["rate"] = report.rate ? Json{{"cpu_s_per_lf_image", report.rate->load_s},
@@ -274,7 +288,7 @@ std::string ForecastJson(const PreprocessReport& report, const CameraPath& path,
                               {"near_displacement_px", density.near_displacement_px},
                               {"far_displacement_px", density.far_displacement_px}});
   }
-  const ForecastAdvice advice = AdviceOf(report, path, facts.are_depths_known);
+  const ForecastAdvice advice = AdviceOf(report, path, !facts.depths_from.empty());
   json["advice"] = {
       {"focus_distance",
        advice.focus ? Json{advice.focus->near_w, finite(advice.focus->far_w)} : Json()},

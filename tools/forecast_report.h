@@ -19,8 +19,9 @@ struct ForecastFacts {
   ImageOrder order = ImageOrder::kShuffle;
   uint64_t seed = 0;
   int thread_count = 1;
-  double read_s = 0;              // spent on the calibration
-  bool are_depths_known = false;  // of the scene
+  double read_s = 0;  // spent on the calibration
+  // What tells the depths of the scene: "--depths", "the calibration", "LF images"; empty: nothing.
+  std::string depths_from;
 };
 
 // What a capture is too sparse for, in plain words: what to expect, why, and what would work.

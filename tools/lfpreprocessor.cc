@@ -13,9 +13,11 @@
 #include "tools/common/progress.h"
 #include "tools/forecast_report.h"
 
+#include "lf/focus/swept_depths.h"
 #include "lf/path/path_yaml.h"
 #include "lf/pipeline/frame_range.h"
 #include "lf/preprocess/preprocess.h"
+#include "lf/store/open_store.h"
 
 namespace {
 
@@ -27,6 +29,7 @@ constexpr const char* kExamples = R"(Examples:
 
 DIR receives package-0000.lfp, ...: the cameras of a section of the film, and of the light field the
 LF cameras that its frames need, with their pixel rectangles and their order (doc/formats/package.md).
+With --frames 1-4 they are package-0000-of-frames-1-4.lfp, ..., so that parts of a film may share DIR.
 Rendered from packages, frames have the same bits as those of lfrenderer LIGHTFIELD PATH.yaml.)";
 
 struct Arguments {
@@ -86,7 +89,7 @@ void AddOptions(CLI::App& app, Arguments& a) {
   a.allow_missing.AddTo(app, "those that packages need");
   app.add_option("--depths", a.depths,
                  "NEAR FAR of the scene, world units from the LF cameras, for the density report; "
-                 "without it those that the light field tells")
+                 "without it those that the calibration tells, or else the LF images")
       ->expected(2)
       ->check(CLI::Range(1e-9, 1e12));
 }
@@ -136,6 +139,20 @@ lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::Comm
   return options;
 }
 
+// Returns what tells the depths of the scene, as ForecastFacts::depths_from. LF images are asked
+// only if nothing else does.
+std::string KnowDepths(const lf::LightField& light_field, const lf::CameraPath& path,
+                       lf::ThreadPool& pool, lf::PreprocessOptions* options) {
+  if (options->depths) return "--depths";
+  if (light_field.depth_range) return "the calibration";
+  const lf::FrameId first = options->frames.empty() ? lf::FrameId{1} : options->frames.front();
+  const auto store = lf::OpenStore(light_field, lf::Mosaics::kToRgb);
+  if (!store || path.frame_count() == 0) return "";
+  options->depths =
+      lf::SweptDepths(light_field, **store, path.Camera(first).pinhole.CentreWorld(), pool);
+  return options->depths ? "LF images" : "";
+}
+
 lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   const std::atomic<bool>& interrupted = lf::CatchInterrupts();
   LF_ASSIGN_OR_RETURN(const lf::MissingLimit limit, a.allow_missing.Limit());
@@ -148,6 +165,7 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
                       MakeOptions(a, common, path, light_field.encoding.bayer));
   options.interrupted = &interrupted;
   lf::ThreadPool pool(common.threads);
+  const std::string depths_from = KnowDepths(light_field, path, pool, &options);
   lf::ProgressMeter meter(lf::ParseProgressStyle(common.progress), "frames");
   LF_ASSIGN_OR_RETURN(
       const lf::PreprocessReport report,
@@ -165,7 +183,7 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   if (facts.rebins) facts.render_options = fmt::format(" --mode {}", a.mode);
   if (options.lens_weights == lf::LensWeights::kNone && options.mode != lf::RenderMode::kRebin)
     facts.render_options += " --lens-weights none";
-  facts.are_depths_known = options.depths || light_field.depth_range;
+  facts.depths_from = depths_from;
   LF_RETURN_IF_ERROR(lf::PrintReport(common.json ? lf::ForecastJson(report, path, facts)
                                                  : lf::ForecastText(report, path, facts)));
   return lf::EndWithMissing(lf::MissingOf(report), limit);

@@ -1,0 +1,29 @@
+#include "lf/focus/swept_depths.h"
+
+#include "lf/core/log.h"
+#include "lf/focus/find_subject.h"
+
+namespace lf {
+
+std::optional<DepthRange> SweptDepths(const LightField& light_field, const LfImageStore& store,
+                                      const Vec3& position_world, ThreadPool& pool) {
+  LfImageId nearest{0};
+  double nearest_w = -1;
+  for (uint32_t i = 0; i < light_field.size(); ++i) {
+    const double away_w = (light_field.Camera(LfImageId{i}).CentreWorld() - position_world).norm();
+    if (nearest_w >= 0 && away_w >= nearest_w) continue;
+    nearest = LfImageId{i};
+    nearest_w = away_w;
+  }
+  if (light_field.size() < 3) return std::nullopt;
+  const Result<Subject> subject = FindSubject(light_field, store, nearest, pool);
+  if (!subject) {
+    LogDebug("depths of the scene: {}", subject.error().message);
+    return std::nullopt;
+  }
+  constexpr double kMargin = 1.05;
+  if (!subject->is_sure) return std::nullopt;
+  return DepthRange{subject->near_w / kMargin, subject->far_w * kMargin};
+}
+
+}  // namespace lf
