@@ -295,6 +295,16 @@ TEST_F(ReadColmapTest, ImagesAreLookedForAndThePlacesAreListed) {
   EXPECT_EQ(Open(folder_)->folder, folder_ / "sparse/0/images");
 }
 
+TEST_F(ReadColmapTest, WhatLiesNearImagesThatAreNotFoundIsTold) {
+  WriteModel(folder_ / "sparse/0", {{.name = "img 7.png"}});
+  Write(folder_ / "images/other.jpg");
+  EXPECT_HAS(ErrorOf(Open(folder_)),
+             "images: its folder holds 1 files, such as other.jpg; put the");
+  Write(folder_ / "images/IMG_07.JPG");
+  EXPECT_HAS(ErrorOf(Open(folder_)),
+             "; similar in " + (folder_ / "images").string() + ": IMG_07.JPG; put the images");
+}
+
 TEST_F(ReadColmapTest, ANamedFolderOfImagesIsNotChecked) {
   WriteModel(folder_ / "sparse/0");
   const OpenOptions options = {.images_folder = "nowhere"};

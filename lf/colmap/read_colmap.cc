@@ -13,6 +13,7 @@
 #include "lf/colmap/colmap_binary.h"
 #include "lf/colmap/colmap_scene.h"
 #include "lf/colmap/colmap_text.h"
+#include "lf/core/files_nearby.h"
 #include "lf/core/log.h"
 
 namespace lf {
@@ -118,6 +119,23 @@ std::vector<fs::path> ImageFolders(const fs::path& model_folder) {
   return folders;
 }
 
+// What is near a missing image, in the first folder where there is something of a like name; else
+// in the first that is there.
+std::string NearbyIn(const fs::path& model_folder, const std::string& name) {
+  std::string nearby;
+  for (const fs::path& folder : ImageFolders(model_folder)) {
+    const fs::path missing = folder / name;
+    if (!IsFolder(folder)) continue;
+    const std::string here = FilesNearby(missing);
+    if (here.starts_with("; similar there: "))
+      return fmt::format("; similar in {}: {}", missing.parent_path().string(),
+                         here.substr(here.find(": ") + 2));
+    if (nearby.empty() && folder.filename() == "images")
+      nearby = fmt::format("; {}: {}", missing.parent_path().string(), here.substr(2));
+  }
+  return nearby;
+}
+
 // The first folder that holds one of the first images: some may be missing.
 Result<fs::path> FindImages(const fs::path& model_folder, std::span<const std::string> names) {
   constexpr size_t kMostAsked = 64;
@@ -129,10 +147,10 @@ Result<fs::path> FindImages(const fs::path& model_folder, std::span<const std::s
       return folder;
     tried += fmt::format("{}{}", tried.empty() ? "" : ", ", folder.string());
   }
-  return InputError(
-      fmt::format("{}: its image {} is not found: looked for it in {}; put the images there, or "
-                  "name their folder (--images)",
-                  model_folder.string(), names.front(), tried));
+  return InputError(fmt::format(
+      "{}: its image {} is not found: looked for it in {}{}; put the images there, or "
+      "name their folder (--images)",
+      model_folder.string(), names.front(), tried, NearbyIn(model_folder, names.front())));
 }
 
 // The folder above sparse/0 or the like.
