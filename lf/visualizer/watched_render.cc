@@ -73,9 +73,17 @@ float Linear(T value) {
         LinearFromSrgb(static_cast<double>(value) / std::numeric_limits<T>::max()));
 }
 
+// Returns the part of an element's colours that is its light: integers are stored straight.
+template <class T>
+float Covers(const Image<T>& image, int x, int y, int alpha_channel) {
+  if (alpha_channel < 0 || std::is_same_v<T, float>) return 1;
+  return static_cast<float>(image.at(x, y, alpha_channel)) /
+         static_cast<float>(std::numeric_limits<T>::max());
+}
+
 template <class T>
 Image<float> Shrunken(const Image<T>& image, const std::array<int, 3>& count_channels,
-                      int max_side_px) {
+                      int alpha_channel, int max_side_px) {
   const bool has_rays = count_channels[0] >= 0;
   const int factor = std::max(
       1, (std::max(image.width(), image.height()) + max_side_px - 1) / std::max(1, max_side_px));
@@ -87,7 +95,8 @@ Image<float> Shrunken(const Image<T>& image, const std::array<int, 3>& count_cha
       int count = 0;
       for (int v = y * factor; v < std::min(image.height(), (y + 1) * factor); ++v)
         for (int u = x * factor; u < std::min(image.width(), (x + 1) * factor); ++u, ++count) {
-          for (int c = 0; c < 3; ++c) sum[c] += Linear(image.at(u, v, c));
+          const float covers = Covers(image, u, v, alpha_channel);
+          for (int c = 0; c < 3; ++c) sum[c] += covers * Linear(image.at(u, v, c));
           if (has_rays)
             for (const int c : count_channels) sum[3] += static_cast<float>(image.at(u, v, c)) / 3;
         }
@@ -113,12 +122,12 @@ Result<GrowingPicture> ReadGrowingPicture(const fs::path& path, int max_side_px)
     return InputError(fmt::format("{}: has {} channels, a frame has R, G and B", path.string(),
                                   read.info.channels));
   std::array<int, 3> count_channels = {-1, -1, -1};
-  for (int c = 0; c < 3; ++c) {
-    const std::string name = std::string("count.") + "RGB"[c];
+  const auto channel_named = [&](const std::string& name) {
     const auto& names = read.info.channel_names;
     const auto found = std::find(names.begin(), names.end(), name);
-    if (found != names.end()) count_channels[c] = static_cast<int>(found - names.begin());
-  }
+    return found != names.end() ? static_cast<int>(found - names.begin()) : -1;
+  };
+  for (int c = 0; c < 3; ++c) count_channels[c] = channel_named(std::string("count.") + "RGB"[c]);
   if (std::find(count_channels.begin(), count_channels.end(), -1) != count_channels.end())
     count_channels = {-1, -1, -1};
   GrowingPicture picture;
@@ -126,7 +135,10 @@ Result<GrowingPicture> ReadGrowingPicture(const fs::path& path, int max_side_px)
   picture.full_height_px = read.info.height;
   picture.has_rays = count_channels[0] >= 0;
   picture.elements = std::visit(
-      [&](const auto& image) { return Shrunken(image, count_channels, max_side_px); }, read.image);
+      [&](const auto& image) {
+        return Shrunken(image, count_channels, channel_named("A"), max_side_px);
+      },
+      read.image);
   return picture;
 }
 

@@ -30,7 +30,8 @@ struct GrowingPicture {
   int full_height_px = 0;
   bool has_rays = false;
   // [height][width][4]: R, G, B, linear light, and how many rays an element has, the mean of its
-  // channels (-1 where the file does not tell). Means of squares where the frame is larger.
+  // channels (-1 where the file does not tell). Means of squares where the frame is larger. Frames
+  // with alpha are shown over black.
   Image<float> elements;
 };
 

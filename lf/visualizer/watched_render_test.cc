@@ -76,5 +76,32 @@ TEST_F(WatchedRenderTest, PngFilesTellNoRays) {
   EXPECT_FLOAT_EQ(picture->elements.at(3, 3, 3), -1.0f);
 }
 
+TEST_F(WatchedRenderTest, FramesWithAlphaAreShownOverBlack) {
+  // Two elements of light 0.25 and alpha 0.5, whose straight colours are 0.5, and two of nothing.
+  Image<uint16_t> straight(4, 1, 4);
+  Image<float> light(4, 1, 3), alpha(4, 1);
+  for (int x = 0; x < 2; ++x) {
+    alpha.at(x, 0) = 0.5f;
+    straight.at(x, 0, 3) = 32768;
+    for (int c = 0; c < 3; ++c) light.at(x, 0, c) = 0.25f;
+  }
+  for (int x = 0; x < 4; ++x)
+    for (int c = 0; c < 3; ++c) straight.at(x, 0, c) = 48195;  // sRGB of 0.5, even where alpha is 0
+  ASSERT_TRUE(WriteImage(folder_ / "frame_0001.png", straight.view()));
+  std::vector<ExrChannel> channels;
+  for (int c = 0; c < 3; ++c) channels.push_back({{"RGB"[c]}, light.view(), c});
+  channels.push_back({"A", alpha.view()});
+  ASSERT_TRUE(WriteExr(folder_ / "frame_0002.exr", channels));
+  for (const char* const name : {"frame_0001.png", "frame_0002.exr"}) {
+    const auto picture = ReadGrowingPicture(folder_ / name, 100);
+    ASSERT_TRUE(picture) << picture.error().message;
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(picture->elements.at(0, 0, c), 0.25, 1e-4) << name;
+      EXPECT_EQ(picture->elements.at(3, 0, c), 0) << name;
+    }
+    EXPECT_FALSE(picture->has_rays);
+  }
+}
+
 }  // namespace
 }  // namespace lf
