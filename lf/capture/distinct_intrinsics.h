@@ -7,6 +7,7 @@
 #include <string_view>
 #include <tuple>
 
+#include "lf/camera/intrinsics_numbers.h"
 #include "lf/camera/pinhole.h"
 #include "lf/core/distinct.h"
 #include "lf/core/hash.h"
@@ -21,17 +22,14 @@ uint64_t HashOfNumbers(std::array<double, kCount> numbers) {
 }
 
 inline uint64_t HashOfIntrinsics(const Intrinsics& k) {
-  std::array<double, 8 + std::tuple_size_v<DistortionParameters> + 3> numbers = {
-      k.fx_px,
-      k.fy_px,
-      k.cx_px,
-      k.cy_px,
-      k.skew_px,
-      static_cast<double>(k.width_px),
-      static_cast<double>(k.height_px),
-      static_cast<double>(k.distortion.model)};
-  std::copy(k.distortion.parameters.begin(), k.distortion.parameters.end(), numbers.begin() + 8);
-  std::copy(k.vignetting.v.begin(), k.vignetting.v.end(), numbers.end() - 3);
+  constexpr size_t kOfPlate = kIntrinsicsNumbers,
+                   kOfDistortion = std::tuple_size_v<DistortionParameters>;
+  std::array<double, kOfPlate + 1 + kOfDistortion + 3> numbers;
+  const std::array<double, kOfPlate> plate = NumbersOfIntrinsics(k);
+  auto end = std::copy(plate.begin(), plate.end(), numbers.begin());
+  *end++ = static_cast<double>(k.distortion.model);
+  end = std::copy(k.distortion.parameters.begin(), k.distortion.parameters.end(), end);
+  std::copy(k.vignetting.v.begin(), k.vignetting.v.end(), end);
   return HashOfNumbers(numbers);
 }
 

@@ -7,18 +7,10 @@
 #include <string>
 
 #include "lf/core/random.h"
+#include "lf/imageio/test_byte_source.h"
 
 namespace lf {
 namespace {
-
-ByteSource SourceOf(const std::string& bytes) {
-  return [&bytes](uint64_t offset, std::span<uint8_t> to) -> size_t {
-    if (offset >= bytes.size()) return 0;
-    const size_t count = std::min<uint64_t>(to.size(), bytes.size() - offset);
-    std::copy_n(bytes.data() + offset, count, to.data());
-    return count;
-  };
-}
 
 TEST(RawStream, GivesTheBytesOfTheFileHoweverTheyAreRead) {
   std::string bytes(200'000, '\0');

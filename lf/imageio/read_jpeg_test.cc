@@ -11,6 +11,7 @@
 
 #include "lf/core/random.h"
 #include "lf/imageio/image_file.h"
+#include "lf/imageio/test_byte_source.h"
 
 namespace lf {
 namespace {
@@ -64,13 +65,6 @@ std::string EncodeJpeg(int width, int height, const JpegKind& kind) {
   jpeg_destroy_compress(&compress);
   std::free(bytes);
   return file;
-}
-
-ByteSource SourceOf(const std::string& file) {
-  return [&file](uint64_t offset, std::span<uint8_t> to) -> size_t {
-    if (offset >= file.size()) return 0;
-    return file.copy(reinterpret_cast<char*>(to.data()), to.size(), offset);
-  };
 }
 
 Result<PixelRect> ReadPart(const std::string& file, const PixelRect& wanted,

@@ -2,21 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <string>
+
+#include "lf/imageio/test_byte_source.h"
 
 namespace lf {
 namespace {
 using namespace std::string_literals;
-
-ByteSource SourceOf(const std::string& bytes) {
-  return [&bytes](uint64_t offset, std::span<uint8_t> to) -> size_t {
-    if (offset >= bytes.size()) return 0;
-    const size_t count = std::min<uint64_t>(to.size(), bytes.size() - offset);
-    std::copy_n(bytes.data() + offset, count, to.data());
-    return count;
-  };
-}
 
 TEST(TiffDirectories, NumbersOfAllTypesAreRead) {
   const std::string file =

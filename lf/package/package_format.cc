@@ -1,46 +1,36 @@
 #include "lf/package/package_format.h"
 
+#include <algorithm>
+
 #include "lf/calibration_tables/stored_numbers.h"
+#include "lf/camera/intrinsics_numbers.h"
 
 namespace lf {
 
 std::array<double, kCameraNumbers> NumbersOfCamera(const RenderCamera& camera) {
-  const Intrinsics& k = camera.pinhole.intrinsics;
+  const auto plate = NumbersOfIntrinsics(camera.pinhole.intrinsics);
   const auto pose = NumbersOfPose(camera.pinhole.cam_from_world);
   const Vec3& normal = camera.focus_plane.normal;
-  return {k.fx_px,
-          k.fy_px,
-          k.cx_px,
-          k.cy_px,
-          k.skew_px,
-          static_cast<double>(k.width_px),
-          static_cast<double>(k.height_px),
-          pose[0],
-          pose[1],
-          pose[2],
-          pose[3],
-          pose[4],
-          pose[5],
-          pose[6],
-          pose[7],
-          pose[8],
-          pose[9],
-          pose[10],
-          pose[11],
-          camera.aperture.radius_w,
-          static_cast<double>(camera.aperture.blades),
-          camera.aperture.rotation_rad,
-          normal.x(),
-          normal.y(),
-          normal.z(),
-          camera.focus_plane.offset_w,
-          camera.time_s,
-          camera.focal_length_w,
-          camera.sensor_width_w,
-          camera.focus_distance_w,
-          camera.focus_tilt.horizontal_rad,
-          camera.focus_tilt.vertical_rad,
-          camera.unit_m};
+  const std::array others = {camera.aperture.radius_w,
+                             static_cast<double>(camera.aperture.blades),
+                             camera.aperture.rotation_rad,
+                             normal.x(),
+                             normal.y(),
+                             normal.z(),
+                             camera.focus_plane.offset_w,
+                             camera.time_s,
+                             camera.focal_length_w,
+                             camera.sensor_width_w,
+                             camera.focus_distance_w,
+                             camera.focus_tilt.horizontal_rad,
+                             camera.focus_tilt.vertical_rad,
+                             camera.unit_m};
+  std::array<double, kCameraNumbers> numbers;
+  static_assert(plate.size() + pose.size() + others.size() == kCameraNumbers);
+  auto end = std::copy(plate.begin(), plate.end(), numbers.begin());
+  end = std::copy(pose.begin(), pose.end(), end);
+  std::copy(others.begin(), others.end(), end);
+  return numbers;
 }
 
 RenderCamera CameraOfNumbers(std::span<const double, kCameraNumbers> numbers) {
