@@ -13,21 +13,10 @@ import unittest
 
 import numpy as np
 
-from small_field import HEIGHT, PITCH, SIDE, WIDTH, write_field
+from small_field import HEIGHT, PITCH, SIDE, WALL_DEPTH, WIDTH, wall, write_field
 
 EXAMPLE = RENDERER = None
-DEPTH = 0.25
-
-
-def wall(index):
-    """A finely textured wall at DEPTH, as LF camera `index` sees it."""
-    x0 = (index % SIDE - (SIDE - 1) / 2) * PITCH + 0.0003 * (index % 3)
-    y0 = -(index // SIDE - (SIDE - 1) / 2) * PITCH
-    x = x0 + (np.arange(WIDTH) + 0.5 - WIDTH / 2) / 70 * DEPTH
-    y = y0 + (np.arange(HEIGHT) + 0.5 - HEIGHT / 2) / 70 * DEPTH
-    cells = np.floor(x / 0.02)[None, :] * 374761 + np.floor(y / 0.02)[:, None] * 668265
-    grey = (np.sin(cells) * 43758.5453) % 1
-    return np.repeat((grey * 200 + 20).astype(np.uint8)[..., None], 3, axis=2)
+DEPTH = WALL_DEPTH
 
 
 class ExampleTest(unittest.TestCase):
@@ -96,13 +85,34 @@ class ExampleTest(unittest.TestCase):
         path, words = self.example("--move", "static")
         self.assertIn("warning: not sure what to focus on", words)
         self.assertIn("--focus", words)
-        aperture = float(re.search(r"aperture_diameter: (\S+)", path.read_text()).group(1))
-        self.assertLess(aperture, 0.1 * PITCH)
+        self.assertLess(self.aperture(path), 0.1 * PITCH)
 
-    def colmap(self, depths):
-        """Noise, which no two images share, with a model whose points lie at these depths."""
+    def test_a_doubt_names_aperture_distances_and_a_command_that_settles_it(self):
+        self.field = write_field(self.folder / "no two alike")
+        path, words = self.example("--move", "static", "--camera", "7")
+        warning = next(line for line in words.splitlines() if "not sure" in line)
+        self.assertRegex(warning, r"an aperture of \S+, which holds one LF camera, so that the first frame "
+                                  r"is sharp at any distance")
+        distances = re.search(r"The best focus distances? found: ([^ ]+(, [^ ]+)*)\. ", warning).group(1)
+        self.assertIn(len(distances.split(", ")), (1, 2, 3))
+        command = warning[warning.index("lfexample "):]
+        self.assertIn(f"--focus {distances.split(', ')[0]}", command)
+        self.assertIn("--camera 7", command)
+        path.unlink()
+        result = subprocess.run(command.replace("lfexample", EXAMPLE, 1), shell=True, capture_output=True,
+                                text=True)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertNotIn("not sure", result.stderr)
+        self.assertGreater(self.aperture(path), 2 * PITCH)
+
+    @staticmethod
+    def aperture(path):
+        return float(re.search(r"aperture_diameter: (\S+)", path.read_text()).group(1))
+
+    def colmap(self, depths, picture=None):
+        """Noise, which no two images share, or a picture, with a model whose points lie at these depths."""
         folder = self.folder / "colmap"
-        write_field(folder / "images")
+        write_field(folder / "images", picture)
         (folder / "images" / "transforms.json").unlink()
         model = folder / "sparse" / "0"
         model.mkdir(parents=True)
@@ -129,6 +139,38 @@ class ExampleTest(unittest.TestCase):
         self.assertNotIn("not sure", words)
         result = self.run_tool(RENDERER, self.field, path, "-o", self.folder / "frames")
         self.assertEqual(result.returncode, 0, result.stderr)
+
+    def focus(self):
+        path, words = self.example("--move", "static")
+        return float(re.search(r"focus_distance: (\S+)", path.read_text()).group(1)), words
+
+    def test_points_that_agree_with_the_images_change_nothing(self):
+        random = np.random.default_rng(2)
+        self.colmap(np.concatenate([random.uniform(0.24, 0.26, 20), random.uniform(0.6, 3, 300)]), wall)
+        focus, words = self.focus()
+        self.assertAlmostEqual(focus, DEPTH, delta=0.04 * DEPTH)
+        self.assertIn("places of the image", words)
+
+    def test_points_that_contradict_the_images_are_preferred_if_they_are_sure(self):
+        random = np.random.default_rng(2)
+        self.colmap(np.concatenate([random.uniform(0.14, 0.16, 20), random.uniform(0.79, 0.81, 200),
+                                    random.uniform(0.5, 3, 60)]), wall)
+        focus, words = self.focus()
+        self.assertAlmostEqual(focus, 0.8, delta=0.02 * 0.8)
+        self.assertRegex(words, r"since the LF images agree on 0\.2\d+, and next to none of the \d+ points")
+
+    def test_points_that_contradict_the_images_and_each_other_are_a_doubt(self):
+        random = np.random.default_rng(2)
+        self.colmap(np.concatenate([random.uniform(0.14, 0.16, 20), 1 / random.uniform(0.2, 2, 300)]), wall)
+        path, words = self.example("--move", "static")
+        self.assertRegex(words, r"not sure what to focus on \(the LF images agree on 0\.2\d+, and next to none")
+        self.assertLess(self.aperture(path), 0.1 * PITCH)
+
+    def test_images_that_agree_beyond_all_depths_are_a_doubt(self):
+        self.colmap(1 / np.random.default_rng(2).uniform(0.2, 2, 300), wall)
+        _, words = self.example("--move", "static")
+        self.assertRegex(words, r"not sure what to focus on \(the LF images agree on 0\.2\d+, beyond the depths "
+                                r"of the scene, 0\.\d+ to \d")
 
     def test_points_anywhere_tell_no_focus(self):
         self.colmap(1 / np.random.default_rng(2).uniform(0.2, 2, 300))

@@ -11,6 +11,7 @@
 #include "lf/capture/capture_geometry.h"
 #include "lf/core/file.h"
 #include "lf/core/log.h"
+#include "lf/core/shell_word.h"
 #include "lf/path/path_yaml.h"
 #include "lf/pipeline/example_path.h"
 #include "lf/store/open_store.h"
@@ -68,6 +69,26 @@ lf::Result<lf::LfImageId> FindCamera(const lf::LightField& light_field,
                   light_field.image_names[0]));
 }
 
+// What the focus is, why it is not sure, and a command that says another.
+//   words  options of the light field
+void WarnOfDoubt(const lf::ExamplePath& example, const std::string& light_field,
+                 const std::vector<std::string>& words, const std::string& output,
+                 const std::string& move, const std::string& camera) {
+  std::string distances, command = "lfexample " + lf::ShellWord(light_field);
+  for (const double distance_w : example.candidates_w)
+    distances += fmt::format("{}{:.4g}", distances.empty() ? "" : ", ", distance_w);
+  for (const std::string& word : words) command += " " + lf::ShellWord(word);
+  command += fmt::format(" -o {} --move {}", lf::ShellWord(output), move);
+  if (camera != "-1") command += " --camera " + lf::ShellWord(camera);
+  lf::LogWarning(
+      "not sure what to focus on ({}): focused at {:.4g}, {}, with an aperture of {:.4g}, {}. "
+      "The best focus distance{} found: {}. For a wider aperture say which one it is: {} --focus "
+      "{:.4g}",
+      example.doubt, example.focus_distance_w, example.focus_reason, example.aperture_diameter_w,
+      example.aperture_reason, example.candidates_w.size() == 1 ? "" : "s", distances, command,
+      example.candidates_w.front());
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -105,9 +126,12 @@ int main(int argc, char** argv) {
     // A path that would not render is a bug of ours, found here and not by the renderer.
     LF_RETURN_IF_ERROR(lf::ParsePathYaml(example.yaml, output, light_field.unit_m));
     LF_RETURN_IF_ERROR(lf::WriteFileAtomically(output, example.yaml));
-    lf::LogInfo("{}: starts at LF camera {} ({}), focus at {:.4g} ({}), aperture {:.4g}", output,
-                options.camera.value, light_field.image_names[options.camera.value],
-                example.focus_distance_w, example.focus_reason, example.aperture_diameter_w);
+    if (!example.doubt.empty())
+      WarnOfDoubt(example, input.path, input.Words(), output, move, camera);
+    lf::LogInfo("{}: starts at LF camera {} ({}), focus at {:.4g} ({}), aperture {:.4g} ({})",
+                output, options.camera.value, light_field.image_names[options.camera.value],
+                example.focus_distance_w, example.focus_reason, example.aperture_diameter_w,
+                example.aperture_reason);
     return {};
   });
 }

@@ -11,7 +11,12 @@
 
 namespace lf {
 
-Subject FindPointSubject(const PinholeCamera& camera, std::span<const Vec3> points_world) {
+namespace {
+
+constexpr size_t kLeastPoints = 24;
+
+// The points that the image shows, unsorted.
+std::vector<FoundDepth> DepthsOf(const PinholeCamera& camera, std::span<const Vec3> points_world) {
   const Intrinsics& k = camera.intrinsics;
   const RayThrough rays(camera, camera.ForwardWorld());
   std::vector<FoundDepth> found;
@@ -26,6 +31,13 @@ Subject FindPointSubject(const PinholeCamera& camera, std::span<const Vec3> poin
     constexpr double kMiddle = 0.5;  // of half the width, as FindSubject() weights places
     found.push_back({depth_w, std::exp(-0.5 * off.squaredNorm() / (kMiddle * kMiddle)), 0});
   }
+  return found;
+}
+
+}  // namespace
+
+Subject FindPointSubject(const PinholeCamera& camera, std::span<const Vec3> points_world) {
+  std::vector<FoundDepth> found = DepthsOf(camera, points_world);
   Subject subject;
   subject.textured_count = subject.place_count = found.size();
   if (found.empty()) return subject;
@@ -35,13 +47,23 @@ Subject FindPointSubject(const PinholeCamera& camera, std::span<const Vec3> poin
   subject.near_w = found[found.size() / 10].distance_w;
   subject.far_w = found[found.size() - 1 - found.size() / 10].distance_w;
   subject.depths = BestDepths(std::move(found));
-  constexpr size_t kLeastPoints = 24;
   constexpr double kLeastShare = 0.25, kClear = 1.5;
   const double rival = subject.depths.size() > 1 ? subject.depths[1].share : 0;
   const SubjectDepth& best = subject.depths[0];
   subject.is_sure =
       best.place_count >= kLeastPoints && best.share >= kLeastShare && best.share >= kClear * rival;
   return subject;
+}
+
+bool PointsContradict(const PinholeCamera& camera, std::span<const Vec3> points_world,
+                      double depth_w) {
+  constexpr double kNear = 0.1, kMostNear = 0.01;
+  const std::vector<FoundDepth> found = DepthsOf(camera, points_world);
+  const auto near_count = std::count_if(found.begin(), found.end(), [&](const FoundDepth& one) {
+    return std::abs(one.distance_w - depth_w) < kNear * depth_w;
+  });
+  return found.size() >= kLeastPoints &&
+         static_cast<double>(near_count) <= kMostNear * static_cast<double>(found.size());
 }
 
 }  // namespace lf

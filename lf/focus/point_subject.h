@@ -16,4 +16,10 @@ namespace lf {
 // depth, with a quarter of the weight of all and half as much again as the next best depth has.
 Subject FindPointSubject(const PinholeCamera& camera, std::span<const Vec3> points_world);
 
+// Returns true if the camera sees at least 24 points and at most 1 % of them are within 10 % of
+// this depth: what pixels tell is then likely a pattern that repeats, a mirror, or a mark on the
+// lens.
+bool PointsContradict(const PinholeCamera& camera, std::span<const Vec3> points_world,
+                      double depth_w);
+
 }  // namespace lf

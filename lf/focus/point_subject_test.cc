@@ -134,5 +134,18 @@ TEST(FindPointSubject, PointsOutsideTheImageDoNotCount) {
   EXPECT_EQ(FindPointSubject(camera, points).place_count, 0u);
 }
 
+TEST(PointsContradict, OnlyWherePointsAreManyAndNoneIsNear) {
+  const std::vector<Vec3> wall = Draw(200, Wall(5)), few = Draw(20, Wall(5));
+  EXPECT_FALSE(PointsContradict(Camera(), wall, 5.2));
+  EXPECT_TRUE(PointsContradict(Camera(), wall, 2));
+  EXPECT_TRUE(PointsContradict(Camera(), wall, 8));
+  EXPECT_FALSE(PointsContradict(Camera(), few, 2));
+  EXPECT_FALSE(PointsContradict(Camera(), {}, 2));
+  EXPECT_FALSE(PointsContradict(Camera(), Draw(400, Behind(Wall(5))), 2));
+  // A subject that has few of the points, before a wall that has most.
+  EXPECT_FALSE(PointsContradict(Camera(), Draw(2000, CardBefore(2, 6, 0.2)), 2));
+  EXPECT_TRUE(PointsContradict(Camera(), Draw(2000, CardBefore(2, 6, 0.2)), 3.5));
+}
+
 }  // namespace
 }  // namespace lf

@@ -8,15 +8,11 @@
 
 #include "lf/camera/ray_through.h"
 #include "lf/capture/capture_geometry.h"
-#include "lf/core/log.h"
-#include "lf/focus/find_subject.h"
-#include "lf/focus/point_subject.h"
+#include "lf/pipeline/example_focus.h"
 
 namespace lf {
 namespace {
 
-constexpr double kMostSpacings = 8, kLeastSpacings = 2.5;  // of the aperture
-constexpr double kSharpSpacings = 0.02;  // within it the LF camera at its middle is alone
 constexpr double kMostRoll_deg = 30;
 constexpr int kFrameCount = 50;
 constexpr int kFps = 25;
@@ -25,111 +21,6 @@ constexpr double kNominalSensorWidth_mm = 36;
 
 std::string Text(const Vec3& v) {
   return fmt::format("[{:.7g}, {:.7g}, {:.7g}]", v.x(), v.y(), v.z());
-}
-
-struct Focus {
-  double distance_w = 0;
-  std::string reason;
-  bool is_sure = true;
-  // The scene lies between these, if that is known; else they are equal.
-  double near_w = 0, far_w = 0;
-};
-
-// Returns a focus if the pictures do not tell one.
-Focus GuessFocus(const LightField& light_field, const PinholeCamera& camera, double spacing_w,
-                 const std::vector<SubjectDepth>& depths) {
-  if (const std::optional<Vec3> point = AxesMeetingPoint(light_field)) {
-    const double depth_w = camera.ForwardWorld().dot(*point - camera.CentreWorld());
-    if (depth_w > spacing_w) return {depth_w, "where the optical axes meet"};
-  }
-  if (const std::optional<DepthRange>& range = light_field.depth_range)
-    return {2 / (1 / range->near_w + 1 / range->far_w), "the middle of the depth range"};
-  if (!depths.empty()) return {depths[0].distance_w, "where some LF images agree"};
-  return {camera.intrinsics.fx_px * spacing_w, "where neighbours see things a pixel apart"};
-}
-
-std::string WhyNotSure(const Subject& subject, const Subject& points) {
-  std::string why;
-  if (points.place_count > 0)
-    why = fmt::format(", and {} of the {} points of the reconstruction that it shows lie at one",
-                      points.depths[0].place_count, points.place_count);
-  if (subject.textured_count == 0) return "the LF image has no texture" + why;
-  return fmt::format("the LF images around agree on a depth at {} of {} textured places{}",
-                     subject.place_count, subject.textured_count, why);
-}
-
-void WarnOfGuess(const Focus& focus, const Subject& subject, const Subject& points,
-                 const std::vector<SubjectDepth>& depths) {
-  std::string others;
-  for (const SubjectDepth& depth : depths) others += fmt::format(", {:.4g}", depth.distance_w);
-  LogWarning(
-      "not sure what to focus on ({}): focused at {:.4g}, {}{}. So that the first frame is "
-      "sharp, its lens holds one LF camera: state --focus, and a wider aperture in the path",
-      WhyNotSure(subject, points), focus.distance_w, focus.reason,
-      others.empty() ? "" : "; it may also be at " + others.substr(2));
-}
-
-// Returns a focus on the best depth.
-//   things  that lie there
-Focus FocusOf(const Subject& subject, const char* things) {
-  const SubjectDepth& best = subject.depths[0];
-  return {best.distance_w,
-          fmt::format("where {} of {} {} lie", best.place_count, subject.place_count, things), true,
-          std::min(subject.near_w, best.distance_w), std::max(subject.far_w, best.distance_w)};
-}
-
-Result<Focus> ChooseFocus(const LightField& light_field, const LfImageStore& store,
-                          const ExampleOptions& options, double spacing_w, ThreadPool& pool) {
-  if (options.focus_distance_w) return Focus{*options.focus_distance_w, "as asked for"};
-  LF_ASSIGN_OR_RETURN(const Subject subject, FindSubject(light_field, store, options.camera, pool));
-  const auto is_outside = [&](const SubjectDepth& depth) {
-    constexpr double kMargin = 1.2;
-    const std::optional<DepthRange>& range = light_field.depth_range;
-    return range && (depth.distance_w < range->near_w / kMargin ||
-                     depth.distance_w > range->far_w * kMargin);
-  };
-  const auto is_sure = [&](const Subject& one) {
-    return one.is_sure && !is_outside(one.depths[0]);
-  };
-  if (is_sure(subject)) return FocusOf(subject, "places of the image");
-  const PinholeCamera camera = light_field.Camera(options.camera);
-  Subject points;
-  if (options.points_world) {
-    LF_ASSIGN_OR_RETURN(const std::vector<Vec3> points_world, options.points_world());
-    points = FindPointSubject(camera, points_world);
-  }
-  if (is_sure(points)) {
-    const Focus focus = FocusOf(points, "points of the reconstruction");
-    LogInfo("focused at {:.4g} by the points of the reconstruction, since {}", focus.distance_w,
-            WhyNotSure(subject, {}));
-    return focus;
-  }
-  std::vector<SubjectDepth> depths = subject.depths;
-  std::erase_if(depths, is_outside);
-  Focus focus = GuessFocus(light_field, camera, spacing_w, depths);
-  WarnOfGuess(focus, subject, points, depths);
-  focus.is_sure = false;
-  focus.near_w = focus.far_w = focus.distance_w;
-  return focus;
-}
-
-// Returns the diameter in spacings. Neighbours see what is away from the focus a few pixels apart:
-// so far are the copies apart into which its blur falls. Up to kGoodCopies_px nobody sees that;
-// beyond it, a narrower lens blurs less. Beyond kMostCopies_px, or if the focus may be wrong, only
-// a lens that holds one LF camera gives a picture.
-double SpacingsOfAperture(const Focus& focus, double fx_px, double spacing_w) {
-  constexpr double kGoodCopies_px = 3, kMostCopies_px = 16;
-  if (!focus.is_sure) return kSharpSpacings;
-  constexpr double kUnknownRange = 0.25;  // nearer than the focus
-  const double near_w = std::min(focus.near_w, focus.distance_w);
-  const double nearest_per_w = 1 / near_w - 1 / focus.distance_w;
-  const double farthest_per_w = 1 / focus.distance_w - 1 / std::max(focus.far_w, focus.distance_w);
-  double range_per_w = std::max(nearest_per_w, farthest_per_w);
-  if (!(range_per_w > 0)) range_per_w = kUnknownRange / focus.distance_w;
-  const double copies_px = fx_px * spacing_w * range_per_w;
-  if (copies_px > kMostCopies_px) return kSharpSpacings;
-  return std::clamp(kMostSpacings * kGoodCopies_px / std::max(copies_px, 1e-9), kLeastSpacings,
-                    kMostSpacings);
 }
 
 // The up direction that keeps the horizon level, if the cameras tell one.
@@ -265,15 +156,19 @@ Result<ExamplePath> MakeExamplePath(const LightField& light_field, const LfImage
         "twice, or are the positions missing? lfimport names them",
         light_field.size()));
   const Reach reach = CaptureReach(light_field, camera, 400);
-  LF_ASSIGN_OR_RETURN(const Focus focus, ChooseFocus(light_field, store, options, spacing_w, pool));
+  LF_ASSIGN_OR_RETURN(const ExampleFocus focus,
+                      ChooseFocus(light_field, store, options, spacing_w, pool));
   ExamplePath example;
   example.focus_distance_w = focus.distance_w;
   example.focus_reason = focus.reason;
-  const double spacings = SpacingsOfAperture(focus, camera.intrinsics.fx_px, spacing_w);
+  example.doubt = focus.doubt;
+  example.candidates_w = focus.candidates_w;
+  const ExampleAperture aperture = ChooseAperture(focus, camera.intrinsics.fx_px, spacing_w);
+  example.aperture_reason = aperture.reason;
   const double largest_w = 2 * std::max(reach.right_w, reach.up_w);
   constexpr double kLeastOfBand = 2.2;  // however narrow the capture is
   example.aperture_diameter_w =
-      std::min(spacings * spacing_w, std::max(kLeastOfBand * spacing_w, largest_w));
+      std::min(aperture.spacings * spacing_w, std::max(kLeastOfBand * spacing_w, largest_w));
 
   const Movement movement =
       MakeMovement(options.move, camera, reach, focus.distance_w, example.aperture_diameter_w);

@@ -25,8 +25,8 @@ struct ExampleOptions {
   LfImageId camera;  // the path starts where this LF image was taken
   ExampleMove move = ExampleMove::kFocusPull;
   std::optional<double> focus_distance_w;  // default: found by FindSubject()
-  // Gives points of the scene that the LF image shows, in world coordinates. It is asked only if
-  // the LF images do not tell the subject; without it there are no points.
+  // Gives points of the scene that the LF image shows, in world coordinates; without it there are
+  // no points. It is asked where no focus distance is stated.
   std::function<Result<std::vector<Vec3>>()> points_world = {};
 };
 
@@ -35,13 +35,18 @@ struct ExamplePath {
   double focus_distance_w = 0;
   std::string focus_reason;  // how it was found, for people
   double aperture_diameter_w = 0;
+  std::string aperture_reason;  // for people, behind the diameter and a comma
+  // Empty if the focus is sure; else why it is not, and up to three distances that may be right,
+  // the best first.
+  std::string doubt;
+  std::vector<double> candidates_w;
 };
 
 // A path that shows something: one frame if nothing moves, else 50.
-// - Focus: at the subject (focus/find_subject.h). Where that is not sure, at the depth of most
-//   points that a reconstruction has there (focus/point_subject.h). Where these do not tell either,
-//   where the optical axes meet, or else in the middle of the depth range, at the best depth found,
-//   or where neighbours see things a pixel apart; a warning says so, and what else it could be.
+// - Focus: at the subject (focus/find_subject.h). Where that is not sure, or the points of a
+//   reconstruction contradict it, at the depth of most of these (focus/point_subject.h). Where
+//   these do not tell either, where the optical axes meet, or else in the middle of the depth
+//   range, at the best depth found, or where neighbours see things a pixel apart; `doubt` says so.
 // - Lens: eight spacings of LF cameras wide, down to 2.5 where these are so far apart that a blur
 //   falls into copies, and no wider than the capture. Where copies are too far apart for any blur,
 //   or the focus is not sure, next to a pinhole: the first frame is what one LF camera sees.

@@ -1,0 +1,150 @@
+#include "lf/pipeline/example_focus.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "lf/capture/capture_geometry.h"
+#include "lf/core/log.h"
+#include "lf/focus/find_subject.h"
+#include "lf/focus/point_subject.h"
+
+namespace lf {
+namespace {
+
+constexpr double kMostSpacings = 8, kLeastSpacings = 2.5;  // of the aperture
+constexpr double kSharpSpacings = 0.02;  // within it the LF camera at its middle is alone
+
+// Returns a focus if neither pixels nor points tell one.
+ExampleFocus GuessFocus(const LightField& light_field, const PinholeCamera& camera,
+                        double spacing_w, const std::vector<SubjectDepth>& depths) {
+  if (const std::optional<Vec3> point = AxesMeetingPoint(light_field)) {
+    const double depth_w = camera.ForwardWorld().dot(*point - camera.CentreWorld());
+    if (depth_w > spacing_w) return {depth_w, "where the optical axes meet"};
+  }
+  if (const std::optional<DepthRange>& range = light_field.depth_range)
+    return {2 / (1 / range->near_w + 1 / range->far_w), "the middle of the depth range"};
+  if (!depths.empty()) return {depths[0].distance_w, "where some LF images agree"};
+  return {camera.intrinsics.fx_px * spacing_w, "where neighbours see things a pixel apart"};
+}
+
+std::string WhyNotSure(const Subject& subject, const Subject& points) {
+  std::string why;
+  if (points.place_count > 0)
+    why = fmt::format(", and {} of the {} points of the reconstruction that it shows lie at one",
+                      points.depths[0].place_count, points.place_count);
+  if (subject.textured_count == 0) return "the LF image has no texture" + why;
+  return fmt::format("the LF images around agree on a depth at {} of {} textured places{}",
+                     subject.place_count, subject.textured_count, why);
+}
+
+// Returns a focus on the best depth.
+//   things  that lie there
+ExampleFocus FocusOf(const Subject& subject, const char* things) {
+  const SubjectDepth& best = subject.depths[0];
+  ExampleFocus focus{best.distance_w, fmt::format("where {} of {} {} lie", best.place_count,
+                                                  subject.place_count, things)};
+  focus.near_w = std::min(subject.near_w, best.distance_w);
+  focus.far_w = std::max(subject.far_w, best.distance_w);
+  return focus;
+}
+
+// Distances that may be right, the best first, without those that say the same.
+std::vector<double> CandidatesOf(const std::vector<SubjectDepth>& depths, const Subject& points,
+                                 double guess_w) {
+  constexpr size_t kMost = 3;
+  constexpr double kSame = 0.03;  // of the distance
+  std::vector<double> candidates_w;
+  const auto add = [&](double distance_w) {
+    const bool is_new = std::none_of(candidates_w.begin(), candidates_w.end(), [&](double other) {
+      return std::abs(other - distance_w) < kSame * distance_w;
+    });
+    if (is_new && candidates_w.size() < kMost) candidates_w.push_back(distance_w);
+  };
+  for (const SubjectDepth& depth : depths) add(depth.distance_w);
+  for (const SubjectDepth& depth : points.depths) add(depth.distance_w);
+  add(guess_w);
+  return candidates_w;
+}
+
+}  // namespace
+
+Result<ExampleFocus> ChooseFocus(const LightField& light_field, const LfImageStore& store,
+                                 const ExampleOptions& options, double spacing_w,
+                                 ThreadPool& pool) {
+  if (options.focus_distance_w) return ExampleFocus{*options.focus_distance_w, "as asked for"};
+  LF_ASSIGN_OR_RETURN(const Subject subject, FindSubject(light_field, store, options.camera, pool));
+  const auto is_outside = [&](const SubjectDepth& depth) {
+    constexpr double kMargin = 1.2;
+    const std::optional<DepthRange>& range = light_field.depth_range;
+    return range && (depth.distance_w < range->near_w / kMargin ||
+                     depth.distance_w > range->far_w * kMargin);
+  };
+  const auto is_sure = [&](const Subject& one) {
+    return one.is_sure && !is_outside(one.depths[0]);
+  };
+  const PinholeCamera camera = light_field.Camera(options.camera);
+  Subject points;
+  bool is_contradicted = false;
+  if (options.points_world) {
+    LF_ASSIGN_OR_RETURN(const std::vector<Vec3> points_world, options.points_world());
+    points = FindPointSubject(camera, points_world);
+    is_contradicted =
+        is_sure(subject) && PointsContradict(camera, points_world, subject.depths[0].distance_w);
+  }
+  if (is_sure(subject) && !is_contradicted) return FocusOf(subject, "places of the image");
+  std::string why = WhyNotSure(subject, is_sure(points) ? Subject() : points);
+  if (is_contradicted)
+    why = fmt::format(
+        "the LF images agree on {:.4g}, and next to none of the {} points of the "
+        "reconstruction that the first of them shows lie there",
+        subject.depths[0].distance_w, points.place_count);
+  else if (subject.is_sure)
+    why = fmt::format(
+        "the LF images agree on {:.4g}, beyond the depths of the scene, {:.4g} to {:.4g}",
+        subject.depths[0].distance_w, light_field.depth_range->near_w,
+        light_field.depth_range->far_w);
+  if (is_sure(points)) {
+    ExampleFocus focus = FocusOf(points, "points of the reconstruction");
+    LogInfo("focused at {:.4g} by the points of the reconstruction, since {}", focus.distance_w,
+            why);
+    return focus;
+  }
+  std::vector<SubjectDepth> depths = subject.depths;
+  std::erase_if(depths, is_outside);
+  ExampleFocus focus = GuessFocus(light_field, camera, spacing_w, depths);
+  focus.doubt = why;
+  focus.candidates_w = CandidatesOf(depths, points, focus.distance_w);
+  return focus;
+}
+
+// Neighbours see what is away from the focus a few pixels apart: so far are the copies apart into
+// which its blur falls. Up to kGoodCopies_px nobody sees that; beyond it, a narrower lens blurs
+// less. Beyond kMostCopies_px, or if the focus may be wrong, only a lens that holds one LF camera
+// gives a picture.
+ExampleAperture ChooseAperture(const ExampleFocus& focus, double fx_px, double spacing_w) {
+  constexpr double kGoodCopies_px = 3, kMostCopies_px = 16;
+  if (!focus.doubt.empty())
+    return {kSharpSpacings,
+            "which holds one LF camera, so that the first frame is sharp at any distance"};
+  constexpr double kUnknownRange = 0.25;  // nearer than the focus
+  double range_per_w = kUnknownRange / focus.distance_w;
+  if (focus.near_w < focus.far_w)
+    range_per_w = std::max(1 / std::min(focus.near_w, focus.distance_w) - 1 / focus.distance_w,
+                           1 / focus.distance_w - 1 / std::max(focus.far_w, focus.distance_w));
+  const double copies_px = fx_px * spacing_w * range_per_w;
+  if (copies_px > kMostCopies_px)
+    return {kSharpSpacings,
+            fmt::format("which holds one LF camera, since what is away from the focus would fall "
+                        "into copies up to {:.0f} px apart",
+                        copies_px)};
+  const double spacings = std::clamp(kMostSpacings * kGoodCopies_px / std::max(copies_px, 1e-9),
+                                     kLeastSpacings, kMostSpacings);
+  return {spacings, fmt::format("{:.2g} spacings of LF cameras, whose copies of what is away from "
+                                "the focus are up to {:.2g} px apart",
+                                spacings, copies_px)};
+}
+
+}  // namespace lf
