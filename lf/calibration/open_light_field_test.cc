@@ -103,6 +103,13 @@ TEST_F(OpenLightFieldTest, TakesMiddleburysFileOrTheFolderOfOne) {
     EXPECT_EQ(light_field->intrinsics[0], (Intrinsics{5, 5, 4.5, 3.5, 0, 8, 6}));
   }
   EXPECT_EQ(OpenLightField(folder_, {.focal_px = 7}).error().kind, ErrorKind::kUsage);
+  // Its size is known where the image was moved and renamed, too.
+  std::filesystem::create_directories(folder_ / "images");
+  std::filesystem::rename(folder_ / "a.png", folder_ / "images" / "a.PNG");
+  const Result<LightField> moved = OpenLightField(folder_);
+  ASSERT_TRUE(moved) << moved.error().message;
+  EXPECT_EQ(moved->ImagePath(LfImageId{0}), folder_ / "images" / "a.PNG");
+  EXPECT_EQ(moved->intrinsics[0].width_px, 8);
   ASSERT_TRUE(WriteFileAtomically(folder_ / "y_par.txt", text));
   const Result<LightField> two = OpenLightField(folder_);
   ASSERT_FALSE(two);

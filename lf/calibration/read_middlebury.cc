@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "lf/capture/distinct_intrinsics.h"
+#include "lf/capture/find_images.h"
 #include "lf/capture/parse_number.h"
 #include "lf/capture/rotation.h"
 #include "lf/core/file.h"
@@ -136,6 +137,16 @@ Result<size_t> ParseCount(std::optional<std::string_view> line, const Lines& lin
   return static_cast<size_t>(*count);
 }
 
+// Returns the size of an image that may have been moved or renamed since it was calibrated.
+Result<std::array<int, 2>> SizeWherever(const fs::path& image, const fs::path& folder) {
+  LightField one;
+  one.folder = folder;
+  one.image_names = {image.lexically_relative(folder).string()};
+  one.cameras.resize(1);
+  LF_RETURN_IF_ERROR(FindImageFiles({}, &one));
+  return ImageSizeInHeader(one.ImagePath(LfImageId{0}));
+}
+
 }  // namespace
 
 Result<LightField> ParseMiddlebury(std::string_view text, const fs::path& path,
@@ -182,7 +193,8 @@ Result<LightField> ParseMiddlebury(std::string_view text, const fs::path& path,
 
 Result<LightField> ReadMiddlebury(const fs::path& path) {
   LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(path));
-  return ParseMiddlebury(text, path, ImageSizeInHeader);
+  return ParseMiddlebury(
+      text, path, [&](const fs::path& image) { return SizeWherever(image, path.parent_path()); });
 }
 
 bool IsMiddleburyName(std::string_view file_name) { return file_name.ends_with("_par.txt"); }

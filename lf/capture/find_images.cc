@@ -246,8 +246,10 @@ Result<size_t> FindImageFiles(const std::optional<fs::path>& images_folder,
   // A mask must not be taken for that of a namesake in another folder.
   for (std::string& mask : masks)
     if (!mask.empty() && !IsThere(light_field->folder / mask)) find(&mask, 2, true);
-  LogInfo("{} of {} LF images were found by their names in {}, such as {} for {}", found_count,
-          light_field->size(), folder.string(), example, looked_for);
+  // Readers ask for one image alone to know its size, and for all of them later.
+  if (names.size() > 1)
+    LogInfo("{} of {} LF images were found by their names in {}, such as {} for {}", found_count,
+            light_field->size(), folder.string(), example, looked_for);
   light_field->image_names = std::move(names);
   light_field->mask_names = std::move(masks);
   light_field->folder = folder;

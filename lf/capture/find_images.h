@@ -19,8 +19,8 @@ namespace lf {
 // (masks, depth, normals) fit only names with such a folder. Masks must have their folder in
 // common, too.
 //
-// Returns how many LF images have other names now, and logs it. These names are relative to the
-// folder; LF images without a file keep theirs. No pixels are read.
+// Returns how many LF images have other names now, and logs it for two or more LF images. These
+// names are relative to the folder; LF images without a file keep theirs. No pixels are read.
 //   images_folder  the only folder to look in, with those below it; else light_field->folder
 // kInput: several files fit an LF image equally well.
 Result<size_t> FindImageFiles(const std::optional<std::filesystem::path>& images_folder,
