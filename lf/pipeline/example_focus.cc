@@ -51,7 +51,7 @@ ExampleFocus FocusOf(const Subject& subject, const char* things) {
   return focus;
 }
 
-// Distances that may be right, the best first, without those that say the same.
+// Distances that may be right, the guess first, without those that say the same.
 std::vector<double> CandidatesOf(const std::vector<SubjectDepth>& depths, const Subject& points,
                                  double guess_w) {
   constexpr size_t kMost = 3;
@@ -63,9 +63,9 @@ std::vector<double> CandidatesOf(const std::vector<SubjectDepth>& depths, const 
     });
     if (is_new && candidates_w.size() < kMost) candidates_w.push_back(distance_w);
   };
+  add(guess_w);
   for (const SubjectDepth& depth : depths) add(depth.distance_w);
   for (const SubjectDepth& depth : points.depths) add(depth.distance_w);
-  add(guess_w);
   return candidates_w;
 }
 
