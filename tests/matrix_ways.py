@@ -34,7 +34,7 @@ RUNS = {  # the options of rules, which decide what the frames are
 INPUTS = ("folder", "store", "lossy store", "store of packages", "lossy store of packages",
           "needed pixels", "lossy needed pixels")
 CUTS = ("whole", "packages", "moved packages", "shards", "shards of packages", "lfsubmit")
-FIELDS = ("rgb", "mosaic", "alpha", "flawed", "flawed mosaic")
+FIELDS = ("rgb", "mosaic", "alpha", "opacity", "falloff", "flawed", "flawed mosaic")
 VALUES = {"field": FIELDS, "input": INPUTS, "cut": CUTS, "mode": tuple(MODES), "run": tuple(RUNS)}
 
 

@@ -104,7 +104,7 @@ def picture_of(field, index):
     rgb = np.clip(waves[..., None] + [0, 15, -20] + noise, 0, 255)
     if "mosaic" in field:
         return (rgb[..., 1] * 200).astype(np.uint16)
-    if field == "alpha":
+    if field in ("alpha", "opacity"):
         opacity = 600 - 25 * np.hypot(x - WIDTH / 2 - index % SIDE, y - HEIGHT / 2)
         rgb = np.dstack([rgb, np.clip(opacity, 0, 255)])
     return rgb.astype(np.uint8)
@@ -115,6 +115,10 @@ def write_capture(folder, field):
     keys = {}
     if field == "alpha":
         keys = {"lf_alpha": "straight", "lf_background": [0.1, 0.3, 0.2]}
+    if field == "opacity":
+        keys = {"lf_alpha": "straight", "lf_background": "none"}
+    if field == "falloff":
+        keys = {"lf_vignetting": [-0.3, 0.05, -0.1]}
     if "mosaic" in field:
         keys = {"lf_bayer": "RGGB", "lf_transfer": "linear", "lf_black_level": 100,
                 "lf_white_level": 52000, "lf_white_balance": [2, 1, 1.5],
