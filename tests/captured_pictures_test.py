@@ -202,7 +202,7 @@ class CapturedPicturesTest(FirstPictureCase):
                           0.2)
 
     def test_temple(self):
-        self.all_pictures(temple, (uneven, dark_corners, renamed), (0.5, 0.6), 0.5,
+        self.all_pictures(temple, (uneven, dark_corners, renamed), (0.5, 0.6), 0.8,
                           is_sure=False)
 
     def test_beer(self):

@@ -20,7 +20,7 @@ constexpr double kDuration_s = static_cast<double>(kFrameCount - 1) / kFps;
 constexpr double kNominalSensorWidth_mm = 36;
 
 std::string Text(const Vec3& v) {
-  return fmt::format("[{:.7g}, {:.7g}, {:.7g}]", v.x(), v.y(), v.z());
+  return fmt::format("[{:.9g}, {:.9g}, {:.9g}]", v.x(), v.y(), v.z());
 }
 
 // The up direction that keeps the horizon level, if the cameras tell one.
