@@ -1,6 +1,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "lf/imageio/exposure_facts.h"
 #include "lf/imageio/image_file.h"
 
 // OpenImageIO loses a string where libpng jumps out of it; only our own faults are looked for.
@@ -10,6 +11,10 @@ extern "C" const char* __asan_default_options() { return "detect_leaks=0"; }
 // to their headers: decoding them takes long and shows nothing new.
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size_bytes) {
   const std::string_view file(reinterpret_cast<const char*>(bytes), size_bytes);
+  if (const auto facts = lf::ReadExposureFactsBytes(file, "fuzz"); facts) {
+    for (const auto& fact : {facts->time_s, facts->f_number, facts->iso})
+      LF_CHECK(!fact || (*fact > 0 && *fact < 1e300));
+  }
   const auto info = lf::ReadImageInfoBytes(file, "fuzz");
   if (!info) {
     LF_CHECK(info.error().message.starts_with("fuzz: "));

@@ -9,9 +9,12 @@
 #include <new>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "lf/core/file.h"
 #include "lf/core/files_nearby.h"
+#include "lf/imageio/exif_exposure.h"
+#include "lf/imageio/exposure_facts.h"
 #include "lf/imageio/image_file.h"
 #include "lf/imageio/image_probe.h"
 #include "lf/imageio/layers.h"
@@ -191,6 +194,14 @@ Result<ImageFileInfo> InfoFrom(const FileSource& source) {
   return InfoOf(image);
 }
 
+Result<ExposureFacts> ExposureFrom(const FileSource& source) {
+  const ByteSource bytes = SourceOf(source.file);
+  LF_ASSIGN_OR_RETURN(const ImageFormat format, ProbeImage(bytes, source.name));
+  if (format != ImageFormat::kRaw) return ExposureOfExif(bytes, format);
+  LF_ASSIGN_OR_RETURN(const RawReader raw, RawReader::Open(bytes, source.file.size(), source.name));
+  return raw.exposure();
+}
+
 Result<void> PartOfJpeg(const ByteSource& bytes, const std::string& name,
                         const WantedPixels& wanted, ImagePart* part) {
   LF_ASSIGN_OR_RETURN(JpegReader jpeg, JpegReader::Open(bytes, name));
@@ -241,9 +252,10 @@ auto WithoutThrowing(const std::string& name, const Read& read) -> decltype(read
   }
 }
 
-}  // namespace
-
-Result<ImageFileInfo> ReadImageInfo(const fs::path& path) {
+// What `read` tells of a file, of which no more is read than it asks for.
+template <class Read>
+auto FromFile(const fs::path& path, const Read& read)
+    -> decltype(read(std::declval<const FileSource&>())) {
   const std::string name = path.string();
   std::error_code error;
   if (fs::exists(path, error) && !fs::is_regular_file(path, error))
@@ -254,7 +266,22 @@ Result<ImageFileInfo> ReadImageInfo(const fs::path& path) {
     return InputError(fmt::format("{}: cannot be read: {}{}", name, std::strerror(reason),
                                   reason == ENOENT ? FilesNearby(path) : ""));
   }
-  return WithoutThrowing(name, [&] { return InfoFrom({file, name}); });
+  return WithoutThrowing(name, [&] { return read({file, name}); });
+}
+
+}  // namespace
+
+Result<ImageFileInfo> ReadImageInfo(const fs::path& path) {
+  return FromFile(path, [](const FileSource& file) { return InfoFrom(file); });
+}
+
+Result<ExposureFacts> ReadExposureFacts(const fs::path& path) {
+  return FromFile(path, [](const FileSource& file) { return ExposureFrom(file); });
+}
+
+Result<ExposureFacts> ReadExposureFactsBytes(std::string_view bytes, const std::string& name) {
+  OIIO::Filesystem::IOMemReader file(const_cast<char*>(bytes.data()), bytes.size());
+  return WithoutThrowing(name, [&] { return ExposureFrom({file, name}); });
 }
 
 Result<ImageFileInfo> ReadImageInfoBytes(std::string_view bytes, const std::string& name) {

@@ -279,6 +279,14 @@ Result<RawReader> RawReader::Open(const ByteSource& source, uint64_t size_bytes,
 
 const ImageFileInfo& RawReader::info() const { return state_->info; }
 
+ExposureFacts RawReader::exposure() const {
+  const auto stated = [](float value) {
+    return value > 0 && std::isfinite(value) ? std::optional<double>(value) : std::nullopt;
+  };
+  const libraw_imgother_t& other = state_->raw.imgdata.other;
+  return {stated(other.shutter), stated(other.aperture), stated(other.iso_speed)};
+}
+
 Result<void> RawReader::Read(Image<uint16_t>* image) {
   QuietLibRaw& raw = state_->raw;
   RawStream& stream = state_->stream;

@@ -7,6 +7,7 @@
 
 #include "lf/core/image.h"
 #include "lf/core/result.h"
+#include "lf/imageio/exposure_facts.h"
 #include "lf/imageio/image_file.h"
 #include "lf/imageio/image_probe.h"
 
@@ -28,6 +29,9 @@ class RawReader {
   // Before Read(), the black level is known of DNG files alone: LibRaw measures that of others on
   // the covered pixels of the sensor.
   const ImageFileInfo& info() const;
+
+  // The exposure that the camera states.
+  ExposureFacts exposure() const;
 
   // Decodes the visible pixels; the memory of `image` is used again. kInput: truncated or damaged,
   // as far as LibRaw notices. Throws std::bad_alloc.

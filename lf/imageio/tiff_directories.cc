@@ -154,4 +154,13 @@ std::optional<TiffDirectory> FirstTiffDirectory(const ByteSource& source) {
   return reader.ReadAt(reader.first());
 }
 
+std::optional<TiffDirectory> ExifDirectory(const ByteSource& source) {
+  constexpr int kExifOffset = 0x8769;
+  const TiffReader reader(source);
+  const std::optional<TiffDirectory> first = FirstTiffDirectory(source);
+  const double offset = first ? first->Number(kExifOffset, 0) : 0;
+  if (!(offset >= 1)) return std::nullopt;
+  return reader.ReadAt(static_cast<uint64_t>(offset));
+}
+
 }  // namespace lf

@@ -36,4 +36,7 @@ class TiffDirectory {
 // The first directory; none in BigTIFF files, which no camera writes. `source` must outlive it.
 std::optional<TiffDirectory> FirstTiffDirectory(const ByteSource& source);
 
+// The directory of Exif data that the first one names; none as above.
+std::optional<TiffDirectory> ExifDirectory(const ByteSource& source);
+
 }  // namespace lf
