@@ -15,6 +15,7 @@
 #include "lf/calibration/read_middlebury.h"
 #include "lf/calibration/read_stanford.h"
 #include "lf/capture/alpha_evidence.h"
+#include "lf/capture/brackets.h"
 #include "lf/capture/image_files.h"
 #include "lf/capture/raw_encoding.h"
 #include "lf/colmap/points_seen.h"
@@ -368,6 +369,9 @@ Result<LightField> OpenLightField(const fs::path& path, const OpenOptions& optio
     LF_RETURN_IF_ERROR(CompleteEncoding(options, path, &light_field));
   }
   LF_RETURN_IF_ERROR(CompleteAlpha(options, path, &light_field));
+  // A packed store states what was decided when its masks were coded.
+  if (!HoldsPackedStore(light_field) && light_field.encoding.masks_clipped)
+    ApplyBrackets(&light_field);
   const Intrinsics& first = light_field.Camera({0}).intrinsics;
   LogDebug("{}: {} LF images in {}, the first of {} x {} pixels{}, {} distinct intrinsics{}{}",
            path.string(), light_field.size(), light_field.folder.string(), first.width_px,

@@ -88,6 +88,7 @@ SettingList SettingsOfPixels(const LightField& light_field) {
           {"max_radiance", fmt::format("{}", encoding.max_radiance)},
           {"pedestal", fmt::format("{}", encoding.pedestal)},
           {"alpha", encoding.alpha ? NameOf(*encoding.alpha) : ""},
+          {"clipped", encoding.masks_clipped ? "mask" : ""},
           {"background", !encoding.background ? ""
                          : encoding.keeps_opacity
                              ? kNoBackground
@@ -121,6 +122,9 @@ Result<void> ReadPixelSettings(const Settings& settings, LightField* light_field
   LF_ASSIGN_OR_RETURN(encoding.max_radiance, settings.Number("max_radiance", 1e-9, kMostNumber));
   LF_ASSIGN_OR_RETURN(encoding.pedestal, settings.Number("pedestal", 0, 65535));
   LF_RETURN_IF_ERROR(ReadAlpha(settings, &encoding));
+  encoding.masks_clipped = settings.Text("clipped") == "mask";
+  if (!encoding.masks_clipped && !settings.Text("clipped").empty())
+    return settings.Wrong("clipped", "mask");
   LF_ASSIGN_OR_RETURN(const std::vector<double> balance, settings.Numbers("white_balance", 3, 3));
   std::copy(balance.begin(), balance.end(), encoding.white_balance.begin());
   LF_ASSIGN_OR_RETURN(const std::vector<double> matrix, settings.Numbers("camera_to_srgb", 9, 9));

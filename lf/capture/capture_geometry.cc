@@ -77,12 +77,14 @@ double MedianSpacing(const LightField& light_field) {
   if (light_field.size() < 2) return 0;
   const std::vector<Vec3> centres = Centres(light_field);
   const size_t step = std::max<size_t>(1, centres.size() / kSpacingSamples);
+  const bool are_brackets = light_field.encoding.masks_clipped;  // several images of one pose
   std::vector<double> nearest;
   for (size_t i = 0; i < centres.size(); i += step) {
     double least = std::numeric_limits<double>::infinity();
     for (size_t k = 0; k < centres.size(); ++k)
-      if (k != i) least = std::min(least, (centres[k] - centres[i]).squaredNorm());
-    nearest.push_back(std::sqrt(least));
+      if (k != i && !(are_brackets && centres[k] == centres[i]))
+        least = std::min(least, (centres[k] - centres[i]).squaredNorm());
+    nearest.push_back(std::isfinite(least) ? std::sqrt(least) : 0);
   }
   return Percentile(std::move(nearest), 0.5);
 }

@@ -32,6 +32,16 @@ LightField Grid(std::optional<Vec3> target) {
 TEST(CaptureGeometry, SpacingIsTheDistanceToTheNearestNeighbour) {
   EXPECT_NEAR(MedianSpacing(Grid({})), 0.1, 1e-12);
   EXPECT_EQ(MedianSpacing(Field({RigidTransform{}})), 0);
+  LightField twice = Grid({});
+  for (size_t i = 0; i < 72; ++i) {
+    twice.cameras.push_back(twice.cameras[i]);
+    twice.image_names.push_back("x");
+  }
+  EXPECT_EQ(MedianSpacing(twice), 0);
+  twice.encoding.masks_clipped = true;  // brackets
+  EXPECT_NEAR(MedianSpacing(twice), 0.1, 1e-12);
+  twice.cameras = {twice.cameras[0], twice.cameras[0]};
+  EXPECT_EQ(MedianSpacing(twice), 0);
 }
 
 TEST(CaptureGeometry, TheMiddleCameraIsInTheMiddle) {

@@ -31,11 +31,15 @@ struct ChannelGains {
   std::array<float, 3> of_channels;
 };
 
-// One LF camera: 112 bytes, since a light field may have a million of them.
+// One LF camera: 120 bytes, since a light field may have a million of them.
 struct LfCamera {
   RigidTransform cam_from_world;
   uint32_t intrinsics_index = 0;  // into LightField::intrinsics
   ChannelGains gain;              // its radiance is multiplied by this (lf_gain)
+  // These two are set by ApplyBrackets() (capture/brackets.h).
+  static constexpr uint32_t kNone = UINT32_MAX;
+  uint32_t brighter = kNone;   // the LF image of its pose with the next larger exposure
+  bool masks_clipped = false;  // its clipped pixels send no ray: a darker one of its pose has them
 };
 
 struct LightField {

@@ -99,6 +99,12 @@ bool LevelsFit(const RadianceEncoding& encoding, int bits) {
   return encoding.black_level < white_level && white_level <= LargestStorable(bits);
 }
 
+double ClippedFrom(const RadianceEncoding& encoding, int bits) {
+  constexpr double kClippedShare = 0.99;
+  const double black = encoding.black_level;
+  return black + kClippedShare * (WhiteLevel(encoding, bits) - black);
+}
+
 std::vector<double> LightTable(const RadianceEncoding& encoding, int bits) {
   LF_CHECK(bits == 8 || bits == 16);
   LF_CHECK(LevelsFit(encoding, bits));

@@ -48,6 +48,9 @@ struct RadianceEncoding {
   std::optional<std::array<double, 3>> background;
   // Nothing is behind: `background` is black, and frames have opacity as a channel of their own.
   bool keeps_opacity = false;
+  // LF images of one pose with different exposures are one picture, of which each pixel is taken
+  // from the brightest that is not clipped there (capture/brackets.h).
+  bool masks_clipped = false;
   std::array<double, 3> white_balance = {1, 1, 1};  // applied on developing
   Mat3 camera_to_srgb = Mat3::Identity();           // linear sRGB = M * white balanced camera RGB
 
@@ -94,6 +97,11 @@ double DefaultMaxRadiance(std::span<const std::string> image_names);
 
 // Whether files of so many bits can hold the levels: black < white <= the largest storable value.
 bool LevelsFit(const RadianceEncoding& encoding, int bits);
+
+// Stored values from this on are clipped: the upper hundredth of black to white, because JPEG
+// files, noise and demosaicking do not keep the largest value exactly. bits: 8 or 16, and
+// LevelsFit(). Floats have no such value.
+double ClippedFrom(const RadianceEncoding& encoding, int bits);
 
 // v for every stored value of 8 or 16 bit files: 256 or 65536 entries. Halves round away from zero
 // (noise around black stays symmetric). Beyond the levels sRGB and linear go on; a response curve

@@ -42,6 +42,7 @@ double CameraDistanceAround(const ImageIndex& index, const RenderCamera& frame) 
   std::vector<Vec3> centres_world;
   for (const LfImageId id : CamerasAroundLens(index, frame))
     centres_world.push_back(index.light_field().Camera(id).CentreWorld());
+  if (index.light_field().encoding.masks_clipped) centres_world = DistinctPlaces(centres_world);
   return CameraDistance(frame, centres_world);
 }
 

@@ -37,7 +37,7 @@ FrameLens::FrameLens(const ImageIndex& index, const RenderCamera& frame, LensWei
     camera = near.size();
     near.push_back(light_field_.Camera(LfImageId{id}).CentreWorld());
   }
-  weights_.emplace(frame, near, kind, pool);
+  weights_.emplace(frame, near, kind, pool, light_field_.encoding.masks_clipped);
   // A little more, so that what lies on the rim is inside.
   camera_.aperture = {weights_->reach_w() * (1 + 1e-6), 0, 0};
 }

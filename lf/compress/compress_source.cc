@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "lf/capture/brackets.h"
 #include "lf/capture/distinct_intrinsics.h"
 #include "lf/packed/packed_store_file.h"
 
@@ -82,6 +83,7 @@ Result<CompressSource> SourceOfPackages(std::span<const Package> packages, bool 
     source.whole_ids.push_back(id);
   }
   light_field.intrinsics = intrinsics.Take();
+  if (light_field.encoding.masks_clipped) ApplyBrackets(&light_field);
   return source;
 }
 

@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "lf/capture/brackets.h"
 #include "lf/capture/distinct_intrinsics.h"
 #include "lf/exposure/compare_patches.h"
 #include "lf/exposure/exposure_views.h"
@@ -231,7 +232,11 @@ std::optional<FoundFalloff> BelievableFalloff(const LightField& field, const Cam
 
 LightField WithoutExposure(const LightField& light_field) {
   LightField plain = light_field;
-  for (LfCamera& camera : plain.cameras) camera.gain = {};
+  for (LfCamera& camera : plain.cameras) {
+    camera.gain = {};
+    camera.masks_clipped = false;
+    camera.brighter = LfCamera::kNone;
+  }
   for (Intrinsics& k : plain.intrinsics) k.vignetting = {};
   return plain;
 }
@@ -296,18 +301,8 @@ Result<MatchedExposure> MatchExposure(const LightField& light_field, const LfIma
 void ApplyExposure(const MatchedExposure& matched, LightField* light_field) {
   for (size_t i = 0; i < light_field->intrinsics.size(); ++i)
     light_field->intrinsics[i].vignetting = matched.falloffs[i];
-  double most = 1;
-  for (size_t i = 0; i < light_field->size(); ++i) {
-    LfCamera& camera = light_field->cameras[i];
-    camera.gain = matched.gains[i];
-    const Intrinsics& k = light_field->intrinsics[camera.intrinsics_index];
-    for (const float gain : camera.gain.of_channels)
-      most = std::max(most, gain / FalloffRangeOf(k).min);
-  }
-  if (DefaultMaxRadiance(light_field->image_names) > 1) return;
-  constexpr double kSteps = 100;
-  light_field->encoding.max_radiance =
-      std::max(light_field->encoding.max_radiance, std::ceil(most * kSteps) / kSteps);
+  for (size_t i = 0; i < light_field->size(); ++i) light_field->cameras[i].gain = matched.gains[i];
+  MakeRoomForGains(light_field);
 }
 
 }  // namespace lf

@@ -128,6 +128,15 @@ double CameraDistance(const RenderCamera& frame, std::span<const Vec3> centres_w
   return DistanceAround(PointsAt(frame, centres_world, *middle), frame.aperture.radius_w);
 }
 
+std::vector<Vec3> DistinctPlaces(std::span<const Vec3> centres_world) {
+  std::vector<Vec3> places(centres_world.begin(), centres_world.end());
+  std::sort(places.begin(), places.end(), [](const Vec3& a, const Vec3& b) {
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+  });
+  places.erase(std::unique(places.begin(), places.end()), places.end());
+  return places;
+}
+
 Vec2 LensPointOfLine(const RenderCamera& frame, const Vec3& centre_world, const Vec3& point_world) {
   const Vec3 lens_centre = frame.pinhole.CentreWorld();
   const Vec3 forward = frame.pinhole.ForwardWorld();
@@ -138,13 +147,14 @@ Vec2 LensPointOfLine(const RenderCamera& frame, const Vec3& centre_world, const 
 }
 
 FrameWeights::FrameWeights(const RenderCamera& frame, std::span<const Vec3> centres_world,
-                           LensWeights kind, ThreadPool& pool)
+                           LensWeights kind, ThreadPool& pool, bool are_brackets)
     : width_px_(frame.pinhole.intrinsics.width_px),
       height_px_(frame.pinhole.intrinsics.height_px),
       nodes_begin_(centres_world.size(), kNone) {
   LF_CHECK(kind != LensWeights::kNone);
   LF_CHECK(kind != LensWeights::kArea || frame.aperture.radius_w > 0);
-  const double distance = CameraDistance(frame, centres_world);
+  const double distance = are_brackets ? CameraDistance(frame, DistinctPlaces(centres_world))
+                                       : CameraDistance(frame, centres_world);
   if (kind == LensWeights::kHat) hat_share_ = 1;
   if (kind == LensWeights::kAuto) hat_share_ = AutoHatShare(2 * frame.aperture.radius_w, distance);
   if (const std::optional<Vec3> focus =

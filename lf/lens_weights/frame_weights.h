@@ -42,8 +42,9 @@ class FrameWeights {
  public:
   // centres_world  of the LF cameras whose images may contribute
   // kind           not kNone
+  // are_brackets   several LF cameras at one place are one for the distance between cameras
   FrameWeights(const RenderCamera& frame, std::span<const Vec3> centres_world, LensWeights kind,
-               ThreadPool& pool);
+               ThreadPool& pool, bool are_brackets = false);
 
   // Of a ray of the camera's to an element, whose block is one of BlocksOf(camera): 0 (it adds
   // nothing) to kMaxWeight. The largest share of the frame has kMaxWeight, unless it is more than
@@ -116,6 +117,10 @@ class FrameWeights {
 // kCamerasAround of them, or all that the lens holds. 0 if there is none.
 inline constexpr size_t kCamerasAround = 12;
 double CameraDistance(const RenderCamera& frame, std::span<const Vec3> centres_world);
+
+// Each place once, in an order of their coordinates: brackets have several LF images of one pose,
+// and how far apart the poses are does not depend on how many.
+std::vector<Vec3> DistinctPlaces(std::span<const Vec3> centres_world);
 
 // Where the line through a world point and an LF camera meets the lens plane, in lens coordinates
 // (doc/ray.md, Geometry 5). Not finite if it runs beside it.

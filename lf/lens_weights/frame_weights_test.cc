@@ -75,6 +75,30 @@ TEST(FrameWeights, OfVeryManyLfImagesFitThePlate) {
   }
 }
 
+// Brackets: each place three times.
+TEST(FrameWeights, BracketsShareThePlaceAndNothingElse) {
+  const std::vector<Vec3> places = JitteredGrid(4, 0.02, 0.3, 3);
+  std::vector<Vec3> centres;
+  for (const Vec3& place : places) centres.insert(centres.end(), 3, place);
+  for (const auto& [radius_w, kind] :
+       {std::pair(0.06, LensWeights::kArea), std::pair(0.008, LensWeights::kHat),
+        std::pair(0.012, LensWeights::kAuto)}) {
+    const FrameWeights alone(Frame(radius_w), places, kind, Pool());
+    const FrameWeights three(Frame(radius_w), centres, kind, Pool(), true);
+    EXPECT_DOUBLE_EQ(three.hat_share(), alone.hat_share());
+    const std::vector<double> of_alone = SharesOf(alone, places.size(), 600, 400);
+    const std::vector<double> of_three = SharesOf(three, centres.size(), 600, 400);
+    for (size_t i = 0; i < centres.size(); ++i)
+      EXPECT_NEAR(of_three[i], of_alone[i / 3] / 3, 0.002);
+  }
+}
+
+TEST(FrameWeights, DistinctPlacesHaveEachOnce) {
+  const std::vector<Vec3> centres = {{1, 2, 3}, {0, 2, 3}, {1, 2, 3}, {1, 2, 2}, {0, 2, 3}};
+  EXPECT_EQ(DistinctPlaces(centres), (std::vector<Vec3>{{0, 2, 3}, {1, 2, 2}, {1, 2, 3}}));
+  EXPECT_TRUE(DistinctPlaces({}).empty());
+}
+
 TEST(LensPoints, AreWhereLinesMeetTheLens) {
   RandomSequence random(1);
   const auto any = [&] {

@@ -107,6 +107,14 @@ Result<void> ReadAlpha(const JsonFields& top, RadianceEncoding* encoding) {
   return {};
 }
 
+Result<void> ReadClipped(const JsonFields& top, RadianceEncoding* encoding) {
+  LF_ASSIGN_OR_RETURN(const std::optional<std::string> name, top.Text("lf_clipped"));
+  if (name && *name != "mask" && *name != "keep")
+    return top.Wrong("lf_clipped", "\"mask\" or \"keep\"");
+  encoding->masks_clipped = name == "mask";
+  return {};
+}
+
 // What the first of camera raw files tells of what is not stated.
 Result<RadianceEncoding> DefaultEncoding(const JsonFields& top, const LightField& light_field,
                                          const RawFactsSource& raw_facts) {
@@ -131,6 +139,7 @@ Result<RadianceEncoding> ReadEncoding(const JsonFields& top, const LightField& l
   LF_RETURN_IF_ERROR(ReadLevels(top, &encoding));
   LF_RETURN_IF_ERROR(ReadColour(top, &encoding));
   LF_RETURN_IF_ERROR(ReadAlpha(top, &encoding));
+  LF_RETURN_IF_ERROR(ReadClipped(top, &encoding));
   LF_ASSIGN_OR_RETURN(const std::optional<double> max_radiance,
                       top.Number("lf_max_radiance", kMaxRadiance));
   LF_ASSIGN_OR_RETURN(const std::optional<double> pedestal, top.Number("lf_pedestal", kPedestal));

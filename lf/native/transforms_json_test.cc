@@ -311,7 +311,7 @@ TEST(TransformsJson, ReadsHowStoredNumbersBecomeLight) {
                        "lf_white_level": 16383, "lf_white_balance": [2, 1, 1.5],
                        "lf_camera_to_srgb": [[1,2,3],[0,1,4],[5,6,1]], "lf_max_radiance": 2,
                        "lf_pedestal": 2048, "lf_unit_m": 0.001, "lf_alpha": "premultiplied",
-                       "lf_background": [0, 0.5, 2], )",
+                       "lf_background": [0, 0.5, 2], "lf_clipped": "mask", )",
                R"("lf_gain": 1.25, "lf_mask": "masks/a.png", )"));
   const RadianceEncoding& encoding = light_field.encoding;
   EXPECT_EQ(encoding.bayer, BayerPattern::kGbrg);
@@ -325,6 +325,9 @@ TEST(TransformsJson, ReadsHowStoredNumbersBecomeLight) {
   EXPECT_EQ(encoding.pedestal, 2048);
   EXPECT_EQ(encoding.alpha, AlphaMeaning::kPremultiplied);
   EXPECT_EQ(encoding.background, (std::array<double, 3>{0, 0.5, 2}));
+  EXPECT_TRUE(encoding.masks_clipped);
+  EXPECT_FALSE(Parsed(OneFrame(kIntrinsics)).encoding.masks_clipped);
+  EXPECT_FALSE(Parsed(OneFrame(kIntrinsics + R"("lf_clipped": "keep", )")).encoding.masks_clipped);
   EXPECT_EQ(light_field.unit_m, 0.001);
   EXPECT_EQ(light_field.cameras[0].gain, ChannelGains(1.25f));
   EXPECT_EQ(light_field.mask_names, std::vector<std::string>{"masks/a.png"});
@@ -424,6 +427,8 @@ TEST(TransformsJson, WrongLfValuesAreErrors) {
   expect(R"("lf_background": [1, 1], )", "a list of 3 numbers");
   expect(R"("lf_background": [1, -1, 1], )", "radiances from 0");
   expect(R"("lf_background": [1, 1, 1], "lf_alpha": "mask", )", "nothing behind it");
+  expect(R"("lf_clipped": "drop", )", "\"mask\" or \"keep\"");
+  expect(R"("lf_clipped": true, )", "lf_clipped");
   expect(R"("lf_unit_m": 0, )", "lf_unit_m");
   ExpectError(OneFrame(kIntrinsics, R"("lf_gain": 0, )"), {"frames[0]", "\"lf_gain\" is 0"});
   ExpectError(OneFrame(kIntrinsics, R"("lf_mask": 3, )"), {"\"lf_mask\" is 3"});

@@ -135,6 +135,7 @@ void AddEncoding(const RadianceEncoding& encoding, JsonText* json) {
   add_number("lf_max_radiance", encoding.max_radiance);
   add_number("lf_pedestal", encoding.pedestal);
   if (encoding.alpha) json->Add("\"lf_alpha\": \"{}\",\n", NameOf(*encoding.alpha));
+  if (encoding.masks_clipped) json->Add("\"lf_clipped\": \"mask\",\n");
   if (encoding.background && encoding.keeps_opacity) {
     json->Add("\"lf_background\": \"{}\",\n", kNoBackground);
   } else if (encoding.background) {

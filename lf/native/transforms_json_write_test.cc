@@ -170,6 +170,9 @@ TEST_F(WriteTransformsJsonTest, KeepsAResponseCurveAndTheDefaults) {
   const LightField read = WrittenAndRead(light_field);
   EXPECT_EQ(read.encoding.response, light_field.encoding.response);
   EXPECT_EQ(read.encoding.white_level, std::nullopt);
+  EXPECT_FALSE(read.encoding.masks_clipped);
+  light_field.encoding.masks_clipped = true;
+  EXPECT_TRUE(WrittenAndRead(light_field).encoding.masks_clipped);
   EXPECT_TRUE(read.mask_names.empty());
 }
 

@@ -32,6 +32,7 @@ Package TestPackage() {
   field.encoding.black_level = 64;
   field.encoding.white_level = 4095.5;
   field.encoding.max_radiance = 16;
+  field.encoding.masks_clipped = true;
   field.encoding.pedestal = 1024;
   field.encoding.white_balance = {2.1, 1, 1.0 / 7};
   field.encoding.camera_to_srgb << 1, 2, 3, 4, 5, 6, 7, 8, 1.0 / 9;
@@ -42,6 +43,10 @@ Package TestPackage() {
         {pair.lf_camera.cam_from_world, i % 10, 0.5f + 0.1f * static_cast<float>(i)});
     if (i % 4 == 1) field.cameras.back().gain = {1.0f / 3, 1, 2.0f / 3};
     if (i % 3 == 1 && i < 10) field.intrinsics.back().vignetting.v = {-1e-9 / 3, 0, 0.0025};
+    if (i == 1) {  // brackets
+      field.cameras[1].cam_from_world = field.cameras[0].cam_from_world;
+      field.cameras[1].intrinsics_index = 0;
+    }
     field.image_names.push_back("bänd/ima'ge " + std::to_string(i) + ".png");
     field.mask_names.push_back(i % 2 == 0 ? "" : "mask.png");
     package.places.of_images.push_back((i * 717 + 5) % 1000);
@@ -110,6 +115,10 @@ TEST_F(PackageFileTest, ReadsWhatWasWrittenToTheBit) {
   EXPECT_EQ(read->places.of_images, package.places.of_images);
   EXPECT_EQ(read->places.end, package.places.end);
 
+  // The first two LF images have one pose; their gains differ.
+  EXPECT_TRUE(read->light_field.cameras[0].masks_clipped);
+  EXPECT_EQ(read->light_field.cameras[1].brighter, 0U);
+
   const LightField &a = read->light_field, &b = package.light_field;
   EXPECT_EQ(IdentityOf(a), IdentityOf(b));
   EXPECT_EQ(a.image_names, b.image_names);
@@ -123,6 +132,7 @@ TEST_F(PackageFileTest, ReadsWhatWasWrittenToTheBit) {
   EXPECT_EQ(a.encoding.black_level, b.encoding.black_level);
   EXPECT_EQ(a.encoding.white_level, b.encoding.white_level);
   EXPECT_EQ(a.encoding.max_radiance, b.encoding.max_radiance);
+  EXPECT_EQ(a.encoding.masks_clipped, b.encoding.masks_clipped);
   EXPECT_EQ(a.encoding.pedestal, b.encoding.pedestal);
   EXPECT_EQ(a.encoding.white_balance, b.encoding.white_balance);
   EXPECT_EQ(a.encoding.camera_to_srgb, b.encoding.camera_to_srgb);

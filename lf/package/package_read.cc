@@ -5,6 +5,7 @@
 
 #include "lf/calibration_tables/calibration_tables.h"
 #include "lf/calibration_tables/stored_numbers.h"
+#include "lf/capture/brackets.h"
 #include "lf/database/seal.h"
 #include "lf/package/package_file.h"
 #include "lf/package/package_format.h"
@@ -130,6 +131,8 @@ Result<void> Reader::ReadImages() {
   if (std::all_of(light_field.mask_names.begin(), light_field.mask_names.end(),
                   [](const std::string& name) { return name.empty(); }))
     light_field.mask_names.clear();
+  // All exposures of a pose see the same, and are in the package if one of them is.
+  if (light_field.encoding.masks_clipped) ApplyBrackets(&light_field);
   std::vector<uint32_t> places = package_.places.of_images;
   std::sort(places.begin(), places.end());
   if (std::adjacent_find(places.begin(), places.end()) != places.end())

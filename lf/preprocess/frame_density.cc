@@ -68,7 +68,9 @@ FrameDensity DensityOf(const ImageIndex& index, const RenderCamera& frame,
   around.ids = CamerasAroundLens(index, frame);
   for (const LfImageId id : around.ids)
     around.centres_world.push_back(index.light_field().Camera(id).CentreWorld());
-  density.camera_distance_w = CameraDistance(frame, around.centres_world);
+  density.camera_distance_w = index.light_field().encoding.masks_clipped
+                                  ? CameraDistance(frame, DistinctPlaces(around.centres_world))
+                                  : CameraDistance(frame, around.centres_world);
 
   const std::optional<Vec3> focus =
       FocusPointOfElement(frame, 0.5 * plate.width_px, 0.5 * plate.height_px);

@@ -34,6 +34,10 @@ std::string EncodingText(const RadianceEncoding& encoding) {
                                  : fmt::format("{} {} {}", behind[0], behind[1], behind[2]);
     alpha = fmt::format(" alpha {} over {}", NameOf(*encoding.alpha), over);
   }
+  if (encoding.masks_clipped) {
+    hasher.Add(std::string("clipped"));
+    alpha += " clipped mask";
+  }
   constexpr const char* kTransfers[] = {"srgb", "linear", "response"};
   return fmt::format(
       "{}{} black {} white {} max {} pedestal {}{} ({})",

@@ -58,6 +58,7 @@ TEST(RunInputs, EveryInputMakesADifferenceAndItsKeyNamesIt) {
          i.field.encoding.response = {0, 1};
        }},
       {"light_field.colours", [](Inputs& i) { i.field.encoding.white_balance[2] = 1.5; }},
+      {"light_field.encoding", [](Inputs& i) { i.field.encoding.masks_clipped = true; }},
       {"frame.resolution", [](Inputs& i) { i.camera.pinhole.intrinsics.height_px = 61; }},
       {"frame.position", [](Inputs& i) { i.camera.pinhole.cam_from_world.translation.z() += 0.1; }},
       {"frame.aperture_diameter_w", [](Inputs& i) { i.camera.aperture.radius_w = 0.031; }},

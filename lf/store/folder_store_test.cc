@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "lf/capture/brackets.h"
 #include "lf/core/file.h"
 #include "lf/imageio/image_file.h"
 #include "lf/imageio/test_dng.h"
@@ -104,6 +105,69 @@ TEST_F(FolderStoreTest, ARectangleIsCutToTheImage) {
   Write<uint8_t>("a.png", 3);
   EXPECT_EQ(Loaded(OneImage(), {-3, 2, 100, 100}).rect, (PixelRect{0, 2, kWidth, kHeight}));
   EXPECT_TRUE(Loaded(OneImage(), {50, 50, 60, 60}).radiance.empty());
+}
+
+// A picture of grey but for one channel of each pixel of the first row: 0, 40, 80 ... of 8 bits.
+Image<uint8_t> Bright(uint8_t first, uint8_t step) {
+  Image<uint8_t> image(kWidth, kHeight, 3, uint8_t{100});
+  for (int x = 0; x < kWidth; ++x) image.at(x, 0, x % 3) = static_cast<uint8_t>(first + x * step);
+  return image;
+}
+
+TEST_F(FolderStoreTest, AClippedChannelMasksAPixelWhereThatIsAskedFor) {
+  ASSERT_TRUE(WriteImage(folder_ / "a.png", Bright(249, 1).view()));
+  LightField light_field = OneImage();
+  EXPECT_FALSE(HasMasked(Loaded(light_field)));
+  light_field.cameras[0].masks_clipped = true;
+  const LfPixels pixels = Loaded(light_field);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) EXPECT_EQ(pixels.IsMasked(x, y), y == 0 && x >= 4) << x;
+}
+
+TEST_F(FolderStoreTest, PixelsAreClippedFromTheWhiteLevelOn) {
+  ASSERT_TRUE(WriteImage(folder_ / "a.png", Bright(194, 1).view()));
+  LightField light_field = OneImage();
+  light_field.cameras[0].masks_clipped = true;
+  EXPECT_FALSE(HasMasked(Loaded(light_field)));
+  light_field.encoding.black_level = 100;
+  light_field.encoding.white_level = 200;  // clipped from 199 on
+  const LfPixels pixels = Loaded(light_field);
+  for (int x = 0; x < kWidth; ++x) EXPECT_EQ(pixels.IsMasked(x, 0), x >= 5) << x;
+}
+
+// Two exposures of one pose, of which the bright one clips four pixels of the first row.
+TEST_F(FolderStoreTest, ADarkerImageHasWhatTheBrighterOneClipsAndAPixelAround) {
+  ASSERT_TRUE(WriteImage(folder_ / "a.png", Image<uint8_t>(kWidth, kHeight, 3, 60).view()));
+  Image<uint8_t> bright(kWidth, kHeight, 3, 200);
+  for (int x = 0; x < 3; ++x) bright.at(x, 0, 1) = 255;
+  ASSERT_TRUE(WriteImage(folder_ / "b.png", bright.view()));
+  LightField light_field = OneImage();
+  light_field.cameras.resize(2);
+  light_field.image_names.push_back("b.png");
+  light_field.encoding.masks_clipped = true;
+  light_field.cameras[0].gain = 4;
+  ASSERT_EQ(ApplyBrackets(&light_field), 1U);
+  LfPixels of_bright;
+  ASSERT_TRUE(FolderStore(light_field).Load({1}, kWhole, &of_bright));
+  const LfPixels of_dark = Loaded(light_field);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      EXPECT_EQ(of_bright.IsMasked(x, y), y == 0 && x < 3);
+      EXPECT_EQ(of_dark.IsMasked(x, y), y > 1 || x > 3);
+    }
+  const LfPixels part = Loaded(light_field, {3, 1, 6, 3});
+  for (int y = 1; y < 3; ++y)
+    for (int x = 3; x < 6; ++x) EXPECT_EQ(part.IsMasked(x - 3, y - 1), y > 1 || x > 3);
+  std::filesystem::remove(folder_ / "b.png");
+  EXPECT_FALSE(HasMasked(Loaded(light_field)));
+}
+
+TEST_F(FolderStoreTest, FloatsAreNeverClipped) {
+  Image<float> image(kWidth, kHeight, 3, 1000.F);
+  WriteFloats("a.exr", image, {"R", "G", "B"});
+  LightField light_field = OneImage("a.exr");
+  light_field.cameras[0].masks_clipped = true;
+  EXPECT_FALSE(HasMasked(Loaded(light_field)));
 }
 
 TEST_F(FolderStoreTest, GreyCountsForAllColours) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -87,6 +88,32 @@ Result<bool> ReadMaskFile(const LightField& light_field, LfImageId id, const Pix
   LF_RETURN_IF_ERROR(ReadFitting(light_field.folder / light_field.mask_names[id.value], false,
                                  IntrinsicsOf(light_field, id), wanted, part));
   return true;
+}
+
+void ForEachSeenBrighter(const LightField& light_field, LfImageId id, const PixelRect& rect,
+                         const std::function<void(int x, int y)>& mask) {
+  const LfImageId brighter{light_field.cameras[id.value].brighter};
+  const RadianceEncoding& encoding = light_field.encoding;
+  const Intrinsics& k = IntrinsicsOf(light_field, id);
+  const int reach = ReachOfDarker(encoding.bayer);
+  const PixelRect around = Intersection(
+      {rect.x_begin - reach, rect.y_begin - reach, rect.x_end + reach, rect.y_end + reach},
+      {0, 0, k.width_px, k.height_px});
+  ImagePart part;
+  const Result<ChannelUse> use = ReadStoredPixels(light_field, brighter, around, &part);
+  if (!use) return;
+  // Each clipped pixel leaves a square for the darker image.
+  Image<uint8_t> is_left(rect.width(), rect.height(), 1);
+  ForEachClipped(part, use->colours, encoding, around, [&](int x, int y) {
+    const PixelRect square =
+        Intersection({x - reach, y - reach, x + reach + 1, y + reach + 1}, rect);
+    for (int row = square.y_begin; row < square.y_end; ++row)
+      std::fill_n(&is_left.at(square.x_begin - rect.x_begin, row - rect.y_begin), square.width(),
+                  uint8_t{1});
+  });
+  for (int y = rect.y_begin; y < rect.y_end; ++y)
+    for (int x = rect.x_begin; x < rect.x_end; ++x)
+      if (is_left.at(x - rect.x_begin, y - rect.y_begin) == 0) mask(x, y);
 }
 
 Result<void> CheckLevels(const RadianceEncoding& encoding, int bits, const std::string& path) {

@@ -3,12 +3,14 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <type_traits>
 #include <variant>
 
 #include "lf/capture/channel_use.h"
 #include "lf/capture/light_field.h"
+#include "lf/capture/radiance.h"
 #include "lf/core/check.h"
 #include "lf/core/geometry.h"
 #include "lf/core/ids.h"
@@ -53,14 +55,48 @@ void ForEachTransparent(const ImagePart& part, int alpha, const PixelRect& rect,
       part.image);
 }
 
-// Calls mask(x, y) for the pixels that are masked at all: by alpha where that is a mask, and by the
-// mask file if there is one, which is read.
+// Calls mask(x, y) for the pixels of `rect`, which lies in part.rect, that have a clipped colour.
+// Floats have none.
+template <class Mask>
+void ForEachClipped(const ImagePart& part, int colours, const RadianceEncoding& encoding,
+                    const PixelRect& rect, const Mask& mask) {
+  std::visit(
+      [&]<class T>(const Image<T>& stored) {
+        if constexpr (!std::is_floating_point_v<T>) {
+          const double clipped_from = ClippedFrom(encoding, int{8 * sizeof(T)});
+          const auto is_kept = [&](T value) { return value < clipped_from; };
+          for (int colour = 0; colour < colours; ++colour)
+            ForEachUnkept(stored, part.rect, colour, is_kept, rect, mask);
+        }
+      },
+      part.image);
+}
+
+// How far around a clipped pixel of the brighter LF image the darker one sends rays: as far as the
+// four pixels of an interpolation reach, and for mosaics the pixels that these are made from. There
+// both do.
+inline int ReachOfDarker(BayerPattern bayer) { return bayer == BayerPattern::kNone ? 1 : 4; }
+
+// Calls mask(x, y) for the pixels of `rect` that the next brighter LF image of the pose shows: it
+// is not clipped there, nor within ReachOfDarker(). That LF image is read; nothing is masked if it
+// cannot be.
+void ForEachSeenBrighter(const LightField& light_field, LfImageId id, const PixelRect& rect,
+                         const std::function<void(int x, int y)>& mask);
+
+// Calls mask(x, y) for the pixels that are masked at all: by alpha where that is a mask, where they
+// are clipped or seen by a brighter LF image in brackets (capture/brackets.h), and by the mask file
+// if there is one, which is read.
+// It may be called several times for one pixel.
 template <class Mask>
 Result<void> ForEachMasked(const LightField& light_field, LfImageId id, const ImagePart& part,
                            const ChannelUse& use, const PixelRect& rect, const Mask& mask) {
   if (rect.empty()) return {};
   if (use.alpha && !light_field.encoding.AlphaIsLight())
     ForEachTransparent(part, *use.alpha, rect, mask);
+  if (light_field.cameras[id.value].masks_clipped)
+    ForEachClipped(part, use.colours, light_field.encoding, rect, mask);
+  if (light_field.cameras[id.value].brighter != LfCamera::kNone)
+    ForEachSeenBrighter(light_field, id, rect, mask);
   ImagePart file;
   LF_ASSIGN_OR_RETURN(const bool has_file, ReadMaskFile(light_field, id, rect, &file));
   if (!has_file) return {};

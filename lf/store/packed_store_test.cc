@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "lf/capture/brackets.h"
 #include "lf/core/file.h"
 #include "lf/imageio/image_file.h"
 #include "lf/imageio/test_folder.h"
@@ -123,6 +124,30 @@ TEST_F(PackedStoreTest, GreyHasTheBitsOfTheFolder) {
   AddImages<uint16_t>(1);
   Pack();
   ExpectTheBitsOfTheFolder();
+}
+
+TEST_F(PackedStoreTest, BracketsBecomeMasks) {
+  AddImages<uint8_t>(3);
+  field_.encoding.masks_clipped = true;
+  field_.cameras[1].gain = 4;
+  field_.cameras[2].gain = 16;
+  EXPECT_EQ(ApplyBrackets(&field_), field_.size() - 1);
+  Pack();
+  EXPECT_TRUE(packed_.encoding.masks_clipped);
+  for (uint32_t i = 0; i < 3; ++i) EXPECT_TRUE(Loaded(*Opened(), {i}, kWhole).any_masked) << i;
+  ExpectTheBitsOfTheFolder();
+}
+
+TEST_F(PackedStoreTest, BracketsOfMosaicsBecomeMasks) {
+  AddImages<uint16_t>(1);
+  field_.encoding.bayer = BayerPattern::kRggb;
+  field_.encoding.masks_clipped = true;
+  field_.cameras[1].gain = 4;
+  ApplyBrackets(&field_);
+  Pack();
+  EXPECT_TRUE(Loaded(*Opened(), {0}, kWhole).any_masked);
+  ExpectTheBitsOfTheFolder();
+  ExpectTheBitsOfTheFolder(Mosaics::kToRgb);
 }
 
 TEST_F(PackedStoreTest, AlphaAndMaskFilesBecomeMasks) {
