@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lf/imageio/image_file.h"
+#include "lf/imageio/test_dng.h"
 #include "lf/imageio/test_folder.h"
 
 namespace lf {
@@ -123,6 +124,16 @@ TEST_F(ExposureOfFile, IsReadFromAFileWithPixels) {
   const std::string length = {0, 0, 0, static_cast<char>(exif.size())};
   png.insert(33, length + "eXIf" + exif + "....");  // behind the header
   ExpectAll(ReadExposureFactsBytes(png, "a.png").value());
+}
+
+TEST_F(ExposureOfFile, IsThatOfACameraRawFile) {
+  Image<uint16_t> mosaic(32, 24, 1);
+  TestDng dng(mosaic, "RGGB");
+  dng.Fractions(0x829A, 5, {{1, 125}}).Fractions(0x829D, 5, {{28, 10}});
+  const ExposureFacts facts = ReadExposureFactsBytes(dng.File(), "a.dng").value();
+  EXPECT_NEAR(facts.time_s.value_or(0), 1. / 125, 1e-8);
+  EXPECT_NEAR(facts.f_number.value_or(0), 2.8, 1e-6);
+  EXPECT_FALSE(facts.iso);  // LibRaw takes it from an Exif directory, which this file lacks
 }
 
 TEST_F(ExposureOfFile, AFileThatIsNoneIsNamed) {
