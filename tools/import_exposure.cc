@@ -1,12 +1,17 @@
 #include "tools/import_exposure.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "tools/common/progress.h"
 
+#include "lf/capture/brackets.h"
+#include "lf/packed/packed_store_file.h"
 #include "lf/store/open_store.h"
 
 namespace lf {
@@ -46,6 +51,31 @@ void Warn(const LightField& light_field, const ExposureArguments& arguments,
          {});
 }
 
+// All LF images, or those that share their pose.
+std::vector<LfImageId> ImagesToAsk(const LightField& light_field, bool asks_all) {
+  std::vector<bool> is_asked(light_field.size(), asks_all);
+  if (!asks_all) {
+    const std::vector<uint32_t> firsts = FirstOfPose(light_field);
+    for (uint32_t i = 0; i < firsts.size(); ++i)
+      if (firsts[i] != i) is_asked[i] = is_asked[firsts[i]] = true;
+  }
+  std::vector<LfImageId> ids;
+  for (uint32_t i = 0; i < is_asked.size(); ++i)
+    if (is_asked[i]) ids.push_back(LfImageId{i});
+  return ids;
+}
+
+// "-2, 0 and +2", to a hundredth.
+std::string StopsText(const std::vector<double>& stops) {
+  std::string text;
+  for (size_t i = 0; i < stops.size(); ++i) {
+    const double rounded = std::round(100 * stops[i]) / 100 + 0.0;
+    text += i == 0 ? "" : i + 1 == stops.size() ? " and " : ", ";
+    text += rounded > 0 ? fmt::format("+{}", rounded) : fmt::format("{}", rounded);
+  }
+  return text;
+}
+
 }  // namespace
 
 void ExposureArguments::AddTo(CLI::App& app) {
@@ -61,6 +91,69 @@ void ExposureArguments::AddTo(CLI::App& app) {
          "the corners")
       ->needs(option)
       ->group(group);
+  app.add_flag("--gain-from-exif", gain_from_exif,
+               "Write lf_gain of each image from the exposure time, f-number and ISO sensitivity "
+               "in its file, in place of those of LIGHTFIELD: all get the exposure of the median "
+               "one")
+      ->excludes(option)
+      ->group(group);
+  app.add_flag("--mask-clipped", mask_clipped,
+               "Write lf_clipped \"mask\": images of one pose with different exposures (by "
+               "lf_gain) are one picture, and each pixel comes from the brightest that does not "
+               "clip it")
+      ->group(group);
+}
+
+Result<std::optional<ExifGains>> StateBrackets(const ExposureArguments& arguments, ThreadPool& pool,
+                                               LightField* light_field,
+                                               std::vector<double>* lights) {
+  lights->clear();
+  if (HoldsPackedStore(*light_field)) {
+    if (!arguments.gain_from_exif && !arguments.mask_clipped) return std::optional<ExifGains>();
+    return UsageError(fmt::format(
+        "{} of {}: a packed store has neither Exif data nor masks that can be changed: import the "
+        "image files with it, and compress them again",
+        arguments.gain_from_exif ? "--gain-from-exif" : "--mask-clipped",
+        light_field->folder.string()));
+  }
+  const std::vector<StatedExposure> stated =
+      ReadStatedExposures(*light_field, ImagesToAsk(*light_field, arguments.gain_from_exif), pool);
+  if (!stated.empty())
+    lights->resize(light_field->size(), std::numeric_limits<double>::quiet_NaN());
+  for (const StatedExposure& one : stated) (*lights)[one.id.value] = LightOf(one.facts);
+  std::optional<ExifGains> gains;
+  if (arguments.gain_from_exif) {
+    LF_ASSIGN_OR_RETURN(gains, GainFromExif(stated, light_field));
+  }
+  if (arguments.mask_clipped) light_field->encoding.masks_clipped = true;
+  ApplyBrackets(light_field);  // --exclude and gains have changed what was read
+  return gains;
+}
+
+void WarnOfBracketOptions(const ExposureArguments& arguments, const std::optional<ExifGains>& gains,
+                          LightField* light_field, CaptureReport* report) {
+  const auto warn = [&](const char* kind, const char* message) {
+    report->warnings.push_back(WarningAbout(*light_field, kind, message, {}));
+  };
+  if (arguments.match && light_field->encoding.masks_clipped) {
+    const auto matched = FindBrackets(*light_field, FirstOfPose(*light_field), {});
+    if (matched) {
+      report->brackets = matched;
+      std::erase_if(report->warnings, [&](const CaptureWarning& warning) {
+        return warning.kind == "brackets" || (warning.kind == "repeated-positions" &&
+                                              warning.image_count <= matched->image_count);
+      });
+    }
+  }
+  if (gains && !gains->has_f_numbers)
+    warn("no-f-number",
+         "no image states an f-number, as with lenses that have no contacts: all are taken to be "
+         "of one; state lf_gain where the aperture was changed");
+  if (ApplyBrackets(light_field) == 0 && arguments.mask_clipped)
+    warn("no-brackets",
+         "--mask-clipped masks nothing: no image has a darker one of the same pose, by lf_gain. "
+         "Give the images of one pose the same transform_matrix, and their gains "
+         "(--gain-from-exif, --match-exposure)");
 }
 
 Result<MatchedExposure> MatchAndApply(const ExposureArguments& arguments,
@@ -80,6 +173,36 @@ Result<MatchedExposure> MatchAndApply(const ExposureArguments& arguments,
   ApplyExposure(exposure, light_field);
   Warn(*light_field, arguments, exposure, report);
   return exposure;
+}
+
+std::string BracketsText(const FoundBrackets& brackets) {
+  const std::string exposures =
+      brackets.least_exposures == brackets.most_exposures
+          ? fmt::format("{}", brackets.most_exposures)
+          : fmt::format("{} to {}", brackets.least_exposures, brackets.most_exposures);
+  return fmt::format("{} poses x {} exposures, {} stops by {}", brackets.pose_count, exposures,
+                     StopsText(brackets.stops),
+                     brackets.are_gains ? "lf_gain" : "what the files state");
+}
+
+std::string ExifGainsText(const ExifGains& gains) {
+  return fmt::format("{:.5g} to {:.5g} for {} images, from what their files state of exposure",
+                     gains.least_gain, gains.most_gain, gains.image_count);
+}
+
+nlohmann::ordered_json BracketsJson(const FoundBrackets& brackets) {
+  return {{"poses", brackets.pose_count},
+          {"images", brackets.image_count},
+          {"exposures", {brackets.least_exposures, brackets.most_exposures}},
+          {"stops", brackets.stops},
+          {"from", brackets.are_gains ? "lf_gain" : "files"}};
+}
+
+nlohmann::ordered_json ExifGainsJson(const ExifGains& gains) {
+  return {{"images", gains.image_count},
+          {"gain_min", gains.least_gain},
+          {"gain_max", gains.most_gain},
+          {"has_f_numbers", gains.has_f_numbers}};
 }
 
 std::string ExposureText(const MatchedExposure& exposure) {

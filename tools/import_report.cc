@@ -183,6 +183,8 @@ std::string ReportText(const ImportReport& report) {
     AddDensity(*capture.density, &lines);
   else if (capture.spacing_w)
     AddLine("density", "unknown: give the distance to the scene (--distance)", &lines);
+  if (capture.brackets) AddLine("brackets", BracketsText(*capture.brackets), &lines);
+  if (report.exif_gains) AddLine("gains", ExifGainsText(*report.exif_gains), &lines);
   if (report.exposure) {
     AddLine("exposure", ExposureText(*report.exposure), &lines);
     AddLine("seams", SeamsText(*report.exposure), &lines);
@@ -227,6 +229,8 @@ std::string ReportJson(const ImportReport& report) {
           capture.keeps_opacity ? Json(kNoBackground) : Json(capture.background);
   }
   json["density"] = OrNull(capture.density);
+  json["brackets"] = capture.brackets ? BracketsJson(*capture.brackets) : Json(nullptr);
+  json["exif_gains"] = report.exif_gains ? ExifGainsJson(*report.exif_gains) : Json(nullptr);
   json["exposure"] = report.exposure ? ExposureJson(*report.exposure) : Json(nullptr);
   json["warnings"] = Json::array();
   for (const CaptureWarning& warning : capture.warnings)

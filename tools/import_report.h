@@ -7,6 +7,7 @@
 #include "lf/exposure/match_exposure.h"
 #include "lf/import/capture_report.h"
 #include "lf/import/check_images.h"
+#include "lf/import/exif_gains.h"
 
 namespace lf {
 
@@ -16,6 +17,7 @@ struct ImportReport {
   CaptureReport capture;
   std::optional<ImageFaults> faults;  // none: not checked
   size_t excluded_count = 0;
+  std::optional<ExifGains> exif_gains;      // none: not asked for
   std::optional<MatchedExposure> exposure;  // none: not asked for
   std::string written;                      // the transforms.json; "": none
 };

@@ -25,6 +25,7 @@ constexpr const char* kExamples = R"(Examples:
   lfimport capture/ -o native --exclude @bad.txt --transform upright.txt
   lfimport cards/ -o cards --pitch 1 --focal-px 768 --plane-distance 100
   lfimport capture/ -o native --match-exposure --vignetting
+  lfimport brackets/ -o hdr --gain-from-exif --mask-clipped
   lfimport capture/ --json --distance 1.5 | jq .density
 
 Writes DIR/transforms.json, which names the images where they lie; nothing is copied. Where DIR is
@@ -150,6 +151,8 @@ lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {
   lf::ThreadPool pool(common.threads);
   lf::CaptureReportOptions options;
   if (a.distance > 0) options.distance_w = a.distance;
+  LF_ASSIGN_OR_RETURN(report.exif_gains,
+                      lf::StateBrackets(a.exposure, pool, &light_field, &options.lights));
   report.capture = lf::ReportCapture(light_field, options, pool);
   size_t fault_count = 0;
   if (a.check != "none") {
@@ -169,6 +172,7 @@ lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {
     LF_ASSIGN_OR_RETURN(report.exposure, lf::MatchAndApply(a.exposure, common, interrupted, pool,
                                                            &light_field, &report.capture));
   }
+  lf::WarnOfBracketOptions(a.exposure, report.exif_gains, &light_field, &report.capture);
   if (!a.output.empty() && !refuses) {
     LF_ASSIGN_OR_RETURN(report.written, lf::WriteNativeFolder(a.output, &light_field));
   }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "lf/camera/ideal_pixels.h"
+#include "lf/capture/brackets.h"
 #include "lf/capture/capture_geometry.h"
 #include "lf/import/capture_warnings.h"
 #include "lf/import/nearest_distances.h"
@@ -140,22 +141,31 @@ CaptureReport ReportCapture(const LightField& light_field, const CaptureReportOp
   report.background = light_field.encoding.Background();
   report.keeps_opacity = light_field.encoding.keeps_opacity;
 
+  const std::vector<uint32_t> firsts = FirstOfPose(light_field);
+  report.brackets = FindBrackets(light_field, firsts, options.lights);
+  // A pose of brackets stands for its LF images.
   std::vector<Vec3> positions;
+  std::vector<LfImageId> ids;
   Eigen::AlignedBox3d box;
-  for (const LfCamera& camera : light_field.cameras) {
-    positions.push_back(camera.cam_from_world.Inverse().translation);
-    box.extend(positions.back());
+  for (uint32_t i = 0; i < light_field.size(); ++i) {
+    const Vec3 position = light_field.cameras[i].cam_from_world.Inverse().translation;
+    box.extend(position);
+    if (report.brackets && report.brackets->of_images[i] && firsts[i] != i) continue;
+    positions.push_back(position);
+    ids.push_back(LfImageId{i});
   }
   report.box_min_w = box.min();
   report.box_max_w = box.max();
   report.meeting_point_w = AxesMeetingPoint(light_field);
   Append(WarnOfDirections(light_field), &report);
   Append(WarnOfUpsideDown(light_field), &report);
+  if (report.brackets)
+    Append(WarnOfBrackets(*report.brackets, light_field.encoding.masks_clipped), &report);
   if (positions.size() < 2) return report;
 
   const std::vector<double> nearest_w = NearestDistances(positions, pool);
   report.spacing_w = SpreadOf(nearest_w);
-  Append(WarnOfRepeats(light_field, nearest_w), &report);
+  Append(WarnOfRepeats(light_field, ids, nearest_w), &report);
   report.density = DensityOf(report, positions, options);
   if (report.density)
     Append(WarnOfSparseness(*report.density, report.groups[0].width_px, report.spacing_w->median),

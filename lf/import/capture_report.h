@@ -10,6 +10,7 @@
 
 #include "lf/capture/light_field.h"
 #include "lf/core/parallel.h"
+#include "lf/import/find_brackets.h"
 
 namespace lf {
 
@@ -62,7 +63,8 @@ struct CaptureReport {
   std::vector<CameraGroup> groups;  // by falling image_count
   Vec3 box_min_w = Vec3::Zero();    // of the positions
   Vec3 box_max_w = Vec3::Zero();
-  std::optional<Spread> spacing_w;      // from a camera to its nearest neighbour; with two or more
+  std::optional<Spread> spacing_w;  // from a camera to its nearest neighbour (of another pose, in
+                                    // brackets); with two or more
   std::optional<Vec3> meeting_point_w;  // AxesMeetingPoint()
   std::optional<DepthRange> depth_range;
   double unit_m = 1;
@@ -70,18 +72,21 @@ struct CaptureReport {
   std::array<double, 3> background = {0, 0, 0};  // behind it, where alpha is light
   bool keeps_opacity = false;                    // nothing is behind it
   std::optional<Density> density;                // where a distance is known
+  std::optional<FoundBrackets> brackets;         // poses of several exposures
   std::vector<CaptureWarning> warnings;
 };
 
 struct CaptureReportOptions {
   std::optional<double> distance_w;  // to the scene, for the density; goes before what is found
+  std::vector<double> lights = {};   // of the files, for FindBrackets(); empty: they were not asked
 };
 
 // Warnings, by kind:
 //   facing-away         cameras with the point, or the direction, that most look at behind them
 //   diverging-axes      most cameras look away from the point where their axes meet
 //   upside-down         cameras whose up axis opposes that of most (by more than 120 degrees)
-//   repeated-positions  cameras at the position of another one
+//   repeated-positions  cameras at the position of another one that are no brackets
+//   brackets            poses of several exposures, which are not merged yet
 //   sparse              ghosts at 0.75 z of more than 1 % of the image width
 // The light field must have an LF image.
 CaptureReport ReportCapture(const LightField& light_field, const CaptureReportOptions& options,

@@ -225,6 +225,32 @@ TEST(CaptureReport, ImagesThatWereAllListedTwiceAreRepeated) {
   EXPECT_EQ(report.warnings[0].image_count, 2 * count);
 }
 
+TEST(CaptureReport, BracketsAreNoRepeatedPositions) {
+  LightField field = Grid();
+  const size_t pose_count = field.size();
+  for (size_t i = 0; i < pose_count; ++i)
+    for (int copy = 0; copy < 2; ++copy) Add(field.cameras[i].cam_from_world, &field);
+  EXPECT_EQ(Kinds(ReportOf(field)), Words{"repeated-positions"});
+  CaptureReportOptions options;
+  for (size_t i = 0; i < field.size(); ++i)
+    options.lights.push_back(i < pose_count ? 1 : i % 2 == 0 ? 4 : 0.25);
+  const CaptureReport report = ReportOf(field, options);
+  ASSERT_EQ(Kinds(report), Words{"brackets"});
+  for (const char* words : {"300 images", "100 poses", "--gain-from-exif --mask-clipped"})
+    EXPECT_NE(report.warnings[0].message.find(words), std::string::npos)
+        << report.warnings[0].message;
+  EXPECT_EQ(report.brackets->stops, (std::vector<double>{-2, 0, 2}));
+  EXPECT_NEAR(report.spacing_w->median, 0.1, 1e-12);
+
+  for (size_t i = 0; i < field.size(); ++i)
+    field.cameras[i].gain = static_cast<float>(1 / options.lights[i]);
+  field.encoding.masks_clipped = true;
+  EXPECT_EQ(Kinds(ReportOf(field)), Words{});
+  Add(field.cameras[7].cam_from_world, &field);  // no other exposure, but the pose has several
+  field.cameras.back().gain = field.cameras[7].gain;
+  EXPECT_EQ(Kinds(ReportOf(field)), Words{});
+}
+
 TEST(CaptureReport, OneCameraHasNoSpacing) {
   LightField field;
   Add(RigidTransform{}, &field);

@@ -95,11 +95,12 @@ std::vector<CaptureWarning> WarnOfUpsideDown(const LightField& light_field) {
 }
 
 std::vector<CaptureWarning> WarnOfRepeats(const LightField& light_field,
+                                          std::span<const LfImageId> ids,
                                           std::span<const double> nearest_w) {
   constexpr double kSamePlace = 1e-8, kRounding = 1e-14;
   // What rounding leaves of the distance of two equal positions.
   const auto rounding_w = [&](size_t i) {
-    return kRounding * light_field.cameras[i].cam_from_world.translation.norm();
+    return kRounding * light_field.cameras[ids[i].value].cam_from_world.translation.norm();
   };
   std::vector<double> apart_w;  // those of cameras that stand alone
   for (size_t i = 0; i < nearest_w.size(); ++i)
@@ -112,14 +113,30 @@ std::vector<CaptureWarning> WarnOfRepeats(const LightField& light_field,
   }
   std::vector<LfImageId> repeated;
   for (size_t i = 0; i < nearest_w.size(); ++i)
-    if (nearest_w[i] <= kSamePlace * typical_w + rounding_w(i)) repeated.push_back(IdOf(i));
+    if (nearest_w[i] <= kSamePlace * typical_w + rounding_w(i)) repeated.push_back(ids[i]);
   if (repeated.empty()) return {};
   return {WarningAbout(light_field, "repeated-positions",
                        fmt::format("{} of {} cameras share their position with another: rays from "
                                    "there count twice, and none come from between. If images were "
                                    "listed twice, leave one of each out with --exclude",
-                                   repeated.size(), nearest_w.size()),
+                                   repeated.size(), light_field.size()),
                        repeated)};
+}
+
+std::vector<CaptureWarning> WarnOfBrackets(const FoundBrackets& brackets, bool masks_clipped) {
+  if (brackets.are_gains && masks_clipped) return {};
+  const std::string options = brackets.are_gains ? "--mask-clipped"
+                              : masks_clipped    ? "--gain-from-exif"
+                                                 : "--gain-from-exif --mask-clipped";
+  const char* const why =
+      brackets.are_gains ? "highlights that the brighter ones clip are averaged in"
+                         : "they are averaged as if exposed alike, and highlights stay clipped";
+  return {{"brackets",
+           fmt::format("{} images are exposure brackets of {} poses: {}. Write a light field that "
+                       "merges them to linear light with lfimport {} -o DIR",
+                       brackets.image_count, brackets.pose_count, why, options),
+           brackets.image_count,
+           {}}};
 }
 
 std::vector<CaptureWarning> WarnOfSparseness(const Density& density, double width_px,
