@@ -298,6 +298,8 @@ std::string LightFieldsBelow(const fs::path& folder) {
 Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& options) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::none)
+    return InputError(fmt::format("{}: cannot be read: {}", path.string(), error.message()));
   if (!fs::exists(status))
     return InputError(fmt::format("{}: no such file or folder", path.string()));
   if (!fs::is_directory(status)) {

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstring>
 #include <system_error>
+#include <utility>
 
 #include "lf/core/files_nearby.h"
 
@@ -27,6 +28,23 @@ class FileDescriptor {
 
  private:
   int fd_;
+};
+
+// Removed in the end, also where memory runs out, unless it is kept.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(fs::path path) : path_(std::move(path)) {}
+  ~TemporaryFile() {
+    if (!is_kept_) ::unlink(path_.c_str());
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  const fs::path& path() const { return path_; }
+  void Keep() { is_kept_ = true; }
+
+ private:
+  fs::path path_;
+  bool is_kept_ = false;
 };
 
 std::string SystemReason() { return std::strerror(errno); }
@@ -118,13 +136,13 @@ Result<void> WriteFileAtomically(const fs::path& path, std::string_view bytes) {
 Result<void> WriteAtomically(const fs::path& path,
                              const std::function<Result<void>(const fs::path&)>& write) {
   LF_ASSIGN_OR_RETURN(const fs::path target, WriteTarget(path));
-  const fs::path temporary = TemporaryName(target);
-  Result<void> result = write(temporary);
+  TemporaryFile temporary(TemporaryName(target));
+  LF_RETURN_IF_ERROR(write(temporary.path()));
   struct stat old {};
-  if (result && ::stat(target.c_str(), &old) == 0) ::chmod(temporary.c_str(), old.st_mode & 0777);
-  if (result) result = RenameFlushed(temporary, target);
-  if (!result) ::unlink(temporary.c_str());
-  return result;
+  if (::stat(target.c_str(), &old) == 0) ::chmod(temporary.path().c_str(), old.st_mode & 0777);
+  LF_RETURN_IF_ERROR(RenameFlushed(temporary.path(), target));
+  temporary.Keep();
+  return {};
 }
 
 Result<void> RenameFlushed(const fs::path& from, const fs::path& to) {
@@ -138,7 +156,7 @@ Result<void> RenameFlushed(const fs::path& from, const fs::path& to) {
 Result<void> CreateFolder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error || !fs::is_directory(folder))
+  if (error || !fs::is_directory(folder, error))
     return OutputError(fmt::format("{}: cannot be created as a folder: {}", folder.string(),
                                    error ? error.message() : "a file has this name"));
   return {};

@@ -22,6 +22,14 @@ bool IsStill(int fd, const std::filesystem::path& path) {
          open_file.st_ino == named_file.st_ino && open_file.st_dev == named_file.st_dev;
 }
 
+// flock(), once more where a signal came between.
+int Flock(int fd, int operation) {
+  int result = 0;
+  do result = ::flock(fd, operation);
+  while (result != 0 && errno == EINTR);
+  return result;
+}
+
 std::string Owner(int fd) {
   char text[32] = {};
   if (::pread(fd, text, sizeof(text) - 1, 0) <= 0) return "";
@@ -52,7 +60,7 @@ void FileLock::Remove() {
 bool FileLock::IsHeld(const std::filesystem::path& path) {
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
   if (fd < 0) return false;
-  const bool is_held = ::flock(fd, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  const bool is_held = Flock(fd, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   ::close(fd);
   return is_held;
 }
@@ -64,8 +72,7 @@ Result<FileLock> FileLock::Take(const std::filesystem::path& path) {
       return OutputError(
           fmt::format("{}: cannot be created: {}", path.string(), std::strerror(errno)));
     FileLock lock(path, fd);
-    if (::flock(fd, LOCK_EX | LOCK_NB) != 0) {
-      if (errno == EINTR) continue;
+    if (Flock(fd, LOCK_EX | LOCK_NB) != 0) {
       if (errno == EWOULDBLOCK)
         return OutputError(
             fmt::format("{}: is locked: another program{} is at work here; wait for it to end",

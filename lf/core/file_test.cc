@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <fstream>
+#include <new>
 
 namespace lf {
 namespace {
@@ -40,6 +41,17 @@ TEST_F(FileTest, AFailedWriteLeavesTheOldFileAlone) {
         return OutputError("disk full");
       });
   EXPECT_EQ(result.error().kind, ErrorKind::kOutput);
+  EXPECT_EQ(*ReadFile(folder_ / "a.txt"), "old");
+  EXPECT_EQ(FileCount(), 1u);
+}
+
+TEST_F(FileTest, AWriterThatThrowsLeavesNoTemporaryFile) {
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "a.txt", "old"));
+  const auto write = [](const fs::path& temporary) -> Result<void> {
+    std::ofstream(temporary) << "half of the new";
+    throw std::bad_alloc();
+  };
+  EXPECT_THROW((void)WriteAtomically(folder_ / "a.txt", write), std::bad_alloc);
   EXPECT_EQ(*ReadFile(folder_ / "a.txt"), "old");
   EXPECT_EQ(FileCount(), 1u);
 }

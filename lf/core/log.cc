@@ -23,6 +23,22 @@ void SetLogLevel(LogLevel level) {
   threshold = level;
 }
 
+std::string OneLine(std::string_view text) {
+  std::string line;
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (c == '\n')
+      line += "\\n";
+    else if (c == '\t')
+      line += "\\t";
+    else if (code < 0x20 || code == 0x7f)
+      line += fmt::format("\\x{:02x}", code);
+    else
+      line += c;
+  }
+  return line;
+}
+
 void LogMessage(LogLevel level, std::string_view message) {
   const std::lock_guard lock(mutex);
   if (level < threshold) return;
@@ -30,7 +46,7 @@ void LogMessage(LogLevel level, std::string_view message) {
   const char* prefix = level == LogLevel::kWarning ? "warning: "
                        : level == LogLevel::kError ? "error: "
                                                    : "";
-  std::fputs(fmt::format("{}{}\n", prefix, message).c_str(), stderr);
+  std::fputs(fmt::format("{}{}\n", prefix, OneLine(message)).c_str(), stderr);
   std::fflush(stderr);
 }
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -14,7 +15,11 @@ enum class LogLevel { kDebug, kInfo, kWarning, kError };
 // Messages below the level are dropped. Default kInfo. For main().
 void SetLogLevel(LogLevel level);
 
-// Writes "warning: ..." or the bare message, as one line. Thread-safe. A line in progress (a
+// The text as one line: control characters become \n, \t, \x1b and the like, as in C. Names of
+// files may hold any of them, and must not look like another message, nor move the cursor.
+std::string OneLine(std::string_view text);
+
+// Writes "warning: ..." or the bare message, as OneLine(). Thread-safe. A line in progress (a
 // progress bar) is cleared first.
 void LogMessage(LogLevel level, std::string_view message);
 

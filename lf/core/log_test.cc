@@ -1,0 +1,25 @@
+#include "lf/core/log.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace lf {
+namespace {
+
+TEST(Log, MessagesAreOneLine) {
+  EXPECT_EQ(OneLine("frame_0001.exr: übel ✓"), "frame_0001.exr: übel ✓");
+  EXPECT_EQ(OneLine("a\nerror: b\r\x1b[2K\tc\x7f"), "a\\nerror: b\\x0d\\x1b[2K\\tc\\x7f");
+  EXPECT_EQ(OneLine(std::string("a\0b", 3)), "a\\x00b");
+  EXPECT_EQ(OneLine(""), "");
+}
+
+// A file whose name holds a line of its own cannot put that line last.
+TEST(Log, NamesCannotForgeTheLastLine) {
+  testing::internal::CaptureStderr();
+  LogMessage(LogLevel::kWarning, "a\nerror: b.png: no such file");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "warning: a\\nerror: b.png: no such file\n");
+}
+
+}  // namespace
+}  // namespace lf
