@@ -19,7 +19,7 @@ TEST(Settings, AreReadAsWhatTheyShouldBe) {
     ASSERT_TRUE(WriteSettings({{"three", "1 2.5 -3"}, {"big", "18446744073709551615"}, {"w", "b"}},
                               &database));
   }
-  Database database = Database::Open(path, kFormat).value();
+  Database database = Database::Open(path, kFormat, {kSettingsTable}).value();
   const Settings settings = Settings::Read(database, "test file").value();
   EXPECT_EQ(settings.Text("three"), "1 2.5 -3");
   EXPECT_EQ(settings.Text("none"), "");

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -15,6 +16,11 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int kMaxBlobBytes = 1 << 30;
+
+// Steps of SQLite's machine that one command may take: some 10 for each value of a row, of which
+// none takes less than a byte. Pages that are children of several others would take any number.
+constexpr int kStepsBetweenLooks = 1000;
+constexpr int64_t kStepsOfSmallFile = 10'000'000, kStepsOfByte = 20;
 constexpr size_t kHashBytes = sizeof(uint64_t);
 
 // The checksum as bytes, the least first.
@@ -63,6 +69,7 @@ struct Database::State {
   std::string name;  // for messages
   std::string what;
   ErrorKind kind = ErrorKind::kInput;
+  int64_t most_steps = INT64_MAX;  // of one command
 
   ~State() { sqlite3_close(handle); }
 
@@ -80,6 +87,8 @@ struct Database::State {
 struct Statement::State {
   sqlite3_stmt* handle = nullptr;
   std::shared_ptr<Database::State> database;
+  int64_t steps = 0;  // since it began
+  bool is_too_long = false;
 
   ~State() { sqlite3_finalize(handle); }
 };
@@ -120,10 +129,19 @@ Statement& Statement::BindNull(int parameter) {
 }
 
 Result<bool> Statement::Step() {
+  const auto look = [](void* statement) -> int {
+    auto* const state = static_cast<State*>(statement);
+    state->steps += kStepsBetweenLooks;
+    state->is_too_long = state->steps > state->database->most_steps;
+    return state->is_too_long ? 1 : 0;
+  };
+  sqlite3_progress_handler(state_->database->handle, kStepsBetweenLooks, look, state_.get());
   const int code = sqlite3_step(state_->handle);
+  sqlite3_progress_handler(state_->database->handle, 0, nullptr, nullptr);
   if (code == SQLITE_ROW) return true;
-  const Error error = code == SQLITE_DONE ? Error() : state_->database->Failed();
-  sqlite3_reset(state_->handle);
+  Error error = code == SQLITE_DONE ? Error() : state_->database->Failed();
+  if (state_->is_too_long) error = state_->database->Fault("is damaged: its tables have no end");
+  Reset();
   if (code == SQLITE_DONE) return false;
   return error;
 }
@@ -134,7 +152,11 @@ Result<void> Statement::Run() {
   return {};
 }
 
-void Statement::Reset() { sqlite3_reset(state_->handle); }
+void Statement::Reset() {
+  sqlite3_reset(state_->handle);
+  state_->steps = 0;
+  state_->is_too_long = false;
+}
 
 bool Statement::IsNull(int column) const {
   return sqlite3_column_type(state_->handle, column) == SQLITE_NULL;
@@ -213,6 +235,34 @@ Result<Statement> Database::Prepare(const std::string& sql) {
   return Statement(std::move(statement));
 }
 
+Result<void> Database::CheckTables(const std::vector<std::string>& scripts) {
+  using Tables = std::vector<std::string>;
+  const auto tables_of = [](Database& database) -> Result<Tables> {
+    Tables tables;
+    LF_RETURN_IF_ERROR(ForEachRow(
+        database, "select type || ' ' || name || ' ' || coalesce(sql, '') from sqlite_master",
+        [&](const Statement& row) -> Result<void> {
+          LF_ASSIGN_OR_RETURN(std::string table, row.Text(0));
+          tables.push_back(std::move(table));
+          return {};
+        }));
+    std::sort(tables.begin(), tables.end());
+    return tables;
+  };
+  LF_ASSIGN_OR_RETURN(const Tables found, tables_of(*this));
+  for (const std::string& script : scripts) {
+    auto state = std::make_shared<State>();
+    state->name = state_->name;
+    LF_CHECK(sqlite3_open(":memory:", &state->handle) == SQLITE_OK);
+    Database ours(std::move(state));
+    LF_RETURN_IF_ERROR(ours.Execute(script));
+    LF_ASSIGN_OR_RETURN(const Tables allowed, tables_of(ours));
+    if (found == allowed) return {};
+  }
+  return Fault(fmt::format(
+      "is damaged, or made by another program: its tables are not those of a {}", state_->what));
+}
+
 Result<int64_t> Database::Pragma(const char* name) {
   LF_ASSIGN_OR_RETURN(Statement statement, Prepare(fmt::format("pragma {}", name)));
   LF_ASSIGN_OR_RETURN(const bool has_row, statement.Step());
@@ -289,12 +339,14 @@ Result<Database> Database::OpenToAppend(const fs::path& path, const DatabaseForm
   return database;
 }
 
-Result<Database> Database::Open(const fs::path& path, const DatabaseFormat& format) {
+Result<Database> Database::Open(const fs::path& path, const DatabaseFormat& format,
+                                const std::vector<std::string>& scripts) {
   auto state = std::make_shared<State>();
   state->name = path.string();
   state->what = format.name;
   std::error_code error;
-  if (!fs::exists(path, error)) return state->Fault("no such file");
+  if (!fs::exists(path, error))
+    return state->Fault(error ? "cannot be read: " + error.message() : "no such file");
   if (!fs::is_regular_file(path, error)) return state->Fault("is no file");
   const uintmax_t size = fs::file_size(path, error), expected = BytesOfPages(path);
   if (!error && size < expected)
@@ -306,10 +358,15 @@ Result<Database> Database::Open(const fs::path& path, const DatabaseFormat& form
   // Files of others: nothing in them is run, and sizes are checked before anything is allocated.
   sqlite3_db_config(state->handle, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_db_config(state->handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
-  sqlite3_limit(state->handle, SQLITE_LIMIT_LENGTH, kMaxBlobBytes);
+  // No value is longer than the file, whatever it claims.
+  constexpr uintmax_t kLeastLimit = 1 << 20;
+  const uintmax_t longest = std::clamp<uintmax_t>(size, kLeastLimit, kMaxBlobBytes);
+  sqlite3_limit(state->handle, SQLITE_LIMIT_LENGTH, static_cast<int>(longest));
+  state->most_steps = kStepsOfSmallFile + kStepsOfByte * static_cast<int64_t>(size);
   Database database(std::move(state));
   LF_RETURN_IF_ERROR(database.Execute("pragma cell_size_check = on; pragma mmap_size = 0;"));
   LF_RETURN_IF_ERROR(database.CheckFormat(format));
+  LF_RETURN_IF_ERROR(database.CheckTables(scripts));
   return database;
 }
 

@@ -12,6 +12,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "lf/core/result.h"
 
@@ -40,7 +41,8 @@ class Statement {
   Statement& BindNull(int parameter);
 
   // Whether there is a (next) row; false when the command is done, after which it may be bound and
-  // run again. Errors of the kind of the database: damage when reading, the disk when writing.
+  // run again. Errors of the kind of the database: damage when reading, the disk when writing. A
+  // command that takes more steps than a file of this length can need is damage, too.
   Result<bool> Step();
   // Of a command without rows: runs it to its end.
   Result<void> Run();
@@ -68,9 +70,12 @@ class Database {
  public:
   // A new, empty one in place of what has the name. kOutput.
   static Result<Database> Create(const std::filesystem::path& path, const DatabaseFormat& format);
-  // To be read. kInput: it cannot be read, is none, is of another kind or version, or was copied in
-  // part.
-  static Result<Database> Open(const std::filesystem::path& path, const DatabaseFormat& format);
+  // To be read. kInput: it cannot be read, is none, is of another kind or version, was copied in
+  // part, or has other tables and indices than one of these scripts makes, compared letter by
+  // letter. A view or a generated column in place of a table could take any time and memory, so
+  // nothing is selected before this is known.
+  static Result<Database> Open(const std::filesystem::path& path, const DatabaseFormat& format,
+                               const std::vector<std::string>& scripts);
 
   // To be written in batches: made if it is not there or empty, else what it holds stays. What is
   // committed ("begin" and "commit" by Execute()) is on the disk and survives the program, however
@@ -99,6 +104,7 @@ class Database {
   explicit Database(std::shared_ptr<State> state);
   Result<int64_t> Pragma(const char* name);
   Result<void> CheckFormat(const DatabaseFormat& format);
+  Result<void> CheckTables(const std::vector<std::string>& scripts);
   std::shared_ptr<State> state_;
 };
 

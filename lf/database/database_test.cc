@@ -17,6 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr DatabaseFormat kFormat = {"test file", 0x4C465454, 3};
+constexpr const char* kThings =
+    "create table things (key integer primary key, number real, word text, bytes blob)";
 constexpr const char* kWords[] = {"", "one", "two\nlines", "Überall ✓"};
 
 class DatabaseTest : public ::testing::Test {
@@ -34,9 +36,8 @@ class DatabaseTest : public ::testing::Test {
     const fs::path path = folder_ / "a file %41 ?immutable=0 #1.lfp";
     Result<Database> database = Database::Create(path, format);
     EXPECT_TRUE(database) << database.error().message;
-    EXPECT_TRUE(database->Execute(
-        "create table things (key integer primary key, number real, word text, bytes blob); "
-        "begin"));
+    EXPECT_TRUE(database->Execute(kThings));
+    EXPECT_TRUE(database->Execute("begin"));
     Result<Statement> insert = database->Prepare("insert into things values (?, ?, ?, ?)");
     EXPECT_TRUE(insert);
     for (int i = 0; i < rows; ++i) {
@@ -57,7 +58,7 @@ class DatabaseTest : public ::testing::Test {
 
   // How many rows are as they were written; an error is one that says so.
   static Result<int> ReadAll(const fs::path& path) {
-    LF_ASSIGN_OR_RETURN(Database database, Database::Open(path, kFormat));
+    LF_ASSIGN_OR_RETURN(Database database, Database::Open(path, kFormat, {kThings}));
     LF_ASSIGN_OR_RETURN(Statement select,
                         database.Prepare("select key, number, word, bytes from things order by 1"));
     int rows = 0;
@@ -129,7 +130,7 @@ TEST_F(DatabaseTest, DamageIsAnErrorOrChangesNothing) {
 }
 
 TEST_F(DatabaseTest, ColumnsOfOtherTypesAreNamed) {
-  Database database = Database::Open(Write(2), kFormat).value();
+  Database database = Database::Open(Write(2), kFormat, {kThings}).value();
   const auto fault = [&](const char* sql, const auto& read) {
     Statement statement = database.Prepare(sql).value();
     EXPECT_TRUE(*statement.Step());
@@ -153,16 +154,17 @@ TEST_F(DatabaseTest, ColumnsOfOtherTypesAreNamed) {
 
 TEST_F(DatabaseTest, KeepsAllBitsOfNumbers) {
   const fs::path path = folder_ / "numbers";
+  constexpr const char* kNumbers = "create table n (i integer, r real)";
   {
     Database database = Database::Create(path, kFormat).value();
-    ASSERT_TRUE(database.Execute("create table n (i integer, r real)"));
+    ASSERT_TRUE(database.Execute(kNumbers));
     Statement insert = database.Prepare("insert into n values (?, ?)").value();
     for (const double value : {0.1, -1.0 / 3, 1e-300, std::numeric_limits<double>::denorm_min()}) {
       insert.Bind(0, std::numeric_limits<int64_t>::min()).Bind(1, value);
       ASSERT_TRUE(insert.Run());
     }
   }
-  Database database = Database::Open(path, kFormat).value();
+  Database database = Database::Open(path, kFormat, {kNumbers}).value();
   Statement select = database.Prepare("select i, r from n").value();
   for (const double value : {0.1, -1.0 / 3, 1e-300, std::numeric_limits<double>::denorm_min()}) {
     ASSERT_TRUE(*select.Step());
@@ -171,18 +173,68 @@ TEST_F(DatabaseTest, KeepsAllBitsOfNumbers) {
   }
 }
 
+// What others may have put in place of the tables, correct in every other way.
+TEST_F(DatabaseTest, OtherTablesAreRefusedBeforeTheyAreRead) {
+  const std::string endless =
+      "with recursive c(x) as (select 0 union all select x + 1 from c) select x as key, "
+      "1.0 as number, 'w' as word, zeroblob(900000000) as bytes from c;";
+  for (const std::string& change :
+       {"drop table things; create view things as " + endless,
+        std::string("create view more as select * from things;"),
+        std::string("create trigger t after insert on things begin select 1; end;"),
+        std::string("create index i on things (word);"), std::string("drop table things;"),
+        std::string("drop table things; create table things (key integer primary key, number real, "
+                    "word text, bytes blob generated always as (zeroblob(900000000)) virtual);"),
+        std::string("alter table things add column more text;")}) {
+    const fs::path path = Write();
+    {
+      Database database = Database::OpenToAppend(path, kFormat).value();
+      ASSERT_TRUE(database.Execute(change)) << change;
+    }
+    const Result<Database> opened = Database::Open(path, kFormat, {"create table a (b)", kThings});
+    ASSERT_FALSE(opened) << change;
+    EXPECT_EQ(opened.error().kind, ErrorKind::kInput);
+    EXPECT_NE(opened.error().message.find("its tables are not those of a test file"),
+              std::string::npos)
+        << opened.error().message;
+  }
+  EXPECT_TRUE(Database::Open(Write(), kFormat, {"create table a (b)", kThings}));
+}
+
+TEST_F(DatabaseTest, CommandsWithoutEndAreDamage) {
+  Database database = Database::Open(Write(), kFormat, {kThings}).value();
+  Statement endless = database
+                          .Prepare(
+                              "with recursive c(x) as (select 0 union all select x + 1 from c) "
+                              "select count(*) from c")
+                          .value();
+  const Result<bool> step = endless.Step();
+  ASSERT_FALSE(step);
+  EXPECT_NE(step.error().message.find("have no end"), std::string::npos) << step.error().message;
+  // The next command has steps of its own.
+  Statement again = database.Prepare("select count(*) from things").value();
+  ASSERT_TRUE(again.Step());
+  EXPECT_EQ(*again.Integer(0), 20);
+}
+
 TEST_F(DatabaseTest, WhatCannotBeWrittenIsAnOutputError) {
   const Result<Database> database = Database::Create(folder_ / "no" / "folder", kFormat);
   ASSERT_FALSE(database);
   EXPECT_EQ(database.error().kind, ErrorKind::kOutput);
 }
 
+constexpr const char* kBatches =
+    "create table things (key integer primary key, bytes blob not null)";
+
 // Appends to what is there, three rows a batch; told(count) after each.
 template <class Told>
 Result<void> AppendBatches(const fs::path& path, int batch_count, const Told& told) {
   LF_ASSIGN_OR_RETURN(Database database, Database::OpenToAppend(path, kFormat));
-  LF_RETURN_IF_ERROR(database.Execute(
-      "create table if not exists things (key integer primary key, bytes blob not null)"));
+  LF_ASSIGN_OR_RETURN(Statement is_there, database.Prepare("select count(*) from sqlite_master"));
+  LF_RETURN_IF_ERROR(is_there.Step());
+  LF_ASSIGN_OR_RETURN(const int64_t tables, is_there.Integer(0));
+  is_there.Reset();
+  if (tables == 0) LF_RETURN_IF_ERROR(database.Execute(kBatches));
   LF_ASSIGN_OR_RETURN(Statement insert, database.Prepare("insert into things values (?, ?)"));
   LF_ASSIGN_OR_RETURN(Statement count, database.Prepare("select count(*) from things"));
   LF_RETURN_IF_ERROR(count.Step());
@@ -226,7 +278,7 @@ TEST_F(DatabaseTest, BatchesAreAppended) {
   EXPECT_EQ(CountWhole(path), 36);
   // One file, to be read as any other.
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
-  EXPECT_TRUE(Database::Open(path, kFormat));
+  EXPECT_TRUE(Database::Open(path, kFormat, {kBatches}));
 }
 
 TEST_F(DatabaseTest, WhatWasCommittedSurvivesAKill) {

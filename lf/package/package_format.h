@@ -11,6 +11,16 @@ namespace lf {
 
 inline constexpr DatabaseFormat kPackageFormat = {"package", 0x4C465047 /* "LFPG" */, 2, 4096};
 
+// Settings, intrinsics and these, as doc/formats/package.md describes them.
+inline constexpr const char* kPackageTables = R"(
+create table lf_images (place integer primary key, id integer, name text, mask text,
+  intrinsics integer, gain real, x real, y real, z real, pose blob, file_bytes integer,
+  x_begin integer, y_begin integer, x_end integer, y_end integer, frames integer, rays integer);
+create table frames (frame integer primary key, time_s real, x real, y real, z real,
+  aperture_diameter real, focus_distance real, camera blob, is_rendered integer,
+  lf_images integer, rays integer, camera_distance real, surroundings blob);
+)";
+
 // All that a frame's camera is, exact: fx, fy, cx, cy, skew, width, height; pose; radius, blades
 // and rotation of the aperture; normal and offset of the focus plane; time, focal length, sensor
 // width, focus distance, horizontal and vertical tilt, unit_m.

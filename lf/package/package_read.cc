@@ -241,7 +241,8 @@ Result<void> Reader::ReadFrames() {
 bool IsPackageName(const fs::path& path) { return path.extension() == ".lfp"; }
 
 Result<Package> ReadPackage(const fs::path& path, const ReadPackageOptions& options) {
-  LF_ASSIGN_OR_RETURN(Database database, Database::Open(path, kPackageFormat));
+  const std::string tables = std::string(kSettingsTable) + kIntrinsicsTable + kPackageTables;
+  LF_ASSIGN_OR_RETURN(Database database, Database::Open(path, kPackageFormat, {tables}));
   if (options.check_seal) LF_RETURN_IF_ERROR(CheckSeal(path, kPackageFormat.name));
   return Reader(std::move(database), path).Read();
 }

@@ -17,17 +17,6 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-// Settings, intrinsics and these, as doc/formats/package.md describes them.
-constexpr const char* kTables = R"(
-create table lf_images (place integer primary key, id integer, name text, mask text,
-  intrinsics integer, gain real, x real, y real, z real, pose blob, file_bytes integer,
-  x_begin integer, y_begin integer, x_end integer, y_end integer, frames integer, rays integer);
-create table frames (frame integer primary key, time_s real, x real, y real, z real,
-  aperture_diameter real, focus_distance real, camera blob, is_rendered integer,
-  lf_images integer, rays integer, camera_distance real, surroundings blob);
-begin;
-)";
-
 class Writer {
  public:
   Writer(Database database, const Package& package)
@@ -36,7 +25,8 @@ class Writer {
   Result<void> Write(const fs::path& final_path, const PackageNotes& notes) {
     LF_RETURN_IF_ERROR(database_.Execute(kSettingsTable));
     LF_RETURN_IF_ERROR(database_.Execute(kIntrinsicsTable));
-    LF_RETURN_IF_ERROR(database_.Execute(kTables));
+    LF_RETURN_IF_ERROR(database_.Execute(kPackageTables));
+    LF_RETURN_IF_ERROR(database_.Execute("begin"));
     LF_RETURN_IF_ERROR(WriteSettings(SettingsOf(final_path, notes), &database_));
     LF_RETURN_IF_ERROR(WriteIntrinsics(light_field_.intrinsics, &database_));
     LF_RETURN_IF_ERROR(WriteImages());

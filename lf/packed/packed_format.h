@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <string>
 
+#include "lf/calibration_tables/calibration_tables.h"
 #include "lf/capture/light_field.h"
 #include "lf/capture/light_field_identity.h"
 #include "lf/database/database.h"
@@ -31,6 +33,15 @@ create table codes (id integer primary key, shard integer, kind text, x_begin in
 // Here, or in the shards.
 inline constexpr const char* kBlobsTable =
     "create table blobs (id integer primary key, code blob not null, mask blob);";
+
+// A store has its codes itself, or in shards.
+inline Result<Database> OpenStoreDatabase(const std::filesystem::path& path) {
+  const std::string tables = fmt::format("{}{}{}", kSettingsTable, kIntrinsicsTable, kStoreTables);
+  return Database::Open(path, kStoreFormat, {tables + kBlobsTable, tables});
+}
+inline Result<Database> OpenShardDatabase(const std::filesystem::path& path) {
+  return Database::Open(path, kShardFormat, {fmt::format("{}{}", kSettingsTable, kBlobsTable)});
+}
 
 // By StoredValues.
 inline constexpr const char* kKindNames[] = {"uint8", "uint16", "half", "display16"};

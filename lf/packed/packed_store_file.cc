@@ -27,7 +27,7 @@ struct OpenedStore {
 };
 
 Result<OpenedStore> OpenComplete(const fs::path& path) {
-  LF_ASSIGN_OR_RETURN(Database database, Database::Open(path, kStoreFormat));
+  LF_ASSIGN_OR_RETURN(Database database, OpenStoreDatabase(path));
   LF_ASSIGN_OR_RETURN(Settings settings, Settings::Read(database, kStoreFormat.name));
   if (settings.Text("state") == kUnfinished)
     return database.Fault("is an unfinished packed store: go on writing it");
@@ -70,7 +70,7 @@ Result<void> ReadImages(OpenedStore* store, PackedStoreFacts* facts) {
 
 // A shard, to be read.
 Result<Database> OpenShardOf(const fs::path& path, const std::string& store, int number) {
-  LF_ASSIGN_OR_RETURN(Database database, Database::Open(ShardPath(path, number), kShardFormat));
+  LF_ASSIGN_OR_RETURN(Database database, OpenShardDatabase(ShardPath(path, number)));
   LF_ASSIGN_OR_RETURN(const Settings settings, Settings::Read(database, kShardFormat.name));
   if (settings.Text("store") != store || settings.Text("number") != fmt::format("{}", number))
     return database.Fault(fmt::format("belongs to another packed store than {}", path.string()));

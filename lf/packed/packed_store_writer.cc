@@ -125,17 +125,21 @@ void RemoveWithJournal(const fs::path& path) {
 }
 
 // By which a store, or a shard of it, is known; empty if the file is none.
-std::string StoreIdOf(const fs::path& path, const DatabaseFormat& format) {
-  Result<Database> database = Database::Open(path, format);
+std::string StoreIdIn(Result<Database> database, const DatabaseFormat& format) {
   if (!database) return {};
   const Result<Settings> settings = Settings::Read(*database, format.name);
   return settings ? settings->Text("store") : std::string();
 }
-std::string StoreOfShard(const fs::path& path) { return StoreIdOf(path, kShardFormat); }
+std::string StoreIdOf(const fs::path& path) {
+  return StoreIdIn(OpenStoreDatabase(path), kStoreFormat);
+}
+std::string StoreOfShard(const fs::path& path) {
+  return StoreIdIn(OpenShardDatabase(path), kShardFormat);
+}
 
 // Also the shards that have got their names already, and those behind a gap of such.
 void RemoveUnfinishedFiles(const fs::path& path) {
-  const std::string store = StoreIdOf(UnfinishedPath(path), kStoreFormat);
+  const std::string store = StoreIdOf(UnfinishedPath(path));
   RemoveWithJournal(UnfinishedPath(path));
   std::error_code error;
   for (int n = 1; n <= kMostShards; ++n) {
@@ -355,7 +359,7 @@ Result<PackedStoreWriter> PackedStoreWriter::Open(const fs::path& path,
   }
   if (!IsUnfinished(path)) RemoveUnfinishedFiles(path);  // shards alone
   state->shard_bytes = plan.shard_bytes;
-  state->replaced = StoreIdOf(path, kStoreFormat);
+  state->replaced = StoreIdOf(path);
   state->has.resize(light_field.size());
   state->source_bytes.resize(light_field.size());
   // Rather now than when all work is done.
@@ -465,7 +469,7 @@ void PackedStoreWriter::Abandon() {
 
 Result<void> CheckIsOfPlan(const fs::path& path, const LightField& light_field,
                            const PackedStorePlan& plan, bool any_shards) {
-  LF_ASSIGN_OR_RETURN(Database database, Database::Open(path, kStoreFormat));
+  LF_ASSIGN_OR_RETURN(Database database, OpenStoreDatabase(path));
   LF_ASSIGN_OR_RETURN(const Settings settings, Settings::Read(database, kStoreFormat.name));
   if (const auto difference = FirstDifference(settings, light_field, plan, any_shards))
     return InputError(fmt::format("{}: was made with {}", path.string(), *difference));
