@@ -1,8 +1,11 @@
+#include <algorithm>
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
 #include "lf/imageio/exposure_facts.h"
 #include "lf/imageio/image_file.h"
+#include "lf/imageio/whole_file.h"
 
 // OpenImageIO loses a string where libpng jumps out of it; only our own faults are looked for.
 extern "C" const char* __asan_default_options() { return "detect_leaks=0"; }
@@ -15,6 +18,13 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size_bytes) {
     for (const auto& fact : {facts->time_s, facts->f_number, facts->iso})
       LF_CHECK(!fact || (*fact > 0 && *fact < 1e300));
   }
+  const auto source = [&](uint64_t offset, std::span<uint8_t> to) -> size_t {
+    const std::string_view part = offset < file.size() ? file.substr(offset, to.size()) : "";
+    std::copy(part.begin(), part.end(), to.begin());
+    return part.size();
+  };
+  if (const auto whole = lf::CheckIsWhole(source, file.size(), "fuzz"); !whole)
+    LF_CHECK(whole.error().message.starts_with("fuzz: "));
   const auto info = lf::ReadImageInfoBytes(file, "fuzz");
   if (!info) {
     LF_CHECK(info.error().message.starts_with("fuzz: "));

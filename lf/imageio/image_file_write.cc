@@ -13,6 +13,7 @@
 #include "lf/imageio/image_file.h"
 #include "lf/imageio/open_image_io.h"
 #include "lf/imageio/stored_value.h"
+#include "lf/imageio/whole_file.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -101,6 +102,15 @@ using PackRow = std::function<void(int y, std::byte* to)>;
 // the bytes are those of a picture encoded at once. Of 8192 pixels they take about 0.1 s.
 constexpr int kBlockRows = 32;
 
+ByteSource SourceOf(const std::vector<unsigned char>& bytes) {
+  return [&bytes](uint64_t offset, std::span<uint8_t> to) -> size_t {
+    if (offset >= bytes.size()) return 0;
+    const size_t count = std::min<size_t>(to.size(), bytes.size() - offset);
+    std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(offset), count, to.begin());
+    return count;
+  };
+}
+
 // The file in memory first: then every failure of the disk is seen by core/file.h.
 Result<void> Encode(const fs::path& path, ImageFormat format, const OIIO::ImageSpec& spec,
                     const PackRow& pack_row, const std::function<bool()>& is_interrupted) {
@@ -133,6 +143,9 @@ Result<void> Encode(const fs::path& path, ImageFormat format, const OIIO::ImageS
   } catch (const std::exception& error) {
     return failure(error.what());
   }
+  // Where memory runs out in its destructors, OpenEXR says nothing and leaves blocks out.
+  if (const Result<void> whole = CheckIsWhole(SourceOf(bytes), bytes.size(), name); !whole)
+    return OutputError(fmt::format("{} (did memory run out?)", whole.error().message));
   return WriteFileAtomically(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 

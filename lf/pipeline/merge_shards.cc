@@ -12,6 +12,7 @@
 
 #include "lf/core/file.h"
 #include "lf/core/log.h"
+#include "lf/imageio/whole_file.h"
 #include "lf/pipeline/frame_output.h"
 #include "lf/pipeline/render_pass.h"
 #include "lf/record/frame_sheet.h"
@@ -195,7 +196,12 @@ class Merger {
         return UsageError(fmt::format(
             "{}: is there already: --resume keeps such frames, --overwrite replaces them",
             PathOf(frame).string()));
-      if (reports_.contains(frame)) finished_.insert(frame);
+      if (!reports_.contains(frame)) continue;
+      const Result<void> whole = CheckFileIsWhole(PathOf(frame));
+      if (whole)
+        finished_.insert(frame);
+      else
+        LogWarning("{}; the frame is made again", whole.error().message);
     }
     return {};
   }

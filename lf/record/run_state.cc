@@ -10,6 +10,7 @@
 
 #include "lf/core/file.h"
 #include "lf/core/log.h"
+#include "lf/imageio/whole_file.h"
 #include "lf/rebinning/ray_map_file.h"
 
 namespace lf {
@@ -223,6 +224,15 @@ Result<void> RunState::Read() {
   return {};
 }
 
+// A frame that a disk or a copy has cut is rendered again.
+bool RunState::IsKept(const fs::path& picture) const {
+  if (!fs::exists(picture)) return false;
+  if (options_.shard) return true;  // a plate, whose reader looks at it itself
+  const Result<void> whole = CheckFileIsWhole(picture);
+  if (!whole) LogWarning("{}; the frame is rendered again", whole.error().message);
+  return whole.has_value();
+}
+
 Result<void> RunState::ReadFinished(const fs::path& path) {
   LF_ASSIGN_OR_RETURN(RenderReport report, ReadReport(path));
   for (FrameReport& frame : report.frames) {
@@ -230,7 +240,7 @@ Result<void> RunState::ReadFinished(const fs::path& path) {
     // Somebody may have removed it to have it rendered again; in another format it is a difference.
     const bool has_format =
         std::find(recorded.begin(), recorded.end(), options_.picture.front()) != recorded.end();
-    if (has_format && !fs::exists(FinishedPath(frame.frame))) continue;
+    if (has_format && !IsKept(FinishedPath(frame.frame))) continue;
     LF_RETURN_IF_ERROR(Check(path.string(), frame.frame, recorded, true));
     finished_[frame.frame] = std::move(frame);
   }

@@ -117,6 +117,7 @@ class RunState {
   Result<void> Look();
   Result<void> CheckOtherPackages() const;
   Result<void> Read();
+  bool IsKept(const std::filesystem::path& picture) const;
   Result<void> ReadFinished(const std::filesystem::path& path);
   Result<void> CheckPlate(FrameId frame) const;
   Result<void> Check(const std::string& place, FrameId frame, const RunInputs& recorded,

@@ -7,6 +7,7 @@
 
 #include "lf/collector/test_noise_field.h"
 #include "lf/core/file.h"
+#include "lf/imageio/image_file.h"
 #include "lf/plate/test_plate.h"
 
 namespace lf {
@@ -41,7 +42,8 @@ class RunStateTest : public ::testing::Test {
   void LeaveUnfinished() {
     const std::unique_ptr<RunState> state = *Open(false);
     ASSERT_TRUE(state->SavePlate(FrameId{2}, progress_, plate_, pool_));
-    std::ofstream(folder_ / "frame_0003.exr") << "a picture";
+    const Image<float> picture(8, 40, 1);
+    ASSERT_TRUE(WriteImage(folder_ / "frame_0003.exr", picture.view(), {"Y"}, PixelType::kHalf));
     FrameReport frame;
     frame.frame = FrameId{3};
     frame.rays.accepted_count = 77;
@@ -118,6 +120,13 @@ TEST_F(RunStateTest, OtherInputsAreNamed) {
 TEST_F(RunStateTest, AFinishedFrameThatWasRemovedIsRenderedAgain) {
   LeaveUnfinished();
   fs::remove(folder_ / "frame_0003.exr");
+  EXPECT_TRUE((*Open(true))->finished().empty());
+}
+
+TEST_F(RunStateTest, AFinishedFrameThatWasCutIsRenderedAgain) {
+  LeaveUnfinished();
+  const fs::path picture = folder_ / "frame_0003.exr";
+  fs::resize_file(picture, fs::file_size(picture) - 1);
   EXPECT_TRUE((*Open(true))->finished().empty());
 }
 
