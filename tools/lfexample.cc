@@ -89,6 +89,18 @@ void WarnOfDoubt(const lf::ExamplePath& example, const std::string& light_field,
       example.candidates_w.front());
 }
 
+// A camera path may be replaced by another one; a calibration, or a picture, is not lost by a wrong
+// -o.
+lf::Result<void> CheckMayWrite(const std::string& output) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(output, error)) return {};
+  constexpr size_t kLongestPath = size_t{64} << 20;
+  const lf::Result<std::string> text = lf::ReadFile(output, kLongestPath);
+  if (text && (text->empty() || text->find("format: lfpath") != std::string::npos)) return {};
+  return lf::UsageError(
+      fmt::format("{}: exists and is no camera path; give another name, or remove it", output));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -110,6 +122,7 @@ int main(int argc, char** argv) {
       ->check(CLI::NonNegativeNumber);
 
   return program.Run(argc, argv, [&]() -> lf::Result<void> {
+    LF_RETURN_IF_ERROR(CheckMayWrite(output));
     LF_ASSIGN_OR_RETURN(const lf::LightField light_field, input.Open());
     lf::ExampleOptions options;
     options.move = *lf::ParseExampleMove(move);

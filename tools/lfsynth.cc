@@ -45,7 +45,7 @@ struct Arguments {
   std::vector<double> distortion, fisheye;
   double fov = 0;
   int samples = 0, truth_samples = lf::LensSampling{}.samples;
-  bool bayer = false, calibration_only = false;
+  bool bayer = false, calibration_only = false, overwrite = false;
 };
 
 void AddOptions(CLI::App& app, Arguments& a) {
@@ -89,6 +89,9 @@ void AddOptions(CLI::App& app, Arguments& a) {
   app.add_option("--samples", a.samples, "Rays per pixel at edges; 0: as the scene recommends")
       ->check(CLI::Range(0, 4096));
   app.add_flag("--calibration-only", a.calibration_only, "Write transforms.json without images");
+  app.add_flag(
+      "--overwrite", a.overwrite,
+      "Replace a light field in DIR that lfsynth has not written, or that was changed since");
   app.add_option("--truth", a.truth, "PATH.yaml whose true thin-lens frames to write");
   app.add_option("--truth-samples", a.truth_samples, "Rays per element of these")
       ->check(CLI::Range(1, 1'000'000));
@@ -133,6 +136,22 @@ lf::Result<lf::LfImageFormat> FormatOf(const Arguments& a) {
   return a.format == "png16" ? lf::LfImageFormat::kPng16 : lf::LfImageFormat::kExr;
 }
 
+std::filesystem::path CalibrationIn(const Arguments& a) {
+  return std::filesystem::path(a.output) / "transforms.json";
+}
+
+// A light field of others, or one that somebody has worked on, is not lost by a wrong -o.
+lf::Result<void> CheckMayWrite(const Arguments& a) {
+  std::error_code error;
+  if (a.overwrite || !std::filesystem::exists(CalibrationIn(a), error)) return {};
+  LF_ASSIGN_OR_RETURN(const bool is_ours, lf::IsAsWritten(CalibrationIn(a), lf::kSynthProgram));
+  if (is_ours) return {};
+  return lf::UsageError(fmt::format(
+      "{} was not written by lfsynth, or was changed since: write to another folder, or "
+      "replace that light field (--overwrite)",
+      CalibrationIn(a).string()));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -148,6 +167,7 @@ int main(int argc, char** argv) {
     const lf::ProgressStyle style = lf::ParseProgressStyle(program.common().progress);
     const uint64_t seed = program.common().seed;
     lf::CatchInterrupts();
+    LF_RETURN_IF_ERROR(CheckMayWrite(a));
     LF_ASSIGN_OR_RETURN(const lf::LfImageFormat format, FormatOf(a));
     LF_ASSIGN_OR_RETURN(lf::RigOptions rig, MakeRigOptions(a, built_in));
     rig.seed = seed;
@@ -170,8 +190,7 @@ int main(int argc, char** argv) {
     const lf::Scene scene(built_in.describe());
     if (a.calibration_only) {
       LF_RETURN_IF_ERROR(lf::CreateFolder(a.output));
-      LF_RETURN_IF_ERROR(
-          lf::WriteTransformsJson(light_field, light_field.folder / "transforms.json"));
+      LF_RETURN_IF_ERROR(lf::WriteTransformsJson(light_field, CalibrationIn(a), lf::kSynthProgram));
     } else {
       lf::ProgressMeter meter(style, " images");
       const auto keep_going = [&](size_t done) {

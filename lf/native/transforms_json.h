@@ -35,8 +35,9 @@ Result<LightField> ReadTransformsJson(const std::filesystem::path& path);
 Result<void> WriteTransformsJson(const LightField& light_field, const std::filesystem::path& path,
                                  std::string_view writer = {});
 
-// The writer of native folders (lf_written_by).
+// The writers of native folders (lf_written_by).
 inline constexpr const char* kImportProgram = "lfimport";
+inline constexpr const char* kSynthProgram = "lfsynth";
 
 // Whether the file was written by `writer`, and nobody changed it since. kInput: unreadable.
 Result<bool> IsAsWritten(const std::filesystem::path& path, std::string_view writer);

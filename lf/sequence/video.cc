@@ -6,7 +6,9 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "lf/core/file.h"
@@ -59,6 +61,18 @@ Result<void> CheckVideoTool() {
   return {};
 }
 
+namespace {
+
+// What ffmpeg writes here says so in its first bytes (ISO/IEC 14496-12, "ftyp").
+bool IsEmptyOrVideo(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  char head[8] = {};
+  file.read(head, sizeof head);
+  return file.gcount() == 0 || std::string_view(head, sizeof head).substr(4) == "ftyp";
+}
+
+}  // namespace
+
 Result<void> CheckVideoTarget(const fs::path& path) {
   const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
   std::error_code error;
@@ -68,6 +82,9 @@ Result<void> CheckVideoTarget(const fs::path& path) {
         fmt::format("--video {}: there is no folder {}", path.string(), folder.string()));
   if (fs::exists(path, error) && !fs::is_regular_file(path, error))
     return OutputError(fmt::format("--video {}: exists and is no file", path.string()));
+  if (fs::exists(path, error) && !IsEmptyOrVideo(path))
+    return OutputError(fmt::format(
+        "--video {}: exists and is no video; give another name, or remove it", path.string()));
   return {};
 }
 

@@ -187,7 +187,7 @@ Result<void> WriteLightField(const Scene& scene, const LightField& light_field,
                  fmt::format("{}: stopped after {} of {} images; no transforms.json was written. "
                              "The same call starts anew",
                              light_field.folder.string(), images_done, light_field.size())};
-  return WriteTransformsJson(light_field, calibration);
+  return WriteTransformsJson(light_field, calibration, kSynthProgram);
 }
 
 }  // namespace lf

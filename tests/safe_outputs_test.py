@@ -1,0 +1,103 @@
+#!/usr/bin/python3
+"""Wrong output names destroy nothing, names of files forge no message, and pictures that were cut are
+not kept.
+
+usage: safe_outputs_test.py FOLDER_OF_PROGRAMS
+"""
+import hashlib
+import pathlib
+import shutil
+import subprocess
+import sys
+import unittest
+
+from program_test_case import ProgramTestCase
+
+PROGRAMS = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".")
+
+
+def digest(path):
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+class SafeOutputsTest(ProgramTestCase):
+    def setUp(self):
+        super().setUp()
+        self.field, self.path = self.folder / "field", self.folder / "path.yaml"
+        self.succeeds(PROGRAMS / "lfsynth", "chart", "-o", self.field, "--count", "9", "--size", "48x32",
+                      "--samples", "1", "--format", "png", "-q")
+        self.succeeds(PROGRAMS / "lfexample", self.field, "-o", self.path, "--move", "static", "--focus", "3", "-q")
+        self.calibration = self.field / "transforms.json"
+
+    def keeps(self, path, code, words, program, *arguments):
+        before = digest(path)
+        self.fails(code, words, PROGRAMS / program, *arguments)
+        self.assertEqual(digest(path), before)
+
+    def test_a_light_field_of_others_is_not_replaced(self):
+        again = ["chart", "-o", self.field, "--count", "9", "--size", "48x32", "--samples", "1", "-q"]
+        self.succeeds(PROGRAMS / "lfsynth", *again)  # its own may be
+        self.calibration.write_text(self.calibration.read_text().replace('"frames"', ' "frames"', 1))
+        self.keeps(self.calibration, 2, ["transforms.json", "--overwrite"], "lfsynth", *again)
+        self.keeps(self.calibration, 2, ["--overwrite"], "lfsynth", *again, "--calibration-only")
+        self.succeeds(PROGRAMS / "lfsynth", *again, "--overwrite")
+
+    def test_a_path_replaces_paths_alone(self):
+        self.keeps(self.calibration, 2, ["is no camera path"], "lfexample", self.field, "-o", self.calibration)
+        picture = next(self.field.rglob("*.png"))
+        self.keeps(picture, 2, ["is no camera path"], "lfexample", self.field, "-o", picture)
+        self.succeeds(PROGRAMS / "lfexample", self.field, "-o", self.path, "--focus", "4", "-q")
+
+    def test_a_video_replaces_videos_alone(self):
+        for there in (self.path, self.calibration, next(self.field.rglob("*.png"))):
+            self.keeps(there, 4, ["--video", there.name, "is no video"], "lfrenderer", self.field, self.path,
+                       "-o", self.folder / "film", "--video", there)
+            self.assertFalse(list(self.folder.glob("film/frame_*")))
+
+    def test_help_that_cannot_be_written_is_an_error(self):
+        for program in ("lfrenderer", "lfimport"):
+            for word in ("--help", "--version"):
+                with open("/dev/full", "w", encoding="utf-8") as full:
+                    result = subprocess.run([PROGRAMS / program, word], stdout=full, stderr=subprocess.PIPE,
+                                            text=True, timeout=60)
+                self.assertEqual(result.returncode, 4)
+                self.assertTrue(result.stderr.splitlines()[-1].startswith("error: "), result.stderr)
+
+    def test_a_name_cannot_forge_the_last_line(self):
+        name = self.folder / "a\nwritten: all is well\x1b[2K"
+        for program, more in (("lfrenderer", [self.path, "-o", self.folder / "film"]),
+                              ("lfimport", []), ("lfpreprocessor", [self.path, "-o", self.folder / "packages"])):
+            result = self.call(PROGRAMS / program, name, *more)
+            self.assertEqual(result.returncode, 3, result.stderr)
+            lines = result.stderr.splitlines()
+            self.assertTrue(lines[-1].startswith("error: "), result.stderr)
+            self.assertNotIn("\x1b", result.stderr)
+            self.assertFalse([line for line in lines if line.startswith("written")], result.stderr)
+        result = self.call(PROGRAMS / "lfrenderer", "--no-such\noption")
+        self.assertEqual(result.returncode, 2)
+        self.assertTrue(result.stderr.splitlines()[-1].startswith("error: "), result.stderr)
+
+    def test_a_frame_that_was_cut_is_rendered_again(self):
+        film = self.folder / "film"
+        self.succeeds(PROGRAMS / "lfexample", self.field, "-o", self.path, "--move", "dolly", "--focus", "3", "-q")
+        for form in ("exr", "png16"):
+            shutil.rmtree(film, ignore_errors=True)
+            call = [PROGRAMS / "lfrenderer", self.field, self.path, "-o", film, "--no-contact-sheet", "--format", form,
+                    "--frames", "1-3"]
+            self.succeeds(*call, "-q")
+            frames = sorted(film.glob("frame_*"))
+            self.assertEqual(len(frames), 3)
+            whole = [digest(frame) for frame in frames]
+            frames[1].write_bytes(frames[1].read_bytes()[:-200])
+            result = self.call(*call, "--resume")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertIn("the frame is rendered again", result.stderr)
+            self.assertIn(frames[1].name, result.stderr)
+            self.assertEqual([digest(frame) for frame in frames], whole)
+            kept = frames[0].stat().st_mtime_ns
+            self.succeeds(*call, "--resume", "-q")
+            self.assertEqual(frames[0].stat().st_mtime_ns, kept)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0]])
