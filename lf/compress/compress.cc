@@ -137,7 +137,8 @@ void Compressor::AddOne(PackedStoreWriter* writer, LfImageId id) {
   report_.encode_cpu_s += static_cast<double>(timer.Nanoseconds()) * 1e-9;
   ++now_.done;
   if (error) {
-    const bool is_image = !image;
+    // Only the image itself may be at fault: what the machine lacks is no reason to go on.
+    const bool is_image = !image && error->kind == ErrorKind::kInput;
     if (is_image) report_.skipped.push_back({name, error->message});
     if ((!is_image || options_.strict) && !ended_) {
       ended_ = true;

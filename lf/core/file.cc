@@ -79,6 +79,20 @@ fs::path TemporaryName(const fs::path& path) {
 
 }  // namespace
 
+ErrorKind KindOfReadFailure(int code) {
+  for (const int lack : {EMFILE, ENFILE, ENOMEM, EAGAIN, ENOBUFS, ENOLCK})
+    if (code == lack) return ErrorKind::kOutput;
+  return ErrorKind::kInput;
+}
+
+ErrorKind KindOfReadFailure(const std::exception& thrown) {
+  const auto* const refused = dynamic_cast<const std::system_error*>(&thrown);
+  const bool has_errno =
+      refused != nullptr && (refused->code().category() == std::generic_category() ||
+                             refused->code().category() == std::system_category());
+  return has_errno ? KindOfReadFailure(refused->code().value()) : ErrorKind::kInput;
+}
+
 void AnnounceRead(const fs::path& path) {
   const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (file.get() >= 0) ::posix_fadvise(file.get(), 0, 0, POSIX_FADV_WILLNEED);
@@ -89,10 +103,11 @@ Result<std::string> ReadFile(const fs::path& path, size_t limit_bytes) {
   const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   struct stat status {};
   if (file.get() < 0 || ::fstat(file.get(), &status) != 0) {
-    const bool is_missing = errno == ENOENT || errno == ENOTDIR;
-    const std::string reason = SystemReason();
-    return InputError(fmt::format("{}: cannot be read: {}{}", path.string(), reason,
-                                  is_missing ? FilesNearby(path) : ""));
+    const int code = errno;
+    const bool is_missing = code == ENOENT || code == ENOTDIR;
+    return Error{KindOfReadFailure(code),
+                 fmt::format("{}: cannot be read: {}{}", path.string(), std::strerror(code),
+                             is_missing ? FilesNearby(path) : "")};
   }
   if (!S_ISREG(status.st_mode)) return InputError(fmt::format("{}: is not a file", path.string()));
   if (static_cast<uint64_t>(status.st_size) > limit_bytes)
@@ -105,7 +120,8 @@ Result<std::string> ReadFile(const fs::path& path, size_t limit_bytes) {
     const ssize_t n = ::read(file.get(), bytes.data() + done, bytes.size() - done);
     if (n < 0 && errno == EINTR) continue;
     if (n < 0)
-      return InputError(fmt::format("{}: cannot be read: {}", path.string(), SystemReason()));
+      return Error{KindOfReadFailure(errno),
+                   fmt::format("{}: cannot be read: {}", path.string(), SystemReason())};
     if (n == 0) break;  // became shorter while we read
     done += static_cast<size_t>(n);
   }

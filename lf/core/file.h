@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <filesystem>
 #include <functional>
 #include <span>
@@ -13,8 +14,15 @@
 
 namespace lf {
 
-// The bytes of a file. kInput if it cannot be read, is no regular file or is larger than
-// limit_bytes (checked before anything is allocated).
+// What a failed open or read of this errno means: kOutput where the machine lacks something (open
+// files, memory) and any other file would fail as well, so that no good file counts as a broken
+// one; else kInput.
+ErrorKind KindOfReadFailure(int code);
+// The same of what a library throws, which may have wanted a thread.
+ErrorKind KindOfReadFailure(const std::exception& thrown);
+
+// The bytes of a file. KindOfReadFailure() or kInput if it cannot be read, is no regular file or is
+// larger than limit_bytes (checked before anything is allocated).
 Result<std::string> ReadFile(const std::filesystem::path& path,
                              size_t limit_bytes = size_t{4} << 30);
 

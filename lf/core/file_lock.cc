@@ -30,6 +30,14 @@ int Flock(int fd, int operation) {
   return result;
 }
 
+// As few bytes are written at once, or not at all.
+bool Write(int fd, const std::string& text) {
+  ssize_t written = 0;
+  do written = ::pwrite(fd, text.data(), text.size(), 0);
+  while (written < 0 && errno == EINTR);
+  return written >= 0;
+}
+
 std::string Owner(int fd) {
   char text[32] = {};
   if (::pread(fd, text, sizeof(text) - 1, 0) <= 0) return "";
@@ -83,7 +91,7 @@ Result<FileLock> FileLock::Take(const std::filesystem::path& path) {
     if (!IsStill(fd, path)) continue;
     // For people and messages only.
     const std::string text = fmt::format("{}\n", ::getpid());
-    if (::ftruncate(fd, 0) != 0 || ::pwrite(fd, text.data(), text.size(), 0) < 0)
+    if (::ftruncate(fd, 0) != 0 || !Write(fd, text))
       return OutputError(
           fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
     return lock;

@@ -4,8 +4,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <fstream>
 #include <new>
+#include <stdexcept>
+#include <system_error>
 
 namespace lf {
 namespace {
@@ -54,6 +57,18 @@ TEST_F(FileTest, AWriterThatThrowsLeavesNoTemporaryFile) {
   EXPECT_THROW((void)WriteAtomically(folder_ / "a.txt", write), std::bad_alloc);
   EXPECT_EQ(*ReadFile(folder_ / "a.txt"), "old");
   EXPECT_EQ(FileCount(), 1u);
+}
+
+TEST(KindOfReadFailure, TellsTheMachineFromTheFile) {
+  for (const int code : {EMFILE, ENFILE, ENOMEM, EAGAIN})
+    EXPECT_EQ(KindOfReadFailure(code), ErrorKind::kOutput) << code;
+  for (const int code : {EIO, ENOENT, EACCES})
+    EXPECT_EQ(KindOfReadFailure(code), ErrorKind::kInput) << code;
+  EXPECT_EQ(KindOfReadFailure(std::system_error(EAGAIN, std::system_category())),
+            ErrorKind::kOutput);
+  EXPECT_EQ(KindOfReadFailure(std::system_error(EIO, std::generic_category())), ErrorKind::kInput);
+  EXPECT_EQ(KindOfReadFailure(std::ios_base::failure("cut")), ErrorKind::kInput);
+  EXPECT_EQ(KindOfReadFailure(std::runtime_error("cut")), ErrorKind::kInput);
 }
 
 TEST_F(FileTest, TheTemporaryNameKeepsTheExtension) {

@@ -37,6 +37,24 @@ ByteSource SourceOf(OIIO::Filesystem::IOProxy& file) {
   };
 }
 
+// A file on disk. A system may give fewer bytes than there are, or be interrupted: OpenImageIO
+// would take that for the end.
+class PatientFile : public OIIO::Filesystem::IOFile {
+ public:
+  explicit PatientFile(const std::string& name) : IOFile(name, Read) {}
+  size_t pread(void* to, size_t size, int64_t offset) override {
+    constexpr int kMostTries = 3;
+    size_t done = 0;
+    for (int tries = 0; done < size && tries < kMostTries;) {
+      const size_t count = IOFile::pread(static_cast<char*>(to) + done, size - done,
+                                         offset + static_cast<int64_t>(done));
+      tries = count > 0 ? 0 : tries + 1;
+      done += count;
+    }
+    return done;
+  }
+};
+
 // A file, under its name or in memory.
 struct FileSource {
   OIIO::Filesystem::IOProxy& file;
@@ -248,6 +266,8 @@ auto WithoutThrowing(const std::string& name, const Read& read) -> decltype(read
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
+    if (KindOfReadFailure(error) == ErrorKind::kOutput)
+      return OutputError(fmt::format("{}: cannot be read: {}", name, error.what()));
     return InputError(fmt::format("{}: truncated or damaged: {}", name, error.what()));
   }
 }
@@ -260,11 +280,12 @@ auto FromFile(const fs::path& path, const Read& read)
   std::error_code error;
   if (fs::exists(path, error) && !fs::is_regular_file(path, error))
     return InputError(fmt::format("{}: is not a file", name));
-  OIIO::Filesystem::IOFile file(name, OIIO::Filesystem::IOProxy::Read);
+  PatientFile file(name);
   if (!file.opened()) {
     const int reason = errno;
-    return InputError(fmt::format("{}: cannot be read: {}{}", name, std::strerror(reason),
-                                  reason == ENOENT ? FilesNearby(path) : ""));
+    return Error{KindOfReadFailure(reason),
+                 fmt::format("{}: cannot be read: {}{}", name, std::strerror(reason),
+                             reason == ENOENT ? FilesNearby(path) : "")};
   }
   return WithoutThrowing(name, [&] { return read({file, name}); });
 }

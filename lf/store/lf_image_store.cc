@@ -6,6 +6,8 @@
 #include <new>
 #include <utility>
 
+#include "lf/core/file.h"
+
 namespace lf {
 
 Result<LfPixels> LoadWithoutThrowing(const LfImageStore& store, LfImageId id, const PixelRect& rect,
@@ -17,7 +19,7 @@ Result<LfPixels> LoadWithoutThrowing(const LfImageStore& store, LfImageId id, co
     return OutputError(
         fmt::format("{}: no memory to load it: lower --memory, or give the machine more", name));
   } catch (const std::exception& exception) {
-    return InputError(fmt::format("{}: {}", name, exception.what()));
+    return Error{KindOfReadFailure(exception), fmt::format("{}: {}", name, exception.what())};
   }
 }
 
