@@ -83,6 +83,7 @@ Result<void> Act(const lf::SubmitArguments& arguments, const lf::CommonOptions& 
   }
   if (!arguments.resume.empty()) {
     LF_ASSIGN_OR_RETURN(ClusterJob job, lf::ReadJob(arguments.resume));
+    LF_RETURN_IF_ERROR(lf::CheckMayRun(job));
     LF_RETURN_IF_ERROR(arguments.Change(&job, common));
     const lf::JobStatus status = lf::LookAtJob(job);
     if (status.phase == lf::TaskPhase::kDone && arguments.video.empty() &&
@@ -96,10 +97,12 @@ Result<void> Act(const lf::SubmitArguments& arguments, const lf::CommonOptions& 
   if (!arguments.finish.empty()) return Finish(arguments.finish[0], arguments.finish[1]);
   if (!arguments.run_finish.empty()) {
     LF_ASSIGN_OR_RETURN(const ClusterJob job, lf::ReadJob(arguments.run_finish));
+    LF_RETURN_IF_ERROR(lf::CheckMayRun(job));
     return lf::FinishFilm(job, lf::NodeName(), lf::CatchInterrupts());
   }
   if (!arguments.run_package.empty()) {
     LF_ASSIGN_OR_RETURN(const ClusterJob job, lf::ReadJob(arguments.run_package[1]));
+    LF_RETURN_IF_ERROR(lf::CheckMayRun(job));
     const size_t number = std::strtoull(arguments.run_package[0].c_str(), nullptr, 10);
     if (number >= job.packages.size())
       return lf::UsageError(fmt::format("--run-package {}: the job has packages 0 to {}",

@@ -12,6 +12,7 @@
 #include "tools/render_arguments.h"
 
 #include "lf/cluster/slurm.h"
+#include "lf/core/log.h"
 #include "lf/core/shell_word.h"
 #include "lf/package/package_file.h"
 #include "lf/pipeline/check_render_options.h"
@@ -202,6 +203,10 @@ Result<void> SubmitArguments::TakeResources(ClusterJob* job, const CommonOptions
                                             bool is_new) const {
   if (engine) job->engine = *engine == "slurm" ? ClusterEngine::kSlurm : ClusterEngine::kLocal;
   const bool is_local = job->engine == ClusterEngine::kLocal;
+  for (const std::string& option : sbatch_options)
+    if (!option.starts_with('-') || OneLine(option) != option)
+      return UsageError(fmt::format(
+          "--sbatch={}: expected an option of sbatch, such as --partition=long", option));
   if (is_local && (!time_limit.empty() || !sbatch_options.empty()))
     return UsageError("--time-limit and --sbatch are for --engine slurm");
   const bool is_anew = is_new || engine || at_once;

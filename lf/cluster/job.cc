@@ -1,6 +1,13 @@
 #include "lf/cluster/job.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <string_view>
 
 #include "lf/core/file.h"
 #include "lf/pipeline/frame_range.h"
@@ -13,6 +20,34 @@ namespace {
 constexpr size_t kLimitBytes = size_t{64} << 20;
 constexpr const char* kFormat = "lfjob 1";
 constexpr size_t kMostFrames = 10'000'000;
+
+// Line breaks and the like, which would begin another line of a batch script.
+bool HasControls(std::string_view text) {
+  return std::any_of(text.begin(), text.end(),
+                     [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
+}
+
+bool IsNumber(std::string_view text) {
+  return !text.empty() &&
+         std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+// What goes into batch scripts and calls of Slurm. Returns what is wrong; empty: nothing.
+std::string FaultOf(const ClusterJob& job) {
+  for (const std::string& option : job.sbatch_options)
+    if (HasControls(option) || !option.starts_with('-'))
+      return fmt::format("\"sbatch_options\": expected options of sbatch, found \"{}\"", option);
+  for (const std::string& id : job.slurm_array_ids)
+    if (!IsNumber(id))
+      return fmt::format("\"slurm_arrays\": expected numbers of jobs, found \"{}\"", id);
+  if (!job.slurm_finishing_id.empty() && !IsNumber(job.slurm_finishing_id))
+    return fmt::format("\"slurm_finishing\": expected the number of a job, found \"{}\"",
+                       job.slurm_finishing_id);
+  if (!job.frame_extension.starts_with('.') || job.frame_extension.find('/') != std::string::npos)
+    return fmt::format("\"frame_extension\": expected one such as .exr, found \"{}\"",
+                       job.frame_extension);
+  return "";
+}
 
 Json PackageToJson(const JobPackage& package) {
   return {{"file", package.file.string()},
@@ -39,7 +74,8 @@ JobPackage PackageFromJson(const Json& json, std::string* fault) {
   else
     *fault = "\"frames\": " + parsed.error().message;
   // It names files in our folder.
-  if (package.name.empty() || package.name.find('/') != std::string::npos)
+  if (package.name.empty() || package.name.find('/') != std::string::npos ||
+      package.name.front() == '.' || HasControls(package.name))
     *fault = fmt::format("\"name\": expected the name of a package, found \"{}\"", package.name);
   return package;
 }
@@ -131,6 +167,7 @@ Result<ClusterJob> ParseJob(std::string_view text, const std::string& name) {
     if (fault.empty() && engine != "local" && engine != "slurm")
       fault = fmt::format("\"engine\": expected local or slurm, found \"{}\"", engine);
     if (fault.empty() && job.packages.empty()) fault = "\"packages\": expected some, found none";
+    if (fault.empty()) fault = FaultOf(job);
   }
   if (!fault.empty())
     return InputError(
@@ -147,6 +184,19 @@ Result<ClusterJob> ParseJob(std::string_view text, const std::string& name) {
 Result<void> WriteJob(const ClusterJob& job) {
   LF_RETURN_IF_ERROR(CreateFolder(job.Folder() / "packages"));
   return WriteFileAtomically(job.File(), ToJson(job));
+}
+
+Result<void> CheckMayRun(const ClusterJob& job) {
+  struct stat status {};
+  if (::stat(job.File().c_str(), &status) != 0)
+    return InputError(
+        fmt::format("{}: cannot be read: {}", job.File().string(), std::strerror(errno)));
+  if (status.st_uid == ::geteuid() || status.st_uid == 0) return {};
+  return UsageError(
+      fmt::format("{}: belongs to another user (number {}), and the program and options that it "
+                  "names would run "
+                  "as you: submit the packages anew, into a folder of your own",
+                  job.File().string(), status.st_uid));
 }
 
 Result<ClusterJob> ReadJob(const fs::path& output_folder) {

@@ -86,4 +86,7 @@ Result<void> WriteJob(const ClusterJob& job);
 // Of the folder DIR. kInput: there is none, or it is damaged.
 Result<ClusterJob> ReadJob(const std::filesystem::path& output_folder);
 
+// kUsage if its file belongs to another user: what a job names is run as the one who asks.
+Result<void> CheckMayRun(const ClusterJob& job);
+
 }  // namespace lf

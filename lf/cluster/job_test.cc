@@ -1,6 +1,10 @@
 #include "lf/cluster/job.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <string>
 
 namespace lf {
 namespace {
@@ -34,9 +38,48 @@ TEST(ClusterJob, IsTheSameWhenWrittenAndRead) {
 }
 
 TEST(ClusterJob, IsRefusedWhereItsNamesWouldLeaveTheFolder) {
+  for (const char* name : {"../../etc/passwd", "..", ".hidden", "", "a\nb"}) {
+    ClusterJob job = SomeJob();
+    job.packages[0].name = name;
+    EXPECT_FALSE(ParseJob(ToJson(job), "job").has_value()) << name;
+  }
   ClusterJob job = SomeJob();
-  job.packages[0].name = "../../etc/passwd";
+  job.frame_extension = "/../../a";
   EXPECT_FALSE(ParseJob(ToJson(job), "job").has_value());
+}
+
+// Batch scripts and calls of Slurm are made of these.
+TEST(ClusterJob, IsRefusedWhereItWouldSlipInCommandsOrOptions) {
+  for (const char* option : {"--partition=long\nrm -rf ~", "long", ""}) {
+    ClusterJob job = SomeJob();
+    job.sbatch_options = {option};
+    EXPECT_FALSE(ParseJob(ToJson(job), "job").has_value()) << option;
+  }
+  for (const char* id : {"--user=root", "12 13", "", "1\n2", "x"}) {
+    ClusterJob job = SomeJob();
+    job.slurm_array_ids = {"12", id};
+    EXPECT_FALSE(ParseJob(ToJson(job), "job").has_value()) << id;
+  }
+  ClusterJob job = SomeJob();
+  job.slurm_finishing_id = "-M all";
+  const Result<ClusterJob> parsed = ParseJob(ToJson(job), "job");
+  ASSERT_FALSE(parsed.has_value());
+  EXPECT_NE(parsed.error().message.find("\"-M all\""), std::string::npos) << parsed.error().message;
+}
+
+TEST(ClusterJob, OfAnotherUserIsNotRun) {
+  if (::geteuid() != 0) GTEST_SKIP() << "only root can give files away";
+  ClusterJob job = SomeJob();
+  job.output_folder =
+      std::filesystem::temp_directory_path() / ("lf_job_test." + std::to_string(::getpid()));
+  ASSERT_TRUE(WriteJob(job));
+  EXPECT_TRUE(CheckMayRun(job));
+  ASSERT_EQ(::chown(job.File().c_str(), 12345, 12345), 0);
+  const Result<void> refused = CheckMayRun(job);
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_EQ(refused.error().kind, ErrorKind::kUsage);
+  EXPECT_NE(refused.error().message.find("12345"), std::string::npos);
+  std::filesystem::remove_all(job.output_folder);
 }
 
 TEST(ClusterJob, OtherTextIsNamedAndExplained) {

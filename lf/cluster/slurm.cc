@@ -159,6 +159,13 @@ std::string ArrayText(const std::vector<size_t>& numbers) {
 Result<void> SubmitToSlurm(ClusterJob* job, const std::vector<size_t>& numbers) {
   const fs::path packages = job->Folder() / "packages.sbatch",
                  finish = job->Folder() / "finish.sbatch";
+  // Comments and lines of #SBATCH end where a line does, whatever quotes say.
+  for (const fs::path& path : {job->output_folder, job->submitter})
+    if (const std::string text = path.string(); OneLine(text) != text)
+      return UsageError(
+          fmt::format("{}: a batch script cannot hold a name with line breaks or other control "
+                      "characters: give the folder another name",
+                      text));
   LF_RETURN_IF_ERROR(WriteFileAtomically(packages, PackagesScript(*job)));
   LF_RETURN_IF_ERROR(WriteFileAtomically(finish, FinishingScript(*job)));
   if (!numbers.empty()) {
