@@ -80,12 +80,12 @@ class RayWeights {
     feather_of_row_(begin_x, begin_y + kWeightBlock, 2, below);
     return FeatheredWeight(weight, above, below, x - begin_x, y - begin_y);
   }
-  // Of as many blocks from that of element (x, y) on, side by side, without feather; not where
-  // are_same().
+  // Writes the weights of `count` blocks side by side, without feather. The first one holds element
+  // (x, y). Must not be called where are_same().
   void OfRow(int x, int y, int count, uint8_t* weights) const {
     of_row_(blocks_.EndX(x), blocks_.EndY(y), count, weights);
   }
-  // Of as many corners of blocks; where has_feather().
+  // Writes the feather of `count` corners, as FeatherFunction does. Needs has_feather().
   void FeatherOfRow(int x, int y, int count, uint16_t* feather) const {
     feather_of_row_(x, y, count, feather);
   }

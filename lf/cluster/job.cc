@@ -32,7 +32,8 @@ bool IsNumber(std::string_view text) {
          std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
-// What goes into batch scripts and calls of Slurm. Returns what is wrong; empty: nothing.
+// Checks the fields that go into batch scripts and calls of Slurm. Returns what is wrong, or an
+// empty text.
 std::string FaultOf(const ClusterJob& job) {
   for (const std::string& option : job.sbatch_options)
     if (HasControls(option) || !option.starts_with('-'))

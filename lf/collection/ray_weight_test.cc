@@ -27,7 +27,7 @@ RayWeights AnyWeights(uint64_t seed) {
   });
 }
 
-// The same with a feather: whole, none and in part, by columns and rows of corners.
+// Adds a feather to AnyWeights(): whole, none and in part, by columns and rows of corners.
 RayWeights AnyFeatheredWeights(uint64_t seed) {
   const RayWeights any = AnyWeights(seed);
   const auto of_row = [any](int end_x, int end_y, int count, uint8_t* weights) {

@@ -33,7 +33,7 @@ class TileWeights {
   uint32_t least_ = 0;
   uint32_t most_ = 0;
   std::vector<uint8_t> bytes_;
-  // Of a row of blocks: their weights, and the feather at their corners.
+  // The weights of one row of blocks, and the feather at the corners above and below them.
   std::vector<uint8_t> of_blocks_;
   std::vector<uint16_t> above_;
   std::vector<uint16_t> below_;

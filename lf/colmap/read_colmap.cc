@@ -119,8 +119,8 @@ std::vector<fs::path> ImageFolders(const fs::path& model_folder) {
   return folders;
 }
 
-// What is near a missing image, in the first folder where there is something of a like name; else
-// in the first that is there.
+// Returns words about files near a missing image: in the first folder that has a similar name in
+// it, or else in the first folder that exists.
 std::string NearbyIn(const fs::path& model_folder, const std::string& name) {
   std::string nearby;
   for (const fs::path& folder : ImageFolders(model_folder)) {

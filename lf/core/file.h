@@ -14,11 +14,11 @@
 
 namespace lf {
 
-// What a failed open or read of this errno means: kOutput where the machine lacks something (open
-// files, memory) and any other file would fail as well, so that no good file counts as a broken
-// one; else kInput.
+// Returns the kind of a failed open or read with this errno. kOutput: the machine lacks something
+// (open files, memory), and any other file would fail, too: no good file counts as a broken one.
+// kInput: everything else.
 ErrorKind KindOfReadFailure(int code);
-// The same of what a library throws, which may have wanted a thread.
+// Returns the kind of an exception that a library threw while it read. It may have wanted a thread.
 ErrorKind KindOfReadFailure(const std::exception& thrown);
 
 // The bytes of a file. KindOfReadFailure() or kInput if it cannot be read, is no regular file or is
