@@ -9,6 +9,7 @@ import os
 import pathlib
 import shutil
 import sys
+import tempfile
 import unittest
 
 import cv2
@@ -149,8 +150,8 @@ def sharp_share(picture, lf_image):
 
 class CapturedPicturesTest(FirstPictureCase):
     def make(self, write, change=as_it_is):
-        capture = self.folder / f"{write.__name__} {change.__name__}"
-        (capture / "images").mkdir(parents=True)
+        capture = pathlib.Path(tempfile.mkdtemp(prefix=f"{write.__name__} {change.__name__} ", dir=self.folder))
+        (capture / "images").mkdir()
         write(capture)
         change(capture)
         return capture
@@ -164,13 +165,14 @@ class CapturedPicturesTest(FirstPictureCase):
         print(f"{name}: focus {focus:.4g}, {100 * share:.0f} % sharp", file=sys.stderr)
         return focus, share
 
-    def all_pictures(self, write, changes, focus, sharp, is_sure=True, keeps_points=True):
+    def all_pictures(self, write, changes, focus, sharp, is_sure=True, keeps_points=True, is_matched=True):
         """Every variant is focused where the capture is, and as sharp.
 
         focus  distances between which the subject lies
         sharp  least share of the capture's textured tiles that are sharp
         is_sure       False: the images are too far apart for the pixels to tell a focus
         keeps_points  False: the focus is told by points, which a written transforms.json has no more
+        is_matched    False: the light moves over the subject, so that --match-exposure refuses
         """
         folder = DATA / {"shop": "blender-shop", "cards": "stanford-cards-9x9", "beer": "beer-colmap",
                          "temple": "middlebury-templeRing"}[write.__name__]
@@ -187,12 +189,26 @@ class CapturedPicturesTest(FirstPictureCase):
                 self.assertAlmostEqual(its, plain, delta=(0.06 if change is smaller else 0.03) * plain)
                 self.assertGreater(sharp_of_it, 0.8 * share)
         with self.subTest("matched"):
+            if not is_matched:
+                self.refuses_to_match(write)
+                return
             its, sharp_of_it = self.one_picture(
                 write, uneven_and_dark_corners, name="matched", is_sure=is_sure and keeps_points,
                 options=["--match-exposure", "--vignetting", "-o", self.folder / "matched"])
             if keeps_points:
                 self.assertAlmostEqual(its, plain, delta=0.03 * plain)
             self.assertGreater(sharp_of_it, 0.8 * share)
+
+    def refuses_to_match(self, write):
+        for change in (as_it_is, uneven_and_dark_corners):
+            capture = self.make(write, change)
+            for options in ((), ("--vignetting",)):
+                done = self.call(self.PROGRAMS[0], capture, "--match-exposure", *options, "-o",
+                                 self.folder / "never written")
+                self.assertEqual(done.returncode, 3, done.stderr)
+                self.assertIn("differs by", done.stderr)
+                self.assertIn("turntable", done.stderr)
+                self.assertFalse((self.folder / "never written").exists())
 
     def test_shop(self):
         self.all_pictures(shop, (uneven, dark_corners, smaller, renamed, of_another_machine), (6, 14), 0.2)
@@ -203,7 +219,7 @@ class CapturedPicturesTest(FirstPictureCase):
 
     def test_temple(self):
         self.all_pictures(temple, (uneven, dark_corners, renamed), (0.5, 0.6), 0.8,
-                          is_sure=False)
+                          is_sure=False, is_matched=False)
 
     def test_beer(self):
         self.all_pictures(beer, (uneven, dark_corners, smaller, renamed), (4, 5.5), 0.8,

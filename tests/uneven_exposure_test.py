@@ -197,7 +197,7 @@ class UnevenExposureTest(ProgramTestCase):
             frame["transform_matrix"] = (np.array([[c, 0, s, 0], [0, 1, 0, 0], [-s, 0, c, 0], [0, 0, 0, 1]])
                                          @ frame["transform_matrix"]).tolist()
         (field / "transforms.json").write_text(json.dumps(text))
-        self.fails(3, ["--match-exposure", "no two of 3"], IMPORTER, field, "-o", self.folder / "out",
+        self.fails(3, ["--match-exposure", "0 of 3 LF images"], IMPORTER, field, "-o", self.folder / "out",
                    "--match-exposure")
         self.assertFalse((self.folder / "out").exists())
 

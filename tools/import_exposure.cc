@@ -29,8 +29,9 @@ void Warn(const LightField& light_field, const ExposureArguments& arguments,
   };
   if (!exposure.left_alone.empty())
     warn("exposure-left-alone",
-         fmt::format("{} of {} images show too little of what others show, and keep the lf_gain "
-                     "they had: state it where they are too dark or too bright",
+         fmt::format("{} of {} images keep the lf_gain they had, because what others show of the "
+                     "same places does not tell it to 2 %: state it where they are too dark or "
+                     "too bright",
                      exposure.left_alone.size(), light_field.size()),
          exposure.left_alone);
   if (!exposure.unreadable.empty())

@@ -12,15 +12,18 @@ namespace lf {
 namespace {
 
 constexpr int kRounds = 16;
-constexpr int kHuberRounds = 5;        // before outliers are left out altogether
-constexpr double kHuber = 1.345;       // in standard deviations (95 % efficient on normal noise)
-constexpr double kTukey = 4.685;       // the same
-constexpr double kLeastFactor = 0.2;   // of the deviations that samples state
-constexpr double kUnit = 0.01;         // deviation of a sample whose weight is 1
-constexpr double kLeastShare = 0.05;   // of light, within the search
-constexpr double kPriorDeviation = 1;  // of falloff coefficients that samples tell nothing of
-constexpr size_t kLeastPerImage = 12;  // samples that agree, of all channels
-constexpr double kAgrees = 0.1;        // robust weight
+constexpr int kHuberRounds = 5;          // before outliers are left out altogether
+constexpr double kHuber = 1.345;         // in standard deviations (95 % efficient on normal noise)
+constexpr double kTukey = 4.685;         // the same
+constexpr double kLeastFactor = 0.2;     // of the deviations that samples state
+constexpr double kUnit = 0.01;           // deviation of a sample whose weight is 1
+constexpr double kLeastShare = 0.05;     // of light, within the search
+constexpr double kPriorDeviation = 1;    // of falloff coefficients that samples tell nothing of
+constexpr size_t kLeastPerImage = 12;    // samples that agree, of all channels
+constexpr double kAgrees = 0.1;          // robust weight
+constexpr double kMostDeviation = 0.02;  // of the gain of an LF image that is matched
+constexpr double kCommonShare = 0.25;    // of a pair's spread that more samples do not take away
+constexpr double kBelievedSamples = 8;   // as many of a pair count as much as those of all pairs
 
 double Share(const Vignetting& falloff, double r_squared) {
   return std::max(kLeastShare, falloff.Falloff(r_squared));
@@ -40,6 +43,16 @@ Eigen::Vector3d Slope(const Vignetting& falloff, double r_squared) {
   return Eigen::Vector3d(r_squared, r_squared * r_squared, r_squared * r_squared * r_squared) /
          Share(falloff, r_squared);
 }
+
+double MedianOf(std::vector<double>* values) {
+  if (values->empty()) return 0;
+  const auto middle = values->begin() + static_cast<std::ptrdiff_t>(values->size() / 2);
+  std::nth_element(values->begin(), middle, values->end());
+  return *middle;
+}
+
+// The standard deviation of normal noise with these absolute values, whatever lies far out.
+double SpreadOf(std::vector<double>* sizes) { return 1.4826 * MedianOf(sizes); }
 
 class Fit {
  public:
@@ -91,9 +104,7 @@ class Fit {
         if (!std::isnan(residual)) sizes.push_back(std::abs(residual) / samples_[i].deviation[c]);
       }
     if (sizes.empty()) return;
-    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-    std::nth_element(sizes.begin(), middle, sizes.end());
-    factor_ = std::max(kLeastFactor, 1.4826 * *middle);
+    factor_ = std::max(kLeastFactor, SpreadOf(&sizes));
     for (size_t i = 0; i < residuals_.size(); ++i) {
       const double deviation = samples_[i / 3].deviation[i % 3];
       agreements_[i] =
@@ -202,19 +213,52 @@ class Fit {
 
   bool Agrees(size_t sample, size_t c) const { return agreements_[3 * sample + c] > kAgrees; }
 
-  // Images that enough samples tie to others; what these connect.
+  // Variances of the logarithm of each pair's ratio, by how far its places differ from each other.
+  // Where a lamp stands still while the object turns, each place becomes brighter or darker by its
+  // own share, in common with the places around it: no gain is right, however many samples.
+  std::vector<double> PairVariances() {
+    std::vector<std::vector<double>> sizes(pairs_.size());
+    std::vector<double> all;
+    for (size_t i = 0; i < residuals_.size(); ++i)
+      if (!std::isnan(residuals_[i])) {
+        sizes[pair_of_[i / 3]].push_back(std::abs(residuals_[i]));
+        all.push_back(std::abs(residuals_[i]));
+      }
+    const double common = std::pow(SpreadOf(&all), 2);
+    std::vector<double> variances(pairs_.size());
+    std::vector<double> spreads;
+    for (size_t p = 0; p < pairs_.size(); ++p) {
+      const double places = static_cast<double>(sizes[p].size()) / 3;
+      const double own = std::pow(SpreadOf(&sizes[p]), 2);
+      const double spread_squared =
+          (kBelievedSamples * common + places * own) / (kBelievedSamples + places);
+      variances[p] = spread_squared * (kCommonShare * kCommonShare + 1 / std::max(places, 0.1));
+      spreads.push_back(std::sqrt(own));
+    }
+    fit_.spread = MedianOf(&spreads);
+    return variances;
+  }
+
+  // Images whose gain enough samples tie to those of others; what these connect.
   void FindComponents() {
     std::vector<size_t> counts(groups_.size());
     for (size_t i = 0; i < samples_.size(); ++i)
       for (size_t c = 0; c < 3; ++c)
         if (Agrees(i, c)) ++counts[samples_[i].a], ++counts[samples_[i].b];
+    const std::vector<double> variances = PairVariances();
+    std::vector<double> certainties(groups_.size());
+    for (size_t p = 0; p < pairs_.size(); ++p)
+      for (const uint32_t image : pairs_[p]) certainties[image] += 1 / variances[p];
     std::vector<uint32_t> parents(groups_.size());
     std::iota(parents.begin(), parents.end(), 0U);
     const auto root = [&](uint32_t i) {
       while (parents[i] != i) i = parents[i] = parents[parents[i]];
       return i;
     };
-    const auto is_tied = [&](uint32_t image) { return counts[image] >= kLeastPerImage; };
+    const auto is_tied = [&](uint32_t image) {
+      return counts[image] >= kLeastPerImage &&
+             certainties[image] >= 1 / (kMostDeviation * kMostDeviation);
+    };
     for (size_t i = 0; i < samples_.size(); ++i) {
       const auto [a, b] = pairs_[pair_of_[i]];
       if (is_tied(a) && is_tied(b) && (Agrees(i, 0) || Agrees(i, 1) || Agrees(i, 2)))

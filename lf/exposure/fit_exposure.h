@@ -32,12 +32,13 @@ struct ExposureFit {
   // component and channel.
   std::vector<std::array<double, 3>> log_gains;
   std::vector<Vignetting> falloffs;  // of each group
-  // Component of each LF image: those that samples connect, numbered from 0; kAlone: too few
-  // samples agree with those of others.
+  // Component of each LF image: those that samples connect, numbered from 0; kAlone: samples tell
+  // its gain to no better than 2 %, or there are too few that agree.
   std::vector<uint32_t> components;
   uint32_t component_count = 0;
   size_t sample_count = 0;  // that agree with the result, of all channels
   double step = 0;          // mean |ln ratio| that is left of these
+  double spread = 0;        // of ln ratio from place to place of two LF images; median over these
   // Of the samples, in the end: the weight of the channel that agrees best, in [0, 1]; 0 if none
   // does.
   std::vector<float> weights;

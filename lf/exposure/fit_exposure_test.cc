@@ -121,6 +121,19 @@ TEST(FitExposure, AFewSamplesDoNotTieAnImage) {
   EXPECT_EQ(FitExposure(strip.samples, strip.groups, {kTrueFalloff}, {}).components[2], kAlone);
 }
 
+TEST(FitExposure, PlacesThatDifferFromEachOtherTieNoImage) {
+  for (const double noise : {0.02, 0.5}) {
+    Strip strip(12);
+    for (uint32_t i = 0; i + 2 < 12; ++i)
+      for (const uint32_t step : {1U, 2U}) strip.AddSamples(i, i + step, 30, noise);
+    const ExposureFit fit = FitExposure(strip.samples, strip.groups, {kTrueFalloff}, {});
+    EXPECT_NEAR(fit.spread, 0.44 * noise, 0.05 * noise);  // 1.48 x the median of a triangle's sizes
+    EXPECT_EQ(fit.component_count, noise < 0.1 ? 1u : 0u);
+    EXPECT_EQ(std::count(fit.components.begin(), fit.components.end(), kAlone),
+              noise < 0.1 ? 0 : 12);
+  }
+}
+
 TEST(FitExposure, ChannelsWithoutSamplesKeepTheirGain) {
   Strip strip(3);
   for (const uint32_t i : {0U, 1U}) strip.AddSamples(i, i + 1, 30, 0);

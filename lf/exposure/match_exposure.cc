@@ -268,12 +268,22 @@ Result<MatchedExposure> MatchExposure(const LightField& light_field, const LfIma
     if (!matched.falloff)
       fit = FitExposure(samples, groups.of_images, groups.known, {.vignetting = false});
   }
-  if (fit.component_count == 0)
+  const auto tied =
+      static_cast<size_t>(std::count_if(fit.components.begin(), fit.components.end(),
+                                        [](uint32_t component) { return component != kAlone; }));
+  const auto readable = static_cast<size_t>(std::count_if(
+      views.begin(), views.end(), [](const ExposureView& view) { return view.grey != nullptr; }));
+  if (tied == 0 || 2 * tied < readable)
     return InputError(fmt::format(
-        "--match-exposure: no two of {} LF images show enough of the same places ({} samples): "
-        "exposure is matched where the LF cameras overlap and the scene has texture; state lf_gain "
-        "instead (doc/formats/transforms_json.md)",
-        plain.size(), samples.size()));
+        "--match-exposure: the gains of {} of {} LF images can be told, from {} places that two "
+        "of them show{}: LF cameras must overlap, the scene have texture, and its light stand "
+        "still "
+        "relative to it (as beside a turntable it does not). Import without --match-exposure, or "
+        "state lf_gain (doc/formats/transforms_json.md)",
+        tied, readable, samples.size(),
+        fit.spread > 0 ? fmt::format(" and whose light differs by {:.0f} % from place to place",
+                                     100 * fit.spread)
+                       : ""));
   matched.sample_count = fit.sample_count;
   matched.component_count = fit.component_count;
   matched.step_after = fit.step;

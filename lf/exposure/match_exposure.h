@@ -55,8 +55,9 @@ LightField WithoutExposure(const LightField& light_field);
 // the gains is 1 in each channel and each group of LF images that overlaps tie together. A falloff
 // belongs to distinct intrinsics; where most LF images have their own, to all of one size.
 //   store  of WithoutExposure(light_field), with Mosaics::kToRgb
-// Each LF image is loaded once. kInput: nothing to compare: fewer than two LF images overlap
-// enough; or too many images for the memory. kInterrupted.
+// Each LF image is loaded once. kInput: the gains of fewer than half of the LF images can be told
+// (they do not overlap enough, or the light on what they show changes from one to the next, so that
+// a gain would be a guess); or too many images for the memory. kInterrupted.
 Result<MatchedExposure> MatchExposure(const LightField& light_field, const LfImageStore& store,
                                       const MatchExposureOptions& options, ThreadPool& pool);
 
