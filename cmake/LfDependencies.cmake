@@ -21,15 +21,13 @@ find_library(LF_XXHASH_LIBRARY xxhash REQUIRED)
 add_library(lf_xxhash INTERFACE)
 target_include_directories(lf_xxhash SYSTEM INTERFACE ${LF_XXHASH_INCLUDE})
 target_link_libraries(lf_xxhash INTERFACE ${LF_XXHASH_LIBRARY})
-find_path(LF_HTTPLIB_INCLUDE httplib.h REQUIRED)
-find_library(LF_HTTPLIB_LIBRARY cpp-httplib REQUIRED)
-add_library(lf_httplib INTERFACE)
-target_include_directories(lf_httplib SYSTEM INTERFACE ${LF_HTTPLIB_INCLUDE})
-target_link_libraries(lf_httplib INTERFACE ${LF_HTTPLIB_LIBRARY})
 # Header only.
 find_path(LF_NANOFLANN_INCLUDE nanoflann.hpp REQUIRED)
 # libjpeg-turbo; the compiler will tell if it is another one, which cannot decode a part.
 find_package(JPEG REQUIRED)
+# libmicrohttpd has a file for pkg-config alone.
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(LF_MICROHTTPD REQUIRED IMPORTED_TARGET libmicrohttpd>=0.9.75)
 if(LF_TESTS)
   find_package(GTest REQUIRED)
 endif()

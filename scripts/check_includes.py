@@ -24,7 +24,7 @@ OWNERS = {
     "xxhash": {"core"},
     "sqlite3": {"database"},
     "CLI/": set(),
-    "httplib": set(),
+    "microhttpd": set(),
 }
 
 

@@ -1,4 +1,4 @@
-// The page and its data on http://127.0.0.1:PORT/TOKEN/. The only place with cpp-httplib.
+// The page and its data on http://127.0.0.1:PORT/TOKEN/.
 //
 // Only who knows the token, 128 random bits in the address, is answered; only on this machine; only
 // as 127.0.0.1 or localhost, so that no other site's name can be pointed here.

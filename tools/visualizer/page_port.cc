@@ -1,0 +1,39 @@
+#include "tools/visualizer/page_port.h"
+
+#include <fmt/format.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace lf {
+namespace {
+
+bool Listen(int socket, int port) {
+  const int yes = 1;  // the port of a server that has just ended is free; SO_REUSEPORT would share
+  ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
+  sockaddr_in address = {};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<uint16_t>(port));
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  return ::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0 &&
+         ::listen(socket, SOMAXCONN) == 0;
+}
+
+}  // namespace
+
+Result<PagePort> ListenOnThisMachine(int port) {
+  PagePort opened;
+  opened.socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  sockaddr_in address = {};
+  socklen_t size = sizeof(address);
+  if (opened.socket < 0 || !Listen(opened.socket, port) ||
+      ::getsockname(opened.socket, reinterpret_cast<sockaddr*>(&address), &size) != 0) {
+    if (opened.socket >= 0) ::close(opened.socket);
+    return OutputError(fmt::format(
+        "--serve {}: the port cannot be had; another program may listen there. 0 takes any", port));
+  }
+  opened.port = ntohs(address.sin_port);
+  return opened;
+}
+
+}  // namespace lf

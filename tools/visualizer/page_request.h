@@ -1,0 +1,44 @@
+// Decides from the head of a request whether it is answered, before a byte of its body is read.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "tools/visualizer/page_answers.h"
+
+namespace lf {
+
+// Largest body of a request: a path of at most 8 MiB, and JSON around it.
+inline constexpr size_t kMostBodyBytes = size_t{9} << 20;
+
+struct RequestHead {
+  std::string method;  // GET
+  std::string path;    // as it was sent, up to the first question mark
+  std::vector<std::pair<std::string, std::string>> headers;
+};
+
+// The address of the page: the token is a folder, and all that a page asks for lies below it.
+struct PageDoor {
+  int port = 0;
+  std::string token;
+};
+
+// Returns why the request is refused, or nothing if it may be answered. Checks, in this order:
+//   403  Host is not 127.0.0.1 or localhost with our port, so that no other site's name can be
+//        pointed here; the path lacks the token; the path holds "..", "\" or "%", which no name of
+//        ours does; Origin or Sec-Fetch-Site name another site
+//   405  the method is not GET, HEAD or POST
+//   415  Content-Encoding is not "identity": bodies that expand are never accepted
+//   400  GET or HEAD with a body, or lengths that contradict each other
+//   501  Transfer-Encoding is not "chunked"
+//   413  Content-Length exceeds kMostBodyBytes
+std::optional<PageAnswer> RefusalOf(const RequestHead& head, const PageDoor& door);
+
+// The part of the path below the token. The request must not be refused.
+std::string_view NameOf(const RequestHead& head, const PageDoor& door);
+
+}  // namespace lf
