@@ -243,6 +243,17 @@ class PageAttacksTest(ProgramTestCase):
             self.server.head("check", "POST", Transfer_Encoding="chunked") + b"\r\n" + size +
             b"\r\n{}\r\n0\r\n\r\n") for size in chunk_sizes])
 
+    def test_bodies_that_grow_when_they_are_read(self):
+        def post(body, head=b'{"a": '):
+            body = head + body + b"}"
+            return self.server.ask(self.server.head("check", "POST", Content_Length=len(body)) +
+                                   b"\r\n" + body)
+        self.attack("9 million brackets", 400, lambda: post(b"[" * 9_000_000))
+        self.attack("two million objects", 400, lambda: post(b'{"a":' * 1_800_000))
+        self.attack("five million numbers", 400, lambda: post(b"[" + b"0," * 4_500_000 + b"0]"))
+        self.attack("a million keys", 200, lambda: post(
+            b"".join(b',"%x":0' % number for number in range(900_000)), b'{"text":""'))
+
     # ---- too slow
 
     def besides(self, clients, rounds=20):

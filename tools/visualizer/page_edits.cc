@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "tools/visualizer/edit_json.h"
+
 #include "lf/core/file.h"
 #include "lf/focus/focus_pick.h"
 
@@ -123,8 +125,8 @@ PageAnswer PickFocus(PageScene& scene, const Json& json) {
 
 PageAnswer Edit(PageScene& scene, PreviewRender& preview, std::string_view name,
                 const std::string& body) {
-  const Json json = Json::parse(body, nullptr, false);
-  if (!json.is_object()) return Refusal(400, "expected a JSON object");
+  const Json json = ReadEdit(body);
+  if (!json.is_object()) return Refusal(400, "expected a JSON object of texts and numbers");
   if (name == "check") {
     const auto draft = scene.AddDraft(TextOf(json, "text"));
     if (!draft) return RefusedPath(draft.error(), scene.arguments().path.filename().string());
