@@ -39,6 +39,38 @@ Result<void> CheckClaim(const ByteSource& source, uint64_t width, uint64_t heigh
                   name, width, height));
 }
 
+constexpr uint64_t kPngPixels = 0x49444154, kPngEnd = 0x49454e44;  // "IDAT", "IEND"
+
+// Length, type, content, checksum.
+struct PngChunk {
+  uint64_t type = 0;
+  uint64_t end = 0;  // offset behind it
+  bool is_whole = false;
+};
+
+// None where the file ends.
+std::optional<PngChunk> PngChunkAt(const ByteSource& source, uint64_t offset) {
+  const auto length = BigEndian(source, offset, 4), type = BigEndian(source, offset + 4, 4);
+  if (!length || !type) return std::nullopt;
+  const uint64_t end = offset + 12 + *length;
+  return PngChunk{*type, end, BigEndian(source, end - 1, 1).has_value()};
+}
+constexpr uint64_t kFirstPngChunk = 8;
+
+// libpng allocates as many bytes as a chunk claims, except for those of pixels.
+Result<void> CheckPngChunks(const ByteSource& source, const std::string& name) {
+  uint64_t offset = kFirstPngChunk;
+  while (const auto chunk = PngChunkAt(source, offset)) {
+    if (chunk->type == kPngPixels || chunk->type == kPngEnd) break;
+    if (!chunk->is_whole)
+      return InputError(fmt::format(
+          "{}: claims a chunk of {} bytes, for which the file is too short: truncated or damaged",
+          name, chunk->end - offset - 12));
+    offset = chunk->end;
+  }
+  return {};
+}
+
 Result<void> CheckPng(const ByteSource& source, const std::string& name) {
   const auto width = BigEndian(source, 16, 4), height = BigEndian(source, 20, 4);
   const auto depth = BigEndian(source, 24, 1), colour_type = BigEndian(source, 25, 1);
@@ -50,7 +82,9 @@ Result<void> CheckPng(const ByteSource& source, const std::string& name) {
                             : *colour_type == 6 ? 4
                                                 : 1;
   const uint64_t row_bytes = *width * channels * *depth / 8;
-  return CheckClaim(source, *width, *height, *height * row_bytes / kDeflateRatio, name);
+  LF_RETURN_IF_ERROR(
+      CheckClaim(source, *width, *height, *height * row_bytes / kDeflateRatio, name));
+  return CheckPngChunks(source, name);
 }
 
 // The frame header (SOFn) carries the size. Bytes between segments are skipped, as libjpeg does.
@@ -138,13 +172,11 @@ Result<ImageFormat> ProbeImage(const ByteSource& source, const std::string& name
 }
 
 Result<void> CheckPngIsComplete(const ByteSource& source, const std::string& name) {
-  constexpr uint64_t kEnd = 0x49454e44;  // "IEND"
-  uint64_t offset = 8;                   // chunks: length, type, content, checksum
-  while (true) {
-    const auto length = BigEndian(source, offset, 4), type = BigEndian(source, offset + 4, 4);
-    offset += 12 + length.value_or(0);
-    if (!length || !type || !BigEndian(source, offset - 1, 1)) break;
-    if (type == kEnd) return {};
+  uint64_t offset = kFirstPngChunk;
+  while (const auto chunk = PngChunkAt(source, offset)) {
+    if (!chunk->is_whole) break;
+    if (chunk->type == kPngEnd) return {};
+    offset = chunk->end;
   }
   return InputError(fmt::format("{}: PNG file is truncated: it ends before its end mark", name));
 }

@@ -21,7 +21,7 @@ enum class ImageFormat { kPng, kJpeg, kTiff, kExr, kRaw };
 // By content. kRaw: a file as cameras write them. A TIFF file is one if it is a DNG, or leads with
 // a thumbnail, which would pass as TIFF and show the thumbnail. kInput: a format that is not read
 // here, or a PNG or JPEG that claims more than kMaxImagePixels, or more than a file of its length
-// can hold.
+// can hold, or a PNG that claims a longer chunk before its pixels than the file has bytes.
 inline constexpr uint64_t kMaxImagePixels = uint64_t{1} << 30;
 Result<ImageFormat> ProbeImage(const ByteSource& source, const std::string& name);
 

@@ -19,7 +19,7 @@ Result<ImageFormat> Probe(const std::string& bytes) {
 }
 
 std::string PngHeader(const std::string& width, const std::string& height) {
-  return "\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR"s + width + height + "\x10\2"s;
+  return "\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR"s + width + height + "\x10\2\0\0\0csum"s;
 }
 
 TEST(ImageProbe, TellsTheFormatByItsFirstBytes) {
@@ -49,8 +49,20 @@ TEST(ImageProbe, RefusesMorePixelsThanAreRead) {
   EXPECT_TRUE(jpeg("\0\x10\0\x10"s));
 }
 
+TEST(ImageProbe, RefusesChunksOfAPngThatAreLongerThanTheFile) {
+  const std::string head = PngHeader("\0\0\0\1"s, "\0\0\0\1"s);
+  const std::string text = "\0\0\0\4tEXta\0bccsum"s, end = "\0\0\0\0IENDcsum"s;
+  EXPECT_TRUE(Probe(head + text + end));
+  EXPECT_EQ(MessageOf(Probe(head + text + "\x7f\xff\xff\xfftEXta\0b"s + end)),
+            "a: claims a chunk of 2147483647 bytes, for which the file is too short: truncated or "
+            "damaged");
+  // Chunks of pixels are read in parts, so that the size of an image in a cut file is known.
+  EXPECT_TRUE(Probe(head + "\x7f\xff\xff\xffIDAT..."s));
+}
+
 TEST(ImageProbe, RefusesMorePixelsThanTheFileCanHold) {
-  const std::string png = PngHeader("\0\0\4\0"s, "\0\0\4\0"s);  // 6 MiB unpacked
+  const std::string png =  // 6 MiB unpacked
+      PngHeader("\0\0\4\0"s, "\0\0\4\0"s) + "\0\0\xff\xff"s + "IDAT";
   EXPECT_NE(MessageOf(Probe(png)).find("too short"), std::string::npos);
   EXPECT_NE(MessageOf(Probe(png + std::string(6000, 'x'))).find("too short"), std::string::npos);
   EXPECT_TRUE(Probe(png + std::string(6200, 'x')));

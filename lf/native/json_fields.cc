@@ -10,6 +10,8 @@
 namespace lf {
 namespace {
 
+constexpr size_t kMostTextBytes = 4096;  // as many as a path has on Linux
+
 using simdjson::dom::array;
 using simdjson::dom::element;
 using simdjson::dom::object;
@@ -119,6 +121,8 @@ Result<std::optional<std::string>> JsonFields::Text(const char* key) const {
   std::string_view text;
   if (value->get(text) != simdjson::SUCCESS) return Wrong(key, "text in quotes");
   if (text.find('\0') != std::string_view::npos) return Wrong(key, "text without NUL characters");
+  if (text.size() > kMostTextBytes)
+    return Wrong(key, fmt::format("text of at most {} bytes", kMostTextBytes));
   return std::optional(std::string(text));
 }
 

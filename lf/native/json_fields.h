@@ -45,7 +45,8 @@ class JsonFields {
   Result<std::optional<std::vector<double>>> NumberOrNumbers(const char* key, size_t count,
                                                              const NumberRule& rule) const;
   Result<std::optional<bool>> Bool(const char* key) const;
-  Result<std::optional<std::string>> Text(const char* key) const;  // without NUL characters
+  // At most 4096 bytes, without NUL characters.
+  Result<std::optional<std::string>> Text(const char* key) const;
   // Lists of count_min to count_max numbers.
   Result<std::optional<std::vector<double>>> Numbers(const char* key, size_t count_min,
                                                      size_t count_max,

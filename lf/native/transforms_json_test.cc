@@ -232,6 +232,8 @@ TEST(TransformsJson, WhatIsNoTransformsJsonIsAnError) {
   ExpectError("{\"frames\": [{}]}", {"frames[0]: \"file_path\" is missing"});
   ExpectError("{\"frames\": [{\"file_path\": \"\"}]}", {"\"file_path\" is \"\""});
   ExpectError("{\"frames\": [{\"file_path\": \"a\\u0000\"}]}", {"NUL"});
+  ExpectError("{\"frames\": [{\"file_path\": \"" + std::string(5000, 'a') + "\"}]}",
+              {"aaa", "expected text of at most 4096 bytes"});
   ExpectError("{\"frames\": [{\"file_path\": \"a\"}]}", {"(a): \"transform_matrix\" is missing"});
   ExpectError(OneFrame(kIntrinsics + R"("w": 3, )"), {"\"w\" is given twice"});
   ExpectError(std::string(100'000, '['), {"is not JSON"});
