@@ -14,7 +14,7 @@ import time
 MIB = 1 << 20
 CPU_LIMIT_S = 60  # that a run ends at all; a good one takes less than a tenth of a second
 ADDRESS_LIMIT = 8 << 30
-FILE_LIMIT = 256 * MIB
+FILE_LIMIT = 1024 * MIB
 WAIT_S = 240
 
 
@@ -28,12 +28,12 @@ def _limit():
 class Run:
     """What one call of a program came to."""
 
-    def __init__(self, name, words, folder):
+    def __init__(self, name, words, folder, environment):
         self.name, self.words = name, [str(word) for word in words]
         temporary = tempfile.mkdtemp(prefix="tmp ", dir=folder)
         with tempfile.TemporaryFile() as said, tempfile.TemporaryFile() as out:
             process = subprocess.Popen(self.words, stdout=out, stderr=said, stdin=subprocess.DEVNULL,
-                                       env=dict(os.environ, TMPDIR=temporary), preexec_fn=_limit)
+                                       env={**os.environ, **environment, "TMPDIR": temporary}, preexec_fn=_limit)
             timer = threading.Timer(WAIT_S, process.kill)
             timer.start()
             _, status, usage = os.wait4(process.pid, 0)
@@ -68,12 +68,11 @@ class BoundedRuns:
         self.begin = time.monotonic()
 
     def all(self, kind, calls, accepts=(2, 3, 6)):
-        """calls: (name, words, finals), finals being what must not be there, or be whole (a function that
-        raises otherwise), where the program fails."""
-        calls = list(calls)
+        """calls: (name, words) or (name, words, environment)"""
+        calls = [(*call, {})[:3] for call in calls]
         assert calls, kind
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count() or 1) as pool:
-            runs = list(pool.map(lambda call: Run(call[0], call[1], self.folder), calls))
+            runs = list(pool.map(lambda call: Run(call[0], call[1], self.folder, call[2]), calls))
         for run in runs:
             self._judge(kind, run, accepts)
         self.kinds.setdefault(kind, []).extend(runs)

@@ -20,6 +20,8 @@ namespace lf {
 namespace {
 
 constexpr int kKeptAs = 3;  // after the three standard files
+// A queue of four million tasks, the most that Slurm has, of 60 bytes each.
+constexpr off_t kMostBytes = off_t{256} << 20;
 
 // Between fork and exec: nothing here may take memory or locks. Tells why it failed through
 // `alarm`.
@@ -145,6 +147,10 @@ Result<CommandAnswer> RunCommand(const std::vector<std::string>& words, double p
         return OutputError(fmt::format("{}: died of signal {}", words.front(), end->signal));
       return CommandAnswer{end->exit_code, TextOf(output.fd()), TextOf(complaints.fd())};
     }
+    for (const OwnedFile* file : {&output, &complaints})
+      if (::lseek(file->fd(), 0, SEEK_END) > kMostBytes)
+        return OutputError(
+            fmt::format("{}: prints more than {} MiB", words.front(), kMostBytes >> 20));
     if (std::chrono::steady_clock::now() > give_up)
       return OutputError(
           fmt::format("{}: has not answered within {} s", words.front(), patience_s));

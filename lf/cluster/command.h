@@ -51,7 +51,8 @@ struct CommandAnswer {
   std::string complaints;
 };
 
-// Waits for it. kOutput: it cannot be run, died of a signal, or takes longer than patience_s.
+// Waits for it. kOutput: it cannot be run, died of a signal, takes longer than patience_s, or
+// prints more than 256 MiB.
 Result<CommandAnswer> RunCommand(const std::vector<std::string>& words, double patience_s);
 
 }  // namespace lf

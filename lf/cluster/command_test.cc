@@ -35,6 +35,14 @@ TEST(RunCommand, SaysWhyItCannot) {
   EXPECT_NE(slow.error().message.find("has not answered"), std::string::npos);
 }
 
+TEST(RunCommand, EndsOneThatPrintsWithoutEnd) {
+  for (const char* command : {"exec yes", "exec yes >&2"}) {
+    const Result<CommandAnswer> endless = RunCommand({"sh", "-c", command}, 60);
+    ASSERT_FALSE(endless.has_value());
+    EXPECT_EQ(endless.error().message, "sh: prints more than 256 MiB");
+  }
+}
+
 TEST(Command, IsToldFromOneThatDied) {
   const auto command = Command::Start({{"sleep", "60"}, {}});
   ASSERT_TRUE(command.has_value()) << command.error().message;

@@ -20,6 +20,8 @@ constexpr double kPatience_s = 60;  // a busy slurmctld answers late
 // Its complaints, on one line.
 std::string Complaints(const CommandAnswer& answer) {
   std::string words = answer.complaints.empty() ? answer.output : answer.complaints;
+  constexpr size_t kShown = 2000;
+  words.resize(std::min(words.size(), kShown));
   while (!words.empty() && std::isspace(static_cast<unsigned char>(words.back()))) words.pop_back();
   std::replace(words.begin(), words.end(), '\n', ';');
   return words;
@@ -68,9 +70,11 @@ std::string UserOptions(const ClusterJob& job) {
 
 // 0-based, of both sbatch's answers "123" and "123;cluster".
 Result<std::string> JobId(const std::string& answer) {
+  constexpr size_t kMostDigits = 10, kShown = 80;  // Slurm counts jobs in 32 bits
   const std::string id = answer.substr(0, answer.find_first_not_of("0123456789"));
-  if (id.empty())
-    return OutputError(fmt::format("sbatch: expected the number of a job, found \"{}\"", answer));
+  if (id.empty() || id.size() > kMostDigits)
+    return OutputError(fmt::format("sbatch: expected the number of a job, found \"{}\"",
+                                   answer.substr(0, kShown)));
   return id;
 }
 
