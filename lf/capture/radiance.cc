@@ -68,13 +68,15 @@ std::optional<AlphaMeaning> AlphaMeaningOf(const std::string& name) {
 std::string TextOfAlpha(AlphaMeaning alpha, const std::array<double, 3>& background,
                         bool keeps_opacity) {
   if (alpha == AlphaMeaning::kMask) return "a mask";
-  const auto [r, g, b] = background;
-  const auto all = [&](double value) { return r == value && g == value && b == value; };
+  const auto all = [&](double value) {
+    return background == std::array<double, 3>{value, value, value};
+  };
   return fmt::format("{} light over {}", NameOf(alpha),
                      keeps_opacity ? "nothing"
                      : all(0)      ? "black"
                      : all(1)      ? "white"
-                                   : fmt::format("{:.4g}, {:.4g}, {:.4g}", r, g, b));
+                              : fmt::format("{:.4g}, {:.4g}, {:.4g}", background[0], background[1],
+                                            background[2]));
 }
 
 double LinearFromSrgb(double srgb) {
