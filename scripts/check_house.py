@@ -10,6 +10,8 @@ usage: check_house.py REPOSITORY CHECK
   pages    the pages of doc/ that comments in sources refer to exist
   tables   every table of figures in doc/ has a record in bench/results/ that fits it, made with the
            defaults that bench/defaults.txt lists today (table_rules.py)
+  mutants  every mistake of scripts/mutants.toml can be planted: its old text is in its file exactly
+           once, and tests are named like those that must notice it
   commits  the commits that tables were made from are ancestors of HEAD. Exits with 77, skipped, where
            there is no history to look into
 """
@@ -19,6 +21,7 @@ import re
 import subprocess
 import sys
 
+import mutant_list
 import table_rules
 
 SOURCES = {".cc", ".h", ".cu", ".py", ".sh", ".cmake", ".txt", ""}
@@ -139,12 +142,17 @@ def check_tables(root, files):
     return table_rules.check_tables(root, files, text_lines)
 
 
+def check_mutants(root, files):
+    return mutant_list.check_list(root, named_tests(root, files))
+
+
 def check_commits(root, files):
     return table_rules.check_commits(root, files, text_lines)
 
 
 CHECKS = {"lengths": check_lengths, "paths": check_paths, "links": check_links,
-          "pages": check_pages, "tables": check_tables, "commits": check_commits}
+          "pages": check_pages, "tables": check_tables, "mutants": check_mutants,
+          "commits": check_commits}
 SKIPPED = 77
 
 

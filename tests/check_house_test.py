@@ -136,6 +136,41 @@ class PlantedFaults(unittest.TestCase):
             "doc/bare.md:1: a table of figures without markers", "doc/open.md:1: the table has no line",
             "doc/closed.md:1: a table ends that has no beginning"])
 
+    MUTANT = """[[mutant]]
+name = "{name}"
+area = "core"
+file = "{file}"
+old = '{old}'
+new = 'i <= n'
+effect = "One too many."
+targets = ["lf_core_test"]
+tests = '{tests}'
+"""
+
+    def plant_mutants(self, *mutants):
+        fine = {"name": "fine", "file": "lf/core/a.cc", "old": "i < n", "tests": "^core"}
+        self.plant("scripts/mutants.toml", "\n".join(self.MUTANT.format(**(fine | m)) for m in mutants))
+
+    def test_mutants_are_in_step_with_the_code(self):
+        self.plant("lf/core/a.cc", "i < n; j < m; j < m\n")
+        self.plant("lf/core/a_test.cc", "TEST(Suite, There) {}\n")
+        self.expect("check_house.py", "mutants", faults=[])  # no list
+        self.plant_mutants({})
+        self.expect("check_house.py", "mutants", faults=[])
+        self.plant_mutants({"name": "gone", "old": "i < m"}, {"name": "twice", "old": "j < m"},
+                           {"name": "same", "old": "i <= n"}, {"name": "no-file", "file": "lf/core/b.cc"},
+                           {"name": "no-test", "tests": "^camera"}, {"name": "wrong", "tests": "("},
+                           {"name": "Big"}, {}, {})
+        start = "scripts/mutants.toml: "
+        self.expect("check_house.py", "mutants", faults=[
+            f"{start}gone: lf/core/a.cc has its old text 0 times", f"{start}twice: lf/core/a.cc has its old text 2 times",
+            f"{start}same: its new text is the old one", f"{start}same: lf/core/a.cc has its old text 0 times",
+            f"{start}no-file: there is no lf/core/b.cc", f"{start}no-test: no test is named like ^camera",
+            f"{start}wrong: its tests are no regular expression", f"{start}Big: a name has small letters",
+            f"{start}fine: is there twice"])
+        self.plant("scripts/mutants.toml", "[[mutant]]\nname = 'bare'\n")
+        self.expect("check_house.py", "mutants", faults=[f"{start}a mutant has no 'area'"])
+
     def git(self, *words):
         done = subprocess.run(["git", "-c", "user.name=a", "-c", "user.email=a@example.org", *words], cwd=self.root,
                               check=True, capture_output=True, text=True)

@@ -1,0 +1,94 @@
+"""The list of mutants, scripts/mutants.toml: how it is read, and the house check that it is in step with the code.
+
+A mutant is a mistake that somebody could make, planted into one file. Its fields:
+
+    name      of letters, digits and hyphens; once in the list
+    area      the part of the project it is in
+    file      where it is planted, from the top of the repository
+    old, new  the text that is replaced, which the file has exactly once, and what replaces it
+    effect    one sentence: what a user would see
+    targets   what is built with it for the tests: test programs, programs, or "page"
+    tests     a regular expression of names that ctest knows: the tests expected to fail
+"""
+import pathlib
+import re
+import tomllib
+from typing import NamedTuple
+
+LIST = "scripts/mutants.toml"
+WORDS = ("name", "area", "file", "old", "new", "effect", "tests")
+
+
+class Mutant(NamedTuple):
+    name: str
+    area: str
+    file: str
+    old: str
+    new: str
+    effect: str
+    tests: str
+    targets: tuple
+
+    @property
+    def is_quick(self):
+        """True if test programs of folders alone are built: they take seconds."""
+        return all(target.endswith("_test") for target in self.targets)
+
+
+def read_list(path: pathlib.Path) -> list:
+    """Returns the mutants of a list, the quick ones first. Raises ValueError if the text is no list."""
+    try:
+        entries = tomllib.loads(path.read_text())["mutant"]
+        mutants = [Mutant(*(str(entry[word]) for word in WORDS), tuple(entry["targets"])) for entry in entries]
+    except KeyError as error:
+        raise ValueError(f"a mutant has no {error}") from error
+    return sorted(mutants, key=lambda mutant: not mutant.is_quick)
+
+
+def planted(mutant: Mutant, text: str) -> str:
+    """Returns the text with the mistake in it. Raises ValueError if it does not fit there exactly once."""
+    count = text.count(mutant.old)
+    if count != 1:
+        raise ValueError(f"{mutant.name}: {mutant.file} has its old text {count} times, expected once")
+    return text.replace(mutant.old, mutant.new)
+
+
+def faults_of(mutant: Mutant, root: pathlib.Path, tests: set):
+    """Yields what is wrong with one mutant of the list."""
+    if not re.fullmatch(r"[a-z0-9-]+", mutant.name):
+        yield f"{mutant.name}: a name has small letters, digits and hyphens"
+    if mutant.old == mutant.new:
+        yield f"{mutant.name}: its new text is the old one"
+    if not (root / mutant.file).is_file():
+        yield f"{mutant.name}: there is no {mutant.file}"
+    else:
+        try:
+            planted(mutant, (root / mutant.file).read_text())
+        except ValueError as error:
+            yield str(error)
+    if not mutant.targets:
+        yield f"{mutant.name}: has no targets"
+    try:
+        is_known = any(re.search(mutant.tests, name) for name in tests)
+    except re.error as error:
+        yield f"{mutant.name}: its tests are no regular expression: {error}"
+    else:
+        if not is_known:
+            yield f"{mutant.name}: no test is named like {mutant.tests}"
+
+
+def check_list(root: pathlib.Path, tests: set):
+    """Yields the faults of the list, as lines."""
+    path = root / LIST
+    if not path.is_file():
+        return
+    try:
+        mutants = read_list(path)
+    except ValueError as error:
+        yield f"{LIST}: {error}"
+        return
+    names = [mutant.name for mutant in mutants]
+    for name in sorted({name for name in names if names.count(name) > 1}):
+        yield f"{LIST}: {name}: is there twice"
+    for mutant in mutants:
+        yield from (f"{LIST}: {fault}" for fault in faults_of(mutant, root, tests))
