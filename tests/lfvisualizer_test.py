@@ -3,12 +3,14 @@
 
 usage: lfvisualizer_test.py LFVISUALIZER LFRENDERER [pageless]
 """
+import http.client
 import json
 import signal
 import socket
 import subprocess
 import sys
 import unittest
+import urllib.parse
 
 import small_field
 from program_test_case import ProgramTestCase
@@ -70,6 +72,38 @@ class VisualizerTest(ProgramTestCase):
             self.fails(4, [f"--serve {port}"], VISUALIZER, self.field, self.path, "--serve", port)
             server.send_signal(signal.SIGINT)
             self.assertEqual(server.wait(), 0)
+
+    # Another page in the same browser can send requests, but knows no token, and names another host.
+    @unittest.skipIf("pageless" in sys.argv, "it has no page")
+    def test_only_its_own_page_can_write_files(self):
+        before = self.path.read_text()
+        edit = json.dumps({"text": before + "# changed\n", "force": True})
+        server = subprocess.Popen([VISUALIZER, self.field, self.path, "-q"], stdout=subprocess.PIPE,
+                                  text=True)
+        self.addCleanup(server.stdout.close)
+        self.addCleanup(server.kill)
+        address = urllib.parse.urlsplit(server.stdout.readline().strip())
+
+        def status(method, target, host):
+            connection = http.client.HTTPConnection("127.0.0.1", address.port, timeout=60)
+            self.addCleanup(connection.close)
+            connection.request(method, target, edit if method == "POST" else None,
+                               {"Host": f"{host}:{address.port}"})
+            return connection.getresponse().status
+
+        other = "0" if address.path[-2] != "0" else "1"  # for the last digit of the token
+        for method, name in (("POST", "save"), ("GET", "scene.json")):
+            for folder, host in (("/", "127.0.0.1"), (f"/{'0' * 32}/", "localhost"),
+                                 (address.path[:-2] + other + "/", "127.0.0.1"),
+                                 (address.path + "../", "127.0.0.1"), (address.path, "evil.example"),
+                                 (address.path, "127.0.0.2")):
+                self.assertEqual(status(method, folder + name, host), 403, (method, folder, host))
+        self.assertEqual(self.path.read_text(), before)
+        self.assertEqual(status("GET", address.path + "scene.json", "localhost"), 200)
+        self.assertEqual(status("POST", address.path + "save", "localhost"), 200)
+        self.assertEqual(self.path.read_text(), before + "# changed\n")
+        server.send_signal(signal.SIGINT)
+        self.assertEqual(server.wait(), 0)
 
     @unittest.skipIf("pageless" in sys.argv, "it has no page")
     def test_an_export_counts_the_lf_images_that_it_lacks(self):

@@ -103,6 +103,9 @@ class ShardsTest(ProgramTestCase):
                    self.folder / "no")
         self.assertFalse((self.folder / "no").exists())
         self.shards("out", 3, of=(2,))
+        for there, missing in (((1, 2), 3), ((2, 3), 1)):  # the last one, and the first one
+            self.fails(3, ["frame 1", "of 3 shards 2 are there", f"missing: {missing} "], MERGE,
+                       *(plates / f"shard_{k}_of_3" for k in there), "-o", self.folder / "no")
         self.shards("twice", 3, of=(2,))
         self.fails(3, ["frame 1", "shard 2/3", "give each once"], MERGE, plates,
                    self.folder / "twice", "-o", self.folder / "no")

@@ -219,6 +219,27 @@ TEST(LfImageCodec, TheThresholdBoundsTheError) {
     }
 }
 
+// What is lost is as often too bright as too dark, so that many LF images give the mean of the
+// scene.
+TEST(LfImageCodec, BrightAndDarkPicturesKeepTheirMean) {
+  std::mt19937 random(8);
+  for (const int darkest : {25, 150})
+    for (const int levels : {1, 2}) {  // the fewer levels, the more a coefficient is worth
+      Image<uint8_t> image(256, 256);
+      for (uint8_t& v : image.pixels()) v = static_cast<uint8_t>(darkest + random() % 80);
+      CodecSettings settings;
+      settings.levels = levels;
+      settings.threshold = 10;
+      DecodedPart part;
+      ASSERT_TRUE(DecodeImage(EncodeImage(image, PixelLayout::kGrey, settings), &part));
+      const auto& decoded = std::get<Image<uint8_t>>(part.pixels).pixels();
+      double sum = 0;
+      for (size_t i = 0; i < decoded.size(); ++i) sum += int{decoded[i]} - int{image.pixels()[i]};
+      EXPECT_NEAR(sum / static_cast<double>(decoded.size()), 0, 0.1)
+          << darkest << ", levels " << levels;
+    }
+}
+
 // 16 bits of the same picture at 256 times the threshold: the same within their rounding.
 TEST(LfImageCodec, SixteenBitsAreTheSamePicture) {
   std::mt19937 random(5);

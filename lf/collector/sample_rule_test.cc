@@ -61,27 +61,29 @@ TEST(SampleRule, CountsEveryChannelOfReachableElementsAlone) {
   RenderCamera camera = testing::NoiseFrames()[0];
   camera.pinhole.intrinsics = {60, 60, 80, 40, 0, 160, 80};
   const ReachableElements reachable(ImageIndex(field), camera, {}, {}, {}, pool);
-  SensorPlate plate(160, 80);
-  for (int y = 0; y < 80; ++y)
-    for (int x = 0; x < 160; ++x)
-      if (reachable.Holds(x, y))
-        for (int c = 0; c < 3; ++c) plate.Add(x, y, c, {0, c == 2 ? 5u : 9u});
-  EXPECT_TRUE(HasSamples(plate, reachable, 5));
-  EXPECT_FALSE(HasSamples(plate, reachable, 6));
-  EXPECT_EQ(MeasureSamples(plate, reachable, 5).share, 1);
-  EXPECT_EQ(MeasureSamples(plate, reachable, 6).share, 0);
-  EXPECT_EQ(MeasureSamples(plate, reachable, 6).most_have, 5u);
-  // One per cent may have fewer.
-  size_t left = reachable.count() - reachable.count() / 100;
-  for (int y = 0; y < 80; ++y)
-    for (int x = 0; x < 160; ++x)
-      if (reachable.Holds(x, y) && left > 0) {
-        plate.Add(x, y, 2, {0, 4});
-        --left;
-      }
-  EXPECT_TRUE(HasSamples(plate, reachable, 9));
-  EXPECT_EQ(MeasureSamples(plate, reachable, 9).most_have, 9u);
-  EXPECT_NEAR(MeasureSamples(plate, reachable, 9).share, 0.99, 0.001);
+  for (int sparse = 0; sparse < 3; ++sparse) {
+    SensorPlate plate(160, 80);
+    for (int y = 0; y < 80; ++y)
+      for (int x = 0; x < 160; ++x)
+        if (reachable.Holds(x, y))
+          for (int c = 0; c < 3; ++c) plate.Add(x, y, c, {0, c == sparse ? 5u : 9u});
+    EXPECT_TRUE(HasSamples(plate, reachable, 5));
+    EXPECT_FALSE(HasSamples(plate, reachable, 6));
+    EXPECT_EQ(MeasureSamples(plate, reachable, 5).share, 1);
+    EXPECT_EQ(MeasureSamples(plate, reachable, 6).share, 0);
+    EXPECT_EQ(MeasureSamples(plate, reachable, 6).most_have, 5u);
+    // One per cent may have fewer.
+    size_t left = reachable.count() - reachable.count() / 100;
+    for (int y = 0; y < 80; ++y)
+      for (int x = 0; x < 160; ++x)
+        if (reachable.Holds(x, y) && left > 0) {
+          plate.Add(x, y, sparse, {0, 4});
+          --left;
+        }
+    EXPECT_TRUE(HasSamples(plate, reachable, 9));
+    EXPECT_EQ(MeasureSamples(plate, reachable, 9).most_have, 9u);
+    EXPECT_NEAR(MeasureSamples(plate, reachable, 9).share, 0.99, 0.001);
+  }
   SensorPlate nothing(160, 80);
   EXPECT_FALSE(HasSamples(nothing, reachable, 1));
   EXPECT_EQ(MeasureSamples(nothing, reachable, 1).most_have, 0u);

@@ -163,6 +163,27 @@ TEST(FrameWeights, BesideTheLensPlaneAreInterpolatedBetweenNodes) {
   }
 }
 
+// The camera in the middle of an even grid is seen around the middle of the plate.
+TEST(FrameWeights, BesideTheLensPlaneLieWhereTheCameraIsSeen) {
+  const RenderCamera frame = Frame(0.06, 0.4);
+  const auto centres = JitteredGrid(30, 0.015, 0, 3);
+  const size_t middle = centres.size() / 2;
+  EXPECT_EQ(centres[middle].norm(), 0);
+  const FrameWeights weights(frame, centres, LensWeights::kArea, Pool());
+  double sum = 0;
+  Vec2 place = Vec2::Zero();
+  for (int y = 0; y < 800; ++y)
+    for (int x = 0; x < 1280; ++x) {
+      const double weight = weights.At(middle, x, y);
+      sum += weight;
+      place += weight * Vec2(x + 0.5, y + 0.5);
+    }
+  EXPECT_GT(sum, 0);
+  EXPECT_EQ(weights.At(middle, 10, 400), 0u);  // it is not seen all over the plate
+  EXPECT_NEAR(place.x() / sum, 640, 1);
+  EXPECT_NEAR(place.y() / sum, 400, 1);
+}
+
 TEST(FrameWeights, RaysBeyondTheirReachHaveNone) {
   const RenderCamera frame = Frame(0.06, 0.1);
   const auto centres = JitteredGrid(30, 0.015, 0.3, 4);

@@ -190,6 +190,20 @@ TEST(HatShares, APinholeAtACameraIsThatCamera) {
   }
 }
 
+TEST(HatShares, PointsAtOnePlaceShareWhatOneWouldTake) {
+  auto points = RandomPoints(100, 1, 3);
+  const auto alone = HatShares(points, kPinhole);
+  const size_t largest =
+      static_cast<size_t>(std::max_element(alone.begin(), alone.end()) - alone.begin());
+  EXPECT_GT(alone[largest], 0.1);
+  points.push_back(points[largest]);
+  points.push_back(points[largest]);
+  const auto shares = HatShares(points, kPinhole);
+  for (size_t i = 0; i < alone.size(); ++i)
+    EXPECT_NEAR(shares[i], i == largest ? alone[i] / 3 : alone[i], 1e-12) << i;
+  for (const size_t twin : {100, 101}) EXPECT_NEAR(shares[twin], alone[largest] / 3, 1e-12);
+}
+
 TEST(HatShares, OnAGridTheyAreSymmetric) {
   std::vector<Vec2> points;
   for (int y = -4; y < 4; ++y)

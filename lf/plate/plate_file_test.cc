@@ -103,6 +103,24 @@ TEST_F(PlateFile, GivesBackTheFourthChannelWideWordsIncluded) {
   EXPECT_FALSE(PlateReader::OpenBytes(of_colours, "x")->has_opacity());
 }
 
+// An element beyond its packed word is kept wide, and the rays after that are packed again.
+TEST_F(PlateFile, KeepsTheRaysThatAWideElementGetsLater) {
+  constexpr uint64_t kMost = SensorPlate::kMaxCount;
+  for (const uint32_t count_limit : {SensorPlate::kMaxCount, 10u}) {
+    SensorPlate plate(7, 5, count_limit);
+    plate.Add(6, 3, 1, {1000 * (kMost + 1), kMost + 1});
+    plate.Add(6, 3, 1, {2 * 30000, 2});
+    plate.Add(0, 4, 2, {7 * kMost, kMost});  // together, these two fit no packed word
+    plate.Add(0, 4, 2, {5 * 9, 5});
+    SensorPlate read(7, 5);
+    const std::string bytes = BytesOf(plate);
+    ASSERT_TRUE(PlateReader::OpenBytes(bytes, "x")->AddTo(&read));
+    EXPECT_EQ(read.At(6, 3, 1), (ElementSum{1000 * (kMost + 1) + 60000, kMost + 3}));
+    EXPECT_EQ(read.At(0, 4, 2), (ElementSum{7 * kMost + 45, kMost + 5}));
+    EXPECT_EQ(read.At(0, 4, 1), ElementSum{});
+  }
+}
+
 TEST_F(PlateFile, AddsToWhatIsThere) {
   const SensorPlate a = testing::NoisePlate(50, 40, 1, SensorPlate::kMaxCount, true);
   const SensorPlate b = testing::NoisePlate(50, 40, 2, SensorPlate::kMaxCount, true);
@@ -165,6 +183,33 @@ TEST_F(PlateFile, WhatItSaysIsCheckedBeforeAnythingIsAllocated) {
   std::memcpy(long_text.data() + 12, &text_bytes, sizeof(text_bytes));
   ExpectError(long_text, "bytes of text");
   ExpectError("no plate at all, but long enough to be one", "does not begin with");
+}
+
+TEST_F(PlateFile, WideWordsLieInThePlateAndAscend) {
+  using plate_format::WideWord;
+  constexpr size_t kWords = 2, kEnd = sizeof(uint64_t);  // of NoisePlate(), and their checksum
+  const std::string bytes = BytesOf(testing::NoisePlate(20, 15, 7, SensorPlate::kMaxCount, true));
+  const auto with_words = [&](const std::function<void(WideWord*)>& change) {
+    std::string changed = bytes;
+    char* const begin = changed.data() + changed.size() - kEnd - kWords * sizeof(WideWord);
+    WideWord words[kWords];
+    std::memcpy(words, begin, sizeof(words));
+    change(words);
+    std::memcpy(begin, words, sizeof(words));
+    const uint64_t hash = HashBytes({begin, sizeof(words)});
+    std::memcpy(begin + sizeof(words), &hash, sizeof(hash));
+    return changed;
+  };
+  constexpr uint64_t kPlateWords = 20 * 15 * 3;
+  EXPECT_EQ(ErrorOf(with_words([](WideWord*) {})), "");
+  EXPECT_EQ(ErrorOf(with_words([](WideWord* words) { words[1].index = kPlateWords - 1; })), "");
+  for (const uint64_t index : {kPlateWords, kPlateWords + 1, UINT64_MAX})
+    ExpectError(with_words([&](WideWord* words) { words[1].index = index; }), "is none");
+  ExpectError(with_words([](WideWord* words) { words[1].index = words[0].index; }), "is none");
+  ExpectError(with_words([](WideWord* words) { words[0].count = SensorPlate::kMaxCount; }),
+              "is none");
+  ExpectError(with_words([](WideWord* words) { words[0].sum = 65535 * words[0].count + 1; }),
+              "is none");
 }
 
 TEST_F(PlateFile, EntriesOfAnotherFormAreRefused) {

@@ -146,6 +146,31 @@ TEST_F(RunStateTest, WhatAKilledProcessLeftIsCleared) {
   EXPECT_TRUE(fs::exists(partial / "frame_0002.plate"));
 }
 
+TEST_F(RunStateTest, RebinnedRaysAreThoseOfTheSameFrames) {
+  BinnedRay ray;
+  ray.cell = 5;
+  ray.rgb = {1000, 2000, 3000};
+  RayMap map(1000);
+  map.Add(RayMap::ShardOf(ray.cell), std::span(&ray, 1));
+  {
+    const std::unique_ptr<RunState> state = *Open(false);
+    ASSERT_TRUE(state->SaveRays(FrameId{1}, 0, "1-3", map, 128, pool_));
+  }
+  const auto state = Open(true);
+  ASSERT_TRUE(state) << state.error().message;
+  const auto rays = (*state)->LoadRays(FrameId{1}, 0, "1-3", 1000, pool_);
+  ASSERT_TRUE(rays) << rays.error().message;
+  ASSERT_TRUE(rays->has_value());
+  EXPECT_EQ((*rays)->places_done, 128u);
+  EXPECT_EQ((*rays)->map.size(), 1u);
+  const auto others = (*state)->LoadRays(FrameId{1}, 0, "1", 1000, pool_);
+  ASSERT_FALSE(others);
+  EXPECT_EQ(others.error().kind, ErrorKind::kUsage);
+  EXPECT_NE(others.error().message.find("rays.frames 1-3, this call has 1"), std::string::npos)
+      << others.error().message;
+  EXPECT_FALSE((*state)->LoadRays(FrameId{1}, 1, "1-3", 1000, pool_)->has_value());
+}
+
 TEST_F(RunStateTest, OneAtATime) {
   const auto first = Open(false);
   const auto second = Open(true);

@@ -212,6 +212,32 @@ TEST(Develop, ValuesBelowThePedestalStayNegative) {
   EXPECT_EQ(Develop(plate, options, pool).rgb.at(0, 0, 0), -0.5f);
 }
 
+// The plate has 3000 where rays are, the completion 7000 or 5000; the pedestal is 1000 of all.
+TEST(Develop, ACompletionIsInTheUnitsOfThePlate) {
+  SensorPlate plate(3, 1);
+  for (int c = 0; c < 3; ++c) plate.Add(0, 0, c, {2 * 3000, 2});
+  Completion completion{Image<float>(3, 1, 3), Image<float>(3, 1)};
+  for (int c = 0; c < 3; ++c) {
+    completion.rgb.at(0, 0, c) = 7000;
+    completion.rgb.at(1, 0, c) = 5000;
+  }
+  completion.share.at(0, 0) = 0.25F;
+  completion.share.at(1, 0) = 0.5F;
+  DevelopOptions options;
+  options.pedestal = 1000;
+  options.scale = 2000;
+  options.fill_radius_px = 0;
+  options.completion = &completion;
+  ThreadPool pool(1);
+  const DevelopedFrame frame = Develop(plate, options, pool);
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_EQ(frame.rgb.at(0, 0, c), 1.5F);  // (3/4 of 3000 + 1/4 of 7000 - 1000) / 2000
+    EXPECT_EQ(frame.rgb.at(1, 0, c), 2.0F);  // without rays it is the completion alone
+    EXPECT_EQ(frame.rgb.at(2, 0, c), 0.0F);
+  }
+  EXPECT_EQ(frame.interpolated.pixels(), (LargeVector<float>{0.25F, 1, 0}));
+}
+
 // However slow the machine: no more than some elements lie between two questions.
 TEST(Develop, AnInterruptionIsAnsweredWithinSomeElements) {
   const int width = 200, height = 40;

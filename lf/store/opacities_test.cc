@@ -140,9 +140,10 @@ TEST_F(OpacitiesTest, WhereNothingIsBehindOpacityIsKeptAndLightIsAsOverBlack) {
     for (int x = 0; x < kWidth; ++x)
       for (int lane = 0; lane < 3; ++lane)
         ASSERT_NEAR(pixels.opacity.at(x, y, lane),
-                    LfPixels::kTransparent +
-                        stored.at(x, y, 3) / 255.0 * (LfPixels::kOpaque - LfPixels::kTransparent),
-                    1.4);  // alpha is taken in 65534 steps
+                    LfPixels::kTransparent + std::min(stored.at(x, y, 3) * 257, 65534) /
+                                                 65534.0 *  // alpha in its steps
+                                                 (LfPixels::kOpaque - LfPixels::kTransparent),
+                    0.5001);
   EXPECT_EQ(pixels.opacity.at(0, 0), LfPixels::kTransparent);
   EXPECT_EQ(pixels.opacity.at(15, 15), LfPixels::kOpaque);
   field_.mask_names = {"mask.png"};
