@@ -138,6 +138,15 @@ TEST(Levels, FitOnlyWhereTheFilesCanHoldThem) {
   EXPECT_TRUE(LevelsFit(encoding, 8));
 }
 
+TEST(Levels, ClipNearWhiteCountedFromBlack) {
+  RadianceEncoding encoding = Raw12Bit();  // 256 to 4095
+  EXPECT_DOUBLE_EQ(ClippedFrom(encoding, 16), 256 + 0.99 * 3839);
+  encoding.white_level.reset();
+  EXPECT_DOUBLE_EQ(ClippedFrom(encoding, 16), 256 + 0.99 * (65535 - 256));
+  encoding.black_level = 0;
+  EXPECT_DOUBLE_EQ(ClippedFrom(encoding, 8), 0.99 * 255);
+}
+
 TEST(DefaultMaxRadiance, LeavesRoomForHighlightsInFloatFiles) {
   using Names = std::vector<std::string>;
   EXPECT_EQ(DefaultMaxRadiance(Names{"a.png", "b.jpg"}), 1);

@@ -8,6 +8,7 @@
 #include "lf/camera/testing_scenes.h"
 #include "lf/core/file.h"
 #include "lf/core/random.h"
+#include "lf/package/package_format.h"
 
 namespace lf {
 namespace {
@@ -195,6 +196,25 @@ TEST_F(PackageFileTest, EveryFlippedByteIsAnError) {
     damaged[at] = static_cast<char>(damaged[at] ^ (1 << i % 8));
     EXPECT_NE(Fault(damaged), "") << at;
     Fault(damaged, false);  // without the seal it may pass, and must not crash
+  }
+}
+
+// The frames behind it would get other numbers.
+TEST_F(PackageFileTest, AFrameThatIsMissingIsAnError) {
+  Package package = TestPackage();
+  package.choices.has_neighbours = false;
+  package.surroundings.clear();
+  for (const int frame : {1, 6, 11}) {
+    Write(package);
+    {
+      Database database = Database::OpenToAppend(path_, kPackageFormat).value();
+      ASSERT_TRUE(database.Execute("delete from frames where frame = " + std::to_string(frame)));
+    }
+    const Result<Package> read = ReadPackage(path_, {.check_seal = false});
+    ASSERT_FALSE(read) << frame;
+    EXPECT_NE(read.error().message.find("frame " + std::to_string(frame) + " is missing"),
+              std::string::npos)
+        << read.error().message;
   }
 }
 

@@ -167,6 +167,20 @@ TEST_F(PackedStoreFileTest, ImagesAreFoundByNameInAnyOrder) {
   EXPECT_EQ(codes[6].bytes, 0u);
 }
 
+TEST_F(PackedStoreFileTest, ManyNamesThatItLacksHideNoneThatItHas) {
+  Write();
+  std::vector<std::string> names;
+  for (int i = 0; i < 100; ++i) names.push_back(std::to_string(i));  // before all of its own
+  names.insert(names.end(), field_.image_names.begin(), field_.image_names.end());
+  for (int i = 0; i < 100; ++i) names.push_back("last " + std::to_string(i));
+  const std::vector<PackedCode> codes = FindCodes(path_, names).value();
+  PackedCodeReader reader = PackedCodeReader::Open(path_).value();
+  for (size_t i = 0; i < names.size(); ++i) {
+    EXPECT_EQ(codes[i].is_listed(), i >= 100 && i < 140) << names[i];
+    if (codes[i].is_listed()) ExpectHolds(static_cast<uint32_t>(i) - 100, codes[i], &reader);
+  }
+}
+
 TEST_F(PackedStoreFileTest, ShardsHoldTheCodes) {
   plan_.shard_bytes = 10000;
   Write();

@@ -12,6 +12,8 @@
 #include "lf/imageio/image_file.h"
 #include "lf/imageio/test_dng.h"
 #include "lf/imageio/test_folder.h"
+#include "lf/imageio/upright.h"
+#include "lf/imageio/write_jpeg.h"
 #include "lf/store/demosaic.h"
 
 namespace lf {
@@ -105,6 +107,37 @@ TEST_F(FolderStoreTest, ARectangleIsCutToTheImage) {
   Write<uint8_t>("a.png", 3);
   EXPECT_EQ(Loaded(OneImage(), {-3, 2, 100, 100}).rect, (PixelRect{0, 2, kWidth, kHeight}));
   EXPECT_TRUE(Loaded(OneImage(), {50, 50, 60, 60}).radiance.empty());
+}
+
+// A JPEG file of which a part is decoded, and whose orientation tag exchanges width and height.
+TEST_F(FolderStoreTest, ARectangleOfATurnedImageIsThePartOfTheTurnedWhole) {
+  constexpr PixelRect kStored = {0, 0, 45, 37};
+  const std::string jpeg = EncodeJpeg(NoiseImage<uint8_t>(45, 37, 3).view(), 90).value();
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "stored.jpg", jpeg));
+  LightField as_stored = OneImage("stored.jpg"), upright = OneImage("turned.jpg");
+  as_stored.intrinsics = {{10, 10, 22, 18, 0, 45, 37}};
+  upright.intrinsics = {{10, 10, 18, 22, 0, 37, 45}};
+  const LfPixels stored = Loaded(as_stored, kStored);
+  for (char orientation = 5; orientation <= 8; ++orientation) {
+    // Exif with one tag: orientation (0x112), one short.
+    std::string exif("Exif\0\0MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\0\0\0\0\0\0\0", 32);
+    exif[25] = orientation;
+    const std::string app1 = {'\xff', '\xe1', 0, static_cast<char>(exif.size() + 2)};
+    ASSERT_TRUE(WriteFileAtomically(folder_ / "turned.jpg",
+                                    jpeg.substr(0, 2) + app1 + exif + jpeg.substr(2)));
+    const Image<uint16_t> expected = Upright(stored.radiance, orientation);
+    for (const PixelRect& rect :
+         {PixelRect{0, 0, 37, 45}, {20, 5, 36, 30}, {1, 40, 9, 45}, {0, 0, 3, 2}}) {
+      const LfPixels pixels = Loaded(upright, rect);
+      ASSERT_EQ(pixels.rect, rect);
+      for (int y = rect.y_begin; y < rect.y_end; ++y)
+        for (int x = rect.x_begin; x < rect.x_end; ++x)
+          for (int c = 0; c < 3; ++c)
+            ASSERT_EQ(pixels.radiance.at(x - rect.x_begin, y - rect.y_begin, c),
+                      expected.at(x, y, c))
+                << int{orientation} << ": " << x << ", " << y;
+    }
+  }
 }
 
 // A picture of grey but for one channel of each pixel of the first row: 0, 40, 80 ... of 8 bits.

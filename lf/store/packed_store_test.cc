@@ -159,6 +159,22 @@ TEST_F(PackedStoreTest, AlphaAndMaskFilesBecomeMasks) {
   EXPECT_TRUE(Loaded(*Opened(), {2}, kWhole).IsMasked(4, 7));
 }
 
+TEST_F(PackedStoreTest, MasksOfAPartLieWhereThePartDoes) {
+  const PixelRect part = {5, 3, 33, 27};
+  for (const int channels : {4, 3}) {  // with alpha and a mask file, with a mask file alone
+    AddImages<uint8_t>(channels);
+    MaskRow7OfImage2();
+    Pack(part);
+    ExpectTheBitsOfTheFolder(Mosaics::kAsRecorded, {part, {8, 5, 20, 11}, {32, 3, 33, 27}});
+    const LfPixels pixels = Loaded(*Opened(), {2}, part);
+    for (int x = 0; x < part.width(); ++x) EXPECT_TRUE(pixels.IsMasked(x, 7 - 3)) << x;
+    EXPECT_TRUE(channels == 4 || !pixels.IsMasked(0, 7 - 3 + 1));
+    field_.mask_names.clear();
+    field_.image_names.clear();
+    field_.cameras.clear();
+  }
+}
+
 TEST_F(PackedStoreTest, AlphaThatIsLightHasTheBitsOfTheFolder) {
   for (const AlphaMeaning alpha : {AlphaMeaning::kStraight, AlphaMeaning::kPremultiplied}) {
     field_.encoding.alpha = alpha;
@@ -241,6 +257,12 @@ TEST_F(PackedStoreTest, APartServesWhatItWasRecordedFor) {
   Pack(recorded);
   ExpectTheBitsOfTheFolder(Mosaics::kToRgb, {needed});
   ExpectTheBitsOfTheFolder(Mosaics::kAsRecorded, {needed, recorded});
+  const auto as_rgb = PackedStore::Open(packed_, Mosaics::kToRgb).value();
+  EXPECT_TRUE(as_rgb->IsPartial());
+  EXPECT_TRUE(as_rgb->Keeps({1}, needed));
+  for (const PixelRect& more :
+       {PixelRect{4, 4, 21, 19}, {5, 3, 21, 19}, {5, 4, 22, 19}, {5, 4, 21, 20}})
+    EXPECT_FALSE(as_rgb->Keeps({1}, more)) << more.x_begin << " " << more.y_begin;
   const std::string fault = ErrorOf(*Opened(), {1}, {2, 4, 21, 19});
   EXPECT_NE(fault.find("store.lfs/image1.png: of its pixels [2, 21) x [4, 19) only [3, 23) x [2"),
             std::string::npos)
