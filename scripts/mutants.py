@@ -81,18 +81,25 @@ class Copy:
             sys.exit(f"error: {build}: is no build folder of Ninja in {ROOT}")
         self.tree = scratch / "tree"
         self.pristine = scratch / "pristine"
+        if subprocess.run(self.unshared("true"), capture_output=True).returncode != 0:
+            sys.exit("error: unshare --mount fails: root or user namespaces are needed")
         skipped = lambda folder, names: [n for n in names if pathlib.Path(folder) == ROOT and n in SKIPPED_FOLDERS]
         shutil.copytree(ROOT, self.tree, symlinks=True, ignore=skipped)
         self.work = self.tree / self.build.relative_to(ROOT)
         shutil.copytree(self.build, self.work, symlinks=True)
 
+    @staticmethod
+    def unshared(text):
+        """Returns the words of a command that runs the text by bash in a mount namespace of its own."""
+        own = [] if os.geteuid() == 0 else ["--map-root-user"]
+        return ["unshare", "--mount", *own, "bash", "-c", text]
+
     def run(self, command, limit_s):
         """Runs a command in the build folder of the copy; returns its exit code (None: too slow) and output."""
-        own = [] if os.geteuid() == 0 else ["--map-root-user"]
         text = (f"mount --bind {shlex.quote(str(self.tree))} {shlex.quote(str(ROOT))} && "
                 f"cd {shlex.quote(str(self.build))} && exec {shlex.join(command)}")
-        process = subprocess.Popen(["unshare", "--mount", *own, "bash", "-c", text], stdout=subprocess.PIPE,
-                                   stderr=subprocess.STDOUT, text=True, errors="replace", start_new_session=True)
+        process = subprocess.Popen(self.unshared(text), stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                                   text=True, errors="replace", start_new_session=True)
         try:
             output = process.communicate(timeout=limit_s)[0]
             return process.returncode, output

@@ -49,6 +49,15 @@ TEST_F(StanfordFolderTest, GivesParallelCamerasByRowAndColumn) {
   EXPECT_EQ(light_field->unit_m, 1);
 }
 
+TEST_F(StanfordFolderTest, TheAxisOfAnOddImageIsTheMiddleOfAPixel) {
+  const std::string name = "s_00_00_0_0_30_36.png";
+  ASSERT_TRUE(WriteImage(folder_ / name, Image<uint8_t>(37, 21, 3).view()));
+  const Result<LightField> light_field = ReadStanfordFolder(folder_, {.plane_distance_w = 2});
+  ASSERT_TRUE(light_field) << light_field.error().message;
+  EXPECT_EQ(light_field->intrinsics[0].cx_px, 18.5);
+  EXPECT_EQ(light_field->intrinsics[0].cy_px, 10.5);
+}
+
 TEST_F(StanfordFolderTest, OtherFilesAreLeftOutWithAWarning) {
   AddImage("s_01_10_-5.0_-25.0_30_36.png");
   ASSERT_TRUE(WriteFileAtomically(folder_ / "config.cfg", "x"));

@@ -112,6 +112,15 @@ TEST(ColmapBinary, BrokenPointsAreNamed) {
   std::string long_track = PointsBin({TestPoint()});
   long_track[long_track.size() - 8] = 1;
   EXPECT_HAS(error(long_track), "point 1 says that 1 images see it, but only 0 bytes are left");
+  // Two entries are there, of 8 bytes each.
+  const std::string two = PointsBin({{.track = {1, 1}}});
+  for (const uint64_t count : {uint64_t{3}, uint64_t{16}, uint64_t{1} << 61, UINT64_MAX}) {
+    const std::string claimed = two.substr(0, two.size() - 24) + PackedBytes().Put(count).bytes() +
+                                two.substr(two.size() - 16);
+    EXPECT_HAS(
+        error(claimed),
+        fmt::format("point 1 says that {} images see it, but only 16 bytes are left", count));
+  }
 }
 
 TEST(ColmapBinary, CountsBeyondTheFileAreErrors) {

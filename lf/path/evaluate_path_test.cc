@@ -33,6 +33,15 @@ TEST(Path, ElementsAreSquaresAroundTheCentreOfThePlate) {
   EXPECT_EQ(k.height_px, 100);
 }
 
+TEST(Path, TheCentreOfAnOddPlateIsTheMiddleOfAnElement) {
+  TestPath path;
+  path.clock = "fps: 10\nframes: 1\nresolution: [201, 99]\n";
+  const Intrinsics k = path.At(1).pinhole.intrinsics;
+  EXPECT_DOUBLE_EQ(k.fx_px, 201 * 50 / 36.0);
+  EXPECT_EQ(k.cx_px, 100.5);
+  EXPECT_EQ(k.cy_px, 49.5);
+}
+
 TEST(Path, UpIsMinusYUnlessSaid) {
   ExpectNear(TestPath{}.At(1).pinhole.UpWorld(), {0, -1, 0});
   TestPath path;
