@@ -120,7 +120,7 @@ Result<void> ReadPixelSettings(const Settings& settings, LightField* light_field
                         settings.Number("white_level", encoding.black_level, kMostNumber));
   }
   LF_ASSIGN_OR_RETURN(encoding.max_radiance, settings.Number("max_radiance", 1e-9, kMostNumber));
-  LF_ASSIGN_OR_RETURN(encoding.pedestal, settings.Number("pedestal", 0, 65535));
+  LF_ASSIGN_OR_RETURN(encoding.pedestal, settings.Number("pedestal", 0, kMostPedestal));
   LF_RETURN_IF_ERROR(ReadAlpha(settings, &encoding));
   encoding.masks_clipped = settings.Text("clipped") == "mask";
   if (!encoding.masks_clipped && !settings.Text("clipped").empty())

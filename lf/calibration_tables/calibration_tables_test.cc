@@ -1,5 +1,6 @@
 #include "lf/calibration_tables/calibration_tables.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -50,6 +51,28 @@ TEST_F(CalibrationTablesTest, EveryLensIsReadAsItWasWritten) {
     written.push_back({500, 501, 320, 240, 0.5, 640, 480, lens});
   ASSERT_TRUE(WriteIntrinsics(written, &*database_));
   EXPECT_EQ(Read().value(), written);
+}
+
+// A pedestal of 65535 leaves nothing to light.
+TEST_F(CalibrationTablesTest, APedestalLeavesHalfOfTheRangeToLight) {
+  LightField light_field;
+  light_field.encoding.pedestal = kMostPedestal;
+  ASSERT_TRUE(WriteSettings(SettingsOfPixels(light_field), &*database_));
+  const auto read = [&] {
+    return ReadPixelSettings(Settings::Read(*database_, "test file").value(), &light_field);
+  };
+  EXPECT_TRUE(read()) << read().error().message;
+  for (const char* const wrong : {"32768", "65535", "-1", "1e300"}) {
+    ASSERT_TRUE(database_->Execute(
+        fmt::format("update settings set value = '{}' where key = 'pedestal'", wrong)));
+    const Result<void> refused = read();
+    ASSERT_FALSE(refused) << wrong;
+    EXPECT_EQ(refused.error().kind, ErrorKind::kInput);
+    EXPECT_NE(refused.error().message.find(fmt::format(
+                  "setting pedestal is '{}', expected a number from 0 to 32767", wrong)),
+              std::string::npos)
+        << refused.error().message;
+  }
 }
 
 TEST_F(CalibrationTablesTest, ALensOfAnOlderFileHasEightParameters) {

@@ -34,7 +34,7 @@ Error Settings::Damaged(const std::string& what) const {
   return InputError(fmt::format("{}: is a damaged {}: {}", file_, what_, what));
 }
 
-Error Settings::Wrong(const std::string& key, const char* expected) const {
+Error Settings::Wrong(const std::string& key, std::string_view expected) const {
   return Damaged(fmt::format("setting {} is '{}', expected {}", key, Text(key), expected));
 }
 
@@ -53,7 +53,8 @@ Result<std::vector<double>> Settings::Numbers(const std::string& key, size_t cou
 
 Result<double> Settings::Number(const std::string& key, double low, double high) const {
   LF_ASSIGN_OR_RETURN(const std::vector<double> numbers, Numbers(key, 1, 1));
-  if (!IsWithin(numbers[0], low, high)) return Wrong(key, "a number in its range");
+  if (!IsWithin(numbers[0], low, high))
+    return Wrong(key, fmt::format("a number from {:g} to {:g}", low, high));
   return numbers[0];
 }
 

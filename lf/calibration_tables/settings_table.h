@@ -5,6 +5,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -39,7 +40,7 @@ class Settings {
 
   // "package-0000.lfp: is a damaged package: " + what
   Error Damaged(const std::string& what) const;
-  Error Wrong(const std::string& key, const char* expected) const;
+  Error Wrong(const std::string& key, std::string_view expected) const;
 
  private:
   std::string file_, what_;

@@ -63,6 +63,9 @@ struct RadianceEncoding {
   std::array<double, 3> Background() const { return background.value_or(std::array{0., 0., 0.}); }
 };
 
+// Largest pedestal. At least half of the range is left to light.
+inline constexpr double kMostPedestal = 32767;
+
 // Bicubic interpolation and demosaicking undershoot beside bright lights, as they overshoot on
 // them: clipped at no light, dark surroundings of small lights would turn grey. Raises the pedestal
 // to kUndershootPedestal, which leaves room for a fifteenth of max_radiance below black.

@@ -20,7 +20,7 @@ constexpr NumberRule kLight = {"radiances from 0 to 1e6",
 constexpr NumberRule kMaxRadiance = {"a radiance from 1e-6 to 1e6",
                                      [](double x) { return x >= 1e-6 && x <= 1e6; }};
 constexpr NumberRule kPedestal = {"a whole number from 0 to 32767", [](double x) {
-                                    return x >= 0 && x <= 32767 && x == std::floor(x);
+                                    return x >= 0 && x <= kMostPedestal && x == std::floor(x);
                                   }};
 
 Result<BayerPattern> ReadBayer(const JsonFields& top, BayerPattern otherwise) {
