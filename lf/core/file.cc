@@ -7,10 +7,11 @@
 
 #include <cerrno>
 #include <cstring>
+#include <set>
 #include <system_error>
-#include <utility>
 
 #include "lf/core/files_nearby.h"
+#include "lf/core/temporary_file.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -28,23 +29,6 @@ class FileDescriptor {
 
  private:
   int fd_;
-};
-
-// Removed in the end, also where memory runs out, unless it is kept.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(fs::path path) : path_(std::move(path)) {}
-  ~TemporaryFile() {
-    if (!is_kept_) ::unlink(path_.c_str());
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-  const fs::path& path() const { return path_; }
-  void Keep() { is_kept_ = true; }
-
- private:
-  fs::path path_;
-  bool is_kept_ = false;
 };
 
 std::string SystemReason() { return std::strerror(errno); }
@@ -72,9 +56,10 @@ Result<fs::path> WriteTarget(const fs::path& path) {
   return target;
 }
 
-fs::path TemporaryName(const fs::path& path) {
-  return path.parent_path() /
-         fmt::format(".{}.{}.tmp{}", path.stem().string(), ::getpid(), path.extension().string());
+// Who may read and write the old file may so the new one.
+void CopyPermissions(const fs::path& old_file, const fs::path& new_file) {
+  struct stat old {};
+  if (::stat(old_file.c_str(), &old) == 0) ::chmod(new_file.c_str(), old.st_mode & 0777);
 }
 
 }  // namespace
@@ -152,21 +137,30 @@ Result<void> WriteFileAtomically(const fs::path& path, std::string_view bytes) {
 Result<void> WriteAtomically(const fs::path& path,
                              const std::function<Result<void>(const fs::path&)>& write) {
   LF_ASSIGN_OR_RETURN(const fs::path target, WriteTarget(path));
-  TemporaryFile temporary(TemporaryName(target));
+  TemporaryFile temporary(target);
   LF_RETURN_IF_ERROR(write(temporary.path()));
-  struct stat old {};
-  if (::stat(target.c_str(), &old) == 0) ::chmod(temporary.path().c_str(), old.st_mode & 0777);
+  CopyPermissions(target, temporary.path());
   LF_RETURN_IF_ERROR(RenameFlushed(temporary.path(), target));
   temporary.Keep();
   return {};
 }
 
 Result<void> RenameFlushed(const fs::path& from, const fs::path& to) {
-  LF_RETURN_IF_ERROR(FlushToDisk(from));
-  if (::rename(from.c_str(), to.c_str()) != 0)
-    return OutputError(fmt::format("{}: cannot be renamed to: {}", to.string(), SystemReason()));
-  // The rename itself is on the disk once its folder is.
-  return FlushToDisk(to.has_parent_path() ? to.parent_path() : fs::path("."));
+  const Renaming one[] = {{from, to}};
+  return RenameFlushed(one);
+}
+
+Result<void> RenameFlushed(std::span<const Renaming> files) {
+  for (const Renaming& file : files) LF_RETURN_IF_ERROR(FlushToDisk(file.from));
+  std::set<fs::path> folders;
+  for (const auto& [from, to] : files) {
+    if (::rename(from.c_str(), to.c_str()) != 0)
+      return OutputError(fmt::format("{}: cannot be renamed to: {}", to.string(), SystemReason()));
+    folders.insert(to.has_parent_path() ? to.parent_path() : fs::path("."));
+  }
+  // A rename itself is on the disk once its folder is.
+  for (const fs::path& folder : folders) LF_RETURN_IF_ERROR(FlushToDisk(folder));
+  return {};
 }
 
 Result<void> CreateFolder(const fs::path& folder) {

@@ -31,7 +31,8 @@ void AnnounceRead(const std::filesystem::path& path);
 
 // Writes a file under a temporary name in the same folder, flushes it to the disk and renames it:
 // readers see the old file or the new one, never a part. After a failure the old file is intact
-// and the temporary one is gone. A link is followed, and who may read and write the old file may so
+// and the temporary one is gone. After a kill the next write of the same file removes it
+// (temporary_file.h). A link is followed, and who may read and write the old file may so
 // the new one. kOutput with the system's reason (disk full,
 // no permission), or if something that is no file has the name.
 Result<void> WriteFileAtomically(const std::filesystem::path& path, std::string_view bytes);
@@ -45,6 +46,13 @@ Result<void> WriteAtomically(
 // Gives a complete and closed file its final name: flushes it to the disk, renames it over what has
 // the name, and flushes the folder. Both in one file system. kOutput; the file keeps its name then.
 Result<void> RenameFlushed(const std::filesystem::path& from, const std::filesystem::path& to);
+
+// The final names of many files: all of them are on the disk before the first gets its own. After a
+// failure some may have it.
+struct Renaming {
+  std::filesystem::path from, to;
+};
+Result<void> RenameFlushed(std::span<const Renaming> files);
 
 // Creates the folder and its parents. kOutput if that fails or a file has the name.
 Result<void> CreateFolder(const std::filesystem::path& folder);

@@ -10,6 +10,7 @@
 
 #include "lf/core/file.h"
 #include "lf/core/log.h"
+#include "lf/core/temporary_file.h"
 #include "lf/imageio/whole_file.h"
 #include "lf/rebinning/ray_map_file.h"
 
@@ -48,8 +49,8 @@ std::vector<fs::path> FilesOf(const fs::path& folder) {
   return files;
 }
 
-// Temporary files (core/file.h) of a process that was killed; the lock says that none is at work on
-// these frames.
+// Removes temporary files of processes that were killed, on any host: the lock says that none is at
+// work on these frames.
 //   frames  ascending; those of others are left alone
 void RemoveTemporaryFiles(const fs::path& folder, const std::vector<FrameId>& frames,
                           bool is_shared) {
@@ -57,7 +58,7 @@ void RemoveTemporaryFiles(const fs::path& folder, const std::vector<FrameId>& fr
   std::error_code ignored;
   for (const fs::path& path : FilesOf(folder)) {
     const std::string name = path.filename().string();
-    if (!name.starts_with('.') || name.find(".tmp.") == std::string::npos) continue;
+    if (!IsTemporaryName(name)) continue;
     const std::optional<FrameId> frame = FrameOf(name.substr(1, name.find('.', 1) - 1));
     const bool is_ours =
         frame

@@ -133,18 +133,18 @@ TEST_F(RunStateTest, AFinishedFrameThatWasCutIsRenderedAgain) {
 TEST_F(RunStateTest, WhatAKilledProcessLeftIsCleared) {
   LeaveUnfinished();
   const fs::path partial = folder_ / "partial";
-  std::ofstream(partial / ".frame_0002.123.tmp.plate") << "half";
-  std::ofstream(folder_ / ".frame_0003.123.tmp.exr") << "half";
+  std::ofstream(partial / ".frame_0002.123-00ab12cd.tmp.plate") << "half";
+  std::ofstream(folder_ / ".frame_0003.123-00ab12cd.tmp.exr") << "half";
   std::ofstream(folder_ / ".hidden.tmp.txt") << "the user's";
   // Another program renders frame 4, of another package, into the same folder.
-  std::ofstream(folder_ / ".frame_0004.456.tmp.exr") << "half";
+  std::ofstream(folder_ / ".frame_0004.456-00ab12cd.tmp.exr") << "half";
   // Killed between the record of a frame and the removal of its plate.
   fs::copy(partial / "frame_0002.plate", partial / "frame_0003.plate");
   ASSERT_TRUE(Open(true));
-  EXPECT_FALSE(fs::exists(partial / ".frame_0002.123.tmp.plate"));
-  EXPECT_FALSE(fs::exists(folder_ / ".frame_0003.123.tmp.exr"));
+  EXPECT_FALSE(fs::exists(partial / ".frame_0002.123-00ab12cd.tmp.plate"));
+  EXPECT_FALSE(fs::exists(folder_ / ".frame_0003.123-00ab12cd.tmp.exr"));
   EXPECT_TRUE(fs::exists(folder_ / ".hidden.tmp.txt"));
-  EXPECT_TRUE(fs::exists(folder_ / ".frame_0004.456.tmp.exr"));
+  EXPECT_TRUE(fs::exists(folder_ / ".frame_0004.456-00ab12cd.tmp.exr"));
   EXPECT_FALSE(fs::exists(partial / "frame_0003.plate"));
   EXPECT_TRUE(fs::exists(partial / "frame_0002.plate"));
 }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "lf/core/file.h"
+#include "lf/core/temporary_file.h"
 #include "lf/sequence/child_process.h"
 
 namespace lf {
@@ -118,8 +119,10 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::Open(const fs::path& path, int
                                    path.string(), width, height, fps));
   auto state = std::make_unique<State>();
   state->path = path;
-  state->unfinished = fs::absolute(path).parent_path() /
-                      fmt::format(".{}.{}.unfinished.mp4", path.stem().string(), ::getpid());
+  const fs::path unfinished =
+      fs::absolute(path).parent_path() / (path.stem().string() + ".unfinished.mp4");
+  RemoveLeftovers(unfinished);
+  state->unfinished = TemporaryPath(unfinished);
   state->width = width;
   state->height = height;
   state->patience_s = patience_s;

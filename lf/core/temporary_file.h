@@ -1,0 +1,42 @@
+// Files that have no final name yet, and what killed programs left of them.
+//
+// While FILE.EXT is written it is called .FILE.PROCESS-HOST.tmp.EXT, in the same folder. The
+// extension is kept because libraries choose the format by it. PROCESS is a number, HOST eight
+// hexadecimal digits that stand for the machine and, in a container, for its process numbers.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace lf {
+
+// Returns the temporary name that this process gives to `path`, in the same folder.
+std::filesystem::path TemporaryPath(const std::filesystem::path& path);
+
+// Removes temporary files of `path` whose process was on this host and is dead. Files of other
+// hosts and of living processes stay. A folder is listed once in the life of this process, when the
+// first of its files is asked about. May be called at the same time from any thread.
+void RemoveLeftovers(const std::filesystem::path& path);
+
+// True if the name, without a folder, is one that TemporaryPath() gives, of any file and process.
+bool IsTemporaryName(const std::string& name);
+
+// A temporary file that is removed in the end, also where memory runs out, unless it is kept.
+class TemporaryFile {
+ public:
+  // Removes leftovers of `final_path`. Makes no file.
+  explicit TemporaryFile(const std::filesystem::path& final_path);
+  ~TemporaryFile();
+  TemporaryFile(TemporaryFile&& other) noexcept;
+  TemporaryFile& operator=(TemporaryFile&&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  // The file has got its final name.
+  void Keep() { is_kept_ = true; }
+
+ private:
+  std::filesystem::path path_;
+  bool is_kept_ = false;
+};
+
+}  // namespace lf
