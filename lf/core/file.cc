@@ -33,13 +33,6 @@ class FileDescriptor {
 
 std::string SystemReason() { return std::strerror(errno); }
 
-Result<void> FlushToDisk(const fs::path& path) {
-  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (file.get() < 0 || ::fsync(file.get()) != 0)
-    return OutputError(fmt::format("{}: cannot flush to disk: {}", path.string(), SystemReason()));
-  return {};
-}
-
 // Where a write to `path` ends: the file a link leads to. A device or pipe is no place for a file:
 // renaming over it would replace it.
 Result<fs::path> WriteTarget(const fs::path& path) {
@@ -142,6 +135,13 @@ Result<void> WriteAtomically(const fs::path& path,
   CopyPermissions(target, temporary.path());
   LF_RETURN_IF_ERROR(RenameFlushed(temporary.path(), target));
   temporary.Keep();
+  return {};
+}
+
+Result<void> FlushToDisk(const fs::path& path) {
+  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (file.get() < 0 || ::fsync(file.get()) != 0)
+    return OutputError(fmt::format("{}: cannot flush to disk: {}", path.string(), SystemReason()));
   return {};
 }
 

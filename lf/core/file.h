@@ -43,6 +43,9 @@ Result<void> WriteAtomically(
     const std::filesystem::path& path,
     const std::function<Result<void>(const std::filesystem::path&)>& write);
 
+// Waits until the content of a file, or the names in a folder, are on the disk. kOutput.
+Result<void> FlushToDisk(const std::filesystem::path& path);
+
 // Gives a complete and closed file its final name: flushes it to the disk, renames it over what has
 // the name, and flushes the folder. Both in one file system. kOutput; the file keeps its name then.
 Result<void> RenameFlushed(const std::filesystem::path& from, const std::filesystem::path& to);

@@ -21,6 +21,11 @@ struct PackageNotes {
 Result<void> WritePackage(const std::filesystem::path& path, const Package& package,
                           const PackageNotes& notes);
 
+// Writes the package to the file `as`, which is to be renamed to `path` later. kOutput; a part of
+// the file may be there then.
+Result<void> WritePackageAs(const std::filesystem::path& as, const std::filesystem::path& path,
+                            const Package& package, const PackageNotes& notes);
+
 struct ReadPackageOptions {
   // Off where damage is made on purpose: every byte is checked otherwise.
   bool check_seal = true;

@@ -149,12 +149,17 @@ class Writer {
 
 Result<void> WritePackage(const fs::path& path, const Package& package, const PackageNotes& notes) {
   return WriteAtomically(path, [&](const fs::path& temporary) -> Result<void> {
-    {
-      LF_ASSIGN_OR_RETURN(Database database, Database::Create(temporary, kPackageFormat));
-      LF_RETURN_IF_ERROR(Writer(std::move(database), package).Write(path, notes));
-    }
-    return SealFile(temporary);
+    return WritePackageAs(temporary, path, package, notes);
   });
+}
+
+Result<void> WritePackageAs(const fs::path& as, const fs::path& path, const Package& package,
+                            const PackageNotes& notes) {
+  {
+    LF_ASSIGN_OR_RETURN(Database database, Database::Create(as, kPackageFormat));
+    LF_RETURN_IF_ERROR(Writer(std::move(database), package).Write(path, notes));
+  }
+  return SealFile(as);
 }
 
 }  // namespace lf

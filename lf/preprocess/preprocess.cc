@@ -9,21 +9,18 @@
 #include <numeric>
 
 #include "lf/collector/frame_lens.h"
-#include "lf/core/file.h"
 #include "lf/core/hash.h"
 #include "lf/core/log.h"
 #include "lf/hybrid/render_memory.h"
-#include "lf/package/package_file.h"
 #include "lf/preprocess/film_order.h"
 #include "lf/preprocess/frame_needs.h"
+#include "lf/preprocess/package_folder.h"
 #include "lf/preprocess/split_film.h"
 #include "lf/store/open_store.h"
 
 namespace lf {
-namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* kExtension = ".lfp";
 // 300 frames of 20,000 LF images each.
 constexpr uint64_t kMostKeptBytes = uint64_t{256} << 20;
 
@@ -47,20 +44,6 @@ std::string NameOfPart(const std::vector<FrameId>& frames, size_t film_frame_cou
     ranges = fmt::format("{}-{}-{:08x}", frames.front().value, frames.back().value,
                          static_cast<uint32_t>(HashBytes(ranges)));
   return "-of-frames-" + ranges;
-}
-
-// package-0000.lfp, ... of an earlier call; or what it left half written (core/file.h).
-//   part  only packages of this part; empty: all
-std::vector<fs::path> PackagesIn(const fs::path& folder, const char* prefix,
-                                 const std::string& part) {
-  std::vector<fs::path> packages;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error))
-    if (entry.path().extension() == kExtension &&
-        entry.path().filename().string().starts_with(prefix) &&
-        (part.empty() || entry.path().filename().string().find(part + ".") != std::string::npos))
-      packages.push_back(entry.path());
-  return packages;
 }
 
 // The LF images of a package while frame after frame is added.
@@ -148,6 +131,7 @@ class Preprocessor {
   const std::function<void(size_t, size_t)>& progress_;
   NeedsOptions needs_;
   std::vector<FrameId> frames_;
+  std::optional<PackageFolder> folder_;  // none: nothing is written
   std::unique_ptr<LfImageStore> store_;  // asked for sizes and for what it keeps
   LightFieldIdentity whole_;
   ImagePlaces places_;
@@ -158,7 +142,6 @@ class Preprocessor {
   std::vector<FrameSurroundings> surroundings_;  // [frame - 1] of the film
   size_t done_ = 0;
   std::vector<bool> is_counted_;  // LF images of packages that are done
-  std::vector<fs::path> written_;
   PreprocessReport report_;
 };
 
@@ -169,14 +152,8 @@ Result<PreprocessReport> Preprocessor::Run() {
   LF_RETURN_IF_ERROR(Measure());
   LF_ASSIGN_OR_RETURN(const std::vector<Section> sections, Split());
   for (size_t i = 0; i < sections.size(); ++i)
-    if (const Result<void> made = MakePackage(i, sections[i], sections.size()); !made) {
-      // A part of a film under the names of the whole would pass for it.
-      for (const fs::path& file : written_) {
-        std::error_code ignored;
-        fs::remove(file, ignored);
-      }
-      return made.error();
-    }
+    LF_RETURN_IF_ERROR(MakePackage(i, sections[i], sections.size()));
+  if (folder_) LF_RETURN_IF_ERROR(folder_->Publish());
   return std::move(report_);
 }
 
@@ -186,14 +163,11 @@ Result<void> Preprocessor::Begin() {
     for (uint32_t n = 1; n <= path_.frame_count(); ++n) frames_.push_back(FrameId{n});
   LF_RETURN_IF_ERROR(CheckOptions());
   if (options_.output_folder) {
-    const std::vector<fs::path> there = PackagesIn(
-        *options_.output_folder, "package-", NameOfPart(options_.frames, path_.frame_count()));
-    if (!there.empty() && !options_.overwrite)
-      return UsageError(
-          fmt::format("{}: holds {} packages already: --overwrite replaces them, or give another "
-                      "-o",
-                      options_.output_folder->string(), there.size()));
-    LF_RETURN_IF_ERROR(CreateFolder(*options_.output_folder));
+    LF_ASSIGN_OR_RETURN(
+        PackageFolder folder,
+        PackageFolder::Open(*options_.output_folder,
+                            NameOfPart(options_.frames, path_.frame_count()), options_.overwrite));
+    folder_.emplace(std::move(folder));
   }
   LF_ASSIGN_OR_RETURN(store_,
                       OpenStore(light_field_, options_.reading.estimator == Estimator::kBilinear
@@ -349,22 +323,16 @@ Result<void> Preprocessor::MakePackage(size_t number, const Section& section, si
   LF_RETURN_IF_ERROR(CountMissing(package, &forecast));
   LF_RETURN_IF_ERROR(Forecast(package, &forecast));
   report_.packages.push_back(std::move(forecast));
-  if (!options_.output_folder) return {};
+  if (!folder_) return {};
 
   const auto write_start = std::chrono::steady_clock::now();
-  if (number == 0)
-    for (const char* const prefix : {"package-", ".package-"})
-      for (const fs::path& old : PackagesIn(*options_.output_folder, prefix, part)) {
-        std::error_code ignored;
-        fs::remove(old, ignored);
-      }
-  written_.push_back(*options_.output_folder / (report_.packages.back().name + kExtension));
-  LF_RETURN_IF_ERROR(
-      WritePackage(written_.back(), package, {options_.version, options_.light_field_name}));
+  const std::string& name = report_.packages.back().name;
+  LF_RETURN_IF_ERROR(folder_->Add(name, package, {options_.version, options_.light_field_name}));
   report_.write_s += SecondsSince(write_start);
   LogDebug("{}: {} frames, {} LF images, {} neighbours: written in {:.2f} s",
-           written_.back().string(), package.frames.size(), report_.packages.back().image_count,
-           report_.packages.back().neighbour_count, SecondsSince(write_start));
+           folder_->PathOf(name).string(), package.frames.size(),
+           report_.packages.back().image_count, report_.packages.back().neighbour_count,
+           SecondsSince(write_start));
   return {};
 }
 

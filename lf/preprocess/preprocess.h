@@ -94,10 +94,12 @@ struct PreprocessReport {
   double write_s = 0;
 };
 
+// Packages get their names together, when all are whole (package_folder.h).
 // kUsage: packages are there, lenses that kArea cannot weigh, lens weights with RenderMode::kRebin,
 // max_image_count with rebinned rays. kInput: no LF image contributes to
-// any frame; one is missing, if strict. kOutput: the disk, less memory than one frame needs.
-// kInterrupted. After an error none of the packages is there.
+// any frame; one is missing, if strict. kOutput: the disk, another program
+// at work in the folder, less memory than one frame needs. kInterrupted. After an error none of the
+// packages is there.
 Result<PreprocessReport> Preprocess(const LightField& light_field, const CameraPath& path,
                                     const PreprocessOptions& options, ThreadPool& pool,
                                     const std::function<void(size_t done, size_t total)>& progress);
