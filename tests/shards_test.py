@@ -4,6 +4,7 @@ in any order; and honest words about what is missing.
 
 usage: shards_test.py LFRENDERER LFMERGE LFPREPROCESSOR
 """
+import fcntl
 import hashlib
 import json
 import resource
@@ -46,6 +47,19 @@ class ShardsTest(ProgramTestCase):
     def merge(self, out, *plates, options=()):
         self.succeeds(MERGE, *plates, "-o", self.folder / out, *options)
         return digests(self.folder / out)
+
+    def test_one_program_at_a_time_writes_into_the_folder(self):
+        plates = self.shards("cut", 2)
+        lock = self.folder / "out" / "partial" / "lock"
+        lock.parent.mkdir(parents=True)
+        with open(lock, "w", encoding="utf-8") as file:
+            fcntl.flock(file, fcntl.LOCK_EX)
+            file.write("4711\n")
+            file.flush()
+            self.fails(4, ["partial/lock", "process 4711"], MERGE, plates, "-o", self.folder / "out")
+        self.assertEqual(digests(self.folder / "out", "*.*"), {})
+        self.assertEqual(len(self.merge("out", plates)), 3)
+        self.assertFalse(lock.parent.exists())
 
     # One shard more than LF images, too: some are empty.
     def test_any_cut_gives_the_same_bits(self):

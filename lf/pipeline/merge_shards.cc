@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <charconv>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
 
 #include "lf/core/file.h"
+#include "lf/core/file_lock.h"
 #include "lf/core/log.h"
 #include "lf/imageio/whole_file.h"
 #include "lf/pipeline/frame_output.h"
@@ -97,6 +99,14 @@ class Merger {
   Merger(const MergeOptions& options, ThreadPool& pool,
          const std::function<void(const MergeProgress&)>& progress)
       : options_(options), pool_(pool), progress_(progress) {}
+  ~Merger() {
+    if (!lock_) return;
+    lock_->Remove();
+    std::error_code ignored;
+    fs::remove(PartialFolder(), ignored);  // fails, as it should, where files are left
+  }
+  Merger(const Merger&) = delete;
+  Merger& operator=(const Merger&) = delete;
 
   Result<RenderReport> Run(const std::vector<fs::path>& given) {
     LF_ASSIGN_OR_RETURN(const std::vector<fs::path> files, FilesOf(given));
@@ -113,7 +123,7 @@ class Merger {
       LF_RETURN_IF_ERROR(CheckVideoTool());
       LF_RETURN_IF_ERROR(CheckVideoTarget(*options_.video));
     }
-    LF_RETURN_IF_ERROR(CreateFolder(options_.output_folder));
+    LF_RETURN_IF_ERROR(Lock());
     LF_RETURN_IF_ERROR(FindFinished());
     now_.frame_total = frames_.size();
     for (const auto& [frame, plates] : frames_) now_.plate_total += plates.size();
@@ -135,6 +145,16 @@ class Merger {
   }
   fs::path PathOf(FrameId frame) const {
     return FramePath(options_.output_folder, frame, options_.format);
+  }
+
+  // The lock is that of a render into the same folder (lf/record/run_state.h).
+  fs::path PartialFolder() const { return options_.output_folder / "partial"; }
+  Result<void> Lock() {
+    LF_RETURN_IF_ERROR(CreateFolder(options_.output_folder));
+    LF_RETURN_IF_ERROR(CreateFolder(PartialFolder()));
+    LF_ASSIGN_OR_RETURN(FileLock lock, FileLock::Take(PartialFolder() / "lock"));
+    lock_ = std::move(lock);
+    return {};
   }
 
   fs::path ReportPath() const { return options_.output_folder / "report.json"; }
@@ -313,6 +333,7 @@ class Merger {
   ThreadPool& pool_;
   const std::function<void(const MergeProgress&)>& progress_;
   const double begin_s_ = NowSeconds();
+  std::optional<FileLock> lock_;
   std::map<FrameId, std::vector<ShardPlate>> frames_;
   std::map<FrameId, FrameReport> reports_;
   std::set<FrameId> finished_;

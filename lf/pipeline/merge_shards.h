@@ -41,7 +41,8 @@ struct MergeProgress {
 // all
 //   there, or there twice, or are of different renders: the message names them; a damaged plate;
 //   every frame is black.
-// kOutput: the disk, ffmpeg. kInterrupted: frames that are written stay.
+// kOutput: the disk, ffmpeg, another program that writes frames into the folder. kInterrupted:
+// frames that are written stay.
 Result<RenderReport> MergeShards(const std::vector<std::filesystem::path>& plates,
                                  const MergeOptions& options, ThreadPool& pool,
                                  const std::function<void(const MergeProgress&)>& progress);

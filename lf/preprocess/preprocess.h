@@ -98,8 +98,8 @@ struct PreprocessReport {
 // kUsage: packages are there, lenses that kArea cannot weigh, lens weights with RenderMode::kRebin,
 // max_image_count with rebinned rays. kInput: no LF image contributes to
 // any frame; one is missing, if strict. kOutput: the disk, another program
-// at work in the folder, less memory than one frame needs. kInterrupted. After an error none of the
-// packages is there.
+// at work in the folder, less memory than one frame needs. kInterrupted. After an error the
+// packages of before are there, or none.
 Result<PreprocessReport> Preprocess(const LightField& light_field, const CameraPath& path,
                                     const PreprocessOptions& options, ThreadPool& pool,
                                     const std::function<void(size_t done, size_t total)>& progress);
