@@ -287,6 +287,19 @@ class LongLocalJobTest(ClusterTestCase):
         self.resume()
         self.assertEqual(digests(self.film), self.expected)
 
+    def test_a_report_is_whole_or_missing(self):
+        renderer = self.unlucky_renderer("""
+            [[ $start == 1 && $package == finish ]] && { echo '{"half": '; exec sleep 100; }""")
+        process = self.start("--lfrenderer", renderer, *self.OPTIONS)
+        cluster = self.film / "cluster"
+        self.wait_for(lambda: any(path.stat().st_size for path in cluster.glob(".report.*.tmp.json")))
+        os.kill(process.pid, signal.SIGKILL)
+        process.wait()
+        self.assertFalse((cluster / "report.json").exists())
+        self.resume()
+        self.assertEqual(len(json.loads((cluster / "report.json").read_text())["frames"]), self.frames)
+        self.assertFalse(list(cluster.glob(".*")))
+
     def test_a_job_is_cancelled_from_elsewhere(self):
         renderer = self.unlucky_renderer("""
             trap 'exit 5' TERM
@@ -294,7 +307,12 @@ class LongLocalJobTest(ClusterTestCase):
         process = self.start("--lfrenderer", renderer, *self.OPTIONS)
         self.wait_for(lambda: (self.film / "cluster" / "packages" / "package-0000.json").exists())
         self.assertEqual(self.status()["state"], "running")
-        self.fails(4, ["lock", "another program"], cluster_test_case.SUBMIT, "--resume", self.film)
+        beside = ["cluster/lock", f"another program (process {process.pid})", "--cancel"]
+        self.fails(4, beside, cluster_test_case.SUBMIT, "--resume", self.film)
+        job = (self.film / "cluster" / "job.json").read_bytes()
+        for options in ([], ["--overwrite"]):
+            self.submit(*options, "--threads", 2, code=4, words=beside)
+        self.assertEqual((self.film / "cluster" / "job.json").read_bytes(), job)
         self.succeeds(cluster_test_case.SUBMIT, "--cancel", self.film)
         words = process.communicate()[1].strip().splitlines()[-1]
         self.assertEqual(process.returncode, 5, words)

@@ -3,6 +3,7 @@
 
 #include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tools/common/interrupt.h"
@@ -52,11 +53,30 @@ Result<void> Submit(const lf::SubmitArguments& arguments, const lf::CommonOption
     LF_RETURN_IF_ERROR(lf::CreateFolder(job.output_folder));
     LF_RETURN_IF_ERROR(lf::CheckVideoTarget(*job.video));
   }
+  LF_ASSIGN_OR_RETURN(lf::FileLock lock, lf::TakeJob(job));
   LF_RETURN_IF_ERROR(lf::MakeRoomForJob(job, arguments.overwrite));
   LF_RETURN_IF_ERROR(lf::WriteJob(job));
   std::vector<size_t> numbers(job.packages.size());
   std::iota(numbers.begin(), numbers.end(), size_t{0});
-  return lf::RunJob(job, numbers, arguments.wait, common);
+  return lf::RunJob(job, std::move(lock), numbers, arguments.wait, common);
+}
+
+Result<void> Resume(const lf::SubmitArguments& arguments, const lf::CommonOptions& common) {
+  LF_ASSIGN_OR_RETURN(ClusterJob job, lf::ReadJob(arguments.resume));
+  LF_RETURN_IF_ERROR(lf::CheckMayRun(job));
+  LF_ASSIGN_OR_RETURN(lf::FileLock lock, lf::TakeJob(job));
+  // Another program may have changed it until the lock was ours.
+  LF_ASSIGN_OR_RETURN(job, lf::ReadJob(arguments.resume));
+  LF_RETURN_IF_ERROR(lf::CheckMayRun(job));
+  LF_RETURN_IF_ERROR(arguments.Change(&job, common));
+  const lf::JobStatus status = lf::LookAtJob(job);
+  if (status.phase == lf::TaskPhase::kDone && arguments.video.empty() &&
+      !arguments.HasRendererArguments()) {
+    lf::LogInfo("{}: the film is done", job.output_folder.string());
+    return lf::OutcomeOf("the film", status.finishing.state);
+  }
+  LF_ASSIGN_OR_RETURN(const std::vector<size_t> numbers, lf::PrepareResume(job));
+  return lf::RunJob(job, std::move(lock), numbers, arguments.wait, common);
 }
 
 Result<void> Finish(const std::string& folder, const std::string& frames) {
@@ -81,19 +101,7 @@ Result<void> Act(const lf::SubmitArguments& arguments, const lf::CommonOptions& 
     LF_RETURN_IF_ERROR(lf::CancelJob(job, lf::CatchInterrupts()));
     return common.json ? lf::PrintReport(lf::ToJson(job, lf::LookAtJob(job))) : Result<void>();
   }
-  if (!arguments.resume.empty()) {
-    LF_ASSIGN_OR_RETURN(ClusterJob job, lf::ReadJob(arguments.resume));
-    LF_RETURN_IF_ERROR(lf::CheckMayRun(job));
-    LF_RETURN_IF_ERROR(arguments.Change(&job, common));
-    const lf::JobStatus status = lf::LookAtJob(job);
-    if (status.phase == lf::TaskPhase::kDone && arguments.video.empty() &&
-        !arguments.HasRendererArguments()) {
-      lf::LogInfo("{}: the film is done", job.output_folder.string());
-      return lf::OutcomeOf("the film", status.finishing.state);
-    }
-    LF_ASSIGN_OR_RETURN(const std::vector<size_t> numbers, lf::PrepareResume(job));
-    return lf::RunJob(job, numbers, arguments.wait, common);
-  }
+  if (!arguments.resume.empty()) return Resume(arguments, common);
   if (!arguments.finish.empty()) return Finish(arguments.finish[0], arguments.finish[1]);
   if (!arguments.run_finish.empty()) {
     LF_ASSIGN_OR_RETURN(const ClusterJob job, lf::ReadJob(arguments.run_finish));

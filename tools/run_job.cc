@@ -1,6 +1,8 @@
 #include "tools/run_job.h"
 
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "tools/common/interrupt.h"
 #include "tools/common/progress.h"
@@ -24,8 +26,9 @@ void Show(const ClusterJob& job, ProgressMeter& meter) {
 
 }  // namespace
 
-Result<void> RunJob(ClusterJob job, const std::vector<size_t>& numbers, bool waits,
+Result<void> RunJob(ClusterJob job, FileLock lock, const std::vector<size_t>& numbers, bool waits,
                     const CommonOptions& common) {
+  std::optional<FileLock> held = std::move(lock);
   const std::string folder = ShellWord(job.output_folder.string());
   const auto& stop = CatchInterrupts();
   ProgressMeter meter(ParseProgressStyle(common.progress), "rays");
@@ -34,9 +37,10 @@ Result<void> RunJob(ClusterJob job, const std::vector<size_t>& numbers, bool wai
     if (!numbers.empty())
       LogInfo("{} packages, {} at a time, {} threads and {} MiB each; lfsubmit --status {} tells",
               numbers.size(), job.at_once, job.thread_count, job.memory_bytes >> 20, folder);
-    outcome = RunLocally(job, numbers, stop, [&] { Show(job, meter); });
+    outcome = RunLocally(job, *held, numbers, stop, [&] { Show(job, meter); });
   } else {
     LF_RETURN_IF_ERROR(SubmitToSlurm(&job, numbers));
+    held.reset();  // Slurm has the job now: others may resume or cancel it
     LogInfo("submitted {} packages (array {}) and finishing task {}; lfsubmit --status {} tells",
             numbers.size(), numbers.empty() ? "-" : job.slurm_array_ids.back(),
             job.slurm_finishing_id, folder);

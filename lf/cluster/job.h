@@ -7,7 +7,7 @@
 //   DIR/cluster/packages/NAME.lock       held while it is rendered
 //   DIR/cluster/finish.json .log .lock   the same of the finishing task: video, contact sheet
 //   DIR/cluster/finish_frames.json       frames to be finished early
-//   DIR/cluster/lock                     held by the local engine
+//   DIR/cluster/lock                     held by who submits or resumes, and by the local engine
 //   DIR/cluster/cancelled                is there when the job is to end
 //   DIR/cluster/*.sbatch, slurm-*.out    of the engine slurm
 #pragma once
@@ -62,7 +62,7 @@ struct ClusterJob {
   std::filesystem::path File() const { return Folder() / "job.json"; }
   std::filesystem::path CancelFile() const { return Folder() / "cancelled"; }
   std::filesystem::path FinishFramesFile() const { return Folder() / "finish_frames.json"; }
-  // Held by the local engine while it runs.
+  // Held by the local engine while it runs, and by whoever changes the job (TakeJob()).
   std::filesystem::path EngineLock() const { return Folder() / "lock"; }
   bool IsCancelled() const;
 };

@@ -19,20 +19,16 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-bool IsAtWork(const JobStatus& status) {
+bool HasTasksAtWork(const JobStatus& status) {
   const auto is_at_work = [](const TaskStatus& task) {
     return task.state.phase == TaskPhase::kRunning || task.IsQueued();
   };
-  return status.phase == TaskPhase::kRunning || is_at_work(status.finishing) ||
+  return is_at_work(status.finishing) ||
          std::any_of(status.packages.begin(), status.packages.end(), is_at_work);
 }
 
-Result<void> CheckEngineIsIdle(const ClusterJob& job) {
-  if (!FileLock::IsHeld(job.EngineLock())) return {};
-  return OutputError(fmt::format(
-      "{}: is locked: another program renders this job; wait for it to end, or lfsubmit "
-      "--cancel {}",
-      job.EngineLock().string(), ShellWord(job.output_folder.string())));
+bool IsAtWork(const JobStatus& status) {
+  return status.phase == TaskPhase::kRunning || HasTasksAtWork(status);
 }
 
 void RemoveFrames(const ClusterJob& job, const JobPackage& package) {
@@ -50,7 +46,26 @@ void SleepOr(const std::atomic<bool>& stop, double seconds) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
 }
 
+// Removes the job, but not the lock that we hold.
+void RemoveJob(const ClusterJob& job) {
+  std::error_code ignored;
+  std::vector<fs::path> files;
+  for (auto entry = fs::directory_iterator(job.Folder(), ignored);
+       !ignored && entry != fs::directory_iterator(); entry.increment(ignored))
+    files.push_back(entry->path());
+  for (const fs::path& file : files)
+    if (file != job.EngineLock()) fs::remove_all(file, ignored);
+}
+
 }  // namespace
+
+Result<FileLock> TakeJob(const ClusterJob& job) {
+  LF_RETURN_IF_ERROR(CreateFolder(job.Folder()));
+  Result<FileLock> lock = FileLock::Take(job.EngineLock());
+  if (lock || !FileLock::IsHeld(job.EngineLock())) return lock;
+  return OutputError(fmt::format("{}, or lfsubmit --cancel {}", lock.error().message,
+                                 ShellWord(job.output_folder.string())));
+}
 
 Result<void> MakeRoomForJob(const ClusterJob& job, bool overwrite) {
   std::error_code ignored;
@@ -64,17 +79,15 @@ Result<void> MakeRoomForJob(const ClusterJob& job, bool overwrite) {
         "far it is, --overwrite removes it and its frames (who removes {}/cluster instead submits "
         "anew, and keeps the frames)",
         job.output_folder.string(), folder, folder));
-  LF_RETURN_IF_ERROR(CheckEngineIsIdle(job));
-  if (before && IsAtWork(LookAtJob(*before)))
+  if (before && HasTasksAtWork(LookAtJob(*before)))
     return UsageError(fmt::format("{}: is at work: lfsubmit --cancel {} first",
                                   job.output_folder.string(), folder));
   for (const JobPackage& package : job.packages) RemoveFrames(job, package);
-  fs::remove_all(job.Folder(), ignored);
+  RemoveJob(job);
   return {};
 }
 
 Result<std::vector<size_t>> PrepareResume(const ClusterJob& job) {
-  LF_RETURN_IF_ERROR(CheckEngineIsIdle(job));
   std::error_code ignored;
   fs::remove(job.CancelFile(), ignored);
   if (job.engine == ClusterEngine::kSlurm) LF_RETURN_IF_ERROR(ReleaseInSlurm(job));

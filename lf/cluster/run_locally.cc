@@ -11,7 +11,6 @@
 
 #include "lf/cluster/run_package.h"
 #include "lf/core/file.h"
-#include "lf/core/file_lock.h"
 #include "lf/core/log.h"
 #include "lf/core/shell_word.h"
 
@@ -23,10 +22,10 @@ std::string NodeName() {
   return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "here";
 }
 
-Result<void> RunLocally(const ClusterJob& job, const std::vector<size_t>& numbers,
-                        const std::atomic<bool>& stop, const std::function<void()>& look) {
+Result<void> RunLocally(const ClusterJob& job, const FileLock& /*lock*/,
+                        const std::vector<size_t>& numbers, const std::atomic<bool>& stop,
+                        const std::function<void()>& look) {
   LF_RETURN_IF_ERROR(CreateFolder(job.Folder() / "packages"));
-  LF_ASSIGN_OR_RETURN(const FileLock lock, FileLock::Take(job.EngineLock()));
   const std::string node = NodeName();
   std::atomic<size_t> next = 0, working = 0;
   const auto work = [&] {

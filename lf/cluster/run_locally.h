@@ -6,16 +6,19 @@
 #include <vector>
 
 #include "lf/cluster/job.h"
+#include "lf/core/file_lock.h"
 #include "lf/core/result.h"
 
 namespace lf {
 
 // Renders these packages, job.at_once at the same time, and finishes the film; returns when all is
 // done. A package that fails does not keep the others from being rendered.
+//   lock  of TakeJob()
 //   look  called twice a second
-// kInterrupted: `stop` or --cancel; else as FinishFilm(). kOutput: another process has the job.
-Result<void> RunLocally(const ClusterJob& job, const std::vector<size_t>& numbers,
-                        const std::atomic<bool>& stop, const std::function<void()>& look);
+// kInterrupted: `stop` or --cancel; else as FinishFilm().
+Result<void> RunLocally(const ClusterJob& job, const FileLock& lock,
+                        const std::vector<size_t>& numbers, const std::atomic<bool>& stop,
+                        const std::function<void()>& look);
 
 // The name of this machine; of a batch system's node, where it has one.
 std::string NodeName();

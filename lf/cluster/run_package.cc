@@ -17,9 +17,11 @@
 
 #include "lf/cluster/command.h"
 #include "lf/cluster/finish_frames.h"
+#include "lf/core/file.h"
 #include "lf/core/file_lock.h"
 #include "lf/core/log.h"
 #include "lf/core/shell_word.h"
+#include "lf/core/temporary_file.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -51,7 +53,8 @@ class TaskRun {
   bool IsAskedToEnd() const { return stop_ || job_.IsCancelled(); }
   Result<void> End(TaskPhase phase, int exit_code, const std::string& message);
 
-  // Runs lfrenderer once. `wants_restart` is asked about once a second; then it is ended, too.
+  // Runs lfrenderer once. What it prints goes to the file `output`, unless that is empty.
+  // `wants_restart` is asked about once a second; then it is ended, too.
   Result<CommandEnd> Run(const std::vector<std::string>& words, const fs::path& output,
                          const std::function<bool()>& wants_restart);
   // What lfrenderer ended with.
@@ -310,12 +313,20 @@ Result<void> FinishFilm(const ClusterJob& job, const std::string& node,
   if (!is_whole) words.insert(words.end(), {"--frames", FrameRangeText(frames)});
   if (job.video) words.insert(words.end(), {"--video", job.video->string()});
   if (!job.contact_sheet) words.emplace_back("--no-contact-sheet");
-  const Result<CommandEnd> end = run.Run(words, job.Folder() / "report.json", [] { return false; });
+  // Of an earlier finishing task: it would look like this one's, should it fail.
+  const fs::path report = job.Folder() / "report.json";
+  std::error_code ignored;
+  fs::remove(report, ignored);
+  TemporaryFile printed(report);
+  const Result<CommandEnd> end = run.Run(words, printed.path(), [] { return false; });
   if (!end) return fail(end.error());
   if (end->signal != 0) return fail(OutputError("the finishing task was " + WordsOf(*end)));
   const std::string last = end->exit_code == 0 ? "" : run.LastMessage();
   if (end->exit_code != 0 && end->exit_code != 6)
     return fail({static_cast<ErrorKind>(end->exit_code), last});
+  if (const Result<void> kept = RenameFlushed(printed.path(), report); !kept)
+    return fail(kept.error());
+  printed.Keep();
   LF_RETURN_IF_ERROR(run.End(TaskPhase::kDone, end->exit_code, last));
   if (end->exit_code == 0) return {};
   return Error{ErrorKind::kBelowRequired,
