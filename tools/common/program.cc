@@ -8,11 +8,10 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <exception>
 #include <iostream>
-#include <new>
-#include <string_view>
 #include <system_error>
+
+#include "tools/common/process_start.h"
 
 #include "lf/core/log.h"
 
@@ -85,47 +84,6 @@ void Program::AddJsonOption(const std::string& what) {
 
 namespace {
 
-// Tells what was thrown, as the last line. Returns the exit status.
-int TellException() {
-  const auto is_about_threads = [](const std::exception& error) {
-    // oneTBB throws what has no other sign.
-    return std::string_view(error.what()).find("pthread_create") != std::string_view::npos;
-  };
-  constexpr const char* kNoThread =
-      "cannot start a thread ({}); lower --threads, or allow this user more processes (ulimit -u)";
-  try {
-    throw;
-  } catch (const std::bad_alloc&) {
-    // No memory may be left for a message that is put together.
-    std::fputs("error: out of memory; lower --memory, or render fewer frames at once\n", stderr);
-    return static_cast<int>(ErrorKind::kOutput);
-  } catch (const std::system_error& error) {
-    if (error.code() != std::errc::resource_unavailable_try_again && !is_about_threads(error)) {
-      LogMessage(LogLevel::kError, fmt::format("the system refused: {}", error.what()));
-      return static_cast<int>(ErrorKind::kOutput);
-    }
-    LogMessage(LogLevel::kError, fmt::format(kNoThread, error.what()));
-    return static_cast<int>(ErrorKind::kOutput);
-  } catch (const std::exception& error) {
-    if (is_about_threads(error)) {
-      LogMessage(LogLevel::kError, fmt::format(kNoThread, error.what()));
-      return static_cast<int>(ErrorKind::kOutput);
-    }
-    LogMessage(LogLevel::kError,
-               fmt::format("internal: {}; this is a bug, please report it", error.what()));
-  } catch (...) {
-    LogMessage(LogLevel::kError, "internal: an unknown exception; this is a bug, please report it");
-  }
-  return 1;
-}
-
-// Exceptions of threads that nobody waits for end the program, too, with their reason and an honest
-// exit status. Files that are being written keep their temporary names.
-[[noreturn]] void EndByException() {
-  const int status = std::current_exception() ? TellException() : 1;
-  std::_Exit(status);
-}
-
 // CLI11 takes "nan" for a number, and ranges let it pass.
 Result<void> CheckNoNan(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options()) {
@@ -147,7 +105,7 @@ int Program::Run(int argc, char** argv, const std::function<Result<void>()>& bod
   constexpr int kLargeBytes = 1 << 20;
   mallopt(M_MMAP_THRESHOLD, kLargeBytes);
 #endif
-  std::set_terminate(EndByException);
+  StartProcess();
   // A pipe that nobody reads and a file that may not grow are errors of the write, not the end.
   ::signal(SIGPIPE, SIG_IGN);
   ::signal(SIGXFSZ, SIG_IGN);
