@@ -54,6 +54,72 @@ class SafeOutputsTest(ProgramTestCase):
                        "-o", self.folder / "film", "--video", there)
             self.assertFalse(list(self.folder.glob("film/frame_*")))
 
+    def field_named_as_frames(self):
+        """The light field, its LF images named frame_0001.png and so on, in the folder itself."""
+        text = self.calibration.read_text()
+        images = sorted(self.field.rglob("*.png"))
+        for number, image in enumerate(images, 1):
+            name = f"frame_{number:04d}.png"
+            text = text.replace(str(image.relative_to(self.field)), name)
+            image.rename(self.field / name)
+        self.calibration.write_text(text)
+        return self.field / "frame_0001.png"
+
+    def test_frames_do_not_replace_lf_images(self):
+        picture = self.field_named_as_frames()
+        link = self.folder / "link"
+        link.symlink_to(self.field)
+        elsewhere = self.folder / "elsewhere"
+        elsewhere.mkdir()
+        (elsewhere / "frame_0001.png").symlink_to(picture)
+        words = ["frame_0001.png", "an LF image", "-o"]
+        render = [self.field, self.path, "--format", "png", "-o"]
+        before = sorted(self.field.rglob("*"))
+        for output in (self.field, link, elsewhere):
+            for more in ([], ["--overwrite"], ["--resume"]):
+                self.keeps(picture, 2, words, "lfrenderer", *render, output, *more)
+        packages = self.folder / "packages"
+        self.succeeds(PROGRAMS / "lfpreprocessor", self.field, self.path, "-o", packages, "-q")
+        self.keeps(picture, 2, words, "lfrenderer", *packages.glob("*.lfp"), "--format", "png", "-o", self.field)
+        self.keeps(picture, 2, words, "lfsubmit", *packages.glob("*.lfp"), "-o", self.field, "--", "--format", "png")
+        self.assertEqual(sorted(self.field.rglob("*")), before)
+        # Another format has other names.
+        self.succeeds(PROGRAMS / "lfrenderer", self.field, self.path, "-o", self.field, "--frames", "1", "-q")
+        self.succeeds(PROGRAMS / "lfrenderer", *render, self.folder / "film", "-q")
+
+    def test_merged_frames_do_not_replace_lf_images(self):
+        picture = self.field_named_as_frames()
+        self.succeeds(PROGRAMS / "lfrenderer", self.field, self.path, "-o", self.folder / "cut", "--shard", "1/1", "-q")
+        plates = self.folder / "cut" / "partial" / "shards"
+        for more in ("--overwrite", "--resume"):
+            self.keeps(picture, 2, ["frame_0001.png"], "lfmerge", plates, "-o", self.field, "--format", "png", more)
+        self.assertFalse((self.field / "partial").exists())
+
+    def test_what_is_read_is_not_replaced(self):
+        path = self.folder / "film" / "report.json"
+        path.parent.mkdir()
+        self.path.rename(path)
+        self.keeps(path, 2, ["report.json", "what is read"], "lfrenderer", self.field, path, "-o", path.parent)
+        # A contact sheet that is an LF image.
+        picture = next(self.field.rglob("*.png"))
+        sheet = picture.with_name("contact_sheet.png")
+        self.calibration.write_text(self.calibration.read_text().replace(picture.name, sheet.name))
+        picture.rename(sheet)
+        self.keeps(sheet, 2, ["contact_sheet.png", "an LF image"], "lfrenderer", self.field, path, "-o", sheet.parent)
+
+    def test_a_store_does_not_replace_what_it_is_made_from(self):
+        store, link = self.folder / "a.lfs", self.folder / "b.lfs"
+        self.succeeds(PROGRAMS / "lfcompressor", self.field, "-o", store, "-q")
+        link.symlink_to(store)
+        for output in (store, link):
+            self.keeps(store, 2, ["what would be read"], "lfcompressor", store, "-o", output, "--overwrite")
+        picture = next(self.field.rglob("*.png"))
+        for output in (picture, self.calibration, self.path):
+            self.keeps(output, 2, [], "lfcompressor", self.field, "-o", output, "--overwrite")
+        named = self.field / "image.lfs"
+        picture.rename(named)
+        self.keeps(named, 2, ["is no packed store"], "lfcompressor", self.field, "-o", named, "--overwrite")
+
     def test_help_that_cannot_be_written_is_an_error(self):
         for program in ("lfrenderer", "lfimport"):
             for word in ("--help", "--version"):

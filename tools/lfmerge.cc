@@ -12,6 +12,7 @@
 #include "tools/common/progress.h"
 #include "tools/render_end.h"
 
+#include "lf/calibration/open_light_field.h"
 #include "lf/core/log.h"
 #include "lf/pipeline/merge_shards.h"
 
@@ -28,6 +29,18 @@ The frames are those of a render that was not divided, to the bit; the order of 
 matter. Plates are read twice, what they say first: a shard that is missing is known before the work.
 The memory is that of one frame. Plates stay where they are. Where their renders left out LF images that
 were missing or broken, the exit code is 6.)";
+
+// The LF images of a light field that lies in the folder of the frames: plates do not know it.
+std::vector<std::filesystem::path> LfImagesIn(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> images;
+  std::error_code error;
+  if (!std::filesystem::is_directory(folder, error)) return images;
+  const lf::Result<lf::LightField> light_field = lf::OpenLightField(folder);
+  if (!light_field) return images;
+  for (uint32_t i = 0; i < light_field->size(); ++i)
+    images.push_back(light_field->ImagePath(lf::LfImageId{i}));
+  return images;
+}
 
 }  // namespace
 
@@ -60,6 +73,7 @@ int main(int argc, char** argv) {
     LF_ASSIGN_OR_RETURN(const lf::MissingLimit limit, allow_missing.Limit());
     options.signals = &lf::CatchRenderSignals();
     options.output_folder = output;
+    options.kept_files = LfImagesIn(output);
     options.format = *lf::ParseFrameFormat(format);
     if (!video.empty()) options.video = video;
     options.contact_sheet = !no_contact_sheet;

@@ -66,6 +66,7 @@ lf::Result<Rendered> RenderLightField(const lf::RenderArguments& arguments,
       lf::RenderOptions options,
       arguments.MakeOptions(common, light_field.encoding.bayer, path.frame_count()));
   options.signals = signals;
+  options.inputs.assign(arguments.inputs.begin(), arguments.inputs.end());
   if (options.reading.estimator == lf::Estimator::kBilinear)
     lf::MakeRoomForUndershoot(&light_field.encoding);
   lf::Package package = lf::PackageOfAll(std::move(light_field), std::move(path), common.seed);

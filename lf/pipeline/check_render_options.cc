@@ -8,6 +8,7 @@
 
 #include "lf/collector/frame_lens.h"
 #include "lf/core/geometry.h"
+#include "lf/pipeline/check_outputs.h"
 
 namespace lf {
 namespace {
@@ -40,6 +41,7 @@ Result<void> CheckRenderOptions(const Package& package, const RenderOptions& opt
         "--stop-when "
         "and --require, --smooth-below and --keep-plates have none: leave them out, or use hybrid "
         "(\"noise<=X\" goes with every mode)");
+  LF_RETURN_IF_ERROR(CheckOutputs(package, options));
   LF_RETURN_IF_ERROR(CheckOpacity(package.light_field.encoding, options.mode));
   LF_RETURN_IF_ERROR(CheckSlab(package, options, frames));
   if (Rebins(options.mode) && !package.choices.has_neighbours)

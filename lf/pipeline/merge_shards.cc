@@ -15,6 +15,7 @@
 #include "lf/core/file_lock.h"
 #include "lf/core/log.h"
 #include "lf/imageio/whole_file.h"
+#include "lf/pipeline/check_outputs.h"
 #include "lf/pipeline/frame_output.h"
 #include "lf/pipeline/render_pass.h"
 #include "lf/record/frame_sheet.h"
@@ -123,6 +124,7 @@ class Merger {
       LF_RETURN_IF_ERROR(CheckVideoTool());
       LF_RETURN_IF_ERROR(CheckVideoTarget(*options_.video));
     }
+    LF_RETURN_IF_ERROR(CheckOutputs(files));
     LF_RETURN_IF_ERROR(Lock());
     LF_RETURN_IF_ERROR(FindFinished());
     now_.frame_total = frames_.size();
@@ -145,6 +147,14 @@ class Merger {
   }
   fs::path PathOf(FrameId frame) const {
     return FramePath(options_.output_folder, frame, options_.format);
+  }
+
+  Result<void> CheckOutputs(const std::vector<fs::path>& files) const {
+    std::vector<fs::path> outputs = {ReportPath(), options_.output_folder / kContactSheet};
+    if (options_.video) outputs.push_back(*options_.video);
+    for (const auto& [frame, plates] : frames_) outputs.push_back(PathOf(frame));
+    LF_RETURN_IF_ERROR(CheckReplacesNone(outputs, files));
+    return CheckReplacesNone(outputs, options_.kept_files);
   }
 
   // The lock is that of a render into the same folder (lf/record/run_state.h).

@@ -16,6 +16,7 @@ namespace lf {
 
 struct MergeOptions {
   std::filesystem::path output_folder;
+  std::vector<std::filesystem::path> kept_files;  // no output may replace them
   FrameFormat format = FrameFormat::kExrHalf;
   std::optional<std::filesystem::path> video;
   bool contact_sheet = true;
@@ -36,9 +37,9 @@ struct MergeProgress {
 // plate and its picture. Each frame has its file when it is done, and not before. The report names
 // the LF images that the plates' renders left out (as many as the plates do: frame_sheet.h); its
 // selected_image_count is that of the frame that takes most, with those.
-// kUsage: frames are there, and neither resume nor overwrite; a video without all frames.
-// kInput: no plates; plates without a sheet (record/frame_sheet.h); a frame whose shards are not
-// all
+// kUsage: frames are there, and neither resume nor overwrite, or are kept_files; a video without
+// all frames. kInput: no plates; plates without a sheet (record/frame_sheet.h); a frame whose
+// shards are not all
 //   there, or there twice, or are of different renders: the message names them; a damaged plate;
 //   every frame is black.
 // kOutput: the disk, ffmpeg, another program that writes frames into the folder. kInterrupted:

@@ -35,6 +35,8 @@ struct RenderSignals {
 
 struct RenderOptions {
   std::filesystem::path output_folder;
+  // Files beside LF images that are read, and that no output may replace: calibration, path.
+  std::vector<std::filesystem::path> inputs;
   std::vector<FrameId> frames;  // ascending, of the package; empty: all of it
   FrameFormat format = FrameFormat::kExrHalf;
   std::optional<std::filesystem::path> video;  // an mp4 of the frames
