@@ -11,6 +11,7 @@
 #include "tools/common/progress.h"
 
 #include "lf/core/file.h"
+#include "lf/core/file_lock.h"
 #include "lf/core/log.h"
 #include "lf/native/transforms_json.h"
 #include "lf/path/path_yaml.h"
@@ -140,6 +141,13 @@ std::filesystem::path CalibrationIn(const Arguments& a) {
   return std::filesystem::path(a.output) / "transforms.json";
 }
 
+lf::Result<lf::FileLock> LockFolder(const std::filesystem::path& folder) {
+  LF_RETURN_IF_ERROR(lf::CreateFolder(folder));
+  LF_ASSIGN_OR_RETURN(lf::FileLock lock, lf::FileLock::Take(folder / ".lfsynth.lock"));
+  lock.RemoveInTheEnd();
+  return lock;
+}
+
 // A light field of others, or one that somebody has worked on, is not lost by a wrong -o.
 lf::Result<void> CheckMayWrite(const Arguments& a) {
   std::error_code error;
@@ -167,7 +175,6 @@ int main(int argc, char** argv) {
     const lf::ProgressStyle style = lf::ParseProgressStyle(program.common().progress);
     const uint64_t seed = program.common().seed;
     lf::CatchInterrupts();
-    LF_RETURN_IF_ERROR(CheckMayWrite(a));
     LF_ASSIGN_OR_RETURN(const lf::LfImageFormat format, FormatOf(a));
     LF_ASSIGN_OR_RETURN(lf::RigOptions rig, MakeRigOptions(a, built_in));
     rig.seed = seed;
@@ -176,6 +183,9 @@ int main(int argc, char** argv) {
     if (!a.truth.empty()) {
       LF_ASSIGN_OR_RETURN(path, lf::ReadPathYaml(a.truth, 1.0));
     }
+    // Two scenes in one folder would be mixed.
+    LF_ASSIGN_OR_RETURN(const lf::FileLock lock, LockFolder(a.output));
+    LF_RETURN_IF_ERROR(CheckMayWrite(a));
     const auto [width_px, height_px] =
         a.size_px.value_or(std::pair(built_in.width_px, built_in.height_px));
     lf::Intrinsics intrinsics = lf::IntrinsicsFor(built_in, width_px, height_px);

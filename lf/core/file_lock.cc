@@ -49,13 +49,17 @@ std::string Owner(int fd) {
 
 FileLock::FileLock(std::filesystem::path path, int fd) : path_(std::move(path)), fd_(fd) {}
 FileLock::FileLock(FileLock&& other) noexcept
-    : path_(std::move(other.path_)), fd_(std::exchange(other.fd_, -1)) {}
+    : path_(std::move(other.path_)),
+      fd_(std::exchange(other.fd_, -1)),
+      is_removed_in_the_end_(other.is_removed_in_the_end_) {}
 FileLock& FileLock::operator=(FileLock&& other) noexcept {
   std::swap(path_, other.path_);
   std::swap(fd_, other.fd_);
+  std::swap(is_removed_in_the_end_, other.is_removed_in_the_end_);
   return *this;
 }
 FileLock::~FileLock() {
+  if (is_removed_in_the_end_) Remove();
   if (fd_ >= 0) ::close(fd_);
 }
 

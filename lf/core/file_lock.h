@@ -18,18 +18,20 @@ class FileLock {
   static bool IsHeld(const std::filesystem::path& path);
   FileLock(FileLock&& other) noexcept;
   FileLock& operator=(FileLock&& other) noexcept;
-  ~FileLock();  // lets go; the file stays
+  ~FileLock();  // lets go; the file stays, unless RemoveInTheEnd() was called
 
   // For a program that is to hold the lock with us, as long as either lives.
   int fd() const { return fd_; }
 
   // Lets go, and removes the file.
   void Remove();
+  void RemoveInTheEnd() { is_removed_in_the_end_ = true; }
 
  private:
   FileLock(std::filesystem::path path, int fd);
   std::filesystem::path path_;
   int fd_ = -1;
+  bool is_removed_in_the_end_ = false;
 };
 
 }  // namespace lf

@@ -34,6 +34,18 @@ TEST(FileLock, OneAtATimeAndTheNextWhenItIsLetGo) {
   EXPECT_FALSE(FileLock::IsHeld(path));
 }
 
+TEST(FileLock, IsRemovedInTheEndIfThatIsAskedFor) {
+  const auto path = LockPath("c");
+  {
+    Result<FileLock> lock = FileLock::Take(path);
+    ASSERT_TRUE(lock);
+    lock->RemoveInTheEnd();
+    const FileLock moved = *std::move(lock);
+    EXPECT_TRUE(FileLock::IsHeld(path));
+  }
+  EXPECT_FALSE(std::filesystem::exists(path));
+}
+
 TEST(FileLock, DiesWithItsProcess) {
   const auto path = LockPath("b");
   int pipe_ends[2];
