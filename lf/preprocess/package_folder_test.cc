@@ -7,7 +7,7 @@
 #include <fstream>
 #include <optional>
 
-#include "lf/camera/testing_scenes.h"
+#include "lf/collector/test_noise_field.h"
 
 namespace lf {
 namespace {
@@ -17,15 +17,12 @@ namespace fs = std::filesystem;
 // A package of one frame and one LF image.
 Package SmallPackage() {
   Package package;
-  const testing::CameraPair pair = testing::RandomCameraPair(1);
   package.whole = {1, "0123456789abcdef", "fedcba9876543210"};
   package.places.end = 1;
   package.places.of_images = {0};
-  package.light_field.intrinsics = {pair.lf_camera.intrinsics};
-  package.light_field.cameras = {{pair.lf_camera.cam_from_world, 0, 1}};
-  package.light_field.image_names = {"a.png"};
+  package.light_field = testing::NoiseField(1);
   package.images = {{0, 1, {0, 0, 1, 1}, 1, 1}};
-  package.path.cameras = {pair.render_camera};
+  package.path.cameras = {testing::NoiseFrames().front()};
   package.frames = {{FrameId{1}, 1, 1}};
   return package;
 }
