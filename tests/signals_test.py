@@ -17,7 +17,7 @@ import unittest
 from writers_case import WritersCase
 
 WritersCase.programs = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".")
-MOMENTS = 6
+MOMENTS = 4
 SIGNALS = (signal.SIGKILL, signal.SIGTERM, signal.SIGKILL, signal.SIGINT)
 
 

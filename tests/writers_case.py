@@ -1,7 +1,10 @@
 """Calls of all programs on a tiny light field, in two ways each, and what they write."""
+import contextlib
 import hashlib
+import json
 import pathlib
 import re
+import sqlite3
 import subprocess
 import tempfile
 
@@ -43,7 +46,7 @@ class WritersCase(ProgramTestCase):
         estimator = self.ways[way]
         return [str(word) for word in {
             "lfrenderer": [self.field, self.path, "-o", out, "--estimator", estimator, "--no-contact-sheet"],
-            "lfpreprocessor": [self.field, self.path, "-o", out, "--packages", 2, "--seed", way == "b"],
+            "lfpreprocessor": [self.field, self.path, "-o", out, "--packages", 2, "--seed", int(way == "b")],
             "lfmerge": [self.world / f"cut_{way}" / "partial" / "shards", "-o", out, "--no-contact-sheet"],
             "lfcompressor": [self.field, "-o", out / "store.lfs", "--threshold", 2 + 6 * (way == "b")],
             "lfsynth": ["chart", "-o", out, "--count", 9, "--size", "32x24", "--samples", 1, "--format", "png",
@@ -60,11 +63,28 @@ class WritersCase(ProgramTestCase):
         return [str(self.programs / program), *words[:cut], *more, *words[cut:]]
 
     @staticmethod
-    def files(program, out):
-        """sha256 of what a program makes, without reports, which have times"""
+    def digest(path):
+        """sha256 of what is in a file, wherever it lies and in whatever order it was written"""
+        content = path.read_bytes()
+        if path.suffix in (".lfp", ".lfs"):
+            with contextlib.closing(sqlite3.connect(f"file:{path}?immutable=1", uri=True)) as database:
+                tables = [name for name, in database.execute("select name from sqlite_master where type = 'table'")]
+                rows = [(table, row) for table in tables for row in database.execute(f"select * from {table}")
+                        if not str(row[0]).startswith("folder")]
+            content = repr(sorted(map(repr, rows))).encode()
+        elif path.name == "transforms.json":
+            field = json.loads(content)
+            names = [frame.pop("file_path").rpartition("/")[2] for frame in field["frames"]]
+            field = {key: value for key, value in field.items() if not isinstance(value, str)}
+            content = json.dumps([field, names], sort_keys=True).encode()
+        return hashlib.sha256(content).hexdigest()
+
+    @classmethod
+    def files(cls, program, out):
+        """digests of what a program makes, without reports, which have times"""
         kinds = {"lfrenderer": "frame_*", "lfmerge": "frame_*", "lfsubmit": "frame_*", "lfpreprocessor": "*.lfp",
                  "lfcompressor": "*.lfs", "lfimport": "*.json", "lfexample": "*.yaml", "lfsynth": "**/[!.]*"}
-        return {str(path.relative_to(out)): hashlib.sha256(path.read_bytes()).hexdigest()
+        return {str(path.relative_to(out)): cls.digest(path)
                 for path in sorted(out.glob(kinds[program])) if path.is_file()}
 
     def expect(self, program, way):

@@ -13,7 +13,7 @@ import unittest
 from writers_case import WritersCase
 
 WritersCase.programs = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".")
-ATTEMPTS = 3
+ATTEMPTS = 2
 
 
 class WritersTest(WritersCase):
@@ -28,7 +28,7 @@ class WritersTest(WritersCase):
             for way in "ab" if attempt % 2 else "ba":
                 processes[way] = subprocess.Popen(self.command(program, way, out, *more), stdout=subprocess.DEVNULL,
                                                   stderr=subprocess.PIPE, text=True)
-                time.sleep(0.03 * (attempt // 2))
+                time.sleep(0.03 * attempt)
             said = {way: process.communicate(timeout=240)[1] for way, process in processes.items()}
             codes = {way: process.returncode for way, process in processes.items()}
             winners = [way for way in "ab" if codes[way] == 0]

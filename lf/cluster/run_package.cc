@@ -320,6 +320,9 @@ Result<void> FinishFilm(const ClusterJob& job, const std::string& node,
   TemporaryFile printed(report);
   const Result<CommandEnd> end = run.Run(words, printed.path(), [] { return false; });
   if (!end) return fail(end.error());
+  // A signal that we passed on before lfrenderer could catch it.
+  if (end->signal == SIGTERM && run.IsAskedToEnd())
+    return fail({ErrorKind::kInterrupted, "interrupted"});
   if (end->signal != 0) return fail(OutputError("the finishing task was " + WordsOf(*end)));
   const std::string last = end->exit_code == 0 ? "" : run.LastMessage();
   if (end->exit_code != 0 && end->exit_code != 6)
