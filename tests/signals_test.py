@@ -137,4 +137,4 @@ class SignalsTest(WritersCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0]])
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]])

@@ -93,4 +93,4 @@ class WritersTest(WritersCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0]])
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]])
