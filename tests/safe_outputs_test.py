@@ -112,7 +112,7 @@ class SafeOutputsTest(ProgramTestCase):
         self.succeeds(PROGRAMS / "lfcompressor", self.field, "-o", store, "-q")
         link.symlink_to(store)
         for output in (store, link):
-            self.keeps(store, 2, ["what would be read"], "lfcompressor", store, "-o", output, "--overwrite")
+            self.keeps(store, 2, ["is a packed store already"], "lfcompressor", store, "-o", output, "--overwrite")
         picture = next(self.field.rglob("*.png"))
         for output in (picture, self.calibration, self.path):
             self.keeps(output, 2, [], "lfcompressor", self.field, "-o", output, "--overwrite")

@@ -24,12 +24,10 @@ double Now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// Whether a store has the name. kUsage: something else has, or the store that is the source.
-Result<bool> IsThere(const fs::path& path, const fs::path& source) {
+// Whether a store has the name. kUsage: something else has.
+Result<bool> IsThere(const fs::path& path) {
   std::error_code error;
   if (!fs::exists(fs::symlink_status(path, error))) return false;
-  if (fs::equivalent(path, source, error))
-    return UsageError(fmt::format("{}: is what would be read: give another name", path.string()));
   if (IsPackedStore(path)) return true;
   return UsageError(
       fmt::format("{}: is there already, and is no packed store: give another name, or remove it",
@@ -253,7 +251,7 @@ Result<void> Compressor::FindSkipped() {
 // Finds out if there is a store, and what is to be done with it.
 Result<void> Compressor::Look() {
   const fs::path& store = options_.store;
-  LF_ASSIGN_OR_RETURN(const bool is_there, IsThere(store, source_.light_field.folder));
+  LF_ASSIGN_OR_RETURN(const bool is_there, IsThere(store));
   const bool is_unfinished = PackedStoreWriter::IsUnfinished(store);
   if (options_.overwrite) return {};
   if (options_.resume) {

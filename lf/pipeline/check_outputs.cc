@@ -87,7 +87,6 @@ std::vector<fs::path> OutputsOf(const Package& package, const RenderOptions& opt
     outputs.push_back(folder / ("contact_sheet-" + package.name + ".png"));
     outputs.push_back(folder / ("report-" + package.name + ".json"));
   }
-  if (options.video) outputs.push_back(*options.video);
   for (const FrameId frame : options.frames.empty() ? package.FrameIds() : options.frames) {
     outputs.push_back(FramePath(folder, frame, options.format));
     if (options.keep_plates)

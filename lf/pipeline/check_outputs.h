@@ -16,8 +16,9 @@ Result<void> CheckReplacesNone(const std::vector<std::filesystem::path>& outputs
                                const std::vector<std::filesystem::path>& inputs);
 
 // kUsage if a file that the render writes into its folder is an LF image or a mask of the package,
-// or one of options.inputs. Links to folders are followed; links to files are in light fields of up
-// to 20,000 LF images, since that costs a look at the disk for each.
+// or one of options.inputs. CheckVideoTarget() looks at the video. Links to folders are followed;
+// links to files are in light fields of up to 20,000 LF images, since that costs a look at the disk
+// for each.
 Result<void> CheckOutputs(const Package& package, const RenderOptions& options);
 
 }  // namespace lf

@@ -151,7 +151,6 @@ class Merger {
 
   Result<void> CheckOutputs(const std::vector<fs::path>& files) const {
     std::vector<fs::path> outputs = {ReportPath(), options_.output_folder / kContactSheet};
-    if (options_.video) outputs.push_back(*options_.video);
     for (const auto& [frame, plates] : frames_) outputs.push_back(PathOf(frame));
     LF_RETURN_IF_ERROR(CheckReplacesNone(outputs, files));
     return CheckReplacesNone(outputs, options_.kept_files);
