@@ -17,6 +17,7 @@ namespace fs = std::filesystem;
 // A package of one frame and one LF image.
 Package SmallPackage() {
   Package package;
+  package.choices.has_neighbours = false;
   package.whole = {1, "0123456789abcdef", "fedcba9876543210"};
   package.places.end = 1;
   package.places.of_images = {0};
@@ -59,7 +60,8 @@ TEST_F(PackageFolderTest, PackagesAppearTogether) {
     ASSERT_TRUE(folder.Publish());
   }
   EXPECT_EQ(Names(), (std::vector<std::string>{"package-0000.lfp", "package-0001.lfp"}));
-  EXPECT_TRUE(ReadPackage(folder_ / "package-0001.lfp"));
+  const Result<Package> package = ReadPackage(folder_ / "package-0001.lfp");
+  EXPECT_TRUE(package) << package.error().message;
 }
 
 TEST_F(PackageFolderTest, NothingIsLeftOfWhatIsNotPublished) {
