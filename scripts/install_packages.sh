@@ -1,16 +1,18 @@
 #!/usr/bin/env bash
-# Installs the packages of scripts/packages.txt that are missing, and says which.
+# Installs the packages of a list that are missing, and says which.
 #
-# usage: scripts/install_packages.sh
+# usage: scripts/install_packages.sh [LIST]      default: scripts/packages.txt
 #
+# A line of LIST is PACKAGE WHY.
 # Nothing missing: says nothing and needs no rights. Otherwise apt-get does the work, as root or
 # through a sudo that asks no password; who has neither is told the exact command to run (exit 1).
 # On systems without dpkg it lists what is needed and leaves the rest to CMake's own messages.
 set -euo pipefail
+list=$(realpath "${1:-$(dirname "$0")/packages.txt}")
 cd "$(dirname "$0")/.."
 source scripts/patiently.sh
 
-mapfile -t wanted < <(awk '!/^#/ && NF { print $1 }' scripts/packages.txt)
+mapfile -t wanted < <(awk '!/^#/ && NF { print $1 }' "$list")
 
 if ! command -v dpkg-query >/dev/null; then
   echo "This is no Debian: $(basename "$0") installs nothing. Under Debian's names it takes:"
