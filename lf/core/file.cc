@@ -9,6 +9,7 @@
 #include <cstring>
 #include <set>
 #include <system_error>
+#include <vector>
 
 #include "lf/core/files_nearby.h"
 #include "lf/core/temporary_file.h"
@@ -32,6 +33,10 @@ class FileDescriptor {
 };
 
 std::string SystemReason() { return std::strerror(errno); }
+
+fs::path ParentOf(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
 
 // Where a write to `path` ends: the file a link leads to. A device or pipe is no place for a file:
 // renaming over it would replace it.
@@ -156,7 +161,7 @@ Result<void> RenameFlushed(std::span<const Renaming> files) {
   for (const auto& [from, to] : files) {
     if (::rename(from.c_str(), to.c_str()) != 0)
       return OutputError(fmt::format("{}: cannot be renamed to: {}", to.string(), SystemReason()));
-    folders.insert(to.has_parent_path() ? to.parent_path() : fs::path("."));
+    folders.insert(ParentOf(to));
   }
   // A rename itself is on the disk once its folder is.
   for (const fs::path& folder : folders) LF_RETURN_IF_ERROR(FlushToDisk(folder));
@@ -165,10 +170,15 @@ Result<void> RenameFlushed(std::span<const Renaming> files) {
 
 Result<void> CreateFolder(const fs::path& folder) {
   std::error_code error;
+  std::vector<fs::path> missing;
+  for (fs::path at = folder; !at.empty() && !fs::exists(at, error); at = at.parent_path())
+    missing.push_back(at);
   fs::create_directories(folder, error);
   if (error || !fs::is_directory(folder, error))
     return OutputError(fmt::format("{}: cannot be created as a folder: {}", folder.string(),
                                    error ? error.message() : "a file has this name"));
+  // A new folder is on the disk, with all that is in it, once its parent is.
+  for (const fs::path& made : missing) LF_RETURN_IF_ERROR(FlushToDisk(ParentOf(made)));
   return {};
 }
 
