@@ -96,7 +96,8 @@ lf::Result<void> CheckMayWrite(const std::string& output) {
   if (!std::filesystem::is_regular_file(output, error)) return {};
   constexpr size_t kLongestPath = size_t{64} << 20;
   const lf::Result<std::string> text = lf::ReadFile(output, kLongestPath);
-  if (text && (text->empty() || text->find("format: lfpath") != std::string::npos)) return {};
+  if (!text) return text.error();
+  if (text->empty() || text->find("format: lfpath") != std::string::npos) return {};
   return lf::UsageError(
       fmt::format("{}: exists and is no camera path; give another name, or remove it", output));
 }

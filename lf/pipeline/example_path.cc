@@ -8,6 +8,7 @@
 
 #include "lf/camera/ray_through.h"
 #include "lf/capture/capture_geometry.h"
+#include "lf/core/log.h"
 #include "lf/pipeline/example_focus.h"
 
 namespace lf {
@@ -197,7 +198,7 @@ Result<ExamplePath> MakeExamplePath(const LightField& light_field, const LfImage
       "  focus_distance: {:.6g}         # {}\n"
       "  blades: 0                     # 5 makes highlights pentagons\n"
       "  focus_tilt_deg: {{horizontal: 0, vertical: 0}}\n",
-      options.camera.value, light_field.image_names[options.camera.value], kFps,
+      options.camera.value, OneLine(light_field.image_names[options.camera.value]), kFps,
       is_still ? 1 : kFrameCount, frame.width_px, frame.height_px, field_of_view_deg,
       focal_length_mm, kNominalSensorWidth_mm, Text(camera.CentreWorld()),
       Text(camera.CentreWorld() + focus.distance_w * camera.ForwardWorld()), Text(up),
