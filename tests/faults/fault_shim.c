@@ -5,6 +5,7 @@
 //   FAULT_PATH     only on paths that hold this word
 //   FAULT_KIND     open read write fsync rename unlink mkdir stat mmap thread malloc
 //   FAULT_K        which call of the kind, from 1; with FAULT_ALWAYS=1 all from there on
+//   FAULT_ONCE     1: in no process once FAULT_LOG is there; programs start others
 //   FAULT_ERRNO    a number; or "kill": the process is killed; "short": half is read or written
 //   FAULT_LOG      the fault that happened is written there
 //   FAULT_TRACE    every call is written there: KIND K FUNCTION PATH
@@ -32,7 +33,8 @@ static const char* const kNames[KINDS] = {"open",  "read", "write", "fsync",  "r
 static const size_t kLargeBytes = 65536;
 
 static atomic_long counts[KINDS];
-static int fault_kind = -1, fault_errno = 0, is_kill = 0, is_short = 0, is_always = 0, is_ready = 0;
+static int fault_kind = -1, fault_errno = 0, is_kill = 0, is_short = 0, is_always = 0, is_once = 0,
+           is_ready = 0;
 static long fault_k = -1;
 static const char* path_word = "";
 static char log_path[512], trace_path[512];
@@ -64,6 +66,7 @@ __attribute__((constructor)) static void begin(void) {
       if (strcmp(value, kNames[i]) == 0) fault_kind = i;
   if ((value = getenv("FAULT_K"))) fault_k = atol(value);
   if ((value = getenv("FAULT_ALWAYS"))) is_always = atoi(value);
+  if ((value = getenv("FAULT_ONCE"))) is_once = atoi(value);
   if ((value = getenv("FAULT_ERRNO"))) {
     is_kill = strcmp(value, "kill") == 0;
     is_short = strcmp(value, "short") == 0;
@@ -86,6 +89,7 @@ static int hit(enum Kind kind, const char* function, const char* path) {
   if (trace_path[0]) append(trace_path, kNames[kind], k, function, path);
   if ((int)kind != fault_kind || fault_k < 1) return 0;
   if (k != fault_k && !(is_always && k > fault_k)) return 0;
+  if (is_once && syscall(SYS_faccessat, AT_FDCWD, log_path, F_OK) == 0) return 0;
   if (log_path[0]) append(log_path, kNames[kind], k, function, path);
   if (is_kill) {
     syscall(SYS_kill, getpid(), SIGKILL);
