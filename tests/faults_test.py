@@ -119,7 +119,13 @@ class Hunt:
         if way in ("short", str(EINTR)):
             faults.append(f"not tried again: {last_line(errors)[:200]}")
         faults += faults_of_finals(final, right, old)
+        if way == "kill":  # a lock that is left behind keeps nobody out
+            return faults + faults_of_going_on(call.again, self.run, self.files_but_locks, right)
         return faults + faults_of_going_on(call.again, self.run, lambda: files_of(self.work), right)
+
+    def files_but_locks(self):
+        final, temporary = files_of(self.work)
+        return final, [name for name in temporary if not name.endswith("lock")]
 
     def hunt(self, call):
         """Returns the number of tries, and the places of those that failed."""

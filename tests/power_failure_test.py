@@ -64,7 +64,11 @@ class PowerFailures:
         faults = faults_of_finals(final, right, old)
         if is_last and (lost := differing(final, right)):
             faults.append(f"status 0, but not on the disk: {lost[:4]}")
-        return faults + faults_of_going_on(call.again, run, lambda: files_of(self.work), right)
+
+        def files():
+            final, temporary = files_of(self.work)
+            return final, [name for name in temporary if not name.endswith("lock")]  # these keep nobody out
+        return faults + faults_of_going_on(call.again, run, files, right)
 
     def hunt(self, call):
         """Returns the number of tries and of failures."""
