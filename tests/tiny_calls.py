@@ -129,6 +129,8 @@ class TinyCalls:
     def printers(self):
         """Returns the calls of programs that print, and of one that writes a page."""
         view = [self.programs / "lfvisualizer", str(self.field), str(self.path)]
+        export = [*view, "--export", str(self.out)]
+        anew = ["sh", "-c", 'rm -rf "$1"; shift; exec "$@"', "sh", str(self.out), *map(str, export)]
         return [Call("lfcammvminfo", [self.programs / "lfcammvminfo", str(self.path)], prints=True),
                 Call("lfvisualizer --text", [*view, "--text"], prints=True),
-                Call("lfvisualizer --export", [*view, "--export", str(self.out)])]
+                Call("lfvisualizer --export", export, [anew])]
