@@ -29,10 +29,15 @@ sure, and what to try. Render it with:
 lfrenderer LIGHTFIELD PATH.yaml -o DIR)";
 
 // Returns the LF camera nearest to the middle that is nearly level, since levelling a picture crops
-// it, and whose image can be read.
-lf::LfImageId FindMiddleCamera(const lf::LightField& light_field, const lf::LfImageStore& store) {
+// it, and whose image can be read. kOutput: the machine lacks memory or open files.
+lf::Result<lf::LfImageId> FindMiddleCamera(const lf::LightField& light_field,
+                                           const lf::LfImageStore& store) {
+  lf::MachineFailure failure;
   const auto is_readable = [&](lf::LfImageId id) {
-    return lf::LoadWithoutThrowing(store, id, {0, 0, 1, 1}, "", lf::LfPixels()).has_value();
+    const lf::Result<lf::LfPixels> pixel = lf::LoadWithoutThrowing(
+        store, id, {0, 0, 1, 1}, light_field.image_names[id.value], lf::LfPixels());
+    if (!pixel) failure.Note(pixel.error());
+    return pixel.has_value();
   };
   const lf::Vec3 up = lf::MeanUpWorld(light_field);
   const double most_rad = lf::RadiansFromDegrees(3);
@@ -41,7 +46,10 @@ lf::LfImageId FindMiddleCamera(const lf::LightField& light_field, const lf::LfIm
   };
   const lf::LfImageId level = lf::MiddleCamera(
       light_field, [&](lf::LfImageId id) { return is_level(id) && is_readable(id); });
-  return is_level(level) && is_readable(level) ? level : lf::MiddleCamera(light_field, is_readable);
+  const lf::LfImageId found =
+      is_level(level) && is_readable(level) ? level : lf::MiddleCamera(light_field, is_readable);
+  LF_RETURN_IF_ERROR(failure.Check());
+  return found;
 }
 
 // Finds a camera by its number, or by the name of its image: the whole name, its last part, or that

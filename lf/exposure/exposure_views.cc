@@ -82,6 +82,7 @@ Result<std::vector<ExposureView>> LoadExposureViews(const LightField& light_fiel
                                                     const LoadViewsOptions& options,
                                                     ThreadPool& pool) {
   std::vector<ExposureView> views(light_field.size());
+  MachineFailure failure;
   for (size_t begin = 0; begin < views.size(); begin += kMostAtOnce) {
     if (options.interrupted && *options.interrupted)
       return Error{ErrorKind::kInterrupted,
@@ -94,13 +95,17 @@ Result<std::vector<ExposureView>> LoadExposureViews(const LightField& light_fiel
       const Result<LfPixels> pixels =
           LoadWithoutThrowing(store, id, {0, 0, k.width_px, k.height_px},
                               light_field.ImagePath(id).string(), LfPixels());
-      if (!pixels) return;
+      if (!pixels) {
+        failure.Note(pixels.error());
+        return;
+      }
       const int divisor = DivisorOf(k.width_px, options.width_px);
       views[id.value].light =
           LightOf(*pixels, divisor, light_field.encoding.pedestal,
                   ClippedFrom(light_field.encoding, light_field.image_names[id.value]));
       views[id.value].grey = std::make_shared<const ReducedImage>(Reduced(*pixels, divisor));
     });
+    LF_RETURN_IF_ERROR(failure.Check());
     if (options.progress) options.progress(begin + count, views.size());
   }
   return views;

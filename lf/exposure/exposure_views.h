@@ -38,7 +38,8 @@ struct LoadViewsOptions {
 // Bytes that a view of this width takes, for LF images of these sizes.
 size_t ViewBytes(const Intrinsics& k, int width_px);
 
-// The views of all LF images, each of which is loaded once. kInterrupted.
+// The views of all LF images, each of which is loaded once; those that cannot be loaded have none.
+// kInterrupted. kOutput: the machine lacks memory or open files.
 //   light_field  without gains and falloffs (WithoutExposure())
 //   store        of it, with Mosaics::kToRgb
 Result<std::vector<ExposureView>> LoadExposureViews(const LightField& light_field,

@@ -18,8 +18,11 @@ namespace {
 constexpr size_t kLeastViews = 2;
 constexpr size_t kMostAtOnce = 4;  // whole LF images in memory
 
-// Loads the views. Views that cannot be loaded are left out, and rings with too few views.
-void LoadRings(const LightField& field, const LfImageStore& store, ThreadPool& pool, Rings* rings) {
+// Loads the views. Views that cannot be loaded are left out, and rings with too few views. kOutput:
+// the machine's failure.
+Result<void> LoadRings(const LightField& field, const LfImageStore& store, ThreadPool& pool,
+                       Rings* rings) {
+  MachineFailure failure;
   std::vector<View*> views;
   for (std::vector<View>& ring : *rings)
     for (View& view : ring) views.push_back(&view);
@@ -28,10 +31,14 @@ void LoadRings(const LightField& field, const LfImageStore& store, ThreadPool& p
       View& view = *views[begin + i];
       if (Result<ReducedImage> image = LoadReducedImage(field, store, view.id))
         view.image = std::make_shared<const ReducedImage>(*std::move(image));
+      else
+        failure.Note(image.error());
     });
+  LF_RETURN_IF_ERROR(failure.Check());
   for (std::vector<View>& ring : *rings)
     std::erase_if(ring, [](const View& view) { return view.image == nullptr; });
   std::erase_if(*rings, [](const std::vector<View>& ring) { return ring.size() < kLeastViews; });
+  return {};
 }
 
 }  // namespace
@@ -41,7 +48,7 @@ Result<Subject> FindSubject(const LightField& light_field, const LfImageStore& s
   Subject subject;
   LF_ASSIGN_OR_RETURN(const ReducedImage image, LoadReducedImage(light_field, store, camera));
   Rings rings = ChooseRings(light_field, camera);
-  LoadRings(light_field, store, pool, &rings);
+  LF_RETURN_IF_ERROR(LoadRings(light_field, store, pool, &rings));
   const std::vector<Place> places = TexturedPlaces(light_field, camera, image);
   subject.textured_count = places.size();
   if (rings.empty()) return subject;

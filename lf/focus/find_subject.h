@@ -39,6 +39,7 @@ struct Subject {
 // tenth of the weight of all, and depths were found for a quarter of the textured places.
 //   store  one with Mosaics::kToRgb
 // kInput: the image of `camera` cannot be loaded. Others that cannot be loaded are left out.
+// kOutput: the machine lacks memory or open files.
 Result<Subject> FindSubject(const LightField& light_field, const LfImageStore& store,
                             LfImageId camera, ThreadPool& pool);
 

@@ -26,7 +26,7 @@ class DrawnStore : public LfImageStore {
  public:
   DrawnStore(const LightField& field, Light light) : field_(field), light_(std::move(light)) {}
   Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override {
-    if (id == broken) return InputError("drawn.png: not found");
+    if (id == broken) return failure;
     const PinholeCamera camera = field_.Camera(id);
     pixels->Reset(rect, BayerPattern::kNone);
     for (int y = 0; y < rect.height(); ++y)
@@ -43,6 +43,7 @@ class DrawnStore : public LfImageStore {
   }
 
   LfImageId broken{1000000};
+  Error failure = InputError("drawn.png: not found");
 
  private:
   const LightField& field_;
@@ -211,6 +212,17 @@ TEST(FindSubject, LeavesOutImagesThatCannotBeLoaded) {
   EXPECT_TRUE(FindSubject(field, store, middle, pool)->is_sure);
   store.broken = middle;
   EXPECT_FALSE(FindSubject(field, store, middle, pool));
+}
+
+TEST(FindSubject, LeavesOutNoImageThatTheMachineCannotLoad) {
+  ThreadPool pool(2);
+  const LightField field = Grid(9, 9, 0.02);
+  DrawnStore store(field, Wall(1));
+  store.broken = {MiddleOf(field).value + 2};
+  store.failure = OutputError("drawn.png: no memory to load it");
+  const Result<Subject> subject = FindSubject(field, store, MiddleOf(field), pool);
+  ASSERT_FALSE(subject);
+  EXPECT_EQ(subject.error().kind, ErrorKind::kOutput);
 }
 
 TEST(FindSubject, TwoCamerasAreTooFew) {

@@ -219,7 +219,8 @@ PixelRect PartOf(const View& view, const SearchRay& search, const Sweep& sweep) 
   return Intersection(part, {0, 0, k.width_px, k.height_px});
 }
 
-// Reads what is needed of them; those that cannot be read are left out.
+// Reads what is needed of them; those that cannot be read are left out, unless the machine failed
+// (kOutput).
 Result<void> LoadViews(const LightField& field, const LfImageStore& store, const SearchRay& search,
                        const Sweep& sweep, ThreadPool& pool, std::vector<View>* views) {
   std::vector<std::optional<Error>> errors(views->size());
@@ -235,6 +236,8 @@ Result<void> LoadViews(const LightField& field, const LfImageStore& store, const
       errors[i] = pixels.error();
   });
   std::erase_if(*views, [](const View& view) { return view.pixels.rect.empty(); });
+  for (const auto& error : errors)
+    if (error && error->kind == ErrorKind::kOutput) return *error;
   if (views->size() > kLeastViews) return {};
   for (const auto& error : errors)
     if (error) return *error;

@@ -215,8 +215,10 @@ class Merger {
   }
 
   Result<void> FindFinished() {
+    RunInputs film_before;
     if (options_.resume && fs::exists(ReportPath())) {
       LF_ASSIGN_OR_RETURN(const RenderReport earlier, ReadReport(ReportPath()));
+      film_before = earlier.inputs;
       for (const FrameReport& frame : earlier.frames) reports_[frame.frame] = frame;
     }
     for (const auto& [frame, plates] : frames_) {
@@ -226,6 +228,11 @@ class Merger {
             "{}: is there already: --resume keeps such frames, --overwrite replaces them",
             PathOf(frame).string()));
       if (!reports_.contains(frame)) continue;
+      if (const auto difference = DifferenceFrom(film_before, plates.front().sheet)) {
+        LogWarning("{}: {}; the frame is made again", PathOf(frame).string(),
+                   difference->Text("was made with", "these plates have"));
+        continue;
+      }
       const Result<void> whole = CheckFileIsWhole(PathOf(frame));
       if (whole)
         finished_.insert(frame);
@@ -233,6 +240,15 @@ class Merger {
         LogWarning("{}; the frame is made again", whole.error().message);
     }
     return {};
+  }
+
+  // Compares the film and the frame of an earlier report with those of the plates: an interrupted
+  // --overwrite leaves frames of the film that it was to replace.
+  std::optional<InputDifference> DifferenceFrom(const RunInputs& film_before,
+                                                const FrameSheet& sheet) const {
+    if (const auto difference = FirstDifference(film_before, FilmInputs())) return difference;
+    return FirstDifference(reports_.at(sheet.frame).camera,
+                           InputsOfCamera(sheet.frame, sheet.camera));
   }
 
   Result<void> WriteFrameOf(const std::vector<ShardPlate>& plates) {
@@ -278,18 +294,26 @@ class Merger {
     return {};
   }
 
-  RenderReport Report() const {
+  // What all frames have in common.
+  RunInputs FilmInputs() const {
     const ShardPlate& first = frames_.begin()->second.front();
-    RenderReport report;
-    report.version = first.sheet.version;
+    RunInputs inputs;
     for (const auto& entry : first.inputs)
       if (!entry.first.starts_with("sheet.") && !entry.first.starts_with("frame"))
-        report.inputs.push_back(entry);
+        inputs.push_back(entry);
     RunChoices picture;
     picture.format = NameOf(options_.format);
     picture.smooth_below = first.sheet.develop.smooth_below;
     picture.fill_radius_px = first.sheet.develop.fill_radius_px;
-    for (auto& entry : InputsOfPicture(picture)) report.inputs.push_back(std::move(entry));
+    for (auto& entry : InputsOfPicture(picture)) inputs.push_back(std::move(entry));
+    return inputs;
+  }
+
+  RenderReport Report() const {
+    const ShardPlate& first = frames_.begin()->second.front();
+    RenderReport report;
+    report.version = first.sheet.version;
+    report.inputs = FilmInputs();
     report.estimator = first.sheet.estimator;
     report.width = first.width_px;
     report.height = first.height_px;

@@ -23,4 +23,16 @@ Result<LfPixels> LoadWithoutThrowing(const LfImageStore& store, LfImageId id, co
   }
 }
 
+void MachineFailure::Note(const Error& error) {
+  if (error.kind != ErrorKind::kOutput) return;
+  const std::lock_guard lock(mutex_);
+  if (!first_) first_ = error;
+}
+
+Result<void> MachineFailure::Check() const {
+  const std::lock_guard lock(mutex_);
+  if (first_) return *first_;
+  return {};
+}
+
 }  // namespace lf

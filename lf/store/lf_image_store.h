@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <mutex>
+#include <optional>
 #include <string>
 
 #include "lf/capture/lf_pixels.h"
@@ -48,5 +50,20 @@ class LfImageStore {
 // thread ends the program.
 Result<LfPixels> LoadWithoutThrowing(const LfImageStore& store, LfImageId id, const PixelRect& rect,
                                      const std::string& name, LfPixels pixels);
+
+// The first failure to load that is the machine's (no memory, no open files). Whoever leaves out LF
+// images that cannot be loaded asks it in the end: other images were as good as those that are
+// left. All functions may be called by many threads at the same time.
+class MachineFailure {
+ public:
+  // Ignores errors of the image itself, which are not kOutput.
+  void Note(const Error& error);
+  // Returns the first error that was noted, which is kOutput.
+  Result<void> Check() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::optional<Error> first_;
+};
 
 }  // namespace lf
