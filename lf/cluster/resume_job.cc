@@ -107,6 +107,15 @@ Result<std::vector<size_t>> PrepareResume(const ClusterJob& job) {
     state.crash_count = 0;
     LF_RETURN_IF_ERROR(WriteTaskState(state, PackageTask(job, i).state));
   }
+  // The film was finished before, and something of it is missing: until it is finished again, it
+  // must not be called done.
+  if (status.finishing.state.phase == TaskPhase::kDone && !status.finishing.IsQueued()) {
+    std::error_code error;
+    fs::remove(FinishingTask(job).state, error);
+    if (error)
+      return OutputError(fmt::format("{}: cannot be removed: {}", FinishingTask(job).state.string(),
+                                     error.message()));
+  }
   LogInfo("going on: {} of {} packages are done", status.Count(TaskPhase::kDone),
           job.packages.size());
   return numbers;

@@ -7,6 +7,8 @@
 #include <array>
 #include <chrono>
 #include <cstdlib>
+#include <mutex>
+#include <optional>
 #include <thread>
 
 #include "lf/cluster/run_package.h"
@@ -28,6 +30,8 @@ Result<void> RunLocally(const ClusterJob& job, const FileLock& /*lock*/,
   LF_RETURN_IF_ERROR(CreateFolder(job.Folder() / "packages"));
   const std::string node = NodeName();
   std::atomic<size_t> next = 0, working = 0;
+  std::mutex error_mutex;
+  std::optional<Error> no_state;  // the first task whose state could not be read or written
   const auto work = [&] {
     for (size_t i = next++; i < numbers.size() && !stop && !job.IsCancelled(); i = next++) {
       const std::string name = PackageTask(job, numbers[i]).name;
@@ -36,6 +40,8 @@ Result<void> RunLocally(const ClusterJob& job, const FileLock& /*lock*/,
       // Interruptions are no news.
       if (!outcome && outcome.error().kind != ErrorKind::kInterrupted)
         LogWarning("{}{}", state ? "" : name + ": ", outcome.error().message);
+      const std::lock_guard lock(error_mutex);
+      if (!state && !no_state) no_state = state.error();
     }
     --working;
   };
@@ -53,6 +59,7 @@ Result<void> RunLocally(const ClusterJob& job, const FileLock& /*lock*/,
   if (stop)
     return Error{ErrorKind::kInterrupted,
                  "interrupted; the state of all packages is kept; " + again};
+  if (no_state) return Error{no_state->kind, fmt::format("{}; {}", no_state->message, again)};
   return FinishFilm(job, node, stop);
 }
 
