@@ -19,7 +19,7 @@ release=build/release
 bin=$release/bin
 # Tests that say nothing more under sanitizers: of files that no compiler sees, of limits of memory (sanitizers
 # take terabytes of addresses), of other people's compilers, and whole films in many ways, which take hours.
-not_sanitized='^house\.|^web\.|^tests\.(hostile|environment|install|matrix|listed_defaults|slurm)'
+not_sanitized='^house\.|^web\.|^tests\.(hostile|environment|power|install|matrix|listed_defaults|slurm)'
 
 # Each step is a function; its comment is what --list prints.
 busy() { # ./test's tests beside two endless loops: none may depend on a quiet machine
@@ -50,19 +50,25 @@ valgrind() { # every program once under valgrind
 faults() { # five calls of each kind and file fail, in every program
   $python tests/faults_test.py $release/tests/libfault_shim.so $bin --points 5
 }
+environment() { # many limits of memory, files, processes and disks for every program, and many odd names
+  $python tests/environment_test.py $bin --all
+}
+power() { # the power fails after every step of every writer
+  $python tests/power_failure_test.py $release/tests/libwritten_log.so $bin --points 0
+}
 databases() { # every value of every column of a package and of a store, and a thousand damages of each
   $python tests/hostile_databases_test.py $bin/{lfrenderer,lfpreprocessor,lfcompressor,lfimport} --all
 }
 matrix() { # every three axes of doc/matrix.md
   $python scripts/matrix.py $bin --strength 3
 }
-mutants() { # the tests of the tests (doc/mutants.md)
+mutants() { # planted mistakes, each of which some test must notice
   $python scripts/mutants.py $release -o build/hunt/mutants.json
 }
 fuzz() { # every parser of foreign bytes
   scripts/fuzz.sh "${LF_FUZZ_MINUTES:-60}"
 }
-steps=(busy asan tsan tidy valgrind faults databases matrix mutants fuzz)
+steps=(busy asan tsan tidy valgrind faults environment power databases matrix mutants fuzz)
 
 
 list() {

@@ -26,7 +26,7 @@ def _limit():
 
 
 class Run:
-    """What one call of a program came to."""
+    """The outcome of one call of a program."""
 
     def __init__(self, name, words, folder, environment):
         self.name, self.words = name, [str(word) for word in words]

@@ -1,4 +1,4 @@
-"""What a disk holds if the power fails, from the log of tests/faults/written_log.c.
+"""Tells what a disk holds if the power fails, from the log of tests/faults/written_log.c.
 
 Two disks are known. A patient one keeps names for itself until their folder is flushed. A hasty one has
 them at once, in order. Neither has any byte of a file that was not flushed.

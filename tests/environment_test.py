@@ -50,7 +50,7 @@ ALL_DISK_SIZES = (*(f"{kib}k" for kib in (4, 8, 12, 16, 20, 24, 32, 48, 64, 96, 
 
 
 class Lack:
-    """What the machine lacks during a call."""
+    """One thing that the machine lacks during a call."""
 
     def __init__(self, name, limits=None, closed=(), user=None, environment=None):
         self.name, self.limits, self.closed, self.user = name, limits or {}, closed, user
@@ -68,7 +68,7 @@ class Lack:
 
 
 class Run:
-    """What one call of a program came to."""
+    """The outcome of one call of a program."""
 
     def __init__(self, command, lack=None):
         environment = {**os.environ, **(lack.environment if lack else {})}

@@ -15,8 +15,8 @@ namespace lf {
 // done. A package that fails does not keep the others from being rendered.
 //   lock  of TakeJob()
 //   look  called twice a second
-// kInterrupted: `stop` or --cancel. kOutput: the state of a package could not be written, or another
-// process has it. Else as FinishFilm().
+// kInterrupted: `stop` or --cancel. kOutput: the state of a package could not be written, or
+// another process has it. Else as FinishFilm().
 Result<void> RunLocally(const ClusterJob& job, const FileLock& lock,
                         const std::vector<size_t>& numbers, const std::atomic<bool>& stop,
                         const std::function<void()>& look);

@@ -313,7 +313,8 @@ Result<void> FinishFilm(const ClusterJob& job, const std::string& node,
   if (!is_whole) words.insert(words.end(), {"--frames", FrameRangeText(frames)});
   if (job.video) words.insert(words.end(), {"--video", job.video->string()});
   if (!job.contact_sheet) words.emplace_back("--no-contact-sheet");
-  // Of an earlier finishing task: it would look like this one's, should it fail.
+  // Removes the report of an earlier finishing task, which would pass for that of this one if it
+  // fails.
   const fs::path report = job.Folder() / "report.json";
   std::error_code ignored;
   fs::remove(report, ignored);

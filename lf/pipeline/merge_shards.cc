@@ -294,7 +294,7 @@ class Merger {
     return {};
   }
 
-  // What all frames have in common.
+  // Returns the inputs that all frames have in common.
   RunInputs FilmInputs() const {
     const ShardPlate& first = frames_.begin()->second.front();
     RunInputs inputs;

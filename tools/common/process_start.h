@@ -1,5 +1,5 @@
-// What holds from the first moment of a program on, before the constructors of its libraries, some
-// of which start threads, and before main().
+// Handlers that hold from the first moment of a program on, before the constructors of its
+// libraries, some of which start threads, and before main().
 #pragma once
 
 namespace lf {
