@@ -7,8 +7,8 @@
 //   DIR/cluster/packages/NAME.lock       held while it is rendered
 //   DIR/cluster/finish.json .log .lock   the same of the finishing task: video, contact sheet
 //   DIR/cluster/finish_frames.json       frames to be finished early
-//   DIR/cluster/lock                     held by a program that submits or resumes, and by the
-//   local engine DIR/cluster/cancelled                is there when the job is to end
+//   DIR/cluster/lock                     held while a job is submitted, resumed or run locally
+//   DIR/cluster/cancelled                is there when the job is to end
 //   DIR/cluster/*.sbatch, slurm-*.out    of the engine slurm
 #pragma once
 

@@ -54,7 +54,7 @@ Result<fs::path> WriteTarget(const fs::path& path) {
   return target;
 }
 
-// Who may read and write the old file may so the new one.
+// Gives the new file the permissions of the old one, if that exists.
 void CopyPermissions(const fs::path& old_file, const fs::path& new_file) {
   struct stat old {};
   if (::stat(old_file.c_str(), &old) == 0) ::chmod(new_file.c_str(), old.st_mode & 0777);

@@ -32,9 +32,9 @@ void AnnounceRead(const std::filesystem::path& path);
 // Writes a file under a temporary name in the same folder, flushes it to the disk and renames it:
 // readers see the old file or the new one, never a part. After a failure the old file is intact
 // and the temporary one is gone. After a kill the next write of the same file removes it
-// (temporary_file.h). A link is followed, and who may read and write the old file may so
-// the new one. kOutput with the system's reason (disk full,
-// no permission), or if something that is no file has the name.
+// (temporary_file.h). Follows a link, and keeps the permissions of the old file.
+// kOutput: the system's reason (disk full, no permission), or something that is no file has the
+// name.
 Result<void> WriteFileAtomically(const std::filesystem::path& path, std::string_view bytes);
 
 // The same for a writer that wants a path: `write` is given the temporary name, which keeps the

@@ -37,13 +37,16 @@ struct MergeProgress {
 // plate and its picture. Each frame has its file when it is done, and not before. The report names
 // the LF images that the plates' renders left out (as many as the plates do: frame_sheet.h); its
 // selected_image_count is that of the frame that takes most, with those.
-// kUsage: frames are there, and neither resume nor overwrite, or are kept_files; a video without
-// all frames. kInput: no plates; plates without a sheet (record/frame_sheet.h); a frame whose
-// shards are not all
-//   there, or there twice, or are of different renders: the message names them; a damaged plate;
-//   every frame is black.
-// kOutput: the disk, ffmpeg, another program that writes frames into the folder. kInterrupted:
-// frames that are written stay.
+// With resume, frames of an earlier merge are kept if they are whole and were made of the same
+// film.
+//
+// kUsage: frames are there, and neither resume nor overwrite is set; a frame would replace one of
+//   kept_files; a video without all frames.
+// kInput: no plates; plates without a sheet (record/frame_sheet.h); a frame whose shards are not
+//   all there, or there twice, or are of different renders: the message names them; a damaged
+//   plate; every frame is black.
+// kOutput: the disk, ffmpeg, another program that writes frames into the folder.
+// kInterrupted: frames that are written stay.
 Result<RenderReport> MergeShards(const std::vector<std::filesystem::path>& plates,
                                  const MergeOptions& options, ThreadPool& pool,
                                  const std::function<void(const MergeProgress&)>& progress);

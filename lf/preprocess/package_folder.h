@@ -1,4 +1,4 @@
-// The folder that receives the packages of a film: all of them at once, or none.
+// The folder that receives the packages of a film, all of them together.
 #pragma once
 
 #include <filesystem>
@@ -15,6 +15,7 @@ namespace lf {
 
 // Holds the lock DIR/.packages.lock as long as it lives. Packages are written under temporary names
 // and get their own together, when all are whole: after a kill there are those of before, or none.
+// Only a kill within Publish(), which takes milliseconds, may leave a part of them.
 class PackageFolder {
  public:
   // Creates the folder if it is missing, and removes temporary packages of killed programs.
