@@ -13,11 +13,13 @@ namespace {
 
 constexpr double kPixelsPerCell = 8;
 constexpr double kReachPerCell = 2;
-// Rays of neighbouring places are this part of a cell from each other: no cell that they run
-// through is farther than one from a marked one.
+// Distance between neighbouring spawned rays, in cells. Below 1, every cell that a ray between them
+// runs through is marked, or is a neighbour of a marked cell.
 constexpr double kSpawnStep = 0.9;
 
-// Of lens points that some part of the plate asks for: places all over what they reach.
+// Returns points of the lens, step_w apart, all over the reach of the lens points that are asked
+// for.
+//   asked  [point_count of all sets]
 std::vector<Vec2> PlacesAround(const FrameQueries& frame, const std::vector<bool>& asked,
                                double step_w) {
   std::vector<Vec2> centres;
@@ -74,7 +76,7 @@ void CoverageMap::SetGrid(const SlabSection& section, std::span<const FrameQueri
   while (true) {
     double bits = 1;
     for (int k = 0; k < kCellAxes; ++k) {
-      // One more on either side.
+      // One more cell on either side.
       double cells = std::floor(size[k] / width_w_[k / 2]) + 3;
       if (k == kCellAxes - 1) cells = std::ceil(cells / kBits) * kBits;
       bits *= cells;
@@ -93,7 +95,8 @@ void CoverageMap::SetGrid(const SlabSection& section, std::span<const FrameQueri
 void CoverageMap::Mark(const SlabPoint& point) {
   size_t index = 0;
   for (int k = 0; k < kCellAxes; ++k) {
-    // Beyond the bounds are rays that no frame asks for but by its margins.
+    // Rays beyond the bounds come from the margins of the spawned places only: no frame asks for
+    // them.
     const double place = (point[k] - low_[k]) * per_width_[k];
     if (!(place >= 0 && place < static_cast<double>(count_[k]))) return;
     index = index * count_[k] + static_cast<size_t>(place);
@@ -109,7 +112,8 @@ void CoverageMap::Spawn(const Slab& slab, const FrameQueries& frame) {
   const RenderCamera& camera = frame.camera;
   const Intrinsics& plate = camera.pinhole.intrinsics;
   const double margin_px = ReachOf(frame.kernel, frame.points).plate_px;
-  // Elements as far from each other as a cell is wide, by what the middle of the plate sees.
+  // Rays are spawned at elements that are less than a cell apart on the uv plane, measured at three
+  // places along the plate's diagonal.
   const Vec3 centre = camera.pinhole.CentreWorld();
   const auto on_uv = [&](double x, double y) -> std::optional<SlabPoint> {
     const std::optional<Vec3> focus = FocusPointOfElement(camera, x, y);
@@ -127,7 +131,7 @@ void CoverageMap::Spawn(const Slab& slab, const FrameQueries& frame) {
   const double step_px = std::max(kSpawnStep * width_w_[1] / element_uv_w, 0.5);
   const double step_w = kSpawnStep * width_w_[0];
   const size_t point_count = frame.points.point_count();
-  std::map<std::vector<bool>, std::vector<Vec2>> places_of;  // by what is asked for
+  std::map<std::vector<bool>, std::vector<Vec2>> places_of;  // by the lens points asked for
   std::vector<bool> asked(point_count, true);
   const auto steps = [&](int size_px) {
     return static_cast<int>(std::ceil((size_px + 2 * margin_px) / step_px));
@@ -156,12 +160,13 @@ void CoverageMap::Spawn(const Slab& slab, const FrameQueries& frame) {
     }
 }
 
-// What is beside a marked cell is marked.
+// Marks the neighbours of each marked cell along an axis.
 void CoverageMap::WidenAlong(int axis, ThreadPool& pool) {
   constexpr size_t kWordsAtOnce = 16384;
   const LargeVector<uint64_t> before = bits_;
   const bool is_last = axis == kCellAxes - 1;
-  // In words, from a cell to the next one: bits of a word are side by side along the last axis.
+  // Number of words from a cell to the next one along the axis. The bits of a word are neighbours
+  // along the last axis.
   size_t stride = 1;
   for (int k = axis + 1; k < kCellAxes; ++k) stride *= count_[k];
   if (!is_last) stride /= kBits;

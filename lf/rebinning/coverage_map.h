@@ -1,9 +1,10 @@
-// Which rays some frames ask for, so that no others are kept (thesis 4.3.2, "coverage map").
+// A map of the rays that some frames ask for, so that no others are kept (thesis 4.3.2, "coverage
+// map").
 //
-// The slab's bounds are cut into cells, far wider than those of rays, one bit each. Rays are
-// spawned on the lenses of all frames, as dense as these cells, and mark those that they run
-// through; then what is beside a marked cell is marked, too. It holds what is asked for, and some
-// more: no ray that is within reach of a query is left out.
+// The slab's bounds are cut into cells of one bit each, far wider than the cells of rays. Rays are
+// spawned on the lenses of all frames, as dense as these cells, and mark the cells that they run
+// through; then the neighbours of each marked cell are marked. The map covers some rays that no
+// frame asks for, but every ray that is within reach of a query.
 #pragma once
 
 #include <array>
@@ -20,9 +21,9 @@
 namespace lf {
 
 struct CoverageOptions {
-  size_t most_bytes = size_t{32} << 20;  // cells are wider where they would take more
-  // How many of them the plate is wide; they are never narrower than eight LF pixels. On the st
-  // plane they are half as wide as the reach of a lens point.
+  size_t most_bytes = size_t{32} << 20;  // cells are widened if the map would be larger
+  // Number of cells across the plate; cells are never narrower than eight LF pixels. On the st
+  // plane, a cell is half as wide as the reach of a lens point.
   int cells_across = 64;
 };
 
@@ -30,7 +31,7 @@ class CoverageMap {
  public:
   CoverageMap() = default;  // covers nothing
 
-  // Those of the section, of which some may ask for nothing.
+  //   frames  all frames of the section; some may ask for no rays
   CoverageMap(const SlabSection& section, std::span<const FrameQueries> frames,
               const CoverageOptions& options, ThreadPool& pool);
 
@@ -47,7 +48,7 @@ class CoverageMap {
   }
 
   size_t size_bytes() const { return bits_.size() * sizeof(uint64_t); }
-  double share() const;  // of cells that are marked
+  double share() const;  // marked cells / all cells
 
  private:
   static constexpr size_t kBits = 64;
@@ -59,7 +60,7 @@ class CoverageMap {
 
   SlabPoint low_ = SlabPoint::Zero();
   std::array<double, kCellAxes> per_width_ = {};
-  std::array<size_t, kCellAxes> count_ = {};  // the last a multiple of kBits
+  std::array<size_t, kCellAxes> count_ = {};  // cells along each axis; the last a multiple of kBits
   std::array<double, 2> width_w_ = {};        // of cells on the st and on the uv plane
   LargeVector<uint64_t> bits_;
 };

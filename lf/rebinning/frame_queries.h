@@ -1,5 +1,5 @@
-// What one frame asks rebinned rays for: a ray for each element and lens point, all of them or, in
-// some parts of the plate, some.
+// The rays that one frame asks rebinned rays for: one ray for each element and lens point. Parts of
+// the plate may ask for a part of the lens points only.
 #pragma once
 
 #include <optional>
@@ -15,9 +15,9 @@ struct FrameQueries {
   RenderCamera camera;
   LensPointSets points;
   QueryKernel kernel;
-  std::optional<PointShares> shares;  // none: all of all points
+  std::optional<PointShares> shares;  // none: every element asks for all points
 
-  // Whether there is any.
+  // True if an element asks for a ray.
   bool AsksForAny() const;
 };
 

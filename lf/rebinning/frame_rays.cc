@@ -15,7 +15,7 @@ class SquareTest {
         width_px_(frame.pinhole.intrinsics.width_px),
         height_px_(frame.pinhole.intrinsics.height_px) {}
 
-  // Of positions beside the plate that of the nearest element.
+  // A position beside the plate is in the square of the nearest element.
   bool IsAsked(double x_px, double y_px) const {
     if (squares_.asked.empty()) return true;
     const auto square = [](double place, int size_px) {
@@ -33,8 +33,8 @@ void Colour(const BinnedCell& cell, FrameRay* ray) {
   for (int c = 0; c < 3; ++c) ray->rgb[c] = static_cast<float>(cell.Mean(c));
 }
 
-// In the order of the cells.
-//   see(cells, rays)  appends the rays of some of them
+// Returns the rays of all cells in the order of the cells, by all threads.
+//   see(cells, rays)  appends the rays of some cells
 template <class See>
 LargeVector<FrameRay> RaysOfCells(std::span<const BinnedCell> cells, ThreadPool& pool,
                                   const See& see) {

@@ -50,7 +50,7 @@ TEST(FrameRays, GoFromTheLensThroughTheFocusPlaneToTheirElement) {
     for (const FrameRay& ray : rays) {
       const auto i = static_cast<size_t>(ray.rgb[0]);
       ASSERT_GE(i, next);
-      // Those left out are not needed, but for what a cell's middle is off.
+      // A ray that is left out is beyond the reach, up to its distance from the cell's middle ray.
       for (; next < i; ++next) {
         const auto& [x, y, lens_x, lens_y] = expected[next];
         EXPECT_TRUE(x < -2 || x > 322 || y < -2 || y > 242 ||
@@ -66,8 +66,8 @@ TEST(FrameRays, GoFromTheLensThroughTheFocusPlaneToTheirElement) {
   }
 }
 
-// What lies on the slab's uv plane is seen where it is, through any point of the lens, though the
-// focus is elsewhere: the lens point and the ray beside it agree about the element.
+// A point on the slab's uv plane has one position on the plate, through any point of the lens,
+// though the focus is elsewhere: the lens point and the ray beside it agree about the element.
 TEST(FrameRays, ThroughALensPointAreToldApartOnTheSlab) {
   Slab slab;
   slab.uv.origin_world = Vec3(0, 0, 3);
@@ -83,7 +83,7 @@ TEST(FrameRays, ThroughALensPointAreToldApartOnTheSlab) {
   for (int i = 0; i < 200; ++i) {
     const Vec3 on_uv(random.Uniform(-1, 1), random.Uniform(-1, 1), 3);
     const Vec2 beside(random.Uniform(-0.003, 0.003), random.Uniform(-0.003, 0.003));
-    // Lens coordinates are right and up, those of the slab right and down.
+    // Lens coordinates run right and up, slab coordinates right and down.
     const Vec3 on_st(lens_point.x() + beside.x(), -lens_point.y() + beside.y(), 0);
     BinnedCell cell;
     cell.cell = *CellOf(slab, *Parameterize(slab, {on_st, on_uv - on_st}));

@@ -3,11 +3,11 @@
 namespace lf {
 namespace {
 
-// normal . (X - centre) - offset, of the middles of cells on a plane.
+// Returns the form of normal . (X - centre) - offset, where X is the middle of a cell on a plane.
 CellForm FormOf(const SlabPlane& plane, double r_w, const Vec3& centre, const Vec3& normal,
                 double offset = 0) {
   const double of_a = r_w * normal.dot(plane.axis_a), of_b = r_w * normal.dot(plane.axis_b);
-  // Of number 0 (slab.h).
+  // Middle of the cell whose biased number is 0 (kCellOffset, slab.h).
   const double first = 0.5 - kCellOffset;
   return {normal.dot(plane.origin_world - centre) + first * (of_a + of_b) - offset, of_a, of_b};
 }

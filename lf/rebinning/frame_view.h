@@ -1,13 +1,13 @@
-// Where the middle rays of cells pass a frame's lens and meet its plate, many at a time. Internal
-// to rebinning.
+// The lens points and plate positions of the middle rays of cells in one frame, many rays at a
+// time. Internal to rebinning.
 //
 // With S on the st plane and U on the uv plane, both from the frame's centre, a ray S + l (U - S)
-// passes the lens, the plane forward . X = 0, where
+// passes the lens plane, forward . X = 0, where
 //
 //   X = (S (forward . U) - U (forward . S)) / (forward . (U - S))
 //
 // and the focus plane n . X = o where X = (S (n . U - o) - U (n . S - o)) / (n . (U - S)). All of
-// these products are linear forms of the cell's four numbers.
+// these scalar products are linear forms of the cell's four numbers.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@
 
 namespace lf {
 
-// constant + of_a a + of_b b, of the numbers of a cell on one plane.
+// The linear form constant + of_a a + of_b b of a cell's two numbers on one plane.
 struct CellForm {
   double constant = 0;
   double of_a = 0;
@@ -29,7 +29,7 @@ struct CellForm {
 struct FrameView {
   FrameView(const Slab& slab, const RenderCamera& frame, const FrameReach& reach);
 
-  // One plane of the slab: points of it, from the frame's centre, times these.
+  // Scalar products of a vector and a point of one slab plane, seen from the frame's centre.
   struct OfPlane {
     CellForm forward, right, up;
     CellForm plate_x, plate_y;  // rows of the calibration matrix, before they are divided
@@ -44,20 +44,20 @@ struct FrameView {
 struct SeenCells {
   static constexpr size_t kAtOnce = 64;
   size_t count = 0;
-  std::array<size_t, kAtOnce> cells;  // which of those given, ascending
+  std::array<size_t, kAtOnce> cells;  // indices of the given cells that are seen, ascending
   std::array<double, kAtOnce> lens_x_w, lens_y_w, x_px, y_px;
 };
 
-// Those of the cells, kAtOnce at most, that the frame sees.
+// Finds the cells whose middle rays the frame sees. There must be at most kAtOnce cells.
 void FindSeenCells(const FrameView& view, std::span<const BinnedCell> cells, SeenCells* seen);
-// One ray at a time: for those that are not of cells, and the judge of FindSeenCells().
+// Views one ray at a time: for rays that are not of cells, and as the reference of FindSeenCells().
 class RayView {
  public:
   RayView(const RenderCamera& frame, const FrameReach& reach);
 
-  // All but its colour.
+  // Returns the ray as the frame sees it, without its colour; none if it is not seen.
   std::optional<FrameRay> See(const Ray& ray) const;
-  // Of a ray that is taken for one through another point of the lens, however far.
+  // Like See(), but the ray counts as one through `lens_point`, at any distance from the lens.
   std::optional<FrameRay> At(const Vec2& lens_point, const Ray& ray) const;
 
  private:

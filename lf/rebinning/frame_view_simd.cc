@@ -1,14 +1,13 @@
-// Cells as a frame sees them, compiled for every instruction set and chosen as the program runs
-// (Highway).
+// FindSeenCells(), compiled for every instruction set; one is chosen at run time (Highway).
 //
-// Products and sums are never fused: every instruction set gives the same bits.
+// Products and sums are never fused, so every instruction set gives the same bits.
 #include "lf/core/check.h"
 #include "lf/rebinning/frame_view.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lf/rebinning/frame_view_simd.cc"  // NOLINT: as Highway wants it
 #include <hwy/foreach_target.h>
-// After foreach_target.h.
+// Must follow foreach_target.h.
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -18,7 +17,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<double, 8>;
 using V = hn::Vec<D>;
 
-// A number of 16 bits as a double: put into the lowest bits of 2^52.
+// Converts a 16-bit number to double by putting it into the lowest bits of 2^52.
 HWY_INLINE V NumberOf(const uint64_t* HWY_RESTRICT keys, int axis) {
   const D d;
   const hn::RebindToUnsigned<D> d64;
@@ -60,7 +59,7 @@ void FindSeen(const FrameView& view, std::span<const BinnedCell> cells, SeenCell
     auto is_seen = hn::And(hn::Gt(along, zero), hn::Le(off2, hn::Set(d, view.lens_reach2_w2)));
     if (hn::AllFalse(d, is_seen)) continue;
     const V focus_st = At(view.st.focus, s, t), focus_uv = At(view.uv.focus, u, v);
-    // Where it meets the focus plane, times this.
+    // The ray meets the focus plane at X: depth is (forward . X) times this slope.
     const V slope = hn::Sub(focus_uv, focus_st);
     const V depth = Cross(forward_st, focus_uv, forward_uv, focus_st);
     const V per_depth = hn::Div(one, depth);

@@ -7,8 +7,8 @@
 namespace lf {
 namespace {
 
-// Cells all around, before and behind the frame, that looks along the slab or aside: the fast way
-// finds those that single rays find, where these do.
+// The cells lie all around, before and behind the frame, which looks along the slab or aside.
+// FindSeenCells() finds the same cells as RayView, at the same places.
 TEST(FrameView, SeesWhatSingleRaysSee) {
   Slab slab;
   slab.st = {Vec3(0.01, 0, 0.002), Vec3(0.8, 0.6, 0), Vec3(-0.6, 0.8, 0)};

@@ -28,7 +28,8 @@ LensPointSets MakeLensPoints(const Aperture& aperture, int count, int k, uint64_
   }
   points.k = k;
   points.sets.resize(static_cast<size_t>(k) * k);
-  // Every k * k-th of one sequence: each set is spread, and all together are.
+  // A set has every (k * k)-th point of one sequence, so each set is spread uniformly, and so are
+  // all sets together.
   const std::vector<Vec2> all = SampleLens(aperture, count * k * k, seed);
   for (size_t i = 0; i < all.size(); ++i) points.sets[i % points.sets.size()].push_back(all[i]);
   return points;

@@ -9,12 +9,13 @@
 
 namespace lf {
 
-// Lens points in k * k sets: element (x, y) has those of set (y % k) * k + x % k. Several sets make
-// noise of what would be steps in large blurs.
+// Lens points in k * k sets: element (x, y) uses set (y % k) * k + x % k. Several sets turn the
+// steps that one set would make in large blurs into noise.
 struct LensPointSets {
   int k = 1;
   std::vector<std::vector<Vec2>> sets;  // [k * k]
-  // As sets: how many times sigma_st its reach is, at least 1, where rays are rare; empty: 1.
+  // Factor of sigma_st for each point, at least 1; larger if rays near the point are rare. Shaped
+  // like `sets`; empty: all 1.
   std::vector<std::vector<double>> spreads = {};
 
   double SpreadOf(size_t set, size_t point) const {
@@ -23,8 +24,8 @@ struct LensPointSets {
   double MostSpread() const;
   size_t point_count() const;  // of all sets
 };
-// `count` points in each of k * k sets, spread uniformly over the opening, all different
-// (camera/aperture.h, SampleLens). Of a pinhole there is one.
+// Returns `count` points in each of k * k sets, spread uniformly over the opening, all different
+// (camera/aperture.h, SampleLens). A pinhole has one point in one set.
 LensPointSets MakeLensPoints(const Aperture& aperture, int count, int k, uint64_t seed);
 
 }  // namespace lf

@@ -1,8 +1,9 @@
-// A random number of 16 bits for every pixel of an LF image, and which pixels it chooses. Internal
-// to rebinning.
+// A 16-bit random number for every pixel of an LF image, and the pixels chosen by it. Internal to
+// rebinning.
 //
-// Of two pixels it is the halves of a 32-bit hash (by the constants of C. Wellons's "lowbias32") of
-// their number in the LF image, mixed with 64 bits of seed and LF image.
+// Two consecutive pixels share a 32-bit hash (with the constants of C. Wellons's "lowbias32"), one
+// half each. The hash is that of the pair's number in the LF image, mixed with 64 bits of seed and
+// LF image.
 #pragma once
 
 #include <cstdint>
@@ -18,13 +19,13 @@ class PixelChances {
  public:
   PixelChances(uint64_t seed, LfImageId id) : stream_(MixBits(MixBits(seed) ^ id.value)) {}
 
-  // Which of consecutive pixels have a number below their p, which is in 1 / 65535: that is
-  // certain.
-  //   first   number of the first, row by row of the LF image
-  //   chosen  its memory is used again
+  // Chooses, among consecutive pixels, those whose random number is below their p. The unit of p is
+  // 1 / 65535: a pixel with p = 65535 is chosen for certain.
+  //   first   number of the first pixel, counted row by row of the LF image
+  //   chosen  indices into p, ascending; its memory is reused
   void Choose(uint64_t first, std::span<const uint16_t> p, std::vector<uint32_t>* chosen) const;
 
-  // Whether one is: the judge.
+  // True if one pixel is chosen. This is the reference of Choose().
   bool Chooses(uint64_t pixel, uint16_t p) const {
     auto hash = static_cast<uint32_t>(pixel / 2) ^ static_cast<uint32_t>(stream_);
     hash ^= hash >> 16;

@@ -1,4 +1,4 @@
-// Pixels by chance, compiled for every instruction set and chosen as the program runs (Highway).
+// PixelChances::Choose(), compiled for every instruction set; one is chosen at run time (Highway).
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -8,7 +8,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lf/rebinning/pixel_chances_simd.cc"  // NOLINT: as Highway wants it
 #include <hwy/foreach_target.h>
-// After foreach_target.h.
+// Must follow foreach_target.h.
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -22,12 +22,13 @@ using D16 = hn::Rebind<uint16_t, D>;
 using D16 = hn::Repartition<uint16_t, D>;
 #endif
 
-// Adds `base` to those of [0, count) that are chosen; p has room for a vector beyond.
-//   pair  of the first pixel, which is the first of it
+// Appends base + i to `chosen` for each chosen i of [0, count). p must be readable for one vector
+// beyond its end.
+//   pair  number of the pair that begins with pixel 0
 void ChooseSome(uint64_t stream, uint64_t pair, const uint16_t* HWY_RESTRICT p, size_t count,
                 uint32_t base, uint32_t* HWY_RESTRICT chosen, size_t* chosen_count) {
   const D d;
-  [[maybe_unused]] const D16 d16;  // not where there are no vectors
+  [[maybe_unused]] const D16 d16;  // unused if the target has no vectors
   const auto low = hn::Set(d, static_cast<uint32_t>(stream));
   const auto high = hn::Set(d, static_cast<uint32_t>(stream >> 32));
   const auto first = hn::Set(d, PixelChances::kFirst), second = hn::Set(d, PixelChances::kSecond);

@@ -9,7 +9,7 @@
 namespace lf {
 namespace {
 
-// Of the way between nodes, from the ends: where the more are.
+// Distances of the additional nodes from the ends, as parts of the distance between nodes.
 constexpr double kCloseToEnds[] = {1.0 / 16, 1.0 / 4};
 
 }  // namespace

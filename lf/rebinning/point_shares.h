@@ -1,5 +1,5 @@
-// How much of each lens point is asked for, all over the plate: the others do without it. Given at
-// nodes; between them it is interpolated.
+// The share of each lens point that is asked for, all over the plate: between 0, not asked for, and
+// 1. Given at nodes and interpolated between them.
 #pragma once
 
 #include <cstddef>
@@ -11,19 +11,21 @@
 
 namespace lf {
 
-// Nodes along a side of the plate, the first and the last on the middles of its outermost elements.
+// Nodes along a side of the plate. The first and the last are in the middles of its outermost
+// elements; a single node is in the middle of the side.
 class NodeAxis {
  public:
-  // One node.
+  // Makes one node.
   explicit NodeAxis(int size_px) : NodeAxis(size_px, 1) {}
-  // So many, evenly; and some more close to both ends, where what LF images see may end.
+  // Makes `count` nodes at equal distances and, if these are 3 or more, some more close to both
+  // ends, because the views of LF images may end there.
   NodeAxis(int size_px, int count);
 
   int count() const { return static_cast<int>(nodes_px_.size()); }
   int size_px() const { return static_cast<int>(places_.size()); }
   double node_px(int node) const { return nodes_px_[node]; }
 
-  // Between which nodes an element is, and how far from the first to the second.
+  // The two nodes around an element, and its place between them: 0 at the first, 1 at the second.
   struct Place {
     int first = 0;
     int second = 0;
@@ -43,15 +45,17 @@ struct PointShares {
   std::vector<float> values;  // [rows][columns][point_count], 0 to 1
 
   size_t node_count() const { return static_cast<size_t>(columns.count()) * rows.count(); }
-  // Of `count` points from `first` on, at an element.
+  // Writes the shares of points [first, first + count) at an element to out[count].
   void At(int x, int y, size_t first, size_t count, float* out) const;
-  // Squares with elements that ask for some, or have such within reach_px.
+  // Returns the squares with an element that asks for a point, or within reach_px of such an
+  // element.
   AskedSquares Squares(double reach_px) const;
-  // Of one of them alone.
+  // Returns the shares of one point alone.
   PointShares OfPoint(size_t point) const;
-  // Of each set, how much of its points is asked for: one after the other.
+  // Returns the mean share of the points of each set, one value for each set.
   PointShares MeansOfSets(const LensPointSets& points) const;
-  // Whether any of these is asked for by an element of the rectangle.
+  // True if one of the points [first, first + count) has a share above 0 at a node around the
+  // rectangle. If false, no element of the rectangle asks for these points.
   bool IsAny(const PixelRect& rect, size_t first, size_t count) const;
 };
 

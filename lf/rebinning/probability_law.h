@@ -1,7 +1,6 @@
-// What both implementations of probability_map.h do, step by step, in whole numbers. Internal to
-// rebinning.
+// The steps of both implementations of probability_map.h, in integers. Internal to rebinning.
 //
-// Beyond its borders every plane goes on as it ends.
+// Every plane continues beyond its borders with its outermost values.
 //
 //   grey     of stored values                                       [0, 65535]
 //   across   (sum of taps * grey + 128) >> 8                        in 1 / 16
@@ -9,7 +8,7 @@
 //   change   min(|left + right + above + below - 4 here| >> 4, 65535), of smooth
 //   p        min((change * alpha >> 8) + xi, 65535)  where change >= beta
 //
-// and where it is smoothed again, p is grey once more, and smooth + 8 >> 4 the answer.
+// If p is smoothed again, it takes the place of grey, and the result is (smooth + 8) >> 4.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +20,7 @@
 
 namespace lf {
 
-// Of a Gaussian: for distances 0, 1, ...; all on both sides together are kTapSum.
+// Weights of a Gaussian at distances 0, 1, ... The weights of both sides sum up to kTapSum.
 struct SmoothingTaps {
   static constexpr uint32_t kTapSum = 4096;
   std::vector<uint32_t> values;
@@ -45,10 +44,12 @@ inline uint16_t ProbabilityOf(const ProbabilityLaw& law, int32_t laplacian) {
   return static_cast<uint16_t>(std::min((change * law.alpha >> 8) + law.xi, 65535u));
 }
 
-// The stored values that are asked about: one for each pixel, or for each 2 x 2 of a mosaic.
+// The grey plane made of stored values: one value for each pixel, or for each 2 x 2 pixels of a
+// mosaic.
 class GreyRows {
  public:
-  // Of a part of the pixels.
+  // Refers to the pixels and to the table, which must outlive it; `part` is the part of the pixels
+  // to read.
   GreyRows(const LfPixels& pixels, const PixelRect& part,
            const std::vector<uint16_t>& stored_values);
   const PixelRect& plane() const { return plane_; }
@@ -61,15 +62,15 @@ class GreyRows {
 
   const LfPixels& pixels_;
   const uint16_t* stored_;
-  PixelRect plane_;  // the pixels, or the 2 x 2 of the whole LF image
+  PixelRect plane_;  // in pixels, or in 2 x 2 pixels, of the whole LF image
 };
 
-// p of the pixels of `rect` out of that of a grey plane that holds them; 0 of those that are
-// masked.
+// Writes p of the pixels of `rect`, taken from p of a grey plane that contains them. Masked pixels
+// get 0.
 void SpreadOverPixels(const LfPixels& pixels, const PixelRect& rect, const PixelRect& plane,
                       const Image<uint16_t>& of_plane, Image<uint16_t>* p);
 
-// p of a grey plane; and a plane smoothed, in whole numbers.
+// Compute p of a grey plane, and smooth a plane, in integers.
 void ProbabilityPlane(const ProbabilityLaw& law, const GreyRows& grey, Image<uint16_t>* p);
 void SmoothedPlane(const SmoothingTaps& taps, const Image<uint16_t>& grey, Image<uint16_t>* smooth);
 

@@ -10,7 +10,7 @@
 namespace lf {
 namespace {
 
-// Where black is 0 and white 1; response curves rise.
+// Returns the stored value, black 0 and white 1. Response curves are ascending.
 double StoredOf(const RadianceEncoding& encoding, double radiance) {
   switch (encoding.transfer) {
     case Transfer::kSrgb:
@@ -29,7 +29,7 @@ double StoredOf(const RadianceEncoding& encoding, double radiance) {
   return radiance;
 }
 
-// Of the 2 x 2 pixels of a mosaic that a rectangle touches.
+// Returns the rectangle, in units of 2 x 2 pixels, of those that a rectangle of pixels touches.
 PixelRect Quads(const PixelRect& rect) {
   return {rect.x_begin >> 1, rect.y_begin >> 1, (rect.x_end + 1) >> 1, (rect.y_end + 1) >> 1};
 }
@@ -69,7 +69,7 @@ SmoothingTaps MakeTaps(double sigma_px) {
 ProbabilityLaw MakeLaw(const ProbabilityOptions& options, bool is_mosaic) {
   LF_CHECK(options.alpha >= 0 && options.alpha <= kMostAlpha);
   LF_CHECK(options.beta >= 0 && options.xi >= 0 && options.xi < 1);
-  const double scale = is_mosaic ? 0.5 : 1;  // of greys in LF pixels
+  const double scale = is_mosaic ? 0.5 : 1;  // grey values per LF pixel along an axis
   ProbabilityLaw law;
   law.taps = MakeTaps(scale * options.sigma_px);
   law.second_taps = MakeTaps(scale * options.second_sigma_px);
@@ -87,7 +87,9 @@ GreyRows::GreyRows(const LfPixels& pixels, const PixelRect& part,
   LF_CHECK(stored_values.size() == 65536);
 }
 
-// The green of a row of two pixels that holds column x; inside of the rectangle, if there is one.
+// Returns the green of the pair of pixels in row y that contains column x. If that green is outside
+// the rectangle, returns the nearest green of the row that is inside, or its first pixel if there
+// is none.
 uint16_t GreyRows::GreenOfPair(int x, int y) const {
   if (BayerChannel(pixels_.bayer, x, y) != 1) x ^= 1;
   const PixelRect& rect = pixels_.rect;
@@ -111,7 +113,7 @@ void GreyRows::Read(int y, uint16_t* out) const {
   const auto mean = [this](uint16_t a, uint16_t b) {
     return static_cast<uint16_t>((stored_[a] + stored_[b] + 1) >> 1);
   };
-  // Away from the borders greens are two apart.
+  // Away from the borders, the greens of a row are two pixels apart.
   const int odd0 = BayerChannel(pixels_.bayer, 0, y0) == 1 ? 0 : 1;
   const int odd1 = BayerChannel(pixels_.bayer, 0, y1) == 1 ? 0 : 1;
   const uint16_t* const row0 = pixels_.radiance.row(y0 - rect.y_begin);

@@ -1,12 +1,13 @@
-// Which rays of an LF image are kept: the more it changes around a pixel, the likelier (thesis
-// 4.3.2, Eq. 4.4, Figure 4.8).
+// The probability p that the ray of an LF pixel is kept: the more the image changes around the
+// pixel, the likelier (thesis 4.3.2, Eq. 4.4, Figure 4.8).
 //
-// The image is smoothed by a Gaussian, its Laplacian taken, and
+// LoG is the Laplacian of the image smoothed by a Gaussian:
 //
 //   p(x, y) = min(1, |LoG(x, y)| alpha + xi)  where |LoG(x, y)| >= beta,  else 0
 //
-// of stored values, before they become linear light: there noise is about as strong in shadows as
-// in light. All is done in whole numbers, so that every machine keeps the same rays.
+// The image has stored values, not linear light: in stored values, noise is about as strong in
+// shadows as in highlights. All arithmetic is in integers, so that every machine keeps the same
+// rays.
 #pragma once
 
 #include <cstdint>
@@ -19,34 +20,35 @@
 namespace lf {
 
 struct ProbabilityOptions {
-  double sigma_px = 1;         // of the Gaussian, at most kMostSigma_px; 0: none
-  double alpha = 8;            // per unit of stored values, black 0 and white 1; at most kMostAlpha
-  double beta = 0;             // in the same unit
-  double xi = 0.05;            // of every pixel that passes beta, [0, 1)
-  double second_sigma_px = 0;  // of another Gaussian, over p; 0: none
+  double sigma_px = 1;         // of the Gaussian, at most kMostSigma_px; 0: no smoothing
+  double alpha = 8;            // per unit of stored values (black 0, white 1); at most kMostAlpha
+  double beta = 0;             // threshold in the unit of stored values
+  double xi = 0.05;            // least p of a pixel that passes beta, [0, 1)
+  double second_sigma_px = 0;  // of another Gaussian that smooths p; 0: no smoothing
 };
 inline constexpr double kMostSigma_px = 8;
 inline constexpr double kMostAlpha = 255;
 
-// Stored values, 65535 of black .. white, of linear ones (capture/radiance.h): the inverse of
-// RadianceTable() with a gain of 1.  [65536]
+// Returns the stored value of each linear value (capture/radiance.h), 0 for black to 65535 for
+// white: the inverse of RadianceTable() with a gain of 1.  [65536]
 std::vector<uint16_t> StoredValueTable(const RadianceEncoding& encoding);
 
-// p of the pixels of `rect`, a part of pixels.rect, in 1 / 65535  [rect.height][rect.width]; its
-// memory is used again
-// Of a mosaic the means of the two greens of every 2 x 2 pixels (at even positions in the LF image)
-// are taken for the image, sigma still counts LF pixels, and all four pixels have the same p.
-// At the borders of pixels.rect the image goes on as it ends: give some pixels more than those that
-// are asked about (PixelsAround()).
-// Masked pixels have p = 0.
+// Computes p of the pixels of `rect`, a part of pixels.rect, in units of 1 / 65535.
+//
+// The image of a mosaic is the mean of the two greens of every 2 x 2 pixels (at even positions in
+// the LF image). The unit of sigma is still the LF pixel, and all four pixels have the same p. The
+// image continues beyond the borders of pixels.rect with its outermost values: for exact results,
+// pixels.rect must be larger than `rect` by PixelsAround() pixels on each side that is not a border
+// of the LF image. Masked pixels have p = 0.
+//   p  [rect.height][rect.width]; its memory is reused
 void ProbabilityMap(const LfPixels& pixels, const PixelRect& rect,
                     const std::vector<uint16_t>& stored_values, const ProbabilityOptions& options,
                     Image<uint16_t>* p);
 
-// How far from a pixel its p depends on others.
+// Largest distance, in LF pixels, of a pixel that p depends on.
 int PixelsAround(const ProbabilityOptions& options, bool is_mosaic);
 
-// ProbabilityMap(), pixel by pixel.
+// The reference of ProbabilityMap(), pixel by pixel.
 void ProbabilityMapReference(const LfPixels& pixels, const PixelRect& rect,
                              const std::vector<uint16_t>& stored_values,
                              const ProbabilityOptions& options, Image<uint16_t>* p);

@@ -1,4 +1,4 @@
-// Probability maps, compiled for every instruction set and chosen as the program runs (Highway).
+// Probability maps, compiled for every instruction set; one is chosen at run time (Highway).
 #include <algorithm>
 #include <cstring>
 
@@ -8,7 +8,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lf/rebinning/probability_map_simd.cc"  // NOLINT: as Highway wants it
 #include <hwy/foreach_target.h>
-// After foreach_target.h.
+// Must follow foreach_target.h.
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -18,9 +18,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::ScalableTag<uint32_t>;
 using D16 = hn::Rebind<uint16_t, D>;
 
-// Rows of a band with room for vectors beyond both ends.
+// Room for vectors beyond both ends of a row.
 constexpr size_t kMargin = 64;
-constexpr int kBandRows = 32;  // of the answer: what is before it stays in the second level cache
+constexpr int kBandRows = 32;  // rows of the result whose intermediate rows fit the L2 cache
 
 class Rows {
  public:
@@ -48,7 +48,8 @@ void Across(const SmoothingTaps& taps, const uint16_t* HWY_RESTRICT padded, int 
   }
 }
 
-// rows(k): row k of the answer's, from -radius to radius, which goes on beyond its ends as it ends.
+// Smooths one row down the columns, and repeats the result's outermost values beyond both ends.
+//   rows(k)  input row k rows below the row of the result, k from -radius to radius
 template <class RowAt>
 void Down(const SmoothingTaps& taps, const RowAt& rows, int width, uint32_t* HWY_RESTRICT out) {
   const D d;
@@ -81,14 +82,14 @@ void Probabilities(const ProbabilityLaw& law, const uint32_t* above, const uint3
     const auto size = hn::BitCast(d, hn::Abs(hn::BitCast(di, laplacian)));
     const auto change = hn::Min(hn::ShiftRight<4>(size), most);
     const auto p = hn::Min(hn::Add(hn::ShiftRight<8>(hn::Mul(change, alpha)), xi), most);
-    // Both are small enough to be compared with signs.
+    // Both are small enough to be compared as signed numbers.
     const auto is_below = hn::Lt(hn::BitCast(di, change), hn::BitCast(di, beta));
     const auto kept = hn::IfThenZeroElse(is_below, hn::BitCast(di, p));
     hn::StoreU(hn::DemoteTo(d16, kept), d16, out + x);
   }
 }
 
-// Rows of a grey plane of this size, smoothed, a band at a time.
+// Smooths the rows of a grey plane, a band at a time.
 class Smoother {
  public:
   Smoother(const SmoothingTaps& taps, int width, int height, int band_rows)
@@ -99,7 +100,8 @@ class Smoother {
         smooth_(band_rows, width),
         padded_(width + 2 * kMargin) {}
 
-  // Rows [begin, end).  read(y, out): a row of the plane.
+  // Smooths the rows [begin, end).
+  //   read(y, out)  reads a row of the plane
   template <class Read>
   void Run(int begin, int end, const Read& read) {
     first_ = begin;
@@ -117,7 +119,7 @@ class Smoother {
           taps_, [&](int k) { return across_.row(std::clamp(y + k, 0, height_ - 1) - low); },
           width_, smooth_.row(y - begin));
   }
-  // Of those rows; beyond the plane as it ends.
+  // Returns a smoothed row of the last Run(). Rows beyond the plane are its first or last row.
   const uint32_t* row(int y) { return smooth_.row(std::clamp(y, 0, height_ - 1) - first_); }
 
  private:

@@ -48,7 +48,7 @@ TEST(ProbabilityMap, FastIsTheReference) {
           Image<uint16_t> judge;
           ProbabilityMapReference(pixels, rect, table, options, &judge);
           ExpectSame(MapOf(pixels, table, options), judge);
-          // A part, and one at the corner, are parts of the whole.
+          // The maps of two parts, one of them at the corner, are parts of the whole map.
           const int x = rect.width() / 3, y = rect.height() / 2;
           for (const PixelRect& part :
                {PixelRect{rect.x_begin + x, rect.y_begin + y, rect.x_end - x, rect.y_end},
@@ -71,20 +71,20 @@ TEST(ProbabilityMap, AnEdgeIsLikelyAndFlatIsXi) {
       for (int c = 0; c < 3; ++c) pixels.radiance.at(x, y, c) = x < 20 ? 10000 : 40000;
   const Image<uint16_t> p = MapOf(pixels, table, {1, 4, 0, 0.25, 0});
   EXPECT_EQ(p.at(3, 10), std::lround(0.25 * 65535));
-  // Beside an edge of height h the second derivative of the smoothed step is h / sigma times the
-  // difference of the Gaussian half a pixel and three halves from it.
+  // Beside an edge of height h, the Laplacian of the step smoothed with sigma = 1 is h times the
+  // difference of the Gaussian at 0 and at 1 pixel.
   const double step = 30000 / 65535.0;
   const auto gaussian = [](double x) { return std::exp(-x * x / 2) / std::sqrt(2 * kPi); };
   const double expected = step * (gaussian(0) - gaussian(1)) * 4 + 0.25;
   EXPECT_NEAR(p.at(20, 10) / 65535.0, expected, 0.01);
   EXPECT_EQ(p.at(19, 10), p.at(20, 10));
-  // What does not pass beta is not kept at all.
+  // A pixel that does not pass beta is never kept.
   EXPECT_EQ(MapOf(pixels, table, {1, 4, 0.01, 0.25, 0}).at(3, 10), 0);
 }
 
-// Thesis Eq. 2.15 to 2.17 and 4.4 in real numbers: a Gaussian of two dimensions, the Laplacian of
-// what it leaves, and min(1, |LoG| alpha + xi) from beta on. Cells of the plane beyond the border
-// are those of the border.
+// Thesis Eq. 2.15 to 2.17 and 4.4 in real numbers: a Gaussian in two dimensions, the Laplacian of
+// the smoothed image, and min(1, |LoG| alpha + xi) from beta on. The plane continues beyond its
+// border with its outermost values.
 class RealProbabilities {
  public:
   RealProbabilities(const Image<double>& grey, double sigma)
@@ -138,7 +138,7 @@ TEST(ProbabilityMap, IsTheThesissEquationsInRealNumbers) {
     for (int y = 0; y < 40; ++y)
       for (int x = 0; x < 48; ++x) {
         const double expected = real.At(x, y, options);
-        // Whole numbers may put what is near beta on its other side.
+        // In integers, a value near beta may be on the other side of it.
         ProbabilityOptions lower = options, higher = options;
         lower.beta -= 0.002, higher.beta += 0.002;
         if (real.At(x, y, lower) != real.At(x, y, higher)) continue;

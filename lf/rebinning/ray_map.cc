@@ -8,16 +8,17 @@
 namespace lf {
 namespace {
 
-// Slots are filled to three quarters at most: beyond, what is looked for is far from its place.
+// Number of slots for so many cells. At most three quarters are filled, because searches in a
+// fuller table are long.
 size_t SlotsFor(size_t cells) { return cells + cells / 3 + 64; }
 
-// By other bits of the hash than shards, and than those that decide what is dropped.
+// Uses other bits of the hash than ShardOf() and than the comparison with the limit.
 size_t FirstSlot(uint64_t hash, size_t slots) {
   const uint64_t bits = hash / RayMap::kShards & 0xffffffff;
   return static_cast<size_t>(bits * slots >> 32);
 }
 
-// Where a cell is, or would be.
+// Returns the slot that holds a cell, or the empty slot where it would be put.
 BinnedCell* Find(LargeVector<BinnedCell>& slots, CellKey cell, uint64_t hash) {
   BinnedCell* slot = &slots[FirstSlot(hash, slots.size())];
   BinnedCell* const end = slots.data() + slots.size();
@@ -28,15 +29,16 @@ BinnedCell* Find(LargeVector<BinnedCell>& slots, CellKey cell, uint64_t hash) {
 
 bool IsBefore(const BinnedCell& a, const BinnedCell& b) { return a.cell < b.cell; }
 
-// The slot of a ray is somewhere in memory: it is asked for some rays ahead.
+// The slots of consecutive rays are far apart in memory: each is prefetched so many rays ahead.
 constexpr size_t kAhead = 32;
 
-// Of a shard, when all have so many: some have more than others.
+// Number of cells to expect in the fullest shard if all shards together have `cells`.
 size_t MostOfShard(size_t cells) { return cells / RayMap::kShards * 9 / 8 + 64; }
 
 }  // namespace
 
-// Growing takes longer than filling it, and so does memory that is never used.
+// Allocates memory for the expected cells at once: growing takes longer than filling, and so does
+// memory that is never used.
 RayMap::RayMap(size_t max_cells, size_t expected_cells)
     : max_cells_(std::max<size_t>(max_cells, 1)) {
   const size_t cells = std::min(max_cells_, expected_cells);
@@ -46,11 +48,11 @@ RayMap::RayMap(size_t max_cells, size_t expected_cells)
 RayMap::RayMap(size_t max_cells, size_t expected_cells, uint64_t limit, bool is_too_coarse)
     : RayMap(max_cells, expected_cells) {
   limit_ = limit;
-  shards_[0].is_too_coarse = is_too_coarse;  // which one it was, nobody asks
+  shards_[0].is_too_coarse = is_too_coarse;  // only the flag of all shards together is ever read
 }
 
-// To twice the size, but no more than all cells that stay need; what comes before a Trim() may be
-// more than these.
+// Grows to twice the size, but not beyond what max_cells need. A shard that needs still more before
+// the next Trim() grows by a quarter.
 void RayMap::Grow(Shard& shard) {
   const size_t now = shard.slots.size(), most = SlotsFor(MostOfShard(max_cells_));
   LargeVector<BinnedCell> slots(now < most ? std::min(2 * now, most) : now + now / 4);
@@ -64,7 +66,7 @@ void RayMap::AddTo(Shard& shard, std::span<const BinnedRay> rays) {
   std::array<uint64_t, kAhead> hashes{};
   const auto announce = [&](size_t i) {
     hashes[i % kAhead] = MixBits(rays[i].cell);
-    // It may begin in one cache line and end in the next.
+    // A slot may begin in one cache line and end in the next.
     const BinnedCell* const slot = &shard.slots[FirstSlot(hashes[i % kAhead], shard.slots.size())];
     __builtin_prefetch(slot, 1);
     __builtin_prefetch(&slot->count, 1);
@@ -150,8 +152,9 @@ size_t RayMap::size_bytes() const {
 }
 
 std::vector<BinnedCell> RayMap::Cells(ThreadPool& pool) const {
-  // By the first letters of their keys, then within these, by all threads. As many parts as make
-  // about the same number of cells each, however they lie.
+  // Cells are distributed by the highest 16 bits of their keys, the letter, and then sorted in
+  // parts by all threads. A part has whole letters, and about the same number of cells as the
+  // others.
   constexpr size_t kParts = 256, kLetters = 1 << 16;
   const auto letter_of = [](const BinnedCell& cell) { return cell.cell >> 48; };
   const auto for_each_cell = [this](const auto& visit) {

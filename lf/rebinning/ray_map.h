@@ -1,10 +1,11 @@
-// Rebinned rays: what was recorded in each cell of a slab, in memory that does not grow beyond a
-// limit (thesis 4.3.2).
+// Rebinned rays: the radiance recorded in each cell of a slab, in memory that does not grow beyond
+// a limit (thesis 4.3.2).
 //
-// A cell has the sums of its rays' linear 16-bit values, and how many they are. Where more cells
-// are found than may be kept, those of the smallest hashes are: the hash above which cells are
-// dropped is lowered step by step, by 1/8. A cell below it was never dropped, so what is kept
-// depends on which rays were given, never on their order or the number of threads.
+// A cell holds the sums of its rays' linear 16-bit values, and their number. If there are more
+// cells than may be kept, the cells with the smallest hashes are kept: the limit, at and above
+// which hashes are dropped, is lowered in steps of 1/8. A cell below the limit was never dropped,
+// so the kept cells depend only on which rays were given, never on their order or the number of
+// threads.
 #pragma once
 
 #include <array>
@@ -27,14 +28,15 @@ struct BinnedRay {
 };
 
 struct BinnedCell {
-  // More would not fit; so many LF pixels in one cell are cells that are far too wide.
+  // The sums of more rays do not fit into 32 bits. If a cell gets so many LF pixels, cells are far
+  // too wide.
   static constexpr uint32_t kMostRays = 65537;
 
   CellKey cell = 0;  // 0: none
   std::array<uint32_t, 3> rgb = {};
   uint32_t count = 0;
 
-  // False: it has kMostRays already.
+  // Returns false, and adds nothing, if the cell has kMostRays already.
   bool Add(const BinnedRay& ray) {
     if (count == kMostRays) return false;
     for (size_t c = 0; c < rgb.size(); ++c) rgb[c] += ray.rgb[c];
@@ -47,53 +49,57 @@ struct BinnedCell {
 
 class RayMap {
  public:
-  // Parts that are filled at the same time; the same whatever the number of threads.
+  // Number of parts that may be filled at the same time. It does not depend on the number of
+  // threads.
   static constexpr size_t kShards = 32;
 
-  // max_cells       that Trim() leaves; at least 1
-  // expected_cells  there is memory for these from the beginning, up to max_cells
+  // max_cells       number of cells that Trim() leaves at most; at least 1
+  // expected_cells  memory for so many cells, at most max_cells, is allocated at once
   explicit RayMap(size_t max_cells, size_t expected_cells = SIZE_MAX);
 
-  // The same for a map that was written to a file (ray_map_file.h): Restore() brings its cells.
+  // Constructs an empty map with the limit of a map that was written to a file (ray_map_file.h).
+  // Restore() adds its cells.
   RayMap(size_t max_cells, size_t expected_cells, uint64_t limit, bool is_too_coarse);
 
   static size_t ShardOf(CellKey cell) { return MixBits(cell) % kShards; }
 
-  // Adds rays to the cells that they are in. All are of the shard. Shards may be added to at the
-  // same time. A ray that its cell has no room for makes is_too_coarse().
+  // Adds rays to the cells that they are in. All rays must be of the shard. Different shards may be
+  // added to at the same time. is_too_coarse() becomes true if a cell has no room for a ray.
   void Add(size_t shard, std::span<const BinnedRay> rays);
-  // The same, but makes no new cells.
+  // Like Add(), but skips rays whose cell is not in the map.
   void AddToThoseThere(size_t shard, std::span<const BinnedRay> rays);
 
-  // Puts back cells that another map of this limit had. All are of the shard, different, and none
-  // is there. Shards may be restored at the same time.
+  // Puts back cells of another map with this limit. They must be of the shard, all different, and
+  // not yet in this map. Different shards may be restored at the same time.
   void Restore(size_t shard, std::span<const BinnedCell> cells);
 
-  // Drops cells of the largest hashes until there are no more than max_cells.
+  // Drops the cells with the largest hashes until there are no more than max_cells.
   void Trim(ThreadPool& pool);
 
-  // Drops the cells that are not wanted any more. There is room for others then: cells of all
-  // hashes may be made again, of rays to come.
+  // Drops the cells that are not wanted any more, and resets the limit: rays that are added later
+  // may make cells of any hash again.
   void DropUnless(const std::function<bool(CellKey)>& is_wanted, ThreadPool& pool);
 
-  // Whether a cell may still be made: rays of others need not be looked at.
+  // True if the cell's hash is below the limit. The rays of other cells can be skipped, because
+  // Add() would ignore them.
   bool MayHold(CellKey cell) const { return MixBits(cell) < limit_; }
-  // The hash that those of all cells are below.
+  // Exclusive upper bound of the hashes of all cells.
   uint64_t limit() const { return limit_; }
 
-  // Whether some cell got more rays than it can hold: its sums are wrong.
+  // True if a cell got more rays than it can hold. Its sums lack the rays beyond kMostRays.
   bool is_too_coarse() const;
 
   size_t size() const;
   size_t size_bytes() const;
 
-  // All cells, by ascending keys: row by row of the uv plane.
+  // Returns all cells by ascending keys, which is row by row of the uv plane.
   std::vector<BinnedCell> Cells(ThreadPool& pool) const;
-  // Those of a shard, by ascending keys.
+  // Returns the cells of a shard by ascending keys.
   std::vector<BinnedCell> CellsOf(size_t shard) const;
 
  private:
-  // Open addressing: a cell is where its hash says, or behind it, before the next gap.
+  // Hash table with open addressing: a cell is in the slot that its hash names, or in one of the
+  // following slots before the next empty one.
   struct Shard {
     LargeVector<BinnedCell> slots;
     size_t count = 0;

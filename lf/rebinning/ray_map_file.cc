@@ -21,7 +21,7 @@ namespace {
 
 using namespace ray_map_format;
 
-// Shards that are in memory twice: an eighth of all, whatever the number of threads.
+// Number of shards that may be in memory twice: an eighth of all, for any number of threads.
 constexpr size_t kMostTogether = RayMap::kShards / 8;
 size_t Together(const ThreadPool& pool) {
   return std::min(kMostTogether, static_cast<size_t>(pool.thread_count()));
@@ -60,7 +60,7 @@ Result<void> Write(const fs::path& path, const PlateEntries& entries, const RayM
   return file.Close();
 }
 
-// What is wrong with the cells of a shard; empty if nothing is.
+// Returns the first fault of the cells of a shard; empty if there is none.
 std::string FaultOf(const Part& part, size_t shard, const RayMap& map) {
   if (HashBytes(BytesOf(part.cells), shard) != part.head.hash)
     return fmt::format("the checksum of shard {} differs", shard);
@@ -69,7 +69,7 @@ std::string FaultOf(const Part& part, size_t shard, const RayMap& map) {
     const auto fault = [&](const std::string& what) {
       return fmt::format("shard {}, cell {:016x}: {}", shard, cell.cell, what);
     };
-    // Neither 0 nor twice the same, then.
+    // Ascending keys are neither 0 nor repeated.
     if (cell.cell <= last)
       return fault(fmt::format("follows cell {:016x}, keys must ascend", last));
     if (RayMap::ShardOf(cell.cell) != shard)
@@ -87,7 +87,7 @@ std::string FaultOf(const Part& part, size_t shard, const RayMap& map) {
   return {};
 }
 
-// The head, and that the file is as long as it says, before anything is allocated.
+// Reads the head and checks that the file is as long as it says, before anything is allocated.
 Result<Head> ReadHead(const entry_file::Source& source, const std::string& bytes,
                       size_t max_cells) {
   Head head;

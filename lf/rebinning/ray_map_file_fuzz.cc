@@ -1,6 +1,6 @@
-// Any bytes are rebinned rays or an error; a map that was read holds cells that rays can make. The
-// checksums of the head and of the shards are made right first, or nothing behind them would ever
-// be reached.
+// Any bytes are rebinned rays or an error, and a map that was read holds only cells that rays can
+// make. The checksums of the head and of the shards are corrected first: without this, the code
+// behind them would never be reached.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

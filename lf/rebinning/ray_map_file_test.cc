@@ -19,7 +19,7 @@ using ray_map_format::Head;
 using ray_map_format::ShardHead;
 
 const PlateEntries kEntries = {{"scene", "a field of light"}, {"images_done", "128"}};
-constexpr size_t kManyCells = 10000;  // maps have memory for all of them
+constexpr size_t kManyCells = 10000;  // max_cells of maps, which allocate memory for all of them
 
 class RayMapFile : public ::testing::Test {
  protected:
@@ -40,7 +40,7 @@ class RayMapFile : public ::testing::Test {
     EXPECT_TRUE(WriteRays(path, kEntries, map, pool));
     return *ReadFile(path);
   }
-  // The map from a file of this one.
+  // Writes the map to a file and returns the map that is read from it.
   RayMap Again(const RayMap& map, size_t max_cells, int threads) {
     ThreadPool pool(threads);
     const fs::path path = folder_ / "again.rays";
@@ -82,7 +82,7 @@ void ExpectSame(const RayMap& a, const RayMap& b) {
   EXPECT_EQ(a.is_too_coarse(), b.is_too_coarse());
 }
 
-// The error of reading these bytes.
+// Returns the error of reading these bytes.
 std::string ErrorOf(const std::string& bytes, size_t max_cells = kManyCells) {
   ThreadPool pool(2);
   const Result<RaysFile> read = ReadRaysOfBytes(bytes, "a.rays", max_cells, pool);
@@ -97,7 +97,7 @@ void ExpectError(const std::string& bytes, const std::string& word) {
   EXPECT_NE(message.find(word), std::string::npos) << message;
 }
 
-// The bytes with another head, and its checksum made right.
+// Returns the bytes with a changed head and a correct checksum.
 std::string WithHead(std::string bytes, const std::function<void(Head*)>& change) {
   Head head;
   std::memcpy(&head, bytes.data(), sizeof(head));
@@ -109,7 +109,7 @@ std::string WithHead(std::string bytes, const std::function<void(Head*)>& change
   return bytes;
 }
 
-// A file of these cells, all said to be of one shard, with checksums that are right.
+// Returns a file of these cells, all declared as one shard, with correct checksums.
 std::string FileOfCells(const std::vector<BinnedCell>& cells, size_t shard,
                         uint64_t limit = UINT64_MAX) {
   Head head = {};
@@ -129,7 +129,7 @@ std::string FileOfCells(const std::vector<BinnedCell>& cells, size_t shard,
   return bytes;
 }
 
-// The first keys of a shard.
+// Returns the first keys of a shard.
 std::vector<CellKey> KeysOf(size_t shard, size_t count) {
   std::vector<CellKey> keys;
   for (CellKey key = 1; keys.size() < count; ++key)
@@ -143,7 +143,7 @@ TEST_F(RayMapFile, GoesOnAsTheMapThatWasWritten) {
       ThreadPool pool(threads);
       RayMap whole(max_cells), stopped(max_cells);
       for (uint64_t batch = 0; batch < 8; ++batch) {
-        // Keys that come again and keys all over; others go only to cells that are there.
+        // Repeated keys, and keys all over the range; `others` are added only to existing cells.
         for (const uint64_t cells : {uint64_t{20000}, UINT64_MAX}) {
           const std::vector<BinnedRay> rays = RandomRays(5000, cells, 2 * batch + cells % 2);
           const std::vector<BinnedRay> others = RandomRays(2000, cells, 100 + batch);
@@ -257,7 +257,7 @@ TEST_F(RayMapFile, ShardsHoldAsManyCellsAsTheHeadSays) {
   ExpectError(with_count(2), "shard 0: 2 cells, at most 1 were expected");
   ExpectError(with_count(UINT64_MAX), "at most 1 were expected");
   ExpectError(with_count(0), "is damaged");
-  // A cell's place is taken by what follows nothing.
+  // The file is long enough for one cell, but no shard has one.
   std::string lacking = FileOfCells({}, 0) + std::string(sizeof(BinnedCell), '\0');
   ExpectError(WithHead(lacking, [](Head* head) { head->cell_count = 1; }), "lack 1 of 1 cells");
 }

@@ -58,7 +58,7 @@ TEST(RayMap, WhatIsKeptDependsOnTheRaysAlone) {
   ThreadPool one(1), three(3);
   std::map<CellKey, BinnedCell> first;
   for (int round = 0; round < 4; ++round) {
-    // Other batches, another order, another number of threads.
+    // Batches, order and number of threads differ from round to round.
     const size_t batch = round == 0 ? rays.size() : 1000 + 777 * round;
     std::sort(rays.begin(), rays.end(), [round](const BinnedRay& a, const BinnedRay& b) {
       return MixBits(a.cell + round) < MixBits(b.cell + round);
@@ -102,7 +102,7 @@ TEST(RayMap, RaysMayBeAddedWithoutNewCells) {
   EXPECT_EQ(CellsOf(map), expected);
 }
 
-// However little is expected in the beginning, and though more comes between two calls of Trim().
+// The map grows from a small expected size, even if it gets more than max_cells before Trim().
 TEST(RayMap, GrowsToWhatItsCellsNeed) {
   ThreadPool pool(2);
   RayMap map(20000, 100);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr size_t kLeafRays = 16;
 
-// A ray in units of the kernel.
+// Coordinates of a ray in sigmas of the kernel.
 std::array<float, 4> Scaled(double lens_x, double lens_y, double x, double y,
                             const QueryKernel& kernel) {
   return {static_cast<float>(lens_x / kernel.sigma_st_w),
@@ -86,7 +86,7 @@ QuerySum RayQuery::Nearest(const Vec2& lens_point, const Vec2& position_px, size
   std::vector<float> distances2(count);
   const size_t found = tree_->index.knnSearch(query.data(), count, rays.data(), distances2.data());
   QuerySum sum;
-  // Weights may be too small for numbers; their ratios are not.
+  // The weights themselves may underflow; weights relative to the nearest ray do not.
   for (size_t i = 0; i < found; ++i) tree_->Add(rays[i], distances2[i] - distances2[0], &sum);
   return sum;
 }

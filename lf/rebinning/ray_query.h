@@ -1,13 +1,15 @@
-// What a ray would have recorded, interpolated between rebinned rays near it (thesis Eq. 4.5, 4.6):
+// The radiance of a ray, interpolated between the rebinned rays near it (thesis Eq. 4.5, 4.6):
 //
-//   L = sum w_i L_i / sum w_i,   w_i = exp(-|l - l_i|^2 / 2 sigma_st^2 - |p - p_i|^2 / 2
-//   sigma_uv^2)
+//   L   = sum w_i L_i / sum w_i
+//   w_i = exp(-|l - l_i|^2 / 2 sigma_st^2 - |p - p_i|^2 / 2 sigma_uv^2)
 //
-// with l where the ray passes the lens and p where it meets the plate, over the rays with
-// |l - l_i|^2 / sigma_st^2 + |p - p_i|^2 / sigma_uv^2 <= kReach_sigmas^2, or the k nearest by that
-// measure. (The factor before Eq. 4.5's exponentials is the same for all and cancels.)
+// where l is the ray's point on the lens and p its position on the plate. The sums run over the
+// rebinned rays with |l - l_i|^2 / sigma_st^2 + |p - p_i|^2 / sigma_uv^2 <= kReach_sigmas^2, or
+// over the k nearest by that measure. (The factor before Eq. 4.5's exponentials is the same for all
+// rays and cancels.)
 //
-// By a k-d tree (nanoflann): the thesis's way, for single rays, and the judge of splat.h.
+// Rays are found in a k-d tree (nanoflann), as in the thesis. This serves single rays, and is the
+// reference that splat.h is compared with.
 #pragma once
 
 #include <cstddef>
@@ -25,7 +27,7 @@ struct QueryKernel {
 };
 inline constexpr double kReach_sigmas = 3;
 
-// What a sum of rays is: the sum of weights, and that of weighted values.
+// Sum of the weights of some rays, and sum of their weighted values.
 struct QuerySum {
   double weight = 0;
   std::array<double, 3> rgb = {};
@@ -33,14 +35,14 @@ struct QuerySum {
 
 class RayQuery {
  public:
-  // Keeps the rays, not copied.
+  // Refers to `rays` without a copy: they must outlive the query.
   RayQuery(std::span<const FrameRay> rays, const QueryKernel& kernel);
   ~RayQuery();
   RayQuery(const RayQuery&) = delete;
   RayQuery& operator=(const RayQuery&) = delete;
 
   QuerySum WithinReach(const Vec2& lens_point, const Vec2& position_px) const;
-  // Weights are those of Eq. 4.5 but for a factor.
+  // The weights are those of Eq. 4.5 times a common factor.
   QuerySum Nearest(const Vec2& lens_point, const Vec2& position_px, size_t count) const;
 
  private:

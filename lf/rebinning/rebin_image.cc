@@ -9,8 +9,8 @@
 namespace lf {
 namespace {
 
-// Colours of a mosaic's pixels that have all of their neighbours, in the same few steps for every
-// pixel: what its place in the pattern is cannot be foreseen.
+// Colours of a mosaic's pixels that have all of their neighbours. Every pixel takes the same steps
+// without a branch, because its place in the pattern cannot be predicted.
 class InnerMosaic {
  public:
   explicit InnerMosaic(const LfPixels& pixels) {
@@ -31,7 +31,7 @@ class InnerMosaic {
     }
   }
 
-  // The means of four, of two, and the pixel itself.
+  // Each channel is the pixel itself, or the mean of two or four neighbours: always a sum of four.
   std::array<uint16_t, 3> At(const uint16_t* v, int x, int y) const {
     std::array<uint16_t, 3> rgb;
     const std::array<FourOffsets, 3>& of = offsets_[2 * (y & 1) + (x & 1)];
@@ -66,14 +66,14 @@ std::array<uint16_t, 3> RgbOfMosaic(const LfPixels& pixels, const InnerMosaic& i
     }
   std::array<uint16_t, 3> rgb{};
   for (int c = 0; c < 3; ++c) {
-    // At a border without such a neighbour: what was recorded, as if it were grey.
+    // At a border without a neighbour of this channel, the pixel counts as grey.
     const int from = counts[c] > 0 ? c : own;
     rgb[c] = static_cast<uint16_t>((sums[from] + counts[from] / 2) / counts[from]);
   }
   return rgb;
 }
 
-// Colours as means of all pixels around that recorded them, by a Gaussian.
+// Colours as means of the pixels around that recorded them, weighted by a Gaussian.
 class ColourFilter {
  public:
   explicit ColourFilter(double sigma_px) : taps_(MakeTaps(sigma_px)) {}
@@ -101,7 +101,7 @@ class ColourFilter {
         else
           for (int c = 0; c < 3; ++c) add(c, pixels.radiance.at(i, k, c));
       }
-    // At a border without a channel: as if it were grey.
+    // At a border without a pixel of this channel, the pixel counts as grey.
     const int own = is_mosaic ? BayerChannel(pixels.bayer, x, y) : 1;
     std::array<uint16_t, 3> rgb{};
     for (int c = 0; c < 3; ++c) {
@@ -123,7 +123,7 @@ std::array<uint16_t, 3> RgbOf(const LfPixels& pixels, const InnerMosaic& inner, 
   return {v[0], v[1], v[2]};
 }
 
-// The pixels of one LF image, row by row.
+// Adds the rays of one LF image, row by row.
 class ImageRebinner {
  public:
   ImageRebinner(const Slab& slab, const PinholeCamera& lf_camera, LfImageId id,
@@ -139,9 +139,10 @@ class ImageRebinner {
         map_(map),
         rays_(*rays) {}
 
-  // Of columns [begin, end).
-  //   p            of these
-  //   position(x)  the ideal one of the pixel
+  // Adds the chosen rays of columns [begin, end) to the kept ones, and the rest to the others if
+  // these are averaged.
+  //   p            of these columns
+  //   position(x)  the ideal position of the pixel
   template <class Position>
   void Row(const uint16_t* p, int y, int begin, int end, const Position& position) {
     chances_.Choose(static_cast<uint64_t>(y) * width_px_ + begin,
@@ -161,7 +162,7 @@ class ImageRebinner {
     }
   }
 
-  // The same, all of them.
+  // Adds all rays of columns [begin, end) to the kept ones.
   template <class Position>
   void WholeRow(int y, int begin, int end, const Position& position) {
     for (int x = begin; x < end; ++x)
@@ -197,28 +198,29 @@ class ImageRebinner {
   BinnedRays& rays_;
 };
 
-// Probabilities of so many rows are found together: the second level cache holds them and their
+// Number of rows whose probabilities are computed together: the L2 cache holds them and their
 // pixels.
 constexpr int kBandRows = 64;
 static_assert(kBandRows % RebinCoverage::kBlock == 0);
 
-// Pixels of some rows of a band that are covered alike.
+// Pixels within a band that are covered by the same kind of map.
 struct PixelRun {
   PixelRect rect;
-  bool is_whole;
-  const IdealPatch* patch;  // that they are in; null without lens distortion
+  bool is_whole;            // covered by RebinCoverage::whole
+  const IdealPatch* patch;  // that contains them; null without lens distortion
 };
 
-// The squares of an LF image that are covered, those side by side as one run. Squares begin at
-// multiples of their side, so that the same pixels are covered whatever part of the image is there.
+// The covered squares of an LF image; neighbours in a row of squares form one run. Squares begin at
+// multiples of their side, so that coverage does not depend on the part of the image that is read.
 class CoveredRuns {
  public:
-  //   coverage  null: all is kept by edges
+  //   coverage  null: all pixels are kept with the probability of Eq. 4.4
   CoveredRuns(const Slab& slab, const PinholeCamera& lf_camera, const RebinCoverage* coverage)
       : forms_(MakeSlabForms(slab, lf_camera)), coverage_(coverage) {}
 
-  //   patch           that the rectangle is a part of, or null
-  //   position(x, y)  the ideal one of a place in the rectangle
+  // Appends the runs of a rectangle.
+  //   patch           contains the rectangle; null without lens distortion
+  //   position(x, y)  ideal position of a pixel position in the rectangle
   template <class Position>
   void Find(const PixelRect& rect, const IdealPatch* patch, const Position& position,
             std::vector<PixelRun>* runs) const {
@@ -230,7 +232,7 @@ class CoveredRuns {
     }
     constexpr int kBlock = RebinCoverage::kBlock;
     for (int y = rect.y_begin / kBlock * kBlock; y < rect.y_end; y += kBlock) {
-      bool continues = false;  // the run before
+      bool continues = false;  // true if the square before is covered
       for (int x = rect.x_begin / kBlock * kBlock; x < rect.x_end; x += kBlock) {
         const PixelRect block = Intersection({x, y, x + kBlock, y + kBlock}, rect);
         const std::optional<SlabPoint> point =

@@ -1,9 +1,9 @@
-// The rays of one LF image into the cells of a slab (thesis 4.3.2): which of them are kept, and
-// where they go.
+// Sorts the rays of one LF image into the cells of a slab (thesis 4.3.2), and decides which rays
+// are kept.
 //
-// A pixel's ray is kept where a random number in [0, 1) is below its p (probability_map.h). The
-// number depends on seed, LF image and pixel alone: the same rays are kept whatever the threads,
-// the order of the images, and the part of them that is read.
+// The ray of a pixel is kept if a random number in [0, 1) is below its p (probability_map.h). The
+// number depends only on seed, LF image and pixel, so the kept rays depend neither on the number of
+// threads, nor on the order of the LF images, nor on the part of an LF image that is read.
 #pragma once
 
 #include <array>
@@ -23,56 +23,58 @@ namespace lf {
 struct RebinOptions {
   ProbabilityOptions probability;
   uint64_t seed = 0;
-  // Rays that are not kept are added to the cells that are there: less noise, but every pixel's ray
-  // must be found (thesis 5.3).
+  // If true, rays that are not kept are added to the cells that exist already. This reduces noise,
+  // but the cell of every pixel's ray must be found (thesis 5.3).
   bool averages_others = false;
-  // Colours are smoothed by a Gaussian of so many LF pixels, each channel by what recorded it:
-  // against noise, where few rays are kept. At most kMostSigma_px; 0: as recorded.
+  // Sigma of a Gaussian that smooths each channel over the LF pixels that recorded it. Reduces
+  // noise if few rays are kept. At most kMostSigma_px; 0: colours as recorded.
   double colour_sigma_px = 0;
 };
-// How far from a pixel what is made of it depends on others.
+// Largest distance, in LF pixels, of a pixel that p or the colour of a pixel's ray depends on.
 int PixelsAround(const RebinOptions& options, bool is_mosaic);
 
-// Rays of some LF images, by the shards of a RayMap. Its memory is used again.
+// Rays of some LF images, by the shards of a RayMap. Clear() keeps the memory for reuse.
 struct BinnedRays {
   std::array<std::vector<BinnedRay>, RayMap::kShards> kept;
   std::array<std::vector<BinnedRay>, RayMap::kShards> others;  // empty unless averages_others
-  uint64_t looked_at = 0;                                      // LF pixels that are covered
+  uint64_t looked_at = 0;                                      // number of covered LF pixels
 
   void Clear();
 };
 
-// What is kept of an LF image, square by square of kBlock pixels: where the middle of one is.
+// The maps that decide which squares of kBlock x kBlock pixels of an LF image are covered: those
+// whose middle ray a map covers.
 struct RebinCoverage {
   static constexpr int kBlock = 8;
-  const CoverageMap* whole = nullptr;  // of these rays all
-  // Of these some, by Eq. 4.4.
+  const CoverageMap* whole = nullptr;  // all rays of its squares are kept
+  // Rays of the squares of these maps are kept with the probability of Eq. 4.4.
   std::array<const CoverageMap*, 2> by_edges = {};
 };
 
-// Adds the rays of the pixels of `rect` that are covered and run through both planes of the slab.
-// All three colours are of the pixel; of a mosaic those that it did not record are the means of its
-// neighbours'.
-//   pixels         at least those of `rect`, and PixelsAround() more where the image has them: else
-//                  what is made of those at its borders is a little different
+// Adds the rays of the pixels of `rect` that are covered, cut both planes of the slab, and are
+// kept. A ray has the three colours of its pixel. In a mosaic, the two colours that a pixel did not
+// record are the means of its neighbours that did.
+//   pixels         at least those of `rect`, and PixelsAround() more on each side if the LF image
+//                  has them; without these, p and the colours near the borders differ a little
 //   stored_values  StoredValueTable() of the light field
-//   ideal_pixels   of a camera with lens distortion, else null
-//   coverage       null: all is covered, by edges
-//   map            rays of cells that it has dropped are left out
+//   ideal_pixels   of a camera with lens distortion, null without distortion
+//   coverage       null: all pixels are covered, and kept with the probability of Eq. 4.4
+//   map            rays whose cell is not below its limit are left out
 void RebinImage(const Slab& slab, const PinholeCamera& lf_camera, LfImageId id,
                 const LfPixels& pixels, const PixelRect& rect,
                 const std::vector<uint16_t>& stored_values, const IdealPixels* ideal_pixels,
                 const RebinOptions& options, const RebinCoverage* coverage, const RayMap& map,
                 BinnedRays* rays);
 
-// The share of the pixels of `rect` that are covered by the map, about: by the middles of squares.
+// Returns the approximate share of the pixels of `rect` that the map covers, by the middles of
+// squares. Ignores lens distortion.
 double CoveredShare(const Slab& slab, const PinholeCamera& lf_camera, const PixelRect& rect,
                     const CoverageMap& map);
 
-// Puts them into the map, by all threads, and cuts that to its size. Others are added to the cells
-// that are there then: with these it matters which LF images are given together, but not their
-// order.
-//   cpu_ns  the time that it takes is added, of all threads, if given
+// Adds the kept rays to the map by all threads, trims the map, and then adds the other rays to the
+// cells that are left. With other rays, the result depends on which LF images are given in one
+// call, but not on their order.
+//   cpu_ns  the CPU time of all threads for adding rays is added to it; may be null
 void InsertRays(const std::vector<BinnedRays>& rays, ThreadPool& pool, RayMap* map,
                 std::atomic<int64_t>* cpu_ns = nullptr);
 

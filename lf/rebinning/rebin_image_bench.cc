@@ -1,4 +1,4 @@
-// Rays of one LF image into cells: 2048 x 2048 pixels, per pixel looked at.
+// Sorts the rays of one LF image into cells: 2048 x 2048 pixels; times per pixel looked at.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kSide = 2048;
 
-// Waves of all lengths below some noise.
+// Returns an image of waves of all lengths with some noise.
 LfPixels Drawn(BayerPattern bayer) {
   LfPixels pixels({0, 0, kSide, kSide}, bayer);
   const int lanes = pixels.radiance.channels();
@@ -76,7 +76,7 @@ void Rebin(benchmark::State& state, bool averages_others) {
 void RebinKept(benchmark::State& state) { Rebin(state, false); }
 void RebinWithOthers(benchmark::State& state) { Rebin(state, true); }
 
-// 0: RGB, 1: RGGB.
+// mosaic 0 is RGB, 1 is RGGB.
 BENCHMARK(ProbabilityOnly)->Arg(0)->Arg(1)->ArgName("mosaic")->Unit(benchmark::kMillisecond);
 BENCHMARK(RebinKept)->Arg(0)->Arg(1)->ArgName("mosaic")->Unit(benchmark::kMillisecond);
 BENCHMARK(RebinWithOthers)->Arg(0)->Arg(1)->ArgName("mosaic")->Unit(benchmark::kMillisecond);

@@ -60,7 +60,7 @@ RebinOptions Every() {
   return options;
 }
 
-// How many of the pixels' rays are in other cells than the law says.
+// Returns the number of pixels whose ray is not in the cell of CellOf(Parameterize(ray)).
 size_t Misplaced(const PinholeCamera& camera, const IdealPixels* ideal) {
   const Slab slab = TestSlab();
   const PixelRect rect{0, 0, 80, 60};
@@ -183,8 +183,7 @@ TEST(RebinImage, APartKeepsWhatTheWholeKeepsThere) {
   }
 }
 
-// Noise is gone where light is even; edges are no sharper than the Gaussian, and what is masked has
-// no say.
+// Smoothing reduces the noise of uniform colours, and ignores masked pixels.
 TEST(RebinImage, ColoursMayBeSmoothed) {
   const std::vector<uint16_t> table = StoredValueTable({});
   for (const BayerPattern bayer : {BayerPattern::kNone, BayerPattern::kRggb}) {
@@ -213,7 +212,7 @@ TEST(RebinImage, ColoursMayBeSmoothed) {
   }
 }
 
-// Where colours change evenly, all three of a mosaic are those of the light.
+// A mosaic of colours that change linearly gives the exact three colours of each pixel.
 TEST(RebinImage, MosaicsGiveAllColours) {
   const PixelRect rect{0, 0, 80, 60};
   const auto light = [](int x, int y, int c) {
@@ -243,7 +242,7 @@ TEST(RebinImage, MosaicsGiveAllColours) {
         right += is_light ? 1 : 0;
       }
     EXPECT_EQ(count, 78u * 58 - 1);
-    EXPECT_GE(right, count - 8);  // but beside the masked one
+    EXPECT_GE(right, count - 8);  // neighbours of the masked pixel may differ
   }
 }
 

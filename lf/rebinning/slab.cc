@@ -5,7 +5,7 @@
 namespace lf {
 namespace {
 
-// How far along the ray each plane is; none where they do not come one after the other.
+// Returns the parameter along the ray of each plane; none if the st plane does not come first.
 std::optional<std::array<double, 2>> Parameters(const std::array<double, 2>& distances,
                                                 const std::array<double, 2>& slopes) {
   if (slopes[0] == 0 || slopes[1] == 0) return {};
@@ -38,7 +38,7 @@ std::optional<CellKey> KeyOf(const SlabPoint& cells) {
   CellKey key = 0;
   for (int k = 0; k < kCellAxes; ++k) {
     if (!(cells[k] >= -kMostCells && cells[k] < kMostCells)) return {};
-    // Above 0 cutting is flooring.
+    // The sum is above 0, where truncation is floor().
     key |= static_cast<CellKey>(static_cast<int64_t>(cells[k] + kCellOffset)) << (16 * k);
   }
   return key;
@@ -85,7 +85,7 @@ SlabForms MakeCellForms(const Slab& slab, const PinholeCamera& lf_camera) {
 std::optional<SlabPoint> Parameterize(const SlabForms& forms, const Vec3& position) {
   const double per_st = 1 / Value(forms.denominators[0], position);
   const double per_uv = 1 / Value(forms.denominators[1], position);
-  // Neither where a ray is parallel to a plane.
+  // A ray parallel to a plane divides by 0. It is refused here, or its point is not finite.
   if (!(forms.distances[0] * per_st < forms.distances[1] * per_uv)) return {};
   return SlabPoint(
       Value(forms.numerators[0], position) * per_st, Value(forms.numerators[1], position) * per_st,

@@ -1,4 +1,4 @@
-// The light slab: two planes that rays are told apart by, and the cells that rays are sorted into
+// The light slab: two planes that parameterize rays, and the cells that rays are sorted into
 // (thesis 2.1.1, 4.3.2).
 //
 // A ray that cuts the st plane at (s, t) and the uv plane at (u, v), along the planes' axes from
@@ -7,7 +7,7 @@
 //   (floor(s / r_st), floor(t / r_st), floor(u / r_uv), floor(v / r_uv))
 //
 // and stands for the ray through the middle of that cell. Light runs from the uv plane to the st
-// plane: rays that cut the planes the other way round are others, and have no cell.
+// plane: a ray that cuts the planes in the other order is a different ray, and has no cell.
 #pragma once
 
 #include <array>
@@ -38,38 +38,44 @@ struct Slab {
 // (s, t, u, v), world units.
 using SlabPoint = Eigen::Vector4d;
 
-// Where a ray cuts the planes; none if it is parallel to one of them, or runs from the uv plane to
-// the st plane. A camera looks along its rays, against the light.
+// Returns the points where a ray cuts the planes; none if it is parallel to one of them, or runs
+// from the uv plane to the st plane. The direction of a ray is the one its camera looks in, against
+// the light.
 std::optional<SlabPoint> Parameterize(const Slab& slab, const Ray& ray);
 
-// The ray from the st to the uv plane.
+// Returns the ray from the point's place on the st plane to its place on the uv plane.
 Ray RayOfPoint(const Slab& slab, const SlabPoint& point);
 
-// A cell: its four numbers, each of 16 bits, the first the lowest; kCellOffset is added to each.
-// Never 0.
+// Key of a cell: its four numbers, 16 bits each, the first in the lowest bits; kCellOffset is added
+// to each. Never 0.
 using CellKey = uint64_t;
 inline constexpr int kCellOffset = 32768;
 inline constexpr int kCellAxes = 4;
 inline constexpr int kMostCells = 32767;  // on either side of the origin, along each axis
 
-// Of a point in cells instead of world units. None beyond kMostCells.
+// Returns the key of a point whose unit is cells instead of world units. None if a coordinate is
+// beyond kMostCells.
 std::optional<CellKey> KeyOf(const SlabPoint& cells);
 std::optional<CellKey> CellOf(const Slab& slab, const SlabPoint& point);
 SlabPoint MiddleOf(const Slab& slab, CellKey key);
 
-// Where the rays of an LF camera cut a slab, as quotients of linear forms on ideal pixel positions
-// (camera/ideal_pixels.h):  point[k] = numerator[k] p / denominator[k] p
+// The points where the rays of an LF camera cut a slab, as quotients of linear forms of the ideal
+// pixel position p (camera/ideal_pixels.h):
+//
+//   point[k] = numerators[k] p / denominators[k / 2] p
 struct SlabForms {
   std::array<PixelForm, kCellAxes> numerators;
   std::array<PixelForm, 2> denominators;  // of the st and of the uv plane
-  // Both are parameters along the ray times the denominators, which tell what comes first.
+  // distances[plane] / denominators[plane] p is the parameter along the ray where it cuts the
+  // plane.
   std::array<double, 2> distances;
 };
 SlabForms MakeSlabForms(const Slab& slab, const PinholeCamera& lf_camera);
-// The same in cells: KeyOf(Parameterize(forms, position)).
+// Returns the forms of points whose unit is cells: the key is KeyOf(Parameterize(forms, position)).
 SlabForms MakeCellForms(const Slab& slab, const PinholeCamera& lf_camera);
 
-// As Parameterize() of the pixel's ray, but for rounding.
+// Equals Parameterize() of the pixel's ray except for rounding, and except that the point may be
+// infinite if the ray is parallel to a plane. KeyOf() has no key for such a point.
 std::optional<SlabPoint> Parameterize(const SlabForms& forms, const Vec3& position);
 
 }  // namespace lf

@@ -10,11 +10,11 @@ namespace lf {
 namespace {
 
 constexpr double kMostTurn_rad = RadiansFromDegrees(30);
-constexpr double kMostCoarser = 1.5;  // than wanted
+constexpr double kMostCoarser = 1.5;  // acceptable width of a cell, in wanted widths
 constexpr double kStPerDistance = 0.25, kLeastStPerDistance = 1.0 / 256;
 constexpr double kUvPerPixel = 0.25, kUvPerElement = 0.125;
 
-// Places all over the plate, from edge to edge, a reach beyond it.
+// Visits the focus points of positions all over the plate and one reach beyond its edges.
 template <class Visit>
 void ForEachPlace(const FrameQueries& frame, const Visit& visit) {
   constexpr int kSteps = 4;
@@ -50,7 +50,7 @@ class SectionPlanner {
   }
 
  private:
-  // Whether all frames look about where it faces.
+  // Places the planes. Returns true if all frames look in about the direction that they face.
   bool Place(SlabSection* section) const {
     Vec3 forward = Vec3::Zero(), up = Vec3::Zero(), position = Vec3::Zero();
     for (size_t f = section->begin; f < section->end; ++f) {
@@ -63,7 +63,7 @@ class SectionPlanner {
     position = choices_.position_world.value_or(position);
     const std::optional<RigidTransform> pose = LookAlong(position, forward, up);
     if (!pose) {
-      // They look in all directions at once; of a single frame up is not along forward.
+      // The frames look in all directions at once. A single frame always has a pose.
       section->slab.st.origin_world = position;
       return false;
     }
@@ -79,7 +79,8 @@ class SectionPlanner {
     return all_look_along;
   }
 
-  // Along the normal: where both ends of the focus are equally off, in disparities.
+  // Returns the distance along the normal that differs equally in disparity from the nearest and
+  // the farthest focus.
   double FocusDistance(const SlabSection& section, const Vec3& position, const Vec3& normal) const {
     if (choices_.uv_distance_w) return *choices_.uv_distance_w;
     double least = std::numeric_limits<double>::infinity(), most = 0;
@@ -98,7 +99,8 @@ class SectionPlanner {
     return 2 / (1 / least + 1 / most);
   }
 
-  // Puts the origins in their middle. Returns whether all rays cut the planes.
+  // Sets the bounds and moves the planes' origins to their middle. Returns true if all rays cut
+  // both planes.
   bool SetBounds(SlabSection* section) const {
     bool all_cut = true;
     const std::optional<SlabBounds> bounds = BoundsOf(
@@ -115,7 +117,8 @@ class SectionPlanner {
     return all_cut;
   }
 
-  // Whether keys have room for cells about as narrow as wanted.
+  // Sets the widths of the cells. Returns true if keys have room for cells about as narrow as
+  // wanted.
   bool SetWidths(SlabSection* section) const {
     Slab& slab = section->slab;
     const Vec3 normal = slab.st.Normal();

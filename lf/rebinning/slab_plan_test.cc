@@ -10,7 +10,8 @@
 namespace lf {
 namespace {
 
-// Frames on a line, that turn by `turn_rad` in all and pull the focus from 2 to `last_focus_w`.
+// Returns frames on a line that turn by `turn_rad` in all and pull the focus from 2 to
+// `last_focus_w`.
 std::vector<FrameQueries> Frames(int count, double turn_rad, double last_focus_w) {
   std::vector<FrameQueries> frames;
   for (int i = 0; i < count; ++i) {
@@ -35,7 +36,7 @@ std::vector<LfSampling> Sampling(size_t count) {
   return std::vector<LfSampling>(count, {0.008, 1.0 / 90, Vec3(0.05, 0, 0)});
 }
 
-// A ray that the frame asks for, or one within its reach.
+// Returns a ray that the frame asks for, or one within its reach.
 Ray RandomRay(const FrameQueries& frame, RandomSequence& random) {
   const Intrinsics& k = frame.camera.pinhole.intrinsics;
   const auto focus = FocusPointOfElement(frame.camera, random.Uniform(0, k.width_px),
@@ -80,7 +81,7 @@ TEST(SlabPlan, HoldsAllRays) {
   }
 }
 
-// What is in focus moves by less than a cell of the uv plane, though the st plane has cells.
+// Within a cell of the st plane, the point in focus moves by less than a cell of the uv plane.
 TEST(SlabPlan, CellsAreFineWhereTheFocusIsPulledTo) {
   SlabChoices choices;
   choices.r_uv_w = 0.0005;
@@ -139,7 +140,8 @@ TEST(CoverageMap, CoversWhatIsAskedForAndNotMuchMore) {
         ASSERT_TRUE(map.Covers(*Parameterize(section.slab, RandomRay(frame, random))));
     EXPECT_LT(map.share(), 0.9);
     EXPECT_FALSE(map.Covers(2 * section.bounds.high));
-    // At the rims of the lens, towards the wrong side of the scene.
+    // This ray passes the rim of the lens towards the opposite side of the scene: no frame asks for
+    // it.
     SlabPoint corner = section.bounds.low;
     corner.tail<2>() = section.bounds.high.tail<2>();
     if (bytes > 1 << 20) {

@@ -37,7 +37,7 @@ TEST(Slab, ARayGoesThroughItsPoints) {
     const SlabPoint point(random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(-1, 1),
                           random.Uniform(-0.5, 0.5));
     const Ray ray = RayOfPoint(slab, point);
-    // From any place on the line, in whatever length.
+    // The origin may be any point of the line, and the direction may have any length.
     const auto back =
         Parameterize(slab, {ray.At(random.Uniform(-2, 3)), random.Uniform(0.1, 9) * ray.direction});
     ASSERT_TRUE(back);

@@ -13,11 +13,11 @@
 namespace lf {
 namespace {
 
-// Sums of a tile stay in the second level cache (splat_tile.h).
+// The sums of a tile of this size stay in the L2 cache (splat_tile.h).
 constexpr int kTileWidth = 64;
 constexpr int kTileHeight = 32;
 
-// Which rays reach which tile: [begins[tile], begins[tile + 1]) of `rays`.
+// Indices of the rays that reach each tile: rays[begins[tile]] to before rays[begins[tile + 1]].
 struct TileRays {
   std::vector<size_t> begins;
   std::vector<uint32_t> rays;
@@ -38,7 +38,7 @@ void ForEachTile(const TileGrid& grid, const FrameRay& ray, double reach_px, con
     for (int x = x0; x <= x1; ++x) visit(static_cast<size_t>(y) * columns + x);
 }
 
-// In the order of the rays, whatever the threads: counted, then placed.
+// Sorts by counting. The indices of a tile are ascending, for any number of threads.
 TileRays SortIntoTiles(std::span<const FrameRay> rays, const TileGrid& grid, double reach_px,
                        ThreadPool& pool) {
   constexpr size_t kParts = 32;
@@ -70,7 +70,8 @@ TileRays SortIntoTiles(std::span<const FrameRay> rays, const TileGrid& grid, dou
   return sorted;
 }
 
-// Squares over the lens, as large as the reach: what is near a lens point is in nine of them.
+// Squares over the lens that are at least as wide as the reach: all rays near a lens point are in
+// the nine squares around it.
 class LensGrid {
  public:
   LensGrid(const LensPointSets& points, double reach_w) : low_(points.sets[0][0]) {
@@ -101,15 +102,15 @@ class LensGrid {
   std::array<int, 2> count_;
 };
 
-// A point of the lens in the groups of its set.
+// A lens point in the order of the groups of its set.
 struct GroupedPoint {
   Vec2 at;
   double sigma_st_w;
-  size_t number;  // in PointShares
+  size_t number;  // index in PointShares
 };
 
-// The points of a set by eight that are near each other: strips of the lens, cut across. They come
-// back in the order of the groups.
+// Groups the points of a set by eight that are near each other: cuts the lens into strips, and the
+// strips into groups. Sorts `points` into the order of the groups.
 std::vector<LensPointGroup> GroupsOf(std::vector<GroupedPoint>& points) {
   constexpr size_t kPoints = LensPointGroup::kPoints;
   const size_t groups = (points.size() + kPoints - 1) / kPoints;
@@ -162,14 +163,14 @@ std::vector<GroupedSet> GroupsOfSets(const LensPointSets& lens_points, const Que
   return sets;
 }
 
-// One tile at a time.
+// Renders one tile at a time.
 class TileSplatter {
  public:
   TileSplatter(const QueryKernel& kernel, std::span<const GroupedSet> sets, const LensGrid& lens,
                const PointShares* shares, SplatFrame* frame)
       : kernel_(kernel), sets_(sets), lens_(lens), shares_(shares), frame_(frame) {}
 
-  //   k  of the sets
+  //   k  of the lens point sets
   void Run(std::span<const FrameRay> rays, std::span<const uint32_t> of_tile, const PixelRect& rect,
            int k) {
     SortByLens(rays, of_tile);
@@ -197,7 +198,7 @@ class TileSplatter {
     begins_.assign(lens_.cells() + 1, 0);
     cell_of_.resize(of_tile.size());
     sorted_.resize(of_tile.size());
-    // Rays of a tile are anywhere in memory.
+    // The rays of a tile are scattered in memory, so they are prefetched.
     constexpr size_t kAhead = 16;
     for (size_t i = 0; i < of_tile.size(); ++i) {
       if (i + kAhead < of_tile.size()) __builtin_prefetch(&rays[of_tile[i + kAhead]]);
@@ -211,7 +212,8 @@ class TileSplatter {
     for (size_t i = 0; i < of_tile.size(); ++i) sorted_[next_[cell_of_[i]]++] = rays[of_tile[i]];
   }
 
-  // Whether there are any.
+  // Finds the shares of a group's lens points at the elements of the grid. Returns false if all are
+  // 0.
   bool FindShares(const GroupedSet& set, const LensPointGroup& group, const PixelRect& rect,
                   const SplatGrid& grid) {
     bool is_any = false;
@@ -258,7 +260,7 @@ class TileSplatter {
   const LensGrid& lens_;
   const PointShares* const shares_;
   SplatFrame* const frame_;
-  std::vector<FrameRay> sorted_;  // of the tile, by places on the lens
+  std::vector<FrameRay> sorted_;  // rays of the tile, by squares of the lens
   std::vector<size_t> begins_, next_;
   std::vector<uint32_t> cell_of_;
   SplatSums sums_;
@@ -303,7 +305,7 @@ SplatFrame SplatReference(std::span<const FrameRay> rays, int width_px, int heig
   SplatFrame frame = EmptyFrame(width_px, height_px);
   if (rays.empty()) return frame;
   std::map<double, std::unique_ptr<RayQuery>> queries;  // by spread
-  std::vector<size_t> firsts = {0};                     // of sets, in the shares
+  std::vector<size_t> firsts = {0};                     // first index of each set in the shares
   for (size_t set = 0; set < lens_points.sets.size(); ++set) {
     firsts.push_back(firsts.back() + lens_points.sets[set].size());
     for (size_t i = 0; i < lens_points.sets[set].size(); ++i) {

@@ -1,9 +1,9 @@
-// A whole frame out of rebinned rays: one ray for each element and lens point, each interpolated as
-// in ray_query.h, and their mean (thesis 4.3.2, "Rendering Phase").
+// Renders a whole frame from rebinned rays: an element is the mean of one ray for each lens point,
+// interpolated as in ray_query.h (thesis 4.3.2, "Rendering Phase").
 //
-// Not asked ray by ray: lens points are shared by all elements, so that for one of them every
-// rebinned ray near it is added, weighed, to the elements within its reach. The sums are the same,
-// and there is no tree (doc/rebinning.md).
+// Rays are not asked for one by one. All elements share the lens points, so each rebinned ray near
+// a lens point is added, with its weight, to the elements within its reach. This gives the same
+// sums without a tree (doc/rebinning.md).
 #pragma once
 
 #include <cstddef>
@@ -22,20 +22,22 @@ namespace lf {
 
 struct SplatFrame {
   Image<float> rgb;    // [height][width][3]: mean of the rays that could be interpolated, linear
-  Image<float> share;  // [height][width]: how many of the lens points these were, 0 to 1
+  Image<float> share;  // [height][width]: lens points with an interpolated ray / all, 0 to 1
 };
 
-// Elements that no ray is near have share 0 and black. The same bits for any number of threads.
-//   rays    of this frame, with a reach of kReach_sigmas (ReachOf())
-//   shares  weighs the lens points in both answers; null: all count 1
+// Renders a frame. Elements without a rebinned ray near them are black and have share 0. The bits
+// do not depend on the number of threads.
+//   rays    of this frame, with the reach ReachOf() (kReach_sigmas)
+//   shares  weights of the lens points in both images; null: all weights are 1
 SplatFrame Splat(std::span<const FrameRay> rays, int width_px, int height_px,
                  const LensPointSets& lens_points, const QueryKernel& kernel, ThreadPool& pool,
                  const PointShares* shares = nullptr);
 
 FrameReach ReachOf(const QueryKernel& kernel, const LensPointSets& lens_points);
 
-// The same by queries, one element after the other: the judge.
-//   nearest  not 0: of so many rays, however far, in place of those within reach
+// The reference of Splat(): asks a RayQuery for every element and lens point.
+//   nearest  if not 0, interpolates between the `nearest` nearest rays at any distance, instead of
+//            the rays within reach
 SplatFrame SplatReference(std::span<const FrameRay> rays, int width_px, int height_px,
                           const LensPointSets& lens_points, const QueryKernel& kernel,
                           ThreadPool& pool, const PointShares* shares = nullptr,

@@ -1,7 +1,7 @@
-// Splats, compiled for every instruction set and chosen as the program runs (Highway).
+// Splats, compiled for every instruction set; one is chosen at run time (Highway).
 //
-// Products and sums are never fused, and lanes are added up in their order: every instruction set
-// gives the same bits.
+// Products and sums are never fused, and lanes are added up in a fixed order, so every instruction
+// set gives the same bits.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +11,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lf/rebinning/splat_simd.cc"  // NOLINT: as Highway wants it
 #include <hwy/foreach_target.h>
-// After foreach_target.h.
+// Must follow foreach_target.h.
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -24,7 +24,7 @@ using V = hn::Vec<D>;
 constexpr int kPoints = LensPointGroup::kPoints;
 constexpr int kChannels = SplatSums::kChannels;
 constexpr float kReach2 = static_cast<float>(kReach_sigmas * kReach_sigmas);
-// Columns or rows of a splat, and those of a vector beyond.
+// Most columns or rows of a splat, plus one vector beyond its end.
 constexpr int kMostAcross = 2 * static_cast<int>(kReach_sigmas * kMostSigmaUv_px) + 2 + kPoints;
 
 // exp(-q / 2) for q in [0, 9] to 4e-6: exp(-q / 16) by its series, and the eighth power of that.
@@ -41,15 +41,15 @@ HWY_INLINE V Gaussian(V q) {
   return hn::Mul(fourth, fourth);
 }
 
-// What of a tile's columns or rows a ray reaches, and along them: (distance / sigma)^2 and the
-// Gaussian of that.
+// The columns or rows of a tile that a ray reaches, [begin, end), with q = (distance / sigma)^2 and
+// exp(-q / 2) of each.
 struct Along {
   int begin;
   int end;
   HWY_ALIGN float q[kMostAcross];
   HWY_ALIGN float gaussian[kMostAcross];
 
-  // place   of the ray, in elements of the grid from the centre of the first
+  // place   of the ray, in elements of the grid, from the centre of the first element
   // scale   k / sigma
   HWY_INLINE void Find(float place, float scale, int count) {
     const float reach = static_cast<float>(kReach_sigmas) / scale;

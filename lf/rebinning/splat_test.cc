@@ -24,7 +24,7 @@ std::vector<FrameRay> RandomRays(size_t count, int width, int height, uint64_t s
   return rays;
 }
 
-// The sums, added up ray by ray.
+// Returns the sums of Eq. 4.5, added up ray by ray.
 QuerySum BruteForce(std::span<const FrameRay> rays, const Vec2& lens_point, const Vec2& position,
                     const QueryKernel& kernel) {
   QuerySum sum;
@@ -64,7 +64,7 @@ TEST(RayQuery, TheNearestAreThoseOfBruteForce) {
   const QueryKernel kernel{0.001, 1.5};
   const RayQuery query(rays, kernel);
   const Vec2 lens_point(0.001, -0.002), position(11.2, 14.9);
-  // All of them are the sum over all, whatever the reach.
+  // The rays.size() nearest rays are all rays, at any distance.
   double weight = 0, red = 0, least = 1e30;
   const auto distance2 = [&](const FrameRay& ray) {
     return (Vec2(ray.lens_x_w, ray.lens_y_w) - lens_point).squaredNorm() / 1e-6 +
@@ -77,7 +77,7 @@ TEST(RayQuery, TheNearestAreThoseOfBruteForce) {
   }
   const QuerySum all = query.Nearest(lens_point, position, rays.size());
   EXPECT_NEAR(all.rgb[0] / all.weight, red / weight, 1);
-  // The nearest one alone, however far.
+  // The nearest ray alone, at any distance.
   const QuerySum one = query.Nearest(lens_point, position, 1);
   EXPECT_EQ(one.weight, 1);
   const auto nearest = std::min_element(
@@ -87,7 +87,7 @@ TEST(RayQuery, TheNearestAreThoseOfBruteForce) {
   EXPECT_GT(query.Nearest(Vec2(3, 3), Vec2(1000, 1000), 4).weight, 0);
 }
 
-// But for single rays on the rim of the reach.
+// Expects equal frames, except for elements with a ray on the rim of the reach.
 void ExpectSame(const SplatFrame& fast, const SplatFrame& judge) {
   double sum2 = 0;
   size_t count = 0, differing = 0;
@@ -123,8 +123,8 @@ TEST(Splat, IsWhatQueriesGive) {
       }
 }
 
-// Where rays are rare lens points reach farther, and only a part of them is asked for, here and
-// there: a ramp from the left to the right edge, and none of some.
+// Lens points reach farther if rays are rare, and parts of the plate ask for a part of them: the
+// shares are a ramp from the left to the right edge, and 0 for some points.
 TEST(Splat, PointsMayReachFartherAndBeAskedForInPart) {
   constexpr int kWidth = 140, kHeight = 67;
   const std::vector<FrameRay> rays = RandomRays(40000, kWidth, kHeight, 6);
@@ -161,7 +161,7 @@ TEST(Splat, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(a.share.pixels(), b.share.pixels());
 }
 
-// One ray a little off the axis is a spot of its colour, where it meets the plate, seen from the
+// One ray a little off the axis is a spot of its colour at its position on the plate, seen from the
 // lens points near it.
 TEST(Splat, ARayIsASpot) {
   FrameRay ray;

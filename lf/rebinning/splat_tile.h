@@ -1,4 +1,4 @@
-// Rays of one tile of a frame, added up for eight lens points at a time. Internal to rebinning.
+// Sums of the rays of one tile of a frame, for eight lens points at a time. Internal to rebinning.
 #pragma once
 
 #include <array>
@@ -10,20 +10,20 @@
 
 namespace lf {
 
-// Lens points side by side in a vector, near each other. A ray is near most of them or none, and
-// what it does to an element is one multiplication for all.
+// Lens points near each other, in the lanes of a vector. A ray is near most of them or none, and
+// one vector multiplication gives its weights at an element for all of them.
 struct LensPointGroup {
   static constexpr int kPoints = 8;
-  static constexpr float kNowhere = 1e18F;  // of the places that are not used
+  static constexpr float kNowhere = 1e18F;  // coordinates of unused lanes
   std::array<float, kPoints> x;
   std::array<float, kPoints> y;
   std::array<float, kPoints> per_st2;  // 1 / (spread sigma_st)^2
-  double reach_w = 0;                  // of the widest
+  double reach_w = 0;                  // largest reach of the points
   int count = 0;
-  size_t first = 0;  // in the order of the groups
+  size_t first = 0;  // index of the first point in the order of the groups
 };
 
-// The elements that a tile's sums are of: (x0 + k i, y0 + k j).
+// The elements (x0 + k column, y0 + k row) of a tile, which use the same lens points.
 struct SplatGrid {
   int x0 = 0;
   int y0 = 0;
@@ -36,11 +36,11 @@ struct SplatSums {
   static constexpr int kChannels = 4;  // R, G, B, and the weight or the number of lens points
   static constexpr int kElement = kChannels * LensPointGroup::kPoints;
 
-  // For one group of lens points  [rows][columns][kChannels][kPoints]
+  // Weighted sums of one group of lens points  [rows][columns][kChannels][kPoints]
   LargeVector<float> weighted;
-  // The means of those that had rays, added up  [rows][columns][kChannels]
+  // Sums of the means of the lens points that had rays  [rows][columns][kChannels]
   LargeVector<float> means;
-  // How much of each lens point of the group counts  [rows][columns][kPoints]  Empty: 1.
+  // Weight of each lens point of the group  [rows][columns][kPoints]; empty: all 1
   LargeVector<float> shares;
 
   void Reset(const SplatGrid& grid) {
@@ -50,14 +50,14 @@ struct SplatSums {
   }
 };
 
-// Wider splats are not known: they would be of more than a few hundred elements.
+// Largest supported sigma_uv: the splat of a ray then covers about 2800 elements.
 inline constexpr double kMostSigmaUv_px = 10;
 
-// Adds rays, weighed as ray_query.h says, to the weighted sums.
+// Adds rays, with the weights of ray_query.h, to the weighted sums.
 void AddRays(std::span<const FrameRay> rays, const LensPointGroup& points,
              const QueryKernel& kernel, const SplatGrid& grid, SplatSums* sums);
 
-// Turns the weighted sums into means, adds these, and begins anew.
+// Adds the means of the weighted sums to `means`, and resets the weighted sums to 0.
 void AddMeans(const SplatGrid& grid, SplatSums* sums);
 
 }  // namespace lf
