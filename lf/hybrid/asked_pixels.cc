@@ -22,7 +22,7 @@ uint32_t PhaseOf(uint32_t place) {
   return phase;
 }
 
-// Previews are content with LF images that are read anyway.
+// Previews use only LF images that are read anyway, so they alone do not widen the camera.
 AskedPixels::AskedPixels(const LensGaps& gaps, bool collects, Previews previews)
     : camera_(gaps.asks_in_the_end() ? gaps.ReachedCamera() : gaps.camera()),
       asks_in_the_end_(gaps.asks_in_the_end()),

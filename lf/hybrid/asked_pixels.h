@@ -1,5 +1,5 @@
-// Which pixels of LF images the rebinned rays of one frame are made of. Known from calibrations
-// alone.
+// The pixels of LF images that the rebinned rays of one frame are made of, computed from
+// calibrations alone.
 #pragma once
 
 #include <cstddef>
@@ -15,40 +15,44 @@
 
 namespace lf {
 
-// Frames that rays are kept of for pictures of an unfinished render, where they collect, too.
+// The frames for which rays are kept for previews, pictures of an unfinished render. Only a frame
+// that also collects rays has previews.
 enum class Previews {
-  kAuto,  // of those that collect more than kPreviewedFrom LF images: fewer are there soon
+  kAuto,  // frames that collect more than kPreviewedFrom LF images: others are finished soon
   kOn,
   kOff,
 };
 // "auto", "on", "off"
 const char* NameOf(Previews previews);
 inline constexpr size_t kPreviewedFrom = 256;
-// Number of LF images of a frame whose rays are kept for that: they are all over its lens
-// (thesis 4.2.1).
+// Number of collected LF images of a frame whose rays are kept for previews. They are spread all
+// over its lens (thesis 4.2.1).
 inline constexpr size_t kPreviewImages = 64;
 
-// Queries are looked at anew before the LF images at these places: 0 and the powers of
-// four times kDecisionPlaces (collector/collect.h). The last one up to `place`.
+// Phases begin at place 0 and at kDecisionPlaces (collector/collect.h) times the powers of four:
+// before the LF image at such a place, the queries of previews are updated. Returns the first place
+// of the phase that contains `place`.
 uint32_t PhaseOf(uint32_t place);
 
 class AskedPixels {
  public:
-  //   collects  whether the frame collects rays, too
+  //   collects  true if the frame also collects rays
   AskedPixels(const LensGaps& gaps, bool collects, Previews previews);
 
-  // Returns whether the frame asks for rays of any LF image.
+  // Returns true if the frame asks for rays of any LF image.
   bool AsksForAny() const { return asks_in_the_end_ || IsPreviewed(0); }
   bool asks_in_the_end() const { return asks_in_the_end_; }
-  // Returns whether rays are kept for a picture of the unfinished frame, as it is when the LF
-  // images before that phase (PhaseOf()) are collected.
+  // Returns true if rays are kept for a preview of the frame, as it is when the LF images before
+  // the phase (PhaseOf()) are collected.
   bool IsPreviewed(uint32_t phase) const { return is_previewed_ && phase < changes_until_; }
 
-  // A camera whose lens holds all rays that are asked for, to select LF images by.
+  // A camera whose lens and plate contain all rays that are asked for; LF images are selected by
+  // it.
   const RenderCamera& camera() const { return camera_; }
 
-  // Returns the bounds of the pixels whose rays may be kept; empty: none.
+  // Returns the bounds of the pixels whose rays may be kept; empty if there are none.
   //   overlap  of the LF image
+  //   place    of the LF image
   PixelRect RectOf(const LfCamera& lf_camera, const ImageOverlap& overlap, uint32_t place,
                    const SelectOptions& select) const;
 
@@ -57,11 +61,11 @@ class AskedPixels {
   bool asks_in_the_end_;
   bool is_previewed_;
   uint32_t changes_until_;
-  uint32_t previewed_until_;  // place
+  uint32_t previewed_until_;  // place behind the last LF image whose rays are kept for previews
 };
 
-// Returns the pixels that are read of an LF image so that all of `rect` can be rebinned: some more
-// around it, cut to the image.
+// Returns the pixels of an LF image that must be read to rebin all of `rect`: `rect` with a margin,
+// clipped to the image.
 //   around_px  PixelsAround() (rebinning/rebin_image.h) of a mosaic
 PixelRect GrownBy(const PixelRect& rect, int around_px, const Intrinsics& image);
 

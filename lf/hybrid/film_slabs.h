@@ -1,5 +1,5 @@
-// The slabs of a film (rebinning/slab_plan.h), planned for all of its frames: a frame has the same
-// slab, and so the same cells, whichever frames are rendered with it, in passes or from packages.
+// The slabs of a film (rebinning/slab_plan.h), planned for all of its frames. The slab of a frame,
+// and thus its cells, do not depend on which other frames are rendered in the same pass or package.
 #pragma once
 
 #include <cstddef>
@@ -16,14 +16,15 @@ namespace lf {
 
 class FilmSlabs {
  public:
-  //   frames    all of the film, frame 1 first
-  //   sampling  of each: SamplingOf() in the whole light field
+  //   frames    all frames of the film, frame 1 first
+  //   sampling  SamplingOf() each frame in the whole light field
   FilmSlabs(std::span<const RenderCamera> frames, std::span<const FrameSampling> sampling,
             const QueryOptions& options, const SlabChoices& choices);
 
-  // Returns the number of the frame's slab; none if no LF camera is around its lens.
+  // Returns the index of the frame's slab; none if no LF camera is around its lens.
   std::optional<size_t> SlabOf(FrameId frame) const { return slab_of_[frame.value - 1]; }
-  // begin, end and bounds are those of all of its frames.
+  // Returns the section of a slab; its bounds are those of all frames of the film that use the
+  // slab.
   const SlabSection& section(size_t slab) const { return sections_[slab]; }
 
  private:

@@ -12,12 +12,12 @@
 namespace lf {
 namespace {
 
-// Kernels overlap where lens points are so many sigmas apart.
+// Distance between lens points, in sigmas, at which their kernels overlap.
 constexpr double kPointDistance_sigmas = 3;
 constexpr int kLeastPoints = 8, kMostPoints = 256;
-// Width of a kernel where LF cameras are rare, in distances to the nearest one.
+// Sigma of a kernel far from LF cameras, in distances to the nearest one.
 constexpr double kSigmaPerDistance = 0.5;
-// Splats may not be wider (rebinning/splat_tile.h).
+// Largest sigma_uv, below the limit of splats (rebinning/splat_tile.h).
 constexpr double kMostSigma_px = 8;
 
 double MiddleOf(std::vector<double> values) {
@@ -32,7 +32,7 @@ double NearestOf(std::span<const Vec2> seen_through, const Vec2& point) {
   return nearest_w;
 }
 
-// Asked at points all over the lens, none of which is farther from the next than these are apart.
+// Measures at points all over the lens, and adds the distance between these points as a margin.
 double HoleOf(const RenderCamera& frame, std::span<const Vec2> seen_through) {
   constexpr int kAsked = 64;
   const LensPointSets points = MakeLensPoints(frame.aperture, kAsked, 1, 0);
@@ -42,7 +42,7 @@ double HoleOf(const RenderCamera& frame, std::span<const Vec2> seen_through) {
   return hole_w + std::sqrt(Area(frame.aperture) / kAsked);
 }
 
-// Returns how wide LF pixels are where the focus is, in elements, and at least 1.
+// Returns the width of an LF pixel at the focus, in elements; at least 1.
 double LfPixelsPerElement(const RenderCamera& frame, const LfSampling& sampling) {
   const Intrinsics& plate = frame.pinhole.intrinsics;
   const std::optional<Vec3> focus =
@@ -122,8 +122,8 @@ FrameQueries QueriesOf(const RenderCamera& frame, const FrameSampling& sampling,
   queries.points = MakeLensPoints(frame.aperture, count, options.lens_sets, options.seed);
   queries.kernel = {
       sigma_w, std::min(options.sigma_uv * LfPixelsPerElement(frame, sampling.lf), kMostSigma_px)};
-  // A kernel is wider where one of few points stands for a large part of the lens, and where LF
-  // cameras are far away.
+  // A kernel is wider if its point is one of few, and so stands for a large part of the lens, and
+  // if LF cameras are far away.
   const double few = 0.5 * std::sqrt(area_w2 / count) / sigma_w;
   const double most_w = kFarthestDistances * sampling.lf.camera_distance_w;
   for (const auto& set : queries.points.sets) {

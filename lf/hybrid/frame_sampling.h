@@ -1,5 +1,5 @@
-// The density of LF cameras around the lens of a frame, and what the frame therefore asks rebinned
-// rays for. Both follow from calibrations alone.
+// The density of LF cameras around the lens of a frame, and the rays that the frame therefore asks
+// for. Both follow from calibrations alone.
 #pragma once
 
 #include <cstdint>
@@ -17,13 +17,13 @@
 
 namespace lf {
 
-// Rays of LF cameras farther than this from a lens point have no say in what it sees. In distances
-// between LF cameras around the lens.
+// Rays of LF cameras that are farther than this from a lens point do not contribute to its rays. In
+// distances between LF cameras around the lens.
 inline constexpr double kFarthestDistances = 8;
 
 struct FrameSampling {
   LfSampling lf;      // camera_distance_w is 0 if no LF camera is around the lens
-  double hole_w = 0;  // from any point of the lens to the nearest LF camera, at most
+  double hole_w = 0;  // upper bound of the distance from a lens point to the nearest LF camera
 };
 
 // Returns the LF images with rays within kFarthestDistances of the lens, by ascending places.
@@ -31,39 +31,43 @@ std::vector<SelectedImage> ImagesNearLens(const ImageIndex& index, const RenderC
                                           double camera_distance_w, const SelectOptions& select,
                                           ThreadPool& pool);
 
-// Returns the lens points through which LF cameras see what the middle of the plate is focused on.
+// Returns, for each LF image, the lens point on the line from its LF camera to the focus point of
+// the middle of the plate.
 std::vector<Vec2> SeenThrough(const ImageIndex& index, const RenderCamera& frame,
                               std::span<const SelectedImage> near);
 
+// Returns the sampling around the lens of a frame.
 //   near               ImagesNearLens()
 //   camera_distance_w  CameraDistanceAround() (collector/around_lens.h) in the whole light field
 FrameSampling SamplingOf(const ImageIndex& index, const RenderCamera& frame,
                          std::span<const SelectedImage> near, double camera_distance_w);
 
-// The same for any estimator: with those LF images near the lens that have rays for some estimator.
+// Returns the sampling for any estimator: it uses the LF images near the lens that have rays for at
+// least one estimator.
 FrameSampling SamplingOf(const ImageIndex& index, const RenderCamera& frame,
                          const SelectOptions& select, ThreadPool& pool);
-// select.reach of these.
+// SelectOptions::reach that selects these LF images.
 inline constexpr PixelReach kWidestReach = PixelReach::kNeighbours;
 
 struct QueryOptions {
-  double sigma_st = 0.5;     // in distances between LF cameras; wider where these are rare
-  double sigma_uv = 0.35;    // in elements, or in LF pixels where these are larger
-  int lens_point_count = 0;  // in a set; 0: so many that kernels overlap, 8 to 256
+  double sigma_st = 0.5;     // in distances between LF cameras; wider if LF cameras are far away
+  double sigma_uv = 0.35;    // in elements, or in LF pixels if these are larger
+  int lens_point_count = 0;  // in a set; 0: enough for kernels to overlap, 8 to 256
   int lens_sets = 1;         // k: sets of k x k elements (lens_points.h)
   uint64_t seed = 0;
 };
 
-// Returns what the frame asks for: rays through all of its lens points. The sampling must have LF
+// Returns the queries of a frame: rays through all of its lens points. The sampling must have LF
 // cameras.
-//   seen_through  SeenThrough(): a kernel is as wide as the way to the nearest wants; none: the
-//                 widest that hole_w allows, for every point
+//   seen_through  SeenThrough(): the width of each point's kernel follows from the distance to the
+//                 nearest of these; none: it follows from hole_w
 FrameQueries QueriesOf(const RenderCamera& frame, const FrameSampling& sampling,
                        const QueryOptions& options,
                        std::optional<std::span<const Vec2>> seen_through = {});
 
-// Returns how far beyond the rim of the lens the LF cameras stand that rebinned rays of the default
-// options are made of, at most, and those that lens weights are measured against.
+// Returns the largest distance from the rim of the lens of the LF cameras that a frame depends on:
+// those whose rays are rebinned with the default options, and those that lens weights are measured
+// against.
 double NeighbourReach_w(const RenderCamera& frame, const FrameSampling& sampling);
 
 }  // namespace lf

@@ -42,7 +42,8 @@ LensGaps::LensGaps(const ImageIndex& index, const RenderCamera& frame,
   asks_in_the_end_ = AsksAt(kInTheEnd);
 }
 
-// So many that from node to node lens points of an LF camera move by half of what a point covers.
+// Chooses so many nodes that, from a node to the next, the lens point of an LF camera moves by half
+// the distance within which rays cover a point.
 void LensGaps::SetNodes(const std::vector<LfImageId>& near, const ImageIndex& index) {
   constexpr size_t kAsked = 64;
   const RenderCamera& frame = all_.camera;
@@ -88,7 +89,7 @@ void LensGaps::FindGaps(const std::vector<LfImageId>& near, const ImageIndex& in
   const double near_w =
       std::max(kCoveredDistances * distance_w,
                std::sqrt(Area(frame.aperture) / static_cast<double>(points.size())));
-  // A point may be covered, and answered, from so far away.
+  // Reach of each point: rays within it may cover the point or answer its query.
   std::vector<double> reach2_w2;
   for (size_t set = 0; set < all_.points.sets.size(); ++set)
     for (size_t i = 0; i < all_.points.sets[set].size(); ++i) {

@@ -1,12 +1,12 @@
-// Through which parts of a frame's lens no recorded light comes, element by element: known from
-// calibrations alone, before an LF image is read (thesis 4.3.3).
+// The parts of a frame's lens that no collected ray passes, element by element. They are computed
+// from calibrations alone, before an LF image is read (thesis 4.3.3).
 //
-// The lens is divided among points spread over it. A point is covered, as an element sees it, once
-// the collected LF images have a ray to that element which passes the lens near it: within
-// kCoveredDistances of the distance between LF cameras, or as near as lens points are to each
-// other. What is not covered is asked of rebinned rays. So an aperture larger than the captured
-// band is noticed, and one that falls between LF cameras. Where no LF camera within the reach of
-// the point's kernel sees the element, nothing is asked.
+// The lens is represented by points spread over it. A point is covered for an element once the
+// collected LF images have a ray to that element which passes the lens near the point: within
+// kCoveredDistances times the distance between LF cameras, or within the distance between lens
+// points, whichever is more. Points that are not covered are gaps, and ask for rebinned rays. This
+// detects an aperture that is larger than the captured band, and one that lies between LF cameras.
+// A point asks for nothing if no LF camera within the reach of its kernel sees the element.
 #pragma once
 
 #include <cstdint>
@@ -24,44 +24,46 @@
 
 namespace lf {
 
-// In distances between LF cameras around the lens.
+// Distance within which a ray covers a lens point, in distances between LF cameras around the lens.
 inline constexpr double kCoveredDistances = 1.5;
-// Elements that no more than this part of the lens is missing of are left as they are.
+// A node asks for nothing if at most this part of its lens points is missing.
 inline constexpr double kLittleMissing = 0.1;
-// What collection takes of an LF image in the frame: none if it never does.
+// Returns the weights with which the frame collects the rays of an LF image; none if it collects
+// none.
 using CollectedWeights = std::function<RayWeights(LfImageId id)>;
 
 class LensGaps {
  public:
-  // collected  empty: nothing is collected, everything is asked for
-  // lens_test  whether only rays inside the opening are collected: without lens weights
-  // places     that the frame takes
-  // camera_distance_w  CameraDistanceAround() in the whole light field, where the index is of a
-  // part
+  //   collected          empty: nothing is collected, and all lens points are asked for
+  //   lens_test          true if only rays inside the opening are collected (no lens weights)
+  //   places             of the LF images that the frame takes
+  //   camera_distance_w  CameraDistanceAround() in the whole light field, needed if the index is of
+  //                      a part of it; none: computed from the index
   LensGaps(const ImageIndex& index, const RenderCamera& frame, const CollectedWeights& collected,
            bool lens_test, const PlaceRange& places, const SelectOptions& select,
            const QueryOptions& options, ThreadPool& pool,
            std::optional<double> camera_distance_w = {});
 
-  // Whether there are LF cameras around the lens, whose rays could answer.
+  // True if there are LF cameras around the lens, so that rebinned rays could answer.
   bool can_be_asked() const { return sampling_.lf.camera_distance_w > 0; }
   const FrameSampling& sampling() const { return sampling_; }
   const RenderCamera& camera() const { return all_.camera; }
-  // LF images that collection takes something of, as far as nodes see.
+  // Number of LF images with a collected ray at a node.
   size_t collected_count() const { return collected_places_.size(); }
-  // The place behind the first `count` of these, or behind all of them.
+  // Returns the place behind the first `count` of these LF images, or behind all if there are
+  // fewer.
   uint32_t PlaceAfter(size_t count) const;
 
-  // What is asked for when the LF images at places before this one are collected.
+  // Returns the queries when the LF images at places before `place` are collected.
   FrameQueries QueriesAt(uint32_t place) const;
   bool AsksAt(uint32_t place) const;
   bool asks_in_the_end() const { return asks_in_the_end_; }
-  // From this place on, at the latest, what is asked for does not change any more.
+  // Place from which on queries do not change any more.
   uint32_t changes_until() const { return changes_until_; }
   static constexpr uint32_t kInTheEnd = UINT32_MAX - 1;
 
-  // Returns the frame's camera with a lens and a plate that hold all that its queries reach: rays
-  // that pass beside the plate have a say in the elements at its edge.
+  // Returns the frame's camera with a lens and a plate that contain the reach of all its queries:
+  // rays that pass beside the plate contribute to the elements at its edge.
   RenderCamera ReachedCamera() const;
 
  private:
@@ -76,8 +78,9 @@ class LensGaps {
   bool is_collected_ = false;
   NodeAxis columns_{1};  // nodes over the plate
   NodeAxis rows_{1};
-  // From which place on a lens point is covered: behind the LF image that does it first;
-  // UINT32_MAX: never; 0: no LF camera within its reach sees the element, nobody could answer.
+  // Place from which on a lens point is covered: behind the first LF image that covers it;
+  // UINT32_MAX: never; 0: no LF camera within its reach sees the element, so no rebinned ray could
+  // answer.
   std::vector<uint32_t> covered_from_;  // [rows][columns][points]
   uint32_t changes_until_ = 0;
   bool asks_in_the_end_ = false;

@@ -9,7 +9,8 @@
 namespace lf {
 namespace {
 
-// 12 x 12 parallel LF cameras, 0.01 apart in the plane of the lens, or only some rows of them.
+// Returns 12 x 12 parallel LF cameras, 0.01 apart in the plane of the lens, or only some rows of
+// them.
 LightField Grid(int rows = 12) {
   LightField field;
   field.intrinsics = {{70, 70, 32, 24, 0, 64, 48}};
@@ -68,7 +69,7 @@ TEST(LensGaps, NothingIsCollectedBeforeTheFirstImageAndLessIsMissingWithEach) {
   EXPECT_FALSE(gaps.AsksAt(gaps.changes_until()));
 }
 
-// Twice as high as the rows of LF cameras: missing above and below, and nowhere else.
+// The lens is twice as high as the rows of LF cameras: gaps are above and below, and nowhere else.
 TEST(LensGaps, ALensLargerThanTheBandIsNoticedBySectors) {
   const LensGaps gaps = GapsOf(Grid(4), Frame(0.06));
   const FrameQueries queries = gaps.QueriesAt(LensGaps::kInTheEnd);
@@ -84,7 +85,7 @@ TEST(LensGaps, ALensLargerThanTheBandIsNoticedBySectors) {
     }
   }
   EXPECT_GE(missing, 2);
-  // Far from LF cameras kernels reach as far as these.
+  // Far from LF cameras, kernels are wide enough to reach them.
   EXPECT_GT(queries.points.MostSpread(), 1.3);
 }
 
@@ -99,8 +100,8 @@ TEST(LensGaps, ASmallLensBetweenCamerasAsksForEverything) {
   EXPECT_FALSE(GapsOf(Grid(), there).AsksAt(LensGaps::kInTheEnd));
 }
 
-// Before the plane of the LF cameras elements see different ones: some see one through a small
-// lens, some none.
+// From a lens outside the plane of the LF cameras, elements see different LF cameras: through a
+// small lens, some elements see one and others none.
 TEST(LensGaps, GapsAreDifferentAllOverThePlate) {
   const LensGaps gaps = GapsOf(Grid(), Frame(0.003, 0, -0.3));
   const double share = AskedShare(gaps.QueriesAt(LensGaps::kInTheEnd));
@@ -108,7 +109,8 @@ TEST(LensGaps, GapsAreDifferentAllOverThePlate) {
   EXPECT_LT(share, 0.95);
 }
 
-// Around a lens of three distances about 28 of them; one that sees a part of the plate counts, too.
+// A lens with a radius of three camera distances contains about 28 LF cameras. An LF camera that
+// sees only a part of the plate counts.
 TEST(LensGaps, KnowsWhatIsCollectedAndWhen) {
   const LightField field = Grid();
   const LensGaps gaps = GapsOf(field, Frame(0.03));
@@ -127,10 +129,10 @@ TEST(LensGaps, KnowsWhatIsCollectedAndWhen) {
   EXPECT_LE(before, 144u);
 }
 
-// Where LF images end close to a side of the plate only the elements there ask.
+// If LF images end close to a side of the plate, only the elements at that side ask.
 TEST(LensGaps, ElementsAtARimAskAlone) {
   RenderCamera frame = Frame(0.03);
-  // LF images are 64 pixels wide at a focal length of 70: 0.457 to either side.
+  // LF images are 64 pixels wide at a focal length of 70: the tangent is 0.457 to either side.
   frame.pinhole.intrinsics = {80 / 0.47 / 2, 80 / 0.47 / 2, 40, 30, 0, 80, 60};
   const FrameQueries queries = GapsOf(Grid(), frame).QueriesAt(LensGaps::kInTheEnd);
   const auto asks = [&](int x, int y) {

@@ -14,14 +14,16 @@
 namespace lf {
 namespace {
 
-// Of rays on their way into the map: what waits is 16 bytes each.
+// Number of LF pixels whose rays wait for the map at the same time; a waiting ray takes 16 bytes.
 constexpr long long kPixelsAtOnce = 4 << 20;
-// Where images are kept whole they are cut into strips, so that these are bounded.
+// If all rays are kept, LF images are cut into strips of so many rows, which bounds the waiting
+// rays.
 constexpr int kStripRows = 64;
-// LF images that the number of asked rays is estimated from, and what of it must fit.
+// About so many LF images are used to estimate the number of asked rays. All rays are kept if the
+// estimate is at most this share of the cells that fit.
 constexpr size_t kEstimatedFrom = 256;
 constexpr double kFitShare = 0.9;
-// What of it is expected to become cells.
+// Expected cells per estimated ray, if all rays are kept or only those at edges.
 constexpr double kRoom = 1.1, kRoomByEdges = 0.15;
 
 bool Covers(const CoverageMap& map, const Slab& slab, CellKey cell) {
@@ -43,13 +45,13 @@ const char* NameOf(KeptRays kept) {
 
 // Consecutive frames with a slab of their own.
 struct RebinnedRays::Section {
-  SlabSection plan;        // of asking_ [begin, end)
-  CoverageMap in_the_end;  // what finished frames ask for
-  CoverageMap previews;    // and these before
+  SlabSection plan;        // begin and end are indices of asking_
+  CoverageMap in_the_end;  // rays that finished frames ask for
+  CoverageMap previews;    // rays that previews of this phase ask for
   std::unique_ptr<RayMap> map;
   uint32_t phase = 0;
   uint32_t places_done = 0;
-  std::optional<std::vector<BinnedCell>> cells = {};  // of the map as it is, once asked for
+  std::optional<std::vector<BinnedCell>> cells = {};  // cached cells of the map; none: map changed
 };
 
 RebinnedRays::RebinnedRays(const ImageIndex& index, const FilmSlabs& slabs,
@@ -75,8 +77,8 @@ RebinnedRays::RebinnedRays(const ImageIndex& index, const FilmSlabs& slabs,
   for (const auto& section : sections_) Begin(0, *section);
 }
 
-// Frames of one slab are a section. Its bounds are those of its frames in this pass, so that
-// coverage maps are no coarser than these want.
+// Consecutive frames of one slab are a section. Its bounds are those of its frames in this pass, so
+// that coverage maps are not coarser than necessary.
 void RebinnedRays::MakeSections(const FilmSlabs& slabs, std::span<const FrameId> frames) {
   for (size_t begin = 0; begin < asking_.size();) {
     const size_t slab = *slabs.SlabOf(frames[asking_[begin]]);
@@ -98,8 +100,8 @@ void RebinnedRays::MakeSections(const FilmSlabs& slabs, std::span<const FrameId>
 
 RebinnedRays::~RebinnedRays() = default;
 
-// How many rays are asked for in the end is estimated by the squares of some LF images, all over
-// the order.
+// Estimates the number of rays that finished frames ask for by the covered squares of some LF
+// images all over the order. Then decides which rays are kept, and makes the maps.
 void RebinnedRays::MakeMaps(const ImageIndex& index, std::span<const PlaceRange> places) {
   std::vector<PlaceRange> taken;
   for (const size_t f : asking_) taken.push_back({0, places[f].end});
@@ -129,7 +131,8 @@ void RebinnedRays::MakeMaps(const ImageIndex& index, std::span<const PlaceRange>
         most, static_cast<size_t>(totals[i] * (keeps_all_ ? kRoom : kRoomByEdges)));
 }
 
-// What only earlier previews asked for is dropped.
+// Begins a phase: updates the coverage of previews, and drops the cells that only earlier previews
+// asked for.
 void RebinnedRays::Begin(uint32_t phase, Section& section) {
   section.phase = phase;
   std::vector<FrameQueries> queries;
@@ -158,7 +161,7 @@ const RayMap& RebinnedRays::map(size_t section) const { return *sections_[sectio
 
 void RebinnedRays::Restore(size_t number, RayMap map, uint32_t places_done) {
   Section& section = *sections_[number];
-  // As it was when the last of these was taken: what previews asked for then.
+  // The coverage of previews must be that of the phase in which the last LF image was taken.
   if (places_done > 0) Begin(PhaseOf(places_done - 1), section);
   *section.map = std::move(map);
   section.places_done = places_done;
@@ -214,7 +217,7 @@ void RebinnedRays::Take(std::span<const BatchImage> images, uint32_t place_end) 
     const auto left = images.subspan(static_cast<size_t>(first - images.begin()));
     section->places_done = place_end;
     if (left.empty()) continue;
-    // Batches do not go across the places of decisions.
+    // A batch never extends into the next phase.
     const uint32_t phase = PhaseOf(left.front().place);
     LF_CHECK(PhaseOf(left.back().place) == phase);
     if (phase != section->phase) Begin(phase, *section);
@@ -237,7 +240,7 @@ void RebinnedRays::Rebin(std::span<const BatchImage> images, Section& section) {
   std::vector<Task> tasks;
   for (size_t i = 0; i < images.size(); ++i) {
     if (rects[i].empty()) continue;
-    // Edges of an image are found once.
+    // If rays are kept by edges, an LF image is not cut, so that its edges are computed once.
     const int rows = by_edges ? rects[i].y_end : kStripRows;
     for (int y = rects[i].y_begin / rows * rows; y < rects[i].y_end; y += rows)
       tasks.push_back(
@@ -247,7 +250,8 @@ void RebinnedRays::Rebin(std::span<const BatchImage> images, Section& section) {
                                   {keeps_all_ ? nullptr : &section.in_the_end, &section.previews}};
   std::vector<BinnedRays> rays;
   for (size_t begin = 0; begin < tasks.size();) {
-    // What others are averaged into depends on what is given together: one image at a time.
+    // The cells that other rays are averaged into depend on which LF images are inserted together.
+    // They are inserted one LF image at a time, so that batches make no difference.
     size_t end = begin;
     for (long long pixels = 0; end < tasks.size() && (pixels == 0 || pixels < kPixelsAtOnce);
          ++end) {
@@ -293,7 +297,7 @@ SplatFrame RebinnedRays::SplatOf(const Section& section, const FrameQueries& que
   return SplatBy(rays, queries, queries.points, queries.shares ? &*queries.shares : nullptr);
 }
 
-// In the slab as it is: a splat for each lens point, and their mean.
+// Interpolates on the planes of the slab: one splat for each lens point, and their mean.
 SplatFrame RebinnedRays::SplatOfPoints(const Section& section, const FrameQueries& queries) const {
   const Intrinsics& plate = queries.camera.pinhole.intrinsics;
   SplatFrame sum{Image<float>(plate.width_px, plate.height_px, 3),

@@ -1,13 +1,13 @@
-// The rebinned rays of the frames of one pass: which are kept, LF image after LF image, and what
-// the frames make of them (thesis 4.3.2, 4.3.3).
+// The rebinned rays of the frames of one pass: keeps the rays that the frames ask for, LF image
+// after LF image, and interpolates the frames from them (thesis 4.3.2, 4.3.3).
 //
-// What a finished frame will ask for is known from calibrations (lens_gaps.h). Of that all rays are
-// kept if there is room for them, else those at edges (Eq. 4.4). Early pictures ask for more: where
-// few LF images are collected yet, rebinned rays, at edges, are a preview. What these ask for is
-// looked at anew before the LF images at places 64, 256, 1024, ... : cells that no query can use
-// any more are dropped, and once all that is left is covered, nothing is rebinned. All of this
-// depends on places, not on time: the same rays are kept for any number of threads, however often
-// the work was interrupted.
+// The rays that a finished frame will ask for are known from calibrations (lens_gaps.h). All of
+// them are kept if there is room, otherwise those at edges (Eq. 4.4). Previews ask for more: while
+// few LF images are collected, rebinned rays at edges show the rest of the picture. The queries of
+// previews are updated before the LF images at places 64, 256, 1024, ...: cells that no query can
+// use any more are dropped, and once no frame asks for more, nothing is rebinned. All of this
+// depends on places, not on time, so the kept rays depend neither on the number of threads nor on
+// interruptions.
 #pragma once
 
 #include <atomic>
@@ -32,11 +32,11 @@
 
 namespace lf {
 
-// Which of the rays that finished frames ask for are kept.
+// The rays that are kept, among those that finished frames ask for.
 enum class KeptRays {
-  kAuto,  // all, if they fit in max_cells; else kEdges
-  kAll,
-  kEdges,  // by Eq. 4.4
+  kAuto,   // kAll if they fit in max_cells, otherwise kEdges
+  kAll,    // all rays
+  kEdges,  // rays at edges, by Eq. 4.4
 };
 // "auto", "all", "edges"
 const char* NameOf(KeptRays kept);
@@ -46,10 +46,10 @@ struct RebinPassOptions {
   KeptRays kept = KeptRays::kAuto;
   Previews previews = Previews::kAuto;
   QueryOptions query;
-  // Whether rays are told apart in each frame's own lens plane and focus plane, or in those of the
-  // slab: then only with one set of lens points.
+  // If true, distances between rays are measured on each frame's lens plane and focus plane. If
+  // false, they are measured on the planes of the slab, which needs query.lens_sets = 1.
   bool reparameterise = true;
-  // By queries of a k-d tree: the judge, far slower. Not 0: of the `nearest` rays.
+  // If true, SplatReference() interpolates the rays with its `nearest`: far slower.
   bool is_reference = false;
   size_t nearest = 0;
   SlabChoices slab;
@@ -59,11 +59,12 @@ struct RebinPassOptions {
 
 class RebinnedRays : public ImageTaker {
  public:
-  // All that is referred to must outlive it.
+  // The light field of `index`, and `pool`, must outlive it.
   //   slabs     of the film
   //   frames    of the pass, ascending
-  //   gaps      one per frame, and so are places, which the frame takes
-  //   collects  whether the frames collect, too
+  //   gaps      one for each frame
+  //   places    one range for each frame: the LF images that the frame takes
+  //   collects  true if the frames also collect rays
   RebinnedRays(const ImageIndex& index, const FilmSlabs& slabs, std::span<const FrameId> frames,
                std::vector<LensGaps> gaps, std::span<const PlaceRange> places, bool collects,
                const SelectOptions& select, const RebinPassOptions& options, ThreadPool& pool);
@@ -73,25 +74,27 @@ class RebinnedRays : public ImageTaker {
   PixelRect RectOf(LfImageId id, uint32_t place) const override;
   void Take(std::span<const BatchImage> images, uint32_t place_end) override;
 
-  // Lenses that hold all rays that are asked for, of frames that ever ask, to select LF images by;
-  // and which frames these are.
+  // Cameras whose lenses contain all rays that are asked for, to select LF images by: one for each
+  // frame that ever asks. asking_frames() are the indices of these frames.
   std::vector<RenderCamera> ReachedCameras() const;
   const std::vector<size_t>& asking_frames() const { return asking_; }
 
-  // What is interpolated of a frame when the LF images at places before this one are collected.
+  // Returns the interpolated part of a frame when the LF images at places before `place` are
+  // collected.
+  //   frame  index in `frames`
   Completion Complete(size_t frame, uint32_t place);
 
-  // What is kept, so that a render that was interrupted goes on: consecutive frames have a section,
-  // with a map, a slab and a part of the memory of their own.
+  // The state from which an interrupted render resumes. Consecutive frames with the same slab form
+  // a section, which has its own map and an equal part of the memory.
   size_t section_count() const { return sections_.size(); }
   const RayMap& map(size_t section) const;
   size_t max_cells_per_section() const { return max_cells_per_section_; }
   uint32_t places_done(size_t section) const;
-  //   map  of max_cells_per_section(), with all LF images before the place
+  //   map  of max_cells_per_section(), with the rays of all LF images at places before places_done
   void Restore(size_t section, RayMap map, uint32_t places_done);
 
-  // What so many cells take at most, their map, and what of them is made for one frame; and beside
-  // them what waits for the map, and the coverage maps.
+  // Upper bound of the memory for so many cells: their map, the rays that are made of them for one
+  // frame, the rays that wait for the map, and the coverage maps.
   static constexpr size_t kBytesPerCell = 100;
   static constexpr size_t kLeastCells = 1000;
   static size_t BytesOf(size_t max_cells) {
@@ -101,14 +104,14 @@ class RebinnedRays : public ImageTaker {
   struct Facts {
     size_t section_count = 0;
     size_t cell_count = 0;
-    uint64_t looked_at = 0;  // LF pixels
-    double cpu_s = 0;
-    bool keeps_all = false;      // rays that finished frames ask for, not those at edges alone
-    bool is_full = false;        // cells were dropped, as there were more than max_cells
-    bool is_too_coarse = false;  // RayMap::is_too_coarse() of one
+    uint64_t looked_at = 0;  // number of covered LF pixels
+    double cpu_s = 0;        // CPU time of all threads
+    bool keeps_all = false;  // all rays that finished frames ask for are kept, not only at edges
+    bool is_full = false;    // cells were dropped because there were more than max_cells
+    bool is_too_coarse = false;  // RayMap::is_too_coarse() of a section
   };
   Facts facts() const;
-  // The slabs and what is kept of rays, in a sentence each.
+  // Returns a sentence about the slab and the coverage of each section.
   std::vector<std::string> Describe() const;
 
  private:
@@ -130,8 +133,8 @@ class RebinnedRays : public ImageTaker {
   const RebinPassOptions options_;
   ThreadPool& pool_;
   const std::vector<uint16_t> stored_values_;
-  std::vector<size_t> asking_;      // frames that LF cameras could answer
-  std::vector<AskedPixels> asked_;  // by these
+  std::vector<size_t> asking_;      // indices of frames that ask, and that have a slab
+  std::vector<AskedPixels> asked_;  // of these frames
   std::vector<std::unique_ptr<Section>> sections_;
   std::map<uint32_t, std::shared_ptr<const IdealPixels>> ideal_pixels_;  // by index of intrinsics
   bool keeps_all_ = false;

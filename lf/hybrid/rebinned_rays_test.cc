@@ -51,7 +51,8 @@ struct Fixture {
     std::vector<size_t> cells;
   };
 
-  // Collects up to `steps` batches, then what is kept moves to another object, as over a file.
+  // Takes all batches. After `interrupted_after` batches, moves the maps to another object, as a
+  // render that resumes does.
   Outcome Run(int threads, int batch, size_t interrupted_after = SIZE_MAX) const {
     ThreadPool pool(threads);
     const testing::NoiseStore store;
@@ -146,8 +147,8 @@ TEST(RebinnedRays, TheSameForAnyThreadsBatchesAndInterruptions) {
 TEST(RebinnedRays, OthersMayBeAveragedInTheSameWayEachTime) {
   Fixture fixture;
   fixture.options.kept = KeptRays::kEdges;
-  fixture.options.rebin.probability.alpha = 0.01;  // in noise all is edges
-  fixture.options.slab.r_st_w = 0.01;              // so wide that cells are met again
+  fixture.options.rebin.probability.alpha = 0.01;  // noise has edges everywhere
+  fixture.options.slab.r_st_w = 0.01;              // so wide that many rays share a cell
   fixture.options.slab.r_uv_w = 0.03;
   const Fixture::Outcome plain = fixture.Run(1, 16);
   fixture.options.rebin.averages_others = true;
@@ -157,8 +158,8 @@ TEST(RebinnedRays, OthersMayBeAveragedInTheSameWayEachTime) {
   EXPECT_NE(expected.completions[2].rgb.pixels(), plain.completions[2].rgb.pixels());
 }
 
-// Before most images are collected rays are kept for pictures of what is there; afterwards only
-// those that the finished frames ask for.
+// While few LF images are collected, rays are kept for previews; later, only the rays that finished
+// frames ask for.
 TEST(RebinnedRays, PreviewsAskForMoreThanTheFinishedFrames) {
   ThreadPool pool(2);
   const Fixture fixture;
@@ -183,13 +184,13 @@ TEST(RebinnedRays, PreviewsAskForMoreThanTheFinishedFrames) {
   Fixture without;
   without.options.previews = Previews::kOff;
   const Fixture::Outcome outcome = without.Run(1, 16);
-  // But for what lies at the borders of the coverage.
+  // The counts differ by cells at the borders of the coverage.
   EXPECT_NEAR(static_cast<double>(rays->facts().cell_count) / static_cast<double>(outcome.cells[0]),
               1, 0.4);
   EXPECT_GT(before, outcome.cells[0] * 64 / end);
 }
 
-// Of frames that need few LF images there are no previews, unless they are asked for.
+// Frames that need few LF images have no previews, unless Previews::kOn asks for them.
 TEST(RebinnedRays, PreviewsAreOfFramesThatTakeLong) {
   ThreadPool pool(1);
   Fixture fixture;

@@ -42,7 +42,8 @@ Result<RenderMemory> PlanRenderMemory(size_t memory_bytes, RenderMode mode, size
                              plan.error().message, memory.rebin_bytes >> 20, memory.max_cells)};
   if (!plan) return plan.error();
   memory.plan = *plan;
-  // Which rays are kept depends on all frames of a pass, and must not depend on a rule.
+  // The kept rays depend on all frames of a pass, and must not depend on whether noise is measured.
+  // All frames must therefore fit in one pass.
   if (!Collects(mode) && has_plates && plan->frames_per_pass < frame_count)
     return OutputError(fmt::format(
         "--mode rebin: \"noise<=X\" is measured by a plate of {} MiB for each frame, and --memory "

@@ -1,4 +1,4 @@
-// Shares of --memory in each mode: for rebinned rays, and for collection beside them.
+// Divides --memory between rebinned rays and collection, in each mode.
 #pragma once
 
 #include <cstddef>
@@ -14,15 +14,16 @@ namespace lf {
 struct RenderMemory {
   MemoryPlan plan;
   size_t max_cells = 0;    // of rebinned rays; 0 with RenderMode::kCollect
-  size_t rebin_bytes = 0;  // that these take, beside plan.total_bytes
+  size_t rebin_bytes = 0;  // memory of these, in addition to plan.total_bytes
 };
 
-//   max_cells    RebinPassOptions::max_cells; 0: as many as fit in half of the memory with kRebin,
-//                or a quarter with kHybrid
-//   frame_count  that are to be rendered. With kRebin all are in one pass.
-//   measured_bytes  kept beside the plate of each frame where noise is measured: then frames of
-//                   kRebin have plates, too; 0: it is not
-// kOutput: less memory than one frame needs; the message names the least that is.
+// Plans the memory of a render.
+//   max_cells       RebinPassOptions::max_cells; 0: as many as fit in half of the memory with
+//                   kRebin, or in a quarter with kHybrid
+//   frame_count     number of frames to render. With kRebin, all are in one pass.
+//   measured_bytes  memory for each frame, in addition to its plate, if noise is measured, else 0.
+//                   If noise is measured, frames of kRebin have plates.
+// kOutput: the memory is less than one frame needs. The message names the memory that is needed.
 Result<RenderMemory> PlanRenderMemory(size_t memory_bytes, RenderMode mode, size_t max_cells,
                                       const LightField& light_field, Estimator estimator,
                                       int plate_width, int plate_height, size_t frame_count,

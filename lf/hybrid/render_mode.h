@@ -8,7 +8,7 @@ namespace lf {
 
 //   kCollect  collected rays
 //   kRebin    rays interpolated between rebinned ones
-//   kHybrid   collected rays, completed by rebinned ones where the lens got none
+//   kHybrid   collected rays, completed by rebinned ones in the gaps of the lens
 enum class RenderMode { kCollect, kRebin, kHybrid };
 
 // "collect", "rebin", "hybrid"
