@@ -30,7 +30,7 @@ std::string_view NameIn(const std::string& path) {
   return std::string_view(path).substr(path.rfind('/') + 1);
 }
 
-// Files that are there now, and would be written over.
+// The outputs that exist, and would be overwritten.
 class Replaced {
  public:
   explicit Replaced(const std::vector<fs::path>& outputs) {
@@ -54,7 +54,7 @@ class Replaced {
     const auto found = numbers_.find(*number);
     return found == numbers_.end() ? nullptr : &found->second;
   }
-  // Returns the output of this path, or null, and asks the disk about folders alone.
+  // Returns the output that has this path, or null. Accesses the disk for folders only.
   const fs::path* FindByName(const fs::path& folder, const std::string& name) {
     if (!names_.contains(NameIn(name))) return nullptr;
     const fs::path input = folder / name;
@@ -69,7 +69,7 @@ class Replaced {
   std::map<FileNumber, fs::path> numbers_;
   std::set<std::string, std::less<>> names_;
   std::map<std::string, fs::path> paths_;  // canonical
-  std::map<fs::path, fs::path> folders_;   // as they are written, canonical
+  std::map<fs::path, fs::path> folders_;   // by the path as it is written: the canonical path
 };
 
 Error Refusal(const fs::path& output, std::string_view what, const fs::path& input) {
@@ -77,7 +77,7 @@ Error Refusal(const fs::path& output, std::string_view what, const fs::path& inp
                                 output.string(), what, input.string()));
 }
 
-// Files that the render makes, or removes, whatever its other options are.
+// Returns the files that the render may write or remove.
 std::vector<fs::path> OutputsOf(const Package& package, const RenderOptions& options) {
   const fs::path& folder = options.output_folder;
   const fs::path partial = folder / "partial" / package.name;

@@ -22,7 +22,7 @@ class CheckOutputsTest : public FolderTest {
     options_.output_folder = folder_ / "film";
     options_.format = FrameFormat::kPng8;
   }
-  // Makes an LF image of this name.
+  // Makes an LF image with this name.
   void AddImage(const std::string& name) {
     std::ofstream(folder_ / "field" / name) << name;
     package_.light_field.image_names.push_back(name);
@@ -63,7 +63,7 @@ TEST_F(CheckOutputsTest, LinksAreFollowed) {
   fs::create_directory_symlink(folder_ / "field", folder_ / "link");
   options_.output_folder = folder_ / "link";
   EXPECT_NE(Refusal(), "");
-  // A frame of before that is a link to an LF image; an LF image that is a link to a frame.
+  // First, an earlier frame is a link to an LF image; then, an LF image is a link to a frame.
   options_.output_folder = folder_ / "film";
   fs::create_directories(folder_ / "film");
   fs::create_symlink(folder_ / "field" / "frame_0001.png", folder_ / "film" / "frame_0001.png");

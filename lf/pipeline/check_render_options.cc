@@ -13,7 +13,8 @@
 namespace lf {
 namespace {
 
-// Rays cut both planes of a slab one after the other if they run about as it faces.
+// Checks that all frames look about along --slab-forward: only rays in about this direction cut the
+// st plane of the slab before the uv plane.
 Result<void> CheckSlab(const Package& package, const RenderOptions& options,
                        const std::vector<FrameId>& frames) {
   constexpr double kMost_deg = 60;

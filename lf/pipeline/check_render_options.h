@@ -1,5 +1,5 @@
-// What of a render's options cannot be together, or not with its package: to be said before the
-// work, and before anything waits in a queue.
+// Checks that the options of a render go with each other and with its package: before the render,
+// and before a job waits in a queue.
 #pragma once
 
 #include "lf/core/result.h"
@@ -8,8 +8,8 @@
 
 namespace lf {
 
-// Render() asks this, too. kUsage, or kInput of a camera without a lens area where weights need
-// one.
+// Render() calls this before it starts. Returns kUsage, or kInput if a camera has no lens area and
+// the lens weights need one.
 Result<void> CheckRenderOptions(const Package& package, const RenderOptions& options);
 
 }  // namespace lf

@@ -15,10 +15,11 @@ namespace lf {
 namespace {
 
 constexpr double kMostSpacings = 8, kLeastSpacings = 2.5;  // of the aperture
-// Within it the LF camera at its middle is nearly alone; in rings, hats of others reach far in.
+// An aperture this narrow holds almost only the LF camera at its middle. In captures shaped like
+// rings, the hat weights of other LF cameras reach far into it.
 constexpr double kSharpSpacings = 0.001;
 
-// Returns a focus if neither pixels nor points tell one.
+// Returns a focus for a scene whose depth neither pixels nor points tell.
 ExampleFocus GuessFocus(const LightField& light_field, const PinholeCamera& camera,
                         double spacing_w, const std::vector<SubjectDepth>& depths) {
   if (const std::optional<Vec3> point = AxesMeetingPoint(light_field)) {
@@ -52,7 +53,7 @@ ExampleFocus FocusOf(const Subject& subject, const char* things) {
   return focus;
 }
 
-// Distances that may be right, the guess first, without those that say the same.
+// Returns distances that may be right, the guess first, without near duplicates.
 std::vector<double> CandidatesOf(const std::vector<SubjectDepth>& depths, const Subject& points,
                                  double guess_w) {
   constexpr size_t kMost = 3;
@@ -121,10 +122,10 @@ Result<ExampleFocus> ChooseFocus(const LightField& light_field, const LfImageSto
   return focus;
 }
 
-// Neighbours see what is away from the focus a few pixels apart: so far are the copies apart into
-// which its blur falls. Up to kGoodCopies_px nobody sees that; beyond it, a narrower lens blurs
-// less. Beyond kMostCopies_px, or if the focus may be wrong, only a lens that holds one LF camera
-// gives a picture.
+// The disparity between neighbouring LF cameras of points away from the focus is the distance
+// between the ghosts that their blur falls into. Ghosts up to kGoodCopies_px apart are invisible;
+// farther apart, a narrower lens blurs less. Beyond kMostCopies_px, or if the focus may be wrong,
+// only a lens that holds one LF camera gives a picture.
 ExampleAperture ChooseAperture(const ExampleFocus& focus, double fx_px, double spacing_w) {
   constexpr double kGoodCopies_px = 3, kMostCopies_px = 16;
   if (!focus.doubt.empty())

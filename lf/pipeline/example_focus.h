@@ -15,16 +15,17 @@ namespace lf {
 struct ExampleFocus {
   double distance_w = 0;
   std::string reason;
-  // Empty if the focus is sure; else why it is not, and at most three distances that may be right,
-  // the best first.
+  // Why the focus is not sure; empty if it is. If it is not, candidates_w are at most three
+  // distances that may be right, the best first.
   std::string doubt = {};
   std::vector<double> candidates_w = {};
-  // The scene lies between these, if that is known; else they are equal.
+  // Depths that the scene lies between, if they are known; otherwise equal.
   double near_w = 0, far_w = 0;
 };
 
-// Returns the focus as ExamplePath says. Where pixels and the points of a reconstruction contradict
-// each other, the points tell the focus if they are sure; else it is not sure.
+// Returns the focus as described at MakeExamplePath(). If the pixels and the points of a
+// reconstruction contradict each other, the points decide if they are sure; otherwise the focus is
+// not sure.
 //   spacing_w  of LF cameras
 Result<ExampleFocus> ChooseFocus(const LightField& light_field, const LfImageStore& store,
                                  const ExampleOptions& options, double spacing_w, ThreadPool& pool);

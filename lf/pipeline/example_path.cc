@@ -24,7 +24,8 @@ std::string Text(const Vec3& v) {
   return fmt::format("[{:.9g}, {:.9g}, {:.9g}]", v.x(), v.y(), v.z());
 }
 
-// The up direction that keeps the horizon level, if the cameras tell one.
+// Returns the up direction that keeps the horizon level, if the LF cameras have one in common, and
+// otherwise that of the camera.
 Vec3 LevelUp(const LightField& light_field, const PinholeCamera& camera) {
   const Vec3 up = MeanUpWorld(light_field);
   const double roll_rad = RollOf(camera, up);
@@ -34,11 +35,11 @@ Vec3 LevelUp(const LightField& light_field, const PinholeCamera& camera) {
   return roll_rad == 0 ? camera.UpWorld() : Vec3(across.normalized());
 }
 
-// Plates of even size, for video.
+// Rounds to an even size, which video needs.
 int Even(int size) { return std::max(2, size - size % 2); }
 
-// The largest frame of the LF image's proportions, with elements as large as its pixels are in the
-// middle, that lies within what the LF camera sees.
+// Returns the largest frame within the LF camera's view. It has the proportions of the LF image,
+// and elements as large as the LF pixels in its middle.
 Intrinsics InscribedFrame(const PinholeCamera& camera, const Vec3& up_world) {
   const Intrinsics& k = camera.intrinsics;
   const RayThrough rays(camera, camera.ForwardWorld());
@@ -76,8 +77,8 @@ Intrinsics InscribedFrame(const PinholeCamera& camera, const Vec3& up_world) {
   return frame_of(seen);
 }
 
-// The part of the path that moves. At time 0 every quantity has the value it has elsewhere in the
-// file.
+// The keyframes of the path. At time 0, every quantity has the value that the rest of the file
+// says.
 struct Movement {
   std::string keyframes;
   double first_focus_distance_w = 0;
@@ -101,7 +102,7 @@ Movement MakeMovement(ExampleMove move, const PinholeCamera& camera, const Reach
     return movement;
   }
   if (move == ExampleMove::kDolly) {
-    // The rays of the corners of the picture fan out to where LF cameras must have been.
+    // The rays of the corners of the picture diverge, and LF cameras must stand where they pass.
     const Intrinsics& k = camera.intrinsics;
     const double room_w =
         std::min((reach.right_w - aperture_diameter_w / 2) * 2 * k.fx_px / k.width_px,
@@ -113,8 +114,8 @@ Movement MakeMovement(ExampleMove move, const PinholeCamera& camera, const Reach
         Text(centre), kDuration_s, Text(centre + step_w * camera.ForwardWorld()));
     return movement;
   }
-  // An ellipse from the start to the left and back, half as wide as the captured positions let the
-  // lens go.
+  // The lens moves along an ellipse, from the start to the left and back. The ellipse is half as
+  // wide as the captured positions would allow.
   const double right_w = std::max(0.0, reach.right_w - aperture_diameter_w / 2) / 2;
   const double up_w = std::max(0.0, reach.up_w - aperture_diameter_w / 2) / 2;
   constexpr int kKeys = 8;
@@ -167,7 +168,7 @@ Result<ExamplePath> MakeExamplePath(const LightField& light_field, const LfImage
   const ExampleAperture aperture = ChooseAperture(focus, camera.intrinsics.fx_px, spacing_w);
   example.aperture_reason = aperture.reason;
   const double largest_w = 2 * std::max(reach.right_w, reach.up_w);
-  constexpr double kLeastOfBand = 2.2;  // however narrow the capture is
+  constexpr double kLeastOfBand = 2.2;  // in spacings; the lens may be this wide in any capture
   example.aperture_diameter_w =
       std::min(aperture.spacings * spacing_w, std::max(kLeastOfBand * spacing_w, largest_w));
 

@@ -1,4 +1,4 @@
-// What a frame's file says about the camera that took it.
+// The metadata in a frame's file, about its render camera and rays.
 #pragma once
 
 #include "lf/camera/render_camera.h"
@@ -8,7 +8,8 @@
 
 namespace lf {
 
-// Keys "lf:...", units as in their names; no clock time, so that equal frames are equal files.
+// Returns entries "lf:...", with units as in their names. There is no time of day, so that equal
+// frames have equal files.
 ImageMetadata FrameMetadata(FrameId frame, const RenderCamera& camera, const FrameRays& rays,
                             Estimator estimator, double fps, const std::string& version);
 

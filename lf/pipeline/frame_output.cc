@@ -23,7 +23,7 @@ bool IsExr(FrameFormat format) {
   return format == FrameFormat::kExrHalf || format == FrameFormat::kExrFloat;
 }
 
-// Of those that are not 0; 0 if all are.
+// Returns the median of the values above 0; 0 if there are none.
 double MedianOfSeen(const LargeVector<float>& values) {
   std::vector<float> sorted;
   std::copy_if(values.begin(), values.end(), std::back_inserter(sorted),

@@ -1,5 +1,5 @@
-// From a frame's plate to its picture, and from these to contact sheet and video. Internal to
-// pipeline.
+// Makes the picture of a frame from its plate, and contact sheet and video from pictures. Internal
+// to pipeline.
 #pragma once
 
 #include <atomic>
@@ -22,15 +22,15 @@
 
 namespace lf {
 
-// What a picture of the frame is made by. Its estimator, version, fps and smooth_below are left to
-// the caller.
+// Returns the sheet by which a picture of the frame is made. The caller must set estimator,
+// version, fps and smooth_below.
 FrameSheet MakeFrameSheet(FrameId frame, const RenderCamera& camera, const FrameRays& rays,
                           const FrameLens& lens, const RadianceEncoding& encoding);
 
-// Develops the plate and writes its picture under any name. Its report lacks the samples.
-//   completion      what rebinned rays say of it, or null
-//   is_interrupted  asked all the time, by any thread, if given
-// kOutput: the disk. kInterrupted: nothing is written.
+// Develops the plate and writes its picture to the file `to`. The report has no samples.
+//   completion      the part interpolated from rebinned rays, or null
+//   is_interrupted  called often, by any thread; may be empty
+// kOutput: the file cannot be written. kInterrupted: nothing is written.
 Result<FrameReport> WritePicture(const FrameSheet& sheet, const SensorPlate& plate,
                                  const Completion* completion, const std::filesystem::path& to,
                                  FrameFormat format, ThreadPool& pool,
@@ -38,18 +38,18 @@ Result<FrameReport> WritePicture(const FrameSheet& sheet, const SensorPlate& pla
 
 inline constexpr const char* kContactSheet = "contact_sheet.png";
 
-// A film whose frames are files, so that it does not matter when and by whom they were rendered.
+// A film whose frames are files. It does not matter when, or by which process, they were rendered.
 struct FilmFiles {
   std::filesystem::path folder;
   FrameFormat format = FrameFormat::kExrHalf;
   int width_px = 0;
   int height_px = 0;
   double fps = 0;
-  const std::atomic<bool>* stop = nullptr;  // ends it, if given
+  const std::atomic<bool>* stop = nullptr;  // interrupts the functions when true; may be null
 
-  //   at_once  files that are read at the same time
-  // kOutput: the disk, ffmpeg; kInput: a frame that cannot be read, or of another size.
-  // kInterrupted.
+  //   at_once  number of files that are read at the same time
+  // kOutput: the file cannot be written, or ffmpeg failed. kInput: a frame cannot be read, or has
+  // another size. kInterrupted: `stop` is true.
   Result<void> WriteContactSheet(const std::vector<FrameId>& frames, size_t at_once,
                                  ThreadPool& pool, const std::string& name = kContactSheet) const;
   Result<void> WriteVideo(const std::vector<FrameId>& frames,
@@ -60,7 +60,7 @@ struct FilmFiles {
   Result<Image<uint8_t>> ReadPicture(FrameId frame) const;
 };
 
-// Of the frames that a render of the path writes: all have the same size.
+// Returns the film of the frames that a render of the path writes. All frames have the same size.
 FilmFiles FilesOfFilm(const CameraPath& path, const RenderOptions& options);
 
 }  // namespace lf

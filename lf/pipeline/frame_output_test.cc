@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A film of two frames, and a script in the place of ffmpeg.
+// A film of two frames, and a script that stands in for ffmpeg.
 class FilmFilesTest : public FolderTest {
  protected:
   void SetUp() override {

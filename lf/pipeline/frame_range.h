@@ -1,4 +1,4 @@
-// Frames as people write them: "1-100x2" is 1, 3, 5 ...; "7"; "1-10,50-60".
+// Parses frame numbers as people write them: "1-100x2" is 1, 3, 5 ...; "7"; "1-10,50-60".
 #pragma once
 
 #include <string_view>
@@ -9,7 +9,8 @@
 
 namespace lf {
 
-// Ascending, each once. kUsage: not of this form, or outside 1 .. frame_count; names the option.
+// Returns the frames ascending, each once. kUsage: the text does not have this form, or a frame is
+// not in 1 .. frame_count. The message names the option.
 Result<std::vector<FrameId>> ParseFrameRange(std::string_view text, size_t frame_count,
                                              const char* option = "--frames");
 

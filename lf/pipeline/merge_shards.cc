@@ -25,12 +25,12 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-// One file, as far as it is known before its rays are read.
+// One plate file, without its rays.
 struct ShardPlate {
   fs::path path;
   Shard shard;
   FrameSheet sheet;
-  RunInputs inputs;  // what plates of a frame have in common
+  RunInputs inputs;  // entries that all plates of a frame have in common
   int width_px = 0;
   int height_px = 0;
   bool has_opacity = false;
@@ -80,7 +80,7 @@ Result<ShardPlate> Look(const fs::path& path) {
           fmt::format("{}: shard is \"{}\", expected k/K, such as 2/5", path.string(), *text));
     plate.shard = *shard;
   }
-  // Rays are what shards differ in.
+  // Entries in which the shards of a frame may differ: the shard and its rays.
   constexpr const char* kOwn[] = {"shard",
                                   "sheet.lf_images",
                                   "sheet.rays_tested",
@@ -94,7 +94,7 @@ Result<ShardPlate> Look(const fs::path& path) {
   return plate;
 }
 
-// Frames by their number, their shards in order.
+// Merges the plates of all frames.
 class Merger {
  public:
   Merger(const MergeOptions& options, ThreadPool& pool,
@@ -104,7 +104,7 @@ class Merger {
     if (!lock_) return;
     lock_->Remove();
     std::error_code ignored;
-    fs::remove(PartialFolder(), ignored);  // fails, as it should, where files are left
+    fs::remove(PartialFolder(), ignored);  // fails, as intended, if files are left in it
   }
   Merger(const Merger&) = delete;
   Merger& operator=(const Merger&) = delete;
@@ -131,7 +131,8 @@ class Merger {
     for (const auto& [frame, plates] : frames_) now_.plate_total += plates.size();
     for (const auto& [frame, plates] : frames_)
       if (const Result<void> written = WriteFrameOf(plates); !written) {
-        // What --resume finds, should there be room for it: frames without one are written again.
+        // --resume reads this report, if the disk has room for it: frames that no report names are
+        // written again.
         (void)WriteReport(Report(), ReportPath());
         return written.error();
       }
@@ -156,7 +157,7 @@ class Merger {
     return CheckReplacesNone(outputs, options_.kept_files);
   }
 
-  // The lock is that of a render into the same folder (lf/record/run_state.h).
+  // The lock is also that of a render into the same folder (lf/record/run_state.h).
   fs::path PartialFolder() const { return options_.output_folder / "partial"; }
   Result<void> Lock() {
     LF_RETURN_IF_ERROR(CreateFolder(options_.output_folder));
@@ -168,7 +169,7 @@ class Merger {
 
   fs::path ReportPath() const { return options_.output_folder / "report.json"; }
 
-  // That all shards of all frames are there, once, and of the same render.
+  // Checks that all shards of each frame are there once, and are of the same render.
   Result<void> CheckFrames() {
     const ShardPlate& first = frames_.begin()->second.front();
     for (auto& [frame, plates] : frames_) {
@@ -242,8 +243,8 @@ class Merger {
     return {};
   }
 
-  // Compares the film and the frame of an earlier report with those of the plates: an interrupted
-  // --overwrite leaves frames of the film that it was to replace.
+  // Compares the film and the frame of an earlier report with those of the plates. They may differ
+  // after an interrupted --overwrite, which leaves frames of the film that it was to replace.
   std::optional<InputDifference> DifferenceFrom(const RunInputs& film_before,
                                                 const FrameSheet& sheet) const {
     if (const auto difference = FirstDifference(film_before, FilmInputs())) return difference;
@@ -327,7 +328,7 @@ class Merger {
     return report;
   }
 
-  // Counts the LF images of the frame that takes most, and names those that plates lack.
+  // Adds the number of LF images of the frame that takes most, and the LF images that plates lack.
   void AddImages(RenderReport* report) const {
     for (const auto& [frame, plates] : frames_) {
       uint64_t count = 0;

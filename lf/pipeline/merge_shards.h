@@ -1,5 +1,5 @@
-// Plates in, frames out: those of the shards of a divided render are added, to the bits of one that
-// was not divided; a plate that was kept is developed again.
+// Makes frames from plates: adds the plates of the shards of a divided render, which gives the bits
+// of a render that was not divided, and develops kept plates again.
 #pragma once
 
 #include <filesystem>
@@ -20,32 +20,33 @@ struct MergeOptions {
   FrameFormat format = FrameFormat::kExrHalf;
   std::optional<std::filesystem::path> video;
   bool contact_sheet = true;
-  bool resume = false;     // keep the frames that are there
-  bool overwrite = false;  // replace them
+  bool resume = false;     // keep frames that are there
+  bool overwrite = false;  // replace frames that are there
   RenderSignals* signals = nullptr;
 };
 
 struct MergeProgress {
-  size_t plate_count = 0;  // added
+  size_t plate_count = 0;  // plates that are added
   size_t plate_total = 0;
   size_t frame_count = 0;
   size_t frame_total = 0;
 };
 
-//   plates  files, or folders with such files somewhere below them, in any order
-// What all plates say is read first, and compared; then frame by frame: needs the memory of one
-// plate and its picture. Each frame has its file when it is done, and not before. The report names
-// the LF images that the plates' renders left out (as many as the plates do: frame_sheet.h); its
-// selected_image_count is that of the frame that takes most, with those.
+// Merges plates into frames. The entries of all plates are read and compared first. Then frames are
+// made one by one, which needs the memory of one plate and its picture. The file of a frame appears
+// when the frame is done, and not before. The report names the LF images that the plates' renders
+// skipped, as far as the plates name them (frame_sheet.h). Its selected_image_count is the largest
+// number of LF images of a frame, skipped ones included.
 // With resume, frames of an earlier merge are kept if they are whole and were made of the same
 // film.
+//   plates  plate files, and folders with such files anywhere below them, in any order
 //
-// kUsage: frames are there, and neither resume nor overwrite is set; a frame would replace one of
-//   kept_files; a video without all frames.
-// kInput: no plates; plates without a sheet (record/frame_sheet.h); a frame whose shards are not
-//   all there, or there twice, or are of different renders: the message names them; a damaged
-//   plate; every frame is black.
-// kOutput: the disk, ffmpeg, another program that writes frames into the folder.
+// kUsage: frames are there, and neither resume nor overwrite is set; an output would replace a
+//   plate or one of kept_files; a plate is given twice.
+// kInput: there are no plates; a plate has no sheet (record/frame_sheet.h) or is damaged; a frame's
+//   shards are not complete, are there twice, or are of different renders (the message names them);
+//   every frame is black.
+// kOutput: the disk or ffmpeg failed, or another program writes frames into the folder.
 // kInterrupted: frames that are written stay.
 Result<RenderReport> MergeShards(const std::vector<std::filesystem::path>& plates,
                                  const MergeOptions& options, ThreadPool& pool,

@@ -1,4 +1,4 @@
-// A render from a packed store, as its user meets it: the bits of the render from the files.
+// A render from a packed store gives the same bits as the render from the image files.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -116,7 +116,7 @@ TEST_F(PackedRenderTest, Floats) {
 TEST_F(PackedRenderTest, OneDamagedCodeIsOneSkippedImage) {
   WriteImages<uint8_t>(3, ".png");
   const LightField packed = Packed(20000);
-  // A byte in the middle of a code, wherever it lies.
+  // Damages a byte in the middle of an encoded image, in the file that contains it.
   const std::vector<PackedCode> codes = FindCodes(store_, packed.image_names).value();
   const std::string bytes(PackedCodeReader::Open(store_).value().Read(codes[5])->code);
   size_t damaged = 0;
@@ -135,7 +135,7 @@ TEST_F(PackedRenderTest, OneDamagedCodeIsOneSkippedImage) {
   ASSERT_EQ(report->skipped.size(), 1u);
   EXPECT_EQ(report->skipped[0].name, "image5.png");
   EXPECT_NE(report->skipped[0].reason.find("store.lfs/image5.png: "), std::string::npos);
-  // As if it had not been there.
+  // The frames are those of a light field without the image.
   std::filesystem::remove(field_.ImagePath({5}));
   ASSERT_TRUE(RenderTo("files", field_));
   EXPECT_EQ(Frames("files"), Frames("frames"));

@@ -29,8 +29,8 @@ namespace lf {
 
 namespace {
 
-// Collected rays do not depend on any of it.
-//   film  hash of all of its cameras, on which slabs depend
+// Returns the inputs that only rebinned rays depend on; none if the mode is kCollect.
+//   film  hash of all render cameras of the film, on which slabs depend
 RunInputs InputsOfRebinning(const RenderOptions& options, size_t max_cells,
                             const std::string& film) {
   if (options.mode == RenderMode::kCollect) return {};
@@ -64,7 +64,8 @@ RunInputs InputsOfRebinning(const RenderOptions& options, size_t max_cells,
       {"rebin.coverage", fmt::format("{} cells across", rebin.coverage.cells_across)}};
 }
 
-// Returns how the pixels of LF images differ from those that were recorded.
+// Returns the codec settings by which the pixels of LF images differ from the recorded ones, or the
+// value for pixels as recorded.
 Result<std::string> PixelsOf(const LightField& light_field) {
   const std::string as_recorded = RunChoices().pixels;
   if (!HoldsPackedStore(light_field)) return as_recorded;
@@ -98,7 +99,7 @@ RunStateOptions StateOptions(const Package& package, const RenderOptions& option
           std::move(rays),       std::move(picture), options.shard};
 }
 
-// One render: its inputs, and what passes leave behind.
+// One render: its inputs, and the results of its passes.
 class Renderer {
  public:
   Renderer(const Package& package, const RenderOptions& options, ThreadPool& pool,
@@ -113,7 +114,7 @@ class Renderer {
   Result<RenderReport> Run();
 
  private:
-  // A section of a film may be black; a film is not.
+  // True for a whole film, which must not be black. A section of a film, or a shard, may be.
   bool IsWhole() const { return package_.name.empty() && !options_.shard; }
   Result<void> Begin();
   Result<void> PlanSlabs();
@@ -149,7 +150,7 @@ class Renderer {
   const double begin_s_ = NowSeconds();
   size_t black_count_ = 0;
   bool had_plates_ = false;  // of an earlier run
-  bool all_broken_ = true;   // every LF image of every pass so far
+  bool all_broken_ = true;   // every LF image of every pass so far was broken
 };
 
 Result<RenderReport> Renderer::Run() {
@@ -213,7 +214,7 @@ Result<void> Renderer::Begin() {
   return {};
 }
 
-// Logs what the render is about to do, for debugging.
+// Logs the plan of the render, for debugging.
 void Renderer::TellPlan() const {
   LogDebug(
       "rays: mode {}, estimator {}, filter {}, lens weights {}, back end {}; instruction set {}, "
@@ -233,7 +234,8 @@ void Renderer::TellPlan() const {
            totals_.skipped.size());
 }
 
-// Better known before a night's work than after it, frame by frame.
+// Checks, frame by frame, that the store keeps all pixels that the frames need: this is better
+// known before a night's work than after it.
 Result<void> Renderer::CheckStore() const {
   if (!store_->IsPartial()) return {};
   const NeedsOptions needs = NeedsOfRender(package_, options_);
@@ -249,7 +251,7 @@ Result<void> Renderer::CheckStore() const {
   return {};
 }
 
-// Slabs are those of the whole film, so that a frame has the same one in any package and any pass.
+// Plans the slabs of the whole film, so that a frame has the same slab in any package and any pass.
 Result<void> Renderer::PlanSlabs() {
   if (!Rebins(options_.mode)) return {};
   std::vector<FrameSampling> sampling;
@@ -263,7 +265,7 @@ Result<void> Renderer::PlanSlabs() {
   return {};
 }
 
-// Those that are not finished, or lack what is asked for now.
+// Returns the frames that are not finished, or lack a measurement or a plate that is asked for now.
 std::vector<FrameId> Renderer::FramesToRender() {
   std::vector<FrameId> frames;
   for (const FrameId frame : frames_) {
@@ -311,13 +313,14 @@ Result<void> Renderer::RunPasses(std::vector<FrameId> frames) {
       begin_s_,
       black_count_,
       [this](const CollectProgress& pass, size_t finished_count) { Report(pass, finished_count); }};
-  // Better known before a night's work than after it; what is there was once found to contribute.
+  // A film without contributing LF images is better reported before a night's work than after it.
+  // If an earlier run left plates or frames, LF images contribute.
   if (totals_.pass_count > 1 && IsWhole() && !job.Rebins() && !state_->HasPlates() &&
       state_->finished().empty())
     LF_RETURN_IF_ERROR(CheckAnyContributes(job, frames));
   if (!job.Rebins()) LF_RETURN_IF_ERROR(FinishEarly(job, &frames));
-  // Which rays are kept depends on all frames of a pass: these are the same in a render that goes
-  // on.
+  // The kept rebinned rays depend on all frames of a pass, so a resumed render must have passes of
+  // the same frames.
   const std::span<const FrameId> in_passes = job.Rebins() ? std::span(frames_) : frames;
   for (size_t begin = 0; begin < in_passes.size(); begin += per_pass) {
     const size_t count = std::min(per_pass, in_passes.size() - begin);
@@ -341,7 +344,7 @@ Error Renderer::NoneContributes() const {
 
 Result<void> Renderer::CheckAnyContributes(const RenderJob& job,
                                            std::span<const FrameId> frames) const {
-  // With weights LF cameras beside the lens take part: a pass will tell.
+  // With lens weights, LF cameras beside the lens contribute, which only a pass can tell.
   if (options_.lens_weights != LensWeights::kNone) return {};
   std::vector<RenderCamera> cameras;
   for (const FrameId frame : frames) cameras.push_back(path_.Camera(frame));
@@ -351,14 +354,14 @@ Result<void> Renderer::CheckAnyContributes(const RenderJob& job,
   return {};
 }
 
-// Returns the frames of the pass that are to be finished with what the state has of them.
+// Returns the frames of the pass that are to be finished with the rays that the state has of them.
 std::vector<FrameId> Renderer::EarlyOf(const RenderJob& job,
                                        std::span<const FrameId> frames) const {
   std::vector<FrameId> early;
   for (const FrameId frame : options_.finish_early) {
     if (std::find(frames.begin(), frames.end(), frame) == frames.end()) continue;
     if (state_->finished().contains(frame)) continue;
-    // Without collection a pass knows itself which rays it has.
+    // Without collection, only the pass knows which rays the state has.
     if (!job.Collects() || state_->HasPlate(frame))
       early.push_back(frame);
     else
@@ -367,8 +370,8 @@ std::vector<FrameId> Renderer::EarlyOf(const RenderJob& job,
   return early;
 }
 
-// Finishes collected frames in passes of their own, so that they need not wait for others, and
-// takes them out of `frames`.
+// Finishes the early frames in passes of their own, so that they need not wait for others, and
+// removes them from `frames`.
 Result<void> Renderer::FinishEarly(const RenderJob& job, std::vector<FrameId>* frames) {
   const std::vector<FrameId> early = EarlyOf(job, *frames);
   std::erase_if(*frames, [&early](FrameId frame) {
@@ -393,7 +396,7 @@ Result<void> Renderer::RunPass(const RenderJob& job, std::span<const FrameId> fr
   if (images.empty() && IsWhole() && totals_.pass_count == 1 && !state_->HasPlates() &&
       state_->finished().empty())
     return NoneContributes();
-  // Later passes are guessed to be like this one.
+  // The progress estimate assumes that later passes are like this one.
   const size_t passes_left = (frames_left + frames.size() - 1) / frames.size();
   const uint64_t rays = std::accumulate(
       images.begin(), images.end(), uint64_t{0},
@@ -404,12 +407,12 @@ Result<void> Renderer::RunPass(const RenderJob& job, std::span<const FrameId> fr
   done_.ray_total = done_.ray_count + rays * passes_left;
   LF_RETURN_IF_ERROR(pass.Collect());
 
-  // Passes depend on the memory; what counts as broken must not.
+  // Passes depend on the memory, but this error must not: it needs all LF images of all passes.
   all_broken_ = all_broken_ && pass.AllBroken();
   const bool is_last = frames_left == frames.size();
   if (all_broken_ && is_last && !options_.shard && !pass.skipped().empty() && !had_plates_ &&
       state_->finished().empty()) {
-    state_->RemoveAll();  // plates without a ray, should it have taken so long
+    state_->RemoveAll();  // checkpoints may have written plates without a ray
     return InputError(
         fmt::format("every LF image is broken; the first: {}", pass.skipped().front().reason));
   }
@@ -429,7 +432,7 @@ Result<RenderReport> Renderer::End() {
             film.WriteContactSheet(frames_, plan_.frames_finished_at_once, pool_);
         !sheet)
       return sheet.error().kind == ErrorKind::kInterrupted ? Interrupted() : sheet.error();
-  // The frames are what counts: they are finished, and the video's error comes last.
+  // An error of the video comes last, because the frames are finished and matter most.
   if (options_.video)
     if (const Result<void> video = film.WriteVideo(frames_, *options_.video); !video)
       video_error = video.error();

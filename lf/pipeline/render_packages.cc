@@ -16,9 +16,9 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr size_t kLookedAt = 16;  // image files, spread over the package
+constexpr size_t kLookedAt = 16;  // about so many image files, spread over the package, are checked
 
-// What all packages of one film have in common.
+// The properties that all packages of one film have in common.
 struct Film {
   LightFieldIdentity light_field;
   std::string cameras;  // their hash
@@ -28,7 +28,7 @@ struct Film {
       : light_field(package.whole),
         cameras(HashOfCameras(package.path)),
         choices(package.choices) {}
-  // What differs; empty if nothing does.
+  // Returns the first difference in words; empty if there is none.
   std::string DifferenceTo(const Film& other) const {
     if (light_field != other.light_field) return "another light field";
     if (cameras != other.cameras) return "another camera path";
@@ -40,8 +40,9 @@ struct Film {
   }
 };
 
-// The packed store may be of other packages. What it could not read itself is skipped when it is
-// loaded, as a broken file is.
+// Checks that the packed store, which may have been made for other packages, has the pixels that
+// the package needs. An LF image that was broken when it was packed is skipped when it is loaded,
+// like a broken file.
 Result<void> CheckCodes(const fs::path& path, const Package& package) {
   const LightField& light_field = package.light_field;
   const auto codes = FindCodes(light_field.folder, light_field.image_names);
@@ -66,7 +67,7 @@ Result<void> CheckCodes(const fs::path& path, const Package& package) {
                   path.string(), missing, needed, light_field.folder.string(), first));
 }
 
-// A broken file or two may be; but not all of them are.
+// Checks that not all of some image files are missing or changed. A few broken files are allowed.
 Result<void> CheckImageFiles(const fs::path& path, const Package& package) {
   std::vector<size_t> recorded;
   for (size_t i = 0; i < package.images.size(); ++i)
@@ -109,15 +110,16 @@ RenderReport Joined(RenderReport all, const RenderReport& part) {
   return all;
 }
 
-// Frames that are missing from a film should not be found out by watching it. One package alone is
-// a job of many.
+// Warns if packages of the film are missing, so that nobody finds out by watching it. A single
+// package is one task of many, and is no reason to warn.
 void TellOfOthers(size_t given, size_t count) {
   if (given > 1 && given < count)
     LogWarning("{} of the film's {} packages are given: the frames of the others are not rendered",
                given, count);
 }
 
-// None of it if the file cannot be asked: then it is opened again.
+// Records size and time of the file. If they cannot be read, file_bytes is 0, and the package will
+// be opened again.
 void Stamp(PackagePart* part) {
   std::error_code error;
   part->file_bytes = fs::file_size(part->path, error);
@@ -129,7 +131,7 @@ void MoveTo(const std::optional<LightFieldPlace>& place, Package* package) {
   if (place) package->light_field.folder = place->folder;
 }
 
-// A package is checked again only if its file has changed.
+// Reads a package again, with all checks only if its file has changed.
 Result<Package> OpenAgain(const PackagePart& part, PackagedFilm* film) {
   PackagePart now;
   now.path = part.path;
@@ -236,7 +238,7 @@ Result<std::vector<PackagePart>> PartsWith(const PackagedFilm& film,
   return parts;
 }
 
-// One package alone is likely to be rendered beside others.
+// A single package is likely to be rendered into the same folder as others.
 std::string ContactSheetName(const std::vector<fs::path>& paths) {
   return paths.size() == 1 ? fmt::format("contact_sheet-{}.png", paths.front().stem().string())
                            : kContactSheet;
@@ -294,7 +296,7 @@ Result<RenderReport> RenderPackages(PackagedFilm film, const RenderOptions& opti
     LF_RETURN_IF_ERROR(files.WriteContactSheet(frames, static_cast<size_t>(pool.thread_count()),
                                                pool, ContactSheetName(film.paths)));
   if (options.video) LF_RETURN_IF_ERROR(files.WriteVideo(frames, *options.video));
-  // A section may be black.
+  // A section of a film may be black.
   if (report.IsBlack() && !options.shard && film.paths.size() == film.film_count)
     return InputError(fmt::format("{}: every frame is black: no ray reached them",
                                   options.output_folder.string()));

@@ -1,4 +1,4 @@
-// Package files in, one image sequence out.
+// Renders package files into one image sequence.
 #pragma once
 
 #include <cstdint>
@@ -17,33 +17,34 @@
 
 namespace lf {
 
-// A light field that packages are said to be of, which may have moved since they were made.
+// The light field of packages, which may have moved since they were made.
 struct LightFieldPlace {
   std::string name;  // for messages
   LightFieldIdentity identity;
-  std::optional<LightFieldIdentity> whole;  // of a packed store: that its LF images are from
+  std::optional<LightFieldIdentity> whole;  // of a packed store: light field that it was made from
   std::filesystem::path folder;             // of its image files, or the packed store
 };
 
+// Returns the place of an opened light field.
 //   name  for messages
 // kInput: a damaged packed store.
 Result<LightFieldPlace> PlaceOf(const std::string& name, const LightField& light_field);
 
-// Reads and checks a package and its light field's image files, a few of which are looked at.
-// Packages of a light field may take its LF images from a packed store of it, too.
-// kInput: as ReadPackage(); it is of another light field than `place`; none of the files is there,
-// or none is the one that it was; a packed store without some of the package's LF images, or of
-// other pixels of them than it needs.
+// Reads a package and checks it and a few of its light field's image files. The LF images of a
+// package may also come from a packed store of its light field.
+// kInput: as ReadPackage(); the package is of another light field than `place`; none of the checked
+// files is there with the size that it had; the packed store lacks LF images, or pixels of them,
+// that the package needs.
 Result<Package> OpenPackage(const std::filesystem::path& path,
                             const std::optional<LightFieldPlace>& place = {});
 
-// A package file and frames of it.
+// A package file, and the frames of it that are rendered.
 struct PackagePart {
   std::filesystem::path path;
   std::vector<FrameId> frames;
-  bool is_whole = true;    // all of its frames
-  uint64_t ray_count = 0;  // of these frames, about
-  // Size and time of the file when it was checked: as long as they are the same, it is.
+  bool is_whole = true;    // true if these are all frames of the package
+  uint64_t ray_count = 0;  // of these frames, approximately
+  // Size and time of the file when it was checked. If they are the same later, so is the file.
   uint64_t file_bytes = 0;
   std::filesystem::file_time_type file_time = {};
 };
@@ -52,31 +53,31 @@ struct PackagePart {
 struct PackagedFilm {
   std::vector<std::filesystem::path> paths;
   std::optional<LightFieldPlace> place;
-  std::vector<PackagePart> parts;  // as paths
-  size_t film_count = 1;           // packages of the film, more of which there may be elsewhere
+  std::vector<PackagePart> parts;  // one for each path
+  size_t film_count = 1;           // packages of the film, some of which may not be given
   Package first;                   // of paths.front()
 };
 
-// Opens every package once, as OpenPackage(), and checks that they are of one film.
-// kUsage: packages that have frames or a name in common; kInput: packages of different films or
-// light fields. Else as OpenPackage().
+// Opens every package with OpenPackage(), and checks that all are of one film.
+// kUsage: packages have frames or a name in common. kInput: packages are of different films or
+// light fields. Other errors are those of OpenPackage().
 Result<PackagedFilm> OpenPackages(std::vector<std::filesystem::path> paths,
                                   std::optional<LightFieldPlace> place);
 
-// Returns the parts with frames that are wanted; nothing wanted: all frames. Warns about a film of
-// which packages are missing.
-// kUsage: frames that none of the packages has.
+// Returns the parts that have frames of `wanted`; all parts if `wanted` is empty. Warns if packages
+// of the film are missing.
+// kUsage: none of the packages has a wanted frame.
 Result<std::vector<PackagePart>> PartsWith(const PackagedFilm& film,
                                            const std::vector<FrameId>& wanted);
 
-// contact_sheet.png; of one package alone contact_sheet-NAME.png.
+// Returns "contact_sheet.png", or "contact_sheet-NAME.png" for a single package.
 std::string ContactSheetName(const std::vector<std::filesystem::path>& paths);
 
-// Renders one package after the other as by Render(), each with its own report and state; then the
-// contact sheet (ContactSheetName()) and the video of their frames.
-// Each package takes its own of options.frames. The report is that of all. A package that was
-// changed since the film was opened is opened again, with all checks. kInput: every frame of a
-// whole film is black. Else errors as Render() and PartsWith().
+// Renders one package after the other with Render(), each with its own report and state. Then
+// writes the contact sheet (ContactSheetName()) and the video of their frames. Of options.frames,
+// each package renders those that it has. Returns the report of all packages together. A package
+// file that was changed since the film was opened is opened again, with all checks.
+// kInput: every frame of a whole film is black. Other errors are those of Render() and PartsWith().
 Result<RenderReport> RenderPackages(PackagedFilm film, const RenderOptions& options,
                                     ThreadPool& pool,
                                     const std::function<void(const RenderProgress&)>& progress);

@@ -40,7 +40,7 @@ class OpenPackagesTest : public FolderTest {
   fs::path Packed(uint32_t frame) {
     return Packed(frame, [](Package* /*package*/) {});
   }
-  // What is said when packages of frames 1 and 2 are opened together.
+  // Returns the message when packages of frames 1 and 2 are opened together.
   template <class Change>
   std::string ErrorOf(const Change& change) {
     const Result<PackagedFilm> film = OpenPackages({Packed(1), Packed(2, change)}, {});

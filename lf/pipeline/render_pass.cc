@@ -93,7 +93,7 @@ Result<void> RenderPass::Prepare() {
 }
 
 Result<void> RenderPass::PreparePlates(std::vector<PlaceRange>* places) {
-  // By all threads, since whoever clears a plate waits for its memory.
+  // Plates are made by all threads, because a thread that clears one waits for its memory.
   for (size_t f = 0; f < frames_.size(); ++f) plates_.emplace_back(0, 0);
   if (job_.options.MeasuresNoise()) moments_.resize(frames_.size());
   job_.pool.ForEach(frames_.size(), [this](size_t f) {
@@ -120,8 +120,8 @@ Result<void> RenderPass::PreparePlates(std::vector<PlaceRange>* places) {
   return {};
 }
 
-// A plate whose moments nobody kept is of no use where noise is measured, unless it is finished as
-// it is.
+// Loads a plate of an earlier run. If noise is measured, a plate without moments is dropped, and
+// its frame begins anew, unless the frame is finished early.
 Result<FrameProgress> RenderPass::LoadPlate(size_t f) {
   Frame& frame = frames_[f];
   if (!job_.options.MeasuresNoise()) return job_.state.LoadPlate(frame.id, &plates_[f]);
@@ -139,7 +139,8 @@ Result<FrameProgress> RenderPass::LoadPlate(size_t f) {
   return start;
 }
 
-// A package has the LF cameras that the default options reach.
+// Checks that the frame needs no LF cameras beyond the reach of the default options, because the
+// package has no others.
 Result<void> RenderPass::CheckReach(const LensGaps& gaps, FrameId frame) const {
   if (job_.package.surroundings.empty() || !gaps.asks_in_the_end()) return {};
   const RenderCamera& camera = job_.path.Camera(frame);
@@ -190,8 +191,8 @@ Result<void> RenderPass::PrepareRebinning(std::span<const PlaceRange> places) {
   return {};
 }
 
-// Selects the LF images of the pass: for plates, each with the pixels that are collected of it, and
-// for rebinned rays, which ask for their pixels when an image is loaded (ImageTaker).
+// Selects the LF images of the pass. Images for plates have the rectangle of the pixels to collect;
+// rebinned rays name their pixels when an image is loaded (ImageTaker).
 void RenderPass::SelectForPass(std::span<const PlaceRange> places) {
   images_.clear();
   if (job_.HasPlates()) {
@@ -229,12 +230,12 @@ void RenderPass::AddRebinnedImages(std::span<const PlaceRange> places) {
 
 Result<void> RenderPass::Collect() {
   LF_RETURN_IF_ERROR(FinishEarlyFrames());
-  // Frames that an earlier run left where the rule is to be asked.
+  // An earlier run may have left frames at a place where the stop rule decides.
   LF_RETURN_IF_ERROR(DecideStops());
   while (!AreAllFinished()) {
     const Result<bool> step = collector_->Step();
     if (!step && step.error().kind != ErrorKind::kInterrupted) {
-      // Plates are as after the last step: nothing of them need be lost.
+      // Plates are complete up to the last step, so that they can be saved.
       if (!Save(0)) return step.error();
       return Error{step.error().kind,
                    step.error().message + " (what is done is kept: --resume goes on)"};
@@ -255,7 +256,7 @@ Result<void> RenderPass::Collect() {
   return {};
 }
 
-// The state has all rays that these frames will get: they need not wait for the others.
+// Finishes the early frames at once: the state has all rays that they will get.
 Result<void> RenderPass::FinishEarlyFrames() {
   for (size_t f = 0; f < frames_.size(); ++f) {
     Frame& frame = frames_[f];
@@ -306,7 +307,7 @@ Result<void> RenderPass::Finish() {
   return {};
 }
 
-// All rays of its plate, whenever they were collected.
+// Returns the progress of a frame with all rays in its plate, those of earlier runs included.
 FrameProgress RenderPass::ProgressOf(size_t f) const {
   if (!job_.HasPlates()) return {rebinned_->places_done(), {}};
   FrameProgress progress = collector_->frames()[f];
@@ -318,8 +319,8 @@ FrameProgress RenderPass::ProgressOf(size_t f) const {
   return progress;
 }
 
-// At the same time: encoders keep one thread busy each. What is finished is kept, whatever becomes
-// of the others.
+// Writes frames at the same time, because an encoder keeps only one thread busy. A frame that is
+// written is kept, even if another one fails.
 Result<void> RenderPass::FinishFrames(std::span<const size_t> frames) {
   std::vector<std::optional<Result<FrameReport>>> written(frames.size());
   const std::vector<Completion> completions = Complete(frames);
@@ -348,13 +349,14 @@ FrameSheet RenderPass::SheetOf(size_t f) const {
   return sheet;
 }
 
-// Any thread may call it, for a frame each.
+// Writes the files of a frame. May be called by several threads at the same time, for different
+// frames.
 Result<FrameReport> RenderPass::WriteFiles(size_t f, const Completion* completion) {
   Frame& frame = frames_[f];
   FrameProgress progress = ProgressOf(f);
   const std::filesystem::path to = job_.state.FinishedPath(frame.id);
   if (job_.options.keep_plates || job_.options.shard) {
-    // Where a frame ends is no matter of passes.
+    // The place where a frame ends must not depend on passes.
     progress.places_done =
         frame.is_stopped ? frame.next_decision : std::min(frame.places.end, job_.index.place_end());
     std::filesystem::path plate = to;
@@ -392,8 +394,8 @@ Result<FrameReport> RenderPass::WritePicture(size_t f, const Completion* complet
                           job_.options.format, job_.pool, is_interrupted);
 }
 
-// A frame that takes some LF images only is complete where it ends. One that was stopped, or is
-// finished early, has gaps that nobody fills any more.
+// A frame with all LF images that it takes is in its final state, even if it takes only some. A
+// frame that was stopped, or is finished early, has more gaps, which no later LF image covers.
 std::vector<Completion> RenderPass::Complete(std::span<const size_t> frames) {
   std::vector<Completion> completions;
   if (!rebinned_) return completions;
@@ -410,7 +412,7 @@ Result<void> RenderPass::Conclude(size_t f, const FrameReport& report) {
   Frame& frame = frames_[f];
   if (!job_.options.shard && report.rays.image_count == 0 &&
       report.interpolated_share.value_or(0) == 0) {
-    // The first are told at once; a report has them all.
+    // Only the first black frames are logged; a report has all of them.
     constexpr size_t kTold = 10;
     if (++job_.black_count <= kTold)
       LogWarning("frame {} is black: no LF image contributes to it", frame.id.value);
@@ -426,7 +428,7 @@ Result<void> RenderPass::Conclude(size_t f, const FrameReport& report) {
   return {};
 }
 
-// With what this pass did so far.
+// Returns the totals with the work of this pass so far.
 RenderReport RenderPass::Totals() const {
   RenderReport totals = job_.totals;
   totals.total_s += NowSeconds() - job_.begin_s;

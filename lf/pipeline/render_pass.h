@@ -21,12 +21,12 @@
 
 namespace lf {
 
-// Of a clock that never goes back.
+// Returns the time of a monotonic clock.
 inline double NowSeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// What passes share.
+// The objects that all passes of a render share.
 struct RenderJob {
   const Package& package;
   const ImageIndex& index;  // of the package
@@ -37,15 +37,15 @@ struct RenderJob {
   const MemoryPlan& plan;
   RunState& state;
   DumpClock& clock;
-  RenderReport& totals;    // of passes that are done, and of earlier runs; total_s of those alone
+  RenderReport& totals;    // of finished passes and earlier runs; total_s is of earlier runs only
   size_t max_cells;        // of rebinned rays
-  const FilmSlabs* slabs;  // of these; null without
+  const FilmSlabs* slabs;  // of rebinned rays; null without them
   double begin_s;          // of this run
   size_t& black_count;     // frames that no LF image contributes to
   std::function<void(const CollectProgress&, size_t finished_count)> progress;
 
   bool Collects() const { return lf::Collects(options.mode); }
-  // Returns whether frames have plates: for their pictures, or to measure noise by.
+  // Returns true if frames have plates, for their pictures or to measure noise.
   bool HasPlates() const { return Collects() || options.MeasuresNoise(); }
   bool Rebins() const { return lf::Rebins(options.mode); }
   bool IsStopped() const { return options.signals != nullptr && options.signals->stop; }
@@ -54,36 +54,37 @@ struct RenderJob {
 
 class RenderPass {
  public:
-  // Those that are finished take no part, but for what rebinned rays are kept: that depends on all
-  // frames of the pass.
-  //   early  of these, ascending, those that are finished with the rays of the state alone
+  //   frames  frames of the pass, ascending. Finished ones are not rendered; they are given because
+  //           the kept rebinned rays depend on all frames of the pass.
+  //   early   the frames, ascending, to finish with the rays of the state alone
   RenderPass(const RenderJob& job, std::span<const FrameId> frames, std::span<const FrameId> early);
 
-  // Plates of an earlier run, and the LF images that are still to be collected. kInput: damaged.
+  // Loads the plates of an earlier run, and selects the LF images that are still to be collected.
+  // kInput: the state is damaged.
   Result<void> Prepare();
   const std::vector<SelectedImage>& images() const { return images_; }
   std::span<const SkippedImage> skipped() const { return collector_->skipped(); }
-  // Whether all of them were broken (or there were none), and nothing was collected before.
+  // True if all LF images were broken (or there were none), and nothing was collected before.
   bool AllBroken() const;
 
-  // Collects until all is done, or it is interrupted: then the state is written.
+  // Collects until all LF images are done. kInterrupted: the state is written.
   Result<void> Collect();
-  // Writes the frames that are left. kInterrupted as before.
+  // Writes the frames that are not finished yet. kInterrupted: the state is written.
   Result<void> Finish();
 
  private:
   struct Frame {
     FrameId id;
-    PlaceRange places;             // it takes, from its first image on
+    PlaceRange places;             // of the LF images that it takes, in earlier runs and this one
     FrameRays earlier_rays;        // in its plate when the pass began
-    uint32_t saved_places = 0;     // done, in the state on the disk
-    uint32_t decision_places = 0;  // with a stop rule: it is asked at multiples of this
+    uint32_t saved_places = 0;     // places done in the state on the disk
+    uint32_t decision_places = 0;  // stop_at_samples is decided at multiples of this
     uint32_t next_decision = 0;    // place
     bool is_finished = false;
-    bool is_stopped = false;  // by the rule, with the LF images before next_decision
-    bool has_noise = false;   // the moments are of all LF images in its plate
-    bool is_early = false;    // finished with what the state has
-    double picture_s = 0;     // when its picture was written last
+    bool is_stopped = false;  // by the stop rule, with the LF images before next_decision
+    bool has_noise = false;   // true if the moments are of all LF images in its plate
+    bool is_early = false;    // to be finished with the rays of the state
+    double picture_s = 0;     // time when its picture was last written
     std::unique_ptr<ReachableElements> reachable;
   };
 
@@ -95,7 +96,7 @@ class RenderPass {
   Result<void> PrepareRebinning(std::span<const PlaceRange> places);
   void SelectForPass(std::span<const PlaceRange> places);
   void AddRebinnedImages(std::span<const PlaceRange> places);
-  // What rebinned rays say of each frame, one after the other; empty without them.
+  // Interpolates frames, one after the other; empty without rebinned rays.
   std::vector<Completion> Complete(std::span<const size_t> frames);
   FrameProgress ProgressOf(size_t f) const;
   const ReachableElements& ReachableOf(size_t f);
@@ -126,15 +127,15 @@ class RenderPass {
 
   const RenderJob& job_;
   std::vector<Frame> frames_;
-  std::vector<FrameLens> lenses_;      // one per frame, and so are cameras and plates
+  std::vector<FrameLens> lenses_;      // one for each frame, like cameras and plates
   std::vector<RenderCamera> cameras_;  // with these lenses
   std::vector<SensorPlate> plates_;
-  std::vector<NoiseMoments> moments_;  // of these, where noise is measured
+  std::vector<NoiseMoments> moments_;  // of the plates, if noise is measured; otherwise empty
   std::vector<SelectedImage> images_;
   std::unique_ptr<FrameCollector> collector_;
-  std::unique_ptr<RebinnedRays> rebinned_;   // where it rebins
-  std::vector<uint32_t> saved_rays_places_;  // of its sections, in the state on the disk
-  std::string rays_frames_;                  // what they were made for, beside the inputs
+  std::unique_ptr<RebinnedRays> rebinned_;   // null without rebinned rays
+  std::vector<uint32_t> saved_rays_places_;  // places done of its sections in the state on the disk
+  std::string rays_frames_;                  // frames that the rays are made for, in their files
   CollectProgress done_;
   size_t finished_count_ = 0;
 };

@@ -8,14 +8,14 @@
 namespace lf {
 namespace {
 
-// Of pictures in a checkpoint: half of what checkpoints may cost (dump_clock.h).
+// Share of the time for pictures in checkpoints: half of the share of checkpoints (dump_clock.h).
 constexpr double kPictureShare = DumpClock::kMostShare / 2;
-// After a signal to end, the plates being safe.
+// Time for pictures after a signal to end, when the plates are saved.
 constexpr double kLastPictures_s = 2;
 
 }  // namespace
 
-// Plates first, then pictures, the oldest first, as many as the time allows.
+// Saves plates first, then pictures, the oldest first, as many as the time allows.
 Result<void> RenderPass::Save(double picture_budget_s) {
   LF_RETURN_IF_ERROR(job_.state.SaveTotals(Totals()));
   for (size_t f = 0; f < frames_.size(); ++f) {
@@ -51,8 +51,8 @@ Result<void> RenderPass::SavePictures(double picture_budget_s) {
     return frames_[a].picture_s < frames_[b].picture_s;
   });
   const double begin_s = NowSeconds();
-  // A signal to end may come on the way. After it these pictures are the last, and even one of them
-  // may take minutes.
+  // A signal to end may interrupt these pictures. If it came before, they are the last ones, and
+  // the time may interrupt even the first, which may take minutes.
   std::function<bool()> is_interrupted = [this] { return job_.IsStopped(); };
   if (job_.IsStopped()) is_interrupted = [=] { return NowSeconds() - begin_s >= picture_budget_s; };
   for (const size_t f : oldest_first) {
@@ -62,7 +62,7 @@ Result<void> RenderPass::SavePictures(double picture_budget_s) {
     const Result<FrameReport> written =
         WritePicture(f, completion.empty() ? nullptr : completion.data(),
                      job_.state.PicturePath(frame.id), is_interrupted);
-    // The state that is written after a signal has pictures of its own.
+    // The state that is written after the signal writes its own pictures.
     if (!written && written.error().kind == ErrorKind::kInterrupted) return {};
     LF_RETURN_IF_ERROR(written);
     frame.picture_s = NowSeconds();

@@ -1,4 +1,4 @@
-// Rules that stop frames of a pass, or measure them in the end.
+// Rules that stop frames of a pass, or measure finished frames.
 #include <algorithm>
 #include <cmath>
 
@@ -21,8 +21,8 @@ const ReachableElements& RenderPass::ReachableOf(size_t f) {
   return *frame.reachable;
 }
 
-// Batches end at the places where some frame is asked, and rebinned rays have places of their own
-// that no batch may cross.
+// Makes batches end at the places where the stop rule of a frame decides, in addition to those that
+// rebinned rays need.
 Result<void> RenderPass::PrepareStops(std::span<const PlaceRange> places, CollectOptions* collect) {
   collect->cuts_for_noise = job_.options.stop_at_noise.has_value();
   for (size_t f = 0; f < frames_.size(); ++f) {
@@ -43,16 +43,17 @@ Result<void> RenderPass::PrepareStops(std::span<const PlaceRange> places, Collec
   return {};
 }
 
-// The first place from `place` on, which is above 0, where the frame is asked.
+// Returns the first place, at or behind `place`, where the stop rule of the frame decides. `place`
+// must be above 0.
 uint32_t RenderPass::DecisionFrom(size_t f, uint32_t place) const {
   if (job_.options.stop_at_noise) return NoiseDecisionAfter(place - 1);
   const uint32_t step = frames_[f].decision_places;
   return (place + step - 1) / step * step;
 }
 
-// A frame that stops is completed by the rebinned rays of the same LF images. States are written
-// plates first, so that rebinned rays may lag behind them, and catch up. Where a plate was removed
-// they are ahead of it: then they are made anew from the first LF image.
+// A frame that stops must be completed with the rebinned rays of the same LF images. In a state,
+// rebinned rays may lag behind the plates, which are written first; they catch up. If a plate was
+// removed, they are ahead of it: then they are made anew from the first LF image.
 void RenderPass::ForgetRaysAhead(std::span<const PlaceRange> places) {
   uint32_t least = UINT32_MAX;
   for (size_t f = 0; f < frames_.size(); ++f)
@@ -74,7 +75,7 @@ uint32_t RenderPass::PlacesCovered(uint32_t places_done) const {
   return next == images_.end() ? job_.index.place_end() : next->place;
 }
 
-// In radiance; infinity where it cannot be told.
+// Returns the noise of a frame in radiance; infinity if it cannot be measured.
 double RenderPass::NoiseOf(size_t f) {
   return MeasureNoise(plates_[f], moments_[f], ReachableOf(f)) /
          job_.package.light_field.encoding.Scale();
@@ -85,22 +86,22 @@ bool RenderPass::IsEnough(size_t f) {
   return HasSamples(plates_[f], ReachableOf(f), *job_.options.stop_at_samples);
 }
 
-// Asks every frame at the first place of its decisions after an LF image it took, with exactly the
-// rays of the places before: batches do not go across, and where there is a gap in the order of
-// this pass, nothing is added. So the answers do not depend on what other frames take. An earlier
-// run that was interrupted may have asked already; the answer is the same. All frames are asked
-// before one is finished, which may be interrupted.
+// Applies the stop rule to every frame that has reached its next place of decision. The plate has
+// exactly the rays of the places before it, because no batch extends beyond such a place, and a gap
+// in the order of this pass adds nothing. Decisions therefore do not depend on the LF images that
+// other frames take. An interrupted earlier run may have decided already; the decision is the same.
+// All frames are decided before one is finished, because finishing may be interrupted.
 Result<void> RenderPass::DecideStops() {
   if (!HasStopRule()) return {};
   std::vector<size_t> stopped;
   for (size_t f = 0; f < frames_.size(); ++f) {
     Frame& frame = frames_[f];
-    // A frame that is finished early keeps the LF images it has.
+    // A frame that is to be finished early takes no decision.
     if (frame.is_finished || frame.is_early) continue;
     if (!frame.is_stopped) {
       const uint32_t covered = PlacesCovered(collector_->frames()[f].places_done);
       if (covered < frame.next_decision) continue;
-      // Rebinned rays catch up after an interruption; they are asked for where the frame stops.
+      // After an interruption, rebinned rays must catch up to the place where the frame may stop.
       if (rebinned_ && PlacesCovered(rebinned_->places_done()) < frame.next_decision) continue;
       if (!IsEnough(f)) {
         frame.next_decision = DecisionFrom(f, covered + 1);
@@ -122,7 +123,8 @@ bool RenderPass::AreAllFinished() const {
                      [](const Frame& frame) { return frame.is_finished; });
 }
 
-// For the report of a frame. Any thread may call it, for a frame each.
+// Measures a frame for its report. May be called by several threads at the same time, for different
+// frames.
 Result<void> RenderPass::Measure(size_t f, FrameReport* report) {
   const RenderOptions& options = job_.options;
   const Frame& frame = frames_[f];

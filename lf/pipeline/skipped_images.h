@@ -1,4 +1,4 @@
-// Which frames lack an LF image that was left out. Internal to pipeline.
+// The skipped LF images that a frame lacks. Internal to pipeline.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@
 
 namespace lf {
 
-// One frame as its LF images are selected.
+// The properties of a frame that decide which LF images it takes.
 struct FrameTakes {
   const FrameLens& lens;
   PlaceRange places;
@@ -21,9 +21,9 @@ struct FrameTakes {
   std::optional<Shard> shard;  // of the render
 };
 
-// The names of those of `skipped` that the frame would have taken, in the order of the light field.
-// They do not depend on threads, memory or interruptions. Goes through all names of the light field
-// once, unless nothing was skipped.
+// Returns the names of the skipped LF images that the frame would have taken, in the order of the
+// light field. They do not depend on threads, memory or interruptions. Reads all names of the light
+// field once, unless nothing was skipped.
 std::vector<std::string> SkippedOf(std::span<const SkippedImage> skipped, const ImageIndex& index,
                                    const FrameTakes& frame);
 
