@@ -1,4 +1,5 @@
-// When the next checkpoint is due: as asked for, but so seldom that they cost little.
+// Decides when the next checkpoint is due: at the interval asked for, or at a longer one if
+// checkpoints would take too much of the time.
 #pragma once
 
 #include <algorithm>
@@ -10,15 +11,17 @@ class DumpClock {
   // Checkpoints take at most this share of the time (doc/design.md, "Failure and load").
   static constexpr double kMostShare = 0.05;
 
-  // every_s  seconds from the end of a checkpoint to the next; 0: never
-  // now_s    of any clock, here and below; the first is due after an interval
+  //   every_s  seconds from the end of a checkpoint to the next; 0: never
+  //   now_s    time of any clock, the same for all calls; the first checkpoint is due one interval
+  //            later
   DumpClock(double every_s, double now_s)
       : every_s_(every_s), interval_s_(every_s), last_s_(now_s) {}
 
   bool IsDue(double now_s) const { return every_s_ > 0 && now_s - last_s_ >= interval_s_; }
 
-  // A checkpoint was written from begin_s to end_s. True if the interval became longer than it was
-  // asked for, by half at least from what was told of it last.
+  // Records that a checkpoint was written from begin_s to end_s. Returns true if the user should be
+  // told the new interval: if it is at least 1.5 times the interval asked for, and at least 1.5
+  // times the one that the user was last told.
   bool Done(double begin_s, double end_s) {
     interval_s_ = std::max(every_s_, (end_s - begin_s) * (1 / kMostShare - 1));
     last_s_ = end_s;
@@ -28,7 +31,7 @@ class DumpClock {
   }
 
   double interval_s() const { return interval_s_; }
-  // End of the last checkpoint, or the beginning.
+  // End of the last checkpoint, or the time at construction.
   double last_s() const { return last_s_; }
 
  private:

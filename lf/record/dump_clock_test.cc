@@ -16,12 +16,12 @@ TEST(DumpClock, IsDueAfterAnInterval) {
 
 TEST(DumpClock, StretchesSoThatCheckpointsTakeAtMostOneTwentieth) {
   DumpClock clock(30, 0);
-  EXPECT_TRUE(clock.Done(30, 40));  // and says so
+  EXPECT_TRUE(clock.Done(30, 40));  // reports that the interval is longer
   EXPECT_DOUBLE_EQ(clock.interval_s(), 190);
   EXPECT_FALSE(clock.IsDue(40 + 189));
   EXPECT_TRUE(clock.IsDue(40 + 190.001));
-  EXPECT_FALSE(clock.Done(230, 240));  // once
-  EXPECT_FALSE(clock.Done(430, 431));  // and comes back
+  EXPECT_FALSE(clock.Done(230, 240));  // reports it only once
+  EXPECT_FALSE(clock.Done(430, 431));  // a fast checkpoint restores the interval
   EXPECT_DOUBLE_EQ(clock.interval_s(), 30);
   EXPECT_TRUE(clock.Done(461, 491));
 }

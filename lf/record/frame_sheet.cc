@@ -15,12 +15,12 @@
 namespace lf {
 namespace {
 
-// Shortest texts that give the same bits again.
+// Returns the shortest texts that give the same bits when they are read.
 std::string Words(std::span<const double> numbers) {
   return fmt::format("{}", fmt::join(numbers, " "));
 }
 
-// A list in JSON, in ASCII, which has no control characters: names may hold any bytes.
+// Returns a JSON list in ASCII without control characters, because names may have any bytes.
 std::string NamesText(const std::vector<std::string>& names) {
   constexpr size_t kMostBytes = size_t{256} << 10;
   const auto text_of = [](const Json& json) {
@@ -35,7 +35,8 @@ std::string NamesText(const std::vector<std::string>& names) {
   return "[" + text + "]";
 }
 
-// The values of keys, one after the other; the first fault is kept, and what follows it is 0.
+// Reads the values of keys, one after the other. Keeps the first fault; values with a fault are
+// arbitrary.
 class SheetReader {
  public:
   SheetReader(const PlateEntries& entries, const std::string& name)

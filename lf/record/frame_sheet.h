@@ -1,4 +1,4 @@
-// What a finished plate's file says beside its rays, so that a picture can be made of it anywhere:
+// The sheet of a finished plate: entries in its file from which a picture can be made anywhere,
 // without the light field and the path (doc/formats/plate.md, keys "sheet.").
 #pragma once
 
@@ -25,15 +25,15 @@ struct FrameSheet {
   Estimator estimator = Estimator::kBilinear;
   std::string version;  // of the program
   FrameRays rays;       // in the plate
-  // Finished early, with the LF images before this place of the order.
+  // If set, the frame was finished early, with the LF images before this place of the order.
   std::optional<uint32_t> places_done = std::nullopt;
-  // LF images that the frame takes and that are missing or broken: how many, and their names. A
-  // file has only as many names as fit in 256 KiB.
+  // Number and names of the LF images that the frame takes, and that are missing or broken. A file
+  // has only as many names as fit in 256 KiB.
   uint64_t skipped_count = 0;
   std::vector<std::string> skipped = {};
-  DevelopOptions develop;  // all but completion and is_interrupted
+  DevelopOptions develop;  // without completion and is_interrupted
 
-  // With lens weights (collector/frame_lens.h).
+  // Facts about lens weights (collector/frame_lens.h); none without them.
   struct Weighed {
     double hat_share = 0;
     LensCoverage coverage;
@@ -42,11 +42,12 @@ struct FrameSheet {
   std::optional<Weighed> weighed;
 };
 
+// Returns the entries of a sheet.
 PlateEntries TextOf(const FrameSheet& sheet);
 
-// Numbers come back as the same bits.
+// Returns the sheet of the entries. Numbers have the same bits as before TextOf().
 //   width_px, height_px  of the plate
-// kInput: a key is missing, or its value is none; the message begins with `name`.
+// kInput: a key is missing, or its value is invalid. The message begins with `name`.
 Result<FrameSheet> FrameSheetOf(const PlateEntries& entries, int width_px, int height_px,
                                 const std::string& name);
 

@@ -1,4 +1,5 @@
-// Lines "key: value" are a sheet or an error; a sheet is the same when written and read again.
+// Any lines "key: value" are a sheet or an error. A sheet is the same when it is written and read
+// again.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

@@ -65,7 +65,7 @@ TEST(FrameSheet, NamesOfLfImagesThatAreMissingComeBackInAnyBytes) {
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(read->skipped_count, 5u);
   EXPECT_EQ(read->skipped, sheet.skipped);
-  // As many names as a plate's text has room for; the count stays.
+  // The sheet has only as many names as fit into a plate's text; the count is that of all.
   sheet.skipped.assign(100'000, "a_name_of_some_length.png");
   sheet.skipped_count = sheet.skipped.size();
   const Result<FrameSheet> many = FrameSheetOf(TextOf(sheet), 96, 64, "p");

@@ -1,5 +1,5 @@
-// Values out of JSON of our own (reports, jobs), which may be damaged. For files that include
-// nlohmann's JSON anyway.
+// Reads values from our own JSON files (reports, jobs), which may be damaged. Only for sources that
+// include nlohmann's JSON anyway.
 #pragma once
 
 #include <fmt/format.h>
@@ -19,8 +19,8 @@ namespace lf {
 
 using Json = nlohmann::ordered_json;
 
-// Values of one object, by key. What is missing keeps its default; the first value of another kind
-// is the error.
+// Reads the values of one object by their keys. The value of a missing key keeps its default. The
+// first value of a wrong type is described in `fault`.
 class RecordFields {
  public:
   RecordFields(const Json& object, std::string* fault) : object_(object), fault_(*fault) {
@@ -85,7 +85,7 @@ class RecordFields {
       values->push_back(item->get<std::string>());
     }
   }
-  // The objects of a list, none if it is missing.
+  // Returns the items of a list; none if it is missing.
   std::vector<const Json*> List(const char* key) {
     std::vector<const Json*> list;
     const Json* json = Find(key);
@@ -112,7 +112,8 @@ class RecordFields {
   std::string& fault_;
 };
 
-// The object of a text whose "format" is the one expected. Else empty, and the fault says why.
+// Returns the object in a text if its "format" is the expected one. Otherwise returns an empty
+// object, and `fault` says why.
 inline Json ParseRecord(std::string_view text, const char* format, std::string* fault) {
   Json json = Json::parse(text, nullptr, false);
   std::string found;
@@ -125,7 +126,8 @@ inline Json ParseRecord(std::string_view text, const char* format, std::string* 
   return fault->empty() ? std::move(json) : Json::object();
 }
 
-// As text. Names may hold any bytes; those that are no UTF-8 are replaced.
+// Returns the text of a JSON value. Names may have any bytes; bytes that are not UTF-8 are
+// replaced.
 inline std::string RecordText(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

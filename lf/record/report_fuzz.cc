@@ -1,4 +1,4 @@
-// Any text is a report or an error; a report is the same when written and read again.
+// Any text is a report or an error. A report is the same when it is written and read again.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>

@@ -1,5 +1,5 @@
-// What a frame is made from, as readable lines: so that an interrupted render goes on from the
-// inputs it was begun with, or tells which one differs.
+// The inputs of a frame as readable lines. By these, a resumed render checks that it has the inputs
+// that it was begun with, or tells which one differs.
 #pragma once
 
 #include <optional>
@@ -19,10 +19,11 @@
 
 namespace lf {
 
-// (key, value), in the order written; keys as in plate/plate_file.h.
+// Pairs (key, value) in the order in which they are written. Keys have the form of those in
+// plate/plate_file.h.
 using RunInputs = std::vector<std::pair<std::string, std::string>>;
 
-// The options that decide about the rays of a frame, and (the last three) about its picture.
+// The options that decide the rays of a frame; the last three decide its picture.
 struct RunChoices {
   RayReading reading;
   CollectBackEnd back_end = CollectBackEnd::kFast;
@@ -31,44 +32,45 @@ struct RunChoices {
   LensWeights lens_weights = LensWeights::kNone;
   std::optional<size_t> max_image_count;
   std::optional<double> max_angle_rad;
-  std::optional<uint32_t> stop_at_samples;  // one of these two rules at most
+  std::optional<uint32_t> stop_at_samples;  // at most one of the two stop rules is set
   std::optional<double> stop_at_noise;
-  // "as recorded", or how a lossy codec changed them: other pixels give other frames.
+  // "as recorded", or the settings of the lossy codec that changed the pixels.
   std::string pixels = "as recorded";
   std::string format = "exr";
   uint32_t smooth_below = 0;
   int fill_radius_px = kFillRadius_px;
 };
 
-// The version of doc/ray.md: raised when the same inputs give other rays.
+// The version of the ray model of doc/ray.md. It is raised when the same inputs give other rays.
 inline constexpr int kLawVersion = 3;
 
-// Of all frames: the law, the light field (numbers of images, hashes of calibration, encoding and
-// names; not its folder, which may move, nor the pixels) and the choices for rays.
-//   light_field  the whole one, also of a package
+// Returns the inputs of the rays of all frames: the ray model's version, the light field (number of
+// LF images, and hashes of calibration, encoding and names) and the choices for rays. The folder of
+// the light field may move, and is no input; the contents of its image files are not compared.
+//   light_field  the whole light field, also for a package
 RunInputs InputsOfRays(const LightFieldIdentity& light_field, const RadianceEncoding& encoding,
                        const RunChoices& choices);
 
-// Of one frame: its number, its camera in words and, exact, as a hash.
+// Returns the inputs of one frame: its number, and its camera in words and, exactly, as a hash.
 RunInputs InputsOfCamera(FrameId frame, const RenderCamera& camera);
 
-// Of its picture alone.
+// Returns the inputs that only pictures depend on.
 RunInputs InputsOfPicture(const RunChoices& choices);
 
-// The key of HashOfCameras() in the inputs of packages; other renders lack it.
+// The key of HashOfCameras() in the inputs of packages; other renders do not have it.
 inline constexpr const char* kFilmOfPackage = "picture.film";
 
-// All cameras of a film: what packages rendered into one folder must have in common.
+// Returns a hash of all cameras of a film. Packages rendered into one folder must have the same.
 std::string HashOfCameras(const CameraPath& path);
 
-// The first key that differs, and both values; "(none)" where one side lacks it.
+// The first key that differs, and both values; "(none)" is the value of a side without the key.
 struct InputDifference {
   std::string key;
   std::string recorded;
   std::string wanted;
 
-  // Returns such as "was made with order area, this call has shuffle", where `one` is "was
-  // made with" and `other` "this call has". Input that one side lacks is "no order".
+  // Returns a text such as "was made with order area, this call has shuffle" if `one` is "was made
+  // with" and `other` is "this call has". An input that one side lacks is "no order".
   std::string Text(const std::string& one, const std::string& other) const;
 };
 std::optional<InputDifference> FirstDifference(const RunInputs& recorded, const RunInputs& wanted);

@@ -24,7 +24,7 @@ constexpr const char* kNoise = "progress.noise";
 constexpr const char* kRaysExtension = ".rays";
 constexpr const char* kRaysFrames = "rays.frames";
 
-// N of "frame_N.EXTENSION".
+// Returns N of "frame_N.EXTENSION"; none for other names.
 std::optional<FrameId> FrameOf(const fs::path& path) {
   constexpr std::string_view kPrefix = "frame_";
   const std::string stem = path.stem().string();
@@ -36,7 +36,7 @@ std::optional<FrameId> FrameOf(const fs::path& path) {
   return frame;
 }
 
-// A plate that is damaged costs its frame only.
+// Adds to an error how to continue: a damaged plate costs only its frame.
 Error WithAdvice(const Error& error) {
   return {error.kind, error.message + "; remove the file to render its frame anew"};
 }
@@ -49,9 +49,9 @@ std::vector<fs::path> FilesOf(const fs::path& folder) {
   return files;
 }
 
-// Removes temporary files of processes that were killed, on any host: the lock says that none is at
-// work on these frames.
-//   frames  ascending; those of others are left alone
+// Removes temporary files of processes that were killed, on any host. The lock ensures that no
+// process renders these frames now.
+//   frames  ascending; temporary files of other frames are not removed
 void RemoveTemporaryFiles(const fs::path& folder, const std::vector<FrameId>& frames,
                           bool is_shared) {
   constexpr const char* kOurs[] = {".run.", ".report.", ".contact_sheet.", ".rays_"};
@@ -69,7 +69,8 @@ void RemoveTemporaryFiles(const fs::path& folder, const std::vector<FrameId>& fr
   }
 }
 
-// Of the state; empty if it is that of all frames.
+// Returns the name of the state's folder below partial/; empty for a render without package name
+// and shard.
 std::string NameOf(const RunStateOptions& options) {
   if (!options.shard) return options.package;
   return options.package.empty() ? options.shard->Name()
@@ -105,7 +106,7 @@ RunState::RunState(const RunStateOptions& options, const CameraPath& path, FileL
 RunState::~RunState() {
   lock_.Remove();
   std::error_code ignored;
-  fs::remove(partial_, ignored);  // fails, as it should, where files are left
+  fs::remove(partial_, ignored);  // fails, as intended, if files are left in it
   if (!Name().empty()) fs::remove(options_.folder / "partial", ignored);
 }
 
@@ -163,7 +164,8 @@ Result<void> RunState::Look() {
                     "on with it, --overwrite removes it and starts anew",
                     partial_.string(), records_.size(), plates_.size()));
   }
-  // Of an earlier run: they would look like this one's, should it fail.
+  // Report and contact sheet of an earlier run are removed: if this run fails, they would look like
+  // its own.
   std::error_code ignored;
   if (fs::exists(ReportPath(), ignored))
     LogWarning("{}: the finished render there is replaced, frame by frame",
@@ -173,7 +175,8 @@ Result<void> RunState::Look() {
   return {};
 }
 
-// By their reports: frames of two films in one folder would pass for one.
+// Compares the inputs with the reports of other packages in the folder, because frames of two films
+// in one folder would look like one film.
 Result<void> RunState::CheckOtherPackages() const {
   if (Name().empty()) return {};
   for (const fs::path& file : FilesOf(options_.folder)) {
@@ -205,12 +208,12 @@ Result<void> RunState::Read() {
   const fs::path report = ReportPath(), run = partial_ / "run.json";
   if (fs::exists(report)) LF_RETURN_IF_ERROR(ReadFinished(report));
   for (const FrameId frame : records_) LF_RETURN_IF_ERROR(ReadFinished(RecordPath(frame)));
-  // Those of a complete render are in its report, and no longer here.
+  // The totals of a complete render are in its report, and run.json is gone.
   if (fs::exists(run)) {
     LF_ASSIGN_OR_RETURN(earlier_, ReadReport(run));
   }
   for (auto plate = plates_.begin(); plate != plates_.end();) {
-    if (finished_.contains(*plate)) {  // killed before it was removed
+    if (finished_.contains(*plate)) {  // the process was killed before it removed the plate
       std::error_code ignored;
       fs::remove(PlatePath(*plate), ignored);
       plate = plates_.erase(plate);
@@ -219,16 +222,17 @@ Result<void> RunState::Read() {
     LF_RETURN_IF_ERROR(CheckPlate(*plate));
     ++plate;
   }
-  // Where nothing is left to render, it is asked for sheet and video.
+  // If no frame is left to render, the run only makes the contact sheet and the video.
   if (finished_.size() < options_.frames.size() && (!finished_.empty() || !plates_.empty()))
     LogInfo("going on: {} frames are finished, {} begun", finished_.size(), plates_.size());
   return {};
 }
 
-// A frame that a disk or a copy has cut is rendered again.
+// Returns true if the file of a finished frame is there and whole. A truncated frame is rendered
+// again.
 bool RunState::IsKept(const fs::path& picture) const {
   if (!fs::exists(picture)) return false;
-  if (options_.shard) return true;  // a plate, whose reader looks at it itself
+  if (options_.shard) return true;  // a plate is checked when it is read
   const Result<void> whole = CheckFileIsWhole(picture);
   if (!whole) LogWarning("{}; the frame is rendered again", whole.error().message);
   return whole.has_value();
@@ -238,7 +242,8 @@ Result<void> RunState::ReadFinished(const fs::path& path) {
   LF_ASSIGN_OR_RETURN(RenderReport report, ReadReport(path));
   for (FrameReport& frame : report.frames) {
     const RunInputs recorded = Joined(report.inputs, frame.camera);
-    // Somebody may have removed it to have it rendered again; in another format it is a difference.
+    // The user may have removed a frame to have it rendered again. If the format differs, the frame
+    // is elsewhere, and Check() reports the difference.
     const bool has_format =
         std::find(recorded.begin(), recorded.end(), options_.picture.front()) != recorded.end();
     if (has_format && !IsKept(FinishedPath(frame.frame))) continue;

@@ -1,15 +1,15 @@
-// What a render has done so far, in DIR/partial/ of its output folder, so that it can be
-// interrupted at any moment and gone on with (doc/checkpoints.md); of a package that has a name, in
-// DIR/partial/NAME/.
+// The state of an unfinished render, in DIR/partial/ of its output folder, or in DIR/partial/NAME/
+// for a package with a name. A render can be interrupted at any moment and resumes from its state
+// (doc/checkpoints.md).
 //
-//   lock              held by the process at work
+//   lock              held by the process that renders
 //   run.json          times so far and skipped LF images
 //   rays_0001_1.rays  rebinned rays of the frames from 1 on
-//   frame_0001.plate  the plate of an unfinished frame, what it is made from and how far it is
-//   frame_0001.exr    its picture, about as new
-//   frame_0002.json   the report of a finished frame, and what it is made from
+//   frame_0001.plate  the plate of an unfinished frame, its inputs and its progress
+//   frame_0001.exr    its picture, about as recent
+//   frame_0002.json   the report of a finished frame, and its inputs
 //
-// Of a shard (shard.h) all of that is in DIR/partial/shard_1_of_5/, or NAME.shard_1_of_5/; its
+// The state of a shard (shard.h) is in DIR/partial/shard_1_of_5/, or NAME.shard_1_of_5/. Its
 // finished frames are plates, DIR/partial/shards/shard_1_of_5/frame_0001.plate.
 #pragma once
 
@@ -42,48 +42,52 @@ struct RunStateOptions {
   std::string package;           // its name, if others are rendered into DIR at the same time
   std::vector<FrameId> frames;   // of the package, ascending
   FrameFormat format = FrameFormat::kExrHalf;
-  bool resume = false;     // go on with what is there
-  bool overwrite = false;  // remove what is there
-  RunInputs rays;          // InputsOfRays, InputsOfPicture
-  RunInputs picture;
+  bool resume = false;     // continue with the state in the folder
+  bool overwrite = false;  // remove the state in the folder
+  RunInputs rays;          // InputsOfRays()
+  RunInputs picture;       // InputsOfPicture()
   std::optional<Shard> shard = std::nullopt;
 };
 
 class RunState {
  public:
-  // Makes the folder, locks it and looks at what is there. The path must outlive the state.
-  // kUsage: an unfinished render is there and neither resume nor overwrite is asked for, or it was
-  //   made from other inputs: the message names the first that differs, and both values. Or other
-  //   packages were rendered into the folder from other inputs.
-  // kInput: a file of the state is damaged. kOutput: the folder, or another program at work in it.
+  // Makes the folder, locks it and reads the state in it. The path must outlive the object.
+  // kUsage: the folder has an unfinished render, and neither resume nor overwrite is asked for; the
+  //   state was made from other inputs (the message names the first that differs, and both values);
+  //   or other packages were rendered into the folder from other inputs.
+  // kInput: a file of the state is damaged.
+  // kOutput: the folder cannot be written, or another program renders into it.
   static Result<std::unique_ptr<RunState>> Open(const RunStateOptions& options,
                                                 const CameraPath& path);
   ~RunState();  // leaves no empty partial/ behind
 
-  // Frames that were finished before and are still there.
+  // Frames that an earlier run finished, and whose files are still there.
   const std::map<FrameId, FrameReport>& finished() const { return finished_; }
   // Times and skipped LF images of earlier runs.
   const RenderReport& earlier() const { return earlier_; }
-  // Of unfinished frames, or rebinned rays for them.
+  // True if the state has plates of unfinished frames, or rebinned rays.
   bool HasPlates() const { return !plates_.empty() || has_rays_; }
   bool HasPlate(FrameId frame) const { return plates_.contains(frame); }
 
-  // Where a finished frame is: its picture, or the plate of a shard.
+  // Path of a finished frame: of its picture, or of the plate of a shard.
   std::filesystem::path FinishedPath(FrameId frame) const;
 
-  // Adds the rays of the frame's plate, if there is one, and tells how far it is.
+  // Adds the rays of the frame's plate in the state, if there is one, to `plate`. Returns the
+  // progress of the frame.
   //   plate    empty, of the frame's size
-  //   moments  gets the moments that were saved with it, if it is given and there are any
-  // kInput: damaged.
+  //   moments  receives the moments that were saved with the plate, if there are any; may be null
+  // kInput: the plate is damaged.
   Result<FrameProgress> LoadPlate(FrameId frame, SensorPlate* plate,
                                   std::optional<NoiseMoments>* moments = nullptr) const;
-  // Writes the frame's plate, and its moments, unless null, into the same file, so that both are
-  // always of the same LF images. kOutput; the file before is then intact.
+  // Writes the frame's plate and its moments, unless null, into one file, so that both are always
+  // of the same LF images. kOutput: the file cannot be written; the previous file is intact.
   Result<void> SavePlate(FrameId frame, const FrameProgress& progress, const SensorPlate& plate,
                          ThreadPool& pool, const NoiseMoments* moments = nullptr);
-  // Rebinned rays of a pass, by its first frame, and what they depend on beside the inputs: of a
-  // section those that LoadRays() finds, none if there are none.
-  // kUsage: of other frames. kInput: damaged, or more than max_cells.
+  // Rebinned rays of one section of a pass. The pass is named by its first frame. `frames`
+  // describes the frames that the rays are for, on which they depend in addition to the inputs.
+  // LoadRays() returns none if the state has no such rays, or if it is not resumed.
+  // kUsage: the rays are for other frames, or from other inputs. kInput: the file is damaged, or
+  // has more than max_cells cells.
   struct Rays {
     RayMap map;
     uint32_t places_done = 0;
@@ -95,21 +99,22 @@ class RunState {
   void RemoveRays();
 
   Result<void> SaveTotals(const RenderReport& totals);
-  // To be called when the frame's own file is written: its unfinished files are removed.
+  // Records that a frame is finished, and removes its unfinished files. Must be called after the
+  // frame's own file is written.
   Result<void> SaveFinished(const FrameReport& frame);
-  // A finished frame that is to be rendered anew.
+  // Forgets that a frame is finished, so that it can be rendered again.
   void Forget(FrameId frame) { finished_.erase(frame); }
 
-  // Returns what a plate's file says beside its rays, also of one that is kept.
-  //   moments  null: none
+  // Returns the entries of a plate's file, also for a plate that is kept beside the frames.
+  //   moments  may be null
   PlateEntries PlateText(FrameId frame, const FrameProgress& progress,
                          const NoiseMoments* moments = nullptr) const;
   std::filesystem::path PicturePath(FrameId frame) const;
 
-  // Nothing that is there is of use: removes it.
+  // Removes the whole state.
   void RemoveAll();
-  // All is done: writes report.json (of a package report-NAME.json) and removes what is not needed
-  // any more.
+  // Ends a finished render: writes report.json (report-NAME.json for a package), and removes the
+  // files of the state that are not needed any more.
   Result<void> Close(const RenderReport& report);
 
  private:
@@ -132,8 +137,8 @@ class RunState {
   const CameraPath& path_;
   std::filesystem::path partial_;
   FileLock lock_;
-  std::set<FrameId> plates_;   // files that are there
-  std::set<FrameId> records_;  // of finished frames
+  std::set<FrameId> plates_;   // frames with a plate in the state
+  std::set<FrameId> records_;  // finished frames with a report in the state
   bool has_rays_ = false;
   std::map<FrameId, FrameReport> finished_;
   RenderReport earlier_;

@@ -1,5 +1,5 @@
-// A part of the LF images of a render, for a few frames that are too much for one machine: the
-// plates of all shards add to the frames' plates, to the bit.
+// A part of the LF images of a render, for frames that are too much for one machine. The sum of the
+// plates of all shards is, bit by bit, the plate of the render that is not divided.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,8 @@
 
 namespace lf {
 
-// One of `count`, from 1 on: it has the LF images at every count-th place of the order.
+// Shard `number` (1 to `count`) of `count` shards has the LF images at every count-th place of the
+// order.
 struct Shard {
   static constexpr uint32_t kMost = 100000;
   uint32_t number = 1;
@@ -17,13 +18,13 @@ struct Shard {
 
   bool Holds(uint32_t place) const { return place % count == number - 1; }
   std::string Text() const { return std::to_string(number) + "/" + std::to_string(count); }
-  // Of folders.
+  // Name of its folder.
   std::string Name() const {
     return "shard_" + std::to_string(number) + "_of_" + std::to_string(count);
   }
 };
 
-// Of "2/5"; none of other texts.
+// Parses a text such as "2/5"; none for any other text.
 std::optional<Shard> ShardOf(std::string_view text);
 
 }  // namespace lf
