@@ -1,5 +1,5 @@
-// Thin elements of one colour channel, filled from the collected ones around them (develop.h).
-// Internal to this folder.
+// Fills thin elements of one colour channel, those with too few rays, from the collected elements
+// around them (develop.h). Internal to this folder.
 #pragma once
 
 #include <cstdint>
@@ -12,27 +12,27 @@ namespace lf {
 
 class ChannelFill {
  public:
-  // mean, ray_count  [height][width][channels]; own average and rays of every element; must
-  //                  outlive this
-  // rays_needed      what the rays around an element must add up to; at least 1
-  // fill_radius_px   how far elements without a ray look, DevelopOptions
-  // is_interrupted   asked before each row; once it is true, this is of no use
+  //   mean, ray_count  own average and number of rays of every element [height][width][channels];
+  //                    must outlive this object
+  //   rays_needed      number of rays that the neighbours of an element must have; at least 1
+  //   fill_radius_px   DevelopOptions::fill_radius_px
+  //   is_interrupted   called before each row; once it returns true, this object must not be used
   ChannelFill(const Image<float>& mean, const Image<uint32_t>& ray_count, int channel,
               uint32_t rays_needed, int fill_radius_px,
               const std::function<bool()>& is_interrupted);
 
-  // Memory of one thread, kept from call to call.
+  // Working memory of one thread, reused from call to call.
   class Scratch;
 
-  // The inverse-distance mean at (x, y), as Develop() defines it; 0 where nothing is near.
-  // Finds the radius by counting in squares, each in constant time, then looks at collected
-  // elements alone: empty surroundings cost next to nothing.
+  // Returns the inverse-distance mean at (x, y), as Develop() defines it; 0 if no collected element
+  // is near. Finds the radius by counts in squares, each in constant time, and then visits only
+  // collected elements, so that empty surroundings cost almost nothing.
   float At(int x, int y, Scratch& scratch) const;
 
  private:
   struct Collected {
     uint64_t elements = 0;
-    uint64_t rays = 0;  // of every element at most rays_needed
+    uint64_t rays = 0;  // at most rays_needed are counted for each element
   };
   struct Neighbour {
     int x;
@@ -40,7 +40,7 @@ class ChannelFill {
     int64_t distance2;
   };
 
-  // How far the element looks.
+  // Largest distance of the neighbours of an element.
   int RadiusAt(int x, int y) const;
   bool IsEnough(const Collected& collected) const;
   size_t SumIndex(int x, int y) const { return (static_cast<size_t>(width_) + 1) * y + x; }
@@ -57,10 +57,11 @@ class ChannelFill {
   uint32_t rays_needed_;
   int fill_radius_px_;
 
-  // Summed-area tables (Crow 1984), [height + 1][width + 1]: how much lies above and to the left.
+  // Summed-area tables (Crow 1984), [height + 1][width + 1]: sums over the elements above and to
+  // the left.
   std::vector<uint32_t> element_sums_;
-  std::vector<uint64_t> ray_sums_;  // empty if rays_needed is 1: then elements say it all
-  // Column of every collected element, row by row; where each row begins.
+  std::vector<uint64_t> ray_sums_;  // empty if rays_needed is 1: element_sums_ are the same then
+  // Column of every collected element, row by row, and the index at which each row begins.
   std::vector<int> columns_;
   std::vector<size_t> row_begin_;
   std::vector<double> weights_;  // 1 / d, by d^2
@@ -73,7 +74,7 @@ class ChannelFill::Scratch {
     uint64_t rays;
   };
   std::vector<Neighbour> neighbours_;
-  std::vector<Ring> nearest_first_;  // a heap of them
+  std::vector<Ring> nearest_first_;  // heap
 };
 
 }  // namespace lf

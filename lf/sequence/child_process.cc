@@ -24,7 +24,7 @@ namespace {
 
 std::string SystemReason(int error) { return std::strerror(error); }
 
-// What the program starts with: its three standard files, default signals, its own group.
+// The settings that the program starts with: three standard files, default signals, its own group.
 class SpawnSettings {
  public:
   SpawnSettings(int input, int complaints) {
@@ -34,7 +34,7 @@ class SpawnSettings {
     ::posix_spawn_file_actions_adddup2(&files_, complaints, STDERR_FILENO);
     ::posix_spawn_file_actions_addclosefrom_np(&files_, STDERR_FILENO + 1);
     ::posix_spawnattr_init(&attributes_);
-    sigset_t none, usual;  // what we ignore or block, the program must not
+    sigset_t none, usual;  // signals that we ignore or block must not be so in the program
     ::sigemptyset(&none);
     ::sigemptyset(&usual);
     for (const int signal : {SIGPIPE, SIGINT, SIGTERM, SIGHUP}) ::sigaddset(&usual, signal);
@@ -51,7 +51,7 @@ class SpawnSettings {
   SpawnSettings(const SpawnSettings&) = delete;
   SpawnSettings& operator=(const SpawnSettings&) = delete;
 
-  // 0 or the reason why not.
+  // Returns 0, or the errno of the failure.
   int Spawn(const std::vector<std::string>& arguments, pid_t* pid) const {
     std::vector<char*> argv;
     for (const std::string& argument : arguments)
@@ -72,8 +72,9 @@ ChildProcess::ChildProcess(std::string name, pid_t pid, int input, int complaint
 
 Result<std::unique_ptr<ChildProcess>> ChildProcess::Start(
     const std::vector<std::string>& arguments) {
-  // A pair of sockets instead of a pipe: sending can be told not to raise SIGPIPE, and to give up
-  // after a while. A file in memory instead of a second pipe: it cannot fill up unread.
+  // The input is a pair of sockets instead of a pipe, because sending can then avoid SIGPIPE and
+  // give up after a while. Standard error is a file in memory instead of a second pipe, because it
+  // cannot fill up unread.
   int sockets[2] = {-1, -1};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets) != 0)
     return OutputError(fmt::format("{}: cannot be run: {}", arguments[0], SystemReason(errno)));
@@ -102,7 +103,7 @@ void ChildProcess::Kill() {
   pid_ = 0;
 }
 
-// The last lines on standard error say why a program gave up.
+// Returns an error with the last lines on standard error, which say why the program failed.
 Error ChildProcess::Failure(const std::string& reason) const {
   constexpr off_t kMostBytes = 600;
   std::array<char, kMostBytes> last;
@@ -133,7 +134,7 @@ Result<void> ChildProcess::Write(std::span<const uint8_t> bytes, double patience
       Kill();
       return Failure(fmt::format("has taken in nothing for {} s and was ended", patience_s));
     }
-    const Result<void> end = Finish(patience_s);  // it says why it left
+    const Result<void> end = Finish(patience_s);  // says why the program ended
     if (!end) return end;
     return Failure(fmt::format("takes in no more: {}", SystemReason(error)));
   }

@@ -1,5 +1,5 @@
-// A program run beside ours: we feed its standard input, it may complain on standard error.
-// Internal to this folder.
+// A program that runs as a child process: we write to its standard input, and it may write messages
+// to standard error. Internal to this folder.
 #pragma once
 
 #include <sys/types.h>
@@ -13,18 +13,21 @@
 
 namespace lf {
 
-// Never blocks for ever, raises no SIGPIPE, leaves no zombie, and passes none of our files on. The
-// program has a process group of its own: a Ctrl-C meant for us does not reach it.
+// Never blocks forever, raises no SIGPIPE, leaves no zombie, and passes none of our open files to
+// the program. The program has its own process group, so that a Ctrl-C for us does not reach it.
 class ChildProcess {
  public:
-  // `arguments` begins with the program's name, looked up in PATH. kOutput if it cannot be run.
+  // Starts a program. `arguments` begins with its name, which is looked up in PATH. kOutput if it
+  // cannot be run.
   static Result<std::unique_ptr<ChildProcess>> Start(const std::vector<std::string>& arguments);
   ~ChildProcess();  // kills it if it still runs
 
-  // kOutput if the program has closed its input, or takes in nothing for patience_s.
+  // Writes to the program's input. kOutput if the program has closed it, or reads nothing for
+  // patience_s.
   Result<void> Write(std::span<const uint8_t> bytes, double patience_s);
 
-  // Ends the input and waits for the program. kOutput unless it ends with exit code 0 in time.
+  // Closes the input and waits for the program. kOutput unless it exits with code 0 within
+  // patience_s.
   Result<void> Finish(double patience_s);
 
  private:
@@ -33,7 +36,7 @@ class ChildProcess {
   void Kill();
 
   std::string name_;
-  pid_t pid_;       // 0: has ended
+  pid_t pid_;       // 0: the program has ended
   int input_;       // socket; -1: closed
   int complaints_;  // file with its standard error
 };

@@ -40,7 +40,7 @@ TEST_F(ChildProcessTest, AProgramThatDoesNotExistIsNamed) {
   EXPECT_NE(child.error().message.find("no-such-program-of-ours"), std::string::npos);
 }
 
-// Without care the second write would end this test by SIGPIPE.
+// A write with SIGPIPE would end this test.
 TEST_F(ChildProcessTest, ALeavingProgramIsQuotedAndRaisesNoSignal) {
   auto child = Shell("echo 'no room left' >&2; exit 3");
   const std::vector<uint8_t> bytes(1'000'000);

@@ -13,8 +13,8 @@ namespace {
 constexpr int kBorderPx = 4;
 constexpr uint8_t kBorderGrey = 24;
 
-// Source columns (or rows) under one target column, the last and first in part: [begin, end) and
-// the share of each.
+// The source columns (or rows) under one target column, from `begin` on, and the share of each. The
+// first and the last may be there in part.
 struct Cover {
   int begin = 0;
   std::vector<float> shares;  // sum 1
@@ -33,7 +33,7 @@ std::vector<Cover> Covers(int source_size, int target_size) {
   return covers;
 }
 
-// Area average, in linear light: a mean of sRGB values would be too dark.
+// Returns the area average in linear light, because a mean of sRGB values would be too dark.
 Image<uint8_t> Reduced(const Image<uint8_t>& picture, int width, int height) {
   static const Display8 display8;
   std::array<float, 256> linear;
@@ -42,7 +42,7 @@ Image<uint8_t> Reduced(const Image<uint8_t>& picture, int width, int height) {
   const std::vector<Cover> columns = Covers(picture.width(), width);
   const std::vector<Cover> rows = Covers(picture.height(), height);
   Image<uint8_t> reduced(width, height, 3);
-  std::vector<float> row(3 * static_cast<size_t>(picture.width()));  // source rows of one target
+  std::vector<float> row(3 * static_cast<size_t>(picture.width()));  // mean of source rows
   for (int y = 0; y < height; ++y) {
     std::fill(row.begin(), row.end(), 0.0f);
     for (size_t j = 0; j < rows[y].shares.size(); ++j) {

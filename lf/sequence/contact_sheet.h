@@ -1,4 +1,4 @@
-// Up to a dozen frames, spread evenly over the sequence, on one page.
+// Contact sheet: up to a dozen frames, spread evenly over the sequence, on one page.
 #pragma once
 
 #include <filesystem>
@@ -9,21 +9,22 @@
 
 namespace lf {
 
-// Which of `frame_count` frames a contact sheet shows: at most `limit` indices, first and last
-// among them.
+// Returns the indices of the frames that a contact sheet shows: at most `limit` of `frame_count`,
+// first and last included.
 std::vector<size_t> ContactSheetFrames(size_t frame_count, size_t limit = 12);
 
 // A grid of pictures of one size with thin borders, about as many columns as rows.
 class ContactSheet {
  public:
-  // For `count` pictures of width x height px, at least one; the page is at most max_width_px wide.
+  // Makes an empty page for `count` pictures (at least one) of width x height px. The page is at
+  // most max_width_px wide.
   ContactSheet(size_t count, int width, int height, int max_width_px = 1920);
 
-  // Puts an 8-bit sRGB picture [height][width][3] at the i-th place, reduced to what there is room
-  // for (area average in linear light). Threads may place different pictures at once.
+  // Puts an 8-bit sRGB picture [height][width][3] at the i-th place, reduced to the room there
+  // (area average in linear light). Threads may place different pictures at the same time.
   void Place(size_t i, const Image<uint8_t>& picture);
 
-  // As PNG, atomically. kOutput: the folder, the disk.
+  // Writes the page as PNG, atomically. kOutput: the folder or the disk cannot be written.
   Result<void> Write(const std::filesystem::path& path) const;
 
  private:

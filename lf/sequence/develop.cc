@@ -13,22 +13,23 @@ namespace lf {
 namespace {
 
 constexpr int kChannels = SensorPlate::kChannels;
-constexpr int kFilledPerQuestion = 64;  // up to 0.1 ms each
+constexpr int kFilledPerQuestion = 64;  // each takes up to 0.1 ms
 
-// Of the completion in a channel with so many collected rays.
+// Returns the share of the completion in a channel with `count` collected rays.
 double ShareOf(const Completion* completion, int x, int y, uint64_t count) {
   if (completion == nullptr) return 0;
   const double share = completion->share.at(x, y);
   return count == 0 && share > 0 ? 1 : share;
 }
 
-// Of rays, for filling: what is interpolated is as good as collected.
+// Returns the number of rays that decides about filling: an interpolated element needs no fill.
 uint32_t KnownCount(const Completion* completion, int x, int y, uint32_t count) {
   const bool is_completed = completion != nullptr && completion->share.at(x, y) > 0;
   return is_completed ? std::numeric_limits<uint32_t>::max() : count;
 }
 
-// Own averages, counts and coverage of row y. Returns which channels have elements to fill.
+// Computes own averages, counts and coverage of row y. Returns which channels have elements to
+// fill.
 std::array<bool, kChannels> AverageRow(const SensorPlate& plate, const DevelopOptions& options,
                                        uint32_t rays_needed, int y, DevelopedFrame& frame,
                                        Image<float>& mean) {
@@ -105,7 +106,7 @@ DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, 
   pool.ForEach(height, [&](size_t row) {
     const int y = static_cast<int>(row);
     ChannelFill::Scratch scratch;
-    int filled = 0;  // since it was asked
+    int filled = 0;  // filled channels of this row
     if (ends()) return;
     for (int x = 0; x < width; ++x) {
       Vec3 camera_rgb;

@@ -1,4 +1,4 @@
-// From sums and counts to a picture: average, fill, white balance, colour (thesis 4.3.1;
+// Develops sums and counts into a picture: average, fill, white balance, colour (thesis 4.3.1;
 // doc/ray.md, "Develop").
 #pragma once
 
@@ -13,17 +13,17 @@
 
 namespace lf {
 
-// What was interpolated of a frame from rebinned rays (hybrid/rebinned_rays.h).
+// The part of a frame that was interpolated from rebinned rays (hybrid/rebinned_rays.h).
 struct Completion {
-  Image<float> rgb;  // [height][width][3], as averages of the plate's rays
-  Image<float>
-      share;  // [height][width] of it in an element that has rays, too; 0: nothing is known
+  Image<float> rgb;  // [height][width][3], in the units of averages of the plate's rays
+  // [height][width] share of rgb in an element that also has collected rays; 0: rgb is unknown
+  Image<float> share;
 };
 
 // Closes the gaps between the rays of mosaics and of LF pixels that are larger than elements.
 inline constexpr int kFillRadius_px = 2;
 inline constexpr int kMostFillRadius_px = 4096;
-// Elements that are smoothed take light from collected ones at most this far away.
+// An element that is smoothed takes light from collected elements at most this far away.
 inline constexpr int kSmoothRadius_px = 32;
 
 struct DevelopOptions {
@@ -32,22 +32,24 @@ struct DevelopOptions {
   std::array<double, 3> white_balance = {1, 1, 1};
   Mat3 camera_to_srgb = Mat3::Identity();
 
-  // Elements with fewer rays than this in a channel, but with some, are smoothed. 0 and 1: none.
+  // An element with fewer rays than this in a channel, but at least one, is smoothed. 0 and 1:
+  // none.
   uint32_t smooth_below = 0;
-  // A channel without a ray takes light from collected elements at most this far away, and stays
-  // black if there is none: light that nobody recorded is not invented. 0: nothing is filled.
+  // A channel without a ray takes light from collected elements at most this far away. It stays
+  // black if there is none, because light that was not recorded must not be invented. 0: nothing is
+  // filled.
   int fill_radius_px = kFillRadius_px;
 
   // For a plate with opacities: opacity = (sum / count - transparent) / (opaque - transparent).
   double transparent = 0;
   double opaque = 65535;
 
-  // Mixed with what was collected, if given; stands for what was not. Not of a plate with
-  // opacities.
+  // If given, mixed with collected light, and used alone in elements without rays. Not for a plate
+  // with opacities.
   const Completion* completion = nullptr;
 
-  // Asked by any thread, at least before each row and every 64 elements to be filled, if given.
-  // Once it is true, the rest is left out and the answer is of no use.
+  // If given, called by any thread, at least before each row and every 64 elements to be filled.
+  // Once it returns true, the rest is skipped and the result must not be used.
   std::function<bool()> is_interrupted = {};
 };
 
@@ -55,27 +57,28 @@ struct DevelopedFrame {
   Image<float> rgb;           // [height][width][3] linear light, sRGB primaries
   Image<uint32_t> ray_count;  // [height][width][3]
   Image<float> coverage;      // [height][width] share of the channels with a ray of their own
-  // [height][width] of a plate with opacities, in [0, 1]: rgb is multiplied with it; else empty
+  // [height][width] in [0, 1], multiplied into rgb; empty for a plate without opacities
   Image<float> opacity = {};
-  // [height][width] with lens weights, where counts are sums of weights: how many LF images of
-  // equal weight would make as little noise; else empty
+  // [height][width] number of LF images of equal weight that would make as little noise; empty
+  // without lens weights, with which ray_count has sums of weights
   Image<float> effective_count = {};
-  // [height][width] with completion: the part of each element that was interpolated; else empty
+  // [height][width] share of each element that was interpolated; empty without completion
   Image<float> interpolated = {};
 };
 
-// Averages every element and channel: (1 - share) of it and share of the completion, or that alone
-// where no ray was collected. Those without either (or with fewer rays than smooth_below) take
-// the inverse-distance mean of collected elements of the channel,
+// Averages the rays of every element and channel, and mixes (1 - share) of the average with share
+// of the completion; the completion is taken alone if no ray was collected. An element with
+// neither, or with fewer rays than smooth_below, takes the inverse-distance mean of collected
+// elements of the channel,
 //
 //   sum_i v_i / d_i  /  sum_i 1 / d_i      (Shepard 1968; d between element centres, in elements)
 //
-// over all that lie within the smallest radius that holds at least 4 of them and at least
-// smooth_below rays, but never beyond fill_radius_px (of those without a ray) or kSmoothRadius_px,
-// where fewer must do. Their own value, if they have one, is among them at d = 0.5. Then white
-// balance and camera_to_srgb. Opacities are averaged and filled like a colour, by the same
-// neighbours, and clipped. Counts above 2^32 - 1 are given as that. The same bits for any thread
-// count.
+// over all within the smallest radius that holds at least 4 of them and at least smooth_below rays.
+// The radius is at most fill_radius_px for an element without a ray, and kSmoothRadius_px
+// otherwise, even if it holds fewer. The element's own value, if it has one, is one of them, with d
+// = 0.5. Then applies white balance and camera_to_srgb. Opacities are averaged and filled like a
+// colour, from the same neighbours, and clipped. Counts above 2^32 - 1 become 2^32 - 1. The bits do
+// not depend on the number of threads.
 DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, ThreadPool& pool);
 
 }  // namespace lf

@@ -1,4 +1,4 @@
-// The fourth channel of a plate, developed (develop.h). Internal to this folder.
+// Develops the fourth channel of a plate (develop.h). Internal to this folder.
 #pragma once
 
 #include <functional>
@@ -10,9 +10,9 @@
 
 namespace lf {
 
-// Averages opacities [height][width] and fills them as Develop() does colours: their rays are those
-// of the colours, so that the same elements are filled, from the same neighbours.
-//   is_interrupted  asked by any thread; once it is true, the answer is of no use
+// Averages opacities [height][width] and fills them as Develop() fills colours. Opacities have the
+// rays of the colours, so the same elements are filled from the same neighbours.
+//   is_interrupted  called by any thread; once it returns true, the result must not be used
 Image<float> DevelopOpacity(const SensorPlate& plate, const DevelopOptions& options,
                             const std::function<bool()>& is_interrupted, ThreadPool& pool);
 

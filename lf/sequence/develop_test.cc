@@ -11,7 +11,7 @@
 namespace lf {
 namespace {
 
-// A plate whose elements are collected with probability `density` per channel, with up to
+// Returns a plate whose elements have, with probability `density` for each channel, up to
 // `max_rays` rays.
 SensorPlate RandomPlate(int width, int height, double density, uint64_t max_rays, uint64_t seed) {
   SensorPlate plate(width, height);
@@ -26,7 +26,7 @@ SensorPlate RandomPlate(int width, int height, double density, uint64_t max_rays
   return plate;
 }
 
-// The header's formula, literally: all collected elements by distance.
+// Computes the header's formula literally: sorts all collected elements by distance.
 double BruteForce(const SensorPlate& plate, int x, int y, int channel,
                   const DevelopOptions& options) {
   const auto value = [&](const ElementSum& rays) {
@@ -66,7 +66,7 @@ double BruteForce(const SensorPlate& plate, int x, int y, int channel,
   return weights > 0 ? sum / weights : 0;
 }
 
-// A plate whose opacity is its red.
+// Returns a plate whose opacity is its red channel.
 SensorPlate WithRedOpacity(const SensorPlate& colours) {
   SensorPlate plate = SensorPlate::WithOpacity(colours.width(), colours.height());
   for (int y = 0; y < plate.height(); ++y)
@@ -170,7 +170,7 @@ TEST(Develop, ThinElementsBorrowFromTheirNeighboursAndKeepAShare) {
   options.scale = 1;
   options.smooth_below = 2;
   ThreadPool pool(1);
-  // Four neighbours at distance 1, itself with weight 2: (4 * 30000 + 2 * 60000) / 6.
+  // Four neighbours have distance 1, the element itself has weight 2: (4 * 30000 + 2 * 60000) / 6.
   EXPECT_EQ(Develop(plate, options, pool).rgb.at(1, 1, 1), 40000);
   EXPECT_EQ(Develop(plate, options, pool).rgb.at(0, 1, 1), 30000);
   options.smooth_below = 1;
@@ -212,7 +212,7 @@ TEST(Develop, ValuesBelowThePedestalStayNegative) {
   EXPECT_EQ(Develop(plate, options, pool).rgb.at(0, 0, 0), -0.5f);
 }
 
-// The plate has 3000 where rays are, the completion 7000 or 5000; the pedestal is 1000 of all.
+// Elements with rays have 3000, the completion has 7000 or 5000; the pedestal of both is 1000.
 TEST(Develop, ACompletionIsInTheUnitsOfThePlate) {
   SensorPlate plate(3, 1);
   for (int c = 0; c < 3; ++c) plate.Add(0, 0, c, {2 * 3000, 2});
@@ -232,13 +232,14 @@ TEST(Develop, ACompletionIsInTheUnitsOfThePlate) {
   const DevelopedFrame frame = Develop(plate, options, pool);
   for (int c = 0; c < 3; ++c) {
     EXPECT_EQ(frame.rgb.at(0, 0, c), 1.5F);  // (3/4 of 3000 + 1/4 of 7000 - 1000) / 2000
-    EXPECT_EQ(frame.rgb.at(1, 0, c), 2.0F);  // without rays it is the completion alone
+    EXPECT_EQ(frame.rgb.at(1, 0, c), 2.0F);  // without rays: the completion alone
     EXPECT_EQ(frame.rgb.at(2, 0, c), 0.0F);
   }
   EXPECT_EQ(frame.interpolated.pixels(), (LargeVector<float>{0.25F, 1, 0}));
 }
 
-// However slow the machine: no more than some elements lie between two questions.
+// Only a few elements are computed between two calls of is_interrupted, so that even a slow machine
+// stops soon.
 TEST(Develop, AnInterruptionIsAnsweredWithinSomeElements) {
   const int width = 200, height = 40;
   const SensorPlate plate = RandomPlate(width, height, 0.4, 3, 8);
@@ -254,7 +255,7 @@ TEST(Develop, AnInterruptionIsAnsweredWithinSomeElements) {
     asked = 0;
     last = question;
     const DevelopedFrame frame = Develop(plate, options, pool);
-    EXPECT_EQ(asked, question);  // true once is enough
+    EXPECT_EQ(asked, question);  // not called again after it returned true
     EXPECT_EQ(frame.rgb.at(width - 1, height - 1, 0), 0);
   }
   EXPECT_GT(whole.rgb.at(width - 1, height - 1, 0), 0);

@@ -1,5 +1,4 @@
-// Linear light to the values displays expect, and back: sRGB (IEC 61966-2-1). Internal to this
-// folder.
+// Converts linear light to sRGB display values and back (IEC 61966-2-1). Internal to this folder.
 #pragma once
 
 #include <array>
@@ -8,7 +7,7 @@
 
 namespace lf {
 
-// Both in [0, 1]; values outside are continued.
+// Both values are in [0, 1]; the formulas are also used outside.
 inline double DisplayFromLinear(double linear) {
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
 }
@@ -16,8 +15,8 @@ inline double LinearFromDisplay(double display) {
   return display <= 0.04045 ? display / 12.92 : std::pow((display + 0.055) / 1.055, 2.4);
 }
 
-// The 8-bit display value nearest to a linear one, clipped; NaN gives 0. Exact, by comparing with
-// the linear values half way between the steps.
+// Returns the 8-bit display value nearest to a linear value, clipped; NaN gives 0. It is exact,
+// because it compares with the linear values half-way between the display values.
 class Display8 {
  public:
   Display8() {
@@ -34,13 +33,13 @@ class Display8 {
     if (!(linear > 0)) return 0;
     if (linear >= 1) return 255;
     uint8_t value = first_[static_cast<int>(linear * kCells)];
-    while (above_[value] <= linear) ++value;  // once at most: cells are narrower than steps
+    while (above_[value] <= linear) ++value;  // at most once: cells are narrower than steps
     return value;
   }
 
  private:
   static constexpr int kCells = 4096;
-  std::array<float, 256> above_;       // the least linear value that is rounded to the next step
+  std::array<float, 256> above_;       // smallest linear value that is rounded to the next step
   std::array<uint8_t, kCells> first_;  // value at the beginning of each of kCells parts of [0, 1]
 };
 

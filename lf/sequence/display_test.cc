@@ -24,7 +24,7 @@ TEST(Display, EightBitsAreTheNearestStep) {
     const auto linear = static_cast<float>(1.1 * RandomUnit(1, 1, i) - 0.05);
     const double exact = 255 * DisplayFromLinear(linear);
     const double expected = std::clamp(std::floor(exact + 0.5), 0.0, 255.0);
-    // Within float rounding of a half, either neighbour is nearest.
+    // Very close to a half, float rounding decides: either neighbour is right.
     if (std::abs(exact - std::floor(exact) - 0.5) < 1e-4) continue;
     ASSERT_EQ(display8(linear), expected) << linear;
   }

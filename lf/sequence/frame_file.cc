@@ -12,7 +12,8 @@
 namespace lf {
 namespace {
 
-// The encoder for files clips and rounds what it is given in [0, 1]. None if interrupted.
+// Returns display values, which the encoder of the file clips to [0, 1] and rounds. None if
+// interrupted.
 std::optional<Image<float>> DisplayValues(const Image<float>& linear,
                                           const std::function<bool()>& is_interrupted) {
   Image<float> display(linear.width(), linear.height(), linear.channels());
@@ -25,8 +26,7 @@ std::optional<Image<float>> DisplayValues(const Image<float>& linear,
   return display;
 }
 
-// Multiplies alpha out of colours, in linear light, as PNG wants them. Black where nothing is
-// there.
+// Divides colours by alpha, in linear light, as PNG needs them. Black if alpha is 0.
 Image<float> StraightOf(const Image<float>& rgb, const Image<float>& opacity) {
   Image<float> straight = rgb;
   for (int y = 0; y < rgb.height(); ++y)
@@ -47,7 +47,7 @@ Image<float> WithAlpha(const Image<float>& display, const Image<float>& opacity)
   return rgba;
 }
 
-// What a stored value looks like on an 8-bit display: integers are display values already.
+// Converts a stored value to an 8-bit display value. Integers are display values already.
 struct DisplayStep {
   uint8_t operator()(uint8_t display) const { return display; }
   uint8_t operator()(uint16_t display) const {
@@ -59,7 +59,8 @@ struct DisplayStep {
   }
 };
 
-// A stored straight colour over black: alpha is a share of linear light.
+// Returns a stored colour, which is not multiplied with alpha, over black. Alpha is a share of
+// linear light.
 template <class T>
 uint8_t OverBlack(T display, T alpha) {
   static const Display8 display8;
@@ -67,8 +68,8 @@ uint8_t OverBlack(T display, T alpha) {
   return display8(static_cast<float>(LinearFromDisplay(display / kMost) * (alpha / kMost)));
 }
 
-// The first three channels. Those of files with alpha are multiplied with it already if they are
-// floats (EXR), else not (PNG).
+// Returns the first three channels. In files with alpha, floats (EXR) are multiplied with it
+// already, and integers (PNG) are not.
 template <class T>
 Image<uint8_t> Picture(const Image<T>& image) {
   Image<uint8_t> picture(image.width(), image.height(), 3);

@@ -1,4 +1,4 @@
-// One finished frame as one file, and its picture for people.
+// The file of a finished frame, and its picture for display.
 #pragma once
 
 #include <cstdint>
@@ -16,15 +16,16 @@
 namespace lf {
 
 enum class FrameFormat {
-  kExrHalf,   // exr: R G B count.R count.G count.B coverage; A, which R G B are multiplied with,
-              // of plates with opacities; effective with lens weights, interpolated with rebinned
-              // rays; colours half, counts 32-bit integers
-  kExrFloat,  // exr-float: the same, colours float
-  kPng8,      // png: sRGB; with opacities also alpha, which colours are divided by
-  kPng16,     // png16: sRGB, 16 bit; likewise
+  // exr: R G B count.R count.G count.B coverage. Plates with opacities add A, which is multiplied
+  // into R G B; lens weights add effective; rebinned rays add interpolated. Colours are half,
+  // counts 32-bit integers.
+  kExrHalf,
+  kExrFloat,  // exr-float: as exr, with colours as float
+  kPng8,      // png: sRGB, 8 bit; plates with opacities add alpha, which is not multiplied in
+  kPng16,     // png16: as png, with 16 bit
 };
 
-// "exr", "exr-float", "png", "png16"; none for anything else.
+// Parses "exr", "exr-float", "png" or "png16"; none for any other text.
 std::optional<FrameFormat> ParseFrameFormat(std::string_view name);
 const char* NameOf(FrameFormat format);
 
@@ -32,18 +33,19 @@ const char* NameOf(FrameFormat format);
 std::filesystem::path FramePath(const std::filesystem::path& folder, FrameId frame,
                                 FrameFormat format);
 
-// Atomic; metadata goes into the file (EXR attributes, PNG text).
-//   is_interrupted  asked between some rows, if given
-// kOutput: the folder, the disk. kInterrupted: nothing is written.
+// Writes a frame atomically, with its metadata in the file (EXR attributes, PNG text).
+//   is_interrupted  called every few rows; may be empty
+// kOutput: the folder or the disk cannot be written. kInterrupted: nothing is written.
 Result<void> WriteFrame(const std::filesystem::path& path, const DevelopedFrame& frame,
                         FrameFormat format, const ImageMetadata& metadata,
                         const std::function<bool()>& is_interrupted = {});
 
-// A frame's picture as 8-bit sRGB, [height][width][3], for contact sheets and video; over black.
+// Returns a frame's picture over black as 8-bit sRGB [height][width][3], for contact sheets and
+// video.
 Image<uint8_t> DisplayImage(const DevelopedFrame& frame);
 
-// The same from a frame's file of any format, so that a film can be made again later. kInput: as
-// for ReadImage, or fewer than three channels.
+// Returns the picture of a frame's file of any format, so that contact sheet and video can be made
+// later. kInput: as for ReadImage(), or the file has fewer than three channels.
 Result<Image<uint8_t>> ReadDisplayImage(const std::filesystem::path& path);
 
 }  // namespace lf

@@ -89,7 +89,7 @@ TEST_F(FrameFileTest, AWrittenFrameShowsTheSamePicture) {
     const auto path = FramePath(folder_, FrameId{1}, format);
     ASSERT_TRUE(WriteFrame(path, frame, format, {}));
     const Image<uint8_t> read = ReadDisplayImage(path).value();
-    // Half and 16 bits round once more before.
+    // Half and 16-bit values are rounded once more.
     const bool exact = format == FrameFormat::kExrFloat || format == FrameFormat::kPng8;
     for (size_t i = 0; i < picture.pixels().size(); ++i)
       ASSERT_NEAR(read.pixels()[i], picture.pixels()[i], exact ? 0 : 1);

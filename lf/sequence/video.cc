@@ -19,7 +19,8 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-// As a fraction where it is one of television's: 29.97 and its like are N * 1000 / 1001.
+// Returns the frame rate as text. Rates of television, such as 29.97, are fractions N * 1000 /
+// 1001.
 std::string FrameRate(double fps) {
   const double whole = std::round(fps * 1.001);
   if (fps != std::round(fps) && std::abs(fps * 1.001 - whole) < 1e-6 * whole)
@@ -49,7 +50,7 @@ Result<void> CheckVideoTool() {
     return OutputError(error.message +
                        "; a video needs ffmpeg with libx264 (Debian: apt-get install ffmpeg)");
   };
-  // One small picture encoded: a program of that name may lack the encoder.
+  // Encodes one small picture, because a program of that name may lack the encoder.
   auto ffmpeg =
       ChildProcess::Start({"ffmpeg", "-hide_banner", "-nostats", "-loglevel", "error", "-f",
                            "rawvideo", "-pixel_format", "rgb24", "-video_size", "16x16", "-i",
@@ -64,7 +65,8 @@ Result<void> CheckVideoTool() {
 
 namespace {
 
-// What ffmpeg writes here says so in its first bytes (ISO/IEC 14496-12, "ftyp").
+// Returns true if the file is empty, or if its first bytes are those of an mp4 (ISO/IEC 14496-12,
+// "ftyp").
 bool IsEmptyOrVideo(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   char head[8] = {};
@@ -77,7 +79,7 @@ bool IsEmptyOrVideo(const fs::path& path) {
 Result<void> CheckVideoTarget(const fs::path& path) {
   const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
   std::error_code error;
-  // The folder of the frames is made if it is missing, another is not.
+  // A render makes the folder of its frames, but no other folder.
   if (!fs::is_directory(folder, error))
     return OutputError(
         fmt::format("--video {}: there is no folder {}", path.string(), folder.string()));
@@ -92,7 +94,7 @@ Result<void> CheckVideoTarget(const fs::path& path) {
 struct VideoWriter::State {
   fs::path path;
   fs::path unfinished;
-  int width = 0;  // of the pictures; the film's are even
+  int width = 0;  // of the pictures; width and height of the film are even
   int height = 0;
   double patience_s = 0;
   size_t picture_count = 0;

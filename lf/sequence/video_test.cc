@@ -13,7 +13,7 @@ namespace lf {
 namespace {
 namespace fs = std::filesystem;
 
-// Programs are looked up in PATH; tests put their own there.
+// Sets PATH, where programs are looked up, so that tests can use their own.
 class PathVariable {
  public:
   explicit PathVariable(const std::string& path) : old_(::getenv("PATH")) {
@@ -27,7 +27,7 @@ class PathVariable {
 
 class VideoTest : public FolderTest {
  protected:
-  // What a shell command prints.
+  // Returns the output of a shell command.
   std::string Output(const std::string& command) const {
     const fs::path file = folder_.string() + ".out";
     EXPECT_EQ(std::system((command + " > '" + file.string() + "' 2>&1").c_str()), 0) << command;
@@ -35,7 +35,7 @@ class VideoTest : public FolderTest {
     fs::remove(file);
     return output;
   }
-  // Puts a script into the folder under the name of ffmpeg.
+  // Puts a script with the name ffmpeg into the folder.
   void FakeFfmpeg(const std::string& script) const {
     ASSERT_TRUE(WriteFileAtomically(folder_ / "ffmpeg", "#!/bin/sh\n" + script));
     fs::permissions(folder_ / "ffmpeg", fs::perms::owner_all);
@@ -54,7 +54,7 @@ constexpr std::array<std::array<uint8_t, 3>, 8> kPatches = {{{255, 0, 0},
                                                              {200, 120, 60},
                                                              {30, 90, 160}}};
 
-// Patches of 32 x 32 in a row; frame k is shifted by k patches.
+// Returns patches of 32 x 32 pixels in a row, shifted by `shift` patches.
 Image<uint8_t> Patches(int width, int height, int shift) {
   Image<uint8_t> picture(width, height, 3);
   for (int y = 0; y < height; ++y)
