@@ -12,9 +12,9 @@ namespace lf {
 namespace {
 
 constexpr size_t kMostInLeaf = 32;
-constexpr int kLevels = 21;  // so many bits of each coordinate fit into 64
+constexpr int kLevels = 21;  // bits of each coordinate; three times as many fit into 64
 
-// Bit i of a number of 21 bits at bit 3 i.
+// Moves bit i of a 21-bit number to bit 3 i.
 uint64_t Spread(uint64_t v) {
   v = (v | v << 32) & 0x001F00000000FFFF;
   v = (v | v << 16) & 0x001F0000FF0000FF;
@@ -30,7 +30,7 @@ double AngleBetween(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-// Between the optical axis and any ray of the image; pi where that is not known.
+// Returns the largest angle between the optical axis and a ray of the image; pi if it is unknown.
 double ViewAngle(const Intrinsics& k) {
   const Mat3 to_camera = k.InverseMatrix();
   const auto angle_of = [&](const Vec3& ideal) {
@@ -38,7 +38,7 @@ double ViewAngle(const Intrinsics& k) {
   };
   double most = 0;
   const auto add_box = [&](const Vec3& low, const Vec3& high) {
-    // A cone is convex: the corners are the farthest.
+    // A cone is convex, so the corners of the box have the largest angle.
     for (int i = 0; i < 8; ++i)
       most =
           std::max(most, angle_of({(i & 1) != 0 ? high[0] : low[0], (i & 2) != 0 ? high[1] : low[1],
@@ -52,7 +52,7 @@ double ViewAngle(const Intrinsics& k) {
       add_box(cell.middle - cell.extent, cell.middle + cell.extent);
     }
   }
-  // That is true of cones up to a right angle.
+  // Cones are convex only up to a right angle.
   return most < kPi / 2 ? most : kPi;
 }
 
@@ -91,11 +91,12 @@ struct CameraTree::Builder {
     if (!codes.empty()) Add(0, codes.size(), kLevels);
   }
 
-  // Codes [begin, end), which agree above the lowest `levels` digits of three bits.
+  // Adds the node of codes [begin, end), which agree above the lowest `levels` digits of three
+  // bits.
   void Add(size_t begin, size_t end, int levels) {
     const auto digit = [&](size_t i, int level) { return codes[i].first >> (3 * (level - 1)) & 7; };
     const bool is_leaf = end - begin <= kMostInLeaf || levels == 0;
-    // A node of one child is that child.
+    // A node with a single child is replaced by that child.
     while (!is_leaf && levels > 0 && digit(begin, levels) == digit(end - 1, levels)) --levels;
     const size_t node = tree.nodes_.size();
     tree.nodes_.emplace_back();
@@ -156,9 +157,9 @@ CameraTree::CameraTree(const LightField& light_field) : light_field_(light_field
 void CameraTree::ForEachLeaf(const SeenRegion& region,
                              const std::function<void(size_t leaf, bool all_inside)>& visit) const {
   constexpr double kRounding = 1e-6;
-  // Beyond it rays of the LF camera and of the frame have no direction in common.
+  // At larger angles, the LF camera and the frame have no ray direction in common.
   const double most_angle = region.ray_angle_rad() + view_angle_rad_ + kRounding;
-  uint32_t inside_until = 0;  // nodes before this one are inside, for one above them is
+  uint32_t inside_until = 0;  // nodes before this one are inside, because a node above them is
   for (uint32_t n = 0; n < nodes_.size();) {
     const Node& node = nodes_[n];
     const Vec3 axis = Eigen::Map<const Eigen::Vector3f>(node.axis).cast<double>();
@@ -171,7 +172,7 @@ void CameraTree::ForEachLeaf(const SeenRegion& region,
       continue;
     }
     if (n >= inside_until && region.HoldsAll(box)) inside_until = node.next;
-    // A node without others below it is a leaf.
+    // A node without nodes below it is a leaf.
     if (node.next == n + 1) visit(node.leaf_begin, n < inside_until);
     ++n;
   }

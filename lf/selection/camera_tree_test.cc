@@ -1,4 +1,4 @@
-// The octree and the region it asks, against every LF camera asked alone.
+// Compares the octree and its region with a test of every single LF camera.
 #include "lf/selection/camera_tree.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 namespace lf {
 namespace {
 
-// LF cameras of all kinds of scenes, many more than a leaf holds.
+// Returns LF cameras of all kinds of scenes, many more than a leaf holds.
 LightField RandomField(size_t count, bool is_distorted) {
   LightField field;
   for (uint64_t seed = 0; seed < count; ++seed) {
@@ -28,7 +28,7 @@ LightField RandomField(size_t count, bool is_distorted) {
   return field;
 }
 
-// A wall of cameras that look along z, or at a point.
+// Returns a wall of cameras that look along z, or at a point.
 LightField Wall(int side, bool look_at_one_point) {
   LightField field;
   field.intrinsics = {{100, 100, 25, 17.5, 0, 50, 35, {}}};
@@ -94,7 +94,7 @@ TEST(CameraTree, LeavesOutNoCameraThatContributes) {
       visited += found.size();
       for (uint32_t i = 0; i < field.size(); ++i) {
         const PinholeCamera camera = field.Camera({i});
-        // Cells of distorted images are rougher than the region.
+        // The bounds of cells of distorted images are coarser than the region.
         if (is_distorted && region.Misses(camera.CentreWorld())) continue;
         if (ContributingRect(camera, frame, cells[i]).empty()) continue;
         ++contributing;
@@ -108,7 +108,7 @@ TEST(CameraTree, LeavesOutNoCameraThatContributes) {
   }
 }
 
-// Rays, by the law: also those of distorted images, whose rectangles are rougher.
+// Tests rays by the ray model itself, also those of distorted images, whose rectangles are coarser.
 TEST(SeenRegion, HoldsTheCameraOfEveryAcceptedRay) {
   size_t accepted = 0, missed_cameras = 0;
   for (uint64_t seed = 0; seed < 600; ++seed) {
@@ -153,7 +153,8 @@ TEST(CameraTree, AsksFewOfAWall) {
   EXPECT_EQ(visited, 0u);
 }
 
-// Frames more than are taken together, places of their own, and an image counts every frame.
+// Uses more frames than are processed together, with a range of places for each. An image counts
+// every frame that takes it.
 TEST(Select, FindsWhatEveryCameraAskedAloneSays) {
   const LightField field = RandomField(300, false);
   const std::vector<RenderCamera> frames = RandomFrames(150);

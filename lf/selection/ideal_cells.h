@@ -1,5 +1,5 @@
-// Boxes around the ideal positions of the pixels of a distorted LF image, so that selection can
-// tell from afar which part of it may contribute.
+// Boxes around the ideal positions of the pixels of a distorted LF image, from which selection
+// tells quickly which parts of it may contribute.
 #pragma once
 
 #include <vector>
@@ -10,8 +10,8 @@
 
 namespace lf {
 
-// A part of the LF image. The ideal position q of each of its pixels that has a ray satisfies
-// |q - middle| <= extent in every coordinate, if has_bounds; else nothing is known of it.
+// A part of the LF image. If has_bounds, the ideal position q of each of its pixels that has a ray
+// satisfies |q - middle| <= extent in every coordinate. Otherwise q is unknown.
 struct IdealCell {
   PixelRect rect;
   Vec3 middle;
@@ -19,9 +19,9 @@ struct IdealCell {
   bool has_bounds = false;
 };
 
-// The image in about 24 cells along its longer side, each bounded by nine positions, with twice
-// the second differences of these added: eight times and more what a smooth lens bends between
-// them.
+// Divides the image into about 24 cells along its longer side. The bounds of a cell are those of
+// nine positions, plus twice their second differences: at least eight times what a smooth lens
+// bends between them.
 std::vector<IdealCell> MakeIdealCells(const Intrinsics& k);
 
 }  // namespace lf

@@ -1,5 +1,5 @@
-// What selection asks a light field for again and again, made once: where its LF cameras stand, and
-// at which places of the order their LF images are.
+// An index of a light field, made once for many selections: the positions of its LF cameras, and
+// the places of its LF images in the order.
 #pragma once
 
 #include <cstdint>
@@ -11,18 +11,18 @@
 
 namespace lf {
 
-// Refers to the light field. 12 bytes for each LF camera.
+// Refers to the light field, which must outlive it. Takes 12 bytes for each LF camera.
 class ImageIndex {
  public:
-  // places  of all its LF images, which may be a part of a larger light field's
+  //   places  of all its LF images; the light field may be a part of a larger one
   ImageIndex(const LightField& light_field, ImagePlaces places);
-  // Shuffled.
+  // Makes an index with shuffled places.
   explicit ImageIndex(const LightField& light_field, uint64_t seed = 0);
 
   const LightField& light_field() const { return tree_.light_field(); }
   const CameraTree& tree() const { return tree_; }
   uint32_t PlaceOf(LfImageId id) const { return places_.of_images[id.value]; }
-  // All places are below it.
+  // Exclusive upper bound of all places.
   uint32_t place_end() const { return places_.end; }
 
  private:

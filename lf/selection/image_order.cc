@@ -41,7 +41,7 @@ std::vector<uint32_t> ByArea(std::vector<uint32_t> shuffled,
   return shuffled;
 }
 
-// What frames take, from the side of the LF images.
+// The frames that take each LF image.
 class Takers {
  public:
   Takers(size_t image_count, std::span<const std::vector<ImageRays>> frames)
@@ -67,7 +67,7 @@ std::vector<uint32_t> RoundRobin(const std::vector<uint32_t>& shuffled,
                                  std::span<const std::vector<ImageRays>> frames) {
   const Takers takers(shuffled.size(), frames);
   const ImagePlaces places = PlacesOf(shuffled);
-  std::vector<std::vector<uint32_t>> waiting(frames.size());  // of a frame, the next one last
+  std::vector<std::vector<uint32_t>> waiting(frames.size());  // [frame]: its next image is the last
   for (size_t f = 0; f < frames.size(); ++f) {
     for (const ImageRays& image : frames[f]) waiting[f].push_back(image.id.value);
     std::sort(waiting[f].begin(), waiting[f].end(),
@@ -90,7 +90,7 @@ std::vector<uint32_t> RoundRobin(const std::vector<uint32_t>& shuffled,
     std::vector<uint32_t>& queue = waiting[f];
     while (!queue.empty() && is_taken[queue.back()]) queue.pop_back();
     if (queue.empty()) continue;
-    // Others' turns gave it rays meanwhile.
+    // If turns of other frames gave this frame rays in the meantime, it waits again.
     if (had == rays[f]) take(queue.back());
     turns.emplace(rays[f], f);
   }

@@ -1,8 +1,9 @@
-// In which order LF images are taken (thesis 4.2.1). The *place* of an LF image is its rank there,
-// from 0.
+// The order in which LF images are taken (thesis 4.2.1). The *place* of an LF image is its rank in
+// the order, from 0.
 //
-// An order is of a whole light field. So what is counted in places (limits, stop rules, how far an
-// interrupted frame has come) means the same for any choice of frames, any passes and any packages.
+// An order is that of a whole light field. Numbers of places (limits, stop rules, the progress of
+// an interrupted frame) therefore mean the same for any choice of frames, any passes and any
+// packages.
 #pragma once
 
 #include <cstddef>
@@ -16,20 +17,21 @@
 
 namespace lf {
 
-//   kShuffle     by a seed, whatever the frames: an even result before all have been processed
-//   kRoundRobin  frames fill equally: the next image is of the frame that has the fewest rays
-//   kArea        images that give all frames together the most rays first: soon much light, but
-//                neighbours see alike, so that unfinished bokeh are uneven
+//   kShuffle     random by a seed, whatever the frames: gives an even result before all LF images
+//                are processed
+//   kRoundRobin  frames fill equally: the next image is one of the frame that has the fewest rays
+//   kArea        images that give all frames together the most rays come first: gives much light
+//                soon, but neighbours follow each other, so that unfinished bokeh is uneven
 enum class ImageOrder { kShuffle, kRoundRobin, kArea };
 
 // "shuffle", "round-robin", "area"
 const char* NameOf(ImageOrder order);
 std::optional<ImageOrder> ImageOrderOf(const std::string& name);
 
-// Places of LF images: of a whole light field, or of those that a package has.
+// Places of the LF images of a whole light field, or of a package.
 struct ImagePlaces {
   std::vector<uint32_t> of_images;  // [LfImageId]
-  uint32_t end = 0;                 // all are below it: LF images of the whole light field
+  uint32_t end = 0;                 // exclusive bound: number of LF images of the whole light field
 };
 
 ImagePlaces ShuffledPlaces(size_t image_count, uint64_t seed);
@@ -40,8 +42,9 @@ struct ImageRays {
   uint64_t ray_count = 0;
 };
 
-// Images that no frame takes come last; what is equal is as in the shuffle.
-//   frames  what each takes, in any order; not used for kShuffle
+// Images that no frame takes come last. Images that are equal in the order are in the order of the
+// shuffle.
+//   frames  LF images that each frame takes, in any order; not used for kShuffle
 ImagePlaces PlacesInOrder(ImageOrder order, size_t image_count, uint64_t seed,
                           std::span<const std::vector<ImageRays>> frames);
 

@@ -13,8 +13,8 @@ namespace {
 
 constexpr size_t kImages = 2000, kFrames = 20;
 
-// Frames along a film whose lens opens: each takes a window of LF images, later ones wider ones.
-// Images 0 .. 99 are taken by none.
+// Returns the frames of a film whose lens opens: each takes a window of LF images, and later frames
+// take wider ones. No frame takes images 0 .. 99.
 std::vector<std::vector<ImageRays>> Film() {
   std::vector<std::vector<ImageRays>> frames(kFrames);
   for (uint32_t f = 0; f < kFrames; ++f) {
@@ -31,8 +31,8 @@ std::vector<uint32_t> Ids(const ImagePlaces& places) {
   return ids;
 }
 
-// Rays of every frame after a tenth of the LF images that are taken at all: the standard deviation
-// over their mean.
+// Returns, for the rays of every frame after a tenth of the LF images that are taken at all, their
+// standard deviation divided by their mean.
 double SpreadAfterATenth(ImageOrder order, const std::vector<std::vector<ImageRays>>& frames) {
   const ImagePlaces places = PlacesInOrder(order, kImages, 3, frames);
   std::vector<uint32_t> taken;
@@ -60,7 +60,7 @@ TEST(ImageOrder, EveryOrderHasEachImageOnce) {
     EXPECT_EQ(places.end, kImages);
     std::vector<uint32_t> ids = Ids(places);
     if (order != ImageOrder::kShuffle) {
-      // The last are those that nobody takes.
+      // The last images are those that no frame takes.
       std::vector<uint32_t> last(ids.end() - 100, ids.end());
       for (const uint32_t id : last) EXPECT_TRUE(id < 100 || id >= 100 + 60 * 19 + 670) << id;
     }
@@ -84,8 +84,8 @@ TEST(ImageOrder, RoundRobinFillsFramesEqually) {
   EXPECT_LT(in_turn, 0.1);
 }
 
-// Each image taken must be wanted by a frame that has the fewest rays of all frames whose images
-// are not all taken yet. Counted here from the film alone.
+// Each image must be taken by a frame that has the fewest rays of all frames whose images are not
+// all done. The rays are counted here from the film alone.
 TEST(ImageOrder, RoundRobinServesTheFrameWithTheFewestRays) {
   const auto frames = Film();
   const std::vector<uint32_t> ids = Ids(PlacesInOrder(ImageOrder::kRoundRobin, kImages, 3, frames));
@@ -113,7 +113,8 @@ TEST(ImageOrder, RoundRobinServesTheFrameWithTheFewestRays) {
   EXPECT_GT(taken, kImages / 2);
 }
 
-// Frames 1 and 2 take 30 + 40 rays of image 3, 60 of image 0, 50 of image 2 and none of image 1.
+// Frames 1 and 2 take 30 + 40 rays of image 3, 60 rays of image 0, 50 of image 2, and none of image
+// 1.
 TEST(ImageOrder, AreaCountsTheRaysOfAllFramesTogether) {
   const std::vector<std::vector<ImageRays>> frames = {{{LfImageId{3}, 30}, {LfImageId{0}, 60}},
                                                       {{LfImageId{2}, 50}, {LfImageId{3}, 40}}};

@@ -18,7 +18,7 @@ constexpr double kZeroMargin = 1e-12;    // of a form's value at a vertex, relat
 
 int NeighboursOf(PixelReach reach) { return reach == PixelReach::kNeighbours ? kNeighboursPx : 0; }
 
-// How far a form is from its value in the middle, within the image.
+// Returns the largest difference, within the image, of a form from its value in the middle.
 double SpreadOf(const PixelForm& form, const Intrinsics& image) {
   return 0.5 * (std::abs(form[0]) * image.width_px + std::abs(form[1]) * image.height_px);
 }
@@ -27,7 +27,7 @@ double InMiddle(const PixelForm& form, const Intrinsics& image) {
   return Value(form, 0.5 * image.width_px, 0.5 * image.height_px);
 }
 
-// All over the image, and not by rounding.
+// Returns true if the form is below 0 all over the image, by more than rounding.
 bool IsBelowZero(const PixelForm& form, const Intrinsics& image) {
   const double spread = SpreadOf(form, image), middle = InMiddle(form, image);
   return middle + spread < -kZeroMargin * (spread + std::abs(middle) + std::abs(form[2]));
@@ -48,7 +48,7 @@ class Clipped {
 
   // Keeps the part with form <= 0.
   void Clip(const PixelForm& form) {
-    // Nearly all leave the image as it is, or nothing of it.
+    // Almost all half-planes keep the whole image, or nothing of it.
     if (IsBelowZero(form, image_)) return;
     if (IsBelowZero(-form, image_)) {
       count_ = 0;
@@ -77,8 +77,8 @@ class Clipped {
     count_ = kept_count;
   }
 
-  // Pixels whose centres the polygon's bounding box holds; with neighbours, those around any of
-  // its points.
+  // Returns the pixels whose centres are in the polygon's bounding box; with kNeighbours, the
+  // pixels around any point of the box.
   PixelRect Pixels(const Intrinsics& image, PixelReach reach) const {
     if (empty()) return {};
     const int beyond = NeighboursOf(reach);
@@ -116,8 +116,9 @@ class Clipped {
   size_t count_ = 0;
 };
 
-// Whether all rays of the image pass a circle within the lens: those of its corners are the
-// farthest from the middle, for where they pass is a projective map of the image.
+// Returns true if all rays of the image pass a circle within the lens. The corners are the
+// farthest, because a projective map takes the image to the points where its rays pass the lens
+// plane.
 bool LensHolds(const RayForms& forms, double inner_w, const Intrinsics& image) {
   const double w = image.width_px, h = image.height_px;
   for (const Vec2& corner : {Vec2(0, 0), Vec2(w, 0), Vec2(w, h), Vec2(0, h)}) {
@@ -137,7 +138,7 @@ PixelRect ClippedRect(const Intrinsics& image, std::span<const PixelForm> plate,
     region.Clip(form);
     if (region.empty()) return {};
   }
-  // Of most LF cameras in a wide lens: sixteen edges need not be asked.
+  // This is true for most LF cameras in a wide lens, and saves the test of sixteen edges.
   if (LensHolds(forms, frame.lens_inner_w, image)) return region.Pixels(image, reach);
   const double margin_w = kLensMargin * frame.camera.aperture.radius_w;
   for (const ApertureEdge& edge : frame.lens_edges) {
@@ -147,7 +148,7 @@ PixelRect ClippedRect(const Intrinsics& image, std::span<const PixelForm> plate,
   return region.Pixels(image, reach);
 }
 
-// Whether the half-plane leaves nothing of the cell.
+// Returns true if the half-plane keeps nothing of the cell.
 bool Excludes(const PixelForm& form, const IdealCell& cell) {
   return Value(form, cell.middle) > form.cwiseAbs().dot(cell.extent.transpose());
 }
@@ -165,7 +166,7 @@ PixelRect BoundsOfCells(std::span<const IdealCell> cells, std::span<const PixelF
   return rect;
 }
 
-// A box around the ideal positions of all pixels.
+// Returns a box around the ideal positions of all pixels.
 IdealCell BoundImage(const Intrinsics& image, std::span<const IdealCell> cells) {
   IdealCell whole;
   if (!image.has_distortion()) {
@@ -207,9 +208,9 @@ ImageOverlap::ImageOverlap(const PinholeCamera& lf_camera, std::span<const Ideal
   axes_world_ = direction_world_ * box.extent.asDiagonal();
 }
 
-// A ray of direction d passes the lens plane at M d / (f.d) (doc/ray.md, 5). The line is normal to
-// where the middle ray does, and touches a circle that holds every polygon Rect() clips by, so that
-// both say the same.
+// A ray of direction d passes the lens plane at M d / (f.d) (doc/ray.md, 5). The separating line is
+// normal to the direction from the lens centre to the point where the middle ray passes. It touches
+// a circle that contains every polygon by which Rect() clips, so that both agree.
 bool ImageOverlap::PlainlyMisses(const RenderCamera& render_camera) const {
   if (!has_bounds_) return false;
   constexpr double kRounding = 1e-9;
@@ -236,7 +237,7 @@ bool ImageOverlap::PlainlyMisses(const RenderCamera& render_camera) const {
 }
 
 FrameOutline::FrameOutline(const RenderCamera& render_camera) : camera(render_camera) {
-  // Polygons of very many blades are nearly disks; the disk's 16-gon holds them.
+  // A polygon of very many blades is almost a disk, and the disk's 16-gon contains it.
   constexpr int kMostBlades = 64;
   if (camera.aperture.blades > kMostBlades) camera.aperture.blades = 0;
   lens_edges = Edges(camera.aperture);
@@ -260,7 +261,7 @@ PixelRect ImageOverlap::Rect(const FrameOutline& frame) const {
     rect = Bounds(rect, distorted ? BoundsOfCells(cells_, plate, lens)
                                   : ClippedRect(image, plate, forms, frame, reach_));
   }
-  // Cells hold the whole of their pixels.
+  // Rectangles of cells hold all of their pixels; only the neighbours beyond them are missing.
   if (!distorted || reach_ == PixelReach::kOwn || rect.empty()) return rect;
   return Intersection({0, 0, image.width_px, image.height_px},
                       {rect.x_begin - kNeighboursPx, rect.y_begin - kNeighboursPx,

@@ -7,7 +7,7 @@
 namespace lf {
 namespace {
 
-// What overlap.h adds to lens and plate, several times.
+// Several times the margins that overlap.cc adds to lens and plate.
 constexpr double kLensGrowth = 1 + 1e-5;
 constexpr double kPlateMargin_px = 1e-3;
 constexpr double kRounding = 1e-9;
@@ -31,7 +31,7 @@ SeenRegion::SeenRegion(const RenderCamera& frame)
   const Intrinsics& k = frame.pinhole.intrinsics;
   const Mat3 to_camera = k.InverseMatrix();
   const double height = frame.focus_plane.offset_w - frame.focus_plane.normal.dot(centre_);
-  // Of the plate's corners at depth 1; t and q are linear in the place on the plate.
+  // Bounds at the corners of the plate: t and q are linear in the position on the plate.
   Vec2 t_low = Vec2::Constant(INFINITY), t_high = -t_low;
   q_low_ = INFINITY;
   q_high_ = -INFINITY;
@@ -51,7 +51,7 @@ SeenRegion::SeenRegion(const RenderCamera& frame)
     ray_angle_rad_ = kPi;
     return;
   }
-  // Focus points lie in front of the lens, as far as the horizon of a tilted plane.
+  // Focus points lie in front of the lens, up to the horizon of a tilted focus plane.
   is_empty_ = q_high_ <= 0;
   q_low_ = std::max(0.0, q_low_ * (1 - kRounding));
   q_high_ *= 1 + kRounding;
@@ -63,7 +63,7 @@ SeenRegion::SeenRegion(const RenderCamera& frame)
     slope_[side] = bounds[side][0];
     other_slope_[side] = bounds[side][1];
   }
-  // X - L at depth 1.
+  // Bound of the direction X - L at depth 1.
   const Vec2 steepest =
       t_low.cwiseAbs().cwiseMax(t_high.cwiseAbs()) + Vec2::Constant(radius_w_ * q_high_);
   ray_angle_rad_ = std::atan(steepest.norm()) + kRounding;
@@ -104,7 +104,7 @@ bool SeenRegion::Misses(const WorldBox& box) const {
   return is_beyond[0] || is_beyond[1] || is_beyond[2] || is_beyond[3];
 }
 
-// The region is narrowest, between two depths, at one of them or where its bounds bend.
+// Between two depths, the region is narrowest at one of them or where its bounds bend.
 bool SeenRegion::HoldsAll(const WorldBox& box) const {
   if (is_everything_) return true;
   if (is_empty_) return false;

@@ -12,11 +12,11 @@
 namespace lf {
 namespace {
 
-// Frames whose leaves are kept together: 8 bytes for each leaf that a frame may take.
+// Number of frames that are processed together: each leaf that a frame may take needs 8 bytes.
 constexpr size_t kFramesTogether = 64;
 constexpr size_t kLeavesPerTask = 4;
 
-// The cells of the LF camera looked at last: neighbours mostly share their intrinsics.
+// Caches the cells of the last LF camera, because neighbours mostly share their intrinsics.
 class CellsOfLast {
  public:
   const std::vector<IdealCell>& Of(const LightField& light_field, LfImageId id) {
@@ -41,14 +41,14 @@ void Prefetch(const LfCamera& camera) {
 
 PixelRect WholeImage(const Intrinsics& k) { return {0, 0, k.width_px, k.height_px}; }
 
-// A leaf that a frame may take, of some frames.
+// A leaf from which a frame may take LF images.
 struct Visit {
   uint32_t leaf;
   uint32_t frame : 31;
   uint32_t all_inside : 1;
 };
 
-// Leaf by leaf, for each by ascending frames.
+// Returns the visits sorted by leaf, and for each leaf by ascending frames.
 std::vector<Visit> VisitsOf(const CameraTree& tree, std::span<const SeenRegion> regions,
                             ThreadPool& pool) {
   std::vector<std::vector<Visit>> of_frames(regions.size());
@@ -68,7 +68,7 @@ std::vector<Visit> VisitsOf(const CameraTree& tree, std::span<const SeenRegion> 
   return sorted;
 }
 
-// Of some frames; frame f is first_frame + f of all.
+// Selects the LF images of some frames. Frame f is frame first_frame + f of all.
 class Selector {
  public:
   Selector(const ImageIndex& index, std::span<const RenderCamera> frames, size_t first_frame,
@@ -87,14 +87,14 @@ class Selector {
     return VisitsOf(index_.tree(), regions_, pool);
   }
 
-  // Those of a leaf; all visits are of it.
+  // Appends the LF images of one leaf that frames take. All visits are of this leaf.
   void Examine(std::span<const Visit> visits, CellsOfLast* cells,
                std::vector<SelectedImage>* found) const {
     const LightField& light_field = index_.light_field();
     const std::span<const LfImageId> ids = index_.tree().Leaf(visits.front().leaf);
     for (size_t i = 0; i < ids.size(); ++i) {
       const LfImageId id = ids[i];
-      // Neighbours in space lie anywhere in the memory.
+      // Neighbours in space are scattered in memory.
       if (i + 1 < ids.size()) Prefetch(light_field.cameras[ids[i + 1].value]);
       const LfCamera& lf_camera = light_field.cameras[id.value];
       const PinholeCamera camera = light_field.Camera(id);
@@ -135,7 +135,7 @@ bool IsInterrupted(const SelectOptions& options) {
   return options.interrupted != nullptr && *options.interrupted;
 }
 
-// Where the visits of each leaf begin, and where the last end.
+// Returns the index at which the visits of each leaf begin, and the end of the last.
 std::vector<size_t> LeavesOf(std::span<const Visit> visits) {
   std::vector<size_t> begin;
   for (size_t i = 0; i < visits.size(); ++i)
@@ -144,7 +144,7 @@ std::vector<size_t> LeavesOf(std::span<const Visit> visits) {
   return begin;
 }
 
-// Those of one image that other frames found, added up.
+// Sorts by place, and joins the entries of one image, which were found for different frames.
 void JoinByPlace(std::vector<SelectedImage>* images) {
   std::sort(images->begin(), images->end(),
             [](const SelectedImage& a, const SelectedImage& b) { return a.place < b.place; });
@@ -207,7 +207,7 @@ std::vector<PlaceRange> PlacesOfFirst(size_t image_count, const ImageIndex& inde
                                       const SelectOptions& options, ThreadPool& pool) {
   const LightField& light_field = index.light_field();
   std::vector<PlaceRange> ranges(frames.size());
-  // Each frame walks along the order by itself.
+  // Frames are independent: each follows the order on its own.
   pool.ForEach(frames.size(), [&](size_t f) {
     const SeenRegion region(frames[f]);
     std::vector<std::pair<uint32_t, LfImageId>> places;

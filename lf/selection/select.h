@@ -1,4 +1,4 @@
-// Which LF images the frames need, and in what order (thesis 4.2.1).
+// Selects the LF images that frames need, in their order (thesis 4.2.1).
 #pragma once
 
 #include <atomic>
@@ -18,7 +18,7 @@
 
 namespace lf {
 
-// The LF images a frame takes: those at places [begin, end) of the order.
+// The LF images that a frame takes: those at places [begin, end) of the order.
 struct PlaceRange {
   uint32_t begin = 0;
   uint32_t end = UINT32_MAX;
@@ -27,8 +27,8 @@ struct PlaceRange {
   friend bool operator==(const PlaceRange&, const PlaceRange&) = default;
 };
 
-// One LF image that contributes. Its rectangles per frame are not kept: overlap.h gives them again
-// in about a microsecond each, and sooner for frames that it misses.
+// One LF image that contributes. Its rectangle for each frame is not kept: overlap.h computes it
+// again in about a microsecond, and faster for frames that the image misses.
 struct SelectedImage {
   LfImageId id;
   uint32_t place = 0;        // in the order
@@ -39,36 +39,37 @@ struct SelectedImage {
 
 struct SelectOptions {
   PixelReach reach = PixelReach::kOwn;  // of the estimator
-  // Every LF image that may contribute is taken whole, without looking for rectangles: for
-  // measuring what these are worth.
+  // If true, every LF image that may contribute is taken whole, and no rectangle is computed. For
+  // measuring the benefit of rectangles.
   bool whole_images = false;
-  // LF cameras whose optical axes differ more from the frame's are left out, though they may have
-  // rays: in the thesis those that look at the render camera, here a choice of the user's. None: no
-  // LF camera is.
+  // If set, LF cameras whose optical axis differs from the frame's by a larger angle are left out,
+  // although they may have rays. The thesis leaves out those that look at the render camera; here
+  // the user chooses.
   std::optional<double> max_angle_rad = {};
   // Returns false if the frame takes no ray of the LF image although the geometry would allow it,
-  // because the image has no lens weight there. Empty: no image is left out. Any thread may call
-  // it.
-  //   frame  index into the frames that are selected for
+  // because the image has no lens weight there. Empty: no image is left out. Called by any thread.
+  //   frame  index into the frames that LF images are selected for
   std::function<bool(size_t frame, LfImageId id)> takes = {};
-  // Once it is true, the rest is left out and the answer is of no use.
+  // May be null. Once it is true, the rest is skipped and the result must not be used.
   const std::atomic<bool>* interrupted = nullptr;
 };
 
-// Whether max_angle_rad lets the LF camera take part.
+// Returns true if max_angle_rad does not leave out the LF camera.
 bool IsWithinAngle(const LfCamera& lf_camera, const RenderCamera& frame,
                    const SelectOptions& options);
 
-// The result is in the order of places (thesis: "a more even result among all rendered frames, even
-// before all have been processed"), the same for any number of threads.
-//   places  what each frame takes; empty: every frame takes all
+// Returns the LF images that contribute to some frame, in the order of places (thesis: "a more even
+// result among all rendered frames, even before all have been processed"). The result does not
+// depend on the number of threads.
+//   places  of the LF images that each frame takes; empty: every frame takes all
 std::vector<SelectedImage> SelectImages(const ImageIndex& index,
                                         std::span<const RenderCamera> frames,
                                         const SelectOptions& options, ThreadPool& pool,
                                         std::span<const PlaceRange> places = {});
 
-// For each frame, the places of its first `image_count` contributing LF images: [0, end). A frame
-// with fewer takes all places. An LF image that options.takes leaves out is not counted.
+// Returns, for each frame, the places [0, end) that hold its first `image_count` contributing LF
+// images. A frame with fewer takes all places. An LF image that options.takes leaves out is not
+// counted.
 std::vector<PlaceRange> PlacesOfFirst(size_t image_count, const ImageIndex& index,
                                       std::span<const RenderCamera> frames,
                                       const SelectOptions& options, ThreadPool& pool);

@@ -1,5 +1,5 @@
-// Selection in the band of the thesis: LF cameras on half a circle around the scene, all at about
-// one height, that look at its middle (thesis 5.1).
+// Measures selection in the band of the thesis: LF cameras on half a circle around the scene, all
+// at about the same height, that look at its middle (thesis 5.1).
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -27,7 +27,7 @@ LightField Band(size_t count) {
   return field;
 }
 
-// On the band, a tenth of it long.
+// Returns a path along the band, a tenth of it long.
 std::vector<RenderCamera> Path(size_t count, double aperture_diameter_w) {
   std::vector<RenderCamera> frames;
   for (size_t f = 0; f < count; ++f) {
@@ -49,7 +49,7 @@ void BuildIndex(benchmark::State& state) {
 }
 BENCHMARK(BuildIndex)->Arg(10'000)->Arg(1'000'000)->Unit(benchmark::kMillisecond);
 
-// LF cameras, frames, thousandths of the aperture's diameter.
+// Arguments: number of LF cameras, number of frames, diameter of the aperture in thousandths.
 void Select(benchmark::State& state) {
   const LightField field = Band(static_cast<size_t>(state.range(0)));
   const ImageIndex index(field);
@@ -77,8 +77,8 @@ BENCHMARK(Select)
     ->Args({1'000'000, 900, 30})
     ->Unit(benchmark::kMillisecond);
 
-// The same without an octree: every LF camera is asked, in full for each frame, or first whether
-// it plainly misses it.
+// Selects without an octree: tests every LF camera for each frame, in full or, if kQuickly, after a
+// quick test whether it plainly misses the frame.
 template <bool kQuickly>
 void AskEveryCamera(benchmark::State& state) {
   const LightField field = Band(static_cast<size_t>(state.range(0)));

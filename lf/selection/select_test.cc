@@ -10,7 +10,7 @@
 namespace lf {
 namespace {
 
-// A 21 x 21 grid with pitch 0.01 in the plane z = 0.
+// Returns a 21 x 21 grid with pitch 0.01 in the plane z = 0.
 LightField Grid() {
   LightField field;
   field.intrinsics = {{100, 100, 25, 17.5, 0, 50, 35}};
@@ -38,7 +38,7 @@ TEST(Select, TakesTheCamerasWithinTheLens) {
   const LightField field = Grid();
   const std::vector<RenderCamera> frames = {Frame(0.0301, 0)};
   const auto images = SelectImages(ImageIndex(field), frames, {}, pool);
-  EXPECT_EQ(images.size(), 29u);  // integer points within radius 3
+  EXPECT_EQ(images.size(), 29u);  // number of integer points within radius 3
   for (const SelectedImage& image : images) EXPECT_EQ(image.frame_count, 1u);
 }
 
@@ -90,7 +90,7 @@ TEST(Select, PlacesAreThoseOfTheWholeLightFieldWhateverTheFrames) {
   }
 }
 
-// A part of a light field with its places gives what the whole one gives.
+// A part of a light field with its places gives the same result as the whole light field.
 TEST(Select, APartWithItsPlacesIsAsGoodAsTheWhole) {
   ThreadPool pool(2);
   const LightField grid = Grid();
@@ -143,7 +143,7 @@ TEST(Select, EveryFrameTakesItsFirstImagesOnly) {
   const LightField grid = Grid();
   const std::vector<RenderCamera> frames = {Frame(0.05, 0), Frame(0.03, 0.08), Frame(0.0101, 0)};
   const std::vector<PlaceRange> places = PlacesOfFirst(10, ImageIndex(grid), frames, {}, pool);
-  EXPECT_EQ(places[2], PlaceRange{});  // it has five
+  EXPECT_EQ(places[2], PlaceRange{});  // it has only five LF images
   for (size_t f = 0; f < 2; ++f) {
     const auto alone = std::span(frames).subspan(f, 1);
     const auto all = SelectImages(ImageIndex(grid), alone, {}, pool);
@@ -151,7 +151,7 @@ TEST(Select, EveryFrameTakesItsFirstImagesOnly) {
         SelectImages(ImageIndex(grid), alone, {}, pool, std::span(places).subspan(f, 1));
     ASSERT_EQ(some.size(), 10u);
     for (size_t i = 0; i < some.size(); ++i) EXPECT_EQ(some[i].id, all[i].id);
-    // And the rest, when it goes on from there.
+    // Selection from that place on gives the remaining LF images.
     const std::vector<PlaceRange> rest = {{places[f].end}};
     EXPECT_EQ(SelectImages(ImageIndex(grid), alone, {}, pool, rest).size(), all.size() - 10);
   }
