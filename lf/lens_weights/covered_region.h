@@ -1,4 +1,4 @@
-// The part of the lens plane in which the light is known: a lens may be wider than the capture.
+// The part of the lens plane whose light is known, because a lens may be wider than the capture.
 #pragma once
 
 #include <limits>
@@ -10,23 +10,23 @@
 
 namespace lf {
 
-// The convex hull of where rays of LF cameras meet the lens plane, and a margin around. What lies
-// beyond it is empty: without it, the LF cameras at the rim of the capture would stand for all of
-// that, and be seen as bright outlines in what is out of focus.
+// The convex hull of the points where rays of LF cameras meet the lens plane, and a margin around
+// it. No LF camera stands for the lens beyond it. Otherwise, the LF cameras at the rim of the
+// capture would stand for all of the rest, and be visible as bright outlines in areas out of focus.
 class CoveredRegion {
  public:
-  // The whole plane.
+  // Makes the whole plane.
   CoveredRegion() = default;
   //   points    lens coordinates; finite, at least one
-  //   margin_w  how far LF cameras at the rim reach out: half a camera distance, as between them
+  //   margin_w  reach of LF cameras at the rim: half a camera distance, as between LF cameras
   CoveredRegion(std::span<const Vec2> points, double margin_w);
 
-  // Leaves the part within. Exact.
+  // Keeps the part of the polygon within the region. Exact.
   void Clip(ConvexPolygon* polygon) const;
   bool Contains(const Vec2& place) const;
 
-  // Radius of the largest disk around the lens centre within: 0 if the centre is beyond the region,
-  // infinite for the whole plane.
+  // Radius of the largest disk around the lens centre within the region: 0 if the centre is
+  // outside, infinite for the whole plane.
   double LargestRadius_w() const;
 
  private:

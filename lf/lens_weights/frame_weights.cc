@@ -13,18 +13,20 @@
 namespace lf {
 namespace {
 
-// Lens points move by no more than this part of their distance from node to node, about.
+// Largest movement of lens points from node to node, approximately, as a part of their distance.
 constexpr double kStepOfDistance = 1.0 / 3;
 constexpr int kMostNodes = 48;         // along an edge of the plate
-constexpr int kLeastNodeStep_px = 32;  // finer ones would cost more than the rays
-// Cameras that stand in the lens plane but for rounding.
+constexpr int kLeastNodeStep_px = 32;  // finer grids would cost more than the rays
+// If lens points move by less than this part of their distance, cameras stand in the lens plane
+// except for rounding.
 constexpr double kAtRest = 1e-6;
 
-constexpr double kLeastShare = 1e-9;  // of the lens: what rounding makes of none
+constexpr double kLeastShare = 1e-9;  // of the lens: smaller shares are rounding errors
 
-constexpr double kUnit = 256;  // of a node, for a weight of 1
+constexpr double kUnit = 256;  // value at a node for a weight of 1
 
-// Where all cameras see one element through. Those beside the lens plane are left out.
+// For one element, the intersection of each camera's ray with the lens plane. Cameras whose ray is
+// parallel to it are left out.
 struct LensPoints {
   std::vector<Vec2> points;
   std::vector<size_t> cameras;
@@ -42,7 +44,8 @@ LensPoints PointsAt(const RenderCamera& frame, std::span<const Vec3> centres_wor
   return seen;
 }
 
-// About how far points around the lens are apart: kCamerasAround of them, or all within it.
+// Returns the approximate distance between points around the lens: of the kCamerasAround nearest
+// ones, or of all within the lens if these are more.
 double DistanceAround(const LensPoints& seen, double radius) {
   std::vector<double> distances;
   for (const Vec2& point : seen.points) distances.push_back(point.norm());
@@ -54,7 +57,7 @@ double DistanceAround(const LensPoints& seen, double radius) {
   return std::max(radius, distances[count - 1]) * std::sqrt(kPi / static_cast<double>(count));
 }
 
-// How far lens points move from one edge of the plate to the other, at most.
+// Largest movement of lens points from one edge of the plate to the other.
 struct Movement {
   double across = 0;
   double down = 0;
@@ -91,8 +94,8 @@ int NodeCount(double movement, double distance, int size_px) {
   return static_cast<int>(std::min(2 + steps, static_cast<double>(most)));
 }
 
-// Shares up to this one make up a tenth of all. Very many tiny ones, as of cameras at nearly the
-// same place, do not.
+// Returns the share up to which the smallest shares make up a tenth of all. Very many tiny shares,
+// as those of cameras at almost the same position, do not lower it much.
 double ShareOfFirstTenth(std::vector<double> shares) {
   std::sort(shares.begin(), shares.end());
   const double tenth = 0.1 * std::accumulate(shares.begin(), shares.end(), 0.0);
@@ -186,7 +189,7 @@ FrameWeights::Node FrameWeights::MakeNode(const RenderCamera& frame,
   Node node;
   const std::optional<Vec3> focus = FocusPointOfElement(
       frame, NodePosition(column, columns_, width_px_), NodePosition(row, rows_, height_px_));
-  if (!focus) return node;  // beyond the horizon of a tilted focus plane: no ray goes there
+  if (!focus) return node;  // beyond the horizon of a tilted focus plane, where no ray goes
   const LensPoints seen = PointsAt(frame, centres_world, *focus);
   std::vector<double> shares(seen.points.size(), 0);
   const auto mix = [&](const std::vector<double>& part, double by) {
@@ -232,7 +235,7 @@ void FrameWeights::SetWeights(const std::vector<Node>& nodes) {
 
 void FrameWeights::SetPlaces() {
   const auto set = [](int count, int size_px, std::vector<Place>* places) {
-    // Blocks begin before the plate and end behind it.
+    // Blocks may begin before the plate and end beyond it.
     places->resize(static_cast<size_t>(size_px) + kWeightBlock + 1);
     if (count == 1) return;
     for (size_t end = 0; end < places->size(); ++end) {

@@ -17,7 +17,7 @@ ThreadPool& Pool() {
   return pool;
 }
 
-// Looks along z from `z`, in focus 2 in front of z = 0.
+// Returns a camera at `z` that looks along z and is focused at z = 2.
 RenderCamera Frame(double radius_w, double z = 0) {
   RenderCamera frame;
   frame.pinhole.intrinsics = {1200, 1200, 640, 400, 0, 1280, 800, {}};
@@ -38,7 +38,7 @@ std::vector<Vec3> JitteredGrid(int side, double spacing, double jitter, uint64_t
   return centres;
 }
 
-// The shares at an element, found there and not interpolated.
+// Returns the shares at an element, computed there without interpolation.
 std::vector<double> ExactShares(const RenderCamera& frame, const std::vector<Vec3>& centres,
                                 double x, double y) {
   const Vec3 focus = *FocusPointOfElement(frame, x, y);
@@ -47,7 +47,7 @@ std::vector<double> ExactShares(const RenderCamera& frame, const std::vector<Vec
   return CellShares(points, frame.aperture);
 }
 
-// As shares of the weights at the element.
+// Returns the weights at an element, divided by their sum.
 std::vector<double> SharesOf(const FrameWeights& weights, size_t camera_count, int x, int y) {
   std::vector<double> shares;
   double sum = 0;
@@ -75,7 +75,7 @@ TEST(FrameWeights, OfVeryManyLfImagesFitThePlate) {
   }
 }
 
-// Brackets: each place three times.
+// Each position occurs three times, as in brackets.
 TEST(FrameWeights, BracketsShareThePlaceAndNothingElse) {
   const std::vector<Vec3> places = JitteredGrid(4, 0.02, 0.3, 3);
   std::vector<Vec3> centres;
@@ -163,7 +163,7 @@ TEST(FrameWeights, BesideTheLensPlaneAreInterpolatedBetweenNodes) {
   }
 }
 
-// The camera in the middle of an even grid is seen around the middle of the plate.
+// The weights of the camera in the middle of an even grid lie around the middle of the plate.
 TEST(FrameWeights, BesideTheLensPlaneLieWhereTheCameraIsSeen) {
   const RenderCamera frame = Frame(0.06, 0.4);
   const auto centres = JitteredGrid(30, 0.015, 0, 3);
@@ -214,12 +214,12 @@ TEST(FrameWeights, AreTheSameInBlocksOfEachCamerasOwn) {
 }
 
 TEST(FrameWeights, OneCameraWithAHugeShareLeavesTheOthersTheirs) {
-  std::vector<Vec3> centres = JitteredGrid(10, 0.002, 0.3, 6);  // all in a corner of the lens
+  std::vector<Vec3> centres = JitteredGrid(10, 0.002, 0.3, 6);  // moved into a corner of the lens
   for (Vec3& c : centres) c += Vec3(0.1, 0.1, 0);
   centres.emplace_back(-0.1, -0.1, 0);
   const FrameWeights weights(Frame(0.2), centres, LensWeights::kArea, Pool());
   EXPECT_EQ(weights.At(centres.size() - 1, 0, 0), kMaxWeight);
-  // About half of the lens belongs to it, the other half to those around the corner of the others.
+  // About half of the lens belongs to the last camera, and half to the cameras in the corner.
   double others = 0;
   for (size_t i = 0; i + 1 < centres.size(); ++i) others += weights.At(i, 0, 0);
   EXPECT_NEAR(others / (others + kMaxWeight), 0.5, 0.15);
@@ -244,7 +244,7 @@ TEST(FrameWeights, ManyCamerasAtOnePlaceLeaveTheOthersTheirs) {
   }
 }
 
-// Weights that a trace of hats gives to many more cameras do not count.
+// A trace of hats gives weights to many more cameras, and these must not change the others.
 TEST(FrameWeights, AutoIsSteadyWhereTheLastHatsGo) {
   constexpr double kSpacing = 0.01;
   const auto centres = JitteredGrid(6, kSpacing, 0.3, 10);
@@ -297,7 +297,7 @@ TEST(FrameWeights, AutoGoesFromHatsToCellsAsTheLensOpens) {
   EXPECT_GT(to_hats, 0.02);
   EXPECT_GT(to_cells, 0.02);
   EXPECT_NEAR(to_hats + to_cells, whole, 0.02);
-  // A pinhole, too.
+  // A pinhole has hats only.
   EXPECT_EQ(FrameWeights(Frame(0), centres, LensWeights::kAuto, Pool()).hat_share(), 1);
   double last = 1;
   for (double distances = 0; distances < 4; distances += 0.01) {

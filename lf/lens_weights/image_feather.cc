@@ -30,8 +30,8 @@ ImageFeather::ImageFeather(const PinholeCamera& lf_camera, const RenderCamera& f
   const double distance = frame.focus_plane.offset_w - n.dot(lens.CentreWorld());
   const double sign = distance < 0 ? -1 : 1;
   const Mat3 direction = lens.cam_from_world.rotation.transpose() * lens.intrinsics.InverseMatrix();
-  // X - c' = direction e distance / n.(direction e), and X - c is that less `offset`: both times
-  // |n.(direction e)|.
+  // X - c' = direction e distance / n.(direction e), where c' is the centre of the lens, and X - c
+  // is this minus `offset`. Both are multiplied by |n.(direction e)|.
   const Mat3 to_focus = sign * (distance * Mat3::Identity() - offset * n.transpose()) * direction;
   to_focus_ = lf_camera.cam_from_world.rotation * to_focus;
   before_lens_ = (sign * n.transpose() * direction).transpose();
@@ -50,7 +50,8 @@ void ImageFeather::OfRow(int x, int y, int count, uint16_t* feather) const {
   }
 }
 
-// The direction of a ray in axes of the LF camera, of any length.
+// Returns the feather of a ray.
+//   direction  in axes of the LF camera, of any length
 double ImageFeather::At(const Vec3& direction) const {
   const Intrinsics& k = intrinsics_;
   Vec2 distorted;

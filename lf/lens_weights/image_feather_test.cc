@@ -32,7 +32,8 @@ TEST(ImageFeather, GrowsSmoothlyFromTheBorder) {
   }
 }
 
-// The law, literally: through the focus point of the position, forward, to where it is recorded.
+// Computes the feather literally: at the position where the LF camera records the ray through the
+// focus point.
 double Literally(const testing::CameraPair& pair, double x, double y) {
   const auto focus = FocusPointOfElement(pair.render_camera, x, y);
   if (!focus) return 0;

@@ -10,7 +10,7 @@
 namespace lf {
 namespace {
 
-// Nearest neighbours of a place, and what its cell takes from each.
+// Finds the natural neighbours of a place, and the area that its cell takes from each.
 class HatMaker {
  public:
   explicit HatMaker(std::span<const Vec2> points) : points_(points), grid_(points) {}
@@ -37,7 +37,8 @@ class HatMaker {
   }
 
  private:
-  // A second point at the place of a neighbour cuts nothing more, and is a neighbour as well.
+  // Adds points at the places of neighbours: they are also neighbours, although they cut nothing
+  // more.
   void AddThoseAtTheSamePlaces() {
     const size_t met_count = neighbours_.size();
     for (size_t k = 0; k < met_count; ++k)
@@ -48,14 +49,15 @@ class HatMaker {
       });
   }
 
-  // Beside the cameras cells have no end. Between them they are smaller than this.
+  // Returns a polygon that bounds the cell. Cells between cameras are smaller; cells beside the
+  // cameras would be infinite.
   ConvexPolygon Surroundings(const Vec2& place) const {
     constexpr double kFar = 8;
     return ConvexPolygon::SquareAround(
         place, kFar * (grid_.DistanceToNearest(place) + grid_.bucket_size()));
   }
 
-  // Points at the same place share what is nearest to them.
+  // Returns the area that the cell takes from neighbour i. Points at the same place share it.
   double TakenFrom(size_t i, const ConvexPolygon& cell) {
     int sharing = 1;
     part_ = cell;
@@ -75,10 +77,11 @@ class HatMaker {
   std::vector<size_t> neighbours_;
   std::vector<size_t> same_;
   std::vector<double> taken_;
-  ConvexPolygon part_;  // keeps its memory
+  ConvexPolygon part_;  // a member, so that its memory is reused
 };
 
-// For a point beside the opening, one near where the opening is nearest to it.
+// For a point beside the opening, returns the point that is nearest to the closest place of the
+// rim, among those around that place; none for a point in the opening.
 std::optional<Vec2> PointAtRim(const Vec2& point, std::span<const Vec2> points,
                                const PointGrid& grid, double radius) {
   const double distance = point.norm();
@@ -107,7 +110,7 @@ std::vector<double> CellShares(std::span<const Vec2> points, const Aperture& ape
   std::vector<double> shares;
   shares.reserve(points.size());
   for (const Vec2& point : points) {
-    // Most points beside the opening lose all of it to those at its rim.
+    // Most points beside the opening have no cell in it, because points at its rim are nearer.
     ConvexPolygon around = opening;
     if (const std::optional<Vec2> rival = PointAtRim(point, points, grid, aperture.radius_w)) {
       const Vec2 across = *rival - point;
@@ -117,7 +120,7 @@ std::vector<double> CellShares(std::span<const Vec2> points, const Aperture& ape
         continue;
       }
     }
-    int sharing = 0;  // points at this place, itself among them
+    int sharing = 0;  // number of points at this place, itself included
     const ConvexPolygon cell = CellOf(
         point, points, grid, around, [](size_t) {}, [&](size_t) { ++sharing; });
     const double area = is_disk ? cell.AreaInDisk(aperture.radius_w) : cell.Area();

@@ -1,4 +1,4 @@
-// The lens as an integral over its area (doc/ray.md, "What is added"): what share of it each LF
+// The lens as an integral over its area (doc/ray.md, "What is added"): the share of it that each LF
 // camera stands for.
 #pragma once
 
@@ -11,26 +11,25 @@
 
 namespace lf {
 
-// Cells: a camera stands for the part of the opening that is nearer to it than to any other, its
-// Voronoi cell, cut by what is covered at all. Exact but for rounding, a part in 1e-12. The shares'
-// sum is the covered part of the opening, 1 if that is all, as soon as there is a point, in the
-// opening or not: cells of points beside it reach in. Points at the same place share alike.
-//   points    where rays of the LF cameras meet the lens plane, lens coordinates; finite, any
+// Returns the share of each cell: a camera stands for its Voronoi cell, the part of the opening
+// that is nearer to it than to any other camera, clipped by the covered region. Exact except for
+// rounding (1e-12). If there is a point, in the opening or beside it, the sum of shares is the
+// covered part of the opening, because cells of points beside it reach in. Points at the same place
+// have equal shares. Takes about a microsecond for each point.
+//   points    where rays of the LF cameras meet the lens plane, in lens coordinates; finite, any
 //             number and arrangement
 //   aperture  radius_w > 0
-// About a microsecond a point.
 std::vector<double> CellShares(std::span<const Vec2> points, const Aperture& aperture,
                                const CoveredRegion& covered = {});
 
-// Hats: every point of the opening is seen by the cameras around it, in the shares in which a
-// camera there would take its cell from theirs (natural neighbours; Sibson 1981). A camera's share
-// is the mean over the opening, by `sample_count` points of it. These are the weights for openings
-// that are small beside the distances of the cameras, pinholes among them: a picture between
-// cameras is interpolated, and moves smoothly from one to the next. Outside of all cameras the
-// nearest ones share alike. The sum is 1 as soon as there is a point. Points at the same place
-// share alike.
-//   aperture  radius_w >= 0; at 0 one sample is enough
-// Some microseconds a sample.
+// Returns the share of each hat: every point of the opening is seen by the cameras around it, in
+// the proportions in which a camera at that point would take its cell from theirs (natural
+// neighbours; Sibson 1981). The share of a camera is its mean over `sample_count` points of the
+// opening. These weights are for openings that are small compared with the distances of the
+// cameras, pinholes included: a picture between cameras is interpolated, and moves smoothly from
+// one to the next. Outside of all cameras, the nearest ones share the whole. The sum is 1 if there
+// is a point. Points at the same place have equal shares. Takes some microseconds for each sample.
+//   aperture  radius_w >= 0; one sample is used if it is 0
 std::vector<double> HatShares(std::span<const Vec2> points, const Aperture& aperture,
                               int sample_count = 64);
 

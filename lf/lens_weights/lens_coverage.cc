@@ -12,8 +12,8 @@
 namespace lf {
 namespace {
 
-// One of those that are near each other beside how far points are apart: a camera on a tripod is
-// recorded many times, and trembles.
+// Returns one of each group of points that are close together compared with the distance between
+// points. A camera on a tripod is recorded many times, and trembles.
 std::vector<Vec2> OneOfEachPlace(std::span<const Vec2> points, double distance) {
   constexpr double kSamePlace = 1.0 / 16;
   std::vector<Vec2> kept;
@@ -26,8 +26,8 @@ std::vector<Vec2> OneOfEachPlace(std::span<const Vec2> points, double distance) 
   return kept;
 }
 
-// Distance to the nearest neighbour, the middle one by the area that it stands for: cameras that
-// crowd in a corner do not decide. 0 without two points.
+// Returns the median distance to the nearest neighbour, weighted by the area that a point stands
+// for, so that cameras that crowd in a corner do not decide. 0 without two points.
 double DistanceOfDistinct(const std::vector<Vec2>& points) {
   const PointGrid grid(points);
   std::vector<double> distances;
@@ -62,7 +62,7 @@ LensCoverage CoverageOf(std::span<const Vec2> points, const Aperture& aperture) 
   const double distance = DistanceOfMost(points);
   if (distance == 0) return {};
   const PointGrid grid(points);
-  // Hats, of lenses narrower than that, have no end.
+  // A lens narrower than that has hats, which are not clipped by the region.
   const bool is_cut = 2 * aperture.radius_w > distance;
   const CoveredRegion region = CoveredBy(points);
   const double far = kFarDistances * distance;

@@ -7,7 +7,7 @@
 namespace lf {
 namespace {
 
-// A square grid of `side` x `side` points, of which the middle one lies at `middle`.
+// Returns a square grid of `side` x `side` points around `middle`.
 std::vector<Vec2> Grid(int side, double spacing, const Vec2& middle = Vec2::Zero()) {
   std::vector<Vec2> points;
   for (int y = 0; y < side; ++y)
@@ -52,7 +52,8 @@ TEST(LensCoverage, CamerasRecordedTwiceDoNotMakeDistancesSmaller) {
   const std::vector<Vec2> again = points;
   points.insert(points.end(), again.begin(), again.end());
   EXPECT_EQ(UncoveredShare(points, {1, 0, 0}), 0);
-  // Nor where they tremble, or where a pause has very many, or where some crowd.
+  // Distances are not smaller either if cameras tremble, if a pause has very many cameras at one
+  // place, or if some crowd.
   for (size_t i = again.size(); i < points.size(); ++i) points[i].x() += 1e-5;
   EXPECT_EQ(UncoveredShare(points, {1, 0, 0}), 0);
   points = again;

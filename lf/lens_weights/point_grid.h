@@ -1,5 +1,5 @@
-// Points of the plane in square buckets, about one a bucket, to be met in the order of their
-// distance, roughly. Internal to lens_weights.
+// Points of the plane in square buckets, about one in each, so that they can be visited roughly in
+// the order of their distance. Internal to lens_weights.
 #pragma once
 
 #include <algorithm>
@@ -14,14 +14,14 @@ namespace lf {
 
 class PointGrid {
  public:
-  // `points` must last.
+  //   points  must outlive the grid
   explicit PointGrid(std::span<const Vec2> points);
 
-  // About as far as points are apart.
+  // Side of a bucket, which is about the distance between points.
   double bucket_size() const { return bucket_size_; }
 
-  // Rings of buckets around the one that is nearest to a place: 0 is that one, and those up to this
-  // hold all points.
+  // Number of the last ring that may have points. Ring 0 is the bucket nearest to a place, and ring
+  // k is the buckets k columns or rows away from it.
   int ring_count() const { return std::max(columns_, rows_); }
 
   // Points in this ring are at least so far away.
@@ -42,8 +42,8 @@ class PointGrid {
     }
   }
 
-  // From a place to the nearest point but for those at the place itself, if these are left out;
-  // infinite if there is none.
+  // Returns the distance from a place to the nearest point; infinite if there is none.
+  //   leave_out_same  ignores points exactly at the place
   double DistanceToNearest(const Vec2& place, bool leave_out_same = false) const {
     double nearest = INFINITY;
     for (int ring = 0; ring <= ring_count() && LeastDistanceOf(ring) < nearest; ++ring)
