@@ -1,4 +1,4 @@
-// The depths around which most of what was found lies. Internal to focus.
+// Finds the depths around which most of the found depths lie. Internal to focus.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,8 @@
 namespace lf {
 
 // Returns at most three depths, the best first, each away from the better ones. A found depth
-// counts around itself by a bell in the logarithm of depth, which is as wide as the depth is
-// uncertain, and 3 % at least.
+// counts for depths around it by a Gaussian in the logarithm of depth. Its width is the uncertainty
+// of the found depth, at least 3 %.
 std::vector<SubjectDepth> BestDepths(std::vector<FoundDepth> found);
 
 }  // namespace lf

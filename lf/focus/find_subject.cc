@@ -16,10 +16,10 @@ namespace lf {
 namespace {
 
 constexpr size_t kLeastViews = 2;
-constexpr size_t kMostAtOnce = 4;  // whole LF images in memory
+constexpr size_t kMostAtOnce = 4;  // whole LF images in memory at the same time
 
-// Loads the views. Views that cannot be loaded are left out, and rings with too few views. kOutput:
-// the machine's failure.
+// Loads the views. Removes views that cannot be loaded, and rings with too few views. kOutput: the
+// machine lacks memory or open files.
 Result<void> LoadRings(const LightField& field, const LfImageStore& store, ThreadPool& pool,
                        Rings* rings) {
   MachineFailure failure;

@@ -19,7 +19,8 @@ namespace {
 constexpr int kWidth = 240, kHeight = 160;
 constexpr double kFocal_px = 260;
 
-// Light from 0 to 1 along a ray that LF image `id` records at a pixel; NaN: nothing is recorded.
+// Returns the light, 0 to 1, along a ray that LF image `id` records at a pixel; NaN: nothing is
+// recorded.
 using Light = std::function<double(const Ray& ray, LfImageId id, const Vec2& at_px)>;
 
 class DrawnStore : public LfImageStore {
@@ -50,19 +51,19 @@ class DrawnStore : public LfImageStore {
   Light light_;
 };
 
-// Detail of the size of a few pixels.
+// Returns a texture with details of a few pixels.
 double Texture(const Ray& ray, double depth_w, uint64_t seed) {
   const Vec3 point = ray.At((depth_w - ray.origin.z()) / ray.direction.z());
   const double scale = kFocal_px / 4 / depth_w;
   return 0.15 + 0.7 * ValueNoise(point.x() * scale, point.y() * scale, seed);
 }
 
-// A wall that fills the picture.
+// Returns a wall that fills the picture.
 Light Wall(double depth_w) {
   return [depth_w](const Ray& ray, LfImageId, const Vec2&) { return Texture(ray, depth_w, 1); };
 }
 
-// A card in the middle, half as wide as the picture, before a wall.
+// Returns a card in the middle, half as wide as the picture, in front of a wall.
 Light CardBefore(double card_w, double wall_w) {
   return [=](const Ray& ray, LfImageId, const Vec2&) {
     const Vec3 point = ray.At((card_w - ray.origin.z()) / ray.direction.z());
@@ -103,7 +104,7 @@ Light MaskedAround(Light light) {
 Light Noisy(Light light, double deviation) {
   return [light = std::move(light), deviation](const Ray& ray, LfImageId id, const Vec2& at) {
     const auto pixel = static_cast<uint64_t>(at.y()) * kWidth + static_cast<uint64_t>(at.x());
-    // As wide as the standard deviation says.
+    // Uniform noise of width sqrt(12) has a standard deviation of 1.
     return light(ray, id, at) + deviation * std::sqrt(12.) * (RandomUnit(7, id.value, pixel) - 0.5);
   };
 }
@@ -118,7 +119,7 @@ LightField FieldOf(const std::vector<RigidTransform>& poses) {
   return field;
 }
 
-// Looking along z, or at a point on the axis.
+// Returns a grid of cameras that look along z, or at a point on the axis.
 LightField Grid(int columns, int rows, double spacing_w, double look_at_w = 0) {
   std::vector<RigidTransform> poses;
   for (int i = 0; i < columns * rows; ++i) {
@@ -129,7 +130,7 @@ LightField Grid(int columns, int rows, double spacing_w, double look_at_w = 0) {
   return FieldOf(poses);
 }
 
-// The calibration of other images.
+// Swaps cameras, so that LF images have the calibration of others.
 LightField Shuffled(LightField field) {
   for (size_t i = 0; i < field.size(); ++i)
     std::swap(field.cameras[i], field.cameras[RandomBits(3, i, 0) % field.size()]);
@@ -142,8 +143,8 @@ struct Case {
   std::string name;
   LightField field;
   Light light;
-  double depth_w = 0;        // 0: hopeless
-  LightField drawn_by = {};  // if the calibration is wrong
+  double depth_w = 0;        // 0: cannot be found
+  LightField drawn_by = {};  // the true calibration, if that of `field` is wrong
 };
 
 std::vector<Case> Cases() {

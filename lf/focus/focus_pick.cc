@@ -15,15 +15,15 @@
 namespace lf {
 namespace {
 
-constexpr int kHalfPatch = 5;  // elements or LF pixels, what is larger
+constexpr int kHalfPatch = 5;  // in elements or LF pixels, whichever are larger
 constexpr int kPatchSide = 2 * kHalfPatch + 1;
 constexpr int kPatchSize = kPatchSide * kPatchSide;
-constexpr double kStep_px = 0.5;         // of the largest displacement, from depth to depth
-constexpr double kMostDisplaced = 0.45;  // of the LF image's width, at the nearest depth asked
+constexpr double kStep_px = 0.5;         // change of the largest disparity from depth to depth
+constexpr double kMostDisplaced = 0.45;  // largest disparity, as a part of the LF image's width
 constexpr double kLeastTexture = 0.004;  // standard deviation in a patch, of the root of light
 constexpr double kLeastAgreement = 0.6;  // correlation
-constexpr size_t kLeastViews = 3;        // beside the reference
-constexpr double kAgreeing = 0.6;        // of the views: the others may be hidden from the point
+constexpr size_t kLeastViews = 3;        // without the reference
+constexpr double kAgreeing = 0.6;        // part of the views; the point may be hidden from others
 constexpr double kLeastCosine = 0.5;     // between optical axis and ray
 
 using Patch = std::array<float, kPatchSize>;
@@ -31,14 +31,14 @@ using Patch = std::array<float, kPatchSize>;
 struct View {
   LfImageId id;
   RayThrough rays;
-  double offset_w = 0;  // from the ray, in its normal plane
+  double offset_w = 0;  // distance from the ray, in the plane normal to it
   LfPixels pixels = {};
 };
 
-// In front of the picture that the person has clicked in.
+// The ray that is searched, with the axes of the patch around it.
 struct SearchRay {
-  Vec3 origin, direction, right, up;  // of length 1
-  double angle_px = 0;                // radians that a pixel of the patch is wide
+  Vec3 origin, direction, right, up;  // directions have length 1
+  double angle_px = 0;                // width of a pixel of the patch in radians
 
   Vec3 At(double depth_w, double x, double y) const {
     return origin + depth_w * (direction + angle_px * (x * right + y * up));
@@ -57,7 +57,8 @@ SearchRay MakeSearchRay(const RenderCamera& frame, const Ray& ray, double lf_foc
   return search;
 }
 
-// Where LF cameras are wanted: at the ray, on a ring of the lens's width, and half way.
+// Returns the wanted positions of LF cameras: at the ray, on a ring as wide as the lens, and on a
+// ring half as wide.
 std::vector<Vec2> WantedPlaces(double radius_w) {
   std::vector<Vec2> places = {Vec2::Zero()};
   for (int i = 0; i < 12; ++i) {
@@ -69,7 +70,8 @@ std::vector<Vec2> WantedPlaces(double radius_w) {
   return places;
 }
 
-// One LF camera for each place, within a ring that holds at least eight.
+// Chooses the LF camera nearest to each wanted place. The ring is widened until it holds at least
+// eight LF cameras.
 std::vector<View> ChooseViews(const LightField& field, const SearchRay& search, double radius_w) {
   struct Candidate {
     LfImageId id;
@@ -111,7 +113,8 @@ std::vector<View> ChooseViews(const LightField& field, const SearchRay& search, 
   return views;
 }
 
-// Bilinear, the root of light (as even as noise is); none where the image has no value.
+// Returns the root of the bilinear light, in which noise is about equal everywhere; none if the
+// image has no value there.
 std::optional<float> ValueAt(const LfPixels& pixels, const Vec2& place) {
   const double x = place.x() - 0.5 - pixels.rect.x_begin, y = place.y() - 0.5 - pixels.rect.y_begin;
   const int column = static_cast<int>(std::floor(x)), row = static_cast<int>(std::floor(y));
@@ -128,7 +131,8 @@ std::optional<float> ValueAt(const LfPixels& pixels, const Vec2& place) {
   return static_cast<float>(std::sqrt(sum / (3 * 65535.0)));
 }
 
-// Around the point at a depth as the view sees it, mean 0; its standard deviation, or none.
+// Reads the patch around the point at a depth as the view sees it, and subtracts its mean. Returns
+// its standard deviation; none if the view does not show all of it.
 std::optional<double> Look(const View& view, const SearchRay& search, double depth_w,
                            Patch* patch) {
   double sum = 0, squares = 0;
@@ -166,7 +170,7 @@ Agreement AgreementAt(std::span<const View> views, const SearchRay& search, doub
     for (int i = 0; i < kPatchSize; ++i)
       product +=
           static_cast<double>(reference[static_cast<size_t>(i)]) * other[static_cast<size_t>(i)];
-    // Noise alone correlates with nothing.
+    // The least deviation keeps noise from correlating.
     const double scale = kPatchSize * std::max(*texture, kLeastTexture / 4) *
                          std::max(*deviation, kLeastTexture / 4);
     correlations.push_back(product / scale);
@@ -180,7 +184,7 @@ Agreement AgreementAt(std::span<const View> views, const SearchRay& search, doub
   return {sum / static_cast<double>(count), *texture};
 }
 
-// Depths that are asked: evenly in 1 / depth, from the nearest that the views see side by side.
+// The depths that are tested, evenly spaced in 1 / depth, from the nearest that all views can show.
 struct Sweep {
   double nearest_per_w = 0, step_per_w = 0;
   size_t count = 0;
@@ -194,7 +198,7 @@ Sweep MakeSweep(std::span<const View> views) {
   double baseline_w = 0;
   for (const View& view : views) baseline_w = std::max(baseline_w, view.offset_w);
   const Intrinsics& k = views[0].rays.intrinsics();
-  const double px_per_w = std::max(1e-12, k.fx_px * baseline_w);  // displacement at 1 / depth 1
+  const double px_per_w = std::max(1e-12, k.fx_px * baseline_w);  // disparity at 1 / depth = 1
   Sweep sweep;
   sweep.nearest_per_w = kMostDisplaced * k.width_px / px_per_w;
   sweep.step_per_w = kStep_px / px_per_w;
@@ -202,7 +206,7 @@ Sweep MakeSweep(std::span<const View> views) {
   return sweep;
 }
 
-// The part of the LF image that the sweep looks at.
+// Returns the part of the LF image that the sweep reads.
 PixelRect PartOf(const View& view, const SearchRay& search, const Sweep& sweep) {
   const Intrinsics& k = view.rays.intrinsics();
   PixelRect part;
@@ -219,7 +223,7 @@ PixelRect PartOf(const View& view, const SearchRay& search, const Sweep& sweep) 
   return Intersection(part, {0, 0, k.width_px, k.height_px});
 }
 
-// Reads what is needed of them; those that cannot be read are left out, unless the machine failed
+// Reads the needed parts of the views. Removes views that cannot be read, unless the machine failed
 // (kOutput).
 Result<void> LoadViews(const LightField& field, const LfImageStore& store, const SearchRay& search,
                        const Sweep& sweep, ThreadPool& pool, std::vector<View>* views) {
@@ -286,7 +290,7 @@ Result<FocusPick> FindFocus(const LightField& light_field, const LfImageStore& s
     return InputError(
         "the LF images around do not agree on a distance here. Click on an edge or a texture, away "
         "from outlines of things in front");
-  // The best of the other peaks.
+  // The rival is the best of the other peaks.
   double rival = 0;
   constexpr size_t kPeakWidth = 4;
   for (size_t i = 1; i + 1 < agreements.size(); ++i)
@@ -294,7 +298,7 @@ Result<FocusPick> FindFocus(const LightField& light_field, const LfImageStore& s
         agreements[i].score >= agreements[i - 1].score &&
         agreements[i].score >= agreements[i + 1].score)
       rival = std::max(rival, agreements[i].score);
-  // The top of the parabola through the best and its neighbours.
+  // The place is refined to the vertex of the parabola through the best depth and its neighbours.
   double place = static_cast<double>(best);
   if (best > 0 && best + 1 < agreements.size()) {
     const double before = agreements[best - 1].score, after = agreements[best + 1].score;

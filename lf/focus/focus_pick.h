@@ -1,5 +1,5 @@
-// At what distance lies what a person points at? A light field has no depth: it is searched along
-// the ray, where the LF images around it agree (plane sweep).
+// Finds the distance of the point that a person clicks on. A light field has no depths: they are
+// searched along the ray, for a depth at which the LF images around it agree (plane sweep).
 #pragma once
 
 #include <optional>
@@ -18,27 +18,29 @@ namespace lf {
 
 struct FocusPick {
   Vec3 point_world;
-  // In [0, 1]: how well the LF images agree there, and how much better than anywhere else.
+  // In [0, 1]: high if the LF images agree well at this depth, and much better than at others.
   double certainty = 0;
-  std::vector<LfImageId> images;  // that were compared; the first one nearest to the ray's origin
+  std::vector<LfImageId> images;  // compared images; the first is the nearest to the ray's origin
 };
 
-// Below it a pick is rather a guess: of patterns that repeat, and of outlines.
+// A pick below this certainty is a guess, as on patterns that repeat, and on outlines.
 inline constexpr double kLeastCertainty = 0.2;
 
-// Continuous position (x, y) of an LF image, lens distortion undone. None where it has no ray.
+// Returns the ray of the continuous position (x, y) of an LF image, lens distortion undone. None if
+// the position has no ray.
 std::optional<Ray> RayOfLfPixel(const PinholeCamera& lf_camera, double x_px, double y_px);
 
-// The point of the scene that the ray meets. The images are some around the ray's origin, about as
-// far from it as the rim of the frame's lens: what these see apart is what the lens blurs.
-//   ray    from the lens centre of `frame` or an LF camera
+// Returns the point of the scene that the ray meets. The compared images are around the ray's
+// origin, about as far from it as the rim of the frame's lens, because the disparity between them
+// is the blur of the lens.
+//   ray    from the lens centre of `frame`, or from an LF camera
 //   store  one with Mosaics::kToRgb
-// kInput, in words for the person who has clicked: too few LF cameras see it, there is no texture,
-// or nothing that they agree on. Errors of store.Load() where too few images can be read.
+// kInput, in words for the person who clicked: too few LF cameras see the point, it has no texture,
+// or the images agree on no depth. Errors of store.Load() if too few images can be read.
 Result<FocusPick> FindFocus(const LightField& light_field, const LfImageStore& store,
                             const RenderCamera& frame, const Ray& ray, ThreadPool& pool);
 
-// The focus distance with which the frame's focus plane, tilted as it is, holds the point.
+// Returns the focus distance with which the frame's focus plane, with its tilt, contains the point.
 double FocusDistanceThrough(const RenderCamera& frame, const Vec3& point_world);
 
 }  // namespace lf

@@ -11,15 +11,15 @@
 namespace lf {
 namespace {
 
-constexpr int kColumns = 16, kRows = 11;   // of cells, in each of which one place is looked at
-constexpr double kLeastTexture = 0.006;    // of a step between pixels in its weakest direction
-constexpr double kLeastDeviation = 0.002;  // noise alone correlates with nothing
+constexpr int kColumns = 16, kRows = 11;   // cells of the image; each has one place
+constexpr double kLeastTexture = 0.006;    // step between pixels in the weakest direction
+constexpr double kLeastDeviation = 0.002;  // keeps noise from correlating
 constexpr double kLeastAgreement = 0.65;   // correlation
-constexpr double kAgreeing = 0.6;          // of the views: the others may be hidden from the place
+constexpr double kAgreeing = 0.6;          // part of the views; the place may be hidden from others
 constexpr size_t kLeastViews = 2;
-constexpr double kStep_px = 0.5;         // of the largest displacement, from depth to depth
-constexpr double kMostDisplaced = 0.45;  // of the image's width, at the nearest depth asked
-constexpr double kLeastMove_px = 1;  // in the reduced image: nearer than infinity, and not still
+constexpr double kStep_px = 0.5;         // change of the largest disparity from depth to depth
+constexpr double kMostDisplaced = 0.45;  // largest disparity, as a part of the image's width
+constexpr double kLeastMove_px = 1;  // in the reduced image: a place that moves less does not count
 constexpr double kStill = 0.9;       // correlation
 constexpr size_t kMostRings = 5;
 constexpr int kViewsPerRing = 6;
@@ -27,7 +27,8 @@ constexpr double kInnerRing = 2;      // in spacings
 constexpr double kRingFactor = 4;     // from ring to ring
 constexpr double kLeastCosine = 0.8;  // between optical axes
 
-// Sum over a patch, in as many chains of additions as a processor runs at the same time.
+// Returns the sum over a patch, in as many chains of additions as a processor runs at the same
+// time.
 template <typename Value>
 double SumOf(const Value& value) {
   constexpr size_t kChains = 9;
@@ -40,7 +41,7 @@ double SumOf(const Value& value) {
   return sum;
 }
 
-// Subtracts the mean; returns the standard deviation, NaN where a value is.
+// Subtracts the mean. Returns the standard deviation; NaN if a value is NaN.
 double Centre(Patch* patch) {
   const double sum = SumOf([&](size_t i) { return static_cast<double>((*patch)[i]); });
   const auto mean = static_cast<float>(sum / kPatchSize);
@@ -50,8 +51,8 @@ double Centre(Patch* patch) {
   return std::sqrt(squares / kPatchSize);
 }
 
-// Reads the patch as ReducedImage::At() does, all pixels at once. False where it ends beyond the
-// image.
+// Reads all pixels of the patch, with the values of ReducedImage::At(). Returns false if the patch
+// extends beyond the image.
 bool Sample(const ReducedImage& image, const PatchGrid& grid, Patch* patch) {
   const Image<float>& light = image.light;
   const double scale = 1.0 / image.divisor;
@@ -64,7 +65,7 @@ bool Sample(const ReducedImage& image, const PatchGrid& grid, Patch* patch) {
             corner.y() < light.height() - 1))
         return false;
     }
-  // Parallel cameras see the place pixel by pixel: all pixels have the same fractions.
+  // Parallel cameras see the place without scaling, so that all pixels have the same fractions.
   constexpr double kSamePixel = 1e-7;
   if ((step_x - Vec2(1, 0)).norm() + (step_y - Vec2(0, 1)).norm() < kSamePixel) {
     const int column = static_cast<int>(first.x()), row = static_cast<int>(first.y());
@@ -93,7 +94,8 @@ bool Sample(const ReducedImage& image, const PatchGrid& grid, Patch* patch) {
   return true;
 }
 
-// -1 where the other is not seen.
+// Returns the correlation of the place's patch with another one; -1 if a pixel of that is not
+// recorded.
 double Correlation(const Place& place, Patch* other) {
   const double deviation = Centre(other);
   if (std::isnan(deviation)) return -1;
@@ -123,7 +125,7 @@ double CorrelationAt(const View& view, const Place& place, double depth_w) {
 
 namespace {
 
-// The mean of the better ones; -1 where too few see the place.
+// Returns the mean of the better correlations; -1 if too few views see the place.
 double Agreement(std::vector<double>* correlations) {
   if (correlations->size() < kLeastViews) return -1;
   std::sort(correlations->rbegin(), correlations->rend());
@@ -142,7 +144,7 @@ double AgreementAt(std::span<const View> views, const Place& place, double depth
   return Agreement(&correlations);
 }
 
-// Returns how well the views agree with the place at the place's own pixels.
+// Returns the agreement of the views at the place's own pixels, where a watermark would be.
 double StillAgreement(const Rings& rings, const Place& place, int divisor) {
   std::vector<double> correlations;
   for (const std::vector<View>& ring : rings)
@@ -157,7 +159,7 @@ double StillAgreement(const Rings& rings, const Place& place, int divisor) {
   return Agreement(&correlations);
 }
 
-// The largest of the views' displacements from the place's own pixels, in reduced pixels.
+// Returns the largest disparity of the views from the place's own pixels, in reduced pixels.
 double LargestMove(const Rings& rings, const Place& place, double depth_w, int divisor) {
   double largest = 0;
   for (const std::vector<View>& ring : rings)
@@ -167,7 +169,7 @@ double LargestMove(const Rings& rings, const Place& place, double depth_w, int d
   return largest;
 }
 
-// Depths that are asked, evenly in 1 / depth.
+// The depths that are tested, evenly spaced in 1 / depth.
 struct Sweep {
   double from_per_w = 0, step_per_w = 0;
   size_t count = 0;
@@ -176,7 +178,7 @@ struct Sweep {
   double Depth(double index) const { return 1 / std::max(1e-12, PerW(index)); }
 };
 
-// Displacement in reduced pixels at 1 / depth 1.
+// Returns the disparity in reduced pixels at 1 / depth = 1.
 double PixelsPerW(std::span<const View> views, const Intrinsics& k, int divisor) {
   double baseline_w = 0;
   for (const View& view : views) baseline_w = std::max(baseline_w, view.offset_w);
@@ -186,8 +188,8 @@ double PixelsPerW(std::span<const View> views, const Intrinsics& k, int divisor)
 // The best depth of a sweep.
 struct Peak {
   double score = -1, rival = -1;        // the rival is the best local maximum elsewhere
-  double per_w = 0;                     // 1 / depth, between the steps
-  double from_per_w = 0, to_per_w = 0;  // all around it that is nearly as good
+  double per_w = 0;                     // 1 / depth, refined between the steps
+  double from_per_w = 0, to_per_w = 0;  // range around it that is almost as good
 };
 
 Peak FindPeak(const Sweep& sweep, std::span<const View> views, const Place& place) {
@@ -261,8 +263,8 @@ std::optional<FoundDepth> DepthOf(const Rings& rings, const Place& place, const 
 
 namespace {
 
-// The square root of the smaller eigenvalue of the mean of g g^T, g being the gradient: 0 along
-// edges, whose displacement is known across them alone.
+// Returns the square root of the smaller eigenvalue of the mean of g g^T, where g is the gradient.
+// It is 0 on straight edges, whose disparity is known only across the edge.
 double TextureAt(const Image<float>& light, int x, int y) {
   double xx = 0, xy = 0, yy = 0;
   for (int j = y - kHalfPatch; j <= y + kHalfPatch; ++j)
@@ -278,7 +280,7 @@ double TextureAt(const Image<float>& light, int x, int y) {
   return std::sqrt(std::max(0.0, least) / kPatchSize) / 2;  // NaN stays
 }
 
-// The place of one cell with the most texture.
+// Returns the place of one cell with the most texture.
 std::optional<Place> PlaceIn(const LightField& field, LfImageId camera, const ReducedImage& image,
                              int column, int row) {
   const int border = kHalfPatch + 1, width = image.light.width() - 2 * border,

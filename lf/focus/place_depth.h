@@ -1,5 +1,5 @@
-// Finds at what depth one textured place of an LF image lies, by comparing it with the LF images
-// around (plane sweep). For find_subject.cc, and for stages that compare LF images themselves.
+// Finds the depth of one textured place of an LF image by comparing it with the LF images around it
+// (plane sweep). For find_subject.cc, and for stages that compare LF images themselves.
 #pragma once
 
 #include <array>
@@ -25,14 +25,14 @@ using Patch = std::array<float, kPatchSize>;
 struct View {
   LfImageId id;
   RayThrough rays;
-  double offset_w = 0;  // from the camera
+  double offset_w = 0;  // distance from the camera
   std::shared_ptr<const ReducedImage> image = nullptr;
 };
 
-using Rings = std::vector<std::vector<View>>;  // from the inner one on
+using Rings = std::vector<std::vector<View>>;  // the innermost ring first
 
-// The LF cameras around `camera` in up to five rings, every ring four times as wide as the one
-// before: of each ring the nearest to six evenly spread positions. Their images are not loaded.
+// Returns LF cameras around `camera` in up to five rings, every ring four times as wide as the one
+// before. A ring has the LF cameras nearest to six evenly spread positions. Images are not loaded.
 Rings ChooseRings(const LightField& field, LfImageId camera);
 
 // A place of the camera's image: its ray, and the rays of the pixels around it.
@@ -49,40 +49,40 @@ struct Place {
   }
 };
 
-// Up to 176 places with texture, evenly spread over the image of `camera`.
+// Returns up to 176 places with texture, evenly spread over the image of `camera`.
 std::vector<Place> TexturedPlaces(const LightField& field, LfImageId camera,
                                   const ReducedImage& image);
 
-// The pixels around a place at a depth, as a view records them: those of the patch lie at
-// centre + x step_x + y step_y, in pixels of the view's LF image, for whole x and y within
+// The pixels around a place at a depth, as a view records them: the pixels of the patch lie at
+// centre + x step_x + y step_y, in pixels of the view's LF image, for integers x and y within
 // +-kHalfPatch.
 struct PatchGrid {
   Vec2 centre, step_x, step_y;
 
-  // The pixel `index` of a Patch.
+  // Returns the position of the pixel `index` of a Patch.
   Vec2 At(int index) const {
     return centre + (index % kPatchSide - kHalfPatch) * step_x +
            (index / kPatchSide - kHalfPatch) * step_y;
   }
 };
-// None where the view's lens has no such rays.
+// Returns the grid of a place at a depth in a view; none if the view's lens has no such rays.
 std::optional<PatchGrid> PatchSeenBy(const View& view, const Place& place, double depth_w);
 
-// Correlation of the place's patch with what the view shows at a depth, in [-1, 1]; -1 where the
-// view does not show it.
+// Returns the correlation of the place's patch with the view's pixels at a depth, in [-1, 1]; -1 if
+// the view does not show the place.
 double CorrelationAt(const View& view, const Place& place, double depth_w);
 
 struct FoundDepth {
   double distance_w = 0, weight = 0;
-  double error = 0;  // relative
+  double error = 0;  // relative to distance_w
 };
 
-// The depth on which most views agree. None: there is no clear one, or the place stands still in
-// all views, as a watermark does, or is so far that nothing moves.
-//   rings    of views whose images are loaded; at least one, each of at least two views
-//   k        of the camera
-//   divisor  of the reduced images
-//   nearest_w  places are taken to be no nearer; 0: as near as the inner ring's images can show
+// Returns the depth on which most views agree. None if there is no clear depth, if the place stands
+// still in all views, as a watermark does, or if it is so far that nothing moves.
+//   rings      of views whose images are loaded; at least one ring, each of at least two views
+//   k          of the camera
+//   divisor    of the reduced images
+//   nearest_w  no nearer depths are tested; 0: the nearest that the inner ring's images can show
 std::optional<FoundDepth> DepthOf(const Rings& rings, const Place& place, const Intrinsics& k,
                                   int divisor, double nearest_w = 0);
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr size_t kLeastPoints = 24;
 
-// The points that the image shows, unsorted.
+// Returns the depths of the points that the image shows, unsorted.
 std::vector<FoundDepth> DepthsOf(const PinholeCamera& camera, std::span<const Vec3> points_world) {
   const Intrinsics& k = camera.intrinsics;
   const RayThrough rays(camera, camera.ForwardWorld());

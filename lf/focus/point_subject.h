@@ -1,5 +1,5 @@
-// Finds the depth of what a camera looks at from points of a reconstruction that it sees, for
-// scenes whose pixels do not tell it.
+// Finds the depth of the subject of an LF image from points of a reconstruction that it shows, for
+// scenes whose pixels do not tell the depth.
 #pragma once
 
 #include <span>
@@ -10,15 +10,16 @@
 
 namespace lf {
 
-// Returns the depths around which most points lie, by weight: a point counts the more, the nearer
-// it is to the middle of the image. Points behind the camera and outside its image do not count.
-// textured_count is the number of the others, and place_count too. Sure: 24 points lie at the best
-// depth, with a quarter of the weight of all and half as much again as the next best depth has.
+// Returns the depths around which most points lie, by weight: a point counts more the nearer it is
+// to the middle of the image. Points behind the camera or outside its image do not count; the
+// number of the others is textured_count, and also place_count. The best depth is sure if 24 points
+// lie there, with a quarter of the whole weight and at least 1.5 times the weight at the next best
+// depth.
 Subject FindPointSubject(const PinholeCamera& camera, std::span<const Vec3> points_world);
 
-// Returns true if the camera sees at least 24 points and at most 1 % of them are within 10 % of
-// this depth: what pixels tell is then likely a pattern that repeats, a mirror, or a mark on the
-// lens.
+// Returns true if the camera sees at least 24 points, and at most 1 % of them are within 10 % of
+// this depth. If pixels tell this depth, it is then likely that of a pattern that repeats, a
+// mirror, or a mark on the lens.
 bool PointsContradict(const PinholeCamera& camera, std::span<const Vec3> points_world,
                       double depth_w);
 

@@ -19,8 +19,8 @@ PinholeCamera Camera() {
   return camera;
 }
 
-// Draws the points that the camera sees at depths that depth(x, y) tells, of places from -1 to 1;
-// 0 draws none.
+// Draws random points that the camera sees. depth(x, y) gives the depth at positions from -1 to 1
+// in the image; 0 draws no point.
 using Depth = std::function<double(RandomSequence* random, double x, double y)>;
 std::vector<Vec3> Draw(int count, const Depth& depth) {
   const PinholeCamera camera = Camera();
@@ -34,7 +34,7 @@ std::vector<Vec3> Draw(int count, const Depth& depth) {
   return points;
 }
 
-// Errors of a reconstruction: 1 % of the depth.
+// Adds the error of a reconstruction, up to 1 % of the depth.
 double Blurred(RandomSequence* random, double depth_w) {
   return depth_w * (1 + random->Uniform(-0.01, 0.01));
 }
@@ -65,8 +65,8 @@ Depth Behind(Depth depth) {
 struct Case {
   std::string name;
   std::vector<Vec3> points;
-  double depth_w = 0;      // 0: hopeless
-  bool may_doubt = false;  // "not sure" will do
+  double depth_w = 0;      // 0: cannot be found
+  bool may_doubt = false;  // "not sure" is also right
 };
 
 std::vector<Case> Cases() {
@@ -142,7 +142,7 @@ TEST(PointsContradict, OnlyWherePointsAreManyAndNoneIsNear) {
   EXPECT_FALSE(PointsContradict(Camera(), few, 2));
   EXPECT_FALSE(PointsContradict(Camera(), {}, 2));
   EXPECT_FALSE(PointsContradict(Camera(), Draw(400, Behind(Wall(5))), 2));
-  // A subject that has few of the points, before a wall that has most.
+  // The subject has few of the points, and the wall behind it has most.
   EXPECT_FALSE(PointsContradict(Camera(), Draw(2000, CardBefore(2, 6, 0.2)), 2));
   EXPECT_TRUE(PointsContradict(Camera(), Draw(2000, CardBefore(2, 6, 0.2)), 3.5));
 }

@@ -7,7 +7,7 @@
 namespace lf {
 namespace {
 
-// The mean light of one pixel of the reduced image.
+// Returns the root of the mean light of one pixel of the reduced image.
 float ReducedPixel(const LfPixels& pixels, int x_begin, int y_begin, int divisor) {
   double sum = 0;
   for (int y = y_begin; y < y_begin + divisor; ++y)

@@ -1,4 +1,4 @@
-// LF images as depth is searched in them: grey, a few hundred pixels wide.
+// Reduced LF images for the search of depths: grey, a few hundred pixels wide.
 #pragma once
 
 #include <optional>
@@ -15,9 +15,9 @@ namespace lf {
 inline constexpr int kMostReducedWidth = 480;
 
 struct ReducedImage {
-  // The root of light, black 0 and the brightest 1 (noise is about as large everywhere); NaN where
-  // nothing was recorded. A pixel is the mean of divisor x divisor pixels of the LF image, of which
-  // columns and rows at the end may be left out.
+  // Square root of light, from 0 (black) to 1, in which noise is about equal everywhere; NaN if
+  // nothing was recorded. A pixel is the root of the mean light of divisor x divisor pixels of the
+  // LF image, whose last columns and rows may be left out.
   Image<float> light;
   int divisor = 1;
 
@@ -27,13 +27,13 @@ struct ReducedImage {
   float At(const Vec2& place_px) const;
 };
 
-// The divisor of images of this width.
+// Returns the divisor for LF images of this width.
 int DivisorFor(int width_px);
 
 // Reduces a whole LF image in RGB.
 ReducedImage Reduced(const LfPixels& pixels, int divisor);
 
-// kInput: the image cannot be loaded.
+// Loads an LF image and reduces it. kInput: the image cannot be loaded.
 //   store  one with Mosaics::kToRgb
 Result<ReducedImage> LoadReducedImage(const LightField& light_field, const LfImageStore& store,
                                       LfImageId id);

@@ -1,4 +1,4 @@
-// Between which depths a scene lies, where only its LF images tell it.
+// Finds the range of depths of a scene from its LF images alone.
 #pragma once
 
 #include <optional>
@@ -10,9 +10,9 @@
 
 namespace lf {
 
-// Returns the depths between which four fifths of the places lie that the LF camera nearest to a
-// position shows, 5 % more to either side: by FindSubject(), along the camera's optical axis. None
-// if that is not sure, or if the camera's image cannot be read.
+// Returns the range of depths, along the optical axis of the LF camera nearest to a position, that
+// contains four fifths of the places which FindSubject() finds in its image, and 5 % more on either
+// side. None if the subject is not sure, or if the camera's image cannot be read.
 //   store  one with Mosaics::kToRgb
 std::optional<DepthRange> SweptDepths(const LightField& light_field, const LfImageStore& store,
                                       const Vec3& position_world, ThreadPool& pool);

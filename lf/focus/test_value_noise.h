@@ -1,4 +1,4 @@
-// Texture of scenes that tests draw.
+// Texture for scenes that tests draw.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace lf {
 
-// Value noise in [0, 1): smooth between random numbers on a lattice of width 1.
+// Returns value noise in [0, 1): random numbers on a lattice of width 1, interpolated smoothly.
 inline double ValueNoise(double x, double y, uint64_t seed) {
   const double column = std::floor(x), row = std::floor(y), u = x - column, v = y - row;
   const auto at = [&](double i, double j) {
