@@ -14,9 +14,9 @@ constexpr int kHalf = 6;
 constexpr int kSide = 2 * kHalf + 1;
 constexpr int kPadded = kPatchWindowSide;  // neighbours included
 static_assert(kPadded == kSide + 2);
-constexpr double kLeastShare = 2. / 3;  // of the pixels
-constexpr double kDarkest = 0.01;       // radiance: noise and quantisation are as large
-// Deviations of one pixel's light: relative, absolute (radiance), and as a share of the step to the
+constexpr double kLeastShare = 2. / 3;  // of the pixels must count
+constexpr double kDarkest = 0.01;       // radiance; below it, noise and quantisation are as large
+// Deviations of one pixel's light: relative, absolute (radiance), and as a part of the step to the
 // neighbour that differs most.
 constexpr double kNoise = 0.005, kDarkNoise = 0.001, kOfStep = 0.15;
 constexpr double kLeastDeviation = 5e-4;  // of a ratio
@@ -32,7 +32,8 @@ PatchWindow WindowOf(const ExposureView& view, const PatchGrid& grid) {
 
 float Sum(const std::array<float, 3>& light) { return light[0] + light[1] + light[2]; }
 
-// The largest step from a pixel to one of its neighbours; NaN if one of the five is not recorded.
+// Returns the largest step from a pixel to one of its neighbours; NaN if one of the five pixels is
+// not recorded.
 float StepAt(const PatchWindow& window, size_t pixel) {
   const float own = Sum(window[pixel]);
   float step = own > 0 ? 0 : std::numeric_limits<float>::quiet_NaN();
@@ -44,7 +45,7 @@ float StepAt(const PatchWindow& window, size_t pixel) {
   return step;
 }
 
-// Pixels that count, one after the other.
+// The pixels that count, one after the other.
 struct Pixels {
   std::array<std::array<float, kSide * kSide>, 3> a, b;  // light, by channel
   std::array<float, kSide * kSide> a_sum, b_sum, a_step, b_step, weight, level;
@@ -73,8 +74,8 @@ void Gather(const PatchWindow& window_a, const PatchWindow& window_b, const Patc
     }
 }
 
-// Weighs the pixels by both images alike, b's light being brought to a's by `gain`. Dark noise is
-// relative to the geometric mean of both.
+// Sets the weights of the pixels from both images equally, with b's light multiplied by `gain`.
+// Dark noise is relative to the geometric mean of both.
 void Weigh(double gain, double scale, Pixels* pixels) {
   const auto g = static_cast<float>(gain);
   for (size_t i = 0; i < pixels->count; ++i) {
@@ -88,7 +89,7 @@ void Weigh(double gain, double scale, Pixels* pixels) {
   }
 }
 
-// ln of the sum of one image's weighed light relative to that of the other.
+// Sums of the weighted light of both images.
 struct Ratio {
   double a = 0, b = 0;
 };
@@ -114,7 +115,7 @@ double Deviation(const Pixels& pixels, size_t c, const Ratio& sums) {
   return std::sqrt(squares / (sums.a * sums.a) + kLeastDeviation * kLeastDeviation);
 }
 
-// The weighed mean of r^2, and its variance.
+// Computes the weighted mean of r^2, and its variance.
 void TakeRadii(const Intrinsics& k, const std::array<Vec2, kSide * kSide>& at, const Pixels& pixels,
                float* mean, float* variance) {
   double weights = 0, sum = 0, squares = 0;

@@ -19,7 +19,7 @@ Intrinsics SmallCamera() {
   return k;
 }
 
-// A view whose light is `light`, and 0 where that is negative.
+// Returns a view with this light; negative light is not recorded.
 ExposureView Draw(const std::function<double(int x, int y)>& light) {
   ExposureView view;
   view.grey = std::make_shared<const ReducedImage>();
@@ -34,7 +34,7 @@ ExposureView Draw(const std::function<double(int x, int y)>& light) {
   return view;
 }
 
-// The patch in the middle of both, b's being displaced.
+// Compares the patch in the middle of a with that of b, which is displaced.
 std::optional<ExposureSample> Compare(const ExposureView& a, const ExposureView& b,
                                       double displaced_px = 0) {
   const Intrinsics k = SmallCamera();
@@ -72,7 +72,7 @@ TEST(ComparedPatch, EdgesThatFallBetweenPixelsCountLittle) {
   const ExposureView b = Draw([](int x, int) { return x < 20 ? 0.1 : x == 20 ? 0.3 : 0.6; });
   const auto sample = Compare(a, b);
   ASSERT_TRUE(sample);
-  // Means of all pixels differ by 0.06.
+  // The means of all pixels differ by 0.06.
   EXPECT_NEAR(sample->log_ratio[0], 0, 0.002);
 }
 
@@ -98,7 +98,7 @@ TEST(ComparedPatch, DarkAndUnrecordedPatchesTellNothing) {
   EXPECT_FALSE(Compare(lit, Draw([](int, int) { return 0.005; })));
   EXPECT_FALSE(Compare(lit, Draw([](int x, int) { return x % 3 == 0 ? -1 : 0.4; })));
   EXPECT_FALSE(Compare(lit, lit, 18));  // beyond the image
-  // Light of a third is dark in blue alone.
+  // This light is dark only in blue, which has a third of it.
   const auto sample = Compare(lit, Draw([](int, int) { return 0.025; }));
   ASSERT_TRUE(sample);
   EXPECT_FALSE(std::isnan(sample->log_ratio[0]));

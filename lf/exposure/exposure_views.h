@@ -1,5 +1,5 @@
-// LF images as their exposure is compared: small, their light by channel, and grey to find depths
-// in. All of a light field are in memory at the same time.
+// Small views of LF images for the comparison of exposures: their light by channel, and a grey
+// image to find depths. The views of a whole light field are in memory at the same time.
 #pragma once
 
 #include <array>
@@ -20,26 +20,27 @@ namespace lf {
 
 struct ExposureView {
   std::shared_ptr<const ReducedImage> grey;  // null: the image could not be loaded
-  // R, G and B of the same pixels  [height][width][3]: kLightSteps times the light relative to
-  // what the light field can hold, 0 where one of the LF pixels is masked or clipped.
+  // R, G and B of the same pixels  [height][width][3]: light in units of the largest that the light
+  // field can hold, times kLightSteps; 0 if one of the LF pixels is masked or clipped.
   Image<uint16_t> light;
 
-  // Light between pixels; 0 where one of the four around is 0, or beyond the image.
+  // Returns the light between pixels; 0 if one of the four pixels around is 0, or beyond the image.
   std::array<float, 3> LightsAt(const Vec2& place_px) const;
 };
 inline constexpr float kLightSteps = 65534;
 
 struct LoadViewsOptions {
-  int width_px = 240;                              // the most that a view is wide
-  const std::atomic<bool>* interrupted = nullptr;  // looked at now and then
+  int width_px = 240;                              // largest width of a view
+  const std::atomic<bool>* interrupted = nullptr;  // read now and then; may be null
   std::function<void(size_t done, size_t total)> progress;
 };
 
-// Bytes that a view of this width takes, for LF images of these sizes.
+// Returns the memory of a view of this width, for LF images with these intrinsics.
 size_t ViewBytes(const Intrinsics& k, int width_px);
 
-// The views of all LF images, each of which is loaded once; those that cannot be loaded have none.
-// kInterrupted. kOutput: the machine lacks memory or open files.
+// Returns the views of all LF images, each of which is loaded once. The view of an image that
+// cannot be loaded has no `grey`.
+// kInterrupted: `interrupted` is true. kOutput: the machine lacks memory or open files.
 //   light_field  without gains and falloffs (WithoutExposure())
 //   store        of it, with Mosaics::kToRgb
 Result<std::vector<ExposureView>> LoadExposureViews(const LightField& light_field,

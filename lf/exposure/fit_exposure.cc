@@ -12,24 +12,24 @@ namespace lf {
 namespace {
 
 constexpr int kRounds = 16;
-constexpr int kHuberRounds = 5;          // before outliers are left out altogether
-constexpr double kHuber = 1.345;         // in standard deviations (95 % efficient on normal noise)
-constexpr double kTukey = 4.685;         // the same
-constexpr double kLeastFactor = 0.2;     // of the deviations that samples state
-constexpr double kUnit = 0.01;           // deviation of a sample whose weight is 1
-constexpr double kLeastShare = 0.05;     // of light, within the search
-constexpr double kPriorDeviation = 1;    // of falloff coefficients that samples tell nothing of
-constexpr size_t kLeastPerImage = 12;    // samples that agree, of all channels
-constexpr double kAgrees = 0.1;          // robust weight
+constexpr int kHuberRounds = 5;        // later rounds give outliers no weight at all
+constexpr double kHuber = 1.345;       // in standard deviations (95 % efficient on normal noise)
+constexpr double kTukey = 4.685;       // likewise
+constexpr double kLeastFactor = 0.2;   // of the deviations that samples state
+constexpr double kUnit = 0.01;         // deviation of a sample whose weight is 1
+constexpr double kLeastShare = 0.05;   // lower bound of the light that a lens leaves, while fitting
+constexpr double kPriorDeviation = 1;  // of falloff coefficients that samples tell nothing of
+constexpr size_t kLeastPerImage = 12;  // samples that agree, over all channels
+constexpr double kAgrees = 0.1;        // robust weight
 constexpr double kMostDeviation = 0.02;  // of the gain of an LF image that is matched
-constexpr double kCommonShare = 0.25;    // of a pair's spread that more samples do not take away
-constexpr double kBelievedSamples = 8;   // as many of a pair count as much as those of all pairs
+constexpr double kCommonShare = 0.25;    // part of a pair's spread that more samples do not reduce
+constexpr double kBelievedSamples = 8;   // so many of a pair count as much as those of all pairs
 
 double Share(const Vignetting& falloff, double r_squared) {
   return std::max(kLeastShare, falloff.Falloff(r_squared));
 }
 
-// The mean of ln F over values of r^2 with this mean and variance, to the second order.
+// Returns the mean of ln F over values of r^2 with this mean and variance, to the second order.
 double MeanLogShare(const Vignetting& falloff, double r_squared, double variance) {
   const double share = Share(falloff, r_squared);
   const auto& [v1, v2, v3] = falloff.v;
@@ -38,7 +38,7 @@ double MeanLogShare(const Vignetting& falloff, double r_squared, double variance
   return std::log(share) + bend * variance / 2;
 }
 
-// d ln F / d v.
+// Returns d ln F / d v.
 Eigen::Vector3d Slope(const Vignetting& falloff, double r_squared) {
   return Eigen::Vector3d(r_squared, r_squared * r_squared, r_squared * r_squared * r_squared) /
          Share(falloff, r_squared);
@@ -51,7 +51,8 @@ double MedianOf(std::vector<double>* values) {
   return *middle;
 }
 
-// The standard deviation of normal noise with these absolute values, whatever lies far out.
+// Returns the standard deviation of normal noise with these absolute values, unaffected by
+// outliers.
 double SpreadOf(std::vector<double>* sizes) { return 1.4826 * MedianOf(sizes); }
 
 class Fit {
@@ -81,7 +82,7 @@ class Fit {
   }
 
  private:
-  // Samples of the same two images share their place in the equations.
+  // Numbers the pairs of LF images: samples of the same pair share their place in the equations.
   void FindPairs() {
     std::unordered_map<uint64_t, uint32_t> numbers;
     for (const ExposureSample& sample : samples_) {
@@ -92,7 +93,7 @@ class Fit {
     }
   }
 
-  // Residuals, their deviation, and what each of them counts.
+  // Computes the residuals, their deviation, and the weight of each sample.
   void Weigh() {
     std::vector<double> sizes;
     for (size_t i = 0; i < samples_.size(); ++i)
@@ -122,8 +123,9 @@ class Fit {
     return (1 - x * x) * (1 - x * x);
   }
 
-  // One step of Gauss and Newton: all gains and falloffs at once. The gains are eliminated: their
-  // equations are a Laplacian of the graph of pairs, solved by conjugate gradients.
+  // Makes one Gauss-Newton step for all gains and falloffs at once. The gains are eliminated: the
+  // matrix of their equations is the Laplacian of the graph of pairs, solved by conjugate
+  // gradients.
   void Step() {
     const auto images = static_cast<Eigen::Index>(groups_.size());
     const auto unknowns =
@@ -197,7 +199,7 @@ class Fit {
       entries.emplace_back(a, b, -of_pairs[p]);
       entries.emplace_back(b, a, -of_pairs[p]);
     }
-    // A trace of the identity: gains that nothing ties down stay where they are.
+    // A tiny multiple of the identity keeps gains that no sample determines at their value.
     constexpr double kTrace = 1e-9;
     for (int i = 0; i < static_cast<int>(images); ++i) entries.emplace_back(i, i, kTrace);
     Eigen::SparseMatrix<double> laplacian(images, images);
@@ -213,9 +215,10 @@ class Fit {
 
   bool Agrees(size_t sample, size_t c) const { return agreements_[3 * sample + c] > kAgrees; }
 
-  // Variances of the logarithm of each pair's ratio, by how far its places differ from each other.
-  // Where a lamp stands still while the object turns, each place becomes brighter or darker by its
-  // own share, in common with the places around it: no gain is right, however many samples.
+  // Returns the variance of the logarithm of each pair's ratio, from the differences between its
+  // places. If a lamp stands still while the object turns, each place becomes brighter or darker by
+  // its own factor, in common with the places around it. No gain is right then, whatever the number
+  // of samples.
   std::vector<double> PairVariances() {
     std::vector<std::vector<double>> sizes(pairs_.size());
     std::vector<double> all;
@@ -239,7 +242,8 @@ class Fit {
     return variances;
   }
 
-  // Images whose gain enough samples tie to those of others; what these connect.
+  // Finds the LF images whose gains enough samples tie to others, and the components that they
+  // form.
   void FindComponents() {
     std::vector<size_t> counts(groups_.size());
     for (size_t i = 0; i < samples_.size(); ++i)
@@ -312,7 +316,7 @@ class Fit {
   std::vector<uint32_t> pair_of_;  // of each sample
   std::vector<double> residuals_;  // [samples][3]; NaN: no sample of the channel
   std::vector<float> agreements_;  // [samples][3]: robust weights, in [0, 1]
-  std::vector<float> weights_;     // [samples][3]: these, by the inverse variance
+  std::vector<float> weights_;     // [samples][3]: robust weights times inverse variance
   double factor_ = 1;              // of the deviations that samples state
   int round_ = 0;
   ExposureFit fit_;

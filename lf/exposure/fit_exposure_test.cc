@@ -13,7 +13,7 @@ namespace {
 
 constexpr Vignetting kTrueFalloff{{-0.3, 0.05, -0.15}};  // 60 % in the corner
 
-// A strip of LF images, each of which overlaps the next ones, with gains within +-20 %.
+// A strip of LF images with gains within +-20 %. Each overlaps the next ones.
 struct Strip {
   explicit Strip(uint32_t count) : groups(count, 0), true_log_gains(count) {
     std::array<double, 3> sums = {};
@@ -127,7 +127,7 @@ TEST(FitExposure, PlacesThatDifferFromEachOtherTieNoImage) {
     for (uint32_t i = 0; i + 2 < 12; ++i)
       for (const uint32_t step : {1U, 2U}) strip.AddSamples(i, i + step, 30, noise);
     const ExposureFit fit = FitExposure(strip.samples, strip.groups, {kTrueFalloff}, {});
-    EXPECT_NEAR(fit.spread, 0.44 * noise, 0.05 * noise);  // 1.48 x the median of a triangle's sizes
+    EXPECT_NEAR(fit.spread, 0.44 * noise, 0.05 * noise);  // 1.48 x median |x| of triangular noise
     EXPECT_EQ(fit.component_count, noise < 0.1 ? 1u : 0u);
     EXPECT_EQ(std::count(fit.components.begin(), fit.components.end(), kAlone),
               noise < 0.1 ? 0 : 12);

@@ -23,16 +23,16 @@ namespace {
 constexpr int kWidest_px = 240, kNarrowest_px = 80;  // of the small copies
 constexpr size_t kLeastViews = 2;                    // of a ring
 constexpr double kLeastAgreement = 0.8;              // correlation of a view that is compared
-constexpr size_t kProbed = 6;        // LF images that are searched at all depths first
-constexpr size_t kProbedPlaces = 3;  // one of so many places of these
-constexpr size_t kLeastProbes = 50;  // depths found there
+constexpr size_t kProbed = 6;        // number of LF images that are first searched at all depths
+constexpr size_t kProbedPlaces = 3;  // one of so many places of these is searched
+constexpr size_t kLeastProbes = 50;  // number of depths that must be found there
 constexpr size_t kMostSamples = 4'000'000;
-constexpr size_t kLeastSamples = 60;  // of an LF image, however many there are
+constexpr size_t kLeastSamples = 60;  // kept of each LF image, even if kMostSamples is exceeded
 constexpr size_t kImagesPerRound = 64;
 constexpr size_t kLeastImagesPerCamera = 8;
 constexpr double kLeastCornerLight = 0.05, kMostCornerLight = 1.25;
 
-// Which falloff is each LF image's own.
+// The groups of cameras that share a falloff.
 struct CameraGroups {
   std::vector<uint32_t> of_images;
   std::vector<uint32_t> of_intrinsics;
@@ -61,8 +61,8 @@ class Sampler {
   Sampler(const LightField& field, const std::vector<ExposureView>& views)
       : field_(field), views_(views), nearby_(field) {}
 
-  // Looks at some places of some LF images at all depths; LF images are then searched no nearer
-  // than half of the nearest depth that is found. A full search takes several times as long.
+  // Searches some places of some LF images at all depths. All LF images are then searched from half
+  // of the nearest depth found, because a full search takes several times as long.
   void FindNearestDepth(ThreadPool& pool) {
     const size_t count = std::min(kProbed, field_.size());
     std::vector<std::vector<double>> depths(count);
@@ -85,7 +85,7 @@ class Sampler {
     nearest_w_ = *near / 2;
   }
 
-  // Samples of one LF image with those around; evenly thinned to the number.
+  // Returns samples of one LF image with those around it, thinned evenly to at most `most`.
   std::vector<ExposureSample> SamplesOf(LfImageId id, size_t most) const {
     std::vector<ExposureSample> samples;
     const ExposureView& own = views_[id.value];
@@ -137,10 +137,10 @@ class Sampler {
   const LightField& field_;
   const std::vector<ExposureView>& views_;
   const NearbyCameras nearby_;
-  double nearest_w_ = 0;  // depth that places are searched from
+  double nearest_w_ = 0;  // nearest depth that is searched
 };
 
-// The width of small copies that fit into the memory; 0: not even the narrowest do.
+// Returns the width of small copies that fit into the memory; 0 if not even the narrowest do.
 int WidthWithin(const LightField& field, size_t memory_bytes) {
   for (int width = kWidest_px; width >= kNarrowest_px; width -= 20) {
     size_t bytes = 0;
@@ -176,7 +176,7 @@ Result<std::vector<ExposureSample>> TakeSamples(const LightField& plain,
   return samples;
 }
 
-// The mean step that the samples which agree have with the exposure of the calibration.
+// Returns the mean step of the samples that agree, with the exposure of the calibration.
 double StepBefore(const LightField& field, const std::vector<ExposureSample>& samples,
                   const ExposureFit& fit, const CameraGroups& groups) {
   std::vector<std::array<double, 3>> log_gains(field.size());
@@ -195,7 +195,8 @@ double StepBefore(const LightField& field, const std::vector<ExposureSample>& sa
   return count > 0 ? sum / static_cast<double>(count) : 0;
 }
 
-// The falloffs, if all are such as lenses have, and samples reach far enough out.
+// Returns facts about the falloffs; none if a falloff is not like that of a lens, or if samples do
+// not reach far enough towards the corners.
 std::optional<FoundFalloff> BelievableFalloff(const LightField& field, const CameraGroups& groups,
                                               const std::vector<ExposureSample>& samples,
                                               const ExposureFit& fit) {

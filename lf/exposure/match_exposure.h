@@ -1,5 +1,5 @@
 // Estimates how unevenly the LF images of a light field are exposed, and how much light their
-// lenses lose towards the corners, from what neighbouring LF images both show.
+// lenses lose towards the corners, from places that neighbouring LF images both show.
 #pragma once
 
 #include <array>
@@ -19,45 +19,47 @@
 namespace lf {
 
 struct MatchExposureOptions {
-  bool vignetting = false;  // estimate falloffs, too; else those of the light field are kept
-  // Small copies of all LF images are in memory. They are made smaller where they would need more.
+  bool vignetting = false;  // if true, falloffs are estimated; if false, the light field's are kept
+  // Memory for small copies of all LF images. The copies are made smaller if they would need more.
   size_t memory_bytes = size_t{2} << 30;
-  const std::atomic<bool>* interrupted = nullptr;  // looked at now and then
+  const std::atomic<bool>* interrupted = nullptr;  // read now and then; may be null
   std::function<void(size_t done, size_t total)> progress;
 };
 
 struct FoundFalloff {
-  double corner_min = 1, corner_max = 1;  // share of light left in the farthest corner, of cameras
-  double reach = 0;                       // the largest r that a tenth of the samples lies beyond
-  size_t camera_count = 0;                // falloffs that were estimated
+  double corner_min = 1, corner_max = 1;  // light left in the farthest corner, over all cameras
+  double reach = 0;                       // the r that a tenth of the samples lies beyond
+  size_t camera_count = 0;                // number of estimated falloffs
 };
 
 struct MatchedExposure {
-  std::vector<ChannelGains> gains;      // as LightField::cameras
-  std::vector<Vignetting> falloffs;     // as LightField::intrinsics
+  std::vector<ChannelGains> gains;      // one for each of LightField::cameras
+  std::vector<Vignetting> falloffs;     // one for each of LightField::intrinsics
   float least_gain = 1, most_gain = 1;  // of the LF images that were matched
   std::optional<FoundFalloff> falloff;  // none: not asked for, or not believable
-  // Mean difference of what two neighbouring LF images show of the same place, as a share of it:
-  // how strong seams are; with the exposure as the calibration has it, and as it is now.
+  // Mean relative difference of the light of the same place in two neighbouring LF images, which is
+  // the strength of seams: with the exposure of the calibration, and with the matched one.
   double step_before = 0, step_after = 0;
-  size_t sample_count = 0;  // colours compared, in which the LF images agree
+  size_t sample_count = 0;  // number of compared colours in which the LF images agree
   size_t component_count = 0;
   std::vector<LfImageId> left_alone;  // too little overlap; the gain stays as it was
-  std::vector<LfImageId> unreadable;  // the same
+  std::vector<LfImageId> unreadable;  // cannot be read; the gain stays as it was
 };
 
-// The light field whose store MatchExposure() reads: without gains and falloffs.
+// Returns the light field without gains and falloffs, whose store MatchExposure() reads.
 LightField WithoutExposure(const LightField& light_field);
 
-// Compares the textured places of each LF image, at the depth where the LF images around agree
-// (focus/place_depth.h), with what these and the eight nearest ones show there. Dark, clipped and
-// masked pixels do not count; FitExposure() leaves out what does not agree. The geometric mean of
-// the gains is 1 in each channel and each group of LF images that overlaps tie together. A falloff
-// belongs to distinct intrinsics; where most LF images have their own, to all of one size.
+// Finds the depth of the textured places of each LF image, at which the LF images around agree
+// (focus/place_depth.h). Compares the light of each place with that in these LF images and in the
+// six nearest ones. Dark, clipped and masked pixels do not count, and FitExposure() gives outliers
+// no weight. The geometric mean of the gains is 1 in each channel and each component, which is a
+// set of LF images that are connected by overlaps. Each intrinsics has its own falloff; if there
+// are fewer than eight LF images for each intrinsics, all intrinsics of the same image size share
+// one. Each LF image is loaded once.
 //   store  of WithoutExposure(light_field), with Mosaics::kToRgb
-// Each LF image is loaded once. kInput: the gains of fewer than half of the LF images can be told
-// (they do not overlap enough, or the light on what they show changes from one to the next, so that
-// a gain would be a guess); or too many images for the memory. kInterrupted.
+// kInput: there are too many images for the memory; or the gains of fewer than half of the readable
+// LF images can be estimated, because they do not overlap enough, or because the light on the scene
+// changes from one image to the next. kInterrupted: `interrupted` is true.
 Result<MatchedExposure> MatchExposure(const LightField& light_field, const LfImageStore& store,
                                       const MatchExposureOptions& options, ThreadPool& pool);
 

@@ -17,8 +17,8 @@ constexpr int kWidth = 240, kHeight = 160;
 constexpr double kFocal_px = 220, kPitch_w = 0.05, kWall_w = 2;
 constexpr Vignetting kTrueFalloff{{-0.3, 0.05, -0.15}};  // 60 % in the corner
 
-// A grid of cameras before a textured wall, exposed unevenly, with the falloff of their lens, noise
-// and a watermark.
+// A grid of unevenly exposed cameras in front of a textured wall, with the falloff of their lens,
+// noise and a watermark.
 class UnevenStore : public LfImageStore {
  public:
   explicit UnevenStore(int side = 5) {
@@ -81,7 +81,7 @@ class UnevenStore : public LfImageStore {
   LfImageId broken{1000000};
 };
 
-// The largest relative error of a gain, up to the scale that all have in common.
+// Returns the largest relative error of a gain, up to a factor that all gains have in common.
 double WorstGain(const MatchedExposure& matched, const UnevenStore& store) {
   double worst = 0;
   for (size_t c = 0; c < 3; ++c) {
@@ -160,7 +160,7 @@ TEST(MatchExposure, WhatCannotBeReadOrComparedIsLeftAlone) {
   UnevenStore store(4);
   store.broken = LfImageId{7};
   store.field.cameras[7].gain = 2;
-  // Turned away.
+  // Camera 3 looks away.
   store.field.cameras[3].cam_from_world.rotation = Vec3(-1, 1, -1).asDiagonal();
   store.field.cameras[3].gain = 3;
   const Result<MatchedExposure> matched = Match(store);

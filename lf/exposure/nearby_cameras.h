@@ -1,5 +1,5 @@
-// The LF cameras around one, found in a k-d tree of their positions, so that choosing the
-// neighbours of all LF images takes n log n.
+// Finds the LF cameras around one in a k-d tree of their positions, so that the neighbours of all n
+// LF images are found in n log n steps.
 #pragma once
 
 #include <cstddef>
@@ -18,17 +18,17 @@ class NearbyCameras {
   // Refers to the light field, which must outlive it.
   explicit NearbyCameras(const LightField& light_field);
 
-  // Up to `count` LF cameras nearest to a point, the nearest first, that look the same way as
-  // `camera` (within 37 degrees); without `camera` itself.
+  // Returns up to `count` LF cameras nearest to a point, the nearest first, that look in about the
+  // same direction as `camera` (within 37 degrees); without `camera` itself.
   std::vector<uint32_t> Nearest(const Vec3& point_world, size_t count, LfImageId camera) const;
 
-  // Rings of views around `camera` for DepthOf(), each twice as wide as the one before: six views
-  // of each. Depths must be known better than those of ChooseRings(), because a falloff seen at a
-  // wrong displacement comes out too weak. Images are not loaded.
+  // Returns rings of up to six views around `camera` for DepthOf(), each twice as wide as the one
+  // before. Depths must be more precise than with ChooseRings(), because with a wrong disparity the
+  // estimated falloff is too weak. Images are not loaded.
   Rings DepthRings(LfImageId camera) const;
 
-  // Views whose light is compared with that of `camera`: those of the rings, and the nearest ones.
-  // Each is there once; images are not loaded.
+  // Returns the views whose light is compared with that of `camera`: those of the rings, and the
+  // six nearest ones, each once. Images are not loaded.
   std::vector<View> ComparedViews(LfImageId camera, const Rings& rings) const;
 
  private:
@@ -43,7 +43,7 @@ class NearbyCameras {
   std::vector<Vec3> centres_;    // [cameras]
   std::vector<Vec3> forwards_;   // [cameras]
   std::vector<uint32_t> order_;  // a balanced tree: the middle of each range is its root
-  std::vector<uint8_t> axes_;    // of each root's split, at its place in order_
+  std::vector<uint8_t> axes_;    // axis of each root's split, at the root's index in order_
   Vec3 least_ = Vec3::Zero(), most_ = Vec3::Zero();  // corners of the box of all centres
   double spacing_w_ = 0;
 };

@@ -11,7 +11,7 @@
 namespace lf {
 namespace {
 
-// Cameras at random places, a third of which look back.
+// Returns cameras at random positions, a third of which look back.
 LightField Scattered(uint32_t count) {
   LightField field;
   Intrinsics k;
