@@ -6,8 +6,9 @@
 //
 //   X = (S (forward . U) - U (forward . S)) / (forward . (U - S))
 //
-// and the focus plane n . X = o where X = (S (n . U - o) - U (n . S - o)) / (n . (U - S)). All of
-// these scalar products are linear forms of the cell's four numbers.
+// and meets the focus plane, n . X = o, where X = (S (n . U - o) - U (n . S - o)) / (n . (U - S)).
+// All
+// of these scalar products are linear forms of the cell's four numbers.
 #pragma once
 
 #include <array>

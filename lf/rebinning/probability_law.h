@@ -2,7 +2,7 @@
 //
 // Every plane continues beyond its borders with its outermost values.
 //
-//   grey     of stored values                                       [0, 65535]
+//   grey     made of stored values                                  [0, 65535]
 //   across   (sum of taps * grey + 128) >> 8                        in 1 / 16
 //   smooth   (sum of taps * across of the rows + 2048) >> 12        in 1 / 16
 //   change   min(|left + right + above + below - 4 here| >> 4, 65535), of smooth

@@ -36,10 +36,11 @@ std::vector<uint16_t> StoredValueTable(const RadianceEncoding& encoding);
 // Computes p of the pixels of `rect`, a part of pixels.rect, in units of 1 / 65535.
 //
 // The image of a mosaic is the mean of the two greens of every 2 x 2 pixels (at even positions in
-// the LF image). The unit of sigma is still the LF pixel, and all four pixels have the same p. The
-// image continues beyond the borders of pixels.rect with its outermost values: for exact results,
-// pixels.rect must be larger than `rect` by PixelsAround() pixels on each side that is not a border
-// of the LF image. Masked pixels have p = 0.
+// the LF image). The unit of sigma is still the LF pixel, and all four pixels have the same p.
+//
+// The image continues beyond the borders of pixels.rect with its outermost values: for exact
+// results, pixels.rect must be larger than `rect` by PixelsAround() pixels on each side that is not
+// a border of the LF image. Masked pixels have p = 0.
 //   p  [rect.height][rect.width]; its memory is reused
 void ProbabilityMap(const LfPixels& pixels, const PixelRect& rect,
                     const std::vector<uint16_t>& stored_values, const ProbabilityOptions& options,

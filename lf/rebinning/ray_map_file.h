@@ -17,8 +17,8 @@ namespace lf {
 
 // Writes the map atomically (core/file.h). The bytes depend only on the entries and the content of
 // the map, not on the order of its rays or the number of threads. Needs up to an eighth of the
-// cells' memory in addition to the map. The entries have the form of those of plates. kOutput: the
-// folder or the disk cannot be written.
+// cells' memory in addition to the map. The entries have the form of those of plates.
+// kOutput: the folder or the disk cannot be written.
 Result<void> WriteRays(const std::filesystem::path& path, const PlateEntries& entries,
                        const RayMap& map, ThreadPool& pool);
 

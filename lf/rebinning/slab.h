@@ -39,7 +39,7 @@ struct Slab {
 using SlabPoint = Eigen::Vector4d;
 
 // Returns the points where a ray cuts the planes; none if it is parallel to one of them, or runs
-// from the uv plane to the st plane. The direction of a ray is the one its camera looks in, against
+// from the uv plane to the st plane. A ray runs in the direction that its camera looks in, against
 // the light.
 std::optional<SlabPoint> Parameterize(const Slab& slab, const Ray& ray);
 
