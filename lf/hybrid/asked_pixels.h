@@ -22,7 +22,7 @@ enum class Previews {
   kOn,
   kOff,
 };
-// "auto", "on", "off"
+// Returns "auto", "on" or "off".
 const char* NameOf(Previews previews);
 inline constexpr size_t kPreviewedFrom = 256;
 // Number of collected LF images of a frame whose rays are kept for previews. They are spread all

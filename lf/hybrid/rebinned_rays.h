@@ -38,7 +38,7 @@ enum class KeptRays {
   kAll,    // all rays
   kEdges,  // rays at edges, by Eq. 4.4
 };
-// "auto", "all", "edges"
+// Returns "auto", "all" or "edges".
 const char* NameOf(KeptRays kept);
 
 struct RebinPassOptions {

@@ -11,7 +11,7 @@ namespace lf {
 //   kHybrid   collected rays, completed by rebinned ones in the gaps of the lens
 enum class RenderMode { kCollect, kRebin, kHybrid };
 
-// "collect", "rebin", "hybrid"
+// Returns "collect", "rebin" or "hybrid".
 const char* NameOf(RenderMode mode);
 
 inline bool Collects(RenderMode mode) { return mode != RenderMode::kRebin; }
