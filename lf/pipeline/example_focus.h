@@ -15,8 +15,8 @@ namespace lf {
 struct ExampleFocus {
   double distance_w = 0;
   std::string reason;
-  // Why the focus is not sure; empty if it is. If it is not, candidates_w are at most three
-  // distances that may be right, the best first.
+  // The reason why the focus is not sure; empty if it is sure. If it is not, candidates_w are at
+  // most three distances that may be right, the best first.
   std::string doubt = {};
   std::vector<double> candidates_w = {};
   // Depths that the scene lies between, if they are known; otherwise equal.

@@ -36,8 +36,8 @@ struct ExamplePath {
   std::string focus_reason;  // how it was found, for people
   double aperture_diameter_w = 0;
   std::string aperture_reason;  // for people; follows the diameter and a comma
-  // Why the focus is not sure; empty if it is. If it is not, candidates_w are at most three
-  // distances that may be right, the best first.
+  // The reason why the focus is not sure; empty if it is sure. If it is not, candidates_w are at
+  // most three distances that may be right, the best first.
   std::string doubt;
   std::vector<double> candidates_w;
 };

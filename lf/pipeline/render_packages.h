@@ -74,9 +74,9 @@ Result<std::vector<PackagePart>> PartsWith(const PackagedFilm& film,
 std::string ContactSheetName(const std::vector<std::filesystem::path>& paths);
 
 // Renders one package after the other with Render(), each with its own report and state. Then
-// writes the contact sheet (ContactSheetName()) and the video of their frames. Of options.frames,
-// each package renders those that it has. Returns the report of all packages together. A package
-// file that was changed since the film was opened is opened again, with all checks.
+// writes the contact sheet (ContactSheetName()) and the video of their frames. Each package renders
+// those of options.frames that it has. Returns the report of all packages together. A package file
+// that was changed since the film was opened is opened again, with all checks.
 // kInput: every frame of a whole film is black. Other errors are those of Render() and PartsWith().
 Result<RenderReport> RenderPackages(PackagedFilm film, const RenderOptions& options,
                                     ThreadPool& pool,
