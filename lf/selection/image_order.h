@@ -24,7 +24,7 @@ namespace lf {
 //                soon, but neighbours follow each other, so that unfinished bokeh is uneven
 enum class ImageOrder { kShuffle, kRoundRobin, kArea };
 
-// "shuffle", "round-robin", "area"
+// Convert an order to "shuffle", "round-robin" or "area", and back; none for any other text.
 const char* NameOf(ImageOrder order);
 std::optional<ImageOrder> ImageOrderOf(const std::string& name);
 

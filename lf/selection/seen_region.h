@@ -38,7 +38,7 @@ class SeenRegion {
   bool Misses(const Vec3& centre_world) const;
   bool Misses(const WorldBox& box) const;
 
-  // True if Misses() is false for every position in the box.
+  // If true, Misses() is false for every position in the box. It may also be false for such a box.
   bool HoldsAll(const WorldBox& box) const;
 
   // Largest angle between the optical axis and a ray that the frame takes.
