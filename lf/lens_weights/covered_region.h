@@ -1,4 +1,4 @@
-// The part of the lens plane whose light is known, because a lens may be wider than the capture.
+// The part of the lens plane whose light is known. A lens may be wider than the capture.
 #pragma once
 
 #include <limits>

@@ -30,7 +30,7 @@ enum class LensWeights { kNone, kArea, kHat, kAuto };
 // The version of doc/lens-integral.md. It is raised when rays get other weights.
 inline constexpr int kLensWeightsVersion = 3;
 
-// "none", "area", "hat", "auto"
+// Returns "none", "area", "hat" or "auto".
 const char* NameOf(LensWeights weights);
 
 // Returns the part of hats in kAuto's weights: 1 up to a diameter of kHatsUpTo camera distances, 0
@@ -117,7 +117,7 @@ class FrameWeights {
   double step_w_ = 0;                 // movement of lens points from node to node
   std::vector<Place> places_across_;  // [end of the block]
   std::vector<Place> places_down_;
-  std::vector<size_t> nodes_begin_;  // [camera]: begin of its weights_; kNone: it has none
+  std::vector<size_t> nodes_begin_;  // [camera]: index of its first weight; kNone: it has none
   std::vector<uint16_t> weights_;    // [row][column] of one camera after the other, in 1/256
 };
 
