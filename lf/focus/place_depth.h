@@ -40,7 +40,7 @@ struct Place {
   Vec2 at_px;              // in the LF image
   Vec3 origin, direction;  // depth 1 along the optical axis
   Vec3 right, down;        // one reduced pixel, at depth 1
-  double weight = 0;       // by texture, and nearness to the middle
+  double weight = 0;       // larger with more texture, and nearer to the middle
   Patch patch;             // of the camera's image, mean 0
   double deviation = 0;
 
