@@ -15,7 +15,7 @@ namespace lf {
 namespace {
 
 constexpr size_t kLookedAt = 3;
-// The search for each of them asks at most this many LF images, one after the other.
+// Number of LF images that are tried, one after the other, for each of the three.
 constexpr size_t kAskedFrom = 5;
 
 // Two pictures count as having the same transparent pixels if at most this share of them differs.
@@ -25,11 +25,11 @@ constexpr double kSameShare = 0.02;
 struct Look {
   std::string image_name;
   int width = 0;
-  std::vector<bool> is_transparent;  // by pixel
+  std::vector<bool> is_transparent;  // one per pixel
   size_t transparent_count = 0;
-  bool is_one_colour = true;  // that of transparent pixels
+  bool is_one_colour = true;  // all transparent pixels have one colour
   bool is_float = false;
-  std::array<double, 3> background = {};  // where it is one colour
+  std::array<double, 3> background = {};  // that colour, if is_one_colour
 };
 
 // The radiance of a stored value.
@@ -77,7 +77,7 @@ bool HaveSameTransparentPixels(const Look& a, const Look& b) {
          kSameShare * static_cast<double>(std::max(a.transparent_count, b.transparent_count));
 }
 
-// The first LF image from `first` on whose header can be read.
+// Returns the first LF image from `first` on whose header can be read, out of kAskedFrom.
 std::optional<LfImageId> ReadableFrom(const LightField& light_field, size_t first,
                                       ImageFileInfo* info) {
   for (size_t i = first; i < std::min(first + kAskedFrom, light_field.size()); ++i) {
@@ -92,7 +92,7 @@ std::optional<LfImageId> ReadableFrom(const LightField& light_field, size_t firs
   return std::nullopt;
 }
 
-// Returns looks at the LF images that have something transparent.
+// Returns a Look at each chosen LF image that has transparent pixels.
 std::vector<Look> LookAtSome(const LightField& light_field) {
   std::vector<size_t> firsts;
   for (size_t i = 0; i < kLookedAt; ++i)

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kSide = 20;
 
-// Three LF images, of which a test writes as many as it needs.
+// Three LF images; each test writes as many of them as it needs.
 class AlphaEvidenceTest : public FolderTest {
  protected:
   void SetUp() override {
@@ -24,7 +24,8 @@ class AlphaEvidenceTest : public FolderTest {
     field_.image_names = {"0.png", "1.png", "2.png"};
     field_.folder = folder_;
   }
-  // Noise, opaque in columns from `begin` on; what is transparent has the value `beneath`, if any.
+  // Writes noise that is opaque in the columns from `begin` on. Transparent pixels have the value
+  // `beneath`, if it is given.
   void Write(int index, int begin, std::optional<uint8_t> beneath) {
     Image<uint8_t> image = NoiseImage<uint8_t>(kSide, kSide, 4);
     for (int y = 0; y < kSide; ++y)
@@ -39,7 +40,7 @@ class AlphaEvidenceTest : public FolderTest {
 };
 
 TEST_F(AlphaEvidenceTest, WithoutAlphaThereIsNone) {
-  EXPECT_FALSE(FindAlphaEvidence(field_));  // nor without files
+  EXPECT_FALSE(FindAlphaEvidence(field_));  // no files, no evidence
   const Image<uint8_t> image(kSide, kSide, 3);
   ASSERT_TRUE(WriteImage(folder_ / "0.png", image.view()));
   EXPECT_FALSE(FindAlphaEvidence(field_));

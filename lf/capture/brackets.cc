@@ -16,12 +16,13 @@ namespace {
 constexpr double kSamePlace = 1e-9, kRounding = 1e-14;
 constexpr double kSameRotation = 1e-6;
 
-// Points in cells of a grid so coarse that few points within the tolerance are in two of them.
+// Points in the cells of a grid that is so coarse that points within the tolerance rarely lie in
+// different cells.
 class PlaceGrid {
  public:
   explicit PlaceGrid(double tolerance_w) : tolerance_w_(tolerance_w), cell_w_(1024 * tolerance_w) {}
 
-  // Calls use(cell) with each cell that has a place within the tolerance of the point.
+  // Calls use(cell) for each cell that contains a point within the tolerance of `point`.
   template <class Use>
   void ForEachCell(const Vec3& point, const Use& use) const {
     std::array<std::array<double, 2>, 3> ends;
@@ -46,9 +47,9 @@ class PlaceGrid {
 
  private:
   double CellOf(double x) const { return cell_w_ > 0 ? std::floor(x / cell_w_) : x; }
-  // Two cells of one hash are looked through together.
+  // Cells with equal hashes are searched together.
   static uint64_t Hash(std::array<double, 3> cell) {
-    for (double& x : cell) x += 0.0;  // both zeros are one
+    for (double& x : cell) x += 0.0;  // +0 and -0 have one hash
     return HashBytes({reinterpret_cast<const char*>(cell.data()), sizeof(cell)});
   }
 
@@ -56,7 +57,7 @@ class PlaceGrid {
   double cell_w_;
 };
 
-// How far positions that are the same may be apart.
+// Returns the distance below which two positions count as the same.
 double ToleranceOf(const LightField& light_field) {
   Eigen::AlignedBox3d box;
   double reach_w = 0;
@@ -72,7 +73,7 @@ bool HaveOneView(const LightField& light_field, const LfCamera& a, const LfCamer
          (a.cam_from_world.rotation - b.cam_from_world.rotation).norm() <= kSameRotation;
 }
 
-// The LF images of each pose, in the order of their numbers; only poses with several.
+// Returns the LF images of each pose that has several, in ascending order.
 std::vector<std::vector<uint32_t>> PosesWithSeveral(const LightField& light_field) {
   const std::vector<uint32_t> firsts = FirstOfPose(light_field);
   std::vector<uint32_t> counts(firsts.size(), 0);
@@ -90,14 +91,15 @@ std::vector<std::vector<uint32_t>> PosesWithSeveral(const LightField& light_fiel
   return poses;
 }
 
-// Applies the rule to the LF images of one pose. Returns how many of them have a darker one.
+// Applies the rule to the LF images of one pose. Returns the number of images that have a darker
+// one.
 size_t ApplyToPose(std::vector<uint32_t> images, std::vector<LfCamera>* cameras) {
   const RigidTransform pose = (*cameras)[images[0]].cam_from_world;
   const auto exposure = [&](uint32_t i) { return ExposureOf((*cameras)[i]); };
   std::stable_sort(images.begin(), images.end(),
                    [&](uint32_t a, uint32_t b) { return exposure(a) < exposure(b); });
-  // LF images of one exposure follow one another, the darkest exposure first.
-  std::vector<size_t> begins;  // of each exposure in `images`, and the end of the last
+  // Sorted by exposure, the darkest first, with equal exposures together.
+  std::vector<size_t> begins;  // where each exposure begins in `images`, and images.size()
   for (size_t k = 0; k < images.size(); ++k)
     if (k == 0 || exposure(images[k]) >= kOneExposure * exposure(images[begins.back()]))
       begins.push_back(k);
@@ -117,7 +119,7 @@ size_t ApplyToPose(std::vector<uint32_t> images, std::vector<LfCamera>* cameras)
 std::vector<uint32_t> FirstOfPose(const LightField& light_field) {
   const double tolerance_w = ToleranceOf(light_field);
   const PlaceGrid grid(tolerance_w);
-  std::unordered_multimap<uint64_t, uint32_t> firsts;  // by cell
+  std::unordered_multimap<uint64_t, uint32_t> firsts;  // the first LF image of each pose, by cell
   std::vector<uint32_t> of_images;
   std::vector<Vec3> places;
   for (uint32_t i = 0; i < light_field.size(); ++i) {

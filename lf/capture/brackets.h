@@ -1,10 +1,10 @@
 // Brackets: LF images of one pose with different exposures. A bright one shows the shadows with
 // little noise, a dark one the highlights that are clipped in the others.
 //
-// They are one picture, cut into parts: each pixel is taken from the brightest LF image in which it
-// is not clipped. So every pose sends one ray of a pixel, whatever its light. If clipped pixels
-// alone were left out, poses that see a light would count less than those that see past it, and
-// lights out of focus would be too dark.
+// Together they are one picture: each pixel is taken from the brightest LF image in which it is not
+// clipped. Every pose therefore sends exactly one ray per pixel, however bright it is. If clipped
+// pixels were just left out, poses that see a light would count less than poses that see past it,
+// and lights out of focus would be too dark.
 #pragma once
 
 #include <cstddef>
@@ -15,32 +15,34 @@
 
 namespace lf {
 
-// Returns, for each LF image, the first LF image of its pose: one with the same position (within
-// 1e-9 of the extent of all positions), rotation (1e-6) and the same intrinsics.
+// Returns, for each LF image, the first LF image with the same pose and intrinsics. Positions are
+// the same within 1e-9 of the extent of all positions, rotations within 1e-6.
 // Time and memory are linear in the number of LF images.
 std::vector<uint32_t> FirstOfPose(const LightField& light_field);
 
-// Returns how much light the LF image recorded beside others: 1 / lf_gain, the geometric mean of
-// the channels.
+// Returns how much light the LF image recorded, relative to other LF images: 1 / lf_gain, as the
+// geometric mean of the channels.
 double ExposureOf(const LfCamera& camera);
 
-// Exposures that differ by less than this factor are taken for one.
+// Exposures that differ by less than this factor count as equal.
 inline constexpr double kOneExposure = 1.1;
 
-// Raises max_radiance of integer files so that no recorded light is clipped by gains and falloffs.
-// Float files have a range of their own.
+// Raises max_radiance of integer files so that gains and falloffs clip no recorded light. Float
+// files keep their range.
 void MakeRoomForGains(LightField* light_field);
 
-// Decides, where encoding.masks_clipped is set, which pixels of the LF images of a pose send rays:
-// - masks_clipped of an LF image is set if there is a darker one of its pose. So the darkest one
-//   keeps its clipped pixels, and an LF image without a darker one of its pose is not masked: no
-//   element is black because all of its light is bright.
-// - brighter of an LF image is the first one of the next larger exposure of its pose: where that is
-//   not clipped, this one sends no ray (store/image_reading.h).
-// - LF images of one pose get the pose of the first of them, so that they share lens weights.
-// Otherwise nothing is masked, and none is brighter. Must be called again when LF images were
-// renumbered or gains changed.
-// Returns how many LF images have a darker one of their pose.
+// Decides which pixels of the LF images of a pose send rays, if encoding.masks_clipped is set:
+// - masks_clipped of an LF image is set if its pose has a darker one. The darkest one therefore
+// keeps
+//   its clipped pixels, and an LF image without a darker one is not masked: no element becomes
+//   black because all of its light is bright.
+// - brighter of an LF image is the first LF image of its pose with the next larger exposure. A
+// pixel
+//   that is not clipped there sends no ray from here (store/image_reading.h).
+// - The LF images of one pose get the pose of the first of them, so that they share lens weights.
+// If encoding.masks_clipped is not set, no LF image is masked and none is brighter. Must be called
+// again after LF images were renumbered or gains changed.
+// Returns the number of LF images that have a darker one of their pose.
 size_t ApplyBrackets(LightField* light_field);
 
 }  // namespace lf

@@ -22,7 +22,7 @@ void Add(double x, float gain, LightField* field) {
   field->image_names.push_back(std::to_string(field->size()) + ".png");
 }
 
-// Poses at x = 1000, 1001 ..., each with these gains.
+// Returns poses at x = 1000, 1001 ...; each pose has one LF image per gain.
 LightField Poses(int count, const std::vector<float>& gains) {
   LightField field = Empty();
   for (int i = 0; i < count; ++i)
@@ -45,7 +45,7 @@ TEST(Brackets, TheDarkestOfEachPoseKeepsItsClippedPixels) {
 TEST(Brackets, AnImageWithoutADarkerOneOfItsPoseIsNotMasked) {
   LightField field = Poses(2, {1});
   Add(1001, 0.25F, &field);  // brighter than the second
-  Add(1005, 0.01F, &field);  // alone, and brighter than all
+  Add(1005, 0.01F, &field);  // the only one at its position, although brighter than all
   EXPECT_EQ(ApplyBrackets(&field), 1U);
   EXPECT_EQ(Masked(field), (std::vector<bool>{false, false, true, false}));
   EXPECT_EQ(field.cameras[1].brighter, 2U);
@@ -93,7 +93,7 @@ TEST(Brackets, OnePoseIsOnePlaceOneDirectionAndOneView) {
   LightField field = Poses(3, {1});
   Add(1000, 4, &field);
   Add(1001, 4, &field);
-  Add(1002 + 1e-6, 4, &field);  // a little beside
+  Add(1002 + 1e-6, 4, &field);  // another pose, 1e-6 beside the first
   EXPECT_EQ(FirstOfPose(field), (Counts{0, 1, 2, 0, 1, 5}));
   field.cameras[3].cam_from_world.rotation =
       Eigen::AngleAxisd(0.01, Vec3::UnitX()).toRotationMatrix();

@@ -30,14 +30,14 @@ double Percentile(std::vector<double> values, double share) {
   return *at;
 }
 
-// Squared distance of `point` to a line.
+// Returns the squared distance of `point` to a line.
 double SquaredDistance(const Vec3& point, const Ray& axis) {
   const Vec3 offset = point - axis.origin;
   return offset.squaredNorm() - std::pow(axis.direction.dot(offset), 2);
 }
 
-// Minimises the sum of squared distances to the axes. None if they are parallel: then the smallest
-// eigenvalue of the mean of I - d d^T, the squared sine of their spread, vanishes.
+// Minimises the sum of squared distances to the axes. Returns nullopt if they are parallel: the
+// smallest eigenvalue of the mean of I - d d^T, which is their squared angular spread, is then 0.
 std::optional<Vec3> NearestPoint(const std::vector<Ray>& axes) {
   constexpr double kLeastSpread = 1e-5;  // about 0.2 degrees
   Mat3 a = Mat3::Zero();
@@ -60,7 +60,7 @@ std::vector<Ray> SampledAxes(const LightField& light_field) {
   return axes;
 }
 
-// The nearest point of the better nine tenths of the axes, which are what is left of them.
+// Removes the worst tenth of the axes from the list, and returns the point nearest to the rest.
 std::optional<Vec3> NearestWithoutWorst(std::vector<Ray>* axes) {
   const std::optional<Vec3> point = axes->size() < 2 ? std::nullopt : NearestPoint(*axes);
   if (!point) return std::nullopt;
@@ -95,7 +95,7 @@ LfImageId MiddleCamera(const LightField& light_field,
   const std::vector<Vec3> centres = Centres(light_field);
   Vec3 mean = Vec3::Zero();
   for (const Vec3& centre : centres) mean += centre / static_cast<double>(centres.size());
-  // The nearest is at the top; of equally near ones the first.
+  // The nearest camera is at the top; of equally near ones, the first.
   std::vector<std::pair<double, uint32_t>> heap;
   for (uint32_t i = 0; i < centres.size(); ++i)
     heap.emplace_back((centres[i] - mean).squaredNorm(), i);

@@ -1,4 +1,4 @@
-// What the poses alone tell of a capture: how dense it is, what it looks at.
+// Derives from the poses alone how dense a capture is and what it looks at.
 #pragma once
 
 #include <functional>
@@ -10,36 +10,39 @@
 
 namespace lf {
 
-// Median distance from an LF camera to its nearest neighbour, in world units; of at most 500
-// cameras spread over the light field. 0 for fewer than two.
+// Returns the median distance from an LF camera to its nearest neighbour, in world units, from at
+// most 500 cameras spread over the light field. 0 for fewer than two cameras.
 double MedianSpacing(const LightField& light_field);
 
-// The LF camera nearest to the mean position, of those that are wanted, which are asked from the
-// nearest on. If none is: the nearest of all. The light field must have one.
+// Returns the LF camera that is nearest to the mean position among those for which `is_wanted`
+// returns true, or nearest of all if there is none. `is_wanted` is called from the nearest camera
+// on. The light field must have a camera.
 LfImageId MiddleCamera(const LightField& light_field,
                        const std::function<bool(LfImageId)>& is_wanted = {});
 
-// The direction that is up for most: the mean of the cameras' own, of length 1; 0 if they have none
-// in common.
+// Returns the mean of the cameras' up directions, with length 1, or the zero vector if the cameras
+// have no common one.
 Vec3 MeanUpWorld(const LightField& light_field);
 
-// Returns how much the camera leans to the side: the angle, from 0 on, between its up direction and
-// the part of `up_world` that its image shows. It is 0 if the camera looks along that.
+// Returns the angle, 0 or more, by which the camera leans to the side: the angle between its up
+// direction and the projection of `up_world` onto its image. It is 0 if the camera looks along
+// `up_world`.
 double RollOf(const PinholeCamera& camera, const Vec3& up_world);
 
-// The ray through the middle of the image, of length 1: the optical axis, but for cameras with an
-// off-axis principal point, as rectified slabs have. (Of lenses with distortion: the optical axis.)
+// Returns the ray through the middle of the image, with a direction of length 1. It is the optical
+// axis unless the principal point is off-axis, as in rectified slabs. For lenses with distortion it
+// is always the optical axis.
 Ray CentralRay(const PinholeCamera& camera);
 
-// The point nearest to the central rays taken as lines (least squares, with the worst tenth left
-// out; of at most 20,000 cameras). None if they are parallel for all that their spread tells.
+// Returns the point nearest to the lines of the central rays (least squares without the worst
+// tenth, from at most 20,000 cameras), or nullopt if the lines are too nearly parallel to tell.
 std::optional<Vec3> PointNearestToAxes(const LightField& light_field);
 
-// The same, if the cameras look at it: it is in front of nine of ten.
+// As PointNearestToAxes(), but nullopt unless the point is in front of nine of ten cameras.
 std::optional<Vec3> AxesMeetingPoint(const LightField& light_field);
 
-// How far the positions of the `count` LF cameras nearest to `camera` reach from it along its
-// right and up axes: the 80th percentile of the distances, in world units.
+// How far the `count` LF cameras nearest to `camera` are from it along its right and its up axis:
+// the 80th percentiles of the distances, in world units.
 struct Reach {
   double right_w = 0;
   double up_w = 0;

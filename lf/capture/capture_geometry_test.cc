@@ -17,7 +17,7 @@ LightField Field(const std::vector<RigidTransform>& poses) {
   return field;
 }
 
-// A 12 x 6 grid, pitch 0.1 and 0.2, looking along +z, or at a target.
+// Returns a grid of 12 x 6 cameras with pitches 0.1 and 0.2 that look along +z, or at a target.
 LightField Grid(std::optional<Vec3> target) {
   std::vector<RigidTransform> poses;
   for (int row = 0; row < 6; ++row)
@@ -76,7 +76,7 @@ TEST(CaptureGeometry, ParallelAndOutwardAxesDoNotMeet) {
 }
 
 TEST(CaptureGeometry, TheAxesOfARectifiedSlabMeetInItsPlane) {
-  LightField field = Grid({});  // its middle: (0.55, 0.5, 0)
+  LightField field = Grid({});  // centred at (0.55, 0.5, 0)
   field.intrinsics.clear();
   for (size_t i = 0; i < field.size(); ++i) {
     const Vec3 offset = field.cameras[i].cam_from_world.Inverse().translation - Vec3(0.55, 0.5, 0);
@@ -122,10 +122,10 @@ TEST(CaptureGeometry, RollIsTheAngleToTheDirectionThatIsUpForMost) {
   EXPECT_NEAR(up.norm(), 1, 1e-12);
   EXPECT_NEAR(RollOf(field.Camera({0}), up), 0, 1e-9);
   EXPECT_NEAR(RollOf(field.Camera({1}), up), RollOf(field.Camera({2}), up), 1e-9);
-  // Seen from 27 degrees above.
+  // The camera looks from 27 degrees above.
   const double expected = std::atan(std::tan(RadiansFromDegrees(10)) / std::cos(std::atan(0.5)));
   EXPECT_NEAR(RollOf(field.Camera({1}), up), expected, RadiansFromDegrees(0.5));
-  // Cameras that look up and down along it are level.
+  // A camera that looks along the up direction has no roll.
   EXPECT_EQ(RollOf(field.Camera({0}), field.Camera({0}).ForwardWorld()), 0);
   field.cameras.resize(2);
   field.cameras[1].cam_from_world = *LookAlong({0, 0, 0}, {0, 0.5, 1}, {0, -1, 0});

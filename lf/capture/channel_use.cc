@@ -5,7 +5,7 @@
 namespace lf {
 namespace {
 
-// The name may have the layer of an EXR file before it.
+// In EXR files the name of a layer may precede the name of the channel.
 bool IsAlpha(const std::string& channel_name) {
   const std::string name = channel_name.substr(channel_name.rfind('.') + 1);
   return name == "A" || name == "alpha" || name == "Alpha";

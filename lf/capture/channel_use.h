@@ -13,8 +13,8 @@ struct ChannelUse {
   std::optional<int> alpha;
 };
 
-// Three channels or more are colours. The channel behind the colours is alpha if it is named so;
-// other channels, such as depth, are not used.
+// Three or more channels: the first three are colours. The channel behind the colours is alpha if
+// its name says so. Other channels, such as depth, are unused.
 ChannelUse UseOf(const ImageFileInfo& info);
 
 }  // namespace lf

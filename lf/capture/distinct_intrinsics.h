@@ -1,4 +1,4 @@
-// The list LightField::intrinsics while it grows. For the readers of calibrations.
+// The list LightField::intrinsics while a reader of calibrations fills it.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace lf {
 
-// Of numbers; both zeros are one.
+// Returns the hash of the numbers; +0 and -0 have the same one.
 template <size_t kCount>
 uint64_t HashOfNumbers(std::array<double, kCount> numbers) {
   for (double& x : numbers) x += 0.0;

@@ -21,9 +21,10 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr size_t kAsked = 64;           // LF images whose files are asked for, to know of all
-constexpr int kMostDepth = 4;           // folders below the one that is searched
-constexpr size_t kMostFiles = 2000000;  // of them, a light field and its copies in other sizes
+constexpr size_t kAsked = 64;           // LF images whose files stand for all
+constexpr int kMostDepth = 4;           // depth of the searched subfolders
+constexpr size_t kMostFiles = 2000000;  // files at most: a light field and its copies in other
+                                        // sizes
 constexpr int kMostDivisor = 16;
 
 std::string Lower(std::string text) {
@@ -31,8 +32,8 @@ std::string Lower(std::string text) {
   return text;
 }
 
-// The folders of a path and its base name, in lower case and without the suffix, last one first.
-// Backslashes separate folders, too.
+// Returns the base name without its suffix, then the folders of the path from the last to the
+// first, all in lower case. Both slashes and backslashes separate folders.
 std::vector<std::string> WordsOf(std::string path) {
   std::replace(path.begin(), path.end(), '\\', '/');
   std::vector<std::string> words;
@@ -52,7 +53,7 @@ bool HoldsSomethingElse(const std::vector<std::string>& words) {
   return std::any_of(words.begin() + 1, words.end(), NamesSomethingElse);
 }
 
-// Indices of LF images, evenly spread, the first and the last among them.
+// Returns indices of evenly spread LF images, including the first and the last.
 std::vector<size_t> SpreadOver(size_t count) {
   const size_t asked = std::min(count, kAsked);
   std::vector<size_t> spread;
@@ -89,11 +90,14 @@ class FilesBelow {
   }
 
   struct Match {
-    const std::string* name = nullptr;   // of the file, relative to the folder; none: null
-    const std::string* rival = nullptr;  // that fits as well
+    const std::string* name = nullptr;   // of the best file, relative to the folder; nullptr if
+                                         // none fits
+    const std::string* rival = nullptr;  // another file that fits equally well
   };
 
-  //   least_common  words of the path that a file must share, its base name among them
+  // Returns the file that fits `name` best.
+  //   least_common  number of last words of the path that must agree, counting the base name
+  //   any_folder    also accepts files in folders for something else than photographs
   Match Find(const std::string& name, size_t least_common, bool any_folder) {
     const std::vector<std::string> words = WordsOf(name);
     if (words.empty()) return {};
@@ -122,7 +126,7 @@ class FilesBelow {
   struct Score {
     size_t common = 0;
     int64_t pixels = 0;
-    int64_t above = 0;  // folders, negative
+    int64_t above = 0;  // number of folders, negated
     bool operator<(const Score& other) const {
       return std::tie(common, pixels, above) < std::tie(other.common, other.pixels, other.above);
     }
@@ -138,7 +142,7 @@ class FilesBelow {
     return score;
   }
 
-  // Size of the first image of a folder; 0 if its header cannot be read.
+  // Returns the number of pixels of the first image of a folder; 0 if its header cannot be read.
   int64_t PixelsIn(const fs::path& folder) {
     const auto [entry, is_new] = pixels_.try_emplace(folder.string(), 0);
     if (!is_new) return entry->second;
@@ -155,7 +159,7 @@ class FilesBelow {
   std::unordered_map<std::string, int64_t> pixels_;  // by folder
 };
 
-// Returns true if so many pixels are `full` divided by `divisor`, rounded in any way.
+// Returns true if `pixels` is `full` divided by `divisor`, rounded up, down or to the nearest.
 bool IsDivided(int full, double divisor, int pixels) {
   return std::abs(full / divisor - pixels) < 1;
 }
@@ -169,7 +173,7 @@ struct SizedImage {
   std::array<int, 2> size;
 };
 
-// LF images, evenly spread, whose files are there.
+// Returns the sizes of evenly spread LF images whose files exist.
 std::vector<SizedImage> SizesOfSome(const LightField& light_field) {
   std::vector<SizedImage> sizes;
   for (const size_t i : SpreadOver(light_field.size())) {
@@ -185,7 +189,7 @@ const Intrinsics& IntrinsicsOf(const LightField& light_field, LfImageId id) {
   return light_field.intrinsics[light_field.cameras[id.value].intrinsics_index];
 }
 
-// The one whole factor by which all images are smaller; none: 1.
+// Returns the whole factor by which all images are smaller, or 1 if there is none.
 int DivisorOf(const LightField& light_field, const std::vector<SizedImage>& sizes) {
   for (int divisor = 2; divisor <= kMostDivisor; ++divisor)
     if (std::all_of(sizes.begin(), sizes.end(), [&](const SizedImage& image) {
@@ -243,10 +247,11 @@ Result<size_t> FindImageFiles(const std::optional<fs::path>& images_folder,
         "of the right ones (--images)",
         folder.string(), ambiguous_count, light_field->size(), example));
   if (found_count == 0) return 0;
-  // A mask must not be taken for that of a namesake in another folder.
+  // A mask must not match a file with the same name in another folder.
   for (std::string& mask : masks)
     if (!mask.empty() && !IsThere(light_field->folder / mask)) find(&mask, 2, true);
-  // Readers ask for one image alone to know its size, and for all of them later.
+  // Readers call this for one image to get its size, and later for all of them; only the latter is
+  // logged.
   if (names.size() > 1)
     LogInfo("{} of {} LF images were found by their names in {}, such as {} for {}", found_count,
             light_field->size(), folder.string(), example, looked_for);
@@ -275,7 +280,8 @@ Result<double> FitToImageFiles(const ImageScale& scale, LightField* light_field)
   double divisor = 1 / scale.factor;
   if (scale.kind == ImageScale::Kind::kAuto) divisor = DivisorOf(*light_field, sizes);
   if (sizes.empty() || divisor == 1) return 1;
-  std::map<std::array<int, 2>, std::array<int, 2>> size_of;  // of the files, by the calibrated one
+  std::map<std::array<int, 2>, std::array<int, 2>> size_of;  // size of the files, by calibrated
+                                                             // size
   for (const SizedImage& image : sizes) {
     const Intrinsics& k = IntrinsicsOf(*light_field, image.id);
     if (!IsScaled(k, image.size, divisor))

@@ -99,7 +99,7 @@ TEST_F(FindImagesTest, ANamedFolderIsTheOnlyOne) {
 }
 
 TEST_F(FindImagesTest, WholeFactorsScaleTheIntrinsics) {
-  // As COLMAP (to the nearest pixel) and nerfstudio (down) round 1006 / 4 x 755 / 4.
+  // COLMAP rounds 1006 / 4 x 755 / 4 to the nearest pixel, nerfstudio rounds it down.
   for (const auto& [width, height] : std::vector<std::pair<int, int>>{{252, 189}, {251, 188}}) {
     LightField field = FieldOf({"1.png"});
     field.intrinsics = {{900, 902, 503, 377.5, 0, 1006, 755}};
@@ -110,7 +110,7 @@ TEST_F(FindImagesTest, WholeFactorsScaleTheIntrinsics) {
     const Intrinsics& k = field.intrinsics[0];
     EXPECT_EQ(k.width_px, width);
     EXPECT_EQ(k.height_px, height);
-    // The picture still holds the same rays, from edge to edge.
+    // The picture still covers the same rays from edge to edge.
     EXPECT_NEAR(k.fx_px / k.width_px, 900.0 / 1006, 1e-12);
     EXPECT_NEAR(k.fy_px / k.height_px, 902.0 / 755, 1e-12);
     EXPECT_NEAR(k.cx_px, 0.5 * width, 1e-12);
@@ -119,7 +119,7 @@ TEST_F(FindImagesTest, WholeFactorsScaleTheIntrinsics) {
 }
 
 TEST_F(FindImagesTest, OtherSizesAreLeftAlone) {
-  // A crop, a picture that was undistorted, one of half the width alone, one that is larger.
+  // A crop, an undistorted picture, one with half the width only, and a larger one.
   const std::vector<std::pair<int, int>> sizes = {
       {500, 500}, {494, 494}, {500, 1000}, {2000, 2000}};
   for (const auto& [width, height] : sizes) {
@@ -127,7 +127,7 @@ TEST_F(FindImagesTest, OtherSizesAreLeftAlone) {
     field.intrinsics = {{900, 900, 500, 500, 0, 1000, 1000}};
     WriteImages({"1.png"}, 1000, 1000);
     WriteImages({"2.png"}, width, height);
-    EXPECT_EQ(*FitToImageFiles({}, &field), 1);  // not all have one factor
+    EXPECT_EQ(*FitToImageFiles({}, &field), 1);  // no common factor
     WriteImages({"1.png"}, width, height);
     EXPECT_EQ(*FitToImageFiles({}, &field), width == 500 && height == 500 ? 0.5 : 1);
   }
@@ -136,7 +136,7 @@ TEST_F(FindImagesTest, OtherSizesAreLeftAlone) {
   WriteImages({"1.png"}, 500, 500);
   EXPECT_EQ(*FitToImageFiles({ImageScale::Kind::kOff}, &field), 1);
   fs::remove(folder_ / "1.png");
-  EXPECT_EQ(*FitToImageFiles({}, &field), 1);  // nothing is known
+  EXPECT_EQ(*FitToImageFiles({}, &field), 1);  // no file exists
 }
 
 TEST_F(FindImagesTest, AGivenFactorMustBeThatOfTheFiles) {

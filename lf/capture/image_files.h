@@ -1,4 +1,4 @@
-// What calibrations without an image size ask of image files: names, and sizes from headers.
+// Names and sizes of image files, for calibrations that do not state an image size.
 #pragma once
 
 #include <array>
@@ -15,14 +15,15 @@ namespace lf {
 // [width, height] of an image file.
 using ImageSizeSource = std::function<Result<std::array<int, 2>>(const std::filesystem::path&)>;
 
-// From the header of the file (imageio's ReadImageInfo).
+// Reads the size from the header of the file (ReadImageInfo() of imageio).
 Result<std::array<int, 2>> ImageSizeInHeader(const std::filesystem::path& image);
 
-// By the extension, in any case: png, jpg, jpeg, tif, tiff, exr, and those of IsRawName().
+// Returns true for the extensions png, jpg, jpeg, tif, tiff, exr (in upper or lower case), and for
+// raw files, as IsRawName() says.
 bool IsImageName(std::string_view file_name);
 
-// Names of the image files of a folder, sorted by bytes; hidden ones left out. kInput if it cannot
-// be listed.
+// Returns the names of the image files in a folder, sorted by bytes, without hidden files. kInput
+// if the folder cannot be listed.
 Result<std::vector<std::string>> SortedImageNames(const std::filesystem::path& folder);
 
 }  // namespace lf

@@ -9,14 +9,14 @@
 namespace lf {
 namespace {
 
-// What to do about a picture of another size.
+// Returns a remedy for a picture of another size.
 std::string Advice(const ImageFileInfo& info, bool is_mosaic, const Intrinsics& k) {
   if (info.width == k.height_px && info.height == k.width_px)
     return is_mosaic ? "mosaics are not turned: calibrate them as they are stored"
                      : "it is turned by 90 degrees, and no orientation tag says so: use the images "
                        "that were calibrated";
   const double factor = static_cast<double>(info.width) / k.width_px;
-  // Undistortion leaves out some pixels of each side, in about the picture's proportions.
+  // Undistortion cuts off some pixels on each side and roughly keeps the aspect ratio.
   constexpr double kLeastOfCrops = 0.9;
   if (factor >= kLeastOfCrops && factor < 1 && info.height <= k.height_px)
     return fmt::format(

@@ -1,4 +1,4 @@
-// Whether the pixels of an image file are those that were calibrated.
+// Decides whether the pixels of an image file are those that were calibrated.
 #pragma once
 
 #include <string>
@@ -10,16 +10,16 @@
 namespace lf {
 
 enum class ImageFit {
-  kAsStored,  // the calibration is of the pixels as stored, whatever the orientation tag says
-  kTurned,    // it is of the picture turned by 90 degrees as the tag says (imageio/upright.h)
+  kAsStored,  // calibrated as stored; the orientation tag is ignored
+  kTurned,    // calibrated after the turn by 90 degrees that the tag asks for (imageio/upright.h)
 };
 
-// By sizes: a picture of the calibrated size is taken as stored; one whose width and height are
-// exchanged, with a tag that exchanges them, was turned before it was calibrated. A mosaic is never
-// turned: its pattern would be another one. For square pictures, and tags that turn by 180 degrees
-// or mirror, nothing can be told: as stored.
+// Compares sizes. A picture of the calibrated size is used as stored. A picture whose width and
+// height are exchanged, and whose tag exchanges them, was turned before it was calibrated. A mosaic
+// is never turned, because its Bayer pattern would change. Square pictures, and tags that mirror or
+// turn by 180 degrees, cannot be told apart by size and are used as stored.
 //   name  of the file, for messages
-// kInput: any other size; the message names both, and says what to do.
+// kInput for any other size; the message names both sizes and a remedy.
 Result<ImageFit> FitToCalibration(const ImageFileInfo& info, bool is_mosaic,
                                   const Intrinsics& calibrated, const std::string& name);
 

@@ -10,16 +10,16 @@
 namespace lf {
 
 struct LfPixels {
-  // What a kernel adds for an RGB pixel in one go: v of R, G and B, and how many rays they are.
+  // A kernel adds these lanes of an RGB pixel at once: v of R, G and B, and the number of rays.
   static constexpr int kRgbLanes = 4;
   static constexpr int kRayLane = 3;
-  // Opacities of 0 and 1 as values v. The filters of collection undershoot and overshoot them
-  // beside edges, so that there is room on both sides.
+  // Values v of the opacities 0 and 1. There is room on both sides, because the filters of
+  // collection undershoot and overshoot opacities beside edges.
   static constexpr uint16_t kTransparent = 4096;
   static constexpr uint16_t kOpaque = 61440;
 
   LfPixels() = default;
-  // Black, nothing masked.
+  // Creates black pixels without a mask.
   LfPixels(const PixelRect& part, BayerPattern pattern)
       : radiance(part.width(), part.height(), pattern == BayerPattern::kNone ? kRgbLanes : 1),
         bayer(pattern),
@@ -29,7 +29,7 @@ struct LfPixels {
         radiance.pixels()[i] = 1;
   }
 
-  // Another part in the same memory, nothing masked; the radiance is left open.
+  // Changes to another part in the same memory and clears the mask; the radiance is unspecified.
   void Reset(const PixelRect& part, BayerPattern pattern) {
     radiance.Resize(part.width(), part.height(), pattern == BayerPattern::kNone ? kRgbLanes : 1);
     bayer = pattern;
@@ -44,7 +44,7 @@ struct LfPixels {
     if (bayer == BayerPattern::kNone) return radiance.at(column, row, kRayLane) == 0;
     return !mosaic_mask.empty() && mosaic_mask.at(column, row) == 0;
   }
-  // No ray from the pixel at this place of `rect`.
+  // Excludes the pixel at this column and row of `rect`: it sends no ray.
   void Mask(int column, int row) {
     any_masked = true;
     if (bayer == BayerPattern::kNone) {
@@ -57,22 +57,22 @@ struct LfPixels {
     mosaic_mask.at(column, row) = 0;
   }
 
-  // v of every pixel (capture/radiance.h)  [height][width][1] of a mosaic; otherwise
-  // [height][width][4]: R, G, B, and 1, or all 0 where the pixel is masked
+  // v of every pixel (capture/radiance.h). A mosaic: [height][width][1]. RGB: [height][width][4]
+  // with R, G, B and 1, or all 0 if the pixel is masked.
   Image<uint16_t> radiance;
   BayerPattern bayer = BayerPattern::kNone;  // at pixel (0, 0) of the whole LF image
-  // RGB pixels: the mosaic that they were made from, at pixel (0, 0) of the whole LF image; kNone:
-  // all three colours were recorded everywhere
+  // The mosaic that RGB pixels were made from, at pixel (0, 0) of the whole LF image; kNone if
+  // every pixel recorded all three colours.
   BayerPattern recorded = BayerPattern::kNone;
-  Image<uint8_t> mosaic_mask;  // empty, or of a mosaic [height][width]: 0 = no ray from this pixel
+  Image<uint8_t> mosaic_mask;  // of a mosaic, [height][width]: 0 = no ray from this pixel; or empty
   bool any_masked = false;
   PixelRect rect;  // the part of the LF image that these pixels are
-  // Empty, or of RGB pixels of a light field that HasOpacity(): [height][width][4], in the lanes of
-  // `radiance`. Opacity stands in for each colour, so that kernels collect it by the same rays and
-  // with the same weights.
+  // Opacities of RGB pixels if the light field HasOpacity(), otherwise empty. [height][width][4] in
+  // the lanes of `radiance`: the opacity stands in each colour's lane, so that kernels collect it
+  // with the same rays and weights.
   Image<uint16_t> opacity;
 
-  // Moves the opacities out, as pixels that kernels take; empty if there are none.
+  // Moves the opacities out as pixels that kernels accept; the result is empty if there are none.
   LfPixels TakeOpacity() {
     LfPixels taken;
     if (opacity.empty()) return taken;

@@ -1,5 +1,5 @@
-// The recorded light field: cameras, where their pixels lie, and how stored numbers become light.
-// Everything but the pixels.
+// The recorded light field without its pixels: the cameras, the place of the pixels, and how stored
+// numbers become light.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace lf {
 
-// Factors of R, G and B; one number is that of all three.
+// Factors of R, G and B; constructed from one number, all three are equal.
 struct ChannelGains {
   ChannelGains(float all = 1) : of_channels{all, all, all} {}  // NOLINT: a number is a gain
   ChannelGains(float r, float g, float b) : of_channels{r, g, b} {}
@@ -31,19 +31,19 @@ struct ChannelGains {
   std::array<float, 3> of_channels;
 };
 
-// One LF camera: 120 bytes, since a light field may have a million of them.
+// One LF camera. It takes 120 bytes, since a light field may have a million of them.
 struct LfCamera {
   RigidTransform cam_from_world;
-  uint32_t intrinsics_index = 0;  // into LightField::intrinsics
-  ChannelGains gain;              // its radiance is multiplied by this (lf_gain)
-  // These two are set by ApplyBrackets() (capture/brackets.h).
+  uint32_t intrinsics_index = 0;  // index into LightField::intrinsics
+  ChannelGains gain;              // factor of the radiance (lf_gain)
+  // ApplyBrackets() sets these two (capture/brackets.h).
   static constexpr uint32_t kNone = UINT32_MAX;
-  uint32_t brighter = kNone;   // the LF image of its pose with the next larger exposure
-  bool masks_clipped = false;  // its clipped pixels send no ray: a darker one of its pose has them
+  uint32_t brighter = kNone;   // the LF image of the same pose with the next larger exposure
+  bool masks_clipped = false;  // clipped pixels send no ray, because the pose has a darker LF image
 };
 
 struct LightField {
-  std::vector<LfCamera> cameras;       // LfImageId indexes these and the two lists of names
+  std::vector<LfCamera> cameras;       // indexed by LfImageId, like the two lists of names
   std::vector<Intrinsics> intrinsics;  // the distinct ones
   // Names as written in the calibration; relative ones are relative to `folder`.
   std::vector<std::string> image_names;
@@ -54,14 +54,14 @@ struct LightField {
 
   RadianceEncoding encoding;
   double unit_m = 1;                      // metres per world unit
-  std::optional<DepthRange> depth_range;  // of the scene, if the calibration tells
+  std::optional<DepthRange> depth_range;  // of the scene, if the calibration states it
 
   size_t size() const { return cameras.size(); }
   PinholeCamera Camera(LfImageId id) const {
     const LfCamera& camera = cameras[id.value];
     return {intrinsics[camera.intrinsics_index], camera.cam_from_world};
   }
-  // Of a packed store, for messages alone: STORE.lfs/name.png
+  // For a packed store the path is for messages only: STORE.lfs/name.png
   std::filesystem::path ImagePath(LfImageId id) const { return folder / image_names[id.value]; }
 };
 

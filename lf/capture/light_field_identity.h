@@ -1,4 +1,4 @@
-// Which light field it is, in a few words: what renders that go on, and packages, compare.
+// Identifies a light field by a few words, so that packages and resumed renders can compare it.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@ namespace lf {
 
 struct LightFieldIdentity {
   size_t image_count = 0;
-  std::string names;        // hash of the names of images and masks; not of their folder
+  std::string names;        // hash of the names of images and masks, without the folder
   std::string calibration;  // hash of all cameras
 
   friend bool operator==(const LightFieldIdentity&, const LightFieldIdentity&) = default;

@@ -15,8 +15,7 @@ LightField OneCamera(const Distortion& distortion) {
   return light_field;
 }
 
-// Checkpoints and packages that were written before the model of twelve parameters was known hold
-// hashes of eight.
+// Checkpoints and packages older than the model with twelve parameters hold hashes of eight.
 TEST(LightFieldIdentity, ALensOfAnOlderModelIsHashedByEightParameters) {
   ValueHasher expected;
   for (const double number : {1, 0, 0, 0, 1, 0, 0, 0, 1}) expected.Add(number);  // rotation

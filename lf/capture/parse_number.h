@@ -1,4 +1,4 @@
-// Numbers in text files. For the readers of calibrations.
+// Parses numbers in text files, for the readers of calibrations.
 #pragma once
 
 #include <charconv>
@@ -9,8 +9,8 @@
 
 namespace lf {
 
-// The whole of `text` as a finite decimal number, with or without exponent and sign; none
-// otherwise. Of the C locale whatever the program's is.
+// Returns the number if the whole of `text` is a finite decimal number with or without sign and
+// exponent, otherwise nullopt. The program's locale has no influence.
 inline std::optional<double> ParseNumber(std::string_view text) {
   if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   double value = 0;

@@ -21,7 +21,9 @@ TEST(Radiance, SrgbHasItsPublishedValues) {
 TEST(Radiance, SrgbAndItsInverseUndoEachOther) {
   for (int i = 0; i <= 1000; ++i) {
     const double x = i / 1000.0;
-    EXPECT_NEAR(SrgbFromLinear(LinearFromSrgb(x)), x, 1e-7) << x;  // the standard's own gap
+    EXPECT_NEAR(SrgbFromLinear(LinearFromSrgb(x)), x, 1e-7) << x;  // the two pieces of the
+                                                                   // standard's curve do not meet
+                                                                   // exactly
   }
 }
 
@@ -65,7 +67,7 @@ TEST(RadianceTable, NoiseAroundBlackAveragesToBlack) {
   const std::vector<uint16_t> table = RadianceTable(Raw12Bit(), 16, 1);
   for (size_t noise = 0; noise <= 60; ++noise)
     EXPECT_EQ(table[256 - noise] + table[256 + noise], 2 * 1024) << noise;
-  EXPECT_EQ(table[0], 0);  // 256 steps of 16.8 below a pedestal of 1024
+  EXPECT_EQ(table[0], 0);  // stored 0 is 256 steps of 16.8 below a pedestal of 1024
 }
 
 TEST(RadianceTable, HalvesRoundAwayFromZero) {
@@ -98,7 +100,7 @@ TEST(RadianceTable, MaxRadianceIsWhereTheScaleEnds) {
 TEST(RadianceTable, AResponseCurveIsInterpolatedBetweenItsEntries) {
   RadianceEncoding encoding;
   encoding.transfer = Transfer::kResponse;
-  encoding.response = {0, 0.1, 1};  // at 50, 100, 150
+  encoding.response = {0, 0.1, 1};  // the radiance at 50, 100 and 150
   encoding.black_level = 50;
   encoding.white_level = 150;
   encoding.pedestal = 1000;
@@ -110,7 +112,7 @@ TEST(RadianceTable, AResponseCurveIsInterpolatedBetweenItsEntries) {
   EXPECT_EQ(table[125], v(0.55));
   EXPECT_EQ(table[150], v(1));
   EXPECT_EQ(table[255], v(1));     // saturated
-  EXPECT_EQ(table[45], v(-0.01));  // noise below black, by the first slope
+  EXPECT_EQ(table[45], v(-0.01));  // noise below black, on the first slope
 }
 
 TEST(QuantizeRadiance, TakesAnyFloat) {

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kExact = 1e-12;
 
-// How far the columns are from right angles and unit length.
+// Returns the largest deviation of the columns from right angles and unit length.
 double Skew(const Mat3& axes) {
   return (axes.transpose() * axes - Mat3::Identity()).cwiseAbs().maxCoeff();
 }
@@ -30,8 +30,8 @@ Result<Mat3> NearestRotation(const Mat3& matrix, double tolerance) {
                     "{:.2g}, more than {:g}",
                     skew, tolerance));
   if (skew <= kExact) return matrix;
-  // The orthogonal factor of the polar decomposition, by Newton's iteration (Higham 1986); from
-  // within the tolerance three steps reach machine precision.
+  // The orthogonal factor of the polar decomposition, by Newton's iteration (Higham 1986). For a
+  // matrix within the tolerance, three steps reach machine precision.
   Mat3 axes = matrix;
   for (int i = 0; i < 4; ++i) axes = 0.5 * (axes + axes.inverse().transpose()).eval();
   return axes;

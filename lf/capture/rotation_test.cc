@@ -29,7 +29,7 @@ TEST(NearestRotation, ARotationIsTakenBitForBit) {
     EXPECT_EQ(*NearestRotation(Rotation(seed), 1e-4), Rotation(seed));
 }
 
-// The nearest rotation by the singular value decomposition: U V^T.
+// The expected rotation is U V^T of the singular value decomposition.
 TEST(NearestRotation, RoundedOnesBecomeTheNearest) {
   for (uint64_t seed = 0; seed < 100; ++seed) {
     Mat3 rounded = Rotation(seed);

@@ -1,4 +1,4 @@
-// A hash of values, for telling whether two runs have the same inputs. The same everywhere.
+// A hash of values that is equal on all machines, to find out if two runs have the same inputs.
 #pragma once
 
 #include <fmt/format.h>
@@ -11,11 +11,11 @@
 
 namespace lf {
 
-// Values one after the other, as bytes. Numbers keep all their bits.
+// Hashes values one after the other as bytes, with all bits of a number.
 class ValueHasher {
  public:
   void Add(double value) {
-    const double plain = value == 0 ? 0 : value;  // -0 is no other input
+    const double plain = value == 0 ? 0 : value;  // -0 and +0 count as equal
     hasher_.Add({reinterpret_cast<const char*>(&plain), sizeof(plain)});
   }
   void Add(const std::string& text) {
