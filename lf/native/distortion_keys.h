@@ -13,25 +13,25 @@
 
 namespace lf {
 
-// The key of every parameter of a model, in the order of Distortion::parameters.
+// Returns the keys of the parameters of a model, in the order of Distortion::parameters.
 std::span<const char* const> ParameterKeys(DistortionModel model);
 
-// The camera model as COLMAP and nerfstudio name it. Its parameters are the first ones of
-// ParameterKeys(model); those that follow are 0.
+// A camera model as COLMAP and nerfstudio name it. Its parameters are the first ones of
+// ParameterKeys(model); the remaining ones are 0.
 struct CameraModelName {
   const char* name;
   DistortionModel model;
   size_t parameter_count;
 };
 
-// The name a distortion is written with: PINHOLE, OPENCV, FULL_OPENCV, OPENCV_FISHEYE, FOV,
-// DIVISION, EUCM, THIN_PRISM_FISHEYE or RAD_TAN_THIN_PRISM_FISHEYE. parameter_count is that of the
-// parameters to be written; OPENCV has k3 only if it is not 0.
+// Returns the name with which a distortion is written: PINHOLE, OPENCV, FULL_OPENCV,
+// OPENCV_FISHEYE, FOV, DIVISION, EUCM, THIN_PRISM_FISHEYE or RAD_TAN_THIN_PRISM_FISHEYE.
+// parameter_count is the number of parameters to write; OPENCV has k3 only if it is not 0.
 CameraModelName CameraModelOf(const Distortion& distortion);
 
-// As written; each may be missing.
+// The keys as written; each of them may be missing.
 struct DistortionKeys {
-  std::optional<uint8_t> camera_model;  // into the list of names
+  std::optional<uint8_t> camera_model;  // index into the list of names
   std::optional<bool> is_fisheye;       // instant-ngp
   std::array<std::optional<double>, 19> values;
 
@@ -41,10 +41,10 @@ struct DistortionKeys {
 // kInput: an unknown camera model, a parameter beyond +-1e6, an omega outside [0, pi).
 Result<DistortionKeys> ReadDistortionKeys(const JsonFields& fields);
 
-// Key by key the frame's value, else the top level's, else 0. Without a camera_model OPENCV, or
-// OPENCV_FISHEYE with is_fisheye. Radial-tangential models whose parameters all are 0 have no
-// distortion.
-// kInput: a parameter that is not 0 and that the model does not have, an is_fisheye against the
+// Takes each key from the frame, or from the top level if the frame lacks it; a key that both lack
+// is 0. A missing camera_model means OPENCV, or OPENCV_FISHEYE if is_fisheye is set.
+// Radial-tangential models with all parameters 0 become no distortion.
+// kInput: a nonzero parameter that the model does not have, an is_fisheye that contradicts the
 // model, a FOV without omega. `fields` is for messages.
 Result<Distortion> ResolveDistortion(const DistortionKeys& frame, const DistortionKeys& top,
                                      const JsonFields& fields);

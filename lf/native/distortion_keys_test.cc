@@ -10,7 +10,7 @@
 namespace lf {
 namespace {
 
-// A file of one frame; both texts are keys with a comma behind each.
+// Parses a file with one frame. `top` and `frame` hold keys, each followed by a comma.
 Result<LightField> Parse(const std::string& top, const std::string& frame) {
   return ParseTransformsJson(R"({"fl_x": 500, "w": 640, "h": 480, )" + top + R"("frames": [{)" +
                                  frame + R"("file_path": "a.png",

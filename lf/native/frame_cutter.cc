@@ -15,7 +15,7 @@ constexpr Characters CharactersOf(std::string_view list) {
   return table;
 }
 
-// Where the meaning may change: in strings, in frames, outside of both.
+// The characters with a meaning in strings, in frames, and outside of both.
 constexpr Characters kOfStrings = CharactersOf("\"\\");
 constexpr Characters kOfFrames = CharactersOf("\"{}");
 constexpr Characters kOfRest = CharactersOf("\"{}[]");
@@ -26,7 +26,7 @@ size_t Find(const Characters& characters, std::string_view text) {
   return i;
 }
 
-// As between quotation marks; it may be written with escapes, like any string.
+// `key` is the text between the quotation marks, which may contain escapes.
 bool IsFrames(std::string_view key) {
   if (key.find('\\') == std::string_view::npos) return key == "frames";
   const std::string quoted = '"' + std::string(key) + '"';
@@ -48,7 +48,8 @@ void FrameCutter::Add(std::string_view piece) {
   }
 }
 
-// Each of these takes text up to the next character that matters, and that; at least one.
+// Each of the next three functions takes text up to and including the next character that has a
+// meaning, at least one character. They return the number of bytes taken.
 size_t FrameCutter::AddToString(std::string_view piece, std::string* text) {
   size_t size = 0;
   if (is_escaped_) {

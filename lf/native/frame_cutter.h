@@ -1,5 +1,5 @@
-// Cuts the text of a transforms.json into its frames and the rest, without understanding either:
-// it sees brackets and quotation marks only. Internal to native.
+// Splits the text of a transforms.json into its frames and the rest. It only looks at brackets and
+// quotation marks and does not parse values. Internal to native.
 #pragma once
 
 #include <cstddef>
@@ -9,21 +9,21 @@
 
 namespace lf {
 
-// Of a text that is JSON, the frames are the objects {...} in the lists of the top level's keys
-// "frames". Of any other text: if the rest is JSON and every frame is, so is the whole.
+// If the text is JSON, the frames are the objects {...} in the lists under the keys "frames" of the
+// top level. Conversely, if the rest is JSON and every frame is JSON, the whole text is JSON.
 class FrameCutter {
  public:
-  // `take` is called with each frame when its text is complete.
+  // Calls `take` with each frame as soon as its text is complete.
   explicit FrameCutter(std::function<void(const std::string& frame)> take);
 
-  // The text comes in pieces of any size, from front to back.
+  // Adds the next piece of the text, of any size.
   void Add(std::string_view piece);
 
-  // What is not of frames so far; {} stands for each of them.
+  // The text outside frames so far, with {} in place of each frame.
   const std::string& rest() const { return rest_; }
-  // Whether the text so far ends within a frame.
+  // True if the text so far ends inside a frame.
   bool is_in_frame() const { return frame_depth_ > 0; }
-  // Bytes of the rest and of the frame that has begun: all that is kept.
+  // Size of all text that is kept: the rest, and the frame that has begun.
   size_t held_bytes() const { return rest_.size() + frame_.size(); }
 
  private:
@@ -36,13 +36,13 @@ class FrameCutter {
   std::function<void(const std::string&)> take_;
   std::string rest_, frame_;
   bool in_string_ = false;
-  bool is_escaped_ = false;      // by a backslash before this character
-  size_t frame_depth_ = 0;       // brackets {} that are open in the frame
-  size_t depth_ = 0;             // brackets of both kinds that are open in the rest
-  size_t key_begin_ = 0;         // the last string of the top level, in rest_
-  size_t key_size_ = 0;          // without its quotation marks
-  bool is_frames_list_ = false;  // the bracket at depth 1 -> 2 is that of "frames": [
-  bool is_over_ = false;         // the top level was closed, or is no object: no frames any more
+  bool is_escaped_ = false;      // a backslash precedes the next character
+  size_t frame_depth_ = 0;       // open brackets {} in the frame
+  size_t depth_ = 0;             // open brackets of both kinds in the rest
+  size_t key_begin_ = 0;         // where the last string of the top level begins in rest_
+  size_t key_size_ = 0;          // its size without quotation marks
+  bool is_frames_list_ = false;  // the bracket that opened depth 2 is that of "frames": [
+  bool is_over_ = false;         // the top level was closed or is no object: no more frames
 };
 
 }  // namespace lf

@@ -12,7 +12,7 @@ namespace lf {
 namespace {
 
 constexpr double kMaxSize_px = 65536;
-constexpr double kMaxPixelCount = 1 << 30;  // as imageio/image_file.h
+constexpr double kMaxPixelCount = 1 << 30;  // as in imageio/image_file.h
 
 constexpr NumberRule kFocal = {"a number of pixels from 0.001 to 1e7",
                                [](double x) { return x >= 0.001 && x <= 1e7; }};
@@ -31,7 +31,8 @@ constexpr NumberRule kVignetting = {"within +-1e6, such as [-0.3, 0.05, -0.1]",
 
 using Key = std::optional<double> IntrinsicsKeys::*;
 
-// The focal length along one axis: lengths before angles, the frame before the top level.
+// Returns the focal length along one axis. The frame precedes the top level; within each, the
+// length precedes the angle.
 std::optional<double> Focal(const IntrinsicsKeys& frame, const IntrinsicsKeys& top, Key length,
                             Key angle, double size_px) {
   for (const IntrinsicsKeys* keys : {&frame, &top}) {
@@ -44,7 +45,7 @@ std::optional<double> Focal(const IntrinsicsKeys& frame, const IntrinsicsKeys& t
 }  // namespace
 
 uint64_t HashOfIntrinsicsKeys(const IntrinsicsKeys& keys) {
-  constexpr double kMissing = 1e300;  // no value that is read
+  constexpr double kMissing = 1e300;  // stands for a missing key; no key can have this value
   const DistortionKeys& distortion = keys.distortion;
   constexpr size_t kOthers = 14;
   std::array<double, kOthers + std::tuple_size_v<decltype(DistortionKeys::values)>> numbers = {

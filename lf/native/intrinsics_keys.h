@@ -1,5 +1,5 @@
-// The intrinsics of transforms.json: keys that stand at the top level and may be overridden in
-// each frame. Internal to native.
+// The intrinsics of transforms.json: keys of the top level, which each frame may override. Internal
+// to native.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace lf {
 
-// As written; each may be missing.
+// The keys as written; each of them may be missing.
 struct IntrinsicsKeys {
   std::optional<double> fl_x, fl_y;                      // px
   std::optional<double> camera_angle_x, camera_angle_y;  // rad, the whole field of view
@@ -27,16 +27,16 @@ struct IntrinsicsKeys {
   friend bool operator==(const IntrinsicsKeys&, const IntrinsicsKeys&) = default;
 };
 
-// Of equal keys the same.
+// Returns equal hashes for equal keys.
 uint64_t HashOfIntrinsicsKeys(const IntrinsicsKeys& keys);
 
-// Every value in its range.
+// Reads the keys and checks the range of every value.
 Result<IntrinsicsKeys> ReadIntrinsicsKeys(const JsonFields& fields);
 
-// Key by key the frame's value, else the top level's. The focal length is fl_x, else that of
-// camera_angle_x; fl_y, else that of camera_angle_y, else the one along x. The principal point is
-// the image centre unless given.
-//   default_size  [width, height], asked for where neither gives w or h; its error is returned
+// Takes each key from the frame, or from the top level if the frame lacks it. The focal length
+// along x is fl_x, or that of camera_angle_x; along y it is fl_y, or that of camera_angle_y, or the
+// one along x. The principal point is the image centre by default.
+//   default_size  [width, height], called if w or h is missing; its error is returned
 //   fields        for messages
 // kInput: no focal length, a distortion that is unclear (ResolveDistortion), a vignetting that
 // leaves no light somewhere in the image.

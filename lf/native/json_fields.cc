@@ -10,13 +10,13 @@
 namespace lf {
 namespace {
 
-constexpr size_t kMostTextBytes = 4096;  // as many as a path has on Linux
+constexpr size_t kMostTextBytes = 4096;  // the longest path on Linux
 
 using simdjson::dom::array;
 using simdjson::dom::element;
 using simdjson::dom::object;
 
-// A value as a message shows it: short, whatever the file holds.
+// Returns a value as messages show it, which is short for any content.
 std::string Shown(const element& value) {
   if (value.is<object>()) return "an object";
   array list;
@@ -34,7 +34,7 @@ std::optional<double> NumberBy(const NumberRule& rule, const element& value) {
   return number;
 }
 
-// False unless the value is a list of count_min to count_max numbers by the rule.
+// Returns false unless the value is a list of count_min to count_max numbers that obey the rule.
 bool AppendNumbers(const element& value, size_t count_min, size_t count_max, const NumberRule& rule,
                    std::vector<double>* numbers) {
   array list;
@@ -48,7 +48,7 @@ bool AppendNumbers(const element& value, size_t count_min, size_t count_max, con
   return true;
 }
 
-// Levenshtein's distance.
+// Returns the Levenshtein distance.
 size_t EditDistance(std::string_view a, std::string_view b) {
   std::vector<size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), size_t{0});

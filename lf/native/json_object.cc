@@ -12,9 +12,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kMaxDepth = 1000;  // of what is written anew; simdjson takes 1024
+constexpr int kMaxDepth = 1000;  // depth of rewritten text; simdjson accepts 1024
 
-// \ud800 to \udfff: of those that are no pair simdjson takes some.
+// Returns true if the text has escapes \ud800 to \udfff: simdjson accepts some that are no pair.
 bool HasSurrogates(std::string_view text) {
   for (size_t at = text.find('\\'); at != std::string_view::npos; at = text.find('\\', at + 1)) {
     const std::string_view escape = text.substr(at, 4);
@@ -25,7 +25,7 @@ bool HasSurrogates(std::string_view text) {
   return false;
 }
 
-// The same value in a form that simdjson takes; "" if the text is not JSON.
+// Returns the same value in a form that simdjson accepts, or "" if the text is not JSON.
 std::string WrittenAnew(const std::string& text) {
   try {
     const auto keep = [](int depth, json::parse_event_t, json&) { return depth <= kMaxDepth; };

@@ -11,27 +11,28 @@ class parser;
 
 namespace lf {
 
-// JSON is what nlohmann's parser takes for it. simdjson parses; what it takes another way (numbers
-// beyond 64 bits, halves of surrogates, deep nesting) nlohmann writes anew for it.
+// Accepts as JSON what nlohmann's parser accepts. simdjson parses it. Texts that simdjson treats
+// differently (numbers beyond 64 bits, unpaired surrogates, deep nesting) are first rewritten by
+// nlohmann's library.
 class JsonObject {
  public:
-  // {}
+  // An empty object, {}.
   JsonObject();
   ~JsonObject();
   JsonObject(const JsonObject&) = delete;
   JsonObject& operator=(const JsonObject&) = delete;
 
-  // Forgets what it held. False, and {}, if `text` is not JSON or no object. What lies deeper than
-  // 1024 brackets may be missing afterwards. Numbers are rounded correctly.
+  // Replaces the content. Returns false, and holds {}, if `text` is not JSON or not an object.
+  // Content below 1024 nested brackets may be lost. Numbers are rounded correctly.
   bool Parse(const std::string& text);
 
-  // Of several equal keys the last one counts.
+  // If a key occurs several times, the last one is valid.
   const simdjson::dom::object& object() const { return *object_; }
 
  private:
   bool ParseFast(const std::string& text);
 
-  // Its memory serves every text.
+  // Reused for every text, so that memory is allocated once.
   std::unique_ptr<simdjson::dom::parser> parser_;
   std::unique_ptr<simdjson::dom::object> object_;
 };

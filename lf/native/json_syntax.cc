@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-// The characters of a stream, as the parser wants them.
+// Iterates over the characters of a stream, as nlohmann's parser needs it.
 class StreamIterator {
  public:
   using iterator_category = std::input_iterator_tag;
@@ -22,20 +22,20 @@ class StreamIterator {
   using pointer = const char*;
   using reference = char;
 
-  explicit StreamIterator(ByteStream* stream = nullptr) : stream_(stream) {}  // null: of the end
+  explicit StreamIterator(ByteStream* stream = nullptr) : stream_(stream) {}  // nullptr: the end
   char operator*() const { return stream_->Window().front(); }
   StreamIterator& operator++() {
     stream_->Skip(1);
     return *this;
   }
-  // Compared with the end only.
+  // The parser compares with the end only.
   bool operator==(const StreamIterator&) const { return stream_->Window().empty(); }
 
  private:
   ByteStream* stream_;
 };
 
-// Names the usual mistakes. The parser says what it found last.
+// Returns advice on the usual mistakes. `what` ends with what the parser read last.
 std::string_view AdviceOn(std::string_view what) {
   const auto has = [what](std::string_view part) { return what.find(part) != what.npos; };
   if (has("unexpected end of input") && has("line 1, column 1:")) return "; the file is empty";
@@ -51,9 +51,10 @@ std::string_view AdviceOn(std::string_view what) {
 }  // namespace
 
 Error IsNotJson(const std::filesystem::path& file, std::string_view what) {
-  what.remove_prefix(std::min(what.size(), what.find("] ") + 2));  // the library's name
+  what.remove_prefix(std::min(what.size(), what.find("] ") + 2));  // without the name of the
+                                                                   // library
   const std::string_view advice = AdviceOn(what);
-  // Text of another encoding cannot be shown.
+  // Text in another encoding cannot be shown.
   if (advice.find("UTF-8") != advice.npos) what = what.substr(0, what.find("; last read"));
   return InputError(fmt::format("{}: is not JSON: {}{}", file.string(), what, advice));
 }

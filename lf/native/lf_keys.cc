@@ -32,7 +32,7 @@ Result<BayerPattern> ReadBayer(const JsonFields& top, BayerPattern otherwise) {
   return *bayer;
 }
 
-// transfer and response.
+// Reads lf_transfer and lf_response.
 Result<void> ReadTransfer(const JsonFields& top, RadianceEncoding* encoding) {
   LF_ASSIGN_OR_RETURN(const std::optional<std::string> name, top.Text("lf_transfer"));
   LF_ASSIGN_OR_RETURN(std::optional<std::vector<double>> response,
@@ -115,7 +115,7 @@ Result<void> ReadClipped(const JsonFields& top, RadianceEncoding* encoding) {
   return {};
 }
 
-// What the first of camera raw files tells of what is not stated.
+// Returns the encoding that the first camera raw file states for the missing keys.
 Result<RadianceEncoding> DefaultEncoding(const JsonFields& top, const LightField& light_field,
                                          const RawFactsSource& raw_facts) {
   const auto stated = [&](const auto&... keys) { return (... && top.Has(keys)); };

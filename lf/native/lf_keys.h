@@ -9,7 +9,7 @@
 
 namespace lf {
 
-// All lf_* keys there are (doc/formats/transforms_json.md).
+// All lf_* keys (doc/formats/transforms_json.md).
 inline constexpr const char* kTopLevelLfKeys[] = {"lf_bayer",
                                                   "lf_transfer",
                                                   "lf_response",
@@ -43,9 +43,10 @@ inline constexpr const char* kFrameLfKeys[] = {
     "lf_eucm_beta", "lf_sx1",  "lf_sy1",         "lf_p0",        "lf_p1",        "lf_s0",
     "lf_s1",        "lf_s2",   "lf_s3",          "lf_vignetting"};
 
-// Of the top level. Defaults: what camera raw files tell (`raw_facts` is asked where a key they
-// could replace is missing; null: not asked); else sRGB without a Bayer pattern, linear with one.
-// Pedestal 1024 where there is a black level, else 0; DefaultMaxRadiance(image_names).
+// Reads the keys of the top level. Missing keys take their values from camera raw files:
+// `raw_facts` is called if a key that it can replace is missing, unless it is null. Other defaults:
+// sRGB without a Bayer pattern, linear with one; pedestal 1024 if there is a black level, otherwise
+// 0; DefaultMaxRadiance(image_names).
 //   light_field  names and folder of the images
 Result<RadianceEncoding> ReadEncoding(const JsonFields& top, const LightField& light_field,
                                       const RawFactsSource& raw_facts);

@@ -33,7 +33,7 @@ Result<RigidTransform> CamFromWorldOfOpenGl(const Mat34& world_from_opengl_camer
   cam_from_world.rotation.row(0) = axes.col(0);
   cam_from_world.rotation.row(1) = -axes.col(1);
   cam_from_world.rotation.row(2) = -axes.col(2);
-  // Subtracted from zero, not negated: no zero of the result has a minus sign.
+  // Subtraction from zero instead of negation gives no negative zeros.
   cam_from_world.translation =
       Vec3::Zero() - cam_from_world.rotation * world_from_opengl_camera.col(3);
   return cam_from_world;

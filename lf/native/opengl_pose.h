@@ -9,16 +9,18 @@ namespace lf {
 
 using Mat34 = Eigen::Matrix<double, 3, 4>;
 
-// cam_from_world (x right, y down, z forward) of [s R | c] : R the axes of the OpenGL camera as
-// columns, s any scale, c its centre.
+// Returns cam_from_world (x right, y down, z forward) of [s R | c]. The columns of R are the axes
+// of the OpenGL camera, s is any scale, and c is the camera centre.
 //
-// An s R that is a rotation to 1e-12 is taken bit for bit; else the nearest rotation to R, since
-// files are often written with six digits.
-// kInput, without the place: entries that are not finite or beyond 1e12, a determinant of zero or
-// below (a mirrored axis), axes that miss right angles or equal lengths by more than 1e-3.
+// If s R is a rotation within 1e-12, it is used bit for bit; otherwise the nearest rotation to R is
+// used, since files are often written with six digits.
+// kInput, without the place in the file: entries that are not finite or beyond 1e12; a determinant
+// of zero or below (a mirrored axis); axes that miss right angles or equal lengths by more than
+// 1e-3.
 Result<RigidTransform> CamFromWorldOfOpenGl(const Mat34& world_from_opengl_camera);
 
-// The inverse, with s = 1. Rotations come back bit for bit, centres as c = -R^T t, rounded.
+// Returns the inverse, with s = 1. Rotations are preserved bit for bit; centres are c = -R^T t,
+// rounded.
 Mat34 OpenGlOfCamFromWorld(const RigidTransform& cam_from_world);
 
 }  // namespace lf

@@ -36,7 +36,7 @@ TEST(OpenGlPose, AnUnturnedCameraLooksAlongMinusZWithYUp) {
 }
 
 TEST(OpenGlPose, ColumnsAreTheAxesOfTheCamera) {
-  Mat3 axes;  // looks along +x of the world, world z up
+  Mat3 axes;  // of a camera that looks along +x of the world, with z of the world up
   axes.col(0) = Vec3(0, -1, 0);
   axes.col(1) = Vec3(0, 0, 1);
   axes.col(2) = Vec3(-1, 0, 0);

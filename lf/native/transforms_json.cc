@@ -27,7 +27,8 @@ using Event = json::parse_event_t;
 
 constexpr size_t kMaxFrameCount = size_t{1} << 24;
 constexpr size_t kMaxHeldBytes = size_t{1} << 30;
-constexpr int kMaxDepth = 8;  // nothing we read lies deeper; hostile nesting takes no memory
+constexpr int kMaxDepth = 8;  // deeper than anything that is read; hostile nesting then takes no
+                              // memory
 
 constexpr NumberRule kFinite = {"finite", [](double) { return true; }};
 constexpr NumberRule kGain = {"a factor from 1e-6 to 1e6",
@@ -35,9 +36,9 @@ constexpr NumberRule kGain = {"a factor from 1e-6 to 1e6",
 constexpr NumberRule kUnit = {"metres per world unit, from 1e-9 to 1e9",
                               [](double x) { return x >= 1e-9 && x <= 1e9; }};
 
-// Takes the frames one by one, as they are cut out of the text, and forgets them: of a million
-// frames only LfCameras and names are ever in memory. What they share may come after them in the
-// file, so their intrinsics are resolved at the end.
+// Reads each frame as it is cut out of the text and then forgets its text: for a million frames,
+// only LfCameras and names stay in memory. Intrinsics are resolved at the end, because the keys
+// that all frames share may come after the frames.
 class Reader {
  public:
   Reader(const fs::path& path, const ImageSizeSource& image_size, const RawFactsSource& raw_facts)
@@ -45,15 +46,16 @@ class Reader {
     light_field_.folder = path.parent_path();
   }
 
-  // False if it is no JSON.
+  // Returns false if the text is not JSON.
   bool TakeFrame(const std::string& text) {
     if (!frame_.Parse(text)) return false;
-    if (error_) return true;  // still to be said: whether the file is JSON
+    if (error_) return true;  // the rest is parsed only to see if the file is JSON
     if (Result<void> result = AddFrame(); !result) error_ = result.error();
     return true;
   }
 
-  // Everything but the frames, after them; {} stands for each. None if it is no JSON.
+  // Reads everything but the frames, after all of them; `text` has {} in place of each frame.
+  // Returns nullopt if the text is not JSON.
   std::optional<Result<LightField>> TakeRest(const std::string& text) {
     std::optional<Error> first_error;
     std::string top_text;
@@ -74,8 +76,8 @@ class Reader {
  private:
   size_t frame_count() const { return light_field_.cameras.size(); }
 
-  // The top level, without the entries of "frames". An error if one of these is no object, or if a
-  // key is given twice. Throws if it is no JSON.
+  // Returns the top level without the entries of "frames". Sets *error if one of the entries is no
+  // object, or if a key occurs twice. Throws if the text is not JSON.
   json TopLevel(const std::string& text, std::optional<Error>* error) const {
     std::set<std::string> seen_keys;
     bool in_frames = false, in_frames_list = false;
@@ -130,13 +132,13 @@ class Reader {
     camera.intrinsics_index = distinct_keys_.IndexOf(keys);
     LF_RETURN_IF_ERROR(ReadMask(fields, index));
     light_field_.cameras.push_back(camera);
-    // As instant-ngp does for the frames of Blender's NeRF scenes.
+    // instant-ngp adds the same extension for the frames of Blender's NeRF scenes.
     if (!fs::path(*name).has_extension()) *name += ".png";
     light_field_.image_names.push_back(*std::move(name));
     return {};
   }
 
-  // One factor for all channels, or those of R, G and B.
+  // Reads one factor for all channels, or one for each of R, G and B.
   static Result<ChannelGains> ReadGains(const JsonFields& fields) {
     LF_ASSIGN_OR_RETURN(const std::optional<std::vector<double>> numbers,
                         fields.NumberOrNumbers("lf_gain", 3, kGain));
@@ -158,8 +160,8 @@ class Reader {
     return WithExactTranslation(fields, *pose);
   }
 
-  // lf_translation is the translation that the matrix gives, without the rounding of the way
-  // through the centre.
+  // lf_translation is the translation that the matrix stands for, without the rounding errors of
+  // the conversion to a centre and back.
   static Result<RigidTransform> WithExactTranslation(const JsonFields& fields,
                                                      RigidTransform pose) {
     constexpr double kTolerance = 1e-6;
@@ -177,7 +179,7 @@ class Reader {
     return pose;
   }
 
-  // lf_mask, or nerfstudio's mask_path, which means the same.
+  // Reads lf_mask, or mask_path of nerfstudio, which has the same meaning.
   Result<void> ReadMask(const JsonFields& fields, size_t index) {
     LF_ASSIGN_OR_RETURN(std::optional<std::string> mask, fields.Text("lf_mask"));
     if (!mask) {
@@ -201,8 +203,8 @@ class Reader {
     return {};
   }
 
-  // Returns the size that most of up to 15 evenly spread images have; it is asked for once. Of
-  // equally many, the first.
+  // Returns the most frequent size of up to 15 evenly spread images, or the first of equally
+  // frequent ones. Read once and then kept.
   Result<std::array<int, 2>> DefaultSize() {
     constexpr const char* kAdvice =
         "add \"w\" and \"h\", in pixels, at the top level (e.g. \"w\": 800, \"h\": 800)";
@@ -219,7 +221,7 @@ class Reader {
     constexpr size_t kMostAsked = 15;
     const size_t count = std::min(kMostAsked, light_field_.size());
     std::vector<std::array<int, 2>> sizes;
-    std::optional<Error> fault;  // of the first image
+    std::optional<Error> fault;  // of the first image that cannot be read
     for (size_t i = 0; i < count; ++i) {
       const auto index = static_cast<uint32_t>(i * light_field_.size() / count);
       const auto size = image_size_(light_field_.ImagePath(LfImageId{index}));
@@ -267,15 +269,16 @@ class Reader {
   const ImageSizeSource& image_size_;
   const RawFactsSource& raw_facts_;
   std::optional<std::array<int, 2>> default_size_;
-  LightField light_field_;  // intrinsics_index counts distinct_keys_ until the end
+  LightField light_field_;  // until the end, intrinsics_index is an index into distinct_keys_
   Distinct<IntrinsicsKeys, HashOfIntrinsicsKeys> distinct_keys_;
-  JsonObject frame_;            // the one that is being read
-  std::optional<Error> error_;  // of the first frame that has one
+  JsonObject frame_;            // the frame that is being read
+  std::optional<Error> error_;  // of the first faulty frame
 };
 
 using StreamSource = std::function<Result<ByteStream>()>;
 
-// The parsers of frames do not tell where in the file they stop: it is read a second time.
+// Reads the file again to find its syntax error, because the parsers of frames do not know their
+// place in the file.
 Error SyntaxError(const StreamSource& open) {
   Result<ByteStream> stream = open();
   return stream ? JsonSyntaxError(&*stream) : stream.error();

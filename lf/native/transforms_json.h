@@ -1,6 +1,6 @@
-// The native description of a light field: nerfstudio / instant-ngp transforms.json with the lf_*
-// keys of doc/formats/transforms_json.md. OpenGL axes there (x right, y up, looking along -z,
-// camera-to-world), converted on reading.
+// Reads and writes the native description of a light field: nerfstudio / instant-ngp
+// transforms.json with the lf_* keys of doc/formats/transforms_json.md. Its axes are those of
+// OpenGL (x right, y up, looking along -z, camera-to-world) and are converted on reading.
 #pragma once
 
 #include <filesystem>
@@ -13,33 +13,34 @@
 
 namespace lf {
 
-// text        the file's content
-// path        its name for messages; its folder becomes LightField::folder
-// image_size  asked for the first image where a frame has no "w" or "h", as in Blender's scenes;
-//             without it that is an error
-// raw_facts   asked for what the keys do not say of camera raw files; without it nobody is asked
+// Parses the content of a file.
+//   text        the file's content
+//   path        its name for messages; its folder becomes LightField::folder
+//   image_size  called for an image if a frame has no "w" or "h", as in Blender's scenes;
+//               if it is empty, a missing size is an error
+//   raw_facts   called for what the keys do not state about camera raw files; may be empty
 // kInput names the file, the frame and its key, the value found and what was expected.
 Result<LightField> ParseTransformsJson(std::string_view text, const std::filesystem::path& path,
                                        const ImageSizeSource& image_size = {},
                                        const RawFactsSource& raw_facts = {});
 
-// The same for a file, which is read in pieces: it takes the memory of the light field, not that of
-// the text. A missing size, and what is not said of camera raw files, come from the header of the
-// first image file.
+// As ParseTransformsJson(), but reads the file in pieces, with the memory of the light field
+// instead of that of the text. Missing sizes and missing facts of camera raw files come from the
+// headers of image files.
 Result<LightField> ReadTransformsJson(const std::filesystem::path& path);
 
-// Writes `light_field` so that reading it gives the same cameras bit for bit (but that a
-// radial-tangential distortion of zeros reads as none). Image names are written as they are.
-//   writer  the program, if its name and a checksum are to be written too (lf_written_by)
-// kOutput.
+// Writes `light_field` so that reading it gives the same cameras bit for bit, except that a
+// radial-tangential distortion of zeros is read as none. Image names are written unchanged.
+//   writer  the program; if given, its name and a checksum are written (lf_written_by)
+// kOutput if the file cannot be written, or a name is not UTF-8.
 Result<void> WriteTransformsJson(const LightField& light_field, const std::filesystem::path& path,
                                  std::string_view writer = {});
 
-// The writers of native folders (lf_written_by).
+// The programs that write native folders (lf_written_by).
 inline constexpr const char* kImportProgram = "lfimport";
 inline constexpr const char* kSynthProgram = "lfsynth";
 
-// Whether the file was written by `writer`, and nobody changed it since. kInput: unreadable.
+// Returns true if `writer` wrote the file and it was not changed since. kInput if it is unreadable.
 Result<bool> IsAsWritten(const std::filesystem::path& path, std::string_view writer);
 
 }  // namespace lf

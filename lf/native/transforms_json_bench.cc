@@ -1,6 +1,7 @@
-// Seconds and memory for reading transforms.json with 10,000 to a million frames, written into the
-// temporary folder first (300 bytes each). Memory is the peak of the process before reading and at
-// all: run one benchmark at a time (--benchmark_filter=Read/1000000).
+// Measures seconds and memory for reading a transforms.json with 10,000 to a million frames (300
+// bytes each), which is first written into the temporary folder. The peak memory of the process is
+// measured before reading and at the end, so run one benchmark at a time
+// (--benchmark_filter=Read/1000000).
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -18,7 +19,7 @@ namespace lf {
 namespace {
 namespace fs = std::filesystem;
 
-// Numbers of all 17 digits.
+// Returns a pose whose numbers have 17 digits.
 Mat34 Pose(uint64_t i) {
   const auto uniform = [i](uint64_t k) { return std::ldexp(RandomBits(0, i, k), -63) - 1; };
   Mat34 pose;
@@ -49,7 +50,7 @@ double PeakMiB() {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
-// The argument: the number of frames.
+// The argument is the number of frames.
 void BM_Read(benchmark::State& state) {
   const fs::path path = fs::temp_directory_path() / fmt::format("lf_native_{}.json", ::getpid());
   WriteFrames(path, static_cast<uint64_t>(state.range(0)));

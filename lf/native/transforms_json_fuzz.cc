@@ -1,5 +1,5 @@
-// Any bytes are a light field or an error, and are cut into the same frames wherever their pieces
-// end; a light field has sane cameras only.
+// Any bytes give a light field with sane cameras or an error, and are cut into the same frames for
+// any size of the pieces.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace {
 
-// The frames, a line each, and the rest.
+// Returns the frames, one per line, followed by the rest.
 std::string Cut(std::string_view text, size_t piece_size) {
   std::string frames;
   lf::FrameCutter cutter([&](const std::string& frame) { frames += frame + '\n'; });

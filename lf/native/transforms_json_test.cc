@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* kUnturned = R"([[1,0,0,1], [0,1,0,2], [0,0,1,3], [0,0,0,1]])";
 
-// A file of one frame; both texts are keys with a comma behind each.
+// Returns a file with one frame. `top` and `frame` hold keys, each followed by a comma.
 std::string OneFrame(const std::string& top, const std::string& frame = "") {
   return "{" + top + R"("frames": [{)" + frame +
          R"("file_path": "images/a.png", "transform_matrix": )" + kUnturned + "}]}";
@@ -84,7 +84,7 @@ TEST(TransformsJson, AFrameOverridesTheTopLevelKeyByKey) {
   EXPECT_EQ(k(R"("fl_x": 500, "fl_y": 510, "cx": 3, )", R"("fl_x": 600, "cx": 4, )"),
             (Intrinsics{600, 510, 4, 240, 0, 640, 480}));
   EXPECT_EQ(k(R"("fl_x": 500, )", R"("w": 320, )"), (Intrinsics{500, 500, 160, 240, 0, 320, 480}));
-  // A length beats an angle at the same place, and the frame beats the top level.
+  // A length precedes an angle at the same place, and the frame precedes the top level.
   EXPECT_EQ(k(R"("fl_x": 500, "camera_angle_x": 1, )", "").fx_px, 500);
   EXPECT_NEAR(k(R"("fl_x": 500, )", R"("camera_angle_x": 1, )").fx_px, 320 / std::tan(0.5), 1e-10);
 }
@@ -253,7 +253,7 @@ TEST(TransformsJson, AFaultIsFoundWhereverItStands) {
   ExpectError(text(frame, "}"), {"is not JSON", "line 4"});
   ExpectError(text(frame, "],}"), {"is not JSON", "line 4"});
   ExpectError(text(frame, "]} {}"), {"is not JSON", "line 4"});
-  // That it is no JSON goes before all else.
+  // A syntax error is reported before any other error.
   ExpectError(text("{}", "]"), {"is not JSON", "line 4"});
   ExpectError(text("{}", "]}"), {"frames[1]: \"file_path\" is missing"});
   ExpectError(text("7", R"(,{}]})"), {"frames[1]: expected an object"});
@@ -271,7 +271,7 @@ TEST(TransformsJson, WhatNobodyReadsMayBeAnything) {
 
 class TransformsJsonFileTest : public FolderTest {};
 
-// Of some blocks of the file, with names of all lengths.
+// The file spans several blocks and has names of all lengths.
 TEST_F(TransformsJsonFileTest, AFileIsReadInPiecesAsItsTextIsAtOnce) {
   std::string frames;
   constexpr uint32_t kCount = 20'000;

@@ -19,8 +19,8 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-// Appends to the text of one file; numbers with the fewest digits (at most 17) that read back as
-// the same double.
+// The text of a file, to which everything is appended. Numbers are written with the fewest digits
+// (at most 17) that read back as the same double.
 class JsonText {
  public:
   template <class... Args>
@@ -28,7 +28,7 @@ class JsonText {
     fmt::format_to(std::back_inserter(text_), format, std::forward<Args>(args)...);
   }
   void AddNumber(double x) {
-    // "-0" would be read as an integer, and lose its sign.
+    // "-0" would be read as an integer and lose its sign.
     if (x == 0 && std::signbit(x))
       Add("-0.0");
     else
@@ -42,7 +42,7 @@ class JsonText {
     }
     Add("]");
   }
-  // Rows of `columns` numbers.
+  // Adds rows of `columns` numbers.
   void AddMatrix(std::span<const double> values, size_t columns) {
     Add("[");
     for (size_t i = 0; i < values.size(); i += columns) {
@@ -51,7 +51,7 @@ class JsonText {
     }
     Add("]");
   }
-  // kOutput: names that are not UTF-8 have no place in JSON.
+  // kOutput if the name is not UTF-8, which JSON requires.
   Result<void> AddString(const std::string& string) {
     try {
       text_ += nlohmann::json(string).dump();
@@ -66,8 +66,8 @@ class JsonText {
   std::string text_;
 };
 
-// camera_model and its parameters. Those that only `top` has are written as 0: they would else be
-// taken from there.
+// Writes camera_model and its parameters. Parameters that only `top` has are written as 0, because
+// a reader would otherwise take them from `top`.
 void AddDistortion(const Distortion& distortion, const Distortion& top, const char* separator,
                    JsonText* json) {
   const auto parameters = [](const Distortion& d, const CameraModelName& model) {
@@ -90,7 +90,7 @@ void AddDistortion(const Distortion& distortion, const Distortion& top, const ch
   }
 }
 
-// top  the intrinsics at the top level
+// Writes the keys that differ from `top`, the intrinsics at the top level.
 void AddIntrinsics(const Intrinsics& k, const Intrinsics& top, const char* separator,
                    JsonText* json) {
   AddDistortion(k.distortion, top.distortion, separator, json);
@@ -157,14 +157,14 @@ void AddPose(const RigidTransform& cam_from_world, JsonText* json) {
   rows.topRows<3>() = pose;
   json->Add("\"transform_matrix\": ");
   json->AddMatrix({rows.data(), 16}, 4);
-  // Rounded on the way to the centre and back, most translations change in their last bit.
+  // Converted to a centre and back with rounding, most translations change in their last bit.
   const Result<RigidTransform> read_back = CamFromWorldOfOpenGl(pose);
   if (read_back && read_back->translation == cam_from_world.translation) return;
   json->Add(", \"lf_translation\": ");
   json->AddNumbers({cam_from_world.translation.data(), 3});
 }
 
-// One number where all channels have the same gain, as most light fields state it.
+// Writes one number if all channels have the same gain, as most light fields state it.
 void AddGains(const LfCamera& camera, JsonText* json) {
   const std::array<double, 3> gains = {camera.gain[0], camera.gain[1], camera.gain[2]};
   if (!camera.gain.are_equal()) {
@@ -221,14 +221,14 @@ Result<std::string> TransformsJsonText(const LightField& light_field) {
   return json.text();
 }
 
-// FNV-1a, 64 bits: tells an edited file from one that is as it was written.
+// FNV-1a with 64 bits: detects that a file was edited after it was written.
 uint64_t ChecksumOf(std::string_view text) {
   uint64_t sum = 0xcbf29ce484222325;
   for (const char c : text) sum = (sum ^ static_cast<unsigned char>(c)) * 0x100000001b3;
   return sum;
 }
 
-// The first lines of a file by `writer`; `rest` follows.
+// Returns the first lines of a file by `writer`, which `rest` follows.
 std::string SignedOpening(std::string_view writer, std::string_view rest) {
   return fmt::format("{{\n\"lf_written_by\": \"{} {:016x}\",\n", writer, ChecksumOf(rest));
 }
