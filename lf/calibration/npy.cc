@@ -26,7 +26,7 @@ uint64_t LittleEndian(std::string_view bytes) {
   return value;
 }
 
-// What a message shows of foreign text.
+// Returns foreign text as messages show it.
 std::string Shown(std::string_view text) {
   std::string shown(text.substr(0, 80));
   std::replace_if(
@@ -126,7 +126,7 @@ class HeaderReader {
   std::string_view all_, text_;
 };
 
-// The text of the header, and the bytes behind it.
+// The text of the header, and the bytes that follow it.
 struct Parts {
   std::string_view header, values;
 };
@@ -152,7 +152,7 @@ Result<Parts> Cut(std::string_view bytes) {
   return Parts{bytes.substr(begin, length), bytes.substr(begin + length)};
 }
 
-// The number of values of a shape; kInput where it is 0 or beyond what is read.
+// Returns the number of values of a shape. kInput if it is 0 or larger than is supported.
 Result<size_t> CountOf(const std::vector<size_t>& shape) {
   size_t count = 1;
   for (const size_t size : shape) {

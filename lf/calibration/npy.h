@@ -1,4 +1,4 @@
-// Arrays of numbers as NumPy stores them (.npy). Internal to calibration.
+// Reads arrays of numbers in NumPy's format (.npy). Internal to calibration.
 #pragma once
 
 #include <cstddef>
@@ -14,9 +14,10 @@ struct NpyArray {
   std::vector<double> values;  // in C order: the last index runs fastest
 };
 
-// The bytes of a .npy file of format 1 or 2 that holds little-endian floats of 4 or 8 bytes
-// ('<f4', '<f8') in C order, of 1 to 4 dimensions, none of them 0.
-// kInput, without the place: anything else, named; a length that differs from the shape's.
+// Parses a .npy file of format 1 or 2 with little-endian floats of 4 or 8 bytes ('<f4', '<f8') in C
+// order and 1 to 4 dimensions, none of them 0.
+// kInput, without the file's name: any other content, named in the message; data whose length does
+// not match the shape.
 Result<NpyArray> ParseNpy(std::string_view bytes);
 
 }  // namespace lf

@@ -8,7 +8,7 @@
 namespace lf {
 namespace {
 
-// A file of format 1, as numpy.save writes it but for the padding.
+// Returns a file of format 1 as numpy.save writes it, but without padding.
 std::string Npy(const std::string& header, const std::string& values, char version = 1) {
   std::string bytes = "\x93NUMPY";
   bytes += version;
@@ -51,7 +51,7 @@ TEST(Npy, ReadsDoublesAndFloatsInCOrder) {
   EXPECT_EQ(floats.values, (std::vector<double>{1.5, 0.1F}));
 }
 
-// What numpy.save writes of [[1, 2.5]]: the header is padded to a multiple of 64 bytes.
+// The bytes that numpy.save writes for [[1, 2.5]]: its header is padded to a multiple of 64 bytes.
 TEST(Npy, ReadsTheBytesOfNumpyItself) {
   std::string header = "{'descr': '<f8', 'fortran_order': False, 'shape': (1, 2), }";
   header += std::string(117 - header.size(), ' ') + "\n";

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 #define EXPECT_HAS(message, part) EXPECT_NE((message).find(part), std::string::npos) << (message)
 
-// Made by COLMAP itself (make.py there): one camera of each model, two images each.
+// Made by COLMAP itself (make.py in that folder): one camera of each model with two images each.
 const fs::path kTenCameras = fs::path(LF_COLMAP_MODELS) / "ten_cameras";
 
 class ReadColmapTest : public FolderTest {
@@ -54,7 +54,7 @@ TEST_F(ReadColmapTest, BothFormsAreTheSameBitForBit) {
   Copy(".txt");
   const Result<LightField> text = ReadColmapModel(folder_, folder_);
   ASSERT_TRUE(text) << text.error().message;
-  Copy(".bin");  // goes first from now on
+  Copy(".bin");  // binary models precede text
   const Result<LightField> binary = ReadColmapModel(folder_, folder_);
   ASSERT_TRUE(binary) << binary.error().message;
   EXPECT_EQ(binary->size(), 20u);
@@ -62,8 +62,9 @@ TEST_F(ReadColmapTest, BothFormsAreTheSameBitForBit) {
   ExpectSame(*text, *binary);
 }
 
-// The points of the fixture were projected by formulas of their own, and COLMAP's reprojection
-// error of them is 1e-14 px: so our cameras are COLMAP's, pixel centres and all.
+// The points of the fixture were projected by independent formulas, and COLMAP's reprojection error
+// for them is 1e-14 px. Equal results therefore show that our cameras are COLMAP's, including the
+// convention for pixel centres.
 TEST_F(ReadColmapTest, EveryModelProjectsAsColmapDoes) {
   Copy(".txt");
   const Result<LightField> light_field = ReadColmapModel(folder_, folder_);
@@ -116,8 +117,8 @@ struct ColmapPose {
   }
 };
 
-// A model of COLMAP 3.12 and later: rig 7 has the cameras 1 and 4 and an IMU (sensor type 1) whose
-// pose is not known, and was exposed in two frames. Frame 5 comes first and its images have the
+// A model of COLMAP 3.12 or later. Rig 7 has the cameras 1 and 4 and an IMU (sensor type 1) with an
+// unknown pose, and was exposed in two frames. Frame 5 comes first although its images have the
 // larger ids. `form` is .bin or .txt; the layout is that of COLMAP's reconstruction_io_*.cc.
 class RigModel {
  public:
@@ -191,7 +192,7 @@ class RigModel {
 };
 
 // COLMAP writes cam_from_world of every registered image, which is sensor_from_rig times
-// rig_from_world, also where it knows rigs.
+// rig_from_world, even if the model has rigs.
 TEST_F(ReadColmapTest, AnImageOfARigStandsWhereRigAndFramePutIt) {
   const RigModel model;
   for (const bool is_binary : {false, true}) {
@@ -358,7 +359,7 @@ TEST_F(ReadColmapTest, MasksStandBesideTheImages) {
   EXPECT_EQ(light_field->mask_names, (std::vector<std::string>{"", "../masks/s/b.jpg.png"}));
   EXPECT_TRUE(fs::exists(light_field->folder / light_field->mask_names[1]));
 
-  // With a link, `..` is beside what it leads to.
+  // After a symbolic link, `..` is the parent of the folder that the link points to.
   fs::create_directories(folder_ / "elsewhere");
   fs::rename(folder_ / "images", folder_ / "elsewhere/images");
   fs::create_directory_symlink("elsewhere/images", folder_ / "images");

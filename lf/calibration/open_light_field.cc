@@ -32,7 +32,7 @@ constexpr const char* kCalibrationName = "transforms.json";
 constexpr const char* kAosName = "poses.json";
 constexpr const char* kImagesName = "images";
 
-// Calibrations under other names, such as Blender's transforms_train.json.
+// Returns a hint at calibrations with other names, such as Blender's transforms_train.json.
 std::string OtherCalibrations(const fs::path& folder) {
   std::vector<std::string> names;
   std::error_code error;
@@ -45,7 +45,8 @@ std::string OtherCalibrations(const fs::path& folder) {
   return fmt::format("; it holds {}: name the file itself to read it", fmt::join(names, ", "));
 }
 
-// The option given that only folders of the Stanford form take, for messages; none: "".
+// Returns the first option in `options` that only folders of the Stanford form accept, for
+// messages; "" if there is none.
 std::string_view StanfordOptionOf(const OpenOptions& options) {
   if (options.focal_px) return "--focal-px";
   if (options.pitch_w) return "--pitch";
@@ -55,7 +56,7 @@ std::string_view StanfordOptionOf(const OpenOptions& options) {
   return "";
 }
 
-// kUsage if options are given that what lies at `path` needs none of.
+// kUsage if an option is given that only folders of the Stanford form need.
 Result<void> CheckNoStanfordOptions(const fs::path& path, const OpenOptions& options) {
   const std::string_view option = StanfordOptionOf(options);
   if (option.empty()) return {};
@@ -85,7 +86,7 @@ Result<LightField> OpenAos(const fs::path& path, const OpenOptions& options) {
   return ReadAos(path, {.fov_deg = options.fov_deg, .images_folder = options.images_folder});
 }
 
-// It has its calibration, and all that is to be known of its pixels.
+// A packed store holds its calibration and states everything about its pixels.
 Result<LightField> OpenPackedStore(const fs::path& path, const OpenOptions& options) {
   LF_RETURN_IF_ERROR(CheckNoStanfordOptions(path, options));
   LF_RETURN_IF_ERROR(CheckNoFov(path, options));
@@ -100,7 +101,7 @@ Result<LightField> OpenPackedStore(const fs::path& path, const OpenOptions& opti
   return std::move(facts.light_field);
 }
 
-// None if the name is that of no calibration file.
+// Returns nullopt if the name is not that of a calibration file.
 std::optional<Result<LightField>> OpenFile(const fs::path& path, const OpenOptions& options) {
   if (path.extension() == ".json" && IsAosFile(path)) return OpenAos(path, options);
   if (path.extension() == kStoreExtension) return OpenPackedStore(path, options);
@@ -120,7 +121,7 @@ std::optional<Result<LightField>> OpenFile(const fs::path& path, const OpenOptio
   return read(path);
 }
 
-// The file in a folder that describes its light field, if any, beside transforms.json.
+// Returns the file in a folder, other than transforms.json, that describes its light field.
 Result<std::optional<fs::path>> OtherCalibrationIn(const fs::path& folder) {
   std::error_code error;
   const std::vector<fs::path> middlebury = MiddleburyFiles(folder);
@@ -161,12 +162,12 @@ Result<LightField> OpenStanford(const fs::path& folder, const OpenOptions& optio
                                      .asked_for = asked_for});
 }
 
-// What kind of pixels: after the calibration, which may have said nothing of them.
+// Completes the encoding. Called after the calibration was read, which may state nothing about it.
 Result<void> CompleteEncoding(const OpenOptions& options, const fs::path& path,
                               LightField* light_field) {
   RadianceEncoding& encoding = light_field->encoding;
   const bool is_raw = IsRawName(light_field->image_names[0]);
-  // One that tells of mosaics tells everything.
+  // An encoding that is no longer the default was stated completely.
   if (is_raw && encoding.bayer == BayerPattern::kNone && encoding.transfer == Transfer::kSrgb)
     LF_RETURN_IF_ERROR(CompleteEncodingOfRaw(light_field));
   if (options.bayer) {
@@ -183,11 +184,11 @@ Result<void> CompleteEncoding(const OpenOptions& options, const fs::path& path,
       path.string(), light_field->ImagePath({0}).string()));
 }
 
-// Finds image files that were moved, renamed or made smaller after they were calibrated.
+// Finds image files that were moved, renamed or downscaled after they were calibrated.
 Result<void> FindImages(const OpenOptions& options, const fs::path& path, LightField* light_field) {
   const std::string name = light_field->image_names[0];
   LF_ASSIGN_OR_RETURN(const size_t found_count, FindImageFiles(options.images_folder, light_field));
-  // COLMAP models may be planned with before their images are there.
+  // A COLMAP model may be used for planning before its images are there.
   if (found_count == 0 && options.images_folder && light_field->folder != *options.images_folder)
     return InputError(fmt::format(
         "--images {}: holds no image named as the LF images of {}, such as {}, in any folder below "
@@ -204,7 +205,7 @@ Result<void> FindImages(const OpenOptions& options, const fs::path& path, LightF
   return {};
 }
 
-// Decides what alpha means: as asked for, else as the calibration says, else by the pixels.
+// Decides what alpha means: first by the options, then by the calibration, then by the pixels.
 Result<void> CompleteAlpha(const OpenOptions& options, const fs::path& path,
                            LightField* light_field) {
   RadianceEncoding& encoding = light_field->encoding;
@@ -256,7 +257,7 @@ bool HoldsLightField(const fs::path& folder) {
          HoldsStanfordNames(folder / kImagesName) || !PackedStoresIn(folder).empty();
 }
 
-// A hint for whoever has photographs alone.
+// Returns a hint for a folder that holds photographs but no calibration.
 std::string PhotographsIn(const fs::path& path) {
   constexpr size_t kMostEntries = 4096;
   for (const fs::path& folder : {path, path / kImagesName}) {
@@ -280,7 +281,7 @@ std::string PhotographsIn(const fs::path& path) {
   return "";
 }
 
-// A hint for whoever is one folder too high.
+// Returns a hint if a subfolder holds a light field.
 std::string LightFieldsBelow(const fs::path& folder) {
   constexpr size_t kMostNames = 5;
   std::vector<std::string> names;
@@ -316,7 +317,7 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
   if (passes_over)
     LogInfo("{}: was written by lfimport: what it was made from is read again",
             (path / kCalibrationName).string());
-  // Before poses_bounds.npy, which is made of such a model and leaves out the distortion.
+  // COLMAP comes before poses_bounds.npy, which is made from such a model and drops the distortion.
   if (passes_over || !fs::exists(path / kCalibrationName, error)) {
     LF_ASSIGN_OR_RETURN(const std::optional<fs::path> model, FindColmapModel(path));
     if (model) return OpenColmap(*model, options);

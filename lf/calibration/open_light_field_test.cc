@@ -103,7 +103,7 @@ TEST_F(OpenLightFieldTest, TakesMiddleburysFileOrTheFolderOfOne) {
     EXPECT_EQ(light_field->intrinsics[0], (Intrinsics{5, 5, 4.5, 3.5, 0, 8, 6}));
   }
   EXPECT_EQ(OpenLightField(folder_, {.focal_px = 7}).error().kind, ErrorKind::kUsage);
-  // Its size is known where the image was moved and renamed, too.
+  // The image size is found even if the image was moved and renamed.
   std::filesystem::create_directories(folder_ / "images");
   std::filesystem::rename(folder_ / "a.png", folder_ / "images" / "a.PNG");
   const Result<LightField> moved = OpenLightField(folder_);
@@ -180,14 +180,14 @@ TEST_F(OpenLightFieldTest, PointsToAFolderBelow) {
       << light_field.error().message;
 }
 
-// Real light fields, where they are at hand.
+// Real light fields; skipped if they are not on this machine.
 class RealLightFieldTest : public testing::Test {
  protected:
   static fs::path TestData() {
     const char* folder = std::getenv("LF_TEST_DATA");
     return folder ? folder : LF_TEST_DATA_DEFAULT;
   }
-  // Skips the test where the folder is not there.
+  // The test is skipped if the folder does not exist.
   static Result<LightField> Open(const fs::path& folder) {
     return OpenLightField(TestData() / folder);
   }
@@ -267,8 +267,8 @@ TEST_F(RealLightFieldTest, TheShopIsAGridOf729Cameras) {
   }
 }
 
-// The numbers are those of a reader of its own, in numpy, for which the model's points are
-// reprojected within 0.85 px in the mean.
+// The expected numbers come from an independent reader in numpy, with which the model's points are
+// reprojected within 0.85 px on average.
 TEST_F(RealLightFieldTest, TheBeerIsAsAnotherReaderSeesIt) {
   LF_SKIP_WITHOUT("data/beer-colmap");
   const Result<LightField> light_field = Open("data/beer-colmap");
@@ -307,8 +307,8 @@ TEST_F(RealLightFieldTest, TheTempleIsProjectedAsItsFileSays) {
   ASSERT_TRUE(light_field) << light_field.error().message;
   ASSERT_EQ(light_field->size(), 47u);
   ASSERT_EQ(light_field->intrinsics.size(), 1u);
-  // The middle of the bounding box that the data set states; P = K [R t] of the first line gives
-  // (362.0134555, 247.2674371) from the centre of the upper left pixel.
+  // The middle of the bounding box that the data set states. P = K [R t] of the first line projects
+  // it to (362.0134555, 247.2674371), measured from the centre of the upper left pixel.
   const Vec3 middle(0.0277525, 0.0418135, -0.0546675);
   const std::optional<Vec2> first = Project(light_field->Camera({0}), middle);
   ASSERT_TRUE(first);

@@ -25,7 +25,8 @@ namespace {
 using nlohmann::json;
 
 constexpr size_t kMaxFileSize = size_t{64} << 20;  // some hundred thousand images
-constexpr int kMaxDepth = 8;  // nothing we read lies deeper; hostile nesting takes no memory
+constexpr int kMaxDepth = 8;  // deeper than anything that is read; hostile nesting then takes no
+                              // memory
 constexpr double kRotationTolerance = 1e-3;
 constexpr double kLargest_w = 1e12;
 constexpr const char* kMatrixKey = "M3x4";
@@ -52,7 +53,7 @@ std::optional<Mat34> MatrixOf(const json& entry) {
   return matrix;
 }
 
-// kInput without the place.
+// kInput without the place in the file.
 Result<std::string> NameOf(const json& entry) {
   const auto name = entry.find("imagefile");
   if (name == entry.end() || !name->is_string() || name->get_ref<const std::string&>().empty())
@@ -95,14 +96,14 @@ Result<LightField> PosesOf(const json& top, const fs::path& path) {
   return light_field;
 }
 
-// AOS converts its thermal .tiff images to .png without renaming them in the file.
+// AOS converts its thermal .tiff images to .png without changing their names in the file.
 std::string AsPng(const std::string& name) {
   const fs::path path(name);
   const bool is_tiff = path.extension() == ".tif" || path.extension() == ".tiff";
   return is_tiff ? fs::path(path).replace_extension(".png").string() : name;
 }
 
-// Finds the folder of the images, and which names they have there.
+// Finds the folder of the images and the names that they have there.
 Result<void> FindImages(const AosOptions& options, const fs::path& path, LightField* light_field) {
   const fs::path& beside = light_field->folder;
   std::vector<fs::path> folders;

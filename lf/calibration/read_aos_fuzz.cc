@@ -1,4 +1,4 @@
-// Any bytes are poses or an error; poses are sane.
+// Any bytes give sane poses or an error.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>

@@ -26,8 +26,8 @@ std::string_view Trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
 }
 
-// The keys of all sections, as Python's configparser writes them: KEY = VALUE, [SECTION], # and ;
-// before comments.
+// Reads the keys of all sections in the syntax of Python's configparser: KEY = VALUE, [SECTION],
+// and comments after # and ;.
 std::map<std::string, std::string, std::less<>> KeysOf(std::string_view text) {
   std::map<std::string, std::string, std::less<>> keys;
   while (!text.empty()) {
@@ -43,7 +43,7 @@ std::map<std::string, std::string, std::less<>> KeysOf(std::string_view text) {
   return keys;
 }
 
-// Numbers by key, with errors that name file, key and value.
+// Numbers by key; errors name file, key and value.
 class Parameters {
  public:
   Parameters(std::string_view text, const fs::path& path) : keys_(KeysOf(text)), path_(path) {}
@@ -78,8 +78,8 @@ class Parameters {
   const fs::path& path_;
 };
 
-// Z = F b / (F b / Z0 + d): a larger disparity is nearer. None where an end is at infinity or
-// beyond.
+// Z = F b / (F b / Z0 + d): a larger disparity is nearer. Returns nullopt if an end of the range is
+// at infinity or beyond.
 Result<std::optional<DepthRange>> DepthsOf(const Parameters& parameters, double focal_baseline,
                                            double plane_per_w) {
   constexpr double kMostDisparity_px = 1e6, kRounding_px = 0.05;

@@ -39,7 +39,7 @@ LightField Parsed(const std::string& text) {
   return light_field ? *std::move(light_field) : LightField{};
 }
 
-// Returns the text with one line replaced, or left out if `with` is empty.
+// Returns the text with one line replaced, or removed if `with` is empty.
 std::string Changed(const std::string& key, const std::string& with) {
   std::string text = kText;
   const size_t begin = text.find(key), end = text.find('\n', begin);
@@ -76,7 +76,7 @@ TEST(ReadHci, ThePlaneOfFocusStandsStillInAllImages) {
   const Vec2 seen = *Project(field.Camera({31}), on_plane);
   for (uint32_t i = 0; i < field.size(); ++i)
     EXPECT_NEAR((*Project(field.Camera({i}), on_plane) - seen).norm(), 0, 1e-9);
-  // A nearer point moves to the left from one column to the next, by the disparity.
+  // From one column to the next, a nearer point moves to the left by the disparity.
   const double moved =
       Project(field.Camera({31}), nearer)->x() - Project(field.Camera({32}), nearer)->x();
   EXPECT_NEAR(moved, middle.fx_px * 0.09 * (1. / 8 - 1. / 10), 1e-9);

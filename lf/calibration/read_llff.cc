@@ -26,7 +26,7 @@ class Row {
  public:
   explicit Row(const double* numbers) : matrix_(numbers), near_far_(numbers + 15) {}
 
-  // kInput without the place, as for the others.
+  // kInput without the place in the file, as in the other functions.
   Result<RigidTransform> CamFromWorld() const {
     if (!matrix_.allFinite() || !(Centre().cwiseAbs().maxCoeff() <= kLargest_w))
       return InputError(

@@ -1,5 +1,6 @@
-// poses_bounds.npy of LLFF and the NeRF data sets that follow it (doc/formats/llff.md): an array of
-// (N, 17) numbers beside a folder images/. The N rows belong to the image files sorted by name:
+// Reads poses_bounds.npy of LLFF and of the NeRF data sets that follow it (doc/formats/llff.md): an
+// array of (N, 17) numbers beside a folder images/. The rows belong to the image files sorted by
+// name:
 //
 //   a 3x5 matrix, row by row: camera axes down, right, backwards | centre | height, width, focal
 //   near and far bound of the depths
@@ -18,19 +19,21 @@ namespace lf {
 
 inline constexpr const char* kLlffName = "poses_bounds.npy";
 
-// bytes        the file's content
-// path         its name for messages; its folder becomes LightField::folder
-// image_names  the files in images/, sorted
-// image_size   asked for the first image
-// The principal point is the image centre; depth_range the smallest near and the largest far bound.
-// kInput names the file and the row, the value found and what was expected: another type or shape,
-// another number of rows than of images, images of another size than the rows state (copies of
-// other sizes, such as images_8, have no place in the format), an axis that is mirrored or sheared.
+// Parses the content of a file.
+//   bytes        the file's content
+//   path         its name for messages; its folder becomes LightField::folder
+//   image_names  the files in images/, sorted
+//   image_size   called for the first image
+// The principal point is the image centre; depth_range is the smallest near and the largest far
+// bound.
+// kInput names the file and the row, the value found and what was expected: another type or shape;
+// different numbers of rows and images; images of another size than the rows state (the format has
+// no place for copies of other sizes, such as images_8); an axis that is mirrored or sheared.
 Result<LightField> ParseLlff(std::string_view bytes, const std::filesystem::path& path,
                              std::span<const std::string> image_names,
                              const ImageSizeSource& image_size);
 
-// The same for a file, with the images in images/ beside it.
+// As ParseLlff(), for a file with its images in images/ beside it.
 Result<LightField> ReadLlff(const std::filesystem::path& path);
 
 }  // namespace lf

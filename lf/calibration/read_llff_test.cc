@@ -19,7 +19,8 @@ namespace fs = std::filesystem;
 
 using RowNumbers = std::array<double, 17>;
 
-// A camera at (1, 2, 3) with the axes of the world: right x, down y, forward z. 640 x 480 pixels.
+// A camera at (1, 2, 3) whose axes are those of the world: right x, down y, forward z. 640 x 480
+// pixels.
 constexpr RowNumbers kUnturned = {0,   1, 0,  1, 480,  //
                                   1,   0, 0,  2, 640,  //
                                   0,   0, -1, 3, 500,  //
@@ -69,8 +70,8 @@ TEST(Llff, ReadsPoseIntrinsicsAndDepths) {
   EXPECT_EQ(light_field->depth_range, (DepthRange{0.25, 20}));
 }
 
-// What NeRF's loader does with the columns: [down, right, backwards] -> OpenGL's [right, up,
-// backwards] = [column 1, -column 0, column 2].
+// NeRF's loader turns the columns [down, right, backwards] into OpenGL's [right, up, backwards] =
+// [column 1, -column 0, column 2].
 TEST(Llff, ColumnsAreTheAxesDownRightBackwards) {
   const Mat3 axes = Eigen::AngleAxisd(0.7, Vec3(1, 2, -3).normalized()).toRotationMatrix();
   RowNumbers row = kUnturned;

@@ -20,13 +20,13 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr size_t kMaxImageCount = size_t{1} << 24;
-constexpr size_t kNumberCount = 21;  // K, R and t of a line
+constexpr size_t kNumberCount = 21;  // K, R and t in a line
 constexpr double kRotationTolerance = 1e-4;
 constexpr double kLargest_w = 1e12;
 constexpr const char* kForm =
     "NAME k11 k12 k13 k21 k22 k23 k31 k32 k33 r11 r12 r13 r21 r22 r23 r31 r32 r33 t1 t2 t3";
 
-// Cuts the first word off `text`; empty at its end.
+// Cuts the first word off `text`; empty at the end of the text.
 std::string_view NextWord(std::string_view* text) {
   constexpr std::string_view kBlanks = " \t\r\v\f";
   text->remove_prefix(std::min(text->find_first_not_of(kBlanks), text->size()));
@@ -35,14 +35,14 @@ std::string_view NextWord(std::string_view* text) {
   return word;
 }
 
-// A word as a message shows it.
+// Returns a word as messages show it.
 std::string Shown(std::string_view word) {
   constexpr size_t kLongest = 80;
   return word.size() <= kLongest ? std::string(word)
                                  : std::string(word.substr(0, kLongest)) + "...";
 }
 
-// The lines that are not blank, one after the other.
+// Returns the lines that are not blank, one after the other.
 class Lines {
  public:
   Lines(std::string_view text, const fs::path& path) : text_(text), path_(path) {}
@@ -100,7 +100,7 @@ Result<Line> ParseLine(std::string_view text, const Lines& lines) {
   return line;
 }
 
-// Without the size. kInput without the place.
+// Returns the intrinsics without the image size. kInput without the place in the file.
 Result<Intrinsics> IntrinsicsOf(Mat3 k) {
   if (!(std::abs(k(2, 2)) > 1e-9))
     return InputError(fmt::format("k33 is {}: expected 1, or what K was multiplied by", k(2, 2)));
@@ -117,7 +117,7 @@ Result<Intrinsics> IntrinsicsOf(Mat3 k) {
   Intrinsics intrinsics;
   intrinsics.fx_px = k(0, 0);
   intrinsics.fy_px = k(1, 1);
-  intrinsics.cx_px = k(0, 2) + 0.5;  // from pixel centres at whole numbers to ours
+  intrinsics.cx_px = k(0, 2) + 0.5;  // in the file, pixel centres are at whole numbers
   intrinsics.cy_px = k(1, 2) + 0.5;
   intrinsics.skew_px = k(0, 1);
   return intrinsics;

@@ -1,4 +1,4 @@
-// Any bytes are a light field or an error; a light field has sane cameras only.
+// Any bytes give a light field with sane cameras or an error.
 #include <array>
 #include <cstddef>
 #include <cstdint>

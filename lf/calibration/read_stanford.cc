@@ -23,15 +23,15 @@ namespace {
 
 constexpr const char* kForm = "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext";
 constexpr double kLargest_w = 1e12;           // as in transforms.json
-constexpr double kLargestPrincipal_px = 1e7;  // as there
+constexpr double kLargestPrincipal_px = 1e7;  // as in transforms.json
 
 struct StanfordImage {
   std::string file_name;
   StanfordName name;
 };
 
-// Image files of one form, by row and column, and the names of all other files. A sheet_01_02.png
-// beside names with positions is no camera.
+// The image files of the form that is used, by row and column, and the names of all other files.
+// For example, sheet_01_02.png is no camera beside names with positions.
 struct Listing {
   std::vector<StanfordImage> images;
   std::vector<std::string> others;
@@ -77,7 +77,7 @@ void WarnOfOthers(const fs::path& folder, const Listing& listing) {
              others.size() > kShown ? ", ..." : "");
 }
 
-// The call that writes down what the names do not tell, with numbers to start from.
+// Returns the call of lfimport that adds the missing values, with numbers to start from.
 std::string ImportCommand(const fs::path& folder, const StanfordOptions& options, bool needs_pitch,
                           int width_px) {
   const std::string word =
@@ -112,7 +112,7 @@ Result<void> CheckOptions(const StanfordOptions& options) {
   return {};
 }
 
-// Whether names and options together tell all.
+// Checks that names and options together state everything.
 Result<void> CheckComplete(const fs::path& folder, const std::vector<StanfordImage>& images,
                            const StanfordOptions& options, int width_px) {
   if (!options.pitch_w && !images[0].name.position)
@@ -138,7 +138,7 @@ Result<void> CheckComplete(const fs::path& folder, const std::vector<StanfordIma
       ImportCommand(folder, options, !images[0].name.position, width_px)));
 }
 
-// Where the cameras stand in their plane.
+// Returns the positions of the cameras in their plane.
 std::vector<Vec2> Positions(const std::vector<StanfordImage>& images,
                             const StanfordOptions& options) {
   std::vector<Vec2> positions;
@@ -159,7 +159,7 @@ Vec2 MiddleOf(const std::vector<Vec2>& positions) {
   return box.center();
 }
 
-// Of the camera at `offset_w` from the middle of the grid.
+// Returns the intrinsics of the camera at `offset_w` from the middle of the grid.
 Result<Intrinsics> IntrinsicsOf(const StanfordName& name, const ImageFileInfo& info,
                                 const StanfordOptions& options, const Vec2& offset_w) {
   Intrinsics k;

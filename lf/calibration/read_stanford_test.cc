@@ -110,10 +110,10 @@ TEST_F(StanfordFolderTest, ARectifiedPlaneHasNoDisparity) {
     EXPECT_EQ(light_field->intrinsics.size(), 3u);
     const double sign = flip ? -1 : 1;
     EXPECT_EQ(light_field->Camera({0}).CentreWorld(), Vec3(-0.3, 0.1, 0) * sign);
-    // Off the middle, (0.1, -0.3), by (-0.4, 0.4).
+    // The camera is (-0.4, 0.4) away from the middle of the grid, which is (0.1, -0.3).
     EXPECT_NEAR(light_field->Camera({0}).intrinsics.cx_px, 18 - sign * 90 * 0.4 / 8, 1e-12);
     EXPECT_NEAR(light_field->Camera({0}).intrinsics.cy_px, 10 + sign * 90 * 0.4 / 8, 1e-12);
-    const Vec3 point(0.7, 0.2, 8);  // in the plane: everywhere at the same pixel
+    const Vec3 point(0.7, 0.2, 8);  // in the plane without disparity: the same pixel in all images
     for (uint32_t i = 0; i < 3; ++i)
       EXPECT_LT(
           (*Project(light_field->Camera({i}), point) - *Project(light_field->Camera({0}), point))

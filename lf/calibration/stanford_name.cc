@@ -30,7 +30,7 @@ std::optional<double> ParseDecimal(std::string_view text) {
   return value;
 }
 
-// ROW, COL from two fields.
+// Parses ROW and COL from two fields.
 std::optional<StanfordName> ParseGridPlace(const std::string_view* fields) {
   const std::optional<int> row = ParseIndex(fields[0]);
   const std::optional<int> column = ParseIndex(fields[1]);
@@ -38,7 +38,7 @@ std::optional<StanfordName> ParseGridPlace(const std::string_view* fields) {
   return StanfordName{*row, *column, std::nullopt, std::nullopt};
 }
 
-// ROW, COL, Y, X from four fields.
+// Parses ROW, COL, Y and X from four fields.
 std::optional<StanfordName> ParsePosition(const std::string_view* fields) {
   std::optional<StanfordName> name = ParseGridPlace(fields);
   const std::optional<double> y_mm = ParseDecimal(fields[2]);
@@ -54,7 +54,7 @@ std::optional<StanfordName> ParseStanfordName(std::string_view file_name) {
   if (!IsImageName(file_name)) return std::nullopt;
   std::string_view stem = file_name.substr(0, file_name.rfind('.'));
   if (stem.ends_with('_')) stem.remove_suffix(1);
-  // The last fields, each with a '_' before it: so there is a NAME, if an empty one.
+  // The last fields, each of which has a '_' before it. There is always a NAME, which may be empty.
   std::array<std::string_view, 6> fields;
   size_t count = 0;
   for (; count < fields.size(); ++count) {

@@ -1,4 +1,4 @@
-// File names that tell where a camera stood (doc/formats/stanford.md):
+// Parses file names that state where a camera stood (doc/formats/stanford.md):
 //
 //   NAME_ROW_COL.ext
 //   NAME_ROW_COL_Y_X.ext                         positions in millimetres
@@ -25,9 +25,10 @@ struct StanfordName {
   std::optional<Lens> lens;  // only with a position
 };
 
-// None where the file name is of another form. NAME may hold blanks and underscores; ROW and COL
-// are digits, the others decimal numbers without exponent. Where NAME ends in numbers too, the
-// longest form that fits is taken. A '_' before the extension is skipped, as the archive has it.
+// Returns nullopt if the name has another form. NAME may contain blanks and underscores; ROW and
+// COL are digits, the other fields decimal numbers without exponent. If NAME also ends in numbers,
+// the longest form that fits is used. A '_' before the extension is skipped, because the archive
+// has it.
 std::optional<StanfordName> ParseStanfordName(std::string_view file_name);
 
 }  // namespace lf

@@ -1,4 +1,4 @@
-// Any bytes are a file name: of the Stanford form with sane values, or of another.
+// Any bytes are a file name that either has the Stanford form, with sane values, or does not.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

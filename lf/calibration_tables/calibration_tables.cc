@@ -17,7 +17,7 @@ namespace {
 constexpr const char* kModelNames[] = {
     "none",     "radial_tangential", "fisheye",    "fov",
     "division", "unified",           "thin_prism", "radial_tangential_thin_prism"};
-// By Transfer.
+// The names are in the order of Transfer.
 constexpr const char* kTransferNames[] = {"srgb", "linear", "response"};
 
 Result<Intrinsics> ReadIntrinsicsRow(const Settings& settings, const Statement& row) {
@@ -38,7 +38,7 @@ Result<Intrinsics> ReadIntrinsicsRow(const Settings& settings, const Statement& 
   if (name == std::end(kModelNames) || !numbers)
     return settings.Damaged(fmt::format("a lens distortion is {} {}", model, parameters));
   k.distortion.model = static_cast<DistortionModel>(name - std::begin(kModelNames));
-  // The vignetting follows the distortion's parameters where there is one.
+  // The parameters of the vignetting, if any, follow those of the distortion.
   const size_t of_distortion = StoredParameterCount(k.distortion.model);
   const size_t of_both = of_distortion + k.vignetting.v.size();
   if (numbers->size() != of_distortion && numbers->size() != of_both)
@@ -52,7 +52,7 @@ Result<Intrinsics> ReadIntrinsicsRow(const Settings& settings, const Statement& 
   return k;
 }
 
-// Both are missing in files that were written before they were known.
+// Both settings are missing in older files.
 Result<void> ReadAlpha(const Settings& settings, RadianceEncoding* encoding) {
   encoding->alpha = AlphaMeaningOf(settings.Text("alpha"));
   if (!encoding->alpha && !settings.Text("alpha").empty())
@@ -183,7 +183,7 @@ void BindCamera(const LightField& light_field, LfImageId id, int parameter, Stat
 
 namespace {
 
-// The column holds a number, or a text of three where the channels have gains of their own.
+// The column holds a number, or a text of three numbers if the channels have different gains.
 Result<ChannelGains> ReadGains(const Settings& settings, const Statement& row, int column,
                                const std::string& name) {
   ChannelGains gains;

@@ -1,4 +1,4 @@
-// A light field's calibration in our SQLite files: what packages and packed stores have in common.
+// Stores a light field's calibration in SQLite files; packages and packed stores share this.
 // Numbers keep all their bits.
 #pragma once
 
@@ -13,7 +13,7 @@
 
 namespace lf {
 
-// unit_m, depth_range and all of the encoding: settings "unit_m", "bayer", "transfer", ...
+// Settings "unit_m", "bayer", "transfer", ... for unit_m, depth_range and the whole encoding.
 SettingList SettingsOfPixels(const LightField& light_field);
 Result<void> ReadPixelSettings(const Settings& settings, LightField* light_field);
 
@@ -22,16 +22,16 @@ create table intrinsics (id integer primary key, width integer, height integer, 
   cx real, cy real, skew real, distortion text, parameters text);)";
 
 Result<void> WriteIntrinsics(const std::vector<Intrinsics>& intrinsics, Database* database);
-// settings: of the file, for messages
+// settings: of the same file, for messages
 Result<std::vector<Intrinsics>> ReadIntrinsics(const Settings& settings, Database* database);
 
-// An LF camera as columns intrinsics, gain, x, y, z (for people) and pose.
+// Number of columns of an LF camera: intrinsics, gain, x, y, z (for people) and pose.
 inline constexpr int kCameraColumns = 6;
-// Binds those that begin at `parameter`.
+// Binds an LF camera to the parameters from `parameter` on.
 void BindCamera(const LightField& light_field, LfImageId id, int parameter, Statement* statement);
-// From columns intrinsics, gain, pose that begin at `column`.
-//   name              of the LF image, for messages; an empty one is damage
-//   intrinsics_count  of the table
+// Reads an LF camera from the columns intrinsics, gain and pose that begin at `column`.
+//   name              of the LF image, for messages; an empty name is damage
+//   intrinsics_count  number of rows in the table of intrinsics
 Result<LfCamera> ReadCamera(const Settings& settings, const Statement& row, int column,
                             const std::string& name, size_t intrinsics_count);
 

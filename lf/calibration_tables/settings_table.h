@@ -1,4 +1,4 @@
-// The table `settings` of our files: text by key.
+// The table `settings` of our SQLite files: text by key.
 #pragma once
 
 #include <cstdint>
@@ -19,23 +19,23 @@ inline constexpr const char* kSettingsTable =
 
 using SettingList = std::vector<std::pair<std::string, std::string>>;
 
-// In their order; the table must be there. The error is the database's.
+// Writes the settings in their order. The table must exist. Errors are those of the database.
 Result<void> WriteSettings(const SettingList& settings, Database* database);
 
-// What was read, as text, and as what the text should be. Errors are kInput, and name file and key.
+// The settings of a file, as text or converted. Errors are kInput and name file and key.
 class Settings {
  public:
-  //   what  as messages call such a file: "package"
+  // what  the word for such a file in messages: "package"
   static Result<Settings> Read(Database& database, const char* what);
 
-  // "" where there is none.
+  // Returns "" if the key is missing.
   std::string Text(const std::string& key) const;
   Result<std::vector<double>> Numbers(const std::string& key, size_t count_min,
                                       size_t count_max) const;
   Result<double> Number(const std::string& key, double low, double high) const;
-  // Up to 2^64 - 1.
+  // Reads a whole number up to 2^64 - 1.
   Result<uint64_t> Whole(const std::string& key) const;
-  // The index of the word.
+  // Returns the index of the setting in `words`.
   Result<int> Word(const std::string& key, std::span<const char* const> words) const;
 
   // "package-0000.lfp: is a damaged package: " + what

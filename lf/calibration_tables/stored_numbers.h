@@ -1,5 +1,5 @@
-// Numbers in blobs, the least byte first; and what is believed of numbers that a file holds: as the
-// readers of calibrations and paths allow.
+// Numbers in blobs, least significant byte first, and the limits for numbers in a file, which are
+// those of the readers of calibrations and paths.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ std::string BytesOf(std::span<const Number> numbers) {
   return {reinterpret_cast<const char*>(numbers.data()), numbers.size_bytes()};
 }
 
-// As many as fit in.
+// Returns as many numbers as `bytes` holds completely.
 template <class Number>
 std::vector<Number> NumbersOf(std::string_view bytes) {
   std::vector<Number> numbers(bytes.size() / sizeof(Number));
@@ -32,12 +32,12 @@ std::vector<Number> NumbersOf(std::string_view bytes) {
   return numbers;
 }
 
-// Rotation by rows, translation.
+// The rotation row by row, then the translation.
 inline constexpr size_t kPoseNumbers = 12;
 std::array<double, kPoseNumbers> NumbersOfPose(const RigidTransform& pose);
 RigidTransform PoseOfNumbers(std::span<const double, kPoseNumbers> numbers);
 
-// Numbers of a text, separated by spaces; none if one is none.
+// Parses numbers separated by spaces; nullopt if a word is no number.
 std::optional<std::vector<double>> ParseNumbers(const std::string& text);
 
 inline constexpr int64_t kMostSide_px = 65536;
@@ -49,7 +49,7 @@ inline bool IsWithin(double value, double low, double high) {
   return value >= low && value <= high;
 }
 bool IsPose(const RigidTransform& pose);
-// Without its distortion.
+// Returns true if the intrinsics are within the limits; the distortion is not checked.
 bool IsCamera(const Intrinsics& k);
 bool IsStoredDistortion(const Distortion& distortion);
 
