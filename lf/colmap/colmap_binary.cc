@@ -10,14 +10,14 @@
 namespace lf {
 namespace {
 
-// Of an entry: with the fewest parameters, an empty name, no 2D points, an empty track.
+// Smallest size of an entry: fewest parameters, an empty name, no 2D points, an empty track.
 constexpr uint64_t kMinCameraSize = 4 + 4 + 8 + 8 + 2 * 8;
 constexpr uint64_t kMinImageSize = 4 + 7 * 8 + 4 + 1 + 8;
 constexpr uint64_t kMinPointSize = 8 + 3 * 8 + 3 + 8 + 8;
 constexpr uint64_t kPoint2DSize = 8 + 8 + 8;
 constexpr uint64_t kTrackEntrySize = 4 + 4;
 
-// Where in which file, for messages.
+// File and entry, for messages.
 class Place {
  public:
   Place(const ByteStream& stream, const char* kind) : stream_(stream), kind_(kind) {}
@@ -28,7 +28,7 @@ class Place {
   Error EntryFault(uint64_t id, std::string_view message) const {
     return Fault(fmt::format("{} {} {}", kind_, id, message));
   }
-  // The stream did not give what entry `index` of `count` needs.
+  // Returns the error if the stream ends within entry `index` of `count`, or cannot be read.
   Error CutOff(uint64_t index, uint64_t count) const {
     if (Result<void> status = stream_.Status(); !status) return status.error();
     return Fault(fmt::format("ends within {} {} of {}, at byte {}: it is cut off; copy it again",
@@ -40,7 +40,7 @@ class Place {
   const char* kind_;
 };
 
-// The count before the entries of a file.
+// Reads the count at the start of a file.
 Result<uint64_t> TakeCount(ByteStream* stream, const Place& place, const char* things,
                            uint64_t min_entry_size) {
   uint64_t count = 0;
@@ -66,7 +66,7 @@ Result<void> CheckEnd(const ByteStream& stream, const Place& place, const char* 
       stream.remaining(), count, things));
 }
 
-// Up to the 0 that ends it; nothing where that is missing.
+// Reads up to the 0 that ends the name; nullopt if it is missing.
 std::optional<std::string> TakeName(ByteStream* stream) {
   std::string name;
   while (name.size() <= kMaxColmapNameSize) {
@@ -81,7 +81,7 @@ std::optional<std::string> TakeName(ByteStream* stream) {
   return name;
 }
 
-// All but the 2D points. False where the stream ends.
+// Reads everything but the 2D points. Returns false if the stream ends.
 bool TakeImage(ByteStream* stream, ColmapImage* image) {
   if (!stream->Take(&image->id) || !stream->Take(&image->quaternion) ||
       !stream->Take(&image->translation) || !stream->Take(&image->camera_id))

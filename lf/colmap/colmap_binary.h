@@ -1,5 +1,5 @@
-// The binary form of COLMAP's models: cameras.bin, images.bin, points3D.bin, little-endian, without
-// alignment. All numbers of things are uint64 and come before them:
+// Reads the binary form of COLMAP's models: cameras.bin, images.bin, points3D.bin. They are
+// little-endian and unaligned. Every list begins with its length, a uint64:
 //
 //   cameras   count, then each: uint32 id, int32 model, uint64 width, uint64 height, double
 //             parameters[as the model has]
@@ -17,15 +17,16 @@
 
 namespace lf {
 
-// Each takes the whole stream. kInput with file and entry: what ColmapScene refuses, an end too
-// early or too late, a count beyond what the file can hold (checked before memory is taken).
+// Each reads the whole stream. kInput with file and entry: an entry that ColmapScene refuses, an
+// end that is too early or too late, a count beyond what the file can hold (checked before memory
+// is allocated).
 Result<void> ReadColmapCamerasBinary(ByteStream* stream, ColmapScene* scene);
 Result<void> ReadColmapImagesBinary(ByteStream* stream, ColmapScene* scene);
-// Sink: ColmapScene or ColmapPointsSeen, which is given points and observations.
+// Sink receives points and observations: ColmapScene or ColmapPointsSeen.
 template <class Sink>
 Result<void> ReadColmapPointsBinary(ByteStream* stream, Sink* sink);
 
-// The number of images that the file says it holds.
+// Returns the number of images that the file states.
 Result<uint64_t> CountColmapImagesBinary(ByteStream* stream);
 
 }  // namespace lf

@@ -1,5 +1,5 @@
-// Any bytes are a COLMAP model or an error; a model has sane cameras only. The three files stand
-// one after the other, behind two uint16: the sizes of the first two.
+// Any bytes give a COLMAP model with sane cameras or an error. The input holds two uint16, the
+// sizes of the first two files, and then the three files.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

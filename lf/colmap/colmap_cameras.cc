@@ -10,13 +10,13 @@ namespace lf {
 namespace {
 
 constexpr uint64_t kMaxSize_px = 65536;
-constexpr uint64_t kMaxPixelCount = 1 << 30;  // as imageio/image_file.h
+constexpr uint64_t kMaxPixelCount = 1 << 30;  // as in imageio/image_file.h
 constexpr double kMinFocal_px = 0.001;
 constexpr double kMaxFocal_px = 1e7;
 constexpr double kMaxPrincipal_px = 1e7;
-constexpr double kMaxDistortion = 1e6;  // these limits as for transforms.json
+constexpr double kMaxDistortion = 1e6;  // this limit and those below are those of transforms.json
 constexpr double kMaxOmega = 3.1415;
-// Below it a field of view bends no ray by more than rounding.
+// A smaller omega of the FOV model bends no ray by more than rounding.
 constexpr double kMinOmega = 1e-7;
 
 constexpr ColmapCameraModel kModels[] = {
@@ -79,7 +79,7 @@ DistortionModel DistortionModelOf(std::string_view model) {
   return DistortionModel::kRadialTangential;
 }
 
-// From what follows the principal point, which COLMAP orders as Distortion does.
+// Converts the parameters after the principal point, which COLMAP orders as Distortion does.
 Result<Distortion> DistortionOf(std::string_view model, std::span<const double> coefficients) {
   Distortion distortion;
   distortion.model = DistortionModelOf(model);
@@ -89,7 +89,7 @@ Result<Distortion> DistortionOf(std::string_view model, std::span<const double> 
                                     kMaxDistortion));
   std::copy(coefficients.begin(), coefficients.end(), distortion.parameters.begin());
   if (distortion.model == DistortionModel::kFov) {
-    // The sign of omega cancels in the formula; COLMAP's optimizer may end at either.
+    // The sign of omega cancels in the formula; COLMAP's optimizer may find either.
     double& omega = distortion.parameters[0];
     omega = std::abs(omega);
     if (!(omega < kMaxOmega))

@@ -20,15 +20,15 @@ struct ColmapCameraModel {
 
 inline constexpr int kMaxColmapParameterCount = 16;
 
-// By the number of cameras.bin, or the name of cameras.txt. kInput, naming the model and saying
-// what to do, if it is unknown or cannot be expressed as a Distortion.
+// Finds a model by its number in cameras.bin or its name in cameras.txt. kInput, with the model and
+// a remedy, if it is unknown or cannot be expressed as a Distortion.
 Result<ColmapCameraModel> FindColmapCameraModel(int32_t number);
 Result<ColmapCameraModel> FindColmapCameraModel(std::string_view name);
 
-// Focal length, principal point and distortion from the parameters, in COLMAP's order. A distortion
-// that bends nothing becomes DistortionModel::kNone.
-// kInput: a size of 0 or beyond 65536, more than 2^30 pixels, a number that is not finite or out of
-// range (the message has no place: the caller knows it).
+// Converts the parameters, in COLMAP's order, to focal length, principal point and distortion. A
+// distortion without effect becomes DistortionModel::kNone.
+// kInput, without the place in the file: a size of 0 or beyond 65536, more than 2^30 pixels, a
+// number that is not finite or out of range.
 //   parameters  model.parameter_count numbers
 Result<Intrinsics> IntrinsicsOfColmap(const ColmapCameraModel& model, uint64_t width,
                                       uint64_t height, std::span<const double> parameters);

@@ -84,7 +84,7 @@ TEST(ColmapCameras, WhatBendsNothingIsAPinhole) {
   EXPECT_EQ(*Read("EUCM", {500, 500, 320, 240, 0, 1}), pinhole);
   EXPECT_NE(ErrorOf(Read("EUCM", {500, 500, 320, 240, 1.2, 1})).find("has alpha 1.2"),
             std::string::npos);
-  // A fish-eye without coefficients bends: rd = theta.
+  // A fish-eye lens without coefficients still bends rays: rd = theta.
   EXPECT_TRUE(Read("OPENCV_FISHEYE", {500, 500, 320, 240, 0, 0, 0, 0})->has_distortion());
 }
 

@@ -1,4 +1,4 @@
-// The range of depths in which the points of a reconstruction lie. Internal to colmap.
+// The range of depths of the points of a reconstruction. Internal to colmap.
 #pragma once
 
 #include <cstdint>
@@ -10,21 +10,21 @@
 
 namespace lf {
 
-// A sample of depths of bounded size, the same in whatever order they come: a depth is kept if the
-// hash of its observation is below a limit, which is halved whenever there are too many.
+// A sample of depths with bounded size that does not depend on their order: a depth is kept if the
+// hash of its observation is below a limit, which is halved whenever there are too many depths.
 class DepthSample {
  public:
   static constexpr size_t kMaxCount = size_t{1} << 20;
 
-  // Whether Add would keep a depth of this observation now. Of very many it keeps few: what takes
-  // time to find need not be looked for.
+  // Returns true if Add() would now keep a depth of this observation. Few of very many are kept, so
+  // a caller can skip work for the others.
   bool MayKeep(uint64_t point_id, uint32_t image_id) const;
 
-  // A point as one camera sees it. Depths that are not positive and finite do not count: such a
-  // point is a mistake of the reconstruction.
+  // Adds the depth of a point in one camera. Depths that are not positive and finite are ignored:
+  // such a point is a mistake of the reconstruction.
   void Add(uint64_t point_id, uint32_t image_id, double depth_w);
 
-  // From the 1st to the 99th percentile; none without depths.
+  // Returns the 1st to the 99th percentile; nullopt without depths.
   std::optional<DepthRange> Range() const;
 
  private:

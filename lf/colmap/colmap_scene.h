@@ -27,52 +27,52 @@ struct ColmapImage {
   std::string name;
 };
 
-// Where things lie by the id that COLMAP gave them: 8 bytes each.
+// Positions of cameras or images by their ids in COLMAP, 8 bytes each.
 class ColmapIds {
  public:
   void Reserve(size_t count) { positions_.reserve(count); }
   void Add(uint32_t id, uint32_t position) { positions_.emplace_back(id, position); }
-  // Before the first Find. An id that was added twice, if there is one.
+  // Must be called before the first Find(). Returns an id that was added twice, or nullopt.
   std::optional<uint32_t> Sort();
   std::optional<uint32_t> Find(uint32_t id) const;
-  // The id whose position this is. It looks at all of them.
+  // Returns the id at a position. Takes linear time.
   std::optional<uint32_t> IdOf(uint32_t position) const;
 
  private:
   std::vector<std::pair<uint32_t, uint32_t>> positions_;
 };
 
-// Cameras, then images, then points. The errors are kInput and have no place: the caller adds file
-// and entry.
+// Receives cameras, then images, then points. The errors are kInput without file and entry, which
+// the caller adds.
 class ColmapScene {
  public:
-  // For `count` images to come.
+  // Reserves memory for `count` images.
   void ReserveImages(size_t count);
 
   Result<void> AddCamera(uint32_t id, const ColmapCameraModel& model, uint64_t width,
                          uint64_t height, std::span<const double> parameters);
-  // An id was given twice.
+  // Ends the cameras. Fails if an id occurred twice.
   Result<void> EndCameras();
 
-  // An unknown camera, a quaternion of a length other than 1, a number that is not finite, an empty
-  // name or one with control characters.
+  // Fails for an unknown camera, a quaternion whose length is not 1, a number that is not finite,
+  // and a name that is empty or has control characters.
   Result<void> AddImage(ColmapImage&& image);
-  // Sorts the images by name. No images, or an id or a name twice.
+  // Sorts the images by name. Fails if there are none, or if an id or a name occurred twice.
   Result<void> EndImages();
 
-  // A point of the file; its observations follow.
+  // Adds a point of the file; its observations follow.
   Result<void> AddPoint(uint64_t, const Vec3&, bool /*has_track*/) { return {}; }
-  // One of the points is seen by an image. The image is unknown.
+  // Adds an observation of a point by an image. Fails if the image is unknown.
   Result<void> AddObservation(uint64_t point_id, const Vec3& point_world, uint32_t image_id);
 
-  // The id of the image at a position among all, sorted by name; none beyond the last one. It may
-  // be asked after EndImages(), and takes time in proportion to the number of images.
+  // Returns the id of the image at a position among all images sorted by name; nullopt beyond the
+  // last one. May be called after EndImages(). Takes time in proportion to the number of images.
   std::optional<uint32_t> ImageIdAt(uint32_t position) const {
     return image_positions_.IdOf(position);
   }
 
   size_t image_count() const { return light_field_.cameras.size(); }
-  // Empty afterwards.
+  // Moves the result out; the scene is empty afterwards.
   LightField Take();
 
  private:
@@ -80,14 +80,14 @@ class ColmapScene {
 
   std::vector<Intrinsics> cameras_;
   ColmapIds camera_ids_;
-  LightField light_field_;           // intrinsics_index counts cameras_ until the end
-  std::vector<uint32_t> image_ids_;  // as light_field_.cameras; empty after EndImages
+  LightField light_field_;           // until the end, intrinsics_index is an index into cameras_
+  std::vector<uint32_t> image_ids_;  // parallel to light_field_.cameras; empty after EndImages()
   ColmapIds image_positions_;
   DepthSample depths_;
 };
 
 struct ColmapStreams;
-// Reads cameras and images, of either form (read_colmap.cc). The errors are those of their readers.
+// Reads cameras and images in either form (read_colmap.cc). Returns the errors of their readers.
 Result<ColmapScene> ReadColmapScene(ColmapStreams* streams);
 
 }  // namespace lf

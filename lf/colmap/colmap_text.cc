@@ -40,7 +40,7 @@ Result<void> TakeCamera(TextWords* words, ColmapScene* scene) {
   return {};
 }
 
-// The first of its two lines.
+// Reads the first of the two lines of an image.
 Result<ColmapImage> TakeImage(TextWords* words) {
   ColmapImage image;
   LF_ASSIGN_OR_RETURN(image.id, TakeId(words, "IMAGE_ID"));
@@ -57,7 +57,7 @@ Result<ColmapImage> TakeImage(TextWords* words) {
   return image;
 }
 
-// The second line, which the last image of a file may lack.
+// Skips the second line, which the last image of a file may lack.
 Result<void> SkipPoints2D(TextWords* words, uint32_t image_id) {
   if (!words->NextLine()) return {};
   const std::optional<uint64_t> count = words->SkipNumbers();
@@ -113,7 +113,7 @@ Result<void> ReadColmapImagesText(ByteStream* stream, ColmapScene* scene) {
   LF_RETURN_IF_ERROR(stream->Status());
   if (Result<void> ended = scene->EndImages(); !ended)
     return InputError(fmt::format("{}: {}", stream->path().string(), ended.error().message));
-  // Text that is cut off between two images is whole in itself.
+  // A file that was cut off between two images has no other fault than their number.
   if (words.announced_count().value_or(scene->image_count()) != scene->image_count())
     LogWarning("{}: holds {} images, but says {} at its start: was it edited, or is it cut off?",
                stream->path().string(), scene->image_count(), *words.announced_count());

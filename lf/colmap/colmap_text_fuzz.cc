@@ -1,5 +1,5 @@
-// Any bytes are a COLMAP model as text or an error; a model has sane cameras only. The three files
-// stand one after the other, with a form feed between them.
+// Any bytes give a COLMAP model with sane cameras or an error. The input holds the three text
+// files, with a form feed between them.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

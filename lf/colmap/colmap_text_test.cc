@@ -44,7 +44,7 @@ TEST(ColmapText, TakesCommentsBlankLinesAndDosLineEnds) {
   EXPECT_EQ(light_field->depth_range, std::nullopt);
 }
 
-// doc/formats/colmap.md
+// The example is that of doc/formats/colmap.md.
 TEST(ColmapText, TheExampleOfThePageIsTrue) {
   const Result<LightField> light_field =
       ParseColmap(false, "# cameras.txt\n1 SIMPLE_RADIAL 720 1280 1100 360 640 0.05\n",
@@ -119,7 +119,8 @@ TEST(ColmapText, AnotherNumberOfImagesThanAnnouncedIsAWarning) {
   EXPECT_EQ(messages("# Number of things\n"), "");
 }
 
-// A file that lacks the empty lines of images without points would lose every second image.
+// If a file without the blank lines of images without points were accepted, every second image
+// would be lost.
 TEST(ColmapText, AnImageInThePlaceOfPointsIsAnError) {
   const char* expected = "m/images.txt:2: expected the 2D points of image 1 (X Y POINT3D_ID";
   EXPECT_HAS(ErrorOfImages("1 1 0 0 0 0 0 0 1 a.png\n2 1 0 0 0 0 0 0 1 b.png\n"), expected);
@@ -146,7 +147,7 @@ TEST(ColmapText, WhatIsNoTextIsShownShort) {
 
 class ColmapTextFileTest : public FolderTest {};
 
-// Words, lines and names that cross the ends of blocks.
+// Words, lines and names cross the ends of blocks.
 TEST_F(ColmapTextFileTest, LinesMayBeLongerThanBlocks) {
   std::string points;
   while (points.size() < (size_t{3} << 20)) points += "123.4567 89.0123 77 ";

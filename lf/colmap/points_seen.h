@@ -1,4 +1,4 @@
-// The points of a COLMAP model that one of its images shows: where the scene is, without its
+// Finds the points of a COLMAP model that one of its images shows: the scene's geometry without
 // pixels.
 #pragma once
 
@@ -19,19 +19,20 @@ inline constexpr size_t kMostPointsSeen = 2048;
 // Collects the points while a points3D file is read. Internal to colmap.
 class ColmapPointsSeen {
  public:
-  //   image_id  the number that the model gives the image of this camera
+  // image_id  the id of the image in the model
   ColmapPointsSeen(uint32_t image_id, const PinholeCamera& camera);
 
-  // A point of the file; its observations follow.
+  // Adds a point of the file; its observations follow.
   Result<void> AddPoint(uint64_t point_id, const Vec3& point_world, bool has_track);
   Result<void> AddObservation(uint64_t point_id, const Vec3& point_world, uint32_t image_id);
 
-  // Returns the points whose tracks name the image. If no point of the file has a track, these are
-  // all points that project into the image. Empty afterwards.
+  // Returns the points whose tracks contain the image. If no point of the file has a track, returns
+  // the points that project into the image. Empty afterwards.
   std::vector<Vec3> Take();
 
  private:
-  // At most kMostPointsSeen points, those whose hash is small, the same in any order.
+  // At most kMostPointsSeen points, those with the smallest hashes, so that the order of points has
+  // no influence.
   struct Sample {
     void Add(uint64_t point_id, const Vec3& point_world);
 
@@ -48,14 +49,14 @@ class ColmapPointsSeen {
   Sample tracked_, untracked_;
 };
 
-// Returns points in world coordinates, at most kMostPointsSeen, evenly chosen; none if the model
-// has no points3D file. Cameras, images and points are read once more, a block at a time.
-//   position  of the image among all of the model, sorted by name: its LfImageId
-//   camera    that took it, with the size of the images that are there
-// kInput: errors of ReadColmapModel(); an image beyond the number of images.
+// Returns at most kMostPointsSeen evenly chosen points in world coordinates; none if the model has
+// no points3D file. Reads cameras, images and points again, block by block.
+//   position  index of the image among all images of the model sorted by name: its LfImageId
+//   camera    of this image, with the size that the image file has
+// kInput: errors of ReadColmapModel(); a position beyond the last image.
 Result<std::vector<Vec3>> ReadColmapPointsSeen(const std::filesystem::path& model_folder,
                                                uint32_t position, const PinholeCamera& camera);
-// Reads the same from streams.
+// As ReadColmapPointsSeen(), from streams.
 Result<std::vector<Vec3>> ParseColmapPointsSeen(ColmapStreams streams, uint32_t position,
                                                 const PinholeCamera& camera);
 

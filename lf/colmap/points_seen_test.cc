@@ -11,7 +11,7 @@
 namespace lf {
 namespace {
 
-// Two images, whose order by name is not that of their ids: 7 comes first. Neither is turned; the
+// Two images whose order by name differs from that by id: 7 comes first. Neither is rotated; the
 // camera of 3 stands at x = 10.
 const std::string kCamerasText = "1 PINHOLE 8 6 10 11 4 3\n";
 const std::string kImagesText = "3 1 0 0 0 -10 0 0 1 b.png\n\n7 1 0 0 0 0 0 0 1 a.png\n\n";
@@ -47,7 +47,7 @@ TEST(ColmapPointsSeen, TheyAreThoseWhoseTracksNameTheImage) {
   }
 }
 
-// With fx 10 and 8 pixels, the image shows what lies within 0.4 of the axis at depth 1.
+// With fx = 10 and 8 pixels, the image shows points within 0.4 of the axis at depth 1.
 TEST(ColmapPointsSeen, WithoutTracksTheyAreThoseThatProjectIntoTheImage) {
   const std::string points = PointsBin({{.id = 1, .xyz = {0.39, 0, 1}},
                                         {.id = 2, .xyz = {0.41, 0, 1}},

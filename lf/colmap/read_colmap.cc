@@ -20,7 +20,7 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* kExtensions[] = {".bin", ".txt"};  // in the order of preference
+constexpr const char* kExtensions[] = {".bin", ".txt"};  // in order of preference
 constexpr int kFoldersAbove = 3;                         // root/colmap/sparse/0 -> root
 
 bool IsFile(const fs::path& path) {
@@ -33,7 +33,7 @@ bool IsFolder(const fs::path& path) {
   return fs::is_directory(path, error);
 }
 
-// Of the files of the model in a folder; none if there is no model.
+// Returns the extension of the model's files in a folder; nullopt if there is no model.
 Result<std::optional<std::string>> ModelExtension(const fs::path& folder) {
   std::optional<Error> incomplete;
   for (const char* extension : kExtensions) {
@@ -59,7 +59,7 @@ Result<uint64_t> CountImages(const fs::path& folder, const std::string& extensio
   return extension == ".bin" ? CountColmapImagesBinary(&stream) : CountColmapImagesText(&stream);
 }
 
-// Folders named by numbers, in their order.
+// Returns the folders whose names are numbers, in ascending order.
 std::vector<fs::path> NumberedFolders(const fs::path& folder) {
   std::vector<std::pair<unsigned long, fs::path>> found;
   std::error_code error;
@@ -74,7 +74,7 @@ std::vector<fs::path> NumberedFolders(const fs::path& folder) {
   return folders;
 }
 
-// The largest of the models 0, 1, ... in a folder.
+// Returns the largest of the models 0, 1, ... in a folder.
 Result<std::optional<fs::path>> LargestModel(const fs::path& folder, bool warns) {
   std::optional<fs::path> largest;
   uint64_t largest_count = 0, all_count = 0;
@@ -97,7 +97,7 @@ Result<std::optional<fs::path>> LargestModel(const fs::path& folder, bool warns)
   return largest;
 }
 
-// The folder above, also of relative paths; the root's is the root.
+// Returns the parent folder, for relative paths and the root as well as for others.
 fs::path Above(const fs::path& folder) {
   const fs::path clean = folder.lexically_normal();
   const fs::path named = clean.has_filename() ? clean : clean.parent_path();
@@ -108,7 +108,7 @@ fs::path Above(const fs::path& folder) {
   return named.parent_path();
 }
 
-// Where the images may be, in the order in which they are looked for.
+// Returns the folders that may hold the images, in the order of the search.
 std::vector<fs::path> ImageFolders(const fs::path& model_folder) {
   std::vector<fs::path> folders;
   fs::path above = model_folder;
@@ -136,7 +136,7 @@ std::string NearbyIn(const fs::path& model_folder, const std::string& name) {
   return nearby;
 }
 
-// The first folder that holds one of the first images: some may be missing.
+// Returns the first folder with one of the first images, because some images may be missing.
 Result<fs::path> FindImages(const fs::path& model_folder, std::span<const std::string> names) {
   constexpr size_t kMostAsked = 64;
   const auto asked = names.first(std::min(names.size(), kMostAsked));
@@ -153,7 +153,7 @@ Result<fs::path> FindImages(const fs::path& model_folder, std::span<const std::s
       model_folder.string(), names.front(), tried, NearbyIn(model_folder, names.front())));
 }
 
-// The folder above sparse/0 or the like.
+// Returns the folder above sparse/0 or a similar folder.
 fs::path ProjectFolder(const fs::path& model_folder) {
   const auto name_of = [](const fs::path& folder) {
     const fs::path clean = folder.lexically_normal();
@@ -168,13 +168,13 @@ fs::path ProjectFolder(const fs::path& model_folder) {
   return folder;
 }
 
-// The folder masks beside the images, as names that are relative to that folder where possible.
+// Returns the folder `masks` beside the images, relative to their folder if possible.
 std::optional<fs::path> FindMasks(const fs::path& images_folder) {
   const fs::path masks = Above(images_folder) / "masks";
   if (!IsFolder(masks)) return std::nullopt;
   std::error_code error;
   const fs::path relative = fs::path("..") / "masks";
-  // Elsewhere if the folder of images is a link.
+  // If the folder of images is a link, `..` leads elsewhere.
   if (fs::equivalent(images_folder / relative, masks, error)) return relative;
   return fs::absolute(masks, error);
 }
@@ -198,11 +198,11 @@ void AddMasks(LightField* light_field) {
 Result<std::optional<fs::path>> FindColmapModel(const fs::path& path, bool warns) {
   for (const fs::path& folder : {path, path / "sparse", path / "colmap" / "sparse"}) {
     const Result<std::optional<std::string>> extension = ModelExtension(folder);
-    // A cameras.txt or images.txt alone may be of any kind, unless it lies in sparse.
+    // A cameras.txt or images.txt alone may belong to another program, unless it lies in sparse.
     const bool may_be_another = folder == path && !HoldsBinaryFiles(folder);
     if (!extension && !may_be_another) return extension.error();
     if (extension && *extension) return std::optional<fs::path>(folder);
-    // A folder of a million images need not be listed.
+    // Avoids listing a folder that may hold a million images.
     if (folder == path && !IsFolder(path / "0")) continue;
     LF_ASSIGN_OR_RETURN(std::optional<fs::path> largest, LargestModel(folder, warns));
     if (largest) return largest;

@@ -1,7 +1,7 @@
-// Seconds and memory for models of a million images, each with 50 2D points: 1.3 GB of images.bin,
-// 2.2 GB of images.txt, which are written into the temporary folder first. Memory is the peak of
-// the process, before reading and at all, and what the light field itself takes: run one benchmark
-// at a time (--benchmark_filter=Binary/1/).
+// Measures seconds and memory for models of a million images with 50 2D points each: 1.3 GB of
+// images.bin, 2.2 GB of images.txt, which are first written into the temporary folder. The peak
+// memory of the process is measured before reading and at the end, and the size of the light field
+// is reported, so run one benchmark at a time (--benchmark_filter=Binary/1/).
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -35,7 +35,7 @@ class File {
   std::FILE* file_;
 };
 
-// Against the order of the names, as COLMAP may write them.
+// Ids run against the order of the names, as COLMAP may write them.
 TestImage Image(uint32_t i, uint32_t camera_count) {
   const uint32_t id = kImageCount - i;
   return {.id = id,
@@ -107,7 +107,7 @@ void Read(benchmark::State& state, void (*write)(const fs::path&, uint32_t)) {
   state.counters["field_MiB"] = field_mib;
 }
 
-// The argument: the number of cameras.
+// The argument is the number of cameras.
 void BM_Binary(benchmark::State& state) { Read(state, WriteBinary); }
 void BM_Text(benchmark::State& state) { Read(state, WriteText); }
 BENCHMARK(BM_Binary)->Arg(1)->Arg(kImageCount)->Unit(benchmark::kMillisecond)->Iterations(3);

@@ -13,7 +13,7 @@
 
 namespace lf {
 
-// Numbers one after the other, as in COLMAP's binary files.
+// Packs numbers one after the other, as in COLMAP's binary files.
 class PackedBytes {
  public:
   template <class T>
@@ -96,7 +96,7 @@ inline Result<LightField> ParseColmap(bool is_binary, std::string_view cameras,
   return ParseColmapModel(std::move(streams));
 }
 
-// What every light field that was read must hold; for fuzzing.
+// Checks the invariants of every light field that was read; for fuzzing.
 inline void CheckIsSane(const LightField& light_field) {
   LF_CHECK(light_field.size() > 0);
   LF_CHECK(light_field.image_names.size() == light_field.size());

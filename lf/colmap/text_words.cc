@@ -14,7 +14,7 @@ namespace {
 bool IsBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 bool EndsWord(char c) { return IsBlank(c) || c == '\n'; }
 
-// A word in a message: short, and without what a terminal would take for a command.
+// Returns a word as messages show it: short, and without terminal control characters.
 std::string Shown(std::string_view word) {
   constexpr size_t kLongest = 40;
   if (word.empty()) return "missing";
@@ -24,7 +24,7 @@ std::string Shown(std::string_view word) {
   return fmt::format("\"{}\"{}", shown, word.size() > kLongest ? "..." : "");
 }
 
-// What stands in a line of numbers: digits, signs, exponents, and the letters of nan and inf.
+// Characters in a line of numbers: digits, signs, exponents, and the letters of nan and inf.
 constexpr std::array<bool, 256> kNumberCharacters = [] {
   std::array<bool, 256> table = {};
   for (const char c : std::string_view("0123456789+-.eEnaifNAIF"))

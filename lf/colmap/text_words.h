@@ -1,4 +1,4 @@
-// A text file as lines of words, a block at a time: lines may be of any length. Internal to
+// Splits a text file into lines of words, block by block: lines may have any length. Internal to
 // colmap.
 #pragma once
 
@@ -12,51 +12,52 @@
 
 namespace lf {
 
-// Words are separated by blanks, tabs and carriage returns, lines end with a line feed.
+// Blanks, tabs and carriage returns separate words; a line feed ends a line.
 class TextWords {
  public:
-  static constexpr size_t kMaxWordSize = 1024;  // bytes; what is longer is cut
+  static constexpr size_t kMaxWordSize = 1024;  // bytes; longer words are cut
 
-  // The stream must outlive it.
+  // `stream` must outlive this object.
   explicit TextWords(ByteStream* stream) : stream_(stream) {}
 
-  // To the next line, whatever the last one still holds. False at the end of the file.
+  // Moves to the next line, even if words of this line were not read. Returns false at the end of
+  // the file.
   bool NextLine();
-  // To the next line that holds something other than a comment (#...).
+  // Moves to the next line that is not blank and not a comment (#...).
   bool NextEntry();
-  // The number in a comment "# Number of THINGS: NUMBER..." that was passed on the way.
+  // The number in a comment "# Number of THINGS: NUMBER..." that was skipped.
   const std::optional<uint64_t>& announced_count() const { return announced_count_; }
 
-  // Whether this line holds no further word.
+  // Returns true if this line has no further word.
   bool AtLineEnd() {
     SkipBlanks();
     return !Peek();
   }
-  // The next word of this line, "" at its end. Valid until the next call.
+  // Returns the next word of this line, "" at its end. Valid until the next call.
   std::string_view Word();
-  // What is left of this line without the blanks around it, at most one byte more than max_size.
+  // Returns the rest of this line without surrounding blanks, cut to max_size + 1 bytes.
   std::string Rest(size_t max_size);
-  // Skips the rest of this line. The number of its words; none if there is a character that no
-  // number has.
+  // Skips the rest of this line. Returns the number of its words; nullopt if it contains a
+  // character that no number has.
   std::optional<uint64_t> SkipNumbers();
 
-  // The next word as a number. kInput with file and line; `name` says what was expected.
+  // Reads the next word as a number. kInput with file and line; `name` says what was expected.
   Result<double> Number(const char* name);  // finite
   Result<uint64_t> Whole(const char* name, uint64_t max);
 
-  // An error at this line, or the failure to read it.
+  // Returns an error at this line, or the error of reading it.
   Error Fault(std::string_view message) const;
 
  private:
-  // The next character of this line, not taken; none at its end.
+  // Returns the next character of this line without taking it; nullopt at the end of the line.
   std::optional<char> Peek();
   void SkipBlanks();
   void NoteComment();
 
   ByteStream* stream_;
-  uint64_t line_number_ = 0;  // 0: before the first
+  uint64_t line_number_ = 0;  // 0 before the first line
   std::optional<uint64_t> announced_count_;
-  std::string word_;  // where a word crosses blocks
+  std::string word_;  // the current word, if it crosses the end of a block
 };
 
 }  // namespace lf
