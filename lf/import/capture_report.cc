@@ -15,7 +15,7 @@
 namespace lf {
 namespace {
 
-// The middle one of an even number is the lower.
+// The median of an even number of values is the lower middle one.
 Spread SpreadOf(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<ptrdiff_t>((values.size() - 1) / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -23,12 +23,12 @@ Spread SpreadOf(std::vector<double> values) {
   return {*least, *middle, *largest};
 }
 
-// From the ray of one image position over that of the middle between them to that of the other,
-// since a fish-eye may see more than half a turn; less where the lens ends within the image.
+// Returns the angle from the ray of `a_px` to that of the midpoint and on to that of `b_px`,
+// because a fish-eye may see more than half a turn. Smaller if the lens ends within the image.
 double AngleBetween(const Intrinsics& k, const Vec2& a_px, const Vec2& b_px) {
   const DistortionMap map(k.distortion);
   const Vec2 middle_px = (a_px + b_px) / 2;
-  // Of the pixel, or where the lens ends before it: of the last place towards it that has a ray.
+  // The ray of the pixel. If the lens ends before the pixel, the last ray on the way to it.
   const auto direction = [&](const Vec2& pixel) -> Vec3 {
     const auto position = [&](double share) {
       const Vec2 at = middle_px + share * (pixel - middle_px);
@@ -143,7 +143,7 @@ CaptureReport ReportCapture(const LightField& light_field, const CaptureReportOp
 
   const std::vector<uint32_t> firsts = FirstOfPose(light_field);
   report.brackets = FindBrackets(light_field, firsts, options.lights);
-  // A pose of brackets stands for its LF images.
+  // The first LF image of a bracketed pose stands for all of them.
   std::vector<Vec3> positions;
   std::vector<LfImageId> ids;
   Eigen::AlignedBox3d box;

@@ -27,7 +27,7 @@ LightField Grid(std::optional<Vec3> target = {}) {
   return field;
 }
 
-// On a circle around the origin, looking in (sign 1) or out (-1).
+// Cameras on a circle around the origin that look inwards (sign 1) or outwards (-1).
 LightField Ring(double sign) {
   LightField field;
   for (int i = 0; i < 60; ++i) {
@@ -51,13 +51,13 @@ std::vector<std::string> Kinds(const CaptureReport& report) {
 
 using Words = std::vector<std::string>;
 
-// Turned about its optical axis by 180 degrees, at the same place.
+// Turns the camera by 180 degrees about its optical axis.
 void TurnOver(RigidTransform* pose) {
   const Mat3 turn = Vec3(-1, -1, 1).asDiagonal();
   *pose = RigidTransform{turn, Vec3::Zero()} * *pose;
 }
 
-// Looking back, with the same up.
+// Makes the camera look backwards, with the same up direction.
 void TurnRound(RigidTransform* pose) {
   const Mat3 turn = Vec3(-1, 1, -1).asDiagonal();
   *pose = RigidTransform{turn, Vec3::Zero()} * *pose;
@@ -82,7 +82,7 @@ TEST(CaptureReport, GroupsCamerasByModelAndSize) {
   field.intrinsics.push_back(kCamera);
   field.intrinsics.back().fx_px = 2000;
   field.intrinsics.push_back({500, 500, 200, 300, 0, 400, 600});
-  field.intrinsics.push_back({1, 1, 1, 1, 0, 1, 1});  // of no image
+  field.intrinsics.push_back({1, 1, 1, 1, 0, 1, 1});  // used by no image
   field.cameras[1].intrinsics_index = 1;
   for (size_t i = 2; i < 12; ++i) field.cameras[i].intrinsics_index = 2;
   const std::vector<CameraGroup> groups = ReportOf(field).groups;
@@ -110,7 +110,8 @@ TEST(CaptureReport, TheFieldOfViewEndsWhereTheLensDoes) {
 TEST(CaptureReport, AFishEyeSeesMoreThanItsPinhole) {
   LightField field = Grid();
   field.intrinsics[0] = {400, 400, 800, 800, 0, 1600, 1600, {DistortionModel::kFisheye, {}}};
-  EXPECT_NEAR(ReportOf(field).groups[0].horizontal_fov_rad.median, 4, 1e-9);  // 2 px / F, above pi
+  EXPECT_NEAR(ReportOf(field).groups[0].horizontal_fov_rad.median, 4, 1e-9);  // 2 px / F, larger
+                                                                              // than pi
 }
 
 TEST(CaptureReport, DensityIsTheDisparityOfNeighboursAtTheScene) {
@@ -131,12 +132,12 @@ TEST(CaptureReport, DensityIsTheDisparityOfNeighboursAtTheScene) {
   EXPECT_EQ(report.density->source, DistanceSource::kStated);
   EXPECT_NEAR(report.density->disparity_px, 10, 1e-9);
   EXPECT_NEAR(report.density->spacing_rad, 0.01, 1e-6);
-  // What is seen at z when focused there, and 0.75 z: 100 / 7.5 - 100 / 10 pixels apart.
+  // Points at 0.75 z appear 100 / 7.5 - 100 / 10 pixels apart if the focus is at z.
   EXPECT_NEAR(report.density->near_ghost_px, 100 / 7.5 - 10, 1e-9);
   EXPECT_NEAR(report.density->far_ghost_px, 10 - 100 / 12.5, 1e-9);
   EXPECT_EQ(Kinds(report), Words{});                                      // 3.3 of 800 pixels
   EXPECT_EQ(Kinds(ReportOf(field, {.distance_w = 4})), Words{"sparse"});  // 8.3 pixels
-  // As the warning says, spacing 0.096 would be enough at 4.
+  // The warning says that a spacing of 0.096 would suffice at the distance 4.
   const std::string message = ReportOf(field, {.distance_w = 4}).warnings[0].message;
   EXPECT_NE(message.find("at most 0.096 apart"), std::string::npos) << message;
 }
@@ -154,7 +155,7 @@ TEST(CaptureReport, CamerasThatLookAwayFromTheOthersAreNamed) {
 
 TEST(CaptureReport, MixedUpAxesDiverge) {
   EXPECT_EQ(Kinds(ReportOf(Ring(-1))), Words{"diverging-axes"});
-  // Cameras in OpenCV's convention read in OpenGL's.
+  // Cameras in OpenCV's convention that were read in OpenGL's.
   LightField field = Grid(Vec3(0.45, 0.9, 40));
   const Mat3 flip = Vec3(1, -1, -1).asDiagonal();
   for (LfCamera& camera : field.cameras)
@@ -185,7 +186,7 @@ TEST(CaptureReport, ADomeHasNoUpsideDown) {
 }
 
 TEST(CaptureReport, CamerasOnTheirSideAroundARingHaveNoUpsideDown) {
-  for (int shown = 10; shown <= 60; ++shown) {  // arcs of all lengths
+  for (int shown = 10; shown <= 60; ++shown) {  // arcs of different lengths
     LightField field = Ring(1), arc;
     for (int i = 0; i < shown; ++i) {
       const Mat3 turn = Eigen::AngleAxisd(kPi / 2, Vec3::UnitZ()).toRotationMatrix();
@@ -198,7 +199,7 @@ TEST(CaptureReport, CamerasOnTheirSideAroundARingHaveNoUpsideDown) {
 TEST(CaptureReport, RepeatedPositionsAreNamed) {
   LightField field = Grid();
   Add(field.cameras[5].cam_from_world, &field);
-  TurnOver(&field.cameras[5].cam_from_world);  // its position comes out rounded otherwise
+  TurnOver(&field.cameras[5].cam_from_world);  // changes the rounding of its position
   TurnOver(&field.cameras[5].cam_from_world);
   const CaptureReport report = ReportOf(field);
   ASSERT_EQ(Kinds(report), Words{"repeated-positions"});
@@ -246,7 +247,7 @@ TEST(CaptureReport, BracketsAreNoRepeatedPositions) {
     field.cameras[i].gain = static_cast<float>(1 / options.lights[i]);
   field.encoding.masks_clipped = true;
   EXPECT_EQ(Kinds(ReportOf(field)), Words{});
-  Add(field.cameras[7].cam_from_world, &field);  // no other exposure, but the pose has several
+  Add(field.cameras[7].cam_from_world, &field);  // an exposure that the pose already has
   field.cameras.back().gain = field.cameras[7].gain;
   EXPECT_EQ(Kinds(ReportOf(field)), Words{});
 }

@@ -1,4 +1,4 @@
-// What looks wrong in a capture, by its poses. Internal to import.
+// Finds what looks wrong in a capture from its poses. Internal to import.
 #pragma once
 
 #include <span>
@@ -10,22 +10,24 @@
 
 namespace lf {
 
-// facing-away and diverging-axes.
+// Warnings facing-away and diverging-axes.
 std::vector<CaptureWarning> WarnOfDirections(const LightField& light_field);
 
-// upside-down.
+// Warning upside-down.
 std::vector<CaptureWarning> WarnOfUpsideDown(const LightField& light_field);
 
-// repeated-positions: those whose nearest other camera is closer than 1e-8 of the median.
-//   nearest_w  as of NearestDistances() of the LF images `ids`
+// Warning repeated-positions, for cameras whose nearest neighbour is closer than 1e-8 of the
+// median.
+//   nearest_w  NearestDistances() of the LF images `ids`
 std::vector<CaptureWarning> WarnOfRepeats(const LightField& light_field,
                                           std::span<const LfImageId> ids,
                                           std::span<const double> nearest_w);
 
-// brackets: the light field does not say how exposures differ, or keeps clipped pixels.
+// Warning brackets, if the light field does not state how exposures differ, or keeps clipped
+// pixels.
 std::vector<CaptureWarning> WarnOfBrackets(const FoundBrackets& brackets, bool masks_clipped);
 
-// sparse: for images so wide, with cameras so far apart.
+// Warning sparse, for images `width_px` wide and cameras `spacing_w` apart.
 std::vector<CaptureWarning> WarnOfSparseness(const Density& density, double width_px,
                                              double spacing_w);
 

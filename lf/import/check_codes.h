@@ -1,4 +1,4 @@
-// What is to be said of the LF images of a packed store. Internal to import.
+// Checks the LF images of a packed store. Internal to import.
 #pragma once
 
 #include <memory>
@@ -17,12 +17,13 @@ class CodeChecker {
  public:
   static Result<std::unique_ptr<CodeChecker>> Open(const LightField& light_field);
 
-  // "": nothing is. May be called by many threads at the same time.
+  // The result of a check; no fault if `reason` is "".
   struct Fault {
     bool is_missing = false;
     std::string reason;
   };
-  //   decode  all of the code, with its checksum; otherwise the store's table is asked
+  // Checks one LF image. May be called by many threads at the same time.
+  //   decode  false: reads the store's table only; true: also decodes the image, with its checksum
   Fault Check(LfImageId id, bool decode) const;
 
  private:
@@ -32,7 +33,7 @@ class CodeChecker {
   const LightField& light_field_;
   const std::vector<PackedCode> codes_;
   mutable std::mutex mutex_;
-  mutable std::vector<PackedCodeReader> readers_;  // as many as were at work at the same time
+  mutable std::vector<PackedCodeReader> readers_;  // reused; one per thread in Check()
 };
 
 }  // namespace lf

@@ -18,7 +18,7 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-// Images between two looks at the clock and the flag.
+// Images between two checks of the clock and the flag.
 constexpr size_t kHeadersPerRound = 512;
 constexpr size_t kImagesPerRound = 64;
 

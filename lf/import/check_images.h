@@ -1,5 +1,5 @@
-// Whether the files of a light field are there, and are what its calibration says; or the codes of
-// a packed store.
+// Checks if the files of a light field, or the encoded images of a packed store, exist and match
+// the calibration.
 #pragma once
 
 #include <atomic>
@@ -15,10 +15,10 @@
 namespace lf {
 
 enum class ImageCheck {
-  // The files' headers: the size; a truncated file goes unnoticed. Of a packed store its table of
-  // codes: a damaged one goes unnoticed.
+  // Reads the headers of files and compares sizes; a truncated file goes unnoticed. For a packed
+  // store, reads the table of encoded images; a damaged one goes unnoticed.
   kHeaders,
-  kPixels,  // all of every file, or code, is decoded
+  kPixels,  // decodes every file or encoded image completely
 };
 
 struct ImageFault {
@@ -27,19 +27,20 @@ struct ImageFault {
 };
 
 struct ImageFaults {
-  std::vector<ImageFault> missing;  // no such file
+  std::vector<ImageFault> missing;  // the file does not exist
   // The header (kPixels: the pixels) cannot be read, or the size is not that of the calibration.
   std::vector<ImageFault> broken;
 };
 
 struct CheckOptions {
   ImageCheck check = ImageCheck::kHeaders;
-  const std::atomic<bool>* interrupted = nullptr;  // looked at now and then
+  const std::atomic<bool>* interrupted = nullptr;  // polled now and then
   std::function<void(size_t done, size_t total)> progress;
 };
 
-// All LF images and their masks, in parallel; the lists are in the order of the LF images, which
-// stand in at most one of them. kInterrupted; kInput: a packed store that cannot be read.
+// Checks all LF images and their masks in parallel. The lists are in the order of the LF images;
+// each LF image is in at most one of them. kInterrupted; kInput: a packed store that cannot be
+// read.
 Result<ImageFaults> CheckImages(const LightField& light_field, const CheckOptions& options,
                                 ThreadPool& pool);
 

@@ -25,7 +25,8 @@ void AddEntries(std::string_view text, std::string_view separators,
 
 std::string_view BaseName(std::string_view name) { return name.substr(name.rfind('/') + 1); }
 
-// Patterns, found by exact names at once; those with wildcards are tried one by one.
+// Patterns to match names with. Exact names are looked up; only those with wildcards are tried one
+// by one.
 class PatternSet {
  public:
   explicit PatternSet(std::span<const std::string> patterns)
@@ -53,7 +54,7 @@ class PatternSet {
     return matches;
   }
 
-  // A pattern given twice is one.
+  // A pattern that was given twice counts as used if one of the two was.
   const std::string* FirstUnused() const {
     for (size_t i = 0; i < used_.size(); ++i)
       if (!used_[i] && !used_[exact_.at(patterns_[i])]) return &patterns_[i];

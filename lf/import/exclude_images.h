@@ -1,4 +1,4 @@
-// Leaving LF images out of a light field, such as those whose calibration failed.
+// Removes LF images from a light field, such as those whose calibration failed.
 #pragma once
 
 #include <cstddef>
@@ -11,15 +11,16 @@
 
 namespace lf {
 
-// The patterns of options: each a list separated by commas, or @FILE with one pattern per line
-// (for names that hold commas); blank lines and entries are skipped. kInput: FILE cannot be read.
+// Reads the patterns in options. Each option is a list separated by commas, or @FILE with one
+// pattern per line (for names that contain commas); blank lines and entries are skipped. kInput:
+// FILE cannot be read.
 Result<std::vector<std::string>> ReadPatterns(std::span<const std::string> options);
 
-// Removes every LF image that a pattern names: its name as the calibration has it, or the part of
-// it behind the last '/'. A pattern is such a name, or one with * ? [abc] in it, as shells have
-// them (* matches '/' too).
-// Returns how many were removed.
-// kInput: a pattern that names no image (nothing is removed then), or nothing is left.
+// Removes every LF image whose name matches a pattern. The name is that in the calibration, or the
+// part of it after the last '/'. A pattern is a name or a shell pattern with * ? [abc], in which *
+// also matches '/'.
+// Returns the number of removed LF images.
+// kInput: a pattern that matches no image (nothing is removed then), or no image would remain.
 Result<size_t> ExcludeImages(std::span<const std::string> patterns, LightField* light_field);
 
 }  // namespace lf

@@ -14,7 +14,7 @@ namespace {
 
 constexpr float kLeastGain = 1e-6F, kMostGain = 1e6F;
 
-// What a file lacks, in words.
+// Returns words for what a file lacks.
 std::string MissingOf(const ExposureFacts& facts, bool wants_f_number) {
   std::vector<const char*> missing;
   if (!facts.time_s) missing.push_back("exposure time");
@@ -23,7 +23,7 @@ std::string MissingOf(const ExposureFacts& facts, bool wants_f_number) {
   return fmt::format("{}", fmt::join(missing, " and no "));
 }
 
-// The first LF image without an exposure is named, and how many there are is told.
+// kInput with the first LF image without an exposure and the number of such LF images.
 Result<void> CheckAllAreStated(std::span<const StatedExposure> stated,
                                const LightField& light_field, bool wants_f_number) {
   size_t fault_count = 0;
@@ -74,7 +74,7 @@ Result<ExifGains> GainFromExif(std::span<const StatedExposure> stated, LightFiel
   LF_CHECK(stated.size() == light_field->size() && !stated.empty());
   ExifGains found;
   found.image_count = stated.size();
-  // Lenses without contacts have no f-number to tell.
+  // A lens without electrical contacts has no f-number to report.
   found.has_f_numbers = std::any_of(stated.begin(), stated.end(), [](const StatedExposure& one) {
     return one.facts.f_number.has_value();
   });

@@ -10,7 +10,7 @@
 namespace lf {
 namespace {
 
-// The different ones, ascending; of those that are one exposure, the darkest.
+// Returns the different exposures, ascending. Of exposures that count as one, the darkest is kept.
 std::vector<double> DifferentOnes(std::vector<double> exposures) {
   std::erase_if(exposures, [](double x) { return !(x > 0); });
   std::sort(exposures.begin(), exposures.end());

@@ -14,19 +14,19 @@ namespace lf {
 struct FoundBrackets {
   size_t pose_count = 0;                           // poses with several exposures
   size_t image_count = 0;                          // LF images of these poses
-  size_t least_exposures = 0, most_exposures = 0;  // different ones of a pose
-  // Exposures of the pose that has most of them, ascending, in stops (factors of two) beside the
-  // middle one; of an even number, beside the darker of the two in the middle.
+  size_t least_exposures = 0, most_exposures = 0;  // number of different exposures of a pose
+  // Exposures of the pose with most of them, ascending, in stops (factors of two) relative to the
+  // middle one; of an even number, relative to the darker middle one.
   std::vector<double> stops;
-  bool are_gains = false;       // lf_gain tells the exposures; else the files do
-  std::vector<bool> of_images;  // of these poses
+  bool are_gains = false;       // exposures are from lf_gain; otherwise from the files
+  std::vector<bool> of_images;  // true for the LF images of these poses
 };
 
-// Exposures of one pose that differ by less than kOneExposure (capture/brackets.h) are one.
+// Exposures of one pose that differ by less than kOneExposure (capture/brackets.h) count as one.
 //   firsts  FirstOfPose(light_field)
-//   lights  LightOf() the files (exif_gains.h), which counts where lf_gain tells no difference;
-//           NaN: not known; empty: of none
-// None where no pose has several exposures.
+//   lights  LightOf() each file (exif_gains.h), used if lf_gain shows no difference; NaN: unknown;
+//           empty: all unknown
+// nullopt if no pose has several exposures.
 std::optional<FoundBrackets> FindBrackets(const LightField& light_field,
                                           std::span<const uint32_t> firsts,
                                           std::span<const double> lights);

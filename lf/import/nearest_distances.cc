@@ -12,8 +12,8 @@ namespace {
 constexpr size_t kLeafSize = 8;
 constexpr size_t kPointsPerTask = 1024;
 
-// A kd-tree without nodes: `order_` holds each range's median, along the range's widest axis, in
-// its middle; what is left of it along that axis stands before it.
+// A kd-tree without nodes. In the middle of each range of `order_` is its median along its widest
+// axis; points with smaller coordinates along that axis stand before it.
 class KdTree {
  public:
   explicit KdTree(std::span<const Vec3> points)

@@ -1,4 +1,5 @@
-// How far each point is from the others: the spacing of a capture, of a million cameras in seconds.
+// Computes nearest-neighbour distances, which are the spacing of a capture: a million cameras take
+// seconds.
 #pragma once
 
 #include <span>
@@ -9,9 +10,9 @@
 
 namespace lf {
 
-// From each point to the nearest other one, in the order of `points`; 0 where another has the same
-// position. Infinite for a single point. Exact, by a kd-tree: n log n, for points in a line, a
-// plane or space.
+// Returns the distance from each point to its nearest neighbour, in the order of `points`; 0 if
+// another point has the same position, infinity for a single point. Exact, with a kd-tree in n log
+// n time for points in a line, a plane or space.
 std::vector<double> NearestDistances(std::span<const Vec3> points, ThreadPool& pool);
 
 }  // namespace lf

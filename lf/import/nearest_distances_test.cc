@@ -21,7 +21,7 @@ std::vector<double> BruteForce(const std::vector<Vec3>& points) {
   return distances;
 }
 
-// Points of so many dimensions; the others are constant.
+// Returns random points in `dimensions` coordinates; the other coordinates are constant.
 std::vector<Vec3> RandomPoints(size_t count, int dimensions) {
   std::vector<Vec3> points;
   for (uint64_t i = 0; i < count; ++i) {

@@ -1,4 +1,4 @@
-// Any bytes are a matrix that is a similarity, or an error.
+// Any bytes give a similarity or an error.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
