@@ -19,12 +19,12 @@
 namespace lf {
 namespace {
 
-constexpr int kKeptAs = 3;  // after the three standard files
-// A queue of four million tasks, the most that Slurm has, of 60 bytes each.
+constexpr int kKeptAs = 3;  // the descriptor after the three standard files
+// Room for a queue of four million tasks, Slurm's maximum, of 60 bytes each.
 constexpr off_t kMostBytes = off_t{256} << 20;
 
-// Between fork and exec: nothing here may take memory or locks. Tells why it failed through
-// `alarm`.
+// Runs between fork and exec, where nothing may allocate memory or take locks. Reports through
+// `alarm` why it failed.
 [[noreturn]] void Become(const Command::Options& options, char* const* argv, pid_t parent,
                          int nothing, int alarm) {
   ::setpgid(0, 0);
@@ -33,7 +33,7 @@ constexpr off_t kMostBytes = off_t{256} << 20;
   sigset_t none;
   ::sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
-  // What we ignore or catch, the program must not.
+  // The program must not inherit the signals that we ignore or catch.
   for (const int signal : {SIGPIPE, SIGXFSZ, SIGINT, SIGTERM, SIGHUP, SIGUSR1})
     ::signal(signal, SIG_DFL);
   const bool is_ready =
@@ -51,7 +51,7 @@ constexpr off_t kMostBytes = off_t{256} << 20;
   ::_exit(127);
 }
 
-// Everything in a file in memory.
+// Returns the content of a file in memory.
 std::string TextOf(int file) {
   std::string text(static_cast<size_t>(std::max<off_t>(0, ::lseek(file, 0, SEEK_END))), '\0');
   const ssize_t count = ::pread(file, text.data(), text.size(), 0);
@@ -59,7 +59,7 @@ std::string TextOf(int file) {
   return text;
 }
 
-// A descriptor that is closed in the end.
+// Closes its descriptor at the end.
 class OwnedFile {
  public:
   explicit OwnedFile(int fd) : fd_(fd) {}

@@ -1,4 +1,4 @@
-// Programs that we run: lfrenderer, for as long as it takes, and those of a batch system, for an
+// Runs other programs: lfrenderer, for as long as it takes, and those of a batch system, for an
 // answer.
 #pragma once
 
@@ -16,26 +16,26 @@ namespace lf {
 
 struct CommandEnd {
   int exit_code = 0;
-  int signal = 0;  // that it died of; 0: it ended by itself
+  int signal = 0;  // the signal that killed it; 0: it exited by itself
 };
 
-// Has a process group of its own, so that a Ctrl-C meant for us does not reach it, and gets SIGTERM
-// when we die, whatever of.
+// A running program. It has a process group of its own, so that a Ctrl-C for us does not reach it,
+// and gets SIGTERM if we die for any reason.
 class Command {
  public:
   struct Options {
-    std::vector<std::string> words;        // the program, looked up in PATH, and its arguments
+    std::vector<std::string> words;        // the program, searched in PATH, and its arguments
     std::filesystem::path working_folder;  // empty: ours
-    int output = -1;                       // descriptors; -1: /dev/null
+    int output = -1;                       // file descriptor; -1: /dev/null
     int complaints = -1;
-    int kept = -1;  // a descriptor that it keeps open, as long as it lives
+    int kept = -1;  // a descriptor that stays open in the program as long as it lives
   };
-  // kOutput if it cannot be run. The thread that starts it must outlive it.
+  // kOutput if the program cannot be run. The thread that starts the program must outlive it.
   static Result<std::unique_ptr<Command>> Start(const Options& options);
-  ~Command();  // kills it if it still runs
+  ~Command();  // kills the program if it still runs
 
   pid_t process() const { return pid_; }
-  // None while it runs.
+  // Returns nullopt while the program runs.
   std::optional<CommandEnd> Poll();
   void Signal(int signal);
 
@@ -51,8 +51,8 @@ struct CommandAnswer {
   std::string complaints;
 };
 
-// Waits for it. kOutput: it cannot be run, died of a signal, takes longer than patience_s, or
-// prints more than 256 MiB.
+// Runs a program and waits for its end. kOutput: it cannot be run, dies of a signal, takes longer
+// than patience_s, or prints more than 256 MiB.
 Result<CommandAnswer> RunCommand(const std::vector<std::string>& words, double patience_s);
 
 }  // namespace lf

@@ -50,7 +50,7 @@ bool IsFinished(const ClusterJob& job, FrameId frame) {
       job.output_folder / fmt::format("frame_{:04}{}", frame.value, job.frame_extension), ignored);
 }
 
-// Returns whether the package's checkpoint has rays of the frame: its plate, or rebinned rays,
+// Returns true if the package's checkpoint has rays of the frame: its plate, or rebinned rays,
 // which all frames share.
 bool HasRays(const ClusterJob& job, const JobPackage& package, FrameId frame) {
   const fs::path checkpoint = job.output_folder / "partial" / package.name;

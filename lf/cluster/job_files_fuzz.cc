@@ -1,5 +1,5 @@
-// What a job's folder and a batch system may say: any text is understood or refused, and what was
-// understood is the same when written and read again.
+// Any text in a job's folder or from a batch system is parsed or refused; parsed values do not
+// change when they are written and read again.
 #include <cstddef>
 #include <cstdint>
 #include <string>

@@ -16,7 +16,8 @@ namespace {
 
 constexpr double kLongQuiet_s = 10;
 
-// Names in a folder, looked at once: a million questions to a file server are slow.
+// Returns the names in a folder with one listing, because a million single queries to a file server
+// are slow.
 std::set<std::string> NamesIn(const fs::path& folder) {
   std::set<std::string> names;
   std::error_code error;
@@ -25,7 +26,7 @@ std::set<std::string> NamesIn(const fs::path& folder) {
   return names;
 }
 
-// What its files say.
+// Returns the status that the files of a task state.
 TaskStatus LookAtTask(const ClusterTask& task) {
   TaskStatus status;
   status.name = task.name;
@@ -43,7 +44,7 @@ TaskStatus LookAtTask(const ClusterTask& task) {
   status.image_done = progress.image_done;
   status.image_total = progress.image_total;
   if (state->phase != TaskPhase::kRunning) return status;
-  // It says how far it is every second; batch systems notice the death of a node later than that.
+  // lfrenderer reports progress every second; a batch system notices a dead node later than this.
   if (progress.quiet_s > kLongQuiet_s) {
     status.message = fmt::format("nothing heard of it for {:.0f} s", progress.quiet_s);
     return status;
@@ -59,7 +60,7 @@ void TakeFacts(const ClusterJob& job, const JobPackage& package, const std::set<
                TaskStatus* status) {
   status->frame_total = package.frames.size();
   status->ray_total = package.ray_count;
-  if (status->state.start_count == 0) return;  // frames there are another render's
+  if (status->state.start_count == 0) return;  // existing frames belong to another render
   for (const FrameId frame : package.frames)
     if (names.contains(fmt::format("frame_{:04}{}", frame.value, job.frame_extension)))
       ++status->frames_done;
@@ -74,7 +75,7 @@ void TakeQueue(const std::vector<QueuedTask>& queue, JobStatus* status) {
     task.queue = queued.state;
     if (queued.state == "PENDING") {
       task.message = queued.reason;
-      // A task that was requeued has not run again yet.
+      // A requeued task has not started again yet.
       if (task.state.phase == TaskPhase::kRunning) task.state.phase = TaskPhase::kInterrupted;
     }
   }

@@ -1,5 +1,5 @@
-// How far a job is, read from its files (and the queue of a batch system): nothing is asked of the
-// programs at work.
+// The progress of a job, read from its files and the queue of a batch system; running programs are
+// not asked.
 #pragma once
 
 #include <optional>
@@ -13,17 +13,17 @@ namespace lf {
 
 struct TaskStatus {
   std::string name;
-  TaskState state;      // phase kInterrupted where it is said to run and nobody does
-  std::string queue;    // of a batch system: "PENDING", ...; empty: not queued
-  std::string message;  // the last that is known
+  TaskState state;      // phase kInterrupted if the file says kRunning but no process runs
+  std::string queue;    // state in a batch system: "PENDING", ...; empty: not queued
+  std::string message;  // the latest known message
   size_t frames_done = 0;
   size_t frame_total = 0;
-  std::optional<uint64_t> rays_left;  // as lfrenderer said last
-  uint64_t rays_done = 0;             // of the forecast
+  std::optional<uint64_t> rays_left;  // as lfrenderer reported last
+  uint64_t rays_done = 0;             // out of ray_total, the forecast
   uint64_t ray_total = 0;
-  uint64_t image_done = 0;  // LF images of this start
+  uint64_t image_done = 0;  // LF images since the last start
   uint64_t image_total = 0;
-  double rate = 0;  // `unit` a second, while it runs
+  double rate = 0;  // `unit` per second, while the task runs
   std::string unit;
   std::optional<double> seconds_left;
 
@@ -34,28 +34,29 @@ struct TaskStatus {
   }
 };
 
-// Of the whole: kWaiting, kRunning while anything does or is queued, kDone with the finishing task;
-// kFailed if nothing goes on and something failed, else kInterrupted.
+// The phase of the whole job is kDone if all packages, all frames and the finishing task are done.
+// Otherwise it is kRunning while the engine or a task runs, or a task is queued after a start;
+// kFailed if a task failed; kInterrupted if a task was started; else kWaiting.
 struct JobStatus {
   TaskPhase phase = TaskPhase::kWaiting;
   bool is_cancelled = false;
   std::vector<TaskStatus> packages;
   TaskStatus finishing;
-  std::string queue_error;  // why a batch system could not be asked
+  std::string queue_error;  // why the batch system could not be asked
 
-  size_t Count(TaskPhase phase) const;  // packages
+  size_t Count(TaskPhase phase) const;  // number of packages
   size_t frames_done() const;
   size_t frame_total() const;
   uint64_t rays_done() const;
   uint64_t ray_total() const;
-  // From the rates of those that run; none while none has one.
+  // Estimated from the rates of running tasks; nullopt if none has a rate.
   std::optional<double> seconds_left() const;
 };
 
-// Damaged states are told as messages of their tasks.
+// Reads the status. A damaged state becomes the message of its task.
 JobStatus LookAtJob(const ClusterJob& job);
 
-// For programs.
+// Returns the status for other programs.
 std::string ToJson(const ClusterJob& job, const JobStatus& status);
 
 }  // namespace lf

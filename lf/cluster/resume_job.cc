@@ -40,7 +40,7 @@ void RemoveFrames(const ClusterJob& job, const JobPackage& package) {
   fs::remove_all(job.output_folder / "partial" / package.name, ignored);
 }
 
-// Seconds, in steps, so that a signal is heard.
+// Sleeps in short steps, so that a signal is noticed.
 void SleepOr(const std::atomic<bool>& stop, double seconds) {
   for (int i = 0; i < 10 * seconds && !stop; ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
@@ -100,15 +100,16 @@ Result<std::vector<size_t>> PrepareResume(const ClusterJob& job) {
         task.state.phase == TaskPhase::kDone && task.frames_done == task.frame_total;
     if (is_done || task.IsQueued()) continue;
     numbers.push_back(i);
-    // One that still runs is ending, for nobody drives it any more: it is waited for.
+    // A package that still runs is about to end, because its engine is gone; its lock is waited
+    // for.
     if (task.state.start_count == 0 || task.state.phase == TaskPhase::kRunning) continue;
     TaskState state = task.state;
     state.phase = TaskPhase::kInterrupted;
     state.crash_count = 0;
     LF_RETURN_IF_ERROR(WriteTaskState(state, PackageTask(job, i).state));
   }
-  // The film was finished before, and something of it is missing: until it is finished again, it
-  // must not be called done.
+  // The film was finished before, but something of it is missing. It must not be called done until
+  // it is finished again.
   if (status.finishing.state.phase == TaskPhase::kDone && !status.finishing.IsQueued()) {
     std::error_code error;
     fs::remove(FinishingTask(job).state, error);
@@ -132,7 +133,7 @@ Result<void> CancelJob(const ClusterJob& job, const std::atomic<bool>& stop) {
   JobStatus status = LookAtJob(job);
   for (double waited_s = 0; IsAtWork(status) && waited_s < kPatience_s && !stop; waited_s += 1) {
     SleepOr(stop, 1);
-    // What was requeued in the meantime.
+    // Cancels tasks that were requeued in the meantime.
     if (job.engine == ClusterEngine::kSlurm) LF_RETURN_IF_ERROR(CancelInSlurm(job));
     status = LookAtJob(job);
   }

@@ -1,4 +1,4 @@
-// A job in a folder, from outside: begun, waited for, ended, gone on with.
+// Starts, resumes, cancels and waits for a job in a folder, from outside.
 #pragma once
 
 #include <atomic>
@@ -11,23 +11,25 @@
 
 namespace lf {
 
-// Locks the job's folder, which is made if it is missing: held by whoever submits, resumes or
-// renders here. kOutput: another program has it, and the message names its process; the disk.
+// Locks the job's folder, which is created if it is missing. Held by the program that submits,
+// resumes or locally renders the job. kOutput: the disk; another program holds the lock, and the
+// message names its process.
 Result<FileLock> TakeJob(const ClusterJob& job);
 
-// Makes sure that the folder has no other job. With `overwrite` removes it, the states and the
-// frames of these packages. To be called under TakeJob(). kUsage: there is one, or one at work.
+// Makes sure that the folder holds no other job. With `overwrite`, removes the old job, and the
+// states and frames of these packages. To be called under TakeJob(). kUsage: there is a job, or one
+// that is running.
 Result<void> MakeRoomForJob(const ClusterJob& job, bool overwrite);
 
-// To be called under TakeJob(). Takes back what ended the job, and lists the packages to be begun:
-// those that are neither done nor queued. Crashes before count no more. kOutput.
+// Removes the request to cancel the job, and returns the packages to start: those that are neither
+// done nor queued. Their count of crashes is reset. To be called under TakeJob(). kOutput.
 Result<std::vector<size_t>> PrepareResume(const ClusterJob& job);
 
-// Asks all packages to write their states and to end, and waits for them, or for `stop`.
+// Asks all packages to write a checkpoint and end, and waits for them or for `stop`.
 Result<void> CancelJob(const ClusterJob& job, const std::atomic<bool>& stop);
 
-// Until nothing of the job is at work or queued, or `stop`, which ends the waiting alone. The error
-// is that of the finishing task.
+// Waits until no task of the job runs or is queued, or until `stop`, which leaves the job running.
+// Returns the error of the finishing task.
 //   look  called every few seconds
 Result<void> WaitForJob(const ClusterJob& job, const std::atomic<bool>& stop,
                         const std::function<void()>& look);

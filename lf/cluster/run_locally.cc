@@ -37,7 +37,7 @@ Result<void> RunLocally(const ClusterJob& job, const FileLock& /*lock*/,
       const std::string name = PackageTask(job, numbers[i]).name;
       const Result<TaskState> state = RunPackage(job, numbers[i], node, stop);
       const Result<void> outcome = state ? OutcomeOf(name, *state) : state.error();
-      // Interruptions are no news.
+      // Interruptions need no warning.
       if (!outcome && outcome.error().kind != ErrorKind::kInterrupted)
         LogWarning("{}{}", state ? "" : name + ": ", outcome.error().message);
       const std::lock_guard lock(error_mutex);

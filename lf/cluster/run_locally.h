@@ -1,4 +1,4 @@
-// Processes of this machine as the engine of a job.
+// Runs a job by processes of this machine.
 #pragma once
 
 #include <atomic>
@@ -11,17 +11,17 @@
 
 namespace lf {
 
-// Renders these packages, job.at_once at the same time, and finishes the film; returns when all is
-// done. A package that fails does not keep the others from being rendered.
+// Renders these packages, job.at_once at the same time, then finishes the film. Returns when all is
+// done. A failed package does not stop the others.
 //   lock  of TakeJob()
 //   look  called twice a second
-// kInterrupted: `stop` or --cancel. kOutput: the state of a package could not be written, or
-// another process has it. Else as FinishFilm().
+// kInterrupted: `stop` or --cancel. Otherwise the first error of RunPackage(), such as a state that
+// cannot be read or written, or the result of FinishFilm().
 Result<void> RunLocally(const ClusterJob& job, const FileLock& lock,
                         const std::vector<size_t>& numbers, const std::atomic<bool>& stop,
                         const std::function<void()>& look);
 
-// The name of this machine; of a batch system's node, where it has one.
+// Returns the name of this machine, or the node name that a batch system gave it.
 std::string NodeName();
 
 }  // namespace lf

@@ -28,36 +28,37 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr auto kTick = std::chrono::milliseconds(50);
-constexpr int kTicksPerLook = 20;  // at files: that others wrote, perhaps over a network
+constexpr int kTicksPerLook = 20;  // how often files are polled: others write them, perhaps over a
+                                   // network
 
 double SecondsSince1970() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-// A command as a shell takes it.
+// Returns a command in the syntax of a shell.
 std::string ShellLine(const std::vector<std::string>& words) {
   std::string line;
   for (const std::string& word : words) line += (line.empty() ? "" : " ") + ShellWord(word);
   return line;
 }
 
-// One task at work: its lock, log and state.
+// A running task: its lock, log and state.
 class TaskRun {
  public:
   TaskRun(const ClusterJob& job, ClusterTask task, std::string node, const std::atomic<bool>& stop)
       : job_(job), task_(std::move(task)), node_(std::move(node)), stop_(stop) {}
 
-  // Reads the state when the lock is held.
+  // Takes the lock, then reads the state.
   Result<void> Begin();
   TaskState& state() { return state_; }
   bool IsAskedToEnd() const { return stop_ || job_.IsCancelled(); }
   Result<void> End(TaskPhase phase, int exit_code, const std::string& message);
 
-  // Runs lfrenderer once. What it prints goes to the file `output`, unless that is empty.
-  // `wants_restart` is asked about once a second; then it is ended, too.
+  // Runs lfrenderer once. Its standard output goes to the file `output`, if that is not empty.
+  // `wants_restart` is called about once a second; if it returns true, lfrenderer is ended.
   Result<CommandEnd> Run(const std::vector<std::string>& words, const fs::path& output,
                          const std::function<bool()>& wants_restart);
-  // What lfrenderer ended with.
+  // Returns the last message of lfrenderer.
   std::string LastMessage() const;
 
  private:
@@ -69,7 +70,8 @@ class TaskRun {
   TaskState state_;
 };
 
-// Whoever had it may have died a moment ago, and its lfrenderer be writing a last checkpoint.
+// Waits for the lock: its last holder may have just died, while its lfrenderer still writes a
+// checkpoint.
 Result<void> TaskRun::Begin() {
   constexpr double kPatience_s = 120;
   const double begin_s = SecondsSince1970();
@@ -78,7 +80,7 @@ Result<void> TaskRun::Begin() {
     if (lock) {
       lock_ = *std::move(lock);
     } else if (!FileLock::IsHeld(task_.lock)) {
-      // Let go of in the meantime, or it cannot be made at all.
+      // It was released in the meantime, or cannot be created at all.
       lock = FileLock::Take(task_.lock);
       if (!lock && !FileLock::IsHeld(task_.lock)) return lock.error();
       if (lock) lock_ = *std::move(lock);
@@ -138,7 +140,7 @@ Result<CommandEnd> TaskRun::Run(const std::vector<std::string>& words, const fs:
   state_.process = (*command)->process();
   state_.begin_s = SecondsSince1970();
   state_.message.clear();
-  // What is at work goes on, whatever is known of it.
+  // A running lfrenderer is more important than its state file.
   if (const auto written = WriteTaskState(state_, task_.state); !written)
     LogWarning("{}", written.error().message);
   bool is_told = false;
@@ -193,7 +195,8 @@ std::vector<FrameId> MissingFrames(const ClusterJob& job, const JobPackage& pack
   return missing;
 }
 
-// What is not done, by name; the first that failed decides about the kind.
+// kInterrupted with the names of all packages that are not done, or the kind of the first that
+// failed.
 Result<void> CheckAllDone(const ClusterJob& job) {
   std::string words;
   ErrorKind kind = ErrorKind::kInterrupted;
@@ -239,9 +242,9 @@ Result<TaskState> RunPackage(const ClusterJob& job, size_t number, const std::st
   TaskState& state = run.state();
   if (state.phase == TaskPhase::kDone) {
     if (MissingFrames(job, package).empty()) return state;
-    state.phase = TaskPhase::kInterrupted;  // somebody wants them again
+    state.phase = TaskPhase::kInterrupted;  // its frames were removed to be rendered again
   }
-  // Nobody runs it, for we have the lock.
+  // No other process runs it, because we hold the lock.
   if (state.phase == TaskPhase::kRunning) {
     ++state.crash_count;
     LF_RETURN_IF_ERROR(run.End(TaskPhase::kInterrupted, 0, "its node died"));
@@ -313,15 +316,14 @@ Result<void> FinishFilm(const ClusterJob& job, const std::string& node,
   if (!is_whole) words.insert(words.end(), {"--frames", FrameRangeText(frames)});
   if (job.video) words.insert(words.end(), {"--video", job.video->string()});
   if (!job.contact_sheet) words.emplace_back("--no-contact-sheet");
-  // Removes the report of an earlier finishing task, which would pass for that of this one if it
-  // fails.
+  // If this finishing task fails, the report of an earlier one must not pass for its own.
   const fs::path report = job.Folder() / "report.json";
   std::error_code ignored;
   fs::remove(report, ignored);
   TemporaryFile printed(report);
   const Result<CommandEnd> end = run.Run(words, printed.path(), [] { return false; });
   if (!end) return fail(end.error());
-  // A signal that we passed on before lfrenderer could catch it.
+  // The signal that we passed on arrived before lfrenderer could catch it.
   if (end->signal == SIGTERM && run.IsAskedToEnd())
     return fail({ErrorKind::kInterrupted, "interrupted"});
   if (end->signal != 0) return fail(OutputError("the finishing task was " + WordsOf(*end)));

@@ -1,5 +1,5 @@
-// What a node does: one package of a job, from the checkpoint that is there to its last frame; and,
-// when all are done, what makes a film of them.
+// The tasks of a job: renders a package from its checkpoint to its last frame; when all packages
+// are done, makes a film of them.
 #pragma once
 
 #include <atomic>
@@ -11,25 +11,27 @@
 
 namespace lf {
 
-// Renders the package by lfrenderer, which is begun again when it dies; both hold the task's lock.
-// Its words are added to the task's log, and its state is written wherever it changes.
+// Renders the package with lfrenderer, which is restarted if it crashes; both processes hold the
+// task's lock. The output is appended to the task's log; every change is written to its state.
 //
 //   node  the name of this machine, for people
-//   stop  asks for the end: lfrenderer writes its state
+//   stop  asks for the end: lfrenderer writes a checkpoint
 //
-// The state says how it ended: kDone; kInterrupted by `stop` or the job's cancellation; kFailed
-// (any other exit code, or more crashes than the job allows). A package that is done is left alone.
-// kOutput: another process has the package and does not let go of it; the state cannot be written.
+// The phase of the result is kDone; kInterrupted by `stop` or the job's cancellation; or kFailed
+// (any other exit code, or more crashes than the job allows). A package that is done, with all its
+// frames, is not rendered again.
+// kOutput: another process holds the package for two minutes; the state cannot be written. kInput:
+// the state is damaged.
 Result<TaskState> RunPackage(const ClusterJob& job, size_t number, const std::string& node,
                              const std::atomic<bool>& stop);
 
-// The error that a task's end means for whoever runs it. kBelowRequired if it is done, but
-// lfrenderer ended so; none if it is done otherwise.
+// Converts the end of a task to an error for the caller. kBelowRequired if it is done but
+// lfrenderer ended with that error; no error if it is done otherwise.
 Result<void> OutcomeOf(const std::string& name, const TaskState& state);
 
-// Makes sure that every frame is there, then writes contact sheet and video by lfrenderer. The
-// error names all packages that are not done, has the kind of the first that failed, and is
-// kInterrupted if none did. kBelowRequired as lfrenderer's.
+// Checks that every frame exists, then writes contact sheet and video with lfrenderer. The error
+// names all packages that are not done, and has the kind of the first failed one, or kInterrupted
+// if none failed. kBelowRequired if lfrenderer ends with it.
 Result<void> FinishFilm(const ClusterJob& job, const std::string& node,
                         const std::atomic<bool>& stop);
 

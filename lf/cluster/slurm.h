@@ -1,5 +1,6 @@
-// Slurm as the engine of a job: one array of tasks over the packages, and a finishing task after
-// it. Asked by sbatch, squeue and scancel alone: sacct needs a database that many clusters lack.
+// Slurm as the engine of a job: an array of tasks over the packages, followed by a finishing task.
+// It is controlled by sbatch, squeue and scancel only: sacct needs a database that many clusters
+// lack.
 #pragma once
 
 #include <string>
@@ -11,7 +12,7 @@
 
 namespace lf {
 
-// What squeue says of a task of ours.
+// A task of ours in the answer of squeue.
 struct QueuedTask {
   bool is_finishing = false;
   size_t number = 0;   // of the package
@@ -20,29 +21,30 @@ struct QueuedTask {
   std::string reason;  // why it waits
 };
 
-// The batch scripts, DIR/cluster/packages.sbatch and finish.sbatch: to be read, edited, and given
-// to sbatch by hand.
+// The batch scripts, DIR/cluster/packages.sbatch and finish.sbatch. People may read and edit them
+// and give them to sbatch by hand.
 std::string PackagesScript(const ClusterJob& job);
 std::string FinishingScript(const ClusterJob& job);
 
-// "0-3,7", as sbatch --array takes it; ascending numbers.
+// Returns "0-3,7", the syntax of sbatch --array, for ascending numbers.
 std::string ArrayText(const std::vector<size_t>& numbers);
 
-// Writes the scripts and submits these packages, and after them (afterany: afterok would wait for
-// ever for a task that was requeued) the finishing task in place of the one that waits. The job
-// gets the ids and is written. kOutput: sbatch refuses; then nothing of it is queued, and a job
-// that never was is no more.
+// Writes the scripts and submits these packages, then the finishing task, which replaces a waiting
+// one. It depends on the packages with afterany, because afterok would wait for ever after a
+// requeue. Stores the ids in the job and writes it. kUsage: a path with control characters.
+// kOutput: sbatch refuses; then waiting tasks are cancelled, and a job that never had a task is
+// removed.
 Result<void> SubmitToSlurm(ClusterJob* job, const std::vector<size_t>& numbers);
 
-// Tasks of the job that Slurm still knows; those that are done are not among them. kOutput: squeue
-// cannot be asked.
+// Returns the tasks of the job that Slurm still knows, without those that are done. kOutput: squeue
+// fails.
 Result<std::vector<QueuedTask>> AskSlurm(const ClusterJob& job);
-// Lines "ARRAY_ID|INDEX|STATE|NODE|REASON" of squeue; others are left out.
+// Parses lines "ARRAY_ID|INDEX|STATE|NODE|REASON" of squeue and skips others.
 std::vector<QueuedTask> ParseQueue(std::string_view text, const ClusterJob& job);
 
-// Removes what waits; what runs sees the job's cancel file, writes its state and ends.
+// Cancels waiting tasks. Running ones see the job's cancel file, write a checkpoint and end.
 Result<void> CancelInSlurm(const ClusterJob& job);
-// Lets requeued tasks begin at once: Slurm would make them wait two minutes.
+// Lets requeued tasks start at once; Slurm would make them wait for two minutes.
 Result<void> ReleaseInSlurm(const ClusterJob& job);
 
 }  // namespace lf

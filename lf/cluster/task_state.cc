@@ -18,7 +18,7 @@ constexpr const char* kFormat = "lftask 1";
 constexpr std::array kPhases = {TaskPhase::kWaiting, TaskPhase::kRunning, TaskPhase::kInterrupted,
                                 TaskPhase::kDone, TaskPhase::kFailed};
 
-// [done, total] of "counts".
+// Reads an entry [done, total] of "counts".
 void GetCount(const Json& line, const char* name, uint64_t* done, uint64_t* total) {
   const auto counts = line.find("counts");
   if (counts == line.end() || !counts->is_object()) return;
@@ -46,7 +46,7 @@ void TakeProgress(std::string_view line, TaskProgress* progress) {
   *progress = std::move(now);
 }
 
-// The end of a log, in whole lines.
+// Returns the end of a log in whole lines.
 std::string LastOf(const fs::path& log) {
   constexpr std::streamoff kMostBytes = 16384;
   std::ifstream file(log, std::ios::binary);
@@ -129,7 +129,7 @@ TaskProgress ParseProgress(std::string_view log) {
     const std::string_view line = log.substr(0, log.find('\n'));
     log.remove_prefix(std::min(log.size(), line.size() + 1));
     if (line.starts_with(kLogStart)) {
-      // How far it was when it ended is how far it begins.
+      // A start continues with the progress at which the previous one ended.
       progress.rate = progress.seconds_left = 0;
       progress.image_done = progress.image_total = 0;
       progress.message.clear();
