@@ -1,4 +1,4 @@
-// What every frame of a film takes, found in the background while a person looks at the first.
+// Finds in the background what each frame of a film needs, while a person looks at the first.
 #pragma once
 
 #include <atomic>
@@ -19,22 +19,23 @@ namespace lf {
 class FilmUse {
  public:
   struct Facts {
-    size_t frames_done = 0;                 // of those below; the others are 0
-    std::vector<uint32_t> image_counts;     // of each frame, LF images
-    std::vector<uint64_t> ray_counts;       // of each frame, pixels of their rectangles
-    std::vector<uint16_t> frames_of_image;  // of each LF image, frames that take it; 65535 and more
+    size_t frames_done = 0;                 // frames counted below; the others are 0
+    std::vector<uint32_t> image_counts;     // number of LF images per frame
+    std::vector<uint64_t> ray_counts;       // number of pixels in the rectangles per frame
+    std::vector<uint16_t> frames_of_image;  // number of frames that use each LF image, at most
+                                            // 65535
   };
 
-  // Begins at once, in a thread of its own. `on_progress` is called there: now and then, and in the
-  // end. index and pool must outlive it.
+  // Starts at once, in a thread of its own, which calls `on_progress` now and then and at the end.
+  // index and pool must outlive it.
   FilmUse(const ImageIndex& index, std::shared_ptr<const CameraPath> path,
           const NeedsOptions& options, ThreadPool& pool, std::function<void()> on_progress);
-  ~FilmUse();  // leaves off
+  ~FilmUse();  // stops early
   FilmUse(const FilmUse&) = delete;
   FilmUse& operator=(const FilmUse&) = delete;
 
   Facts Get() const;
-  // Until all frames are done.
+  // Waits until all frames are done.
   void Wait();
 
  private:

@@ -1,5 +1,5 @@
-// Which LF cameras a frame uses, and why it does not use the others: what selection decides
-// (thesis 4.2.1), for people to look at.
+// Explains which LF cameras a frame uses and why it does not use the others: the decisions of
+// selection (thesis 4.2.1), for people to look at.
 #pragma once
 
 #include <cstdint>
@@ -17,13 +17,13 @@
 
 namespace lf {
 
-// In the order in which they are asked: a camera has the first that holds.
+// In the order of the tests: a camera has the first one that holds.
 enum class CameraUse : uint8_t {
   kUsed,      // pixels of its LF image are rays of the frame
-  kOutside,   // it stands where no ray through lens and sensor plate passes (Fig. 4.4)
+  kOutside,   // no ray through lens and sensor plate passes its position (Fig. 4.4)
   kAngle,     // it looks along another direction than --max-angle allows
-  kSeesNone,  // it stands well, but no pixel of its LF image sees the lens and what is filmed
-              // (Fig. 4.5)
+  kSeesNone,  // its position is right, but no pixel of its LF image sees both the lens and the
+              // filmed scene (Fig. 4.5)
   kLimit,     // it comes after the first --max-images of the order
   kNoWeight,  // no point of the lens is nearest to it (doc/lens-integral.md)
 };
@@ -32,13 +32,14 @@ inline constexpr size_t kCameraUseCount = 6;
 std::string_view NameOf(CameraUse use);
 
 struct FrameUse {
-  std::vector<CameraUse> of_cameras;        // of each LF camera
-  std::vector<FrameNeeds::Image> used;      // by ascending places of the order
-  std::optional<double> camera_distance_w;  // about, around the lens; with lens weights
+  std::vector<CameraUse> of_cameras;        // one per LF camera
+  std::vector<FrameNeeds::Image> used;      // in the order in which they are read
+  std::optional<double> camera_distance_w;  // approximate camera distance around the lens; set if
+                                            // there are lens weights
 };
 
-// As a render of the frame with these options would decide. Asks every LF camera, one after the
-// other: some milliseconds for a hundred thousand.
+// Decides as a render of the frame with these options would. Tests every LF camera, which takes
+// some milliseconds for a hundred thousand.
 FrameUse UseOfCameras(const ImageIndex& index, const RenderCamera& frame,
                       const NeedsOptions& options, ThreadPool& pool);
 

@@ -1,4 +1,4 @@
-// LF images as pictures for people.
+// Shows LF images as pictures for people.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,11 @@
 
 namespace lf {
 
-// [height][width][3] sRGB, as frames are developed (white balance, colour matrix, gain); where the
-// image is larger than max_side_px, means of squares of its pixels. Masked pixels are grey.
-//   store  one with Mosaics::kToRgb
-// kInput: as of store.Load().
+// Returns [height][width][3] sRGB, developed like frames (white balance, colour matrix, gain). If
+// the image is larger than max_side_px, each pixel is the mean of a square of its pixels. Masked
+// pixels are grey.
+//   store  must have Mosaics::kToRgb
+// kInput: errors of store.Load().
 Result<Image<uint8_t>> LfPicture(const LightField& light_field, const LfImageStore& store,
                                  LfImageId id, int max_side_px);
 

@@ -5,7 +5,7 @@
 namespace lf {
 namespace {
 
-// v of red pixels everywhere; the upper left quarter is masked.
+// A store of red pixels with one v, whose upper left quarter is masked.
 class RedStore : public LfImageStore {
  public:
   explicit RedStore(const LightField& field) : field_(field) {}

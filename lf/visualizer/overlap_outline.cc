@@ -11,12 +11,12 @@
 namespace lf {
 namespace {
 
-constexpr int kBorderSteps = 32;  // where a bent border is asked, on each side
-constexpr int kEdgeSteps = 12;    // that an edge is bent in
+constexpr int kBorderSteps = 32;  // points per side at which a bent border is sampled
+constexpr int kEdgeSteps = 12;    // pieces into which an edge is bent
 
 using Polygon = std::vector<Vec2>;
 
-// The part with form <= 0 (Sutherland, Hodgman 1974).
+// Returns the part of the polygon with form <= 0 (Sutherland, Hodgman 1974).
 Polygon Clip(const Polygon& polygon, const PixelForm& form) {
   Polygon kept;
   for (size_t i = 0; i < polygon.size(); ++i) {
@@ -33,8 +33,8 @@ Polygon Box(const Vec2& low, const Vec2& high) {
   return {low, {high.x(), low.y()}, high, {low.x(), high.y()}};
 }
 
-// A box around the ideal positions of the image's border; none where it has rays that no pinhole
-// has.
+// Returns a box around the ideal positions of the image's border; nullopt if a border pixel has no
+// ray that a pinhole could have.
 std::optional<Polygon> IdealBox(const Intrinsics& k, const DistortionMap& map) {
   if (!k.has_distortion()) return Box({0, 0}, {k.width_px, k.height_px});
   Vec2 low = Vec2::Constant(INFINITY), high = Vec2::Constant(-INFINITY);
@@ -51,7 +51,7 @@ std::optional<Polygon> IdealBox(const Intrinsics& k, const DistortionMap& map) {
   return Box(low, high);
 }
 
-// As the camera records it.
+// Returns the polygon as the camera records it.
 Polygon Bent(const Polygon& ideal, const Intrinsics& k, const DistortionMap& map) {
   Polygon bent;
   const Mat3 inverse = k.InverseMatrix();

@@ -1,4 +1,4 @@
-// The part of an LF image that a frame may take rays from, to be drawn (thesis Fig. 4.5).
+// Outlines the part of an LF image from which a frame may take rays (thesis Fig. 4.5).
 #pragma once
 
 #include <vector>
@@ -9,10 +9,10 @@
 
 namespace lf {
 
-// Where the LF image shows the lens and what the plate sees on the focus plane at once: convex
-// polygons in continuous pixel coordinates, two at most (a tilted focus plane has two sides). Of
-// LF images with distortion the straight edges are bent as the lens bends them; empty where it sees
-// too wide for a polygon to bound it.
+// Returns the part of the LF image that shows both the lens and what the plate sees on the focus
+// plane: convex polygons in continuous pixel coordinates, at most two (a tilted focus plane has two
+// sides). With lens distortion, straight edges are bent as the lens bends them; the result is empty
+// if the lens sees too wide for a bounding polygon.
 std::vector<std::vector<Vec2>> OverlapOutlines(const PinholeCamera& lf_camera,
                                                const RenderCamera& render_camera);
 

@@ -1,5 +1,5 @@
-// What the page draws, as arrays of numbers (little endian) that a browser views without parsing
-// (doc/formats/page_data.md).
+// Encodes what the page draws as arrays of numbers (little endian), which a browser can view
+// without parsing (doc/formats/page_data.md).
 #pragma once
 
 #include <cstddef>
@@ -14,11 +14,11 @@
 
 namespace lf {
 
-// Near the LF cameras: the world's own origin may be so far away that floats cannot tell them
-// apart.
+// Returns the mean position of the LF cameras. The world's origin may be so far away that floats
+// relative to it could not tell the cameras apart.
 Vec3 SceneOrigin(const LightField& light_field);
 
-// float x, y, z of every LF camera from SceneOrigin(), world units: 12 bytes each.
+// float x, y, z of every LF camera relative to SceneOrigin(), in world units: 12 bytes each.
 std::string CamerasBytes(const LightField& light_field);
 
 // double numbers of every frame's camera: centre, right, up, forward (12); fx, fy, cx, cy; radius,
@@ -28,16 +28,16 @@ std::string CamerasBytes(const LightField& light_field);
 inline constexpr size_t kFrameNumbers = 31;
 std::string FramesBytes(const CameraPath& path);
 
-// uint32 LF cameras, used ones; float camera distance (NaN: none); uint32 0. Then of each that is
-// used, in the order they are taken: uint32 id; then float share of its pixels. Then a byte of each
-// LF camera: CameraUse.
+// uint32 number of LF cameras, number of used ones; float camera distance (NaN: none); uint32 0.
+// Then, for all used LF images in reading order: uint32 ids, followed by float shares of their
+// pixels. Then one byte per LF camera: its CameraUse.
 std::string FrameUseBytes(const LightField& light_field, const FrameUse& use);
 
-// uint16 of each LF camera: frames that take its image.
+// uint16 per LF camera: number of frames that use its image.
 std::string FilmUseBytes(const FilmUse::Facts& facts);
 
-// uint32 width and height, of the frame in full, and 1 if rays are known; uint32 0 three times;
-// then half floats R, G, B, rays of each element, row by row.
+// uint32 width and height, width and height of the full frame, 1 if ray counts are known, and 0
+// three times; then half floats R, G, B and ray count of each element, row by row.
 std::string PictureBytes(const GrowingPicture& picture);
 
 }  // namespace lf

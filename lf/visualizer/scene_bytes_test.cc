@@ -17,7 +17,7 @@ T At(const std::string& bytes, size_t offset) {
   return value;
 }
 
-// 5 mm apart, and a thousand kilometres from the world's origin.
+// The cameras are 5 mm apart, and a thousand kilometres from the world's origin.
 TEST(SceneBytes, CamerasAreWhereTheyAre) {
   LightField field = testing::GridField();
   for (LfCamera& camera : field.cameras) camera.cam_from_world.translation.x() -= 1e6;

@@ -1,4 +1,4 @@
-// Light field, path and selection as plain text, for scripts that plot them (thesis 4.5).
+// Writes light field, path and selection as plain text for plotting scripts (thesis 4.5).
 #pragma once
 
 #include <functional>
@@ -14,15 +14,14 @@
 
 namespace lf {
 
-// Lines of words, numbers in world units with as many digits as give the same bits again:
+// Writes lines of words. Numbers are in world units, with as many digits as restore the same bits:
 //
 //   lf_camera ID X Y Z                 every LF camera, ID from 0
-//   render_camera FRAME X Y Z          every frame asked for
-//   collected FRAME ID SHARE           LF cameras that the frame uses, by ascending ID, and what
-//   share
-//                                      of the pixels of the LF image lies in its rectangle
+//   render_camera FRAME X Y Z          every requested frame
+//   collected FRAME ID SHARE           LF cameras that the frame uses, by ascending ID, and the
+//                                      share of the LF image's pixels in its rectangle
 //
-//   emit  takes the text in parts; its first error ends it
+//   emit  receives the text in parts; its first error ends the function
 Result<void> WriteSceneText(const LightField& light_field, const CameraPath& path,
                             const std::vector<FrameId>& frames, uint64_t seed,
                             const NeedsOptions& options, ThreadPool& pool,

@@ -1,4 +1,4 @@
-// A grid of LF cameras, and a frame in the middle of it.
+// A grid of LF cameras and a frame in its middle, for tests.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace lf::testing {
 
-// 21 x 21 parallel LF cameras 5 mm apart, looking along z.
+// Returns 21 x 21 parallel LF cameras, 5 mm apart, that look along z.
 inline LightField GridField() {
   LightField field;
   field.intrinsics = {{70, 70, 32, 24, 0, 64, 48}};
@@ -23,7 +23,7 @@ inline LightField GridField() {
   return field;
 }
 
-// In the middle of the grid's plane.
+// Returns a render camera in the middle of the grid's plane.
 inline RenderCamera GridFrame(int blades = 0) {
   RenderCamera frame;
   frame.pinhole.intrinsics = {80, 80, 40, 30, 0, 80, 60};

@@ -21,10 +21,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostNested = 2;  // partial/package-0000/
+constexpr int kMostNested = 2;  // depth of partial/package-0000/
 constexpr size_t kMostDigits = 7;
 
-// Of frame_0001.exr and frame_0001.png.
+// Returns the number of the frame in frame_0001.exr or frame_0001.png.
 std::optional<FrameId> FrameOfName(const fs::path& path) {
   const std::string stem = path.stem().string(), extension = path.extension().string();
   constexpr std::string_view kPrefix = "frame_";
@@ -63,7 +63,7 @@ void Look(const fs::path& folder, int nested, std::map<uint32_t, WatchedFrame>* 
   }
 }
 
-// Linear light of a stored value.
+// Returns the linear light of a stored value.
 template <class T>
 float Linear(T value) {
   if constexpr (std::is_same_v<T, float>)
@@ -73,7 +73,8 @@ float Linear(T value) {
         LinearFromSrgb(static_cast<double>(value) / std::numeric_limits<T>::max()));
 }
 
-// Returns the part of an element's colours that is its light: integers are stored straight.
+// Returns the factor from an element's stored colours to its light: alpha for integer files, whose
+// alpha is straight; otherwise 1.
 template <class T>
 float Covers(const Image<T>& image, int x, int y, int alpha_channel) {
   if (alpha_channel < 0 || std::is_same_v<T, float>) return 1;

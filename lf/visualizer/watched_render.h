@@ -1,4 +1,4 @@
-// The frames of a render that is at work, or done: what lies in lfrenderer's DIR
+// Finds the frames of a render that is running or done, in the DIR of lfrenderer
 // (doc/checkpoints.md).
 #pragma once
 
@@ -14,28 +14,28 @@ namespace lf {
 
 struct WatchedFrame {
   FrameId frame;
-  std::filesystem::path picture;  // its newest
-  bool is_finished = false;       // or of a checkpoint
-  int64_t changed_ns = 0;         // when it was written, since 1970
+  std::filesystem::path picture;  // the newest picture of the frame
+  bool is_finished = false;       // false: the picture is of a checkpoint
+  int64_t changed_ns = 0;         // modification time since 1970
 
   friend bool operator==(const WatchedFrame&, const WatchedFrame&) = default;
 };
 
-// Finished frames and pictures of unfinished ones, of all packages, by ascending frames; the
-// finished one where there are both. A folder that is not there has none.
+// Returns finished frames and pictures of unfinished ones, of all packages, by ascending frames. If
+// a frame has both, the finished one is returned. A missing folder has no frames.
 std::vector<WatchedFrame> LookAtRender(const std::filesystem::path& folder);
 
 struct GrowingPicture {
-  int full_width_px = 0;  // of the frame
+  int full_width_px = 0;  // of the full frame
   int full_height_px = 0;
   bool has_rays = false;
-  // [height][width][4]: R, G, B, linear light, and how many rays an element has, the mean of its
-  // channels (-1 where the file does not tell). Means of squares where the frame is larger. Frames
-  // with alpha are shown over black.
+  // [height][width][4]: R, G, B in linear light, and the rays of an element, averaged over its
+  // channels (-1 if the file does not state them). If the frame is larger than max_side_px, these
+  // are means of squares. Frames with alpha are shown over black.
   Image<float> elements;
 };
 
-// kInput: as ReadImage(), or fewer than three channels.
+// kInput: errors of ReadImage(), or fewer than three channels.
 Result<GrowingPicture> ReadGrowingPicture(const std::filesystem::path& path, int max_side_px);
 
 }  // namespace lf
