@@ -10,7 +10,7 @@
 namespace lf {
 namespace {
 
-// For people: five digits, and no rounding error posing as a number.
+// Returns a number for people: five digits, without rounding errors that look like numbers.
 std::string Brief(double value) {
   constexpr double kNothing = 1e-12;
   return fmt::format("{:.5g}", std::abs(value) < kNothing ? 0.0 : value);
@@ -18,9 +18,9 @@ std::string Brief(double value) {
 
 std::string Exact(double value) { return fmt::format("{}", value == 0 ? 0.0 : value); }
 
-// A fact of all frames: its texts, [frame][part].
+// A column of the table: the texts [frame][part] of one fact.
 struct TableColumn {
-  CameraFact fact;  // of the first frame
+  CameraFact fact;  // in the first frame
   std::vector<std::vector<std::string>> texts;
 
   bool IsConstant() const {

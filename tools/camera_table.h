@@ -1,4 +1,4 @@
-// The cameras of a path as text: for lfcammvminfo.
+// Shows the cameras of a path as text, for lfcammvminfo.
 #pragma once
 
 #include <string>
@@ -9,18 +9,19 @@
 
 namespace lf {
 
-// What is the same in all frames, a line per fact; below it a table of what changes, a line per
-// frame, columns aligned under two header lines: names and parts. Five digits.
+// Returns one line for each fact that is the same in all frames, then a table of the others: one
+// line per frame, with aligned columns below two header lines for names and parts. Numbers have
+// five digits.
 std::string CameraTable(const CameraPath& path, const std::vector<FrameId>& frames);
 
-// One frame, a line per fact.
+// Returns one frame, with one line per fact.
 std::string CameraBlock(const CameraPath& path, FrameId frame);
 
-// One line per frame under a header line, all digits; "inf" is infinite.
+// Returns one line per frame below a header line, with all digits; infinity is "inf".
 std::string CameraCsv(const CameraPath& path, const std::vector<FrameId>& frames);
 
-// {"fps", "frames", "resolution", "unit_m", "cameras": [{"frame": 1, ...}, ...]}, all digits;
-// infinite numbers are null.
+// Returns {"fps", "frames", "resolution", "unit_m", "cameras": [{"frame": 1, ...}, ...]} with all
+// digits; infinity is null.
 std::string CameraJson(const CameraPath& path, const std::vector<FrameId>& frames);
 
 }  // namespace lf

@@ -1,4 +1,4 @@
-// What lfcompressor tells.
+// The report of lfcompressor.
 #pragma once
 
 #include <string>
@@ -9,14 +9,14 @@
 
 namespace lf {
 
-// Beside the bar: "12.4 : 1".
+// Returns the text beside the progress bar: "12.4 : 1".
 std::string ProgressDetail(const CompressProgress& now);
 
-// Ratio, quality, speed; skipped LF images; what to do next.
+// Returns ratio, quality and speed, skipped LF images, and the next step.
 std::string CompressText(const CompressReport& report, const CompressOptions& options);
 std::string CompressJson(const CompressReport& report, const CompressOptions& options);
 
-// The LF images that have no code in the store, of those to be coded.
+// Returns the LF images to be encoded that are missing in the store.
 MissingImages MissingOf(const CompressReport& report, const CompressOptions& options);
 
 }  // namespace lf

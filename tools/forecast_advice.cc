@@ -12,8 +12,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kMostOfLimit = 0.98;
 
-// The change of 1 / depth that moves copies kMostOfLimit * kDoubleEdge_px apart; infinite where one
-// LF camera is alone.
+// Returns the change of 1 / depth that moves copies kMostOfLimit * kDoubleEdge_px apart; infinite
+// for a single LF camera.
 double StepPerW(const RenderCamera& camera, const FrameDensity& density) {
   const double elements = camera.pinhole.intrinsics.fx_px * density.camera_distance_w;
   return elements > 0 ? kMostOfLimit * kDoubleEdge_px / elements : kInfinity;
@@ -33,7 +33,7 @@ std::optional<DepthRange> FreeFocus(const PreprocessReport& report, const Camera
   return focus.near_w > 0 && focus.near_w < focus.far_w ? std::optional(focus) : std::nullopt;
 }
 
-// Rounds to three digits, up or down, but for less than a fiftieth of the last one.
+// Rounds up or down to three digits, with a tolerance of a fiftieth of the last digit.
 double Rounded(double value, bool up) {
   if (!(value > 0) || std::isinf(value)) return value;
   const double unit = std::pow(10, std::floor(std::log10(value)) - 2);

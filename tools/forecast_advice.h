@@ -1,4 +1,4 @@
-// Figures for a path that take the warnings of a forecast away.
+// Computes changes of a path that remove the warnings of a forecast.
 #pragma once
 
 #include <optional>
@@ -9,30 +9,31 @@
 
 namespace lf {
 
-// Elements that an eye takes for one edge.
+// Distance of two copies of an edge, in elements, that still look like one edge.
 inline constexpr double kDoubleEdge_px = 2;
 
-// Lengths are world units. Each figure keeps 2 % away from the limit, so that it may be rounded.
+// Lengths are in world units. All figures keep 2 % away from the limit, so that they may be
+// rounded.
 struct ForecastAdvice {
-  // Focus distances with which no frame shows the scene with double edges; far_w may be infinite.
-  // None if no focus does that for all frames, or if the depths of the scene are not known.
+  // Focus distances for which no frame shows the scene with double edges; far_w may be infinite.
+  // nullopt if there are none, or if the depths of the scene are unknown.
   std::optional<DepthRange> focus;
-  // Depths without double edges in the frame that has most of them, along its axis, and the largest
-  // size without them. far_w may be infinite.
+  // For the frame with the most double edges: the depths along its axis without double edges, and
+  // the largest frame size without them. far_w may be infinite.
   DepthRange depths;
   int width_px = 0, height_px = 0;
-  // Diameter of the largest lens that is within the capture in every frame; 0 if none is.
+  // Diameter of the largest lens that is within the capture in every frame; 0 if there is none.
   double largest_aperture_w = 0;
 };
 
 ForecastAdvice AdviceOf(const PreprocessReport& report, const CameraPath& path,
                         bool are_depths_known);
 
-// "31.2 mm", "2.05 m", "1.2 km"
+// Returns "31.2 mm", "2.05 m", "1.2 km".
 std::string LengthText(double length_w, double unit_m);
-// "between 1.2 m and 3 m", "from 1.2 m on", rounded inwards
+// Returns "between 1.2 m and 3 m" or "from 1.2 m on", rounded inwards.
 std::string RangeText(const DepthRange& range, double unit_m);
-// "30 mm", rounded down
+// Returns "30 mm", rounded down.
 std::string AtMostText(double length_w, double unit_m);
 
 }  // namespace lf

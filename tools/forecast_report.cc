@@ -42,7 +42,7 @@ const FrameForecast& Worst(const PreprocessReport& report, const Badness& badnes
       [&](const FrameForecast& a, const FrameForecast& b) { return badness(a) < badness(b); });
 }
 
-// Spread over the film.
+// Returns a few frames, spread over the film.
 std::vector<size_t> ShownFrames(size_t frame_count) {
   constexpr size_t kMost = 12;
   std::vector<size_t> shown;
@@ -95,7 +95,7 @@ void AddDensity(const PreprocessReport& report, const CameraPath& path, std::str
 
 namespace {
 
-// What is known of the depths of the scene, and how to give them.
+// Returns where the depths of the scene come from, or how to state them.
 std::string DepthsText(const ForecastFacts& facts) {
   if (facts.depths_from == "LF images") return " (depths as LF images tell them)";
   if (!facts.depths_from.empty()) return "";

@@ -1,4 +1,4 @@
-// What lfpreprocessor tells: doc/formats/forecast.md.
+// The report of lfpreprocessor (doc/formats/forecast.md).
 #pragma once
 
 #include <string>
@@ -12,30 +12,30 @@
 namespace lf {
 
 struct ForecastFacts {
-  std::string light_field;     // as the user called it
-  std::string output;          // folder of the packages; empty: a plan
-  std::string render_options;  // that lfrenderer wants for them
+  std::string light_field;     // as the user typed it
+  std::string output;          // folder of the packages; empty: planned only
+  std::string render_options;  // options of lfrenderer that the packages need
   bool rebins = false;         // RenderMode::kRebin or kHybrid
   ImageOrder order = ImageOrder::kShuffle;
   uint64_t seed = 0;
   int thread_count = 1;
-  double read_s = 0;  // spent on the calibration
-  // What tells the depths of the scene: "--depths", "the calibration", "LF images"; empty: nothing.
+  double read_s = 0;  // time to read the calibration
+  // Source of the scene's depths: "--depths", "the calibration", "LF images"; empty: unknown.
   std::string depths_from;
 };
 
-// What a capture is too sparse for, in plain words: what to expect, why, and what would work.
+// Returns warnings that the capture is too sparse: what to expect, why, and what would help.
 std::vector<std::string> DensityWarnings(const PreprocessReport& report, const CameraPath& path,
                                          const ForecastFacts& facts);
 
-// The files that packages need and that are not there.
+// Returns the files that packages need and that do not exist.
 MissingImages MissingOf(const PreprocessReport& report);
 
-// A line per fact, a table of packages, one of some frames, then the warnings.
+// Returns one line per fact, a table of packages, a table of some frames, and the warnings.
 std::string ForecastText(const PreprocessReport& report, const CameraPath& path,
                          const ForecastFacts& facts);
 
-// All packages and all frames; lengths are world units.
+// Returns all packages and all frames; lengths are in world units.
 std::string ForecastJson(const PreprocessReport& report, const CameraPath& path,
                          const ForecastFacts& facts);
 

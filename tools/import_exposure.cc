@@ -52,7 +52,7 @@ void Warn(const LightField& light_field, const ExposureArguments& arguments,
          {});
 }
 
-// All LF images, or those that share their pose.
+// Returns all LF images, or those that share their pose.
 std::vector<LfImageId> ImagesToAsk(const LightField& light_field, bool asks_all) {
   std::vector<bool> is_asked(light_field.size(), asks_all);
   if (!asks_all) {
@@ -66,7 +66,7 @@ std::vector<LfImageId> ImagesToAsk(const LightField& light_field, bool asks_all)
   return ids;
 }
 
-// "-2, 0 and +2", to a hundredth.
+// Returns "-2, 0 and +2", rounded to hundredths.
 std::string StopsText(const std::vector<double>& stops) {
   std::string text;
   for (size_t i = 0; i < stops.size(); ++i) {
@@ -127,7 +127,7 @@ Result<std::optional<ExifGains>> StateBrackets(const ExposureArguments& argument
     LF_ASSIGN_OR_RETURN(gains, GainFromExif(stated, light_field));
   }
   if (arguments.mask_clipped) light_field->encoding.masks_clipped = true;
-  ApplyBrackets(light_field);  // --exclude and gains have changed what was read
+  ApplyBrackets(light_field);  // --exclude and gains changed the result of reading
   return gains;
 }
 

@@ -1,5 +1,5 @@
-// lfimport's options for exposure (--match-exposure, --gain-from-exif, --mask-clipped): what they
-// do to the light field, and what the report says of it.
+// The options of lfimport for exposure (--match-exposure, --gain-from-exif, --mask-clipped):
+// applies them to the light field and reports on them.
 #pragma once
 
 #include <atomic>
@@ -28,38 +28,38 @@ struct ExposureArguments {
   void AddTo(CLI::App& app);
 };
 
-// Writes gains from Exif data into the light field, and that clipped pixels are masked, as asked
-// for.
-//   lights  becomes LightOf() the files, for the report: of all LF images, or of those that share
-//           their pose; NaN for the others, empty if there are none
-// Returns the gains, if they were asked for. kUsage for a packed store; kInput as GainFromExif().
+// Applies --gain-from-exif and --mask-clipped to the light field, if they are given.
+//   lights  set to LightOf() each file, for the report: for all LF images if gains are asked for,
+//           otherwise for those that share their pose; NaN for the others; empty if there are none
+// Returns the gains, if they were asked for. kUsage for a packed store; kInput as for
+// GainFromExif().
 Result<std::optional<ExifGains>> StateBrackets(const ExposureArguments& arguments, ThreadPool& pool,
                                                LightField* light_field,
                                                std::vector<double>* lights);
 
-// Adds the warnings no-f-number, and no-brackets where --mask-clipped masks nothing.
+// Adds the warning no-f-number, and the warning no-brackets if --mask-clipped masks nothing.
 void WarnOfBracketOptions(const ExposureArguments& arguments, const std::optional<ExifGains>& gains,
                           LightField* light_field, CaptureReport* report);
 
-// Estimates the exposure and writes it into the light field; warns of what was left alone.
+// Estimates the exposure and writes it into the light field. Warns about what stays unchanged.
 Result<MatchedExposure> MatchAndApply(const ExposureArguments& arguments,
                                       const CommonOptions& common,
                                       const std::atomic<bool>& interrupted, ThreadPool& pool,
                                       LightField* light_field, CaptureReport* report);
 
-// The line `brackets`: "25 poses x 3 exposures, -2, 0 and +2 stops by lf_gain".
+// Returns the line `brackets`: "25 poses x 3 exposures, -2, 0 and +2 stops by lf_gain".
 std::string BracketsText(const FoundBrackets& brackets);
-// The line `gains`.
+// Returns the line `gains`.
 std::string ExifGainsText(const ExifGains& gains);
 
 nlohmann::ordered_json BracketsJson(const FoundBrackets& brackets);
 nlohmann::ordered_json ExifGainsJson(const ExifGains& gains);
 
-// The line `exposure`, and what follows it: "81 of 81 images matched, ...".
+// Returns the line `exposure` and the lines below it: "81 of 81 images matched, ...".
 std::string ExposureText(const MatchedExposure& exposure);
-// The line `seams`.
+// Returns the line `seams`.
 std::string SeamsText(const MatchedExposure& exposure);
-// The line `falloff`.
+// Returns the line `falloff`.
 std::string FalloffText(const FoundFalloff& falloff);
 
 nlohmann::ordered_json ExposureJson(const MatchedExposure& exposure);

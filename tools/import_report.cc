@@ -51,14 +51,14 @@ Spread Degrees(const Spread& rad) {
   return {DegreesFromRadians(rad.min), DegreesFromRadians(rad.median), DegreesFromRadians(rad.max)};
 }
 
-// For people: five digits, one number where all are the same.
+// Returns numbers for people: five digits, and one number if all are equal.
 std::string Brief(double value) { return fmt::format("{:.5g}", value == 0 ? 0.0 : value); }
 std::string Brief(const Spread& spread) {
   const std::string min = Brief(spread.min), max = Brief(spread.max);
   return min == max ? max : fmt::format("{} ({} to {})", Brief(spread.median), min, max);
 }
 std::string Brief(Vec3 point) {
-  for (double& x : point)  // no rounding error posing as a number
+  for (double& x : point)  // hides rounding errors that look like numbers
     if (std::abs(x) < 1e-9 * point.cwiseAbs().maxCoeff()) x = 0;
   return fmt::format("{}, {}, {}", Brief(point.x()), Brief(point.y()), Brief(point.z()));
 }
@@ -239,7 +239,7 @@ std::string ReportJson(const ImportReport& report) {
                                 {"images", warning.image_count},
                                 {"names", warning.names}});
   json["written"] = report.written.empty() ? Json(nullptr) : Json(report.written);
-  // Names that are not UTF-8 are shown, not refused.
+  // Names that are not UTF-8 are shown with replacement characters instead of being refused.
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

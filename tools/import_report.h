@@ -1,4 +1,4 @@
-// What lfimport tells: doc/formats/import_report.md.
+// The report of lfimport (doc/formats/import_report.md).
 #pragma once
 
 #include <optional>
@@ -12,23 +12,23 @@
 namespace lf {
 
 struct ImportReport {
-  std::string light_field;  // as the user called it
-  std::string first_image;  // its file: tells where the images were found
+  std::string light_field;  // as the user typed it
+  std::string first_image;  // path of its file, which shows where the images were found
   CaptureReport capture;
-  std::optional<ImageFaults> faults;  // none: not checked
+  std::optional<ImageFaults> faults;  // nullopt: not checked
   size_t excluded_count = 0;
-  std::optional<ExifGains> exif_gains;      // none: not asked for
-  std::optional<MatchedExposure> exposure;  // none: not asked for
-  std::string written;                      // the transforms.json; "": none
+  std::optional<ExifGains> exif_gains;      // nullopt: not asked for
+  std::optional<MatchedExposure> exposure;  // nullopt: not asked for
+  std::string written;                      // path of the transforms.json; "": not written
 };
 
 // Adds the warnings missing-images and broken-images.
 void WarnOfFaults(const LightField& light_field, ImportReport* report);
 
-// A line per fact, then the warnings.
+// Returns one line per fact, then the warnings.
 std::string ReportText(const ImportReport& report);
 
-// All digits; what is not known is null.
+// Returns all digits; unknown values are null.
 std::string ReportJson(const ImportReport& report);
 
 }  // namespace lf

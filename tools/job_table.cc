@@ -11,7 +11,7 @@
 namespace lf {
 namespace {
 
-constexpr size_t kMostMessage = 72;  // characters; the log has all
+constexpr size_t kMostMessage = 72;  // characters; the log has the whole message
 
 std::string EngineText(const ClusterJob& job) {
   if (job.engine == ClusterEngine::kLocal)
@@ -38,7 +38,7 @@ std::string Shortened(const std::string& text) {
   return text.substr(0, kMostMessage - 3) + "...";
 }
 
-// Of Slurm's reasons the usual ones, in words.
+// Returns a task's message, with Slurm's usual reasons in words.
 std::string MessageOf(const TaskStatus& task) {
   if (task.state.phase == TaskPhase::kDone && task.state.exit_code == 0) return "";
   if (task.queue != "PENDING") return Shortened(task.message);
@@ -102,7 +102,7 @@ std::string JobTable(const ClusterJob& job, const JobStatus& status) {
   for (const auto& row : rows) {
     std::string line;
     for (size_t i = 0; i < row.size(); ++i) {
-      // Words to the left, numbers to the right; columns that nobody fills are left out.
+      // Texts are left-aligned, numbers right-aligned; empty columns are left out.
       const bool is_used = widths[i] > rows.front()[i].size() ||
                            std::any_of(rows.begin() + 1, rows.end(),
                                        [i](const auto& other) { return !other[i].empty(); });

@@ -1,4 +1,4 @@
-// How far a job is, for people.
+// Shows the progress of a job to people.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace lf {
 
-// One line about the whole, and a table with a row for each package.
+// Returns one line about the whole job, and a table with a row for each package.
 std::string JobTable(const ClusterJob& job, const JobStatus& status);
 
-// "3 of 8 packages done, 2 running; 214 of 480 frames, 47 %".
+// Returns "3 of 8 packages done, 2 running; 214 of 480 frames, 47 %".
 std::string JobSummary(const JobStatus& status);
 
 }  // namespace lf

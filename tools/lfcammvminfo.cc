@@ -1,4 +1,4 @@
-// lfcammvminfo PATH.yaml: what the camera of every frame of a path does.
+// lfcammvminfo PATH.yaml: prints the camera of each frame of a path.
 #include <optional>
 #include <string>
 #include <vector>

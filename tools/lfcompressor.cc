@@ -1,4 +1,4 @@
-// lfcompressor LIGHTFIELD|PACKAGE... -o STORE.lfs: a light field in one file, much smaller.
+// lfcompressor LIGHTFIELD|PACKAGE... -o STORE.lfs: compresses a light field into one file.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// lfexample LIGHTFIELD -o PATH.yaml: a first camera path, ready to render.
+// lfexample LIGHTFIELD -o PATH.yaml: writes a first camera path that is ready to render.
 #include <charconv>
 #include <filesystem>
 #include <memory>
@@ -28,8 +28,8 @@ with the images around, or else by the points of a COLMAP model; a warning says 
 sure, and what to try. Render it with:
 lfrenderer LIGHTFIELD PATH.yaml -o DIR)";
 
-// Returns the LF camera nearest to the middle that is nearly level, since levelling a picture crops
-// it, and whose image can be read. kOutput: the machine lacks memory or open files.
+// Returns the readable LF camera nearest to the middle that is nearly level, since levelling a
+// picture crops it. kOutput: the machine lacks memory or open files.
 lf::Result<lf::LfImageId> FindMiddleCamera(const lf::LightField& light_field,
                                            const lf::LfImageStore& store) {
   lf::MachineFailure failure;
@@ -52,8 +52,8 @@ lf::Result<lf::LfImageId> FindMiddleCamera(const lf::LightField& light_field,
   return found;
 }
 
-// Finds a camera by its number, or by the name of its image: the whole name, its last part, or that
-// without the suffix.
+// Finds a camera by its number or by the name of its image: the whole name, its last part, or the
+// last part without the suffix.
 lf::Result<lf::LfImageId> FindCamera(const lf::LightField& light_field,
                                      const lf::LfImageStore& store, const std::string& text) {
   if (text == "-1") return FindMiddleCamera(light_field, store);
@@ -77,7 +77,7 @@ lf::Result<lf::LfImageId> FindCamera(const lf::LightField& light_field,
                   light_field.image_names[0]));
 }
 
-// What the focus is, why it is not sure, and a command that says another.
+// Warns where the focus is, why it is uncertain, and how to choose another one.
 //   words  options of the light field
 void WarnOfDoubt(const lf::ExamplePath& example, const std::string& light_field,
                  const std::vector<std::string>& words, const std::string& output,
@@ -97,8 +97,7 @@ void WarnOfDoubt(const lf::ExamplePath& example, const std::string& light_field,
       example.candidates_w.front());
 }
 
-// A camera path may be replaced by another one; a calibration, or a picture, is not lost by a wrong
-// -o.
+// A wrong -o may overwrite a camera path, but no calibration and no picture.
 lf::Result<void> CheckMayWrite(const std::string& output) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(output, error)) return {};
@@ -145,7 +144,7 @@ int main(int argc, char** argv) {
     LF_ASSIGN_OR_RETURN(options.camera, FindCamera(light_field, *store, camera));
     LF_ASSIGN_OR_RETURN(const lf::ExamplePath example,
                         lf::MakeExamplePath(light_field, *store, options, pool));
-    // A path that would not render is a bug of ours, found here and not by the renderer.
+    // A path that does not render is a bug of ours; find it here and not in the renderer.
     LF_RETURN_IF_ERROR(lf::ParsePathYaml(example.yaml, output, light_field.unit_m));
     LF_RETURN_IF_ERROR(lf::WriteFileAtomically(output, example.yaml));
     if (!example.doubt.empty())

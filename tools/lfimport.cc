@@ -1,4 +1,4 @@
-// lfimport LIGHTFIELD [-o DIR]: any calibration as the native one, and what is to be said about it.
+// lfimport LIGHTFIELD [-o DIR]: converts any calibration to the native one, and reports on it.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -84,7 +84,7 @@ void AddOptions(CLI::App& app, Arguments& a) {
   app.add_flag("--flip-y", a.flip_y, "Rows count upwards")->group(group);
 }
 
-// P, or PX,PY.
+// Parses P or PX,PY.
 lf::Result<lf::Vec2> ParsePitch(const std::string& text) {
   lf::Vec2 pitch;
   int end_of_one = -1, end_of_two = -1;
@@ -95,8 +95,8 @@ lf::Result<lf::Vec2> ParsePitch(const std::string& text) {
   return lf::UsageError(fmt::format("--pitch {}: expected P or PX,PY", text));
 }
 
-// Returns whether the folder that is read holds the transforms.json that is written, and what that
-// was made from.
+// Returns true if the folder that is read holds the transforms.json that is written, and the
+// calibration that it was made from.
 bool WritesAgain(const Arguments& a) {
   std::error_code error;
   return !a.output.empty() && std::filesystem::equivalent(a.light_field.path, a.output, error) &&
@@ -116,7 +116,7 @@ lf::Result<lf::OpenOptions> MakeOpenOptions(const Arguments& a) {
   return options;
 }
 
-// The light field as it is to be written; reports what was left out.
+// Returns the light field as it is to be written. Reports which images were excluded.
 lf::Result<lf::LightField> OpenChanged(const Arguments& a, size_t* excluded_count) {
   LF_ASSIGN_OR_RETURN(const lf::OpenOptions options, MakeOpenOptions(a));
   LF_ASSIGN_OR_RETURN(lf::LightField light_field, lf::OpenLightField(a.light_field.path, options));

@@ -30,7 +30,7 @@ matter. Plates are read twice, what they say first: a shard that is missing is k
 The memory is that of one frame. Plates stay where they are. Where their renders left out LF images that
 were missing or broken, the exit code is 6.)";
 
-// The LF images of a light field that lies in the folder of the frames: plates do not know it.
+// Returns the LF images of a light field in the folder of the frames, which plates do not know.
 std::vector<std::filesystem::path> LfImagesIn(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> images;
   std::error_code error;

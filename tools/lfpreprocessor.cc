@@ -1,4 +1,4 @@
-// lfpreprocessor LIGHTFIELD PATH.yaml -o DIR: packages for many machines, or for another day.
+// lfpreprocessor LIGHTFIELD PATH.yaml -o DIR: makes packages to be rendered by many machines.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -112,14 +112,14 @@ lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::Comm
   options.reading.estimator =
       a.estimator == "nearest" ? lf::Estimator::kNearest : lf::Estimator::kBilinear;
   if (options.reading.estimator == lf::Estimator::kBilinear && bayer != lf::BayerPattern::kNone)
-    options.reading.filter = lf::PixelFilter::kMosaic;  // as lfrenderer, unasked
+    options.reading.filter = lf::PixelFilter::kMosaic;  // the default of lfrenderer
   options.lens_weights = lf::LensWeights::kNone;
   for (const lf::LensWeights weights :
        {lf::LensWeights::kAuto, lf::LensWeights::kArea, lf::LensWeights::kHat})
     if (a.lens_weights == lf::NameOf(weights)) options.lens_weights = weights;
   for (const lf::RenderMode known : {lf::RenderMode::kRebin, lf::RenderMode::kHybrid})
     if (a.mode == lf::NameOf(known)) options.mode = known;
-  // As lfrenderer, unasked: nothing is collected that could be weighed.
+  // This is the default of lfrenderer: without collected rays there is nothing to weight.
   if (options.mode == lf::RenderMode::kRebin && options.lens_weights == lf::LensWeights::kAuto)
     options.lens_weights = lf::LensWeights::kNone;
   LF_ASSIGN_OR_RETURN(options.memory_bytes, lf::ParseByteSize(a.memory, "--memory"));
@@ -139,8 +139,8 @@ lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::Comm
   return options;
 }
 
-// Returns what tells the depths of the scene, as ForecastFacts::depths_from. LF images are asked
-// only if nothing else does.
+// Returns the source of the scene's depths, as ForecastFacts::depths_from. LF images are read only
+// if there is no other source.
 std::string KnowDepths(const lf::LightField& light_field, const lf::CameraPath& path,
                        lf::ThreadPool& pool, lf::PreprocessOptions* options) {
   if (options->depths) return "--depths";

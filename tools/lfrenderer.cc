@@ -48,7 +48,7 @@ bits as if there had been no interruption.)";
 
 using Progress = std::function<void(const lf::RenderProgress&)>;
 
-// What was made of the arguments, for what comes after the render.
+// The result of a render with the options made from the arguments.
 struct Rendered {
   lf::Result<lf::RenderReport> report;
   lf::RenderOptions options;
@@ -110,7 +110,8 @@ int main(int argc, char** argv) {
     lf::RenderSignals& signals = lf::CatchRenderSignals();
     LF_RETURN_IF_ERROR(arguments.Check(program.app().count("--seed") > 0));
     lf::ThreadPool pool(common.threads);
-    // What is known beforehand: every pixel of a needed rectangle is tried as a ray, or read.
+    // The unit is a count that is known beforehand: every pixel of a needed rectangle is tried as a
+    // ray, or read.
     const char* unit = arguments.estimator == "nearest" ? "rays" : "px";
     lf::ProgressMeter meter(lf::ParseProgressStyle(common.progress), unit);
     const auto progress = [&](const lf::RenderProgress& now) {

@@ -1,4 +1,4 @@
-// lfsubmit PACKAGES... -o DIR: renders the packages of a film by many processes or machines.
+// lfsubmit PACKAGES... -o DIR: renders the packages of a film with many processes or machines.
 #include <fmt/format.h>
 
 #include <numeric>
@@ -65,7 +65,7 @@ Result<void> Resume(const lf::SubmitArguments& arguments, const lf::CommonOption
   LF_ASSIGN_OR_RETURN(ClusterJob job, lf::ReadJob(arguments.resume));
   LF_RETURN_IF_ERROR(lf::CheckMayRun(job));
   LF_ASSIGN_OR_RETURN(lf::FileLock lock, lf::TakeJob(job));
-  // Another program may have changed it until the lock was ours.
+  // Another program may have changed the job before we got the lock.
   LF_ASSIGN_OR_RETURN(job, lf::ReadJob(arguments.resume));
   LF_RETURN_IF_ERROR(lf::CheckMayRun(job));
   LF_RETURN_IF_ERROR(arguments.Change(&job, common));
@@ -119,7 +119,7 @@ Result<void> Act(const lf::SubmitArguments& arguments, const lf::CommonOptions& 
                         lf::RunPackage(job, number, lf::NodeName(), lf::CatchInterrupts()));
     const Result<void> outcome = lf::OutcomeOf(job.packages[number].name, state);
     if (state.phase != lf::TaskPhase::kDone || outcome) return outcome;
-    // For Slurm the package is done; the finishing task judges the film.
+    // Slurm must see the package as done; the finishing task judges the film.
     lf::LogWarning("{}", outcome.error().message);
     return {};
   }

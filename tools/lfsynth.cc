@@ -1,4 +1,4 @@
-// lfsynth SCENE -o DIR: a scene known exactly, as a light field and as true thin-lens frames.
+// lfsynth SCENE -o DIR: writes a synthetic scene as a light field and as exact thin-lens frames.
 #include <algorithm>
 #include <filesystem>
 #include <optional>
@@ -148,7 +148,7 @@ lf::Result<lf::FileLock> LockFolder(const std::filesystem::path& folder) {
   return lock;
 }
 
-// A light field of others, or one that somebody has worked on, is not lost by a wrong -o.
+// A wrong -o must not overwrite a light field of others, or one that somebody has edited.
 lf::Result<void> CheckMayWrite(const Arguments& a) {
   std::error_code error;
   if (a.overwrite || !std::filesystem::exists(CalibrationIn(a), error)) return {};
@@ -183,7 +183,7 @@ int main(int argc, char** argv) {
     if (!a.truth.empty()) {
       LF_ASSIGN_OR_RETURN(path, lf::ReadPathYaml(a.truth, 1.0));
     }
-    // Two scenes in one folder would be mixed.
+    // The lock prevents mixing two scenes in one folder.
     LF_ASSIGN_OR_RETURN(const lf::FileLock lock, LockFolder(a.output));
     LF_RETURN_IF_ERROR(CheckMayWrite(a));
     const auto [width_px, height_px] =

@@ -1,4 +1,4 @@
-// lfvisualizer LIGHTFIELD PATH.yaml: what was captured, and what a camera path needs of it.
+// lfvisualizer LIGHTFIELD PATH.yaml: shows what was captured and what a camera path needs of it.
 #include <fmt/format.h>
 
 #include <string>

@@ -1,4 +1,4 @@
-// The options of lfrenderer that are about rebinned rays (doc/rebinning.md).
+// The options of lfrenderer for rebinned rays (doc/rebinning.md).
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -14,13 +14,13 @@ namespace lf {
 struct RebinArguments {
   int nearest = 0;
   std::string kept = "auto", preview = "auto", average_others = "off", reparameterise = "on";
-  RebinPassOptions options;  // what the command line says as it is
+  RebinPassOptions options;  // options that need no conversion
   int64_t max_rays = 0;
   double r_st_w = 0, r_uv_w = 0, slab_distance_w = 0;
   std::vector<double> slab_position_w, slab_forward;
 
   void AddTo(CLI::App& app);
-  // kUsage: values that no slab has.
+  // kUsage: values that are impossible for a slab.
   Result<RebinPassOptions> Make(uint64_t seed) const;
 };
 

@@ -17,7 +17,7 @@
 namespace lf {
 namespace {
 
-// Reads the value of --fill.
+// Parses the value of --fill.
 Result<int> ParseFill(const std::string& text) {
   if (text == "off") return 0;
   int radius_px = -1;

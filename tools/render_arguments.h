@@ -21,7 +21,7 @@ namespace lf {
 
 struct RenderArguments {
   std::vector<std::string> inputs;  // LIGHTFIELD PATH.yaml, or PACKAGE...
-  LightFieldArgument light_field;   // with packages: where theirs is, or nothing
+  LightFieldArgument light_field;   // with packages: their light field, if it was moved
   std::string output, video, frames, memory = "8G", format = "exr", mode = "collect";
   std::string estimator = "auto", filter = "auto", lens_weights = "auto", back_end = "fast";
   std::string order = "shuffle", rectangles = "on", dump_every = "30s", stop_when, require, shard,
@@ -34,15 +34,16 @@ struct RenderArguments {
   bool no_contact_sheet = false, resume = false, overwrite = false, keep_plates = false;
 
   void AddTo(CLI::App& app);
-  // The common options of lfrenderer.
+  // Returns the common options of lfrenderer.
   static OfferedOptions Common();
 
-  // Whether all inputs are packages: files that end in .lfp.
+  // Returns true if all inputs are packages: files that end in .lfp.
   bool HasPackages() const;
-  // What cannot be together, or is not in this version; to be asked first.
-  //   seed_given  --seed, which packages have decided about
+  // kUsage if options contradict each other or are not in this version. To be called first.
+  //   seed_given  --seed is given, although packages contain a seed
   Result<void> Check(bool seed_given) const;
 
+  // Converts the arguments.
   //   bayer        of the light field
   //   frame_count  of the film
   Result<RenderOptions> MakeOptions(const CommonOptions& common, BayerPattern bayer,

@@ -12,7 +12,7 @@ constexpr const char* kAdvice =
     "the report names them; once they are mended, render anew without --resume, which keeps "
     "finished frames as they are";
 
-// "2 of 20 in package-0000, 1 of 18 in package-0003"
+// Returns "2 of 20 in package-0000, 1 of 18 in package-0003".
 std::string PackagesText(const RenderReport& report) {
   constexpr size_t kMostNamed = 20;
   std::string text;

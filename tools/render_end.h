@@ -1,5 +1,5 @@
-// The end of a render, when everything is written: LF images that were left out and frames below
-// the required quality decide about its exit code.
+// The end of a render, when everything is written: the exit code depends on LF images that were
+// left out and on frames below the required quality.
 #pragma once
 
 #include "tools/common/allow_missing.h"
@@ -9,17 +9,17 @@
 
 namespace lf {
 
-// The LF images that the render left out. A percentage counts those of the pass that reads most.
-//   advice  what to do about them
+// Returns the LF images that the render left out. A percentage refers to the pass that reads most.
+//   advice  a remedy
 MissingImages MissingOf(const RenderReport& report, const std::string& advice);
 
-// True if the limit accepts what the render left out. A number is of all packages together, each LF
-// image counted once; a percentage is of each package by itself.
+// Returns true if the limit accepts what the render left out. A number is compared with all
+// packages together, in which each LF image counts once; a percentage with each package.
 bool Accepts(const MissingLimit& limit, const RenderReport& report);
 
-// Warns of LF images that were left out, if the limit accepts them. kBelowRequired if it does not,
-// or if `required` is an error: the message then tells both.
-//   required  CheckRequired()
+// Warns about LF images that were left out, if the limit accepts them. kBelowRequired if it does
+// not, or if `required` is an error; the message then contains both.
+//   required  the result of CheckRequired()
 Result<void> EndOfRender(const RenderReport& report, const MissingLimit& limit,
                          const Result<void>& required);
 

@@ -15,7 +15,7 @@
 namespace lf {
 namespace {
 
-// Why elements of a frame have no ray, and what would help.
+// Returns why elements of a frame have no ray, and what would help.
 std::string CauseOfEmptyElements(const RenderReport& report, const FrameReport& frame) {
   if (!report.skipped.empty()) return "LF images are missing or broken, see below";
   if (frame.weighed && frame.weighed->coverage.uncovered_share > kMuchUncovered)
@@ -28,7 +28,7 @@ std::string CauseOfEmptyElements(const RenderReport& report, const FrameReport& 
          "or the camera nearer to the middle";
 }
 
-// The share of elements without a ray, once for all frames.
+// Warns once, for all frames, about the share of elements without a ray.
 void WarnOfEmptyElements(const RenderReport& report) {
   const double element_count = static_cast<double>(report.width) * report.height;
   size_t thin_count = 0;
@@ -46,7 +46,7 @@ void WarnOfEmptyElements(const RenderReport& report) {
         100 * worst->empty_element_count[1] / element_count, CauseOfEmptyElements(report, *worst));
 }
 
-// How much of the pictures is interpolated, and from what.
+// Reports how much of the pictures is interpolated, and from what.
 void TellRebinning(const RenderReport& report) {
   if (!report.rebinning) return;
   double least = 1, most = 0;
@@ -71,7 +71,7 @@ void TellRebinning(const RenderReport& report) {
         rebinning.kept == "edges" ? "rays at edges were kept" : "there was no room for all rays");
 }
 
-// What kAuto made of every lens.
+// Reports which lens weights kAuto chose.
 void TellLensWeights(const RenderReport& report) {
   size_t cells = 0, hats = 0, both = 0;
   for (const FrameReport& frame : report.frames) {
@@ -91,7 +91,7 @@ void TellLensWeights(const RenderReport& report) {
         cells, hats, both);
 }
 
-// With how many LF images frames came to the noise that was asked for.
+// Reports with how many LF images frames reached the required noise.
 void TellNoise(const RenderReport& report) {
   uint64_t fewest = UINT64_MAX, most = 0;
   size_t measured = 0, met = 0;
@@ -108,7 +108,8 @@ void TellNoise(const RenderReport& report) {
   LogInfo("noise: {} of {} frames have what was asked for or less{}", met, measured, images);
 }
 
-// Which frames show it, for a message: "3 of 40 frames, most of all frame 7".
+// Counts the frames whose badness exceeds the limit, and calls `warn` with the count and the worst
+// frame.
 template <class Badness>
 void WarnOfFrames(const RenderReport& report, double limit, const Badness& badness,
                   const std::function<void(size_t count, const FrameReport& worst)>& warn) {
@@ -128,7 +129,7 @@ void WarnOfLenses(const RenderReport& report) {
       report, kMuchUncovered, [](const auto& weighed) { return weighed.coverage.uncovered_share; },
       [&](size_t count, const FrameReport& worst) {
         const LensCoverage& coverage = worst.weighed->coverage;
-        double fitting_w = coverage.fitting_diameter_w;  // in every frame
+        double fitting_w = coverage.fitting_diameter_w;  // in all frames
         for (const FrameReport& frame : report.frames)
           if (frame.weighed)
             fitting_w = std::min(fitting_w, frame.weighed->coverage.fitting_diameter_w);
@@ -140,7 +141,8 @@ void WarnOfLenses(const RenderReport& report) {
             fitting_w > 0 ? fmt::format("An aperture of at most {:.4g} world units, or ", fitting_w)
                           : "Only ");
       });
-  // Hats are few by their nature, and frames that nobody sees are black: both are told otherwise.
+  // Hat weights always have few images, and frames that no LF image sees are black; both have
+  // reports of their own.
   WarnOfFrames(
       report, -kFewImages,
       [](const auto& weighed) {

@@ -1,4 +1,4 @@
-// What lfrenderer tells at the end.
+// The summary of lfrenderer at the end of a render.
 #pragma once
 
 #include <cstdint>
@@ -10,18 +10,18 @@
 
 namespace lf {
 
-// Counts, speed and memory; then what a person should know: thin frames, and where to look.
-// EndOfRender() tells the LF images that were left out (render_end.h).
+// Reports counts, speed and memory, then thin frames and where to look at the result. LF images
+// that were left out are reported by EndOfRender() (render_end.h).
 void SummariseRender(const RenderReport& report, const std::string& look_at);
 
-// An interruption says with which call the render goes on.
+// Adds to the error of an interruption the command that resumes the render.
 Error WithResumeCommand(Error error, int argc, char** argv);
 
-// kBelowRequired if frames have fewer samples than were asked for; names them.
+// kBelowRequired, with the frames' numbers, if frames have fewer samples than were required.
 Result<void> CheckRequired(const RenderReport& report, std::optional<uint32_t> samples);
 
-// Returns kBelowRequired if frames have more noise than was asked for, or none that could be
-// measured; names them.
+// kBelowRequired, with the frames' numbers, if frames have more noise than was required, or no
+// noise that could be measured.
 Result<void> CheckRequiredNoise(const RenderReport& report, std::optional<double> noise);
 
 }  // namespace lf

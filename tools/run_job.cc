@@ -40,7 +40,7 @@ Result<void> RunJob(ClusterJob job, FileLock lock, const std::vector<size_t>& nu
     outcome = RunLocally(job, *held, numbers, stop, [&] { Show(job, meter); });
   } else {
     LF_RETURN_IF_ERROR(SubmitToSlurm(&job, numbers));
-    held.reset();  // Slurm has the job now: others may resume or cancel it
+    held.reset();  // Slurm runs the job now; other programs may resume or cancel it
     LogInfo("submitted {} packages (array {}) and finishing task {}; lfsubmit --status {} tells",
             numbers.size(), numbers.empty() ? "-" : job.slurm_array_ids.back(),
             job.slurm_finishing_id, folder);
@@ -48,7 +48,7 @@ Result<void> RunJob(ClusterJob job, FileLock lock, const std::vector<size_t>& nu
     outcome = WaitForJob(job, stop, [&] { Show(job, meter); });
   }
   if (!outcome && outcome.error().kind != ErrorKind::kBelowRequired) return outcome.error();
-  // lfrenderer reports on the whole film: rays, warnings, where to look. Its error is the outcome.
+  // lfrenderer's report on the whole film: rays, warnings, where to look. Its error is the outcome.
   for (const std::string& line : LinesOfLastStart(FinishingTask(job).log))
     if (!line.starts_with("error: ")) LogInfo("{}", line);
   if (common.json) LF_RETURN_IF_ERROR(PrintReport(ToJson(job, LookAtJob(job))));

@@ -1,4 +1,4 @@
-// A job at work, before the eyes of whoever called lfsubmit.
+// Runs a job while the caller of lfsubmit watches its progress.
 #pragma once
 
 #include <vector>
@@ -11,10 +11,10 @@
 
 namespace lf {
 
-// Has these packages rendered by the engine that the job has: until the film is done, or, where
-// that is Slurm and nobody waits, until they are submitted. kBelowRequired if the film is done, but
-// LF images were left out, or frames are below what was required.
-//   lock  of TakeJob(); let go of when no process here is at work any more
+// Renders these packages with the engine of the job. Returns when the film is done or, with Slurm
+// and without `waits`, when the tasks are submitted. kBelowRequired if the film is done but LF
+// images were left out, or frames are below what was required.
+//   lock  of TakeJob(); released when no local process works on the job any more
 Result<void> RunJob(ClusterJob job, FileLock lock, const std::vector<size_t>& numbers, bool waits,
                     const CommonOptions& common);
 

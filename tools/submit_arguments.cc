@@ -22,7 +22,7 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-// Of lfrenderer's, those that a job decides about.
+// Options of lfrenderer that the job sets.
 constexpr std::array kOfTheJob = {
     "-o",       "--output", "--resume", "--overwrite", "--progress", "--json",
     "--frames", "--video",  "--shard",  "--finish",    "--threads",  "--memory",
@@ -37,7 +37,7 @@ uint64_t MachineMemoryBytes() {
 
 int MachineThreads() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 
-// This program's, so that jobs use the programs that were installed together.
+// Returns the folder of this program, so that jobs use the programs that were installed with it.
 Result<fs::path> ProgramFolder() {
   std::error_code error;
   const fs::path self = fs::read_symlink("/proc/self/exe", error);
@@ -55,7 +55,7 @@ Result<fs::path> FindRenderer(const std::string& asked_for) {
   return renderer;
 }
 
-// PACKAGES -- ARGUMENTS
+// The command line PACKAGES -- ARGUMENTS.
 struct Words {
   std::vector<fs::path> files;
   std::vector<std::string> arguments;
@@ -83,7 +83,7 @@ Result<Words> SplitWords(const std::vector<std::string>& words) {
   return split;
 }
 
-// What lfrenderer itself would say, before anything waits in a queue.
+// Checks the arguments as lfrenderer would, before a task waits in a queue.
 Result<RenderOptions> TryArguments(const std::vector<fs::path>& packages, const fs::path& output,
                                    const std::string& frames,
                                    const std::vector<std::string>& arguments, PackagedFilm* film) {
@@ -169,7 +169,7 @@ void SubmitArguments::AddTo(CLI::App& app) {
                  "DIR FRAMES: finish frames with the rays they have; the others go on")
       ->expected(2)
       ->group(there);
-  // For the jobs themselves.
+  // For the tasks of a job.
   app.add_option("--run-package", run_package, "NUMBER DIR")->expected(2)->group("");
   app.add_option("--run-finish", run_finish, "DIR")->group("");
 }
@@ -238,7 +238,7 @@ Result<void> SubmitArguments::Change(ClusterJob* job, const CommonOptions& commo
   const ClusterEngine before = job->engine;
   LF_RETURN_IF_ERROR(TakeResources(job, common, false));
   if (before == ClusterEngine::kSlurm && job->engine == ClusterEngine::kLocal) {
-    // Where Slurm is not, nobody can be asked: then it is another machine, after the cluster.
+    // Without Slurm on this machine the queue is unknown: the job has then left the cluster.
     const auto queue = AskSlurm(*job);
     if (queue && !queue->empty())
       return UsageError(

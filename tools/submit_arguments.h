@@ -22,21 +22,21 @@ struct SubmitArguments {
   std::optional<uint32_t> most_crashes;
   std::vector<std::string> sbatch_options;
   bool no_contact_sheet = false, overwrite = false, wait = false;
-  // Of a job that is there.
+  // These are for an existing job.
   std::string status, cancel, resume;
   std::vector<std::string> finish;       // DIR FRAMES
   std::vector<std::string> run_package;  // NUMBER DIR
   std::string run_finish;
 
   void AddTo(CLI::App& app);
-  // One thing at a time.
+  // kUsage unless exactly one action is requested.
   Result<void> Check() const;
-  // True if there are arguments of lfrenderer.
+  // Returns true if arguments of lfrenderer are given.
   bool HasRendererArguments() const;
 
-  // Reads all packages, and tries the arguments of lfrenderer.
+  // Reads all packages and checks the arguments of lfrenderer.
   Result<ClusterJob> MakeJob(const CommonOptions& common) const;
-  // What is given of engine, processes, memory and limits, for a job that is gone on with.
+  // Applies the given engine, processes, memory and limits to a job that is resumed.
   Result<void> Change(ClusterJob* job, const CommonOptions& common) const;
 
  private:

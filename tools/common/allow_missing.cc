@@ -13,14 +13,15 @@ namespace {
 constexpr uint64_t kMillion = 1'000'000;
 constexpr size_t kMostDecimals = 6;
 
-// Digits alone; false if there are others, none, or too many.
+// Reads a number that consists of digits. Returns false for other characters, an empty text, or too
+// many digits.
 bool ReadDigits(std::string_view text, uint64_t* value) {
   const char* const end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data(), end, *value);
   return error == std::errc{} && rest == end;
 }
 
-// "2.5" as millionths of a percent, 0 to 100.
+// Reads "2.5" as millionths of a percent, from 0 to 100.
 bool ReadPercentage(std::string_view text, uint64_t* millionths) {
   const size_t point = text.find('.');
   uint64_t whole = 0, decimals = 0;
@@ -51,7 +52,7 @@ Result<MissingLimit> MissingLimit::Parse(const std::string& text) {
 
 bool MissingLimit::Allows(uint64_t missing, uint64_t asked) const {
   if (!is_share_) return missing <= value_;
-  // No light field has more LF images, so that the products below fit into 64 bits.
+  // No light field has more LF images, and the products below fit into 64 bits.
   const uint64_t most = UINT32_MAX;
   return std::min(missing, most) * 100 * kMillion <= std::min(asked, most) * value_;
 }

@@ -10,18 +10,19 @@
 
 namespace lf {
 
-// A number of LF images, or a share of those that were asked for.
+// A number of LF images, or a share of the requested ones.
 class MissingLimit {
  public:
-  // None may be missing.
+  // Allows no missing LF image.
   MissingLimit() = default;
 
-  // Reads "3" (LF images) or "2%", "0.5 %" is refused. Percentages have up to six decimals and end
-  // at 100. kUsage: the message names --allow-missing, the value and what was expected.
+  // Reads "3" (LF images) or "2%"; a blank, as in "2 %", is refused. Percentages go up to 100 and
+  // have at most six decimals. kUsage: the message names --allow-missing, the value and what was
+  // expected.
   static Result<MissingLimit> Parse(const std::string& text);
 
-  // True if `missing` of `asked` LF images may be left out. Exact: 2% of 150 allows 3, and 2% of
-  // 149 allows 2.
+  // Returns true if `missing` of `asked` LF images may be left out. Exact: 2% of 150 allows 3, and
+  // 2% of 149 allows 2.
   bool Allows(uint64_t missing, uint64_t asked) const;
   bool is_share() const { return is_share_; }
   // The value as it was given.
@@ -33,7 +34,7 @@ class MissingLimit {
   bool is_share_ = false;
 };
 
-// The option of a program that may leave LF images out.
+// The option of a program that can leave LF images out.
 struct AllowMissing {
   std::string text = "0";
 
@@ -42,18 +43,19 @@ struct AllowMissing {
   Result<MissingLimit> Limit() const { return MissingLimit::Parse(text); }
 };
 
-// LF images that a program was asked for and left out.
+// LF images that were requested from a program and left out.
 struct MissingImages {
   uint64_t count = 0;
   uint64_t asked = 0;
   std::string what;    // such as "3 of 25 LF images were left out: ..."
-  std::string advice;  // what to do about it, beside accepting it
+  std::string advice;  // a remedy, other than accepting it
 };
 
-// The end of a program, to be called when all of its results are written. Succeeds where nothing is
-// missing. Warns of what is missing if the limit accepts it. kBelowRequired if not.
+// Ends a program; to be called when all of its results are written. Succeeds if nothing is missing,
+// or, with a warning, if the limit accepts what is missing. Otherwise kBelowRequired.
 Result<void> EndWithMissing(const MissingImages& missing, const MissingLimit& limit);
-// For a caller that compared the numbers with the limit itself, such as package by package.
+// As above, for a caller that compared the numbers with the limit itself, such as package by
+// package.
 Result<void> EndWithMissing(const MissingImages& missing, const MissingLimit& limit,
                             bool is_accepted);
 

@@ -1,4 +1,4 @@
-// "8G", "512M", "1.5g", "100000": memory as people write it.
+// Parses memory sizes as people write them: "8G", "512M", "1.5g", "100000".
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace lf {
 
-// Powers of 1024. kUsage names the option.
+// The units are powers of 1024. kUsage names the option.
 Result<size_t> ParseByteSize(const std::string& text, const std::string& option);
 
 }  // namespace lf

@@ -42,7 +42,7 @@ TEST(MissingLimit, APercentageIsExact) {
   };
   EXPECT_TRUE(allows("2%", 3, 150));
   EXPECT_FALSE(allows("2%", 3, 149));
-  EXPECT_TRUE(allows("0.07%", 7, 10'000));  // not so in binary fractions: 0.07 * 100 > 7
+  EXPECT_TRUE(allows("0.07%", 7, 10'000));  // inexact in binary fractions: 0.07 * 100 > 7
   EXPECT_FALSE(allows("0.069999%", 7, 10'000));
   EXPECT_TRUE(allows("100%", 9, 9));
   EXPECT_FALSE(allows("99.999999%", 4'000'000'000, 4'000'000'000));

@@ -1,4 +1,4 @@
-// "30s", "10m", "1.5h", "0": time as people write it.
+// Parses times as people write them: "30s", "10m", "1.5h", "0".
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace lf {
 
-// In seconds; a bare number is seconds. kUsage names the option.
+// Returns seconds, which are also the unit of a bare number. kUsage names the option.
 Result<double> ParseDuration(const std::string& text, const std::string& option);
 
 }  // namespace lf

@@ -20,11 +20,11 @@ constexpr int64_t kOneInterrupt_ns = 500'000'000;
 
 int64_t NowNanoseconds() {
   timespec now{};
-  ::clock_gettime(CLOCK_MONOTONIC, &now);  // handlers may
+  ::clock_gettime(CLOCK_MONOTONIC, &now);  // allowed in signal handlers
   return int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
 }
 
-// Sets the flag; ends the program where a person asks for it again.
+// Sets the flag. If a person repeats the interrupt, ends the program.
 void Interrupt(int signal, std::atomic<bool>* flag) {
   if (!*flag) {
     first_interrupt_ns = NowNanoseconds();

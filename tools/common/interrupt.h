@@ -1,4 +1,4 @@
-// SIGINT, SIGTERM and SIGHUP as a flag that long work looks at.
+// Turns SIGINT, SIGTERM and SIGHUP into a flag that long work polls.
 #pragma once
 
 #include <atomic>
@@ -7,13 +7,13 @@
 
 namespace lf {
 
-// From now on the first SIGINT, SIGTERM or, but under nohup, SIGHUP sets the flag. A SIGINT more
-// than half a second after it ends the program at once (a SIGTERM does not: batch systems repeat
-// it).
+// From now on the first SIGINT, SIGTERM or SIGHUP sets the flag; under nohup, SIGHUP is ignored. A
+// SIGINT more than half a second later ends the program at once. A second SIGTERM does not, because
+// batch systems repeat it.
 const std::atomic<bool>& CatchInterrupts();
 
-// The same for a render: the flag asks for the state and the end, and SIGUSR1 for the state. To be
-// called once.
+// As CatchInterrupts(), for a render: these signals ask for a checkpoint and the end, and SIGUSR1
+// for a checkpoint only. To be called once.
 RenderSignals& CatchRenderSignals();
 
 }  // namespace lf

@@ -1,4 +1,4 @@
-// LIGHTFIELD, as every program takes it.
+// The argument LIGHTFIELD, which all programs share.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -15,17 +15,17 @@ struct LightFieldArgument {
   double fov_deg = 0;
   std::string images, image_scale = "auto", image_alpha = "auto", background;
 
-  // The positional argument and the options that go with it.
+  // Adds the positional argument and its options.
   void AddTo(CLI::App& app);
-  // The options alone.
+  // Adds the options alone.
   void AddOptionsTo(CLI::App& app);
-  // kUsage: a value that cannot be read.
+  // kUsage: a value that cannot be parsed.
   Result<OpenOptions> Options() const;
   Result<LightField> Open() const;
-  // kUsage: an option is given that packages would ignore. Packages have their calibration, and
-  // what alpha means; with --lightfield (`path`) the others say how that is opened.
+  // kUsage if an option is given that packages would ignore: they contain their calibration and the
+  // meaning of alpha. With --lightfield (`path`) the remaining options apply to that light field.
   Result<void> CheckWithPackages() const;
-  // The options as they were given, for another program.
+  // Returns the options as they were given, for the command line of another program.
   std::vector<std::string> Words() const;
 };
 

@@ -25,7 +25,7 @@ namespace {
   std::_Exit(status);
 }
 
-// Only what signal handlers may call.
+// Uses only functions that signal handlers may call.
 void OnEarlySignal(int signal) {
   if (signal == SIGUSR1) return;
   constexpr const char* kClearLine = "\r\x1b[K";
@@ -37,7 +37,7 @@ void OnEarlySignal(int signal) {
 }
 
 void OccupyStandardFiles() {
-  // Each gets the lowest number that is free.
+  // open() returns the lowest free descriptor, which is the closed one.
   for (const int file : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (::fcntl(file, F_GETFD) < 0 && errno == EBADF && ::open("/dev/null", O_RDONLY) < 0) return;
 }
@@ -66,7 +66,7 @@ namespace {
 
 int TellException() {
   const auto is_about_threads = [](const std::exception& error) {
-    // oneTBB throws what has no other sign.
+    // oneTBB throws an exception without any other sign of its cause.
     return std::string_view(error.what()).find("pthread_create") != std::string_view::npos;
   };
   constexpr const char* kNoThread =
@@ -74,7 +74,7 @@ int TellException() {
   try {
     throw;
   } catch (const std::bad_alloc&) {
-    // No memory may be left for a message that is put together.
+    // Memory may not suffice to format a message.
     std::fputs("error: out of memory; lower --memory, or render fewer frames at once\n", stderr);
     return static_cast<int>(ErrorKind::kOutput);
   } catch (const std::system_error& error) {

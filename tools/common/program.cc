@@ -18,7 +18,7 @@
 namespace lf {
 
 Result<void> PrintReport(const std::string& text) {
-  std::cout.flush();  // CLI11 writes there
+  std::cout.flush();  // CLI11 prints to std::cout
   if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0 &&
       std::cout.good())
     return {};
@@ -35,7 +35,8 @@ CLI::Validator WholeNumber() {
         const auto [rest, error] = std::from_chars(word.data(), end, number);
         if (error != std::errc{} || rest != end)
           return fmt::format("expected a whole number from 0 to {}, found '{}'", UINT64_MAX, word);
-        word = fmt::format("{}", number);  // without zeros before it, which would make it octal
+        word = fmt::format("{}", number);  // without leading zeros, with which CLI11 would read an
+                                           // octal number
         return {};
       },
       "");
@@ -84,7 +85,7 @@ void Program::AddJsonOption(const std::string& what) {
 
 namespace {
 
-// CLI11 takes "nan" for a number, and ranges let it pass.
+// CLI11 accepts "nan" as a number, even for options with a range.
 Result<void> CheckNoNan(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options()) {
     if (option->get_type_name().find("FLOAT") == std::string::npos) continue;
@@ -100,13 +101,13 @@ Result<void> CheckNoNan(const CLI::App& app) {
 
 int Program::Run(int argc, char** argv, const std::function<Result<void>()>& body) {
 #ifdef __GLIBC__
-  // Images and plates go back to the system when they are freed: --memory bounds what a program
-  // holds. Otherwise glibc learns to keep the largest for later.
+  // Makes glibc return the memory of images and plates to the system when they are freed, because
+  // --memory bounds what a program holds. Otherwise glibc would adapt and keep large blocks.
   constexpr int kLargeBytes = 1 << 20;
   mallopt(M_MMAP_THRESHOLD, kLargeBytes);
 #endif
   StartProcess();
-  // A pipe that nobody reads and a file that may not grow are errors of the write, not the end.
+  // A closed pipe or a file size limit must be an error of the write and not end the program.
   ::signal(SIGPIPE, SIG_IGN);
   ::signal(SIGXFSZ, SIG_IGN);
   try {

@@ -1,4 +1,4 @@
-// What all programs share: the common options, the way errors end them, help and version.
+// Shared by all programs: common options, exit codes for errors, help and version.
 //
 //   int main(int argc, char** argv) {
 //     lf::Program program("lfexample", "Writes a camera path ...", "Examples:\n  lfexample ...");
@@ -7,8 +7,8 @@
 //     return program.Run(argc, argv, [&]() -> lf::Result<void> { ... });
 //   }
 //
-// Exit codes: 0 done, 1 our bug, 2 usage, 3 input, 4 output, disk or memory, 5 interrupted,
-// 6 finished below what was asked for. The reason is the last line of stderr, "error: ...".
+// Exit codes: 0 done, 1 our bug, 2 usage, 3 input, 4 output, disk or memory, 5 interrupted, 6
+// finished below what was required. The reason is the last line of stderr, "error: ...".
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -30,14 +30,14 @@ struct CommonOptions {
   bool json = false;
 };
 
-// The common options that a program offers: those that it obeys. Others are refused as unknown.
+// The common options that a program offers, because it obeys them. Others are refused as unknown.
 struct OfferedOptions {
   bool threads = false;
-  const char* seed = nullptr;    // what it decides about, for --help; null: not offered
-  const char* strict = nullptr;  // what becomes an error
+  const char* seed = nullptr;    // what the seed decides, for --help; nullptr: not offered
+  const char* strict = nullptr;  // what becomes an error; nullptr: not offered
   bool progress = false;
-  bool verbose = false;  // the program, or what it calls, uses LogDebug()
-  bool quiet = false;    // it uses LogInfo(), or has progress
+  bool verbose = false;  // the program, or a library that it uses, calls LogDebug()
+  bool quiet = false;    // the program calls LogInfo() or shows progress
 };
 
 class Program {
@@ -59,14 +59,14 @@ class Program {
   bool quiet_ = false;
 };
 
-// For options: 0 to 2^64 - 1, decimal; and a value that is not the empty word.
+// Validators for options: a decimal number from 0 to 2^64 - 1, and a word that is not empty.
 CLI::Validator WholeNumber();
 CLI::Validator NotEmpty();
 
-// A report to stdout, whole. kOutput if it cannot be.
+// Prints a whole report to stdout. kOutput if that fails.
 Result<void> PrintReport(const std::string& text);
 
-// The version of the programs and the library, such as "0.1.0".
+// Returns the version of the programs and the library, such as "0.1.0".
 const char* Version();
 
 }  // namespace lf

@@ -37,7 +37,7 @@ ProgressMeter::~ProgressMeter() {
   if (style_ == ProgressStyle::kBar) LogProgressLine("");
 }
 
-// Cheap, so that callers may ask before they make texts.
+// Cheap, so that callers can test this before they format texts.
 bool ProgressMeter::IsDue() const {
   if (style_ == ProgressStyle::kNone) return false;
   const double interval_s = style_ == ProgressStyle::kBar    ? 0.2
@@ -88,7 +88,7 @@ void ProgressMeter::Print(uint64_t done, uint64_t total, const std::string& deta
 
 std::string ProgressLine(double share, const std::string& numbers, size_t width) {
   constexpr size_t kMostBar = 24, kLeastBar = 6;
-  const size_t frame = 3;  // brackets and a space
+  const size_t frame = 3;  // two brackets and a space
   const size_t room = width - std::min(width, numbers.size() + frame + 1);
   if (room < kLeastBar) return numbers.substr(0, width - std::min<size_t>(width, 1));
   const size_t bar = std::min(room, kMostBar);

@@ -1,5 +1,5 @@
-// Progress for people and for programs: one line that lives (bar), lines now and then (plain), or
-// objects (json). With the rate and the time left, as honest as the work done so far allows.
+// Shows progress for people and for programs: one line that is updated (bar), lines now and then
+// (plain), or JSON objects (json). Each has the rate and an estimate of the time left.
 #pragma once
 
 #include <chrono>
@@ -11,10 +11,10 @@ namespace lf {
 
 enum class ProgressStyle { kBar, kPlain, kJson, kNone };
 
-// From --progress; "auto" is a bar on a terminal, else plain.
+// Parses --progress; "auto" is a bar on a terminal and plain otherwise.
 ProgressStyle ParseProgressStyle(const std::string& name);
 
-// How far one thing is, such as "frame" 3 of 10.
+// The progress of one kind of thing, such as "frame" 3 of 10.
 struct ProgressCount {
   std::string name;
   uint64_t done = 0;
@@ -23,14 +23,14 @@ struct ProgressCount {
 
 class ProgressMeter {
  public:
-  // unit: what is counted, e.g. "rays"
+  // unit: name of what is counted, e.g. "rays"
   ProgressMeter(ProgressStyle style, std::string unit);
   ~ProgressMeter();
 
-  // done of total units; `detail` is shown before the numbers. Cheap: prints at most a few times a
-  // second (bar), every second (json) or every some seconds (plain).
+  // Reports `done` of `total` units; `detail` is shown before the numbers. Cheap: prints at most a
+  // few times per second (bar), once per second (json) or every few seconds (plain).
   void Update(uint64_t done, uint64_t total, const std::string& detail);
-  // The same with "LF image 3/10, frame 1/4", which json has as "counts": {"frame": [1, 4]}.
+  // As above, with "LF image 3/10, frame 1/4" as detail; in JSON, "counts": {"frame": [1, 4]}.
   void Update(uint64_t done, uint64_t total, const std::vector<ProgressCount>& counts);
 
  private:
@@ -44,13 +44,13 @@ class ProgressMeter {
   Clock::time_point last_;
 };
 
-// A bar and numbers in a line of a terminal that has room for `width` characters; where there is
-// none for a bar, without one.
+// Returns a bar and numbers for a terminal line of `width` characters, or the numbers alone if the
+// line is too short for a bar.
 std::string ProgressLine(double share, const std::string& numbers, size_t width);
 
-// "1.5 G", "320 M", "12 k".
+// Returns "1.5 G", "320 M", "12 k".
 std::string ShortNumber(double value);
-// "3 h 20 min", "2 min 5 s", "14 s".
+// Returns "3 h 20 min", "2 min 5 s", "14 s".
 std::string ShortDuration(double seconds);
 
 }  // namespace lf

@@ -12,7 +12,7 @@ bool AnswerThreads::Run(std::function<void()> task) {
     try {
       threads_.emplace_back([this] { Work(); });
     } catch (const std::system_error&) {
-      if (threads_.empty()) return false;  // else one of those that run will take it
+      if (threads_.empty()) return false;  // otherwise a running thread will take the task
     }
   }
   tasks_.push_back(std::move(task));

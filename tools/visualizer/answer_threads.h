@@ -1,4 +1,4 @@
-// Threads that make answers, so that a slow one holds nobody else up.
+// Threads that make answers, so that a slow answer does not delay others.
 #pragma once
 
 #include <condition_variable>
@@ -12,16 +12,16 @@ namespace lf {
 
 class AnswerThreads {
  public:
-  // Threads start with the first task. At most `most_count`; tasks that find all busy queue up.
+  // Starts threads with the first tasks, at most `most_count`. Further tasks wait in a queue.
   explicit AnswerThreads(size_t most_count) : most_count_(most_count) {}
   ~AnswerThreads() { Stop(); }
   AnswerThreads(const AnswerThreads&) = delete;
   AnswerThreads& operator=(const AnswerThreads&) = delete;
 
-  // The task must not throw. False after Stop(), or if the machine has no thread left; the task
-  // is not run then.
+  // Queues a task, which must not throw. Returns false, and does not run the task, after Stop() or
+  // if the machine has no thread left.
   bool Run(std::function<void()> task);
-  // Returns when all tasks have ended, those in the queue included.
+  // Returns when all tasks have ended, including those in the queue.
   void Stop();
 
  private:

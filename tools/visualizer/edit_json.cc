@@ -8,7 +8,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Called by the parser for each piece. False ends the reading.
+// The parser calls it for each token; returning false ends the parse.
 class EditReader : public nlohmann::json_sax<Json> {
  public:
   bool null() override { return Keep(nullptr); }
@@ -17,7 +17,7 @@ class EditReader : public nlohmann::json_sax<Json> {
   bool number_unsigned(number_unsigned_t value) override { return Keep(value); }
   bool number_float(number_float_t value, const string_t&) override { return Keep(value); }
   bool string(string_t& value) override { return Keep(std::move(value)); }
-  bool binary(binary_t&) override { return false; }  // JSON has none
+  bool binary(binary_t&) override { return false; }  // does not occur in JSON
   bool start_object(size_t) override {
     if (!edit.is_null()) return false;
     edit = Json::object();
@@ -45,7 +45,7 @@ class EditReader : public nlohmann::json_sax<Json> {
     return true;
   }
 
-  std::string key_;  // empty: of no edit
+  std::string key_;  // empty: a key that no edit has
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The bodies of edits: JSON objects of a few keys.
+// Parses the bodies of edits: JSON objects with a few keys.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -6,9 +6,9 @@
 
 namespace lf {
 
-// Returns the object, with those of its keys that an edit has (page_edits.h); not an object if the
-// text is none, or if it holds a list or another object. Takes no more memory than the text has,
-// nor more time than reading it does: a tree of 9 million brackets would take 700 MB.
+// Returns the object, with only those keys that an edit has (page_edits.h). The result is not an
+// object if the text is not one, or if it contains a list or another object. Takes no more memory
+// than the text: a full tree of 9 million brackets would take 700 MB.
 nlohmann::ordered_json ReadEdit(const std::string& text);
 
 }  // namespace lf

@@ -1,4 +1,4 @@
-// News for the pages that are open: server-sent events.
+// Sends news to open pages as server-sent events.
 #pragma once
 
 #include <atomic>
@@ -11,17 +11,17 @@
 
 namespace lf {
 
-// Holds the newest of each kind alone: a page that is slow misses old news, and nothing piles up.
+// Keeps only the newest event of each kind: a slow page misses old news, and nothing accumulates.
 class EventBoard {
  public:
-  //   data  one line of JSON
+  // data  one line of JSON
   void Post(const std::string& kind, const std::string& data);
 
-  // What is newer than `seen` as text of an event stream, which `seen` then is; "" after patience
-  // or when closed.
+  // Returns the events after number `seen` as text of an event stream, and advances `seen`. Returns
+  // "" if `patience` expires or the board is closed.
   std::string WaitForNews(uint64_t* seen, std::chrono::milliseconds patience);
 
-  // All who wait return, now and later.
+  // Ends all waits, now and in the future.
   void Close();
   bool is_closed() const { return is_closed_; }
 

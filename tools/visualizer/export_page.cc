@@ -32,14 +32,14 @@ class Exporter {
     facts.byte_count += bytes.size();
     return {};
   }
-  // Writes what the page would be told under this name.
+  // Writes what the page would get under this name.
   Result<void> WriteAnswer(const std::string& name) {
     const PageAnswer answer = Answer(scene_, name);
     if (answer.status == 200) return Write(name, answer.body);
     LogWarning("{}: {}", name, answer.body);
     return {};
   }
-  // Writes an LF image. One that cannot be read is left out and counted.
+  // Writes an LF image. An unreadable one is left out and counted.
   Result<void> WriteImage(uint32_t id) {
     const std::string name = fmt::format("image/{}/{}.jpg", kLargeSide_px, id);
     const PageAnswer answer = Answer(scene_, name);
@@ -82,7 +82,7 @@ Result<ExportFacts> ExportPage(PageScene& scene, const fs::path& folder, size_t 
   std::vector<uint32_t> images;
   for (uint32_t i = 0; i < frames_of_image.size(); ++i)
     if (frames_of_image[i] > 0) images.push_back(i);
-  // Evenly among them.
+  // The exported LF images are spread evenly over those used.
   const size_t image_count = std::min(images.size(), most_images);
   const size_t total = 2 * frame_count + image_count;
   size_t done = frame_count;
@@ -105,7 +105,7 @@ Result<ExportFacts> ExportPage(PageScene& scene, const fs::path& folder, size_t 
     LF_RETURN_IF_ERROR(exporter.WriteImage(id));
     LF_RETURN_IF_ERROR(step());
   }
-  // The page last: what is not whole does not open.
+  // The page is written last, so that an incomplete export does not open.
   LF_RETURN_IF_ERROR(exporter.Write("scene.json", SceneJson(scene, draft, {.is_server = false})));
   for (const PageFile& file : PageFiles())
     LF_RETURN_IF_ERROR(exporter.Write(file.name, file.bytes));

@@ -1,4 +1,4 @@
-// The page with its data as files, to be put on any web server.
+// Exports the page and its data as files for any web server.
 #pragma once
 
 #include <atomic>
@@ -16,15 +16,15 @@ namespace lf {
 struct ExportFacts {
   size_t file_count = 0;
   uint64_t byte_count = 0;
-  size_t image_count = 0;     // LF images, those that the film takes
-  size_t missing_count = 0;   // of these, how many cannot be read and were left out
-  std::string first_missing;  // why
+  size_t image_count = 0;     // LF images that the film uses
+  size_t missing_count = 0;   // those of them that cannot be read and were left out
+  std::string first_missing;  // the reason
 };
 
-// All that the page reads of the path: cameras, frames, what each takes, and LF images that the
-// film takes, the first `most_images` of its order. Nothing can be edited there.
+// Exports everything that the page reads about the path: cameras, frames, what each frame uses, and
+// the LF images that the film uses, at most `most_images`. An exported path cannot be edited.
 //   folder  new or empty
-// kUsage: something is there. kOutput: the disk; a build without the page. kInterrupted.
+// kUsage: the folder is not empty. kOutput: the disk; a build without the page. kInterrupted.
 Result<ExportFacts> ExportPage(PageScene& scene, const std::filesystem::path& folder,
                                size_t most_images, const std::atomic<bool>& interrupted,
                                const std::function<void(size_t done, size_t total)>& progress);

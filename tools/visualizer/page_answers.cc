@@ -18,7 +18,7 @@ namespace {
 constexpr int kJpegQuality = 88;
 constexpr const char* kBytes = "application/octet-stream";
 
-// Of "path/0123/use/7.bin": the parts between slashes, the last without its ending.
+// The parts of "path/0123/use/7.bin" between slashes, the last without its ending.
 struct Name {
   std::vector<std::string> parts;
   std::string ending;  // ".bin"
@@ -39,7 +39,7 @@ Name Split(std::string_view text) {
   }
 }
 
-// A decimal number below `end`, at least `begin`.
+// Parses a decimal number in [begin, end).
 std::optional<uint32_t> NumberOf(const std::string& text, size_t begin, size_t end) {
   uint32_t number = 0;
   const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -53,8 +53,8 @@ PageAnswer NotFound() { return Refusal(404, "there is nothing of this name"); }
 PageAnswer JsonAnswer(std::string body) { return {200, "application/json", std::move(body)}; }
 PageAnswer BytesAnswer(std::string body) { return {200, kBytes, std::move(body)}; }
 
-// With the path as its file is now; if that has a fault, which news tell, as it was in the
-// beginning.
+// Answers with the path in its file now, or with the first one if the file has a fault, which the
+// news report.
 PageAnswer OfScene(PageScene& scene) {
   if (const auto text = scene.TextOnDisk())
     if (const auto draft = scene.AddDraft(*text)) return JsonAnswer(SceneJson(scene, **draft, {}));

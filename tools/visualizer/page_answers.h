@@ -1,4 +1,4 @@
-// What the page reads, by name: the same from a server and in an exported folder
+// Answers what the page reads, by name: identical from a server and in an exported folder
 // (doc/formats/page_data.md).
 #pragma once
 
@@ -12,7 +12,7 @@
 namespace lf {
 
 struct PageAnswer {
-  int status = 200;  // of HTTP
+  int status = 200;  // HTTP status
   std::string type = "application/json";
   std::string body;
 };
@@ -21,33 +21,35 @@ struct PageAnswer {
 PageAnswer Refusal(int status, const std::string& message);
 PageAnswer Refusal(const Error& error);  // 422: input, 507: disk and memory
 
-// What the page can do besides looking.
+// Functions of the page that need a server.
 struct PageAbilities {
-  bool is_server = true;  // edits, previews, focus picking, news; else an exported folder
+  bool is_server = true;  // edits, previews, focus picking, news; false: an exported folder
 };
 
-// scene.json: what there is, and under which names the rest is found.
-//   draft  the path to begin with
+// Returns scene.json: the contents of the scene, and the names of all other data.
+//   draft  the path that is shown first
 std::string SceneJson(const PageScene& scene, const PathDraft& draft,
                       const PageAbilities& abilities);
-// {"id": ..., "fault": ...} of what PATH.yaml has become; its text is a draft if there is no fault.
+// Returns {"id": ..., "fault": ...} for a new text of PATH.yaml, which becomes a draft if it has no
+// fault.
 std::string PathNewsJson(PageScene& scene, const std::string& text);
-// {"id": ..., "frames": ..., ...} of a path.
+// Returns {"id": ..., "frames": ..., ...} for a path.
 std::string PathHeadJson(const PathDraft& draft);
-// {"done": frames, "total": frames, "images": [...], "rays": [...]}
+// Returns {"done": frames, "total": frames, "images": [...], "rays": [...]}.
 std::string FilmJson(const FilmUse::Facts& facts);
-// {"cameras_in_lens": ..., ...}
+// Returns {"cameras_in_lens": ..., ...}.
 std::string DensityJson(PageScene& scene, const PathDraft& draft, FrameId frame);
-// {"id": ..., "name": ..., "centre": [...], ...}
+// Returns {"id": ..., "name": ..., "centre": [...], ...}.
 std::string CameraJson(const PageScene& scene, LfImageId id);
-// {"rect": [x_begin, y_begin, x_end, y_end], "outlines": [[[x, y], ...]]}; no rect: no ray
+// Returns {"rect": [x_begin, y_begin, x_end, y_end], "outlines": [[[x, y], ...]]}; without a ray
+// there is no rect.
 std::string OverlapJson(PageScene& scene, const PathDraft& draft, FrameId frame, LfImageId id);
 
-// Of LF images, at most so many pixels each way.
+// Largest width and height of LF images for the page.
 inline constexpr int kSmallSide_px = 256;
 inline constexpr int kLargeSide_px = 1280;
 
-// 404 for other names.
+// Returns the answer for a name, or 404 if it is unknown.
 PageAnswer Answer(PageScene& scene, std::string_view name);
 
 }  // namespace lf

@@ -1,4 +1,4 @@
-// A connection of libmicrohttpd, and the request that is being made on it.
+// A connection of libmicrohttpd, and the head of its current request.
 #pragma once
 
 #include <microhttpd.h>
@@ -12,11 +12,12 @@ namespace lf {
 
 int SocketOf(MHD_Connection* connection);
 
-// Throws std::bad_alloc: a header that is not seen might be the one that refuses the request.
+// Throws std::bad_alloc instead of skipping a header, because that header might be the one for
+// which the request must be refused.
 RequestHead HeadOf(MHD_Connection* connection, const char* path, const char* method);
 
-// Writes a refusal past libmicrohttpd, which takes answers only before or after a body, while a
-// body is read. The connection must be closed then.
+// Writes a refusal to the socket, because libmicrohttpd accepts no answer while a body is read. The
+// caller must then close the connection.
 //   status  413 Content Too Large
 void SendLast(MHD_Connection* connection, std::string_view status, const PageAnswer& refusal);
 

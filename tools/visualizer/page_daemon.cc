@@ -21,22 +21,24 @@
 namespace lf {
 namespace {
 
-// One thread of libmicrohttpd reads and writes all connections, and waits for none of them: a half
-// request costs a socket and 32 kB, never a thread, so that hundreds of them slow nobody down.
-// Answers are made by a few threads of our own while their connections are suspended.
+// One thread of libmicrohttpd reads and writes all connections and never blocks on one: an
+// incomplete request costs a socket and 32 kB but no thread, so that hundreds of them slow nobody
+// down. A few threads of our own make the answers while the connections are suspended.
 constexpr unsigned kMode = MHD_USE_EPOLL_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME;
 constexpr size_t kHeaderBytes = 32 << 10;
 constexpr size_t kThreads = 8, kMostStreams = 16;
-constexpr int kMostRequests = 96;  // past their headers; browsers have six for each address
+constexpr int kMostRequests = 96;  // past their headers; browsers open six per address
 constexpr size_t kMostWaiting = 128;
-// Must exceed the sum of both, for libmicrohttpd accepts no more, and nobody would be heard.
+// Must exceed the sum of both: libmicrohttpd accepts no more connections, and nobody would be
+// heard.
 constexpr unsigned kMostConnections = 256;
 constexpr std::chrono::milliseconds kPatience(5000);
 constexpr unsigned kSilence_s = 10;  // of a client that sends no more of a body, or reads nothing
 constexpr size_t kMostBodiesBytes = 2 * kMostBodyBytes;
-constexpr size_t kMostAnswersBytes = size_t{256} << 20;  // a million LF cameras: 12 MB
+constexpr size_t kMostAnswersBytes = size_t{256} << 20;  // for comparison, a million LF cameras are
+                                                         // 12 MB
 
-// Paths are compared as they were sent: no name has anything to unescape.
+// Paths are compared as they were sent: no name of ours needs unescaping.
 size_t KeepEscapes(void*, MHD_Connection*, char* text) { return std::string_view(text).size(); }
 
 struct Request {
@@ -44,7 +46,7 @@ struct Request {
   RequestHead head;
   std::string body;
   size_t body_bytes = 0;  // taken from the budget
-  bool is_begun = false;  // by a thread, which sets the answer, then resumes the connection
+  bool is_begun = false;  // a thread makes the answer and then resumes the connection
   std::optional<PageAnswer> answer;
 };
 
@@ -80,7 +82,7 @@ struct PageDaemon::Parts {
   WaitingConnections waiting{kMostWaiting, kPatience};
   ByteBudget bodies{kMostBodiesBytes}, answers{kMostAnswersBytes};
   std::atomic<bool> is_ending = false;
-  int request_count = 0;  // of libmicrohttpd's thread alone
+  int request_count = 0;  // used only by libmicrohttpd's thread
   PageStreams streams;
   std::thread news;
   AnswerThreads threads{kThreads};
@@ -108,12 +110,12 @@ MHD_Result PageDaemon::Parts::Begin(MHD_Connection* connection, const char* path
   auto begun = std::make_unique<Request>();
   begun->connection = connection;
   begun->head = std::move(head);
-  *request = begun.release();  // End() has it
+  *request = begun.release();  // End() deletes it
   ++request_count;
   return MHD_YES;
 }
 
-// The budget counts what bodies have reserved: each grows by doubling.
+// The budget counts the reserved sizes of the bodies, which grow by doubling.
 MHD_Result PageDaemon::Parts::Collect(Request& request, const char* bytes, size_t byte_count) {
   const size_t needed_bytes = request.body.size() + byte_count;
   if (needed_bytes > kMostBodyBytes) {
@@ -158,7 +160,7 @@ MHD_Result PageDaemon::Parts::Answer(Request& request) {
   return MHD_YES;
 }
 
-// The connection is suspended first: a thread may be done, and resume it, before this returns.
+// The connection is suspended first, because a thread may resume it before this function returns.
 void PageDaemon::Parts::AnswerLater(Request& request) {
   request.is_begun = true;
   MHD_suspend_connection(request.connection);
@@ -167,7 +169,7 @@ void PageDaemon::Parts::AnswerLater(Request& request) {
     is_taken = threads.Run([this, &request] {
       try {
         request.answer = Make(request);
-      } catch (const std::exception&) {  // no memory even for a refusal
+      } catch (const std::exception&) {  // no memory, not even for a refusal
       }
       MHD_resume_connection(request.connection);
     });
@@ -199,7 +201,7 @@ void PageDaemon::Parts::End(MHD_Connection* connection, void** request) {
     --request_count;
     bodies.Return(ended->body_bytes);
   }
-  waiting.Add(SocketOf(connection));  // for the next request, or for OnConnection() at once
+  waiting.Add(SocketOf(connection));  // until its next request, or its end (OnConnection())
 }
 
 MHD_Result PageDaemon::Parts::OnRequest(void* parts, MHD_Connection* connection, const char* path,
@@ -207,7 +209,7 @@ MHD_Result PageDaemon::Parts::OnRequest(void* parts, MHD_Connection* connection,
                                         const char* bytes, size_t* byte_count, void** request) {
   try {
     return static_cast<Parts*>(parts)->Handle(connection, path, method, bytes, byte_count, request);
-  } catch (const std::exception&) {  // no memory: nothing of this request can be kept
+  } catch (const std::exception&) {  // no memory for this request
     return MHD_NO;
   }
 }
@@ -256,8 +258,8 @@ void PageDaemon::HangUpLate() { parts_->waiting.HangUpLate(); }
 
 void PageDaemon::Stop() {
   parts_->is_ending = true;
-  // libmicrohttpd must not be stopped with a connection that is suspended. Each thread that ends
-  // resumes its own; streams are suspended no more, since their board is closed.
+  // libmicrohttpd must not be stopped while a connection is suspended. Each thread resumes its own
+  // connection when it ends; streams are no longer suspended, because their board is closed.
   parts_->threads.Stop();
   if (parts_->news.joinable()) parts_->news.join();
   if (parts_->daemon != nullptr) MHD_stop_daemon(std::exchange(parts_->daemon, nullptr));

@@ -1,5 +1,5 @@
-// HTTP between the page and the program: the only place with libmicrohttpd, together with
-// page_connection, page_responses and page_streams.
+// The HTTP server for the page. Only it, page_connection, page_responses and page_streams use
+// libmicrohttpd.
 #pragma once
 
 #include <functional>
@@ -15,26 +15,26 @@
 
 namespace lf {
 
-// A hostile client takes no more than this: headers of a request 32 kB, connections without a whole
-// request 128, each for 5 s, bodies of all requests together 18 MiB. Only requests with the token
-// get past their headers (page_request.h).
+// Limits of what a hostile client can use: 32 kB for the headers of a request, 128 connections
+// without a complete request for 5 s each, 18 MiB for the bodies of all requests together. Only
+// requests with the token get past their headers (page_request.h).
 class PageDaemon {
  public:
-  // Called by several threads at once. May throw.
+  // Makes an answer. Called by several threads at the same time. May throw.
   //   name  below the token's folder
   using Answerer =
       std::function<PageAnswer(const RequestHead& head, std::string_view name, std::string&& body)>;
 
-  // The files of the page and "events", the stream of news, are answered without the answerer.
+  // The daemon itself answers requests for files of the page and for "events", the stream of news.
   PageDaemon(PageDoor door, EventBoard& events, Answerer answerer);
   ~PageDaemon();
 
-  // kOutput: the machine has no thread or memory left.
-  //   socket  listens; it is closed in the end
+  // Takes over the listening `socket` and closes it at the end. kOutput: the machine has no thread
+  // or memory left.
   Result<void> Start(int socket);
-  // Hangs up on connections that send no request for too long. To be called now and then.
+  // Closes connections that have sent no complete request for too long. To be called now and then.
   void HangUpLate();
-  // Returns when what is being answered is. Events must be closed.
+  // Returns when all current answers are sent. The event board must be closed before.
   void Stop();
 
  private:

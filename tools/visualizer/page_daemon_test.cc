@@ -20,7 +20,7 @@ namespace {
 
 const std::string kToken = "0123456789abcdef0123456789abcdef";
 
-// A daemon whose answerer is the test's.
+// A daemon with the answerer of the test.
 class Daemon {
  public:
   explicit Daemon(PageDaemon::Answerer answerer) {
@@ -45,7 +45,7 @@ class Daemon {
   std::unique_ptr<PageDaemon> daemon_;
 };
 
-// A connection that has asked for something.
+// A connection with a request on it.
 class Request {
  public:
   Request(const Daemon& daemon, const std::string& method, const std::string& name,
@@ -66,7 +66,8 @@ class Request {
   Request(const Request&) = delete;
   Request& operator=(const Request&) = delete;
 
-  // What has been received when it holds the words; without words, at its end.
+  // Returns what was received once it contains the words; without words, at the end of the
+  // connection.
   const std::string& Until(const std::string& words) {
     char bytes[4096];
     while (words.empty() || received_.find(words) == std::string::npos) {
@@ -138,7 +139,7 @@ TEST(PageDaemon, SlowAnswersHoldUpNeitherOthersNorTheEnd) {
     changed.wait(lock, [&] { return slow_count == 7; });
   }
   EXPECT_TRUE(Request(daemon, "GET", "quick").Whole().starts_with("HTTP/1.1 200 "));
-  // More than there are threads: those in the queue are left when the daemon stops.
+  // There are more requests than threads; those in the queue remain when the daemon stops.
   for (int i = 0; i < 20; ++i) slow.push_back(std::make_unique<Request>(daemon, "GET", "slow"));
   {
     std::unique_lock lock(mutex);
@@ -162,13 +163,13 @@ TEST(PageDaemon, AStreamTellsNewsUntilTheBoardIsClosed) {
   daemon.events.Post("film", "{}");
   stream.Until("event: film\ndata: {}\n\n");
   other.Until("event: film\ndata: {}\n\n");
-  stream.Until(": still here\n\n");  // without news
+  stream.Until(": still here\n\n");  // a sign of life without news
   daemon.Stop();
   stream.Whole();
   other.Whole();
 }
 
-// In HTTP/1.0 there are no chunks between.
+// HTTP/1.0 has no chunks in the body.
 TEST(PageDaemon, LongNewsArriveWhole) {
   Daemon daemon(Echo);
   Request stream(daemon, "GET", "events", "HTTP/1.0");

@@ -39,7 +39,7 @@ std::optional<FrameId> FrameOf(const Json& json, const CameraPath& path) {
   return FrameId{static_cast<uint32_t>(number)};
 }
 
-// With the line and column that the parser names: "path.yaml:12:5: ...".
+// Adds the line and column in the parser's message: "path.yaml:12:5: ...".
 PageAnswer RefusedPath(const Error& error, const std::string& file) {
   Json json = {{"error", error.message}};
   if (error.message.starts_with(file + ":")) {
@@ -60,7 +60,7 @@ PageAnswer Save(PageScene& scene, const Json& json) {
   const std::string text = TextOf(json, "text");
   const auto draft = scene.AddDraft(text);
   if (!draft) return RefusedPath(draft.error(), scene.arguments().path.filename().string());
-  static std::mutex one_page_at_a_time;  // what another has written is seen
+  static std::mutex one_page_at_a_time;  // each page sees what another has written
   const std::lock_guard lock(one_page_at_a_time);
   const auto force = json.find("force");
   const bool is_forced = force != json.end() && force->is_boolean() && force->get<bool>();

@@ -1,4 +1,4 @@
-// What the page asks to be done: paths checked and saved, previews, focus picking.
+// Edits that the page requests: checking and saving paths, previews, focus picking.
 #pragma once
 
 #include <string>
@@ -10,12 +10,12 @@
 
 namespace lf {
 
-// By names, with JSON bodies. What a person does wrong is answered as well, with "error": HTTP's
-// own errors are for requests that no page makes.
+// Requests by name, with JSON bodies. Mistakes of the user are answered with "error"; HTTP errors
+// are for requests that the page never makes.
 //   check         {"text"} -> the head of the path (PathHeadJson), or "error", "line", "column"
 //   save          {"text", "expected": id of PATH.yaml's text as the page knows it, "force"}
-//                 -> {"id"}; "conflict" with "error" where the file is another meanwhile
-//   preview       {"text", "frame"} -> {}; how it goes is told by events
+//                 -> {"id"}; "conflict" with "error" if the file was changed meanwhile
+//   preview       {"text", "frame"} -> {}; events report its progress
 //   preview/stop  {} -> {}
 //   focus         {"path": id, "frame", "x", "y"} in elements, or with "camera", in its pixels
 //                 -> {"point", "focus_distance", "certainty", "cameras"}

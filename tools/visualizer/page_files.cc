@@ -3,7 +3,7 @@
 #include <array>
 
 #ifdef LF_PAGE_FOLDER
-// As a section of the program: compilers take seconds for a megabyte of numbers.
+// Embeds a file as a section of the program: compilers need seconds for a megabyte of numbers.
 #define LF_EMBED(symbol, file)                                                                     \
   asm(".section .rodata\n.global " #symbol "_begin\n" #symbol "_begin:\n.incbin \"" LF_PAGE_FOLDER \
       "/" file "\"\n.global " #symbol "_end\n" #symbol                                             \

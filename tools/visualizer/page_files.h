@@ -1,4 +1,4 @@
-// The files of the page, which the build has put into this program (cmake/LfPage.cmake).
+// The files of the page, which the build embeds in this program (cmake/LfPage.cmake).
 #pragma once
 
 #include <span>
@@ -12,9 +12,9 @@ struct PageFile {
   std::string_view bytes;
 };
 
-// None in a build without Node.js and npm.
+// Empty in a build without Node.js and npm.
 std::span<const PageFile> PageFiles();
-// Null: there is none.
+// Returns nullptr if there is no such file.
 const PageFile* FindPageFile(std::string_view name);
 
 }  // namespace lf

@@ -1,4 +1,4 @@
-// The answers that are JSON.
+// Answers in JSON.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Names may hold any bytes; what is infinite becomes null.
+// Names may hold any bytes, which are replaced if they are not UTF-8; infinity becomes null.
 std::string Text(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -33,7 +33,8 @@ Json OfPackages(const PageScene& scene) {
   return packages;
 }
 
-// Directions through the corners of the image, at depth 1, in the world; without distortion.
+// Returns the directions through the corners of the image, in the world, at depth 1, without
+// distortion.
 Json CornersOf(const PinholeCamera& camera) {
   PinholeCamera straight = camera;
   straight.intrinsics.distortion = {};

@@ -9,7 +9,8 @@ namespace lf {
 namespace {
 
 bool Listen(int socket, int port) {
-  const int yes = 1;  // the port of a server that has just ended is free; SO_REUSEPORT would share
+  const int yes = 1;  // allows the port of a server that has just ended; SO_REUSEPORT would allow
+                      // sharing
   ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
   sockaddr_in address = {};
   address.sin_family = AF_INET;

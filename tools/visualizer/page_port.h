@@ -1,4 +1,4 @@
-// The port that the page is served at: of this machine alone.
+// Opens the port that serves the page, on this machine only.
 #pragma once
 
 #include "lf/core/result.h"
@@ -6,13 +6,14 @@
 namespace lf {
 
 struct PagePort {
-  int socket = -1;  // listens; whoever has it closes it
+  int socket = -1;  // listens; its owner closes it
   int port = 0;
 };
 
-// Listens on 127.0.0.1. Never shares the port with another program, another lfvisualizer included.
-//   port  0: any that is free
-// kOutput: the port is taken, or may not be had.
+// Listens on 127.0.0.1. The port is never shared with another program, not even another
+// lfvisualizer.
+//   port  0: any free port
+// kOutput: the port is in use or not permitted.
 Result<PagePort> ListenOnThisMachine(int port);
 
 }  // namespace lf

@@ -15,7 +15,7 @@ bool IsSameWord(std::string_view a, std::string_view b) {
                     [](char x, char y) { return Lower(x) == Lower(y); });
 }
 
-// Values of all headers of this name: a header may be sent twice, and each must be right.
+// Returns the values of all headers of this name: a header may occur twice, and each must be valid.
 std::vector<std::string_view> ValuesOf(const RequestHead& head, std::string_view name) {
   std::vector<std::string_view> values;
   for (const auto& [key, value] : head.headers)
@@ -23,7 +23,7 @@ std::vector<std::string_view> ValuesOf(const RequestHead& head, std::string_view
   return values;
 }
 
-// Takes a time that does not tell where the texts differ.
+// Takes a time that does not depend on where the texts differ.
 bool AreEqual(std::string_view a, std::string_view b) {
   if (a.size() != b.size()) return false;
   unsigned char difference = 0;
@@ -36,7 +36,7 @@ bool IsOurHost(std::string_view host, int port) {
   return host == fmt::format("127.0.0.1:{}", port) || host == fmt::format("localhost:{}", port);
 }
 
-// Browsers say which page a request comes from. Other programs send neither header.
+// Browsers state the page that a request comes from. Other programs send neither header.
 bool ComesFromOurPage(const RequestHead& head, int port) {
   constexpr std::string_view kScheme = "http://";
   for (const std::string_view origin : ValuesOf(head, "Origin"))
@@ -44,7 +44,7 @@ bool ComesFromOurPage(const RequestHead& head, int port) {
       return false;
   const auto sites = ValuesOf(head, "Sec-Fetch-Site");
   return std::all_of(sites.begin(), sites.end(), [](std::string_view site) {
-    return site == "same-origin" || site == "none";  // none: typed or pasted by a person
+    return site == "same-origin" || site == "none";  // none: typed or pasted by the user
   });
 }
 

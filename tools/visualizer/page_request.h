@@ -1,4 +1,4 @@
-// Decides from the head of a request whether it is answered, before a byte of its body is read.
+// Decides from the head of a request whether it is answered, before any of its body is read.
 #pragma once
 
 #include <cstddef>
@@ -21,24 +21,25 @@ struct RequestHead {
   std::vector<std::pair<std::string, std::string>> headers;
 };
 
-// The address of the page: the token is a folder, and all that a page asks for lies below it.
+// The address of the page: the token is a folder, and all names that the page requests lie below
+// it.
 struct PageDoor {
   int port = 0;
   std::string token;
 };
 
-// Returns why the request is refused, or nothing if it may be answered. Checks, in this order:
-//   403  Host is not 127.0.0.1 or localhost with our port, so that no other site's name can be
-//        pointed here; the path lacks the token; the path holds "..", "\" or "%", which no name of
+// Returns the refusal of a request, or nullopt if it may be answered. Checks in this order:
+//   403  Host is not 127.0.0.1 or localhost with our port (so that no other site's name can be
+//        pointed here); the path lacks the token; the path holds "..", "\" or "%", which no name of
 //        ours does; Origin or Sec-Fetch-Site name another site
 //   405  the method is not GET, HEAD or POST
-//   415  Content-Encoding is not "identity": bodies that expand are never accepted
+//   415  Content-Encoding is not "identity": compressed bodies are never accepted
 //   400  GET or HEAD with a body, or lengths that contradict each other
 //   501  Transfer-Encoding is not "chunked"
 //   413  Content-Length exceeds kMostBodyBytes
 std::optional<PageAnswer> RefusalOf(const RequestHead& head, const PageDoor& door);
 
-// The part of the path below the token. The request must not be refused.
+// Returns the part of the path below the token. The request must not have been refused.
 std::string_view NameOf(const RequestHead& head, const PageDoor& door);
 
 }  // namespace lf

@@ -1,6 +1,6 @@
-// What a page may ask: any name, any body; the answer is one of those that the page understands.
-// Input: a name that is looked up; with a line feed behind it an edit, whose body follows. FIRST
-// stands for the id of the path that was opened.
+// A page may send any name and any body; the answer must be one that the page understands. The
+// input is a name to look up, or the name of an edit, a line feed and a body. FIRST stands for the
+// id of the first path.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -29,7 +29,7 @@ constexpr std::string_view kPath =
     "camera: {field_of_view_deg: 50, position: [0, 0, 0], look_at: [0, 0, 1]}\n"
     "lens: {aperture_diameter_mm: 30, focus_distance: 1}\n";
 
-// A grid of LF cameras whose images are missing, in a folder of its own.
+// A grid of LF cameras without image files, in a folder of its own.
 struct World {
   World() {
     std::string name = (std::filesystem::temp_directory_path() / "page_requests-XXXXXX").string();
@@ -71,7 +71,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size_bytes) {
   if (line_end == std::string::npos) {
     answer = lf::Answer(*world.scene, name);
   } else {
-    if (name == "preview") return 0;  // would start a program
+    if (name == "preview") return 0;  // it would start a program
     answer = lf::Edit(*world.scene, *world.preview, name, text.substr(line_end + 1));
   }
   static const std::set<int> kStatuses = {200, 400, 404, 410, 422, 507};

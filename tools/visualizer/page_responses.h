@@ -1,4 +1,4 @@
-// Answers in the form that libmicrohttpd sends.
+// Converts answers to responses of libmicrohttpd.
 #pragma once
 
 #include <microhttpd.h>
@@ -15,14 +15,15 @@ namespace lf {
 struct ResponseEnd {
   void operator()(MHD_Response* response) const { MHD_destroy_response(response); }
 };
-using Response = std::unique_ptr<MHD_Response, ResponseEnd>;  // null: no memory
+using Response = std::unique_ptr<MHD_Response, ResponseEnd>;  // nullptr: no memory
 
-// Bounds the bytes that all connections together make the server hold. Thread-safe.
+// Bounds the total size of the bytes that connections make the server hold. Thread-safe.
 class ByteBudget {
  public:
   explicit ByteBudget(size_t most_bytes) : most_bytes_(most_bytes) {}
 
-  // False if others hold so much that these would exceed the bound. One holder alone may exceed it.
+  // Returns false if these bytes and those of other holders would exceed the bound. A single holder
+  // may exceed it.
   bool Take(size_t bytes) {
     const size_t held_before = held_bytes_.fetch_add(bytes);
     if (held_before == 0 || held_before + bytes <= most_bytes_) return true;
@@ -36,11 +37,11 @@ class ByteBudget {
   std::atomic<size_t> held_bytes_ = 0;
 };
 
-// The page must not be shown inside another, must not be cached, and loads nothing from elsewhere.
+// Forbids to show the page inside another page, to cache it, and to load anything from elsewhere.
 void AddHeaders(MHD_Response* response, const char* type);
 
-// The body is sent as it is: a browser would gain nothing from compression on one machine. It
-// counts in the budget until it is sent; an answer that does not fit becomes a refusal with 503.
+// The body is sent uncompressed, because compression gains nothing on one machine. It counts in the
+// budget until it is sent; an answer beyond the budget becomes a refusal with 503.
 Response ResponseOf(PageAnswer& answer, ByteBudget& budget);
 Response ResponseOf(const PageFile& file);
 

@@ -1,5 +1,5 @@
-// Everything that the page may ask about: the light field, the path and its drafts, packages, the
-// render that is watched.
+// Everything that the page may ask about: the light field, the path and its drafts, packages, and
+// the render that is watched.
 #pragma once
 
 #include <filesystem>
@@ -24,7 +24,7 @@
 
 namespace lf {
 
-// How lfvisualizer was called.
+// The command line of lfvisualizer.
 struct PageArguments {
   std::string light_field;                       // LIGHTFIELD as it was given
   std::vector<std::string> light_field_options;  // --fov-deg 60 ...
@@ -38,19 +38,19 @@ struct PageArguments {
   int threads = 0;
 };
 
-// A path as it is being shaped: its text, checked by the parser of the programs.
+// A path while it is edited: its text, checked by the parser of the programs.
 struct PathDraft {
   std::string id;  // of the text: 16 hexadecimal digits
   std::string text;
   std::shared_ptr<const CameraPath> path;
-  std::string cameras_hash;       // as packages have it
-  std::shared_ptr<FilmUse> film;  // begun when it is asked for
-  uint64_t film_number = 0;       // of those begun
+  std::string cameras_hash;       // in the form that packages store
+  std::shared_ptr<FilmUse> film;  // created on demand
+  uint64_t film_number = 0;       // number of this film in the order of their starts
 };
 
 class PageScene {
  public:
-  // kInput: path, packages, packed stores. Packages of another film are left aside with a warning.
+  // kInput: path, packages, packed stores. Packages of another film are ignored with a warning.
   static Result<std::unique_ptr<PageScene>> Open(LightField light_field, PageArguments arguments);
 
   const PageArguments& arguments() const { return arguments_; }
@@ -62,20 +62,22 @@ class PageScene {
   const std::vector<std::unique_ptr<Package>>& packages() const { return packages_; }
   const std::string& packages_note() const { return packages_note_; }
 
-  // The path of the file as it was read.
+  // Returns the path in the file as it was when lfvisualizer started.
   std::shared_ptr<PathDraft> first_draft() const { return first_draft_; }
-  // kInput: what the programs would say of it, too.
+  // Parses and keeps a draft. kInput: the error that the programs would report.
   Result<std::shared_ptr<PathDraft>> AddDraft(const std::string& text);
-  // The last few that were asked for are kept, and the first; null: not known (any more).
+  // Returns a draft, or nullptr if it is unknown. The first draft and the last few used ones are
+  // kept.
   std::shared_ptr<PathDraft> FindDraft(const std::string& id);
 
-  // Of the package that the frame is in, if the draft has its cameras.
+  // Returns what a frame uses, as decided by its package if the draft has the cameras of that
+  // package.
   FrameUse UseOf(const PathDraft& draft, FrameId frame);
-  // Begins to ask all frames of the draft. The last few films go on, for as many pages; others are
-  // left off.
+  // Starts to examine all frames of the draft in the background. The last few films continue, one
+  // for each page; older ones are stopped.
   std::shared_ptr<FilmUse> FilmOf(PathDraft& draft);
 
-  // PATH.yaml as it is on the disk now.
+  // Returns the current content of PATH.yaml.
   Result<std::string> TextOnDisk() const;
 
  private:
@@ -91,13 +93,13 @@ class PageScene {
   std::vector<std::unique_ptr<ImageIndex>> package_indices_;
   std::string packages_note_;
   EventBoard events_;
-  std::mutex mutex_;  // of the drafts and their films
+  std::mutex mutex_;  // guards drafts and their films
   uint64_t films_begun_ = 0;
   std::shared_ptr<PathDraft> first_draft_;
-  std::list<std::shared_ptr<PathDraft>> drafts_;  // the newest first
+  std::list<std::shared_ptr<PathDraft>> drafts_;  // the last used first
 };
 
-// 16 hexadecimal digits.
+// Returns 16 hexadecimal digits.
 std::string IdOfText(std::string_view text);
 
 }  // namespace lf

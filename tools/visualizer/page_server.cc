@@ -53,7 +53,7 @@ struct PageServer::Parts {
   void Watch();
 
   PageScene& scene;
-  int socket;  // listens, until the daemon has it
+  int socket;  // listens; owned until the daemon takes it over
   PreviewRender preview;
   PageDaemon daemon;
 };
@@ -65,7 +65,7 @@ PageAnswer PageServer::Parts::Get(std::string_view name) {
   return Answer(scene, name);
 }
 
-// Tells pages when the watched render has something new.
+// Tells pages when the watched render has news.
 void PageServer::Parts::Watch() {
   std::string seen;
   std::string path_id = scene.first_draft()->id;

@@ -1,7 +1,7 @@
-// The page and its data on http://127.0.0.1:PORT/TOKEN/.
+// Serves the page and its data at http://127.0.0.1:PORT/TOKEN/.
 //
-// Only who knows the token, 128 random bits in the address, is answered; only on this machine; only
-// as 127.0.0.1 or localhost, so that no other site's name can be pointed here.
+// Requests are answered only with the token, 128 random bits in the address; only on this machine;
+// and only for the hosts 127.0.0.1 or localhost, so that no other site's name can be pointed here.
 #pragma once
 
 #include <atomic>
@@ -17,14 +17,13 @@ namespace lf {
 
 class PageServer {
  public:
-  //   port  0: any that is free
-  // kOutput: the port is taken, this build has no page.
+  // port  0: any free port
   static Result<std::unique_ptr<PageServer>> Open(PageScene& scene, int port);
   ~PageServer();
 
-  // http://127.0.0.1:8080/0123456789abcdef0123456789abcdef/
+  // Returns http://127.0.0.1:8080/0123456789abcdef0123456789abcdef/.
   const std::string& address() const { return address_; }
-  // Until the flag is set. kOutput: it cannot listen.
+  // Serves until the flag is set. kOutput: the server cannot listen.
   Result<void> ServeUntil(const std::atomic<bool>& interrupted);
 
  private:

@@ -25,7 +25,7 @@ bool PageStreams::Open(MHD_Connection* connection, Response* response) {
     Free(stream.release());
     return false;
   }
-  stream.release();  // Free() has it
+  stream.release();  // Free() deletes it
   AddHeaders(response->get(), "text/event-stream");
   return true;
 }
@@ -58,12 +58,12 @@ ssize_t PageStreams::Read(void* stream, uint64_t /*position*/, char* text, size_
 }
 
 ssize_t PageStreams::ReadNews(Stream& stream, char* text, size_t most_bytes) {
-  // Between the look at the board and the suspension there must be no WakeAll().
+  // The lock excludes WakeAll() between reading the board and the suspension.
   const std::lock_guard lock(mutex_);
   if (events_.is_closed()) return MHD_CONTENT_READER_END_OF_STREAM;
   if (stream.text.empty()) {
     stream.text = events_.WaitForNews(&stream.seen, std::chrono::milliseconds(0));
-    // A page that has gone is noticed because it does not take this.
+    // A page that has gone is detected because it does not receive this text.
     if (stream.text.empty() && stream.is_woken) stream.text = ": still here\n\n";
     stream.is_woken = false;
   }

@@ -1,4 +1,4 @@
-// Server-sent events: a stream of news for each page that is open.
+// Server-sent events: a stream of news for each open page.
 #pragma once
 
 #include <list>
@@ -11,18 +11,18 @@
 
 namespace lf {
 
-// A stream holds no thread: its connection is suspended between news, and one thread, that of
-// Run(), resumes them all.
+// A stream occupies no thread: its connection is suspended between news, and the single thread of
+// Run() resumes all connections.
 class PageStreams {
  public:
   PageStreams(EventBoard& events, size_t most_count) : events_(events), most_count_(most_count) {}
 
-  // False: so many are open already, or there is no memory.
-  //   response  sends news to this connection until either side ends it
+  // Returns false if too many streams are open, or if there is no memory.
+  //   response  sends news to this connection until either side closes it
   bool Open(MHD_Connection* connection, Response* response);
 
-  // Wakes the streams when there are news, and each second without. Returns when the board is
-  // closed; no connection is suspended then, now and later.
+  // Wakes the streams for news, and once per second without news. Returns when the board is closed;
+  // from then on, no connection is suspended.
   void Run();
 
  private:
@@ -30,7 +30,7 @@ class PageStreams {
     PageStreams& streams;
     MHD_Connection* connection;
     uint64_t seen = 0;  // number of the last news
-    // Still to be sent. The first goes at once, so that the page knows that it is connected.
+    // Text to be sent. The first one is sent at once, so that the page knows that it is connected.
     std::string text = ": hello\n\n";
     bool is_woken = false;
   };

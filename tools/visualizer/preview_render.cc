@@ -26,7 +26,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds kBetweenLooks(150);
 constexpr size_t kMostComplaints = 1 << 20;
 
-// lfrenderer beside this program, else the one in PATH.
+// Returns lfrenderer in this program's folder, or the one in PATH.
 std::string Renderer() {
   std::error_code error;
   const fs::path beside = fs::read_symlink("/proc/self/exe", error).parent_path() / "lfrenderer";
@@ -52,7 +52,7 @@ std::vector<std::string> WordsOf(const PageArguments& arguments, const fs::path&
   return words;
 }
 
-// The last line that says something.
+// Returns the last line that is not empty.
 std::string LastLine(const fs::path& file) {
   auto text = ReadFile(file, kMostComplaints);
   if (!text) return "it said nothing";
@@ -144,12 +144,12 @@ void PreviewRender::Render(const Wish& wish) {
   std::string seen;
   std::optional<CommandEnd> end;
   while (!(end = (*command)->Poll())) {
-    if (IsSuperseded()) return Say(wish, "stopped", "");  // ~Command() kills it
+    if (IsSuperseded()) return Say(wish, "stopped", "");  // ~Command() kills lfrenderer
     const std::string now = RenderJson(frames);
     if (now != std::exchange(seen, now)) Say(wish, "rendering", "");
   }
   if (end->exit_code == 0 && end->signal == 0) return Say(wish, "finished", "");
-  // The picture is whole but for LF images that are missing or broken.
+  // The picture is complete except for LF images that are missing or broken.
   constexpr int kBelow = static_cast<int>(ErrorKind::kBelowRequired);
   if (end->exit_code == kBelow) return Say(wish, "finished", LastLine(complaints));
   Say(wish, "failed",

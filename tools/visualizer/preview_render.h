@@ -1,5 +1,5 @@
-// A render of one frame while somebody looks: lfrenderer with a small plate, in a folder that is
-// removed in the end.
+// Renders one frame while the user looks at it: lfrenderer with a small plate, in a folder that is
+// removed at the end.
 #pragma once
 
 #include <condition_variable>
@@ -20,19 +20,19 @@ namespace lf {
 
 class PreviewRender {
  public:
-  // Posts "preview" to the board: {"frame": 7, "state": "rendering", "changed": "..."}; states are
-  // rendering, finished, stopped, failed with a message.
+  // Posts "preview" to the board: {"frame": 7, "state": "rendering", "changed": "..."}. States are
+  // rendering, finished, stopped, and failed with a message.
   PreviewRender(const PageArguments& arguments, EventBoard& events);
-  ~PreviewRender();  // stops it
+  ~PreviewRender();  // stops the render
   PreviewRender(const PreviewRender&) = delete;
   PreviewRender& operator=(const PreviewRender&) = delete;
 
-  // In place of the one that is at work.
+  // Starts a render, and stops the current one.
   //   text  a path, checked
   void Start(const std::string& text, FrameId frame);
   void Stop();
 
-  // Of its frames; empty before the first.
+  // Returns the folder of the frames; empty before the first render.
   std::filesystem::path folder() const;
 
  private:
@@ -50,11 +50,11 @@ class PreviewRender {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::optional<Wish> wish_;
-  bool is_stopped_ = false;  // what is at work is to be left
+  bool is_stopped_ = false;  // the current render is to be stopped
   bool is_ending_ = false;
   std::filesystem::path root_, folder_;
   int count_ = 0;
-  std::thread thread_;  // lfrenderer dies with the thread that started it
+  std::thread thread_;  // lfrenderer dies with this thread, which starts it
 };
 
 }  // namespace lf

@@ -1,4 +1,4 @@
-// The folder of a render as the page sees it: frames.json, and 7.bin of a frame.
+// The folder of a render in the form that the page reads: frames.json, and 7.bin for a frame.
 #pragma once
 
 #include <filesystem>
@@ -9,10 +9,10 @@
 
 namespace lf {
 
-// {"folder": ..., "frames": [{"frame": 1, "finished": true, "changed": "..."}]}
+// Returns {"folder": ..., "frames": [{"frame": 1, "finished": true, "changed": "..."}]}.
 std::string RenderJson(const std::filesystem::path& folder);
 
-// "frames.json" or "FRAME.bin".
+// Answers the names "frames.json" and "FRAME.bin".
 PageAnswer AnswerOfRender(const std::filesystem::path& folder, std::string_view name);
 
 }  // namespace lf

@@ -27,7 +27,7 @@ void WaitingConnections::HangUpLate() {
     HangUpOldest();
 }
 
-// Whoever serves the connection sees its end, and closes the socket.
+// The thread that serves the connection notices its end and closes the socket.
 void WaitingConnections::HangUpOldest() {
   ::shutdown(connections_.front().socket, SHUT_RDWR);
   connections_.pop_front();

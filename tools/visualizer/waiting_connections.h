@@ -1,4 +1,5 @@
-// Connections that have sent no whole request yet, so that half requests cannot keep others out.
+// Connections that have not sent a complete request yet. They are limited so that incomplete
+// requests cannot keep others out.
 #pragma once
 
 #include <chrono>
@@ -8,22 +9,23 @@
 
 namespace lf {
 
-// A connection waits from its start, or from the end of its last answer, to the end of the headers
-// of its next request. The server's own time limit begins anew with each byte, so that a client
-// that sends one now and then would never meet it; the limits of this class count from the start.
-// Connections are known by their sockets, which must stay open until Remove(). Thread-safe.
+// A connection waits from its start, or from the end of its last answer, until the headers of its
+// next request are complete. libmicrohttpd's own time limit restarts with each byte, so a client
+// that sends one now and then would never reach it; the limits here count from the start.
+// Connections are identified by their sockets, which must stay open until Remove(). Thread-safe.
 class WaitingConnections {
  public:
-  // Hangs up on the connection that has waited longest if there are more than `most_count`: a new
-  // one with a whole request is always heard.
+  // If there are more than `most_count`, the connection that has waited longest is closed, so that
+  // a new one with a complete request is always heard.
   WaitingConnections(size_t most_count, std::chrono::milliseconds patience)
       : most_count_(most_count), patience_(patience) {}
 
-  // Hangs up if there is no memory to know it by.
+  // Closes the connection if there is no memory to store it.
   void Add(int socket);
-  // Its request is here, or it has ended. Does nothing if it does not wait.
+  // Called when the connection's request is complete, or the connection has ended. Does nothing if
+  // it is not waiting.
   void Remove(int socket);
-  // Hangs up on all that have waited longer than `patience`.
+  // Closes all connections that have waited longer than `patience`.
   void HangUpLate();
 
  private:
@@ -37,7 +39,7 @@ class WaitingConnections {
   const size_t most_count_;
   const std::chrono::milliseconds patience_;
   std::mutex mutex_;
-  std::list<Connection> connections_;  // the oldest first
+  std::list<Connection> connections_;  // in the order of `since`
 };
 
 }  // namespace lf
