@@ -1,5 +1,5 @@
-// Runs a fuzz target over the files of its corpus folders, without libFuzzer: the form in which
-// every test run replays inputs that once broke a parser.
+// Runs a fuzz target over the files of its corpus folders without libFuzzer. Every test run replays
+// in this way the inputs that once broke a parser.
 //
 // usage: x_fuzz FOLDER...      exit 1 if a folder is missing or holds no file
 #include <cstdint>

@@ -13,7 +13,7 @@ if (!folder) {
   process.exit(2);
 }
 
-// Of what the bundle holds, which asks for it.
+// The licences of the bundled packages, which require to be included.
 const licences = await Promise.all(
   ["three", "yaml"].map(async (name) => {
     const text = await readFile(path.join(web, "node_modules", name, "LICENSE"), "utf8");

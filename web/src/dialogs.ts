@@ -1,4 +1,4 @@
-// Dialogs: the commands that make this film, the keys, a question.
+// Dialogs: the commands that make this film, the list of keys, a question.
 
 import { byId, element } from "./element";
 import { filmCommands, preprocessorCommand } from "./path/commands";

@@ -1,4 +1,4 @@
-// Elements of the page, in one call.
+// Creates elements of the page with one call.
 
 type Attribute = string | number | boolean | null | ((event: Event) => void);
 type Child = Node | string | null;
@@ -24,7 +24,7 @@ export function byId<T extends HTMLElement>(id: string): T {
   return found as T;
 }
 
-// A canvas of as many device pixels as it has on the screen.
+// Gives a canvas as many pixels as it covers on the screen.
 export function fitCanvas(canvas: HTMLCanvasElement): CanvasRenderingContext2D {
   const ratio = window.devicePixelRatio || 1;
   const width = Math.max(1, Math.round(canvas.clientWidth * ratio));

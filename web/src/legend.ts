@@ -1,4 +1,4 @@
-// What the colours of LF cameras mean, how many there are of each, and which are shown.
+// The legend: the meaning of the colours of LF cameras, their counts, and which of them are shown.
 
 import { countsOf, IN_OTHER_FRAME, USED } from "./data/frame_use";
 import { element } from "./element";
@@ -62,7 +62,7 @@ export class Legend {
       });
     counts.forEach((count, kind) => {
       this.counts[kind].textContent = shortNumber(count);
-      // What there is none of is no use to know, but for the main ones.
+      // Kinds without an LF camera are hidden, except for the used ones.
       this.rows[kind].style.display = count > 0 || kind === USED ? "" : "none";
     });
   }

@@ -1,4 +1,4 @@
-// The page of lfvisualizer: put together and wired.
+// Assembles the page of lfvisualizer and connects its parts.
 
 import type { PathNews, RenderFacts, SceneFacts, Vec3 } from "./data/scene";
 import { getBytes, getJson, listen, receivedBytes } from "./data/source";
@@ -56,7 +56,7 @@ async function start(): Promise<void> {
   if (scene.packages_note) state.say(scene.packages_note);
   view.look("overview");
   state.emit("theme");
-  // For those who measure and test.
+  // For measurements and tests.
   Object.assign(window, { lfvisualizer: { state, view, receivedBytes } });
   document.body.dataset.ready = "yes";
 }
@@ -108,7 +108,7 @@ function wireView(state: State, view: SpaceView): void {
       for (const key of position.keyframes) places.push(key.value as Vec3);
       if (position.baseIsKey) places.push(position.base as Vec3);
     } catch {
-      // The text is being written.
+      // The text is being edited and not valid at the moment.
     }
     view.setKeyPoints(places);
   };
@@ -204,7 +204,7 @@ function wireKeys(
     const target = event.target as HTMLElement;
     const isTyped = /^(INPUT|TEXTAREA|SELECT)$/.test(target.tagName) && target.id !== "scrub";
     if (event.altKey || isTyped || byId<HTMLDialogElement>("dialog").open) return;
-    // A button that has the focus is pressed by the space bar.
+    // The space bar presses a focused button.
     if (key === " " && target.tagName === "BUTTON") return;
     if (!state.scene.server && (key === "k" || key === "p")) return;
     const action = plain[key];
@@ -236,7 +236,7 @@ function wireTheme(state: State, view: SpaceView): void {
   try {
     chosen = localStorage.getItem("lfvisualizer-theme");
   } catch {
-    // No storage: as the system wishes.
+    // Without storage, the theme of the system is used.
   }
   const apply = () => {
     state.isDark = chosen ? chosen === "dark" : wished.matches;
@@ -250,7 +250,7 @@ function wireTheme(state: State, view: SpaceView): void {
     try {
       localStorage.setItem("lfvisualizer-theme", chosen);
     } catch {
-      // It lasts as long as the page.
+      // Without storage, the choice lasts as long as the page.
     }
     apply();
   });

@@ -1,5 +1,5 @@
-// What the page shows: the light field, the path as it is being shaped, the frame, the LF camera
-// that is looked at. Views listen, and ask for changes here alone.
+// The state of the page: the light field, the path while it is edited, the frame, and the chosen LF
+// camera. Views listen to it and request all changes from it.
 
 import { readFrames, type FrameCamera } from "./data/frame_camera";
 import { readFrameUse, type FrameUse } from "./data/frame_use";
@@ -38,7 +38,7 @@ export interface PreviewFacts {
   changed: string;
 }
 
-const MOST_USES_BYTES = 96 << 20; // of frames that were looked at
+const MOST_USES_BYTES = 96 << 20; // data of visited frames that is kept
 
 export class State {
   path!: PathHead;
@@ -58,7 +58,7 @@ export class State {
   isDark = true;
 
   private savedText = "";
-  // The points that were clicked so far of the three that tilt the focus plane.
+  // Points clicked so far, of the three that define the focus plane.
   planePoints: { frame: number; points: Vec3[] } | null = null;
   private savedId = "";
   private readonly listeners = new Map<Change, (() => void)[]>();
@@ -67,11 +67,12 @@ export class State {
   private checking = 0;
   private taking = 0;
   private isSaving = false;
-  private broken: string | null = null; // why what has been typed is no YAML
-  private news: PathNews | null = null; // of the file, which edits that are not saved keep away
+  private broken: string | null = null; // why the typed text is no YAML
+  private news: PathNews | null = null; // a new version of the file, held back because of unsaved
+                                        // edits
   private fileHasFault = false;
   private bytesThatSavingLoses = false;
-  private selectedId: number | null = null; // its facts may be under way
+  private selectedId: number | null = null; // its facts may still be on the way
   private filmAsked = "";
   private filmIsStale = false;
 
@@ -125,7 +126,7 @@ export class State {
   private async take(head: PathHead): Promise<void> {
     const number = ++this.taking;
     const cameras = readFrames(await getBytes(`path/${head.id}/frames.bin`));
-    if (number !== this.taking) return; // a later edit's have come first
+    if (number !== this.taking) return; // those of a later edit came first
     this.path = head;
     this.cameras = cameras;
     this.frame = Math.min(this.frame, head.frames);
@@ -135,9 +136,9 @@ export class State {
     void this.askFilm();
   }
 
-  // Edits the path by `change`, which may refuse; then has the parser of the programs check it.
-  // merge: one step of undo with the edit before of the same label.
-  // False: it has refused.
+  // Edits the path by `change`, which may throw, and then has the parser of the programs check it.
+  //   merge  one undo step with the previous edit of the same label
+  // Returns false if `change` threw.
   edit(label: string, change: (document: PathDocument) => void, merge = false): boolean {
     try {
       change(this.document);
@@ -162,12 +163,12 @@ export class State {
     void this.check();
   }
 
-  // The text as a person has typed it.
+  // Takes over the text that a person has typed.
   setText(text: string): boolean {
     try {
       this.document = PathDocument.parse(text, this.scene.light_field.unit_m);
     } catch (error) {
-      ++this.checking; // what is under way is of another text
+      ++this.checking; // answers on the way are for another text
       this.broken = error instanceof Error ? error.message : String(error);
       this.invalid = this.broken;
       this.emit("text");
@@ -226,7 +227,7 @@ export class State {
     }
   }
 
-  // Another program has written the file: it is shown, unless edits would be lost.
+  // Shows the file that another program has written, unless unsaved edits would be lost.
   async fileHasChanged(news: PathNews): Promise<void> {
     this.news = null;
     if (news.id === this.savedId && this.fileHasFault) this.say("");
@@ -289,7 +290,7 @@ export class State {
       this.density = density;
       this.emit("density");
     } catch (error) {
-      // A path that is forgotten by the server is sent again.
+      // If the server has forgotten the path, it is sent again.
       if (error instanceof SourceError && error.status === 410 && !isSecond)
         void this.check().then(() => (isStill() ? this.askFrame(true) : undefined));
       else if (isStill()) this.fail(error);
@@ -298,7 +299,7 @@ export class State {
 
   async askFilm(): Promise<void> {
     const { id } = this.path;
-    // News that come while an answer is under way may be newer than it.
+    // News that arrive during a request may be newer than its answer.
     this.filmIsStale = this.filmAsked === id;
     if (this.filmIsStale) return;
     this.filmAsked = id;
@@ -310,7 +311,7 @@ export class State {
       this.framesOfCamera = new Uint16Array(counts);
       this.emit("film");
     } catch {
-      // The curves stay empty; the frame tells what is wrong.
+      // The curves stay empty; the frame's own request shows the error.
     } finally {
       if (this.filmAsked === id) this.filmAsked = "";
       if (this.filmIsStale) void this.askFilm();
@@ -338,7 +339,7 @@ export class State {
     }
   }
 
-  // Another of those that the frame takes.
+  // Chooses another LF camera of those that the frame uses.
   selectNext(step: number): void {
     const ids = this.use ? [...this.use.ids].sort((a, b) => a - b) : [];
     if (ids.length === 0) return;

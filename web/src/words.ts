@@ -1,4 +1,4 @@
-// Numbers and places as people read them.
+// Formats numbers and positions for people.
 
 export function shortNumber(value: number): string {
   if (!Number.isFinite(value)) return "∞";
@@ -27,7 +27,7 @@ export function seconds(value: number): string {
   return `${value.toFixed(2)} s`;
 }
 
-// World units; for what belongs to the lens, millimetres, or metres where it is a giant's.
+// length() formats world units; millimetres() formats lengths of the lens, in metres from 1 m on.
 export function length(value: number): string {
   return precise(value, 4);
 }

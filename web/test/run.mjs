@@ -38,7 +38,8 @@ try {
     bundle: true,
     platform: "node",
     format: "esm",
-    // What the page is bundled with; that for Node.js does not go into modules.
+    // The build of `yaml` for browsers, as in the page; its build for Node.js cannot be bundled as
+    // a module.
     alias: { yaml: join(webFolder, "node_modules/yaml/browser/index.js") },
     target: "node18",
     sourcemap: "inline",

@@ -1,4 +1,4 @@
-// The thin-lens camera of a frame, and where its rays go.
+// The thin-lens camera of a frame, and the directions of its rays.
 
 import type { Vec3 } from "./scene";
 
@@ -68,13 +68,14 @@ export const add = (a: Vec3, b: Vec3, scale = 1): Vec3 => [
 ];
 export const dot = (a: Vec3, b: Vec3): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
-// The ray of an element through the lens centre; length 1 along the optical axis.
+// Returns the ray of an element through the lens centre; its length along the optical axis is 1.
 export function elementDirection(camera: FrameCamera, x: number, y: number): Vec3 {
   const sideways = add(camera.forward, camera.right, (x - camera.cx) / camera.fx);
   return add(sideways, camera.up, -(y - camera.cy) / camera.fy);
 }
 
-// Where the element is sharp; a tilted plane's horizon is drawn at `mostDepths` focus distances.
+// Returns the point on the focus plane that an element sees. If the plane is tilted, points near
+// its horizon are drawn at `mostDepths` focus distances.
 export function focusPoint(camera: FrameCamera, x: number, y: number, mostDepths = 4): Vec3 {
   const direction = elementDirection(camera, x, y);
   const towards = dot(camera.normal, direction);
@@ -84,8 +85,8 @@ export function focusPoint(camera: FrameCamera, x: number, y: number, mostDepths
   return add(camera.centre, direction, depth);
 }
 
-// Corners of the opening (of a disk, points of its rim), counter-clockwise for the photographer,
-// the first straight up at rotation 0.
+// Returns the corners of the aperture (of a disk, points of its rim), counter-clockwise for the
+// photographer. At rotation 0 the first is at the top.
 export function lensRim(camera: FrameCamera, diskPoints = 48): Vec3[] {
   const count = camera.blades >= 3 ? camera.blades : diskPoints;
   const rim: Vec3[] = [];

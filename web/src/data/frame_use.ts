@@ -1,8 +1,8 @@
-// Which LF cameras a frame takes, and why not the others.
+// Which LF cameras a frame uses, and why it does not use the others.
 
 export const USES = ["used", "outside", "angle", "sees-none", "limit", "no-weight"] as const;
 export const USED = 0;
-// Of those that the frame does not take: another frame of the film does.
+// The frame does not use the LF camera, but another frame of the film does.
 export const IN_OTHER_FRAME = USES.length;
 
 export interface FrameUse {

@@ -1,5 +1,5 @@
-// The picture of a frame as it grows: linear light and rays, as half floats; shown with an exposure
-// of one's choice, or as a map of its rays.
+// The picture of a frame while it grows: linear light and ray counts as half floats. It is shown
+// with a chosen exposure, or as a map of its ray counts.
 
 export interface GrowingPicture {
   width: number;
@@ -40,7 +40,8 @@ function displayValue(linear: number): number {
   );
 }
 
-// A table of all halves: a picture of a megapixel is developed in some milliseconds.
+// Returns the display value of every half float: a picture of a megapixel is then developed in some
+// milliseconds.
 function displayTable(stops: number): Uint8ClampedArray {
   const table = new Uint8ClampedArray(65536);
   const factor = 2 ** stops;
@@ -67,7 +68,8 @@ export function develop(picture: GrowingPicture, stops: number): ImageData {
   return image;
 }
 
-// Dark violet over red to pale yellow; people of all colour vision see its order (after magma).
+// From dark violet over red to pale yellow (after magma): the order is visible with any colour
+// vision.
 const HEAT: [number, number, number][] = [
   [4, 3, 14],
   [59, 15, 112],
@@ -105,7 +107,7 @@ export function rayRange(picture: GrowingPicture): RayRange {
   };
 }
 
-// Elements without a ray are bright green: they should not be there.
+// Elements without a ray are bright green, because they should not exist.
 export function heatMap(picture: GrowingPicture, most: number): ImageData {
   const image = new ImageData(picture.width, picture.height);
   const table = new Map<number, [number, number, number]>();

@@ -1,4 +1,4 @@
-// scene.json and what hangs on it (doc/formats/page_data.md).
+// The content of scene.json and of the data that it names (doc/formats/page_data.md).
 
 export type Vec3 = [number, number, number];
 
@@ -11,7 +11,7 @@ export interface PathHead {
   height: number;
 }
 
-// What the file of the path has become.
+// The new state of the path's file.
 export interface PathNews {
   id: string;
   fault: string; // empty: none

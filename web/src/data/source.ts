@@ -1,4 +1,5 @@
-// What the page reads: names below the folder it was opened from, of a server or of exported files.
+// Reads the page's data by name, relative to the folder of the page: from a server or from exported
+// files.
 
 export class SourceError extends Error {
   constructor(
@@ -17,7 +18,7 @@ async function refusal(response: Response): Promise<SourceError> {
     if (typeof json.error === "string")
       return new SourceError(json.error, response.status);
   } catch {
-    // Not of our server: told below.
+    // The answer is not from our server; the error below says so.
   }
   return new SourceError(`${response.status} ${response.statusText}`, response.status);
 }
@@ -43,7 +44,7 @@ export async function getText(name: string): Promise<string> {
 
 let bytesReceived = 0;
 
-// Of all arrays so far, for those who measure.
+// Returns the size of all arrays so far, for measurements.
 export function receivedBytes(): number {
   return bytesReceived;
 }
@@ -54,7 +55,7 @@ export async function getBytes(name: string): Promise<ArrayBuffer> {
   return bytes;
 }
 
-// What a person has done wrong is an answer as well; it is thrown.
+// Throws a user's mistake, which the server reports as an answer, and not as an HTTP error.
 export async function post<T>(name: string, body: object): Promise<T> {
   const response = await ask(name, {
     method: "POST",
@@ -67,8 +68,8 @@ export async function post<T>(name: string, body: object): Promise<T> {
   return json;
 }
 
-// Server-sent events by their kind. The browser connects again by itself. A page that is not seen
-// gives its connection up: browsers have six for all pages of an address.
+// Receives server-sent events by their kind. The browser reconnects by itself. A hidden page closes
+// its connection, because browsers have only six for all pages of an address.
 export function listen(
   handlers: Record<string, (data: string) => void>,
   onConnection: (isThere: boolean) => void,

@@ -1,4 +1,4 @@
-// A focus plane through three points of the scene.
+// Finds a focus plane through three points of the scene.
 
 import type { FrameCamera } from "./frame_camera";
 import { add, dot } from "./frame_camera";
@@ -12,9 +12,9 @@ export interface TiltedFocus {
 
 const MOST_TILT_DEG = 85;
 
-// A point x to the right of the axis and y above it is sharp at the depth
-// distance + x tan(horizontal) + y tan(vertical). None where the points lie on a line, or the plane
-// is tilted by more than 85 degrees or meets the axis behind the camera.
+// A point x to the right of the axis and y above it is sharp at the depth distance + x
+// tan(horizontal) + y tan(vertical). Returns null if the points lie on a line, or if the plane is
+// tilted by more than 85 degrees or meets the axis behind the camera.
 export function focusThrough(camera: FrameCamera, points: readonly Vec3[]): TiltedFocus | null {
   const [a, b, c] = points.map((point) => {
     const offset = add(point, camera.centre, -1);

@@ -1,4 +1,4 @@
-// Shaping the path: values and keys of each quantity at this frame, whole movements, the file.
+// Edits the path: values and keys of each quantity at this frame, whole movements, and the file.
 
 import { add } from "../data/frame_camera";
 import { element } from "../element";
@@ -10,10 +10,10 @@ import { precise, seconds, vector } from "../words";
 
 interface Field {
   label: string;
-  // In the order of what the file may have; the first that it has is shown.
+  // Alternatives in the order of preference; the first one that the file has is shown.
   names: string[];
-  parts: string[]; // of a value; one: a number
-  // Of this frame, where the camera tells what `name` is between keys.
+  parts: string[]; // of a value; a number has one
+  // Returns the value at this frame, for quantities that the camera states between keys.
   now?: (state: State, name: string) => PathValue | null;
 }
 
@@ -98,8 +98,8 @@ export class EditPanel {
   });
   private readonly verdict = element("p", { role: "status", id: "verdict" });
   private readonly opened = new Set<string>();
-  private typing = 0; // the timer
-  private filledWith = ""; // the document that the text is of
+  private typing = 0; // timer
+  private filledWith = ""; // the document's text that the field was filled with
   private isSettling = false;
 
   constructor(
@@ -135,7 +135,7 @@ export class EditPanel {
     this.draw();
   }
 
-  // What has been typed since it was taken last. (An area of text knows no line ends but its own.)
+  // Takes over the text typed since the last call. (A text area has line ends of its own.)
   private takeText(): void {
     if (this.typing === 0) return;
     clearTimeout(this.typing);
@@ -151,7 +151,7 @@ export class EditPanel {
     if (this.root.hidden || !state.scene.server || state.cameras.length === 0) return;
     this.verdict.textContent = state.invalid ?? "";
     this.verdict.className = state.invalid ? "bad" : "muted";
-    // What is being typed, or is no YAML yet, stays until the document is another.
+    // Text that is being typed, or is invalid YAML, stays until the document changes.
     const text = state.document.text();
     if (this.typing === 0 && text !== this.filledWith) {
       this.text.value = text;
@@ -160,7 +160,7 @@ export class EditPanel {
     if (this.isSettling) return;
     const focused = document.activeElement;
     const isTyped = focused instanceof HTMLInputElement && focused.value !== focused.defaultValue;
-    if (isTyped && this.fields.contains(focused)) return; // stays
+    if (isTyped && this.fields.contains(focused)) return; // typing continues
     this.redrawFields();
   }
 
@@ -197,7 +197,7 @@ export class EditPanel {
     return index < 0 ? null : index;
   }
 
-  // Null: somewhere between keys.
+  // Returns the value at this frame, or null between keys if it is unknown.
   private valueNow(field: Field, quantity: Quantity): PathValue | null {
     const key = this.keyNow(quantity);
     if (key !== null) return key < 0 ? quantity.base! : quantity.keyframes[key].value;
@@ -220,8 +220,8 @@ export class EditPanel {
     const known = this.valueNow(field, quantity);
     const value = known ?? quantity.keyframes[0].value;
     const key = this.keyNow(quantity);
-    // What is shown is of this frame, or of the key that is nearest to it, wherever the timeline is
-    // when the value has been typed.
+    // The edit applies to this frame, or to the key nearest to it, even if the timeline has moved
+    // on when the value is complete.
     const time =
       key === null ? state.time : key < 0 ? 0 : quantity.keyframes[key].time;
     const isMoving = quantity.hasAccelerations || known === null;
@@ -240,7 +240,7 @@ export class EditPanel {
       input.addEventListener("change", () => {
         if (input.value === "" || !Number.isFinite(input.valueAsNumber)) return;
         const changed = withPart(value, i, input.valueAsNumber);
-        // The fields stay until the focus is where it will be.
+        // The fields are replaced only after the focus has moved.
         this.isSettling = true;
         setTimeout(() => {
           this.isSettling = false;

@@ -1,4 +1,4 @@
-// What this frame is and needs: the lens, the LF images, how densely they stand.
+// Shows this frame and what it needs: the lens, the LF images, and how densely they were captured.
 
 import { fNumber } from "../data/frame_camera";
 import { element } from "../element";

@@ -1,4 +1,4 @@
-// The image of the LF camera that is looked at, with the pixels that this frame may take.
+// Shows the image of the chosen LF camera, and the pixels that this frame may use.
 
 import { USES } from "../data/frame_use";
 import type { OverlapFacts } from "../data/scene";
@@ -106,7 +106,7 @@ export class ImagePanel {
       );
       if (number === this.asked) this.drawShapes(overlap, selected.width, selected.height);
     } catch {
-      // The frame's own request tells what is wrong.
+      // The error of the frame's own request is shown instead.
       if (number === this.asked) this.drawing.replaceChildren();
     }
   }
@@ -121,7 +121,7 @@ export class ImagePanel {
     };
     if (overlap.rect) {
       const [x0, y0, x1, y1] = overlap.rect;
-      // What is not read is dimmed.
+      // Dims the pixels that are not read.
       add("path", {
         d: `M0 0H${width}V${height}H0ZM${x0} ${y0}V${y1}H${x1}V${y0}Z`,
         fill: "rgb(0 0 0 / 0.5)",

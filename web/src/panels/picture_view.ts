@@ -1,4 +1,4 @@
-// A picture that a person may click to focus there.
+// A picture in which a click sets the focus.
 
 import type { FrameCamera } from "../data/frame_camera";
 import type { PickedFocus } from "../data/scene";
@@ -11,12 +11,12 @@ import type { State } from "../state";
 import { length, percent, precise } from "../words";
 
 export interface PickRequest {
-  camera?: number; // an LF camera; else the frame
+  camera?: number; // an LF camera; default: the frame
   x: number;
   y: number;
 }
 
-// Sets a quantity of the focus from a moment on: at a key if there are keys, else all the film long.
+// Sets a quantity of the focus at `time`: at a key if there are keys, otherwise for the whole film.
 function setFocus(document: PathDocument, name: string, time: number, value: PathValue): void {
   const quantity = document.quantity(name);
   if (quantity.keyframes.length > 0) document.setKeyframe(name, time, value);
@@ -24,7 +24,7 @@ function setFocus(document: PathDocument, name: string, time: number, value: Pat
   else document.setBase(name, value);
 }
 
-// Returns how the focus was given, if it is not any more.
+// Returns a text about the previous form of the focus, if it was replaced.
 function setFocusDistance(document: PathDocument, time: number, distance: number): string {
   const { given, hasAccelerations } = document.quantity("focus_distance");
   if (given) setFocus(document, "focus_distance", time, distance);
@@ -32,14 +32,15 @@ function setFocusDistance(document: PathDocument, time: number, distance: number
   return given && !hasAccelerations ? "" : ", instead of how the focus was given";
 }
 
-// Asks for the distance of what is seen there, and focuses on it.
-//   isOfPlane  it is one of three points that the focus plane shall hold
+// Requests the distance of the point seen there, and focuses on it.
+//   isOfPlane  it is one of the three points that define the focus plane
 export async function focusThere(
   state: State,
   request: PickRequest,
   isOfPlane: boolean,
 ): Promise<void> {
-  const { time, frame, camera } = state; // of what was clicked, wherever the timeline is by then
+  const { time, frame, camera } = state; // those of the click, even if the timeline has moved on
+                                         // when the answer arrives
   state.say("Comparing LF images …");
   try {
     const picked = await post<PickedFocus>("focus", {
@@ -62,7 +63,7 @@ export async function focusThere(
   }
 }
 
-// After the third point the focus plane is tilted so that it holds all of them.
+// After the third point, tilts the focus plane so that it contains all three.
 function addToPlane(
   state: State,
   picked: PickedFocus,
@@ -90,8 +91,8 @@ function addToPlane(
     );
 }
 
-// Calls `pick` with the place in the picture's own coordinates, and marks it. With Shift it is one of
-// three points of a focus plane.
+// Calls `pick` with a clicked position in the picture's own coordinates, and marks the position. A
+// click with Shift sets one of the three points of a focus plane.
 export function makePickable(
   frame: HTMLElement,
   size: () => [number, number],
@@ -110,7 +111,7 @@ export function makePickable(
   });
 }
 
-// A button that shows the picture over the whole space, and back.
+// Returns a button that shows the picture over the whole view, and back.
 export function enlargeButton(picture: HTMLElement): HTMLButtonElement {
   const place = document.createComment("");
   const button = element("button", { "aria-pressed": "false", title: "Esc: back" }, "Large");

@@ -1,4 +1,4 @@
-// Frames as they grow: of a render that is watched, or a small preview of this frame.
+// Shows frames while they grow: those of a watched render, or a small preview of this frame.
 
 import type { FrameCamera } from "../data/frame_camera";
 import type { RenderFacts } from "../data/scene";
@@ -40,7 +40,7 @@ export class RenderPanel {
   private picture: GrowingPicture | null = null;
   private shownName = "";
   private wantedName = "";
-  private fault = ""; // why the last could not be read
+  private fault = ""; // why the last picture could not be read
   private previewed: FrameCamera | null = null;
   private isLoading = false;
   private readonly sources = element("div", { class: "row group" });
@@ -91,7 +91,7 @@ export class RenderPanel {
     this.update();
   }
 
-  // Where the picture is of what the frame sees now.
+  // Focuses on a position in the picture, if the picture has the view of the current frame.
   private focusAt(x: number, y: number, isOfPlane: boolean): void {
     const { state, picture, previewed } = this;
     const { camera } = state;
@@ -105,7 +105,7 @@ export class RenderPanel {
     void focusThere(state, { x, y }, isOfPlane);
   }
 
-  // A render of this frame with a small plate, as the path is now.
+  // Starts a render of this frame with a small plate, along the current path.
   async start(): Promise<void> {
     const { state } = this;
     const document = PathDocument.parse(state.document.text(), state.scene.light_field.unit_m);
@@ -258,8 +258,8 @@ export class RenderPanel {
     this.wantedName = "";
   }
 
-  // version: a picture that is there already is not read again. One is read at a time; what is
-  // wanted when it has come, a newer version or another frame, is read after it.
+  // Reads a picture, unless the same version is already shown. One picture is read at a time; if a
+  // newer version or another frame is wanted meanwhile, it is read afterwards.
   private async load(name: string, version: string): Promise<void> {
     const wanted = `${name}?${version}`;
     this.wantedName = wanted;
@@ -274,9 +274,9 @@ export class RenderPanel {
         this.drawPicture();
       }
     } catch (error) {
-      // A checkpoint may be replaced while it is read; the next one comes.
+      // A checkpoint may be replaced while it is read; its next version follows.
       if (!(error instanceof Error && /no such frame/.test(error.message))) {
-        this.picture = null; // what is shown is of another frame
+        this.picture = null; // the picture is that of another frame
         this.shownName = "";
         this.state.fail(error);
         this.fault = this.state.message?.text ?? "";
@@ -320,8 +320,7 @@ export class RenderPanel {
   }
 }
 
-// Whether a place in the picture of one is the same place in that of the other: focus and lens may
-// differ.
+// Returns true if positions in the pictures of both cameras correspond. Focus and lens may differ.
 function seeAlike(a: FrameCamera, b: FrameCamera): boolean {
   const view = ({ centre, forward, up, fx, fy, cx, cy, width, height }: FrameCamera) =>
     [...centre, ...forward, ...up, fx, fy, cx, cy, width, height];

@@ -1,4 +1,4 @@
-// The shell commands that film a path: what a person copies, so defaults are left out.
+// The shell commands that film a path. People copy them, so default values are left out.
 
 export interface LightFieldOptions {
   focalPx?: number;
@@ -6,7 +6,7 @@ export interface LightFieldOptions {
   images?: string;
 }
 
-// Of both programs; `seed` decides the order of LF images.
+// Options of both programs; `seed` decides the order of LF images.
 export interface SharedOptions extends LightFieldOptions {
   frames?: string;
   memory?: string;
@@ -72,7 +72,7 @@ export interface FilmRequest {
 
 type Value = string | number | boolean | readonly number[] | undefined;
 
-// An option that has its default is not written.
+// An option; it is left out if it has its default.
 interface Flag {
   flag: string;
   initial?: Value;
@@ -129,7 +129,7 @@ const kRenderer: Record<string, Flag> = {
   ...kCommon,
 };
 
-// Packages have these from lfpreprocessor; lfrenderer refuses some of them.
+// Packages already have these from lfpreprocessor, and lfrenderer refuses some of them.
 const kInPackages = ["focalPx", "fovDeg", "images", "seed", "maxImages", "maxAngle",
                      "frames"];
 
@@ -149,7 +149,7 @@ export function rendererCommand(request: RendererRequest | PackageRequest): stri
           ...flags(kRenderer, request.options ?? {}, isPackages ? kInPackages : [])].join(" ");
 }
 
-// One command, or two where a folder of packages is asked for.
+// Returns one command, or two if a folder of packages is requested.
 export function filmCommands(request: FilmRequest): string[] {
   const options = request.options ?? {};
   const folder = request.packageFolder;
@@ -161,13 +161,13 @@ export function filmCommands(request: FilmRequest): string[] {
   ];
 }
 
-// One word of a POSIX shell.
+// Returns a text as one word of a POSIX shell.
 export function quote(word: string): string {
   if (/^[A-Za-z0-9_@%+:,./-]+$/.test(word)) return word;
   return `'${word.replace(/'/g, "'\\''")}'`;
 }
 
-// The name of a file that is neither taken for an option nor, in brackets, for a list.
+// Returns a file name that is not mistaken for an option or, with brackets, for a list.
 export function quoteFile(name: string): string {
   return quote(/^[-[]/.test(name) ? `./${name}` : name);
 }

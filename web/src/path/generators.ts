@@ -1,16 +1,17 @@
-// Whole movements written into a path: they replace how a quantity moved before, and make the film
-// long enough. Each returns what the edit is called.
+// Writes whole movements into a path. They replace the former motion of a quantity and make the
+// film long enough. Each function returns the name of the edit.
 import type { Keyframe, PathDocument } from "./path_document";
 
 type Vector = readonly [number, number, number] | readonly number[];
 
 export interface OrbitOptions {
-  centre: Vector;         // world units; the axis goes through it, and the camera looks at it
-  axis: Vector;           // any length; also the picture's upper side, unless that is along it
+  centre: Vector;         // world units; on the axis, and where the camera looks
+  axis: Vector;           // any length; also the picture's up direction, unless the camera looks
+                          // along it
   startPosition: Vector;  // of the camera, off the axis
   degrees: number;        // right-handed about the axis
   seconds: number;
-  start?: number;         // seconds; 0 if not given
+  start?: number;         // seconds; default: 0
 }
 
 export interface DollyOptions {
@@ -24,14 +25,15 @@ export interface FocusPullOptions {
   from: number;           // focus distances, world units
   to: number;
   seconds: number;        // of the pull itself
-  hold?: number;          // seconds before and after it
-  start?: number;         // seconds before it, if not those
+  hold?: number;          // seconds before and after the pull
+  start?: number;         // seconds before the pull, if not `hold`
 }
 
-// Between keys so far apart the Catmull-Rom curve keeps within 0.13 % of the radius on the circle.
-// The first and the last stretch decide, where the curve begins along the chord: 2/27 angle^2.
+// With keys this far apart, the Catmull-Rom curve deviates from the circle by at most 0.13 % of the
+// radius. The first and the last segment decide, where the curve begins along the chord: 2/27
+// angle^2.
 const kOrbitStep_deg = 7.5;
-const kResolution = 1e-5;  // of a movement's size: how exactly it is written at least
+const kResolution = 1e-5;  // of a movement's size: the precision with which it is written
 
 export function orbit(path: PathDocument, options: OrbitOptions): string {
   const { degrees, seconds, start = 0 } = options;
@@ -68,7 +70,7 @@ export function orbit(path: PathDocument, options: OrbitOptions): string {
   return `Orbit of ${round(degrees)}° in ${round(seconds)} s`;
 }
 
-// Straight on, at a constant speed.
+// Moves straight at a constant speed.
 export function dolly(path: PathDocument, options: DollyOptions): string {
   const { from, to, seconds, start = 0 } = options;
   checkDuration(seconds, start);
@@ -99,7 +101,7 @@ function refine(path: PathDocument, size_w: number): void {
   if (size_w > 0) path.resolution_w = Math.min(path.resolution_w, kResolution * size_w);
 }
 
-// The film becomes longer, never shorter. Frame i is at (i - 1) / fps.
+// Makes the film longer if necessary, but never shorter. Frame i is at (i - 1) / fps.
 function coverSeconds(path: PathDocument, seconds: number): void {
   const fps = path.constant("fps");
   const frames = path.constant("frames");
@@ -108,8 +110,8 @@ function coverSeconds(path: PathDocument, seconds: number): void {
   if (typeof frames !== "number" || frames < needed) path.setConstant("frames", needed);
 }
 
-// `up` along the axis can never be where the camera looks, whatever the file had; of the axis's two
-// directions the one that is nearer to that.
+// Sets `up` along the axis, which an orbiting camera never looks along. Of the axis's two
+// directions, the one nearer to the former `up` is used.
 function standUpright(path: PathDocument, axis: Vector): void {
   const given = path.constant("up");
   const up = Array.isArray(given) && Math.hypot(...given) > 0 ? given : [0, -1, 0];

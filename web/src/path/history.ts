@@ -1,4 +1,5 @@
-// What can be undone: the texts of a path, each with what the edit that led to it was.
+// The history of edits for undo: the texts of a path, each with the name of the edit that led to
+// it.
 
 interface Entry {
   text: string;
@@ -10,7 +11,7 @@ export class History {
   private entries: Entry[];
   private at = 0;
 
-  // most  edits that can be undone; older ones are forgotten
+  // most  number of edits that can be undone; older ones are forgotten
   constructor(text: string, private readonly most = 200) {
     this.entries = [{ text, label: "", open: false }];
   }
@@ -19,9 +20,9 @@ export class History {
     return this.entries[this.at].text;
   }
 
-  // merge: the edit belongs to a drag: it joins the one before, if that was pushed with `merge` and
-  // the same label, and neither seal() nor undo() or redo() came between. A text that is the
-  // present one changes nothing.
+  // merge: the edit belongs to a drag. It replaces the previous edit if that was also pushed with
+  // `merge` and the same label, without seal(), undo() or redo() in between. Pushing the current
+  // text changes nothing.
   push(text: string, label: string, options: { merge?: boolean } = {}): void {
     const merge = options.merge ?? false;
     if (text === this.text) return;
@@ -37,7 +38,7 @@ export class History {
     this.at = this.entries.length - 1;
   }
 
-  // The drag is over: what follows is an edit of its own.
+  // Ends a drag: the next edit is one of its own.
   seal(): void {
     this.entries[this.at].open = false;
   }
@@ -50,7 +51,7 @@ export class History {
     return this.at + 1 < this.entries.length;
   }
 
-  // Of the edit that undo() would take back; undefined if there is none.
+  // The name of the edit that undo() would take back; undefined if there is none.
   get undoLabel(): string | undefined {
     return this.canUndo ? this.entries[this.at].label : undefined;
   }
@@ -59,7 +60,8 @@ export class History {
     return this.entries[this.at + 1]?.label;
   }
 
-  // Of all edits kept, the oldest first; the first `done` of them are in the present text.
+  // The names of all stored edits, the oldest first; the current text contains the first `done` of
+  // them.
   get labels(): string[] {
     return this.entries.slice(1).map((entry) => entry.label);
   }
@@ -68,7 +70,7 @@ export class History {
     return this.at;
   }
 
-  // The text to show now; undefined if there is nothing to undo.
+  // Returns the text to show now; undefined if there is nothing to undo.
   undo(): string | undefined {
     if (!this.canUndo) return undefined;
     --this.at;

@@ -1,5 +1,6 @@
-// A camera path (doc/formats/path.md) that a person edits by hand and by mouse in turn: edits
-// change the lines they are about and leave the rest of the file, with its comments, as written.
+// A camera path (doc/formats/path.md) that a person edits alternately as text and with the mouse.
+// Edits change only the lines that they concern; the rest of the file, with its comments, stays as
+// it was written.
 import {
   checkValue, constantSpec, kQuantities, quantitySpec, readValue, withoutUnit, writeTime,
   writeValue, zeroOf,
@@ -14,7 +15,7 @@ export type Interpolation = "smooth" | "linear" | "step";
 export interface Keyframe {
   time: number;  // seconds
   value: PathValue;
-  interpolation: Interpolation;  // from the key before to this one
+  interpolation: Interpolation;  // from the previous key to this one
 }
 
 export interface Acceleration {
@@ -23,36 +24,37 @@ export interface Acceleration {
   value: PathValue;  // per second squared
 }
 
-// What the file says about a quantity. Lengths are world units, whatever the file uses.
+// The facts that the file states about a quantity. Lengths are in world units, regardless of the
+// file's unit.
 export interface Quantity {
   name: string;   // without unit: "focus_distance"
-  key: string;    // as it stands in the file, or would: "focus_distance_mm"
+  key: string;    // as in the file, or as it would be written: "focus_distance_mm"
   section: Section;
   unit: Unit;
   shape: Shape;
-  worldPerFile: number;      // factor from numbers beside `key` to those here
-  given: boolean;            // whether the file says anything about it
-  base?: PathValue;          // in its section: the value at time 0
-  keyframes: Keyframe[];     // as listed; without the base
-  baseIsKey: boolean;        // whether the base is a key at time 0, before those listed: index -1
+  worldPerFile: number;      // factor from numbers beside `key` in the file to those here
+  given: boolean;            // the file states something about it
+  base?: PathValue;          // the value in its section, at time 0
+  keyframes: Keyframe[];     // in the order of the file; without the base
+  baseIsKey: boolean;        // the base is a key at time 0 before the listed ones: index -1
   speed?: PathValue;
   accelerations: Acceleration[];
-  hasAccelerations: boolean; // or a speed: then it can have no keyframes before removeMotion
+  hasAccelerations: boolean; // it has a speed or accelerations: keyframes need removeMotion() first
 }
 
 const kLeastKeyDistance_s = 1e-6;
 
 export class PathDocument {
-  // Lengths are written at least this exactly, far from the origin, too.
+  // Lengths are written at least with this precision, even far from the origin.
   resolution_w: number;
 
   private constructor(private readonly yaml: YamlText, private readonly lightFieldUnit: number) {
     this.resolution_w = 1e-4 / this.unitM();
   }
 
-  // unit_m  metres per world unit of the light field, for files that do not say
-  // Throws an Error with line and column if this is no YAML. Whether it is a valid path is for
-  // the renderer's own parser to say.
+  // unit_m  metres per world unit of the light field, for files that do not state it
+  // Throws an Error with line and column if the text is no YAML. Only the renderer's own parser
+  // decides if the path is valid.
   static parse(text: string, unit_m = 1): PathDocument {
     return new PathDocument(new YamlText(text), unit_m);
   }
@@ -66,12 +68,12 @@ export class PathDocument {
     return typeof unit === "number" && unit > 0 ? unit : this.lightFieldUnit;
   }
 
-  // The names of all quantities, in the order of the format's tables.
+  // Returns the names of all quantities in the order of the format's tables.
   static quantityNames(): string[] {
     return kQuantities.map((spec) => spec.name);
   }
 
-  // By its name with or without unit. Throws if the file's value is no value.
+  // Returns a quantity by its name, with or without unit. Throws if the file's value is malformed.
   quantity(name: string): Quantity {
     const spec = quantitySpec(name);
     const section = this.keyIn([spec.section], spec.keys);
@@ -103,13 +105,13 @@ export class PathDocument {
     return typeof value === "number" ? value * this.scale(spec.unit, key) : value;
   }
 
-  // ------------------------------------------------------------------------------------ the edits
-  // Each throws an Error that can be shown, and then has changed nothing.
+  // ------------------------------------------------------------------------------------ edits
+  // Each edit throws an Error that can be shown to the user, and has then changed nothing.
 
-  // The key at this time gets the value; if there is none, one is added. Keys nearer than a
-  // thousandth of a second and a tenth of a frame are the same, so that a rounded time is found.
-  // At time 0 the value in the section is the key, if there is one. Without interpolation a key
-  // keeps its own, and a new one is smooth.
+  // Sets the value of the key at this time, or adds a key. Times that differ by less than a
+  // thousandth of a second and a tenth of a frame are the same, so that a rounded time is found. At
+  // time 0 the value in the section is the key, if there is one. Without `interpolation` an
+  // existing key keeps its own, and a new one is smooth.
   setKeyframe(name: string, time: number, value: PathValue, interpolation?: Interpolation): void {
     this.edit(() => {
       const spec = quantitySpec(name);
@@ -125,7 +127,7 @@ export class PathDocument {
       } else if (base !== undefined && this.isSameTime(time, 0)) {
         this.writeBase(spec, name, value);
       } else {
-        // What is 0 when left out is 0 at time 0, as a value in the section would be.
+        // A quantity that defaults to 0 starts at 0, as if its section had this value.
         if (!given && spec.zeroIfNotGiven && !this.isSameTime(time, 0))
           this.writeBase(spec, name, zeroOf(spec.shape));
         this.insertKeyframe(spec, { time, value, interpolation: interpolation ?? "smooth" });
@@ -133,7 +135,7 @@ export class PathDocument {
     });
   }
 
-  // Replaces all keyframes and the value in the section. At least one, times ascending.
+  // Replaces all keyframes and the value in the section. There must be at least one; times ascend.
   setKeyframes(name: string, keyframes: readonly Keyframe[]): void {
     this.edit(() => {
       const spec = quantitySpec(name);
@@ -155,8 +157,8 @@ export class PathDocument {
     });
   }
 
-  // To another time, past other keys if need be. index -1: the base, where it is a key. Returns
-  // the key's new index. Throws if there is a key already.
+  // Moves a key to another time, past other keys if necessary. index -1 is the base, if it is a
+  // key. Returns the key's new index. Throws if a key exists at that time.
   moveKeyframe(name: string, index: number, time: number): number {
     let moved = index;
     this.edit(() => {
@@ -188,8 +190,8 @@ export class PathDocument {
     return moved;
   }
 
-  // index -1: the base, where it is a key. After the last one the quantity stands still at its
-  // value, or at the base if that was a key.
+  // Deletes a key; index -1 is the base, if it is a key. After the last key is gone, the quantity
+  // keeps its value, or that of the base if the base was a key.
   deleteKeyframe(name: string, index: number): void {
     this.edit(() => {
       const spec = quantitySpec(name);
@@ -207,7 +209,7 @@ export class PathDocument {
     });
   }
 
-  // The value at time 0: that of the key there, or that in the section.
+  // Sets the value at time 0: that of the key there, or that in the section.
   setBase(name: string, value: PathValue): void {
     this.edit(() => {
       const spec = quantitySpec(name);
@@ -247,8 +249,8 @@ export class PathDocument {
     });
   }
 
-  // Drops speed, accelerations and keyframes; the quantity stands still at `value`, or where it
-  // was at time 0.
+  // Removes speed, accelerations and keyframes; the quantity stays at `value`, or at its value at
+  // time 0.
   removeMotion(name: string, value?: PathValue): void {
     this.edit(() => {
       const spec = quantitySpec(name);
@@ -263,8 +265,8 @@ export class PathDocument {
     });
   }
 
-  // Each focuses, opens or points the lens in this way, and drops the others with their motion.
-  // Where the path does so already, it is setBase.
+  // Each of these chooses one way to state focus, lens or direction, and removes the other ways
+  // with their motion. If the path uses that way already, it works as setBase().
   useFocusDistance(distance_w: number): void { this.use("focus_distance", distance_w); }
   useFocusPoint(point_w: number[]): void { this.use("focus_point", point_w); }
   useFocalLength(focalLength_w: number): void { this.use("focal_length", focalLength_w); }
@@ -274,7 +276,7 @@ export class PathDocument {
   useLookAt(point_w: number[]): void { this.use("look_at", point_w); }
   useOrientation(angles_deg: Record<string, number>): void { this.use("orientation", angles_deg); }
 
-  // Several edits as one: if one throws, none has been made.
+  // Makes several edits as one: if one throws, none is made.
   edit(edits: () => void): void {
     const before = this.yaml.text;
     try {
@@ -428,7 +430,8 @@ export class PathDocument {
     if (this.yaml.keys(["keyframes"]).length === 0) this.yaml.remove(["keyframes"]);
   }
 
-  // A base that a key at time 0 hid would come to light as a new key once that one is gone.
+  // Removes a base that was hidden by a key at time 0, because it would become a key once that key
+  // is gone.
   private dropHiddenBase(spec: QuantitySpec, before: Quantity): void {
     if (before.base === undefined || before.baseIsKey) return;
     if (this.quantity(spec.name).baseIsKey) this.removeKey([spec.section], spec.keys);
@@ -465,12 +468,12 @@ export class PathDocument {
   }
 }
 
-// Where a file says nothing yet: the unit that was asked for, else the one people speak of.
+// Returns a key for a file without one: in the requested unit, or in the most common one.
 function newKey(keys: readonly string[], name: string): string {
   return name.endsWith("_mm") && keys.includes(name) ? name : keys[0];
 }
 
-// "position" moves at "speed", all others at "<name>_speed".
+// The speed of "position" is "speed", that of other quantities "<name>_speed".
 function speedKeys(spec: QuantitySpec): string[] {
   const speed = spec.name === "position" ? "speed" : `${spec.name}_speed`;
   return spec.keys.map((key) => speed + key.slice(spec.name.length));

@@ -1,26 +1,26 @@
-// What a path file may say (doc/formats/path.md): its quantities, which may move, and its
-// constants. And how their values are checked and written.
+// The content of a path file (doc/formats/path.md): quantities, which may move, and constants.
+// Checks and writes their values.
 
 export type Section = "camera" | "lens";
 export type Unit = "length" | "degrees" | "none";
 export type Shape = "number" | "point" | "tilt" | "angles" | "quaternion";
 
-// Number, [x, y, z] or [w, x, y, z], {horizontal, vertical} or {yaw, pitch, roll}. Lengths are
-// world units, angles degrees.
+// A number, [x, y, z] or [w, x, y, z], {horizontal, vertical} or {yaw, pitch, roll}. Lengths are in
+// world units, angles in degrees.
 export type PathValue = number | number[] | Record<string, number>;
 
 export interface QuantitySpec {
   name: string;          // without the ending of a unit
-  keys: string[];        // as they may stand in a file; the first is written where none does
+  keys: string[];        // as in a file; the first is used for a new entry
   section: Section;
   unit: Unit;
   shape: Shape;
-  above?: number;        // every component, exclusive
+  above?: number;        // exclusive minimum of every component
   below?: number;
-  least?: number;        // inclusive
+  least?: number;        // inclusive minimum
   zeroIfNotGiven?: boolean;
-  rivals: string[];      // quantities that say the same in another way: one of them is given
-  freeWithoutSensor?: boolean;  // the rivals may stand together if the sensor's width is not given
+  rivals: string[];      // alternatives to this quantity, of which only one may be given
+  freeWithoutSensor?: boolean;  // all rivals may be given if the sensor's width is not
 }
 
 interface SpecOptions {
@@ -71,7 +71,7 @@ export const kQuantities: readonly QuantitySpec[] = [
 
 export interface ConstantSpec {
   keys: string[];
-  section?: Section;     // none: at the root
+  section?: Section;     // default: the root
   unit: Unit;
   kind: "number" | "integer" | "numbers" | "word" | "boolean";
   count?: number;        // of numbers
@@ -110,7 +110,7 @@ export function constantSpec(name: string): ConstantSpec {
   return spec;
 }
 
-// The names of a value's components; none for a number, indices for a list.
+// Returns the names of a value's components: none for a number, indices for a list.
 export function componentNames(shape: Shape): string[] {
   switch (shape) {
     case "number": return [];
@@ -128,8 +128,8 @@ export function zeroOf(shape: Shape): PathValue {
   return Object.fromEntries(names.map((name) => [name, 0]));
 }
 
-// A value of a file, every number times `scale`. Throws if its shape is wrong; components of
-// tilts and angles that are left out are 0.
+// Reads a value of a file and multiplies every number by `scale`. Throws if the shape is wrong.
+// Missing components of tilts and angles are 0.
 export function readValue(raw: unknown, label: string, shape: Shape, scale: number): PathValue {
   const number = (x: unknown): number => {
     if (typeof x !== "number" || !Number.isFinite(x))
@@ -149,7 +149,7 @@ export function readValue(raw: unknown, label: string, shape: Shape, scale: numb
   return Object.fromEntries(names.map((name) => [name, number(given[name] ?? 0)]));
 }
 
-// Throws what a person can read if the renderer would refuse the value.
+// Throws an error for people if the renderer would refuse the value.
 export function checkValue(value: PathValue, spec: QuantitySpec): void {
   const read = readValue(value, spec.name, spec.shape, 1);
   const components = typeof read === "number" ? [read] : Object.values(read);
@@ -165,7 +165,7 @@ export function checkValue(value: PathValue, spec: QuantitySpec): void {
     throw new Error("quaternion: a rotation [w, x, y, z] has length 1");
 }
 
-// Six significant digits, more where these do not reach the resolution.
+// Writes six significant digits, or more if they are needed for the resolution.
 export function writeNumber(x: number, resolution = 0): string {
   const digits = resolution > 0 && x !== 0
     ? Math.ceil(Math.log10(Math.abs(x) / resolution)) : 0;
@@ -173,15 +173,15 @@ export function writeNumber(x: number, resolution = 0): string {
   return rounded === 0 ? "0" : String(rounded);  // not "-0"
 }
 
-// To the microsecond, which is the least distance of two keyframes.
+// Writes a time to the microsecond, which is the least distance of two keyframes.
 export function writeTime(time: number): string {
   return String(Number(time.toFixed(6)));
 }
 
-// In brackets, every number divided by `scale`.
+// Writes a value in brackets, every number divided by `scale`.
 export function writeValue(value: PathValue, scale = 1, resolution = 0): string {
   const number = (x: number, largest: number): string =>
-    // What is left of sines and cosines of right angles.
+    // Rounding errors of sines and cosines of right angles.
     Math.abs(x) < 1e-9 * largest ? "0" : writeNumber(x / scale, resolution / scale);
   if (typeof value === "number") return number(value, 0);
   const components = Object.values(value);

@@ -1,12 +1,12 @@
-// A YAML text that is edited in place: what an edit does not touch keeps its bytes. The package
-// `yaml` says where everything stands; writing its document anew would move comments and change
-// how numbers look, so edits replace stretches of the text instead.
+// A YAML text that is edited in place: bytes that an edit does not concern do not change. The
+// package `yaml` provides positions only. Writing its document would move comments and change the
+// format of numbers, so edits replace parts of the text instead.
 import {
   Alias, Document, isAlias, isMap, isScalar, isSeq, parseDocument, visit,
 } from "yaml";
 import type { Node, Pair, Scalar, YAMLMap, YAMLSeq } from "yaml";
 
-// From the root: keys of maps, indices of lists.
+// Keys of maps and indices of lists, from the root.
 export type YamlPath = readonly (string | number)[];
 
 interface Change {
@@ -15,7 +15,8 @@ interface Change {
   text: string;
 }
 
-const kLongestLine = 100;  // a list in brackets that grows beyond becomes one of an item per line
+const kLongestLine = 100;  // a list in brackets that grows beyond this is split into one line per
+                           // item
 
 type Container = YAMLMap<Node, Node | null> | YAMLSeq<Node>;
 
@@ -23,7 +24,7 @@ export class YamlText {
   private current = "";
   private document!: Document.Parsed;
 
-  // Throws an Error with line and column if this is no YAML with keys at its root.
+  // Throws an Error with line and column if the text is no YAML with keys at its root.
   constructor(text: string) {
     this.set(text);
   }
@@ -32,7 +33,7 @@ export class YamlText {
     return this.current;
   }
 
-  // Takes the text only if it is valid.
+  // Replaces the text only if the new one is valid.
   set(text: string): void {
     const document = parseDocument(text);
     if (document.errors.length > 0) throw new Error(document.errors[0].message);
@@ -45,7 +46,8 @@ export class YamlText {
     return this.find(path) !== undefined;
   }
 
-  // The value as plain numbers, texts, arrays and objects; undefined if the path leads nowhere.
+  // Returns the value as plain numbers, strings, arrays and objects; undefined if the path does not
+  // exist.
   value(path: YamlPath): unknown {
     const node = this.find(path);
     return node === undefined ? undefined : node === null ? null : node.toJS(this.document);
@@ -56,7 +58,7 @@ export class YamlText {
     return isMap(map) ? map.items.map((pair) => keyOf(pair as Pair<Node, Node>)) : [];
   }
 
-  // Replaces a value that is there. An anchor before it stays, so that aliases follow.
+  // Replaces an existing value. An anchor before it stays, so that its aliases change with it.
   replace(path: YamlPath, text: string): void {
     this.own(path.slice(0, -1));
     const node = this.find(path);
@@ -73,8 +75,8 @@ export class YamlText {
     }
   }
 
-  // Adds a key to the map at `path`: after the key `after`, or as the last. A value of many items
-  // becomes a list of one per line where the map itself is of one key per line.
+  // Adds a key to the map at `path`, after the key `after` or at the end. A value with many items
+  // becomes a list with one line per item if the map has one line per key.
   add(path: YamlPath, key: string, value: string | readonly string[], after?: string): void {
     this.own(path);
     const node = this.find(path);
@@ -97,7 +99,7 @@ export class YamlText {
     this.insertLines(this.lineEnd(end), this.pairLines(indent, key, value));
   }
 
-  // Removes a key with its value; a map that is left without keys becomes {}.
+  // Removes a key with its value; a map without keys becomes {}.
   remove(path: YamlPath): void {
     const parent = path.slice(0, -1);
     this.own(parent);
@@ -119,7 +121,7 @@ export class YamlText {
     this.apply([{ begin, end: this.nextLine(this.endOfPair(pair)), text: "" }]);
   }
 
-  // Inserts before the item that has this index now.
+  // Inserts an item before the one that has this index now.
   insertItem(path: YamlPath, index: number, text: string): void {
     this.own(path);
     const list = this.list(path);
@@ -130,7 +132,7 @@ export class YamlText {
     const column = this.column(list.range![0]);
     const line = `${" ".repeat(column)}- ${text}`;
     if (index > 0) {
-      // Comments above the next item stay with it.
+      // Comments above the next item stay with that item.
       this.insertLines(this.lineEnd(this.endOf(list.items[index - 1])), [line]);
     } else {
       const begin = this.dashLine(list, 0);
@@ -138,7 +140,7 @@ export class YamlText {
     }
   }
 
-  // Removes an item; with the last one goes the key of the list.
+  // Removes an item; the list's key is removed with its last item.
   removeItem(path: YamlPath, index: number): void {
     this.own(path);
     const list = this.list(path);
@@ -152,16 +154,16 @@ export class YamlText {
     }
   }
 
-  // As it stands in the text, on one line: what is in lines there comes in brackets.
+  // Returns a value as it is written, on one line: values of several lines are put in brackets.
   flowText(path: YamlPath): string {
     const node = this.find(path);
     if (!node) return "null";
     return this.flowOf(node);
   }
 
-  // -------------------------------------------------------------------------- where things stand
+  // -------------------------------------------------------------------------- positions
 
-  // The node as written, an alias included; null for a key without a value.
+  // Returns the node as written, which may be an alias; null for a key without a value.
   private find(path: YamlPath): Node | null | undefined {
     let node: Node | null | undefined = this.document.contents as Node;
     for (const step of path) {
@@ -193,14 +195,14 @@ export class YamlText {
     return node as YAMLSeq<Node>;
   }
 
-  // With its anchor, which stands outside a node's range.
+  // Includes the anchor, which is outside a node's range.
   private startOf(node: Node): number {
     const begin = node.range![0];
     const anchor = isAlias(node) ? undefined : (node as Scalar).anchor;
     return anchor ? this.current.lastIndexOf(`&${anchor}`, begin) : begin;
   }
 
-  // After the last character of content: comments and blank lines behind do not count.
+  // The end of the content, without the comments and blank lines that follow it.
   private endOf(node: Node): number {
     if (isBlock(node)) {
       const last = (node as Container).items[(node as Container).items.length - 1];
@@ -223,7 +225,7 @@ export class YamlText {
     return this.current.lastIndexOf("\n", offset - 1) + 1;
   }
 
-  // Of the line's characters, before its line break.
+  // The end of the line's characters, before its line break.
   private lineEnd(offset: number): number {
     const end = this.current.indexOf("\n", offset);
     if (end < 0) return this.current.length;
@@ -243,7 +245,7 @@ export class YamlText {
     return this.current.includes("\r\n") ? "\r\n" : "\n";
   }
 
-  // Start of the line with the dash of an item.
+  // The start of the line with the dash of an item.
   private dashLine(list: YAMLSeq<Node>, index: number): number {
     const column = this.column(list.range![0]);
     let line = this.lineStart(this.startOf(list.items[index]));
@@ -254,9 +256,9 @@ export class YamlText {
     return line;
   }
 
-  // --------------------------------------------------------------------------------- the changes
+  // --------------------------------------------------------------------------------- changes
 
-  // Lines after the one that ends at `end`.
+  // Inserts lines after the one that ends at `end`.
   private insertLines(end: number, lines: readonly string[]): void {
     const text = lines.map((line) => this.eol() + line).join("");
     this.apply([{ begin: end, end, text }]);
@@ -286,7 +288,7 @@ export class YamlText {
                      this.pairLines(this.column(key_node.range![0]) + 2, key, value));
   }
 
-  // A value of several lines becomes one beside its key.
+  // Replaces a value of several lines by one beside its key.
   private blockToFlow(path: YamlPath, node: Node, text: string): Change[] {
     let end = this.current.indexOf(":", this.pair(path).key.range![1]) + 1;
     const anchor = (node as Container).anchor;
@@ -309,7 +311,7 @@ export class YamlText {
     const before = this.endOfItem(items[index - 1]);
     const between = this.current.slice(before, begin);
     if (!between.includes("\n")) return [{ begin: before, end, text: "" }];
-    // On a line of its own: what stands behind the item before stays, but for the comma.
+    // The item has its own line: text behind the previous item stays, except for the comma.
     const comma = between.indexOf(",");
     return [{ begin: before + comma, end: before + comma + 1, text: "" },
             { begin, end, text: "" }];
@@ -349,7 +351,7 @@ export class YamlText {
     }
   }
 
-  // Whether a key begins its line and its value ends it, but for a comment.
+  // Returns true if the key begins its line, and only a comment may follow its value.
   private ownsItsLine(path: YamlPath): boolean {
     const pair = this.pair(path);
     const begin = pair.key.range![0];
@@ -358,7 +360,7 @@ export class YamlText {
            /^\s*(#.*)?$/.test(this.current.slice(end, this.lineEnd(end)));
   }
 
-  // Every alias on the path becomes a copy: an edit behind it must not reach its anchor.
+  // Turns every alias on the path into a copy, so that an edit below it does not change its anchor.
   private own(path: YamlPath): void {
     for (let length = 1; length <= path.length; ++length) {
       const node = this.find(path.slice(0, length));
@@ -377,7 +379,7 @@ export class YamlText {
       .trim();
   }
 
-  // Aliases of what is taken out become copies of it, unless the changes bring it elsewhere.
+  // Turns aliases of removed nodes into copies, unless the changes only move those nodes.
   private apply(changes: Change[], keepsAnchors = false): void {
     const all = keepsAnchors ? changes : [...changes, ...this.orphans(changes)];
     all.sort((a, b) => b.begin - a.begin || b.end - a.end);

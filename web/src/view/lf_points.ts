@@ -1,5 +1,5 @@
-// LF cameras as points: one draw call for a million. What changes with the frame are two bytes of
-// each, its use and the share of its pixels.
+// Shows LF cameras as points, a million in one draw call. Two bytes per camera change with the
+// frame: its use and the share of its pixels.
 
 import * as THREE from "three";
 
@@ -22,7 +22,7 @@ void main() {
   isUsed = kind == ${USED} ? 1.0 : 0.0;
   if (kind == ${USED}) colour *= 0.55 + 0.45 * share;
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
-  // What is used lies before the rest, whatever stands where.
+  // Used cameras are drawn in front of the others at any position.
   if (kind == ${USED}) gl_Position.z -= 1e-4 * gl_Position.w;
   gl_PointSize = max(1.0, sizes[kind] * room * pixelRatio);
   if (shown[kind] < 0.5) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
@@ -80,8 +80,8 @@ export class LfPoints {
     this.material.uniforms.pixelRatio.value = ratio;
   }
 
-  // spacing: about how far apart neighbours are on the screen, CSS pixels. Points fill a part of it:
-  // a crowd stays a texture, single ones can be clicked.
+  // spacing: approximate distance of neighbours on the screen, CSS pixels. Points fill only a part
+  // of it: a crowd looks like a texture, and single points can be clicked.
   setSpacing(spacing: number): void {
     this.material.uniforms.room.value = Math.max(0.3, Math.min(2.6, (0.62 * spacing) / 6));
   }
@@ -93,7 +93,7 @@ export class LfPoints {
     return (this.material.uniforms.shown.value as number[])[kind] === 1;
   }
 
-  // framesOfCamera: how many frames of the film take each; null: not known yet.
+  // framesOfCamera: number of frames that use each camera; null: not known yet.
   setUse(use: FrameUse, framesOfCamera: Uint16Array | null): void {
     const kinds = this.use.array as Uint8Array;
     kinds.set(use.ofCameras);
@@ -111,7 +111,8 @@ export class LfPoints {
     return (this.use.array as Uint8Array)[id];
   }
 
-  // The one nearest to a place of the view, in pixels, within `reach`; those that are used first.
+  // Returns the camera nearest to a position in the view, within `reach` pixels; used cameras are
+  // preferred.
   pick(camera: THREE.Camera, width: number, height: number, x: number, y: number): number | null {
     const reach = 12;
     const m = new THREE.Matrix4()

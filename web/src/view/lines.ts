@@ -1,4 +1,4 @@
-// Geometry that is written anew every frame, into memory that is kept.
+// Geometry that is rewritten every frame in the same memory.
 
 import * as THREE from "three";
 
@@ -40,7 +40,7 @@ export class Faces {
     this.object.frustumCulled = false;
   }
 
-  // A fan around the first corner.
+  // Draws a fan of triangles around the first corner.
   setPolygon(corners: Vec3[], origin: Vec3): void {
     const triangles: Vec3[] = [];
     for (let i = 1; i + 1 < corners.length; ++i)
@@ -62,7 +62,7 @@ function setPoints(geometry: THREE.BufferGeometry, points: Vec3[], origin: Vec3)
   geometry.setDrawRange(0, points.length);
 }
 
-// The edges of a closed polygon.
+// Returns the edges of a closed polygon.
 export function closed(corners: Vec3[]): Vec3[] {
   return corners.flatMap((corner, i) => [corner, corners[(i + 1) % corners.length]]);
 }

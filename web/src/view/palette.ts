@@ -1,5 +1,5 @@
-// Colours of what LF cameras are for a frame, on dark and on light ground. Uses differ in size and
-// brightness, too: not by hue alone.
+// Colours of the uses of LF cameras, on dark and on light ground. Uses also differ in size and
+// brightness, and not only in hue.
 
 export interface UseStyle {
   name: string; // as in data/frame_use.ts; the last is "other"
@@ -7,7 +7,7 @@ export interface UseStyle {
   help: string;
   dark: [number, number, number];
   light: [number, number, number];
-  size: number; // of the point, in CSS pixels
+  size: number; // diameter of the point, CSS pixels
 }
 
 export const USE_STYLES: UseStyle[] = [

@@ -1,4 +1,4 @@
-// The render camera of a frame in the scene: lens with its blades, viewing frustum to the focus
+// The render camera of a frame in the scene: lens with its blades, viewing frustum up to the focus
 // plane, the plane itself, the widened frustum, and the depths of the scene.
 
 import * as THREE from "three";
@@ -13,9 +13,9 @@ import {
 import type { DensityFacts, Vec3 } from "../data/scene";
 import { closed, Faces, Lines } from "./lines";
 
-const GRID = 6; // of the focus plane, cells along its width
-const BEHIND = 0.35; // how far the widened frustum is drawn behind the lens, in focus distances
-const BEYOND = 1.5; // and in front
+const GRID = 6; // cells along the width of the focus plane
+const BEHIND = 0.35; // length of the widened frustum behind the lens, in focus distances
+const BEYOND = 1.5; // and in front of it
 
 export class RenderCameraModel {
   readonly object = new THREE.Group();
@@ -58,7 +58,7 @@ export class RenderCameraModel {
 
   set(camera: FrameCamera, smallest: number): void {
     const { origin } = this;
-    // A pinhole is drawn, too.
+    // Even a pinhole is drawn, with a small radius.
     const rim = lensRim(camera.radius > 0 ? camera : { ...camera, radius: smallest });
     this.lensFace.setPolygon(rim, origin);
     this.lensLines.set(closed(rim), origin);
@@ -72,7 +72,7 @@ export class RenderCameraModel {
       [
         ...corners.flatMap((corner) => [camera.centre, corner]),
         ...closed(corners),
-        // Which way is up.
+        // A mark at the upper side.
         ...closed([
           focusPoint(camera, width * 0.46, 0),
           focusPoint(camera, width * 0.54, 0),
@@ -104,7 +104,7 @@ export class RenderCameraModel {
     this.widenedLines.set(rays, origin);
   }
 
-  // Lens alone, else frustum, focus plane and all.
+  // False shows the lens alone; true also frustum and focus plane.
   showFocus(isShown: boolean): void {
     for (const part of [this.focusFace, this.focusLines, this.frustum])
       part.object.visible = isShown;
@@ -112,8 +112,8 @@ export class RenderCameraModel {
     for (const part of [...this.depthLines, ...this.depthFaces]) part.object.visible = isShown;
   }
 
-  // The nearest and the farthest of the scene, coloured by how far apart neighbouring LF cameras
-  // show it: green while that is no more than an element and a half, red above four.
+  // The nearest and the farthest depth of the scene, coloured by the disparity of neighbouring LF
+  // cameras: green up to an element and a half, red above four.
   setDensity(camera: FrameCamera, density: DensityFacts | null): void {
     this.depths.visible = density !== null;
     if (!density) return;

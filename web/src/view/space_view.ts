@@ -1,4 +1,4 @@
-// The light field and the render camera in space: drawn when something has changed, never else.
+// Shows the light field and the render camera in space. Draws only when something has changed.
 
 import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
@@ -25,11 +25,11 @@ export class SpaceView {
   private readonly chosenFace = new Faces(0.12);
   private readonly ring: THREE.Points;
   private readonly size: number; // of the light field
-  private readonly spacing: number; // of its cameras, about
+  private readonly spacing: number; // of its cameras, approximately
   private pending = false;
   private frameCamera: FrameCamera | null = null;
   private through = false;
-  private showsChosen = true; // its frustum, and not its place alone
+  private showsChosen = true; // its frustum, and not only its position
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
@@ -43,7 +43,7 @@ export class SpaceView {
     this.points.object.geometry.computeBoundingBox();
     this.model = new RenderCameraModel(origin);
     this.size = extentOf(positions);
-    // As if they filled a square; what fills a volume is denser on the screen.
+    // As if the cameras filled a square; a volume looks denser on the screen.
     this.spacing = (0.7 * this.size) / Math.max(1, Math.sqrt(positions.length / 3) - 1);
     this.ring = dots(11, 0xffffff);
     this.ring.visible = false;
@@ -72,7 +72,7 @@ export class SpaceView {
       down = [event.offsetX, event.offsetY];
     });
     this.canvas.addEventListener("pointerup", (event) => {
-      // A drag turns the view.
+      // After a drag, which turns the view, a click must not pick.
       if (!down || Math.hypot(event.offsetX - down[0], event.offsetY - down[1]) > 3) return;
       onPick(
         this.points.pick(
@@ -118,7 +118,7 @@ export class SpaceView {
     this.draw();
   }
 
-  // The LF camera that is looked at: its frustum, as far as the focus plane.
+  // Shows the chosen LF camera: its frustum up to the focus plane.
   setChosen(facts: CameraFacts | null): void {
     this.ring.visible = facts !== null;
     this.showChosen();
@@ -148,7 +148,7 @@ export class SpaceView {
     const forward = new THREE.Vector3(...frame.forward);
     const right = new THREE.Vector3(...frame.right);
     const centre = new THREE.Vector3(...add(frame.centre, this.origin, -1));
-    // What lies behind the lens would only cover what it takes.
+    // From the front, focus plane and frustum would hide the LF cameras in the aperture.
     this.model.showFocus(preset !== "aperture");
     this.showsChosen = preset !== "aperture";
     this.showChosen();
@@ -164,7 +164,8 @@ export class SpaceView {
       const reach = Math.max(1.5 * frame.radius, this.size * 0.06);
       this.camera.position.copy(centre).addScaledVector(forward, -this.distanceFor(reach));
     } else if (preset === "overview") {
-      // From behind the lens, so near that the LF cameras are seen, so far that the focus plane is.
+      // From behind the lens, so near that the LF cameras are seen, and so far that the focus plane
+      // is seen.
       this.camera.fov = 50;
       target.addScaledVector(forward, 0.3 * frame.focusDistance);
       const offset = centre
@@ -199,14 +200,14 @@ export class SpaceView {
     this.draw();
   }
 
-  // From where a sphere of this radius fills the view.
+  // Returns the distance from which a sphere of this radius fills the view.
   private distanceFor(radius: number): number {
     const half = (this.camera.fov * Math.PI) / 360;
     const narrower = Math.min(half, Math.atan(Math.tan(half) * this.camera.aspect));
     return radius / Math.sin(narrower);
   }
 
-  // Corners of the light field and of the focus plane.
+  // Returns the corners of the light field and of the focus plane.
   private everything(frame: FrameCamera): THREE.Vector3[] {
     const box = this.points.object.geometry.boundingBox!;
     const corners = [0, 1, 2, 3, 4, 5, 6, 7].map(
@@ -245,7 +246,7 @@ export class SpaceView {
     this.draw();
   }
 
-  // With the next picture of the screen.
+  // Draws with the next refresh of the screen.
   draw(): void {
     if (this.pending) return;
     this.pending = true;
@@ -268,14 +269,14 @@ export class SpaceView {
   }
 }
 
-// However far: what is drawn reaches as far as it must.
+// Ignores the far plane, which is set to include everything that is drawn.
 function isWithin(point: THREE.Vector3, camera: THREE.Camera): boolean {
   const isBefore = point.clone().applyMatrix4(camera.matrixWorldInverse).z < 0;
   const seen = point.clone().project(camera);
   return isBefore && Math.abs(seen.x) < 0.96 && Math.abs(seen.y) < 0.94;
 }
 
-// Round points that nothing hides.
+// Returns round points that are drawn in front of everything.
 function dots(size: number, colour: number): THREE.Points {
   const material = new THREE.PointsMaterial({ size, color: colour, sizeAttenuation: false });
   material.depthTest = false;

@@ -1,7 +1,4 @@
-// The page in a browser: what a person sees and does, and what the programs then read.
-//
-// usage: LF_BIN=build/release/bin LF_TEST_DATA=../shared node web/test/page/page_test.mjs
-// Exit code 77: there is no browser.
+// Tests the page in a browser: what a person sees and does, and what the programs then read.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { existsSync } from "node:fs";
@@ -76,7 +73,8 @@ async function writePath(text) {
   return path;
 }
 
-// Serves, opens, and in the end sees that nothing has complained and that Ctrl-C ends it.
+// Serves and opens a page. At the end, checks that there were no error messages and that Ctrl-C
+// ends the server.
 async function withPage(words, body, options) {
   const server = await serve(words);
   try {
@@ -94,7 +92,7 @@ async function withChart(body, text = CHART_PATH, words = []) {
   await withPage([chart, path, ...words], (page, address) => body(page, path, address));
 }
 
-// A request as it is written, which browsers and fetch() would tidy up.
+// Sends a request exactly as written, which browsers and fetch() would normalise.
 function rawStatus(address, path, headers = {}) {
   const { hostname, port } = new URL(address);
   return new Promise((resolve, reject) => {
@@ -133,7 +131,7 @@ test("what a frame takes is what the program says", withShop, async () => {
   });
 });
 
-// Thesis, Figure 5.1.
+// Figure 5.1 of the thesis.
 test("the LF cameras of a triangular aperture form a triangle", withShop, async () => {
   const path = await writePath(SHOP_PATH.replace("-0.06, 0, 0]\n", "0, 0, 0]\n").replace(
     /  position: \[\{.*\n/, ""));
@@ -150,7 +148,8 @@ test("the LF cameras of a triangular aperture form a triangle", withShop, async 
       };
     });
     assert.equal(lens.blades, 3);
-    // Inside by the distances from its three edges: normals down, and 30 degrees above right, left.
+    // Tests by distances from the three edges: one normal points down, the others 30 degrees above
+    // right and left.
     const inside = ([x, y], margin) =>
       [[0, -1], [Math.cos(Math.PI / 6), 0.5], [-Math.cos(Math.PI / 6), 0.5]].every(
         ([nx, ny]) => nx * x + ny * y <= lens.radius / 2 + margin);
@@ -278,14 +277,14 @@ test("what is no path is told with its line and not saved", async () => {
     await page.waitForFunction(() =>
       /:11:.*focus_distanc/.test(document.querySelector("aside p.bad")?.textContent ?? ""));
     assert.ok(await page.isDisabled("#save"));
-    // Refused before it is in the text: the field is as it was.
+    // The edit is refused before it changes the text; the field keeps its value.
     await page.fill("[aria-label=Blades]", "2.5");
     await page.keyboard.press("Enter");
     await page.waitForSelector("#message:has-text('expected a whole number, found 2.5')");
     assert.equal(await page.inputValue("[aria-label=Blades]"), "0");
     await page.fill("textarea", CHART_PATH.replace("fps: 10", "fps: 20"));
     await until(page, "app.state.path.fps === 20 && app.state.invalid === null");
-    // Another program writes the file meanwhile.
+    // Another program writes the file in the meantime.
     await writeFile(path, `${CHART_PATH}# mine\n`);
     await page.click("#save");
     await page.click("dialog button:has-text('Cancel')");
@@ -303,19 +302,19 @@ test("what is typed is saved as it is seen, and at the frame at which it was beg
   await withChart(async (page, path) => {
     await page.click("[data-tab=edit]");
     await page.click("summary:has-text('The file')");
-    // Touched, not typed into: shows what comes, and is no edit.
+    // A focused text area in which nothing is typed shows the new text and is no edit.
     await page.click("textarea");
     await writeFile(path, text.replace("fps: 10", "fps: 20"));
     await until(page, "app.state.path.fps === 20");
     assert.match(await page.inputValue("textarea"), /fps: 20/);
     await page.click("h2:has-text('At frame')");
     assert.equal(await page.evaluate("lfvisualizer.state.isChanged"), false);
-    // Saved at once, with the file's own ends of lines.
+    // The text is saved at once, with the line ends of the file.
     await page.fill("textarea", (await page.inputValue("textarea")).replace("fps: 20", "fps: 10"));
     await page.keyboard.press("Control+s");
     await until(page, "!app.state.isChanged && app.state.path.fps === 10");
     assert.equal(await readFile(path, "utf8"), text);
-    // No YAML yet: stays to be mended, and is not saved.
+    // Invalid YAML stays in the text area to be mended, and is not saved.
     const broken = (await page.inputValue("textarea")).replace("[96, 64]", "[96, 64");
     await page.fill("textarea", broken);
     await page.click("h2:has-text('At frame')");
@@ -325,7 +324,7 @@ test("what is typed is saved as it is seen, and at the frame at which it was beg
     assert.equal(await readFile(path, "utf8"), text);
     await page.fill("textarea", text.replaceAll("\r", ""));
     await until(page, "app.state.invalid === null");
-    // The timeline moves on while a number is being typed.
+    // The timeline moves on while a number is typed.
     await page.click("summary:has-text('Position')");
     await page.fill("[aria-label='Position x']", "0.05");
     await page.evaluate("lfvisualizer.state.setFrame(11)");
@@ -334,7 +333,7 @@ test("what is typed is saved as it is seen, and at the frame at which it was beg
     assert.equal(await page.evaluate("document.activeElement.ariaLabel"), "Position y");
     const last = await page.evaluate("lfvisualizer.state.cameras[10].centre");
     [0.1, 0.2, -0.9].forEach((x, i) => assert.ok(Math.abs(last[i] - x) < 1e-9, String(last)));
-    // Between keys the value is the frame's own.
+    // Between keys, the value is that of the frame.
     await page.evaluate("lfvisualizer.state.setFrame(6)");
     await page.click("summary:has-text('Focus distance')");
     const now = await page.evaluate("lfvisualizer.state.camera.focusDistance");
@@ -373,7 +372,7 @@ test("a preview comes in, and a click on it focuses there", async () => {
     assert.ok((await lightest()) > 200);
     await page.locator("[aria-label='Exposure, stops']").fill("-6");
     assert.ok((await lightest()) < 60);
-    // The star in the middle is at 1.
+    // The star in the middle is at the distance 1.
     const box = await page.locator(".picture:has(canvas)").boundingBox();
     await page.mouse.click(box.x + (box.width * 56) / 96, box.y + (box.height * 40) / 64);
     await until(page, "app.state.isChanged");
@@ -397,7 +396,7 @@ test("three clicks with Shift are asked for before the focus plane is tilted", a
 });
 
 test("frames of a render are seen while they grow", async () => {
-  // All 225 LF images take part, and between every 64 of them there may be a checkpoint.
+  // All 225 LF images are used, and a checkpoint may follow every 64 of them.
   const many = join(temporary.folder, "many");
   await run("lfsynth", ["chart", "-o", many, "--count", "225", "--size", "60x40", "-q"]);
   const path = await writePath(
@@ -417,7 +416,8 @@ test("frames of a render are seen while they grow", async () => {
       (old) => document.querySelector(".picture canvas").dataset.version !== old, first);
     await page.click("text=Rays per element");
     assert.match(await page.textContent("aside"), /Rays of each element: least/);
-    // The picture is that of the frame also where another was being read, or none was there.
+    // The picture is that of the current frame, even if another one was being read, or if there was
+    // none.
     const show = (frame) => page.evaluate(`lfvisualizer.state.setFrame(${frame})`);
     await show(2);
     await show(3);

@@ -1,4 +1,4 @@
-// lfvisualizer as a process, and a browser that looks at its page.
+// Runs lfvisualizer as a process, and a browser that shows its page.
 import { spawn } from "node:child_process";
 import { existsSync } from "node:fs";
 import { createServer } from "node:http";
@@ -26,7 +26,7 @@ export async function temporaryFolder() {
   return { folder, remove: () => rm(folder, { recursive: true, force: true }) };
 }
 
-// Waits for its end; rejects unless it ends with `code`.
+// Waits for the end of a program; rejects unless its exit code is `code`.
 export function run(name, words, code = 0) {
   return new Promise((resolve, reject) => {
     const child = spawn(program(name), words, { stdio: ["ignore", "pipe", "pipe"] });
@@ -42,7 +42,7 @@ export function run(name, words, code = 0) {
   });
 }
 
-// The program as it serves; stop() ends it as Ctrl-C does and gives its exit status.
+// Starts the program as a server. stop() ends it like Ctrl-C and returns its exit status.
 export async function serve(words) {
   const child = spawn(program("lfvisualizer"), words, { stdio: ["ignore", "pipe", "pipe"] });
   let complaints = "";
@@ -66,7 +66,7 @@ export async function serve(words) {
   };
 }
 
-// Software rendering, so that any machine draws the same.
+// Renders by software, so that all machines draw the same.
 export function openBrowser() {
   return chromium.launch({
     executablePath: findBrowser(),
@@ -74,7 +74,7 @@ export function openBrowser() {
   });
 }
 
-// A page that notes what it complains of and what it asks of other hosts.
+// Opens a page and records its error messages and its requests to other hosts.
 export async function openPage(browser, address, options = {}) {
   const context = await browser.newContext({
     viewport: { width: 1280, height: 720 },
@@ -84,7 +84,7 @@ export async function openPage(browser, address, options = {}) {
   const page = await context.newPage();
   const faults = [];
   page.on("console", (message) => {
-    // Chromium's own words on drawing without a graphics card, and on tests that read pictures.
+    // Messages of Chromium about drawing without a graphics card, and about tests that read pixels.
     if (/GPU stall due to ReadPixels|swiftshader|willReadFrequently/i.test(message.text())) return;
     if (["error", "warning"].includes(message.type())) faults.push(message.text());
   });
@@ -98,8 +98,8 @@ export async function openPage(browser, address, options = {}) {
   return { page, faults, close: () => context.close() };
 }
 
-// Waits until an expression of the page's `app` (its state and view) is true. The page itself
-// forbids code from strings, so that it is asked from outside.
+// Waits until an expression of the page's `app` (its state and view) is true. The page's policy
+// forbids code from strings, so the expression is evaluated from outside.
 export async function until(page, condition) {
   const expression = `(() => { const app = window.lfvisualizer; return Boolean(${condition}); })()`;
   for (const end = Date.now() + 240_000; Date.now() < end; await page.waitForTimeout(30))
@@ -107,7 +107,7 @@ export async function until(page, condition) {
   throw new Error(`not within a minute: ${condition}`);
 }
 
-// An exported page on a plain web server.
+// Serves an exported page from a plain web server.
 export async function serveFiles(folder) {
   const types = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css",
                   ".json": "application/json", ".jpg": "image/jpeg" };

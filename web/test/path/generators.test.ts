@@ -21,7 +21,8 @@ interface Orbit {
   start?: number;
 }
 
-// The camera is on the circle at every frame, looks at the centre, and ends where it should.
+// Checks that the camera is on the circle in every frame, looks at the centre, and ends at the
+// right position.
 function checkOrbit(text: string, options: Orbit): PathDocument {
   const path = PathDocument.parse(text);
   orbit(path, options);
@@ -39,7 +40,7 @@ function checkOrbit(text: string, options: Orbit): PathDocument {
     near(height, first.height, 0.002 * first.radius);
     near(dot(camera.forward, unit(arm)), -1, 1e-7);
   }
-  // Rodrigues' rotation of the start.
+  // The expected position by Rodrigues' rotation of the start.
   const end = film.cameras[Math.round((options.seconds + (options.start ?? 0)) * film.fps)];
   const angle = options.degrees * Math.PI / 180;
   const k = axis, v = first.arm;

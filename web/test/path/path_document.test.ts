@@ -192,7 +192,7 @@ test("a deleted key takes its line, the last one its list and leaves the value",
   path.deleteKeyframe("aperture_diameter", 1);
   path.deleteKeyframe("aperture_diameter", 0);
   assert.doesNotMatch(path.text(), /keyframes:/);
-  // The base was a key at time 0, and is what remains.
+  // The base was a key at time 0, and remains.
   assert.match(path.text(), /aperture_diameter_mm: 8\n/);
   readByPrograms(path.text());
 });

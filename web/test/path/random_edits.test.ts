@@ -1,4 +1,4 @@
-// Hundreds of edits in a row, drawn at random: the file stays a path, and only what was edited
+// Makes hundreds of random edits in a row: the file remains a path, and only what was edited
 // changes.
 import assert from "node:assert/strict";
 import { test } from "node:test";
@@ -8,7 +8,7 @@ import { quantitySpec } from "../../src/path/path_quantities";
 import type { PathValue } from "../../src/path/path_quantities";
 import { example, kExamples, kSmall, refusalByPrograms } from "./real_parser";
 
-// Lehmer's generator: the same edits every time.
+// Lehmer's generator, so that the edits are always the same.
 function makeRandom(seed: number): (below: number) => number {
   let state = seed;
   return (below) => {
@@ -74,7 +74,7 @@ function editAtRandom(path: PathDocument, name: string, random: (below: number) 
   }
 }
 
-// As nobody should write it.
+// A file in a style that nobody should use.
 const kOdd = `---
 # odd
 "format" : lfpath 1
@@ -121,7 +121,7 @@ lens:
 ...
 `;
 
-// Comments that stand on lines of their own and speak of no single key.
+// Returns comments on lines of their own that belong to no single key.
 const looseComments = (text: string): string[] =>
   text.split("\n").filter((line) => line.startsWith("#"));
 
@@ -150,19 +150,19 @@ test("random edits leave a path that the programs take, and everything else as i
         continue;
       }
       ++made;
-      // An anchor says that two quantities are the same.
+      // With anchors, an edit may change two quantities that share a value.
       if (!shared) assert.deepEqual(others.map((other) => facts(path, other)), known, path.text());
       assert.deepEqual(looseComments(path.text()), looseComments(before));
       if (text.includes("\r\n")) assert.doesNotMatch(path.text(), /[^\r]\n/);
       assert.equal(PathDocument.parse(path.text()).text(), path.text());
       unread.push(`${path.text()}# after an edit of ${name}\n`);
-      if (step % 20 !== 19) continue;  // a program takes longer to start than to read a path
+      if (step % 20 !== 19) continue;  // starting a program takes longer than reading a path
       const refusal = refusalByPrograms(path.text());
       if (refusal === "") {
         unread = [];
         continue;
       }
-      // Not an edit's matter: half a turn between two orientations, a point behind the lens.
+      // Not the edit's fault: half a turn between two orientations, a point behind the lens.
       if (!/half a turn|focus plane through/.test(refusal)) {
         const first = unread.findIndex((each) => refusalByPrograms(each) !== "");
         assert.fail(`${refusal}\n${unread[first - 1] ?? ""}\n${unread[first]}`);

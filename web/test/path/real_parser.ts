@@ -1,4 +1,4 @@
-// The path as the programs read it. Tests run in the folder web.
+// Reads paths with the parser of the programs. Tests run in the folder web.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -56,7 +56,7 @@ export function readByPrograms(text: string): Film {
   return JSON.parse(stdout) as Film;
 }
 
-// The message, or nothing if the path is accepted.
+// Returns the error message, or "" if the path is accepted.
 export function refusalByPrograms(text: string): string {
   const { status, stderr } = ask(text);
   return status === 0 ? "" : stderr;
@@ -68,7 +68,8 @@ export function example(name: string): string {
 
 export const kExamples = ["demo", "focus-pull", "orbit", "slide", "tilt"];
 
-// Every line of `before` but the named ones (counted from 1) is in `after`, in the same order.
+// Checks that `after` has all lines of `before`, in the same order, except those in `changed`
+// (counted from 1).
 export function assertOtherLinesKept(before: string, after: string, changed: number[]): void {
   const kept = before.split("\n").filter((_, i) => !changed.includes(i + 1));
   let at = 0;

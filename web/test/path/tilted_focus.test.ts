@@ -4,12 +4,12 @@ import { test } from "node:test";
 import type { FrameCamera } from "../../src/data/frame_camera";
 import { focusThrough } from "../../src/data/tilted_focus";
 
-// At (1, 2, 3), looking along x; y is to its left, z up.
+// A camera at (1, 2, 3) that looks along x; y is to its left, z up.
 const camera = {
   centre: [1, 2, 3], right: [0, -1, 0], up: [0, 0, 1], forward: [1, 0, 0],
 } as FrameCamera;
 
-// A point so far to the right, above, and before the camera.
+// Returns a point at x to the right, y above, and z before the camera.
 const at = (x: number, y: number, z: number): [number, number, number] => [1 + z, 2 - x, 3 + y];
 
 test("the focus plane through three points holds them", () => {
