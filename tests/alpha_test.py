@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Images with alpha: an object before any background against true lens pictures, and masks.
+"""Tests images with alpha: masks, and an object on any background, compared with exact lens pictures.
 
 usage: alpha_test.py LFRENDERER LFIMPORT LFCOMPRESSOR LFPREPROCESSOR
 """
@@ -84,7 +84,7 @@ class AlphaTest(ProgramTestCase):
     def test_masks_take_rays_away(self):
         field = self.field(self.straight)
         light, opacity = true_picture()
-        # A mask tells nothing of the part of the lens that sees past the object: the edge is hard.
+        # A mask says nothing about the part of the lens that sees past the object, so the edge is hard.
         edge = (opacity[..., 0] > 0.5) & (opacity[..., 0] < 0.9)
         def brighter(*options):
             return np.mean(self.frame(field, *options)[0][edge] - light[edge])

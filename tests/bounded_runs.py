@@ -1,5 +1,4 @@
-"""Programs that are given hostile files, under bounds of memory, time and temporary disk, and what the
-worst of them took."""
+"""Runs programs on hostile files with limits of memory, time and temporary disk, and records the worst use of each."""
 import concurrent.futures
 import os
 import pathlib
@@ -12,7 +11,7 @@ import threading
 import time
 
 MIB = 1 << 20
-CPU_LIMIT_S = 60  # that a run ends at all; a good one takes less than a tenth of a second
+CPU_LIMIT_S = 60  # so that every run ends; a good one takes less than a tenth of a second
 ADDRESS_LIMIT = 8 << 30
 FILE_LIMIT = 1024 * MIB
 WAIT_S = 240
@@ -55,10 +54,10 @@ class Run:
 
 
 class BoundedRuns:
-    """Runs many calls side by side and keeps the worst of each kind.
+    """Runs many calls in parallel and keeps the worst of each kind.
 
     folder      for temporary files
-    memory_mib  more than this is a fault
+    memory_mib  larger use is a fault
     """
 
     def __init__(self, folder, memory_mib):

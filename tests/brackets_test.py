@@ -1,4 +1,4 @@
-"""Exposure brackets: every pose photographed three times, in 8 bits that clip, becomes linear light.
+"""Tests exposure brackets: three clipped 8-bit photographs of every pose become linear light.
 
 Usage: brackets_test.py IMPORTER RENDERER SYNTH EXAMPLE PREPROCESSOR COMPRESSOR
 """
@@ -57,7 +57,7 @@ class Capture:
         (self.true / "transforms.json").write_text(json.dumps(self.text))
 
     def write(self, name, stops_list, leave_out=None, **keys):
-        """A folder of noisy 8-bit pictures of all poses at these exposures."""
+        """Writes a folder of noisy 8-bit pictures of all poses at these exposures."""
         field = self.folder / name
         field.mkdir()
         text = {k: v for k, v in self.text.items() if not k.startswith("lf_")} | keys
@@ -78,13 +78,13 @@ class Capture:
 
 
 def relative_error(frame, true, where):
-    """Root mean square difference of these elements, and its mean, as shares of their true mean, in %."""
+    """Returns the root mean square and the mean of the difference of these elements, in % of their true mean."""
     difference, light = (frame - true)[where], true[where].mean()
     return 100 * np.sqrt((difference ** 2).mean()) / light, 100 * difference.mean() / light
 
 
 def far_from_lights(true):
-    """Elements without a highlight within three, whose cubics overshoot."""
+    """Selects elements without a highlight within three elements, where cubic filters overshoot."""
     return cv2.dilate(true.max(-1), np.ones((7, 7)))[..., None] < 0.2
 
 
@@ -224,7 +224,7 @@ class BracketsTest(ProgramTestCase):
         both = self.merged(capture.write("both", [4, 3]))
         true, merged, darker = (self.frame(field, path)
                                 for field in (capture.true, both, capture.write("darker", [3])))
-        # White of the darker one, which is as the reference, is radiance 1/8: more is not recorded.
+        # White of the darker image, which has the reference exposure, is radiance 1/8; more light is not recorded.
         lit = true > 0.5
         self.assertGreater(lit.sum(), 100)
         self.assertLess(relative_error(merged, darker, lit)[0], 8)

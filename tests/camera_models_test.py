@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Every camera model against OpenCV where it has it, else against its formula in numpy.
+"""Compares every camera model with OpenCV if it has the model, and otherwise with its formula in numpy.
 
 usage: camera_models_test.py PROJECT_POINTS
 """
@@ -17,11 +17,11 @@ COUNT = 10_000
 
 
 def directions(widest_rad):
-    """COUNT directions spread evenly over the disk of that half angle"""
+    """Returns COUNT directions spread evenly over the disk of that half angle."""
     index = np.arange(COUNT)
     theta = widest_rad * np.sqrt((index + 0.5) / COUNT)
     phi = index * np.pi * (3 - np.sqrt(5))
-    depth = 1 + index % 7  # lengths must not matter
+    depth = 1 + index % 7  # lengths must have no influence
     return depth[:, None] * np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi),
                                       np.cos(theta)], axis=1)
 
@@ -48,7 +48,7 @@ def by_opencv_fisheye(parameters, points):
 
 
 def by_numpy_fisheye(parameters, points):
-    """OpenCV's stops at 90 degrees"""
+    """OpenCV's own function stops at 90 degrees."""
     across = np.hypot(points[:, 0], points[:, 1])
     theta = np.arctan2(across, points[:, 2])
     rd = theta + sum(k * theta ** (2 * i + 3) for i, k in enumerate(parameters))
@@ -63,7 +63,7 @@ def by_numpy_fov(parameters, points):
 
 
 def by_numpy_division(parameters, points):
-    """the smaller root of k r rd^2 - rd + r = 0"""
+    """Returns the smaller root of k r rd^2 - rd + r = 0."""
     u = points[:, :2] / points[:, 2:]
     r = np.hypot(*u.T)
     k, = parameters
@@ -90,7 +90,7 @@ def by_numpy_thin_prism(parameters, points):
 
 
 def by_numpy_rad_tan_thin_prism(parameters, points):
-    """Project Aria's Fisheye624, of an angle in place of a slope as COLMAP has it"""
+    """Project Aria's Fisheye624, with the angle in place of the slope as in COLMAP."""
     radial, (p0, p1), prism = parameters[:6], parameters[6:8], parameters[8:]
     across = np.hypot(points[:, 0], points[:, 1])
     theta = np.arctan2(across, points[:, 2])
@@ -104,7 +104,7 @@ def by_numpy_rad_tan_thin_prism(parameters, points):
     return np.stack([x, y], 1) * F + C
 
 
-# COLMAP's name: model, parameters, half angle tested, judge
+# COLMAP's name: model, parameters, tested half angle, reference implementation
 MODELS = {
     "PINHOLE": ("none", [], 1.3, lambda p, x: x[:, :2] / x[:, 2:] * F + C),
     "SIMPLE_RADIAL": ("radial-tangential", [0.035], 0.9, lambda p, x: by_opencv([*p, 0, 0, 0], x)),
@@ -157,7 +157,7 @@ class CameraModelsTest(unittest.TestCase):
                 found = project(model, parameters, points)
                 back = found[:, 2:] / np.linalg.norm(found[:, 2:], axis=1)[:, None]
                 forth = points / np.linalg.norm(points, axis=1)[:, None]
-                # As an angle, times the focal length.
+                # The error of the direction as an angle, times the focal length.
                 self.assertLessEqual(np.abs(back - forth).max() * max(F), 1e-6)
 
 

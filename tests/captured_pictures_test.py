@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""The first picture of real and rendered captures, whole and as people change them: images that were
-exposed unevenly, have dark corners, were made smaller, renamed, or moved. Its subject is sharp in all.
+"""Tests the first picture of real and rendered captures, both unchanged and as people change them: images with uneven
+exposure or dark corners, downscaled, renamed or moved. The subject must be sharp in all pictures.
 
 usage: captured_pictures_test.py LFIMPORT LFEXAMPLE LFRENDERER DATA [CONTACT_SHEET.png]
 """
@@ -19,7 +19,7 @@ from PIL import Image
 from first_picture_case import FirstPictureCase, detail, expose, grey, write_sheet
 
 DATA = None
-TILES = 12  # of a picture, along each axis
+TILES = 12  # of a picture along each axis
 SUFFIXES = (".jpg", ".jpeg", ".png", ".PNG")
 SHOP = range(9, 18)  # rows and columns in the middle of 27
 
@@ -37,7 +37,7 @@ def pose(x, y):
 
 
 def shop(folder):
-    """The 81 in the middle, a third as large."""
+    """The 81 images in the middle, at a third of their size."""
     frames = []
     for file in sorted((DATA / "blender-shop" / "images").glob("Original Camera_*.jpg")):
         _, row, column, y, x, _, _ = file.stem.split("_")
@@ -49,7 +49,7 @@ def shop(folder):
 
 
 def cards(folder):
-    """A third as large; the cameras' principal points meet at distance 100."""
+    """Images at a third of their size; the rays through the cameras' principal points meet at distance 100."""
     frames = []
     for file in sorted((DATA / "stanford-cards-9x9" / "images").glob("out_*.jpg")):
         shrunk(file, folder / "images" / file.name, 3)
@@ -61,7 +61,7 @@ def cards(folder):
 
 
 def temple(folder):
-    """Rows of text, above the folder of the images."""
+    """Calibration as rows of text, above the folder of the images."""
     source = DATA / "middlebury-templeRing" / "templeRing"
     for file in source.glob("*.png"):
         shutil.copyfile(file, folder / "images" / file.name)
@@ -69,7 +69,7 @@ def temple(folder):
 
 
 def beer(folder):
-    """A COLMAP model of a phone's video."""
+    """A COLMAP model of a video that was taken with a phone."""
     source = DATA / "beer-colmap"
     for file in (source / "images").glob("*.jpg"):
         shutil.copyfile(file, folder / "images" / file.name)
@@ -102,7 +102,7 @@ def uneven_and_dark_corners(capture):
 
 
 def smaller(capture):
-    """Into images_2, in place of images."""
+    """Writes half-size images to images_2 and removes images."""
     (capture / "images_2").mkdir()
     for file in images_of(capture):
         shrunk(file, capture / "images_2" / file.name, 2)
@@ -119,7 +119,7 @@ def renamed(capture):
 
 
 def of_another_machine(capture):
-    """Names every image by a path that was absolute elsewhere."""
+    """Gives every image an absolute path of another machine."""
     text = json.loads((capture / "transforms.json").read_text())
     for frame in text["frames"]:
         frame["file_path"] = f"/home/someone/captures/{frame['file_path']}"
@@ -127,7 +127,7 @@ def of_another_machine(capture):
 
 
 def sharp_share(picture, lf_image):
-    """Share of the textured tiles that are as sharp as in the LF image that the path starts at."""
+    """Returns the share of textured tiles that are as sharp as in the LF image at which the path starts."""
     ours = grey(picture)
     lf_image = grey(lf_image)
     scale = min(1, ours.shape[1] / lf_image.shape[1], ours.shape[0] / lf_image.shape[0])
@@ -166,12 +166,12 @@ class CapturedPicturesTest(FirstPictureCase):
         return focus, share
 
     def all_pictures(self, write, changes, focus, sharp, is_sure=True, keeps_points=True, is_matched=True):
-        """Every variant is focused where the capture is, and as sharp.
+        """Every variant must be focused at the same distance as the capture, and be as sharp.
 
-        focus  distances between which the subject lies
-        sharp  least share of the capture's textured tiles that are sharp
-        is_sure       False: the images are too far apart for the pixels to tell a focus
-        keeps_points  False: the focus is told by points, which a written transforms.json has no more
+        focus         distances between which the subject lies
+        sharp         least share of the capture's textured tiles that are sharp
+        is_sure       False: the images are too far apart to find a focus from pixels
+        keeps_points  False: the focus comes from points, which a written transforms.json no longer has
         is_matched    False: the light moves over the subject, so that --match-exposure refuses
         """
         folder = DATA / {"shop": "blender-shop", "cards": "stanford-cards-9x9", "beer": "beer-colmap",
@@ -185,7 +185,7 @@ class CapturedPicturesTest(FirstPictureCase):
         for change in changes:
             with self.subTest(change.__name__):
                 its, sharp_of_it = self.one_picture(write, change, is_sure=is_sure)
-                # Half as large, what is a little off the focus is sharp.
+                # At half the size, objects slightly out of focus look sharp.
                 self.assertAlmostEqual(its, plain, delta=(0.06 if change is smaller else 0.03) * plain)
                 self.assertGreater(sharp_of_it, 0.8 * share)
         with self.subTest("matched"):

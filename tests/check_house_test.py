@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The checks of scripts/ must fire: each planted fault is found, and nothing else.
+"""Tests the checks of scripts/: each planted fault must be found, and nothing else.
 
 usage: check_house_test.py REPOSITORY
 """
@@ -79,7 +79,7 @@ class PlantedFaults(unittest.TestCase):
     DEFAULTS = ["lfrenderer --mode collect", "lfrenderer --estimator auto", "lfrenderer --lens-weights auto"]
 
     def plant_table(self, name, text="| a |\n| --- |\n| 1.25 s |\n", **changed):
-        """A page with one table, and its record."""
+        """Plants a page with one table, and its record."""
         record = {"table": f"bench/{name}.py", "commit": "abc", "date": "2026-01-01", "machine": "m", "load": 0,
                   "commands": self.RENDERS, "defaults": self.DEFAULTS} | changed
         record.setdefault("defaults_hash",
@@ -91,7 +91,7 @@ class PlantedFaults(unittest.TestCase):
 
     def test_tables_fit_their_records_and_the_defaults_of_today(self):
         self.plant_table("fine")
-        self.plant_table("more", defaults=self.DEFAULTS[:1])  # options that are new since
+        self.plant_table("more", defaults=self.DEFAULTS[:1])  # options that were added later
         self.expect("check_house.py", "tables", faults=[])
         self.plant_table("old", defaults=["lfrenderer --mode rebin", *self.DEFAULTS[1:]])
         self.plant_table("edited")
@@ -179,7 +179,7 @@ tests = '{tests}'
     def test_tables_are_made_from_commits_behind_head(self):
         self.plant_table("fine")
         code, lines = run("check_house.py", self.root, "commits")
-        self.assertEqual(code, 77, lines)  # no repository: nothing to look into
+        self.assertEqual(code, 77, lines)  # without a repository there is no history
         self.assertIn("skipped", lines[0])
         self.git("init", "-q")
         self.git("commit", "-q", "--allow-empty", "-m", "first")

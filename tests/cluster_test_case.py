@@ -1,4 +1,4 @@
-"""Packages of a small light field, frames of it rendered at once, and jobs of them."""
+"""A small light field with its packages, the frames of one lfrenderer, and jobs that render the packages."""
 import hashlib
 import json
 import os
@@ -16,13 +16,13 @@ RENDERER = PREPROCESSOR = SUBMIT = None
 
 
 def take_programs():
-    """LFRENDERER LFPREPROCESSOR LFSUBMIT from the command line"""
+    """Takes LFRENDERER LFPREPROCESSOR LFSUBMIT from the command line."""
     global RENDERER, PREPROCESSOR, SUBMIT
     RENDERER, PREPROCESSOR, SUBMIT = sys.argv[1:4]
 
 
 def digests(folder):
-    """sha256 of the frames of a folder"""
+    """Returns the sha256 of the frames of a folder."""
     return {path.name: hashlib.sha256(path.read_bytes()).hexdigest()
             for path in sorted(folder.glob("frame_*"))}
 
@@ -35,7 +35,7 @@ class ClusterTestCase(ProgramTestCase):
 
     @classmethod
     def setUpClass(cls):
-        """Light field, path, packages and the frames of one lfrenderer, the same for all tests."""
+        """Makes the light field, path, packages and frames of one lfrenderer that all tests share."""
         temporary = tempfile.TemporaryDirectory()
         cls.addClassCleanup(temporary.cleanup)
         folder = pathlib.Path(temporary.name)
@@ -58,7 +58,7 @@ class ClusterTestCase(ProgramTestCase):
         self.film = self.folder / "film"
 
     def submit(self, *options, code=0, words=()):
-        """Its last line, which has these words."""
+        """Runs lfsubmit and returns its last line, which must contain these words."""
         result = self.call(SUBMIT, *self.package_files, "-o", self.film, *options)
         self.assertEqual(result.returncode, code, result.stderr)
         last = result.stderr.strip().splitlines()[-1]
@@ -76,7 +76,7 @@ class ClusterTestCase(ProgramTestCase):
             time.sleep(0.02)
 
     def is_held(self, number):
-        """A package has a checkpoint, and its renderer stands still (held_renderer)."""
+        """Returns true if a package has a checkpoint and its renderer is stopped (held_renderer)."""
         if not any((self.film / "partial" / f"package-{number:04d}").glob("frame_*.plate")):
             return False
         try:
@@ -87,8 +87,8 @@ class ClusterTestCase(ProgramTestCase):
         return stat.rpartition(")")[2].split()[0] == "T"
 
     def unlucky_renderer(self, script: str) -> pathlib.Path:
-        """A program in place of lfrenderer: bash, $start counts from 1, $package is a name or "finish",
-        and run is the real one."""
+        """Returns a program that stands in for lfrenderer. The script is bash: $start counts from 1, $package is a name
+        or "finish", and run calls the real program."""
         counter = self.folder / "starts"
         counter.mkdir(exist_ok=True)
         program = self.folder / "lfrenderer"
@@ -106,9 +106,9 @@ run
         return program
 
     def held_renderer(self, packages=None) -> pathlib.Path:
-        """Like lfrenderer, but the first start of each of these packages (of all without a list) stands still as
-        soon as it has begun a frame, until a signal is sent to it (see is_held). A test can then count on packages
-        that are at work, however busy the machine is."""
+        """Returns a stand-in for lfrenderer. The first start of each of these packages (default: all) stops as soon as
+        it has begun a frame, until a signal is sent to it (see is_held). A test can then rely on running packages,
+        however busy the machine is."""
         names = "|".join(f"package-{number:04d}" for number in packages or range(self.packages))
         return self.unlucky_renderer(f"""
             if [[ $start == 1 && $package =~ ^({names})$ ]]; then
@@ -131,7 +131,7 @@ run
             fi""")
 
     def start(self, *options):
-        """lfsubmit, at work."""
+        """Starts lfsubmit and returns the process."""
         process = subprocess.Popen([SUBMIT, *map(str, self.package_files), "-o", str(self.film),
                                     *map(str, options)], stderr=subprocess.PIPE, text=True)
         self.addCleanup(process.wait)

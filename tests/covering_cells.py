@@ -1,18 +1,18 @@
-"""Cells of a matrix in which every combination of a few axes occurs: tests of N axes in few runs."""
+"""Chooses cells of a matrix that cover every combination of a few axes, to test N axes in few runs."""
 import itertools
 import random
 
 
 def covering_cells(axes, strength=2, seed=0):
-    """Returns cells, tuples of one value for each axis, so that any `strength` axes have every
-    combination of their values in some cell.
+    """Returns cells, tuples of one value per axis. For any `strength` axes, every combination of their values occurs in
+    some cell.
 
     axes      lists of values, at least `strength` of them
     strength  2: all pairs; 3: all triples; the number of axes: the whole matrix
-    seed      other cells of the same kind
+    seed      selects other cells with the same property
 
-    Greedy: each cell begins with a combination that is missing, and takes for the other axes, one
-    after the other, the values that complete most missing combinations.
+    Greedy: each cell begins with a missing combination. For each of the other axes in turn, it takes the value that
+    completes most missing combinations.
     """
     if not 1 <= strength <= len(axes):
         raise ValueError(f"strength {strength}: expected 1 to {len(axes)}, the number of axes")
@@ -39,5 +39,5 @@ def _best_value(values, axis, cell, missing, chance):
         return sum(tuple(filled[c] for c in columns) in combinations
                    for columns, combinations in missing.items()
                    if axis in columns and all(c in filled for c in columns))
-    # A shuffle decides between values that are equally good.
+    # Among equally good values, one is chosen at random.
     return max(chance.sample(values, len(values)), key=completed)

@@ -1,7 +1,7 @@
-"""Tells what a disk holds if the power fails, from the log of tests/faults/written_log.c.
+"""Computes the content of a disk after a power failure, from the log of tests/faults/written_log.c.
 
-Two disks are known. A patient one keeps names for itself until their folder is flushed. A hasty one has
-them at once, in order. Neither has any byte of a file that was not flushed.
+Two disks are modelled. A patient one does not store names before their folder is flushed. A hasty one stores them at
+once, in order. Neither stores any byte of a file that was not flushed.
 """
 import pathlib
 
@@ -29,7 +29,7 @@ def read_log(log):
 
 
 class Disk:
-    """The disk under a folder, whose content is on it when this begins."""
+    """The disk under a folder, whose present content is already stored."""
 
     def __init__(self, root, is_hasty):
         self.root, self.is_hasty = root, is_hasty
@@ -53,7 +53,7 @@ class Disk:
         return self._find(path.parent)
 
     def happens(self, kind, first, second, content):
-        """Does what one event of the log did. KeyError if the log lacks an earlier event."""
+        """Applies one event of the log. KeyError if the log lacks an earlier event."""
         if kind in ("make", "folder"):
             self._folder(first).entries[first.name] = File() if kind == "make" else Folder()
         elif kind == "cut":
@@ -98,7 +98,7 @@ class Disk:
 
 
 def write_content(content, folder):
-    """Makes an empty folder hold what a disk held."""
+    """Fills an empty folder with what a disk held."""
     for name, written in sorted(content.items()):
         if written is None:
             (folder / name).mkdir(parents=True, exist_ok=True)

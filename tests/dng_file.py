@@ -1,12 +1,12 @@
-"""DNG files for tests, written by hand: a TIFF of one uncompressed strip of 16-bit pixels."""
+"""Writes DNG files for tests: a TIFF with one uncompressed strip of 16-bit pixels."""
 import struct
 
 SHORT, LONG, RATIONAL, SRATIONAL, BYTE, TEXT = 3, 4, 5, 10, 1, 2
 
 
 def dng(mosaic, pattern="RGGB", black=0, white=65535, neutral=None, orientation=1) -> bytes:
-    """The bytes of a file. mosaic: uint16 [height][width]; neutral: AsShotNeutral, with a colour
-    matrix (camera = CIE XYZ), or none of both."""
+    """Returns the bytes of a file. mosaic: uint16 [height][width]; neutral: AsShotNeutral, together with a colour
+    matrix (camera = CIE XYZ); None: neither of them."""
     height, width = mosaic.shape
     pixels = mosaic.astype("<u2").tobytes()
     tags = {

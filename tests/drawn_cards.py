@@ -1,4 +1,4 @@
-"""Cards of known light and opacity, photographed by planar light fields and by true lenses."""
+"""Photographs cards of known light and opacity with planar light fields and with exact lenses."""
 import json
 import math
 
@@ -40,8 +40,7 @@ def srgb_of(light):
 
 
 def ring_and_glass(x, y, depth):
-    """Returns light and opacity of points of a plane: a striped ring, and a bar of glass nearer to the
-    camera."""
+    """Returns light and opacity of points of a plane: a striped ring, and a bar of glass nearer to the camera."""
     if depth == FOCUS:
         r = np.hypot(x, y)
         light = [0.55 + 0.4 * np.sin(30 * x), 0.5 + 0.3 * np.cos(24 * y),
@@ -52,10 +51,10 @@ def ring_and_glass(x, y, depth):
 
 
 def photograph(x, y, shift=(0, 0), scene=ring_and_glass, depths=(0.8, FOCUS)):
-    """Returns premultiplied light and opacity that a pinhole camera at x, y records.
+    """Returns the premultiplied light and opacity that a pinhole camera at x, y records.
 
-    shift  by so much the plane of focus is moved, so that it stands still for points of a lens
-    scene  light and opacity of points of a plane at one of the depths, which are in rising order
+    shift  displacement of the plane of focus, with which it stays in place for points of a lens
+    scene  light and opacity of points of a plane at one of the depths, which ascend
     """
     at = (np.arange(SAMPLES) + 0.5) / SAMPLES
     columns = (np.arange(WIDTH)[:, None] + at).ravel()
@@ -73,13 +72,13 @@ def photograph(x, y, shift=(0, 0), scene=ring_and_glass, depths=(0.8, FOCUS)):
 
 
 def lens_picture(opening, **scene):
-    """Returns premultiplied light and opacity: the mean over points of a lens, from its centre."""
+    """Returns premultiplied light and opacity, averaged over points of a lens relative to its centre."""
     pictures = [photograph(CENTRE[0] + x, CENTRE[1] + y, (x, y), **scene) for x, y in opening]
     return tuple(np.mean([picture[k] for picture in pictures], axis=0) for k in (0, 1))
 
 
 def write_field(folder, write, scene=None, **keys):
-    """A planar light field whose LF images are written by write(file without suffix, light, opacity)."""
+    """Writes a planar light field. write(file without suffix, light, opacity) writes its LF images."""
     folder.mkdir()
     frames = []
     for index in range(SIDE * SIDE):

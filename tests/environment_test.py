@@ -33,8 +33,8 @@ MIB = 1 << 20
 HANGS_S = 120
 CODES = (2, 3, 4, 6)
 PARTS = ("memory", "files", "processes", "size", "disk", "streams", "locale", "names", "inputs")
-LOADER = "error while loading shared libraries"  # says the system's loader, before the program begins
-# Limits of the quick form, of which every call takes each third; and of the long form.
+LOADER = "error while loading shared libraries"  # a message of the system's loader, before the program starts
+# Limits of the quick form, of which each call tries every third, and of the long form (ALL_...).
 MEMORY_MIB = (16, 96, 192, 256, 320, 384, 448, 512, 576, 640, 800, 1200)
 FILES = (3, 4, 5, 6, 7, 8, 10, 12, 16)
 PROCESSES = (1, 2, 4)
@@ -57,7 +57,7 @@ class Lack:
         self.environment = environment or {}
 
     def begin(self):
-        """Runs in the process that becomes the program."""
+        """Runs in the child process before it becomes the program."""
         for what, limit in self.limits.items():
             resource.setrlimit(what, (limit, limit))
         if self.user is not None:
@@ -86,20 +86,20 @@ class Run:
 
 
 def free_user():
-    """Returns a user who has no process."""
+    """Returns a user without any process."""
     busy = {path.stat().st_uid for path in pathlib.Path("/proc").iterdir() if path.name.isdigit()}
     return next(user for user in range(61000, 61999) if user not in busy)
 
 
 def own_threads():
-    """Returns how many threads this user has."""
+    """Returns the number of this user's threads."""
     count = 0
     for status in pathlib.Path("/proc").glob("[0-9]*"):
         try:
             if status.stat().st_uid == os.getuid():
                 count += len(os.listdir(status / "task"))
         except OSError:
-            pass  # it has ended
+            pass  # the process has ended
     return count
 
 
@@ -152,7 +152,7 @@ class Environments:
         if not done.never_began:
             faults = faults_of_status(done.code, done.errors, CODES)
             if 2 in lack.closed and done.code in CODES:
-                faults = []  # nobody could hear it
+                faults = []  # stderr is closed
         faults += faults_of_finals(final, right, {})
         if repair:
             repair()
@@ -202,7 +202,7 @@ class Environments:
         except OSError as error:
             print(f"processes: skipped: another user cannot run the programs: {error}")
         else:
-            # With several threads, it is chance which code lies in which shard.
+            # With several threads, chance decides which encoded image lies in which shard.
             for call in (call for call in self.chosen() if not call.name.endswith("shards")):
                 for count in ALL_PROCESSES if self.arguments.all else PROCESSES:
                     self.try_call("processes", call, Lack(f"{count} processes and threads",
@@ -232,7 +232,7 @@ class Environments:
             self.try_call("locale", call, Lack("decimal comma", environment=environment))
 
     def disk(self):
-        """Runs in a mount namespace of its own."""
+        """Runs in its own mount namespace."""
         if "LF_OWN_MOUNTS" not in os.environ:
             self.disk_elsewhere()
             return
@@ -249,7 +249,7 @@ class Environments:
         subprocess.run(["umount", self.work], check=True)
 
     def disk_elsewhere(self):
-        """Starts this test anew, where it may mount."""
+        """Starts this test again in an environment where it may mount."""
         words = [word for word in ("unshare -m", "unshare -rm")
                  if subprocess.run([*word.split(), "mount", "-t", "tmpfs", "tmpfs", self.work], check=False,
                                    capture_output=True).returncode == 0]
@@ -303,7 +303,7 @@ def main():
     arguments.programs = arguments.programs.resolve()
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     with tempfile.TemporaryDirectory() as folder:
-        os.chmod(folder, 0o755)  # other users run the programs, too
+        os.chmod(folder, 0o755)  # other users run the programs
         environments = Environments(arguments, pathlib.Path(folder).resolve())
         for part in PARTS:
             if arguments.part in (None, part):

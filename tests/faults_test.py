@@ -35,25 +35,25 @@ from final_files import (faults_of_finals, faults_of_going_on, faults_of_status,
 from tiny_calls import TinyCalls
 
 EIO, EINTR = 5, 4
-# What fails how: a number of errno, or "short" or "kill"; "+" from there on always.
+# Ways in which calls fail: a number of errno, "short" or "kill"; "+": this call and all later ones.
 WAYS = {"open": ["24", "5"], "read": ["5", "short", "4"], "write": ["28+", "5", "short", "4", "kill"],
         "fsync": ["5", "kill"], "rename": ["28", "kill"], "unlink": ["5"], "mkdir": ["28"], "stat": ["5"],
         "mmap": ["12"], "thread": ["11+"], "malloc": ["12"]}
-# With --points 1: of most calls; and of lfsubmit, which takes seconds, of calls that write over old results, and of
-# those that differ from another one in a mode alone.
+# With --points 1: QUICK_WAYS for most calls; FEWER_WAYS for lfsubmit, which takes seconds, for calls that overwrite old
+# results, and for calls that differ from another one only in the mode.
 QUICK_WAYS = {"open": ["24"], "read": ["5", "short"], "write": ["28+", "short", "kill"], "fsync": ["5", "kill"],
               "rename": ["28", "kill"], "unlink": ["5"], "mkdir": ["28"], "stat": ["5"], "mmap": ["12"],
               "thread": ["11+"], "malloc": ["12"]}
 FEWER_WAYS = {"open": ["24"], "write": ["28+", "kill"], "fsync": ["kill"], "rename": ["28"], "unlink": ["5"],
               "thread": ["11+"]}
 LIKE_OTHERS = ("shards", "rebin", "hybrid")
-FEWER_POINTS = 2  # of lfsubmit, of each kind
-GROUPS_OF_MALLOC = 6  # sizes are no pattern: so many points for all of them
+FEWER_POINTS = 2  # for lfsubmit, per kind
+GROUPS_OF_MALLOC = 6  # sizes form no pattern: this many points for all of them
 HANGS_S = 120
 
 
 class Hunt:
-    """Lets the calls of one program after another fail, in a folder of its own."""
+    """Makes the calls of programs fail, one program after the other, in a folder of its own."""
 
     def __init__(self, arguments, folder):
         self.arguments, self.folder = arguments, folder
@@ -62,7 +62,7 @@ class Hunt:
         self.calls = TinyCalls(arguments.programs, folder / "base", self.work / "out")
 
     def run(self, command, fault=None):
-        """Returns the status and what was said, once no process of the call is left."""
+        """Returns the status and the output, after all processes of the call have ended."""
         environment = dict(os.environ, FAULT_PATH=str(self.folder))
         if fault is not None:
             environment.update(fault, LD_PRELOAD=str(self.arguments.shim))
@@ -87,7 +87,7 @@ class Hunt:
             self.work.mkdir()
 
     def make_old(self, call):
-        """Makes the results that the call writes over. Returns their digests."""
+        """Makes the results that the call overwrites. Returns their digests."""
         if not call.before:
             return {}
         shutil.rmtree(self.work, ignore_errors=True)
@@ -101,7 +101,7 @@ class Hunt:
         return files_of(self.old)[0]
 
     def points(self, trace):
-        """Returns the calls that shall fail, by kind."""
+        """Returns, by kind, the calls that are to fail."""
         groups = collections.defaultdict(list)
         for line in trace.splitlines():
             kind, k, function, path = line.split(" ", 3)
@@ -133,17 +133,17 @@ class Hunt:
         final, temporary = files_of(self.work)
         if code == 0:
             return faults_of_success(final, [] if kind == "unlink" else temporary, right)
-        if code == 6 and way == str(EIO):  # a disk that cannot give an LF image: it is left out, and told
+        if code == 6 and way == str(EIO):  # a disk that cannot deliver an LF image: it is left out and reported
             return []
-        # 5: lfsubmit did not see that a package is done; it says so, and that --resume goes on.
+        # 5: lfsubmit did not see that a package is done; it reports this, and that --resume resumes.
         codes = (3, 4, 5, 6) if kind == "stat" and call.victim == "lfsubmit" else (3, 4, 6)
         faults = [] if way == "kill" and code == -signal.SIGKILL else faults_of_status(code, errors, codes)
         if way == str(EIO) and call.victim != call.command[0].name and kind in ("open", "read"):
-            return faults  # every renderer of the job leaves an LF image out, which --resume tells
+            return faults  # every renderer of the job leaves an LF image out, which --resume reports
         if way in ("short", str(EINTR)):
             faults.append(f"not tried again: {last_line(errors)[:200]}")
         faults += faults_of_finals(final, right, old)
-        if way == "kill":  # a lock that is left behind keeps nobody out
+        if way == "kill":  # a lock file that is left behind blocks nobody
             return faults + faults_of_going_on(call.again, self.run, self.files_but_locks, right)
         return faults + faults_of_going_on(call.again, self.run, lambda: files_of(self.work), right)
 
@@ -183,7 +183,7 @@ class Hunt:
 
 
 def has_ended(group, seconds=20):
-    """Waits until no process of the group is left, and returns whether that happened."""
+    """Waits until no process of the group remains. Returns True if that happened in time."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:
         try:
@@ -199,7 +199,7 @@ def names_of_calls(calls):
 
 
 def chosen_calls(calls):
-    """Returns all calls, those that take longest first."""
+    """Returns all calls, the slowest first."""
     return [*calls.submitters(), *calls.overwriters(), *calls.writers()]
 
 

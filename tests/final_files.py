@@ -1,21 +1,21 @@
-"""Judges the files of a program that something disturbed: those with final names must be old or right."""
+"""Judges the files of a program that was disturbed: those with final names must be old or right."""
 import hashlib
 import json
 import re
 import sqlite3
 
 TEMPORARY = re.compile(r"^\..*\.tmp|\.unfinished|-journal$|(^|\.)lock$")
-# Folders of checkpoints and of jobs: what they hold is judged by what it becomes.
+# Folders of checkpoints and jobs: only the results made from them are judged.
 OWN_FOLDERS = {"partial", "cluster"}
 
 
 def store_digest(path):
-    """Returns a digest of the tables without the values that differ from run to run."""
+    """Returns a digest of the tables without values that differ from run to run."""
     database = sqlite3.connect(f"file:{path}?mode=ro&immutable=1", uri=True)
     digest_of_rows = hashlib.sha256()
     for (table,) in sorted(database.execute("select name from sqlite_master where type = 'table'")):
         for row in database.execute(f"select * from {table} order by 1"):
-            # Lengths of image files are for people, and unknown where stat() fails.
+            # Sizes of image files are for people, and unknown if stat() fails.
             if table == "codes":
                 row = row[:-1]
             elif table == "lf_images" and path.suffix == ".lfp":
@@ -62,7 +62,7 @@ def last_line(errors):
 
 
 def differing(final, right):
-    """Returns the names of the files that are missing, needless or wrong."""
+    """Returns the names of files that are missing, superfluous or wrong."""
     return sorted(name for name in {*right, *final} if right.get(name) != final.get(name))
 
 
@@ -91,9 +91,9 @@ def faults_of_finals(final, right, old):
 
 
 def faults_of_going_on(commands, call, files, right):
-    """Goes on after a failure. All commands but the last may refuse to, the last must end with the right files.
+    """Resumes after a failure. All commands but the last may refuse; the last must end with the right files.
 
-    call   runs a command and returns its status and what it said
+    call   runs a command and returns its status and its output
     files  returns the files with final names, and the temporary files
     """
     for command in commands:

@@ -1,5 +1,4 @@
-"""The first picture of a capture, made by lfimport, lfexample and lfrenderer, and a sheet of such
-pictures."""
+"""Makes the first picture of a capture with lfimport, lfexample and lfrenderer, and a sheet of such pictures."""
 import re
 
 import cv2
@@ -14,13 +13,13 @@ def grey(image):
 
 
 def detail(pixels):
-    """Standard deviation of edges, beside the mean brightness."""
+    """Returns the standard deviation of edges, relative to the mean brightness."""
     return cv2.Laplacian(pixels, cv2.CV_32F)[2:-2, 2:-2].std() / max(1, pixels.mean())
 
 
 def expose(file, gain, falloff=0, out=None):
-    """Writes an image again as a camera of another exposure records it, through a lens that loses this
-    share of the light towards the corners. Paper white stays below the largest value."""
+    """Rewrites an image as a camera with another exposure would record it, through a lens that loses `falloff` of the
+    light towards the corners. Paper white stays below the largest value."""
     image = Image.open(file).convert("RGB")
     x, y = np.meshgrid(*((np.arange(n) + 0.5 - n / 2 for n in image.size)))
     corner = 4 * (x * x + y * y) / (image.width ** 2 + image.height ** 2)
@@ -34,13 +33,13 @@ class FirstPictureCase(ProgramTestCase):
     PICTURES = []  # (name, PIL image)
 
     def first_picture(self, name, capture, codes=(0, 0), options=(), words=(), is_sure=True):
-        """Runs the three programs. Returns the picture, the focus distance, and the name of the LF image
-        that the path starts at.
+        """Runs the three programs. Returns the picture, the focus distance, and the name of the LF image at which the
+        path starts.
 
         codes    exit codes of lfimport and lfrenderer
-        options  of lfimport; with -o, its output is what is rendered
-        words    that must be said
-        is_sure  False: lfexample must say that it is not sure of the focus
+        options  of lfimport; with -o, its output is rendered
+        words    must be in the output
+        is_sure  False: lfexample must report that it is not sure of the focus
         """
         importer, example, renderer = self.PROGRAMS
         report = self.succeeds(importer, capture, *options, code=codes[0])
@@ -63,7 +62,7 @@ class FirstPictureCase(ProgramTestCase):
 
 
 def write_sheet(path, pictures, columns=4):
-    """All pictures, each with its name below."""
+    """Writes all pictures with their names below."""
     width, height = 240, 200
     sheet = Image.new("RGB", (columns * width, -(-len(pictures) // columns) * height), "white")
     for number, (name, picture) in enumerate(pictures):

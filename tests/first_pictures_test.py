@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""The first picture of captures as people have them: lfimport, lfexample and lfrenderer without a
-further option give one in which the subject is sharp.
+"""Tests the first picture of captures as people have them: lfimport, lfexample and lfrenderer without further options
+make one whose subject is sharp.
 
 usage: first_pictures_test.py LFIMPORT LFEXAMPLE LFRENDERER [CONTACT_SHEET.png]
 """
@@ -22,7 +22,7 @@ MIDDLE = "084"  # the LF camera in the middle
 
 
 def card_and_wall(x, y, depth):
-    """A textured card in the middle, at FOCUS, before a dimmer wall."""
+    """A textured card in the middle, at FOCUS, in front of a dimmer wall."""
     scale = 0.9 / depth
     wave = np.sin(70 * scale * x + 9 * np.sin(8 * scale * y)) * np.cos(62 * scale * y - 7 * scale * x)
     light = np.stack([0.45 + 0.3 * wave, 0.4 + 0.3 * wave ** 2, 0.35 - 0.2 * wave], -1)
@@ -47,7 +47,7 @@ def rgba(file, light, opacity):
 
 
 def change(field, edit):
-    """Writes transforms.json again as edit(text) leaves it."""
+    """Replaces transforms.json by edit(its content)."""
     calibration = field / "transforms.json"
     text = json.loads(calibration.read_text())
     edit(text)
@@ -64,13 +64,13 @@ class FirstPicturesTest(FirstPictureCase):
         return write_field(self.folder / "capture", write, scene or CARD_AND_WALL)
 
     def shows_the_card(self, name, capture, lf_image=None, **call):
-        """The picture's middle must be that of the LF image that it starts at."""
+        """The middle of the picture must show what the LF image shows at which the path starts."""
         picture, focus, start = self.first_picture(name, capture, **call)
         self.assertAlmostEqual(focus, FOCUS, delta=0.02 * FOCUS)
         self.expect_sharp(picture, lf_image or Image.open(capture / start))
 
     def expect_sharp(self, picture, lf_image):
-        """The middle of the card, in both as large as in the picture."""
+        """Compares the middle of the card in both images, at the size of the picture."""
         def middle(image):
             image = grey(image)
             y, x = image.shape[0] // 2, image.shape[1] // 2
@@ -130,7 +130,7 @@ class FirstPicturesTest(FirstPictureCase):
             for key in ("w", "h", "cx", "cy"):
                 text.pop(key)
         change(capture, without_size)
-        self.shows_the_card("mixed sizes", capture, codes=(6, 0))  # a lens that needs none of them
+        self.shows_the_card("mixed sizes", capture, codes=(6, 0))  # the lens needs none of the images of another size
 
     def test_images_exposed_unevenly(self):
         capture = self.capture()

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""One light field in every format: read alike, rendered alike.
+"""Reads and renders one light field in every format; all results must agree.
 
 usage: formats_test.py LFSYNTH LFEXAMPLE LFIMPORT LFRENDERER
 """
@@ -27,13 +27,13 @@ def run(*arguments):
 
 
 def picture(frames):
-    """linear RGB of the first frame [height][width][3]"""
+    """Returns linear RGB of the first frame, [height][width][3]."""
     bgr = cv2.imread(str(frames / "frame_0001.exr"), cv2.IMREAD_UNCHANGED)[..., :3]
     return bgr[..., ::-1].astype(np.float64)
 
 
 def target_position(frame):
-    """(x, y) of the brightest spot: the centroid of its upper half, in elements"""
+    """Returns (x, y) of the brightest spot in elements: the centroid of its upper half."""
     grey = frame.sum(axis=2)
     y, x = np.unravel_index(grey.argmax(), grey.shape)
     window = grey[max(0, y - 4):y + 5, max(0, x - 4):x + 5]
@@ -44,7 +44,7 @@ def target_position(frame):
 
 
 def shift_between(a, b):
-    """(x, y) in elements by which b lies beside a, by least squares over the picture"""
+    """Returns the shift (x, y) of b relative to a in elements, by least squares over the picture."""
     grey, difference = (a + b).sum(axis=2) / 2, (b - a).sum(axis=2)
     inner = (slice(6, -6), slice(6, -6))
     rows, columns = (g[inner].ravel() for g in np.gradient(grey))
@@ -59,7 +59,7 @@ class FormatsTest(unittest.TestCase):
         cls.temporary = tempfile.TemporaryDirectory()
         cls.addClassCleanup(cls.temporary.cleanup)
         cls.folder = pathlib.Path(cls.temporary.name)
-        # Turned and jittered cameras, off the grid: none is on the lens's rim.
+        # Rotated and jittered cameras, so that no camera lies on the rim of the lens.
         cls.jittered = cls.synth("jittered", "still-life", "--jitter", 0.4, "--size", "120x80")
         cls.square = cls.synth("square", "still-life", "--jitter", 0.4, "--size", "80x80")
         cls.brown = cls.synth("brown", "still-life", "--jitter", 0.4, "--size", "120x80",
@@ -82,7 +82,7 @@ class FormatsTest(unittest.TestCase):
 
     @staticmethod
     def centre_at_origin(folder):
-        """Moves the world so that the grid lies around its origin, in the plane z = 0."""
+        """Moves the world so that the grid is centred at the origin, in the plane z = 0."""
         field = json.loads((folder / "transforms.json").read_text())
         matrices = [np.array(f["transform_matrix"]) for f in field["frames"]]
         centre = np.mean([m[:3, 3] for m in matrices], axis=0)
@@ -93,7 +93,7 @@ class FormatsTest(unittest.TestCase):
         (folder / "transforms.json").write_text(json.dumps(field))
 
     def native_frame(self, native):
-        """path and picture of the native form"""
+        """Returns the path and the picture of the native form."""
         if native not in self.rendered:
             path = native.with_name(native.name + ".yaml")
             run(EXAMPLE, native, "-o", path, "--move", "static")
@@ -128,7 +128,7 @@ class FormatsTest(unittest.TestCase):
     def compare_calibrations(self, native, imported, name):
         expected, found = write_formats.poses(native), write_formats.poses(imported)
         self.assertEqual(len(found), len(expected))
-        # The same number of frames in the same order, whatever the names.
+        # Both have the same number of frames in the same order; names may differ.
         if name.startswith("stanford"):
             found.sort(key=lambda pose: pose[0])
         for (_, rotation, translation), (file_path, rotation2, translation2) in zip(expected, found):
@@ -142,7 +142,7 @@ class FormatsTest(unittest.TestCase):
         self.assertEqual(native["camera_model"], imported["camera_model"])
 
     def test_the_native_form_lands_where_the_true_picture_does(self):
-        # A regular grid: the mean of its cameras within the lens is the lens's middle.
+        # In a regular grid, the mean position of the cameras within the lens is the centre of the lens.
         chart = ("chart", "--count", 49, "--size", "120x80", "--format", "png")
         run(SYNTH, *chart, "-o", self.folder / "chart")
         path = self.folder / "chart.yaml"
@@ -158,7 +158,7 @@ class FormatsTest(unittest.TestCase):
         frame, truth = picture(out), picture(self.folder / "truth" / "truth")
         self.assertEqual(truth.shape, frame.shape)
         self.assertLessEqual(np.abs(shift_between(truth, frame)).max(), 0.05)
-        # The measure sees a shift of one element.
+        # The measure detects a shift of one element.
         self.assertGreater(shift_between(truth, np.roll(truth, 1, axis=1))[0], 0.8)
 
     def test_colmap_binary(self):
@@ -205,7 +205,7 @@ class FormatsTest(unittest.TestCase):
                    reads_itself=False)
 
     def test_every_lens_gives_the_picture_of_the_pinhole(self):
-        """The same scene through other lenses: less alike, for their pixels lie elsewhere."""
+        """Films the scene through other lenses. The tolerance is larger, because their pixels have other positions."""
         path, expected = self.native_frame(self.jittered)
         for native in (self.brown, self.rational, self.fisheye, self.fov):
             out = self.folder / f"{native.name}-as-pinhole"

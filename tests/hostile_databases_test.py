@@ -1,7 +1,6 @@
 #!/usr/bin/python3
-"""Packages and packed stores that somebody made to do harm: other schemas, other values, other pages, each
-under a correct seal and correct checksums. They take no more memory and time than the bounds, and what is
-said of them is one error.
+"""Tests packages and packed stores made to do harm: with other schemas, values or pages, each under a correct seal and
+correct checksums. Programs must keep to the limits of memory and time and report one error.
 
 usage: hostile_databases_test.py LFRENDERER LFPREPROCESSOR LFCOMPRESSOR LFIMPORT [--all]
 
@@ -28,12 +27,12 @@ MEMORY_MIB = 256
 SEAL = b"LFSEAL1\n"
 SEAL_BYTES = 24
 ENDLESS = "with recursive c(x) as (select 1 union all select x + 1 from c) select"
-EVERY = 11  # of so many values one is tried; a prime, so that all kinds meet all columns' types
+EVERY = 11  # one of this many values is tried; a prime, so that all kinds of values meet all types of columns
 DAMAGES = 20
 
 
 def unseal(file):
-    """Takes the seal off; whether there was one."""
+    """Removes the seal. Returns True if there was one."""
     data = file.read_bytes()
     if data[-SEAL_BYTES:-SEAL_BYTES + len(SEAL)] != SEAL:
         return False
@@ -51,7 +50,7 @@ def with_checksum(data):
 
 
 def tables_of(file):
-    """name -> column names, of those that have rows"""
+    """Returns name -> column names of the tables that have rows."""
     with sqlite3.connect(file) as database:
         names = [name for name, in database.execute("select name from sqlite_master where type = 'table'")]
         tables = {name: [row[1] for row in database.execute(f"pragma table_info({name})")] for name in names}
@@ -60,13 +59,13 @@ def tables_of(file):
 
 
 def key_of(database, table):
-    """What orders the rows of a table: it may have no rowid."""
+    """Returns the column that orders the rows of a table, which may have no rowid."""
     keys = [row[1] for row in database.execute(f"pragma table_info({table})") if row[5]]
     return keys[0] if keys else "rowid"
 
 
 def schemas(tables):
-    """(name, script) of what stands in place of tables."""
+    """Yields (name, script) for scripts that replace tables."""
     for table, columns in tables.items():
         numbers = ", ".join(f"x as {column}" for column in columns)
         zeros = ", ".join(f"zeroblob(1000000000) as {column}" for column in columns)
@@ -91,7 +90,7 @@ LONG_TEXT, ZEROS = "../" * 300_000, with_checksum(bytes(10_000_000))
 
 
 def values(column_value):
-    """What stands in place of a value."""
+    """Yields (name, value) for values that replace a value."""
     yield "null", None
     for number in (-1, 0, 1, 65535, 2**31, 2**62, -2**63):
         yield str(number), number
@@ -141,7 +140,7 @@ class HostileDatabasesTest(unittest.TestCase):
         self.assertEqual([], faults, "\n".join(faults))
 
     def changed(self, original, change):
-        """A copy that change(file) has changed, sealed as the original."""
+        """Returns a copy that change(file) has changed, with a seal if the original has one."""
         type(self).number += 1
         file = self.folder / f"{self.number}{original.suffix}"
         shutil.copyfile(original, file)
@@ -155,7 +154,7 @@ class HostileDatabasesTest(unittest.TestCase):
         renderer = PROGRAMS[0]
         out = self.folder / f"out {file.name}"
         if file.suffix == ".lfp":
-            # Packages beside the light field that they name.
+            # Packages must lie beside the light field that they name.
             moved = self.package.parent / file.name
             file.rename(moved)
             return [(name, [renderer, moved, "-o", out, "--no-contact-sheet"])]
@@ -199,12 +198,13 @@ class HostileDatabasesTest(unittest.TestCase):
                      [(name, self.script(text)) for name, text in schemas(tables_of(original))], accepts=(2, 3))
 
     def test_lfimport_reads_a_store_without_codes(self):
-        """A store whose codes lie in files beside it has no table of them."""
+        """A store whose encoded images lie in other files has no table of them."""
         file = self.changed(self.stores[0], self.script("drop table blobs;"))
         self.runs.all("lfs: without codes", [("lfimport", [PROGRAMS[3], file])], accepts=(0,))
 
     def test_any_value_may_stand_anywhere(self):
-        """Some are as good as the true ones (another seed, another name of a lens): those are accepted."""
+        """Some values, such as another seed or another name of a lens, are as valid as the original ones and are
+        accepted."""
         for original in self.originals():
             changes = []
             for table, columns in tables_of(original).items():
@@ -216,7 +216,7 @@ class HostileDatabasesTest(unittest.TestCase):
             self.all("values", original, self.possible(original, changes[::EVERY]), accepts=(0, 2, 3, 6))
 
     def possible(self, original, changes):
-        """Those that SQLite lets happen: an integer primary key takes no text."""
+        """Yields the changes that SQLite accepts: an integer primary key, for example, cannot hold a text."""
         for name, change in changes:
             try:
                 self.changed(original, change).unlink()
@@ -236,7 +236,7 @@ class HostileDatabasesTest(unittest.TestCase):
                     file.write_bytes(data)
                 changes.append((f"damage {seed}", change))
             for page_bytes in (512, 4096, 65536):
-                def change(file, page_bytes=page_bytes):  # each child of the first page is the page itself
+                def change(file, page_bytes=page_bytes):  # each child of the first page is that page itself
                     data = bytearray(file.read_bytes())
                     for place in range(100, len(data) - 4, 4):
                         if data[place:place + 3] == b"\0\0\0" and 0 < data[place + 3] < 64:

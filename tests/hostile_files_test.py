@@ -1,7 +1,6 @@
 #!/usr/bin/python3
-"""Calibrations, camera paths, images and masks that somebody made to do harm, and things that are no files:
-pipes, devices, loops of links. They take no more memory and time than the bounds, and what is said of them
-is one error.
+"""Tests calibrations, camera paths, images and masks made to do harm, and things that are no files: pipes, devices,
+loops of links. Programs must keep to the limits of memory and time and report one error.
 
 usage: hostile_files_test.py LFRENDERER LFIMPORT LFEXAMPLE LFPREPROCESSOR
 """
@@ -39,7 +38,7 @@ def png(width, height, chunks=b"", data=b"", depth=8, colour=2):
 
 
 def zeros_compressed(count):
-    """So many zeros by zlib, without having them all."""
+    """Returns `count` zeros compressed by zlib, without allocating them."""
     compressor = zlib.compressobj(9)
     part = bytes(1 << 20)
     return b"".join(compressor.compress(part) for _ in range(count >> 20)) + compressor.flush()
@@ -71,7 +70,7 @@ def jpeg(width, height):
 
 
 def images():
-    """(name, suffix, bytes) of pictures that are not what they say."""
+    """Yields (name, suffix, bytes) of images whose content contradicts their header."""
     yield "a PNG of 30000 x 30000", ".png", png(30000, 30000)
     yield "a PNG of 2^31 x 2^31", ".png", png(2**31 - 1, 2**31 - 1)
     yield "a PNG without pixels", ".png", png(WIDTH, HEIGHT)
@@ -99,10 +98,10 @@ def images():
     yield "a shell script", ".png", b"#!/bin/sh\ntouch owned\n"
 
 
-# What is no file
+# Things that are no files
 
 def no_files():
-    """(name, make(path)) of things where a file should be."""
+    """Yields (name, make(path)) of things in place of a file."""
     yield "a pipe", os.mkfifo
     yield "a folder", os.mkdir
     yield "a link to itself", lambda path: os.symlink(path.name, path)
@@ -115,7 +114,7 @@ def no_files():
 # Texts
 
 def calibrations():
-    """(name, text) of transforms.json."""
+    """Yields (name, text) of transforms.json."""
     good = {"fl_x": 70, "w": WIDTH, "h": HEIGHT, "frames": [FRAME]}
 
     def changed(**keys):
@@ -152,7 +151,7 @@ def calibrations():
 
 
 def paths():
-    """(name, text) of PATH.yaml."""
+    """Yields (name, text) of PATH.yaml."""
     good = PATH_YAML.format(frames=1, aperture=0.045, x=0)
     yield "aliases that grow to 10^9", "a0: &a0 [x,x,x,x,x,x,x,x,x,x]\n" + "".join(
         f"a{i}: &a{i} [{','.join([f'*a{i - 1}'] * 10)}]\n" for i in range(1, 9)) + good
@@ -210,7 +209,7 @@ class HostileFilesTest(unittest.TestCase):
         return name, [PROGRAMS[0], field, path, "-o", out, "--no-contact-sheet", "--memory", "256M"]
 
     def field_with(self, file_name, make, key="file_path"):
-        """A light field in which what make(path) makes stands in place of an image, or is the mask of one."""
+        """Returns a light field in which an image, or its mask, was made by make(path)."""
         folder = self.new_folder() / "field"
         shutil.copytree(self.field.parent, folder)
         content = json.loads((folder / "transforms.json").read_text())
@@ -220,7 +219,7 @@ class HostileFilesTest(unittest.TestCase):
         return folder
 
     def whole_field_of(self, file_name, make):
-        """A light field without sizes that has this one image, so that it is asked for them."""
+        """Returns a light field without sizes and with this one image, which must therefore be read for its size."""
         folder = self.new_folder() / "field"
         folder.mkdir()
         make(folder / file_name)
@@ -236,7 +235,7 @@ class HostileFilesTest(unittest.TestCase):
             calls.append(self.render(name, self.field_with("odd" + suffix, write), self.path))
             masks.append(self.render(name, self.field_with("odd" + suffix, write, "lf_mask"), self.path))
             sizes.append((name, [PROGRAMS[1], self.whole_field_of("odd" + suffix, write)]))
-        # One image of 25 is left out, and said to be broken; texts, profiles and pixels too many are passed over.
+        # One of 25 images is left out and reported as broken; superfluous texts, profiles and pixels are ignored.
         self.runs.all("images", calls, accepts=(0, 6))
         self.runs.all("masks", masks, accepts=(0, 6))
         self.runs.all("sizes of images", sizes, accepts=(0, 2, 3, 6))

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Programs in PATH that are called sbatch, squeue and scancel, and say anything but what Slurm says. lfsubmit
-believes none of it, and says so in one line.
+"""Tests lfsubmit with false programs sbatch, squeue and scancel in PATH, whose answers Slurm would never give. lfsubmit
+must believe none of them and report this in one line.
 
 usage: hostile_slurm_test.py LFPREPROCESSOR LFSUBMIT
 """
@@ -16,9 +16,9 @@ from bounded_runs import BoundedRuns
 from small_field import write_field, write_path
 
 PREPROCESSOR = SUBMIT = None
-MEMORY_MIB = 640  # 130 are libraries; an answer may have 256, and is copied once
+MEMORY_MIB = 640  # the libraries take 130; an answer may take 256 and is copied once
 GOOD = {"sbatch": "echo 17", "squeue": "true", "scancel": "true"}
-# What sbatch says, and cannot be the number of a job.
+# Answers of sbatch that cannot be the number of a job.
 BAD_NUMBERS = {
     "nothing": "true",
     "an option": "echo --help",
@@ -34,7 +34,7 @@ BAD_NUMBERS = {
     "complaints without an end": "exec yes >&2",
     "a long complaint": "head -c 10000000 /dev/zero | tr '\\0' x >&2; exit 3",
 }
-# What squeue says of jobs.
+# Answers of squeue about jobs.
 BAD_QUEUES = {
     "no end": "exec yes '17|0|RUNNING|node|None'",
     "numbers out of range": "echo '17|99999999999999999999|RUNNING|node|None'",
@@ -70,7 +70,7 @@ class HostileSlurmTest(unittest.TestCase):
         self.assertFalse(list(self.folder.rglob("owned")))
 
     def environment(self, **scripts):
-        """with a Slurm of these scripts"""
+        """Returns an environment with a Slurm made of these scripts."""
         programs = pathlib.Path(tempfile.mkdtemp(prefix="slurm ", dir=self.folder))
         for name, script in {**GOOD, **scripts}.items():
             (programs / name).write_text(f"#!/bin/sh\n{script}\n")

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Installs the project and builds a foreign one against it, by CMake and by pkg-config.
+"""Installs the project and builds another project against it, with CMake and with pkg-config.
 
 usage: install_test.py CMAKE BUILD_FOLDER SOURCE_FOLDER
 """
@@ -24,7 +24,7 @@ class InstallTest(unittest.TestCase):
         cls.folder = pathlib.Path(cls.temporary.name)
         cls.prefix = cls.folder / "installed"
         cls.run_tool(CMAKE, "--install", BUILD, "--prefix", cls.prefix)
-        # Nothing may depend on where it was installed first.
+        # The installation must not depend on its original place.
         moved = cls.folder / "elsewhere"
         cls.prefix.rename(moved)
         cls.prefix = moved

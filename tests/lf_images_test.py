@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What the files of LF images may be: the same light in other files gives the same bits.
+"""Tests the kinds of files of LF images: the same light in any of them gives the same bits.
 
 usage: lf_images_test.py LFRENDERER LFIMPORT
 """
@@ -35,7 +35,7 @@ class LfImagesTest(unittest.TestCase):
         self.path = write_path(self.folder, frames=1)
 
     def field(self, name, write, mask=None, **keys):
-        """A light field whose image `index` is written by write(index, folder) -> file name."""
+        """Writes a light field whose images are written by write(index, folder) -> file name."""
         calibration = write_field(self.folder / name, **keys)
         content = json.loads(calibration.read_text())
         for index, frame in enumerate(content["frames"]):
@@ -52,7 +52,7 @@ class LfImagesTest(unittest.TestCase):
         return result, out
 
     def digest(self, field):
-        """Of the frame, whose rays come from all LF images."""
+        """Returns the digest of the frame, whose rays come from all LF images."""
         result, out = self.run_renderer(field)
         self.assertEqual(result.returncode, 0, result.stderr)
         report = json.loads((out / "report.json").read_text())
@@ -89,7 +89,7 @@ class LfImagesTest(unittest.TestCase):
                   "lf_black_level": 0}
         told = self.frame(self.field("told", write))
         balanced = self.frame(self.field("stated", self.mosaic_as_png, **stated))
-        # Camera = XYZ balanced to D65 white: to linear sRGB by the standard's matrix.
+        # Camera = XYZ balanced to D65 white, converted to linear sRGB by the standard's matrix.
         white = np.array([0.9505, 1, 1.089])
         matrix = np.array([[3.2406, -1.5372, -0.4986], [-0.9689, 1.8758, 0.0415],
                            [0.0557, -0.2040, 1.0570]]) * white
@@ -198,7 +198,7 @@ class LfImagesTest(unittest.TestCase):
         wide = {"lf_transfer": "linear"}
 
         def alpha(index):
-            # Half transparent pixels keep their full colours.
+            # Half-transparent pixels keep their full colours.
             return np.where(self.opaque(index), 128, 127).astype(np.uint8)
 
         def png(index, folder):
@@ -286,7 +286,7 @@ class LfImagesTest(unittest.TestCase):
             size = (HEIGHT * numerator // denominator, WIDTH * numerator // denominator, 3)
             Image.fromarray(noise(index, size)).save(folder / f"{index}s.png")
             return f"{index}s.png"
-        # A whole factor scales the intrinsics, and says so; any other is no reduction of the same pixels.
+        # A whole factor scales the intrinsics, with a message; no other factor is a reduction of the same pixels.
         result, _ = self.run_renderer(self.field("half", lambda k, folder: smaller(k, folder, 1, 2)))
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn("intrinsics are scaled", result.stderr)

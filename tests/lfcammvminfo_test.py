@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""lfcammvminfo as its users meet it, on the examples and on the path of doc/formats/path.md.
+"""Tests lfcammvminfo from a user's view, on the examples and on the path of doc/formats/path.md.
 
 usage: lfcammvminfo_test.py LFCAMMVMINFO REPOSITORY
 """
@@ -103,7 +103,7 @@ class CameraMovementTest(unittest.TestCase):
     def test_millimetres_follow_the_unit(self):
         camera = self.json_of(self.path, "--unit-m", "0.01")["cameras"][0]
         self.assertAlmostEqual(camera["aperture_diameter_mm"], 8)
-        self.assertAlmostEqual(camera["focus_distance_w"], 0.3)  # now 3 mm: f-number as before
+        self.assertAlmostEqual(camera["focus_distance_w"], 0.3)  # now 3 mm; the f-number does not change
         self.assertAlmostEqual(camera["f_number"], 50 / 8)
 
     def test_errors_say_what_to_do(self):

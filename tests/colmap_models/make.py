@@ -34,14 +34,14 @@ CAMERAS = [
 
 
 def split(model, p):
-    """fx, fy, cx, cy and the rest"""
+    """Returns fx, fy, cx, cy and the remaining parameters."""
     if model.startswith("SIMPLE_") or model.startswith("RADIAL"):
         p = [p[0]] + p
     return p[:4], p[4:]
 
 
 def project(model, parameters, x, y):
-    """pixels of the direction (x, y, 1); formulas of COLMAP's camera models"""
+    """Returns the pixels of the direction (x, y, 1), by the formulas of COLMAP's camera models."""
     (fx, fy, cx, cy), k = split(model, parameters)
     r = np.hypot(x, y)
     if model == "FOV":

@@ -1,6 +1,5 @@
 // A camera path (doc/formats/path.md) that a person edits alternately as text and with the mouse.
-// Edits change only the lines that they concern; the rest of the file, with its comments, stays as
-// it was written.
+// Edits change only the lines that they concern; the rest of the file keeps its text and comments.
 import {
   checkValue, constantSpec, kQuantities, quantitySpec, readValue, withoutUnit, writeTime,
   writeValue, zeroOf,
@@ -24,8 +23,7 @@ export interface Acceleration {
   value: PathValue;  // per second squared
 }
 
-// The facts that the file states about a quantity. Lengths are in world units, regardless of the
-// file's unit.
+// Facts that the file states about a quantity. Lengths are in world units, whatever the file uses.
 export interface Quantity {
   name: string;   // without unit: "focus_distance"
   key: string;    // as in the file, or as it would be written: "focus_distance_mm"
