@@ -12,7 +12,7 @@
 
 namespace lf::testing {
 
-// Radiance in [0, 1] of a ray.
+// The radiance of a ray, in [0, 1].
 using Radiance = std::function<double(const Ray&)>;
 
 struct GridRig {
@@ -36,7 +36,7 @@ inline LightField GridField(const GridRig& rig) {
   return field;
 }
 
-// Every pixel is the formula at its centre.
+// Gives every pixel the value of the formula at its centre.
 class FormulaStore : public LfImageStore {
  public:
   FormulaStore(const LightField& field, Radiance radiance)
@@ -60,8 +60,8 @@ class FormulaStore : public LfImageStore {
   Radiance radiance_;
 };
 
-// Every image is black but for the pixel that holds a point of the scene. Only that pixel is given:
-// black ones would add rays, but no light.
+// Images that are black except for the pixel that shows a point of the scene. Only that pixel is
+// loaded: black ones would add rays but no light.
 class PointStore : public LfImageStore {
  public:
   PointStore(const LightField& field, const Vec3& point) : field_(field), point_(point) {}

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Packed stores as their users meet them: made by lfcompressor, killed, resumed, verified, damaged.
+"""Tests packed stores from a user's view: made by lfcompressor, killed, resumed, verified, damaged.
 
 usage: lfcompressor_test.py LFCOMPRESSOR LFRENDERER LFPREPROCESSOR
 """
@@ -25,7 +25,7 @@ COMPRESSOR = RENDERER = PREPROCESSOR = None
 
 
 def smooth(index):
-    """a picture that wavelets like"""
+    """Returns a picture that wavelets compress well."""
     y, x = np.mgrid[0:HEIGHT, 0:WIDTH]
     waves = 128 + 100 * np.sin(x / 9 + index / 5) * np.cos(y / 7)
     noise = np.random.default_rng(index).normal(0, 2, (HEIGHT, WIDTH, 3))
@@ -33,7 +33,7 @@ def smooth(index):
 
 
 class StoreTest(ProgramTestCase):
-    """a folder, and calls of programs"""
+    """Provides a folder and calls of programs."""
 
     def setUp(self):
         super().setUp()
@@ -49,7 +49,7 @@ class StoreTest(ProgramTestCase):
         return sorted(path.name for path in self.folder.iterdir() if path.name.startswith("a"))
 
     def many(self, picture=smooth):
-        """3000 LF images, of 25 files"""
+        """Returns 3000 LF images that share 25 files."""
         folder = self.folder / "field"
         field = write_field(folder, picture)
         text = json.loads(field.read_text())
@@ -64,7 +64,7 @@ class StoreTest(ProgramTestCase):
 
 
 class CompressorTest(StoreTest):
-    # What it tells, and how good it is
+    # Reports and quality
 
     def test_profiles_and_what_the_report_tells(self):
         field = write_field(self.folder / "field", smooth)
@@ -109,7 +109,7 @@ class CompressorTest(StoreTest):
         self.assertEqual(codes[0], codes[1])
 
     def test_levels_of_a_sensor_scale_the_threshold(self):
-        """12 bits of 16 are coded as well as 16"""
+        """12 of 16 bits are encoded as well as 16 bits."""
         def picture(scale):
             return lambda index: (smooth(index).astype(np.uint16)[..., 1] * scale)
         psnr = []
@@ -122,7 +122,7 @@ class CompressorTest(StoreTest):
                                  [("display16",)])
         self.assertAlmostEqual(psnr[0], psnr[1], delta=0.3)
         self.assertGreater(psnr[0], 40)
-        # Levels that are mended later are not those of the curve.
+        # Levels in the calibration that were corrected later are not those of the encoded curve.
         path = write_path(self.folder)
         frames = []
         for white in 65280, 32640:
@@ -154,7 +154,7 @@ class CompressorTest(StoreTest):
         self.assertEqual((self.folder / "out0/frame_0001.exr").read_bytes(),
                          (self.folder / "out2/frame_0001.exr").read_bytes())
 
-    # What can go wrong
+    # Failures
 
     def test_usage(self):
         field = write_field(self.folder / "field", smooth)
@@ -211,7 +211,7 @@ class CompressorTest(StoreTest):
         self.assertEqual(report["verified"], 25)
 
     def wait_for_work(self, process):
-        """until the store is being written, or was"""
+        """Waits until the store is being written, or was written."""
         while not (self.folder / "a.lfs.unfinished").exists() and process.poll() is None:
             time.sleep(0.005)
 
@@ -230,7 +230,7 @@ class CompressorTest(StoreTest):
         self.assertEqual((report["resumed"], report["verified"]), (done, 3000))
 
     def written_count(self):
-        """LF images in the unfinished store; 0 before there are tables, or while it is locked"""
+        """Returns the number of LF images in the unfinished store; 0 before it has tables, or while it is locked."""
         unfinished = self.folder / "a.lfs.unfinished"
         if not unfinished.exists():
             return 0
@@ -250,11 +250,11 @@ class CompressorTest(StoreTest):
                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             self.wait_for_work(process)
             time.sleep(chance.uniform(0.1, 0.5))
-            # A busy machine writes nothing in so short a time: some kills wait for it.
+            # On a busy machine nothing is written in so short a time, so some kills wait for it.
             while number % 7 == 3 and self.written_count() <= before and process.poll() is None:
                 time.sleep(0.05)
             process.kill()
-            if process.wait() == 0 or self.store.exists():  # A fast machine has written all of it.
+            if process.wait() == 0 or self.store.exists():  # a fast machine has written everything
                 break
             kills += 1
             done = self.written_count()

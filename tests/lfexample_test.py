@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""lfexample: the path it writes renders, and is focused on what there is to see.
+"""Tests lfexample: its path renders, and is focused on what can be seen.
 
 usage: lfexample_test.py LFEXAMPLE LFRENDERER
 """
@@ -81,7 +81,7 @@ class ExampleTest(unittest.TestCase):
         self.assertNotEqual(self.position(), self.position("--camera", "12"))
 
     def test_says_where_it_is_not_sure_and_keeps_the_picture_sharp(self):
-        self.field = write_field(self.folder / "noise")  # every image is another
+        self.field = write_field(self.folder / "noise")  # every image is different
         path, words = self.example("--move", "static")
         self.assertIn("warning: not sure what to focus on", words)
         self.assertIn("--focus", words)
@@ -110,7 +110,7 @@ class ExampleTest(unittest.TestCase):
         return float(re.search(r"aperture_diameter: (\S+)", path.read_text()).group(1))
 
     def colmap(self, depths, picture=None):
-        """Noise, which no two images share, or a picture, with a model whose points lie at these depths."""
+        """Writes pictures, or noise that no two images share, with a model whose points have these depths."""
         folder = self.folder / "colmap"
         write_field(folder / "images", picture)
         (folder / "images" / "transforms.json").unlink()
@@ -180,7 +180,7 @@ class ExampleTest(unittest.TestCase):
 
     def test_the_frame_shows_nothing_that_its_lf_image_does_not(self):
         calibration = json.loads(self.field.read_text())
-        calibration["cx"] = WIDTH / 4  # a quarter of the image is left of the axis
+        calibration["cx"] = WIDTH / 4  # a quarter of the image is left of the optical axis
         self.field.write_text(json.dumps(calibration))
         path, _ = self.example("--move", "static", "--focus", "0.9")
         width, height = map(int, re.search(r"resolution: \[(\d+), (\d+)\]", path.read_text()).groups())

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""lfimport: what it writes films the same, and its report tells what is wrong with a capture.
+"""Tests lfimport: its light field gives the same film, and its report names the faults of a capture.
 
 usage: lfimport_test.py LFIMPORT LFSYNTH LFEXAMPLE LFRENDERER TEST_DATA
 """
@@ -56,7 +56,7 @@ class ImportTest(unittest.TestCase):
         self.assertTrue(digests)
         return digests
 
-    # What it writes
+    # Written light fields
 
     def test_a_written_light_field_films_the_same_bits(self):
         field = self.folder / "field"
@@ -128,7 +128,7 @@ class ImportTest(unittest.TestCase):
         self.run_tool(IMPORT, field, "-o", field.parent, "--force", "--scale", 2)
         self.assertAlmostEqual(poses(field)["image_00.png"][0, 3], -4 * PITCH)
 
-    # What it tells
+    # Reports
 
     def test_the_report_tells_what_the_light_field_is(self):
         field = write_field(self.folder / "field", lf_depth_range=[0.5, 1.5])
@@ -192,7 +192,7 @@ class ImportTest(unittest.TestCase):
         self.assertFalse(strict.exists())
 
     def change(self, change):
-        """The kinds of warnings after change(frames) of a field that looks at one point."""
+        """Returns the kinds of warnings after change(frames) of a light field that looks at one point."""
         field = write_field(self.folder / "field")
         text = json.loads(field.read_text())
         for frame in text["frames"]:
@@ -243,7 +243,7 @@ class ImportTest(unittest.TestCase):
         self.assertEqual(sparse["kind"], "sparse")
         self.assertIn("pixels", sparse["message"])
 
-    # Folders that do not tell everything
+    # Folders with missing information
 
     def write_grid(self):
         folder = self.folder / "a grid"
@@ -262,18 +262,18 @@ class ImportTest(unittest.TestCase):
             last = self.run_tool(program, grid, *rest, code=3).stderr.strip().splitlines()[-1]
             command = f"lfimport '{grid}' -o '{grid}' --pitch 1 --focal-px 32"
             self.assertTrue(last.endswith(command), last)
-        # The command is one that works.
+        # The suggested command works.
         shell = command.replace("lfimport", str(IMPORT), 1)
         self.assertEqual(subprocess.run(shell, shell=True, capture_output=True).returncode, 0)
         self.run_tool(EXAMPLE, grid, "-o", self.folder / "p.yaml", "--focus", 10)
         after = poses(grid / "transforms.json")
-        # OpenGL's y is up in the camera, but the world stays x right, y down.
+        # In OpenGL y points up in the camera; in the world x still points right and y down.
         np.testing.assert_allclose(after["out_02_03.png"][:3, 3], [1.5, 1, 0], atol=0)
-        # Again with another pitch: what lfimport wrote is not in the way.
+        # Again with another pitch: the file that lfimport wrote does not interfere.
         again = self.run_tool(IMPORT, grid, "-o", grid, "--pitch", 2, "--focal-px", 32)
         self.assertIn("is read again", again.stderr)
         np.testing.assert_allclose(poses(grid / "transforms.json")["out_02_03.png"][:3, 3], [3, 2, 0])
-        # The report alone, and another folder, are of what other programs read: the file.
+        # Without -o, and for another folder, lfimport reads the file, as other programs do.
         self.assertAlmostEqual(self.report(grid)["spacing_w"]["median"], 2)
         self.run_tool(IMPORT, grid, "-o", self.folder / "copy")
         np.testing.assert_allclose(
@@ -324,8 +324,8 @@ class ImportTest(unittest.TestCase):
                              "--plane-distance", 100)
         self.assertEqual((report["images"], report["missing"], report["broken"]), (81, 0, 0))
         np.testing.assert_allclose(report["axes_meet_at_w"], [0, 0, 100], atol=1e-6)
-        # Shift and add by s pixels per index is the plane 1/Z = 1/Z0 + s/F.
-        shift = -1.5  # the standing cards; whole pixels for the even rows and columns there are
+        # Shift and add by s pixels per index focuses on the plane 1/Z = 1/Z0 + s/F.
+        shift = -1.5  # focuses on the standing cards; whole pixels, because rows and columns are even
         path = self.folder / "path.yaml"
         path.write_text(f"""format: lfpath 1
 fps: 25
@@ -344,7 +344,7 @@ lens:
         self.run_tool(RENDERER, field, path, "-o", self.folder / "out", "--format", "png",
                       "--estimator", "nearest", "--lens-weights", "none")
         frame = np.asarray(Image.open(self.folder / "out" / "frame_0001.png")).astype(float) / 255
-        # The same in numpy, in linear light.
+        # The expected picture, computed with numpy in linear light.
         total = np.zeros((768, 768, 3))
         count = np.zeros((768, 768, 1))
         for file in sorted((cards / "images").glob("*.jpg")):
@@ -361,7 +361,7 @@ lens:
         inner = np.s_[40:-40, 40:-40]
         error = np.abs(frame - expected)[inner].mean()
         self.assertLess(error, 0.004)
-        # With the signs wrong it is another picture.
+        # The picture differs if the signs are wrong.
         self.assertGreater(np.abs(frame[::-1] - expected)[inner].mean(), 10 * error)
 
     def test_a_full_disk_is_an_error(self):

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Packages as their users meet them: made by lfpreprocessor, rendered by lfrenderer to the same bits.
+"""Tests packages from a user's view: made by lfpreprocessor, rendered by lfrenderer to the same bits.
 
 usage: lfpreprocessor_test.py LFPREPROCESSOR LFRENDERER
 """
@@ -34,17 +34,17 @@ class PackagesTest(ProgramTestCase):
         return write_field(self.folder / "field", **keys), write_path(self.folder, frames=frames)
 
     def packages(self, field, path, *options, name="packages"):
-        """the report, and the files"""
+        """Returns the report and the files."""
         out = self.folder / name
         report = json.loads(self.succeeds(PREPROCESSOR, field, path, "-o", out, "--json", *options))
         files = sorted(out.glob("*.lfp"))
         self.assertEqual([file.stem for file in files], [p["name"] for p in report["packages"]])
         return report, files
 
-    # The same bits
+    # Identical bits
 
     def test_packages_render_to_the_bits_of_the_whole_film(self):
-        """whatever rays are read, weighed and limited by"""
+        """Holds for all options that select, weight and limit rays."""
         field, path = self.film()
         for number, (preprocess, render) in enumerate([
                 ([], []),
@@ -61,7 +61,8 @@ class PackagesTest(ProgramTestCase):
                                          name=f"packages{number}")
                 whole, parts = self.folder / f"whole{number}", self.folder / f"parts{number}"
                 self.succeeds(RENDERER, field, path, "-o", whole, "-q", *render)
-                if set(render) & {"--seed", "off"}:  # packages have decided; the same bits as on
+                if set(render) & {"--seed", "off"}:  # packages contain these choices; the bits are those of the same
+                                                     # options
                     render = render[:-2]
                 self.succeeds(RENDERER, *files, "-o", parts, "-q", *render)
                 self.assertEqual(len(self.digests(whole)), 6)
@@ -100,12 +101,12 @@ class PackagesTest(ProgramTestCase):
             self.assertEqual(self.digests(self.folder / f"out-{order}"), self.digests(whole))
 
     def test_lf_cameras_beyond_the_angle_have_no_say(self):
-        """as if they had not been recorded"""
+        """They are treated as if they had not been recorded."""
         field, path = self.film()
         text = json.loads(field.read_text())
         kept = []
         for index, frame in enumerate(text["frames"]):
-            if index % 3 == 0:  # turned by 3 degrees about y
+            if index % 3 == 0:  # rotated by 3 degrees about y
                 c, s = np.cos(np.radians(3)), np.sin(np.radians(3))
                 for row, values in enumerate([[c, 0, s], [0, 1, 0], [-s, 0, c]]):
                     frame["transform_matrix"][row][:3] = values
@@ -152,7 +153,7 @@ class PackagesTest(ProgramTestCase):
         self.succeeds(RENDERER, field, path, "-o", self.folder / "whole", *options)
         self.succeeds(RENDERER, *files, "-o", self.folder / "parts", *options)
         self.assertEqual(self.digests(self.folder / "whole"), self.digests(self.folder / "parts"))
-        # A job of its own is no failure; a film of nothing is.
+        # A package whose frames have no rays can be rendered alone.
         self.succeeds(RENDERER, files[-1], "-o", self.folder / "black", *options)
         _, black = self.packages(field, path, "--frames", "1,4", *options, name="some")
         self.assertEqual(len(black), 1)
@@ -194,7 +195,7 @@ class PackagesTest(ProgramTestCase):
                       "reference")
         self.assertEqual(self.digests(self.folder / "whole"), self.digests(out))
 
-    # What is refused
+    # Refusals
 
     def test_damage_and_strangers_are_input_errors(self):
         field, path = self.film()
@@ -221,14 +222,14 @@ class PackagesTest(ProgramTestCase):
         _, files = self.packages(field, path, "--packages", "2")
         out = self.folder / "out"
 
-        # Packages of two light fields.
+        # Packages of two light fields are refused together.
         other = write_field(self.folder / "other", fl_y=71)
         _, others = self.packages(other, path, "--packages", "2", name="others")
         self.fails(3, ["another light field"], RENDERER, files[0], others[1], "-o", out)
         _, shuffled = self.packages(field, path, "--packages", "2", "--seed", "1", name="shuffled")
         self.fails(3, ["another order"], RENDERER, files[0], shuffled[1], "-o", out)
 
-        # Moved, with its packages or without.
+        # The light field was moved, with its packages or without them.
         self.succeeds(RENDERER, files[0], "-o", out, "-q", "--lightfield", field)
         self.fails(3, ["another light field", "calibration"], RENDERER, files[0], "-o", out,
                    "--lightfield", other)
@@ -237,7 +238,7 @@ class PackagesTest(ProgramTestCase):
         self.fails(3, ["--lightfield"], RENDERER, files[0], "-o", out)
         self.succeeds(RENDERER, files[0], "-o", out, "-q", "--lightfield", moved)
 
-        # Other images in its place.
+        # Other images have taken their place.
         write_field(self.folder / "field", lambda i: np.zeros((HEIGHT, WIDTH, 3), np.uint8))
         self.fails(3, ["another light field", "bytes"], RENDERER, files[0], "-o", out)
 
@@ -298,7 +299,7 @@ class PackagesTest(ProgramTestCase):
         self.assertEqual(list((self.folder / "strict").glob("*.lfp")), [])
 
     def test_an_interrupted_call_leaves_no_part_of_a_film(self):
-        """whenever it comes: all packages as they should be, or none"""
+        """At any moment, an interrupt leaves either all packages, complete, or none."""
         field, path = self.film(frames=150)
         _, files = self.packages(field, path, "--packages", "3")
         whole = [file.read_bytes() for file in files]
@@ -325,7 +326,7 @@ class PackagesTest(ProgramTestCase):
         _, files = self.packages(field, path, "--packages", "2", "--overwrite")
         self.assertEqual(len(files), 2)
 
-    # What is told
+    # Reports
 
     def test_a_plan_tells_what_packages_will_be(self):
         field, path = self.film()
@@ -379,7 +380,7 @@ class PackagesTest(ProgramTestCase):
             path.write_text(focused_at(distance))
             self.assertEqual(plan(*depths)["warnings"], [], distance)
         near, far = advice["focus_distance"]
-        for distance in (0.9 * near, 1.1 * far):  # it does not promise too little
+        for distance in (0.9 * near, 1.1 * far):  # the range is as large as possible
             path.write_text(focused_at(distance))
             self.assertEqual(len(plan(*depths)["warnings"]), 1, distance)
 
@@ -393,7 +394,7 @@ class PackagesTest(ProgramTestCase):
         path.write_text(focused_at(3.9).replace("[80, 60]", f"[{width}, {height}]"))
         self.assertEqual(plan(*depths)["warnings"], [])
 
-        # No focus is free of double edges from 0.1 to 4.
+        # With depths from 0.1 to 4, every focus gives double edges.
         path.write_text(focused_at(0.3))
         hopeless = plan("--depths", "0.1", "4")
         self.assertIsNone(hopeless["advice"]["focus_distance"])
@@ -450,7 +451,7 @@ class PackagesTest(ProgramTestCase):
         self.assertEqual([file.stem for file in packages.glob("*.lfp")], ["package-0000"])
 
     def test_packages_can_be_asked_by_sql(self):
-        """the schema of doc/formats/package.md"""
+        """The tables follow the schema of doc/formats/package.md."""
         field, path = self.film()
         _, files = self.packages(field, path, "--packages", "2")
         with sqlite3.connect(f"file:{files[1]}?immutable=1", uri=True) as db:
@@ -465,7 +466,7 @@ class PackagesTest(ProgramTestCase):
                 self.assertTrue(0 < rays <= count * (x1 - x0) * (y1 - y0))
             self.assertEqual(db.execute("select sum(rays) from lf_images").fetchone()[0],
                              sum(rays for _, rays in frames))
-            # Around every frame of the film, that of other packages, too.
+            # Every frame of the film has surroundings, also the frames of other packages.
             for distance, blob in db.execute("select camera_distance, surroundings from frames"):
                 numbers = struct.unpack("<6d", blob[:-8])
                 self.assertEqual(numbers[0], distance)

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""lfrenderer interrupted, killed and resumed: the same bits, and no wrong picture from a damaged
-state.
+"""Tests lfrenderer when it is interrupted, killed and resumed: the bits do not change, and a damaged state never gives
+a wrong picture.
 
 usage: lfrenderer_resume_test.py LFRENDERER
 """
@@ -32,7 +32,7 @@ FRAMES = 20
 
 
 def digests(folder):
-    """sha256 of the finished frames and plates of a folder."""
+    """Returns the sha256 of the finished frames and plates of a folder."""
     return {path.name: hashlib.sha256(path.read_bytes()).hexdigest()
             for pattern in ("frame_*.exr", "frame_*.plate") for path in folder.glob(pattern)}
 
@@ -42,7 +42,7 @@ class ResumeTest(unittest.TestCase):
     def setUpClass(cls):
         cls.temporary = tempfile.TemporaryDirectory()
         cls.folder = pathlib.Path(cls.temporary.name)
-        # 169 LF images, of which a frame takes about 110: decisions at 64 and 128 places.
+        # 169 LF images, of which a frame uses about 110: rules are tested after 64 and 128 of them.
         small_field.SIDE = 13
         cls.field = small_field.write_field(cls.folder / "field")
         cls.path = small_field.write_path(cls.folder, frames=FRAMES, aperture=0.12)
@@ -76,7 +76,7 @@ class ResumeTest(unittest.TestCase):
         return digests(self.folder / name)
 
     def finish_each(self, *calls):
-        """Two at a time: most of a small render is one thread that loads libraries."""
+        """Runs two at a time, because a small render is mostly one thread that loads libraries."""
         with concurrent.futures.ThreadPoolExecutor(2) as threads:
             return list(threads.map(lambda call: self.finish(*call), calls))
 
@@ -93,7 +93,7 @@ class ResumeTest(unittest.TestCase):
         return self.folder / name / "partial"
 
     def wait_for_lock(self, name, process):
-        """From then on it answers signals. A killed one leaves its lock's file behind."""
+        """Waits until the process handles signals. A killed one leaves its lock file behind."""
         lock = self.partial(name) / "lock"
         while process.poll() is None:
             try:
@@ -104,7 +104,8 @@ class ResumeTest(unittest.TestCase):
             time.sleep(0.002)
 
     def begin(self, name, *options, frames="1-12"):
-        """An unfinished render: some plates, perhaps some frames. The reference takes its time."""
+        """Begins a render that ends unfinished, with some plates and perhaps some frames. Uses the slow reference back
+        end."""
         delay_s = 0.3
         while True:
             process = subprocess.Popen(
@@ -118,11 +119,11 @@ class ResumeTest(unittest.TestCase):
                 self.assertEqual(process.returncode, 5, words)
                 return words
             shutil.rmtree(self.folder / name, ignore_errors=True)
-            # Not yet begun, or already done.
+            # The render was interrupted before it began, or it is complete.
             delay_s *= 1.5 if process.returncode == 5 else 0.6
 
     def begun(self, name):
-        """The same, begun once for many tests."""
+        """Copies an unfinished render that was made once for many tests."""
         shutil.copytree(self.folder / "it's begun", self.folder / name)
 
     def reference(self, name, *options, frames="1-12"):
@@ -132,7 +133,7 @@ class ResumeTest(unittest.TestCase):
         names = {f"frame_{n:04d}.{kind}" for n in frames for kind in ("exr", "plate")}
         return {name: self.expected_reference[name] for name in names}
 
-    # The same bits
+    # Identical bits
 
     def test_killed_at_random_points_it_ends_with_the_same_bits(self):
         with concurrent.futures.ThreadPoolExecutor(2) as threads:
@@ -141,11 +142,11 @@ class ResumeTest(unittest.TestCase):
                 ["--threads", "2", "--dump-every", "0.01s"],
                 ["--dump-every", "0.02s", *self.small_memory],
                 ["--threads", "2", "--dump-every", "0.05s", "--seed", "0"])))
-        # On a busy machine most of them die before there is a state to resume.
+        # On a busy machine most renders are killed before they have a state to resume from.
         self.assertGreater(sum(resumed), 0)
 
     def kill_and_resume(self, index, options):
-        """Three times; how often there was something to go on with."""
+        """Kills and resumes a render three times. Returns how often it resumed from a state."""
         rng = random.Random(index)
         name = f"killed{index}"
         resumed = 0
@@ -158,7 +159,7 @@ class ResumeTest(unittest.TestCase):
             _, words = process.communicate(timeout=240)
             self.assertIn(process.returncode, (-signal.SIGKILL, 0, 5), words)
             resumed += "going on" in words
-            # Whatever has a final name is whole and right.
+            # Every file with a final name is complete and correct.
             for file, digest in digests(self.folder / name).items():
                 self.assertEqual(digest, self.expected[file], (options, kill, file))
         self.assertEqual(self.finish(name, "--resume", *options), self.expected, options)
@@ -168,7 +169,7 @@ class ResumeTest(unittest.TestCase):
         return resumed
 
     def test_plates_and_frames_do_not_depend_on_threads_and_memory(self):
-        # Those expected are of one thread.
+        # The expected frames were rendered with one thread.
         for rays in self.finish_each(("two", "--threads", "2"), ("three", *self.small_memory)):
             self.assertEqual(rays, self.expected)
 
@@ -194,7 +195,7 @@ class ResumeTest(unittest.TestCase):
         self.assertEqual(self.reference("other", "--resume", "--threads", "3"),
                          self.expected_reference)
         self.assertFalse(self.partial("other").exists())
-        # Once more: nothing is left to do.
+        # A second call has nothing left to do.
         before = (self.folder / "other" / "frame_0001.exr").stat().st_mtime_ns
         self.assertEqual(self.reference("other", "--resume"), self.expected_reference)
         self.assertEqual((self.folder / "other" / "frame_0001.exr").stat().st_mtime_ns, before)
@@ -203,7 +204,7 @@ class ResumeTest(unittest.TestCase):
         last = self.last_words.strip().splitlines()[-1]
         self.assertRegex(last, r"interrupted after \d+ of 12 frames.*--resume$")
         command = last.split("go on with: ")[1]
-        # On a copy: others begin with this state.
+        # Uses a copy, because other tests begin with this state.
         aside = self.folder / "aside"
         shutil.copytree(self.folder / "it's begun", aside)
         result = subprocess.run(command, shell=True, capture_output=True, text=True, timeout=400)
@@ -215,7 +216,7 @@ class ResumeTest(unittest.TestCase):
     def test_pictures_stand_beside_unfinished_plates(self):
         self.assertTrue(list(self.partial("it's begun").glob("frame_*.exr")))
 
-    # As the picture of the last checkpoint showed it; the others are as if nobody had asked.
+    # The finished frame is the one that the picture of the last checkpoint showed; the others are not affected.
     def test_frames_are_finished_with_the_rays_they_have(self):
         self.begun("early")
         path = sorted(self.partial("early").glob("frame_*.exr"))[-1]
@@ -275,7 +276,7 @@ class ResumeTest(unittest.TestCase):
         self.assertEqual(digests(self.folder / "usr1"), expected)
 
     def test_an_interrupt_that_comes_twice_at_once_is_one(self):
-        """`timeout -s INT` sends it to the program and to its group."""
+        """`timeout -s INT` sends the signal to both the program and its group."""
         process = subprocess.Popen(self.arguments("echo", "--back-end", "reference"),
                                    stderr=subprocess.PIPE, text=True)
         self.wait_for_lock("echo", process)
@@ -318,7 +319,7 @@ class ResumeTest(unittest.TestCase):
         self.assertEqual(self.reference("twice", "--resume", frames="1-6"), expected)
 
     def test_a_frame_that_is_being_finished_is_interrupted(self):
-        # Every element is smoothed over all others within 32: work of minutes.
+        # Every element is smoothed over all others within 32, which takes minutes.
         path = self.folder / "large.yaml"
         text = small_field.PATH_YAML.format(frames=1, aperture=0.12, x=0)
         path.write_text(text.replace("[80, 60]", "[640, 480]"))
@@ -327,7 +328,7 @@ class ResumeTest(unittest.TestCase):
             [RENDERER, self.field, path, "-o", out, *self.common, "--dump-every", "0",
              "--smooth-below", "1000000"], stderr=subprocess.PIPE, text=True)
         while process.poll() is None and not (out / "frame_0001.plate").exists():
-            time.sleep(0.005)  # collected; what follows is the picture
+            time.sleep(0.005)  # all rays are collected; the picture is being developed
         process.send_signal(signal.SIGTERM)
         _, words = process.communicate(timeout=240)
         self.assertEqual(process.returncode, 5, words)
@@ -358,7 +359,7 @@ class ResumeTest(unittest.TestCase):
             stopped += 1
             self.assertGreaterEqual(frame["samples"]["share"], 0.99)
             self.assertGreaterEqual(frame["samples"]["most_have"], 12)
-            # 64 or 128 places of 169, all about as likely to contribute.
+            # The render stops at 64 or 128 of 169 LF images, all of which contribute with similar probability.
             share = frame["lf_images"] / all_of_it["lf_images"]
             self.assertLess(min(abs(share - 64 / 169), abs(share - 128 / 169)), 0.12)
         self.assertGreater(stopped, 5)
@@ -369,7 +370,7 @@ class ResumeTest(unittest.TestCase):
         self.assertEqual(self.reference("stop_begun", *rule, "--resume", frames="1-6"), expected)
 
     def test_stop_rules_of_frames_that_take_different_images(self):
-        # A camera that passes by: each frame takes some 60 of 169 LF images, or fewer at the ends.
+        # A camera that passes by: each frame uses some 60 of 169 LF images, fewer at the ends.
         path = self.folder / "passing.yaml"
         text = small_field.PATH_YAML.format(frames=15, aperture=0.09, x=-0.04)
         path.write_text(text.replace("  up: [0, 1, 0]", "  up: [0, 1, 0]\n  speed: [0.14, 0, 0]"))
@@ -389,16 +390,16 @@ class ResumeTest(unittest.TestCase):
             self.assertEqual(alone, {name: expected[name] for name in alone})
 
     def test_require_ends_with_code_6_and_names_frames(self):
-        # Rules count rays, and weights have none to count.
+        # Rules count rays; with lens weights there are no ray counts.
         self.finish("require", "--frames", "1-2", "--lens-weights", "none")
-        # Frames whose samples nobody measured are rendered again.
+        # Frames whose samples were not measured are rendered again.
         last = self.fails(6, ["samples>=1000", "3 of 3 frames", "frame 2 (0.0 %)"], "require",
                           "--resume", "--frames", "1-3", "--require", "samples>=1000")
         self.assertIn("99 %", last)
         self.assertTrue((self.folder / "require" / "frame_0003.exr").exists())
         self.finish("require", "--frames", "1-3", "--require", "samples>=1", "--resume")
 
-    # What it refuses
+    # Refusals
 
     def test_an_unfinished_render_is_not_lost_by_accident(self):
         self.begun("kept")
@@ -418,7 +419,7 @@ class ResumeTest(unittest.TestCase):
         result = subprocess.run([RENDERER, self.field, other, "-o", self.folder / "inputs",
                                  *self.common, *options], capture_output=True, text=True)
         self.assertEqual(result.returncode, 2)
-        # Of the first frame that is kept, whichever that is.
+        # The message is about the first frame that is kept, which may be any.
         self.assertRegex(result.stderr, r"frame\.focus_distance_w 0\.8\d*, this call has 0\.9\d*")
         calibration = json.loads(self.field.read_text())
         calibration["frames"][7]["transform_matrix"][0][3] += 1e-9
@@ -428,7 +429,7 @@ class ResumeTest(unittest.TestCase):
                                  *self.common, *options], capture_output=True, text=True)
         self.assertEqual(result.returncode, 2)
         self.assertIn("light_field.calibration", result.stderr)
-        # Finished frames, too. What every option is called there; each is told apart by the library.
+        # Finished frames are protected as well. The report names all options; the library distinguishes each of them.
         choices = ["--frames", "1-2", "--resume", "--seed", "3", "--max-images", "9",
                    "--stop-when", "samples>=3", "--estimator", "bilinear"]
         self.finish("complete", *choices)
@@ -453,7 +454,7 @@ class ResumeTest(unittest.TestCase):
         plate.write_bytes(flipped)
         self.fails(3, [plate.name, "checksum", "remove the file"], "damaged", *options)
         self.assertEqual(digests(self.folder / "damaged"), before)
-        plate.unlink()  # as told
+        plate.unlink()  # as the message advises
         self.assertEqual(self.reference("damaged", "--resume"), self.expected_reference)
 
     def test_a_folder_is_rendered_into_by_one_program_at_a_time(self):
@@ -461,7 +462,7 @@ class ResumeTest(unittest.TestCase):
                                    stderr=subprocess.DEVNULL)
         try:
             self.wait_for_lock("locked", process)
-            process.send_signal(signal.SIGSTOP)  # it holds the lock for as long as the other takes
+            process.send_signal(signal.SIGSTOP)  # it keeps the lock while the other process runs
             self.fails(4, ["locked", str(process.pid)], "locked", "--overwrite")
         finally:
             process.kill()
@@ -471,7 +472,7 @@ class ResumeTest(unittest.TestCase):
         self.begun("full")
         state = {p.name: p.read_bytes() for p in self.partial("full").glob("*.plate")}
 
-        def limit_files():  # writes beyond it fail; the signal that comes with it does not end it
+        def limit_files():  # further writes fail; the signal that comes with the failure does not end the process
             resource.setrlimit(resource.RLIMIT_FSIZE, (9000, 9000))
         self.fails(4, ["cannot be written"], "full", "--back-end", "reference", "--frames", "1-12",
                    "--resume", "--dump-every", "0.01s", preexec_fn=limit_files)

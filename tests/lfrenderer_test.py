@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""lfrenderer as its users meet it: files in, files out, exit codes, last words.
+"""Tests lfrenderer from a user's view: input and output files, exit codes, last lines.
 
 usage: lfrenderer_test.py LFRENDERER
 """
@@ -34,7 +34,7 @@ class RendererTest(unittest.TestCase):
                               timeout=400)
 
     def render(self, field, path, name, *options, code=0):
-        """Frames' digests and report of a run that must end with this code."""
+        """Returns the frames' digests and the report of a run that must end with this exit code."""
         out = self.folder / name
         result = self.run_renderer(field, path, "-o", out, "--format", "exr-float", *options)
         self.assertEqual(result.returncode, code, result.stderr)
@@ -50,7 +50,7 @@ class RendererTest(unittest.TestCase):
         for word in words:
             self.assertIn(word, last)
 
-    # What it makes
+    # Results
 
     def test_writes_frames_a_contact_sheet_and_a_report(self):
         field, path = write_field(self.folder / "field"), write_path(self.folder)
@@ -77,7 +77,7 @@ class RendererTest(unittest.TestCase):
         self.assertFalse((out / "frame_0002.png").exists())
 
     def least_memory(self, field, path):
-        """the least that the renderer says it needs: a few plates at a time"""
+        """Returns options for the least memory that the renderer says it needs: a few plates at a time."""
         few = self.run_renderer(field, path, "-o", self.folder / "few", "--threads", "2", "--memory", "2M")
         return ["--threads", "2", "--memory",
                 re.search(r"at least (\d+) MiB", few.stderr).group(1) + "M"]
@@ -177,7 +177,7 @@ class RendererTest(unittest.TestCase):
             self.assertEqual(a["rays_accepted"], b["rays_accepted"])
 
     def test_black_stays_black_with_noise(self):
-        # A lens cap on a raw sensor: black level 1000, noise of both signs.
+        # A raw sensor behind a lens cap: black level 1000, noise of both signs.
         def picture(index):
             noise = np.random.default_rng(index).normal(0, 60, (HEIGHT, WIDTH))
             return (1000 + np.round(noise)).astype(np.uint16)
@@ -187,13 +187,13 @@ class RendererTest(unittest.TestCase):
         result = self.run_renderer(field, write_path(self.folder), "-o", out, "--format", "exr-float")
         self.assertEqual(result.returncode, 0, result.stderr)
         os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"
-        import cv2  # late: it reads that on loading
+        import cv2  # imported late, because it reads an environment variable when it is loaded
         frame = cv2.imread(str(out / "frame_0002.exr"), cv2.IMREAD_UNCHANGED)[..., :3]
-        # Clipping at black would leave 60 * 0.4 / 15383 = 1.6e-3.
+        # Clipping at black would give a mean of 60 * 0.4 / 15383 = 1.6e-3.
         self.assertLess(abs(float(frame.mean())), 1e-4)
         self.assertLess(float(frame.min()), 0)
 
-    # What it survives
+    # Faults that it survives
 
     def test_a_broken_image_gives_the_bits_of_its_absence(self):
         field, path = write_field(self.folder / "field"), write_path(self.folder)
@@ -201,7 +201,7 @@ class RendererTest(unittest.TestCase):
         without = dict(description, frames=[f for i, f in enumerate(description["frames"]) if i != 12])
         absent = field.with_name("without.json")
         absent.write_text(json.dumps(without))
-        # Weights stay as planned, whatever is broken.
+        # Lens weights stay as planned, although an image is broken.
         alike = ["--lens-weights", "none"]
         expected, _ = self.render(absent, path, "absent", *alike)
         broken = self.folder / "field" / "image_12.png"
@@ -216,7 +216,7 @@ class RendererTest(unittest.TestCase):
         field, path = write_field(self.folder / "field"), write_path(self.folder)
         for image in field.parent.glob("*.png"):
             image.write_bytes(b"")
-        # Also where it took so long that the state was written, which is of no use then.
+        # Also tested with a render slow enough to write a checkpoint, which is then useless.
         for index, options in enumerate([[], ["--dump-every", "0.001s", "--memory", "300M"]]):
             out = self.folder / f"out{index}"
             self.fails(3, ["every LF image", "image_"], field, path, "-o", out, *options)
@@ -234,7 +234,7 @@ class RendererTest(unittest.TestCase):
         field, path = write_field(self.folder / "field"), write_path(self.folder, frames=2000)
         process = subprocess.Popen([RENDERER, field, path, "-o", self.folder / "out", "--back-end",
                                     "reference"], stderr=subprocess.PIPE, text=True)
-        # Its folder is made after it has begun to listen.
+        # The folder is created after the signal handlers are installed.
         for _ in range(6000):
             if (self.folder / "out").exists():
                 break
@@ -244,7 +244,7 @@ class RendererTest(unittest.TestCase):
         self.assertEqual(process.returncode, 5, words)
         self.assertIn("interrupted", words.strip().splitlines()[-1])
 
-    # What it refuses
+    # Refusals
 
     def test_usage_errors_name_the_option(self):
         field, path = write_field(self.folder / "field"), write_path(self.folder)

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""lfsubmit on one machine: packages as processes that die, fail, are interrupted, cancelled and gone
-on with, and always the frames of one lfrenderer.
+"""Tests lfsubmit on one machine: processes of packages die, fail, are interrupted, cancelled and resumed; the frames
+are always those of one lfrenderer.
 
 usage: lfsubmit_test.py LFRENDERER LFPREPROCESSOR LFSUBMIT
 """
@@ -74,7 +74,7 @@ class LocalJobTest(ClusterTestCase):
         self.assertEqual(self.status()["state"], "done")
 
     def break_images(self, *indices):
-        """until the test ends"""
+        """Breaks these images until the test ends."""
         for index in indices:
             image = self.field.parent / f"image_{index:02d}.png"
             whole = image.read_bytes()
@@ -96,7 +96,7 @@ class LocalJobTest(ClusterTestCase):
             self.assertEqual((package["state"], package["exit_code"], package["restarts"]),
                              ("done", 6, 0))
             self.assertIn("2 of 16 LF images were left out", package["message"])
-        # It stays so until somebody accepts it; the packages are not rendered again.
+        # The exit code stays until somebody accepts the loss; the packages are not rendered again.
         submit = cluster_test_case.SUBMIT
         self.fails(6, [last.split(";")[0].removeprefix("error: ")], submit, "--resume", self.film)
         self.fails(6, ["2 LF images"], submit, "--resume", self.film, "--", "--allow-missing", 1)
@@ -141,7 +141,7 @@ class LocalJobTest(ClusterTestCase):
         self.assertTrue((self.folder / "film.mp4").exists())
         self.assertEqual(self.status()["state"], "done")
 
-    # Memory that was too little can be more, and one process at a time enough.
+    # On resume, a job can get more memory or run one process at a time.
     def test_what_a_job_gets_may_change_when_it_goes_on(self):
         renderer = self.unlucky_renderer("""
             [[ "$*" == *"--memory 1073741824"* ]] || { echo "error: too little" >&2; exit 4; }""")
@@ -234,7 +234,7 @@ class LocalJobTest(ClusterTestCase):
 
 
 class LongLocalJobTest(ClusterTestCase):
-    """Renders of some seconds, which are interrupted."""
+    """Tests renders of some seconds that are interrupted."""
     packages = 2
     frames = 6
     side, pitch = 12, 0.004
@@ -262,7 +262,7 @@ class LongLocalJobTest(ClusterTestCase):
             self.assertEqual(digests(self.film), self.expected)
             logs = [(self.film / "cluster" / "packages" / f"package-000{k}.log").read_text()
                     for k in (0, 1)]
-            for log in logs:  # nothing that a checkpoint held is rendered again
+            for log in logs:  # nothing that was in a checkpoint is rendered again
                 self.assertRegex(log, r"going on: \d frames are finished, \d begun")
             subprocess.run(["rm", "-r", self.film, self.folder / "starts"], check=True)
 
@@ -271,14 +271,14 @@ class LongLocalJobTest(ClusterTestCase):
         self.wait_for(lambda: self.is_held(0) and self.is_held(1))
         os.kill(process.pid, signal.SIGKILL)
         process.wait()
-        # They get a SIGTERM, and write their states.
+        # The renderers get SIGTERM and write their checkpoints.
         self.wait_for(lambda: self.status()["state"] == "interrupted")
         self.assertIn("process is gone", self.status()["packages"][0]["message"])
         self.resume()
         self.assertEqual(digests(self.film), self.expected)
         self.assertEqual([package["crashes"] for package in self.status()["packages"]], [0, 0])
 
-    # Its renderers are still writing their states, and hold their locks.
+    # The job's renderers are still writing checkpoints and hold their locks.
     def test_a_killed_lfsubmit_is_gone_on_with_at_once(self):
         process = self.start_held()
         self.wait_for(lambda: self.is_held(0) and self.is_held(1))

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""lfsynth: what it writes is a light field that the other programs take.
+"""Tests lfsynth: it writes a light field that the other programs can read.
 
 usage: lfsynth_test.py LFSYNTH LFEXAMPLE LFRENDERER
 """

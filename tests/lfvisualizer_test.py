@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""lfvisualizer --text: what it says of cameras is what the light field, the path and a render say.
+"""Tests lfvisualizer --text: its output about cameras agrees with the light field, the path and a render.
 
 usage: lfvisualizer_test.py LFVISUALIZER LFRENDERER [pageless]
 """
@@ -26,7 +26,7 @@ class VisualizerTest(ProgramTestCase):
         self.path = small_field.write_path(self.folder)
 
     def lines(self, *options):
-        """words of the lines, by their first"""
+        """Returns the words of the output lines, by their first word."""
         words = {"lf_camera": [], "render_camera": [], "collected": []}
         for line in self.succeeds(VISUALIZER, self.field, self.path, "--text",
                                   *options).splitlines():
@@ -44,7 +44,7 @@ class VisualizerTest(ProgramTestCase):
                 self.assertAlmostEqual(got, wanted, 12, index)
         self.assertEqual([line[0] for line in words["render_camera"]], [1, 2, 3])
 
-    # As many as lfrenderer takes, with weights and without.
+    # The number of collected LF images is that of lfrenderer, with weights and without.
     def test_what_is_collected_is_what_a_render_collects(self):
         for weights in ("auto", "none"):
             words = self.lines("--lens-weights", weights, "--frames", "1,3")
@@ -57,7 +57,7 @@ class VisualizerTest(ProgramTestCase):
         few = self.lines("--max-images", 3)["collected"]
         self.assertLessEqual(len([line for line in few if line[0] == 1]), 3)
 
-    # In a build without the page, that is what is told.
+    # A build without the page reports this before it opens a port.
     def test_a_port_that_is_taken_is_told(self):
         with socket.create_server(("127.0.0.1", 0)) as taken:
             port = taken.getsockname()[1]
@@ -73,7 +73,7 @@ class VisualizerTest(ProgramTestCase):
             server.send_signal(signal.SIGINT)
             self.assertEqual(server.wait(), 0)
 
-    # Another page in the same browser can send requests, but knows no token, and names another host.
+    # Another page in the same browser can send requests, but has no token and names another host.
     @unittest.skipIf("pageless" in sys.argv, "it has no page")
     def test_only_its_own_page_can_write_files(self):
         before = self.path.read_text()
@@ -91,7 +91,7 @@ class VisualizerTest(ProgramTestCase):
                                {"Host": f"{host}:{address.port}"})
             return connection.getresponse().status
 
-        other = "0" if address.path[-2] != "0" else "1"  # for the last digit of the token
+        other = "0" if address.path[-2] != "0" else "1"  # a wrong last digit of the token
         for method, name in (("POST", "save"), ("GET", "scene.json")):
             for folder, host in (("/", "127.0.0.1"), (f"/{'0' * 32}/", "localhost"),
                                  (address.path[:-2] + other + "/", "127.0.0.1"),

@@ -20,7 +20,7 @@ class Cell(NamedTuple):
 
 
 class Refusal(NamedTuple):
-    values: tuple  # for each axis a set of values, or None: any
+    values: tuple  # a set of values for each axis, or None: any value
     exit_code: int
     words: list
     why: str
@@ -29,7 +29,7 @@ class Refusal(NamedTuple):
         return all(values is None or value in values for values, value in zip(self.values, cell))
 
     def misses(self, exit_code, last_line):
-        """Returns what a program's end lacks of this refusal, or an empty text."""
+        """Returns how the end of a program differs from this refusal, or an empty text."""
         if exit_code != self.exit_code:
             return f"exit code {exit_code}, expected {self.exit_code}"
         if not last_line.startswith("error: "):
@@ -72,7 +72,7 @@ def _quoted(text):
 
 
 def _rows(text, begin, end):
-    """Returns the cells of each row of a table between two comments, without its head."""
+    """Returns the cells of each row of a table between two comments, without the header."""
     table = text.split(f"<!-- {begin} -->", 1)[1].split(f"<!-- {end} -->", 1)[0]
     lines = [line for line in table.strip().splitlines() if line.startswith("|")]
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines[2:]]

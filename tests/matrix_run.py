@@ -1,4 +1,4 @@
-"""Cells of the matrix (doc/matrix.md), a few at a time, and what became of them."""
+"""Runs cells of the matrix (doc/matrix.md), a few at a time, and collects their outcomes."""
 import concurrent.futures
 import time
 import traceback
@@ -11,7 +11,7 @@ from matrix_world import Difference
 class Outcome(NamedTuple):
     cell: Cell
     kind: str    # same, refused, wrong
-    detail: str  # why a cell was refused, or what is wrong with it
+    detail: str  # why a cell was refused, or its fault
     seconds: float
 
 
@@ -23,13 +23,13 @@ def try_cell(matrix, page, cell):
         detail = refusals[0].why if refusals else ""
     except Difference as difference:
         kind, detail = "wrong", str(difference)
-    except Exception:  # a fault of this test, or a program that hangs
+    except Exception:  # a fault of this test, or a program that does not end
         kind, detail = "wrong", traceback.format_exc().strip()
     return Outcome(cell, kind, detail, time.monotonic() - start)
 
 
 def try_cells(matrix, page, cells, at_once=2, should_end=lambda: False):
-    """Yields an outcome for each cell, as they end."""
+    """Yields an outcome for each cell as soon as it ends."""
     with concurrent.futures.ThreadPoolExecutor(at_once) as threads:
         waiting, cells = set(), iter(cells)
         while True:

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Every mode by every way gives the bits of the plain render, or the refusal of doc/matrix.md:
-cells in which every two values of different axes meet. scripts/matrix.py has the whole matrix.
+"""Tests that every mode rendered in every way gives the bits of the plain render, or the refusal of doc/matrix.md. The
+cells cover all pairs of values of different axes; scripts/matrix.py tests the whole matrix.
 
 usage: matrix_test.py BIN   (the folder of lfrenderer, lfpreprocessor, lfcompressor, lfmerge, lfsubmit)
 """
@@ -39,7 +39,7 @@ class CoveringCellsTest(unittest.TestCase):
         cells = covering_cells(axes)
         self.assertEqual(cells, covering_cells(axes))
         self.assertNotEqual(cells, covering_cells(axes, seed=1))
-        self.assertLessEqual(len(cells), 9 * 11 * 1.25)  # 99 are the fewest that can be
+        self.assertLessEqual(len(cells), 9 * 11 * 1.25)  # 99 is the least possible number
         self.assertEqual(sorted(covering_cells([[1, 2], [3], [4, 5]], 3)),
                          [(1, 3, 4), (1, 3, 5), (2, 3, 4), (2, 3, 5)])
         with self.assertRaises(ValueError):

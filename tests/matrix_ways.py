@@ -1,4 +1,4 @@
-"""Renders one cell of the matrix (doc/matrix.md), and compares it with its plain render."""
+"""Renders a cell of the matrix (doc/matrix.md) and compares it with its plain render."""
 import hashlib
 import json
 import os
@@ -19,10 +19,10 @@ from matrix_world import (BROKEN, FRAMES, MISSING, MODES, MOST_IMAGES, Differenc
 
 SHARDS = 2
 LEAST_PSNR_DB = 38
-# Noise rules may stop at other places, and the rays that are rebinned are drawn by what pixels show.
+# Noise rules may stop elsewhere, and the choice of rebinned rays depends on what pixels show.
 LEAST_PSNR_OF_DRAWN_DB = 30
 DUMP_OFTEN = ["--dump-every", "0.001s"]
-RUNS = {  # the options of rules, which decide what the frames are
+RUNS = {  # options of rules, which decide the content of the frames
     "once": [], "killed": [], "interrupted": [], "small": [], "finish": [],
     "samples": ["--stop-when", "samples>=1"],
     "noise": ["--stop-when", "noise<=0.02"],
@@ -40,7 +40,7 @@ VALUES = {"field": FIELDS, "input": INPUTS, "cut": CUTS, "mode": tuple(MODES), "
 
 class Step(NamedTuple):
     words: list   # of a program
-    resume: list  # the same after an interruption
+    resume: list  # the call that resumes after an interruption
 
 
 class Rendered(NamedTuple):
@@ -50,7 +50,7 @@ class Rendered(NamedTuple):
     facts: dict = {}     # what reports say of each frame
     skipped: list = []   # names of LF images
     early: dict = {}     # frames that were finished early, before which place
-    early_pixels: dict = {}  # pixels_of() these
+    early_pixels: dict = {}  # pixels_of() these frames
     seconds: float = 0
 
 
@@ -63,19 +63,19 @@ def is_order(run_name):
 
 
 class Matrix(World):
-    """Renders cells. May be asked by several threads."""
+    """Renders cells. May be called by several threads."""
 
     # Calls of a cell
 
     def steps(self, cell, out):
-        """Returns the calls that render a cell into a folder, without what its run adds."""
+        """Returns the calls that render a cell into a folder, without the options of its run."""
         options = [*MODES[cell.mode], *RUNS[cell.run]]
         order = tuple(RUNS[cell.run]) if is_order(cell.run) else ()
         from_packages = cell.cut in ("packages", "moved packages", "shards of packages", "lfsubmit")
         if not from_packages:
             inputs = [self.input_of(cell), self.path_of(cell.field)]
         else:
-            if order:  # lfpreprocessor has both, and packages keep them
+            if order:  # lfpreprocessor gets both, and packages store them
                 options = MODES[cell.mode]
             source = "folder" if self.is_moved(cell) else cell.input
             inputs = self.packages(cell.field, source, cell.mode, order)
@@ -95,7 +95,7 @@ class Matrix(World):
                 Step(merge, [*merge, "--resume"])]
 
     def is_moved(self, cell):
-        """Returns whether packages of the folder read another input."""
+        """Returns True if packages of the folder read another input."""
         return cell.cut == "moved packages" or (
             cell.cut == "lfsubmit" and is_of_packages(cell.input))
 
@@ -105,8 +105,8 @@ class Matrix(World):
     # The plain render
 
     def plain_cell(self, cell):
-        """Returns the cell, cut whole or moved packages and run without an interruption, whose
-        frames a cell must have."""
+        """Returns the cell whose frames a cell must have: cut whole or as moved packages, and run without an
+        interruption."""
         source, cut = cell.input, "whole"
         run_name = {"killed": "once", "interrupted": "once", "small": "once", "finish": "once",
                     "noise killed": "noise"}.get(cell.run, cell.run)
@@ -148,8 +148,7 @@ class Matrix(World):
         return plain
 
     def check_near(self, cell):
-        """Compares a render of coded rectangles, which no other render has the bits of, with one
-        of the image files."""
+        """Compares a render of encoded rectangles, whose bits no other render has, with one of the image files."""
         ours = self.pictures(cell)
         theirs = self.pictures(cell._replace(input="folder"))
         error = np.mean(np.square(ours - theirs)) / np.max(theirs) ** 2
@@ -172,8 +171,8 @@ class Matrix(World):
 
     @once
     def pixels_before(self, cell, place):
-        """Returns pixels_of() all frames where the files of all LF images from a place of the order
-        on are missing: lens weights know of cameras, and not of files."""
+        """Returns pixels_of() all frames if the files of all LF images from a place of the order on are missing. Lens
+        weights depend on the cameras and not on the files."""
         folder = self.new_folder("before")
         gone = {name for name, at in self.places_of(cell.field).items() if at >= place}
         for path in self.folder_of(cell.field).iterdir():
@@ -193,7 +192,7 @@ class Matrix(World):
     # The cell
 
     def render(self, cell, out, shall_be_refused):
-        """Renders a cell as its run says. Interruptions of what is refused would tell nothing."""
+        """Renders a cell as its run requires. A cell that must be refused is not interrupted."""
         steps = self.steps(cell, out)
         if shall_be_refused:
             finish = ["--resume", "--finish", f"1-{FRAMES}"] if cell.run == "finish" else []
@@ -210,7 +209,7 @@ class Matrix(World):
         return self.ended(cell, out, steps)
 
     def ended(self, cell, out, steps):
-        """Runs steps until one fails."""
+        """Runs the steps until one fails."""
         exit_code, last = 0, ""
         for step in steps:
             exit_code, last = run(step.words)
@@ -219,7 +218,7 @@ class Matrix(World):
         return self.look_at(cell, out, exit_code, last)
 
     def in_small_memory(self, cell, out, steps):
-        """Runs steps with the least memory that their error messages name."""
+        """Runs the steps with the least memory that their error messages name."""
         memory_mib = 2
         for _ in range(5):
             exit_code, last = 0, ""
@@ -238,7 +237,7 @@ class Matrix(World):
         return self.look_at(cell, out, exit_code, last)
 
     def resumed(self, cell, out, steps, signals, options):
-        """Runs the first step, which is ended by each signal, and then all steps to their end."""
+        """Runs the first step, ends it with each signal in turn, and then runs all steps to their end."""
         seconds = self.plain(self.plain_cell(cell)).seconds
         chance = random.Random(cell.name)
         words = [*steps[0].words, *DUMP_OFTEN]
@@ -250,8 +249,8 @@ class Matrix(World):
         return self.ended(cell, out, [Step(with_options(words, options), []), *steps[1:]])
 
     def interrupt(self, words, out, seconds, sign, has_begun=None):
-        """Starts a program and sends it a signal some seconds after it has begun. Returns exit code
-        and last line."""
+        """Starts a program and sends it a signal some seconds after it has begun. Returns its exit code and last
+        line."""
         has_begun = has_begun or is_at_work
         process = subprocess.Popen([str(word) for word in words], stdout=subprocess.DEVNULL,
                                    stderr=subprocess.PIPE, text=True)
@@ -265,7 +264,7 @@ class Matrix(World):
         return process.returncode, last_line(text)
 
     def finished_early(self, cell, out, steps):
-        """Interrupts a render when it has a state, and has all frames finished that it has begun."""
+        """Interrupts a render when it has a state, then has all begun frames finished early."""
         step = steps[0]
         for attempt in range(12):
             exit_code, last = self.interrupt([*step.words, *DUMP_OFTEN], out, 0.005 * attempt,
@@ -283,7 +282,7 @@ class Matrix(World):
         begun = sorted({int(path.stem[6:]) for path in out.glob("partial/**/frame_*.plate")})
         frames = ",".join(map(str, begun)) or f"1-{FRAMES}"
         if cell.cut == "lfsubmit":
-            if not begun:  # rebinned rays are those of all frames of their package
+            if not begun:  # rebinned rays belong to all frames of their package
                 job = json.loads((out / "cluster" / "job.json").read_text())
                 frames = ",".join(package["frames"] for package in job["packages"]
                                   if any((out / "partial" / package["name"]).glob("*.rays")))
@@ -377,9 +376,9 @@ class Matrix(World):
             raise Difference(f"skipped LF images {rendered.skipped}, expected {plain.skipped}")
 
     def check_early(self, cell, plain_cell, rendered):
-        """Compares frames that were finished early with those of the LF images that they say.
-        Rebinned rays depend on how a render went, and stores of packages have an order that is
-        written nowhere."""
+        """Compares frames that were finished early with renders of the LF images that they name. Rebinned rays depend
+        on the course of a render, and stores of packages have an order that is not written anywhere, so they are
+        skipped."""
         has_own_order = is_of_packages(cell.input) and not self.is_moved(cell)
         if render_mode(cell.mode) != "collect" or has_own_order or is_of_packages(plain_cell.input):
             return
@@ -397,12 +396,12 @@ def pixels_of(path):
         for _ in range(2):
             at = exr.index(b"\0", at) + 1
         at += 4 + int.from_bytes(exr[at:at + 4], "little")
-    first_chunk = int.from_bytes(exr[at + 1:at + 9], "little")  # the table of offsets begins so
+    first_chunk = int.from_bytes(exr[at + 1:at + 9], "little")  # the start of the table of offsets
     return hashlib.sha256(exr[first_chunk:]).hexdigest()
 
 
 def with_options(words, options):
-    """Returns a call with more options of its program."""
+    """Returns a call with more options for its program."""
     words = list(words)
     at = words.index("--") if "--" in words else len(words)
     return [*words[:at], *options, *words[at:]]
@@ -411,15 +410,15 @@ def with_options(words, options):
 def holds_any(out, *patterns):
     try:
         return any(any(out.glob(pattern)) for pattern in patterns)
-    except FileNotFoundError:  # a folder that was removed meanwhile
+    except FileNotFoundError:  # the folder was removed in the meantime
         return False
 
 
 def is_at_work(out):
-    """Returns whether a render in a folder has begun: from then on it answers signals."""
+    """Returns True if a render in a folder has begun and handles signals."""
     return holds_any(out, "partial/**/lock", "frame_*")
 
 
 def has_state(out):
-    """Returns whether an unfinished frame, or rebinned rays, are on the disk."""
+    """Returns True if an unfinished frame, or rebinned rays, are on the disk."""
     return holds_any(out, "partial/**/frame_*.plate", "partial/**/*.rays")

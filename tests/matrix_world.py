@@ -1,5 +1,5 @@
-"""The films of the matrix (doc/matrix.md): captures, camera paths, packed stores and packages, each
-made when it is first asked for."""
+"""Makes the films of the matrix (doc/matrix.md): captures, camera paths, packed stores and packages, each on first
+use."""
 import contextlib
 import functools
 import json
@@ -15,9 +15,9 @@ import small_field
 from small_field import HEIGHT, WIDTH
 
 FRAMES, PACKAGES = 9, 3
-SIDE = 13  # 169 LF cameras: rules are asked at 64 and 128 places of the order
+SIDE = 13  # 169 LF cameras: rules are tested after 64 and 128 of them
 MOST_IMAGES = 40
-MOST_RAYS = 200000  # that rebin and hybrid keep
+MOST_RAYS = 200000  # limit for rebin and hybrid
 MODES = {
     "nearest": ["--estimator", "nearest"],
     "nearest none": ["--estimator", "nearest", "--lens-weights", "none"],
@@ -55,11 +55,11 @@ keyframes:
 
 
 class Difference(Exception):
-    """A fault of a cell."""
+    """A cell differs from what it must be."""
 
 
 class ProgramFailed(Exception):
-    """A program ended with another exit code than 0 and 6."""
+    """A program ended with an exit code other than 0 and 6."""
 
     def __init__(self, program, exit_code, last_line):
         super().__init__(f"{program}: exit code {exit_code}: {last_line}")
@@ -67,7 +67,7 @@ class ProgramFailed(Exception):
 
 
 def run(words, seconds=400):
-    """Returns exit code and last line of stderr of a program."""
+    """Returns the exit code and the last line of stderr of a program."""
     done = subprocess.run([str(word) for word in words], stdout=subprocess.DEVNULL,
                           stderr=subprocess.PIPE, text=True, timeout=seconds)
     return done.returncode, last_line(done.stderr)
@@ -78,7 +78,7 @@ def last_line(text):
 
 
 def once(method):
-    """Computes a method once for each of its arguments; threads that ask meanwhile wait."""
+    """Runs a method once for each combination of arguments; other threads wait for the result."""
     @functools.wraps(method)
     def wrapped(self, *arguments):
         with self.lock:
@@ -97,7 +97,7 @@ def once(method):
 
 
 def picture_of(field, index):
-    """A smooth picture with noise, another for each LF image."""
+    """Returns a smooth picture with noise, different for each LF image."""
     y, x = np.mgrid[0:HEIGHT, 0:WIDTH]
     waves = 120 + 70 * np.sin(x / 6 + index / 40) * np.cos(y / 5 - index % SIDE / 9)
     noise = np.random.default_rng(index).normal(0, 3, (HEIGHT, WIDTH, 3))
@@ -150,7 +150,7 @@ def add_flaws(field, calibration):
 class World:
     """Everything that cells are rendered from, in one folder.
 
-    programs  the folder of lfrenderer and the others
+    programs  the folder of lfrenderer and the other programs
     """
 
     def __init__(self, programs, folder):
@@ -169,14 +169,14 @@ class World:
         return folder
 
     def make(self, program, *words):
-        """Runs a program that may leave out LF images that are broken."""
+        """Runs a program that may leave out broken LF images."""
         exit_code, last = run([self.program(program), *words, "--progress", "none"])
         if exit_code not in (0, 6):
             raise ProgramFailed(program, exit_code, last)
 
     @once
     def knows(self, program, option):
-        """Returns whether a program has an option."""
+        """Returns True if a program has an option."""
         done = subprocess.run([self.program(program), "--help"], capture_output=True, text=True)
         return option in done.stdout
 
@@ -213,7 +213,7 @@ class World:
         return files
 
     def package_options(self, mode):
-        """Returns the options of a mode that packages are made for."""
+        """Returns those options of a mode that packages depend on."""
         options = MODES[mode] if mode != "default" else []
         return [word for name, value in zip(options[::2], options[1::2]) for word in (name, value)
                 if name in ("--estimator", "--lens-weights") or
@@ -221,7 +221,7 @@ class World:
 
     @once
     def places_of(self, field):
-        """Returns the place in the order of each LF image that some frame may take, by name."""
+        """Returns the place in the order of each LF image that a frame may use, by name."""
         places = {}
         for file in self.packages(field, "folder", "default", ()):
             with contextlib.closing(
@@ -230,7 +230,7 @@ class World:
         return places
 
     def input(self, field, source, mode):
-        """Returns what is given as LIGHTFIELD. Stores of packages are of those for a mode."""
+        """Returns the argument LIGHTFIELD. A store of packages is made from packages for this mode."""
         if source == "folder":
             return self.folder_of(field)
         return self.store(field, source, mode if is_of_packages(source) else "any")
@@ -249,5 +249,5 @@ class World:
 
 
 def is_of_packages(source):
-    """Returns whether an input is a store of what packages need."""
+    """Returns True if an input is a store of what packages need."""
     return "packages" in source or "needed" in source

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""LF images that are missing or broken: left out, counted on the last line, exit code 6; and accepted by
---allow-missing, whatever the program, the mode and the cut.
+"""Tests missing and broken LF images: they are left out and counted on the last line, with exit code 6, and accepted
+with --allow-missing, for every program, mode and cut.
 
 usage: missing_images_test.py LFRENDERER LFPREPROCESSOR LFCOMPRESSOR LFMERGE LFIMPORT
 """
@@ -50,7 +50,8 @@ class MissingImagesTest(ProgramTestCase):
         return json.loads((self.folder / out / name).read_text())
 
     def check_accepted(self, command, text, least):
-        """`least` LF images or more are accepted, fewer are not; all is written each time"""
+        """A limit of `least` LF images or more accepts them, a smaller one does not; everything is written each
+        time."""
         for limit, code in ((least - 1, 6), (least, 0), (f"{100 * (least - 1) // 25}%", 6),
                             ("100%", 0)):
             with self.subTest(limit=limit):
@@ -90,7 +91,7 @@ class MissingImagesTest(ProgramTestCase):
 
     def test_so_many_are_accepted_and_no_more(self):
         self.check_accepted(self.render, "3 of 25 LF images were left out", 3)
-        # 12 % of 25 are 3; a little less are not.
+        # 12 % of 25 are 3; a slightly smaller percentage allows fewer.
         self.succeeds(*self.render("a", "--allow-missing", "12%"))
         self.succeeds(*self.render("b", "--allow-missing", "11.999999%"), code=6)
         self.fails(3, ["image_"], *self.render("c", "--allow-missing", "3", "--strict"))
@@ -114,7 +115,7 @@ class MissingImagesTest(ProgramTestCase):
         self.assertIn("3 of 25 LF images were left out", last)
         self.assertEqual({path.name: path.read_bytes()
                           for path in (self.folder / "out").glob("frame_*")}, before)
-        # Without --resume frames are rendered anew, with all LF images.
+        # Without --resume, all frames are rendered again with all LF images.
         self.succeeds(*self.render("out"))
         self.assertEqual(self.report("out")["lf_images_skipped"], 0)
         self.assertNotEqual((self.folder / "out/frame_0001.exr").read_bytes(),
@@ -158,7 +159,7 @@ class MissingImagesTest(ProgramTestCase):
     def test_packages_are_written_without_files_that_are_missing(self):
         report, files = self.packages()
         self.assertEqual(len(files), 3)
-        # image_12 is a file that is there.
+        # The file of image_12 exists.
         self.assertEqual((report["lf_images_missing"], report["lf_images_needed"]), (2, 25))
         self.assertEqual([package["lf_images_missing"] for package in report["packages"]], [2] * 3)
         self.check_accepted(
@@ -183,7 +184,7 @@ class MissingImagesTest(ProgramTestCase):
         self.succeeds(*command, "--resume", "--allow-missing", "8%", code=6)
 
     def test_a_percentage_is_of_each_package_and_a_number_of_all(self):
-        """Package 0 lacks one LF image, package 2 another."""
+        """Packages 0 and 2 lack one LF image each."""
         self.mend()
         _, files = self.packages(code=0)
         for file, index in zip(files[::2], BROKEN[:2]):
@@ -221,12 +222,12 @@ class MissingImagesTest(ProgramTestCase):
             self.assertEqual(frame.read_bytes(), (self.folder / "out" / frame.name).read_bytes())
         for limit, code in ((3, 0), (2, 6), ("12%", 0), ("11%", 6)):
             self.succeeds(*merge, "--resume", "--allow-missing", limit, code=code)
-        # Plates that a whole render kept know it, too.
+        # The plates that a whole render kept also count them.
         kept = sorted((self.folder / "whole").glob("*.plate"))
         self.assertIn("3 of 25", self.last_line(6, MERGE, *kept, "-o", self.folder / "again"))
 
     def test_plates_have_the_same_bytes_for_any_memory(self):
-        """also what they say of LF images that they lack"""
+        """This includes the plates' count of missing LF images."""
         small_field.write_path(self.folder, frames=12)
         few = self.call(*self.render("few", "--threads", 2, "--memory", "2M"))
         least = re.search(r"at least (\d+) MiB", few.stderr).group(1)
@@ -259,7 +260,7 @@ class MissingImagesTest(ProgramTestCase):
         self.succeeds(RENDERER, store, self.path, "-o", self.folder / "out")
 
     def test_an_unfinished_store_tries_them_again(self):
-        """A strict call leaves one; what is mended then has a code."""
+        """A strict call leaves an unfinished store; an image that is mended afterwards is encoded."""
         store = self.folder / "a.lfs"
         self.fails(3, ["image_"], COMPRESSOR, self.field, "-o", store, "--strict", "--threads", 1)
         self.mend(7, 12)

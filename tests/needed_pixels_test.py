@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Packages, stores of needed pixels and renders agree about what frames need.
+"""Tests that packages, stores of needed pixels and renders agree about what frames need.
 
 usage: needed_pixels_test.py LFCOMPRESSOR LFRENDERER LFPREPROCESSOR LFSUBMIT
 """
@@ -71,7 +71,7 @@ class NeededPixelsTest(ProgramTestCase):
 
     def test_a_store_of_needed_pixels_holds_what_a_moving_film_reads(self):
         path = self.path(frames=200)
-        # A narrow view, which sees a part of each LF image.
+        # A narrow view sees only a part of each LF image.
         path.write_text(path.read_text().replace("deg: 45", "deg: 15"))
         packages = self.packages(path, count=8)
         store = self.store(packages)
@@ -138,13 +138,13 @@ class NeededPixelsTest(ProgramTestCase):
                    RENDERER, *packages, "--lightfield", store, "--mode", "rebin", "-o",
                    self.folder / "none")
         self.assertFalse(list((self.folder / "none").glob("frame_*")))
-        # The store as a light field of its own: packages that could not be rendered are not made.
+        # Packages that could not be rendered from the store are not made from it either.
         self.fails(3, ["frame 1 reads pixels of", "not in this packed store"],
                    PREPROCESSOR, store, path, "--mode", "rebin", "-o", self.folder / "made")
         self.assertFalse(list((self.folder / "made").glob("*.lfp")))
 
     def test_a_lens_without_rays_is_planned_for_the_mode_that_fills_it(self):
-        # In the plane of the LF cameras, between four of them.
+        # The lens is in the plane of the LF cameras, between four of them.
         path = self.path(frames=4, narrow=0.001)
         path.write_text(path.read_text().replace("value: 0.03", "value: 0.001")
                         .replace("value: [-0.02, -0.01, 0]", "value: [0.005, 0.005, 0]")
@@ -182,7 +182,8 @@ class OrderTest(ProgramTestCase):
                 self.succeeds(RENDERER, *arguments, "-o", out, "-q", "--no-contact-sheet")
                 digests[order, name] = {frame.name: hashlib.sha256(frame.read_bytes()).hexdigest()
                                         for frame in sorted(out.glob("frame_*.exr"))}
-                # Lens weights reach beyond small lenses: images that only these take count, too.
+                # Lens weights reach beyond small lenses, and LF images that only they use are counted as well as
+                # others.
                 for report in out.glob("report*.json"):
                     for frame in json.loads(report.read_text())["frames"]:
                         self.assertGreaterEqual(frame["lf_images"], 3, (order, name))

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""lfrenderer --stop-when "noise<=X" and --require: frames end early, with the same bits in any run, in
-every mode and with every weights; what cannot be measured is never called good.
+"""Tests lfrenderer --stop-when "noise<=X" and --require: frames end early with the same bits in any run, in every mode
+and with every lens weights; a frame that cannot be measured never counts as good.
 
 usage: noise_rule_test.py LFRENDERER LFPREPROCESSOR LFSUBMIT
 """
@@ -26,7 +26,7 @@ from program_test_case import ProgramTestCase
 RENDERER = PREPROCESSOR = SUBMIT = None
 FRAMES = 4
 
-# Every mode, estimator, filter and weights; and what all of them are rendered with.
+# Every mode, estimator, filter and lens weights, and the options for all of them.
 WAYS = {
     "nearest": ["--estimator", "nearest", "--lens-weights", "none", "--keep-plates"],
     "bilinear": ["--lens-weights", "none", "--keep-plates"],
@@ -42,7 +42,7 @@ DEFAULT_NOISE = 0.055
 
 
 def digests(folder):
-    """sha256 of the finished frames and plates of a folder"""
+    """Returns the sha256 of the finished frames and plates of a folder."""
     return {path.name: hashlib.sha256(path.read_bytes()).hexdigest()
             for pattern in ("frame_*.exr", "frame_*.plate") for path in folder.glob(pattern)}
 
@@ -61,7 +61,7 @@ class NoiseRuleTest(ProgramTestCase):
         small_field.SIDE = 13  # 169 LF images
         self.field = small_field.write_field(self.folder / "field")
         self.path = small_field.write_path(self.folder, frames=FRAMES)
-        # The lens opens, so that frames take different numbers of LF images.
+        # The lens opens, so that frames use different numbers of LF images.
         text = self.path.read_text()
         self.path.write_text(text + "  aperture_diameter: [{time: 0, value: 0.1}, {time: 0.12, value: "
                              "0.13}]\n")
@@ -81,7 +81,7 @@ class NoiseRuleTest(ProgramTestCase):
     def pixels(self, out, frame):
         return cv2.imread(str(self.folder / out / f"frame_{frame:04d}.exr"), cv2.IMREAD_UNCHANGED)
 
-    # The same bits
+    # Identical bits
 
     def test_frames_end_early_with_the_same_bits_in_any_run(self):
         with concurrent.futures.ThreadPoolExecutor(2) as threads:
@@ -98,7 +98,7 @@ class NoiseRuleTest(ProgramTestCase):
             self.assertLess(noise["places"], 169, (way, noise))
             self.assertLessEqual(noise["lf_images"], noise["places"])
             ends.add(noise["places"])
-        if way != "hat":  # has no more LF images in a wider lens
+        if way != "hat":  # hat weights use no more LF images in a wider lens
             self.assertGreater(len(ends), 1, way)
         self.assertEqual(report(self.folder / tag)["inputs"]["stop_when"], f"noise<={asked}")
         self.assertEqual(self.render(tag + "-2", *rule, "--threads", "2"), expected, way)
@@ -113,7 +113,7 @@ class NoiseRuleTest(ProgramTestCase):
             process = subprocess.Popen(
                 self.arguments(tag + "-cut", *rule, "--resume", "--dump-every", "0.001s", "--threads",
                                "1"), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-            # From the checkpoint of one batch to the next.
+            # Waits from the checkpoint of one batch to that of the next.
             partial, end = self.folder / (tag + "-cut") / "partial", time.monotonic() + 20
             before = self.checkpoints(partial)
             while process.poll() is None and time.monotonic() < end:
@@ -155,14 +155,14 @@ class NoiseRuleTest(ProgramTestCase):
                       RENDERER, "--", *options)
         self.assertEqual(digests(self.folder / "b"), expected)
 
-    # A frame that stops is the one of the LF images it took, and no others.
+    # A frame that stops is the frame of exactly the LF images that it used.
     def test_a_stopped_frame_is_that_of_fewer_lf_images(self):
         for way in ("nearest", "auto"):
             self.render(way, *self.rule(way))
             noise = noises(self.folder / way)[2]
             options = [*WAYS[way], "--frames", "3", "--require", "noise<=0.5"]
             images = noise["lf_images"]
-            while True:  # LF images beside the lens have no weight, and are counted by --max-images
+            while True:  # LF images beside the lens have no weight, but --max-images counts them
                 self.render("max", *options, "--max-images", images, "--overwrite")
                 taken = noises(self.folder / "max")[0]
                 if taken["lf_images"] >= noise["lf_images"]:
@@ -172,7 +172,7 @@ class NoiseRuleTest(ProgramTestCase):
             np.testing.assert_array_equal(self.pixels("max", 3), self.pixels(way, 3))
             self.assertTrue((self.pixels(way, 3) > 0).any())
 
-    # Frames that never come to it are those without a rule, in spite of what stops beside them.
+    # Frames that do not reach the noise are the frames without a rule, although other frames stop.
     def test_frames_that_do_not_stop_are_as_without_a_rule(self):
         text = self.path.read_text().replace("value: 0.1}", "value: 0.03}")
         self.path.write_text(text.replace("aperture_diameter: 0.045", "aperture_diameter: 0.03"))
@@ -186,7 +186,7 @@ class NoiseRuleTest(ProgramTestCase):
             for (name, digest), stopped in zip(sorted(ruled.items()), early):
                 self.assertEqual(digest != plain[name], stopped, (mode, name))
 
-    # Rebinned rays of a state that are ahead of a frame are of no use to it.
+    # Rebinned rays in a state that are ahead of a frame are useless for that frame.
     def test_a_plate_that_is_gone_does_not_mix_lf_images(self):
         for way in ("hybrid, previews", "rebin"):
             tag = way.replace(", ", "-")
@@ -215,7 +215,7 @@ class NoiseRuleTest(ProgramTestCase):
             self.fails(6, ["noise<=1e-05", "4 of 4 frames", f"frame 2 ({frame['reached']:.3g})"],
                        *self.arguments(way + "-6", *WAYS[way], "--require", "noise<=0.00001"))
             self.assertEqual(len(list((self.folder / (way + "-6")).glob("*.exr"))), 4)
-        # Stopped at the one rule, below the other.
+        # The frames stopped by one rule are below the other one.
         self.fails(6, ["noise<=0.01"], *self.arguments(
             "both", *WAYS["auto"], "--stop-when", "noise<=0.045", "--require", "noise<=0.01"))
 
@@ -235,7 +235,7 @@ class NoiseRuleTest(ProgramTestCase):
             self.assertEqual(len(noises(self.folder / out)), 2)
             self.assertEqual({name: digests(self.folder / out)[name] for name in expected}, expected)
 
-    # A lens between LF cameras has no rays: nothing tells how good its frames are.
+    # A lens between LF cameras has no rays, so that the noise of its frames cannot be measured.
     def test_what_cannot_be_measured_never_stops(self):
         small_field.write_path(self.folder, frames=2, aperture=0.002, x=0.005)
         for mode in ("rebin", "hybrid"):

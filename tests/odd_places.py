@@ -1,4 +1,4 @@
-"""Odd names of light fields, paths, images and outputs; and outputs that are inputs of the same call."""
+"""Tries odd names for light fields, paths, images and outputs, and outputs that are inputs of the same call."""
 import hashlib
 import json
 import os
@@ -12,9 +12,9 @@ NAMES = {
     "backslash": "a\\b\\n", "shell": "#;&|$HOME`x`>y", "hidden": ".name", "tab": "a\tb", "comma": "a,b=c:d",
     "tilde": "~root", "control": "a\x01\x1b[2Kb",
     "200 characters": "n" * 200, "dots": "a..b.", "ending": "film.exr.lfs", "file://": "file:x"}
-# The quick form mixes them.
+# The names of the quick form, which combine all kinds of characters.
 MIXED = {"mixed characters": "-it's \"so\" %d%s {}\nGrün 光場 [a]*;&$HOME\\n,", "200 characters": "n" * 200}
-# Bytes that are no text: images cannot have these, since transforms.json is text.
+# Bytes that are no text. Images cannot have such names, since transforms.json is text.
 NO_TEXT = os.fsdecode(b"a\xff\xfeb")
 
 
@@ -27,7 +27,7 @@ def frames_of(folder):
 
 
 def move_images(field, name):
-    """Gives the images of a light field new names, and those of their folder."""
+    """Renames the images of a light field and their folder."""
     calibration = field / "transforms.json"
     text = json.loads(calibration.read_text())
     (field / name).mkdir()
@@ -39,7 +39,7 @@ def move_images(field, name):
 
 
 class OddNames:
-    """All programs, one after another, each in a folder and with a file of one name."""
+    """Runs all programs one after the other, with a folder and a file of one name for each."""
 
     def __init__(self, calls, folder, expected):
         self.calls, self.folder, self.expected = calls, folder, expected
@@ -59,16 +59,16 @@ class OddNames:
             raise OSError(f"{what}: other files")
 
     def steps(self, name, is_text=True):
-        """Yields program after program, each after its call. OSError: it failed, or its files are other ones."""
+        """Yields each program after its call. OSError: the call failed, or its files are wrong."""
         calls, here, image_name = self.calls, self.folder / name, name if is_text else "image"
         here.mkdir(parents=True)
-        # Absolute, and relative with a dash in front.
+        # Absolute names, and relative ones with a leading dash.
         field, path, store = here / name, here / f"{name}.yaml", here / f"{name}.lfs"
         self.call("lfsynth", *map(str, calls.synth(field)[1:-1]))
         self.same("lfsynth", digest(field / "transforms.json") == digest(calls.field / "transforms.json"))
         yield "lfsynth"
         move_images(field, image_name)
-        if is_text:  # else a transforms.json cannot name the folder of the images
+        if is_text:  # otherwise a transforms.json cannot name the folder of the images
             self.call("lfimport", field, "-o", here / f"{name} import")
             yield "lfimport"
             field = here / f"{name} import"
@@ -98,7 +98,7 @@ class OddNames:
         yield "lfsubmit"
 
     def dash_steps(self):
-        """Relative names that begin with a dash, after = and --."""
+        """Relative names with a leading dash, after = and after --."""
         here = self.folder / "dashes in front"
         here.mkdir()
         shutil.copytree(self.calls.field, here / "-field")
@@ -120,7 +120,7 @@ class OddNames:
 
 
 def try_names(calls, folder, note, arguments):
-    """Notes, for every name, each program that takes it."""
+    """Notes, for every name, each program that accepts it."""
     folder.mkdir()
     plain = folder / "plain film"
     subprocess.run(calls.render("-o", plain), check=True)
@@ -141,7 +141,7 @@ def try_names(calls, folder, note, arguments):
 
 
 class Inputs:
-    """Copies of all kinds of inputs, in one folder."""
+    """Copies of all kinds of inputs in one folder."""
 
     def __init__(self, calls, folder):
         self.folder, self.calls = folder, calls
@@ -152,7 +152,7 @@ class Inputs:
         shutil.copytree(self.calls.field, self.field)
         calibration = self.field / "transforms.json"
         text = json.loads(calibration.read_text())
-        # An LF image with the name that a frame will have.
+        # An LF image with the name of a future frame.
         first = text["frames"][0]
         (self.field / first["file_path"]).rename(self.image)
         first["file_path"] = self.image.name
@@ -167,7 +167,7 @@ class Inputs:
         return {str(path.relative_to(self.folder)): digest(path) for path in self.folder.rglob("*") if path.is_file()}
 
     def all_calls(self):
-        """Yields calls whose output is an input, and the names that a call may replace if it ends with 0."""
+        """Yields calls whose output is one of their inputs, and the names that a call may replace if it ends with 0."""
         words, field, path, store = self.calls.words, self.field, self.path, self.store
         calibration = field / "transforms.json"
         package = self.packages / sorted(self.calls.packages.glob("*.lfp"))[0].name
@@ -199,7 +199,7 @@ class Inputs:
 
 
 def try_inputs_as_outputs(calls, folder, note, arguments):
-    """Notes each call that gives an input as its output: inputs must stay what they are."""
+    """Notes each call whose output is one of its inputs. Inputs must not change."""
     whole, here = Inputs(calls, folder / "whole"), Inputs(calls, folder / "here")
     folder.mkdir()
     whole.folder.mkdir()

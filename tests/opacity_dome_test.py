@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Frames with alpha of a dome: an object of lfsynth over nothing, against its true lens pictures.
+"""Tests frames with alpha of a dome: an object of lfsynth on an empty background, compared with exact lens pictures.
 
 usage: opacity_dome_test.py LFSYNTH LFRENDERER
 """
@@ -17,7 +17,7 @@ from program_test_case import ProgramTestCase
 SYNTH = RENDERER = None
 LEAST_PSNR_DB = {"light": 34, "alpha": 38, "over white": 34}
 
-# From between LF cameras of the dome, aslant and from above.
+# Views from between LF cameras of the dome, obliquely and from above.
 PATH_YAML = """format: lfpath 1
 fps: 25
 frames: 2
@@ -66,7 +66,7 @@ class OpacityDomeTest(ProgramTestCase):
                   f"{', '.join(f'{what} {value:.1f} dB' for what, value in found.items())}", file=sys.stderr)
             for what, least in LEAST_PSNR_DB.items():
                 self.assertGreater(found[what], least, what)
-            # Bicubic filters overshoot at edges, and what is below no light or above full alpha is cut off.
+            # Bicubic filters overshoot at edges, and values below black or above full alpha are clipped.
             self.assertLess(np.abs(light + (1 - alpha) - white).max(), 0.02)
             linear, its_alpha = rgb_and_alpha(self.folder / "none linear" / name)
             white = cv2.imread(str(self.folder / "white linear" / name), cv2.IMREAD_UNCHANGED)[..., ::-1]

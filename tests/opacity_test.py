@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Frames with alpha: a turntable of lfsynth over nothing, against its true lens pictures.
+"""Tests frames with alpha: a turntable of lfsynth on an empty background, compared with exact lens pictures.
 
 usage: opacity_test.py LFSYNTH LFRENDERER LFIMPORT LFCOMPRESSOR LFPREPROCESSOR LFMERGE LFSUBMIT
 """
@@ -101,7 +101,7 @@ class OpacityTest(ProgramTestCase):
             self.assertGreater(psnr_db(over_black, true_light), LEAST_PSNR_DB)
             self.assertGreater(psnr_db(over_white, true_light + 1 - true_alpha), LEAST_PSNR_DB)
             self.assertGreater(psnr_db(alpha, true_alpha), LEAST_PSNR_DB)
-            # A compositor gets the picture that is rendered over that background.
+            # Composing the frame over a background gives the picture that is rendered over it.
             np.testing.assert_allclose(light + (1 - alpha), over_white, atol=1e-4)
             near = cv2.dilate((true_alpha > 0).astype(np.uint8), np.ones((5, 5)))
             self.assertGreater(np.count_nonzero(near == 0), 50)
@@ -173,7 +173,7 @@ class OpacityTest(ProgramTestCase):
         over_black = self.folder / "black"
         self.succeeds(RENDERER, self.field, self.path, "-o", over_black, "--format", "png")
         expected = np.asarray(Image.open(over_black / "contact_sheet.png"))
-        # In the dark a step of 8 bits of alpha is several of display values.
+        # In dark areas, one step of an 8-bit alpha equals several display values.
         difference = np.abs(sheet.astype(int) - expected)
         self.assertLessEqual(difference.max(), 8)
         self.assertLess(difference.mean(), 0.5)

@@ -1,4 +1,4 @@
-// What a thin lens must do, from the pixels of LF images to the sensor plate.
+// Tests properties of a thin lens, from the pixels of LF images to the sensor plate.
 #include <gtest/gtest.h>
 
 #include "tests/analytic_field.h"
@@ -18,7 +18,7 @@ double MeanAt(const SensorPlate& plate, int x, int y) {
   return element.count > 0 ? static_cast<double>(element.sum) / 65535 / element.count : -1;
 }
 
-// A smooth pattern painted on a plane, by position on it.
+// Returns a smooth pattern painted on a plane, as a function of the position on the plane.
 testing::Radiance PaintedPlane(const Plane& plane) {
   return [plane](const Ray& ray) {
     const Vec3 p = *IntersectLine(ray, plane);
@@ -26,7 +26,7 @@ testing::Radiance PaintedPlane(const Plane& plane) {
   };
 }
 
-// Largest difference between the frame and the pattern where it is in focus.
+// Returns the largest difference between the frame and the pattern where it is in focus.
 double ErrorOfPaintedPlane(const FocusTilt& painted, const FocusTilt& focused) {
   const GridRig rig;
   const LightField field = GridField(rig);
@@ -60,8 +60,8 @@ TEST(Optics, APlaneTiltedVerticallyIsSharpWithThatTiltOnly) {
   EXPECT_GT(ErrorOfPaintedPlane(tilt, {0, -tilt.vertical_rad}), 0.08);
 }
 
-// Diameter in elements of the disk whose second moment the light on the plate has. Two roundings,
-// to an LF pixel and to an element, add 1/12 each to the moment of an axis.
+// Returns the diameter, in elements, of the disk that has the second moment of the light on the
+// plate. The roundings to an LF pixel and to an element add 1/12 each to the moment along an axis.
 double BlurDiameter(const SensorPlate& plate) {
   double light = 0, sum_x = 0, sum_y = 0, sum_squared = 0;
   for (int y = 0; y < plate.height(); ++y)
@@ -97,7 +97,7 @@ TEST(Optics, ThePointSpreadHasTheDiameterOfTheLensFormula) {
   }
 }
 
-// The lit elements, taken back to the lens, are the opening itself.
+// Checks that the lit elements, projected back to the lens, have the shape of the aperture.
 void ExpectSilhouette(const Aperture& aperture, double focus_w, double depth_w) {
   GridRig rig;
   rig.side = 101;
@@ -134,7 +134,7 @@ TEST(Optics, HighlightsTakeTheShapeOfTheAperture) {
   for (const double rotation : {0.0, RadiansFromDegrees(20), RadiansFromDegrees(-75)}) {
     ExpectSilhouette({0.04, 3, rotation}, 0.8, 3.0);  // behind the focus: upright
     ExpectSilhouette({0.04, 5, rotation}, 0.8, 3.0);
-    ExpectSilhouette({0.04, 5, rotation}, 1.5, 0.75);  // before it: upside down
+    ExpectSilhouette({0.04, 5, rotation}, 1.5, 0.75);  // in front of the focus: upside down
   }
   ExpectSilhouette({0.04, 0, 0}, 0.8, 3.0);
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A packed store is a light field: every program takes it, and renders the same bits.
+"""Tests that a packed store is a light field: every program accepts it and renders the same bits.
 
 usage: packed_store_test.py LFCOMPRESSOR LFRENDERER LFPREPROCESSOR LFIMPORT LFEXAMPLE
 """
@@ -31,7 +31,7 @@ class PackedStoreTest(ProgramTestCase):
         return write_field(self.folder / "field", **keys), write_path(self.folder, frames=4)
 
     def masked_film(self):
-        """one LF image with a mask file, one with a gain"""
+        """Returns a film with one LF image that has a mask file, and one with a gain."""
         field, path = self.film()
         text = json.loads(field.read_text())
         mask = np.full((HEIGHT, WIDTH), 255, np.uint8)

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""lfvisualizer's page under attack by a hostile browser or program of the same machine.
+"""Attacks lfvisualizer's page as a hostile browser or program on the same machine would.
 
-Each attack has a server of its own. It must answer as a refusal should, the server must answer a
-good request during or after it, and must not have taken more than MOST_MIB of memory. A table of
-the attacks is printed in the end.
+Each attack has a server of its own. The answer must be the expected refusal, the server must answer a good request
+during or after the attack, and it must not have used more than MOST_MIB of memory. A table of the attacks is printed
+at the end.
 
 usage: page_attacks_test.py LFVISUALIZER [MOST_MIB]
 """
@@ -32,7 +32,7 @@ TABLE = []
 
 
 class Client:
-    """A connection that sends whatever it is told."""
+    """A connection that sends any bytes."""
     opened = []
 
     def __init__(self, port):
@@ -42,7 +42,7 @@ class Client:
         self.is_open = True
 
     def send(self, data):
-        """False if the server has answered or hung up meanwhile: nobody reads on"""
+        """Returns False if the server has answered or closed the connection, and reads no more."""
         view = memoryview(data)
         try:
             while view and self.is_open and not self.received:
@@ -66,14 +66,14 @@ class Client:
         self.is_open = bool(data)
 
     def status(self):
-        """of the first answer, or None if the server has hung up without one"""
+        """Returns the status of the first answer, or None if the server closed the connection without one."""
         while self.is_open and b"\r\n\r\n" not in self.received:
             self.receive()
         match = re.match(rb"HTTP/1\.1 (\d+) ", self.received)
         return int(match[1]) if match else None
 
     def rest(self):
-        """all that is received until the server hangs up"""
+        """Returns all that is received until the server closes the connection."""
         while self.is_open:
             self.receive()
         return self.received
@@ -100,7 +100,7 @@ class Server:
         self.port = int(self.port)
 
     def head(self, name="scene.json", method="GET", host=None, token=None, path=None, **headers):
-        """the head of a request, to which more headers may be added; its own empty line is missing"""
+        """Returns the head of a request without the empty line at its end, so that headers can be added."""
         path = f"/{token or self.token}/{name}" if path is None else path
         lines = [f"{method} {path} HTTP/1.1", f"Host: {host or f'127.0.0.1:{self.port}'}"]
         lines += [f"{key.replace('_', '-')}: {value}" for key, value in headers.items()]
@@ -160,7 +160,7 @@ class PageAttacksTest(ProgramTestCase):
         self.assertEqual(self.server.ask(self.server.head() + b"\r\n"), 200)
 
     def attack(self, what, expected, body):
-        """body() gives a status or a list of them, which must be `expected`: one, or a set"""
+        """body() returns a status or a list of them, which must be `expected`: one status, or a set."""
         begin = time.monotonic()
         statuses = body()
         seconds = time.monotonic() - begin
@@ -257,7 +257,7 @@ class PageAttacksTest(ProgramTestCase):
     # ---- too slow
 
     def besides(self, clients, rounds=20):
-        """good requests while each client sends a byte now and then, so that it is never silent"""
+        """Sends good requests while each client sends a byte now and then, so that no client is silent."""
         statuses = []
         for _ in range(rounds):
             for client in clients:
@@ -343,7 +343,7 @@ while True:
             return statuses
         self.attack("40 streams", {200, 503}, streams)
         self.assertEqual(TABLE[-1][1], {200: 16, 503: 24})
-        while self.server.ask(self.server.head("events") + b"\r\n") != 200:  # they are given back
+        while self.server.ask(self.server.head("events") + b"\r\n") != 200:  # streams that ended are available again
             time.sleep(0.1)
 
     # ---- from elsewhere
@@ -366,7 +366,7 @@ while True:
                 for name in ("scene.json", "events", "", "page.js")])
         self.assertEqual(self.server.path.read_text(), self.text_before)
         self.assertEqual(list(self.server.temporary.iterdir()), [])
-        # The page itself may do what was refused.
+        # The page itself may do what was refused to others.
         own = {"Origin": f"http://127.0.0.1:{self.server.port}", "Sec_Fetch_Site": "same-origin"}
         self.assertEqual(self.server.post("save", edit, **own), 200)
         self.assertIn("fps: 24", self.server.path.read_text())
@@ -419,7 +419,7 @@ while True:
                     head.replace(b"Host", b"Ho\0st")]
         self.attack("zero bytes", {400, 403, 414}, lambda: [
             self.server.ask(request + b"\r\n") for request in requests])
-        # What is behind a zero is not seen.
+        # The server ignores what follows a zero byte.
         self.attack("zero bytes behind what is asked", 200, lambda: [
             self.server.ask(request + b"\r\n") for request in
             (head.replace(b".json", b".json\0/../x"), head + b"\0\r\n")])

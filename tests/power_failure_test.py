@@ -25,7 +25,7 @@ from final_files import differing, faults_of_finals, faults_of_going_on, files_o
 from tiny_calls import TinyCalls
 
 RULES = {"names count when flushed": False, "names count at once": True}
-# The moments that matter lie around these.
+# Events of these kinds are the most critical moments.
 TELLING = ("rename", "flush_folder", "flush", "cut", "remove")
 
 
@@ -47,7 +47,7 @@ class PowerFailures:
             folder.mkdir()
 
     def moments(self, events):
-        """Returns the numbers of events that have happened when the power fails."""
+        """Returns the numbers of events after which the power fails."""
         most = self.arguments.points
         moments = range(1, len(events) + 1)
         if most == 0 or len(events) <= most:
@@ -67,11 +67,11 @@ class PowerFailures:
 
         def files():
             final, temporary = files_of(self.work)
-            return final, [name for name in temporary if not name.endswith("lock")]  # these keep nobody out
+            return final, [name for name in temporary if not name.endswith("lock")]  # lock files block nobody
         return faults + faults_of_going_on(call.again, run, files, right)
 
     def hunt(self, call):
-        """Returns the number of tries and of failures."""
+        """Returns the numbers of tries and of failures."""
         self.empty(self.work, self.log.parent)
         for command in call.before:
             code, errors = run(command)

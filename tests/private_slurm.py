@@ -60,14 +60,14 @@ PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "squeue", "scontrol", "sc
 
 
 def find(program):
-    """Daemons are where users do not look."""
+    """Finds a program, also in the folders of daemons, which are not in a user's PATH."""
     return shutil.which(program, path=os.environ.get("PATH", "") + ":/usr/sbin:/usr/local/sbin")
 
 
 def missing():
-    """What it needs and this machine lacks."""
+    """Returns the programs and mounts that are needed and missing on this machine."""
     lacking = [program for program in PROGRAMS if find(program) is None]
-    # Even where nothing is limited by them.
+    # Needed even if no resource is limited by cgroups.
     if not os.path.ismount("/sys/fs/cgroup"):
         lacking.append("cgroups mounted at /sys/fs/cgroup")
     return lacking
@@ -84,7 +84,7 @@ def free_ports(count):
 
 
 def children_of(process):
-    """of all its threads, and their children, the youngest first"""
+    """Returns the children of all threads of a process, and their children, the youngest first."""
     found = []
     for children in pathlib.Path("/proc", str(process), "task").glob("*/children"):
         try:
@@ -156,7 +156,7 @@ class PrivateSlurm:
         return self.call("sinfo", "-h", "-N", "-o", "%t").split().count("idle")
 
     def call(self, *command):
-        """What a program prints, whether it succeeds or not."""
+        """Returns the output of a program, even if the program fails."""
         return subprocess.run([find(command[0]), *map(str, command[1:])], capture_output=True,
                               text=True, env=self.environment, timeout=60).stdout
 
@@ -164,7 +164,7 @@ class PrivateSlurm:
         self._start(f"n{number}", "slurmd", "-D", "-f", self.configuration, "-N", f"n{number}")
 
     def _step_daemons(self, number):
-        """They leave their slurmd, but keep its log open."""
+        """Finds the step daemons of a node, which leave their slurmd but keep its log open."""
         log = str(self.folder / "log" / f"slurmd-n{number}.log")
         found = []
         for process in pathlib.Path("/proc").glob("[0-9]*"):
@@ -174,11 +174,11 @@ class PrivateSlurm:
                 if any(os.readlink(file) == log for file in (process / "fd").iterdir()):
                     found.append(int(process.name))
             except OSError:
-                continue  # another's, or it has ended
+                continue  # a process of another user, or one that has ended
         return found
 
     def kill_node(self, number):
-        """As if its plug were pulled: the node and all it runs, at once."""
+        """Kills the node and all its processes at once, like a power cut."""
         for step in self._step_daemons(number):
             running = children_of(step)
             kill(step)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Every program offers the common options that it obeys, and refuses the others.
+"""Tests that every program offers the common options that it obeys, and refuses the others.
 
 usage: program_options_test.py FOLDER_OF_THE_PROGRAMS
 """
@@ -15,15 +15,15 @@ BIN = None
 
 COMMON = ("--threads", "--seed", "--strict", "--progress", "--verbose", "--quiet", "--json",
           "--allow-missing")
-# Programs have a common option only if it has this effect:
-#   --threads        the program has a pool of threads, or gives the number to lfrenderer
-#   --seed           poses and noise (lfsynth), the order of LF images, rebinned rays
+# A program has a common option only if the option has this effect:
+#   --threads        the program has a thread pool, or passes the number to lfrenderer
+#   --seed           sets poses and noise (lfsynth), the order of LF images, rebinned rays
 #   --strict         a missing or broken LF image is an error
 #   --progress       the work is long enough to be shown
-#   --verbose        it, or what it calls, has words for debugging
-#   --quiet          it has words that are no warning
-#   --json           it has a report
-#   --allow-missing  it may leave out LF images that were asked for
+#   --verbose        the program, or a library that it calls, has debugging messages
+#   --quiet          the program has messages that are no warnings
+#   --json           the program has a report
+#   --allow-missing  the program may leave out requested LF images
 OFFERED = {
     "lfcammvminfo": {"--json"},
     "lfcompressor": set(COMMON) - {"--seed"},
@@ -32,13 +32,13 @@ OFFERED = {
     "lfmerge": set(COMMON) - {"--seed", "--strict"},
     "lfpreprocessor": set(COMMON),
     "lfrenderer": set(COMMON),
-    # --allow-missing follows the two dashes: lfrenderer has it.
+    # --allow-missing follows the two dashes, because it is an option of lfrenderer.
     "lfsubmit": set(COMMON) - {"--seed", "--allow-missing"},
     "lfsynth": {"--threads", "--seed", "--progress", "--quiet"},
     "lfvisualizer": set(COMMON) - {"--strict", "--json"},
 }
 VALUES = {"--threads": ["1"], "--seed": ["1"], "--progress": ["none"], "--allow-missing": ["1"]}
-# Calls without a fault but for files that are not there.
+# Calls whose only fault is that their files do not exist.
 CALLS = {
     "lfcammvminfo": ["no.yaml"],
     "lfcompressor": ["no", "-o", "no.lfs"],
@@ -82,7 +82,7 @@ class ProgramOptionsTest(ProgramTestCase):
                     self.assertIn(option, result.stderr.splitlines()[-1])
 
     def calls(self):
-        """A call of each program that tells more with -v, and a word of what it tells."""
+        """Returns, for each program that prints more with -v, a call and a word of that output."""
         small_field.SIDE = 3
         field = small_field.write_field(self.folder / "field")
         path = small_field.write_path(self.folder, frames=2)

@@ -1,4 +1,4 @@
-"""A folder of its own, and programs that are called in it."""
+"""A test case with a folder of its own, in which it calls programs."""
 import pathlib
 import subprocess
 import tempfile
@@ -21,7 +21,7 @@ class ProgramTestCase(unittest.TestCase):
         return result.stdout
 
     def fails(self, code, words, program, *arguments):
-        """with this exit status, and these words on the last line"""
+        """Calls a program that must end with this exit status and these words on the last line."""
         result = self.call(program, *arguments)
         self.assertEqual(result.returncode, code, result.stderr)
         last = result.stderr.strip().splitlines()[-1]

@@ -1,4 +1,4 @@
-// Projects directions through a camera for camera_models_test.py.
+// Projects directions through a camera, for camera_models_test.py.
 //
 // stdin   fx fy cx cy  MODEL  p1 .. p12, then X Y Z of each direction
 // stdout  x y of its pixel, and X Y Z of the direction that this pixel's ray has; or "none"

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""lfrenderer --mode rebin and hybrid: the same bits for any threads and however often they are
-killed, memory under its bound, honest words.
+"""Tests lfrenderer --mode rebin and hybrid: the bits do not depend on threads or kills, memory stays below its limit,
+and messages are correct.
 
 usage: rebinning_test.py LFRENDERER LFPREPROCESSOR
 """
@@ -25,7 +25,7 @@ RENDERER = PREPROCESSOR = None
 
 
 def digests(folder):
-    """sha256 of the frames of a folder"""
+    """Returns the sha256 of the frames of a folder."""
     return {path.name: hashlib.sha256(path.read_bytes()).hexdigest()
             for path in sorted(folder.glob("frame_*.exr"))}
 
@@ -37,7 +37,7 @@ def report(folder):
 class RebinningTest(ProgramTestCase):
     def setUp(self):
         super().setUp()
-        small_field.SIDE = 13  # 169 LF images: decisions at 64 and 128 places
+        small_field.SIDE = 13  # 169 LF images: rules are tested after 64 and 128 of them
         self.field = small_field.write_field(self.folder / "field")
 
     def path(self, **keys):
@@ -70,7 +70,7 @@ class RebinningTest(ProgramTestCase):
         self.assertNotEqual(self.render("a", *options, "--seed", "1"),
                             self.render("b", *options, "--seed", "2"))
 
-    # Killed at any moment, also between the files of a state.
+    # Kills at any moment, also between the files of a state.
     def test_killed_and_resumed_the_same_bits(self):
         self.path(aperture=0.02, frames=6)
         for mode in ("rebin", "hybrid"):
@@ -92,14 +92,14 @@ class RebinningTest(ProgramTestCase):
                 process.communicate()
                 if process.returncode == 0:
                     break
-                # Before it can catch signals it ends by them.
+                # A program that cannot catch signals yet is ended by them.
                 self.assertIn(process.returncode, (-signal.SIGKILL, -signal.SIGTERM, 5))
             self.assertGreater(kills, 2)
             self.assertEqual(self.render("cut-" + mode, *options, "--resume"), expected)
             self.assertFalse((self.folder / ("cut-" + mode) / "partial").exists())
 
     def interrupted(self, out, delay_s, *options):
-        """Pictures of the unfinished frames of a render that was ended while it was at work."""
+        """Returns pictures of the unfinished frames of a render that was interrupted."""
         process = subprocess.Popen(list(map(str, self.command(out, *options))),
                                    stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
         partial = self.folder / out / "partial"
@@ -160,10 +160,10 @@ class RebinningTest(ProgramTestCase):
         self.fails(3, [rays.name, "remove the file"],
                    *self.command("out", "--mode", "rebin", "--resume"))
 
-    # A lens that LF cameras fill leaves nothing to interpolate.
+    # If LF cameras fill a lens, nothing is interpolated.
     def test_hybrid_of_a_full_lens_is_what_is_collected(self):
         path = self.path(aperture=0.045)
-        # All LF cameras see all of it.
+        # All LF cameras see the whole frame.
         path.write_text(path.read_text().replace("field_of_view_deg: 50", "field_of_view_deg: 25"))
         self.render("collect")
         self.render("hybrid", "--mode", "hybrid")
@@ -176,7 +176,7 @@ class RebinningTest(ProgramTestCase):
     def rgb(self, out, name):
         return cv2.imread(str(self.folder / out / name), cv2.IMREAD_UNCHANGED).tobytes()
 
-    # Between LF cameras nothing is collected; all of the frame is interpolated.
+    # Between LF cameras nothing is collected, and the whole frame is interpolated.
     def test_a_small_lens_between_cameras_is_interpolated(self):
         self.path(aperture=0.002, x=0.005)
         words = self.call(*self.command("collect", "--lens-weights", "none"))
@@ -210,8 +210,8 @@ class RebinningTest(ProgramTestCase):
         self.fails(2, ["--nearest", "--back-end reference"],
                    *self.command("no", "--mode", "rebin", "--nearest", "4"))
 
-    # Queries of a k-d tree, element by element: within reach they are what splats are; of the
-    # nearest rays there is an answer wherever the lens looks.
+    # The reference back end queries a k-d tree element by element. Within reach the result is that of splats; with the
+    # nearest rays, every point of the lens has an answer.
     def test_the_reference_back_end_asks_a_tree(self):
         self.path(aperture=0.004, frames=1, x=0.005)
         options = ["--mode", "rebin", "--lens-points", "4"]

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Wrong output names destroy nothing, names of files forge no message, and pictures that were cut are
+"""Tests that wrong output names destroy nothing, that file names cannot forge messages, and that truncated pictures are
 not kept.
 
 usage: safe_outputs_test.py FOLDER_OF_PROGRAMS
@@ -36,7 +36,7 @@ class SafeOutputsTest(ProgramTestCase):
 
     def test_a_light_field_of_others_is_not_replaced(self):
         again = ["chart", "-o", self.field, "--count", "9", "--size", "48x32", "--samples", "1", "-q"]
-        self.succeeds(PROGRAMS / "lfsynth", *again)  # its own may be
+        self.succeeds(PROGRAMS / "lfsynth", *again)  # it may replace a light field of its own
         self.calibration.write_text(self.calibration.read_text().replace('"frames"', ' "frames"', 1))
         self.keeps(self.calibration, 2, ["transforms.json", "--overwrite"], "lfsynth", *again)
         self.keeps(self.calibration, 2, ["--overwrite"], "lfsynth", *again, "--calibration-only")
@@ -55,7 +55,7 @@ class SafeOutputsTest(ProgramTestCase):
             self.assertFalse(list(self.folder.glob("film/frame_*")))
 
     def field_named_as_frames(self):
-        """The light field, its LF images named frame_0001.png and so on, in the folder itself."""
+        """Writes a light field whose LF images lie beside it and are named frame_0001.png and so on."""
         text = self.calibration.read_text()
         images = sorted(self.field.rglob("*.png"))
         for number, image in enumerate(images, 1):
@@ -83,7 +83,7 @@ class SafeOutputsTest(ProgramTestCase):
         self.keeps(picture, 2, words, "lfrenderer", *packages.glob("*.lfp"), "--format", "png", "-o", self.field)
         self.keeps(picture, 2, words, "lfsubmit", *packages.glob("*.lfp"), "-o", self.field, "--", "--format", "png")
         self.assertEqual(sorted(self.field.rglob("*")), before)
-        # Another format has other names.
+        # Frames in another format have other names.
         self.succeeds(PROGRAMS / "lfrenderer", self.field, self.path, "-o", self.field, "--frames", "1", "-q")
         self.succeeds(PROGRAMS / "lfrenderer", *render, self.folder / "film", "-q")
 
@@ -100,7 +100,7 @@ class SafeOutputsTest(ProgramTestCase):
         path.parent.mkdir()
         self.path.rename(path)
         self.keeps(path, 2, ["report.json", "what is read"], "lfrenderer", self.field, path, "-o", path.parent)
-        # A contact sheet that is an LF image.
+        # An LF image has the name of the contact sheet.
         picture = next(self.field.rglob("*.png"))
         sheet = picture.with_name("contact_sheet.png")
         self.calibration.write_text(self.calibration.read_text().replace(picture.name, sheet.name))

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""lfrenderer --shard and lfmerge: the frames of one machine, to the bit, from parts of the LF images
-in any order; and honest words about what is missing.
+"""Tests lfrenderer --shard and lfmerge: parts of the LF images, merged in any order, give the frames of one machine bit
+for bit; missing parts are reported.
 
 usage: shards_test.py LFRENDERER LFMERGE LFPREPROCESSOR
 """
@@ -22,7 +22,7 @@ RENDERER = MERGE = PREPROCESSOR = None
 
 
 def digests(folder, pattern="frame_*.exr"):
-    """sha256 of the files of a folder"""
+    """Returns the sha256 of the files of a folder."""
     return {path.name: hashlib.sha256(path.read_bytes()).hexdigest()
             for path in sorted(folder.glob(pattern))}
 
@@ -61,7 +61,7 @@ class ShardsTest(ProgramTestCase):
         self.assertEqual(len(self.merge("out", plates)), 3)
         self.assertFalse(lock.parent.exists())
 
-    # One shard more than LF images, too: some are empty.
+    # Also tested with one shard more than LF images, so that a shard is empty.
     def test_any_cut_gives_the_same_bits(self):
         for weights in ("auto", "none"):
             options = ["--lens-weights", weights]
@@ -117,7 +117,7 @@ class ShardsTest(ProgramTestCase):
                    self.folder / "no")
         self.assertFalse((self.folder / "no").exists())
         self.shards("out", 3, of=(2,))
-        for there, missing in (((1, 2), 3), ((2, 3), 1)):  # the last one, and the first one
+        for there, missing in (((1, 2), 3), ((2, 3), 1)):  # the last one and the first one are missing
             self.fails(3, ["frame 1", "of 3 shards 2 are there", f"missing: {missing} "], MERGE,
                        *(plates / f"shard_{k}_of_3" for k in there), "-o", self.folder / "no")
         self.shards("twice", 3, of=(2,))
@@ -154,8 +154,7 @@ class ShardsTest(ProgramTestCase):
         self.assertEqual(self.merge("out", plates, options=["--overwrite"]), expected)
         self.assertNotEqual(first.stat().st_mtime_ns, before)
 
-    # A limit for the size of files stands for a full disk: what is there stays, and nothing is left
-    # of what was begun.
+    # A limit of the file size stands for a full disk. Existing files stay, and no partial file is left.
     def test_a_full_disk_costs_no_frame(self):
         plates = self.shards("out", 2)
         expected = self.merge("whole", plates)

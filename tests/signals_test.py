@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Signals at any moment of a program, from its first on, and starts in poor surroundings: an honest end, and the next
-call makes the right files and leaves nothing of the killed one.
+"""Tests signals at any moment of a program, from its start on, and starts in a poor environment: the program ends
+correctly, and the next call makes the right files and removes those of the killed one.
 
 usage: signals_test.py FOLDER_OF_PROGRAMS
 """
@@ -23,7 +23,7 @@ SIGNALS = (signal.SIGKILL, signal.SIGTERM, signal.SIGKILL, signal.SIGINT)
 
 class SignalsTest(WritersCase):
     def seconds(self, program):
-        """what the call takes, alone"""
+        """Returns the time of the call when it runs alone."""
         out = self.folder / f"{program}-timed"
         out.mkdir()
         begin = time.monotonic()
@@ -32,13 +32,13 @@ class SignalsTest(WritersCase):
         return time.monotonic() - begin
 
     def hit(self, program, out, seconds, sent):
-        """The call, sent a signal. Returns what it said."""
+        """Runs the call, sends it a signal, and returns its output."""
         process = subprocess.Popen(self.command(program, "a", out), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
                                    text=True)
         time.sleep(seconds)
         process.send_signal(sent)
         said = process.communicate(timeout=240)[1]
-        # Before its libraries are loaded a program can say nothing.
+        # A program cannot print anything before its libraries are loaded.
         self.assertIn(process.returncode, (0, 5, -sent), said)
         if process.returncode == -sent:
             self.assertTrue(sent == signal.SIGKILL or not said, said)
@@ -47,7 +47,7 @@ class SignalsTest(WritersCase):
         return said
 
     def survives(self, program, again):
-        """again(out) -> the command that makes the rest"""
+        """again(out) returns the command that completes the result."""
         expected, seconds = self.expect(program, "a"), self.seconds(program)
         for moment in range(MOMENTS):
             out = self.folder / f"{program}-{moment}"
@@ -117,7 +117,7 @@ class SignalsTest(WritersCase):
         self.assertIn("standard output", result.stderr.splitlines()[-1])
 
     def test_no_threads_at_all(self):
-        """Libraries start threads before main."""
+        """Libraries start threads before main()."""
         nobody = pwd.getpwnam("nobody").pw_uid if os.geteuid() == 0 else None
 
         def limit():

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""lfsubmit --engine slurm on a cluster of four nodes on this machine (private_slurm.py): nodes and
-processes die, and the frames are those of one lfrenderer.
+"""Tests lfsubmit --engine slurm on a cluster of four nodes on this machine (private_slurm.py): nodes and processes die,
+and the frames are those of one lfrenderer.
 
 usage: slurm_test.py LFRENDERER LFPREPROCESSOR LFSUBMIT       (exit code 77: no Slurm is installed)
 """
@@ -44,13 +44,13 @@ class SlurmTest(ClusterTestCase):
         return self.status()["packages"][number]
 
     def begun(self, number):
-        """state of a package that has a checkpoint, and whose renderer is held"""
+        """Returns the state of a package that has a checkpoint, and whose renderer is held."""
         self.wait_for(lambda: self.is_held(number))
         name = f"package-{number:04d}.json"
         return json.loads((self.film / "cluster" / "packages" / name).read_text())
 
-    # The plug of one node is pulled, a renderer and an lfsubmit are killed, a renderer is asked to
-    # end: one call waits for the film, which is that of one lfrenderer.
+    # A node is cut off, a renderer and an lfsubmit are killed, and a renderer is asked to end. One call waits for the
+    # film, whose frames are those of one lfrenderer.
     def test_the_film_survives_a_node_and_processes(self):
         process = self.start(*self.OPTIONS, "--wait", "--video", self.folder / "film.mp4",
                              "--lfrenderer", self.held_renderer(range(4)), *self.ARGUMENTS)
@@ -82,7 +82,7 @@ class SlurmTest(ClusterTestCase):
         self.assertGreater((self.folder / "film.mp4").stat().st_size, 1000)
         self.assertTrue((self.film / "contact_sheet.png").exists())
 
-    # As before a time limit: the batch script hands the signal on, and has its task requeued.
+    # As at a time limit, the batch script passes the signal on and its task is requeued.
     def test_what_is_told_to_end_is_requeued(self):
         process = self.start(*self.OPTIONS, "--wait", "--lfrenderer", self.held_renderer([0]),
                              *self.ARGUMENTS)
@@ -94,7 +94,7 @@ class SlurmTest(ClusterTestCase):
         error = process.communicate(timeout=240)[1]
         self.assertEqual(process.returncode, 0, error)
         self.assertEqual(digests(self.film), self.expected)
-        # Twice if lfrenderer heard of it before its lfsubmit did.
+        # Two restarts if lfrenderer got the signal before its lfsubmit.
         self.assertIn(self.package(0)["restarts"], (1, 2))
         self.assertEqual(self.package(0)["crashes"], 0)
 
@@ -111,7 +111,7 @@ class SlurmTest(ClusterTestCase):
         self.succeeds(cluster_test_case.SUBMIT, "--resume", self.film, "--wait")
         self.assertEqual(digests(self.film), self.expected)
 
-    # Somebody's own scancel is the end, too, and is told apart from a time limit.
+    # A user's scancel ends the job as well, and is distinguished from a time limit.
     def test_what_is_removed_from_the_queue_stays_away(self):
         process = self.start(*self.OPTIONS, "--wait", "--lfrenderer", self.held_renderer([0]),
                              *self.ARGUMENTS)

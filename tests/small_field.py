@@ -1,4 +1,4 @@
-"""A small light field made of files, for tests of whole programs."""
+"""Writes a small light field of files, for tests of whole programs."""
 import json
 import pathlib
 
@@ -27,7 +27,7 @@ keyframes:
 
 
 def wall(index):
-    """A finely textured wall at WALL_DEPTH, as LF camera `index` sees it."""
+    """Returns a finely textured wall at WALL_DEPTH, as LF camera `index` sees it."""
     x0 = (index % SIDE - (SIDE - 1) / 2) * PITCH + 0.0003 * (index % 3)
     y0 = -(index // SIDE - (SIDE - 1) / 2) * PITCH
     x = x0 + (np.arange(WIDTH) + 0.5 - WIDTH / 2) / 70 * WALL_DEPTH
@@ -44,7 +44,7 @@ def write_path(folder: pathlib.Path, frames=3, aperture=0.045, x=0) -> pathlib.P
 
 
 def write_field(folder: pathlib.Path, picture=None, **keys) -> pathlib.Path:
-    """SIDE x SIDE parallel cameras looking along -z of an OpenGL world, PITCH apart.
+    """Writes a light field of SIDE x SIDE parallel cameras, PITCH apart, looking along -z of an OpenGL world.
 
     picture(index) -> uint8 or uint16 array, default noise; keys are added to transforms.json
     """

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Light fields as strangers bring them: what is wrong is told in words that help, or does not matter.
+"""Tests light fields as users bring them: faults are reported with helpful messages, or do not matter.
 
 usage: strangers_test.py LFIMPORT LFEXAMPLE LFRENDERER
 """
@@ -78,7 +78,7 @@ class StrangersTest(ProgramTestCase):
         self.calibration.write_bytes(b"\xef\xbb\xbf" + self.calibration.read_bytes())
         self.assertEqual(self.renders(), expected)
 
-    # Mistakes that are told
+    # Faults that are reported
 
     def test_photographs_alone_are_told_what_they_lack(self):
         self.calibration.unlink()

@@ -1,4 +1,4 @@
-// Renders of synthetic light fields are what the lens itself films of the scene.
+// Tests that renders of synthetic light fields equal the pictures that the lens takes of the scene.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace lf {
 namespace {
 
-// The photographs of a scene, taken when they are asked for.
+// Photographs of a scene, rendered when they are loaded.
 class SceneStore : public LfImageStore {
  public:
   SceneStore(const LightField& field, const Scene& scene) : field_(field), scene_(scene) {}
@@ -40,7 +40,7 @@ struct Film {
   Aperture aperture;
   double focus_distance_w = 1;
   FocusTilt tilt = {};
-  double beside_w = 0;  // of the lens, to the right of the middle LF camera
+  double beside_w = 0;  // position of the lens, to the right of the middle LF camera
 };
 
 RenderCamera CameraOf(const Film& film, const PinholeCamera& middle) {
@@ -52,8 +52,8 @@ RenderCamera CameraOf(const Film& film, const PinholeCamera& middle) {
   return camera;
 }
 
-// Peak signal to noise in dB, in linear light up to 1, without a margin that some LF cameras do
-// not see.
+// Returns the peak signal-to-noise ratio in dB, in linear light up to 1, without a margin that some
+// LF cameras do not see.
 double Likeness(const SensorPlate& plate, double scale, const Image<float>& truth) {
   constexpr int kMargin = 15;
   double squares = 0;
@@ -75,7 +75,8 @@ struct Likenesses {
   double wrong_db = 0;
 };
 
-// How near renders with the cameras of `film` and of `wrong` come to the truth of `film`.
+// Returns how similar renders with the cameras of `film` and of `wrong` are to the ground truth of
+// `film`.
 Likenesses CompareWithTruth(const Film& film, const Film& wrong) {
   const BuiltInScene& built_in = *FindBuiltInScene(film.scene);
   const Scene scene(built_in.describe());

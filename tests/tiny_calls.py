@@ -1,17 +1,17 @@
-"""A tiny light field, a film of two frames, and one call of every program on them."""
+"""A tiny light field, a film of two frames, and one call of every program."""
 import subprocess
 
 SIZE = "48x32"
 
 
 class Call:
-    """One call of a program, which writes into one folder.
+    """One call of a program that writes into one folder.
 
     name      of the program, and of the mode
     command   words; the first is the program
-    again     commands that go on after a failure: each but the last may refuse to
-    before    commands that write other results into the same folder first
-    victim    name of the program that is disturbed, where it is a child of the first
+    again     commands that resume after a failure; all but the last may refuse
+    before    commands that first write other results into the same folder
+    victim    name of the program that is disturbed, if it is a child of the first
     prints    True if the standard output is the result
     """
 
@@ -22,7 +22,7 @@ class Call:
 
 
 class TinyCalls:
-    """Makes the inputs in a folder, once, and gives the calls.
+    """Makes the inputs in a folder once, and returns the calls.
 
     programs  folder of the programs
     base      folder for the inputs
@@ -63,7 +63,7 @@ class TinyCalls:
             subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
 
     def submit(self, *more, packages=None):
-        """Returns a call of lfsubmit, whose packages run one after another."""
+        """Returns a call of lfsubmit that runs its packages one after the other."""
         files = map(str, sorted((packages or self.packages).glob("*.lfp")))
         return [self.programs / "lfsubmit", *files, "-o", str(self.out), "--jobs", "1",
                 "--progress", "none", "-q", *more]
@@ -91,7 +91,7 @@ class TinyCalls:
                 Call("lfmerge", merge, [[*merge, "--resume"], [*merge, "--overwrite"]])]
 
     def submitters(self):
-        """Returns calls of lfsubmit: the program itself, its renderers, and going on."""
+        """Returns calls of lfsubmit: of the program itself, of its renderers, and of resuming."""
         job = self.submit()
         resume = [self.programs / "lfsubmit", "--resume", str(self.out), "--progress", "none"]
         again = [resume, [*job, "--overwrite"]]
@@ -102,7 +102,7 @@ class TinyCalls:
                 Call("lfsubmit --overwrite", again[-1], before=[self.submit(packages=self.other_packages)])]
 
     def overwriters(self):
-        """Returns calls that write over the results of other inputs."""
+        """Returns calls that overwrite results of other inputs."""
         out, other = self.out, self.other_path
         film = self.render("-o", out, "--overwrite")
         store = self.words("lfcompressor", self.field, "-o", out.with_suffix(".lfs"))

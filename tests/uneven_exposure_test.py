@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Photographs that were exposed unevenly, through a lens with dark corners, are matched by lfimport:
-frames are then as if nothing had been uneven.
+"""Tests that lfimport matches photographs that were exposed unevenly through a lens with dark corners: the frames are
+then those of an even capture.
 
 usage: uneven_exposure_test.py LFIMPORT LFRENDERER LFSYNTH LFEXAMPLE LFPREPROCESSOR LFCOMPRESSOR DATA
 """
@@ -17,8 +17,8 @@ import numpy as np
 from program_test_case import ProgramTestCase
 
 IMPORTER = RENDERER = SYNTH = EXAMPLE = PREPROCESSOR = COMPRESSOR = DATA = None
-FALLOFF = (-0.3, 0.05, -0.15)  # 60 % of the light is left in the corners
-DARKER = 0.75  # so that gains of +20 % clip nothing but highlights
+FALLOFF = (-0.3, 0.05, -0.15)  # 60 % of the light remain in the corners
+DARKER = 0.75  # so that gains of +20 % clip only highlights
 
 
 def light_of(stored):
@@ -39,7 +39,7 @@ def falloff(width, height):
 
 
 def write_uneven(field, out):
-    """A copy of the light field whose images are exposed unevenly; returns their exposures, R G B."""
+    """Copies a light field with unevenly exposed images. Returns their exposures, R G B."""
     out.mkdir()
     text = json.loads((field / "transforms.json").read_text())
     exposures = np.random.default_rng(5).uniform(0.8, 1.2, (len(text["frames"]), 3))
@@ -53,7 +53,7 @@ def write_uneven(field, out):
 
 
 def seam_percent(frame, true):
-    """Mean step from pixel to pixel of what a frame has and the true one has not."""
+    """Returns the mean step from pixel to pixel of the ratio of a frame and the true frame."""
     lit = (true > 0.03).all(-1) & (true < 0.95).all(-1)
     ratio = np.log(np.maximum(frame, 1e-4) / np.maximum(true, 1e-4))
     steps = np.abs(np.diff(ratio, axis=1))[lit[:, 1:] & lit[:, :-1]]
@@ -61,7 +61,7 @@ def seam_percent(frame, true):
 
 
 def error_percent(frame, true):
-    """Mean difference, up to one scale of each channel."""
+    """Returns the mean difference, up to one scale per channel."""
     lit = (true > 0.03).all(-1) & (true < 0.95).all(-1)
     ratio = np.log(np.maximum(frame, 1e-4) / np.maximum(true, 1e-4))[lit]
     return 100 * np.abs(ratio - np.median(ratio, 0)).mean()
@@ -81,7 +81,7 @@ class UnevenExposureTest(ProgramTestCase):
         return field
 
     def matched(self, field):
-        """Returns the folder that lfimport wrote, its report and the exposures that were to be found."""
+        """Returns the folder that lfimport wrote, its report, and the true exposures."""
         uneven = self.folder / "uneven"
         exposures = write_uneven(field, uneven)
         report = json.loads(self.succeeds(IMPORTER, uneven, "-o", self.folder / "matched", "--json",
@@ -89,7 +89,7 @@ class UnevenExposureTest(ProgramTestCase):
         return self.folder / "matched", report, exposures
 
     def gain_percent(self, matched, exposures):
-        """The largest error of a gain, up to one scale of each channel."""
+        """Returns the largest error of a gain, up to one scale per channel."""
         frames = json.loads((matched / "transforms.json").read_text())["frames"]
         left = np.array([np.ones(3) * frame["lf_gain"] for frame in frames]) * exposures
         left /= np.exp(np.log(left).mean(0))
@@ -104,7 +104,7 @@ class UnevenExposureTest(ProgramTestCase):
         self.assertEqual(exposure["matched"], len(exposures))
         self.assertAlmostEqual(exposure["falloff"]["corner_min"], 0.6, delta=corner)
         gains = self.gain_percent(matched, exposures)
-        # Few LF images share a pixel of this frame, so that every border shows.
+        # Few LF images share a pixel of this frame, so that every seam is visible.
         self.succeeds(EXAMPLE, field, "-o", self.folder / "path.yaml", "--move", "static")
         true, before, after = (self.frame(of) for of in (field, self.folder / "uneven", matched))
         seams = [seam_percent(frame, true) for frame in (before, after)]
@@ -141,8 +141,8 @@ class UnevenExposureTest(ProgramTestCase):
         (field / "transforms.json").write_text(json.dumps(
             {"fl_x": 200, "w": 240, "h": 160, "frames": frames}))
         matched, after, exposures = self.expect_even(field, 0.7, 0.9, 0.03)
-        # Much of the rest is the shop's own: matching changes its even photographs, too. Relative to
-        # what is found there, gains and frames are right to 0.5 %.
+        # Most of the remaining error belongs to the shop itself: matching changes even its evenly exposed photographs.
+        # Relative to them, gains and frames are correct to 0.5 %.
         even = self.folder / "even shop matched"
         self.succeeds(IMPORTER, field, "-o", even, "--match-exposure", "--vignetting")
         frames = json.loads((even / "transforms.json").read_text())["frames"]

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""What goes wrong around packed stores, told before it costs work: names that are taken, captures that
-changed, signals, copies in part, calibrations that were edited.
+"""Tests accidents around packed stores, which must be reported before they cost work: occupied names, captures that
+changed, signals, partial copies, edited calibrations.
 
 usage: unlucky_stores_test.py LFCOMPRESSOR LFRENDERER LFPREPROCESSOR
 """
@@ -33,7 +33,7 @@ class UnluckyStoresTest(StoreTest):
         self.field = write_field(self.folder / "field", smooth)
 
     def interrupt(self, *arguments, how=signal.SIGINT):
-        """until it has written something; answers the exit status and what it said"""
+        """Interrupts a call as soon as it has written something. Returns its exit status and its output."""
         process = subprocess.Popen([self.compressor, *map(str, arguments), "--threads", "1"],
                                    stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         while not (self.folder / "a.lfs.unfinished").exists() and process.poll() is None:
@@ -43,7 +43,7 @@ class UnluckyStoresTest(StoreTest):
         _, errors = process.communicate(timeout=240)
         return process.returncode, errors
 
-    # Names that are taken
+    # Occupied names
 
     def test_nothing_but_a_store_is_replaced(self):
         self.store.write_text("precious")

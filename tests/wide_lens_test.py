@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A lens that is wider than the capture: what lies beyond is empty, and told.
+"""Tests a lens that is wider than the capture: the part beyond the capture is empty and reported.
 
 usage: wide_lens_test.py LFRENDERER LFPREPROCESSOR
 """
@@ -17,13 +17,13 @@ from drawn_cards import PITCH, SIDE, lens_picture, psnr_db, write_field, write_p
 from program_test_case import ProgramTestCase
 
 RENDERER = PREPROCESSOR = None
-# Half the width of the capture, and half a camera distance around it.
+# Half the width of the capture, plus half a camera distance.
 COVERED = SIDE / 2 * PITCH
 LEAST_PSNR_DB = 40
 
 
 def lamp(x, y, depth):
-    """A small light far behind the focus, before nothing."""
+    """Returns a small light far behind the focus, without a background."""
     del depth
     return np.ones(x.shape + (3,)), (np.hypot(x, y) < 0.02).astype(float)
 
@@ -34,7 +34,7 @@ def png16(file, light, opacity):
 
 
 def covered_lens(diameter):
-    """Points of the part of a lens that the capture covers; its centre is beside the capture's."""
+    """Returns points of the part of a lens that the capture covers; its centre is beside that of the capture."""
     grid = np.linspace(-COVERED, COVERED, 29)
     grid = (grid[1:] + grid[:-1]) / 2
     return [(x - 0.001, y - 0.002) for x in grid for y in grid

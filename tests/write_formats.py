@@ -1,8 +1,7 @@
-"""Writes a light field of transforms.json in the other formats that people have: independently of
-the library, from their documentation, with numpy.
+"""Writes the light field of a transforms.json in other formats: with numpy from their documentation, independently of
+the library.
 
-Every writer takes the calibration (a parsed transforms.json whose images are in `source`) and a
-folder to fill.
+Every writer gets the calibration (a parsed transforms.json whose images are in `source`) and a folder to fill.
 """
 import json
 import pathlib
@@ -15,7 +14,7 @@ COLMAP_MODELS = {"PINHOLE": 1, "OPENCV": 4, "OPENCV_FISHEYE": 5, "FULL_OPENCV": 
 
 
 def poses(field):
-    """[(file name, rotation, translation)] of cam_from_world, x right, y down, z forward"""
+    """Returns [(file name, rotation, translation)] of cam_from_world, x right, y down, z forward."""
     result = []
     for frame in field["frames"]:
         pose = np.array(frame["transform_matrix"])
@@ -25,8 +24,8 @@ def poses(field):
 
 
 def quaternion(rotation):
-    """(w, x, y, z)"""
-    # Of the four expressions the one with the largest divisor.
+    """Returns (w, x, y, z)."""
+    # Chooses, of four expressions, the one with the largest divisor.
     r = rotation
     candidates = [np.array([1 + r[0, 0] + r[1, 1] + r[2, 2], r[2, 1] - r[1, 2], r[0, 2] - r[2, 0],
                             r[1, 0] - r[0, 1]]),
@@ -49,7 +48,7 @@ def copy_images(field, source, folder, rename=None):
 
 
 def colmap_camera(field):
-    """(model name, parameters) in COLMAP's order"""
+    """Returns (model name, parameters) in COLMAP's order."""
     model = field["camera_model"]
     keys = {"PINHOLE": [], "OPENCV": ["k1", "k2", "p1", "p2"],
             "FULL_OPENCV": ["k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"],
@@ -96,7 +95,7 @@ def colmap_binary(field, source, folder):
 
 
 def nerfstudio(field, source, folder):
-    """transforms.json without keys of ours, the intrinsics in each frame, as of several cameras"""
+    """Writes a transforms.json without lf_ keys, with intrinsics in each frame, as for several cameras."""
     copy_images(field, source, folder / "images")
     intrinsics = {k: v for k, v in field.items() if not k.startswith("lf_") and k != "frames"}
     model = intrinsics.pop("camera_model")
@@ -108,7 +107,7 @@ def nerfstudio(field, source, folder):
 
 
 def blender(field, source, folder):
-    """NeRF's synthetic scenes: a field of view, no size, names without extension"""
+    """The form of NeRF's synthetic scenes: a field of view, no size, names without extension."""
     copy_images(field, source, folder / "train")
     frames = [{"file_path": "./train/" + pathlib.Path(f["file_path"]).stem, "rotation": 0.01,
                "transform_matrix": f["transform_matrix"]} for f in field["frames"]]
@@ -154,7 +153,7 @@ def aos(field, source, folder):
 
 
 def grid(field):
-    """(row, column, x, y) of each camera of a grid of parallel cameras, R = I"""
+    """Returns (row, column, x, y) of each camera of a grid of parallel cameras, R = I."""
     cameras = poses(field)
     xs = sorted({round(-t[0], 9) for _, _, t in cameras})
     ys = sorted({round(-t[1], 9) for _, _, t in cameras})
@@ -163,7 +162,7 @@ def grid(field):
 
 
 def stanford(field, source, folder):
-    """Positions in millimetres and the lens in the names"""
+    """The names contain positions in millimetres and the lens."""
     places = grid(field)
 
     def name(index, _):
@@ -183,7 +182,8 @@ def stanford_without_positions(field, source, folder):
 
 
 def hci(field, source, folder):
-    """The 4D Light Field Benchmark: a grid row by row from the upper left; its plane at infinity."""
+    """The 4D Light Field Benchmark: a grid row by row from the upper left, with the plane without disparity at
+    infinity."""
     places = grid(field)
     rows, columns = (max(place[axis] for place in places) + 1 for axis in (0, 1))
     copy_images(field, source, folder, lambda index, _:

@@ -1,4 +1,4 @@
-"""Calls of all programs on a tiny light field, in two ways each, and what they write."""
+"""Calls of all programs on a tiny light field, in two ways each, and digests of what they write."""
 import contextlib
 import hashlib
 import json
@@ -42,7 +42,7 @@ class WritersCase(ProgramTestCase):
                        stderr=subprocess.DEVNULL)
 
     def words(self, program, way, out):
-        """A call that writes to `out`; the ways "a" and "b" write different files of the same names."""
+        """Returns a call that writes to `out`. The ways "a" and "b" write different files of the same names."""
         estimator = self.ways[way]
         return [str(word) for word in {
             "lfrenderer": [self.field, self.path, "-o", out, "--estimator", estimator, "--no-contact-sheet"],
@@ -64,8 +64,8 @@ class WritersCase(ProgramTestCase):
 
     @staticmethod
     def digest(path):
-        """sha256 of what is in a file, wherever it lies and in whatever order it was written; a store has a number of
-        its own"""
+        """Returns the sha256 of a file's content, which does not depend on its place or the order of writing. The
+        number that each store has is left out."""
         content = path.read_bytes()
         if path.suffix in (".lfp", ".lfs"):
             with contextlib.closing(sqlite3.connect(f"file:{path}?immutable=1", uri=True)) as database:
@@ -82,14 +82,14 @@ class WritersCase(ProgramTestCase):
 
     @classmethod
     def files(cls, program, out):
-        """digests of what a program makes, without reports, which have times"""
+        """Returns digests of a program's results, without reports, which contain times."""
         kinds = {"lfrenderer": "frame_*", "lfmerge": "frame_*", "lfsubmit": "frame_*", "lfpreprocessor": "*.lfp",
                  "lfcompressor": "*.lfs", "lfimport": "*.json", "lfexample": "*.yaml", "lfsynth": "**/[!.]*"}
         return {str(path.relative_to(out)): cls.digest(path)
                 for path in sorted(out.glob(kinds[program])) if path.is_file()}
 
     def expect(self, program, way):
-        """what the call makes alone, made once"""
+        """Returns what the call makes when it runs alone; made once."""
         if (program, way) not in self.expected:
             out = self.world / f"{program}_{way}"
             out.mkdir()

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Two programs that write into one folder at the same time: one wins, or both work one after the other, and their
+"""Tests two programs that write into one folder at the same time: one wins, or they work one after the other, and their
 files are never mixed.
 
 usage: writers_test.py FOLDER_OF_PROGRAMS
@@ -18,7 +18,7 @@ ATTEMPTS = 2
 
 class WritersTest(WritersCase):
     def race(self, program, *more, may_refuse=()):
-        """may_refuse: words of exit code 2, of the one that comes when the other has ended"""
+        """may_refuse: words of exit code 2 for the program that begins after the other has ended"""
         expected = {way: self.expect(program, way) for way in "ab"}
         self.assertNotEqual(expected["a"], expected["b"])
         for attempt in range(ATTEMPTS):

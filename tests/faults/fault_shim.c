@@ -1,14 +1,15 @@
-// A preload library in which one call fails: the k-th of a kind, on files whose path holds a word.
-// What programs do then is what tests/faults_test.py judges. Linux and glibc; one fault per process.
+// A preload library that makes one call fail: the k-th of a kind, on files whose path contains a
+// word. tests/faults_test.py judges what programs then do. For Linux and glibc; one fault per
+// process.
 //
 //   FAULT_PROGRAM  only in the program of this name
-//   FAULT_PATH     only on paths that hold this word
+//   FAULT_PATH     only on paths that contain this word
 //   FAULT_KIND     open read write fsync rename unlink mkdir stat mmap thread malloc
-//   FAULT_K        which call of the kind, from 1; with FAULT_ALWAYS=1 all from there on
-//   FAULT_ONCE     1: in no process once FAULT_LOG is there; programs start others
-//   FAULT_ERRNO    a number; or "kill": the process is killed; "short": half is read or written
-//   FAULT_LOG      the fault that happened is written there
-//   FAULT_TRACE    every call is written there: KIND K FUNCTION PATH
+//   FAULT_K        which call of the kind, from 1; with FAULT_ALWAYS=1, also every later one
+//   FAULT_ONCE     1: in no process if FAULT_LOG exists, because programs start other programs
+//   FAULT_ERRNO    a number; "kill": kills the process; "short": half is read or written
+//   FAULT_LOG      file for the fault that happened
+//   FAULT_TRACE    file for every call: KIND K FUNCTION PATH
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -29,7 +30,7 @@
 enum Kind { OPEN, READ, WRITE, FSYNC, RENAME, UNLINK, MKDIR, STAT, MMAP, THREAD, MALLOC, KINDS };
 static const char* const kNames[KINDS] = {"open",  "read", "write", "fsync",  "rename", "unlink",
                                           "mkdir", "stat", "mmap",  "thread", "malloc"};
-// Smaller allocations are left alone: nobody can go on without them.
+// Smaller allocations never fail: no program can continue without them.
 static const size_t kLargeBytes = 65536;
 
 static atomic_long counts[KINDS];
@@ -83,7 +84,7 @@ static int is_watched(enum Kind kind) {
   return is_ready && ((int)kind == fault_kind || trace_path[0]);
 }
 
-// Counts a call; 1: it is the one that fails.
+// Counts a call. Returns 1 if it is the one that fails.
 static int hit(enum Kind kind, const char* function, const char* path) {
   const long k = ++counts[kind];
   if (trace_path[0]) append(trace_path, kNames[kind], k, function, path);

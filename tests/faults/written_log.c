@@ -1,13 +1,13 @@
 // A preload library that logs what a disk is told: names that are made, renamed and removed, and
-// the content of files when they are flushed. tests/power_failure_test.py replays it. Linux and
-// glibc.
+// the content of files when they are flushed. tests/power_failure_test.py replays the log. For
+// Linux and glibc.
 //
-//   WRITTEN_PATH  only paths that hold this word
-//   WRITTEN_LOG   the log: a line for each event, which is written after the system has done it
+//   WRITTEN_PATH  only paths that contain this word
+//   WRITTEN_LOG   the log: one line per event, written after the system call has succeeded
 //
-// Lines, whose fields are separated by tabs:
-//   make PATH               a file that was not there is open now
-//   cut PATH                a file that was there has been emptied
+// Fields of the lines are separated by tabs:
+//   make PATH               a new file was opened
+//   cut PATH                an existing file was emptied
 //   flush PATH N            the file is on the disk, with the content that WRITTEN_LOG.N has
 //   flush_folder PATH       the names of a folder are on the disk
 //   rename FROM TO, remove PATH, folder PATH
@@ -50,7 +50,7 @@ static void log_event(const char* event, const char* first, const char* second) 
   errno = saved;
 }
 
-// The absolute name of a path. 1: it is to be logged.
+// Computes the absolute name of a path. Returns 1 if it is to be logged.
 static int is_ours(int folder, const char* path, char* whole) {
   if (!path_word) return 0;
   if (path[0] == '/') {
@@ -125,7 +125,7 @@ OPENAT_CALL(openat64)
 FOPEN_CALL(fopen)
 FOPEN_CALL(fopen64)
 
-// Copies what a descriptor has into a file beside the log. Returns the number of the copy.
+// Copies the content of a descriptor into a file beside the log. Returns the number of the copy.
 static long copy_content(const char* link) {
   const long number = ++flushes;
   char name[600], buffer[1 << 14];

@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
   options.output_folder = argv[3];
   options.format = lf::FrameFormat::kPng8;
   lf::ThreadPool pool(2);
-  constexpr uint64_t kSeed = 0;  // of the order of the LF images
+  constexpr uint64_t kSeed = 0;  // seed of the order of the LF images
   const lf::Package film = lf::PackageOfAll(*std::move(light_field), *std::move(path), kSeed);
   const auto report = lf::Render(film, options, pool, nullptr);
   if (!report) {
