@@ -23,7 +23,7 @@ PROFILES = ("thesis, 1 level, threshold 8", "default", "lossless")
 
 
 def mosaic_of(files):
-    """2048 x 2048 of as many pictures as that takes."""
+    """Returns a mosaic of 2048 x 2048 pixels, made from as many pictures as needed."""
     pictures = [cv2.imread(str(file)) for file in files]
     height, width = pictures[0].shape[:2]
     across, down = -(-2048 // width), -(-2048 // height)

@@ -48,7 +48,7 @@ def run(*words, **more):
 
 
 def mosaic_of(picture):
-    """RGGB from BGR"""
+    """Returns RGGB made from BGR."""
     mosaic = np.empty(picture.shape[:2], picture.dtype)
     mosaic[0::2, 0::2] = picture[0::2, 0::2, 2]
     mosaic[0::2, 1::2] = picture[0::2, 1::2, 1]
@@ -71,7 +71,7 @@ class Content:
                 if abs(row - 13) <= reach and abs(column - 13) <= reach:
                     cv2.imwrite(str(folder / "mosaics" / (file.stem + ".png")), mosaic_of(cv2.imread(str(file))))
             run(build / "bin/lfimport", folder / "mosaics", "-o", self.field, "--bayer", "RGGB", "-q")
-            calibration = self.field / "transforms.json"  # mosaics are linear unless they say otherwise
+            calibration = self.field / "transforms.json"  # mosaics are linear unless their calibration says otherwise
             calibration.write_text(json.dumps(json.loads(calibration.read_text()) | {"lf_transfer": "sRGB"}))
         else:
             run(build / "bin/lfsynth", "still-life", "-o", self.field, "--count", arguments.views ** 2, "--size",
@@ -97,7 +97,7 @@ class Content:
         return 10 * math.log10(65535 ** 2 / error) if error > 0 else math.inf
 
     def code(self, *options, and_by_defaults=False):
-        """One row: the report of lfcompressor, and what becomes of frames."""
+        """Returns one row: the report of lfcompressor, and the quality of frames."""
         store = self.folder / "field.lfs"
         report = json.loads(run(self.build / "bin/lfcompressor", self.field, "-o", store, "--overwrite", "--json",
                                 "--progress", "none", *options))
@@ -108,7 +108,7 @@ class Content:
                 "bytes": report["code_bytes"], "total_s": report["total_s"]}, frames
 
     def peer(self, coder):
-        """The same of an encoder: coder(picture) -> bytes, decoded picture."""
+        """Returns a row as code() does, for coder(picture) -> bytes, decoded picture."""
         folder = self.folder / "peer"
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir()
@@ -131,14 +131,14 @@ class Content:
             cv2.imwrite(str(folder / f"{i}.png"), back, [cv2.IMWRITE_PNG_COMPRESSION, 1])
         (folder / "transforms.json").write_text(json.dumps(calibration))
         error /= len(self.images)
-        # Of 16 bits images are compared along the curve of a display, by lfcompressor alone.
+        # Only lfcompressor compares 16-bit images, along the curve of a display.
         psnr = math.inf if error == 0 else 10 * math.log10(255 ** 2 / error) if self.bits == 8 else None
         return {"ratio": self.pixel_bytes / size, "cpu_s": seconds, "bytes": size, "psnr": psnr,
                 "frame_psnr": self.frame_psnr(self.render(folder))}
 
 
 def haar(plane):
-    """one level of averages and differences: low, across, down, both (thesis 2.5.1)"""
+    """Returns one level of averages and differences: low, across, down, both (thesis 2.5.1)."""
     def split(a):
         even, odd = a[0::2], a[1::2]
         low = even.copy()
@@ -151,7 +151,7 @@ def haar(plane):
 
 
 def best_lossless(content, levels, threshold, quantizer):
-    """how much shorter the best of four lossless coders is than zstd -1, on the thesis's bytes"""
+    """Returns by how much the best of four lossless coders beats zstd -1 on the thesis's bytes."""
     step = 1 if content.bits == 8 else 257
     sizes = np.zeros(4)
     for file in content.images[:: len(content.images) // 2 - 1][:3]:
@@ -182,7 +182,7 @@ def best_lossless(content, levels, threshold, quantizer):
 
 
 def at(rows, key, target):
-    """the ratio at which the PSNR `key` is reached, between rows; None beyond them"""
+    """Returns the ratio at which the PSNR `key` is reached, interpolated between rows; None outside them."""
     points = sorted((row[key], math.log(row["best"])) for row in rows if row[key] is not None and math.isfinite(row[key]))
     values = [value for value, _ in points]
     if not points or not values[0] <= target <= values[-1]:
@@ -191,7 +191,7 @@ def at(rows, key, target):
 
 
 def best_at(rows, key, target):
-    """of the levels, the best"""
+    """Returns the best ratio of all levels."""
     kinds = {(r["levels"], r.get("quantizer")) for r in rows}
     ratios = [at([r for r in rows if (r["levels"], r.get("quantizer")) == kind], key, target) for kind in kinds]
     return max((ratio for ratio in ratios if ratio), default=None)
@@ -245,7 +245,7 @@ def number(value, digits=1):
 
 def measure(content, with_peers, pictures):
     rows, drawn = [], [content.frames["none"][1]]
-    # Of 16 bits the highlights alone take most of 256 values.
+    # With 16 bits, highlights alone take most of 256 values.
     quantizers = ("8bit",) if content.bits == 8 else ("8bit", 4096)
     for quantizer, (levels, threshold) in itertools.product(quantizers, THESIS):
         row, frames = content.code("--profile", "thesis", "--levels", levels, "--threshold", threshold,
@@ -282,7 +282,7 @@ def measure(content, with_peers, pictures):
 
 
 def draw(frames, path):
-    """a part of frames, twice as large, above what differs from the first, 16 times as strong"""
+    """Draws a part of the frames at double size, above the difference from the first, amplified 16 times."""
     height, width = frames[0].shape[:2]
     parts = [f[height // 2 - 60:height // 2 + 100, width // 2 - 80:width // 2 + 80].astype(float) / 257 for f in frames]
     rows = [np.hstack(parts), np.hstack([128 + 16 * (part - parts[0]) for part in parts])]

@@ -1,9 +1,10 @@
-// Our kernels and their peers on the same data in the same run, in turn: round 0 of every
-// contender, then round 1, so that whatever else the machine does disturbs all alike and ratios
-// within a round mean something. bench/kernel_table.py makes the table of it.
+// Measures our kernels and their peers on the same data in the same run, in turn: round 0 of every
+// contender, then round 1 and so on. Other load on the machine then disturbs all of them, and
+// ratios within a round are meaningful. bench/kernel_table.py makes the table.
 //
-// One thread, CPU time. A ray, in rays/s, is one that our kernel accepts: an LF pixel with nearest,
-// an element and LF image with bilinear; the same number for every contender.
+// Measures the CPU time of one thread. The unit of rays/s is a ray that our kernel accepts: an LF
+// pixel with nearest, an element and LF image with bilinear. The number is the same for every
+// contender.
 //
 // Before anything is timed, the contenders' pictures are compared.
 #include <benchmark/benchmark.h>
@@ -25,18 +26,18 @@
 namespace lf::bench {
 namespace {
 
-// LF images that the reference, some 50 times slower, is given.
+// Number of LF images for the reference, which is some 50 times slower.
 constexpr int kReferenceImages = 1;
 
 struct Entrant {
   std::unique_ptr<Contender> contender;
   int image_count = 0;
-  double ray_count = 0;  // of these images
+  double ray_count = 0;  // number of rays of these images
 };
 
 struct Difference {
-  double count_share = 0;  // of rays, in other elements
-  // Of the means of elements that both have, 65535 = white.
+  double count_share = 0;  // share of rays in other elements
+  // The mean difference of elements that both pictures have; 65535 is white.
   double mean_absolute = 0;
   double psnr_db = 0;
 };
@@ -55,13 +56,14 @@ Difference Compare(const Picture& a, const Picture& b) {
   }
   difference.count_share /= std::max(1.0, rays);
   difference.mean_absolute /= std::max(1.0, compared);
-  const double least_square = 1e-12;  // a finite figure for the same picture
+  const double least_square = 1e-12;  // limits the figure for identical pictures
   difference.psnr_db = 10 * std::log10(65535.0 * 65535.0 /
                                        std::max(least_square, squares / std::max(1.0, compared)));
   return difference;
 }
 
-// The case being measured, with everybody's plates; one at a time, for they are large.
+// The case that is measured, with the plates of all contenders. Only one exists at a time, because
+// they are large.
 class Arena {
  public:
   explicit Arena(const CaseSpec& spec) : case_(MakeCase(spec)) {
@@ -106,12 +108,12 @@ class Arena {
     const int count = case_.spec.peer_image_count;
     // Float positions put a few rays into the next element; the law's iteration, arcs and 32-bit
     // ideal positions differ by 10^-4 px.
-    // What was interpolated counts less, but the picture is smooth, so that means agree.
+    // Interpolated elements have other counts, but the picture is smooth, so that the means agree.
     const bool is_mosaic = case_.spec.filter == PixelFilter::kMosaic;
     const double count_limit = is_mosaic ? 1e9 : 0.002, mean_limit = is_mosaic ? 300 : 60;
     CheckSame("thesis", MakeThesisLoop(case_), count, ours, count_limit, mean_limit);
     CheckSame("thesis_native", MakeThesisLoopNative(case_), count, ours, count_limit, mean_limit);
-    // OpenCV interpolates, and demosaics, where nearest does not: other counts.
+    // OpenCV interpolates and demosaics although nearest does not, so its counts differ.
     const bool same_rays = case_.spec.estimator == Estimator::kBilinear && !is_mosaic;
     CheckSame("opencv", MakeOpenCv(case_), count, ours, same_rays ? 0.002 : 1e9, 300);
   }
@@ -175,7 +177,7 @@ void Register(int rounds) {
 }  // namespace
 }  // namespace lf::bench
 
-// --rounds=N before Google Benchmark's own options; 5 by default.
+// The option --rounds=N precedes Google Benchmark's own options; the default is 5.
 int main(int argc, char** argv) {
   int rounds = 5;
   if (argc > 1 && std::strncmp(argv[1], "--rounds=", 9) == 0) {

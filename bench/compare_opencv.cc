@@ -1,11 +1,11 @@
-// What lfrenderer does, written with OpenCV, for light fields whose cameras lie in the lens plane:
-// imread, sRGB to linear float by table, warpPerspective (bilinear, the border's weights warped
-// with it as a fourth channel), accumulate, divide. Threads share the LF images among them; each
-// adds to frames of its own. bench/compare_opencv.py runs it.
+// The work of lfrenderer written with OpenCV, for light fields whose cameras lie in the lens plane:
+// imread, sRGB to linear float by table, warpPerspective (bilinear, with the border's weights as a
+// fourth channel), accumulate, divide. Threads share the LF images; each adds to its own frames.
+// bench/compare_opencv.py runs it.
 //
 // usage: lf_compare_opencv LIGHTFIELD PATH.yaml FRAMES THREADS OUT.f32
-//   FRAMES   the first so many of the path
-//   OUT.f32  of the first frame: R, G, B, linear light  [height][width][3]
+//   FRAMES   number of frames, from the first of the path
+//   OUT.f32  the first frame: R, G, B, linear light  [height][width][3]
 #include <atomic>
 #include <cmath>
 #include <cstdio>
@@ -37,7 +37,8 @@ T OrFail(lf::Result<T> result) {
   return *std::move(result);
 }
 
-// Element of the frame -> pixel of the LF image, both with integer coordinates at pixel centres.
+// Maps an element of the frame to a pixel of the LF image, both with integer coordinates at pixel
+// centres.
 cv::Matx33d PixelFromElement(const lf::PinholeCamera& camera, const lf::RenderCamera& frame) {
   const Vec3 c = camera.CentreWorld(), eye = frame.pinhole.CentreWorld();
   const Vec3 n = frame.focus_plane.normal;
@@ -51,7 +52,7 @@ cv::Matx33d PixelFromElement(const lf::PinholeCamera& camera, const lf::RenderCa
   return {h(0, 0), h(0, 1), h(0, 2), h(1, 0), h(1, 1), h(1, 2), h(2, 0), h(2, 1), h(2, 2)};
 }
 
-// Whether the lens lets the LF image through: all of it or nothing.
+// Returns true if the lens lets the LF image through, which happens completely or not at all.
 bool PassesLens(const lf::PinholeCamera& camera, const lf::RenderCamera& frame) {
   const Vec3 across =
       frame.pinhole.cam_from_world.rotation * (camera.CentreWorld() - frame.pinhole.CentreWorld());
@@ -71,7 +72,7 @@ Sums MakeSums(const std::vector<lf::RenderCamera>& frames) {
   return sums;
 }
 
-// Kept from image to image: allocating them anew would cost the system's time.
+// Memory that is reused from image to image, because new allocations would cost system time.
 struct Scratch {
   cv::Mat linear, weighted, warped;
 };

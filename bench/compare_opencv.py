@@ -49,7 +49,7 @@ lens:
 keyframes:
   focus_distance: [{{time: 0, value: 6.3}}, {{time: {end}, value: 13}}]
 """
-LEAST_PSNR_DB = 45  # between the first frames of two programs that interpolate alike
+LEAST_PSNR_DB = 45  # between the first frames of two programs with the same interpolation
 
 
 def psnr_db(a, b):
@@ -72,7 +72,7 @@ class Comparison:
                 "--progress", "none", "--no-contact-sheet", *WAYS[program]]
 
     def rows(self, frames, rounds):
-        """One for each program."""
+        """Returns one row per program."""
         path = self.folder / f"path{frames}.yaml"
         path.write_text(PATH.format(frames=frames, diameter=self.arguments.diameter, end=(frames - 1) / 25 or 1))
         runs = {program: [] for program in ("OpenCV", *WAYS)}

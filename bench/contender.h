@@ -1,4 +1,5 @@
-// Who is measured: our kernels, and their peers. A contender adds LF images to a plate of its own.
+// The measured contenders: our kernels and their peers. A contender adds LF images to its own
+// plate.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +10,7 @@
 
 namespace lf::bench {
 
-// Means and counts of a plate, to compare contenders by.
+// The means and counts of a plate, for comparing contenders.
 struct Picture {
   int width = 0;
   int height = 0;
@@ -21,16 +22,16 @@ class Contender {
  public:
   virtual ~Contender() = default;
 
-  // Adds the first `image_count` LF images of the case. What is timed.
+  // Adds the first `image_count` LF images of the case. This is timed.
   virtual void Collect(int image_count) = 0;
 
   virtual Picture Develop() const = 0;
 };
 
-// Our fast kernels, on a plate cut as the renderer cuts it. Also counts the rays.
+// Our fast kernels, on a plate that is divided as in the renderer. It also counts the rays.
 class OurKernel : public Contender {
  public:
-  // Accepted by the last Collect(): pixels with nearest, elements with bilinear.
+  // Number accepted by the last Collect(): pixels with nearest, elements with bilinear.
   virtual uint64_t accepted_count() const = 0;
 };
 
@@ -38,15 +39,15 @@ class OurKernel : public Contender {
 //   is_weighed  every 8 x 8 elements weigh the rays of each LF image differently
 std::unique_ptr<OurKernel> MakeOurKernel(const KernelCase& kernel_case, bool is_weighed = false);
 
-// The law asked of every pixel (or element), in double precision.
+// Evaluates the law for every pixel (or element), in double precision.
 std::unique_ptr<Contender> MakeReference(const KernelCase& kernel_case);
 
-// The loop that the thesis describes (4.3.1) with Eigen; compiled as the project is, and for the
-// machine it is built on.
+// The loop that the thesis describes (4.3.1), with Eigen. The second one is compiled for the
+// machine that it is built on.
 std::unique_ptr<Contender> MakeThesisLoop(const KernelCase& kernel_case);
 std::unique_ptr<Contender> MakeThesisLoopNative(const KernelCase& kernel_case);
 
-// Demosaic, warpPerspective, accumulate.
+// Demosaics, and calls warpPerspective and accumulate.
 std::unique_ptr<Contender> MakeOpenCv(const KernelCase& kernel_case);
 
 }  // namespace lf::bench

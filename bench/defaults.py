@@ -28,7 +28,7 @@ LISTING = pathlib.Path(__file__).resolve().parent / "defaults.txt"
 PROGRAMS = ("lfsynth", "lfimport", "lfexample", "lfpreprocessor", "lfcompressor", "lfrenderer", "lfmerge",
             "lfsubmit")
 NOT_LISTED = {"--progress"}
-# "  --format TEXT:{exr,png}=exr" and, after two spaces or on the next line, what it is.
+# Matches "  --format TEXT:{exr,png}=exr", which two spaces or a line break separate from its explanation.
 OPTION = re.compile(r"^  (?:-\w,)?(--[\w-]+) [^=]*=(\S+)")
 RESOLVED = ("law", "estimator", "filter", "lens_weights", "back_end", "order")
 HEAD = """\
@@ -42,7 +42,7 @@ def hash_of(lines):
 
 
 def options_of(program):
-    """["--memory 8G", ...] as --help shows them."""
+    """Returns ["--memory 8G", ...] as --help shows them."""
     text = subprocess.run([program, "--help"], check=True, capture_output=True, text=True).stdout
     found = []
     for line in text.splitlines():
@@ -71,7 +71,7 @@ def resolved(folder):
 
 @functools.lru_cache(maxsize=None)
 def of_program(program):
-    """Lines of one program, each with its name before it."""
+    """Returns the lines of one program, each after the program's name."""
     lines = options_of(program)
     if program.name == "lfrenderer":
         lines += resolved(program.parent)
@@ -79,18 +79,18 @@ def of_program(program):
 
 
 def of_programs(programs):
-    """Lines of the programs (paths), in the order of PROGRAMS; others have none."""
+    """Returns the lines of the programs (paths), in the order of PROGRAMS; other programs have none."""
     by_name = {program.name: program for program in programs}
     return [line for name in PROGRAMS if name in by_name for line in of_program(by_name[name])]
 
 
 def listed(listing=LISTING):
-    """The lines of bench/defaults.txt."""
+    """Returns the lines of bench/defaults.txt."""
     return [line for line in listing.read_text().splitlines() if line and not line.startswith("#")]
 
 
 def difference(old, new):
-    """Lines of `old` that `new` lacks, and the other way round, for messages."""
+    """Returns the lines that are in only one of `old` and `new`, for messages."""
     return [f"- {line}" for line in old if line not in new] + [f"+ {line}" for line in new if line not in old]
 
 

@@ -24,7 +24,7 @@ GB = 1e9
 
 
 def photograph(programs, folder, count):
-    """The calibration of all LF cameras, each with the same image."""
+    """Writes a calibration of all LF cameras that gives each of them the same image."""
     field, one = folder / "field", folder / "one"
     for out, options in ((field, ("--count", count, "--calibration-only")), (one, ("--count", 1, "--noise", "0.01"))):
         results.call([programs / "lfsynth", "chart", "-o", out, "--size", f"{WIDTH}x{HEIGHT}", "--spacing", SPACING_M,
@@ -42,7 +42,7 @@ def measure(arguments, folder):
     rows = []
     counts = list(map(int, arguments.packages.split(",")))
     for way, options in WAYS.items():
-        # Finding the lens weights of 900 frames takes minutes: the default has the last row alone.
+        # Computing the lens weights of 900 frames takes minutes, so the default has only the last row.
         for count in counts if way != "default" else counts[-1:]:
             used = results.timed([programs / "lfpreprocessor", field, path, "--plan", "--packages", count, "--memory",
                                   "8G", "--json", "-q", *options])
@@ -58,7 +58,7 @@ def measure(arguments, folder):
 
 
 def duration(seconds):
-    """1 h 47 min, 16 min, 2 min 47 s, 45 s"""
+    """Returns 1 h 47 min, 16 min, 2 min 47 s, 45 s."""
     minutes = seconds / 60
     if minutes >= 60:
         return f"{int(minutes // 60)} h {round(minutes % 60)} min"

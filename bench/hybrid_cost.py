@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What rebinned rays cost: workloads of bench/workloads.py collected alone, and as hybrids.
+"""Measures what rebinned rays cost: workloads of bench/workloads.py collected alone, and as hybrids.
 
 usage: bench/hybrid_cost.py BUILD_DIR [--density 0.05] [--size 480x320] [--runs 5]
                             [--only stack,short,sharp,long,bokeh] [--frames-share 1] [--field DIR]
@@ -28,7 +28,7 @@ import workloads
 DEFAULT = ("--estimator", "bilinear", "--filter", "mosaic", "--lens-weights", "auto")
 THESIS = ("--estimator", "nearest", "--lens-weights", "none")
 UNWEIGHTED = ("--estimator", "bilinear", "--filter", "mosaic", "--lens-weights", "none")
-# mode: what it is compared with, and the options of lfrenderer
+# mode: the mode that it is compared with, and the options of lfrenderer
 MODES = {
     "collect, thesis's estimator": (None, ("--mode", "collect", *THESIS)),
     "hybrid, thesis's estimator": ("collect, thesis's estimator", ("--mode", "hybrid", *THESIS)),

@@ -21,9 +21,9 @@ from workloads import WORKLOADS, path_yaml, photograph
 
 
 def filled_after_a_tenth(packages):
-    """Rays of each frame that has any.
+    """Returns the number of rays of each frame that has any.
 
-    packages  of one frame each: what they need of LF images is what that frame needs
+    packages  of one frame each, so that the needs of a package are those of its frame
     """
     frames = []
     for package in packages:

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kFocalLength_px = 2000;  // of LF images of 2048 x 2048
 constexpr double kFocusDistance_w = 1;
-// LF cameras stand this far before or behind the lens, so that the rim cuts every image.
+// LF cameras are this far in front of or behind the lens, so that its rim cuts every image.
 constexpr double kDepthOffset_w = 0.03;
 constexpr double kLateralOffset_w = 0.004;
 constexpr double kWideLens_w = 10;
@@ -46,7 +46,7 @@ std::vector<PinholeCamera> MakeCameras(const CaseSpec& spec, double focal_length
   return cameras;
 }
 
-// A picture without end, over the plate: coordinates in elements of a 1920-wide plate.
+// Returns an unbounded picture, in coordinates of elements of a 1920-wide plate.
 double Pattern(double x, double y, int channel) {
   const auto wave = [](double t) {
     t -= std::floor(t);
@@ -55,7 +55,7 @@ double Pattern(double x, double y, int channel) {
   return 0.1 + 0.4 * wave(x / 91 + 0.3 * channel) + 0.4 * wave((y + 0.3 * x) / 67 - 0.2 * channel);
 }
 
-// Of pixel centres, [height][width][2].
+// Returns the ideal positions of pixel centres, [height][width][2].
 Image<float> IdealPositions(const IdealPixels& ideal_pixels, int size) {
   Image<float> positions(size, size, 2, -1e6f);
   for (const IdealPatch& patch : ideal_pixels.patches())
@@ -99,7 +99,7 @@ LfPixels Photograph(const KernelCase& kernel_case, const PinholeCamera& camera,
   return pixels;
 }
 
-// Of some pixels of some images.
+// Returns the number of accepted rays among some pixels of some images.
 uint64_t AcceptedCount(const KernelCase& kernel_case, const RenderCamera& frame) {
   constexpr size_t kImages = 4;
   constexpr int kStep = 16;
@@ -113,7 +113,7 @@ uint64_t AcceptedCount(const KernelCase& kernel_case, const RenderCamera& frame)
   return accepted;
 }
 
-// The radius that lets the share of rays pass.
+// Returns the radius with which the desired share of rays passes.
 double LensRadius(const KernelCase& kernel_case) {
   if (kernel_case.spec.accepted_share >= 1) return kWideLens_w;
   RenderCamera frame = kernel_case.frame;
@@ -186,7 +186,7 @@ std::vector<CaseSpec> AllCases() {
   add("distortion_fisheye").distortion = {kFisheye, {-0.02, 0.004, -0.002, 3e-4}};
   CaseSpec& separable = add("separable");
   separable.parallel = true;
-  separable.accepted_share = 1;  // in the lens plane an LF image passes as a whole
+  separable.accepted_share = 1;  // in the lens plane, each LF image passes completely
   add("turned_3_deg").turn_deg = 3;
   add("rolled_90_deg").roll_deg = 90;
   add("accepted_10").accepted_share = 0.1;

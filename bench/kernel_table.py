@@ -25,8 +25,8 @@ ALL = ".*"
 
 
 def run(build, rounds, cases):
-    """{case: {contender: [ns per ray of round 0, 1, ...]}}, {case: how our frame differs from the
-    reference's}, and what was compiled with"""
+    """Returns {case: {contender: [ns per ray of round 0, 1, ...]}}, {case: difference of our frame from the
+    reference's}, and the options of the compiler."""
     with tempfile.NamedTemporaryFile(suffix=".json") as out:
         subprocess.run([build / "bench/lf_collection_peers_bench", f"--rounds={rounds}",
                         f"--benchmark_filter=^({cases})/", f"--benchmark_out={out.name}",
@@ -50,7 +50,7 @@ def ratios(contenders, peer, ours="ours"):
 
 
 def weighed(contenders):
-    """what other lens weights for every few elements cost"""
+    """Returns the cost of weights that change every few elements."""
     if "ours_weighed" not in contenders:
         return ""
     return f"{statistics.median(ratios(contenders, 'ours_weighed')) - 1:+.0%}"
@@ -68,7 +68,7 @@ def table(cases):
 
 
 def target_table(cases):
-    """ns/ray, and how often faster than the thesis's loop, by instruction set."""
+    """Returns ns/ray and the speed relative to the thesis's loop, by instruction set."""
     targets = []
     for contenders in cases.values():
         targets += [name for name in contenders if name.startswith("ours@") and name not in targets]
@@ -82,7 +82,7 @@ def target_table(cases):
 
 
 def goals(record):
-    """What the project wants to reach, with what it reaches: lines of pass or fail."""
+    """Returns the project's goals with the measured values, as lines of pass or fail."""
     cases, lines = record["ns_per_ray"], []
 
     def goal(text, value, holds):

@@ -19,7 +19,7 @@ import time
 
 
 def space_of(folder):
-    """Bytes on the disk of the files in the folder, and in its folders."""
+    """Returns the bytes on the disk of the files in the folder and its subfolders."""
     total = 0
     try:
         for entry in os.scandir(folder):
@@ -28,7 +28,7 @@ def space_of(folder):
                     total += space_of(entry.path)
                 else:
                     total += 512 * entry.stat(follow_symlinks=False).st_blocks
-            except FileNotFoundError:  # a temporary file that was renamed meanwhile
+            except FileNotFoundError:  # a temporary file that was renamed in the meantime
                 continue
     except FileNotFoundError:
         return 0
@@ -36,7 +36,7 @@ def space_of(folder):
 
 
 def watch(pid, period_s, folder):
-    """Samples the process until it ends: (status, usage, most open files, most bytes in the folder)."""
+    """Samples the process until it ends. Returns (status, usage, most open files, most bytes in the folder)."""
     files = space = 0
     while True:
         ended, status, usage = os.wait4(pid, os.WNOHANG)
@@ -44,7 +44,7 @@ def watch(pid, period_s, folder):
             return status, usage, files, space
         try:
             files = max(files, len(os.listdir(f"/proc/{pid}/fd")))
-        except OSError:  # it is ending
+        except OSError:  # the process is ending
             pass
         if folder != "-":
             space = max(space, space_of(folder))

@@ -28,7 +28,7 @@ WEIGHTS = {"none": ("--estimator", "bilinear", "--lens-weights", "none"), "defau
 
 
 def band(count, path):
-    """transforms.json: camera-to-world, OpenGL axes"""
+    """Writes a transforms.json: camera-to-world, OpenGL axes."""
     random = np.random.default_rng(1)
     angle = math.pi * random.random(count)
     lift = HEIGHT_M * (random.random(count) - 0.5)

@@ -37,8 +37,8 @@ from rebinning_quality import ground_truth_cases
 FULL = "--mode rebin --estimator bilinear --filter bicubic --lens-weights auto"
 EDGES = FULL + " --kept edges"
 WIDE = EDGES + " --r-st {pitch} --r-uv {pixel}"
-# name: options of lfrenderer. Widths of cells are filled in: {pitch} from LF camera to LF camera, {pixel} what an LF
-# pixel is wide in the focus plane.
+# name: options of lfrenderer. Placeholders of cell widths: {pitch} is the distance between neighbouring LF cameras,
+# {pixel} the width of an LF pixel in the focus plane.
 REMEDIES = {
     "rebinned, no remedy": EDGES + " --colour-sigma 0 --average-others off",
     "colours smoothed by 1 pixel": EDGES + " --colour-sigma 1 --average-others off",
@@ -65,7 +65,7 @@ def stored_of(linear):
 
 
 def noisy(stored, electrons, read_noise, dice):
-    """8-bit values as a sensor with noise would have stored them"""
+    """Returns 8-bit values as a sensor with noise would have stored them."""
     light = electrons * linear_of(stored / 255)
     light = dice.poisson(light) + dice.normal(0, read_noise, light.shape)
     return np.rint(255 * stored_of(light / electrons)).astype(np.uint8)
@@ -79,7 +79,7 @@ class Captures:
         self.seen = {}
 
     def images(self, calibration, is_noisy):
-        """the folder of the LF images, and the calibration as it is there"""
+        """Returns the folder of the LF images, and the calibration in that folder."""
         key = calibration.parent.name + ("-noisy" if is_noisy else "-clean")
         if key not in self.seen:
             field = json.loads(calibration.read_text())
@@ -110,14 +110,15 @@ def frame_of(renderer, calibration, path, options):
         call = subprocess.run([renderer, calibration, path, "-o", out, "--format", "exr-float", "-q",
                                "--no-contact-sheet", *options.split()], stderr=subprocess.PIPE, text=True)
         if "no LF image contributes" in call.stderr or "has no area" in call.stderr:
-            return None  # no recorded ray passes a pinhole
+            return None  # no recorded ray passes through a pinhole
         if call.returncode != 0:
             raise SystemExit(call.stderr)
         return lens_weights.linear_exr(pathlib.Path(out) / "frame_0001.exr")
 
 
 def widths(calibration, case_path):
-    """of an LF pixel in the focus plane, and from an LF camera to the nearest other one, world units"""
+    """Returns the width of an LF pixel in the focus plane, and the distance between neighbouring LF cameras, in world
+    units."""
     field = json.loads(calibration.read_text())
     places = np.array([f["transform_matrix"] for f in field["frames"]])[:, :3, 3]
     nearest = [np.sort(np.linalg.norm(places - p, axis=1))[1] for p in places]

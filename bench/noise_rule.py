@@ -62,7 +62,7 @@ def render(build, field, path, out, *options):
 
 
 def read_plate(path):
-    """entries, words [height][width][3] (doc/formats/plate.md)"""
+    """Returns entries and words [height][width][3] (doc/formats/plate.md)."""
     data = path.read_bytes()
     text_bytes, width, height = struct.unpack_from("<3I", data, 12)
     entries = dict(line.split(": ", 1)
@@ -102,7 +102,7 @@ class Measured:
 
 
 def percentile_of_normals(deviations, share):
-    """the x that so many of normal numbers with these standard deviations stay below in amount"""
+    """Returns the x that is exceeded in amount by 1 - `share` of normal numbers with these standard deviations."""
     low, high = 0.0, 10 * deviations.max()
     erf = np.vectorize(math.erf)
     for _ in range(40):
@@ -113,7 +113,7 @@ def percentile_of_normals(deviations, share):
 
 
 def compare(stopped, whole):
-    """root mean square and 90th percentile of the difference: as it is, as expected"""
+    """Returns root mean square and 90th percentile of the difference: measured and expected."""
     known = (stopped.images >= 2) & (whole.images >= 2)
     n, most = stopped.images[known], whole.images[known]
     expected = stopped.error[known] * np.sqrt(np.maximum(0, 1 - n / most))

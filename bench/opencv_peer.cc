@@ -1,9 +1,9 @@
-// What one would write with OpenCV: demosaic (Bayer), warp the LF image onto the focus plane as the
-// frame sees it (bilinear), accumulate where its rays pass the lens. Linear light throughout.
+// The usual implementation with OpenCV: demosaic (Bayer), warp the LF image onto the focus plane as
+// the frame sees it (bilinear), accumulate where its rays pass the lens. Linear light throughout.
 //
-// In its favour: everything is cut to the pixels and elements that can contribute, the mask of
+// In OpenCV's favour, everything is cut to the pixels and elements that can contribute, the mask of
 // image border and lens is filled as a polygon instead of being warped, and with lens distortion
-// the maps of cv::remap are made once for all images, in its fixed-point form.
+// the maps of cv::remap are made once for all images, in fixed-point form.
 #include <algorithm>
 #include <cmath>
 #include <opencv2/core.hpp>
@@ -18,13 +18,13 @@
 namespace lf::bench {
 namespace {
 
-// A disk's mask is a polygon of so many edges.
+// Number of edges of the polygon that masks a disk.
 constexpr int kDiskEdges = 128;
 
 using Polygon = std::vector<Vec2>;  // of ideal positions or of elements
 
-// What of the polygon has form (x, y, 1) <= 0. Right for a concave polygon too, as far as filling
-// it is concerned.
+// Returns the part of the polygon with form (x, y, 1) <= 0. For a concave polygon the result may
+// contain edges that coincide, but fills correctly.
 Polygon Clip(const Polygon& polygon, const PixelForm& form) {
   Polygon kept;
   for (size_t i = 0; i < polygon.size(); ++i) {
@@ -95,7 +95,7 @@ class OpenCv final : public Contender {
   }
 
  private:
-  // Once for each LF image, at load as it were: mosaics as they are, RGB as float.
+  // Converts an LF image once, as if on loading: mosaics stay as they are, RGB becomes float.
   static cv::Mat Prepare(const LfPixels& pixels) {
     const Image<uint16_t>& image = pixels.radiance;
     const cv::Mat stored(image.height(), image.width(), CV_16UC(image.channels()),
@@ -108,7 +108,7 @@ class OpenCv final : public Contender {
     return prepared;
   }
 
-  // From the ideal image, as large as needed to hold all rays, to the recorded one.
+  // Maps the ideal image, large enough for all rays, to the recorded one.
   void MakeMaps() {
     const Intrinsics& k = case_.cameras[0].intrinsics;
     const DistortionMap distortion(k.distortion);
@@ -126,7 +126,7 @@ class OpenCv final : public Contender {
     cv::convertMaps(map_x, map_y, map_1_, map_2_, CV_16SC2);
   }
 
-  // Of the image: the outermost pixel centres, as ideal positions.
+  // Returns the border of the image, through the outermost pixel centres, as ideal positions.
   static Polygon Border(const DistortionMap& distortion, const Intrinsics& k) {
     constexpr int kSteps = 64;
     Polygon border;
@@ -142,7 +142,7 @@ class OpenCv final : public Contender {
     return border;
   }
 
-  // The region of accepted rays, in ideal positions.
+  // Returns the region of accepted rays, in ideal positions.
   Polygon AcceptedRegion(const RayForms& forms, const PixelRect& rect) const {
     Polygon region = border_;
     if (region.empty())
@@ -159,7 +159,7 @@ class OpenCv final : public Contender {
     return region;
   }
 
-  // Elements whose centre is in the polygon; `origin` is the first of `mask`.
+  // Fills the elements whose centre is in the polygon; `origin` is the first element of `mask`.
   void FillMask(const Polygon& region, const cv::Point& origin, cv::Mat* mask) const {
     constexpr int kFractionBits = 8;
     std::vector<cv::Point> points;
@@ -174,7 +174,7 @@ class OpenCv final : public Contender {
                    kFractionBits);
   }
 
-  // The part of the image that ideal pixels `part` need, demosaicked and undistorted.
+  // Returns the part of the image that ideal pixels `part` need, demosaicked and undistorted.
   cv::Mat RgbOf(size_t index, const cv::Rect& part, const PixelRect& rect) {
     const LfPixels& pixels = case_.images[index];
     if (map_1_.empty() && pixels.bayer == BayerPattern::kNone) return images_[index](part);
@@ -183,7 +183,8 @@ class OpenCv final : public Contender {
       return rgb_;
     }
     LF_CHECK(pixels.bayer != BayerPattern::kNone);
-    // Only the recorded rectangle is demosaicked, in place, so that the maps hold.
+    // Only the recorded rectangle is demosaicked, at its place in the whole image, so that the maps
+    // stay valid.
     rgb_.create(images_[index].size(), CV_16UC3);
     const cv::Rect recorded = Even({rect.x_begin, rect.y_begin, rect.width(), rect.height()});
     cv::Mat to = rgb_(recorded);
@@ -194,7 +195,8 @@ class OpenCv final : public Contender {
     return undistorted_;
   }
 
-  // Grown by the two pixels that demosaicking and interpolation reach, in step with the mosaic.
+  // Grows the rectangle by the two pixels that demosaicking and interpolation reach, aligned with
+  // the mosaic.
   cv::Rect Even(const cv::Rect& rect) const {
     const int size = case_.spec.image_size_px;
     const int x = std::max(0, rect.x - 2) & ~1, y = std::max(0, rect.y - 2) & ~1;
@@ -218,7 +220,7 @@ class OpenCv final : public Contender {
                                        : Even(BoundsOf(region, cv::Rect(0, 0, size, size)));
     const cv::Mat rgb = RgbOf(index, part, case_.rects[index]);
 
-    // Indices of pixels and elements, as OpenCV counts: centres at whole numbers.
+    // OpenCV's indices of pixels and elements have their centres at whole numbers.
     Mat3 element_from_pixel;
     element_from_pixel << forms.sensor_x, forms.sensor_y, forms.front;
     Mat3 to_centre = Mat3::Identity(), from_centre = Mat3::Identity();
@@ -242,7 +244,8 @@ class OpenCv final : public Contender {
   cv::Rect plate_;
   cv::Mat sums_, counts_, mask_;
   std::vector<cv::Mat> images_;
-  // With lens distortion: the ideal image, what of it the recorded one fills, the way between.
+  // For lens distortion: the border, the part of the ideal image that the recorded one fills, and
+  // the maps from one to the other.
   Polygon border_;
   cv::Rect ideal_;
   cv::Mat map_1_, map_2_;

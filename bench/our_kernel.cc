@@ -31,7 +31,7 @@ Picture PictureOf(const SensorPlate& plate) {
   return picture;
 }
 
-// Other weights in each block of each LF image, as many large as small ones.
+// Returns different weights for each block of each LF image, large and small ones equally often.
 RayWeights SomeWeights(uint64_t image) {
   const WeightBlocks blocks{static_cast<int>(image % kWeightBlock), 0};
   return RayWeights(blocks, [image](int end_x, int end_y, int count, uint8_t* weights) {
@@ -94,7 +94,7 @@ class FastKernel final : public OurKernel {
   }
 
   const KernelCase& case_;
-  std::vector<RayWeights> weights_;  // of the LF images
+  std::vector<RayWeights> weights_;  // one per LF image
   SensorPlate plate_;
   TileGrid grid_;
   std::vector<PlateTile> tiles_;

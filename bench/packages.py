@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What packages and rectangles are worth, on movements of Table 5.1 (workloads.py).
+"""Measures what packages and rectangles are worth, on movements of Table 5.1 (workloads.py).
 
 usage: bench/packages.py BUILD_DIR [--density 0.03] [--size 480x320] [--runs 3] [--field DIR]
                          [--packages 4] [--name NAME] [--write PAGE]
@@ -23,9 +23,9 @@ import tempfile
 import record as results
 from workloads import WAYS, WORKLOADS, path_yaml, photograph
 
-# Options of lfpreprocessor, so that its forecast is of the render to come.
+# Options of lfpreprocessor that make its forecast one of the render.
 PREPROCESSING = {"nearest": ("--estimator", "nearest", "--lens-weights", "none"), "default": ()}
-# Way and focal length of the renders of `short`.
+# Ways and focal lengths of the renders of `short`.
 RECTANGLES = (("nearest", 36), ("nearest", 72), ("bilinear", 72), ("default", 72))
 
 
@@ -38,15 +38,15 @@ def digest(folder):
 
 
 def render(build, inputs, out, *options):
-    """Returns the seconds of one run."""
-    for report in out.glob("report*.json"):  # of another run, which --resume alone would take up
+    """Returns the seconds of one render."""
+    for report in out.glob("report*.json"):  # of an earlier render, which only --resume would use
         report.unlink()
     used = results.timed([build / "bin/lfrenderer", *inputs, "-o", out, "-q", "--no-contact-sheet", *options])
     return used["seconds"]
 
 
 def measure_packages(build, field, folder, size, count, balance, way, runs):
-    """Estimated rays, frames and the median seconds of each package."""
+    """Returns the estimated rays, the frames and the median seconds of each package."""
     path = folder / "long.yaml"
     path.write_text(path_yaml(WORKLOADS["long"], size))
     packages, parts, whole = (folder / f"{what}-{balance}-{way}" for what in ("packages", "parts", "whole"))
@@ -57,7 +57,7 @@ def measure_packages(build, field, folder, size, count, balance, way, runs):
     for _ in range(runs):
         for times, file in zip(seconds, files):
             times.append(render(build, [file], parts, *WAYS[way]))
-    if balance == "rays":  # the other is compared with the same whole
+    if balance == "rays":  # the other balance is compared with the same whole film
         render(build, [field, path], whole, *WAYS[way])
     if digest(folder / f"whole-rays-{way}") != digest(parts):
         raise SystemExit(f"packages give other frames than the whole film ({balance}, {way})")

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What rendering from a packed store costs beside rendering from pixels in memory.
+"""Measures what rendering from a packed store costs beside rendering from pixels in memory.
 
 usage: bench/packed_stores.py BUILD_DIR [--count 64] [--size 1024x1024] [--runs 3] [--name NAME] [--write PAGE]
        bench/packed_stores.py --again JSON [--write PAGE]
@@ -25,7 +25,7 @@ RENDERED = ("nearest", "default")
 
 
 def rewritten(field, folder, shift, extension, options):
-    """The light field with other image files."""
+    """Returns the light field with other image files."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     calibration = json.loads((field / "transforms.json").read_text())
@@ -41,7 +41,7 @@ def rewritten(field, folder, shift, extension, options):
 
 
 def stores_of(programs, folder, memory, field, bits):
-    """{kind: light field} of one number of bits"""
+    """Returns {kind: light field} for one number of bits."""
     png = rewritten(field, folder / "png", bits == 8, "png", [cv2.IMWRITE_PNG_COMPRESSION, 6])
     kinds = {"in memory": rewritten(field, memory / "tiff", bits == 8, "tiff", [cv2.IMWRITE_TIFF_COMPRESSION, 1])}
     for profile in ("lossless", "default"):
@@ -54,7 +54,7 @@ def stores_of(programs, folder, memory, field, bits):
 
 
 def measure(programs, folder, kinds, path, way, runs):
-    """{kind: what each run took}"""
+    """Returns {kind: measurements of each run}."""
     taken = {kind: [] for kind in kinds}
     for _ in range(runs):
         for kind, light_field in kinds.items():
@@ -69,7 +69,7 @@ def measure(programs, folder, kinds, path, way, runs):
 def rows_of(arguments, folder, memory):
     programs = arguments.build.resolve() / "bin"
     field, path = folder / "field", folder / "stack.yaml"
-    # The lens of 4 mm sees nearly all of them.
+    # The lens of 4 mm sees nearly all LF cameras.
     results.call([programs / "lfsynth", "chart", "-o", field, "--count", arguments.count, "--size", arguments.size,
                   "--spacing", f"{0.0035 / arguments.count ** 0.5:.6f}", "--distance", 1, "--bayer", "--noise", "0.01",
                   "--samples", 1, "-q"])

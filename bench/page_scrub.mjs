@@ -1,5 +1,5 @@
-// How the page bears many LF cameras: time to the first picture, bytes sent, and JavaScript time per
-// frame of a scrub, in headless Chromium with software rendering.
+// Measures the page with many LF cameras: time to the first picture, bytes sent, and JavaScript
+// time per frame of a scrub, in headless Chromium with software rendering.
 //
 // usage: LF_BIN=build/release/bin node bench/page_scrub.mjs [LF CAMERAS ...]
 import { writeFile } from "node:fs/promises";
@@ -67,7 +67,7 @@ for (const count of counts.length > 0 ? counts : [1_000, 100_000, 1_000_000]) {
     script.push(1000 * ((await scriptSeconds()) - before));
   }
   const sent = await page.evaluate(() => window.lfvisualizer.receivedBytes());
-  // Drawing alone: what the processor does in place of a graphics card.
+  // The time of drawing alone, which the processor does instead of a graphics card.
   const drawn = await page.evaluate(() => {
     const { view } = window.lfvisualizer;
     const start = performance.now();

@@ -1,7 +1,7 @@
-// lf_ray_usage LIGHTFIELD PATH.yaml: of every LF image that the widened frustum holds, how many
-// pixels all frames together would try, as whole images and by their rectangles, and how many of
-// them are rays that reach a plate (thesis, Figure 5.5). By the law's spans: no image is read. CSV
-// to stdout.
+// lf_ray_usage LIGHTFIELD PATH.yaml: counts, for every LF image inside the widened frustum, the
+// pixels that all frames together would try, as whole images and within their rectangles, and the
+// rays among them that reach a plate (thesis, Figure 5.5). Uses the law's spans and reads no image.
+// Writes CSV to stdout.
 #include <cstdio>
 #include <optional>
 #include <vector>

@@ -22,7 +22,7 @@ WIDTH, HEIGHT, MARGIN = 420, 260, 48
 
 
 def usage(build, density, size):
-    """[(whole, rectangles, accepted)] of every LF image that the widened frustum holds"""
+    """Returns [(whole, rectangles, accepted)] of every LF image inside the widened frustum."""
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
         photograph(build, folder / "field", density, size, "--calibration-only")

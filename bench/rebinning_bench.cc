@@ -1,5 +1,6 @@
-// Rebinning against its peers, the same work in the same run: cells into a hash map (sparsehash,
-// which the thesis used), and a frame of 1920 x 1080 with 16 lens points (a k-d tree, nanoflann).
+// Compares rebinning with its peers on the same work in the same run: cells in a hash map
+// (sparsehash, which the thesis used), and a frame of 1920 x 1080 with 16 lens points (a k-d tree,
+// nanoflann).
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -15,7 +16,8 @@
 namespace lf {
 namespace {
 
-// Rays as LF images give them: of one after the other, its pixels row by row, one in six kept.
+// Rays in the order of LF images: one image after the other, its pixels row by row, of which one in
+// six is kept.
 std::vector<BinnedRay> RaysOfImages(size_t count) {
   constexpr int kWidth = 1024, kHeight = 768;
   Slab slab;
@@ -45,7 +47,7 @@ void InsertOurs(benchmark::State& state) {
   const std::vector<BinnedRay> rays = RaysOfImages(static_cast<size_t>(state.range(0)));
   for (auto _ : state) {
     RayMap map(rays.size());
-    // As LF images give them: some thousands at a time, sorted by shards.
+    // In batches as LF images give them: some thousands at a time, sorted by shards.
     constexpr size_t kBatch = 1 << 17;
     std::array<std::vector<BinnedRay>, RayMap::kShards> shards;
     for (size_t begin = 0; begin < rays.size(); begin += kBatch) {
@@ -92,7 +94,7 @@ void InsertDenseHash(benchmark::State& state) {
 }
 
 constexpr int kWidth = 1920, kHeight = 1080;
-constexpr int kStrip = 36;  // rows that are asked of the k-d tree: all of them take a minute
+constexpr int kStrip = 36;  // rows that the k-d tree computes; all rows would take a minute
 
 // Rays spread over lens and plate, and a kernel that finds about 16 of them.
 struct FrameCase {
@@ -118,7 +120,7 @@ FrameCase CaseOf(size_t count) {
     const double grey = 30000 + 20000 * std::sin(ray.x_px / 3) * std::cos(ray.y_px / 4);
     for (int c = 0; c < 3; ++c) ray.rgb[c] = static_cast<float>(grey + random.Uniform(-5000, 5000));
   }
-  // Row by row, as cells are (RayMap::Cells()).
+  // Row by row, like the cells of RayMap::Cells().
   std::sort(a.rays.begin(), a.rays.end(), [](const FrameRay& one, const FrameRay& other) {
     return std::pair(std::floor(one.y_px), one.x_px) <
            std::pair(std::floor(other.y_px), other.x_px);
@@ -132,7 +134,7 @@ void FrameBySplats(benchmark::State& state) {
   ThreadPool pool(1);
   SplatFrame frame;
   for (auto _ : state) frame = Splat(a.rays, kWidth, kHeight, a.points, a.kernel, pool);
-  // How far it is from the queries, in 1 / 255 of white.
+  // Largest and root mean square difference from the queries, in 1 / 255 of white.
   const SplatFrame judge = SplatReference(a.rays, kWidth, kStrip, a.points, a.kernel, pool);
   double worst = 0, sum2 = 0;
   for (int y = 0; y < kStrip - 4; ++y)

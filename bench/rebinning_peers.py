@@ -18,13 +18,13 @@ HEIGHT = 1080
 
 
 def constant(name):
-    """A number that the benchmark's source has as a constant."""
+    """Returns a number that is a constant in the benchmark's source."""
     source = (results.HERE / "rebinning_bench.cc").read_text()
     return int(re.search(rf"\b{name} = (\d+)", source)[1])
 
 
 def measure(build, runs):
-    """{benchmark: {cells: CPU seconds}}"""
+    """Returns {benchmark: {cells: CPU seconds}}."""
     report = json.loads(results.call([build / "bench/lf_rebinning_peers_bench", "--benchmark_format=json",
                                       f"--benchmark_repetitions={runs}", "--benchmark_report_aggregates_only=true"]))
     found = {}
@@ -32,7 +32,7 @@ def measure(build, runs):
         if run["aggregate_name"] == "median":
             name, cells = run["run_name"].split("/")[:2]
             found.setdefault(name, {})[cells] = run["cpu_time"] * {"ms": 1e-3, "us": 1e-6, "ns": 1e-9}[run["time_unit"]]
-    # Scales the strip of rows to the whole frame.
+    # Extrapolates from the strip of rows to the whole frame.
     found["FrameByQueries"] = {cells: s * HEIGHT / constant("kStrip") for cells, s in found["FrameByQueries"].items()}
     return found
 

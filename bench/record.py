@@ -1,22 +1,22 @@
-"""The record of a table: its figures, and all that is needed to judge them and to make them again.
+"""The record of a table: its figures, and all that is needed to judge and to reproduce them.
 
 A script that makes a table does four things:
 
     results.add_options(parser)                        # --name, --write, --again
     record = results.context()                         # before anything is measured
-    results.call([build / "bin/lfsynth", "chart", ...])           # runs a program; fails with what it said
-    used = results.timed([build / "bin/lfrenderer", field, ...])  # the same, measured
+    results.call([build / "bin/lfsynth", "chart", ...])           # runs a program; fails with its message
+    used = results.timed([build / "bin/lfrenderer", field, ...])  # also measures it
     results.publish(arguments, "script.py", record, text)         # prints, writes bench/results/ and the page
 
 Every call of our programs and benchmarks is noted, however a script makes it. The record,
 bench/results/NAME.json, has
 
     table     the words of the marker in the page: <!-- table: bench/script.py -->
-    commit    of what was compiled and of the scripts; "with changes" if they were changed since
+    commit    of the compiled sources and the scripts; "with changes" if they were changed since
     date, machine, load when started
     made_by   the command line of the script
-    commands  each different command, with its options; of paths the last part alone
-    defaults  the lines of bench/defaults.txt of the programs among the commands, as these programs say them
+    commands  each different command with its options; only the last part of paths
+    defaults  the lines of bench/defaults.txt for the programs among the commands, as these programs print them
     defaults_hash   of these lines
     and what the script adds: its rows
 
@@ -36,7 +36,7 @@ import defaults
 
 HERE = pathlib.Path(__file__).resolve().parent
 END = "<!-- end of table -->"
-# Figures depend on these: sources that are compiled, and the scripts that measure.
+# Figures depend on these: compiled sources, and the scripts that measure.
 SOURCES = ("../lf", "../tools", "../cmake", "../CMakeLists.txt", "*.cc", "*.h", "*.py", "../scripts/*.py")
 
 _commands = []  # of this run, each once
@@ -49,7 +49,7 @@ def git(*words):
 
 
 def commit():
-    """HEAD; says so if sources were changed since."""
+    """Returns HEAD, with a remark if sources were changed since."""
     changed = git("status", "--porcelain", "--", *SOURCES)
     return git("rev-parse", "--short", "HEAD") + (" with changes" if changed else "")
 
@@ -73,13 +73,13 @@ def sentence(record):
 
 
 def shown(word):
-    """A word of a command as records show it: the last part of a path, without the machine's folders."""
+    """Returns a word of a command as records show it: only the last part of a path, without the machine's folders."""
     option, equals, value = str(word).rpartition("=")
     return option + equals + (pathlib.Path(value).name if value.startswith(("/", "./", "../")) else value)
 
 
 def note(words):
-    """Notes a command that is about to be run; returns its words as text."""
+    """Notes a command that is about to be run. Returns its words as text."""
     words = [str(word) for word in words]
     text = shlex.join(map(shown, words))
     if text not in _commands:
@@ -104,7 +104,7 @@ sys.addaudithook(_note_call)
 
 
 def call(words, **more):
-    """Runs a command. Ends the script if it fails, with what it said. Returns its standard output."""
+    """Runs a command and returns its standard output. If it fails, ends the script with its output."""
     done = subprocess.run([str(word) for word in words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                           **more)
     if done.returncode != 0:
@@ -113,12 +113,12 @@ def call(words, **more):
 
 
 def timed(words, watch=None, folder=None, codes=(0,)):
-    """Runs a command, notes it, and returns what the system says of it:
+    """Runs a command, notes it, and returns its use of resources:
 
     seconds, cpu_s, peak_bytes     of this process alone (measured.py says why that is not obvious)
     open_files, folder_bytes       the most seen, every `watch` seconds, of its open files and of the bytes
                                    that `folder` takes on the disk; 0 without `watch`
-    stdout                         what it printed
+    stdout                         its standard output
 
     Ends the script if the exit code is not among `codes`.
     """
@@ -147,19 +147,19 @@ def add_options(parser):
 
 
 def marker_of(script):
-    """The words of the marker: scripts of bench/ go without their folder."""
+    """Returns the words of the marker; scripts of bench/ are named without their folder."""
     return script if script.startswith("scripts/") else f"bench/{script}"
 
 
 def name_of(script):
-    """The name of the record of "scripts/lens_weights.py captures": lens_weights-captures."""
+    """Returns the name of a record: lens_weights-captures for "scripts/lens_weights.py captures"."""
     return re.sub(r"[^\w.]+", "-", pathlib.Path(script).name.replace(".py", "")).strip("-")
 
 
 def publish(arguments, script, record, text):
-    """Prints the table, and writes it where the options say.
+    """Prints the table, and writes it to the places that the options state.
 
-    script  "name.py", "name.py WORDS", or "scripts/name.py WORDS": what the page's marker names
+    script  "name.py", "name.py WORDS", or "scripts/name.py WORDS": the words of the page's marker
     """
     global _is_noting
     _is_noting = False  # what is asked for the defaults is no command of the table

@@ -34,8 +34,8 @@ MIB = 1 << 20
 
 
 def film(frames, size):
-    """PATH.yaml of lines from edge to edge of the grid, as far apart as frames are along them; the lens reaches
-    the corners of the squares between."""
+    """Returns a PATH.yaml of lines from edge to edge of the grid. The distance of lines equals that of frames on a
+    line, and the lens reaches the corners of the squares between them."""
     pitch_m = SIDE_M / math.sqrt(frames)
     lines = max(1, math.floor(SIDE_M / pitch_m))
     reach, gap = SIDE_M / 2, SIDE_M / lines
@@ -77,11 +77,11 @@ def digest(folder):
 
 
 class Scale:
-    """One light field, and the rows of what is done with it."""
+    """One light field, and the rows of its measurements."""
 
     def __init__(self, arguments, folder, count):
         self.programs = arguments.build.resolve() / "bin"
-        # A square grid of no fewer.
+        # The smallest square grid with at least `count` cameras.
         self.arguments, self.folder, self.count = arguments, folder, math.ceil(math.sqrt(count)) ** 2
         self.threads = ("--threads", arguments.threads)
         self.field, self.path = folder / "field", folder / "film.yaml"
@@ -89,7 +89,7 @@ class Scale:
         self.rows = []
 
     def run(self, what, program, *words, out=None, is_bounded=True):
-        """One measured program: its row, and its report if there is one."""
+        """Measures one program. Returns its row, with numbers of its report if it has one."""
         folder = None
         if out:
             folder = self.folder / out
@@ -124,7 +124,7 @@ class Scale:
         self.rows[-1] |= {"files": len(files), "files_bytes": sum(512 * file.stat().st_blocks for file in files)}
 
     def render(self):
-        """In one go and by packages: to the same bits."""
+        """Renders in one go and by packages, which must give the same bits."""
         self.run("in one go", "lfrenderer", self.field, self.path, "--no-contact-sheet", *PLAIN, out="whole")
         self.run("packages made", "lfpreprocessor", self.field, self.path, "--packages", self.arguments.packages,
                  "--estimator", "bilinear", "--lens-weights", "none", out="packages")
@@ -158,7 +158,7 @@ def measure(arguments, folder):
 
 
 def per_image_us(rows, row):
-    """CPU microseconds of each LF image more than the fewest; none for the fewest."""
+    """Returns the CPU microseconds per LF image beyond the smallest light field; None for the smallest."""
     same = [other for other in rows if other["what"] == row["what"]]
     least = min(same, key=lambda other: other["count"])
     if least is row:
@@ -181,7 +181,7 @@ def table(record):
 
 
 def goals(record):
-    """Returns the goals that a growing light field must keep to, and whether they were reached."""
+    """Returns the goals for growing light fields, and if they were reached."""
     lines = []
 
     def goal(what, value, is_reached):

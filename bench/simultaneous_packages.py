@@ -38,7 +38,7 @@ WAYS = {
 
 
 def timed(*words):
-    """wall seconds, and CPU seconds of the process and all that it waited for"""
+    """Returns wall seconds, and the CPU seconds of the process and all processes that it waited for."""
     start = time.monotonic()
     process = subprocess.Popen(list(map(str, words)), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
     messages = process.stderr.read().decode()
@@ -56,7 +56,7 @@ def cut(build, field, path, folder, count):
 
 
 def submit(build, packages, folder, options):
-    """renders all packages at once: wall seconds, CPU seconds, what the frames are"""
+    """Renders all packages at once. Returns wall seconds, CPU seconds, and digests of the frames."""
     film = folder / "film"
     shutil.rmtree(film, ignore_errors=True)
     wall, cpu = timed(build / "bin/lfsubmit", *packages, "-o", film, "--jobs", len(packages), "--threads", 1,

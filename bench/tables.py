@@ -81,7 +81,7 @@ def command_of(name, arguments):
 
 
 def is_fresh(name, build):
-    """Returns whether the record was made by these sources and these defaults of the programs."""
+    """Returns True if the record was made with these sources and these defaults of the programs."""
     path = results.HERE / "results" / f"{name}.json"
     try:
         record = json.loads(path.read_text())
@@ -95,7 +95,7 @@ def is_fresh(name, build):
 
 
 def make(names, arguments):
-    """Runs the scripts; returns the names of those that failed."""
+    """Runs the scripts. Returns the names of those that failed."""
     failed = []
     for number, name in enumerate(names, 1):
         if arguments.tiny and TABLES[name][2] is None:

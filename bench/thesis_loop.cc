@@ -1,11 +1,13 @@
-// The loop of thesis 4.3.1, as one would write it with Eigen: for every pixel the ray by K^-1 and
-// the inverse of [R|t] (Eq. 4.1, 4.2), its intersections with lens plane and focus plane, the
-// projection by K'[R'|t'], one addition to a plate of float sums and counts, [height][width][6].
-// All matrices are made once for each LF image, and a ray that misses the lens goes no further.
+// The loop of thesis 4.3.1 in a straightforward form with Eigen: for every pixel, the ray by K^-1
+// and the inverse of [R|t] (Eq. 4.1, 4.2), its intersections with lens plane and focus plane, the
+// projection by K'[R'|t'], and one addition to a plate of float sums and counts,
+// [height][width][6]. All matrices are computed once for each LF image, and a ray that misses the
+// lens is abandoned at once.
 //
-// Scalars are float, which is faster than double by a tenth and lands in other elements for a few
-// rays in 10^4. Compiled twice: as all of the project, and for the very machine it is built on
-// (-march=native, multiply-adds fused), where floor is one instruction and no call.
+// Scalars are float, which is a tenth faster than double and puts a few rays in 10^4 into other
+// elements. The file is compiled twice: like the rest of the project, and for the machine that it
+// is built on (-march=native, with fused multiply-adds), where floor is one instruction instead of
+// a call.
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <cmath>
@@ -142,7 +144,7 @@ class ThesisLoop final : public Contender {
     }
   }
 
-  // The same per-ray style, every element asking the LF image.
+  // The loop in the other direction: every element looks up its ray in the LF image.
   void Gather(size_t index) {
     const PinholeCamera& camera = case_.cameras[index];
     const LfPixels& pixels = case_.images[index];
@@ -166,7 +168,7 @@ class ThesisLoop final : public Contender {
         const Vector3 focus_point = lens_centre_ + distance * to_element;
         if (!(distance > 0) || !PassesLens(centre, focus_point - centre)) continue;
         const Vector3 q = projection * focus_point.homogeneous();
-        // Of the four pixels around, counted from their centres.
+        // Position among the four surrounding pixels, relative to their centres.
         const Scalar column = q.x() / q.z() - Scalar(0.5), row = q.y() / q.z() - Scalar(0.5);
         if (!(column >= 0 && column < x_end && row >= 0 && row < y_end)) continue;
         const int left = static_cast<int>(column), top = static_cast<int>(row);

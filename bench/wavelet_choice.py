@@ -23,11 +23,11 @@ import record as results
 
 
 def shifted(a, k, count):
-    """a[i + k], the last one beyond the ends"""
+    """Returns a[i + k], with the last value repeated beyond the ends."""
     return a[np.clip(np.arange(count) + k, 0, len(a) - 1)]
 
 
-# Lifting steps: (of the high values, taps by offset of the low ones), (of the low ones, of the high ones), ...
+# Lifting steps: (the changed half, taps by offset in the other half), ...
 LIFTING = {
     "5/3": [("high", {0: -1 / 2, 1: -1 / 2}), ("low", {-1: 1 / 4, 0: 1 / 4})],
     "(4, 4)": [("high", {-1: 1 / 16, 0: -9 / 16, 1: -9 / 16, 2: 1 / 16}),
@@ -59,7 +59,7 @@ def synthesize(wavelet, low, high):
 
 
 def bands_of(wavelet, plane):
-    """LL, HL, LH, HH"""
+    """Returns LL, HL, LH, HH."""
     low, high = (half.T for half in analyze(wavelet, plane.T))
     return [*analyze(wavelet, low), *analyze(wavelet, high)][::1]
 
@@ -70,7 +70,7 @@ def plane_of(wavelet, low_low, low_high, high_low, high_high):
 
 
 def norm(wavelet, path):
-    """of the synthesis of one coefficient: high or low, from the deepest level on"""
+    """Returns the norm of the synthesis of one coefficient, high or low, from the deepest level on."""
     x = np.zeros(16)
     x[8] = 1
     for high in path:
@@ -79,7 +79,7 @@ def norm(wavelet, path):
 
 
 def squeezed(codes):
-    """bytes of a stream, packed as makes it short"""
+    """Returns the bytes of a stream with the shortest packing."""
     numbers = (codes << 1) ^ (codes >> 31)
     best = None
     for per_byte, escape in ((1, 255), (2, 15), (4, 3)):
@@ -94,13 +94,13 @@ def squeezed(codes):
 
 
 class Scheme:
-    """how a mosaic becomes planes, and which wavelet these go through"""
+    """A way to split a mosaic into planes, and the wavelet that transforms them."""
 
     def __init__(self, planes, wavelet, levels=3, dead_zone=2 / 3):
         self.planes, self.wavelet, self.levels, self.dead_zone = planes, wavelet, levels, dead_zone
 
     def split(self, mosaic):
-        """planes, the norms of their synthesis along both dimensions or together"""
+        """Returns the planes, and the norms of their synthesis along both dimensions or together."""
         quads = [mosaic[y::2, x::2] for y in (0, 1) for x in (0, 1)]
         if self.planes == "colours":
             return quads, [1] * 4
@@ -122,7 +122,7 @@ class Scheme:
         return mosaic
 
     def code(self, mosaic, step):
-        """bytes, decoded mosaic"""
+        """Returns the bytes and the decoded mosaic."""
         size, decoded = 0, []
         for plane, weight in zip(*self.split(mosaic - 128.0)):
             levels, low = [], plane
@@ -148,7 +148,7 @@ class Scheme:
 
 
 def thesis(mosaic, threshold, levels):
-    """bytes by xz, decoded mosaic"""
+    """Returns the bytes compressed by xz, and the decoded mosaic."""
     coefficients = []
     for i in range(4):
         low, details = mosaic[i // 2::2, i % 2::2].astype(float), []
@@ -182,7 +182,7 @@ def psnr(a, b):
 
 
 def ratio_at(mosaic, target, code):
-    """the ratio where code(strength) has this PSNR, between two strengths"""
+    """Returns the ratio at which code(strength) has this PSNR, interpolated between two strengths."""
     weak, strong = 0.2, 60.0
     for _ in range(8):
         middle = (weak * strong) ** 0.5
@@ -208,7 +208,7 @@ TARGETS_DB = (40, 45)
 
 
 def mosaics_of(data):
-    """One RGGB mosaic of each light field."""
+    """Returns one RGGB mosaic of each light field."""
     mosaics = {}
     for name, pattern in (("blender-shop", "*_13_13_*"), ("beer-colmap", "*")):
         files = sorted((data / "data" / name / "images").glob(pattern + ".jpg"))
@@ -222,7 +222,7 @@ def mosaics_of(data):
 
 
 def measure(data):
-    """One row for each scheme: its ratios in the order of the columns, None where they are out of reach."""
+    """Returns one row per scheme: its ratios in the order of the columns, None if a target is out of reach."""
     rows = []
     mosaics = mosaics_of(data)
     for words, scheme in ROWS:

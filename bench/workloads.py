@@ -33,15 +33,14 @@ PER_MM2 = 66    # LF cameras: 827 within a disk of 4 mm (stack)
 DISTANCE_M = 1  # from the grid to the middle of the scene
 FPS = 30
 
-# Ways of rendering: each names every choice; the defaults stand beside them.
+# Ways of rendering. Each states every choice; the defaults are measured beside them.
 WAYS = {
     "nearest": ("--mode", "collect", "--estimator", "nearest", "--lens-weights", "none"),
     "bilinear": ("--mode", "collect", "--estimator", "bilinear", "--filter", "bilinear", "--lens-weights", "none"),
     "default": (),
 }
 
-# Table 5.1. focus: metres, from the first frame to the last; a changing aperture opens and closes
-# every ten seconds.
+# Table 5.1. focus: metres, from the first frame to the last; a changing aperture opens and closes every ten seconds.
 WORKLOADS = {
     "stack": dict(frames=30, aperture_mm=(4, 4), focus_m=(0.2, 1), images=827),
     "short": dict(frames=60, aperture_mm=(4, 4), focus_m=(0.5, 0.1), images=5621),
@@ -52,18 +51,18 @@ WORKLOADS = {
 
 
 def straight_length_mm(workload):
-    """of a path whose lens sweeps over the workload's LF images"""
+    """Returns the length of a straight path whose lens sweeps over the workload's LF images."""
     narrow, wide = workload["aperture_mm"]
     area_mm2 = workload["images"] / PER_MM2
     return max(0, area_mm2 - math.pi / 4 * wide ** 2) / ((narrow + wide) / 2)
 
 
-# Of the grid: bokeh winds over all of it, in lines as far apart as its lens is wide.
+# Side of the square grid: bokeh winds over all of it, in lines as far apart as its lens is wide.
 SIDE_MM = math.sqrt(straight_length_mm(WORKLOADS["bokeh"]) * WORKLOADS["bokeh"]["aperture_mm"][1])
 
 
 def winding_path(workload):
-    """Points (x, y), mm: a straight line in the middle of the grid, or many from its upper left."""
+    """Returns points (x, y) in mm: a straight line in the middle of the grid, or many lines from its upper left."""
     wide = workload["aperture_mm"][1]
     left = straight_length_mm(workload)
     reach = (SIDE_MM - wide) / 2
@@ -90,8 +89,8 @@ def keys(times, values):
 
 
 def path_yaml(workload, size, focal_mm=36):
-    """The camera path. workload["frames_share"], if it is there, keeps so many of the frames: the
-    camera goes the same way in the same time, at fewer frames a second."""
+    """Returns the camera path. workload["frames_share"], if given, keeps only this share of the frames: the camera
+    moves along the same way in the same time, with fewer frames per second."""
     seconds = (workload["frames"] - 1) / FPS
     frames = max(2, round(workload["frames"] * workload.get("frames_share", 1)))
     fps = (frames - 1) / seconds
@@ -128,7 +127,7 @@ lens:
 
 
 def photograph(build, field, density, size, *options):
-    """The light field, unless it is there."""
+    """Makes the light field, unless it exists."""
     if (field / "transforms.json").exists():
         return
     spacing_m = 0.001 / math.sqrt(density * PER_MM2)
@@ -139,7 +138,7 @@ def photograph(build, field, density, size, *options):
 
 
 def render(build, field, path, out, threads, *options):
-    """One run: seconds, what the system says it used, report."""
+    """Renders once. Returns seconds, use of resources, and the report."""
     used = results.timed([build / "bin/lfrenderer", field, path, "-o", out, "--threads", threads, "-q",
                           "--no-contact-sheet", *options])
     usage = types.SimpleNamespace(ru_utime=used["cpu_s"], ru_stime=0.0, ru_maxrss=used["peak_bytes"] // 1024)
@@ -147,7 +146,7 @@ def render(build, field, path, out, threads, *options):
 
 
 def measure(build, field, folder, name, size, runs, most_s, threads):
-    """The rows of one workload, one for each way and number of threads."""
+    """Returns the rows of one workload, one for each way and number of threads."""
     path = folder / f"{name}.yaml"
     path.write_text(path_yaml(WORKLOADS[name], size))
     rows = [{"workload": name, "way": way, "threads": n, "seconds": [], "peak_bytes": 0}
