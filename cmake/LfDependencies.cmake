@@ -1,5 +1,5 @@
-# Every third-party library the project uses, found in one place (doc/design.md, "Dependencies").
-# A folder names the ones it needs under LIBS.
+# Finds all third-party libraries of the project (doc/design.md, "Dependencies"). A folder names the ones that it needs
+# under LIBS.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(Threads REQUIRED)
 find_package(TBB REQUIRED)
@@ -10,7 +10,7 @@ find_package(fmt 9 REQUIRED)
 find_package(CLI11 2 REQUIRED)
 find_package(hwy 1.0 REQUIRED)
 find_package(SQLite3 3.40 REQUIRED)
-# Debian's packages of these have no files for CMake.
+# Debian's packages of these libraries have no files for CMake.
 find_path(LF_ZSTD_INCLUDE zstd.h REQUIRED)
 find_library(LF_ZSTD_LIBRARY zstd REQUIRED)
 add_library(lf_zstd INTERFACE)
@@ -21,19 +21,19 @@ find_library(LF_XXHASH_LIBRARY xxhash REQUIRED)
 add_library(lf_xxhash INTERFACE)
 target_include_directories(lf_xxhash SYSTEM INTERFACE ${LF_XXHASH_INCLUDE})
 target_link_libraries(lf_xxhash INTERFACE ${LF_XXHASH_LIBRARY})
-# Header only.
+# A library of headers only.
 find_path(LF_NANOFLANN_INCLUDE nanoflann.hpp REQUIRED)
-# libjpeg-turbo; the compiler will tell if it is another one, which cannot decode a part.
+# libjpeg-turbo; another library cannot decode a part of an image, and the compiler will report it.
 find_package(JPEG REQUIRED)
-# libmicrohttpd has a file for pkg-config alone.
+# libmicrohttpd only has a file for pkg-config.
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(LF_MICROHTTPD REQUIRED IMPORTED_TARGET libmicrohttpd>=0.9.75)
 if(LF_TESTS)
   find_package(GTest REQUIRED)
 endif()
 
-# OpenImageIO by its library: Debian's CMake package also asks for the development
-# packages of everything OpenImageIO was built with, which none of our code touches.
+# OpenImageIO's libraries are searched by name, because Debian's CMake package also requires the development packages of
+# everything that OpenImageIO was built with, which our code does not use.
 find_path(LF_OIIO_INCLUDE OpenImageIO/imageio.h REQUIRED)
 find_library(LF_OIIO_LIBRARY OpenImageIO REQUIRED)
 find_library(LF_OIIO_UTIL_LIBRARY OpenImageIO_Util REQUIRED)
@@ -41,7 +41,7 @@ add_library(lf_oiio INTERFACE)
 target_include_directories(lf_oiio SYSTEM INTERFACE ${LF_OIIO_INCLUDE})
 target_link_libraries(lf_oiio INTERFACE ${LF_OIIO_LIBRARY} ${LF_OIIO_UTIL_LIBRARY})
 
-# LibRaw's library for several threads, libraw_r: several LF images are decoded at the same time.
+# libraw_r is LibRaw's library for several threads: several LF images are decoded at the same time.
 find_path(LF_LIBRAW_INCLUDE libraw/libraw.h REQUIRED)
 find_library(LF_LIBRAW_LIBRARY raw_r REQUIRED)
 add_library(lf_libraw INTERFACE)

@@ -1,4 +1,4 @@
-# What `cmake --install` puts where: the library as one archive with its public headers, for CMake's
+# Defines what `cmake --install` installs: the library as one archive with its public headers, for CMake's
 # find_package(lfrendertools) and for pkg-config; the programs; their documentation.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -9,18 +9,18 @@ add_library(lf_installed STATIC ${objects})
 set_target_properties(lf_installed PROPERTIES OUTPUT_NAME lfrendertools EXPORT_NAME lfrendertools
                                               LINKER_LANGUAGE CXX)
 target_compile_features(lf_installed PUBLIC cxx_std_20)
-# Inline functions of the headers keep their bits, too (cmake/LfFolder.cmake).
+# Inline functions of the headers must compute the same bits (cmake/LfFolder.cmake).
 target_compile_options(lf_installed INTERFACE -ffp-contract=off)
 target_include_directories(lf_installed INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
-# An archive carries nothing of what it needs: whoever links it links these. OpenImageIO, raw_r,
-# jpeg, simdjson, zstd, xxhash and sqlite3 by name, see LfDependencies.cmake.
+# An archive does not contain the libraries that it needs, so its user links them. OpenImageIO, raw_r, jpeg, simdjson,
+# zstd, xxhash and sqlite3 are linked by name, see LfDependencies.cmake.
 target_link_libraries(lf_installed PUBLIC Eigen3::Eigen fmt::fmt TBB::tbb Threads::Threads yaml-cpp
                                           hwy::hwy OpenImageIO OpenImageIO_Util raw_r jpeg
                                           simdjson zstd xxhash sqlite3)
 install(TARGETS lf_installed EXPORT lfrendertoolsTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 
-# Which headers are public is seen when they are installed, for their text says it.
+# Headers state themselves if they are public, so the installation reads them.
 install(CODE "set(source ${PROJECT_SOURCE_DIR})\nset(destination ${CMAKE_INSTALL_INCLUDEDIR})")
 install(SCRIPT cmake/install_headers.cmake)
 
@@ -34,7 +34,7 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/lfrendertoolsConfigVersio
 install(FILES ${PROJECT_BINARY_DIR}/lfrendertoolsConfig.cmake
               ${PROJECT_BINARY_DIR}/lfrendertoolsConfigVersion.cmake
         DESTINATION ${package_folder})
-# From the .pc file to the prefix, so that an installation can be moved.
+# The path from the .pc file to the prefix, so that an installation can be moved.
 string(REGEX REPLACE "[^/]+" ".." LF_PC_UP "${CMAKE_INSTALL_LIBDIR}")
 configure_file(cmake/lfrendertools.pc.in lfrendertools.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/lfrendertools.pc

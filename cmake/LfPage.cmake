@@ -1,7 +1,7 @@
-# The visualiser's page: TypeScript in web/, bundled by esbuild and put into lfvisualizer.
+# The visualiser's page: TypeScript in web/, bundled by esbuild and embedded in lfvisualizer.
 #
-# LF_PAGE is the folder of the bundled page, or empty where it cannot be built: without Node.js 18
-# and npm, or without their packages. lfvisualizer then says so; everything else is as ever.
+# LF_PAGE is the folder of the bundled page. It is empty if the page cannot be built, without Node.js 18 and npm or
+# without their packages. lfvisualizer then reports this; nothing else changes.
 option(LF_WEB "Build the visualiser's page (needs Node.js 18 and npm)" ON)
 set(LF_PAGE "")
 if(LF_WEB)
@@ -9,7 +9,7 @@ if(LF_WEB)
   find_program(LF_NPM npm)
   set(web ${PROJECT_SOURCE_DIR}/web)
   if(LF_NODE AND LF_NPM)
-    # npm leaves this file behind when it has installed what package-lock.json says.
+    # npm writes this file when it has installed the packages of package-lock.json.
     set(installed ${web}/node_modules/.package-lock.json)
     if(NOT EXISTS ${installed} OR ${web}/package-lock.json IS_NEWER_THAN ${installed})
       message(STATUS "Installing the page's packages by npm")

@@ -1,5 +1,5 @@
-# Run by `cmake --install`: the public headers of `source`/lf to `destination`/lf. Those that say
-# "Internal to" their folder stay behind, and so do those of tests.
+# Run by `cmake --install`: copies the public headers of `source`/lf to `destination`/lf, without test headers and
+# headers that say "Internal to" their folder.
 file(GLOB_RECURSE headers RELATIVE ${source} ${source}/lf/*.h)
 foreach(header ${headers})
   file(READ ${source}/${header} top LIMIT 1000)

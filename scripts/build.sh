@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Makes build/release what the sources say: missing packages, configure, build.
+# Builds build/release: installs missing packages, configures, builds.
 #
 # usage: scripts/build.sh
 #
-# With CI=true in the environment compiler warnings are errors.
+# With CI=true in the environment, compiler warnings are errors.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/patiently.sh
@@ -14,14 +14,14 @@ if [[ -e build && ! -w build ]]; then
 fi
 scripts/install_packages.sh
 mkdir -p build
-# Some machines give their builders no home to write to.
+# Some build machines have no writable home folder.
 [[ -w ${HOME:-/nowhere} ]] || export CCACHE_DIR=$PWD/build/ccache
 
 werror=OFF
 if [[ ${CI:-} == true ]]; then werror=ON; fi
 patiently configuring build/configure.log cmake --preset release -DLF_WERROR="$werror"
 
-# As many compilers as there are processors, and 1.5 GB of memory for each.
+# One compiler per processor, if each has 1.5 GB of memory.
 memory_kb=$(awk '/^MemAvailable:/ { print $2 }' /proc/meminfo)
 jobs=$(nproc)
 by_memory=$((memory_kb / 1500000))

@@ -28,14 +28,15 @@ SOURCES = {".cc", ".h", ".cu", ".py", ".sh", ".cmake", ".txt", ""}
 LINE_LIMIT = 500
 MACHINE_PATH = re.compile(r"(?<![\w.$}])/(?:work|root)/[\w.]")
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
-# `lf/camera/ray.h`, `scripts/`; patterns and places to fill in (x_test.cc aside) hold * < { or ...
+# Matches `lf/camera/ray.h` and `scripts/`. Patterns and placeholders contain * < { or ... and do not match (except
+# x_test.cc).
 NAMED_FILE = re.compile(r"`((?:lf|tools|tests|scripts|doc|examples|cmake|fuzz|bench)/[\w./-]*)`")
 NAMED_TEST = re.compile(r"`([a-z_]+\.[A-Z]\w*\.\w+|(?:tests|house)\.\w+)`")
 PAGE_IN_COMMENT = re.compile(r"\bdoc/[\w/]+\.md\b")
 
 
 def tracked_files(root: pathlib.Path) -> list:
-    """What git knows; in an unpacked archive, everything but build outputs."""
+    """Returns the files that git knows; in an unpacked archive, all files except build outputs."""
     git = subprocess.run(["git", "-C", root, "ls-files", "-z"], capture_output=True)
     if git.returncode == 0 and git.stdout:
         names = [root / name for name in git.stdout.decode().split("\0") if name]
@@ -47,7 +48,7 @@ def tracked_files(root: pathlib.Path) -> list:
 
 @functools.lru_cache(maxsize=None)
 def text_lines(path: pathlib.Path) -> tuple:
-    """The lines of a text file; none of a binary one (it holds a NUL)."""
+    """Returns the lines of a text file, or none for a binary one (it contains a NUL)."""
     data = path.read_bytes()
     return () if b"\0" in data else tuple(data.decode("utf-8", "replace").splitlines())
 
@@ -74,16 +75,16 @@ def check_paths(root, files):
 
 
 def heading_anchors(page) -> set:
-    """The anchors that GitHub gives the headings of a page."""
+    """Returns the anchors that GitHub generates for the headings of a page."""
     headings = (re.match(r"#+ +(.*)", line) for line in text_lines(page))
     return {re.sub(r"[^\w\- ]", "", h.group(1).lower()).replace(" ", "-")
             for h in headings if h}
 
 
 def link_fault(root, page, target):
-    """What is wrong with a link of a page; none if nothing is."""
+    """Returns the fault of a link on a page, or None."""
     if re.match(r"[a-z]+:", target):
-        return None  # another site: not ours to check
+        return None  # another site, which is not checked
     name, _, anchor = target.partition("#")
     path = (page.parent / name if name else page).resolve()
     if not path.is_relative_to(root.resolve()):
@@ -110,7 +111,7 @@ def page_faults(root, page, tests):
 
 
 def named_tests(root, files) -> set:
-    """folder.Suite.Test of every TEST, and what CMake lists name themselves."""
+    """Returns folder.Suite.Test of every TEST, and the names of tests in CMake lists."""
     found = set()
     for path in files:
         text = "\n".join(text_lines(path))

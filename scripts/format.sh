@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
-# Lays out every C++ source as .clang-format says, with Debian 12's clang-format 14: other versions
-# break lines elsewhere.
+# Formats every C++ source by .clang-format with Debian 12's clang-format 14; other versions break lines differently.
 #
 # usage: scripts/format.sh [--check]    --check: changes nothing, exit 1 if something would change;
 #                                       exit 77 (skipped) without clang-format 14

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Fuzzes every parser of foreign bytes for a while (clang 14, libFuzzer, address and undefined behaviour
-# sanitizers), as many targets at a time as there are processors, and prints what came of it.
+# Fuzzes every parser of foreign bytes for a while (clang 14, libFuzzer, address and undefined behaviour sanitizers),
+# with as many targets at a time as there are processors, and prints the results.
 #
 # usage: scripts/fuzz.sh MINUTES [TARGET...]     in all; TARGET as path_yaml, default: all of them
 #
-# What it learns stays in build/fuzz/corpus/TARGET, so that the next call goes on. An input that breaks a
-# parser is written to build/fuzz/found/: mend the parser, and copy the input to fuzz/corpus/TARGET,
-# which every test run replays. Exit code 1: some target was broken.
+# New inputs stay in build/fuzz/corpus/TARGET, so that the next call continues with them. An input that breaks a parser
+# is written to build/fuzz/found/: mend the parser, and copy the input to fuzz/corpus/TARGET, which every test run
+# replays. Exit code 1: a target was broken.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -30,7 +30,7 @@ fuzz() {
   local target=$1 program
   program=$(find build/fuzz -name "$1_fuzz" -type f -perm -u+x)
   mkdir -p "build/fuzz/corpus/$target"
-  # A quarter of a gigabyte at once is out of proportion to any input of a megabyte.
+  # An allocation of a quarter of a gigabyte is out of proportion to an input of a megabyte.
   "$program" "build/fuzz/corpus/$target" "fuzz/corpus/$target" -max_total_time="$seconds" -timeout=10 \
     -max_len=65536 -rss_limit_mb=2048 -malloc_limit_mb=256 -print_final_stats=1 \
     -artifact_prefix="build/fuzz/found/$target-" >"build/fuzz/log/$target" 2>&1 || touch "build/fuzz/log/$target.broken"

@@ -1,12 +1,11 @@
 #!/usr/bin/env bash
-# Installs the packages of a list that are missing, and says which.
+# Installs the packages of a list that are missing, and prints their names.
 #
 # usage: scripts/install_packages.sh [LIST]      default: scripts/packages.txt
 #
-# A line of LIST is PACKAGE WHY.
-# Nothing missing: says nothing and needs no rights. Otherwise apt-get does the work, as root or
-# through a sudo that asks no password; who has neither is told the exact command to run (exit 1).
-# On systems without dpkg it lists what is needed and leaves the rest to CMake's own messages.
+# A line of LIST is PACKAGE WHY. If nothing is missing, prints nothing and needs no rights. Otherwise runs apt-get, as
+# root or through a sudo without a password; a user who has neither is told the exact command to run (exit 1). On
+# systems without dpkg it lists what is needed and leaves the rest to CMake's own messages.
 set -euo pipefail
 list=$(realpath "${1:-$(dirname "$0")/packages.txt}")
 cd "$(dirname "$0")/.."
@@ -20,10 +19,10 @@ if ! command -v dpkg-query >/dev/null; then
   exit 0
 fi
 
-# "ii": wanted and installed. dpkg-query exits 1 when it does not know some of the names.
+# "ii": wanted and installed. dpkg-query exits with 1 if it does not know some of the names.
 installed=" $(dpkg-query -W -f='${db:Status-Abbrev}${Package}\n' "${wanted[@]}" 2>/dev/null |
   sed -n 's/^ii  *//p' | tr '\n' ' ') " || [[ -n $installed ]]
-# Node.js comes from elsewhere on many machines, with an npm that Debian's will not stand beside.
+# Many machines have Node.js from elsewhere, with an npm that conflicts with Debian's.
 is_there() {
   [[ $installed == *" $1 "* ]] || { [[ $1 == npm ]] && command -v npm >/dev/null; } ||
     { [[ $1 == nodejs ]] && command -v node >/dev/null; }
@@ -46,7 +45,7 @@ fi
 apt_get=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y
   -o DPkg::Lock::Timeout=120 -o Acquire::Retries=3)
 
-# Another apt may be at work. DPkg::Lock::Timeout waits for it when installing, not when updating.
+# Another apt may be running. DPkg::Lock::Timeout waits for it on installing, but not on updating.
 log=build/apt-update.log
 update_package_lists() {
   local attempt
@@ -64,7 +63,7 @@ echo "Installing with ${as_root[0]:+sudo }apt-get: ${missing[*]}"
 patiently "apt-get update" "$log" update_package_lists
 if ! patiently "apt-get install" build/apt-install.log \
   "${apt_get[@]}" install --no-install-recommends "${missing[@]}"; then
-  # An unreachable mirror is only a warning when the lists are updated.
+  # When lists are updated, an unreachable mirror is only a warning.
   sed -n 's/^[WE]: /apt-get update had warned: /p' "$log" >&2
   exit 1
 fi

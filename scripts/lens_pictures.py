@@ -26,7 +26,7 @@ GAP = 6  # between pictures, px
 
 
 class Capture:
-    """A light field of lfsynth, and a lens that is as wide as it."""
+    """A light field of lfsynth, and a lens with the width of its capture."""
 
     def __init__(self, renderer, folder, *options):
         self.renderer, self.folder = renderer, folder
@@ -62,7 +62,7 @@ lens:
         subprocess.run([program, *map(str, arguments), "-q"], check=True)
 
     def thin_out(self):
-        """Two thirds of the right half dropped; the places that are left."""
+        """Drops two thirds of the right half of the LF cameras. Returns the positions of the others."""
         dice = random.Random(SEED)
         kept = [x <= 0 or dice.random() < 1 / 3 for x, _ in self.places]
         frames = [f for f, k in zip(self.field["frames"], kept) if k]
@@ -95,7 +95,7 @@ def side_by_side(file, pictures):
 
 
 def clip(polygon, normal, offset):
-    """the part with normal . p <= offset"""
+    """Returns the part of the polygon with normal . p <= offset."""
     kept = []
     for a, b in zip(polygon, np.roll(polygon, -1, axis=0)):
         past_a, past_b = a @ normal - offset, b @ normal - offset
@@ -107,7 +107,7 @@ def clip(polygon, normal, offset):
 
 
 def draw_cells(file, places, radius):
-    size, scale = 480, 16  # OpenCV takes sixteenths of a pixel
+    size, scale = 480, 16  # OpenCV's coordinates are in sixteenths of a pixel
     to_px = lambda p: np.round((p * [1, -1] / radius * 0.44 + 0.5) * size * scale).astype(np.int32)
     angles = np.linspace(0, 2 * np.pi, 256, endpoint=False)
     disk = radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)

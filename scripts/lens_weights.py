@@ -32,14 +32,14 @@ import numpy as np
 import quality
 from quality import results
 
-PINHOLE_FOCUS_M = 0.5  # the truth of a pinhole has no focus plane
+PINHOLE_FOCUS_M = 0.5  # the ground truth of a pinhole has no focus plane
 SEED = 5
 SYNTHETIC_SCENES = ("still-life", "chart")
 SYNTHETIC_SIZE = (320, 212)
 SYNTHETIC_SPACING = 0.003
 TRUTH_SAMPLES = 256
 COLLECT = "--mode collect --estimator"
-# auto is the default, and names nothing.
+# auto is the default and needs no options.
 WEIGHTS = {w: f"{COLLECT} bilinear --filter bicubic --lens-weights {w}" for w in ("none", "area", "hat")} | {"auto": ""}
 
 
@@ -57,13 +57,13 @@ def linear_pfm(path):
 
 
 def psnr(truth, picture):
-    """PSNR in linear light, up to display white, dB."""
+    """Returns the PSNR in linear light, up to display white, in dB."""
     error = np.clip(truth, 0, 1) - np.clip(picture, 0, 1)
     return -10 * np.log10(np.mean(error ** 2))
 
 
 def decibels(renderer, truth, calibration, path, options):
-    """(PSNR, LF images that took part); None without a ray"""
+    """Returns (PSNR, number of contributing LF images); None without a ray."""
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
         result = subprocess.run(
@@ -83,7 +83,7 @@ def text(found):
 
 
 class Table:
-    """Rows of cells, as they are found."""
+    """Rows of cells, in the order in which they are computed."""
 
     def __init__(self, *columns):
         self.columns, self.rows = columns, []
@@ -93,7 +93,7 @@ class Table:
         print(*cells, sep=" | ", file=sys.stderr, flush=True)
 
     def publish(self, arguments, words, record):
-        """words: of the marker, after scripts/."""
+        """words: of the marker, after scripts/"""
         line = lambda cells: "| " + " | ".join(cells) + " |"
         record |= {"columns": list(self.columns), "rows": self.rows}
         text = [results.sentence(record), "", line(self.columns), "| --- " * len(self.columns) + "|",
@@ -102,7 +102,7 @@ class Table:
 
 
 def publish_again(arguments):
-    """The table of an earlier run, from its record."""
+    """Publishes the table of an earlier run from its record."""
     record = json.loads(arguments.again.read_text())
     table = Table(*record["columns"])
     table.rows = record["rows"]
@@ -110,7 +110,7 @@ def publish_again(arguments):
 
 
 def captures(case, frames):
-    """(name, frames of it)"""
+    """Yields (name, frames of the calibration that are kept)."""
     position, right, up, _ = quality.camera_axes(case)
     places = [np.array(f["transform_matrix"])[:3, 3] - position for f in frames]
 
@@ -118,7 +118,7 @@ def captures(case, frames):
         dice = random.Random(SEED)
         return [f for f, p in zip(frames, places) if dice.random() < share(p @ right)]
 
-    # Of the grid that the names are numbers of, or of the order in a row.
+    # The frames are in the order of their names: by the grid, or along the row.
     yield "full", frames
     yield "every 2nd", frames[::2]
     yield "every 4th", frames[::4]
@@ -153,7 +153,7 @@ def table_of_captures(renderer, truth_folder, only):
 
 
 def synthetic_path(calibration, diameter, scale, focus, behind=0):
-    """The middle of the capture or so far behind it, looking as it does on the whole."""
+    """Returns a path whose camera is in the middle of the capture, or `behind` it, and looks in the mean direction."""
     field = json.loads(calibration.read_text())
     poses = np.array([f["transform_matrix"] for f in field["frames"]])
     position = poses[:, :3, 3].mean(axis=0)
@@ -179,7 +179,7 @@ lens:
 
 
 class SyntheticScenes:
-    """Light fields of lfsynth, made once."""
+    """Light fields of lfsynth; each is made once."""
 
     def __init__(self, renderer, folder):
         self.lfsynth = pathlib.Path(renderer).with_name("lfsynth")
@@ -197,7 +197,7 @@ class SyntheticScenes:
         return folder / "transforms.json"
 
     def truth(self, scene, diameter, scale=1, focus=0.8, behind=0):
-        """(path, true picture)"""
+        """Returns (path, true picture)."""
         name = f"{scene}_{diameter}_{scale}_{behind}"
         path = self.folder / (name + ".yaml")
         path.write_text(synthetic_path(self.calibration(scene), diameter, scale, focus,

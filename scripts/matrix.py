@@ -67,7 +67,7 @@ def cells_of(options):
 
 
 def begun(options, result):
-    """Returns the outcomes of a file that is gone on with."""
+    """Returns the outcomes of a file that is resumed."""
     if not options.resume or not options.output or not options.output.exists():
         return []
     old = json.loads(options.output.read_text())
@@ -96,7 +96,7 @@ def tell(done, total, kinds, start_s, tried):
 def run(options):
     cells = cells_of(options)
     defaults_today = defaults.of_programs([options.bin.resolve() / name for name in defaults.PROGRAMS])
-    # Cells call programs with thousands of different words: the record names this script alone.
+    # Cells call programs with thousands of different options, so the record names this script alone.
     result = {**record.context(), "cells": len(cells), "page": hash_of_page(),
               "commands": [shlex.join(map(record.shown, sys.argv))], "defaults": defaults_today,
               "defaults_hash": defaults.hash_of(defaults_today)}
@@ -123,7 +123,7 @@ def run(options):
 
 
 def hash_of_page():
-    """Returns a hash of what decides which cells there are and how they must end."""
+    """Returns a hash of the text that decides which cells exist and how they must end."""
     page = read_page()
     text = repr((page.axes, [(r.values and [v and sorted(v) for v in r.values], *r[1:]) for r in
                               page.refusals]))

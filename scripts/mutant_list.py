@@ -1,14 +1,14 @@
-"""The list of mutants, scripts/mutants.toml: how it is read, and the house check that it is in step with the code.
+"""Reads the list of mutants, scripts/mutants.toml, and checks that it fits the code.
 
 A mutant is a mistake that somebody could make, planted into one file. Its fields:
 
     name      of letters, digits and hyphens; once in the list
     area      the part of the project it is in
     file      where it is planted, from the top of the repository
-    old, new  the text that is replaced, which the file has exactly once, and what replaces it
+    old, new  the text that is replaced, which the file has exactly once, and its replacement
     effect    one sentence: what a user would see
-    targets   what is built with it for the tests: test programs, programs, or "page"
-    tests     a regular expression of names that ctest knows: the tests expected to fail
+    targets   what is built for the tests: test programs, programs, or "page"
+    tests     a regular expression of test names of ctest: the tests expected to fail
 """
 import pathlib
 import re
@@ -31,7 +31,7 @@ class Mutant(NamedTuple):
 
     @property
     def is_quick(self):
-        """True if test programs of folders alone are built: they take seconds."""
+        """True if only test programs of folders are built, which takes seconds."""
         return all(target.endswith("_test") for target in self.targets)
 
 
@@ -46,7 +46,7 @@ def read_list(path: pathlib.Path) -> list:
 
 
 def planted(mutant: Mutant, text: str) -> str:
-    """Returns the text with the mistake in it. Raises ValueError if it does not fit there exactly once."""
+    """Returns the text with the mistake planted. Raises ValueError if `old` does not occur exactly once."""
     count = text.count(mutant.old)
     if count != 1:
         raise ValueError(f"{mutant.name}: {mutant.file} has its old text {count} times, expected once")
@@ -54,7 +54,7 @@ def planted(mutant: Mutant, text: str) -> str:
 
 
 def faults_of(mutant: Mutant, root: pathlib.Path, tests: set):
-    """Yields what is wrong with one mutant of the list."""
+    """Yields the faults of one mutant of the list."""
     if not re.fullmatch(r"[a-z0-9-]+", mutant.name):
         yield f"{mutant.name}: a name has small letters, digits and hyphens"
     if mutant.old == mutant.new:
@@ -78,7 +78,7 @@ def faults_of(mutant: Mutant, root: pathlib.Path, tests: set):
 
 
 def check_list(root: pathlib.Path, tests: set):
-    """Yields the faults of the list, as lines."""
+    """Yields the faults of the list as lines."""
     path = root / LIST
     if not path.is_file():
         return

@@ -68,12 +68,12 @@ def chosen(options):
 
 
 def hash_of(mutant):
-    """Returns a hash of what decides the outcome of a mutant, apart from the code and its tests."""
+    """Returns a hash of what decides the outcome of a mutant, except for the code and its tests."""
     return hashlib.sha256(repr(mutant).encode()).hexdigest()[:12]
 
 
 class Copy:
-    """A copy of the project with its build folder, seen in the place of the original."""
+    """A copy of the project with its build folder, mounted in the place of the original."""
 
     def __init__(self, build, scratch):
         self.build = build.resolve()
@@ -90,12 +90,12 @@ class Copy:
 
     @staticmethod
     def unshared(text):
-        """Returns the words of a command that runs the text by bash in a mount namespace of its own."""
+        """Returns the words of a command that runs the text with bash in its own mount namespace."""
         own = [] if os.geteuid() == 0 else ["--map-root-user"]
         return ["unshare", "--mount", *own, "bash", "-c", text]
 
     def run(self, command, limit_s):
-        """Runs a command in the build folder of the copy; returns its exit code (None: too slow) and output."""
+        """Runs a command in the build folder of the copy. Returns its exit code (None: too slow) and its output."""
         text = (f"mount --bind {shlex.quote(str(self.tree))} {shlex.quote(str(ROOT))} && "
                 f"cd {shlex.quote(str(self.build))} && exec {shlex.join(command)}")
         process = subprocess.Popen(self.unshared(text), stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
@@ -112,12 +112,12 @@ class Copy:
             raise
 
     def keep(self):
-        """Keeps the state of the build folder that `restore` returns to."""
+        """Stores the state of the build folder to which `restore` returns."""
         shutil.rmtree(self.pristine, ignore_errors=True)
         shutil.copytree(self.work, self.pristine, symlinks=True)
 
     def restore(self):
-        """Puts back what has changed in the build folder, with its times: Ninja finds nothing to do."""
+        """Restores changed files of the build folder with their times, so that Ninja finds nothing to do."""
         def files_of(folder):
             stats = {}
             for path in folder.rglob("*"):
@@ -138,7 +138,7 @@ class Copy:
         return self.run(["ninja", "-j", str(jobs), *targets], BUILD_LIMIT_S)
 
     def failing(self, tests, options):
-        """Runs tests until one fails. Returns the names of those that failed, and how many ran."""
+        """Runs tests until one fails. Returns the names of failed tests, and how many tests ran."""
         report = self.work / "mutants.xml"
         report.unlink(missing_ok=True)
         code, output = self.run(["ctest", "-R", tests, "-j", str(options.jobs), "--stop-on-failure",
@@ -183,7 +183,7 @@ def check_baseline(copy, mutants, options):
     if code != 0:
         sys.exit(f"error: the copy does not build without a mutant either:\n{output[-3000:]}")
     copy.keep()
-    # Without groups, of which expressions of CMake have at most nine.
+    # The expressions are without groups, because CMake's have at most nine.
     failing, ran = copy.failing("|".join(sorted({mutant.tests for mutant in mutants})), options)
     copy.restore()
     if ran == 0:
@@ -227,7 +227,7 @@ def run(options):
 
 
 def summary(result):
-    """Returns the table of a page: how many of each area were killed, and which ones survived."""
+    """Returns the table of a page: the number of killed mutants per area, and the survivors."""
     mutants = [mutant for mutant in read_list(ROOT / LIST) if mutant.name in result["mutants"]]
     outcome = lambda mutant: result["mutants"][mutant.name]["outcome"]
     of_area = collections.defaultdict(list)

@@ -1,8 +1,7 @@
 # patiently WHAT LOG COMMAND...   (to be sourced by bash)
 #
-# Runs COMMAND with its output in the file LOG. Says every half minute that it is still at it, with
-# the last line it wrote; if it fails, shows the end of the log and returns its exit code.
-# An interrupt ends COMMAND too.
+# Runs COMMAND with its output in the file LOG. Prints every half minute that it is still running, with the last line of
+# its output. If it fails, shows the end of the log and returns its exit code. An interrupt also ends COMMAND.
 patiently() {
   local what=$1 log=$2 start=$SECONDS said=0 code=0 job
   shift 2

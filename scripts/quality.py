@@ -32,14 +32,14 @@ BILINEAR = "--mode collect --estimator bilinear --filter bilinear --lens-weights
 
 
 def camera_axes(case):
-    """position, right, up, forward in the world, from the OpenGL camera-to-world matrix"""
+    """Returns position, right, up, forward in the world, from the OpenGL camera-to-world matrix."""
     m = np.array(case["transform_matrix"])
     return m[:3, 3], m[:3, 0], m[:3, 1], -m[:3, 2]
 
 
 def tilt_deg(case):
-    """focus_tilt_deg (horizontal, vertical) of the case's focus plane:
-    depth g + x tan(horizontal) + u tan(vertical) at x right, u up"""
+    """Returns focus_tilt_deg (horizontal, vertical) of the case's focus plane: depth g + x tan(horizontal) + u
+    tan(vertical) at x right, u up."""
     _, right, up, forward = camera_axes(case)
     n = np.array(case["focus_plane"]["normal"])
     return (math.degrees(math.atan(-(n @ right) / (n @ forward))),
@@ -70,7 +70,7 @@ lens:
 
 
 def mosaic(calibration, folder):
-    """The light field as an RGGB mosaic sensor would have recorded it."""
+    """Writes the light field as an RGGB mosaic sensor would have recorded it."""
     folder.mkdir(parents=True)
     field = json.loads(calibration.read_text())
     field.update(lf_bayer="RGGB", lf_transfer="sRGB")
@@ -103,7 +103,7 @@ def psnr(truth_folder, case, frame):
 
 
 def reference_columns(truth_folder):
-    """case -> (scatter, gather) dB, from the table in the README"""
+    """Returns case -> (scatter, gather) in dB, from the table in the README."""
     columns = {}
     for line in (truth_folder / "README.md").read_text().splitlines():
         match = re.match(r"\| (\w+)[^|]*\| *\d+ *\| *([\d.]+) *\| *([\d.]+) *\|", line)
@@ -116,11 +116,11 @@ COLUMNS = ("nearest", "scatter", "bilinear", "gather", "default", "bayer_nearest
 
 
 def measure(renderer, truth, folder):
-    """One row for each case: {column: dB}, and how many LF images took part."""
+    """Returns one row per case: {column: dB}, and the number of contributing LF images."""
     references, bayer, rows = reference_columns(truth), {}, []
     for case in json.loads((truth / "cases.json").read_text())["cases"]:
         if not case["aperture_diameter_m"]:
-            continue  # a pinhole: no recorded ray passes it
+            continue  # no recorded ray passes through a pinhole
         name, calibration = case["name"], truth / case["light_field"]
         work = folder / name
         work.mkdir(parents=True, exist_ok=True)
@@ -148,7 +148,7 @@ def table(rows):
 
 
 def faults_of(rows):
-    """The cases that are too far below the reference."""
+    """Yields the cases that are too far below the reference."""
     for row in rows:
         for column, least in (("nearest", row["scatter"]), ("bilinear", row["gather"]),
                               ("default", max(row["scatter"], row["gather"]))):

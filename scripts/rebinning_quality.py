@@ -21,7 +21,7 @@ import lens_weights
 import quality
 from quality import results
 
-# "with lens weights" is the default; "hybrid" is it, but for its mode.
+# "with lens weights" is the default; "hybrid" is the default with another mode.
 COLUMNS = {
     "collected, nearest": "--mode collect --estimator nearest --lens-weights none",
     "collected": "--mode collect --estimator bilinear --filter bicubic --lens-weights none",
@@ -33,7 +33,7 @@ COLUMNS = {
 
 
 def ground_truth_cases(truth_folder, folder):
-    """(name, calibration, path, true picture)"""
+    """Yields (name, calibration, path, true picture)."""
     for case in json.loads((truth_folder / "cases.json").read_text())["cases"]:
         if not case["aperture_diameter_m"]:
             *_, forward = quality.camera_axes(case)
@@ -65,7 +65,7 @@ def synthetic_cases(renderer, folder):
                 (8, 0, "8 spacings")):
             path, truth = scenes.truth(scene, distances * spacing, behind=behind)
             yield f"{scene}, lens {words}", scenes.calibration(scene), path, truth
-        # Rows in the middle alone: the lens is twice as high.
+        # Keeps only the middle rows, so that the lens is twice as high as the capture.
         calibration = scenes.calibration(scene)
         field = json.loads(calibration.read_text())
         up = lens_weights.np.array(field["frames"][0]["transform_matrix"])[:3, 1]

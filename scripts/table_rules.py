@@ -1,8 +1,8 @@
-"""The rules of tables of figures, for check_house.py: each has a record, which says when, by which programs and by
+"""Checks tables of figures, for check_house.py: each table needs a record that states when, by which programs and with
 which commands it was made (bench/record.py).
 
-A table of a page stands between <!-- table: SCRIPT --> and <!-- end of table -->. A table of figures that is not
-made by a script is preceded by <!-- table by hand: WHY -->.
+A table of a page stands between <!-- table: SCRIPT --> and <!-- end of table -->. A table of figures that no script
+makes is preceded by <!-- table by hand: WHY -->.
 """
 import hashlib
 import json
@@ -12,7 +12,7 @@ import shlex
 import subprocess
 
 RECORDS, LISTING = "bench/results", "bench/defaults.txt"
-# Tables that still have to be made again, and files of results that are no records: one a line.
+# Tables that must be made again, and files of results that are no records, one per line.
 STALE = "bench/stale_tables.txt"
 BEGIN = re.compile(r"^<!-- table: (.+?) -->$")
 END = "<!-- end of table -->"
@@ -20,22 +20,22 @@ BY_HAND = re.compile(r"^<!-- table by hand: .+ -->$")
 # A measured value: a number and its unit, or a number with two decimals.
 FIGURE = re.compile(r"(?<![\w.-])\d[\d,.]*(?:(?: to [\d.]+)? ?(?:ns|µs|ms|s|h|min|dB|MB|GB|MiB|GiB|MB/s|GB/s|M/s|"
                     r"CPU s|x|×)(?![\w-])|(?<=\d\.\d\d)(?![\w.]))")
-REFERENCE = re.compile(r"\b(?:Eq|Fig|Figures?|Tables?)\b\.?[\d\s.,–-]+")  # 2.18 is no figure there
+REFERENCE = re.compile(r"\b(?:Eq|Fig|Figures?|Tables?)\b\.?[\d\s.,–-]+")  # 2.18 is no figure in such a reference
 FEWEST_FIGURES = 4
-# Options that a render depends on most: one command of a table names all of them, another one none.
+# Options with the largest influence on a render: one command of a table states all of them, another one none.
 CHOICES = ("--mode", "--estimator", "--lens-weights")
 RENDERERS = ("lfrenderer", "lfsubmit")
 
 
 class Table:
-    """A table between markers: the page, the line of its first marker, the marker's words, the text."""
+    """A table between markers: the page, the line of its first marker, the words of the marker, and the text."""
 
     def __init__(self, page, line, words, text):
         self.page, self.line, self.words, self.text = page, line, words, text
 
 
 def tables_of(root, page, lines):
-    """The tables of a page, and the faults of its markers."""
+    """Returns the tables of a page, and the faults of its markers."""
     tables, faults, begin = [], [], None
     for number, line in enumerate(lines, 1):
         match = BEGIN.match(line)
@@ -54,7 +54,7 @@ def tables_of(root, page, lines):
 
 
 def tables_without_markers(lines):
-    """The first lines of tables that have figures, and neither markers nor a word why."""
+    """Yields the first lines of tables with figures that have neither markers nor a reason."""
     inside, begin, figures, by_hand = False, None, 0, False
     for number, line in enumerate([*lines, ""], 1):
         if line.startswith("|"):
@@ -63,7 +63,7 @@ def tables_without_markers(lines):
         else:
             if begin and figures >= FEWEST_FIGURES and not inside and not by_hand:
                 yield begin
-            if line.strip():  # an empty line may stand between the word and the table
+            if line.strip():  # an empty line may stand between the reason and the table
                 by_hand = bool(BY_HAND.match(line))
             if BEGIN.match(line) or line == END:
                 inside = line != END
@@ -75,7 +75,7 @@ def is_page(root, path):
 
 
 def records_of(root, files):
-    """{marker's words: (file, record)}, and the faults of the records' files."""
+    """Returns {words of the marker: (file, record)}, and the faults of the records' files."""
     records, faults = {}, []
     for path in files:
         if path.suffix != ".json" or path.parent != root / RECORDS:
@@ -94,7 +94,8 @@ def records_of(root, files):
 
 
 def default_values(record):
-    """{"--estimator": {"auto", "bilinear"}, ...}: what --help shows, and what small renders said of themselves."""
+    """Returns {"--estimator": {"auto", "bilinear"}, ...}: the values in --help, and those that small renders
+    reported."""
     values = {choice: set() for choice in (*CHOICES, "--filter")}
     for line in record["defaults"]:
         program, _, rest = line.partition(" ")
@@ -108,7 +109,7 @@ def default_values(record):
 
 
 def missing_choices(record):
-    """Yields what the commands of a record lack: the choices named, and the defaults beside them."""
+    """Yields what the commands of a record lack: a render that states the choices, and one with the defaults."""
     renders = [shlex.split(command) for command in record["commands"]]
     renders = [words for words in renders if words[0] in RENDERERS]
     if not renders:
@@ -151,7 +152,7 @@ def faults_of(root, table, records, today):
 
 
 def all_tables(root, files, text_lines):
-    """Tables of all pages, and the faults of their markers, as lines."""
+    """Returns the tables of all pages, and the faults of their markers as lines."""
     tables, faults = [], []
     for page in filter(lambda path: is_page(root, path), files):
         of_page, wrong = tables_of(root, page, text_lines(page))
@@ -167,7 +168,7 @@ def stale_tables(root):
 
 
 def check_tables(root, files, text_lines):
-    """Every table of figures has a record that fits it and the programs of today."""
+    """Checks that every table of figures has a record that fits it and the present programs."""
     tables, faults = all_tables(root, files, text_lines)
     yield from faults
     for page in filter(lambda path: is_page(root, path), files):
@@ -199,7 +200,7 @@ def git(root, *words):
 
 
 def why_no_history(root):
-    """A reason why commits cannot be looked up; empty if they can."""
+    """Returns why commits cannot be looked up, or an empty text if they can."""
     top = git(root, "rev-parse", "--show-toplevel")
     if top.returncode != 0 or pathlib.Path(top.stdout.strip()).resolve() != root.resolve():
         return "this is no clone of the repository, but its files alone"
@@ -209,12 +210,12 @@ def why_no_history(root):
 
 
 def check_commits(root, files, text_lines):
-    """Every table was made from a commit that HEAD has behind it."""
+    """Checks that every table was made from a commit that is an ancestor of HEAD."""
     tables, _ = all_tables(root, files, text_lines)
     records, _ = records_of(root, files)
     for table in tables:
         if table.words not in records:
-            continue  # a fault of check_tables
+            continue  # check_tables reports this
         words = str(records[table.words][1].get("commit", "(none)"))
         if git(root, "merge-base", "--is-ancestor", words.split()[0], "HEAD").returncode != 0:
             yield f"{table.page}:{table.line}: made from commit {words}, which HEAD has not behind it: make it again"

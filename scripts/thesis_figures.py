@@ -29,7 +29,7 @@ THESIS = "--mode collect --estimator nearest --lens-weights none"
 
 
 class Capture:
-    """A grid of LF cameras before a scene, SPACING apart, or nearer to each other on the same square."""
+    """A grid of LF cameras in front of a scene, SPACING apart, or more closely on the same square."""
 
     def __init__(self, renderer, folder, scene, denser=1):
         self.renderer, self.folder, self.scene = renderer, folder, scene
@@ -47,7 +47,7 @@ class Capture:
         subprocess.run([program, *map(str, arguments), "-q"], check=True)
 
     def path(self, name, frames, lens, moves=""):
-        """A path of one second and so many frames, from the middle of the grid unless it moves."""
+        """Returns a path of one second with `frames` frames, from the middle of the grid unless it moves."""
         numbers = lambda v: "[" + ", ".join(repr(float(x)) for x in v) + "]"
         path = self.folder / (name + ".yaml")
         path.write_text(f"""format: lfpath 1
@@ -79,7 +79,7 @@ lens:
 
 
 def magnified(shown, x, y, times=3):
-    """a part of the picture around (x, y), in shares of its size, as large as the whole"""
+    """Returns a part of the picture around (x, y), in shares of its size, at the size of the whole."""
     height, width = shown.shape[0] // times, shown.shape[1] // times
     left = int(np.clip(x * shown.shape[1] - width / 2, 0, shown.shape[1] - width))
     top = int(np.clip(y * shown.shape[0] - height / 2, 0, shown.shape[0] - height))
@@ -87,7 +87,7 @@ def magnified(shown, x, y, times=3):
 
 
 def stacked(rows):
-    """rows of pictures below each other, each row side by side, as one picture"""
+    """Returns rows of pictures, each row side by side, below each other as one picture."""
     gap = lambda shape: np.full(shape, 255, np.uint8)
     lines = [np.hstack([p for shown in row for p in (shown, gap((shown.shape[0], 6, 3)))][:-1]) for row in rows]
     return np.vstack([p for line in lines for p in (line, gap((6, line.shape[1], 3)))][:-1])
@@ -112,7 +112,7 @@ def tilt(capture, folder):
     scene, denser = capture("lights"), capture("lights", 2)
     lens = "  aperture_diameter: 0.03\n  focus_distance: 0.8\n  focus_tilt_deg: {horizontal: 50, vertical: 0}"
     whole = scene.frames(scene.path("tilt", 1, lens))[0]
-    # Without weights, so that what is seen is how densely LF cameras stand.
+    # Without lens weights, so that the density of LF cameras is visible.
     parts = [magnified(c.frames(c.path("tilt", 1, lens), THESIS)[0], 0.15, 0.15) for c in (scene, denser)]
     side_by_side(folder / "thesis_tilt.jpg", [whole, *parts])
 
@@ -121,7 +121,7 @@ def rebinned(capture, folder):
     scene = capture("still-life")
     path = scene.path("rebinned", 1, "  aperture_diameter: 0.02\n  focus_distance: 0.8")
     collected = scene.frames(path)[0]
-    # Rays at edges, and few of them in each element: the noise and the artefacts that the thesis tells of.
+    # Rays at edges, and few of them per element: the noise and the artefacts that the thesis describes.
     sparse = scene.frames(path, "--mode rebin --kept edges --lens-points 21 --lens-sets 4")[0]
     side_by_side(folder / "thesis_rebinned.jpg",
                  [stacked([[collected, sparse], [magnified(collected, 0.4, 0.5), magnified(sparse, 0.4, 0.5)]])])

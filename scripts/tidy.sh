@@ -2,7 +2,7 @@
 # Runs clang-tidy 14 (Debian package clang-tidy-14) with the checks of .clang-tidy.
 #
 # usage: scripts/tidy.sh [FILE.cc...]      default: every source of lf/ and tools/
-#                                       but tests, fuzz targets and benchmarks
+#                                       except tests, fuzz targets and benchmarks
 #
 # Needs a configured build/dev (cmake --preset dev) for its list of compiler calls.
 set -euo pipefail

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs every program once under valgrind (Debian package valgrind), on a light field of 25 small images:
-# no byte is read before it is written, none beyond its memory, and none is lost.
+# Runs every program once under valgrind (Debian package valgrind), on a light field of 25 small images: no byte may be
+# read before it is written or outside its memory, and no memory may be lost.
 #
 # usage: scripts/valgrind.sh [BUILD_DIR]      default: build/release; about five minutes
 set -euo pipefail
@@ -12,7 +12,7 @@ cd "$work"
 failed=0
 check() {
   local begin=$SECONDS
-  # The programs of lfsubmit are looked at, too.
+  # Also checks the programs that lfsubmit starts.
   if valgrind --quiet --error-exitcode=99 --leak-check=full --show-leak-kinds=definite \
     --errors-for-leak-kinds=definite --trace-children=yes --trace-children-skip='*ffmpeg,*/sh' \
     "$bin/$1" "${@:2}" >log 2>&1; then
