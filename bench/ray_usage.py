@@ -67,7 +67,7 @@ def draw(images):
 
 
 def row_of(images, tried):
-    """Counts what is tried of the LF images: whole images (0) or rectangles (1)."""
+    """Counts the tried pixels of the LF images: whole images (0) or rectangles (1)."""
     return {"images": len(images), "empty": sum(image[2] == 0 for image in images),
             "tried": sum(image[tried] for image in images), "accepted": sum(image[2] for image in images)}
 

@@ -162,7 +162,7 @@ def publish(arguments, script, record, text):
     script  "name.py", "name.py WORDS", or "scripts/name.py WORDS": the words of the page's marker
     """
     global _is_noting
-    _is_noting = False  # what is asked for the defaults is no command of the table
+    _is_noting = False  # the query of the defaults is no command of the table
     print(text)
     record.setdefault("table", marker_of(script))
     record.setdefault("made_by", shlex.join(map(shown, sys.argv)))

@@ -372,7 +372,7 @@ Result<LightField> OpenLightField(const fs::path& path, const OpenOptions& optio
     LF_RETURN_IF_ERROR(CompleteEncoding(options, path, &light_field));
   }
   LF_RETURN_IF_ERROR(CompleteAlpha(options, path, &light_field));
-  // A packed store states what was decided when its masks were coded.
+  // A packed store states the decision that was made when its masks were encoded.
   if (!HoldsPackedStore(light_field) && light_field.encoding.masks_clipped)
     ApplyBrackets(&light_field);
   const Intrinsics& first = light_field.Camera({0}).intrinsics;

@@ -53,7 +53,7 @@ TEST_F(CalibrationTablesTest, EveryLensIsReadAsItWasWritten) {
   EXPECT_EQ(Read().value(), written);
 }
 
-// A pedestal of 65535 leaves nothing to light.
+// A pedestal of 65535 leaves no values for light.
 TEST_F(CalibrationTablesTest, APedestalLeavesHalfOfTheRangeToLight) {
   LightField light_field;
   light_field.encoding.pedestal = kMostPedestal;

@@ -21,7 +21,7 @@ constexpr size_t kAskedFrom = 5;
 // Two pictures count as having the same transparent pixels if at most this share of them differs.
 constexpr double kSameShare = 0.02;
 
-// A Look is what one LF image tells.
+// The facts that one LF image contributes.
 struct Look {
   std::string image_name;
   int width = 0;
@@ -32,7 +32,7 @@ struct Look {
   std::array<double, 3> background = {};  // that colour, if is_one_colour
 };
 
-// The radiance of a stored value.
+// Returns the radiance of a stored value.
 template <class T>
 double RadianceOfStored(const RadianceEncoding& encoding, T value) {
   if constexpr (std::is_floating_point_v<T>) {
