@@ -12,7 +12,7 @@ namespace {
 constexpr std::string_view kMagic = "LFIM";
 constexpr uint64_t kVersion = 1;
 
-// Signs in the lowest bit.
+// The sign is stored in the lowest bit.
 void AppendSigned(int64_t number, std::string* code) {
   AppendNumber((static_cast<uint64_t>(number) << 1) ^ static_cast<uint64_t>(number >> 63), code);
 }
@@ -27,7 +27,7 @@ Error Damaged(const char* what) {
   return InputError(fmt::format("is a damaged LF image code: {}", what));
 }
 
-// The next number, within its range.
+// Takes the next number. Returns false if it is not in [low, high].
 template <class T>
 bool Take(std::string_view* code, uint64_t low, uint64_t high, T* value) {
   uint64_t number = 0;
@@ -104,7 +104,8 @@ Result<CodeHead> TakeHead(std::string_view* code) {
     return Damaged("the size of its tiles");
   if (info.profile == CodecProfile::kThesis) {
     if (!Take(code, 2, 65536, &head.quantizer)) return Damaged("its quantizer");
-    constexpr int64_t kLimit = int64_t{1} << 26;  // 16 bits and kHaarBits; sums of many fit 32
+    constexpr int64_t kLimit = int64_t{1} << 26;  // 16 bits of a pixel plus kHaarBits; sums of
+                                                  // several coefficients then fit 32 bits
     if (!TakeSigned(code, &head.low) || !TakeSigned(code, &head.high) || head.low < -kLimit ||
         head.high > kLimit || head.low > head.high)
       return Damaged("the range of its coefficients");

@@ -1,4 +1,5 @@
-// What stands before the coefficients (doc/formats/lf_image.md, "Head"). Internal to codec.
+// The head of an encoded image: all that comes before the coefficients (doc/formats/lf_image.md,
+// "Head"). Internal to codec.
 #pragma once
 
 #include <cstdint>
@@ -14,41 +15,46 @@ namespace lf {
 
 inline constexpr long long kMostPixels = 1LL << 30;
 inline constexpr int kMostLevels = 5;
-// Of tiles: 1024x1024 pixels, chosen by measurement (doc/codec.md). Others can be read.
+// The encoder makes tiles of 1024x1024 pixels, a size chosen by measurement (doc/codec.md). The
+// decoder reads other sizes.
 inline constexpr int kTileBits = 10;
 inline constexpr int kLeastTileBits = 6, kMostTileBits = 12;
 
 struct CodeHead {
   CodeInfo info;
-  int tile_bits = kTileBits;  // tiles have 2^tile_bits pixels a side, but for the last ones
+  // Tiles have 2^tile_bits x 2^tile_bits pixels; those at the right and lower border may be
+  // smaller.
+  int tile_bits = kTileBits;
 
-  // Wavelets of kDefault and kLossless.
-  int coefficient_bytes = 2;   // 2 or 4
-  int fraction_bits = 0;       // of coefficients of the finest level
-  std::vector<int32_t> steps;  // by component: approximation, then by level from the coarsest one
-                               // on: of both bands high in one direction, of that high in both
+  // Used by kDefault and kLossless.
+  int coefficient_bytes = 2;  // 2 or 4
+  int fraction_bits = 0;      // number of fraction bits in the coefficients of the finest level
+  // Quantiser steps by component: first that of the approximation, then two for each level from the
+  // coarsest to the finest: one for both subbands that are high in one direction, one for the
+  // subband that is high in both.
+  std::vector<int32_t> steps;
 
-  // kThesis.
+  // Used by kThesis.
   int quantizer = 256;
-  int64_t low = 0;  // what the first and the last value stand for (haar.h)
+  int64_t low = 0;  // coefficients that the quantiser's first and last value stand for (haar.h)
   int64_t high = 0;
 
   int tile_size() const { return 1 << tile_bits; }
   int columns() const { return (info.width + tile_size() - 1) / tile_size(); }
   int rows() const { return (info.height + tile_size() - 1) / tile_size(); }
   size_t tile_count() const { return static_cast<size_t>(columns()) * rows(); }
-  // Of tile 0 to tile_count(), row by row.
+  // Pixels of a tile. Tiles 0 to tile_count() - 1 are numbered row by row.
   PixelRect TileRect(size_t tile) const;
 
-  // Planes that are transformed on their own.
+  // Number of planes that are transformed independently.
   int components() const;
   int StepCount() const { return components() * (1 + 2 * info.levels); }
 };
 
-int ChannelsOf(PixelLayout layout);  // of pixels
+int ChannelsOf(PixelLayout layout);  // channels of a pixel
 
 void AppendHead(const CodeHead& head, std::string* code);
-// Takes it from the front of `code`. kInput, without a name.
+// Takes the head from the front of `code`. kInput; the message does not name the file.
 Result<CodeHead> TakeHead(std::string_view* code);
 
 }  // namespace lf

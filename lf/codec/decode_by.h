@@ -1,4 +1,4 @@
-// DecodeImage() by the one or the other implementation of the transforms. Internal to codec.
+// DecodeImage() with a chosen implementation of the transforms. Internal to codec.
 #pragma once
 
 #include <string_view>

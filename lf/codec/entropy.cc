@@ -15,17 +15,17 @@ struct Free {
   void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }
 };
 
-// Making one costs more than compressing a small tile.
+// Returns the thread's compressor, because making one costs more than compressing a small tile.
 ZSTD_CCtx* Compressor() {
   static thread_local std::unique_ptr<ZSTD_CCtx, Free> context;
   if (context) return context.get();
   context.reset(ZSTD_createCCtx());
   if (!context) throw std::bad_alloc();
-  // The length is known beforehand, and the store has a checksum.
+  // The reader knows the length, and the store has a checksum.
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_contentSizeFlag, 0);
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, kEntropyLevel);
-  // Packed coefficients repeat by chance, but for runs of zeros: the fewer repetitions are looked
-  // for, the shorter codes are, and the faster to decode.
+  // Packed coefficients repeat only by chance, except for runs of zeros. The less zstd searches for
+  // repetitions, the shorter the output is, and the faster it is decoded.
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_minMatch, 7);
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_hashLog, 6);
   return context.get();
@@ -45,7 +45,9 @@ void AppendCompressed(std::span<const uint8_t> bytes, std::string* code) {
   code->resize(begin + bound);
   const size_t size =
       ZSTD_compress2(Compressor(), code->data() + begin, bound, bytes.data(), bytes.size());
-  if (ZSTD_isError(size) != 0) throw std::bad_alloc();  // all else is excluded by the bound
+  if (ZSTD_isError(size) != 0)
+    throw std::bad_alloc();  // every other failure is excluded by the
+                             // bound
   code->resize(begin + size);
 }
 

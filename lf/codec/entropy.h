@@ -1,5 +1,5 @@
-// The lossless coder behind the transforms: zstd. The only file of the folder that knows it.
-// Internal to codec.
+// The lossless coder behind the transforms: zstd. No other file of the folder uses zstd. Internal
+// to codec.
 #pragma once
 
 #include <cstddef>
@@ -10,21 +10,22 @@
 
 namespace lf {
 
-// Chosen by measurement (doc/codec.md).
+// Compression level of zstd, chosen by measurement (doc/codec.md).
 inline constexpr int kEntropyLevel = 1;
 
-// Appends bytes of its own length to `code`.
+// Appends the compressed bytes to `code`, without their length.
 void AppendCompressed(std::span<const uint8_t> bytes, std::string* code);
 
-// Whether `code` gives exactly as many bytes as there is place for.
+// Returns true if `code` decompresses to exactly bytes.size() bytes.
 [[nodiscard]] bool Decompress(std::string_view code, std::span<uint8_t> bytes);
 
-// Whole numbers in as few bytes as they need: seven bits each, the lowest first; the highest bit
-// says that more follow.
+// Appends a whole number in as few bytes as it needs: seven bits in each byte, the lowest first.
+// The highest bit of a byte is set if more bytes follow.
 void AppendNumber(uint64_t number, std::string* code);
-// Takes one from the front of `code`. False: the code ends, or it is above `limit`.
+// Takes such a number from the front of `code`. Returns false if the code ends or the number
+// exceeds `limit`.
 [[nodiscard]] bool TakeNumber(std::string_view* code, uint64_t limit, uint64_t* number);
-// The next `count` bytes, taken.
+// Takes the next `count` bytes. Returns false if there are fewer.
 [[nodiscard]] bool TakeBytes(std::string_view* code, size_t count, std::string_view* bytes);
 
 }  // namespace lf

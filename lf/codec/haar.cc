@@ -2,12 +2,12 @@
 
 #include <utility>
 
-// SynthesizeHaar() by vectors, compiled for every instruction set and chosen as the program runs
-// (Highway).
+// SynthesizeHaar() with vectors, compiled for every instruction set; the program chooses one at run
+// time (Highway).
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lf/codec/haar.cc"  // NOLINT: as Highway wants it
 #include <hwy/foreach_target.h>
-// After foreach_target.h.
+// Must come after foreach_target.h.
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -15,7 +15,7 @@ namespace lf {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Pairs of values of two rows from `count` coefficients of each band.
+// Makes two rows of pairs of values from `count` coefficients of each subband.
 void MergeHaarRows(const int32_t* low, const int32_t* across, const int32_t* down,
                    const int32_t* both, int count, int32_t* HWY_RESTRICT upper,
                    int32_t* HWY_RESTRICT lower) {
@@ -50,11 +50,11 @@ namespace {
 
 HWY_EXPORT(MergeHaarRows);
 
-// Equations 2.20 and 2.21, literally.
+// Equations 2.20 and 2.21, applied literally.
 std::pair<int32_t, int32_t> Analyzed(int32_t x, int32_t y) { return {(x + y) / 2, (x - y) / 2}; }
 std::pair<int32_t, int32_t> Synthesized(int32_t a, int32_t d) { return {a + d, a - d}; }
 
-// The four values that one coefficient of each band gives.
+// The four values that one coefficient of each subband gives.
 struct Quad {
   std::pair<int32_t, int32_t> upper, lower;
 };
@@ -69,7 +69,7 @@ Quad QuadOf(int32_t low, int32_t across, int32_t down, int32_t both) {
 void AnalyzeHaar(const int32_t* values, int width, int height,
                  const std::array<int32_t*, kBands>& bands) {
   const int low_width = LowCount(width), high_width = HighCount(width);
-  // One coefficient across, low or high, of a row.
+  // Returns the coefficient x of row y, low or high across.
   const auto across = [&](int x, int y, bool is_high) {
     const int32_t* const row = values + static_cast<size_t>(y) * width;
     if (2 * x + 1 == width) return row[2 * x];

@@ -3,8 +3,8 @@
 //
 //   a = (x + y) / 2    d = (x - y) / 2    of rows, then of columns;    x = a + d    y = a - d
 //
-// The last of an odd number is its own average, and has no d. Values are whole multiples of
-// 1 / 2^kHaarBits, in which five levels of pixels of 16 bits are exact.
+// If the number of values is odd, the last one is its own average and has no d. Values are whole
+// multiples of 1 / 2^kHaarBits; with these, five levels of 16-bit pixels are exact.
 #pragma once
 
 #include <array>
@@ -16,7 +16,8 @@ namespace lf {
 
 inline constexpr int kHaarBits = 10;
 
-// values  [height][width]; bands as in wavelet53.h, high being d
+// values  [height][width]
+// bands   as in wavelet53.h; "high" is d
 void AnalyzeHaar(const int32_t* values, int width, int height,
                  const std::array<int32_t*, kBands>& bands);
 

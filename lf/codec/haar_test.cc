@@ -21,7 +21,8 @@ BandValues Analyzed(const std::vector<int32_t>& values, int width, int height) {
   return bands;
 }
 
-// Equations 2.20 and 2.21 on 10 12 / 14 20: rows give averages 11 and 17, differences -1 and -3.
+// Equations 2.20 and 2.21 applied to 10 12 / 14 20: rows give averages 11 and 17, differences -1
+// and -3.
 TEST(Haar, IsThatOfTheThesis) {
   constexpr int32_t kOne = 1 << kHaarBits;
   const BandValues bands = Analyzed({10 * kOne, 12 * kOne, 14 * kOne, 20 * kOne}, 2, 2);

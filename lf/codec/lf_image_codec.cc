@@ -25,7 +25,7 @@ ImageView<Pixel> Part(ImageView<Pixel> image, const PixelRect& rect) {
   return image;
 }
 
-// Head, table of contents, sections: resolution by resolution, and tile by tile within.
+// Joins head, table of contents and sections. Sections are ordered by resolution, then by tile.
 template <class Tile>
 std::string Assembled(const CodeHead& head, const std::vector<Tile>& tiles) {
   std::string code, sections;
@@ -65,18 +65,18 @@ std::string Encode(ImageView<const Pixel> pixels, const CodecSettings& settings,
   return Assembled(head, tiles);
 }
 
-// Where the sections are.
+// Head and sections of an encoded image.
 struct Contents {
   CodeHead head;
   std::vector<std::string_view> sections;  // [resolution][tile]
 };
 
-// Takes head and table from the front of `code`, of which the sections remain.
+// Takes head and table of contents from the front of `code`; the rest is the sections.
 Result<Contents> TakeContents(std::string_view code) {
   Contents contents;
   LF_ASSIGN_OR_RETURN(contents.head, TakeHead(&code));
   const size_t count = contents.head.tile_count() * (contents.head.info.levels + 1);
-  // Each takes a byte of the table at least.
+  // Each section takes at least one byte of the table.
   if (count > code.size())
     return InputError(
         fmt::format("is a damaged LF image code: {} bytes for {} sections", code.size(), count));
@@ -92,7 +92,7 @@ Result<Contents> TakeContents(std::string_view code) {
   return contents;
 }
 
-// The tiles that hold the pixels, as their bounds.
+// Returns the bounds of the tiles that contain the pixels `wanted`.
 PixelRect TilesAround(const CodeHead& head, const PixelRect& wanted) {
   const int size = head.tile_size();
   return {wanted.x_begin / size * size, wanted.y_begin / size * size,

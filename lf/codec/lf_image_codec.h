@@ -1,10 +1,11 @@
-// The pixels of one image to bytes and back (thesis 2.5, 4.2.2). Knows nothing of light fields.
-// The format, with an example: doc/formats/lf_image.md. Why it is so, with figures: doc/codec.md.
+// Converts the pixels of one image to bytes and back (thesis 2.5, 4.2.2), and knows nothing of
+// light fields. The format, with an example: doc/formats/lf_image.md. The reasons for it, with
+// measurements: doc/codec.md.
 //
-// An image is cut into tiles. A tile becomes planes, the planes are wavelet transformed, their
-// coefficients quantised and packed into bytes, and these compressed by zstd. The approximations of
-// all tiles come first in the code, then level after level of details. The same image and settings
-// give the same bytes.
+// The encoder cuts an image into tiles and each tile into planes. It wavelet transforms the planes,
+// quantises the coefficients, packs them into bytes and compresses these with zstd. The encoded
+// image holds the approximations of all tiles first, then one level of details after the other.
+// Encoding is deterministic: equal images and settings give equal bytes.
 #pragma once
 
 #include <cstdint>
@@ -28,37 +29,37 @@ enum class PixelLayout : uint8_t {
 };
 
 enum class CodecProfile : uint8_t {
-  // The thesis's: planes of equal colour (Figure 4.6), averaging Haar transform, one threshold for
-  // all details, the range of an image's coefficients mapped to `quantizer` values.
+  // The thesis's profile: planes of equal colour (Figure 4.6), averaging Haar transform, one
+  // threshold for all details, the range of an image's coefficients mapped to `quantizer` values.
   kThesis = 0,
-  // 5/3 wavelets; uniform quantisers with a dead zone, one step for each band, such that all bands
-  // give the same error per coefficient.
+  // 5/3 wavelets; uniform quantisers with a dead zone. The step of each subband is chosen such that
+  // all subbands give an equal error per coefficient.
   kDefault = 1,
-  // The same wavelets in whole numbers, nothing dropped.
+  // The wavelets of kDefault in whole numbers, without any loss.
   kLossless = 2,
 };
 
 struct CodecSettings {
   CodecProfile profile = CodecProfile::kDefault;
   int levels = 4;  // 1 to 5; the thesis's best is 1
-  // Detail coefficients below this become 0; in stored values. kThesis: of the averaging transform.
-  // kDefault: of the transform scaled to unit norm; the quantiser's step is one and a half times as
-  // wide. Not of kLossless.
+  // Detail coefficients below this value become 0; in stored values. kThesis compares coefficients
+  // of the averaging transform. kDefault compares coefficients of the transform scaled to unit
+  // norm, and its quantiser's step is 1.5 times the threshold. kLossless ignores it.
   double threshold = 3;
-  // kThesis only: how many values a coefficient may have, 2 to 65536; above 256 they take two bytes
-  // each.
+  // Used by kThesis only: the number of values that a coefficient may have, 2 to 65536. Above 256,
+  // each coefficient takes two bytes.
   int quantizer = 256;
 };
 
-// kUsage: settings out of their ranges, named as the options of lfcompressor are.
+// kUsage if a setting is out of its range; the message names it as the option of lfcompressor.
 Result<void> CheckSettings(const CodecSettings& settings);
 
-// `pixels` of at least 1x1 and at most 2^30 pixels; the channels must be those of the layout. The
-// settings must be valid.
+// Returns the encoded image. `pixels` has at least 1x1 and at most 2^30 pixels, and the channels of
+// the layout. The settings must be valid.
 std::string EncodeImage(const CodecPixels& pixels, PixelLayout layout,
                         const CodecSettings& settings);
 
-// What a code says of itself.
+// Properties of an encoded image, as its head states them.
 struct CodeInfo {
   int width = 0;
   int height = 0;
@@ -68,21 +69,22 @@ struct CodeInfo {
   int levels = 0;
 };
 
-// kInput, without a name: no code, of a newer version, damaged, more than 2^30 pixels, or shorter
-// than its own table of contents. Reads the head alone.
+// Reads the head alone. kInput, without the file's name, if `code` is no encoded image, was written
+// by a newer version, is damaged, has more than 2^30 pixels, or is shorter than its own table of
+// contents.
 Result<CodeInfo> ReadCodeInfo(std::string_view code);
 
 struct DecodedPart {
   CodecPixels pixels;
-  PixelRect rect;  // where they lie in the image
+  PixelRect rect;  // position of the pixels in the image
 };
 
-// The pixels of the tiles that hold `wanted`, which is some within the image. The memory of
-// part->pixels is used again if it has the same type. Bytes that were written by something else may
-// give any picture, or an error; never more memory than the tiles' pixels take, several times.
-// kInput, without a name: as ReadCodeInfo(), or damage within the tiles.
+// Decodes the tiles that contain `wanted`, which must contain a pixel of the image. Reuses the
+// memory of part->pixels if it has the right type. Bytes that another program wrote may give any
+// picture, or an error, but never take more memory than a few times the tiles' pixels. kInput,
+// without the file's name: as ReadCodeInfo(), or the tiles are damaged.
 Result<void> DecodeImage(std::string_view code, const PixelRect& wanted, DecodedPart* part);
-// All of it.
+// Decodes the whole image.
 Result<void> DecodeImage(std::string_view code, DecodedPart* part);
 
 }  // namespace lf

@@ -1,6 +1,6 @@
-// Encoding and decoding of 2048x2048 mosaics and of 1920x1280 RGB images of 8 bits. MB/s are of
-// pixels as they are stored, before coding. Content: LF_BENCH_IMAGE (raw bytes of a mosaic, 2048
-// x 2048), or a drawn picture: waves of all lengths below noise of 1.5 grey values.
+// Speed of encoding and decoding 2048x2048 mosaics and 1920x1280 RGB images, both of 8 bits. MB/s
+// count the pixels as stored, before encoding. The content is LF_BENCH_IMAGE (raw bytes of a
+// 2048x2048 mosaic), or a drawn picture: waves of all lengths with noise of 1.5 grey values.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -90,7 +90,7 @@ void DecodeMosaic(benchmark::State& state) { Decode(state, Mosaic(), PixelLayout
 void EncodeRgb(benchmark::State& state) { Encode(state, Rgb(), PixelLayout::kRgb); }
 void DecodeRgb(benchmark::State& state) { Decode(state, Rgb(), PixelLayout::kRgb); }
 
-// 0 thesis, 1 default, 2 lossless.
+// Profiles: 0 thesis, 1 default, 2 lossless.
 BENCHMARK(EncodeMosaic)->DenseRange(0, 2)->ArgName("profile");
 BENCHMARK(DecodeMosaic)->DenseRange(0, 2)->ArgName("profile");
 BENCHMARK(EncodeRgb)->DenseRange(0, 2)->ArgName("profile");

@@ -1,4 +1,5 @@
-// Any bytes are an image or an error, the same by the reference and the fast transforms.
+// Any bytes must decode to an image or an error, with equal results from the reference and the fast
+// transforms.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -13,7 +14,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size_bytes) {
     LF_CHECK(info.error().message.starts_with("is "));
     return 0;
   }
-  // A store asks for the pixels that its calibration says; so many are enough to look at.
+  // A store decodes only as many pixels as its calibration states, so a limited size is enough
+  // here.
   constexpr int kMostPixels = 512;
   const lf::PixelRect wanted = {info->width / 3, info->height / 3, info->width, info->height};
   if (info->width > kMostPixels || info->height > kMostPixels) return 0;

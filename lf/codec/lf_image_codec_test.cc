@@ -13,7 +13,7 @@ namespace {
 template <class Pixel>
 constexpr int kMost = std::numeric_limits<Pixel>::max();
 
-// Smooth, textured, noisy, flat and extreme pictures, in turn.
+// Returns smooth, textured, noisy, flat and extreme pictures, in turn.
 template <class Pixel>
 Image<Pixel> Picture(std::mt19937& random, int width, int height, int channels) {
   Image<Pixel> image(width, height, channels);
@@ -132,7 +132,7 @@ TEST(LfImageCodec, LosslessIsExact) {
   }
 }
 
-// doc/formats/lf_image.md
+// The example of doc/formats/lf_image.md.
 TEST(LfImageCodec, TheExampleOfThePage) {
   Image<uint8_t> image(2, 2);
   image.at(0, 0) = 10;
@@ -192,14 +192,14 @@ TEST(LfImageCodec, ARectangleIsACropOfTheWhole) {
         ASSERT_EQ(Intersection(wanted, part.rect), wanted);
         ASSERT_TRUE(Same(part.pixels, Cut(whole.pixels, part.rect)));
       }
-      // No more than the tiles that it takes.
+      // Decoding gives only the tiles that contain the wanted pixels.
       ASSERT_TRUE(DecodeImage(code, {1100, 3, 1101, 4}, &part));
       EXPECT_EQ(part.rect, (PixelRect{1024, 0, 2048, 1024}));
     }
 }
 
-// Twice the threshold is less than twice the error of a coefficient; what stays near it is drawn as
-// noise here, so that nothing is told by a picture's content.
+// The error follows from the threshold, which sets the quantiser's step. The picture is noise, so
+// that the result does not depend on a picture's content.
 TEST(LfImageCodec, TheThresholdBoundsTheError) {
   std::mt19937 random(4);
   for (const PixelLayout layout : {PixelLayout::kGrey, PixelLayout::kMosaic, PixelLayout::kRgb})
@@ -210,8 +210,9 @@ TEST(LfImageCodec, TheThresholdBoundsTheError) {
       settings.threshold = threshold;
       DecodedPart part;
       ASSERT_TRUE(DecodeImage(EncodeImage(image, layout, settings), &part));
-      // An error of step^2 / 12 for each coefficient, with what rounding to pixels adds; the dead
-      // zone, bands that are not quite orthogonal and rounding between levels make it worse.
+      // The quantiser gives each coefficient a mean squared error of step^2 / 12, and rounding to
+      // pixels adds 1 / 12. The dead zone, subbands that are not quite orthogonal, and rounding
+      // between levels increase the error.
       const double step = 1.5 * threshold;
       const double ideal = 10 * std::log10(255 * 255 / (step * step / 12 + 1.0 / 12));
       EXPECT_GT(Psnr(part.pixels, image), ideal - 2.5) << threshold;
@@ -219,12 +220,12 @@ TEST(LfImageCodec, TheThresholdBoundsTheError) {
     }
 }
 
-// What is lost is as often too bright as too dark, so that many LF images give the mean of the
+// Errors of both signs are equally frequent, so that the mean of many LF images is the mean of the
 // scene.
 TEST(LfImageCodec, BrightAndDarkPicturesKeepTheirMean) {
   std::mt19937 random(8);
   for (const int darkest : {25, 150})
-    for (const int levels : {1, 2}) {  // the fewer levels, the more a coefficient is worth
+    for (const int levels : {1, 2}) {  // with fewer levels, a coefficient has a larger effect
       Image<uint8_t> image(256, 256);
       for (uint8_t& v : image.pixels()) v = static_cast<uint8_t>(darkest + random() % 80);
       CodecSettings settings;
@@ -240,7 +241,7 @@ TEST(LfImageCodec, BrightAndDarkPicturesKeepTheirMean) {
     }
 }
 
-// 16 bits of the same picture at 256 times the threshold: the same within their rounding.
+// A 16-bit version of the picture, with 256 times the threshold, has an equal error up to rounding.
 TEST(LfImageCodec, SixteenBitsAreTheSamePicture) {
   std::mt19937 random(5);
   for (const CodecProfile profile : {CodecProfile::kThesis, CodecProfile::kDefault}) {
@@ -262,7 +263,7 @@ TEST(LfImageCodec, SixteenBitsAreTheSamePicture) {
   }
 }
 
-// With the finest quantiser and no threshold nothing but rounding is lost.
+// With the finest quantiser and threshold 0, only rounding causes errors.
 TEST(LfImageCodec, TheThesisProfileIsNearlyExactWithoutThreshold) {
   std::mt19937 random(6);
   for (int i = 0; i < 100; ++i) {
@@ -313,7 +314,7 @@ TEST(LfImageCodec, DamageIsAnErrorOrAnotherPicture) {
 }
 
 TEST(LfImageCodec, ABlobThatClaimsTooMuchIsRefused) {
-  // Magic, version 1, lossless grey of 8 bits, 2^20 x 2^11 pixels.
+  // The head states: magic, version 1, lossless grey of 8 bits, 2^20 x 2^11 pixels.
   std::string code("LFIM\x01\x02\x00\x08\x80\x80\x40\x80\x10\x03\x0a\x02\x00", 17);
   code.resize(1024, '\x01');
   const Result<CodeInfo> info = ReadCodeInfo(code);

@@ -50,7 +50,8 @@ std::vector<uint8_t> Packed(Packing packing, std::span<const uint32_t> numbers) 
 
 std::vector<uint32_t> Escapes(Packing packing, std::span<const uint32_t> numbers) {
   const uint32_t escape = EscapeOf(packing);
-  // Every one is written where the next would be: no branch has to be foreseen.
+  // Each value is written at the next free position, escape or not, so that the loop has no branch
+  // that the processor would have to predict.
   std::vector<uint32_t> escapes(numbers.size() + 1);
   size_t count = 0;
   for (const uint32_t number : numbers) {
@@ -61,7 +62,7 @@ std::vector<uint32_t> Escapes(Packing packing, std::span<const uint32_t> numbers
   return escapes;
 }
 
-// Of coding each byte by how often it is there: bytes.
+// Estimated size in bytes if an entropy coder codes each byte by its frequency.
 double Cost(std::span<const uint8_t> bytes) {
   std::array<uint32_t, 256> counts{};
   for (const uint8_t byte : bytes) ++counts[byte];
@@ -76,7 +77,7 @@ struct Choice {
   double cost = 0;  // bytes
 };
 
-// The packing that takes the fewest bytes; each stream costs some by itself.
+// Returns the packing that takes the fewest bytes. kOverhead is the fixed cost of each stream.
 Choice BestPacking(std::span<const uint32_t> numbers, int escapes_left) {
   constexpr double kOverhead = 40;
   if (numbers.empty()) return {};
@@ -107,7 +108,7 @@ Choice BestPacking(std::span<const uint32_t> numbers, int escapes_left) {
   return best;
 }
 
-// Chosen by a part of the numbers, spread over all of them.
+// Chooses the packing by a sample of the numbers that is spread over all of them.
 Packing ChosenPacking(std::span<const uint32_t> numbers, int escapes_left) {
   constexpr size_t kRun = 256, kRuns = 32;
   const uint32_t largest = *std::max_element(numbers.begin(), numbers.end());
@@ -117,7 +118,7 @@ Packing ChosenPacking(std::span<const uint32_t> numbers, int escapes_left) {
     const auto run = numbers.subspan(i * (numbers.size() - kRun) / (kRuns - 1), kRun);
     sample.insert(sample.end(), run.begin(), run.end());
   }
-  // The rarest numbers may not be in it: whatever is chosen must hold them.
+  // The sample may lack the rarest numbers, but the chosen packing must hold the largest.
   sample.push_back(largest);
   return BestPacking(sample, escapes_left).packing;
 }
@@ -162,7 +163,7 @@ bool IsPacking(Packing packing, size_t bytes_of_number) {
   }
 }
 
-// Memory of a thread, used again: of a stream, and of each level of its escapes.
+// Memory of a thread that is reused for a stream and for each level of its escapes.
 template <class U>
 struct Scratch {
   std::vector<uint8_t> bytes;

@@ -1,10 +1,10 @@
-// Coefficients to bytes that zstd does well with, and back (doc/formats/lf_image.md, "Streams").
-// Internal to codec.
+// Packs coefficients into bytes that zstd compresses well, and unpacks them
+// (doc/formats/lf_image.md, "Streams"). Internal to codec.
 //
-// Most coefficients are 0, 1 or -1, and small ones have small ones beside them. zstd knows bytes
-// alone, and gives each at least one bit; so up to four coefficients share a byte. Those that are
-// too large for their place are escapes: what is left of them is a stream of its own, packed in
-// turn as makes it short.
+// Most coefficients are 0, 1 or -1, and small ones have small neighbours. zstd compresses bytes,
+// and spends at least one bit on each; therefore up to four coefficients share a byte. A
+// coefficient that is too large for its share of the byte is an escape: its remainder goes into a
+// stream of its own, which is packed in turn in the way that makes it shortest.
 #pragma once
 
 #include <cstddef>
@@ -17,32 +17,33 @@
 
 namespace lf {
 
-// What a stream is made of: the first byte of its code.
+// How the numbers of a stream are packed. It is the first byte of the encoded stream.
 enum class Packing : uint8_t {
-  kZeros = 0,  // nothing more follows
-  kOne = 1,    // numbers in a byte, the first in the lowest bits
+  kZeros = 0,  // all numbers are 0; nothing more follows
+  kOne = 1,    // one (two, four) numbers in a byte, the first in the lowest bits
   kTwo = 2,
   kFour = 4,
-  kPlanes2 = 18,  // the lowest bytes of all numbers, then the next ones; no escapes
+  kPlanes2 = 18,  // the lowest bytes of all numbers, then their next bytes; no escapes
   kPlanes3 = 19,
   kPlanes4 = 20,
 };
 
-// Streams of escapes of escapes, at most: what damaged codes may ask for.
+// Largest depth of streams of escapes of escapes, because a damaged file could ask for any depth.
 inline constexpr int kMostEscapes = 4;
 
-// Signs in the lowest bit: 0, -1, 1, -2, ... become 0, 1, 2, 3, ...
+// Moves the sign into the lowest bit: 0, -1, 1, -2, ... become 0, 1, 2, 3, ...
 template <class T>
 uint32_t Folded(T value) {
   return (static_cast<uint32_t>(int32_t{value}) << 1) ^ static_cast<uint32_t>(int32_t{value} >> 31);
 }
 
-// Appends a stream of them, packed as makes it short. All must fit into T.
+// Appends the coefficients as a stream, packed in the way that makes it shortest. All values must
+// fit into T.
 template <class T>
 void AppendCoefficients(std::span<const int32_t> values, std::string* code);
 
-// Takes a stream of `count` coefficients from the front of `code`. `values` has slack. False:
-// damage.
+// Takes a stream of `count` coefficients from the front of `code`. `values` has slack
+// (wavelet53.h). Returns false if the stream is damaged.
 template <class T>
 [[nodiscard]] bool TakeCoefficients(Transform transform, std::string_view* code, size_t count,
                                     T* values);

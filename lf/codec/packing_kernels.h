@@ -12,20 +12,23 @@ namespace lf {
 inline int PerByte(Packing packing) { return static_cast<int>(packing); }
 inline bool IsPlanes(Packing packing) { return packing >= Packing::kPlanes2; }
 inline int PlaneCount(Packing packing) { return static_cast<int>(packing) - 16; }
-// What stands for an escape; smaller numbers are as they are.
+// Returns the value that marks an escape. Smaller values are the numbers themselves.
 inline uint32_t EscapeOf(Packing packing) { return (1u << (8 / PerByte(packing))) - 1; }
 
-// A stream, its bytes decompressed and its escapes unpacked.
+// A stream whose bytes are decompressed and whose escapes are unpacked.
 template <class U>
 struct PackedStream {
   Packing packing = Packing::kOne;  // not kZeros
-  std::span<const uint8_t> bytes;   // with slack behind
-  size_t count = 0;                 // numbers
-  std::span<const U> escapes;       // what is to be added to the first one, ...; with slack
-  bool has_signs = false;           // in the lowest bit of each number, to be unfolded
+  std::span<const uint8_t> bytes;   // followed by slack (wavelet53.h)
+  size_t count = 0;                 // of numbers
+  std::span<const U> escapes;       // remainders that are added to the escapes, in order; with
+                                    // slack
+  bool has_signs = false;           // True if the lowest bit of each number is its sign, to be
+                                    // unfolded
 };
 
-// Its numbers. `numbers` has slack. False: it has more escapes, or fewer.
+// Unpacks the numbers of a stream. `numbers` has slack. Returns false if the stream has more or
+// fewer escapes than remainders.
 template <class U>
 [[nodiscard]] bool UnpackReference(const PackedStream<U>& stream, U* numbers);
 template <class U>

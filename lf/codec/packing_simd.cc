@@ -1,5 +1,5 @@
-// Numbers from packed bytes, compiled for every instruction set and chosen as the program runs
-// (Highway).
+// Unpacks numbers from bytes, compiled for every instruction set; the program chooses one at run
+// time (Highway).
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -10,7 +10,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lf/codec/packing_simd.cc"  // NOLINT: as Highway wants it
 #include <hwy/foreach_target.h>
-// After foreach_target.h.
+// Must come after foreach_target.h.
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -18,11 +18,13 @@ namespace lf {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Numbers at a time: all that is done to them is done while they are in the first-level cache.
+// Numbers that are processed at a time: every step works on them while they are in the first-level
+// cache.
 constexpr size_t kBlock = 2048;
-constexpr size_t kRoom = kBlock + 4 * kSlack;  // vectors of four times the width may end beyond
+constexpr size_t kRoom = kBlock + 4 * kSlack;  // vectors of four times the width may end beyond the
+                                               // block
 
-// A byte for each number, from `size` bytes.
+// Spreads `size` bytes into one byte for each number.
 void Spread(Packing packing, const uint8_t* HWY_RESTRICT bytes, size_t size,
             uint8_t* HWY_RESTRICT out) {
   const hn::ScalableTag<uint8_t> d;
@@ -76,8 +78,8 @@ void AddEscapes(U escape, std::span<const U> escapes, size_t count, U* numbers, 
 
 #else
 
-// For each set of lanes of 16 bytes that are escapes, the bytes that bring the next escapes into
-// them, in turn; lanes that are none get what is added to nothing.
+// For each set of lanes of 16 bytes that hold escapes: the byte shuffle that moves the next
+// remainders into these lanes, in order. The other lanes get a value that is not used.
 template <class U>
 struct ExpandTable {
   static constexpr size_t kLanes = 16 / sizeof(U);
@@ -95,8 +97,8 @@ struct ExpandTable {
   }
 };
 
-// Adds the next of `escapes` to every number that is `escape`; *next counts them, to one beyond
-// their end at least where there are more numbers than escapes.
+// Adds the next remainder of `escapes` to every number that equals `escape`. *next_escape counts
+// the remainders used; it ends above escapes.size() if there are more escapes than remainders.
 template <class U>
 void AddEscapes(U escape, std::span<const U> escapes, size_t count, U* HWY_RESTRICT numbers,
                 size_t* next_escape) {
@@ -105,8 +107,8 @@ void AddEscapes(U escape, std::span<const U> escapes, size_t count, U* HWY_RESTR
   const hn::FixedTag<uint8_t, 16> d8;
   constexpr size_t kLanes = ExpandTable<U>::kLanes;
   const auto limit = hn::Set(d, escape);
-  // No branch asks whether there is an escape: it could not be foreseen. What is left of them is
-  // looked at before each run, which may read as far as their slack.
+  // No branch depends on whether a lane holds an escape, because the processor could not predict
+  // it. The loop checks the remaining escapes before each run, and a run may read into their slack.
   constexpr size_t kRun = 64;
   static_assert(kRun + kLanes <= kSlack);
   size_t next = *next_escape, i = 0;
@@ -129,7 +131,7 @@ void AddEscapes(U escape, std::span<const U> escapes, size_t count, U* HWY_RESTR
 
 #endif
 
-// Signs out of the lowest bit, in place.
+// Moves the signs out of the lowest bit, in place.
 template <class U>
 void Unfold(size_t count, U* numbers) {
   const hn::ScalableTag<U> d;
@@ -192,7 +194,7 @@ bool UnpackSimd(const PackedStream<uint16_t>& stream, uint16_t* numbers) {
 }
 template <>
 bool UnpackSimd(const PackedStream<uint32_t>& stream, uint32_t* numbers) {
-  // Rare: noise of more than two bytes.
+  // This case is rare: noise of more than two bytes.
   if (stream.packing == Packing::kPlanes3 || stream.packing == Packing::kPlanes4)
     return UnpackReference(stream, numbers);
   return HWY_DYNAMIC_DISPATCH(Unpack32)(stream, numbers);

@@ -10,7 +10,7 @@
 namespace lf {
 namespace {
 
-// Two-sided exponential, as coefficients are.
+// Returns values with a two-sided exponential distribution, as coefficients have it.
 std::vector<int32_t> Coefficients(std::mt19937& random, size_t count, double scale, int32_t most) {
   std::exponential_distribution<double> size(1 / scale);
   std::vector<int32_t> values(count);
@@ -57,7 +57,7 @@ TEST(Packing, TheLargestAndTheSmallestComeBack) {
   ExpectBack<int32_t>(sparse, &packings);
 }
 
-// One number that a sample of the stream does not see.
+// A single large number that the sample of the stream misses must survive.
 TEST(Packing, RareEscapesAreNotForgotten) {
   std::mt19937 random(2);
   std::set<int> packings;
@@ -83,7 +83,7 @@ TEST(Packing, DamageIsTold) {
   EXPECT_FALSE(is_whole("", 1));
   code[0] = 3;
   EXPECT_FALSE(is_whole(code, 5000));
-  code[0] = static_cast<char>(Packing::kPlanes4);  // not of two bytes
+  code[0] = static_cast<char>(Packing::kPlanes4);  // not allowed for numbers of two bytes
   EXPECT_FALSE(is_whole(code, 5000));
 }
 

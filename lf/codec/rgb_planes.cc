@@ -4,12 +4,12 @@
 #include <limits>
 #include <type_traits>
 
-// MergeColours() by vectors, compiled for every instruction
-// set and chosen as the program runs (Highway).
+// MergeColours() with vectors, compiled for every instruction set; the program chooses one at run
+// time (Highway).
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lf/codec/rgb_planes.cc"  // NOLINT: as Highway wants it
 #include <hwy/foreach_target.h>
-// After foreach_target.h.
+// Must come after foreach_target.h.
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -84,7 +84,7 @@ void MergeRowSimd(const std::array<const int32_t*, kRgbComponents>& components,
   HWY_DYNAMIC_DISPATCH(Merge16Of32)(components, scale, width, out);
 }
 
-// Modulo the range of T, as vectors are.
+// Adds modulo the range of T, as vectors do.
 template <class T>
 T Sum(T a, T b) {
   using Unsigned = std::make_unsigned_t<T>;

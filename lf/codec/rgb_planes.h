@@ -1,5 +1,5 @@
-// Colours to brightness and two differences, in whole numbers without loss: YCoCg-R (Malvar and
-// Sullivan 2003). Internal to codec.
+// Converts colours to brightness and two differences, in whole numbers and without loss: YCoCg-R
+// (Malvar and Sullivan 2003). Internal to codec.
 //
 //   co = r - b    t = b + (co >> 1)    cg = g - t    y = t + (cg >> 1)
 #pragma once
@@ -11,15 +11,16 @@
 
 namespace lf {
 
-// y, cg, co; an error of 1 in each makes one of this norm in R, G, B.
+// The components are y, cg, co. An error of 1 in a component gives an error of this norm in R, G,
+// B.
 inline constexpr int kRgbComponents = 3;
 inline constexpr std::array<double, kRgbComponents> kRgbNorms = {1.7320508, 0.8660254, 0.7071068};
 
-// In place: red, green, blue become y, cg, co.
+// Converts in place: red, green, blue become y, cg, co.
 void SeparateColours(int32_t* red_y, int32_t* green_cg, int32_t* blue_co, size_t count);
 
-// Pixels of three channels; of values as PixelScale (wavelet53.h) says, in the components' rows of
-// the pixels' width.
+// Makes pixels of three channels from the components, scaled as PixelScale (wavelet53.h) states.
+// Rows of the components are as wide as rows of the pixels.
 template <class T, class Pixel>
 void MergeColours(Transform transform, const std::array<const T*, kRgbComponents>& components,
                   const PixelScale& scale, ImageView<Pixel> pixels);

@@ -12,8 +12,8 @@
 namespace lf {
 namespace {
 
-// Where the pixels of a plane are in the tile: every `pitch`th value from the first on, of every
-// `rows`th row.
+// Position of a plane's pixels in the tile: every `pitch`th value from `first` on, in every
+// `row_pitch`th row from `first_row` on.
 struct PlanePlace {
   int width = 0;
   int height = 0;
@@ -40,7 +40,8 @@ std::vector<PlanePlace> PlacesOf(const CodeHead& head, int width, int height) {
 
 int CodeBytes(const CodeHead& head) { return head.quantizer <= 256 ? 1 : 2; }
 
-// Value `code` of the quantiser, and the nearest one.
+// ValueOf() returns the coefficient that value `code` of the quantiser stands for; the next
+// function returns the nearest `code`.
 int32_t ValueOf(const CodeHead& head, int64_t code) {
   const int64_t last = head.quantizer - 1;
   return static_cast<int32_t>(head.low + (code * (head.high - head.low) + last / 2) / last);
@@ -50,7 +51,8 @@ int64_t NearestCode(const CodeHead& head, int32_t value) {
   return range == 0 ? 0 : ((value - head.low) * (head.quantizer - 1) + range / 2) / range;
 }
 
-// What every code stands for; those beyond the quantiser's, in damaged files, for the last one.
+// Returns the coefficient of every possible code. Codes above the quantiser's last one, which only
+// damaged files have, stand for its last value.
 std::vector<int32_t> Values(const CodeHead& head) {
   std::vector<int32_t> values(size_t{1} << (8 * CodeBytes(head)));
   for (size_t i = 0; i < values.size(); ++i)
@@ -58,7 +60,7 @@ std::vector<int32_t> Values(const CodeHead& head) {
   return values;
 }
 
-// Sizes of the plane and of what is low of it after each level.
+// Sizes of the plane and of its low subband after each level.
 std::vector<std::pair<int, int>> SizesOf(const PlanePlace& plane, int levels) {
   std::vector<std::pair<int, int>> sizes = {{plane.width, plane.height}};
   for (int i = 0; i < levels; ++i)
@@ -68,7 +70,7 @@ std::vector<std::pair<int, int>> SizesOf(const PlanePlace& plane, int levels) {
 
 size_t AreaOf(std::pair<int, int> size) { return static_cast<size_t>(size.first) * size.second; }
 
-// How many coefficients of a resolution a plane has.
+// Number of coefficients of a plane in one resolution.
 size_t CountOf(const PlanePlace& plane, int levels, int resolution) {
   const std::vector<std::pair<int, int>> sizes = SizesOf(plane, levels);
   if (resolution == 0) return AreaOf(sizes[levels]);
@@ -158,7 +160,7 @@ bool DecodeHaarTile(Transform transform, const CodeHead& head, std::span<std::st
   const int levels = head.info.levels;
   const std::vector<PlanePlace> places = PlacesOf(head, pixels.width, pixels.height);
   const std::vector<int32_t> values = Values(head);
-  // By resolution, and where the next plane's coefficients begin.
+  // Coefficients by resolution, and the position at which the next plane's coefficients begin.
   std::vector<std::vector<int32_t>> streams(levels + 1);
   std::vector<size_t> next(levels + 1, 0);
   std::vector<uint8_t> bytes;

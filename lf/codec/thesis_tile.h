@@ -1,8 +1,8 @@
-// One tile by the thesis's profile (thesis 4.2.2, 5.4). Internal to codec.
+// One tile in the thesis's profile (thesis 4.2.2, 5.4). Internal to codec.
 //
-// The pixels of a mosaic go into four planes, by their place among two by two (Figure 4.6); those
-// of other images into a plane for each channel. Tiles are as large as a power of two, so that the
-// Haar transform of each is a part of that of the whole image.
+// The pixels of a mosaic are sorted into four planes, by their position in each 2 x 2 square
+// (Figure 4.6). Other images have one plane for each channel. Tile sizes are powers of two, so that
+// the Haar transform of a tile is a part of the transform of the whole image.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +17,12 @@
 
 namespace lf {
 
-// Coefficients of a tile, thresholded: by resolution, 0 the approximation; plane after plane.
+// Thresholded coefficients of a tile. A stream holds one resolution (0 is the approximation), plane
+// after plane.
 struct HaarTile {
   std::vector<std::vector<int32_t>> streams;
-  int32_t low = std::numeric_limits<int32_t>::max();  // of all of them
+  int32_t low = std::numeric_limits<int32_t>::max();  // least and largest coefficient of all
+                                                      // streams
   int32_t high = std::numeric_limits<int32_t>::min();
 };
 
@@ -28,10 +30,11 @@ struct HaarTile {
 template <class Pixel>
 HaarTile TransformTile(const CodeHead& head, double threshold, ImageView<const Pixel> pixels);
 
-// The code of one resolution of a tile; head.low and head.high are of all tiles.
+// Returns one resolution of a tile, encoded. head.low and head.high are the range of all tiles.
 std::string CodeOfSection(const CodeHead& head, const HaarTile& tile, int resolution);
 
-// The pixels of a tile from its sections, by resolution. False: damage.
+// Decodes the pixels of a tile from its sections, which are ordered by resolution. Returns false if
+// they are damaged.
 template <class Pixel>
 [[nodiscard]] bool DecodeHaarTile(Transform transform, const CodeHead& head,
                                   std::span<std::string_view> sections, ImageView<Pixel> pixels);

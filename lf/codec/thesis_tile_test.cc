@@ -1,5 +1,5 @@
-// The thesis's profile against the thesis: 2.5.1, 2.5.2, 4.2.2 and 5.4, written down in real
-// numbers on one page, without anything of codec/.
+// Compares the thesis's profile with the thesis itself: 2.5.1, 2.5.2, 4.2.2 and 5.4, written down
+// in real numbers on one page, without any code of codec/.
 #include "lf/codec/thesis_tile.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ using Line = std::vector<double>;
 using Plane = std::vector<Line>;  // [height][width]
 
 // a = (x + y) / 2, d = (x - y) / 2 of neighbours (thesis 2.5.1): averages first, then differences.
-// The last of an odd number is its own average.
+// If their number is odd, the last value is its own average.
 Line Transformed(const Line& line) {
   Line averages, differences;
   for (size_t i = 0; i + 1 < line.size(); i += 2) {
@@ -60,8 +60,8 @@ void ForColumns(Plane& plane, size_t width, size_t height, const Step& step) {
   }
 }
 
-// One picture as the thesis compresses it: its planes are transformed, details below the threshold
-// dropped, and the range from the least to the largest coefficient is mapped to q values.
+// Compresses one picture as the thesis does: transforms its planes, drops details below the
+// threshold, and maps the range from the least to the largest coefficient to q values.
 class ThesisCodec {
  public:
   ThesisCodec(std::vector<Plane> planes, const CodecSettings& settings) : planes_(planes) {
@@ -103,8 +103,8 @@ class ThesisCodec {
   }
 
  private:
-  // The nearest of q values spread evenly over the range, halves upwards, kept to 1 / 1024
-  // (doc/formats/lf_image.md).
+  // Returns the nearest of q values that are spread evenly over the range (halves are rounded up),
+  // as a multiple of 1 / 1024 (doc/formats/lf_image.md).
   double Quantized(double c, int q) const {
     if (high_ == low_) return c;
     const double code = std::floor((c - low_) * (q - 1) / (high_ - low_) + 0.5);
@@ -115,8 +115,8 @@ class ThesisCodec {
   double low_ = 1e9, high_ = -1e9;
 };
 
-// Tells where a plane has its pixels. Pixels of a mosaic are sorted by their place among two by two
-// (Figure 4.6), those of other images by channel.
+// Position of a plane's pixels. Pixels of a mosaic are sorted by their position in each 2 x 2
+// square (Figure 4.6), pixels of other images by channel.
 struct Sorting {
   int first_x, first_y, pitch, channel;
 };
@@ -157,7 +157,7 @@ Image<Pixel> ByTheThesis(const Image<Pixel>& image, PixelLayout layout,
   return result;
 }
 
-// Waves with noise, so that details lie on both sides of every threshold.
+// Returns waves with noise, so that details lie on both sides of every threshold.
 template <class Pixel>
 Image<Pixel> Picture(std::mt19937& random, int width, int height, int channels) {
   Image<Pixel> image(width, height, channels);
@@ -188,8 +188,8 @@ void ExpectTheThesis(std::mt19937& random, int width, int height, PixelLayout la
       << settings.levels << ", threshold " << settings.threshold << ", q " << settings.quantizer;
 }
 
-// The rows of Table 5.3, the mapping to a byte and to q values (5.4), thresholds that coefficients
-// of whole pixels meet exactly, and odd sizes.
+// The cases are the rows of Table 5.3, the mapping to a byte and to q values (5.4), thresholds that
+// coefficients of whole pixels meet exactly, and odd sizes.
 TEST(ThesisTile, GivesThePixelsOfTheThesissCodec) {
   std::mt19937 random(1);
   struct Row {
@@ -210,7 +210,7 @@ TEST(ThesisTile, GivesThePixelsOfTheThesissCodec) {
         }
 }
 
-// Tiles are no part of the thesis, and must not be seen.
+// The thesis has no tiles, so tiles must not change the result.
 TEST(ThesisTile, TilesGiveThePixelsOfTheWholeImage) {
   std::mt19937 random(2);
   for (const PixelLayout layout : {PixelLayout::kMosaic, PixelLayout::kRgb})

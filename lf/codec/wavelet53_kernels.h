@@ -15,7 +15,7 @@ void SynthesizePixelsReference(const CodedBands<T>& bands, const PixelScale& sca
 void AnalyzeReference(const int32_t* values, int width, int height,
                       const std::array<int32_t*, kBands>& bands);
 
-// By Highway.
+// Implementations with Highway.
 template <class T>
 void SynthesizeSimd(const CodedBands<T>& bands, T* values);
 template <class T, class Pixel>

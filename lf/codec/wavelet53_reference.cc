@@ -1,4 +1,4 @@
-// The formulas of wavelet53.h, one line of values at a time.
+// The formulas of wavelet53.h, applied to one line of values at a time.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,7 +10,7 @@
 namespace lf {
 namespace {
 
-// Modulo the range of T.
+// Converts modulo the range of T.
 template <class T>
 T Wrapped(int64_t value) {
   return static_cast<T>(static_cast<std::make_unsigned_t<T>>(value));
@@ -75,7 +75,8 @@ T Coefficient(const CodedBand<T>& band, size_t i) {
 template <class T>
 void SynthesizeReference(const CodedBands<T>& bands, T* values) {
   const int width = bands.width, height = bands.height;
-  // Columns: the left ones are of bands low across, the right ones of those high across.
+  // Transforms the columns: the left half from subbands that are low across, the right half from
+  // subbands that are high across.
   std::vector<T> middle(static_cast<size_t>(width) * height);
   const auto columns = [&](Band low_band, Band high_band, int begin) {
     const int count = BandWidth(low_band, width);
@@ -151,7 +152,7 @@ void AnalyzeReference(const int32_t* values, int width, int height,
 }
 
 double SynthesisNorm(const std::vector<bool>& is_high) {
-  // Without rounding; of one coefficient in the middle of many.
+  // Computes without rounding, for one coefficient far from the ends of a line.
   std::vector<double> x(8, 0.0);
   x[4] = 1;
   for (const bool of_high : is_high) {

@@ -1,5 +1,5 @@
-// The 5/3 transform by rows of vectors, compiled for every instruction set and chosen as the
-// program runs (Highway). A level is one pass over its bands: a few rows of coefficients stay in
+// The 5/3 transform by rows of vectors, compiled for every instruction set; the program chooses one
+// at run time (Highway). A level is one pass over its subbands: a few rows of coefficients stay in
 // the first-level cache between the vertical and the horizontal step.
 #include <cstring>
 #include <utility>
@@ -10,7 +10,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lf/codec/wavelet53_simd.cc"  // NOLINT: as Highway wants it
 #include <hwy/foreach_target.h>
-// After foreach_target.h.
+// Must come after foreach_target.h.
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -18,7 +18,8 @@ namespace lf {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Rows of a thread, each with slack before and behind it. Their memory is used again.
+// Rows of values that belong to a thread, each with slack before and behind it. Their memory is
+// reused.
 template <class T>
 class Rows {
  public:
@@ -48,8 +49,8 @@ HWY_INLINE V Update(V left, V right, V two) {
   return hn::ShiftRight<2>(hn::Add(hn::Add(left, right), two));
 }
 
-// Coefficients of a row as they were coded: Coefficients(band, row, count).At(x), x a multiple of
-// the lanes.
+// Coefficients of a row, converted from their encoded values. Usage: Coefficients(band, row,
+// count).At(x), where x is a multiple of the lanes.
 template <class T>
 class Coefficients {
  public:
@@ -79,7 +80,7 @@ void LoadRow(const CodedBand<T>& band, int row, int count, T* HWY_RESTRICT out) 
   for (int x = 0; x < count; x += lanes) hn::StoreU(coefficients.At(x), d, out + x);
 }
 
-// An even row: low - Update(above, below).
+// Computes an even row: low - Update(above, below).
 template <class T>
 void LoadEvenRow(const CodedBand<T>& band, int row, int count, const T* above, const T* below,
                  T* HWY_RESTRICT out) {
@@ -91,7 +92,7 @@ void LoadEvenRow(const CodedBand<T>& band, int row, int count, const T* above, c
     hn::StoreU(hn::Sub(low.At(x), Update(Load(above + x), Load(below + x), two)), d, out + x);
 }
 
-// An odd row: high + Predicted(above, below).
+// Computes an odd row: high + Predicted(above, below).
 template <class T>
 void LiftHigh(const T* high, const T* above, const T* below, int count, T* HWY_RESTRICT out) {
   const hn::ScalableTag<T> d;
@@ -101,8 +102,8 @@ void LiftHigh(const T* high, const T* above, const T* below, int count, T* HWY_R
                out + x);
 }
 
-// One row from its low and its high half, of whose slack some is written. Calls store(x, even, odd)
-// for the vectors of values 2x, 2x + 2, ... and 2x + 1, 2x + 3, ..., also of some beyond the end.
+// Merges the low and the high half of a row, and writes into their slack. Calls store(x, even, odd)
+// for the vectors of values 2x, 2x + 2, ... and 2x + 1, 2x + 3, ..., including some beyond the end.
 template <class T, class Store>
 HWY_INLINE void MergeRow(T* low, T* high, int width, const Store& store) {
   const hn::ScalableTag<T> d;
@@ -112,8 +113,8 @@ HWY_INLINE void MergeRow(T* low, T* high, int width, const Store& store) {
     store(0, Load(low), Load(low));
     return;
   }
-  // What makes the even value beyond the end the same as the last one, where a row ends with an odd
-  // one; else what stands beyond the last high one.
+  // If the row ends with an odd value, high[high_count] makes the even value beyond the end equal
+  // to the last even one. Otherwise it is the mirrored last high coefficient.
   high[-1] = high[0];
   high[high_count] = low_count > high_count ? high[high_count - 1] : high[high_count - 2];
   low[low_count] = low[low_count - 1];
@@ -126,18 +127,18 @@ HWY_INLINE void MergeRow(T* low, T* high, int width, const Store& store) {
   }
 }
 
-// The half of a level whose bands are both low, or both high, across: what of its rows is known.
+// State of one half of a level: the two subbands that are both low, or both high, across.
 template <class T>
 struct Half {
   const CodedBand<T>& low;
   const CodedBand<T>& high;
-  int count;  // of values in a row
-  // High coefficients of this and the last pair of rows, even rows of both, the odd row of the
-  // last.
+  int count;  // number of values in a row
+  // High coefficients of this and the last pair of rows, even rows of both pairs, odd row of the
+  // last pair.
   T *high_now, *high_last, *even_now, *even_last, *odd;
 };
 
-// Calls put(y, low, high) for every row of the plane in turn, with what MergeRow() wants.
+// Calls put(y, low, high) for every row of the plane in turn, with the arguments of MergeRow().
 template <class T, class Put>
 void SynthesizeRows(const CodedBands<T>& bands, const Rows<T>& rows, const Put& put) {
   const int low_rows = LowCount(bands.height), high_rows = HighCount(bands.height);
@@ -186,7 +187,7 @@ void SynthesizePixelsOf(const CodedBands<T>& bands, const PixelScale& scale,
   const hn::ScalableTag<T> d;
   const hn::Rebind<Pixel, decltype(d)> d_pixel;
   const Rows<T> rows(kRowsOfHalves + 1, bands.width);
-  // Rows of the image end where other tiles begin: one is made here and copied.
+  // A row of the image ends where another tile begins, so each row is made here and then copied.
   auto* const row = reinterpret_cast<Pixel*>(rows[kRowsOfHalves]);
   const auto half = hn::Set(d, static_cast<T>((1 << scale.fraction_bits) >> 1));
   const auto offset = hn::Set(d, static_cast<T>(scale.offset));
@@ -202,7 +203,7 @@ void SynthesizePixelsOf(const CodedBands<T>& bands, const PixelScale& scale,
   });
 }
 
-// The halves of a row.
+// Splits a row into its low and its high half.
 void SplitRow(const int32_t* row, int width, int32_t* even, int32_t* HWY_RESTRICT low,
               int32_t* HWY_RESTRICT high) {
   const hn::ScalableTag<int32_t> d;
@@ -238,7 +239,8 @@ void AnalyzeOf(const int32_t* values, int width, int height,
   const hn::ScalableTag<int32_t> d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   const int low_rows = LowCount(height), high_rows = HighCount(height);
-  // By half: this even row and the next, the high row and the last one. They go round.
+  // Rows of each half: this even row and the next one, the high row and the last one. They are used
+  // in rotation.
   const Rows<int32_t> rows(9, LowCount(width));
   struct Side {
     Band low, high;

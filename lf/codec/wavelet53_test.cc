@@ -8,7 +8,7 @@
 namespace lf {
 namespace {
 
-// Arrays with their slack.
+// Returns an array with its slack.
 template <class T>
 std::vector<T> Array(size_t size) {
   return std::vector<T>(size + kSlack);
@@ -55,7 +55,7 @@ TEST(Wavelet53, TheSynthesisGivesBackWhatWasAnalyzed) {
   std::mt19937 random(1);
   for (const auto& [width, height] : Sizes(random)) {
     const size_t size = static_cast<size_t>(width) * height;
-    // Beyond half of the range sums wrap around, and are given back all the same.
+    // Values beyond half of the range make sums overflow, but are restored exactly.
     const std::vector<int32_t> plane = Plane<int32_t>(random, size, INT32_MIN, INT32_MAX);
     const Analyzed analyzed = AnalyzedBy(Transform::kSimd, plane, width, height);
     CodedBands<int32_t> bands{width, height, {}};
@@ -124,7 +124,7 @@ TEST(Wavelet53, SynthesisIsThatOfTheReferenceBeyondTheRangeToo) {
   CompareSyntheses<int32_t, uint16_t>(random, INT32_MAX, 16);
 }
 
-// A linear ramp has no high coefficients but at its end.
+// A linear ramp has no high coefficients except at its end.
 TEST(Wavelet53, RampsAreLowAlone) {
   std::vector<int32_t> plane = Array<int32_t>(16 * 3);
   for (int i = 0; i < 48; ++i) plane[i] = 10 * (i % 16);
@@ -135,7 +135,7 @@ TEST(Wavelet53, RampsAreLowAlone) {
   EXPECT_EQ(analyzed.bands[kLowLow][3], 60);
 }
 
-// The norms of JPEG 2000's tables (T.800, E.1.1 and others): sqrt(1.5), sqrt(23 / 32), ...
+// Norms as in the tables of JPEG 2000 (T.800, E.1.1 and others): sqrt(1.5), sqrt(23 / 32), ...
 TEST(Wavelet53, NormsAreKnown) {
   EXPECT_NEAR(SynthesisNorm({false}), 1.2247, 1e-4);
   EXPECT_NEAR(SynthesisNorm({true}), 0.8478, 1e-4);

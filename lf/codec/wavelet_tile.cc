@@ -12,19 +12,21 @@
 namespace lf {
 namespace {
 
-// Lossy coefficients have bits below the unit. The transform rounds down, always in the same
-// direction: what is a tenth of a grey step in every LF image is a tenth in a frame, where the
-// noise of quantising has long averaged out. From the second level on there is one bit more.
+// Number of bits of lossy coefficients below the unit. The transform always rounds down, so its
+// error has the same sign in every LF image: an error of a tenth of a grey step in every LF image
+// is a tenth in a frame, where the noise of quantisation has long averaged out. From the second
+// level on, coefficients have one more bit.
 constexpr int kFractionBits = 3;
 constexpr int kMostDoublings = 1;
 
-// Levels are counted from the pixels on, from 1; a mosaic's own level is the first. Whether low
-// coefficients of it are doubled before they are transformed on.
+// Returns true if the low coefficients of level `depth` are doubled before they are transformed
+// further. Levels are counted from 1, from the pixels on; the level that splits a mosaic is the
+// first.
 bool IsDoubled(const CodeHead& head, int depth) {
   return head.info.profile == CodecProfile::kDefault && depth <= kMostDoublings;
 }
 
-// Of the components' first level, in that count.
+// Depth of the components' first level, counted as in IsDoubled().
 int FirstDepth(const CodeHead& head) { return head.info.layout == PixelLayout::kMosaic ? 2 : 1; }
 
 struct Size {
@@ -33,7 +35,7 @@ struct Size {
   size_t count() const { return static_cast<size_t>(width) * height; }
 };
 
-// Of a component, and of what is low of it after some levels.
+// Size of a component; LowSize() is the size of its low subband after some levels.
 Size ComponentSize(const CodeHead& head, int component, int tile_width, int tile_height) {
   if (head.info.layout != PixelLayout::kMosaic) return {tile_width, tile_height};
   const auto band = static_cast<Band>(component);
@@ -51,7 +53,8 @@ int StepIndex(const CodeHead& head, int component, int resolution, bool is_diago
   return resolution == 0 ? first : first + 2 * resolution - 1 + (is_diagonal ? 1 : 0);
 }
 
-// Of a band `level` levels deep in its component, along both dimensions.
+// Norm of a subband `level` levels deep in its component: the product of both dimensions and of the
+// colour transform.
 double Norm(const CodeHead& head, int component, int level, bool high_across, bool high_down) {
   const auto along = [&](bool is_high, bool component_is_high) {
     std::vector<bool> path(level, false);
@@ -85,7 +88,7 @@ std::vector<std::vector<int32_t>> PlanesOf(const CodeHead& head, ImageView<const
   return planes;
 }
 
-// A plane into its bands.
+// Splits a plane into its subbands.
 using BandPlanes = std::array<std::vector<int32_t>, kBands>;
 BandPlanes Analyzed(Transform transform, const std::vector<int32_t>& plane, Size size,
                     bool is_doubled) {
@@ -107,8 +110,8 @@ int32_t LargestOf(const std::vector<int32_t>& values, size_t count) {
   return largest;
 }
 
-// (|value| + rounding) / step with the sign of the value.
-//   rounding  step / 2: to the nearest; step / 3: what is below two thirds of a step becomes 0
+// Appends (|value| + rounding) / step with the sign of the value.
+//   rounding  step / 2: to the nearest; step / 3: values below two thirds of a step become 0
 void AppendQuantized(const std::vector<int32_t>& values, size_t count, int32_t step,
                      int32_t rounding, std::vector<int32_t>* out) {
   const size_t begin = out->size();
@@ -127,7 +130,7 @@ void AppendQuantized(const std::vector<int32_t>& values, size_t count, int32_t s
   }
 }
 
-// Each less the one above; in the first row, less the one before.
+// Subtracts from each value the value above; in the first row, the value before.
 void Predict(Size size, std::vector<int32_t>* values) {
   const auto width = static_cast<size_t>(size.width);
   for (size_t i = size.count(); i-- > width;) (*values)[i] -= (*values)[i - width];
@@ -146,11 +149,11 @@ void Unpredict(Size size, T* values) {
   for (size_t i = width; i < size.count(); ++i) values[i] = sum(values[i], values[i - width]);
 }
 
-// Memory of a thread, used again.
+// Memory of a thread that is reused.
 template <class T>
 struct Scratch {
   std::array<std::vector<T>, 4> components;
-  std::array<std::vector<T>, 2> low;  // in turns
+  std::array<std::vector<T>, 2> low;  // used in turn
   std::vector<T> details;
 
   static Scratch& OfThread() {
@@ -163,15 +166,15 @@ struct Scratch {
   }
 };
 
-// The streams of a tile, to be taken component by component.
+// Streams of a tile, to be read component by component.
 template <class T>
 class TileReader {
  public:
   TileReader(Transform transform, const CodeHead& head, std::span<std::string_view> sections)
       : transform_(transform), head_(head), sections_(sections) {}
 
-  // Reads the next component. Its levels but the finest are transformed back: the bands of that
-  // stay in the scratch until the next call.
+  // Reads the next component and synthesises all its levels except the finest. The subbands of the
+  // finest level stay in the scratch memory until the next call.
   [[nodiscard]] bool Read(int component, Size size, CodedBands<T>* finest) {
     const int levels = head_.info.levels;
     const Size smallest = LowSize(size, levels);
@@ -310,7 +313,7 @@ QuantizedTile QuantizeTile(Transform transform, const CodeHead& head,
 template QuantizedTile QuantizeTile(Transform, const CodeHead&, ImageView<const uint8_t>);
 template QuantizedTile QuantizeTile(Transform, const CodeHead&, ImageView<const uint16_t>);
 
-// The synthesis adds two values that are at most two and a half times as large as a band's.
+// The synthesis adds two values, each at most 2.5 times as large as the values of a subband.
 bool FitsInTwoBytes(int32_t largest) { return largest <= 6000; }
 
 std::string CodeOfSection(const CodeHead& head, const QuantizedTile& tile, int resolution) {

@@ -1,8 +1,8 @@
-// One tile by the wavelets of the default and the lossless profile. Internal to codec.
+// One tile in the default and the lossless profile, by wavelets. Internal to codec.
 //
-// A mosaic is transformed once as it is: this separates brightness and colours better than planes
-// of equal colour do. The four bands are its components, and are transformed on; so are the one
-// plane of a grey image and the three of a coloured one (rgb_planes.h).
+// A mosaic is transformed once as a single plane, because this separates brightness and colours
+// better than planes of equal colour do. Its four subbands are the components, which are
+// transformed further. A grey image has one component, a colour image three (rgb_planes.h).
 #pragma once
 
 #include <span>
@@ -15,27 +15,30 @@
 
 namespace lf {
 
-// Sets what of the head belongs to the profile: fractions and steps.
+// Sets the fields of the head that belong to the profile: fraction bits and steps.
 void SetSteps(const CodecSettings& settings, CodeHead* head);
 
-// The coefficients of a tile, quantised: streams by component and resolution, 0 the approximation,
-// then details from the coarsest level to the finest.
+// Quantised coefficients of a tile: streams by component and resolution. Resolution 0 is the
+// approximation, the others are details from the coarsest level to the finest.
 struct QuantizedTile {
   std::vector<std::vector<int32_t>> streams;  // [component][resolution]
-  int32_t largest = 0;                        // of all coefficients, before they were quantised
+  int32_t largest = 0;                        // largest magnitude of all coefficients before
+                                              // quantisation
 };
 
 template <class Pixel>
 QuantizedTile QuantizeTile(Transform transform, const CodeHead& head,
                            ImageView<const Pixel> pixels);
 
-// Whether coefficients of two bytes are enough: sums of two on the way stay within.
+// Returns true if two bytes hold all coefficients, including the sums of two that occur during the
+// synthesis.
 bool FitsInTwoBytes(int32_t largest);
 
-// The code of one resolution of a tile.
+// Returns one resolution of a tile, encoded.
 std::string CodeOfSection(const CodeHead& head, const QuantizedTile& tile, int resolution);
 
-// The pixels of a tile from its sections, by resolution. False: damage.
+// Decodes the pixels of a tile from its sections, which are ordered by resolution. Returns false if
+// they are damaged.
 template <class Pixel>
 [[nodiscard]] bool DecodeWaveletTile(Transform transform, const CodeHead& head,
                                      std::span<std::string_view> sections, ImageView<Pixel> pixels);
