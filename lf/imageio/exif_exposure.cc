@@ -25,7 +25,8 @@ ExposureFacts FactsOf(const TiffDirectory& exif) {
   constexpr int kExposureTime = 0x829A, kFNumber = 0x829D, kSensitivity = 0x8827;
   constexpr int kRecommendedIndex = 0x8832, kIsoSpeed = 0x8833;
   constexpr int kShutterSpeedValue = 0x9201, kApertureValue = 0x9202;
-  // The 16 bits of the sensitivity hold no more; the other tags tell then (Exif 2.3, 4.6.5).
+  // The 16 bits of the sensitivity hold no larger value; if it is larger, other tags state it (Exif
+  // 2.3, 4.6.5).
   constexpr double kMostSensitivity = 65535;
   ExposureFacts facts;
   facts.time_s = IfStated(exif.Number(kExposureTime, 0));
@@ -39,7 +40,7 @@ ExposureFacts FactsOf(const TiffDirectory& exif) {
   return facts;
 }
 
-// The bytes [begin, end) as a source of their own.
+// Returns a source of the bytes [begin, end).
 ByteSource PartOf(const ByteSource& source, uint64_t begin, uint64_t end) {
   return [&source, begin, end](uint64_t offset, std::span<uint8_t> to) -> size_t {
     if (offset >= end - begin) return 0;
@@ -60,7 +61,7 @@ ExposureFacts FactsOfTiff(const ByteSource& source) {
   return exif ? FactsOf(*exif) : ExposureFacts();
 }
 
-// Exif data are in a segment APP1 before the pixels.
+// Reads the Exif data of a segment APP1 before the pixels.
 ExposureFacts FactsOfJpeg(const ByteSource& source) {
   constexpr uint64_t kExif = 0x457869660000, kApp1 = 0xe1, kStartOfScan = 0xda;
   uint64_t offset = 2;
@@ -69,7 +70,9 @@ ExposureFacts FactsOfJpeg(const ByteSource& source) {
     std::optional<uint64_t> marker;
     while ((marker = BigEndian(source, offset++, 1)) == 0xff) continue;
     if (!marker || *marker == kStartOfScan) break;
-    if (*marker <= 0x01 || (*marker >= 0xd0 && *marker <= 0xd9)) continue;  // no content
+    if (*marker <= 0x01 || (*marker >= 0xd0 && *marker <= 0xd9))
+      continue;  // these segments have
+                 // no content
     const auto length = BigEndian(source, offset, 2);
     if (!length) break;
     const uint64_t end = offset + std::max<uint64_t>(*length, 2);
@@ -80,7 +83,7 @@ ExposureFacts FactsOfJpeg(const ByteSource& source) {
   return {};
 }
 
-// Exif data are in the chunk eXIf (PNG, third edition, 11.3.4.5).
+// Reads the Exif data of the chunk eXIf (PNG, third edition, 11.3.4.5).
 ExposureFacts FactsOfPng(const ByteSource& source) {
   constexpr uint64_t kExif = 0x65584966;
   uint64_t offset = 8;  // chunks: length, type, content, checksum

@@ -6,8 +6,9 @@
 
 namespace lf {
 
-// Reads the Exif data of a file of this format; nothing is known of camera raw files and EXR.
-// ExposureTime, FNumber and the sensitivity go before the APEX values of the same.
+// Returns the exposure that the Exif data of a file of this format state; nothing for camera raw
+// files and EXR files. ExposureTime, FNumber and the sensitivity take precedence over the
+// equivalent APEX values.
 ExposureFacts ExposureOfExif(const ByteSource& source, ImageFormat format);
 
 }  // namespace lf

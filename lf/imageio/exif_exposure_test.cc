@@ -28,7 +28,7 @@ void Append(uint64_t value, int bytes, std::string* text) {
   for (int i = 0; i < bytes; ++i) *text += static_cast<char>(value >> 8 * i & 255);
 }
 
-// A TIFF file, little-endian, whose first directory names one with these tags.
+// Returns a little-endian TIFF file whose first directory names an Exif directory with these tags.
 std::string ExifOf(const std::vector<Tag>& tags) {
   std::string file("II*\0\x08\0\0\0\x01\0\x69\x87\x04\0\x01\0\0\0\x1a\0\0\0\0\0\0\0", 26), values;
   Append(tags.size(), 2, &file);

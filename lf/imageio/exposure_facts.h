@@ -1,4 +1,4 @@
-// The exposure that an image file states, by Exif or as LibRaw reads it.
+// The exposure that an image file states, in its Exif data or as LibRaw reads it.
 #pragma once
 
 #include <filesystem>
@@ -10,18 +10,18 @@
 
 namespace lf {
 
-// Each is missing where the file does not state it, and above 0 and finite otherwise.
+// A value is missing if the file does not state it; otherwise it is above 0 and finite.
 struct ExposureFacts {
   std::optional<double> time_s;
   std::optional<double> f_number;
   std::optional<double> iso;
 };
 
-// Reads the header alone: Exif data of JPEG, TIFF and PNG files; what LibRaw tells of camera raw
-// files. EXR files state nothing. kInput as for ReadImageInfo().
+// Reads the header alone: the Exif data of JPEG, TIFF and PNG files; camera raw files through
+// LibRaw. EXR files state nothing. kInput as for ReadImageInfo().
 Result<ExposureFacts> ReadExposureFacts(const std::filesystem::path& path);
 
-// The same for a file that is in memory; `name` is what messages call it.
+// Reads a file that is in memory; messages call it `name`.
 Result<ExposureFacts> ReadExposureFactsBytes(std::string_view bytes, const std::string& name);
 
 }  // namespace lf

@@ -6,11 +6,12 @@
 #include "lf/imageio/image_file.h"
 #include "lf/imageio/whole_file.h"
 
-// OpenImageIO loses a string where libpng jumps out of it; only our own faults are looked for.
+// OpenImageIO leaks a string when libpng leaves it by longjmp. The fuzzer looks for our own faults
+// only.
 extern "C" const char* __asan_default_options() { return "detect_leaks=0"; }
 
-// Any bytes are an image or an error that names the file. Pictures above a million values are left
-// to their headers: decoding them takes long and shows nothing new.
+// Any bytes must give an image, or an error that names the file. Pictures above a million values
+// are read up to their header only, because decoding them takes long and shows nothing new.
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size_bytes) {
   const std::string_view file(reinterpret_cast<const char*>(bytes), size_bytes);
   if (const auto facts = lf::ReadExposureFactsBytes(file, "fuzz"); facts) {

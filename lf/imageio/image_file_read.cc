@@ -37,8 +37,8 @@ ByteSource SourceOf(OIIO::Filesystem::IOProxy& file) {
   };
 }
 
-// A file on disk. A system may give fewer bytes than there are, or be interrupted: OpenImageIO
-// would take that for the end.
+// A file on disk that repeats short reads. The system may return fewer bytes than the file has, or
+// be interrupted, and OpenImageIO would take that for the end of the file.
 class PatientFile : public OIIO::Filesystem::IOFile {
  public:
   explicit PatientFile(const std::string& name) : IOFile(name, Read) {}
@@ -55,21 +55,22 @@ class PatientFile : public OIIO::Filesystem::IOFile {
   }
 };
 
-// A file, under its name or in memory.
+// A file on disk or in memory, with the name that messages use.
 struct FileSource {
   OIIO::Filesystem::IOProxy& file;
   std::string name;
 };
 
-// A decoder at the start of its pixels.
+// A decoder that has read the header.
 struct OpenImage {
   std::string name;
   std::unique_ptr<OIIO::ImageInput> input;
   OIIO::ImageSpec spec;
-  std::vector<int> channel_order;  // as we give them: indices into the file's order
+  std::vector<int> channel_order;  // in our order: indices into the file's order
 };
 
-// The stored type of every channel: 8 and 16 for unsigned integers, 32 for what becomes float.
+// Returns the bits of the stored type: 8 or 16 for unsigned integers, 32 if any channel becomes
+// float.
 int StoredBits(const OIIO::ImageSpec& spec) {
   int bits = 8;
   for (int channel = 0; channel < spec.nchannels; ++channel) {
@@ -103,7 +104,7 @@ Result<OpenImage> OpenPicture(const FileSource& source, ImageFormat format) {
     return InputError(fmt::format("{}: this OpenImageIO cannot read {} files: {}", name,
                                   PluginName(format), OIIO::geterror()));
   OIIO::ImageSpec wishes;
-  wishes.attribute("oiio:UnassociatedAlpha", 1);  // alpha stays beside the colours
+  wishes.attribute("oiio:UnassociatedAlpha", 1);  // colours are not multiplied by alpha
   image.input->set_ioproxy(&source.file);
   if (!image.input->open(name, image.spec, wishes)) {
     const std::string remarks = image.input->geterror();
@@ -144,7 +145,7 @@ Result<void> ReadPixels(OpenImage& image, OIIO::TypeDesc type, void* pixels) {
   return {};
 }
 
-// The image of `stored` of this type and size, in the memory it has if it can be.
+// Returns the image of this type in `stored`, resized; reuses its memory if possible.
 template <class T>
 Image<T>& Resized(const OIIO::ImageSpec& spec, StoredImage* stored) {
   if (!std::holds_alternative<Image<T>>(*stored)) stored->emplace<Image<T>>();
@@ -159,7 +160,7 @@ Result<void> ReadSimply(OpenImage& image, StoredImage* stored) {
                     Resized<T>(image.spec, stored).pixels().data());
 }
 
-// Channels of any types, in any order.
+// Reads channels of any types, in any order.
 Result<void> ReadMixed(OpenImage& image, StoredImage* stored) {
   const OIIO::ImageSpec& spec = image.spec;
   const size_t pixel_bytes = spec.pixel_bytes(true);
@@ -258,7 +259,7 @@ Result<PixelRect> All(const ImageFileInfo& info) {
   return PixelRect{0, 0, info.width, info.height};
 }
 
-// What a decoder throws becomes an error; out of memory is main's business.
+// Turns the exceptions of a decoder into errors, except std::bad_alloc, which main() handles.
 template <class Read>
 auto WithoutThrowing(const std::string& name, const Read& read) -> decltype(read()) {
   try {
@@ -272,7 +273,7 @@ auto WithoutThrowing(const std::string& name, const Read& read) -> decltype(read
   }
 }
 
-// What `read` tells of a file, of which no more is read than it asks for.
+// Calls `read` with the file on disk. It is not read beyond what `read` asks for.
 template <class Read>
 auto FromFile(const fs::path& path, const Read& read)
     -> decltype(read(std::declval<const FileSource&>())) {

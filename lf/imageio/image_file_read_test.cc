@@ -15,7 +15,7 @@ class ReadImageTest : public FolderTest {
   void Save(const std::string& name, const std::string& bytes) const {
     ASSERT_TRUE(WriteFileAtomically(folder_ / name, bytes));
   }
-  // A file as other programs write it.
+  // Writes a file as other programs write it.
   void SaveByOpenImageIo(const std::string& name, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
                          const void* pixels) const {
     const std::string path = (folder_ / name).string();
@@ -37,7 +37,7 @@ const std::string kPng4Bit =
     "\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\0\0\0\x10\0\0\0\x01\x04\0\0\0\0\x37\xe2\x9c\x82\0\0\0\x11IDAT"
     "\x78\xda\x63\x60\x54\x76\x4d\xef\x5c\x7d\xf6\x3d\0\x0b\x55\x03\xc1\xf3\xa9\xfc\xda\0\0\0\0IEND"
     "\xae\x42\x60\x82"s;
-// 2 x 1 pixels of a palette of two colours: (10, 20, 30), (40, 50, 60).
+// 2 x 1 pixels with a palette of two colours: (10, 20, 30), (40, 50, 60).
 const std::string kPngPalette =
     "\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\0\0\0\x02\0\0\0\x01\x01\x03\0\0\0\xce\xec\xed\xc9\0\0\0\x06PLT"
     "E"

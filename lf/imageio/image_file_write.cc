@@ -61,8 +61,8 @@ std::string TextOf(const std::variant<std::string, double, int>& value) {
   return fmt::format("{}", std::get<int>(value));
 }
 
-// EXR: attributes with their types. PNG: one text each. TIFF, JPEG: lines of the description, the
-// one text that every reader shows.
+// EXR gets attributes with their types, PNG one text for each entry. TIFF and JPEG get lines of the
+// description, which is the only text that every reader shows.
 void AddMetadata(OIIO::ImageSpec& spec, ImageFormat format, const ImageMetadata& metadata) {
   std::string description;
   for (const auto& [key, value] : metadata) {
@@ -80,14 +80,16 @@ void AddMetadata(OIIO::ImageSpec& spec, ImageFormat format, const ImageMetadata&
 OIIO::ImageSpec SpecOf(ImageFormat format, int width, int height, int channels,
                        OIIO::TypeDesc type) {
   OIIO::ImageSpec spec(width, height, channels, type);
-  spec.attribute("oiio:UnassociatedAlpha", 1);  // nothing is multiplied in or divided out
+  spec.attribute("oiio:UnassociatedAlpha", 1);  // colours are neither multiplied nor divided by
+                                                // alpha
   spec.alpha_channel = -1;
-  // What the last twentieth of a file's size would cost is most of a frame's encoding.
+  // Moderate compression: the last twentieth of a file's size would cost most of a frame's encoding
+  // time.
   if (format == ImageFormat::kExr) spec.attribute("compression", "zip:2");
   if (format == ImageFormat::kPng) spec.attribute("png:compressionLevel", 4);
   if (format == ImageFormat::kTiff) spec.attribute("compression", "zip");
   if (format == ImageFormat::kExr || format == ImageFormat::kTiff)
-    spec.attribute("DateTime", "");  // the date of today would make equal frames differ
+    spec.attribute("DateTime", "");  // today's date would make equal frames differ
   if (format == ImageFormat::kJpeg) {
     spec.attribute("compression", "jpeg:95");
     spec.attribute("jpeg:subsampling", "4:4:4");
@@ -95,11 +97,12 @@ OIIO::ImageSpec SpecOf(ImageFormat format, int width, int height, int channels,
   return spec;
 }
 
-// Stores row y as the spec says, without gaps.
+// Stores row y in the type that the ImageSpec states, without gaps.
 using PackRow = std::function<void(int y, std::byte* to)>;
 
-// Rows encoded at a time: whole blocks of EXR's compression (16) and strips of TIFF (32), so that
-// the bytes are those of a picture encoded at once. Of 8192 pixels they take about 0.1 s.
+// Number of rows that are encoded at a time: whole blocks of EXR's compression (16) and strips of
+// TIFF (32), so that the bytes equal those of a picture encoded at once. Rows of 8192 pixels take
+// about 0.1 s.
 constexpr int kBlockRows = 32;
 
 ByteSource SourceOf(const std::vector<unsigned char>& bytes) {
@@ -111,7 +114,7 @@ ByteSource SourceOf(const std::vector<unsigned char>& bytes) {
   };
 }
 
-// The file in memory first: then every failure of the disk is seen by core/file.h.
+// Encodes the file in memory first, so that core/file.h detects every failure of the disk.
 Result<void> Encode(const fs::path& path, ImageFormat format, const OIIO::ImageSpec& spec,
                     const PackRow& pack_row, const std::function<bool()>& is_interrupted) {
   ConfigureOpenImageIo();
@@ -143,13 +146,13 @@ Result<void> Encode(const fs::path& path, ImageFormat format, const OIIO::ImageS
   } catch (const std::exception& error) {
     return failure(error.what());
   }
-  // Where memory runs out in its destructors, OpenEXR says nothing and leaves blocks out.
+  // If memory runs out in its destructors, OpenEXR reports nothing and omits blocks.
   if (const Result<void> whole = CheckIsWhole(SourceOf(bytes), bytes.size(), name); !whole)
     return OutputError(fmt::format("{} (did memory run out?)", whole.error().message));
   return WriteFileAtomically(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
-// Each value converted to To.
+// Returns a PackRow that converts each value to To.
 template <class To, class From, class Convert>
 PackRow Packing(ImageView<const From> pixels, const Convert& convert) {
   const size_t row_values = static_cast<size_t>(pixels.width) * pixels.channels;
@@ -162,7 +165,7 @@ PackRow Packing(ImageView<const From> pixels, const Convert& convert) {
   };
 }
 
-// NaN compares false and becomes 0.
+// Clips and rounds a value in [0, 1]. NaN compares false and becomes 0.
 template <class T>
 T IntegerOf(float value) {
   constexpr double kMax = std::numeric_limits<T>::max();
@@ -213,7 +216,7 @@ OIIO::TypeDesc TypeOf(const ExrChannel& channel) {
   return channel.as_half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT;
 }
 
-// Row y of a channel, pixels `step` bytes apart.
+// Stores row y of a channel, with `step` bytes from pixel to pixel.
 void StoreRow(const ExrChannel& channel, int y, std::byte* to, size_t step) {
   const auto copy = [&](const auto& view) {
     for (int x = 0; x < view.width; ++x) {

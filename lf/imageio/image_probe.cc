@@ -14,7 +14,8 @@
 namespace lf {
 namespace {
 
-// `count` bytes at `offset` as a number, the most significant first; none beyond the end.
+// Returns `count` bytes at `offset` as a number, the most significant first; none if they lie
+// beyond the end.
 std::optional<uint64_t> BigEndian(const ByteSource& source, uint64_t offset, size_t count) {
   std::array<uint8_t, 8> bytes;
   if (source(offset, std::span(bytes).first(count)) != count) return std::nullopt;
@@ -27,8 +28,8 @@ bool StartsWith(std::span<const uint8_t> bytes, std::string_view magic) {
   return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
 }
 
-// A whole file of a picture of this size has least_bytes. A header that claims more is refused
-// before a decoder believes it.
+// Refuses a header that claims more than the file can hold, before a decoder believes it. A whole
+// file with a picture of this size has at least least_bytes.
 Result<void> CheckClaim(const ByteSource& source, uint64_t width, uint64_t height,
                         uint64_t least_bytes, const std::string& name) {
   LF_RETURN_IF_ERROR(CheckPixelCount(width, height, name));
@@ -41,14 +42,14 @@ Result<void> CheckClaim(const ByteSource& source, uint64_t width, uint64_t heigh
 
 constexpr uint64_t kPngPixels = 0x49444154, kPngEnd = 0x49454e44;  // "IDAT", "IEND"
 
-// Length, type, content, checksum.
+// A chunk is length, type, content, checksum.
 struct PngChunk {
   uint64_t type = 0;
   uint64_t end = 0;  // offset behind it
   bool is_whole = false;
 };
 
-// None where the file ends.
+// Returns none if the file ends first.
 std::optional<PngChunk> PngChunkAt(const ByteSource& source, uint64_t offset) {
   const auto length = BigEndian(source, offset, 4), type = BigEndian(source, offset + 4, 4);
   if (!length || !type) return std::nullopt;
@@ -57,7 +58,8 @@ std::optional<PngChunk> PngChunkAt(const ByteSource& source, uint64_t offset) {
 }
 constexpr uint64_t kFirstPngChunk = 8;
 
-// libpng allocates as many bytes as a chunk claims, except for those of pixels.
+// Checks the chunks before the pixels, because libpng allocates as many bytes as such a chunk
+// claims.
 Result<void> CheckPngChunks(const ByteSource& source, const std::string& name) {
   uint64_t offset = kFirstPngChunk;
   while (const auto chunk = PngChunkAt(source, offset)) {
@@ -76,7 +78,7 @@ Result<void> CheckPng(const ByteSource& source, const std::string& name) {
   const auto depth = BigEndian(source, 24, 1), colour_type = BigEndian(source, 25, 1);
   if (!width || !height || !depth || !colour_type)
     return InputError(fmt::format("{}: PNG file ends within its header", name));
-  constexpr uint64_t kDeflateRatio = 1032;  // no stream is packed more tightly
+  constexpr uint64_t kDeflateRatio = 1032;  // largest compression ratio of deflate
   const uint64_t channels = *colour_type == 2   ? 3
                             : *colour_type == 4 ? 2
                             : *colour_type == 6 ? 4
@@ -87,7 +89,7 @@ Result<void> CheckPng(const ByteSource& source, const std::string& name) {
   return CheckPngChunks(source, name);
 }
 
-// The frame header (SOFn) carries the size. Bytes between segments are skipped, as libjpeg does.
+// Checks the size in the frame header (SOFn). Bytes between segments are skipped, as libjpeg does.
 Result<void> CheckJpeg(const ByteSource& source, const std::string& name) {
   uint64_t offset = 2;
   while (const auto byte = BigEndian(source, offset++, 1)) {
@@ -95,7 +97,9 @@ Result<void> CheckJpeg(const ByteSource& source, const std::string& name) {
     std::optional<uint64_t> marker;
     while ((marker = BigEndian(source, offset++, 1)) == 0xff) continue;
     if (!marker || *marker == 0xd9 || *marker == 0xda) break;
-    if (*marker <= 0x01 || (*marker >= 0xd0 && *marker <= 0xd8)) continue;  // no content
+    if (*marker <= 0x01 || (*marker >= 0xd0 && *marker <= 0xd8))
+      continue;  // these segments have
+                 // no content
     const bool is_frame =
         *marker >= 0xc0 && *marker <= 0xcf && *marker != 0xc4 && *marker != 0xc8 && *marker != 0xcc;
     if (is_frame) {
@@ -114,7 +118,7 @@ Result<void> CheckJpeg(const ByteSource& source, const std::string& name) {
       fmt::format("{}: JPEG file without a frame header: truncated or damaged", name));
 }
 
-// True for the start of a camera raw file that is no TIFF file.
+// Returns true for the first bytes of a camera raw file that is not a TIFF file.
 bool IsOtherRaw(std::span<const uint8_t> start) {
   using namespace std::string_view_literals;
   struct Kind {
@@ -131,7 +135,7 @@ bool IsOtherRaw(std::span<const uint8_t> start) {
   return false;
 }
 
-// True for a camera raw file among TIFF files.
+// Returns true if a TIFF file is a camera raw file.
 bool IsRawTiff(const ByteSource& source, std::span<const uint8_t> start) {
   constexpr int kNewSubfileType = 254, kDngVersion = 50706;
   if (start.size() >= 10 && start[8] == 'C' && start[9] == 'R') return true;  // Canon CR2

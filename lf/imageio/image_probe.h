@@ -1,7 +1,9 @@
-// What the structure of an image file tells before a decoder sees it. Internal to this folder.
+// Facts that the structure of an image file tells before a decoder reads it. Internal to this
+// folder.
 //
-// Decoders allocate by what a header claims, and some (progressive JPEG) do so on opening; and
-// they differ in how they take a file that ends early. So the claims are looked at first.
+// Decoders allocate memory by the claims of a header, and some do so when they open the file
+// (progressive JPEG). They also differ in how they handle a file that ends early. Therefore the
+// claims are checked first.
 #pragma once
 
 #include <cstdint>
@@ -13,19 +15,19 @@
 
 namespace lf {
 
-// Copies bytes from `offset` on into `to`; gives how many there were.
+// Copies the bytes from `offset` on into `to`; returns how many there were.
 using ByteSource = std::function<size_t(uint64_t offset, std::span<uint8_t> to)>;
 
 enum class ImageFormat { kPng, kJpeg, kTiff, kExr, kRaw };
 
-// By content. kRaw: a file as cameras write them. A TIFF file is one if it is a DNG, or leads with
-// a thumbnail, which would pass as TIFF and show the thumbnail. kInput: a format that is not read
-// here, or a PNG or JPEG that claims more than kMaxImagePixels, or more than a file of its length
-// can hold, or a PNG that claims a longer chunk before its pixels than the file has bytes.
+// Tells the format by the content. kRaw is a file as cameras write it. A TIFF file is kRaw if it is
+// a DNG, or if it begins with a thumbnail, because a TIFF decoder would show the thumbnail. kInput:
+// the format is not read here; a PNG or JPEG claims more than kMaxImagePixels or more than a file
+// of its length can hold; a PNG claims a chunk before its pixels that is longer than the file.
 inline constexpr uint64_t kMaxImagePixels = uint64_t{1} << 30;
 Result<ImageFormat> ProbeImage(const ByteSource& source, const std::string& name);
 
-// kInput for an image of more pixels than are read here.
+// kInput if an image has more pixels than kMaxImagePixels.
 Result<void> CheckPixelCount(uint64_t width, uint64_t height, const std::string& name);
 
 // kInput if the chunks of a PNG do not reach their end mark.

@@ -41,7 +41,7 @@ TEST(ImageProbe, RefusesMorePixelsThanAreRead) {
             "a: claims 32768 x 32769 pixels, " + limit);
   EXPECT_EQ(MessageOf(Probe(PngHeader("\xff\xff\xff\xff", "\xff\xff\xff\xff"))),
             "a: claims 4294967295 x 4294967295 pixels, " + limit);
-  // Progressive, after a segment to skip and stuffing.
+  // A progressive file, with a segment that is skipped and a fill byte before the frame header.
   const auto jpeg = [](const std::string& size) {
     return Probe("\xff\xd8\xff\xe0\0\4zz..\xff\xff\xc2\0\x11\x08"s + size + "\x03");
   };
@@ -56,7 +56,7 @@ TEST(ImageProbe, RefusesChunksOfAPngThatAreLongerThanTheFile) {
   EXPECT_EQ(MessageOf(Probe(head + text + "\x7f\xff\xff\xfftEXta\0b"s + end)),
             "a: claims a chunk of 2147483647 bytes, for which the file is too short: truncated or "
             "damaged");
-  // Chunks of pixels are read in parts, so that the size of an image in a cut file is known.
+  // Chunks of pixels are read in parts, so that the size of an image in a truncated file is known.
   EXPECT_TRUE(Probe(head + "\x7f\xff\xff\xffIDAT..."s));
 }
 
@@ -81,7 +81,7 @@ TEST(ImageProbe, ACameraRawFileIsNotTakenForItsThumbnail) {
   EXPECT_EQ(*Probe(header + width + thumbnail), ImageFormat::kRaw);
   EXPECT_EQ(*Probe(header + width + dng_version), ImageFormat::kRaw);
   EXPECT_EQ(*Probe("II*\0\x10\0\0\0CR\2\0"s), ImageFormat::kRaw);
-  // Ends within the directory: the decoder's business.
+  // The file ends within the directory, which the decoder will report.
   EXPECT_EQ(*Probe(header + width), ImageFormat::kTiff);
 }
 

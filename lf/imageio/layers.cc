@@ -10,13 +10,13 @@
 namespace lf {
 namespace {
 
-// Of a channel: "" for "R", "beauty." for "beauty.R".
+// Returns the layer of a channel: "" for "R", "beauty." for "beauty.R".
 std::string LayerOf(const std::string& channel_name) {
   const size_t dot = channel_name.rfind('.');
   return dot == std::string::npos ? "" : channel_name.substr(0, dot + 1);
 }
 
-// That have R, G and B.
+// Returns the layers that have R, G and B.
 std::vector<std::string> ColourLayers(const std::vector<std::string>& channel_names) {
   const std::set<std::string> names(channel_names.begin(), channel_names.end());
   std::set<std::string> layers;
@@ -36,7 +36,7 @@ Result<std::vector<int>> ColoursFirst(const std::vector<std::string>& channel_na
     return channel_name == "R" || channel_name == "G" || channel_name == "B";
   };
   const std::vector<std::string> layers = ColourLayers(channel_names);
-  std::string chosen;  // the plain channels, which may be fewer than three
+  std::string chosen;  // "": the channels without a layer, of which some may be missing
   if (std::none_of(channel_names.begin(), channel_names.end(), is_plain)) {
     if (layers.size() > 1)
       return InputError(fmt::format(

@@ -1,4 +1,4 @@
-// Which channels of an EXR file are its colours. Internal to this folder.
+// Finds the colour channels of an EXR file. Internal to this folder.
 #pragma once
 
 #include <string>
@@ -8,11 +8,12 @@
 
 namespace lf {
 
-// Indices of the channels, R, G, B and A first: those without a layer, or those of the one layer
-// that has R, G and B; the others in the order of the file.
+// Returns the indices of all channels, with R, G, B and A first. These are the ones without a layer
+// or, if there are none, those of the only layer that has R, G and B. The others follow in the
+// order of the file.
 //   channel_names  "R", "beauty.R", ...
 //   name           of the file, for messages
-// kInput: colours in several layers alone.
+// kInput: only layers have colours, and several do.
 Result<std::vector<int>> ColoursFirst(const std::vector<std::string>& channel_names,
                                       const std::string& name);
 

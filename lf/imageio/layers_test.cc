@@ -10,7 +10,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-// The names in their new order.
+// Returns the names in their new order.
 Names Ordered(const Names& names) {
   const Result<std::vector<int>> order = ColoursFirst(names, "a.exr");
   EXPECT_TRUE(order) << order.error().message;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kLargestFactor = 1000;
 
-// As shot: factors of R, G, B and a second green.
+// Returns the white balance as shot. LibRaw has factors of R, G, B and a second green.
 std::optional<std::array<double, 3>> WhiteBalanceOf(const libraw_colordata_t& colour) {
   const auto& factors = colour.cam_mul;
   const std::array<double, 3> balance = {static_cast<double>(factors[0]) / factors[1], 1,
@@ -22,7 +22,8 @@ std::optional<std::array<double, 3>> WhiteBalanceOf(const libraw_colordata_t& co
   return balance;
 }
 
-// Rows of R, G, B and a second green. LibRaw gives the identity where it knows nothing.
+// Returns the colour matrix. LibRaw has rows of R, G, B and a second green, and gives the identity
+// if it knows none.
 std::optional<Mat3> CameraToSrgbOf(const libraw_colordata_t& colour) {
   Mat3 matrix;
   for (int row = 0; row < 3; ++row)
@@ -32,7 +33,8 @@ std::optional<Mat3> CameraToSrgbOf(const libraw_colordata_t& colour) {
   return matrix;
 }
 
-// A level of all pixels, one of each colour, and a pattern of columns[1] x columns[0] levels add.
+// Returns the mean black level. LibRaw's levels add up: one for all pixels, one for each colour,
+// and a pattern of rows x columns levels.
 template <class T>
 double MeanBlack(double common, const T* levels, unsigned rows, unsigned columns) {
   double mean = common + std::accumulate(levels, levels + 4, 0.0) / 4;
@@ -53,7 +55,7 @@ double DngBlack(const libraw_dng_levels_t& levels) {
 bool RepeatsEveryTwo(LibRaw& raw) {
   for (int y = 2; y < 8; ++y)
     for (int x = 0; x < 2; ++x) {
-      // A second green may have a number of its own.
+      // A second green may have its own colour number.
       const char here = raw.imgdata.idata.cdesc[raw.COLOR(y, x)];
       if (here != raw.imgdata.idata.cdesc[raw.COLOR(y % 2, x)]) return false;
     }

@@ -113,7 +113,7 @@ TEST(RawImage, TheOrientationIsToldButNotApplied) {
               static_cast<int>(orientation));
 }
 
-// MaskedAreas are pixels to measure the black level on for who likes; BlackLevel states it.
+// MaskedAreas are pixels on which a reader may measure the black level, but BlackLevel states it.
 TEST(RawImage, CoveredPixelsDoNotReplaceTheStatedBlackLevel) {
   TestDng dng(Mosaic(60, 50), "BGGR");
   dng.Long(50829, {2, 4, 46, 57}).Long(50830, {0, 0, 50, 4}).Short(50714, {300});
@@ -137,7 +137,7 @@ TEST(RawImage, TheTagsTellThePattern) {
   EXPECT_EQ(Read(other_colours.Bytes(50710, "\3\4\5")).info.raw.value().bayer, BayerPattern::kNone);
 }
 
-// LibRaw makes odd margins even. The pattern is that of the active area's corner all the same.
+// LibRaw makes odd margins even. The pattern must still be that of the corner of the active area.
 TEST(RawImage, TheActiveAreaIsTheImage) {
   const Image<uint16_t> mosaic = Mosaic(60, 50);
   for (const auto& [top, left] : {std::pair(2, 4), {3, 4}, {2, 5}, {3, 5}})
@@ -168,8 +168,8 @@ TEST(RawImage, LevelsAreThoseOfTheTags) {
   EXPECT_FALSE(Read(beyond.Long(50714, {70000})).info.raw->black_level);
 }
 
-// Camera RGB = ColorMatrix1 XYZ; its rows balanced so that white gives 1, 1, 1 (DNG 1.4, chapter
-// 6).
+// Camera RGB is ColorMatrix1 times XYZ, with rows balanced so that white gives 1, 1, 1 (DNG 1.4,
+// chapter 6).
 TEST(RawImage, ColoursAreThoseOfTheTags) {
   TestDng dng(Mosaic(), "RGGB");
   const RawFacts unknown = *Read(dng).info.raw;
@@ -211,7 +211,7 @@ TEST(RawImage, AFileCutAnywhereIsAnError) {
   ErrorOf(whole.substr(0, whole.size() - 1));
 }
 
-// The code of a picture ends with a mark of two bytes, which no decoder needs.
+// The last two bytes of the picture's data are an end mark, which no decoder needs.
 TEST(RawImage, ACompressedFileCutAnywhereIsAnError) {
   const std::string whole = TestDng(Mosaic(80, 60), "RGGB").Tiled(32, 32, true).File();
   for (size_t size = 0; size + 2 < whole.size(); size += 1 + size / 200)
@@ -219,7 +219,7 @@ TEST(RawImage, ACompressedFileCutAnywhereIsAnError) {
   ErrorOf(whole.substr(0, whole.size() - 3));
 }
 
-// A tile that does not begin as JPEG ends the decoding without a word of LibRaw.
+// If a tile does not begin as JPEG, LibRaw stops decoding without an error.
 TEST(RawImage, ADamagedTileIsAnError) {
   const std::string whole = TestDng(Mosaic(66, 34), "RGGB").Tiled(32, 32, true).File();
   size_t count = 0;
@@ -263,7 +263,7 @@ TEST(RawImage, ManyThreadsReadAtTheSameTime) {
 
 class RawFileTest : public FolderTest {
  protected:
-  // All pixels of the sensor, as the program `unprocessed_raw` of LibRaw writes them.
+  // Returns all pixels of the sensor, as LibRaw's program `unprocessed_raw` writes them.
   Image<uint16_t> SensorByLibRaw(const TestDng& dng) {
     const std::string path = (folder_ / "a.dng").string();
     EXPECT_TRUE(WriteFileAtomically(path, dng.File()));
@@ -282,7 +282,7 @@ class RawFileTest : public FolderTest {
     return sensor;
   }
 
-  // Compares the pixels from (left, top) on.
+  // Compares the pixels to the right of and below (left, top).
   void ExpectAsByLibRaw(const TestDng& dng, int left, int top) {
     const Image<uint16_t> sensor = SensorByLibRaw(dng);
     const Result<StoredImage> read = ReadImage(folder_ / "a.dng");

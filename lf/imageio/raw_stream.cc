@@ -27,7 +27,7 @@ int RawStream::read(void* to, size_t size, size_t count) {
   if (size == 0 || count == 0) return 0;
   const uint64_t rest = Position() < size_bytes_ ? size_bytes_ - Position() : 0;
   const size_t whole = static_cast<size_t>(std::min<uint64_t>(count, rest / size));
-  // Part of an element at the end is read, but not counted, as fread() does.
+  // If an element ends beyond the file, its bytes are read but it is not counted, as in fread().
   const size_t wanted = whole == count ? size * count : static_cast<size_t>(rest);
   if (rest == 0) NoteEnd();
   auto* bytes = static_cast<uint8_t*>(to);
@@ -74,7 +74,7 @@ char* RawStream::gets(char* line, int size) {
   return length > 0 ? line : nullptr;
 }
 
-// LibRaw asks for "%d" and "%f" alone.
+// LibRaw uses the formats "%d" and "%f" only.
 int RawStream::scanf_one(const char* format, void* value) {
   constexpr size_t kMostDigits = 24;
   std::string text;

@@ -1,4 +1,4 @@
-// The bytes of a file as LibRaw reads them. Internal to imageio.
+// Gives LibRaw the bytes of a file. Internal to imageio.
 #pragma once
 
 #include <libraw/libraw.h>
@@ -11,14 +11,14 @@
 
 namespace lf {
 
-// A stream over `source`, which must outlive it. LibRaw takes little notice of a file that ends
-// early, so the stream notes it.
+// A stream over `source`, which must outlive it. LibRaw hardly notices that a file ends early, so
+// the stream records it.
 class RawStream final : public LibRaw_abstract_datastream {
  public:
   RawStream(const ByteSource& source, uint64_t size_bytes);
 
-  // True if LibRaw sought bytes at or beyond the end of the file and then read there. A decoder may
-  // look a little further than its last byte, but it never seeks there in a whole file.
+  // Returns true if LibRaw sought a position at or beyond the end of the file and then read there.
+  // A decoder may read slightly beyond its last byte, but in a whole file it never seeks there.
   bool ReadBeyondEnd() const { return read_beyond_end_; }
   void ForgetReadBeyondEnd() { read_beyond_end_ = false; }
 

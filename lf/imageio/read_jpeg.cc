@@ -7,7 +7,7 @@
 #include <csetjmp>
 #include <cstddef>
 #include <cstdio>
-// After jpeglib.h.
+// Must come after jpeglib.h.
 #include <jerror.h>
 
 #include <algorithm>
@@ -22,17 +22,17 @@ namespace {
 
 constexpr size_t kBufferBytes = size_t{1} << 16;
 
-// Interpolated colours at the edge of a part would not know their neighbours beyond it; two blocks
-// away all are as in the whole picture.
+// Margin around the wanted part. At the edge of a part, interpolated colours lack their neighbours;
+// two blocks away from the edge, all equal those of the whole picture.
 constexpr int kMargin_px = 32;
 
-// Below this share of the picture a part is decoded sooner.
+// Decoding a part is faster if it is below this share of the picture.
 constexpr double kPartPays = 0.85;
 
-// libjpeg has no end of file: it asks for more.
+// libjpeg has no end of file: it always asks for more bytes.
 struct Source : jpeg_source_mgr {
   const ByteSource* bytes = nullptr;
-  uint64_t offset = 0;  // of what follows the buffer
+  uint64_t offset = 0;  // of the bytes that follow the buffer
   std::vector<uint8_t> buffer = std::vector<uint8_t>(kBufferBytes);
 };
 
@@ -57,7 +57,7 @@ void SkipBytes(j_decompress_ptr decompress, long count) {
   source.offset += static_cast<size_t>(count) - in_buffer;
 }
 
-// The content of an APP1 segment.
+// Reads the orientation from the content of an APP1 segment.
 int OrientationOf(std::span<const uint8_t> segment) {
   constexpr std::array<uint8_t, 6> kExif = {'E', 'x', 'i', 'f', 0, 0};
   if (segment.size() < kExif.size() || !std::equal(kExif.begin(), kExif.end(), segment.begin()))
@@ -89,8 +89,8 @@ struct JpegReader::State {
     decompress.client_data = this;
     errors.error_exit = [](j_common_ptr common) { Of(common).JumpOut(); };
     errors.emit_message = [](j_common_ptr common, int level) {
-      // What libjpeg goes on with after a warning, it has guessed. Stuffing between the segments
-      // alone is harmless, and some cameras write it.
+      // After a warning, libjpeg continues with guessed pixels, so warnings are errors. The only
+      // harmless one is about fill bytes between segments, which some cameras write.
       if (level < 0 && common->err->msg_code != JWRN_EXTRANEOUS_DATA) Of(common).JumpOut();
     };
     source.bytes = &bytes;
@@ -112,13 +112,13 @@ struct JpegReader::State {
 
   static State& Of(j_common_ptr common) { return *static_cast<State*>(common->client_data); }
 
-  // Out of libjpeg, with its message. Nothing that needs a destructor may be between.
+  // Leaves libjpeg with its message by longjmp. No object between may need its destructor.
   [[noreturn]] void JumpOut() {
     errors.format_message(reinterpret_cast<j_common_ptr>(&decompress), message);
     std::longjmp(jump, 1);
   }
 
-  // kInput if `calls` of libjpeg jumped out.
+  // kInput if libjpeg reported an error during `calls`.
   template <class Calls>
   Result<void> Run(const Calls& calls) {
     if (setjmp(jump) != 0)
@@ -158,7 +158,7 @@ Result<JpegReader> JpegReader::Open(const ByteSource& source, const std::string&
         fmt::format("{}: is a JPEG of {} components{}; convert it to colour (RGB) or grey", name,
                     channels, channels == 4 ? " (CMYK)" : ""));
   decompress.out_color_space = channels == 1 ? JCS_GRAYSCALE : JCS_RGB;
-  // Of progressive files without their last scans it would invent what is missing.
+  // Smoothing would invent the details that a progressive file without its last scans lacks.
   decompress.do_block_smoothing = FALSE;
   state->info.width = static_cast<int>(decompress.image_width);
   state->info.height = static_cast<int>(decompress.image_height);
@@ -187,7 +187,7 @@ Result<PixelRect> JpegReader::Read(const PixelRect& wanted, Image<uint8_t>* imag
   JDIMENSION width = static_cast<JDIMENSION>(part.width());
   LF_RETURN_IF_ERROR(state.Run([&] {
     jpeg_start_decompress(&decompress);
-    // From the beginning of a block on, that is, some more.
+    // The crop begins at the start of a block, so it may be wider than `part`.
     if (part.width() < whole.width()) jpeg_crop_scanline(&decompress, &x_begin, &width);
   }));
   part.x_begin = static_cast<int>(x_begin);
@@ -206,7 +206,7 @@ Result<PixelRect> JpegReader::Read(const PixelRect& wanted, Image<uint8_t>* imag
         rows[i] = image->row(static_cast<int>(y + i) - part.y_begin);
       jpeg_read_scanlines(&decompress, rows, count);
     }
-    // Skipping to the very end would not look at what is there.
+    // Skipping to the very end would not detect damage there, so the last row is decoded.
     if (decompress.output_scanline + 1 < decompress.output_height)
       jpeg_skip_scanlines(&decompress, decompress.output_height - 1 - decompress.output_scanline);
     JSAMPROW last = last_row.data();

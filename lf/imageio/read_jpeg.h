@@ -1,5 +1,5 @@
-// JPEG files, decoded by libjpeg-turbo, whole or in part: the only place with libjpeg. Internal to
-// imageio.
+// Decodes JPEG files, whole or in part, with libjpeg-turbo. No other reader uses libjpeg. Internal
+// to imageio.
 #pragma once
 
 #include <cstdint>
@@ -14,25 +14,27 @@
 
 namespace lf {
 
-// A file at its header, decoded once. Not to be used by several threads at the same time.
+// A file whose header is read; it can be decoded once. One thread at a time may use it.
 class JpegReader {
  public:
-  // Reads the header. `source` must outlive the reader; ProbeImage() has looked at it.
-  // kInput: truncated or damaged; neither colour nor grey (CMYK).
+  // Reads the header. `source` must outlive the reader and must have passed ProbeImage(). kInput:
+  // the file is truncated or damaged, or neither colour nor grey (CMYK).
   static Result<JpegReader> Open(const ByteSource& source, const std::string& name);
   JpegReader(JpegReader&&) noexcept;
   ~JpegReader();
 
   const ImageFileInfo& info() const;
 
-  // Decodes at least the pixels of `wanted`, which holds some: where this saves time they and some
-  // around them, else all. Gives which, with `image` as large; its memory is used again. The pixels
-  // are those of the whole picture, bit for bit, whatever is wanted. All of the file is read, for
-  // whether it is damaged must not depend on what is wanted: a part saves the transforms alone.
-  // kInput: whatever libjpeg could only guess, or more than kMaxScans.
+  // Decodes at least the pixels of `wanted`, which must contain a pixel of the picture. If it saves
+  // time, only these and some around them are decoded, otherwise all. Returns the decoded
+  // rectangle; `image` gets its size, and its memory is reused. The pixels equal those of the whole
+  // picture, bit for bit. The whole file is read in any case, so that the detection of damage does
+  // not depend on `wanted`; a part saves only the inverse transforms. kInput: libjpeg had to guess
+  // pixels, or the file has more than kMaxScans.
   Result<PixelRect> Read(const PixelRect& wanted, Image<uint8_t>* image);
 
-  // Progressive files of more claim hours of work with few bytes; encoders write about ten.
+  // A progressive file with more scans could demand hours of work with few bytes. Encoders write
+  // about ten.
   static constexpr int kMaxScans = 200;
 
  private:

@@ -8,7 +8,7 @@
 
 namespace {
 
-// Whether the part of the two pictures is the same.
+// Returns true if `image` equals `whole` in the wanted part.
 bool SamePixels(const lf::Image<uint8_t>& whole, const lf::Image<uint8_t>& image,
                 const lf::PixelRect& rect, const lf::PixelRect& wanted) {
   for (int y = wanted.y_begin; y < wanted.y_end; ++y)
@@ -20,8 +20,9 @@ bool SamePixels(const lf::Image<uint8_t>& whole, const lf::Image<uint8_t>& image
 
 }  // namespace
 
-// The first eight bytes say which part is wanted, the rest is the file. Any file is an error that
-// names it, whatever is wanted, or a picture whose part is that of the whole.
+// The first eight bytes tell which part is wanted; the rest is the file. Any file must give an
+// error that names it, independent of the wanted part, or a picture whose part equals that of the
+// whole.
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size_bytes) {
   uint16_t corner[4];
   if (size_bytes < sizeof(corner)) return 0;

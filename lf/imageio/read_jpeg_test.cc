@@ -18,13 +18,13 @@ namespace {
 
 struct JpegKind {
   int channels = 3;
-  int h_sampling = 1, v_sampling = 1;  // of the first component against the others
+  int h_sampling = 1, v_sampling = 1;  // of the first component, relative to the others
   bool is_progressive = false;
   int restart_rows = 0;
-  bool has_separate_scans = false;  // one for each component
+  bool has_separate_scans = false;  // one scan for each component
 };
 
-// Noise on a gradient: neighbours differ, so that a pixel made of others shows.
+// Encodes noise on a gradient: neighbours differ, so that a wrong pixel is detected.
 std::string EncodeJpeg(int width, int height, const JpegKind& kind) {
   std::vector<uint8_t> row(static_cast<size_t>(width) * kind.channels);
   jpeg_compress_struct compress;
@@ -154,7 +154,7 @@ TEST(ReadJpeg, StuffingBetweenSegmentsIsHarmless) {
   EXPECT_EQ(image.pixels(), expected.pixels());
 }
 
-// Each scan decodes the whole picture once more.
+// Each scan makes the decoder process the whole picture once more.
 TEST(ReadJpeg, CountlessScansAreRefused) {
   const std::string file = EncodeJpeg(16, 16, {3, 1, 1, false, 0, true});
   const size_t scan = file.rfind("\xff\xda"), end = file.size() - 2;
@@ -170,7 +170,7 @@ TEST(ReadJpeg, CountlessScansAreRefused) {
 
 TEST(ReadJpeg, TheOrientationIsThatOfExif) {
   const std::string file = EncodeJpeg(24, 16, {});
-  // One tag: orientation (0x112), one short, 6; big and little endian.
+  // One tag: orientation (0x112), one short of value 6; big-endian and little-endian.
   const std::string big("Exif\0\0MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x06\0\0\0\0\0\0",
                         32);
   const std::string little(

@@ -19,15 +19,15 @@ namespace {
 constexpr const char* kAdvice =
     "convert it to DNG (with the mosaic as the sensor recorded it), or to 16-bit TIFF or PNG "
     "without demosaicking";
-constexpr int kLinearRaw = 34892;  // PhotometricInterpretation of DNG
+constexpr int kLinearRaw = 34892;  // PhotometricInterpretation "LinearRaw" of DNG
 
 // LibRaw without threads of its own and without messages.
 class QuietLibRaw final : public LibRaw {
  public:
   QuietLibRaw() {
     set_memerror_handler(nullptr, nullptr);
-    set_dataerror_handler(nullptr, nullptr);  // errors are counted all the same
-    imgdata.params.use_camera_wb = 1;         // with the matrices of the file, if it has some
+    set_dataerror_handler(nullptr, nullptr);  // errors are still counted
+    imgdata.params.use_camera_wb = 1;         // with the colour matrices of the file, if it has any
     imgdata.params.use_rawspeed = 0;
     imgdata.params.raw_processing_options |= LIBRAW_PROCESSING_DNG_PREFER_LARGEST_IMAGE;
     set_exifparser_handler(NoteTag, this);
@@ -41,8 +41,8 @@ class QuietLibRaw final : public LibRaw {
     return decoder && std::strcmp(decoder, name) == 0;
   }
 
-  // Returns the pixels that are the image. LibRaw makes margins even; the active area of a DNG is
-  // taken as the file states it.
+  // Returns the part of the sensor that is the image. LibRaw makes margins even, so the active area
+  // of a DNG is taken from the file.
   PixelRect VisibleArea() const {
     const libraw_image_sizes_t& sizes = imgdata.sizes;
     const tiff_ifd_t* ifd = imgdata.idata.dng_version != 0 ? IfdOfPixels() : nullptr;
@@ -52,7 +52,8 @@ class QuietLibRaw final : public LibRaw {
             sizes.top_margin + sizes.height};
   }
 
-  // True if the rows of an uncompressed DNG lie one behind the other, as LibRaw reads them.
+  // Returns true if the rows of an uncompressed DNG are contiguous in the file, as LibRaw reads
+  // them.
   bool LiesInOnePiece() const {
     const auto& unpacker = libraw_internal_data.unpacker_data;
     if (unpacker.tile_width < imgdata.sizes.raw_width ||
@@ -82,7 +83,7 @@ class QuietLibRaw final : public LibRaw {
   }
 
  private:
-  // Returns null if none leads to the pixels.
+  // Returns null if no directory leads to the pixels.
   const tiff_ifd_t* IfdOfPixels() const {
     const int count = static_cast<int>(libraw_internal_data.identify_data.tiff_nifds);
     for (int i = 0; i < std::min(count, LIBRAW_IFD_MAXCOUNT); ++i)
@@ -90,7 +91,8 @@ class QuietLibRaw final : public LibRaw {
     return nullptr;
   }
 
-  // LibRaw ignores most layouts that are not in rows and columns, and colours other than R, G, B.
+  // Records tags that LibRaw mostly ignores: layouts that are not in rows and columns, and colours
+  // other than R, G, B.
   static void NoteTag(void* self, int tag, int type, int length, unsigned order, void* stream,
                       INT64) {
     constexpr int kCfaPlaneColor = 50710, kCfaLayout = 50711, kByte = 1, kShort = 3;
@@ -125,7 +127,7 @@ std::string ReasonOfRefusal(const QuietLibRaw& raw) {
          "kind";
 }
 
-// kInput for a file without pixels as a Bayer or monochrome sensor recorded them.
+// kInput if the file has no pixels as a Bayer or monochrome sensor recorded them.
 Result<void> CheckSensor(QuietLibRaw& raw, const std::string& name) {
   const auto refuse = [&](const std::string& what) {
     return InputError(fmt::format("{}: {}; {}", name, what, kAdvice));
@@ -154,7 +156,8 @@ Result<void> CheckSensor(QuietLibRaw& raw, const std::string& name) {
   return {};
 }
 
-// LibRaw allocates by width and height, and fills what a short file lacks.
+// Checks width and height against the file's length, because LibRaw allocates by them and fills in
+// what a short file lacks.
 Result<void> CheckSizes(QuietLibRaw& raw, uint64_t size_bytes, const std::string& name) {
   const libraw_image_sizes_t& sizes = raw.imgdata.sizes;
   const int width = sizes.raw_width, height = sizes.raw_height;
@@ -176,7 +179,7 @@ Result<void> CheckSizes(QuietLibRaw& raw, uint64_t size_bytes, const std::string
         fmt::format("{}: its mosaic is in uncompressed tiles, or in strips with gaps, which LibRaw "
                     "does not read; write the DNG again, compressed without loss or in strips",
                     name));
-  // A code of a compressed pixel has at least one bit; runs of equal ones may share it.
+  // The Huffman code of a pixel has at least one bit; a run of equal pixels may share it.
   constexpr double kMostPixelsPerByte = 512;
   const double pixel_count = static_cast<double>(width) * height;
   const double least_bytes = is_packed ? pixel_count * raw.internals().unpacker_data.tiff_bps / 8
@@ -193,8 +196,9 @@ Result<void> DamageError(const std::string& name) {
   return InputError(fmt::format("{}: LibRaw cannot decode it: truncated or damaged", name));
 }
 
-// Values that a picture holds by chance once in 2^64, at its last pixels: decoders that give up
-// early leave them there. All other pixels are cleared, because LibRaw does not.
+// Marks at the last pixels of a picture, by which decoders that stop early are detected: these
+// leave the marks unchanged. A picture has these values by chance once in 2^64. All other pixels
+// are cleared, because LibRaw does not clear them.
 class DecodingMarks {
  public:
   void Set(libraw_data_t& raw, const PixelRect& area) const {
@@ -239,7 +243,7 @@ struct RawReader::State {
   std::string name;
   RawStream stream;  // outlives `raw`
   QuietLibRaw raw;
-  PixelRect area;  // the image, of the sensor's pixels
+  PixelRect area;  // the image's rectangle on the sensor
   ImageFileInfo info;
 };
 
@@ -291,7 +295,7 @@ Result<void> RawReader::Read(Image<uint16_t>* image) {
   QuietLibRaw& raw = state_->raw;
   RawStream& stream = state_->stream;
   const PixelRect& area = state_->area;
-  // LibRaw seeks the pixels when it has allocated memory for them.
+  // LibRaw seeks the pixels after it has allocated their memory.
   const DecodingMarks marks;
   stream.OnNextSeek([&] { marks.Set(raw.imgdata, area); });
   stream.ForgetReadBeyondEnd();

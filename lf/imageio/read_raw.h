@@ -1,4 +1,4 @@
-// Camera raw files, decoded by LibRaw: the only place with it. Internal to imageio.
+// Decodes camera raw files with LibRaw. No other reader uses it. Internal to imageio.
 #pragma once
 
 #include <cstdint>
@@ -13,28 +13,28 @@
 
 namespace lf {
 
-// A file at its header, decoded once. Not to be used by several threads at the same time; each has
-// a LibRaw of its own, which starts no threads.
+// A file whose header is read; it can be decoded once. One thread at a time may use it. Each reader
+// has a LibRaw object of its own, which starts no threads.
 class RawReader {
  public:
-  // Reads the header. `source` must outlive the reader.
-  // kInput: LibRaw does not know the file; it holds no Bayer or monochrome pixels as the sensor
-  // recorded them (the message says what it holds, and what to do); more pixels than are read, or
-  // than a file of its length can hold.
+  // Reads the header. `source` must outlive the reader. kInput: LibRaw does not know the file; it
+  // holds no Bayer or monochrome pixels as the sensor recorded them (the message says what it
+  // holds, and what to do); it has more pixels than are read, or than a file of its length can
+  // hold.
   static Result<RawReader> Open(const ByteSource& source, uint64_t size_bytes,
                                 const std::string& name);
   RawReader(RawReader&&) noexcept;
   ~RawReader();
 
-  // Before Read(), the black level is known of DNG files alone: LibRaw measures that of others on
-  // the covered pixels of the sensor.
+  // Before Read(), the black level is known only for DNG files. For other files LibRaw measures it
+  // on the covered pixels of the sensor.
   const ImageFileInfo& info() const;
 
   // The exposure that the camera states.
   ExposureFacts exposure() const;
 
-  // Decodes the visible pixels; the memory of `image` is used again. kInput: truncated or damaged,
-  // as far as LibRaw notices. Throws std::bad_alloc.
+  // Decodes the visible pixels into `image`, whose memory is reused. kInput: LibRaw noticed that
+  // the file is truncated or damaged. Throws std::bad_alloc.
   Result<void> Read(Image<uint16_t>* image);
 
  private:

@@ -18,7 +18,7 @@ void Widen(const std::byte* values, size_t step, size_t count, float* to, size_t
   }
 }
 
-// By OpenImageIO, side by side: it is asked once for all.
+// Calls OpenImageIO once for all values, so they are copied into a contiguous array.
 void HalvesToFloats(const std::byte* values, size_t step, size_t count, float* to, size_t to_step) {
   std::vector<uint16_t> halves(count);
   for (size_t i = 0; i < count; ++i) std::memcpy(&halves[i], values + i * step, sizeof(uint16_t));

@@ -1,4 +1,4 @@
-// A file in memory, for tests of what reads image files.
+// A file in memory, for tests of readers of image files.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace lf {
 
-// Reads from `bytes`, which must outlive the source.
+// Returns a source that reads from `bytes`, which must outlive it.
 inline ByteSource SourceOf(const std::string& bytes) {
   return [&bytes](uint64_t offset, std::span<uint8_t> to) -> size_t {
     if (offset >= bytes.size()) return 0;

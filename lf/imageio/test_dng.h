@@ -1,5 +1,5 @@
-// Writes DNG files for tests, with the tags a test names: one strip of 16-bit pixels, uncompressed,
-// unless a test asks for packed bits, tiles or lossless JPEG.
+// Writes DNG files for tests, with the tags that a test sets: one strip of uncompressed 16-bit
+// pixels, unless the test asks for packed bits, tiles or lossless JPEG.
 #pragma once
 
 #include <algorithm>
@@ -14,10 +14,10 @@
 
 namespace lf {
 
-// A classic TIFF file, little-endian, of one directory. Tags may be changed and taken away.
+// A classic TIFF file, little-endian, with one directory. Tags may be changed and removed.
 class TestDng {
  public:
-  // pattern: four letters, as lf_bayer
+  // pattern: four letters, as in lf_bayer
   TestDng(const Image<uint16_t>& mosaic, const std::string& pattern) : mosaic_(mosaic) {
     parts_.emplace_back();
     for (const uint16_t value : mosaic.pixels()) Append(value, 2, &parts_[0]);
@@ -130,7 +130,7 @@ class TestDng {
     return Set(tag, type, values.size(), bytes);
   }
 
-  // The tags of the parts: rows of each (0: none), offsets and sizes.
+  // Sets the tags of the parts: rows of each part (0: no such tag), offsets and sizes.
   TestDng& SetParts(int rows_tag, int offsets_tag, int sizes_tag) {
     std::vector<uint32_t> sizes;
     for (const std::string& part : parts_) sizes.push_back(static_cast<uint32_t>(part.size()));

@@ -1,4 +1,4 @@
-// A folder of its own for every test, and pictures that are different everywhere.
+// A separate folder for every test, and pictures of noise.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -10,8 +10,8 @@
 
 namespace lf {
 
-// Returns the code of an image of an even width. Neighbouring columns are two components, as DNG
-// writers have it for mosaics; each value is predicted from the one before it of its component.
+// Returns the bytes for an image of an even width. Neighbouring columns are two components, as DNG
+// writers do for mosaics; each value is predicted from the value before it in its component.
 inline std::string LosslessJpeg(const Image<uint16_t>& image) {
   std::string code;
   const auto append = [&code](std::initializer_list<int> bytes) {
@@ -19,7 +19,8 @@ inline std::string LosslessJpeg(const Image<uint16_t>& image) {
   };
   const int width = image.width() / 2, height = image.height();
   append({0xff, 0xd8});
-  // Huffman table 0: the 17 classes of differences have codes of 5 bits, which are their numbers.
+  // Huffman table 0: the 17 classes of differences have codes of 5 bits, equal to the class
+  // numbers.
   append({0xff, 0xc4, 0, 19 + 17, 0, 0, 0, 0, 0, 17, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0});
   for (int size = 0; size <= 16; ++size) append({size});
   append({0xff, 0xc3, 0, 14, 16, height >> 8, height & 255, width >> 8, width & 255, 2});

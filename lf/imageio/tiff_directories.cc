@@ -25,7 +25,7 @@ enum TiffType {
   kDirectory = 13
 };
 
-// 0: not a number.
+// Bytes of a number of this type; 0 if it is not a number.
 size_t BytesOf(int type) {
   switch (type) {
     case kByte:
@@ -136,7 +136,7 @@ class TiffReader {
     TiffDirectory::Entry entry;
     entry.type = static_cast<int>(Unsigned(bytes.subspan(2, 2), little_endian_));
     entry.count = Unsigned(bytes.subspan(4, 4), little_endian_);
-    // Values of up to four bytes stand in the entry itself.
+    // Values of up to four bytes are stored in the entry itself.
     entry.offset = entry.count * BytesOf(entry.type) <= 4
                        ? offset + 8
                        : Unsigned(bytes.subspan(8, 4), little_endian_);

@@ -1,5 +1,5 @@
-// The first directory of a TIFF file, read without a decoder: whether it is a camera raw file, and
-// what Exif data say. Internal to this folder.
+// Reads the first directory of a TIFF file without a decoder, to tell whether it is a camera raw
+// file, and the Exif data. Internal to this folder.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@
 
 namespace lf {
 
-// One directory (IFD): its tags, and where their values are. It has 1024 tags at most.
+// One directory (IFD): its tags, and the positions of their values. It has at most 1024 tags.
 class TiffDirectory {
  public:
   bool Has(int tag) const { return entries_.contains(tag); }
-  // The values of a tag as numbers (fractions divided). Empty where it is missing, is no number,
-  // holds more than `limit` values or lies beyond the end of the file.
+  // Returns the values of a tag as numbers (fractions are divided). Empty if the tag is missing, is
+  // not a number, has more than `limit` values or lies beyond the end of the file.
   std::vector<double> Numbers(int tag, size_t limit) const;
-  // The first value of a tag; where there is none, the default.
+  // Returns the first value of a tag, or `otherwise` if there is none.
   double Number(int tag, double otherwise) const;
 
  private:
@@ -33,10 +33,11 @@ class TiffDirectory {
   std::map<int, Entry> entries_;
 };
 
-// The first directory; none in BigTIFF files, which no camera writes. `source` must outlive it.
+// Returns the first directory; none for BigTIFF files, which no camera writes. `source` must
+// outlive it.
 std::optional<TiffDirectory> FirstTiffDirectory(const ByteSource& source);
 
-// The directory of Exif data that the first one names; none as above.
+// Returns the directory of Exif data that the first directory points to; none as above.
 std::optional<TiffDirectory> ExifDirectory(const ByteSource& source);
 
 }  // namespace lf

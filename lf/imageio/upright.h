@@ -1,4 +1,4 @@
-// Pictures turned as their orientation tag says.
+// Rotates pictures as their orientation tag says.
 #pragma once
 
 #include "lf/core/check.h"
@@ -7,10 +7,10 @@
 
 namespace lf {
 
-// Whether the tag (EXIF orientation, 1 to 8) exchanges width and height.
+// Returns true if the tag (EXIF orientation, 1 to 8) exchanges width and height.
 inline bool TurnsByQuarter(int orientation) { return orientation >= 5 && orientation <= 8; }
 
-// The picture as a viewer shows it, for the tags that exchange width and height:
+// Returns the picture as a viewer shows it, for the tags that exchange width and height:
 //   5 mirrored at the diagonal, 6 turned clockwise, 7 mirrored at the other diagonal,
 //   8 turned counter-clockwise (EXIF 2.3, 4.6.4)
 template <class T>
@@ -27,7 +27,8 @@ Image<T> Upright(const Image<T>& stored, int orientation) {
   return upright;
 }
 
-// Where the part `rect` of the upright picture lies in the stored one, of width x height.
+// Returns the part of the stored picture, of width x height, that shows `rect` of the upright
+// picture.
 inline PixelRect StoredRect(const PixelRect& rect, int width, int height, int orientation) {
   LF_CHECK(TurnsByQuarter(orientation));
   PixelRect stored = {rect.y_begin, rect.x_begin, rect.y_end, rect.x_end};
@@ -42,7 +43,8 @@ inline PixelRect StoredRect(const PixelRect& rect, int width, int height, int or
   return stored;
 }
 
-// And back: where the part `rect` of the stored picture lies in the upright one.
+// Returns the part of the upright picture that shows `rect` of the stored picture, of width x
+// height.
 inline PixelRect UprightRect(const PixelRect& rect, int width, int height, int orientation) {
   LF_CHECK(TurnsByQuarter(orientation));
   PixelRect upright = {rect.y_begin, rect.x_begin, rect.y_end, rect.x_end};

@@ -15,7 +15,7 @@
 namespace lf {
 namespace {
 
-// A number of the file, the least significant byte first, as EXR has them; none beyond the end.
+// Reads a number, the least significant byte first, as in EXR; none if it lies beyond the end.
 template <class T>
 std::optional<T> LittleEndian(const ByteSource& source, uint64_t offset) {
   std::array<uint8_t, sizeof(T)> bytes;
@@ -25,7 +25,8 @@ std::optional<T> LittleEndian(const ByteSource& source, uint64_t offset) {
   return static_cast<T>(value);
 }
 
-// Letters up to a 0, which `offset` is then behind. None where they are longer than a name may be.
+// Reads letters up to a 0, and moves `offset` behind it. Returns none if they are longer than a
+// name may be.
 std::optional<std::string> Name(const ByteSource& source, uint64_t* offset) {
   constexpr size_t kLongestName = 255;
   std::array<uint8_t, kLongestName + 1> bytes;
@@ -36,7 +37,8 @@ std::optional<std::string> Name(const ByteSource& source, uint64_t* offset) {
   return std::string(bytes.begin(), end);
 }
 
-// Rows of a block, by the number of the compression in the file (OpenEXR, "File Layout").
+// Returns the rows of a block, by the number of the compression in the file (OpenEXR, "File
+// Layout").
 std::optional<int64_t> RowsOfBlock(uint8_t compression) {
   constexpr int64_t kRows[] = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
   if (compression >= std::size(kRows)) return std::nullopt;
@@ -49,8 +51,8 @@ struct ExrHeader {
   int64_t rows_of_block = 0;
 };
 
-// None where it is damaged, or of a kind that is not written here: tiles, several parts, no pixels
-// but samples in depth.
+// Returns none if the header is damaged, or of a kind that is not written here: tiles, several
+// parts, or deep samples.
 std::optional<ExrHeader> ReadHeader(const ByteSource& source) {
   constexpr uint32_t kLongNames = 0x400, kVersion = 2;
   const auto version = LittleEndian<uint32_t>(source, 4);
@@ -100,7 +102,7 @@ Result<void> CheckExr(const ByteSource& source, uint64_t size_bytes, const std::
     const auto missing = [&] {
       return damaged(fmt::format("block {} of {} is missing", block + 1, blocks));
     };
-    // A block is the number of its first row, its length, and so many bytes.
+    // A block is the number of its first row, its length in bytes, and these bytes.
     constexpr uint64_t kBlockHeader = 8;
     if (*offset < first || *offset > size_bytes - std::min(size_bytes, kBlockHeader))
       return missing();

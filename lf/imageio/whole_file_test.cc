@@ -14,7 +14,7 @@ namespace {
 
 class WholeFileTest : public FolderTest {
  protected:
-  // A picture of several blocks of rows, as its file has it.
+  // Returns the bytes of a file with a picture of several blocks of rows.
   std::string Written(const std::string& name) {
     const auto path = folder_ / name;
     if (path.extension() == ".exr") {
@@ -51,7 +51,8 @@ TEST_F(WholeFileTest, NoBeginningOfAFileIsWhole) {
   }
 }
 
-// Blocks of 16 rows: a table of 7 offsets is before the first block, which begins with row 0.
+// The picture has blocks of 16 rows: a table of 7 offsets precedes the first block, which begins
+// with row 0.
 TEST_F(WholeFileTest, AnExrWithoutOneOfItsBlocksIsNotWhole) {
   const std::string bytes = Written("a.exr");
   constexpr size_t kBlocks = 7;

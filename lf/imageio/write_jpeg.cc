@@ -19,7 +19,7 @@ struct Errors {
   char message[JMSG_LENGTH_MAX] = {};
 };
 
-// Owns what libjpeg takes. No object with a destructor is made between setjmp and the calls.
+// Owns libjpeg's resources. No object with a destructor is created between setjmp and the calls.
 struct Encoder {
   Encoder() {
     compress.err = jpeg_std_error(&errors.manager);

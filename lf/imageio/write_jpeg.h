@@ -1,4 +1,4 @@
-// JPEG files in memory, for pages.
+// Encodes JPEG files in memory, for web pages.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,10 @@
 
 namespace lf {
 
-// The bytes of a JPEG file, baseline, with chroma halved in both directions.
+// Returns the bytes of a baseline JPEG file, with chroma halved in both directions.
 //   pixels   [height][width][3] sRGB, at most 65500 each way, not empty
 //   quality  1 to 100
-// kOutput: no memory.
+// kOutput: there is not enough memory.
 Result<std::string> EncodeJpeg(ImageView<const uint8_t> pixels, int quality);
 
 }  // namespace lf
