@@ -13,8 +13,8 @@ namespace {
 
 constexpr int kReach = 2;
 
-// Five rows of what a mosaic has of each pixel, with mirrored ends: all that the RGB pixels of a
-// row are made from.
+// Five rows of the mosaic's values, with mirrored ends: all values from which the RGB pixels of a
+// row are computed.
 template <class T>
 class RowWindow {
  public:
@@ -29,7 +29,7 @@ class RowWindow {
         stride_(static_cast<size_t>(rect.width()) + 2 * kMargin),
         values_(stride_ * kRows) {}
 
-  // Rows y - 2 to y + 2, at rect.x_begin. y grows from call to call.
+  // Returns rows y - 2 to y + 2, at rect.x_begin. y must grow from call to call.
   std::array<const T*, 5> MoveTo(int y) {
     for (; next_row_ <= std::min(y + kReach, image_height_ - 1); ++next_row_) Fill(next_row_);
     std::array<const T*, 5> rows;
@@ -39,7 +39,7 @@ class RowWindow {
 
  private:
   static constexpr int kRows = 2 * kReach + 1;
-  // One more than kReach is read, but not used: pairs may begin before the rectangle.
+  // One pixel more than kReach is read, but not used, because pairs may begin before the rectangle.
   static constexpr int kMargin = kReach + 1;
 
   T* Row(int y) { return values_.data() + static_cast<size_t>(y % kRows) * stride_ + kMargin; }
@@ -77,7 +77,7 @@ RowGains GainsOf(const std::array<double, 3>& white_balance, int c) {
           .d_at_g = BalanceRatio(white_balance, kGreen, d)};
 }
 
-// rows  as of RowWindow
+// rows  as RowWindow::MoveTo() returns them
 void DemosaicRow(const std::array<const uint16_t*, 5>& rows, bool begins_with_g, bool c_is_red,
                  const RowGains& gains, int width, uint16_t* rgb) {
   constexpr int kLanes = LfPixels::kRgbLanes;
@@ -99,8 +99,8 @@ void DemosaicRow(const std::array<const uint16_t*, 5>& rows, bool begins_with_g,
   std::memcpy(rgb + static_cast<ptrdiff_t>(last) * kLanes, cut_pair, kLanes * sizeof(*rgb));
 }
 
-// Masks what is made from masked pixels. Returns whether there are any.
-//   rows  of the mask of the mosaic
+// Masks pixels that are computed from masked pixels. Returns true if there are any.
+//   rows  of the mosaic's mask
 bool MaskRow(const std::array<const uint8_t*, 5>& rows, int width, std::vector<uint8_t>* kept,
              uint16_t* rgb) {
   uint8_t least = 255;

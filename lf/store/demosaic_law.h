@@ -1,4 +1,4 @@
-// What both back ends of demosaicing share. Internal to store.
+// Fixed-point arithmetic that both implementations of demosaicing share. Internal to store.
 #pragma once
 
 #include <algorithm>
@@ -11,13 +11,13 @@
 
 namespace lf {
 
-// A colour is a sum in 1/4096: weights of pixels are multiples of 1/16, ratios of 1/256.
+// A colour is a sum in units of 1/4096: weights of pixels are multiples of 1/16, ratios of 1/256.
 inline constexpr int kWeightBits = 4;
 inline constexpr int kRatioBits = 8;
-// So large that no sum reaches 2^31: (4096 + 12 * 2048) * 65535 < 2^31.
+// Limit of the ratios. No sum reaches 2^31 with it: (4096 + 12 * 2048) * 65535 < 2^31.
 inline constexpr int32_t kMaxRatio = 8 << kRatioBits;
 
-// w[recorded] / w[missing], by which a Laplacian is multiplied.
+// Returns w[recorded] / w[missing], the factor of a Laplacian.
 inline int32_t BalanceRatio(const std::array<double, 3>& white_balance, int recorded, int missing) {
   const double of_recorded = white_balance[static_cast<size_t>(recorded)];
   const double of_missing = white_balance[static_cast<size_t>(missing)];
@@ -26,7 +26,7 @@ inline int32_t BalanceRatio(const std::array<double, 3>& white_balance, int reco
   return static_cast<int32_t>(std::min<double>(ratio, kMaxRatio));
 }
 
-// Where a position beyond an image of `size` >= 2 is found.
+// Returns the position inside an image of `size` >= 2 that a position beyond it is mirrored to.
 inline int Mirrored(int position, int size) {
   while (position < 0 || position >= size)
     position = position < 0 ? -position : 2 * (size - 1) - position;

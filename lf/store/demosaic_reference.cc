@@ -7,13 +7,14 @@
 namespace lf {
 namespace {
 
-// Weights of 5 x 5 pixels, in 1/16.
+// Weights of 5 x 5 pixels, in units of 1/16.
 using Filter = std::array<std::array<int, 5>, 5>;
 
-// A missing colour from the pixels that recorded it, and from those of the centre's colour.
+// Filters for a missing colour: one for the pixels that recorded it, one for the pixels of the
+// centre's colour.
 struct Estimate {
   Filter mean;
-  Filter laplacian;  // times the gain
+  Filter laplacian;  // including the gain
 };
 
 constexpr Estimate kGreen = {{{{0, 0, 0, 0, 0},  //
@@ -48,7 +49,7 @@ constexpr Estimate kAbove = {{{{0, 0, 0, 0, 0},  //
                                {1, 0, 10, 0, 1},
                                {0, -2, 0, -2, 0},
                                {0, 0, -2, 0, 0}}}};
-// R at B, B at R.
+// R at B, and B at R.
 constexpr Estimate kOpposite = {{{{0, 0, 0, 0, 0},  //
                                   {0, 4, 0, 4, 0},
                                   {0, 0, 0, 0, 0},
@@ -60,7 +61,7 @@ constexpr Estimate kOpposite = {{{{0, 0, 0, 0, 0},  //
                                   {0, 0, 0, 0, 0},
                                   {0, 0, -3, 0, 0}}}};
 
-// One pixel (x, y) of an image, and what surrounds it.
+// One pixel (x, y) of an image with its surroundings.
 class Surroundings {
  public:
   Surroundings(const LfPixels& mosaic, int width, int height, int x, int y)
@@ -71,7 +72,7 @@ class Surroundings {
     for (int dy = -2; dy <= 2; ++dy)
       for (int dx = -2; dx <= 2; ++dx) {
         const int weight = filter[static_cast<size_t>(dy + 2)][static_cast<size_t>(dx + 2)];
-        // 0: the pixel need not be in `mosaic`.
+        // A pixel of weight 0 need not be in `mosaic`.
         if (weight != 0) sum += weight * int64_t{mosaic_.radiance.at(Column(dx), Row(dy))};
       }
     return sum;
@@ -89,7 +90,7 @@ class Surroundings {
   }
 
  private:
-  // In mosaic_.
+  // Column and row in mosaic_.
   int Column(int dx) const { return Mirrored(x_ + dx, width_) - mosaic_.rect.x_begin; }
   int Row(int dy) const { return Mirrored(y_ + dy, height_) - mosaic_.rect.y_begin; }
 

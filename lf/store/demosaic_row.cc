@@ -1,5 +1,5 @@
-// A plain loop that compilers turn into vectors, compiled for every instruction set and chosen as
-// the program runs (Highway): with the least that x86-64 has it takes more than twice as long.
+// A plain loop that compilers vectorise, compiled for every instruction set; the program chooses
+// one at run time (Highway). With the minimum that x86-64 has, it takes more than twice as long.
 #include "lf/store/demosaic_row.h"
 
 #include <algorithm>
@@ -10,14 +10,14 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lf/store/demosaic_row.cc"  // NOLINT: as Highway wants it
 #include <hwy/foreach_target.h>
-// After foreach_target.h.
+// Must come after foreach_target.h.
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace lf {
 namespace HWY_NAMESPACE {
 
-// A pair of values in a word: the lanes of a vector are pairs.
+// Loads a pair of values into a word: a lane of a vector is a pair.
 HWY_ATTR HWY_INLINE uint32_t Pair(const uint16_t* values) {
   uint32_t pair = 0;
   std::memcpy(&pair, values, sizeof(pair));
@@ -37,7 +37,8 @@ HWY_ATTR HWY_INLINE uint32_t Colour(int32_t sum) {
   return static_cast<uint32_t>(std::min(std::max((sum + (1 << (kBits - 1))) >> kBits, 0), 65535));
 }
 
-// Letters as in RowGains; "near": above and below; left and right: the pairs beside this one.
+// Letters as in RowGains. "near" is above and below; "left" and "right" are the pairs beside this
+// one.
 template <bool kCIsRed>
 HWY_ATTR void DemosaicPairsBy(const uint16_t* const rows[5], const RowGains& gains, int pair_count,
                               uint16_t* HWY_RESTRICT rgb) {

@@ -13,7 +13,7 @@ constexpr Balance kBalanced = {1, 1, 1};
 constexpr std::array kPatterns = {BayerPattern::kRggb, BayerPattern::kBggr, BayerPattern::kGrbg,
                                   BayerPattern::kGbrg};
 
-// value_of(x, y, channel)
+// Returns a mosaic whose pixels are value_of(x, y, channel).
 template <class ValueOf>
 LfPixels MosaicOf(int width, int height, BayerPattern bayer, const ValueOf& value_of) {
   LfPixels mosaic({0, 0, width, height}, bayer);
@@ -23,7 +23,8 @@ LfPixels MosaicOf(int width, int height, BayerPattern bayer, const ValueOf& valu
   return mosaic;
 }
 
-// Half of the pixels are 0 or 65535: sums at their limits, and colours beyond them.
+// Returns noise of which half of the pixels are 0 or 65535, so that sums reach their limits and
+// colours exceed them.
 LfPixels NoiseMosaic(int width, int height, BayerPattern bayer, uint64_t seed) {
   return MosaicOf(width, height, bayer, [&](int x, int y, int /*channel*/) {
     const uint64_t bits = RandomBits(seed, static_cast<uint64_t>(x), static_cast<uint64_t>(y));
@@ -31,7 +32,7 @@ LfPixels NoiseMosaic(int width, int height, BayerPattern bayer, uint64_t seed) {
   });
 }
 
-// What a store loads of it for `rect`.
+// Returns the part that a store loads for `rect`.
 LfPixels PartOf(const LfPixels& whole, const PixelRect& rect) {
   LfPixels part(rect, whole.bayer);
   for (int y = 0; y < rect.height(); ++y)
@@ -65,7 +66,8 @@ PixelRect RandomRect(int width, int height, uint64_t seed) {
   return {x, y, Between(x, width, seed, 3) + 1, Between(y, height, seed, 4) + 1};
 }
 
-// Rectangles of small and of wide images, some masked, with ratios within and beyond the limit.
+// Compares rectangles of small and of wide images, some of them masked, with ratios within and
+// beyond the limit.
 void CompareWithReference() {
   LfPixels rgb, reference;  // used again and again
   for (uint64_t seed = 0; seed < 400; ++seed) {
@@ -127,7 +129,7 @@ TEST(Demosaic, NeedsTwoPixelsMoreWithinTheImage) {
   EXPECT_TRUE(rgb.radiance.empty());
 }
 
-// So a pedestal survives.
+// A constant stays constant, so a pedestal survives.
 TEST(Demosaic, WhatIsConstantStaysConstant) {
   for (const BayerPattern bayer : kPatterns)
     for (const Balance& white_balance : {kBalanced, Balance{2.1, 1, 1.7}, Balance{1, 30, 0.01}})
@@ -141,7 +143,7 @@ TEST(Demosaic, WhatIsConstantStaysConstant) {
       }
 }
 
-// A ramp for every colour.
+// Every colour has its own ramp.
 TEST(Demosaic, LinearRampsAreExactAwayFromBorders) {
   constexpr int kSize = 40;
   const auto ramp = [](int x, int y, int channel) {
@@ -172,7 +174,7 @@ TEST(Demosaic, GainsAreThePapersTimesTheRatioOfTheWhiteBalance) {
   EXPECT_EQ(at_spot(6, 6, {3, 1, 1.5}, 2), 1200);
 }
 
-// Balancing before, or by the ratio inside, is the same.
+// White balance before demosaicing, or by the ratio inside, gives equal results.
 TEST(Demosaic, WhiteBalanceMayComeAfterwards) {
   constexpr int kSize = 30;
   const std::array<int, 3> factors = {4, 1, 2};
@@ -196,7 +198,8 @@ TEST(Demosaic, WhiteBalanceMayComeAfterwards) {
   }
 }
 
-// An image with the mirrored pixels around it, in which the inner ones are away from borders.
+// Compares an image with a larger one that contains it and its mirrored surroundings, in which the
+// inner pixels are away from the border.
 TEST(Demosaic, BordersAreMirroredAboutTheOutermostPixels) {
   for (const BayerPattern bayer : kPatterns)
     for (const auto& [width, height] : {std::pair(2, 2), std::pair(3, 2), std::pair(8, 5)}) {
@@ -226,7 +229,7 @@ TEST(Demosaic, AMaskedPixelMasksWhatIsMadeFromIt) {
   for (int y = 0; y < 9; ++y)
     for (int x = 0; x < 9; ++x)
       EXPECT_EQ(rgb.IsMasked(x, y), std::abs(x - 4) + std::abs(y - 3) <= 2) << x << ", " << y;
-  // Masked in a corner of what is loaded.
+  // The masked pixel is in a corner of the loaded part.
   LfPixels part;
   Demosaic(PartOf(mosaic, {4, 3, 9, 9}), 9, 9, kBalanced, {6, 5, 9, 9}, &part);
   EXPECT_FALSE(part.any_masked);

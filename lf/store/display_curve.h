@@ -1,6 +1,6 @@
-// Stored values of linear light on their way through a code with losses: along the curve of a
-// display (IEC 61966-2-1), on which an error is as visible in shadows as in light, and the noise of
-// photons is about the same everywhere.
+// Maps stored values of linear light to the tone curve of a display (IEC 61966-2-1), along which
+// they are encoded with loss. On this curve an error is equally visible in shadows and in
+// highlights, and photon noise is nearly constant.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,14 @@ namespace lf {
 
 class DisplayCurve {
  public:
-  // Levels of stored values of 16 bits; white above black. Below black the curve goes on straight,
-  // above white as it is.
+  // The levels are stored values of 16 bits, with white above black. Below black the curve
+  // continues as a straight line, above white by its own formula.
   DisplayCurve(double black_level, double white_level);
 
   uint16_t OnCurve(uint16_t stored) const { return on_curve_[stored]; }
-  // The stored value nearest to a place on the curve.
+  // Returns the stored value nearest to a position on the curve.
   uint16_t Stored(uint16_t on_curve) const { return stored_[on_curve]; }
-  // How far 1 / 255 of what is between black and white is on the curve.
+  // Returns the length on the curve of 1 / 255 of the range between black and white.
   double grey_step() const { return grey_step_; }
 
  private:

@@ -24,7 +24,7 @@ constexpr PixelRect kWhole = {0, 0, kWidth, kHeight};
 
 class FolderStoreTest : public FolderTest {
  protected:
-  // A light field of one image "a.png"; the tests write the file.
+  // Returns a light field of one image, "a.png". The tests write the file.
   LightField OneImage(const std::string& name = "a.png") const {
     LightField light_field;
     light_field.cameras.resize(1);
@@ -109,7 +109,8 @@ TEST_F(FolderStoreTest, ARectangleIsCutToTheImage) {
   EXPECT_TRUE(Loaded(OneImage(), {50, 50, 60, 60}).radiance.empty());
 }
 
-// A JPEG file of which a part is decoded, and whose orientation tag exchanges width and height.
+// The file is a JPEG that is decoded in part, with an orientation tag that exchanges width and
+// height.
 TEST_F(FolderStoreTest, ARectangleOfATurnedImageIsThePartOfTheTurnedWhole) {
   constexpr PixelRect kStored = {0, 0, 45, 37};
   const std::string jpeg = EncodeJpeg(NoiseImage<uint8_t>(45, 37, 3).view(), 90).value();
@@ -140,7 +141,8 @@ TEST_F(FolderStoreTest, ARectangleOfATurnedImageIsThePartOfTheTurnedWhole) {
   }
 }
 
-// A picture of grey but for one channel of each pixel of the first row: 0, 40, 80 ... of 8 bits.
+// Returns a grey picture, in which one channel of each pixel of the first row is brighter: first,
+// first + step, ... in 8 bits.
 Image<uint8_t> Bright(uint8_t first, uint8_t step) {
   Image<uint8_t> image(kWidth, kHeight, 3, uint8_t{100});
   for (int x = 0; x < kWidth; ++x) image.at(x, 0, x % 3) = static_cast<uint8_t>(first + x * step);
@@ -168,7 +170,7 @@ TEST_F(FolderStoreTest, PixelsAreClippedFromTheWhiteLevelOn) {
   for (int x = 0; x < kWidth; ++x) EXPECT_EQ(pixels.IsMasked(x, 0), x >= 5) << x;
 }
 
-// Two exposures of one pose, of which the bright one clips four pixels of the first row.
+// Two exposures of one pose: the bright one clips four pixels of the first row.
 TEST_F(FolderStoreTest, ADarkerImageHasWhatTheBrighterOneClipsAndAPixelAround) {
   ASSERT_TRUE(WriteImage(folder_ / "a.png", Image<uint8_t>(kWidth, kHeight, 3, 60).view()));
   Image<uint8_t> bright(kWidth, kHeight, 3, 200);
@@ -239,7 +241,7 @@ TEST_F(FolderStoreTest, AMosaicBecomesRgbWhereItIsAskedTo) {
   ASSERT_TRUE(store.Load({0}, kWhole, &pixels));
   EXPECT_EQ(pixels.bayer, BayerPattern::kNone);
   EXPECT_EQ(pixels.radiance.pixels(), expected.radiance.pixels());
-  // A part, beyond the image too, is a part of that.
+  // A rectangle gives a part of the whole, also if it reaches beyond the image.
   ASSERT_TRUE(store.Load({0}, {1, 1, kWidth + 3, kHeight}, &pixels));
   EXPECT_EQ(pixels.rect, (PixelRect{1, 1, kWidth, kHeight}));
   for (int y = 1; y < kHeight; ++y)
@@ -248,7 +250,7 @@ TEST_F(FolderStoreTest, AMosaicBecomesRgbWhereItIsAskedTo) {
         ASSERT_EQ(pixels.radiance.at(x - 1, y - 1, c), expected.radiance.at(x, y, c));
   ASSERT_TRUE(store.Load({0}, {kWidth + 5, 0, kWidth + 9, 2}, &pixels));
   EXPECT_TRUE(pixels.rect.empty());
-  // What is no mosaic stays as it is.
+  // Images that are no mosaics stay unchanged.
   light_field.encoding.bayer = BayerPattern::kNone;
   const LfPixels grey = Loaded(light_field);
   ASSERT_TRUE(FolderStore(light_field, Mosaics::kToRgb).Load({0}, kWhole, &pixels));
@@ -429,7 +431,7 @@ TEST_F(FolderStoreTest, FloatsAreRadianceItself) {
   WriteFloats("a.exr", stored, {"R", "G", "B"});
   LightField light_field = OneImage("a.exr");
   light_field.encoding.max_radiance = 16;
-  light_field.encoding.black_level = 60000;  // no business of float files
+  light_field.encoding.black_level = 60000;  // has no effect on float files
   light_field.cameras[0].gain = 2;
   const LfPixels pixels = Loaded(light_field);
   EXPECT_EQ(pixels.radiance.at(0, 0, 0), std::lround(65535 / 8.0));

@@ -14,7 +14,8 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-// At least the pixels `rect` of the picture that the calibration is of, and where they lie in it.
+// Reads at least the pixels `rect` of the picture that the calibration belongs to; part->rect is
+// their position.
 Result<void> ReadFitting(const fs::path& path, bool is_mosaic, const Intrinsics& intrinsics,
                          const PixelRect& rect, ImagePart* part) {
   bool is_turned = false;
@@ -32,8 +33,8 @@ Result<void> ReadFitting(const fs::path& path, bool is_mosaic, const Intrinsics&
   return {};
 }
 
-// A raw file in a light field of anything else would show its mosaic as a grey picture, or its
-// light as sRGB.
+// Refuses a raw file in a light field of any other kind, which would show its mosaic as a grey
+// picture, or its light as sRGB.
 Result<void> CheckRaw(const RawFacts& raw, const RadianceEncoding& encoding, const fs::path& path) {
   if (raw.is_monochrome) {
     if (encoding.bayer == BayerPattern::kNone && encoding.transfer != Transfer::kSrgb) return {};
@@ -102,7 +103,7 @@ void ForEachSeenBrighter(const LightField& light_field, LfImageId id, const Pixe
   ImagePart part;
   const Result<ChannelUse> use = ReadStoredPixels(light_field, brighter, around, &part);
   if (!use) return;
-  // Each clipped pixel leaves a square for the darker image.
+  // Each clipped pixel leaves a square around it to the darker image.
   Image<uint8_t> is_left(rect.width(), rect.height(), 1);
   ForEachClipped(part, use->colours, encoding, around, [&](int x, int y) {
     const PixelRect square =

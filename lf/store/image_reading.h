@@ -1,5 +1,5 @@
-// One LF image from its files, as stored: what loose files are loaded and recorded by. Internal to
-// store.
+// Reads one LF image from its files, as stored. FolderStore and ReadRecordedImage() share it.
+// Internal to store.
 #pragma once
 
 #include <cstddef>
@@ -19,17 +19,18 @@
 
 namespace lf {
 
-// At least the pixels `wanted`, some within the picture that the calibration is of, and where they
-// lie in it; checked against calibration and encoding. kInput, naming the file.
+// Reads at least the pixels `wanted` of the picture that the calibration belongs to; they must
+// contain a pixel of it. part->rect is their position. Checks them against calibration and
+// encoding. kInput, naming the file.
 Result<ChannelUse> ReadStoredPixels(const LightField& light_field, LfImageId id,
                                     const PixelRect& wanted, ImagePart* part);
 
-// The same of the image's mask file; false: it has none.
+// Reads the image's mask file in the same way. Returns false if it has none.
 Result<bool> ReadMaskFile(const LightField& light_field, LfImageId id, const PixelRect& wanted,
                           ImagePart* part);
 
-// Calls mask(x, y), with pixels of the LF image, for those of `rect` whose stored value, of
-// `channel`, is not what is_kept(value) asks for.
+// Calls mask(x, y), with pixels of the LF image, for each pixel of `rect` whose stored value in
+// `channel` does not satisfy is_kept(value).
 template <class T, class IsKept, class Mask>
 void ForEachUnkept(const Image<T>& stored, const PixelRect& stored_rect, int channel,
                    const IsKept& is_kept, const PixelRect& rect, const Mask& mask) {
@@ -43,7 +44,8 @@ void ForEachUnkept(const Image<T>& stored, const PixelRect& stored_rect, int cha
   }
 }
 
-// Of the pixels of `rect`, which lies in part.rect: those whose alpha is below one half.
+// Calls mask(x, y) for the pixels of `rect`, which lies in part.rect, whose alpha is below one
+// half.
 template <class Mask>
 void ForEachTransparent(const ImagePart& part, int alpha, const PixelRect& rect, const Mask& mask) {
   std::visit(
@@ -56,7 +58,7 @@ void ForEachTransparent(const ImagePart& part, int alpha, const PixelRect& rect,
 }
 
 // Calls mask(x, y) for the pixels of `rect`, which lies in part.rect, that have a clipped colour.
-// Floats have none.
+// Floats are never clipped.
 template <class Mask>
 void ForEachClipped(const ImagePart& part, int colours, const RadianceEncoding& encoding,
                     const PixelRect& rect, const Mask& mask) {
@@ -72,21 +74,21 @@ void ForEachClipped(const ImagePart& part, int colours, const RadianceEncoding& 
       part.image);
 }
 
-// How far around a clipped pixel of the brighter LF image the darker one sends rays: as far as the
-// four pixels of an interpolation reach, and for mosaics the pixels that these are made from. There
-// both do.
+// Distance in pixels around a clipped pixel of the brighter LF image within which the darker one
+// sends rays: as far as the four pixels of an interpolation reach and, for mosaics, the pixels from
+// which these are computed. Pixels that the brighter LF image does not clip there send rays from
+// both.
 inline int ReachOfDarker(BayerPattern bayer) { return bayer == BayerPattern::kNone ? 1 : 4; }
 
-// Calls mask(x, y) for the pixels of `rect` that the next brighter LF image of the pose shows: it
-// is not clipped there, nor within ReachOfDarker(). That LF image is read; nothing is masked if it
-// cannot be.
+// Calls mask(x, y) for the pixels of `rect` that the next brighter LF image of the pose shows,
+// because it is clipped neither there nor within ReachOfDarker(). Reads that LF image; masks
+// nothing if it cannot be read.
 void ForEachSeenBrighter(const LightField& light_field, LfImageId id, const PixelRect& rect,
                          const std::function<void(int x, int y)>& mask);
 
-// Calls mask(x, y) for the pixels that are masked at all: by alpha where that is a mask, where they
-// are clipped or seen by a brighter LF image in brackets (capture/brackets.h), and by the mask file
-// if there is one, which is read.
-// It may be called several times for one pixel.
+// Calls mask(x, y) for all masked pixels. A pixel is masked by alpha if alpha is a mask, in
+// brackets (capture/brackets.h) if it is clipped or a brighter LF image shows it, and by the mask
+// file if there is one, which is read. mask() may be called several times for one pixel.
 template <class Mask>
 Result<void> ForEachMasked(const LightField& light_field, LfImageId id, const ImagePart& part,
                            const ChannelUse& use, const PixelRect& rect, const Mask& mask) {
@@ -109,7 +111,7 @@ Result<void> ForEachMasked(const LightField& light_field, LfImageId id, const Im
   return {};
 }
 
-// Integers of so many bits can hold the light field's levels; kInput if they cannot.
+// kInput if integers of so many bits cannot hold the light field's levels.
 //   path  of the image, for the message
 Result<void> CheckLevels(const RadianceEncoding& encoding, int bits, const std::string& path);
 

@@ -1,4 +1,5 @@
-// Where the pixels of LF images come from. A terabyte is never in memory: one image at a time.
+// A source of the pixels of LF images. It loads one LF image at a time, because a light field may
+// take a terabyte.
 #pragma once
 
 #include <cstdint>
@@ -13,47 +14,48 @@
 
 namespace lf {
 
-// What becomes of mosaics.
+// How mosaics are loaded: as recorded, or converted to RGB.
 enum class Mosaics { kAsRecorded, kToRgb };
 
 class LfImageStore {
  public:
   virtual ~LfImageStore() = default;
 
-  // The pixels of one LF image, at least those of `rect` (pixels of the LF image), as linear
-  // 16-bit radiance. The memory of `pixels` is used again. May be called by many threads at the
-  // same time.
-  // kInput: missing, broken or of another size than the calibration says; the message names the
-  // file. The caller decides whether the run goes on without it.
+  // Loads at least the pixels `rect` of one LF image, as linear 16-bit radiance. Reuses the memory
+  // of `pixels`. May be called by many threads at the same time. kInput, naming the file: the image
+  // is missing, broken or of another size than the calibration says. The caller decides whether to
+  // continue without it.
   virtual Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const = 0;
 
-  // Whether the file is there, whatever it holds: a disk may be unmounted during a night's work.
+  // Returns true if the file exists, even if it is broken. A disk may be unmounted during a night's
+  // work.
   virtual bool IsThere(LfImageId /*id*/) const { return true; }
 
-  // Returns whether pixels of LF images were left out on purpose when the store was made: then
-  // Keeps() tells which.
+  // Returns true if pixels of LF images were left out on purpose when the store was made. Keeps()
+  // then tells which.
   virtual bool IsPartial() const { return false; }
   // Returns false if some of these pixels, cut to the image, were left out on purpose.
   virtual bool Keeps(LfImageId /*id*/, const PixelRect& /*rect*/) const { return true; }
 
-  // What loading reads: the size of the file, or of the code in a packed store; 0: not there, or
-  // not known.
+  // Returns the bytes that loading reads: the size of the file, or of the encoded image in a packed
+  // store. 0 if it is missing, or the size is not known.
   virtual uint64_t StoredBytes(LfImageId /*id*/) const { return 0; }
 
-  // The image will be loaded soon: the disk may begin to read it. Does not wait; failing is silent,
-  // for Load() will say what is wrong. May be called by many threads at the same time.
+  // Announces that the image will be loaded soon, so that the disk may begin to read it. Does not
+  // wait, and ignores failures, which Load() will report. May be called by many threads at the same
+  // time.
   virtual void Announce(LfImageId /*id*/) const {}
 };
 
-// store.Load() into the memory of `pixels`, which are the answer. What a store throws, for want of
-// memory (kOutput) or otherwise (kInput), becomes the image's error: an exception that leaves a
-// thread ends the program.
+// Calls store.Load() with the memory of `pixels`, and returns them. Exceptions of the store become
+// errors of the image, for lack of memory (kOutput) or otherwise (kInput), because an exception
+// that leaves a thread ends the program.
 Result<LfPixels> LoadWithoutThrowing(const LfImageStore& store, LfImageId id, const PixelRect& rect,
                                      const std::string& name, LfPixels pixels);
 
-// The first failure to load that is the machine's (no memory, no open files). Whoever leaves out LF
-// images that cannot be loaded asks it in the end: other images were as good as those that are
-// left. All functions may be called by many threads at the same time.
+// Remembers the first failure to load that is the machine's fault (no memory, no open files). A
+// caller that leaves out LF images that cannot be loaded must check it at the end, because such an
+// LF image may be intact. All functions may be called by many threads at the same time.
 class MachineFailure {
  public:
   // Ignores errors of the image itself, which are not kOutput.

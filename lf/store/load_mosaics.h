@@ -1,4 +1,4 @@
-// Mosaics as recorded or as RGB, whatever store they come from. Internal to store.
+// Loads mosaics as recorded or as RGB, for any store. Internal to store.
 #pragma once
 
 #include <functional>
@@ -12,10 +12,10 @@
 
 namespace lf {
 
-// The pixels of `rect`, cut to the image, by load(part, pixels), which gives them as recorded and
-// is asked for the mosaic around `rect` if that becomes RGB.
-//   mosaic  memory for that
-// kInput: a mosaic below 2 x 2 pixels, and what load() says.
+// Loads the pixels of `rect`, cut to the image, by load(part, pixels), which loads them as
+// recorded. If the mosaic is converted to RGB, load() is called for the mosaic around `rect`.
+//   mosaic  memory for that mosaic
+// kInput: a mosaic is smaller than 2 x 2 pixels, or load() fails.
 Result<void> LoadMosaicsAs(Mosaics mosaics, const LightField& light_field, LfImageId id,
                            const PixelRect& rect,
                            const std::function<Result<void>(const PixelRect&, LfPixels*)>& load,

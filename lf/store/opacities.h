@@ -14,30 +14,30 @@
 
 namespace lf {
 
-// A pixel of a picture of opacities [height][width][1]: 0 sends no ray, by the mask file; o covers
-// (o - 1) / kMostOpacity of the light behind it.
+// Values of a picture of opacities [height][width][1]. 0 sends no ray, because the mask file says
+// so; any other o covers (o - 1) / kMostOpacity of the light behind it.
 inline constexpr uint16_t kMaskedOpacity = 0;
 inline constexpr uint16_t kMostOpacity = 65534;
 
 // Reads the opacities of the pixels `rect`, which lies in part.rect, from the file's alpha and the
-// image's mask file. Alpha of 8 bits is exact, of 16 bits but for 65534, which counts as opaque;
-// floats are rounded to 16 bits, NaN is transparent. kInput: the mask file cannot be read.
+// image's mask file. Alpha of 8 bits is exact. Alpha of 16 bits is exact except for 65534, which
+// counts as opaque. Floats are rounded to 16 bits; NaN is transparent. kInput: the mask file cannot
+// be read.
 Result<Image<uint16_t>> ReadOpacities(const LightField& light_field, LfImageId id,
                                       const ImagePart& part, const ChannelUse& use,
                                       const PixelRect& rect);
 
-// Composes pixels->rect, as it is loaded, with the background: of a colour v, opacity a and
-// background b
+// Composes the loaded pixels of pixels->rect with the background. A colour v with opacity a and
+// background b becomes
 //   straight       a v + (1 - a) b
 //   premultiplied  v + (1 - a) (b - pedestal)
-// in integers, rounded to nearest and clipped at 65535, and masks what sends no ray.
-// Fills pixels->opacity if the encoding HasOpacity(), rounded to nearest. The pixels are R, G and
-// B.
-//   opacities_rect  the pixels of the LF image that `opacities` are of; pixels->rect is within
+// in integers, rounded to nearest and clipped at 65535. Masks pixels that send no ray. Fills
+// pixels->opacity, rounded to nearest, if the encoding HasOpacity(). The pixels are R, G and B.
+//   opacities_rect  pixels of the LF image that `opacities` holds; contains pixels->rect
 void ComposeWithBackground(const Image<uint16_t>& opacities, const PixelRect& opacities_rect,
                            const RadianceEncoding& encoding, LfPixels* pixels);
 
-// Fills pixels->opacity of an LF image without alpha: what is not masked is opaque.
+// Fills pixels->opacity of an LF image without alpha: pixels that are not masked are opaque.
 void SetOpaque(LfPixels* pixels);
 
 }  // namespace lf

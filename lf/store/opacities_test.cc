@@ -26,7 +26,7 @@ class OpacitiesTest : public FolderTest {
     field_.encoding.transfer = Transfer::kLinear;
     field_.encoding.alpha = AlphaMeaning::kStraight;
   }
-  // Each alpha once, whatever the colours.
+  // Writes each alpha once, with random colours.
   template <class T>
   Image<T> WriteEveryAlpha(int channels) {
     Image<T> image = NoiseImage<T>(kWidth, kHeight, channels);
@@ -46,7 +46,7 @@ class OpacitiesTest : public FolderTest {
   LightField field_;
 };
 
-// The laws of the header in real numbers, to half a step.
+// Compares with the formulas of the header in real numbers, to half a step.
 template <class T>
 void ExpectComposed(const LightField& field, const Image<T>& stored, const LfPixels& pixels) {
   const RadianceEncoding& encoding = field.encoding;
@@ -64,7 +64,7 @@ void ExpectComposed(const LightField& field, const Image<T>& stored, const LfPix
         const double expected = encoding.alpha == AlphaMeaning::kStraight
                                     ? a * v + (1 - a) * behind
                                     : v + (1 - a) * (behind - encoding.pedestal);
-        // An alpha of 65535 steps is taken in 65534.
+        // An alpha of 65535 steps is rounded to one of 65534.
         ASSERT_NEAR(pixels.radiance.at(x, y, c), std::min(expected, 65535.0), 1.51)
             << x << " " << y;
       }
@@ -122,7 +122,7 @@ TEST_F(OpacitiesTest, MaskFilesMaskWhatIsComposed) {
   field_.mask_names = {"mask.png"};
   const LfPixels pixels = Loaded({2, 2, 9, 9});
   EXPECT_TRUE(pixels.IsMasked(1, 2));
-  EXPECT_FALSE(pixels.IsMasked(0, 0));  // though its alpha is below one half
+  EXPECT_FALSE(pixels.IsMasked(0, 0));  // although its alpha is below one half
 }
 
 TEST_F(OpacitiesTest, WhereNothingIsBehindOpacityIsKeptAndLightIsAsOverBlack) {
@@ -141,7 +141,7 @@ TEST_F(OpacitiesTest, WhereNothingIsBehindOpacityIsKeptAndLightIsAsOverBlack) {
       for (int lane = 0; lane < 3; ++lane)
         ASSERT_NEAR(pixels.opacity.at(x, y, lane),
                     LfPixels::kTransparent + std::min(stored.at(x, y, 3) * 257, 65534) /
-                                                 65534.0 *  // alpha in its steps
+                                                 65534.0 *  // alpha in 65534 steps
                                                  (LfPixels::kOpaque - LfPixels::kTransparent),
                     0.5001);
   EXPECT_EQ(pixels.opacity.at(0, 0), LfPixels::kTransparent);

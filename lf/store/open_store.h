@@ -1,4 +1,4 @@
-// The store of a light field, whichever it is.
+// Opens the store of a light field, of either kind.
 #pragma once
 
 #include <memory>
@@ -9,8 +9,8 @@
 
 namespace lf {
 
-// A PackedStore where light_field.folder is the file of one, else a FolderStore. Keeps a reference
-// to `light_field`, which must outlive it. kInput: of a packed store.
+// Returns a PackedStore if light_field.folder is the file of one, otherwise a FolderStore. Keeps a
+// reference to `light_field`, which must outlive the store. kInput as PackedStore::Open().
 Result<std::unique_ptr<LfImageStore>> OpenStore(const LightField& light_field, Mosaics mosaics);
 
 }  // namespace lf

@@ -1,5 +1,6 @@
-// Radiance of float files as 16-bit integers, so that packed stores can code it: half floats (IEEE
-// 754 binary16), their bit patterns mapped such that larger numbers are larger integers.
+// Represents the radiance of float files as 16-bit integers, so that packed stores can encode it:
+// the bit patterns of half floats (IEEE 754 binary16), mapped such that larger numbers become
+// larger integers.
 #pragma once
 
 #include <bit>
@@ -7,17 +8,17 @@
 
 namespace lf {
 
-// The half nearest to `value`, ties to even; infinite where half has none as large. NaN is no
-// light.
+// Returns the half nearest to `value`, ties to even; infinite if no half is as large. NaN counts as
+// 0.
 inline uint16_t HalfOf(float value) {
   const auto bits = std::bit_cast<uint32_t>(value);
   const auto sign = static_cast<uint16_t>(bits >> 16 & 0x8000);
   const uint32_t magnitude = bits & 0x7FFFFFFF;
   if (magnitude > 0x7F800000) return 0;
-  constexpr uint32_t kTooLarge = 0x477FF000;  // 65520, from which the nearest is infinite
+  constexpr uint32_t kTooLarge = 0x477FF000;  // 65520; from here on infinity is nearest
   if (magnitude >= kTooLarge) return sign | 0x7C00;
-  // The half's lowest bit is one of the float's: the exponents differ by 112, and below 2^-14
-  // halves have a fixed step of 2^-24.
+  // The result's lowest bit is a bit of the float's significand: the exponents differ by 112, and
+  // below 2^-14 halves have a fixed step of 2^-24.
   const uint32_t exponent = magnitude >> 23;
   const bool is_normal = exponent > 112;
   if (!is_normal && exponent < 102) return sign;
@@ -44,7 +45,7 @@ inline uint16_t OrderedOfHalf(uint16_t half) {
   return static_cast<uint16_t>((half & 0x8000) != 0 ? ~half : half | 0x8000);
 }
 
-// Integers beyond the infinities, which a code with losses may give, are infinities: never NaN.
+// Integers beyond the infinities, which lossy encoding may produce, become infinities, never NaN.
 inline uint16_t HalfOfOrdered(uint16_t ordered) {
   constexpr uint16_t kLeast = 0x03FF, kMost = 0xFC00;
   if (ordered < kLeast) ordered = kLeast;

@@ -20,7 +20,7 @@ namespace {
 
 constexpr uint8_t kMaskedBelow = 128;
 
-// From the whole image to the part that was coded, and back.
+// Moves a rectangle by (x, y), between coordinates of the whole image and of its encoded part.
 PixelRect Moved(const PixelRect& rect, int x, int y) {
   return {rect.x_begin + x, rect.y_begin + y, rect.x_end + x, rect.y_end + y};
 }
@@ -29,7 +29,7 @@ std::string TextOf(const PixelRect& rect) {
   return fmt::format("[{}, {}) x [{}, {})", rect.x_begin, rect.x_end, rect.y_begin, rect.y_end);
 }
 
-// Whether it can be loaded at all, by the table.
+// Checks by the table that the image can be loaded.
 Result<void> CheckListed(const PackedCode& code, const LightField& light_field, LfImageId id) {
   if (!code.is_listed())
     return InputError(fmt::format("{}: is not in the packed store: compress it, too",
@@ -41,7 +41,7 @@ Result<void> CheckListed(const PackedCode& code, const LightField& light_field, 
   return {};
 }
 
-// Before anything is allocated for the pixels.
+// Checks the head of an encoded image before memory is allocated for its pixels.
 Result<void> CheckCode(std::string_view bytes, int bits, PixelLayout layout, bool grey_too,
                        const PixelRect& rect) {
   LF_ASSIGN_OR_RETURN(const CodeInfo info, ReadCodeInfo(bytes));
@@ -54,7 +54,7 @@ Result<void> CheckCode(std::string_view bytes, int bits, PixelLayout layout, boo
   return {};
 }
 
-// decoded's pixels as `part`, whose memory they exchange.
+// Moves decoded's pixels into `part`, together with their memory.
 void MakePart(StoredValues values, const PixelRect& coded, const std::optional<DisplayCurve>& curve,
               DecodedPart* decoded, Image<float>* floats, ImagePart* part) {
   part->rect = Moved(decoded->rect, coded.x_begin, coded.y_begin);
@@ -74,7 +74,7 @@ void MakePart(StoredValues values, const PixelRect& coded, const std::optional<D
   }
 }
 
-// And back, so that the memory serves the next image.
+// Moves the memory back, so that it is reused for the next image.
 void TakeBack(ImagePart* part, DecodedPart* decoded, Image<float>* floats) {
   if (auto* bytes = std::get_if<Image<uint8_t>>(&part->image))
     decoded->pixels = std::move(*bytes);

@@ -1,4 +1,4 @@
-// LF images from a packed store (packed/packed_store_file.h).
+// Loads LF images from a packed store (packed/packed_store_file.h).
 #pragma once
 
 #include <memory>
@@ -17,40 +17,41 @@
 
 namespace lf {
 
-// Decodes what was recorded (recorded_image.h), and makes radiance of it as FolderStore does of
-// files: where the codes are without loss, the same bits.
-// In memory it has 32 bytes for each LF image of the light field, and a connection to the file for
-// each thread that was loading at the same time. While one image loads, its code, its stored values
-// and the result are in memory together.
-// Keeps a reference to `light_field`, which must outlive it.
+// Decodes the recorded values (recorded_image.h) and converts them to radiance as FolderStore does
+// for files. After lossless encoding, both give the same bits. Takes 32 bytes of memory for each LF
+// image of the light field, and a connection to the file for each thread that loaded at the same
+// time. While one image loads, its encoded bytes, its stored values and the result are in memory
+// together. Keeps a reference to `light_field`, which must outlive the store.
 class PackedStore : public LfImageStore {
  public:
-  // light_field.folder is the store; its LF images are found by their names, so that it may be the
-  // store's own light field or another, such as a package's. kInput: packed/packed_store_file.h.
+  // Opens the file light_field.folder. Its LF images are found by name, so that the light field may
+  // be the store's own or another one, such as that of a package. kInput as
+  // packed/packed_store_file.h says.
   static Result<std::unique_ptr<PackedStore>> Open(const LightField& light_field, Mosaics mosaics);
 
-  // The pixels of `rect`, cut to the image. kInput as LfImageStore says, naming store and image:
-  // what is not in the store, pixels beyond those that were coded, damage.
+  // Loads the pixels of `rect`, cut to the image. kInput as LfImageStore says, naming store and
+  // image: the image is not in the store, the pixels lie beyond those that were encoded, or the
+  // store is damaged.
   Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override;
-  // An LF image without a code, which was missing or broken when the store was made, was not left
-  // out on purpose.
+  // An LF image without encoded pixels was missing or broken when the store was made. It does not
+  // count as left out on purpose.
   bool IsPartial() const override;
   bool Keeps(LfImageId id, const PixelRect& rect) const override;
-  // Whether there is a code, by the store's table.
+  // Returns true if the store's table lists encoded pixels.
   bool IsThere(LfImageId id) const override { return codes_[id.value].bytes > 0; }
   uint64_t StoredBytes(LfImageId id) const override { return codes_[id.value].bytes; }
-  // What the store's table says of an LF image.
+  // Returns the entry of the store's table for an LF image.
   const PackedCode& CodeOf(LfImageId id) const { return codes_[id.value]; }
 
  private:
-  // What one load needs, and serves others.
+  // Buffers of one load, which are reused for later loads.
   struct Loading {
     PackedCodeReader reader;
     DecodedPart decoded;
     DecodedPart mask;
-    ImagePart part;  // what is made radiance of
+    ImagePart part;  // the stored values that are converted to radiance
     Image<float> floats;
-    LfPixels mosaic;  // before it becomes RGB
+    LfPixels mosaic;  // before it is converted to RGB
   };
 
   PackedStore(const LightField& light_field, Mosaics mosaics, std::vector<PackedCode> codes);
@@ -62,10 +63,11 @@ class PackedStore : public LfImageStore {
   const LightField& light_field_;
   const RadianceTables tables_;  // for images without a gain of their own
   const Mosaics mosaics_;
-  const std::vector<PackedCode> codes_;  // as light_field.cameras
-  std::optional<DisplayCurve> curve_;    // where there are codes along it
+  const std::vector<PackedCode> codes_;  // in the order of light_field.cameras
+  std::optional<DisplayCurve> curve_;    // set if any image is encoded along it
   mutable std::mutex mutex_;
-  mutable std::vector<std::unique_ptr<Loading>> loadings_;  // as many as were at the same time
+  mutable std::vector<std::unique_ptr<Loading>> loadings_;  // as many as the loads that ran at the
+                                                            // same time
 };
 
 }  // namespace lf

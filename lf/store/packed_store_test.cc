@@ -39,7 +39,7 @@ class PackedStoreTest : public FolderTest {
     camera.gain = gain;
     field_.cameras.push_back(camera);
   }
-  // Different pictures, some with a gain.
+  // Adds different pictures, some of them with a gain.
   template <class T>
   void AddImages(int channels, const std::string& extension = ".png") {
     for (uint32_t i = 0; i < kCount; ++i) {
@@ -57,7 +57,7 @@ class PackedStoreTest : public FolderTest {
     for (int x = 0; x < kWidth; ++x) mask.at(x, 7) = 0;
     ASSERT_TRUE(WriteImage(folder_ / "mask.png", mask.view()));
   }
-  // All images, or the rectangle of each, without loss.
+  // Packs all images without loss: whole, or the rectangle of each.
   void Pack(const PixelRect& rect = kWhole, uint64_t shard_bytes = 0) {
     PackedStorePlan plan;
     plan.whole = IdentityOf(field_);
@@ -161,7 +161,7 @@ TEST_F(PackedStoreTest, AlphaAndMaskFilesBecomeMasks) {
 
 TEST_F(PackedStoreTest, MasksOfAPartLieWhereThePartDoes) {
   const PixelRect part = {5, 3, 33, 27};
-  for (const int channels : {4, 3}) {  // with alpha and a mask file, with a mask file alone
+  for (const int channels : {4, 3}) {  // with alpha and a mask file; with a mask file alone
     AddImages<uint8_t>(channels);
     MaskRow7OfImage2();
     Pack(part);
@@ -186,7 +186,7 @@ TEST_F(PackedStoreTest, AlphaThatIsLightHasTheBitsOfTheFolder) {
     EXPECT_EQ(packed_.encoding.background, field_.encoding.background);
     ExpectTheBitsOfTheFolder();
     EXPECT_TRUE(Loaded(*Opened(), {2}, kWhole).IsMasked(4, 7));
-    // The background is taken when images are loaded, not when they are coded.
+    // The background is applied when images are loaded, not when they are encoded.
     field_.encoding.background = packed_.encoding.background = {0, 0, 0};
     ExpectTheBitsOfTheFolder();
     field_.mask_names.clear();
@@ -318,7 +318,7 @@ TEST_F(PackedStoreTest, LightFieldsOfOtherOrderFindTheirImages) {
 TEST_F(PackedStoreTest, ADamagedCodeIsAnErrorOfItsImageAlone) {
   AddImages<uint8_t>(3);
   Pack();
-  // The bytes of one code, found by what stands in them.
+  // The bytes of one encoded image are located in the file by their content.
   std::string file = *ReadFile(path_);
   PackedCodeReader reader = PackedCodeReader::Open(path_).value();
   const PackedCode code = FindCodes(path_, field_.image_names).value()[3];

@@ -33,7 +33,7 @@ uint64_t Lanes(uint16_t r, uint16_t g, uint16_t b) {
   return uint64_t{r} | uint64_t{g} << 16 | uint64_t{b} << 32 | kOneRay;
 }
 
-// v_of(channel, value) is the radiance of a stored value.
+// v_of(channel, value) returns the radiance of a stored value.
 template <class T, class ValueOf>
 void ConvertByValue(const Image<T>& stored, const PixelRect& stored_rect, int colours,
                     const ValueOf& v_of, LfPixels* pixels) {
@@ -54,7 +54,7 @@ void ConvertByValue(const Image<T>& stored, const PixelRect& stored_rect, int co
   });
 }
 
-// One look-up and one | a colour, one store a pixel.
+// Takes one look-up and one | for each colour, and one store for each pixel.
 void ConvertByLanes(const Image<uint8_t>& stored, const PixelRect& stored_rect,
                     const LaneTable& lanes, LfPixels* pixels) {
   const int channels = stored.channels();
@@ -64,7 +64,7 @@ void ConvertByLanes(const Image<uint8_t>& stored, const PixelRect& stored_rect,
   });
 }
 
-// QuantizeRadiance() with the same bits, of light that is no NaN, without calls.
+// QuantizeRadiance() inlined, with equal bits, for light that is not NaN.
 class Quantizer {
  public:
   explicit Quantizer(const RadianceEncoding& encoding)
@@ -72,7 +72,7 @@ class Quantizer {
 
   uint16_t operator()(double light, double gain) const {
     const double v = std::clamp(light * gain * scale_, -kFarOut, kFarOut);
-    const auto whole = static_cast<int32_t>(v);  // towards 0, so that the rest is exact
+    const auto whole = static_cast<int32_t>(v);  // rounded towards 0, so that the rest is exact
     const double rest = v - whole;
     const int32_t rounded = whole + (rest >= 0.5) - (rest <= -0.5);
     return static_cast<uint16_t>(
@@ -107,7 +107,7 @@ class RowFalloff {
   std::vector<double> falloff_;
 };
 
-// light_of(value) is the radiance of a stored value, before gain and falloff, and no NaN.
+// light_of(value) returns the radiance of a stored value before gain and falloff. It is never NaN.
 template <class T, class LightOf>
 void ConvertWithFalloff(const Image<T>& stored, const PixelRect& stored_rect, int colours,
                         const LightOf& light_of, const RadianceEncoding& encoding,

@@ -1,4 +1,4 @@
-// Stored values of image files into radiance, a whole picture at a time.
+// Converts stored values of image files to radiance, a whole picture at a time.
 #pragma once
 
 #include <array>
@@ -12,19 +12,19 @@
 
 namespace lf {
 
-// RadianceTable() by colour as the kernels want a pixel: the three words of its colours, combined
-// with |, are the four lanes R, G, B, 1 of LfPixels.
+// RadianceTable() for each colour, in the form of the kernels: the three words of a pixel's
+// colours, combined with |, are the four lanes R, G, B, 1 of LfPixels.
 using LaneTable = std::array<std::array<uint64_t, 256>, 3>;
 
-// The tables of one encoding and of the gains of an image. Those of bits that the levels do not fit
-// are empty.
+// Tables of one encoding and of the gains of an image. A table is empty if the levels do not fit
+// its number of bits.
 class RadianceTables {
  public:
   RadianceTables(const RadianceEncoding& encoding, const ChannelGains& gains);
-  // For files of one type alone; the others stay empty.
+  // Makes the tables for files of one type only; the others stay empty.
   RadianceTables(const RadianceEncoding& encoding, const ChannelGains& gains, int bits);
 
-  // Equal gains share a table.
+  // Channels with equal gains share a table.
   const uint16_t* of_8bit(int channel) const { return TableOf(of_8bit_, channel); }
   const uint16_t* of_16bit(int channel) const { return TableOf(of_16bit_, channel); }
   const LaneTable& lanes() const { return lanes_; }
@@ -41,11 +41,11 @@ class RadianceTables {
   LaneTable lanes_{};
 };
 
-// The radiance of pixels->rect, which lies in part.rect: through tables, floats quantised; by
-// QuantizeRadiance() pixel by pixel where the camera has a falloff. All lanes are written, nothing
-// is masked. The levels must fit the integers.
+// Computes the radiance of pixels->rect, which lies in part.rect. Integers are converted by tables,
+// floats are quantised; if the camera has a falloff, QuantizeRadiance() converts every pixel.
+// Writes all lanes, and masks nothing. The levels must fit the integers.
 //   colours  1: grey or mosaic; 3: the first three channels
-//   plain    the tables of gain 1; those of other gains are made
+//   plain    the tables of gain 1; tables for other gains are made when needed
 //   camera   for its gains
 //   k        of the camera, for its falloff
 void ConvertRadiance(const ImagePart& part, int colours, const RadianceTables& plain,

@@ -6,7 +6,7 @@
 namespace lf {
 namespace {
 
-// The argument says whether the camera has a falloff.
+// Argument: 1 if the camera has a falloff.
 void BM_ConvertBytes(benchmark::State& state) {
   constexpr int kWidth = 960, kHeight = 640;
   Intrinsics k;

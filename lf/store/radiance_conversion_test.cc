@@ -10,7 +10,7 @@ namespace lf {
 namespace {
 
 constexpr int kWidth = 12, kHeight = 8;
-const PixelRect kPart{1, 2, 9, 7};  // of the LF image: what is converted
+const PixelRect kPart{1, 2, 9, 7};  // pixels of the LF image that are converted
 const PixelRect kStored{0, 1, 12, 8};
 
 struct World {
@@ -43,7 +43,7 @@ ImagePart Stored(int channels) {
   return part;
 }
 
-// v by the law of capture/radiance.h, literally.
+// Returns v by the formula of capture/radiance.h, applied literally.
 template <class T>
 uint16_t ByLaw(const World& world, T stored, int channel, int x, int y) {
   const double falloff = world.k.vignetting.Falloff(RadiusSquared(world.k, x + 0.5, y + 0.5));

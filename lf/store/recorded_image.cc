@@ -23,7 +23,7 @@ PixelRect WholeOf(const LightField& light_field, LfImageId id) {
   return {0, 0, k.width_px, k.height_px};
 }
 
-// The first channels of the pixels `rect`, each value by convert().
+// Returns the first channels of the pixels `rect`, with each value converted by convert().
 template <class To, class From, class Convert>
 Image<To> Cut(const Image<From>& stored, const PixelRect& stored_rect, const PixelRect& rect,
               int channels, const Convert& convert) {
@@ -53,7 +53,7 @@ void CutStored(const ImagePart& part, int channels, RecordedImage* image) {
     image->pixels = Cut<uint16_t>(
         std::get<Image<float>>(part.image), part.rect, image->rect, channels, [image](float value) {
           const uint16_t ordered = OrderedOfFloat(value);
-          // Also false of NaN, which nothing is lost of.
+          // The condition is false for NaN, which counts as no loss.
           if (FloatOfOrdered(ordered) < value || FloatOfOrdered(ordered) > value)
             image->is_rounded = true;
           return ordered;
@@ -105,8 +105,8 @@ Result<RecordedImage> ReadRecordedImage(const LightField& light_field, LfImageId
       image.opacities = {};
     return image;
   }
-  // If alpha is light in this light field, an LF image without alpha is opaque but for its mask
-  // file.
+  // If alpha is light in this light field, an LF image without alpha is opaque except where its
+  // mask file masks it.
   if (light_field.encoding.AlphaIsLight() && image.layout != PixelLayout::kMosaic)
     return ReadMaskAsOpacities(light_field, id, part, use, std::move(image));
   LF_RETURN_IF_ERROR(ForEachMasked(light_field, id, part, use, image.rect, [&image](int x, int y) {

@@ -1,5 +1,6 @@
-// LF images on their way into a packed store: as stored, not as radiance, so that the encoding may
-// be applied when they are loaded, by the same code as to loose files (packed_store.h).
+// LF images on their way into a packed store. They hold stored values and not radiance, so that the
+// encoding is applied when they are loaded, by the code that also converts separate files
+// (packed_store.h).
 #pragma once
 
 #include <cstdint>
@@ -15,35 +16,35 @@
 namespace lf {
 
 struct RecordedImage {
-  // Of `rect`: grey, a mosaic, or R, G, B; further channels of a file are left out.
+  // Pixels of `rect`: grey, a mosaic, or R, G, B. Further channels of a file are left out.
   CodecPixels pixels;
   PixelLayout layout = PixelLayout::kGrey;
-  // kUint8 or kUint16; kHalf: of float files, as integers in order (ordered_half.h).
+  // kUint8 or kUint16; kHalf for float files, as ordered integers (ordered_half.h).
   StoredValues values = StoredValues::kUint8;
   PixelRect rect;
-  Image<uint8_t> mask;  // empty: nothing is masked; else [height][width]: 0 masked, 255
-  // These take the place of the mask if alpha is light (opacities.h); empty: all is opaque.
+  Image<uint8_t> mask;  // [height][width]: 0 masked, 255 not; empty: nothing is masked
+  // Replaces the mask if alpha is light (opacities.h). Empty: all is opaque.
   Image<uint16_t> opacities;
-  bool is_rounded = false;    // a float that half cannot hold exactly: it is the nearest half
-  uint64_t source_bytes = 0;  // of the image's file and its mask's
+  bool is_rounded = false;    // a float was not representable as half, and was rounded to the
+                              // nearest
+  uint64_t source_bytes = 0;  // of the image's file and its mask file
 };
 
-// The pixels of `rect`, cut to the image, as the calibration has them (turned upright), not
-// composed with a background. What is masked by alpha or mask file (folder_store.h) is in the mask.
-// Floats become half floats, rounded to nearest where they are not; no light where they are NaN.
-// Loaded again they are quantised as the floats themselves would be.
-// kInput: as FolderStore::Load(); nothing of `rect` lies in the image.
+// Reads the pixels of `rect`, cut to the image, rotated upright as in the calibration, and not
+// composed with a background. Pixels that alpha or the mask file masks (folder_store.h) are in the
+// mask. Floats become the nearest half floats, NaN becomes 0. When loaded again, they are quantised
+// like floats. kInput as FolderStore::Load(), and if `rect` lies outside the image.
 Result<RecordedImage> ReadRecordedImage(const LightField& light_field, LfImageId id,
                                         const PixelRect& rect);
 
-// RecordedImage::source_bytes, without reading the image; 0: it is not there.
+// Returns RecordedImage::source_bytes without reading the image; 0 if the file does not exist.
 uint64_t SourceBytesOf(const LightField& light_field, LfImageId id);
 
-// The pixels that a store must hold so that those of `rect` can be loaded: of mosaics some more,
-// which RGB pixels are made from.
+// Returns the pixels that a store must hold so that `rect` can be loaded. For mosaics they include
+// the pixels around `rect` that demosaicing needs.
 PixelRect RectToRecord(const LightField& light_field, LfImageId id, const PixelRect& rect);
 
-// Its codes: of the pixels by `settings`, of mask or opacities without loss.
+// Encodes the pixels by `settings`, and the mask or the opacities without loss.
 CodedImage CodeOf(const RecordedImage& image, const CodecSettings& settings);
 
 }  // namespace lf
