@@ -18,7 +18,7 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr size_t kMostOpenShards = 8;  // of one reader
+constexpr size_t kMostOpenShards = 8;  // shards that one reader keeps open
 
 // A complete store's file and its settings.
 struct OpenedStore {
@@ -68,7 +68,7 @@ Result<void> ReadImages(OpenedStore* store, PackedStoreFacts* facts) {
   return {};
 }
 
-// A shard, to be read.
+// Opens a shard for reading.
 Result<Database> OpenShardOf(const fs::path& path, const std::string& store, int number) {
   LF_ASSIGN_OR_RETURN(Database database, OpenShardDatabase(ShardPath(path, number)));
   LF_ASSIGN_OR_RETURN(const Settings settings, Settings::Read(database, kShardFormat.name));
@@ -77,7 +77,7 @@ Result<Database> OpenShardOf(const fs::path& path, const std::string& store, int
   return database;
 }
 
-// By the id in the store, as many as it has.
+// Returns the entries of all LF images, by the id in the store.
 Result<std::vector<PackedCode>> ReadCodes(OpenedStore* store) {
   LF_ASSIGN_OR_RETURN(const double shards, store->settings.Number("shards", 0, kMostShards));
   LF_ASSIGN_OR_RETURN(Statement count, store->database.Prepare("select count(*) from lf_images"));
@@ -111,7 +111,7 @@ Result<std::vector<PackedCode>> ReadCodes(OpenedStore* store) {
   return codes;
 }
 
-// A file with the table of blobs, and the command that reads one.
+// A file with the table of encoded images, and the command that reads one of them.
 struct OpenBlobs {
   int shard = 0;
   Database database;
@@ -135,7 +135,7 @@ LightFieldIdentity IdentityInStore(const LightField& light_field) {
 }
 
 bool IsPackedStore(const fs::path& path) {
-  constexpr size_t kApplicationId = 68;  // where SQLite files have it, the highest byte first
+  constexpr size_t kApplicationId = 68;  // position in an SQLite file, most significant byte first
   std::error_code error;
   if (!fs::is_regular_file(path, error)) return false;
   char head[kApplicationId + 4] = {};
@@ -173,7 +173,7 @@ Result<PackedStoreFacts> ReadPackedStore(const fs::path& path) {
   facts.shard_count = static_cast<size_t>(shards);
   LF_ASSIGN_OR_RETURN(light_field.intrinsics, ReadIntrinsics(settings, &store.database));
   LF_RETURN_IF_ERROR(ReadImages(&store, &facts));
-  // Rather now than LF image by LF image.
+  // Checks all shards now, and not when the first LF image of each is loaded.
   for (int number = 1; number <= static_cast<int>(facts.shard_count); ++number)
     LF_RETURN_IF_ERROR(OpenShardOf(path, settings.Text("store"), number));
   return facts;
@@ -210,7 +210,7 @@ Result<std::vector<PackedCode>> FindCodes(const fs::path& path,
                                           std::span<const std::string> names) {
   LF_ASSIGN_OR_RETURN(OpenedStore store, OpenComplete(path));
   LF_ASSIGN_OR_RETURN(const std::vector<PackedCode> codes, ReadCodes(&store));
-  // Both lists by name, side by side: no table of a million names besides those of the light field.
+  // Merges both lists in the order of names, so that no further table of a million names is needed.
   std::vector<uint32_t> order(names.size());
   std::iota(order.begin(), order.end(), 0U);
   std::stable_sort(order.begin(), order.end(),
@@ -235,10 +235,10 @@ Result<std::vector<PackedCode>> FindCodes(const fs::path& path,
 
 struct PackedCodeReader::State {
   fs::path path;
-  std::string store;  // its id
+  std::string store;  // the store's id
   int shard_count = 0;
-  std::deque<OpenBlobs> open;  // the latest at the end
-  Statement* last = nullptr;   // whose row is being looked at
+  std::deque<OpenBlobs> open;  // most recently opened at the end
+  Statement* last = nullptr;   // the command whose row Read() returned
 
   Result<OpenBlobs> OpenShard(int number) const;
   Result<OpenBlobs*> At(int shard);

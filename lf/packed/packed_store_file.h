@@ -1,6 +1,6 @@
-// The file of a packed store: the LF images of a light field, coded, and their calibration, in one
-// SQLite file (doc/formats/packed_store.md). Here to be read; written by packed_store_writer.h.
-// Codes are bytes here, whatever wrote them: store/packed_store.h makes pixels of them.
+// Reads the file of a packed store: the encoded LF images of a light field with their calibration,
+// in one SQLite file (doc/formats/packed_store.md). packed_store_writer.h writes it. Here, encoded
+// images are bytes in any format; store/packed_store.h decodes them.
 #pragma once
 
 #include <cstdint>
@@ -20,86 +20,92 @@
 
 namespace lf {
 
-// What the numbers in a code stand for.
+// Meaning of the numbers in an encoded image.
 enum class StoredValues : uint8_t {
   kUint8 = 0,      // stored values of 8 bits
-  kUint16 = 1,     // of 16
-  kHalf = 2,       // radiance: bit patterns of half floats, in order (store/ordered_half.h)
-  kDisplay16 = 3,  // of 16 bits, along a curve: ReadDisplayLevels(), store/display_curve.h
+  kUint16 = 1,     // stored values of 16 bits
+  kHalf = 2,       // radiance: bit patterns of half floats, as ordered integers
+                   // (store/ordered_half.h)
+  kDisplay16 = 3,  // 16 bits along a tone curve: ReadDisplayLevels(), store/display_curve.h
 };
 
 inline constexpr const char* kStoreExtension = ".lfs";
 
-// Whether the file says that it is one, by its first bytes; its shards do not.
+// Returns true if the first bytes of the file identify a packed store. They do not for its shards.
 bool IsPackedStore(const std::filesystem::path& path);
-// By the extension of its folder, which is then a file: what is no store of this version is told by
-// whoever opens it.
+// Returns true if the folder of the light field is a file with the extension of a packed store.
+// Opening it tells whether it is a valid store of this version.
 inline bool HoldsPackedStore(const LightField& light_field) {
   std::error_code error;
   return light_field.folder.extension() == kStoreExtension &&
          !std::filesystem::is_directory(light_field.folder, error);
 }
-// The stores in a folder, sorted.
+// Returns the stores in a folder, sorted by path.
 std::vector<std::filesystem::path> PackedStoresIn(const std::filesystem::path& folder);
 
-// All but the pixels.
+// Everything in a store but the encoded images.
 struct PackedStoreFacts {
-  LightField light_field;           // folder: the file; no masks, which are within the codes
-  LightFieldIdentity whole;         // that the LF images are from
-  std::vector<uint32_t> whole_ids;  // in it, as light_field.cameras
-  std::string source;               // LIGHTFIELD, as the writer was given it
-  std::string codec;                // settings, for people
+  LightField light_field;           // folder: the store's file; no masks, which are stored with the
+                                    // encoded images
+  LightFieldIdentity whole;         // the light field that the LF images are from
+  std::vector<uint32_t> whole_ids;  // ids in `whole`, in the order of light_field.cameras
+  std::string source;               // LIGHTFIELD, as the user gave it to the writer
+  std::string codec;                // settings, in words
   std::string written_by;
-  size_t shard_count = 0;  // 0: the codes are in the file itself
+  size_t shard_count = 0;  // 0: the encoded images are in the file itself
 };
 
-// kInput: it cannot be read, is no complete packed store, damaged, of another version, or lacks a
-// shard.
+// kInput: the file cannot be read, is no complete packed store, is damaged, has another version, or
+// lacks a shard.
 Result<PackedStoreFacts> ReadPackedStore(const std::filesystem::path& path);
 
-// Its files: itself, then its shards.
+// Returns the store's file, followed by its shards.
 std::vector<std::filesystem::path> FilesOf(const std::filesystem::path& path,
                                            const PackedStoreFacts& facts);
 
-// Black and white of the display curve that codes of kDisplay16 are along. The levels of the light
-// field when they were made: those may be mended.
+// Black and white level of the display curve along which images are encoded as kDisplay16. They are
+// the light field's levels when the images were encoded; the light field's own levels may be
+// corrected later.
 struct DisplayLevels {
   double black = 0;
   double white = 0;  // above black
 };
-// kInput: as ReadPackedStore(); it has none.
+// kInput as ReadPackedStore(), and if the store has no such levels.
 Result<DisplayLevels> ReadDisplayLevels(const std::filesystem::path& path);
 
-// PackedStoreFacts::codec alone. Settings that begin with kLosslessCodec give back what was
-// recorded.
+// Returns PackedStoreFacts::codec without reading the rest. Settings that begin with kLosslessCodec
+// restore the recorded values exactly.
 Result<std::string> ReadCodecSettings(const std::filesystem::path& path);
 inline constexpr std::string_view kLosslessCodec = "lossless";
 
-// PackedStoreFacts::whole alone.
+// Returns PackedStoreFacts::whole without reading the rest.
 Result<LightFieldIdentity> ReadWholeIdentity(const std::filesystem::path& path);
 
-// Of one LF image: where its code is, and of what. 32 bytes.
+// Position and type of one encoded LF image. Takes 32 bytes.
 struct PackedCode {
   static constexpr uint32_t kNotListed = UINT32_MAX;
 
-  uint32_t id = kNotListed;  // in the store
-  uint16_t shard = 0;        // 0: in the file itself
+  uint32_t id = kNotListed;  // id of the LF image in the store
+  uint16_t shard = 0;        // 0: the store's file itself
   StoredValues values = StoredValues::kUint8;
-  PixelRect rect;      // of the LF image: what the code is of
-  uint64_t bytes = 0;  // of code and mask; 0: there is none, the LF image could not be read
+  PixelRect rect;      // pixels of the LF image that are encoded
+  uint64_t bytes = 0;  // of encoded pixels and mask; 0: missing, because the LF image could not be
+                       // read
 
   bool is_listed() const { return id != kNotListed; }
 };
 
-// Those of LF images of these names; not listed: the store knows nothing of it. For an LF image
-// that occurs twice, the first and the second of the store. Takes seconds for a million. kInput.
+// Returns the entries of the LF images of these names, not listed if the store does not know a
+// name. If a name occurs twice, the first and the second LF image of this name in the store are
+// taken. Takes seconds for a million names. kInput as ReadPackedStore().
 Result<std::vector<PackedCode>> FindCodes(const std::filesystem::path& path,
                                           std::span<const std::string> names);
 
-// Reads codes, one at a time: for one thread. Opens shards as they are asked for, and keeps a few.
+// Reads encoded images, one at a time, for one thread. Opens shards when they are needed, and keeps
+// a few open.
 class PackedCodeReader {
  public:
-  // kInput, as ReadPackedStore().
+  // kInput as ReadPackedStore().
   static Result<PackedCodeReader> Open(const std::filesystem::path& path);
   PackedCodeReader(PackedCodeReader&&) noexcept;
   PackedCodeReader& operator=(PackedCodeReader&&) noexcept;
@@ -107,10 +113,11 @@ class PackedCodeReader {
 
   struct Bytes {
     std::string_view code;
-    std::string_view mask;  // a code, too; empty: nothing is masked
+    std::string_view mask;  // encoded mask or opacities; empty: none
   };
-  // One that is there; the bytes hold until the next call. kInput, naming the file: damage, found
-  // by the checksum; a shard that is missing or belongs to another store.
+  // Reads an encoded image, which must be in the store. The bytes are valid until the next call.
+  // kInput, naming the file: the checksum shows damage, or a shard is missing or belongs to another
+  // store.
   Result<Bytes> Read(const PackedCode& code);
 
  private:

@@ -1,5 +1,5 @@
-// Any bytes are a packed store or an error; a store has sane cameras and tables only, and gives
-// codes or errors.
+// Any bytes must be a packed store or an error. A store must have sane cameras and tables only, and
+// give encoded images or errors.
 #include <unistd.h>
 
 #include <cstddef>
@@ -27,10 +27,10 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size_bytes) {
       LF_CHECK(camera.cam_from_world.translation.allFinite());
     }
   } else {
-    // Of itself, or of a shard.
+    // The message names the store or one of its shards.
     LF_CHECK(facts.error().message.starts_with(path.parent_path().string()));
   }
-  // Also of one that has other LF cameras than it says.
+  // Searches for names also in a file that is not a valid store.
   const std::vector<std::string> names = {"i0.png", "i1.png", "i2.png"};
   const auto codes = lf::FindCodes(path, facts ? facts->light_field.image_names : names);
   auto reader = lf::PackedCodeReader::Open(path);

@@ -37,7 +37,7 @@ LightField TestField(uint32_t count = 40) {
         {pair.lf_camera.cam_from_world, i % 10, 0.5f + 0.1f * static_cast<float>(i)});
     if (i % 4 == 1) field.cameras.back().gain = {1.0f / 3, 1, 2.0f / 3};
     if (i % 3 == 1 && i < 10) field.intrinsics.back().vignetting.v = {-1e-9 / 3, 0, 0.0025};
-    // Not in the order of their names.
+    // The order differs from that of the names.
     field.image_names.push_back("bänd/ima'ge " + std::to_string((i * 17) % count) + ".png");
     field.mask_names.push_back(i % 2 == 0 ? "" : "mask.png");
   }
@@ -170,7 +170,9 @@ TEST_F(PackedStoreFileTest, ImagesAreFoundByNameInAnyOrder) {
 TEST_F(PackedStoreFileTest, ManyNamesThatItLacksHideNoneThatItHas) {
   Write();
   std::vector<std::string> names;
-  for (int i = 0; i < 100; ++i) names.push_back(std::to_string(i));  // before all of its own
+  for (int i = 0; i < 100; ++i)
+    names.push_back(std::to_string(i));  // sorted before all names of
+                                         // the store
   names.insert(names.end(), field_.image_names.begin(), field_.image_names.end());
   for (int i = 0; i < 100; ++i) names.push_back("last " + std::to_string(i));
   const std::vector<PackedCode> codes = FindCodes(path_, names).value();
@@ -185,11 +187,11 @@ TEST_F(PackedStoreFileTest, ShardsHoldTheCodes) {
   plan_.shard_bytes = 10000;
   Write();
   const size_t count = ReadPackedStore(path_).value().shard_count;
-  EXPECT_GE(count, 8u);  // more than are kept open
+  EXPECT_GE(count, 8u);  // more than a reader keeps open
   EXPECT_EQ(Files().size(), count + 1);
   ExpectHoldsAll();
   EXPECT_EQ(PackedStoresIn(folder_), std::vector<fs::path>{path_});
-  // Not by another store's, nor without one.
+  // A shard may be neither replaced by another one nor missing.
   const std::vector<PackedCode> codes = FindCodes(path_, field_.image_names).value();
   const fs::path first = folder_ / "a store-0001.lfs", second = folder_ / "a store-0002.lfs";
   fs::copy_file(second, first, fs::copy_options::overwrite_existing);
@@ -201,11 +203,12 @@ TEST_F(PackedStoreFileTest, ShardsHoldTheCodes) {
   EXPECT_NE(fault().find("a store-0001.lfs: belongs to another packed store"), std::string::npos);
   fs::remove(first);
   EXPECT_NE(fault().find("a store-0001.lfs: no such file"), std::string::npos);
-  // A smaller one takes the rest away.
+  // A store without shards replaces it and removes the remaining shards.
   plan_.shard_bytes = 0;
   Write();
   ExpectHoldsAll();
-  EXPECT_EQ(Files().size(), count);  // the chain is broken where we broke it
+  EXPECT_EQ(Files().size(), count);  // Shards from the missing one on are not found: the chain is
+                                     // broken there.
 }
 
 TEST_F(PackedStoreFileTest, AnUnfinishedStoreGoesOn) {
@@ -292,7 +295,7 @@ TEST_F(PackedStoreFileTest, ShardsOfOtherStoresStayAsTheyAre) {
   Write();
   const size_t files = Files().size();
   ASSERT_GT(files, 3u);
-  // Its owner gave another name to the store alone.
+  // The owner renamed the store, but not its shards.
   const fs::path moved = folder_ / "moved.lfs";
   fs::rename(path_, moved);
   const Result<PackedStoreWriter> in_the_way = PackedStoreWriter::Create(path_, field_, plan_);
@@ -300,7 +303,7 @@ TEST_F(PackedStoreFileTest, ShardsOfOtherStoresStayAsTheyAre) {
   EXPECT_EQ(in_the_way.error().kind, ErrorKind::kUsage);
   EXPECT_NE(in_the_way.error().message.find("a store-0001.lfs"), std::string::npos);
   plan_.shard_bytes = 0;
-  Write();  // beside them
+  Write();  // beside the old shards
   EXPECT_EQ(Files().size(), files + 1);
   fs::rename(moved, path_);
   ExpectHoldsAll();
@@ -314,7 +317,7 @@ TEST_F(PackedStoreFileTest, WhatItReplacesIsGone) {
   Write();
   EXPECT_LT(Files().size(), files);
   ExpectHoldsAll();
-  // Killed while shards got their names.
+  // A writer that was killed while it renamed its shards.
   {
     PackedStoreWriter writer = Writer();
     for (uint32_t i = 0; i < field_.size(); ++i) ASSERT_TRUE(writer.Add({i}, CodeOfImage(i)));
@@ -418,7 +421,7 @@ TEST_F(PackedStoreFileTest, OthersAreErrors) {
             std::string::npos);
 }
 
-// A byte changed: an error, or another number in a table; never another code.
+// A flipped bit gives an error or another number in a table, but never wrong encoded bytes.
 TEST_F(PackedStoreFileTest, DamageIsAnErrorOrLeavesTheCodes) {
   Write();
   const std::string whole = *ReadFile(path_);

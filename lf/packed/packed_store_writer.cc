@@ -24,7 +24,7 @@ namespace {
 constexpr size_t kImagesPerBatch = 64;
 constexpr std::chrono::seconds kBatchAge{2};
 
-// By which shards are known; two stores of the same images differ in it.
+// Returns the id by which shards find their store. Stores of the same images have different ids.
 std::string NewStoreId() {
   std::random_device random;
   return fmt::format("{:08x}{:08x}", random(), random());
@@ -49,7 +49,7 @@ std::string TextOf(const std::optional<DisplayLevels>& levels) {
   return levels ? fmt::format("{} {}", levels->black, levels->white) : std::string();
 }
 
-// What a store must have in common with the one that it goes on.
+// Settings that an unfinished store must share with the plan by which it is resumed.
 SettingList SettingsOfPlan(const LightField& light_field, const PackedStorePlan& plan) {
   const LightFieldIdentity images = IdentityInStore(light_field);
   SettingList settings = {{"light_field.images", fmt::format("{}", plan.whole.image_count)},
@@ -90,7 +90,7 @@ Result<bool> HasTables(Database* database) {
   return select.Step();
 }
 
-// All or nothing, also for one who is killed here.
+// Makes all tables in one transaction, so that a program that is killed here leaves all or none.
 Result<void> MakeTables(const LightField& light_field, const PackedStorePlan& plan,
                         Database* database) {
   LF_RETURN_IF_ERROR(
@@ -108,7 +108,7 @@ Result<void> MakeTables(const LightField& light_field, const PackedStorePlan& pl
   return database->Execute("commit");
 }
 
-// "codec default, levels 4, threshold 3, this call has ..." for the first that differs.
+// Returns the first difference as text: "codec default, levels 4, threshold 3, this call has ...".
 std::optional<std::string> FirstDifference(const Settings& settings, const LightField& light_field,
                                            const PackedStorePlan& plan, bool any_shards) {
   const auto shown = [](const std::string& value) { return value.empty() ? "(none)" : value; };
@@ -124,7 +124,7 @@ void RemoveWithJournal(const fs::path& path) {
   fs::remove(fs::path(path) += "-journal", ignored);
 }
 
-// By which a store, or a shard of it, is known; empty if the file is none.
+// Returns the id of a store, or of a shard's store; empty if the file is neither.
 std::string StoreIdIn(Result<Database> database, const DatabaseFormat& format) {
   if (!database) return {};
   const Result<Settings> settings = Settings::Read(*database, format.name);
@@ -137,7 +137,8 @@ std::string StoreOfShard(const fs::path& path) {
   return StoreIdIn(OpenShardDatabase(path), kShardFormat);
 }
 
-// Also the shards that have got their names already, and those behind a gap of such.
+// Also removes the store's shards that already have their final names, and unfinished shards behind
+// them.
 void RemoveUnfinishedFiles(const fs::path& path) {
   const std::string store = StoreIdOf(UnfinishedPath(path));
   RemoveWithJournal(UnfinishedPath(path));
@@ -159,10 +160,10 @@ struct PackedStoreWriter::State {
   std::optional<FileLock> lock;
   uint64_t shard_bytes = 0;
   std::string store;
-  std::string replaced;                // the id of the store that has the name
-  std::vector<uint64_t> source_bytes;  // of what it had
+  std::string replaced;                // id of the store that has the final name
+  std::vector<uint64_t> source_bytes;  // of the LF images that were added before
 
-  std::mutex mutex;  // of all below
+  std::mutex mutex;  // guards everything below
   std::vector<bool> has;
   std::optional<Database> database;
   std::optional<Statement> insert_code;
@@ -175,7 +176,7 @@ struct PackedStoreWriter::State {
   std::optional<Error> failed;
 
   ~State() {
-    // Statements before databases, and the lock last.
+    // Statements are closed before databases, and the lock is removed last.
     Close();
     if (lock) lock->Remove();
   }
@@ -199,7 +200,7 @@ struct PackedStoreWriter::State {
   }
 };
 
-// Of a store that goes on: what it has.
+// Reads the contents of a store that is resumed.
 Result<void> PackedStoreWriter::State::Read(const Settings& settings) {
   store = settings.Text("store");
   LF_ASSIGN_OR_RETURN(const double shards, settings.Number("shards", 0, kMostShards));
@@ -219,7 +220,7 @@ Result<void> PackedStoreWriter::State::Read(const Settings& settings) {
                     });
 }
 
-// The shards of a store that was killed while they got their names.
+// Renames shards back, if the writer was killed while it gave them their final names.
 Result<void> PackedStoreWriter::State::TakeShardsBack() const {
   std::error_code error;
   for (int n = 1; n <= shard_count; ++n) {
@@ -233,7 +234,8 @@ Result<void> PackedStoreWriter::State::TakeShardsBack() const {
   return {};
 }
 
-// Whether a shard may get this name: what has it is of the store that is replaced, or nothing.
+// kUsage unless a shard may get this name: no file has it, or a shard of this store or of the store
+// that is replaced.
 Result<void> PackedStoreWriter::State::CheckIsFree(const fs::path& shard_path) const {
   std::error_code error;
   if (!fs::exists(fs::symlink_status(shard_path, error))) return {};
@@ -245,7 +247,7 @@ Result<void> PackedStoreWriter::State::CheckIsFree(const fs::path& shard_path) c
       shard_path.string()));
 }
 
-// Makes it if it is not there.
+// Opens a shard, and makes it if it does not exist.
 Result<void> PackedStoreWriter::State::OpenShard(int number) {
   if (number > kMostShards)
     return OutputError(
@@ -287,7 +289,8 @@ Result<void> PackedStoreWriter::State::Insert(LfImageId id, const CodedImage& im
   }
   ++batch_size;
   if (!insert_blob) {
-    // In place of one that was committed there, when the program ended before its row here was.
+    // The row may exist: an earlier program may have committed it here, and ended before it
+    // committed the row of `codes`.
     LF_ASSIGN_OR_RETURN(Statement prepared, (shard ? *shard : *database)
                                                 .Prepare("insert or replace into blobs values "
                                                          "(?, ?, ?)"));
@@ -310,7 +313,7 @@ Result<void> PackedStoreWriter::State::Insert(LfImageId id, const CodedImage& im
   return {};
 }
 
-// Blobs before the rows that tell of them.
+// Commits encoded images before the rows that refer to them.
 Result<void> PackedStoreWriter::State::CommitBatch() {
   if (batch_size == 0) return {};
   batch_size = 0;
@@ -331,7 +334,7 @@ Result<void> PackedStoreWriter::State::FinishFiles() {
     LF_RETURN_IF_ERROR(RenameFlushed(UnfinishedPath(ShardPath(path, n)), ShardPath(path, n)));
   }
   LF_RETURN_IF_ERROR(RenameFlushed(UnfinishedPath(path), path));
-  // What the store before it had more.
+  // Removes the shards that the replaced store had in addition.
   if (replaced.empty()) return {};
   std::error_code ignored;
   for (int n = shard_count + 1; n <= kMostShards && StoreOfShard(ShardPath(path, n)) == replaced;
@@ -357,12 +360,12 @@ Result<PackedStoreWriter> PackedStoreWriter::Open(const fs::path& path,
   } else {
     LF_ASSIGN_OR_RETURN(state->lock, Lock(path));
   }
-  if (!IsUnfinished(path)) RemoveUnfinishedFiles(path);  // shards alone
+  if (!IsUnfinished(path)) RemoveUnfinishedFiles(path);  // only shards may be left
   state->shard_bytes = plan.shard_bytes;
   state->replaced = StoreIdOf(path);
   state->has.resize(light_field.size());
   state->source_bytes.resize(light_field.size());
-  // Rather now than when all work is done.
+  // Checks the name now, and not after all work is done.
   if (plan.shard_bytes > 0 && !IsUnfinished(path))
     LF_RETURN_IF_ERROR(state->CheckIsFree(ShardPath(path, 1)));
   LF_ASSIGN_OR_RETURN(Database database,

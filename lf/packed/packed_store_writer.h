@@ -19,74 +19,78 @@
 
 namespace lf {
 
-// What a store is made from and how: it goes on only with the same.
+// Everything that determines a store. An unfinished store is resumed only with an equal plan.
 struct PackedStorePlan {
-  LightFieldIdentity whole;         // that the LF images are from
-  std::vector<uint32_t> whole_ids;  // in it, of each LF image; empty: 0, 1, 2, ...
-  std::vector<PixelRect> rects;     // asked for, of each LF image; empty: all of them, whole
-  std::string codec;                // all that decides about codes, for people to read, too
-  std::optional<DisplayLevels> display_levels = {};  // of codes of kDisplay16
-  // 0: one file. Else codes lie in STORE-0001.lfs, STORE-0002.lfs, ... of about this size, beside
-  // STORE.lfs, which has all the rest.
+  LightFieldIdentity whole;         // the light field that the LF images are from
+  std::vector<uint32_t> whole_ids;  // id of each LF image in `whole`; empty: 0, 1, 2, ...
+  std::vector<PixelRect> rects;     // wanted pixels of each LF image; empty: all are whole
+  std::string codec;                // all settings of the encoder, in words
+  std::optional<DisplayLevels> display_levels = {};  // of images encoded as kDisplay16
+  // 0: one file. Otherwise the encoded images are in STORE-0001.lfs, STORE-0002.lfs, ... of about
+  // this size, beside STORE.lfs, which has everything else.
   uint64_t shard_bytes = 0;
-  // For people; these may differ.
-  std::string source;   // LIGHTFIELD or packages, as they were given
+  // For information only; these may differ.
+  std::string source;   // LIGHTFIELD or packages, as the user gave them
   std::string version;  // of the program
 };
 
-// One LF image, to be added.
+// One encoded LF image, to be added.
 struct CodedImage {
   StoredValues values = StoredValues::kUint8;
-  PixelRect rect;    // of the LF image: what the code is of; some of it
-  std::string code;  // of the colours, or the mosaic (codec/lf_image_codec.h)
-  std::string mask;  // of a grey picture of the same size: of 8 bits, 0: masked; of 16 bits,
-                     // opacities (store/opacities.h); empty: nothing is
-  uint64_t source_bytes = 0;  // of the files that it was made from; for people
+  PixelRect rect;    // pixels of the LF image that are encoded; not empty
+  std::string code;  // encoded colours, or mosaic (codec/lf_image_codec.h)
+  std::string mask;  // encoded grey picture of equal size: with 8 bits, 0 is masked; with 16 bits,
+                     // opacities (store/opacities.h); empty: there is none
+  uint64_t source_bytes = 0;  // size of the files that it was made from; for information
 };
 
-// Until Finish() the store is STORE.lfs.unfinished, which no reader takes for one; its shards are
-// named alike. A store that has the name meanwhile stays as it is until then. One writer at a time:
-// STORE.lfs.lock.
+// Writes a packed store. Until Finish() its file is STORE.lfs.unfinished, which no reader takes for
+// a store; its shards have similar names. An older store of the final name stays unchanged until
+// then. The lock STORE.lfs.lock allows one writer at a time.
 class PackedStoreWriter {
  public:
-  // The lock, for one who looks before he writes: given to the call that writes. kOutput.
+  // Takes the lock, for a caller that checks existing files before it writes, and passes the lock
+  // to Create() or Resume(). kOutput.
   static Result<FileLock> Lock(const std::filesystem::path& path);
 
-  // A new one, of the LF images of `light_field`, at least one, which is not kept.
-  // kUsage: there is an unfinished one, or a file in the way of a shard that is none of the store
-  // that is replaced; kOutput: disk, lock.
+  // Begins a new store of the LF images of `light_field`, which has at least one and need not
+  // outlive the call. kUsage: there is an unfinished store, or a file with the name of a shard that
+  // does not belong to the store that is replaced; kOutput: disk, lock.
   static Result<PackedStoreWriter> Create(const std::filesystem::path& path,
                                           const LightField& light_field,
                                           const PackedStorePlan& plan,
                                           std::optional<FileLock> lock = {});
-  // Goes on with an unfinished one; if there is none, or it had hardly begun, a new one.
-  // kUsage: it is of other images or settings, the message names the first that differs; kInput: it
+  // Resumes an unfinished store. If there is none, or it has no tables yet, begins a new one.
+  // kUsage: it is of other images or settings (the message names the first difference); kInput: it
   // is no packed store, or damaged; kOutput.
   static Result<PackedStoreWriter> Resume(const std::filesystem::path& path,
                                           const LightField& light_field,
                                           const PackedStorePlan& plan,
                                           std::optional<FileLock> lock = {});
   static bool IsUnfinished(const std::filesystem::path& path);
-  // Removes an unfinished one, if there is one.
+  // Removes an unfinished store if there is one.
   static void RemoveUnfinished(const std::filesystem::path& path, const FileLock& lock);
 
   PackedStoreWriter(PackedStoreWriter&&) noexcept;
   PackedStoreWriter& operator=(PackedStoreWriter&&) noexcept;
-  ~PackedStoreWriter();  // commits nothing: what was not is lost
+  ~PackedStoreWriter();  // drops everything that is not committed
 
   bool Has(LfImageId id) const;
-  // CodedImage::source_bytes of one that it had when it was opened; 0 of others.
+  // Returns CodedImage::source_bytes of an LF image that the store had when it was opened; 0 for
+  // others.
   uint64_t SourceBytes(LfImageId id) const;
 
-  // One that it does not have. Commits every 64 LF images, and when the first of them is 2 s old.
-  // May be called by many threads at the same time. kOutput: the disk; nothing more can be added.
+  // Adds an LF image that the store does not have. Commits after 64 LF images, and when the first
+  // of them is 2 s old. May be called by many threads at the same time. kOutput: the disk fails; no
+  // more can be added.
   Result<void> Add(LfImageId id, const CodedImage& image);
-  // Commits what was added: on the disk, for good.
+  // Commits the LF images that were added, so that they are on the disk permanently.
   Result<void> Commit();
-  // Commits, marks the store as complete and gives it its name, in place of what has it; LF images
-  // that were not added are listed without a code. Shards come first. The last call.
+  // Commits, marks the store as complete and gives it its final name, replacing an older store.
+  // Shards are renamed first. LF images that were not added are listed without an encoded image.
+  // Nothing may be called afterwards.
   Result<void> Finish();
-  // Removes what it has written, instead of Finish().
+  // Removes all that was written. Called instead of Finish().
   void Abandon();
 
  private:
@@ -98,9 +102,9 @@ class PackedStoreWriter {
   std::unique_ptr<State> state_;
 };
 
-// Whether a complete store is what this plan gives, by all but its codes.
-//   any_shards  whatever their size
-// kInput: it is not, the message names the first that differs; or cannot be read.
+// Checks that a complete store matches this plan in everything but the encoded images.
+//   any_shards  accept shards of any size
+// kInput: it differs (the message names the first difference), or cannot be read.
 Result<void> CheckIsOfPlan(const std::filesystem::path& path, const LightField& light_field,
                            const PackedStorePlan& plan, bool any_shards);
 
