@@ -17,13 +17,14 @@ namespace {
 
 constexpr int kMaxBlobBytes = 1 << 30;
 
-// Steps of SQLite's machine that one command may take: some 10 for each value of a row, of which
-// none takes less than a byte. Pages that are children of several others would take any number.
+// Limit of the steps of SQLite's virtual machine for one command. A row takes some 10 steps for
+// each value, and each value takes at least a byte of the file. Damaged pages that are children of
+// several others could take any number of steps.
 constexpr int kStepsBetweenLooks = 1000;
 constexpr int64_t kStepsOfSmallFile = 10'000'000, kStepsOfByte = 20;
 constexpr size_t kHashBytes = sizeof(uint64_t);
 
-// The checksum as bytes, the least first.
+// Returns the checksum as bytes, the least significant first.
 std::string HashText(std::string_view bytes) {
   std::string text(kHashBytes, '\0');
   const uint64_t hash = HashBytes(bytes);
@@ -31,7 +32,7 @@ std::string HashText(std::string_view bytes) {
   return text;
 }
 
-// The path as SQLite's URI wants it.
+// Returns the path as a URI for SQLite.
 std::string UriOf(const fs::path& path) {
   std::string uri = "file:";
   for (const char c : fs::absolute(path).string()) {
@@ -43,8 +44,8 @@ std::string UriOf(const fs::path& path) {
   return uri + "?immutable=1";
 }
 
-// What the head of a file says of its length; 0: nothing that counts (SQLite's "Database File
-// Format", 1.3).
+// Returns the length of the file that its header states; 0 if the header states no valid one
+// (SQLite's "Database File Format", 1.3).
 uintmax_t BytesOfPages(const fs::path& path) {
   constexpr size_t kHeadBytes = 100, kPageSize = 16, kChanges = 24, kPages = 28, kPagesValid = 92;
   char head[kHeadBytes] = {};
@@ -69,14 +70,14 @@ struct Database::State {
   std::string name;  // for messages
   std::string what;
   ErrorKind kind = ErrorKind::kInput;
-  int64_t most_steps = INT64_MAX;  // of one command
+  int64_t most_steps = INT64_MAX;  // limit for one command
 
   ~State() { sqlite3_close(handle); }
 
   Error Fault(std::string_view message) const {
     return {kind, fmt::format("{}: {}", name, message)};
   }
-  // What SQLite has said last.
+  // Returns SQLite's last error.
   Error Failed() const {
     if (kind == ErrorKind::kOutput)
       return Fault(fmt::format("cannot be written: {}", sqlite3_errmsg(handle)));
@@ -87,7 +88,7 @@ struct Database::State {
 struct Statement::State {
   sqlite3_stmt* handle = nullptr;
   std::shared_ptr<Database::State> database;
-  int64_t steps = 0;  // since it began
+  int64_t steps = 0;  // since the command began
   bool is_too_long = false;
 
   ~State() { sqlite3_finalize(handle); }
@@ -109,7 +110,7 @@ Statement& Statement::Bind(int parameter, double value) {
 }
 
 Statement& Statement::Bind(int parameter, std::string_view text) {
-  // A null pointer would be no text, but NULL.
+  // SQLite would take a null pointer for NULL and not for an empty text.
   const char* const letters = text.empty() ? "" : text.data();
   LF_CHECK(sqlite3_bind_text64(state_->handle, parameter + 1, letters, text.size(),
                                SQLITE_TRANSIENT, SQLITE_UTF8) == SQLITE_OK);
@@ -270,7 +271,7 @@ Result<int64_t> Database::Pragma(const char* name) {
   return statement.Integer(0);
 }
 
-// Whatever the file is opened for, another one is wrong input.
+// A file of another kind or version is wrong input, even if the database is opened for writing.
 Result<void> Database::CheckFormat(const DatabaseFormat& format) {
   const auto wrong = [this](const std::string& message) {
     return InputError(Fault(message).message);
@@ -301,7 +302,7 @@ Result<Database> Database::Create(const fs::path& path, const DatabaseFormat& fo
   if (sqlite3_open_v2(path.c_str(), &state->handle, kFlags, nullptr) != SQLITE_OK)
     return state->Failed();
   Database database(std::move(state));
-  // The file has a temporary name and is flushed when it is whole: no journal is needed.
+  // The file has a temporary name and is flushed when it is complete, so no journal is needed.
   LF_RETURN_IF_ERROR(database.Execute(
       fmt::format("pragma page_size = {}; pragma journal_mode = off; pragma synchronous = off; "
                   "pragma application_id = {}; pragma user_version = {};",
@@ -318,21 +319,21 @@ Result<Database> Database::OpenToAppend(const fs::path& path, const DatabaseForm
   if (sqlite3_open_v2(path.c_str(), &state->handle, kFlags, nullptr) != SQLITE_OK)
     return state->Failed();
   Database database(std::move(state));
-  // A rollback journal, and not a write-ahead log: what is written is new pages, of which the
-  // journal holds nothing, and the file is whole and alone after every batch. To be
-  // asked for its pages rolls back what an earlier program left.
+  // Uses a rollback journal and not a write-ahead log. Batches write new pages, which the journal
+  // need not save, and after every batch the file is complete without any other. Reading page_count
+  // rolls back an interrupted batch of an earlier program.
   LF_RETURN_IF_ERROR(database.Execute(
       fmt::format("pragma page_size = {}; pragma journal_mode = delete; pragma synchronous = full;",
                   format.page_bytes)));
   LF_ASSIGN_OR_RETURN(const int64_t page_count, database.Pragma("page_count"));
-  // One that had nothing to roll back is left lying; it has been looked at.
+  // SQLite leaves a journal in place if it had nothing to roll back. It is no longer needed.
   std::error_code ignored;
   fs::remove(fs::path(path) += "-journal", ignored);
   if (page_count > 0) {
     LF_RETURN_IF_ERROR(database.CheckFormat(format));
     return database;
   }
-  // Both or none, also for one that is killed here.
+  // One transaction sets both or none, even if the program is killed here.
   LF_RETURN_IF_ERROR(database.Execute(
       fmt::format("begin; pragma application_id = {}; pragma user_version = {}; commit",
                   static_cast<int32_t>(format.application_id), format.version)));
@@ -355,10 +356,11 @@ Result<Database> Database::Open(const fs::path& path, const DatabaseFormat& form
   constexpr int kFlags = SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX;
   if (sqlite3_open_v2(UriOf(path).c_str(), &state->handle, kFlags, nullptr) != SQLITE_OK)
     return state->Fault(fmt::format("cannot be read: {}", sqlite3_errmsg(state->handle)));
-  // Files of others: nothing in them is run, and sizes are checked before anything is allocated.
+  // The file may be from anybody: it must not run any code, and sizes are checked before memory is
+  // allocated.
   sqlite3_db_config(state->handle, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_db_config(state->handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
-  // No value is longer than the file, whatever it claims.
+  // No value can be longer than the file, whatever its header claims.
   constexpr uintmax_t kLeastLimit = 1 << 20;
   const uintmax_t longest = std::clamp<uintmax_t>(size, kLeastLimit, kMaxBlobBytes);
   sqlite3_limit(state->handle, SQLITE_LIMIT_LENGTH, static_cast<int>(longest));

@@ -1,9 +1,10 @@
-// SQLite files of ours: packages and packed stores (doc/design.md, "SQLite is the file format").
-// The only folder that knows SQLite.
+// Our SQLite files: packages and packed stores (doc/design.md, "SQLite is the file format"). No
+// other folder uses SQLite.
 //
-// A file says what it is by its application_id, and in which version by its user_version. It is
-// written under a temporary name, whole (core/file.h) or in batches over hours, and then only read:
-// immutable, without locks, so that any number of machines may read it over a network file system.
+// A file states its kind by its application_id, and its version by its user_version. It is written
+// under a temporary name, either at once (core/file.h) or in batches over hours, and then only
+// read: as immutable and without locks, so that any number of machines may read it over a network
+// file system.
 #pragma once
 
 #include <cstddef>
@@ -19,14 +20,14 @@
 namespace lf {
 
 struct DatabaseFormat {
-  const char* name;         // as messages call such a file: "package"
+  const char* name;         // name of this kind of file in messages: "package"
   uint32_t application_id;  // four letters
-  int version;              // of what this program writes; older ones are not known
-  int page_bytes = 65536;   // a power of 2; small files want small ones
+  int version;              // written by this program; older versions cannot be read
+  int page_bytes = 65536;   // a power of 2; should be small for small files
 };
 
-// One command, prepared; run by steps. The database must outlive it. Columns and parameters count
-// from 0.
+// One prepared command, which is run step by step. The database must outlive it. Columns and
+// parameters are counted from 0.
 class Statement {
  public:
   Statement(Statement&&) noexcept;
@@ -34,28 +35,30 @@ class Statement {
   ~Statement();
 
   Statement& Bind(int parameter, int64_t value);
-  Statement& Bind(int parameter, double value);  // all of its bits are kept, but for NaN
+  Statement& Bind(int parameter, double value);  // keeps all bits, except of NaN
   Statement& Bind(int parameter, std::string_view text);
-  // Bytes, with their checksum behind them: read by Blob().
+  // Binds bytes followed by their checksum, to be read by Blob().
   Statement& BindBlob(int parameter, std::string_view bytes);
   Statement& BindNull(int parameter);
 
-  // Whether there is a (next) row; false when the command is done, after which it may be bound and
-  // run again. Errors of the kind of the database: damage when reading, the disk when writing. A
-  // command that takes more steps than a file of this length can need is damage, too.
+  // Moves to the next row. Returns false if there is none; the command may then be bound and run
+  // again. Errors have the kind of the database: damage when reading, a disk failure when writing.
+  // A command that takes more steps than a file of this length can need is an error, because the
+  // file is damaged.
   Result<bool> Step();
-  // Of a command without rows: runs it to its end.
+  // Runs a command without rows to its end.
   Result<void> Run();
-  // Ends a command before its last row: it may be bound and run again.
+  // Ends a command before its last row, so that it may be bound and run again.
   void Reset();
 
   bool IsNull(int column) const;
-  // Of the row. kInput where the column has another type, and where a blob's checksum is wrong.
+  // Values of the current row. kInput if the column has another type, or a blob's checksum is
+  // wrong.
   Result<int64_t> Integer(int column) const;
   Result<int64_t> Integer(int column, int64_t low, int64_t high) const;
-  Result<double> Real(int column) const;  // finite
+  Result<double> Real(int column) const;  // always finite
   Result<std::string> Text(int column) const;
-  // The bytes without their checksum; until the next step.
+  // Returns the bytes without their checksum; valid until the next step.
   Result<std::string_view> Blob(int column) const;
 
  private:
@@ -68,20 +71,20 @@ class Statement {
 
 class Database {
  public:
-  // A new, empty one in place of what has the name. kOutput.
+  // Creates an empty database and replaces an existing file of this name. kOutput.
   static Result<Database> Create(const std::filesystem::path& path, const DatabaseFormat& format);
-  // To be read. kInput: it cannot be read, is none, is of another kind or version, was copied in
-  // part, or has other tables and indices than one of these scripts makes, compared letter by
-  // letter. A view or a generated column in place of a table could take any time and memory, so
-  // nothing is selected before this is known.
+  // Opens a file for reading. kInput: it cannot be read, is no database, is of another kind or
+  // version, was copied only in part, or has other tables and indices than one of these scripts
+  // makes, compared letter by letter. Nothing is selected before this check, because a view or a
+  // generated column in place of a table could take any time and memory.
   static Result<Database> Open(const std::filesystem::path& path, const DatabaseFormat& format,
                                const std::vector<std::string>& scripts);
 
-  // To be written in batches: made if it is not there or empty, else what it holds stays. What is
-  // committed ("begin" and "commit" by Execute()) is on the disk and survives the program, however
-  // it ends: the next OpenToAppend() finds all batches that were committed, and nothing of the one
-  // that was not. Beside the file there may be one more, FILE-journal, which belongs to it until it
-  // is opened and closed again; between batches there is none. For one program at a time.
+  // Opens a file for writing in batches. Creates it if it does not exist or is empty, otherwise
+  // keeps its contents. Committed batches ("begin" and "commit" by Execute()) are on the disk and
+  // survive however the program ends: the next OpenToAppend() finds all committed batches, and
+  // nothing of an uncommitted one. During a batch there may be a file FILE-journal beside the file;
+  // it belongs to it until the file is opened and closed again. One program at a time may open it.
   // kOutput; kInput: it is of another kind or version.
   static Result<Database> OpenToAppend(const std::filesystem::path& path,
                                        const DatabaseFormat& format);
@@ -90,12 +93,13 @@ class Database {
   Database& operator=(Database&&) noexcept;
   ~Database();
 
-  // Commands without rows, separated by semicolons.
+  // Runs commands without rows, separated by semicolons.
   Result<void> Execute(const std::string& sql);
   Result<Statement> Prepare(const std::string& sql);
 
-  const std::string& name() const;  // as messages call it: its path
-  // "package-0000.lfp: " + message; kInput, or kOutput of one that is written.
+  const std::string& name() const;  // its path, as messages show it
+  // Returns the error "package-0000.lfp: " + message: kInput, or kOutput for a database that is
+  // written.
   Error Fault(std::string_view message) const;
 
  private:
@@ -108,7 +112,8 @@ class Database {
   std::shared_ptr<State> state_;
 };
 
-// Calls row(statement), which gives a Result<void>, for every row of a command without parameters.
+// Calls row(statement), which returns a Result<void>, for every row of a command without
+// parameters.
 template <class Row>
 Result<void> ForEachRow(Database& database, const std::string& sql, const Row& row) {
   LF_ASSIGN_OR_RETURN(Statement select, database.Prepare(sql));

@@ -31,7 +31,7 @@ class DatabaseTest : public ::testing::Test {
   }
   ~DatabaseTest() override { fs::remove_all(folder_); }
 
-  // Rows of (key, number, word, blob).
+  // Writes rows of (key, number, word, blob).
   fs::path Write(int rows = 20, const DatabaseFormat& format = kFormat) {
     const fs::path path = folder_ / "a file %41 ?immutable=0 #1.lfp";
     Result<Database> database = Database::Create(path, format);
@@ -56,7 +56,7 @@ class DatabaseTest : public ::testing::Test {
     return bytes;
   }
 
-  // How many rows are as they were written; an error is one that says so.
+  // Returns how many rows have their original values. An error must be an error of this file.
   static Result<int> ReadAll(const fs::path& path) {
     LF_ASSIGN_OR_RETURN(Database database, Database::Open(path, kFormat, {kThings}));
     LF_ASSIGN_OR_RETURN(Statement select,
@@ -89,7 +89,7 @@ TEST_F(DatabaseTest, ReadsWhatWasWritten) {
   const Result<int> rows = ReadAll(Write());
   ASSERT_TRUE(rows) << rows.error().message;
   EXPECT_EQ(*rows, 20);
-  // In place of it, a smaller one.
+  // A smaller file replaces it.
   EXPECT_EQ(*ReadAll(Write(3)), 3);
 }
 
@@ -173,7 +173,7 @@ TEST_F(DatabaseTest, KeepsAllBitsOfNumbers) {
   }
 }
 
-// What others may have put in place of the tables, correct in every other way.
+// Other objects in place of the tables, which are correct in every other way.
 TEST_F(DatabaseTest, OtherTablesAreRefusedBeforeTheyAreRead) {
   const std::string endless =
       "with recursive c(x) as (select 0 union all select x + 1 from c) select x as key, "
@@ -211,7 +211,7 @@ TEST_F(DatabaseTest, CommandsWithoutEndAreDamage) {
   const Result<bool> step = endless.Step();
   ASSERT_FALSE(step);
   EXPECT_NE(step.error().message.find("have no end"), std::string::npos) << step.error().message;
-  // The next command has steps of its own.
+  // The step limit applies to each command separately.
   Statement again = database.Prepare("select count(*) from things").value();
   ASSERT_TRUE(again.Step());
   EXPECT_EQ(*again.Integer(0), 20);
@@ -226,7 +226,7 @@ TEST_F(DatabaseTest, WhatCannotBeWrittenIsAnOutputError) {
 constexpr const char* kBatches =
     "create table things (key integer primary key, bytes blob not null)";
 
-// Appends to what is there, three rows a batch; told(count) after each.
+// Appends three rows in each batch, and calls told(row count) after each batch.
 template <class Told>
 Result<void> AppendBatches(const fs::path& path, int batch_count, const Told& told) {
   LF_ASSIGN_OR_RETURN(Database database, Database::OpenToAppend(path, kFormat));
@@ -252,7 +252,7 @@ Result<void> AppendBatches(const fs::path& path, int batch_count, const Told& to
   return {};
 }
 
-// How many rows there are; all must be whole.
+// Returns the number of rows, all of which must be complete.
 int64_t CountWhole(const fs::path& path) {
   Database database = Database::OpenToAppend(path, kFormat).value();
   Statement check = database.Prepare("pragma integrity_check").value();
@@ -276,7 +276,7 @@ TEST_F(DatabaseTest, BatchesAreAppended) {
   }
   EXPECT_EQ(told, 36);
   EXPECT_EQ(CountWhole(path), 36);
-  // One file, to be read as any other.
+  // There is one file, which is read like any other.
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
   EXPECT_TRUE(Database::Open(path, kFormat, {kBatches}));
 }

@@ -13,7 +13,8 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-// 8 letters, the size of what is sealed and its XXH3, the least bytes first.
+// The footer is 8 letters, the size of the file before it and its XXH3, least significant bytes
+// first.
 constexpr std::string_view kLetters = "LFSEAL1\n";
 constexpr size_t kSealBytes = 24;
 constexpr size_t kPartBytes = size_t{1} << 20;
@@ -24,7 +25,7 @@ std::string NumberText(uint64_t number) {
   return text;
 }
 
-// The seal of the first `size` bytes; fewer letters where the file has fewer.
+// Returns the footer for the first `size` bytes; empty if the file has fewer bytes.
 std::string SealOf(std::istream& file, uint64_t size) {
   Hasher hasher;
   std::string part(kPartBytes, '\0');

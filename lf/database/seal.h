@@ -1,5 +1,6 @@
-// A checksum of a whole file behind its end, where SQLite does not look: every byte counts, also of
-// numbers, words and what SQLite itself writes. For files that are read whole anyway.
+// A checksum footer behind the end of a file, where SQLite does not read. It covers every byte,
+// including numbers, words and SQLite's own structures. It is for files that are read completely in
+// any case.
 #pragma once
 
 #include <filesystem>
@@ -8,11 +9,11 @@
 
 namespace lf {
 
-// Adds the seal to a file that is complete and closed. kOutput.
+// Appends the footer to a file that is complete and closed. kOutput.
 Result<void> SealFile(const std::filesystem::path& path);
 
 // kInput: the file is shorter or longer than it was, or a byte has changed.
-//   what  as messages call such a file: "package"
+//   what  name of this kind of file in messages: "package"
 Result<void> CheckSeal(const std::filesystem::path& path, const char* what);
 
 }  // namespace lf

@@ -52,7 +52,7 @@ TEST_F(SealTest, EveryByteCounts) {
 }
 
 TEST_F(SealTest, SizesCount) {
-  const std::string whole = Sealed((3 << 20) + 7);  // more than is read at once
+  const std::string whole = Sealed((3 << 20) + 7);  // more than is read at a time
   EXPECT_EQ(Fault(whole), "");
   for (const size_t size : {whole.size() - 1, whole.size() - 24, whole.size() / 2, size_t{30},
                             size_t{24}, size_t{3}, size_t{0}})
