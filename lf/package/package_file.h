@@ -9,32 +9,33 @@
 
 namespace lf {
 
-// By its extension, .lfp: that programs tell it from a LIGHTFIELD.
+// Returns true if the path has the extension .lfp, by which programs tell a package from a
+// LIGHTFIELD.
 bool IsPackageName(const std::filesystem::path& path);
 
 struct PackageNotes {
   std::string version;      // of the program
-  std::string light_field;  // LIGHTFIELD, as it was given
+  std::string light_field;  // LIGHTFIELD, as the user gave it
 };
 
-// kOutput; nothing is left behind then.
+// kOutput; no file is left then.
 Result<void> WritePackage(const std::filesystem::path& path, const Package& package,
                           const PackageNotes& notes);
 
-// Writes the package to the file `as`, which is to be renamed to `path` later. kOutput; a part of
-// the file may be there then.
+// Writes the package to the file `as`, which the caller will rename to `path`. kOutput; a part of
+// the file may be left then.
 Result<void> WritePackageAs(const std::filesystem::path& as, const std::filesystem::path& path,
                             const Package& package, const PackageNotes& notes);
 
 struct ReadPackageOptions {
-  // Off where damage is made on purpose: every byte is checked otherwise.
+  // Off in tests that damage the file on purpose. Otherwise the checksum covers every byte.
   bool check_seal = true;
 };
 
-// The package's name is that of the file. Its light_field.folder is where the LF images were; if
-// that is gone, the same place seen from the file, so that a light field and its packages may move
-// together.
-// kInput: it cannot be read, is damaged, or of another version.
+// Reads a package. Its name is that of the file. light_field.folder is the folder where the LF
+// images were; if that no longer exists, the folder at the same relative path from the package, so
+// that a light field and its packages may be moved together. kInput: the file cannot be read, is
+// damaged, or has another version.
 Result<Package> ReadPackage(const std::filesystem::path& path,
                             const ReadPackageOptions& options = {});
 

@@ -1,5 +1,5 @@
-// Any bytes are a package or an error; a package has sane cameras and places only. The seal is not
-// asked, or nothing behind it would ever be reached.
+// Any bytes must be a package or an error. A package must have sane cameras and ranks only. The
+// checksum footer is not checked, because otherwise no damaged bytes would reach the parser.
 #include <unistd.h>
 
 #include <cmath>

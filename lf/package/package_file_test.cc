@@ -15,7 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Every third frame of twelve, 40 LF images of 1000, of which the last five are neighbours.
+// Returns a package of every third frame of twelve, with 40 LF images of 1000, of which the last
+// five are neighbours.
 Package TestPackage() {
   Package package;
   package.number = 4;
@@ -116,7 +117,7 @@ TEST_F(PackageFileTest, ReadsWhatWasWrittenToTheBit) {
   EXPECT_EQ(read->places.of_images, package.places.of_images);
   EXPECT_EQ(read->places.end, package.places.end);
 
-  // The first two LF images have one pose; their gains differ.
+  // The first two LF images have one pose and different gains.
   EXPECT_TRUE(read->light_field.cameras[0].masks_clipped);
   EXPECT_EQ(read->light_field.cameras[1].brighter, 0U);
 
@@ -178,7 +179,7 @@ TEST_F(PackageFileTest, ReadsWhatWasWrittenToTheBit) {
   }
 }
 
-// So that a package tells by its checksum whether it is the same.
+// Equal packages have equal checksums, because their bytes are equal.
 TEST_F(PackageFileTest, TheSamePackageHasTheSameBytes) {
   Write(TestPackage());
   const std::string first = *ReadFile(path_);
@@ -195,11 +196,12 @@ TEST_F(PackageFileTest, EveryFlippedByteIsAnError) {
     const size_t at = RandomBits(5, 0, i) % whole.size();
     damaged[at] = static_cast<char>(damaged[at] ^ (1 << i % 8));
     EXPECT_NE(Fault(damaged), "") << at;
-    Fault(damaged, false);  // without the seal it may pass, and must not crash
+    Fault(damaged, false);  // without the footer the damage may remain undetected, but must not
+                            // crash
   }
 }
 
-// The frames behind it would get other numbers.
+// If the missing frame were ignored, the frames after it would get wrong numbers.
 TEST_F(PackageFileTest, AFrameThatIsMissingIsAnError) {
   Package package = TestPackage();
   package.choices.has_neighbours = false;

@@ -1,4 +1,4 @@
-// What writer and reader of package files share. Internal to package.
+// Definitions that the writer and the reader of package files share. Internal to package.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@ namespace lf {
 
 inline constexpr DatabaseFormat kPackageFormat = {"package", 0x4C465047 /* "LFPG" */, 2, 4096};
 
-// Settings, intrinsics and these, as doc/formats/package.md describes them.
+// Tables of a package besides settings and intrinsics (doc/formats/package.md).
 inline constexpr const char* kPackageTables = R"(
 create table lf_images (place integer primary key, id integer, name text, mask text,
   intrinsics integer, gain real, x real, y real, z real, pose blob, file_bytes integer,
@@ -21,14 +21,14 @@ create table frames (frame integer primary key, time_s real, x real, y real, z r
   lf_images integer, rays integer, camera_distance real, surroundings blob);
 )";
 
-// All that a frame's camera is, exact: fx, fy, cx, cy, skew, width, height; pose; radius, blades
-// and rotation of the aperture; normal and offset of the focus plane; time, focal length, sensor
-// width, focus distance, horizontal and vertical tilt, unit_m.
+// Number of values that describe a frame's camera exactly: fx, fy, cx, cy, skew, width, height;
+// pose; radius, blades and rotation of the aperture; normal and offset of the focus plane; time,
+// focal length, sensor width, focus distance, horizontal and vertical tilt, unit_m.
 inline constexpr size_t kCameraNumbers = 33;
 std::array<double, kCameraNumbers> NumbersOfCamera(const RenderCamera& camera);
 RenderCamera CameraOfNumbers(std::span<const double, kCameraNumbers> numbers);
 
-// FrameSurroundings in the order of its fields.
+// Number of fields of FrameSurroundings, stored in their order.
 inline constexpr size_t kSurroundingsNumbers = 6;
 
 }  // namespace lf

@@ -70,7 +70,7 @@ Result<void> Reader::ReadSettings() {
   return ReadChoices();
 }
 
-// "3 of 8"
+// Reads the package's number from text such as "3 of 8".
 Result<void> Reader::ReadNumber() {
   constexpr std::string_view kOf = " of ";
   const std::string text = settings_.Text("package");
@@ -108,8 +108,8 @@ Result<void> Reader::ReadChoices() {
   return {};
 }
 
-// Where the LF images, or the store that holds them, were when the package was made; else the same
-// place from here.
+// Returns the folder of the LF images, or the packed store, as it was when the package was made. If
+// it no longer exists, returns the path that has the same position relative to the package.
 fs::path Reader::Folder() const {
   const fs::path folder = settings_.Text("folder");
   std::error_code error;
@@ -120,7 +120,7 @@ fs::path Reader::Folder() const {
   return fs::exists(from_here, error) ? from_here : folder;
 }
 
-// In the order of the whole light field, as WritePackage() was given them.
+// Reads LF images in the order of the whole light field, as WritePackage() got them.
 Result<void> Reader::ReadImages() {
   LF_RETURN_IF_ERROR(ForEachRow(
       database_,
@@ -131,7 +131,7 @@ Result<void> Reader::ReadImages() {
   if (std::all_of(light_field.mask_names.begin(), light_field.mask_names.end(),
                   [](const std::string& name) { return name.empty(); }))
     light_field.mask_names.clear();
-  // All exposures of a pose see the same, and are in the package if one of them is.
+  // All exposures of a pose see the same pixels, and the package has all of them or none.
   if (light_field.encoding.masks_clipped) ApplyBrackets(&light_field);
   std::vector<uint32_t> places = package_.places.of_images;
   std::sort(places.begin(), places.end());
@@ -170,7 +170,7 @@ Result<void> Reader::ReadImage(const Statement& row) {
   return {};
 }
 
-// All frames of a film have them, or none has.
+// Reads the surroundings of a frame. Either all frames of a film have them, or none.
 Result<void> Reader::ReadSurroundings(const std::vector<double>& numbers, int64_t frame) {
   const size_t before = static_cast<size_t>(frame) - 1;
   if (numbers.empty() && package_.surroundings.empty()) return {};
@@ -219,7 +219,7 @@ Result<void> Reader::ReadFrames() {
         LF_ASSIGN_OR_RETURN(const int64_t images, row.Integer(3, 0, kMostImages));
         LF_ASSIGN_OR_RETURN(const int64_t rays, row.Integer(4, 0, INT64_MAX));
         LF_ASSIGN_OR_RETURN(const std::string_view surroundings, row.Blob(5));
-        // Not by LF_RETURN_IF_ERROR, within which this function is called.
+        // LF_RETURN_IF_ERROR cannot be used here, because it is in use around this lambda.
         const auto read = ReadSurroundings(NumbersOf<double>(surroundings), number);
         if (!read || is_rendered == 0) return read;
         PackageFrame frame;

@@ -36,7 +36,7 @@ class Writer {
 
  private:
   SettingList SettingsOf(const fs::path& final_path, const PackageNotes& notes) const {
-    // "" is the working folder, as in paths of files there.
+    // An empty path is the working folder, as in the paths of files there.
     const auto absolute = [](const fs::path& path) {
       return fs::absolute(path.empty() ? "." : path).lexically_normal();
     };
@@ -67,7 +67,7 @@ class Writer {
     return settings;
   }
 
-  // By places, so that SQLite appends.
+  // Writes rows in the order of ranks, so that SQLite appends them.
   Result<void> WriteImages() {
     LF_CHECK(package_.images.size() == light_field_.size());
     LF_ASSIGN_OR_RETURN(Statement image,
@@ -99,7 +99,7 @@ class Writer {
     return insert->Run();
   }
 
-  // All of the film; those of the package are rendered.
+  // Writes all frames of the film; the package's own are marked as rendered.
   Result<void> WriteFrames() {
     LF_ASSIGN_OR_RETURN(
         Statement insert,
@@ -127,7 +127,7 @@ class Writer {
     return {};
   }
 
-  // None where they were not measured.
+  // Returns nothing if the surroundings were not measured.
   std::vector<double> SurroundingsOf(uint32_t frame) const {
     if (package_.surroundings.empty()) return {};
     const FrameSurroundings& around = package_.surroundings[frame - 1];
