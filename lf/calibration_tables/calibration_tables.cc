@@ -13,11 +13,11 @@
 namespace lf {
 namespace {
 
-// The names are in the order of DistortionModel.
+// Name of each DistortionModel.
 constexpr const char* kModelNames[] = {
     "none",     "radial_tangential", "fisheye",    "fov",
     "division", "unified",           "thin_prism", "radial_tangential_thin_prism"};
-// The names are in the order of Transfer.
+// Name of each Transfer.
 constexpr const char* kTransferNames[] = {"srgb", "linear", "response"};
 
 Result<Intrinsics> ReadIntrinsicsRow(const Settings& settings, const Statement& row) {
@@ -38,7 +38,7 @@ Result<Intrinsics> ReadIntrinsicsRow(const Settings& settings, const Statement& 
   if (name == std::end(kModelNames) || !numbers)
     return settings.Damaged(fmt::format("a lens distortion is {} {}", model, parameters));
   k.distortion.model = static_cast<DistortionModel>(name - std::begin(kModelNames));
-  // The parameters of the vignetting, if any, follow those of the distortion.
+  // The parameters of the distortion are followed by those of the vignetting if there is one.
   const size_t of_distortion = StoredParameterCount(k.distortion.model);
   const size_t of_both = of_distortion + k.vignetting.v.size();
   if (numbers->size() != of_distortion && numbers->size() != of_both)
@@ -52,7 +52,7 @@ Result<Intrinsics> ReadIntrinsicsRow(const Settings& settings, const Statement& 
   return k;
 }
 
-// Both settings are missing in older files.
+// Reads alpha and background. Older files have neither.
 Result<void> ReadAlpha(const Settings& settings, RadianceEncoding* encoding) {
   encoding->alpha = AlphaMeaningOf(settings.Text("alpha"));
   if (!encoding->alpha && !settings.Text("alpha").empty())
@@ -183,7 +183,8 @@ void BindCamera(const LightField& light_field, LfImageId id, int parameter, Stat
 
 namespace {
 
-// The column holds a number, or a text of three numbers if the channels have different gains.
+// Reads the column of gains, which holds a number, or a text of three numbers if each channel has
+// its own gain.
 Result<ChannelGains> ReadGains(const Settings& settings, const Statement& row, int column,
                                const std::string& name) {
   ChannelGains gains;

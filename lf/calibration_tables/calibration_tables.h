@@ -1,5 +1,5 @@
-// Stores a light field's calibration in SQLite files; packages and packed stores share this.
-// Numbers keep all their bits.
+// Stores a light field's calibration in our SQLite files, for packages and packed stores. Numbers
+// keep all their bits.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace lf {
 
-// Settings "unit_m", "bayer", "transfer", ... for unit_m, depth_range and the whole encoding.
+// Settings "unit_m", "bayer", "transfer", ...: unit_m, depth_range and the whole encoding.
 SettingList SettingsOfPixels(const LightField& light_field);
 Result<void> ReadPixelSettings(const Settings& settings, LightField* light_field);
 
@@ -22,16 +22,16 @@ create table intrinsics (id integer primary key, width integer, height integer, 
   cx real, cy real, skew real, distortion text, parameters text);)";
 
 Result<void> WriteIntrinsics(const std::vector<Intrinsics>& intrinsics, Database* database);
-// settings: of the same file, for messages
+// settings  of the file, for messages
 Result<std::vector<Intrinsics>> ReadIntrinsics(const Settings& settings, Database* database);
 
 // Number of columns of an LF camera: intrinsics, gain, x, y, z (for people) and pose.
 inline constexpr int kCameraColumns = 6;
-// Binds an LF camera to the parameters from `parameter` on.
+// Binds these columns, beginning at `parameter`.
 void BindCamera(const LightField& light_field, LfImageId id, int parameter, Statement* statement);
-// Reads an LF camera from the columns intrinsics, gain and pose that begin at `column`.
+// Reads the columns intrinsics, gain, pose, beginning at `column`.
 //   name              of the LF image, for messages; an empty name is damage
-//   intrinsics_count  number of rows in the table of intrinsics
+//   intrinsics_count  rows of the table of intrinsics
 Result<LfCamera> ReadCamera(const Settings& settings, const Statement& row, int column,
                             const std::string& name, size_t intrinsics_count);
 

@@ -27,7 +27,7 @@ class CalibrationTablesTest : public ::testing::Test {
   Result<std::vector<Intrinsics>> Read() {
     return ReadIntrinsics(Settings::Read(*database_, "test file").value(), &*database_);
   }
-  // Inserts a row in the form that files have.
+  // Inserts a row in the form of the file.
   void Insert(const std::string& distortion, const std::string& parameters) {
     ASSERT_TRUE(
         database_->Execute(("insert into intrinsics values (0, 640, 480, 500, 501, 320, 240, 0, '" +
@@ -53,7 +53,7 @@ TEST_F(CalibrationTablesTest, EveryLensIsReadAsItWasWritten) {
   EXPECT_EQ(Read().value(), written);
 }
 
-// A pedestal of 65535 leaves no values for light.
+// A larger pedestal is refused: 65535 would leave no range for light.
 TEST_F(CalibrationTablesTest, APedestalLeavesHalfOfTheRangeToLight) {
   LightField light_field;
   light_field.encoding.pedestal = kMostPedestal;
@@ -81,7 +81,7 @@ TEST_F(CalibrationTablesTest, ALensOfAnOlderFileHasEightParameters) {
   EXPECT_EQ(Read().value()[0].distortion, expected);
 }
 
-// An older program can read the models that it knows from a file by a newer program.
+// An older program can read the rows of a newer one for the models that it knows.
 TEST_F(CalibrationTablesTest, ALensOfAnOlderModelIsWrittenWithEightParameters) {
   const Distortion fisheye = {DistortionModel::kFisheye, {1, 2, 3, 4}};
   ASSERT_TRUE(WriteIntrinsics({{500, 501, 320, 240, 0, 640, 480, fisheye}}, &*database_));

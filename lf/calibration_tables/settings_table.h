@@ -1,4 +1,4 @@
-// The table `settings` of our SQLite files: text by key.
+// The table `settings` of our files, which maps keys to text.
 #pragma once
 
 #include <cstdint>
@@ -19,26 +19,27 @@ inline constexpr const char* kSettingsTable =
 
 using SettingList = std::vector<std::pair<std::string, std::string>>;
 
-// Writes the settings in their order. The table must exist. Errors are those of the database.
+// Writes the settings in their order into the table, which must exist. Errors are the database's.
 Result<void> WriteSettings(const SettingList& settings, Database* database);
 
-// The settings of a file, as text or converted. Errors are kInput and name file and key.
+// Settings of a file, as text or converted to the type that the text should have. Errors are
+// kInput, and name file and key.
 class Settings {
  public:
-  // what  the word for such a file in messages: "package"
+  // what  name of this kind of file in messages: "package"
   static Result<Settings> Read(Database& database, const char* what);
 
-  // Returns "" if the key is missing.
+  // Returns "" if the key does not exist.
   std::string Text(const std::string& key) const;
   Result<std::vector<double>> Numbers(const std::string& key, size_t count_min,
                                       size_t count_max) const;
   Result<double> Number(const std::string& key, double low, double high) const;
-  // Reads a whole number up to 2^64 - 1.
+  // Returns a whole number of up to 2^64 - 1.
   Result<uint64_t> Whole(const std::string& key) const;
-  // Returns the index of the setting in `words`.
+  // Returns the index of the setting's word in `words`.
   Result<int> Word(const std::string& key, std::span<const char* const> words) const;
 
-  // "package-0000.lfp: is a damaged package: " + what
+  // Returns the error "package-0000.lfp: is a damaged package: " + what.
   Error Damaged(const std::string& what) const;
   Error Wrong(const std::string& key, std::string_view expected) const;
 

@@ -1,5 +1,5 @@
-// Numbers in blobs, least significant byte first, and the limits for numbers in a file, which are
-// those of the readers of calibrations and paths.
+// Numbers in blobs, least significant byte first, and limits for the numbers of a file. The readers
+// of calibrations and paths have the same limits.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ std::string BytesOf(std::span<const Number> numbers) {
   return {reinterpret_cast<const char*>(numbers.data()), numbers.size_bytes()};
 }
 
-// Returns as many numbers as `bytes` holds completely.
+// Returns as many numbers as the bytes hold.
 template <class Number>
 std::vector<Number> NumbersOf(std::string_view bytes) {
   std::vector<Number> numbers(bytes.size() / sizeof(Number));
@@ -32,12 +32,12 @@ std::vector<Number> NumbersOf(std::string_view bytes) {
   return numbers;
 }
 
-// The rotation row by row, then the translation.
+// Numbers of a pose: the rotation by rows, then the translation.
 inline constexpr size_t kPoseNumbers = 12;
 std::array<double, kPoseNumbers> NumbersOfPose(const RigidTransform& pose);
 RigidTransform PoseOfNumbers(std::span<const double, kPoseNumbers> numbers);
 
-// Parses numbers separated by spaces; nullopt if a word is no number.
+// Returns the numbers of a text, separated by spaces; none if a word is not a number.
 std::optional<std::vector<double>> ParseNumbers(const std::string& text);
 
 inline constexpr int64_t kMostSide_px = 65536;
@@ -49,7 +49,7 @@ inline bool IsWithin(double value, double low, double high) {
   return value >= low && value <= high;
 }
 bool IsPose(const RigidTransform& pose);
-// Returns true if the intrinsics are within the limits; the distortion is not checked.
+// Checks the camera without its distortion.
 bool IsCamera(const Intrinsics& k);
 bool IsStoredDistortion(const Distortion& distortion);
 
