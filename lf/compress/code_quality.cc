@@ -24,7 +24,7 @@ CodeError ErrorOf(const CodecPixels& coded, const DecodedPart& decoded, double g
       [&]<class Pixel>(const Image<Pixel>& image) {
         const auto& other = std::get<Image<Pixel>>(decoded.pixels);
         LF_CHECK(other.pixels().size() == image.pixels().size());
-        // Whole numbers add up the same in any order.
+        // A sum of integers does not depend on the order.
         uint64_t sum = 0;
         for (size_t i = 0; i < image.pixels().size(); ++i) {
           const int64_t difference = int64_t{image.pixels()[i]} - other.pixels()[i];

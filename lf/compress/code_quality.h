@@ -1,4 +1,4 @@
-// How far decoded pixels are from those that were coded.
+// Measures the difference between decoded pixels and the original ones.
 #pragma once
 
 #include <cstddef>
@@ -12,26 +12,27 @@
 
 namespace lf {
 
-// Sums of many images add up.
+// Errors of several images can be added.
 struct CodeError {
-  double squared = 0;  // of differences, as parts of what white is above black
-  uint64_t count = 0;  // of values
+  double squared = 0;  // sum of squared differences, relative to the range from black to white
+  uint64_t count = 0;  // number of values
 
   CodeError& operator+=(const CodeError& other) {
     squared += other.squared;
     count += other.count;
     return *this;
   }
-  // Of all values together; infinite without a difference.
+  // PSNR of all values together; infinite if there is no difference.
   double PsnrDb() const;
 };
 
-// How many stored values a grey step is: the difference of two of 256 greys between black and
-// white. Of 8 bits 1, of 16 bits 257, unless levels are stated. Half floats are taken by their bit
-// patterns, of which 1024 are a factor of two in radiance: 16, about one part in a hundred.
+// Returns the size of a grey step in stored values: the range from black to white has 255 steps. It
+// is 1 for 8 bits and 257 for 16 bits, unless levels are stated. Half floats are measured by their
+// bit patterns, of which 1024 are a factor of two in radiance; their step is 16, which is about 1
+// %.
 double GreyStep(const RadianceEncoding& encoding, StoredValues values);
 
-// `decoded` must be all of the image.
+// Returns the error of one image. `decoded` must be the whole image.
 CodeError ErrorOf(const CodecPixels& coded, const DecodedPart& decoded, double grey_step);
 
 }  // namespace lf

@@ -24,7 +24,7 @@ double Now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// Whether a store has the name. kUsage: something else has.
+// Returns true if the store exists. kUsage if another file has its name.
 Result<bool> IsThere(const fs::path& path) {
   std::error_code error;
   if (!fs::exists(fs::symlink_status(path, error))) return false;
@@ -57,7 +57,7 @@ Result<PackedStoreWriter> OpenWriter(const CompressSource& source, const Compres
   return PackedStoreWriter::Create(store, source.light_field, plan, std::move(lock));
 }
 
-// Removed at the end, unless a writer has taken it over.
+// Removes the lock at the end, unless a writer has taken it over.
 struct HeldLock {
   std::optional<FileLock> lock;
   HeldLock() = default;
@@ -68,7 +68,7 @@ struct HeldLock {
   }
 };
 
-// One call of Compress(): what its threads share.
+// State of one call of Compress(), shared by its threads.
 class Compressor {
  public:
   Compressor(const CompressSource& source, const CompressOptions& options, ThreadPool& pool,
@@ -98,11 +98,11 @@ class Compressor {
   CodecSettings settings_;
   std::optional<ImageCoder> coder_;
 
-  std::mutex mutex_;  // of what follows
+  std::mutex mutex_;  // guards everything below
   CompressReport report_;
   CompressProgress now_;
   std::optional<Error> error_;
-  bool ended_ = false;  // by an error or from outside
+  bool ended_ = false;  // by an error or by an interruption
 };
 
 Error Compressor::Interrupted() const {
@@ -137,7 +137,8 @@ void Compressor::AddOne(PackedStoreWriter* writer, LfImageId id) {
   report_.encode_cpu_s += static_cast<double>(timer.Nanoseconds()) * 1e-9;
   ++now_.done;
   if (error) {
-    // Only the image itself may be at fault: what the machine lacks is no reason to go on.
+    // Only errors of the image itself are skipped. If the machine lacks memory or disk space, the
+    // call fails.
     const bool is_image = !image && error->kind == ErrorKind::kInput;
     if (is_image) report_.skipped.push_back({name, error->message});
     if ((!is_image || options_.strict) && !ended_) {
@@ -169,7 +170,7 @@ void Compressor::Count(const RecordedImage& image, const CodedImage& coded, cons
   now_.code_bytes = report_.code_bytes;
 }
 
-// Of what an unfinished store has: whether it is of the files that are there now, by their sizes.
+// Checks by their sizes that the files are still those from which the unfinished store was made.
 Result<void> Compressor::CheckFiles(const PackedStoreWriter& writer) {
   const LightField& light_field = source_.light_field;
   pool_.ForEach(light_field.size(), [&](size_t i) {
@@ -206,7 +207,7 @@ Result<void> Compressor::Write(FileLock lock) {
   std::sort(report_.skipped.begin(), report_.skipped.end(),
             [](const auto& a, const auto& b) { return a.name < b.name; });
   if (error_) {
-    // What was done before is kept, unless the disk is the reason.
+    // Earlier work is kept, unless the error is a failure of the disk.
     if (error_->kind == ErrorKind::kInput) LF_RETURN_IF_ERROR(writer.Commit());
     return *error_;
   }
@@ -238,7 +239,7 @@ Result<void> Compressor::Verify() {
   return {};
 }
 
-// Names the LF images without a code in a store that was there.
+// Lists the LF images that an existing store lacks.
 Result<void> Compressor::FindSkipped() {
   const std::vector<std::string>& names = source_.light_field.image_names;
   LF_ASSIGN_OR_RETURN(const std::vector<PackedCode> codes, FindCodes(options_.store, names));
@@ -248,7 +249,7 @@ Result<void> Compressor::FindSkipped() {
   return {};
 }
 
-// Finds out if there is a store, and what is to be done with it.
+// Determines whether there is a store, and whether the options allow it.
 Result<void> Compressor::Look() {
   const fs::path& store = options_.store;
   LF_ASSIGN_OR_RETURN(const bool is_there, IsThere(store));
@@ -291,7 +292,7 @@ Result<CompressReport> Compressor::Run() {
   HeldLock held;
   if (!report_.was_there) {
     LF_ASSIGN_OR_RETURN(held.lock, PackedStoreWriter::Lock(options_.store));
-    LF_RETURN_IF_ERROR(Look());  // another one may have finished it meanwhile
+    LF_RETURN_IF_ERROR(Look());  // another program may have finished it meanwhile
   }
   LF_RETURN_IF_ERROR(ChooseThreshold());
   if (report_.was_there) {

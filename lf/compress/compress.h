@@ -1,4 +1,4 @@
-// LF images into a packed store (thesis 4.2.2, 4.5.3).
+// Compresses LF images into a packed store (thesis 4.2.2, 4.5.3).
 #pragma once
 
 #include <atomic>
@@ -22,61 +22,63 @@ struct CompressOptions {
   std::filesystem::path store;  // STORE.lfs
   // The threshold is in grey steps (GreyStep() of code_quality.h) of the images' values.
   CodecSettings codec;
-  // Instead of the threshold: that with which LF images have this PSNR together, by some of them.
+  // Replaces the threshold by the one at which a sample of the LF images has this PSNR.
   std::optional<double> target_psnr_db;
-  uint64_t shard_bytes = 0;  // as PackedStorePlan
-  bool resume = false;       // an unfinished store; one that is there must be what is asked for
-  bool overwrite = false;    // one that is there, unfinished or not
+  uint64_t shard_bytes = 0;  // as in PackedStorePlan
+  bool resume = false;       // resume an unfinished store; a complete one must match the options
+  bool overwrite = false;    // replace an existing store, unfinished or complete
   bool strict = false;       // an LF image that cannot be read is an error
-  // Reads all codes back from the disk: each must be what its LF image gives, and be decoded
-  // without damage. A store that is there already is checked and nothing else.
+  // Reads all encoded images back from the disk. Each must equal the result of encoding its LF
+  // image, and be decoded without damage. An existing store is only checked.
   bool verify = false;
-  std::string source_name;  // LIGHTFIELD or packages, as they were given
+  std::string source_name;  // LIGHTFIELD or packages, as the user gave them
   std::string version;      // of the program
   const std::atomic<bool>* interrupted = nullptr;
 };
 
 struct CompressProgress {
-  size_t done = 0;  // LF images
+  size_t done = 0;  // number of LF images
   size_t total = 0;
-  uint64_t pixel_bytes = 0;  // of those done by this call, as they are stored
+  uint64_t pixel_bytes = 0;  // of the LF images that this call encoded, as stored in their files'
+                             // type
   uint64_t code_bytes = 0;
   bool is_verifying = false;
 };
 
 struct CompressReport {
   size_t image_count = 0;
-  size_t resumed_count = 0;  // were there already
-  bool was_there = false;    // all of the store: nothing was written
+  size_t resumed_count = 0;  // LF images that the unfinished store already had
+  bool was_there = false;    // true if the store was complete, so that nothing was written
   double threshold = 0;      // in grey steps
-  size_t rounded_count = 0;  // LF images with floats that half floats cannot hold
+  size_t rounded_count = 0;  // LF images with floats that half floats cannot represent exactly
   struct Skipped {
     std::string name;
     std::string reason;
   };
-  std::vector<Skipped> skipped;  // LF images without a code, also in a store that was there
+  std::vector<Skipped> skipped;  // LF images that are not in the store because they cannot be read
 
-  // Of the LF images that this call coded.
+  // Sums over the LF images that this call encoded.
   size_t coded_count = 0;
-  uint64_t source_bytes = 0;  // of their files
-  uint64_t pixel_bytes = 0;   // of their pixels as they are stored
+  uint64_t source_bytes = 0;  // size of their files
+  uint64_t pixel_bytes = 0;   // size of their pixels as stored
   uint64_t code_bytes = 0;
   CodeError error;
-  double worst_psnr_db = 0;  // of one LF image; infinite where all are exact
+  double worst_psnr_db = 0;  // lowest of one LF image; infinite if all are exact
   std::string worst_name;
   double encode_cpu_s = 0;
   double total_s = 0;
 
   std::optional<size_t> verified_count;
-  uint64_t store_bytes = 0;  // of all its files
+  uint64_t store_bytes = 0;  // size of all files of the store
 };
 
-// The settings in words: what a store that goes on compares.
+// Returns the settings in words. An unfinished store is resumed only with equal settings.
 std::string NameOf(const CodecSettings& settings);
 
-// kUsage: settings, a store that is there, another file of its name; kInput: no LF image can be
-// read, one cannot if strict, files that are not those an unfinished store was made from, a store
-// that is not what its LF images give (verify); kOutput; kInterrupted: what is done is kept.
+// kUsage: wrong settings, the store exists, or its name belongs to another file. kInput: no LF
+// image can be read, or one cannot with `strict`; the files are not those that an unfinished store
+// was made from; or the store differs from the result of encoding its LF images (`verify`).
+// kOutput. kInterrupted: finished work is kept.
 Result<CompressReport> Compress(const CompressSource& source, const CompressOptions& options,
                                 ThreadPool& pool,
                                 const std::function<void(const CompressProgress&)>& progress);

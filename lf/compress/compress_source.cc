@@ -17,14 +17,15 @@ PixelRect WholeImage(const LightField& light_field, const LfCamera& camera) {
   return {0, 0, intrinsics.width_px, intrinsics.height_px};
 }
 
-// Where an LF image is first, and what all packages need of it.
+// First occurrence of an LF image in the packages, and bounds of the pixels that all packages need
+// of it.
 struct Needed {
   size_t package = 0;
   size_t index = 0;
   PixelRect rect;
 };
 
-// What was lost once would be lost again.
+// Refuses packed stores, because lossy compression would be applied twice.
 Result<void> CheckNotPacked(const LightField& light_field) {
   if (!HoldsPackedStore(light_field)) return {};
   return UsageError(fmt::format("{}: is a packed store already: compress what it was made from",
@@ -53,7 +54,7 @@ Result<CompressSource> SourceOfPackages(std::span<const Package> packages, bool 
                       packages.front().name, package.name));
     for (size_t i = 0; i < package.images.size(); ++i) {
       const PackageImage& image = package.images[i];
-      if (image.ray_count == 0) continue;  // there for its lens weights
+      if (image.ray_count == 0) continue;  // is in the package for lens weights only
       const auto [at, is_new] = needed.try_emplace(image.id, Needed{p, i, image.rect});
       if (!is_new) at->second.rect = Bounds(at->second.rect, image.rect);
     }

@@ -1,4 +1,4 @@
-// What goes into a packed store: LF images of a light field, whole or in part.
+// The input of a packed store: LF images of a light field, whole or in part.
 #pragma once
 
 #include <cstddef>
@@ -16,17 +16,19 @@
 namespace lf {
 
 struct CompressSource {
-  LightField light_field;           // of these LF images alone
-  LightFieldIdentity whole;         // that they are from
-  std::vector<uint32_t> whole_ids;  // in it, as light_field.cameras; empty: 0, 1, 2, ...
-  std::vector<PixelRect> rects;     // pixels that are asked for, as light_field.cameras
+  LightField light_field;           // only these LF images
+  LightFieldIdentity whole;         // the light field that they are from
+  std::vector<uint32_t> whole_ids;  // ids in `whole`, in the order of light_field.cameras; empty:
+                                    // 0, 1, 2, ...
+  std::vector<PixelRect> rects;     // wanted pixels, in the order of light_field.cameras
 };
 
-// All of a light field. kUsage: it is a packed store already.
+// Returns a whole light field. kUsage: it is a packed store already.
 Result<CompressSource> SourceOfAll(LightField light_field);
 
-// The LF images that frames of some packages take rays from, in the order of the light field.
-//   needed_pixels  of each only the bounds of those frames' rectangles, else all
+// Returns the LF images from which frames of the packages take rays, in the order of the light
+// field.
+//   needed_pixels  take only the bounds of those frames' rectangles of each LF image
 // kUsage: the packages are of different light fields, or none of their frames takes any.
 Result<CompressSource> SourceOfPackages(std::span<const Package> packages, bool needed_pixels);
 

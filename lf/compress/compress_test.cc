@@ -30,7 +30,8 @@ TEST(CodeQuality, PsnrIsOfAllValuesTogether) {
   EXPECT_TRUE(std::isinf(CodeError{}.PsnrDb()));
 }
 
-// Two packages that share an LF image, and one LF camera that is there for lens weights alone.
+// Returns one of two packages that share an LF image; one LF camera is present for lens weights
+// only.
 Package PackageOf(const std::string& name, std::vector<PackageImage> images) {
   Package package;
   package.name = name;

@@ -13,9 +13,9 @@
 namespace lf {
 namespace {
 
-constexpr size_t kLookedAt = 12;  // LF images
+constexpr size_t kLookedAt = 12;  // LF images in the sample
 
-// Thresholds that are tried: 0.05, and a twentieth more each time.
+// Thresholds that are tried: from 0.05 on, each 5 % above the one before.
 constexpr int kSteps = 160;
 double ThresholdOf(int step) { return std::round(0.05 * std::pow(1.05, step) * 1e4) / 1e4; }
 

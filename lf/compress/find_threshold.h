@@ -1,4 +1,4 @@
-// The threshold that gives a quality. Internal to compress.
+// Finds the threshold for a given quality. Internal to compress.
 #pragma once
 
 #include <functional>
@@ -10,9 +10,10 @@
 
 namespace lf {
 
-// In grey steps: the largest of some, a twentieth apart, at which LF images spread over the light
-// field have at least `psnr_db` together. The same for any number of threads.
-// kUsage: the profile has none that reaches it, or no threshold; kInput: none of them can be read;
+// Returns a threshold in grey steps: the largest at which a sample of LF images, spread over the
+// light field, has at least `psnr_db` in total. Thresholds are tried in steps of 5 %. The result
+// does not depend on the number of threads. kUsage: no threshold of the profile reaches the
+// quality, or the profile has no threshold; kInput: no image of the sample can be read;
 // kInterrupted.
 Result<double> FindThreshold(const CompressSource& source, const CodecSettings& settings,
                              double psnr_db, ThreadPool& pool,

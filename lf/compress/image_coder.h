@@ -1,4 +1,4 @@
-// One LF image into its code, and how far that is from it. Internal to compress.
+// Encodes one LF image and measures the error. Internal to compress.
 #pragma once
 
 #include <optional>
@@ -12,19 +12,19 @@
 
 namespace lf {
 
-// Of one light field and some settings, whose threshold counts grey steps.
+// An encoder for one light field and settings. The threshold of the settings is in grey steps.
 class ImageCoder {
  public:
   ImageCoder(const RadianceEncoding& encoding, const CodecSettings& settings);
 
-  // The default profile takes linear values of 16 bits along the display curve.
+  // Encodes an image. The default profile encodes linear values of 16 bits along the display curve.
   CodedImage Code(const RecordedImage& image) const;
 
-  // Of the curve, where codes are along one.
+  // Returns the levels of the display curve if images are encoded along it.
   std::optional<DisplayLevels> display_levels() const;
 
-  // Differences are measured in stored values; of linear values of 16 bits, whatever the profile,
-  // along the display curve: as they are seen.
+  // Measures the error in stored values. The error of linear values of 16 bits is measured along
+  // the display curve for all profiles, because this is how it is seen.
   CodeError ErrorOf(const RecordedImage& image, const CodedImage& coded) const;
 
  private:

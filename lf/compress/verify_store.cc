@@ -52,7 +52,7 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
     LF_ASSIGN_OR_RETURN(PackedCodeReader reader, PackedCodeReader::Open(options.store));
     return std::make_unique<PackedCodeReader>(std::move(reader));
   };
-  // What is wrong with a code; nothing if it is right.
+  // Returns what is wrong with an encoded image, if anything.
   const auto check = [&](uint32_t i) -> Result<void> {
     const LfImageId id{i};
     const PixelRect rect = RectToRecord(light_field, id, source.rects[i]);

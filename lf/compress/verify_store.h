@@ -1,4 +1,4 @@
-// Whether a packed store on the disk is what it was made from. Internal to compress.
+// Checks that a packed store on the disk matches its source. Internal to compress.
 #pragma once
 
 #include <cstddef>
@@ -16,23 +16,23 @@ namespace lf {
 
 struct VerifyOptions {
   std::filesystem::path store;
-  CodecSettings settings;  // that it must have been made by
-  PackedStorePlan plan;    // and from what
-  bool any_shards = true;  // of whatever size
+  CodecSettings settings;  // settings that it must have been made with
+  PackedStorePlan plan;    // the plan that it must match
+  bool any_shards = true;  // accept shards of any size
   std::function<bool()> is_interrupted;
 };
 
-// kInput: the store is of other LF images, another calibration or other settings, or none.
+// kInput: the store is of other LF images, another calibration or other settings, or there is none.
 Result<void> CheckStoreFacts(const CompressSource& source, const VerifyOptions& options);
 
-// How many codes were read back, compared with what their LF images give, and decoded. LF images
-// without a code must not be readable.
-// kInput: the first code that differs, or is damaged, and how many there are; another light field
-// or other settings; kInterrupted.
+// Reads the encoded images back, compares each with the result of encoding its LF image, decodes
+// it, and returns their number. An LF image that is missing in the store must not be readable.
+// kInput: an encoded image differs or is damaged (the message states the first and the count), or
+// the store is of another light field or other settings; kInterrupted.
 Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& options,
                            ThreadPool& pool, const std::function<void(size_t)>& progress);
 
-// Of the store's file and its shards.
+// Returns the total size of the store's file and its shards.
 uint64_t StoreBytes(const std::filesystem::path& store);
 
 }  // namespace lf
