@@ -1,4 +1,4 @@
-// What a photographer asks of one frame's camera, as numbers with names: for lfcammvminfo.
+// Facts about one frame's camera that a photographer asks for, as named numbers for lfcammvminfo.
 #pragma once
 
 #include <string>
@@ -10,16 +10,16 @@
 namespace lf {
 
 struct CameraFact {
-  std::string name;                // "position_w": units as everywhere, _w, _mm, _deg, _s
-  std::vector<std::string> parts;  // "x", "y", "z"; empty if there is but one value
+  std::string name;                // "position_w"; units as everywhere: _w, _mm, _deg, _s
+  std::vector<std::string> parts;  // "x", "y", "z"; empty if there is only one value
   std::vector<double> values;
 };
 
-// In this order, the same for every camera:
+// Returns these facts, in this order for every camera:
 //   frame, time_s
 //   position_w         x y z
 //   forward, up        x y z of the axes, length 1
-//   focal_length_mm    as stated, whatever the lens is focused at
+//   focal_length_mm    as stated, at any focus distance
 //   field_of_view_deg  horizontal, vertical; at this frame's focus
 //   aperture_diameter_mm, f_number (thesis Eq. 2.11; infinite for a pinhole)
 //   blades, blade_rotation_deg

@@ -30,7 +30,7 @@ TEST(CameraFacts, AreInTheUnitsOfTheirNames) {
   EXPECT_NEAR(Fact(camera, "f_number")[0], 12.5, 1e-9);
   EXPECT_NEAR(Fact(camera, "focus_distance_w")[0], 200, 1e-9);
   EXPECT_NEAR(Fact(camera, "focus_tilt_deg")[1], 30, 1e-9);
-  // 36 mm at 50 mm; half as high as wide.
+  // The plate is 36 mm wide and half as high, at a focal length of 50 mm.
   EXPECT_NEAR(Fact(camera, "field_of_view_deg")[0], 39.5978, 1e-4);
   EXPECT_NEAR(std::tan(RadiansFromDegrees(Fact(camera, "field_of_view_deg")[1] / 2)), 9.0 / 50,
               1e-9);

@@ -1,4 +1,4 @@
-// The camera movement, evaluated: one thin-lens camera per frame (thesis 4.5.1).
+// The camera path after evaluation: one thin-lens camera per frame (thesis 4.5.1).
 #pragma once
 
 #include <vector>

@@ -12,11 +12,11 @@
 namespace lf {
 namespace {
 
-// Fields of view beyond these are slips of the pen: half of it as a tangent.
+// Limits of the tangent of half the field of view. Values beyond them are mistakes in the file.
 constexpr double kLeastHalfView = 1e-6;
 constexpr double kMostHalfView = 1e4;
 
-// One moment of the path.
+// A time at which the path is evaluated.
 struct Moment {
   const PathDescription& path;
   int frame = 1;
@@ -29,7 +29,7 @@ Error ErrorAt(const Moment& moment, const Quantity& quantity, const std::string&
                                 moment.frame, moment.time_s, message));
 }
 
-// The quantity's value, which is within its range.
+// Returns the quantity's value; an error if it leaves its range.
 Result<MotionValue> ValueOf(const Moment& moment, const Quantity& quantity) {
   const MotionValue value = ValueAt(quantity.motion, moment.time_s);
   for (const double component : value) {
@@ -52,7 +52,7 @@ Eigen::Quaterniond OrientationFrom(const MotionValue& value) {
   return {value[0], value[1], value[2], value[3]};
 }
 
-// Where the camera looks: at a point it follows, or in the direction it had at time 0.
+// Returns the pose of a camera that looks at the point it follows, or in the direction of time 0.
 Result<RigidTransform> PoseTowards(const Moment& moment, const Vec3& centre_w) {
   const PathDescription& path = moment.path;
   Vec3 from_w = centre_w;
@@ -83,10 +83,11 @@ Result<RigidTransform> PoseAt(const Moment& moment) {
   return Rolled(pose, roll_rad);
 }
 
-// Focal length, sensor width and horizontal field of view: tan(view / 2) = width / (2 f).
+// Sets focal length and sensor width, using tan(view / 2) = width / (2 f) for the horizontal field
+// of view.
 Result<void> SetOptics(const Moment& moment, RenderCamera* camera) {
   const PathDescription& path = moment.path;
-  double half_view = 0;  // its tangent
+  double half_view = 0;  // as a tangent
   if (path.field_of_view_rad) {
     LF_ASSIGN_OR_RETURN(const double view_rad, NumberOf(moment, *path.field_of_view_rad));
     half_view = std::tan(view_rad / 2);
@@ -100,7 +101,7 @@ Result<void> SetOptics(const Moment& moment, RenderCamera* camera) {
   return {};
 }
 
-// The distance g along the optical axis at which the tilted focus plane holds the point:
+// Returns the distance g along the optical axis at which the tilted focus plane contains the point:
 //   z = g + x tan(horizontal) + u tan(vertical)
 double DistanceThrough(const Vec3& point_camera, const FocusTilt& tilt) {
   return point_camera.z() - point_camera.x() * std::tan(tilt.horizontal_rad) +
@@ -127,7 +128,8 @@ Result<void> SetFocus(const Moment& moment, RenderCamera* camera) {
   return {};
 }
 
-// The plate at distance b behind the lens, which is f unless the lens breathes.
+// Sets the intrinsics of a plate at distance b behind the lens. b equals f unless the lens
+// breathes.
 Result<void> SetIntrinsics(const Moment& moment, RenderCamera* camera) {
   const PathDescription& path = moment.path;
   const Quantity& source = path.focal_length_w ? *path.focal_length_w : *path.field_of_view_rad;
@@ -178,8 +180,8 @@ Result<RenderCamera> CameraAt(const Moment& moment) {
   return camera;
 }
 
-// Blades turn while they close: by a constant angle per stop below the path's widest opening,
-// stops = 2 log2(widest / diameter). A closed pinhole has no shape to turn.
+// Rotates the blades while they close: by a constant angle per stop below the path's widest
+// opening, stops = 2 log2(widest / diameter). A closed pinhole has no shape to rotate.
 void TurnClosingBlades(double rotation_per_stop_rad, std::vector<RenderCamera>* cameras) {
   double widest_w = 0;
   for (const RenderCamera& camera : *cameras)

@@ -132,7 +132,7 @@ TEST(Path, FNumberIsFocalLengthOverDiameter) {
 TEST(Path, ABreathingLensFollowsTheLensLaw) {
   TestPath path;
   path.focus = "focus_distance_mm: 100, breathing: true";
-  // f = 50, g = 100: b = 100, twice the focal length.
+  // f = 50 and g = 100 give b = 100, twice the focal length.
   EXPECT_NEAR(path.At(1).pinhole.intrinsics.fx_px, 200 * 100 / 36.0, 1e-9);
   path.focus = "focus_distance_mm: 100, breathing: false";
   EXPECT_NEAR(path.At(1).pinhole.intrinsics.fx_px, 200 * 50 / 36.0, 1e-9);
@@ -155,7 +155,7 @@ TEST(Path, ClosingBladesTurnPerStop) {
   path.more = "keyframes: {aperture_diameter_mm: [{time: 1, value: 4}, {time: 2, value: 0}]}\n";
   EXPECT_EQ(path.At(1).aperture.blades, 5);
   EXPECT_NEAR(DegreesFromRadians(path.At(1).aperture.rotation_rad), 10, 1e-9);
-  // Half the diameter is two stops.
+  // Half the diameter is two stops smaller.
   EXPECT_NEAR(DegreesFromRadians(path.At(11).aperture.rotation_rad), 16, 1e-9);
   EXPECT_EQ(path.At(21).aperture.radius_w, 0);
   EXPECT_TRUE(std::isfinite(path.At(21).aperture.rotation_rad));
@@ -175,7 +175,7 @@ TEST(Path, EveryNumberMayMoveByItself) {
   EXPECT_NEAR(DegreesFromRadians(camera.focus_tilt.vertical_rad), 4 + 8, 1e-9);
   EXPECT_NEAR(DegreesFromRadians(camera.aperture.rotation_rad), 10, 1e-9);
   EXPECT_NEAR(camera.focus_distance_w, 4, 1e-12);
-  EXPECT_NEAR(path.At(11).focus_distance_w, 3, 1e-12);  // the start is the key at time 0
+  EXPECT_NEAR(path.At(11).focus_distance_w, 3, 1e-12);  // the start value is the key at time 0
 }
 
 TEST(Path, NamesTheFrameAtWhichAQuantityLeavesItsRange) {

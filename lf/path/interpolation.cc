@@ -8,8 +8,8 @@
 namespace lf {
 namespace {
 
-// The slope of the parabola through three values at the first of them, limited so that the cubic
-// stays monotone. h: distances between the knots, d: slopes of the two chords.
+// Returns the slope of the parabola through three values at the first of them, limited so that the
+// cubic stays monotone. h: distances between the knots, d: slopes of the two chords.
 double EndSlope(double h0, double h1, double d0, double d1) {
   const double slope = ((2 * h0 + h1) * d0 - h0 * d1) / (h0 + h1);
   if (slope * d0 <= 0) return 0;
@@ -17,7 +17,7 @@ double EndSlope(double h0, double h1, double d0, double d1) {
   return slope;
 }
 
-// The weighted harmonic mean of the chords' slopes; 0 at a peak.
+// Returns the weighted harmonic mean of the chords' slopes; 0 at a peak.
 double InnerSlope(double h0, double h1, double d0, double d1) {
   if (d0 * d1 <= 0) return 0;
   const double w0 = 2 * h1 + h0;
@@ -25,7 +25,7 @@ double InnerSlope(double h0, double h1, double d0, double d1) {
   return (w0 + w1) / (w0 / d0 + w1 / d1);
 }
 
-// The indices of points whose knot differs from that of the point before.
+// Returns the indices of points whose knot differs from that of the point before.
 std::vector<size_t> DistinctKnots(std::span<const double> knots) {
   std::vector<size_t> distinct;
   for (size_t i = 0; i < knots.size(); ++i)
@@ -69,11 +69,11 @@ std::vector<Vec3> CatmullRomSlopes(std::span<const double> knots, std::span<cons
   };
   const size_t last = distinct.size() - 1;
   for (size_t i = 0; i <= last; ++i) {
-    // Inside, the tangent of the Barry-Goldman pyramid.
+    // The slope at an inner point is the tangent of the Barry-Goldman pyramid.
     const Vec3 slope = i == 0      ? chord(0, 1)
                        : i == last ? chord(last - 1, last)
                                    : Vec3(chord(i - 1, i) - chord(i - 1, i + 1) + chord(i, i + 1));
-    // A point and its repetitions share one knot, and so one slope.
+    // A point and its repetitions share one knot, and therefore one slope.
     const size_t end = i == last ? points.size() : distinct[i + 1];
     std::fill(slopes.begin() + static_cast<std::ptrdiff_t>(distinct[i]),
               slopes.begin() + static_cast<std::ptrdiff_t>(end), slope);

@@ -1,5 +1,5 @@
-// Curves through given values, as pure functions. A "knot" is where on the parameter axis a value
-// is reached: a time, or for Catmull-Rom curves a length-like parameter.
+// Curves through given values, as pure functions. A "knot" is the parameter at which a value is
+// reached: a time, or for Catmull-Rom curves a length-like parameter.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,22 +11,24 @@
 
 namespace lf {
 
-// Slopes at the knots of the monotone cubic (Fritsch and Butland 1984; the ends by the three-point
-// formula, limited): between two knots the curve never leaves the range of their values.
+// Returns the slopes at the knots of the monotone cubic (Fritsch and Butland 1984; at the ends by
+// the three-point formula, limited). Between two knots the curve never leaves the range of their
+// values.
 //
-// knots   strictly increasing, as many as values; one value has slope 0
+// knots   strictly increasing, as many as values; a single value has slope 0
 std::vector<double> MonotoneSlopes(std::span<const double> knots, std::span<const double> values);
 
-// Parameters of the centripetal Catmull-Rom curve: knot[0] = 0,
+// Returns the parameters of the centripetal Catmull-Rom curve: knot[0] = 0,
 //   knot[i + 1] = knot[i] + |P[i + 1] - P[i]|^(1/2)        (Yuksel, Schaefer and Keyser 2011)
-// No cusp and no loop between two points. A repeated point repeats its knot.
+// The curve has no cusp and no loop between two points. A repeated point repeats its knot.
 std::vector<double> CentripetalKnots(std::span<const Vec3> points);
 
-// Slopes dP/dknot of that curve at its points; at the two ends along the chord.
+// Returns the slopes dP/dknot of that curve at its points. At the two ends they point along the
+// chord.
 std::vector<Vec3> CatmullRomSlopes(std::span<const double> knots, std::span<const Vec3> points);
 
-// The cubic with values and slopes given at both ends of [knot_a, knot_b], knot_a < knot_b.
-// T is double or an Eigen vector.
+// Evaluates the cubic with values and slopes given at both ends of [knot_a, knot_b], knot_a <
+// knot_b. T is double or an Eigen vector.
 template <class T>
 T CubicHermite(double knot, double knot_a, double knot_b, const T& value_a, const T& value_b,
                const T& slope_a, const T& slope_b) {
@@ -38,8 +40,8 @@ T CubicHermite(double knot, double knot_a, double knot_b, const T& value_a, cons
   return values + slopes;
 }
 
-// The rotation a share x in [0, 1] of the way from a to b, at constant angular speed along the
-// shorter arc.
+// Returns the rotation at a share x in [0, 1] of the way from a to b, at constant angular speed
+// along the shorter arc.
 Eigen::Quaterniond Slerp(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b, double x);
 
 }  // namespace lf

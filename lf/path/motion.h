@@ -9,10 +9,11 @@
 
 namespace lf {
 
-// A number, two tilts, a point, three angles or a quaternion (w, x, y, z): one to four components.
+// Value of a quantity with one to four components: a number, two tilts, a point, three angles or a
+// quaternion (w, x, y, z).
 using MotionValue = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 4, 1>;
 
-// Acceleration a during [from, to).
+// A constant acceleration during [from, to).
 struct AccelerationPeriod {
   double from_s = 0;
   double to_s = 0;
@@ -25,14 +26,14 @@ struct AcceleratedMotion {
   std::vector<AccelerationPeriod> periods;
 };
 
-// Value after constant accelerations; after a period the speed it reached is kept, periods that
-// overlap add up:
+// Returns the value after constant accelerations. The speed reached in a period is kept after it,
+// and periods that overlap add up:
 //
 //   x(t) = x0 + v0 t + sum over periods of  a (s^2 / 2 + s (t - from - s)),
 //   s    = min(t, to) - from, the time spent in the period; 0 before it
 MotionValue ValueAt(const AcceleratedMotion& motion, double time_s);
 
-// How a key is reached from the key before it.
+// Tells how the curve goes from the previous key to this one.
 enum class Interpolation { kSmooth, kLinear, kStep };
 
 struct Key {
@@ -41,15 +42,15 @@ struct Key {
   Interpolation interpolation = Interpolation::kSmooth;
 };
 
-// What kSmooth means, and for kRotation kLinear too.
+// The curve that kSmooth selects. For kRotation, kLinear also selects slerp.
 enum class SmoothCurve {
-  kMonotone,    // every component a monotone cubic: no overshoot
-  kCatmullRom,  // points: centripetal Catmull-Rom, its parameter a monotone cubic of time
+  kMonotone,    // every component is a monotone cubic, without overshoot
+  kCatmullRom,  // points: centripetal Catmull-Rom, whose parameter is a monotone cubic of time
   kRotation,    // unit quaternions: slerp
 };
 
-// The curve through keys. A smooth stretch ends where a linear or step one begins. Before the
-// first key its value holds, after the last one that.
+// The curve through keys. A smooth stretch ends at a linear or step key. Before the first key and
+// after the last one, the value of that key holds.
 class KeyframeCurve {
  public:
   // keys   at least one, times strictly increasing, values of one size
@@ -65,8 +66,8 @@ class KeyframeCurve {
 
   SmoothCurve curve_;
   std::vector<Key> keys_;
-  // Of the smooth curve, per key: its parameter, the parameter's slope over time, and the value's
-  // slope over the parameter.
+  // Parameters of the smooth curve for each key: its knot, the knot's slope over time, and the
+  // value's slope over the knot.
   std::vector<double> knots_;
   std::vector<double> knot_slopes_;
   std::vector<MotionValue> slopes_;

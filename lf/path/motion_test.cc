@@ -38,12 +38,12 @@ TEST(AcceleratedMotion, WithoutPeriodsKeepsItsSpeed) {
 }
 
 TEST(AcceleratedMotion, FollowsTheFormulasOfConstantAcceleration) {
-  // From 1 s to 3 s at 2/s^2, starting at 10 with speed 1.
+  // The acceleration is 2/s^2 from 1 s to 3 s; the motion starts at 10 with speed 1.
   const AcceleratedMotion motion{Number(10), Number(1), {{1, 3, Number(2)}}};
   EXPECT_DOUBLE_EQ(ValueAt(motion, 1)[0], 11);
   EXPECT_DOUBLE_EQ(ValueAt(motion, 2)[0], 12 + 1);
   EXPECT_DOUBLE_EQ(ValueAt(motion, 3)[0], 13 + 4);
-  // Afterwards the reached speed 1 + 2 * 2 = 5 is kept.
+  // After the period, the reached speed 1 + 2 * 2 = 5 is kept.
   EXPECT_DOUBLE_EQ(ValueAt(motion, 4)[0], 17 + 5);
   EXPECT_DOUBLE_EQ(ValueAt(motion, 6)[0], 17 + 15);
 }
@@ -107,7 +107,7 @@ TEST(Keyframes, APathOfPointsPassesThroughThem) {
 }
 
 TEST(Keyframes, APathOfPointsHasNoJumpInSpeed) {
-  // Times and distances in no proportion to each other.
+  // Times are not proportional to distances.
   const KeyframeCurve curve =
       Points({{0, {0, 0, 0}}, {2, {1, 0, 0}}, {2.5, {1, 3, 0}}, {4, {2, 3, 1}}});
   for (const double key_s : {2.0, 2.5})

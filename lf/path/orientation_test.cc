@@ -29,7 +29,7 @@ TEST(Orientation, PitchTurnsUp) { ExpectNear(Turned(0, kQuarter, 0, kForward), -
 TEST(Orientation, RollTurnsClockwise) { ExpectNear(Turned(0, 0, kQuarter, kRight), kDown); }
 
 TEST(Orientation, YawComesLastSoThatPitchStaysAPitch) {
-  // Looking right and then up by 30 degrees: the horizon stays level.
+  // The camera turns right and then up by 30 degrees; the horizon must stay level.
   const double pitch = RadiansFromDegrees(30);
   ExpectNear(Turned(kQuarter, pitch, 0, kForward), {std::cos(pitch), -std::sin(pitch), 0});
   EXPECT_NEAR(Turned(kQuarter, pitch, 0, kRight).y(), 0, 1e-12);

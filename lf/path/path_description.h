@@ -1,5 +1,5 @@
-// The camera path as its file describes it, checked as far as that goes without looking at single
-// frames. Lengths are world units, angles radians, whatever the file used.
+// The camera path as its file describes it, checked as far as this is possible without evaluating
+// single frames. Lengths are world units and angles radians, independent of the file's units.
 #pragma once
 
 #include <optional>
@@ -11,13 +11,13 @@
 
 namespace lf {
 
-// A quantity that may move.
+// A quantity that may change over time.
 struct Quantity {
   Motion motion;
-  // For messages.
+  // These are for messages.
   std::string label;          // "lens.focus_distance_mm"
-  YamlPlace place;            // where its motion is given
-  NumberRange range;          // of every component, in units of the file
+  YamlPlace place;            // position in the file where its motion is given
+  NumberRange range;          // limits of every component, in units of the file
   double units_per_file = 1;  // internal value = units_per_file * value in the file
 };
 
@@ -30,20 +30,21 @@ struct PathDescription {
   int height_px = 0;
 
   Quantity position_w;
-  std::optional<Quantity> look_at_w;    // this one or orientation
+  std::optional<Quantity> look_at_w;    // either this or orientation
   std::optional<Quantity> orientation;  // yaw, pitch, roll in radians, or quaternion w, x, y, z
   Vec3 up = -Vec3::UnitY();             // with look_at
-  bool keep_direction = false;          // with look_at: that of time 0, wherever the camera moves
-  Quantity roll_rad;                    // after look_at or orientation
+  bool keep_direction = false;          // with look_at: keeps the direction of time 0 while the
+                                        // camera moves
+  Quantity roll_rad;                    // applied after look_at or orientation
 
-  // Two of three; the third follows.
+  // The file gives two of these three; the third follows from them.
   std::optional<double> sensor_width_w;
   std::optional<Quantity> focal_length_w;
-  std::optional<Quantity> field_of_view_rad;  // horizontal, focused at infinity
+  std::optional<Quantity> field_of_view_rad;  // horizontal, when focused at infinity
 
-  std::optional<Quantity> aperture_diameter_w;  // this one or f_number
+  std::optional<Quantity> aperture_diameter_w;  // either this or f_number
   std::optional<Quantity> f_number;
-  std::optional<Quantity> focus_distance_w;  // this one or focus_point
+  std::optional<Quantity> focus_distance_w;  // either this or focus_point
   std::optional<Quantity> focus_point_w;
   Quantity focus_tilt_rad;  // horizontal, vertical
   bool breathing = false;

@@ -1,4 +1,4 @@
-// The camera path file (doc/formats/path.md). The only place with yaml-cpp.
+// Reads the camera path file (doc/formats/path.md). No other folder uses yaml-cpp.
 #pragma once
 
 #include <filesystem>
@@ -10,12 +10,12 @@
 
 namespace lf {
 
-// text                the file's content
-// name                its name for messages: "path.yaml:12:5: ..."
-// light_field_unit_m  metres per world unit of the light field, if there is one; a path that
-//                     states another is an error. Without it the path's own, else 1.
-// kInput: every key is checked; messages carry file:line:column, the value found, the allowed keys
-// and, for a misspelt one, the nearest.
+// text                content of the file
+// name                its name in messages: "path.yaml:12:5: ..."
+// light_field_unit_m  metres per world unit of the light field, if there is one; a path that states
+//                     another unit is an error. Without it the path's own unit is used, or else 1.
+// kInput: every key is checked. Messages state file:line:column, the value found, the allowed keys
+// and, for a misspelt key, the nearest allowed one.
 Result<CameraPath> ParsePathYaml(std::string_view text, std::string_view name,
                                  std::optional<double> light_field_unit_m);
 Result<CameraPath> ReadPathYaml(const std::filesystem::path& path,

@@ -1,4 +1,4 @@
-// Any bytes as a camera path: an error, or cameras whose every number is finite.
+// Any bytes as a camera path must give an error, or cameras with finite numbers only.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace {
 
-// Unlike LF_CHECK it ends in a signal, on which libFuzzer keeps the input.
+// Ends the program with a signal, unlike LF_CHECK, so that libFuzzer keeps the input.
 void Require(bool condition) {
   if (!condition) std::abort();
 }

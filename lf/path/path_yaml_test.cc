@@ -12,7 +12,8 @@
 namespace lf {
 namespace {
 
-// Whether the error is at the last occurrence of `token` in the text and its message begins so.
+// Returns success if the error is at the last occurrence of `token` in the text and its message
+// begins with `message`.
 testing::AssertionResult Says(const TestPath& path, const std::string& token,
                               const std::string& message) {
   const std::string before = path.Text().substr(0, path.Text().rfind(token));

@@ -11,11 +11,11 @@ namespace lf {
 namespace {
 
 constexpr double kLeastKeyDistance_s = 1e-6;
-constexpr size_t kMostAccelerations = 1000;  // every one is looked at for every frame
+constexpr size_t kMostAccelerations = 1000;  // limited because every frame evaluates all of them
 
 const NumberRange kTimeRange_s = NumberRange::Within(0, NumberRange::kLargest);
 
-// "position" moves at "speed", all others at "<name>_speed".
+// Returns the key of a speed: "speed" for "position", "<name>_speed" for all others.
 std::string SpeedName(const std::string& name) {
   return name == "position" ? "speed" : name + "_speed";
 }
@@ -34,14 +34,15 @@ SmoothCurve CurveOf(ValueShape shape) {
   return SmoothCurve::kMonotone;
 }
 
-// Keys of orientations are quaternions however they are written: angles have no shorter arc.
+// Converts keys of orientations to quaternions in any case, because yaw, pitch and roll do not
+// define a shorter arc.
 MotionValue KeyValue(const MotionValue& value, ValueShape shape) {
   if (shape != ValueShape::kAngles) return value;
   const Eigen::Quaterniond q = WorldFromCam(value[0], value[1], value[2]);
   return Eigen::Vector4d(q.w(), q.x(), q.y(), q.z());
 }
 
-// Whether slerp cannot know which way to turn.
+// Returns true if the rotation between two keys is half a turn, so that slerp has no shorter arc.
 bool TurnsHalfway(const Key& a, const Key& b, SmoothCurve curve) {
   return curve == SmoothCurve::kRotation && b.interpolation != Interpolation::kStep &&
          std::abs(a.value.dot(b.value)) < 1e-9;

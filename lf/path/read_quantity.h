@@ -1,5 +1,5 @@
-// Quantities of a path file that may move: their start and speed in a section of the file, their
-// `accelerations` or `keyframes`.
+// Reads the quantities of a path file that may change over time: their start and speed from a
+// section of the file, and their `accelerations` or `keyframes`.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace lf {
 
-// The keys of a quantity are its name with the ending of a unit: "focus_distance_mm".
+// Units of a quantity. Its keys are its name with the suffix of a unit: "focus_distance_mm".
 enum class QuantityUnit { kNone, kLength, kDegrees, kDegreesUnsaid };
 
 struct QuantitySpec {
@@ -25,19 +25,21 @@ struct QuantitySpec {
 
 class QuantityReader {
  public:
-  // keyframes, accelerations   values of those keys of the file; null if not given
+  // keyframes, accelerations   values of these keys of the file; null if the file lacks them
   QuantityReader(const YamlEntry* keyframes, const YamlEntry* accelerations, double unit_m,
                  YamlErrors* errors);
 
-  // The quantity; none if the file does not give it, or gives it wrongly. Its start and speed are
-  // keys of `section`. The start of one with keyframes is its key at time 0, if they have none.
+  // Returns the quantity; none if the file does not give it, or gives it wrongly. Its start and
+  // speed are keys of `section`. If it has keyframes but none at time 0, its start becomes the key
+  // at time 0.
   std::optional<Quantity> Read(YamlMap* section, const QuantitySpec& spec);
 
-  // A length that does not move, in either unit.
+  // Returns a length that does not change over time, in either unit.
   std::optional<double> ReadFixedLength(YamlMap* section, const std::string& name,
                                         const NumberRange& range);
 
-  // After the last quantity: reports keyframes and accelerations of others.
+  // Reports keyframes and accelerations of unknown quantities. Must be called after the last
+  // quantity is read.
   void CheckKeys();
 
  private:
@@ -53,7 +55,7 @@ class QuantityReader {
     double to_s = 0;
     bool read = false;
   };
-  struct Given {  // an entry of the file and the unit its key names
+  struct Given {  // an entry of the file, and the unit that its key states
     const YamlEntry* entry = nullptr;
     std::string label;
     double units_per_file = 1;
@@ -63,9 +65,11 @@ class QuantityReader {
   void ReadAccelerations(const YamlNode& node);
   std::vector<UnitEnding> Endings(QuantityUnit unit) const;
   Given FindInOneUnit(YamlMap* map, const std::string& name, QuantityUnit unit);
-  // The quantity with everything but its motion. `given`: its keyframes or start, if it has any.
+  // Returns the quantity without its motion. `given` is the entry of its keyframes or start, if it
+  // has any.
   Quantity Unmoved(const YamlMap& section, const QuantitySpec& spec, const Given& given) const;
-  // The periods of accelerations of the quantity, and the place of the last of them.
+  // Returns the periods of the quantity's accelerations, and sets `place` to the last of them if
+  // there is any.
   std::vector<AccelerationPeriod> TakePeriods(const QuantitySpec& spec, YamlPlace* place);
   std::optional<AcceleratedMotion> ReadAccelerated(const QuantitySpec& spec, const Given& start,
                                                    const Given& speed,
@@ -80,7 +84,7 @@ class QuantityReader {
   YamlErrors* errors_;
   YamlMap keyframes_;
   std::vector<Acceleration> accelerations_;
-  std::vector<std::string> accelerable_;  // quantities asked for so far
+  std::vector<std::string> accelerable_;  // quantities that were read so far
 };
 
 }  // namespace lf

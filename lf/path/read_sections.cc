@@ -11,7 +11,8 @@ namespace lf {
 namespace {
 
 constexpr int kMostBlades = 64;
-constexpr double kDefaultSensorWidth_mm = 36;  // the full frame that focal lengths are spoken of
+constexpr double kDefaultSensorWidth_mm = 36;  // full frame, to which stated focal lengths usually
+                                               // refer
 
 using enum ValueShape;
 using enum QuantityUnit;
@@ -38,7 +39,8 @@ const QuantitySpec kFocusTilt{.name = "focus_tilt",
 const QuantitySpec kBladeRotation{
     .name = "blade_rotation", .unit = kDegrees, .zero_if_not_given = true};
 
-// An error unless exactly one is given. Absence is no news while other errors may explain it.
+// Adds an error unless exactly one is given. A missing one is reported only if there is no other
+// error, which may explain it.
 void RequireOne(const YamlMap& section, const std::vector<const std::optional<Quantity>*>& choices,
                 std::string_view what, std::string_view example) {
   const Quantity* first = nullptr;
@@ -55,7 +57,7 @@ void RequireOne(const YamlMap& section, const std::vector<const std::optional<Qu
                                                        section.Label(what), example));
 }
 
-// `up` and `follow` say how look_at is meant; with an orientation they would mean nothing.
+// Reads `up` and `follow`, which refine look_at and have no meaning with an orientation.
 void ReadLookAtKeys(YamlMap* camera, PathDescription* path) {
   YamlErrors* errors = camera->errors();
   const YamlEntry* up = camera->Find("up");

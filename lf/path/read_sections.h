@@ -7,8 +7,8 @@
 
 namespace lf {
 
-// Each fills in its part of the description, and adds an error for a key that is unknown, missing,
-// of a wrong type or range, or contradicts another.
+// Each function fills in its part of the description. It adds an error for a key that is unknown,
+// missing, of a wrong type or range, or contradicts another.
 void ReadCameraSection(const YamlNode& node, QuantityReader* quantities, PathDescription* path,
                        YamlErrors* errors);
 void ReadLensSection(const YamlNode& node, QuantityReader* quantities, PathDescription* path,

@@ -1,4 +1,4 @@
-// One value of a quantity, as a path file writes it.
+// Reads one value of a quantity from a path file.
 #pragma once
 
 #include <optional>
@@ -17,14 +17,14 @@ enum class ValueShape {
   kQuaternion,  // [w, x, y, z], length 1
 };
 
-// 1 to 4.
+// Returns 1 to 4.
 int ComponentCount(ValueShape shape);
 
-// A value of that shape as a file writes it, for messages.
+// Returns an example of such a value as a file writes it, for messages.
 std::string_view ExampleOf(ValueShape shape);
 
-// The value times `units_per_file`; none and an error if it is not of that shape, or a component
-// is out of range. Quaternions are normalised; 1 % of rounding is forgiven.
+// Returns the value times `units_per_file`. None, with an error, if it has another shape or a
+// component is out of range. Quaternions are normalised; their length may deviate from 1 by 1 %.
 std::optional<MotionValue> ReadValue(const YamlNode& node, std::string_view label, ValueShape shape,
                                      const NumberRange& range, double units_per_file,
                                      YamlErrors* errors);

@@ -25,7 +25,7 @@ size_t EditDistance(std::string_view a, std::string_view b) {
 }
 
 std::string NearestWord(std::string_view word, std::span<const std::string> words) {
-  constexpr size_t kLongestWord = 64;  // longer ones are no misspelling
+  constexpr size_t kLongestWord = 64;  // longer words are not misspellings
   if (word.size() > kLongestWord) return {};
   std::string nearest;
   size_t smallest = kLongestWord;

@@ -1,4 +1,4 @@
-// Which word was meant.
+// Finds the word that a misspelt one was meant to be.
 #pragma once
 
 #include <cstddef>
@@ -8,11 +8,12 @@
 
 namespace lf {
 
-// How many letters must be changed, added, left out or swapped with their neighbour to turn one
-// word into the other (optimal string alignment).
+// Returns how many letters must be changed, added, left out or swapped with their neighbour to turn
+// one word into the other (optimal string alignment).
 size_t EditDistance(std::string_view a, std::string_view b);
 
-// The nearest of `words`; empty if even that differs in more than a third of its letters.
+// Returns the nearest of `words`; empty if even this one differs in more than a third of its
+// letters.
 std::string NearestWord(std::string_view word, std::span<const std::string> words);
 
 }  // namespace lf

@@ -1,4 +1,4 @@
-// For tests: the text of a short valid path, whose parts can be replaced.
+// The text of a short valid path for tests, whose parts can be replaced.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -25,12 +25,12 @@ struct TestPath {
   Result<CameraPath> Parse(std::optional<double> light_field_unit_m = std::nullopt) const {
     return ParsePathYaml(Text(), "p.yaml", light_field_unit_m);
   }
-  // The message, without the file's name; "" if there is no error.
+  // Returns the message without the file's name; "" if there is no error.
   std::string Error() const {
     const auto path = Parse();
     return path ? "" : path.error().message.substr(std::string("p.yaml:").size());
   }
-  // Frame i is at (i - 1) / 10 seconds.
+  // Returns the camera of a frame; frame i is at (i - 1) / 10 seconds.
   RenderCamera At(uint32_t frame) const {
     const auto path = Parse();
     if (!path) ADD_FAILURE() << path.error().message;

@@ -1,5 +1,5 @@
-// What a YAML text may hold: typed values of maps whose every key is known. Errors are collected,
-// so that readers go on with a default and the file's author sees how many there are.
+// Typed values of a YAML text with maps whose keys must all be known. Errors are collected: readers
+// continue with a default, so that the author of the file sees how many errors there are.
 #pragma once
 
 #include <cstddef>
@@ -18,17 +18,19 @@ class YamlErrors {
  public:
   explicit YamlErrors(std::string_view file_name) : file_name_(file_name) {}
 
-  // "file:line:column: message"
+  // Adds the error "file:line:column: message".
   void Add(const YamlPlace& place, std::string message);
-  // Before all others: a misspelt key explains why another one is missing.
+  // Adds an error before all others, because a misspelt key explains why another one is missing.
   void AddFirst(const YamlPlace& place, std::string message);
 
   bool empty() const { return errors_.empty(); }
-  // What follows is dropped: the rest of a file this wrong is not worth reading.
+  // Returns true if further errors are dropped, because the rest of a file with so many errors is
+  // not useful.
   bool full() const { return errors_.size() >= 20; }
   const std::string& file_name() const { return file_name_; }
 
-  // One line: the first error, and where the others are. Only if there is one.
+  // Returns the first error and the lines of the others, in one line of text. There must be an
+  // error.
   Error First() const;
 
  private:
@@ -38,16 +40,16 @@ class YamlErrors {
   };
   std::string file_name_;
   std::vector<Entry> errors_;
-  size_t first_count_ = 0;  // of errors_, those of AddFirst()
+  size_t first_count_ = 0;  // number of errors added by AddFirst(), at the front of errors_
 };
 
-// Values a number may take, in the units of the file.
+// Range of a number, in the units of the file.
 struct NumberRange {
   double min = -kLargest;
   double max = kLargest;
   bool open = false;  // min and max themselves are excluded
 
-  // What is larger is taken for a mistake.
+  // Larger values are considered mistakes.
   static constexpr double kLargest = 1e9;
   static constexpr NumberRange Any() { return {}; }
   static constexpr NumberRange AtLeast(double min) { return {min, kLargest, false}; }
@@ -59,28 +61,30 @@ struct NumberRange {
   std::string Describe() const;    // "above 0 (below 1e+09)", "from 1 to 3", ...
 };
 
-// A map of the file. Each key asked for becomes an allowed one; CheckKeys() reports the others.
+// A map of the file. Each key that is asked for becomes an allowed key; CheckKeys() reports the
+// others.
 class YamlMap {
  public:
-  // title   for messages: "camera"; the empty title is the whole file
-  // Not a map, or a key twice: an error, and the map is empty or keeps the first.
+  // title: name in messages: "camera"; empty for the whole file. If the node is not a map, an error
+  // is added, and the map is empty. If a key occurs twice, an error is added, and the first is
+  // kept.
   YamlMap(const YamlNode& node, std::string title, YamlErrors* errors);
-  // A map that was not given; has no key.
+  // Makes a map without keys, for one that the file does not have.
   YamlMap(std::string title, YamlErrors* errors) : title_(std::move(title)), errors_(errors) {}
 
   const YamlPlace& place() const { return place_; }
   YamlErrors* errors() const { return errors_; }
-  // "camera.speed"
+  // Returns the name of a key in messages: "camera.speed".
   std::string Label(std::string_view key) const;
 
-  // The entry, or null.
+  // Returns the entry, or null.
   const YamlEntry* Find(std::string_view key);
-  // The same, an error if there is none. `example`: what to write, "fps: 30".
+  // Returns the entry; adds an error if there is none. `example` shows what to write: "fps: 30".
   const YamlEntry* Require(std::string_view key, std::string_view example);
 
-  // Keys that are allowed so far, in the order they were asked for.
+  // Returns the keys that are allowed so far, in the order in which they were asked for.
   const std::vector<std::string>& asked() const { return asked_; }
-  // Reports the keys nobody asked for, with the nearest allowed one.
+  // Reports the keys that were not asked for, with the nearest allowed key.
   void CheckKeys();
 
  private:
@@ -91,11 +95,11 @@ class YamlMap {
   std::vector<std::string> asked_;
 };
 
-// "unknown key 'fsp' in camera; did you mean 'fps'? Known are: ..."
+// Returns the message "unknown key 'fsp' in camera; did you mean 'fps'? Known are: ...".
 std::string UnknownWord(std::string_view kind, std::string_view word, std::string_view where,
                         const std::vector<std::string>& known);
 
-// The value of a node, or none and an error that begins with the label.
+// Return the value of a node. None, with an error that begins with the label, if it is invalid.
 std::optional<double> ReadNumber(const YamlNode& node, std::string_view label,
                                  const NumberRange& range, YamlErrors* errors);
 std::optional<int> ReadInteger(const YamlNode& node, std::string_view label, int min, int max,
@@ -103,7 +107,7 @@ std::optional<int> ReadInteger(const YamlNode& node, std::string_view label, int
 std::optional<bool> ReadBool(const YamlNode& node, std::string_view label, YamlErrors* errors);
 std::optional<std::string> ReadWord(const YamlNode& node, std::string_view label,
                                     const std::vector<std::string>& allowed, YamlErrors* errors);
-// A list of exactly `count` numbers.
+// Returns a list of exactly `count` numbers.
 std::optional<std::vector<double>> ReadNumbers(const YamlNode& node, std::string_view label,
                                                size_t count, const NumberRange& range,
                                                YamlErrors* errors);

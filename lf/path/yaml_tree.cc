@@ -16,13 +16,14 @@ namespace {
 
 YamlPlace PlaceOf(const YAML::Mark& mark) { return {mark.line + 1, mark.column + 1}; }
 
-// YAML, but none of a path. Like the parser's own exceptions it is caught in ParseYaml.
+// Thrown for YAML that is not allowed in a path. ParseYaml() catches it like the parser's own
+// exceptions.
 struct Rejected : YAML::ParserException {
   using YAML::ParserException::ParserException;
 };
 
-// Builds the tree from yaml-cpp's events, which arrive while the text is read: an offending text
-// is left at once.
+// Builds the tree from yaml-cpp's events. They arrive while the text is read, so an invalid text is
+// not read further.
 class TreeBuilder : public YAML::EventHandler {
  public:
   YamlNodePtr TakeRoot() { return std::move(root_); }
@@ -38,7 +39,7 @@ class TreeBuilder : public YAML::EventHandler {
 
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                 const std::string& value) override {
-    // yaml-cpp's tags of scalars without one: "?" plain, "!" quoted.
+    // yaml-cpp gives scalars without a tag these tags: "?" if plain, "!" if quoted.
     if (tag != "?" && tag != "!" && !tag.empty()) FailForTag(mark, tag);
     const auto kind = tag == "!" ? YamlNode::Kind::kQuoted : YamlNode::Kind::kPlain;
     const std::shared_ptr<YamlNode> node = NewNode(mark, kind, anchor);
@@ -66,7 +67,7 @@ class TreeBuilder : public YAML::EventHandler {
  private:
   struct OpenNode {
     std::shared_ptr<YamlNode> node;
-    std::optional<YamlEntry> entry;  // of a map: the key that waits for its value
+    std::optional<YamlEntry> entry;  // in a map: the key whose value follows
   };
 
   [[noreturn]] static void Fail(const YAML::Mark& mark, const std::string& message) {
@@ -132,8 +133,9 @@ Error ErrorAt(std::string_view name, const YAML::Exception& error, std::string_v
   return InputError(fmt::format("{}:{}:{}: {}", name, place.line, place.column, message));
 }
 
-// Every token of YAML but the first follows one of these characters, so their number bounds what
-// the parser allocates, whatever it takes for a key, a quotation or a comment.
+// Every token of YAML except the first follows one of these characters. Their number therefore
+// limits the memory of the parser, independent of what it takes for a key, a quotation or a
+// comment.
 Result<void> CheckBounds(std::string_view text, std::string_view name) {
   if (text.size() > kMaxYamlBytes)
     return InputError(

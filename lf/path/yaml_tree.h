@@ -1,5 +1,5 @@
-// A YAML text as a tree of our own, with the place of every key and value. The only file that
-// knows yaml-cpp.
+// A YAML text as a tree of our own types, with the position of every key and value. No other file
+// uses yaml-cpp.
 #pragma once
 
 #include <cstddef>
@@ -36,20 +36,20 @@ struct YamlNode {
   std::vector<YamlEntry> entries;  // kMap, in the order of the file; keys may repeat
 };
 
-// Bounds checked before the text is parsed: no path made by people or programs comes near them, and
-// the worst text within them costs some 350 MB and 2 s.
+// Limits that are checked before the text is parsed. No path made by people or programs comes near
+// them, and the worst text within them takes about 350 MB and 2 s.
 inline constexpr size_t kMaxYamlBytes = size_t{8} << 20;
-inline constexpr size_t kMaxYamlMarks = 1'000'000;  // of the characters that make structure
+inline constexpr size_t kMaxYamlMarks = 1'000'000;  // number of characters that mark structure
 inline constexpr size_t kMaxYamlDepth = 16;
 
-// The one document of the text. Aliases share the node of their anchor.
+// Returns the only document of the text. Aliases share the node of their anchor.
 //
-// name   the file's name for messages: "name:line:column: ..."
-// kInput for what is not YAML, beyond a bound, several documents, keys that are not words, tags,
-// and an alias inside its own anchor.
+// name   name of the file in messages: "name:line:column: ..."
+// kInput: the text is not YAML, exceeds a limit, or has several documents, keys that are not words,
+// tags, or an alias inside its own anchor.
 Result<YamlNodePtr> ParseYaml(std::string_view text, std::string_view name);
 
-// Text of the file for a message: in quotes, at most 40 characters, nothing unprintable.
+// Returns text of the file for a message: in quotes, at most 40 characters, all printable.
 std::string QuoteForMessage(std::string_view text);
 
 }  // namespace lf
