@@ -55,7 +55,7 @@ struct PackageChoices {
 struct PackageImage {
   uint32_t id = 0;           // in the whole light field, from 0
   uint64_t file_bytes = 0;   // size of the image file when the package was made; 0: it did not
-                             // exist
+                             // exist, or this is a neighbour
   PixelRect rect;            // bounds of the pixels that are read
   uint32_t frame_count = 0;  // number of frames that need it; 0: a neighbour
   uint64_t ray_count = 0;    // number of pixels that are tested as rays, in all of these frames

@@ -1,5 +1,5 @@
-// The order in which the LF images of a film are taken (selection/image_order.h), by what its
-// frames need.
+// The order in which the LF images of a film are taken (selection/image_order.h), computed from the
+// needs of its frames.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +14,10 @@
 
 namespace lf {
 
-// Returns the places of all LF images in the order for all frames of the film, whichever of them
-// are rendered: what is counted in places means the same for any choice of frames. An LF image
-// without lens weight in any frame comes last, as does one that no frame sees.
-//   needs  of the renders to come; max_image_count has no say
+// Returns the ranks of all LF images in the order for all frames of the film, even if only some are
+// rendered, so that a number of ranks has one meaning for any choice of frames. LF images that no
+// frame sees, or that have no lens weight in any frame, come last.
+//   needs  of the later renders; max_image_count is ignored
 // kInterrupted.
 Result<ImagePlaces> PlacesOfFilm(ImageOrder order, uint64_t seed, const LightField& light_field,
                                  const CameraPath& path, const NeedsOptions& needs,

@@ -13,24 +13,25 @@
 namespace lf {
 namespace {
 
-constexpr double kBefore = 0.75, kBehind = 1.25;  // of the focus distance
+constexpr double kBefore = 0.75, kBehind = 1.25;  // factors of the focus distance
 constexpr double kPlaces[] = {1.0 / 6, 0.5, 5.0 / 6};
 
-// The LF cameras that the lens looks through, and where they stand.
+// The LF cameras around the lens, and their centres.
 struct Around {
   std::vector<LfImageId> ids;
   std::vector<Vec3> centres_world;
 };
 
-// The nearest that a ray to the element comes to the lens centre.
+// Returns the smallest distance from the lens centre at which an LF camera's ray to the element
+// passes the lens plane.
 double NearestRay(const LightField& light_field, const Around& around, const RenderCamera& frame,
                   double x_px, double y_px) {
   double nearest_w = std::numeric_limits<double>::infinity();
   const std::optional<Vec3> focus = FocusPointOfElement(frame, x_px, y_px);
-  if (!focus) return 0;  // beyond the horizon of a tilted focus plane
+  if (!focus) return 0;  // the element looks past the horizon of a tilted focus plane
   for (size_t i = 0; i < around.ids.size(); ++i) {
     const double distance_w = LensPointOfLine(frame, around.centres_world[i], *focus).norm();
-    // Few are asked what they see: it takes longer.
+    // IsSeenBy() is slow, so it is called only for nearer rays.
     if (distance_w < nearest_w &&
         IsSeenBy(RayThrough(light_field.Camera(around.ids[i]), frame.pinhole.ForwardWorld()),
                  *focus))
@@ -39,14 +40,15 @@ double NearestRay(const LightField& light_field, const Around& around, const Ren
   return nearest_w;
 }
 
-// Along the frame's axis instead of those of the LF cameras around its lens.
+// Converts depths along the axes of the LF cameras around the lens to depths along the frame's
+// axis.
 DepthRange DepthsOfFrame(const DepthRange& depths, const Around& around,
                          const RenderCamera& frame) {
   double shift_w = 0;
   for (const Vec3& centre : around.centres_world)
     shift_w += frame.pinhole.ForwardWorld().dot(centre - frame.pinhole.CentreWorld()) /
                static_cast<double>(around.centres_world.size());
-  // Nothing is nearer than a tenth of where the nearest was.
+  // Limits depths to at least a tenth of the nearest one.
   const double least_w = 0.1 * depths.near_w;
   return {std::max(least_w, depths.near_w + shift_w), std::max(least_w, depths.far_w + shift_w)};
 }

@@ -7,7 +7,7 @@
 namespace lf {
 namespace {
 
-// A grid with pitch 0.01 in the plane z = 0, 41 x 41 cameras.
+// A grid of 41 x 41 cameras with pitch 0.01 in the plane z = 0.
 LightField Grid() {
   LightField field;
   field.intrinsics = {{200, 200, 100, 75, 0, 200, 150}};
@@ -38,11 +38,11 @@ TEST(FrameDensity, OfAGridInTheLensPlane) {
   EXPECT_EQ(density.cameras_in_lens, 29u);  // integer points within radius 3
   EXPECT_NEAR(density.camera_distance_w, 0.01, 0.001);
   EXPECT_LT(density.coverage.uncovered_share, 0.01);
-  EXPECT_EQ(density.least_aperture_w, 0);  // one stands in the lens centre
+  EXPECT_EQ(density.least_aperture_w, 0);  // one LF camera is at the lens centre
   EXPECT_NEAR(density.near_displacement_px, 400 * density.camera_distance_w * 0.5, 1e-9);
   EXPECT_NEAR(density.far_displacement_px, 400 * density.camera_distance_w * 0.25, 1e-9);
   EXPECT_EQ(density.DepthOfMost_w(), 1);
-  // Between four cameras the nearest is half a diagonal away.
+  // At the centre of four cameras, the nearest is half a diagonal away.
   EXPECT_NEAR(DensityOf(index, Frame(0.03, 0.005, 0.005, 0), {}).least_aperture_w,
               0.01 * std::sqrt(2), 1e-9);
 }
@@ -50,8 +50,8 @@ TEST(FrameDensity, OfAGridInTheLensPlane) {
 TEST(FrameDensity, OfAFrameBeforeTheGrid) {
   const LightField grid = Grid();
   const ImageIndex index(grid);
-  // Half way to the focus plane rays have come half as near to each other, and what was 1 away is
-  // nothing away, or a tenth.
+  // At half the distance to the focus plane, rays are half as far apart. A point that was at depth
+  // 1 is now at depth 0, which is limited to 0.1.
   RenderCamera frame = Frame(0.0301, 0, 0, 1);
   frame.focus_distance_w = 1;
   frame.focus_plane = FocusPlane(frame.pinhole, 1, {});

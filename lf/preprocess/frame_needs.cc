@@ -16,7 +16,7 @@
 namespace lf {
 namespace {
 
-// FrameLens::near() is what ImagesNearLens() would find again.
+// FrameLens::near() can replace a call of ImagesNearLens(), because both have this reach.
 static_assert(FrameLens::kReach_distances == kFarthestDistances);
 
 std::optional<double> DistanceOf(const std::optional<FrameSampling>& sampling) {
@@ -87,7 +87,7 @@ class NeedsFinder {
     return GrownBy(rect, PixelsAround(options_.rebin.rebin, true), camera.intrinsics);
   }
 
-  // Both lists are by ascending places.
+  // Merges `rebinned` into the needs. Both lists are by ascending ranks.
   void Join(const std::vector<FrameNeeds::Image>& rebinned) {
     const auto place = [this](const FrameNeeds::Image& image) { return index_.PlaceOf(image.id); };
     std::vector<FrameNeeds::Image> joined;
@@ -104,8 +104,8 @@ class NeedsFinder {
     needs_.images = std::move(joined);
   }
 
-  // LF images that lens weights, gaps of the lens and rebinned rays of the default options ask
-  // about, whatever the mode and the estimator: a package serves them all.
+  // Finds the LF cameras that are needed for lens weights, gaps of the lens and rebinned rays of
+  // the default options, for every mode and estimator, so that a package serves them all.
   void FindNeighbours() {
     SelectOptions widest = options_.select;
     widest.reach = kWidestReach;
@@ -119,7 +119,7 @@ class NeedsFinder {
     }
     std::vector<LfImageId> all, read;
     for (const SelectedImage& image : near) all.push_back(image.id);
-    // Hats of LF cameras that stand far apart reach farther.
+    // Hats of LF cameras that are far apart reach further.
     if (lens_.camera().aperture.radius_w > frame_.aperture.radius_w + reach_w)
       for (const SelectedImage& image :
            SelectImages(index_, std::span(&lens_.camera(), 1), widest, pool_))
@@ -137,7 +137,7 @@ class NeedsFinder {
     return distance_w_ ? *distance_w_ : CameraDistanceAround(index_, frame_);
   }
 
-  // By ascending places.
+  // Returns the LF images near the lens, by ascending ranks.
   std::vector<SelectedImage> Near(const SelectOptions& widest) const {
     if (options_.lens_weights == LensWeights::kNone || options_.select.reach != widest.reach)
       return ImagesNearLens(index_, frame_, CameraDistance(), widest, pool_);

@@ -40,7 +40,7 @@ Result<PackageFolder> PackageFolder::Open(const fs::path& folder, const std::str
   LF_RETURN_IF_ERROR(CreateFolder(folder));
   LF_ASSIGN_OR_RETURN(FileLock lock, FileLock::Take(folder / ".packages.lock"));
   PackageFolder opened(folder, part, std::move(lock));
-  // The lock says that nobody writes them any more, on this host or on others.
+  // The lock guarantees that no program, on this host or on others, still writes them.
   std::vector<fs::path> leftovers = FilesIn(folder);
   std::erase_if(leftovers, [](const fs::path& file) {
     const std::string name = file.filename().string();
@@ -74,14 +74,14 @@ Result<void> PackageFolder::Add(const std::string& name, const Package& package,
   const fs::path path = PathOf(name);
   renamings_.push_back({files_.emplace_back(path).path(), path});
   LF_RETURN_IF_ERROR(WritePackageAs(renamings_.back().from, path, package, notes));
-  return FlushToDisk(renamings_.back().from);  // so that Publish() takes no time
+  return FlushToDisk(renamings_.back().from);  // flushed here, so that Publish() takes no time
 }
 
 Result<void> PackageFolder::Publish() {
   RemoveFiles(Packages());
   const Result<void> renamed = RenameFlushed(renamings_);
   if (!renamed) {
-    // A part of a film under the names of the whole would pass for it.
+    // A part of the packages could be mistaken for all of them.
     for (const Renaming& file : renamings_) RemoveFiles({file.to});
     return renamed.error();
   }

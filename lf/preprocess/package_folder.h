@@ -1,4 +1,4 @@
-// The folder that receives the packages of a film, all of them together.
+// The folder that receives all packages of a film at once.
 #pragma once
 
 #include <filesystem>
@@ -13,16 +13,17 @@
 
 namespace lf {
 
-// Holds the lock DIR/.packages.lock as long as it lives. Packages are written under temporary names
-// and get their own together, when all are whole: after a kill there are those of before, or none.
-// Only a kill within Publish(), which takes milliseconds, may leave a part of them.
+// Holds the lock DIR/.packages.lock during its lifetime. Packages are written under temporary
+// names, and renamed together when all are complete. After a kill, the folder has the previous
+// packages, or none. Only a kill within Publish(), which takes milliseconds, may leave a part of
+// them.
 class PackageFolder {
  public:
   // Creates the folder if it is missing, and removes temporary packages of killed programs.
-  //   part       only packages whose names end on it are of interest; empty: all
-  //   overwrite  Publish() replaces packages that are there
-  // kUsage: packages are there and are not to be replaced. kOutput: the folder, or another program
-  // at work in it.
+  //   part       only packages whose names end with it are considered; empty: all
+  //   overwrite  Publish() replaces existing packages
+  // kUsage: packages exist and may not be replaced. kOutput: the folder cannot be written, or
+  // another program is at work in it.
   static Result<PackageFolder> Open(const std::filesystem::path& folder, const std::string& part,
                                     bool overwrite);
   ~PackageFolder();
@@ -31,10 +32,10 @@ class PackageFolder {
 
   // Returns the final path of a package.
   std::filesystem::path PathOf(const std::string& name) const;
-  // Writes a package under a temporary name. kOutput.
+  // Writes a package under a temporary name. kOutput: it cannot be written.
   Result<void> Add(const std::string& name, const Package& package, const PackageNotes& notes);
-  // Removes the packages of before, and gives those that were added their names. kOutput: none of
-  // them is there then.
+  // Removes the previous packages, and renames the added ones to their final names. kOutput:
+  // renaming failed; no package is left then.
   Result<void> Publish();
 
  private:

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A package of one frame and one LF image.
+// Returns a package of one frame and one LF image.
 Package SmallPackage() {
   Package package;
   package.choices.has_neighbours = false;

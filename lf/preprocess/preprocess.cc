@@ -21,15 +21,15 @@
 namespace lf {
 namespace {
 
-// 300 frames of 20,000 LF images each.
+// Memory for kept needs; enough for 300 frames of 20,000 LF images each.
 constexpr uint64_t kMostKeptBytes = uint64_t{256} << 20;
 
 double SecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// What the names of packages of a part of a film end on, such as -of-frames-1-4; empty for all of
-// it. Packages, reports and states of other parts can so share a folder.
+// Returns the suffix for names of packages of a part of a film, such as -of-frames-1-4; empty for
+// the whole film. With it, packages, reports and states of different parts can share a folder.
 std::string NameOfPart(const std::vector<FrameId>& frames, size_t film_frame_count) {
   if (frames.empty() || frames.size() == film_frame_count) return "";
   std::string ranges;
@@ -46,11 +46,11 @@ std::string NameOfPart(const std::vector<FrameId>& frames, size_t film_frame_cou
   return "-of-frames-" + ranges;
 }
 
-// The LF images of a package while frame after frame is added.
+// The LF images of a package, gathered frame by frame.
 class Gathering {
  public:
   struct Image {
-    PixelRect rect;  // bounds of what the frames read of it
+    PixelRect rect;  // bounds of the pixels that the frames read
     uint32_t frame_count = 0;
     uint64_t ray_count = 0;
   };
@@ -63,7 +63,7 @@ class Gathering {
     }
     for (const LfImageId id : needs.neighbours) images_[id];
   }
-  // By ascending ids; an image that no frame reads is a neighbour.
+  // Returns the LF images by ascending ids. An image that no frame reads is a neighbour.
   const std::map<LfImageId, Image>& images() const { return images_; }
 
  private:
@@ -109,7 +109,7 @@ class Preprocessor {
     if (options_.interrupted == nullptr || !*options_.interrupted) return {};
     return Error{ErrorKind::kInterrupted, "interrupted: no package is kept"};
   }
-  // Needs that were found when an interruption came are not complete.
+  // Needs are incomplete if an interruption came while they were computed.
   Result<FrameNeeds> Needs(FrameId frame) {
     FrameNeeds needs;
     if (const auto kept = kept_needs_.find(frame); kept != kept_needs_.end()) {
@@ -132,16 +132,16 @@ class Preprocessor {
   NeedsOptions needs_;
   std::vector<FrameId> frames_;
   std::optional<PackageFolder> folder_;  // none: nothing is written
-  std::unique_ptr<LfImageStore> store_;  // asked for sizes and for what it keeps
+  std::unique_ptr<LfImageStore> store_;  // for sizes of files, and to check which pixels it keeps
   LightFieldIdentity whole_;
   ImagePlaces places_;
   std::optional<ImageIndex> index_;
-  // Needs of the forecast, which packages ask for again, while they take less than kMostKeptBytes.
+  // Needs that the forecast computed and packages use again, up to kMostKeptBytes.
   std::map<FrameId, FrameNeeds> kept_needs_;
   uint64_t kept_bytes_ = 0;
   std::vector<FrameSurroundings> surroundings_;  // [frame - 1] of the film
   size_t done_ = 0;
-  std::vector<bool> is_counted_;  // LF images of packages that are done
+  std::vector<bool> is_counted_;  // LF images of finished packages
   PreprocessReport report_;
 };
 
@@ -208,7 +208,8 @@ Result<void> Preprocessor::MakeIndex() {
   return {};
 }
 
-// Slabs of rebinned rays are planned for the whole film, whichever of its frames are packed.
+// Slabs of rebinned rays are planned for the whole film, even if only some of its frames are
+// packed.
 Result<void> Preprocessor::DescribeSurroundings(const std::map<FrameId, FrameSampling>& sampling) {
   if (!needs_.HasNeighbours()) return {};
   for (uint32_t n = 1; n <= path_.frame_count(); ++n) {
@@ -235,7 +236,7 @@ Result<void> Preprocessor::ForecastFrames() {
   LF_RETURN_IF_ERROR(DescribeSurroundings(sampling));
   report_.select_s += SecondsSince(start);
   const auto density_start = std::chrono::steady_clock::now();
-  // One frame costs little, but asks one thread only.
+  // One frame takes little time, but only one thread.
   pool_.ForEach(frames_.size(), [this](size_t f) {
     if (options_.interrupted != nullptr && *options_.interrupted) return;
     report_.frames[f].density =
@@ -262,7 +263,7 @@ void Preprocessor::Keep(FrameId frame, FrameNeeds needs) {
   kept_needs_.emplace(frame, std::move(needs));
 }
 
-// By the frame that has the median number of rays.
+// Measures the rate on the frame that has the median number of rays.
 Result<void> Preprocessor::Measure() {
   std::vector<size_t> by_rays(frames_.size());
   std::iota(by_rays.begin(), by_rays.end(), size_t{0});
@@ -336,7 +337,7 @@ Result<void> Preprocessor::MakePackage(size_t number, const Section& section, si
   return {};
 }
 
-// Counts files that are not there, of the package and of the film.
+// Counts the missing files of the package and of the film.
 Result<void> Preprocessor::CountMissing(const Package& package, PackageForecast* forecast) {
   is_counted_.resize(light_field_.size(), false);
   for (size_t i = 0; i < package.images.size(); ++i) {
@@ -397,7 +398,7 @@ Package Preprocessor::PackageOf(const Section& section, const Gathering& gatheri
   return package;
 }
 
-// 0: not there, or not to be read.
+// Returns the sizes of the files; 0 for a missing file and for a neighbour, whose file is not read.
 std::vector<uint64_t> Preprocessor::FileSizes(const Package& package) const {
   constexpr size_t kTogether = 256;
   std::vector<uint64_t> sizes(package.images.size(), 0);

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Frames that move over the noise field, past its border.
+// Returns frames that move over the noise field and past its border.
 CameraPath Film() {
   CameraPath film;
   for (int i = 0; i < 10; ++i) {
@@ -57,7 +57,8 @@ class PreprocessTest : public ::testing::Test {
     EXPECT_TRUE(package) << package.error().message;
     return *std::move(package);
   }
-  // What the package's frames need is what they need of the whole light field, and weighs as much.
+  // Expects that the package's frames need the same LF images as in the whole light field, with
+  // equal weights.
   void ExpectPackageIsAsGoodAsTheWhole(const Package& package, const NeedsOptions& needs);
 
   LightField field_;
@@ -97,7 +98,7 @@ void PreprocessTest::ExpectPackageIsAsGoodAsTheWhole(const Package& package,
         for (int x = 0; x < 80; x += 9)
           ASSERT_EQ(lens.WeightsOf(image.id).At(x, y), again.WeightsOf(id).At(x, y));
     }
-    // The package has what is needed to find the same again.
+    // The package has enough data to find the same needs again.
     const std::optional<FrameSampling> sampling =
         package.surroundings.empty()
             ? std::nullopt
@@ -143,12 +144,12 @@ TEST_F(PreprocessTest, PackagesHaveWhatTheirFramesNeed) {
         }
       }
       EXPECT_EQ(frames.size(), film_.frame_count());
-      EXPECT_FALSE(report.rate);  // there are no files
+      EXPECT_FALSE(report.rate);  // there are no image files
       EXPECT_NE(report.rate_error, "");
     }
 }
 
-// Packages have the LF images of rebinned rays, also where no LF camera's rays pass the lens.
+// Packages have the LF images of rebinned rays, even if no LF camera's rays pass the lens.
 TEST_F(PreprocessTest, PackagesHaveWhatTheModeNeeds) {
   for (RenderCamera& camera : film_.cameras) camera.aperture.radius_w *= 0.2;
   std::map<RenderMode, uint64_t> rays;

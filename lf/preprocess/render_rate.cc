@@ -19,8 +19,7 @@ namespace {
 
 constexpr size_t kSampleImages = 16;
 
-// Of those that are there, as they would be collected: with the places of a small order of their
-// own.
+// Returns a few LF images whose files exist, with ranks as if they were an order of their own.
 std::vector<SelectedImage> SampleOf(const FrameNeeds& needs, const LfImageStore& store) {
   constexpr size_t kMostAsked = 256;
   std::vector<SelectedImage> sample;
@@ -57,7 +56,7 @@ Result<RenderRate> MeasureRate(const ImageIndex& index, const RenderCamera& fram
             ? "no LF image is needed"
             : fmt::format("{}: not there, nor any other of the LF images that were looked for",
                           light_field.ImagePath(needs.images.front().id).string()));
-  // Nothing else runs: the process's time is that of the threads at work.
+  // Nothing else runs, so the CPU time of the process is that of the working threads.
   const std::clock_t lens_start = std::clock();
   const FrameLens lens(index, frame, needs_options.lens_weights, needs_options.select, pool);
   const double lens_s = static_cast<double>(std::clock() - lens_start) / CLOCKS_PER_SEC;

@@ -1,4 +1,4 @@
-// How fast this machine renders: measured on a few LF images of a frame, for forecasts.
+// Measures on a few LF images of a frame how fast this machine renders, for forecasts.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace lf {
 
-// CPU seconds.
+// CPU seconds of the parts of a render.
 struct RenderRate {
   double load_s = 0;     // for each LF image
   double collect_s = 0;  // for each ray that is tested
@@ -19,8 +19,8 @@ struct RenderRate {
 };
 
 // Weighs and loads a few of the images that the frame needs, collects their rays, develops the
-// plate and writes it into a temporary folder. kInput: none of them can be loaded; kOutput: it
-// cannot be written.
+// plate and writes it into a temporary folder. kInput: none of the images can be loaded; kOutput:
+// the frame cannot be written.
 Result<RenderRate> MeasureRate(const ImageIndex& index, const RenderCamera& frame,
                                const NeedsOptions& needs, const RayReading& reading,
                                ThreadPool& pool);

@@ -1,4 +1,4 @@
-// A film cut into sections, one package each.
+// Cuts a film into sections, one for each package.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace lf {
 
-// Frames [begin, end) of those given.
+// Range [begin, end) of the given frames.
 struct Section {
   size_t begin = 0;
   size_t end = 0;
@@ -17,11 +17,12 @@ struct Section {
   friend bool operator==(const Section&, const Section&) = default;
 };
 
-// `count` sections of about equal cost, in order; fewer if there are fewer frames. Neighbouring
-// frames share LF images, so that sections are never taken apart.
+// Returns `count` sections of about equal cost, in order; fewer if there are fewer frames. Sections
+// are contiguous, because neighbouring frames share LF images.
 std::vector<Section> SplitByCost(std::span<const uint64_t> costs, size_t count);
 
-// As few of about equal cost as have at most most_frames frames each.
+// Returns the smallest number of sections of about equal cost such that each has at most
+// most_frames frames.
 std::vector<Section> SplitToFit(std::span<const uint64_t> costs, size_t most_frames);
 
 }  // namespace lf
