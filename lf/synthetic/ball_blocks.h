@@ -1,6 +1,6 @@
-// Balls near to each other in blocks of eight, to find quickly the few that a ray comes near: a
-// ball around the block says first whether it matters, then the eight are tested side by side. For
-// the hundred balls of a scene this beats a tree.
+// Finds quickly the few balls that a ray comes near. Balls near to each other form blocks of eight:
+// a ball around the block is tested first, then the eight are tested side by side. For the hundred
+// balls of a scene this is faster than a tree.
 #pragma once
 
 #include <algorithm>
@@ -18,8 +18,9 @@ struct Ball {
   double radius_w = 0;
 };
 
-// The points nearer to the axis than base_w / cos + along tan, of a half-line from `origin` along
-// `direction` (unit length) that ends at `along_end`; sine = sin of half the opening angle.
+// The points around a half-line from `origin` along `direction` (unit length) that are nearer to it
+// than base_w / cos + along tan, where `along` is the distance along the half-line, up to
+// `along_end`. sine is the sine of half the opening angle.
 struct Cone {
   Vec3 origin = Vec3::Zero();
   Vec3 direction = Vec3::UnitZ();
@@ -33,19 +34,21 @@ class BallBlocks {
   BallBlocks() = default;
   explicit BallBlocks(const std::vector<Ball>& balls);
 
-  // Calls visit(i) for the index of every ball that reaches into the cone, and of a few more: the
-  // test is in single precision and leans to the safe side. Always in the same order.
+  // Calls visit(i) for the index of every ball that reaches into the cone, and for some others,
+  // because the test is in single precision and errs on the safe side. The order is always the
+  // same.
   template <class Visit>
   void ForEachNear(const Cone& cone, Visit&& visit) const;
 
-  // The same for every ball whose radius times `factor` reaches the point.
+  // Calls visit(i) in this way for every ball that would contain the point if its radius were
+  // multiplied by `factor`.
   template <class Visit>
   void ForEachAround(const Vec3& point_world, double factor, Visit&& visit) const;
 
  private:
   static constexpr int kLanes = 8;
   static constexpr float kSlack = 1.001F;
-  static constexpr float kRounding = 4e-6F;  // of squared distances, relative
+  static constexpr float kRounding = 4e-6F;  // relative error of squared distances
   using Lanes = Eigen::Array<float, kLanes, 1>;
   struct Block {
     Lanes x = Lanes::Zero(), y = Lanes::Zero(), z = Lanes::Zero(), radius = Lanes::Zero();

@@ -9,7 +9,7 @@
 namespace lf {
 namespace {
 
-// The recommended capture's cameras.
+// Returns the cameras of the recommended capture.
 std::vector<PinholeCamera> Cameras(const BuiltInScene& scene) {
   const std::vector<RigidTransform> poses = *MakeRig(scene.rig);
   std::vector<PinholeCamera> cameras;
@@ -41,7 +41,8 @@ TEST(BuiltInScenes, PicturesAreFiniteNeverNegativeAndWithinTheirMaximum) {
   }
 }
 
-// 2 exp(-2 (pi sigma / step)^2), from any focus the captures are meant for to any lamp.
+// Checks 2 exp(-2 (pi sigma / step)^2) for all lamps and all focus distances that the captures are
+// meant for.
 TEST(BuiltInScenes, TheRecommendedCapturesShowBokehWithoutDots) {
   for (const BuiltInScene& scene : BuiltInScenes()) {
     const std::vector<PinholeCamera> cameras = Cameras(scene);
@@ -74,7 +75,7 @@ TEST(BuiltInScenes, TheMiddleCameraStandsAtTheDepthsTheManualSays) {
     EXPECT_GT(depth_w, 2.0);
     EXPECT_LT(depth_w, 2.8);
   }
-  // Nothing stands in another's place.
+  // No two spheres overlap.
   for (size_t i = 0; i < scene.spheres.size(); ++i)
     for (size_t j = 0; j < i; ++j)
       EXPECT_GE((scene.spheres[i].centre_world - scene.spheres[j].centre_world).norm(),

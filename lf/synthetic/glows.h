@@ -1,4 +1,4 @@
-// The small lamps that a ray passes.
+// The small lamps (glows) that a ray passes.
 #pragma once
 
 #include <cstdint>
@@ -11,27 +11,27 @@
 
 namespace lf {
 
-// Beyond this many radii a lamp is dark: exp(-3.2^2) = 4e-5.
+// Number of radii beyond which a lamp is dark: exp(-3.2^2) = 4e-5.
 inline constexpr double kGlowReach = 3.2;
 
 class Glows {
  public:
   explicit Glows(std::vector<Glow> glows);
 
-  // The light that all lamps before `lambda_end` bring to the ray, averaged over its footprint.
-  // The direction must have unit length. `among`: the lamps that alone come into question, null
-  // for all.
+  // Returns the light that all lamps before `lambda_end` add to the ray, averaged over its
+  // footprint. The direction must have unit length. `among` lists the lamps to consider; null means
+  // all.
   Rgb Along(const Ray& ray, const Footprint& footprint, double lambda_end,
             const std::vector<uint32_t>* among = nullptr) const;
 
-  // The lamps that reach into the cone, and perhaps some that do not.
+  // Returns all lamps that reach into the cone, and perhaps some others.
   std::vector<uint32_t> Near(const Cone& cone) const;
 
  private:
   bool MayMeet(const Ray& ray, const Footprint& footprint, double lambda_end) const;
 
   std::vector<Glow> glows_;
-  Eigen::AlignedBox3d bounds_;  // of all that shines
+  Eigen::AlignedBox3d bounds_;  // of all glows
   BallBlocks balls_;
 };
 

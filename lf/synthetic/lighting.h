@@ -1,4 +1,5 @@
-// The light on diffuse surfaces: lamps with soft shadows of spheres, and the light of the room.
+// The light on diffuse surfaces: lamps with soft shadows of spheres, and the ambient light of the
+// room.
 #pragma once
 
 #include <vector>
@@ -8,23 +9,23 @@
 
 namespace lf {
 
-// What throws shadows.
+// A sphere that casts shadows.
 struct Occluder {
   Sphere sphere;
-  bool is_glass = false;  // its shadow is coloured and has a bright spot in the middle
+  bool is_glass = false;  // glass casts a coloured shadow with a bright spot in the middle
   Rgb colour = Rgb::Ones();
 };
 
-// All lamps and all that stands before them.
+// All lamps, and all spheres that may hide them.
 class Lighting {
  public:
   Lighting() = default;
   Lighting(std::vector<Lamp> lamps, std::vector<Occluder> occluders, const Rgb& ambient);
 
-  // Light that a white diffuse surface at `point` reflects. Closed formulas, no random numbers: the
-  // part of a lamp that a sphere hides is that of two discs on the sky; the spot in the shadow of
-  // glass is a Gaussian, as bright as the light the shadow lacks. Spheres that touch the point hide
-  // nothing of it: there the cosine has it already.
+  // Returns the light that a white diffuse surface at the point reflects. The formulas are closed,
+  // without random numbers: the share of a lamp that a sphere hides is that of two discs on the
+  // sky; the spot in the shadow of glass is a Gaussian, as bright as the light that the shadow
+  // lacks. Spheres that touch the point hide nothing of it, because the cosine accounts for them.
   Rgb DiffuseLight(const Vec3& point_world, const Vec3& normal_world) const;
 
  private:
@@ -38,7 +39,8 @@ class Lighting {
   Rgb ambient_ = Rgb::Zero();
 };
 
-// Share of a disc of radius a on the sky hidden by one of radius b, centres c apart (angles).
+// Returns the share of a disc of radius a on the sky that is hidden by one of radius b, with
+// centres c apart (all are angles).
 double HiddenShare(double a, double b, double c);
 
 }  // namespace lf

@@ -31,7 +31,8 @@ TEST(Lighting, ASphereThrowsAShadowWithASoftRim) {
     before = share;
   }
   EXPECT_DOUBLE_EQ(before, 1);
-  // Two similar triangles: the edge of the core is 0.2 + (0.2 - 0.1), half-light at 2 x 0.2.
+  // Similar triangles give the edge of the core at 0.2 + (0.2 - 0.1), and half of the light at 2 x
+  // 0.2.
   EXPECT_NEAR(LightAt(lighting, {0.3, 0, 0}), 0, 0.1);
   EXPECT_NEAR(LightAt(lighting, {0.405, 0, 0}) / LightAt(bare, {0.405, 0, 0}), 0.5, 0.05);
 }
@@ -50,8 +51,8 @@ TEST(Lighting, GlassGathersTheLightOfItsShadowInTheMiddle) {
   const Lighting lighting({lamp}, {{{{0, -0.3, 0}, 0.2, 0}, true, green}}, Rgb::Zero());
   const Rgb middle = lighting.DiffuseLight(Vec3::Zero(), kUp);
   EXPECT_GT(middle[1], 4);                       // brighter than without the sphere: 2
-  EXPECT_NEAR(middle[0], 0.2 * middle[1], 0.1);  // in its colour
-  EXPECT_LT(LightAt(lighting, {0.2, 0, 0}), 1);  // at the price of what is around
+  EXPECT_NEAR(middle[0], 0.2 * middle[1], 0.1);  // in the colour of the glass
+  EXPECT_LT(LightAt(lighting, {0.2, 0, 0}), 1);  // while its surroundings are darker
 }
 
 TEST(Lighting, TheRoomIsDarkerBesideASphere) {

@@ -1,4 +1,4 @@
-// Mirrors and glass, by the laws.
+// Reflection and refraction at mirrors and glass.
 #pragma once
 
 #include <optional>
@@ -7,15 +7,16 @@
 
 namespace lf {
 
-// The direction after a mirror: d - 2 (d.n) n. Lengths are kept.
+// Returns the direction after a mirror: d - 2 (d.n) n. Lengths are kept.
 Vec3 Reflected(const Vec3& direction, const Vec3& normal);
 
-// The direction after a surface, by Snell's law n1 sin = n2 sin. Both arguments have unit length,
-// the normal points against the direction; index_ratio = n1 / n2. None where all is reflected.
+// Returns the direction after a surface, by Snell's law n1 sin = n2 sin. Both vectors have unit
+// length, and the normal points against the direction; index_ratio = n1 / n2. None if there is
+// total reflection.
 std::optional<Vec3> Refracted(const Vec3& direction, const Vec3& normal, double index_ratio);
 
-// Share of unpolarised light that a glass surface reflects (Fresnel), entering glass of
-// `refractive_index` > 1 from air at the given cosine of the angle of incidence.
+// Returns the share of unpolarised light that a glass surface reflects (Fresnel). The light enters
+// glass of `refractive_index` > 1 from air at the given cosine of the angle of incidence.
 double Reflectance(double cosine, double refractive_index);
 
 }  // namespace lf

@@ -47,7 +47,8 @@ TEST(Optics, GlassReflectsFourPercentStraightOnAndAllAtGrazing) {
 }
 
 TEST(Optics, AtBrewstersAngleOnlyOnePolarisationIsReflected) {
-  // There the angles in and out of the glass add to 90 degrees, so r_s = (1 - n^2) / (1 + n^2).
+  // At this angle the angles inside and outside the glass add up to 90 degrees, so r_s = (1 - n^2)
+  // / (1 + n^2).
   const double r = (1 - 2.25) / (1 + 2.25);
   EXPECT_NEAR(Reflectance(std::cos(std::atan(1.5)), 1.5), 0.5 * r * r, 1e-12);
 }

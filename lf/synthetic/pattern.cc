@@ -15,13 +15,13 @@ double LatticeValue(int64_t x, int64_t y, uint64_t seed) {
   return static_cast<double>(MixBits(place ^ seed) >> 40) * 0x1.0p-24;
 }
 
-// The baseline instruction set has no floor(), and half of a texture's time would go into calls.
+// The baseline instruction set has no floor(), and calls of it would take half of a texture's time.
 double Floor(double t) {
   const auto cut = static_cast<double>(static_cast<int64_t>(t));
   return cut > t ? cut - 1 : cut;
 }
 
-// A wave of period 1 between -1 and 1 like a sine, of two parabolas.
+// A sine-like wave of period 1 between -1 and 1, made of two parabolas.
 double Wave(double t) {
   const double phase = t - Floor(t) - 0.5;
   return 16 * phase * (std::abs(phase) - 0.5);
@@ -29,17 +29,17 @@ double Wave(double t) {
 
 double SmoothStep(double t) { return t * t * (3 - 2 * t); }
 
-// What is left of a wave of period 1 averaged over `width`: 1 for points, 0 from one period on.
+// Contrast of a wave of period 1 averaged over `width`: 1 for points, 0 from one period on.
 double Contrast(double width) {
   const double rest = std::max(0.0, 1 - width * width);
   return rest * rest;
 }
 
-// +1 on [0, 1/2), -1 on [1/2, 1), averaged over `width`: the difference of its integral, a
-// triangle wave.
+// Returns +1 on [0, 1/2) and -1 on [1/2, 1), averaged over `width`: the difference of its integral,
+// which is a triangle wave.
 double SquareWave(double x, double width) {
   const auto integral = [](double t) { return 0.5 - std::abs(t - Floor(t) - 0.5); };
-  constexpr double kNarrow = 1e-6;  // below it the difference would be rounding noise
+  constexpr double kNarrow = 1e-6;  // below it the difference is rounding noise
   if (width < kNarrow) return x - Floor(x) < 0.5 ? 1 : -1;
   return std::clamp((integral(x + width / 2) - integral(x - width / 2)) / width, -1.0, 1.0);
 }
@@ -50,8 +50,8 @@ double Checker(const Pattern& pattern, const Vec2& place_w, double width_w) {
                    SquareWave(place_w.y() / period_w, width_w / period_w);
 }
 
-// The row at height v of a table whose rows shrink by 4/5, each 1.5 of its letters high; the top
-// edge is v = 0 (v runs upwards, so rows have negative v).
+// The row at height v of a table of letters. Row heights are 1.5 times their letters, and shrink by
+// 4/5 from row to row. The top edge is v = 0; v runs upwards, so rows have negative v.
 struct ShrinkingRow {
   int index = 0;
   double letter_w = 0;  // height of its letters
@@ -89,7 +89,7 @@ constexpr std::array<uint16_t, 10> kDigits = {
 double Letters(const Pattern& pattern, const Vec2& place_w) {
   const ShrinkingRow row = RowAt(place_w.y(), pattern.scale_w);
   if (row.down < 0 || row.down >= 1) return 0;
-  const double across = place_w.x() / row.letter_w * 5;  // in dots; 3 of 4 are the digit
+  const double across = place_w.x() / row.letter_w * 5;  // in dots: 3 of 4 belong to the digit
   const double cell = Floor(across / 4);
   const int dot_x = static_cast<int>(across - 4 * cell);
   if (dot_x >= 3) return 0;
@@ -120,7 +120,8 @@ double Wood(const Pattern& pattern, const Vec2& place_w, double width_w) {
   const double y = place_w.y() / pattern.scale_w + 8 * tone;
   const double width = width_w / pattern.scale_w;
 
-  // Year rings, bent by slow noise, and pores: short dark strokes along the grain.
+  // The wood has year rings, bent by slow noise, and pores, which are short dark strokes along the
+  // grain.
   const double bend = ValueNoise(2.2 * x, 0.55 * y, seed);
   const double rings = Wave(2.6 * x + 3.2 * bend);
   const double fibre = ValueNoise(26 * x, 1.6 * y, seed + 1) - 0.5;
@@ -128,7 +129,7 @@ double Wood(const Pattern& pattern, const Vec2& place_w, double width_w) {
   double value = 0.42 + 0.3 * (tone - 0.5) + 0.14 * Contrast(4 * width) * rings +
                  0.45 * Contrast(20 * width) * fibre +
                  0.35 * Contrast(40 * width) * std::max(0.0, pores - 0.72) / 0.28;
-  // The seam is a groove 1/70 of the plank wide; wider footprints see it fainter.
+  // The seam is a groove of 1/70 of the plank's width; it is fainter in wider footprints.
   const double seam_width = std::max(1.0 / 70, width);
   const double from_seam = std::min(in_plank, 1 - in_plank) / seam_width;
   if (from_seam < 1) value += (1 - value) * (1 - SmoothStep(from_seam)) / (70 * seam_width);

@@ -1,8 +1,8 @@
-// Procedural textures: how much of a material's second colour stands at a place of a surface.
+// Procedural textures: the share of a material's second colour at a point of a surface.
 //
 // Lengths are world units on the surface. `width_w` is the width over which the caller averages
-// (the footprint of a pixel; 0: the exact point): the patterns are filtered analytically where a
-// formula is at hand, so that few rays per pixel show no moire.
+// (the footprint of a pixel; 0 for an exact point). Patterns are filtered analytically if there is
+// a formula, so that a few rays per pixel show no moire.
 #pragma once
 
 #include <cstdint>
@@ -27,11 +27,11 @@ struct Pattern {
   uint64_t seed = 0;
 };
 
-// In [0, 1].
+// Returns the pattern's value in [0, 1].
 double PatternAt(const Pattern& pattern, const Vec2& place_w, double width_w);
 
-// Smooth noise in [0, 1] with one random value per unit square, bicubically joined; the mean is
-// 1/2. The same everywhere for the same arguments.
+// Returns smooth noise in [0, 1] with one random value per unit square, bicubically interpolated.
+// Its mean is 1/2. Equal arguments give equal values on every machine.
 double ValueNoise(double x, double y, uint64_t seed);
 
 }  // namespace lf

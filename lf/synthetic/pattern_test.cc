@@ -32,7 +32,7 @@ TEST(Pattern, FieldsOfACheckerAlternate) {
   EXPECT_EQ(PatternAt(checker, {-0.05, -0.05}, 0), 1);
 }
 
-// The analytic filter is the mean over the width.
+// The analytic filter must equal the mean over the width.
 TEST(Pattern, AWideFootprintSeesTheMeanOfABar) {
   const Pattern bars{PatternKind::kBars, 0.01, 0};
   for (const double width_w : {0.003, 0.008, 0.013, 0.05})

@@ -13,7 +13,7 @@
 namespace lf {
 namespace {
 
-// The rays of all pixels of a camera, without inverting its matrix for each.
+// The rays of all pixels of a camera. Inverts the camera's matrix only once.
 class PixelRays {
  public:
   explicit PixelRays(const PinholeCamera& camera)
@@ -27,14 +27,14 @@ class PixelRays {
 
   bool has_distortion() const { return distortion_.has_value(); }
 
-  // None where the lens lets no ray through.
+  // Returns none if the lens lets no ray through.
   std::optional<Ray> Through(double x_px, double y_px) const {
     if (!distortion_) return Ray{centre_, world_from_pixel_ * Vec3(x_px, y_px, 1)};
     const std::optional<Vec3> position = IdealPosition(intrinsics_, *distortion_, x_px, y_px);
     if (!position) return std::nullopt;
     return Ray{centre_, world_from_pixel_ * *position};
   }
-  // Of a square of which `samples` tile a pixel.
+  // Returns the footprint of one of `samples` squares that tile a pixel.
   Footprint FootprintOf(int samples) const {
     return FootprintOfPixel(pixel_angle_ / std::sqrt(static_cast<double>(samples)));
   }
@@ -47,12 +47,12 @@ class PixelRays {
   double pixel_angle_;
 };
 
-// The side of the smallest square number of samples that is not below `samples`.
+// Returns the side of the smallest square number of samples that is not below `samples`.
 int SideOf(int samples) { return static_cast<int>(std::ceil(std::sqrt(std::max(1, samples)))); }
 
-// n x n points of the unit square, one in each cell of the n x n grid and in each of n^2 rows and
-// columns: a grid turned a little. Their mean is the centre, and x and y are uncorrelated, so that
-// what lies between the points is blurred alike in all directions.
+// Returns n x n points of the unit square, one in each cell of the n x n grid and in each of n^2
+// rows and columns: a slightly rotated grid. Their mean is the centre, and x and y are
+// uncorrelated, so that the blur between the points is equal in all directions.
 std::vector<Vec2> SquarePoints(int side) {
   std::vector<Vec2> points;
   const double n = side;
@@ -62,15 +62,15 @@ std::vector<Vec2> SquarePoints(int side) {
   return points;
 }
 
-// Brightness steps that count as an edge: this share of the brighter side, above the noise that
-// nobody sees in the dark.
+// Returns true if two neighbours form an edge: they show different surfaces, or differ by more than
+// this share of the brighter one. kDark avoids edges of noise that is too dark to be seen.
 bool IsEdge(const Scene::Sight& a, const Scene::Sight& b) {
   if (a.shape != b.shape) return true;
   constexpr double kShare = 0.4, kDark = 0.1;
   return ((a.radiance - b.radiance).abs() > kShare * (a.radiance.max(b.radiance) + kDark)).any();
 }
 
-// The picture in tiles, each with what its rays may meet first.
+// Tiles of the picture, each with the shapes that its rays may hit first.
 class Tiles {
  public:
   Tiles(const Scene& scene, const PixelRays& rays, int width, int height)
@@ -84,7 +84,8 @@ class Tiles {
       }
   }
 
-  // Of a pixel of the picture, or one pixel beside it; null where nothing is known.
+  // Returns the sector of a pixel of the picture, or of one pixel beside it; null if it is not
+  // known.
   const Scene::Sector* At(int x, int y) const {
     const int column = std::clamp(x / side_, 0, columns_ - 1);
     const int row = std::clamp(y / side_, 0, rows_ - 1);
@@ -96,10 +97,10 @@ class Tiles {
  private:
   static constexpr int kAcross = 32;  // tiles along the longer side
   static constexpr double kBow = 1.1;
-  // One pixel for the border, kGlowReach footprints of a pixel, and some for safety.
+  // One pixel for the border, kGlowReach footprints of a pixel, and a safety margin.
   static constexpr double kMargin_px = 1 + kGlowReach * kFootprintPerSide + 0.5;
 
-  // None unless all its pixels have rays.
+  // Returns none unless all tested pixels of the tile have rays.
   std::optional<Cone> ConeOf(const PixelRays& rays, int x, int y) const {
     const std::optional<Ray> axis = rays.Through(x + 0.5 * side_, y + 0.5 * side_);
     if (!axis) return std::nullopt;
@@ -113,7 +114,7 @@ class Tiles {
         cone.sine =
             std::max(cone.sine, border->direction.normalized().cross(cone.direction).norm());
       }
-    // The edges of a tile bow between the points looked at.
+    // Distortion makes the edges of a tile curved between the tested points.
     if (rays.has_distortion()) cone.sine *= kBow;
     return cone;
   }
@@ -124,8 +125,8 @@ class Tiles {
   std::vector<std::optional<Scene::Sector>> sectors_;
 };
 
-// What the rays through the pixel centres of row y see, from one pixel left of the picture to one
-// right of it.
+// Surfaces and radiance that the rays through the pixel centres of row y see, from one pixel left
+// of the picture to one right of it.
 using SightRow = std::vector<Scene::Sight>;
 SightRow LookAlongRow(const Scene& scene, const PixelRays& rays, const Tiles& tiles, int width,
                       int y) {
@@ -139,10 +140,10 @@ SightRow LookAlongRow(const Scene& scene, const PixelRays& rays, const Tiles& ti
   return row;
 }
 
-// Light, and the share of rays that it is from.
+// Light, and the share of rays that it comes from.
 using Rgba = Eigen::Array4d;
 
-// The light and opacity that one ray adds to a picture.
+// Returns the light and opacity that one ray adds to a picture.
 Rgba LightOf(const Scene::Sight& sight, Surroundings surroundings) {
   if (surroundings == Surroundings::kTransparent && sight.shape == Hit::kNothing)
     return Rgba::Zero();
@@ -218,7 +219,8 @@ Image<float> ThinLensPhotograph(const Scene& scene, const RenderCamera& camera,
             FocusPointOfElement(camera, x + element_points[i].x(), y + element_points[i].y());
         if (!focus_point) continue;
         const Vec3 direction = *focus_point - lens_points[i];
-        // As wide as the sample's part of the lens there, as its part of the element in focus.
+        // At the lens it is as wide as the sample's part of the lens; at the focus plane, as its
+        // part of the element.
         const Footprint footprint{lens_cell_w, -lens_cell_w / direction.norm() - element_spread};
         sum += LightOf(scene.Look({lens_points[i], direction}, footprint), surroundings);
       }

@@ -15,7 +15,8 @@ PinholeCamera Camera(int width, int height, double focal_px) {
   return camera;  // at the origin, looking along +z
 }
 
-// A white ball in a white room before a black background: pixels show how much of them it covers.
+// Returns a white ball in a white room before a black background, so that a pixel is the share that
+// the ball covers.
 Scene WhiteBall(const Vec3& centre, double radius_w) {
   SceneDescription description;
   Material white;
@@ -26,7 +27,7 @@ Scene WhiteBall(const Vec3& centre, double radius_w) {
   return Scene(description);
 }
 
-// The cone that touches a ball of radius R at distance d has half angle asin(R / d).
+// The cone that touches a ball of radius R at distance d has a half angle of asin(R / d).
 TEST(Photograph, ABallOnTheAxisCoversACircle) {
   const Image<float> picture = Photograph(WhiteBall({0, 0, 4}, 1), Camera(120, 120, 200), 16);
   const double radius_px = 200 * std::tan(std::asin(0.25));
@@ -62,10 +63,10 @@ TEST(Photograph, WhereNothingChangesAPixelIsTheRayThroughItsCentre) {
       changed += one.at(x, y, 1) != many.at(x, y, 1);
     }
   EXPECT_GT(changed, 60);   // the outline
-  EXPECT_LT(changed, 600);  // and nothing else
+  EXPECT_LT(changed, 600);  // nothing else may change
 }
 
-// Photographs look for what a tile may meet once for all of its rays: nothing may be lost by that.
+// Photographs find for each tile which shapes its rays may hit. No shape may be missed.
 TEST(Photograph, EveryPixelIsWhatItsRayAloneSees) {
   const BuiltInScene& still_life = *FindBuiltInScene("still-life");
   const Scene scene(still_life.describe());
@@ -96,8 +97,8 @@ Scene OneLamp(const Vec3& place) {
   return Scene(description);
 }
 
-// The spot of a lamp is the lens, seen from the focus plane: radius f r |1/g - 1/z| elements.
-// Beyond the focus plane it stands upright, before it upside down.
+// The spot of a lamp has the shape of the lens: its radius is f r |1/g - 1/z| elements. It is
+// upright beyond the focus plane, and upside down before it.
 TEST(Photograph, OutOfFocusALampTakesTheShapeOfTheLens) {
   ThreadPool pool(2);
   for (const double depth_w : {2.0, 0.6}) {
@@ -114,7 +115,7 @@ TEST(Photograph, OutOfFocusALampTakesTheShapeOfTheLens) {
     EXPECT_GT(middle, 0.01);
     EXPECT_GT(at(0, 0.75), 0.6 * middle);  // towards the vertex
     EXPECT_LT(at(0, 1.3), 0.02 * middle);
-    EXPECT_LT(at(0, -1.1), 0.1 * middle);  // beyond the edge opposite, at cos(36 degrees)
+    EXPECT_LT(at(0, -1.1), 0.1 * middle);  // beyond the opposite edge, at cos(36 degrees)
     double sum = 0, row = 0;
     for (int y = 0; y < 81; ++y)
       for (int x = 0; x < 81; ++x) {
@@ -122,7 +123,7 @@ TEST(Photograph, OutOfFocusALampTakesTheShapeOfTheLens) {
         row += (y + 0.5) * static_cast<double>(picture.at(x, y));
       }
     EXPECT_NEAR(row / sum, 40.5, 0.1);  // the pentagon's centre of mass is that of the lens
-    // No light is lost: the lamp's image has the flux it would have in focus.
+    // No light is lost: the lamp's image has the flux that it has in focus.
     const double radius_in_focus_px = 400 * 0.002 / depth_w;
     EXPECT_NEAR(sum, 100 * kPi * radius_in_focus_px * radius_in_focus_px, 0.03 * sum);
   }
@@ -158,7 +159,7 @@ TEST(Photograph, ALensOfOnePointIsAPinhole) {
     EXPECT_NEAR(lens.pixels()[i], pinhole.pixels()[i], 1e-4F);
 }
 
-// In a white room a white ball is as bright as it is opaque.
+// In a white room, a white ball's brightness equals its opacity.
 TEST(Photograph, BeforeTransparentSurroundingsAlphaIsTheShareOfRaysThatMeetASurface) {
   ThreadPool pool(2);
   const Scene scene = WhiteBall({0.2, 0.1, 4}, 1);

@@ -12,7 +12,7 @@
 namespace lf {
 namespace {
 
-// The grid of rows and columns nearest to the count.
+// The number of rows and columns whose product is nearest to the count.
 struct Grid {
   uint32_t rows = 1;
   uint32_t columns = 1;
@@ -27,7 +27,7 @@ Grid GridOf(const RigOptions& options) {
   return {rows, std::max(1U, static_cast<uint32_t>(columns))};
 }
 
-// The pose at `centre` looking along `forward`, shaken.
+// Returns `pose` with jitter.
 RigidTransform ShakenPose(const RigOptions& options, uint32_t index, const RigidTransform& pose) {
   if (options.jitter == 0) return pose;
   const auto shake = [&](uint64_t axis) {
@@ -75,7 +75,7 @@ std::vector<RigidTransform> BandPoses(const RigOptions& options) {
   return poses;
 }
 
-// Fibonacci's spiral: equal steps of height, each a golden angle further round.
+// The dome is Fibonacci's spiral: equal steps of height, each a golden angle further round.
 std::vector<RigidTransform> HemispherePoses(const RigOptions& options) {
   const Vec3 up = options.up_world.normalized();
   const Vec3 right = options.view_world.cross(up).normalized();

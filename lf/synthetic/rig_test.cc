@@ -38,7 +38,7 @@ TEST(Rig, TheGridHasItsSpacingAndLooksOneWay) {
     }
     if (i < 15) {
       const Vec3 step = At(poses[i + 5]).CentreWorld() - camera.CentreWorld();
-      EXPECT_TRUE(step.isApprox(-0.01 * camera.UpWorld(), 1e-9));  // rows from above
+      EXPECT_TRUE(step.isApprox(-0.01 * camera.UpWorld(), 1e-9));  // rows are counted from the top
     }
   }
   EXPECT_NEAR((options.target_world - mean).norm(), 2, 1e-12);
@@ -52,14 +52,14 @@ TEST(Rig, TheBandLiesOnItsCircleAndLooksAtTheTarget) {
   for (size_t i = 0; i < poses.size(); ++i) {
     const PinholeCamera camera = At(poses[i]);
     const Vec3 to_target = options.target_world - camera.CentreWorld();
-    EXPECT_NEAR(to_target.norm(), 2, 2e-3);  // rows stand straight above each other
+    EXPECT_NEAR(to_target.norm(), 2, 2e-3);  // rows are exactly above each other
     EXPECT_NEAR(to_target.normalized().dot(camera.ForwardWorld()), 1, 1e-12);
     EXPECT_NEAR(camera.RightWorld().y(), 0, 1e-12);
     if (i % 100 != 99) {
       EXPECT_NEAR((At(poses[i + 1]).CentreWorld() - camera.CentreWorld()).norm(), 0.01, 1e-4);
     }
   }
-  // Columns go to the right as the middle camera sees it.
+  // Columns go to the right as seen by the middle camera.
   const Vec3 across = At(poses[199]).CentreWorld() - At(poses[100]).CentreWorld();
   EXPECT_GT(across.dot(At(poses[150]).RightWorld()), 0.9);
 }
@@ -76,8 +76,9 @@ TEST(Rig, TheDomeIsEvenAndLooksAtItsCentre) {
     EXPECT_NEAR(-out.normalized().dot(At(pose).ForwardWorld()), 1, 1e-12);
     mean += out / 500;
   }
-  EXPECT_TRUE(mean.isApprox(Vec3(0, -1, 0), 1e-2));  // of a half sphere: half its radius up
-  // Nearest neighbours are about a pitch apart, none much closer.
+  EXPECT_TRUE(mean.isApprox(Vec3(0, -1, 0), 1e-2));  // the mean of a half sphere is at half its
+                                                     // radius
+  // Nearest neighbours are about a pitch apart, and none are much closer.
   for (size_t i = 0; i < poses.size(); ++i) {
     double nearest = 10;
     for (size_t j = 0; j < poses.size(); ++j)

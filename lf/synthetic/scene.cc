@@ -10,8 +10,8 @@
 namespace lf {
 namespace {
 
-// Light paths end after this many mirrors and glasses, or when less than this share of them would
-// reach the eye.
+// Light paths end after this many mirrors and glass spheres, or if less than this share of the
+// light would reach the camera.
 constexpr int kDepthLimit = 4;
 constexpr double kLeastWeight = 0.012;
 
@@ -19,9 +19,9 @@ constexpr double kLeastWeight = 0.012;
 
 struct Scene::Place {
   Vec3 point = Vec3::Zero();
-  Vec3 normal = Vec3::Zero();  // against the ray
-  double cosine = 1;           // between the two
-  Footprint footprint;         // of the beam, from here
+  Vec3 normal = Vec3::Zero();  // points against the ray
+  double cosine = 1;           // of the angle between ray and normal
+  Footprint footprint;         // footprint of the beam from here on
   const Sphere* sphere = nullptr;
   const PanelPlane* panel = nullptr;
   const Material* material = nullptr;
@@ -111,7 +111,8 @@ Rgb Scene::Follow(const Beam& beam, Hit* first) const {
   return glow;
 }
 
-// What the surface mirrors. A sphere spreads the beam: its focal length is -R/2 over the cosine.
+// Returns the light that the surface mirrors. A sphere spreads the beam: its focal length is -R/2
+// over the cosine.
 Rgb Scene::Reflection(const Beam& beam, const Place& place, double share) const {
   Beam next{{place.point, Reflected(beam.ray.direction, place.normal)},
             place.footprint,
@@ -128,10 +129,11 @@ Rgb Scene::Reflection(const Beam& beam, const Place& place, double share) const 
   return Follow(next, nullptr);
 }
 
-// In, along the chord, out: by symmetry a ray leaves a sphere under the angle at which it came, so
-// it always gets out and loses the same share again. Light mirrored inside is left out.
+// Follows a beam into the sphere, along the chord, and out. By symmetry a ray leaves a sphere at
+// the angle at which it entered, so it always gets out, and loses the same share again. Internal
+// reflections are left out.
 Rgb Scene::ThroughGlass(const Beam& beam, const Place& place) const {
-  LF_CHECK(place.sphere != nullptr);  // the constructor saw to it
+  LF_CHECK(place.sphere != nullptr);  // the constructor checked it
   const Material& glass = *place.material;
   const Sphere& sphere = *place.sphere;
   const double share = Reflectance(place.cosine, glass.refractive_index);
@@ -144,8 +146,8 @@ Rgb Scene::ThroughGlass(const Beam& beam, const Place& place) const {
   const Vec3 exit_normal = (sphere.centre_world - exit) / sphere.radius_w;
   const std::optional<Vec3> direction = Refracted(inside, exit_normal, glass.refractive_index);
   if (!direction) return mirrored;  // rounding at the very rim
-  // A ball lens of focal length n R / (2 (n - 1)), taken as thin. It draws the footprint together;
-  // haze widens it, whichever way it runs.
+  // Treats the sphere as a thin ball lens of focal length n R / (2 (n - 1)). It narrows the
+  // footprint; haze widens it, for either sign of the spread.
   const double focal_w =
       glass.refractive_index * sphere.radius_w / (2 * (glass.refractive_index - 1));
   double spread = place.footprint.spread - place.footprint.width_w / focal_w;
@@ -156,9 +158,10 @@ Rgb Scene::ThroughGlass(const Beam& beam, const Place& place) const {
   return mirrored + passing * tint * Follow(next, nullptr);
 }
 
-// Where on its pattern a place is.
+// Returns the position of a point on its pattern.
 Vec2 Scene::PlaceOnPattern(const Place& place) {
-  if (place.sphere) {  // a slanted cut through a pattern in the plane: no poles, no seam
+  if (place.sphere) {  // a slanted cut through a pattern in the plane, which has no poles and no
+                       // seam
     const Vec3 offset = place.point - place.sphere->centre_world;
     return {offset.x() + 0.5 * offset.z(), offset.y() - 0.4 * offset.z()};
   }
@@ -172,7 +175,7 @@ Rgb Scene::DiffuseRadiance(const Place& place) const {
   const Material& material = *place.material;
   Rgb colour = material.colour;
   if (material.pattern.kind != PatternKind::kPlain) {
-    // A slanted footprint is long in one direction only: its mean width.
+    // A slanted footprint is long in one direction only, so its mean width is used.
     const double width_w =
         place.footprint.width_w / (kFootprintPerSide * std::sqrt(std::max(0.01, place.cosine)));
     const double second = PatternAt(material.pattern, PlaceOnPattern(place), width_w);

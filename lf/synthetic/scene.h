@@ -1,8 +1,8 @@
-// A scene as light: the radiance along any ray, in closed form (an analytic ray caster).
+// A scene as a light source: the radiance along any ray, in closed form (an analytic ray caster).
 //
-// Mirrors and glass are followed; diffuse surfaces receive lamps with soft shadows and the room's
-// light (lighting.h). Nothing is random: the same ray has the same radiance always, from any
-// thread, which is what makes light field and thin-lens frames pictures of one world.
+// Rays are followed through mirrors and glass. Diffuse surfaces receive light from lamps, with soft
+// shadows, and from the room (lighting.h). Nothing is random: a ray always has the same radiance,
+// in every thread. Therefore light field and thin-lens frames show the same world.
 #pragma once
 
 #include <cstdint>
@@ -19,15 +19,15 @@ namespace lf {
 
 class Scene {
  public:
-  // Material indices must exist; only spheres are of glass, only panels shine.
+  // Material indices must exist. Only spheres may be glass, only panels may shine.
   explicit Scene(SceneDescription description);
 
-  // Linear RGB. `ray.direction` may have any length but 0; lamps and textures are averaged over
-  // `footprint`, whose lengths are those of a ray of unit length.
+  // Returns linear RGB. `ray.direction` may have any length but 0. Lamps and textures are averaged
+  // over `footprint`, whose lengths belong to a ray of unit length.
   Rgb RadianceAlong(const Ray& ray, const Footprint& footprint = {}) const;
 
-  // What rays within a cone may meet first. Looking along many of them with it in hand gives the
-  // same light sooner. The cone must hold the rays with kGlowReach widths of their
+  // Shapes that rays within a cone may hit first, and glows that they may pass. With it, Look()
+  // returns the same light faster. The cone must contain the rays with kGlowReach widths of their
   // footprints (glows.h).
   struct Sector {
     std::vector<uint32_t> spheres;
@@ -35,8 +35,8 @@ class Scene {
   };
   Sector SectorOf(const Cone& cone) const;
 
-  // The radiance with what was seen first, for deciding where more rays are due. `sector`: one
-  // that holds the ray, or null.
+  // The radiance with the shape that was hit first, which tells where more rays are needed.
+  // `sector`: one that contains the ray, or null.
   struct Sight {
     Rgb radiance = Rgb::Zero();
     uint32_t shape = Hit::kNothing;
@@ -47,8 +47,8 @@ class Scene {
   struct Beam {
     Ray ray;  // unit direction
     Footprint footprint;
-    double weight = 1;  // share of it that reaches the eye
-    int depth = 0;      // mirrors and glass passed
+    double weight = 1;  // share of its light that reaches the camera
+    int depth = 0;      // number of mirrors and glass spheres passed
     const Sector* sector = nullptr;
   };
   struct Place;  // a point on a surface (scene.cc)

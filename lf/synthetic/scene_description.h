@@ -1,7 +1,7 @@
-// What a synthetic scene is made of, as plain values. lf::Scene (scene.h) makes light of it.
+// The parts of a synthetic scene, as plain values. lf::Scene (scene.h) computes its light.
 //
-// World units are metres (unit_m = 1), y points down: a table is a panel whose half_up x half_right
-// normal points to -y. Radiance is linear light, sRGB primaries, 1 = display white.
+// World units are metres (unit_m = 1), and y points down: a table is a panel whose half_up x
+// half_right normal points to -y. Radiance is linear light with sRGB primaries; 1 is display white.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@ using Rgb = Eigen::Array3d;
 enum class Finish : uint8_t {
   kDiffuse,  // Lambertian under a clear coat that reflects like glass, times `coat`
   kMirror,   // reflects `colour` of the light
-  kGlass,    // a sphere that refracts; `colour` of the light passes one radius of it
-  kLight,    // shines `colour` itself, fading out towards the rim of the panel
+  kGlass,    // a refracting sphere; `colour` of the light passes one radius of it
+  kLight,    // emits `colour`, which fades out towards the rim of the panel
 };
 
 struct Material {
@@ -28,8 +28,8 @@ struct Material {
   Pattern pattern;
   double coat = 0;                // 0: matte; 1: polished
   double refractive_index = 1.5;  // of glass and of the coat
-  // Glows seen in it or through it are spread by this angle, as by a polish that is not perfect:
-  // keeps their tiny images in balls from sparkling.
+  // Angle by which glows that are reflected or refracted by the material are spread, as by an
+  // imperfect polish. It keeps their tiny images in balls from sparkling.
   double haze_rad = 0;
 };
 
@@ -39,9 +39,9 @@ struct Sphere {
   uint32_t material = 0;  // index into SceneDescription::materials
 };
 
-// A flat piece, seen from both sides: the points centre + a half_right + b half_up with |a|, |b|
-// <= 1, or a^2 + b^2 <= 1 for a disk. Its pattern is laid out in world units from the centre
-// (kBars and kLetters: from the upper left corner).
+// A flat piece, visible from both sides: the points centre + a half_right + b half_up with |a|, |b|
+// <= 1, or a^2 + b^2 <= 1 for a disk. Its pattern is in world units from the centre (kBars and
+// kLetters: from the upper left corner).
 struct Panel {
   Vec3 centre_world = Vec3::Zero();
   Vec3 half_right_w = Vec3::UnitX();
@@ -50,24 +50,25 @@ struct Panel {
   uint32_t material = 0;
 };
 
-// A small lamp in the picture: a soft ball of light that hides nothing. A ray passing its centre
-// at distance b brings colour exp(-(b / radius)^2). Averaged over a round Gaussian footprint this
-// stays a Gaussian, so that even far smaller than a pixel no light is lost and none flickers.
+// A small lamp in the picture: a soft ball of light that hides nothing. A ray that passes its
+// centre at distance b receives colour exp(-(b / radius)^2). Averaged over a round Gaussian
+// footprint this stays a Gaussian, so that a glow far smaller than a pixel loses no light and does
+// not flicker.
 struct Glow {
   Vec3 centre_world = Vec3::Zero();
   double radius_w = 0.005;
   Rgb colour = Rgb::Constant(1);  // radiance at the centre; may be far above 1
 };
 
-// A light that falls on diffuse surfaces; itself unseen (a kLight panel may stand in its place).
-// Spheres throw its shadows, softer the larger it is; panels throw none.
+// A light that falls on diffuse surfaces and is itself invisible (a kLight panel may be put in its
+// place). Spheres cast shadows, which are softer the larger the lamp is; panels cast none.
 struct Lamp {
   Vec3 centre_world = Vec3::Zero();
   double radius_w = 0.1;
   Rgb power = Rgb::Constant(1);  // reflected radiance of a white surface facing it at distance 1
 };
 
-// The light of the room far away: `floor` and `ceiling` by the height of the direction, and soft
+// The light of the distant room: `floor` and `ceiling` by the height of the direction, and soft
 // spots colour * exp(sharpness (cos - 1)).
 struct RoomSpot {
   Vec3 direction_world = Vec3::UnitZ();  // unit length

@@ -21,7 +21,7 @@ Material Mirror() {
   return mirror;
 }
 
-// One sphere of radius 1 at the origin.
+// Returns a scene of one sphere of radius 1 at the origin.
 SceneDescription SphereOf(const Material& material) {
   SceneDescription scene;
   scene.materials = {material};
@@ -42,12 +42,12 @@ TEST(Scene, ADiffuseSurfaceUnderAWhiteRoomShowsItsColour) {
   EXPECT_TRUE(scene.RadianceAlong({Vec3::Zero(), -Vec3::UnitZ()}).isApprox(Rgb(0, 0, 0.25)));
 }
 
-// A ray that passes the centre of a mirror ball at distance h meets it under an angle of sine h
-// and leaves turned by twice that angle's complement.
+// A ray that passes the centre of a mirror ball at distance h hits it at an angle of sine h, and
+// leaves it turned by twice that angle's complement.
 TEST(Scene, AMirrorBallShowsALampUnderTheMirrorAngle) {
   const double h = 0.4;
   const Vec3 normal(h, 0, -std::sqrt(1 - h * h));
-  const double turn = 2 * std::asin(h);  // between the way back and the way out
+  const double turn = 2 * std::asin(h);  // between the direction back and the direction out
   const Vec3 out(std::sin(turn), 0, -std::cos(turn));
   SceneDescription description = SphereOf(Mirror());
   description.glows = {{normal + 3 * out, 0.001, Rgb::Constant(7)}};
@@ -56,24 +56,24 @@ TEST(Scene, AMirrorBallShowsALampUnderTheMirrorAngle) {
   EXPECT_LT(scene.RadianceAlong({{h + 0.002, 0, -5}, Vec3::UnitZ()})[0], 0.1);
 }
 
-// Snell's law twice: a ray at height h is turned by 2 (i - r), sin i = h, sin r = h / n, about the
-// middle of its chord.
+// By Snell's law applied twice, a ray at height h is turned by 2 (i - r), sin i = h, sin r = h / n,
+// about the middle of its chord.
 TEST(Scene, AGlassBallBendsARayTwice) {
   const double h = 0.5;
   const double i = std::asin(h), r = std::asin(h / 1.5);
-  const double exit_angle = 2 * r - i;  // of the exit point, above the axis still
+  const double exit_angle = 2 * r - i;  // of the exit point, still above the axis
   const Vec3 exit(std::sin(exit_angle), 0, std::cos(exit_angle));
   const Vec3 out(-std::sin(2 * (i - r)), 0, std::cos(2 * (i - r)));
   SceneDescription description = SphereOf(Glass());
   description.glows = {{exit + 2 * out, 0.001, Rgb::Constant(7)}};
   const Scene scene(description);
   const double seen = scene.RadianceAlong({{h, 0, -5}, Vec3::UnitZ()})[0];
-  EXPECT_NEAR(seen, 7 * 0.956 * 0.956, 0.05);  // some 4 % are reflected at either surface
+  EXPECT_NEAR(seen, 7 * 0.956 * 0.956, 0.05);  // about 4 % are reflected at either surface
   EXPECT_LT(scene.RadianceAlong({{h + 0.002, 0, -5}, Vec3::UnitZ()})[0], 0.1);
 }
 
-// A Gaussian of radius r seen at distance d through haze a has radius sqrt(r^2 + (a d)^2), and as
-// much less radiance as it is larger.
+// A Gaussian of radius r seen at distance d through haze a has the radius sqrt(r^2 + (a d)^2). Its
+// radiance decreases as its area grows.
 TEST(Scene, HazeSpreadsTheImageOfALampWithoutLosingLight) {
   Material mirror = Mirror();
   mirror.haze_rad = 0.03;
@@ -92,7 +92,7 @@ TEST(Scene, TintedGlassColoursByTheWayThroughIt) {
   SceneDescription description = SphereOf(glass);
   description.room.floor = description.room.ceiling = Rgb::Ones();
   const Rgb through = Scene(description).RadianceAlong({{0, 0, -5}, Vec3::UnitZ()});
-  EXPECT_NEAR(through[0], 0.04 + 0.96 * 0.96 * 0.25, 1e-9);  // two radii
+  EXPECT_NEAR(through[0], 0.04 + 0.96 * 0.96 * 0.25, 1e-9);  // the light passes two radii
   EXPECT_NEAR(through[1], 0.04 + 0.96 * 0.96, 1e-9);
 }
 

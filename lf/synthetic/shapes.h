@@ -1,4 +1,4 @@
-// Rays against spheres and panels, and the first of many that a ray meets.
+// Intersects rays with spheres and panels, and finds the first shape that a ray hits.
 #pragma once
 
 #include <cstdint>
@@ -13,18 +13,18 @@
 
 namespace lf {
 
-// Nearer than this a ray meets nothing: it has just left that surface.
+// Smallest distance of a hit, because a ray that leaves a surface must not hit it again.
 inline constexpr double kLeastLambda = 1e-7;
 
-// Distance along `ray`, whose direction has unit length, to the first point of the sphere at more
-// than kLeastLambda: the outside seen from outside, the inside from within.
+// Returns the distance along `ray`, whose direction has unit length, to the first point of the
+// sphere beyond kLeastLambda: a point of the outside, or of the inside if the ray starts within.
 std::optional<double> Intersect(const Ray& ray, const Sphere& sphere);
 
-// A panel with what every ray would compute anew.
+// A panel with precomputed values that every ray needs.
 struct PanelPlane {
   explicit PanelPlane(const Panel& panel);
 
-  // The place on the panel in units of its half axes: inside it both are within [-1, 1].
+  // Returns the position on the panel in units of its half axes; inside it both are within [-1, 1].
   Vec2 PlaceOf(const Vec3& point_world) const {
     const Vec3 offset = point_world - centre_world;
     return {offset.dot(right_per_w), offset.dot(up_per_w)};
@@ -33,7 +33,7 @@ struct PanelPlane {
   Vec3 centre_world = Vec3::Zero();
   Vec3 normal_world = Vec3::UnitZ();  // unit length
   double offset_w = 0;                // normal . centre
-  Vec3 right_per_w = Vec3::Zero();    // half axis over its squared length
+  Vec3 right_per_w = Vec3::Zero();    // half axis divided by its squared length
   Vec3 up_per_w = Vec3::Zero();
   double half_right_w = 1;  // lengths of the half axes
   double half_up_w = 1;
@@ -41,10 +41,10 @@ struct PanelPlane {
   uint32_t material = 0;
 };
 
-// The same for a panel, on both of its sides.
+// Returns the distance along `ray` to a panel, on either of its sides.
 std::optional<double> Intersect(const Ray& ray, const PanelPlane& panel);
 
-// Where a ray ends. Spheres are numbered first, then panels.
+// The point where a ray ends. Shapes are numbered: spheres first, then panels.
 struct Hit {
   double lambda = std::numeric_limits<double>::infinity();
   uint32_t shape = kNothing;
@@ -58,15 +58,15 @@ class Shapes {
  public:
   Shapes(std::vector<Sphere> spheres, const std::vector<Panel>& panels);
 
-  // The direction must have unit length. `among`: the spheres that alone come into question, null
-  // for all; panels always do.
+  // Returns the first hit. The direction must have unit length. `among` lists the spheres to
+  // consider, null means all; panels are always considered.
   Hit FirstHit(const Ray& ray, const std::vector<uint32_t>* among = nullptr) const;
 
-  // The spheres that reach into the cone, and perhaps some that do not.
+  // Returns all spheres that reach into the cone, and perhaps some others.
   std::vector<uint32_t> SpheresNear(const Cone& cone) const;
 
   const std::vector<Sphere>& spheres() const { return spheres_; }
-  // Null for a panel.
+  // Returns null for a panel.
   const Sphere* SphereOf(uint32_t shape) const {
     return shape < spheres_.size() ? &spheres_[shape] : nullptr;
   }

@@ -18,7 +18,7 @@ Vec3 RandomPoint(uint64_t stream, uint64_t i) {
 TEST(Shapes, ARayMeetsASphereAtItsAnalyticDistance) {
   const Sphere sphere{{0, 0, 5}, 2, 0};
   EXPECT_NEAR(*Intersect({Vec3::Zero(), Vec3::UnitZ()}, sphere), 3, 1e-12);
-  // 1.2 beside the centre: sqrt(2^2 - 1.2^2) = 1.6 before it.
+  // The ray passes the centre at 1.2: it hits sqrt(2^2 - 1.2^2) = 1.6 before it.
   EXPECT_NEAR(*Intersect({{1.2, 0, 0}, Vec3::UnitZ()}, sphere), 3.4, 1e-12);
   EXPECT_FALSE(Intersect({{2.001, 0, 0}, Vec3::UnitZ()}, sphere));
   EXPECT_FALSE(Intersect({Vec3::Zero(), -Vec3::UnitZ()}, sphere));
@@ -27,7 +27,7 @@ TEST(Shapes, ARayMeetsASphereAtItsAnalyticDistance) {
 TEST(Shapes, FromWithinASphereTheFarSideIsMet) {
   const Sphere sphere{{0, 0, 5}, 2, 0};
   EXPECT_NEAR(*Intersect({{0, 0, 5}, Vec3::UnitX()}, sphere), 2, 1e-12);
-  // Having just entered at its front.
+  // The ray starts at the front of the sphere.
   EXPECT_NEAR(*Intersect({{0, 0, 3}, Vec3::UnitZ()}, sphere), 4, 1e-12);
 }
 
@@ -49,7 +49,7 @@ TEST(Shapes, APanelIsMetFromBothSidesAtTheDistanceOfItsPlane) {
   const PanelPlane panel({{1, 0, 1}, {3, 0, -3}, {0, 3, 0}, false, 0});
   EXPECT_NEAR(*Intersect({{0.5, 0, 0}, Vec3::UnitZ()}, panel), 1.5, 1e-12);
   EXPECT_NEAR(*Intersect({{0.5, 0, 3}, -Vec3::UnitZ()}, panel), 1.5, 1e-12);
-  EXPECT_FALSE(Intersect({{0.5, 0, 0}, Vec3(1, 0, -1).normalized()}, panel));  // along it
+  EXPECT_FALSE(Intersect({{0.5, 0, 0}, Vec3(1, 0, -1).normalized()}, panel));  // parallel to it
 }
 
 TEST(Shapes, TheFirstHitIsTheNearestOfAll) {

@@ -1,5 +1,5 @@
 // The still life: warm lights in a dark room, one large soft key light from the left, a cooler rim
-// light from behind on the right. Amber against teal; rose for the accent.
+// light from behind on the right. Colours are amber against teal, with rose as the accent.
 #include <cmath>
 
 #include "lf/core/random.h"
@@ -8,7 +8,7 @@
 namespace lf {
 namespace {
 
-// Adds materials and what is made of them.
+// Adds materials, and objects made of them.
 class Table {
  public:
   explicit Table(SceneDescription& scene) : scene_(scene) {}
@@ -17,7 +17,7 @@ class Table {
     scene_.materials.push_back(material);
     return static_cast<uint32_t>(scene_.materials.size() - 1);
   }
-  // A sphere that lies on the table (y = 0).
+  // Adds a sphere that lies on the table (y = 0).
   void Lay(double x, double z, double radius_w, uint32_t material) {
     scene_.spheres.push_back({{x, -radius_w, z}, radius_w, material});
   }
@@ -64,7 +64,7 @@ void AddTableTop(SceneDescription& scene, Table& table) {
   scene.panels.push_back({{0, 0, 0.2}, {1.5, 0, 0}, {0, 0, 1.0}, false, table.Add(wood)});
 }
 
-// A white cloth before a lamp, facing the middle of the table; seen in all that shines.
+// Adds a white cloth before a lamp, facing the middle of the table. All shiny objects reflect it.
 void AddSoftBox(SceneDescription& scene, Table& table, const Vec3& centre, double half_width_w,
                 double half_height_w, const Rgb& radiance) {
   Material cloth;
@@ -122,7 +122,7 @@ void AddSpheres(Table& table) {
   table.Lay(-0.192, -0.35, 0.014, honey);
 }
 
-// Lamps on strings that hang through between their nails, nearly all of them golden.
+// Adds lamps on strings that sag between their nails. Nearly all of them are golden.
 void AddStringsOfLights(SceneDescription& scene) {
   const Rgb golden[] = {Rgb(1.0, 0.5, 0.14), Rgb(1.0, 0.4, 0.085), Rgb(1.0, 0.6, 0.26)};
   const Rgb rose(1.0, 0.17, 0.13), sea(0.1, 0.6, 0.58);

@@ -22,7 +22,7 @@ namespace {
 constexpr double kLargest16 = 65535;
 constexpr double kBlackLevel = 1024;
 
-// One Gaussian number per counter (Box and Muller).
+// Returns one Gaussian random number per counter (Box and Muller).
 double NormalRandom(uint64_t seed, uint64_t stream, uint64_t index) {
   const double radius = std::sqrt(-2 * std::log(1 - RandomUnit(seed, stream, 2 * index)));
   return radius * std::cos(2 * kPi * RandomUnit(seed, stream, 2 * index + 1));
@@ -53,7 +53,7 @@ void EncodeSrgb(Image<float>& picture) {
       }
 }
 
-// Divides colours by alpha.
+// Converts premultiplied colours to straight ones.
 void MakeStraight(Image<float>& picture) {
   for (int y = 0; y < picture.height(); ++y)
     for (int x = 0; x < picture.width(); ++x)
@@ -161,7 +161,7 @@ Result<void> WriteLightField(const Scene& scene, const LightField& light_field,
   if (!std::filesystem::remove(calibration, error) && error)
     return OutputError(fmt::format("{}: cannot replace the older calibration: {}",
                                    calibration.string(), error.message()));
-  std::mutex mutex;  // guards failure, images_done
+  std::mutex mutex;  // guards failure and images_done
   std::optional<Error> failure;
   size_t images_done = 0;
   std::atomic<bool> stopped = false;

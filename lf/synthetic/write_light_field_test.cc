@@ -17,7 +17,7 @@ namespace {
 
 class WriteLightFieldTest : public FolderTest {
  protected:
-  // Four cameras far apart, a shaky hand.
+  // Returns a light field of four cameras that are far apart and shaken.
   LightField SmallField(const BuiltInScene& scene, LfImageFormat format, int width, int height) {
     RigOptions rig = scene.rig;
     rig.count = 4;
@@ -29,7 +29,7 @@ class WriteLightFieldTest : public FolderTest {
   ThreadPool pool_{2};
 };
 
-// The centre of the light within a few pixels of a place.
+// Returns the centre of the light within a few pixels of a position.
 Vec2 CentreOfLight(const Image<float>& picture, const Vec2& place) {
   constexpr int kReach = 5;
   double sum = 0;
@@ -63,7 +63,7 @@ TEST_F(WriteLightFieldTest, EveryLampIsWhereTheWrittenCalibrationProjectsIt) {
       ++seen;
     }
   }
-  EXPECT_GT(seen, 200);  // of 4 x 77
+  EXPECT_GT(seen, 200);  // of 4 x 77 lamps
 }
 
 TEST_F(WriteLightFieldTest, FilesAreTheSameForAnyNumberOfThreads) {
@@ -83,7 +83,7 @@ TEST_F(WriteLightFieldTest, FilesAreTheSameForAnyNumberOfThreads) {
   for (size_t i = 0; i < 5; ++i) EXPECT_EQ(bytes[i], bytes[i + 5]);
 }
 
-// Through the reader's own tables, every format gives the radiance that was photographed.
+// Converted by the reader's own tables, every format gives the radiance that was photographed.
 TEST_F(WriteLightFieldTest, StoredNumbersMeanTheRadiancePhotographed) {
   const BuiltInScene& still_life = *FindBuiltInScene("still-life");
   const Scene scene(still_life.describe());

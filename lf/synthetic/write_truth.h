@@ -1,5 +1,5 @@
-// The frames that a lens would film of the scene itself: what renders of its light field are
-// measured against.
+// Writes the frames that a lens would record of the scene itself: the ground truth with which
+// renders of its light field are compared.
 #pragma once
 
 #include <cstddef>
@@ -15,10 +15,11 @@
 
 namespace lf {
 
-// Writes folder/frame_0001.exr ..., one per camera: R, G, B as floats, linear light; and A, which
-// they are multiplied with, where surroundings are transparent.
-//   keep_going  called after every frame; false stops the work. May be empty
-// kOutput: folder, disk, no permission. kInterrupted: stopped; frames written are complete.
+// Writes folder/frame_0001.exr ..., one for each camera: R, G, B as floats, linear light; and A, by
+// which they are multiplied, if surroundings are transparent.
+//   keep_going  called after every frame; returns false to stop the work. May be empty
+// kOutput: folder, disk, no permission. kInterrupted: the work was stopped; written frames are
+// complete.
 Result<void> WriteTruth(const Scene& scene, std::span<const RenderCamera> cameras,
                         const LensSampling& sampling, const std::filesystem::path& folder,
                         ThreadPool& pool, Surroundings surroundings = Surroundings::kShown,

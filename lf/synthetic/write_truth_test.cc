@@ -15,7 +15,7 @@ class WriteTruthTest : public FolderTest {
     for (int i = 0; i < 3; ++i) {
       RenderCamera camera;
       camera.pinhole.intrinsics =
-          IntrinsicsFor(*FindBuiltInScene("lights"), 24 + i, 16);  // told apart by their size
+          IntrinsicsFor(*FindBuiltInScene("lights"), 24 + i, 16);  // distinguished by their size
       camera.pinhole.cam_from_world.translation = {0, 0, 1};
       camera.aperture = {0.02, 5, 0};
       camera.focus_plane = FocusPlane(camera.pinhole, 0.75, {});
