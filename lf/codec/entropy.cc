@@ -45,9 +45,7 @@ void AppendCompressed(std::span<const uint8_t> bytes, std::string* code) {
   code->resize(begin + bound);
   const size_t size =
       ZSTD_compress2(Compressor(), code->data() + begin, bound, bytes.data(), bytes.size());
-  if (ZSTD_isError(size) != 0)
-    throw std::bad_alloc();  // every other failure is excluded by the
-                             // bound
+  if (ZSTD_isError(size) != 0) throw std::bad_alloc();  // the bound excludes all else
   code->resize(begin + size);
 }
 

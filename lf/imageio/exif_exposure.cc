@@ -70,9 +70,7 @@ ExposureFacts FactsOfJpeg(const ByteSource& source) {
     std::optional<uint64_t> marker;
     while ((marker = BigEndian(source, offset++, 1)) == 0xff) continue;
     if (!marker || *marker == kStartOfScan) break;
-    if (*marker <= 0x01 || (*marker >= 0xd0 && *marker <= 0xd9))
-      continue;  // these segments have
-                 // no content
+    if (*marker <= 0x01 || (*marker >= 0xd0 && *marker <= 0xd9)) continue;  // no content
     const auto length = BigEndian(source, offset, 2);
     if (!length) break;
     const uint64_t end = offset + std::max<uint64_t>(*length, 2);

@@ -58,8 +58,7 @@ class FolderStore : public LfImageStore {
   const RadianceTables tables_;  // for images without a gain of their own
   const Mosaics mosaics_;
   mutable std::mutex mutex_;
-  mutable std::vector<std::unique_ptr<Loading>> loadings_;  // as many as the loads that ran at the
-                                                            // same time
+  mutable std::vector<std::unique_ptr<Loading>> loadings_;  // one for each simultaneous load
 };
 
 }  // namespace lf

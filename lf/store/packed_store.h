@@ -66,8 +66,7 @@ class PackedStore : public LfImageStore {
   const std::vector<PackedCode> codes_;  // in the order of light_field.cameras
   std::optional<DisplayCurve> curve_;    // set if any image is encoded along it
   mutable std::mutex mutex_;
-  mutable std::vector<std::unique_ptr<Loading>> loadings_;  // as many as the loads that ran at the
-                                                            // same time
+  mutable std::vector<std::unique_ptr<Loading>> loadings_;  // one for each simultaneous load
 };
 
 }  // namespace lf
