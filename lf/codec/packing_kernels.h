@@ -1,4 +1,4 @@
-// The implementations behind packing.h, for unsigned numbers of 16 and 32 bits. Internal to codec.
+// The implementations of packing.h, for unsigned numbers of 16 and 32 bits. Internal to codec.
 #pragma once
 
 #include <cstddef>

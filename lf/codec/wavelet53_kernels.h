@@ -1,4 +1,4 @@
-// The implementations behind wavelet53.h. Internal to codec.
+// The implementations of wavelet53.h. Internal to codec.
 #pragma once
 
 #include <array>

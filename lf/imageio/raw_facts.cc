@@ -63,7 +63,7 @@ bool RepeatsEveryTwo(LibRaw& raw) {
 }
 
 BayerPattern PatternAt(LibRaw& raw, int x, int y) {
-  // COLOR() counts from the margins.
+  // COLOR() counts from the corner of the image, inside the margins.
   const libraw_image_sizes_t& sizes = raw.imgdata.sizes;
   const int column = (x + sizes.left_margin) % 2, row = (y + sizes.top_margin) % 2;
   for (const BayerPattern pattern :

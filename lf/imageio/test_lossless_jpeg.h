@@ -1,4 +1,4 @@
-// Writes lossless JPEG (ITU T.81, process 14), as DNG files hold it, for tests.
+// Writes lossless JPEG (ITU T.81, process 14), as it is used in DNG files, for tests.
 #pragma once
 
 #include <bit>

@@ -1,4 +1,4 @@
-// The file of a package: SQLite (doc/formats/package.md).
+// Reads and writes the SQLite file of a package (doc/formats/package.md).
 #pragma once
 
 #include <filesystem>

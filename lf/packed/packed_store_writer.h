@@ -1,5 +1,5 @@
-// A packed store, written in batches over hours. What was committed survives the program, however
-// it ends: the next one goes on.
+// Writes a packed store in batches over hours. Committed batches survive however the program ends,
+// and the next program resumes from them.
 #pragma once
 
 #include <cstdint>

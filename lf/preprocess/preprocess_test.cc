@@ -74,7 +74,7 @@ void PreprocessTest::ExpectPackageIsAsGoodAsTheWhole(const Package& package,
   EXPECT_EQ(package.whole, IdentityOf(field_));
   for (size_t i = 0; i < package.images.size(); ++i)
     EXPECT_EQ(package.places.of_images[i], whole.PlaceOf(LfImageId{package.images[i].id}));
-  std::map<uint32_t, PackageImage> images;  // by LF image of the whole
+  std::map<uint32_t, PackageImage> images;  // by the LF image's id in the whole light field
   for (const PackageFrame& frame : package.frames) {
     const RenderCamera& camera = film_.Camera(frame.id);
     const FrameLens lens(whole, camera, needs.lens_weights, needs.select, pool_);

@@ -1,5 +1,5 @@
 // Reads how much of the light behind each pixel of an LF image is covered, and composes pixels with
-// the background, where alpha is light (RadianceEncoding::alpha). Internal to store.
+// the background if alpha is light (RadianceEncoding::alpha). Internal to store.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// usage: radiance_conversion_bench     ns per pixel of an 8-bit RGB image into radiance
+// usage: radiance_conversion_bench     measures ns per pixel of an 8-bit RGB image
 #include <benchmark/benchmark.h>
 
 #include "lf/store/radiance_conversion.h"

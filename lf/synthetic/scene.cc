@@ -145,7 +145,7 @@ Rgb Scene::ThroughGlass(const Beam& beam, const Place& place) const {
   const Vec3 exit = place.point + chord_w * inside;
   const Vec3 exit_normal = (sphere.centre_world - exit) / sphere.radius_w;
   const std::optional<Vec3> direction = Refracted(inside, exit_normal, glass.refractive_index);
-  if (!direction) return mirrored;  // rounding at the very rim
+  if (!direction) return mirrored;  // only by rounding errors at the very rim
   // Treats the sphere as a thin ball lens of focal length n R / (2 (n - 1)). It narrows the
   // footprint; haze widens it, for either sign of the spread.
   const double focal_w =
