@@ -18,7 +18,7 @@ constexpr size_t kBlockSize = size_t{1} << 20;
 }  // namespace
 
 Result<ByteStream> ByteStream::Open(const fs::path& path) {
-  // Not blocking: a named pipe would wait for its writer.
+  // O_NONBLOCK, because opening a named pipe would wait for its writer.
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (fd < 0)
     return InputError(fmt::format("{}: cannot be opened: {}", path.string(), std::strerror(errno)));
@@ -76,7 +76,7 @@ bool ByteStream::ReadMore(size_t count) {
     held += static_cast<size_t>(got);
     window_end_ += static_cast<uint64_t>(got);
   }
-  // A file that grew meanwhile ends where it ended.
+  // A file that grew meanwhile still ends at the size that it had when it was opened.
   if (window_end_ > size_) {
     held -= std::min<uint64_t>(held, window_end_ - size_);
     window_end_ = size_;

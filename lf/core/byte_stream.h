@@ -1,4 +1,4 @@
-// The bytes of a file from front to back, a block at a time: files larger than memory.
+// Reads a file from front to back, one block at a time, so that it may be larger than memory.
 #pragma once
 
 #include <bit>
@@ -17,7 +17,7 @@ class ByteStream {
  public:
   // kInput if the file cannot be opened or is no regular file.
   static Result<ByteStream> Open(const std::filesystem::path& path);
-  // Of bytes in memory, which must outlive it; `path` is for messages.
+  // A stream of bytes in memory, which must outlive it. `path` is for messages only.
   ByteStream(std::string_view bytes, std::filesystem::path path);
 
   ByteStream(ByteStream&& other) noexcept;
@@ -30,17 +30,18 @@ class ByteStream {
   uint64_t position() const { return window_end_ - window_.size(); }
   uint64_t remaining() const { return size_ - position(); }
 
-  // The next bytes, as many as are in memory but at least one; empty only at the end, or where the
-  // file cannot be read (Status). Valid until the next call of another function.
+  // The next bytes: all that are in memory, and at least one. Empty only at the end, or if the file
+  // cannot be read (see Status()). Valid until the next call of another function.
   std::string_view Window() {
     Fill(1);
     return window_;
   }
-  // count <= remaining(). Where that leads out of the window, nothing is read.
+  // Moves ahead by `count` bytes, at most remaining(). Reads nothing, even if that leaves the
+  // window.
   void Skip(uint64_t count);
 
-  // The next number, little-endian as all of COLMAP's. False, and nothing taken, where fewer bytes
-  // are left.
+  // Takes the next number, which is little-endian, as are all numbers of COLMAP's files. Returns
+  // false and takes nothing if fewer bytes are left or the file cannot be read.
   template <class T>
   bool Take(T* value) {
     static_assert(std::endian::native == std::endian::little);
@@ -55,16 +56,16 @@ class ByteStream {
 
  private:
   ByteStream(int fd, uint64_t size, std::filesystem::path path);
-  // Whether the window holds `count` bytes, after reading what it takes.
+  // True if the window holds `count` bytes. Reads more if it must.
   bool Fill(size_t count) { return window_.size() >= count || ReadMore(count); }
   bool ReadMore(size_t count);
 
   std::filesystem::path path_;
-  int fd_ = -1;  // none: in memory
+  int fd_ = -1;  // -1: the bytes are in memory
   uint64_t size_ = 0;
   std::vector<char> block_;
-  std::string_view window_;  // unread bytes, of block_ or of the memory
-  uint64_t window_end_ = 0;  // where the window ends in the file
+  std::string_view window_;  // unread bytes, in block_ or in the caller's memory
+  uint64_t window_end_ = 0;  // position in the file where the window ends
   std::string failure_;
 };
 

@@ -29,7 +29,7 @@ std::string Noise(size_t size) {
   return bytes;
 }
 
-// Steps of all sizes, over the ends of blocks too.
+// The steps are of all sizes. Some of them cross the ends of blocks.
 TEST_F(ByteStreamTest, AFileIsTheSameAsItsBytesInMemory) {
   const std::string bytes = Noise((size_t{5} << 20) + 123);
   ASSERT_TRUE(WriteFileAtomically(folder_ / "noise", bytes));
@@ -79,7 +79,7 @@ TEST_F(ByteStreamTest, WhatIsNoFileIsAnErrorAtOnce) {
   EXPECT_FALSE(ByteStream::Open(folder_));
   EXPECT_FALSE(ByteStream::Open(folder_ / "none"));
   ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
-  EXPECT_FALSE(ByteStream::Open(folder_ / "pipe"));  // which nobody writes to
+  EXPECT_FALSE(ByteStream::Open(folder_ / "pipe"));  // a pipe that nobody writes to
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The distinct ones of many values.
+// Collects the distinct values among many.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@
 
 namespace lf {
 
-// A list of values in the order in which they first came. Beside the list it takes 40 bytes a
-// value. Equal values must have equal hashes.
+// A list of distinct values, in the order in which they first came. It takes 40 bytes per value
+// beside the list itself. Equal values must have equal hashes.
 template <class T, uint64_t (*HashOf)(const T&)>
 class Distinct {
  public:
@@ -19,14 +19,14 @@ class Distinct {
   Distinct& operator=(const Distinct&) = delete;
 
   size_t size() const { return list_.size(); }
-  // The index of this value in the list, where it is put if new.
+  // Returns the index of the value in the list. Appends the value if it is new.
   uint32_t IndexOf(const T& value) {
-    list_.push_back(value);  // where the set looks for it
+    list_.push_back(value);  // so that the set can compare it
     const auto [index, is_new] = indices_.insert(static_cast<uint32_t>(list_.size() - 1));
     if (!is_new) list_.pop_back();
     return *index;
   }
-  // Empty afterwards.
+  // Returns the list, and leaves this one empty.
   std::vector<T> Take() {
     indices_ = Indices(0, Hash{&list_}, Equal{&list_});
     return std::exchange(list_, {});

@@ -7,7 +7,7 @@
 namespace lf {
 namespace {
 
-// With many that are equal for different values.
+// Gives many different values the same hash.
 uint64_t HashOf(const uint64_t& value) { return value % 7; }
 
 TEST(Distinct, ListsValuesAsTheyFirstCame) {

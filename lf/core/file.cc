@@ -38,8 +38,8 @@ fs::path ParentOf(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
-// Where a write to `path` ends: the file a link leads to. A device or pipe is no place for a file:
-// renaming over it would replace it.
+// Returns the file that a write to `path` replaces: `path`, or the file that a link leads to.
+// kOutput for a device or a pipe, because the rename would replace it by a file.
 Result<fs::path> WriteTarget(const fs::path& path) {
   std::error_code error;
   fs::path target = path;
@@ -82,7 +82,7 @@ void AnnounceRead(const fs::path& path) {
 }
 
 Result<std::string> ReadFile(const fs::path& path, size_t limit_bytes) {
-  // Not blocking: a named pipe would wait for its writer.
+  // O_NONBLOCK, because opening a named pipe would wait for its writer.
   const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   struct stat status {};
   if (file.get() < 0 || ::fstat(file.get(), &status) != 0) {

@@ -1,4 +1,4 @@
-// Whole files in and out. The only way anything of ours gets its final name on disk.
+// Reads and writes whole files. All our files get their final names through these functions.
 #pragma once
 
 #include <cstddef>
@@ -14,15 +14,17 @@
 
 namespace lf {
 
-// Returns the kind of a failed open or read with this errno. kOutput: the machine lacks something
-// (open files, memory), and any other file would fail, too: no good file counts as a broken one.
-// kInput: everything else.
+// Returns the kind of the error when an open or a read failed with this errno. kOutput: the machine
+// lacks something (open files, memory), so that any other file would also fail, and no good file is
+// taken for a broken one. kInput: everything else.
 ErrorKind KindOfReadFailure(int code);
-// Returns the kind of an exception that a library threw while it read. It may have wanted a thread.
+// Returns the kind of the error when a library threw this exception while it read. A
+// std::system_error has the kind of its errno, since the library may have lacked a thread. kInput:
+// everything else.
 ErrorKind KindOfReadFailure(const std::exception& thrown);
 
-// The bytes of a file. KindOfReadFailure() or kInput if it cannot be read, is no regular file or is
-// larger than limit_bytes (checked before anything is allocated).
+// Returns the bytes of a file. KindOfReadFailure() if it cannot be read; kInput if it is no regular
+// file or is larger than limit_bytes (checked before anything is allocated).
 Result<std::string> ReadFile(const std::filesystem::path& path,
                              size_t limit_bytes = size_t{4} << 30);
 
@@ -30,28 +32,29 @@ Result<std::string> ReadFile(const std::filesystem::path& path,
 void AnnounceRead(const std::filesystem::path& path);
 
 // Writes a file under a temporary name in the same folder, flushes it to the disk and renames it:
-// readers see the old file or the new one, never a part. After a failure the old file is intact
-// and the temporary one is gone. After a kill the next write of the same file removes it
-// (temporary_file.h). Follows a link, and keeps the permissions of the old file.
-// kOutput: the system's reason (disk full, no permission), or something that is no file has the
-// name.
+// readers see the old file or the new one, never a part. After a failure the old file is intact and
+// the temporary one is gone. If the program is killed, the next write of the same file removes the
+// temporary one (temporary_file.h). Follows a link, and keeps the permissions of the old file.
+// kOutput with the system's reason (disk full, no permission), or if the name belongs to something
+// that is no regular file.
 Result<void> WriteFileAtomically(const std::filesystem::path& path, std::string_view bytes);
 
-// The same for a writer that wants a path: `write` is given the temporary name, which keeps the
-// extension of `path` (libraries choose the format by it).
+// As WriteFileAtomically(), for a writer that needs a path: `write` gets the temporary name, which
+// keeps the extension of `path` (libraries choose the format by it).
 Result<void> WriteAtomically(
     const std::filesystem::path& path,
     const std::function<Result<void>(const std::filesystem::path&)>& write);
 
-// Waits until the content of a file, or the names in a folder, are on the disk. kOutput.
+// Waits until the content of a file, or the names in a folder, are on the disk. kOutput on failure.
 Result<void> FlushToDisk(const std::filesystem::path& path);
 
-// Gives a complete and closed file its final name: flushes it to the disk, renames it over what has
-// the name, and flushes the folder. Both in one file system. kOutput; the file keeps its name then.
+// Gives a complete and closed file its final name: flushes it to the disk, renames it, replacing
+// any file of that name, and flushes the folder. Both names must be in one file system. kOutput on
+// failure; the file then keeps its old name, unless the folder could not be flushed.
 Result<void> RenameFlushed(const std::filesystem::path& from, const std::filesystem::path& to);
 
-// The final names of many files: all of them are on the disk before the first gets its own. After a
-// failure some may have it.
+// Gives many files their final names. All of them are flushed to the disk before the first is
+// renamed. After a failure some may already have their final names.
 struct Renaming {
   std::filesystem::path from, to;
 };

@@ -14,7 +14,7 @@
 namespace lf {
 namespace {
 
-// Whether the file that is open is still the one of this name: its last owner may have removed it.
+// True if `path` still names the open file, which its last owner may have removed meanwhile.
 bool IsStill(int fd, const std::filesystem::path& path) {
   struct stat open_file {
   }, named_file{};
@@ -22,7 +22,7 @@ bool IsStill(int fd, const std::filesystem::path& path) {
          open_file.st_ino == named_file.st_ino && open_file.st_dev == named_file.st_dev;
 }
 
-// flock(), once more where a signal came between.
+// Calls flock(), again if a signal interrupted it.
 int Flock(int fd, int operation) {
   int result = 0;
   do result = ::flock(fd, operation);
@@ -30,7 +30,7 @@ int Flock(int fd, int operation) {
   return result;
 }
 
-// As few bytes are written at once, or not at all.
+// Writes the whole text or nothing: it is too short to be written in parts.
 bool Write(int fd, const std::string& text) {
   ssize_t written = 0;
   do written = ::pwrite(fd, text.data(), text.size(), 0);
@@ -93,7 +93,7 @@ Result<FileLock> FileLock::Take(const std::filesystem::path& path) {
           fmt::format("{}: cannot be locked: {}", path.string(), std::strerror(errno)));
     }
     if (!IsStill(fd, path)) continue;
-    // For people and messages only.
+    // The number is for people and for messages only.
     const std::string text = fmt::format("{}\n", ::getpid());
     if (::ftruncate(fd, 0) != 0 || !Write(fd, text))
       return OutputError(

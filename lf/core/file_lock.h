@@ -1,5 +1,5 @@
-// One process at a time: a lock that the kernel holds, and lets go of when its process ends,
-// however it ends.
+// A lock file, with which one process works at a time. The kernel holds the lock, and releases it
+// when the process ends, however it ends.
 #pragma once
 
 #include <filesystem>
@@ -11,19 +11,21 @@ namespace lf {
 
 class FileLock {
  public:
-  // Locks the file, made if it is missing, without waiting. kOutput: another process (its number is
-  // in the message) or another FileLock holds it, or it cannot be made.
+  // Locks the file without waiting, and creates it if it is missing. kOutput if another process
+  // (the message gives its number) or another FileLock holds the lock, or if the file cannot be
+  // created, locked or written.
   static Result<FileLock> Take(const std::filesystem::path& path);
-  // Whether anybody holds it now. A file that is missing, or that we may not read, is not held.
+  // True if anybody holds the lock now. False if the file is missing or may not be read by us.
   static bool IsHeld(const std::filesystem::path& path);
   FileLock(FileLock&& other) noexcept;
   FileLock& operator=(FileLock&& other) noexcept;
-  ~FileLock();  // lets go; the file stays, unless RemoveInTheEnd() was called
+  ~FileLock();  // releases the lock; the file stays, unless RemoveInTheEnd() was called
 
-  // For a program that is to hold the lock with us, as long as either lives.
+  // Descriptor of the file. A program that inherits it holds the lock with us: the lock lasts as
+  // long as one of the two processes has it open.
   int fd() const { return fd_; }
 
-  // Lets go, and removes the file.
+  // Removes the file and releases the lock.
   void Remove();
   void RemoveInTheEnd() { is_removed_in_the_end_ = true; }
 

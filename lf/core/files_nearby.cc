@@ -16,7 +16,7 @@ constexpr size_t kMostEntries = 4096, kMostNamed = 3;
 
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 
-// The base name without what differs by accident.
+// Returns the base name without details that often differ by accident.
 std::string Key(const fs::path& file) {
   std::string stem = file.stem().string();
   std::transform(stem.begin(), stem.end(), stem.begin(),
@@ -72,7 +72,7 @@ std::string FirstOf(const std::vector<std::string>& names) {
                      names.size() > count ? ", ..." : "");
 }
 
-// A folder on the way does not exist.
+// Describes the first folder on the path that does not exist.
 std::string FolderNearby(fs::path gone) {
   std::error_code error;
   while (gone.has_parent_path() && gone.parent_path() != gone &&

@@ -1,4 +1,5 @@
-// Files near the place of a missing one, for messages: most are named a little otherwise.
+// Describes what is near a missing file, for messages, since most missing files have a slightly
+// different name.
 #pragma once
 
 #include <filesystem>
@@ -6,10 +7,10 @@
 
 namespace lf {
 
-// Returns words to put behind "... no such file", which begin with "; ":
+// Returns text to append to "... no such file". It begins with "; ":
 //   "; similar there: image_7.png"           base names that are equal but for the suffix, case,
-//                                            zeros before numbers, blanks, and (1) or copy at the
-//                                            end
+//                                            zeros before numbers, blanks, _, -, and (1) or copy
+//                                            at the end
 //   "; its folder holds 24 files, such as image_00.png", "; its folder is empty"
 //   "; there is no folder a/images: a holds masks/, photos/"
 //   "; a/images is a link to /nas/images, which is not there"

@@ -79,7 +79,7 @@ inline PixelRect Intersection(const PixelRect& a, const PixelRect& b) {
   return r.empty() ? PixelRect{} : r;
 }
 
-// The smallest rectangle holding both.
+// The smallest rectangle that holds both.
 inline PixelRect Bounds(const PixelRect& a, const PixelRect& b) {
   if (a.empty()) return b;
   if (b.empty()) return a;

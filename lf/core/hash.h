@@ -1,4 +1,4 @@
-// Checksums of bytes: XXH3, 64 bits. They tell damage and difference, not malice.
+// Checksums of bytes: XXH3, 64 bits. They reveal damage and differences, but no forgery.
 #pragma once
 
 #include <cstddef>
@@ -8,10 +8,10 @@
 
 namespace lf {
 
-// The same everywhere, for ever: it may be written to files.
+// The hash is the same on every machine and in every version, so that files may contain it.
 uint64_t HashBytes(std::string_view bytes, uint64_t seed = 0);
 
-// The hash of bytes that come in parts: that of HashBytes() of all together.
+// Hashes bytes that come in parts. Hash() is HashBytes() of all parts together.
 class Hasher {
  public:
   Hasher();

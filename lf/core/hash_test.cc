@@ -8,7 +8,7 @@ namespace lf {
 namespace {
 
 TEST(Hash, IsXxh3) {
-  EXPECT_EQ(HashBytes(""), 0x2d06800538d394c2u);  // of its specification
+  EXPECT_EQ(HashBytes(""), 0x2d06800538d394c2u);  // from the specification of XXH3
   EXPECT_NE(HashBytes("", 1), HashBytes(""));
   EXPECT_NE(HashBytes("frame 1"), HashBytes("frame 2"));
 }

@@ -10,7 +10,7 @@
 
 namespace lf {
 
-// A view does not own; it is copied freely and must not outlive the pixels.
+// A view does not own its pixels. It is copied freely and must not outlive them.
 template <class T>
 struct ImageView {
   T* data = nullptr;
@@ -44,7 +44,8 @@ class Image {
     pixels_.assign(static_cast<size_t>(width) * height * channels, fill);
   }
 
-  // Another size in the same memory, if that is large enough. What the pixels are is left open.
+  // Changes the size, in the same memory if that is large enough. The pixels are unspecified
+  // afterwards.
   void Resize(int width, int height, int channels) {
     LF_CHECK(width >= 0 && height >= 0 && channels >= 1);
     pixels_.resize(static_cast<size_t>(width) * height * channels);
@@ -83,7 +84,8 @@ class Image {
 // kNone: three channels per pixel.
 enum class BayerPattern : uint8_t { kNone, kRggb, kBggr, kGrbg, kGbrg };
 
-// The channel (0 R, 1 G, 2 B) that a mosaic records at pixel (x, y). Not for kNone.
+// Returns the channel (0 R, 1 G, 2 B) that a mosaic records at pixel (x, y). Must not be called for
+// kNone.
 inline int BayerChannel(BayerPattern pattern, int x, int y) {
   constexpr uint8_t kChannels[5][4] = {
       {0, 0, 0, 0}, {0, 1, 1, 2}, {2, 1, 1, 0}, {1, 0, 2, 1}, {1, 2, 0, 1}};

@@ -1,7 +1,7 @@
-// Vectors for images and plates. They begin with a cache line, so that vectors of the processor's
-// width do not cross one more than they must; the larger ones ask the system for huge pages, so
-// that rows far apart do not cost a walk through page tables each (a tenth to a sixth of ray
-// collection's time).
+// Vectors for images and plates. They begin with a cache line, so that loads as wide as the
+// processor's vectors cross as few cache lines as possible. Vectors of 4 MiB and more ask the
+// system for huge pages: otherwise each access to a distant row walks through the page tables,
+// which took a tenth to a sixth of the time of ray collection.
 #pragma once
 
 #include <sys/mman.h>
@@ -32,7 +32,7 @@ struct LargeAllocator {
     void* memory = nullptr;
     if (posix_memalign(&memory, is_large ? kHugePage : kCacheLine, bytes) != 0)
       throw std::bad_alloc();
-    // A wish: where the system has no huge pages there are small ones.
+    // This is only a request: a system without huge pages gives small ones.
     if (is_large) madvise(memory, bytes / kHugePage * kHugePage, MADV_HUGEPAGE);
     return static_cast<T*>(memory);
   }

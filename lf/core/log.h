@@ -1,5 +1,5 @@
-// Messages for people: one line per event, to stderr. Results go to stdout and are no business of
-// this file.
+// Messages for people: one line per event, to stderr. Results go to stdout, and not through this
+// file.
 #pragma once
 
 #include <fmt/format.h>
@@ -12,15 +12,15 @@ namespace lf {
 
 enum class LogLevel { kDebug, kInfo, kWarning, kError };
 
-// Messages below the level are dropped. Default kInfo. For main().
+// Messages below the level are dropped. Default kInfo. Meant for main().
 void SetLogLevel(LogLevel level);
 
-// The text as one line: control characters become \n, \t, \x1b and the like, as in C. Names of
-// files may hold any of them, and must not look like another message, nor move the cursor.
+// Returns the text as one line: control characters become \n, \t, \x1b and the like, as in C. File
+// names may contain any of them, and must neither look like another message nor move the cursor.
 std::string OneLine(std::string_view text);
 
-// Writes "warning: ..." or the bare message, as OneLine(). Thread-safe. A line in progress (a
-// progress bar) is cleared first.
+// Writes the message as OneLine(), with "warning: " or "error: " before it at these levels.
+// Thread-safe. Clears a line in progress (a progress bar) first.
 void LogMessage(LogLevel level, std::string_view message);
 
 // Replaces the line in progress on a terminal; "" clears it. For progress bars.

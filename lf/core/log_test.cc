@@ -14,7 +14,7 @@ TEST(Log, MessagesAreOneLine) {
   EXPECT_EQ(OneLine(""), "");
 }
 
-// A file whose name holds a line of its own cannot put that line last.
+// A file name that contains a line of its own cannot put that line last.
 TEST(Log, NamesCannotForgeTheLastLine) {
   testing::internal::CaptureStderr();
   LogMessage(LogLevel::kWarning, "a\nerror: b.png: no such file");

@@ -16,8 +16,8 @@
 namespace lf {
 namespace {
 
-// oneTBB is not compiled by us: the thread sanitizer does not see that who starts a loop comes
-// before its items, and these before who goes on. All that is between items, it sees.
+// We do not compile oneTBB, so the thread sanitizer does not see that the start of a loop comes
+// before its items, and these before its end. It sees everything else that items share.
 #ifdef __SANITIZE_THREAD__
 void ComesBefore(void* place) { __tsan_release(place); }
 void ComesAfter(void* place) { __tsan_acquire(place); }
@@ -25,7 +25,7 @@ void ComesAfter(void* place) { __tsan_acquire(place); }
 void ComesBefore(void*) {}
 void ComesAfter(void*) {}
 #endif
-char loop_begins;  // known without asking the loop, which is handed over itself
+char loop_begins;  // global: a thread reads the loop's own variables only afterwards
 
 }  // namespace
 
@@ -46,8 +46,8 @@ ThreadPool::~ThreadPool() = default;
 int ThreadPool::thread_count() const { return state_->arena.max_concurrency(); }
 
 void ThreadPool::ForEach(size_t count, const std::function<void(size_t)>& body) {
-  // One task per thread, each taking the next item: tbb alone would cut [0, count) into halves and
-  // begin in the middle of it.
+  // There is one task per thread, and each takes the next item. tbb alone would cut [0, count) into
+  // halves and begin in the middle of it.
   std::atomic<size_t> next = 0;
   const size_t task_count = std::min(count, static_cast<size_t>(thread_count()));
   ComesBefore(&loop_begins);

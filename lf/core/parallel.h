@@ -1,4 +1,4 @@
-// Threads. The only place with oneTBB.
+// Threads. All use of oneTBB is in parallel.cc.
 #pragma once
 
 #include <cstddef>
@@ -8,11 +8,10 @@
 
 namespace lf {
 
-// A fixed number of threads that loops run on. Results of everything we compute are the same for
-// any number.
+// A fixed number of threads that loops run on. No result of ours depends on that number.
 class ThreadPool {
  public:
-  // thread_count 0: as many as the machine (or the process's CPU set) has.
+  // thread_count 0: as many threads as the machine (or the process's CPU set) has processors.
   explicit ThreadPool(int thread_count = 0);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
@@ -20,9 +19,9 @@ class ThreadPool {
 
   int thread_count() const;
 
-  // Calls body(i) once for every i in [0, count), at the same time; returns when all are done.
-  // Items are begun in their order, each by the next thread that is free, so they should cost at
-  // least some microseconds, and the long ones come first.
+  // Calls body(i) once for every i in [0, count), in parallel, and returns when all calls have
+  // ended. Items are begun in order, each by the next free thread, so they should cost at least
+  // some microseconds, and the long ones should come first.
   void ForEach(size_t count, const std::function<void(size_t)>& body);
 
  private:

@@ -31,7 +31,7 @@ TEST(ThreadPool, ItemsAreBegunInOrder) {
       begun.push_back(i);
     });
     ASSERT_EQ(begun.size(), 1000u);
-    // Between taking an item and noting it, others may overtake; not on one thread.
+    // Threads may overtake each other between taking an item and noting it. One thread cannot.
     for (size_t i = 0; threads == 1 && i < begun.size(); ++i) EXPECT_EQ(begun[i], i);
     if (threads > 1) {
       EXPECT_LT(begun.front(), 3u);

@@ -1,4 +1,4 @@
-// The polynomial of degree 5 through six points, by which smooth functions are replaced.
+// Polynomials of degree 5 through six points, which approximate smooth functions.
 #pragma once
 
 #include <array>
@@ -6,19 +6,20 @@
 
 namespace lf {
 
-// Where it goes through them, in [-1, 1]: the roots of Chebyshev's T_6, so that what it misses is
-// spread evenly.
+// Places in [-1, 1] where the polynomial equals the function. They are the roots of Chebyshev's
+// T_6, which spread the error evenly.
 inline constexpr std::array<double, 6> kQuinticPlaces = {-0.9659258262890683, -0.7071067811865476,
                                                          -0.2588190451025208, 0.2588190451025208,
                                                          0.7071067811865476,  0.9659258262890683};
 
-// Where it misses most, the same everywhere to first order: half of the extremes of T_6.
+// Places where the error is largest, and to first order equal: three of the seven extremes of T_6.
 inline constexpr std::array<double, 3> kQuinticWorstPlaces = {-1, 0, 1};
 
-// Its powers: c[0] + c[1] t + ... + c[5] t^5. T is a number or a vector of them.
+// Returns the coefficients of c[0] + c[1] t + ... + c[5] t^5, which takes the values `at` at
+// kQuinticPlaces. T is a number or a vector of numbers.
 template <class T>
 std::array<T, 6> QuinticThrough(const std::array<T, 6>& at) {
-  // Even and odd powers are parabolas of u = t^2.
+  // The even powers, and the odd ones divided by t, are parabolas in u = t^2.
   const double u[3] = {kQuinticPlaces[5] * kQuinticPlaces[5], 0.5,
                        kQuinticPlaces[3] * kQuinticPlaces[3]};
   std::array<T, 6> c;
@@ -36,7 +37,7 @@ std::array<T, 6> QuinticThrough(const std::array<T, 6>& at) {
   return c;
 }
 
-// Its value, by Horner's rule. Powers: six numbers.
+// Returns the polynomial's value at t, by Horner's rule. Powers: six coefficients.
 template <class Powers, class T>
 T QuinticAt(const Powers& c, T t) {
   return ((((c[5] * t + c[4]) * t + c[3]) * t + c[2]) * t + c[1]) * t + c[0];

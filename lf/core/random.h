@@ -23,7 +23,7 @@ inline double RandomUnit(uint64_t seed, uint64_t stream, uint64_t index) {
   return static_cast<double>(RandomBits(seed, stream, index) >> 11) * 0x1.0p-53;
 }
 
-// One number after the other, where counting is nobody's business.
+// Gives one number after the other, for callers that do not need to count them.
 class RandomSequence {
  public:
   explicit RandomSequence(uint64_t seed) : seed_(seed) {}

@@ -1,5 +1,5 @@
-// Errors as values: bad input and failing machines (doc/design.md, "Errors"). Bugs of ours are
-// LF_CHECK's; nothing in the library throws.
+// Errors as values: bad input and failing machines (doc/design.md, "Errors"). LF_CHECK catches our
+// own bugs. Nothing in the library throws.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace lf {
 
-// What went wrong, as the exit code a program ends with.
+// The kind of an error. Its value is the exit code that a program ends with.
 enum class ErrorKind {
   kUsage = 2,          // the call itself: options that contradict each other
   kInput = 3,          // a file or value we were given
@@ -89,7 +89,9 @@ class [[nodiscard]] Result<void> {
     if (auto lf_result = (expression); !lf_result) return lf_result.error(); \
   } while (false)
 
-// LF_ASSIGN_OR_RETURN(auto image, ReadImage(path));
+// Initializes a variable with the value of a Result, or returns its error from the calling
+// function:
+//   LF_ASSIGN_OR_RETURN(auto image, ReadImage(path));
 #define LF_ASSIGN_OR_RETURN(declaration, expression) \
   LF_ASSIGN_OR_RETURN_(LF_CONCAT_(lf_result_, __LINE__), declaration, expression)
 #define LF_ASSIGN_OR_RETURN_(result, declaration, expression) \

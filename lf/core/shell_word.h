@@ -5,7 +5,7 @@
 
 namespace lf {
 
-// A word of a command line, quoted so that a shell takes it as it is.
+// Returns the word, quoted if a shell would not take it as it is.
 std::string ShellWord(const std::string& word);
 
 }  // namespace lf

@@ -26,8 +26,8 @@ namespace {
 constexpr std::string_view kMark = ".tmp";
 constexpr size_t kHostDigits = 8;
 
-// Process numbers mean something within one machine and one namespace of processes. The namespace
-// of a machine itself has the same number after each start.
+// Names the machine and its PID namespace, because process numbers mean something only within one
+// of them. The namespace of a machine itself has the same number after each start.
 std::string HostName() {
   std::array<char, 256> name{};
   if (::gethostname(name.data(), name.size() - 1) != 0) name.fill('\0');
@@ -106,7 +106,7 @@ bool IsTemporaryName(const std::string& name) { return PartsOf(name).has_value()
 
 void RemoveLeftovers(const fs::path& path) {
   static std::mutex mutex;
-  static auto* const folders = new std::map<fs::path, Leftovers>;  // lives as long as any thread
+  static auto* const folders = new std::map<fs::path, Leftovers>;  // never destroyed
   const std::lock_guard lock(mutex);
   const fs::path folder = FolderOf(path);
   auto known = folders->find(folder);

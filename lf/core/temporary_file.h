@@ -1,4 +1,4 @@
-// Files that have no final name yet, and what killed programs left of them.
+// Files that have no final name yet, and the leftovers of programs that were killed.
 //
 // While FILE.EXT is written it is called .FILE.PROCESS-HOST.tmp.EXT, in the same folder. The
 // extension is kept because libraries choose the format by it. PROCESS is a number, HOST eight
@@ -21,17 +21,18 @@ void RemoveLeftovers(const std::filesystem::path& path);
 // True if the name, without a folder, is one that TemporaryPath() gives, of any file and process.
 bool IsTemporaryName(const std::string& name);
 
-// A temporary file that is removed in the end, also where memory runs out, unless it is kept.
+// A temporary file. The destructor removes it, also if memory has run out, unless Keep() was
+// called.
 class TemporaryFile {
  public:
-  // Removes leftovers of `final_path`. Makes no file.
+  // Removes leftovers of `final_path`. Creates no file.
   explicit TemporaryFile(const std::filesystem::path& final_path);
   ~TemporaryFile();
   TemporaryFile(TemporaryFile&& other) noexcept;
   TemporaryFile& operator=(TemporaryFile&&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  // The file has got its final name.
+  // Must be called once the file has its final name.
   void Keep() { is_kept_ = true; }
 
  private:
