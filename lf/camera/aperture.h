@@ -13,13 +13,14 @@
 namespace lf {
 
 struct Aperture {
-  double radius_w = 0;      // of the circumscribed circle; 0 is a pinhole
+  double radius_w = 0;      // radius of the circumscribed circle; 0: a pinhole
   int blades = 0;           // 0: disk; >= 3: polygon with a vertex straight up at rotation 0
   double rotation_rad = 0;  // counter-clockwise as the photographer sees it (right towards up)
 };
 
-// The rim is inside: cameras of regular grids sit exactly on it. Squared lengths within this
-// relative margin of the rim are accepted, edges within half of it (doc/ray.md).
+// Relative tolerance of the rim, which is inside because cameras of regular grids sit exactly on
+// it. Squared lengths may exceed the rim of a disk by this share, and distances may exceed the
+// edges of a polygon by half of it (doc/ray.md).
 inline constexpr double kRimTolerance = 1e-9;
 
 // One edge of the opening: normal . l <= distance_w for every l inside; |normal| = 1.
@@ -31,25 +32,25 @@ struct ApertureEdge {
 // Vertices of the polygon, counter-clockwise; empty for a disk.
 std::vector<Vec2> Vertices(const Aperture& aperture);
 
-// Edges of the polygon; for a disk those of the circumscribed regular polygon of
-// `disk_edge_count` edges, which holds the disk.
+// Edges of the polygon. For a disk, edges of the regular polygon with `disk_edge_count` edges that
+// is circumscribed about it.
 inline constexpr int kDiskEdges = 16;
 std::vector<ApertureEdge> Edges(const Aperture& aperture, int disk_edge_count = kDiskEdges);
-// Of the circle around them, for a disk of radius 1: 1 / cos(pi / kDiskEdges).
+// Radius of the circle around that polygon, for a disk of radius 1: 1 / cos(pi / kDiskEdges).
 inline constexpr double kDiskPolygonRadius = 1.0195911582083184;
 
-// Whether the opening, rim included, holds the point (right, up).
+// True if the opening, rim included, holds the point (right, up).
 bool Contains(const Aperture& aperture, const Vec2& point_lens);
 
-// The same for many points: the edges of a polygon are found once.
+// Contains() for many points: finds the edges of a polygon only once.
 class ApertureTest {
  public:
   explicit ApertureTest(const Aperture& aperture);
   bool Contains(const Vec2& point_lens) const;
 
  private:
-  double radius2_w2_;                // of a disk, with the rim's tolerance
-  std::vector<ApertureEdge> edges_;  // of a polygon
+  double radius2_w2_;                // for a disk: the squared radius, with the rim's tolerance
+  std::vector<ApertureEdge> edges_;  // for a polygon; empty for a disk
 };
 
 // Area of the opening in squared world units.
@@ -57,7 +58,7 @@ double Area(const Aperture& aperture);
 
 // `count` points spread uniformly over the opening: the R2 low-discrepancy sequence shifted by
 // `seed`, mapped to the disk by (sqrt(r) cos, sqrt(r) sin) (thesis Eq. 4.7), and to polygons by
-// triangles of equal area. The same points for the same arguments, everywhere.
+// triangles of equal area. Equal arguments give equal points everywhere.
 std::vector<Vec2> SampleLens(const Aperture& aperture, int count, uint64_t seed = 0);
 
 }  // namespace lf

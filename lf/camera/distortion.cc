@@ -88,8 +88,8 @@ FisheyeCurve ThinPrismCurve(const DistortionParameters& p) {
   return FisheyeCurve({p[0], p[1], p[4], p[5]});
 }
 
-// The end of the first stretch on which the curve grows, at most `end`; position(i / steps) samples
-// the stretch from 0 to `end`.
+// Returns the end of the first stretch on which the curve grows, at most position(1). position(t)
+// samples the stretch, with t from 0 to 1.
 template <class Curve, class Position>
 double GrowthLimit(const Curve& curve, const Position& position) {
   constexpr int kSteps = 1024;
@@ -110,7 +110,7 @@ double GrowthLimit(const Curve& curve, const Position& position) {
   return inside;
 }
 
-// r in [0, limit] with curve(r) = rd, by Newton's method that never leaves the bracket.
+// Returns r in [0, limit] with curve(r) = rd, by Newton's method within a bracket.
 template <class Curve>
 double SolveRadius(const Curve& curve, double rd, double limit) {
   double low = 0, high = limit;
@@ -184,8 +184,8 @@ Bent BendRadialTangentialThinPrism(const DistortionParameters& p, const Vec2& at
   return bent;
 }
 
-// The place, at most `limit` from the middle, that bend(place) takes to `distorted`, from `start`
-// by Newton's method.
+// Returns the place that bend() takes to `distorted`, by Newton's method from `start`. None if
+// there is none at most `limit` from the middle.
 template <class BendIt>
 std::optional<Vec2> Unbend(const BendIt& bend, const Vec2& distorted, Vec2 start, double limit) {
   constexpr double kAccurate = 1e-12;
@@ -221,8 +221,8 @@ std::optional<Vec2> UnbendRadialTangential(const DistortionParameters& p, const 
   return Unbend([&](const Vec2& at) { return Bend(p, curve, at); }, distorted, u, limit);
 }
 
-// The direction whose ideal fish-eye image, at most `limit` from the middle, bend() takes to
-// `distorted`; the iteration starts from the radial part alone.
+// Returns the direction whose ideal fish-eye image bend() takes to `distorted`. None if that image
+// is farther than `limit` from the middle. The iteration starts from the radial part alone.
 template <class Curve, class BendIt>
 std::optional<Vec3> UnbendEquidistant(const Curve& curve, const BendIt& bend, const Vec2& distorted,
                                       double limit, double distorted_limit) {
@@ -283,12 +283,12 @@ DistortionMap::DistortionMap(const Distortion& distortion)
       distorted_limit_ = 0.5 * kPi / p[0];
       return;
     case DistortionModel::kDivision:
-      // r(rd) turns back there, or grows beyond all bounds.
+      // There r(rd) turns back (k > 0) or grows beyond all bounds (k < 0).
       distorted_limit_ = p[0] == 0 ? kInfinity : 1 / std::sqrt(std::abs(p[0]));
       if (p[0] > 0) limit_ = 0.5 * distorted_limit_;
       return;
     case DistortionModel::kUnified: {
-      // rd of r without end.
+      // The limit of rd for r to infinity.
       const double far = p[0] * std::sqrt(p[1]);
       distorted_limit_ = far > 0 ? 1 / far : kInfinity;
       return;

@@ -1,4 +1,4 @@
-// How a real lens bends rays: between a direction before the camera and the *distorted* normalised
+// How a real lens bends rays. A model maps a direction in camera axes to the *distorted* normalised
 // position (xd, yd), which K then turns into pixels: x_px = fx xd + skew yd + cx, y_px = fy yd +
 // cy. Formulas and parameter order are those of OpenCV and COLMAP.
 #pragma once
@@ -28,7 +28,7 @@ enum class DistortionModel : uint8_t {
   // omega, the field of view of an ideal fish-eye lens: rd = atan(2 r tan(omega / 2)) / omega
   // (Devernay and Faugeras 2001; COLMAP: FOV)
   kFov,
-  // k; the distorted radius tells the undistorted one (Fitzgibbon 2001): r = rd / (1 + k rd^2)
+  // k; gives the undistorted radius of a distorted one (Fitzgibbon 2001): r = rd / (1 + k rd^2)
   // (COLMAP: SIMPLE_DIVISION, DIVISION)
   kDivision,
   // alpha beta, a unified model (Khomutenko, Garcia and Martinet 2016); alpha in [0, 1], beta > 0:
@@ -49,7 +49,7 @@ enum class DistortionModel : uint8_t {
   kRadialTangentialThinPrism,
 };
 
-// Parameters as listed at their model; those that the model does not have are 0.
+// Parameters in the order listed at their model. Parameters that the model does not have are 0.
 using DistortionParameters = std::array<double, 12>;
 
 struct Distortion {
@@ -59,38 +59,38 @@ struct Distortion {
   friend bool operator==(const Distortion&, const Distortion&) = default;
 };
 
-// Number of parameters by which files and hashes know a distortion: 12 for
-// kRadialTangentialThinPrism, 8 for every other model, so that neither changed when it was added.
+// Number of parameters that files and hashes contain: 12 for kRadialTangentialThinPrism, 8 for
+// every other model, so that no file or hash changed when the former was added.
 constexpr size_t StoredParameterCount(DistortionModel model) {
   return model == DistortionModel::kRadialTangentialThinPrism ? 12 : 8;
 }
 
-// Returns whether the parameters are those of a lens: omega in (0, pi), alpha in [0, 1], beta above
-// 0.
+// True if the parameters describe a lens: omega in (0, pi), alpha in [0, 1], beta above 0.
 bool IsDistortion(const Distortion& distortion);
 
-// Both directions of a distortion, prepared for many points.
+// Distorts and undistorts, prepared for many points.
 //
-// A polynomial is a lens only as far as it grows: beyond the first angle where it turns back, or
-// where a denominator vanishes, a pixel has no ray and a direction no pixel.
+// A polynomial describes a lens only as far as it grows: beyond the first angle where it turns
+// back, or where a denominator vanishes, pixels have no ray and directions have no pixel.
 class DistortionMap {
  public:
   // parameters: finite and IsDistortion()
   explicit DistortionMap(const Distortion& distortion);
 
-  // (xd, yd) of a direction; none where the lens has no image of it. Only a fish-eye sees
-  // directions with Z <= 0.
+  // Returns (xd, yd) of a direction; none if the lens has no image of it. Only fish-eyes (kFisheye,
+  // kThinPrism, kRadialTangentialThinPrism) see directions with Z <= 0.
   std::optional<Vec2> Distort(const Vec3& direction) const;
 
-  // The direction that is distorted to (xd, yd), by iteration until rounding: Distort() of it is
-  // within 1e-12 of (xd, yd). Of any length above 0, chosen to be smooth over the image: Z = 1 but
-  // for fish-eyes. None where no ray arrives.
+  // Returns the direction that is distorted to (xd, yd); none if no ray arrives there. Where the
+  // model has no closed formula, it is iterated until rounding: Distort() of the result is within
+  // 1e-12 of (xd, yd). The length is above 0 and smooth over the image; Z = 1 for kNone and
+  // kRadialTangential.
   std::optional<Vec3> Undistort(const Vec2& distorted) const;
 
  private:
   Distortion distortion_;
-  double limit_;            // of r = tan(theta); of theta for fish-eyes; not used for kFov
-  double distorted_limit_;  // of rd
+  double limit_;  // largest r = tan(theta), or theta for fish-eyes; used for polynomials only
+  double distorted_limit_;  // largest rd
 };
 
 }  // namespace lf

@@ -8,16 +8,16 @@
 namespace lf {
 namespace {
 
-// Wide, since kernels work along scanlines.
+// Largest patch. It is wide, because kernels work along scanlines.
 constexpr int kLargestWidth_px = 1024, kLargestHeight_px = 64;
 
 constexpr int kControls = IdealPatch::kControls;
 
 using Points = std::array<Vec3, kControls>;
 
-// Control points of the arc through points at kQuinticPlaces.
+// Returns the control points of the arc that goes through `points` at kQuinticPlaces.
 Points ControlsThrough(const Points& points) {
-  // Of the powers of t, the values of their blossoms, times these divisors.
+  // kValues[i][k] / kDivisors[k] is the blossom (polar form) of t^k that gives control point i.
   constexpr int kValues[kControls][kControls] = {{1, -5, 10, -10, 5, -1}, {1, -3, 2, 2, -3, 1},
                                                  {1, -1, -2, 2, 1, -1},   {1, 1, -2, -2, 1, 1},
                                                  {1, 3, 2, -2, -3, -1},   {1, 5, 10, 10, 5, 1}};
@@ -41,7 +41,8 @@ class PatchMaker {
         map_(k.distortion),
         patches_(patches) {}
 
-  // Halves what does not fit, the longer side first, down to single pixels.
+  // Adds patches for `rect`. A rectangle that no patch fits is halved, across its width if that is
+  // at least twice its height, down to single pixels.
   void Add(const PixelRect& rect) {
     if (rect.empty()) return;
     if (rect.pixel_count() == 1) {
@@ -75,7 +76,7 @@ class PatchMaker {
     patches_->push_back(patch);
   }
 
-  // Through the ideal positions of six by six points.
+  // Makes the patch go through the ideal positions of six by six points. False if it does not fit.
   bool Fit(IdealPatch* patch) const {
     const PixelRect& rect = patch->rect;
     Points rows[kControls];  // control points of the scanlines through the points
@@ -102,7 +103,7 @@ class PatchMaker {
     return true;
   }
 
-  // Of a length, for a place in [-1, 1].
+  // Returns the share of a length in [0, 1] for a place in [-1, 1].
   static double Share(double place) { return 0.5 * (1 + place); }
 
   bool IsTrue(const IdealPatch& patch, double u, double v) const {

@@ -18,8 +18,8 @@
 
 namespace lf {
 
-// Of continuous pixel position (x, y), by iteration to rounding: the reference. `map` is that of
-// k.distortion. None where no ray arrives.
+// Returns the ideal position of continuous pixel position (x, y), by iteration to rounding. This is
+// the reference. `map` must be the map of k.distortion. None if no ray arrives.
 std::optional<Vec3> IdealPosition(const Intrinsics& k, const DistortionMap& map, double x_px,
                                   double y_px);
 
@@ -32,7 +32,7 @@ struct IdealArc {
   static constexpr int kControls = 6;
   Vec3 control[kControls];
 
-  // Of the centre of pixel x.
+  // Parameter of the arc at the centre of pixel x.
   double Parameter(int x) const {
     return (x - x_begin + 0.5) / static_cast<double>(x_end - x_begin);
   }
@@ -47,27 +47,28 @@ struct IdealPatch {
   PixelRect rect;
   Vec3 control[kControls][kControls];  // [row][column]
 
-  // The centres of scanline y, one of rect's.
+  // The arc through the pixel centres of scanline y, which must be in `rect`.
   IdealArc Scanline(int y) const { return ArcAt(Parameter(y)); }
   double Parameter(int y) const { return (y + 0.5 - rect.y_begin) / rect.height(); }
-  // At v from 0, the upper border, to 1.
+  // The arc at v, which is 0 at the upper border and 1 at the lower one.
   IdealArc ArcAt(double v) const;
 };
 
-// Those of the control points for the value at t, from 0 to 1; their sum is 1.
+// Weights of the control points in the arc's point at t, from 0 to 1. Their sum is 1.
 using BezierWeights = std::array<double, IdealArc::kControls>;
 BezierWeights BezierWeightsAt(double t);
 
-// All pixels of a camera with distortion, in patches that are true to kTolerance_px.
+// All pixels of a camera with distortion, in patches that are accurate to kTolerance_px.
 class IdealPixels {
  public:
-  // Distance, in LF pixels, from a pixel to where the camera would record what its ideal position
-  // stands for: between the points where patches were made to fit (checked where they miss most).
+  // Largest error of a patch: the distance, in LF pixels, between a pixel and where the camera
+  // would record the ray of its ideal position. Patches are exact at the points that they are made
+  // from, and checked where their error is largest (kQuinticWorstPlaces).
   static constexpr double kTolerance_px = 3e-5;
 
   explicit IdealPixels(const Intrinsics& k);
 
-  // Without overlap. Pixels that no patch covers have no ray.
+  // The patches do not overlap. Pixels that no patch covers have no ray.
   const std::vector<IdealPatch>& patches() const { return patches_; }
   size_t size_bytes() const { return patches_.capacity() * sizeof(IdealPatch); }
 

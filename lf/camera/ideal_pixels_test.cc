@@ -41,7 +41,8 @@ TEST(IdealPixels, PatchesHoldEveryPixelOnceAndAgreeWithTheIteration) {
           const Vec3 q = arc.At(arc.Parameter(x));
           const std::optional<Vec3> exact = IdealPosition(camera.k, map, x + 0.5, y + 0.5);
           ASSERT_TRUE(exact) << camera.name;
-          // As an angle, times the focal length: pixels at the centre of the image.
+          // The error is compared as an angle times the focal length: in pixels at the image
+          // centre.
           const Mat3 inverse = camera.k.InverseMatrix();
           const Vec3 a = (inverse * q).normalized(), b = (inverse * *exact).normalized();
           EXPECT_LE((a - b).norm() * camera.k.fx_px, 1.2 * IdealPixels::kTolerance_px)
@@ -49,7 +50,8 @@ TEST(IdealPixels, PatchesHoldEveryPixelOnceAndAgreeWithTheIteration) {
         }
       }
     EXPECT_EQ(std::count(covered.begin(), covered.end(), 1), 320 * 240) << camera.name;
-    // Few patches, or they would be no gain: these small images of strong lenses need the most.
+    // There must be few patches, or they would save nothing. Small images of strong lenses, as
+    // these, need the most.
     EXPECT_LE(pixels.patches().size(), 320u * 240 / 25) << camera.name;
   }
 }

@@ -1,5 +1,5 @@
-// The pinhole camera (thesis 2.2.2-2.2.4): every LF camera, whose lens may bend the rays, and the
-// render camera through the centre of its lens, which has no distortion.
+// The pinhole camera (thesis 2.2.2-2.2.4). It describes every LF camera, whose lens may bend the
+// rays, and the render camera as seen through its lens centre, which has no distortion.
 #pragma once
 
 #include <optional>
@@ -22,11 +22,11 @@ struct Intrinsics {
   int width_px = 0;
   int height_px = 0;
   Distortion distortion = {};  // between the pinhole's rays and K
-  Vignetting vignetting = {};  // of recorded light; recorded radiance is divided by it
+  Vignetting vignetting = {};  // falloff of recorded light; recorded radiance is divided by it
 
   bool has_distortion() const { return distortion.model != DistortionModel::kNone; }
   Mat3 Matrix() const;
-  Mat3 InverseMatrix() const;  // exact form; fx and fy must not be 0
+  Mat3 InverseMatrix() const;  // closed formula; fx and fy must not be 0
   friend bool operator==(const Intrinsics&, const Intrinsics&) = default;
 };
 

@@ -1,5 +1,5 @@
-// Rays are lines: what a light field camera recorded along a direction it recorded wherever the
-// ray is cut (thesis 2.1.1).
+// Rays are lines: the radiance that an LF camera recorded along a direction is the same wherever
+// the ray is cut (thesis 2.1.1).
 #pragma once
 
 #include <optional>

@@ -30,24 +30,26 @@ struct RayForms {
 };
 
 RayForms MakeRayForms(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
-// The same for many frames.
+// The forms of one LF camera in many frames, which share its directions.
 //   direction  R^T K^-1 of the LF camera
 RayForms MakeRayForms(const Mat3& direction, const Vec3& centre_world,
                       const RenderCamera& render_camera);
 
 // Half-planes of LF pixels: a ray can be accepted only where `form p <= 0` for all of them. They
 // are the projected lens and focus regions of thesis Fig. 4.5, written as the edges that bound
-// them, so nothing has to be projected through the plane of the LF camera. The two sides of
-// n.d = 0 are bounded apart: plane_sign is the sign of n.d of the rays meant, +1 or -1.
+// them, so nothing has to be projected through the plane of the LF camera. Each side of n.d = 0 has
+// half-planes of its own: plane_sign is the sign of n.d on that side, +1 or -1.
 
-// Forward, the side, front, and the four edges of the plate, each moved outwards by margin_px.
+// Half-planes of the side, of forward and front, and of the four edges of the plate, each edge
+// moved outwards by margin_px.
 inline constexpr size_t kPlateHalfPlanes = 7;
 std::array<PixelForm, kPlateHalfPlanes> PlateHalfPlanes(const RayForms& forms,
                                                         const RenderCamera& render_camera,
                                                         int plane_sign, double margin_px);
 
-// An edge of the lens polygon (for a disk, of its circumscribed 16-gon), moved outwards by
-// margin_w; and all of them, moved by a share of the radius. Valid where the rays run forward.
+// LensHalfPlane() is the half-plane of an edge of the lens polygon (for a disk, of its
+// circumscribed 16-gon), moved outwards by margin_w. LensHalfPlanes() are those of all edges, moved
+// by a share of the radius. They are valid where rays run forward.
 inline PixelForm LensHalfPlane(const RayForms& forms, const ApertureEdge& edge, double margin_w) {
   return edge.normal.x() * forms.lens_right + edge.normal.y() * forms.lens_up -
          (edge.distance_w + margin_w) * forms.forward;

@@ -12,7 +12,7 @@ namespace lf {
 class RayThrough {
  public:
   //   forward_world  the optical axis of the frame
-  //   map            that of the LF camera's distortion, if it is known: it takes a while to make
+  //   map            of the LF camera's distortion; callers that have it save the time to make it
   RayThrough(const PinholeCamera& lf_camera, const Vec3& forward_world)
       : RayThrough(lf_camera, forward_world, DistortionMap(lf_camera.intrinsics.distortion)) {}
   RayThrough(const PinholeCamera& lf_camera, const Vec3& forward_world, const DistortionMap& map)
@@ -24,14 +24,15 @@ class RayThrough {
 
   const Vec3& centre_world() const { return centre_; }
 
-  // Along the line through the point and the LF camera, so that it runs forward.
+  // Direction of the line through the point and the LF camera, with the sign that makes it run
+  // forward.
   Vec3 DirectionWorld(const Vec3& point_world) const {
     const Vec3 d = point_world - centre_;
     return forward_.dot(d) < 0 ? Vec3(-d) : d;
   }
 
-  // Where the LF camera records a ray of this direction, in pixels, within its image or not. None
-  // where its lens has no such ray.
+  // Returns the position in pixels where the LF camera records a ray of this direction, which may
+  // be outside its image. None if its lens has no such ray.
   std::optional<Vec2> RecordedAt(const Vec3& direction_world) const {
     const std::optional<Vec2> distorted = map_.Distort(rotation_ * direction_world);
     if (!distorted) return std::nullopt;

@@ -8,12 +8,13 @@
 
 namespace lf {
 
-// Weights are integers, the part of the lens that the ray's LF camera stands for: sum += weight v,
-// count += weight. A ray of weight 0 adds nothing.
+// Largest weight of a ray. Weights are integers, in proportion to the part of the lens that the
+// ray's LF camera stands for: sum += weight v, count += weight. A ray of weight 0 adds nothing.
 inline constexpr uint32_t kMaxWeight = 255;
 
-// Blocks of 8 x 8 elements of the plate have one weight. Every LF image has blocks of its own,
-// which begin elsewhere, so that the borders of all of them do not add up to a pattern.
+// Side of a block of elements. Blocks of 8 x 8 elements of the plate have one weight. Every LF
+// image has blocks of its own, which begin elsewhere, so that their borders do not add up to a
+// pattern.
 inline constexpr int kWeightBlock = 8;
 
 struct WeightBlocks {
@@ -21,20 +22,20 @@ struct WeightBlocks {
   int shift_x = 0;
   int shift_y = 0;
 
-  // The end of the block that x lies in; likewise for y.
+  // End of the block that column x, or row y, lies in.
   int EndX(int x) const { return ((x + shift_x) / kWeightBlock + 1) * kWeightBlock - shift_x; }
   int EndY(int y) const { return ((y + shift_y) / kWeightBlock + 1) * kWeightBlock - shift_y; }
 };
 
-// Near the borders of an LF image its rays count less: its feather is the part of the weight that
-// is left, from 0 at the border to kWholeFeather.
+// The feather that leaves the whole weight. Rays near the borders of an LF image count less: the
+// feather is the part of the weight that is left, from 0 at the border to kWholeFeather.
 inline constexpr uint32_t kWholeFeather = 256;
 
-// The weight of one element of a block, whose centre is that of element (i, j) of the block.
-//   weight    of the block
+// Returns the weight of element (i, j) of a block, from the feather at the element's centre.
+//   weight    the block's weight
 //   above     feather at the block's upper corners, left and right
-//   below     the same of the lower corners
-// Returns at least 1 where the block has a weight: a recorded ray always counts.
+//   below     feather at its lower corners, left and right
+// Returns at least 1 if the block's weight is not 0, because a recorded ray always counts.
 inline uint32_t FeatheredWeight(uint32_t weight, const uint16_t* above, const uint16_t* below,
                                 int i, int j) {
   constexpr uint32_t kOne = 2 * kWeightBlock;
@@ -46,29 +47,29 @@ inline uint32_t FeatheredWeight(uint32_t weight, const uint16_t* above, const ui
   return std::max(std::min(weight, 1U), (weight * feather + kWhole / 2) / kWhole);
 }
 
-// What the rays of one LF image count in one frame.
+// Weights of the rays of one LF image in one frame.
 class RayWeights {
  public:
-  // The same all over the plate, at most kMaxWeight.
+  // One weight for the whole plate, at most kMaxWeight.
   RayWeights(uint32_t weight = 1) : same_(weight) {}  // NOLINT: a number is such weights
-  // At most kMaxWeight, of `count` blocks side by side, the first of which ends before (end_x,
-  // end_y).
+  // Writes the weights, at most kMaxWeight, of `count` blocks side by side. The first of them ends
+  // before (end_x, end_y).
   using RowFunction = std::function<void(int end_x, int end_y, int count, uint8_t* weights)>;
-  // The feather, at most kWholeFeather, at the positions (x + kWeightBlock i, y) of the plate, i in
-  // [0, count): corners of blocks. Any thread may call it.
+  // Writes the feather, at most kWholeFeather, at the positions (x + kWeightBlock i, y) of the
+  // plate, i in [0, count), which are corners of blocks. Any thread may call it.
   using FeatherFunction = std::function<void(int x, int y, int count, uint16_t* feather)>;
-  //   feather_of_row  empty: the image has none
+  //   feather_of_row  empty if the image has no feather
   RayWeights(const WeightBlocks& blocks, RowFunction of_row, FeatherFunction feather_of_row = {})
       : blocks_(blocks), of_row_(std::move(of_row)), feather_of_row_(std::move(feather_of_row)) {}
 
   bool are_same() const { return of_row_ == nullptr; }
   uint32_t same() const { return same_; }
-  // The image takes no part.
+  // True if the image takes no part.
   bool are_none() const { return are_same() && same_ == 0; }
   bool has_feather() const { return feather_of_row_ != nullptr; }
   const WeightBlocks& blocks() const { return blocks_; }
 
-  // Of element (x, y).
+  // Returns the weight of element (x, y).
   uint32_t At(int x, int y) const {
     if (are_same()) return same_;
     uint8_t weight = 0;
@@ -81,7 +82,7 @@ class RayWeights {
     return FeatheredWeight(weight, above, below, x - begin_x, y - begin_y);
   }
   // Writes the weights of `count` blocks side by side, without feather. The first one holds element
-  // (x, y). Must not be called where are_same().
+  // (x, y). Must not be called if are_same().
   void OfRow(int x, int y, int count, uint8_t* weights) const {
     of_row_(blocks_.EndX(x), blocks_.EndY(y), count, weights);
   }

@@ -22,7 +22,7 @@ struct RenderCamera {
   Aperture aperture;      // in the plane through the lens centre normal to the optical axis
   Plane focus_plane;      // world
 
-  // What the planes were made from, for people and metadata.
+  // The settings that the planes were made from, for people and metadata.
   double time_s = 0;
   double focal_length_w = 0;
   double sensor_width_w = 0;

@@ -17,8 +17,8 @@ struct CameraPair {
 // LF images are 50 x 35 pixels, plates 160 x 120. The kind of scene cycles with the seed.
 CameraPair RandomCameraPair(uint64_t seed);
 
-// The same with an LF image of 200 x 140 pixels taken through a lens that bends the rays: a
-// phone's, with or without tangential terms, a fold within the image, fish-eyes.
+// As RandomCameraPair(), with an LF image of 200 x 140 pixels taken through a lens that bends the
+// rays: a phone's, with or without tangential terms, with a fold within the image, or a fish-eye.
 CameraPair RandomDistortedPair(uint64_t seed);
 
 // A grid rig: LF camera (column, row) pitches beside the render camera, all parallel, in the lens

@@ -18,15 +18,15 @@ Result<double> ImageDistance(double focal_length_w, double focus_distance_w);
 // N = f / d                                             (thesis Eq. 2.11); infinite for a pinhole.
 double FNumber(double focal_length_w, double aperture_diameter_w);
 
-// Diameter on the focus plane, in world units there, of the blur of a point at depth z when the
-// lens of diameter d is focused at depth g:  d |z - g| / z. Times the plate's elements per world
-// unit at the focus plane (fx / g) it is the circle of confusion in elements (thesis Eq. 2.9 seen
-// from the object side).
+// Diameter of the blur of a point at depth z when a lens of diameter d is focused at depth g, in
+// world units on the focus plane:  d |z - g| / z. Multiplied by the plate's elements per world unit
+// at the focus plane (fx / g), it is the circle of confusion in elements (thesis Eq. 2.9 seen from
+// the object side).
 double BlurOnFocusPlane(double aperture_diameter_w, double focus_distance_w, double depth_w);
 
-// The depths whose blur on the focus plane stays within `blur_limit_w`, world units there: exact
-// where thesis Eq. 2.10 is the approximation for g >> f. The far end is infinity beyond the
-// hyperfocal distance; [0, infinity) for a pinhole.
+// The depths whose blur on the focus plane is at most `blur_limit_w`, in world units there. The
+// formula is exact; thesis Eq. 2.10 is its approximation for g >> f. The far end is infinity beyond
+// the hyperfocal distance. [0, infinity) for a pinhole.
 DepthRange DepthOfField(double aperture_diameter_w, double focus_distance_w, double blur_limit_w);
 
 }  // namespace lf

@@ -30,7 +30,7 @@ inline constexpr double kLeastFalloff = 1.0 / 64;
 
 struct Intrinsics;
 
-// r^2 of a place of the image, in pixels.
+// Returns r^2 of image position (x, y).
 double RadiusSquared(const Intrinsics& k, double x_px, double y_px);
 
 // The least and the largest share of light that the whole image has, exact but for rounding.
