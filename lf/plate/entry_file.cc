@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::string_view kKeyCharacters = "abcdefghijklmnopqrstuvwxyz0123456789_.";
 
-// "key: value" lines; none if they are of another form.
+// Parses "key: value" lines. None if the text has another form.
 std::optional<PlateEntries> ParseEntries(std::string_view text) {
   PlateEntries entries;
   while (!text.empty()) {
@@ -58,7 +58,7 @@ std::string TextOf(const PlateEntries& entries) {
 
 Result<std::unique_ptr<Source>> Source::OfFile(const fs::path& path, const Kind& kind) {
   auto source = std::make_unique<Source>(path.string(), kind);
-  // Not blocking: a named pipe would wait for its writer.
+  // O_NONBLOCK, because opening a named pipe would wait for its writer.
   source->fd_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   struct stat status {};
   if (source->fd_ < 0 || ::fstat(source->fd_, &status) != 0)
@@ -130,7 +130,7 @@ Result<Front> ReadFront(Source& source, size_t head_bytes) {
   LF_RETURN_IF_ERROR(source.Read(&hash, sizeof(hash)));
   if (hash != HashBytes(front.head + text))
     return source.Damaged("the checksum of its head differs");
-  // From here on it is what somebody wrote on purpose.
+  // The checksum is right, so that any fault from here on was written on purpose.
   std::optional<PlateEntries> entries = ParseEntries(text);
   if (!entries)
     return InputError(

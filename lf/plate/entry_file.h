@@ -1,4 +1,4 @@
-// What the files of plates and of rebinned rays have in common: they begin with a head, the text of
+// Common part of the files of plates and of rebinned rays: they begin with a head, the text of
 // their entries, and the checksum of both. Internal to plate and rebinning.
 #pragma once
 
@@ -21,12 +21,12 @@ static_assert(std::endian::native == std::endian::little, "numbers in the file a
 struct Kind {
   std::string_view magic;  // eight characters, the last a line feed
   uint32_t version;
-  // For messages.
-  std::string_view noun;       // the file is ... or none
-  std::string_view if_broken;  // what that means, and what to do
+  // Words for messages:
+  std::string_view noun;       // names the file: "is no plate"
+  std::string_view if_broken;  // what damage means to the user, and what to do
 };
 
-// Every head begins with this.
+// The beginning of every head.
 struct HeadBegin {
   char magic[8];
   uint32_t version;
@@ -34,13 +34,13 @@ struct HeadBegin {
 };
 static_assert(sizeof(HeadBegin) == 16);
 
-// The bytes of a file, or of memory, from front to back.
+// Reads the bytes of a file, or of memory, from front to back.
 class Source {
  public:
-  // kInput: cannot be opened, or is no regular file.
+  // kInput if the file cannot be opened or is no regular file.
   static Result<std::unique_ptr<Source>> OfFile(const std::filesystem::path& path,
                                                 const Kind& kind);
-  // The bytes must outlive it; `name` is what messages call them.
+  // The bytes must outlive the source; messages call them `name`.
   static std::unique_ptr<Source> OfBytes(std::string_view bytes, const std::string& name,
                                          const Kind& kind);
   Source(std::string name, const Kind& kind) : name_(std::move(name)), kind_(kind) {}
@@ -52,9 +52,9 @@ class Source {
   const Kind& kind() const { return kind_; }
   uint64_t left() const { return left_; }
 
-  // kInput: there are fewer bytes, or they cannot be read.
+  // kInput if there are fewer bytes, or if they cannot be read.
   Result<void> Read(void* to, size_t size);
-  // The error of bytes that are not what was written.
+  // Returns the error for bytes that are not as they were written.
   Error Damaged(const std::string& reason) const;
 
  private:
@@ -70,24 +70,24 @@ struct Front {
   PlateEntries entries;
 };
 
-// Reads a head of so many bytes, text and checksum. kInput: of another kind or version, truncated,
-// damaged, or its text is of another form.
+// Reads a head of `head_bytes` bytes, text and checksum. kInput if the file is of another kind or
+// version, truncated or damaged, or if its text has another form.
 Result<Front> ReadFront(Source& source, size_t head_bytes);
 
-// Head, text and checksum; the beginning of the head is filled in here. The entries are as
-// PlateEntries must be.
+// Returns head, text and checksum. Fills in the beginning of the head. The entries must be as
+// PlateEntries demands.
 std::string FrontOf(const Kind& kind, std::string head, const PlateEntries& entries);
 
-// A file that is written from front to back.
+// Writes a file from front to back.
 class OutputFile {
  public:
   explicit OutputFile(const std::filesystem::path& path);
 
-  // Does nothing after the first error, which Close() gives.
+  // Does nothing after the first error, which Close() returns.
   void Write(const void* bytes, size_t size);
   void Write(std::string_view bytes) { Write(bytes.data(), bytes.size()); }
 
-  // kOutput: the folder, the disk.
+  // kOutput if the file could not be created or written.
   Result<void> Close();
 
  private:

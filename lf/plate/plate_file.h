@@ -1,6 +1,6 @@
-// A sensor plate as one file: what it was made from, how far it is, and every sum and count, exact
-// (doc/formats/plate.md). Plates of a divided run are added from such files; an interrupted frame
-// goes on from one.
+// A sensor plate as a file: what it was made from, its progress, and every sum and count, exact
+// (doc/formats/plate.md). The plates of a divided run are added from such files, and an interrupted
+// frame is resumed from one.
 #pragma once
 
 #include <cstdint>
@@ -22,29 +22,30 @@ namespace entry_file {
 class Source;
 }
 
-// What a plate's file says of it, in the order written. Keys are words of [a-z0-9_.], each once;
-// values hold no control characters.
+// The entries of a plate's file describe the plate, in the order written. Keys are words of
+// [a-z0-9_.], each once; values have no control characters.
 using PlateEntries = std::vector<std::pair<std::string, std::string>>;
 
-// The value of a key; null where there is none.
+// Returns the value of a key; null if there is none.
 const std::string* FindEntry(const PlateEntries& entries, std::string_view key);
 
 // Writes the plate atomically (core/file.h), compressed by the threads of `pool`. The bytes depend
 // on the sums, counts and entries alone: not on how the plate keeps them, and not on the threads.
-// kOutput: the folder, the disk.
+// kOutput if the folder or the disk fails.
 Result<void> WritePlate(const std::filesystem::path& path, const PlateEntries& entries,
                         const SensorPlate& plate, ThreadPool& pool);
 
-// Reads a plate's file: first what it says, then, if that is what was hoped for, its rays.
+// Reads a plate's file in two steps: first its entries, then, if the caller wants the plate, its
+// rays.
 class PlateReader {
  public:
   static constexpr uint32_t kMaxSide = 1u << 16;       // elements
-  static constexpr uint32_t kMaxTextBytes = 1u << 20;  // of the entries
+  static constexpr uint32_t kMaxTextBytes = 1u << 20;  // size of the entries
 
-  // kInput: cannot be read, no plate, of another version, too large, or damaged; the message names
-  // file and reason.
+  // kInput if the file cannot be read, is no plate, has another version, is too large, or is
+  // damaged; the message names file and reason.
   static Result<PlateReader> Open(const std::filesystem::path& path);
-  // The same for a file in memory, which must outlive the reader; `name` is what messages call it.
+  // As Open(), for a file in memory, which must outlive the reader; messages call it `name`.
   static Result<PlateReader> OpenBytes(std::string_view bytes, const std::string& name);
   PlateReader(PlateReader&&) noexcept;
   PlateReader& operator=(PlateReader&&) noexcept;
@@ -55,8 +56,9 @@ class PlateReader {
   bool has_opacity() const { return channels_ > SensorPlate::kChannels; }
   const PlateEntries& entries() const { return entries_; }
 
-  // Adds all rays to a plate of this size and these channels; needs about a megabyte beside it. To
-  // be called once. kInput: truncated or damaged; the plate then holds a part and is of no use.
+  // Adds all rays to a plate of this size and with these channels. Takes about a megabyte of memory
+  // beside the plate. Must be called only once. kInput if the file is truncated or damaged; the
+  // plate then holds a part of the rays and must not be used.
   Result<void> AddTo(SensorPlate* plate);
 
  private:

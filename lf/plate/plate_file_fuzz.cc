@@ -1,6 +1,6 @@
-// Any bytes are a plate or an error; a plate that was read holds sums that its rays can have. The
-// checksums of the head and of the chunks are made right first, or nothing behind them would ever
-// be reached.
+// Any bytes are a plate or an error, and a plate that was read holds only sums that its rays can
+// have. The checksums of the head and of the chunks are made right first, because nothing behind
+// them would be reached otherwise.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -55,7 +55,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size_bytes) {
     LF_CHECK(reader.error().message.starts_with("p: "));
     return 0;
   }
-  // As callers do, who know the size they expect.
+  // Callers know the size that they expect, and refuse others.
   if (int64_t{reader->width()} * reader->height() > 1 << 20) return 0;
   lf::SensorPlate plate =
       lf::SensorPlate::WithOpacity(reader->width(), reader->height(), reader->has_opacity());

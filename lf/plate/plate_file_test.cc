@@ -41,7 +41,7 @@ class PlateFile : public ::testing::Test {
   fs::path folder_;
 };
 
-// The error of reading these bytes to the end.
+// Returns the message of the error when these bytes are read to the end; empty if there is none.
 std::string ErrorOf(const std::string& bytes) {
   Result<PlateReader> reader = PlateReader::OpenBytes(bytes, "x.plate");
   if (!reader) return reader.error().message;
@@ -56,7 +56,7 @@ void ExpectError(const std::string& bytes, const std::string& word) {
   EXPECT_NE(message.find(word), std::string::npos) << message;
 }
 
-// The bytes with another head, and its checksum made right.
+// Returns the bytes with a changed head, whose checksum is made right.
 std::string WithHead(std::string bytes, const std::function<void(plate_format::Head*)>& change) {
   plate_format::Head head;
   std::memcpy(&head, bytes.data(), sizeof(head));
@@ -137,7 +137,7 @@ TEST_F(PlateFile, TheBytesDependOnTheRaysAlone) {
   const SensorPlate plate = testing::NoisePlate(300, 200, 7, SensorPlate::kMaxCount, true);
   const std::string bytes = BytesOf(plate, 1);
   EXPECT_EQ(BytesOf(plate, 3), bytes);
-  // The same rays, most of them in the wide table.
+  // A plate with the same rays, most of them in the wide table.
   const SensorPlate small = testing::NoisePlate(300, 200, 7, 5, true);
   EXPECT_GT(small.wide().size(), 10000u);
   EXPECT_EQ(BytesOf(small), bytes);
@@ -187,7 +187,7 @@ TEST_F(PlateFile, WhatItSaysIsCheckedBeforeAnythingIsAllocated) {
 
 TEST_F(PlateFile, WideWordsLieInThePlateAndAscend) {
   using plate_format::WideWord;
-  constexpr size_t kWords = 2, kEnd = sizeof(uint64_t);  // of NoisePlate(), and their checksum
+  constexpr size_t kWords = 2, kEnd = sizeof(uint64_t);  // of NoisePlate(), and the checksum
   const std::string bytes = BytesOf(testing::NoisePlate(20, 15, 7, SensorPlate::kMaxCount, true));
   const auto with_words = [&](const std::function<void(WideWord*)>& change) {
     std::string changed = bytes;

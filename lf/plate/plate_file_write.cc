@@ -21,15 +21,15 @@ using namespace plate_format;
 // third longer for 3 % less.
 constexpr int kCompressionLevel = 1;
 
-// Elements of the wide table that a packed word could hold are written packed: which ones a plate
-// keeps wide depends on how it was filled.
+// Elements of the wide table that a packed word could hold are written packed, because which
+// elements a plate keeps wide depends on how it was filled.
 bool IsWide(const ElementSum& rays) { return rays.count > SensorPlate::kMaxCount; }
 
 class Compressor {
  public:
   explicit Compressor(const SensorPlate& plate) : plate_(plate) {}
 
-  // Words [begin, end): ChunkHead and stored bytes.
+  // Returns words [begin, end) as a chunk: ChunkHead and stored bytes.
   std::string Chunk(uint32_t number, size_t begin, size_t end) const {
     std::vector<uint64_t> words(plate_.words().begin() + static_cast<ptrdiff_t>(begin),
                                 plate_.words().begin() + static_cast<ptrdiff_t>(end));
@@ -44,7 +44,7 @@ class Compressor {
     std::string chunk(sizeof(ChunkHead) + ZSTD_compressBound(size), '\0');
     const size_t stored = ZSTD_compress(chunk.data() + sizeof(ChunkHead), ZSTD_compressBound(size),
                                         planes.data(), size, kCompressionLevel);
-    if (ZSTD_isError(stored) != 0) throw std::bad_alloc();  // all else is excluded by the bound
+    if (ZSTD_isError(stored) != 0) throw std::bad_alloc();  // the bound excludes all else
     const ChunkHead head = {static_cast<uint32_t>(stored), 0,
                             HashBytes({chunk.data() + sizeof(head), stored}, number)};
     std::memcpy(chunk.data(), &head, sizeof(head));
@@ -78,7 +78,7 @@ Result<void> Write(const fs::path& path, const PlateEntries& entries, const Sens
   const Compressor compressor(plate);
   const size_t word_count = plate.words().size(), chunk_words = chunk_rows * row_words;
   const size_t chunk_count = chunk_words == 0 ? 0 : (word_count + chunk_words - 1) / chunk_words;
-  // A few at a time, so that little is in memory.
+  // Only a few chunks are compressed at a time, to save memory.
   const size_t together = 2 * static_cast<size_t>(pool.thread_count());
   for (size_t first = 0; first < chunk_count; first += together) {
     std::vector<std::string> chunks(std::min(together, chunk_count - first));

@@ -13,7 +13,7 @@ namespace lf::plate_format {
 
 inline constexpr entry_file::Kind kKind = {"LFPLATE\n", 1, "plate", "the plate cannot be used"};
 
-// The file begins with this; the text of the entries follows, and the hash of both.
+// The file begins with this head. The text of the entries follows, then the hash of both.
 struct Head {
   char magic[8];
   uint32_t version;
@@ -26,7 +26,7 @@ struct Head {
 };
 static_assert(sizeof(Head) == 40);
 
-// Before each chunk.
+// Precedes each chunk.
 struct ChunkHead {
   uint32_t stored_bytes;
   uint32_t reserved;  // 0
@@ -34,20 +34,20 @@ struct ChunkHead {
 };
 static_assert(sizeof(ChunkHead) == 16);
 
-// After the chunks, by index; then their XXH3.
+// A word of the wide table. These follow the chunks, by ascending index; their XXH3 ends the file.
 struct WideWord {
   uint64_t index;
   uint64_t sum;
   uint64_t count;
 };
 static_assert(sizeof(WideWord) == 24);
-inline constexpr size_t kWideBlock = 4096;  // read together
+inline constexpr size_t kWideBlock = 4096;  // wide words read together
 
-// Chunks hold about so many words, but whole rows.
+// A chunk holds about this number of words, in whole rows.
 inline constexpr size_t kChunkWords = size_t{1} << 16;
 
-// The first byte of all words, then the second ...: those that hardly differ stand together, which
-// doubles the speed of compression and its gain.
+// Writes the first byte of all words, then the second byte of all words, and so on. Bytes that
+// hardly differ then stand together, which doubles the speed of compression and its gain.
 inline void ToPlanes(std::span<const uint64_t> words, char* planes) {
   for (int byte = 0; byte < 8; ++byte)
     for (size_t i = 0; i < words.size(); ++i)

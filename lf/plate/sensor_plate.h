@@ -63,19 +63,20 @@ class SensorPlate {
   // Adds one ray of value v. Checked against overflow; for references and tests.
   void AddRay(int x, int y, int channel, uint16_t v);
 
-  // Adds any sum of rays. sum <= 65535 * count.
+  // Adds the sum of any number of rays. Needs sum <= 65535 * count.
   void Add(int x, int y, int channel, const ElementSum& rays);
 
   // Adds another plate of the same size and channels.
   void Merge(const SensorPlate& other);
 
-  // How it is kept, for files: packed words [height][width][channels()], what is kept beside them
-  // by the index of the word, and the total of both.
+  // How sums and counts are kept, for files: words() are the packed words
+  // [height][width][channels()], wide() is kept beside them by the index of the word, and AtWord()
+  // is the total of both.
   std::span<const uint64_t> words() const { return packed_; }
   const std::map<size_t, ElementSum>& wide() const { return wide_; }
   ElementSum AtWord(size_t index) const;
 
-  // The same sums and counts everywhere, however they are kept.
+  // True if all sums and counts are equal, however they are kept.
   friend bool operator==(const SensorPlate& a, const SensorPlate& b);
 
  private:
@@ -93,7 +94,7 @@ class SensorPlate {
   int channels_;
   uint32_t count_limit_;
   LargeVector<uint64_t> packed_;
-  // Totals are packed + wide. Rare, so one lock does for all tiles.
+  // A total is packed + wide. Wide words are rare, so that one lock is enough for all tiles.
   std::map<size_t, ElementSum> wide_;
   std::unique_ptr<std::mutex> wide_mutex_;
 };
@@ -102,7 +103,7 @@ class SensorPlate {
 // plate that do not overlap may be written at the same time.
 class PlateTile {
  public:
-  // `rect` lies on the plate.
+  // `rect` must lie on the plate.
   PlateTile(SensorPlate* plate, const PixelRect& rect);
 
   const PixelRect& rect() const { return rect_; }
@@ -114,11 +115,11 @@ class PlateTile {
   }
   int channels() const { return plate_->channels_; }
 
-  // The most rays one Reserve() can be asked for.
+  // The largest number of rays that Reserve() takes.
   uint32_t max_reserve() const { return plate_->count_limit_; }
 
-  // Afterwards `rays` more rays may be added to the tile's words, even all to the same one,
-  // without overflow. rays <= max_reserve(). Almost always one comparison.
+  // Makes room for `rays` more rays, at most max_reserve(): they may be added to the tile's words,
+  // even all to the same one, without overflow. Almost always this is one comparison.
   void Reserve(uint32_t rays) {
     if (rays > headroom_) MakeRoom(rays);
     headroom_ -= rays;
@@ -132,7 +133,7 @@ class PlateTile {
   uint32_t headroom_ = 0;
 };
 
-// All tiles of a plate of the grid's size.
+// Returns all tiles of a plate, which must have the grid's size.
 std::vector<PlateTile> CutIntoTiles(SensorPlate* plate, const TileGrid& grid);
 
 }  // namespace lf

@@ -6,8 +6,8 @@
 
 namespace lf::testing {
 
-// Noise; about every tenth element empty, one wide beyond any packed word, some wide only because
-// of the plate's count_limit.
+// A plate of noise. About every tenth word is empty. With `has_wide` two words are beyond any
+// packed word; others may be wide only because of the plate's count_limit.
 inline SensorPlate NoisePlate(int width, int height, uint64_t seed, uint32_t count_limit,
                               bool has_wide) {
   SensorPlate plate(width, height, count_limit);
@@ -27,7 +27,7 @@ inline SensorPlate NoisePlate(int width, int height, uint64_t seed, uint32_t cou
   return plate;
 }
 
-// Noise in four channels.
+// A plate of noise in four channels.
 inline SensorPlate WithNoiseOpacity(int width, int height, uint64_t seed) {
   SensorPlate plate = SensorPlate::WithOpacity(width, height);
   for (int y = 0; y < height; ++y)

@@ -15,7 +15,7 @@ struct PlateElement {
   friend bool operator==(const PlateElement&, const PlateElement&) = default;
 };
 
-// Tiles are counted row by row; those at the right and lower border may be smaller.
+// Tiles are numbered row by row. Tiles at the right and lower border may be smaller.
 struct TileGrid {
   int plate_width = 0;
   int plate_height = 0;
@@ -25,7 +25,7 @@ struct TileGrid {
   int columns() const { return (plate_width + tile_width - 1) / tile_width; }
   int rows() const { return (plate_height + tile_height - 1) / tile_height; }
   size_t tile_count() const { return static_cast<size_t>(columns()) * rows(); }
-  // Of the tile that holds element (x, y).
+  // Number of the tile that holds element (x, y).
   int TileAt(int x, int y) const { return y / tile_height * columns() + x / tile_width; }
   PixelRect RectOf(size_t tile) const {
     const int x = static_cast<int>(tile) % columns() * tile_width;

@@ -5,7 +5,7 @@
 namespace lf {
 namespace {
 
-// Rows of a plate are too far apart for the processor to foresee.
+// The processor does not foresee the next row of a plate, which is too far away.
 void Prefetch(const uint64_t* words) { __builtin_prefetch(words, 1); }
 
 void AddTo(ElementSum* total, const ElementSum& sum) {
@@ -49,7 +49,8 @@ ElementSum TileSums::PendingCounted(const PlateElement& element, int channel) co
   return {sums.rgb[channel], sums.counts[channel]};
 }
 
-// As FlushMosaic() finds it: red or blue and one of the greens at every element.
+// Reads the sums as FlushMosaic() does: each element has one word of red, one of blue and two of
+// green.
 ElementSum TileSums::PendingMosaic(const PlateElement& element, int channel) const {
   if (!has_mosaic_) return {};
   const int x = element.x - rect().x_begin;

@@ -1,6 +1,6 @@
-// What a batch of LF images adds to one tile of a plate, before the plate sees it: small enough for
-// the second level cache, and laid out so that the rays of neighbouring LF pixels fall on
-// neighbouring words.
+// Sums that a batch of LF images adds to one tile of a plate, before they are added to the plate.
+// They are small enough for the second level cache, and laid out so that the rays of neighbouring
+// LF pixels fall on neighbouring words.
 #pragma once
 
 #include <cstddef>
@@ -16,21 +16,22 @@ namespace lf {
 
 class TileSums {
  public:
-  // Of RGB LF images: sums of 16-bit values and the number of rays.
+  // For RGB LF images: sums of 16-bit values and the number of rays.
   struct alignas(16) Element {
     uint32_t rgb_rays[4] = {};
   };
 
-  // Of rays that count differently in each colour: sums of 16-bit values times counts, and the
+  // For rays that count differently in each colour: sums of 16-bit values times counts, and the
   // counts. The fourth lanes are not flushed.
   struct alignas(16) CountedElement {
     uint32_t rgb[4] = {};
     uint32_t counts[4] = {};
   };
 
-  // Of mosaics: packed words as the plate's. Along a scanline green alternates with another colour;
-  // if an LF pixel is as large as an element, so it does along a row of elements. A row of elements
-  // has one row of words for each of these, so that the scanline adds to words side by side:
+  // For mosaics: packed words, as those of the plate. Along a scanline, green alternates with
+  // another colour. If an LF pixel is as large as an element, the colours alternate in the same way
+  // along a row of elements. A row of elements has one row of words for each alternation, so that a
+  // scanline adds to adjacent words:
   //   kRedFirst    R at even x, G at odd ones     kBlueFirst   B at even x, G at odd ones
   //   kGreenFirst  G at even x, R at odd ones     kGreenFirst + kBlueFirst   G, B
   static constexpr int kRedFirst = 0;
@@ -40,14 +41,14 @@ class TileSums {
   static constexpr int kMargin = 8;
 
   // Tiles of this shape stay in the second level cache while a batch of LF images is added to them.
-  // The wider they are, the fewer pieces scanlines are cut into; tall enough for turned cameras.
+  // They are wide, so that scanlines are cut into few pieces, and tall enough for turned cameras.
   static constexpr int kTileWidth = 512;
   static constexpr int kTileHeight = 32;
   static TileGrid GridOf(int plate_width, int plate_height) {
     return {plate_width, plate_height, kTileWidth, kTileHeight};
   }
 
-  // The brightest rays that a sum of 32 bits holds.
+  // Number of rays of the largest value whose sum fits in 32 bits.
   static constexpr uint32_t kMaxRays = 65537;
 
   // ray_limit: below kMaxRays for tests only.
@@ -61,34 +62,36 @@ class TileSums {
     kOpacity,  // R to the fourth, for opacities that stand in for each colour
   };
 
-  // Makes `tile` the owner of everything that is added from here on until Flush().
-  //   watched  elements of the tile whose sums Added() tells; they must live until the last call of
-  //            Added(). Without them nothing is kept beside the sums.
-  //   target   kOpacity: of a plate that has it; RGB alone may be reserved, and nothing is watched
+  // Makes `tile` the destination of everything that is added until Flush().
+  //   watched  elements of the tile whose sums Added() returns; they must live until its last
+  //            call. Empty: nothing is kept beside the sums.
+  //   target   kOpacity: the plate must have opacity; only RGB may be reserved, and nothing watched
   void Begin(PlateTile* tile, std::span<const PlateElement> watched = {},
              Target target = Target::kColours);
   const PixelRect& rect() const { return tile_->rect(); }
 
-  // Words or elements from one row to the next: a cache line more than they are wide, since columns
-  // of a power of two would share a few lines of the first level cache.
+  // Words or elements from one row to the next. This is at least a cache line more than the width,
+  // because columns at a distance of a power of two would share a few lines of the first level
+  // cache.
   int stride() const { return rect().width() + 8; }
 
-  // [height][stride()]. Afterwards `rays` more may be added to any element; rays <= max_reserve().
+  // Returns the sums [height][stride()], to whose elements `rays` more rays may then be added, even
+  // all to one element. `rays` is at most max_reserve().
   Element* ReserveRgb(uint32_t rays) {
     if (rays > rgb_headroom_) MakeRgbRoom(rays);
     rgb_headroom_ -= rays;
     return elements_.data();
   }
 
-  // [height][stride()], likewise.
+  // As ReserveRgb(), for counted elements [height][stride()].
   CountedElement* ReserveCounted(uint32_t rays) {
     if (rays > counted_headroom_) MakeCountedRoom(rays);
     counted_headroom_ -= rays;
     return counted_.data();
   }
 
-  // [height][kMosaicRows][stride()], likewise. kMargin words before and behind the rows of the
-  // tile may be added to as well, but only zeros.
+  // As ReserveRgb(), for words [height][kMosaicRows][stride()]. Zeros may be added to kMargin words
+  // before and behind the rows of the tile.
   uint64_t* ReserveMosaic(uint32_t rays) {
     if (rays > mosaic_headroom_) MakeMosaicRoom(rays);
     mosaic_headroom_ -= rays;
@@ -100,8 +103,8 @@ class TileSums {
   // Adds everything to the plate; the sums are 0 again.
   void Flush();
 
-  // Returns the sum and count that were added to a watched element since Begin(), exact, in
-  // whichever of the three layouts and however often the sums were flushed meanwhile.
+  // Returns the exact sum and count that were added to a watched element since Begin(), over all
+  // three layouts, however often the sums were flushed meanwhile.
   //   index  of the element among those given to Begin()
   ElementSum Added(size_t index, int channel) const;
 
@@ -114,7 +117,7 @@ class TileSums {
   void FlushRgbBy(const AddTo& add_to);
   void FlushCounted();
   void FlushMosaic();
-  // Sums that are not flushed yet, one function for each layout; 0 where the layout is not in use.
+  // Sums that are not flushed yet, one function for each layout; 0 if the layout is not in use.
   ElementSum PendingRgb(const PlateElement& element, int channel) const;
   ElementSum PendingCounted(const PlateElement& element, int channel) const;
   ElementSum PendingMosaic(const PlateElement& element, int channel) const;
@@ -122,17 +125,17 @@ class TileSums {
   void KeepWatched(const Pending& pending);
 
   uint32_t ray_limit_;
-  uint32_t mosaic_limit_;  // what the plate's words hold
+  uint32_t mosaic_limit_;  // rays that the plate's words hold
   PlateTile* tile_ = nullptr;
   Target target_ = Target::kColours;
   bool has_rgb_ = false;
   bool has_counted_ = false;
   bool has_mosaic_ = false;
-  // Rays that still fit; 0 before there are sums.
+  // Number of rays that still fit; 0 if the layout is not in use.
   uint32_t rgb_headroom_ = 0;
   uint32_t counted_headroom_ = 0;
   uint32_t mosaic_headroom_ = 0;
-  // All 0 but between the first Reserve and Flush().
+  // All 0, except between the first Reserve*() and Flush().
   LargeVector<Element> elements_;
   LargeVector<CountedElement> counted_;
   LargeVector<uint64_t> words_;

@@ -9,8 +9,8 @@
 namespace lf {
 namespace {
 
-// Where a channel of element (x, y) of the tile may lie in the sums of mosaics: green has two
-// places.
+// Returns the words of the sums of mosaics that a channel of element (x, y) of the tile may lie in:
+// green has two.
 std::vector<size_t> WordsOf(const TileSums& sums, int x, int y, int channel) {
   const int odd = x % 2;
   const auto word = [&](int kind) {
