@@ -11,14 +11,15 @@
 
 namespace lf {
 
-// Those that see the middle of the plate through the lens, or, if these are few, through one that
-// a dozen see it through; and some beside them. Ascending.
+// Returns the LF cameras that see the middle of the plate through the lens, and some beside them.
+// If fewer than a dozen do, the lens is widened until a dozen do. Ascending.
 std::vector<LfImageId> CamerasAroundLens(const ImageIndex& index, const RenderCamera& frame);
 
-// About how far apart they see through it (lens_weights/frame_weights.h). 0 if there is none.
+// Returns about how far apart these LF cameras are as seen through the lens
+// (lens_weights/frame_weights.h). 0 if there is none.
 double CameraDistanceAround(const ImageIndex& index, const RenderCamera& frame);
 
-// Whether what is at the point is in the picture of the LF camera.
+// True if the point lies within the picture of the LF camera.
 bool IsSeenBy(const RayThrough& lf_camera, const Vec3& point_world);
 
 }  // namespace lf

@@ -31,10 +31,10 @@ struct Loading {
 struct Batch {
   size_t begin = 0;
   size_t end = 0;
-  uint32_t place_end = 0;      // with it, all places before are done
-  std::vector<size_t> frames;  // that take it, if these are not all
+  uint32_t place_end = 0;      // once it is collected, all places before this one are done
+  std::vector<size_t> frames;  // frames that take it; empty: all
   std::vector<Loading> loading;
-  std::vector<BatchImage> images;  // those that are whole, when all are loaded
+  std::vector<BatchImage> images;  // unbroken images, once all are loaded
   bool is_loaded = false;
 };
 
@@ -80,7 +80,7 @@ class FrameCollector::State {
   bool Takes(size_t frame) const {
     return !is_stopped_[frame] && progress_[frame].places_done < places_[frame].end;
   }
-  // Whether the images before this place are still to be taken beside the frames.
+  // True if images before this place are still to be taken beside the frames.
   bool TakerWants(uint32_t place_end) const {
     return options_.taker != nullptr && options_.taker->places_done() < place_end;
   }
@@ -113,8 +113,8 @@ class FrameCollector::State {
   size_t images_done_ = 0;
   size_t announced_ = 0;  // LF images of the order that the store knows of
   std::mutex spare_mutex_;
-  std::vector<LfPixels> spare_;     // collected: their memory is used again
-  std::optional<LfImageId> whole_;  // one that was loaded
+  std::vector<LfPixels> spare_;     // pixels that were collected, whose memory is used again
+  std::optional<LfImageId> whole_;  // an LF image that was loaded
   Batch batch_;                     // the one to be collected
   Batch next_;                      // the one to be decoded meanwhile
 };
@@ -135,7 +135,7 @@ Result<bool> FrameCollector::State::Step() {
   }
   LF_RETURN_IF_ERROR(FinishLoading(&batch_));
   if (next_.begin == next_.end) next_ = BatchFrom(batch_.end);
-  // Files are read by the system while the images before them are decoded.
+  // The system reads files while the images before them are decoded.
   const auto load_or_announce = [this](size_t i) {
     if (i > 0)
       Load(next_, &next_.loading[i - 1]);
@@ -170,7 +170,7 @@ Result<bool> FrameCollector::State::Step() {
   return true;
 }
 
-// The first LF image from `from` on that a frame has still to take.
+// Returns the first LF image from `from` on that a frame or the taker has still to take.
 size_t FrameCollector::State::FirstWanted(size_t from) const {
   uint32_t place = UINT32_MAX;
   for (size_t f = 0; f < progress_.size(); ++f)
@@ -209,7 +209,7 @@ Batch FrameCollector::State::BatchFrom(size_t from) const {
   return batch;
 }
 
-// Those behind the end of the batch.
+// Returns the frames that have not reached the end of the batch.
 std::vector<BatchFrame> FrameCollector::State::FramesOf(const Batch& batch) const {
   std::vector<BatchFrame> frames;
   for (size_t f = 0; f < progress_.size(); ++f)
@@ -222,8 +222,8 @@ void FrameCollector::State::AnnounceUpTo(size_t end) {
   for (; announced_ < end && !IsInterrupted(); ++announced_) store_.Announce(order_[announced_].id);
 }
 
-// Returns the pixels that the frames of the batch need of an LF image. Selection has found them
-// already where all frames take the batch.
+// Returns the pixels that the frames of the batch need of an LF image. If all frames take the
+// batch, selection has already found them.
 PixelRect FrameCollector::State::RectOf(const Batch& batch, const SelectedImage& image) const {
   if (batch.frames.empty()) return image.rect;
   std::vector<size_t> frames;
@@ -271,7 +271,7 @@ Result<void> FrameCollector::State::FinishLoading(Batch* batch) {
       batch->images.push_back({image.id, image.place, std::move(pixels), std::move(opacity)});
       continue;
     }
-    // Only the image itself may be at fault: what the machine lacks is no reason to go on.
+    // Only faults of the image itself are skipped. What the machine lacks would fail other images.
     const Error& error = loading.pixels->error();
     if (options_.strict || error.kind != ErrorKind::kInput) return error;
     if (whole_ && !store_.IsThere(*whole_))
@@ -286,7 +286,7 @@ Result<void> FrameCollector::State::FinishLoading(Batch* batch) {
 }
 
 void FrameCollector::State::Skip(const SelectedImage& image, const Error& error) {
-  // The first are told at once; a report has them all.
+  // The first ones are reported at once; a report lists them all.
   constexpr size_t kTold = 10;
   if (skipped_.size() < kTold) LogWarning("LF image skipped: {}", error.message);
   if (skipped_.size() == kTold)

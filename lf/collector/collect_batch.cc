@@ -9,7 +9,7 @@
 namespace lf {
 namespace {
 
-// Whether a frame is collected is decided once, where its first item comes.
+// Decides once, at the first item of a frame, whether the frame is collected.
 class FrameGate {
  public:
   bool IsOpen(const std::atomic<bool>* interrupted) {
@@ -44,13 +44,13 @@ PixelReach ReachOf(Estimator estimator) {
 size_t PlanBytes(Estimator estimator, bool has_distortion, int image_width, int image_height,
                  int plate_width, int plate_height) {
   const bool is_nearest = estimator == Estimator::kNearest;
-  // Plates that are made finer are never twice as fine as the image.
+  // Plates that are made finer are never more than twice as fine as the image.
   const auto width =
       static_cast<size_t>(is_nearest ? image_width : std::max(plate_width, 2 * image_width));
   const auto height =
       static_cast<size_t>(is_nearest ? image_height : std::max(plate_height, 2 * image_height));
-  // Segments are a few a scanline, but short where distortion bends them; tiles cut them into two
-  // or three.
+  // A scanline has a few segments, which are short if distortion bends them; tiles cut them into
+  // two or three.
   const size_t segment_width = has_distortion ? 64 : 256;
   return height * (2 + width / segment_width) *
          (sizeof(Segment) + (is_nearest ? 3 * sizeof(TilePiece) : 0));
@@ -160,7 +160,8 @@ void BatchCollector::UndoDistortion(std::vector<BatchImage>& batch) {
   ideal_pixels_ = std::move(in_use);
 }
 
-// Long paths through large light fields have few that do. The others are done: they come last.
+// Returns the frames that may take rays of the batch, which are few on long paths through large
+// light fields. The others are done, and are moved behind them.
 std::span<BatchFrame> BatchCollector::FramesThatMayTake(const std::vector<BatchImage>& batch,
                                                         std::span<BatchFrame> frames) {
   ForEachTimed(frames.size(), [&](size_t f) {
@@ -232,7 +233,8 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
         AddToTile(share, task.tile, batch[k].opacity, &sums);
     sums.Flush();
   };
-  // The other items are long ones: what comes last should be short, so that no thread waits.
+  // The other items are long and come first. The last items should be short, so that no thread
+  // waits.
   pool_.ForEach(other_items.count + tasks.size(), [&](size_t i) {
     if (i < other_items.count) {
       other_items.run(i);
@@ -305,7 +307,7 @@ void BatchCollector::AddOpacityByReference(const BatchImage& image, const PixelR
       plate->Add(x, y, SensorPlate::kOpacityChannel, opacity.At(x, y, 0));
 }
 
-// Many together where there are many: asking for the time costs more than a pair that misses.
+// Groups items if there are many, because asking for the time costs more than a pair that misses.
 void BatchCollector::ForEachTimed(size_t count, const std::function<void(size_t)>& body) {
   constexpr size_t kTasksPerThread = 64, kMostItems = 32;
   const size_t tasks_wanted = kTasksPerThread * static_cast<size_t>(pool_.thread_count());

@@ -29,28 +29,29 @@
 
 namespace lf {
 
-// Who asks whom (doc/ray.md, "What is added"): every LF pixel looks for its element, or every
-// element for its place in each LF image, which must be RGB.
+// How rays are found (doc/ray.md, "What is added"). kNearest: every LF pixel looks for its element.
+// kBilinear: every element looks for its position in each LF image, which must be RGB.
 enum class Estimator { kNearest, kBilinear };
 
-// "nearest", "bilinear"
+// Returns "nearest" or "bilinear".
 const char* NameOf(Estimator estimator);
 
 // How rays are made of pixels.
 struct RayReading {
   Estimator estimator = Estimator::kNearest;
-  PixelFilter filter = PixelFilter::kAuto;  // of kBilinear
+  PixelFilter filter = PixelFilter::kAuto;  // for kBilinear
 };
 
-// Which pixels of an LF image its rays need, for selection.
+// Returns which pixels of an LF image its rays need, for selection.
 PixelReach ReachOf(Estimator estimator);
 
-// kReference asks the law of every pixel, on one thread: the judge, some 50 times slower.
+// kReference applies the ray model to every pixel, on one thread. It is some 50 times slower, and
+// judges kFast.
 enum class CollectBackEnd { kFast, kReference };
 
 struct FrameRays {
   uint64_t image_count = 0;   // LF images with an accepted ray
-  uint64_t tested_count = 0;  // pixels of their rectangles
+  uint64_t tested_count = 0;  // pixels of the rectangles of all LF images
   uint64_t accepted_count = 0;
 };
 
@@ -59,13 +60,13 @@ struct BatchImage {
   uint32_t place = 0;  // in the order of the LF images
   LfPixels pixels;
   LfPixels opacity = {};  // of these pixels, for plates that have it (LfPixels::TakeOpacity)
-  // Filled by BatchCollector: of a camera with lens distortion the first two.
+  // Filled by BatchCollector. Without lens distortion there are no cells and no ideal pixels.
   std::shared_ptr<const std::vector<IdealCell>> cells = nullptr;
   std::shared_ptr<const IdealPixels> ideal_pixels = nullptr;
   std::optional<ImageOverlap> overlap = std::nullopt;
 };
 
-// A frame that takes those images of a batch whose places it says.
+// A frame that takes the images of a batch whose places are in `places`.
 struct BatchFrame {
   size_t frame = 0;
   PlaceRange places;
@@ -79,19 +80,21 @@ struct OtherItems {
   std::function<void(size_t)> run;
 };
 
-// What is planned for the rays of one LF image in one frame, about. nearest goes by the scanlines
-// of the image, bilinear by those of the plate, or of the image where that is finer.
+// Returns about how many bytes the plan of the rays of one LF image in one frame takes. nearest
+// plans the scanlines of the image. bilinear plans those of the plate, or of a finer plate that is
+// at most twice as fine as the image.
 size_t PlanBytes(Estimator estimator, bool has_distortion, int image_width, int image_height,
                  int plate_width, int plate_height);
 
-// What rays of an LF image count in a frame; 0: the image takes no part in it. Empty: 1.
+// Returns the weights of the rays of an LF image in a frame; 0 if the image takes no part in it. An
+// empty function stands for 1.
 using FrameImageWeights = std::function<RayWeights(size_t frame, LfImageId id)>;
 
 class BatchCollector {
  public:
-  // plan_bytes    of frames planned together; one may take more
-  // whole_images  instead of their rectangles
-  // moments       one per frame, of plates of their sizes; null: none are kept
+  // plan_bytes    of the plans of frames that are planned together; one frame may take more
+  // whole_images  take whole images instead of their rectangles
+  // moments       one per frame, for plates of their sizes; null: none are kept
   BatchCollector(const LightField& light_field, std::span<const RenderCamera> frames,
                  const RayReading& reading, CollectBackEnd back_end, FrameImageWeights weights,
                  size_t plan_bytes, bool whole_images, ThreadPool& pool,
@@ -107,14 +110,14 @@ class BatchCollector {
   // image has no weight need none.
   PixelRect RectOf(LfImageId id, std::span<const size_t> frames) const;
 
-  // CPU seconds spent on batches so far, all threads, other items left out.
+  // CPU seconds that all threads have spent on batches so far, without other items.
   double cpu_seconds() const { return static_cast<double>(cpu_ns_.load()) * 1e-9; }
 
  private:
-  // Of one LF image in one frame.
+  // One LF image in one frame.
   struct Share {
     PixelRect rect;
-    ScatterPlan scatter;  // of the estimator in use
+    ScatterPlan scatter;  // planned if the estimator is nearest, otherwise `gather`
     GatherPlan gather;
     RayWeights weights;
     std::atomic<uint64_t> accepted_count = 0;
@@ -149,8 +152,8 @@ class BatchCollector {
   std::vector<SensorPlate>& plates_;
   std::vector<NoiseMoments>* moments_;
   std::vector<std::vector<PlateTile>> tiles_;
-  std::deque<Share> shares_;  // of (frame, LF image); their memory serves batch after batch
-  // By index of intrinsics; those of the last batch.
+  std::deque<Share> shares_;  // of (frame, LF image); their memory is used again in every batch
+  // Ideal pixels for the cameras of the last batch, by index of intrinsics.
   std::map<uint32_t, std::shared_ptr<const IdealPixels>> ideal_pixels_;
   std::atomic<int64_t> cpu_ns_ = 0;
 };

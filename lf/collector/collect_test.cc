@@ -32,7 +32,8 @@ Outcome CollectAll(const NoiseStore& store, int threads, CollectOptions options,
   return {std::move(plates), std::move(statistics)};
 }
 
-// Half of the cameras through one lens that bends rays, some through their own.
+// Half of the cameras have no distortion. The others have one of five lenses, most of them the
+// first.
 LightField DistortedField() {
   LightField field = testing::NoiseField();
   for (uint32_t i = 0; i < 5; ++i) {
@@ -68,7 +69,7 @@ TEST(Collect, FramesThatPassByTakeWhatTheyTakeAlone) {
   std::vector<RenderCamera> frames;
   for (int i = 0; i < 20; ++i) {
     frames.push_back(NoiseFrames()[i % 3]);
-    // From beside the LF cameras, across them, to the other side.
+    // The frames go from one side of the LF cameras across them to the other.
     frames.back().pinhole.cam_from_world =
         *LookAlong({0.012 * (i - 10), 0, 0}, {0, 0, 1}, {0, -1, 0});
     frames.back().aperture.radius_w = 0.006;

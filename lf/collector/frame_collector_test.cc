@@ -34,7 +34,7 @@ struct Job {
   }
 };
 
-// Frame f alone, of places [0, end) of the order.
+// Collects frame f alone, from places [0, end) of the order.
 SensorPlate PlateOf(Job& job, size_t f, uint32_t end, FrameRays* rays) {
   std::vector<SensorPlate> plates;
   plates.emplace_back(80, 60);
@@ -116,7 +116,7 @@ TEST(FrameCollector, FramesThatStartApartCatchUp) {
   job.store.on_load = [&](LfImageId, const PixelRect&) { ++load_count; };
   FrameCollector collector = job.Collector();
   while (*collector.Step()) continue;
-  // Once each, but for those that no frame behind needs.
+  // Each image is loaded at most once, and those that no frame still needs are not loaded.
   EXPECT_LE(load_count, job.order.size());
   EXPECT_GT(load_count, job.order.size() - 37);
   ExpectPlates(job, collector.frames());
@@ -235,7 +235,7 @@ TEST(FrameCollector, InterruptedAnywhereEveryFrameIsConsistent) {
     ExpectPlates(job, collector.frames());
     ExpectRays(job, collector.frames());
 
-    // This one may go on, after a look at the plates, or another.
+    // Either this collector goes on after a look at the plates, or another one does.
     interrupted = false;
     if (delay_us % 2000 == 0) {
       while (*collector.Step()) continue;

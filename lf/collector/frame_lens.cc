@@ -31,14 +31,15 @@ FrameLens::FrameLens(const ImageIndex& index, const RenderCamera& frame, LensWei
   grown.aperture = {frame.aperture.radius_w + kReach_distances * camera_distance_w_, 0, 0};
   for (const SelectedImage& image : SelectImages(index, std::span(&grown, 1), select, pool))
     cameras_[image.id.value] = 0;
-  // In the order of their numbers: the order in which images are taken has no say in weights.
+  // Cameras are in the order of their numbers, because weights must not depend on the order of
+  // images.
   std::vector<Vec3> near;
   for (auto& [id, camera] : cameras_) {
     camera = near.size();
     near.push_back(light_field_.Camera(LfImageId{id}).CentreWorld());
   }
   weights_.emplace(frame, near, kind, pool, light_field_.encoding.masks_clipped);
-  // A little more, so that what lies on the rim is inside.
+  // The lens is made a little larger, so that rays on its rim are inside.
   camera_.aperture = {weights_->reach_w() * (1 + 1e-6), 0, 0};
 }
 

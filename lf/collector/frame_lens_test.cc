@@ -13,7 +13,7 @@
 namespace lf {
 namespace {
 
-// What a plate of the reference would be: every image with its weights.
+// Collects every image with its weights.
 std::vector<SensorPlate> Collected(const LightField& field, const std::vector<FrameLens>& lenses,
                                    Estimator estimator, CollectBackEnd back_end, int threads,
                                    uint64_t seed) {
@@ -81,8 +81,8 @@ TEST(FrameLens, PlatesAreThoseOfTheReferenceForAnyThreadsAndOrder) {
     }
 }
 
-// Before, behind and in the lens plane, tilted, with polygons, near and far: weighed rays of pixels
-// that selection left out would be missing.
+// The LF cameras are before, behind and in the lens plane; frames are tilted, with polygons, near
+// and far. If selection left out pixels of rays with a weight, these rays would be missing.
 TEST(FrameLens, SelectionLeavesOutNoRayWithAWeight) {
   const LightField field = testing::NoiseField();
   const testing::NoiseStore store;
@@ -152,8 +152,8 @@ TEST(FrameLens, ImagesBesideTheLensTakePartAndThoseFarAwayDoNot) {
   EXPECT_LT(lens.facts()->coverage.uncovered_share, 0.1);
 }
 
-// LF images of even brightness each, that differ by up to a tenth: the picture changes from element
-// to element no more than smoothly where images begin and end.
+// LF images are uniform, and their brightness differs by up to a tenth. The picture must change
+// only smoothly from element to element where images begin and end.
 TEST(FrameLens, BordersOfLfImagesLeaveNoSeam) {
   class EvenStore : public testing::NoiseStore {
    public:
@@ -209,7 +209,7 @@ TEST(FrameLens, BordersOfLfImagesLeaveNoSeam) {
   EXPECT_GT(without, 2.5 * with);
 }
 
-// Against sums over the weights themselves, where every image holds all of the frame.
+// The judge are sums over the weights themselves, for frames that every image holds wholly.
 TEST(FrameLens, EffectiveCountsAreThoseOfTheWeights) {
   ThreadPool pool(2);
   const LightField field = testing::NoiseField(15);

@@ -1,4 +1,4 @@
-// Something beside the plates that LF images are read for, out of the same queue.
+// Takes LF images from the queue that is read for the plates, for something else.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +14,13 @@ class ImageTaker {
  public:
   virtual ~ImageTaker() = default;
 
-  // All LF images at places before it are taken; as FrameProgress.
+  // All LF images at places before this one are taken, as in FrameProgress.
   virtual uint32_t places_done() const = 0;
-  // The pixels that it wants of the LF image at that place; empty: none. Any thread may ask, for
-  // images yet to come.
+  // Returns the pixels that it needs of the LF image at that place; empty: none. Any thread may
+  // ask, for images that are yet to come.
   virtual PixelRect RectOf(LfImageId id, uint32_t place) const = 0;
-  // LF images of a batch, by ascending places from places_done() on, with at least these pixels;
-  // all others before place_end are not wanted, or broken.
+  // Takes the LF images of a batch, by ascending places from places_done() on, with at least the
+  // pixels that RectOf() gave. All other images before place_end are not needed, or broken.
   virtual void Take(std::span<const BatchImage> images, uint32_t place_end) = 0;
 };
 

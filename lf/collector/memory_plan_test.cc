@@ -51,7 +51,7 @@ TEST(MemoryPlan, BatchesAreNoLargerThanPays) {
   EXPECT_LT(images(600, 960, 640, 2), 20u);
 }
 
-// 24 megapixels: what is planned for one batch in one frame would be as much as the images.
+// Images of 24 megapixels: the plans of one batch in one frame would be as large as the images.
 TEST(MemoryPlan, LargeImagesAndManyThreadsCount) {
   const LightField field = Field(6000, 4000);
   const MemoryPlan few = *PlanMemory(4096 * kMiB, field, Estimator::kNearest, 1920, 1080, 900, 2);

@@ -18,12 +18,12 @@ using Int128 = __int128;
 constexpr int kMoments = 4;         // numbers of an element and channel
 constexpr size_t kMostDigits = 30;  // of a number below 2^120
 
-// Numbers of a text, one after the other: without signs and leading zeros, one space between.
+// Reads the numbers of a text: without signs and leading zeros, with one space between.
 class HexReader {
  public:
   explicit HexReader(std::string_view text) : rest_(text) {}
 
-  // None if there is no such number.
+  // Returns the next number; none if there is no such number.
   std::optional<UInt128> Next() {
     if (count_++ > 0) {
       if (rest_.empty() || rest_.front() != ' ') return std::nullopt;
@@ -65,9 +65,9 @@ bool CanBe(const ElementSum& total, const ElementMoments& moments) {
 
 double StandardErrorOfMean(const ElementSum& total, const ElementMoments& moments) {
   if (moments.image_count < 2) return std::numeric_limits<double>::infinity();
-  // Moments about the nearest integer to the mean first, exact: T_i = S_i - m0 W_i. What is left to
-  // floating point is m - m0, at most 1/2. Unsigned numbers may wrap on the way; results are below
-  // 2^122 and so, taken as signed, right.
+  // The moments about m0, the integer nearest to the mean, are exact: T_i = S_i - m0 W_i. Only m -
+  // m0, at most 1/2, is left to floating point. Unsigned numbers may wrap on the way, but results
+  // are below 2^122, and right when taken as signed numbers.
   const UInt128 mean = (total.sum + total.count / 2) / total.count;
   const UInt128 count_squares = moments.count_squares;
   const UInt128 squares =

@@ -1,9 +1,9 @@
 // Exact second moments of what LF images add to an element, for the standard error of the element's
 // mean. They are kept for some elements that are spread over the plate.
 //
-// Rays of one LF image are alike: neighbouring pixels, or several samples of one pixel. So the LF
-// image is the independent unit. Image i adds the sum S_i and the count W_i to an element and
-// channel (plate/sensor_plate.h; with lens weights W_i is a sum of weights), and
+// Rays of one LF image are similar: they are neighbouring pixels, or several samples of one pixel.
+// The independent unit is therefore the LF image. Image i adds the sum S_i and the count W_i to an
+// element and channel (plate/sensor_plate.h; with lens weights W_i is a sum of weights), and
 //
 //   m = sum S_i / sum W_i
 //   variance of m = n / (n - 1) * sum (S_i - m W_i)^2 / (sum W_i)^2
@@ -46,20 +46,20 @@ struct ElementMoments {
   friend bool operator==(const ElementMoments&, const ElementMoments&) = default;
 };
 
-// Returns the standard error of the mean in units of the rays' values v; infinity if n < 2. The
-// same bits on every machine.
-//   total  sum S_i and sum W_i: what the plate holds
+// Returns the standard error of the mean in units of the rays' values v; infinity if n < 2. It has
+// the same bits on every machine.
+//   total  sum S_i and sum W_i, from the plate
 double StandardErrorOfMean(const ElementSum& total, const ElementMoments& moments);
 
 class NoiseMoments {
  public:
-  // The elements that are measured are at most so many, whatever the size of the plate.
+  // Largest numbers of measured columns and rows, whatever the size of the plate.
   static constexpr int kMostColumns = 48;
   static constexpr int kMostRows = 32;
   static constexpr size_t kMostBytes =
       size_t{kMostColumns} * kMostRows * SensorPlate::kChannels * sizeof(ElementMoments);
 
-  // No plate, no elements.
+  // Makes moments without plate and elements.
   NoiseMoments() = default;
   // Elements in even columns and rows over a plate of this size, in the middle of equal rectangles.
   NoiseMoments(int plate_width, int plate_height);
@@ -72,16 +72,16 @@ class NoiseMoments {
   // Returns the indices of the elements that lie in `rect`, ascending.
   std::vector<size_t> IndicesIn(const PixelRect& rect) const;
 
-  // Adds what one LF image added to an element: all of it at once. Threads may add to different
-  // elements at the same time.
+  // Adds what one LF image added to an element, all at once. Threads may add to different elements
+  // at the same time.
   void AddImage(size_t index, int channel, const ElementSum& of_image);
 
   // Returns columns, rows and the four moments of every element and channel as hexadecimal numbers
   // with a space between, at most 420 kB. Read() gets the same moments back.
   std::string Text() const;
-  // Returns the moments of a plate, for which `text` was written. kInput: it was not, or it is
-  // damaged: numbers are missing, or cannot be the moments of what the plate holds. The message
-  // says what is wrong and where in the text; the caller names the file.
+  // Returns the moments of a plate from the text that was written for it. kInput if the text is of
+  // another plate or damaged: numbers are missing, or cannot be the moments of what the plate
+  // holds. The message says what is wrong and where in the text; the caller names the file.
   static Result<NoiseMoments> Read(std::string_view text, const SensorPlate& plate);
 
   friend bool operator==(const NoiseMoments&, const NoiseMoments&) = default;
@@ -103,7 +103,7 @@ class NoiseTally {
 
   std::span<const PlateElement> elements() const { return elements_; }
 
-  // Takes the totals as they are before the first LF image; without it they are 0.
+  // Takes the totals as they are before the first LF image. They are 0 if this is not called.
   //   total_of(i, channel)  gives the ElementSum of elements()[i]
   template <class TotalOf>
   void Start(const TotalOf& total_of) {

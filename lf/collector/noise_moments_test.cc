@@ -30,7 +30,7 @@ struct ImageSums {
     return moments.At(0, 0);
   }
   double StandardError() const { return StandardErrorOfMean(Total(), Moments()); }
-  // By the definition, in two passes of double precision.
+  // Computes the standard error by its definition, in two passes of double precision.
   double TwoPass() const {
     double sum = 0, count = 0, n = 0, squares = 0;
     for (const ElementSum& one : images) {
@@ -67,7 +67,7 @@ TEST(NoiseMoments, GiveTheStandardErrorOfTwoPasses) {
 }
 
 TEST(NoiseMoments, KnownAnswers) {
-  // Two images of one ray: half of their difference. The count of both makes no difference.
+  // For two images of one ray it is half of their difference, whatever both count.
   EXPECT_EQ((ImageSums{{{100, 1}, {300, 1}}}).StandardError(), 100);
   EXPECT_EQ((ImageSums{{{25500, 255}, {76500, 255}}}).StandardError(), 100);
   // LF images with the same mean, which is no integer, have no noise, whatever they count.
@@ -203,7 +203,7 @@ TEST(NoiseMoments, AreReadAsTheyWereWritten) {
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(*read, all.moments[1]);
   EXPECT_TRUE(text.starts_with("30 20 "));
-  // Any wrong number is noticed where it cannot be.
+  // A wrong number is noticed if it cannot be a moment of the plate.
   EXPECT_FALSE(NoiseMoments::Read(text, all.plates[0]));
   EXPECT_FALSE(NoiseMoments::Read(text.substr(0, text.size() / 2), all.plates[1]));
   EXPECT_FALSE(NoiseMoments::Read(text + " 0", all.plates[1]));
@@ -214,7 +214,7 @@ TEST(NoiseMoments, AreReadAsTheyWereWritten) {
     const Result<NoiseMoments> of_one = NoiseMoments::Read("1 1" + moments, plate);
     return of_one ? std::string("good") : of_one.error().message;
   };
-  const std::string rest = " 0 0 0 0 0 0 0 0";  // of channels without a ray
+  const std::string rest = " 0 0 0 0 0 0 0 0";  // channels without a ray
   // S = 100, 200 and W = 1, 2: 50000, 500, 5, 2.
   EXPECT_EQ(one(" c350 1f4 5 2" + rest), "good");
   EXPECT_NE(one(" c350 1f4 5 2"), "good");

@@ -42,7 +42,7 @@ TEST(NoiseRule, IsAskedEightTimesForEachDoubling) {
     if (place >= 16) {
       EXPECT_LE(next - place, place / 8);
     }
-    // Rebinned rays are looked at anew at 64, 256, 1024, ...: no batch goes across.
+    // Rebinned rays are looked at anew at 64, 256, 1024, ...: no batch may cross these places.
     for (uint32_t phase = 64; phase < 1'000'000; phase *= 4)
       EXPECT_FALSE(place < phase && phase < next) << phase;
     place = next;
@@ -70,7 +70,7 @@ TEST(NoiseRule, NineOfTenReachableElementsAnswer) {
     moments.AddImage(i, c, {value, 1});
   };
   EXPECT_TRUE(std::isinf(MeasureNoise(plate, moments, reachable)));
-  // Element k of them has noise k + 1 in its blue, and less in the others.
+  // Reached element k has noise k + 1 in blue, and less in the other channels.
   for (size_t k = 0; k < reached.size(); ++k)
     for (int c = 0; c < 3; ++c) {
       add(reached[k], c, 2000);
@@ -78,7 +78,7 @@ TEST(NoiseRule, NineOfTenReachableElementsAnswer) {
     }
   const auto expected = static_cast<double>(reached.size() - reached.size() / 10);
   EXPECT_NEAR(MeasureNoise(plate, moments, reachable), expected, 1);
-  // One channel with a single LF image in more than a tenth of them.
+  // In more than a tenth of them, one channel has a single LF image.
   plate = SensorPlate(160, 80);
   moments = NoiseMoments(160, 80);
   for (size_t k = 0; k < reached.size(); ++k)

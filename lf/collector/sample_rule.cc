@@ -20,16 +20,17 @@ namespace {
 // An LF camera, prepared to be asked for rays through points.
 struct Viewer {
   RayThrough ray;
-  double border_px;  // of the image, which rays keep away from
+  double border_px;  // distance that rays keep from the border of the image
   RayWeights weights;
 };
 
-// Of all that an element's ray is made of, about.
+// Returns about how far an element's ray reaches to each side of its position in the image, in
+// pixels.
 double BorderOf(const PinholeCamera& lf_camera, const RenderCamera& camera, PixelFilter filter) {
   return 0.5 + 0.5 * (SamplingOf(lf_camera, camera, filter).samples - 1);
 }
 
-// Whether the LF image has a ray through X and the lens (doc/ray.md, 2, 3, 5).
+// True if the LF image has a ray through X and the lens (doc/ray.md, 2, 3, 5).
 bool Sees(const Viewer& viewer, const RenderCamera& camera, const Vec3& point_world) {
   const PinholeCamera& lens = camera.pinhole;
   const Vec3 forward = lens.ForwardWorld();
@@ -52,7 +53,7 @@ uint64_t LeastCount(const SensorPlate& plate, int x, int y) {
   return least;
 }
 
-// How many elements may have less than the rule asks for.
+// Returns how many elements may have fewer rays than the rule asks for.
 size_t MayLack(size_t count) {
   return static_cast<size_t>((1 - kMostElements) * static_cast<double>(count));
 }

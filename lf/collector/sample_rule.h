@@ -1,5 +1,4 @@
-// How many rays the elements of a frame have, measured so that a frame may stop, or be refused:
-// "samples>=8".
+// How many rays the elements of a frame have. The rule "samples>=8" stops or refuses a frame by it.
 #pragma once
 
 #include <cstdint>
@@ -19,20 +18,21 @@
 
 namespace lf {
 
-// N of "samples>=N", 1 to 2^24 - 1. kUsage names the option.
+// Returns N of "samples>=N", from 1 to 2^24 - 1. kUsage if the text is no such rule; the message
+// names the option.
 Result<uint32_t> ParseSampleRule(const std::string& text, const std::string& option);
 
-// A rule is met when this share of the elements that can have rays do have N, in every channel.
+// A rule is met if this share of the elements that can have rays have N in every channel.
 inline constexpr double kMostElements = 0.99;
 
-// Which elements can have rays: those whose focus point is seen by an LF image, through the lens.
-// Asked of every 8th element in both directions, which answers for those around it.
+// The elements that can have rays: an LF image sees their focus point through the lens. Every 8th
+// element in both directions is tested, and its answer holds for those around it.
 class ReachableElements {
  public:
   static constexpr int kGrid = 8;  // elements
 
-  // places  which LF images of the index's order count
-  // filter  where select.reach is that of bilinear
+  // places   the places of the index's order whose LF images count
+  // filter   used if select.reach is that of bilinear
   // weights  what an LF image counts in the frame; empty: rays through the lens count 1. Rays that
   //          count 0 reach nothing.
   ReachableElements(const ImageIndex& index, const RenderCamera& camera, const PlaceRange& places,
@@ -43,7 +43,7 @@ class ReachableElements {
     return is_reachable_[static_cast<size_t>(y / kGrid) * columns_ + x / kGrid] != 0;
   }
   size_t count() const { return count_; }              // elements
-  size_t image_count() const { return image_count_; }  // LF images of these places
+  size_t image_count() const { return image_count_; }  // selected LF images at these places
 
  private:
   size_t columns_ = 0;
@@ -52,13 +52,13 @@ class ReachableElements {
   size_t image_count_ = 0;
 };
 
-// At which multiples of places a frame is asked: 64 where it takes every LF image of a light field,
-// 64 * 2^k where it takes one in 2^k, so that about 64 of its own lie between. Those of any two
-// frames divide each other.
+// Returns the number at whose multiples, in places, a frame is asked for its samples: 64 if it
+// takes every LF image of a light field, 64 * 2^k if it takes one in 2^k, so that about 64 of its
+// own images lie between. The numbers of any two frames divide each other.
 uint32_t DecisionPlaces(size_t light_field_image_count, size_t frame_image_count);
 
-// Whether kMostElements of the reachable elements have at least `samples` rays in every channel;
-// so they have where none is reachable. Quick where it is far from so.
+// True if kMostElements of the reachable elements have at least `samples` rays in every channel, or
+// if none is reachable. Quick if far fewer elements have them.
 bool HasSamples(const SensorPlate& plate, const ReachableElements& reachable, uint32_t samples);
 
 // The share of reachable elements that have `samples` rays in every channel (1 where none is

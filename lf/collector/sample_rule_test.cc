@@ -35,7 +35,7 @@ TEST(SampleRule, ElementsAreReachableWhereTheyGetRays) {
   const testing::NoiseStore store;
   ThreadPool pool(2);
   for (RenderCamera camera : testing::NoiseFrames()) {
-    // Wide enough that its borders are seen by no LF image.
+    // The view is so wide that no LF image sees its borders.
     camera.pinhole.intrinsics = {60, 60, 80, 40, 0, 160, 80};
     SensorPlate plate(160, 80);
     for (uint32_t i = 0; i < field.size(); ++i) {

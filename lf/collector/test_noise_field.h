@@ -58,7 +58,7 @@ class NoiseStore : public LfImageStore {
   ErrorKind broken_kind = ErrorKind::kInput;
   std::vector<uint32_t> without_memory;
   std::function<void(LfImageId, const PixelRect&)> on_load;
-  mutable std::vector<uint32_t> announced;  // one thread at a time does
+  mutable std::vector<uint32_t> announced;  // only one thread announces at a time
 
   Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override {
     EXPECT_FALSE(rect.empty());
