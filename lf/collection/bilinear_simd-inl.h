@@ -1,5 +1,5 @@
-// Rays through four pixels, added to their elements, several at once.
-// Internal to collection. For each instruction set Highway includes it once more.
+// Adds several rays at once to their elements, each interpolated between four pixels. Internal to
+// collection. Highway includes this file once for each instruction set.
 #if defined(LF_COLLECTION_BILINEAR_SIMD_INL_H_) == \
     defined(HWY_TARGET_TOGGLE)  // NOLINT: Highway's guard
 #ifdef LF_COLLECTION_BILINEAR_SIMD_INL_H_
@@ -22,10 +22,11 @@ namespace lf {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Sums of 65535 * 65536 and the half that rounds just fit into 32 bits.
+// A sum of 65535 * 65536 and kHalf, which rounds it, just fits into 32 bits.
 constexpr uint32_t kHalf = kOne * kOne / 2;
 
-// Weights and sums are those of the elements from the first one on.
+// AddRays() adds kRaysAtOnce rays of `places`, from ray i on, to the elements of the same index in
+// `sums`. The index of `weights` is the same. AddRay() adds one ray.
 #if HWY_TARGET == HWY_SCALAR
 
 constexpr int kRaysAtOnce = 1;
@@ -52,7 +53,7 @@ using AllLanes = hn::CappedTag<uint32_t, 16>;
 using LanesOfOne = hn::Full128<uint32_t>;
 constexpr int kRaysAtOnce = static_cast<int>(hn::MaxLanes(AllLanes())) / LfPixels::kRgbLanes;
 
-// Two pixels side by side for each ray, in a block of 128 bits.
+// Loads two adjacent pixels for each ray into a block of 128 bits.
 HWY_ATTR HWY_INLINE hn::Vec<hn::Full128<uint16_t>> LoadPairs(hn::Full128<uint16_t> d,
                                                              const uint16_t* values,
                                                              const int32_t* pixel) {
@@ -65,7 +66,7 @@ HWY_ATTR HWY_INLINE hn::Vec<D> LoadPairs(D d, const uint16_t* values, const int3
   return hn::Combine(d, LoadPairs(half, values, pixel + kBlocks), LoadPairs(half, values, pixel));
 }
 
-// weights[k] in all lanes of block k.
+// Returns weights[k] in all lanes of block k.
 template <class D>
 HWY_ATTR HWY_INLINE hn::Vec<D> LoadWeights(D d, const uint32_t* weights) {
   if constexpr (hn::MaxLanes(d) == 4) {
@@ -82,13 +83,13 @@ HWY_ATTR HWY_INLINE hn::Vec<D> LoadWeights(D d, const uint32_t* weights) {
   }
 }
 
-// first * (256 - weight) + second * weight, modulo 2^32.
+// Returns first * (256 - weight) + second * weight, modulo 2^32.
 template <class V>
 HWY_ATTR HWY_INLINE V Mix(V first, V second, V weight) {
   return hn::Add(hn::ShiftLeft<kWeightBits>(first), hn::Mul(hn::Sub(second, first), weight));
 }
 
-// Of two pixels in each block, those of each lane side by side.
+// Puts the same lanes of the two pixels in each block side by side.
 template <class D16>
 HWY_ATTR HWY_INLINE hn::Vec<D16> SideBySide(D16 d16, hn::Vec<D16> pairs) {
   HWY_ALIGN static constexpr uint8_t kBytes[16] = {0, 1, 8,  9,  2, 3, 10, 11,
@@ -97,7 +98,7 @@ HWY_ATTR HWY_INLINE hn::Vec<D16> SideBySide(D16 d16, hn::Vec<D16> pairs) {
   return hn::BitCast(d16, hn::TableLookupBytes(hn::BitCast(d8, pairs), hn::LoadDup128(d8, kBytes)));
 }
 
-// Of as many rays, from `i` on, as there are blocks in the vector.
+// Adds rays from `i` on, as many as there are blocks in the vector.
 template <class D, class Weights>
 HWY_ATTR HWY_INLINE void AddRaysOf(D d, const Places& places, int i, const uint16_t* values,
                                    ptrdiff_t row_values, const Weights& weights,
@@ -116,7 +117,7 @@ HWY_ATTR HWY_INLINE void AddRaysOf(D d, const Places& places, int i, const uint1
   };
   const auto sum =
       Mix(mix_row(values), mix_row(values + row_values), LoadWeights(d, places.lower + i));
-  // All weights together, 65536, times kMiddle make the highest bit.
+  // Adds kMiddle back, times all weights together, which are 65536: the highest bit.
   constexpr uint32_t kBack = uint32_t{kMiddle} * kOne * kOne + kHalf;
   auto rays = hn::ShiftRight<2 * kWeightBits>(hn::Add(sum, hn::Set(d, kBack)));
   if constexpr (!Weights::kIsOne) rays = hn::Mul(rays, weights.OfPixels(d, i));

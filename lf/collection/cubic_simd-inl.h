@@ -1,5 +1,6 @@
-// One ray through sixteen pixels by the weights of cubic_weights.h, added to its element.
-// Internal to collection. For each instruction set Highway includes it once more.
+// Adds one ray to its element, interpolated between sixteen pixels by the weights of
+// cubic_weights.h. Internal to collection. Highway includes this file once for each instruction
+// set.
 #if defined(LF_COLLECTION_CUBIC_SIMD_INL_H_) == \
     defined(HWY_TARGET_TOGGLE)  // NOLINT: Highway's guard
 #ifdef LF_COLLECTION_CUBIC_SIMD_INL_H_
@@ -25,10 +26,11 @@ namespace lf {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// The weights of cubic_weights.h as the kernels take them, by steps.
+// The weights of cubic_weights.h in the layout of the kernels, by steps.
 struct CubicTables {
   HWY_ALIGN int16_t down[kCubicSteps + 1][4];
-  // Four times each, for the lanes of a pixel; those of pixel k from kPlaces[k] on.
+  // Each weight is here four times, for the lanes of a pixel. The weights of pixel k begin at
+  // kPlaces[k].
   static constexpr int kPlaces[] = {0, 8, 4, 12};
   HWY_ALIGN int32_t right[kCubicSteps + 1][16];
 
@@ -51,7 +53,8 @@ inline const CubicTables& TablesOfCubics() {
 
 #if HWY_TARGET == HWY_SCALAR
 
-// The sixteen pixels from `first` on; steps right and down of the inner four.
+// Adds a ray through the sixteen pixels that begin at `first`. `right` and `down` are steps from
+// the upper left of the inner four.
 template <class Weights>
 HWY_INLINE void AddCubicRay(const CubicTables& tables, uint32_t right, uint32_t down,
                             const uint16_t* first, ptrdiff_t row_values, const Weights& weights,
@@ -74,16 +77,16 @@ HWY_INLINE void AddCubicRay(const CubicTables& tables, uint32_t right, uint32_t 
 
 using SixteenTag = hn::CappedTag<int32_t, 8>;
 
-// Of the rows 0 and 1, and of 2 and 3, side by side for each lane: for the first and for the second
-// pixel of every block.
+// Weights of rows 0 and 1, and of rows 2 and 3, side by side for each lane: `low` for the first
+// pixel of every block, `high` for the second.
 template <class V16>
 struct ColumnWeights {
   V16 low[2];
   V16 high[2];
 };
 
-// Of the two pixels of each block: the columns from the first row on, less kMiddle; those of the
-// first pixel of each block in `low`, those of the second in `high`.
+// Mixes the columns of the two pixels of each block, less kMiddle, from the first row on: the first
+// pixel of each block into `low`, the second into `high`.
 template <int kShift, class D16, class V16, class V32>
 HWY_ATTR HWY_INLINE void MixColumns(D16 d16, const ColumnWeights<V16>& weights,
                                     const uint16_t* first, ptrdiff_t row_values, V32* low,
@@ -108,7 +111,7 @@ HWY_ATTR HWY_INLINE void MixColumns(D16 d16, const ColumnWeights<V16>& weights,
   *high = hn::ShiftRight<kShift>(*high);
 }
 
-// The columns of all sixteen, from the first on, added up.
+// Returns the sum of the mixed columns of all sixteen pixels, which begin at `first`.
 template <int kShift, class D, class V16>
 HWY_ATTR HWY_INLINE hn::Vec<hn::Full128<int32_t>> MixSixteen(D d, const ColumnWeights<V16>& down,
                                                              const int32_t* right,
@@ -133,7 +136,8 @@ HWY_ATTR HWY_INLINE hn::Vec<hn::Full128<int32_t>> MixSixteen(D d, const ColumnWe
   }
 }
 
-// The sixteen pixels from `first` on; steps right and down of the inner four.
+// Adds a ray through the sixteen pixels that begin at `first`. `right` and `down` are steps from
+// the upper left of the inner four.
 template <class Weights>
 HWY_ATTR HWY_INLINE void AddCubicRay(const CubicTables& tables, uint32_t right, uint32_t down,
                                      const uint16_t* first, ptrdiff_t row_values,

@@ -1,11 +1,12 @@
-// The weights of Catmull and Rom's cubic interpolation as integers, so that the same bits come out
-// everywhere. Internal to collection.
+// The weights of Catmull and Rom's cubic interpolation as integers, so that results have the same
+// bits everywhere. Internal to collection.
 //
-// Of sixteen pixels p, in rows of four, first the columns are mixed,
+// The columns of sixteen pixels p, in rows of four, are mixed first:
 //   column_k = round((d0 p_0k + d1 p_1k + d2 p_2k + d3 p_3k) / 2^8),   d = CubicTapsAt(down, 12)
-// then value = round((c0 column_0 + c1 column_1 + c2 column_2 + c3 column_3) / 2^15),
-// c = CubicTapsAt(right, 11), clipped to 16 bits. Exact where all pixels are alike. 32 bits hold
-// all of it for p less 2^15.
+// The value is then made of the columns,
+//   round((c0 column_0 + c1 column_1 + c2 column_2 + c3 column_3) / 2^15)
+// with c = CubicTapsAt(right, 11), and clipped to 16 bits. It is exact if all pixels are equal. 32
+// bits hold all of it if p is taken less 2^15.
 #pragma once
 
 #include <array>
@@ -21,10 +22,11 @@ inline constexpr int kCubicSteps = 256;  // from a pixel to the next
 
 using CubicTaps = std::array<int32_t, 4>;
 
-// Of the pixels -1, 0, 1, 2 at `step` / kCubicSteps from pixel 0 to 1; their sum is 2^bits.
+// Weights of the pixels -1, 0, 1, 2 at `step` / kCubicSteps of the way from pixel 0 to pixel 1.
+// Their sum is 2^bits.
 constexpr CubicTaps CubicTapsAt(int step, int bits) {
   const int64_t t = step, one = kCubicSteps;
-  // Times 2 kCubicSteps^3.
+  // The exact weights times 2 kCubicSteps^3.
   const std::array<int64_t, 4> exact = {-t * t * t + 2 * one * t * t - one * one * t,
                                         3 * t * t * t - 5 * one * t * t + 2 * one * one * one,
                                         -3 * t * t * t + 4 * one * t * t + one * one * t,
@@ -33,7 +35,7 @@ constexpr CubicTaps CubicTapsAt(int step, int bits) {
   CubicTaps taps{};
   for (int i = 0; i < 4; ++i)
     taps[i] = static_cast<int32_t>((exact[i] + (int64_t{1} << (shift - 1))) >> shift);
-  // What rounding has left goes to the nearer pixel.
+  // The rest that rounding leaves goes to the nearer pixel.
   taps[2 * step < kCubicSteps ? 1 : 2] += (1 << bits) - (taps[0] + taps[1] + taps[2] + taps[3]);
   return taps;
 }

@@ -1,5 +1,5 @@
-// From the rays of several places in an element to the one that they are.
-// Internal to collection. For each instruction set Highway includes it once more.
+// Adds the mean of the rays at several positions in an element as the element's one ray. Internal
+// to collection. Highway includes this file once for each instruction set.
 #if defined(LF_COLLECTION_ELEMENT_MEANS_SIMD_INL_H_) == \
     defined(HWY_TARGET_TOGGLE)  // NOLINT: Highway's guard
 #ifdef LF_COLLECTION_ELEMENT_MEANS_SIMD_INL_H_
@@ -23,11 +23,11 @@ namespace lf {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Adds the means of a row of elements, rounded half up, each of the up to samples^2 rays that are
-// added up on as many elements of `fine`. Returns how many.
+// Adds the means of a row of elements, rounded half up. Each is the mean of up to samples^2 rays,
+// which `samples` elements of `fine` have added up. Returns the number of elements with a ray.
 //
-// Quotients of numbers up to 2^24 are rounded down rightly: those next to an integer are further
-// from it than a float can tell.
+// Quotients of numbers up to 2^24 are rounded down correctly: a quotient that is no integer is
+// farther from the nearest integer than the precision of a float.
 #if HWY_TARGET == HWY_SCALAR
 
 template <class Weights>
@@ -80,11 +80,11 @@ HWY_ATTR uint64_t AddMeans(const TileSums::CountedElement* fine, int samples, in
   const hn::Full128<int32_t> di;
   const hn::Full128<float> df;
   const auto divide = [&](hn::Vec<decltype(di)> dividend, hn::Vec<decltype(di)> divisor) HWY_ATTR {
-    // Where none is added all lanes are 0.
+    // If no ray was added, all lanes are 0.
     const auto some = hn::Max(divisor, hn::Set(di, 1));
     return hn::Div(hn::ConvertTo(df, dividend), hn::ConvertTo(df, some));
   };
-  auto rays = hn::Zero(di);  // in the lane of rays, kRecordedShare times
+  auto rays = hn::Zero(di);  // lane kRayLane: kRecordedShare times the number of rays
   for (int i = 0; i < count; ++i, fine += samples) {
     auto rgb = hn::Load(du, fine[0].rgb), counts = hn::Load(du, fine[0].counts);
     for (int k = 1; k < samples; ++k) {
@@ -115,14 +115,14 @@ HWY_ATTR uint64_t AddMeans(const TileSums::Element* fine, int samples, int count
   const hn::Full128<uint32_t> du;
   const hn::Full128<int32_t> di;
   const hn::Full128<float> df;
-  auto rays = hn::Zero(di);  // in the lane of rays
+  auto rays = hn::Zero(di);  // lane kRayLane: the number of rays
   for (int i = 0; i < count; ++i, fine += samples) {
     auto sum = hn::Load(du, fine[0].rgb_rays);
     for (int k = 1; k < samples; ++k) sum = hn::Add(sum, hn::Load(du, fine[k].rgb_rays));
     const auto rays_and_sums = hn::BitCast(di, sum);
     const auto added = hn::Broadcast<LfPixels::kRayLane>(rays_and_sums);
     const auto dividend = hn::Add(rays_and_sums, hn::ShiftRight<1>(added));
-    // Where none is added all lanes are 0.
+    // If no ray was added, all lanes are 0.
     const auto divisor = hn::Max(added, hn::Set(di, 1));
     auto mean = hn::ConvertTo(di, hn::Div(hn::ConvertTo(df, dividend), hn::ConvertTo(df, divisor)));
     rays = hn::Add(rays, mean);

@@ -1,5 +1,5 @@
-// Where the pixels of a patch of ideal positions lead: polynomials along its scanlines, all from
-// one fit. Internal to collection.
+// Polynomials along the scanlines of a patch of ideal positions, which give the positions on the
+// plate, all from one fit. Internal to collection.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@ namespace lf {
 
 class ElementPatch {
  public:
-  // The polynomial through six by six points of columns [x_begin, x_end) of `patch`; none if it
+  // Fits a polynomial through six by six points of columns [x_begin, x_end) of `patch`. None if it
   // misses positions between them, or reaches too far for single precision.
   static std::optional<ElementPatch> Fit(const PixelForm& x, const PixelForm& y,
                                          const PixelForm& denominator, const IdealPatch& patch,
@@ -22,7 +22,7 @@ class ElementPatch {
   int x_begin() const { return x_begin_; }
   int x_end() const { return x_end_; }
 
-  // Pixels [x_begin, x_end) of scanline y.
+  // Appends the segment of pixels [x_begin, x_end) of scanline y.
   void Append(int y, int x_begin, int x_end, std::vector<Segment>* segments) const;
 
  private:

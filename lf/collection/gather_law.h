@@ -1,6 +1,6 @@
-// One ray of the estimator *bilinear*, literally, in double precision (doc/ray.md, "What is
-// added"): the reference asks it of every element, the fast kernel where its spans begin and end.
-// Internal to collection.
+// The ray model of the estimator *bilinear* for one ray, applied literally, in double precision
+// (doc/ray.md, "What is added"). The reference asks it for every element, the fast kernel at the
+// ends of its spans. Internal to collection.
 #pragma once
 
 #include <optional>
@@ -14,18 +14,18 @@ namespace lf {
 
 class GatherLaw {
  public:
-  // render_camera  with the finer plate, where an element's ray is the mean of several
+  // render_camera  with the finer plate, if an element's ray is the mean of several
   GatherLaw(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
 
-  // The direction, in the world, of the ray that element (x, y) asks for; none if it has no focus
-  // point before the lens, or the ray misses the lens.
+  // Returns the direction, in the world, of the ray that element (x, y) asks for; none if it has no
+  // focus point before the lens, or if the ray misses the lens.
   std::optional<Vec3> Direction(int x, int y) const;
 
-  // Where the LF camera records it, in pixels; none unless the four pixels around are in the image
-  // and rays arrive there.
+  // Returns the position in pixels where the LF camera records that ray; none unless the four
+  // pixels around it are in the image and rays arrive there.
   std::optional<Vec2> Position(int x, int y) const;
 
-  // Whether some pixels of the LF image have no ray: then each has to be asked.
+  // True if some pixels of the LF image have no ray, so that each position has to be tested.
   bool may_lack_rays() const { return may_lack_rays_; }
 
  private:
@@ -37,7 +37,7 @@ class GatherLaw {
   bool may_lack_rays_ = false;
 };
 
-// Whether the four pixel centres around (x, y) are in the image.
+// True if the four pixel centres around (x, y) are in the image.
 inline bool HasFourPixels(const Intrinsics& k, double x_px, double y_px) {
   return x_px >= 0.5 && x_px < k.width_px - 0.5 && y_px >= 0.5 && y_px < k.height_px - 0.5;
 }

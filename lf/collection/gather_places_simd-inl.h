@@ -1,5 +1,5 @@
-// Where consecutive elements look in an LF image.
-// Internal to collection. For each instruction set Highway includes it once more.
+// Finds the positions in an LF image that consecutive elements look at. Internal to collection.
+// Highway includes this file once for each instruction set.
 #if defined(LF_COLLECTION_GATHER_PLACES_SIMD_INL_H_) == \
     defined(HWY_TARGET_TOGGLE)  // NOLINT: Highway's guard
 #ifdef LF_COLLECTION_GATHER_PLACES_SIMD_INL_H_
@@ -24,39 +24,43 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr int kWeightBits = 8;
-constexpr int kOne = 1 << kWeightBits;  // of the weights
+constexpr int kOne = 1 << kWeightBits;  // the whole weight
 
-// Products of signed numbers, two and two added, are one operation: values are taken less this.
+// Values are taken less this, because one instruction multiplies signed numbers and adds pairs of
+// products.
 constexpr uint16_t kMiddle = 0x8000;
 
-// Upper left pixels of consecutive elements, and the weights of the others.
+// The upper left of the four pixels for consecutive elements, and the weights.
 struct Places {
   static constexpr int kRoom = Segment::kMaxCount + kLanes;
   HWY_ALIGN int32_t pixel[kRoom];
-  HWY_ALIGN uint32_t left_right[kRoom];  // those of the left and of the right pixels, 16 bits each
+  HWY_ALIGN uint32_t left_right[kRoom];  // weights of left and right pixels, 16 bits each
   HWY_ALIGN uint32_t lower[kRoom];
-  // Of kMosaic only: x % 2 + 2 (y % 2) of the upper left pixel (x, y) of the LF image.
+  // Only for kMosaic: x % 2 + 2 (y % 2) of the upper left pixel (x, y) of the LF image.
   HWY_ALIGN int32_t phase[kRoom];
 };
 
-// Integers below 2^22 of either sign are exact in single precision; added to 2^23 + 2^22 they are
-// its last bits: cheaper than a conversion, which minds overflow.
+// An integer between -2^22 and 2^22 is exact in single precision. If it is added to 2^23 + 2^22,
+// the last bits of the sum are the integer: this is cheaper than a conversion, which checks for
+// overflow.
 constexpr float kWhole = 12582912;
 
-// One coordinate: the pixel before the position, counted from `begin`, and its distance in 1/256.
+// One coordinate: the pixel before the position, counted from `begin`, and the distance from that
+// pixel in 1/256.
 struct Coordinate {
   hn::Vec<LaneI> pixel;
   hn::Vec<LaneI> weight;
 };
 
-// Finds it within pixels [begin, end).
+// Finds a coordinate within pixels [begin, end).
 template <int kDegree>
 class CoordinateFinder {
  public:
   HWY_ATTR HWY_INLINE CoordinateFinder(const float (&polynomial)[Segment::kTerms], int32_t base,
                                        int begin, int end)
       : base_((base - begin) * kOne - std::bit_cast<int32_t>(kWhole)), last_(end - begin - 1) {
-    // In 1/256 from the centre of pixel `begin`, rounded half up; multiplying by 256 is exact.
+    // The polynomial counts in 1/256 from the centre of pixel `begin`, plus 1/2 to round half up.
+    // Multiplying by 256 is exact.
     for (int power = 0; power < Segment::kTerms; ++power)
       polynomial_[power] = polynomial[power] * kOne;
     polynomial_[0] += 0.5F - 0.5F * kOne;
@@ -67,7 +71,7 @@ class CoordinateFinder {
     const auto place = PolynomialLanes<kDegree>(polynomial_).At(t);
     const auto whole = hn::BitCast(di, hn::Add(hn::Floor(place), hn::Set(LaneF(), kWhole)));
     const auto found = hn::Add(whole, hn::Set(di, base_));
-    // What rounding has sent beyond the pixels is on their border.
+    // A position that rounding has moved beyond the pixels is put on their border.
     const auto position = hn::Min(hn::Max(found, hn::Zero(di)), hn::Set(di, last_ * kOne));
     const auto pixel = hn::Min(hn::ShiftRight<kWeightBits>(position), hn::Set(di, last_ - 1));
     return {pixel, hn::Sub(position, hn::ShiftLeft<kWeightBits>(pixel))};
@@ -88,7 +92,7 @@ HWY_ATTR void FindPlaces(const Segment& s, int begin, int count, const PixelRect
   const CoordinateFinder<kDegree> x_finder(s.x_poly, s.base_x, rect.x_begin, rect.x_end);
   const CoordinateFinder<kDegree> y_finder(s.y_poly, s.base_y, rect.y_begin, rect.y_end);
   const auto width = hn::Set(di, rect.width());
-  // Added before the weight is cut to kOne or 0.
+  // kNearest adds half before it cuts the weight to kOne or 0.
   const bool is_nearest = filter == PixelFilter::kNearest;
   const auto half = hn::Set(di, is_nearest ? kOne / 2 : 0);
   const auto kept_bits = hn::Set(di, is_nearest ? kOne : -1);

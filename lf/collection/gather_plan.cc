@@ -1,5 +1,5 @@
-// Which elements of a row get a ray, and from where in the LF image. Where an element takes the
-// mean of several rays, all this is of the finer plate that these are the elements of.
+// Finds which elements of a row get a ray, and from which position in the LF image. If an element
+// takes the mean of several rays, the elements here are those of the finer plate.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -12,8 +12,8 @@
 namespace lf {
 namespace {
 
-// The linear forms of an element position e for one (LF camera, render camera): X is the point of
-// the focus plane that the element sees, d = +-(X - c) the direction of its ray, forward.
+// Linear forms of an element position e for one (LF camera, render camera). X is the point of the
+// focus plane that the element sees, and d = +-(X - c) is the direction of its ray, forward.
 struct GatherForms {
   PixelForm plane;       // > 0 where X is before the lens
   PixelForm forward;     // f.(X - c), times something positive; its sign is that of d
@@ -50,8 +50,8 @@ GatherForms MakeForms(const PinholeCamera& lf_camera, const RenderCamera& render
   return forms;
 }
 
-// Conditions for the elements whose forward form has this sign, those of the image but with lens
-// distortion.
+// Conditions for the elements whose forward form has this sign. With lens distortion they leave out
+// the borders of the image.
 std::vector<PixelForm> HalfPlanes(const GatherForms& forms, const Intrinsics& k,
                                   const Aperture& aperture, int sign) {
   std::vector<PixelForm> half_planes = {-forms.plane, -sign * forms.forward};
@@ -83,8 +83,8 @@ class GatherPlanner {
         plan_(std::move(memory)) {
     for (const int side : {0, 1})
       rows_.half_planes[side] = HalfPlanes(forms_, k_, finer.aperture, side == 0 ? -1 : 1);
-    // All rays of a camera in the lens plane cross it at one point: if it is near the rim, the law
-    // at the ends of a span decides for them all.
+    // All rays of a camera in the lens plane cross it at one point. If that is near the rim, the
+    // ray model decides for a whole span at its ends.
     const bool is_disk = finer.aperture.blades == 0;
     if (is_disk && LiesInLensPlane(lf_camera, finer))
       rows_.law_decides = !IsSurelyInDisk(lf_camera, finer);
@@ -122,7 +122,7 @@ class GatherPlanner {
   }
 
  private:
-  // Of elements whose rays pass the lens: those that the LF image holds.
+  // Appends the elements that the LF image holds, among elements whose rays pass the lens.
   void AddDistorted(int y, int x_begin, int x_end) {
     const double sign = Value(forms_.forward, x_begin + 0.5, y + 0.5) < 0 ? -1 : 1;
     const auto position = [&](double x) -> std::optional<Vec2> {
@@ -142,8 +142,8 @@ class GatherPlanner {
     }
   }
 
-  // Those elements of a segment whose rays the LF image holds; across its border the segment is
-  // halved until few are left, for which the law is asked.
+  // Appends the elements of a segment whose rays the LF image holds. A segment across the image's
+  // border is halved until few elements are left, for which the ray model is asked.
   void AddParts(const Segment& segment) {
     const PositionRange x = RangeOf(segment.x_poly, segment.t_begin, segment.count);
     const PositionRange y = RangeOf(segment.y_poly, segment.t_begin, segment.count);
@@ -173,7 +173,7 @@ class GatherPlanner {
     return part;
   }
 
-  // Neighbours of one segment, which share its polynomials, are put together again.
+  // Adjacent parts of one segment share its polynomials, and are joined again.
   void AppendPart(const Segment& part) {
     if (part.x_begin == part_end_)
       plan_.segments.back().count += part.count;
@@ -190,9 +190,9 @@ class GatherPlanner {
   RowSpans rows_;
   GatherPlan plan_;
   int width_, height_;          // of the finer plate
-  std::vector<RowSpan> spans_;  // of the row
-  std::vector<Segment> found_;  // of the span
-  int part_end_ = -1;           // of the last part of the segment
+  std::vector<RowSpan> spans_;  // spans of the row
+  std::vector<Segment> found_;  // segments of the span
+  int part_end_ = -1;           // end of the last part of the segment
 };
 
 }  // namespace

@@ -14,8 +14,8 @@ namespace lf {
 
 namespace {
 
-// One colour, from the pixels around and distances in 1/256 from the upper left one of the nearest
-// four. pixel(dx, dy) counts from it.
+// Returns one colour, from the pixels around and the distances in 1/256 from the upper left one of
+// the nearest four. pixel(dx, dy) counts from that one.
 template <class Pixel>
 uint16_t Bilinear(const Pixel& pixel, uint32_t right, uint32_t down) {
   constexpr uint32_t kOne = 256;
@@ -25,7 +25,7 @@ uint16_t Bilinear(const Pixel& pixel, uint32_t right, uint32_t down) {
   return static_cast<uint16_t>((sum + kOne * kOne / 2) / (kOne * kOne));
 }
 
-// Value and count; share(dx, dy) is k of mosaic_filter.h.
+// Returns value and count. share(dx, dy) is k of mosaic_filter.h.
 template <class Pixel, class Share>
 std::pair<uint16_t, uint32_t> BilinearByShares(const Pixel& pixel, const Share& share,
                                                uint32_t right, uint32_t down) {
@@ -85,7 +85,7 @@ std::optional<RgbRay> InterpolatePixels(const LfPixels& pixels, int width_px, in
   LF_DCHECK(pixels.bayer == BayerPattern::kNone);
   const double left = std::floor(x_px - 0.5), top = std::floor(y_px - 0.5);
   if (!(left >= 0 && left + 1 < width_px && top >= 0 && top + 1 < height_px)) return std::nullopt;
-  // In 1/256, from the first pixel of the image.
+  // In 1/256, from the centre of the first pixel of the image.
   constexpr int64_t kOne = 256;
   const auto x = static_cast<int64_t>(std::floor((x_px - 0.5) * kOne + 0.5));
   const auto y = static_cast<int64_t>(std::floor((y_px - 0.5) * kOne + 0.5));
@@ -100,7 +100,7 @@ std::optional<RgbRay> InterpolatePixels(const LfPixels& pixels, int width_px, in
   const int column = image_column - pixels.rect.x_begin, row = image_row - pixels.rect.y_begin;
   LF_CHECK(column >= 0 && column + 1 < pixels.rect.width() && row >= 0 &&
            row + 1 < pixels.rect.height());
-  // Whether all pixels so many around the four are there.
+  // True if the four pixels, and `outer` more on each side, are all there.
   const auto has_all = [&](int outer) {
     if (column < outer || column + 1 + outer >= pixels.rect.width() || row < outer ||
         row + 1 + outer >= pixels.rect.height())
@@ -144,7 +144,7 @@ uint64_t GatherReference(const PinholeCamera& lf_camera, const LfPixels& pixels,
   const GatherSampling sampling = SamplingOf(lf_camera, render_camera, filter);
   const int samples = sampling.samples;
   const GatherLaw law(lf_camera, WithFinerPlate(render_camera, samples));
-  // The ray of element (x, y).
+  // Returns the ray of element (x, y).
   const auto ray_of = [&](int x, int y) -> std::optional<RgbRay> {
     std::array<uint32_t, 3> sum = {}, counted = {};
     uint32_t rays = 0;

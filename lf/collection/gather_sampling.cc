@@ -22,7 +22,8 @@ double Magnification(const PinholeCamera& lf_camera, const RenderCamera& render_
   for (const double v : {0.1, 0.5, 0.9})
     for (const double u : {0.1, 0.5, 0.9}) {
       const double x = u * plate.width_px, y = v * plate.height_px;
-      // Where the LF camera records what is seen there of the focus plane.
+      // Returns the position where the LF camera records the point of the focus plane that is seen
+      // there.
       const auto at = [&](double dx, double dy) -> std::optional<Vec2> {
         const std::optional<Vec3> point = FocusPointOfElement(render_camera, x + dx, y + dy);
         if (!point) return std::nullopt;
@@ -47,7 +48,7 @@ GatherSampling SamplingOf(const PinholeCamera& lf_camera, const RenderCamera& re
   const double magnification = Magnification(lf_camera, render_camera);
   GatherSampling sampling;
   sampling.filter = filter;
-  // What is just above a whole number is that number.
+  // A value just above a whole number counts as that number.
   constexpr double kRounding = 1e-3;
   if (magnification * kFinerAtMost < 1)
     sampling.samples =
@@ -67,7 +68,7 @@ GatherSampling SamplingOf(const PinholeCamera& lf_camera, const RenderCamera& re
 bool MayLackRays(const Intrinsics& k) {
   if (!k.has_distortion()) return false;
   const DistortionMap map(k.distortion);
-  // What lies farthest from the optical axis loses its rays first.
+  // The corner pixels, which are farthest from the optical axis, lose their rays first.
   for (const double x : {0.5, k.width_px - 0.5})
     for (const double y : {0.5, k.height_px - 0.5})
       if (!IdealPosition(k, map, x, y)) return true;

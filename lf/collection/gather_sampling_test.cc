@@ -13,11 +13,11 @@
 namespace lf {
 namespace {
 
-// LF pixels are so many times as large as elements.
+// A pair whose LF pixels are `magnification` times as large as elements.
 testing::CameraPair PairOf(double magnification) {
   testing::CameraPair pair = testing::ParallelPair(3, 2, 0.01, 0.05);
   const Intrinsics& plate = pair.render_camera.pinhole.intrinsics;
-  // Parallel cameras: the ratio of focal lengths, at any depth.
+  // For parallel cameras it is the ratio of focal lengths, at any depth.
   const double focal = plate.fx_px / magnification;
   const int width = static_cast<int>(plate.width_px / magnification) + 40;
   const int height = static_cast<int>(plate.height_px / magnification) + 40;
@@ -55,7 +55,8 @@ TEST(GatherSampling, TakesAsManySamplesAsLfPixelsAreSmaller) {
   EXPECT_EQ(of(2, PixelFilter::kNearest).filter, PixelFilter::kNearest);
 }
 
-// Noise of LF pixels much finer than elements averages out: one sample would keep all of it.
+// Noise of LF pixels that are much finer than elements averages out. One sample would keep all of
+// it.
 TEST(GatherSampling, FinePixelsAverage) {
   const testing::CameraPair pair = PairOf(0.25);
   const LfPixels pixels = testing::NoisePixels(testing::WholeImage(pair), BayerPattern::kNone, 1);
@@ -70,7 +71,8 @@ TEST(GatherSampling, FinePixelsAverage) {
       squares += std::pow(static_cast<double>(element.sum) - 32767.5, 2);
       ++count;
     }
-  // Uniform noise has 65536 / sqrt(12); 4 x 4 samples have a quarter of that, or less.
+  // Uniform noise has a standard deviation of 65536 / sqrt(12). The mean of 4 x 4 samples has a
+  // quarter of that, or less.
   EXPECT_LT(std::sqrt(squares / count), 65536 / std::sqrt(12.0) / 4 * 1.05);
 }
 
@@ -131,7 +133,7 @@ TEST(PixelFilter, WhatAMosaicRecordedCountsMore) {
   EXPECT_EQ(red_at(4.5, 2.5), std::pair(0, 1u));
   EXPECT_EQ(red_at(4, 2.5), std::pair(8000, 5u));  // 8 of 9; 4.5 rays
   EXPECT_EQ(red_at(4, 3), std::pair(6545, 3u));    // 8 of 11; 2.75 rays
-  // As far from them, sixteen pixels have the same shares; clipped between them.
+  // At these positions, sixteen pixels have the same shares as four.
   EXPECT_EQ(red_at(3.5, 2.5, true), std::pair(9000, 8u));
   EXPECT_EQ(red_at(4, 3, true), std::pair(6545, 3u));
   EXPECT_EQ(red_at(3, 2.5, true), std::pair(8000, 5u));

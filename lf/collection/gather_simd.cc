@@ -1,7 +1,7 @@
-// The inner loop of the estimator *bilinear*, for every instruction set from one source (Highway):
-// positions by polynomials, a vector at a time; then four or sixteen pixels, each four lanes of 16
-// bits, are mixed in integers and added to the element. No fused multiply-add: the same bits on
-// every target.
+// The inner loop of the estimator *bilinear*, for every instruction set from one source (Highway).
+// Polynomials give positions, a vector at a time. Four or sixteen pixels, each of four lanes of 16
+// bits, are then mixed in integers and added to the element. There is no fused multiply-add, so
+// that every target gives the same bits.
 #include <algorithm>
 #include <type_traits>
 #include <vector>
@@ -13,7 +13,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lf/collection/gather_simd.cc"  // NOLINT: as Highway wants it
 #include <hwy/foreach_target.h>
-// After foreach_target.h.
+// These come after foreach_target.h.
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
@@ -29,7 +29,7 @@ namespace lf {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Whether all rays are so far from the border of the pixels that these hold the sixteen around
+// True if all rays are so far from the border of `rect` that it holds the sixteen pixels around
 // each.
 bool IsInner(const Segment& s, int begin, int count, const PixelRect& rect) {
   const float t = s.t_begin + static_cast<float>(begin);
@@ -60,7 +60,7 @@ template <Reading kReading>
 using ElementOf =
     std::conditional_t<IsMosaic(kReading), TileSums::CountedElement, TileSums::Element>;
 
-// Adds rays of the pixels that `places` says, the i-th to the i-th element.
+// Adds rays of the pixels at `places`, ray i to element i.
 template <Reading kReading, class Weights>
 class RayAdder {
  public:
@@ -76,20 +76,20 @@ class RayAdder {
         cubics_(TablesOfCubics()),
         mosaic_(TableOfMosaic(pixels.recorded)) {}
 
-  // The upper left one of four pixels.
+  // Returns the upper left one of four pixels.
   HWY_INLINE const uint16_t* Upper(int i) const {
     LF_DCHECK(places_.pixel[i] >= 0 && places_.pixel[i] < width_ * (height_ - 1) - 1);
     return values_ + static_cast<ptrdiff_t>(places_.pixel[i]) * LfPixels::kRgbLanes;
   }
 
-  // Rows are too far apart for the processor to foresee, and it waits for few lines at a time: they
-  // are asked for one by one.
+  // Prefetches one cache line of a later row. The processor does not foresee rows, which are too
+  // far apart, and can wait for few lines at a time, so that lines are asked for one by one.
   HWY_INLINE void FetchAhead(int i) const {
     constexpr int kRowsAhead = 2;
     hwy::Prefetch(Upper(i) + (1 + kRowsAhead) * row_values_);
   }
 
-  // Whether the four pixels, and those so many around them, are in the image and not masked.
+  // True if the four pixels, and `outer` more on each side, are in the image and not masked.
   bool HasAll(int i, int outer) const {
     const int x = places_.pixel[i] % width_, y = places_.pixel[i] / width_;
     if (x < outer || x + 1 + outer >= width_ || y < outer || y + 1 + outer >= height_) return false;
@@ -102,7 +102,7 @@ class RayAdder {
     return unmasked == taps * taps;
   }
 
-  // One ray: of four pixels, or of as many as it is to have.
+  // AddOfFour() adds one ray of four pixels; Add() adds one of as many as `kReading` says.
   HWY_ATTR HWY_INLINE void AddOfFour(int i) const {
     if constexpr (IsMosaic(kReading))
       AddMosaicRay(mosaic_, places_, i, Upper(i), row_values_, weights_, sums_);
@@ -120,7 +120,7 @@ class RayAdder {
       AddOfFour(i);
   }
 
-  // kCount rays.
+  // Adds kCount rays.
   template <int kCount>
   HWY_ATTR HWY_INLINE void AddAll(int i) const {
     if constexpr (kReading == Reading::kFour)
@@ -141,13 +141,14 @@ class RayAdder {
   const MosaicTable& mosaic_;
 };
 
-// Elements [begin, begin + count) of the segment; weights and sums from the first one on.
+// Adds the rays of elements [begin, begin + count) of the segment; weights and sums begin with the
+// first of them. Returns the number of rays.
 template <Reading kReading, bool kMayBeMasked, class Weights>
 HWY_ATTR uint32_t GatherPart(const Segment& s, int begin, int count, PixelFilter filter,
                              const LfPixels& pixels, const Weights& weights,
                              ElementOf<kReading>* sums) {
   constexpr bool kIsCubic = IsCubic(kReading);
-  constexpr int kLineElements = 8;  // of an LF image, in a cache line
+  constexpr int kLineElements = 8;  // pixels of an LF image in a cache line
   Places places;
   const auto find_places = s.is_cubic() ? FindPlaces<3> : FindPlaces<5>;
   find_places(s, begin, count, pixels.rect, filter, &places);
@@ -181,7 +182,7 @@ auto GatherPartOf(const LfPixels& pixels) {
                            : GatherPart<kReading, false, Weights>;
 }
 
-// One ray an element.
+// Adds one ray per element.
 template <Reading kReading, class Weights>
 HWY_ATTR uint64_t GatherRays(const GatherPlan& plan, const LfPixels& pixels, const Weights& weights,
                              const PixelRect& tile, int stride, ElementOf<kReading>* elements) {
@@ -202,8 +203,8 @@ HWY_ATTR uint64_t GatherRays(const GatherPlan& plan, const LfPixels& pixels, con
   return rays;
 }
 
-// The mean of several rays an element: those of a row of elements are added up on a row as fine as
-// they are.
+// Adds the mean of several rays per element. A row of finer elements adds up the rays of a row of
+// elements first.
 template <Reading kReading, class Weights>
 HWY_ATTR uint64_t GatherMeans(const GatherPlan& plan, const LfPixels& pixels,
                               const Weights& weights, const PixelRect& tile, int stride,
@@ -212,7 +213,7 @@ HWY_ATTR uint64_t GatherMeans(const GatherPlan& plan, const LfPixels& pixels,
   const int samples = plan.sampling.samples;
   thread_local std::vector<ElementOf<kReading>> fine;
   uint64_t rays = 0;
-  // So few that the fine row and its places stay in the first level cache.
+  // A chunk is so small that the fine row and its places stay in the first level cache.
   const int chunk = std::max(16, 256 / samples);
   for (int x_begin = tile.x_begin; x_begin < tile.x_end; x_begin += chunk) {
     const int x_end = std::min(tile.x_end, x_begin + chunk);
@@ -248,12 +249,12 @@ uint64_t GatherAs(const GatherPlan& plan, const LfPixels& pixels, const Weights&
   return gather(plan, pixels, weights, sums.rect(), sums.stride(), elements);
 }
 
-//   most_weight  of the weights
+//   most_weight  the largest of the weights
 template <class Weights>
 uint64_t GatherBy(const GatherPlan& plan, const LfPixels& pixels, const Weights& weights,
                   uint32_t most_weight, TileSums* sums) {
   const Reading reading = ReadingOf(plan.sampling);
-  // At most one ray for each element.
+  // There is at most one ray for each element.
   if (IsMosaic(reading)) {
     const auto gather = reading == Reading::kMosaicSixteen
                             ? GatherAs<Reading::kMosaicSixteen, Weights>

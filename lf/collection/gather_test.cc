@@ -1,4 +1,4 @@
-// The estimator *bilinear*: both back ends, and against pictures known in closed form.
+// Compares both back ends of the estimator *bilinear*, also with pictures known in closed form.
 #include "lf/collection/gather.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ using testing::PlateFor;
 LfPixels RandomPixels(const Intrinsics& k, uint64_t seed) {
   LfPixels pixels =
       testing::NoisePixels({0, 0, k.width_px, k.height_px}, BayerPattern::kNone, seed);
-  pixels.recorded = static_cast<BayerPattern>(seed % 5);  // only kMosaic minds
+  pixels.recorded = static_cast<BayerPattern>(seed % 5);  // only kMosaic reads it
   return pixels;
 }
 
@@ -35,7 +35,7 @@ testing::CameraPair RandomPair(uint64_t seed) {
                        : testing::RandomDistortedPair(seed / 2);
 }
 
-// Elements as many times as large, on as much smaller a plate.
+// Makes elements `factor` times as large, on a plate that is smaller by the same factor.
 void MakeCoarser(double factor, RenderCamera* camera) {
   Intrinsics& k = camera->pinhole.intrinsics;
   for (double* value : {&k.fx_px, &k.fy_px, &k.cx_px, &k.cy_px, &k.skew_px}) *value /= factor;
@@ -77,7 +77,8 @@ TEST(Gather, TheFastBackEndAgreesWithTheReference) {
           if (!same_count || a == b) continue;
           ++differing_values;
           if (filter == PixelFilter::kNearest) continue;  // it may be another pixel
-          // One step of the weights, of neighbours that differ by everything.
+          // The tolerance is one step of the weights between neighbours that differ by the whole
+          // range.
           const double steps = is_mosaic ? 1.0 * kRecordedShare : 1;
           EXPECT_NEAR(Mean(a), Mean(b), steps * 65535 / 128);
           EXPECT_LE(std::max(a.count, b.count) - std::min(a.count, b.count), 1u);
@@ -159,7 +160,7 @@ TEST(Gather, AWallInFocusReproducesItself) {
     for (int y = 0; y < plate.height(); ++y)
       for (int x = 0; x < plate.width(); ++x) {
         const ElementSum element = plate.At(x, y, 1);
-        // At the border of the LF image elements are the mean of a part of them.
+        // At the border of the LF image, an element is the mean of only some of its samples.
         const auto is_seen = [&](int u, int v) {
           return u >= 0 && v >= 0 && u < plate.width() && v < plate.height() &&
                  plate.At(u, v, 1).count > 0;
@@ -169,7 +170,8 @@ TEST(Gather, AWallInFocusReproducesItself) {
           continue;
         ++tested;
         const Vec3 point = *FocusPointOfElement(pair.render_camera, x + 0.5, y + 0.5);
-        // A pixel is 100 units of radiance wide: half a step of the weights, and rounding.
+        // A pixel is 100 units of radiance wide. The tolerance is half a step of the weights, and
+        // rounding.
         EXPECT_NEAR(static_cast<double>(element.sum), wall(point), 2.5) << x << ", " << y;
       }
     EXPECT_GT(tested, 800u);
@@ -205,7 +207,7 @@ TEST(Gather, BicubicTakesTheFourWhereTheSixteenAreNot) {
   EXPECT_FALSE(is_bilinear(4.2, 3.3));
   pixels.Mask(2, 1);
   EXPECT_TRUE(is_bilinear(4.2, 3.3));
-  // Both back ends, with masks and images so small that nothing else is left.
+  // Both back ends are compared with masks, and most images are so small that they are all border.
   for (const int size : {2, 3, 4, 5, 40}) {
     testing::CameraPair pair = testing::ParallelPair(1, 3, 0.01, 0.05);
     Intrinsics& small = pair.lf_camera.intrinsics;

@@ -1,5 +1,5 @@
-// One ray through four or sixteen pixels by the shares of mosaic_filter.h, added to its element.
-// Internal to collection. For each instruction set Highway includes it once more.
+// Adds one ray to its element, made of four or sixteen pixels by the shares of mosaic_filter.h.
+// Internal to collection. Highway includes this file once for each instruction set.
 #if defined(LF_COLLECTION_MOSAIC_SIMD_INL_H_) == \
     defined(HWY_TARGET_TOGGLE)  // NOLINT: Highway's guard
 #ifdef LF_COLLECTION_MOSAIC_SIMD_INL_H_
@@ -27,17 +27,17 @@ namespace lf {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Of one mosaic, by the phase of the upper left pixel of the inner four (Places). The last lane,
-// which counts rays, is recorded everywhere.
+// Tables of one mosaic, by the phase of the upper left pixel of the inner four (Places). The last
+// lane, which counts rays, counts as recorded everywhere.
 struct MosaicTable {
-  // Of sixteen pixels, for columns 0 and 2, and for 1 and 3.
+  // Sixteen pixels: for columns 0 and 2, and for columns 1 and 3.
   struct Columns {
-    // d k of rows 0 and 1, and of 2 and 3, side by side for each lane
+    // d k of rows 0 and 1, and of rows 2 and 3, side by side for each lane.
     HWY_ALIGN int16_t weights[2][2][8];
-    HWY_ALIGN int32_t counts[2][4];  // all four added up
+    HWY_ALIGN int32_t counts[2][4];  // d k of all four rows added up
   };
   Columns columns[4][kCubicSteps + 1];  // by steps down
-  // Of four: 2 k of the left and the right pixel, side by side for each lane; of both rows.
+  // Four pixels: 2 k of the left and the right pixel, side by side for each lane, for both rows.
   HWY_ALIGN uint16_t rows[4][2][8];
 
   explicit MosaicTable(BayerPattern recorded) {
@@ -57,7 +57,7 @@ struct MosaicTable {
           for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane) {
             of_step.counts[column][lane] = 0;
             for (int row = 0; row < 4; ++row) {
-              // The sixteen begin a pixel before the four: at the other phase.
+              // The sixteen pixels begin one pixel before the four, and so at the other phase.
               const int32_t weight =
                   taps[row] * static_cast<int32_t>(share(x + 1 + column, y + 1 + row, lane));
               of_step.weights[column][row / 2][2 * lane + row % 2] = static_cast<int16_t>(weight);
@@ -80,7 +80,7 @@ inline const MosaicTable& TableOfMosaic(BayerPattern recorded) {
 // a_x a_y k / 2^9 is the upper half of 64 a_x times 2 a_y k.
 constexpr int kSideShift = 16 - kShareShift - 1;
 
-// Each adds ray i of the places to the i-th element.
+// Each function adds ray i of the places to element i.
 #if HWY_TARGET == HWY_SCALAR
 
 //   upper  the upper left of four pixels
@@ -106,7 +106,7 @@ HWY_INLINE void AddMosaicRay(const MosaicTable& table, const Places& places, int
   }
 }
 
-//   first  of sixteen pixels
+//   first  the first of sixteen pixels
 template <class Weights>
 HWY_INLINE void AddCubicMosaicRay(const CubicTables& cubics, const MosaicTable& table,
                                   const Places& places, int i, const uint16_t* first,
@@ -135,7 +135,7 @@ HWY_INLINE void AddCubicMosaicRay(const CubicTables& cubics, const MosaicTable& 
 
 #else
 
-// Of numbers from 0 to 2^22.
+// Rounds numbers from 0 to 2^22 down.
 HWY_ATTR HWY_INLINE hn::Vec<hn::Full128<int32_t>> RoundedDown(hn::Vec<hn::Full128<float>> v) {
   const hn::Full128<int32_t> di;
   const hn::Full128<float> df;
@@ -143,7 +143,7 @@ HWY_ATTR HWY_INLINE hn::Vec<hn::Full128<int32_t>> RoundedDown(hn::Vec<hn::Full12
   return hn::Sub(hn::BitCast(di, whole), hn::Set(di, std::bit_cast<int32_t>(kWhole)));
 }
 
-// value: whole numbers of 16 bits; rays: what each counts.
+// `value` holds whole numbers of 16 bits, and `rays` what each counts.
 template <class Weights>
 HWY_ATTR HWY_INLINE void AddCounted(hn::Vec<hn::Full128<int32_t>> value,
                                     hn::Vec<hn::Full128<int32_t>> rays, const Weights& weights,
@@ -190,7 +190,7 @@ HWY_ATTR HWY_INLINE void AddMosaicRay(const MosaicTable& table, const Places& pl
              hn::ShiftRight<kShareBits>(hn::Add(all_t, half)), weights, i, sums);
 }
 
-//   first  of sixteen pixels
+//   first  the first of sixteen pixels
 template <class Weights>
 HWY_ATTR HWY_INLINE void AddCubicMosaicRay(const CubicTables& cubics, const MosaicTable& table,
                                            const Places& places, int i, const uint16_t* first,

@@ -13,7 +13,8 @@ using Values = std::array<double, kControls>;
 
 constexpr double kSlack_px = 0.01;
 
-// Newton's steps square what they miss; after one this small there is nothing left to mend.
+// Newton's method squares its error with each step, so that nothing is left to correct after a step
+// below kLastStep.
 constexpr int kMaxSteps = 8;
 constexpr double kLastStep = 1e-3;
 
@@ -22,7 +23,7 @@ struct ValueAndSlope {
   double slope;
 };
 
-// The powers of a polynomial, from its values at control points.
+// Coefficients of the powers of a polynomial, from its values at control points.
 class Powers {
  public:
   explicit Powers(const Values& values) : c_(values) {
@@ -41,14 +42,15 @@ class Powers {
   Values c_;
 };
 
-// From *root on; then on both sides of it, within [0, 1] and `slack` away, the function has other
-// signs than 0 and rounding have: before it this one. False if it does not get there.
+// Searches a root, starting from *root. Returns true if it is one: at `slack` before and behind it,
+// within [0, 1], the function differs from 0 by more than rounding, and has the sign `sign_before`
+// before it and the other behind it.
 template <class Function>
 bool FindRoot(const Function& at, double sign_before, double rounding, double slack, double* root) {
   for (int k = 0; k < kMaxSteps; ++k) {
     const ValueAndSlope here = at(*root);
     const double step = here.value / here.slope;
-    // Also where it is not a number.
+    // This also catches a step that is NaN.
     if (!(std::abs(step) < 2)) {
       *root = 0.5;
       return false;
@@ -61,7 +63,7 @@ bool FindRoot(const Function& at, double sign_before, double rounding, double sl
   return sign_before * before > rounding && sign_before * after < -rounding;
 }
 
-// Bounds of the slope along scanlines, and of the change of that.
+// Bounds of the slope along scanlines, and of its derivative.
 struct Slopes {
   double least_square;
   double largest_square;
@@ -112,8 +114,9 @@ void PatchEdges::AddForm(const PixelForm& form) {
   forms_.push_back({Grid(form, *hull_), RangeOn(*hull_, form).rounding, 0.5});
 }
 
-// The disk's own form has the second derivative 2 (right'^2 + up'^2 - radius^2 forward'^2) plus
-// what bends make of it: above 0 it has two roots at most.
+// The disk's form has the second derivative 2 (right'^2 + up'^2 - radius^2 forward'^2) plus terms
+// with the second derivatives of right, up and forward. If that is above 0, the form has at most
+// two roots.
 bool PatchEdges::AddDisk(const RowSpans::Disk& disk) {
   const double r2 = disk.radius * disk.radius;
   const Range right = RangeOn(*hull_, disk.right), up = RangeOn(*hull_, disk.up);
@@ -159,7 +162,7 @@ bool PatchEdges::Narrow(const BezierWeights& row, Form* form, Span* span) const 
     *span = {1, 0};
     return true;
   }
-  // The polynomial rises where the values at its control points do.
+  // The polynomial rises if the values at its control points do.
   const bool rises = values.back() > values.front();
   if (!(rises ? std::is_sorted(values.begin(), values.end())
               : std::is_sorted(values.rbegin(), values.rend())))
@@ -175,7 +178,7 @@ bool PatchEdges::Narrow(const BezierWeights& row, Form* form, Span* span) const 
   return true;
 }
 
-// On which the disk's form has one interval below 0.
+// Narrows the span to the one interval on which the disk's form is below 0.
 bool PatchEdges::Narrow(const BezierWeights& row, Disk* disk, Span* span) const {
   const Values right_values = disk->right.Along(row), up_values = disk->up.Along(row);
   const Values forward_values = disk->forward.Along(row);

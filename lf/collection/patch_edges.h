@@ -1,5 +1,5 @@
-// Where the scanlines of a patch of ideal positions cross edges: the ends of their accepted pixels,
-// found without halving arcs. Internal to collection.
+// Finds the positions where the scanlines of a patch of ideal positions cross edges. They are the
+// ends of the accepted pixels, found without halving arcs. Internal to collection.
 #pragma once
 
 #include <array>
@@ -15,24 +15,25 @@ namespace lf {
 
 class PatchEdges {
  public:
-  // Of a scanline: pixels outside [begin, end] are not accepted, those inside [sure_begin,
-  // sure_end] are; between, rounding may decide.
+  // The answer for a scanline: pixels outside [begin, end] are not accepted, pixels inside
+  // [sure_begin, sure_end] are accepted, and between them rounding may decide.
   struct Pixels {
     double begin, end;
     double sure_begin, sure_end;
   };
 
-  // Forgets what was added; the patch has to last.
+  // Forgets what was added. The patch must outlive its use here.
   void Begin(const IdealPatch& patch);
 
-  // form <= 0
+  // Adds the condition form <= 0.
   void AddForm(const PixelForm& form);
 
-  // False, and nothing is added, if scanlines may cross it more than twice.
+  // Adds a disk. Returns false, and adds nothing, if scanlines may cross its rim more than twice.
   bool AddDisk(const RowSpans::Disk& disk);
 
-  // What all edges leave of scanline y, from top to bottom by preference; none if that is not
-  // certain: where forms both rise and fall, or edges are crossed too slowly.
+  // Returns the pixels of scanline y that all edges leave; none if that is not certain, because a
+  // form both rises and falls, or an edge is crossed too slowly. Scanlines are best asked for from
+  // top to bottom, because each search starts at the root of the one before.
   std::optional<Pixels> Find(int y);
 
  private:
@@ -48,7 +49,7 @@ class PatchEdges {
   struct Form {
     Grid grid;
     double rounding;
-    double root;  // on the scanline before
+    double root;  // root on the scanline before
   };
 
   struct Disk {
@@ -69,7 +70,7 @@ class PatchEdges {
   bool Narrow(const BezierWeights& row, Disk* disk, Span* span) const;
 
   std::optional<Hull> hull_;
-  double slack_ = 0;  // of roots
+  double slack_ = 0;  // tolerance of roots
   const IdealPatch* patch_ = nullptr;
   std::vector<Form> forms_;
   std::optional<Disk> disk_;

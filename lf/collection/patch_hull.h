@@ -1,4 +1,4 @@
-// What values linear forms take on an arc or a patch of ideal positions. Internal to collection.
+// Bounds of linear forms on an arc or a patch of ideal positions. Internal to collection.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace lf {
 
-// The control points of an arc or a patch, and how far they reach in each coordinate.
+// The control points of an arc or a patch, and their largest absolute value in each coordinate.
 struct Hull {
   std::span<const Vec3> control;
   Vec3 reach;
@@ -22,8 +22,8 @@ struct Hull {
       : Hull(std::span(&patch.control[0][0], IdealPatch::kControls * IdealPatch::kControls)) {}
 };
 
-// The least and the largest value that a form can have on it. Values as near to 0 as `rounding` may
-// have either sign.
+// The least and the largest value that a form can have on a hull. Values closer to 0 than
+// `rounding` may have either sign.
 struct Range {
   double low = 0;
   double high = 0;
@@ -36,7 +36,7 @@ struct Range {
   double LargestSquare() const { return Most() * Most(); }
 };
 
-// Relative to the terms that a value is summed from.
+// Rounding error, relative to the terms that a value is summed from.
 inline constexpr double kFormRounding = 1e-9;
 
 inline Range RangeOn(const Hull& hull, const PixelForm& form) {
@@ -51,7 +51,7 @@ inline Range RangeOn(const Hull& hull, const PixelForm& form) {
   return range;
 }
 
-// Of right^2 + up^2 - radius^2 forward^2.
+// Returns the rounding error of right^2 + up^2 - radius^2 forward^2.
 inline double DiskRounding(const Range& right, const Range& up, const Range& forward,
                            double radius) {
   return 10 * kFormRounding *

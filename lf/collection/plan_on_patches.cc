@@ -18,9 +18,9 @@
 namespace lf {
 namespace {
 
-enum class Share { kNone, kSome, kAll };  // of the rays of an arc or a patch
+enum class Share { kNone, kSome, kAll };  // share of the rays of an arc or a patch
 
-// Where form <= 0.
+// Returns the share of the hull where form <= 0.
 Share AtMostZero(const Hull& hull, const PixelForm& form) {
   const Range range = RangeOn(hull, form);
   if (range.low > range.rounding) return Share::kNone;
@@ -68,13 +68,13 @@ class PatchPlanner {
   }
 
  private:
-  // Pixels [begin, end) of a scanline, accepted.
+  // Accepted pixels [begin, end) of a scanline.
   struct PixelRun {
     int begin;
     int end;
   };
 
-  // Those that are not known to hold: what holds of a hull holds of its parts.
+  // The conditions that are not known to hold. A condition that holds on a hull holds on its parts.
   struct Conditions {
     bool sides[2] = {true, true};
     uint64_t plate[2];  // a bit for each half-plane
@@ -93,7 +93,7 @@ class PatchPlanner {
     Conditions open = all_conditions_;
     const Share share = AcceptedShare(hull, &open);
     if (share == Share::kNone) return;
-    // Decided by the whole patch, whatever part of it is asked for.
+    // Columns are decided by the whole patch, whatever part of it is asked for.
     columns_.clear();
     FitColumns(patch, patch.rect.x_begin, patch.rect.x_end);
     AddRows(patch, patch, share, open);
@@ -112,7 +112,7 @@ class PatchPlanner {
     columns_.push_back({x_begin, x_end, std::move(elements)});
   }
 
-  // The scanlines of `part` of a patch.
+  // Appends the scanlines of `part`, which is a part of `patch`.
   void AddRows(const IdealPatch& part, const IdealPatch& patch, Share share,
                const Conditions& open) {
     const PixelRect clip = Intersection(part.rect, rect_);
@@ -153,7 +153,8 @@ class PatchPlanner {
     }
   }
 
-  // What is left to be decided of a part of a patch; false if that is more than edges.
+  // Sets the edges that are left to be decided on a part of a patch. False if more than edges is
+  // left.
   bool SetEdges(const IdealPatch& part, const Conditions& open) {
     if (open.sides[0] == open.sides[1]) return false;
     edges_.Begin(part);
@@ -169,8 +170,8 @@ class PatchPlanner {
                                                render_camera_.aperture.radius_w}));
   }
 
-  // The one run of scanline y between edges; the law is asked where rounding might decide. False if
-  // they cannot tell.
+  // Appends the one run of scanline y between edges; the ray model decides where rounding might.
+  // False if the edges cannot tell.
   bool FindRunBetweenEdges(const IdealPatch& patch, int y, const PixelRect& clip) {
     const std::optional<PatchEdges::Pixels> pixels = edges_.Find(y);
     if (!pixels) return false;
@@ -223,7 +224,7 @@ class PatchPlanner {
     FindRuns(right, arc, begin, end, open);
   }
 
-  // At a border of pixels near the middle.
+  // Splits an arc at a border of pixels near the middle.
   static void Split(const IdealArc& arc, IdealArc* left, IdealArc* right) {
     const int middle = arc.x_begin + (arc.x_end - arc.x_begin) / 2;
     left->x_begin = arc.x_begin;
@@ -240,7 +241,8 @@ class PatchPlanner {
       runs_.push_back({begin, end});
   }
 
-  // Narrows the conditions to those that not all rays of the hull fulfil.
+  // Returns the accepted share of the hull. Reduces `open` to the conditions that not all rays of
+  // the hull fulfil.
   Share AcceptedShare(const Hull& hull, Conditions* open) const {
     for (const int side : {0, 1})
       if (open->sides[side] && !Narrow(hull, plate_half_planes_[side], &open->plate[side]))
@@ -258,7 +260,8 @@ class PatchPlanner {
     return on_plate && open->lens == 0 && !open->disk ? Share::kAll : Share::kSome;
   }
 
-  // Clears the bits of the forms that are at most 0 everywhere; false if one is so nowhere.
+  // Clears the bits of the forms that are at most 0 everywhere. False if a form is above 0
+  // everywhere.
   static bool Narrow(const Hull& hull, const std::vector<PixelForm>& forms, uint64_t* open) {
     for (uint64_t bits = *open; bits != 0; bits &= bits - 1) {
       const Share share = AtMostZero(hull, forms[static_cast<size_t>(std::countr_zero(bits))]);
@@ -274,7 +277,8 @@ class PatchPlanner {
     const Range forward = RangeOn(hull, forms_.forward);
     if (!(forward.low > 0)) return Share::kSome;
     const double r2 = render_camera_.aperture.radius_w * render_camera_.aperture.radius_w;
-    // Here lens_right = l_x forward with one l_x for all rays: the quotient is sharper.
+    // Here lens_right = l_x forward, with one l_x for all rays, so that the quotient is a sharper
+    // bound.
     if (in_lens_plane_) {
       const double l2 = (right.LargestSquare() + up.LargestSquare()) /
                         std::max(forward.high * forward.high, 1e-300);
@@ -302,15 +306,15 @@ class PatchPlanner {
   RayForms forms_;
   SegmentMaker maker_;
   std::vector<Segment>& segments_;
-  std::vector<PixelRun> runs_;  // of the scanline
-  // Of the patch: columns whose scanlines have polynomials of one fit, or none where perspective is
-  // too strong for it.
+  std::vector<PixelRun> runs_;  // runs of the scanline
+  // Columns of the patch whose scanlines have polynomials of one fit. `elements` is empty if
+  // perspective is too strong for a fit.
   struct Columns {
     int x_begin, x_end;
     std::optional<ElementPatch> elements;
   };
   std::vector<Columns> columns_;
-  PatchEdges edges_;  // of a part of it
+  PatchEdges edges_;  // edges of a part of the patch
 };
 
 }  // namespace

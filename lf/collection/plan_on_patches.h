@@ -1,4 +1,4 @@
-// The spans of LF cameras with lens distortion. Internal to collection.
+// Plans the spans of LF cameras with lens distortion. Internal to collection.
 #pragma once
 
 #include <vector>
@@ -10,9 +10,9 @@
 
 namespace lf {
 
-// Appends the accepted pixels of `rect`. By their control points patches (camera/ideal_pixels.h)
-// are wholly accepted, wholly rejected, or undecided; then their scanlines are asked, halves of
-// these, and at last the law, ray by ray.
+// Appends the accepted pixels of `rect`. Control points tell if a patch (camera/ideal_pixels.h) is
+// wholly accepted, wholly rejected, or undecided. Undecided patches are cut into scanlines and
+// halves of scanlines, and finally the ray model decides ray by ray.
 void PlanScatterOnPatches(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
                           const PixelRect& rect, const IdealPixels& ideal_pixels,
                           std::vector<Segment>* segments);

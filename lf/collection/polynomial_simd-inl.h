@@ -1,5 +1,5 @@
-// The polynomials of a segment, a vector of positions at a time. Internal to collection.
-// For each instruction set Highway includes it once more.
+// Evaluates the polynomials of a segment, a vector of positions at a time. Internal to collection.
+// Highway includes this file once for each instruction set.
 #if defined(LF_COLLECTION_POLYNOMIAL_SIMD_INL_H_) == \
     defined(HWY_TARGET_TOGGLE)  // NOLINT: Highway's guard
 #ifdef LF_COLLECTION_POLYNOMIAL_SIMD_INL_H_
@@ -24,8 +24,8 @@ using LaneI = hn::RebindToSigned<LaneF>;
 #endif
 constexpr int kLanes = static_cast<int>(hn::MaxLanes(LaneF()));
 
-// Never a fused multiply-add: the same bits on every target.
-//   kDegree  5, or 3 for cubics: of the same bits
+// There is no fused multiply-add, so that every target gives the same bits.
+//   kDegree  5, or 3 for cubics, where it gives the same bits
 template <int kDegree>
 class PolynomialLanes {
  public:

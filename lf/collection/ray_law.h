@@ -1,5 +1,5 @@
-// One ray, literally: doc/ray.md, "Geometry" 1-5, in double precision. The reference calls it for
-// every pixel, the fast kernels where their spans begin and end.
+// The ray model for one ray, applied literally: doc/ray.md, "Geometry" 1-5, in double precision.
+// The reference asks it for every pixel, the fast kernels at the ends of their spans.
 #pragma once
 
 #include <optional>
@@ -12,25 +12,25 @@
 
 namespace lf {
 
-// Whether the LF camera stands in the lens plane to rounding: then all its rays cross the lens at
+// True if the LF camera stands in the lens plane, to rounding. All its rays then cross the lens at
 // one point (doc/ray.md, Geometry 6).
 bool LiesInLensPlane(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
 
-// Whether that point is so far inside a disk that rounding cannot move it out.
+// True if that point is so far inside a disk that rounding cannot move it out.
 bool IsSurelyInDisk(const PinholeCamera& lf_camera_in_lens_plane,
                     const RenderCamera& render_camera);
 
-// The fate of the rays of one LF camera at one render camera.
+// Decides which rays of one LF camera a render camera accepts, and where they land.
 class RayLaw {
  public:
   RayLaw(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
 
-  // Where the ray of LF pixel (x, y) lands on the plate; none if it is not accepted: it runs
-  // backward, meets no focus point before the lens, misses the lens or the plate.
-  // Lens distortion is undone by iteration.
+  // Returns the element of the plate on which the ray of LF pixel (x, y) lands; none if the ray is
+  // not accepted because it runs backward, has no focus point before the lens, or misses the lens
+  // or the plate. Lens distortion is undone by iteration.
   std::optional<PlateElement> Collect(int x, int y) const;
 
-  // The same of an ideal position (camera/ideal_pixels.h).
+  // As Collect(), for an ideal position (camera/ideal_pixels.h).
   std::optional<PlateElement> CollectIdeal(const Vec3& position) const;
 
  private:

@@ -66,7 +66,8 @@ TEST(RayLaw, CamerasOnTheRimAreInside) {
 }
 
 TEST(RayLaw, CamerasBeforeAndBehindTheLensSeeItAsACone) {
-  // From 1 before the lens, on the axis, the ray at slope s left the lens at radius s.
+  // A ray at slope s, from a camera on the axis at distance 1 from the lens, crosses it at radius
+  // s.
   for (const double z : {1.0, -1.0}) {
     Scene scene;
     scene.Place({0, 0, z});
@@ -82,7 +83,7 @@ TEST(RayLaw, ACameraBehindTheFocusPlaneRecordsTheLineBackwards) {
   // the focus plane and the lens.
   Scene scene;
   scene.Place({0, 0, 3});
-  // Slope s: at the focus plane -s, at the lens -3 s. Accepted within slope 1/30.
+  // A ray at slope s meets the focus plane at -s and the lens at -3 s. Accepted up to slope 1/30.
   EXPECT_TRUE(scene.Collect(50, 50));
   EXPECT_EQ(scene.Collect(52, 50), (PlateElement{48, 49}));
   EXPECT_FALSE(scene.Collect(54, 50));
@@ -101,7 +102,8 @@ TEST(RayLaw, ElementsBeyondTheHorizonOfATiltedPlaneGetNothing) {
   scene.render.focus_plane =
       FocusPlane(scene.render.pinhole, 1, {RadiansFromDegrees(75), 0});  // depth 1 + 3.73 x
   const RayLaw law(scene.lf_camera, scene.render);
-  // Direction (x - 49.5) / 100: the plane runs away at slope 1 / tan 75 = 0.268, column 76.8.
+  // Pixel x looks along (x - 49.5) / 100. The plane runs away at slope 1 / tan 75 = 0.268, which is
+  // column 76.8.
   int last = -1;
   for (int x = 0; x < 100; ++x)
     if (law.Collect(x, 50)) {

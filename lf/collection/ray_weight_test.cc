@@ -15,7 +15,7 @@ namespace {
 
 using testing::PlateFor;
 
-// Of every block at random, 0 among them; in some corners of the plate all the same.
+// Random weights of blocks, 0 among them. In the upper left corner of the plate all are the same.
 RayWeights AnyWeights(uint64_t seed) {
   const WeightBlocks blocks = {static_cast<int>(seed % 8), static_cast<int>(seed / 8 % 8)};
   return testing::WeightsByBlock(blocks, [seed](int x, int y) -> uint32_t {
@@ -43,7 +43,7 @@ RayWeights AnyFeatheredWeights(uint64_t seed) {
   });
 }
 
-// What `plate` holds, element by element so many times.
+// Returns `plate` with each element multiplied by its weight.
 SensorPlate Multiplied(const SensorPlate& plate, const RayWeights& weights) {
   SensorPlate product(plate.width(), plate.height());
   for (int y = 0; y < plate.height(); ++y)
@@ -70,7 +70,7 @@ TEST(RayWeights, AreThoseOfBlocks) {
 }
 
 TEST(RayWeights, FeatherIsInterpolatedBetweenCorners) {
-  // It grows by a 32nd of the weight an element to the right, from 0 at x = 5.
+  // The feather grows by a 32nd per element to the right, from 0 at x = 5.
   const auto weight = [](int, int, int count, uint8_t* weights) {
     std::fill_n(weights, count, 64);
   };
@@ -113,7 +113,7 @@ TEST(RayWeights, RaysAddAndCountSoManyTimes) {
     const GatherPlan gather = PlanGather(pair.lf_camera, pair.render_camera);
     for (const bool is_gather : {false, true}) {
       if (is_gather && bayer != BayerPattern::kNone) continue;
-      // The smallest limit: pieces of scanlines are added pixel by pixel.
+      // With the smallest limit, pieces of scanlines are added pixel by pixel.
       const auto collect = [&](const RayWeights& weights, SensorPlate* plate) {
         return testing::InTiles(
             plate, grid,

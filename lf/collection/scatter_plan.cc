@@ -10,7 +10,7 @@
 namespace lf {
 namespace {
 
-// Candidates reach this far beyond the edges of polygonal lenses; the law decides.
+// Candidates reach this far beyond the edges of polygonal lenses; the ray model decides.
 constexpr double kLensMargin = 1e-7;
 
 void PlanOnLines(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
@@ -26,8 +26,8 @@ void PlanOnLines(const PinholeCamera& lf_camera, const RenderCamera& render_came
     const std::vector<PixelForm> lens = LensHalfPlanes(forms, render_camera, kLensMargin);
     rows.half_planes[side].insert(rows.half_planes[side].end(), lens.begin(), lens.end());
   }
-  // All rays of a camera in the lens plane cross it at one point: if it is near the rim, the law at
-  // the ends of a span decides for them all, where the quadratic would have a double root.
+  // All rays of a camera in the lens plane cross it at one point. If that is near the rim, the ray
+  // model decides for a whole span at its ends, because the quadratic would have a double root.
   if (is_disk && LiesInLensPlane(lf_camera, render_camera))
     rows.law_decides = !IsSurelyInDisk(lf_camera, render_camera);
   else if (is_disk)

@@ -1,7 +1,7 @@
-// The inner loop of ray collection, for every instruction set from one source (Highway): addresses
-// by polynomials, a vector at a time; then integer additions, of a whole vector where neighbouring
-// LF pixels hit neighbouring elements, else one per ray. No fused multiply-add: every target gives
-// the same bits.
+// The inner loop of ray collection, for every instruction set from one source (Highway).
+// Polynomials give addresses, a vector at a time. Values are then added in integers: a whole vector
+// at once if neighbouring LF pixels hit neighbouring elements, otherwise ray by ray. There is no
+// fused multiply-add, so that every target gives the same bits.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -12,7 +12,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lf/collection/scatter_simd.cc"  // NOLINT: as Highway wants it
 #include <hwy/foreach_target.h>
-// After foreach_target.h.
+// These come after foreach_target.h.
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
@@ -25,28 +25,28 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr int kGroup = 8;  // LF pixels that are looked at together
-// Slopes from which on groups are rarely runs: a row or column is skipped every 1 / kRareRun
-// pixels.
+// Slope from which on groups are rarely runs: a row or column is skipped every 1 / kRareRun pixels.
 constexpr float kRareRun = 1.0F / 6;
 
-// Integers below 2^23 are exact in single precision; added to 2^23 they are its last bits.
+// An integer below 2^23 is exact in single precision. If it is added to 2^23, the last bits of the
+// sum are the integer.
 constexpr float kTwoTo23 = 8388608;
 
-// Where the sums of a tile's elements are: row_stride * row + column, both in the tile.
+// The sums of a tile's elements are at row_stride * row + column, both counted in the tile.
 struct TileLayout {
   PixelRect rect;
   int row_stride;  // even
   bool has_plate_border;
 };
 
-// A piece of an RGB scanline, counted from its begin, adds to sums.
+// Adds a piece of an RGB scanline, counted from its begin, to sums.
 template <class Weights>
 struct RgbPixels {
   static constexpr int kLanesPerPixel = LfPixels::kRgbLanes;
   const uint16_t* values;        // [count][4]
-  const uint16_t* values_ahead;  // those of a scanline to come
+  const uint16_t* values_ahead;  // values of a later scanline
   TileSums::Element* elements;
-  Weights weights;  // as elements
+  Weights weights;  // indexed as elements
   bool may_be_masked;
 
   static constexpr bool has_runs() { return true; }
@@ -63,7 +63,7 @@ struct RgbPixels {
 #endif
   }
 #if HWY_TARGET != HWY_SCALAR
-  // Of pixels that fall on this element and the next ones.
+  // Returns the rays of pixels that fall on this element and the next ones.
   template <class D>
   HWY_ATTR HWY_INLINE hn::Vec<D> Rays(D d32, const uint16_t* v, int32_t element) const {
     const hn::Rebind<uint16_t, D> d16;
@@ -105,18 +105,18 @@ struct RgbPixels {
   }
 };
 
-// A piece of a mosaic's scanline adds to packed words.
+// Adds a piece of a mosaic's scanline to packed words.
 template <class Weights>
 struct MosaicPixels {
   static constexpr int kLanesPerPixel = 1;
   const uint16_t* values;        // [count]
-  const uint16_t* values_ahead;  // those of a scanline to come
-  uint64_t* words[2];            // for pixels whose index and column are both odd or even; others
-  Weights weights;               // as words
-  const uint8_t* mask;           // [count], or none
+  const uint16_t* values_ahead;  // values of a later scanline
+  uint64_t* words[2];            // [0] if index and column are both odd or even, [1] otherwise
+  Weights weights;               // indexed as words
+  const uint8_t* mask;           // [count], or null
 
   bool has_runs() const { return mask == nullptr; }
-  // The row of words is the same all along a run, since rows have an even distance.
+  // The row of words is the same all along a run, because the distance of rows is even.
   uint64_t* WordsOf(int i, int32_t start) const { return words[start & 1] + start + i; }
 
   void Add(int i, int32_t start) const {
@@ -125,7 +125,7 @@ struct MosaicPixels {
   }
 #if HWY_TARGET != HWY_SCALAR
   using Lanes = hn::CappedTag<uint64_t, kGroup>;
-  // Of pixels from `i` on that fall on the words from this one on.
+  // Returns the rays of pixels from `i` on, which fall on the words from this one on.
   HWY_ATTR HWY_INLINE hn::Vec<Lanes> Rays(int i, int32_t word) const {
     const Lanes d64;
     const hn::Rebind<uint32_t, Lanes> d32;
@@ -147,8 +147,8 @@ struct MosaicPixels {
     for (int k = 0; k < kGroup; k += kStep)
       hn::StoreU(hn::Add(hn::LoadU(d, sums + k), Rays(i + k, start + i + k)), d, sums + k);
   }
-  // Most groups are one run or two: then the words where each would lie get what belongs to it, and
-  // zeros.
+  // Most groups are one run or two. If they are two, the words of each run get the rays that belong
+  // to it, and zeros for the others.
   HWY_ATTR HWY_INLINE void AddGroup(int i, const int32_t* starts) const {
     const Lanes d;
     const hn::CappedTag<int32_t, kGroup> d32;
@@ -191,9 +191,9 @@ struct MosaicPixels {
   }
 };
 
-// Of positions [begin, begin + count) of a segment, the addresses less their index from `begin`:
-// they stay the same where neighbours lie side by side.
-//   kClamp  what rounding has sent over the border of the plate, the tile's too, comes back
+// Finds the addresses of positions [begin, begin + count) of a segment, less their index from
+// `begin`. They stay the same where neighbours lie side by side.
+//   kClamp  moves positions that rounding has put beyond the border of plate and tile back
 template <int kDegree, bool kClamp>
 HWY_ATTR HWY_INLINE void FindStarts(const Segment& s, int begin, int count, const TileLayout& tile,
                                     int32_t* starts) {
@@ -233,9 +233,9 @@ HWY_ATTR HWY_INLINE void FindStarts(const Segment& s, int begin, int count, cons
     FindStarts<5, kClamp>(s, begin, count, tile, starts);
 }
 
-// Whether position i + 1 hits the element beside that of position i, all along.
+// True if position i + 1 always hits the element beside that of position i.
 bool IsOneRun(const Segment& s) {
-  // Far enough from the border of an element for single precision.
+  // Positions this far from the border of an element are safe in single precision.
   constexpr float kMargin = 1e-3F;
   const float place = s.x_poly[0] + s.t_begin, in_element = place - std::floor(place);
   return s.is_cubic() && s.x_poly[1] == 1 && s.x_poly[2] == 0 && s.x_poly[3] == 0 &&
@@ -247,8 +247,8 @@ template <class Pixels>
 HWY_ATTR uint32_t ScatterPiece(const Segment& s, const TilePiece& piece, const Pixels& pixels,
                                const TileLayout& tile) {
   const int count = piece.end - piece.begin;
-  // Scanlines are too far apart for the processor to foresee, and it waits for few lines at a time:
-  // those of RGB pixels are asked for one by one.
+  // The processor does not foresee scanlines, which are too far apart, and can wait for few cache
+  // lines at a time. Lines of RGB pixels are therefore prefetched one by one.
   constexpr int kLinePixels = 64 / (Pixels::kLanesPerPixel * static_cast<int>(sizeof(uint16_t)));
   constexpr bool kOneByOne = kLinePixels <= kGroup;
   const auto fetch_ahead = [&](int begin, int end) {
@@ -269,7 +269,7 @@ HWY_ATTR uint32_t ScatterPiece(const Segment& s, const TilePiece& piece, const P
     return pixels.CountRays(count);
   }
 #endif
-  // All addresses first: reading them back one by one is cheaper than taking a vector apart.
+  // All addresses come first: reading them back one by one is cheaper than taking a vector apart.
   HWY_ALIGN int32_t starts[Segment::kMaxCount];
   if (tile.has_plate_border)
     FindStarts<true>(s, piece.begin, count, tile, starts);
@@ -292,7 +292,7 @@ HWY_ATTR uint32_t ScatterPiece(const Segment& s, const TilePiece& piece, const P
   return pixels.CountRays(count);
 }
 
-//   most_weight  of the weights
+//   most_weight  the largest of the weights
 template <class Weights>
 HWY_ATTR uint64_t ScatterTileBy(const ScatterPlan& plan, size_t tile, const LfPixels& pixels,
                                 const Weights& weights, uint32_t most_weight, TileSums* sums) {
@@ -303,7 +303,7 @@ HWY_ATTR uint64_t ScatterTileBy(const ScatterPlan& plan, size_t tile, const LfPi
                                 rect.x_end == plan.grid.plate_width ||
                                 rect.y_end == plan.grid.plate_height;
   const TileLayout layout{rect, is_rgb ? stride : TileSums::kMosaicRows * stride, has_plate_border};
-  // Of a longer piece too many rays might fall on one element.
+  // From a longer piece, too many rays might fall on one element.
   const uint32_t most_rays = sums->max_reserve() / most_weight;
   uint64_t rays = 0;
   const TilePiece* piece = plan.pieces.begin(tile);
@@ -328,7 +328,7 @@ HWY_ATTR uint64_t ScatterTileBy(const ScatterPlan& plan, size_t tile, const LfPi
                            sums->ReserveRgb(part.crowd * most_weight), weights, pixels.any_masked},
                        layout);
     } else {
-      // Whether the piece begins with green, and the other colour.
+      // Colour that the piece begins with, and the colour that alternates with green.
       const int x = s.x_begin + part.begin;
       const int first = BayerChannel(pixels.bayer, x, s.y);
       const int other = first == 1 ? BayerChannel(pixels.bayer, x + 1, s.y) : first;
@@ -374,7 +374,7 @@ uint64_t ScatterTile(const ScatterPlan& plan, size_t tile, const LfPixels& pixel
                      const RayWeights& weights) {
   const PixelRect& rect = sums->rect();
   LF_CHECK(plan.grid.RectOf(tile) == rect);
-  // Addresses in the tile, and those counted from the base of a segment, are exact in single
+  // Addresses in the tile, and addresses counted from the base of a segment, are exact in single
   // precision.
   const int64_t row_stride = int64_t{TileSums::kMosaicRows} * sums->stride();
   LF_CHECK(row_stride * (rect.height() + int64_t{Segment::kMaxCount}) < (int64_t{1} << 22));

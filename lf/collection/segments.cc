@@ -9,14 +9,14 @@
 namespace lf {
 namespace {
 
-// Beyond this nothing is accepted, and integers could overflow.
+// Positions beyond this are not accepted, and integers could overflow.
 constexpr double kFarthest = 1 << 24;
 
-// Bounds are this much wider: far above the rounding of single precision.
+// Bounds are wider by this margin, which is far above the rounding of single precision.
 constexpr float kBoundMargin = 0.01F;
 
-// The polynomials of pieces [begin, end) of a row on which `position(x)`, an optional Vec2, is
-// defined; pieces where they miss it are halved.
+// Fits polynomials to pieces [begin, end) of a row on which `position(x)`, an optional Vec2, is
+// defined. Pieces are halved if their polynomials miss it.
 template <class Position>
 class PieceFitter {
  public:
@@ -124,7 +124,7 @@ void SegmentMaker::AddInBlock(int y, int x_begin, int x_end, int block_begin, in
   const double s[2] = {x_[0] * inverse - e[0] * q, y_[0] * inverse - e[1] * q};
   const double reach = std::abs(q) * half, half4 = half * half * half * half;
   const double fourth = std::max(std::abs(s[0]), std::abs(s[1])) * std::abs(q * q * q) * half4;
-  // Written so that what is not a number is not good.
+  // Written so that NaN is rejected.
   const bool is_good = std::max(std::abs(s[0]), std::abs(s[1])) * half <= kFarthestFromMiddle &&
                        reach < 0.5 && fourth * (0.125 + reach / (1 - reach)) <= kTolerance &&
                        std::abs(e[0]) < kFarthest && std::abs(e[1]) < kFarthest;
@@ -172,8 +172,8 @@ void SegmentMaker::AddOfFunction(int y, int x_begin, int x_end, const Function& 
   }
 }
 
-// From the chord: the polynomial strays from it by w^2 / 8 times the most of its second derivative,
-// at most, and its slope changes by w times that.
+// The bounds are found from the chord. The polynomial strays from it by at most w^2 / 8 times the
+// largest second derivative, and its slope changes by at most w times that.
 PositionRange RangeOf(const float (&c)[Segment::kTerms], float t_begin, int count) {
   const auto w = static_cast<float>(count - 1);
   const float t_end = t_begin + w, t = t_begin;

@@ -6,7 +6,7 @@ namespace lf {
 
 std::vector<std::string> SimdTargets() {
   std::vector<std::string> names;
-  // Better ones have lower bits.
+  // Better targets have lower bits.
   for (const int64_t target : hwy::SupportedAndGeneratedTargets())
     names.emplace_back(hwy::TargetName(target));
   return names;

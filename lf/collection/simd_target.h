@@ -8,12 +8,12 @@
 
 namespace lf {
 
-// Those that this program has and this processor can run, best first: "AVX3", "AVX2", ...,
-// "SCALAR".
+// Returns the instruction sets that this program has and this processor can run, best first:
+// "AVX3", "AVX2", ..., "SCALAR".
 std::vector<std::string> SimdTargets();
 
-// Of these, the kernels use `name` from now on; "" for the best. Not while kernels run.
-// False if there is no such target here.
+// Makes the kernels use the instruction set `name` from now on; "" for the best. Must not be called
+// while kernels run. False if there is no such target here.
 bool UseSimdTarget(std::string_view name);
 
 }  // namespace lf

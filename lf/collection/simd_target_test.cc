@@ -1,4 +1,4 @@
-// The same bits on every instruction set.
+// Every instruction set gives the same bits.
 #include "lf/collection/simd_target.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ std::vector<SensorPlate> Collect(const testing::CameraPair& pair, uint64_t seed)
   LfPixels pixels = testing::NoisePixels(testing::WholeImage(pair), bayer, seed);
   if (bayer == BayerPattern::kNone) pixels.recorded = static_cast<BayerPattern>(seed / 25 % 5);
   const IdealPixels ideal(k);
-  // All 1, all the same, or by element.
+  // Weights are all 1, all the same, or by element.
   RayWeights weights(seed % 3 == 0 ? 1 : 1 + static_cast<uint32_t>(seed % kMaxWeight));
   if (seed % 3 == 2)
     weights = testing::WeightsByBlock({static_cast<int>(seed % 8), 5}, [seed](int x, int y) {

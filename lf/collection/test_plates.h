@@ -1,5 +1,5 @@
-// What the tests of ray collection share: LF images of noise, plates for a pair of cameras, and
-// what two plates differ in.
+// Common parts of the tests of ray collection: LF images of noise, plates for a pair of cameras,
+// and the difference of two plates.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +35,7 @@ inline SensorPlate PlateFor(const CameraPair& pair, uint32_t limit = SensorPlate
                      pair.render_camera.pinhole.intrinsics.height_px, limit);
 }
 
-// of_block(end_x, end_y) of every block.
+// Returns weights that are of_block(end_x, end_y) for every block.
 template <class OfBlock>
 RayWeights WeightsByBlock(const WeightBlocks& blocks, const OfBlock& of_block) {
   return RayWeights(blocks, [of_block](int end_x, int end_y, int count, uint8_t* weights) {
@@ -56,7 +56,7 @@ inline uint64_t TotalCount(const SensorPlate& plate) {
   return count;
 }
 
-// Rays that lie in different elements of the two plates.
+// Returns the number of rays that lie in different elements of the two plates.
 inline uint64_t DifferingCount(const SensorPlate& a, const SensorPlate& b) {
   uint64_t count = 0;
   for (int y = 0; y < a.height(); ++y)
@@ -70,7 +70,8 @@ inline uint64_t DifferingCount(const SensorPlate& a, const SensorPlate& b) {
   return count;
 }
 
-// Calls collect(tile, &sums) for all tiles of the plate, flushing each; the sum of what it returns.
+// Calls collect(tile, &sums) for all tiles of the plate and flushes each. Returns the sum of the
+// results.
 //   ray_limit  of the sums
 template <class Collect>
 uint64_t InTiles(SensorPlate* plate, const TileGrid& grid, const Collect& collect,

@@ -7,7 +7,7 @@
 namespace lf {
 namespace {
 
-// Single precision keeps the order of positions this far apart.
+// Positions that are at least this far apart keep their order in single precision.
 constexpr float kSureStep = 1e-3F;
 
 int Floor(float f) {
@@ -15,7 +15,7 @@ int Floor(float f) {
   return static_cast<float>(i) > f ? i - 1 : i;
 }
 
-// A position that is the first on another side of a border between tiles than the one before.
+// The first position behind a border between tiles.
 struct Crossing {
   uint16_t index;
   int16_t step;  // to the next column or row of tiles, or back
@@ -35,13 +35,13 @@ class Axis {
         tile_size_(tile_size),
         range_(RangeOf(polynomial, t_begin, count)) {}
 
-  // How far positions move, at least, from one to the next; below 0 if they may turn round.
+  // Least distance from one position to the next; below 0 if positions may turn round.
   float least_distance() const { return std::max(range_.least_step, -range_.most_step); }
 
   // The column or row of tiles of the first position.
   int FirstTile() const { return TileOf(range_.first); }
 
-  // Writes all crossings but at the first position, in order, and one at `count`.
+  // Writes all crossings in order, except at the first position, and then one at `count`.
   void Cross(Crossing* crossings) const {
     CrossWithin(0, count_ - 1, range_, &crossings);
     *crossings = {static_cast<uint16_t>(count_), 0};
@@ -54,7 +54,8 @@ class Axis {
   float At(float i) const { return PositionAt(polynomial_, t_begin_ + i); }
   float Position(int i) const { return At(static_cast<float>(i)); }
 
-  // Crossings at positions (first, last]; where those may turn round, half by half.
+  // Writes the crossings at positions (first, last]. Halves the range where positions may turn
+  // round.
   void CrossWithin(int first, int last, const PositionRange& range, Crossing** crossings) const {
     const int least = TileOf(range.low), most = TileOf(range.high);
     if (least == most || first == last) return;
@@ -76,14 +77,15 @@ class Axis {
     return RangeOf(polynomial_, t_begin_ + static_cast<float>(first), last - first + 1);
   }
 
-  // Where the positions, which rise or fall, enter or leave `tile` by its lesser border.
+  // Writes the crossing of positions that rise or fall through the border of `tile` with the
+  // smaller coordinate.
   void CrossOnce(int first, int last, const PositionRange& range, int tile, int step,
                  Crossing** crossings) const {
     const auto border = static_cast<float>(tile * tile_size_ - base_);
     const auto is_behind = [&](int i) { return (Position(i) >= border) == (step > 0); };
     const auto steps = static_cast<float>(last - first);
     const float inverse = steps / (range.last - range.first);
-    // By the chord, then by what that misses: off by one at most, as a rule.
+    // The chord gives a place, and the error there corrects it. This is usually off by one at most.
     float place = std::clamp((border - range.first) * inverse, 0.0F, steps);
     const float found = At(static_cast<float>(first) + place);
     place = std::clamp(place + (border - found) * inverse, 0.0F, steps);
@@ -118,7 +120,7 @@ struct Cutting {
   int tile;
 };
 
-// The most positions that fall on one element.
+// Returns the largest number of positions that fall on one element.
 uint16_t Crowd(float least_distance, int count) {
   const float crowd = least_distance > 1e-6F ? 2 + 1.01F / least_distance : 1e6F;
   return static_cast<uint16_t>(std::min(static_cast<float>(count), crowd));
@@ -150,7 +152,7 @@ void TilePieces::Cut(const std::vector<Segment>& segments, const TileGrid& grid)
       cuttings.push_back(
           {{static_cast<uint32_t>(k), static_cast<uint16_t>(begin), end, crowd}, tile});
       ++tile_begin_[static_cast<size_t>(tile) + 1];
-      // Steps are large where several borders are crossed at once.
+      // Several borders may be crossed at once.
       for (; x->index == end && end < s.count; ++x) column += x->step;
       for (; y->index == end && end < s.count; ++y) row += y->step;
       begin = end;
@@ -159,7 +161,7 @@ void TilePieces::Cut(const std::vector<Segment>& segments, const TileGrid& grid)
   for (size_t tile = 1; tile < tile_begin_.size(); ++tile)
     tile_begin_[tile] += tile_begin_[tile - 1];
   sorted_.resize(cuttings.size());
-  // Each tile's begin moves to its end, which is the begin of the next.
+  // This moves each tile's begin to its end, which is the begin of the next.
   for (const Cutting& cutting : cuttings)
     sorted_[tile_begin_[static_cast<size_t>(cutting.tile)]++] = cutting.piece;
   std::copy_backward(tile_begin_.begin(), tile_begin_.end() - 1, tile_begin_.end());

@@ -1,5 +1,5 @@
-// The pieces of segments that land in each tile of a plate. Kernels read them; callers
-// only hand them on.
+// The pieces of segments that land in each tile of a plate. Kernels read them; callers only hand
+// them on.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,8 @@
 
 namespace lf {
 
-// Positions [begin, end) of a segment, counted from its own; all land in one tile, clamped to the
-// plate, and none of its elements takes more than `crowd`.
+// Positions [begin, end) of a segment, counted from its first. All of them land in one tile,
+// clamped to the plate, and none of its elements takes more than `crowd` of them.
 struct TilePiece {
   uint32_t segment = 0;
   uint16_t begin = 0;
@@ -20,10 +20,10 @@ struct TilePiece {
   uint16_t crowd = 0;
 };
 
-// By tile, in the order of the segments.
+// The pieces of each tile, in the order of the segments.
 class TilePieces {
  public:
-  // Decided by single precision, as kernels find addresses.
+  // Cuts segments by addresses in single precision, as kernels compute them.
   void Cut(const std::vector<Segment>& segments, const TileGrid& grid);
 
   const TilePiece* begin(size_t tile) const { return sorted_.data() + tile_begin_[tile]; }

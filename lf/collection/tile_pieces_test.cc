@@ -10,7 +10,7 @@
 namespace lf {
 namespace {
 
-// Straight ones, bent ones, some that turn round or hardly move, some over the edge of the plate.
+// Segments that are straight, bent, turn round, hardly move, or leave the plate.
 Segment RandomSegment(uint64_t seed) {
   RandomSequence random(seed);
   const double speeds[] = {1e-5, 0.02, 1, 3, 40};

@@ -25,7 +25,7 @@ void TileWeights::Fill(const RayWeights& weights, const PixelRect& tile, int pit
   of_blocks_.resize(static_cast<size_t>(block_count));
   above_.resize(of_blocks_.size() + 1);
   below_.resize(of_blocks_.size() + 1);
-  below_y_ = blocks.EndY(tile.y_begin);  // no row's upper corners, so far
+  below_y_ = blocks.EndY(tile.y_begin);  // no row has these as upper corners yet
   uint8_t* row = bytes_.data() + kMargin;
   for (int y = tile.y_begin; y < tile.y_end;) {
     const bool rows_differ = FillBlocks(weights, tile, y);
@@ -42,7 +42,7 @@ void TileWeights::Fill(const RayWeights& weights, const PixelRect& tile, int pit
   }
 }
 
-// Finds the weights and the feather of the row of blocks that scanline y lies in. Returns whether
+// Finds the weights and the feather of the row of blocks that scanline y lies in. Returns true if
 // some block is feathered.
 bool TileWeights::FillBlocks(const RayWeights& weights, const PixelRect& tile, int y) {
   const int count = static_cast<int>(of_blocks_.size());

@@ -1,5 +1,5 @@
-// The weights of one LF image's rays in one tile, a byte for each element, where kernels find them
-// by the address they add to. Internal to collection.
+// The weights of one LF image's rays in one tile, one byte per element. Kernels find them by the
+// address that they add to. Internal to collection.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,14 @@ namespace lf {
 
 class TileWeights {
  public:
-  // Bytes before and behind that may be read, and belong to no element.
+  // Bytes before and behind the weights, which may be read but belong to no element.
   static constexpr int kMargin = 64;
 
-  //   pitch  from one row of elements to the next
-  // Nothing is written where weights are the same.
+  // Finds the weights of a tile. Writes no bytes if all weights are the same.
+  //   pitch  bytes from one row of elements to the next
   void Fill(const RayWeights& weights, const PixelRect& tile, int pitch);
 
-  // Every weight of the tile lies between the two; where they are equal, all are the same.
+  // All weights of the tile lie between these two. If they are equal, all weights are the same.
   uint32_t least() const { return least_; }
   uint32_t most() const { return most_; }
 
@@ -37,7 +37,7 @@ class TileWeights {
   std::vector<uint8_t> of_blocks_;
   std::vector<uint16_t> above_;
   std::vector<uint16_t> below_;
-  int below_y_ = 0;  // where below_ is of
+  int below_y_ = 0;  // row of the corners that below_ is for
 };
 
 }  // namespace lf
