@@ -168,7 +168,7 @@ Bent BendRadialTangentialThinPrism(const DistortionParameters& p, const Vec2& at
   const double u = at.x(), v = at.y();
   const ValueAndSlope radial = LongFisheyeCurve(p).Factor(u * u + v * v);
   const double cross = 2 * u * v * radial.slope;
-  Eigen::Matrix2d inner;                                    // of (a, b) by (u, v)
+  Eigen::Matrix2d inner;                                    // derivatives of (a, b) by (u, v)
   inner << radial.value + 2 * u * u * radial.slope, cross,  //
       cross, radial.value + 2 * v * v * radial.slope;
   const double a = u * radial.value, b = v * radial.value, q = a * a + b * b;
@@ -177,7 +177,7 @@ Bent BendRadialTangentialThinPrism(const DistortionParameters& p, const Vec2& at
   Bent bent;
   bent.value = {a + p0 * (q + 2 * a * a) + 2 * p1 * a * b + q * (s0 + s1 * q),
                 b + p1 * (q + 2 * b * b) + 2 * p0 * a * b + q * (s2 + s3 * q)};
-  Eigen::Matrix2d outer;  // of (xd, yd) by (a, b)
+  Eigen::Matrix2d outer;  // derivatives of (xd, yd) by (a, b)
   outer << 1 + 6 * p0 * a + 2 * p1 * b + slope_x * a, 2 * p0 * b + 2 * p1 * a + slope_x * b,  //
       2 * p1 * a + 2 * p0 * b + slope_y * a, 1 + 6 * p1 * b + 2 * p0 * a + slope_y * b;
   bent.jacobian = outer * inner;

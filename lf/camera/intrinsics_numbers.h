@@ -1,4 +1,4 @@
-// Intrinsics as a list of numbers, for what stores or compares them.
+// Intrinsics as a list of numbers, for code that stores or compares them.
 #pragma once
 
 #include <array>

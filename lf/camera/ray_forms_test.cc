@@ -10,7 +10,7 @@
 namespace lf {
 namespace {
 
-// Every form against the geometry it stands for, ray by ray.
+// Compares every form with the geometry that it stands for, ray by ray.
 TEST(RayForms, AgreeWithTheGeometry) {
   for (uint64_t seed = 0; seed < 200; ++seed) {
     const testing::CameraPair pair = testing::RandomCameraPair(seed);

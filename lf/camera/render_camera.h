@@ -20,7 +20,7 @@ struct FocusTilt {
 struct RenderCamera {
   PinholeCamera pinhole;  // sensor plate elements as seen through the lens centre
   Aperture aperture;      // in the plane through the lens centre normal to the optical axis
-  Plane focus_plane;      // world
+  Plane focus_plane;      // in the world
 
   // The settings that the planes were made from, for people and metadata.
   double time_s = 0;

@@ -189,7 +189,7 @@ class GatherPlanner {
   SegmentMaker maker_;
   RowSpans rows_;
   GatherPlan plan_;
-  int width_, height_;          // of the finer plate
+  int width_, height_;          // size of the finer plate
   std::vector<RowSpan> spans_;  // spans of the row
   std::vector<Segment> found_;  // segments of the span
   int part_end_ = -1;           // end of the last part of the segment

@@ -37,7 +37,7 @@ class PatchEdges {
   std::optional<Pixels> Find(int y);
 
  private:
-  using Values = std::array<double, IdealPatch::kControls>;  // at the control points of a scanline
+  using Values = std::array<double, IdealPatch::kControls>;  // at a scanline's control points
 
   // A linear form at the control points of the patch.
   struct Grid {

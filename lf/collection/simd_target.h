@@ -1,5 +1,5 @@
-// Which instruction set the kernels of this folder run on: the best that the processor has, unless
-// a test or a benchmark wants another. The bits are the same on all.
+// Chooses the instruction set that the kernels of this folder run on: the best that the processor
+// has, unless a test or a benchmark wants another. The bits are the same on all.
 #pragma once
 
 #include <string>

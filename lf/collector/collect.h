@@ -37,7 +37,7 @@ struct CollectOptions {
   // second, because frames that are begun are finished before an interruption is answered.
   uint64_t batch_ray_count = 10'000'000'000;
   uint64_t batch_frame_ray_count = 500'000'000;
-  size_t plan_bytes = size_t{64} << 20;  // of the plans of frames that are planned together
+  size_t plan_bytes = size_t{64} << 20;  // memory for frames that are planned together
   // No batch crosses a multiple of this number of places, where stop rules may be decided for all
   // frames. 0: there is no rule, and batches are not cut. Otherwise a multiple of kDecisionPlaces.
   uint32_t decision_places = kDecisionPlaces;
@@ -61,7 +61,7 @@ struct CollectOptions {
 // takes, and of no others. Broken LF images count as done.
 struct FrameProgress {
   uint32_t places_done = 0;
-  FrameRays rays;  // that were added by this collector
+  FrameRays rays;  // rays that this collector added
 };
 
 struct SkippedImage {
@@ -74,7 +74,7 @@ struct CollectTimes {
   double load_cpu_s = 0;     // reading and decoding LF images, all threads
   double load_wall_s = 0;    // as load_cpu_s, with waiting for the disk; summed over the threads
   double collect_cpu_s = 0;  // planning and adding rays, all threads
-  double wall_s = 0;         // of all steps
+  double wall_s = 0;         // all steps
 };
 
 // Adds the rays of LF images, in their order, to plates, one per frame. Each step adds a batch,

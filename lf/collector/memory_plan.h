@@ -12,7 +12,7 @@ namespace lf {
 struct MemoryPlan {
   size_t frames_per_pass = 1;  // plates kept at the same time; each pass reads the LF images again
   size_t batch_image_count = 1;        // two batches are kept at the same time (collect.h)
-  size_t plan_bytes = 0;               // of the plans of a batch's rays
+  size_t plan_bytes = 0;               // memory for the plans of a batch's rays
   size_t frames_finished_at_once = 1;  // after the last batch, in the memory of the LF images
   size_t image_bytes = 0;              // the largest decoded LF image
   size_t plate_bytes = 0;

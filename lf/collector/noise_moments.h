@@ -61,7 +61,8 @@ class NoiseMoments {
 
   // Makes moments without plate and elements.
   NoiseMoments() = default;
-  // Elements in even columns and rows over a plate of this size, in the middle of equal rectangles.
+  // Measures the elements in the middle of equal rectangles, into which a plate of this size is
+  // cut.
   NoiseMoments(int plate_width, int plate_height);
 
   size_t size() const { return moments_.size() / SensorPlate::kChannels; }

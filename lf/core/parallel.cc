@@ -33,7 +33,7 @@ struct ThreadPool::State {
   explicit State(int thread_count)
       : limit(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(thread_count)),
         arena(thread_count) {}
-  // The arena alone cannot use more threads than tbb thinks the machine has.
+  // Without it, the arena uses no more threads than tbb thinks the machine has.
   tbb::global_control limit;
   tbb::task_arena arena;
 };

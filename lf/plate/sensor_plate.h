@@ -28,8 +28,8 @@
 namespace lf {
 
 struct ElementSum {
-  uint64_t sum = 0;    // of the rays' values v
-  uint64_t count = 0;  // of rays
+  uint64_t sum = 0;    // sum of the rays' values v
+  uint64_t count = 0;  // number of rays
   friend bool operator==(const ElementSum&, const ElementSum&) = default;
 };
 
