@@ -4,7 +4,8 @@
 usage: check_house.py REPOSITORY CHECK
 
   lengths  no source file is longer than 500 lines (doc/style.md)
-  paths    no file holds an absolute path of somebody's build machine
+  paths    no file holds an absolute path of somebody's build machine, and no name begins with a dash
+           (an option that was taken for a folder)
   links    in every Markdown page: links lead to files and headings that exist, `paths` in
            backticks exist, and `folder.Suite.Test` and `tests.name` are tests that exist
   pages    the pages of doc/ that comments in sources refer to exist
@@ -24,7 +25,7 @@ import sys
 import mutant_list
 import table_rules
 
-SOURCES = {".cc", ".h", ".cu", ".py", ".sh", ".cmake", ".txt", ""}
+SOURCES = {".cc", ".h", ".c", ".py", ".sh", ".cmake", ".txt", ".ts", ".css", ""}
 LINE_LIMIT = 500
 MACHINE_PATH = re.compile(r"(?<![\w.$}])/(?:work|root)/[\w.]")
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
@@ -67,6 +68,8 @@ def check_lengths(root, files):
 
 def check_paths(root, files):
     for path in files:
+        if any(part.startswith("-") for part in path.relative_to(root).parts):
+            yield f"{path.relative_to(root)}: a name that begins with a dash is an option to most programs"
         for number, line in enumerate(text_lines(path), 1):
             match = MACHINE_PATH.search(line)
             if match:

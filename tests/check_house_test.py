@@ -48,7 +48,8 @@ class PlantedFaults(unittest.TestCase):
         self.plant("lf/core/a.h", "// see /" + "work/shared/notes\n")
         self.plant("doc/a.md", "fine\n\nin /" + "root/build\n")
         self.plant("doc/b.md", "build/work/x, ../root/y, $HOME/work/z\n")
-        self.expect("check_house.py", "paths", faults=["lf/core/a.h:1", "doc/a.md:3"])
+        self.plant("tests/--threads/frame.txt", "left by a program that was called wrongly\n")
+        self.expect("check_house.py", "paths", faults=["lf/core/a.h:1", "doc/a.md:3", "tests/--threads/frame.txt"])
 
     def test_links_must_lead_somewhere(self):
         self.plant("doc/there.md", "# A heading, here\n[up](#a-heading-here)\n")
