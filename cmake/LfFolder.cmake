@@ -4,6 +4,10 @@ add_library(lf_options INTERFACE)
 target_compile_features(lf_options INTERFACE cxx_std_20)
 target_compile_options(lf_options INTERFACE -ffp-contract=off -Wall -Wextra -Wshadow
                                             -Wnon-virtual-dtor)
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  # GCC 12 warns falsely of std::string, depending on what it inlines (its bugs 105329 and 105651).
+  target_compile_options(lf_options INTERFACE -Wno-restrict -Wno-array-bounds)
+endif()
 target_include_directories(lf_options INTERFACE ${PROJECT_SOURCE_DIR})
 if(LF_WERROR)
   target_compile_options(lf_options INTERFACE -Werror)
@@ -19,6 +23,8 @@ if(LF_FUZZ)
   target_link_options(lf_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
+include(LfPrecompiled)
+
 # The umbrella users link.
 add_library(lfrendertools INTERFACE)
 add_library(lfrendertools::lfrendertools ALIAS lfrendertools)
@@ -28,7 +34,7 @@ add_library(lfrendertools::lfrendertools ALIAS lfrendertools)
 #
 # One folder of lf/ as the static library lf_<name>.
 #   SOURCES      the .cc files
-#   DEPENDS      the folders it may include (doc/design.md; checked by scripts/check_includes.py)
+#   DEPENDS      the folders it may include (doc/layout.md; checked by scripts/check_includes.py)
 #   LIBS         third-party targets its .cc files need;  PUBLIC_LIBS: its headers too
 #   TESTS        x_test.cc files: one program per folder, every test known to ctest
 #   FUZZ         x_fuzz.cc files: libFuzzer programs with LF_FUZZ, and in every build a replay of
@@ -47,6 +53,7 @@ function(lf_folder name)
     set_property(GLOBAL APPEND PROPERTY LF_FOLDERS ${target})
     target_link_libraries(${target} PUBLIC lf_options Eigen3::Eigen ${F_DEPENDS} ${F_PUBLIC_LIBS}
                                     PRIVATE ${F_LIBS})
+    lf_precompile(${target})
   else()
     add_library(${target} INTERFACE)
     target_link_libraries(${target} INTERFACE lf_options Eigen3::Eigen ${F_DEPENDS})
@@ -57,6 +64,7 @@ function(lf_folder name)
   if(LF_TESTS AND F_TESTS)
     add_executable(${target}_test ${F_TESTS})
     target_link_libraries(${target}_test PRIVATE ${target} ${F_TEST_LIBS} GTest::gtest_main)
+    lf_precompile(${target}_test test)
     gtest_discover_tests(${target}_test TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60)
   endif()
   foreach(fuzz_source ${F_FUZZ})
@@ -91,5 +99,6 @@ function(lf_tool name)
   add_executable(${name} ${name}.cc)
   set_property(GLOBAL APPEND PROPERTY LF_TOOLS ${name})
   target_link_libraries(${name} PRIVATE lf_tool_common ${T_LIBS})
+  lf_precompile(${name})
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
 endfunction()

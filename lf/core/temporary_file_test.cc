@@ -1,5 +1,6 @@
 #include "lf/core/temporary_file.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -26,8 +27,8 @@ class TemporaryFileTest : public testing::Test {
   // Makes the temporary file that a process of this number on this host would have made.
   fs::path Leave(const std::string& file, pid_t process) const {
     std::string name = TemporaryPath(folder_ / file).filename().string();
-    const std::string own = "." + std::to_string(::getpid()) + "-";
-    name.replace(name.find(own), own.size(), "." + std::to_string(process) + "-");
+    const std::string own = fmt::format(".{}-", ::getpid());
+    name.replace(name.find(own), own.size(), fmt::format(".{}-", process));
     std::ofstream(folder_ / name) << "half";
     return folder_ / name;
   }
