@@ -13,6 +13,7 @@ usage: check_house.py REPOSITORY CHECK
            defaults that bench/defaults.txt lists today (table_rules.py)
   mutants  every mistake of scripts/mutants.toml can be planted: its old text is in its file exactly
            once, and tests are named like those that must notice it
+  comments how comments begin and end (doc/style.md; comment_rules.py)
   commits  the commits that tables were made from are ancestors of HEAD. Exits with 77, skipped, where
            there is no history to look into
 """
@@ -22,10 +23,11 @@ import re
 import subprocess
 import sys
 
+import comment_rules
 import mutant_list
 import table_rules
 
-SOURCES = {".cc", ".h", ".c", ".py", ".sh", ".cmake", ".txt", ".ts", ".css", ""}
+SOURCES = {".cc", ".h", ".c", ".py", ".sh", ".cmake", ".txt", ".ts", ".mjs", ".css", ""}
 LINE_LIMIT = 500
 MACHINE_PATH = re.compile(r"(?<![\w.$}])/(?:work|root)/[\w.]")
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
@@ -150,13 +152,19 @@ def check_mutants(root, files):
     return mutant_list.check_list(root, named_tests(root, files))
 
 
+def check_comments(root, files):
+    for path in files:
+        for number, fault in comment_rules.faults_of(path, list(text_lines(path))):
+            yield f"{path.relative_to(root)}:{number}: {fault}"
+
+
 def check_commits(root, files):
     return table_rules.check_commits(root, files, text_lines)
 
 
 CHECKS = {"lengths": check_lengths, "paths": check_paths, "links": check_links,
           "pages": check_pages, "tables": check_tables, "mutants": check_mutants,
-          "commits": check_commits}
+          "comments": check_comments, "commits": check_commits}
 SKIPPED = 77
 
 

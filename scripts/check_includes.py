@@ -9,7 +9,7 @@ import pathlib
 import re
 import sys
 
-# Third-party headers, and the only folders that may include them (doc/design.md, section 3).
+# Third-party headers, and the only folders that may include them (doc/design.md, "Dependencies").
 OWNERS = {
     "OpenImageIO/": {"imageio"},
     "jpeglib.h": {"imageio"},

@@ -51,6 +51,14 @@ class PlantedFaults(unittest.TestCase):
         self.plant("tests/--threads/frame.txt", "left by a program that was called wrongly\n")
         self.expect("check_house.py", "paths", faults=["lf/core/a.h:1", "doc/a.md:3", "tests/--threads/frame.txt"])
 
+    def test_comments_begin_with_their_subject_and_end_without_too(self):
+        self.plant("lf/core/a.h", "// Returns the size.\nint Size();  // Of it.\n\n"
+                                  "// What is left\n// of it.\nint Left();\nint Both();  // is it one, too\n"
+                                  "// Offers the same.\n")
+        self.plant("scripts/a.py", '"""Where it is."""\nx = "# Of a string"  ' "# What it is\n")
+        self.expect("check_house.py", "comments",
+                    faults=["lf/core/a.h:2", "lf/core/a.h:4", "lf/core/a.h:7", "scripts/a.py:1", "scripts/a.py:2"])
+
     def test_links_must_lead_somewhere(self):
         self.plant("doc/there.md", "# A heading, here\n[up](#a-heading-here)\n")
         self.plant("README.md", "[a](doc/there.md#a-heading-here) [b](https://example.org/x)\n"
@@ -214,7 +222,7 @@ tests = '{tests}'
     def test_a_clean_house_has_no_faults(self):
         self.plant("lf/core/CMakeLists.txt", "lf_folder(core SOURCES a.cc)\n")
         self.plant("lf/core/a.cc", "#include <vector>\n")
-        for check in ("lengths", "paths", "links", "pages", "tables"):
+        for check in ("lengths", "paths", "links", "pages", "tables", "comments"):
             self.expect("check_house.py", check, faults=[])
         self.expect("check_includes.py", faults=[])
 

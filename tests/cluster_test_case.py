@@ -121,7 +121,7 @@ run
                     sleep 0.02
                 done
                 # Continues the renderer when one of the signals 1 to 16 is pending, or after some minutes. A STOP
-                # that it has not yet obeyed is pending, too.
+                # that it has not yet obeyed is pending.
                 for ((i = 0; i < 20000; ++i)); do
                     grep -qE '^S(ig|hd)Pnd:.*[1-9a-f][0-9a-f]{{0,3}}$' /proc/$$/status && break
                     kill -0 $$ || break

@@ -1,4 +1,4 @@
-// Errors as values: bad input and failing machines (doc/design.md, "Errors"). LF_CHECK catches our
+// Errors as values: bad input and failing machines (doc/style.md, "Errors"). LF_CHECK catches our
 // own bugs. Nothing in the library throws.
 #pragma once
 
