@@ -1,8 +1,15 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
 #include "tools/common/allow_missing.h"
 #include "tools/common/byte_size.h"
 #include "tools/common/duration.h"
+#include "tools/common/help.h"
 #include "tools/common/program.h"
 #include "tools/common/progress.h"
 
@@ -115,6 +122,85 @@ TEST(Program, WholeNumbersAreDecimalAndFit) {
     EXPECT_NE(WholeNumber()(wrong).find("expected a whole number"), std::string::npos) << wrong;
   std::string empty;
   EXPECT_NE(NotEmpty()(empty), "");
+}
+
+class HelpTest : public testing::Test {
+ protected:
+  HelpTest() {
+    app_.formatter(std::make_shared<HelpFormatter>(HelpTexts{.summary = "Films.",
+                                                             .usage = "  film PATH [OPTIONS]",
+                                                             .examples = "  film a   # a comment",
+                                                             .details = "DIR receives frames."}));
+    app_.set_help_flag("-h,--help", "Show help")->group(kHelpGroup);
+    app_.option_defaults()->always_capture_default();
+    OptionGroup running(app_, kRunningGroup), output(app_, kOutputGroup), rare(app_, "Rare");
+    output.Add("PATH", path_, "Camera path")->required();
+    CLI::Option* const plan = output.AddFlag("--plan", plan_, "Write nothing");
+    output.Add("-o,--output DIR", path_, "Folder\nThe folder of the frames.")->excludes(plan);
+    running.Add("--threads N", threads_, "Threads (all)")->check(CLI::Range(0, 512));
+    rare.Add("--slab-position X Y Z", position_, "Place of the slab")->expected(3);
+    rare.AddChoice("--format", format_, {"exr", "png"}, "File format");
+  }
+
+  // Parses a command line of one option. Returns the message of the error, or nothing.
+  std::string Parse(const std::string& words) {
+    try {
+      app_.parse(words);
+    } catch (const CLI::ParseError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  CLI::App app_;
+  std::string path_, format_ = "exr";
+  std::vector<double> position_;
+  int threads_ = 0;
+  bool plan_ = false;
+};
+
+TEST_F(HelpTest, ShowsALineForEachOptionOfItsGroups) {
+  EXPECT_EQ(app_.help("film", CLI::AppFormatMode::Normal),
+            "Films.\n"
+            "\nUsage:\n  film PATH [OPTIONS]\n"
+            "\nExamples:\n  film a   # a comment\n"
+            "\nOutput:\n"
+            "  PATH              Camera path\n"
+            "  --plan            Write nothing\n"
+            "  -o, --output DIR  Folder\n"
+            "\nRunning:\n"
+            "  --threads N       Threads (all)\n"
+            "\n--help-all shows 2 more options and the details.\n");
+}
+
+TEST_F(HelpTest, HelpAllAddsDetailsFactsAndRareOptions) {
+  const std::string help = app_.help("film", CLI::AppFormatMode::All);
+  for (const char* part :
+       {"  PATH              Camera path\n      Required\n",
+        "  -o, --output DIR  Folder\n      The folder of the frames.\n      Not with --plan\n",
+        "  --threads N       Threads (all)\n      Default: 0 (all); values: 0 to 512\n",
+        "\nRare:\n  --slab-position X Y Z  Place of the slab\n      Default: empty\n",
+        "  --format exr|png  File format (exr)\n      Default: exr\n",
+        "\nHelp:\n  -h, --help        Show help\n\nDIR receives frames.\n\nExit codes: 0 done,"})
+    EXPECT_NE(help.find(part), std::string::npos) << part << "\nis not in\n" << help;
+}
+
+TEST_F(HelpTest, LongDetailsAreWrapped) {
+  std::string details = "\n";
+  for (int i = 0; i < 60; ++i) details += "word ";
+  OptionGroup(app_, "Rare").AddFlag("--long", plan_, "Summary" + details);
+  std::istringstream lines(app_.help("film", CLI::AppFormatMode::All));
+  size_t widest = 0;
+  for (std::string line; std::getline(lines, line);) widest = std::max(widest, line.size());
+  EXPECT_LE(widest, 100u);
+  EXPECT_GT(widest, 95u);
+}
+
+TEST_F(HelpTest, ErrorsNameTheAllowedValues) {
+  EXPECT_EQ(Parse("a --format gif"), "--format: gif not in {exr,png}");
+  EXPECT_EQ(Parse("a --threads"), "--threads: 1 required N:INT in [0 - 512] missing");
+  EXPECT_NE(Parse("a --threads 999").find("999 not in range 0 to 512"), std::string::npos);
+  EXPECT_EQ(Parse("a --slab-position 1 nan 2"), "--slab-position: expected a number, found 'nan'");
 }
 
 TEST(Progress, StylesHaveNames) {

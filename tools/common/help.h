@@ -1,0 +1,89 @@
+// The help of the programs: --help, which one can scan, and --help-all, which tells everything.
+//
+//   OptionGroup output(app, kOutputGroup);
+//   output.Add("-o,--output DIR", folder, "Folder of the frames")->required();
+//   output.Add("--max-images N", max_images,
+//              "Most LF images that a frame takes (all)\n"
+//              "A frame takes the first N of its order.");
+//   output.AddChoice("--format", format, {"exr", "png"}, "File format of the frames");
+//   output.AddFlag("--overwrite", overwrite, "Replace the frames in DIR");
+//
+// The text of an option is its summary and, after a line break, its details in sentences. --help
+// shows the option in one line: names, placeholder (DIR), summary and default. A summary that ends
+// with words in parentheses says what the default means: (all) in place of (0).
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+namespace lf {
+
+// The groups that --help shows, in this order. Only --help-all shows the options of other groups.
+inline constexpr const char* kInputGroup = "Input";
+inline constexpr const char* kOutputGroup = "Output";
+inline constexpr const char* kPictureGroup = "Picture";
+inline constexpr const char* kQualityGroup = "Quality";
+inline constexpr const char* kRunningGroup = "Running";
+// Groups that only --help-all shows; kHelpGroup (--help, --help-all, --version) comes last.
+inline constexpr const char* kMeasuringGroup = "Measuring";
+inline constexpr const char* kHelpGroup = "Help";
+
+// The texts of one program. Lines that begin with two spaces, such as commands, are printed as they
+// are; other lines are wrapped.
+struct HelpTexts {
+  const char* summary = "";   // one sentence: what the program does
+  const char* usage = "";     // one line for each way to call the program
+  const char* examples = "";  // one line for each command
+  const char* details = "";   // paragraphs of --help-all: what is written, signals, ...
+};
+
+// Adds options to one group of a program.
+class OptionGroup {
+ public:
+  // The app must outlive the group. Options of a group with an empty name are hidden.
+  OptionGroup(CLI::App& app, std::string name);
+
+  // Adds an option, such as "-o,--output DIR", or a positional argument, such as "LIGHTFIELD".
+  // Refuses "nan" for a Value that is a floating-point number, or that holds some.
+  template <typename Value>
+  CLI::Option* Add(const std::string& names_and_placeholder, Value& value,
+                   const std::string& text) {
+    const size_t end = names_and_placeholder.find(' ');
+    CLI::Option* const option = app_.add_option(names_and_placeholder.substr(0, end), value, text);
+    return Present(option, end == std::string::npos ? "" : names_and_placeholder.substr(end + 1));
+  }
+
+  // Adds an option whose value is one of some words, which are its placeholder.
+  template <typename Value>
+  CLI::Option* AddChoice(const std::string& names, Value& value,
+                         const std::vector<std::string>& words, const std::string& text) {
+    CLI::Option* const option = app_.add_option(names, value, text)->check(CLI::IsMember(words));
+    return Present(option, option->get_positional() ? "" : CLI::detail::join(words, "|"));
+  }
+
+  template <typename Value>
+  CLI::Option* AddFlag(const std::string& names, Value& value, const std::string& text) {
+    return app_.add_flag(names, value, text)->group(name_);
+  }
+
+ private:
+  CLI::Option* Present(CLI::Option* option, const std::string& placeholder) const;
+
+  CLI::App& app_;
+  std::string name_;
+};
+
+// Makes the text of --help (CLI::AppFormatMode::Normal) and of --help-all (All).
+class HelpFormatter : public CLI::Formatter {
+ public:
+  explicit HelpFormatter(const HelpTexts& texts) : texts_(texts) {}
+
+  std::string make_help(const CLI::App* app, std::string name,
+                        CLI::AppFormatMode mode) const override;
+
+ private:
+  HelpTexts texts_;
+};
+
+}  // namespace lf
