@@ -7,9 +7,10 @@ usage: bench/defaults.py FOLDER            prints the defaults of the programs i
 
 FOLDER  with lfrenderer, lfpreprocessor, ..., such as build/release/bin
 
-A default is read from the program itself: the value that --help shows after an option's type. What
+A default is read from the program itself: the line "Default: ..." that --help-all shows below an option. What
 `auto` becomes is read from the reports of two small renders, one of RGB images and one of mosaics. An option
 without a default, such as a flag that is off, is not listed. Neither is --progress: it changes no picture and no speed.
+The order is that of bench/defaults.txt, and new options come last: help may be arranged anew without another hash.
 
 Each table's record holds the lines of the programs that made it, and their hash (bench/record.py). The check
 `tables` of scripts/check_house.py tells which tables were made with defaults that are others today.
@@ -28,8 +29,9 @@ LISTING = pathlib.Path(__file__).resolve().parent / "defaults.txt"
 PROGRAMS = ("lfsynth", "lfimport", "lfexample", "lfpreprocessor", "lfcompressor", "lfrenderer", "lfmerge",
             "lfsubmit")
 NOT_LISTED = {"--progress"}
-# Matches "  --format TEXT:{exr,png}=exr", which two spaces or a line break separate from its explanation.
-OPTION = re.compile(r"^  (?:-\w,)?(--[\w-]+) [^=]*=(\S+)")
+# Match "  -o, --output DIR    Folder of the frames" and "      Default: 0 (all); values: 0 to 180" in --help-all.
+OPTION = re.compile(r"^  (?:-\w, )?(--[\w-]+)")
+DEFAULT = re.compile(r"^      Default: ([^\s;]+)")
 RESOLVED = ("law", "estimator", "filter", "lens_weights", "back_end", "order")
 HEAD = """\
 # Defaults of the programs, that figures depend on. Made by bench/defaults.py, which tells more;
@@ -42,14 +44,17 @@ def hash_of(lines):
 
 
 def options_of(program):
-    """Returns ["--memory 8G", ...] as --help shows them."""
-    text = subprocess.run([program, "--help"], check=True, capture_output=True, text=True).stdout
-    found = []
+    """Returns ["--memory 8G", ...] as --help-all shows them, in the order of bench/defaults.txt."""
+    text = subprocess.run([program, "--help-all"], check=True, capture_output=True, text=True).stdout
+    found, option = {}, None
     for line in text.splitlines():
-        match = OPTION.match(line[:2] + line[2:].split("  ")[0])
-        if match and match[1] not in NOT_LISTED:
-            found.append(f"{match[1]} {match[2]}")
-    return found
+        if match := OPTION.match(line):
+            option = match[1]
+        elif (match := DEFAULT.match(line)) and option not in NOT_LISTED:
+            found[option] = "[]" if match[1] == "empty" else match[1]
+    order = [words[1] for words in map(str.split, listed()) if words[0] == program.name]
+    names = sorted(found, key=lambda name: order.index(name) if name in order else len(order))
+    return [f"{name} {found[name]}" for name in names]
 
 
 def resolved(folder):

@@ -94,7 +94,7 @@ def records_of(root, files):
 
 
 def default_values(record):
-    """Returns {"--estimator": {"auto", "bilinear"}, ...}: the values in --help, and those that small renders
+    """Returns {"--estimator": {"auto", "bilinear"}, ...}: the values in --help-all, and those that small renders
     reported."""
     values = {choice: set() for choice in (*CHOICES, "--filter")}
     for line in record["defaults"]:

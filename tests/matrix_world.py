@@ -177,7 +177,7 @@ class World:
     @once
     def knows(self, program, option):
         """Returns True if a program has an option."""
-        done = subprocess.run([self.program(program), "--help"], capture_output=True, text=True)
+        done = subprocess.run([self.program(program), "--help-all"], capture_output=True, text=True)
         return option in done.stdout
 
     @once

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Tests that every program offers the common options that it obeys, and refuses the others.
+"""Tests that every program offers the common options that it obeys and refuses the others, and that its help can be
+scanned.
 
 usage: program_options_test.py FOLDER_OF_THE_PROGRAMS
 """
@@ -8,6 +9,8 @@ import re
 import sys
 import unittest
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "bench"))
+import defaults  # noqa: E402
 import small_field
 from program_test_case import ProgramTestCase
 
@@ -51,6 +54,30 @@ CALLS = {
 }
 
 
+GROUPS = ("Input", "Output", "Picture", "Quality", "Running")
+# Matches the line of an option: "  -o, --output DIR    Folder of the frames (all)".
+SCANNED = re.compile(r"^  (?:-\w, )?(?P<name>--[\w-]+)(?: (?! ).*?)?  +[A-Za-z].*?(?: \((?P<default>[^()]*)\))?$")
+# Values in bench/defaults.txt in whose place --help may show what they mean.
+MEANS_SOMETHING = {"0", "-1", "[]"}
+
+
+def option_lines(text):
+    """Returns the lines of options, which two spaces and a dash begin."""
+    return [line for line in text.splitlines() if re.match(r"  -", line)]
+
+
+def options_in(text):
+    """Returns the long names of the options in a help."""
+    return [re.search(r"--[\w-]+", line)[0] for line in option_lines(text)]
+
+
+def hint(count):
+    """Returns the last line of --help, if --help-all shows so many options more."""
+    if count == 0:
+        return "--help-all shows the details."
+    return f"--help-all shows {count} more option{'s' if count > 1 else ''} and the details."
+
+
 class ProgramOptionsTest(ProgramTestCase):
     def program(self, name):
         return BIN / name
@@ -63,11 +90,38 @@ class ProgramOptionsTest(ProgramTestCase):
         for name, offered in OFFERED.items():
             with self.subTest(program=name):
                 text = self.succeeds(self.program(name), "--help")
-                told = {option for option in COMMON
-                        if re.search(rf"^ .*{option}(\W|$)", text.split("Examples:")[0], re.M)}
-                self.assertEqual(told, offered)
+                self.assertEqual({option for option in options_in(text) if option in COMMON}, offered)
                 if "--progress" in offered:
-                    self.assertRegex(re.sub(r"\s+", " ", text), r"--progress .* auto \(bar on")
+                    self.assertIn("auto: a bar on a terminal", self.succeeds(self.program(name), "--help-all"))
+
+    def test_help_can_be_scanned(self):
+        for name in OFFERED:
+            with self.subTest(program=name):
+                text = self.succeeds(self.program(name), "--help")
+                everything = self.succeeds(self.program(name), "--help-all")
+                for line in (text + everything).splitlines():
+                    self.assertLessEqual(len(line), 100, line)
+                    self.assertEqual(line, line.rstrip())
+                headings = re.findall(r"^(\w+):$", text, re.M)
+                self.assertEqual(headings[:2], ["Usage", "Examples"])
+                self.assertEqual(headings[2:], [group for group in GROUPS if group in headings])
+                self.assertNotRegex(text, r"\b(TEXT|INT|UINT|FLOAT)\b")
+                self.assertNotRegex(everything, r"\b(TEXT|INT|UINT|FLOAT)\b")
+                for line in option_lines(text):
+                    self.assertRegex(line, SCANNED)
+                    self.assertIn(line, everything.splitlines())
+                self.assertEqual(text.splitlines()[-1], hint(len(options_in(everything)) - len(options_in(text)) - 3))
+
+    def test_defaults_in_help_are_those_listed(self):
+        listed = dict(line.rsplit(" ", 1) for line in defaults.listed() if " --" in line)
+        for name in OFFERED:
+            everything = self.succeeds(self.program(name), "--help-all")
+            for line in option_lines(everything):
+                match = re.match(SCANNED, line)
+                value = listed.get(f"{name} {match['name']}")
+                if value is not None and value not in MEANS_SOMETHING:
+                    # "as recorded, or black" is listed by its first word.
+                    self.assertEqual((match["default"] or "").split(" ")[0], value, line)
 
     def test_others_are_refused_with_a_hint(self):
         for name, offered in OFFERED.items():

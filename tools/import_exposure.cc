@@ -80,29 +80,31 @@ std::string StopsText(const std::vector<double>& stops) {
 }  // namespace
 
 void ExposureArguments::AddTo(CLI::App& app) {
-  const char* group = "Uneven exposure (doc/inputs.md)";
-  CLI::Option* const option =
-      app.add_flag("--match-exposure", match,
-                   "Estimate lf_gain of each image and channel from what neighbouring images both "
-                   "show, in place of those of LIGHTFIELD; without -o only the report says them")
-          ->group(group);
-  app.add_flag(
-         "--vignetting", vignetting,
-         "Estimate lf_vignetting of each camera as well: how much light its lens loses towards "
-         "the corners")
-      ->needs(option)
-      ->group(group);
-  app.add_flag("--gain-from-exif", gain_from_exif,
-               "Write lf_gain of each image from the exposure time, f-number and ISO sensitivity "
-               "in its file, in place of those of LIGHTFIELD: all get the exposure of the median "
-               "one")
-      ->excludes(option)
-      ->group(group);
-  app.add_flag("--mask-clipped", mask_clipped,
-               "Write lf_clipped \"mask\": images of one pose with different exposures (by "
-               "lf_gain) are one picture, and each pixel comes from the brightest that does not "
-               "clip it")
-      ->group(group);
+  OptionGroup picture(app, kPictureGroup);
+  CLI::Option* const option = picture.AddFlag(
+      "--match-exposure", match,
+      "Make the LF images equally bright\n"
+      "Estimates lf_gain of each image and channel from what neighbouring images both show. It "
+      "replaces the lf_gain of LIGHTFIELD. Without -o only the report says it. See doc/inputs.md.");
+  picture
+      .AddFlag("--vignetting", vignetting,
+               "Correct how lenses darken the corners\n"
+               "Also estimates lf_vignetting of each camera: the light that its lens loses towards "
+               "the corners.")
+      ->needs(option);
+  picture
+      .AddFlag(
+          "--gain-from-exif", gain_from_exif,
+          "Take the exposure of each image from its file\n"
+          "Writes lf_gain of each image from the exposure time, f-number and ISO sensitivity in "
+          "its file. It replaces the lf_gain of LIGHTFIELD. All images get the exposure of the "
+          "median one.")
+      ->excludes(option);
+  picture.AddFlag("--mask-clipped", mask_clipped,
+                  "Merge images of one pose with different exposures\n"
+                  "Writes lf_clipped \"mask\": images of one pose with different exposures (by "
+                  "lf_gain) are one picture, and each pixel comes from the brightest image that "
+                  "does not clip it.");
 }
 
 Result<std::optional<ExifGains>> StateBrackets(const ExposureArguments& arguments, ThreadPool& pool,

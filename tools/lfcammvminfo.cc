@@ -11,16 +11,21 @@
 
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
-  lfcammvminfo path.yaml                        all frames, a line each
-  lfcammvminfo path.yaml --frame 12             one frame, a line per number
+constexpr lf::HelpTexts kHelp = {
+    .summary =
+        "Shows the camera of every frame of a path: position, orientation, aperture, focus, "
+        "field of view, depth of field.",
+    .usage = "  lfcammvminfo PATH [OPTIONS]",
+    .examples = R"(  lfcammvminfo path.yaml                        # all frames, a line each
+  lfcammvminfo path.yaml --frame 12             # one frame, a line per number
   lfcammvminfo path.yaml --csv > cameras.csv
-  lfcammvminfo path.yaml --json | jq '.cameras[].f_number'
-
-Lengths that end in _w are world units; the others come from them by unit_m, metres per world unit.
-The depth of field holds what is blurred by less than one element of the sensor plate; it is measured
-along the optical axis. forward and up are the camera's axes in the world. Without an error in the
-path the exit code is 0, so this also checks a path. The path file: doc/formats/path.md.)";
+  lfcammvminfo path.yaml --json | jq '.cameras[].f_number')",
+    .details =
+        R"(Lengths that end in _w are world units. The others are computed from them by unit_m, the metres per
+world unit. The depth of field holds what is blurred by less than one element of the sensor plate;
+it is measured along the optical axis. forward and up are the camera's axes in the world. If the
+path has no error the exit code is 0: the program also checks a path.)",
+};
 
 struct Arguments {
   std::string path;
@@ -54,19 +59,21 @@ lf::Result<void> Report(const Arguments& arguments, bool json) {
 
 int main(int argc, char** argv) {
   Arguments arguments;
-  lf::Program program("lfcammvminfo",
-                      "Shows the camera of every frame of a path: position, orientation, "
-                      "aperture, focus, field of view, depth of field.",
-                      kExamples);
-  CLI::App& app = program.app();
-  app.add_option("PATH", arguments.path, "The camera path, a YAML file")->required();
-  app.add_option("--frame", arguments.frame, "Only this frame, counted from 1")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--unit-m", arguments.unit_m,
-                 "Metres per world unit of the light field, if the path does not say")
+  lf::Program program("lfcammvminfo", kHelp);
+  lf::OptionGroup input(program.app(), lf::kInputGroup), output(program.app(), lf::kOutputGroup);
+  input
+      .Add("PATH", arguments.path,
+           "Camera path\n"
+           "doc/formats/path.md describes the file.")
+      ->required();
+  input.Add("--unit-m METRES", arguments.unit_m, "Metres per world unit, if the path does not say")
       ->check(CLI::Range(1e-9, 1e9));
-  app.add_flag("--csv", arguments.csv, "A comma-separated table with all digits");
-  program.AddJsonOption("The same as JSON, with all digits; infinite numbers are null");
-  app.get_option("--csv")->excludes("--json");
+  output.Add("--frame N", arguments.frame, "Only this frame, counted from 1 (all)")
+      ->check(CLI::PositiveNumber);
+  CLI::Option* const csv =
+      output.AddFlag("--csv", arguments.csv, "Print a comma-separated table with all digits");
+  program.AddCommonOptions({.json = "Print JSON with all digits\n"
+                                    "Infinite numbers are null."});
+  csv->excludes("--json");
   return program.Run(argc, argv, [&] { return Report(arguments, program.common().json); });
 }

@@ -21,20 +21,26 @@
 
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
-  lfcompressor capture/ -o capture.lfs                        # about 45 dB
+constexpr lf::HelpTexts kHelp = {
+    .summary =
+        "Compresses the LF images of a light field, or what packages need of it, into a packed "
+        "store.",
+    .usage = R"(  lfcompressor LIGHTFIELD -o STORE.lfs [OPTIONS]
+  lfcompressor PACKAGE... -o STORE.lfs [OPTIONS])",
+    .examples = R"(  lfcompressor capture/ -o capture.lfs                        # about 45 dB
   lfcompressor capture/ -o capture.lfs --profile lossless     # every bit
   lfcompressor capture/ -o capture.lfs --target-psnr 42 --verify
   lfcompressor packages/package-*.lfp -o film.lfs             # what a film needs, and no more
   lfrenderer capture.lfs path.yaml -o frames                  # a store is a LIGHTFIELD
-  lfrenderer packages/package-0000.lfp --lightfield film.lfs -o frames
+  lfrenderer packages/package-0000.lfp --lightfield film.lfs -o frames)",
+    .details =
+        R"(STORE.lfs holds the LF images, encoded one by one, and their calibration. It is one file that every
+program takes as LIGHTFIELD (doc/formats/packed_store.md). Until it is whole its name is
+STORE.lfs.unfinished. Ctrl-C, kill -9 or a crash lose two seconds of work, and --resume continues.
 
-STORE.lfs holds the LF images, coded one by one, and their calibration: one file that every program
-takes as LIGHTFIELD (doc/formats/packed_store.md). Until it is whole it is STORE.lfs.unfinished: Ctrl-C,
-kill -9 or a crash lose two seconds of work, and --resume goes on.
-
-LF images that are missing or broken have no code, and the exit code is then 6. --resume tries them again
-while the store is unfinished; a store that is finished is made anew by --overwrite.)";
+LF images that are missing or broken have no encoded image, and the exit code is then 6. --resume
+tries them again while the store is unfinished. A finished store is made anew by --overwrite.)",
+};
 
 struct Arguments {
   std::vector<std::string> inputs;
@@ -46,50 +52,91 @@ struct Arguments {
   lf::AllowMissing allow_missing;
 };
 
-void AddOptions(CLI::App& app, Arguments& a) {
-  app.add_option("INPUT", a.inputs,
-                 "LIGHTFIELD: a folder or file of any supported kind; or PACKAGE...: files of "
-                 "lfpreprocessor")
+void AddInput(CLI::App& app, Arguments& a) {
+  lf::OptionGroup input(app, lf::kInputGroup);
+  input
+      .Add("INPUT", a.inputs,
+           "LIGHTFIELD, or PACKAGE... of lfpreprocessor\n"
+           "LIGHTFIELD: a folder or file of any supported kind\n"
+           "PACKAGE: a file that lfpreprocessor has written")
       ->required()
-      ->check(lf::NotEmpty())
-      ->type_name("LIGHTFIELD | PACKAGE...");
-  a.light_field.AddOptionsTo(app);
-  app.add_option("--lightfield", a.light_field.path, "With packages: where their LF images are now")
       ->check(lf::NotEmpty());
-  app.add_option("-o,--output", a.output, "STORE.lfs to write")->required()->check(lf::NotEmpty());
-  app.add_option("--profile", a.profile,
-                 "default: wavelets and dead-zone quantisers; thesis: Haar, one threshold, one "
-                 "range; lossless: every bit")
-      ->check(CLI::IsMember({"default", "thesis", "lossless"}));
-  app.add_option("--levels", a.levels, "Of the wavelet transform; 0: 4, of the thesis's 1")
+  input
+      .Add("--lightfield LIGHTFIELD", a.light_field.path,
+           "With packages: the place of their LF images\n"
+           "Needed if the light field was moved after the packages were made.")
+      ->check(lf::NotEmpty());
+  input.AddFlag(
+      "--needed-pixels", a.needed_pixels,
+      "With packages: store only the needed pixels\n"
+      "Each LF image is stored only within the bounds of the pixels that the packages take.");
+  a.light_field.AddOptionsTo(app);
+  a.allow_missing.AddTo(app, "the LF images to be encoded");
+}
+
+void AddOutput(CLI::App& app, Arguments& a) {
+  lf::OptionGroup output(app, lf::kOutputGroup);
+  output.Add("-o,--output STORE.lfs", a.output, "Packed store to write")
+      ->required()
+      ->check(lf::NotEmpty());
+  output
+      .Add("--shard-size SIZE", a.shard_size,
+           "Split the store into files of about this size\n"
+           "The encoded images are written into files beside STORE.lfs, each of about SIZE, such "
+           "as 4G.")
+      ->check(lf::NotEmpty());
+}
+
+void AddQuality(CLI::App& app, Arguments& a) {
+  lf::OptionGroup quality(app, lf::kQualityGroup);
+  quality.AddChoice("--profile", a.profile, {"default", "thesis", "lossless"},
+                    "How LF images are encoded\n"
+                    "default: wavelets and dead-zone quantisers\n"
+                    "thesis: Haar wavelets, one threshold, one range\n"
+                    "lossless: every bit is kept");
+  quality
+      .Add("--levels N", a.levels,
+           "Levels of the wavelet transform (by the profile)\n"
+           "0: 4 levels; with --profile thesis 1 level.")
       ->check(CLI::Range(0, 5));
   auto* threshold =
-      app.add_option("--threshold", a.threshold,
-                     "Details below this are dropped, in steps of 256 greys; unless given 3, of "
-                     "the thesis's 8")
+      quality
+          .Add("--threshold X", a.threshold,
+               "Drop details below this (by the profile)\n"
+               "In steps of 256 greys. Unless given it is 3, and with --profile thesis 8.")
           ->check(CLI::Range(0., 255.));
-  app.add_option("--quantizer", a.quantizer,
-                 "With --profile thesis: values that a coefficient may have; 8bit: 256, a byte "
-                 "each; above, two bytes");
-  app.add_option("--target-psnr", a.target_psnr,
-                 "dB that decoded LF images shall have: finds the threshold")
+  quality
+      .Add("--target-psnr DB", a.target_psnr,
+           "Find the threshold for this quality (off)\n"
+           "The decoded LF images shall have this peak signal-to-noise ratio, in dB.")
       ->check(CLI::Range(10., 90.))
       ->excludes(threshold);
-  app.add_flag("--needed-pixels", a.needed_pixels,
-               "With packages: of each LF image only the bounds of the pixels that they take");
-  app.add_option("--shard-size", a.shard_size,
-                 "Codes in files of about this size beside STORE.lfs, such as 4G")
-      ->check(lf::NotEmpty());
-  auto* resume =
-      app.add_flag("--resume", a.resume,
-                   "Go on with an unfinished store of the same LF images, options and files");
-  app.add_flag("--overwrite", a.overwrite, "Replace a store that is there, but no other file")
+  quality.Add("--quantizer N", a.quantizer,
+              "With --profile thesis: values of a coefficient\n"
+              "8bit: 256 values, a byte each. With more values each takes two bytes.");
+}
+
+void AddRunning(CLI::App& app, Arguments& a) {
+  lf::OptionGroup running(app, lf::kRunningGroup);
+  auto* resume = running.AddFlag("--resume", a.resume,
+                                 "Continue an unfinished store\n"
+                                 "The LF images, options and files must be the same.");
+  running
+      .AddFlag("--overwrite", a.overwrite,
+               "Replace an existing store\n"
+               "No other file is replaced.")
       ->excludes(resume);
-  app.add_flag(
-      "--verify", a.verify,
-      "Compare the calibration, read all codes back, compare and decode them; a store that "
-      "is there is checked alone");
-  a.allow_missing.AddTo(app, "those to be coded");
+  running.AddFlag("--verify", a.verify,
+                  "Check the store after writing it\n"
+                  "Compares the calibration, and reads all encoded images back, compares them and "
+                  "decodes them. A store that exists already is only checked.");
+}
+
+void AddOptions(CLI::App& app, Arguments& a) {
+  AddInput(app, a);
+  AddOutput(app, a);
+  AddQuality(app, a);
+  AddRunning(app, a);
 }
 
 bool HasPackages(const Arguments& a) {
@@ -175,16 +222,14 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
 
 int main(int argc, char** argv) {
   Arguments arguments;
-  lf::Program program("lfcompressor",
-                      "Codes the LF images of a light field, or what packages need of it, into a "
-                      "packed store.",
-                      kExamples);
+  lf::Program program("lfcompressor", kHelp);
+  AddOptions(program.app(), arguments);
   program.AddCommonOptions({.threads = true,
-                            .strict = "An LF image that cannot be read is an error, not left out",
+                            .strict = "Stop at an LF image that cannot be read\n"
+                                      "Otherwise it is left out.",
+                            .json = "Print the report as JSON",
                             .progress = true,
                             .verbose = true,
                             .quiet = true});
-  AddOptions(program.app(), arguments);
-  program.AddJsonOption("The report as JSON");
   return program.Run(argc, argv, [&] { return Run(arguments, program.common()); });
 }

@@ -18,15 +18,18 @@
 
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
-  lfexample capture/ -o path.yaml
+constexpr lf::HelpTexts kHelp = {
+    .summary = "Writes a commented, working camera path for a light field.",
+    .usage = "  lfexample LIGHTFIELD -o PATH.yaml [OPTIONS]",
+    .examples = R"(  lfexample capture/ -o path.yaml
   lfexample capture/transforms.json -o orbit.yaml --move orbit --camera 364
-  lfexample capture/ -o path.yaml --focus 8.12
-
-The path starts at an LF camera and focuses on what most of its image shows, found by comparing it
-with the images around, or else by the points of a COLMAP model; a warning says where that is not
-sure, and what to try. Render it with:
-lfrenderer LIGHTFIELD PATH.yaml -o DIR)";
+  lfexample capture/ -o path.yaml --focus 8.12)",
+    .details =
+        R"(The path starts at an LF camera and focuses on what most of its image shows. The program finds that
+by comparing the image with the images around it, or else by the points of a COLMAP model. A
+warning says where this is not sure, and what to try. Render the path with:
+  lfrenderer LIGHTFIELD PATH.yaml -o DIR)",
+};
 
 // Returns the readable LF camera nearest to the middle that is nearly level, since levelling a
 // picture crops it. kOutput: the machine lacks memory or open files.
@@ -112,22 +115,26 @@ lf::Result<void> CheckMayWrite(const std::string& output) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  lf::Program program("lfexample", "Writes a commented, working camera path for a light field.",
-                      kExamples);
-  program.AddCommonOptions({.threads = true, .verbose = true, .quiet = true});
+  lf::Program program("lfexample", kHelp);
   lf::LightFieldArgument input;
   std::string output, move = "focus-pull", camera = "-1";
   double focus = 0;
   CLI::App& app = program.app();
   input.AddTo(app);
-  app.add_option("-o,--output", output, "PATH.yaml to write")->required();
-  app.add_option("--camera", camera,
-                 "LF camera to start at: its number from 0, or the name of its image; -1: the one "
-                 "nearest to the middle that is level and can be read");
-  app.add_option("--move", move, "static, orbit, dolly or focus-pull")
-      ->check(CLI::IsMember({"static", "orbit", "dolly", "focus-pull"}));
-  app.add_option("--focus", focus, "Focus distance in world units; 0: found by itself")
+  lf::OptionGroup output_group(app, lf::kOutputGroup), picture(app, lf::kPictureGroup);
+  output_group.Add("-o,--output PATH.yaml", output, "Camera path to write")->required();
+  picture.Add("--camera NUMBER|NAME", camera,
+              "LF camera to start at (near the middle)\n"
+              "Its number from 0, or the name of its image. -1: the one nearest to the middle that "
+              "is level and can be read.");
+  picture.AddChoice("--move", move, {"static", "orbit", "dolly", "focus-pull"},
+                    "Movement of the camera");
+  picture
+      .Add("--focus X", focus,
+           "Focus distance in world units (automatic)\n"
+           "0: the program finds the distance by itself.")
       ->check(CLI::NonNegativeNumber);
+  program.AddCommonOptions({.threads = true, .verbose = true, .quiet = true});
 
   return program.Run(argc, argv, [&]() -> lf::Result<void> {
     LF_RETURN_IF_ERROR(CheckMayWrite(output));

@@ -19,20 +19,29 @@
 
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
-  lfimport capture/                                   only the report: what is it, is it complete?
+constexpr lf::HelpTexts kHelp = {
+    .summary =
+        "Reports what a light field is and what looks wrong in it, and writes it as the native "
+        "transforms.json.",
+    .usage = "  lfimport LIGHTFIELD [-o DIR] [OPTIONS]",
+    .examples =
+        R"(  lfimport capture/                                   # only the report: is it complete?
   lfimport capture/ -o native --exclude 'IMG_01*,IMG_0377.jpg' --scale 0.0213
   lfimport capture/ -o native --exclude @bad.txt --transform upright.txt
   lfimport cards/ -o cards --pitch 1 --focal-px 768 --plane-distance 100
   lfimport capture/ -o native --match-exposure --vignetting
   lfimport brackets/ -o hdr --gain-from-exif --mask-clipped
-  lfimport capture/ --json --distance 1.5 | jq .density
+  lfimport capture/ --json --distance 1.5 | jq .density)",
+    .details =
+        R"(The program writes DIR/transforms.json, which names the images where they lie; nothing is copied.
+If DIR is LIGHTFIELD itself and has such a file already, the calibration that it was made from is
+read again. A transforms.json that lfimport did not write, or that was changed since, is replaced
+only with --force.
 
-Writes DIR/transforms.json, which names the images where they lie; nothing is copied. Where DIR is
-LIGHTFIELD itself and has such a file already, what that was made from is read again. A
-transforms.json that lfimport did not write, or that was changed since, is replaced only with
---force. Exit code 6: done, but more images are missing or broken than --allow-missing accepts; with
---strict one is an error, and nothing is written. The report: doc/formats/import_report.md.)";
+Exit code 6: the work is done, but more images are missing or broken than --allow-missing accepts.
+With --strict one such image is an error, and nothing is written. The report is described in
+doc/formats/import_report.md.)",
+};
 
 struct Arguments {
   lf::LightFieldArgument light_field;
@@ -44,44 +53,68 @@ struct Arguments {
   lf::ExposureArguments exposure;
 };
 
-void AddOptions(CLI::App& app, Arguments& a) {
+void AddInput(CLI::App& app, Arguments& a) {
   a.light_field.AddTo(app);
-  app.add_option("-o,--output", a.output, "Folder of the transforms.json to write");
-  app.add_flag("--force", a.force, "Replace a transforms.json that lfimport did not write");
-  app.add_option("--exclude", a.exclude,
-                 "Images to leave out: names or patterns (* ? [a-z]), with commas between, or "
-                 "@FILE with one per line; may be repeated")
+  lf::OptionGroup input(app, lf::kInputGroup);
+  input
+      .Add("--exclude NAMES", a.exclude,
+           "LF images to leave out: 'IMG_01*,x.jpg' or @FILE\n"
+           "Names or patterns (* ? [a-z]) with commas between, or @FILE with one per line. The "
+           "option may be repeated.")
       ->expected(1)
       ->take_all();
-  app.add_option("--transform", a.transform,
-                 "Move the world: FILE with a 4x4 matrix, or its 16 numbers in one word; new = M * "
-                 "old, M a rotation, one scale and a translation");
-  app.add_option("--scale", a.scale, "Multiply all lengths by this, after --transform")
+  input.AddChoice(
+      "--bayer", a.bayer, {"RGGB", "BGGR", "GRBG", "GBRG"},
+      "The images are mosaics of this pattern\n"
+      "This holds whatever the calibration or camera raw files say. The pattern is that "
+      "of the upper left 2x2 pixels, row by row.");
+  input.AddChoice("--check", a.check, {"none", "headers", "pixels"},
+                  "How the LF images are checked\n"
+                  "pixels: all pixels are read, which is slow");
+  a.allow_missing.AddTo(app, "the LF images of the light field");
+}
+
+void AddOutput(CLI::App& app, Arguments& a) {
+  lf::OptionGroup output(app, lf::kOutputGroup);
+  output.Add("-o,--output DIR", a.output, "Folder of the transforms.json to write");
+  output.AddFlag("--force", a.force, "Replace a transforms.json that lfimport did not write");
+  output.Add(
+      "--transform FILE|MATRIX", a.transform,
+      "Rotate, scale and move the world\n"
+      "FILE holds a 4x4 matrix M; MATRIX is its 16 numbers in one word. new = M * old, where M "
+      "consists of a rotation, one scale and a translation.");
+  output.Add("--scale X", a.scale, "Multiply all lengths, after --transform")
       ->check(CLI::Range(1e-9, 1e9));
-  app.add_option("--unit-m", a.unit_m,
-                 "Metres per world unit, as they are then; 0: as the light field says")
+  output
+      .Add("--unit-m METRES", a.unit_m,
+           "Metres per world unit (as the light field says)\n"
+           "The world units are those after --transform and --scale.")
       ->check(CLI::Range(0., 1e9));
-  app.add_option("--bayer", a.bayer,
-                 "The images are mosaics of this pattern, whatever the calibration or camera raw "
-                 "files say: the upper left 2x2 pixels row by row")
-      ->check(CLI::IsMember({"RGGB", "BGGR", "GRBG", "GBRG"}));
-  app.add_option("--check", a.check, "How to check the images: none, headers or pixels (slow)")
-      ->check(CLI::IsMember({"none", "headers", "pixels"}));
-  a.allow_missing.AddTo(app, "those of the light field");
-  app.add_option("--distance", a.distance,
-                 "Distance to the scene in world units, for the density; 0: from the calibration")
+  output
+      .Add("--distance X", a.distance,
+           "Distance of the scene, for the density (by the file)\n"
+           "In world units. 0: the distance follows from the calibration.")
       ->check(CLI::NonNegativeNumber);
+}
+
+void AddNamedImages(CLI::App& app, Arguments& a) {
+  lf::OptionGroup named(app, "Images named by row and column (doc/formats/stanford.md)");
+  named.Add("--pitch P|PX,PY", a.pitch, "World units between columns and rows");
+  named
+      .Add("--plane-distance X", a.plane_distance,
+           "Depth of the plane that stands still (none)\n"
+           "A rectified slab has a plane that stands still in all images. 0: the cameras are "
+           "parallel.")
+      ->check(CLI::NonNegativeNumber);
+  named.AddFlag("--flip-x", a.flip_x, "Columns count to the left");
+  named.AddFlag("--flip-y", a.flip_y, "Rows count upwards");
+}
+
+void AddOptions(CLI::App& app, Arguments& a) {
+  AddInput(app, a);
+  AddOutput(app, a);
   a.exposure.AddTo(app);
-  const char* group = "Images named by row and column (doc/formats/stanford.md)";
-  app.add_option("--pitch", a.pitch, "World units between columns and rows: P, or PX,PY")
-      ->group(group);
-  app.add_option("--plane-distance", a.plane_distance,
-                 "Depth of the plane that stands still in all images of a rectified slab; 0: "
-                 "the cameras are parallel")
-      ->check(CLI::NonNegativeNumber)
-      ->group(group);
-  app.add_flag("--flip-x", a.flip_x, "Columns count to the left")->group(group);
-  app.add_flag("--flip-y", a.flip_y, "Rows count upwards")->group(group);
+  AddNamedImages(app, a);
 }
 
 // Parses P or PX,PY.
@@ -192,17 +225,14 @@ lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {
 
 int main(int argc, char** argv) {
   Arguments arguments;
-  lf::Program program("lfimport",
-                      "Reports what a light field is and what looks wrong in it, and writes it as "
-                      "the native transforms.json.",
-                      kExamples);
-  program.AddCommonOptions(
-      {.threads = true,
-       .strict = "Missing and broken images are an error, and nothing is written",
-       .progress = true,
-       .verbose = true,
-       .quiet = true});
+  lf::Program program("lfimport", kHelp);
   AddOptions(program.app(), arguments);
-  program.AddJsonOption("The report as JSON, with all digits");
+  program.AddCommonOptions({.threads = true,
+                            .strict = "Stop at a missing or broken LF image\n"
+                                      "Nothing is written then.",
+                            .json = "Print the report as JSON, with all digits",
+                            .progress = true,
+                            .verbose = true,
+                            .quiet = true});
   return program.Run(argc, argv, [&] { return Import(arguments, program.common()); });
 }

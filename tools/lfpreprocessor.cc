@@ -21,16 +21,24 @@
 
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
-  lfpreprocessor capture/ path.yaml --plan               # what will it take, what will it look like?
+constexpr lf::HelpTexts kHelp = {
+    .summary =
+        "Selects what a film needs of a light field, and cuts it into packages for many "
+        "machines.",
+    .usage = R"(  lfpreprocessor LIGHTFIELD PATH.yaml --plan [OPTIONS]
+  lfpreprocessor LIGHTFIELD PATH.yaml -o DIR [OPTIONS])",
+    .examples =
+        R"(  lfpreprocessor capture/ path.yaml --plan           # what will it take, what will it look like?
   lfpreprocessor capture/ path.yaml -o packages --packages 4
   lfpreprocessor capture/ path.yaml -o packages --memory 4G
-  lfrenderer packages/package-0000.lfp -o frames         # each on any machine
-
-DIR receives package-0000.lfp, ...: the cameras of a section of the film, and of the light field the
-LF cameras that its frames need, with their pixel rectangles and their order (doc/formats/package.md).
-With --frames 1-4 they are package-0000-of-frames-1-4.lfp, ..., so that parts of a film may share DIR.
-Rendered from packages, frames have the same bits as those of lfrenderer LIGHTFIELD PATH.yaml.)";
+  lfrenderer packages/package-0000.lfp -o frames     # each on any machine)",
+    .details =
+        R"(DIR receives package-0000.lfp, ... (doc/formats/package.md). A package has the cameras of a section
+of the film, and the LF cameras that its frames need, with their pixel rectangles and their order.
+With --frames 1-4 the names are package-0000-of-frames-1-4.lfp, ..., so that parts of a film may
+share DIR. Frames that are rendered from packages have the same bits as those of lfrenderer
+LIGHTFIELD PATH.yaml.)",
+};
 
 struct Arguments {
   lf::LightFieldArgument light_field;
@@ -43,55 +51,86 @@ struct Arguments {
   lf::AllowMissing allow_missing;
 };
 
-void AddOptions(CLI::App& app, Arguments& a) {
+void AddInputAndOutput(CLI::App& app, Arguments& a) {
+  lf::OptionGroup input(app, lf::kInputGroup), output(app, lf::kOutputGroup);
   a.light_field.AddTo(app);
-  app.add_option("PATH.yaml", a.path, "Camera path (doc/formats/path.md)")->required();
-  auto* plan = app.add_flag("--plan", a.plan, "Tell what there would be, and write nothing");
-  app.add_option("-o,--output", a.output, "Folder of the packages")
+  input
+      .Add("PATH.yaml", a.path,
+           "Camera path\n"
+           "doc/formats/path.md describes the file.")
+      ->required();
+  a.allow_missing.AddTo(app, "the LF images that packages need");
+  auto* plan = output.AddFlag("--plan", a.plan, "Print the forecast and write nothing");
+  output.Add("-o,--output DIR", a.output, "Folder of the packages")
       ->check(lf::NotEmpty())
       ->excludes(plan);
-  app.add_flag("--overwrite", a.overwrite, "Replace the packages in DIR");
-  app.add_option("--memory", a.memory,
-                 "As few packages as there may be, the plates of each in so much "
-                 "memory; also what is taken for the forecast");
-  auto* packages = app.add_option("--packages", a.packages, "So many packages; 0: by --memory")
+  output.AddFlag("--overwrite", a.overwrite, "Replace the packages in DIR");
+  output.Add("--frames RANGE", a.frames, "Frames to render, such as 1-100x2, 7 or 3-5,9 (all)")
+      ->check(lf::NotEmpty());
+  auto* packages = output.Add("--packages N", a.packages, "Number of packages (by --memory)")
                        ->check(CLI::Range(0, 1'000'000));
-  app.add_option("--frames-per-package", a.frames_per_package,
-                 "Packages of so many frames; 0: by --memory")
+  output
+      .Add("--frames-per-package N", a.frames_per_package, "Frames of each package (by --memory)")
       ->check(CLI::Range(0, 1'000'000))
       ->excludes(packages);
-  app.add_option("--balance", a.balance,
-                 "What packages have equally: rays, so that they take equally long; frames")
-      ->check(CLI::IsMember({"rays", "frames"}));
-  app.add_option("--order", a.order,
-                 "Of the LF images: shuffle, by --seed; round-robin, so that all frames fill "
-                 "equally; area, most rays first")
-      ->check(CLI::IsMember({"shuffle", "round-robin", "area"}));
-  app.add_option("--frames", a.frames, "Frames to render: 1-100x2, 7, 3-5,9")
-      ->check(lf::NotEmpty());
-  app.add_option("--max-images", a.max_images,
-                 "Only so many LF images for each frame, the first of the order; 0: all")
+  output.AddChoice("--balance", a.balance, {"rays", "frames"},
+                   "What all packages have equally\n"
+                   "rays: packages have equally many rays, so that they take equally long\n"
+                   "frames: packages have equally many frames");
+}
+
+void AddRender(CLI::App& app, Arguments& a) {
+  lf::OptionGroup picture(app, lf::kPictureGroup);
+  picture.AddChoice("--mode", a.mode, {"collect", "rebin", "hybrid"},
+                    "Mode of the later render\n"
+                    "As --mode of lfrenderer. "
+                    "Decides which LF images and pixels frames need, the forecast, and what "
+                    "lfcompressor --needed-pixels keeps.");
+  picture.AddChoice("--lens-weights", a.lens_weights, {"auto", "none", "area", "hat"},
+                    "Lens weights of the later render\n"
+                    "As --lens-weights of lfrenderer.\n"
+                    "none, with --mode collect: packages lack the LF cameras beside the lens, and "
+                    "can be rendered without lens weights only.");
+  picture.AddChoice("--estimator", a.estimator, {"auto", "nearest", "bilinear"},
+                    "Estimator of the later render, for the forecast\n"
+                    "As --estimator of lfrenderer.");
+}
+
+void AddQuality(CLI::App& app, Arguments& a) {
+  lf::OptionGroup quality(app, lf::kQualityGroup), running(app, lf::kRunningGroup);
+  quality
+      .Add("--max-images N", a.max_images,
+           "Most LF images that a frame takes (all)\n"
+           "A frame takes the first N of the order.")
       ->check(lf::WholeNumber());
-  app.add_option("--max-angle", a.max_angle_deg,
-                 "Only LF cameras whose optical axes differ by at most so many degrees from the "
-                 "frame's; 0: all")
+  quality
+      .Add("--max-angle DEGREES", a.max_angle_deg,
+           "Largest angle of an LF camera to the frame's axis (all)\n"
+           "A frame takes only LF cameras whose optical axes differ by at most so many degrees "
+           "from its own.")
       ->check(CLI::Range(0., 180.));
-  app.add_option("--mode", a.mode,
-                 "Mode of the render to come, as of lfrenderer: decides which LF images and pixels "
-                 "frames need, the forecast, and what lfcompressor --needed-pixels keeps")
-      ->check(CLI::IsMember({"collect", "rebin", "hybrid"}));
-  app.add_option("--lens-weights", a.lens_weights,
-                 "Lens weights of the render to come, as of lfrenderer; none, with --mode collect: "
-                 "packages lack the LF cameras beside the lens, and can be rendered so alone")
-      ->check(CLI::IsMember({"auto", "none", "area", "hat"}));
-  app.add_option("--estimator", a.estimator, "Of the render to come, for the forecast")
-      ->check(CLI::IsMember({"auto", "nearest", "bilinear"}));
-  a.allow_missing.AddTo(app, "those that packages need");
-  app.add_option("--depths", a.depths,
-                 "NEAR FAR of the scene, world units from the LF cameras, for the density report; "
-                 "without it those that the calibration tells, or else the LF images")
+  quality.AddChoice("--order", a.order, {"shuffle", "round-robin", "area"},
+                    "Order of the LF images\n"
+                    "shuffle: random, by --seed\n"
+                    "round-robin: all frames fill equally\n"
+                    "area: LF images with most rays first");
+  quality
+      .Add("--depths NEAR FAR", a.depths,
+           "Depths of the scene, for the density report\n"
+           "World units from the LF cameras. Without the option the depths are those that the "
+           "calibration tells, or else those that the LF images tell.")
       ->expected(2)
       ->check(CLI::Range(1e-9, 1e12));
+  running.Add("--memory SIZE", a.memory,
+              "Memory for the plates of a package\n"
+              "There are as few packages as possible, each with plates that fit into SIZE. The "
+              "forecast assumes the same memory.");
+}
+
+void AddOptions(CLI::App& app, Arguments& a) {
+  AddInputAndOutput(app, a);
+  AddRender(app, a);
+  AddQuality(app, a);
 }
 
 lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::CommonOptions& common,
@@ -193,17 +232,14 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
 
 int main(int argc, char** argv) {
   Arguments arguments;
-  lf::Program program("lfpreprocessor",
-                      "Selects what a film needs of a light field, and cuts it into packages for "
-                      "many machines.",
-                      kExamples);
+  lf::Program program("lfpreprocessor", kHelp);
+  AddOptions(program.app(), arguments);
   program.AddCommonOptions({.threads = true,
                             .seed = "Seed of the order of the LF images",
-                            .strict = "A file that packages need and that is missing is an error",
+                            .strict = "Stop at a missing file that packages need",
+                            .json = "Print the report as JSON",
                             .progress = true,
                             .verbose = true,
                             .quiet = true});
-  AddOptions(program.app(), arguments);
-  program.AddJsonOption("The report as JSON");
   return program.Run(argc, argv, [&] { return Run(arguments, program.common()); });
 }

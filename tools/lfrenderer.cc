@@ -23,28 +23,32 @@
 
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
-  lfrenderer capture/transforms.json path.yaml -o frames
+constexpr lf::HelpTexts kHelp = {
+    .summary = "Films a densely recorded light field with a thin-lens camera on a path.",
+    .usage = R"(  lfrenderer LIGHTFIELD PATH.yaml -o DIR [OPTIONS]
+  lfrenderer PACKAGE... -o DIR [OPTIONS])",
+    .examples = R"(  lfrenderer capture/transforms.json path.yaml -o frames
   lfrenderer capture/ path.yaml -o frames --format png16 --video film.mp4
   lfrenderer capture/ path.yaml -o preview --frames 1-100x10 --max-images 200
-  lfrenderer capture/ path.yaml -o frames --resume       # after Ctrl-C, kill, a crash
+  lfrenderer capture/ path.yaml -o frames --resume       # after Ctrl-C, kill or a crash
   lfrenderer capture/ path.yaml -o frames --stop-when "noise<=0.002"
-  lfrenderer packages/package-*.lfp -o frames            # of lfpreprocessor
+  lfrenderer packages/package-*.lfp -o frames            # packages of lfpreprocessor
   lfrenderer capture/ path.yaml -o frames --shard 2/5    # a part of the LF images: see lfmerge
-  lfrenderer capture/ path.yaml -o frames --mode hybrid  # interpolated where no LF camera's rays pass
+  lfrenderer capture/ path.yaml -o frames --mode hybrid  # interpolates where the lens got no rays)",
+    .details =
+        R"(DIR receives frame_0001.exr ..., contact_sheet.png and report.json. EXR frames hold linear light
+(R, G, B), the rays of every element (count.R, count.G, count.B; with lens weights the sums of
+their weights) and the coverage. With lens weights they hold the number of LF images of equal
+weight (effective), and with rebinned rays the share that is interpolated. With --background none
+they have alpha (A), with which colours are multiplied; PNG frames then have straight alpha.
 
-DIR receives frame_0001.exr ..., contact_sheet.png and report.json. EXR frames hold linear light
-(R, G, B), the rays of every element (count.R, count.G, count.B; with lens weights the sums of their
-weights), coverage, with lens weights how many LF images of equal weight there are (effective), and with
-rebinned rays how much of it is interpolated. With --background none they have alpha (A), which colours
-are multiplied with; PNG frames have straight alpha then.
+Packages have reports of their own, report-package-0000.json, and a package that is given alone has
+its own contact sheet: many machines may render their packages into one DIR at the same time.
 
-Packages have reports of their own, report-package-0000.json, and one that is given alone has its own
-contact sheet: many machines may render theirs into one DIR at the same time.
-
-The state of unfinished frames lies in DIR/partial. Ctrl-C (SIGINT), SIGTERM and SIGHUP write it and end
-with exit code 5, SIGUSR1 writes it and goes on; a second Ctrl-C ends at once. --resume gives the same
-bits as if there had been no interruption.)";
+The state of unfinished frames lies in DIR/partial. Ctrl-C (SIGINT), SIGTERM and SIGHUP write it
+and end the program with exit code 5. SIGUSR1 writes it, and the program continues. A second Ctrl-C
+ends the program at once. --resume gives the same bits as a render without interruption.)",
+};
 
 using Progress = std::function<void(const lf::RenderProgress&)>;
 
@@ -97,13 +101,10 @@ lf::Result<Rendered> RenderPackageFiles(const lf::RenderArguments& arguments,
 }  // namespace
 
 int main(int argc, char** argv) {
-  lf::Program program("lfrenderer",
-                      "Films a densely recorded light field with a thin-lens camera on a path.",
-                      kExamples);
+  lf::Program program("lfrenderer", kHelp);
   lf::RenderArguments arguments;
-  program.AddCommonOptions(lf::RenderArguments::Common());
   arguments.AddTo(program.app());
-  program.AddJsonOption("Print the report to stdout");
+  program.AddCommonOptions(lf::RenderArguments::Common());
 
   return program.Run(argc, argv, [&]() -> lf::Result<void> {
     const lf::CommonOptions& common = program.common();

@@ -24,24 +24,31 @@
 #include "lf/sequence/video.h"
 
 namespace {
-constexpr const char* kExamples = R"(Examples:
-  lfpreprocessor capture/ path.yaml -o packages --packages 8
+constexpr lf::HelpTexts kHelp = {
+    .summary = "Renders the packages of a film by many processes or machines.",
+    .usage = R"(  lfsubmit PACKAGE... -o DIR [OPTIONS] [-- OPTIONS OF lfrenderer]
+  lfsubmit --status DIR | --cancel DIR | --resume DIR | --finish DIR FRAMES)",
+    .examples = R"(  lfpreprocessor capture/ path.yaml -o packages --packages 8
   lfsubmit packages/*.lfp -o film --jobs 2 --video film.mp4              # on this machine
-  lfsubmit packages/*.lfp -o film --engine slurm --threads 8 --time-limit 2h --sbatch=--partition=long
-  lfsubmit packages/*.lfp -o film -- --format png16 --lens-weights area  # arguments of lfrenderer
+  lfsubmit packages/*.lfp -o film --engine slurm --threads 8 --time-limit 2h
+  lfsubmit packages/*.lfp -o film --engine slurm --sbatch=--partition=long
+  lfsubmit packages/*.lfp -o film -- --format png16 --lens-weights area  # options of lfrenderer
   lfsubmit --status film
-  lfsubmit --finish film 10-20     # these are good enough; the others go on
-  lfsubmit --cancel film           # with Ctrl-C, too, where it runs here
-  lfsubmit --resume film
+  lfsubmit --finish film 10-20     # these are good enough; the others continue
+  lfsubmit --cancel film           # or Ctrl-C, if the job runs here
+  lfsubmit --resume film)",
+    .details =
+        R"(Each package is rendered by a process lfrenderer. A process that is interrupted or dies is started
+again and resumes from its checkpoint: frames have the bits of one lfrenderer run. DIR/partial has
+pictures of unfinished frames. DIR/cluster has the job: batch scripts, and a state and a log of
+each package.
 
-Each package is a process lfrenderer, which is begun again where it was interrupted or died, and goes
-on with its checkpoint: frames have the bits of one lfrenderer run. DIR/partial has pictures of what
-is not finished, DIR/cluster the job: batch scripts, and a state and a log of each package.
-
-A package that fails does not end the others. The exit code is 0 when every frame is there, else that
-of the first package that failed, and the last line names what is missing. It is 6 when every frame is
-there, but LF images were left out because they are missing or broken: the last line says how many in
-which packages, and "-- --allow-missing N" accepts them. See doc/cluster.md.)";
+A package that fails does not end the others. The exit code is 0 if every frame was written,
+otherwise that of the first package that failed, and the last line names what is missing. It is 6
+if every frame was written, but LF images were left out because they are missing or broken: the
+last line says how many in which packages, and "-- --allow-missing N" accepts them. See
+doc/cluster.md.)",
+};
 
 using lf::ClusterJob;
 using lf::Result;
@@ -129,15 +136,15 @@ Result<void> Act(const lf::SubmitArguments& arguments, const lf::CommonOptions& 
 }  // namespace
 
 int main(int argc, char** argv) {
-  lf::Program program("lfsubmit", "Renders the packages of a film by many processes or machines.",
-                      kExamples);
+  lf::Program program("lfsubmit", kHelp);
+  lf::SubmitArguments arguments;
+  arguments.AddTo(program.app());
   program.AddCommonOptions({.threads = true,
-                            .strict = "For lfrenderer: a broken LF image is an error, not left out",
+                            .strict = "For lfrenderer: stop at a broken LF image\n"
+                                      "Otherwise it is left out.",
+                            .json = "Print the status to stdout",
                             .progress = true,
                             .verbose = true,
                             .quiet = true});
-  lf::SubmitArguments arguments;
-  arguments.AddTo(program.app());
-  program.AddJsonOption("Print the status to stdout");
   return program.Run(argc, argv, [&] { return Act(arguments, program.common()); });
 }

@@ -21,21 +21,25 @@
 
 namespace {
 
-constexpr const char* kExamples = R"(Scenes:
-  still-life  glass, mirrors and marbles before strings of lights
-  lights      lights alone at seven depths, on black
-  chart       flat test charts at known depths and slants
-
-Examples:
-  lfsynth still-life -o still-life
+constexpr lf::HelpTexts kHelp = {
+    .summary = "Photographs a synthetic scene as a light field.",
+    .usage = "  lfsynth SCENE -o DIR [OPTIONS]",
+    .examples = R"(  lfsynth still-life -o still-life
   lfsynth chart -o chart --capture band --count 600 --jitter 0.2 --format png
   lfsynth lights -o raw --bayer --noise 0.01
   lfsynth still-life -o phone --distortion 0.12,-0.25,0.001,-0.002
   lfsynth still-life -o still-life --calibration-only --truth path.yaml
-  lfsynth chart -o cut-out --alpha straight --format png --truth path.yaml
+  lfsynth chart -o cut-out --alpha straight --format png --truth path.yaml)",
+    .details =
+        R"(Scenes:
+  still-life  glass, mirrors and marbles before strings of lights
+  lights      lights alone at seven depths, on black
+  chart       flat test charts at known depths and slants
 
-DIR receives images/0000.exr ... and transforms.json; with --truth also truth/frame_0001.exr ...,
-the frames that a real lens would film along a camera path. Lengths are metres.)";
+DIR receives images/0000.exr ... and transforms.json. With --truth it also receives
+truth/frame_0001.exr ..., the frames that a real lens would film along a camera path. Lengths are
+metres.)",
+};
 
 struct Arguments {
   std::string scene, output, capture = "planar", format = "exr", alpha = "none", truth;
@@ -49,53 +53,90 @@ struct Arguments {
   bool bayer = false, calibration_only = false, overwrite = false;
 };
 
-void AddOptions(CLI::App& app, Arguments& a) {
-  const CLI::IsMember scenes({"still-life", "lights", "chart"});
-  app.add_option("SCENE", a.scene, "One of the scenes below")->required()->check(scenes);
-  app.add_option("-o,--output", a.output, "Folder to write")->required();
-  app.add_option("--capture", a.capture, "Grid, band on an arc, or dome of LF cameras")
-      ->check(CLI::IsMember({"planar", "band", "hemisphere"}));
-  app.add_option("--count", a.count, "LF cameras, about; 0: as the scene recommends")
+void AddOutput(CLI::App& app, Arguments& a) {
+  lf::OptionGroup output(app, lf::kOutputGroup);
+  output.Add("-o,--output DIR", a.output, "Folder of the light field")->required();
+  output.AddChoice("--format", a.format, {"exr", "png", "png16"},
+                   "File format of the LF images\n"
+                   "png: 8-bit sRGB\n"
+                   "png16: 16-bit, linear");
+  output.AddFlag("--calibration-only", a.calibration_only, "Write transforms.json without images");
+  output.Add("--truth PATH.yaml", a.truth,
+             "Also write ground truth of this camera path\n"
+             "The frames are those of a real thin lens before the scene, in DIR/truth.");
+  output.AddFlag("--overwrite", a.overwrite,
+                 "Replace a light field of others in DIR\n"
+                 "Needed if lfsynth did not write the light field in DIR, or if it was changed "
+                 "since.");
+}
+
+void AddRig(CLI::App& app, Arguments& a) {
+  lf::OptionGroup picture(app, lf::kPictureGroup);
+  picture.AddChoice("--capture", a.capture, {"planar", "band", "hemisphere"},
+                    "Arrangement of the LF cameras\n"
+                    "planar: a grid\n"
+                    "band: rows along an arc\n"
+                    "hemisphere: a dome");
+  picture.Add("--count N", a.count, "Approximate number of LF cameras (by the scene)")
       ->check(CLI::Range(0, 100'000'000));
-  app.add_option("--size", a.size_px, "Of the LF images, such as 960x640")
-      ->type_name("WxH")
+  picture.Add("--size WIDTHxHEIGHT", a.size_px, "Size of the LF images, such as 960x640")
       ->delimiter('x')
       ->check(CLI::Range(1, 32768));
-  app.add_option("--spacing", a.spacing, "From LF camera to LF camera");
-  app.add_option("--distance", a.distance, "From the middle of the rig to that of the scene");
-  app.add_option("--jitter", a.jitter, "Share of the spacing, and degrees, that poses are off by");
-  app.add_option("--distortion", a.distortion,
-                 "Lens of the LF cameras: OpenCV's k1,k2,p1,p2,k3,k4,k5,k6, or the first of them")
+  picture.Add("--spacing X", a.spacing, "Distance between neighbouring LF cameras, in metres");
+  picture.Add("--distance X", a.distance,
+              "Distance from the rig to the scene, in metres\n"
+              "From the middle of the rig to the middle of the scene.");
+  picture.Add("--jitter X", a.jitter,
+              "Random error of the poses\n"
+              "Positions are off by this share of the spacing, and directions by so many degrees.");
+}
+
+void AddLens(CLI::App& app, Arguments& a) {
+  lf::OptionGroup lens(app, "Lens of the LF cameras");
+  lens.Add("--distortion K1,K2,...", a.distortion,
+           "Distortion by OpenCV's model\n"
+           "The parameters are k1,k2,p1,p2,k3,k4,k5,k6, or the first of them.")
       ->delimiter(',')
       ->expected(1, 8)
       ->check(CLI::Range(-1e6, 1e6));
-  app.add_option("--fisheye", a.fisheye, "Fish-eye lens instead: OpenCV's k1,k2,k3,k4")
+  lens.Add("--fisheye K1,K2,...", a.fisheye,
+           "Fish-eye lens by OpenCV's model\n"
+           "The parameters are k1,k2,k3,k4, or the first of them.")
       ->delimiter(',')
       ->expected(1, 4)
       ->check(CLI::Range(-1e6, 1e6))
       ->excludes("--distortion");
-  app.add_option("--fov", a.fov, "Ideal fish-eye lens of this omega (radians) instead")
+  lens.Add("--fov RADIANS", a.fov, "Ideal fish-eye lens of this omega (none)")
       ->check(CLI::Range(1e-3, 3.14))
       ->excludes("--distortion")
       ->excludes("--fisheye");
-  app.add_option("--format", a.format, "exr, png (8-bit sRGB) or png16 (linear)")
-      ->check(CLI::IsMember({"exr", "png", "png16"}));
-  app.add_option("--alpha", a.alpha,
-                 "Surfaces alone, before a transparent background, with straight or premultiplied "
-                 "alpha in the LF images, and premultiplied in true frames; none: no alpha")
-      ->check(CLI::IsMember({"none", "straight", "premultiplied"}));
-  app.add_flag("--bayer", a.bayer, "Raw-like 16-bit RGGB mosaics instead");
-  app.add_option("--noise", a.noise, "With --bayer: standard deviation at radiance 1")
+}
+
+void AddQuality(CLI::App& app, Arguments& a) {
+  lf::OptionGroup picture(app, lf::kPictureGroup), quality(app, lf::kQualityGroup);
+  picture.AddChoice("--alpha", a.alpha, {"none", "straight", "premultiplied"},
+                    "Alpha of the LF images\n"
+                    "straight, premultiplied: the surfaces of the scene alone, before a "
+                    "transparent background. The frames of --truth have premultiplied alpha.\n"
+                    "none: the whole scene, without alpha");
+  picture.AddFlag("--bayer", a.bayer, "Write raw-like 16-bit RGGB mosaics instead");
+  quality.Add("--noise X", a.noise, "With --bayer: standard deviation at radiance 1")
       ->check(CLI::Range(0.0, 10.0));
-  app.add_option("--samples", a.samples, "Rays per pixel at edges; 0: as the scene recommends")
+  quality.Add("--samples N", a.samples, "Rays per pixel at edges (by the scene)")
       ->check(CLI::Range(0, 4096));
-  app.add_flag("--calibration-only", a.calibration_only, "Write transforms.json without images");
-  app.add_flag(
-      "--overwrite", a.overwrite,
-      "Replace a light field in DIR that lfsynth has not written, or that was changed since");
-  app.add_option("--truth", a.truth, "PATH.yaml whose true thin-lens frames to write");
-  app.add_option("--truth-samples", a.truth_samples, "Rays per element of these")
+  quality.Add("--truth-samples N", a.truth_samples, "Rays per element of the ground truth")
       ->check(CLI::Range(1, 1'000'000));
+}
+
+void AddOptions(CLI::App& app, Arguments& a) {
+  lf::OptionGroup input(app, lf::kInputGroup);
+  input
+      .AddChoice("SCENE", a.scene, {"still-life", "lights", "chart"}, "still-life, lights or chart")
+      ->required();
+  AddOutput(app, a);
+  AddRig(app, a);
+  AddLens(app, a);
+  AddQuality(app, a);
 }
 
 lf::Result<lf::RigOptions> MakeRigOptions(const Arguments& a, const lf::BuiltInScene& scene) {
@@ -163,13 +204,11 @@ lf::Result<void> CheckMayWrite(const Arguments& a) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  lf::Program program("lfsynth", "Photographs a synthetic scene as a light field.", kExamples);
-  program.AddCommonOptions({.threads = true,
-                            .seed = "Seed of poses (--jitter) and of noise (--noise)",
-                            .progress = true,
-                            .quiet = true});
+  lf::Program program("lfsynth", kHelp);
   Arguments a;
   AddOptions(program.app(), a);
+  program.AddCommonOptions(
+      {.threads = true, .seed = "Seed of --jitter and --noise", .progress = true, .quiet = true});
   return program.Run(argc, argv, [&]() -> lf::Result<void> {
     const lf::BuiltInScene& built_in = *lf::FindBuiltInScene(a.scene);
     const lf::ProgressStyle style = lf::ParseProgressStyle(program.common().progress);

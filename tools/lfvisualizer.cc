@@ -19,20 +19,25 @@
 
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
-  lfvisualizer capture/ path.yaml                          # open the address that it prints
-  lfvisualizer capture/ path.yaml --watch frames           # with the render that lfrenderer writes there
+constexpr lf::HelpTexts kHelp = {
+    .summary = "Shows what was captured and what a camera path needs of it.",
+    .usage = "  lfvisualizer LIGHTFIELD PATH [PACKAGE...] [OPTIONS]",
+    .examples =
+        R"(  lfvisualizer capture/ path.yaml                   # open the address that it prints
+  lfvisualizer capture/ path.yaml --watch frames    # with the render that lfrenderer writes there
   lfvisualizer capture/ path.yaml packages/*.lfp --serve 8080
-  lfvisualizer capture/ path.yaml --export site            # as files for any web server
-  lfvisualizer capture/ path.yaml --text > scene.txt
-
-The page is served to this machine alone, at an address with a secret in it, until Ctrl-C. From
-elsewhere: ssh -L 8080:127.0.0.1:8080 HOST, with --serve 8080.
+  lfvisualizer capture/ path.yaml --export site     # as files for any web server
+  lfvisualizer capture/ path.yaml --text > scene.txt)",
+    .details =
+        R"(The page is served to this machine alone, at an address with a secret in it, until Ctrl-C. To see
+it on another machine: ssh -L 8080:127.0.0.1:8080 HOST, with --serve 8080.
 
 --text prints lines of words, in world units:
   lf_camera ID X Y Z              every LF camera, from 0
   render_camera FRAME X Y Z       every frame asked for
-  collected FRAME ID SHARE        what the frame collects from: LF cameras, and the share of their pixels)";
+  collected FRAME ID SHARE        the LF cameras that a frame collects from, and the share of their
+                                  pixels)",
+};
 
 struct Arguments {
   lf::LightFieldArgument light_field;
@@ -44,41 +49,70 @@ struct Arguments {
   lf::AllowMissing allow_missing;
 };
 
-void AddOptions(CLI::App& app, Arguments& a) {
+void AddInput(CLI::App& app, Arguments& a) {
   a.light_field.AddTo(app);
-  app.add_option("PATH", a.path, "Camera path (doc/formats/path.md)")->required();
-  app.add_option("PACKAGE", a.page.packages, "Packages that lfpreprocessor has made of it");
+  lf::OptionGroup input(app, lf::kInputGroup);
+  input
+      .Add("PATH", a.path,
+           "Camera path\n"
+           "doc/formats/path.md describes the file.")
+      ->required();
+  input.Add("PACKAGE", a.page.packages, "Packages that lfpreprocessor made for this path");
+}
+
+void AddOutput(CLI::App& app, Arguments& a) {
+  lf::OptionGroup output(app, lf::kOutputGroup);
+  auto* serve = output.Add("--serve PORT", a.port, "Port of the page (any that is free)")
+                    ->check(CLI::Range(0, 65535));
+  auto* watch = output.Add("--watch DIR", a.watch, "Show the frames of an lfrenderer as they grow")
+                    ->check(lf::NotEmpty());
   auto* text =
-      app.add_flag("--text", a.text, "Print LF cameras, render cameras and collected LF cameras");
-  app.add_option("--frames", a.frames, "Only these frames: 1-100x2, 7, 3-5,9")
+      output.AddFlag("--text", a.text, "Print LF cameras, render cameras and collected cameras")
+          ->excludes(serve)
+          ->excludes(watch);
+  output.Add("--frames RANGE", a.frames, "Only these frames, such as 1-100x2, 7 or 3-5,9 (all)")
       ->needs(text)
       ->check(lf::NotEmpty());
-  auto* serve = app.add_option("--serve", a.port, "Port of the page; 0: any that is free")
-                    ->excludes(text)
-                    ->check(CLI::Range(0, 65535));
-  auto* watch =
-      app.add_option("--watch", a.watch, "DIR of an lfrenderer: show its frames as they grow")
-          ->excludes(text)
-          ->check(lf::NotEmpty());
-  auto* to_files = app.add_option("--export", a.export_folder,
-                                  "Write the page and its data into a new folder, and end")
+  auto* to_files = output
+                       .Add("--export DIR", a.export_folder,
+                            "Write the page and its data into a new folder\n"
+                            "No page is served then.")
                        ->excludes(text)
                        ->excludes(serve)
                        ->excludes(watch)
                        ->check(lf::NotEmpty());
-  app.add_option("--export-images", a.export_images,
-                 "The most LF images that go with it, of those that frames take")
-      ->needs(to_files)
-      ->capture_default_str();
-  a.allow_missing.AddTo(app, "those that go with the export")->needs(to_files);
-  app.add_option("--max-images", a.max_images, "As of lfrenderer; 0: all")
+  output
+      .Add("--export-images N", a.export_images,
+           "Most LF images in the export\n"
+           "They are some of the LF images that frames take.")
+      ->needs(to_files);
+  a.allow_missing.AddTo(app, "the LF images in the export")->needs(to_files);
+}
+
+void AddQuality(CLI::App& app, Arguments& a) {
+  lf::OptionGroup picture(app, lf::kPictureGroup), quality(app, lf::kQualityGroup);
+  picture.AddChoice("--estimator", a.page.estimator, {"bilinear", "nearest"},
+                    "Estimator of the render\n"
+                    "As --estimator of lfrenderer.");
+  picture.AddChoice("--lens-weights", a.page.lens_weights, {"auto", "none", "area", "hat"},
+                    "Lens weights of the render\n"
+                    "As --lens-weights of lfrenderer.");
+  quality
+      .Add("--max-images N", a.max_images,
+           "Most LF images that a frame takes (all)\n"
+           "As --max-images of lfrenderer.")
       ->check(lf::WholeNumber());
-  app.add_option("--max-angle", a.page.max_angle_deg, "As of lfpreprocessor, degrees; 0: any")
+  quality
+      .Add("--max-angle DEGREES", a.page.max_angle_deg,
+           "Largest angle of an LF camera to the frame's axis (all)\n"
+           "As --max-angle of lfpreprocessor.")
       ->check(CLI::Range(0.0, 180.0));
-  app.add_option("--estimator", a.page.estimator, "As of lfrenderer")
-      ->check(CLI::IsMember({"bilinear", "nearest"}));
-  app.add_option("--lens-weights", a.page.lens_weights, "As of lfrenderer")
-      ->check(CLI::IsMember({"auto", "none", "area", "hat"}));
+}
+
+void AddOptions(CLI::App& app, Arguments& a) {
+  AddInput(app, a);
+  AddOutput(app, a);
+  AddQuality(app, a);
 }
 
 lf::NeedsOptions Needs(const Arguments& a) {
@@ -150,13 +184,12 @@ lf::Result<void> Run(Arguments& a, const lf::CommonOptions& common) {
 
 int main(int argc, char** argv) {
   Arguments arguments;
-  lf::Program program("lfvisualizer", "Shows what was captured and what a camera path needs of it.",
-                      kExamples);
+  lf::Program program("lfvisualizer", kHelp);
+  AddOptions(program.app(), arguments);
   program.AddCommonOptions({.threads = true,
                             .seed = "Seed of the order of the LF images",
                             .progress = true,
                             .verbose = true,
                             .quiet = true});
-  AddOptions(program.app(), arguments);
   return program.Run(argc, argv, [&] { return Run(arguments, program.common()); });
 }

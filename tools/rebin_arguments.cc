@@ -2,74 +2,133 @@
 
 #include <fmt/format.h>
 
+#include "tools/common/help.h"
 #include "tools/common/program.h"
 
 namespace lf {
 
-void RebinArguments::AddTo(CLI::App& app) {
-  constexpr const char* kGroup = "Rebinned rays (--mode rebin, hybrid; doc/rebinning.md)";
-  const auto add = [&](const char* name, auto& value, const char* help) {
-    return app.add_option(name, value, help)->group(kGroup);
-  };
-  ProbabilityOptions& edges = options.rebin.probability;
-  add("--kept", kept,
-      "Rays that finished frames ask for: all, edges (by how much the image changes there), or "
-      "auto: "
-      "all if --max-rays has room for them")
-      ->check(CLI::IsMember({"auto", "all", "edges"}));
-  add("--max-rays", max_rays,
-      "The most cells of rays in memory; 0: what half of --memory holds, with hybrid a quarter")
+namespace {
+
+void AddKeptRays(OptionGroup& group, RebinArguments& a) {
+  group.AddChoice("--kept", a.kept, {"auto", "all", "edges"},
+                  "Rays that are kept in memory\n"
+                  "all: all rays that finished frames ask for\n"
+                  "edges: rays are kept with a probability that grows with the change of the image "
+                  "there\n"
+                  "auto: all if --max-rays has room for them, otherwise edges");
+  group
+      .Add("--max-rays N", a.max_rays,
+           "Most cells of rays in memory (by --memory)\n"
+           "0: what half of --memory holds, or a quarter with --mode hybrid.")
       ->check(WholeNumber());
-  add("--alpha", edges.alpha, "Of edges: probability per change of stored values, black to white 1")
+  group.AddChoice("--average-others", a.average_others, {"on", "off"},
+                  "Add rays that are not kept to existing cells\n"
+                  "This gives less noise and takes more time.");
+  group.AddChoice("--preview", a.preview, {"auto", "on", "off"},
+                  "Keep rays for unfinished pictures of --mode hybrid\n"
+                  "They are kept until enough is collected.\n"
+                  "auto: on for frames that need more than 256 LF images");
+}
+
+void AddProbabilities(OptionGroup& group, RebinArguments& a) {
+  ProbabilityOptions& edges = a.options.rebin.probability;
+  group
+      .Add("--alpha X", edges.alpha,
+           "With edges: probability per change of the image\n"
+           "The change is that of stored values, where black to white is 1.")
       ->check(CLI::Range(0.0, kMostAlpha));
-  add("--beta", edges.beta, "Rays where the image changes less are left out")
+  group.Add("--beta X", edges.beta, "Drop rays where the image changes less than this")
       ->check(CLI::Range(0.0, 1.0));
-  add("--xi", edges.xi, "Probability of every other ray, added")->check(CLI::Range(0.0, 1.0));
-  add("--edge-sigma", edges.sigma_px, "LF pixels that the image is smoothed by before; 0: not")
+  group
+      .Add("--xi X", edges.xi,
+           "Probability of every other ray\n"
+           "It is added to the probability by --alpha.")
+      ->check(CLI::Range(0.0, 1.0));
+  group
+      .Add("--edge-sigma PIXELS", edges.sigma_px,
+           "Sigma of the smoothing before edges are searched\n"
+           "In LF pixels. 0: no smoothing.")
       ->check(CLI::Range(0.0, kMostSigma_px));
-  add("--probability-sigma", edges.second_sigma_px,
-      "LF pixels that probabilities are smoothed by; 0: not")
+  group
+      .Add("--probability-sigma PIXELS", edges.second_sigma_px,
+           "Sigma that smooths the probabilities (not smoothed)\n"
+           "In LF pixels.")
       ->check(CLI::Range(0.0, kMostSigma_px));
-  add("--colour-sigma", options.rebin.colour_sigma_px,
-      "LF pixels that colours of rays are smoothed by, against noise; 0: as recorded")
+  group
+      .Add("--colour-sigma PIXELS", a.options.rebin.colour_sigma_px,
+           "Sigma that smooths the colours of rays (as recorded)\n"
+           "In LF pixels. It reduces noise.")
       ->check(CLI::Range(0.0, kMostSigma_px));
-  add("--average-others", average_others,
-      "on: rays that are not kept are added to cells that are there: less noise, more time")
-      ->check(CLI::IsMember({"on", "off"}));
-  add("--preview", preview,
-      "hybrid: on, rays are kept for unfinished pictures, too, until enough is collected; off; "
-      "auto: on for frames that need more than 256 LF images")
-      ->check(CLI::IsMember({"auto", "on", "off"}));
-  add("--sigma-st", options.query.sigma_st,
-      "Of the kernel on the lens, in distances between LF cameras")
+}
+
+void AddInterpolation(OptionGroup& group, RebinArguments& a) {
+  group
+      .Add("--sigma-st X", a.options.query.sigma_st,
+           "Width of the kernel on the lens\n"
+           "In distances between LF cameras.")
       ->check(CLI::Range(0.01, 100.0));
-  add("--sigma-uv", options.query.sigma_uv,
-      "Of the kernel on the plate, in elements (in LF pixels where these are larger)")
+  group
+      .Add("--sigma-uv X", a.options.query.sigma_uv,
+           "Width of the kernel on the plate\n"
+           "In elements, or in LF pixels where these are larger.")
       ->check(CLI::Range(0.05, 8.0));
-  add("--nearest", nearest,
-      "With --back-end reference: of so many rays, however far; 0: of those within 3 sigma")
-      ->check(CLI::Range(0, 1000));
-  add("--lens-points", options.query.lens_point_count,
-      "Rays asked for each element; 0: so many that their kernels overlap, 8 to 256")
+  group
+      .Add("--lens-points N", a.options.query.lens_point_count,
+           "Rays asked for each element (until kernels overlap)\n"
+           "0: so many that their kernels overlap, 8 to 256.")
       ->check(CLI::Range(0, 4096));
-  add("--lens-sets", options.query.lens_sets,
-      "K: elements of K x K squares have different lens points: noise in place of steps")
+  group
+      .Add("--lens-sets K", a.options.query.lens_sets,
+           "Vary the lens points in squares of K x K elements\n"
+           "The elements of a square have different lens points: noise in place of steps.")
       ->check(CLI::Range(1, 8));
-  add("--reparameterise", reparameterise,
-      "on: rays are told apart on each frame's lens and focus plane; off: on the slab's planes")
-      ->check(CLI::IsMember({"on", "off"}));
-  add("--r-st", r_st_w, "Width of cells on the slab's st plane, world units; 0: by LF cameras")
+  group.AddChoice("--reparameterise", a.reparameterise, {"on", "off"},
+                  "Tell rays apart on each frame's lens and focus plane\n"
+                  "off: rays are told apart on the planes of the slab");
+}
+
+void AddSlab(OptionGroup& group, RebinArguments& a) {
+  group
+      .Add("--r-st WIDTH", a.r_st_w,
+           "Width of cells on the st plane (by LF cameras)\n"
+           "In world units, on the slab's st plane.")
       ->check(CLI::NonNegativeNumber);
-  add("--r-uv", r_uv_w, "The same on its uv plane; 0: by pixels")->check(CLI::NonNegativeNumber);
-  add("--slab-position", slab_position_w, "X Y Z of the st plane; default: among the frames")
-      ->expected(3);
-  add("--slab-forward", slab_forward, "X Y Z that the slab faces; default: as the frames do")
-      ->expected(3);
-  add("--slab-distance", slab_distance_w,
-      "From the st plane to the uv plane, world units; 0: to the focus")
+  group
+      .Add("--r-uv WIDTH", a.r_uv_w,
+           "Width of cells on the uv plane (by pixels)\n"
+           "In world units, on the slab's uv plane.")
       ->check(CLI::NonNegativeNumber);
-  add("--coverage-cells", options.coverage.cells_across,
-      "How finely rays are sorted out that no frame asks for: cells across a frame")
+  group.Add("--slab-position X Y Z", a.slab_position_w, "Point of the st plane (among the frames)")
+      ->expected(3);
+  group
+      .Add("--slab-forward X Y Z", a.slab_forward, "Direction that the slab faces (as the frames)")
+      ->expected(3);
+  group
+      .Add("--slab-distance X", a.slab_distance_w,
+           "Distance from st plane to uv plane (to the focus)\n"
+           "In world units.")
+      ->check(CLI::NonNegativeNumber);
+}
+
+}  // namespace
+
+void RebinArguments::AddTo(CLI::App& app) {
+  OptionGroup group(app, "Rebinned rays (--mode rebin, hybrid; doc/rebinning.md)");
+  AddKeptRays(group, *this);
+  AddProbabilities(group, *this);
+  AddInterpolation(group, *this);
+  AddSlab(group, *this);
+  OptionGroup measuring(app, kMeasuringGroup);
+  measuring
+      .Add("--nearest N", nearest,
+           "Interpolate from the N nearest rays (within 3 sigma)\n"
+           "With --back-end reference: takes the N nearest rays, however far they are. 0: takes "
+           "the rays within 3 sigma.")
+      ->check(CLI::Range(0, 1000));
+  measuring
+      .Add("--coverage-cells N", options.coverage.cells_across,
+           "Cells of the coverage map across a frame\n"
+           "The map sorts out rays that no frame asks for; with more cells it does so more finely.")
       ->check(CLI::Range(4, 1024));
 }
 

@@ -7,6 +7,7 @@
 
 #include "tools/common/byte_size.h"
 #include "tools/common/duration.h"
+#include "tools/common/help.h"
 
 #include "lf/collector/noise_rule.h"
 #include "lf/core/log.h"
@@ -29,120 +30,177 @@ Result<int> ParseFill(const std::string& text) {
                                 text, kMostFillRadius_px));
 }
 
+void AddInput(CLI::App& app, RenderArguments& a) {
+  OptionGroup input(app, kInputGroup);
+  input
+      .Add("INPUT", a.inputs,
+           "LIGHTFIELD PATH.yaml, or PACKAGE... of lfpreprocessor\n"
+           "LIGHTFIELD: a calibration file or its folder (transforms.json, COLMAP, Middlebury, "
+           "LLFF, HCI, AOS), a packed store, or a folder of images with Stanford names\n"
+           "PATH.yaml: a camera path (doc/formats/path.md)\n"
+           "PACKAGE: a file that lfpreprocessor has written")
+      ->required();
+  input
+      .Add("--lightfield LIGHTFIELD", a.light_field.path,
+           "With packages: the place of their LF images\n"
+           "Needed if the light field was moved after the packages were made. A packed store of "
+           "their LF images is possible as well.")
+      ->check(NotEmpty());
+  a.light_field.AddOptionsTo(app);
+  a.allow_missing.AddTo(
+      app, "the LF images that the largest pass reads (with packages, of each package by itself)");
+}
+
+void AddOutput(CLI::App& app, RenderArguments& a) {
+  OptionGroup output(app, kOutputGroup);
+  output.Add("-o,--output DIR", a.output, "Folder of the frames")->required();
+  output.Add("--frames RANGE", a.frames, "Frames to render, such as 1-100x2, 7 or 3-5,9 (all)")
+      ->check(NotEmpty());
+  output.AddChoice("--format", a.format, {"exr", "exr-float", "png", "png16"},
+                   "File format of the frames\n"
+                   "exr: linear light as 16-bit floating-point numbers\n"
+                   "exr-float: linear light as 32-bit floating-point numbers\n"
+                   "png: 8-bit sRGB\n"
+                   "png16: 16-bit sRGB");
+  output.Add("--video FILE", a.video, "Also write the frames as this mp4; needs ffmpeg")
+      ->check(NotEmpty());
+  output.AddFlag("--no-contact-sheet", a.no_contact_sheet, "Do not write contact_sheet.png");
+  output.AddFlag("--keep-plates", a.keep_plates,
+                 "Keep the sums and counts of each frame\n"
+                 "They are written beside the frame, as frame_0001.plate.");
+}
+
+void AddPicture(CLI::App& app, RenderArguments& a) {
+  OptionGroup picture(app, kPictureGroup);
+  picture.AddChoice("--mode", a.mode, {"collect", "rebin", "hybrid"},
+                    "Source of the rays\n"
+                    "collect: frames consist of the rays that were recorded\n"
+                    "rebin: frames are interpolated between rays that are kept in memory\n"
+                    "hybrid: frames are collected, and interpolated where the lens got no rays");
+  picture.AddChoice(
+      "--estimator", a.estimator, {"auto", "nearest", "bilinear"},
+      "How LF pixels contribute to elements\n"
+      "bilinear (auto): every element reads each LF image where it looks\n"
+      "nearest: every LF pixel goes to one element, and mosaics are not interpolated");
+  picture.AddChoice("--filter", a.filter, {"auto", "nearest", "bilinear", "bicubic", "mosaic"},
+                    "Interpolation between LF pixels\n"
+                    "The filter belongs to the estimator bilinear.\n"
+                    "auto: bicubic, but bilinear where an element is as large as nine LF pixels or "
+                    "more; for mosaics, mosaic\n"
+                    "mosaic: as auto, and colours that the sensor recorded count 8 times as much "
+                    "as colours that were interpolated");
+  picture.AddChoice("--lens-weights", a.lens_weights, {"auto", "none", "area", "hat"},
+                    "Weight of each LF image in a frame\n"
+                    "none: all LF images count the same\n"
+                    "area: an LF image counts as the part of the lens that is nearest to it\n"
+                    "hat: LF images are interpolated, for small lenses and pinholes\n"
+                    "auto: area, and hat as the lens closes");
+  picture
+      .Add("--fill RADIUS|off", a.fill,
+           "Radius that fills elements without rays, in elements\n"
+           "An element that no ray reached takes the light of collected elements that are at most "
+           "RADIUS elements away. It is black if there is none. Its coverage is below 1 in any "
+           "case.")
+      ->check(NotEmpty());
+  picture.Add("--smooth-below N", a.smooth_below,
+              "Smooth elements with fewer rays than this (none)\n"
+              "Each is smoothed over up to 32 elements.");
+}
+
+void AddQuality(CLI::App& app, RenderArguments& a) {
+  OptionGroup quality(app, kQualityGroup);
+  quality
+      .Add("--max-images N", a.max_images,
+           "Most LF images that a frame takes (all)\n"
+           "A frame takes the first N of the order, which is shuffled by default.")
+      ->check(WholeNumber());
+  quality
+      .Add("--max-angle DEGREES", a.max_angle_deg,
+           "Largest angle of an LF camera to the frame's axis (all)\n"
+           "A frame takes only LF cameras whose optical axes differ by at most so many degrees "
+           "from its own.")
+      ->check(CLI::Range(0., 180.));
+  quality.AddChoice("--order", a.order, {"shuffle", "round-robin", "area"},
+                    "Order of the LF images\n"
+                    "The order matters if --max-images or --stop-when end a frame early.\n"
+                    "shuffle: random, by --seed\n"
+                    "round-robin: all frames fill equally\n"
+                    "area: LF images with most rays first");
+  quality
+      .Add("--stop-when RULE", a.stop_when,
+           "Finish a frame early: noise<=X or samples>=N\n"
+           "noise<=X: the frame is finished when the noise of 90 % of the elements that LF images "
+           "see is at most X. Noise is the standard error of an element's mean, in linear light "
+           "with white as 1; 0.002 is half a level of 255 in a mid-grey. The rule works with every "
+           "mode and all lens weights; rebin measures the noise by a plate of 24 bytes for each "
+           "element of every frame.\n"
+           "samples>=N: the frame is finished when 99 % of these elements have N rays in every "
+           "channel. Lens weights are then none.")
+      ->check(NotEmpty());
+  quality
+      .Add("--require RULE", a.require,
+           "Exit with code 6 unless noise<=X or samples>=N\n"
+           "The exit code is 6 if a frame has more noise or fewer rays in the end.")
+      ->check(NotEmpty());
+}
+
+void AddRunning(CLI::App& app, RenderArguments& a) {
+  OptionGroup running(app, kRunningGroup);
+  running.Add("--memory SIZE", a.memory, "Bound of the memory used");
+  CLI::Option* const resume =
+      running.AddFlag("--resume", a.resume,
+                      "Continue the render in DIR\n"
+                      "The inputs must be the same. Finished frames are kept.");
+  running.AddFlag("--overwrite", a.overwrite, "Remove an unfinished render in DIR")
+      ->excludes(resume);
+  running
+      .Add("--finish RANGE", a.finish,
+           "With --resume: finish frames with their rays so far\n"
+           "RANGE is such as 1-10,20. The other frames are continued. The report says which LF "
+           "images the finished frames have.")
+      ->check(NotEmpty());
+  running.Add("--dump-every TIME", a.dump_every,
+              "Time between checkpoints\n"
+              "The state is written so often, such as 30s, 10m or 1h; more rarely if it would "
+              "take more than 5 % of the time. 0: only at signals.");
+  running
+      .Add("--shard k/K", a.shard,
+           "Render a part of the LF images, for lfmerge\n"
+           "Writes the plates of the k-th of K parts of the LF images into DIR/partial/shards. "
+           "lfmerge adds the plates of all parts and writes the frames.")
+      ->check(NotEmpty());
+}
+
+void AddMeasuring(CLI::App& app, RenderArguments& a) {
+  OptionGroup measuring(app, kMeasuringGroup);
+  measuring.AddChoice("--rectangles", a.rectangles, {"on", "off"},
+                      "Read only the needed rectangle of each LF image\n"
+                      "off: all pixels of every LF image that may contribute are read and tried, "
+                      "to measure what the rectangles save. The frames have the same bits.");
+  measuring.AddChoice("--back-end", a.back_end, {"fast", "reference"},
+                      "Code that adds the rays\n"
+                      "reference: the literal formulas, one ray at a time");
+}
+
 }  // namespace
 
 void RenderArguments::AddTo(CLI::App& app) {
-  app.add_option(
-         "INPUT", inputs,
-         "LIGHTFIELD PATH.yaml: a calibration file or its folder (transforms.json, COLMAP, "
-         "Middlebury, LLFF, AOS, a packed store; or images with Stanford names) and a camera path "
-         "(doc/formats/path.md); or PACKAGE...: files of lfpreprocessor")
-      ->required();
-  app.add_option(
-         "--lightfield", light_field.path,
-         "Where the light field of the packages is now, if it has moved; or a packed store of "
-         "their LF images")
-      ->check(NotEmpty());
-  light_field.AddOptionsTo(app);
-  app.add_option("-o,--output", output, "Folder of the frames")->required();
-  app.add_option("--frames", frames, "Frames to render: 1-100x2, 7, 3-5,9")->check(NotEmpty());
-  app.add_option("--format", format, "exr, exr-float, png or png16")
-      ->check(CLI::IsMember({"exr", "exr-float", "png", "png16"}));
-  app.add_option("--video", video, "Also write the frames as this mp4 (needs ffmpeg)")
-      ->check(NotEmpty());
-  app.add_flag("--no-contact-sheet", no_contact_sheet, "No contact_sheet.png");
-  app.add_option("--memory", memory, "Bound of the memory used");
-  app.add_option("--max-images", max_images,
-                 "Use only so many LF images for each frame, the first of a shuffled order; 0: all")
-      ->check(WholeNumber());
-  app.add_option("--max-angle", max_angle_deg,
-                 "Only LF cameras whose optical axes differ by at most so many degrees from the "
-                 "frame's; 0: all")
-      ->check(CLI::Range(0., 180.));
-  app.add_option("--order", order,
-                 "Order of the LF images, which matters where --max-images or --stop-when end a "
-                 "frame early: shuffle, by --seed; round-robin, so that all frames fill equally; "
-                 "area, most rays first")
-      ->check(CLI::IsMember({"shuffle", "round-robin", "area"}));
-  app.add_option(
-      "--dump-every", dump_every,
-      "Write the state so often, such as 30s, 10m, 1h; seldomer if it would take more than "
-      "5 % of the time; 0: at signals only");
-  auto* resume_flag =
-      app.add_flag("--resume", resume,
-                   "Go on with the render in DIR, from the same inputs; finished frames "
-                   "are kept");
-  app.add_flag("--overwrite", overwrite, "Remove an unfinished render in DIR")
-      ->excludes(resume_flag);
-  app.add_option("--finish", finish,
-                 "With --resume: finish these frames (1-10,20) with the rays that they have; the "
-                 "others go on, and the report says which LF images these are")
-      ->check(NotEmpty());
-  app.add_option(
-         "--stop-when", stop_when,
-         "Finish a frame when it is good enough. noise<=X: when the noise of 90 % of the elements "
-         "that LF images see is at most X, the standard error of their mean in linear light with "
-         "white as 1 (0.002 is half a level of 255 in a mid-grey); with every mode and all lens "
-         "weights; "
-         "rebin measures it by a plate of 24 bytes for each element of every frame. samples>=N: "
-         "when 99 % of them have N rays in every channel; lens weights are then none")
-      ->check(NotEmpty());
-  app.add_option("--require", require,
-                 "noise<=X or samples>=N: exit code 6 if a frame has more noise or fewer rays in "
-                 "the end")
-      ->check(NotEmpty());
-  allow_missing.AddTo(app, "those that the largest pass reads, of packages in each by itself");
-  app.add_flag("--keep-plates", keep_plates,
-               "Also write each frame's sums and counts: frame_0001.plate");
-  app.add_option("--smooth-below", smooth_below,
-                 "Smooth elements with fewer rays than this, over up to 32 elements");
-  app.add_option("--fill", fill,
-                 "RADIUS or off: an element that no ray reached takes the light of collected ones "
-                 "at most RADIUS elements away; it is black if there is none, and its coverage is "
-                 "below 1 in any case")
-      ->type_name("RADIUS")
-      ->check(NotEmpty());
-  app.add_option(
-         "--mode", mode,
-         "collect: frames are the rays that were recorded; rebin: interpolated between rays "
-         "that are kept in memory; hybrid: collected, and interpolated where the lens got "
-         "no rays")
-      ->check(CLI::IsMember({"collect", "rebin", "hybrid"}));
-  app.add_option(
-         "--estimator", estimator,
-         "bilinear (auto): every element reads each LF image where it looks; nearest: every "
-         "LF pixel goes to one element, and mosaics are not interpolated")
-      ->check(CLI::IsMember({"auto", "nearest", "bilinear"}));
-  app.add_option(
-         "--filter", filter,
-         "Of the estimator bilinear, between LF pixels: nearest, bilinear, bicubic; auto: "
-         "bicubic, but bilinear where an element is as large as nine LF pixels or more; "
-         "mosaic (auto for mosaics): the same, and colours that the sensor recorded count 8 times "
-         "those that were interpolated")
-      ->check(CLI::IsMember({"auto", "nearest", "bilinear", "bicubic", "mosaic"}));
-  app.add_option(
-         "--lens-weights", lens_weights,
-         "none: LF images count alike; area: as the part of the lens that is nearest to each; hat: "
-         "interpolated, for small lenses and pinholes; auto: area, and hat as the lens closes")
-      ->check(CLI::IsMember({"auto", "none", "area", "hat"}));
-  app.add_option("--shard", shard,
-                 "k/K: plates of the k-th of K parts of the LF images, into DIR/partial/shards; "
-                 "lfmerge adds those of all and writes the frames")
-      ->check(NotEmpty());
-  app.add_option("--rectangles", rectangles,
-                 "off: read and try all pixels of every LF image that may contribute, to measure "
-                 "what their rectangles save; the same bits")
-      ->check(CLI::IsMember({"on", "off"}));
-  app.add_option("--back-end", back_end,
-                 "fast, or reference: the literal formulas, one ray at a time")
-      ->check(CLI::IsMember({"fast", "reference"}));
+  AddInput(app, *this);
+  AddOutput(app, *this);
+  AddPicture(app, *this);
+  AddQuality(app, *this);
+  AddRunning(app, *this);
   rebin.AddTo(app);
+  AddMeasuring(app, *this);
 }
 
 OfferedOptions RenderArguments::Common() {
   return {.threads = true,
-          .seed = "Seed of the order of the LF images, and of which rays are rebinned",
-          .strict = "A broken LF image is an error, not left out",
+          .seed = "Seed of the order, and of the rebinned rays",
+          .strict =
+              "Stop at a missing or broken LF image\n"
+              "Otherwise it is left out.",
+          .json = "Print the report to stdout",
           .progress = true,
           .verbose = true,
           .quiet = true};

@@ -9,6 +9,7 @@
 
 #include "tools/common/byte_size.h"
 #include "tools/common/duration.h"
+#include "tools/common/help.h"
 #include "tools/render_arguments.h"
 
 #include "lf/cluster/slurm.h"
@@ -24,9 +25,9 @@ namespace {
 
 // Options of lfrenderer that the job sets.
 constexpr std::array kOfTheJob = {
-    "-o",       "--output", "--resume", "--overwrite", "--progress", "--json",
-    "--frames", "--video",  "--shard",  "--finish",    "--threads",  "--memory",
-    "--help",   "-h",       "-q",       "--quiet",     "--version",  "--no-contact-sheet"};
+    "-o",         "--output", "--resume", "--overwrite", "--progress",        "--json", "--frames",
+    "--video",    "--shard",  "--finish", "--threads",   "--memory",          "--help", "-h",
+    "--help-all", "-q",       "--quiet",  "--version",   "--no-contact-sheet"};
 
 uint64_t MachineMemoryBytes() {
   const long pages = ::sysconf(_SC_PHYS_PAGES), page_bytes = ::sysconf(_SC_PAGESIZE);
@@ -87,10 +88,10 @@ Result<Words> SplitWords(const std::vector<std::string>& words) {
 Result<RenderOptions> TryArguments(const std::vector<fs::path>& packages, const fs::path& output,
                                    const std::string& frames,
                                    const std::vector<std::string>& arguments, PackagedFilm* film) {
-  Program renderer("lfrenderer", "", "");
+  Program renderer("lfrenderer", HelpTexts{});
   RenderArguments render;
-  renderer.AddCommonOptions(RenderArguments::Common());
   render.AddTo(renderer.app());
+  renderer.AddCommonOptions(RenderArguments::Common());
   std::vector<std::string> words = {"lfrenderer"};
   for (const fs::path& package : packages) words.push_back(package.string());
   words.insert(words.end(), {"-o", output.string()});
@@ -119,59 +120,84 @@ Result<RenderOptions> TryArguments(const std::vector<fs::path>& packages, const 
   return options;
 }
 
+void AddNewJob(CLI::App& app, SubmitArguments& a) {
+  OptionGroup input(app, kInputGroup), output(app, kOutputGroup);
+  input.Add("PACKAGES", a.words,
+            "Files of lfpreprocessor\n"
+            "After -- follow options of lfrenderer, for all packages.");
+  output.Add("-o,--output DIR", a.output, "Folder of the frames, which all machines share")
+      ->check(NotEmpty());
+  output.Add("--frames RANGE", a.frames, "Frames to render, such as 1-100x2, 7 or 3-5,9 (all)")
+      ->check(NotEmpty());
+  output.Add("--video FILE", a.video, "Also write the frames as this mp4; needs ffmpeg")
+      ->check(NotEmpty());
+  output.AddFlag("--no-contact-sheet", a.no_contact_sheet, "Do not write contact_sheet.png");
+  output.AddFlag("--overwrite", a.overwrite,
+                 "Remove the job and the frames of these packages in DIR");
+}
+
+void AddExistingJob(CLI::App& app, SubmitArguments& a) {
+  OptionGroup running(app, kRunningGroup);
+  running.Add("--status DIR", a.status, "Show the progress of the job in DIR")->check(NotEmpty());
+  running.Add("--cancel DIR", a.cancel, "Write the state of all packages and end the job")
+      ->check(NotEmpty());
+  running
+      .Add("--resume DIR", a.resume,
+           "Continue the job in DIR\n"
+           "The job continues with what is not done. These may be others now: --engine, --jobs, "
+           "--threads, --memory, --crashes, --time-limit, --sbatch, --lfrenderer, --video, the "
+           "places of the same PACKAGES, and the options of lfrenderer.")
+      ->check(NotEmpty());
+  running
+      .Add("--finish DIR FRAMES", a.finish,
+           "Finish frames with the rays that they have so far\n"
+           "The other frames continue.")
+      ->expected(2);
+}
+
+void AddResources(CLI::App& app, SubmitArguments& a) {
+  OptionGroup running(app, kRunningGroup);
+  running.AddChoice("--engine", a.engine, {"local", "slurm"},
+                    "System that starts the processes (local)\n"
+                    "local: processes of this machine, until all is done\n"
+                    "slurm: tasks of Slurm");
+  running
+      .Add("--jobs N", a.at_once,
+           "Packages rendered at the same time\n"
+           "Unless given, 1 with the engine local, and with slurm as many as Slurm has room for.")
+      ->check(WholeNumber());
+  running.Add("--memory SIZE", a.memory,
+              "Bound of the memory of each lfrenderer (8G)\n"
+              "If the option is not given, the processes of this machine together take at most "
+              "80 % of its memory.");
+  running
+      .Add("--time-limit TIME", a.time_limit,
+           "slurm: time limit of each task, such as 2h\n"
+           "A task that reaches it is requeued and resumed.")
+      ->check(NotEmpty());
+  running
+      .Add("--sbatch OPTION", a.sbatch_options,
+           "slurm: option of sbatch: --sbatch=--partition=long\n"
+           "The option may be repeated.")
+      ->allow_extra_args(false);
+  running.AddFlag("--wait", a.wait,
+                  "slurm: wait until the film is done\n"
+                  "The exit code is that of the film.");
+  running.Add("--crashes N", a.most_crashes,
+              "Most crashes of a package before it fails (10)\n"
+              "A package fails if lfrenderer, or its node, dies more often than this.");
+  running.Add("--lfrenderer FILE", a.renderer, "Program that renders (beside lfsubmit)");
+}
+
 }  // namespace
 
 void SubmitArguments::AddTo(CLI::App& app) {
-  app.add_option("PACKAGES", words,
-                 "Files of lfpreprocessor; after -- arguments of lfrenderer, for all of them");
-  app.add_option("-o,--output", output, "Folder of the frames, which all machines share")
-      ->check(NotEmpty());
-  app.add_option("--engine", engine,
-                 "local (default): processes of this machine, until all is done; or slurm")
-      ->check(CLI::IsMember({"local", "slurm"}));
-  app.add_option(
-         "--jobs", at_once,
-         "Packages rendered at the same time; default: local 1, slurm as many as it has room "
-         "for")
-      ->check(WholeNumber());
-  app.add_option("--memory", memory,
-                 "Bound of the memory of each lfrenderer; empty: 8G, and of this machine's no more "
-                 "than 80 % for all together");
-  app.add_option("--frames", frames, "Frames to render: 1-100x2, 7, 3-5,9")->check(NotEmpty());
-  app.add_option("--video", video, "Also write the frames as this mp4 (needs ffmpeg)")
-      ->check(NotEmpty());
-  app.add_flag("--no-contact-sheet", no_contact_sheet, "No contact_sheet.png");
-  app.add_option("--crashes", most_crashes,
-                 "A package fails if lfrenderer, or its node, dies more often than this (10)");
-  app.add_option("--lfrenderer", renderer, "The program; empty: the one beside this program");
-  app.add_flag("--overwrite", overwrite, "Remove the job and the frames of these packages in DIR");
-  app.add_option("--time-limit", time_limit,
-                 "slurm: of a task, such as 2h; it is gone on with after it, too")
-      ->check(NotEmpty());
-  app.add_option("--sbatch", sbatch_options,
-                 "slurm: an option of sbatch, such as --sbatch=--partition=long; may be repeated")
-      ->allow_extra_args(false);
-  app.add_flag("--wait", wait, "slurm: wait until the film is done; the exit code is that of it");
-  const char* const there = "A job that is there";
-  app.add_option("--status", status, "DIR: how far it is")->check(NotEmpty())->group(there);
-  app.add_option("--cancel", cancel, "DIR: write the state of all packages and end")
-      ->check(NotEmpty())
-      ->group(there);
-  app.add_option(
-         "--resume", resume,
-         "DIR: go on with what is not done; --engine, --jobs, --threads, --memory, --crashes, "
-         "--time-limit, --sbatch, --lfrenderer, --video, PACKAGES (the same ones elsewhere) and "
-         "arguments "
-         "may be others now")
-      ->check(NotEmpty())
-      ->group(there);
-  app.add_option("--finish", finish,
-                 "DIR FRAMES: finish frames with the rays they have; the others go on")
-      ->expected(2)
-      ->group(there);
-  // For the tasks of a job.
-  app.add_option("--run-package", run_package, "NUMBER DIR")->expected(2)->group("");
-  app.add_option("--run-finish", run_finish, "DIR")->group("");
+  AddNewJob(app, *this);
+  AddExistingJob(app, *this);
+  AddResources(app, *this);
+  OptionGroup of_tasks(app, "");  // options that lfsubmit gives to its own tasks
+  of_tasks.Add("--run-package NUMBER DIR", run_package, "")->expected(2);
+  of_tasks.Add("--run-finish DIR", run_finish, "");
 }
 
 Result<void> SubmitArguments::Check() const {

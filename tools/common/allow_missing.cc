@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include "tools/common/help.h"
+
 #include "lf/core/log.h"
 
 namespace lf {
@@ -58,12 +60,13 @@ bool MissingLimit::Allows(uint64_t missing, uint64_t asked) const {
 }
 
 CLI::Option* AllowMissing::AddTo(CLI::App& app, const std::string& asked) {
-  return app
-      .add_option("--allow-missing", text,
-                  fmt::format("N or P%: accept that so many LF images are left out because they "
-                              "are missing or broken, P% of {}; more end with exit code 6",
-                              asked))
-      ->type_name("N|PERCENT");
+  OptionGroup input(app, kInputGroup);
+  return input.Add(
+      "--allow-missing N|PERCENT", text,
+      fmt::format("Accept this many missing or broken LF images (none)\n"
+                  "Such LF images are left out. The program accepts up to N of them, or a "
+                  "percentage such as 2% of {}. If there are more, it ends with exit code 6.",
+                  asked));
 }
 
 Result<void> EndWithMissing(const MissingImages& missing, const MissingLimit& limit) {

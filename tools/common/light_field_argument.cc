@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 
+#include "tools/common/help.h"
 #include "tools/common/program.h"
 
 namespace lf {
@@ -29,42 +30,60 @@ Result<std::array<double, 3>> ParseBackground(const std::string& text) {
   return rgb;
 }
 
+void AddUnusualOptions(CLI::App& app, LightFieldArgument& argument) {
+  OptionGroup unusual(app, "Unusual light fields");
+  unusual
+      .Add("--focal-px PIXELS", argument.focal_px,
+           "Focal length (as recorded)\n"
+           "For Stanford folders whose names do not tell the focal length.")
+      ->check(CLI::NonNegativeNumber);
+  unusual
+      .Add("--fov-deg DEGREES", argument.fov_deg,
+           "Field of view (as recorded)\n"
+           "For poses of Airborne Optical Sectioning (AOS).")
+      ->check(CLI::Range(0., 179.));
+  unusual.Add("--image-scale FACTOR", argument.image_scale,
+              "Size of the image files, as a factor\n"
+              "The factor, such as 0.25, multiplies the calibrated size.\n"
+              "auto: 1, or 1/2 to 1/16 if all image files have this size\n"
+              "off: the size is as calibrated");
+  unusual.AddChoice("--image-alpha", argument.image_alpha,
+                    {"auto", "mask", "straight", "premultiplied"},
+                    "Meaning of alpha\n"
+                    "auto: as recorded, or as the pixels of the images tell\n"
+                    "mask: a pixel whose alpha is below one half recorded nothing\n"
+                    "straight, premultiplied: the light of the image lies over --background");
+}
+
 }  // namespace
 
 void LightFieldArgument::AddTo(CLI::App& app) {
-  app.add_option("LIGHTFIELD", path,
-                 "A calibration file, or its folder: transforms.json, COLMAP, Middlebury, LLFF, "
-                 "HCI, AOS; a packed store (STORE.lfs); or a folder of images with Stanford names")
+  OptionGroup input(app, kInputGroup);
+  input
+      .Add("LIGHTFIELD", path,
+           "Calibration file, its folder, or a packed store\n"
+           "The folder or file is transforms.json, or a calibration of COLMAP, Middlebury, LLFF, "
+           "HCI or AOS; a packed store is one file, STORE.lfs. A folder of images with Stanford "
+           "names is a light field as well.")
       ->required();
   AddOptionsTo(app);
 }
 
 void LightFieldArgument::AddOptionsTo(CLI::App& app) {
-  app.add_option("--focal-px", focal_px,
-                 "Focal length in pixels, for Stanford folders whose names do not tell it; 0: as "
-                 "recorded")
-      ->check(CLI::NonNegativeNumber);
-  app.add_option(
-         "--fov-deg", fov_deg,
-         "Field of view in degrees, for poses of Airborne Optical Sectioning; 0: as recorded")
-      ->check(CLI::Range(0., 179.));
-  app.add_option("--images", images,
-                 "Folder of the image files, if they are not where the calibration says: each is "
-                 "found by its name, whatever its suffix and the folders below");
-  app.add_option("--image-scale", image_scale,
-                 "Size of the image files beside the calibrated one: a factor such as 0.25; auto: "
-                 "1, or 1/2 to 1/16 if all have it; off: as calibrated");
-  app.add_option("--image-alpha", image_alpha,
-                 "What the alpha of images means: mask (below one half nothing was recorded), "
-                 "straight or premultiplied light over --background; auto: as recorded, or as "
-                 "their pixels tell")
-      ->check(CLI::IsMember({"auto", "mask", "straight", "premultiplied"}));
-  app.add_option(
-         "--background", background,
-         "Light behind images whose alpha is light: black, white, or R,G,B, linear, where 1 "
-         "is display white; none: frames have alpha themselves, and light as over black")
+  OptionGroup input(app, kInputGroup);
+  input.Add("--images DIR", images,
+            "Folder of the LF images, if they were moved\n"
+            "Needed if the image files are not where the calibration says. Each is found by its "
+            "name, whatever its suffix and the folders below DIR.");
+  input
+      .Add("--background COLOUR", background,
+           "Light behind transparent LF images\n"
+           "The light behind images whose alpha is light: black, white, or R,G,B, which are linear "
+           "and where 1 is display white.\n"
+           "none: the frames have alpha themselves, and light as over black")
       ->check(NotEmpty())
       ->default_str("as recorded, or black");
+  AddUnusualOptions(app, *this);
 }
 
 Result<OpenOptions> LightFieldArgument::Options() const {

@@ -3,12 +3,10 @@
 #include <malloc.h>
 #include <signal.h>
 
-#include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <iostream>
+#include <memory>
 #include <system_error>
 
 #include "tools/common/process_start.h"
@@ -51,53 +49,32 @@ CLI::Validator NotEmpty() {
       "");
 }
 
-Program::Program(std::string name, std::string description, std::string examples)
-    : app_(std::move(description), std::move(name)) {
-  app_.footer("\n" + std::move(examples));
-  app_.set_version_flag("--version", app_.get_name() + " " + Version());
+Program::Program(std::string name, const HelpTexts& texts) : app_(texts.summary, std::move(name)) {
+  app_.formatter(std::make_shared<HelpFormatter>(texts));
+  app_.set_help_flag("-h,--help", "Show the options that most people need")->group(kHelpGroup);
+  app_.set_help_all_flag("--help-all", "Show all options and the details")->group(kHelpGroup);
+  app_.set_version_flag("--version", app_.get_name() + " " + Version(), "Show the version")
+      ->group(kHelpGroup);
   app_.option_defaults()->always_capture_default();
 }
 
 void Program::AddCommonOptions(const OfferedOptions& offered) {
-  constexpr const char* kGroup = "Common";
+  OptionGroup input(app_, kInputGroup), output(app_, kOutputGroup), running(app_, kRunningGroup);
+  if (offered.strict) input.AddFlag("--strict", common_.strict, offered.strict);
+  if (offered.json) output.AddFlag("--json", common_.json, offered.json);
+  if (offered.seed) running.Add("--seed N", common_.seed, offered.seed)->check(WholeNumber());
   if (offered.threads)
-    app_.add_option("--threads", common_.threads, "Threads to use; 0: all of the machine's")
-        ->check(CLI::Range(0, 512))
-        ->group(kGroup);
-  if (offered.seed)
-    app_.add_option("--seed", common_.seed, offered.seed)->check(WholeNumber())->group(kGroup);
-  if (offered.strict) app_.add_flag("--strict", common_.strict, offered.strict)->group(kGroup);
+    running.Add("--threads N", common_.threads, "Number of threads (all of the machine)")
+        ->check(CLI::Range(0, 512));
   if (offered.progress)
-    app_.add_option("--progress", common_.progress,
-                    "How progress is shown on stderr: auto (bar on a terminal, else plain), bar, "
-                    "plain (a line now and then), json (one object per line) or none")
-        ->check(CLI::IsMember({"auto", "bar", "plain", "json", "none"}))
-        ->group(kGroup);
-  if (offered.verbose)
-    app_.add_flag("-v,--verbose", verbosity_, "Say more, for debugging")->group(kGroup);
-  if (offered.quiet)
-    app_.add_flag("-q,--quiet", quiet_, "Say only warnings and errors")->group(kGroup);
+    running.AddChoice("--progress", common_.progress, {"auto", "bar", "plain", "json", "none"},
+                      "How stderr shows progress\n"
+                      "auto: a bar on a terminal, otherwise plain\n"
+                      "plain: a line now and then\n"
+                      "json: one object per line");
+  if (offered.verbose) running.AddFlag("-v,--verbose", verbosity_, "Print more, for debugging");
+  if (offered.quiet) running.AddFlag("-q,--quiet", quiet_, "Print only warnings and errors");
 }
-
-void Program::AddJsonOption(const std::string& what) {
-  app_.add_flag("--json", common_.json, what)->group("Common");
-}
-
-namespace {
-
-// CLI11 accepts "nan" as a number, even for options with a range.
-Result<void> CheckNoNan(const CLI::App& app) {
-  for (const CLI::Option* option : app.get_options()) {
-    if (option->get_type_name().find("FLOAT") == std::string::npos) continue;
-    for (const std::string& word : option->results()) {
-      if (std::isnan(std::strtod(word.c_str(), nullptr)))
-        return UsageError(fmt::format("{} {}: expected a number", option->get_name(), word));
-    }
-  }
-  return {};
-}
-
-}  // namespace
 
 int Program::Run(int argc, char** argv, const std::function<Result<void>()>& body) {
 #ifdef __GLIBC__
@@ -125,8 +102,7 @@ int Program::Run(int argc, char** argv, const std::function<Result<void>()>& bod
   }
   SetLogLevel(quiet_ ? LogLevel::kWarning : verbosity_ > 0 ? LogLevel::kDebug : LogLevel::kInfo);
   try {
-    Result<void> result = CheckNoNan(app_);
-    if (result) result = body();
+    const Result<void> result = body();
     if (!result) {
       LogMessage(LogLevel::kError, result.error().message);
       return static_cast<int>(result.error().kind);

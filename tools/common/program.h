@@ -1,9 +1,10 @@
 // Shared by all programs: common options, exit codes for errors, help and version.
 //
 //   int main(int argc, char** argv) {
-//     lf::Program program("lfexample", "Writes a camera path ...", "Examples:\n  lfexample ...");
+//     lf::Program program("lfexample", {.summary = "Writes a camera path ...", ...});
+//     lf::OptionGroup input(program.app(), lf::kInputGroup);
+//     input.Add("LIGHTFIELD", light_field, "Folder or file ...")->required();
 //     program.AddCommonOptions({.threads = true, .verbose = true});
-//     program.app().add_option("LIGHTFIELD", light_field, "...")->required();
 //     return program.Run(argc, argv, [&]() -> lf::Result<void> { ... });
 //   }
 //
@@ -15,6 +16,8 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+
+#include "tools/common/help.h"
 
 #include "lf/core/result.h"
 
@@ -31,10 +34,12 @@ struct CommonOptions {
 };
 
 // The common options that a program offers, because it obeys them. Others are refused as unknown.
+// The texts are those of OptionGroup::Add(), and nullptr for an option that is not offered.
 struct OfferedOptions {
   bool threads = false;
-  const char* seed = nullptr;    // what the seed decides, for --help; nullptr: not offered
-  const char* strict = nullptr;  // what becomes an error; nullptr: not offered
+  const char* seed = nullptr;    // what the seed decides
+  const char* strict = nullptr;  // what becomes an error
+  const char* json = nullptr;    // what is printed
   bool progress = false;
   bool verbose = false;  // the program, or a library that it uses, calls LogDebug()
   bool quiet = false;    // the program calls LogInfo() or shows progress
@@ -42,12 +47,13 @@ struct OfferedOptions {
 
 class Program {
  public:
-  Program(std::string name, std::string description, std::string examples);
+  Program(std::string name, const HelpTexts& texts);
 
   CLI::App& app() { return app_; }
   const CommonOptions& common() const { return common_; }
+  // Adds the offered options. To be called last, because --help shows a program's own options
+  // first.
   void AddCommonOptions(const OfferedOptions& offered);
-  void AddJsonOption(const std::string& what);
 
   // Parses the command line, runs `body` and returns the exit code for main().
   int Run(int argc, char** argv, const std::function<Result<void>()>& body);
