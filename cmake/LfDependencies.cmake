@@ -25,9 +25,11 @@ target_link_libraries(lf_xxhash INTERFACE ${LF_XXHASH_LIBRARY})
 find_path(LF_NANOFLANN_INCLUDE nanoflann.hpp REQUIRED)
 # libjpeg-turbo; another library cannot decode a part of an image, and the compiler will report it.
 find_package(JPEG REQUIRED)
-# libmicrohttpd only has a file for pkg-config.
-find_package(PkgConfig REQUIRED)
-pkg_check_modules(LF_MICROHTTPD REQUIRED IMPORTED_TARGET libmicrohttpd>=0.9.75)
+if(LF_VISUALIZER)
+  # libmicrohttpd only has a file for pkg-config.
+  find_package(PkgConfig REQUIRED)
+  pkg_check_modules(LF_MICROHTTPD REQUIRED IMPORTED_TARGET libmicrohttpd>=0.9.75)
+endif()
 if(LF_TESTS)
   find_package(GTest REQUIRED)
 endif()

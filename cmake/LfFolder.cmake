@@ -93,11 +93,16 @@ function(lf_fuzz target source)
   endif()
 endfunction()
 
-# lf_tool(name [LIBS ...]): the program tools/<name>.cc.
+# The target that builds every program.
+add_custom_target(programs)
+
+# lf_tool(name [LIBS ...]): the program tools/<name>.cc. LIBS names the folders of lf/ that it needs besides those of
+# lf_tool_common, so that a program is built without the folders of the others.
 function(lf_tool name)
   cmake_parse_arguments(T "" "" "LIBS" ${ARGN})
   add_executable(${name} ${name}.cc)
   set_property(GLOBAL APPEND PROPERTY LF_TOOLS ${name})
+  add_dependencies(programs ${name})
   target_link_libraries(${name} PRIVATE lf_tool_common ${T_LIBS})
   lf_precompile(${name})
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)

@@ -4,7 +4,7 @@
 # without their packages. lfvisualizer then reports this; nothing else changes.
 option(LF_WEB "Build the visualiser's page (needs Node.js 18 and npm)" ON)
 set(LF_PAGE "")
-if(LF_WEB)
+if(LF_WEB AND LF_VISUALIZER)
   find_program(LF_NODE NAMES node nodejs)
   find_program(LF_NPM npm)
   set(web ${PROJECT_SOURCE_DIR}/web)

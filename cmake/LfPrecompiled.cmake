@@ -13,7 +13,7 @@ if(LF_PRECOMPILED)
   if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
     target_compile_options(lf_options INTERFACE -fpch-preprocess)  # without it ccache keeps nothing
   endif()
-  file(WRITE ${PROJECT_BINARY_DIR}/precompiled.cc "// The headers are all there is.\n")
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/precompiled.cc CONTENT "// The headers are all there is.\n")
   add_library(lf_precompiled OBJECT EXCLUDE_FROM_ALL ${PROJECT_BINARY_DIR}/precompiled.cc)
   target_link_libraries(lf_precompiled PRIVATE lf_options Eigen3::Eigen fmt::fmt)
   target_precompile_headers(lf_precompiled PRIVATE ${LF_PRECOMPILED_HEADERS})

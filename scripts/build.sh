@@ -1,25 +1,54 @@
 #!/usr/bin/env bash
-# Builds build/release: installs missing packages, configures, builds.
+# Builds in build/release: installs missing packages, configures, builds.
 #
-# usage: scripts/build.sh
+# usage: scripts/build.sh demo                 the programs that ./demo runs
+#        scripts/build.sh programs             every program
+#        scripts/build.sh [tests [TARGET...]]  every program and test, or some targets of CMake
 #
+# Each takes over what another has compiled, because all compile with the same options.
 # With CI=true in the environment, compiler warnings are errors.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/patiently.sh
 
+what=${1:-tests}
+case $what in
+  demo)
+    groups=(render)
+    targets=(lfsynth lfrenderer)
+    options=()
+    # A later call for tests turns these on, and no call turns them off again.
+    [[ -e build/release/CMakeCache.txt ]] || options=(-DLF_TESTS=OFF -DLF_VISUALIZER=OFF)
+    ;;
+  programs)
+    groups=(render visualizer)
+    targets=(programs)
+    options=(-DLF_VISUALIZER=ON)
+    [[ -e build/release/CMakeCache.txt ]] || options+=(-DLF_TESTS=OFF)
+    ;;
+  tests)
+    groups=(render visualizer test)
+    targets=("${@:2}")
+    options=(-DLF_VISUALIZER=ON -DLF_TESTS=ON)
+    ;;
+  *)
+    sed -n '4,6s/^# //p' scripts/build.sh >&2
+    exit 2
+    ;;
+esac
+
 if [[ -e build && ! -w build ]]; then
   echo "error: build/ belongs to $(stat -c %U build); remove it first: sudo rm -rf $PWD/build" >&2
   exit 1
 fi
-scripts/install_packages.sh
+scripts/install_packages.sh "${groups[@]}"
 mkdir -p build
 # Some build machines have no writable home folder.
 [[ -w ${HOME:-/nowhere} ]] || export CCACHE_DIR=$PWD/build/ccache
 
 werror=OFF
 if [[ ${CI:-} == true ]]; then werror=ON; fi
-patiently configuring build/configure.log cmake --preset release -DLF_WERROR="$werror"
+patiently configuring build/configure.log cmake --preset release -DLF_WERROR="$werror" "${options[@]}"
 
 # One compiler per processor, if each has 1.5 GB of memory.
 memory_kb=$(awk '/^MemAvailable:/ { print $2 }' /proc/meminfo)
@@ -27,4 +56,4 @@ jobs=$(nproc)
 by_memory=$((memory_kb / 1500000))
 if ((by_memory < jobs)); then jobs=$((by_memory > 0 ? by_memory : 1)); fi
 echo "Building in build/release ($jobs at a time)"
-cmake --build build/release -j "$jobs"
+cmake --build build/release -j "$jobs" ${targets[@]:+--target "${targets[@]}"}

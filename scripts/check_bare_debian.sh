@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# Proves ./test and ./demo on a bare Debian 12: a fresh system with nothing but git, the last
+# Proves ./demo and ./test on a bare Debian 12: a fresh system with nothing but git, the last
 # commit cloned into it, everything else left to the two commands.
 #
-# usage: scripts/check_bare_debian.sh FOLDER [COMMAND...]     (root; default: ./test, then ./demo)
+# usage: scripts/check_bare_debian.sh FOLDER [COMMAND...]     (root; default: ./demo, then ./test)
 #
 # FOLDER takes the base system (kept: the next run starts from it), the system of this run and the
 # log of every step. Mirror and proxy are those of this machine's apt, certificates its Node.js's. Commands run as root, then
 # once more as an ordinary user, who must need no rights any more; before the first one, an
-# ordinary user must be told what to install.
+# ordinary user must be told what to install. No command may compile again what an earlier one has compiled.
 set -euo pipefail
 
 if ((EUID != 0)) || ! command -v debootstrap >/dev/null || (($# == 0)); then
@@ -29,7 +29,7 @@ if ! flock --nonblock 9; then
   exit 1
 fi
 commands=("$@")
-if ((${#commands[@]} == 0)); then commands=(./test ./demo); fi
+if ((${#commands[@]} == 0)); then commands=(./demo ./test); fi
 base=$folder/base
 root=$folder/root
 checkout=/home/user/lfrendertools
@@ -87,7 +87,12 @@ step() {
   return "$code"
 }
 
-if step unprivileged user scripts/install_packages.sh; then
+# objects: the compiled sources of the programs, each with its time.
+objects() {
+  find "$root$checkout/build/release" -path '*/lf_precompiled*' -prune -o -name '*.o' -printf '%P %T@\n' | sort
+}
+
+if step unprivileged user scripts/install_packages.sh render; then
   echo "error: an ordinary user without packages must be told what to install" >&2
   exit 1
 fi
@@ -95,7 +100,14 @@ grep -q 'sudo apt-get install' "$folder/unprivileged.log"
 
 for command in "${commands[@]}"; do
   name=$(basename "$command")
+  mkdir -p "$root$checkout/build/release"
+  objects >"$folder/objects"
   step "$name-root" root $command
+  recompiled=$(objects | comm -13 - "$folder/objects" | wc -l)
+  if ((recompiled > 0)); then
+    echo "error: $command compiled $recompiled sources again" >&2
+    exit 1
+  fi
   chroot "$root" chown -R user:user "$checkout"
   step "$name-user" user $command
 done

@@ -5,7 +5,7 @@
 #        scripts/hunt.sh --list                    prints the steps
 #
 # Needs what ./test has built in build/release. Installs missing Debian packages first (root or sudo;
-# scripts/hunt_packages.txt). What a step printed is in build/hunt/STEP.log, its outcome in build/hunt/STEP.result.
+# scripts/packages/hunt.txt). What a step printed is in build/hunt/STEP.log, its outcome in build/hunt/STEP.result.
 #   --resume  leaves out the steps that passed with the same sources
 #   LF_FUZZ_MINUTES  time for fuzzing, default 60
 # The exit code is 1 if a step failed.
@@ -96,7 +96,7 @@ for step in "${steps[@]}"; do
   fi
 done
 [[ -x $bin/lfrenderer ]] || { echo "error: $bin/lfrenderer is missing; run ./test first" >&2; exit 3; }
-scripts/install_packages.sh scripts/hunt_packages.txt
+scripts/install_packages.sh hunt
 mkdir -p build/hunt
 
 sources=$(git describe --always --dirty --abbrev=12 --exclude='*')

@@ -1,17 +1,21 @@
 #!/usr/bin/env bash
-# Installs the packages of a list that are missing, and prints their names.
+# Installs the packages of some groups that are missing, and prints their names.
 #
-# usage: scripts/install_packages.sh [LIST]      default: scripts/packages.txt
+# usage: scripts/install_packages.sh GROUP...      the groups are the files scripts/packages/GROUP.txt
 #
-# A line of LIST is PACKAGE WHY. If nothing is missing, prints nothing and needs no rights. Otherwise runs apt-get, as
-# root or through a sudo without a password; a user who has neither is told the exact command to run (exit 1). On
+# A line of a group is PACKAGE WHY. If nothing is missing, prints nothing and needs no rights. Otherwise runs apt-get,
+# as root or through a sudo without a password; a user who has neither is told the exact command to run (exit 1). On
 # systems without dpkg it lists what is needed and leaves the rest to CMake's own messages.
 set -euo pipefail
-list=$(realpath "${1:-$(dirname "$0")/packages.txt}")
 cd "$(dirname "$0")/.."
 source scripts/patiently.sh
 
-mapfile -t wanted < <(awk '!/^#/ && NF { print $1 }' "$list")
+if (($# == 0)); then
+  sed -n '4s/^# //p' scripts/install_packages.sh >&2
+  exit 2
+fi
+lists=("${@/#/scripts/packages/}")
+mapfile -t wanted < <(awk '!/^#/ && NF && !seen[$1]++ { print $1 }' "${lists[@]/%/.txt}")
 
 if ! command -v dpkg-query >/dev/null; then
   echo "This is no Debian: $(basename "$0") installs nothing. Under Debian's names it takes:"
