@@ -124,7 +124,7 @@ def named_tests(root, files) -> set:
             cases = re.findall(r"\bTEST(?:_[FP])?\(\s*(\w+),\s*(\w+)\)", text)
             found.update(f"{path.parent.name}.{suite}.{test}" for suite, test in cases)
         elif path.name == "CMakeLists.txt":
-            found.update(re.findall(r"add_test\(NAME ([\w.]+)", text))
+            found.update(re.findall(r"\blf_(?:\w+_)?test\(([a-z]+\.\w+)", text))
     return found
 
 

@@ -65,7 +65,7 @@ class PlantedFaults(unittest.TestCase):
                                 "[c](doc/gone.md)\n[d](doc/there.md#nowhere)\n[e](../outside.md)\n"
                                 "`lf/core/gone.h`\n`core.Suite.Gone`\n`core.Suite.There` `tests.there`\n"
                                 "`tests.gone`\n")
-        self.plant("tests/CMakeLists.txt", "add_test(NAME tests.there COMMAND x)\n")
+        self.plant("tests/CMakeLists.txt", "lf_program_test(tests.there lfrenderer)\n")
         self.plant("lf/core/x_test.cc", "TEST(Suite, There) {}\n")
         self.expect("check_house.py", "links",
                     faults=[f"README.md:{line}" for line in (2, 3, 4, 5, 6, 8)])

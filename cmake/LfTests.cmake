@@ -1,0 +1,111 @@
+# Defines how tests are told to ctest. Each test has a time limit, and labels to choose it by (ctest -L):
+#   unit      the C++ tests of one folder, and fuzz targets that replay their corpus
+#   program   whole programs
+#   page      lfvisualizer and its page
+#   cluster   a Slurm on this machine
+#   slow      takes more than a minute on two cores
+#   house     rules about the files themselves; nothing is built for them
+#
+# All tests may run at the same time: each has a folder of its own, and ports are chosen by the system.
+include(GoogleTest)
+
+# A time limit is several times what the test takes on two busy cores, in a release build.
+set(LF_TIMEOUT_FACTOR "" CACHE STRING "Multiplies the time limits of tests; default: by the kind of build")
+set(LF_TEST_PATIENCE 1)
+if(LF_TIMEOUT_FACTOR)
+  set(LF_TEST_PATIENCE ${LF_TIMEOUT_FACTOR})
+elseif(LF_SANITIZE)
+  set(LF_TEST_PATIENCE 10)
+elseif(NOT CMAKE_BUILD_TYPE STREQUAL Release)
+  set(LF_TEST_PATIENCE 4)
+endif()
+math(EXPR LF_UNIT_TIMEOUT "120 * ${LF_TEST_PATIENCE}")
+
+# lf_needed_by(name target...): the target needed_by_<name> builds what the tests run whose names begin with <name> and
+# a dot, or the one test of that name (./test --only).
+function(lf_needed_by name)
+  if(NOT TARGET needed_by_${name})
+    add_custom_target(needed_by_${name})
+  endif()
+  if(ARGN)
+    add_dependencies(needed_by_${name} ${ARGN})
+  endif()
+endfunction()
+
+# lf_unit_tests(target folder): the program's tests are known to ctest as folder.Suite.Test.
+function(lf_unit_tests target folder)
+  gtest_discover_tests(${target} TEST_PREFIX ${folder}. DISCOVERY_TIMEOUT 60
+                       PROPERTIES LABELS unit TIMEOUT ${LF_UNIT_TIMEOUT})
+  lf_needed_by(${folder} ${target})
+endfunction()
+
+# lf_test(group.name COMMAND word... LABELS label... [TIMEOUT seconds] [NEEDS target...])
+#
+# A test that is one command. Exit code 77 says that it was skipped. The default time limit is 120 s.
+function(lf_test name)
+  cmake_parse_arguments(T "" "TIMEOUT" "COMMAND;LABELS;NEEDS" ${ARGN})
+  if(T_UNPARSED_ARGUMENTS OR NOT T_LABELS)
+    message(FATAL_ERROR "lf_test(${name}): unknown words or no LABELS: ${T_UNPARSED_ARGUMENTS}")
+  endif()
+  if(NOT T_TIMEOUT)
+    set(T_TIMEOUT 120)
+  endif()
+  math(EXPR timeout "${T_TIMEOUT} * ${LF_TEST_PATIENCE}")
+  add_test(NAME ${name} COMMAND ${T_COMMAND})
+  set_tests_properties(${name} PROPERTIES LABELS "${T_LABELS}" TIMEOUT ${timeout} SKIP_RETURN_CODE 77)
+  string(REGEX REPLACE "\\..*" "" group ${name})
+  lf_needed_by(${group} ${T_NEEDS})
+  lf_needed_by(${name} ${T_NEEDS})
+endfunction()
+
+# lf_program_test(tests.name word... [SCRIPT file] [TIMEOUT seconds] [LABELS label...])
+#
+# A test of whole programs: the Python script <name>_test.py of this folder. A word that names a target is replaced by
+# the path of its file; PROGRAMS, by the folder of all programs. The default time limit is 300 s. LABELS are those
+# besides program.
+function(lf_program_test name)
+  cmake_parse_arguments(P "" "SCRIPT;TIMEOUT" "LABELS" ${ARGN})
+  set(words "")
+  set(needs "")
+  foreach(word ${P_UNPARSED_ARGUMENTS})
+    if(word STREQUAL PROGRAMS)
+      list(APPEND words ${PROJECT_BINARY_DIR}/bin)
+      list(APPEND needs programs)
+    elseif(TARGET ${word})
+      list(APPEND words $<TARGET_FILE:${word}>)
+      list(APPEND needs ${word})
+    else()
+      list(APPEND words ${word})
+    endif()
+  endforeach()
+  if(NOT P_SCRIPT)
+    string(REGEX REPLACE "^tests\\.(.*)" "\\1_test.py" P_SCRIPT ${name})
+  endif()
+  if(NOT P_TIMEOUT)
+    set(P_TIMEOUT 300)
+  endif()
+  cmake_path(ABSOLUTE_PATH P_SCRIPT BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} NORMALIZE)
+  lf_test(${name} COMMAND ${Python3_EXECUTABLE} ${P_SCRIPT} ${words} LABELS program ${P_LABELS}
+          TIMEOUT ${P_TIMEOUT} NEEDS ${needs})
+endfunction()
+
+# lf_house_test(house.name script [argument...]): a script in scripts/ or tests/ that looks at files.
+function(lf_house_test name script)
+  set(interpreter "")
+  if(script MATCHES "\\.py$")
+    set(interpreter ${Python3_EXECUTABLE})
+  endif()
+  lf_test(${name} COMMAND ${interpreter} ${PROJECT_SOURCE_DIR}/${script} ${ARGN} LABELS house)
+endfunction()
+
+# lf_all_tests_have_limits(): an error for a test of this folder that add_test made without a limit.
+function(lf_all_tests_have_limits)
+  get_property(names DIRECTORY PROPERTY TESTS)
+  foreach(name ${names})
+    get_property(is_limited TEST ${name} PROPERTY TIMEOUT SET)
+    if(NOT is_limited)
+      message(SEND_ERROR "The test ${name} has no time limit and no label: define it by a function of "
+                         "cmake/LfTests.cmake")
+    endif()
+  endforeach()
+endfunction()
