@@ -3,7 +3,7 @@
 
 import { fNumber } from "./data/frame_camera";
 import { byId, cssColour, element, fitCanvas } from "./element";
-import type { Quantity } from "./path/path_document";
+import type { Quantity } from "./path/path_facts";
 import type { State } from "./state";
 import { millimetres, precise, seconds, shortNumber } from "./words";
 

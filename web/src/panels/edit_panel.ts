@@ -3,7 +3,7 @@
 import { add } from "../data/frame_camera";
 import { element } from "../element";
 import { dolly, focusPull, orbit } from "../path/generators";
-import type { Quantity } from "../path/path_document";
+import type { Quantity } from "../path/path_facts";
 import type { PathValue } from "../path/path_quantities";
 import type { State } from "../state";
 import { precise, seconds, vector } from "../words";

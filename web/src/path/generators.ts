@@ -1,6 +1,7 @@
 // Writes whole movements into a path. They replace the former motion of a quantity and make the
 // film long enough. Each function returns the name of the edit.
-import type { Keyframe, PathDocument } from "./path_document";
+import type { PathDocument } from "./path_document";
+import type { Keyframe } from "./path_facts";
 
 type Vector = readonly [number, number, number] | readonly number[];
 

@@ -1,63 +1,14 @@
 // Tests the page in a browser: what a person sees and does, and what the programs then read.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
-import { existsSync } from "node:fs";
 import { readFile, writeFile } from "node:fs/promises";
 import { request } from "node:http";
 import { join } from "node:path";
-import { after, before, test } from "node:test";
+import { test } from "node:test";
 
+import { browser, chart, SHOP, temporary, withChart, withPage, withShop, writePath } from "./page_case.mjs";
 import { CHART_PATH, SHOP_PATH } from "./paths.mjs";
-import {
-  DATA, findBrowser, openBrowser, openPage, program, run, serve, serveFiles, temporaryFolder, until,
-} from "./visualizer.mjs";
-
-if (!findBrowser()) {
-  console.log("Chromium is missing: nothing is tested");
-  process.exit(77);
-}
-
-const SHOP = join(DATA, "data/blender-shop/images");
-const withShop = { skip: DATA && existsSync(SHOP) ? false : "blender-shop is not there" };
-
-let browser, temporary, chart, pathCount = 0;
-
-before(async () => {
-  browser = await openBrowser();
-  temporary = await temporaryFolder();
-  chart = join(temporary.folder, "chart");
-  await run("lfsynth", ["chart", "-o", chart, "--count", "81", "--size", "120x80", "-q"]);
-});
-
-after(async () => {
-  await browser?.close();
-  await temporary?.remove();
-});
-
-async function writePath(text) {
-  const path = join(temporary.folder, `path-${++pathCount}.yaml`);
-  await writeFile(path, text);
-  return path;
-}
-
-// Serves and opens a page. At the end, checks that there were no error messages and that Ctrl-C
-// ends the server.
-async function withPage(words, body, options) {
-  const server = await serve(words);
-  try {
-    const { page, faults, close } = await openPage(browser, server.address, options);
-    await body(page, server.address);
-    assert.deepEqual(faults, []);
-    await close();
-  } finally {
-    assert.equal(await server.stop(), 0);
-  }
-}
-
-async function withChart(body, text = CHART_PATH, words = []) {
-  const path = await writePath(text);
-  await withPage([chart, path, ...words], (page, address) => body(page, path, address));
-}
+import { openPage, program, run, serveFiles, until } from "./visualizer.mjs";
 
 // Sends a request exactly as written, which browsers and fetch() would normalise.
 function rawStatus(address, path, headers = {}) {

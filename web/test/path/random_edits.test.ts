@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { PathDocument } from "../../src/path/path_document";
-import type { Interpolation } from "../../src/path/path_document";
+import type { Interpolation } from "../../src/path/path_facts";
 import { quantitySpec } from "../../src/path/path_quantities";
 import type { PathValue } from "../../src/path/path_quantities";
 import { example, kExamples, kSmall, refusalByPrograms } from "./real_parser";
