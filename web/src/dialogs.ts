@@ -28,6 +28,16 @@ function lightFieldOptions(words: string[]): Record<string, string | number> {
   return options;
 }
 
+// Copies the text and says on the button if it was copied: a browser may refuse.
+async function copyText(text: string, button: HTMLElement): Promise<void> {
+  try {
+    await navigator.clipboard.writeText(text);
+    button.textContent = "Copied";
+  } catch {
+    button.textContent = "The browser refuses: select the text";
+  }
+}
+
 export function showCommands(state: State): void {
   const { scene } = state;
   const options = {
@@ -55,10 +65,7 @@ export function showCommands(state: State): void {
       : "",
     ...blocks.flatMap(([label, text]) => {
       const copy = element("button", {}, "Copy");
-      copy.addEventListener("click", async () => {
-        await navigator.clipboard.writeText(text);
-        copy.textContent = "Copied";
-      });
+      copy.addEventListener("click", () => void copyText(text, copy));
       return [element("div", { class: "row", style: "justify-content:space-between" }, label, copy),
               element("pre", {}, text)];
     }),

@@ -195,7 +195,8 @@ function wireKeys(
       if (!state.scene.server || byId<HTMLDialogElement>("dialog").open) return;
       const isText = event.target instanceof HTMLTextAreaElement;
       if (key === "s") void save(state);
-      else if (key === "z" && !isText) event.shiftKey ? state.redo() : state.undo();
+      else if (key === "z" && event.shiftKey && !isText) state.redo();
+      else if (key === "z" && !isText) state.undo();
       else if (key === "y" && !isText) state.redo();
       else return;
       event.preventDefault();

@@ -14,7 +14,7 @@ export class SourceError extends Error {
 async function refusal(response: Response): Promise<SourceError> {
   const text = await response.text();
   try {
-    const json = JSON.parse(text);
+    const json = JSON.parse(text) as { error?: unknown };
     if (typeof json.error === "string")
       return new SourceError(json.error, response.status);
   } catch {
@@ -35,7 +35,7 @@ async function ask(name: string, options?: RequestInit): Promise<Response> {
 }
 
 export async function getJson<T>(name: string): Promise<T> {
-  return (await ask(name)).json();
+  return (await (await ask(name)).json()) as T;
 }
 
 export async function getText(name: string): Promise<string> {
@@ -62,7 +62,7 @@ export async function post<T>(name: string, body: object): Promise<T> {
     headers: { "Content-Type": "application/json" },
     body: JSON.stringify(body),
   });
-  const json = await response.json();
+  const json = (await response.json()) as T & { error?: unknown; conflict?: unknown };
   if (typeof json.error === "string")
     throw new SourceError(json.error, response.status, json.conflict === true);
   return json;

@@ -293,7 +293,9 @@ export class PathDocument {
   private items(path: string[]): Record<string, unknown>[] {
     const list = this.yaml.value(path) ?? [];
     if (!Array.isArray(list)) throw new Error(`${path.join(".")}: expected a list`);
-    return list.map((item) => (typeof item === "object" && item !== null ? item : {}));
+    return list.map((item: unknown) =>
+      typeof item === "object" && item !== null ? (item as Record<string, unknown>) : {},
+    );
   }
 
   private keyframeAt(quantity: Quantity, index: number): Keyframe {

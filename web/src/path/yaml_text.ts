@@ -165,7 +165,7 @@ export class YamlText {
 
   // Returns the node as written, which may be an alias; null for a key without a value.
   private find(path: YamlPath): Node | null | undefined {
-    let node: Node | null | undefined = this.document.contents as Node;
+    let node: Node | null | undefined = this.document.contents;
     for (const step of path) {
       const parent = this.resolved(node);
       if (isMap(parent) && typeof step === "string") {
@@ -181,7 +181,7 @@ export class YamlText {
   }
 
   private resolved(node: Node | null | undefined): Node | null | undefined {
-    return isAlias(node) ? (node.resolve(this.document) as Node | undefined) : node;
+    return isAlias(node) ? node.resolve(this.document) : node;
   }
 
   private pair(path: YamlPath): Pair<Node, Node | null> {
