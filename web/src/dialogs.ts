@@ -60,14 +60,14 @@ export function showCommands(state: State): void {
   ];
   open(
     element("h2", {}, "Commands that make this film"),
-    state.isChanged
-      ? element("p", { class: "bad" }, "The path has changes that are not saved: save it first.")
-      : "",
+    state.isChanged ? element("p", { class: "bad" }, "The path has changes that are not saved: save it first.") : "",
     ...blocks.flatMap(([label, text]) => {
       const copy = element("button", {}, "Copy");
       copy.addEventListener("click", () => void copyText(text, copy));
-      return [element("div", { class: "row", style: "justify-content:space-between" }, label, copy),
-              element("pre", {}, text)];
+      return [
+        element("div", { class: "row", style: "justify-content:space-between" }, label, copy),
+        element("pre", {}, text),
+      ];
     }),
     closeButton(),
   );

@@ -27,14 +27,7 @@ export class Legend {
       });
       this.dots[kind] = element("i");
       this.counts[kind] = element("b", {}, "0");
-      this.rows[kind] = element(
-        "label",
-        { title: style.help },
-        box,
-        this.dots[kind],
-        style.label,
-        this.counts[kind],
-      );
+      this.rows[kind] = element("label", { title: style.help }, box, this.dots[kind], style.label, this.counts[kind]);
       root.append(this.rows[kind]);
     }
     state.on(["use", "film"], () => this.update());

@@ -34,15 +34,10 @@ async function start(): Promise<void> {
   byId("what").textContent =
     `${scene.light_field.name} · ${plural(scene.light_field.images, "LF image")} · ${scene.path_file}`;
 
-  const view = new SpaceView(
-    byId<HTMLCanvasElement>("scene"),
-    positions,
-    scene.light_field.origin,
-    (id) => {
-      void state.select(id);
-      if (id !== null) show("image");
-    },
-  );
+  const view = new SpaceView(byId<HTMLCanvasElement>("scene"), positions, scene.light_field.origin, (id) => {
+    void state.select(id);
+    if (id !== null) show("image");
+  });
   new Legend(byId("legend"), state, view);
   const timeline = new Timeline(state);
   const { show, panels } = makeTabs(state);
@@ -84,11 +79,7 @@ function makeTabs(state: State): {
     }
   };
   for (const [name, [label]] of Object.entries(panels)) {
-    const button = element(
-      "button",
-      { role: "tab", "data-tab": name, click: () => show(name) },
-      label,
-    );
+    const button = element("button", { role: "tab", "data-tab": name, click: () => show(name) }, label);
     buttons.set(name, button);
     byId("tabs").append(button);
   }
@@ -98,9 +89,7 @@ function makeTabs(state: State): {
 
 function wireView(state: State, view: SpaceView): void {
   for (const [preset, label] of PRESETS)
-    byId("views").append(
-      element("button", { "data-view": preset, click: () => view.look(preset) }, label),
-    );
+    byId("views").append(element("button", { "data-view": preset, click: () => view.look(preset) }, label));
   const keyPlaces = () => {
     const places: Vec3[] = [];
     try {
@@ -136,8 +125,7 @@ async function save(state: State): Promise<void> {
   state.emit("saving");
   if ((await state.save()) !== "changed") return;
   const isSure = await ask(
-    `${state.scene.path_file} has been changed by another program since it was opened here. ` +
-      "Write over it?",
+    `${state.scene.path_file} has been changed by another program since it was opened here. ` + "Write over it?",
     "Write over it",
   );
   if (isSure) await state.save(true);

@@ -69,7 +69,7 @@ export class State {
   private isSaving = false;
   private broken: string | null = null; // why the typed text is no YAML
   private news: PathNews | null = null; // a new version of the file, held back because of unsaved
-                                        // edits
+  // edits
   private fileHasFault = false;
   private bytesThatSavingLoses = false;
   private selectedId: number | null = null; // its facts may still be on the way
@@ -82,8 +82,7 @@ export class State {
   ) {}
 
   on(changes: Change[], listener: () => void): void {
-    for (const change of changes)
-      this.listeners.set(change, [...(this.listeners.get(change) ?? []), listener]);
+    for (const change of changes) this.listeners.set(change, [...(this.listeners.get(change) ?? []), listener]);
   }
 
   emit(change: Change): void {
@@ -204,8 +203,11 @@ export class State {
       return "failed";
     }
     if (this.bytesThatSavingLoses) {
-      this.say(`Not saved: ${this.scene.path_file} has bytes that are no UTF-8, which would be ` +
-        "lost. Convert it first, such as by iconv, and load this page again.", true);
+      this.say(
+        `Not saved: ${this.scene.path_file} has bytes that are no UTF-8, which would be ` +
+          "lost. Convert it first, such as by iconv, and load this page again.",
+        true,
+      );
       return "failed";
     }
     const text = this.document.text();

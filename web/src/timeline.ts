@@ -30,7 +30,7 @@ interface Key {
 export class Timeline {
   private readonly canvas = byId<HTMLCanvasElement>("curves");
   private readonly still = document.createElement("canvas"); // everything except the mark of the
-                                                             // frame
+  // frame
   private readonly play = byId<HTMLButtonElement>("play");
   private readonly range = byId<HTMLInputElement>("scrub");
   private readonly clock = byId("clock");
@@ -240,12 +240,7 @@ export class Timeline {
     this.drawMark();
   }
 
-  private drawRow(
-    context: CanvasRenderingContext2D,
-    row: Row,
-    top: number,
-    height: number,
-  ): void {
+  private drawRow(context: CanvasRenderingContext2D, row: Row, top: number, height: number): void {
     context.fillStyle = cssColour("--line");
     context.fillRect(LABELS, top + height - 1, this.width(), 1);
     context.fillStyle = cssColour("--muted");
@@ -257,8 +252,7 @@ export class Timeline {
     const least = known.reduce((a, b) => Math.min(a, b), Infinity);
     const isLevel = most - least < 1e-9 * Math.abs(most);
     const base = row.fromZero || isLevel ? 0 : least - 0.15 * (most - least);
-    const yOf = (value: number) =>
-      top + height - 4 - ((value - base) / (most - base || 1)) * (height - 10);
+    const yOf = (value: number) => top + height - 4 - ((value - base) / (most - base || 1)) * (height - 10);
     context.strokeStyle = cssColour(row.colour);
     context.lineWidth = 1.5;
     context.beginPath();
@@ -278,8 +272,7 @@ export class Timeline {
     }
     context.stroke();
     for (const key of this.keys)
-      if (key.y > top && key.y < top + height)
-        drawDiamond(context, key.x, key.y, cssColour(row.colour));
+      if (key.y > top && key.y < top + height) drawDiamond(context, key.x, key.y, cssColour(row.colour));
   }
 
   private drawMark(): void {
@@ -297,11 +290,8 @@ export class Timeline {
     context.font = "12px system-ui, sans-serif";
     const height = this.rowHeight();
     context.fillStyle = cssColour("--text");
-    this.rows.forEach((row, i) =>
-      context.fillText(row.text(state.frame - 1), 8, i * height + height / 2 + 12),
-    );
-    if (this.dragged)
-      drawDiamond(context, this.xOf(this.dragged.time), this.dragged.key.y, cssColour("--text"));
+    this.rows.forEach((row, i) => context.fillText(row.text(state.frame - 1), 8, i * height + height / 2 + 12));
+    if (this.dragged) drawDiamond(context, this.xOf(this.dragged.time), this.dragged.key.y, cssColour("--text"));
     this.range.value = String(state.frame);
     this.range.setAttribute("aria-valuetext", `frame ${state.frame} of ${state.path.frames}`);
     this.clock.replaceChildren(
@@ -316,12 +306,7 @@ function round(time: number): number {
   return Math.round(time * 1e6) / 1e6;
 }
 
-function drawDiamond(
-  context: CanvasRenderingContext2D,
-  x: number,
-  y: number,
-  colour: string,
-): void {
+function drawDiamond(context: CanvasRenderingContext2D, x: number, y: number, colour: string): void {
   context.fillStyle = colour;
   context.beginPath();
   context.moveTo(x, y - 5);

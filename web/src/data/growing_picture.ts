@@ -27,17 +27,13 @@ export function fromHalf(half: number): number {
   const exponent = (half >> 10) & 31;
   const fraction = half & 1023;
   if (exponent === 31) return fraction ? NaN : sign * Infinity;
-  return exponent === 0
-    ? sign * fraction * 2 ** -24
-    : sign * (1 + fraction / 1024) * 2 ** (exponent - 15);
+  return exponent === 0 ? sign * fraction * 2 ** -24 : sign * (1 + fraction / 1024) * 2 ** (exponent - 15);
 }
 
 function displayValue(linear: number): number {
   if (!(linear > 0)) return 0;
   if (linear >= 1) return 255;
-  return Math.round(
-    255 * (linear <= 0.0031308 ? 12.92 * linear : 1.055 * linear ** (1 / 2.4) - 0.055),
-  );
+  return Math.round(255 * (linear <= 0.0031308 ? 12.92 * linear : 1.055 * linear ** (1 / 2.4) - 0.055));
 }
 
 // Returns the display value of every half float: a picture of a megapixel is then developed in some
@@ -83,11 +79,7 @@ export function heatColour(share: number): [number, number, number] {
   const place = Math.min(1, Math.max(0, share)) * (HEAT.length - 1);
   const i = Math.min(HEAT.length - 2, Math.floor(place));
   const t = place - i;
-  return [0, 1, 2].map((c) => Math.round(HEAT[i][c] * (1 - t) + HEAT[i + 1][c] * t)) as [
-    number,
-    number,
-    number,
-  ];
+  return [0, 1, 2].map((c) => Math.round(HEAT[i][c] * (1 - t) + HEAT[i + 1][c] * t)) as [number, number, number];
 }
 
 export interface RayRange {

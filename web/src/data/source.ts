@@ -15,8 +15,7 @@ async function refusal(response: Response): Promise<SourceError> {
   const text = await response.text();
   try {
     const json = JSON.parse(text) as { error?: unknown };
-    if (typeof json.error === "string")
-      return new SourceError(json.error, response.status);
+    if (typeof json.error === "string") return new SourceError(json.error, response.status);
   } catch {
     // The answer is not from our server; the error below says so.
   }
@@ -63,8 +62,7 @@ export async function post<T>(name: string, body: object): Promise<T> {
     body: JSON.stringify(body),
   });
   const json = (await response.json()) as T & { error?: unknown; conflict?: unknown };
-  if (typeof json.error === "string")
-    throw new SourceError(json.error, response.status, json.conflict === true);
+  if (typeof json.error === "string") throw new SourceError(json.error, response.status, json.conflict === true);
   return json;
 }
 

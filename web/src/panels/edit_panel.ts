@@ -23,25 +23,21 @@ const FIELDS: Field[] = [
     label: "Looks at",
     names: ["look_at", "orientation", "quaternion"],
     parts: ["x", "y", "z"],
-    now: (s, name) =>
-      name === "look_at" ? add(s.camera.centre, s.camera.forward, s.camera.focusDistance) : null,
+    now: (s, name) => (name === "look_at" ? add(s.camera.centre, s.camera.forward, s.camera.focusDistance) : null),
   },
   { label: "Roll", names: ["roll"], parts: ["degrees"] },
   {
     label: "Aperture",
     names: ["aperture_diameter", "f_number"],
     parts: ["diameter"],
-    now: ({ camera }, name) =>
-      name === "f_number" ? camera.focalLength / (2 * camera.radius) : 2 * camera.radius,
+    now: ({ camera }, name) => (name === "f_number" ? camera.focalLength / (2 * camera.radius) : 2 * camera.radius),
   },
   {
     label: "Focus distance",
     names: ["focus_distance", "focus_point"],
     parts: ["distance"],
     now: ({ camera }, name) =>
-      name === "focus_point"
-        ? add(camera.centre, camera.forward, camera.focusDistance)
-        : camera.focusDistance,
+      name === "focus_point" ? add(camera.centre, camera.forward, camera.focusDistance) : camera.focusDistance,
   },
   {
     label: "Focus tilt",
@@ -56,8 +52,7 @@ const FIELDS: Field[] = [
     label: "Focal length",
     names: ["focal_length", "field_of_view"],
     parts: ["length"],
-    now: ({ camera }, name) =>
-      name === "field_of_view" ? null : camera.focalLength,
+    now: ({ camera }, name) => (name === "field_of_view" ? null : camera.focalLength),
   },
   { label: "Blade rotation", names: ["blade_rotation"], parts: ["degrees"] },
 ];
@@ -111,8 +106,7 @@ export class EditPanel {
         element(
           "p",
           { class: "muted" },
-          "These are exported files: the path can be looked at here, and edited where " +
-            "lfvisualizer runs.",
+          "These are exported files: the path can be looked at here, and edited where " + "lfvisualizer runs.",
         ),
       );
       return;
@@ -142,8 +136,7 @@ export class EditPanel {
     this.typing = 0;
     const { state } = this;
     const lineEnd = state.document.text().includes("\r\n") ? "\r\n" : "\n";
-    if (state.setText(this.text.value.replaceAll("\n", lineEnd)))
-      this.filledWith = state.document.text();
+    if (state.setText(this.text.value.replaceAll("\n", lineEnd))) this.filledWith = state.document.text();
   }
 
   private draw(): void {
@@ -208,8 +201,7 @@ export class EditPanel {
     const { time } = this.state;
     const last = keyframes.at(-1);
     if (last && time >= last.time) return last.value;
-    if (keyframes.length > 0 && !quantity.baseIsKey && time <= keyframes[0].time)
-      return keyframes[0].value;
+    if (keyframes.length > 0 && !quantity.baseIsKey && time <= keyframes[0].time) return keyframes[0].value;
     return keyframes.length === 0 ? (field.parts.length === 1 ? 0 : field.parts.map(() => 0)) : null;
   }
 
@@ -222,8 +214,7 @@ export class EditPanel {
     const key = this.keyNow(quantity);
     // The edit applies to this frame, or to the key nearest to it, even if the timeline has moved
     // on when the value is complete.
-    const time =
-      key === null ? state.time : key < 0 ? 0 : quantity.keyframes[key].time;
+    const time = key === null ? state.time : key < 0 ? 0 : quantity.keyframes[key].time;
     const isMoving = quantity.hasAccelerations || known === null;
     const inputs = partsOf(value).map(([name, x], i) => {
       const label = PART_LABELS[field.parts[i]] ?? name;
@@ -247,8 +238,7 @@ export class EditPanel {
           this.redrawFields();
         });
         state.edit(`change ${field.label.toLowerCase()}`, (path) => {
-          if (quantity.keyframes.length > 0 || quantity.baseIsKey)
-            path.setKeyframe(quantity.name, time, changed);
+          if (quantity.keyframes.length > 0 || quantity.baseIsKey) path.setKeyframe(quantity.name, time, changed);
           else path.setBase(quantity.name, changed);
         });
       });
@@ -283,11 +273,7 @@ export class EditPanel {
       { open: this.opened.has(field.label) },
       summary,
       element("div", { class: "row" }, ...inputs, addKey),
-      element(
-        "p",
-        { class: "muted" },
-        `${quantity.name.replaceAll("_", " ")}${unit ? `, ${unit}` : ""}`,
-      ),
+      element("p", { class: "muted" }, `${quantity.name.replaceAll("_", " ")}${unit ? `, ${unit}` : ""}`),
       quantity.hasAccelerations ? this.movesOtherwise(quantity) : this.keyList(quantity),
     );
     details.addEventListener("toggle", () => {
@@ -305,8 +291,7 @@ export class EditPanel {
       element(
         "button",
         {
-          click: () =>
-            this.state.edit(`stop ${quantity.name}`, (path) => path.removeMotion(quantity.name)),
+          click: () => this.state.edit(`stop ${quantity.name}`, (path) => path.removeMotion(quantity.name)),
         },
         "Use keys instead",
       ),
@@ -316,8 +301,7 @@ export class EditPanel {
   private keyList(quantity: Quantity): HTMLElement {
     const { state } = this;
     const keys = quantity.keyframes.map((key, index) => ({ ...key, index }));
-    if (quantity.baseIsKey)
-      keys.unshift({ time: 0, value: quantity.base!, interpolation: "smooth", index: -1 });
+    if (quantity.baseIsKey) keys.unshift({ time: 0, value: quantity.base!, interpolation: "smooth", index: -1 });
     const now = this.keyNow(quantity);
     return element(
       "ul",
@@ -330,12 +314,7 @@ export class EditPanel {
             disabled: key.index < 0,
             change: () =>
               state.edit("change an interpolation", (path) =>
-                path.setKeyframe(
-                  quantity.name,
-                  key.time,
-                  key.value,
-                  kind.value as typeof key.interpolation,
-                ),
+                path.setKeyframe(quantity.name, key.time, key.value, kind.value as typeof key.interpolation),
               ),
           },
           ...["smooth", "linear", "step"].map((name) =>
@@ -357,9 +336,7 @@ export class EditPanel {
             {
               "aria-label": `Delete the key at ${seconds(key.time)}`,
               click: () =>
-                state.edit(`delete a key of ${quantity.name}`, (path) =>
-                  path.deleteKeyframe(quantity.name, key.index),
-                ),
+                state.edit(`delete a key of ${quantity.name}`, (path) => path.deleteKeyframe(quantity.name, key.index)),
             },
             "✕",
           ),
@@ -375,9 +352,7 @@ export class EditPanel {
       const fill = () => (input.value = String(now()));
       input.addEventListener("change", () => {
         const wanted = input.valueAsNumber;
-        if (!Number.isFinite(wanted) ||
-            !state.edit(`change ${name}`, (path) => path.setConstant(name, wanted)))
-          fill();
+        if (!Number.isFinite(wanted) || !state.edit(`change ${name}`, (path) => path.setConstant(name, wanted))) fill();
       });
       state.on(["path"], fill);
       return [element("label", {}, label), input];
@@ -385,12 +360,7 @@ export class EditPanel {
     return element(
       "div",
       {},
-      element(
-        "div",
-        { class: "row" },
-        ...constant("Blades", "blades", () => state.camera.blades),
-        "0: a disk",
-      ),
+      element("div", { class: "row" }, ...constant("Blades", "blades", () => state.camera.blades), "0: a disk"),
       element("div", { class: "row" }, ...constant("Frames", "frames", () => state.path.frames)),
     );
   }
@@ -471,14 +441,7 @@ export class EditPanel {
       ),
       row("Orbit", angle, "° in", orbitSeconds, "s", element("button", { click: makeOrbit }, "Apply")),
       row("Dolly", way, "in", dollySeconds, "s", element("button", { click: makeDolly }, "Apply")),
-      row(
-        "Focus to",
-        focus,
-        "in",
-        focusSeconds,
-        "s",
-        element("button", { click: makePull }, "Apply"),
-      ),
+      row("Focus to", focus, "in", focusSeconds, "s", element("button", { click: makePull }, "Apply")),
     );
   }
 }

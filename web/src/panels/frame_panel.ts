@@ -8,11 +8,7 @@ import { length, millimetres, percent, plural, precise, shortNumber, vector } fr
 type Rows = [string, string | Node][];
 
 function list(rows: Rows): HTMLElement {
-  return element(
-    "dl",
-    {},
-    ...rows.flatMap(([term, value]) => [element("dt", {}, term), element("dd", {}, value)]),
-  );
+  return element("dl", {}, ...rows.flatMap(([term, value]) => [element("dt", {}, term), element("dd", {}, value)]));
 }
 
 export class FramePanel {
@@ -47,9 +43,7 @@ export class FramePanel {
       ["Focal length", millimetres(camera.focalLength, path.unit_m)],
       [
         "Aperture",
-        opening === 0
-          ? "0, a pinhole"
-          : `${millimetres(opening, path.unit_m)}, f/${precise(fNumber(camera), 3)}`,
+        opening === 0 ? "0, a pinhole" : `${millimetres(opening, path.unit_m)}, f/${precise(fNumber(camera), 3)}`,
       ],
       ["Shape", camera.blades >= 3 ? plural(camera.blades, "blade") : "a disk"],
       ["Focus distance", length(camera.focusDistance)],
@@ -73,10 +67,10 @@ export class FramePanel {
       ["Pixels of each", use.ids.length > 0 ? `${percent(share)} on average` : "none"],
     ];
     if (film && film.done >= frame)
-      rows.push(["Rays to be read", shortNumber(film.rays[frame - 1])], [
-        "For each element",
-        `about ${precise(film.rays[frame - 1] / (path.width * path.height), 3)}`,
-      ]);
+      rows.push(
+        ["Rays to be read", shortNumber(film.rays[frame - 1])],
+        ["For each element", `about ${precise(film.rays[frame - 1] / (path.width * path.height), 3)}`],
+      );
     const holder = scene.packages.find((one) => one.frames.includes(frame));
     if (holder && path.id === scene.path.id) rows.push(["Package", holder.name]);
     if (use.ids.length === 0)
@@ -93,15 +87,13 @@ export class FramePanel {
     const { density, camera, path } = this.state;
     if (!density) return [element("p", { class: "muted" }, "being found …")];
     const rows: Rows = [["LF cameras in the lens", shortNumber(density.cameras_in_lens)]];
-    if (density.camera_distance)
-      rows.push(["From one to the next", millimetres(density.camera_distance, path.unit_m)]);
+    if (density.camera_distance) rows.push(["From one to the next", millimetres(density.camera_distance, path.unit_m)]);
     const ends: [string, number | null, number | null][] = [
       ["Nearest", density.depths[0], density.near_displacement_px],
       ["Farthest", density.depths[1], density.far_displacement_px],
     ];
     for (const [label, depth, displacement] of ends)
-      if (depth !== null && displacement !== null)
-        rows.push([`${label}, at ${length(depth)}`, verdict(displacement)]);
+      if (depth !== null && displacement !== null) rows.push([`${label}, at ${length(depth)}`, verdict(displacement)]);
     const words: HTMLElement[] = [list(rows)];
     words.push(
       element(

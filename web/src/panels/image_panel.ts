@@ -35,8 +35,7 @@ export class ImagePanel {
       makePickable(
         this.picture,
         () => [state.selected!.width, state.selected!.height],
-        (x, y, isOfPlane) =>
-          void focusThere(state, { camera: state.selected!.id, x, y }, isOfPlane),
+        (x, y, isOfPlane) => void focusThere(state, { camera: state.selected!.id, x, y }, isOfPlane),
       );
     state.on(["selected"], () => this.drawImage());
     state.on(["selected", "use"], () => void this.drawOverlap());
@@ -91,8 +90,7 @@ export class ImagePanel {
       element("dd", {}, `${precise(selected.focal_px, 5)} px`),
     ];
     const frames = this.state.framesOfCamera?.[selected.id];
-    if (frames !== undefined)
-      rows.push(element("dt", {}, "Taken by"), element("dd", {}, plural(frames, "frame")));
+    if (frames !== undefined) rows.push(element("dt", {}, "Taken by"), element("dd", {}, plural(frames, "frame")));
     const help =
       kind === undefined || USES[kind] === "used"
         ? null
@@ -101,9 +99,7 @@ export class ImagePanel {
     if (help) this.facts.append(help);
     if (!scene.server) return;
     try {
-      const overlap = await getJson<OverlapFacts>(
-        `path/${path.id}/overlap/${frame}/${selected.id}.json`,
-      );
+      const overlap = await getJson<OverlapFacts>(`path/${path.id}/overlap/${frame}/${selected.id}.json`);
       if (number === this.asked) this.drawShapes(overlap, selected.width, selected.height);
     } catch {
       // The error of the frame's own request is shown instead.

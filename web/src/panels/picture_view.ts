@@ -34,13 +34,9 @@ function setFocusDistance(document: PathDocument, time: number, distance: number
 
 // Requests the distance of the point seen there, and focuses on it.
 //   isOfPlane  it is one of the three points that define the focus plane
-export async function focusThere(
-  state: State,
-  request: PickRequest,
-  isOfPlane: boolean,
-): Promise<void> {
+export async function focusThere(state: State, request: PickRequest, isOfPlane: boolean): Promise<void> {
   const { time, frame, camera } = state; // those of the click, even if the timeline has moved on
-                                         // when the answer arrives
+  // when the answer arrives
   state.say("Comparing LF images …");
   try {
     const picked = await post<PickedFocus>("focus", {
@@ -64,21 +60,14 @@ export async function focusThere(
 }
 
 // After the third point, tilts the focus plane so that it contains all three.
-function addToPlane(
-  state: State,
-  picked: PickedFocus,
-  time: number,
-  frame: number,
-  camera: FrameCamera,
-): void {
+function addToPlane(state: State, picked: PickedFocus, time: number, frame: number, camera: FrameCamera): void {
   const before = state.planePoints?.frame === frame ? state.planePoints.points : [];
   const points = [...before, picked.point];
   state.planePoints = points.length < 3 ? { frame, points } : null;
   if (points.length < 3)
     return state.say(`Point ${points.length} of 3 of the focus plane, at ${length(picked.focus_distance)}`);
   const plane = focusThrough(camera, points);
-  if (!plane)
-    return state.say("These three points lie on a line, or on a plane that the lens cannot focus on.", true);
+  if (!plane) return state.say("These three points lie on a line, or on a plane that the lens cannot focus on.", true);
   const { distance, horizontal_deg, vertical_deg } = plane;
   const isTaken = state.edit("tilt the focus plane", (document) => {
     setFocusDistance(document, time, distance);

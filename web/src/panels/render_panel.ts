@@ -3,14 +3,7 @@
 import type { FrameCamera } from "../data/frame_camera";
 import type { RenderFacts } from "../data/scene";
 import { getBytes, post } from "../data/source";
-import {
-  develop,
-  heatColour,
-  heatMap,
-  rayRange,
-  readPicture,
-  type GrowingPicture,
-} from "../data/growing_picture";
+import { develop, heatColour, heatMap, rayRange, readPicture, type GrowingPicture } from "../data/growing_picture";
 import { element } from "../element";
 import { PathDocument } from "../path/path_document";
 import type { State } from "../state";
@@ -51,9 +44,7 @@ export class RenderPanel {
   ) {
     this.source = state.scene.watch ? "watch" : "preview";
     if (!state.scene.server) {
-      root.append(
-        element("p", { class: "muted" }, "These are exported files, without a render to watch."),
-      );
+      root.append(element("p", { class: "muted" }, "These are exported files, without a render to watch."));
       return;
     }
     const reset = element("button", { click: () => this.setStops(0) }, "Reset");
@@ -67,14 +58,7 @@ export class RenderPanel {
       this.about,
       this.box,
       this.status,
-      element(
-        "div",
-        { class: "row" },
-        element("label", {}, "Exposure"),
-        this.exposure,
-        this.stops,
-        reset,
-      ),
+      element("div", { class: "row" }, element("label", {}, "Exposure"), this.exposure, this.stops, reset),
       element("div", { class: "row" }, this.rays, enlargeButton(this.box)),
       this.scale,
       this.strip,
@@ -98,10 +82,11 @@ export class RenderPanel {
     if (!picture) return;
     if (this.source === "preview" && !(previewed && seeAlike(previewed, camera)))
       return state.say("The preview is of another view than this frame's: render it again.");
-    if (this.source === "watch" &&
-        (picture.fullWidth !== camera.width || picture.fullHeight !== camera.height))
-      return state.say(`This picture is of another path: it has ${picture.fullWidth} × ` +
-        `${picture.fullHeight} elements, and the frame ${camera.width} × ${camera.height}.`);
+    if (this.source === "watch" && (picture.fullWidth !== camera.width || picture.fullHeight !== camera.height))
+      return state.say(
+        `This picture is of another path: it has ${picture.fullWidth} × ` +
+          `${picture.fullHeight} elements, and the frame ${camera.width} × ${camera.height}.`,
+      );
     void focusThere(state, { x, y }, isOfPlane);
   }
 
@@ -153,11 +138,7 @@ export class RenderPanel {
   private drawSources(): void {
     const { state } = this;
     const button = (name: "preview" | "watch", label: string) =>
-      element(
-        "button",
-        { "aria-pressed": String(this.source === name), click: () => this.setSource(name) },
-        label,
-      );
+      element("button", { "aria-pressed": String(this.source === name), click: () => this.setSource(name) }, label);
     this.sources.replaceChildren(
       ...(state.scene.watch ? [button("watch", "Watched render")] : []),
       button("preview", "Preview"),
@@ -178,9 +159,7 @@ export class RenderPanel {
           { class: "primary", id: "start-preview", click: () => void this.start() },
           `Render frame ${state.frame} small`,
         ),
-        isBusy
-          ? element("button", { click: () => void post("preview/stop", {}) }, "Stop")
-          : null,
+        isBusy ? element("button", { click: () => void post("preview/stop", {}) }, "Stop") : null,
       ),
     );
     if (!preview) {
@@ -202,14 +181,11 @@ export class RenderPanel {
   private updateWatch(): void {
     const { state } = this;
     const watch = state.watch;
-    this.about.replaceChildren(
-      element("p", { class: "muted", style: "overflow-wrap:anywhere" }, state.scene.watch),
-    );
+    this.about.replaceChildren(element("p", { class: "muted", style: "overflow-wrap:anywhere" }, state.scene.watch));
     if (!watch || watch.frames.length === 0) {
       this.showNothing();
       this.strip.replaceChildren();
-      this.status.textContent =
-        "No frames lie there yet. The first picture comes with lfrenderer's first checkpoint.";
+      this.status.textContent = "No frames lie there yet. The first picture comes with lfrenderer's first checkpoint.";
       return;
     }
     this.drawStrip(watch);
@@ -322,8 +298,17 @@ export class RenderPanel {
 
 // Returns true if positions in the pictures of both cameras correspond. Focus and lens may differ.
 function seeAlike(a: FrameCamera, b: FrameCamera): boolean {
-  const view = ({ centre, forward, up, fx, fy, cx, cy, width, height }: FrameCamera) =>
-    [...centre, ...forward, ...up, fx, fy, cx, cy, width, height];
+  const view = ({ centre, forward, up, fx, fy, cx, cy, width, height }: FrameCamera) => [
+    ...centre,
+    ...forward,
+    ...up,
+    fx,
+    fy,
+    cx,
+    cy,
+    width,
+    height,
+  ];
   const [ofA, ofB] = [view(a), view(b)];
   return ofA.every((x, i) => Math.abs(x - ofB[i]) <= 1e-9 * (1 + Math.abs(x)));
 }

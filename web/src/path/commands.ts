@@ -11,7 +11,7 @@ export interface SharedOptions extends LightFieldOptions {
   frames?: string;
   memory?: string;
   maxImages?: number;
-  maxAngle?: number;  // degrees
+  maxAngle?: number; // degrees
   lensWeights?: "auto" | "none" | "area" | "hat";
   estimator?: "auto" | "nearest" | "bilinear";
   overwrite?: boolean;
@@ -45,14 +45,14 @@ export interface RendererOptions extends SharedOptions {
 export interface PreprocessorRequest {
   lightField: string;
   pathFile: string;
-  output?: string;  // folder of the packages; without it --plan, which writes nothing
+  output?: string; // folder of the packages; without it --plan, which writes nothing
   options?: PreprocessorOptions;
 }
 
 export interface RendererRequest {
   lightField: string;
   pathFile: string;
-  output: string;   // folder of the frames
+  output: string; // folder of the frames
   options?: RendererOptions;
 }
 
@@ -130,14 +130,17 @@ const kRenderer: Record<string, Flag> = {
 };
 
 // Packages already have these from lfpreprocessor, and lfrenderer refuses some of them.
-const kInPackages = ["focalPx", "fovDeg", "images", "seed", "maxImages", "maxAngle",
-                     "frames"];
+const kInPackages = ["focalPx", "fovDeg", "images", "seed", "maxImages", "maxAngle", "frames"];
 
 export function preprocessorCommand(request: PreprocessorRequest): string {
   const target = request.output === undefined ? ["--plan"] : ["-o", quoteFile(request.output)];
-  return ["lfpreprocessor", quoteFile(request.lightField), quoteFile(request.pathFile), ...target,
-          ...flags(kPreprocessor, request.options ?? {},
-                   request.output === undefined ? ["overwrite"] : [])].join(" ");
+  return [
+    "lfpreprocessor",
+    quoteFile(request.lightField),
+    quoteFile(request.pathFile),
+    ...target,
+    ...flags(kPreprocessor, request.options ?? {}, request.output === undefined ? ["overwrite"] : []),
+  ].join(" ");
 }
 
 export function rendererCommand(request: RendererRequest | PackageRequest): string {
@@ -145,8 +148,13 @@ export function rendererCommand(request: RendererRequest | PackageRequest): stri
   const input = isPackages
     ? [`${quoteFile(request.packageFolder.replace(/\/+$/, ""))}/package-*.lfp`]
     : [quoteFile(request.lightField), quoteFile(request.pathFile)];
-  return ["lfrenderer", ...input, "-o", quoteFile(request.output),
-          ...flags(kRenderer, request.options ?? {}, isPackages ? kInPackages : [])].join(" ");
+  return [
+    "lfrenderer",
+    ...input,
+    "-o",
+    quoteFile(request.output),
+    ...flags(kRenderer, request.options ?? {}, isPackages ? kInPackages : []),
+  ].join(" ");
 }
 
 // Returns one command, or two if a folder of packages is requested.
@@ -155,8 +163,7 @@ export function filmCommands(request: FilmRequest): string[] {
   const folder = request.packageFolder;
   if (folder === undefined) return [rendererCommand(request)];
   return [
-    preprocessorCommand({ lightField: request.lightField, pathFile: request.pathFile,
-                          output: folder, options }),
+    preprocessorCommand({ lightField: request.lightField, pathFile: request.pathFile, output: folder, options }),
     rendererCommand({ packageFolder: folder, output: request.output, options }),
   ];
 }

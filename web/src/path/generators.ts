@@ -6,13 +6,13 @@ import type { Keyframe } from "./path_facts";
 type Vector = readonly [number, number, number] | readonly number[];
 
 export interface OrbitOptions {
-  centre: Vector;         // world units; on the axis, and where the camera looks
-  axis: Vector;           // any length; also the picture's up direction, unless the camera looks
-                          // along it
-  startPosition: Vector;  // of the camera, off the axis
-  degrees: number;        // right-handed about the axis
+  centre: Vector; // world units; on the axis, and where the camera looks
+  axis: Vector; // any length; also the picture's up direction, unless the camera looks
+  // along it
+  startPosition: Vector; // of the camera, off the axis
+  degrees: number; // right-handed about the axis
   seconds: number;
-  start?: number;         // seconds; default: 0
+  start?: number; // seconds; default: 0
 }
 
 export interface DollyOptions {
@@ -23,39 +23,36 @@ export interface DollyOptions {
 }
 
 export interface FocusPullOptions {
-  from: number;           // focus distances, world units
+  from: number; // focus distances, world units
   to: number;
-  seconds: number;        // of the pull itself
-  hold?: number;          // seconds before and after the pull
-  start?: number;         // seconds before the pull, if not `hold`
+  seconds: number; // of the pull itself
+  hold?: number; // seconds before and after the pull
+  start?: number; // seconds before the pull, if not `hold`
 }
 
 // With keys this far apart, the Catmull-Rom curve deviates from the circle by at most 0.13 % of the
 // radius. The first and the last segment decide, where the curve begins along the chord: 2/27
 // angle^2.
 const kOrbitStep_deg = 7.5;
-const kResolution = 1e-5;  // of a movement's size: the precision with which it is written
+const kResolution = 1e-5; // of a movement's size: the precision with which it is written
 
 export function orbit(path: PathDocument, options: OrbitOptions): string {
   const { degrees, seconds, start = 0 } = options;
   checkDuration(seconds, start);
-  if (!Number.isFinite(degrees) || degrees === 0)
-    throw new Error("An orbit needs an angle other than 0");
+  if (!Number.isFinite(degrees) || degrees === 0) throw new Error("An orbit needs an angle other than 0");
   const axis = normalised(options.axis, "The axis of an orbit");
   const arm = subtract(options.startPosition, options.centre);
   const height = dot(arm, axis);
   const radial = subtract(arm, scaled(axis, height));
   const radius = Math.hypot(...radial);
-  if (!(radius > 1e-9 * Math.hypot(...arm)))
-    throw new Error("An orbit starts beside its axis, not on it");
+  if (!(radius > 1e-9 * Math.hypot(...arm))) throw new Error("An orbit starts beside its axis, not on it");
   const hub = add(options.centre, scaled(axis, height));
   const sideways = cross(axis, radial);
   const count = Math.max(2, Math.ceil(Math.abs(degrees) / kOrbitStep_deg - 1e-9));
   const keyframes: Keyframe[] = [];
   for (let i = 0; i <= count; ++i) {
-    const angle = (degrees * i) / count * Math.PI / 180;
-    const value = add(hub, add(scaled(radial, Math.cos(angle)),
-                               scaled(sideways, Math.sin(angle))));
+    const angle = (((degrees * i) / count) * Math.PI) / 180;
+    const value = add(hub, add(scaled(radial, Math.cos(angle)), scaled(sideways, Math.sin(angle))));
     keyframes.push({ time: start + (seconds * i) / count, value, interpolation: "smooth" });
   }
   path.edit(() => {
@@ -122,8 +119,7 @@ function standUpright(path: PathDocument, axis: Vector): void {
 }
 
 function checkDuration(seconds: number, start: number): void {
-  if (!(seconds > 0 && seconds < 1e9))
-    throw new Error(`A movement takes more than 0 seconds, not ${seconds}`);
+  if (!(seconds > 0 && seconds < 1e9)) throw new Error(`A movement takes more than 0 seconds, not ${seconds}`);
   if (!(start >= 0 && start < 1e9)) throw new Error(`A film starts at 0 s, not at ${start} s`);
 }
 

@@ -4,7 +4,7 @@
 interface Entry {
   text: string;
   label: string;
-  open: boolean;  // the next push of the same drag replaces its text
+  open: boolean; // the next push of the same drag replaces its text
 }
 
 export class History {
@@ -12,7 +12,10 @@ export class History {
   private at = 0;
 
   // most  number of edits that can be undone; older ones are forgotten
-  constructor(text: string, private readonly most = 200) {
+  constructor(
+    text: string,
+    private readonly most = 200,
+  ) {
     this.entries = [{ text, label: "", open: false }];
   }
 

@@ -1,8 +1,15 @@
 // A camera path (doc/formats/path.md) that a person edits alternately as text and with the mouse.
 // Edits change only the lines that they concern; the rest of the file keeps its text and comments.
 import {
-  checkValue, constantSpec, kQuantities, quantitySpec, readValue, withoutUnit, writeTime,
-  writeValue, zeroOf,
+  checkValue,
+  constantSpec,
+  kQuantities,
+  quantitySpec,
+  readValue,
+  withoutUnit,
+  writeTime,
+  writeValue,
+  zeroOf,
 } from "./path_quantities";
 import type { ConstantValue, PathValue, QuantitySpec, Unit } from "./path_quantities";
 import { checkConstant, checkTime, newKey, sectionPath, speedKeys } from "./path_facts";
@@ -15,7 +22,10 @@ export class PathDocument {
   // Lengths are written at least with this precision, even far from the origin.
   resolution_w: number;
 
-  private constructor(private readonly yaml: YamlText, private readonly lightFieldUnit: number) {
+  private constructor(
+    private readonly yaml: YamlText,
+    private readonly lightFieldUnit: number,
+  ) {
     this.resolution_w = 1e-4 / this.unitM();
   }
 
@@ -46,21 +56,26 @@ export class PathDocument {
     const section = this.keyIn([spec.section], spec.keys);
     const list = this.keyIn(["keyframes"], spec.keys);
     const key = section ?? list ?? newKey(spec.keys, name);
-    const base = section === undefined ? undefined
-      : this.read(spec, [spec.section, section], section);
+    const base = section === undefined ? undefined : this.read(spec, [spec.section, section], section);
     const keyframes = list ? this.readKeyframes(spec, list) : [];
     const speedKey = this.keyIn([spec.section], speedKeys(spec));
-    const speed = speedKey === undefined ? undefined
-      : this.read(spec, [spec.section, speedKey], speedKey);
+    const speed = speedKey === undefined ? undefined : this.read(spec, [spec.section, speedKey], speedKey);
     const accelerations = this.readAccelerations(spec);
     const hasAccelerations = speed !== undefined || accelerations.length > 0;
     return {
-      name: spec.name, key, section: spec.section, unit: spec.unit, shape: spec.shape,
+      name: spec.name,
+      key,
+      section: spec.section,
+      unit: spec.unit,
+      shape: spec.shape,
       worldPerFile: this.scale(spec.unit, key),
-      given: section !== undefined || list !== undefined || hasAccelerations, base, keyframes,
-      baseIsKey: base !== undefined && keyframes.length > 0 &&
-                 keyframes[0].time >= kLeastKeyDistance_s,
-      speed, accelerations, hasAccelerations,
+      given: section !== undefined || list !== undefined || hasAccelerations,
+      base,
+      keyframes,
+      baseIsKey: base !== undefined && keyframes.length > 0 && keyframes[0].time >= kLeastKeyDistance_s,
+      speed,
+      accelerations,
+      hasAccelerations,
     };
   }
 
@@ -95,8 +110,7 @@ export class PathDocument {
         this.writeBase(spec, name, value);
       } else {
         // A quantity that defaults to 0 starts at 0, as if its section had this value.
-        if (!given && spec.zeroIfNotGiven && !this.isSameTime(time, 0))
-          this.writeBase(spec, name, zeroOf(spec.shape));
+        if (!given && spec.zeroIfNotGiven && !this.isSameTime(time, 0)) this.writeBase(spec, name, zeroOf(spec.shape));
         this.insertKeyframe(spec, { time, value, interpolation: interpolation ?? "smooth" });
       }
     });
@@ -118,8 +132,10 @@ export class PathDocument {
       });
       const key = this.quantity(name).key;
       this.removeKey(["keyframes"], spec.keys);
-      this.addKeyframeList(key, keyframes.map((keyframe) => this.writeKeyframe(spec, key,
-                                                                               keyframe)));
+      this.addKeyframeList(
+        key,
+        keyframes.map((keyframe) => this.writeKeyframe(spec, key, keyframe)),
+      );
       this.removeKey([spec.section], spec.keys);
     });
   }
@@ -134,14 +150,16 @@ export class PathDocument {
       const quantity = this.quantity(name);
       const key = this.keyframeAt(quantity, index);
       const others = quantity.keyframes.filter((_, i) => i !== index);
-      const taken = [...others.map((other) => other.time),
-                     ...(quantity.baseIsKey && index >= 0 ? [0] : [])];
+      const taken = [...others.map((other) => other.time), ...(quantity.baseIsKey && index >= 0 ? [0] : [])];
       if (taken.some((other) => Math.abs(other - time) < 2 * kLeastKeyDistance_s))
         throw new Error(`${spec.name} has a key at ${writeTime(time)} s already`);
       moved = others.filter((other) => other.time < time).length;
       const list = ["keyframes", this.keyIn(["keyframes"], spec.keys)!];
       if (index < 0) {
-        if (time < kLeastKeyDistance_s) { moved = -1; return; }
+        if (time < kLeastKeyDistance_s) {
+          moved = -1;
+          return;
+        }
         this.insertKeyframe(spec, { ...key, time });
         this.removeKey([spec.section], spec.keys);
         return;
@@ -183,10 +201,8 @@ export class PathDocument {
       checkValue(value, spec);
       this.refuseContradiction(spec);
       const { keyframes } = this.quantity(name);
-      if (keyframes.length > 0 && keyframes[0].time < kLeastKeyDistance_s)
-        this.changeKeyframe(spec, 0, value);
-      else
-        this.writeBase(spec, name, value);
+      if (keyframes.length > 0 && keyframes[0].time < kLeastKeyDistance_s) this.changeKeyframe(spec, 0, value);
+      else this.writeBase(spec, name, value);
     });
   }
 
@@ -196,13 +212,20 @@ export class PathDocument {
       checkConstant(name, spec, value);
       const path = sectionPath(spec);
       const present = this.keyIn(path, spec.keys);
-      if (!present && withoutUnit(name) === "sensor_width" && this.quantity("focal_length").given &&
-          this.quantity("field_of_view").given)
-        throw new Error("The sensor's width follows from focal length and field of view: remove " +
-                        "one of these first");
+      if (
+        !present &&
+        withoutUnit(name) === "sensor_width" &&
+        this.quantity("focal_length").given &&
+        this.quantity("field_of_view").given
+      )
+        throw new Error(
+          "The sensor's width follows from focal length and field of view: remove " + "one of these first",
+        );
       const key = present ?? newKey(spec.keys, name);
-      const text = typeof value === "number" || Array.isArray(value)
-        ? writeValue(value, this.scale(spec.unit, key)) : String(value);
+      const text =
+        typeof value === "number" || Array.isArray(value)
+          ? writeValue(value, this.scale(spec.unit, key))
+          : String(value);
       if (present) this.yaml.replace([...path, key], text);
       else this.yaml.add(path, key, text, path.length === 0 ? "fps" : undefined);
     });
@@ -234,14 +257,30 @@ export class PathDocument {
 
   // Each of these chooses one way to state focus, lens or direction, and removes the other ways
   // with their motion. If the path uses that way already, it works as setBase().
-  useFocusDistance(distance_w: number): void { this.use("focus_distance", distance_w); }
-  useFocusPoint(point_w: number[]): void { this.use("focus_point", point_w); }
-  useFocalLength(focalLength_w: number): void { this.use("focal_length", focalLength_w); }
-  useFieldOfView(angle_deg: number): void { this.use("field_of_view", angle_deg); }
-  useAperture(diameter_w: number): void { this.use("aperture_diameter", diameter_w); }
-  useFNumber(fNumber: number): void { this.use("f_number", fNumber); }
-  useLookAt(point_w: number[]): void { this.use("look_at", point_w); }
-  useOrientation(angles_deg: Record<string, number>): void { this.use("orientation", angles_deg); }
+  useFocusDistance(distance_w: number): void {
+    this.use("focus_distance", distance_w);
+  }
+  useFocusPoint(point_w: number[]): void {
+    this.use("focus_point", point_w);
+  }
+  useFocalLength(focalLength_w: number): void {
+    this.use("focal_length", focalLength_w);
+  }
+  useFieldOfView(angle_deg: number): void {
+    this.use("field_of_view", angle_deg);
+  }
+  useAperture(diameter_w: number): void {
+    this.use("aperture_diameter", diameter_w);
+  }
+  useFNumber(fNumber: number): void {
+    this.use("f_number", fNumber);
+  }
+  useLookAt(point_w: number[]): void {
+    this.use("look_at", point_w);
+  }
+  useOrientation(angles_deg: Record<string, number>): void {
+    this.use("orientation", angles_deg);
+  }
 
   // Makes several edits as one: if one throws, none is made.
   edit(edits: () => void): void {
@@ -266,8 +305,7 @@ export class PathDocument {
   }
 
   private read(spec: QuantitySpec, path: (string | number)[], key: string): PathValue {
-    return readValue(this.yaml.value(path), path.join("."), spec.shape,
-                     this.scale(spec.unit, key));
+    return readValue(this.yaml.value(path), path.join("."), spec.shape, this.scale(spec.unit, key));
   }
 
   private readKeyframes(spec: QuantitySpec, key: string): Keyframe[] {
@@ -285,8 +323,7 @@ export class PathDocument {
       .map((item) => ({
         from: readValue(item.from, "accelerations.from", "number", 1) as number,
         to: readValue(item.to, "accelerations.to", "number", 1) as number,
-        value: readValue(item.value, "accelerations.value", spec.shape,
-                         this.scale(spec.unit, String(item.quantity))),
+        value: readValue(item.value, "accelerations.value", spec.shape, this.scale(spec.unit, String(item.quantity))),
       }));
   }
 
@@ -299,8 +336,7 @@ export class PathDocument {
   }
 
   private keyframeAt(quantity: Quantity, index: number): Keyframe {
-    if (index === -1 && quantity.baseIsKey)
-      return { time: 0, value: quantity.base!, interpolation: "smooth" };
+    if (index === -1 && quantity.baseIsKey) return { time: 0, value: quantity.base!, interpolation: "smooth" };
     const key = quantity.keyframes[index];
     if (!key) throw new Error(`${quantity.name} has no keyframe ${index + 1}`);
     return key;
@@ -317,8 +353,10 @@ export class PathDocument {
   private refuseMotion(name: string): void {
     const { name: label, speed, accelerations, hasAccelerations } = this.quantity(name);
     if (!hasAccelerations) return;
-    const by = [...(speed !== undefined ? ["a speed"] : []),
-                ...(accelerations.length > 0 ? ["accelerations"] : [])].join(" and ");
+    const by = [
+      ...(speed !== undefined ? ["a speed"] : []),
+      ...(accelerations.length > 0 ? ["accelerations"] : []),
+    ].join(" and ");
     throw new Error(`${label} moves by ${by}; remove its motion before giving it keyframes`);
   }
 
@@ -326,29 +364,26 @@ export class PathDocument {
     if (this.quantity(spec.name).given) return;
     if (spec.freeWithoutSensor && this.constant("sensor_width") === undefined) return;
     const rival = spec.rivals.map((name) => this.quantity(name)).find(({ given }) => given);
-    if (rival)
-      throw new Error(`The path has ${rival.key}, which says the same; switch to ${spec.name} ` +
-                      "first");
+    if (rival) throw new Error(`The path has ${rival.key}, which says the same; switch to ${spec.name} ` + "first");
   }
 
   private refuseKeptDirection(): void {
     if (this.constant("follow") === "direction")
-      throw new Error("The camera keeps its direction ('follow: direction'), so look_at cannot " +
-                      "move; set follow to look_at first");
+      throw new Error(
+        "The camera keeps its direction ('follow: direction'), so look_at cannot " +
+          "move; set follow to look_at first",
+      );
   }
 
   // ----------------------------------------------------------------------------------- writing
 
   private write(spec: QuantitySpec, key: string, value: PathValue): string {
-    return writeValue(value, this.scale(spec.unit, key),
-                      spec.unit === "length" ? this.resolution_w : 0);
+    return writeValue(value, this.scale(spec.unit, key), spec.unit === "length" ? this.resolution_w : 0);
   }
 
   private writeKeyframe(spec: QuantitySpec, key: string, keyframe: Keyframe): string {
-    const word = keyframe.interpolation === "smooth" ? ""
-                                                     : `, interpolation: ${keyframe.interpolation}`;
-    return `{time: ${writeTime(keyframe.time)}, value: ` +
-           `${this.write(spec, key, keyframe.value)}${word}}`;
+    const word = keyframe.interpolation === "smooth" ? "" : `, interpolation: ${keyframe.interpolation}`;
+    return `{time: ${writeTime(keyframe.time)}, value: ` + `${this.write(spec, key, keyframe.value)}${word}}`;
   }
 
   private writeBase(spec: QuantitySpec, name: string, value: PathValue, after?: string): void {
@@ -359,16 +394,13 @@ export class PathDocument {
     else this.yaml.add([spec.section], key, text, after);
   }
 
-  private changeKeyframe(spec: QuantitySpec, index: number, value: PathValue,
-                         interpolation?: Interpolation): void {
+  private changeKeyframe(spec: QuantitySpec, index: number, value: PathValue, interpolation?: Interpolation): void {
     const list = this.keyIn(["keyframes"], spec.keys)!;
     const item = ["keyframes", list, index];
     this.yaml.replace([...item, "value"], this.write(spec, list, value));
     if (interpolation === undefined) return;
-    if (this.yaml.has([...item, "interpolation"]))
-      this.yaml.replace([...item, "interpolation"], interpolation);
-    else if (interpolation !== "smooth")
-      this.yaml.add(item, "interpolation", interpolation);
+    if (this.yaml.has([...item, "interpolation"])) this.yaml.replace([...item, "interpolation"], interpolation);
+    else if (interpolation !== "smooth") this.yaml.add(item, "interpolation", interpolation);
   }
 
   private insertKeyframe(spec: QuantitySpec, keyframe: Keyframe): void {
@@ -411,8 +443,7 @@ export class PathDocument {
     this.removeKey([spec.section], speedKeys(spec));
     const accelerations = this.items(["accelerations"]);
     for (let i = accelerations.length - 1; i >= 0; --i)
-      if (spec.keys.includes(String(accelerations[i].quantity)))
-        this.yaml.removeItem(["accelerations"], i);
+      if (spec.keys.includes(String(accelerations[i].quantity))) this.yaml.removeItem(["accelerations"], i);
   }
 
   private use(name: string, value: PathValue): void {
@@ -424,15 +455,13 @@ export class PathDocument {
         return;
       }
       const others = spec.rivals.map(quantitySpec);
-      const present = others.map((other) => this.keyIn([other.section], other.keys))
-        .find((key) => key !== undefined);
+      const present = others.map((other) => this.keyIn([other.section], other.keys)).find((key) => key !== undefined);
       this.writeBase(spec, spec.name, value, present);
       for (const other of others) {
         this.forgetMotion(other);
         this.removeKey([other.section], other.keys);
       }
-      if (spec.name === "orientation")
-        for (const key of ["up", "follow"]) this.removeKey(["camera"], [key]);
+      if (spec.name === "orientation") for (const key of ["up", "follow"]) this.removeKey(["camera"], [key]);
     });
   }
 }

@@ -4,29 +4,29 @@ import type { ConstantSpec, ConstantValue, PathValue, QuantitySpec, Section, Sha
 export type Interpolation = "smooth" | "linear" | "step";
 
 export interface Keyframe {
-  time: number;  // seconds
+  time: number; // seconds
   value: PathValue;
-  interpolation: Interpolation;  // from the previous key to this one
+  interpolation: Interpolation; // from the previous key to this one
 }
 
 export interface Acceleration {
-  from: number;  // seconds
+  from: number; // seconds
   to: number;
-  value: PathValue;  // per second squared
+  value: PathValue; // per second squared
 }
 
 // Facts that the file states about a quantity. Lengths are in world units, whatever the file uses.
 export interface Quantity {
-  name: string;   // without unit: "focus_distance"
-  key: string;    // as in the file, or as it would be written: "focus_distance_mm"
+  name: string; // without unit: "focus_distance"
+  key: string; // as in the file, or as it would be written: "focus_distance_mm"
   section: Section;
   unit: Unit;
   shape: Shape;
-  worldPerFile: number;      // factor from numbers beside `key` in the file to those here
-  given: boolean;            // the file states something about it
-  base?: PathValue;          // the value in its section, at time 0
-  keyframes: Keyframe[];     // in the order of the file; without the base
-  baseIsKey: boolean;        // the base is a key at time 0 before the listed ones: index -1
+  worldPerFile: number; // factor from numbers beside `key` in the file to those here
+  given: boolean; // the file states something about it
+  base?: PathValue; // the value in its section, at time 0
+  keyframes: Keyframe[]; // in the order of the file; without the base
+  baseIsKey: boolean; // the base is a key at time 0 before the listed ones: index -1
   speed?: PathValue;
   accelerations: Acceleration[];
   hasAccelerations: boolean; // it has a speed or accelerations: keyframes need removeMotion() first
@@ -59,7 +59,7 @@ export function checkConstant(name: string, spec: ConstantSpec, value: ConstantV
     word: typeof value === "string" && /^[a-z_]+$/.test(value),
     boolean: typeof value === "boolean",
   }[spec.kind];
-  const expected = spec.kind === "numbers" ? `${spec.count} numbers`
-    : spec.kind === "integer" ? "a whole number" : `a ${spec.kind}`;
+  const expected =
+    spec.kind === "numbers" ? `${spec.count} numbers` : spec.kind === "integer" ? "a whole number" : `a ${spec.kind}`;
   if (!fits) throw new Error(`${name}: expected ${expected}, found ${JSON.stringify(value)}`);
 }

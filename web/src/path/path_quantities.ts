@@ -10,17 +10,17 @@ export type Shape = "number" | "point" | "tilt" | "angles" | "quaternion";
 export type PathValue = number | number[] | Record<string, number>;
 
 export interface QuantitySpec {
-  name: string;          // without the ending of a unit
-  keys: string[];        // as in a file; the first is used for a new entry
+  name: string; // without the ending of a unit
+  keys: string[]; // as in a file; the first is used for a new entry
   section: Section;
   unit: Unit;
   shape: Shape;
-  above?: number;        // exclusive minimum of every component
+  above?: number; // exclusive minimum of every component
   below?: number;
-  least?: number;        // inclusive minimum
+  least?: number; // inclusive minimum
   zeroIfNotGiven?: boolean;
-  rivals: string[];      // alternatives to this quantity, of which only one may be given
-  freeWithoutSensor?: boolean;  // all rivals may be given if the sensor's width is not
+  rivals: string[]; // alternatives to this quantity, of which only one may be given
+  freeWithoutSensor?: boolean; // all rivals may be given if the sensor's width is not
 }
 
 interface SpecOptions {
@@ -33,15 +33,13 @@ interface SpecOptions {
   freeWithoutSensor?: boolean;
 }
 
-function length(section: Section, name: string, millimetres: boolean,
-                options: SpecOptions): QuantitySpec {
+function length(section: Section, name: string, millimetres: boolean, options: SpecOptions): QuantitySpec {
   const keys = millimetres ? [`${name}_mm`, name] : [name, `${name}_mm`];
   return { name, keys, section, unit: "length", shape: "number", rivals: [], ...options };
 }
 
 function degrees(section: Section, name: string, options: SpecOptions): QuantitySpec {
-  return { name, keys: [`${name}_deg`], section, unit: "degrees", shape: "number", rivals: [],
-           ...options };
+  return { name, keys: [`${name}_deg`], section, unit: "degrees", shape: "number", rivals: [], ...options };
 }
 
 function plain(section: Section, name: string, options: SpecOptions): QuantitySpec {
@@ -51,30 +49,26 @@ function plain(section: Section, name: string, options: SpecOptions): QuantitySp
 // In the order in which they are written.
 export const kQuantities: readonly QuantitySpec[] = [
   length("camera", "position", false, { shape: "point" }),
-  length("camera", "look_at", false,
-         { shape: "point", rivals: ["orientation", "quaternion"] }),
+  length("camera", "look_at", false, { shape: "point", rivals: ["orientation", "quaternion"] }),
   plain("camera", "orientation", { shape: "angles", rivals: ["look_at", "quaternion"] }),
   plain("camera", "quaternion", { shape: "quaternion", rivals: ["look_at", "orientation"] }),
   degrees("camera", "roll", { zeroIfNotGiven: true }),
-  length("camera", "focal_length", true,
-         { above: 0, rivals: ["field_of_view"], freeWithoutSensor: true }),
-  degrees("camera", "field_of_view",
-          { above: 0, below: 180, rivals: ["focal_length"], freeWithoutSensor: true }),
+  length("camera", "focal_length", true, { above: 0, rivals: ["field_of_view"], freeWithoutSensor: true }),
+  degrees("camera", "field_of_view", { above: 0, below: 180, rivals: ["focal_length"], freeWithoutSensor: true }),
   length("lens", "aperture_diameter", true, { least: 0, rivals: ["f_number"] }),
   plain("lens", "f_number", { above: 0, rivals: ["aperture_diameter"] }),
   length("lens", "focus_distance", false, { above: 0, rivals: ["focus_point"] }),
   length("lens", "focus_point", false, { shape: "point", rivals: ["focus_distance"] }),
-  degrees("lens", "focus_tilt",
-          { shape: "tilt", above: -90, below: 90, zeroIfNotGiven: true }),
+  degrees("lens", "focus_tilt", { shape: "tilt", above: -90, below: 90, zeroIfNotGiven: true }),
   degrees("lens", "blade_rotation", { zeroIfNotGiven: true }),
 ];
 
 export interface ConstantSpec {
   keys: string[];
-  section?: Section;     // default: the root
+  section?: Section; // default: the root
   unit: Unit;
   kind: "number" | "integer" | "numbers" | "word" | "boolean";
-  count?: number;        // of numbers
+  count?: number; // of numbers
 }
 
 export type ConstantValue = number | number[] | string | boolean;
@@ -84,14 +78,12 @@ export const kConstants: Readonly<Record<string, ConstantSpec>> = {
   frames: { keys: ["frames"], unit: "none", kind: "integer" },
   resolution: { keys: ["resolution"], unit: "none", kind: "numbers", count: 2 },
   unit_m: { keys: ["unit_m"], unit: "none", kind: "number" },
-  sensor_width: { keys: ["sensor_width_mm", "sensor_width"], section: "camera", unit: "length",
-                  kind: "number" },
+  sensor_width: { keys: ["sensor_width_mm", "sensor_width"], section: "camera", unit: "length", kind: "number" },
   up: { keys: ["up"], section: "camera", unit: "none", kind: "numbers", count: 3 },
   follow: { keys: ["follow"], section: "camera", unit: "none", kind: "word" },
   breathing: { keys: ["breathing"], section: "lens", unit: "none", kind: "boolean" },
   blades: { keys: ["blades"], section: "lens", unit: "none", kind: "integer" },
-  blade_rotation_per_stop: { keys: ["blade_rotation_per_stop_deg"], section: "lens",
-                             unit: "none", kind: "number" },
+  blade_rotation_per_stop: { keys: ["blade_rotation_per_stop_deg"], section: "lens", unit: "none", kind: "number" },
 };
 
 export function withoutUnit(name: string): string {
@@ -113,11 +105,16 @@ export function constantSpec(name: string): ConstantSpec {
 // Returns the names of a value's components: none for a number, indices for a list.
 export function componentNames(shape: Shape): string[] {
   switch (shape) {
-    case "number": return [];
-    case "point": return ["0", "1", "2"];
-    case "quaternion": return ["0", "1", "2", "3"];
-    case "tilt": return ["horizontal", "vertical"];
-    case "angles": return ["yaw", "pitch", "roll"];
+    case "number":
+      return [];
+    case "point":
+      return ["0", "1", "2"];
+    case "quaternion":
+      return ["0", "1", "2", "3"];
+    case "tilt":
+      return ["horizontal", "vertical"];
+    case "angles":
+      return ["yaw", "pitch", "roll"];
   }
 }
 
@@ -154,11 +151,16 @@ export function checkValue(value: PathValue, spec: QuantitySpec): void {
   const read = readValue(value, spec.name, spec.shape, 1);
   const components = typeof read === "number" ? [read] : Object.values(read);
   for (const x of components) {
-    const wrong = spec.above !== undefined && x <= spec.above ? `above ${spec.above}`
-      : spec.below !== undefined && x >= spec.below ? `below ${spec.below}`
-      : spec.least !== undefined && x < spec.least ? `${spec.least} or more`
-      : Math.abs(x) > 1e9 ? "within 1e9"
-      : undefined;
+    const wrong =
+      spec.above !== undefined && x <= spec.above
+        ? `above ${spec.above}`
+        : spec.below !== undefined && x >= spec.below
+          ? `below ${spec.below}`
+          : spec.least !== undefined && x < spec.least
+            ? `${spec.least} or more`
+            : Math.abs(x) > 1e9
+              ? "within 1e9"
+              : undefined;
     if (wrong) throw new Error(`${spec.name}: ${writeNumber(x)} must be ${wrong}`);
   }
   if (spec.shape === "quaternion" && Math.abs(Math.hypot(...components) - 1) > 0.01)
@@ -167,10 +169,9 @@ export function checkValue(value: PathValue, spec: QuantitySpec): void {
 
 // Writes six significant digits, or more if they are needed for the resolution.
 export function writeNumber(x: number, resolution = 0): string {
-  const digits = resolution > 0 && x !== 0
-    ? Math.ceil(Math.log10(Math.abs(x) / resolution)) : 0;
+  const digits = resolution > 0 && x !== 0 ? Math.ceil(Math.log10(Math.abs(x) / resolution)) : 0;
   const rounded = Number(x.toPrecision(Math.min(15, Math.max(6, digits))));
-  return rounded === 0 ? "0" : String(rounded);  // not "-0"
+  return rounded === 0 ? "0" : String(rounded); // not "-0"
 }
 
 // Writes a time to the microsecond, which is the least distance of two keyframes.
@@ -188,5 +189,7 @@ export function writeValue(value: PathValue, scale = 1, resolution = 0): string 
   const largest = Math.max(...components.map(Math.abs));
   const written = components.map((x) => number(x, largest));
   if (Array.isArray(value)) return `[${written.join(", ")}]`;
-  return `{${Object.keys(value).map((name, i) => `${name}: ${written[i]}`).join(", ")}}`;
+  return `{${Object.keys(value)
+    .map((name, i) => `${name}: ${written[i]}`)
+    .join(", ")}}`;
 }

@@ -1,9 +1,7 @@
 // A YAML text that is edited in place: bytes that an edit does not concern do not change. The
 // package `yaml` provides positions only. Writing its document would move comments and change the
 // format of numbers, so edits replace parts of the text instead.
-import {
-  Alias, Document, isAlias, isMap, isScalar, isSeq, parseDocument, visit,
-} from "yaml";
+import { Alias, Document, isAlias, isMap, isScalar, isSeq, parseDocument, visit } from "yaml";
 import type { Node, Pair, Scalar, YAMLMap, YAMLSeq } from "yaml";
 
 // Keys of maps and indices of lists, from the root.
@@ -15,8 +13,8 @@ interface Change {
   text: string;
 }
 
-const kLongestLine = 100;  // a list in brackets that grows beyond this is split into one line per
-                           // item
+const kLongestLine = 100; // a list in brackets that grows beyond this is split into one line per
+// item
 
 type Container = YAMLMap<Node, Node | null> | YAMLSeq<Node>;
 
@@ -206,8 +204,7 @@ export class YamlText {
   private endOf(node: Node): number {
     if (isBlock(node)) {
       const last = (node as Container).items[(node as Container).items.length - 1];
-      return isMap(node) ? this.endOfPair(last as Pair<Node, Node | null>)
-                         : this.endOf(last as Node);
+      return isMap(node) ? this.endOfPair(last as Pair<Node, Node | null>) : this.endOf(last as Node);
     }
     let end = node.range![1];
     while (end > node.range![0] && /\s/.test(this.current[end - 1])) --end;
@@ -270,8 +267,7 @@ export class YamlText {
     return [`${space}${key}:`, ...(value as string[]).map((item) => `${space}  - ${item}`)];
   }
 
-  private addFirst(path: YamlPath, node: Node | null, key: string,
-                   value: string | readonly string[]): void {
+  private addFirst(path: YamlPath, node: Node | null, key: string, value: string | readonly string[]): void {
     const pair = this.pair(path);
     const keyStart = pair.key.range![0];
     if (this.current.slice(this.lineStart(keyStart), keyStart).trim() !== "") {
@@ -284,8 +280,7 @@ export class YamlText {
       this.apply([{ begin, end: this.endOf(node), text: "" }]);
     }
     const key_node = this.pair(path).key;
-    this.insertLines(this.lineEnd(key_node.range![1]),
-                     this.pairLines(this.column(key_node.range![0]) + 2, key, value));
+    this.insertLines(this.lineEnd(key_node.range![1]), this.pairLines(this.column(key_node.range![0]) + 2, key, value));
   }
 
   // Replaces a value of several lines by one beside its key.
@@ -313,8 +308,10 @@ export class YamlText {
     if (!between.includes("\n")) return [{ begin: before, end, text: "" }];
     // The item has its own line: text behind the previous item stays, except for the comma.
     const comma = between.indexOf(",");
-    return [{ begin: before + comma, end: before + comma + 1, text: "" },
-            { begin, end, text: "" }];
+    return [
+      { begin: before + comma, end: before + comma + 1, text: "" },
+      { begin, end, text: "" },
+    ];
   }
 
   private endOfItem(item: Node | Pair<Node, Node | null>): number {
@@ -325,19 +322,23 @@ export class YamlText {
     const begin = list.range![0];
     const source = this.current.slice(begin, this.endOf(list));
     const long = this.column(begin) + source.length + text.length + 2 > kLongestLine;
-    if (long && !source.includes("\n") && list.items.length > 0 && !list.anchor &&
-        this.ownsItsLine(path)) {
-      const items = list.items.map((item) => this.current.slice(this.startOf(item),
-                                                                this.endOf(item)));
+    if (long && !source.includes("\n") && list.items.length > 0 && !list.anchor && this.ownsItsLine(path)) {
+      const items = list.items.map((item) => this.current.slice(this.startOf(item), this.endOf(item)));
       items.splice(index, 0, text);
       const space = " ".repeat(this.column(this.pair(path).key.range![0]) + 2);
       const end = this.endOf(list);
-      this.apply([
-        // A comment behind the list stays on the line of its key.
-        { begin: begin - (this.current[begin - 1] === " " ? 1 : 0), end, text: "" },
-        { begin: this.lineEnd(end), end: this.lineEnd(end),
-          text: items.map((item) => `${this.eol()}${space}- ${item}`).join("") },
-      ], true);
+      this.apply(
+        [
+          // A comment behind the list stays on the line of its key.
+          { begin: begin - (this.current[begin - 1] === " " ? 1 : 0), end, text: "" },
+          {
+            begin: this.lineEnd(end),
+            end: this.lineEnd(end),
+            text: items.map((item) => `${this.eol()}${space}- ${item}`).join(""),
+          },
+        ],
+        true,
+      );
       return;
     }
     if (list.items.length === 0) {
@@ -356,16 +357,17 @@ export class YamlText {
     const pair = this.pair(path);
     const begin = pair.key.range![0];
     const end = this.endOfPair(pair);
-    return this.current.slice(this.lineStart(begin), begin).trim() === "" &&
-           /^\s*(#.*)?$/.test(this.current.slice(end, this.lineEnd(end)));
+    return (
+      this.current.slice(this.lineStart(begin), begin).trim() === "" &&
+      /^\s*(#.*)?$/.test(this.current.slice(end, this.lineEnd(end)))
+    );
   }
 
   // Turns every alias on the path into a copy, so that an edit below it does not change its anchor.
   private own(path: YamlPath): void {
     for (let length = 1; length <= path.length; ++length) {
       const node = this.find(path.slice(0, length));
-      if (isAlias(node))
-        this.apply([{ begin: node.range![0], end: node.range![1], text: this.flowOf(node) }]);
+      if (isAlias(node)) this.apply([{ begin: node.range![0], end: node.range![1], text: this.flowOf(node) }]);
     }
   }
 
@@ -375,8 +377,7 @@ export class YamlText {
     const source = this.current.slice(target.range![0], this.endOf(target));
     if (!isBlock(target) && !/[\n&*]/.test(source)) return source;
     const copy = new Document(target.toJS(this.document));
-    return copy.toString({ collectionStyle: "flow", flowCollectionPadding: false, lineWidth: 0 })
-      .trim();
+    return copy.toString({ collectionStyle: "flow", flowCollectionPadding: false, lineWidth: 0 }).trim();
   }
 
   // Turns aliases of removed nodes into copies, unless the changes only move those nodes.
@@ -384,14 +385,12 @@ export class YamlText {
     const all = keepsAnchors ? changes : [...changes, ...this.orphans(changes)];
     all.sort((a, b) => b.begin - a.begin || b.end - a.end);
     let text = this.current;
-    for (const { begin, end, text: inserted } of all)
-      text = text.slice(0, begin) + inserted + text.slice(end);
+    for (const { begin, end, text: inserted } of all) text = text.slice(0, begin) + inserted + text.slice(end);
     this.set(text);
   }
 
   private orphans(changes: readonly Change[]): Change[] {
-    const inside = (offset: number): boolean =>
-      changes.some(({ begin, end }) => begin <= offset && offset < end);
+    const inside = (offset: number): boolean => changes.some(({ begin, end }) => begin <= offset && offset < end);
     const copies: Change[] = [];
     visit(this.document, {
       Alias: (_, alias: Alias) => {

@@ -98,11 +98,9 @@ export class LfPoints {
     const kinds = this.use.array as Uint8Array;
     kinds.set(use.ofCameras);
     if (framesOfCamera)
-      for (let i = 0; i < kinds.length; ++i)
-        if (kinds[i] !== USED && framesOfCamera[i] > 0) kinds[i] = IN_OTHER_FRAME;
+      for (let i = 0; i < kinds.length; ++i) if (kinds[i] !== USED && framesOfCamera[i] > 0) kinds[i] = IN_OTHER_FRAME;
     const shares = this.share.array as Uint8Array;
-    for (let i = 0; i < use.ids.length; ++i)
-      shares[use.ids[i]] = Math.round(255 * Math.min(1, use.shares[i]));
+    for (let i = 0; i < use.ids.length; ++i) shares[use.ids[i]] = Math.round(255 * Math.min(1, use.shares[i]));
     this.use.needsUpdate = true;
     this.share.needsUpdate = true;
   }
@@ -115,9 +113,7 @@ export class LfPoints {
   // preferred.
   pick(camera: THREE.Camera, width: number, height: number, x: number, y: number): number | null {
     const reach = 12;
-    const m = new THREE.Matrix4()
-      .multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse)
-      .elements;
+    const m = new THREE.Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse).elements;
     const kinds = this.use.array as Uint8Array;
     let best: number | null = null;
     let bestScore = reach * reach;

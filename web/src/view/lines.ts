@@ -43,8 +43,7 @@ export class Faces {
   // Draws a fan of triangles around the first corner.
   setPolygon(corners: Vec3[], origin: Vec3): void {
     const triangles: Vec3[] = [];
-    for (let i = 1; i + 1 < corners.length; ++i)
-      triangles.push(corners[0], corners[i], corners[i + 1]);
+    for (let i = 1; i + 1 < corners.length; ++i) triangles.push(corners[0], corners[i], corners[i + 1]);
     setPoints(this.geometry, triangles, origin);
   }
 }
@@ -55,9 +54,7 @@ function setPoints(geometry: THREE.BufferGeometry, points: Vec3[], origin: Vec3)
     attribute = new THREE.BufferAttribute(new Float32Array(3 * points.length), 3);
     geometry.setAttribute("position", attribute);
   }
-  points.forEach((p, i) =>
-    attribute.setXYZ(i, p[0] - origin[0], p[1] - origin[1], p[2] - origin[2]),
-  );
+  points.forEach((p, i) => attribute.setXYZ(i, p[0] - origin[0], p[1] - origin[1], p[2] - origin[2]));
   attribute.needsUpdate = true;
   geometry.setDrawRange(0, points.length);
 }

@@ -3,13 +3,7 @@
 
 import * as THREE from "three";
 
-import {
-  add,
-  elementDirection,
-  focusPoint,
-  lensRim,
-  type FrameCamera,
-} from "../data/frame_camera";
+import { add, elementDirection, focusPoint, lensRim, type FrameCamera } from "../data/frame_camera";
 import type { DensityFacts, Vec3 } from "../data/scene";
 import { closed, Faces, Lines } from "./lines";
 
@@ -33,13 +27,7 @@ export class RenderCameraModel {
   constructor(private readonly origin: Vec3) {
     this.widened.add(this.widenedLines.object);
     for (const part of [...this.depthLines, ...this.depthFaces]) this.depths.add(part.object);
-    for (const part of [
-      this.focusFace,
-      this.focusLines,
-      this.frustum,
-      this.lensFace,
-      this.lensLines,
-    ])
+    for (const part of [this.focusFace, this.focusLines, this.frustum, this.lensFace, this.lensLines])
       this.object.add(part.object);
     this.object.add(this.widened, this.depths);
   }
@@ -64,9 +52,14 @@ export class RenderCameraModel {
     this.lensLines.set(closed(rim), origin);
 
     const { width, height } = camera;
-    const corners = ([[0, 0], [width, 0], [width, height], [0, height]] as const).map(([x, y]) =>
-      focusPoint(camera, x, y),
-    );
+    const corners = (
+      [
+        [0, 0],
+        [width, 0],
+        [width, height],
+        [0, height],
+      ] as const
+    ).map(([x, y]) => focusPoint(camera, x, y));
     const axis = focusPoint(camera, camera.cx, camera.cy);
     this.frustum.set(
       [
@@ -106,8 +99,7 @@ export class RenderCameraModel {
 
   // False shows the lens alone; true also frustum and focus plane.
   showFocus(isShown: boolean): void {
-    for (const part of [this.focusFace, this.focusLines, this.frustum])
-      part.object.visible = isShown;
+    for (const part of [this.focusFace, this.focusLines, this.frustum]) part.object.visible = isShown;
     this.widened.visible = isShown;
     for (const part of [...this.depthLines, ...this.depthFaces]) part.object.visible = isShown;
   }

@@ -75,13 +75,7 @@ export class SpaceView {
       // After a drag, which turns the view, a click must not pick.
       if (!down || Math.hypot(event.offsetX - down[0], event.offsetY - down[1]) > 3) return;
       onPick(
-        this.points.pick(
-          this.camera,
-          this.canvas.clientWidth,
-          this.canvas.clientHeight,
-          event.offsetX,
-          event.offsetY,
-        ),
+        this.points.pick(this.camera, this.canvas.clientWidth, this.canvas.clientHeight, event.offsetX, event.offsetY),
       );
     });
   }
@@ -99,7 +93,10 @@ export class SpaceView {
   }
 
   setPath(cameras: FrameCamera[]): void {
-    const corners = thinned(cameras.map((camera) => camera.centre), 4000);
+    const corners = thinned(
+      cameras.map((camera) => camera.centre),
+      4000,
+    );
     const segments: Vec3[] = [];
     for (let i = 0; i + 1 < corners.length; ++i) segments.push(corners[i], corners[i + 1]);
     this.path.set(segments, this.origin);
@@ -125,10 +122,7 @@ export class SpaceView {
     if (facts) {
       const depth = 0.6 * (this.frameCamera?.focusDistance ?? this.size);
       const corners = facts.corners.map((direction) => add(facts.centre, direction, depth));
-      this.chosen.set(
-        [...corners.flatMap((corner) => [facts.centre, corner]), ...closed(corners)],
-        this.origin,
-      );
+      this.chosen.set([...corners.flatMap((corner) => [facts.centre, corner]), ...closed(corners)], this.origin);
       this.chosenFace.setPolygon(corners, this.origin);
       placeDots(this.ring, [facts.centre], this.origin);
     }
@@ -136,8 +130,7 @@ export class SpaceView {
   }
 
   private showChosen(): void {
-    this.chosen.object.visible = this.chosenFace.object.visible =
-      this.ring.visible && this.showsChosen;
+    this.chosen.object.visible = this.chosenFace.object.visible = this.ring.visible && this.showsChosen;
   }
 
   look(preset: Preset): void {
@@ -185,14 +178,14 @@ export class SpaceView {
       }
     } else {
       if (preset === "top") this.camera.up.copy(forward);
-      const sphere = new THREE.Box3().setFromPoints(this.everything(frame)).getBoundingSphere(
-        new THREE.Sphere(),
-      );
+      const sphere = new THREE.Box3().setFromPoints(this.everything(frame)).getBoundingSphere(new THREE.Sphere());
       target = sphere.center;
       this.camera.position
         .copy(target)
-        .addScaledVector(preset === "side" ? right : up, this.distanceFor(0.9 * sphere.radius) *
-          (preset === "side" ? -1 : 1));
+        .addScaledVector(
+          preset === "side" ? right : up,
+          this.distanceFor(0.9 * sphere.radius) * (preset === "side" ? -1 : 1),
+        );
     }
     this.controls.target.copy(target);
     this.camera.updateProjectionMatrix();
@@ -212,11 +205,7 @@ export class SpaceView {
     const box = this.points.object.geometry.boundingBox!;
     const corners = [0, 1, 2, 3, 4, 5, 6, 7].map(
       (i) =>
-        new THREE.Vector3(
-          i & 1 ? box.max.x : box.min.x,
-          i & 2 ? box.max.y : box.min.y,
-          i & 4 ? box.max.z : box.min.z,
-        ),
+        new THREE.Vector3(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y, i & 4 ? box.max.z : box.min.z),
     );
     for (const [x, y] of [
       [0, 0],
@@ -262,8 +251,7 @@ export class SpaceView {
     this.camera.far = distance * 50 + 20 * this.size;
     this.camera.updateProjectionMatrix();
     const pixelsPerUnit =
-      this.canvas.clientHeight /
-      (2 * Math.tan((this.camera.fov * Math.PI) / 360) * this.distanceToField());
+      this.canvas.clientHeight / (2 * Math.tan((this.camera.fov * Math.PI) / 360) * this.distanceToField());
     this.points.setSpacing(this.spacing * pixelsPerUnit);
     this.renderer.render(this.scene, this.camera);
   }

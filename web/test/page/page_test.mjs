@@ -36,10 +36,7 @@ test("what a frame takes is what the program says", withShop, async () => {
     await until(page, "app.state.use && app.state.use.frame === 1");
     const ids = () => page.evaluate(() => [...window.lfvisualizer.state.use.ids].sort((a, b) => a - b));
     assert.deepEqual(await ids(), collected(1));
-    assert.equal(
-      await page.textContent("#legend label:first-child b"),
-      String(collected(1).length),
-    );
+    assert.equal(await page.textContent("#legend label:first-child b"), String(collected(1).length));
     await page.evaluate(() => window.lfvisualizer.state.setFrame(25));
     await until(page, "app.state.use.frame === 25");
     assert.deepEqual(await ids(), collected(25));
@@ -51,8 +48,7 @@ test("what a frame takes is what the program says", withShop, async () => {
 
 // Figure 5.1 of the thesis.
 test("the LF cameras of a triangular aperture form a triangle", withShop, async () => {
-  const path = await writePath(SHOP_PATH.replace("-0.06, 0, 0]\n", "0, 0, 0]\n").replace(
-    /  position: \[\{.*\n/, ""));
+  const path = await writePath(SHOP_PATH.replace("-0.06, 0, 0]\n", "0, 0, 0]\n").replace(/  position: \[\{.*\n/, ""));
   await withPage([SHOP, path, "--lens-weights", "none"], async (page) => {
     await until(page, "app.state.use");
     await page.keyboard.press("2");
@@ -69,8 +65,11 @@ test("the LF cameras of a triangular aperture form a triangle", withShop, async 
     // Tests by distances from the three edges: one normal points down, the others 30 degrees above
     // right and left.
     const inside = ([x, y], margin) =>
-      [[0, -1], [Math.cos(Math.PI / 6), 0.5], [-Math.cos(Math.PI / 6), 0.5]].every(
-        ([nx, ny]) => nx * x + ny * y <= lens.radius / 2 + margin);
+      [
+        [0, -1],
+        [Math.cos(Math.PI / 6), 0.5],
+        [-Math.cos(Math.PI / 6), 0.5],
+      ].every(([nx, ny]) => nx * x + ny * y <= lens.radius / 2 + margin);
     assert.ok(used.length > 80, `${used.length}`);
     for (const place of used) assert.ok(inside(place, 1e-6), `${place}`);
     assert.equal(used.length, all.filter((place) => inside(place, 1e-6)).length);
@@ -147,10 +146,11 @@ test("a key is edited, saved with its comments, and rendered", async () => {
     await page.keyboard.press("Control+s");
     await until(page, "!app.state.isChanged");
     const saved = await readFile(path, "utf8");
-    assert.equal(saved, CHART_PATH.replace("value: 1.2", "value: 1.4").replace(
-      "aperture_diameter_mm: 12", "aperture_diameter_mm: 20"));
-    await run("lfrenderer", [chart, path, "-o", `${path}.frames`, "--frames", "11", "-q",
-                             "--no-contact-sheet"]);
+    assert.equal(
+      saved,
+      CHART_PATH.replace("value: 1.2", "value: 1.4").replace("aperture_diameter_mm: 12", "aperture_diameter_mm: 20"),
+    );
+    await run("lfrenderer", [chart, path, "-o", `${path}.frames`, "--frames", "11", "-q", "--no-contact-sheet"]);
     const report = JSON.parse(await readFile(`${path}.frames/report.json`, "utf8"));
     assert.match(JSON.stringify(report.frames[0]), /"frame.focus_distance_w":"1.4"/);
   });
@@ -193,7 +193,8 @@ test("what is no path is told with its line and not saved", async () => {
     await page.click("summary:has-text('The file')");
     await page.fill("textarea", CHART_PATH.replace("focus_distance: 1\n", "focus_distanc: 1\n"));
     await page.waitForFunction(() =>
-      /:11:.*focus_distanc/.test(document.querySelector("aside p.bad")?.textContent ?? ""));
+      /:11:.*focus_distanc/.test(document.querySelector("aside p.bad")?.textContent ?? ""),
+    );
     assert.ok(await page.isDisabled("#save"));
     // The edit is refused before it changes the text; the field keeps its value.
     await page.fill("[aria-label=Blades]", "2.5");
@@ -216,7 +217,9 @@ test("what is no path is told with its line and not saved", async () => {
 
 test("what is typed is saved as it is seen, and at the frame at which it was begun", async () => {
   const text = CHART_PATH.replaceAll("\n", "\r\n").replace(
-    "keyframes:", "keyframes:\r\n  position: [{time: 0, value: [0, 0, -1]}, {time: 1, value: [0.1, 0.2, -0.9]}]");
+    "keyframes:",
+    "keyframes:\r\n  position: [{time: 0, value: [0, 0, -1]}, {time: 1, value: [0.1, 0.2, -0.9]}]",
+  );
   await withChart(async (page, path) => {
     await page.click("[data-tab=edit]");
     await page.click("summary:has-text('The file')");
@@ -255,7 +258,7 @@ test("what is typed is saved as it is seen, and at the frame at which it was beg
     await page.evaluate("lfvisualizer.state.setFrame(6)");
     await page.click("summary:has-text('Focus distance')");
     const now = await page.evaluate("lfvisualizer.state.camera.focusDistance");
-    assert.ok(Math.abs(await page.inputValue("[data-quantity=focus_distance]") - now) < 1e-5);
+    assert.ok(Math.abs((await page.inputValue("[data-quantity=focus_distance]")) - now) < 1e-5);
   }, text);
 });
 
@@ -268,7 +271,8 @@ test("movements are made, and commands are those of the programs", async () => {
     await page.click(".row:has([aria-label='Degrees of the orbit']) button");
     await until(page, "app.state.path.frames === 21");
     const radii = await page.evaluate(() =>
-      window.lfvisualizer.state.cameras.map((camera) => Math.hypot(...camera.centre)));
+      window.lfvisualizer.state.cameras.map((camera) => Math.hypot(...camera.centre)),
+    );
     for (const radius of radii) assert.ok(Math.abs(radius - 1) < 0.002, `${radius}`);
     await page.keyboard.press("Escape");
     await page.click("#commands");
@@ -278,60 +282,81 @@ test("movements are made, and commands are those of the programs", async () => {
 });
 
 test("a preview comes in, and a click on it focuses there", async () => {
-  await withChart(async (page) => {
-    await page.keyboard.press("p");
-    await until(page, "app.state.preview && app.state.preview.state === 'finished'");
-    await page.waitForSelector(".picture canvas[data-version^='preview/1.bin']");
-    const lightest = () => page.evaluate(() => {
-      const canvas = document.querySelector(".picture canvas[data-version]");
-      const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
-      return data.reduce((most, value, i) => (i % 4 === 0 ? Math.max(most, value) : most), 0);
-    });
-    assert.ok((await lightest()) > 200);
-    await page.locator("[aria-label='Exposure, stops']").fill("-6");
-    assert.ok((await lightest()) < 60);
-    // The star in the middle is at the distance 1.
-    const box = await page.locator(".picture:has(canvas)").boundingBox();
-    await page.mouse.click(box.x + (box.width * 56) / 96, box.y + (box.height * 40) / 64);
-    await until(page, "app.state.isChanged");
-    await until(page, "Math.abs(app.state.camera.focusDistance - 1) < 0.05");
-  }, CHART_PATH.replace("time: 0, value: 1}", "time: 0, value: 1.15}"), ["--max-angle", "45"]);
+  await withChart(
+    async (page) => {
+      await page.keyboard.press("p");
+      await until(page, "app.state.preview && app.state.preview.state === 'finished'");
+      await page.waitForSelector(".picture canvas[data-version^='preview/1.bin']");
+      const lightest = () =>
+        page.evaluate(() => {
+          const canvas = document.querySelector(".picture canvas[data-version]");
+          const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+          return data.reduce((most, value, i) => (i % 4 === 0 ? Math.max(most, value) : most), 0);
+        });
+      assert.ok((await lightest()) > 200);
+      await page.locator("[aria-label='Exposure, stops']").fill("-6");
+      assert.ok((await lightest()) < 60);
+      // The star in the middle is at the distance 1.
+      const box = await page.locator(".picture:has(canvas)").boundingBox();
+      await page.mouse.click(box.x + (box.width * 56) / 96, box.y + (box.height * 40) / 64);
+      await until(page, "app.state.isChanged");
+      await until(page, "Math.abs(app.state.camera.focusDistance - 1) < 0.05");
+    },
+    CHART_PATH.replace("time: 0, value: 1}", "time: 0, value: 1.15}"),
+    ["--max-angle", "45"],
+  );
 });
 
 test("three clicks with Shift are asked for before the focus plane is tilted", async () => {
-  await withChart(async (page) => {
-    await page.keyboard.press("p");
-    await until(page, "app.state.preview && app.state.preview.state === 'finished'");
-    await page.waitForSelector(".picture canvas[data-version^='preview/1.bin']");
-    const box = await page.locator(".picture:has(canvas)").boundingBox();
-    await page.keyboard.down("Shift");
-    await page.mouse.click(box.x + (box.width * 56) / 96, box.y + (box.height * 40) / 64);
-    await until(page, "/Point 1 of 3/.test(app.state.message?.text ?? '')");
-    await page.keyboard.up("Shift");
-    assert.equal(await page.evaluate("lfvisualizer.state.isChanged"), false);
-    assert.equal(await page.evaluate("lfvisualizer.state.planePoints.points.length"), 1);
-  }, CHART_PATH.replace("time: 0, value: 1}", "time: 0, value: 1.15}"), ["--max-angle", "45"]);
+  await withChart(
+    async (page) => {
+      await page.keyboard.press("p");
+      await until(page, "app.state.preview && app.state.preview.state === 'finished'");
+      await page.waitForSelector(".picture canvas[data-version^='preview/1.bin']");
+      const box = await page.locator(".picture:has(canvas)").boundingBox();
+      await page.keyboard.down("Shift");
+      await page.mouse.click(box.x + (box.width * 56) / 96, box.y + (box.height * 40) / 64);
+      await until(page, "/Point 1 of 3/.test(app.state.message?.text ?? '')");
+      await page.keyboard.up("Shift");
+      assert.equal(await page.evaluate("lfvisualizer.state.isChanged"), false);
+      assert.equal(await page.evaluate("lfvisualizer.state.planePoints.points.length"), 1);
+    },
+    CHART_PATH.replace("time: 0, value: 1}", "time: 0, value: 1.15}"),
+    ["--max-angle", "45"],
+  );
 });
 
 test("frames of a render are seen while they grow", async () => {
   // All 225 LF images are used, and a checkpoint may follow every 64 of them.
   const many = join(temporary.folder, "many");
   await run("lfsynth", ["chart", "-o", many, "--count", "225", "--size", "60x40", "-q"]);
-  const path = await writePath(
-    CHART_PATH.replace("[96, 64]", "[320, 216]").replace("_mm: 12", "_mm: 60"));
+  const path = await writePath(CHART_PATH.replace("[96, 64]", "[320, 216]").replace("_mm: 12", "_mm: 60"));
   const frames = `${path}.frames`;
   await withPage([many, path, "--watch", frames], async (page) => {
     assert.match(await page.textContent("aside"), /No frames lie there yet/);
-    const renderer = spawn(program("lfrenderer"), [many, path, "-o", frames, "--dump-every", "1s",
-      "--threads", "1", "--frames", "1-3", "--back-end", "reference", "-q", "--no-contact-sheet"]);
+    const renderer = spawn(program("lfrenderer"), [
+      many,
+      path,
+      "-o",
+      frames,
+      "--dump-every",
+      "1s",
+      "--threads",
+      "1",
+      "--frames",
+      "1-3",
+      "--back-end",
+      "reference",
+      "-q",
+      "--no-contact-sheet",
+    ]);
     const ended = new Promise((resolve) => renderer.on("close", resolve));
     await until(page, "app.state.watch && app.state.watch.frames.some((one) => !one.finished)");
     await page.waitForSelector(".picture canvas[data-version^='watch/1.bin']");
     const first = await page.getAttribute(".picture canvas", "data-version");
     assert.equal(await ended, 0);
     await until(page, "app.state.watch.frames.filter((one) => one.finished).length === 3");
-    await page.waitForFunction(
-      (old) => document.querySelector(".picture canvas").dataset.version !== old, first);
+    await page.waitForFunction((old) => document.querySelector(".picture canvas").dataset.version !== old, first);
     await page.click("text=Rays per element");
     assert.match(await page.textContent("aside"), /Rays of each element: least/);
     // The picture is that of the current frame, even if another one was being read, or if there was
@@ -353,14 +378,26 @@ test("nobody is answered without the token, and nothing outside is given", async
     const { pathname, port } = new URL(address);
     assert.equal(await rawStatus(address, `${pathname}scene.json`), 200);
     const refused = [
-      "/", "/scene.json", `/${"0".repeat(32)}/scene.json`, pathname.slice(0, -2),
-      `${pathname}../scene.json`, `${pathname}../../etc/passwd`,
-      `${pathname}%2e%2e/%2e%2e/etc/passwd`, `${pathname}image/..%5c..%5cpasswd`,
+      "/",
+      "/scene.json",
+      `/${"0".repeat(32)}/scene.json`,
+      pathname.slice(0, -2),
+      `${pathname}../scene.json`,
+      `${pathname}../../etc/passwd`,
+      `${pathname}%2e%2e/%2e%2e/etc/passwd`,
+      `${pathname}image/..%5c..%5cpasswd`,
     ];
     for (const target of refused) assert.equal(await rawStatus(address, target), 403, target);
     assert.equal(await rawStatus(address, pathname, { Host: `evil.example:${port}` }), 403);
-    for (const target of ["etc/passwd", "image/1280/81.jpg", "image/9/1.jpg", "camera/-1.json",
-                          "path/x/use/1.bin", "watch/frames.json", "camera/1.yaml"])
+    for (const target of [
+      "etc/passwd",
+      "image/1280/81.jpg",
+      "image/9/1.jpg",
+      "camera/-1.json",
+      "path/x/use/1.bin",
+      "watch/frames.json",
+      "camera/1.yaml",
+    ])
       assert.ok([404, 410].includes(await rawStatus(address, pathname + target)), target);
   });
 });
@@ -388,30 +425,34 @@ test("an exported page opens from a plain web server", async () => {
 });
 
 test("a frame without LF images says so", async () => {
-  await withChart(async (page) => {
-    await until(page, "app.state.use");
-    assert.match(await page.textContent("#empty"), /takes no LF image/);
-    assert.match(await page.textContent("aside"), /it is black/);
-  }, CHART_PATH.replace("look_at: [0, 0, 0]", "look_at: [0, 0, -2]"));
+  await withChart(
+    async (page) => {
+      await until(page, "app.state.use");
+      assert.match(await page.textContent("#empty"), /takes no LF image/);
+      assert.match(await page.textContent("aside"), /it is black/);
+    },
+    CHART_PATH.replace("look_at: [0, 0, 0]", "look_at: [0, 0, -2]"),
+  );
 });
 
 test("a film may have one frame, and a lens no opening", async () => {
-  await withChart(async (page) => {
-    await until(page, "app.state.film && app.state.film.done === 1");
-    assert.match(await page.textContent("aside"), /0, a pinhole/);
-    await page.keyboard.press("Space");
-    await page.keyboard.press("ArrowRight");
-    await until(page, "app.state.frame === 1");
-  }, CHART_PATH.replace("frames: 11", "frames: 1").replace("mm: 12", "mm: 0"));
+  await withChart(
+    async (page) => {
+      await until(page, "app.state.film && app.state.film.done === 1");
+      assert.match(await page.textContent("aside"), /0, a pinhole/);
+      await page.keyboard.press("Space");
+      await page.keyboard.press("ArrowRight");
+      await until(page, "app.state.frame === 1");
+    },
+    CHART_PATH.replace("frames: 11", "frames: 1").replace("mm: 12", "mm: 0"),
+  );
 });
 
 test("packages say which frames are theirs; those of another path are left aside", async () => {
   const path = await writePath(CHART_PATH);
   const packages = join(temporary.folder, "packages");
-  await run("lfpreprocessor", [chart, path, "-o", packages, "--packages", "2", "-q",
-                               "--max-images", "9"]);
-  const words = [chart, path, join(packages, "package-0000.lfp"),
-                 join(packages, "package-0001.lfp")];
+  await run("lfpreprocessor", [chart, path, "-o", packages, "--packages", "2", "-q", "--max-images", "9"]);
+  const words = [chart, path, join(packages, "package-0000.lfp"), join(packages, "package-0001.lfp")];
   await withPage(words, async (page) => {
     await until(page, "app.state.use");
     assert.equal(await page.evaluate(() => window.lfvisualizer.state.use.ids.length), 9);
@@ -425,16 +466,21 @@ test("packages say which frames are theirs; those of another path are left aside
 
 test("it is readable in light and in a small window", async () => {
   const path = await writePath(CHART_PATH);
-  await withPage([chart, path], async (page) => {
-    await until(page, "app.state.use");
-    const isWithin = await page.evaluate(() =>
-      document.documentElement.scrollWidth <= innerWidth &&
-      document.documentElement.scrollHeight <= innerHeight);
-    assert.ok(isWithin);
-    assert.equal(await page.getAttribute("html", "data-theme"), "light");
-    await page.click("#theme");
-    assert.equal(await page.getAttribute("html", "data-theme"), "dark");
-    for (const button of await page.locator("button:visible").all())
-      assert.ok((await button.getAttribute("aria-label")) ?? (await button.textContent()));
-  }, { viewport: { width: 1000, height: 600 }, colorScheme: "light" });
+  await withPage(
+    [chart, path],
+    async (page) => {
+      await until(page, "app.state.use");
+      const isWithin = await page.evaluate(
+        () =>
+          document.documentElement.scrollWidth <= innerWidth && document.documentElement.scrollHeight <= innerHeight,
+      );
+      assert.ok(isWithin);
+      assert.equal(await page.getAttribute("html", "data-theme"), "light");
+      await page.click("#theme");
+      assert.equal(await page.getAttribute("html", "data-theme"), "dark");
+      for (const button of await page.locator("button:visible").all())
+        assert.ok((await button.getAttribute("aria-label")) ?? (await button.textContent()));
+    },
+    { viewport: { width: 1000, height: 600 }, colorScheme: "light" },
+  );
 });

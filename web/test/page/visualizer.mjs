@@ -109,14 +109,20 @@ export async function until(page, condition) {
 
 // Serves an exported page from a plain web server.
 export async function serveFiles(folder) {
-  const types = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css",
-                  ".json": "application/json", ".jpg": "image/jpeg" };
+  const types = {
+    ".html": "text/html",
+    ".js": "text/javascript",
+    ".css": "text/css",
+    ".json": "application/json",
+    ".jpg": "image/jpeg",
+  };
   const server = createServer(async (request, response) => {
     const name = normalize(decodeURIComponent(new URL(request.url, "http://x").pathname));
     try {
       const bytes = await readFile(join(folder, name === "/" ? "index.html" : name));
-      response.writeHead(200, { "Content-Type": types[extname(name || "")] ??
-                                (name === "/" ? "text/html" : "application/octet-stream") });
+      response.writeHead(200, {
+        "Content-Type": types[extname(name || "")] ?? (name === "/" ? "text/html" : "application/octet-stream"),
+      });
       response.end(bytes);
     } catch {
       response.writeHead(404).end();

@@ -2,9 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { dolly, focusPull, orbit } from "../../src/path/generators";
 import { PathDocument } from "../../src/path/path_document";
-import {
-  assertOtherLinesKept, example, kExamples, kSmall, near, readByPrograms,
-} from "./real_parser";
+import { assertOtherLinesKept, example, kExamples, kSmall, near, readByPrograms } from "./real_parser";
 
 type Vector = number[];
 
@@ -31,7 +29,16 @@ function checkOrbit(text: string, options: Orbit): PathDocument {
   const parts = (position: Vector): { height: number; radius: number; arm: Vector } => {
     const arm = minus(position, options.centre);
     const height = dot(arm, axis);
-    return { height, radius: Math.hypot(...minus(arm, axis.map((x) => x * height))), arm };
+    return {
+      height,
+      radius: Math.hypot(
+        ...minus(
+          arm,
+          axis.map((x) => x * height),
+        ),
+      ),
+      arm,
+    };
   };
   const first = parts(options.startPosition);
   for (const camera of film.cameras) {
@@ -42,63 +49,67 @@ function checkOrbit(text: string, options: Orbit): PathDocument {
   }
   // The expected position by Rodrigues' rotation of the start.
   const end = film.cameras[Math.round((options.seconds + (options.start ?? 0)) * film.fps)];
-  const angle = options.degrees * Math.PI / 180;
-  const k = axis, v = first.arm;
+  const angle = (options.degrees * Math.PI) / 180;
+  const k = axis,
+    v = first.arm;
   const cross = [k[1] * v[2] - k[2] * v[1], k[2] * v[0] - k[0] * v[2], k[0] * v[1] - k[1] * v[0]];
-  const expected = v.map((x, i) => options.centre[i] + x * Math.cos(angle) +
-    cross[i] * Math.sin(angle) + k[i] * dot(k, v) * (1 - Math.cos(angle)));
+  const expected = v.map(
+    (x, i) =>
+      options.centre[i] + x * Math.cos(angle) + cross[i] * Math.sin(angle) + k[i] * dot(k, v) * (1 - Math.cos(angle)),
+  );
   for (let i = 0; i < 3; ++i) near(end.position_w[i], expected[i], 1e-4 * first.radius);
   return path;
 }
 
 test("an orbit keeps within 0.2 % of its radius, at an even speed", () => {
-  const path = checkOrbit(kSmall, { centre: [0, 0, 0], axis: [0, -1, 0],
-                                    startPosition: [0, -0.1, -0.4], degrees: 360, seconds: 4 });
+  const path = checkOrbit(kSmall, {
+    centre: [0, 0, 0],
+    axis: [0, -1, 0],
+    startPosition: [0, -0.1, -0.4],
+    degrees: 360,
+    seconds: 4,
+  });
   assert.equal(path.constant("frames"), 41);
   assertOtherLinesKept(kSmall, path.text(), [5, 8]);
   const { cameras } = readByPrograms(path.text());
-  const steps = cameras.slice(1).map((camera, i) =>
-    Math.hypot(...minus(camera.position_w, cameras[i].position_w)));
+  const steps = cameras.slice(1).map((camera, i) => Math.hypot(...minus(camera.position_w, cameras[i].position_w)));
   for (const step of steps) near(step, 2 * 0.4 * Math.sin(Math.PI / 40), 0.002 * 0.4);
 });
 
 test("orbits of all kinds are on their circles", () => {
   const shapes: Orbit[] = [
-    { centre: [0.1, 0, 0.3], axis: [0, 2, 0], startPosition: [0.1, 0, -0.4], degrees: -30,
-      seconds: 2 },
-    { centre: [0, 0, 0], axis: [1, 0.5, 0], startPosition: [0.05, 0.1, -0.4], degrees: 170,
-      seconds: 1.37 },
-    { centre: [0, 0, 0], axis: [1, 0, 0], startPosition: [0, 0.01, -0.4], degrees: 360,
-      seconds: 3 },
+    { centre: [0.1, 0, 0.3], axis: [0, 2, 0], startPosition: [0.1, 0, -0.4], degrees: -30, seconds: 2 },
+    { centre: [0, 0, 0], axis: [1, 0.5, 0], startPosition: [0.05, 0.1, -0.4], degrees: 170, seconds: 1.37 },
+    { centre: [0, 0, 0], axis: [1, 0, 0], startPosition: [0, 0.01, -0.4], degrees: 360, seconds: 3 },
     { centre: [0, 0, 0], axis: [0, -1, 0], startPosition: [0, 0, -0.4], degrees: 5, seconds: 1 },
-    { centre: [0, 0, 0], axis: [0, -1, 0], startPosition: [0, 0, -0.4], degrees: 90, seconds: 1,
-      start: 0.5 },
-    { centre: [4e5, 5e6, 20], axis: [0, 0, 1], startPosition: [4e5 + 3, 5e6, 22], degrees: 720,
-      seconds: 5 },
+    { centre: [0, 0, 0], axis: [0, -1, 0], startPosition: [0, 0, -0.4], degrees: 90, seconds: 1, start: 0.5 },
+    { centre: [4e5, 5e6, 20], axis: [0, 0, 1], startPosition: [4e5 + 3, 5e6, 22], degrees: 720, seconds: 5 },
   ];
   for (const shape of shapes) checkOrbit(kSmall, shape);
   // Focus points stay in front of a camera that looks at the centre from all sides.
   for (const name of kExamples) checkOrbit(example(name), shapes[0]);
   checkOrbit(example("slide").replace("follow: look_at ", "follow: direction "), shapes[0]);
-  checkOrbit(kSmall.replace("  position:", "  position_mm:").replace("-0.40", "-400")
-    .replace("frames:", "unit_m: 0.01\nframes:"), shapes[1]);
+  checkOrbit(
+    kSmall
+      .replace("  position:", "  position_mm:")
+      .replace("-0.40", "-400")
+      .replace("frames:", "unit_m: 0.01\nframes:"),
+    shapes[1],
+  );
 });
 
 test("an orbit goes round upright", () => {
   const path = PathDocument.parse(kSmall);
-  orbit(path, { centre: [0, 0, 0], axis: [1, 0, 0], startPosition: [0, 0, -0.4], degrees: 180,
-                seconds: 2 });
+  orbit(path, { centre: [0, 0, 0], axis: [1, 0, 0], startPosition: [0, 0, -0.4], degrees: 180, seconds: 2 });
   for (const camera of readByPrograms(path.text()).cameras) near(camera.up[0], 1, 1e-9);
   const other = PathDocument.parse(kSmall);
-  orbit(other, { centre: [0, 0, 0], axis: [0, 1, 0], startPosition: [0, 0, -0.4], degrees: 180,
-                 seconds: 2 });
+  orbit(other, { centre: [0, 0, 0], axis: [0, 1, 0], startPosition: [0, 0, -0.4], degrees: 180, seconds: 2 });
   for (const camera of readByPrograms(other.text()).cameras) near(camera.up[1], -1, 1e-9);
 });
 
 test("an orbit on its axis or without an angle is refused, and changes nothing", () => {
   const path = PathDocument.parse(kSmall);
-  const options = { centre: [0, 0, 0], axis: [0, 0, 1], startPosition: [0, 0, -0.4], degrees: 90,
-                    seconds: 1 };
+  const options = { centre: [0, 0, 0], axis: [0, 0, 1], startPosition: [0, 0, -0.4], degrees: 90, seconds: 1 };
   assert.throws(() => orbit(path, options), /beside its axis/);
   assert.throws(() => orbit(path, { ...options, axis: [0, 0, 0] }), /direction/);
   assert.throws(() => orbit(path, { ...options, axis: [0, 1, 0], degrees: 0 }), /angle/);

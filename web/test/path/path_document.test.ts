@@ -1,9 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { PathDocument } from "../../src/path/path_document";
-import {
-  assertOtherLinesKept, example, kExamples, kSmall, near, readByPrograms,
-} from "./real_parser";
+import { assertOtherLinesKept, example, kExamples, kSmall, near, readByPrograms } from "./real_parser";
 
 test("a text that is not edited is the same text", () => {
   for (const name of kExamples) {
@@ -41,7 +39,10 @@ test("millimetres become world units by the file's unit, else by the light field
 test("keyframes, speeds and accelerations are told as they are listed", () => {
   const demo = PathDocument.parse(example("demo"));
   const focus = demo.quantity("focus_distance");
-  assert.deepEqual(focus.keyframes.map((key) => key.time), [0.5, 1.5, 2, 3]);
+  assert.deepEqual(
+    focus.keyframes.map((key) => key.time),
+    [0.5, 1.5, 2, 3],
+  );
   assert.equal(focus.keyframes[1].interpolation, "smooth");
   assert.equal(focus.base, 0.55);
   assert.equal(focus.baseIsKey, true);
@@ -63,8 +64,13 @@ test("a changed number leaves every other byte", () => {
   assert.equal(path.text(), kSmall.replace("[0.0, 0, -0.40]", "[0, 0, -0.123457]"));
   path.setConstant("fps", 24);
   path.setConstant("resolution", [320, 180]);
-  assert.equal(path.text(), kSmall.replace("[0.0, 0, -0.40]", "[0, 0, -0.123457]")
-    .replace("fps: 10     # few", "fps: 24     # few").replace("[ 64,  36 ]", "[320, 180]"));
+  assert.equal(
+    path.text(),
+    kSmall
+      .replace("[0.0, 0, -0.40]", "[0, 0, -0.123457]")
+      .replace("fps: 10     # few", "fps: 24     # few")
+      .replace("[ 64,  36 ]", "[320, 180]"),
+  );
   readByPrograms(path.text());
 });
 
@@ -73,16 +79,23 @@ test("line breaks of another system stay, and a missing last one does no harm", 
   const path = PathDocument.parse(text);
   path.setKeyframe("focus_distance", 1, 0.5);
   path.setKeyframe("focus_distance", 2, 0.6);
-  assert.equal(path.text(), `${text}\r\nkeyframes:\r\n  focus_distance_mm:\r\n` +
-               "    - {time: 1, value: 500}\r\n    - {time: 2, value: 600}");
+  assert.equal(
+    path.text(),
+    `${text}\r\nkeyframes:\r\n  focus_distance_mm:\r\n` + "    - {time: 1, value: 500}\r\n    - {time: 2, value: 600}",
+  );
   assert.equal(readByPrograms(path.text()).cameras[20].focus_distance_w, 0.6);
 });
 
 test("a first keyframe makes the section and the list, and the base is its key at time 0", () => {
   const path = PathDocument.parse(kSmall);
   path.setKeyframe("position", 1.5, [0.02, 0, -0.4], "linear");
-  assert.equal(path.text(), kSmall.replace("# the subject\n", "# the subject\nkeyframes:\n" +
-    "  position:\n    - {time: 1.5, value: [0.02, 0, -0.4], interpolation: linear}\n"));
+  assert.equal(
+    path.text(),
+    kSmall.replace(
+      "# the subject\n",
+      "# the subject\nkeyframes:\n" + "  position:\n    - {time: 1.5, value: [0.02, 0, -0.4], interpolation: linear}\n",
+    ),
+  );
   assert.equal(path.quantity("position").baseIsKey, true);
   const film = readByPrograms(path.text());
   near(film.cameras[0].position_w[0], 0, 1e-12);
@@ -95,7 +108,10 @@ test("keys are sorted by time, and one at the same time is replaced", () => {
   path.setKeyframe("focus_distance", 2, 0.6);
   path.setKeyframe("focus_distance", 1, 0.5);
   path.setKeyframe("focus_distance", 1.5, 0.55);
-  assert.deepEqual(path.quantity("focus_distance").keyframes.map((key) => key.time), [1, 1.5, 2]);
+  assert.deepEqual(
+    path.quantity("focus_distance").keyframes.map((key) => key.time),
+    [1, 1.5, 2],
+  );
   path.setKeyframe("focus_distance", 1.5 + 1e-9, 0.7, "step");
   path.setKeyframe("focus_distance", 2, 0.8, "linear");
   path.setKeyframe("focus_distance", 2, 0.9);
@@ -122,8 +138,10 @@ test("keys join lists as these are written, and comments stay with their keys", 
   const before = example("demo");
   const path = PathDocument.parse(before);
   path.setKeyframe("focus_distance", 1.75, 0.7);
-  assert.equal(path.text(), before.replace("    - {time: 2, value: 0.8}",
-    "    - {time: 1.75, value: 0.7}\n    - {time: 2, value: 0.8}"));
+  assert.equal(
+    path.text(),
+    before.replace("    - {time: 2, value: 0.8}", "    - {time: 1.75, value: 0.7}\n    - {time: 2, value: 0.8}"),
+  );
   path.setKeyframe("focus_distance", 0.25, 0.6);
   path.setKeyframe("focus_distance", 4, 1.2);
   assertOtherLinesKept(before, path.text(), []);
@@ -131,10 +149,17 @@ test("keys join lists as these are written, and comments stay with their keys", 
 
   const pull = PathDocument.parse(example("focus-pull"));
   pull.setKeyframe("focus_distance", 1, 0.4);
-  assert.equal(pull.text(), example("focus-pull").replace(
-    "value: 0.3}, {time: 2", "value: 0.3}, {time: 1, value: 0.4}, {time: 2"));
+  assert.equal(
+    pull.text(),
+    example("focus-pull").replace("value: 0.3}, {time: 2", "value: 0.3}, {time: 1, value: 0.4}, {time: 2"),
+  );
   pull.setKeyframe("focus_distance", 3, 0.4);
-  assert.ok(pull.text().split("\n").every((line) => line.length <= 100));
+  assert.ok(
+    pull
+      .text()
+      .split("\n")
+      .every((line) => line.length <= 100),
+  );
   readByPrograms(pull.text());
 });
 
@@ -142,10 +167,18 @@ test("a list in brackets that grows too long becomes one key per line", () => {
   const before = example("demo").replace("-0.8]}]\n", "-0.8]}]  # slow\n");
   const path = PathDocument.parse(before);
   path.setKeyframe("position", 2, [0, -0.125, -0.8]);
-  assert.match(path.text(), new RegExp([
-    "  position:  # slow", "    - {time: 0.5, value: \\[-0.004, -0.125, -0.8\\]}",
-    "    - {time: 2, value: \\[0, -0.125, -0.8\\]}",
-    "    - {time: 3, value: \\[0.004, -0.125, -0.8\\]}", "  focus_distance:"].join("\n")));
+  assert.match(
+    path.text(),
+    new RegExp(
+      [
+        "  position:  # slow",
+        "    - {time: 0.5, value: \\[-0.004, -0.125, -0.8\\]}",
+        "    - {time: 2, value: \\[0, -0.125, -0.8\\]}",
+        "    - {time: 3, value: \\[0.004, -0.125, -0.8\\]}",
+        "  focus_distance:",
+      ].join("\n"),
+    ),
+  );
   assertOtherLinesKept(before, path.text(), [18]);
   readByPrograms(path.text());
 });
@@ -156,8 +189,10 @@ test("a key moves in time, and past others", () => {
   assert.equal(path.moveKeyframe("focus_distance", 1, 1.25), 1);
   assert.equal(path.text(), before.replace("- {time: 1.5,", "- {time: 1.25,"));
   assert.equal(path.moveKeyframe("focus_distance", 1, 2.5), 2);
-  assert.deepEqual(path.quantity("focus_distance").keyframes.map((key) => key.value),
-                   [0.55, 0.8, 0.8, 1.1]);
+  assert.deepEqual(
+    path.quantity("focus_distance").keyframes.map((key) => key.value),
+    [0.55, 0.8, 0.8, 1.1],
+  );
   assert.equal(path.moveKeyframe("focus_distance", 3, 0.25), 0);
   const text = path.text();
   assert.throws(() => path.moveKeyframe("focus_distance", 0, 0.5), /has a key at 0.5 s already/);
@@ -201,15 +236,16 @@ test("deleting in brackets leaves brackets", () => {
   for (const index of [0, 1]) {
     const path = PathDocument.parse(example("focus-pull"));
     path.deleteKeyframe("focus_distance", index);
-    assert.match(path.text(), index === 0 ? /focus_distance: \[\{time: 2, value: 0.5\}\]/
-                                          : /focus_distance: \[\{time: 0.5, value: 0.3\}\]/);
+    assert.match(
+      path.text(),
+      index === 0 ? /focus_distance: \[\{time: 2, value: 0.5\}\]/ : /focus_distance: \[\{time: 0.5, value: 0.3\}\]/,
+    );
     readByPrograms(path.text());
   }
 });
 
 test("a base that a key at time 0 hid does not come to light", () => {
-  const text = kSmall + "keyframes:\n  focus_distance: [{time: 0, value: 0.7}, {time: 1, " +
-               "value: 0.9}]\n";
+  const text = kSmall + "keyframes:\n  focus_distance: [{time: 0, value: 0.7}, {time: 1, " + "value: 0.9}]\n";
   const moved = PathDocument.parse(text);
   moved.moveKeyframe("focus_distance", 0, 0.5);
   near(readByPrograms(moved.text()).cameras[0].focus_distance_w, 0.7, 1e-9);
@@ -233,8 +269,10 @@ test("what is 0 when left out starts at 0 when it gets its first key", () => {
 test("what moves by accelerations says so, and moves by keys once that is removed", () => {
   const before = example("slide");
   const path = PathDocument.parse(before);
-  assert.throws(() => path.setKeyframe("position", 1, [0, 0, -0.4]),
-                /position moves by accelerations; remove its motion/);
+  assert.throws(
+    () => path.setKeyframe("position", 1, [0, 0, -0.4]),
+    /position moves by accelerations; remove its motion/,
+  );
   assert.equal(path.text(), before);
   path.removeMotion("position");
   assert.equal(path.text(), before.slice(0, before.indexOf("accelerations:\n")));
@@ -243,7 +281,8 @@ test("what moves by accelerations says so, and moves by keys once that is remove
 });
 
 test("removed motion takes the speed and leaves the motion of others", () => {
-  const text = kSmall.replace("lens:", "  speed_mm: [10, 0, 0] # slow\nlens:") +
+  const text =
+    kSmall.replace("lens:", "  speed_mm: [10, 0, 0] # slow\nlens:") +
     "accelerations:\n  - quantity: position\n    from: 0\n    to: 1\n    value: [1, 0, 0]\n" +
     "  # the other\n  - {quantity: focus_distance_mm, from: 0, to: 1, value: 5}\n";
   const path = PathDocument.parse(text);
@@ -330,7 +369,8 @@ test("what shares an anchor with a removed value keeps the value", () => {
 test("files in brackets, in blocks and with aliases are edited, too", () => {
   const flow = PathDocument.parse(
     "{format: lfpath 1, fps: 10, frames: 11, resolution: [64, 36], camera: {position: [0, 0, -1]," +
-    " look_at: [0, 0, 0], focal_length_mm: 50}, lens: {f_number: 8, focus_distance: 1}}\n");
+      " look_at: [0, 0, 0], focal_length_mm: 50}, lens: {f_number: 8, focus_distance: 1}}\n",
+  );
   flow.setKeyframe("position", 1, [0.1, 0, -1]);
   flow.setKeyframe("position", 0.5, [0, 0, -1]);
   flow.setConstant("blades", 5);
@@ -341,10 +381,12 @@ test("files in brackets, in blocks and with aliases are edited, too", () => {
   assert.doesNotMatch(flow.text(), /^keyframes/m);
   readByPrograms(flow.text());
 
-  const block = PathDocument.parse(kSmall.replace("[0.0, 0, -0.40]   # in front",
-    "&start\n    - 0 # x\n    - 0\n    - -0.4") + "keyframes:\n  position:\n" +
-    "  - time: 1\n    value: *start\n  -\n    time: 2  # late\n    value: [1, 0, -0.4]\n" +
-    "  look_at: &k\n  - {time: 1, value: [0, 0, 0]}\n  focus_distance: &f [{time: 1, value: 1}]\n");
+  const block = PathDocument.parse(
+    kSmall.replace("[0.0, 0, -0.40]   # in front", "&start\n    - 0 # x\n    - 0\n    - -0.4") +
+      "keyframes:\n  position:\n" +
+      "  - time: 1\n    value: *start\n  -\n    time: 2  # late\n    value: [1, 0, -0.4]\n" +
+      "  look_at: &k\n  - {time: 1, value: [0, 0, 0]}\n  focus_distance: &f [{time: 1, value: 1}]\n",
+  );
   readByPrograms(block.text());
   block.setKeyframe("position", 1, [0.5, 0, -0.4], "linear");
   block.setKeyframe("position", 1.5, [0.7, 0, -0.4]);
@@ -358,15 +400,20 @@ test("files in brackets, in blocks and with aliases are edited, too", () => {
 });
 
 test("an edit behind an alias does not reach its anchor", () => {
-  const path = PathDocument.parse(kSmall + "keyframes:\n  look_at: &k\n    - {time: 1, value: " +
-    "[0, 0, 0]}\n    - {time: 2, value: [0, 0, 0.1]}\n  position_mm: *k\n");
+  const path = PathDocument.parse(
+    kSmall +
+      "keyframes:\n  look_at: &k\n    - {time: 1, value: " +
+      "[0, 0, 0]}\n    - {time: 2, value: [0, 0, 0.1]}\n  position_mm: *k\n",
+  );
   path.removeMotion("position", [0, 0, -0.4]);
   path.setKeyframe("position", 1, [0.01, 0, -0.4]);
   assert.deepEqual(path.quantity("look_at").keyframes[0].value, [0, 0, 0]);
   readByPrograms(path.text());
-  const other = PathDocument.parse(example("tilt")
-    .replace("{vertical: 0}}", "&rest {vertical: 0}}")
-    .replace("vertical: 70}}", "vertical: 70}}\n    - {time: 3, value: *rest}"));
+  const other = PathDocument.parse(
+    example("tilt")
+      .replace("{vertical: 0}}", "&rest {vertical: 0}}")
+      .replace("vertical: 70}}", "vertical: 70}}\n    - {time: 3, value: *rest}"),
+  );
   other.setKeyframe("focus_tilt", 3, { horizontal: 0, vertical: 5 });
   assert.deepEqual(other.quantity("focus_tilt").keyframes[0].value, { horizontal: 0, vertical: 0 });
   other.moveKeyframe("focus_tilt", 0, 4);
@@ -406,10 +453,14 @@ test("values that the programs would refuse are refused, and nothing changes", (
 
 test("several edits are one, or none", () => {
   const path = PathDocument.parse(kSmall);
-  assert.throws(() => path.edit(() => {
-    path.setBase("focus_distance", 1);
-    path.setBase("focus_distance", -1);
-  }), /above 0/);
+  assert.throws(
+    () =>
+      path.edit(() => {
+        path.setBase("focus_distance", 1);
+        path.setBase("focus_distance", -1);
+      }),
+    /above 0/,
+  );
   assert.equal(path.text(), kSmall);
 });
 
@@ -423,6 +474,5 @@ test("a text that is no path says where", () => {
   assert.throws(() => PathDocument.parse("camera: {position: [0, 0"), /line 1/);
   assert.throws(() => PathDocument.parse("- 1\n"), /has keys/);
   const wrong = PathDocument.parse(kSmall.replace("400 ", "four "));
-  assert.throws(() => wrong.quantity("focus_distance"),
-                /lens.focus_distance_mm: expected a number/);
+  assert.throws(() => wrong.quantity("focus_distance"), /lens.focus_distance_mm: expected a number/);
 });

@@ -18,19 +18,31 @@ function makeRandom(seed: number): (below: number) => number {
 }
 
 const kCentres: Record<string, number> = {
-  roll: 0, focal_length: 0.05, field_of_view: 40, aperture_diameter: 0.006, f_number: 8,
-  focus_distance: 0.4, blade_rotation: 0,
+  roll: 0,
+  focal_length: 0.05,
+  field_of_view: 40,
+  aperture_diameter: 0.006,
+  f_number: 8,
+  focus_distance: 0.4,
+  blade_rotation: 0,
 };
 
 function drawValue(name: string, random: (below: number) => number): PathValue {
   const spread = (): number => random(2) - 1;
   switch (name) {
-    case "position": return [0.05 * spread(), 0.05 * spread(), -0.4 + 0.05 * spread()];
-    case "look_at": case "focus_point": return [0.05 * spread(), 0.05 * spread(), 0.1 * spread()];
-    case "orientation": return { yaw: 20 * spread(), pitch: 20 * spread(), roll: 20 * spread() };
-    case "focus_tilt": return { horizontal: 20 * spread(), vertical: 20 * spread() };
-    case "quaternion": return [1, 0, 0, 0];
-    default: return kCentres[name] === 0 ? 90 * spread() : kCentres[name] * (1 + 0.3 * spread());
+    case "position":
+      return [0.05 * spread(), 0.05 * spread(), -0.4 + 0.05 * spread()];
+    case "look_at":
+    case "focus_point":
+      return [0.05 * spread(), 0.05 * spread(), 0.1 * spread()];
+    case "orientation":
+      return { yaw: 20 * spread(), pitch: 20 * spread(), roll: 20 * spread() };
+    case "focus_tilt":
+      return { horizontal: 20 * spread(), vertical: 20 * spread() };
+    case "quaternion":
+      return [1, 0, 0, 0];
+    default:
+      return kCentres[name] === 0 ? 90 * spread() : kCentres[name] * (1 + 0.3 * spread());
   }
 }
 
@@ -46,10 +58,13 @@ function editAtRandom(path: PathDocument, name: string, random: (below: number) 
   const index = Math.floor(random(keyframes.length + (baseIsKey ? 1 : 0))) - (baseIsKey ? 1 : 0);
   const time = Math.round(random(40)) / 10;
   switch (Math.floor(random(9))) {
-    case 0: case 1: case 2:
+    case 0:
+    case 1:
+    case 2:
       path.setKeyframe(name, time, drawValue(name, random), kInterpolations[Math.floor(random(4))]);
       break;
-    case 3: case 4:
+    case 3:
+    case 4:
       path.moveKeyframe(name, index, time);
       break;
     case 5:
@@ -63,13 +78,24 @@ function editAtRandom(path: PathDocument, name: string, random: (below: number) 
       break;
     case 8:
       switch (name) {
-        case "look_at": path.useLookAt(drawValue(name, random) as number[]); break;
+        case "look_at":
+          path.useLookAt(drawValue(name, random) as number[]);
+          break;
         case "orientation":
-          path.useOrientation(drawValue(name, random) as Record<string, number>); break;
-        case "focus_point": path.useFocusPoint(drawValue(name, random) as number[]); break;
-        case "focus_distance": path.useFocusDistance(drawValue(name, random) as number); break;
-        case "aperture_diameter": path.useAperture(drawValue(name, random) as number); break;
-        case "f_number": path.useFNumber(drawValue(name, random) as number); break;
+          path.useOrientation(drawValue(name, random) as Record<string, number>);
+          break;
+        case "focus_point":
+          path.useFocusPoint(drawValue(name, random) as number[]);
+          break;
+        case "focus_distance":
+          path.useFocusDistance(drawValue(name, random) as number);
+          break;
+        case "aperture_diameter":
+          path.useAperture(drawValue(name, random) as number);
+          break;
+        case "f_number":
+          path.useFNumber(drawValue(name, random) as number);
+          break;
       }
   }
 }
@@ -122,8 +148,7 @@ lens:
 `;
 
 // Returns comments on lines of their own that belong to no single key.
-const looseComments = (text: string): string[] =>
-  text.split("\n").filter((line) => line.startsWith("#"));
+const looseComments = (text: string): string[] => text.split("\n").filter((line) => line.startsWith("#"));
 
 test("random edits leave a path that the programs take, and everything else as it was", () => {
   const texts = [kSmall, ...kExamples.map(example), kSmall.replace(/\n/g, "\r\n"), kOdd];
@@ -151,12 +176,17 @@ test("random edits leave a path that the programs take, and everything else as i
       }
       ++made;
       // With anchors, an edit may change two quantities that share a value.
-      if (!shared) assert.deepEqual(others.map((other) => facts(path, other)), known, path.text());
+      if (!shared)
+        assert.deepEqual(
+          others.map((other) => facts(path, other)),
+          known,
+          path.text(),
+        );
       assert.deepEqual(looseComments(path.text()), looseComments(before));
       if (text.includes("\r\n")) assert.doesNotMatch(path.text(), /[^\r]\n/);
       assert.equal(PathDocument.parse(path.text()).text(), path.text());
       unread.push(`${path.text()}# after an edit of ${name}\n`);
-      if (step % 20 !== 19) continue;  // starting a program takes longer than reading a path
+      if (step % 20 !== 19) continue; // starting a program takes longer than reading a path
       const refusal = refusalByPrograms(path.text());
       if (refusal === "") {
         unread = [];
@@ -172,5 +202,5 @@ test("random edits leave a path that the programs take, and everything else as i
     }
   });
   console.log(`${made} edits were made, ${refused} refused`);
-  assert.ok(made > 3 * refused / 2, `${made} edits were made, ${refused} refused`);
+  assert.ok(made > (3 * refused) / 2, `${made} edits were made, ${refused} refused`);
 });

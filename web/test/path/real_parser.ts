@@ -34,15 +34,16 @@ interface Answer {
 
 function ask(text: string): Answer {
   const folder = process.env.LF_BIN;
-  assert.ok(folder, "LF_BIN is not set: it must name the folder of lfcammvminfo, which reads " +
-                    "the paths that these tests write");
+  assert.ok(
+    folder,
+    "LF_BIN is not set: it must name the folder of lfcammvminfo, which reads " + "the paths that these tests write",
+  );
   const temporary = mkdtempSync(join(tmpdir(), "lfpath-"));
   try {
     const file = join(temporary, "path.yaml");
     writeFileSync(file, text);
     const program = join(folder, "lfcammvminfo");
-    const run = spawnSync(program, [file, "--json"],
-                          { encoding: "utf8", maxBuffer: 1 << 28 });
+    const run = spawnSync(program, [file, "--json"], { encoding: "utf8", maxBuffer: 1 << 28 });
     assert.ok(!run.error, `LF_BIN: ${program} does not run: ${run.error?.message}`);
     return run;
   } finally {
@@ -82,8 +83,7 @@ export function assertOtherLinesKept(before: string, after: string, changed: num
 }
 
 export function near(found: number, expected: number, tolerance: number): void {
-  assert.ok(Math.abs(found - expected) <= tolerance,
-            `${found} is not ${expected} +- ${tolerance}`);
+  assert.ok(Math.abs(found - expected) <= tolerance, `${found} is not ${expected} +- ${tolerance}`);
 }
 
 export const kSmall = `# a film

@@ -6,7 +6,10 @@ import { focusThrough } from "../../src/data/tilted_focus";
 
 // A camera at (1, 2, 3) that looks along x; y is to its left, z up.
 const camera = {
-  centre: [1, 2, 3], right: [0, -1, 0], up: [0, 0, 1], forward: [1, 0, 0],
+  centre: [1, 2, 3],
+  right: [0, -1, 0],
+  up: [0, 0, 1],
+  forward: [1, 0, 0],
 } as FrameCamera;
 
 // Returns a point at x to the right, y above, and z before the camera.
@@ -17,7 +20,11 @@ test("the focus plane through three points holds them", () => {
   assert.deepEqual(straight, { distance: 5, horizontal_deg: 0, vertical_deg: 0 });
   const slope = Math.tan((30 * Math.PI) / 180);
   const depth = (x: number, y: number): number => 4 + slope * x - y;
-  const points = [[1, 1], [-2, 0.5], [0.3, -1]].map(([x, y]) => at(x, y, depth(x, y)));
+  const points = [
+    [1, 1],
+    [-2, 0.5],
+    [0.3, -1],
+  ].map(([x, y]) => at(x, y, depth(x, y)));
   const tilted = focusThrough(camera, points)!;
   assert.ok(Math.abs(tilted.distance - 4) < 1e-12);
   assert.ok(Math.abs(tilted.horizontal_deg - 30) < 1e-9);
