@@ -4,9 +4,9 @@
 usage: bench/codec_speed.py BUILD_DIR [--data ../shared] [--runs 5] [--name NAME] [--write doc/codec.md]
        bench/codec_speed.py --again JSON [--write doc/codec.md]
 
-Pictures of `blender-shop` (the densest) and of `beer-colmap` (photographs) side by side, and the picture of waves and noise
-that lf_codec_bench draws. Each is coded by the thesis's scheme, by the default's, and without loss. MB/s are of pixels,
-10^6 bytes; CPU time, medians.
+Pictures of `blender-shop` (the densest) and of `beer-colmap` (photographs) side by side, and the picture of waves and
+noise that lf_codec_bench draws. Each is coded by the thesis's scheme, by the default's, and without loss. MB/s are of
+pixels, 10^6 bytes; CPU time, medians.
 """
 import argparse
 import json

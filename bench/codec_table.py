@@ -25,7 +25,6 @@ import lzma
 import math
 import pathlib
 import shutil
-import subprocess
 import tempfile
 import time
 
@@ -103,7 +102,8 @@ class Content:
                                 "--progress", "none", *options))
         frames = self.render(store)
         default_psnr = self.frame_psnr(self.render(store, "default"), "default") if and_by_defaults else None
-        return {"default_psnr": default_psnr, "ratio": report["ratio"], "psnr": float(str(report["psnr_db"]).replace("exact", "inf")),
+        return {"default_psnr": default_psnr, "ratio": report["ratio"],
+                "psnr": float(str(report["psnr_db"]).replace("exact", "inf")),
                 "frame_psnr": self.frame_psnr(frames), "cpu_s": report["encode_cpu_s"],
                 "bytes": report["code_bytes"], "total_s": report["total_s"]}, frames
 
@@ -183,7 +183,8 @@ def best_lossless(content, levels, threshold, quantizer):
 
 def at(rows, key, target):
     """Returns the ratio at which the PSNR `key` is reached, interpolated between rows; None outside them."""
-    points = sorted((row[key], math.log(row["best"])) for row in rows if row[key] is not None and math.isfinite(row[key]))
+    points = sorted((row[key], math.log(row["best"])) for row in rows
+                    if row[key] is not None and math.isfinite(row[key]))
     values = [value for value, _ in points]
     if not points or not values[0] <= target <= values[-1]:
         return None
@@ -292,7 +293,8 @@ def draw(frames, path):
 
 
 def table_of(name, rows):
-    lines = [f"**{name}**", "", "| profile | levels | threshold | ratio (thesis) | size, MB | CPU s | PSNR of images | of frames | "
+    lines = [f"**{name}**", "", "| profile | levels | threshold | ratio (thesis) | size, MB | "
+                                "CPU s | PSNR of images | of frames | "
              "of frames by the defaults |", "|" + " --- |" * 9]
     for row in rows:
         is_thesis = row["profile"] == "thesis"
@@ -302,12 +304,14 @@ def table_of(name, rows):
         if row["profile"] == "thesis":
             ratio += f", best {row['best']:.1f} ({TABLE_5_3[row['levels'], row['threshold']]})"
         lines.append(f"| {row['profile']} | {row['levels'] or '-'} | {row['threshold'] or '-'} | {ratio} | "
-                     f"{row['bytes'] / 1e6:.2f} | {row['cpu_s']:.1f} | {number(row['psnr'])} | {number(row['frame_psnr'])} | "
+                     f"{row['bytes'] / 1e6:.2f} | {row['cpu_s']:.1f} | "
+                     f"{number(row['psnr'])} | {number(row['frame_psnr'])} | "
                      f"{number(row['default_psnr']) if row.get('default_psnr') else ''} |")
     thesis, ours = ([r for r in rows if r["profile"] == p] for p in ("thesis", "default"))
     lines += ["", "| at equal PSNR | dB | thesis, best coder | default | default / thesis |" + "".join(
         f" {p} |" for p in ("JPEG", "JPEG 2000", "JPEG XL")), "|" + " --- |" * 8]
-    for key, what, targets in (("psnr", "of images", (40, 42.5, 45, 48)), ("frame_psnr", "of frames", (45, 48, 50, 52))):
+    for key, what, targets in (("psnr", "of images", (40, 42.5, 45, 48)),
+                               ("frame_psnr", "of frames", (45, 48, 50, 52))):
         for target in targets:
             a, b = best_at(thesis, key, target), at(ours, key, target)
             others = [at([r for r in rows if r["profile"] == p], key, target) for p in ("JPEG", "JPEG 2000", "JPEG XL")]

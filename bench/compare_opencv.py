@@ -82,7 +82,8 @@ class Comparison:
         theirs = np.fromfile(self.folder / "opencv.f32", np.float32).reshape(640, 960, 3)
         rows = []
         for program, used in runs.items():
-            wall, cpu, peak = (statistics.median(run[key] for run in used) for key in ("seconds", "cpu_s", "peak_bytes"))
+            wall, cpu, peak = (statistics.median(run[key] for run in used)
+                               for key in ("seconds", "cpu_s", "peak_bytes"))
             row = dict(program=program, frames=frames, rounds=rounds, wall_s=wall, cpu_s=cpu, peak_mib=peak / 2 ** 20,
                        images_per_s=self.images / wall, per_frame_s=wall / frames)
             if program != "OpenCV":
@@ -96,7 +97,8 @@ class Comparison:
 
 
 def table(record):
-    lines = ["| frames | rounds | program | s | s/frame | LF images/s | rate to OpenCV's | CPU s | OpenCV's CPU to it | "
+    lines = ["| frames | rounds | program | s | s/frame | LF images/s | "
+             "rate to OpenCV's | CPU s | OpenCV's CPU to it | "
              "peak MiB | PSNR to OpenCV's |", "|" + " --- |" * 11]
     for row in record["rows"]:
         rate, cpu_ratio = (f"{row[key]:.2f} x" if key in row else "1" for key in ("rate", "cpu_ratio"))

@@ -1,12 +1,13 @@
 #!/usr/bin/python3
 """Tabulates what lfpreprocessor forecasts for a light field of a million LF images, cut into more and more packages.
 
-usage: bench/forecast_table.py BUILD_DIR [--count 1000000] [--packages 1,8,64,300] [--name NAME] [--write doc/cluster.md]
+usage: bench/forecast_table.py BUILD_DIR [--count 1000000] [--packages 1,8,64,300] [--name NAME]
+                               [--write doc/cluster.md]
        bench/forecast_table.py --again JSON [--write doc/cluster.md]
 
 1000 x 1000 LF cameras 123 µm apart, raw mosaics of 1280 x 1024, of which one exists and stands for all: a forecast
-loads a few. The film is `bokeh` of bench/workloads.py, in frames of 1920 x 1080. Forecasts are made as the thesis renders (nearest, without lens
-weights) and, for the most packages, of the defaults.
+loads a few. The film is `bokeh` of bench/workloads.py, in frames of 1920 x 1080. Forecasts are made as the
+thesis renders (nearest, without lens weights) and, for the most packages, of the defaults.
 """
 import argparse
 import json

@@ -56,9 +56,11 @@ def main():
     else:
         parser.error("BUILD_DIR LIGHTFIELD or --again is needed")
     lines = ["| frames | way | `--memory` | peak MiB | passes | s |", "|" + " --- |" * 6]
-    lines += [f"| {row['frames']} | {row['way']} | {row['bound']} | {row['peak_bytes'] / 2 ** 20:,.0f} | {row['passes']} | "
+    lines += [f"| {row['frames']} | {row['way']} | {row['bound']} | "
+              f"{row['peak_bytes'] / 2 ** 20:,.0f} | {row['passes']} | "
               f"{row['seconds']:.1f} |" for row in record["rows"]]
-    text = "\n".join([results.sentence(record) + f" {record['images']} LF images a frame, two threads.", ""] + lines) + "\n"
+    text = "\n".join([results.sentence(record) + f" {record['images']} LF images a frame, two threads.",
+                      ""] + lines) + "\n"
     results.publish(arguments, "memory_bound.py", record, text)
 
 

@@ -30,7 +30,6 @@ import record as results
 
 sys.path.insert(0, str(results.HERE.parent / "scripts"))
 import lens_weights
-import quality
 from lens_weights import cv2, np
 from rebinning_quality import ground_truth_cases
 
@@ -148,7 +147,8 @@ def measure(renderer, captures, calibration, path, truth, name, options):
 
 
 def table(record):
-    lines = ["| remedy | linear light: noise, in the dark | PSNR, linear | PSNR, display | recorded values: noise, in the "
+    lines = ["| remedy | linear light: noise, in the dark | PSNR, linear | "
+             "PSNR, display | recorded values: noise, in the "
              "dark | PSNR, linear | PSNR, display |", "|" + " --- |" * 7]
     for case in record["cases"]:
         lines.append(f"| **{case['case']}** | | | | | | |")
@@ -195,7 +195,8 @@ def main():
                 record["cases"].append({"case": name, "rows": [row for row in rows if row]})
     else:
         parser.error("BUILD_DIR and GROUNDTRUTH, or --again is needed")
-    text = "\n".join([results.sentence(record) + f" LF images with the noise of {record['electrons']:g} electrons at white "
+    text = "\n".join([results.sentence(record) + " LF images with the noise of "
+                                                 f"{record['electrons']:g} electrons at white "
                       f"and {record['read_noise']:g} of reading, seed {record['seed']}.", ""] + table(record)) + "\n"
     results.publish(arguments, "noise_remedies.py", record, text)
 

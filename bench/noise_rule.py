@@ -10,9 +10,9 @@ Light field: the 729 LF images of blender-shop, through a lens 0.9 m wide, which
 focused on the foreground, the counter and the shelf behind it. Ways: see WAYS.
 
 Each frame is rendered with all LF images, and with a rule for every X. The kept plates tell the second moments
-of the measured elements (progress.noise), and so the standard error s of each of them, computed here again. LF images are taken at
-random out of the N that an element has in the end: after n of them it is expected to differ from its end by
-s * sqrt(1 - n / N). Compared are the root mean square of the difference over the measured elements and channels,
+of the measured elements (progress.noise), and so the standard error s of each of them, computed here again. LF images
+are taken at random out of the N that an element has in the end: after n of them it is expected to differ from its end
+by s * sqrt(1 - n / N). Compared are the root mean square of the difference over the measured elements and channels,
 and the 90th percentile of its amount, as it would be if the differences were normally distributed.
 """
 import argparse
@@ -32,9 +32,9 @@ FOCUS = {"foreground": 6.3, "counter": 8.12, "shelf": 13}  # metres, see the dat
 WAYS = {
     "nearest": ["--mode", "collect", "--estimator", "nearest", "--lens-weights", "none"],
     "default": ["--mode", "collect", "--estimator", "bilinear", "--filter", "auto",
-                       "--lens-weights", "auto"],
+                "--lens-weights", "auto"],
     "hybrid": ["--mode", "hybrid", "--estimator", "bilinear", "--filter", "auto",
-                               "--lens-weights", "auto"],
+               "--lens-weights", "auto"],
 }
 PATH = """format: lfpath 1
 fps: 1

@@ -60,7 +60,8 @@ def measure(programs, folder, kinds, path, way, runs):
         for kind, light_field in kinds.items():
             out = folder / "out"
             shutil.rmtree(out, ignore_errors=True)
-            results.call([programs / "lfrenderer", light_field, path, "-o", out, "-q", "--no-contact-sheet", *WAYS[way]])
+            results.call([programs / "lfrenderer", light_field, path, "-o", out, "-q",
+                          "--no-contact-sheet", *WAYS[way]])
             report = json.loads((out / "report.json").read_text())
             taken[kind].append({key: report[key] for key in ("seconds", "load_cpu_s", "collect_cpu_s")})
     return taken
@@ -87,7 +88,8 @@ def rows_of(arguments, folder, memory):
 
 
 def table(record):
-    lines = ["| bits | way | LF images | MB | seconds | / in memory | CPU s loading | of all CPU s |", "|" + " --- |" * 8]
+    lines = ["| bits | way | LF images | MB | seconds | / in memory | CPU s loading | of all CPU s |",
+             "|" + " --- |" * 8]
     for row in record["rows"]:
         base = next(other for other in record["rows"] if other["kind"] == "in memory" and
                     (other["bits"], other["way"]) == (row["bits"], row["way"]))

@@ -4,8 +4,8 @@
 usage: bench/rebinning_peers.py BUILD_DIR [--runs 3] [--name NAME] [--write doc/rebinning.md]
        bench/rebinning_peers.py --again JSON [--write doc/rebinning.md]
 
-One thread, 1920 x 1080 elements, 16 lens points, a kernel that finds about 16 rays. CPU time, medians. The frame by the k-d
-tree is measured on its first 36 rows.
+One thread, 1920 x 1080 elements, 16 lens points, a kernel that finds about 16 rays. CPU time, medians. The frame by the
+k-d tree is measured on its first 36 rows.
 """
 import argparse
 import json
@@ -40,7 +40,8 @@ def measure(build, runs):
 def table(record):
     rows = record["rows"]
     sizes = list(rows["FrameBySplats"])
-    lines = ["| | " + " | ".join(f"{int(cells) / 1e6:g} M cells" for cells in sizes) + " |", "|" + " --- |" * (1 + len(sizes))]
+    lines = ["| | " + " | ".join(f"{int(cells) / 1e6:g} M cells" for cells in sizes) + " |",
+             "|" + " --- |" * (1 + len(sizes))]
 
     def add(words, cell):
         lines.append(f"| {words} | " + " | ".join(cell(cells) for cells in sizes) + " |")
@@ -48,7 +49,8 @@ def table(record):
     def rate(name):
         return lambda cells: f"{int(cells) / rows[name][cells] / 1e6:.1f} M/s"
 
-    add("frame by a k-d tree (nanoflann): of all elements, from 36 rows", lambda c: f"{rows['FrameByQueries'][c]:.1f} s")
+    add("frame by a k-d tree (nanoflann): of all elements, from 36 rows",
+        lambda c: f"{rows['FrameByQueries'][c]:.1f} s")
     add("frame by splats", lambda c: f"{rows['FrameBySplats'][c]:.2f} s: "
         f"**{rows['FrameByQueries'][c] / rows['FrameBySplats'][c]:.0f} x** faster")
     add("building the tree", lambda c: f"{rows['BuildTree'][c]:.2f} s")

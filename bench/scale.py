@@ -134,7 +134,8 @@ class Scale:
             raise SystemExit(f"{self.count} LF images: packages give other frames than one go")
         taken = self.rows[-3]["lf_images_selected"]
         if taken < 0.999 * self.count:
-            raise SystemExit(f"the film takes {taken} of {self.count} LF images: it should take all but a few in corners")
+            raise SystemExit(f"the film takes {taken} of {self.count} LF images: "
+                             "it should take all but a few in corners")
 
     def render_weighed(self):
         self.run("in one go, defaults", "lfrenderer", self.field, self.path, "--no-contact-sheet", out="weighed")
@@ -167,7 +168,8 @@ def per_image_us(rows, row):
 
 
 def table(record):
-    lines = ["| LF images | | LF images x frames | s | CPU s | CPU µs per LF image more | CPU s: decoding, collecting | "
+    lines = ["| LF images | | LF images x frames | "
+             "s | CPU s | CPU µs per LF image more | CPU s: decoding, collecting | "
              "peak MiB | open files | MB in its folder: most, left |", "|" + " --- |" * 10]
     for row in sorted(record["rows"], key=lambda row: row["count"]):
         extra = per_image_us(record["rows"], row)
@@ -223,8 +225,10 @@ def main():
             record["rows"] = measure(arguments, arguments.folder or pathlib.Path(temporary))
     else:
         parser.error("BUILD_DIR or --again is needed")
-    text = "\n".join([results.sentence(record) + f" {record['frames']} frames of {record['size']} elements from LF images "
-                      f"as large, --memory {record['memory']}, {record['threads']} threads, {record['packages']} packages; "
+    text = "\n".join([results.sentence(record) + f" {record['frames']} frames of "
+                                                 f"{record['size']} elements from LF images "
+                      f"as large, --memory {record['memory']}, {record['threads']} threads, "
+                      f"{record['packages']} packages; "
                       "frames of both ways have the same bits.", ""] + table(record) + [""] + goals(record)) + "\n"
     results.publish(arguments, "scale.py", record, text)
 

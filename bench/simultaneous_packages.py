@@ -11,8 +11,9 @@ Here `lfsubmit --jobs N --threads 1` renders N packages at the same time on one 
 N machines; beyond the machine's cores nothing can be gained. What more machines would gain is told by the package that
 takes longest when it is rendered alone, which is when a film on so many machines is ready.
 
-Films are rendered in turns, so that a busy machine disturbs all alike; their frames must have the same bits. Seconds are
-from the call of lfsubmit to its end, CPU seconds are those of all its processes. lfpreprocessor's time does not count.
+Films are rendered in turns, so that a busy machine disturbs all alike; their frames must have the same bits. Seconds
+are from the call of lfsubmit to its end, CPU seconds are those of all its processes. lfpreprocessor's time does not
+count.
 
 --frames-share S  only this share of the movement's frames, over the same path
 """
@@ -94,7 +95,8 @@ def measure(build, field, path, folder, counts, runs):
 
 
 def table(record):
-    lines = ["| way | packages at the same time | seconds | sooner by | CPU s of all | longest package alone, s | so many "
+    lines = ["| way | packages at the same time | seconds | sooner by | CPU s of all | "
+             "longest package alone, s | so many "
              "machines: sooner by |", "|" + " --- |" * 7]
     base = {}
     for row in record["rows"]:

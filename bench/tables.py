@@ -10,7 +10,8 @@ usage: bench/tables.py BUILD_DIR [--only NAME,...] [--resume] [--tiny] [--data .
 --data    folder with data/blender-shop, data/beer-colmap and groundtruth
 
 Sources must be committed: a record names the commit that it was made from. A table that fails is told at the end; the
-others are made all the same. bench/run tables builds first. On two free cores all of it takes about two hours, half of it a million LF cameras with lens weights.
+others are made all the same. bench/run tables builds first. On two free cores all of it takes about two
+hours, half of it a million LF cameras with lens weights.
 """
 import argparse
 import json
@@ -112,7 +113,8 @@ def make(names, arguments):
             continue
         begin = time.monotonic()
         done = subprocess.run([sys.executable, ROOT / words[0], *words[1:]], cwd=ROOT)
-        print(f"[{number}/{len(names)}] {name}: {time.monotonic() - begin:.0f} s, exit code {done.returncode}", flush=True)
+        print(f"[{number}/{len(names)}] {name}: {time.monotonic() - begin:.0f} s, exit code {done.returncode}",
+              flush=True)
         if done.returncode != 0:
             failed.append(name)
     return failed

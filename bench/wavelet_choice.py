@@ -251,7 +251,7 @@ def main():
     lines = ["| planes, wavelet | " + " | ".join(columns) + " |", "|" + " --- |" * (1 + len(columns))]
     for row in record["rows"]:
         lines.append(f"| {row['scheme']} | " + " | ".join("-" if ratio is None else f"{ratio:.2f}"
-                                                         for ratio in row["ratios"]) + " |")
+                                                          for ratio in row["ratios"]) + " |")
     results.publish(arguments, "wavelet_choice.py", record, results.sentence(record) + "\n\n" + "\n".join(lines) + "\n")
 
 

@@ -225,7 +225,8 @@ def table_of_lenses(renderer, scenes, only):
 
 
 def table_of_magnifications(renderer, scenes, only):
-    estimators = {"nearest": "nearest", "bilinear": "bilinear --filter bilinear", "bicubic": "bilinear --filter bicubic"}
+    estimators = {"nearest": "nearest", "bilinear": "bilinear --filter bilinear",
+                  "bicubic": "bilinear --filter bicubic"}
     columns = {f"{e}, {w}": f"{COLLECT} {words} --lens-weights {w}" for e, words in estimators.items()
                for w in ("none", "area")} | {"auto": ""}
     table = Table("scene", "elements per LF pixel", *columns)

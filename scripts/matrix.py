@@ -33,6 +33,7 @@ from matrix_page import AXES, Cell, read_page
 from matrix_run import Outcome, try_cells
 from matrix_ways import VALUES, Matrix
 
+
 def parse():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -126,7 +127,7 @@ def hash_of_page():
     """Returns a hash of the text that decides which cells exist and how they must end."""
     page = read_page()
     text = repr((page.axes, [(r.values and [v and sorted(v) for v in r.values], *r[1:]) for r in
-                              page.refusals]))
+                 page.refusals]))
     return hashlib.sha256(text.encode()).hexdigest()[:12]
 
 

@@ -220,7 +220,8 @@ def run(options):
             result["mutants"][mutant.name] = {"hash": hash_of(mutant), "commit": result["commit"], **outcome}
             save(options.output, result)
             by = f" by {outcome['by'][0]}" if outcome.get("by") else ""
-            print(f"[{number}/{len(todo)}] {mutant.name}: {outcome['outcome']}{by} in {outcome['seconds']} s", flush=True)
+            print(f"[{number}/{len(todo)}] {mutant.name}: {outcome['outcome']}{by} in {outcome['seconds']} s",
+                  flush=True)
             if outcome["outcome"] == BROKEN:
                 print(outcome["detail"], flush=True)
     return result

@@ -143,7 +143,8 @@ def measure(renderer, truth, folder):
 def table(rows):
     lines = ["| case | LF images | nearest | reference | bilinear | reference | default | Bayer, nearest | "
              "Bayer, default |", "| --- " * 9 + "|"]
-    return lines + [f"| {row['case']} | {row['lf_images']} | " + " | ".join(f"{row[column]:.2f}" for column in COLUMNS) +
+    return lines + [f"| {row['case']} | {row['lf_images']} | " +
+                    " | ".join(f"{row[column]:.2f}" for column in COLUMNS) +
                     " |" for row in rows]
 
 

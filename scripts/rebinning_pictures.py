@@ -20,7 +20,6 @@ import tempfile
 import numpy as np
 
 from lens_pictures import picture, side_by_side
-from lens_weights import cv2
 
 SCENE, COUNT, SIZE, SPACING, TRUTH_SAMPLES = "still-life", 289, (360, 240), 0.003, 400
 
@@ -73,8 +72,6 @@ lens:
         self.run(self.renderer, calibration, path, "-o", out, "--no-contact-sheet", "--overwrite",
                  *options)
         return out / "frame_0001.exr"
-
-
 
 
 def main():

@@ -150,7 +150,8 @@ def main():
         def capture(scene, denser=1):
             key = scene, denser
             if key not in captures:
-                captures[key] = Capture(arguments.renderer, pathlib.Path(temporary) / f"{scene}-{denser}", scene, denser)
+                captures[key] = Capture(arguments.renderer, pathlib.Path(temporary) / f"{scene}-{denser}",
+                                        scene, denser)
             return captures[key]
 
         for figure in (bokeh, stack, tilt, rebinned, short):

@@ -86,6 +86,7 @@ class AlphaTest(ProgramTestCase):
         light, opacity = true_picture()
         # A mask says nothing about the part of the lens that sees past the object, so the edge is hard.
         edge = (opacity[..., 0] > 0.5) & (opacity[..., 0] < 0.9)
+
         def brighter(*options):
             return np.mean(self.frame(field, *options)[0][edge] - light[edge])
         self.assertGreater(brighter("--image-alpha", "mask", "--fill", "off"), 2 * abs(brighter()))

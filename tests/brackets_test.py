@@ -230,7 +230,6 @@ class BracketsTest(ProgramTestCase):
         self.assertLess(relative_error(merged, darker, lit)[0], 8)
 
 
-
 if __name__ == "__main__":
     IMPORTER, RENDERER, SYNTH, EXAMPLE, PREPROCESSOR, COMPRESSOR = sys.argv[1:7]
     unittest.main(argv=sys.argv[:1], verbosity=2)

@@ -172,7 +172,8 @@ tests = '{tests}'
                            {"name": "Big"}, {}, {})
         start = "scripts/mutants.toml: "
         self.expect("check_house.py", "mutants", faults=[
-            f"{start}gone: lf/core/a.cc has its old text 0 times", f"{start}twice: lf/core/a.cc has its old text 2 times",
+            f"{start}gone: lf/core/a.cc has its old text 0 times",
+            f"{start}twice: lf/core/a.cc has its old text 2 times",
             f"{start}same: its new text is the old one", f"{start}same: lf/core/a.cc has its old text 0 times",
             f"{start}no-file: there is no lf/core/b.cc", f"{start}no-test: no test is named like ^camera",
             f"{start}wrong: its tests are no regular expression", f"{start}Big: a name has small letters",

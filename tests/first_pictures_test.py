@@ -100,6 +100,7 @@ class FirstPicturesTest(FirstPictureCase):
         (capture / "images").mkdir()
         for file in capture.glob("*.png"):
             file.rename(capture / "images" / (file.stem + ".PNG"))
+
         def stale(text):
             for frame in text["frames"]:
                 frame["file_path"] = f"/home/someone/{frame['file_path']}".replace(".png", ".jpeg")
@@ -109,6 +110,7 @@ class FirstPicturesTest(FirstPictureCase):
     def test_a_watermark_in_every_image(self):
         capture = self.capture()
         mark = np.random.default_rng(1).integers(0, 256, (12, 30, 3), dtype=np.uint8)
+
         def stamp(image):
             image.paste(Image.fromarray(mark), (60, 55))
             return image
@@ -126,6 +128,7 @@ class FirstPicturesTest(FirstPictureCase):
         capture = self.capture()
         for name in ("000", "001", "002"):
             Image.open(capture / f"{name}.png").resize((50, 41)).save(capture / f"{name}.png")
+
         def without_size(text):
             for key in ("w", "h", "cx", "cy"):
                 text.pop(key)

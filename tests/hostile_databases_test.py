@@ -6,7 +6,6 @@ usage: hostile_databases_test.py LFRENDERER LFPREPROCESSOR LFCOMPRESSOR LFIMPORT
 
 --all  every value in every column, and a thousand damages, in place of a selection
 """
-import os
 import pathlib
 import random
 import shutil

@@ -15,7 +15,6 @@ import unittest
 import zlib
 
 import numpy as np
-from PIL import Image
 
 from bounded_runs import BoundedRuns
 from small_field import PATH_YAML, HEIGHT, WIDTH, wall, write_field, write_path

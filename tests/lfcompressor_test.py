@@ -5,7 +5,6 @@ usage: lfcompressor_test.py LFCOMPRESSOR LFRENDERER LFPREPROCESSOR
 """
 import json
 import os
-import pathlib
 import random
 import re
 import signal

@@ -61,8 +61,8 @@ class PackagesTest(ProgramTestCase):
                                          name=f"packages{number}")
                 whole, parts = self.folder / f"whole{number}", self.folder / f"parts{number}"
                 self.succeeds(RENDERER, field, path, "-o", whole, "-q", *render)
-                if set(render) & {"--seed", "off"}:  # packages contain these choices; the bits are those of the same
-                                                     # options
+                # Packages contain these choices; the bits are those of the same options.
+                if set(render) & {"--seed", "off"}:
                     render = render[:-2]
                 self.succeeds(RENDERER, *files, "-o", parts, "-q", *render)
                 self.assertEqual(len(self.digests(whole)), 6)
@@ -410,6 +410,7 @@ class PackagesTest(ProgramTestCase):
     def test_depths_are_those_that_lf_images_show(self):
         path = write_path(self.folder)
         path.write_text(path.read_text().replace("0.8", "0.09"))
+
         def plan(field):
             return json.loads(self.succeeds(PREPROCESSOR, field, path, "--plan", "--json"))
         shown = plan(write_field(self.folder / "wall", wall))

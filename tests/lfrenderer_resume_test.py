@@ -375,6 +375,7 @@ class ResumeTest(unittest.TestCase):
         text = small_field.PATH_YAML.format(frames=15, aperture=0.09, x=-0.04)
         path.write_text(text.replace("  up: [0, 1, 0]", "  up: [0, 1, 0]\n  speed: [0.14, 0, 0]"))
         rule = ["--stop-when", "samples>=5", "--estimator", "nearest"]
+
         def run(name, *options):
             result = subprocess.run([RENDERER, self.field, path, "-o", self.folder / name,
                                      *self.common, *rule, *options], capture_output=True, text=True)

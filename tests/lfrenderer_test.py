@@ -137,7 +137,7 @@ class RendererTest(unittest.TestCase):
         field = write_field(self.folder / "mosaics", flat, lf_bayer="RGGB", lf_transfer="sRGB")
         path, rule = write_path(self.folder), ["--require", "samples>=1"]
         self.fails(2, "--filter mosaic: rays count up to 8 times", field, path, "-o",
-                    self.folder / "out", "--filter", "mosaic", *rule)
+                   self.folder / "out", "--filter", "mosaic", *rule)
         _, report = self.render(field, path, "counted", *rule)
         self.assertEqual(report["inputs"]["filter"], "auto")
 

@@ -9,7 +9,6 @@ import hashlib
 import json
 import os
 import re
-import shutil
 import signal
 import subprocess
 import sys
@@ -247,7 +246,7 @@ class NoiseRuleTest(ProgramTestCase):
                 self.assertNotIn("reached", noise)
                 self.assertEqual((noise["places"], noise["lf_images"]), (169, 0))
             self.fails(6, ["not measurable"], *self.arguments(mode + "-6", *options, "--require",
-                                                             "noise<=1000"))
+                                                              "noise<=1000"))
 
     def test_mosaics_broken_images_and_limits(self):
         bayer = {"lf_bayer": "RGGB", "lf_transfer": "linear", "lf_black_level": 0}

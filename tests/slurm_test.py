@@ -8,7 +8,6 @@ import json
 import os
 import pathlib
 import signal
-import subprocess
 import sys
 import tempfile
 import unittest
@@ -99,7 +98,8 @@ class SlurmTest(ClusterTestCase):
         self.assertEqual(self.package(0)["crashes"], 0)
 
     def test_a_job_is_cancelled_and_gone_on_with(self):
-        self.submit(*self.OPTIONS, "--lfrenderer", self.held_renderer([0]), *self.ARGUMENTS, words=["submitted 8 packages", "--status"])
+        self.submit(*self.OPTIONS, "--lfrenderer", self.held_renderer([0]), *self.ARGUMENTS,
+                    words=["submitted 8 packages", "--status"])
         self.wait_for(lambda: self.is_held(0))
         table = self.succeeds(cluster_test_case.SUBMIT, "--status", self.film)
         self.assertIn("waits for", table)

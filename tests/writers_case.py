@@ -23,7 +23,8 @@ class WritersCase(ProgramTestCase):
         cls.world = pathlib.Path(temporary.name)
         field, path = cls.world / "field", cls.world / "path.yaml"
         cls.field, cls.path = field, path
-        cls.made("lfsynth", "chart", "-o", field, "--count", "9", "--size", "48x32", "--samples", "1", "--format", "png")
+        cls.made("lfsynth", "chart", "-o", field, "--count", "9", "--size", "48x32", "--samples", "1",
+                 "--format", "png")
         cls.made("lfexample", field, "-o", path, "--move", "dolly", "--focus", "3")
         text = re.sub(r"(?m)^frames:.*$", "frames: 4", path.read_text())
         path.write_text(re.sub(r"(?m)^resolution:.*$", "resolution: [60, 40]", text))
@@ -53,7 +54,8 @@ class WritersCase(ProgramTestCase):
                         "--distance", 3 + (way == "b")],
             "lfimport": [self.field, "-o", out, "--unit-m", 1 + (way == "b"), "--check", "none"],
             "lfexample": [self.field, "-o", out / "path.yaml", "--focus", 3 + (way == "b")],
-            "lfsubmit": [*sorted((self.world / f"packages_{way}").glob("*.lfp")), "-o", out, "--jobs", 2, "--", "--estimator",
+            "lfsubmit": [*sorted((self.world / f"packages_{way}").glob("*.lfp")), "-o", out, "--jobs", 2,
+                         "--", "--estimator",
                          estimator],
         }[program]]
 
