@@ -58,13 +58,13 @@ function(lf_test name)
   lf_needed_by(${name} ${T_NEEDS})
 endfunction()
 
-# lf_program_test(tests.name word... [SCRIPT file] [TIMEOUT seconds] [LABELS label...])
+# lf_program_test(tests.name word... [SCRIPT file] [SLOW] [LABELS label...])
 #
 # A test of whole programs: the Python script <name>_test.py of this folder. A word that names a target is replaced by
-# the path of its file; PROGRAMS, by the folder of all programs. The default time limit is 300 s. LABELS are those
-# besides program.
+# the path of its file; PROGRAMS, by the folder of all programs. The time limit is 900 s, that of a SLOW
+# test 3600 s. LABELS are those besides program and slow.
 function(lf_program_test name)
-  cmake_parse_arguments(P "" "SCRIPT;TIMEOUT" "LABELS" ${ARGN})
+  cmake_parse_arguments(P "SLOW" "SCRIPT" "LABELS" ${ARGN})
   set(words "")
   set(needs "")
   foreach(word ${P_UNPARSED_ARGUMENTS})
@@ -81,12 +81,14 @@ function(lf_program_test name)
   if(NOT P_SCRIPT)
     string(REGEX REPLACE "^tests\\.(.*)" "\\1_test.py" P_SCRIPT ${name})
   endif()
-  if(NOT P_TIMEOUT)
-    set(P_TIMEOUT 300)
+  set(timeout 900)
+  if(P_SLOW)
+    set(timeout 3600)
+    list(APPEND P_LABELS slow)
   endif()
   cmake_path(ABSOLUTE_PATH P_SCRIPT BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} NORMALIZE)
   lf_test(${name} COMMAND ${Python3_EXECUTABLE} ${P_SCRIPT} ${words} LABELS program ${P_LABELS}
-          TIMEOUT ${P_TIMEOUT} NEEDS ${needs})
+          TIMEOUT ${timeout} NEEDS ${needs})
 endfunction()
 
 # lf_house_test(house.name script [argument...]): a script in scripts/ or tests/ that looks at files.
