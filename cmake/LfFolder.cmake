@@ -17,6 +17,18 @@ if(LF_SANITIZE)
                                               -fno-sanitize-recover=all)
   target_link_options(lf_options INTERFACE -fsanitize=${LF_SANITIZE})
 endif()
+if(LF_SCALAR)
+  target_compile_definitions(lf_options INTERFACE HWY_COMPILE_ONLY_SCALAR)
+elseif(CMAKE_SYSTEM_PROCESSOR STREQUAL aarch64)
+  # The compiler does not know the length of SVE's vectors, which the kernels need; they use NEON.
+  target_compile_definitions(lf_options INTERFACE
+                             "HWY_DISABLED_TARGETS=(HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128)")
+endif()
+if(LF_COVERAGE)
+  # Threads count at the same time. Absolute paths, because ccache runs the compiler in any folder.
+  target_compile_options(lf_options INTERFACE --coverage -fprofile-update=atomic -fprofile-abs-path)
+  target_link_options(lf_options INTERFACE --coverage)
+endif()
 if(LF_FUZZ)
   # Coverage for libFuzzer everywhere; the fuzz targets alone link its main.
   target_compile_options(lf_options INTERFACE -fsanitize=fuzzer-no-link)

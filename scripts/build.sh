@@ -1,16 +1,19 @@
 #!/usr/bin/env bash
-# Builds in build/release: installs missing packages, configures, builds.
+# Builds in build/PRESET: installs missing packages, configures, builds.
 #
 # usage: scripts/build.sh demo                 the programs that ./demo runs
 #        scripts/build.sh programs             every program
 #        scripts/build.sh [tests [TARGET...]]  every program and test, or some targets of CMake
 #
 # Each takes over what another has compiled, because all compile with the same options.
-# With CI=true in the environment, compiler warnings are errors.
+# In the environment, LF_PRESET=clang or scalar takes another preset than release, and CI=true makes compiler warnings
+# errors.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/patiently.sh
 
+preset=${LF_PRESET:-release}
+build=build/$preset
 what=${1:-tests}
 case $what in
   demo)
@@ -18,13 +21,13 @@ case $what in
     targets=(lfsynth lfrenderer)
     options=()
     # A later call for tests turns these on, and no call turns them off again.
-    [[ -e build/release/CMakeCache.txt ]] || options=(-DLF_TESTS=OFF -DLF_VISUALIZER=OFF)
+    [[ -e $build/CMakeCache.txt ]] || options=(-DLF_TESTS=OFF -DLF_VISUALIZER=OFF)
     ;;
   programs)
     groups=(render visualizer)
     targets=(programs)
     options=(-DLF_VISUALIZER=ON)
-    [[ -e build/release/CMakeCache.txt ]] || options+=(-DLF_TESTS=OFF)
+    [[ -e $build/CMakeCache.txt ]] || options+=(-DLF_TESTS=OFF)
     ;;
   tests)
     groups=(render visualizer test)
@@ -36,6 +39,7 @@ case $what in
     exit 2
     ;;
 esac
+if [[ $preset == clang ]]; then groups+=(hunt); fi
 
 if [[ -e build && ! -w build ]]; then
   echo "error: build/ belongs to $(stat -c %U build); remove it first: sudo rm -rf $PWD/build" >&2
@@ -48,12 +52,12 @@ mkdir -p build
 
 werror=OFF
 if [[ ${CI:-} == true ]]; then werror=ON; fi
-patiently configuring build/configure.log cmake --preset release -DLF_WERROR="$werror" "${options[@]}"
+patiently configuring build/configure.log cmake --preset "$preset" -DLF_WERROR="$werror" "${options[@]}"
 
 # One compiler per processor, if each has 1.5 GB of memory.
 memory_kb=$(awk '/^MemAvailable:/ { print $2 }' /proc/meminfo)
 jobs=$(nproc)
 by_memory=$((memory_kb / 1500000))
 if ((by_memory < jobs)); then jobs=$((by_memory > 0 ? by_memory : 1)); fi
-echo "Building in build/release ($jobs at a time)"
-cmake --build build/release -j "$jobs" ${targets[@]:+--target "${targets[@]}"}
+echo "Building in $build ($jobs at a time)"
+cmake --build "$build" -j "$jobs" ${targets[@]:+--target "${targets[@]}"}

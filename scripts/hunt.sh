@@ -4,8 +4,8 @@
 # usage: scripts/hunt.sh [--resume] [STEP...]      default: every step, some hours on two cores
 #        scripts/hunt.sh --list                    prints the steps
 #
-# Needs what ./test has built in build/release. Installs missing Debian packages first (root or sudo;
-# scripts/packages/hunt.txt). What a step printed is in build/hunt/STEP.log, its outcome in build/hunt/STEP.result.
+# All steps but asan, tsan, tidy and fuzz need what ./test has built in build/release. Installs missing Debian packages
+# first (root or sudo; scripts/packages/). What a step printed is in build/hunt/STEP.log, its outcome in build/hunt/STEP.result.
 #   --resume  leaves out the steps that passed with the same sources
 #   LF_FUZZ_MINUTES  time for fuzzing, default 60
 # The exit code is 1 if a step failed.
@@ -95,8 +95,13 @@ for step in "${steps[@]}"; do
     exit 2
   fi
 done
-[[ -x $bin/lfrenderer ]] || { echo "error: $bin/lfrenderer is missing; run ./test first" >&2; exit 3; }
-scripts/install_packages.sh hunt
+for step in "${steps[@]}"; do
+  if [[ ! $step =~ ^(asan|tsan|tidy|fuzz)$ && ! -x $bin/lfrenderer ]]; then
+    echo "error: the step '$step' needs $bin/lfrenderer; run ./test first" >&2
+    exit 3
+  fi
+done
+scripts/install_packages.sh render visualizer test hunt
 mkdir -p build/hunt
 
 sources=$(git describe --always --dirty --abbrev=12 --exclude='*')

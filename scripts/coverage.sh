@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# Says which share of the lines and branches of lf/ and tools/ the tests run. Builds everything in build/coverage with
+# counters, runs the tests and prints a summary; build/coverage/lines/index.html shows every line.
+#
+# usage: scripts/coverage.sh [CTEST OPTIONS]      scripts/coverage.sh -L unit  counts unit tests alone
+#
+# Installs missing Debian packages first (root or sudo). A failed test does not end it: the exit code is then 1.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+source scripts/patiently.sh
+
+# Programs write their counts when they end, as files. Tests that make writing fail, that count files, or that end
+# programs at once see more than they expect. Other tests left out run no program of ours, or whole films for hours.
+left_out='^house\.|^web\.|^tests\.(faults|power_failure|environment|safe_outputs|writers|install|listed_defaults|matrix|slurm)'
+
+scripts/install_packages.sh render visualizer test hunt
+mkdir -p build
+patiently configuring build/configure.log cmake --preset coverage
+cmake --build build/coverage -j "$(nproc)"
+find build/coverage -name '*.gcda' -delete
+code=0
+ctest --test-dir build/coverage -j "$(nproc)" --progress --output-on-failure -E "$left_out" "$@" || code=1
+mkdir -p build/coverage/lines
+gcovr --root . --object-directory build/coverage --filter 'lf/' --filter 'tools/' --exclude '.*_(test|fuzz|bench)\.cc' \
+  --exclude '.*/test[a-z_]*\.(cc|h)' --exclude-throw-branches --exclude-unreachable-branches -j "$(nproc)" \
+  --html-details build/coverage/lines/index.html --json-summary build/coverage/summary.json --print-summary
+exit "$code"
