@@ -87,7 +87,7 @@ step() {
   return "$code"
 }
 
-# objects: the compiled sources of the programs, each with its time.
+# Prints the compiled sources, each with its time.
 objects() {
   find "$root$checkout/build/release" -path '*/lf_precompiled*' -prune -o -name '*.o' -printf '%P %T@\n' | sort
 }
