@@ -48,7 +48,7 @@ add_library(lfrendertools::lfrendertools ALIAS lfrendertools)
 #   SOURCES      the .cc files
 #   DEPENDS      the folders it may include (doc/layout.md; checked by scripts/check_includes.py)
 #   LIBS         third-party targets its .cc files need;  PUBLIC_LIBS: its headers too
-#   TESTS        x_test.cc files: one program per folder, every test known to ctest
+#   TESTS        x_test.cc files: one program per folder, each of its suites a test of ctest
 #   FUZZ         x_fuzz.cc files: libFuzzer programs with LF_FUZZ, and in every build a replay of
 #                fuzz/corpus/<x>/ as a test
 #   BENCH        x_bench.cc files, built with LF_BENCH

@@ -7,7 +7,6 @@
 #   house     rules about the files themselves; nothing is built for them
 #
 # All tests may run at the same time: each has a folder of its own, and ports are chosen by the system.
-include(GoogleTest)
 
 # A time limit is several times what the test takes on two busy cores, in a release build.
 set(LF_TIMEOUT_FACTOR "" CACHE STRING "Multiplies the time limits of tests; default: by the kind of build")
@@ -32,10 +31,23 @@ function(lf_needed_by name)
   endif()
 endfunction()
 
-# lf_unit_tests(target folder): the program's tests are known to ctest as folder.Suite.Test.
+# lf_unit_tests(target folder): each suite of the program is a test of ctest, folder.Suite.
+#
+# A suite and not a single test is a process, because a process that uses image files takes up to half a second to load
+# the libraries behind OpenImageIO.
 function(lf_unit_tests target folder)
-  gtest_discover_tests(${target} TEST_PREFIX ${folder}. DISCOVERY_TIMEOUT 60
-                       PROPERTIES LABELS unit TIMEOUT ${LF_UNIT_TIMEOUT})
+  set(list ${CMAKE_CURRENT_BINARY_DIR}/${target}_suites.cmake)
+  add_custom_command(
+    TARGET ${target} POST_BUILD
+    COMMAND ${CMAKE_COMMAND} -D PROGRAM=$<TARGET_FILE:${target}> -D FOLDER=${folder} -D TIMEOUT=${LF_UNIT_TIMEOUT}
+            -D LIST=${list} -P ${PROJECT_SOURCE_DIR}/cmake/list_suites.cmake
+    BYPRODUCTS ${list}
+    VERBATIM)
+  # A program that was not built is a test that fails.
+  set(included ${CMAKE_CURRENT_BINARY_DIR}/${target}_include.cmake)
+  file(WRITE ${included} "if(EXISTS [==[${list}]==])\n  include([==[${list}]==])\nelse()\n"
+                         "  add_test(${folder}.is_not_built ${target})\nendif()\n")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${included})
   lf_needed_by(${folder} ${target})
 endfunction()
 
