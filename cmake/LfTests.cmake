@@ -18,7 +18,7 @@ elseif(LF_SANITIZE)
 elseif(NOT CMAKE_BUILD_TYPE STREQUAL Release)
   set(LF_TEST_PATIENCE 4)
 endif()
-math(EXPR LF_UNIT_TIMEOUT "120 * ${LF_TEST_PATIENCE}")
+math(EXPR LF_UNIT_TIMEOUT "600 * ${LF_TEST_PATIENCE}")
 
 # lf_needed_by(name target...): the target needed_by_<name> builds what the tests run whose names begin with <name> and
 # a dot, or the one test of that name (./test --only).
