@@ -6,7 +6,8 @@ target_compile_options(lf_options INTERFACE -ffp-contract=off -Wall -Wextra -Wsh
                                             -Wnon-virtual-dtor)
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   # GCC 12 warns falsely of std::string, depending on what it inlines (its bugs 105329 and 105651).
-  target_compile_options(lf_options INTERFACE -Wno-restrict -Wno-array-bounds)
+  target_compile_options(lf_options INTERFACE -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow
+                                              -Wno-stringop-overread)
 endif()
 target_include_directories(lf_options INTERFACE ${PROJECT_SOURCE_DIR})
 if(LF_WERROR)
