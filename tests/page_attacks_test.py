@@ -178,12 +178,13 @@ class PageAttacksTest(ProgramTestCase):
     def test_headers_without_end(self):
         def headers():
             return self.server.ask(self.server.head(), *[b"X-More: " + b"a" * 8000 + b"\r\n"] * 8000)
-        self.attack("60 MB of headers", 431, headers)
-        self.attack("60 MB in one header", 431, lambda: self.server.ask(
+        # The server hangs up while more bytes arrive, so that its answer may be lost on the way.
+        self.attack("60 MB of headers", {431, None}, headers)
+        self.attack("60 MB in one header", {431, None}, lambda: self.server.ask(
             self.server.head(), b"X-More: ", *[b"a" * 60000] * 1000))
-        self.attack("60 MB of an address", 414, lambda: self.server.ask(
+        self.attack("60 MB of an address", {414, None}, lambda: self.server.ask(
             b"GET /", *[b"a" * 60000] * 1000))
-        self.attack("a million short headers", 431, lambda: self.server.ask(
+        self.attack("a million short headers", {431, None}, lambda: self.server.ask(
             self.server.head(), *[b"a:\r\n" * 10000] * 100))
 
     def chunks(self, mib, piece=b"\0" * MIB):
