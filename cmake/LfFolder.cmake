@@ -76,7 +76,7 @@ function(lf_folder name)
 
   if(LF_TESTS AND F_TESTS)
     add_executable(${target}_test ${F_TESTS})
-    target_link_libraries(${target}_test PRIVATE ${target} ${F_TEST_LIBS} GTest::gtest_main)
+    target_link_libraries(${target}_test PRIVATE ${target} ${F_TEST_LIBS} lf_unit_main)
     lf_precompile(${target}_test test)
     lf_unit_tests(${target}_test ${name})
   endif()

@@ -31,6 +31,12 @@ function(lf_needed_by name)
   endif()
 endfunction()
 
+# The main function of unit test programs: a suite with a skipped test and no failed one is shown as skipped.
+if(LF_TESTS)
+  add_library(lf_unit_main STATIC ${PROJECT_SOURCE_DIR}/tests/unit_main.cc)
+  target_link_libraries(lf_unit_main PUBLIC GTest::gtest PRIVATE lf_options)
+endif()
+
 # lf_unit_tests(target folder): each suite of the program is a test of ctest, folder.Suite.
 #
 # A suite and not a single test is a process, because a process that uses image files takes up to half a second to load
