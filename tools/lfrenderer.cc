@@ -7,6 +7,7 @@
 #include <iostream>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tools/common/interrupt.h"
@@ -66,18 +67,14 @@ lf::Result<Rendered> RenderLightField(const lf::RenderArguments& arguments,
   LF_ASSIGN_OR_RETURN(lf::LightField light_field, argument.Open());
   LF_ASSIGN_OR_RETURN(lf::CameraPath path,
                       lf::ReadPathYaml(arguments.inputs[1], light_field.unit_m));
-  LF_ASSIGN_OR_RETURN(
-      lf::RenderOptions options,
-      arguments.MakeOptions(common, light_field.encoding.bayer, path.frame_count()));
+  LF_ASSIGN_OR_RETURN(lf::RenderOptions options, arguments.MakeOptions(common, path.frame_count()));
   options.signals = signals;
-  options.inputs.assign(arguments.inputs.begin(), arguments.inputs.end());
-  if (options.reading.estimator == lf::Estimator::kBilinear)
-    lf::MakeRoomForUndershoot(&light_field.encoding);
+  options.folder.inputs.assign(arguments.inputs.begin(), arguments.inputs.end());
   lf::Package package = lf::PackageOfAll(std::move(light_field), std::move(path), common.seed);
   if (arguments.max_angle_deg > 0)
     package.choices.max_angle_rad = lf::RadiansFromDegrees(arguments.max_angle_deg);
   LF_RETURN_IF_ERROR(lf::PutInOrder(*lf::ImageOrderOf(arguments.order), options, pool, &package));
-  return Rendered{lf::Render(package, options, pool, progress), options};
+  return Rendered{lf::Render(std::move(package), options, pool, progress), options};
 }
 
 lf::Result<Rendered> RenderPackageFiles(const lf::RenderArguments& arguments,
@@ -92,8 +89,7 @@ lf::Result<Rendered> RenderPackageFiles(const lf::RenderArguments& arguments,
       lf::PackagedFilm film,
       lf::OpenPackages({arguments.inputs.begin(), arguments.inputs.end()}, std::move(place)));
   LF_ASSIGN_OR_RETURN(lf::RenderOptions options,
-                      arguments.MakeOptions(common, film.first.light_field.encoding.bayer,
-                                            film.first.path.frame_count()));
+                      arguments.MakeOptions(common, film.first.path.frame_count()));
   options.signals = signals;
   return Rendered{lf::RenderPackages(std::move(film), options, pool, progress), options};
 }
@@ -126,8 +122,8 @@ int main(int argc, char** argv) {
     if (!rendered.report) return lf::WithResumeCommand(rendered.report.error(), argc, argv);
     const lf::RenderReport& report = *rendered.report;
     std::filesystem::path look_at = arguments.output;
-    if (rendered.options.shard)
-      look_at /= "partial/shards/" + rendered.options.shard->Name();
+    if (rendered.options.film.shard)
+      look_at /= "partial/shards/" + rendered.options.film.shard->Name();
     else if (!arguments.no_contact_sheet)
       look_at /= arguments.HasPackages()
                      ? lf::ContactSheetName({arguments.inputs.begin(), arguments.inputs.end()})
@@ -135,8 +131,8 @@ int main(int argc, char** argv) {
     lf::SummariseRender(report, look_at.string());
     if (common.json && !(std::cout << lf::ToJson(report) << std::flush))
       return lf::OutputError("--json: the report cannot be written to stdout");
-    lf::Result<void> required = lf::CheckRequired(report, rendered.options.require_samples);
-    if (required) required = lf::CheckRequiredNoise(report, rendered.options.require_noise);
+    lf::Result<void> required = lf::CheckRequired(report, rendered.options.film.require_samples);
+    if (required) required = lf::CheckRequiredNoise(report, rendered.options.film.require_noise);
     LF_ASSIGN_OR_RETURN(const lf::MissingLimit limit, arguments.allow_missing.Limit());
     return lf::EndOfRender(report, limit, required);
   });

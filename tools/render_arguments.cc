@@ -171,6 +171,18 @@ void AddRunning(CLI::App& app, RenderArguments& a) {
       ->check(NotEmpty());
 }
 
+// Reads "samples>=N" or "noise<=X"; an empty text is no rule.
+Result<void> ReadRule(const std::string& text, const std::string& option,
+                      std::optional<uint32_t>* samples, std::optional<double>* noise) {
+  if (text.empty()) return {};
+  if (IsNoiseRule(text)) {
+    LF_ASSIGN_OR_RETURN(*noise, ParseNoiseRule(text, option));
+  } else {
+    LF_ASSIGN_OR_RETURN(*samples, ParseSampleRule(text, option));
+  }
+  return {};
+}
+
 void AddMeasuring(CLI::App& app, RenderArguments& a) {
   OptionGroup measuring(app, kMeasuringGroup);
   measuring.AddChoice("--rectangles", a.rectangles, {"on", "off"},
@@ -237,68 +249,64 @@ Result<void> RenderArguments::Check(bool seed_given) const {
   return {};
 }
 
-Result<RenderOptions> RenderArguments::MakeOptions(const CommonOptions& common, BayerPattern bayer,
-                                                   size_t frame_count) const {
-  RenderOptions options;
-  options.output_folder = output;
-  if (!frames.empty()) {
-    LF_ASSIGN_OR_RETURN(options.frames, ParseFrameRange(frames, frame_count));
-  }
-  options.format = *ParseFrameFormat(format);
-  if (!video.empty()) options.video = video;
-  options.contact_sheet = !no_contact_sheet;
-  if (max_images > 0) options.max_image_count = static_cast<size_t>(max_images);
-  options.smooth_below = smooth_below;
-  LF_ASSIGN_OR_RETURN(options.fill_radius_px, ParseFill(fill));
-  LF_ASSIGN_OR_RETURN(options.memory_bytes, ParseByteSize(memory, "--memory"));
-  options.strict = common.strict;
-  options.whole_images = rectangles == "off";
-  options.reading.estimator = estimator == "nearest" ? Estimator::kNearest : Estimator::kBilinear;
+Result<FilmOptions> RenderArguments::MakeFilm(uint64_t seed) const {
+  FilmOptions film;
+  if (max_images > 0) film.max_image_count = static_cast<size_t>(max_images);
+  film.smooth_below = smooth_below;
+  LF_ASSIGN_OR_RETURN(film.fill_radius_px, ParseFill(fill));
+  film.reading.estimator = estimator == "nearest" ? Estimator::kNearest : Estimator::kBilinear;
   for (const PixelFilter known :
        {PixelFilter::kNearest, PixelFilter::kBilinear, PixelFilter::kBicubic, PixelFilter::kMosaic})
-    if (filter == NameOf(known)) options.reading.filter = known;
+    if (filter == NameOf(known)) film.reading.filter = known;
   for (const LensWeights weights : {LensWeights::kAuto, LensWeights::kArea, LensWeights::kHat})
-    if (lens_weights == NameOf(weights)) options.lens_weights = weights;
+    if (lens_weights == NameOf(weights)) film.lens_weights = weights;
   for (const RenderMode known : {RenderMode::kRebin, RenderMode::kHybrid})
-    if (mode == NameOf(known)) options.mode = known;
-  LF_ASSIGN_OR_RETURN(options.rebin, rebin.Make(common.seed));
-  if (options.mode == RenderMode::kRebin) options.lens_weights = LensWeights::kNone;
-  if (back_end == "reference") options.back_end = CollectBackEnd::kReference;
-  options.version = Version();
-  LF_ASSIGN_OR_RETURN(options.dump_every_s, ParseDuration(dump_every, "--dump-every"));
-  if (!stop_when.empty()) {
-    if (IsNoiseRule(stop_when)) {
-      LF_ASSIGN_OR_RETURN(options.stop_at_noise, ParseNoiseRule(stop_when, "--stop-when"));
-    } else {
-      LF_ASSIGN_OR_RETURN(options.stop_at_samples, ParseSampleRule(stop_when, "--stop-when"));
-    }
-  }
-  if (!require.empty()) {
-    if (IsNoiseRule(require)) {
-      LF_ASSIGN_OR_RETURN(options.require_noise, ParseNoiseRule(require, "--require"));
-    } else {
-      LF_ASSIGN_OR_RETURN(options.require_samples, ParseSampleRule(require, "--require"));
-    }
-  }
-  if (options.lens_weights == LensWeights::kAuto && options.CountsRays()) {
-    options.lens_weights = LensWeights::kNone;
+    if (mode == NameOf(known)) film.mode = known;
+  LF_ASSIGN_OR_RETURN(film.rebin, rebin.Make(seed));
+  if (back_end == "reference") film.back_end = CollectBackEnd::kReference;
+  LF_RETURN_IF_ERROR(
+      ReadRule(stop_when, "--stop-when", &film.stop_at_samples, &film.stop_at_noise));
+  LF_RETURN_IF_ERROR(ReadRule(require, "--require", &film.require_samples, &film.require_noise));
+  if (film.mode != RenderMode::kRebin && film.lens_weights == LensWeights::kAuto &&
+      film.CountsRays())
     LogInfo("--lens-weights auto: none, since samples>=N and --smooth-below count rays");
-  }
-  if (options.reading.filter == PixelFilter::kAuto && !options.CountsRays() &&
-      bayer != BayerPattern::kNone)
-    options.reading.filter = PixelFilter::kMosaic;
   if (!shard.empty()) {
-    options.shard = ShardOf(shard);
-    if (!options.shard)
+    film.shard = ShardOf(shard);
+    if (!film.shard)
       return UsageError(
           fmt::format("--shard \"{}\": expected k/K, such as 2/5: the second of five", shard));
   }
+  return film;
+}
+
+Result<FolderOptions> RenderArguments::MakeFolder(size_t frame_count) const {
+  FolderOptions folder;
+  folder.output_folder = output;
+  folder.format = *ParseFrameFormat(format);
+  if (!video.empty()) folder.video = video;
+  folder.contact_sheet = !no_contact_sheet;
+  folder.keep_plates = keep_plates;
+  LF_ASSIGN_OR_RETURN(folder.dump_every_s, ParseDuration(dump_every, "--dump-every"));
+  folder.resume = resume;
+  folder.overwrite = overwrite;
   if (!finish.empty()) {
-    LF_ASSIGN_OR_RETURN(options.finish_early, ParseFrameRange(finish, frame_count, "--finish"));
+    LF_ASSIGN_OR_RETURN(folder.finish_early, ParseFrameRange(finish, frame_count, "--finish"));
   }
-  options.resume = resume;
-  options.overwrite = overwrite;
-  options.keep_plates = keep_plates;
+  folder.version = Version();
+  return folder;
+}
+
+Result<RenderOptions> RenderArguments::MakeOptions(const CommonOptions& common,
+                                                   size_t frame_count) const {
+  RenderOptions options;
+  if (!frames.empty()) {
+    LF_ASSIGN_OR_RETURN(options.frames, ParseFrameRange(frames, frame_count));
+  }
+  LF_ASSIGN_OR_RETURN(options.film, MakeFilm(common.seed));
+  LF_ASSIGN_OR_RETURN(options.work.memory_bytes, ParseByteSize(memory, "--memory"));
+  options.work.strict = common.strict;
+  options.work.whole_images = rectangles == "off";
+  LF_ASSIGN_OR_RETURN(options.folder, MakeFolder(frame_count));
   return options;
 }
 

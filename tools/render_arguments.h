@@ -13,7 +13,6 @@
 #include "tools/common/program.h"
 #include "tools/rebin_arguments.h"
 
-#include "lf/capture/radiance.h"
 #include "lf/core/result.h"
 #include "lf/pipeline/render.h"
 
@@ -44,10 +43,12 @@ struct RenderArguments {
   Result<void> Check(bool seed_given) const;
 
   // Converts the arguments.
-  //   bayer        of the light field
   //   frame_count  of the film
-  Result<RenderOptions> MakeOptions(const CommonOptions& common, BayerPattern bayer,
-                                    size_t frame_count) const;
+  Result<RenderOptions> MakeOptions(const CommonOptions& common, size_t frame_count) const;
+
+ private:
+  Result<FilmOptions> MakeFilm(uint64_t seed) const;
+  Result<FolderOptions> MakeFolder(size_t frame_count) const;
 };
 
 }  // namespace lf

@@ -16,7 +16,7 @@
 #include "lf/core/log.h"
 #include "lf/core/shell_word.h"
 #include "lf/package/package_file.h"
-#include "lf/pipeline/check_render_options.h"
+#include "lf/pipeline/render.h"
 #include "lf/pipeline/render_packages.h"
 
 namespace lf {
@@ -113,9 +113,7 @@ Result<RenderOptions> TryArguments(const std::vector<fs::path>& packages, const 
   LF_ASSIGN_OR_RETURN(*film, OpenPackages(packages, std::move(place)));
   const Package& first = film->first;
   LF_ASSIGN_OR_RETURN(RenderOptions options,
-                      render.MakeOptions(renderer.common(), first.light_field.encoding.bayer,
-                                         first.path.frame_count()));
-  if (!options.max_image_count) options.max_image_count = first.choices.max_image_count;
+                      render.MakeOptions(renderer.common(), first.path.frame_count()));
   LF_RETURN_IF_ERROR(CheckRenderOptions(first, options));
   return options;
 }
@@ -317,7 +315,7 @@ Result<ClusterJob> SubmitArguments::MakeJob(const CommonOptions& common) const {
   for (const PackagePart& part : parts)
     job.packages.push_back(
         {part.path, part.path.stem().string(), part.frames, part.is_whole, part.ray_count});
-  job.frame_extension = FramePath("", FrameId{1}, options.format).extension().string();
+  job.frame_extension = FramePath("", FrameId{1}, options.folder.format).extension().string();
   if (!video.empty()) job.video = fs::absolute(video).lexically_normal();
   job.contact_sheet = !no_contact_sheet;
   LF_RETURN_IF_ERROR(TakeResources(&job, common, true));

@@ -79,7 +79,7 @@ Error Refusal(const fs::path& output, std::string_view what, const fs::path& inp
 
 // Returns the files that the render may write or remove.
 std::vector<fs::path> OutputsOf(const Package& package, const RenderOptions& options) {
-  const fs::path& folder = options.output_folder;
+  const fs::path& folder = options.folder.output_folder;
   const fs::path partial = folder / "partial" / package.name;
   std::vector<fs::path> outputs = {folder / kContactSheet, folder / "report.json",
                                    partial / "run.json"};
@@ -88,10 +88,10 @@ std::vector<fs::path> OutputsOf(const Package& package, const RenderOptions& opt
     outputs.push_back(folder / ("report-" + package.name + ".json"));
   }
   for (const FrameId frame : options.frames.empty() ? package.FrameIds() : options.frames) {
-    outputs.push_back(FramePath(folder, frame, options.format));
-    if (options.keep_plates)
+    outputs.push_back(FramePath(folder, frame, options.folder.format));
+    if (options.folder.keep_plates)
       outputs.push_back(fs::path(outputs.back()).replace_extension(".plate"));
-    outputs.push_back(FramePath(partial, frame, options.format));
+    outputs.push_back(FramePath(partial, frame, options.folder.format));
     outputs.push_back(fs::path(outputs.back()).replace_extension(".json"));
   }
   return outputs;
@@ -127,7 +127,7 @@ Result<void> CheckReplacesNone(const std::vector<fs::path>& outputs,
 Result<void> CheckOutputs(const Package& package, const RenderOptions& options) {
   Replaced replaced(OutputsOf(package, options));
   if (replaced.empty()) return {};
-  LF_RETURN_IF_ERROR(CheckFiles(options.inputs, replaced));
+  LF_RETURN_IF_ERROR(CheckFiles(options.folder.inputs, replaced));
   const LightField& light_field = package.light_field;
   LF_RETURN_IF_ERROR(
       CheckImages(light_field.folder, light_field.image_names, "an LF image", &replaced));

@@ -16,8 +16,8 @@ Result<void> CheckReplacesNone(const std::vector<std::filesystem::path>& outputs
                                const std::vector<std::filesystem::path>& inputs);
 
 // Returns kUsage if a file that the render writes into its folder is an LF image or a mask of the
-// package, or one of options.inputs. CheckVideoTarget() checks the video. Links to folders are
-// followed. Links to files are followed in light fields of up to 20,000 LF images only, because
+// package, or one of options.folder.inputs. CheckVideoTarget() checks the video. Links to folders
+// are followed. Links to files are followed in light fields of up to 20,000 LF images only, because
 // each costs one access to the disk.
 Result<void> CheckOutputs(const Package& package, const RenderOptions& options);
 

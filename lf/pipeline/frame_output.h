@@ -1,5 +1,4 @@
-// Makes the picture of a frame from its plate, and contact sheet and video from pictures. Internal
-// to pipeline.
+// Writes the picture of a frame, and contact sheet and video from pictures. Internal to pipeline.
 #pragma once
 
 #include <atomic>
@@ -9,32 +8,25 @@
 #include <string>
 #include <vector>
 
-#include "lf/capture/radiance.h"
-#include "lf/collector/frame_lens.h"
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
 #include "lf/path/camera_path.h"
 #include "lf/pipeline/render.h"
-#include "lf/plate/sensor_plate.h"
 #include "lf/record/frame_sheet.h"
-#include "lf/record/report.h"
 #include "lf/sequence/frame_file.h"
 
 namespace lf {
 
-// Returns the sheet by which a picture of the frame is made. The caller must set estimator,
-// version, fps and smooth_below.
-FrameSheet MakeFrameSheet(FrameId frame, const RenderCamera& camera, const FrameRays& rays,
-                          const FrameLens& lens, const RadianceEncoding& encoding);
+// Returns true if a file of the format has DevelopedFrame::effective_count.
+bool HasEffectiveCounts(FrameFormat format);
 
-// Develops the plate and writes its picture to the file `to`. The report has no samples.
-//   completion      the part interpolated from rebinned rays, or null
-//   is_interrupted  called often, by any thread; may be empty
+// Writes the developed picture of a sheet to the file `to`.
+//   is_interrupted  called often, by any thread; may be empty. The picture may be unusable if it
+//                   returns true.
 // kOutput: the file cannot be written. kInterrupted: nothing is written.
-Result<FrameReport> WritePicture(const FrameSheet& sheet, const SensorPlate& plate,
-                                 const Completion* completion, const std::filesystem::path& to,
-                                 FrameFormat format, ThreadPool& pool,
-                                 const std::function<bool()>& is_interrupted);
+Result<void> WritePicture(const FrameSheet& sheet, const DevelopedFrame& picture,
+                          const std::filesystem::path& to, FrameFormat format,
+                          const std::function<bool()>& is_interrupted);
 
 inline constexpr const char* kContactSheet = "contact_sheet.png";
 

@@ -16,6 +16,7 @@
 #include "lf/core/log.h"
 #include "lf/imageio/whole_file.h"
 #include "lf/pipeline/check_outputs.h"
+#include "lf/pipeline/develop_frame.h"
 #include "lf/pipeline/frame_output.h"
 #include "lf/pipeline/render_pass.h"
 #include "lf/record/frame_sheet.h"
@@ -280,12 +281,14 @@ class Merger {
       if (progress_) progress_(now_);
     }
     if (!is_kept) {
-      const Result<FrameReport> report =
-          WritePicture(sheet, sum, nullptr, PathOf(frame), options_.format, pool_,
-                       [this] { return IsStopped(); });
-      if (!report && report.error().kind == ErrorKind::kInterrupted) return Interrupted();
-      if (!report) return report.error();
-      reports_[frame] = *report;
+      const auto is_stopped = [this] { return IsStopped(); };
+      const RenderedFrame made =
+          DevelopFrame(sheet, sum, nullptr, HasEffectiveCounts(options_.format), pool_, is_stopped);
+      const Result<void> written =
+          WritePicture(sheet, made.picture, PathOf(frame), options_.format, is_stopped);
+      if (!written && written.error().kind == ErrorKind::kInterrupted) return Interrupted();
+      LF_RETURN_IF_ERROR(written);
+      reports_[frame] = made.report;
     }
     LogDebug("frame {}: {} plates, {} rays of {} LF images{}", frame.value, plates.size(),
              sheet.rays.accepted_count, sheet.rays.image_count, is_kept ? "; kept" : "");

@@ -50,8 +50,7 @@ class PackedRenderTest : public FolderTest {
     return ReadPackedStore(store_).value().light_field;
   }
   Result<RenderReport> RenderTo(const std::string& name, LightField field) {
-    options_.output_folder = folder_ / name;
-    if (options_.reading.estimator == Estimator::kBilinear) MakeRoomForUndershoot(&field.encoding);
+    options_.folder.output_folder = folder_ / name;
     return Render(PackageOfAll(std::move(field), film_, 3), options_, pool_, nullptr);
   }
   std::map<std::string, std::string> Frames(const std::string& name) {
@@ -64,7 +63,7 @@ class PackedRenderTest : public FolderTest {
   void ExpectSameFrames() {
     const LightField packed = Packed();
     for (const Estimator estimator : {Estimator::kBilinear, Estimator::kNearest}) {
-      options_.reading.estimator = estimator;
+      options_.film.reading.estimator = estimator;
       const std::string suffix = std::to_string(static_cast<int>(estimator));
       const Result<RenderReport> files = RenderTo("files" + suffix, field_);
       ASSERT_TRUE(files) << files.error().message;
@@ -139,7 +138,7 @@ TEST_F(PackedRenderTest, OneDamagedCodeIsOneSkippedImage) {
   std::filesystem::remove(field_.ImagePath({5}));
   ASSERT_TRUE(RenderTo("files", field_));
   EXPECT_EQ(Frames("files"), Frames("frames"));
-  options_.strict = true;
+  options_.work.strict = true;
   const Result<RenderReport> strict = RenderTo("strict", packed);
   ASSERT_FALSE(strict);
   EXPECT_EQ(strict.error().kind, ErrorKind::kInput);

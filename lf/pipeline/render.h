@@ -1,5 +1,5 @@
-// The main task: renders a package into an image sequence (thesis 4.3). A light field and a camera
-// path form a package (package/package.h).
+// The main task: renders a package into a folder with an image sequence (thesis 4.3). A light field
+// and a camera path form a package (package/package.h). film_renderer.h renders in memory.
 #pragma once
 
 #include <atomic>
@@ -10,17 +10,13 @@
 #include <string>
 #include <vector>
 
-#include "lf/collector/collect.h"
+#include "lf/core/ids.h"
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
-#include "lf/hybrid/rebinned_rays.h"
-#include "lf/hybrid/render_mode.h"
-#include "lf/lens_weights/frame_weights.h"
 #include "lf/package/package.h"
-#include "lf/preprocess/frame_needs.h"
+#include "lf/pipeline/film_options.h"
 #include "lf/record/report.h"
-#include "lf/record/shard.h"
-#include "lf/sequence/develop.h"
+#include "lf/selection/image_order.h"
 #include "lf/sequence/frame_file.h"
 
 namespace lf {
@@ -33,50 +29,15 @@ struct RenderSignals {
   std::atomic<bool> save = false;       // write the state and continue
 };
 
-struct RenderOptions {
+// The folder that the frames and the state of a render go into.
+struct FolderOptions {
   std::filesystem::path output_folder;
   // Files other than LF images that are read, which no output may replace: calibration, path.
   std::vector<std::filesystem::path> inputs;
-  std::vector<FrameId> frames;  // of the package, ascending; empty: all of its frames
   FrameFormat format = FrameFormat::kExrHalf;
-  std::optional<std::filesystem::path> video;  // an mp4 of the frames
+  std::optional<std::filesystem::path> video;  // an mp4 of the frames; not with a shard
   bool contact_sheet = true;                   // contact_sheet.png beside the frames
-  bool keep_plates = false;                    // frame_0001.plate beside the frames
-
-  // If set, writes plates of a part of the LF images for MergeShards(), and no frames, contact
-  // sheet or video. Not with rules that count rays or measure noise, with rebinned rays, with
-  // keep_plates or with a video.
-  std::optional<Shard> shard;
-  // If set, a frame takes only the first so many LF images of the order that contribute to it. Must
-  // not be more than the package was made for.
-  std::optional<size_t> max_image_count;
-  // If set, a frame is finished when its elements have so many rays (sample_rule.h). This is
-  // decided after multiples of 64 places of the order (of 128, 256, ... if a frame takes only a
-  // part of the LF images), so that the frame has the same bits in any run.
-  std::optional<uint32_t> stop_at_samples;
-  std::optional<uint32_t> require_samples;  // if set, measured for the report of each frame
-  // If set, a frame is finished when its noise is at most this (noise_rule.h), in linear radiance
-  // with the light field's white as 1. This is decided at the places of NoiseDecisionAfter(). Works
-  // with every mode, estimator, filter and weights: with kRebin, frames collect rays to measure the
-  // noise, but their pictures do not use them. Not with shard.
-  std::optional<double> stop_at_noise;
-  std::optional<double> require_noise;  // if set, measured for the report of each frame
-  uint32_t smooth_below = 0;            // this and fill_radius_px: sequence/develop.h
-  int fill_radius_px = kFillRadius_px;
-  size_t memory_bytes = size_t{8} << 30;
-  bool strict = false;        // a broken LF image is an error, and not skipped
-  bool whole_images = false;  // SelectOptions::whole_images: the same bits, but slower
-  // With kBilinear, call MakeRoomForUndershoot() for the light field (capture/radiance.h). Must not
-  // be kMosaic if CountsRays() is true, because its rays count more than once.
-  RayReading reading;
-  // Must be kNone if CountsRays() is true, because weighted counts are not ray counts, and if the
-  // package has no neighbours.
-  LensWeights lens_weights = LensWeights::kNone;
-  CollectBackEnd back_end = CollectBackEnd::kFast;
-  RenderMode mode = RenderMode::kCollect;
-  // Unused with kCollect. If max_cells is 0, as many cells as fit in half of the memory with
-  // kRebin, or in a quarter with kHybrid.
-  RebinPassOptions rebin;
+  bool keep_plates = false;  // frame_0001.plate beside the frames; not with kRebin or a shard
 
   // Interval between checkpoints (run_state.h); 0: only those that signals ask for. Checkpoints
   // take at most 5 % of the time: the interval is extended if they would take more.
@@ -85,16 +46,18 @@ struct RenderOptions {
   bool overwrite = false;  // remove the state in the folder
   // Frames to finish at once with the rays that the state has of them. Their reports name the place
   // of the order at which they ended. Frames without rays are rendered as usual. Only with resume,
-  // and not with shard.
+  // and not with a shard.
   std::vector<FrameId> finish_early;  // ascending
+  std::string version;                // of the program, for the files' metadata
+};
 
-  std::string version;               // of the program, for the files' metadata
+// A shard (FilmOptions::shard) writes plates for MergeShards(), and no frames or contact sheet.
+struct RenderOptions {
+  std::vector<FrameId> frames;  // of the package, ascending; empty: all of its frames
+  FilmOptions film;             // what the frames are made of
+  WorkOptions work;             // how; its flags are those of `signals`, and are set by Render()
+  FolderOptions folder;         // where they go
   RenderSignals* signals = nullptr;  // read often; may be null
-
-  // Returns true if an option depends on the number of rays of elements.
-  bool CountsRays() const { return stop_at_samples || require_samples || smooth_below > 0; }
-  // Returns true if an option depends on the differences between LF images in elements.
-  bool MeasuresNoise() const { return stop_at_noise || require_noise; }
 };
 
 struct RenderProgress {
@@ -106,9 +69,10 @@ struct RenderProgress {
   size_t image_total = 0;
 };
 
-// Returns the options that decide which LF images frames of the package need
-// (preprocess/frame_needs.h).
-NeedsOptions NeedsOfRender(const Package& package, const RenderOptions& options);
+// Checks the options before a render, and before a job waits in a queue: CheckFilmOptions(), and
+// the options of the folder. Render() calls this before it starts.
+// kUsage; kInput if a camera has no lens area and the lens weights need one.
+Result<void> CheckRenderOptions(const Package& package, const RenderOptions& options);
 
 // Puts the LF images of a whole light field in the order for the film and the options.
 // kUsage: options that do not go together. kInterrupted: a signal asked to stop.
@@ -128,7 +92,7 @@ Result<void> PutInOrder(ImageOrder order, const RenderOptions& options, ThreadPo
 //   kOutput       the disk or the memory does not suffice; ffmpeg failed, after the frames were
 //                 written. The state on the disk is that of the last checkpoint.
 //   kInterrupted  finished frames stay, and the state of the others is written
-Result<RenderReport> Render(const Package& package, const RenderOptions& options, ThreadPool& pool,
+Result<RenderReport> Render(Package package, const RenderOptions& options, ThreadPool& pool,
                             const std::function<void(const RenderProgress&)>& progress);
 
 }  // namespace lf

@@ -248,9 +248,9 @@ Result<RenderReport> RenderPackages(PackagedFilm film, const RenderOptions& opti
                                     ThreadPool& pool,
                                     const std::function<void(const RenderProgress&)>& progress) {
   LF_ASSIGN_OR_RETURN(const std::vector<PackagePart> parts, PartsWith(film, options.frames));
-  if (options.video) {
+  if (options.folder.video) {
     LF_RETURN_IF_ERROR(CheckVideoTool());
-    LF_RETURN_IF_ERROR(CheckVideoTarget(*options.video));
+    LF_RETURN_IF_ERROR(CheckVideoTarget(*options.folder.video));
   }
   RenderProgress before;  // of packages that are done
   uint64_t rays_after = 0;
@@ -260,46 +260,45 @@ Result<RenderReport> RenderPackages(PackagedFilm film, const RenderOptions& opti
   }
   std::vector<FrameId> frames;
   RenderReport report;
-  std::optional<Package> last;
+  CameraPath path;  // of all packages
   for (const PackagePart& part : parts) {
     LF_ASSIGN_OR_RETURN(Package package, OpenAgain(part, &film));
-    if (options.reading.estimator == Estimator::kBilinear)
-      MakeRoomForUndershoot(&package.light_field.encoding);
     RenderOptions of_part = options;
     of_part.frames = part.frames;
-    of_part.contact_sheet = false;
-    of_part.video.reset();
-    if (!of_part.max_image_count) of_part.max_image_count = package.choices.max_image_count;
+    of_part.folder.contact_sheet = false;
+    of_part.folder.video.reset();
+    const std::string name = package.name;
+    path = package.path;
     rays_after -= part.ray_count;
     RenderProgress now;
-    LF_ASSIGN_OR_RETURN(const RenderReport done,
-                        Render(package, of_part, pool, [&](const RenderProgress& of_package) {
-                          now = of_package;
-                          now.frame_count += before.frame_count;
-                          now.frame_total = before.frame_total;
-                          now.ray_count += before.ray_count;
-                          now.ray_total += before.ray_count + rays_after;
-                          if (progress) progress(now);
-                        }));
+    LF_ASSIGN_OR_RETURN(
+        const RenderReport done,
+        Render(std::move(package), of_part, pool, [&](const RenderProgress& of_package) {
+          now = of_package;
+          now.frame_count += before.frame_count;
+          now.frame_total = before.frame_total;
+          now.ray_count += before.ray_count;
+          now.ray_total += before.ray_count + rays_after;
+          if (progress) progress(now);
+        }));
     before.frame_count += part.frames.size();
     before.ray_count = now.ray_count;
     report = Joined(std::move(report), done);
-    report.packages.push_back({package.name, done.selected_image_count, done.skipped.size()});
+    report.packages.push_back({name, done.selected_image_count, done.skipped.size()});
     frames.insert(frames.end(), part.frames.begin(), part.frames.end());
-    last = std::move(package);
   }
   std::sort(frames.begin(), frames.end());
   std::sort(report.frames.begin(), report.frames.end(),
             [](const FrameReport& a, const FrameReport& b) { return a.frame < b.frame; });
-  const FilmFiles files = FilesOfFilm(last->path, options);
-  if (options.contact_sheet && !options.shard)
+  const FilmFiles files = FilesOfFilm(path, options);
+  if (options.folder.contact_sheet && !options.film.shard)
     LF_RETURN_IF_ERROR(files.WriteContactSheet(frames, static_cast<size_t>(pool.thread_count()),
                                                pool, ContactSheetName(film.paths)));
-  if (options.video) LF_RETURN_IF_ERROR(files.WriteVideo(frames, *options.video));
+  if (options.folder.video) LF_RETURN_IF_ERROR(files.WriteVideo(frames, *options.folder.video));
   // A section of a film may be black.
-  if (report.IsBlack() && !options.shard && film.paths.size() == film.film_count)
+  if (report.IsBlack() && !options.film.shard && film.paths.size() == film.film_count)
     return InputError(fmt::format("{}: every frame is black: no ray reached them",
-                                  options.output_folder.string()));
+                                  options.folder.output_folder.string()));
   return report;
 }
 

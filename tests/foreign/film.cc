@@ -20,12 +20,12 @@ int main(int argc, char** argv) {
     return 3;
   }
   lf::RenderOptions options;
-  options.output_folder = argv[3];
-  options.format = lf::FrameFormat::kPng8;
+  options.folder.output_folder = argv[3];
+  options.folder.format = lf::FrameFormat::kPng8;
   lf::ThreadPool pool(2);
   constexpr uint64_t kSeed = 0;  // seed of the order of the LF images
-  const lf::Package film = lf::PackageOfAll(*std::move(light_field), *std::move(path), kSeed);
-  const auto report = lf::Render(film, options, pool, nullptr);
+  lf::Package film = lf::PackageOfAll(*std::move(light_field), *std::move(path), kSeed);
+  const auto report = lf::Render(std::move(film), options, pool, nullptr);
   if (!report) {
     std::fprintf(stderr, "error: %s\n", report.error().message.c_str());
     return 4;

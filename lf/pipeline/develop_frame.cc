@@ -1,0 +1,70 @@
+#include "lf/pipeline/develop_frame.h"
+
+#include <algorithm>
+#include <chrono>
+#include <iterator>
+#include <optional>
+#include <vector>
+
+#include "lf/capture/lf_pixels.h"
+#include "lf/record/run_inputs.h"
+
+namespace lf {
+namespace {
+
+// Returns the median of the values above 0; 0 if there are none.
+double MedianOfSeen(const LargeVector<float>& values) {
+  std::vector<float> sorted;
+  std::copy_if(values.begin(), values.end(), std::back_inserter(sorted),
+               [](float value) { return value > 0; });
+  if (sorted.empty()) return 0;
+  const auto middle = sorted.begin() + static_cast<ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  return *middle;
+}
+
+}  // namespace
+
+FrameSheet MakeFrameSheet(FrameId frame, const RenderCamera& camera, const FrameRays& rays,
+                          const FrameLens& lens, const RadianceEncoding& encoding) {
+  FrameSheet sheet;
+  sheet.frame = frame;
+  sheet.camera = camera;
+  sheet.rays = rays;
+  sheet.develop.pedestal = encoding.pedestal;
+  sheet.develop.scale = encoding.Scale();
+  sheet.develop.white_balance = encoding.white_balance;
+  sheet.develop.camera_to_srgb = encoding.camera_to_srgb;
+  if (const std::optional<FrameLens::Facts> facts = lens.facts())
+    sheet.weighed = FrameSheet::Weighed{facts->hat_share, facts->coverage, lens.EffectiveCounts()};
+  return sheet;
+}
+
+RenderedFrame DevelopFrame(const FrameSheet& sheet, const SensorPlate& plate,
+                           const Completion* completion, bool with_effective, ThreadPool& pool,
+                           const std::function<bool()>& is_interrupted) {
+  const auto start = std::chrono::steady_clock::now();
+  DevelopOptions develop = sheet.develop;
+  develop.is_interrupted = is_interrupted;
+  develop.completion = completion;
+  develop.transparent = LfPixels::kTransparent;
+  develop.opaque = LfPixels::kOpaque;
+  RenderedFrame frame;
+  frame.picture = Develop(plate, develop, pool);
+  if (is_interrupted && is_interrupted()) return frame;
+  frame.report = MakeFrameReport(sheet.frame, sheet.rays, frame.picture);
+  frame.report.camera = InputsOfCamera(sheet.frame, sheet.camera);
+  frame.report.places_done = sheet.places_done;
+  if (sheet.weighed) {
+    const Image<float>& counts = sheet.weighed->effective_counts;
+    frame.report.weighed = {MedianOfSeen(counts.pixels()), sheet.weighed->hat_share,
+                            sheet.weighed->coverage};
+    if (with_effective)
+      frame.picture.effective_count = SpreadOverPlate(counts, sheet.camera.pinhole.intrinsics);
+  }
+  frame.report.develop_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return frame;
+}
+
+}  // namespace lf
