@@ -117,6 +117,22 @@ std::vector<WatchedFrame> LookAtRender(const fs::path& folder) {
   return list;
 }
 
+GrowingPicture PictureOf(const DevelopedFrame& frame, int max_side_px) {
+  GrowingPicture picture;
+  picture.full_width_px = frame.rgb.width();
+  picture.full_height_px = frame.rgb.height();
+  picture.has_rays = true;
+  Image<float> all(frame.rgb.width(), frame.rgb.height(), 6);
+  for (int y = 0; y < all.height(); ++y)
+    for (int x = 0; x < all.width(); ++x)
+      for (int c = 0; c < 3; ++c) {
+        all.at(x, y, c) = frame.rgb.at(x, y, c);
+        all.at(x, y, 3 + c) = static_cast<float>(frame.ray_count.at(x, y, c));
+      }
+  picture.elements = Shrunken(all, {3, 4, 5}, -1, max_side_px);
+  return picture;
+}
+
 Result<GrowingPicture> ReadGrowingPicture(const fs::path& path, int max_side_px) {
   LF_ASSIGN_OR_RETURN(const ImageWithInfo read, ReadImageWithInfo(path));
   if (read.info.channels < 3)

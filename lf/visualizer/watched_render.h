@@ -1,5 +1,5 @@
 // Finds the frames of a render that is running or done, in the DIR of lfrenderer
-// (doc/checkpoints.md).
+// (doc/checkpoints.md), and shrinks pictures for the page.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,7 @@
 #include "lf/core/ids.h"
 #include "lf/core/image.h"
 #include "lf/core/result.h"
+#include "lf/sequence/develop.h"
 
 namespace lf {
 
@@ -34,6 +35,9 @@ struct GrowingPicture {
   // are means of squares. Frames with alpha are shown over black.
   Image<float> elements;
 };
+
+// Returns the picture of a frame that is rendered in this process.
+GrowingPicture PictureOf(const DevelopedFrame& frame, int max_side_px);
 
 // kInput: errors of ReadImage(), or fewer than three channels.
 Result<GrowingPicture> ReadGrowingPicture(const std::filesystem::path& path, int max_side_px);

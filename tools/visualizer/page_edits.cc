@@ -83,7 +83,7 @@ PageAnswer StartPreview(PageScene& scene, PreviewRender& preview, const Json& js
   if (!draft) return RefusedPath(draft.error(), scene.arguments().path.filename().string());
   const auto frame = FrameOf(json, *(*draft)->path);
   if (!frame) return Refusal(422, "\"frame\": expected one of the path's");
-  preview.Start(text, *frame);
+  preview.Start((*draft)->path, *frame);
   return JsonAnswer(Json::object());
 }
 

@@ -40,7 +40,7 @@ struct PageServer::Parts {
   Parts(PageScene& page_scene, PageDoor door, int listening)
       : scene(page_scene),
         socket(listening),
-        preview(page_scene.arguments(), page_scene.events()),
+        preview(page_scene),
         daemon(std::move(door), page_scene.events(),
                [this](const RequestHead& head, std::string_view name, std::string&& body) {
                  return head.method == "POST" ? Edit(scene, preview, name, body) : Get(name);
@@ -60,8 +60,7 @@ struct PageServer::Parts {
 
 PageAnswer PageServer::Parts::Get(std::string_view name) {
   constexpr std::string_view kPreview = "preview/";
-  if (name.starts_with(kPreview))
-    return AnswerOfRender(preview.folder(), name.substr(kPreview.size()));
+  if (name.starts_with(kPreview)) return preview.Answer(name.substr(kPreview.size()));
   return Answer(scene, name);
 }
 

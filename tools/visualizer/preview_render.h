@@ -1,60 +1,68 @@
-// Renders one frame while the user looks at it: lfrenderer with a small plate, in a folder that is
-// removed at the end.
+// Renders one frame while the user looks at it: in this process, with the small plate of the path
+// that the page sends.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
-#include <filesystem>
+#include <cstdint>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <thread>
-#include <vector>
 
-#include "tools/visualizer/event_board.h"
+#include "tools/visualizer/page_answers.h"
 #include "tools/visualizer/page_scene.h"
 
 #include "lf/core/ids.h"
+#include "lf/core/parallel.h"
 #include "lf/core/result.h"
+#include "lf/path/camera_path.h"
+#include "lf/pipeline/film_renderer.h"
+#include "lf/visualizer/watched_render.h"
 
 namespace lf {
 
 class PreviewRender {
  public:
-  // Posts "preview" to the board: {"frame": 7, "state": "rendering", "changed": "..."}. States are
-  // rendering, finished, stopped, and failed with a message.
-  PreviewRender(const PageArguments& arguments, EventBoard& events);
+  // Posts "preview" to the scene's board: {"frame": 7, "state": "rendering", "message": "",
+  // "changed": "3"}. States are rendering, finished, stopped, and failed with a message. Every
+  // picture has another value of "changed"; it is "" before the first.
+  explicit PreviewRender(PageScene& scene);
   ~PreviewRender();  // stops the render
   PreviewRender(const PreviewRender&) = delete;
   PreviewRender& operator=(const PreviewRender&) = delete;
 
   // Starts a render, and stops the current one.
-  //   text  a path, checked
-  void Start(const std::string& text, FrameId frame);
+  void Start(std::shared_ptr<const CameraPath> path, FrameId frame);
   void Stop();
 
-  // Returns the folder of the frames; empty before the first render.
-  std::filesystem::path folder() const;
+  // Answers the name "7.bin" with the newest picture of frame 7.
+  PageAnswer Answer(std::string_view name) const;
 
  private:
   struct Wish {
-    std::string text;
+    std::shared_ptr<const CameraPath> path;
     FrameId frame;
   };
   void Run();
   void Render(const Wish& wish);
-  bool IsSuperseded();
+  Result<std::string> RenderFrame(const Wish& wish);
+  void Show(FilmRenderer& renderer);
   void Say(const Wish& wish, const std::string& state, const std::string& message);
 
-  const PageArguments arguments_;
-  EventBoard& events_;
-  mutable std::mutex mutex_;
+  PageScene& scene_;
+  ThreadPool pool_;  // of its own: the page's answers do not wait for steps of the render
+  std::atomic<bool> interrupted_ = false;  // the current render is to end
+  mutable std::mutex mutex_;               // guards all below
   std::condition_variable changed_;
   std::optional<Wish> wish_;
-  bool is_stopped_ = false;  // the current render is to be stopped
   bool is_ending_ = false;
-  std::filesystem::path root_, folder_;
-  int count_ = 0;
-  std::thread thread_;  // lfrenderer dies with this thread, which starts it
+  FrameId shown_;
+  std::shared_ptr<const GrowingPicture> picture_;  // of the frame shown; null before the first
+  uint64_t picture_count_ = 0;
+  std::thread thread_;
 };
 
 }  // namespace lf
