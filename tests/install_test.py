@@ -5,6 +5,7 @@ usage: install_test.py CMAKE BUILD_FOLDER SOURCE_FOLDER
 """
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -47,6 +48,15 @@ class InstallTest(unittest.TestCase):
             self.assertEqual(self.run_tool(program, field, path, work / "frames"), "2 frames\n")
             self.assertTrue((work / "frames" / "frame_0002.png").exists())
 
+    def frame(self, program):
+        with tempfile.TemporaryDirectory() as temporary:
+            work = pathlib.Path(temporary)
+            field = small_field.write_field(work / "field")
+            said = self.run_tool(program, field, small_field.write_path(work, frames=1))
+            found = re.fullmatch(r"(\d+) x (\d+), red of the middle: ([0-9.e-]+)\n", said)
+            self.assertTrue(found, said)
+            self.assertGreater(float(found[3]), 0)
+
     def test_a_foreign_project_by_cmake(self):
         build = self.folder / "by-cmake"
         self.run_tool(CMAKE, "-G", "Ninja", "-S", SOURCE / "tests" / "foreign", "-B", build,
@@ -54,6 +64,7 @@ class InstallTest(unittest.TestCase):
                       f"-DLF_INCLUDE={self.prefix / 'include'}")
         self.run_tool(CMAKE, "--build", build)
         self.film(build / "film")
+        self.frame(build / "frame")
 
     def test_a_foreign_program_by_pkg_config(self):
         environment = {**os.environ, "PKG_CONFIG_PATH": str(self.library / "pkgconfig")}
