@@ -79,8 +79,8 @@ struct WorkOptions {
   // If given and set by any thread, a step ends soon with kInterrupted. The caller clears the flag,
   // and may go on with the next step.
   const std::atomic<bool>* interrupted = nullptr;
-  // If given and set by any thread, everything ends soon with kInterrupted. The caller must set
-  // `interrupted` too.
+  // If given and set by any thread, everything ends soon with kInterrupted. The caller must then
+  // set `interrupted`.
   const std::atomic<bool>* stop = nullptr;
 
   bool IsStopped() const { return stop != nullptr && *stop; }
