@@ -106,8 +106,8 @@ class Arena {
  private:
   void CheckPeers(const Picture& ours) const {
     const int count = case_.spec.peer_image_count;
-    // Float positions put a few rays into the next element; the law's iteration, arcs and 32-bit
-    // ideal positions differ by 10^-4 px.
+    // Float positions put a few rays into the next element; the ray model's iteration, arcs and
+    // 32-bit ideal positions differ by 10^-4 px.
     // Interpolated elements have other counts, but the picture is smooth, so that the means agree.
     const bool is_mosaic = case_.spec.filter == PixelFilter::kMosaic;
     const double count_limit = is_mosaic ? 1e9 : 0.002, mean_limit = is_mosaic ? 300 : 60;

@@ -39,7 +39,7 @@ class OurKernel : public Contender {
 //   is_weighed  every 8 x 8 elements weigh the rays of each LF image differently
 std::unique_ptr<OurKernel> MakeOurKernel(const KernelCase& kernel_case, bool is_weighed = false);
 
-// Evaluates the law for every pixel (or element), in double precision.
+// Evaluates the ray model for every pixel (or element), in double precision.
 std::unique_ptr<Contender> MakeReference(const KernelCase& kernel_case);
 
 // The loop that the thesis describes (4.3.1), with Eigen. The second one is compiled for the

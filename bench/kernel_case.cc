@@ -105,10 +105,10 @@ uint64_t AcceptedCount(const KernelCase& kernel_case, const RenderCamera& frame)
   constexpr int kStep = 16;
   uint64_t accepted = 0;
   for (size_t i = 0; i < std::min(kImages, kernel_case.cameras.size()); ++i) {
-    const RayLaw law(kernel_case.cameras[i], frame);
+    const RayModel model(kernel_case.cameras[i], frame);
     for (int y = kStep / 2; y < kernel_case.spec.image_size_px; y += kStep)
       for (int x = kStep / 2; x < kernel_case.spec.image_size_px; x += kStep)
-        accepted += law.Collect(x, y) ? 1 : 0;
+        accepted += model.Collect(x, y) ? 1 : 0;
   }
   return accepted;
 }

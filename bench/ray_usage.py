@@ -5,7 +5,7 @@ usage: bench/ray_usage.py BUILD_DIR [--density 1] [--size 480x320] [--name NAME]
        bench/ray_usage.py --again JSON [--write PAGE]
 
 The movement `short` of Table 5.1 through an LF camera grid as dense as the thesis's (calibration only: the
-law's spans tell, without pixels). LF images are ordered by their usage, accepted / tried, over all frames.
+ray model's spans tell, without pixels). LF images are ordered by their usage, accepted / tried, over all frames.
 With --write the figures go into PAGE, and the picture into doc/images/ray_usage.svg.
 """
 import argparse

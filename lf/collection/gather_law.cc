@@ -5,7 +5,7 @@
 
 namespace lf {
 
-GatherLaw::GatherLaw(const PinholeCamera& lf_camera, const RenderCamera& render_camera)
+GatherModel::GatherModel(const PinholeCamera& lf_camera, const RenderCamera& render_camera)
     : render_camera_(render_camera),
       forward_(render_camera.pinhole.ForwardWorld()),
       right_(render_camera.pinhole.RightWorld()),
@@ -15,7 +15,7 @@ GatherLaw::GatherLaw(const PinholeCamera& lf_camera, const RenderCamera& render_
       aperture_(render_camera.aperture),
       may_lack_rays_(MayLackRays(lf_camera.intrinsics)) {}
 
-std::optional<Vec3> GatherLaw::Direction(int x, int y) const {
+std::optional<Vec3> GatherModel::Direction(int x, int y) const {
   // The focus point, before the lens.
   const std::optional<Vec3> focus_point = FocusPointOfElement(render_camera_, x + 0.5, y + 0.5);
   if (!focus_point) return std::nullopt;
@@ -26,7 +26,7 @@ std::optional<Vec3> GatherLaw::Direction(int x, int y) const {
   return d;
 }
 
-std::optional<Vec2> GatherLaw::Position(int x, int y) const {
+std::optional<Vec2> GatherModel::Position(int x, int y) const {
   const std::optional<Vec3> direction = Direction(x, y);
   if (!direction) return std::nullopt;
   const std::optional<Vec2> p = ray_.RecordedAt(*direction);

@@ -12,10 +12,10 @@
 
 namespace lf {
 
-class GatherLaw {
+class GatherModel {
  public:
   // render_camera  with the finer plate, if an element's ray is the mean of several
-  GatherLaw(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
+  GatherModel(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
 
   // Returns the direction, in the world, of the ray that element (x, y) asks for; none if it has no
   // focus point before the lens, or if the ray misses the lens.

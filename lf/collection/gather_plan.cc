@@ -76,7 +76,7 @@ class GatherPlanner {
   GatherPlanner(const PinholeCamera& lf_camera, const RenderCamera& finer,
                 const GatherSampling& sampling, GatherPlan memory)
       : k_(lf_camera.intrinsics),
-        law_(lf_camera, finer),
+        model_(lf_camera, finer),
         forms_(MakeForms(lf_camera, finer)),
         map_(lf_camera.intrinsics.distortion),
         maker_(forms_.across_x, forms_.across_y, forms_.depth),
@@ -87,7 +87,7 @@ class GatherPlanner {
     // ray model decides for a whole span at its ends.
     const bool is_disk = finer.aperture.blades == 0;
     if (is_disk && LiesInLensPlane(lf_camera, finer))
-      rows_.law_decides = !IsSurelyInDisk(lf_camera, finer);
+      rows_.model_decides = !IsSurelyInDisk(lf_camera, finer);
     else if (is_disk)
       rows_.disk = {forms_.lens_right, forms_.lens_up, forms_.forward, finer.aperture.radius_w};
     width_ = finer.pinhole.intrinsics.width_px;
@@ -106,8 +106,8 @@ class GatherPlanner {
       const auto accepted = [&](int side, int x) {
         const double forward = Value(forms_.forward, x + 0.5, y + 0.5);
         if (!(side == 0 ? forward < 0 : forward > 0)) return false;
-        return k_.has_distortion() ? law_.Direction(x, y).has_value()
-                                   : law_.Position(x, y).has_value();
+        return k_.has_distortion() ? model_.Direction(x, y).has_value()
+                                   : model_.Position(x, y).has_value();
       };
       rows_.Find(y, 0, width_, accepted, &spans_);
       for (const auto& [begin, end] : spans_) {
@@ -150,7 +150,7 @@ class GatherPlanner {
     const Vec2 base(segment.base_x, segment.base_y);
     const Vec2 low = base + Vec2(x.low, y.low), high = base + Vec2(x.high, y.high);
     if (high.x() < 0 || high.y() < 0 || low.x() > k_.width_px || low.y() > k_.height_px) return;
-    if (!law_.may_lack_rays() && HasFourPixels(k_, low.x(), low.y()) &&
+    if (!model_.may_lack_rays() && HasFourPixels(k_, low.x(), low.y()) &&
         HasFourPixels(k_, high.x(), high.y())) {
       AppendPart(segment);
       return;
@@ -158,7 +158,7 @@ class GatherPlanner {
     constexpr int kFew = 4;
     if (segment.count <= kFew) {
       for (int i = 0; i < segment.count; ++i)
-        if (law_.Position(segment.x_begin + i, segment.y)) AppendPart(Part(segment, i, i + 1));
+        if (model_.Position(segment.x_begin + i, segment.y)) AppendPart(Part(segment, i, i + 1));
       return;
     }
     AddParts(Part(segment, 0, segment.count / 2));
@@ -183,7 +183,7 @@ class GatherPlanner {
   }
 
   Intrinsics k_;
-  GatherLaw law_;
+  GatherModel model_;
   GatherForms forms_;
   DistortionMap map_;
   SegmentMaker maker_;

@@ -143,14 +143,14 @@ uint64_t GatherReference(const PinholeCamera& lf_camera, const LfPixels& pixels,
   const Intrinsics& k = lf_camera.intrinsics;
   const GatherSampling sampling = SamplingOf(lf_camera, render_camera, filter);
   const int samples = sampling.samples;
-  const GatherLaw law(lf_camera, WithFinerPlate(render_camera, samples));
+  const GatherModel model(lf_camera, WithFinerPlate(render_camera, samples));
   // Returns the ray of element (x, y).
   const auto ray_of = [&](int x, int y) -> std::optional<RgbRay> {
     std::array<uint32_t, 3> sum = {}, counted = {};
     uint32_t rays = 0;
     for (int i = 0; i < samples * samples; ++i) {
       const std::optional<Vec2> p =
-          law.Position(x * samples + i % samples, y * samples + i / samples);
+          model.Position(x * samples + i % samples, y * samples + i / samples);
       if (!p) continue;
       const auto ray = InterpolatePixels(pixels, k.width_px, k.height_px, p->x(), p->y(), sampling);
       if (!ray) continue;

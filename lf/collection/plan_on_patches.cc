@@ -44,7 +44,7 @@ class PatchPlanner {
   PatchPlanner(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
                const PixelRect& rect, const IdealPixels& ideal_pixels,
                std::vector<Segment>* segments)
-      : law_(lf_camera, render_camera),
+      : model_(lf_camera, render_camera),
         render_camera_(render_camera),
         rect_(rect),
         in_lens_plane_(LiesInLensPlane(lf_camera, render_camera)),
@@ -178,7 +178,7 @@ class PatchPlanner {
     const auto is_accepted = [&](int x) {
       if (x >= pixels->sure_begin && x <= pixels->sure_end) return true;
       const IdealArc arc = patch.Scanline(y);
-      return law_.CollectIdeal(arc.At(arc.Parameter(x))).has_value();
+      return model_.CollectIdeal(arc.At(arc.Parameter(x))).has_value();
     };
     int begin = std::max(clip.x_begin, static_cast<int>(std::ceil(pixels->begin)));
     int end = std::min(clip.x_end, static_cast<int>(std::floor(pixels->end)) + 1);
@@ -215,7 +215,7 @@ class PatchPlanner {
     constexpr int kFewPixels = 4;
     if (part.x_end - part.x_begin <= kFewPixels) {
       for (int x = std::max(begin, part.x_begin); x < std::min(end, part.x_end); ++x)
-        if (law_.CollectIdeal(arc.At(arc.Parameter(x)))) AppendRun(x, x + 1);
+        if (model_.CollectIdeal(arc.At(arc.Parameter(x)))) AppendRun(x, x + 1);
       return;
     }
     IdealArc left, right;
@@ -295,7 +295,7 @@ class PatchPlanner {
 
   static constexpr double kInLensPlaneMargin = 1e-6;
 
-  RayLaw law_;
+  RayModel model_;
   const RenderCamera& render_camera_;
   PixelRect rect_;
   bool in_lens_plane_;

@@ -33,12 +33,12 @@ uint64_t Scatter(const testing::CameraPair& pair, const LfPixels& pixels, const 
   });
 }
 
-TEST(PlanOnPatches, SegmentsHoldExactlyTheRaysThatTheLawAcceptsOnThePatches) {
+TEST(PlanOnPatches, SegmentsHoldExactlyTheRaysThatTheModelAcceptsOnThePatches) {
   size_t accepted_count = 0, scenes_with_rays = 0;
   for (uint64_t seed = 0; seed < 280; ++seed) {
     const testing::CameraPair pair = testing::RandomDistortedPair(seed);
     const IdealPixels ideal(pair.lf_camera.intrinsics);
-    const RayLaw law(pair.lf_camera, pair.render_camera);
+    const RayModel model(pair.lf_camera, pair.render_camera);
     const ScatterPlan plan =
         PlanScatter(pair.lf_camera, pair.render_camera, kWholeImage, {160, 120, 40, 23}, &ideal);
     Image<uint8_t> in_span(kWidth, kHeight);
@@ -49,7 +49,7 @@ TEST(PlanOnPatches, SegmentsHoldExactlyTheRaysThatTheLawAcceptsOnThePatches) {
       for (int y = patch.rect.y_begin; y < patch.rect.y_end; ++y) {
         const IdealArc arc = patch.Scanline(y);
         for (int x = arc.x_begin; x < arc.x_end; ++x) {
-          const bool collected = law.CollectIdeal(arc.At(arc.Parameter(x))).has_value();
+          const bool collected = model.CollectIdeal(arc.At(arc.Parameter(x))).has_value();
           ASSERT_EQ(in_span.at(x, y), collected ? 1 : 0) << seed << ": " << x << ", " << y;
           accepted += collected;
         }
@@ -61,7 +61,7 @@ TEST(PlanOnPatches, SegmentsHoldExactlyTheRaysThatTheLawAcceptsOnThePatches) {
   EXPECT_GT(accepted_count, 100000u);
 }
 
-TEST(PlanOnPatches, MostSpansAreFoundWithoutAskingTheLaw) {
+TEST(PlanOnPatches, MostSpansAreFoundWithoutAskingTheModel) {
   // A wide lens close by: most arcs lie wholly inside.
   testing::CameraPair pair = testing::ParallelPair(1, 1, 0.01, 0.2);
   pair.render_camera.pinhole.intrinsics = {1000, 1000, 640, 360, 0, 1280, 720, {}};

@@ -20,7 +20,7 @@ bool IsSurelyInDisk(const PinholeCamera& lf_camera_in_lens_plane,
   return offset.norm() < (1 - kMargin) * r.aperture.radius_w;
 }
 
-RayLaw::RayLaw(const PinholeCamera& lf_camera, const RenderCamera& render_camera)
+RayModel::RayModel(const PinholeCamera& lf_camera, const RenderCamera& render_camera)
     : intrinsics_(lf_camera.intrinsics),
       centre_(lf_camera.CentreWorld()),
       direction_(lf_camera.cam_from_world.rotation.transpose() *
@@ -38,14 +38,14 @@ RayLaw::RayLaw(const PinholeCamera& lf_camera, const RenderCamera& render_camera
   if (intrinsics_.has_distortion()) distortion_.emplace(intrinsics_.distortion);
 }
 
-std::optional<PlateElement> RayLaw::Collect(int x, int y) const {
+std::optional<PlateElement> RayModel::Collect(int x, int y) const {
   if (!distortion_) return CollectIdeal({x + 0.5, y + 0.5, 1});
   const std::optional<Vec3> position = IdealPosition(intrinsics_, *distortion_, x + 0.5, y + 0.5);
   if (!position) return std::nullopt;
   return CollectIdeal(*position);
 }
 
-std::optional<PlateElement> RayLaw::CollectIdeal(const Vec3& position) const {
+std::optional<PlateElement> RayModel::CollectIdeal(const Vec3& position) const {
   // 1. The ray.
   const Ray ray{centre_, direction_ * position};
 

@@ -21,9 +21,9 @@ bool IsSurelyInDisk(const PinholeCamera& lf_camera_in_lens_plane,
                     const RenderCamera& render_camera);
 
 // Decides which rays of one LF camera a render camera accepts, and where they land.
-class RayLaw {
+class RayModel {
  public:
-  RayLaw(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
+  RayModel(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
 
   // Returns the element of the plate on which the ray of LF pixel (x, y) lands; none if the ray is
   // not accepted because it runs backward, has no focus point before the lens, or misses the lens

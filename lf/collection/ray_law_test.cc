@@ -22,24 +22,24 @@ struct Scene {
     lf_camera.cam_from_world = *LookAlong(centre, forward, {0, -1, 0});
   }
   std::optional<PlateElement> Collect(int x, int y) const {
-    return RayLaw(lf_camera, render).Collect(x, y);
+    return RayModel(lf_camera, render).Collect(x, y);
   }
   int AcceptedCount() const {
-    const RayLaw law(lf_camera, render);
+    const RayModel model(lf_camera, render);
     int count = 0;
     for (int y = 0; y < 100; ++y)
-      for (int x = 0; x < 100; ++x) count += law.Collect(x, y).has_value();
+      for (int x = 0; x < 100; ++x) count += model.Collect(x, y).has_value();
     return count;
   }
 };
 
-TEST(RayLaw, TheSameCameraReproducesItself) {
+TEST(RayModel, TheSameCameraReproducesItself) {
   Scene scene;
   for (const int x : {0, 37, 99})
     for (const int y : {0, 50, 99}) EXPECT_EQ(scene.Collect(x, y), (PlateElement{x, y}));
 }
 
-TEST(RayLaw, ACameraToTheRightSeesTheFocusPlaneShifted) {
+TEST(RayModel, ACameraToTheRightSeesTheFocusPlaneShifted) {
   Scene scene;
   scene.Place({0.06, 0, 0});  // disparity f x / g = 3 elements
   EXPECT_EQ(scene.Collect(20, 30), (PlateElement{23, 30}));
@@ -47,14 +47,14 @@ TEST(RayLaw, ACameraToTheRightSeesTheFocusPlaneShifted) {
   EXPECT_EQ(scene.AcceptedCount(), 97 * 100);
 }
 
-TEST(RayLaw, CoordinatesLeftOfThePlateAreNotTruncatedIntoIt) {
+TEST(RayModel, CoordinatesLeftOfThePlateAreNotTruncatedIntoIt) {
   Scene scene;
   scene.Place({-0.011, 0, 0});  // 0.55 elements to the left
   EXPECT_FALSE(scene.Collect(0, 10));
   EXPECT_EQ(scene.Collect(1, 10), (PlateElement{0, 10}));
 }
 
-TEST(RayLaw, CamerasOnTheRimAreInside) {
+TEST(RayModel, CamerasOnTheRimAreInside) {
   for (int i = 0; i < 360; ++i) {
     Scene scene;
     const double a = RadiansFromDegrees(i);
@@ -65,7 +65,7 @@ TEST(RayLaw, CamerasOnTheRimAreInside) {
   }
 }
 
-TEST(RayLaw, CamerasBeforeAndBehindTheLensSeeItAsACone) {
+TEST(RayModel, CamerasBeforeAndBehindTheLensSeeItAsACone) {
   // A ray at slope s, from a camera on the axis at distance 1 from the lens, crosses it at radius
   // s.
   for (const double z : {1.0, -1.0}) {
@@ -78,7 +78,7 @@ TEST(RayLaw, CamerasBeforeAndBehindTheLensSeeItAsACone) {
   }
 }
 
-TEST(RayLaw, ACameraBehindTheFocusPlaneRecordsTheLineBackwards) {
+TEST(RayModel, ACameraBehindTheFocusPlaneRecordsTheLineBackwards) {
   // It stands beyond the focus plane and looks away from the lens; its rays, run backwards, pass
   // the focus plane and the lens.
   Scene scene;
@@ -89,7 +89,7 @@ TEST(RayLaw, ACameraBehindTheFocusPlaneRecordsTheLineBackwards) {
   EXPECT_FALSE(scene.Collect(54, 50));
 }
 
-TEST(RayLaw, ImagesLookingTheOtherWayGiveNothing) {
+TEST(RayModel, ImagesLookingTheOtherWayGiveNothing) {
   Scene scene;
   scene.Place({0, 0, 1}, {0, 0, -1});
   EXPECT_EQ(scene.AcceptedCount(), 0);
@@ -97,24 +97,24 @@ TEST(RayLaw, ImagesLookingTheOtherWayGiveNothing) {
   EXPECT_EQ(scene.AcceptedCount(), 0);
 }
 
-TEST(RayLaw, ElementsBeyondTheHorizonOfATiltedPlaneGetNothing) {
+TEST(RayModel, ElementsBeyondTheHorizonOfATiltedPlaneGetNothing) {
   Scene scene;
   scene.render.focus_plane =
       FocusPlane(scene.render.pinhole, 1, {RadiansFromDegrees(75), 0});  // depth 1 + 3.73 x
-  const RayLaw law(scene.lf_camera, scene.render);
+  const RayModel model(scene.lf_camera, scene.render);
   // Pixel x looks along (x - 49.5) / 100. The plane runs away at slope 1 / tan 75 = 0.268, which is
   // column 76.8.
   int last = -1;
   for (int x = 0; x < 100; ++x)
-    if (law.Collect(x, 50)) {
+    if (model.Collect(x, 50)) {
       EXPECT_EQ(x, last + 1);
-      EXPECT_EQ(law.Collect(x, 50), (PlateElement{x, 50}));
+      EXPECT_EQ(model.Collect(x, 50), (PlateElement{x, 50}));
       last = x;
     }
   EXPECT_EQ(last, 76);
 }
 
-TEST(RayLaw, ACameraInTheFocusPlaneSendsAllItsRaysToOneElement) {
+TEST(RayModel, ACameraInTheFocusPlaneSendsAllItsRaysToOneElement) {
   Scene scene;
   scene.Place({0.5, 0.1, 2});
   scene.render.aperture.radius_w = 10;
@@ -123,7 +123,7 @@ TEST(RayLaw, ACameraInTheFocusPlaneSendsAllItsRaysToOneElement) {
   EXPECT_EQ(scene.Collect(10, 80), first);
 }
 
-TEST(RayLaw, PolygonsTakeTheirVerticesAndNotTheCircleBetween) {
+TEST(RayModel, PolygonsTakeTheirVerticesAndNotTheCircleBetween) {
   Scene scene;
   scene.render.aperture = {0.1, 3, 0};
   scene.Place({0, -0.1, 0});  // y down: straight up, the vertex

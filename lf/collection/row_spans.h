@@ -34,7 +34,7 @@ class RowSpans {
   std::vector<PixelForm> half_planes[2];
   std::optional<Disk> disk;
   // The ray model knows more than these conditions, and decides for a whole span at its ends.
-  bool law_decides = false;
+  bool model_decides = false;
 
   // Removes what is decided on all of `rect`: half-planes and a disk that hold there, and a side on
   // which a half-plane does not. Only rows of `rect` may be asked for afterwards.
@@ -43,7 +43,7 @@ class RowSpans {
   // Finds the positions of [x_begin, x_end) in row y that fulfil the conditions and that the ray
   // model accepts. The spans are sorted. They are exact if accepted positions of a side have gaps
   // only where a form stays at 0. The ray model is asked where rounding might decide, or for all
-  // ends if law_decides.
+  // ends if model_decides.
   //   accepted(side, x)  asks the ray model
   template <class Accepted>
   void Find(int y, int x_begin, int x_end, const Accepted& accepted, std::vector<RowSpan>* spans);
@@ -69,7 +69,7 @@ void RowSpans::Find(int y, int x_begin, int x_end, const Accepted& accepted,
     if (is_shut_[side]) continue;
     auto [begin, end, tie, sure] = FindCandidate(side, y + 0.5, x_begin, x_end);
     const auto is_accepted = [&, sure = sure](int x) {  // copied for clang before 16
-      const bool is_sure = x + 0.5 > sure.begin && x + 0.5 < sure.end && !law_decides &&
+      const bool is_sure = x + 0.5 > sure.begin && x + 0.5 < sure.end && !model_decides &&
                            (!disk || IsSurelyInDisk(x + 0.5, y + 0.5));
       return is_sure || accepted(side, x);
     };

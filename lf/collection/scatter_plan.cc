@@ -15,7 +15,7 @@ constexpr double kLensMargin = 1e-7;
 
 void PlanOnLines(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
                  const PixelRect& rect, std::vector<Segment>* segments) {
-  const RayLaw law(lf_camera, render_camera);
+  const RayModel model(lf_camera, render_camera);
   const RayForms forms = MakeRayForms(lf_camera, render_camera);
   const bool is_disk = render_camera.aperture.blades == 0;
   RowSpans rows;
@@ -29,7 +29,7 @@ void PlanOnLines(const PinholeCamera& lf_camera, const RenderCamera& render_came
   // All rays of a camera in the lens plane cross it at one point. If that is near the rim, the ray
   // model decides for a whole span at its ends, because the quadratic would have a double root.
   if (is_disk && LiesInLensPlane(lf_camera, render_camera))
-    rows.law_decides = !IsSurelyInDisk(lf_camera, render_camera);
+    rows.model_decides = !IsSurelyInDisk(lf_camera, render_camera);
   else if (is_disk)
     rows.disk = {forms.lens_right, forms.lens_up, forms.forward, render_camera.aperture.radius_w};
 
@@ -40,7 +40,7 @@ void PlanOnLines(const PinholeCamera& lf_camera, const RenderCamera& render_came
   for (int y = rect.y_begin; y < rect.y_end; ++y) {
     const auto accepted = [&](int side, int x) {
       const double plane = Value(forms.plane, x + 0.5, y + 0.5);
-      return (side == 0 ? plane < 0 : plane > 0) && law.Collect(x, y);
+      return (side == 0 ? plane < 0 : plane > 0) && model.Collect(x, y);
     };
     rows.Find(y, rect.x_begin, rect.x_end, accepted, &spans);
     for (const auto& [begin, end] : spans) maker.Add(y, begin, end, segments);

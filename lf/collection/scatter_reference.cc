@@ -7,7 +7,7 @@ uint64_t ScatterReference(const PinholeCamera& lf_camera, const LfPixels& pixels
                           const RenderCamera& render_camera, const PixelRect& rect,
                           SensorPlate* plate, const RayWeights& weights) {
   LF_CHECK(Intersection(rect, pixels.rect) == rect || rect.empty());
-  const RayLaw law(lf_camera, render_camera);
+  const RayModel model(lf_camera, render_camera);
   const auto add = [&](const PlateElement& element, int channel, uint16_t v) {
     const uint64_t weight = weights.At(element.x, element.y);
     plate->Add(element.x, element.y, channel, {weight * v, weight});
@@ -18,7 +18,7 @@ uint64_t ScatterReference(const PinholeCamera& lf_camera, const LfPixels& pixels
       const int column = x - pixels.rect.x_begin;
       const int row = y - pixels.rect.y_begin;
       if (pixels.IsMasked(column, row)) continue;
-      const std::optional<PlateElement> element = law.Collect(x, y);
+      const std::optional<PlateElement> element = model.Collect(x, y);
       if (!element) continue;
       ++accepted;
       if (pixels.bayer != BayerPattern::kNone) {

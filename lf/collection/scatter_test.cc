@@ -26,11 +26,11 @@ uint64_t ScatterInTilesOf(const testing::CameraPair& pair, const LfPixels& pixel
   });
 }
 
-TEST(Scatter, SpansHoldExactlyTheRaysThatTheLawAccepts) {
+TEST(Scatter, SpansHoldExactlyTheRaysThatTheModelAccepts) {
   size_t accepted_count = 0, scenes_with_rays = 0;
   for (uint64_t seed = 0; seed < 3000; ++seed) {
     const testing::CameraPair pair = testing::RandomCameraPair(seed);
-    const RayLaw law(pair.lf_camera, pair.render_camera);
+    const RayModel model(pair.lf_camera, pair.render_camera);
     const ScatterPlan plan =
         PlanScatter(pair.lf_camera, pair.render_camera, WholeImage(pair), {160, 120, 17, 9});
     Image<uint8_t> in_span(50, 35);
@@ -39,7 +39,7 @@ TEST(Scatter, SpansHoldExactlyTheRaysThatTheLawAccepts) {
     size_t accepted = 0;
     for (int y = 0; y < 35; ++y)
       for (int x = 0; x < 50; ++x) {
-        const bool collected = law.Collect(x, y).has_value();
+        const bool collected = model.Collect(x, y).has_value();
         ASSERT_EQ(in_span.at(x, y), collected ? 1 : 0) << seed << ": " << x << ", " << y;
         accepted += collected;
       }

@@ -28,20 +28,21 @@ struct SmoothingTaps {
 };
 SmoothingTaps MakeTaps(double sigma_px);
 
-struct ProbabilityLaw {
+// ProbabilityOptions in the units of the steps.
+struct ProbabilityParameters {
   SmoothingTaps taps;
   SmoothingTaps second_taps;
   uint32_t alpha = 0;  // in 1 / 256
   uint32_t beta = 0;
   uint32_t xi = 0;
 };
-ProbabilityLaw MakeLaw(const ProbabilityOptions& options, bool is_mosaic);
+ProbabilityParameters MakeParameters(const ProbabilityOptions& options, bool is_mosaic);
 
-inline uint16_t ProbabilityOf(const ProbabilityLaw& law, int32_t laplacian) {
+inline uint16_t ProbabilityOf(const ProbabilityParameters& parameters, int32_t laplacian) {
   const uint32_t change =
       std::min(static_cast<uint32_t>(laplacian < 0 ? -laplacian : laplacian) >> 4, 65535u);
-  if (change < law.beta) return 0;
-  return static_cast<uint16_t>(std::min((change * law.alpha >> 8) + law.xi, 65535u));
+  if (change < parameters.beta) return 0;
+  return static_cast<uint16_t>(std::min((change * parameters.alpha >> 8) + parameters.xi, 65535u));
 }
 
 // The grey plane made of stored values: one value for each pixel, or for each 2 x 2 pixels of a
@@ -71,7 +72,8 @@ void SpreadOverPixels(const LfPixels& pixels, const PixelRect& rect, const Pixel
                       const Image<uint16_t>& of_plane, Image<uint16_t>* p);
 
 // Compute p of a grey plane, and smooth a plane, in integers.
-void ProbabilityPlane(const ProbabilityLaw& law, const GreyRows& grey, Image<uint16_t>* p);
+void ProbabilityPlane(const ProbabilityParameters& parameters, const GreyRows& grey,
+                      Image<uint16_t>* p);
 void SmoothedPlane(const SmoothingTaps& taps, const Image<uint16_t>& grey, Image<uint16_t>* smooth);
 
 }  // namespace lf

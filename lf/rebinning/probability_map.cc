@@ -66,17 +66,17 @@ SmoothingTaps MakeTaps(double sigma_px) {
   return taps;
 }
 
-ProbabilityLaw MakeLaw(const ProbabilityOptions& options, bool is_mosaic) {
+ProbabilityParameters MakeParameters(const ProbabilityOptions& options, bool is_mosaic) {
   LF_CHECK(options.alpha >= 0 && options.alpha <= kMostAlpha);
   LF_CHECK(options.beta >= 0 && options.xi >= 0 && options.xi < 1);
   const double scale = is_mosaic ? 0.5 : 1;  // grey values per LF pixel along an axis
-  ProbabilityLaw law;
-  law.taps = MakeTaps(scale * options.sigma_px);
-  law.second_taps = MakeTaps(scale * options.second_sigma_px);
-  law.alpha = static_cast<uint32_t>(std::lround(256 * options.alpha));
-  law.beta = static_cast<uint32_t>(std::lround(65535 * std::min(options.beta, 2.0)));
-  law.xi = static_cast<uint32_t>(std::lround(65535 * options.xi));
-  return law;
+  ProbabilityParameters parameters;
+  parameters.taps = MakeTaps(scale * options.sigma_px);
+  parameters.second_taps = MakeTaps(scale * options.second_sigma_px);
+  parameters.alpha = static_cast<uint32_t>(std::lround(256 * options.alpha));
+  parameters.beta = static_cast<uint32_t>(std::lround(65535 * std::min(options.beta, 2.0)));
+  parameters.xi = static_cast<uint32_t>(std::lround(65535 * options.xi));
+  return parameters;
 }
 
 GreyRows::GreyRows(const LfPixels& pixels, const PixelRect& part,
@@ -149,8 +149,8 @@ void SpreadOverPixels(const LfPixels& pixels, const PixelRect& rect, const Pixel
 }
 
 int PixelsAround(const ProbabilityOptions& options, bool is_mosaic) {
-  const ProbabilityLaw law = MakeLaw(options, is_mosaic);
-  const int around = law.taps.radius() + 1 + law.second_taps.radius();
+  const ProbabilityParameters parameters = MakeParameters(options, is_mosaic);
+  const int around = parameters.taps.radius() + 1 + parameters.second_taps.radius();
   return is_mosaic ? 2 * around + 1 : around;
 }
 
@@ -161,7 +161,7 @@ void ProbabilityMap(const LfPixels& pixels, const PixelRect& rect,
   p->Resize(0, 0, 1);
   if (rect.empty()) return;
   const bool is_mosaic = pixels.bayer != BayerPattern::kNone;
-  const ProbabilityLaw law = MakeLaw(options, is_mosaic);
+  const ProbabilityParameters parameters = MakeParameters(options, is_mosaic);
   const int around = PixelsAround(options, is_mosaic);
   const GreyRows grey(pixels,
                       Intersection({rect.x_begin - around, rect.y_begin - around,
@@ -169,10 +169,10 @@ void ProbabilityMap(const LfPixels& pixels, const PixelRect& rect,
                                    pixels.rect),
                       stored_values);
   static thread_local Image<uint16_t> of_plane;
-  ProbabilityPlane(law, grey, &of_plane);
-  if (law.second_taps.radius() > 0) {
+  ProbabilityPlane(parameters, grey, &of_plane);
+  if (parameters.second_taps.radius() > 0) {
     const Image<uint16_t> once = of_plane;
-    SmoothedPlane(law.second_taps, once, &of_plane);
+    SmoothedPlane(parameters.second_taps, once, &of_plane);
   }
   SpreadOverPixels(pixels, rect, grey.plane(), of_plane, p);
 }

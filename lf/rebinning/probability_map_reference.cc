@@ -3,9 +3,10 @@
 namespace lf {
 namespace {
 
-class GreyLaw {
+class SmoothedGrey {
  public:
-  GreyLaw(const SmoothingTaps& taps, ImageView<const uint16_t> grey) : taps_(taps), grey_(grey) {}
+  SmoothedGrey(const SmoothingTaps& taps, ImageView<const uint16_t> grey)
+      : taps_(taps), grey_(grey) {}
 
   uint32_t Smooth(int x, int y) const {
     uint32_t sum = 2048;
@@ -42,18 +43,19 @@ void ProbabilityMapReference(const LfPixels& pixels, const PixelRect& rect,
                              const ProbabilityOptions& options, Image<uint16_t>* p) {
   p->Resize(0, 0, 1);
   if (rect.empty()) return;
-  const ProbabilityLaw law = MakeLaw(options, pixels.bayer != BayerPattern::kNone);
+  const ProbabilityParameters parameters =
+      MakeParameters(options, pixels.bayer != BayerPattern::kNone);
   const GreyRows rows(pixels, pixels.rect, stored_values);
   Image<uint16_t> grey(rows.width(), rows.height());
   for (int y = 0; y < grey.height(); ++y) rows.Read(y, grey.row(y));
-  const GreyLaw plane(law.taps, grey.view());
+  const SmoothedGrey plane(parameters.taps, grey.view());
   Image<uint16_t> of_plane(grey.width(), grey.height());
   for (int y = 0; y < grey.height(); ++y)
     for (int x = 0; x < grey.width(); ++x)
-      of_plane.at(x, y) = ProbabilityOf(law, plane.Laplacian(x, y));
-  if (law.second_taps.radius() > 0) {
+      of_plane.at(x, y) = ProbabilityOf(parameters, plane.Laplacian(x, y));
+  if (parameters.second_taps.radius() > 0) {
     const Image<uint16_t> once = of_plane;
-    const GreyLaw again(law.second_taps, once.view());
+    const SmoothedGrey again(parameters.second_taps, once.view());
     for (int y = 0; y < grey.height(); ++y)
       for (int x = 0; x < grey.width(); ++x)
         of_plane.at(x, y) = static_cast<uint16_t>((again.Smooth(x, y) + 8) >> 4);

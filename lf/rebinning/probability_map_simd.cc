@@ -67,14 +67,16 @@ void Down(const SmoothingTaps& taps, const RowAt& rows, int width, uint32_t* HWY
   out[width] = out[width - 1];
 }
 
-void Probabilities(const ProbabilityLaw& law, const uint32_t* above, const uint32_t* here,
-                   const uint32_t* below, int width, uint16_t* HWY_RESTRICT out) {
+void Probabilities(const ProbabilityParameters& parameters, const uint32_t* above,
+                   const uint32_t* here, const uint32_t* below, int width,
+                   uint16_t* HWY_RESTRICT out) {
   const D d;
   const D16 d16;
   const hn::RebindToSigned<D> di;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  const auto most = hn::Set(d, 65535u), beta = hn::Set(d, law.beta), xi = hn::Set(d, law.xi);
-  const auto alpha = hn::Set(d, law.alpha);
+  const auto most = hn::Set(d, 65535u), beta = hn::Set(d, parameters.beta),
+             xi = hn::Set(d, parameters.xi);
+  const auto alpha = hn::Set(d, parameters.alpha);
   for (int x = 0; x < width; x += lanes) {
     const auto around = hn::Add(hn::Add(hn::LoadU(d, above + x), hn::LoadU(d, below + x)),
                                 hn::Add(hn::LoadU(d, here + x - 1), hn::LoadU(d, here + x + 1)));
@@ -130,16 +132,17 @@ class Smoother {
   int first_ = 0;
 };
 
-void ProbabilityRows(const ProbabilityLaw& law, const GreyRows& grey, ImageView<uint16_t> out) {
+void ProbabilityRows(const ProbabilityParameters& parameters, const GreyRows& grey,
+                     ImageView<uint16_t> out) {
   const int width = grey.width(), height = grey.height();
-  Smoother smoother(law.taps, width, height, kBandRows + 2);
+  Smoother smoother(parameters.taps, width, height, kBandRows + 2);
   std::vector<uint16_t> line(width + kMargin);
   for (int begin = 0; begin < height; begin += kBandRows) {
     const int end = std::min(begin + kBandRows, height);
     smoother.Run(std::max(begin - 1, 0), std::min(end + 1, height),
                  [&](int y, uint16_t* row) { grey.Read(y, row); });
     for (int y = begin; y < end; ++y) {
-      Probabilities(law, smoother.row(y - 1), smoother.row(y), smoother.row(y + 1), width,
+      Probabilities(parameters, smoother.row(y - 1), smoother.row(y), smoother.row(y + 1), width,
                     line.data());
       std::memcpy(out.row(y), line.data(), sizeof(uint16_t) * width);
     }
@@ -170,9 +173,10 @@ namespace lf {
 HWY_EXPORT(ProbabilityRows);
 HWY_EXPORT(SmoothedRows);
 
-void ProbabilityPlane(const ProbabilityLaw& law, const GreyRows& grey, Image<uint16_t>* p) {
+void ProbabilityPlane(const ProbabilityParameters& parameters, const GreyRows& grey,
+                      Image<uint16_t>* p) {
   p->Resize(grey.width(), grey.height(), 1);
-  HWY_DYNAMIC_DISPATCH(ProbabilityRows)(law, grey, p->view());
+  HWY_DYNAMIC_DISPATCH(ProbabilityRows)(parameters, grey, p->view());
 }
 
 void SmoothedPlane(const SmoothingTaps& taps, const Image<uint16_t>& grey,

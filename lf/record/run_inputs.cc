@@ -81,7 +81,7 @@ std::string CameraHash(const RenderCamera& camera) {
 RunInputs InputsOfRays(const LightFieldIdentity& light_field, const RadianceEncoding& encoding,
                        const RunChoices& choices) {
   return {
-      {"law", fmt::format("{}", kLawVersion)},
+      {"law", fmt::format("{}", kRayModelVersion)},
       {"estimator", NameOf(choices.reading.estimator)},
       {"filter",
        choices.reading.estimator == Estimator::kBilinear ? NameOf(choices.reading.filter) : "none"},

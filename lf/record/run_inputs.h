@@ -42,7 +42,7 @@ struct RunChoices {
 };
 
 // The version of the ray model of doc/ray.md. It is raised when the same inputs give other rays.
-inline constexpr int kLawVersion = 3;
+inline constexpr int kRayModelVersion = 3;
 
 // Returns the inputs of the rays of all frames: the ray model's version, the light field (number of
 // LF images, and hashes of calibration, encoding and names) and the choices for rays. The folder of

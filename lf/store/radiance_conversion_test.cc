@@ -45,7 +45,7 @@ ImagePart Stored(int channels) {
 
 // Returns v by the formula of capture/radiance.h, applied literally.
 template <class T>
-uint16_t ByLaw(const World& world, T stored, int channel, int x, int y) {
+uint16_t ByFormula(const World& world, T stored, int channel, int x, int y) {
   const double falloff = world.k.vignetting.Falloff(RadiusSquared(world.k, x + 0.5, y + 0.5));
   const double gain = world.camera.gain[static_cast<size_t>(channel)] / falloff;
   if constexpr (std::is_floating_point_v<T>)
@@ -55,7 +55,7 @@ uint16_t ByLaw(const World& world, T stored, int channel, int x, int y) {
 }
 
 template <class T>
-void ExpectLaw(const World& world, int channels) {
+void ExpectFormula(const World& world, int channels) {
   const ImagePart part = Stored<T>(channels);
   const auto& stored = std::get<Image<T>>(part.image);
   LfPixels pixels;
@@ -68,45 +68,46 @@ void ExpectLaw(const World& world, int channels) {
       if (world.encoding.bayer != BayerPattern::kNone) {
         const int channel = BayerChannel(world.encoding.bayer, x, y);
         ASSERT_EQ(pixels.radiance.at(column, row),
-                  ByLaw(world, stored.at(x, y - kStored.y_begin), channel, x, y));
+                  ByFormula(world, stored.at(x, y - kStored.y_begin), channel, x, y));
         continue;
       }
       for (int c = 0; c < 3; ++c)
-        ASSERT_EQ(pixels.radiance.at(column, row, c),
-                  ByLaw(world, stored.at(x, y - kStored.y_begin, channels == 1 ? 0 : c), c, x, y));
+        ASSERT_EQ(
+            pixels.radiance.at(column, row, c),
+            ByFormula(world, stored.at(x, y - kStored.y_begin, channels == 1 ? 0 : c), c, x, y));
       ASSERT_EQ(pixels.radiance.at(column, row, LfPixels::kRayLane), 1);
     }
 }
 
-void ExpectLawOfAllFiles(World world) {
+void ExpectFormulaForAllFiles(World world) {
   for (const int channels : {1, 3}) {
-    ExpectLaw<uint8_t>(world, channels);
-    ExpectLaw<uint16_t>(world, channels);
-    ExpectLaw<float>(world, channels);
+    ExpectFormula<uint8_t>(world, channels);
+    ExpectFormula<uint16_t>(world, channels);
+    ExpectFormula<float>(world, channels);
   }
   world.encoding.transfer = Transfer::kLinear;
   for (const BayerPattern bayer : {BayerPattern::kRggb, BayerPattern::kGbrg}) {
     world.encoding.bayer = bayer;
-    ExpectLaw<uint8_t>(world, 1);
-    ExpectLaw<uint16_t>(world, 1);
-    ExpectLaw<float>(world, 1);
+    ExpectFormula<uint8_t>(world, 1);
+    ExpectFormula<uint16_t>(world, 1);
+    ExpectFormula<float>(world, 1);
   }
 }
 
-TEST(ConvertRadiance, PlainImagesAreAsTheirTableSays) { ExpectLawOfAllFiles(MakeWorld()); }
+TEST(ConvertRadiance, PlainImagesAreAsTheirTableSays) { ExpectFormulaForAllFiles(MakeWorld()); }
 
 TEST(ConvertRadiance, EachChannelHasItsGain) {
   World world = MakeWorld();
   world.camera.gain = {0.5f, 1, 1.7f};
-  ExpectLawOfAllFiles(world);
+  ExpectFormulaForAllFiles(world);
 }
 
 TEST(ConvertRadiance, RadianceIsDividedByTheFalloffAtThePixelsCentre) {
   World world = MakeWorld();
   world.k.vignetting.v = {-0.3, 0.05, -0.15};
-  ExpectLawOfAllFiles(world);
+  ExpectFormulaForAllFiles(world);
   world.camera.gain = {0.5f, 1, 1.7f};
-  ExpectLawOfAllFiles(world);
+  ExpectFormulaForAllFiles(world);
 }
 
 TEST(ConvertRadiance, AFalloffOfOneHalfDoublesTheLight) {
