@@ -5,7 +5,7 @@
 
 #include "lf/camera/ray_forms.h"
 #include "lf/capture/radiance.h"
-#include "lf/collection/ray_law.h"
+#include "lf/collection/ray_model.h"
 #include "lf/core/check.h"
 #include "lf/core/random.h"
 #include "lf/selection/overlap.h"

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "lf/collection/gather.h"
-#include "lf/collection/gather_law.h"
-#include "lf/collection/ray_law.h"
+#include "lf/collection/gather_model.h"
+#include "lf/collection/ray_model.h"
 #include "lf/collection/row_spans.h"
 
 namespace lf {

@@ -6,7 +6,7 @@
 #include "lf/camera/ideal_pixels.h"
 #include "lf/collection/cubic_weights.h"
 #include "lf/collection/gather.h"
-#include "lf/collection/gather_law.h"
+#include "lf/collection/gather_model.h"
 #include "lf/collection/mosaic_filter.h"
 #include "lf/core/check.h"
 

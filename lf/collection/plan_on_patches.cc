@@ -12,7 +12,7 @@
 #include "lf/collection/element_patch.h"
 #include "lf/collection/patch_edges.h"
 #include "lf/collection/patch_hull.h"
-#include "lf/collection/ray_law.h"
+#include "lf/collection/ray_model.h"
 #include "lf/core/check.h"
 
 namespace lf {

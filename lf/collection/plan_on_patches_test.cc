@@ -5,7 +5,7 @@
 
 #include <cstdlib>
 
-#include "lf/collection/ray_law.h"
+#include "lf/collection/ray_model.h"
 #include "lf/collection/scatter.h"
 #include "lf/collection/test_plates.h"
 

@@ -2,7 +2,7 @@
 
 #include "lf/camera/ray_forms.h"
 #include "lf/collection/plan_on_patches.h"
-#include "lf/collection/ray_law.h"
+#include "lf/collection/ray_model.h"
 #include "lf/collection/row_spans.h"
 #include "lf/collection/scatter.h"
 #include "lf/core/check.h"

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "lf/collection/ray_law.h"
+#include "lf/collection/ray_model.h"
 #include "lf/collection/test_plates.h"
 
 namespace lf {

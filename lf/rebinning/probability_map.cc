@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "lf/core/check.h"
-#include "lf/rebinning/probability_law.h"
+#include "lf/rebinning/probability_steps.h"
 
 namespace lf {
 namespace {

@@ -1,4 +1,4 @@
-#include "lf/rebinning/probability_law.h"
+#include "lf/rebinning/probability_steps.h"
 
 namespace lf {
 namespace {

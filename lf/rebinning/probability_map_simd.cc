@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "lf/core/large_vector.h"
-#include "lf/rebinning/probability_law.h"
+#include "lf/rebinning/probability_steps.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lf/rebinning/probability_map_simd.cc"  // NOLINT: as Highway wants it

@@ -4,7 +4,7 @@
 
 #include "lf/core/check.h"
 #include "lf/rebinning/pixel_chances.h"
-#include "lf/rebinning/probability_law.h"
+#include "lf/rebinning/probability_steps.h"
 
 namespace lf {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "lf/core/check.h"
-#include "lf/store/demosaic_law.h"
+#include "lf/store/demosaic_arithmetic.h"
 #include "lf/store/demosaic_row.h"
 
 namespace lf {

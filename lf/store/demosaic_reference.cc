@@ -2,7 +2,7 @@
 
 #include "lf/core/check.h"
 #include "lf/store/demosaic.h"
-#include "lf/store/demosaic_law.h"
+#include "lf/store/demosaic_arithmetic.h"
 
 namespace lf {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "lf/store/demosaic_law.h"
+#include "lf/store/demosaic_arithmetic.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lf/store/demosaic_row.cc"  // NOLINT: as Highway wants it

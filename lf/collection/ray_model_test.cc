@@ -1,4 +1,4 @@
-#include "lf/collection/ray_law.h"
+#include "lf/collection/ray_model.h"
 
 #include <gtest/gtest.h>
 

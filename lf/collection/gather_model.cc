@@ -1,4 +1,4 @@
-#include "lf/collection/gather_law.h"
+#include "lf/collection/gather_model.h"
 
 #include "lf/collection/gather.h"
 #include "lf/collection/gather_sampling.h"
