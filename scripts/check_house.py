@@ -10,7 +10,8 @@ usage: check_house.py REPOSITORY CHECK
            backticks exist, and `folder.Suite.Test` and `tests.name` are tests that exist
   pages    the pages of doc/ that comments in sources refer to exist
   tables   every table of figures in doc/ has a record in bench/results/ that fits it, made with the
-           defaults that bench/defaults.txt lists today (table_rules.py)
+           defaults that bench/defaults.txt lists today (table_rules.py); every table that
+           doc_tables.py makes is what the sources say
   mutants  every mistake of scripts/mutants.toml can be planted: its old text is in its file exactly
            once, and tests are named like those that must notice it
   comments how comments begin and end (doc/style.md; comment_rules.py)
@@ -24,6 +25,7 @@ import subprocess
 import sys
 
 import comment_rules
+import doc_tables
 import mutant_list
 import table_rules
 
@@ -145,7 +147,8 @@ def check_pages(root, files):
 
 
 def check_tables(root, files):
-    return table_rules.check_tables(root, files, text_lines)
+    yield from table_rules.check_tables(root, files, text_lines)
+    yield from doc_tables.check(root, files, text_lines)
 
 
 def check_mutants(root, files):

@@ -2,7 +2,7 @@
 which commands it was made (bench/record.py).
 
 A table of a page stands between <!-- table: SCRIPT --> and <!-- end of table -->. A table of figures that no script
-makes is preceded by <!-- table by hand: WHY -->.
+makes is preceded by <!-- table by hand: WHY -->. Tables of scripts/doc_tables.py have no figures and no record.
 """
 import hashlib
 import json
@@ -16,6 +16,8 @@ RECORDS, LISTING = "bench/results", "bench/defaults.txt"
 STALE = "bench/stale_tables.txt"
 BEGIN = re.compile(r"^<!-- table: (.+?) -->$")
 END = "<!-- end of table -->"
+# Begins the words of tables that have no record, because doc_tables.py makes them of the sources.
+GENERATED = "scripts/doc_tables.py "
 BY_HAND = re.compile(r"^<!-- table by hand: .+ -->$")
 # A measured value: a number and its unit, or a number with two decimals.
 FIGURE = re.compile(r"(?<![\w.-])\d[\d,.]*(?:(?: to [\d.]+)? ?(?:ns|µs|ms|s|h|min|dB|MB|GB|MiB|GiB|MB/s|GB/s|M/s|"
@@ -152,11 +154,11 @@ def faults_of(root, table, records, today):
 
 
 def all_tables(root, files, text_lines):
-    """Returns the tables of all pages, and the faults of their markers as lines."""
+    """Returns the tables of all pages that need a record, and the faults of all markers as lines."""
     tables, faults = [], []
     for page in filter(lambda path: is_page(root, path), files):
         of_page, wrong = tables_of(root, page, text_lines(page))
-        tables += of_page
+        tables += [table for table in of_page if not table.words.startswith(GENERATED)]
         faults += [f"{page.relative_to(root)}:{number}: {fault}" for number, fault in wrong]
     return tables, faults
 

@@ -145,6 +145,69 @@ class PlantedFaults(unittest.TestCase):
             "doc/bare.md:1: a table of figures without markers", "doc/open.md:1: the table has no line",
             "doc/closed.md:1: a table ends that has no beginning"])
 
+    def plant_generated(self, page, name, text):
+        self.plant(page, f"# Page\n<!-- table: scripts/doc_tables.py {name} -->\n{text}<!-- end of table -->\n")
+
+    def test_generated_tables_say_what_the_sources_say(self):
+        self.plant("lf/CMakeLists.txt", "add_subdirectory(core)\n")
+        self.plant("lf/core/CMakeLists.txt", "lf_folder(core SOURCES a.cc)\n")
+        self.plant("lf/optics/camera/CMakeLists.txt", "lf_folder(camera\n  SOURCES a.cc\n  DEPENDS core\n  LIBS x)\n")
+        self.plant("lf/path/CMakeLists.txt", "lf_folder(path DEPENDS core camera)\n")
+        text = ("| folder | may include |\n| --- | --- |\n"
+                "| core | nothing, but every folder may include it; it is left out below |\n"
+                "| optics/camera | no other |\n| path | optics/camera |\n")
+        self.plant_generated("doc/layout.md", "folders", text)
+        self.expect("check_house.py", "tables", faults=[])
+        self.plant_generated("doc/layout.md", "folders", text.replace("path | optics/camera", "path | no other"))
+        self.plant_generated("README.md", "recipes", "| a |\n")
+        self.expect("check_house.py", "tables", faults=[
+            "doc/layout.md:2: the sources say something else", "README.md:2: scripts/doc_tables.py makes no table"])
+        self.plant("README.md", "")
+        self.expect("doc_tables.py", "--write", faults=[])
+        self.expect("doc_tables.py", faults=[])
+        self.plant("lf/path/CMakeLists.txt", "lf_folder(path DEPENDS core lens)\n")
+        self.expect("check_house.py", "tables", faults=["doc/layout.md:2: a folder of lf/ depends on lens"])
+
+    KINDS = """// Two more:
+//   0  done
+//   1  a bug
+enum class ErrorKind {
+  // Wrong usage: see
+  // --help.
+  kUsage = 2,
+};
+"""
+
+    def test_exit_codes_of_pages_and_help_are_those_of_the_enumeration(self):
+        self.plant("lf/base/core/result.h", self.KINDS)
+        self.plant("tools/common/help.cc", 'kExitCodes =\n    "Exit codes: 0 done, 1 a "\n    "bug, 2 usage.";\n')
+        self.plant_generated("doc/codes.md", "exit-codes", "| code | means |\n| --- | --- |\n| 0 | done |\n"
+                             "| 1 | a bug |\n| 2 | wrong usage: see `--help` |\n")
+        self.plant_generated("README.md", "exit-codes-in-help", "Exit codes: 0 done, 1 a bug, 2 usage.\n")
+        self.expect("check_house.py", "tables", faults=[])
+        self.plant("lf/base/core/result.h", self.KINDS.replace("kUsage = 2", "kUsage = 3"))
+        self.expect("check_house.py", "tables", faults=["doc/codes.md:2: the sources say something else",
+                                                        "README.md:2: kExitCodes in tools/common/help.cc lists"])
+
+    def test_programs_and_their_options_are_those_of_the_sources(self):
+        self.plant("tools/CMakeLists.txt", "lf_tool(lfone)\nlf_tool(lftwo LIBS x)\n")
+        self.plant("tools/lfone.cc", '.summary =\n    "Does one "\n    "thing.",\n.usage = "  lfone A|B [OPTIONS]",\n')
+        self.plant("tools/lftwo.cc", '.summary = "Does two.",\n.usage = R"(  lftwo A -o B [OPTIONS]\n  lftwo C)",\n')
+        self.plant("tests/common_options.py", 'COMMON = {"-q": ("-q A|B", "no words"), "-v": ("-v", "more")}\n'
+                                              'OFFERED = {"lfone": {"-q", "-v"}, "lftwo": {"-v"}}\n')
+        programs = ("| program | what it does | call |\n| --- | --- | --- |\n"
+                    "| `lfone` | Does one thing | `lfone A\\|B` |\n"
+                    "| `lftwo` | Does two | `lftwo A -o B`, `lftwo C` |\n")
+        options = ("| option | offered by | effect |\n| --- | --- | --- |\n"
+                   "| `-q A\\|B` | `lfone` | no words |\n| `-v` | all | more |\n")
+        self.plant_generated("README.md", "programs", programs)
+        self.plant_generated("doc/design.md", "common-options", options)
+        self.expect("check_house.py", "tables", faults=[])
+        self.plant_generated("README.md", "programs", programs.replace("one thing", "a thing"))
+        self.plant_generated("doc/design.md", "common-options", options.replace("all", "`lfone`"))
+        self.expect("check_house.py", "tables", faults=["README.md:2: the sources say something else",
+                                                        "doc/design.md:2: the sources say something else"])
+
     MUTANT = """[[mutant]]
 name = "{name}"
 area = "core"

@@ -10,36 +10,13 @@ import sys
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "bench"))
-import defaults  # noqa: E402
+import defaults
 import small_field
+from common_options import COMMON, OFFERED
 from program_test_case import ProgramTestCase
 
 BIN = None
 
-COMMON = ("--threads", "--seed", "--strict", "--progress", "--verbose", "--quiet", "--json",
-          "--allow-missing")
-# A program has a common option only if the option has this effect:
-#   --threads        the program has a thread pool, or passes the number to lfrenderer
-#   --seed           sets poses and noise (lfsynth), the order of LF images, rebinned rays
-#   --strict         a missing or broken LF image is an error
-#   --progress       the work is long enough to be shown
-#   --verbose        the program, or a library that it calls, has debugging messages
-#   --quiet          the program has messages that are no warnings
-#   --json           the program has a report
-#   --allow-missing  the program may leave out requested LF images
-OFFERED = {
-    "lfcammvminfo": {"--json"},
-    "lfcompressor": set(COMMON) - {"--seed"},
-    "lfexample": {"--threads", "--verbose", "--quiet"},
-    "lfimport": set(COMMON) - {"--seed"},
-    "lfmerge": set(COMMON) - {"--seed", "--strict"},
-    "lfpreprocessor": set(COMMON),
-    "lfrenderer": set(COMMON),
-    # --allow-missing follows the two dashes, because it is an option of lfrenderer.
-    "lfsubmit": set(COMMON) - {"--seed", "--allow-missing"},
-    "lfsynth": {"--threads", "--seed", "--progress", "--quiet"},
-    "lfvisualizer": set(COMMON) - {"--strict", "--json"},
-}
 VALUES = {"--threads": ["1"], "--seed": ["1"], "--progress": ["none"], "--allow-missing": ["1"]}
 # Calls whose only fault is that their files do not exist.
 CALLS = {

@@ -11,13 +11,23 @@
 
 namespace lf {
 
-// The kind of an error. Its value is the exit code that a program ends with.
+// The kind of an error. Its value is the exit code that a program ends with. The table of exit
+// codes in doc/design.md is made of these comments. Two exit codes are not kinds of an error:
+//   0  done
+//   1  internal error: a bug of the program (please report the last lines of stderr)
 enum class ErrorKind {
-  kUsage = 2,          // the call itself: options that contradict each other
-  kInput = 3,          // a file or value we were given
-  kOutput = 4,         // writing, disk, memory, a program we call
-  kInterrupted = 5,    // stopped from outside; what is done is kept
-  kBelowRequired = 6,  // finished, but below what was asked for
+  // Wrong usage: an option or argument of the call, or options that contradict each other.
+  kUsage = 2,
+  // Bad input: a file, or a value in it.
+  kInput = 3,
+  // Output failed: disk, memory, or a program that we call.
+  kOutput = 4,
+  // Interrupted; the work done is kept, and --resume continues it.
+  kInterrupted = 5,
+  // Finished, but below what was asked for: LF images were left out because they are missing or
+  // broken, more than --allow-missing accepts, or frames have less than --require asks for.
+  // Everything is written; the last line has the count.
+  kBelowRequired = 6,
 };
 
 // The message names file, line or entry, the value found, what was expected and what to do.
