@@ -168,6 +168,16 @@ class PlantedFaults(unittest.TestCase):
         self.plant("lf/path/CMakeLists.txt", "lf_folder(path DEPENDS core lens)\n")
         self.expect("check_house.py", "tables", faults=["doc/layout.md:2: a folder of lf/ depends on lens"])
 
+    def test_every_generated_table_is_shown_and_every_folder_has_a_task(self):
+        self.plant("scripts/doc_tables.py", "")
+        self.plant("lf/README.md", "| `core` | value | a task |\n")
+        self.plant("lf/core/CMakeLists.txt", "lf_folder(core SOURCES a.cc)\n")
+        self.plant("lf/optics/camera/CMakeLists.txt", "lf_folder(camera DEPENDS core)\n")
+        names = ("folders", "programs", "common-options", "exit-codes", "exit-codes-in-help")
+        self.expect("check_house.py", "tables", faults=[
+            "lf/README.md: no row of the table is that of lf/optics/camera",
+            *(f"scripts/doc_tables.py: no page shows the table {name}" for name in names)])
+
     KINDS = """// Two more:
 //   0  done
 //   1  a bug

@@ -8,8 +8,8 @@
 //     return program.Run(argc, argv, [&]() -> lf::Result<void> { ... });
 //   }
 //
-// Exit codes: 0 done, 1 our bug, 2 usage, 3 input, 4 output, disk or memory, 5 interrupted, 6
-// finished below what was required. The reason is the last line of stderr, "error: ...".
+// The exit code is 0, 1 for a bug, or the ErrorKind of the error (lf/core/result.h). The reason is
+// the last line of stderr, "error: ...".
 #pragma once
 
 #include <CLI/CLI.hpp>
