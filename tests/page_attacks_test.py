@@ -367,12 +367,14 @@ while True:
                 for name in ("scene.json", "events", "", "page.js")])
         self.assertEqual(self.server.path.read_text(), self.text_before)
         self.assertEqual(list(self.server.temporary.iterdir()), [])
+        preview = self.server.head("preview/1.bin") + b"\r\n"
+        self.assertEqual(self.server.ask(preview), 404)
         # The page itself may do what was refused to others.
         own = {"Origin": f"http://127.0.0.1:{self.server.port}", "Sec_Fetch_Site": "same-origin"}
         self.assertEqual(self.server.post("save", edit, **own), 200)
         self.assertIn("fps: 24", self.server.path.read_text())
         self.assertEqual(self.server.post("preview", edit, **own), 200)
-        while not list(self.server.temporary.iterdir()):
+        while self.server.ask(preview) != 200:
             time.sleep(0.05)
 
     def test_paths_that_lead_outside(self):
