@@ -12,8 +12,8 @@
 #include "lf/core/file.h"
 #include "lf/core/log.h"
 #include "lf/core/shell_word.h"
+#include "lf/focus/example_path.h"
 #include "lf/path/path_yaml.h"
-#include "lf/pipeline/example_path.h"
 #include "lf/store/open_store.h"
 
 namespace {

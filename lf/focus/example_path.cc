@@ -1,4 +1,4 @@
-#include "lf/pipeline/example_path.h"
+#include "lf/focus/example_path.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "lf/camera/ray_through.h"
 #include "lf/capture/capture_geometry.h"
 #include "lf/core/log.h"
-#include "lf/pipeline/example_focus.h"
+#include "lf/focus/example_focus.h"
 
 namespace lf {
 namespace {

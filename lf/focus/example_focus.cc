@@ -1,4 +1,4 @@
-#include "lf/pipeline/example_focus.h"
+#include "lf/focus/example_focus.h"
 
 #include <fmt/format.h>
 

@@ -7,7 +7,7 @@
 #include "lf/capture/light_field.h"
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
-#include "lf/pipeline/example_path.h"
+#include "lf/focus/example_path.h"
 #include "lf/store/lf_image_store.h"
 
 namespace lf {
