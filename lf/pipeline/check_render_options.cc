@@ -1,8 +1,8 @@
 // Checks options and orders LF images before a render starts.
+#include "lf/needs/film_order.h"
 #include "lf/pipeline/check_film_options.h"
 #include "lf/pipeline/check_outputs.h"
 #include "lf/pipeline/render.h"
-#include "lf/preprocess/film_order.h"
 
 namespace lf {
 

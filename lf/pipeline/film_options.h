@@ -12,8 +12,8 @@
 #include "lf/hybrid/rebinned_rays.h"
 #include "lf/hybrid/render_mode.h"
 #include "lf/lens_weights/frame_weights.h"
+#include "lf/needs/frame_needs.h"
 #include "lf/package/package.h"
-#include "lf/preprocess/frame_needs.h"
 #include "lf/record/shard.h"
 #include "lf/sequence/develop.h"
 
@@ -87,7 +87,7 @@ struct WorkOptions {
 };
 
 // Returns the options that decide which LF images frames of the package need
-// (preprocess/frame_needs.h).
+// (needs/frame_needs.h).
 NeedsOptions NeedsOfFilm(const Package& package, const FilmOptions& film, const WorkOptions& work);
 
 }  // namespace lf

@@ -7,7 +7,7 @@
 
 #include "lf/core/log.h"
 #include "lf/hybrid/frame_sampling.h"
-#include "lf/preprocess/frame_needs.h"
+#include "lf/needs/frame_needs.h"
 
 namespace lf {
 

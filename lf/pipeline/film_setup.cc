@@ -8,8 +8,8 @@
 #include "lf/collector/noise_moments.h"
 #include "lf/hybrid/frame_sampling.h"
 #include "lf/hybrid/render_memory.h"
+#include "lf/needs/film_order.h"
 #include "lf/pipeline/check_film_options.h"
-#include "lf/preprocess/film_order.h"
 #include "lf/store/open_store.h"
 
 namespace lf {

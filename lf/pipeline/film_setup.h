@@ -12,9 +12,9 @@
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
 #include "lf/hybrid/film_slabs.h"
+#include "lf/needs/frame_needs.h"
 #include "lf/package/package.h"
 #include "lf/pipeline/film_options.h"
-#include "lf/preprocess/frame_needs.h"
 #include "lf/selection/image_index.h"
 #include "lf/selection/select.h"
 #include "lf/store/lf_image_store.h"
@@ -27,7 +27,7 @@ class FilmSetup {
   // images and plans the memory. The pool must outlive the object.
   //   frames  of the package, ascending; empty: all of its frames
   // kUsage: the options do not go together, or not with the package.
-  // kInput: the packed store lacks pixels of a frame (CheckKept() of preprocess/frame_needs.h).
+  // kInput: the packed store lacks pixels of a frame (CheckKept() of needs/frame_needs.h).
   // kOutput: the memory is less than one frame needs; the message names the least that suffices.
   static Result<std::unique_ptr<FilmSetup>> Make(Package package, const FilmOptions& film,
                                                  const WorkOptions& work,

@@ -10,8 +10,8 @@
 
 #include "lf/collector/frame_lens.h"
 #include "lf/collector/test_noise_field.h"
+#include "lf/needs/frame_needs.h"
 #include "lf/package/package_file.h"
-#include "lf/preprocess/frame_needs.h"
 
 namespace lf {
 namespace {

@@ -6,7 +6,7 @@
 #include "lf/collector/collect_batch.h"
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
-#include "lf/preprocess/frame_needs.h"
+#include "lf/needs/frame_needs.h"
 #include "lf/selection/image_index.h"
 
 namespace lf {

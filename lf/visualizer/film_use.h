@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "lf/core/parallel.h"
+#include "lf/needs/frame_needs.h"
 #include "lf/path/camera_path.h"
-#include "lf/preprocess/frame_needs.h"
 #include "lf/selection/image_index.h"
 
 namespace lf {

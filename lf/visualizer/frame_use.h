@@ -12,7 +12,7 @@
 #include "lf/core/ids.h"
 #include "lf/core/parallel.h"
 #include "lf/lens_weights/frame_weights.h"
-#include "lf/preprocess/frame_needs.h"
+#include "lf/needs/frame_needs.h"
 #include "lf/selection/image_index.h"
 
 namespace lf {

@@ -8,8 +8,8 @@
 #include "lf/capture/light_field.h"
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
+#include "lf/needs/frame_needs.h"
 #include "lf/path/camera_path.h"
-#include "lf/preprocess/frame_needs.h"
 #include "lf/selection/image_order.h"
 
 namespace lf {

@@ -1,4 +1,4 @@
-#include "lf/preprocess/film_order.h"
+#include "lf/needs/film_order.h"
 
 #include <utility>
 

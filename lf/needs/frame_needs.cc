@@ -1,4 +1,4 @@
-#include "lf/preprocess/frame_needs.h"
+#include "lf/needs/frame_needs.h"
 
 #include <fmt/format.h>
 
