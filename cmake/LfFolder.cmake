@@ -42,23 +42,29 @@ include(LfPrecompiled)
 add_library(lfrendertools INTERFACE)
 add_library(lfrendertools::lfrendertools ALIAS lfrendertools)
 
-# lf_folder(name SOURCES ... DEPENDS ... [LIBS ...] [PUBLIC_LIBS ...] [TESTS ...] [TEST_LIBS ...]
+# lf_folder(path SOURCES ... DEPENDS ... [LIBS ...] [PUBLIC_LIBS ...] [TESTS ...] [TEST_LIBS ...]
 #           [FUZZ ...] [BENCH ...])
 #
-# One folder of lf/ as the static library lf_<name>.
+# The folder lf/<path> as a static library: lf_camera for camera, lf_camera_path for camera/path.
 #   SOURCES      the .cc files
-#   DEPENDS      the folders it may include (doc/layout.md; checked by scripts/check_includes.py)
+#   DEPENDS      the folders it may include, as paths (doc/layout.md; checked by scripts/check_includes.py)
 #   LIBS         third-party targets its .cc files need;  PUBLIC_LIBS: its headers too
-#   TESTS        x_test.cc files: one program per folder, each of its suites a test of ctest
+#   TESTS        x_test.cc files: one program per folder, each of its suites a test of ctest, named
+#                camera.Suite or camera.path.Suite
 #   FUZZ         x_fuzz.cc files: libFuzzer programs with LF_FUZZ, and in every build a replay of
 #                fuzz/corpus/<x>/ as a test
 #   BENCH        x_bench.cc files, built with LF_BENCH
-function(lf_folder name)
+function(lf_folder path)
   cmake_parse_arguments(F "" "" "SOURCES;DEPENDS;LIBS;PUBLIC_LIBS;TESTS;TEST_LIBS;FUZZ;BENCH"
                         ${ARGN})
   if(F_UNPARSED_ARGUMENTS)
-    message(FATAL_ERROR "lf_folder(${name}): unknown words: ${F_UNPARSED_ARGUMENTS}")
+    message(FATAL_ERROR "lf_folder(${path}): unknown words: ${F_UNPARSED_ARGUMENTS}")
   endif()
+  if(NOT CMAKE_CURRENT_SOURCE_DIR STREQUAL "${PROJECT_SOURCE_DIR}/lf/${path}")
+    message(FATAL_ERROR "lf_folder(${path}) stands in ${CMAKE_CURRENT_SOURCE_DIR}")
+  endif()
+  string(REPLACE "/" "_" name ${path})
+  list(TRANSFORM F_DEPENDS REPLACE "/" "_")
   list(TRANSFORM F_DEPENDS PREPEND lf_)
   set(target lf_${name})
   if(F_SOURCES)
@@ -78,7 +84,8 @@ function(lf_folder name)
     add_executable(${target}_test ${F_TESTS})
     target_link_libraries(${target}_test PRIVATE ${target} ${F_TEST_LIBS} lf_unit_main)
     lf_precompile(${target}_test test)
-    lf_unit_tests(${target}_test ${name})
+    string(REPLACE "/" "." group ${path})
+    lf_unit_tests(${target}_test ${group})
   endif()
   foreach(fuzz_source ${F_FUZZ})
     lf_fuzz(${target} ${fuzz_source})

@@ -37,24 +37,28 @@ if(LF_TESTS)
   target_link_libraries(lf_unit_main PUBLIC GTest::gtest PRIVATE lf_options)
 endif()
 
-# lf_unit_tests(target folder): each suite of the program is a test of ctest, folder.Suite.
+# lf_unit_tests(target group): each suite of the program is a test of ctest, group.Suite. The group of lf/camera/path
+# is camera.path, which is also built where all tests of camera are.
 #
 # A suite and not a single test is a process, because a process that uses image files takes up to half a second to load
 # the libraries behind OpenImageIO.
-function(lf_unit_tests target folder)
+function(lf_unit_tests target group)
   set(list ${CMAKE_CURRENT_BINARY_DIR}/${target}_suites.cmake)
   add_custom_command(
     TARGET ${target} POST_BUILD
-    COMMAND ${CMAKE_COMMAND} -D PROGRAM=$<TARGET_FILE:${target}> -D FOLDER=${folder} -D TIMEOUT=${LF_UNIT_TIMEOUT}
+    COMMAND ${CMAKE_COMMAND} -D PROGRAM=$<TARGET_FILE:${target}> -D GROUP=${group} -D TIMEOUT=${LF_UNIT_TIMEOUT}
             -D LIST=${list} -P ${PROJECT_SOURCE_DIR}/cmake/list_suites.cmake
     BYPRODUCTS ${list}
     VERBATIM)
   # A program that was not built is a test that fails.
   set(included ${CMAKE_CURRENT_BINARY_DIR}/${target}_include.cmake)
   file(WRITE ${included} "if(EXISTS [==[${list}]==])\n  include([==[${list}]==])\nelse()\n"
-                         "  add_test(${folder}.is_not_built ${target})\nendif()\n")
+                         "  add_test(${group}.is_not_built ${target})\nendif()\n")
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${included})
-  lf_needed_by(${folder} ${target})
+  lf_needed_by(${group} ${target})
+  if(group MATCHES "^([^.]+)\\.")
+    lf_needed_by(${CMAKE_MATCH_1} ${target})
+  endif()
 endfunction()
 
 # lf_test(group.name COMMAND word... LABELS label... [TIMEOUT seconds] [NEEDS target...])

@@ -1,6 +1,6 @@
-# Writes the suites of a GoogleTest program as tests of ctest, FOLDER.Suite. Run when the program is built:
+# Writes the suites of a GoogleTest program as tests of ctest, GROUP.Suite. Run when the program is built:
 #
-#   cmake -D PROGRAM=... -D FOLDER=... -D TIMEOUT=SECONDS -D LIST=FILE -P list_suites.cmake
+#   cmake -D PROGRAM=... -D GROUP=... -D TIMEOUT=SECONDS -D LIST=FILE -P list_suites.cmake
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE names RESULT_VARIABLE status)
 if(NOT status EQUAL 0)
   message(FATAL_ERROR "${PROGRAM} --gtest_list_tests ended with ${status}:\n${names}")
@@ -10,7 +10,7 @@ string(REGEX MATCHALL "(^|\n)[^ \n]+\\." suites "${names}")
 list(TRANSFORM suites STRIP)
 set(lines "")
 foreach(suite ${suites})
-  string(REGEX REPLACE "\\.$" "" test "${FOLDER}.${suite}")
+  string(REGEX REPLACE "\\.$" "" test "${GROUP}.${suite}")
   string(APPEND lines "add_test([==[${test}]==] [==[${PROGRAM}]==] --gtest_filter=${suite}*)\n"
                       "set_tests_properties([==[${test}]==] PROPERTIES LABELS unit TIMEOUT ${TIMEOUT}\n"
                       "                     SKIP_RETURN_CODE 77)\n")
