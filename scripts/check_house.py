@@ -26,6 +26,7 @@ import sys
 
 import comment_rules
 import doc_tables
+import folder_list
 import mutant_list
 import table_rules
 
@@ -36,7 +37,7 @@ LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 # Matches `lf/camera/ray.h` and `scripts/`. Patterns and placeholders contain * < { or ... and do not match (except
 # x_test.cc).
 NAMED_FILE = re.compile(r"`((?:lf|tools|tests|scripts|doc|examples|cmake|fuzz|bench)/[\w./-]*)`")
-NAMED_TEST = re.compile(r"`([a-z_]+\.[A-Z]\w*\.\w+|(?:tests|house)\.\w+)`")
+NAMED_TEST = re.compile(r"`([a-z_]+(?:\.[a-z_]+)?\.[A-Z]\w*\.\w+|(?:tests|house)\.\w+)`")
 PAGE_IN_COMMENT = re.compile(r"\bdoc/[\w/]+\.md\b")
 
 
@@ -117,6 +118,12 @@ def page_faults(root, page, tests):
                 yield number, f"there is no test `{name}`"
 
 
+def test_group(folder: pathlib.PurePath) -> str:
+    """Returns what the names of tests in a folder of the repository begin with: camera.path for lf/camera/path."""
+    top, *inner = folder.parts or ("",)
+    return folder_list.test_group("/".join(inner)) if top == "lf" else top
+
+
 def named_tests(root, files) -> set:
     """Returns folder.Suite.Test of every TEST, and the names of tests in CMake lists."""
     found = set()
@@ -124,7 +131,8 @@ def named_tests(root, files) -> set:
         text = "\n".join(text_lines(path))
         if path.name.endswith("_test.cc"):
             cases = re.findall(r"\bTEST(?:_[FP])?\(\s*(\w+),\s*(\w+)\)", text)
-            found.update(f"{path.parent.name}.{suite}.{test}" for suite, test in cases)
+            group = test_group(path.parent.relative_to(root))
+            found.update(f"{group}.{suite}.{test}" for suite, test in cases)
         elif path.name == "CMakeLists.txt":
             found.update(re.findall(r"\blf_(?:\w+_)?test\(([a-z]+\.\w+)", text))
     return found

@@ -1,13 +1,16 @@
 #!/usr/bin/python3
-"""Fails if a folder of lf/ includes what its lf_folder(... DEPENDS ...) does not allow, if a
-third-party header is included outside the one folder that owns it, or if anything in lf/ includes
-tools/ or tests/.
+"""Fails if a folder of lf/ includes what its lf_folder(... DEPENDS ...) does not allow, if a third-party header is
+included outside the folders that own it, if anything in lf/ includes tools/ or tests/, or if rooms depend on each other
+in a cycle. A room is a folder directly in lf/, with the folders inside it.
 
 usage: check_includes.py REPOSITORY
 """
 import pathlib
 import re
 import sys
+
+import folder_list
+from folder_list import room_of
 
 # Third-party headers, and the only folders that may include them (doc/design.md, "Dependencies").
 OWNERS = {
@@ -28,39 +31,79 @@ OWNERS = {
 }
 
 
-def folder_depends(cmake: str) -> set:
-    words = re.search(r"lf_folder\((.*?)\)", cmake, re.S).group(1).split()
-    depends, reading = set(), False
-    for word in words[1:]:
-        if word.isupper() or word in ("PUBLIC_LIBS", "TEST_LIBS"):
-            reading = word == "DEPENDS"
-        elif reading:
-            depends.add(word)
-    return depends
+INCLUDE = re.compile(r'\s*#\s*include\s*[<"]([^>"]+)[>"]')
+
+
+def folder_faults(folders):
+    """Yields the faults of the lf_folder(...) calls: other paths than their own, and unknown folders in DEPENDS."""
+    for folder, words in folders.items():
+        named = " ".join(words.get("", ["no path"]))
+        if named != folder:
+            yield f"lf/{folder}/CMakeLists.txt: lf_folder names {named}, expected {folder}"
+        for other in words.get("DEPENDS", ()):
+            if other not in folders:
+                yield f"lf/{folder}/CMakeLists.txt: DEPENDS names {other}, which is no folder of lf/"
+
+
+def include_fault(folder, allowed, name):
+    """Returns why a source of a folder must not include a name, or None."""
+    if name.startswith(("tools/", "tests/")):
+        return f"the library must not include {name}"
+    if name.startswith("lf/") and name[len("lf/"):].rpartition("/")[0] not in allowed:
+        return f"{folder} may not include {name}"
+    for prefix, owners in OWNERS.items():
+        if name.startswith(prefix) and folder not in owners:
+            return f"<{name}> belongs to {sorted(owners) or 'tools'}"
+    return None
+
+
+def source_faults(root, source, folders):
+    """Yields the faults of one source of lf/."""
+    folder = source.parent.relative_to(root / "lf").as_posix()
+    if folder not in folders:
+        yield f"{source.relative_to(root)}: no lf_folder(...) is beside it"
+        return
+    allowed = {folder, *folders[folder].get("DEPENDS", ())}
+    for number, line in enumerate(source.read_text().splitlines(), 1):
+        match = INCLUDE.match(line)
+        fault = include_fault(folder, allowed, match.group(1)) if match else None
+        if fault:
+            yield f"{source.relative_to(root)}:{number}: {fault}"
+
+
+def reached_from(room, rooms):
+    """Returns the rooms that a room depends on, directly or through others."""
+    reached, open_rooms = set(), [room]
+    while open_rooms:
+        for other in rooms.get(open_rooms.pop(), ()):
+            if other not in reached:
+                reached.add(other)
+                open_rooms.append(other)
+    return reached
+
+
+def room_faults(folders):
+    """Yields a fault for each dependency that is part of a cycle of rooms."""
+    arrows = sorted({(folder, other) for folder, words in folders.items() for other in words.get("DEPENDS", ())
+                     if room_of(folder) != room_of(other)})
+    rooms = {}
+    for folder, other in arrows:
+        rooms.setdefault(room_of(folder), set()).add(room_of(other))
+    for folder, other in arrows:
+        if room_of(folder) in reached_from(room_of(other), rooms):
+            yield (f"lf/{folder}/CMakeLists.txt: DEPENDS {other} is part of a cycle: {room_of(other)} depends on "
+                   f"{room_of(folder)}, directly or through other rooms")
 
 
 def main() -> int:
     root = pathlib.Path(sys.argv[1])
-    faults = []
-    files = 0
-    for folder in sorted(p for p in (root / "lf").iterdir() if p.is_dir()):
-        allowed = folder_depends((folder / "CMakeLists.txt").read_text()) | {folder.name}
-        for source in sorted(folder.glob("*.cc")) + sorted(folder.glob("*.h")):
-            files += 1
-            for number, line in enumerate(source.read_text().splitlines(), 1):
-                match = re.match(r'\s*#\s*include\s*[<"]([^>"]+)[>"]', line)
-                if not match:
-                    continue
-                place, name = f"{source.relative_to(root)}:{number}", match.group(1)
-                if name.startswith(("tools/", "tests/")):
-                    faults.append(f"{place}: the library must not include {name}")
-                if name.startswith("lf/") and name.split("/")[1] not in allowed:
-                    faults.append(f"{place}: {folder.name} may not include {name}")
-                for prefix, owners in OWNERS.items():
-                    if name.startswith(prefix) and folder.name not in owners:
-                        faults.append(f"{place}: <{name}> belongs to {sorted(owners) or 'tools'}")
-    print("\n".join(faults) or f"{files} files, no forbidden include")
-    return 1 if faults or files == 0 else 0
+    folders = folder_list.read_folders(root)
+    sources = sorted(p for p in (root / "lf").rglob("*") if p.suffix in (".cc", ".h"))
+    faults = [*folder_faults(folders), *room_faults(folders)]
+    for source in sources:
+        faults += source_faults(root, source, folders)
+    print("\n".join(faults) or f"{len(sources)} files, no forbidden include")
+    return 1 if faults or not sources else 0
 
 
 if __name__ == "__main__":

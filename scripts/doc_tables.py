@@ -15,7 +15,7 @@ import runpy
 import sys
 import textwrap
 
-from check_includes import folder_depends
+import folder_list
 from table_rules import END, GENERATED, tables_of
 
 SCRIPT = "scripts/doc_tables.py"
@@ -49,22 +49,15 @@ def the_file(root, pattern, mark):
 
 def allowed_includes(root):
     """Returns {folder: the folders that it may include}, by their paths below lf/."""
-    paths, depends = {}, {}
-    for path in sorted((root / "lf").rglob("CMakeLists.txt")):
-        match = re.search(r"\blf_folder\(\s*([\w/]+)", path.read_text())
-        if match:
-            folder = path.parent.relative_to(root / "lf").as_posix()
-            paths[match[1]] = paths[folder] = folder
-            depends[folder] = folder_depends(path.read_text())
-    unknown = sorted(set().union(*depends.values()) - set(paths))
+    depends = {folder: set(words.get("DEPENDS", ())) for folder, words in folder_list.read_folders(root).items()}
+    unknown = sorted(set().union(*depends.values()) - set(depends))
     if unknown:
         raise ValueError(f"a folder of lf/ depends on {', '.join(unknown)}, which is not one")
-    return {folder: {paths[name] for name in names} for folder, names in depends.items()}
+    return depends
 
 
-def folders(root):
-    depends = allowed_includes(root)
-
+def table_of_includes(kind, depends):
+    """Returns the table of what each folder or room may include."""
     @functools.cache
     def height(folder):
         return max((height(name) + 1 for name in depends[folder]), default=0)
@@ -76,9 +69,22 @@ def folders(root):
         if folder not in basic:
             allowed = [name for name in order if name in depends[folder] and name not in basic]
             rows.setdefault(", ".join(allowed) or "no other", []).append(folder)
-    return table(["folder", "may include"],
-                 [[", ".join(basic), "nothing, but every folder may include it; it is left out below"],
+    return table([kind, "may include"],
+                 [[", ".join(basic), f"nothing, but every {kind} may include it; it is left out below"],
                   *([", ".join(row), allowed] for allowed, row in rows.items())])
+
+
+def folders(root):
+    return table_of_includes("folder", allowed_includes(root))
+
+
+def rooms(root):
+    """Returns the table of the folders directly in lf/, each with the folders inside it."""
+    depends = {}
+    for folder, names in allowed_includes(root).items():
+        room = folder_list.room_of(folder)
+        depends.setdefault(room, set()).update(folder_list.room_of(name) for name in names)
+    return table_of_includes("room", {room: names - {room} for room, names in depends.items()})
 
 
 def field_of(help_texts, name):

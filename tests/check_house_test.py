@@ -64,11 +64,13 @@ class PlantedFaults(unittest.TestCase):
         self.plant("README.md", "[a](doc/there.md#a-heading-here) [b](https://example.org/x)\n"
                                 "[c](doc/gone.md)\n[d](doc/there.md#nowhere)\n[e](../outside.md)\n"
                                 "`lf/core/gone.h`\n`core.Suite.Gone`\n`core.Suite.There` `tests.there`\n"
-                                "`tests.gone`\n")
+                                "`tests.gone`\n`core.inner.Suite.There` `tools.Suite.There`\n"
+                                "`inner.Suite.There`\n`core.inner.Suite.Gone`\n")
         self.plant("tests/CMakeLists.txt", "lf_program_test(tests.there lfrenderer)\n")
-        self.plant("lf/core/x_test.cc", "TEST(Suite, There) {}\n")
+        for folder in ("lf/core", "lf/core/inner", "tools/common"):
+            self.plant(f"{folder}/x_test.cc", "TEST(Suite, There) {}\n")
         self.expect("check_house.py", "links",
-                    faults=[f"README.md:{line}" for line in (2, 3, 4, 5, 6, 8)])
+                    faults=[f"README.md:{line}" for line in (2, 3, 4, 5, 6, 8, 10, 11)])
 
     def test_pages_that_comments_name_must_exist(self):
         self.plant("lf/core/a.h", "// see doc/there.md and doc/" + "gone.md\n")
@@ -82,6 +84,31 @@ class PlantedFaults(unittest.TestCase):
         self.plant("lf/camera/b.h", '#include "lf/core/c.h"\n#include "tools/common/d.h"\n')
         self.expect("check_includes.py",
                     faults=["lf/core/a.cc:1", "lf/core/a.cc:2", "lf/camera/b.h:2"])
+
+    def test_folders_inside_others_are_named_by_their_paths(self):
+        self.plant("lf/core/CMakeLists.txt", "lf_folder(core SOURCES a.cc)\n")
+        self.plant("lf/core/a.cc", "#include <vector>\n")
+        self.plant("lf/camera/path/CMakeLists.txt", "lf_folder(camera/path DEPENDS core)\n")
+        self.plant("lf/camera/path/b.h", '#include "lf/camera/path/c.h"\n#include "lf/core/a.h"\n')
+        self.expect("check_includes.py", faults=[])
+        self.plant("lf/camera/path/b.h", '#include "lf/camera/c.h"\n#include "lf/core/path/a.h"\n')
+        self.plant("lf/camera/spline/CMakeLists.txt", "lf_folder(spline DEPENDS path core)\n")
+        self.plant("lf/film/d.h", "")
+        self.expect("check_includes.py", faults=[
+            "lf/camera/path/b.h:1: camera/path may not include", "lf/camera/path/b.h:2",
+            "lf/camera/spline/CMakeLists.txt: lf_folder names spline",
+            "lf/camera/spline/CMakeLists.txt: DEPENDS names path", "lf/film/d.h: no lf_folder"])
+
+    def test_cycles_of_rooms_are_found(self):
+        folders = {"core": "", "film/plate": "core", "film/develop": "film/plate render/state",
+                   "render/state": "core film/plate", "render/pipeline": "render/state", "view": "render/pipeline"}
+        for folder, others in folders.items():
+            self.plant(f"lf/{folder}/CMakeLists.txt", f"lf_folder({folder} SOURCES a.cc DEPENDS {others})\n")
+            self.plant(f"lf/{folder}/a.cc", "")
+        self.expect("check_includes.py", faults=["lf/film/develop/CMakeLists.txt: DEPENDS render/state is part",
+                                                 "lf/render/state/CMakeLists.txt: DEPENDS film/plate is part"])
+        self.plant("lf/film/develop/CMakeLists.txt", "lf_folder(film/develop DEPENDS film/plate)\n")
+        self.expect("check_includes.py", faults=[])
 
     RENDERS = ["lfrenderer f p.yaml -o out --mode collect --estimator nearest --lens-weights none",
                "lfrenderer f p.yaml -o out"]
@@ -151,8 +178,8 @@ class PlantedFaults(unittest.TestCase):
     def test_generated_tables_say_what_the_sources_say(self):
         self.plant("lf/CMakeLists.txt", "add_subdirectory(core)\n")
         self.plant("lf/core/CMakeLists.txt", "lf_folder(core SOURCES a.cc)\n")
-        self.plant("lf/optics/camera/CMakeLists.txt", "lf_folder(camera\n  SOURCES a.cc\n  DEPENDS core\n  LIBS x)\n")
-        self.plant("lf/path/CMakeLists.txt", "lf_folder(path DEPENDS core camera)\n")
+        self.plant("lf/optics/camera/CMakeLists.txt", "lf_folder(optics/camera\n  DEPENDS core\n  LIBS x)\n")
+        self.plant("lf/path/CMakeLists.txt", "lf_folder(path DEPENDS core optics/camera)\n")
         text = ("| folder | may include |\n| --- | --- |\n"
                 "| core | nothing, but every folder may include it; it is left out below |\n"
                 "| optics/camera | no other |\n| path | optics/camera |\n")
@@ -172,7 +199,7 @@ class PlantedFaults(unittest.TestCase):
         self.plant("scripts/doc_tables.py", "")
         self.plant("lf/README.md", "| `core` | value | a task |\n")
         self.plant("lf/core/CMakeLists.txt", "lf_folder(core SOURCES a.cc)\n")
-        self.plant("lf/optics/camera/CMakeLists.txt", "lf_folder(camera DEPENDS core)\n")
+        self.plant("lf/optics/camera/CMakeLists.txt", "lf_folder(optics/camera DEPENDS core)\n")
         names = ("folders", "programs", "common-options", "exit-codes", "exit-codes-in-help")
         self.expect("check_house.py", "tables", faults=[
             "lf/README.md: no row of the table is that of lf/optics/camera",
