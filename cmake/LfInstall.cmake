@@ -11,18 +11,16 @@ set_target_properties(lf_installed PROPERTIES OUTPUT_NAME lfrendertools EXPORT_N
 target_compile_features(lf_installed PUBLIC cxx_std_20)
 # Inline functions of the headers must compute the same bits (cmake/LfFolder.cmake).
 target_compile_options(lf_installed INTERFACE -ffp-contract=off)
-target_include_directories(lf_installed INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+get_property(headers GLOBAL PROPERTY LF_PUBLIC_HEADERS)
+target_sources(lf_installed PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${headers})
 # An archive does not contain the libraries that it needs, so its user links them. OpenImageIO, raw_r, jpeg, simdjson,
 # zstd, xxhash and sqlite3 are linked by name, see LfDependencies.cmake.
 target_link_libraries(lf_installed PUBLIC Eigen3::Eigen fmt::fmt TBB::tbb Threads::Threads yaml-cpp
                                           hwy::hwy OpenImageIO OpenImageIO_Util raw_r jpeg
                                           simdjson zstd xxhash sqlite3)
 install(TARGETS lf_installed EXPORT lfrendertoolsTargets
-        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-
-# Headers state themselves if they are public, so the installation reads them.
-install(CODE "set(source ${PROJECT_SOURCE_DIR})\nset(destination ${CMAKE_INSTALL_INCLUDEDIR})")
-install(SCRIPT cmake/install_headers.cmake)
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+        FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/lfrendertools)
 install(EXPORT lfrendertoolsTargets NAMESPACE lfrendertools:: DESTINATION ${package_folder})

@@ -2,7 +2,7 @@
 import pathlib
 import re
 
-KEYWORDS = {"SOURCES", "DEPENDS", "LIBS", "PUBLIC_LIBS", "TESTS", "TEST_LIBS", "FUZZ", "BENCH"}
+KEYWORDS = {"SOURCES", "INTERNAL", "DEPENDS", "LIBS", "PUBLIC_LIBS", "TESTS", "TEST_LIBS", "FUZZ", "BENCH"}
 
 
 def read_call(cmake: str) -> dict:
