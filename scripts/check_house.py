@@ -14,6 +14,8 @@ usage: check_house.py REPOSITORY CHECK
            doc_tables.py makes is what the sources say
   mutants  every mistake of scripts/mutants.toml can be planted: its old text is in its file exactly
            once, and tests are named like those that must notice it
+  headers  a header says "Internal to" if its folder lists it as INTERNAL, and only then; installed headers
+           include no internal ones (header_rules.py)
   comments how comments begin and end (doc/style.md; comment_rules.py)
   commits  the commits that tables were made from are ancestors of HEAD. Exits with 77, skipped, where
            there is no history to look into
@@ -27,6 +29,7 @@ import sys
 import comment_rules
 import doc_tables
 import folder_list
+import header_rules
 import mutant_list
 import table_rules
 
@@ -169,13 +172,17 @@ def check_comments(root, files):
             yield f"{path.relative_to(root)}:{number}: {fault}"
 
 
+def check_headers(root, files):
+    return header_rules.check_headers(root, text_lines)
+
+
 def check_commits(root, files):
     return table_rules.check_commits(root, files, text_lines)
 
 
 CHECKS = {"lengths": check_lengths, "paths": check_paths, "links": check_links,
           "pages": check_pages, "tables": check_tables, "mutants": check_mutants,
-          "comments": check_comments, "commits": check_commits}
+          "headers": check_headers, "comments": check_comments, "commits": check_commits}
 SKIPPED = 77
 
 

@@ -110,6 +110,20 @@ class PlantedFaults(unittest.TestCase):
         self.plant("lf/film/develop/CMakeLists.txt", "lf_folder(film/develop DEPENDS film/plate)\n")
         self.expect("check_includes.py", faults=[])
 
+    def test_internal_headers_are_listed_and_say_so(self):
+        self.plant("lf/core/CMakeLists.txt", "lf_folder(core\n  INTERNAL fine.h silent.h gone.h test_a.h\n  DEPENDS)\n")
+        self.plant("lf/core/fine.h", "// It sorts. Internal\n// to core.\n#pragma once\n")
+        self.plant("lf/core/silent.h", "// It sorts.\n#pragma once\n// Internal to core.\n")
+        self.plant("lf/core/said.h", "// It sorts. Internal to this folder.\n#pragma once\n")
+        self.plant("lf/core/test_a.h", "// For tests.\n#pragma once\n#include \"lf/core/fine.h\"\n")
+        self.plant("lf/film/plate/CMakeLists.txt", "lf_folder(film/plate DEPENDS core)\n")
+        self.plant("lf/film/plate/public.h", '#pragma once\n#include "lf/core/fine.h"\n#include "lf/core/other.h"\n')
+        self.expect("check_house.py", "headers", faults=[
+            "lf/core/silent.h: INTERNAL lists it, but its first", "lf/core/said.h: its first comment says",
+            "lf/core/test_a.h: INTERNAL lists it, which is needless",
+            "lf/core/gone.h: INTERNAL lists it, but it does not",
+            "lf/film/plate/public.h:2: a header that is installed includes lf/core/fine.h"])
+
     RENDERS = ["lfrenderer f p.yaml -o out --mode collect --estimator nearest --lens-weights none",
                "lfrenderer f p.yaml -o out"]
     DEFAULTS = ["lfrenderer --mode collect", "lfrenderer --estimator auto", "lfrenderer --lens-weights auto"]
@@ -323,7 +337,7 @@ tests = '{tests}'
     def test_a_clean_house_has_no_faults(self):
         self.plant("lf/core/CMakeLists.txt", "lf_folder(core SOURCES a.cc)\n")
         self.plant("lf/core/a.cc", "#include <vector>\n")
-        for check in ("lengths", "paths", "links", "pages", "tables", "comments"):
+        for check in ("lengths", "paths", "links", "pages", "tables", "headers", "comments"):
             self.expect("check_house.py", check, faults=[])
         self.expect("check_includes.py", faults=[])
 

@@ -1,4 +1,4 @@
-// Convex polygons in the lens plane. Internal to lens_weights.
+// Convex polygons in the lens plane.
 #pragma once
 
 #include <vector>
