@@ -15,8 +15,8 @@
 #include <thread>
 #include <vector>
 
-#include "lf/cluster/command.h"
 #include "lf/cluster/finish_frames.h"
+#include "lf/core/child_process.h"
 #include "lf/core/file.h"
 #include "lf/core/file_lock.h"
 #include "lf/core/log.h"
@@ -56,7 +56,7 @@ class TaskRun {
 
   // Runs lfrenderer once. Its standard output goes to the file `output`, if that is not empty.
   // `wants_restart` is called about once a second; if it returns true, lfrenderer is ended.
-  Result<CommandEnd> Run(const std::vector<std::string>& words, const fs::path& output,
+  Result<ProcessEnd> Run(const std::vector<std::string>& words, const fs::path& output,
                          const std::function<bool()>& wants_restart);
   // Returns the last message of lfrenderer.
   std::string LastMessage() const;
@@ -109,7 +109,7 @@ Result<void> TaskRun::End(TaskPhase phase, int exit_code, const std::string& mes
   return WriteTaskState(state_, task_.state);
 }
 
-Result<CommandEnd> TaskRun::Run(const std::vector<std::string>& words, const fs::path& output,
+Result<ProcessEnd> TaskRun::Run(const std::vector<std::string>& words, const fs::path& output,
                                 const std::function<bool()>& wants_restart) {
   const auto open = [](const fs::path& path, int flags) {
     return ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | flags, 0666);
@@ -122,13 +122,13 @@ Result<CommandEnd> TaskRun::Run(const std::vector<std::string>& words, const fs:
       fmt::format("{}{:%F %T} UTC on {}: start {}\n", kLogStart,
                   fmt::gmtime(std::chrono::system_clock::now()), node_, state_.start_count + 1);
   [[maybe_unused]] const ssize_t told = ::write(log, header.data(), header.size());
-  Command::Options options;
+  ChildProcess::Options options;
   options.words = words;
   options.working_folder = job_.working_folder;
   options.complaints = log;
   options.output = output.empty() ? -1 : open(output, O_TRUNC);
   options.kept = lock_->fd();
-  const Result<std::unique_ptr<Command>> command = Command::Start(options);
+  const Result<std::unique_ptr<ChildProcess>> command = ChildProcess::Start(options);
   ::close(log);
   if (options.output >= 0) ::close(options.output);
   if (!command) return command.error();
@@ -180,7 +180,7 @@ std::vector<std::string> PackageWords(const ClusterJob& job, const JobPackage& p
   return words;
 }
 
-std::string WordsOf(const CommandEnd& end) {
+std::string WordsOf(const ProcessEnd& end) {
   return fmt::format("killed by signal {} ({}){}", end.signal, ::strsignal(end.signal),
                      end.signal == SIGKILL ? ": by somebody, or for taking too much memory" : "");
 }
@@ -265,12 +265,12 @@ Result<TaskState> RunPackage(const ClusterJob& job, size_t number, const std::st
       const auto now = FramesToFinish(job, package);
       return now && *now != finish;
     };
-    const Result<CommandEnd> ran = run.Run(PackageWords(job, package, finish), {}, wants_restart);
+    const Result<ProcessEnd> ran = run.Run(PackageWords(job, package, finish), {}, wants_restart);
     if (!ran) {
       LF_RETURN_IF_ERROR(run.End(TaskPhase::kFailed, 4, ran.error().message));
       return state;
     }
-    const CommandEnd end = *ran;
+    const ProcessEnd end = *ran;
     if (end.signal == SIGTERM) {
       LF_RETURN_IF_ERROR(run.End(TaskPhase::kInterrupted, 5, "interrupted before it began"));
     } else if (end.signal != 0) {
@@ -321,7 +321,7 @@ Result<void> FinishFilm(const ClusterJob& job, const std::string& node,
   std::error_code ignored;
   fs::remove(report, ignored);
   TemporaryFile printed(report);
-  const Result<CommandEnd> end = run.Run(words, printed.path(), [] { return false; });
+  const Result<ProcessEnd> end = run.Run(words, printed.path(), [] { return false; });
   if (!end) return fail(end.error());
   // The signal that we passed on arrived before lfrenderer could catch it.
   if (end->signal == SIGTERM && run.IsAskedToEnd())

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "lf/cluster/command.h"
+#include "lf/core/child_process.h"
 #include "lf/core/file.h"
 #include "lf/core/log.h"
 #include "lf/core/shell_word.h"

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "lf/cluster/command.h"
+#include "lf/core/child_process.h"
 
 namespace lf {
 namespace {

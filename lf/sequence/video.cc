@@ -11,9 +11,9 @@
 #include <string_view>
 #include <vector>
 
+#include "lf/core/child_process.h"
 #include "lf/core/file.h"
 #include "lf/core/temporary_file.h"
-#include "lf/sequence/child_process.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -42,6 +42,13 @@ std::vector<std::string> EncoderArguments(const fs::path& file, int width, int h
           "-movflags", "+faststart", "-f", "mp4", "file:" + file.string()};
 }
 
+Result<std::unique_ptr<ChildProcess>> StartFed(std::vector<std::string> words) {
+  ChildProcess::Options options;
+  options.words = std::move(words);
+  options.has_input = true;
+  return ChildProcess::Start(options);
+}
+
 }  // namespace
 
 Result<void> CheckVideoTool() {
@@ -51,10 +58,9 @@ Result<void> CheckVideoTool() {
                        "; a video needs ffmpeg with libx264 (Debian: apt-get install ffmpeg)");
   };
   // Encodes one small picture, because a program of that name may lack the encoder.
-  auto ffmpeg =
-      ChildProcess::Start({"ffmpeg", "-hide_banner", "-nostats", "-loglevel", "error", "-f",
-                           "rawvideo", "-pixel_format", "rgb24", "-video_size", "16x16", "-i",
-                           "pipe:0", "-c:v", "libx264", "-f", "null", "-"});
+  auto ffmpeg = StartFed({"ffmpeg", "-hide_banner", "-nostats", "-loglevel", "error", "-f",
+                          "rawvideo", "-pixel_format", "rgb24", "-video_size", "16x16", "-i",
+                          "pipe:0", "-c:v", "libx264", "-f", "null", "-"});
   if (!ffmpeg) return advice(ffmpeg.error());
   const std::vector<uint8_t> picture(16 * 16 * 3);
   if (const auto written = (*ffmpeg)->Write(picture, kPatience_s); !written)
@@ -128,8 +134,7 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::Open(const fs::path& path, int
   state->width = width;
   state->height = height;
   state->patience_s = patience_s;
-  auto ffmpeg =
-      ChildProcess::Start(EncoderArguments(state->unfinished, width / 2 * 2, height / 2 * 2, fps));
+  auto ffmpeg = StartFed(EncoderArguments(state->unfinished, width / 2 * 2, height / 2 * 2, fps));
   if (!ffmpeg) return state->Failure(ffmpeg.error());
   state->ffmpeg = *std::move(ffmpeg);
   return std::unique_ptr<VideoWriter>(new VideoWriter(std::move(state)));
