@@ -1,6 +1,7 @@
 #include "lf/collector/collect_batch.h"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "lf/collection/gather.h"
@@ -126,38 +127,25 @@ PixelRect BatchCollector::RectOf(LfImageId id, std::span<const size_t> frames) c
   return rect;
 }
 
-// Images of one camera share its ideal pixels, also with the next batch. Only the fast back end of
-// nearest follows arcs.
+// Images of one camera share its cells and ideal pixels. Only the fast back end of nearest follows
+// arcs.
 void BatchCollector::UndoDistortion(std::vector<BatchImage>& batch) {
-  const bool needs_arcs =
-      reading_.estimator == Estimator::kNearest && back_end_ == CollectBackEnd::kFast;
-  std::map<uint32_t, std::shared_ptr<const IdealPixels>> in_use;
-  std::vector<uint32_t> missing;
-  for (const BatchImage& image : batch) {
-    const uint32_t index = light_field_.cameras[image.id.value].intrinsics_index;
-    if (!light_field_.intrinsics[index].has_distortion() || in_use.contains(index)) continue;
-    const auto known = ideal_pixels_.find(index);
-    if (needs_arcs && known == ideal_pixels_.end()) missing.push_back(index);
-    in_use[index] = known == ideal_pixels_.end() ? nullptr : known->second;
-  }
-  ForEachTimed(missing.size(), [&](size_t i) {
-    in_use.find(missing[i])->second =
-        std::make_shared<const IdealPixels>(light_field_.intrinsics[missing[i]]);
-  });
+  if (reading_.estimator == Estimator::kNearest && back_end_ == CollectBackEnd::kFast)
+    ideal_pixels_.Keep(light_field_, batch,
+                       [&](size_t count, const auto& body) { ForEachTimed(count, body); });
   std::map<uint32_t, std::shared_ptr<const std::vector<IdealCell>>> cells;
   for (BatchImage& image : batch) {
     const uint32_t index = light_field_.cameras[image.id.value].intrinsics_index;
-    const auto found = in_use.find(index);
     std::shared_ptr<const std::vector<IdealCell>>& shared = cells[index];
     if (!shared)
       shared = std::make_shared<const std::vector<IdealCell>>(
-          found == in_use.end() ? std::vector<IdealCell>()
-                                : MakeIdealCells(light_field_.intrinsics[index]));
+          light_field_.intrinsics[index].has_distortion()
+              ? MakeIdealCells(light_field_.intrinsics[index])
+              : std::vector<IdealCell>());
     image.cells = shared;
-    if (found != in_use.end()) image.ideal_pixels = found->second;
+    image.ideal_pixels = ideal_pixels_.Of(index);
     image.overlap.emplace(light_field_.Camera(image.id), *image.cells, ReachOf(reading_.estimator));
   }
-  ideal_pixels_ = std::move(in_use);
 }
 
 // Returns the frames that may take rays of the batch, which are few on long paths through large

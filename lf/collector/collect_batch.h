@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -21,6 +20,7 @@
 #include "lf/collection/gather_sampling.h"
 #include "lf/collection/scatter.h"
 #include "lf/collector/noise_moments.h"
+#include "lf/collector/shared_ideal_pixels.h"
 #include "lf/core/ids.h"
 #include "lf/core/parallel.h"
 #include "lf/plate/sensor_plate.h"
@@ -153,8 +153,7 @@ class BatchCollector {
   std::vector<NoiseMoments>* moments_;
   std::vector<std::vector<PlateTile>> tiles_;
   std::deque<Share> shares_;  // of (frame, LF image); their memory is used again in every batch
-  // Ideal pixels for the cameras of the last batch, by index of intrinsics.
-  std::map<uint32_t, std::shared_ptr<const IdealPixels>> ideal_pixels_;
+  SharedIdealPixels ideal_pixels_;
   std::atomic<int64_t> cpu_ns_ = 0;
 };
 

@@ -190,25 +190,9 @@ std::vector<RenderCamera> RebinnedRays::ReachedCameras() const {
   return cameras;
 }
 
-void RebinnedRays::FindIdealPixels(std::span<const BatchImage> images) {
-  std::map<uint32_t, std::shared_ptr<const IdealPixels>> in_use;
-  std::vector<uint32_t> missing;
-  for (const BatchImage& image : images) {
-    const uint32_t index = light_field_.cameras[image.id.value].intrinsics_index;
-    if (!light_field_.intrinsics[index].has_distortion() || in_use.contains(index)) continue;
-    const auto known = ideal_pixels_.find(index);
-    if (known == ideal_pixels_.end()) missing.push_back(index);
-    in_use[index] = known == ideal_pixels_.end() ? nullptr : known->second;
-  }
-  pool_.ForEach(missing.size(), [&](size_t i) {
-    in_use.find(missing[i])->second =
-        std::make_shared<const IdealPixels>(light_field_.intrinsics[missing[i]]);
-  });
-  ideal_pixels_ = std::move(in_use);
-}
-
 void RebinnedRays::Take(std::span<const BatchImage> images, uint32_t place_end) {
-  FindIdealPixels(images);
+  ideal_pixels_.Keep(light_field_, images,
+                     [&](size_t count, const auto& body) { pool_.ForEach(count, body); });
   for (const auto& section : sections_) {
     if (place_end <= section->places_done) continue;
     const auto first = std::find_if(images.begin(), images.end(), [&](const BatchImage& image) {
@@ -265,11 +249,10 @@ void RebinnedRays::Rebin(std::span<const BatchImage> images, Section& section) {
       const Task& task = tasks[begin + i];
       rays[i].Clear();
       const LfCamera& lf_camera = light_field_.cameras[task.image->id.value];
-      const auto ideal = ideal_pixels_.find(lf_camera.intrinsics_index);
       RebinImage(section.plan.slab, light_field_.Camera(task.image->id), task.image->id,
                  task.image->pixels, task.rect, stored_values_,
-                 ideal == ideal_pixels_.end() ? nullptr : ideal->second.get(), options_.rebin,
-                 &coverage, *section.map, &rays[i]);
+                 ideal_pixels_.Of(lf_camera.intrinsics_index).get(), options_.rebin, &coverage,
+                 *section.map, &rays[i]);
       cpu_ns_ += timer.Nanoseconds();
     });
     for (const BinnedRays& of_task : rays) looked_at_ += of_task.looked_at;

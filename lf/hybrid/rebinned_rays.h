@@ -12,7 +12,6 @@
 
 #include <atomic>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -20,6 +19,7 @@
 
 #include "lf/capture/light_field.h"
 #include "lf/collector/image_taker.h"
+#include "lf/collector/shared_ideal_pixels.h"
 #include "lf/core/parallel.h"
 #include "lf/hybrid/asked_pixels.h"
 #include "lf/hybrid/film_slabs.h"
@@ -124,7 +124,6 @@ class RebinnedRays : public ImageTaker {
                      const LensPointSets& points, const PointShares* shares) const;
   SplatFrame SplatOf(const Section& section, const FrameQueries& queries) const;
   SplatFrame SplatOfPoints(const Section& section, const FrameQueries& queries) const;
-  void FindIdealPixels(std::span<const BatchImage> images);
   void Rebin(std::span<const BatchImage> images, Section& section);
 
   const LightField& light_field_;
@@ -136,7 +135,7 @@ class RebinnedRays : public ImageTaker {
   std::vector<size_t> asking_;      // indices of frames that ask, and that have a slab
   std::vector<AskedPixels> asked_;  // of these frames
   std::vector<std::unique_ptr<Section>> sections_;
-  std::map<uint32_t, std::shared_ptr<const IdealPixels>> ideal_pixels_;  // by index of intrinsics
+  SharedIdealPixels ideal_pixels_;
   bool keeps_all_ = false;
   size_t max_cells_per_section_ = 1;
   uint64_t looked_at_ = 0;
