@@ -152,12 +152,8 @@ lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::Comm
       a.estimator == "nearest" ? lf::Estimator::kNearest : lf::Estimator::kBilinear;
   if (options.reading.estimator == lf::Estimator::kBilinear && bayer != lf::BayerPattern::kNone)
     options.reading.filter = lf::PixelFilter::kMosaic;  // the default of lfrenderer
-  options.lens_weights = lf::LensWeights::kNone;
-  for (const lf::LensWeights weights :
-       {lf::LensWeights::kAuto, lf::LensWeights::kArea, lf::LensWeights::kHat})
-    if (a.lens_weights == lf::NameOf(weights)) options.lens_weights = weights;
-  for (const lf::RenderMode known : {lf::RenderMode::kRebin, lf::RenderMode::kHybrid})
-    if (a.mode == lf::NameOf(known)) options.mode = known;
+  options.lens_weights = *lf::LensWeightsOf(a.lens_weights);
+  options.mode = *lf::RenderModeOf(a.mode);
   // This is the default of lfrenderer: without collected rays there is nothing to weight.
   if (options.mode == lf::RenderMode::kRebin && options.lens_weights == lf::LensWeights::kAuto)
     options.lens_weights = lf::LensWeights::kNone;

@@ -120,9 +120,7 @@ lf::NeedsOptions Needs(const Arguments& a) {
   if (a.page.estimator == "bilinear") needs.select.reach = lf::PixelReach::kNeighbours;
   if (a.page.max_angle_deg > 0)
     needs.select.max_angle_rad = lf::RadiansFromDegrees(a.page.max_angle_deg);
-  for (const lf::LensWeights weights : {lf::LensWeights::kNone, lf::LensWeights::kAuto,
-                                        lf::LensWeights::kArea, lf::LensWeights::kHat})
-    if (a.page.lens_weights == lf::NameOf(weights)) needs.lens_weights = weights;
+  needs.lens_weights = *lf::LensWeightsOf(a.page.lens_weights);
   if (a.max_images > 0) needs.max_image_count = a.max_images;
   return needs;
 }

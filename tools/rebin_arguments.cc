@@ -5,6 +5,8 @@
 #include "tools/common/help.h"
 #include "tools/common/program.h"
 
+#include "lf/core/value_named.h"
+
 namespace lf {
 
 namespace {
@@ -138,8 +140,7 @@ Result<RebinPassOptions> RebinArguments::Make(uint64_t seed) const {
   made.query = options.query;
   made.nearest = static_cast<size_t>(nearest);
   made.coverage = options.coverage;
-  for (const KeptRays known : {KeptRays::kAll, KeptRays::kEdges})
-    if (kept == NameOf(known)) made.kept = known;
+  made.kept = ValueNamed(kept, {KeptRays::kAll, KeptRays::kEdges}).value_or(KeptRays::kAuto);
   made.max_cells = static_cast<size_t>(max_rays);
   if (max_rays > 0 && made.max_cells < RebinnedRays::kLeastCells)
     return UsageError(fmt::format("--max-rays {}: expected 0, or {} and more", max_rays,
@@ -147,8 +148,7 @@ Result<RebinPassOptions> RebinArguments::Make(uint64_t seed) const {
   made.reparameterise = reparameterise == "on";
   if (!made.reparameterise && made.query.lens_sets > 1)
     return UsageError("--reparameterise off: has one set of lens points: leave out --lens-sets");
-  for (const Previews known : {Previews::kOn, Previews::kOff})
-    if (preview == NameOf(known)) made.previews = known;
+  made.previews = ValueNamed(preview, {Previews::kOn, Previews::kOff}).value_or(Previews::kAuto);
   made.rebin.averages_others = average_others == "on";
   made.rebin.seed = made.query.seed = seed;
   if (r_st_w > 0) made.slab.r_st_w = r_st_w;

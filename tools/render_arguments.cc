@@ -12,6 +12,7 @@
 #include "lf/collector/noise_rule.h"
 #include "lf/core/log.h"
 #include "lf/package/package_file.h"
+#include "lf/core/value_named.h"
 #include "lf/pipeline/frame_range.h"
 #include "lf/sequence/develop.h"
 
@@ -255,13 +256,11 @@ Result<FilmOptions> RenderArguments::MakeFilm(uint64_t seed) const {
   film.smooth_below = smooth_below;
   LF_ASSIGN_OR_RETURN(film.fill_radius_px, ParseFill(fill));
   film.reading.estimator = estimator == "nearest" ? Estimator::kNearest : Estimator::kBilinear;
-  for (const PixelFilter known :
-       {PixelFilter::kNearest, PixelFilter::kBilinear, PixelFilter::kBicubic, PixelFilter::kMosaic})
-    if (filter == NameOf(known)) film.reading.filter = known;
-  for (const LensWeights weights : {LensWeights::kAuto, LensWeights::kArea, LensWeights::kHat})
-    if (lens_weights == NameOf(weights)) film.lens_weights = weights;
-  for (const RenderMode known : {RenderMode::kRebin, RenderMode::kHybrid})
-    if (mode == NameOf(known)) film.mode = known;
+  film.reading.filter = ValueNamed(filter, {PixelFilter::kNearest, PixelFilter::kBilinear,
+                                            PixelFilter::kBicubic, PixelFilter::kMosaic})
+                            .value_or(PixelFilter::kAuto);
+  film.lens_weights = *LensWeightsOf(lens_weights);
+  film.mode = *RenderModeOf(mode);
   LF_ASSIGN_OR_RETURN(film.rebin, rebin.Make(seed));
   if (back_end == "reference") film.back_end = CollectBackEnd::kReference;
   LF_RETURN_IF_ERROR(

@@ -225,7 +225,7 @@ bool SubmitArguments::HasRendererArguments() const {
 
 Result<void> SubmitArguments::TakeResources(ClusterJob* job, const CommonOptions& common,
                                             bool is_new) const {
-  if (engine) job->engine = *engine == "slurm" ? ClusterEngine::kSlurm : ClusterEngine::kLocal;
+  if (engine) job->engine = *ClusterEngineOf(*engine);
   const bool is_local = job->engine == ClusterEngine::kLocal;
   for (const std::string& option : sbatch_options)
     if (!option.starts_with('-') || OneLine(option) != option)

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "lf/core/check.h"
+#include "lf/core/value_named.h"
 
 namespace lf {
 namespace {
@@ -52,17 +53,15 @@ void MakeRoomForUndershoot(RadianceEncoding* encoding) {
 const char* NameOf(BayerPattern bayer) { return kBayerNames[static_cast<int>(bayer)]; }
 
 std::optional<BayerPattern> BayerPatternOf(const std::string& name) {
-  for (int i = 1; i < 5; ++i)
-    if (name == kBayerNames[i]) return static_cast<BayerPattern>(i);
-  return std::nullopt;
+  return ValueNamed(
+      name, {BayerPattern::kRggb, BayerPattern::kBggr, BayerPattern::kGrbg, BayerPattern::kGbrg});
 }
 
 const char* NameOf(AlphaMeaning alpha) { return kAlphaNames[static_cast<int>(alpha)]; }
 
 std::optional<AlphaMeaning> AlphaMeaningOf(const std::string& name) {
-  for (int i = 0; i < 3; ++i)
-    if (name == kAlphaNames[i]) return static_cast<AlphaMeaning>(i);
-  return std::nullopt;
+  return ValueNamed(name,
+                    {AlphaMeaning::kMask, AlphaMeaning::kStraight, AlphaMeaning::kPremultiplied});
 }
 
 std::string TextOfAlpha(AlphaMeaning alpha, const std::array<double, 3>& background,

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "lf/core/file.h"
+#include "lf/core/value_named.h"
 #include "lf/pipeline/frame_range.h"
 #include "lf/record/record_fields.h"
 
@@ -86,6 +87,10 @@ JobPackage PackageFromJson(const Json& json, std::string* fault) {
 
 const char* NameOf(ClusterEngine engine) {
   return engine == ClusterEngine::kLocal ? "local" : "slurm";
+}
+
+std::optional<ClusterEngine> ClusterEngineOf(std::string_view name) {
+  return ValueNamed(name, {ClusterEngine::kLocal, ClusterEngine::kSlurm});
 }
 
 bool ClusterJob::IsCancelled() const {
@@ -166,7 +171,9 @@ Result<ClusterJob> ParseJob(std::string_view text, const std::string& name) {
     fields.Get("slurm_finishing", &job.slurm_finishing_id);
     for (const Json* item : fields.List("packages"))
       job.packages.push_back(PackageFromJson(*item, &fault));
-    if (fault.empty() && engine != "local" && engine != "slurm")
+    const auto known = ClusterEngineOf(engine);
+    if (known) job.engine = *known;
+    if (fault.empty() && !known)
       fault = fmt::format("\"engine\": expected local or slurm, found \"{}\"", engine);
     if (fault.empty() && job.packages.empty()) fault = "\"packages\": expected some, found none";
     if (fault.empty()) fault = FaultOf(job);
@@ -178,7 +185,6 @@ Result<ClusterJob> ParseJob(std::string_view text, const std::string& name) {
   job.working_folder = working;
   job.renderer = renderer;
   job.submitter = submitter;
-  job.engine = engine == "slurm" ? ClusterEngine::kSlurm : ClusterEngine::kLocal;
   if (!video.empty()) job.video = video;
   return job;
 }

@@ -26,6 +26,7 @@ namespace lf {
 
 enum class ClusterEngine { kLocal, kSlurm };
 const char* NameOf(ClusterEngine engine);
+std::optional<ClusterEngine> ClusterEngineOf(std::string_view name);  // nullopt: another word
 
 struct JobPackage {
   std::filesystem::path file;

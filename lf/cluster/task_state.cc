@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <chrono>
 #include <fstream>
 
 #include "lf/core/file.h"
+#include "lf/core/value_named.h"
 #include "lf/record/record_fields.h"
 
 namespace lf {
@@ -15,8 +15,6 @@ namespace {
 
 constexpr size_t kLimitBytes = size_t{1} << 20;
 constexpr const char* kFormat = "lftask 1";
-constexpr std::array kPhases = {TaskPhase::kWaiting, TaskPhase::kRunning, TaskPhase::kInterrupted,
-                                TaskPhase::kDone, TaskPhase::kFailed};
 
 // Reads an entry [done, total] of "counts".
 void GetCount(const Json& line, const char* name, uint64_t* done, uint64_t* total) {
@@ -98,13 +96,11 @@ Result<TaskState> ParseTaskState(std::string_view text, const std::string& name)
     fields.Get("message", &state.message);
     fields.Get("begin_s", &state.begin_s);
     fields.Get("end_s", &state.end_s);
-    bool is_known = false;
-    for (const TaskPhase known : kPhases) {
-      if (phase != NameOf(known)) continue;
-      state.phase = known;
-      is_known = true;
-    }
-    if (fault.empty() && !is_known) fault = fmt::format("\"phase\": found \"{}\"", phase);
+    const auto known =
+        ValueNamed(phase, {TaskPhase::kWaiting, TaskPhase::kRunning, TaskPhase::kInterrupted,
+                           TaskPhase::kDone, TaskPhase::kFailed});
+    if (known) state.phase = *known;
+    if (fault.empty() && !known) fault = fmt::format("\"phase\": found \"{}\"", phase);
   }
   if (!fault.empty())
     return InputError(fmt::format(

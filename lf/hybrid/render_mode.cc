@@ -2,11 +2,17 @@
 
 #include <fmt/format.h>
 
+#include "lf/core/value_named.h"
+
 namespace lf {
 
 const char* NameOf(RenderMode mode) {
   constexpr const char* kNames[] = {"collect", "rebin", "hybrid"};
   return kNames[static_cast<int>(mode)];
+}
+
+std::optional<RenderMode> RenderModeOf(std::string_view name) {
+  return ValueNamed(name, {RenderMode::kCollect, RenderMode::kRebin, RenderMode::kHybrid});
 }
 
 Result<void> CheckOpacity(const RadianceEncoding& encoding, RenderMode mode) {

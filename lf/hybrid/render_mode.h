@@ -1,6 +1,9 @@
 // Modes of a render: the rays that its frames are made of (doc/rebinning.md).
 #pragma once
 
+#include <optional>
+#include <string_view>
+
 #include "lf/capture/radiance.h"
 #include "lf/core/result.h"
 
@@ -13,6 +16,7 @@ enum class RenderMode { kCollect, kRebin, kHybrid };
 
 // Returns "collect", "rebin" or "hybrid".
 const char* NameOf(RenderMode mode);
+std::optional<RenderMode> RenderModeOf(std::string_view name);  // nullopt: another word
 
 inline bool Collects(RenderMode mode) { return mode != RenderMode::kRebin; }
 inline bool Rebins(RenderMode mode) { return mode != RenderMode::kCollect; }

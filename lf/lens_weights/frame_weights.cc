@@ -7,6 +7,7 @@
 
 #include "lf/core/check.h"
 #include "lf/core/random.h"
+#include "lf/core/value_named.h"
 #include "lf/lens_weights/lens_cells.h"
 #include "lf/lens_weights/lens_coverage.h"
 
@@ -114,6 +115,11 @@ double NodePosition(int index, int count, int size_px) {
 const char* NameOf(LensWeights weights) {
   constexpr const char* kNames[] = {"none", "area", "hat", "auto"};
   return kNames[static_cast<int>(weights)];
+}
+
+std::optional<LensWeights> LensWeightsOf(std::string_view name) {
+  return ValueNamed(
+      name, {LensWeights::kNone, LensWeights::kArea, LensWeights::kHat, LensWeights::kAuto});
 }
 
 double AutoHatShare(double diameter_w, double camera_distance_w) {

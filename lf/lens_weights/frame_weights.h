@@ -9,7 +9,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "lf/camera/ray_weight.h"
@@ -32,6 +34,7 @@ inline constexpr int kLensWeightsVersion = 3;
 
 // Returns "none", "area", "hat" or "auto".
 const char* NameOf(LensWeights weights);
+std::optional<LensWeights> LensWeightsOf(std::string_view name);  // nullopt: another word
 
 // Returns the part of hats in kAuto's weights: 1 up to a diameter of kHatsUpTo camera distances, 0
 // from kCellsFrom on, and smooth in between, so that an aperture may open along a path.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lf/collector/frame_lens.h"
+#include "lf/core/value_named.h"
 #include "lf/record/record_fields.h"
 
 namespace lf {
@@ -206,10 +207,10 @@ Result<FrameSheet> FrameSheetOf(const PlateEntries& entries, int width_px, int h
   sheet.camera.focus_tilt = {lens[4], lens[5]};
   sheet.camera.unit_m = lens[6];
   sheet.fps = reader.Numbers("sheet.fps", 1)[0];
-  const std::string estimator = reader.Text("sheet.estimator");
-  sheet.estimator =
-      estimator == NameOf(Estimator::kNearest) ? Estimator::kNearest : Estimator::kBilinear;
-  if (estimator != NameOf(sheet.estimator)) reader.Fault("sheet.estimator", "nearest or bilinear");
+  const auto estimator =
+      ValueNamed(reader.Text("sheet.estimator"), {Estimator::kNearest, Estimator::kBilinear});
+  if (!estimator) reader.Fault("sheet.estimator", "nearest or bilinear");
+  sheet.estimator = estimator.value_or(Estimator::kBilinear);
   sheet.version = reader.Text("sheet.version");
   const std::vector<double> develop = reader.Numbers("sheet.develop", 14);
   if (!(develop[1] > 0)) reader.Fault("sheet.develop", "a scale above 0 as the second number");

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lf/core/random.h"
+#include "lf/core/value_named.h"
 
 namespace lf {
 namespace {
@@ -104,9 +105,7 @@ std::vector<uint32_t> RoundRobin(const std::vector<uint32_t>& shuffled,
 const char* NameOf(ImageOrder order) { return kNames[static_cast<int>(order)]; }
 
 std::optional<ImageOrder> ImageOrderOf(const std::string& name) {
-  for (size_t i = 0; i < std::size(kNames); ++i)
-    if (name == kNames[i]) return static_cast<ImageOrder>(i);
-  return std::nullopt;
+  return ValueNamed(name, {ImageOrder::kShuffle, ImageOrder::kRoundRobin, ImageOrder::kArea});
 }
 
 ImagePlaces ShuffledPlaces(size_t image_count, uint64_t seed) {

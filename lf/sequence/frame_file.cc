@@ -7,6 +7,7 @@
 #include <string>
 #include <type_traits>
 
+#include "lf/core/value_named.h"
 #include "lf/sequence/display.h"
 
 namespace lf {
@@ -109,11 +110,8 @@ Result<void> WriteExrFrame(const std::filesystem::path& path, const DevelopedFra
 }  // namespace
 
 std::optional<FrameFormat> ParseFrameFormat(std::string_view name) {
-  if (name == "exr") return FrameFormat::kExrHalf;
-  if (name == "exr-float") return FrameFormat::kExrFloat;
-  if (name == "png") return FrameFormat::kPng8;
-  if (name == "png16") return FrameFormat::kPng16;
-  return std::nullopt;
+  return ValueNamed(name, {FrameFormat::kExrHalf, FrameFormat::kExrFloat, FrameFormat::kPng8,
+                           FrameFormat::kPng16});
 }
 
 const char* NameOf(FrameFormat format) {
