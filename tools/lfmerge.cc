@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tools/common/allow_missing.h"
+#include "tools/common/frame_options.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/program.h"
 #include "tools/common/progress.h"
@@ -63,15 +64,8 @@ void AddOptions(CLI::App& app, Arguments& a, lf::MergeOptions& options) {
   output.Add("-o,--output DIR", a.output, "Folder of the frames")
       ->required()
       ->check(lf::NotEmpty());
-  output.AddChoice("--format", a.format, {"exr", "exr-float", "png", "png16"},
-                   "File format of the frames\n"
-                   "exr: linear light as 16-bit floating-point numbers\n"
-                   "exr-float: linear light as 32-bit floating-point numbers\n"
-                   "png: 8-bit sRGB\n"
-                   "png16: 16-bit sRGB");
-  output.Add("--video FILE", a.video, "Also write the frames as this mp4; needs ffmpeg")
-      ->check(lf::NotEmpty());
-  output.AddFlag("--no-contact-sheet", a.no_contact_sheet, "Do not write contact_sheet.png");
+  lf::AddFrameFormat(output, a.format);
+  lf::AddFilmFiles(output, a.video, a.no_contact_sheet);
   running.AddFlag("--resume", options.resume, "Keep the frames in DIR and write the others");
   running.AddFlag("--overwrite", options.overwrite, "Write all frames anew")->excludes("--resume");
 }

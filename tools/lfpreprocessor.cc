@@ -7,6 +7,7 @@
 
 #include "tools/common/allow_missing.h"
 #include "tools/common/byte_size.h"
+#include "tools/common/frame_options.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/light_field_argument.h"
 #include "tools/common/program.h"
@@ -65,8 +66,7 @@ void AddInputAndOutput(CLI::App& app, Arguments& a) {
       ->check(lf::NotEmpty())
       ->excludes(plan);
   output.AddFlag("--overwrite", a.overwrite, "Replace the packages in DIR");
-  output.Add("--frames RANGE", a.frames, "Frames to render, such as 1-100x2, 7 or 3-5,9 (all)")
-      ->check(lf::NotEmpty());
+  lf::AddFrameRange(output, a.frames);
   auto* packages = output.Add("--packages N", a.packages, "Number of packages (by --memory)")
                        ->check(CLI::Range(0, 1'000'000));
   output

@@ -7,12 +7,13 @@
 
 #include "tools/common/byte_size.h"
 #include "tools/common/duration.h"
+#include "tools/common/frame_options.h"
 #include "tools/common/help.h"
 
 #include "lf/collector/noise_rule.h"
 #include "lf/core/log.h"
-#include "lf/package/package_file.h"
 #include "lf/core/value_named.h"
+#include "lf/package/package_file.h"
 #include "lf/pipeline/frame_range.h"
 #include "lf/sequence/develop.h"
 
@@ -55,17 +56,9 @@ void AddInput(CLI::App& app, RenderArguments& a) {
 void AddOutput(CLI::App& app, RenderArguments& a) {
   OptionGroup output(app, kOutputGroup);
   output.Add("-o,--output DIR", a.output, "Folder of the frames")->required();
-  output.Add("--frames RANGE", a.frames, "Frames to render, such as 1-100x2, 7 or 3-5,9 (all)")
-      ->check(NotEmpty());
-  output.AddChoice("--format", a.format, {"exr", "exr-float", "png", "png16"},
-                   "File format of the frames\n"
-                   "exr: linear light as 16-bit floating-point numbers\n"
-                   "exr-float: linear light as 32-bit floating-point numbers\n"
-                   "png: 8-bit sRGB\n"
-                   "png16: 16-bit sRGB");
-  output.Add("--video FILE", a.video, "Also write the frames as this mp4; needs ffmpeg")
-      ->check(NotEmpty());
-  output.AddFlag("--no-contact-sheet", a.no_contact_sheet, "Do not write contact_sheet.png");
+  AddFrameRange(output, a.frames);
+  AddFrameFormat(output, a.format);
+  AddFilmFiles(output, a.video, a.no_contact_sheet);
   output.AddFlag("--keep-plates", a.keep_plates,
                  "Keep the sums and counts of each frame\n"
                  "They are written beside the frame, as frame_0001.plate.");

@@ -9,6 +9,7 @@
 
 #include "tools/common/byte_size.h"
 #include "tools/common/duration.h"
+#include "tools/common/frame_options.h"
 #include "tools/common/help.h"
 #include "tools/render_arguments.h"
 
@@ -125,11 +126,8 @@ void AddNewJob(CLI::App& app, SubmitArguments& a) {
             "After -- follow options of lfrenderer, for all packages.");
   output.Add("-o,--output DIR", a.output, "Folder of the frames, which all machines share")
       ->check(NotEmpty());
-  output.Add("--frames RANGE", a.frames, "Frames to render, such as 1-100x2, 7 or 3-5,9 (all)")
-      ->check(NotEmpty());
-  output.Add("--video FILE", a.video, "Also write the frames as this mp4; needs ffmpeg")
-      ->check(NotEmpty());
-  output.AddFlag("--no-contact-sheet", a.no_contact_sheet, "Do not write contact_sheet.png");
+  AddFrameRange(output, a.frames);
+  AddFilmFiles(output, a.video, a.no_contact_sheet);
   output.AddFlag("--overwrite", a.overwrite,
                  "Remove the job and the frames of these packages in DIR");
 }

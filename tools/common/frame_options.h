@@ -1,0 +1,19 @@
+// The options that programs which render frames, or prepare it, have in common.
+#pragma once
+
+#include <string>
+
+#include "tools/common/help.h"
+
+namespace lf {
+
+// --frames RANGE
+void AddFrameRange(OptionGroup& output, std::string& frames);
+
+// --format exr|exr-float|png|png16
+void AddFrameFormat(OptionGroup& output, std::string& format);
+
+// --video FILE and --no-contact-sheet
+void AddFilmFiles(OptionGroup& output, std::string& video, bool& no_contact_sheet);
+
+}  // namespace lf
