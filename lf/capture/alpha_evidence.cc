@@ -22,7 +22,7 @@ constexpr size_t kAskedFrom = 5;
 constexpr double kSameShare = 0.02;
 
 // The facts that one LF image contributes.
-struct Look {
+struct ImageEvidence {
   std::string image_name;
   int width = 0;
   std::vector<bool> is_transparent;  // one per pixel
@@ -46,29 +46,30 @@ double RadianceOfStored(const RadianceEncoding& encoding, T value) {
 }
 
 template <class T>
-Look LookAt(const RadianceEncoding& encoding, const Image<T>& stored, const ChannelUse& use) {
-  Look look;
-  look.width = stored.width();
-  look.is_float = std::is_floating_point_v<T>;
-  look.is_transparent.reserve(static_cast<size_t>(stored.width()) * stored.height());
+ImageEvidence EvidenceOf(const RadianceEncoding& encoding, const Image<T>& stored,
+                         const ChannelUse& use) {
+  ImageEvidence evidence;
+  evidence.width = stored.width();
+  evidence.is_float = std::is_floating_point_v<T>;
+  evidence.is_transparent.reserve(static_cast<size_t>(stored.width()) * stored.height());
   std::array<T, 3> beneath{};
   for (int y = 0; y < stored.height(); ++y) {
     const T* pixel = stored.row(y);
     for (int x = 0; x < stored.width(); ++x, pixel += stored.channels()) {
       const bool is_opaque = pixel[*use.alpha] > 0;
-      look.is_transparent.push_back(!is_opaque);
+      evidence.is_transparent.push_back(!is_opaque);
       if (is_opaque) continue;
       std::array<T, 3> colour;
       for (size_t c = 0; c < 3; ++c) colour[c] = pixel[use.colours == 3 ? c : 0];
-      if (look.transparent_count++ > 0 && colour != beneath) look.is_one_colour = false;
+      if (evidence.transparent_count++ > 0 && colour != beneath) evidence.is_one_colour = false;
       beneath = colour;
     }
   }
-  for (size_t c = 0; c < 3; ++c) look.background[c] = RadianceOfStored(encoding, beneath[c]);
-  return look;
+  for (size_t c = 0; c < 3; ++c) evidence.background[c] = RadianceOfStored(encoding, beneath[c]);
+  return evidence;
 }
 
-bool HaveSameTransparentPixels(const Look& a, const Look& b) {
+bool HaveSameTransparentPixels(const ImageEvidence& a, const ImageEvidence& b) {
   if (a.width != b.width || a.is_transparent.size() != b.is_transparent.size()) return false;
   size_t differing_count = 0;
   for (size_t i = 0; i < a.is_transparent.size(); ++i)
@@ -92,13 +93,13 @@ std::optional<LfImageId> ReadableFrom(const LightField& light_field, size_t firs
   return std::nullopt;
 }
 
-// Returns a Look at each chosen LF image that has transparent pixels.
-std::vector<Look> LookAtSome(const LightField& light_field) {
+// Returns the evidence of each chosen LF image that has transparent pixels.
+std::vector<ImageEvidence> EvidenceOfSome(const LightField& light_field) {
   std::vector<size_t> firsts;
   for (size_t i = 0; i < kLookedAt; ++i)
     firsts.push_back(i * (light_field.size() - 1) / (kLookedAt - 1));
   firsts.erase(std::unique(firsts.begin(), firsts.end()), firsts.end());
-  std::vector<Look> looks;
+  std::vector<ImageEvidence> images;
   std::optional<LfImageId> last;
   for (const size_t first : firsts) {
     ImageFileInfo info;
@@ -107,25 +108,26 @@ std::vector<Look> LookAtSome(const LightField& light_field) {
     last = id;
     const Result<StoredImage> image = ReadImage(light_field.ImagePath(*id));
     if (!image) continue;
-    Look look = std::visit(
-        [&](const auto& stored) { return LookAt(light_field.encoding, stored, UseOf(info)); },
+    ImageEvidence evidence = std::visit(
+        [&](const auto& stored) { return EvidenceOf(light_field.encoding, stored, UseOf(info)); },
         *image);
-    look.image_name = light_field.image_names[id->value];
-    if (look.transparent_count > 0) looks.push_back(std::move(look));
+    evidence.image_name = light_field.image_names[id->value];
+    if (evidence.transparent_count > 0) images.push_back(std::move(evidence));
   }
-  return looks;
+  return images;
 }
 
 }  // namespace
 
 std::optional<AlphaEvidence> FindAlphaEvidence(const LightField& light_field) {
-  const std::vector<Look> looks = LookAtSome(light_field);
-  if (looks.empty()) return std::nullopt;
-  for (const Look& look : looks)
-    if (!look.is_one_colour) return AlphaEvidence{AlphaMeaning::kMask, {}, look.image_name};
-  const Look& first = looks[0];
-  if (looks.size() > 1 && std::all_of(looks.begin() + 1, looks.end(), [&](const Look& look) {
-        return HaveSameTransparentPixels(first, look);
+  const std::vector<ImageEvidence> images = EvidenceOfSome(light_field);
+  if (images.empty()) return std::nullopt;
+  for (const ImageEvidence& evidence : images)
+    if (!evidence.is_one_colour) return AlphaEvidence{AlphaMeaning::kMask, {}, evidence.image_name};
+  const ImageEvidence& first = images[0];
+  if (images.size() > 1 &&
+      std::all_of(images.begin() + 1, images.end(), [&](const ImageEvidence& evidence) {
+        return HaveSameTransparentPixels(first, evidence);
       }))
     return AlphaEvidence{AlphaMeaning::kMask, {}, first.image_name};
   const bool is_rendered = first.is_float && first.background == std::array<double, 3>{};

@@ -78,7 +78,7 @@ class Compressor {
   Result<CompressReport> Run();
 
  private:
-  Result<void> Look();
+  Result<void> CheckTarget();
   Result<void> FindSkipped();
   Result<void> ChooseThreshold();
   Result<void> Write(FileLock lock);
@@ -250,7 +250,7 @@ Result<void> Compressor::FindSkipped() {
 }
 
 // Determines whether there is a store, and whether the options allow it.
-Result<void> Compressor::Look() {
+Result<void> Compressor::CheckTarget() {
   const fs::path& store = options_.store;
   LF_ASSIGN_OR_RETURN(const bool is_there, IsThere(store));
   const bool is_unfinished = PackedStoreWriter::IsUnfinished(store);
@@ -288,11 +288,11 @@ Result<CompressReport> Compressor::Run() {
   settings_ = options_.codec;
   LF_RETURN_IF_ERROR(CheckSettings(settings_));
   report_.image_count = source_.light_field.size();
-  LF_RETURN_IF_ERROR(Look());
+  LF_RETURN_IF_ERROR(CheckTarget());
   HeldLock held;
   if (!report_.was_there) {
     LF_ASSIGN_OR_RETURN(held.lock, PackedStoreWriter::Lock(options_.store));
-    LF_RETURN_IF_ERROR(Look());  // another program may have finished it meanwhile
+    LF_RETURN_IF_ERROR(CheckTarget());  // another program may have finished it meanwhile
   }
   LF_RETURN_IF_ERROR(ChooseThreshold());
   if (report_.was_there) {

@@ -133,8 +133,8 @@ std::optional<float> ValueAt(const LfPixels& pixels, const Vec2& place) {
 
 // Reads the patch around the point at a depth as the view sees it, and subtracts its mean. Returns
 // its standard deviation; none if the view does not show all of it.
-std::optional<double> Look(const View& view, const SearchRay& search, double depth_w,
-                           Patch* patch) {
+std::optional<double> ReadPatch(const View& view, const SearchRay& search, double depth_w,
+                                Patch* patch) {
   double sum = 0, squares = 0;
   for (int i = 0; i < kPatchSize; ++i) {
     const Vec3 point = search.At(depth_w, i % kPatchSide - kHalfPatch, kHalfPatch - i / kPatchSide);
@@ -160,11 +160,11 @@ struct Agreement {
 
 Agreement AgreementAt(std::span<const View> views, const SearchRay& search, double depth_w) {
   Patch reference, other;
-  const std::optional<double> texture = Look(views[0], search, depth_w, &reference);
+  const std::optional<double> texture = ReadPatch(views[0], search, depth_w, &reference);
   if (!texture) return {};
   std::vector<double> correlations;
   for (const View& view : views.subspan(1)) {
-    const std::optional<double> deviation = Look(view, search, depth_w, &other);
+    const std::optional<double> deviation = ReadPatch(view, search, depth_w, &other);
     if (!deviation) continue;
     double product = 0;
     for (int i = 0; i < kPatchSize; ++i)

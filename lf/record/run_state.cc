@@ -139,11 +139,12 @@ Result<std::unique_ptr<RunState>> RunState::Open(const RunStateOptions& options,
   std::unique_ptr<RunState> state(new RunState(options, path, std::move(lock)));
   if (options.shard)
     LF_RETURN_IF_ERROR(CreateFolder(state->FinishedPath(FrameId{1}).parent_path()));
-  LF_RETURN_IF_ERROR(state->Look());
+  LF_RETURN_IF_ERROR(state->FindEarlierRun());
   return state;
 }
 
-Result<void> RunState::Look() {
+// Finds what an earlier run left, and continues, removes or refuses it, by the options.
+Result<void> RunState::FindEarlierRun() {
   RemoveTemporaryFiles(partial_, options_.frames, false);
   RemoveTemporaryFiles(options_.folder, options_.frames, !Name().empty());
   if (options_.shard)

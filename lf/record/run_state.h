@@ -119,7 +119,7 @@ class RunState {
 
  private:
   RunState(const RunStateOptions& options, const CameraPath& path, FileLock lock);
-  Result<void> Look();
+  Result<void> FindEarlierRun();
   Result<void> CheckOtherPackages() const;
   Result<void> Read();
   bool IsKept(const std::filesystem::path& picture) const;

@@ -135,7 +135,7 @@ SightRow LookAlongRow(const Scene& scene, const PixelRays& rays, const Tiles& ti
   const Footprint footprint = rays.FootprintOf(1);
   for (int x = -1; x <= width; ++x) {
     const std::optional<Ray> ray = rays.Through(x + 0.5, y + 0.5);
-    row.push_back(ray ? scene.Look(*ray, footprint, tiles.At(x, y)) : Scene::Sight());
+    row.push_back(ray ? scene.SightAlong(*ray, footprint, tiles.At(x, y)) : Scene::Sight());
   }
   return row;
 }
@@ -157,7 +157,7 @@ Rgba MeanOverPixel(const Scene& scene, const PixelRays& rays, const Tiles& tiles
   Rgba sum = Rgba::Zero();
   for (const Vec2& point : points)
     if (const std::optional<Ray> ray = rays.Through(x + point.x(), y + point.y()))
-      sum += LightOf(scene.Look(*ray, footprint, tiles.At(x, y)), surroundings);
+      sum += LightOf(scene.SightAlong(*ray, footprint, tiles.At(x, y)), surroundings);
   return sum / count;
 }
 
@@ -222,7 +222,7 @@ Image<float> ThinLensPhotograph(const Scene& scene, const RenderCamera& camera,
         // At the lens it is as wide as the sample's part of the lens; at the focus plane, as its
         // part of the element.
         const Footprint footprint{lens_cell_w, -lens_cell_w / direction.norm() - element_spread};
-        sum += LightOf(scene.Look({lens_points[i], direction}, footprint), surroundings);
+        sum += LightOf(scene.SightAlong({lens_points[i], direction}, footprint), surroundings);
       }
       Store(sum / sample_count, x, y, &picture);
     }

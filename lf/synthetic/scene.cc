@@ -47,14 +47,15 @@ Scene::Scene(SceneDescription d)
 }
 
 Rgb Scene::RadianceAlong(const Ray& ray, const Footprint& footprint) const {
-  return Look(ray, footprint).radiance;
+  return SightAlong(ray, footprint).radiance;
 }
 
 Scene::Sector Scene::SectorOf(const Cone& cone) const {
   return {shapes_.SpheresNear(cone), glows_.Near(cone)};
 }
 
-Scene::Sight Scene::Look(const Ray& ray, const Footprint& footprint, const Sector* sector) const {
+Scene::Sight Scene::SightAlong(const Ray& ray, const Footprint& footprint,
+                               const Sector* sector) const {
   Hit first;
   const Rgb radiance =
       Follow({{ray.origin, ray.direction.normalized()}, footprint, 1, 0, sector}, &first);

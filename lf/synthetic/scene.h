@@ -26,9 +26,9 @@ class Scene {
   // over `footprint`, whose lengths belong to a ray of unit length.
   Rgb RadianceAlong(const Ray& ray, const Footprint& footprint = {}) const;
 
-  // Shapes that rays within a cone may hit first, and glows that they may pass. With it, Look()
-  // returns the same light faster. The cone must contain the rays with kGlowReach widths of their
-  // footprints (glows.h).
+  // Shapes that rays within a cone may hit first, and glows that they may pass. With it,
+  // SightAlong() returns the same light faster. The cone must contain the rays with kGlowReach
+  // widths of their footprints (glows.h).
   struct Sector {
     std::vector<uint32_t> spheres;
     std::vector<uint32_t> glows;
@@ -41,7 +41,8 @@ class Scene {
     Rgb radiance = Rgb::Zero();
     uint32_t shape = Hit::kNothing;
   };
-  Sight Look(const Ray& ray, const Footprint& footprint, const Sector* sector = nullptr) const;
+  Sight SightAlong(const Ray& ray, const Footprint& footprint,
+                   const Sector* sector = nullptr) const;
 
  private:
   struct Beam {

@@ -42,14 +42,15 @@ int64_t ChangedNanoseconds(const fs::path& path) {
   return int64_t{facts.st_mtim.tv_sec} * 1'000'000'000 + facts.st_mtim.tv_nsec;
 }
 
-void Look(const fs::path& folder, int nested, std::map<uint32_t, WatchedFrame>* frames) {
+// Adds the frames in a folder and, to some depth, in the folders of its state.
+void AddFramesIn(const fs::path& folder, int nested, std::map<uint32_t, WatchedFrame>* frames) {
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error)) {
     std::error_code ignored;
     if (entry->is_directory(ignored)) {
       const bool is_state = nested > 0 || entry->path().filename() == "partial";
-      if (is_state && nested < kMostNested) Look(entry->path(), nested + 1, frames);
+      if (is_state && nested < kMostNested) AddFramesIn(entry->path(), nested + 1, frames);
       continue;
     }
     const std::optional<FrameId> frame = FrameOfName(entry->path());
@@ -111,7 +112,7 @@ Image<float> Shrunken(const Image<T>& image, const std::array<int, 3>& count_cha
 
 std::vector<WatchedFrame> LookAtRender(const fs::path& folder) {
   std::map<uint32_t, WatchedFrame> frames;
-  Look(folder, 0, &frames);
+  AddFramesIn(folder, 0, &frames);
   std::vector<WatchedFrame> list;
   for (auto& [number, frame] : frames) list.push_back(std::move(frame));
   return list;
