@@ -57,7 +57,7 @@ std::vector<std::string> Row(const TaskStatus& task, bool is_package) {
       StateText(task),
       task.state.node.empty() || task.queue == "PENDING" ? "-" : task.state.node,
       if_package(fmt::format("{}/{}", task.frames_done, task.frame_total)),
-      if_package(fmt::format("{:.0f} %", 100 * task.Share())),
+      if_package(fmt::format("{:.0f} %", 100 * task.DoneShare())),
       is_running && task.image_total > 0 ? fmt::format("{}/{}", task.image_done, task.image_total)
                                          : "",
       is_running && task.rate > 0 ? fmt::format("{}{}/s", ShortNumber(task.rate), task.unit) : "",

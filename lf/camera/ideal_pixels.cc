@@ -84,8 +84,8 @@ class PatchMaker {
       Points through;
       for (size_t i = 0; i < kControls; ++i) {
         const std::optional<Vec3> q =
-            Position(rect.x_begin + rect.width() * Share(kQuinticPlaces[i]),
-                     rect.y_begin + rect.height() * Share(kQuinticPlaces[j]));
+            Position(rect.x_begin + rect.width() * UnitPlace(kQuinticPlaces[i]),
+                     rect.y_begin + rect.height() * UnitPlace(kQuinticPlaces[j]));
         if (!q) return false;
         through[i] = *q;
       }
@@ -99,12 +99,12 @@ class PatchMaker {
     }
     for (const double v : kQuinticWorstPlaces)
       for (const double u : kQuinticWorstPlaces)
-        if (!IsTrue(*patch, Share(u), Share(v))) return false;
+        if (!IsTrue(*patch, UnitPlace(u), UnitPlace(v))) return false;
     return true;
   }
 
-  // Returns the share of a length in [0, 1] for a place in [-1, 1].
-  static double Share(double place) { return 0.5 * (1 + place); }
+  // Returns a place in [-1, 1] as one in [0, 1].
+  static double UnitPlace(double place) { return 0.5 * (1 + place); }
 
   bool IsTrue(const IdealPatch& patch, double u, double v) const {
     const std::optional<Vec2> recorded = map_.Distort(inverse_ * patch.ArcAt(v).At(u));

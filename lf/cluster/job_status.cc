@@ -114,7 +114,7 @@ Json TaskToJson(const TaskStatus& task) {
                {"process", task.state.process},
                {"frames_done", task.frames_done},
                {"frames", task.frame_total},
-               {"share", task.Share()},
+               {"share", task.DoneShare()},
                {"lf_images_done", task.image_done},
                {"lf_images", task.image_total},
                {"restarts", task.state.restart_count()},

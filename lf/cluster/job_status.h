@@ -28,7 +28,7 @@ struct TaskStatus {
   std::optional<double> seconds_left;
 
   bool IsQueued() const { return !queue.empty(); }
-  double Share() const {
+  double DoneShare() const {
     return ray_total > 0 ? static_cast<double>(rays_done) / static_cast<double>(ray_total)
                          : static_cast<double>(state.phase == TaskPhase::kDone);
   }

@@ -18,13 +18,13 @@
 namespace lf {
 namespace {
 
-enum class Share { kNone, kSome, kAll };  // share of the rays of an arc or a patch
+enum class RayShare { kNone, kSome, kAll };  // share of the rays of an arc or a patch
 
 // Returns the share of the hull where form <= 0.
-Share AtMostZero(const Hull& hull, const PixelForm& form) {
+RayShare AtMostZero(const Hull& hull, const PixelForm& form) {
   const Range range = RangeOn(hull, form);
-  if (range.low > range.rounding) return Share::kNone;
-  return range.high < -range.rounding ? Share::kAll : Share::kSome;
+  if (range.low > range.rounding) return RayShare::kNone;
+  return range.high < -range.rounding ? RayShare::kAll : RayShare::kSome;
 }
 
 constexpr int kControls = IdealPatch::kControls;
@@ -91,8 +91,8 @@ class PatchPlanner {
     if (Intersection(patch.rect, rect_).empty()) return;
     const Hull hull(patch);
     Conditions open = all_conditions_;
-    const Share share = AcceptedShare(hull, &open);
-    if (share == Share::kNone) return;
+    const RayShare share = AcceptedShare(hull, &open);
+    if (share == RayShare::kNone) return;
     // Columns are decided by the whole patch, whatever part of it is asked for.
     columns_.clear();
     FitColumns(patch, patch.rect.x_begin, patch.rect.x_end);
@@ -113,25 +113,25 @@ class PatchPlanner {
   }
 
   // Appends the scanlines of `part`, which is a part of `patch`.
-  void AddRows(const IdealPatch& part, const IdealPatch& patch, Share share,
+  void AddRows(const IdealPatch& part, const IdealPatch& patch, RayShare share,
                const Conditions& open) {
     const PixelRect clip = Intersection(part.rect, rect_);
-    if (clip.empty() || share == Share::kNone) return;
-    const bool by_edges = share == Share::kSome && SetEdges(part, open);
+    if (clip.empty() || share == RayShare::kNone) return;
+    const bool by_edges = share == RayShare::kSome && SetEdges(part, open);
     constexpr int kFewRows = 4;
-    if (share == Share::kSome && !by_edges && part.rect.height() > kFewRows) {
+    if (share == RayShare::kSome && !by_edges && part.rect.height() > kFewRows) {
       IdealPatch upper, lower;
       SplitRows(part, &upper, &lower);
       for (const IdealPatch* half : {&upper, &lower}) {
         Conditions still_open = open;
-        const Share share_of_half = AcceptedShare(Hull(*half), &still_open);
+        const RayShare share_of_half = AcceptedShare(Hull(*half), &still_open);
         AddRows(*half, patch, share_of_half, still_open);
       }
       return;
     }
     for (int y = clip.y_begin; y < clip.y_end; ++y) {
       runs_.clear();
-      if (share == Share::kAll) {
+      if (share == RayShare::kAll) {
         AppendRun(clip.x_begin, clip.x_end);
       } else if (!by_edges || !FindRunBetweenEdges(patch, y, clip)) {
         const IdealArc arc = patch.Scanline(y);
@@ -206,9 +206,9 @@ class PatchPlanner {
   // Appends the accepted pixels of `part` of an arc, within [begin, end).
   void FindRuns(const IdealArc& part, const IdealArc& arc, int begin, int end, Conditions open) {
     if (part.x_begin >= end || part.x_end <= begin) return;
-    const Share share = AcceptedShare(Hull(part), &open);
-    if (share == Share::kNone) return;
-    if (share == Share::kAll) {
+    const RayShare share = AcceptedShare(Hull(part), &open);
+    if (share == RayShare::kNone) return;
+    if (share == RayShare::kAll) {
       AppendRun(std::max(begin, part.x_begin), std::min(end, part.x_end));
       return;
     }
@@ -243,54 +243,54 @@ class PatchPlanner {
 
   // Returns the accepted share of the hull. Reduces `open` to the conditions that not all rays of
   // the hull fulfil.
-  Share AcceptedShare(const Hull& hull, Conditions* open) const {
+  RayShare AcceptedShare(const Hull& hull, Conditions* open) const {
     for (const int side : {0, 1})
       if (open->sides[side] && !Narrow(hull, plate_half_planes_[side], &open->plate[side]))
         open->sides[side] = false;
-    if (!open->sides[0] && !open->sides[1]) return Share::kNone;
-    if (!Narrow(hull, lens_half_planes_, &open->lens)) return Share::kNone;
+    if (!open->sides[0] && !open->sides[1]) return RayShare::kNone;
+    if (!Narrow(hull, lens_half_planes_, &open->lens)) return RayShare::kNone;
     if (open->disk) {
-      const Share share = ShareInDisk(hull);
-      if (share == Share::kNone) return share;
-      open->disk = share == Share::kSome;
+      const RayShare share = ShareInDisk(hull);
+      if (share == RayShare::kNone) return share;
+      open->disk = share == RayShare::kSome;
     }
     // The two sides of n.d = 0 exclude each other.
     const bool on_plate =
         (open->sides[0] && open->plate[0] == 0) || (open->sides[1] && open->plate[1] == 0);
-    return on_plate && open->lens == 0 && !open->disk ? Share::kAll : Share::kSome;
+    return on_plate && open->lens == 0 && !open->disk ? RayShare::kAll : RayShare::kSome;
   }
 
   // Clears the bits of the forms that are at most 0 everywhere. False if a form is above 0
   // everywhere.
   static bool Narrow(const Hull& hull, const std::vector<PixelForm>& forms, uint64_t* open) {
     for (uint64_t bits = *open; bits != 0; bits &= bits - 1) {
-      const Share share = AtMostZero(hull, forms[static_cast<size_t>(std::countr_zero(bits))]);
-      if (share == Share::kNone) return false;
-      if (share == Share::kAll) *open &= ~(bits & -bits);
+      const RayShare share = AtMostZero(hull, forms[static_cast<size_t>(std::countr_zero(bits))]);
+      if (share == RayShare::kNone) return false;
+      if (share == RayShare::kAll) *open &= ~(bits & -bits);
     }
     return true;
   }
 
-  Share ShareInDisk(const Hull& hull) const {
+  RayShare ShareInDisk(const Hull& hull) const {
     const Range right = RangeOn(hull, forms_.lens_right);
     const Range up = RangeOn(hull, forms_.lens_up);
     const Range forward = RangeOn(hull, forms_.forward);
-    if (!(forward.low > 0)) return Share::kSome;
+    if (!(forward.low > 0)) return RayShare::kSome;
     const double r2 = render_camera_.aperture.radius_w * render_camera_.aperture.radius_w;
     // Here lens_right = l_x forward, with one l_x for all rays, so that the quotient is a sharper
     // bound.
     if (in_lens_plane_) {
       const double l2 = (right.LargestSquare() + up.LargestSquare()) /
                         std::max(forward.high * forward.high, 1e-300);
-      if (l2 > r2 * (1 + kInLensPlaneMargin)) return Share::kNone;
-      return l2 < r2 * (1 - kInLensPlaneMargin) ? Share::kAll : Share::kSome;
+      if (l2 > r2 * (1 + kInLensPlaneMargin)) return RayShare::kNone;
+      return l2 < r2 * (1 - kInLensPlaneMargin) ? RayShare::kAll : RayShare::kSome;
     }
     const double rounding = DiskRounding(right, up, forward, render_camera_.aperture.radius_w);
     if (right.LeastSquare() + up.LeastSquare() > r2 * forward.LargestSquare() + rounding)
-      return Share::kNone;
+      return RayShare::kNone;
     return right.LargestSquare() + up.LargestSquare() < r2 * forward.LeastSquare() - rounding
-               ? Share::kAll
-               : Share::kSome;
+               ? RayShare::kAll
+               : RayShare::kSome;
   }
 
   static constexpr double kInLensPlaneMargin = 1e-6;

@@ -167,28 +167,29 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
                                  const OtherItems& other_items,
                                  const std::atomic<bool>* interrupted) {
   // First the segments of every (frame, image), then the rays of every (frame, tile).
-  const size_t share_count = frames.size() * batch.size();
-  while (shares_.size() < share_count) shares_.emplace_back();
-  ForEachTimed(share_count, [&](size_t i) {
+  const size_t contribution_count = frames.size() * batch.size();
+  while (contributions_.size() < contribution_count) contributions_.emplace_back();
+  ForEachTimed(contribution_count, [&](size_t i) {
     const BatchFrame& taker = frames[i / batch.size()];
     const BatchImage& image = batch[i % batch.size()];
-    Share& share = shares_[i];
-    share.rect = {};
-    share.accepted_count = 0;
+    Contribution& contribution = contributions_[i];
+    contribution.rect = {};
+    contribution.accepted_count = 0;
     if (!taker.places.Holds(image.place)) return;
     const RenderCamera& frame = frames_[taker.frame];
     const PinholeCamera camera = light_field_.Camera(image.id);
-    share.weights = WeightsOf(taker.frame, image.id);
-    if (share.weights.are_none()) return;
-    share.rect = RectOf(image, frame);
-    if (share.rect.empty()) return;
+    contribution.weights = WeightsOf(taker.frame, image.id);
+    if (contribution.weights.are_none()) return;
+    contribution.rect = RectOf(image, frame);
+    if (contribution.rect.empty()) return;
     const Intrinsics& plate = frame.pinhole.intrinsics;
     if (reading_.estimator == Estimator::kBilinear)
-      share.gather = PlanGather(camera, frame, std::move(share.gather), reading_.filter);
+      contribution.gather =
+          PlanGather(camera, frame, std::move(contribution.gather), reading_.filter);
     else
-      share.scatter =
-          PlanScatter(camera, frame, share.rect, TileSums::GridOf(plate.width_px, plate.height_px),
-                      image.ideal_pixels.get(), std::move(share.scatter));
+      contribution.scatter = PlanScatter(camera, frame, contribution.rect,
+                                         TileSums::GridOf(plate.width_px, plate.height_px),
+                                         image.ideal_pixels.get(), std::move(contribution.scatter));
   });
 
   struct Task {
@@ -206,10 +207,10 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
     NoiseTally tally(MomentsOf(frames[task.taker].frame), tile.rect());
     sums.Begin(&tile, tally.elements());
     for (size_t k = 0; k < batch.size(); ++k) {
-      Share& share = shares_[task.taker * batch.size() + k];
-      if (share.rect.empty()) continue;
-      const uint64_t accepted = AddToTile(share, task.tile, batch[k].pixels, &sums);
-      share.accepted_count += accepted;
+      Contribution& contribution = contributions_[task.taker * batch.size() + k];
+      if (contribution.rect.empty()) continue;
+      const uint64_t accepted = AddToTile(contribution, task.tile, batch[k].pixels, &sums);
+      contribution.accepted_count += accepted;
       if (accepted > 0)
         tally.TakeImage([&](size_t element, int c) { return sums.Added(element, c); });
     }
@@ -217,8 +218,9 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
     if (!plates_[frames[task.taker].frame].has_opacity()) return;
     sums.Begin(&tile, {}, TileSums::Target::kOpacity);
     for (size_t k = 0; k < batch.size(); ++k)
-      if (Share& share = shares_[task.taker * batch.size() + k]; !share.rect.empty())
-        AddToTile(share, task.tile, batch[k].opacity, &sums);
+      if (Contribution& contribution = contributions_[task.taker * batch.size() + k];
+          !contribution.rect.empty())
+        AddToTile(contribution, task.tile, batch[k].opacity, &sums);
     sums.Flush();
   };
   // The other items are long and come first. The last items should be short, so that no thread
@@ -237,19 +239,19 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
     frames[f].is_done = gates[f].IsOpen(nullptr);
     if (!frames[f].is_done) continue;
     for (size_t k = 0; k < batch.size(); ++k) {
-      const Share& share = shares_[f * batch.size() + k];
-      frames[f].rays.accepted_count += share.accepted_count;
-      Count(share.rect, share.accepted_count > 0, &frames[f].rays);
+      const Contribution& contribution = contributions_[f * batch.size() + k];
+      frames[f].rays.accepted_count += contribution.accepted_count;
+      Count(contribution.rect, contribution.accepted_count > 0, &frames[f].rays);
     }
   }
 }
 
 // Adds the rays of one LF image that land in a tile. Returns how many.
-uint64_t BatchCollector::AddToTile(const Share& share, size_t tile, const LfPixels& pixels,
-                                   TileSums* sums) const {
+uint64_t BatchCollector::AddToTile(const Contribution& contribution, size_t tile,
+                                   const LfPixels& pixels, TileSums* sums) const {
   return reading_.estimator == Estimator::kBilinear
-             ? GatherTile(share.gather, pixels, sums, share.weights)
-             : ScatterTile(share.scatter, tile, pixels, sums, share.weights);
+             ? GatherTile(contribution.gather, pixels, sums, contribution.weights)
+             : ScatterTile(contribution.scatter, tile, pixels, sums, contribution.weights);
 }
 
 void BatchCollector::AddByReference(const std::vector<BatchImage>& batch, BatchFrame* frame) {

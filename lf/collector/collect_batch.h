@@ -115,7 +115,7 @@ class BatchCollector {
 
  private:
   // One LF image in one frame.
-  struct Share {
+  struct Contribution {
     PixelRect rect;
     ScatterPlan scatter;  // planned if the estimator is nearest, otherwise `gather`
     GatherPlan gather;
@@ -134,7 +134,8 @@ class BatchCollector {
                                           std::span<BatchFrame> frames);
   void AddToFrames(const std::vector<BatchImage>& batch, std::span<BatchFrame> frames,
                    const OtherItems& other_items, const std::atomic<bool>* interrupted);
-  uint64_t AddToTile(const Share& share, size_t tile, const LfPixels& pixels, TileSums* sums) const;
+  uint64_t AddToTile(const Contribution& contribution, size_t tile, const LfPixels& pixels,
+                     TileSums* sums) const;
   void AddByReference(const std::vector<BatchImage>& batch, BatchFrame* frame);
   void AddOpacityByReference(const BatchImage& image, const PixelRect& rect,
                              const RenderCamera& camera, const RayWeights& weights,
@@ -152,7 +153,8 @@ class BatchCollector {
   std::vector<SensorPlate>& plates_;
   std::vector<NoiseMoments>* moments_;
   std::vector<std::vector<PlateTile>> tiles_;
-  std::deque<Share> shares_;  // of (frame, LF image); their memory is used again in every batch
+  // One for each LF image of a batch in each frame. Every batch uses their memory again.
+  std::deque<Contribution> contributions_;
   SharedIdealPixels ideal_pixels_;
   std::atomic<int64_t> cpu_ns_ = 0;
 };

@@ -25,13 +25,13 @@ constexpr double kMostDeviation = 0.02;  // of the gain of an LF image that is m
 constexpr double kCommonShare = 0.25;    // part of a pair's spread that more samples do not reduce
 constexpr double kBelievedSamples = 8;   // so many of a pair count as much as those of all pairs
 
-double Share(const Vignetting& falloff, double r_squared) {
+double BoundedFalloff(const Vignetting& falloff, double r_squared) {
   return std::max(kLeastShare, falloff.Falloff(r_squared));
 }
 
 // Returns the mean of ln F over values of r^2 with this mean and variance, to the second order.
 double MeanLogShare(const Vignetting& falloff, double r_squared, double variance) {
-  const double share = Share(falloff, r_squared);
+  const double share = BoundedFalloff(falloff, r_squared);
   const auto& [v1, v2, v3] = falloff.v;
   const double slope = (v1 + r_squared * (2 * v2 + r_squared * 3 * v3)) / share;
   const double bend = (2 * v2 + 6 * r_squared * v3) / share - slope * slope;
@@ -41,7 +41,7 @@ double MeanLogShare(const Vignetting& falloff, double r_squared, double variance
 // Returns d ln F / d v.
 Eigen::Vector3d Slope(const Vignetting& falloff, double r_squared) {
   return Eigen::Vector3d(r_squared, r_squared * r_squared, r_squared * r_squared * r_squared) /
-         Share(falloff, r_squared);
+         BoundedFalloff(falloff, r_squared);
 }
 
 double MedianOf(std::vector<double>* values) {

@@ -216,7 +216,7 @@ void FrameWeights::SetWeights(const std::vector<Node>& nodes) {
   double together = 0;
   for (const Node& node : nodes) {
     double of_node = 0;
-    for (const Share& share : node) {
+    for (const CameraShare& share : node) {
       shares.push_back(share.share);
       of_node += share.share;
     }
@@ -227,7 +227,7 @@ void FrameWeights::SetWeights(const std::vector<Node>& nodes) {
                                kMostSmallShares * ShareOfFirstTenth(shares));
   const double scale = kUnit * std::min(kMaxWeight / most, kMostTogether / together);
   for (size_t n = 0; n < nodes.size(); ++n)
-    for (const Share& share : nodes[n]) {
+    for (const CameraShare& share : nodes[n]) {
       farthest_w_ = std::max(farthest_w_, share.distance_w);
       size_t& begin = nodes_begin_[share.camera];
       if (begin == kNone) {

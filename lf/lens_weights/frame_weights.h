@@ -91,12 +91,12 @@ class FrameWeights {
 
  private:
   static constexpr size_t kNone = SIZE_MAX;
-  struct Share {
+  struct CameraShare {
     size_t camera;
     double share;
     double distance_w;  // of the lens point from the lens centre
   };
-  using Node = std::vector<Share>;  // shares above 0
+  using Node = std::vector<CameraShare>;  // shares above 0
   // The node before the middle of a block, and the block's distance from it, in 1/256 of the
   // distance between nodes.
   struct Place {
