@@ -25,9 +25,8 @@ Result<void> WriteIntrinsics(const std::vector<Intrinsics>& intrinsics, Database
 // settings  of the file, for messages
 Result<std::vector<Intrinsics>> ReadIntrinsics(const Settings& settings, Database* database);
 
-// Number of columns of an LF camera: intrinsics, gain, x, y, z (for people) and pose.
-inline constexpr int kCameraColumns = 6;
-// Binds these columns, beginning at `parameter`.
+// Binds the columns of an LF camera, beginning at `parameter`: intrinsics, gain, x, y, z (for
+// people) and pose.
 void BindCamera(const LightField& light_field, LfImageId id, int parameter, Statement* statement);
 // Reads the columns intrinsics, gain, pose, beginning at `column`.
 //   name              of the LF image, for messages; an empty name is damage

@@ -70,7 +70,6 @@ class IdealPixels {
 
   // The patches do not overlap. Pixels that no patch covers have no ray.
   const std::vector<IdealPatch>& patches() const { return patches_; }
-  size_t size_bytes() const { return patches_.capacity() * sizeof(IdealPatch); }
 
  private:
   std::vector<IdealPatch> patches_;

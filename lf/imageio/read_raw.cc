@@ -19,7 +19,6 @@ namespace {
 constexpr const char* kAdvice =
     "convert it to DNG (with the mosaic as the sensor recorded it), or to 16-bit TIFF or PNG "
     "without demosaicking";
-constexpr int kLinearRaw = 34892;  // PhotometricInterpretation "LinearRaw" of DNG
 
 // LibRaw without threads of its own and without messages.
 class QuietLibRaw final : public LibRaw {

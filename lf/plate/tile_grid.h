@@ -25,8 +25,6 @@ struct TileGrid {
   int columns() const { return (plate_width + tile_width - 1) / tile_width; }
   int rows() const { return (plate_height + tile_height - 1) / tile_height; }
   size_t tile_count() const { return static_cast<size_t>(columns()) * rows(); }
-  // Number of the tile that holds element (x, y).
-  int TileAt(int x, int y) const { return y / tile_height * columns() + x / tile_width; }
   PixelRect RectOf(size_t tile) const {
     const int x = static_cast<int>(tile) % columns() * tile_width;
     const int y = static_cast<int>(tile) / columns() * tile_height;

@@ -152,8 +152,6 @@ Result<void> WriteFrame(const std::filesystem::path& path, const DevelopedFrame&
                     is_interrupted);
 }
 
-Image<uint8_t> DisplayImage(const DevelopedFrame& frame) { return Picture(frame.rgb); }
-
 Result<Image<uint8_t>> ReadDisplayImage(const std::filesystem::path& path) {
   LF_ASSIGN_OR_RETURN(const StoredImage stored, ReadImage(path));
   return std::visit(

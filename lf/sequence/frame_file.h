@@ -40,12 +40,9 @@ Result<void> WriteFrame(const std::filesystem::path& path, const DevelopedFrame&
                         FrameFormat format, const ImageMetadata& metadata,
                         const std::function<bool()>& is_interrupted = {});
 
-// Returns a frame's picture over black as 8-bit sRGB [height][width][3], for contact sheets and
-// video.
-Image<uint8_t> DisplayImage(const DevelopedFrame& frame);
-
-// Returns the picture of a frame's file of any format, so that contact sheet and video can be made
-// later. kInput: as for ReadImage(), or the file has fewer than three channels.
+// Returns the picture of a frame's file of any format, over black, as 8-bit sRGB
+// [height][width][3], for contact sheet and video. kInput: as for ReadImage(), or the file has
+// fewer than three channels.
 Result<Image<uint8_t>> ReadDisplayImage(const std::filesystem::path& path);
 
 }  // namespace lf
