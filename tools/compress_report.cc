@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "tools/common/program.h"
 #include "tools/common/progress.h"
 
 #include "lf/core/shell_word.h"
+#include "lf/record/record_fields.h"
 
 namespace lf {
 namespace {
@@ -91,7 +91,6 @@ MissingImages MissingOf(const CompressReport& report, const CompressOptions& opt
 }
 
 std::string CompressJson(const CompressReport& report, const CompressOptions& options) {
-  using Json = nlohmann::ordered_json;
   const auto decibels = [](double db) { return std::isinf(db) ? Json("exact") : Json(db); };
   CodecSettings settings = options.codec;
   settings.threshold = report.threshold;
@@ -121,7 +120,7 @@ std::string CompressJson(const CompressReport& report, const CompressOptions& op
   json["skipped"] = Json::array();
   for (const CompressReport::Skipped& skipped : report.skipped)
     json["skipped"].push_back({{"name", skipped.name}, {"reason", skipped.reason}});
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return RecordText(json);
 }
 
 }  // namespace lf

@@ -132,4 +132,9 @@ inline std::string RecordText(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+// As RecordText(), on one line. Infinity becomes null in both.
+inline std::string RecordLine(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 }  // namespace lf

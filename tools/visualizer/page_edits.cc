@@ -6,22 +6,18 @@
 #include <charconv>
 #include <cmath>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "tools/visualizer/edit_json.h"
 
 #include "lf/core/file.h"
 #include "lf/focus/focus_pick.h"
+#include "lf/record/record_fields.h"
 
 namespace lf {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-PageAnswer JsonAnswer(const Json& json) {
-  return {200, "application/json", json.dump(-1, ' ', false, Json::error_handler_t::replace)};
-}
+PageAnswer JsonAnswer(const Json& json) { return {200, "application/json", RecordLine(json)}; }
 
 std::string TextOf(const Json& json, const char* key) {
   const auto found = json.find(key);

@@ -2,24 +2,17 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "tools/common/program.h"
 #include "tools/visualizer/page_answers.h"
 
 #include "lf/preprocess/frame_density.h"
+#include "lf/record/record_fields.h"
 #include "lf/visualizer/overlap_outline.h"
 #include "lf/visualizer/scene_bytes.h"
 
 namespace lf {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-// Names may hold any bytes, which are replaced if they are not UTF-8; infinity becomes null.
-std::string Text(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
 
 Json OfVector(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
@@ -48,7 +41,7 @@ Json CornersOf(const PinholeCamera& camera) {
 }  // namespace
 
 PageAnswer Refusal(int status, const std::string& message) {
-  return {status, "application/json", Text({{"error", message}})};
+  return {status, "application/json", RecordLine({{"error", message}})};
 }
 
 PageAnswer Refusal(const Error& error) {
@@ -58,17 +51,17 @@ PageAnswer Refusal(const Error& error) {
 std::string PathHeadJson(const PathDraft& draft) {
   const CameraPath& path = *draft.path;
   const Intrinsics& k = path.cameras.front().pinhole.intrinsics;
-  return Text({{"id", draft.id},
-               {"frames", path.frame_count()},
-               {"fps", path.fps},
-               {"unit_m", path.unit_m},
-               {"width", k.width_px},
-               {"height", k.height_px}});
+  return RecordLine({{"id", draft.id},
+                     {"frames", path.frame_count()},
+                     {"fps", path.fps},
+                     {"unit_m", path.unit_m},
+                     {"width", k.width_px},
+                     {"height", k.height_px}});
 }
 
 std::string PathNewsJson(PageScene& scene, const std::string& text) {
   const auto draft = scene.AddDraft(text);
-  return Text({{"id", IdOfText(text)}, {"fault", draft ? "" : draft.error().message}});
+  return RecordLine({{"id", IdOfText(text)}, {"fault", draft ? "" : draft.error().message}});
 }
 
 std::string SceneJson(const PageScene& scene, const PathDraft& draft,
@@ -96,44 +89,44 @@ std::string SceneJson(const PageScene& scene, const PathDraft& draft,
                {"server", abilities.is_server}};
   if (field.depth_range)
     json["light_field"]["depths"] = {field.depth_range->near_w, field.depth_range->far_w};
-  return Text(json);
+  return RecordLine(json);
 }
 
 std::string FilmJson(const FilmUse::Facts& facts) {
-  return Text({{"done", facts.frames_done},
-               {"total", facts.image_counts.size()},
-               {"images", facts.image_counts},
-               {"rays", facts.ray_counts}});
+  return RecordLine({{"done", facts.frames_done},
+                     {"total", facts.image_counts.size()},
+                     {"images", facts.image_counts},
+                     {"rays", facts.ray_counts}});
 }
 
 std::string DensityJson(PageScene& scene, const PathDraft& draft, FrameId frame) {
   const FrameDensity density =
       DensityOf(scene.index(), draft.path->Camera(frame), scene.light_field().depth_range);
-  return Text({{"cameras_in_lens", density.cameras_in_lens},
-               {"camera_distance", density.camera_distance_w},
-               {"uncovered_share", density.coverage.uncovered_share},
-               {"fitting_aperture", density.coverage.fitting_diameter_w},
-               {"least_aperture", density.least_aperture_w},
-               {"depths", {density.depths.near_w, density.depths.far_w}},
-               {"depths_known", scene.light_field().depth_range.has_value()},
-               {"near_displacement_px", density.near_displacement_px},
-               {"far_displacement_px", density.far_displacement_px}});
+  return RecordLine({{"cameras_in_lens", density.cameras_in_lens},
+                     {"camera_distance", density.camera_distance_w},
+                     {"uncovered_share", density.coverage.uncovered_share},
+                     {"fitting_aperture", density.coverage.fitting_diameter_w},
+                     {"least_aperture", density.least_aperture_w},
+                     {"depths", {density.depths.near_w, density.depths.far_w}},
+                     {"depths_known", scene.light_field().depth_range.has_value()},
+                     {"near_displacement_px", density.near_displacement_px},
+                     {"far_displacement_px", density.far_displacement_px}});
 }
 
 std::string CameraJson(const PageScene& scene, LfImageId id) {
   const LightField& field = scene.light_field();
   const PinholeCamera camera = field.Camera(id);
   const Intrinsics& k = camera.intrinsics;
-  return Text({{"id", id.value},
-               {"name", field.image_names[id.value]},
-               {"centre", OfVector(camera.CentreWorld())},
-               {"forward", OfVector(camera.ForwardWorld())},
-               {"up", OfVector(camera.UpWorld())},
-               {"corners", CornersOf(camera)},
-               {"width", k.width_px},
-               {"height", k.height_px},
-               {"focal_px", k.fx_px},
-               {"distorted", k.has_distortion()}});
+  return RecordLine({{"id", id.value},
+                     {"name", field.image_names[id.value]},
+                     {"centre", OfVector(camera.CentreWorld())},
+                     {"forward", OfVector(camera.ForwardWorld())},
+                     {"up", OfVector(camera.UpWorld())},
+                     {"corners", CornersOf(camera)},
+                     {"width", k.width_px},
+                     {"height", k.height_px},
+                     {"focal_px", k.fx_px},
+                     {"distorted", k.has_distortion()}});
 }
 
 std::string OverlapJson(PageScene& scene, const PathDraft& draft, FrameId frame, LfImageId id) {
@@ -148,7 +141,7 @@ std::string OverlapJson(PageScene& scene, const PathDraft& draft, FrameId frame,
   for (const FrameNeeds::Image& image : scene.UseOf(draft, frame).used)
     if (image.id == id)
       json["rect"] = {image.rect.x_begin, image.rect.y_begin, image.rect.x_end, image.rect.y_end};
-  return Text(json);
+  return RecordLine(json);
 }
 
 }  // namespace lf

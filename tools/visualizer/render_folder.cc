@@ -2,15 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
+#include "lf/record/record_fields.h"
 #include "lf/visualizer/scene_bytes.h"
 #include "lf/visualizer/watched_render.h"
 
 namespace lf {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr int kPictureSide_px = 1280;
 
@@ -25,7 +22,7 @@ std::string RenderJson(const std::filesystem::path& folder) {
                       {"changed", std::to_string(frame.changed_ns)},
                       {"changed_s", frame.changed_ns / 1'000'000'000}});
   const Json json = {{"folder", folder.string()}, {"frames", std::move(frames)}};
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return RecordLine(json);
 }
 
 PageAnswer AnswerOfRender(const std::filesystem::path& folder, std::string_view name) {
