@@ -11,6 +11,7 @@
 #include "lf/camera/distortion.h"
 #include "lf/camera/ideal_pixels.h"
 #include "lf/camera/ray_through.h"
+#include "lf/focus/depth_sweep.h"
 
 namespace lf {
 namespace {
@@ -176,38 +177,25 @@ Agreement AgreementAt(std::span<const View> views, const SearchRay& search, doub
     correlations.push_back(product / scale);
   }
   if (correlations.size() < kLeastViews) return {-1, *texture};
-  std::sort(correlations.rbegin(), correlations.rend());
-  const auto count =
-      static_cast<size_t>(std::ceil(kAgreeing * static_cast<double>(correlations.size())));
-  double sum = 0;
-  for (size_t i = 0; i < count; ++i) sum += correlations[i];
-  return {sum / static_cast<double>(count), *texture};
+  const double count = std::ceil(kAgreeing * static_cast<double>(correlations.size()));
+  return {MeanOfLargest(&correlations, static_cast<size_t>(count)), *texture};
 }
 
-// The depths that are tested, evenly spaced in 1 / depth, from the nearest that all views can show.
-struct Sweep {
-  double nearest_per_w = 0, step_per_w = 0;
-  size_t count = 0;
-
-  double Depth(double index) const {
-    return 1 / std::max(1e-12, nearest_per_w - step_per_w * index);
-  }
-};
-
-Sweep MakeSweep(std::span<const View> views) {
+// Returns the depths that are tested, from the nearest that all views can show.
+DepthSweep MakeSweep(std::span<const View> views) {
   double baseline_w = 0;
   for (const View& view : views) baseline_w = std::max(baseline_w, view.offset_w);
   const Intrinsics& k = views[0].rays.intrinsics();
   const double px_per_w = std::max(1e-12, k.fx_px * baseline_w);  // disparity at 1 / depth = 1
-  Sweep sweep;
-  sweep.nearest_per_w = kMostDisplaced * k.width_px / px_per_w;
+  DepthSweep sweep;
+  sweep.from_per_w = kMostDisplaced * k.width_px / px_per_w;
   sweep.step_per_w = kStep_px / px_per_w;
-  sweep.count = static_cast<size_t>(sweep.nearest_per_w / sweep.step_per_w);
+  sweep.count = static_cast<size_t>(sweep.from_per_w / sweep.step_per_w);
   return sweep;
 }
 
 // Returns the part of the LF image that the sweep reads.
-PixelRect PartOf(const View& view, const SearchRay& search, const Sweep& sweep) {
+PixelRect PartOf(const View& view, const SearchRay& search, const DepthSweep& sweep) {
   const Intrinsics& k = view.rays.intrinsics();
   PixelRect part;
   for (size_t i = 0; i < sweep.count; i += 4)
@@ -226,7 +214,7 @@ PixelRect PartOf(const View& view, const SearchRay& search, const Sweep& sweep) 
 // Reads the needed parts of the views. Removes views that cannot be read, unless the machine failed
 // (kOutput).
 Result<void> LoadViews(const LightField& field, const LfImageStore& store, const SearchRay& search,
-                       const Sweep& sweep, ThreadPool& pool, std::vector<View>* views) {
+                       const DepthSweep& sweep, ThreadPool& pool, std::vector<View>* views) {
   std::vector<std::optional<Error>> errors(views->size());
   pool.ForEach(views->size(), [&](size_t i) {
     View& view = (*views)[i];
@@ -265,7 +253,7 @@ Result<FocusPick> FindFocus(const LightField& light_field, const LfImageStore& s
   std::vector<View> views = ChooseViews(light_field, search, frame.aperture.radius_w);
   if (views.size() <= kLeastViews)
     return InputError("fewer than four LF cameras look this way: the distance cannot be told");
-  const Sweep sweep = MakeSweep(views);
+  const DepthSweep sweep = MakeSweep(views);
   LF_RETURN_IF_ERROR(LoadViews(light_field, store, search, sweep, pool, &views));
 
   std::vector<Agreement> agreements(sweep.count);
@@ -291,20 +279,11 @@ Result<FocusPick> FindFocus(const LightField& light_field, const LfImageStore& s
         "the LF images around do not agree on a distance here. Click on an edge or a texture, away "
         "from outlines of things in front");
   // The rival is the best of the other peaks.
-  double rival = 0;
   constexpr size_t kPeakWidth = 4;
-  for (size_t i = 1; i + 1 < agreements.size(); ++i)
-    if ((i + kPeakWidth < best || i > best + kPeakWidth) &&
-        agreements[i].score >= agreements[i - 1].score &&
-        agreements[i].score >= agreements[i + 1].score)
-      rival = std::max(rival, agreements[i].score);
-  // The place is refined to the vertex of the parabola through the best depth and its neighbours.
-  double place = static_cast<double>(best);
-  if (best > 0 && best + 1 < agreements.size()) {
-    const double before = agreements[best - 1].score, after = agreements[best + 1].score;
-    const double bend = before - 2 * score + after;
-    if (before >= 0 && after >= 0 && bend < 0) place += 0.5 * (before - after) / bend;
-  }
+  std::vector<double> scores;
+  for (const Agreement& agreement : agreements) scores.push_back(agreement.score);
+  const double rival = PeakElsewhere(scores, best, best, kPeakWidth, 0);
+  const double place = VertexAround(scores, best, [](double at) { return at >= 0; });
   FocusPick pick;
   pick.point_world = search.At(sweep.Depth(place), 0, 0);
   pick.certainty = std::clamp((score - kLeastAgreement) / (0.95 - kLeastAgreement), 0.0, 1.0) *

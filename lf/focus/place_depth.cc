@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lf/capture/capture_geometry.h"
+#include "lf/focus/depth_sweep.h"
 #include "lf/focus/focus_pick.h"
 
 namespace lf {
@@ -128,12 +129,8 @@ namespace {
 // Returns the mean of the better correlations; -1 if too few views see the place.
 double Agreement(std::vector<double>* correlations) {
   if (correlations->size() < kLeastViews) return -1;
-  std::sort(correlations->rbegin(), correlations->rend());
-  const auto count = std::max(
-      kLeastViews, static_cast<size_t>(kAgreeing * static_cast<double>(correlations->size())));
-  double sum = 0;
-  for (size_t i = 0; i < count; ++i) sum += (*correlations)[i];
-  return sum / static_cast<double>(count);
+  const auto count = static_cast<size_t>(kAgreeing * static_cast<double>(correlations->size()));
+  return MeanOfLargest(correlations, std::max(kLeastViews, count));
 }
 
 double AgreementAt(std::span<const View> views, const Place& place, double depth_w) {
@@ -169,15 +166,6 @@ double LargestMove(const Rings& rings, const Place& place, double depth_w, int d
   return largest;
 }
 
-// The depths that are tested, evenly spaced in 1 / depth.
-struct Sweep {
-  double from_per_w = 0, step_per_w = 0;
-  size_t count = 0;
-
-  double PerW(double index) const { return from_per_w - step_per_w * index; }
-  double Depth(double index) const { return 1 / std::max(1e-12, PerW(index)); }
-};
-
 // Returns the disparity in reduced pixels at 1 / depth = 1.
 double PixelsPerW(std::span<const View> views, const Intrinsics& k, int divisor) {
   double baseline_w = 0;
@@ -192,7 +180,7 @@ struct Peak {
   double from_per_w = 0, to_per_w = 0;  // range around it that is almost as good
 };
 
-Peak FindPeak(const Sweep& sweep, std::span<const View> views, const Place& place) {
+Peak FindPeak(const DepthSweep& sweep, std::span<const View> views, const Place& place) {
   std::vector<double> scores(sweep.count);
   for (size_t i = 0; i < sweep.count; ++i)
     scores[i] = AgreementAt(views, place, sweep.Depth(static_cast<double>(i)));
@@ -206,16 +194,8 @@ Peak FindPeak(const Sweep& sweep, std::span<const View> views, const Place& plac
   while (first > 0 && is_good(first - 1)) --first;
   while (last + 1 < scores.size() && is_good(last + 1)) ++last;
   constexpr size_t kPeakWidth = 3;
-  for (size_t i = 1; i + 1 < scores.size(); ++i)
-    if ((i + kPeakWidth < first || i > last + kPeakWidth) && scores[i] >= scores[i - 1] &&
-        scores[i] >= scores[i + 1])
-      peak.rival = std::max(peak.rival, scores[i]);
-  double at = static_cast<double>(best);
-  if (best > 0 && best + 1 < scores.size()) {
-    const double before = scores[best - 1], after = scores[best + 1];
-    const double bend = before - 2 * peak.score + after;
-    if (before > -1 && after > -1 && bend < 0) at += 0.5 * (before - after) / bend;
-  }
+  peak.rival = PeakElsewhere(scores, first, last, kPeakWidth, peak.rival);
+  const double at = VertexAround(scores, best, [](double score) { return score > -1; });
   peak.per_w = sweep.PerW(at);
   peak.from_per_w = sweep.PerW(static_cast<double>(first) - 1);
   peak.to_per_w = std::max(0.0, sweep.PerW(static_cast<double>(last) + 1));
@@ -227,7 +207,7 @@ Peak FindPeak(const Sweep& sweep, std::span<const View> views, const Place& plac
 std::optional<FoundDepth> DepthOf(const Rings& rings, const Place& place, const Intrinsics& k,
                                   int divisor, double nearest_w) {
   double px_per_w = PixelsPerW(rings[0], k, divisor);
-  Sweep sweep;
+  DepthSweep sweep;
   sweep.from_per_w = kMostDisplaced * k.width_px / divisor / px_per_w;
   if (nearest_w > 0) sweep.from_per_w = std::min(sweep.from_per_w, 1 / nearest_w);
   sweep.step_per_w = kStep_px / px_per_w;
@@ -241,7 +221,7 @@ std::optional<FoundDepth> DepthOf(const Rings& rings, const Place& place, const 
   double score = peak.score;
   for (size_t ring = 1; ring < rings.size(); ++ring) {
     const double finer_px_per_w = PixelsPerW(rings[ring], k, divisor);
-    Sweep finer{peak.from_per_w, kStep_px / finer_px_per_w, 0};
+    DepthSweep finer{peak.from_per_w, kStep_px / finer_px_per_w, 0};
     finer.count = static_cast<size_t>((peak.from_per_w - peak.to_per_w) / finer.step_per_w) + 1;
     constexpr size_t kMostSteps = 4000;
     if (finer.count > kMostSteps) break;
