@@ -43,7 +43,7 @@ TEST_F(RawEncodingTest, TheFirstFileTellsWhatIsNotStated) {
   EXPECT_EQ(encoding.pedestal, 1024);
   EXPECT_EQ(encoding.max_radiance, 1);
   EXPECT_NEAR(encoding.white_balance[0], 2, 1e-6);
-  EXPECT_NE(encoding.camera_to_srgb, Mat3::Identity());
+  EXPECT_NE(encoding.linear_srgb_from_camera, Mat3::Identity());
 }
 
 TEST_F(RawEncodingTest, WhatIsStatedGoesFirst) {
@@ -55,7 +55,7 @@ TEST_F(RawEncodingTest, WhatIsStatedGoesFirst) {
   EXPECT_EQ(light_field->encoding.white_level, 4095);
   EXPECT_EQ(light_field->encoding.pedestal, 0);
   EXPECT_EQ(light_field->encoding.white_balance, (std::array<double, 3>{1, 1, 3}));
-  EXPECT_NE(light_field->encoding.camera_to_srgb, Mat3::Identity());
+  EXPECT_NE(light_field->encoding.linear_srgb_from_camera, Mat3::Identity());
 }
 
 TEST_F(RawEncodingTest, WrittenDownItNeedsNoFile) {
@@ -67,7 +67,7 @@ TEST_F(RawEncodingTest, WrittenDownItNeedsNoFile) {
   EXPECT_EQ(again->encoding.bayer, BayerPattern::kGrbg);
   EXPECT_EQ(again->encoding.white_level, 4095);
   EXPECT_EQ(again->encoding.white_balance, opened->encoding.white_balance);
-  EXPECT_EQ(again->encoding.camera_to_srgb, opened->encoding.camera_to_srgb);
+  EXPECT_EQ(again->encoding.linear_srgb_from_camera, opened->encoding.linear_srgb_from_camera);
 }
 
 TEST_F(RawEncodingTest, APatternThatNobodyTellsIsAskedFor) {

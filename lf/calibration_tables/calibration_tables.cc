@@ -76,7 +76,7 @@ Result<void> ReadAlpha(const Settings& settings, RadianceEncoding* encoding) {
 
 SettingList SettingsOfPixels(const LightField& light_field) {
   const RadianceEncoding& encoding = light_field.encoding;
-  const Mat3& m = encoding.camera_to_srgb;
+  const Mat3& m = encoding.linear_srgb_from_camera;
   const std::optional<DepthRange>& depths = light_field.depth_range;
   return {{"unit_m", fmt::format("{}", light_field.unit_m)},
           {"depth_range", depths ? fmt::format("{} {}", depths->near_w, depths->far_w) : ""},
@@ -128,7 +128,7 @@ Result<void> ReadPixelSettings(const Settings& settings, LightField* light_field
   LF_ASSIGN_OR_RETURN(const std::vector<double> balance, settings.Numbers("white_balance", 3, 3));
   std::copy(balance.begin(), balance.end(), encoding.white_balance.begin());
   LF_ASSIGN_OR_RETURN(const std::vector<double> matrix, settings.Numbers("camera_to_srgb", 9, 9));
-  encoding.camera_to_srgb =
+  encoding.linear_srgb_from_camera =
       Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(matrix.data());
   return {};
 }

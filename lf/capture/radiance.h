@@ -52,7 +52,7 @@ struct RadianceEncoding {
   // brightest LF image that is not clipped there (capture/brackets.h).
   bool masks_clipped = false;
   std::array<double, 3> white_balance = {1, 1, 1};  // applied on developing
-  Mat3 camera_to_srgb = Mat3::Identity();           // linear sRGB = M * white balanced camera RGB
+  Mat3 linear_srgb_from_camera = Mat3::Identity();  // linear sRGB = M * white balanced camera RGB
 
   // v per unit of radiance.
   double Scale() const { return (65535 - pedestal) / max_radiance; }

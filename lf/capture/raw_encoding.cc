@@ -53,7 +53,8 @@ RadianceEncoding EncodingOfRaw(const RawFacts& facts) {
   encoding.white_level = facts.white_level;
   encoding.pedestal = encoding.black_level > 0 ? kRawPedestal : 0;
   if (facts.white_balance) encoding.white_balance = *facts.white_balance;
-  if (facts.camera_to_srgb) encoding.camera_to_srgb = *facts.camera_to_srgb;
+  if (facts.linear_srgb_from_camera)
+    encoding.linear_srgb_from_camera = *facts.linear_srgb_from_camera;
   return encoding;
 }
 
@@ -76,7 +77,8 @@ void WarnOfUnknown(const LightField& light_field, const RawFacts& facts, bool le
         "lf_white_level",
         name, facts.black_level ? "white level" : "black and white level",
         facts.black_level ? "65535" : "0 and 65535");
-  if (!colours_stated && !facts.is_monochrome && !(facts.white_balance && facts.camera_to_srgb))
+  if (!colours_stated && !facts.is_monochrome &&
+      !(facts.white_balance && facts.linear_srgb_from_camera))
     LogWarning(
         "{}: this camera raw file does not tell its {}; colours stay those of the sensor: state "
         "lf_white_balance and lf_camera_to_srgb",

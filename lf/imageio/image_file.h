@@ -36,7 +36,7 @@ struct RawFacts {
   std::optional<double> black_level;  // the mean, if the file has several
   std::optional<double> white_level;
   std::optional<std::array<double, 3>> white_balance;  // as shot; green is 1
-  std::optional<Mat3> camera_to_srgb;                  // for white-balanced colours
+  std::optional<Mat3> linear_srgb_from_camera;         // for white-balanced colours
 };
 
 struct ImageFileInfo {

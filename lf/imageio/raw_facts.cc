@@ -24,7 +24,7 @@ std::optional<std::array<double, 3>> WhiteBalanceOf(const libraw_colordata_t& co
 
 // Returns the colour matrix. LibRaw has rows of R, G, B and a second green, and gives the identity
 // if it knows none.
-std::optional<Mat3> CameraToSrgbOf(const libraw_colordata_t& colour) {
+std::optional<Mat3> LinearSrgbFromCamera(const libraw_colordata_t& colour) {
   Mat3 matrix;
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 3; ++column) matrix(row, column) = colour.rgb_cam[row][column];
@@ -83,7 +83,7 @@ RawFacts FactsOf(const libraw_data_t& raw, bool is_unpacked) {
   const libraw_colordata_t& colour = raw.color;
   RawFacts facts;
   facts.white_balance = WhiteBalanceOf(colour);
-  facts.camera_to_srgb = CameraToSrgbOf(colour);
+  facts.linear_srgb_from_camera = LinearSrgbFromCamera(colour);
   const bool is_dng = raw.idata.dng_version != 0;
   const double black =
       is_dng ? DngBlack(colour.dng_levels)

@@ -174,12 +174,12 @@ TEST(RawImage, ColoursAreThoseOfTheTags) {
   TestDng dng(Mosaic(), "RGGB");
   const RawFacts unknown = *Read(dng).info.raw;
   EXPECT_FALSE(unknown.white_balance);
-  EXPECT_FALSE(unknown.camera_to_srgb);
+  EXPECT_FALSE(unknown.linear_srgb_from_camera);
   dng.Fractions(50728, 5, {{1, 2}, {1, 1}, {4, 5}}).Short(50778, {21});
   dng.Fractions(50721, 10,
                 {{1, 1}, {0, 1}, {0, 1}, {0, 1}, {1, 1}, {0, 1}, {0, 1}, {0, 1}, {1, 1}});
   const RawFacts facts = *Read(dng).info.raw;
-  ASSERT_TRUE(facts.white_balance && facts.camera_to_srgb);
+  ASSERT_TRUE(facts.white_balance && facts.linear_srgb_from_camera);
   EXPECT_NEAR((*facts.white_balance)[0], 2, 1e-6);
   EXPECT_EQ((*facts.white_balance)[1], 1);
   EXPECT_NEAR((*facts.white_balance)[2], 1.25, 1e-6);
@@ -187,8 +187,9 @@ TEST(RawImage, ColoursAreThoseOfTheTags) {
   xyz_from_srgb << 0.4124, 0.3576, 0.1805, 0.2126, 0.7152, 0.0722, 0.0193, 0.1192, 0.9505;
   const Vec3 white = xyz_from_srgb * Vec3::Ones();
   const Mat3 camera_from_srgb = white.cwiseInverse().asDiagonal() * xyz_from_srgb;
-  EXPECT_LT((*facts.camera_to_srgb * camera_from_srgb - Mat3::Identity()).cwiseAbs().maxCoeff(),
-            2e-3);
+  EXPECT_LT(
+      (*facts.linear_srgb_from_camera * camera_from_srgb - Mat3::Identity()).cwiseAbs().maxCoeff(),
+      2e-3);
 }
 
 TEST(RawImage, WhatIsNoBayerMosaicIsRefused) {

@@ -265,7 +265,7 @@ Result<RawReader> RawReader::Open(const ByteSource& source, uint64_t size_bytes,
   facts.is_monochrome = raw.imgdata.idata.filters == 0;
   if (facts.is_monochrome) {
     facts.white_balance.reset();
-    facts.camera_to_srgb.reset();
+    facts.linear_srgb_from_camera.reset();
   } else if (!raw.has_other_colours()) {
     facts.bayer = PatternAt(raw, state->area.x_begin, state->area.y_begin);
   }

@@ -75,9 +75,9 @@ Result<void> ReadColour(const JsonFields& top, RadianceEncoding* encoding) {
   LF_ASSIGN_OR_RETURN(const std::optional<std::vector<double>> matrix,
                       top.Matrix("lf_camera_to_srgb", 3, 3, 3, kMatrixEntry));
   if (!matrix) return {};
-  encoding->camera_to_srgb =
+  encoding->linear_srgb_from_camera =
       Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(matrix->data());
-  if (!(std::abs(encoding->camera_to_srgb.determinant()) > 1e-9))
+  if (!(std::abs(encoding->linear_srgb_from_camera.determinant()) > 1e-9))
     return top.Wrong("lf_camera_to_srgb", "a matrix that keeps the three colours apart");
   return {};
 }

@@ -321,8 +321,8 @@ TEST(TransformsJson, ReadsHowStoredNumbersBecomeLight) {
   EXPECT_EQ(encoding.black_level, 512);
   EXPECT_EQ(encoding.white_level, 16383);
   EXPECT_EQ(encoding.white_balance, (std::array<double, 3>{2, 1, 1.5}));
-  EXPECT_EQ(encoding.camera_to_srgb(0, 2), 3);
-  EXPECT_EQ(encoding.camera_to_srgb(2, 0), 5);
+  EXPECT_EQ(encoding.linear_srgb_from_camera(0, 2), 3);
+  EXPECT_EQ(encoding.linear_srgb_from_camera(2, 0), 5);
   EXPECT_EQ(encoding.max_radiance, 2);
   EXPECT_EQ(encoding.pedestal, 2048);
   EXPECT_EQ(encoding.alpha, AlphaMeaning::kPremultiplied);

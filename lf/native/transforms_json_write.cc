@@ -146,7 +146,7 @@ void AddEncoding(const RadianceEncoding& encoding, JsonText* json) {
   json->Add("\"lf_white_balance\": ");
   json->AddNumbers(encoding.white_balance);
   json->Add(",\n\"lf_camera_to_srgb\": ");
-  const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rows = encoding.camera_to_srgb;
+  const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rows = encoding.linear_srgb_from_camera;
   json->AddMatrix({rows.data(), 9}, 3);
   json->Add(",\n");
 }

@@ -56,7 +56,7 @@ LightField RandomLightField(size_t count) {
   light_field.encoding.alpha = AlphaMeaning::kStraight;
   light_field.encoding.background = {0.1, 1.0 / 3, 1};
   light_field.encoding.white_balance = {2.0 / 3, 1, 1.7};
-  light_field.encoding.camera_to_srgb << 1.6, -0.5, -0.1, -0.2, 1.5, -0.3, 0.0, -0.5, 1.5;
+  light_field.encoding.linear_srgb_from_camera << 1.6, -0.5, -0.1, -0.2, 1.5, -0.3, 0.0, -0.5, 1.5;
   light_field.unit_m = 0.001;
   return light_field;
 }
@@ -91,7 +91,7 @@ TEST_F(WriteTransformsJsonTest, ReadsBackBitForBit) {
   EXPECT_EQ(a.background, b.background);
   EXPECT_EQ(a.pedestal, b.pedestal);
   EXPECT_EQ(a.white_balance, b.white_balance);
-  EXPECT_EQ(a.camera_to_srgb, b.camera_to_srgb);
+  EXPECT_EQ(a.linear_srgb_from_camera, b.linear_srgb_from_camera);
 }
 
 TEST_F(WriteTransformsJsonTest, KeepsThatNothingIsBehind) {

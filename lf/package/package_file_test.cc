@@ -37,7 +37,7 @@ Package TestPackage() {
   field.encoding.masks_clipped = true;
   field.encoding.pedestal = 1024;
   field.encoding.white_balance = {2.1, 1, 1.0 / 7};
-  field.encoding.camera_to_srgb << 1, 2, 3, 4, 5, 6, 7, 8, 1.0 / 9;
+  field.encoding.linear_srgb_from_camera << 1, 2, 3, 4, 5, 6, 7, 8, 1.0 / 9;
   for (uint32_t i = 0; i < 40; ++i) {
     const testing::CameraPair pair = testing::RandomDistortedPair(i);
     if (i < 10) field.intrinsics.push_back(pair.lf_camera.intrinsics);
@@ -137,7 +137,7 @@ TEST_F(PackageFileTest, ReadsWhatWasWrittenToTheBit) {
   EXPECT_EQ(a.encoding.masks_clipped, b.encoding.masks_clipped);
   EXPECT_EQ(a.encoding.pedestal, b.encoding.pedestal);
   EXPECT_EQ(a.encoding.white_balance, b.encoding.white_balance);
-  EXPECT_EQ(a.encoding.camera_to_srgb, b.encoding.camera_to_srgb);
+  EXPECT_EQ(a.encoding.linear_srgb_from_camera, b.encoding.linear_srgb_from_camera);
   for (size_t i = 0; i < package.images.size(); ++i) {
     EXPECT_EQ(read->images[i].id, package.images[i].id);
     EXPECT_EQ(read->images[i].file_bytes, package.images[i].file_bytes);

@@ -34,7 +34,7 @@ FrameSheet MakeFrameSheet(FrameId frame, const RenderCamera& camera, const Frame
   sheet.develop.pedestal = encoding.pedestal;
   sheet.develop.scale = encoding.Scale();
   sheet.develop.white_balance = encoding.white_balance;
-  sheet.develop.camera_to_srgb = encoding.camera_to_srgb;
+  sheet.develop.linear_srgb_from_camera = encoding.linear_srgb_from_camera;
   if (const std::optional<FrameLens::Facts> facts = lens.facts())
     sheet.weighed = FrameSheet::Weighed{facts->hat_share, facts->coverage, lens.EffectiveCounts()};
   return sheet;

@@ -137,7 +137,7 @@ PlateEntries TextOf(const FrameSheet& sheet) {
   const Plane& focus = camera.focus_plane;
   std::vector<double> develop = {sheet.develop.pedestal, sheet.develop.scale};
   for (const double gain : sheet.develop.white_balance) develop.push_back(gain);
-  for (const double value : RowsOf(sheet.develop.camera_to_srgb)) develop.push_back(value);
+  for (const double value : RowsOf(sheet.develop.linear_srgb_from_camera)) develop.push_back(value);
   std::vector<double> of_pose = RowsOf(pose.rotation);
   for (const double value : RowsOf(pose.translation)) of_pose.push_back(value);
   const auto words = [](std::initializer_list<double> numbers) {
@@ -217,7 +217,7 @@ Result<FrameSheet> FrameSheetOf(const PlateEntries& entries, int width_px, int h
   sheet.develop.pedestal = develop[0];
   sheet.develop.scale = develop[1];
   sheet.develop.white_balance = {develop[2], develop[3], develop[4]};
-  sheet.develop.camera_to_srgb = Mat3Of(std::span(develop).subspan(5));
+  sheet.develop.linear_srgb_from_camera = Mat3Of(std::span(develop).subspan(5));
   sheet.develop.smooth_below =
       static_cast<uint32_t>(reader.WholeNumber("sheet.smooth_below", UINT32_MAX));
   sheet.develop.fill_radius_px =

@@ -28,7 +28,7 @@ FrameSheet Sheet() {
   sheet.develop.pedestal = 1024;
   sheet.develop.scale = 65535 / 16.0;
   sheet.develop.white_balance = {2.1, 1, 1.7};
-  sheet.develop.camera_to_srgb << 1.1, -0.1, 0, 0.2, 0.9, -0.1, 0, 0.3, 0.7;
+  sheet.develop.linear_srgb_from_camera << 1.1, -0.1, 0, 0.2, 0.9, -0.1, 0, 0.3, 0.7;
   sheet.develop.smooth_below = 3;
   sheet.develop.fill_radius_px = 7;
   Image<float> counts(12, 8);
@@ -49,7 +49,7 @@ TEST(FrameSheet, ComesBackAsTheSameBits) {
             sheet.camera.pinhole.cam_from_world.rotation);
   EXPECT_EQ(read->camera.focus_plane.normal, sheet.camera.focus_plane.normal);
   EXPECT_EQ(read->camera.focus_tilt.vertical_rad, 0.2);
-  EXPECT_EQ(read->develop.camera_to_srgb, sheet.develop.camera_to_srgb);
+  EXPECT_EQ(read->develop.linear_srgb_from_camera, sheet.develop.linear_srgb_from_camera);
   EXPECT_EQ(read->rays.tested_count, uint64_t{1} << 40);
   EXPECT_EQ(read->weighed->effective_counts.pixels(), sheet.weighed->effective_counts.pixels());
 }

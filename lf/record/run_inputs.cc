@@ -52,7 +52,7 @@ std::string EncodingText(const RadianceEncoding& encoding) {
 std::string ColoursText(const RadianceEncoding& encoding) {
   ValueHasher hasher;
   for (const double gain : encoding.white_balance) hasher.Add(gain);
-  hasher.AddMatrix(encoding.camera_to_srgb);
+  hasher.AddMatrix(encoding.linear_srgb_from_camera);
   return fmt::format("white balance {} {} {} ({})", encoding.white_balance[0],
                      encoding.white_balance[1], encoding.white_balance[2], hasher.Text());
 }

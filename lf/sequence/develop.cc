@@ -100,7 +100,7 @@ DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, 
   if (plate.has_opacity()) frame.opacity = DevelopOpacity(plate, options, ends, pool);
 
   const Mat3 srgb_from_camera =
-      options.camera_to_srgb *
+      options.linear_srgb_from_camera *
       Vec3(options.white_balance[0], options.white_balance[1], options.white_balance[2])
           .asDiagonal();
   pool.ForEach(height, [&](size_t row) {

@@ -30,7 +30,7 @@ struct DevelopOptions {
   double pedestal = 0;  // radiance = (sum / count - pedestal) / scale
   double scale = 65535;
   std::array<double, 3> white_balance = {1, 1, 1};
-  Mat3 camera_to_srgb = Mat3::Identity();
+  Mat3 linear_srgb_from_camera = Mat3::Identity();
 
   // An element with fewer rays than this in a channel, but at least one, is smoothed. 0 and 1:
   // none.
@@ -76,9 +76,9 @@ struct DevelopedFrame {
 // over all within the smallest radius that holds at least 4 of them and at least smooth_below rays.
 // The radius is at most fill_radius_px for an element without a ray, and kSmoothRadius_px
 // otherwise, even if it holds fewer. The element's own value, if it has one, is one of them, with d
-// = 0.5. Then applies white balance and camera_to_srgb. Opacities are averaged and filled like a
-// colour, from the same neighbours, and clipped. Counts above 2^32 - 1 become 2^32 - 1. The bits do
-// not depend on the number of threads.
+// = 0.5. Then applies white balance and linear_srgb_from_camera. Opacities are averaged and filled
+// like a colour, from the same neighbours, and clipped. Counts above 2^32 - 1 become 2^32 - 1. The
+// bits do not depend on the number of threads.
 DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, ThreadPool& pool);
 
 }  // namespace lf

@@ -196,7 +196,7 @@ TEST(Develop, BalancesInTheCamerasColoursThenMixesThem) {
   options.pedestal = 1000;
   options.scale = 100;  // 1, 2, 3
   options.white_balance = {2, 1, 4};
-  options.camera_to_srgb << 1, 0, 0, 0, 1, 0.5, -1, 0, 1;
+  options.linear_srgb_from_camera << 1, 0, 0, 0, 1, 0.5, -1, 0, 1;
   ThreadPool pool(1);
   const DevelopedFrame frame = Develop(plate, options, pool);
   EXPECT_EQ(frame.rgb.pixels(), (LargeVector<float>{2, 2 + 6, -2 + 12}));

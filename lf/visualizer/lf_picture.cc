@@ -58,7 +58,7 @@ Result<Image<uint8_t>> LfPicture(const LightField& light_field, const LfImageSto
       for (int c = 0; c < 3; ++c)
         colour[c] =
             (sum[c] / sum[3] - encoding.pedestal) / encoding.Scale() * encoding.white_balance[c];
-      const Vec3 developed = encoding.camera_to_srgb * colour;
+      const Vec3 developed = encoding.linear_srgb_from_camera * colour;
       for (int c = 0; c < 3; ++c) picture.at(x, y, c) = DisplayValue(developed[c]);
     }
   return picture;
