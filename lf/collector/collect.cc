@@ -81,8 +81,8 @@ class FrameCollector::State {
     return !is_stopped_[frame] && progress_[frame].places_done < places_[frame].end;
   }
   // True if images before this place are still to be taken beside the frames.
-  bool TakerWants(uint32_t place_end) const {
-    return options_.taker != nullptr && options_.taker->places_done() < place_end;
+  bool ConsumerWants(uint32_t place_end) const {
+    return options_.consumer != nullptr && options_.consumer->places_done() < place_end;
   }
   uint32_t PlaceEnd() const {
     return options_.place_end > 0 ? options_.place_end : static_cast<uint32_t>(light_field_.size());
@@ -123,7 +123,7 @@ Result<bool> FrameCollector::State::Step() {
   const Clock::time_point start = Clock::now();
   std::vector<BatchFrame> takers = FramesOf(batch_);
   // Frames may have been stopped since the next batch was planned.
-  while (takers.empty() && !TakerWants(batch_.place_end)) {
+  while (takers.empty() && !ConsumerWants(batch_.place_end)) {
     if (batch_.end > batch_.begin) images_done_ = batch_.end;
     batch_ = next_.end > next_.begin ? std::move(next_) : BatchFrom(images_done_);
     next_ = {};
@@ -160,7 +160,7 @@ Result<bool> FrameCollector::State::Step() {
   times_.collect_cpu_s = collector_.cpu_seconds();
   times_.wall_s += SecondsSince(start);
   if (!all_done || (takers.empty() && IsInterrupted())) return Interruption();
-  if (TakerWants(batch_.place_end)) options_.taker->Take(batch_.images, batch_.place_end);
+  if (ConsumerWants(batch_.place_end)) options_.consumer->Take(batch_.images, batch_.place_end);
   images_done_ = batch_.end;
   for (BatchImage& image : batch_.images) {
     image.pixels.opacity = std::move(image.opacity.radiance);
@@ -170,12 +170,12 @@ Result<bool> FrameCollector::State::Step() {
   return true;
 }
 
-// Returns the first LF image from `from` on that a frame or the taker has still to take.
+// Returns the first LF image from `from` on that a frame or the consumer has still to take.
 size_t FrameCollector::State::FirstWanted(size_t from) const {
   uint32_t place = UINT32_MAX;
   for (size_t f = 0; f < progress_.size(); ++f)
     if (Takes(f)) place = std::min(place, progress_[f].places_done);
-  if (TakerWants(PlaceEnd())) place = std::min(place, options_.taker->places_done());
+  if (ConsumerWants(PlaceEnd())) place = std::min(place, options_.consumer->places_done());
   if (place == UINT32_MAX) return order_.size();
   const auto first = std::lower_bound(
       order_.begin(), order_.end(), place,
@@ -238,8 +238,8 @@ void FrameCollector::State::Load(const Batch& batch, Loading* loading) {
   const ThreadCpuTimer timer;
   const SelectedImage& selected = order_[loading->index];
   PixelRect rect = RectOf(batch, selected);
-  if (TakerWants(selected.place + 1))
-    rect = Bounds(rect, options_.taker->RectOf(selected.id, selected.place));
+  if (ConsumerWants(selected.place + 1))
+    rect = Bounds(rect, options_.consumer->RectOf(selected.id, selected.place));
   loading->pixels =
       rect.empty() ? LfPixels()
                    : LoadWithoutThrowing(store_, selected.id, rect,

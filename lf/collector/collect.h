@@ -14,7 +14,7 @@
 #include "lf/camera/render_camera.h"
 #include "lf/capture/light_field.h"
 #include "lf/collector/collect_batch.h"
-#include "lf/collector/image_taker.h"
+#include "lf/collector/image_consumer.h"
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
 #include "lf/plate/sensor_plate.h"
@@ -48,7 +48,7 @@ struct CollectOptions {
   std::vector<NoiseMoments>* moments = nullptr;
   FrameImageWeights weights;
   // Takes part in all batches beside the frames, if given. It does not change the plates.
-  ImageTaker* taker = nullptr;
+  ImageConsumer* consumer = nullptr;
   bool whole_images = false;  // must be as in the SelectOptions of the order
   // End of all places. 0: the number of LF images in the light field; a package, whose places are
   // those of the whole light field, needs more.

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "lf/capture/light_field.h"
-#include "lf/collector/image_taker.h"
+#include "lf/collector/image_consumer.h"
 #include "lf/collector/shared_ideal_pixels.h"
 #include "lf/core/parallel.h"
 #include "lf/hybrid/asked_pixels.h"
@@ -57,7 +57,7 @@ struct RebinPassOptions {
   size_t max_cells = 0;  // of all sections
 };
 
-class RebinnedRays : public ImageTaker {
+class RebinnedRays : public ImageConsumer {
  public:
   // The light field of `index`, and `pool`, must outlive it.
   //   slabs     of the film

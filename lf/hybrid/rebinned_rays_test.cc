@@ -73,7 +73,7 @@ struct Fixture {
       CollectOptions collect;
       collect.reading.estimator = Estimator::kBilinear;
       collect.batch_image_count = batch;
-      collect.taker = rays.get();
+      collect.consumer = rays.get();
       const size_t count = collects ? frames.size() : 0;
       std::vector<SensorPlate> none;
       FrameCollector collector(field, store, std::span(frames).first(count), order,

@@ -98,7 +98,7 @@ CollectOptions FilmRenderer::OptionsOfCollector() {
     collect.weights = [this](size_t f, LfImageId id) { return lenses_[f].WeightsOf(id); };
   collect.decision_places = 0;
   if (rebinned_) {
-    collect.taker = rebinned_.get();
+    collect.consumer = rebinned_.get();
     collect.decision_places = kDecisionPlaces;
   }
   if (film_.MeasuresNoise()) collect.moments = &moments_;
@@ -205,7 +205,7 @@ Result<void> FilmRenderer::PrepareRebinning(std::span<const PlaceRange> places,
 }
 
 // Selects the LF images to load. Those for plates have the rectangle of the pixels to collect;
-// rebinned rays name their pixels when an image is loaded (ImageTaker).
+// rebinned rays name their pixels when an image is loaded (ImageConsumer).
 void FilmRenderer::SelectForFrames(std::span<const PlaceRange> places) {
   images_.clear();
   if (film_.HasPlates()) {

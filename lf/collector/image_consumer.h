@@ -1,4 +1,4 @@
-// Takes LF images from the queue that is read for the plates, for something else.
+// A second user of the LF images that are loaded for the plates, such as rebinned rays.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,9 @@
 
 namespace lf {
 
-class ImageTaker {
+class ImageConsumer {
  public:
-  virtual ~ImageTaker() = default;
+  virtual ~ImageConsumer() = default;
 
   // All LF images at places before this one are taken, as in FrameProgress.
   virtual uint32_t places_done() const = 0;
