@@ -25,26 +25,26 @@ double MedianOfSeen(const LargeVector<float>& values) {
 
 }  // namespace
 
-FrameSheet MakeFrameSheet(FrameId frame, const RenderCamera& camera, const FrameRays& rays,
+PlateNotes MakePlateNotes(FrameId frame, const RenderCamera& camera, const FrameRays& rays,
                           const FrameLens& lens, const RadianceEncoding& encoding) {
-  FrameSheet sheet;
-  sheet.frame = frame;
-  sheet.camera = camera;
-  sheet.rays = rays;
-  sheet.develop.pedestal = encoding.pedestal;
-  sheet.develop.scale = encoding.Scale();
-  sheet.develop.white_balance = encoding.white_balance;
-  sheet.develop.linear_srgb_from_camera = encoding.linear_srgb_from_camera;
+  PlateNotes notes;
+  notes.frame = frame;
+  notes.camera = camera;
+  notes.rays = rays;
+  notes.develop.pedestal = encoding.pedestal;
+  notes.develop.scale = encoding.Scale();
+  notes.develop.white_balance = encoding.white_balance;
+  notes.develop.linear_srgb_from_camera = encoding.linear_srgb_from_camera;
   if (const std::optional<FrameLens::Facts> facts = lens.facts())
-    sheet.weighed = FrameSheet::Weighed{facts->hat_share, facts->coverage, lens.EffectiveCounts()};
-  return sheet;
+    notes.weighed = PlateNotes::Weighed{facts->hat_share, facts->coverage, lens.EffectiveCounts()};
+  return notes;
 }
 
-RenderedFrame DevelopFrame(const FrameSheet& sheet, const SensorPlate& plate,
+RenderedFrame DevelopFrame(const PlateNotes& notes, const SensorPlate& plate,
                            const Completion* completion, bool with_effective, ThreadPool& pool,
                            const std::function<bool()>& is_interrupted) {
   const auto start = std::chrono::steady_clock::now();
-  DevelopOptions develop = sheet.develop;
+  DevelopOptions develop = notes.develop;
   develop.is_interrupted = is_interrupted;
   develop.completion = completion;
   develop.transparent = LfPixels::kTransparent;
@@ -52,15 +52,15 @@ RenderedFrame DevelopFrame(const FrameSheet& sheet, const SensorPlate& plate,
   RenderedFrame frame;
   frame.picture = Develop(plate, develop, pool);
   if (is_interrupted && is_interrupted()) return frame;
-  frame.report = MakeFrameReport(sheet.frame, sheet.rays, frame.picture);
-  frame.report.camera = InputsOfCamera(sheet.frame, sheet.camera);
-  frame.report.places_done = sheet.places_done;
-  if (sheet.weighed) {
-    const Image<float>& counts = sheet.weighed->effective_counts;
-    frame.report.weighed = {MedianOfSeen(counts.pixels()), sheet.weighed->hat_share,
-                            sheet.weighed->coverage};
+  frame.report = MakeFrameReport(notes.frame, notes.rays, frame.picture);
+  frame.report.camera = InputsOfCamera(notes.frame, notes.camera);
+  frame.report.places_done = notes.places_done;
+  if (notes.weighed) {
+    const Image<float>& counts = notes.weighed->effective_counts;
+    frame.report.weighed = {MedianOfSeen(counts.pixels()), notes.weighed->hat_share,
+                            notes.weighed->coverage};
     if (with_effective)
-      frame.picture.effective_count = SpreadOverPlate(counts, sheet.camera.pinhole.intrinsics);
+      frame.picture.effective_count = SpreadOverPlate(counts, notes.camera.pinhole.intrinsics);
   }
   frame.report.develop_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

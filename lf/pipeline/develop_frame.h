@@ -7,7 +7,7 @@
 #include "lf/collector/frame_lens.h"
 #include "lf/core/parallel.h"
 #include "lf/plate/sensor_plate.h"
-#include "lf/record/frame_sheet.h"
+#include "lf/record/plate_notes.h"
 #include "lf/record/report.h"
 #include "lf/sequence/develop.h"
 
@@ -18,9 +18,9 @@ struct RenderedFrame {
   FrameReport report;  // without samples and noise
 };
 
-// Returns the sheet by which a picture of the frame is made. The caller must set estimator, fps,
+// Returns the notes by which a picture of the frame is made. The caller must set estimator, fps,
 // smooth_below and fill_radius_px, and may set the others.
-FrameSheet MakeFrameSheet(FrameId frame, const RenderCamera& camera, const FrameRays& rays,
+PlateNotes MakePlateNotes(FrameId frame, const RenderCamera& camera, const FrameRays& rays,
                           const FrameLens& lens, const RadianceEncoding& encoding);
 
 // Develops the plate.
@@ -28,7 +28,7 @@ FrameSheet MakeFrameSheet(FrameId frame, const RenderCamera& camera, const Frame
 //   with_effective    false: leaves DevelopedFrame::effective_count empty, which takes time
 //   is_interrupted    called often, by any thread; may be empty. Once it returns true, the rest is
 //                     skipped and the result must not be used.
-RenderedFrame DevelopFrame(const FrameSheet& sheet, const SensorPlate& plate,
+RenderedFrame DevelopFrame(const PlateNotes& notes, const SensorPlate& plate,
                            const Completion* completion, bool with_effective, ThreadPool& pool,
                            const std::function<bool()>& is_interrupted);
 

@@ -300,7 +300,7 @@ RenderedFrame FilmRenderer::Develop(size_t f) {
 RenderedFrame FilmRenderer::Develop(size_t f, const Completion* completion, bool with_effective,
                                     const std::function<bool()>& is_interrupted) const {
   const auto develop = [&](const SensorPlate& plate) {
-    return DevelopFrame(SheetOf(f), plate, completion, with_effective, setup_.pool(),
+    return DevelopFrame(NotesOf(f), plate, completion, with_effective, setup_.pool(),
                         is_interrupted);
   };
   if (film_.Collects()) return develop(plates_[f]);
@@ -308,17 +308,17 @@ RenderedFrame FilmRenderer::Develop(size_t f, const Completion* completion, bool
   return develop(SensorPlate(plate.width_px, plate.height_px));  // all of it is interpolated
 }
 
-FrameSheet FilmRenderer::SheetOf(size_t f) const {
+PlateNotes FilmRenderer::NotesOf(size_t f) const {
   const FrameId id = frames_[f].id;
-  FrameSheet sheet = MakeFrameSheet(id, setup_.path().Camera(id),
+  PlateNotes notes = MakePlateNotes(id, setup_.path().Camera(id),
                                     film_.Collects() ? Progress(f).rays : FrameRays(), lenses_[f],
                                     setup_.light_field().encoding);
-  sheet.fps = setup_.path().fps;
-  sheet.estimator = film_.reading.estimator;
-  sheet.develop.smooth_below = film_.smooth_below;
-  sheet.develop.fill_radius_px = film_.fill_radius_px;
-  if (frames_[f].is_early) sheet.places_done = frames_[f].places.end;
-  return sheet;
+  notes.fps = setup_.path().fps;
+  notes.estimator = film_.reading.estimator;
+  notes.develop.smooth_below = film_.smooth_below;
+  notes.develop.fill_radius_px = film_.fill_radius_px;
+  if (frames_[f].is_early) notes.places_done = frames_[f].places.end;
+  return notes;
 }
 
 void FilmRenderer::Release(size_t f) {

@@ -28,7 +28,7 @@
 #include "lf/pipeline/film_setup.h"
 #include "lf/plate/sensor_plate.h"
 #include "lf/rebinning/ray_map.h"
-#include "lf/record/frame_sheet.h"
+#include "lf/record/plate_notes.h"
 #include "lf/record/report.h"
 #include "lf/sequence/develop.h"
 
@@ -115,7 +115,7 @@ class FilmRenderer {
   Result<void> Measure(size_t f, FrameReport* report);
   // Returns the facts by which anybody can develop the frame's plate, without those about skipped
   // LF images and without the program's version.
-  FrameSheet SheetOf(size_t f) const;
+  PlateNotes NotesOf(size_t f) const;
 
   // Frees the plate of a frame, which takes no more LF images.
   void Release(size_t f);

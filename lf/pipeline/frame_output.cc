@@ -15,11 +15,11 @@
 namespace lf {
 namespace {
 
-ImageMetadata MetadataOf(const FrameSheet& sheet) {
-  ImageMetadata metadata = FrameMetadata(sheet.frame, sheet.camera, sheet.rays, sheet.estimator,
-                                         sheet.fps, sheet.version);
-  if (sheet.places_done)
-    metadata.emplace_back("lf:finished_early_before_place", static_cast<int>(*sheet.places_done));
+ImageMetadata MetadataOf(const PlateNotes& notes) {
+  ImageMetadata metadata = FrameMetadata(notes.frame, notes.camera, notes.rays, notes.estimator,
+                                         notes.fps, notes.version);
+  if (notes.places_done)
+    metadata.emplace_back("lf:finished_early_before_place", static_cast<int>(*notes.places_done));
   return metadata;
 }
 
@@ -29,12 +29,12 @@ bool HasEffectiveCounts(FrameFormat format) {
   return format == FrameFormat::kExrHalf || format == FrameFormat::kExrFloat;
 }
 
-Result<void> WritePicture(const FrameSheet& sheet, const DevelopedFrame& picture,
+Result<void> WritePicture(const PlateNotes& notes, const DevelopedFrame& picture,
                           const std::filesystem::path& to, FrameFormat format,
                           const std::function<bool()>& is_interrupted) {
   if (is_interrupted && is_interrupted())
     return Error{ErrorKind::kInterrupted, fmt::format("{}: interrupted", to.string())};
-  return WriteFrame(to, picture, format, MetadataOf(sheet), is_interrupted);
+  return WriteFrame(to, picture, format, MetadataOf(notes), is_interrupted);
 }
 
 FilmFiles FilesOfFilm(const CameraPath& path, const RenderOptions& options) {

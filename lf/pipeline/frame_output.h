@@ -12,7 +12,7 @@
 #include "lf/core/result.h"
 #include "lf/path/camera_path.h"
 #include "lf/pipeline/render.h"
-#include "lf/record/frame_sheet.h"
+#include "lf/record/plate_notes.h"
 #include "lf/sequence/frame_file.h"
 
 namespace lf {
@@ -20,11 +20,11 @@ namespace lf {
 // Returns true if a file of the format has DevelopedFrame::effective_count.
 bool HasEffectiveCounts(FrameFormat format);
 
-// Writes the developed picture of a sheet to the file `to`.
+// Writes a developed picture to the file `to`.
 //   is_interrupted  called often, by any thread; may be empty. The picture may be unusable if it
 //                   returns true.
 // kOutput: the file cannot be written. kInterrupted: nothing is written.
-Result<void> WritePicture(const FrameSheet& sheet, const DevelopedFrame& picture,
+Result<void> WritePicture(const PlateNotes& notes, const DevelopedFrame& picture,
                           const std::filesystem::path& to, FrameFormat format,
                           const std::function<bool()>& is_interrupted);
 

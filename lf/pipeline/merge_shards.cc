@@ -19,7 +19,7 @@
 #include "lf/pipeline/develop_frame.h"
 #include "lf/pipeline/frame_output.h"
 #include "lf/pipeline/render_pass.h"
-#include "lf/record/frame_sheet.h"
+#include "lf/record/plate_notes.h"
 #include "lf/sequence/video.h"
 
 namespace lf {
@@ -30,7 +30,7 @@ namespace {
 struct ShardPlate {
   fs::path path;
   Shard shard;
-  FrameSheet sheet;
+  PlateNotes notes;
   RunInputs inputs;  // entries that all plates of a frame have in common
   int width_px = 0;
   int height_px = 0;
@@ -73,7 +73,7 @@ Result<ShardPlate> Look(const fs::path& path) {
   plate.height_px = reader.height();
   plate.has_opacity = reader.has_opacity();
   LF_ASSIGN_OR_RETURN(
-      plate.sheet, FrameSheetOf(reader.entries(), reader.width(), reader.height(), path.string()));
+      plate.notes, PlateNotesOf(reader.entries(), reader.width(), reader.height(), path.string()));
   if (const std::string* const text = FindEntry(reader.entries(), "shard")) {
     const std::optional<Shard> shard = ShardOf(*text);
     if (!shard)
@@ -116,7 +116,7 @@ class Merger {
     for (const fs::path& file : files) {
       if (IsStopped()) return Interrupted();
       LF_ASSIGN_OR_RETURN(ShardPlate plate, Look(file));
-      frames_[plate.sheet.frame].push_back(std::move(plate));
+      frames_[plate.notes.frame].push_back(std::move(plate));
     }
     LF_RETURN_IF_ERROR(CheckFrames());
     LogDebug("{} plates of {} frames, the first in {} shards", files.size(), frames_.size(),
@@ -230,7 +230,7 @@ class Merger {
             "{}: is there already: --resume keeps such frames, --overwrite replaces them",
             PathOf(frame).string()));
       if (!reports_.contains(frame)) continue;
-      if (const auto difference = DifferenceFrom(film_before, plates.front().sheet)) {
+      if (const auto difference = DifferenceFrom(film_before, plates.front().notes)) {
         LogWarning("{}: {}; the frame is made again", PathOf(frame).string(),
                    difference->Text("was made with", "these plates have"));
         continue;
@@ -247,21 +247,21 @@ class Merger {
   // Compares the film and the frame of an earlier report with those of the plates. They may differ
   // after an interrupted --overwrite, which leaves frames of the film that it was to replace.
   std::optional<InputDifference> DifferenceFrom(const RunInputs& film_before,
-                                                const FrameSheet& sheet) const {
+                                                const PlateNotes& notes) const {
     if (const auto difference = FirstDifference(film_before, FilmInputs())) return difference;
-    return FirstDifference(reports_.at(sheet.frame).camera,
-                           InputsOfCamera(sheet.frame, sheet.camera));
+    return FirstDifference(reports_.at(notes.frame).camera,
+                           InputsOfCamera(notes.frame, notes.camera));
   }
 
   Result<void> WriteFrameOf(const std::vector<ShardPlate>& plates) {
     const ShardPlate& first = plates.front();
-    const FrameId frame = first.sheet.frame;
-    FrameSheet sheet = first.sheet;
-    sheet.rays = {};
+    const FrameId frame = first.notes.frame;
+    PlateNotes notes = first.notes;
+    notes.rays = {};
     for (const ShardPlate& plate : plates) {
-      sheet.rays.image_count += plate.sheet.rays.image_count;
-      sheet.rays.tested_count += plate.sheet.rays.tested_count;
-      sheet.rays.accepted_count += plate.sheet.rays.accepted_count;
+      notes.rays.image_count += plate.notes.rays.image_count;
+      notes.rays.tested_count += plate.notes.rays.tested_count;
+      notes.rays.accepted_count += plate.notes.rays.accepted_count;
     }
     const bool is_kept = finished_.contains(frame);
     SensorPlate sum(0, 0);
@@ -283,16 +283,16 @@ class Merger {
     if (!is_kept) {
       const auto is_stopped = [this] { return IsStopped(); };
       const RenderedFrame made =
-          DevelopFrame(sheet, sum, nullptr, HasEffectiveCounts(options_.format), pool_, is_stopped);
+          DevelopFrame(notes, sum, nullptr, HasEffectiveCounts(options_.format), pool_, is_stopped);
       const Result<void> written =
-          WritePicture(sheet, made.picture, PathOf(frame), options_.format, is_stopped);
+          WritePicture(notes, made.picture, PathOf(frame), options_.format, is_stopped);
       if (!written && written.error().kind == ErrorKind::kInterrupted) return Interrupted();
       LF_RETURN_IF_ERROR(written);
       reports_[frame] = made.report;
     }
     LogDebug("frame {}: {} plates, {} rays of {} LF images{}", frame.value, plates.size(),
-             sheet.rays.accepted_count, sheet.rays.image_count, is_kept ? "; kept" : "");
-    accepted_count_ += sheet.rays.accepted_count;
+             notes.rays.accepted_count, notes.rays.image_count, is_kept ? "; kept" : "");
+    accepted_count_ += notes.rays.accepted_count;
     ++now_.frame_count;
     if (progress_) progress_(now_);
     return {};
@@ -307,8 +307,8 @@ class Merger {
         inputs.push_back(entry);
     RunChoices picture;
     picture.format = NameOf(options_.format);
-    picture.smooth_below = first.sheet.develop.smooth_below;
-    picture.fill_radius_px = first.sheet.develop.fill_radius_px;
+    picture.smooth_below = first.notes.develop.smooth_below;
+    picture.fill_radius_px = first.notes.develop.fill_radius_px;
     for (auto& entry : InputsOfPicture(picture)) inputs.push_back(std::move(entry));
     return inputs;
   }
@@ -316,9 +316,9 @@ class Merger {
   RenderReport Report() const {
     const ShardPlate& first = frames_.begin()->second.front();
     RenderReport report;
-    report.version = first.sheet.version;
+    report.version = first.notes.version;
     report.inputs = FilmInputs();
-    report.estimator = first.sheet.estimator;
+    report.estimator = first.notes.estimator;
     report.width = first.width_px;
     report.height = first.height_px;
     report.thread_count = pool_.thread_count();
@@ -336,9 +336,9 @@ class Merger {
     for (const auto& [frame, plates] : frames_) {
       uint64_t count = 0;
       for (const ShardPlate& plate : plates) {
-        count += plate.sheet.rays.image_count + plate.sheet.skipped_count;
+        count += plate.notes.rays.image_count + plate.notes.skipped_count;
         std::vector<SkippedImage> skipped;
-        for (const std::string& name : plate.sheet.skipped)
+        for (const std::string& name : plate.notes.skipped)
           skipped.push_back({name, fmt::format("{}: was rendered without it, since it was missing "
                                                "or broken",
                                                plate.path.string())});
@@ -355,7 +355,7 @@ class Merger {
     const FilmFiles film = {
         options_.output_folder, options_.format,
         first.width_px,         first.height_px,
-        first.sheet.fps,        options_.signals == nullptr ? nullptr : &options_.signals->stop};
+        first.notes.fps,        options_.signals == nullptr ? nullptr : &options_.signals->stop};
     RenderReport report = Report();
     LF_RETURN_IF_ERROR(WriteReport(report, ReportPath()));
     if (options_.contact_sheet) LF_RETURN_IF_ERROR(film.WriteContactSheet(frames, 2, pool_));

@@ -35,7 +35,7 @@ struct MergeProgress {
 // Merges plates into frames. The entries of all plates are read and compared first. Then frames are
 // made one by one, which needs the memory of one plate and its picture. The file of a frame appears
 // when the frame is done, and not before. The report names the LF images that the plates' renders
-// skipped, as far as the plates name them (frame_sheet.h). Its selected_image_count is the largest
+// skipped, as far as the plates name them (plate_notes.h). Its selected_image_count is the largest
 // number of LF images of a frame, skipped ones included.
 // With resume, frames of an earlier merge are kept if they are whole and were made of the same
 // film.
@@ -43,7 +43,7 @@ struct MergeProgress {
 //
 // kUsage: frames are there, and neither resume nor overwrite is set; an output would replace a
 //   plate or one of kept_files; a plate is given twice.
-// kInput: there are no plates; a plate has no sheet (record/frame_sheet.h) or is damaged; a frame's
+// kInput: there are no plates; a plate has no notes (record/plate_notes.h) or is damaged; a frame's
 //   shards are not complete, are there twice, or are of different renders (the message names them);
 //   every frame is black.
 // kOutput: the disk or ffmpeg failed, or another program writes frames into the folder.

@@ -157,10 +157,10 @@ Result<void> RenderPass::FinishFrames(std::span<const size_t> frames) {
   return {};
 }
 
-FrameSheet RenderPass::SheetOf(size_t f) const {
-  FrameSheet sheet = renderer_.SheetOf(f);
-  sheet.version = context_.folder.version;
-  return sheet;
+PlateNotes RenderPass::NotesOf(size_t f) const {
+  PlateNotes notes = renderer_.NotesOf(f);
+  notes.version = context_.folder.version;
+  return notes;
 }
 
 // Writes the files of a frame. May be called by several threads at the same time, for different
@@ -187,12 +187,12 @@ Result<void> RenderPass::WriteFinishedPlate(size_t f, std::filesystem::path path
   FrameProgress progress = renderer_.Progress(f);
   progress.places_done = renderer_.PlaceOfEnd(f);  // must not depend on passes
   PlateEntries text = context_.state.PlateText(ids_[f], progress, renderer_.moments(f));
-  FrameSheet sheet = SheetOf(f);
-  sheet.skipped = SkippedOf(
+  PlateNotes notes = NotesOf(f);
+  notes.skipped = SkippedOf(
       Totals().skipped, setup.index(),
       {renderer_.lens(f), {0, progress.places_done}, setup.Select().reach, setup.film().shard});
-  sheet.skipped_count = sheet.skipped.size();
-  for (auto& entry : TextOf(sheet)) text.push_back(std::move(entry));
+  notes.skipped_count = notes.skipped.size();
+  for (auto& entry : TextOf(notes)) text.push_back(std::move(entry));
   if (setup.film().shard) text.emplace_back("shard", setup.film().shard->Text());
   return WritePlate(path.replace_extension(".plate"), text, renderer_.plate(f), setup.pool());
 }
@@ -203,7 +203,7 @@ Result<FrameReport> RenderPass::WritePicture(size_t f, const Completion* complet
   const FrameFormat format = context_.folder.format;
   const RenderedFrame frame =
       renderer_.Develop(f, completion, HasEffectiveCounts(format), is_interrupted);
-  LF_RETURN_IF_ERROR(lf::WritePicture(SheetOf(f), frame.picture, to, format, is_interrupted));
+  LF_RETURN_IF_ERROR(lf::WritePicture(NotesOf(f), frame.picture, to, format, is_interrupted));
   return frame.report;
 }
 

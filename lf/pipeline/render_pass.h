@@ -69,7 +69,7 @@ class RenderPass : private EarlierRun {
   Result<void> FinishEarlyFrames();
   Result<void> FinishStoppedFrames();
   Result<void> FinishFrames(std::span<const size_t> frames);
-  FrameSheet SheetOf(size_t f) const;
+  PlateNotes NotesOf(size_t f) const;
   Result<FrameReport> WriteFiles(size_t f, const Completion* completion);
   Result<void> WriteFinishedPlate(size_t f, std::filesystem::path path) const;
   Result<FrameReport> WritePicture(size_t f, const Completion* completion,

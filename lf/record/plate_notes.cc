@@ -1,4 +1,4 @@
-#include "lf/record/frame_sheet.h"
+#include "lf/record/plate_notes.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -38,9 +38,9 @@ std::string NamesText(const std::vector<std::string>& names) {
 
 // Reads the values of keys, one after the other. Keeps the first fault; values with a fault are
 // arbitrary.
-class SheetReader {
+class NotesReader {
  public:
-  SheetReader(const PlateEntries& entries, const std::string& name)
+  NotesReader(const PlateEntries& entries, const std::string& name)
       : entries_(entries), name_(name) {}
 
   std::vector<double> Numbers(const char* key, size_t count) {
@@ -130,21 +130,21 @@ Vec3 Vec3Of(std::span<const double> v) { return {v[0], v[1], v[2]}; }
 
 }  // namespace
 
-PlateEntries TextOf(const FrameSheet& sheet) {
-  const RenderCamera& camera = sheet.camera;
+PlateEntries TextOf(const PlateNotes& notes) {
+  const RenderCamera& camera = notes.camera;
   const Intrinsics& k = camera.pinhole.intrinsics;
   const RigidTransform& pose = camera.pinhole.cam_from_world;
   const Plane& focus = camera.focus_plane;
-  std::vector<double> develop = {sheet.develop.pedestal, sheet.develop.scale};
-  for (const double gain : sheet.develop.white_balance) develop.push_back(gain);
-  for (const double value : RowsOf(sheet.develop.linear_srgb_from_camera)) develop.push_back(value);
+  std::vector<double> develop = {notes.develop.pedestal, notes.develop.scale};
+  for (const double gain : notes.develop.white_balance) develop.push_back(gain);
+  for (const double value : RowsOf(notes.develop.linear_srgb_from_camera)) develop.push_back(value);
   std::vector<double> of_pose = RowsOf(pose.rotation);
   for (const double value : RowsOf(pose.translation)) of_pose.push_back(value);
   const auto words = [](std::initializer_list<double> numbers) {
     return Words(std::vector<double>(numbers));
   };
   PlateEntries text = {
-      {"sheet.frame", fmt::format("{}", sheet.frame.value)},
+      {"sheet.frame", fmt::format("{}", notes.frame.value)},
       {"sheet.intrinsics", words({k.fx_px, k.fy_px, k.cx_px, k.cy_px, k.skew_px})},
       {"sheet.pose", Words(of_pose)},
       {"sheet.aperture", words({camera.aperture.radius_w, 0.0 + camera.aperture.blades,
@@ -154,99 +154,99 @@ PlateEntries TextOf(const FrameSheet& sheet) {
       {"sheet.lens",
        words({camera.time_s, camera.focal_length_w, camera.sensor_width_w, camera.focus_distance_w,
               camera.focus_tilt.horizontal_rad, camera.focus_tilt.vertical_rad, camera.unit_m})},
-      {"sheet.fps", words({sheet.fps})},
-      {"sheet.estimator", NameOf(sheet.estimator)},
-      {"sheet.version", sheet.version},
+      {"sheet.fps", words({notes.fps})},
+      {"sheet.estimator", NameOf(notes.estimator)},
+      {"sheet.version", notes.version},
       {"sheet.develop", Words(develop)},
-      {"sheet.smooth_below", fmt::format("{}", sheet.develop.smooth_below)},
-      {"sheet.fill_radius", fmt::format("{}", sheet.develop.fill_radius_px)},
-      {"sheet.lf_images", fmt::format("{}", sheet.rays.image_count)},
-      {"sheet.rays_tested", fmt::format("{}", sheet.rays.tested_count)},
-      {"sheet.rays_accepted", fmt::format("{}", sheet.rays.accepted_count)},
+      {"sheet.smooth_below", fmt::format("{}", notes.develop.smooth_below)},
+      {"sheet.fill_radius", fmt::format("{}", notes.develop.fill_radius_px)},
+      {"sheet.lf_images", fmt::format("{}", notes.rays.image_count)},
+      {"sheet.rays_tested", fmt::format("{}", notes.rays.tested_count)},
+      {"sheet.rays_accepted", fmt::format("{}", notes.rays.accepted_count)},
   };
-  if (sheet.places_done)
-    text.emplace_back("sheet.finished_early", fmt::format("{}", *sheet.places_done));
-  if (sheet.skipped_count > 0) {
-    text.emplace_back("sheet.lf_images_skipped", fmt::format("{}", sheet.skipped_count));
-    text.emplace_back("sheet.skipped", NamesText(sheet.skipped));
+  if (notes.places_done)
+    text.emplace_back("sheet.finished_early", fmt::format("{}", *notes.places_done));
+  if (notes.skipped_count > 0) {
+    text.emplace_back("sheet.lf_images_skipped", fmt::format("{}", notes.skipped_count));
+    text.emplace_back("sheet.skipped", NamesText(notes.skipped));
   }
-  if (sheet.weighed) {
-    const auto& counts = sheet.weighed->effective_counts.pixels();
+  if (notes.weighed) {
+    const auto& counts = notes.weighed->effective_counts.pixels();
     text.emplace_back("sheet.weights",
-                      words({sheet.weighed->hat_share, sheet.weighed->coverage.uncovered_share,
-                             sheet.weighed->coverage.fitting_diameter_w}));
+                      words({notes.weighed->hat_share, notes.weighed->coverage.uncovered_share,
+                             notes.weighed->coverage.fitting_diameter_w}));
     text.emplace_back("sheet.effective", fmt::format("{}", fmt::join(counts, " ")));
   }
   return text;
 }
 
-Result<FrameSheet> FrameSheetOf(const PlateEntries& entries, int width_px, int height_px,
+Result<PlateNotes> PlateNotesOf(const PlateEntries& entries, int width_px, int height_px,
                                 const std::string& name) {
-  SheetReader reader(entries, name);
-  FrameSheet sheet;
-  sheet.frame.value = static_cast<uint32_t>(reader.WholeNumber("sheet.frame", UINT32_MAX));
+  NotesReader reader(entries, name);
+  PlateNotes notes;
+  notes.frame.value = static_cast<uint32_t>(reader.WholeNumber("sheet.frame", UINT32_MAX));
   const std::vector<double> k = reader.Numbers("sheet.intrinsics", 5);
-  Intrinsics& intrinsics = sheet.camera.pinhole.intrinsics;
+  Intrinsics& intrinsics = notes.camera.pinhole.intrinsics;
   intrinsics = {k[0], k[1], k[2], k[3], k[4], width_px, height_px};
   if (!(k[0] != 0 && k[1] != 0)) reader.Fault("sheet.intrinsics", "focal lengths that are not 0");
   const std::vector<double> pose = reader.Numbers("sheet.pose", 12);
-  sheet.camera.pinhole.cam_from_world.rotation = Mat3Of(pose);
-  sheet.camera.pinhole.cam_from_world.translation = Vec3Of(std::span(pose).subspan(9));
+  notes.camera.pinhole.cam_from_world.rotation = Mat3Of(pose);
+  notes.camera.pinhole.cam_from_world.translation = Vec3Of(std::span(pose).subspan(9));
   const std::vector<double> aperture = reader.Numbers("sheet.aperture", 3);
   if (!(aperture[0] >= 0) || !(aperture[1] == 0 || (aperture[1] >= 3 && aperture[1] <= 1000)))
     reader.Fault("sheet.aperture", "a radius, 0 or 3 to 1000 blades, and their rotation");
   else
-    sheet.camera.aperture = {aperture[0], static_cast<int>(aperture[1]), aperture[2]};
+    notes.camera.aperture = {aperture[0], static_cast<int>(aperture[1]), aperture[2]};
   const std::vector<double> focus = reader.Numbers("sheet.focus_plane", 4);
-  sheet.camera.focus_plane = {Vec3Of(focus), focus[3]};
+  notes.camera.focus_plane = {Vec3Of(focus), focus[3]};
   const std::vector<double> lens = reader.Numbers("sheet.lens", 7);
-  sheet.camera.time_s = lens[0];
-  sheet.camera.focal_length_w = lens[1];
-  sheet.camera.sensor_width_w = lens[2];
-  sheet.camera.focus_distance_w = lens[3];
-  sheet.camera.focus_tilt = {lens[4], lens[5]};
-  sheet.camera.unit_m = lens[6];
-  sheet.fps = reader.Numbers("sheet.fps", 1)[0];
+  notes.camera.time_s = lens[0];
+  notes.camera.focal_length_w = lens[1];
+  notes.camera.sensor_width_w = lens[2];
+  notes.camera.focus_distance_w = lens[3];
+  notes.camera.focus_tilt = {lens[4], lens[5]};
+  notes.camera.unit_m = lens[6];
+  notes.fps = reader.Numbers("sheet.fps", 1)[0];
   const auto estimator =
       ValueNamed(reader.Text("sheet.estimator"), {Estimator::kNearest, Estimator::kBilinear});
   if (!estimator) reader.Fault("sheet.estimator", "nearest or bilinear");
-  sheet.estimator = estimator.value_or(Estimator::kBilinear);
-  sheet.version = reader.Text("sheet.version");
+  notes.estimator = estimator.value_or(Estimator::kBilinear);
+  notes.version = reader.Text("sheet.version");
   const std::vector<double> develop = reader.Numbers("sheet.develop", 14);
   if (!(develop[1] > 0)) reader.Fault("sheet.develop", "a scale above 0 as the second number");
-  sheet.develop.pedestal = develop[0];
-  sheet.develop.scale = develop[1];
-  sheet.develop.white_balance = {develop[2], develop[3], develop[4]};
-  sheet.develop.linear_srgb_from_camera = Mat3Of(std::span(develop).subspan(5));
-  sheet.develop.smooth_below =
+  notes.develop.pedestal = develop[0];
+  notes.develop.scale = develop[1];
+  notes.develop.white_balance = {develop[2], develop[3], develop[4]};
+  notes.develop.linear_srgb_from_camera = Mat3Of(std::span(develop).subspan(5));
+  notes.develop.smooth_below =
       static_cast<uint32_t>(reader.WholeNumber("sheet.smooth_below", UINT32_MAX));
-  sheet.develop.fill_radius_px =
+  notes.develop.fill_radius_px =
       static_cast<int>(reader.WholeNumber("sheet.fill_radius", kMostFillRadius_px));
-  sheet.rays.image_count = reader.WholeNumber("sheet.lf_images", UINT32_MAX);
-  sheet.rays.tested_count = reader.WholeNumber("sheet.rays_tested", UINT64_MAX / 2);
-  sheet.rays.accepted_count = reader.WholeNumber("sheet.rays_accepted", UINT64_MAX / 2);
+  notes.rays.image_count = reader.WholeNumber("sheet.lf_images", UINT32_MAX);
+  notes.rays.tested_count = reader.WholeNumber("sheet.rays_tested", UINT64_MAX / 2);
+  notes.rays.accepted_count = reader.WholeNumber("sheet.rays_accepted", UINT64_MAX / 2);
   if (FindEntry(entries, "sheet.finished_early") != nullptr)
-    sheet.places_done =
+    notes.places_done =
         static_cast<uint32_t>(reader.WholeNumber("sheet.finished_early", UINT32_MAX));
   if (FindEntry(entries, "sheet.lf_images_skipped") != nullptr) {
-    sheet.skipped_count = reader.WholeNumber("sheet.lf_images_skipped", UINT32_MAX);
-    sheet.skipped = reader.Names("sheet.skipped");
-    if (sheet.skipped.size() > sheet.skipped_count)
-      reader.Fault("sheet.skipped", fmt::format("at most {} names", sheet.skipped_count));
+    notes.skipped_count = reader.WholeNumber("sheet.lf_images_skipped", UINT32_MAX);
+    notes.skipped = reader.Names("sheet.skipped");
+    if (notes.skipped.size() > notes.skipped_count)
+      reader.Fault("sheet.skipped", fmt::format("at most {} names", notes.skipped_count));
   }
   if (FindEntry(entries, "sheet.weights") != nullptr) {
     const std::vector<double> weights = reader.Numbers("sheet.weights", 3);
     const auto [columns, rows] = EffectiveSquares(intrinsics);
     const std::vector<double> counts =
         reader.Numbers("sheet.effective", static_cast<size_t>(columns) * rows);
-    sheet.weighed = {weights[0], {weights[1], weights[2]}, Image<float>(columns, rows)};
+    notes.weighed = {weights[0], {weights[1], weights[2]}, Image<float>(columns, rows)};
     for (size_t i = 0; i < counts.size(); ++i) {
       if (!(counts[i] >= 0 && counts[i] <= 1e9)) reader.Fault("sheet.effective", "counts");
-      sheet.weighed->effective_counts.pixels()[i] = static_cast<float>(counts[i]);
+      notes.weighed->effective_counts.pixels()[i] = static_cast<float>(counts[i]);
     }
   }
   if (reader.fault()) return *reader.fault();
-  return sheet;
+  return notes;
 }
 
 }  // namespace lf

@@ -1,4 +1,4 @@
-// The sheet of a finished plate: entries in its file from which a picture can be made anywhere,
+// Notes in a finished plate: entries in its file from which a picture can be made anywhere,
 // without the light field and the path (doc/formats/plate.md, keys "sheet.").
 #pragma once
 
@@ -18,7 +18,7 @@
 
 namespace lf {
 
-struct FrameSheet {
+struct PlateNotes {
   FrameId frame;
   RenderCamera camera;
   double fps = 0;
@@ -42,13 +42,13 @@ struct FrameSheet {
   std::optional<Weighed> weighed;
 };
 
-// Returns the entries of a sheet.
-PlateEntries TextOf(const FrameSheet& sheet);
+// Returns the entries of the notes.
+PlateEntries TextOf(const PlateNotes& notes);
 
-// Returns the sheet of the entries. Numbers have the same bits as before TextOf().
+// Returns the notes of the entries. Numbers have the same bits as before TextOf().
 //   width_px, height_px  of the plate
 // kInput: a key is missing, or its value is invalid. The message begins with `name`.
-Result<FrameSheet> FrameSheetOf(const PlateEntries& entries, int width_px, int height_px,
+Result<PlateNotes> PlateNotesOf(const PlateEntries& entries, int width_px, int height_px,
                                 const std::string& name);
 
 }  // namespace lf

@@ -1,4 +1,4 @@
-// Any lines "key: value" are a sheet or an error. A sheet is the same when it is written and read
+// Any lines "key: value" are notes or an error. Notes are the same when they are written and read
 // again.
 #include <algorithm>
 #include <cstddef>
@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "lf/core/check.h"
-#include "lf/record/frame_sheet.h"
+#include "lf/record/plate_notes.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size_bytes) {
   std::string_view text(reinterpret_cast<const char*>(bytes), size_bytes);
@@ -19,13 +19,13 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size_bytes) {
     entries.emplace_back(line.substr(0, colon), line.substr(colon + 2));
   }
   constexpr int kWidth = 20, kHeight = 17;
-  const lf::Result<lf::FrameSheet> sheet = lf::FrameSheetOf(entries, kWidth, kHeight, "p");
-  if (!sheet) {
-    LF_CHECK(sheet.error().message.starts_with("p: "));
+  const lf::Result<lf::PlateNotes> notes = lf::PlateNotesOf(entries, kWidth, kHeight, "p");
+  if (!notes) {
+    LF_CHECK(notes.error().message.starts_with("p: "));
     return 0;
   }
-  const lf::PlateEntries written = lf::TextOf(*sheet);
-  const lf::Result<lf::FrameSheet> again = lf::FrameSheetOf(written, kWidth, kHeight, "p");
+  const lf::PlateEntries written = lf::TextOf(*notes);
+  const lf::Result<lf::PlateNotes> again = lf::PlateNotesOf(written, kWidth, kHeight, "p");
   LF_CHECK(again.has_value());
   LF_CHECK(lf::TextOf(*again) == written);
   return 0;
