@@ -22,11 +22,14 @@ namespace lf {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// A sum of 65535 * 65536 and kHalf, which rounds it, just fits into 32 bits.
+// Half of the sum of all weights. It is added to round half up. The largest sum, 65535 * 65536 +
+// kHalf, just fits into 32 bits.
 constexpr uint32_t kHalf = kOne * kOne / 2;
 
-// AddRays() adds kRaysAtOnce rays of `places`, from ray i on, to the elements of the same index in
-// `sums`. The index of `weights` is the same. AddRay() adds one ray.
+// AddRays() adds rays [i, i + kRaysAtOnce) of `places` to the elements with the same indices in
+// `sums`, multiplied by `weights` at the same indices. AddRay() does so for ray i alone.
+//   values      the first pixel of the LF image's loaded rectangle
+//   row_values  number of values from one row of pixels to the next
 #if HWY_TARGET == HWY_SCALAR
 
 constexpr int kRaysAtOnce = 1;
@@ -53,7 +56,8 @@ using AllLanes = hn::CappedTag<uint32_t, 16>;
 using LanesOfOne = hn::Full128<uint32_t>;
 constexpr int kRaysAtOnce = static_cast<int>(hn::MaxLanes(AllLanes())) / LfPixels::kRgbLanes;
 
-// Loads two adjacent pixels for each ray into a block of 128 bits.
+// For each ray, loads two adjacent pixels into a block of 128 bits: pixel[k] and the next one into
+// block k.
 HWY_ATTR HWY_INLINE hn::Vec<hn::Full128<uint16_t>> LoadPairs(hn::Full128<uint16_t> d,
                                                              const uint16_t* values,
                                                              const int32_t* pixel) {
@@ -89,7 +93,7 @@ HWY_ATTR HWY_INLINE V Mix(V first, V second, V weight) {
   return hn::Add(hn::ShiftLeft<kWeightBits>(first), hn::Mul(hn::Sub(second, first), weight));
 }
 
-// Puts the same lanes of the two pixels in each block side by side.
+// Interleaves the lanes of the two pixels in each block.
 template <class D16>
 HWY_ATTR HWY_INLINE hn::Vec<D16> SideBySide(D16 d16, hn::Vec<D16> pairs) {
   HWY_ALIGN static constexpr uint8_t kBytes[16] = {0, 1, 8,  9,  2, 3, 10, 11,
@@ -98,7 +102,7 @@ HWY_ATTR HWY_INLINE hn::Vec<D16> SideBySide(D16 d16, hn::Vec<D16> pairs) {
   return hn::BitCast(d16, hn::TableLookupBytes(hn::BitCast(d8, pairs), hn::LoadDup128(d8, kBytes)));
 }
 
-// Adds rays from `i` on, as many as there are blocks in the vector.
+// Adds rays from `i` on: one for each block of 128 bits in a vector of `D`.
 template <class D, class Weights>
 HWY_ATTR HWY_INLINE void AddRaysOf(D d, const Places& places, int i, const uint16_t* values,
                                    ptrdiff_t row_values, const Weights& weights,
@@ -117,7 +121,7 @@ HWY_ATTR HWY_INLINE void AddRaysOf(D d, const Places& places, int i, const uint1
   };
   const auto sum =
       Mix(mix_row(values), mix_row(values + row_values), LoadWeights(d, places.lower + i));
-  // Adds kMiddle back, times all weights together, which are 65536: the highest bit.
+  // Adds kMiddle back, times the sum of all weights (65536), and kHalf.
   constexpr uint32_t kBack = uint32_t{kMiddle} * kOne * kOne + kHalf;
   auto rays = hn::ShiftRight<2 * kWeightBits>(hn::Add(sum, hn::Set(d, kBack)));
   if constexpr (!Weights::kIsOne) rays = hn::Mul(rays, weights.OfPixels(d, i));

@@ -1,6 +1,5 @@
-// Adds one ray to its element, interpolated between sixteen pixels by the weights of
-// cubic_weights.h. Internal to collection. Highway includes this file once for each instruction
-// set.
+// Adds one ray, interpolated between sixteen pixels with the weights of cubic_weights.h, to its
+// element. Internal to collection. Highway includes this file once for each instruction set.
 #if defined(LF_COLLECTION_CUBIC_SIMD_INL_H_) == \
     defined(HWY_TARGET_TOGGLE)  // NOLINT: Highway's guard
 #ifdef LF_COLLECTION_CUBIC_SIMD_INL_H_
@@ -26,11 +25,11 @@ namespace lf {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// The weights of cubic_weights.h in the layout of the kernels, by steps.
+// The weights of cubic_weights.h for each step, in the layout that the kernels read.
 struct CubicTables {
   HWY_ALIGN int16_t down[kCubicSteps + 1][4];
-  // Each weight is here four times, for the lanes of a pixel. The weights of pixel k begin at
-  // kPlaces[k].
+  // Each weight is repeated four times, once for each lane of a pixel. The weights of pixel k begin
+  // at kPlaces[k].
   static constexpr int kPlaces[] = {0, 8, 4, 12};
   HWY_ALIGN int32_t right[kCubicSteps + 1][16];
 
@@ -53,8 +52,9 @@ inline const CubicTables& TablesOfCubics() {
 
 #if HWY_TARGET == HWY_SCALAR
 
-// Adds a ray through the sixteen pixels that begin at `first`. `right` and `down` are steps from
-// the upper left of the inner four.
+// Adds the ray between the sixteen pixels that begin at `first` to element i of `sums`. `right` and
+// `down` are its distances from the upper left of the inner four pixels, in steps of 1 /
+// kCubicSteps px.
 template <class Weights>
 HWY_INLINE void AddCubicRay(const CubicTables& tables, uint32_t right, uint32_t down,
                             const uint16_t* first, ptrdiff_t row_values, const Weights& weights,
@@ -77,16 +77,18 @@ HWY_INLINE void AddCubicRay(const CubicTables& tables, uint32_t right, uint32_t 
 
 using SixteenTag = hn::CappedTag<int32_t, 8>;
 
-// Weights of rows 0 and 1, and of rows 2 and 3, side by side for each lane: `low` for the first
-// pixel of every block, `high` for the second.
+// Weights of the four rows of pixels, interleaved for each lane: rows 0 and 1 at index 0, rows 2
+// and 3 at index 1. `low` is for the first of the two pixels in every block of 128 bits, `high` for
+// the second.
 template <class V16>
 struct ColumnWeights {
   V16 low[2];
   V16 high[2];
 };
 
-// Mixes the columns of the two pixels of each block, less kMiddle, from the first row on: the first
-// pixel of each block into `low`, the second into `high`.
+// Mixes columns of four pixels, the topmost of which are at `first`: sums the weighted pixels less
+// kMiddle and divides by 2^kShift, rounded half up. Writes the columns of the first pixel of each
+// block to `low`, those of the second to `high`.
 template <int kShift, class D16, class V16, class V32>
 HWY_ATTR HWY_INLINE void MixColumns(D16 d16, const ColumnWeights<V16>& weights,
                                     const uint16_t* first, ptrdiff_t row_values, V32* low,
@@ -111,7 +113,7 @@ HWY_ATTR HWY_INLINE void MixColumns(D16 d16, const ColumnWeights<V16>& weights,
   *high = hn::ShiftRight<kShift>(*high);
 }
 
-// Returns the sum of the mixed columns of all sixteen pixels, which begin at `first`.
+// Returns the weighted sum of the four mixed columns of the sixteen pixels that begin at `first`.
 template <int kShift, class D, class V16>
 HWY_ATTR HWY_INLINE hn::Vec<hn::Full128<int32_t>> MixSixteen(D d, const ColumnWeights<V16>& down,
                                                              const int32_t* right,
@@ -136,8 +138,9 @@ HWY_ATTR HWY_INLINE hn::Vec<hn::Full128<int32_t>> MixSixteen(D d, const ColumnWe
   }
 }
 
-// Adds a ray through the sixteen pixels that begin at `first`. `right` and `down` are steps from
-// the upper left of the inner four.
+// Adds the ray between the sixteen pixels that begin at `first` to element i of `sums`. `right` and
+// `down` are its distances from the upper left of the inner four pixels, in steps of 1 /
+// kCubicSteps px.
 template <class Weights>
 HWY_ATTR HWY_INLINE void AddCubicRay(const CubicTables& tables, uint32_t right, uint32_t down,
                                      const uint16_t* first, ptrdiff_t row_values,

@@ -1,12 +1,13 @@
-// The weights of Catmull and Rom's cubic interpolation as integers, so that results have the same
-// bits everywhere. Internal to collection.
+// The weights of Catmull and Rom's cubic interpolation as integers, so that results are
+// bit-identical everywhere. Internal to collection.
 //
-// The columns of sixteen pixels p, in rows of four, are mixed first:
+// The sixteen pixels p_ik lie in rows i and columns k. First, each column is mixed:
 //   column_k = round((d0 p_0k + d1 p_1k + d2 p_2k + d3 p_3k) / 2^8),   d = CubicTapsAt(down, 12)
-// The value is then made of the columns,
+// Then the columns are mixed to the value,
 //   round((c0 column_0 + c1 column_1 + c2 column_2 + c3 column_3) / 2^15)
-// with c = CubicTapsAt(right, 11), and clipped to 16 bits. It is exact if all pixels are equal. 32
-// bits hold all of it if p is taken less 2^15.
+// with c = CubicTapsAt(right, 11), which is clipped to 16 bits. `right` and `down` are distances
+// from the upper left of the inner four pixels, in steps of 1 / kCubicSteps px. The value is exact
+// if all pixels are equal. All sums fit into 32 bits if 2^15 is subtracted from p.
 #pragma once
 
 #include <array>
@@ -18,12 +19,12 @@ inline constexpr int kCubicDownBits = 12;
 inline constexpr int kCubicRightBits = 11;
 inline constexpr int kCubicColumnShift = 8;
 inline constexpr int kCubicShift = kCubicDownBits - kCubicColumnShift + kCubicRightBits;
-inline constexpr int kCubicSteps = 256;  // from a pixel to the next
+inline constexpr int kCubicSteps = 256;  // from one pixel to the next
 
 using CubicTaps = std::array<int32_t, 4>;
 
-// Weights of the pixels -1, 0, 1, 2 at `step` / kCubicSteps of the way from pixel 0 to pixel 1.
-// Their sum is 2^bits.
+// Returns the weights of pixels -1, 0, 1 and 2 for the position that is `step` / kCubicSteps of the
+// way from pixel 0 to pixel 1. Their sum is 2^bits.
 constexpr CubicTaps CubicTapsAt(int step, int bits) {
   const int64_t t = step, one = kCubicSteps;
   // The exact weights times 2 kCubicSteps^3.
@@ -35,7 +36,7 @@ constexpr CubicTaps CubicTapsAt(int step, int bits) {
   CubicTaps taps{};
   for (int i = 0; i < 4; ++i)
     taps[i] = static_cast<int32_t>((exact[i] + (int64_t{1} << (shift - 1))) >> shift);
-  // The rest that rounding leaves goes to the nearer pixel.
+  // The remainder of the rounding is added to the weight of the nearer pixel.
   taps[2 * step < kCubicSteps ? 1 : 2] += (1 << bits) - (taps[0] + taps[1] + taps[2] + taps[3]);
   return taps;
 }

@@ -1,5 +1,5 @@
-// Adds the mean of the rays at several positions in an element as the element's one ray. Internal
-// to collection. Highway includes this file once for each instruction set.
+// Adds the mean of several rays of an element as the element's one ray. Internal to collection.
+// Highway includes this file once for each instruction set.
 #if defined(LF_COLLECTION_ELEMENT_MEANS_SIMD_INL_H_) == \
     defined(HWY_TARGET_TOGGLE)  // NOLINT: Highway's guard
 #ifdef LF_COLLECTION_ELEMENT_MEANS_SIMD_INL_H_
@@ -23,8 +23,9 @@ namespace lf {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Adds the means of a row of elements, rounded half up. Each is the mean of up to samples^2 rays,
-// which `samples` elements of `fine` have added up. Returns the number of elements with a ray.
+// Adds the mean of its rays, rounded half up, to each of `count` elements of a row. An element has
+// up to samples^2 rays, whose sums are in `samples` successive elements of `fine`. Returns the
+// number of elements that have a ray.
 //
 // Quotients of numbers up to 2^24 are rounded down correctly: a quotient that is no integer is
 // farther from the nearest integer than the precision of a float.
@@ -80,7 +81,7 @@ HWY_ATTR uint64_t AddMeans(const TileSums::CountedElement* fine, int samples, in
   const hn::Full128<int32_t> di;
   const hn::Full128<float> df;
   const auto divide = [&](hn::Vec<decltype(di)> dividend, hn::Vec<decltype(di)> divisor) HWY_ATTR {
-    // If no ray was added, all lanes are 0.
+    // If the element has no ray, all lanes are 0: 0 is then divided by 1.
     const auto some = hn::Max(divisor, hn::Set(di, 1));
     return hn::Div(hn::ConvertTo(df, dividend), hn::ConvertTo(df, some));
   };
@@ -122,7 +123,7 @@ HWY_ATTR uint64_t AddMeans(const TileSums::Element* fine, int samples, int count
     const auto rays_and_sums = hn::BitCast(di, sum);
     const auto added = hn::Broadcast<LfPixels::kRayLane>(rays_and_sums);
     const auto dividend = hn::Add(rays_and_sums, hn::ShiftRight<1>(added));
-    // If no ray was added, all lanes are 0.
+    // If the element has no ray, all lanes are 0: 0 is then divided by 1.
     const auto divisor = hn::Max(added, hn::Set(di, 1));
     auto mean = hn::ConvertTo(di, hn::Div(hn::ConvertTo(df, dividend), hn::ConvertTo(df, divisor)));
     rays = hn::Add(rays, mean);

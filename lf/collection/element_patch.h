@@ -1,5 +1,5 @@
-// Polynomials along the scanlines of a patch of ideal positions, which give the positions on the
-// plate, all from one fit. Internal to collection.
+// Polynomials for the positions on the plate along the scanlines of a patch of ideal positions. One
+// fit yields the polynomials of all scanlines of the patch. Internal to collection.
 #pragma once
 
 #include <optional>
@@ -13,8 +13,10 @@ namespace lf {
 
 class ElementPatch {
  public:
-  // Fits a polynomial through six by six points of columns [x_begin, x_end) of `patch`. None if it
-  // misses positions between them, or reaches too far for single precision.
+  // Fits a polynomial through the positions on the plate, (x p, y p) / (denominator p), of six by
+  // six ideal positions p in columns [x_begin, x_end) of `patch`. Returns none if it deviates from
+  // positions between these by more than SegmentMaker::kTolerance, or if positions are too far
+  // apart for single precision (IsNearMiddle()).
   static std::optional<ElementPatch> Fit(const PixelForm& x, const PixelForm& y,
                                          const PixelForm& denominator, const IdealPatch& patch,
                                          int x_begin, int x_end);
@@ -32,7 +34,8 @@ class ElementPatch {
 
   int x_begin_ = 0, x_end_ = 0;
   double middle_x_ = 0, middle_y_ = 0;
-  // Coefficients of t^k s^l, with t and s the distances from the middle along and across.
+  // [k][l]: coefficients of t^k s^l, where t and s are the distances in pixels from the middle,
+  // along the scanline and across it.
   double x_[kTerms][kTerms];
   double y_[kTerms][kTerms];
 };

@@ -1,6 +1,6 @@
 // The ray model of the estimator *bilinear* for one ray, applied literally, in double precision
-// (doc/ray.md, "What is added"). The reference asks it for every element, the fast kernel at the
-// ends of its spans. Internal to collection.
+// (doc/ray.md, "What is added"). The reference applies it to every element, the fast back end
+// applies it to elements at the ends of its spans. Internal to collection.
 #pragma once
 
 #include <optional>
@@ -14,15 +14,18 @@ namespace lf {
 
 class GatherModel {
  public:
-  // render_camera  with the finer plate, if an element's ray is the mean of several
+  // render_camera must have the finer plate (WithFinerPlate()) if an element's ray is the mean of
+  // several rays
   GatherModel(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
 
-  // Returns the direction, in the world, of the ray that element (x, y) asks for; none if it has no
-  // focus point before the lens, or if the ray misses the lens.
+  // Returns the direction, in the world, of the ray through the LF camera and the focus point of
+  // the centre of element (x, y); none if this focus point does not exist in front of the lens, or
+  // if the ray does not pass through the lens.
   std::optional<Vec3> Direction(int x, int y) const;
 
-  // Returns the position in pixels where the LF camera records that ray; none unless the four
-  // pixels around it are in the image and rays arrive there.
+  // Returns the position, in pixels, where the LF camera records this ray; none if Direction()
+  // returns none, if one of the four pixels around the position is not in the image, or if one of
+  // them recorded no ray.
   std::optional<Vec2> Position(int x, int y) const;
 
   // True if some pixels of the LF image have no ray, so that each position has to be tested.

@@ -1,5 +1,5 @@
-// Finds the positions in an LF image that consecutive elements look at. Internal to collection.
-// Highway includes this file once for each instruction set.
+// Finds the positions in an LF image where the rays of consecutive elements were recorded. Internal
+// to collection. Highway includes this file once for each instruction set.
 #if defined(LF_COLLECTION_GATHER_PLACES_SIMD_INL_H_) == \
     defined(HWY_TARGET_TOGGLE)  // NOLINT: Highway's guard
 #ifdef LF_COLLECTION_GATHER_PLACES_SIMD_INL_H_
@@ -24,19 +24,21 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr int kWeightBits = 8;
-constexpr int kOne = 1 << kWeightBits;  // the whole weight
+constexpr int kOne = 1 << kWeightBits;  // sum of the weights along x, or along y
 
-// Values are taken less this, because one instruction multiplies signed numbers and adds pairs of
-// products.
+// kMiddle is subtracted from the values of pixels, because the instruction that multiplies and adds
+// pairs of products needs signed numbers.
 constexpr uint16_t kMiddle = 0x8000;
 
-// The upper left of the four pixels for consecutive elements, and the weights.
+// For each of consecutive elements: the upper left one of the four pixels around its ray, as an
+// index into the loaded rectangle, and the weights of the pixels.
 struct Places {
   static constexpr int kRoom = Segment::kMaxCount + kLanes;
   HWY_ALIGN int32_t pixel[kRoom];
   HWY_ALIGN uint32_t left_right[kRoom];  // weights of left and right pixels, 16 bits each
-  HWY_ALIGN uint32_t lower[kRoom];
-  // Only for kMosaic: x % 2 + 2 (y % 2) of the upper left pixel (x, y) of the LF image.
+  HWY_ALIGN uint32_t lower[kRoom];       // weights of the lower pixels
+  // Only for kMosaic: x % 2 + 2 (y % 2), where (x, y) is that upper left pixel, counted in the
+  // whole LF image.
   HWY_ALIGN int32_t phase[kRoom];
 };
 
@@ -45,22 +47,22 @@ struct Places {
 // overflow.
 constexpr float kWhole = 12582912;
 
-// One coordinate: the pixel before the position, counted from `begin`, and the distance from that
-// pixel in 1/256.
+// One coordinate of a position: the last pixel whose centre is not behind the position, counted
+// from the first pixel of the loaded rectangle, and the distance from this centre in 1/256 px.
 struct Coordinate {
   hn::Vec<LaneI> pixel;
   hn::Vec<LaneI> weight;
 };
 
-// Finds a coordinate within pixels [begin, end).
+// Computes one coordinate of positions. Pixels [begin, end) are loaded.
 template <int kDegree>
 class CoordinateFinder {
  public:
   HWY_ATTR HWY_INLINE CoordinateFinder(const float (&polynomial)[Segment::kTerms], int32_t base,
                                        int begin, int end)
       : base_((base - begin) * kOne - std::bit_cast<int32_t>(kWhole)), last_(end - begin - 1) {
-    // The polynomial counts in 1/256 from the centre of pixel `begin`, plus 1/2 to round half up.
-    // Multiplying by 256 is exact.
+    // The value of polynomial_ is in 1/256 px, from the centre of pixel `base`, plus 1/2 so that
+    // Floor() rounds half up. Multiplying by 256 is exact.
     for (int power = 0; power < Segment::kTerms; ++power)
       polynomial_[power] = polynomial[power] * kOne;
     polynomial_[0] += 0.5F - 0.5F * kOne;
@@ -71,7 +73,7 @@ class CoordinateFinder {
     const auto place = PolynomialLanes<kDegree>(polynomial_).At(t);
     const auto whole = hn::BitCast(di, hn::Add(hn::Floor(place), hn::Set(LaneF(), kWhole)));
     const auto found = hn::Add(whole, hn::Set(di, base_));
-    // A position that rounding has moved beyond the pixels is put on their border.
+    // A position that rounding has moved beyond the outermost pixel centres is moved back to them.
     const auto position = hn::Min(hn::Max(found, hn::Zero(di)), hn::Set(di, last_ * kOne));
     const auto pixel = hn::Min(hn::ShiftRight<kWeightBits>(position), hn::Set(di, last_ - 1));
     return {pixel, hn::Sub(position, hn::ShiftLeft<kWeightBits>(pixel))};
@@ -79,7 +81,7 @@ class CoordinateFinder {
 
  private:
   float polynomial_[Segment::kTerms];
-  int32_t base_;  // less the bits of kWhole
+  int32_t base_;  // pixel `base` from `begin` in 1/256 px, less the bits of kWhole
   int32_t last_;
 };
 
@@ -92,7 +94,7 @@ HWY_ATTR void FindPlaces(const Segment& s, int begin, int count, const PixelRect
   const CoordinateFinder<kDegree> x_finder(s.x_poly, s.base_x, rect.x_begin, rect.x_end);
   const CoordinateFinder<kDegree> y_finder(s.y_poly, s.base_y, rect.y_begin, rect.y_end);
   const auto width = hn::Set(di, rect.width());
-  // kNearest adds half before it cuts the weight to kOne or 0.
+  // kNearest rounds a weight to kOne or 0: it adds half of kOne and keeps only the bit of kOne.
   const bool is_nearest = filter == PixelFilter::kNearest;
   const auto half = hn::Set(di, is_nearest ? kOne / 2 : 0);
   const auto kept_bits = hn::Set(di, is_nearest ? kOne : -1);

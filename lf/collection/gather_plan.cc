@@ -1,5 +1,5 @@
-// Finds which elements of a row get a ray, and from which position in the LF image. If an element
-// takes the mean of several rays, the elements here are those of the finer plate.
+// Finds which elements of a row get a ray, and from which position in the LF image. If an element's
+// ray is the mean of several rays, "element" means an element of the finer plate in this file.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -16,10 +16,10 @@ namespace {
 // focus plane that the element sees, and d = +-(X - c) is the direction of its ray, forward.
 struct GatherForms {
   PixelForm plane;       // > 0 where X is before the lens
-  PixelForm forward;     // f.(X - c), times something positive; its sign is that of d
+  PixelForm forward;     // f.(X - c) times a positive number; its sign is the +- of d
   PixelForm lens_right;  // lens position = (lens_right e, lens_up e) / (forward e)
   PixelForm lens_up;
-  PixelForm across_x;  // X - c in axes of the LF camera, times K for pinholes: homogeneous pixels
+  PixelForm across_x;  // X - c in axes of the LF camera; without distortion times K
   PixelForm across_y;
   PixelForm depth;
 };
@@ -29,7 +29,7 @@ GatherForms MakeForms(const PinholeCamera& lf_camera, const RenderCamera& render
   const Vec3& n = render_camera.focus_plane.normal;
   const Vec3 offset = lf_camera.CentreWorld() - lens.CentreWorld();
   const Vec3 f = lens.ForwardWorld();
-  // n.(X - c') for the points of the focus plane.
+  // n.(X - c'), the same for all points X of the focus plane.
   const double distance = render_camera.focus_plane.offset_w - n.dot(lens.CentreWorld());
   const double sign = distance < 0 ? -1 : 1;
   // d' = direction e with f.d' = 1;  X - c' = d' distance / n.d'
@@ -50,8 +50,8 @@ GatherForms MakeForms(const PinholeCamera& lf_camera, const RenderCamera& render
   return forms;
 }
 
-// Conditions for the elements whose forward form has this sign. With lens distortion they leave out
-// the borders of the image.
+// Returns forms that are at most 0 for every accepted element, among elements whose forward form
+// has this sign. With lens distortion, there are no forms for the borders of the LF image.
 std::vector<PixelForm> HalfPlanes(const GatherForms& forms, const Intrinsics& k,
                                   const Aperture& aperture, int sign) {
   std::vector<PixelForm> half_planes = {-forms.plane, -sign * forms.forward};
@@ -72,7 +72,7 @@ std::vector<PixelForm> HalfPlanes(const GatherForms& forms, const Intrinsics& k,
 
 class GatherPlanner {
  public:
-  // finer  the render camera, with the finer plate of `sampling`
+  // finer the render camera with the finer plate of `sampling`
   GatherPlanner(const PinholeCamera& lf_camera, const RenderCamera& finer,
                 const GatherSampling& sampling, GatherPlan memory)
       : k_(lf_camera.intrinsics),
@@ -83,8 +83,8 @@ class GatherPlanner {
         plan_(std::move(memory)) {
     for (const int side : {0, 1})
       rows_.half_planes[side] = HalfPlanes(forms_, k_, finer.aperture, side == 0 ? -1 : 1);
-    // All rays of a camera in the lens plane cross it at one point. If that is near the rim, the
-    // ray model decides for a whole span at its ends.
+    // All rays of an LF camera in the lens plane cross this plane at one point. If the point is
+    // near the rim, the ray model decides about each span by its ends.
     const bool is_disk = finer.aperture.blades == 0;
     if (is_disk && LiesInLensPlane(lf_camera, finer))
       rows_.model_decides = !IsSurelyInDisk(lf_camera, finer);
@@ -122,7 +122,8 @@ class GatherPlanner {
   }
 
  private:
-  // Appends the elements that the LF image holds, among elements whose rays pass the lens.
+  // Appends the elements of [x_begin, x_end) in row y whose rays the LF image recorded. The caller
+  // has checked that these rays pass through the lens.
   void AddDistorted(int y, int x_begin, int x_end) {
     const double sign = Value(forms_.forward, x_begin + 0.5, y + 0.5) < 0 ? -1 : 1;
     const auto position = [&](double x) -> std::optional<Vec2> {
@@ -142,8 +143,9 @@ class GatherPlanner {
     }
   }
 
-  // Appends the elements of a segment whose rays the LF image holds. A segment across the image's
-  // border is halved until few elements are left, for which the ray model is asked.
+  // Appends the elements of a segment whose rays the LF image recorded. A segment that may cross
+  // the border of the image is halved until few elements are left; the ray model then decides about
+  // each of them.
   void AddParts(const Segment& segment) {
     const PositionRange x = RangeOf(segment.x_poly, segment.t_begin, segment.count);
     const PositionRange y = RangeOf(segment.y_poly, segment.t_begin, segment.count);
@@ -173,7 +175,8 @@ class GatherPlanner {
     return part;
   }
 
-  // Adjacent parts of one segment share its polynomials, and are joined again.
+  // Appends a part of a segment. Joins it to the previous part of the same segment if they are
+  // adjacent, because they share the polynomials.
   void AppendPart(const Segment& part) {
     if (part.x_begin == part_end_)
       plan_.segments.back().count += part.count;
@@ -190,9 +193,9 @@ class GatherPlanner {
   RowSpans rows_;
   GatherPlan plan_;
   int width_, height_;          // size of the finer plate
-  std::vector<RowSpan> spans_;  // spans of the row
-  std::vector<Segment> found_;  // segments of the span
-  int part_end_ = -1;           // end of the last part of the segment
+  std::vector<RowSpan> spans_;  // spans of the current row
+  std::vector<Segment> found_;  // segments of the current span
+  int part_end_ = -1;           // end of the part appended last; -1 at a new segment
 };
 
 }  // namespace

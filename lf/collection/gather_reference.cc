@@ -14,8 +14,9 @@ namespace lf {
 
 namespace {
 
-// Returns one colour, from the pixels around and the distances in 1/256 from the upper left one of
-// the nearest four. pixel(dx, dy) counts from that one.
+// Returns the value of a ray in one colour, interpolated between the four nearest pixels. `right`
+// and `down` are its distances from the upper left of these, in 1/256 px. pixel(dx, dy) returns the
+// value of the pixel dx columns to the right of the upper left one and dy rows below it.
 template <class Pixel>
 uint16_t Bilinear(const Pixel& pixel, uint32_t right, uint32_t down) {
   constexpr uint32_t kOne = 256;
@@ -25,7 +26,8 @@ uint16_t Bilinear(const Pixel& pixel, uint32_t right, uint32_t down) {
   return static_cast<uint16_t>((sum + kOne * kOne / 2) / (kOne * kOne));
 }
 
-// Returns value and count. share(dx, dy) is k of mosaic_filter.h.
+// Like Bilinear(), with the shares of mosaic_filter.h. Returns the value of the ray and its count.
+// share(dx, dy) returns k of a pixel.
 template <class Pixel, class Share>
 std::pair<uint16_t, uint32_t> BilinearByShares(const Pixel& pixel, const Share& share,
                                                uint32_t right, uint32_t down) {
@@ -85,7 +87,7 @@ std::optional<RgbRay> InterpolatePixels(const LfPixels& pixels, int width_px, in
   LF_DCHECK(pixels.bayer == BayerPattern::kNone);
   const double left = std::floor(x_px - 0.5), top = std::floor(y_px - 0.5);
   if (!(left >= 0 && left + 1 < width_px && top >= 0 && top + 1 < height_px)) return std::nullopt;
-  // In 1/256, from the centre of the first pixel of the image.
+  // The position in 1/256 px, counted from the centre of the upper left pixel of the image.
   constexpr int64_t kOne = 256;
   const auto x = static_cast<int64_t>(std::floor((x_px - 0.5) * kOne + 0.5));
   const auto y = static_cast<int64_t>(std::floor((y_px - 0.5) * kOne + 0.5));
@@ -100,7 +102,8 @@ std::optional<RgbRay> InterpolatePixels(const LfPixels& pixels, int width_px, in
   const int column = image_column - pixels.rect.x_begin, row = image_row - pixels.rect.y_begin;
   LF_CHECK(column >= 0 && column + 1 < pixels.rect.width() && row >= 0 &&
            row + 1 < pixels.rect.height());
-  // True if the four pixels, and `outer` more on each side, are all there.
+  // True if the four pixels, and `outer` more rows and columns on each side, are all loaded and
+  // unmasked.
   const auto has_all = [&](int outer) {
     if (column < outer || column + 1 + outer >= pixels.rect.width() || row < outer ||
         row + 1 + outer >= pixels.rect.height())

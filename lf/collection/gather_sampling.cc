@@ -22,8 +22,7 @@ double Magnification(const PinholeCamera& lf_camera, const RenderCamera& render_
   for (const double v : {0.1, 0.5, 0.9})
     for (const double u : {0.1, 0.5, 0.9}) {
       const double x = u * plate.width_px, y = v * plate.height_px;
-      // Returns the position where the LF camera records the point of the focus plane that is seen
-      // there.
+      // Returns the position in the LF image of the focus point of plate position (x + dx, y + dy).
       const auto at = [&](double dx, double dy) -> std::optional<Vec2> {
         const std::optional<Vec3> point = FocusPointOfElement(render_camera, x + dx, y + dy);
         if (!point) return std::nullopt;

@@ -1,5 +1,5 @@
-// How an element reads an LF image in *bilinear* (doc/ray.md, "What is added"): through which
-// filter, and at how many positions.
+// Decides how an element samples an LF image in *bilinear* (doc/ray.md, "What is added"): with
+// which filter, and at how many positions.
 #pragma once
 
 #include "lf/camera/pinhole.h"
@@ -7,17 +7,18 @@
 
 namespace lf {
 
-// Between LF pixels a ray takes
-//   kNearest   the value of the nearest pixel
-//   kBilinear  the mean of four pixels
-//   kBicubic   sixteen pixels, by Catmull and Rom's cubics: restores some of what cameras blur over
-//              a pixel, at three times the cost. Takes four if the outer pixels are not all in the
-//              image and unmasked
-//   kMosaic    sixteen pixels, or four where kAuto takes four. In RGB pixels made from a mosaic, a
-//              recorded colour counts more than an interpolated one (mosaic_filter.h), and rays
-//              count differently in each colour: up to kRecordedShare times
-//   kAuto      as kBicubic, but as kBilinear if an element takes kBilinearFrom x kBilinearFrom
-//              samples or more, whose mean hides the difference
+// Filters that compute the value of a ray from the LF pixels around it:
+//   kNearest   takes the value of the nearest pixel
+//   kBilinear  interpolates linearly between four pixels
+//   kBicubic   interpolates between sixteen pixels by Catmull and Rom's cubics. This restores some
+//              of the sharpness that is lost because a camera averages over each pixel, and takes
+//              three times as long. If one of the outer twelve pixels is outside the image or
+//              masked, the ray is bilinear
+//   kMosaic    is for RGB pixels made from a mosaic. It uses sixteen pixels, or four where kAuto
+//              does. A recorded colour counts more than an interpolated one (mosaic_filter.h), and
+//              the ray adds a count of 1 to kRecordedShare to each colour
+//   kAuto      is kBicubic, or kBilinear if an element has kBilinearFrom x kBilinearFrom samples or
+//              more, because their mean hides the difference
 enum class PixelFilter { kAuto, kNearest, kBilinear, kBicubic, kMosaic };
 
 // Returns "auto", "nearest", "bilinear", "bicubic" or "mosaic".
@@ -25,32 +26,34 @@ const char* NameOf(PixelFilter filter);
 
 inline constexpr int kBilinearFrom = 3;
 
-// LF images that are finer by no more than this factor are read at one position per element.
+// If LF pixels are finer than elements by at most this factor, an element samples one position.
 inline constexpr double kFinerAtMost = 1.25;
-inline constexpr int kMostSamples = 16;
+inline constexpr int kMostSamples = 16;  // along each edge of an element
 
-// Returns elements per LF pixel, along an edge: the square root of the area that an LF pixel covers
-// on the plate. This is the smallest value at those of nine places of the plate that the LF image
-// holds (or at all nine, if it holds none). 1 if nothing can be said.
+// Returns the magnification, the number of elements per LF pixel along an edge: the square root of
+// the area, in elements, that an LF pixel covers on the plate. It is computed at nine points of the
+// plate. The smallest value at the points that the LF image shows is returned, or the smallest of
+// all if it shows none of them; 1 if there is no value.
 double Magnification(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
 
-// True if some pixels of the image have no ray, as beyond the fold of a lens. Such an image is
-// never read by sixteen pixels.
+// True if some pixels of the image have no ray because they lie beyond the fold of the lens
+// distortion. Such an image is never interpolated between sixteen pixels.
 bool MayLackRays(const Intrinsics& k);
 
-// How one LF image is read in one frame.
+// How the elements of one frame sample one LF image.
 struct GatherSampling {
   PixelFilter filter = PixelFilter::kBilinear;  // not kAuto
-  bool is_cubic = false;                        // takes sixteen pixels where all are there
-  // Samples along each edge of an element. Its ray is the mean of samples^2 evenly spaced rays, or
-  // of those that exist. The number says how many times smaller than an element LF pixels are,
-  // rounded up; at most kMostSamples.
+  bool is_cubic = false;  // interpolates between sixteen pixels where possible
+  // Number of samples along each edge of an element: the number of LF pixels along an edge, rounded
+  // up, at most kMostSamples; 1 if it is at most kFinerAtMost. The element's ray is the mean of
+  // samples^2 evenly spaced rays, or of those of them that exist.
   int samples = 1;
 };
 GatherSampling SamplingOf(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
                           PixelFilter filter);
 
-// Returns the camera with the same picture on elements that are `samples` times finer.
+// Returns the render camera with a plate that has `samples` times as many rows and columns of
+// elements for the same picture.
 RenderCamera WithFinerPlate(const RenderCamera& render_camera, int samples);
 
 }  // namespace lf

@@ -13,11 +13,11 @@
 namespace lf {
 namespace {
 
-// A pair whose LF pixels are `magnification` times as large as elements.
+// Returns a pair whose LF pixels are `magnification` times as large as elements.
 testing::CameraPair PairOf(double magnification) {
   testing::CameraPair pair = testing::ParallelPair(3, 2, 0.01, 0.05);
   const Intrinsics& plate = pair.render_camera.pinhole.intrinsics;
-  // For parallel cameras it is the ratio of focal lengths, at any depth.
+  // For parallel cameras, the magnification is the ratio of focal lengths, at any depth.
   const double focal = plate.fx_px / magnification;
   const int width = static_cast<int>(plate.width_px / magnification) + 40;
   const int height = static_cast<int>(plate.height_px / magnification) + 40;
@@ -55,8 +55,8 @@ TEST(GatherSampling, TakesAsManySamplesAsLfPixelsAreSmaller) {
   EXPECT_EQ(of(2, PixelFilter::kNearest).filter, PixelFilter::kNearest);
 }
 
-// Noise of LF pixels that are much finer than elements averages out. One sample would keep all of
-// it.
+// Noise of LF pixels that are much finer than elements averages out. If an element had one sample,
+// all of the noise would be left.
 TEST(GatherSampling, FinePixelsAverage) {
   const testing::CameraPair pair = PairOf(0.25);
   const LfPixels pixels = testing::NoisePixels(testing::WholeImage(pair), BayerPattern::kNone, 1);
@@ -131,9 +131,9 @@ TEST(PixelFilter, WhatAMosaicRecordedCountsMore) {
   };
   EXPECT_EQ(red_at(3.5, 2.5), std::pair(9000, 8u));
   EXPECT_EQ(red_at(4.5, 2.5), std::pair(0, 1u));
-  EXPECT_EQ(red_at(4, 2.5), std::pair(8000, 5u));  // 8 of 9; 4.5 rays
-  EXPECT_EQ(red_at(4, 3), std::pair(6545, 3u));    // 8 of 11; 2.75 rays
-  // At these positions, sixteen pixels have the same shares as four.
+  EXPECT_EQ(red_at(4, 2.5), std::pair(8000, 5u));  // 9000 * 8 / 9; 9 / 2 rays
+  EXPECT_EQ(red_at(4, 3), std::pair(6545, 3u));    // 9000 * 8 / 11; 11 / 4 rays
+  // At these positions, recorded pixels have the same total share of sixteen pixels as of four.
   EXPECT_EQ(red_at(3.5, 2.5, true), std::pair(9000, 8u));
   EXPECT_EQ(red_at(4, 3, true), std::pair(6545, 3u));
   EXPECT_EQ(red_at(3, 2.5, true), std::pair(8000, 5u));

@@ -1,7 +1,7 @@
-// The inner loop of the estimator *bilinear*, for every instruction set from one source (Highway).
-// Polynomials give positions, a vector at a time. Four or sixteen pixels, each of four lanes of 16
-// bits, are then mixed in integers and added to the element. There is no fused multiply-add, so
-// that every target gives the same bits.
+// The inner loop of the estimator *bilinear*, compiled for every instruction set from one source
+// (Highway). Polynomials are evaluated for a vector of positions at a time. Four or sixteen pixels,
+// each of four lanes of 16 bits, are then mixed in integers and added to the element. There is no
+// fused multiply-add, so that results are bit-identical on every instruction set.
 #include <algorithm>
 #include <type_traits>
 #include <vector>
@@ -13,7 +13,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lf/collection/gather_simd.cc"  // NOLINT: as Highway wants it
 #include <hwy/foreach_target.h>
-// These come after foreach_target.h.
+// These must be included after foreach_target.h.
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
@@ -29,8 +29,8 @@ namespace lf {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// True if all rays are so far from the border of `rect` that it holds the sixteen pixels around
-// each.
+// True if `rect` holds the sixteen pixels around each of the rays [begin, begin + count) of the
+// segment. May be false although it does.
 bool IsInner(const Segment& s, int begin, int count, const PixelRect& rect) {
   const float t = s.t_begin + static_cast<float>(begin);
   const auto is_inner = [](const PositionRange& range, int base, int pixel_begin, int pixel_end) {
@@ -42,7 +42,8 @@ bool IsInner(const Segment& s, int begin, int count, const PixelRect& rect) {
          is_inner(RangeOf(s.y_poly, t, count), s.base_y, rect.y_begin, rect.y_end);
 }
 
-// How rays are made of pixels.
+// The pixels that a ray is interpolated between: four or sixteen, with or without the shares of a
+// mosaic.
 enum class Reading { kFour, kSixteen, kMosaicFour, kMosaicSixteen };
 
 constexpr bool IsMosaic(Reading reading) { return reading >= Reading::kMosaicFour; }
@@ -60,7 +61,7 @@ template <Reading kReading>
 using ElementOf =
     std::conditional_t<IsMosaic(kReading), TileSums::CountedElement, TileSums::Element>;
 
-// Adds rays of the pixels at `places`, ray i to element i.
+// Adds rays that are interpolated between the pixels at `places`: ray i to element i.
 template <Reading kReading, class Weights>
 class RayAdder {
  public:
@@ -76,20 +77,22 @@ class RayAdder {
         cubics_(TablesOfCubics()),
         mosaic_(TableOfMosaic(pixels.recorded)) {}
 
-  // Returns the upper left one of four pixels.
+  // Returns the upper left one of the four pixels of ray i.
   HWY_INLINE const uint16_t* Upper(int i) const {
     LF_DCHECK(places_.pixel[i] >= 0 && places_.pixel[i] < width_ * (height_ - 1) - 1);
     return values_ + static_cast<ptrdiff_t>(places_.pixel[i]) * LfPixels::kRgbLanes;
   }
 
-  // Prefetches one cache line of a later row. The processor does not foresee rows, which are too
-  // far apart, and can wait for few lines at a time, so that lines are asked for one by one.
+  // Prefetches one cache line of a row below. The processor does not prefetch rows by itself,
+  // because they are too far apart. It can have few pending requests at a time, so that lines are
+  // requested one by one.
   HWY_INLINE void FetchAhead(int i) const {
     constexpr int kRowsAhead = 2;
     hwy::Prefetch(Upper(i) + (1 + kRowsAhead) * row_values_);
   }
 
-  // True if the four pixels, and `outer` more on each side, are in the image and not masked.
+  // True if the four pixels of ray i, and `outer` more rows and columns on each side, are loaded
+  // and not masked.
   bool HasAll(int i, int outer) const {
     const int x = places_.pixel[i] % width_, y = places_.pixel[i] / width_;
     if (x < outer || x + 1 + outer >= width_ || y < outer || y + 1 + outer >= height_) return false;
@@ -102,7 +105,8 @@ class RayAdder {
     return unmasked == taps * taps;
   }
 
-  // AddOfFour() adds one ray of four pixels; Add() adds one of as many as `kReading` says.
+  // AddOfFour() adds ray i, interpolated between four pixels. Add() interpolates between the number
+  // of pixels that `kReading` says.
   HWY_ATTR HWY_INLINE void AddOfFour(int i) const {
     if constexpr (IsMosaic(kReading))
       AddMosaicRay(mosaic_, places_, i, Upper(i), row_values_, weights_, sums_);
@@ -120,7 +124,7 @@ class RayAdder {
       AddOfFour(i);
   }
 
-  // Adds kCount rays.
+  // Adds rays [i, i + kCount).
   template <int kCount>
   HWY_ATTR HWY_INLINE void AddAll(int i) const {
     if constexpr (kReading == Reading::kFour)
@@ -141,8 +145,8 @@ class RayAdder {
   const MosaicTable& mosaic_;
 };
 
-// Adds the rays of elements [begin, begin + count) of the segment; weights and sums begin with the
-// first of them. Returns the number of rays.
+// Adds the rays of elements [begin, begin + count) of the segment; `weights` and `sums` begin at
+// the first of these elements. Returns the number of rays.
 template <Reading kReading, bool kMayBeMasked, class Weights>
 HWY_ATTR uint32_t GatherPart(const Segment& s, int begin, int count, PixelFilter filter,
                              const LfPixels& pixels, const Weights& weights,
@@ -182,7 +186,7 @@ auto GatherPartOf(const LfPixels& pixels) {
                            : GatherPart<kReading, false, Weights>;
 }
 
-// Adds one ray per element.
+// Adds one ray to each element that has one. Returns the number of rays.
 template <Reading kReading, class Weights>
 HWY_ATTR uint64_t GatherRays(const GatherPlan& plan, const LfPixels& pixels, const Weights& weights,
                              const PixelRect& tile, int stride, ElementOf<kReading>* elements) {
@@ -203,8 +207,9 @@ HWY_ATTR uint64_t GatherRays(const GatherPlan& plan, const LfPixels& pixels, con
   return rays;
 }
 
-// Adds the mean of several rays per element. A row of finer elements adds up the rays of a row of
-// elements first.
+// Adds the mean of several rays to each element. The rays of a row of elements are first summed in
+// a row of finer elements, `samples` for each element. Returns the number of elements that have a
+// ray.
 template <Reading kReading, class Weights>
 HWY_ATTR uint64_t GatherMeans(const GatherPlan& plan, const LfPixels& pixels,
                               const Weights& weights, const PixelRect& tile, int stride,
@@ -213,7 +218,8 @@ HWY_ATTR uint64_t GatherMeans(const GatherPlan& plan, const LfPixels& pixels,
   const int samples = plan.sampling.samples;
   thread_local std::vector<ElementOf<kReading>> fine;
   uint64_t rays = 0;
-  // A chunk is so small that the fine row and its places stay in the first level cache.
+  // The row is cut into chunks, so that the finer elements and the places of a chunk stay in the
+  // first level cache.
   const int chunk = std::max(16, 256 / samples);
   for (int x_begin = tile.x_begin; x_begin < tile.x_end; x_begin += chunk) {
     const int x_end = std::min(tile.x_end, x_begin + chunk);
@@ -254,7 +260,7 @@ template <class Weights>
 uint64_t GatherBy(const GatherPlan& plan, const LfPixels& pixels, const Weights& weights,
                   uint32_t most_weight, TileSums* sums) {
   const Reading reading = ReadingOf(plan.sampling);
-  // There is at most one ray for each element.
+  // Each element gets at most one ray, so that the sums need room for only one.
   if (IsMosaic(reading)) {
     const auto gather = reading == Reading::kMosaicSixteen
                             ? GatherAs<Reading::kMosaicSixteen, Weights>

@@ -1,4 +1,5 @@
-// Compares both back ends of the estimator *bilinear*, also with pictures known in closed form.
+// Compares the two back ends of the estimator *bilinear* with each other, and with pictures known
+// in closed form.
 #include "lf/collection/gather.h"
 
 #include <gtest/gtest.h>
@@ -76,9 +77,9 @@ TEST(Gather, TheFastBackEndAgreesWithTheReference) {
           differing_counts += !same_count;
           if (!same_count || a == b) continue;
           ++differing_values;
-          if (filter == PixelFilter::kNearest) continue;  // it may be another pixel
-          // The tolerance is one step of the weights between neighbours that differ by the whole
-          // range.
+          if (filter == PixelFilter::kNearest) continue;  // the nearest pixel may be another
+          // The tolerance is one step (1/256) of the weight along x and one along y, between
+          // neighbours that differ by the whole range.
           const double steps = is_mosaic ? 1.0 * kRecordedShare : 1;
           EXPECT_NEAR(Mean(a), Mean(b), steps * 65535 / 128);
           EXPECT_LE(std::max(a.count, b.count) - std::min(a.count, b.count), 1u);
@@ -90,7 +91,7 @@ TEST(Gather, TheFastBackEndAgreesWithTheReference) {
   EXPECT_GT(scenes_of_mosaics, 15u);
   EXPECT_GT(total, 150000u);
   EXPECT_LE(static_cast<double>(differing_counts), 1e-5 * static_cast<double>(total));
-  // Single precision places one weight in some hundreds on the other side of a step.
+  // Single precision rounds a few weights in a thousand to another step than the reference does.
   EXPECT_LE(static_cast<double>(differing_values), 5e-3 * static_cast<double>(total));
 }
 
@@ -131,7 +132,8 @@ TEST(Gather, AnyCutIntoTilesGivesTheSameBits) {
 }
 
 // A wall in focus whose radiance is linear in the plane: bilinear interpolation is exact, so every
-// element shows the wall where it looks, whatever the lens of the LF camera does to its image.
+// element has the radiance of the wall at its focus point, whatever the lens distortion of the LF
+// camera is.
 TEST(Gather, AWallInFocusReproducesItself) {
   for (const Distortion& distortion :
        {Distortion{}, Distortion{DistortionModel::kRadialTangential, {-0.2, 0.05, 0.002, -0.001}},
@@ -170,8 +172,8 @@ TEST(Gather, AWallInFocusReproducesItself) {
           continue;
         ++tested;
         const Vec3 point = *FocusPointOfElement(pair.render_camera, x + 0.5, y + 0.5);
-        // A pixel is 100 units of radiance wide. The tolerance is half a step of the weights, and
-        // rounding.
+        // From one LF pixel to the next, radiance changes by up to 100. The tolerance is half a
+        // step of the weights, and rounding.
         EXPECT_NEAR(static_cast<double>(element.sum), wall(point), 2.5) << x << ", " << y;
       }
     EXPECT_GT(tested, 800u);
@@ -207,7 +209,8 @@ TEST(Gather, BicubicTakesTheFourWhereTheSixteenAreNot) {
   EXPECT_FALSE(is_bilinear(4.2, 3.3));
   pixels.Mask(2, 1);
   EXPECT_TRUE(is_bilinear(4.2, 3.3));
-  // Both back ends are compared with masks, and most images are so small that they are all border.
+  // Both back ends are compared on images with masked pixels. Most images are so small that every
+  // pixel is near the border.
   for (const int size : {2, 3, 4, 5, 40}) {
     testing::CameraPair pair = testing::ParallelPair(1, 3, 0.01, 0.05);
     Intrinsics& small = pair.lf_camera.intrinsics;

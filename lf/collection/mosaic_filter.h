@@ -1,18 +1,18 @@
-// The filter *mosaic*: for each colour, pixels that recorded it count more than pixels whose colour
-// was interpolated (doc/ray.md, "What is added"). It calculates in integers and single precision,
-// so that results have the same bits everywhere. Internal to collection.
+// The filter *mosaic*: for each colour, pixels that recorded this colour count more than pixels for
+// which it was interpolated (doc/ray.md, "What is added"). It calculates in integers and single
+// precision, so that results are bit-identical everywhere. Internal to collection.
 //
-// k is kRecordedShare, or 1 if the colour was interpolated.
+// The share k of a pixel in a colour is kRecordedShare, or 1 if the colour was interpolated there.
 //
 // The columns of sixteen pixels are mixed as in cubic_weights.h, but with shares,
 //   column_k = round(sum_i d_i k_ik (p_ik - 2^15) / 2^10),   d = CubicTapsAt(down, 11)
 //   S = sum_k c_k column_k,  D = sum_k c_k sum_i d_i k_ik,   c = CubicTapsAt(right, 11)
-// and the ray's value is 2^10 S / D + 2^15, rounded half up, clipped to 16 bits. It counts as
-// D / 2^22 rays, rounded half up: from 1 to kRecordedShare, because the taps of every second pixel
-// add up to something from 0 to 1. 32 bits hold all of it.
+// and the ray's value is 2^10 S / D + 2^15, rounded half up, clipped to 16 bits. It counts as D /
+// 2^22 rays, rounded half up: from 1 to kRecordedShare, because the weights of every second pixel
+// add up to a number from 0 to 1. All sums fit into 32 bits.
 //
-// With four pixels, at `right` and `down` / 256 from the upper left one, the weights a_x a_y add up
-// to 2^16, and
+// A ray of four pixels lies `right` / 256 px to the right of the upper left one and `down` / 256 px
+// below it. The bilinear weights a_x a_y of the pixels add up to 2^16, and each pixel gets
 //   t = floor(a_x a_y k / 2^9).
 // With D = sum t and S = sum t p, at most 2^10 and 2^26, the ray's value is S / D, rounded half
 // up, and it counts as D / 2^7 rays, rounded half up.
@@ -32,32 +32,33 @@ inline constexpr int kMosaicColumnShift = 10;
 inline constexpr int kMosaicCountBits = 2 * kMosaicTapBits;
 
 inline constexpr int kShareShift = 9;
-inline constexpr int kShareBits = 7;  // a ray of four pixels counts D / 2^7 rays
+inline constexpr int kShareBits = 7;  // D / 2^kShareBits is the count of a ray of four pixels
 
-// Returns k of colour `channel` at pixel (x, y) of an LF image whose mosaic had this pattern.
-// kNone: all colours were recorded everywhere.
+// Returns the share k of pixel (x, y) in colour `channel`, for an LF image whose mosaic had the
+// pattern `recorded`. kNone means that all pixels recorded all colours.
 inline uint32_t RecordedShareOf(BayerPattern recorded, int x, int y, int channel) {
   const bool is_recorded =
       recorded == BayerPattern::kNone || BayerChannel(recorded, x, y) == channel;
   return is_recorded ? kRecordedShare : 1;
 }
 
-// Returns the value of a ray of sixteen pixels.
+// Returns the value of a ray of sixteen pixels, from S and D.
 inline uint32_t CubicMosaicValue(int32_t sum, int32_t count) {
   const float quotient = static_cast<float>(sum) / static_cast<float>(count);
   const float value = quotient * (1 << kMosaicColumnShift) + 32768.5F;
   return static_cast<uint32_t>(std::clamp(value, 0.0F, 65535.0F));
 }
 
-// Returns the value of a ray of four pixels, or of several rays: sum / count.
+// Returns the value of a ray of four pixels, or of the mean of several rays: sum / count, rounded
+// half up.
 inline uint32_t SharedMean(uint32_t sum, uint32_t count) {
   return static_cast<uint32_t>(static_cast<float>(sum) / static_cast<float>(count) + 0.5F);
 }
 
-// Returns what an element counts in a colour: the mean of the rays that it is made of, rounded half
-// up.
-//   count  what all these rays count in this colour
-//   most   kRecordedShare for each ray
+// Returns the count of an element's ray in one colour, if it is the mean of several rays: their
+// mean count, rounded half up.
+//   count  the sum of the counts of these rays in this colour
+//   most   kRecordedShare times the number of these rays
 inline uint32_t MeanCount(uint32_t count, uint32_t most) {
   return (count * kRecordedShare + most / 2) / most;
 }

@@ -1,5 +1,5 @@
-// Adds one ray to its element, made of four or sixteen pixels by the shares of mosaic_filter.h.
-// Internal to collection. Highway includes this file once for each instruction set.
+// Adds one ray, interpolated between four or sixteen pixels with the shares of mosaic_filter.h, to
+// its element. Internal to collection. Highway includes this file once for each instruction set.
 #if defined(LF_COLLECTION_MOSAIC_SIMD_INL_H_) == \
     defined(HWY_TARGET_TOGGLE)  // NOLINT: Highway's guard
 #ifdef LF_COLLECTION_MOSAIC_SIMD_INL_H_
@@ -27,17 +27,20 @@ namespace lf {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Tables of one mosaic, by the phase of the upper left pixel of the inner four (Places). The last
-// lane, which counts rays, counts as recorded everywhere.
+// Tables for one Bayer pattern, indexed by the phase (Places::phase) of the upper left one of the
+// inner four pixels. In the last lane, which counts rays, every pixel has the share of a recorded
+// one.
 struct MosaicTable {
-  // Sixteen pixels: for columns 0 and 2, and for columns 1 and 3.
+  // For rays of sixteen pixels. Columns 0 and 2 of the pixels have index 0, columns 1 and 3 have
+  // index 1.
   struct Columns {
-    // d k of rows 0 and 1, and of rows 2 and 3, side by side for each lane.
+    // [column % 2][row / 2]: d k of two successive rows, interleaved for each lane.
     HWY_ALIGN int16_t weights[2][2][8];
     HWY_ALIGN int32_t counts[2][4];  // d k of all four rows added up
   };
-  Columns columns[4][kCubicSteps + 1];  // by steps down
-  // Four pixels: 2 k of the left and the right pixel, side by side for each lane, for both rows.
+  Columns columns[4][kCubicSteps + 1];  // [phase][down]
+  // For rays of four pixels, [phase][row]: 2 k of the left and the right pixel, interleaved for
+  // each lane.
   HWY_ALIGN uint16_t rows[4][2][8];
 
   explicit MosaicTable(BayerPattern recorded) {
@@ -57,7 +60,8 @@ struct MosaicTable {
           for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane) {
             of_step.counts[column][lane] = 0;
             for (int row = 0; row < 4; ++row) {
-              // The sixteen pixels begin one pixel before the four, and so at the other phase.
+              // The sixteen pixels begin one column and one row before the four: x and y are odd
+              // there if they are even here.
               const int32_t weight =
                   taps[row] * static_cast<int32_t>(share(x + 1 + column, y + 1 + row, lane));
               of_step.weights[column][row / 2][2 * lane + row % 2] = static_cast<int16_t>(weight);
@@ -77,10 +81,10 @@ inline const MosaicTable& TableOfMosaic(BayerPattern recorded) {
   return tables[static_cast<int>(recorded)];
 }
 
-// a_x a_y k / 2^9 is the upper half of 64 a_x times 2 a_y k.
+// a_x a_y k / 2^9 is the upper half of the 32-bit product of 64 a_x and 2 a_y k.
 constexpr int kSideShift = 16 - kShareShift - 1;
 
-// Each function adds ray i of the places to element i.
+// Each of these functions adds ray i of `places` to element i of `sums`.
 #if HWY_TARGET == HWY_SCALAR
 
 //   upper  the upper left of four pixels
@@ -135,7 +139,7 @@ HWY_INLINE void AddCubicMosaicRay(const CubicTables& cubics, const MosaicTable& 
 
 #else
 
-// Rounds numbers from 0 to 2^22 down.
+// Rounds down. Numbers must be from 0 to 2^22.
 HWY_ATTR HWY_INLINE hn::Vec<hn::Full128<int32_t>> RoundedDown(hn::Vec<hn::Full128<float>> v) {
   const hn::Full128<int32_t> di;
   const hn::Full128<float> df;
@@ -143,7 +147,8 @@ HWY_ATTR HWY_INLINE hn::Vec<hn::Full128<int32_t>> RoundedDown(hn::Vec<hn::Full12
   return hn::Sub(hn::BitCast(di, whole), hn::Set(di, std::bit_cast<int32_t>(kWhole)));
 }
 
-// `value` holds whole numbers of 16 bits, and `rays` what each counts.
+// Adds a ray to element i of `sums`. `value` holds its colours, integers of 16 bits, and `rays` its
+// count in each colour.
 template <class Weights>
 HWY_ATTR HWY_INLINE void AddCounted(hn::Vec<hn::Full128<int32_t>> value,
                                     hn::Vec<hn::Full128<int32_t>> rays, const Weights& weights,

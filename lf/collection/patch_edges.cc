@@ -13,7 +13,7 @@ using Values = std::array<double, kControls>;
 
 constexpr double kSlack_px = 0.01;
 
-// Newton's method squares its error with each step, so that nothing is left to correct after a step
+// Each step of Newton's method squares the error, so that the error is negligible after a step
 // below kLastStep.
 constexpr int kMaxSteps = 8;
 constexpr double kLastStep = 1e-3;
@@ -23,11 +23,11 @@ struct ValueAndSlope {
   double slope;
 };
 
-// Coefficients of the powers of a polynomial, from its values at control points.
+// A polynomial in powers of t, made from its values at control points.
 class Powers {
  public:
   explicit Powers(const Values& values) : c_(values) {
-    // Differences of the values, times binomial coefficients.
+    // The coefficients are differences of the values, times binomial coefficients.
     constexpr double kBinomial[] = {1, 5, 10, 10, 5, 1};
     for (size_t k = 1; k < kControls; ++k)
       for (size_t i = kControls - 1; i >= k; --i) c_[i] -= c_[i - 1];
@@ -42,9 +42,10 @@ class Powers {
   Values c_;
 };
 
-// Searches a root, starting from *root. Returns true if it is one: at `slack` before and behind it,
-// within [0, 1], the function differs from 0 by more than rounding, and has the sign `sign_before`
-// before it and the other behind it.
+// Searches a root by Newton's method, starting from *root, and writes it to *root. Returns true if
+// it is verified: at `slack` before and behind the root (but within [0, 1]) the function differs
+// from 0 by more than `rounding`, with the sign `sign_before` before the root and the opposite sign
+// behind it.
 template <class Function>
 bool FindRoot(const Function& at, double sign_before, double rounding, double slack, double* root) {
   for (int k = 0; k < kMaxSteps; ++k) {
@@ -63,7 +64,8 @@ bool FindRoot(const Function& at, double sign_before, double rounding, double sl
   return sign_before * before > rounding && sign_before * after < -rounding;
 }
 
-// Bounds of the slope along scanlines, and of its derivative.
+// Bounds of the square of the slope of a form along scanlines, and of the absolute value of its
+// second derivative.
 struct Slopes {
   double least_square;
   double largest_square;
@@ -114,9 +116,9 @@ void PatchEdges::AddForm(const PixelForm& form) {
   forms_.push_back({Grid(form, *hull_), RangeOn(*hull_, form).rounding, 0.5});
 }
 
-// The disk's form has the second derivative 2 (right'^2 + up'^2 - radius^2 forward'^2) plus terms
-// with the second derivatives of right, up and forward. If that is above 0, the form has at most
-// two roots.
+// The disk's form, right^2 + up^2 - radius^2 forward^2, has the second derivative 2 (right'^2 +
+// up'^2 - radius^2 forward'^2) plus terms with the second derivatives of right, up and forward. If
+// the sum is positive on the whole patch, the form has at most two roots on each scanline.
 bool PatchEdges::AddDisk(const RowSpans::Disk& disk) {
   const double r2 = disk.radius * disk.radius;
   const Range right = RangeOn(*hull_, disk.right), up = RangeOn(*hull_, disk.up);
@@ -178,7 +180,8 @@ bool PatchEdges::Narrow(const BezierWeights& row, Form* form, Span* span) const 
   return true;
 }
 
-// Narrows the span to the one interval on which the disk's form is below 0.
+// Narrows the span to the one interval on which the disk's form is below 0. Returns false if the
+// ends of this interval cannot be verified.
 bool PatchEdges::Narrow(const BezierWeights& row, Disk* disk, Span* span) const {
   const Values right_values = disk->right.Along(row), up_values = disk->up.Along(row);
   const Values forward_values = disk->forward.Along(row);

@@ -1,5 +1,6 @@
-// Finds the positions where the scanlines of a patch of ideal positions cross edges. They are the
-// ends of the accepted pixels, found without halving arcs. Internal to collection.
+// Finds where the scanlines of a patch of ideal positions cross the edges of lens and plate. The
+// accepted pixels of a scanline end there, so that it need not be halved to find them. Internal to
+// collection.
 #pragma once
 
 #include <array>
@@ -15,31 +16,35 @@ namespace lf {
 
 class PatchEdges {
  public:
-  // The answer for a scanline: pixels outside [begin, end] are not accepted, pixels inside
-  // [sure_begin, sure_end] are accepted, and between them rounding may decide.
+  // The accepted pixels of a scanline: pixels outside [begin, end] are not accepted, pixels inside
+  // [sure_begin, sure_end] are accepted, and rounding may decide about pixels between these bounds.
   struct Pixels {
     double begin, end;
     double sure_begin, sure_end;
   };
 
-  // Forgets what was added. The patch must outlive its use here.
+  // Removes all conditions, and makes `patch` the current patch. It must outlive the calls of
+  // Find().
   void Begin(const IdealPatch& patch);
 
   // Adds the condition form <= 0.
   void AddForm(const PixelForm& form);
 
-  // Adds a disk. Returns false, and adds nothing, if scanlines may cross its rim more than twice.
+  // Adds the condition of a disk. Returns false, and adds nothing, if scanlines may cross its rim
+  // more than twice, or if disk.forward may be 0 or negative on the patch.
   bool AddDisk(const RowSpans::Disk& disk);
 
-  // Returns the pixels of scanline y that all edges leave; none if that is not certain, because a
-  // form both rises and falls, or an edge is crossed too slowly. Scanlines are best asked for from
-  // top to bottom, because each search starts at the root of the one before.
+  // Returns the pixels of scanline y that fulfil all conditions; none if the search fails, because
+  // a form may both rise and fall along the scanline, or changes too slowly where it crosses 0.
+  // Calls are fastest for scanlines from top to bottom, because each search starts at the root on
+  // the previous scanline.
   std::optional<Pixels> Find(int y);
 
  private:
-  using Values = std::array<double, IdealPatch::kControls>;  // at a scanline's control points
+  using Values =
+      std::array<double, IdealPatch::kControls>;  // of a form at a scanline's control points
 
-  // A linear form at the control points of the patch.
+  // The values of a linear form at the control points of the patch.
   struct Grid {
     Grid(const PixelForm& form, const Hull& hull);
     Values Along(const BezierWeights& row) const;
@@ -49,7 +54,7 @@ class PatchEdges {
   struct Form {
     Grid grid;
     double rounding;
-    double root;  // root on the scanline before
+    double root;  // root on the previous scanline
   };
 
   struct Disk {
@@ -59,7 +64,7 @@ class PatchEdges {
     double roots[2];
   };
 
-  // Parameters of a scanline, from 0 to 1.
+  // An interval of the parameter along a scanline, which runs from 0 to 1.
   struct Span {
     double begin = 0;
     double end = 1;
@@ -70,7 +75,7 @@ class PatchEdges {
   bool Narrow(const BezierWeights& row, Disk* disk, Span* span) const;
 
   std::optional<Hull> hull_;
-  double slack_ = 0;  // tolerance of roots
+  double slack_ = 0;  // tolerance of roots, in the parameter along a scanline
   const IdealPatch* patch_ = nullptr;
   std::vector<Form> forms_;
   std::optional<Disk> disk_;

@@ -22,8 +22,8 @@ struct Hull {
       : Hull(std::span(&patch.control[0][0], IdealPatch::kControls * IdealPatch::kControls)) {}
 };
 
-// The least and the largest value that a form can have on a hull. Values closer to 0 than
-// `rounding` may have either sign.
+// The smallest and the largest value that a form can have on a hull. The computed sign of a value
+// closer to 0 than `rounding` may be wrong.
 struct Range {
   double low = 0;
   double high = 0;
@@ -51,7 +51,7 @@ inline Range RangeOn(const Hull& hull, const PixelForm& form) {
   return range;
 }
 
-// Returns the rounding error of right^2 + up^2 - radius^2 forward^2.
+// Returns a bound of the rounding error of right^2 + up^2 - radius^2 forward^2.
 inline double DiskRounding(const Range& right, const Range& up, const Range& forward,
                            double radius) {
   return 10 * kFormRounding *

@@ -18,7 +18,7 @@
 namespace lf {
 namespace {
 
-enum class RayShare { kNone, kSome, kAll };  // share of the rays of an arc or a patch
+enum class RayShare { kNone, kSome, kAll };  // accepted share of the rays of an arc or a patch
 
 // Returns the share of the hull where form <= 0.
 RayShare AtMostZero(const Hull& hull, const PixelForm& form) {
@@ -29,7 +29,7 @@ RayShare AtMostZero(const Hull& hull, const PixelForm& form) {
 
 constexpr int kControls = IdealPatch::kControls;
 
-// De Casteljau's construction: the control points of both sides of t.
+// Writes the control points of the curve's parts before and behind t (De Casteljau's construction).
 void SplitBezier(const Vec3 (&c)[kControls], double t, Vec3 (&left)[kControls],
                  Vec3 (&right)[kControls]) {
   std::copy(std::begin(c), std::end(c), std::begin(right));
@@ -74,11 +74,12 @@ class PatchPlanner {
     int end;
   };
 
-  // The conditions that are not known to hold. A condition that holds on a hull holds on its parts.
+  // The open conditions: those that are not known to hold on a whole hull. A condition that holds
+  // on a hull holds on all its parts.
   struct Conditions {
-    bool sides[2] = {true, true};
-    uint64_t plate[2];  // a bit for each half-plane
-    uint64_t lens;
+    bool sides[2] = {true, true};  // false if no ray is accepted where n.d < 0, n.d > 0
+    uint64_t plate[2];             // for each side, a bit for each half-plane
+    uint64_t lens;                 // a bit for each edge of a polygonal lens
     bool disk;
   };
 
@@ -93,7 +94,7 @@ class PatchPlanner {
     Conditions open = all_conditions_;
     const RayShare share = AcceptedShare(hull, &open);
     if (share == RayShare::kNone) return;
-    // Columns are decided by the whole patch, whatever part of it is asked for.
+    // Columns are fitted to the whole patch, so that positions do not depend on `rect`.
     columns_.clear();
     FitColumns(patch, patch.rect.x_begin, patch.rect.x_end);
     AddRows(patch, patch, share, open);
@@ -112,7 +113,8 @@ class PatchPlanner {
     columns_.push_back({x_begin, x_end, std::move(elements)});
   }
 
-  // Appends the scanlines of `part`, which is a part of `patch`.
+  // Appends the segments of the scanlines of `part`, which is `patch` or some rows of it, with the
+  // accepted share `share` and the open conditions `open`.
   void AddRows(const IdealPatch& part, const IdealPatch& patch, RayShare share,
                const Conditions& open) {
     const PixelRect clip = Intersection(part.rect, rect_);
@@ -153,8 +155,9 @@ class PatchPlanner {
     }
   }
 
-  // Sets the edges that are left to be decided on a part of a patch. False if more than edges is
-  // left.
+  // Sets `edges_` to the open conditions of a part of a patch. Returns false if edges cannot decide
+  // them: because both sides of n.d = 0 are open, or because the disk is open and the LF camera
+  // lies in the lens plane or PatchEdges::AddDisk() refuses the disk.
   bool SetEdges(const IdealPatch& part, const Conditions& open) {
     if (open.sides[0] == open.sides[1]) return false;
     edges_.Begin(part);
@@ -170,8 +173,8 @@ class PatchPlanner {
                                                render_camera_.aperture.radius_w}));
   }
 
-  // Appends the one run of scanline y between edges; the ray model decides where rounding might.
-  // False if the edges cannot tell.
+  // Appends the one run of scanline y between edges, if it is not empty. The ray model decides
+  // about pixels near the edges. Returns false if PatchEdges::Find() fails.
   bool FindRunBetweenEdges(const IdealPatch& patch, int y, const PixelRect& clip) {
     const std::optional<PatchEdges::Pixels> pixels = edges_.Find(y);
     if (!pixels) return false;
@@ -203,7 +206,7 @@ class PatchPlanner {
     }
   }
 
-  // Appends the accepted pixels of `part` of an arc, within [begin, end).
+  // Appends the runs of accepted pixels of `part`, a part of `arc`, within [begin, end).
   void FindRuns(const IdealArc& part, const IdealArc& arc, int begin, int end, Conditions open) {
     if (part.x_begin >= end || part.x_end <= begin) return;
     const RayShare share = AcceptedShare(Hull(part), &open);
@@ -241,8 +244,8 @@ class PatchPlanner {
       runs_.push_back({begin, end});
   }
 
-  // Returns the accepted share of the hull. Reduces `open` to the conditions that not all rays of
-  // the hull fulfil.
+  // Returns the accepted share of the hull. Removes from `open` the conditions that all rays of the
+  // hull are known to fulfil.
   RayShare AcceptedShare(const Hull& hull, Conditions* open) const {
     for (const int side : {0, 1})
       if (open->sides[side] && !Narrow(hull, plate_half_planes_[side], &open->plate[side]))
@@ -260,8 +263,8 @@ class PatchPlanner {
     return on_plate && open->lens == 0 && !open->disk ? RayShare::kAll : RayShare::kSome;
   }
 
-  // Clears the bits of the forms that are at most 0 everywhere. False if a form is above 0
-  // everywhere.
+  // Clears the bits of the forms that are at most 0 on the whole hull. Returns false if a form is
+  // above 0 on the whole hull.
   static bool Narrow(const Hull& hull, const std::vector<PixelForm>& forms, uint64_t* open) {
     for (uint64_t bits = *open; bits != 0; bits &= bits - 1) {
       const RayShare share = AtMostZero(hull, forms[static_cast<size_t>(std::countr_zero(bits))]);
@@ -277,8 +280,8 @@ class PatchPlanner {
     const Range forward = RangeOn(hull, forms_.forward);
     if (!(forward.low > 0)) return RayShare::kSome;
     const double r2 = render_camera_.aperture.radius_w * render_camera_.aperture.radius_w;
-    // Here lens_right = l_x forward, with one l_x for all rays, so that the quotient is a sharper
-    // bound.
+    // If the LF camera lies in the lens plane, lens_right = l_x forward, with the same l_x for all
+    // rays. The quotient is then a tighter bound.
     if (in_lens_plane_) {
       const double l2 = (right.LargestSquare() + up.LargestSquare()) /
                         std::max(forward.high * forward.high, 1e-300);
@@ -306,15 +309,15 @@ class PatchPlanner {
   RayForms forms_;
   SegmentMaker maker_;
   std::vector<Segment>& segments_;
-  std::vector<PixelRun> runs_;  // runs of the scanline
-  // Columns of the patch whose scanlines have polynomials of one fit. `elements` is empty if
-  // perspective is too strong for a fit.
+  std::vector<PixelRun> runs_;  // runs of the current scanline
+  // Columns of the current patch, in which one fit yields the polynomials of all scanlines.
+  // `elements` is empty if no fit is accurate enough; each scanline is then fitted by itself.
   struct Columns {
     int x_begin, x_end;
     std::optional<ElementPatch> elements;
   };
   std::vector<Columns> columns_;
-  PatchEdges edges_;  // edges of a part of the patch
+  PatchEdges edges_;  // edges of the current part of the patch
 };
 
 }  // namespace

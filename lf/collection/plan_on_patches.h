@@ -1,4 +1,4 @@
-// Plans the spans of LF cameras with lens distortion. Internal to collection.
+// Plans the scatter segments of LF cameras with lens distortion. Internal to collection.
 #pragma once
 
 #include <vector>
@@ -10,9 +10,11 @@
 
 namespace lf {
 
-// Appends the accepted pixels of `rect`. Control points tell if a patch (camera/ideal_pixels.h) is
-// wholly accepted, wholly rejected, or undecided. Undecided patches are cut into scanlines and
-// halves of scanlines, and finally the ray model decides ray by ray.
+// Appends the segments of the accepted pixels of `rect`. The control points of a patch
+// (camera/ideal_pixels.h) tell if all its rays are accepted, all are rejected, or the patch is
+// undecided. An undecided patch is halved until the edges of lens and plate bound its scanlines
+// (patch_edges.h) or few scanlines are left. Scanlines that the edges cannot bound are halved, and
+// finally the ray model decides ray by ray.
 void PlanScatterOnPatches(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
                           const PixelRect& rect, const IdealPixels& ideal_pixels,
                           std::vector<Segment>* segments);

@@ -1,4 +1,4 @@
-// Ray collection from LF cameras with lens distortion.
+// Tests the estimator *nearest* with LF cameras that have lens distortion.
 #include "lf/collection/plan_on_patches.h"
 
 #include <gtest/gtest.h>
@@ -62,7 +62,7 @@ TEST(PlanOnPatches, SegmentsHoldExactlyTheRaysThatTheModelAcceptsOnThePatches) {
 }
 
 TEST(PlanOnPatches, MostSpansAreFoundWithoutAskingTheModel) {
-  // A wide lens close by: most arcs lie wholly inside.
+  // The render lens is so wide and near that it accepts most arcs as a whole.
   testing::CameraPair pair = testing::ParallelPair(1, 1, 0.01, 0.2);
   pair.render_camera.pinhole.intrinsics = {1000, 1000, 640, 360, 0, 1280, 720, {}};
   pair.lf_camera.intrinsics = {1000, 1000, 640, 360,
@@ -93,7 +93,7 @@ TEST(PlanOnPatches, TheFastBackEndAgreesWithTheIteratingReference) {
     total += TotalCount(expected);
   }
   EXPECT_GT(total, 100000u);
-  // One ray in 10^4 may lie within 1e-5 px of a border.
+  // About one ray in 10^4 lies so close to a border that the two back ends may decide differently.
   EXPECT_LE(static_cast<double>(accepted_difference), 1e-4 * static_cast<double>(total));
   EXPECT_LE(static_cast<double>(differing), 3e-4 * static_cast<double>(total));
 }

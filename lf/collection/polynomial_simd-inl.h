@@ -24,8 +24,9 @@ using LaneI = hn::RebindToSigned<LaneF>;
 #endif
 constexpr int kLanes = static_cast<int>(hn::MaxLanes(LaneF()));
 
-// There is no fused multiply-add, so that every target gives the same bits.
-//   kDegree  5, or 3 for cubics, where it gives the same bits
+// Evaluates a polynomial without fused multiply-add, so that results are bit-identical on every
+// instruction set.
+//   kDegree  5; or 3 if c[4] and c[5] are 0, which is faster and has the same result
 template <int kDegree>
 class PolynomialLanes {
  public:

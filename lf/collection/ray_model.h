@@ -1,5 +1,6 @@
 // The ray model for one ray, applied literally: doc/ray.md, "Geometry" 1-5, in double precision.
-// The reference asks it for every pixel, the fast kernels at the ends of their spans.
+// The reference applies it to every pixel, the fast kernels apply it to pixels at the ends of their
+// spans.
 #pragma once
 
 #include <optional>
@@ -12,11 +13,12 @@
 
 namespace lf {
 
-// True if the LF camera stands in the lens plane, to rounding. All its rays then cross the lens at
-// one point (doc/ray.md, Geometry 6).
+// True if the LF camera lies in the lens plane, except for rounding errors. All its rays then meet
+// the lens plane at one point, the position of the camera (doc/ray.md, Geometry 6).
 bool LiesInLensPlane(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
 
-// True if that point is so far inside a disk that rounding cannot move it out.
+// True if the LF camera lies so far inside the aperture, which must be a disk, that rounding errors
+// cannot move it out.
 bool IsSurelyInDisk(const PinholeCamera& lf_camera_in_lens_plane,
                     const RenderCamera& render_camera);
 
@@ -30,7 +32,7 @@ class RayModel {
   // or the plate. Lens distortion is undone by iteration.
   std::optional<PlateElement> Collect(int x, int y) const;
 
-  // As Collect(), for an ideal position (camera/ideal_pixels.h).
+  // Like Collect(), for the ray of an ideal position (camera/ideal_pixels.h).
   std::optional<PlateElement> CollectIdeal(const Vec3& position) const;
 
  private:
@@ -41,7 +43,7 @@ class RayModel {
   Vec3 lens_centre_;  // c'
   Vec3 right_, up_, forward_;
   Plane focus_plane_;
-  Mat3 plate_from_world_;  // K' R', after subtracting c'
+  Mat3 plate_from_world_;  // K' R', to be applied to X - c'
   ApertureTest aperture_;
   int width_px_, height_px_;
 };

@@ -7,7 +7,8 @@
 namespace lf {
 namespace {
 
-// Plate and LF image 100 x 100, f = 100 elements, looking along +z from the origin, focus at z = 2.
+// The plate has 100 x 100 elements, the LF image as many pixels; f is 100 elements. The render
+// camera looks along +z from the origin. The focus plane is at z = 2.
 struct Scene {
   PinholeCamera lf_camera;
   RenderCamera render;
@@ -66,8 +67,8 @@ TEST(RayModel, CamerasOnTheRimAreInside) {
 }
 
 TEST(RayModel, CamerasBeforeAndBehindTheLensSeeItAsACone) {
-  // A ray at slope s, from a camera on the axis at distance 1 from the lens, crosses it at radius
-  // s.
+  // A ray at slope s, from a camera on the axis at distance 1 from the lens, crosses the lens at
+  // radius s.
   for (const double z : {1.0, -1.0}) {
     Scene scene;
     scene.Place({0, 0, z});
@@ -79,11 +80,12 @@ TEST(RayModel, CamerasBeforeAndBehindTheLensSeeItAsACone) {
 }
 
 TEST(RayModel, ACameraBehindTheFocusPlaneRecordsTheLineBackwards) {
-  // It stands beyond the focus plane and looks away from the lens; its rays, run backwards, pass
-  // the focus plane and the lens.
+  // The LF camera stands behind the focus plane and looks away from the lens. Its rays, extended
+  // backwards, pass through the focus plane and the lens.
   Scene scene;
   scene.Place({0, 0, 3});
-  // A ray at slope s meets the focus plane at -s and the lens at -3 s. Accepted up to slope 1/30.
+  // A ray at slope s meets the focus plane at -s and the lens at -3 s. Rays up to slope 1/30 are
+  // accepted.
   EXPECT_TRUE(scene.Collect(50, 50));
   EXPECT_EQ(scene.Collect(52, 50), (PlateElement{48, 49}));
   EXPECT_FALSE(scene.Collect(54, 50));
@@ -102,8 +104,8 @@ TEST(RayModel, ElementsBeyondTheHorizonOfATiltedPlaneGetNothing) {
   scene.render.focus_plane =
       FocusPlane(scene.render.pinhole, 1, {RadiansFromDegrees(75), 0});  // depth 1 + 3.73 x
   const RayModel model(scene.lf_camera, scene.render);
-  // Pixel x looks along (x - 49.5) / 100. The plane runs away at slope 1 / tan 75 = 0.268, which is
-  // column 76.8.
+  // Pixel x looks along (x - 49.5) / 100. The horizon of the focus plane is at slope 1 / tan 75 =
+  // 0.268, which is column 76.8.
   int last = -1;
   for (int x = 0; x < 100; ++x)
     if (model.Collect(x, 50)) {

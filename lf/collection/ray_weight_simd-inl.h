@@ -1,5 +1,5 @@
-// The weights of rays as kernels take them: all 1, all the same, or by the element that is hit.
-// Internal to collection. Highway includes this file once for each instruction set.
+// The weights of rays in the three kinds that kernels read: all 1, all equal, or one for each
+// element. Internal to collection. Highway includes this file once for each instruction set.
 #if defined(LF_COLLECTION_RAY_WEIGHT_SIMD_INL_H_) == \
     defined(HWY_TARGET_TOGGLE)  // NOLINT: Highway's guard
 #ifdef LF_COLLECTION_RAY_WEIGHT_SIMD_INL_H_
@@ -19,11 +19,12 @@ namespace lf {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Each kind of weights has
-//   At(i)           the weight of element i
-//   OfWords(d, i)   in lane k, the weight of element i + k
-//   OfPixels(d, i)  in all four lanes of pixel k, the weight of element i + k
-//   From(i)         the weights of elements i, i + 1, ...
+// Each kind of weights has these functions:
+//   At(i)           returns the weight of element i
+//   OfWords(d, i)   returns, in lane k, the weight of element i + k
+//   OfPixels(d, i)  returns, in all four lanes of pixel k, the weight of element i + k
+//   From(i)         returns the weights of elements i, i + 1, ...
+// WeightOne has no OfWords() and OfPixels(), because kernels do not multiply if kIsOne is true.
 struct WeightOne {
   static constexpr bool kIsOne = true;
   static constexpr bool kIsSame = true;
@@ -66,7 +67,7 @@ struct WeightByElement {
     constexpr size_t kPixels = hn::MaxLanes(d32) / 4;
     uint32_t bytes = 0;
     std::memcpy(&bytes, weights + i, kPixels);
-    // The shift is eight bits larger for each pixel.
+    // The shift grows by eight bits from one pixel to the next.
     const auto shift = hn::ShiftLeft<3>(hn::ShiftRight<2>(hn::Iota(d32, 0)));
     return hn::And(hn::Shr(hn::Set(d32, bytes), shift), hn::Set(d32, 0xFF));
   }

@@ -1,4 +1,4 @@
-// Weighted rays, of both estimators and back ends.
+// Tests weighted rays with both estimators and both back ends.
 #include "lf/camera/ray_weight.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,8 @@ namespace {
 
 using testing::PlateFor;
 
-// Random weights of blocks, 0 among them. In the upper left corner of the plate all are the same.
+// Returns random weights of blocks, some of them 0. In the upper left corner of the plate, all
+// blocks have the same weight.
 RayWeights AnyWeights(uint64_t seed) {
   const WeightBlocks blocks = {static_cast<int>(seed % 8), static_cast<int>(seed / 8 % 8)};
   return testing::WeightsByBlock(blocks, [seed](int x, int y) -> uint32_t {
@@ -27,7 +28,8 @@ RayWeights AnyWeights(uint64_t seed) {
   });
 }
 
-// Adds a feather to AnyWeights(): whole, none and in part, by columns and rows of corners.
+// Returns AnyWeights() with a feather that is whole, 0 or partial. Groups of three by three corners
+// have the same feather.
 RayWeights AnyFeatheredWeights(uint64_t seed) {
   const RayWeights any = AnyWeights(seed);
   const auto of_row = [any](int end_x, int end_y, int count, uint8_t* weights) {
@@ -113,7 +115,8 @@ TEST(RayWeights, RaysAddAndCountSoManyTimes) {
     const GatherPlan gather = PlanGather(pair.lf_camera, pair.render_camera);
     for (const bool is_gather : {false, true}) {
       if (is_gather && bayer != BayerPattern::kNone) continue;
-      // With the smallest limit, pieces of scanlines are added pixel by pixel.
+      // With the smaller limit of TileSums (odd seeds), pieces of scanlines may be added pixel by
+      // pixel.
       const auto collect = [&](const RayWeights& weights, SensorPlate* plate) {
         return testing::InTiles(
             plate, grid,

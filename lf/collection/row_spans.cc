@@ -8,12 +8,12 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Candidate intervals reach this far beyond the exact conditions, relative to the largest value
-// that a form takes on the scanline; the ray model then confirms every end. The margins are far
-// above rounding and far below a pixel.
+// Margins by which candidate intervals reach beyond the exact conditions; the ray model then
+// decides at their ends. They are relative: to the largest value of a form on the scanline, and to
+// the square of the disk's radius. They are far above rounding errors and far below a pixel.
 constexpr double kFormMargin = 1e-9;
 constexpr double kDiskMargin = 1e-7;
-constexpr double kSlack = 0.01;  // of the ends of intervals, in pixels
+constexpr double kSlack = 0.01;  // margin at the ends of intervals, in pixels
 
 using Interval = RowSpans::Interval;
 constexpr Interval kNowhere{1, 0};
@@ -22,8 +22,8 @@ Interval Intersect(const Interval& a, const Interval& b) {
   return {std::max(a.begin, b.begin), std::min(a.end, b.end)};
 }
 
-// The least and the largest value of a form at the centres of a rectangle's pixels, which it takes
-// at the corners. Values within `margin` of 0 may be rounding.
+// The smallest and the largest value of a form at the pixel centres of a rectangle. The form has
+// these values at corner pixels. A value within `margin` of 0 may have the wrong sign by rounding.
 struct FormRange {
   double low, high;
   double margin;
@@ -51,8 +51,9 @@ struct LineForm {
 
 LineForm Along(const PixelForm& form, double y) { return {form[0], form[1] * y + form[2]}; }
 
-// Returns the candidates of form <= 0 within `range`. Sets `tie` if the form stays at 0 all along,
-// so that rounding alone decides each pixel. Narrows `sure` to where rounding decides nothing.
+// Returns the part of `range` where form <= 0 may hold (with a margin). Sets `tie` to true if the
+// form is 0 on all of `range`, so that rounding alone would decide about each pixel. Narrows `sure`
+// to positions where form <= 0 holds in spite of rounding.
 Interval AtMostZero(const LineForm& form, const Interval& range, bool* tie, Interval* sure) {
   const double magnitude =
       std::abs(form.slope) * std::max(std::abs(range.begin), std::abs(range.end)) +
@@ -74,9 +75,9 @@ Interval AtMostZero(const LineForm& form, const Interval& range, bool* tie, Inte
   return Intersect(range, {bound, kInfinity});
 }
 
-// Returns the candidates of right^2 + up^2 <= radius^2 forward^2 within `range`. Since forward >= 0
-// there, they are the cut of a line with a convex cone: one interval. The quadratic's leading
-// coefficient has either sign.
+// Returns the part of `range` where right^2 + up^2 <= radius^2 forward^2 may hold (with a margin).
+// Since forward >= 0 there, this is the intersection of a line with a convex cone: one interval.
+// The leading coefficient of the quadratic may have either sign.
 Interval WithinDisk(const LineForm& right, const LineForm& up, const LineForm& forward,
                     double radius, const Interval& range) {
   const double r2 = radius * radius * (1 + kDiskMargin);
@@ -97,8 +98,9 @@ Interval WithinDisk(const LineForm& right, const LineForm& up, const LineForm& f
   const double low = std::min(c / t, t / a);
   const double high = std::max(c / t, t / a);
   if (a > 0) return Intersect(range, {low, high});
-  // The candidates are outside the roots. One branch is the cone's mirror image with forward < 0,
-  // beyond `range` but for rounding. If both branches touch `range`, all of it is a candidate.
+  // The condition holds before the smaller and behind the larger root. One of these two branches
+  // belongs to the mirror image of the cone, where forward < 0; it is outside `range`, except for
+  // rounding errors. If both branches reach into `range`, all of `range` is returned.
   const Interval left = Intersect(range, {-kInfinity, low});
   const Interval right_branch = Intersect(range, {high, kInfinity});
   if (left.empty()) return right_branch;

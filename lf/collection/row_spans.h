@@ -24,27 +24,31 @@ class RowSpans {
     bool empty() const { return !(begin <= end); }
   };
 
-  // right^2 + up^2 <= radius^2 forward^2. Applies only where half-planes fix the sign of forward.
+  // The condition right^2 + up^2 <= radius^2 forward^2. The half-planes must fix the sign of
+  // forward, because the square does not show it.
   struct Disk {
     PixelForm right, up, forward;
     double radius = 0;
   };
 
-  // The two sides exclude each other. On a side, form p <= 0 must hold for all of its forms.
+  // A position p fulfils the conditions of a side if form p <= 0 for all forms of the side, and if
+  // it is in the disk. No position fulfils both sides.
   std::vector<PixelForm> half_planes[2];
   std::optional<Disk> disk;
-  // The ray model knows more than these conditions, and decides for a whole span at its ends.
+  // True if the ray model has more conditions than these. It then tests the ends of every span, and
+  // a span with accepted ends is accepted as a whole.
   bool model_decides = false;
 
-  // Removes what is decided on all of `rect`: half-planes and a disk that hold there, and a side on
-  // which a half-plane does not. Only rows of `rect` may be asked for afterwards.
+  // Removes the conditions that are decided on all of `rect`: half-planes and a disk that hold
+  // everywhere in it, and a side with a half-plane that holds nowhere in it. Afterwards, Find()
+  // must be called only for positions in `rect`.
   void RestrictTo(const PixelRect& rect);
 
   // Finds the positions of [x_begin, x_end) in row y that fulfil the conditions and that the ray
-  // model accepts. The spans are sorted. They are exact if accepted positions of a side have gaps
-  // only where a form stays at 0. The ray model is asked where rounding might decide, or for all
-  // ends if model_decides.
-  //   accepted(side, x)  asks the ray model
+  // model accepts. Writes sorted spans. They are exact if the accepted positions of each side have
+  // no gap, except where a form is 0 along the whole row. The ray model is applied only where
+  // rounding may decide, and to all ends of spans if model_decides is true.
+  //   accepted(side, x)  returns true if the ray model accepts position x on this side
   template <class Accepted>
   void Find(int y, int x_begin, int x_end, const Accepted& accepted, std::vector<RowSpan>* spans);
 
@@ -54,8 +58,8 @@ class RowSpans {
   struct Candidate {
     int begin = 0;
     int end = 0;
-    bool tie = false;  // rounding decides every position
-    Interval sure;     // positions where rounding decides nothing
+    bool tie = false;  // rounding decides about every position
+    Interval sure;     // positions where all half-planes hold in spite of rounding
   };
   bool IsSurelyInDisk(double centre_x, double centre_y) const;
   Candidate FindCandidate(int side, double centre_y, int x_begin, int x_end) const;
@@ -83,7 +87,7 @@ void RowSpans::Find(int y, int x_begin, int x_end, const Accepted& accepted,
       x = stop + 1;
     }
   }
-  // There are at most two sides, with one span each unless there are ties.
+  // Each of the two sides has at most one span, unless it has a tie.
   if (spans->size() > 1) std::sort(spans->begin(), spans->end());
 }
 

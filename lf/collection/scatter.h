@@ -1,17 +1,21 @@
 // Ray collection, estimator *nearest* (thesis 4.3.1; doc/ray.md): every pixel of an LF image is one
 // ray, added to the element it hits.
 //
-// One test compares two back ends. The reference asks the ray model for every pixel. The fast one
-// works in two steps, so that many threads can share one plate, and many plates one LF image:
-//   1. PlanScatter, once per (LF image, frame): the accepted pixels of each scanline, in segments
-//      along which the element position is a polynomial, cut where they leave a tile.
-//   2. ScatterTile, once per (LF image, frame, tile of the plate): the rays that land in the tile.
+// One test compares two back ends. The reference applies the ray model to every pixel. The fast
+// back end works in two steps, so that many threads can share one plate, and many plates one LF
+// image:
+//   1. PlanScatter, called once per (LF image, frame), finds the accepted pixels of each scanline.
+//      It cuts them into segments along which the position on the plate is a polynomial, and cuts
+//      the segments at the borders of tiles.
+//   2. ScatterTile, called once per (LF image, frame, tile of the plate), adds the rays that land
+//      in the tile.
 // Tolerance: both accept exactly the same rays. A ray within 1e-4 elements of an element's border
 // may land in the neighbour, because the fast back end evaluates positions in single precision. A
-// tile takes exactly the rays whose address, computed in this way, lies in it. The bits are the
-// same for any cut into tiles or rectangles and on every instruction set. With lens distortion the
-// reference iterates and the fast one follows arcs: rays within IdealPixels::kTolerance_px of a
-// border of lens or plate may also differ.
+// tile collects exactly the rays whose address, computed in this way, lies in it. Results are
+// bit-identical for any cut of the plate into tiles, for any cut of the LF image into rectangles,
+// and on every instruction set. With lens distortion, the reference undistorts by iteration and the
+// fast back end by curves fitted to ideal positions: rays within IdealPixels::kTolerance_px of a
+// border of lens or plate may therefore also differ.
 #pragma once
 
 #include <cstddef>
@@ -32,35 +36,36 @@
 
 namespace lf {
 
-// Adds the rays of pixels `rect` of one LF image. Masked pixels give no ray. A pixel of a mosaic
+// Adds the rays of pixels `rect` of one LF image. Masked pixels have no ray. A pixel of a mosaic
 // adds to its own channel, an RGB pixel to all three. Returns the number of accepted rays.
 //   pixels   must hold `rect`
-//   plate    has the size of the render camera's
-//   weights  a ray of weight w adds w times its value, and counts w times
+//   plate    must have the size of the render camera's plate
+//   weights  weight w multiplies the value and the count that a ray adds
 uint64_t ScatterReference(const PinholeCamera& lf_camera, const LfPixels& pixels,
                           const RenderCamera& render_camera, const PixelRect& rect,
                           SensorPlate* plate, const RayWeights& weights = {});
 
 struct ScatterPlan {
   TileGrid grid;
-  // Accepted pixels of scanlines. Positions are in elements: a pixel hits floor(position), clamped
-  // to the plate, because the ray model has accepted it.
+  // The accepted pixels of each scanline. Positions are in elements: the ray of a pixel lands on
+  // the element floor(position), clamped to the plate, because the ray model has accepted the ray.
   std::vector<Segment> segments;
   TilePieces pieces;
 };
 
 // Plans the accepted rays of `rect`. The ray model confirms the ends of every span.
-//   grid          tiles of a plate of the render camera's size
-//   ideal_pixels  of lf_camera's intrinsics, for a camera with distortion
-//   memory        a plan no longer needed, whose memory is used again
+//   grid          the tiles of the render camera's plate
+//   ideal_pixels  those of lf_camera's intrinsics; must be given if lf_camera has lens distortion,
+//                 and are not used otherwise
+//   memory        a plan that is no longer needed; its memory is reused
 ScatterPlan PlanScatter(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
                         const PixelRect& rect, const TileGrid& grid,
                         const IdealPixels* ideal_pixels = nullptr, ScatterPlan memory = {});
 
-// Adds the rays of `plan` that land in one tile of its grid, which is the tile of `sums`. The
-// caller flushes `sums`. Returns the number of rays.
+// Adds the rays of `plan` that land in tile `tile` of its grid to `sums`, which must be of this
+// tile. The caller flushes `sums` to the plate. Returns the number of rays.
 //   pixels   must hold the rectangle that was planned
-//   weights  as for the reference, whatever the cut into tiles
+//   weights  as for ScatterReference(): of the whole plate, not of the tile
 uint64_t ScatterTile(const ScatterPlan& plan, size_t tile, const LfPixels& pixels, TileSums* sums,
                      const RayWeights& weights = {});
 

@@ -1,4 +1,5 @@
-// Rays per second of the back ends: LF images around the lens of one frame, everything accepted.
+// Measures the rays per second of both back ends of the estimator *nearest*, for one LF image in
+// one frame that accepts nearly all its rays.
 #include <benchmark/benchmark.h>
 
 #include "lf/collection/scatter.h"
@@ -50,7 +51,8 @@ void BM_Fast(benchmark::State& state, BayerPattern bayer) {
 BENCHMARK_CAPTURE(BM_Fast, rgb, BayerPattern::kNone);
 BENCHMARK_CAPTURE(BM_Fast, bayer, BayerPattern::kRggb);
 
-// Lenses that bend the rays: ideal pixels made once, as for many frames.
+// Lens distortions. Ideal pixels are computed once, before the measurement, because a render
+// computes them once for many frames.
 constexpr Distortion kPhone{DistortionModel::kRadialTangential, {0.035}};
 constexpr Distortion kBarrel{DistortionModel::kRadialTangential, {-0.25, 0.07, 0.002, -0.003}};
 constexpr Distortion kFisheyeLens{DistortionModel::kFisheye, {-0.02, 0.004, -0.002, 3e-4}};

@@ -10,7 +10,8 @@
 namespace lf {
 namespace {
 
-// Candidates reach this far beyond the edges of polygonal lenses; the ray model decides.
+// Share of the radius by which candidate spans reach beyond the edges of polygonal lenses; the ray
+// model then decides at their ends.
 constexpr double kLensMargin = 1e-7;
 
 void PlanOnLines(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
@@ -26,8 +27,9 @@ void PlanOnLines(const PinholeCamera& lf_camera, const RenderCamera& render_came
     const std::vector<PixelForm> lens = LensHalfPlanes(forms, render_camera, kLensMargin);
     rows.half_planes[side].insert(rows.half_planes[side].end(), lens.begin(), lens.end());
   }
-  // All rays of a camera in the lens plane cross it at one point. If that is near the rim, the ray
-  // model decides for a whole span at its ends, because the quadratic would have a double root.
+  // All rays of an LF camera in the lens plane cross this plane at one point. If the point is near
+  // the rim, the ray model decides about each span by its ends, because the quadratic would have a
+  // double root.
   if (is_disk && LiesInLensPlane(lf_camera, render_camera))
     rows.model_decides = !IsSurelyInDisk(lf_camera, render_camera);
   else if (is_disk)

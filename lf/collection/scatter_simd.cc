@@ -1,7 +1,8 @@
-// The inner loop of ray collection, for every instruction set from one source (Highway).
-// Polynomials give addresses, a vector at a time. Values are then added in integers: a whole vector
-// at once if neighbouring LF pixels hit neighbouring elements, otherwise ray by ray. There is no
-// fused multiply-add, so that every target gives the same bits.
+// The inner loop of the estimator *nearest*, compiled for every instruction set from one source
+// (Highway). Polynomials are evaluated to addresses, for a vector of positions at a time. Values
+// are then added in integers: a whole vector at once if neighbouring LF pixels hit neighbouring
+// elements (a *run*), otherwise ray by ray. There is no fused multiply-add, so that results are
+// bit-identical on every instruction set.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -12,7 +13,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lf/collection/scatter_simd.cc"  // NOLINT: as Highway wants it
 #include <hwy/foreach_target.h>
-// These come after foreach_target.h.
+// These must be included after foreach_target.h.
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
@@ -24,29 +25,33 @@ namespace lf {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr int kGroup = 8;  // LF pixels that are looked at together
-// Slope from which on groups are rarely runs: a row or column is skipped every 1 / kRareRun pixels.
+constexpr int kGroup = 8;  // number of LF pixels that are added together
+// Groups are rarely runs if the step from one position to the next differs from (1, 0) by this many
+// elements or more: the elements then change the row, or skip or repeat a column, every 1 /
+// kRareRun pixels.
 constexpr float kRareRun = 1.0F / 6;
 
 // An integer below 2^23 is exact in single precision. If it is added to 2^23, the last bits of the
 // sum are the integer.
 constexpr float kTwoTo23 = 8388608;
 
-// The sums of a tile's elements are at row_stride * row + column, both counted in the tile.
+// Layout of the sums of a tile. The address of an element is row_stride * row + column, both
+// counted from the corner of the tile.
 struct TileLayout {
   PixelRect rect;
-  int row_stride;  // even
-  bool has_plate_border;
+  int row_stride;         // even
+  bool has_plate_border;  // true if the tile touches the border of the plate
 };
 
-// Adds a piece of an RGB scanline, counted from its begin, to sums.
+// Adds the rays of a piece of an RGB scanline to the sums of a tile. Pixel i of the piece is added
+// to the element with the address start + i, where `start` comes from FindStarts().
 template <class Weights>
 struct RgbPixels {
   static constexpr int kLanesPerPixel = LfPixels::kRgbLanes;
   const uint16_t* values;        // [count][4]
-  const uint16_t* values_ahead;  // values of a later scanline
+  const uint16_t* values_ahead;  // of a scanline below, to prefetch
   TileSums::Element* elements;
-  Weights weights;  // indexed as elements
+  Weights weights;  // of elements, with the same indices
   bool may_be_masked;
 
   static constexpr bool has_runs() { return true; }
@@ -63,7 +68,8 @@ struct RgbPixels {
 #endif
   }
 #if HWY_TARGET != HWY_SCALAR
-  // Returns the rays of pixels that fall on this element and the next ones.
+  // Returns the weighted values of the pixels at `v`, which fall on `element` and the elements
+  // after it.
   template <class D>
   HWY_ATTR HWY_INLINE hn::Vec<D> Rays(D d32, const uint16_t* v, int32_t element) const {
     const hn::Rebind<uint16_t, D> d16;
@@ -105,18 +111,19 @@ struct RgbPixels {
   }
 };
 
-// Adds a piece of a mosaic's scanline to packed words.
+// Adds the rays of a piece of a mosaic's scanline to packed words. Addresses are as in RgbPixels.
 template <class Weights>
 struct MosaicPixels {
   static constexpr int kLanesPerPixel = 1;
   const uint16_t* values;        // [count]
-  const uint16_t* values_ahead;  // values of a later scanline
-  uint64_t* words[2];            // [0] if index and column are both odd or even, [1] otherwise
-  Weights weights;               // indexed as words
+  const uint16_t* values_ahead;  // of a scanline below, to prefetch
+  uint64_t* words[2];            // [0] if `start` is even, [1] if it is odd
+  Weights weights;               // of words, with the same indices
   const uint8_t* mask;           // [count], or null
 
   bool has_runs() const { return mask == nullptr; }
-  // The row of words is the same all along a run, because the distance of rows is even.
+  // Returns the word of pixel i. Because row_stride is even, `start` is even if i and the column of
+  // the element are both even or both odd. It is the same for all pixels of a run.
   uint64_t* WordsOf(int i, int32_t start) const { return words[start & 1] + start + i; }
 
   void Add(int i, int32_t start) const {
@@ -125,7 +132,8 @@ struct MosaicPixels {
   }
 #if HWY_TARGET != HWY_SCALAR
   using Lanes = hn::CappedTag<uint64_t, kGroup>;
-  // Returns the rays of pixels from `i` on, which fall on the words from this one on.
+  // Returns the packed sums and counts of the pixels from `i` on, which fall on `word` and the
+  // words after it.
   HWY_ATTR HWY_INLINE hn::Vec<Lanes> Rays(int i, int32_t word) const {
     const Lanes d64;
     const hn::Rebind<uint32_t, Lanes> d32;
@@ -147,8 +155,8 @@ struct MosaicPixels {
     for (int k = 0; k < kGroup; k += kStep)
       hn::StoreU(hn::Add(hn::LoadU(d, sums + k), Rays(i + k, start + i + k)), d, sums + k);
   }
-  // Most groups are one run or two. If they are two, the words of each run get the rays that belong
-  // to it, and zeros for the others.
+  // Most groups consist of one run or two. If there are two, a whole group is added at the words of
+  // each run, with zeros in place of the rays of the other run.
   HWY_ATTR HWY_INLINE void AddGroup(int i, const int32_t* starts) const {
     const Lanes d;
     const hn::CappedTag<int32_t, kGroup> d32;
@@ -191,9 +199,10 @@ struct MosaicPixels {
   }
 };
 
-// Finds the addresses of positions [begin, begin + count) of a segment, less their index from
-// `begin`. They stay the same where neighbours lie side by side.
-//   kClamp  moves positions that rounding has put beyond the border of plate and tile back
+// Computes, for each of the positions [begin, begin + count) of a segment, the address of its
+// element minus its index counted from `begin`. These differences are equal for neighbours that hit
+// neighbouring elements.
+//   kClamp  if true, positions that rounding has put outside the tile are moved back to its border
 template <int kDegree, bool kClamp>
 HWY_ATTR HWY_INLINE void FindStarts(const Segment& s, int begin, int count, const TileLayout& tile,
                                     int32_t* starts) {
@@ -201,7 +210,7 @@ HWY_ATTR HWY_INLINE void FindStarts(const Segment& s, int begin, int count, cons
   const LaneI di;
   const PolynomialLanes<kDegree> x_poly(s.x_poly), y_poly(s.y_poly);
   const auto row_stride = hn::Set(df, static_cast<float>(tile.row_stride));
-  // The tile's corner, counted from the base of the segment.
+  // The corner of the tile, counted from the base of the segment.
   const int left = tile.rect.x_begin - s.base_x, upper = tile.rect.y_begin - s.base_y;
   const auto x_corner = hn::Set(df, static_cast<float>(left));
   const auto y_corner = hn::Set(df, static_cast<float>(upper));
@@ -211,7 +220,7 @@ HWY_ATTR HWY_INLINE void FindStarts(const Segment& s, int begin, int count, cons
   const int corner = kClamp ? 0 : upper * tile.row_stride + left;
   const auto base = hn::Set(df, kTwoTo23 - static_cast<float>(corner));
   auto less = hn::Neg(hn::Iota(di, std::bit_cast<int32_t>(kTwoTo23)));
-  auto t = hn::Iota(df, s.t_begin + static_cast<float>(begin));  // exact, and so is what is added
+  auto t = hn::Iota(df, s.t_begin + static_cast<float>(begin));  // exact, also after each addition
   for (int i = 0; i < count; i += kLanes, t = hn::Add(t, hn::Set(df, kLanes))) {
     auto x = hn::Floor(x_poly.At(t)), y = hn::Floor(y_poly.At(t));
     if constexpr (kClamp) {
@@ -233,9 +242,11 @@ HWY_ATTR HWY_INLINE void FindStarts(const Segment& s, int begin, int count, cons
     FindStarts<5, kClamp>(s, begin, count, tile, starts);
 }
 
-// True if position i + 1 always hits the element beside that of position i.
+// True if each position of the segment hits the element to the right of the one that the previous
+// position hits.
 bool IsOneRun(const Segment& s) {
-  // Positions this far from the border of an element are safe in single precision.
+  // A position at least this far from the borders of an element hits this element in spite of
+  // rounding to single precision.
   constexpr float kMargin = 1e-3F;
   const float place = s.x_poly[0] + s.t_begin, in_element = place - std::floor(place);
   return s.is_cubic() && s.x_poly[1] == 1 && s.x_poly[2] == 0 && s.x_poly[3] == 0 &&
@@ -247,8 +258,9 @@ template <class Pixels>
 HWY_ATTR uint32_t ScatterPiece(const Segment& s, const TilePiece& piece, const Pixels& pixels,
                                const TileLayout& tile) {
   const int count = piece.end - piece.begin;
-  // The processor does not foresee scanlines, which are too far apart, and can wait for few cache
-  // lines at a time. Lines of RGB pixels are therefore prefetched one by one.
+  // The processor does not prefetch scanlines by itself, because they are too far apart. It can
+  // have few pending requests at a time. Cache lines of RGB pixels are therefore prefetched one by
+  // one.
   constexpr int kLinePixels = 64 / (Pixels::kLanesPerPixel * static_cast<int>(sizeof(uint16_t)));
   constexpr bool kOneByOne = kLinePixels <= kGroup;
   const auto fetch_ahead = [&](int begin, int end) {
@@ -269,7 +281,8 @@ HWY_ATTR uint32_t ScatterPiece(const Segment& s, const TilePiece& piece, const P
     return pixels.CountRays(count);
   }
 #endif
-  // All addresses come first: reading them back one by one is cheaper than taking a vector apart.
+  // All addresses are computed first and stored: reading them one by one from memory is cheaper
+  // than extracting the lanes of a vector.
   HWY_ALIGN int32_t starts[Segment::kMaxCount];
   if (tile.has_plate_border)
     FindStarts<true>(s, piece.begin, count, tile, starts);
@@ -303,7 +316,8 @@ HWY_ATTR uint64_t ScatterTileBy(const ScatterPlan& plan, size_t tile, const LfPi
                                 rect.x_end == plan.grid.plate_width ||
                                 rect.y_end == plan.grid.plate_height;
   const TileLayout layout{rect, is_rgb ? stride : TileSums::kMosaicRows * stride, has_plate_border};
-  // From a longer piece, too many rays might fall on one element.
+  // If more rays of a piece may hit one element, the piece is added in several parts, so that sums
+  // do not overflow.
   const uint32_t most_rays = sums->max_reserve() / most_weight;
   uint64_t rays = 0;
   const TilePiece* piece = plan.pieces.begin(tile);
@@ -328,7 +342,8 @@ HWY_ATTR uint64_t ScatterTileBy(const ScatterPlan& plan, size_t tile, const LfPi
                            sums->ReserveRgb(part.crowd * most_weight), weights, pixels.any_masked},
                        layout);
     } else {
-      // Colour that the piece begins with, and the colour that alternates with green.
+      // `first` is the colour of the first pixel of the piece, `other` the colour that alternates
+      // with green in this scanline.
       const int x = s.x_begin + part.begin;
       const int first = BayerChannel(pixels.bayer, x, s.y);
       const int other = first == 1 ? BayerChannel(pixels.bayer, x + 1, s.y) : first;
@@ -374,8 +389,8 @@ uint64_t ScatterTile(const ScatterPlan& plan, size_t tile, const LfPixels& pixel
                      const RayWeights& weights) {
   const PixelRect& rect = sums->rect();
   LF_CHECK(plan.grid.RectOf(tile) == rect);
-  // Addresses in the tile, and addresses counted from the base of a segment, are exact in single
-  // precision.
+  // This makes addresses in the tile, and addresses counted from the base of a segment, exact in
+  // single precision.
   const int64_t row_stride = int64_t{TileSums::kMosaicRows} * sums->stride();
   LF_CHECK(row_stride * (rect.height() + int64_t{Segment::kMaxCount}) < (int64_t{1} << 22));
   thread_local TileWeights tile_weights;

@@ -1,4 +1,4 @@
-// Every back end of ray collection against the reference.
+// Compares the fast back end of the estimator *nearest* with the reference.
 #include "lf/collection/scatter.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,8 @@ using testing::PlateFor;
 using testing::TotalCount;
 using testing::WholeImage;
 
-// Tiles are about three times as wide as high, so that both of their borders cut rays.
+// Tiles are about three times as wide as high, so that scanlines cross vertical and horizontal
+// borders of tiles.
 uint64_t ScatterInTilesOf(const testing::CameraPair& pair, const LfPixels& pixels,
                           const PixelRect& rect, int tile_height, SensorPlate* plate) {
   const TileGrid grid = testing::GridOf(*plate, 1 + 3 * tile_height, tile_height);
@@ -96,8 +97,8 @@ TEST(Scatter, AnyCutOfTheImageGivesTheSameBits) {
   }
 }
 
-// Parallel rigs put whole scanlines exactly on borders of elements, plates and bands, where
-// rounding decides: no ray may be lost or counted twice.
+// Parallel rigs put whole scanlines exactly on borders of elements, plates and tiles, where
+// rounding decides. No ray may be lost or counted twice.
 TEST(Scatter, RaysOnBordersAreNeitherLostNorDoubled) {
   for (int column = -6; column <= 6; ++column)
     for (int row = -6; row <= 6; ++row) {
@@ -147,8 +148,8 @@ TEST(Scatter, PixelsOfAPartOfTheImageAreEnough) {
   EXPECT_EQ(reference, from_some);
 }
 
-// An LF pixel as long as a hundred elements, along tiles that are far from the middle of a
-// scanline.
+// An LF pixel is as long as a hundred elements here, and scanlines pass through tiles that are far
+// from their middle.
 TEST(Scatter, AddressesFarFromTheMiddleOfAScanlineAreExact) {
   testing::CameraPair pair = testing::ParallelPair(0, 0, 0.01, 9);
   pair.render_camera.pinhole.intrinsics = {9000, 9000, 260, 4500, 0, 520, 9000, {}};

@@ -9,14 +9,14 @@
 namespace lf {
 namespace {
 
-// Positions beyond this are not accepted, and integers could overflow.
+// Positions with larger coordinates are never accepted, and could overflow integers.
 constexpr double kFarthest = 1 << 24;
 
 // Bounds are wider by this margin, which is far above the rounding of single precision.
 constexpr float kBoundMargin = 0.01F;
 
-// Fits polynomials to pieces [begin, end) of a row on which `position(x)`, an optional Vec2, is
-// defined. Pieces are halved if their polynomials miss it.
+// Fits polynomials to the function `position(x)`, which returns an optional Vec2, on pieces [begin,
+// end) of a row. A piece is halved if the polynomials are not accurate enough on it.
 template <class Position>
 class PieceFitter {
  public:
@@ -110,10 +110,12 @@ void SegmentMaker::Add(int y, int x_begin, int x_end, std::vector<Segment>* segm
   }
 }
 
-// With distance t from the middle of the block, and denominator d_0 + d_1 t, the position is
+// With the distance t from the middle of the block, and the denominator d_0 + d_1 t, the position
+// is
 //   e(t) = (n_0 + n_1 t) / (d_0 + d_1 t) = e_0 + s t / (1 + q t),  q = d_1 / d_0,
-//   s = (n_1 - e_0 d_1) / d_0:  a geometric series, whose fourth term is spread over the others as
-//   Chebyshev's polynomial T_4 says.
+//   s = (n_1 - e_0 d_1) / d_0.
+// This is a geometric series. Its term of t^4 is replaced by lower powers with the help of
+// Chebyshev's polynomial T_4.
 void SegmentMaker::AddInBlock(int y, int x_begin, int x_end, int block_begin, int block_size,
                               std::vector<Segment>* segments) const {
   const double half = 0.5 * block_size, middle = block_begin + half;
@@ -172,8 +174,9 @@ void SegmentMaker::AddOfFunction(int y, int x_begin, int x_end, const Function& 
   }
 }
 
-// The bounds are found from the chord. The polynomial strays from it by at most w^2 / 8 times the
-// largest second derivative, and its slope changes by at most w times that.
+// The bounds are computed from the chord between the first and the last position, w apart. The
+// polynomial deviates from the chord by at most w^2 / 8 times the largest second derivative, and
+// its slope changes by at most w times this derivative.
 PositionRange RangeOf(const float (&c)[Segment::kTerms], float t_begin, int count) {
   const auto w = static_cast<float>(count - 1);
   const float t_end = t_begin + w, t = t_begin;

@@ -1,5 +1,7 @@
-// Cuts spans of a row of pixels or elements into segments, along each of which a polynomial gives
-// the positions that rays lead to. Kernels evaluate the polynomials; callers only hand segments on.
+// Cuts spans of a row of pixels into segments. Along each segment, a polynomial maps the pixels to
+// the positions of their rays on the plate. For *bilinear* it is the other way round: elements are
+// mapped to positions in the LF image. Kernels evaluate the polynomials; other code only passes
+// segments on.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +14,13 @@
 
 namespace lf {
 
-// Positions [x_begin, x_begin + count) of row y. With t = i + t_begin (exact in single precision),
-// the position with index i leads to
-//   base_x + ((((x_poly[5] t + x_poly[4]) t + x_poly[3]) t + ...) t + x_poly[0]   and likewise y,
-// where x_poly[0] is in [0, 1), so that single precision holds it to 1e-4. Perspective alone gives
-// cubics; lens distortion needs the higher powers.
+// Pixels (or elements) [x_begin, x_begin + count) of row y. With t = i + t_begin (exact in single
+// precision), pixel x_begin + i is mapped to the position with the x-coordinate
+//   base_x + ((((x_poly[5] t + x_poly[4]) t + x_poly[3]) t + ...) t + x_poly[0]
+// and likewise y. x_poly[0] is in [0, 1), so that the error of single precision is at most 1e-4.
+// Perspective alone leads to cubics; lens distortion needs the higher powers.
 struct Segment {
-  // Size of the kernels' buffers.
+  // Largest count, for which the kernels have buffers.
   static constexpr int kMaxCount = 1024;
   static constexpr int kTerms = 6;
 
@@ -36,42 +38,45 @@ struct Segment {
   }
 };
 
-// The position as polynomials of the distance t from the middle of a piece of a row.
+// The coordinates of a position as polynomials of t, the distance from the middle of a piece of a
+// row.
 struct Polynomials {
   double x[Segment::kTerms] = {};
   double y[Segment::kTerms] = {};
 };
 
-// Makes the segment of positions [x_begin, x_end) of row y, from the polynomials of a piece with
-// this middle.
+// Makes the segment of pixels (or elements) [x_begin, x_end) of row y, from the polynomials of a
+// piece whose middle is at x = `middle`.
 Segment MakeSegment(int y, int x_begin, int x_end, double middle, const Polynomials& polynomials);
 
-// True if the positions of a piece with these polynomials, which reaches `half` to both sides of
-// its middle, are within SegmentMaker::kFarthestFromMiddle of the position of the middle.
+// True if no coordinate of a piece's positions differs from the position of its middle by more than
+// SegmentMaker::kFarthestFromMiddle. The piece extends by `half` to both sides of its middle.
 bool IsNearMiddle(const Polynomials& polynomials, double half);
 
-// Makes the segments of rows where (x p, y p) / (denominator p) is the position for
-// p = (x + 0.5, y + 0.5, 1), or any ideal position.
+// Makes the segments of rows. A pixel with the centre p = (column + 0.5, row + 0.5, 1), or with the
+// ideal position p, is mapped to the position (x p, y p) / (denominator p) by the three linear
+// forms x, y and denominator.
 class SegmentMaker {
  public:
-  // Largest error of polynomials before they are rounded to single precision.
+  // Largest error of positions, before polynomials are rounded to single precision.
   static constexpr double kTolerance = 1e-5;
-  // Largest distance of a piece's positions from that of its middle. Single precision, which rounds
-  // coefficients, products and sums, then holds them to 9.5e-5.
+  // Largest difference of a piece's positions from the position of its middle. Rounding of
+  // coefficients, products and sums to single precision then changes a position by at most 9.5e-5.
   static constexpr double kFarthestFromMiddle = 530;
 
   SegmentMaker(const PixelForm& x, const PixelForm& y, const PixelForm& denominator)
       : x_(x), y_(y), denominator_(denominator) {}
 
-  // Appends the segments of [x_begin, x_end) of row y. Each is a piece of a block
-  // [k 2^n, (k + 1) 2^n), so that no cut of the work changes a position.
+  // Appends the segments of [x_begin, x_end) of row y. The polynomials of each are fitted to a
+  // block [k 2^n, (k + 1) 2^n), so that positions do not depend on x_begin and x_end.
   void Add(int y, int x_begin, int x_end, std::vector<Segment>* segments) const;
 
-  // As Add(), on an arc of scanline y.
+  // Like Add(), with the ideal positions of `arc`, which belongs to scanline y.
   void AddOnArc(int y, int x_begin, int x_end, const IdealArc& arc,
                 std::vector<Segment>* segments) const;
 
-  // As Add(), for any smooth function of the continuous position along row y.
+  // Like Add(), with any smooth function of the continuous coordinate x along row y. Pixels for
+  // which it returns none are left out.
   using Function = std::function<std::optional<Vec2>(double x)>;
   static void AddOfFunction(int y, int x_begin, int x_end, const Function& position,
                             std::vector<Segment>* segments);
@@ -91,12 +96,12 @@ inline float PositionAt(const float (&polynomial)[Segment::kTerms], float t) {
   return ((value * t + c[2]) * t + c[1]) * t + c[0];
 }
 
-// Bounds of one coordinate of a segment's positions, counted from the base, and of its change from
-// one position to the next. They are a little wider than necessary.
+// Bounds of one coordinate of a segment's positions, counted from the base, and of the change of
+// this coordinate from one position to the next. The bounds are a little wider than necessary.
 struct PositionRange {
   float low, high;
   float least_step, most_step;
-  float first, last;  // the first and the last position
+  float first, last;  // at the first and the last position
 };
 PositionRange RangeOf(const float (&polynomial)[Segment::kTerms], float t_begin, int count);
 

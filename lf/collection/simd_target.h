@@ -1,5 +1,6 @@
-// Chooses the instruction set that the kernels of this folder run on: the best that the processor
-// has, unless a test or a benchmark wants another. The bits are the same on all.
+// Chooses the instruction set that the kernels of this folder run on: the best one that the
+// processor has, unless a test or a benchmark chooses another. Results are bit-identical on all of
+// them.
 #pragma once
 
 #include <string>
@@ -8,12 +9,13 @@
 
 namespace lf {
 
-// Returns the instruction sets that this program has and this processor can run, best first:
-// "AVX3", "AVX2", ..., "SCALAR".
+// Returns the instruction sets that this program was compiled for and that this processor has, best
+// first: "AVX3", "AVX2", ..., "SCALAR".
 std::vector<std::string> SimdTargets();
 
-// Makes the kernels use the instruction set `name` from now on; "" for the best. Must not be called
-// while kernels run. False if there is no such target here.
+// Makes the kernels use the instruction set `name` from now on; "" means the best one. Must not be
+// called while kernels run. Returns false if `name` is not one of SimdTargets(); the kernels then
+// use the best one.
 bool UseSimdTarget(std::string_view name);
 
 }  // namespace lf

@@ -1,4 +1,4 @@
-// Every instruction set gives the same bits.
+// Results are bit-identical on every instruction set.
 #include "lf/collection/simd_target.h"
 
 #include <gtest/gtest.h>
@@ -13,14 +13,14 @@ namespace {
 
 using testing::PlateFor;
 
-// Plates of both estimators for a pair of cameras.
+// Returns the plates of both estimators for a pair of cameras; for a mosaic only that of *nearest*.
 std::vector<SensorPlate> Collect(const testing::CameraPair& pair, uint64_t seed) {
   const Intrinsics& k = pair.lf_camera.intrinsics;
   const auto bayer = static_cast<BayerPattern>(seed % 5);
   LfPixels pixels = testing::NoisePixels(testing::WholeImage(pair), bayer, seed);
   if (bayer == BayerPattern::kNone) pixels.recorded = static_cast<BayerPattern>(seed / 25 % 5);
   const IdealPixels ideal(k);
-  // Weights are all 1, all the same, or by element.
+  // Weights are all 1, all equal, or different for each block of elements.
   RayWeights weights(seed % 3 == 0 ? 1 : 1 + static_cast<uint32_t>(seed % kMaxWeight));
   if (seed % 3 == 2)
     weights = testing::WeightsByBlock({static_cast<int>(seed % 8), 5}, [seed](int x, int y) {

@@ -35,7 +35,7 @@ inline SensorPlate PlateFor(const CameraPair& pair, uint32_t limit = SensorPlate
                      pair.render_camera.pinhole.intrinsics.height_px, limit);
 }
 
-// Returns weights that are of_block(end_x, end_y) for every block.
+// Returns weights that are of_block(end_x, end_y) in the block that ends before (end_x, end_y).
 template <class OfBlock>
 RayWeights WeightsByBlock(const WeightBlocks& blocks, const OfBlock& of_block) {
   return RayWeights(blocks, [of_block](int end_x, int end_y, int count, uint8_t* weights) {
@@ -56,7 +56,9 @@ inline uint64_t TotalCount(const SensorPlate& plate) {
   return count;
 }
 
-// Returns the number of rays that lie in different elements of the two plates.
+// Returns the difference of the counts of the two plates, summed over elements and channels.
+// Elements with equal counts but different sums add 1. A ray that lies in different elements of the
+// two plates adds 2 for each of its channels.
 inline uint64_t DifferingCount(const SensorPlate& a, const SensorPlate& b) {
   uint64_t count = 0;
   for (int y = 0; y < a.height(); ++y)
@@ -72,7 +74,7 @@ inline uint64_t DifferingCount(const SensorPlate& a, const SensorPlate& b) {
 
 // Calls collect(tile, &sums) for all tiles of the plate and flushes each. Returns the sum of the
 // results.
-//   ray_limit  of the sums
+//   ray_limit  passed to TileSums
 template <class Collect>
 uint64_t InTiles(SensorPlate* plate, const TileGrid& grid, const Collect& collect,
                  uint32_t ray_limit = TileSums::kMaxRays) {

@@ -15,13 +15,13 @@ int Floor(float f) {
   return static_cast<float>(i) > f ? i - 1 : i;
 }
 
-// The first position behind a border between tiles.
+// A crossing of a border between tiles. `index` is the first position behind the border.
 struct Crossing {
   uint16_t index;
-  int16_t step;  // to the next column or row of tiles, or back
+  int16_t step;  // change of the column or row of tiles
 };
 
-// One coordinate of a segment's positions, counted from its base.
+// One coordinate of a segment's positions, counted from the base of the segment.
 class Axis {
  public:
   // base  of the segment, in elements
@@ -35,13 +35,13 @@ class Axis {
         tile_size_(tile_size),
         range_(RangeOf(polynomial, t_begin, count)) {}
 
-  // Least distance from one position to the next; below 0 if positions may turn round.
+  // Smallest distance from one position to the next; at most 0 if positions may change direction.
   float least_distance() const { return std::max(range_.least_step, -range_.most_step); }
 
   // The column or row of tiles of the first position.
   int FirstTile() const { return TileOf(range_.first); }
 
-  // Writes all crossings in order, except at the first position, and then one at `count`.
+  // Writes all crossings in order, and then a terminator with the index `count`.
   void Cross(Crossing* crossings) const {
     CrossWithin(0, count_ - 1, range_, &crossings);
     *crossings = {static_cast<uint16_t>(count_), 0};
@@ -54,8 +54,8 @@ class Axis {
   float At(float i) const { return PositionAt(polynomial_, t_begin_ + i); }
   float Position(int i) const { return At(static_cast<float>(i)); }
 
-  // Writes the crossings at positions (first, last]. Halves the range where positions may turn
-  // round.
+  // Writes the crossings at positions (first, last]. Halves this range if positions may change
+  // direction in it.
   void CrossWithin(int first, int last, const PositionRange& range, Crossing** crossings) const {
     const int least = TileOf(range.low), most = TileOf(range.high);
     if (least == most || first == last) return;
@@ -77,15 +77,16 @@ class Axis {
     return RangeOf(polynomial_, t_begin_ + static_cast<float>(first), last - first + 1);
   }
 
-  // Writes the crossing of positions that rise or fall through the border of `tile` with the
-  // smaller coordinate.
+  // Writes the crossing of the border before `tile` (the one with the smaller coordinate), if there
+  // is one. From first to last, positions must only rise (step 1) or only fall (step -1).
   void CrossOnce(int first, int last, const PositionRange& range, int tile, int step,
                  Crossing** crossings) const {
     const auto border = static_cast<float>(tile * tile_size_ - base_);
     const auto is_behind = [&](int i) { return (Position(i) >= border) == (step > 0); };
     const auto steps = static_cast<float>(last - first);
     const float inverse = steps / (range.last - range.first);
-    // The chord gives a place, and the error there corrects it. This is usually off by one at most.
+    // The chord yields a first estimate, which is corrected by the error of the position there. The
+    // result is usually wrong by at most one position.
     float place = std::clamp((border - range.first) * inverse, 0.0F, steps);
     const float found = At(static_cast<float>(first) + place);
     place = std::clamp(place + (border - found) * inverse, 0.0F, steps);
@@ -120,7 +121,8 @@ struct Cutting {
   int tile;
 };
 
-// Returns the largest number of positions that fall on one element.
+// Returns a bound of the number of positions that fall on one element, if neighbouring positions
+// are at least `least_distance` apart.
 uint16_t Crowd(float least_distance, int count) {
   const float crowd = least_distance > 1e-6F ? 2 + 1.01F / least_distance : 1e6F;
   return static_cast<uint16_t>(std::min(static_cast<float>(count), crowd));

@@ -1,5 +1,5 @@
-// The pieces of segments that land in each tile of a plate. Kernels read them; callers only hand
-// them on.
+// The pieces of segments that land in each tile of a plate. Kernels read them; other code only
+// passes them on.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,9 @@
 
 namespace lf {
 
-// Positions [begin, end) of a segment, counted from its first. All of them land in one tile,
-// clamped to the plate, and none of its elements takes more than `crowd` of them.
+// Positions [begin, end) of a segment, counted from its first one. Positions outside the plate are
+// clamped to it; then all of them land in one tile. At most `crowd` of them land in the same
+// element, clamped ones not counted.
 struct TilePiece {
   uint32_t segment = 0;
   uint16_t begin = 0;
@@ -23,7 +24,7 @@ struct TilePiece {
 // The pieces of each tile, in the order of the segments.
 class TilePieces {
  public:
-  // Cuts segments by addresses in single precision, as kernels compute them.
+  // Cuts segments at the borders of tiles. Computes positions in single precision, as kernels do.
   void Cut(const std::vector<Segment>& segments, const TileGrid& grid);
 
   const TilePiece* begin(size_t tile) const { return sorted_.data() + tile_begin_[tile]; }

@@ -10,7 +10,8 @@
 namespace lf {
 namespace {
 
-// Segments that are straight, bent, turn round, hardly move, or leave the plate.
+// Returns a segment whose positions, depending on the seed, run straight, bend, change direction,
+// hardly move, or leave the plate.
 Segment RandomSegment(uint64_t seed) {
   RandomSequence random(seed);
   const double speeds[] = {1e-5, 0.02, 1, 3, 40};

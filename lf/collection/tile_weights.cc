@@ -25,7 +25,7 @@ void TileWeights::Fill(const RayWeights& weights, const PixelRect& tile, int pit
   of_blocks_.resize(static_cast<size_t>(block_count));
   above_.resize(of_blocks_.size() + 1);
   below_.resize(of_blocks_.size() + 1);
-  below_y_ = blocks.EndY(tile.y_begin);  // no row has these as upper corners yet
+  below_y_ = blocks.EndY(tile.y_begin);  // below_ holds no feather yet: no block begins here
   uint8_t* row = bytes_.data() + kMargin;
   for (int y = tile.y_begin; y < tile.y_end;) {
     const bool rows_differ = FillBlocks(weights, tile, y);
@@ -42,8 +42,8 @@ void TileWeights::Fill(const RayWeights& weights, const PixelRect& tile, int pit
   }
 }
 
-// Finds the weights and the feather of the row of blocks that scanline y lies in. Returns true if
-// some block is feathered.
+// Sets the weights and the feather of the row of blocks that contains row y of elements. Returns
+// true if the feather of some corner is not whole.
 bool TileWeights::FillBlocks(const RayWeights& weights, const PixelRect& tile, int y) {
   const int count = static_cast<int>(of_blocks_.size());
   weights.OfRow(tile.x_begin, y, count, of_blocks_.data());

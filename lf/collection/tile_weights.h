@@ -1,5 +1,5 @@
-// The weights of one LF image's rays in one tile, one byte per element. Kernels find them by the
-// address that they add to. Internal to collection.
+// The weights of one LF image's rays in one tile, one byte per element. The index of a weight is
+// the address of the sums that it belongs to. Internal to collection.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,11 @@ namespace lf {
 
 class TileWeights {
  public:
-  // Bytes before and behind the weights, which may be read but belong to no element.
+  // Number of bytes before the weights, and behind them, which vectors may read although they
+  // belong to no element.
   static constexpr int kMargin = 64;
 
-  // Finds the weights of a tile. Writes no bytes if all weights are the same.
+  // Writes the weights of a tile to data(), or only to least() and most() if weights.are_same().
   //   pitch  bytes from one row of elements to the next
   void Fill(const RayWeights& weights, const PixelRect& tile, int pitch);
 
@@ -23,7 +24,8 @@ class TileWeights {
   uint32_t least() const { return least_; }
   uint32_t most() const { return most_; }
 
-  // [y * pitch + x], counted from the tile's corner.
+  // The weight of element (x, y) is at [y * pitch + x], counted from the corner of the tile. Must
+  // not be read if weights.are_same().
   const uint8_t* data() const { return bytes_.data() + kMargin; }
 
  private:
@@ -37,7 +39,7 @@ class TileWeights {
   std::vector<uint8_t> of_blocks_;
   std::vector<uint16_t> above_;
   std::vector<uint16_t> below_;
-  int below_y_ = 0;  // row of the corners that below_ is for
+  int below_y_ = 0;  // y of the corners that below_ holds
 };
 
 }  // namespace lf
