@@ -17,9 +17,9 @@ constexpr double kReachPerCell = 2;
 // runs through is marked, or is a neighbour of a marked cell.
 constexpr double kSpawnStep = 0.9;
 
-// Returns points of the lens, step_w apart, all over the reach of the lens points that are asked
-// for.
-//   asked  [point_count of all sets]
+// Returns points in lens coordinates, step_w apart, that fill the reach of the lens points that are
+// queried.
+//   asked  [point_count of all sets]: true for the lens points that are queried
 std::vector<Vec2> PlacesAround(const FrameQueries& frame, const std::vector<bool>& asked,
                                double step_w) {
   std::vector<Vec2> centres;
@@ -95,8 +95,7 @@ void CoverageMap::SetGrid(const SlabSection& section, std::span<const FrameQueri
 void CoverageMap::Mark(const SlabPoint& point) {
   size_t index = 0;
   for (int k = 0; k < kCellAxes; ++k) {
-    // Rays beyond the bounds come from the margins of the spawned places only: no frame asks for
-    // them.
+    // A ray beyond the bounds comes from the margin that PlacesAround() adds; no frame queries it.
     const double place = (point[k] - low_[k]) * per_width_[k];
     if (!(place >= 0 && place < static_cast<double>(count_[k]))) return;
     index = index * count_[k] + static_cast<size_t>(place);
@@ -131,7 +130,7 @@ void CoverageMap::Spawn(const Slab& slab, const FrameQueries& frame) {
   const double step_px = std::max(kSpawnStep * width_w_[1] / element_uv_w, 0.5);
   const double step_w = kSpawnStep * width_w_[0];
   const size_t point_count = frame.points.point_count();
-  std::map<std::vector<bool>, std::vector<Vec2>> places_of;  // by the lens points asked for
+  std::map<std::vector<bool>, std::vector<Vec2>> places_of;  // by the lens points that are queried
   std::vector<bool> asked(point_count, true);
   const auto steps = [&](int size_px) {
     return static_cast<int>(std::ceil((size_px + 2 * margin_px) / step_px));

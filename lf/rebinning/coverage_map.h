@@ -1,10 +1,10 @@
-// A map of the rays that some frames ask for, so that no others are kept (thesis 4.3.2, "coverage
+// A map of the rays that some frames query, so that no other rays are kept (thesis 4.3.2, "coverage
 // map").
 //
-// The slab's bounds are cut into cells of one bit each, far wider than the cells of rays. Rays are
-// spawned on the lenses of all frames, as dense as these cells, and mark the cells that they run
-// through; then the neighbours of each marked cell are marked. The map covers some rays that no
-// frame asks for, but every ray that is within reach of a query.
+// The bounds of the slab are cut into cells of one bit each, far wider than the cells of rays. Rays
+// are spawned on the lenses of all frames, less than one such cell apart, and mark the cells that
+// they pass through; then the neighbours of each marked cell are marked. The map covers every ray
+// that is within reach of a query, and some others.
 #pragma once
 
 #include <array>
@@ -22,8 +22,8 @@ namespace lf {
 
 struct CoverageOptions {
   size_t most_bytes = size_t{32} << 20;  // cells are widened if the map would be larger
-  // Number of cells across the plate; cells are never narrower than eight LF pixels. On the st
-  // plane, a cell is half as wide as the reach of a lens point.
+  // Number of cells of the uv plane across the plate of a frame; fewer if cells would be narrower
+  // than eight LF pixels. A cell of the st plane is half as wide as the reach of a lens point.
   int cells_across = 64;
 };
 
@@ -31,7 +31,7 @@ class CoverageMap {
  public:
   CoverageMap() = default;  // covers nothing
 
-  //   frames  all frames of the section; some may ask for no rays
+  //   frames  all frames of the section; some may query no rays
   CoverageMap(const SlabSection& section, std::span<const FrameQueries> frames,
               const CoverageOptions& options, ThreadPool& pool);
 
@@ -61,7 +61,7 @@ class CoverageMap {
   SlabPoint low_ = SlabPoint::Zero();
   std::array<double, kCellAxes> per_width_ = {};
   std::array<size_t, kCellAxes> count_ = {};  // cells along each axis; the last a multiple of kBits
-  std::array<double, 2> width_w_ = {};        // of cells on the st and on the uv plane
+  std::array<double, 2> width_w_ = {};        // width of a cell on the st and on the uv plane
   LargeVector<uint64_t> bits_;
 };
 

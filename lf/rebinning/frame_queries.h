@@ -1,5 +1,5 @@
-// The rays that one frame asks rebinned rays for: one ray for each element and lens point. Parts of
-// the plate may ask for a part of the lens points only.
+// The queries of one frame: the rays that it interpolates between rebinned rays, one for each
+// element and lens point. Parts of the plate may query only some of the lens points.
 #pragma once
 
 #include <optional>
@@ -15,9 +15,9 @@ struct FrameQueries {
   RenderCamera camera;
   LensPointSets points;
   QueryKernel kernel;
-  std::optional<PointShares> shares;  // none: every element asks for all points
+  std::optional<PointShares> shares;  // none: every element queries all points
 
-  // True if an element asks for a ray.
+  // True if an element queries a ray.
   bool AsksForAny() const;
 };
 

@@ -15,7 +15,8 @@ class SquareTest {
         width_px_(frame.pinhole.intrinsics.width_px),
         height_px_(frame.pinhole.intrinsics.height_px) {}
 
-  // A position beside the plate is in the square of the nearest element.
+  // True if the square of a position needs rays. A position beside the plate is in the square of
+  // the nearest element.
   bool IsAsked(double x_px, double y_px) const {
     if (squares_.asked.empty()) return true;
     const auto square = [](double place, int size_px) {
@@ -33,7 +34,7 @@ void Colour(const BinnedCell& cell, FrameRay* ray) {
   for (int c = 0; c < 3; ++c) ray->rgb[c] = static_cast<float>(cell.Mean(c));
 }
 
-// Returns the rays of all cells in the order of the cells, by all threads.
+// Computes the rays of all cells with all threads. Returns them in the order of the cells.
 //   see(cells, rays)  appends the rays of some cells
 template <class See>
 LargeVector<FrameRay> RaysOfCells(std::span<const BinnedCell> cells, ThreadPool& pool,

@@ -1,5 +1,5 @@
-// Rebinned rays as one frame sees them: the point of the lens and the position on the plate of
-// each. The slab is replaced by the frame's lens plane and focus plane (thesis 4.3.2,
+// Rebinned rays as one frame sees them: each with its point of the lens and its position on the
+// plate. The frame's lens plane and focus plane take the place of the slab (thesis 4.3.2,
 // "reparameterization"). Tilted focus planes need no special case.
 #pragma once
 
@@ -24,32 +24,33 @@ struct FrameRay {
   std::array<float, 3> rgb = {};  // linear, 0 to 65535
 };
 
-// How far around the lens and beside the plate rays still count.
+// The largest distances, outside the lens and beside the plate, at which rays are returned.
 struct FrameReach {
   double lens_w = 0;
   double plate_px = 0;
 };
 
-// The squares of kSide x kSide elements that ask for rays; all of them by default.
+// The squares of kSide x kSide elements that need rays; by default all squares of the plate.
 struct AskedSquares {
   static constexpr int kSide = 8;
   int columns = 0;
   std::vector<bool> asked;  // [rows][columns]; empty: all
 };
 
-// Returns the middle rays of cells, in the order of the cells. Leaves out rays that do not run
-// forward, that pass the lens plane farther than radius + reach.lens_w from its centre, that meet
-// the plate more than reach.plate_px beside its edge, or that no square asks for. A ray beside the
-// plate belongs to the square of the nearest element.
+// Returns the rays through the middles of cells, in the order of the cells. Leaves out rays that do
+// not run forward, that pass the lens plane farther than the lens radius + reach.lens_w from the
+// lens centre, that have no focus point in front of the lens, that meet the plate more than
+// reach.plate_px beside its edge, or whose square is not in `squares`. The square of a ray beside
+// the plate is that of the nearest element.
 LargeVector<FrameRay> FrameRaysOf(const Slab& slab, std::span<const BinnedCell> cells,
                                   const RenderCamera& frame, const FrameReach& reach,
                                   ThreadPool& pool, const AskedSquares& squares = {});
 
-// Returns the middle rays of cells for queries through a single lens point, without replacing the
-// slab: the distance between a ray and the query is measured on the slab's planes (Eq. 4.5
-// literally). The position of a ray on the plate is that of the asked ray, which runs from the lens
-// point to the ray's point of the uv plane. Its point of the lens is the lens point plus the
-// distance between the two rays on the st plane.
+// Returns the rays through the middles of cells for queries through a single lens point, with
+// distances measured on the slab's planes instead of the frame's (Eq. 4.5 literally). For each ray,
+// the query runs from the lens point to the point where the ray meets the uv plane. The ray gets
+// the query's position on the plate. Its point of the lens is the lens point plus the difference
+// between the points where ray and query meet the st plane.
 LargeVector<FrameRay> FrameRaysThrough(const Vec2& lens_point, const Slab& slab,
                                        std::span<const BinnedCell> cells, const RenderCamera& frame,
                                        const FrameReach& reach, ThreadPool& pool);

@@ -7,7 +7,7 @@
 namespace lf {
 namespace {
 
-// A camera 1 cm behind the st plane that looks a little aside, its focus plane tilted.
+// Returns a camera 0.01 behind the st plane that looks a little aside. Its focus plane is tilted.
 RenderCamera TestFrame(double horizontal_rad) {
   RenderCamera frame;
   frame.pinhole.intrinsics = {400, 400, 160, 120, 0, 320, 240};
@@ -50,7 +50,8 @@ TEST(FrameRays, GoFromTheLensThroughTheFocusPlaneToTheirElement) {
     for (const FrameRay& ray : rays) {
       const auto i = static_cast<size_t>(ray.rgb[0]);
       ASSERT_GE(i, next);
-      // A ray that is left out is beyond the reach, up to its distance from the cell's middle ray.
+      // A ray that is left out is beyond the reach, or nearer to its edge than rays differ from the
+      // middle rays of their cells.
       for (; next < i; ++next) {
         const auto& [x, y, lens_x, lens_y] = expected[next];
         EXPECT_TRUE(x < -2 || x > 322 || y < -2 || y > 242 ||
@@ -66,8 +67,8 @@ TEST(FrameRays, GoFromTheLensThroughTheFocusPlaneToTheirElement) {
   }
 }
 
-// A point on the slab's uv plane has one position on the plate, through any point of the lens,
-// though the focus is elsewhere: the lens point and the ray beside it agree about the element.
+// A ray that meets the uv plane at some point gets the same position on the plate as the query from
+// the lens point to this point, although the frame's focus is elsewhere.
 TEST(FrameRays, ThroughALensPointAreToldApartOnTheSlab) {
   Slab slab;
   slab.uv.origin_world = Vec3(0, 0, 3);

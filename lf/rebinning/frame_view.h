@@ -1,14 +1,16 @@
-// The lens points and plate positions of the middle rays of cells in one frame, many rays at a
-// time. Internal to rebinning.
+// Computes where the rays through the middles of cells pass the lens and meet the plate of one
+// frame, for many rays at a time. Internal to rebinning.
 //
-// With S on the st plane and U on the uv plane, both from the frame's centre, a ray S + l (U - S)
-// passes the lens plane, forward . X = 0, where
+// Let S and U be the points of a ray on the st and uv planes, relative to the lens centre of the
+// frame. The ray S + l (U - S) passes the lens plane, forward . X = 0, at
 //
 //   X = (S (forward . U) - U (forward . S)) / (forward . (U - S))
 //
-// and meets the focus plane, n . X = o, where X = (S (n . U - o) - U (n . S - o)) / (n . (U - S)).
-// All
-// of these scalar products are linear forms of the cell's four numbers.
+// and meets the focus plane, n . X = o, at
+//
+//   X = (S (n . U - o) - U (n . S - o)) / (n . (U - S)).
+//
+// All these scalar products are linear forms of the four numbers of the cell.
 #pragma once
 
 #include <array>
@@ -20,7 +22,8 @@
 
 namespace lf {
 
-// The linear form constant + of_a a + of_b b of a cell's two numbers on one plane.
+// The linear form constant + of_a a + of_b b, where a and b are the two numbers of a cell on one
+// plane as they are in its key (kCellOffset is added to them).
 struct CellForm {
   double constant = 0;
   double of_a = 0;
@@ -30,10 +33,11 @@ struct CellForm {
 struct FrameView {
   FrameView(const Slab& slab, const RenderCamera& frame, const FrameReach& reach);
 
-  // Scalar products of a vector and a point of one slab plane, seen from the frame's centre.
+  // Scalar products of several vectors with X, a point of one slab plane relative to the lens
+  // centre of the frame.
   struct OfPlane {
     CellForm forward, right, up;
-    CellForm plate_x, plate_y;  // rows of the calibration matrix, before they are divided
+    CellForm plate_x, plate_y;  // position on the plate times depth
     CellForm focus;             // n . X - o
   };
   OfPlane st, uv;
@@ -45,20 +49,23 @@ struct FrameView {
 struct SeenCells {
   static constexpr size_t kAtOnce = 64;
   size_t count = 0;
-  std::array<size_t, kAtOnce> cells;  // indices of the given cells that are seen, ascending
+  std::array<size_t, kAtOnce> cells;  // ascending indices of the cells that are seen
   std::array<double, kAtOnce> lens_x_w, lens_y_w, x_px, y_px;
 };
 
-// Finds the cells whose middle rays the frame sees. There must be at most kAtOnce cells.
+// Finds the cells whose middle rays the frame sees (those that FrameRaysOf() does not leave out,
+// squares aside). There must be at most kAtOnce cells.
 void FindSeenCells(const FrameView& view, std::span<const BinnedCell> cells, SeenCells* seen);
-// Views one ray at a time: for rays that are not of cells, and as the reference of FindSeenCells().
+// Computes where one ray passes the lens and meets the plate. It is used for rays that do not
+// belong to cells, and as the reference of FindSeenCells().
 class RayView {
  public:
   RayView(const RenderCamera& frame, const FrameReach& reach);
 
   // Returns the ray as the frame sees it, without its colour; none if it is not seen.
   std::optional<FrameRay> See(const Ray& ray) const;
-  // Like See(), but the ray counts as one through `lens_point`, at any distance from the lens.
+  // Like See(), but `lens_point` is used as the ray's point of the lens, at any distance from the
+  // lens centre.
   std::optional<FrameRay> At(const Vec2& lens_point, const Ray& ray) const;
 
  private:

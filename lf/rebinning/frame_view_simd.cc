@@ -1,6 +1,6 @@
 // FindSeenCells(), compiled for every instruction set; one is chosen at run time (Highway).
 //
-// Products and sums are never fused, so every instruction set gives the same bits.
+// Products and sums are never fused, so results are bit-identical on every instruction set.
 #include "lf/core/check.h"
 #include "lf/rebinning/frame_view.h"
 
@@ -17,7 +17,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<double, 8>;
 using V = hn::Vec<D>;
 
-// Converts a 16-bit number to double by putting it into the lowest bits of 2^52.
+// Returns number `axis` of each key as a double: puts its 16 bits into the lowest bits of 2^52, and
+// subtracts 2^52.
 HWY_INLINE V NumberOf(const uint64_t* HWY_RESTRICT keys, int axis) {
   const D d;
   const hn::RebindToUnsigned<D> d64;

@@ -7,8 +7,8 @@
 namespace lf {
 namespace {
 
-// The cells lie all around, before and behind the frame, which looks along the slab or aside.
-// FindSeenCells() finds the same cells as RayView, at the same places.
+// FindSeenCells() finds the same cells as RayView, at the same positions. The cells lie on all
+// sides of the frame, which looks along the slab or aside.
 TEST(FrameView, SeesWhatSingleRaysSee) {
   Slab slab;
   slab.st = {Vec3(0.01, 0, 0.002), Vec3(0.8, 0.6, 0), Vec3(-0.6, 0.8, 0)};

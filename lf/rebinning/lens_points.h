@@ -1,4 +1,4 @@
-// The points of the lens through which a frame asks for rays (thesis 4.3.3, Eq. 4.7).
+// The points of the lens through which a frame queries rays (thesis 4.3.3, Eq. 4.7).
 #pragma once
 
 #include <cstdint>

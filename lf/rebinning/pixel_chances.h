@@ -2,8 +2,8 @@
 // rebinning.
 //
 // Two consecutive pixels share a 32-bit hash (with the constants of C. Wellons's "lowbias32"), one
-// half each. The hash is that of the pair's number in the LF image, mixed with 64 bits of seed and
-// LF image.
+// half each. It is the hash of the number of the pair in the LF image, mixed with 64 bits that
+// depend on the seed and the LF image.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,8 @@ class PixelChances {
   //   chosen  indices into p, ascending; its memory is reused
   void Choose(uint64_t first, std::span<const uint16_t> p, std::vector<uint32_t>* chosen) const;
 
-  // True if one pixel is chosen. This is the reference of Choose().
+  // True if Choose() chooses the pixel with this number and this p. This is the reference of
+  // Choose().
   bool Chooses(uint64_t pixel, uint16_t p) const {
     auto hash = static_cast<uint32_t>(pixel / 2) ^ static_cast<uint32_t>(stream_);
     hash ^= hash >> 16;

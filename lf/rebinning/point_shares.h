@@ -1,5 +1,5 @@
-// The share of each lens point that is asked for, all over the plate: between 0, not asked for, and
-// 1. Given at nodes and interpolated between them.
+// The share of each lens point that a frame interpolates between rebinned rays, all over the plate:
+// from 0 (the point is not queried) to 1. Shares are given at nodes and interpolated between them.
 #pragma once
 
 #include <cstddef>
@@ -11,21 +11,23 @@
 
 namespace lf {
 
-// Nodes along a side of the plate. The first and the last are in the middles of its outermost
+// Nodes along a side of the plate. The first and the last node are in the middles of the outermost
 // elements; a single node is in the middle of the side.
 class NodeAxis {
  public:
   // Makes one node.
   explicit NodeAxis(int size_px) : NodeAxis(size_px, 1) {}
-  // Makes `count` nodes at equal distances and, if these are 3 or more, some more close to both
-  // ends, because the views of LF images may end there.
+  // Makes `count` nodes at equal distances. If count is 3 or more, adds nodes near both ends,
+  // because the field of view of LF images may end there; those less than an element from the end
+  // are left out. A side of one element has one node.
   NodeAxis(int size_px, int count);
 
   int count() const { return static_cast<int>(nodes_px_.size()); }
   int size_px() const { return static_cast<int>(places_.size()); }
   double node_px(int node) const { return nodes_px_[node]; }
 
-  // The two nodes around an element, and its place between them: 0 at the first, 1 at the second.
+  // The two nodes around an element, and the position of the element between them: 0 at the first
+  // node, 1 at the second.
   struct Place {
     int first = 0;
     int second = 0;
@@ -35,27 +37,27 @@ class NodeAxis {
 
  private:
   std::vector<double> nodes_px_;
-  std::vector<Place> places_;  // of all elements
+  std::vector<Place> places_;  // [size_px]
 };
 
 struct PointShares {
   NodeAxis columns;
   NodeAxis rows;
-  size_t point_count = 0;     // of all sets, one set after the other
+  size_t point_count = 0;  // number of lens points in all sets; points are in the order of the sets
   std::vector<float> values;  // [rows][columns][point_count], 0 to 1
 
   size_t node_count() const { return static_cast<size_t>(columns.count()) * rows.count(); }
-  // Writes the shares of points [first, first + count) at an element to out[count].
+  // Writes the shares of lens points [first, first + count) at element (x, y) to out[count].
   void At(int x, int y, size_t first, size_t count, float* out) const;
-  // Returns the squares with an element that asks for a point, or within reach_px of such an
-  // element.
+  // Returns the squares that have an element with a share above 0, or that are within reach_px of
+  // such an element. May return a few others.
   AskedSquares Squares(double reach_px) const;
   // Returns the shares of one point alone.
   PointShares OfPoint(size_t point) const;
   // Returns the mean share of the points of each set, one value for each set.
   PointShares MeansOfSets(const LensPointSets& points) const;
   // True if one of the points [first, first + count) has a share above 0 at a node around the
-  // rectangle. If false, no element of the rectangle asks for these points.
+  // rectangle. If false, no element of the rectangle queries these points.
   bool IsAny(const PixelRect& rect, size_t first, size_t count) const;
 };
 

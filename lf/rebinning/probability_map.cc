@@ -10,7 +10,8 @@
 namespace lf {
 namespace {
 
-// Returns the stored value, black 0 and white 1. Response curves are ascending.
+// Returns the stored value of a linear value: 0 for black, 1 for white. Response curves must be
+// ascending.
 double StoredOf(const RadianceEncoding& encoding, double radiance) {
   switch (encoding.transfer) {
     case Transfer::kSrgb:
@@ -29,7 +30,8 @@ double StoredOf(const RadianceEncoding& encoding, double radiance) {
   return radiance;
 }
 
-// Returns the rectangle, in units of 2 x 2 pixels, of those that a rectangle of pixels touches.
+// Returns the squares of 2 x 2 pixels that a rectangle of pixels touches, as a rectangle whose unit
+// is such a square.
 PixelRect Quads(const PixelRect& rect) {
   return {rect.x_begin >> 1, rect.y_begin >> 1, (rect.x_end + 1) >> 1, (rect.y_end + 1) >> 1};
 }

@@ -1,5 +1,5 @@
-// The probability p that the ray of an LF pixel is kept: the more the image changes around the
-// pixel, the likelier (thesis 4.3.2, Eq. 4.4, Figure 4.8).
+// The probability p that the ray of an LF pixel is kept: p is higher where the image changes more
+// around the pixel (thesis 4.3.2, Eq. 4.4, Figure 4.8).
 //
 // LoG is the Laplacian of the image smoothed by a Gaussian:
 //
@@ -23,7 +23,7 @@ struct ProbabilityOptions {
   double sigma_px = 1;         // of the Gaussian, at most kMostSigma_px; 0: no smoothing
   double alpha = 8;            // per unit of stored values (black 0, white 1); at most kMostAlpha
   double beta = 0;             // threshold in the unit of stored values
-  double xi = 0.05;            // least p of a pixel that passes beta, [0, 1)
+  double xi = 0.05;            // least p where |LoG| reaches beta, [0, 1)
   double second_sigma_px = 0;  // of another Gaussian that smooths p; 0: no smoothing
 };
 inline constexpr double kMostSigma_px = 8;
@@ -46,10 +46,11 @@ void ProbabilityMap(const LfPixels& pixels, const PixelRect& rect,
                     const std::vector<uint16_t>& stored_values, const ProbabilityOptions& options,
                     Image<uint16_t>* p);
 
-// Largest distance, in LF pixels, of a pixel that p depends on.
+// Returns the largest distance, in LF pixels, between a pixel and another pixel that its p depends
+// on.
 int PixelsAround(const ProbabilityOptions& options, bool is_mosaic);
 
-// The reference of ProbabilityMap(), pixel by pixel.
+// The reference of ProbabilityMap(). Computes p pixel by pixel.
 void ProbabilityMapReference(const LfPixels& pixels, const PixelRect& rect,
                              const std::vector<uint16_t>& stored_values,
                              const ProbabilityOptions& options, Image<uint16_t>* p);

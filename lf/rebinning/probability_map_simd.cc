@@ -48,7 +48,8 @@ void Across(const SmoothingTaps& taps, const uint16_t* HWY_RESTRICT padded, int 
   }
 }
 
-// Smooths one row down the columns, and repeats the result's outermost values beyond both ends.
+// Smooths one row along the columns, and writes the outermost values of the result once more beyond
+// both ends.
 //   rows(k)  input row k rows below the row of the result, k from -radius to radius
 template <class RowAt>
 void Down(const SmoothingTaps& taps, const RowAt& rows, int width, uint32_t* HWY_RESTRICT out) {
@@ -103,7 +104,7 @@ class Smoother {
         padded_(width + 2 * kMargin) {}
 
   // Smooths the rows [begin, end).
-  //   read(y, out)  reads a row of the plane
+  //   read(y, out)  writes row y of the plane to `out`
   template <class Read>
   void Run(int begin, int end, const Read& read) {
     first_ = begin;
@@ -121,7 +122,8 @@ class Smoother {
           taps_, [&](int k) { return across_.row(std::clamp(y + k, 0, height_ - 1) - low); },
           width_, smooth_.row(y - begin));
   }
-  // Returns a smoothed row of the last Run(). Rows beyond the plane are its first or last row.
+  // Returns smoothed row y of the last Run(), or the first or last row of the plane if y is beyond
+  // it.
   const uint32_t* row(int y) { return smooth_.row(std::clamp(y, 0, height_ - 1) - first_); }
 
  private:

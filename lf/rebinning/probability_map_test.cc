@@ -48,7 +48,8 @@ TEST(ProbabilityMap, FastIsTheReference) {
           Image<uint16_t> judge;
           ProbabilityMapReference(pixels, rect, table, options, &judge);
           ExpectSame(MapOf(pixels, table, options), judge);
-          // The maps of two parts, one of them at the corner, are parts of the whole map.
+          // The fast map equals the reference also for two parts: one in the lower middle, and the
+          // leftmost column.
           const int x = rect.width() / 3, y = rect.height() / 2;
           for (const PixelRect& part :
                {PixelRect{rect.x_begin + x, rect.y_begin + y, rect.x_end - x, rect.y_end},
@@ -83,8 +84,8 @@ TEST(ProbabilityMap, AnEdgeIsLikelyAndFlatIsXi) {
 }
 
 // Thesis Eq. 2.15 to 2.17 and 4.4 in real numbers: a Gaussian in two dimensions, the Laplacian of
-// the smoothed image, and min(1, |LoG| alpha + xi) from beta on. The plane continues beyond its
-// border with its outermost values.
+// the smoothed image, and min(1, |LoG| alpha + xi) where |LoG| is at least beta. The plane
+// continues beyond its border with its outermost values.
 class RealProbabilities {
  public:
   RealProbabilities(const Image<double>& grey, double sigma)
@@ -153,7 +154,7 @@ TEST(ProbabilityMap, IsTheThesissEquationsInRealNumbers) {
   }
 }
 
-// The rectangle that was read must not decide which rays are kept, away from its borders.
+// The rectangle that was read must not influence which rays are kept, except near its borders.
 TEST(ProbabilityMap, APartIsThePartOfTheWhole) {
   const std::vector<uint16_t> table = StoredValueTable({});
   for (const BayerPattern bayer : {BayerPattern::kNone, BayerPattern::kBggr}) {

@@ -28,7 +28,7 @@ struct SmoothingTaps {
 };
 SmoothingTaps MakeTaps(double sigma_px);
 
-// ProbabilityOptions in the units of the steps.
+// ProbabilityOptions as integers, in the units of the steps above.
 struct ProbabilityParameters {
   SmoothingTaps taps;
   SmoothingTaps second_taps;
@@ -66,12 +66,13 @@ class GreyRows {
   PixelRect plane_;  // in pixels, or in 2 x 2 pixels, of the whole LF image
 };
 
-// Writes p of the pixels of `rect`, taken from p of a grey plane that contains them. Masked pixels
-// get 0.
+// Writes p of the pixels of `rect`, copied from `of_plane`, the p of a grey plane with the
+// rectangle `plane`. p of masked pixels is 0.
 void SpreadOverPixels(const LfPixels& pixels, const PixelRect& rect, const PixelRect& plane,
                       const Image<uint16_t>& of_plane, Image<uint16_t>* p);
 
-// Compute p of a grey plane, and smooth a plane, in integers.
+// ProbabilityPlane() computes p of a grey plane. SmoothedPlane() smooths a plane. Both calculate in
+// integers.
 void ProbabilityPlane(const ProbabilityParameters& parameters, const GreyRows& grey,
                       Image<uint16_t>* p);
 void SmoothedPlane(const SmoothingTaps& taps, const Image<uint16_t>& grey, Image<uint16_t>* smooth);

@@ -8,11 +8,12 @@
 namespace lf {
 namespace {
 
-// Number of slots for so many cells. At most three quarters are filled, because searches in a
-// fuller table are long.
+// Returns the number of slots that `cells` cells need. At most three quarters of the slots are
+// filled, because searches in a fuller table are long.
 size_t SlotsFor(size_t cells) { return cells + cells / 3 + 64; }
 
-// Uses other bits of the hash than ShardOf() and than the comparison with the limit.
+// Returns the slot where the search for a hash begins. Uses other bits of the hash than ShardOf()
+// and the comparison with the limit do.
 size_t FirstSlot(uint64_t hash, size_t slots) {
   const uint64_t bits = hash / RayMap::kShards & 0xffffffff;
   return static_cast<size_t>(bits * slots >> 32);
@@ -29,16 +30,17 @@ BinnedCell* Find(LargeVector<BinnedCell>& slots, CellKey cell, uint64_t hash) {
 
 bool IsBefore(const BinnedCell& a, const BinnedCell& b) { return a.cell < b.cell; }
 
-// The slots of consecutive rays are far apart in memory: each is prefetched so many rays ahead.
+// The slots of consecutive rays are far apart in memory: each slot is prefetched kAhead rays before
+// it is used.
 constexpr size_t kAhead = 32;
 
-// Number of cells to expect in the fullest shard if all shards together have `cells`.
+// Returns the number of cells to expect in the fullest shard if all shards together have `cells`.
 size_t MostOfShard(size_t cells) { return cells / RayMap::kShards * 9 / 8 + 64; }
 
 }  // namespace
 
-// Allocates memory for the expected cells at once: growing takes longer than filling, and so does
-// memory that is never used.
+// Allocates memory for the expected cells at once. Growing later would take longer than adding the
+// cells does, and so would allocating memory that is never used.
 RayMap::RayMap(size_t max_cells, size_t expected_cells)
     : max_cells_(std::max<size_t>(max_cells, 1)) {
   const size_t cells = std::min(max_cells_, expected_cells);
@@ -48,11 +50,11 @@ RayMap::RayMap(size_t max_cells, size_t expected_cells)
 RayMap::RayMap(size_t max_cells, size_t expected_cells, uint64_t limit, bool is_too_coarse)
     : RayMap(max_cells, expected_cells) {
   limit_ = limit;
-  shards_[0].is_too_coarse = is_too_coarse;  // only the flag of all shards together is ever read
+  shards_[0].is_too_coarse = is_too_coarse;  // is_too_coarse() combines the flags of all shards
 }
 
-// Grows to twice the size, but not beyond what max_cells need. A shard that needs still more before
-// the next Trim() grows by a quarter.
+// Doubles the number of slots, but not beyond the number that max_cells cells need. A shard that
+// needs still more before the next Trim() grows by a quarter.
 void RayMap::Grow(Shard& shard) {
   const size_t now = shard.slots.size(), most = SlotsFor(MostOfShard(max_cells_));
   LargeVector<BinnedCell> slots(now < most ? std::min(2 * now, most) : now + now / 4);
@@ -152,9 +154,9 @@ size_t RayMap::size_bytes() const {
 }
 
 std::vector<BinnedCell> RayMap::Cells(ThreadPool& pool) const {
-  // Cells are distributed by the highest 16 bits of their keys, the letter, and then sorted in
-  // parts by all threads. A part has whole letters, and about the same number of cells as the
-  // others.
+  // Cells are first distributed by the highest 16 bits of their keys (the letter), and then sorted
+  // in parts by all threads. A part consists of all cells of some letters; all parts have about the
+  // same number of cells.
   constexpr size_t kParts = 256, kLetters = 1 << 16;
   const auto letter_of = [](const BinnedCell& cell) { return cell.cell >> 48; };
   const auto for_each_cell = [this](const auto& visit) {

@@ -1,11 +1,11 @@
 // Rebinned rays: the radiance recorded in each cell of a slab, in memory that does not grow beyond
 // a limit (thesis 4.3.2).
 //
-// A cell holds the sums of its rays' linear 16-bit values, and their number. If there are more
-// cells than may be kept, the cells with the smallest hashes are kept: the limit, at and above
-// which hashes are dropped, is lowered in steps of 1/8. A cell below the limit was never dropped,
-// so the kept cells depend only on which rays were given, never on their order or the number of
-// threads.
+// A cell holds the sums of its rays' linear 16-bit values, and the number of these rays. If there
+// are more cells than may be kept, the cells with the smallest hashes are kept: a limit, at and
+// above which hashes are dropped, is lowered by an eighth at a time. A cell whose hash is below the
+// limit was never dropped, so the kept cells depend only on which rays were added, never on their
+// order or the number of threads.
 #pragma once
 
 #include <array>
@@ -28,8 +28,8 @@ struct BinnedRay {
 };
 
 struct BinnedCell {
-  // The sums of more rays do not fit into 32 bits. If a cell gets so many LF pixels, cells are far
-  // too wide.
+  // Largest number of rays in a cell: the sums of more rays may not fit into 32 bits. Cells are far
+  // too wide if one of them gets this many rays.
   static constexpr uint32_t kMostRays = 65537;
 
   CellKey cell = 0;  // 0: none
@@ -53,30 +53,33 @@ class RayMap {
   // threads.
   static constexpr size_t kShards = 32;
 
-  // max_cells       number of cells that Trim() leaves at most; at least 1
-  // expected_cells  memory for so many cells, at most max_cells, is allocated at once
+  // max_cells number of cells that Trim() leaves at most; at least 1 expected_cells memory for this
+  // number of cells, but at most max_cells, is allocated at once
   explicit RayMap(size_t max_cells, size_t expected_cells = SIZE_MAX);
 
-  // Constructs an empty map with the limit of a map that was written to a file (ray_map_file.h).
-  // Restore() adds its cells.
+  // Constructs an empty map with the limit() and is_too_coarse() of a map that was written to a
+  // file (ray_map_file.h). Restore() adds the cells of that map.
   RayMap(size_t max_cells, size_t expected_cells, uint64_t limit, bool is_too_coarse);
 
   static size_t ShardOf(CellKey cell) { return MixBits(cell) % kShards; }
 
-  // Adds rays to the cells that they are in. All rays must be of the shard. Different shards may be
-  // added to at the same time. is_too_coarse() becomes true if a cell has no room for a ray.
+  // Adds rays to their cells; makes cells that are not yet in the map. Ignores rays for whose cells
+  // MayHold() is false. The cells of all rays must belong to the shard (ShardOf()). Several threads
+  // may add to different shards at the same time. is_too_coarse() becomes true if a cell has no
+  // room for a ray.
   void Add(size_t shard, std::span<const BinnedRay> rays);
   // Like Add(), but skips rays whose cell is not in the map.
   void AddToThoseThere(size_t shard, std::span<const BinnedRay> rays);
 
-  // Puts back cells of another map with this limit. They must be of the shard, all different, and
-  // not yet in this map. Different shards may be restored at the same time.
+  // Adds cells of another map that has the same limit. They must belong to the shard, be all
+  // different, and not be in this map yet. Several threads may restore different shards at the same
+  // time.
   void Restore(size_t shard, std::span<const BinnedCell> cells);
 
   // Drops the cells with the largest hashes until there are no more than max_cells.
   void Trim(ThreadPool& pool);
 
-  // Drops the cells that are not wanted any more, and resets the limit: rays that are added later
+  // Drops the cells for which is_wanted() is false, and resets the limit: rays that are added later
   // may make cells of any hash again.
   void DropUnless(const std::function<bool(CellKey)>& is_wanted, ThreadPool& pool);
 
@@ -92,9 +95,9 @@ class RayMap {
   size_t size() const;
   size_t size_bytes() const;
 
-  // Returns all cells by ascending keys, which is row by row of the uv plane.
+  // Returns all cells, sorted by ascending keys: row by row of the uv plane.
   std::vector<BinnedCell> Cells(ThreadPool& pool) const;
-  // Returns the cells of a shard by ascending keys.
+  // Returns the cells of a shard, sorted by ascending keys.
   std::vector<BinnedCell> CellsOf(size_t shard) const;
 
  private:

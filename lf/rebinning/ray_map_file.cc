@@ -87,7 +87,7 @@ std::string FaultOf(const Part& part, size_t shard, const RayMap& map) {
   return {};
 }
 
-// Reads the head and checks that the file is as long as it says, before anything is allocated.
+// Reads the head, and checks that the file is as long as the head says, before memory is allocated.
 Result<Head> ReadHead(const entry_file::Source& source, const std::string& bytes,
                       size_t max_cells) {
   Head head;

@@ -1,6 +1,6 @@
-// Any bytes are rebinned rays or an error, and a map that was read holds only cells that rays can
-// make. The checksums of the head and of the shards are corrected first: without this, the code
-// behind them would never be reached.
+// Reads any bytes as a file of rebinned rays: this must fail with an error, or return a map that
+// holds only cells that rays can make. The checksums of the head and of the shards are corrected
+// first, because otherwise the code after their tests would never be reached.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

@@ -82,7 +82,7 @@ void ExpectSame(const RayMap& a, const RayMap& b) {
   EXPECT_EQ(a.is_too_coarse(), b.is_too_coarse());
 }
 
-// Returns the error of reading these bytes.
+// Returns the message of the error that reading these bytes returns; empty if there is none.
 std::string ErrorOf(const std::string& bytes, size_t max_cells = kManyCells) {
   ThreadPool pool(2);
   const Result<RaysFile> read = ReadRaysOfBytes(bytes, "a.rays", max_cells, pool);
@@ -109,7 +109,7 @@ std::string WithHead(std::string bytes, const std::function<void(Head*)>& change
   return bytes;
 }
 
-// Returns a file of these cells, all declared as one shard, with correct checksums.
+// Returns the bytes of a file with these cells, all in one shard, and with correct checksums.
 std::string FileOfCells(const std::vector<BinnedCell>& cells, size_t shard,
                         uint64_t limit = UINT64_MAX) {
   Head head = {};
@@ -170,7 +170,7 @@ TEST_F(RayMapFile, TheBytesDependOnTheRaysAlone) {
   EXPECT_EQ(FileOf(MapOf(rays), 3), bytes);
   std::reverse(rays.begin(), rays.end());
   EXPECT_EQ(FileOf(MapOf(rays), 7), bytes);
-  // A map that had to grow.
+  // This map has to grow.
   RayMap small(10);
   AddAll(rays, &small);
   EXPECT_EQ(FileOf(small), bytes);

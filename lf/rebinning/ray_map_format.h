@@ -14,7 +14,8 @@ namespace lf::ray_map_format {
 inline constexpr entry_file::Kind kKind = {
     "LFCELLS\n", 1, "file of rays", "the rays cannot be used: without the file they begin anew"};
 
-// The file begins with this head. The text of the entries follows, then the hash of both.
+// The file begins with this head. It is followed by the text of the entries and the hash of head
+// and text.
 struct Head {
   char magic[8];
   uint32_t version;
@@ -26,7 +27,7 @@ struct Head {
 };
 static_assert(sizeof(Head) == 40);
 
-// The head before the cells of each shard.
+// The head that precedes the cells of each shard.
 struct ShardHead {
   uint64_t cell_count;
   uint64_t hash;  // XXH3 of the cells, seeded by the number of the shard

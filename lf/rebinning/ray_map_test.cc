@@ -69,7 +69,7 @@ TEST(RayMap, WhatIsKeptDependsOnTheRaysAlone) {
       map.Trim(round % 2 == 0 ? one : three);
       EXPECT_LE(map.size(), 5000u);
     }
-    EXPECT_GT(map.size(), 4200u);  // a step is an eighth
+    EXPECT_GT(map.size(), 4200u);  // Trim() drops about an eighth at a time
     if (round == 0) first = CellsOf(map);
     EXPECT_EQ(CellsOf(map), first);
     for (const auto& [key, cell] : first) EXPECT_TRUE(map.MayHold(key));

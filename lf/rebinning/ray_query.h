@@ -5,11 +5,11 @@
 //
 // where l is the ray's point on the lens and p its position on the plate. The sums run over the
 // rebinned rays with |l - l_i|^2 / sigma_st^2 + |p - p_i|^2 / sigma_uv^2 <= kReach_sigmas^2, or
-// over the k nearest by that measure. (The factor before Eq. 4.5's exponentials is the same for all
-// rays and cancels.)
+// over the k rays that are nearest by this measure. (The factor before Eq. 4.5's exponentials is
+// the same for all rays and cancels.)
 //
-// Rays are found in a k-d tree (nanoflann), as in the thesis. This serves single rays, and is the
-// reference that splat.h is compared with.
+// Rays are found in a k-d tree (nanoflann), as in the thesis. RayQuery answers single queries, and
+// is the reference that splat.h is compared with.
 #pragma once
 
 #include <cstddef>
@@ -35,14 +35,16 @@ struct QuerySum {
 
 class RayQuery {
  public:
-  // Refers to `rays` without a copy: they must outlive the query.
+  // Refers to `rays` without a copy: they must outlive this object.
   RayQuery(std::span<const FrameRay> rays, const QueryKernel& kernel);
   ~RayQuery();
   RayQuery(const RayQuery&) = delete;
   RayQuery& operator=(const RayQuery&) = delete;
 
+  // Returns the sums over the rays within reach of the query.
   QuerySum WithinReach(const Vec2& lens_point, const Vec2& position_px) const;
-  // The weights are those of Eq. 4.5 times a common factor.
+  // Returns the sums over the `count` nearest rays. All weights are multiplied by a common factor,
+  // so that the largest is 1.
   QuerySum Nearest(const Vec2& lens_point, const Vec2& position_px, size_t count) const;
 
  private:

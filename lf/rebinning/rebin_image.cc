@@ -9,8 +9,9 @@
 namespace lf {
 namespace {
 
-// Colours of a mosaic's pixels that have all of their neighbours. Every pixel takes the same steps
-// without a branch, because its place in the pattern cannot be predicted.
+// Computes the colours of pixels of a mosaic whose eight neighbours are all in the image. All
+// pixels take the same steps without a branch, because the processor could not predict branches on
+// the place in the pattern.
 class InnerMosaic {
  public:
   explicit InnerMosaic(const LfPixels& pixels) {
@@ -31,7 +32,8 @@ class InnerMosaic {
     }
   }
 
-  // Each channel is the pixel itself, or the mean of two or four neighbours: always a sum of four.
+  // Each channel is the value of the pixel itself, or the mean of two or four neighbours. It is
+  // always computed as a sum of four values.
   std::array<uint16_t, 3> At(const uint16_t* v, int x, int y) const {
     std::array<uint16_t, 3> rgb;
     const std::array<FourOffsets, 3>& of = offsets_[2 * (y & 1) + (x & 1)];
@@ -66,14 +68,16 @@ std::array<uint16_t, 3> RgbOfMosaic(const LfPixels& pixels, const InnerMosaic& i
     }
   std::array<uint16_t, 3> rgb{};
   for (int c = 0; c < 3; ++c) {
-    // At a border without a neighbour of this channel, the pixel counts as grey.
+    // If no unmasked neighbour recorded this channel, the pixel counts as grey: its own channel is
+    // used.
     const int from = counts[c] > 0 ? c : own;
     rgb[c] = static_cast<uint16_t>((sums[from] + counts[from] / 2) / counts[from]);
   }
   return rgb;
 }
 
-// Colours as means of the pixels around that recorded them, weighted by a Gaussian.
+// Computes each channel of a pixel as the mean, weighted by a Gaussian, of the pixels around it
+// that recorded this channel.
 class ColourFilter {
  public:
   explicit ColourFilter(double sigma_px) : taps_(MakeTaps(sigma_px)) {}
@@ -101,7 +105,8 @@ class ColourFilter {
         else
           for (int c = 0; c < 3; ++c) add(c, pixels.radiance.at(i, k, c));
       }
-    // At a border without a pixel of this channel, the pixel counts as grey.
+    // If no unmasked pixel around recorded this channel, the pixel counts as grey: its own channel
+    // is used.
     const int own = is_mosaic ? BayerChannel(pixels.bayer, x, y) : 1;
     std::array<uint16_t, 3> rgb{};
     for (int c = 0; c < 3; ++c) {
@@ -139,9 +144,9 @@ class ImageRebinner {
         map_(map),
         rays_(*rays) {}
 
-  // Adds the chosen rays of columns [begin, end) to the kept ones, and the rest to the others if
-  // these are averaged.
-  //   p            of these columns
+  // Chooses rays of columns [begin, end) by their p and adds them to the kept rays. Adds the rest,
+  // except masked pixels, to the other rays if options.averages_others is true.
+  //   p            the probabilities of these columns
   //   position(x)  the ideal position of the pixel
   template <class Position>
   void Row(const uint16_t* p, int y, int begin, int end, const Position& position) {
@@ -162,7 +167,7 @@ class ImageRebinner {
     }
   }
 
-  // Adds all rays of columns [begin, end) to the kept ones.
+  // Adds the rays of all unmasked pixels of columns [begin, end) to the kept rays.
   template <class Position>
   void WholeRow(int y, int begin, int end, const Position& position) {
     for (int x = begin; x < end; ++x)
@@ -207,11 +212,12 @@ static_assert(kBandRows % RebinCoverage::kBlock == 0);
 struct PixelRun {
   PixelRect rect;
   bool is_whole;            // covered by RebinCoverage::whole
-  const IdealPatch* patch;  // that contains them; null without lens distortion
+  const IdealPatch* patch;  // the patch with these pixels; null without distortion
 };
 
-// The covered squares of an LF image; neighbours in a row of squares form one run. Squares begin at
-// multiples of their side, so that coverage does not depend on the part of the image that is read.
+// Finds the covered squares of an LF image. Neighbouring ones in a row of squares form one run.
+// Squares begin at multiples of their side, so that coverage does not depend on the part of the
+// image that is read.
 class CoveredRuns {
  public:
   //   coverage  null: all pixels are kept with the probability of Eq. 4.4
@@ -220,7 +226,7 @@ class CoveredRuns {
 
   // Appends the runs of a rectangle.
   //   patch           contains the rectangle; null without lens distortion
-  //   position(x, y)  ideal position of a pixel position in the rectangle
+  //   position(x, y)  returns the ideal position of the pixel position (x, y)
   template <class Position>
   void Find(const PixelRect& rect, const IdealPatch* patch, const Position& position,
             std::vector<PixelRun>* runs) const {

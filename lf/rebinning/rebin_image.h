@@ -30,10 +30,11 @@ struct RebinOptions {
   // noise if few rays are kept. At most kMostSigma_px; 0: colours as recorded.
   double colour_sigma_px = 0;
 };
-// Largest distance, in LF pixels, of a pixel that p or the colour of a pixel's ray depends on.
+// Returns the largest distance, in LF pixels, between a pixel and another pixel that its p or the
+// colour of its ray depends on.
 int PixelsAround(const RebinOptions& options, bool is_mosaic);
 
-// Rays of some LF images, by the shards of a RayMap. Clear() keeps the memory for reuse.
+// Rays of some LF images, sorted into the shards of a RayMap. Clear() keeps the memory for reuse.
 struct BinnedRays {
   std::array<std::vector<BinnedRay>, RayMap::kShards> kept;
   std::array<std::vector<BinnedRay>, RayMap::kShards> others;  // empty unless averages_others
@@ -42,39 +43,41 @@ struct BinnedRays {
   void Clear();
 };
 
-// The maps that decide which squares of kBlock x kBlock pixels of an LF image are covered: those
-// whose middle ray a map covers.
+// The maps that decide which squares of kBlock x kBlock pixels of an LF image are covered. A square
+// is covered if one of the maps covers the ray through its middle.
 struct RebinCoverage {
   static constexpr int kBlock = 8;
-  const CoverageMap* whole = nullptr;  // all rays of its squares are kept
-  // Rays of the squares of these maps are kept with the probability of Eq. 4.4.
+  const CoverageMap* whole = nullptr;  // all rays of the squares that it covers are kept
+  // Rays of the squares that only these maps cover are kept with the probability of Eq. 4.4.
   std::array<const CoverageMap*, 2> by_edges = {};
 };
 
 // Adds the rays of the pixels of `rect` that are covered, cut both planes of the slab, and are
 // kept. A ray has the three colours of its pixel. In a mosaic, the two colours that a pixel did not
 // record are the means of its neighbours that did.
-//   pixels         at least those of `rect`, and PixelsAround() more on each side if the LF image
-//                  has them; without these, p and the colours near the borders differ a little
+//   pixels         must hold `rect`, and should hold PixelsAround() more pixels on each side that
+//                  is not a border of the LF image; without these, p and the colours near the
+//                  borders of `rect` differ a little
 //   stored_values  StoredValueTable() of the light field
-//   ideal_pixels   of a camera with lens distortion, null without distortion
+//   ideal_pixels   those of lf_camera's intrinsics; must be null if lf_camera has no lens
+//                  distortion
 //   coverage       null: all pixels are covered, and kept with the probability of Eq. 4.4
-//   map            rays whose cell is not below its limit are left out
+//   map            rays for whose cells map.MayHold() is false are left out
 void RebinImage(const Slab& slab, const PinholeCamera& lf_camera, LfImageId id,
                 const LfPixels& pixels, const PixelRect& rect,
                 const std::vector<uint16_t>& stored_values, const IdealPixels* ideal_pixels,
                 const RebinOptions& options, const RebinCoverage* coverage, const RayMap& map,
                 BinnedRays* rays);
 
-// Returns the approximate share of the pixels of `rect` that the map covers, by the middles of
-// squares. Ignores lens distortion.
+// Returns the approximate share of the pixels of `rect` that the map covers. Tests only the middles
+// of squares, and ignores lens distortion.
 double CoveredShare(const Slab& slab, const PinholeCamera& lf_camera, const PixelRect& rect,
                     const CoverageMap& map);
 
 // Adds the kept rays to the map by all threads, trims the map, and then adds the other rays to the
-// cells that are left. With other rays, the result depends on which LF images are given in one
-// call, but not on their order.
-//   cpu_ns  the CPU time of all threads for adding rays is added to it; may be null
+// cells that are left. If there are other rays, the result depends on which LF images are added in
+// the same call, but not on their order.
+//   cpu_ns  the CPU time that all threads spend on adding rays is added to it; may be null
 void InsertRays(const std::vector<BinnedRays>& rays, ThreadPool& pool, RayMap* map,
                 std::atomic<int64_t>* cpu_ns = nullptr);
 

@@ -1,4 +1,4 @@
-// Sorts the rays of one LF image into cells: 2048 x 2048 pixels; times per pixel looked at.
+// Measures how long it takes to sort the rays of one LF image of 2048 x 2048 pixels into cells.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kSide = 2048;
 
-// Returns an image of waves of all lengths with some noise.
+// Returns an image of waves of several lengths with some noise.
 LfPixels Drawn(BayerPattern bayer) {
   LfPixels pixels({0, 0, kSide, kSide}, bayer);
   const int lanes = pixels.radiance.channels();

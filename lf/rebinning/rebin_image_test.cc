@@ -252,7 +252,7 @@ TEST(RebinImage, OthersMakeNoCells) {
   RebinOptions options;
   options.probability = {1, 0.2, 0, 0.02, 0};
   Slab slab = TestSlab();
-  slab.r_uv_w = 0.02;  // some pixels in each
+  slab.r_uv_w = 0.02;  // a cell has several pixels
   ThreadPool pool(2);
   const auto cells_of = [&](bool averages, bool reversed) {
     options.averages_others = averages;

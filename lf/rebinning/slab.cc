@@ -5,7 +5,8 @@
 namespace lf {
 namespace {
 
-// Returns the parameter along the ray of each plane; none if the st plane does not come first.
+// Returns the parameters along the ray where it cuts the two planes; none if it does not cut the st
+// plane first.
 std::optional<std::array<double, 2>> Parameters(const std::array<double, 2>& distances,
                                                 const std::array<double, 2>& slopes) {
   if (slopes[0] == 0 || slopes[1] == 0) return {};
@@ -85,7 +86,8 @@ SlabForms MakeCellForms(const Slab& slab, const PinholeCamera& lf_camera) {
 std::optional<SlabPoint> Parameterize(const SlabForms& forms, const Vec3& position) {
   const double per_st = 1 / Value(forms.denominators[0], position);
   const double per_uv = 1 / Value(forms.denominators[1], position);
-  // A ray parallel to a plane divides by 0. It is refused here, or its point is not finite.
+  // For a ray parallel to a plane, this has divided by 0: none is returned here, or the point is
+  // not finite.
   if (!(forms.distances[0] * per_st < forms.distances[1] * per_uv)) return {};
   return SlabPoint(
       Value(forms.numerators[0], position) * per_st, Value(forms.numerators[1], position) * per_st,

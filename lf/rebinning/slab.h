@@ -1,13 +1,13 @@
 // The light slab: two planes that parameterize rays, and the cells that rays are sorted into
 // (thesis 2.1.1, 4.3.2).
 //
-// A ray that cuts the st plane at (s, t) and the uv plane at (u, v), along the planes' axes from
-// their origins, is in the cell (thesis Eq. 4.3, with a width for each plane)
+// A ray that cuts the st plane at (s, t) and the uv plane at (u, v), measured along the planes'
+// axes from their origins, is in the cell (thesis Eq. 4.3, with a width for each plane)
 //
 //   (floor(s / r_st), floor(t / r_st), floor(u / r_uv), floor(v / r_uv))
 //
-// and stands for the ray through the middle of that cell. Light runs from the uv plane to the st
-// plane: a ray that cuts the planes in the other order is a different ray, and has no cell.
+// and the cell stands for the ray through its middle. Light runs from the uv plane to the st plane:
+// a ray that cuts the planes in the other order is a different ray, and has no cell.
 #pragma once
 
 #include <array>
@@ -38,44 +38,45 @@ struct Slab {
 // (s, t, u, v), world units.
 using SlabPoint = Eigen::Vector4d;
 
-// Returns the points where a ray cuts the planes; none if it is parallel to one of them, or runs
-// from the uv plane to the st plane. A ray runs in the direction that its camera looks in, against
-// the light.
+// Returns the points where a ray cuts the planes; none if the ray is parallel to one of them, or
+// runs from the uv plane to the st plane. A ray runs in the direction that its camera looks in,
+// against the light.
 std::optional<SlabPoint> Parameterize(const Slab& slab, const Ray& ray);
 
-// Returns the ray from the point's place on the st plane to its place on the uv plane.
+// Returns the ray that starts at (s, t) on the st plane and passes through (u, v) on the uv plane.
 Ray RayOfPoint(const Slab& slab, const SlabPoint& point);
 
-// Key of a cell: its four numbers, 16 bits each, the first in the lowest bits; kCellOffset is added
-// to each. Never 0.
+// Key of a cell: its four numbers, with kCellOffset added, in 16 bits each, the first in the lowest
+// bits. A key is never 0.
 using CellKey = uint64_t;
 inline constexpr int kCellOffset = 32768;
 inline constexpr int kCellAxes = 4;
 inline constexpr int kMostCells = 32767;  // on either side of the origin, along each axis
 
-// Returns the key of a point whose unit is cells instead of world units. None if a coordinate is
-// beyond kMostCells.
+// Returns the key of the cell that contains a point, given in cells instead of world units. Returns
+// none if a coordinate is beyond kMostCells.
 std::optional<CellKey> KeyOf(const SlabPoint& cells);
 std::optional<CellKey> CellOf(const Slab& slab, const SlabPoint& point);
 SlabPoint MiddleOf(const Slab& slab, CellKey key);
 
-// The points where the rays of an LF camera cut a slab, as quotients of linear forms of the ideal
+// The points where the rays of an LF camera cut a slab, as quotients of linear forms in the ideal
 // pixel position p (camera/ideal_pixels.h):
 //
 //   point[k] = numerators[k] p / denominators[k / 2] p
 struct SlabForms {
   std::array<PixelForm, kCellAxes> numerators;
   std::array<PixelForm, 2> denominators;  // of the st and of the uv plane
-  // distances[plane] / denominators[plane] p is the parameter along the ray where it cuts the
-  // plane.
+  // The ray cuts a plane at the parameter distances[plane] / (denominators[plane] p).
   std::array<double, 2> distances;
 };
 SlabForms MakeSlabForms(const Slab& slab, const PinholeCamera& lf_camera);
-// Returns the forms of points whose unit is cells: the key is KeyOf(Parameterize(forms, position)).
+// Like MakeSlabForms(), but points are in cells instead of world units: the key of the ray of a
+// position is KeyOf(Parameterize(forms, position)).
 SlabForms MakeCellForms(const Slab& slab, const PinholeCamera& lf_camera);
 
-// Equals Parameterize() of the pixel's ray except for rounding, and except that the point may be
-// infinite if the ray is parallel to a plane. KeyOf() has no key for such a point.
+// Returns the same as Parameterize() for the ray of the position, except for rounding, and except
+// that the point may be infinite if the ray is parallel to a plane. KeyOf() returns none for such a
+// point.
 std::optional<SlabPoint> Parameterize(const SlabForms& forms, const Vec3& position);
 
 }  // namespace lf

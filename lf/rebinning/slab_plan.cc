@@ -14,7 +14,7 @@ constexpr double kMostCoarser = 1.5;  // acceptable width of a cell, in wanted w
 constexpr double kStPerDistance = 0.25, kLeastStPerDistance = 1.0 / 256;
 constexpr double kUvPerPixel = 0.25, kUvPerElement = 0.125;
 
-// Visits the focus points of positions all over the plate and one reach beyond its edges.
+// Visits the focus points of positions all over the plate and up to one reach beyond its edges.
 template <class Visit>
 void ForEachPlace(const FrameQueries& frame, const Visit& visit) {
   constexpr int kSteps = 4;
@@ -50,7 +50,7 @@ class SectionPlanner {
   }
 
  private:
-  // Places the planes. Returns true if all frames look in about the direction that they face.
+  // Places the planes. Returns true if all frames look in about the direction that the planes face.
   bool Place(SlabSection* section) const {
     Vec3 forward = Vec3::Zero(), up = Vec3::Zero(), position = Vec3::Zero();
     for (size_t f = section->begin; f < section->end; ++f) {
@@ -63,7 +63,8 @@ class SectionPlanner {
     position = choices_.position_world.value_or(position);
     const std::optional<RigidTransform> pose = LookAlong(position, forward, up);
     if (!pose) {
-      // The frames look in all directions at once. A single frame always has a pose.
+      // There is no mean direction, because the frames look in opposite directions. A single frame
+      // always has a pose.
       section->slab.st.origin_world = position;
       return false;
     }

@@ -1,15 +1,16 @@
 // Chooses the position of the slab and the width of its cells, so that the rays of some frames are
 // told apart well (thesis 4.3.2, "primary slab").
 //
-// The st plane lies among the positions of the frames and faces as they do. The uv plane is
-// parallel to it, at their focus: half-way in disparity between the nearest and the farthest focus
-// distance.
+// The st plane passes through the mean position of the frames' cameras and faces in their mean
+// direction. The uv plane is parallel to it, at the focus of the frames: half-way in disparity
+// between the nearest and the farthest focus distance.
 //
 // On the uv plane, a cell is as wide as a quarter of an LF pixel there or an eighth of an element,
 // whichever is more. On the st plane, a cell is at most as wide as a quarter of the distance
 // between LF cameras. If the focus is pulled away from the uv plane, cells of the st plane are
-// narrower: the point in focus must not move by more than a cell of the uv plane within a cell of
-// the st plane. They are never narrower than 1/256 of the distance between LF cameras.
+// narrower: across one of them, the point of a ray in focus must not move by more than a cell of
+// the uv plane. Cells of the st plane are never narrower than 1/256 of the distance between LF
+// cameras.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +24,7 @@
 
 namespace lf {
 
-// How densely the light field was recorded around the frames.
+// How densely the light field was recorded around one frame.
 struct LfSampling {
   double camera_distance_w = 0;      // between neighbouring LF cameras
   double pixel_rad = 0;              // angle that one LF pixel sees
@@ -49,18 +50,20 @@ struct SlabSection {
   size_t begin = 0;
   size_t end = 0;
   Slab slab;
-  SlabBounds bounds;      // of the rays that the frames ask for, their reach included
+  SlabBounds bounds;      // of the rays that the frames query, their reach included
   double pixel_uv_w = 0;  // width of an LF pixel on the uv plane
 };
 
-// Returns one section if all frames look in about the same direction and its cells are fine enough:
-// keys have 16 bits for each number (slab.h), which limits the number of cells. Otherwise halves
-// the frames until both are true of each section.
+// Returns one section if all frames look in about the same direction, all their rays cut both
+// planes, and cells are fine enough: keys have 16 bits for each number (slab.h), which limits the
+// number of cells. Otherwise halves the frames until this is true of each section, or the section
+// has one frame.
+//   sampling  one for each frame
 std::vector<SlabSection> PlanSlabs(std::span<const FrameQueries> frames,
                                    std::span<const LfSampling> sampling,
                                    const SlabChoices& choices);
 
-// Returns the bounds on the slab of all rays that the frames ask for, their reach included; none if
+// Returns the bounds on the slab of all rays that the frames query, their reach included; none if
 // no ray cuts both planes.
 //   all_cut  becomes false if a ray does not cut both planes; may be null
 std::optional<SlabBounds> BoundsOf(const Slab& slab, std::span<const FrameQueries> frames,

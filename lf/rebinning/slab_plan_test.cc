@@ -10,8 +10,8 @@
 namespace lf {
 namespace {
 
-// Returns frames on a line that turn by `turn_rad` in all and pull the focus from 2 to
-// `last_focus_w`.
+// Returns frames along a line. Their direction turns by `turn_rad` in total, and their focus
+// distance changes from 2 to `last_focus_w`.
 std::vector<FrameQueries> Frames(int count, double turn_rad, double last_focus_w) {
   std::vector<FrameQueries> frames;
   for (int i = 0; i < count; ++i) {
@@ -36,7 +36,7 @@ std::vector<LfSampling> Sampling(size_t count) {
   return std::vector<LfSampling>(count, {0.008, 1.0 / 90, Vec3(0.05, 0, 0)});
 }
 
-// Returns a ray that the frame asks for, or one within its reach.
+// Returns a ray that the frame queries, or one within its reach.
 Ray RandomRay(const FrameQueries& frame, RandomSequence& random) {
   const Intrinsics& k = frame.camera.pinhole.intrinsics;
   const auto focus = FocusPointOfElement(frame.camera, random.Uniform(0, k.width_px),
@@ -140,7 +140,7 @@ TEST(CoverageMap, CoversWhatIsAskedForAndNotMuchMore) {
         ASSERT_TRUE(map.Covers(*Parameterize(section.slab, RandomRay(frame, random))));
     EXPECT_LT(map.share(), 0.9);
     EXPECT_FALSE(map.Covers(2 * section.bounds.high));
-    // This ray passes the rim of the lens towards the opposite side of the scene: no frame asks for
+    // This ray passes the rim of the lens towards the opposite side of the scene: no frame queries
     // it.
     SlabPoint corner = section.bounds.low;
     corner.tail<2>() = section.bounds.high.tail<2>();
@@ -150,7 +150,8 @@ TEST(CoverageMap, CoversWhatIsAskedForAndNotMuchMore) {
   }
 }
 
-// Only the upper right quarter asks, and only for the left half of the lens.
+// Only the upper right quarter of the plate queries rays, and only those through the left half of
+// the lens.
 TEST(CoverageMap, LeavesOutWhatIsNotAskedFor) {
   ThreadPool pool(2);
   auto frames = Frames(1, 0, 2);

@@ -9,7 +9,7 @@
 namespace lf {
 namespace {
 
-// Planes a metre apart, the second one tilted.
+// Returns a slab with planes about 1 apart; the uv plane is tilted.
 Slab TiltedSlab() {
   Slab slab;
   slab.st = {Vec3(0.1, -0.2, 0.3), Vec3::UnitX(), Vec3::UnitY()};
@@ -80,7 +80,8 @@ TEST(Slab, ACellHoldsItsMiddleAndWhatIsAround) {
   }
 }
 
-// (floor(s / r), floor(t / r), floor(u / r), floor(v / r)), thesis Eq. 4.3.
+// The numbers of a cell are (floor(s / r), floor(t / r), floor(u / r), floor(v / r)), thesis Eq.
+// 4.3.
 TEST(Slab, ACellIsTheFloorsOfItsPoint) {
   const Slab slab = TiltedSlab();
   RandomSequence random(4);

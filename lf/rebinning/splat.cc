@@ -17,7 +17,7 @@ namespace {
 constexpr int kTileWidth = 64;
 constexpr int kTileHeight = 32;
 
-// Indices of the rays that reach each tile: rays[begins[tile]] to before rays[begins[tile + 1]].
+// Indices of the rays that reach each tile: rays[i] for i in [begins[tile], begins[tile + 1]).
 struct TileRays {
   std::vector<size_t> begins;
   std::vector<uint32_t> rays;
@@ -38,7 +38,8 @@ void ForEachTile(const TileGrid& grid, const FrameRay& ray, double reach_px, con
     for (int x = x0; x <= x1; ++x) visit(static_cast<size_t>(y) * columns + x);
 }
 
-// Sorts by counting. The indices of a tile are ascending, for any number of threads.
+// Sorts rays into tiles by a counting sort. The indices of a tile are ascending, for any number of
+// threads.
 TileRays SortIntoTiles(std::span<const FrameRay> rays, const TileGrid& grid, double reach_px,
                        ThreadPool& pool) {
   constexpr size_t kParts = 32;
@@ -70,8 +71,8 @@ TileRays SortIntoTiles(std::span<const FrameRay> rays, const TileGrid& grid, dou
   return sorted;
 }
 
-// Squares over the lens that are at least as wide as the reach: all rays near a lens point are in
-// the nine squares around it.
+// Divides the lens into squares that are at least as wide as the reach: all rays within reach of a
+// lens point are in its square or the eight around that square.
 class LensGrid {
  public:
   LensGrid(const LensPointSets& points, double reach_w) : low_(points.sets[0][0]) {
@@ -109,8 +110,8 @@ struct GroupedPoint {
   size_t number;  // index in PointShares
 };
 
-// Groups the points of a set by eight that are near each other: cuts the lens into strips, and the
-// strips into groups. Sorts `points` into the order of the groups.
+// Groups the points of a set into groups of eight points near each other: cuts the lens into
+// strips, and the strips into groups. Sorts `points` into the order of the groups.
 std::vector<LensPointGroup> GroupsOf(std::vector<GroupedPoint>& points) {
   constexpr size_t kPoints = LensPointGroup::kPoints;
   const size_t groups = (points.size() + kPoints - 1) / kPoints;
@@ -260,7 +261,7 @@ class TileSplatter {
   const LensGrid& lens_;
   const PointShares* const shares_;
   SplatFrame* const frame_;
-  std::vector<FrameRay> sorted_;  // rays of the tile, by squares of the lens
+  std::vector<FrameRay> sorted_;  // rays of the tile, sorted by squares of the lens
   std::vector<size_t> begins_, next_;
   std::vector<uint32_t> cell_of_;
   SplatSums sums_;

@@ -1,9 +1,9 @@
 // Renders a whole frame from rebinned rays: an element is the mean of one ray for each lens point,
 // interpolated as in ray_query.h (thesis 4.3.2, "Rendering Phase").
 //
-// Rays are not asked for one by one. All elements share the lens points, so each rebinned ray near
-// a lens point is added, with its weight, to the elements within its reach. This gives the same
-// sums without a tree (doc/rebinning.md).
+// Queries are not answered one by one. All elements share the lens points, so each rebinned ray
+// near a lens point is added, with its weight, to the elements within its reach. The sums are the
+// same, but no k-d tree is needed (doc/rebinning.md).
 #pragma once
 
 #include <cstddef>
@@ -21,21 +21,24 @@
 namespace lf {
 
 struct SplatFrame {
-  Image<float> rgb;    // [height][width][3]: mean of the rays that could be interpolated, linear
-  Image<float> share;  // [height][width]: lens points with an interpolated ray / all, 0 to 1
+  Image<float> rgb;  // [height][width][3]: mean of the rays that could be interpolated, linear
+  // [height][width]: sum of the shares of the lens points with an interpolated ray (1 each without
+  // PointShares) / number of lens points, 0 to 1
+  Image<float> share;
 };
 
 // Renders a frame. Elements without a rebinned ray near them are black and have share 0. The bits
 // do not depend on the number of threads.
-//   rays    of this frame, with the reach ReachOf() (kReach_sigmas)
+//   rays    the rays of this frame (frame_rays.h) within ReachOf()
 //   shares  weights of the lens points in both images; null: all weights are 1
 SplatFrame Splat(std::span<const FrameRay> rays, int width_px, int height_px,
                  const LensPointSets& lens_points, const QueryKernel& kernel, ThreadPool& pool,
                  const PointShares* shares = nullptr);
 
+// Returns the reach of the kernel, kReach_sigmas, for the lens point with the largest spread.
 FrameReach ReachOf(const QueryKernel& kernel, const LensPointSets& lens_points);
 
-// The reference of Splat(): asks a RayQuery for every element and lens point.
+// The reference of Splat(): queries a RayQuery for every element and lens point.
 //   nearest  if not 0, interpolates between the `nearest` nearest rays at any distance, instead of
 //            the rays within reach
 SplatFrame SplatReference(std::span<const FrameRay> rays, int width_px, int height_px,

@@ -1,7 +1,7 @@
 // Splats, compiled for every instruction set; one is chosen at run time (Highway).
 //
-// Products and sums are never fused, and lanes are added up in a fixed order, so every instruction
-// set gives the same bits.
+// Products and sums are never fused, and lanes are added up in a fixed order, so results are
+// bit-identical on every instruction set.
 #include <algorithm>
 #include <cmath>
 
@@ -24,10 +24,11 @@ using V = hn::Vec<D>;
 constexpr int kPoints = LensPointGroup::kPoints;
 constexpr int kChannels = SplatSums::kChannels;
 constexpr float kReach2 = static_cast<float>(kReach_sigmas * kReach_sigmas);
-// Most columns or rows of a splat, plus one vector beyond its end.
+// Largest number of columns or rows of a splat, plus one vector beyond its end.
 constexpr int kMostAcross = 2 * static_cast<int>(kReach_sigmas * kMostSigmaUv_px) + 2 + kPoints;
 
-// exp(-q / 2) for q in [0, 9] to 4e-6: exp(-q / 16) by its series, and the eighth power of that.
+// Returns exp(-q / 2) for q in [0, 9], accurate to 4e-6: the eighth power of exp(-q / 16), which is
+// computed by its series.
 HWY_INLINE V Gaussian(V q) {
   const D d;
   const V x = hn::Mul(q, hn::Set(d, -1.0F / 16));

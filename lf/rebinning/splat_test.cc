@@ -52,7 +52,8 @@ TEST(RayQuery, IsBruteForce) {
     const Vec2 position(random.Uniform(0, 60), random.Uniform(0, 40));
     const QuerySum expected = BruteForce(rays, lens_point, position, kernel);
     const QuerySum found = query.WithinReach(lens_point, position);
-    EXPECT_NEAR(found.weight, expected.weight, 0.012 + 1e-4 * expected.weight);  // a ray on the rim
+    EXPECT_NEAR(found.weight, expected.weight,
+                0.012 + 1e-4 * expected.weight);  // a ray may lie on the rim of the reach
     if (expected.weight < 1) continue;
     for (int c = 0; c < 3; ++c)
       EXPECT_NEAR(found.rgb[c] / found.weight, expected.rgb[c] / expected.weight, 700);
@@ -123,8 +124,8 @@ TEST(Splat, IsWhatQueriesGive) {
       }
 }
 
-// Lens points reach farther if rays are rare, and parts of the plate ask for a part of them: the
-// shares are a ramp from the left to the right edge, and 0 for some points.
+// Some lens points have a larger spread, and the plate queries them in part: shares rise from the
+// left to the right edge, and are 0 for some points.
 TEST(Splat, PointsMayReachFartherAndBeAskedForInPart) {
   constexpr int kWidth = 140, kHeight = 67;
   const std::vector<FrameRay> rays = RandomRays(40000, kWidth, kHeight, 6);
@@ -161,8 +162,8 @@ TEST(Splat, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(a.share.pixels(), b.share.pixels());
 }
 
-// One ray a little off the axis is a spot of its colour at its position on the plate, seen from the
-// lens points near it.
+// One ray through the lens centre becomes a spot of its colour at its position on the plate. Two of
+// the four lens points are near it.
 TEST(Splat, ARayIsASpot) {
   FrameRay ray;
   ray.x_px = 20.5F;

@@ -11,7 +11,7 @@
 namespace lf {
 
 // Lens points near each other, in the lanes of a vector. A ray is near most of them or none, and
-// one vector multiplication gives its weights at an element for all of them.
+// one vector multiplication computes its weights at an element for all of them.
 struct LensPointGroup {
   static constexpr int kPoints = 8;
   static constexpr float kNowhere = 1e18F;  // coordinates of unused lanes
@@ -57,7 +57,8 @@ inline constexpr double kMostSigmaUv_px = 10;
 void AddRays(std::span<const FrameRay> rays, const LensPointGroup& points,
              const QueryKernel& kernel, const SplatGrid& grid, SplatSums* sums);
 
-// Adds the means of the weighted sums to `means`, and resets the weighted sums to 0.
+// For each lens point of the group, adds the mean of its weighted sums, times its share, to
+// `means`. Resets the weighted sums to 0.
 void AddMeans(const SplatGrid& grid, SplatSums* sums);
 
 }  // namespace lf
