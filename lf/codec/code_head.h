@@ -1,4 +1,4 @@
-// The head of an encoded image: all that comes before the coefficients (doc/formats/lf_image.md,
+// The head of an encoded image: the fields before its table of contents (doc/formats/lf_image.md,
 // "Head"). Internal to codec.
 #pragma once
 
@@ -16,7 +16,7 @@ namespace lf {
 inline constexpr long long kMostPixels = 1LL << 30;
 inline constexpr int kMostLevels = 5;
 // The encoder makes tiles of 1024x1024 pixels, a size chosen by measurement (doc/codec.md). The
-// decoder reads other sizes.
+// decoder reads tiles of any size from 2^kLeastTileBits to 2^kMostTileBits.
 inline constexpr int kTileBits = 10;
 inline constexpr int kLeastTileBits = 6, kMostTileBits = 12;
 
@@ -29,9 +29,9 @@ struct CodeHead {
   // Used by kDefault and kLossless.
   int coefficient_bytes = 2;  // 2 or 4
   int fraction_bits = 0;      // number of fraction bits in the coefficients of the finest level
-  // Quantiser steps by component: first that of the approximation, then two for each level from the
-  // coarsest to the finest: one for both subbands that are high in one direction, one for the
-  // subband that is high in both.
+  // Quantiser steps by component. Each component has one step for its approximation, then two for
+  // each level from the coarsest to the finest: the first is for the two subbands that are high in
+  // one direction, the second for the subband that is high in both.
   std::vector<int32_t> steps;
 
   // Used by kThesis.
@@ -43,7 +43,7 @@ struct CodeHead {
   int columns() const { return (info.width + tile_size() - 1) / tile_size(); }
   int rows() const { return (info.height + tile_size() - 1) / tile_size(); }
   size_t tile_count() const { return static_cast<size_t>(columns()) * rows(); }
-  // Pixels of a tile. Tiles 0 to tile_count() - 1 are numbered row by row.
+  // Returns the pixels of a tile. Tiles are numbered row by row, from 0 to tile_count() - 1.
   PixelRect TileRect(size_t tile) const;
 
   // Number of planes that are transformed independently.
@@ -51,10 +51,11 @@ struct CodeHead {
   int StepCount() const { return components() * (1 + 2 * info.levels); }
 };
 
-int ChannelsOf(PixelLayout layout);  // channels of a pixel
+int ChannelsOf(PixelLayout layout);  // number of channels of a pixel
 
 void AppendHead(const CodeHead& head, std::string* code);
-// Takes the head from the front of `code`. kInput; the message does not name the file.
+// Reads the head from the front of `code` and removes it there. kInput if the head is damaged or of
+// a newer version; the message does not name the file.
 Result<CodeHead> TakeHead(std::string_view* code);
 
 }  // namespace lf

@@ -15,13 +15,15 @@ struct Free {
   void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }
 };
 
-// Returns the thread's compressor, because making one costs more than compressing a small tile.
+// Returns a compressor that the thread reuses, because making one takes longer than compressing a
+// small tile.
 ZSTD_CCtx* Compressor() {
   static thread_local std::unique_ptr<ZSTD_CCtx, Free> context;
   if (context) return context.get();
   context.reset(ZSTD_createCCtx());
   if (!context) throw std::bad_alloc();
-  // The reader knows the length, and the store has a checksum.
+  // No length and no checksum is written: the reader knows the length, and the store has a
+  // checksum.
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_contentSizeFlag, 0);
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, kEntropyLevel);
   // Packed coefficients repeat only by chance, except for runs of zeros. The less zstd searches for
@@ -45,7 +47,7 @@ void AppendCompressed(std::span<const uint8_t> bytes, std::string* code) {
   code->resize(begin + bound);
   const size_t size =
       ZSTD_compress2(Compressor(), code->data() + begin, bound, bytes.data(), bytes.size());
-  if (ZSTD_isError(size) != 0) throw std::bad_alloc();  // the bound excludes all else
+  if (ZSTD_isError(size) != 0) throw std::bad_alloc();  // `bound` bytes always suffice
   code->resize(begin + size);
 }
 

@@ -1,5 +1,5 @@
-// The lossless coder behind the transforms: zstd. No other file of the folder uses zstd. Internal
-// to codec.
+// The lossless coder that compresses packed coefficients: zstd. No other file of the folder uses
+// zstd. Internal to codec.
 #pragma once
 
 #include <cstddef>
@@ -22,10 +22,11 @@ void AppendCompressed(std::span<const uint8_t> bytes, std::string* code);
 // Appends a whole number in as few bytes as it needs: seven bits in each byte, the lowest first.
 // The highest bit of a byte is set if more bytes follow.
 void AppendNumber(uint64_t number, std::string* code);
-// Takes such a number from the front of `code`. Returns false if the code ends or the number
-// exceeds `limit`.
+// Reads a number of AppendNumber() from the front of `code` and removes it there. Returns false if
+// `code` ends within the number or the number exceeds `limit`.
 [[nodiscard]] bool TakeNumber(std::string_view* code, uint64_t limit, uint64_t* number);
-// Takes the next `count` bytes. Returns false if there are fewer.
+// Removes the first `count` bytes from `code` and sets `bytes` to them. Returns false if there are
+// fewer.
 [[nodiscard]] bool TakeBytes(std::string_view* code, size_t count, std::string_view* bytes);
 
 }  // namespace lf

@@ -15,7 +15,7 @@ namespace lf {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Makes two rows of pairs of values from `count` coefficients of each subband.
+// Computes two rows of 2 count values from `count` coefficients of each subband.
 void MergeHaarRows(const int32_t* low, const int32_t* across, const int32_t* down,
                    const int32_t* both, int count, int32_t* HWY_RESTRICT upper,
                    int32_t* HWY_RESTRICT lower) {
@@ -54,7 +54,7 @@ HWY_EXPORT(MergeHaarRows);
 std::pair<int32_t, int32_t> Analyzed(int32_t x, int32_t y) { return {(x + y) / 2, (x - y) / 2}; }
 std::pair<int32_t, int32_t> Synthesized(int32_t a, int32_t d) { return {a + d, a - d}; }
 
-// The four values that one coefficient of each subband gives.
+// The four values that are restored from one coefficient of each subband.
 struct Quad {
   std::pair<int32_t, int32_t> upper, lower;
 };
@@ -69,7 +69,7 @@ Quad QuadOf(int32_t low, int32_t across, int32_t down, int32_t both) {
 void AnalyzeHaar(const int32_t* values, int width, int height,
                  const std::array<int32_t*, kBands>& bands) {
   const int low_width = LowCount(width), high_width = HighCount(width);
-  // Returns the coefficient x of row y, low or high across.
+  // Returns coefficient x of row y after the transform along the row: the low or the high one.
   const auto across = [&](int x, int y, bool is_high) {
     const int32_t* const row = values + static_cast<size_t>(y) * width;
     if (2 * x + 1 == width) return row[2 * x];

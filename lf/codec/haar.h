@@ -3,8 +3,9 @@
 //
 //   a = (x + y) / 2    d = (x - y) / 2    of rows, then of columns;    x = a + d    y = a - d
 //
-// If the number of values is odd, the last one is its own average and has no d. Values are whole
-// multiples of 1 / 2^kHaarBits; with these, five levels of 16-bit pixels are exact.
+// x and y are neighbours. If the number of values is odd, the last one is its own average and has
+// no d. Values are integers in units of 1 / 2^kHaarBits, in which five levels of 16-bit pixels are
+// exact.
 #pragma once
 
 #include <array>

@@ -25,7 +25,8 @@ ImageView<Pixel> Part(ImageView<Pixel> image, const PixelRect& rect) {
   return image;
 }
 
-// Joins head, table of contents and sections. Sections are ordered by resolution, then by tile.
+// Returns the encoded image: head, table of contents and sections. Sections are ordered by
+// resolution, then by tile.
 template <class Tile>
 std::string Assembled(const CodeHead& head, const std::vector<Tile>& tiles) {
   std::string code, sections;
@@ -71,12 +72,12 @@ struct Contents {
   std::vector<std::string_view> sections;  // [resolution][tile]
 };
 
-// Takes head and table of contents from the front of `code`; the rest is the sections.
+// Reads head and table of contents from the front of `code`, and divides the rest into sections.
 Result<Contents> TakeContents(std::string_view code) {
   Contents contents;
   LF_ASSIGN_OR_RETURN(contents.head, TakeHead(&code));
   const size_t count = contents.head.tile_count() * (contents.head.info.levels + 1);
-  // Each section takes at least one byte of the table.
+  // The table has at least one byte for each section.
   if (count > code.size())
     return InputError(
         fmt::format("is a damaged LF image code: {} bytes for {} sections", code.size(), count));
@@ -92,7 +93,7 @@ Result<Contents> TakeContents(std::string_view code) {
   return contents;
 }
 
-// Returns the bounds of the tiles that contain the pixels `wanted`.
+// Returns the smallest rectangle of whole tiles that contains the pixels `wanted`.
 PixelRect TilesAround(const CodeHead& head, const PixelRect& wanted) {
   const int size = head.tile_size();
   return {wanted.x_begin / size * size, wanted.y_begin / size * size,

@@ -1,6 +1,6 @@
-// Converts the pixels of one image to bytes and back (thesis 2.5, 4.2.2), and knows nothing of
-// light fields. The format, with an example: doc/formats/lf_image.md. The reasons for it, with
-// measurements: doc/codec.md.
+// Encodes the pixels of one image into bytes and decodes them (thesis 2.5, 4.2.2); knows nothing of
+// light fields. doc/formats/lf_image.md describes the format with an example, doc/codec.md gives
+// the reasons for it with measurements.
 //
 // The encoder cuts an image into tiles and each tile into planes. It wavelet transforms the planes,
 // quantises the coefficients, packs them into bytes and compresses these with zstd. The encoded
@@ -33,29 +33,31 @@ enum class CodecProfile : uint8_t {
   // threshold for all details, the range of an image's coefficients mapped to `quantizer` values.
   kThesis = 0,
   // 5/3 wavelets; uniform quantisers with a dead zone. The step of each subband is chosen such that
-  // all subbands give an equal error per coefficient.
+  // a coefficient causes the same error in the image whatever its subband is.
   kDefault = 1,
-  // The wavelets of kDefault in whole numbers, without any loss.
+  // The wavelets of kDefault in integers, without any loss.
   kLossless = 2,
 };
 
 struct CodecSettings {
   CodecProfile profile = CodecProfile::kDefault;
   int levels = 4;  // 1 to 5; the thesis's best is 1
-  // Detail coefficients below this value become 0; in stored values. kThesis compares coefficients
-  // of the averaging transform. kDefault compares coefficients of the transform scaled to unit
-  // norm, and its quantiser's step is 1.5 times the threshold. kLossless ignores it.
+  // Detail coefficients whose magnitude is below this value become 0. The unit is that of stored
+  // values. kThesis compares coefficients of the averaging transform. kDefault compares
+  // coefficients of the transform scaled to unit norm, and its quantiser's step is 1.5 times the
+  // threshold. kLossless ignores it.
   double threshold = 3;
   // Used by kThesis only: the number of values that a coefficient may have, 2 to 65536. Above 256,
   // each coefficient takes two bytes.
   int quantizer = 256;
 };
 
-// kUsage if a setting is out of its range; the message names it as the option of lfcompressor.
+// Returns kUsage if a setting is out of its range; the message names the option of lfcompressor
+// that sets it.
 Result<void> CheckSettings(const CodecSettings& settings);
 
-// Returns the encoded image. `pixels` has at least 1x1 and at most 2^30 pixels, and the channels of
-// the layout. The settings must be valid.
+// Returns the encoded image. `pixels` must have at least 1x1 and at most 2^30 pixels, and the
+// number of channels of the layout. CheckSettings() must accept the settings.
 std::string EncodeImage(const CodecPixels& pixels, PixelLayout layout,
                         const CodecSettings& settings);
 
@@ -69,9 +71,9 @@ struct CodeInfo {
   int levels = 0;
 };
 
-// Reads the head alone. kInput, without the file's name, if `code` is no encoded image, was written
-// by a newer version, is damaged, has more than 2^30 pixels, or is shorter than its own table of
-// contents.
+// Reads only the head. Returns kInput, with a message that does not name the file, if `code` is no
+// encoded image, was written by a newer version, is damaged, has more than 2^30 pixels, or is
+// shorter than its own table of contents.
 Result<CodeInfo> ReadCodeInfo(std::string_view code);
 
 struct DecodedPart {
@@ -80,9 +82,10 @@ struct DecodedPart {
 };
 
 // Decodes the tiles that contain `wanted`, which must contain a pixel of the image. Reuses the
-// memory of part->pixels if it has the right type. Bytes that another program wrote may give any
-// picture, or an error, but never take more memory than a few times the tiles' pixels. kInput,
-// without the file's name: as ReadCodeInfo(), or the tiles are damaged.
+// memory of part->pixels if it has the right type. If another program wrote `code`, the result may
+// be any picture or an error, but decoding never needs more memory than a few times the pixels of
+// these tiles. Returns kInput, with a message that does not name the file, in the cases of
+// ReadCodeInfo() and if the tiles are damaged.
 Result<void> DecodeImage(std::string_view code, const PixelRect& wanted, DecodedPart* part);
 // Decodes the whole image.
 Result<void> DecodeImage(std::string_view code, DecodedPart* part);

@@ -1,6 +1,7 @@
-// Speed of encoding and decoding 2048x2048 mosaics and 1920x1280 RGB images, both of 8 bits. MB/s
-// count the pixels as stored, before encoding. The content is LF_BENCH_IMAGE (raw bytes of a
-// 2048x2048 mosaic), or a drawn picture: waves of all lengths with noise of 1.5 grey values.
+// Measures how fast 2048x2048 mosaics and 1920x1280 RGB images, both of 8 bits, are encoded and
+// decoded. MB/s count the pixels before encoding. The mosaic is read from the file LF_BENCH_IMAGE
+// (raw bytes of 2048x2048 pixels) if this environment variable is set; otherwise, and for RGB, the
+// picture consists of waves of several lengths with noise of 1.5 grey values.
 #include <benchmark/benchmark.h>
 
 #include <cmath>

@@ -14,8 +14,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size_bytes) {
     LF_CHECK(info.error().message.starts_with("is "));
     return 0;
   }
-  // A store decodes only as many pixels as its calibration states, so a limited size is enough
-  // here.
+  // A store decodes only images of the size that its calibration states. Images of at most
+  // kMostPixels on each side are therefore enough here.
   constexpr int kMostPixels = 512;
   const lf::PixelRect wanted = {info->width / 3, info->height / 3, info->width, info->height};
   if (info->width > kMostPixels || info->height > kMostPixels) return 0;

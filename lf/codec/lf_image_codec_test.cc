@@ -13,7 +13,8 @@ namespace {
 template <class Pixel>
 constexpr int kMost = std::numeric_limits<Pixel>::max();
 
-// Returns smooth, textured, noisy, flat and extreme pictures, in turn.
+// Returns a picture of a random kind: smooth, slightly noisy, noise, flat, a checkerboard, or black
+// with single white pixels.
 template <class Pixel>
 Image<Pixel> Picture(std::mt19937& random, int width, int height, int channels) {
   Image<Pixel> image(width, height, channels);
@@ -192,7 +193,7 @@ TEST(LfImageCodec, ARectangleIsACropOfTheWhole) {
         ASSERT_EQ(Intersection(wanted, part.rect), wanted);
         ASSERT_TRUE(Same(part.pixels, Cut(whole.pixels, part.rect)));
       }
-      // Decoding gives only the tiles that contain the wanted pixels.
+      // Only the tiles that contain the wanted pixels are decoded.
       ASSERT_TRUE(DecodeImage(code, {1100, 3, 1101, 4}, &part));
       EXPECT_EQ(part.rect, (PixelRect{1024, 0, 2048, 1024}));
     }
@@ -241,7 +242,8 @@ TEST(LfImageCodec, BrightAndDarkPicturesKeepTheirMean) {
     }
 }
 
-// A 16-bit version of the picture, with 256 times the threshold, has an equal error up to rounding.
+// A 16-bit version of the picture has the same relative error with 256 times the threshold, except
+// for rounding.
 TEST(LfImageCodec, SixteenBitsAreTheSamePicture) {
   std::mt19937 random(5);
   for (const CodecProfile profile : {CodecProfile::kThesis, CodecProfile::kDefault}) {
@@ -263,7 +265,8 @@ TEST(LfImageCodec, SixteenBitsAreTheSamePicture) {
   }
 }
 
-// With the finest quantiser and threshold 0, only rounding causes errors.
+// With the finest quantiser and threshold 0, only rounding causes errors, which are too small to
+// change an 8-bit pixel.
 TEST(LfImageCodec, TheThesisProfileIsNearlyExactWithoutThreshold) {
   std::mt19937 random(6);
   for (int i = 0; i < 100; ++i) {

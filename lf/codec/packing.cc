@@ -62,7 +62,7 @@ std::vector<uint32_t> Escapes(Packing packing, std::span<const uint32_t> numbers
   return escapes;
 }
 
-// Estimated size in bytes if an entropy coder codes each byte by its frequency.
+// Returns the estimated size in bytes if an entropy coder encodes each byte by its frequency.
 double Cost(std::span<const uint8_t> bytes) {
   std::array<uint32_t, 256> counts{};
   for (const uint8_t byte : bytes) ++counts[byte];
@@ -77,7 +77,8 @@ struct Choice {
   double cost = 0;  // bytes
 };
 
-// Returns the packing that takes the fewest bytes. kOverhead is the fixed cost of each stream.
+// Returns the packing that needs the fewest bytes. kOverhead is the fixed cost of each stream.
+//   escapes_left  number of nested streams of escapes that are still allowed
 Choice BestPacking(std::span<const uint32_t> numbers, int escapes_left) {
   constexpr double kOverhead = 40;
   if (numbers.empty()) return {};

@@ -27,8 +27,8 @@ struct PackedStream {
                                     // unfolded
 };
 
-// Unpacks the numbers of a stream. `numbers` has slack. Returns false if the stream has more or
-// fewer escapes than remainders.
+// Unpacks the numbers of a stream. `numbers` must have slack. Returns false if the stream has more
+// or fewer escapes than remainders.
 template <class U>
 [[nodiscard]] bool UnpackReference(const PackedStream<U>& stream, U* numbers);
 template <class U>

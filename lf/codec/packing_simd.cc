@@ -18,13 +18,13 @@ namespace lf {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Numbers that are processed at a time: every step works on them while they are in the first-level
-// cache.
+// How many numbers are processed together: they stay in the first-level cache from one step to the
+// next.
 constexpr size_t kBlock = 2048;
 constexpr size_t kRoom = kBlock + 4 * kSlack;  // vectors of four times the width may end beyond the
                                                // block
 
-// Spreads `size` bytes into one byte for each number.
+// Unpacks `size` bytes of kTwo or kFour into one byte for each number.
 void Spread(Packing packing, const uint8_t* HWY_RESTRICT bytes, size_t size,
             uint8_t* HWY_RESTRICT out) {
   const hn::ScalableTag<uint8_t> d;
@@ -78,8 +78,9 @@ void AddEscapes(U escape, std::span<const U> escapes, size_t count, U* numbers, 
 
 #else
 
-// For each set of lanes of 16 bytes that hold escapes: the byte shuffle that moves the next
-// remainders into these lanes, in order. The other lanes get a value that is not used.
+// Byte shuffles for vectors of 16 bytes, one for each set of lanes that hold escapes. A shuffle
+// moves the next remainders into these lanes, in order. The other lanes get a value that is not
+// used.
 template <class U>
 struct ExpandTable {
   static constexpr size_t kLanes = 16 / sizeof(U);
@@ -131,7 +132,7 @@ void AddEscapes(U escape, std::span<const U> escapes, size_t count, U* HWY_RESTR
 
 #endif
 
-// Moves the signs out of the lowest bit, in place.
+// Reverses Folded() (packing.h) in place.
 template <class U>
 void Unfold(size_t count, U* numbers) {
   const hn::ScalableTag<U> d;

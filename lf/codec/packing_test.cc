@@ -10,7 +10,7 @@
 namespace lf {
 namespace {
 
-// Returns values with a two-sided exponential distribution, as coefficients have it.
+// Returns values with a two-sided exponential distribution, like that of real coefficients.
 std::vector<int32_t> Coefficients(std::mt19937& random, size_t count, double scale, int32_t most) {
   std::exponential_distribution<double> size(1 / scale);
   std::vector<int32_t> values(count);
@@ -57,7 +57,8 @@ TEST(Packing, TheLargestAndTheSmallestComeBack) {
   ExpectBack<int32_t>(sparse, &packings);
 }
 
-// A single large number that the sample of the stream misses must survive.
+// A single large number must be restored, even if the sample that chooses the packing does not
+// contain it.
 TEST(Packing, RareEscapesAreNotForgotten) {
   std::mt19937 random(2);
   std::set<int> packings;

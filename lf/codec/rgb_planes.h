@@ -1,4 +1,4 @@
-// Converts colours to brightness and two differences, in whole numbers and without loss: YCoCg-R
+// Converts colours to brightness and two colour differences, in integers and without loss: YCoCg-R
 // (Malvar and Sullivan 2003). Internal to codec.
 //
 //   co = r - b    t = b + (co >> 1)    cg = g - t    y = t + (cg >> 1)
@@ -11,8 +11,8 @@
 
 namespace lf {
 
-// The components are y, cg, co. An error of 1 in a component gives an error of this norm in R, G,
-// B.
+// The components are y, cg, co. kRgbNorms holds, for each component, the Euclidean norm of the
+// error in R, G, B that an error of 1 in the component causes.
 inline constexpr int kRgbComponents = 3;
 inline constexpr std::array<double, kRgbComponents> kRgbNorms = {1.7320508, 0.8660254, 0.7071068};
 

@@ -40,8 +40,8 @@ std::vector<PlanePlace> PlacesOf(const CodeHead& head, int width, int height) {
 
 int CodeBytes(const CodeHead& head) { return head.quantizer <= 256 ? 1 : 2; }
 
-// ValueOf() returns the coefficient that value `code` of the quantiser stands for; the next
-// function returns the nearest `code`.
+// ValueOf() returns the coefficient that value `code` of the quantiser stands for. NearestCode()
+// returns the `code` whose coefficient is nearest to `value`.
 int32_t ValueOf(const CodeHead& head, int64_t code) {
   const int64_t last = head.quantizer - 1;
   return static_cast<int32_t>(head.low + (code * (head.high - head.low) + last / 2) / last);
@@ -60,7 +60,7 @@ std::vector<int32_t> Values(const CodeHead& head) {
   return values;
 }
 
-// Sizes of the plane and of its low subband after each level.
+// Returns the sizes of the plane and of its low subband after each level.
 std::vector<std::pair<int, int>> SizesOf(const PlanePlace& plane, int levels) {
   std::vector<std::pair<int, int>> sizes = {{plane.width, plane.height}};
   for (int i = 0; i < levels; ++i)
@@ -70,7 +70,7 @@ std::vector<std::pair<int, int>> SizesOf(const PlanePlace& plane, int levels) {
 
 size_t AreaOf(std::pair<int, int> size) { return static_cast<size_t>(size.first) * size.second; }
 
-// Number of coefficients of a plane in one resolution.
+// Returns the number of coefficients of a plane in one resolution.
 size_t CountOf(const PlanePlace& plane, int levels, int resolution) {
   const std::vector<std::pair<int, int>> sizes = SizesOf(plane, levels);
   if (resolution == 0) return AreaOf(sizes[levels]);
@@ -160,7 +160,8 @@ bool DecodeHaarTile(Transform transform, const CodeHead& head, std::span<std::st
   const int levels = head.info.levels;
   const std::vector<PlanePlace> places = PlacesOf(head, pixels.width, pixels.height);
   const std::vector<int32_t> values = Values(head);
-  // Coefficients by resolution, and the position at which the next plane's coefficients begin.
+  // The coefficients of each resolution, and the index at which the coefficients of the next plane
+  // begin.
   std::vector<std::vector<int32_t>> streams(levels + 1);
   std::vector<size_t> next(levels + 1, 0);
   std::vector<uint8_t> bytes;

@@ -30,7 +30,8 @@ struct HaarTile {
 template <class Pixel>
 HaarTile TransformTile(const CodeHead& head, double threshold, ImageView<const Pixel> pixels);
 
-// Returns one resolution of a tile, encoded. head.low and head.high are the range of all tiles.
+// Returns the encoded coefficients of one resolution of a tile. head.low and head.high must be the
+// range of the coefficients of all tiles.
 std::string CodeOfSection(const CodeHead& head, const HaarTile& tile, int resolution);
 
 // Decodes the pixels of a tile from its sections, which are ordered by resolution. Returns false if

@@ -1,5 +1,5 @@
-// Compares the thesis's profile with the thesis itself: 2.5.1, 2.5.2, 4.2.2 and 5.4, written down
-// in real numbers on one page, without any code of codec/.
+// Compares the thesis's profile with the thesis itself: with its sections 2.5.1, 2.5.2, 4.2.2 and
+// 5.4, implemented here in real numbers without any code of codec/.
 #include "lf/codec/thesis_tile.h"
 
 #include <gtest/gtest.h>
@@ -115,8 +115,8 @@ class ThesisCodec {
   double low_ = 1e9, high_ = -1e9;
 };
 
-// Position of a plane's pixels. Pixels of a mosaic are sorted by their position in each 2 x 2
-// square (Figure 4.6), pixels of other images by channel.
+// The position of the pixels of a plane in the image. Pixels of a mosaic are sorted by their
+// position in each 2 x 2 square (Figure 4.6), pixels of other images by channel.
 struct Sorting {
   int first_x, first_y, pitch, channel;
 };

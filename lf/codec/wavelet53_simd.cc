@@ -113,8 +113,9 @@ HWY_INLINE void MergeRow(T* low, T* high, int width, const Store& store) {
     store(0, Load(low), Load(low));
     return;
   }
-  // If the row ends with an odd value, high[high_count] makes the even value beyond the end equal
-  // to the last even one. Otherwise it is the mirrored last high coefficient.
+  // If the last value of the row is at an odd position, this high[high_count] makes the next even
+  // value, beyond the end, equal to the last even one. Otherwise high[high_count] is the mirrored
+  // last high coefficient.
   high[-1] = high[0];
   high[high_count] = low_count > high_count ? high[high_count - 1] : high[high_count - 2];
   low[low_count] = low[low_count - 1];
@@ -133,8 +134,8 @@ struct Half {
   const CodedBand<T>& low;
   const CodedBand<T>& high;
   int count;  // number of values in a row
-  // High coefficients of this and the last pair of rows, even rows of both pairs, odd row of the
-  // last pair.
+  // The high coefficients of the current and the previous pair of rows, the even rows of both
+  // pairs, and the odd row of the previous pair.
   T *high_now, *high_last, *even_now, *even_last, *odd;
 };
 
@@ -187,7 +188,8 @@ void SynthesizePixelsOf(const CodedBands<T>& bands, const PixelScale& scale,
   const hn::ScalableTag<T> d;
   const hn::Rebind<Pixel, decltype(d)> d_pixel;
   const Rows<T> rows(kRowsOfHalves + 1, bands.width);
-  // A row of the image ends where another tile begins, so each row is made here and then copied.
+  // Vectors write beyond the end of a row, where another tile of the image begins. Each row is
+  // therefore computed in scratch memory and then copied.
   auto* const row = reinterpret_cast<Pixel*>(rows[kRowsOfHalves]);
   const auto half = hn::Set(d, static_cast<T>((1 << scale.fraction_bits) >> 1));
   const auto offset = hn::Set(d, static_cast<T>(scale.offset));
@@ -203,7 +205,8 @@ void SynthesizePixelsOf(const CodedBands<T>& bands, const PixelScale& scale,
   });
 }
 
-// Splits a row into its low and its high half.
+// Splits a row into its low and its high coefficients. `even` is scratch memory for the even
+// values.
 void SplitRow(const int32_t* row, int width, int32_t* even, int32_t* HWY_RESTRICT low,
               int32_t* HWY_RESTRICT high) {
   const hn::ScalableTag<int32_t> d;
@@ -239,8 +242,8 @@ void AnalyzeOf(const int32_t* values, int width, int height,
   const hn::ScalableTag<int32_t> d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   const int low_rows = LowCount(height), high_rows = HighCount(height);
-  // Rows of each half: this even row and the next one, the high row and the last one. They are used
-  // in rotation.
+  // Rows of each half: the current and the next even row, the current and the previous high row.
+  // Pointers to them are swapped.
   const Rows<int32_t> rows(9, LowCount(width));
   struct Side {
     Band low, high;

@@ -8,7 +8,7 @@
 namespace lf {
 namespace {
 
-// Returns an array with its slack.
+// Returns an array of `size` elements and slack.
 template <class T>
 std::vector<T> Array(size_t size) {
   return std::vector<T>(size + kSlack);

@@ -12,21 +12,21 @@
 namespace lf {
 namespace {
 
-// Number of bits of lossy coefficients below the unit. The transform always rounds down, so its
-// error has the same sign in every LF image: an error of a tenth of a grey step in every LF image
-// is a tenth in a frame, where the noise of quantisation has long averaged out. From the second
-// level on, coefficients have one more bit.
+// Number of fraction bits of lossy coefficients. The transform always rounds down, so its error has
+// the same sign in every LF image, and does not average out: an error of a tenth of a grey step in
+// every LF image is a tenth in a frame, while the noise of quantisation averages out. From the
+// second level on, coefficients have kMostDoublings more fraction bits.
 constexpr int kFractionBits = 3;
 constexpr int kMostDoublings = 1;
 
-// Returns true if the low coefficients of level `depth` are doubled before they are transformed
-// further. Levels are counted from 1, from the pixels on; the level that splits a mosaic is the
-// first.
+// Returns true if the coefficients of level `depth` that are transformed further are doubled
+// before: the low ones, or all four subbands of the level that splits a mosaic. Levels are counted
+// from the pixels, from 1; the level that splits a mosaic is the first.
 bool IsDoubled(const CodeHead& head, int depth) {
   return head.info.profile == CodecProfile::kDefault && depth <= kMostDoublings;
 }
 
-// Depth of the components' first level, counted as in IsDoubled().
+// Returns the depth of the first level of the components, counted as in IsDoubled().
 int FirstDepth(const CodeHead& head) { return head.info.layout == PixelLayout::kMosaic ? 2 : 1; }
 
 struct Size {
@@ -35,7 +35,8 @@ struct Size {
   size_t count() const { return static_cast<size_t>(width) * height; }
 };
 
-// Size of a component; LowSize() is the size of its low subband after some levels.
+// ComponentSize() returns the size of a component. LowSize() returns the size of its low subband
+// after `levels` levels.
 Size ComponentSize(const CodeHead& head, int component, int tile_width, int tile_height) {
   if (head.info.layout != PixelLayout::kMosaic) return {tile_width, tile_height};
   const auto band = static_cast<Band>(component);
@@ -53,8 +54,9 @@ int StepIndex(const CodeHead& head, int component, int resolution, bool is_diago
   return resolution == 0 ? first : first + 2 * resolution - 1 + (is_diagonal ? 1 : 0);
 }
 
-// Norm of a subband `level` levels deep in its component: the product of both dimensions and of the
-// colour transform.
+// Returns the norm of the error in the image that an error of 1 in a coefficient causes: the
+// product of the norms of both dimensions and of the colour transform. The subband is `level`
+// levels deep in its component.
 double Norm(const CodeHead& head, int component, int level, bool high_across, bool high_down) {
   const auto along = [&](bool is_high, bool component_is_high) {
     std::vector<bool> path(level, false);
@@ -130,7 +132,7 @@ void AppendQuantized(const std::vector<int32_t>& values, size_t count, int32_t s
   }
 }
 
-// Subtracts from each value the value above; in the first row, the value before.
+// Subtracts from each value the value above it, or, in the first row, the value before it.
 void Predict(Size size, std::vector<int32_t>* values) {
   const auto width = static_cast<size_t>(size.width);
   for (size_t i = size.count(); i-- > width;) (*values)[i] -= (*values)[i - width];
@@ -149,7 +151,7 @@ void Unpredict(Size size, T* values) {
   for (size_t i = width; i < size.count(); ++i) values[i] = sum(values[i], values[i - width]);
 }
 
-// Memory of a thread that is reused.
+// Memory that a thread reuses.
 template <class T>
 struct Scratch {
   std::array<std::vector<T>, 4> components;
@@ -166,15 +168,16 @@ struct Scratch {
   }
 };
 
-// Streams of a tile, to be read component by component.
+// Reads the streams of a tile, component by component.
 template <class T>
 class TileReader {
  public:
   TileReader(Transform transform, const CodeHead& head, std::span<std::string_view> sections)
       : transform_(transform), head_(head), sections_(sections) {}
 
-  // Reads the next component and synthesises all its levels except the finest. The subbands of the
-  // finest level stay in the scratch memory until the next call.
+  // Reads the next component and synthesises all its levels except the finest. Sets `finest` to the
+  // subbands of the finest level, which stay in the scratch memory until the next call. Returns
+  // false if a stream is damaged.
   [[nodiscard]] bool Read(int component, Size size, CodedBands<T>* finest) {
     const int levels = head_.info.levels;
     const Size smallest = LowSize(size, levels);
@@ -313,7 +316,7 @@ QuantizedTile QuantizeTile(Transform transform, const CodeHead& head,
 template QuantizedTile QuantizeTile(Transform, const CodeHead&, ImageView<const uint8_t>);
 template QuantizedTile QuantizeTile(Transform, const CodeHead&, ImageView<const uint16_t>);
 
-// The synthesis adds two values, each at most 2.5 times as large as the values of a subband.
+// The synthesis adds two values, each at most 2.5 times as large as the largest value of a subband.
 bool FitsInTwoBytes(int32_t largest) { return largest <= 6000; }
 
 std::string CodeOfSection(const CodeHead& head, const QuantizedTile& tile, int resolution) {

@@ -18,8 +18,8 @@ namespace lf {
 // Sets the fields of the head that belong to the profile: fraction bits and steps.
 void SetSteps(const CodecSettings& settings, CodeHead* head);
 
-// Quantised coefficients of a tile: streams by component and resolution. Resolution 0 is the
-// approximation, the others are details from the coarsest level to the finest.
+// The quantised coefficients of a tile, in one stream for each component and resolution. Resolution
+// 0 is the approximation, the others are details from the coarsest level to the finest.
 struct QuantizedTile {
   std::vector<std::vector<int32_t>> streams;  // [component][resolution]
   int32_t largest = 0;                        // largest magnitude of all coefficients before
@@ -30,11 +30,11 @@ template <class Pixel>
 QuantizedTile QuantizeTile(Transform transform, const CodeHead& head,
                            ImageView<const Pixel> pixels);
 
-// Returns true if two bytes hold all coefficients, including the sums of two that occur during the
-// synthesis.
+// Returns true if two bytes can hold all coefficients whose magnitude is at most `largest`, and
+// also the sums of two values that occur during the synthesis.
 bool FitsInTwoBytes(int32_t largest);
 
-// Returns one resolution of a tile, encoded.
+// Returns the encoded coefficients of one resolution of a tile.
 std::string CodeOfSection(const CodeHead& head, const QuantizedTile& tile, int resolution);
 
 // Decodes the pixels of a tile from its sections, which are ordered by resolution. Returns false if
