@@ -57,7 +57,8 @@ std::optional<RgbRay> InterpolatePixels(const LfPixels& pixels, int width_px, in
 // the lens distortion recorded none.
 bool RaysArriveAround(const Intrinsics& k, const DistortionMap& map, double x_px, double y_px);
 
-// Adds the ray of this LF image to each element that has one in it. Returns the number of rays.
+// Adds to each element the ray that this LF image recorded for it, if there is one. Returns the
+// number of rays.
 //   plate    must have the size of the render camera's plate
 //   weights  weight w multiplies the value and the count that a ray adds
 uint64_t GatherReference(const PinholeCamera& lf_camera, const LfPixels& pixels,

@@ -19,7 +19,8 @@ struct GatherForms {
   PixelForm forward;     // f.(X - c) times a positive number; its sign is the +- of d
   PixelForm lens_right;  // lens position = (lens_right e, lens_up e) / (forward e)
   PixelForm lens_up;
-  PixelForm across_x;  // X - c in axes of the LF camera; without distortion times K
+  // X - c in axes of the LF camera; without lens distortion multiplied by K: homogeneous pixels.
+  PixelForm across_x;
   PixelForm across_y;
   PixelForm depth;
 };

@@ -32,8 +32,8 @@ inline constexpr int kMostSamples = 16;  // along each edge of an element
 
 // Returns the magnification, the number of elements per LF pixel along an edge: the square root of
 // the area, in elements, that an LF pixel covers on the plate. It is computed at nine points of the
-// plate. The smallest value at the points that the LF image shows is returned, or the smallest of
-// all if it shows none of them; 1 if there is no value.
+// plate. The result is the smallest value at the points that the LF image shows, or the smallest of
+// all if it shows none of them. Returns 1 if there is no value at any of them.
 double Magnification(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
 
 // True if some pixels of the image have no ray because they lie beyond the fold of the lens
@@ -45,8 +45,8 @@ struct GatherSampling {
   PixelFilter filter = PixelFilter::kBilinear;  // not kAuto
   bool is_cubic = false;  // interpolates between sixteen pixels where possible
   // Number of samples along each edge of an element: the number of LF pixels along an edge, rounded
-  // up, at most kMostSamples; 1 if it is at most kFinerAtMost. The element's ray is the mean of
-  // samples^2 evenly spaced rays, or of those of them that exist.
+  // up, at most kMostSamples; 1 if that number is at most kFinerAtMost. The element's ray is the
+  // mean of samples^2 evenly spaced rays, or of those of them that exist.
   int samples = 1;
 };
 GatherSampling SamplingOf(const PinholeCamera& lf_camera, const RenderCamera& render_camera,

@@ -7,9 +7,9 @@
 // The columns of sixteen pixels are mixed as in cubic_weights.h, but with shares,
 //   column_k = round(sum_i d_i k_ik (p_ik - 2^15) / 2^10),   d = CubicTapsAt(down, 11)
 //   S = sum_k c_k column_k,  D = sum_k c_k sum_i d_i k_ik,   c = CubicTapsAt(right, 11)
-// and the ray's value is 2^10 S / D + 2^15, rounded half up, clipped to 16 bits. It counts as D /
-// 2^22 rays, rounded half up: from 1 to kRecordedShare, because the weights of every second pixel
-// add up to a number from 0 to 1. All sums fit into 32 bits.
+// and the ray's value is 2^10 S / D + 2^15, rounded half up, clipped to 16 bits. The ray counts as
+// D / 2^22 rays, rounded half up: from 1 to kRecordedShare, because the weights of every second
+// pixel add up to a number from 0 to 1. All sums fit into 32 bits.
 //
 // A ray of four pixels lies `right` / 256 px to the right of the upper left one and `down` / 256 px
 // below it. The bilinear weights a_x a_y of the pixels add up to 2^16, and each pixel gets

@@ -77,7 +77,7 @@ class PatchPlanner {
   // The open conditions: those that are not known to hold on a whole hull. A condition that holds
   // on a hull holds on all its parts.
   struct Conditions {
-    bool sides[2] = {true, true};  // false if no ray is accepted where n.d < 0, n.d > 0
+    bool sides[2] = {true, true};  // [0] for n.d < 0, [1] for n.d > 0; false: no ray accepted
     uint64_t plate[2];             // for each side, a bit for each half-plane
     uint64_t lens;                 // a bit for each edge of a polygonal lens
     bool disk;

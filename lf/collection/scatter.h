@@ -53,7 +53,8 @@ struct ScatterPlan {
   TilePieces pieces;
 };
 
-// Plans the accepted rays of `rect`. The ray model confirms the ends of every span.
+// Plans the accepted rays of `rect`. The ray model decides at the ends of spans where rounding
+// might.
 //   grid          the tiles of the render camera's plate
 //   ideal_pixels  those of lf_camera's intrinsics; must be given if lf_camera has lens distortion,
 //                 and are not used otherwise

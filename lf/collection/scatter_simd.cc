@@ -49,9 +49,9 @@ template <class Weights>
 struct RgbPixels {
   static constexpr int kLanesPerPixel = LfPixels::kRgbLanes;
   const uint16_t* values;        // [count][4]
-  const uint16_t* values_ahead;  // of a scanline below, to prefetch
+  const uint16_t* values_ahead;  // values of a scanline below, to prefetch
   TileSums::Element* elements;
-  Weights weights;  // of elements, with the same indices
+  Weights weights;  // [i] is the weight of elements[i]
   bool may_be_masked;
 
   static constexpr bool has_runs() { return true; }
@@ -116,9 +116,9 @@ template <class Weights>
 struct MosaicPixels {
   static constexpr int kLanesPerPixel = 1;
   const uint16_t* values;        // [count]
-  const uint16_t* values_ahead;  // of a scanline below, to prefetch
+  const uint16_t* values_ahead;  // values of a scanline below, to prefetch
   uint64_t* words[2];            // [0] if `start` is even, [1] if it is odd
-  Weights weights;               // of words, with the same indices
+  Weights weights;               // [i] is the weight of word i
   const uint8_t* mask;           // [count], or null
 
   bool has_runs() const { return mask == nullptr; }
@@ -316,8 +316,8 @@ HWY_ATTR uint64_t ScatterTileBy(const ScatterPlan& plan, size_t tile, const LfPi
                                 rect.x_end == plan.grid.plate_width ||
                                 rect.y_end == plan.grid.plate_height;
   const TileLayout layout{rect, is_rgb ? stride : TileSums::kMosaicRows * stride, has_plate_border};
-  // If more rays of a piece may hit one element, the piece is added in several parts, so that sums
-  // do not overflow.
+  // If more rays than this may hit the same element, a piece is added in several parts, so that
+  // sums do not overflow.
   const uint32_t most_rays = sums->max_reserve() / most_weight;
   uint64_t rays = 0;
   const TilePiece* piece = plan.pieces.begin(tile);

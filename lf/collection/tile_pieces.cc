@@ -38,7 +38,7 @@ class Axis {
   // Smallest distance from one position to the next; at most 0 if positions may change direction.
   float least_distance() const { return std::max(range_.least_step, -range_.most_step); }
 
-  // The column or row of tiles of the first position.
+  // Returns the column or row of tiles that contains the first position.
   int FirstTile() const { return TileOf(range_.first); }
 
   // Writes all crossings in order, and then a terminator with the index `count`.

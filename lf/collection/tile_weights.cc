@@ -25,7 +25,7 @@ void TileWeights::Fill(const RayWeights& weights, const PixelRect& tile, int pit
   of_blocks_.resize(static_cast<size_t>(block_count));
   above_.resize(of_blocks_.size() + 1);
   below_.resize(of_blocks_.size() + 1);
-  below_y_ = blocks.EndY(tile.y_begin);  // below_ holds no feather yet: no block begins here
+  below_y_ = blocks.EndY(tile.y_begin);  // below_ is empty: it fits no row of blocks yet
   uint8_t* row = bytes_.data() + kMargin;
   for (int y = tile.y_begin; y < tile.y_end;) {
     const bool rows_differ = FillBlocks(weights, tile, y);

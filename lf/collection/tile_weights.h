@@ -16,7 +16,8 @@ class TileWeights {
   // belong to no element.
   static constexpr int kMargin = 64;
 
-  // Writes the weights of a tile to data(), or only to least() and most() if weights.are_same().
+  // Sets least() and most() for a tile. Unless weights.are_same(), also writes the weights to
+  // data().
   //   pitch  bytes from one row of elements to the next
   void Fill(const RayWeights& weights, const PixelRect& tile, int pitch);
 
