@@ -50,7 +50,9 @@ LargeVector<FrameRay> FrameRaysOf(const Slab& slab, std::span<const BinnedCell> 
 // distances measured on the slab's planes instead of the frame's (Eq. 4.5 literally). For each ray,
 // the query runs from the lens point to the point where the ray meets the uv plane. The ray gets
 // the query's position on the plate. Its point of the lens is the lens point plus the difference
-// between the points where ray and query meet the st plane.
+// between the points where ray and query meet the st plane. Leaves out rays for which this
+// difference is longer than reach.lens_w, or whose query meets the plate more than reach.plate_px
+// beside its edge.
 LargeVector<FrameRay> FrameRaysThrough(const Vec2& lens_point, const Slab& slab,
                                        std::span<const BinnedCell> cells, const RenderCamera& frame,
                                        const FrameReach& reach, ThreadPool& pool);

@@ -50,8 +50,8 @@ TEST(FrameRays, GoFromTheLensThroughTheFocusPlaneToTheirElement) {
     for (const FrameRay& ray : rays) {
       const auto i = static_cast<size_t>(ray.rgb[0]);
       ASSERT_GE(i, next);
-      // A ray that is left out is beyond the reach, or nearer to its edge than rays differ from the
-      // middle rays of their cells.
+      // Rays that are left out are beyond the reach. These bounds are relaxed by the largest
+      // distance between a ray and the middle ray of its cell.
       for (; next < i; ++next) {
         const auto& [x, y, lens_x, lens_y] = expected[next];
         EXPECT_TRUE(x < -2 || x > 322 || y < -2 || y > 242 ||

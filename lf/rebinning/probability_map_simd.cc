@@ -48,8 +48,8 @@ void Across(const SmoothingTaps& taps, const uint16_t* HWY_RESTRICT padded, int 
   }
 }
 
-// Smooths one row along the columns, and writes the outermost values of the result once more beyond
-// both ends.
+// Computes one row of the vertical smoothing, and writes its outermost values once more beyond both
+// ends.
 //   rows(k)  input row k rows below the row of the result, k from -radius to radius
 template <class RowAt>
 void Down(const SmoothingTaps& taps, const RowAt& rows, int width, uint32_t* HWY_RESTRICT out) {
@@ -85,7 +85,7 @@ void Probabilities(const ProbabilityParameters& parameters, const uint32_t* abov
     const auto size = hn::BitCast(d, hn::Abs(hn::BitCast(di, laplacian)));
     const auto change = hn::Min(hn::ShiftRight<4>(size), most);
     const auto p = hn::Min(hn::Add(hn::ShiftRight<8>(hn::Mul(change, alpha)), xi), most);
-    // Both are small enough to be compared as signed numbers.
+    // `change` and `beta` are small enough to be compared as signed numbers.
     const auto is_below = hn::Lt(hn::BitCast(di, change), hn::BitCast(di, beta));
     const auto kept = hn::IfThenZeroElse(is_below, hn::BitCast(di, p));
     hn::StoreU(hn::DemoteTo(d16, kept), d16, out + x);

@@ -33,12 +33,13 @@ struct SplatGrid {
 };
 
 struct SplatSums {
-  static constexpr int kChannels = 4;  // R, G, B, and the weight or the number of lens points
+  static constexpr int kChannels = 4;  // R, G, B, and the weight (in `means` the sum of shares)
   static constexpr int kElement = kChannels * LensPointGroup::kPoints;
 
   // Weighted sums of one group of lens points  [rows][columns][kChannels][kPoints]
   LargeVector<float> weighted;
-  // Sums of the means of the lens points that had rays  [rows][columns][kChannels]
+  // Sums of the means of the lens points that had rays, times their shares
+  // [rows][columns][kChannels]
   LargeVector<float> means;
   // Weight of each lens point of the group  [rows][columns][kPoints]; empty: all 1
   LargeVector<float> shares;
