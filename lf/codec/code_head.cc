@@ -27,7 +27,7 @@ Error Damaged(const char* what) {
   return InputError(fmt::format("is a damaged LF image code: {}", what));
 }
 
-// Takes the next number. Returns false if it is not in [low, high].
+// Reads the next number and removes it from `code`. Returns false if it is not in [low, high].
 template <class T>
 bool Take(std::string_view* code, uint64_t low, uint64_t high, T* value) {
   uint64_t number = 0;

@@ -23,7 +23,7 @@ enum class Packing : uint8_t {
   kOne = 1,    // one (two, four) numbers in a byte, the first in the lowest bits
   kTwo = 2,
   kFour = 4,
-  kPlanes2 = 18,  // the lowest bytes of all numbers, then their next bytes; no escapes
+  kPlanes2 = 18,  // 2 (3, 4) bytes of each number: all lowest bytes, then the next; no escapes
   kPlanes3 = 19,
   kPlanes4 = 20,
 };

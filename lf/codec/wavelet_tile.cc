@@ -19,9 +19,9 @@ namespace {
 constexpr int kFractionBits = 3;
 constexpr int kMostDoublings = 1;
 
-// Returns true if the coefficients of level `depth` that are transformed further are doubled
-// before: the low ones, or all four subbands of the level that splits a mosaic. Levels are counted
-// from the pixels, from 1; the level that splits a mosaic is the first.
+// Returns true if the coefficients of level `depth` that are transformed further are doubled first.
+// These are the low ones, or all four subbands of the level that splits a mosaic. Levels are
+// counted from the pixels, from 1; the level that splits a mosaic is the first.
 bool IsDoubled(const CodeHead& head, int depth) {
   return head.info.profile == CodecProfile::kDefault && depth <= kMostDoublings;
 }
