@@ -17,7 +17,7 @@ class ByteStream {
  public:
   // kInput if the file cannot be opened or is no regular file.
   static Result<ByteStream> Open(const std::filesystem::path& path);
-  // A stream of bytes in memory, which must outlive it. `path` is for messages only.
+  // A stream of bytes in memory, which must outlive the stream. `path` is for messages only.
   ByteStream(std::string_view bytes, std::filesystem::path path);
 
   ByteStream(ByteStream&& other) noexcept;
@@ -30,18 +30,19 @@ class ByteStream {
   uint64_t position() const { return window_end_ - window_.size(); }
   uint64_t remaining() const { return size_ - position(); }
 
-  // The next bytes: all that are in memory, and at least one. Empty only at the end, or if the file
-  // cannot be read (see Status()). Valid until the next call of another function.
+  // Returns the next bytes: all that have been read already, at least one. Empty only at the end of
+  // the file, or if the file cannot be read (see Status()). Valid until Skip() or Take() is called.
   std::string_view Window() {
     Fill(1);
     return window_;
   }
-  // Moves ahead by `count` bytes, at most remaining(). Reads nothing, even if that leaves the
-  // window.
+  // Skips `count` bytes, which must be at most remaining(). Reads nothing from the file, even if
+  // `count` is larger than the window.
   void Skip(uint64_t count);
 
-  // Takes the next number, which is little-endian, as are all numbers of COLMAP's files. Returns
-  // false and takes nothing if fewer bytes are left or the file cannot be read.
+  // Reads the next number and moves behind it. The number is little-endian, as are all numbers of
+  // COLMAP's files. Returns false and does not move if fewer bytes are left or the file cannot be
+  // read.
   template <class T>
   bool Take(T* value) {
     static_assert(std::endian::native == std::endian::little);
@@ -51,7 +52,8 @@ class ByteStream {
     return true;
   }
 
-  // kInput with the system's reason if reading failed or the file became shorter meanwhile.
+  // kInput with the system's reason if reading failed or the file became shorter after it was
+  // opened.
   Result<void> Status() const;
 
  private:

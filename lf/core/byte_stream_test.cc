@@ -29,7 +29,7 @@ std::string Noise(size_t size) {
   return bytes;
 }
 
-// The steps are of all sizes. Some of them cross the ends of blocks.
+// The steps have many sizes. Some of them cross the ends of blocks.
 TEST_F(ByteStreamTest, AFileIsTheSameAsItsBytesInMemory) {
   const std::string bytes = Noise((size_t{5} << 20) + 123);
   ASSERT_TRUE(WriteFileAtomically(folder_ / "noise", bytes));

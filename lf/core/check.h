@@ -1,5 +1,6 @@
-// Assertions for bugs of ours. LF_CHECK is on in release builds and ends the program with exit
-// code 1, naming the place; LF_DCHECK, for inner loops, is on in debug builds only.
+// Assertions that reveal our own bugs. LF_CHECK is on in release builds also: if the condition is
+// false, it prints file and line, and ends the program with exit code 1. LF_DCHECK, for inner
+// loops, is on in debug builds only.
 #pragma once
 
 #include <cstdio>

@@ -9,8 +9,8 @@
 
 namespace lf {
 
-// A list of distinct values, in the order in which they first came. It takes 40 bytes per value
-// beside the list itself. Equal values must have equal hashes.
+// A list of distinct values, in the order in which they first came. The hash table takes 40 bytes
+// per value in addition to the list. Equal values must have equal hashes.
 template <class T, uint64_t (*HashOf)(const T&)>
 class Distinct {
  public:
@@ -26,7 +26,7 @@ class Distinct {
     if (!is_new) list_.pop_back();
     return *index;
   }
-  // Returns the list, and leaves this one empty.
+  // Returns the list, and leaves this object empty.
   std::vector<T> Take() {
     indices_ = Indices(0, Hash{&list_}, Equal{&list_});
     return std::exchange(list_, {});

@@ -163,7 +163,7 @@ Result<void> RenameFlushed(std::span<const Renaming> files) {
       return OutputError(fmt::format("{}: cannot be renamed to: {}", to.string(), SystemReason()));
     folders.insert(ParentOf(to));
   }
-  // A rename itself is on the disk once its folder is.
+  // A rename is on the disk only after the folder has been flushed.
   for (const fs::path& folder : folders) LF_RETURN_IF_ERROR(FlushToDisk(folder));
   return {};
 }
@@ -177,7 +177,8 @@ Result<void> CreateFolder(const fs::path& folder) {
   if (error || !fs::is_directory(folder, error))
     return OutputError(fmt::format("{}: cannot be created as a folder: {}", folder.string(),
                                    error ? error.message() : "a file has this name"));
-  // A new folder is on the disk, with all that is in it, once its parent is.
+  // Until the parent of a new folder is flushed, a crash can lose the folder with all that is in
+  // it.
   for (const fs::path& made : missing) LF_RETURN_IF_ERROR(FlushToDisk(ParentOf(made)));
   return {};
 }

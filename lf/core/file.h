@@ -14,29 +14,30 @@
 
 namespace lf {
 
-// Returns the kind of the error when an open or a read failed with this errno. kOutput: the machine
-// lacks something (open files, memory), so that any other file would also fail, and no good file is
-// taken for a broken one. kInput: everything else.
+// Returns the kind of the error when an open or a read failed with the errno `code`. kOutput if the
+// machine lacks something (open files, memory): any other file would fail as well, and the file
+// must not be reported as damaged. kInput for everything else.
 ErrorKind KindOfReadFailure(int code);
-// Returns the kind of the error when a library threw this exception while it read. A
-// std::system_error has the kind of its errno, since the library may have lacked a thread. kInput:
-// everything else.
+// Returns the kind of the error when a library threw `thrown` while it read. For a
+// std::system_error it is the kind of its errno, because the library may have been unable to start
+// a thread. kInput for everything else.
 ErrorKind KindOfReadFailure(const std::exception& thrown);
 
-// Returns the bytes of a file. KindOfReadFailure() if it cannot be read; kInput if it is no regular
-// file or is larger than limit_bytes (checked before anything is allocated).
+// Returns the bytes of a file. The error has the kind KindOfReadFailure() if the file cannot be
+// read, and kInput if it is no regular file or is larger than limit_bytes (checked before anything
+// is allocated).
 Result<std::string> ReadFile(const std::filesystem::path& path,
                              size_t limit_bytes = size_t{4} << 30);
 
-// Asks the system to read the file into its cache soon. Does not wait, and fails silently.
+// Asks the system to read the file into its page cache soon. Does not wait, and fails silently.
 void AnnounceRead(const std::filesystem::path& path);
 
 // Writes a file under a temporary name in the same folder, flushes it to the disk and renames it:
 // readers see the old file or the new one, never a part. After a failure the old file is intact and
 // the temporary one is gone. If the program is killed, the next write of the same file removes the
-// temporary one (temporary_file.h). Follows a link, and keeps the permissions of the old file.
-// kOutput with the system's reason (disk full, no permission), or if the name belongs to something
-// that is no regular file.
+// temporary one (temporary_file.h). If `path` is a link, the file that it leads to is replaced. The
+// new file gets the permissions of the old one. kOutput with the system's reason (disk full, no
+// permission), or if `path` exists and is no regular file.
 Result<void> WriteFileAtomically(const std::filesystem::path& path, std::string_view bytes);
 
 // As WriteFileAtomically(), for a writer that needs a path: `write` gets the temporary name, which
@@ -50,7 +51,7 @@ Result<void> FlushToDisk(const std::filesystem::path& path);
 
 // Gives a complete and closed file its final name: flushes it to the disk, renames it, replacing
 // any file of that name, and flushes the folder. Both names must be in one file system. kOutput on
-// failure; the file then keeps its old name, unless the folder could not be flushed.
+// failure: the file then has its old name, or its new one if only the folder could not be flushed.
 Result<void> RenameFlushed(const std::filesystem::path& from, const std::filesystem::path& to);
 
 // Gives many files their final names. All of them are flushed to the disk before the first is
@@ -60,7 +61,7 @@ struct Renaming {
 };
 Result<void> RenameFlushed(std::span<const Renaming> files);
 
-// Creates the folder and its parents. kOutput if that fails or a file has the name.
+// Creates the folder and its parents. kOutput if that fails or if a file has this name.
 Result<void> CreateFolder(const std::filesystem::path& folder);
 
 }  // namespace lf

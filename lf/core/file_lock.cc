@@ -14,7 +14,8 @@
 namespace lf {
 namespace {
 
-// True if `path` still names the open file, which its last owner may have removed meanwhile.
+// True if `path` still names the open file. (The previous owner may have removed the file after it
+// was opened here.)
 bool IsStill(int fd, const std::filesystem::path& path) {
   struct stat open_file {
   }, named_file{};
@@ -93,7 +94,7 @@ Result<FileLock> FileLock::Take(const std::filesystem::path& path) {
           fmt::format("{}: cannot be locked: {}", path.string(), std::strerror(errno)));
     }
     if (!IsStill(fd, path)) continue;
-    // The number is for people and for messages only.
+    // The process number is for people and messages only. The lock does not depend on it.
     const std::string text = fmt::format("{}\n", ::getpid());
     if (::ftruncate(fd, 0) != 0 || !Write(fd, text))
       return OutputError(

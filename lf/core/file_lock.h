@@ -1,5 +1,5 @@
-// A lock file, with which one process works at a time. The kernel holds the lock, and releases it
-// when the process ends, however it ends.
+// A lock file, which lets only one process at a time work in a folder, for example. The kernel
+// holds the lock, and releases it when the process ends, even if it is killed.
 #pragma once
 
 #include <filesystem>
@@ -15,14 +15,15 @@ class FileLock {
   // (the message gives its number) or another FileLock holds the lock, or if the file cannot be
   // created, locked or written.
   static Result<FileLock> Take(const std::filesystem::path& path);
-  // True if anybody holds the lock now. False if the file is missing or may not be read by us.
+  // True if any process holds the lock now. False if none does, if the file is missing, or if this
+  // process may not read it.
   static bool IsHeld(const std::filesystem::path& path);
   FileLock(FileLock&& other) noexcept;
   FileLock& operator=(FileLock&& other) noexcept;
   ~FileLock();  // releases the lock; the file stays, unless RemoveInTheEnd() was called
 
-  // Descriptor of the file. A program that inherits it holds the lock with us: the lock lasts as
-  // long as one of the two processes has it open.
+  // Descriptor of the file. A child process that inherits the descriptor shares the lock, which
+  // lasts until both processes have closed it.
   int fd() const { return fd_; }
 
   // Removes the file and releases the lock.

@@ -28,7 +28,8 @@ inline double Value(const PixelForm& form, const Vec3& position) {
   return form[0] * position[0] + form[1] * position[1] + form[2] * position[2];
 }
 
-// x_b = rotation * x_a + translation; named b_from_a.
+// Maps coordinates in frame a to frame b: x_b = rotation * x_a + translation. A variable of this
+// type is named b_from_a.
 struct RigidTransform {
   Mat3 rotation = Mat3::Identity();
   Vec3 translation = Vec3::Zero();
@@ -79,7 +80,7 @@ inline PixelRect Intersection(const PixelRect& a, const PixelRect& b) {
   return r.empty() ? PixelRect{} : r;
 }
 
-// The smallest rectangle that holds both.
+// Returns the smallest rectangle that contains both. Empty rectangles are ignored.
 inline PixelRect Bounds(const PixelRect& a, const PixelRect& b) {
   if (a.empty()) return b;
   if (b.empty()) return a;

@@ -1,4 +1,5 @@
-// Checksums of bytes: XXH3, 64 bits. They reveal damage and differences, but no forgery.
+// Checksums of bytes: XXH3, 64 bits. They reveal damage and differences, but do not protect against
+// forgery.
 #pragma once
 
 #include <cstddef>

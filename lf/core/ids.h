@@ -1,4 +1,5 @@
-// Integers that cannot be mixed up.
+// Integer identities. Each kind has its own type, so that the compiler rejects an id of another
+// kind.
 #pragma once
 
 #include <compare>

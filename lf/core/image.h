@@ -81,7 +81,7 @@ class Image {
 };
 
 // Colour filter of a mosaic sensor: the channels of the upper left 2x2 pixels, row by row.
-// kNone: three channels per pixel.
+// kNone: there is no filter, and a pixel has three channels.
 enum class BayerPattern : uint8_t { kNone, kRggb, kBggr, kGrbg, kGbrg };
 
 // Returns the channel (0 R, 1 G, 2 B) that a mosaic records at pixel (x, y). Must not be called for

@@ -12,7 +12,8 @@ namespace lf {
 
 enum class LogLevel { kDebug, kInfo, kWarning, kError };
 
-// Messages below the level are dropped. Default kInfo. Meant for main().
+// Drops all messages below `level` from now on. The level is kInfo until this is called. Meant for
+// main().
 void SetLogLevel(LogLevel level);
 
 // Returns the text as one line: control characters become \n, \t, \x1b and the like, as in C. File

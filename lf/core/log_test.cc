@@ -14,7 +14,7 @@ TEST(Log, MessagesAreOneLine) {
   EXPECT_EQ(OneLine(""), "");
 }
 
-// A file name that contains a line of its own cannot put that line last.
+// If a file name contains a line break, the text after it cannot pass for the last message.
 TEST(Log, NamesCannotForgeTheLastLine) {
   testing::internal::CaptureStderr();
   LogMessage(LogLevel::kWarning, "a\nerror: b.png: no such file");

@@ -16,8 +16,8 @@
 namespace lf {
 namespace {
 
-// We do not compile oneTBB, so the thread sanitizer does not see that the start of a loop comes
-// before its items, and these before its end. It sees everything else that items share.
+// We do not compile oneTBB, so the thread sanitizer does not see that a loop begins before its
+// items and that the items end before the loop does. It sees all other accesses to shared memory.
 #ifdef __SANITIZE_THREAD__
 void ComesBefore(void* place) { __tsan_release(place); }
 void ComesAfter(void* place) { __tsan_acquire(place); }
@@ -25,7 +25,7 @@ void ComesAfter(void* place) { __tsan_acquire(place); }
 void ComesBefore(void*) {}
 void ComesAfter(void*) {}
 #endif
-char loop_begins;  // global: a thread reads the loop's own variables only afterwards
+char loop_begins;  // global, as the loop's own variables may be read only after ComesAfter()
 
 }  // namespace
 
@@ -33,7 +33,7 @@ struct ThreadPool::State {
   explicit State(int thread_count)
       : limit(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(thread_count)),
         arena(thread_count) {}
-  // Without it, the arena uses no more threads than tbb thinks the machine has.
+  // Without this limit, the arena uses no more threads than tbb thinks the machine has.
   tbb::global_control limit;
   tbb::task_arena arena;
 };

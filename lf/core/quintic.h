@@ -6,20 +6,21 @@
 
 namespace lf {
 
-// Places in [-1, 1] where the polynomial equals the function. They are the roots of Chebyshev's
-// T_6, which spread the error evenly.
+// The points t in [-1, 1] where the polynomial equals the function. They are the roots of
+// Chebyshev's T_6, which spread the error evenly.
 inline constexpr std::array<double, 6> kQuinticPlaces = {-0.9659258262890683, -0.7071067811865476,
                                                          -0.2588190451025208, 0.2588190451025208,
                                                          0.7071067811865476,  0.9659258262890683};
 
-// Places where the error is largest, and to first order equal: three of the seven extremes of T_6.
+// Points where the error is largest. To first order, the error is equal at all of them: they are
+// three of the seven extremes of T_6.
 inline constexpr std::array<double, 3> kQuinticWorstPlaces = {-1, 0, 1};
 
-// Returns the coefficients of c[0] + c[1] t + ... + c[5] t^5, which takes the values `at` at
-// kQuinticPlaces. T is a number or a vector of numbers.
+// Returns the coefficients of c[0] + c[1] t + ... + c[5] t^5, whose values at kQuinticPlaces are
+// `at`. T is a number or a vector of numbers.
 template <class T>
 std::array<T, 6> QuinticThrough(const std::array<T, 6>& at) {
-  // The even powers, and the odd ones divided by t, are parabolas in u = t^2.
+  // The sum of the even powers, and the sum of the odd ones divided by t, are parabolas in u = t^2.
   const double u[3] = {kQuinticPlaces[5] * kQuinticPlaces[5], 0.5,
                        kQuinticPlaces[3] * kQuinticPlaces[3]};
   std::array<T, 6> c;
@@ -37,7 +38,8 @@ std::array<T, 6> QuinticThrough(const std::array<T, 6>& at) {
   return c;
 }
 
-// Returns the polynomial's value at t, by Horner's rule. Powers: six coefficients.
+// Returns the polynomial's value at t, by Horner's rule. `Powers` is an array of the six
+// coefficients.
 template <class Powers, class T>
 T QuinticAt(const Powers& c, T t) {
   return ((((c[5] * t + c[4]) * t + c[3]) * t + c[2]) * t + c[1]) * t + c[0];

@@ -18,12 +18,12 @@ inline uint64_t RandomBits(uint64_t seed, uint64_t stream, uint64_t index) {
   return MixBits(MixBits(MixBits(seed) ^ stream) ^ index);
 }
 
-// Uniform in [0, 1).
+// Returns a number that is uniformly distributed in [0, 1).
 inline double RandomUnit(uint64_t seed, uint64_t stream, uint64_t index) {
   return static_cast<double>(RandomBits(seed, stream, index) >> 11) * 0x1.0p-53;
 }
 
-// Gives one number after the other, for callers that do not need to count them.
+// A sequence of random numbers, for callers that do not want to keep count of the index.
 class RandomSequence {
  public:
   explicit RandomSequence(uint64_t seed) : seed_(seed) {}

@@ -1,5 +1,5 @@
 // Errors as values: bad input and failing machines (doc/style.md, "Errors"). LF_CHECK catches our
-// own bugs. Nothing in the library throws.
+// own bugs. Nothing in the library throws, except std::bad_alloc if memory runs out.
 #pragma once
 
 #include <optional>

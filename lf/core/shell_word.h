@@ -5,7 +5,7 @@
 
 namespace lf {
 
-// Returns the word, quoted if a shell would not take it as it is.
+// Returns the word; in single quotes if a shell would not read it literally.
 std::string ShellWord(const std::string& word);
 
 }  // namespace lf

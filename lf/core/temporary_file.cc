@@ -26,8 +26,9 @@ namespace {
 constexpr std::string_view kMark = ".tmp";
 constexpr size_t kHostDigits = 8;
 
-// Names the machine and its PID namespace, because process numbers mean something only within one
-// of them. The namespace of a machine itself has the same number after each start.
+// Returns a hash of the machine's name and its PID namespace, because a process number has a
+// meaning only within one namespace. The first namespace of a machine has the same number after
+// each reboot.
 std::string HostName() {
   std::array<char, 256> name{};
   if (::gethostname(name.data(), name.size() - 1) != 0) name.fill('\0');
@@ -80,7 +81,8 @@ fs::path FolderOf(const fs::path& path) {
   return error ? folder : absolute.lexically_normal();
 }
 
-// Temporary files of this host by their final names, in one folder.
+// The temporary files in one folder, by their final names: those of this host, but not of this
+// process.
 using Leftovers = std::map<std::string, std::vector<fs::path>>;
 
 Leftovers LeftoversIn(const fs::path& folder) {

@@ -1,8 +1,9 @@
 // Files that have no final name yet, and the leftovers of programs that were killed.
 //
 // While FILE.EXT is written it is called .FILE.PROCESS-HOST.tmp.EXT, in the same folder. The
-// extension is kept because libraries choose the format by it. PROCESS is a number, HOST eight
-// hexadecimal digits that stand for the machine and, in a container, for its process numbers.
+// extension is kept because libraries choose the format by it. PROCESS is the process number. HOST
+// is eight hexadecimal digits: a hash of the machine's name and of the PID namespace, because
+// process numbers of a container mean nothing outside it.
 #pragma once
 
 #include <filesystem>
@@ -13,12 +14,13 @@ namespace lf {
 // Returns the temporary name that this process gives to `path`, in the same folder.
 std::filesystem::path TemporaryPath(const std::filesystem::path& path);
 
-// Removes temporary files of `path` whose process was on this host and is dead. Files of other
-// hosts and of living processes stay. A folder is listed once in the life of this process, when the
-// first of its files is asked about. May be called at the same time from any thread.
+// Removes temporary files of `path` whose process ran on this host and is dead. Files of other
+// hosts and of living processes stay. This process lists each folder only once, when the function
+// is called for the first file in it. May be called at the same time from any thread.
 void RemoveLeftovers(const std::filesystem::path& path);
 
-// True if the name, without a folder, is one that TemporaryPath() gives, of any file and process.
+// True if the name (without a folder) has the form that TemporaryPath() gives, for any file and any
+// process.
 bool IsTemporaryName(const std::string& name);
 
 // A temporary file. The destructor removes it, also if memory has run out, unless Keep() was
@@ -32,7 +34,7 @@ class TemporaryFile {
   TemporaryFile& operator=(TemporaryFile&&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  // Must be called once the file has its final name.
+  // Must be called after the file has been renamed to its final name.
   void Keep() { is_kept_ = true; }
 
  private:
