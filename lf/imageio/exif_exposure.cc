@@ -13,7 +13,7 @@
 namespace lf {
 namespace {
 
-// The least value that counts; smaller ones, such as an f-number of 0, stand for "not known".
+// Values outside [kLeast, kMost], such as an f-number of 0, mean "not known".
 constexpr double kLeast = 1e-12, kMost = 1e12;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
@@ -25,8 +25,8 @@ ExposureFacts FactsOf(const TiffDirectory& exif) {
   constexpr int kExposureTime = 0x829A, kFNumber = 0x829D, kSensitivity = 0x8827;
   constexpr int kRecommendedIndex = 0x8832, kIsoSpeed = 0x8833;
   constexpr int kShutterSpeedValue = 0x9201, kApertureValue = 0x9202;
-  // The 16 bits of the sensitivity hold no larger value; if it is larger, other tags state it (Exif
-  // 2.3, 4.6.5).
+  // Largest value of the sensitivity tag, which has 16 bits. A larger sensitivity is stated in
+  // other tags (Exif 2.3, 4.6.5).
   constexpr double kMostSensitivity = 65535;
   ExposureFacts facts;
   facts.time_s = IfStated(exif.Number(kExposureTime, 0));
@@ -61,7 +61,7 @@ ExposureFacts FactsOfTiff(const ByteSource& source) {
   return exif ? FactsOf(*exif) : ExposureFacts();
 }
 
-// Reads the Exif data of a segment APP1 before the pixels.
+// Reads the Exif data, which are in an APP1 segment before the pixels.
 ExposureFacts FactsOfJpeg(const ByteSource& source) {
   constexpr uint64_t kExif = 0x457869660000, kApp1 = 0xe1, kStartOfScan = 0xda;
   uint64_t offset = 2;
@@ -81,7 +81,7 @@ ExposureFacts FactsOfJpeg(const ByteSource& source) {
   return {};
 }
 
-// Reads the Exif data of the chunk eXIf (PNG, third edition, 11.3.4.5).
+// Reads the Exif data, which are in the chunk eXIf (PNG, third edition, 11.3.4.5).
 ExposureFacts FactsOfPng(const ByteSource& source) {
   constexpr uint64_t kExif = 0x65584966;
   uint64_t offset = 8;  // chunks: length, type, content, checksum

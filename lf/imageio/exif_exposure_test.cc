@@ -19,7 +19,7 @@ namespace {
 // One tag of Exif data: a fraction, or a number of 16 or 32 bits.
 struct Tag {
   int tag;
-  int type;  // 3: 16 bits, 4: 32 bits, 5: a fraction, 10: a signed one
+  int type;  // 3: 16 bits, 4: 32 bits, 5: a fraction, 10: a signed fraction
   int value;
   int under = 1;
 };

@@ -17,8 +17,8 @@ struct ExposureFacts {
   std::optional<double> iso;
 };
 
-// Reads the header alone: the Exif data of JPEG, TIFF and PNG files; camera raw files through
-// LibRaw. EXR files state nothing. kInput as for ReadImageInfo().
+// Reads the header alone: the Exif data of JPEG, TIFF and PNG files; for camera raw files, what
+// LibRaw reads from them. EXR files state no exposure. kInput as for ReadImageInfo().
 Result<ExposureFacts> ReadExposureFacts(const std::filesystem::path& path);
 
 // Reads a file that is in memory; messages call it `name`.

@@ -23,9 +23,9 @@
 namespace lf {
 
 // Pixels of a file, in the type it stores: integers of up to 8 bits as uint8_t, of up to 16 bits as
-// uint16_t (depths between are scaled to the full range), half and float as float. Wider or signed
-// integers, and the integer channels of an EXR file that also holds others, become floats of equal
-// value (exact up to 2^24); doubles are rounded to float.
+// uint16_t (bit depths in between are scaled to the full range), half and float as float. Wider or
+// signed integers, and the integer channels of an EXR file that also holds others, become floats of
+// equal value (exact up to 2^24); doubles are rounded to float.
 using StoredImage = std::variant<Image<uint8_t>, Image<uint16_t>, Image<float>>;
 
 // Properties of the pixels that a camera raw file states, in the terms of capture/radiance.h.
@@ -47,29 +47,30 @@ struct ImageFileInfo {
   bool is_float = false;
   std::vector<std::string> channel_names;  // one per channel, as the format calls it
   int orientation = 1;                     // EXIF orientation, 1 to 8; the pixels stay as stored
-  std::optional<RawFacts> raw;             // for camera raw files: one channel of 16 bits
+  std::optional<RawFacts> raw;             // camera raw files only: one channel of 16 bits
 };
 
 // Reads the header alone. kInput as for ReadImage(), except that truncation behind the header is
-// not detected. For camera raw files other than DNG the black level is missing, because it is
-// measured on covered pixels.
+// not detected. For camera raw files other than DNG the black level is missing, because LibRaw
+// measures it on covered pixels of the sensor.
 Result<ImageFileInfo> ReadImageInfo(const std::filesystem::path& path);
 
 // Reads all pixels and channels as stored: no colour conversion, no multiplication by alpha, no
 // rotation. The content decides the format, not the name. If a file has several parts, the first is
 // read.
-// - EXR: channels come in the order R, G, B, A, then the others. If there are none of these names,
-//   but one layer has them (beauty.R), the layer's channels come first. Several such layers are an
-//   error.
+// - EXR: channels come in the order R, G, B, A, then the others. If no channel is named R, G or B,
+//   but one layer has all three (beauty.R), the channels of this layer come first. It is an error
+//   if several layers have all three.
 // - Camera raw: gives the mosaic as the sensor recorded it, or grey if the sensor is monochrome. It
 //   is not demosaicked, brightened, white balanced or rotated, and the black level is not
 //   subtracted. It is cropped to the pixels that see light (the active area of a DNG) and mapped
 //   through the linearization table of a DNG. LibRaw decodes these files. It may not detect small
 //   damage within compressed ones, and does not accept pictures below 22 pixels.
 // kInput, naming the file: it is missing, unreadable, truncated or damaged (JPEG: also if libjpeg
-// had to guess pixels); it has another format (raw files without a Bayer mosaic included); it is a
-// CMYK JPEG; it is larger than 2^30 pixels or 2^32 values, which is checked before pixels are
-// allocated.
+// had to guess pixels); it has another format, or is a raw file that is neither Bayer nor
+// monochrome; it is a CMYK JPEG; it is larger than 2^30 pixels or 2^32 values, which is checked
+// before pixels are allocated. kOutput: the machine lacks something (KindOfReadFailure() of
+// core/file.h).
 Result<StoredImage> ReadImage(const std::filesystem::path& path);
 
 // Reads pixels and header at once.
@@ -86,7 +87,8 @@ struct ImagePart {
   ImageFileInfo info;
 };
 
-// Called after the header is read; returns the pixels that are needed. An error ends the reading.
+// Called after the header is read; returns the pixels that are needed. If it returns an error,
+// reading ends with this error.
 using WantedPixels = std::function<Result<PixelRect>(const ImageFileInfo& info)>;
 
 // Reads at least the wanted pixels, which must contain a pixel of the picture. They have the values
@@ -96,7 +98,7 @@ using WantedPixels = std::function<Result<PixelRect>(const ImageFileInfo& info)>
 Result<void> ReadImagePart(const std::filesystem::path& path, const WantedPixels& wanted,
                            ImagePart* part);
 
-// Read a file that is in memory; messages call it `name`.
+// These functions read a file that is in memory; messages call it `name`.
 Result<ImageFileInfo> ReadImageInfoBytes(std::string_view bytes, const std::string& name);
 Result<StoredImage> ReadImageBytes(std::string_view bytes, const std::string& name);
 Result<ImageWithInfo> ReadImageWithInfoBytes(std::string_view bytes, const std::string& name);
@@ -109,10 +111,10 @@ enum class PixelType { kUint8, kUint16, kHalf, kFloat };
 // text).
 using ImageMetadata = std::vector<std::pair<std::string, std::variant<std::string, double, int>>>;
 
-// Writes `pixels` atomically (core/file.h); the extension of `path` chooses the format. Integer
-// types take values in [0, 1], which are clipped (NaN: 0) and rounded to nearest. They are sRGB for
-// display, and PNG files state this. Floats are written as they are; a value that is too large for
-// half becomes infinite. Equal pixels give equal bytes, because no date is written.
+// Writes `pixels` atomically (core/file.h); the extension of `path` chooses the format. For integer
+// types, the values are clipped to [0, 1] (NaN becomes 0) and rounded to nearest. They are sRGB
+// values for display, and PNG files state this. Floats are written as they are; a value that is too
+// large for half becomes infinite. Equal pixels give equal bytes, because no date is written.
 //   channel_names  one per channel, as EXR shows them; other formats ignore the names
 //   type           kUint8 (PNG, JPEG, TIFF), kUint16 (PNG, TIFF), kHalf (EXR), kFloat (EXR, TIFF)
 //   is_interrupted is called before every 32 rows are encoded, if given; it cannot interrupt the
@@ -125,7 +127,8 @@ Result<void> WriteImage(const std::filesystem::path& path, ImageView<const float
                         const ImageMetadata& metadata = {},
                         const std::function<bool()>& is_interrupted = {});
 
-// Write integers of 8 or 16 bits exactly as they are. The file states no colour space.
+// These functions write integers of 8 or 16 bits exactly as they are. The file states no colour
+// space.
 Result<void> WriteImage(const std::filesystem::path& path, ImageView<const uint8_t> pixels);
 Result<void> WriteImage(const std::filesystem::path& path, ImageView<const uint16_t> pixels);
 
@@ -138,7 +141,7 @@ struct ExrChannel {
 };
 
 // Writes channels of equal size as one EXR file, as WriteImage() does. kOutput: the folder or the
-// disk fails, or the extension is not .exr. kInterrupted as there.
+// disk fails, or the extension is not .exr. kInterrupted as in WriteImage().
 Result<void> WriteExr(const std::filesystem::path& path, std::span<const ExrChannel> channels,
                       const ImageMetadata& metadata = {},
                       const std::function<bool()>& is_interrupted = {});

@@ -6,8 +6,8 @@
 #include "lf/imageio/image_file.h"
 #include "lf/imageio/whole_file.h"
 
-// OpenImageIO leaks a string when libpng leaves it by longjmp. The fuzzer looks for our own faults
-// only.
+// OpenImageIO leaks a string when libpng reports an error by longjmp. The fuzzer looks for our own
+// faults only.
 extern "C" const char* __asan_default_options() { return "detect_leaks=0"; }
 
 // Any bytes must give an image, or an error that names the file. Pictures above a million values

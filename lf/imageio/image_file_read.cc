@@ -66,7 +66,7 @@ struct OpenImage {
   std::string name;
   std::unique_ptr<OIIO::ImageInput> input;
   OIIO::ImageSpec spec;
-  std::vector<int> channel_order;  // in our order: indices into the file's order
+  std::vector<int> channel_order;  // indices into the file's channels, in our order
 };
 
 // Returns the bits of the stored type: 8 or 16 for unsigned integers, 32 if any channel becomes
@@ -145,7 +145,8 @@ Result<void> ReadPixels(OpenImage& image, OIIO::TypeDesc type, void* pixels) {
   return {};
 }
 
-// Returns the image of this type in `stored`, resized; reuses its memory if possible.
+// Makes `stored` an Image<T> of the size that `spec` states, and returns it. Reuses its memory if
+// possible.
 template <class T>
 Image<T>& Resized(const OIIO::ImageSpec& spec, StoredImage* stored) {
   if (!std::holds_alternative<Image<T>>(*stored)) stored->emplace<Image<T>>();
@@ -273,7 +274,7 @@ auto WithoutThrowing(const std::string& name, const Read& read) -> decltype(read
   }
 }
 
-// Calls `read` with the file on disk. It is not read beyond what `read` asks for.
+// Calls `read` with the file on disk. Only the bytes that `read` requests are read.
 template <class Read>
 auto FromFile(const fs::path& path, const Read& read)
     -> decltype(read(std::declval<const FileSource&>())) {

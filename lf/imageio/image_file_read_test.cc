@@ -15,7 +15,7 @@ class ReadImageTest : public FolderTest {
   void Save(const std::string& name, const std::string& bytes) const {
     ASSERT_TRUE(WriteFileAtomically(folder_ / name, bytes));
   }
-  // Writes a file as other programs write it.
+  // Writes a file with OpenImageIO, as other programs may write it.
   void SaveByOpenImageIo(const std::string& name, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
                          const void* pixels) const {
     const std::string path = (folder_ / name).string();

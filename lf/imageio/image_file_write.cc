@@ -83,8 +83,8 @@ OIIO::ImageSpec SpecOf(ImageFormat format, int width, int height, int channels,
   spec.attribute("oiio:UnassociatedAlpha", 1);  // colours are neither multiplied nor divided by
                                                 // alpha
   spec.alpha_channel = -1;
-  // Moderate compression: the last twentieth of a file's size would cost most of a frame's encoding
-  // time.
+  // Moderate compression: stronger compression would make files at most a twentieth smaller, but
+  // would take most of a frame's encoding time.
   if (format == ImageFormat::kExr) spec.attribute("compression", "zip:2");
   if (format == ImageFormat::kPng) spec.attribute("png:compressionLevel", 4);
   if (format == ImageFormat::kTiff) spec.attribute("compression", "zip");

@@ -232,7 +232,7 @@ TEST_F(WriteImageTest, AMissingFolderIsNamed) {
   EXPECT_NE(result.error().message.find("none"), std::string::npos);
 }
 
-// A limit on the size of files stands for a full disk.
+// A limit on the size of files simulates a full disk.
 TEST_F(WriteImageTest, AFullDiskLeavesTheOldFileAlone) {
   for (const char* name : {"a.png", "a.tif", "a.exr"}) {
     Image<float> image(64, 64, 3, 0.5f);

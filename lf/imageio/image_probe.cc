@@ -49,7 +49,7 @@ struct PngChunk {
   bool is_whole = false;
 };
 
-// Returns none if the file ends first.
+// Returns none if the file ends before the content of the chunk.
 std::optional<PngChunk> PngChunkAt(const ByteSource& source, uint64_t offset) {
   const auto length = BigEndian(source, offset, 4), type = BigEndian(source, offset + 4, 4);
   if (!length || !type) return std::nullopt;

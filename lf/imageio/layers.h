@@ -8,12 +8,13 @@
 
 namespace lf {
 
-// Returns the indices of all channels, with R, G, B and A first. These are the ones without a layer
-// or, if there are none, those of the only layer that has R, G and B. The others follow in the
-// order of the file.
+// Returns the indices of all channels, with R, G, B and A first. If a channel is named R, G or B
+// without a layer, the colours are the channels without a layer. Otherwise they are the channels of
+// the only layer that has R, G and B, if there is one. The other channels follow in the order of
+// the file.
 //   channel_names  "R", "beauty.R", ...
 //   name           of the file, for messages
-// kInput: only layers have colours, and several do.
+// kInput: no channel without a layer is R, G or B, and several layers have all three.
 Result<std::vector<int>> ColoursFirst(const std::vector<std::string>& channel_names,
                                       const std::string& name);
 

@@ -8,15 +8,17 @@
 
 namespace lf {
 
-// Makes OpenImageIO start no threads of its own, because many files are coded at a time, each by
-// one of our threads. Must be called before every use; only the first call has an effect.
+// Makes OpenImageIO start no threads of its own, because many files are encoded or decoded at the
+// same time, each by one of our threads. Must be called before every use; only the first call has
+// an effect.
 void ConfigureOpenImageIo();
 
-// Returns what OpenImageIO calls its coder of the format, which must not be kRaw.
+// Returns OpenImageIO's name for its plugin of the format, which must not be kRaw.
 const char* PluginName(ImageFormat format);
 
-// kInput if a decoder reported anything. After an error libtiff continues with the next row, and
-// libpng with the data it has, so a report means that some pixels were not recorded.
+// kInput if `remarks`, the messages of a decoder, are not empty. After an error libtiff continues
+// with the next row, and libpng with the data it has, so any message means that pixels may be
+// missing.
 Result<void> CheckRemarks(const std::string& remarks, const std::string& name);
 
 }  // namespace lf

@@ -245,7 +245,7 @@ TEST(RawImage, ClaimsAreCheckedBeforeLibRawBelievesThem) {
   ErrorOf(TestDng(Mosaic(), "RGGB").Long(50829, {20, 20, 10, 10}).File());
 }
 
-// LibRaw keeps no state between its objects.
+// LibRaw's objects share no state, so each thread can use its own.
 TEST(RawImage, ManyThreadsReadAtTheSameTime) {
   const Image<uint16_t> noise = Mosaic(75, 50);
   const std::string file = TestDng(noise, "GBRG").Tiled(16, 16, true).File();
@@ -283,7 +283,8 @@ class RawFileTest : public FolderTest {
     return sensor;
   }
 
-  // Compares the pixels to the right of and below (left, top).
+  // Compares the image that we read with the pixels of LibRaw's program, whose pixel (left, top) is
+  // our pixel (0, 0).
   void ExpectAsByLibRaw(const TestDng& dng, int left, int top) {
     const Image<uint16_t> sensor = SensorByLibRaw(dng);
     const Result<StoredImage> read = ReadImage(folder_ / "a.dng");

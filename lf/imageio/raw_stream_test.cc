@@ -43,7 +43,7 @@ TEST(RawStream, NotesWhatIsSoughtBeyondTheEndButNotReadingUpToIt) {
   const ByteSource source = SourceOf(bytes);
   RawStream stream(source, bytes.size());
   std::string read(20, '\0');
-  EXPECT_EQ(stream.read(read.data(), 4, 5), 2);  // whole elements
+  EXPECT_EQ(stream.read(read.data(), 4, 5), 2);  // only whole elements are counted
   EXPECT_EQ(stream.get_char(), -1);
   EXPECT_FALSE(stream.ReadBeyondEnd());
   stream.seek(10, SEEK_SET);

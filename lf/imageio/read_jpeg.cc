@@ -22,17 +22,19 @@ namespace {
 
 constexpr size_t kBufferBytes = size_t{1} << 16;
 
-// Margin around the wanted part. At the edge of a part, interpolated colours lack their neighbours;
-// two blocks away from the edge, all equal those of the whole picture.
+// Margin around the wanted part, in pixels. At the edge of a decoded part, the neighbours that
+// chroma is interpolated from are missing; two blocks inside it, all pixels equal those of the
+// whole picture.
 constexpr int kMargin_px = 32;
 
 // Decoding a part is faster if it is below this share of the picture.
 constexpr double kPartPays = 0.85;
 
-// libjpeg has no end of file: it always asks for more bytes.
+// The bytes that libjpeg reads. libjpeg knows no end of a file: it asks for bytes until the picture
+// is complete.
 struct Source : jpeg_source_mgr {
   const ByteSource* bytes = nullptr;
-  uint64_t offset = 0;  // of the bytes that follow the buffer
+  uint64_t offset = 0;  // position in the file of the bytes behind the buffer
   std::vector<uint8_t> buffer = std::vector<uint8_t>(kBufferBytes);
 };
 
@@ -57,7 +59,7 @@ void SkipBytes(j_decompress_ptr decompress, long count) {
   source.offset += static_cast<size_t>(count) - in_buffer;
 }
 
-// Reads the orientation from the content of an APP1 segment.
+// Returns the orientation that the content of an APP1 segment states; 1 if it states none.
 int OrientationOf(std::span<const uint8_t> segment) {
   constexpr std::array<uint8_t, 6> kExif = {'E', 'x', 'i', 'f', 0, 0};
   if (segment.size() < kExif.size() || !std::equal(kExif.begin(), kExif.end(), segment.begin()))
@@ -112,7 +114,8 @@ struct JpegReader::State {
 
   static State& Of(j_common_ptr common) { return *static_cast<State*>(common->client_data); }
 
-  // Leaves libjpeg with its message by longjmp. No object between may need its destructor.
+  // Leaves libjpeg with its message by longjmp. No object that was created since setjmp may need
+  // its destructor.
   [[noreturn]] void JumpOut() {
     errors.format_message(reinterpret_cast<j_common_ptr>(&decompress), message);
     std::longjmp(jump, 1);
@@ -158,7 +161,7 @@ Result<JpegReader> JpegReader::Open(const ByteSource& source, const std::string&
         fmt::format("{}: is a JPEG of {} components{}; convert it to colour (RGB) or grey", name,
                     channels, channels == 4 ? " (CMYK)" : ""));
   decompress.out_color_space = channels == 1 ? JCS_GRAYSCALE : JCS_RGB;
-  // Smoothing would invent the details that a progressive file without its last scans lacks.
+  // Smoothing would invent the details that are missing if a progressive file lacks its last scans.
   decompress.do_block_smoothing = FALSE;
   state->info.width = static_cast<int>(decompress.image_width);
   state->info.height = static_cast<int>(decompress.image_height);

@@ -14,7 +14,8 @@
 
 namespace lf {
 
-// A file whose header is read; it can be decoded once. One thread at a time may use it.
+// A file whose header has been read. Its pixels can be decoded once. One thread at a time may use
+// it.
 class JpegReader {
  public:
   // Reads the header. `source` must outlive the reader and must have passed ProbeImage(). kInput:
@@ -26,11 +27,11 @@ class JpegReader {
   const ImageFileInfo& info() const;
 
   // Decodes at least the pixels of `wanted`, which must contain a pixel of the picture. If it saves
-  // time, only these and some around them are decoded, otherwise all. Returns the decoded
-  // rectangle; `image` gets its size, and its memory is reused. The pixels equal those of the whole
-  // picture, bit for bit. The whole file is read in any case, so that the detection of damage does
-  // not depend on `wanted`; a part saves only the inverse transforms. kInput: libjpeg had to guess
-  // pixels, or the file has more than kMaxScans.
+  // time, only these pixels and some around them are decoded, otherwise all. Returns the decoded
+  // rectangle, and resizes `image` to it, in the same memory if possible. The pixels equal those of
+  // the whole picture, bit for bit. The whole file is read in any case, so that the detection of
+  // damage does not depend on `wanted`; a part saves only the inverse transforms. kInput: libjpeg
+  // had to guess pixels, or the file has more than kMaxScans.
   Result<PixelRect> Read(const PixelRect& wanted, Image<uint8_t>* image);
 
   // A progressive file with more scans could demand hours of work with few bytes. Encoders write

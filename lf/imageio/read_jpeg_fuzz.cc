@@ -20,9 +20,9 @@ bool SamePixels(const lf::Image<uint8_t>& whole, const lf::Image<uint8_t>& image
 
 }  // namespace
 
-// The first eight bytes tell which part is wanted; the rest is the file. Any file must give an
-// error that names it, independent of the wanted part, or a picture whose part equals that of the
-// whole.
+// The first eight bytes tell which part is wanted; the rest is the file. Any file must give either
+// an error, which names the file and does not depend on the wanted part, or a picture. The wanted
+// part must equal that part of the whole picture.
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size_bytes) {
   uint16_t corner[4];
   if (size_bytes < sizeof(corner)) return 0;

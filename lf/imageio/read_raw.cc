@@ -26,7 +26,7 @@ class QuietLibRaw final : public LibRaw {
   QuietLibRaw() {
     set_memerror_handler(nullptr, nullptr);
     set_dataerror_handler(nullptr, nullptr);  // errors are still counted
-    imgdata.params.use_camera_wb = 1;         // with the colour matrices of the file, if it has any
+    imgdata.params.use_camera_wb = 1;         // makes LibRaw use the file's colour matrices
     imgdata.params.use_rawspeed = 0;
     imgdata.params.raw_processing_options |= LIBRAW_PROCESSING_DNG_PREFER_LARGEST_IMAGE;
     set_exifparser_handler(NoteTag, this);
@@ -40,8 +40,8 @@ class QuietLibRaw final : public LibRaw {
     return decoder && std::strcmp(decoder, name) == 0;
   }
 
-  // Returns the part of the sensor that is the image. LibRaw makes margins even, so the active area
-  // of a DNG is taken from the file.
+  // Returns the part of the sensor that is the image. LibRaw rounds margins to even numbers, so the
+  // active area of a DNG is taken from the file.
   PixelRect VisibleArea() const {
     const libraw_image_sizes_t& sizes = imgdata.sizes;
     const tiff_ifd_t* ifd = imgdata.idata.dng_version != 0 ? IfdOfPixels() : nullptr;
@@ -82,7 +82,7 @@ class QuietLibRaw final : public LibRaw {
   }
 
  private:
-  // Returns null if no directory leads to the pixels.
+  // Returns the directory whose data begin where the pixels begin; null if there is none.
   const tiff_ifd_t* IfdOfPixels() const {
     const int count = static_cast<int>(libraw_internal_data.identify_data.tiff_nifds);
     for (int i = 0; i < std::min(count, LIBRAW_IFD_MAXCOUNT); ++i)
@@ -155,8 +155,8 @@ Result<void> CheckSensor(QuietLibRaw& raw, const std::string& name) {
   return {};
 }
 
-// Checks width and height against the file's length, because LibRaw allocates by them and fills in
-// what a short file lacks.
+// Checks width and height against the file's length, because LibRaw allocates memory for them and
+// makes up the pixels that a short file lacks.
 Result<void> CheckSizes(QuietLibRaw& raw, uint64_t size_bytes, const std::string& name) {
   const libraw_image_sizes_t& sizes = raw.imgdata.sizes;
   const int width = sizes.raw_width, height = sizes.raw_height;
@@ -224,7 +224,7 @@ class DecodingMarks {
   }
 };
 
-// Turns an exception of LibRaw into an error number of its kind.
+// Calls `call` and returns its error number; LIBRAW_DATA_ERROR if LibRaw throws an exception.
 template <class Call>
 int WithoutThrowing(const Call& call) {
   try {
@@ -294,7 +294,7 @@ Result<void> RawReader::Read(Image<uint16_t>* image) {
   QuietLibRaw& raw = state_->raw;
   RawStream& stream = state_->stream;
   const PixelRect& area = state_->area;
-  // LibRaw seeks the pixels after it has allocated their memory.
+  // LibRaw seeks the pixels after it has allocated their memory, so the marks are set at this seek.
   const DecodingMarks marks;
   stream.OnNextSeek([&] { marks.Set(raw.imgdata, area); });
   stream.ForgetReadBeyondEnd();

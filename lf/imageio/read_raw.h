@@ -13,14 +13,14 @@
 
 namespace lf {
 
-// A file whose header is read; it can be decoded once. One thread at a time may use it. Each reader
-// has a LibRaw object of its own, which starts no threads.
+// A file whose header has been read. Its pixels can be decoded once. One thread at a time may use
+// it. Each reader has its own LibRaw object, which starts no threads.
 class RawReader {
  public:
   // Reads the header. `source` must outlive the reader. kInput: LibRaw does not know the file; it
   // holds no Bayer or monochrome pixels as the sensor recorded them (the message says what it
-  // holds, and what to do); it has more pixels than are read, or than a file of its length can
-  // hold.
+  // holds, and what to do); it has more pixels than kMaxImagePixels, or than a file of its length
+  // can hold.
   static Result<RawReader> Open(const ByteSource& source, uint64_t size_bytes,
                                 const std::string& name);
   RawReader(RawReader&&) noexcept;

@@ -65,7 +65,7 @@ class TestDng {
     }
     return Short(258, {static_cast<uint32_t>(bits)}).SetParts(278, 273, 279);
   }
-  // Puts the pixels into tiles of an even width, as lossless JPEG or as they are.
+  // Puts the pixels into tiles of an even width, as lossless JPEG or uncompressed.
   TestDng& Tiled(int width, int height, bool is_lossless_jpeg) {
     parts_.clear();
     for (int top = 0; top < mosaic_.height(); top += height)
@@ -130,7 +130,7 @@ class TestDng {
     return Set(tag, type, values.size(), bytes);
   }
 
-  // Sets the tags of the parts: rows of each part (0: no such tag), offsets and sizes.
+  // Sets the tags of the parts: rows of each part (rows_tag 0: no such tag), offsets and sizes.
   TestDng& SetParts(int rows_tag, int offsets_tag, int sizes_tag) {
     std::vector<uint32_t> sizes;
     for (const std::string& part : parts_) sizes.push_back(static_cast<uint32_t>(part.size()));

@@ -115,7 +115,7 @@ class TiffReader {
 
   uint64_t first() const { return first_; }  // 0: none
 
-  // Returns none beyond the end of the file, or if there is no tag.
+  // Returns none if the directory is beyond the end of the file or has no tag.
   std::optional<TiffDirectory> ReadAt(uint64_t offset) const {
     std::array<uint8_t, 2> count_bytes{};
     if (source_(offset, count_bytes) != count_bytes.size()) return std::nullopt;

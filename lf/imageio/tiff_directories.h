@@ -1,5 +1,5 @@
-// Reads the first directory of a TIFF file without a decoder, to tell whether it is a camera raw
-// file, and the Exif data. Internal to this folder.
+// Reads the first directory and the Exif data of a TIFF file without a decoder. The first directory
+// tells whether the file is a camera raw file. Internal to this folder.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ class TiffDirectory {
   // Returns the values of a tag as numbers (fractions are divided). Empty if the tag is missing, is
   // not a number, has more than `limit` values or lies beyond the end of the file.
   std::vector<double> Numbers(int tag, size_t limit) const;
-  // Returns the first value of a tag, or `otherwise` if there is none.
+  // Returns the first value of a tag, or `otherwise` if Numbers(tag, 16) is empty.
   double Number(int tag, double otherwise) const;
 
  private:
@@ -26,18 +26,19 @@ class TiffDirectory {
   struct Entry {
     int type = 0;
     uint64_t count = 0;
-    uint64_t offset = 0;  // in the file
+    uint64_t offset = 0;  // position in the file
   };
   const ByteSource* source_ = nullptr;
   bool little_endian_ = true;
   std::map<int, Entry> entries_;
 };
 
-// Returns the first directory; none for BigTIFF files, which no camera writes. `source` must
-// outlive it.
+// Returns the first directory. Returns none if it cannot be read, has no tags, or is in a BigTIFF
+// file (which no camera writes). `source` must outlive the directory.
 std::optional<TiffDirectory> FirstTiffDirectory(const ByteSource& source);
 
-// Returns the directory of Exif data that the first directory points to; none as above.
+// Returns the directory of Exif data that the first directory points to; none if there is none, or
+// in the cases of FirstTiffDirectory().
 std::optional<TiffDirectory> ExifDirectory(const ByteSource& source);
 
 }  // namespace lf

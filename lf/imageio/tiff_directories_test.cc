@@ -25,7 +25,7 @@ TEST(TiffDirectories, NumbersOfAllTypesAreRead) {
   const auto first = FirstTiffDirectory(source);
   ASSERT_TRUE(first);
   EXPECT_EQ(first->Numbers(1, 2), (std::vector<double>{0x102, 0x304}));
-  EXPECT_EQ(first->Numbers(1, 1), std::vector<double>{});  // more than asked for
+  EXPECT_EQ(first->Numbers(1, 1), std::vector<double>{});  // two values, more than the limit
   EXPECT_EQ(first->Numbers(2, 1), std::vector<double>{3.5});
   EXPECT_EQ(first->Numbers(3, 1), std::vector<double>{-0.75});
   EXPECT_EQ(first->Numbers(4, 9), std::vector<double>{});

@@ -1,4 +1,5 @@
-// Rotates pictures as their orientation tag says.
+// Rotates and mirrors pictures as their orientation tag says, if the tag exchanges width and
+// height.
 #pragma once
 
 #include "lf/core/check.h"
@@ -11,8 +12,8 @@ namespace lf {
 inline bool TurnsByQuarter(int orientation) { return orientation >= 5 && orientation <= 8; }
 
 // Returns the picture as a viewer shows it, for the tags that exchange width and height:
-//   5 mirrored at the diagonal, 6 turned clockwise, 7 mirrored at the other diagonal,
-//   8 turned counter-clockwise (EXIF 2.3, 4.6.4)
+//   5 mirrored at the diagonal from the upper left to the lower right, 6 turned clockwise,
+//   7 mirrored at the other diagonal, 8 turned counter-clockwise (EXIF 2.3, 4.6.4)
 template <class T>
 Image<T> Upright(const Image<T>& stored, int orientation) {
   LF_CHECK(TurnsByQuarter(orientation));
@@ -27,8 +28,8 @@ Image<T> Upright(const Image<T>& stored, int orientation) {
   return upright;
 }
 
-// Returns the part of the stored picture, of width x height, that shows `rect` of the upright
-// picture.
+// Returns the part of the stored picture that shows `rect` of the upright picture. `width` and
+// `height` are those of the stored picture.
 inline PixelRect StoredRect(const PixelRect& rect, int width, int height, int orientation) {
   LF_CHECK(TurnsByQuarter(orientation));
   PixelRect stored = {rect.y_begin, rect.x_begin, rect.y_end, rect.x_end};
@@ -43,8 +44,8 @@ inline PixelRect StoredRect(const PixelRect& rect, int width, int height, int or
   return stored;
 }
 
-// Returns the part of the upright picture that shows `rect` of the stored picture, of width x
-// height.
+// Returns the part of the upright picture that shows `rect` of the stored picture. `width` and
+// `height` are those of the stored picture.
 inline PixelRect UprightRect(const PixelRect& rect, int width, int height, int orientation) {
   LF_CHECK(TurnsByQuarter(orientation));
   PixelRect upright = {rect.y_begin, rect.x_begin, rect.y_end, rect.x_end};

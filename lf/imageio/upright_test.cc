@@ -7,8 +7,9 @@
 namespace lf {
 namespace {
 
-// 1 2 3
-// 4 5 6
+// The stored picture is
+//   1 2 3
+//   4 5 6
 TEST(Upright, TurnsAsTheTagSays) {
   Image<int> stored(3, 2);
   stored.pixels() = {1, 2, 3, 4, 5, 6};

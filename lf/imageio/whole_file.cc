@@ -25,8 +25,8 @@ std::optional<T> LittleEndian(const ByteSource& source, uint64_t offset) {
   return static_cast<T>(value);
 }
 
-// Reads letters up to a 0, and moves `offset` behind it. Returns none if they are longer than a
-// name may be.
+// Reads a name, which ends with a zero byte, and moves `offset` behind it. Returns none if the file
+// ends first or the name has more than 255 letters.
 std::optional<std::string> Name(const ByteSource& source, uint64_t* offset) {
   constexpr size_t kLongestName = 255;
   std::array<uint8_t, kLongestName + 1> bytes;
@@ -37,8 +37,8 @@ std::optional<std::string> Name(const ByteSource& source, uint64_t* offset) {
   return std::string(bytes.begin(), end);
 }
 
-// Returns the rows of a block, by the number of the compression in the file (OpenEXR, "File
-// Layout").
+// Returns the number of rows in a block, by the number of the compression in the file (OpenEXR,
+// "File Layout").
 std::optional<int64_t> RowsOfBlock(uint8_t compression) {
   constexpr int64_t kRows[] = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
   if (compression >= std::size(kRows)) return std::nullopt;

@@ -14,7 +14,7 @@
 
 namespace lf {
 
-// kInput, with the missing part, unless the file is as long as its format says; pixels are not
+// kInput, naming what is missing, unless the file passes the check of its format. Pixels are not
 // decoded.
 //   EXR   the table of offsets has an entry for every block of rows, and each block lies in the
 //         file. Only scanlines in one part, as WriteExr() writes them; other kinds are an error
