@@ -29,7 +29,7 @@ class RowWindow {
         stride_(static_cast<size_t>(rect.width()) + 2 * kMargin),
         values_(stride_ * kRows) {}
 
-  // Returns rows y - 2 to y + 2, at rect.x_begin. y must grow from call to call.
+  // Returns pointers to rows y - 2 to y + 2, at column rect.x_begin. y must grow from call to call.
   std::array<const T*, 5> MoveTo(int y) {
     for (; next_row_ <= std::min(y + kReach, image_height_ - 1); ++next_row_) Fill(next_row_);
     std::array<const T*, 5> rows;
@@ -39,7 +39,8 @@ class RowWindow {
 
  private:
   static constexpr int kRows = 2 * kReach + 1;
-  // One pixel more than kReach is read, but not used, because pairs may begin before the rectangle.
+  // One column more than kReach is read, but not used, because a pair of mosaic pixels may begin
+  // one column before the rectangle.
   static constexpr int kMargin = kReach + 1;
 
   T* Row(int y) { return values_.data() + static_cast<size_t>(y % kRows) * stride_ + kMargin; }
@@ -71,9 +72,9 @@ class RowWindow {
 RowGains GainsOf(const std::array<double, 3>& white_balance, int c) {
   constexpr int kGreen = 1;
   const int d = 2 - c;
-  return {.g_at_c = 2 * BalanceRatio(white_balance, c, kGreen),  // 1/2 of a quarter
-          .d_at_c = 3 * BalanceRatio(white_balance, c, d),       // 3/4 of a quarter
-          .c_at_g = BalanceRatio(white_balance, kGreen, c),      // 5/8 of a tenth
+  return {.g_at_c = 2 * BalanceRatio(white_balance, c, kGreen),  // gain 1/2; L is 1/4 of the sum
+          .d_at_c = 3 * BalanceRatio(white_balance, c, d),       // gain 3/4; L is 1/4 of the sum
+          .c_at_g = BalanceRatio(white_balance, kGreen, c),      // gain 5/8; L is 1/10 of the sum
           .d_at_g = BalanceRatio(white_balance, kGreen, d)};
 }
 

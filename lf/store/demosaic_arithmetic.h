@@ -11,13 +11,14 @@
 
 namespace lf {
 
-// A colour is a sum in units of 1/4096: weights of pixels are multiples of 1/16, ratios of 1/256.
+// A colour is a sum in units of 1/4096: weights of pixels are multiples of 1/16, ratios are
+// multiples of 1/256.
 inline constexpr int kWeightBits = 4;
 inline constexpr int kRatioBits = 8;
-// Limit of the ratios. No sum reaches 2^31 with it: (4096 + 12 * 2048) * 65535 < 2^31.
+// Largest ratio: 8. With it no sum reaches 2^31: (4096 + 12 * 2048) * 65535 < 2^31.
 inline constexpr int32_t kMaxRatio = 8 << kRatioBits;
 
-// Returns w[recorded] / w[missing], the factor of a Laplacian.
+// Returns w[recorded] / w[missing] in units of 1/256, at most kMaxRatio.
 inline int32_t BalanceRatio(const std::array<double, 3>& white_balance, int recorded, int missing) {
   const double of_recorded = white_balance[static_cast<size_t>(recorded)];
   const double of_missing = white_balance[static_cast<size_t>(missing)];

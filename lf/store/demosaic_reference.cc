@@ -10,8 +10,8 @@ namespace {
 // Weights of 5 x 5 pixels, in units of 1/16.
 using Filter = std::array<std::array<int, 5>, 5>;
 
-// Filters for a missing colour: one for the pixels that recorded it, one for the pixels of the
-// centre's colour.
+// Filters for a missing colour: `mean` for the pixels that recorded this colour, `laplacian` for
+// the pixels of the colour that the centre recorded.
 struct Estimate {
   Filter mean;
   Filter laplacian;  // including the gain

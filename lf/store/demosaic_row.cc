@@ -17,7 +17,7 @@ HWY_BEFORE_NAMESPACE();
 namespace lf {
 namespace HWY_NAMESPACE {
 
-// Loads a pair of values into a word: a lane of a vector is a pair.
+// Loads a pair of values into a 32-bit word, so that one lane of a vector holds a pair.
 HWY_ATTR HWY_INLINE uint32_t Pair(const uint16_t* values) {
   uint32_t pair = 0;
   std::memcpy(&pair, values, sizeof(pair));
@@ -37,8 +37,8 @@ HWY_ATTR HWY_INLINE uint32_t Colour(int32_t sum) {
   return static_cast<uint32_t>(std::min(std::max((sum + (1 << (kBits - 1))) >> kBits, 0), 65535));
 }
 
-// Letters as in RowGains. "near" is above and below; "left" and "right" are the pairs beside this
-// one.
+// c, g and d in the names are C, G and D of RowGains. "near" is the sum of the pixels above and
+// below; "left" and "right" are the pairs beside this one.
 template <bool kCIsRed>
 HWY_ATTR void DemosaicPairsBy(const uint16_t* const rows[5], const RowGains& gains, int pair_count,
                               uint16_t* HWY_RESTRICT rgb) {

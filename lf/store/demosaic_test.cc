@@ -32,7 +32,7 @@ LfPixels NoiseMosaic(int width, int height, BayerPattern bayer, uint64_t seed) {
   });
 }
 
-// Returns the part that a store loads for `rect`.
+// Returns the pixels `rect` of `whole`, as a store loads them.
 LfPixels PartOf(const LfPixels& whole, const PixelRect& rect) {
   LfPixels part(rect, whole.bayer);
   for (int y = 0; y < rect.height(); ++y)
@@ -66,10 +66,10 @@ PixelRect RandomRect(int width, int height, uint64_t seed) {
   return {x, y, Between(x, width, seed, 3) + 1, Between(y, height, seed, 4) + 1};
 }
 
-// Compares rectangles of small and of wide images, some of them masked, with ratios within and
-// beyond the limit.
+// Compares Demosaic() with the reference in rectangles of small and of wide images. Some of the
+// images have masked pixels. The ratios of the white balance lie within and beyond the limit.
 void CompareWithReference() {
-  LfPixels rgb, reference;  // used again and again
+  LfPixels rgb, reference;  // reused for all images
   for (uint64_t seed = 0; seed < 400; ++seed) {
     const int width = Between(2, seed % 4 == 0 ? 150 : 9, seed, 5);
     const int height = Between(2, 9, seed, 6);
@@ -174,7 +174,7 @@ TEST(Demosaic, GainsAreThePapersTimesTheRatioOfTheWhiteBalance) {
   EXPECT_EQ(at_spot(6, 6, {3, 1, 1.5}, 2), 1200);
 }
 
-// White balance before demosaicing, or by the ratio inside, gives equal results.
+// Except for rounding, white balance before demosaicing gives the same result as the ratio inside.
 TEST(Demosaic, WhiteBalanceMayComeAfterwards) {
   constexpr int kSize = 30;
   const std::array<int, 3> factors = {4, 1, 2};

@@ -1,5 +1,5 @@
-// Maps stored values of linear light to the tone curve of a display (IEC 61966-2-1), along which
-// they are encoded with loss. On this curve an error is equally visible in shadows and in
+// Maps stored values of linear light to the tone curve of a display (IEC 61966-2-1). Lossy encoding
+// works on the mapped values, because on this curve an error is equally visible in shadows and in
 // highlights, and photon noise is nearly constant.
 #pragma once
 
@@ -11,13 +11,13 @@ namespace lf {
 class DisplayCurve {
  public:
   // The levels are stored values of 16 bits, with white above black. Below black the curve
-  // continues as a straight line, above white by its own formula.
+  // continues as a straight line. Above white the sRGB formula is continued.
   DisplayCurve(double black_level, double white_level);
 
   uint16_t OnCurve(uint16_t stored) const { return on_curve_[stored]; }
   // Returns the stored value nearest to a position on the curve.
   uint16_t Stored(uint16_t on_curve) const { return stored_[on_curve]; }
-  // Returns the length on the curve of 1 / 255 of the range between black and white.
+  // Returns 1 / 255 of the distance between black and white on the curve.
   double grey_step() const { return grey_step_; }
 
  private:

@@ -14,8 +14,8 @@ namespace lf {
 
 // Reads PNG, JPEG, TIFF, EXR and camera raw files (imageio/image_file.h) and converts their values
 // to radiance as LightField::encoding says:
-//   - Integers of 8 or 16 bits are converted by its table. Floats are radiance already, and are
-//     quantised.
+//   - Integers of 8 or 16 bits are converted by the table of the encoding. Floats are radiance
+//     already, and are quantised.
 //   - With a Bayer pattern, a file has one channel. It gives a mosaic, or RGB pixels computed
 //     from it (demosaic.h). Without one, a file is RGB, or grey, which counts for all channels.
 //   - RadianceEncoding::alpha decides whether pixels with an alpha below one half are masked, or
@@ -31,8 +31,8 @@ class FolderStore : public LfImageStore {
   explicit FolderStore(const LightField& light_field, Mosaics mosaics = Mosaics::kAsRecorded);
 
   // Loads the pixels of `rect`, cut to the image. kInput as LfImageStore says, and if the levels
-  // (lf_black_level, lf_white_level) exceed the file's bits, a mask has another size, or a camera
-  // raw file has another Bayer pattern.
+  // (lf_black_level, lf_white_level) exceed the file's bits, a mask file has another size than the
+  // image, or a camera raw file has another Bayer pattern.
   Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override;
   bool IsThere(LfImageId id) const override;
   uint64_t StoredBytes(LfImageId id) const override;

@@ -170,7 +170,7 @@ TEST_F(FolderStoreTest, PixelsAreClippedFromTheWhiteLevelOn) {
   for (int x = 0; x < kWidth; ++x) EXPECT_EQ(pixels.IsMasked(x, 0), x >= 5) << x;
 }
 
-// Two exposures of one pose: the bright one clips four pixels of the first row.
+// Two exposures of one pose: the bright one clips three pixels of the first row.
 TEST_F(FolderStoreTest, ADarkerImageHasWhatTheBrighterOneClipsAndAPixelAround) {
   ASSERT_TRUE(WriteImage(folder_ / "a.png", Image<uint8_t>(kWidth, kHeight, 3, 60).view()));
   Image<uint8_t> bright(kWidth, kHeight, 3, 200);

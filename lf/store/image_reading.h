@@ -19,18 +19,19 @@
 
 namespace lf {
 
-// Reads at least the pixels `wanted` of the picture that the calibration belongs to; they must
-// contain a pixel of it. part->rect is their position. Checks them against calibration and
-// encoding. kInput, naming the file.
+// Reads at least the pixels `wanted` of the picture as the calibration describes it, which may be
+// rotated against the file. `wanted` must contain a pixel of the picture. Sets part->rect to the
+// rectangle that was read. kInput, naming the file: it cannot be read, or does not fit the
+// calibration or the encoding.
 Result<ChannelUse> ReadStoredPixels(const LightField& light_field, LfImageId id,
                                     const PixelRect& wanted, ImagePart* part);
 
-// Reads the image's mask file in the same way. Returns false if it has none.
+// Reads the image's mask file in the same way. Returns false if the image has no mask file.
 Result<bool> ReadMaskFile(const LightField& light_field, LfImageId id, const PixelRect& wanted,
                           ImagePart* part);
 
-// Calls mask(x, y), with pixels of the LF image, for each pixel of `rect` whose stored value in
-// `channel` does not satisfy is_kept(value).
+// Calls mask(x, y), where (x, y) is a pixel of the LF image, for each pixel of `rect` whose stored
+// value in `channel` does not satisfy is_kept(value).
 template <class T, class IsKept, class Mask>
 void ForEachUnkept(const Image<T>& stored, const PixelRect& stored_rect, int channel,
                    const IsKept& is_kept, const PixelRect& rect, const Mask& mask) {
@@ -74,10 +75,10 @@ void ForEachClipped(const ImagePart& part, int colours, const RadianceEncoding& 
       part.image);
 }
 
-// Distance in pixels around a clipped pixel of the brighter LF image within which the darker one
-// sends rays: as far as the four pixels of an interpolation reach and, for mosaics, the pixels from
-// which these are computed. Pixels that the brighter LF image does not clip there send rays from
-// both.
+// Distance in pixels around each clipped pixel of the brighter LF image within which the darker LF
+// image sends rays. It is the reach of the four pixels of an interpolation and, for mosaics, of the
+// pixels from which these are computed. Within it, pixels that the brighter LF image does not clip
+// send rays from both LF images.
 inline int ReachOfDarker(BayerPattern bayer) { return bayer == BayerPattern::kNone ? 1 : 4; }
 
 // Calls mask(x, y) for the pixels of `rect` that the next brighter LF image of the pose shows,
@@ -86,9 +87,10 @@ inline int ReachOfDarker(BayerPattern bayer) { return bayer == BayerPattern::kNo
 void ForEachSeenBrighter(const LightField& light_field, LfImageId id, const PixelRect& rect,
                          const std::function<void(int x, int y)>& mask);
 
-// Calls mask(x, y) for all masked pixels. A pixel is masked by alpha if alpha is a mask, in
-// brackets (capture/brackets.h) if it is clipped or a brighter LF image shows it, and by the mask
-// file if there is one, which is read. mask() may be called several times for one pixel.
+// Calls mask(x, y) for all masked pixels of `rect`: those that alpha masks (if alpha is a mask),
+// those that are clipped or that a brighter LF image shows (in brackets, capture/brackets.h), and
+// those that the mask file masks, which is read if there is one. mask() may be called several times
+// for one pixel. kInput: the mask file cannot be read.
 template <class Mask>
 Result<void> ForEachMasked(const LightField& light_field, LfImageId id, const ImagePart& part,
                            const ChannelUse& use, const PixelRect& rect, const Mask& mask) {
@@ -111,7 +113,7 @@ Result<void> ForEachMasked(const LightField& light_field, LfImageId id, const Im
   return {};
 }
 
-// kInput if integers of so many bits cannot hold the light field's levels.
+// kInput if integers of `bits` bits cannot hold the light field's levels.
 //   path  of the image, for the message
 Result<void> CheckLevels(const RadianceEncoding& encoding, int bits, const std::string& path);
 

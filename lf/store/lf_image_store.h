@@ -23,18 +23,18 @@ class LfImageStore {
 
   // Loads at least the pixels `rect` of one LF image, as linear 16-bit radiance. Reuses the memory
   // of `pixels`. May be called by many threads at the same time. kInput, naming the file: the image
-  // is missing, broken or of another size than the calibration says. The caller decides whether to
-  // continue without it.
+  // is missing, broken or of another size than the calibration says. kOutput: the machine lacks
+  // something, such as memory. The caller decides whether to continue without it.
   virtual Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const = 0;
 
-  // Returns true if the file exists, even if it is broken. A disk may be unmounted during a night's
-  // work.
+  // Returns true if the file exists, even if it is broken. The answer may change, for example if a
+  // disk is unmounted during the run.
   virtual bool IsThere(LfImageId /*id*/) const { return true; }
 
   // Returns true if pixels of LF images were left out on purpose when the store was made. Keeps()
   // then tells which.
   virtual bool IsPartial() const { return false; }
-  // Returns false if some of these pixels, cut to the image, were left out on purpose.
+  // Returns false if some of the pixels `rect`, cut to the image, were left out on purpose.
   virtual bool Keeps(LfImageId /*id*/, const PixelRect& /*rect*/) const { return true; }
 
   // Returns the bytes that loading reads: the size of the file, or of the encoded image in a packed
@@ -48,8 +48,8 @@ class LfImageStore {
 };
 
 // Calls store.Load() with the memory of `pixels`, and returns them. Exceptions of the store become
-// errors of the image, for lack of memory (kOutput) or otherwise (kInput), because an exception
-// that leaves a thread ends the program.
+// errors of the image, because an exception that leaves a thread ends the program: kOutput if there
+// is not enough memory, otherwise KindOfReadFailure() of core/file.h.
 Result<LfPixels> LoadWithoutThrowing(const LfImageStore& store, LfImageId id, const PixelRect& rect,
                                      const std::string& name, LfPixels pixels);
 
@@ -60,7 +60,7 @@ class MachineFailure {
  public:
   // Ignores errors of the image itself, which are not kOutput.
   void Note(const Error& error);
-  // Returns the first error that was noted, which is kOutput.
+  // Returns the first error that was noted, which is kOutput; success if there is none.
   Result<void> Check() const;
 
  private:

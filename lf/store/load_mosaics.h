@@ -12,10 +12,10 @@
 
 namespace lf {
 
-// Loads the pixels of `rect`, cut to the image, by load(part, pixels), which loads them as
-// recorded. If the mosaic is converted to RGB, load() is called for the mosaic around `rect`.
+// Loads the pixels of `rect`, cut to the image. It calls load(part, pixels), which loads pixels as
+// recorded; if a mosaic is to be converted to RGB, `part` is the mosaic around `rect`.
 //   mosaic  memory for that mosaic
-// kInput: a mosaic is smaller than 2 x 2 pixels, or load() fails.
+// kInput: a mosaic to convert is smaller than 2 x 2 pixels. Passes on errors of load().
 Result<void> LoadMosaicsAs(Mosaics mosaics, const LightField& light_field, LfImageId id,
                            const PixelRect& rect,
                            const std::function<Result<void>(const PixelRect&, LfPixels*)>& load,

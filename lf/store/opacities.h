@@ -14,15 +14,15 @@
 
 namespace lf {
 
-// Values of a picture of opacities [height][width][1]. 0 sends no ray, because the mask file says
-// so; any other o covers (o - 1) / kMostOpacity of the light behind it.
+// Values of a picture of opacities [height][width][1]. 0 sends no ray, because the pixel is masked;
+// any other o covers (o - 1) / kMostOpacity of the light behind it.
 inline constexpr uint16_t kMaskedOpacity = 0;
 inline constexpr uint16_t kMostOpacity = 65534;
 
-// Reads the opacities of the pixels `rect`, which lies in part.rect, from the file's alpha and the
-// image's mask file. Alpha of 8 bits is exact. Alpha of 16 bits is exact except for 65534, which
-// counts as opaque. Floats are rounded to 16 bits; NaN is transparent. kInput: the mask file cannot
-// be read.
+// Reads the opacities of the pixels `rect`, which lies in part.rect, from the file's alpha. Pixels
+// that the mask file or a bracket masks (ForEachMasked()) become kMaskedOpacity. Alpha of 8 bits is
+// exact. Alpha of 16 bits is exact except for 65534, which counts as opaque. Floats are rounded to
+// 16 bits; NaN is transparent. kInput: the mask file cannot be read.
 Result<Image<uint16_t>> ReadOpacities(const LightField& light_field, LfImageId id,
                                       const ImagePart& part, const ChannelUse& use,
                                       const PixelRect& rect);

@@ -26,7 +26,7 @@ class OpacitiesTest : public FolderTest {
     field_.encoding.transfer = Transfer::kLinear;
     field_.encoding.alpha = AlphaMeaning::kStraight;
   }
-  // Writes each alpha once, with random colours.
+  // Writes an image in which each of 256 alphas occurs once, with random colours.
   template <class T>
   Image<T> WriteEveryAlpha(int channels) {
     Image<T> image = NoiseImage<T>(kWidth, kHeight, channels);
@@ -46,7 +46,7 @@ class OpacitiesTest : public FolderTest {
   LightField field_;
 };
 
-// Compares with the formulas of the header in real numbers, to half a step.
+// Compares the pixels with the formulas of opacities.h in real numbers.
 template <class T>
 void ExpectComposed(const LightField& field, const Image<T>& stored, const LfPixels& pixels) {
   const RadianceEncoding& encoding = field.encoding;
@@ -64,7 +64,8 @@ void ExpectComposed(const LightField& field, const Image<T>& stored, const LfPix
         const double expected = encoding.alpha == AlphaMeaning::kStraight
                                     ? a * v + (1 - a) * behind
                                     : v + (1 - a) * (behind - encoding.pedestal);
-        // An alpha of 65535 steps is rounded to one of 65534.
+        // Rounding adds an error of up to 0.5, and alpha in 65534 instead of 65535 steps of up to
+        // 1.
         ASSERT_NEAR(pixels.radiance.at(x, y, c), std::min(expected, 65535.0), 1.51)
             << x << " " << y;
       }

@@ -1,4 +1,4 @@
-// Opens the store of a light field, of either kind.
+// Opens the store of a light field: image files or a packed store.
 #pragma once
 
 #include <memory>
@@ -9,8 +9,9 @@
 
 namespace lf {
 
-// Returns a PackedStore if light_field.folder is the file of one, otherwise a FolderStore. Keeps a
-// reference to `light_field`, which must outlive the store. kInput as PackedStore::Open().
+// Returns a PackedStore if light_field.folder is the file of a packed store, otherwise a
+// FolderStore. Keeps a reference to `light_field`, which must outlive the store. kInput as
+// PackedStore::Open().
 Result<std::unique_ptr<LfImageStore>> OpenStore(const LightField& light_field, Mosaics mosaics);
 
 }  // namespace lf

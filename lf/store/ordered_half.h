@@ -8,8 +8,7 @@
 
 namespace lf {
 
-// Returns the half nearest to `value`, ties to even; infinite if no half is as large. NaN counts as
-// 0.
+// Returns the half nearest to `value`, ties to even; infinite if |value| >= 65520. NaN counts as 0.
 inline uint16_t HalfOf(float value) {
   const auto bits = std::bit_cast<uint32_t>(value);
   const auto sign = static_cast<uint16_t>(bits >> 16 & 0x8000);
@@ -17,8 +16,8 @@ inline uint16_t HalfOf(float value) {
   if (magnitude > 0x7F800000) return 0;
   constexpr uint32_t kTooLarge = 0x477FF000;  // 65520; from here on infinity is nearest
   if (magnitude >= kTooLarge) return sign | 0x7C00;
-  // The result's lowest bit is a bit of the float's significand: the exponents differ by 112, and
-  // below 2^-14 halves have a fixed step of 2^-24.
+  // `shift` is the number of bits by which a half's significand is shorter than the float's. The
+  // exponents differ by 112; below 2^-14 halves have a fixed step of 2^-24.
   const uint32_t exponent = magnitude >> 23;
   const bool is_normal = exponent > 112;
   if (!is_normal && exponent < 102) return sign;

@@ -29,7 +29,7 @@ std::string TextOf(const PixelRect& rect) {
   return fmt::format("[{}, {}) x [{}, {})", rect.x_begin, rect.x_end, rect.y_begin, rect.y_end);
 }
 
-// Checks by the table that the image can be loaded.
+// Checks in the store's table that the image can be loaded.
 Result<void> CheckListed(const PackedCode& code, const LightField& light_field, LfImageId id) {
   if (!code.is_listed())
     return InputError(fmt::format("{}: is not in the packed store: compress it, too",
@@ -54,7 +54,8 @@ Result<void> CheckCode(std::string_view bytes, int bits, PixelLayout layout, boo
   return {};
 }
 
-// Moves decoded's pixels into `part`, together with their memory.
+// Moves the decoded pixels into `part`, together with their memory, and converts them to stored
+// values: along `curve`, or to floats.
 void MakePart(StoredValues values, const PixelRect& coded, const std::optional<DisplayCurve>& curve,
               DecodedPart* decoded, Image<float>* floats, ImagePart* part) {
   part->rect = Moved(decoded->rect, coded.x_begin, coded.y_begin);
@@ -74,7 +75,8 @@ void MakePart(StoredValues values, const PixelRect& coded, const std::optional<D
   }
 }
 
-// Moves the memory back, so that it is reused for the next image.
+// Moves the memory from `part` back to `decoded` or `floats`, so that it is reused for the next
+// image.
 void TakeBack(ImagePart* part, DecodedPart* decoded, Image<float>* floats) {
   if (auto* bytes = std::get_if<Image<uint8_t>>(&part->image))
     decoded->pixels = std::move(*bytes);

@@ -18,10 +18,11 @@
 namespace lf {
 
 // Decodes the recorded values (recorded_image.h) and converts them to radiance as FolderStore does
-// for files. After lossless encoding, both give the same bits. Takes 32 bytes of memory for each LF
-// image of the light field, and a connection to the file for each thread that loaded at the same
-// time. While one image loads, its encoded bytes, its stored values and the result are in memory
-// together. Keeps a reference to `light_field`, which must outlive the store.
+// for files. After lossless encoding, both give the same bits, unless floats were rounded to half.
+// Takes 32 bytes of memory for each LF image of the light field, and as many connections to the
+// file as threads have loaded at the same time. While one image loads, its encoded bytes, its
+// stored values and the result are in memory together. Keeps a reference to `light_field`, which
+// must outlive the store.
 class PackedStore : public LfImageStore {
  public:
   // Opens the file light_field.folder. Its LF images are found by name, so that the light field may

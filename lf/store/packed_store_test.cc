@@ -57,7 +57,7 @@ class PackedStoreTest : public FolderTest {
     for (int x = 0; x < kWidth; ++x) mask.at(x, 7) = 0;
     ASSERT_TRUE(WriteImage(folder_ / "mask.png", mask.view()));
   }
-  // Packs all images without loss: whole, or the rectangle of each.
+  // Packs the pixels `rect` of all images without loss.
   void Pack(const PixelRect& rect = kWhole, uint64_t shard_bytes = 0) {
     PackedStorePlan plan;
     plan.whole = IdentityOf(field_);

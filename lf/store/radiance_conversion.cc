@@ -17,7 +17,7 @@ constexpr uint64_t kOneRay = uint64_t{1} << (16 * LfPixels::kRayLane);
 
 void StorePixel(uint64_t lanes, uint16_t* out) { std::memcpy(out, &lanes, sizeof(lanes)); }
 
-// Calls convert_row(y, in, out, width) for the rows y of the LF image.
+// Calls convert_row(y, in, out, width) for each row y of pixels->rect.
 template <class T, class Row>
 void ForEachRow(const Image<T>& stored, const PixelRect& stored_rect, LfPixels* pixels,
                 const Row& convert_row) {
@@ -54,7 +54,7 @@ void ConvertByValue(const Image<T>& stored, const PixelRect& stored_rect, int co
   });
 }
 
-// Takes one look-up and one | for each colour, and one store for each pixel.
+// Converts 8-bit RGB with one look-up and one | for each colour, and one store for each pixel.
 void ConvertByLanes(const Image<uint8_t>& stored, const PixelRect& stored_rect,
                     const LaneTable& lanes, LfPixels* pixels) {
   const int channels = stored.channels();
@@ -64,7 +64,7 @@ void ConvertByLanes(const Image<uint8_t>& stored, const PixelRect& stored_rect,
   });
 }
 
-// QuantizeRadiance() inlined, with equal bits, for light that is not NaN.
+// Computes QuantizeRadiance() inline, bit-identical to it, for light that is not NaN.
 class Quantizer {
  public:
   explicit Quantizer(const RadianceEncoding& encoding)
@@ -80,11 +80,12 @@ class Quantizer {
   }
 
  private:
-  static constexpr double kFarOut = 200000;  // beyond all lanes and pedestals
+  static constexpr double kFarOut = 200000;  // beyond all 16-bit values and pedestals
   double scale_, pedestal_;
 };
 
-// The falloff of a row's pixels, with the bits of Vignetting::Falloff(RadiusSquared()).
+// Computes the falloff of each pixel of a row, bit-identical to
+// Vignetting::Falloff(RadiusSquared()).
 class RowFalloff {
  public:
   RowFalloff(const Intrinsics& k, int begin, int width)

@@ -12,8 +12,8 @@
 
 namespace lf {
 
-// RadianceTable() for each colour, in the form of the kernels: the three words of a pixel's
-// colours, combined with |, are the four lanes R, G, B, 1 of LfPixels.
+// RadianceTable() of each colour, in the form that the conversion of 8-bit RGB uses: the three
+// words of a pixel's colours, combined with |, are the four lanes R, G, B, 1 of LfPixels.
 using LaneTable = std::array<std::array<uint64_t, 256>, 3>;
 
 // Tables of one encoding and of the gains of an image. A table is empty if the levels do not fit
@@ -24,13 +24,13 @@ class RadianceTables {
   // Makes the tables for files of one type only; the others stay empty.
   RadianceTables(const RadianceEncoding& encoding, const ChannelGains& gains, int bits);
 
-  // Channels with equal gains share a table.
+  // Null if the levels do not fit. If all gains are equal, the channels share a table.
   const uint16_t* of_8bit(int channel) const { return TableOf(of_8bit_, channel); }
   const uint16_t* of_16bit(int channel) const { return TableOf(of_16bit_, channel); }
   const LaneTable& lanes() const { return lanes_; }
 
  private:
-  using Tables = std::vector<std::vector<uint16_t>>;  // one, or one for each channel
+  using Tables = std::vector<std::vector<uint16_t>>;  // one table, or one for each channel
   static const uint16_t* TableOf(const Tables& tables, int channel) {
     if (tables.empty()) return nullptr;
     return tables[tables.size() == 1 ? 0 : static_cast<size_t>(channel)].data();
@@ -42,8 +42,8 @@ class RadianceTables {
 };
 
 // Computes the radiance of pixels->rect, which lies in part.rect. Integers are converted by tables,
-// floats are quantised; if the camera has a falloff, QuantizeRadiance() converts every pixel.
-// Writes all lanes, and masks nothing. The levels must fit the integers.
+// floats are quantised; if the camera has a falloff, every pixel is converted as QuantizeRadiance()
+// does. Writes all lanes, and masks nothing. The levels must fit the integers.
 //   colours  1: grey or mosaic; 3: the first three channels
 //   plain    the tables of gain 1; tables for other gains are made when needed
 //   camera   for its gains

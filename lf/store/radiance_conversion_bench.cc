@@ -6,7 +6,7 @@
 namespace lf {
 namespace {
 
-// Argument: 1 if the camera has a falloff.
+// The argument is 1 if the camera has a falloff, otherwise 0.
 void BM_ConvertBytes(benchmark::State& state) {
   constexpr int kWidth = 960, kHeight = 640;
   Intrinsics k;

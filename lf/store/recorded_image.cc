@@ -23,7 +23,8 @@ PixelRect WholeOf(const LightField& light_field, LfImageId id) {
   return {0, 0, k.width_px, k.height_px};
 }
 
-// Returns the first channels of the pixels `rect`, with each value converted by convert().
+// Returns the first `channels` channels of the pixels `rect`, with each value converted by
+// convert().
 template <class To, class From, class Convert>
 Image<To> Cut(const Image<From>& stored, const PixelRect& stored_rect, const PixelRect& rect,
               int channels, const Convert& convert) {

@@ -1,6 +1,6 @@
-// LF images on their way into a packed store. They hold stored values and not radiance, so that the
-// encoding is applied when they are loaded, by the code that also converts separate files
-// (packed_store.h).
+// An LF image that will be written to a packed store. It holds stored values and not radiance: the
+// light field's encoding is applied when the image is loaded from the store, by the code that also
+// converts separate files (packed_store.h).
 #pragma once
 
 #include <cstdint>
@@ -27,13 +27,14 @@ struct RecordedImage {
   Image<uint16_t> opacities;
   bool is_rounded = false;    // a float was not representable as half, and was rounded to the
                               // nearest
-  uint64_t source_bytes = 0;  // of the image's file and its mask file
+  uint64_t source_bytes = 0;  // size of the image's file and its mask file
 };
 
 // Reads the pixels of `rect`, cut to the image, rotated upright as in the calibration, and not
-// composed with a background. Pixels that alpha or the mask file masks (folder_store.h) are in the
-// mask. Floats become the nearest half floats, NaN becomes 0. When loaded again, they are quantised
-// like floats. kInput as FolderStore::Load(), and if `rect` lies outside the image.
+// composed with a background. Pixels that are masked by alpha, the mask file (folder_store.h) or
+// brackets (capture/brackets.h) are 0 in the mask. Floats become the nearest half floats, NaN
+// becomes 0. When half floats are loaded, they are quantised as floats of image files are. kInput
+// as FolderStore::Load(), and if `rect` lies outside the image.
 Result<RecordedImage> ReadRecordedImage(const LightField& light_field, LfImageId id,
                                         const PixelRect& rect);
 
