@@ -10,7 +10,7 @@
 namespace lf {
 
 struct CameraFact {
-  std::string name;                // "position_w"; units as everywhere: _w, _mm, _deg, _s
+  std::string name;                // "position_w"; ends in its unit: _w, _mm, _deg, _s
   std::vector<std::string> parts;  // "x", "y", "z"; empty if there is only one value
   std::vector<double> values;
 };
@@ -19,7 +19,7 @@ struct CameraFact {
 //   frame, time_s
 //   position_w         x y z
 //   forward, up        x y z of the axes, length 1
-//   focal_length_mm    as stated, at any focus distance
+//   focal_length_mm    independent of the focus distance
 //   field_of_view_deg  horizontal, vertical; at this frame's focus
 //   aperture_diameter_mm, f_number (thesis Eq. 2.11; infinite for a pinhole)
 //   blades, blade_rotation_deg

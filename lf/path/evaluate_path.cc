@@ -52,7 +52,8 @@ Eigen::Quaterniond OrientationFrom(const MotionValue& value) {
   return {value[0], value[1], value[2], value[3]};
 }
 
-// Returns the pose of a camera that looks at the point it follows, or in the direction of time 0.
+// Returns the pose of a camera at `centre_w` that looks at the point look_at or, if
+// path.keep_direction, in the direction that it had at time 0.
 Result<RigidTransform> PoseTowards(const Moment& moment, const Vec3& centre_w) {
   const PathDescription& path = moment.path;
   Vec3 from_w = centre_w;
@@ -181,7 +182,7 @@ Result<RenderCamera> CameraAt(const Moment& moment) {
 }
 
 // Rotates the blades while they close: by a constant angle per stop below the path's widest
-// opening, stops = 2 log2(widest / diameter). A closed pinhole has no shape to rotate.
+// opening, stops = 2 log2(widest / diameter). An aperture of diameter 0 has no shape to rotate.
 void TurnClosingBlades(double rotation_per_stop_rad, std::vector<RenderCamera>* cameras) {
   double widest_w = 0;
   for (const RenderCamera& camera : *cameras)

@@ -11,9 +11,9 @@
 
 namespace lf {
 
-// Returns the slopes at the knots of the monotone cubic (Fritsch and Butland 1984; at the ends by
-// the three-point formula, limited). Between two knots the curve never leaves the range of their
-// values.
+// Returns the slopes at the knots of the monotone cubic (Fritsch and Butland 1984). The slopes at
+// the two ends follow the three-point formula, limited so that the curve stays monotone. Between
+// two knots the curve never leaves the range of their values.
 //
 // knots   strictly increasing, as many as values; a single value has slope 0
 std::vector<double> MonotoneSlopes(std::span<const double> knots, std::span<const double> values);
@@ -23,8 +23,8 @@ std::vector<double> MonotoneSlopes(std::span<const double> knots, std::span<cons
 // The curve has no cusp and no loop between two points. A repeated point repeats its knot.
 std::vector<double> CentripetalKnots(std::span<const Vec3> points);
 
-// Returns the slopes dP/dknot of that curve at its points. At the two ends they point along the
-// chord.
+// Returns the slopes dP/dknot of the centripetal Catmull-Rom curve at its points. At the first and
+// the last point, the slope is along the chord to the neighbouring point.
 std::vector<Vec3> CatmullRomSlopes(std::span<const double> knots, std::span<const Vec3> points);
 
 // Evaluates the cubic with values and slopes given at both ends of [knot_a, knot_b], knot_a <

@@ -58,7 +58,7 @@ TEST(CentripetalKnots, AreRootsOfTheDistances) {
 }
 
 TEST(CatmullRom, IsTheUniformSplineForEqualDistances) {
-  // The chords are equal, so the inner slope is the mean of their slopes.
+  // The chords are equally long, so the inner slope is the mean of their slopes.
   const std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {2, 1, 0}};
   const std::vector<Vec3> slopes = CatmullRomSlopes(CentripetalKnots(points), points);
   EXPECT_NEAR((slopes[1] - Vec3(0.5, 0.5, 0)).norm(), 0, 1e-12);

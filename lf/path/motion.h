@@ -49,8 +49,8 @@ enum class SmoothCurve {
   kRotation,    // unit quaternions: slerp
 };
 
-// The curve through keys. A smooth stretch ends at a linear or step key. Before the first key and
-// after the last one, the value of that key holds.
+// The curve through keys. A smooth stretch ends at the last key before a linear or step key. Before
+// the first key and after the last one, the value of that key holds.
 class KeyframeCurve {
  public:
   // keys   at least one, times strictly increasing, values of one size

@@ -14,9 +14,9 @@ namespace lf {
 // A quantity that may change over time.
 struct Quantity {
   Motion motion;
-  // These are for messages.
+  // These are for the check of the range and for messages.
   std::string label;          // "lens.focus_distance_mm"
-  YamlPlace place;            // position in the file where its motion is given
+  YamlPlace place;            // position in the file where the motion is stated
   NumberRange range;          // limits of every component, in units of the file
   double units_per_file = 1;  // internal value = units_per_file * value in the file
 };
@@ -32,12 +32,13 @@ struct PathDescription {
   Quantity position_w;
   std::optional<Quantity> look_at_w;    // either this or orientation
   std::optional<Quantity> orientation;  // yaw, pitch, roll in radians, or quaternion w, x, y, z
-  Vec3 up = -Vec3::UnitY();             // with look_at
+  Vec3 up = -Vec3::UnitY();             // used with look_at
   bool keep_direction = false;          // with look_at: keeps the direction of time 0 while the
                                         // camera moves
   Quantity roll_rad;                    // applied after look_at or orientation
 
-  // The file gives two of these three; the third follows from them.
+  // Two of these three are given; the third follows from them. If the file gives only the focal
+  // length or only the field of view, the sensor width is 36 mm.
   std::optional<double> sensor_width_w;
   std::optional<Quantity> focal_length_w;
   std::optional<Quantity> field_of_view_rad;  // horizontal, when focused at infinity

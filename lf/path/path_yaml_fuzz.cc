@@ -1,4 +1,4 @@
-// Any bytes as a camera path must give an error, or cameras with finite numbers only.
+// Any bytes, read as a camera path, must give an error, or cameras with finite numbers only.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

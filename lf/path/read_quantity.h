@@ -12,7 +12,8 @@
 
 namespace lf {
 
-// Units of a quantity. Its keys are its name with the suffix of a unit: "focus_distance_mm".
+// Units of a quantity. The keys in the file are its name with the suffix of a unit, such as
+// "focus_distance_mm". kDegreesUnsaid: degrees, but without a suffix.
 enum class QuantityUnit { kNone, kLength, kDegrees, kDegreesUnsaid };
 
 struct QuantitySpec {
@@ -25,16 +26,17 @@ struct QuantitySpec {
 
 class QuantityReader {
  public:
-  // keyframes, accelerations   values of these keys of the file; null if the file lacks them
+  //   keyframes, accelerations   entries of these keys of the file; null if the file lacks them
   QuantityReader(const YamlEntry* keyframes, const YamlEntry* accelerations, double unit_m,
                  YamlErrors* errors);
 
-  // Returns the quantity; none if the file does not give it, or gives it wrongly. Its start and
-  // speed are keys of `section`. If it has keyframes but none at time 0, its start becomes the key
-  // at time 0.
+  // Returns the quantity; none if the file does not give it or, with an error, gives it wrongly.
+  // Its start and speed are keys of `section`. If it has keyframes but none at time 0, its start
+  // becomes the key at time 0.
   std::optional<Quantity> Read(YamlMap* section, const QuantitySpec& spec);
 
-  // Returns a length that does not change over time, in either unit.
+  // Returns a length that does not change over time and is given in world units or in millimetres;
+  // none if the file does not give it or, with an error, gives it wrongly.
   std::optional<double> ReadFixedLength(YamlMap* section, const std::string& name,
                                         const NumberRange& range);
 

@@ -39,8 +39,8 @@ const QuantitySpec kFocusTilt{.name = "focus_tilt",
 const QuantitySpec kBladeRotation{
     .name = "blade_rotation", .unit = kDegrees, .zero_if_not_given = true};
 
-// Adds an error unless exactly one is given. A missing one is reported only if there is no other
-// error, which may explain it.
+// Adds an error unless exactly one of `choices` is given. If none is given, this is reported only
+// if there is no other error, because that error may be the reason.
 void RequireOne(const YamlMap& section, const std::vector<const std::optional<Quantity>*>& choices,
                 std::string_view what, std::string_view example) {
   const Quantity* first = nullptr;

@@ -17,7 +17,7 @@ enum class ValueShape {
   kQuaternion,  // [w, x, y, z], length 1
 };
 
-// Returns 1 to 4.
+// Returns the number of components, 1 to 4.
 int ComponentCount(ValueShape shape);
 
 // Returns an example of such a value as a file writes it, for messages.

@@ -12,8 +12,8 @@ namespace lf {
 // one word into the other (optimal string alignment).
 size_t EditDistance(std::string_view a, std::string_view b);
 
-// Returns the nearest of `words`; empty if even this one differs in more than a third of its
-// letters.
+// Returns the nearest of `words`; empty if even the nearest differs in more than a third of the
+// letters of the longer word.
 std::string NearestWord(std::string_view word, std::span<const std::string> words);
 
 }  // namespace lf

@@ -1,5 +1,5 @@
-// Typed values of a YAML text with maps whose keys must all be known. Errors are collected: readers
-// continue with a default, so that the author of the file sees how many errors there are.
+// Reads typed values from a YAML text, in whose maps every key must be known. Errors are collected:
+// readers continue with a default, so that the author of the file sees how many errors there are.
 #pragma once
 
 #include <cstddef>
@@ -24,8 +24,7 @@ class YamlErrors {
   void AddFirst(const YamlPlace& place, std::string message);
 
   bool empty() const { return errors_.empty(); }
-  // Returns true if further errors are dropped, because the rest of a file with so many errors is
-  // not useful.
+  // Returns true if further errors are dropped, because more than these would not help the author.
   bool full() const { return errors_.size() >= 20; }
   const std::string& file_name() const { return file_name_; }
 
@@ -61,15 +60,15 @@ struct NumberRange {
   std::string Describe() const;    // "above 0 (below 1e+09)", "from 1 to 3", ...
 };
 
-// A map of the file. Each key that is asked for becomes an allowed key; CheckKeys() reports the
-// others.
+// A map of the file. A key is allowed once Find() or Require() has looked it up; CheckKeys()
+// reports the other keys.
 class YamlMap {
  public:
   // title: name in messages: "camera"; empty for the whole file. If the node is not a map, an error
   // is added, and the map is empty. If a key occurs twice, an error is added, and the first is
   // kept.
   YamlMap(const YamlNode& node, std::string title, YamlErrors* errors);
-  // Makes a map without keys, for one that the file does not have.
+  // Makes a map without keys, in place of a map that the file does not have.
   YamlMap(std::string title, YamlErrors* errors) : title_(std::move(title)), errors_(errors) {}
 
   const YamlPlace& place() const { return place_; }
@@ -77,14 +76,14 @@ class YamlMap {
   // Returns the name of a key in messages: "camera.speed".
   std::string Label(std::string_view key) const;
 
-  // Returns the entry, or null.
+  // Returns the entry of a key; null if there is none.
   const YamlEntry* Find(std::string_view key);
   // Returns the entry; adds an error if there is none. `example` shows what to write: "fps: 30".
   const YamlEntry* Require(std::string_view key, std::string_view example);
 
-  // Returns the keys that are allowed so far, in the order in which they were asked for.
+  // Returns the keys that are allowed so far, in the order in which they were looked up.
   const std::vector<std::string>& asked() const { return asked_; }
-  // Reports the keys that were not asked for, with the nearest allowed key.
+  // Reports each key that is not allowed, with the nearest allowed key.
   void CheckKeys();
 
  private:
@@ -99,7 +98,8 @@ class YamlMap {
 std::string UnknownWord(std::string_view kind, std::string_view word, std::string_view where,
                         const std::vector<std::string>& known);
 
-// Return the value of a node. None, with an error that begins with the label, if it is invalid.
+// These functions return the value of a node; none, with an error that begins with the label, if it
+// is invalid.
 std::optional<double> ReadNumber(const YamlNode& node, std::string_view label,
                                  const NumberRange& range, YamlErrors* errors);
 std::optional<int> ReadInteger(const YamlNode& node, std::string_view label, int min, int max,

@@ -22,7 +22,7 @@ using YamlNodePtr = std::shared_ptr<const YamlNode>;
 
 struct YamlEntry {
   std::string key;
-  YamlPlace place;  // of the key
+  YamlPlace place;  // position of the key
   YamlNodePtr value;
 };
 
