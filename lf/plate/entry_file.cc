@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::string_view kKeyCharacters = "abcdefghijklmnopqrstuvwxyz0123456789_.";
 
-// Parses "key: value" lines. None if the text has another form.
+// Parses "key: value" lines. Returns none if a line is not of this form or a key occurs twice.
 std::optional<PlateEntries> ParseEntries(std::string_view text) {
   PlateEntries entries;
   while (!text.empty()) {
@@ -130,7 +130,7 @@ Result<Front> ReadFront(Source& source, size_t head_bytes) {
   LF_RETURN_IF_ERROR(source.Read(&hash, sizeof(hash)));
   if (hash != HashBytes(front.head + text))
     return source.Damaged("the checksum of its head differs");
-  // The checksum is right, so that any fault from here on was written on purpose.
+  // The checksum is right, so that any fault from here on was in the file when it was written.
   std::optional<PlateEntries> entries = ParseEntries(text);
   if (!entries)
     return InputError(

@@ -22,7 +22,7 @@ struct Kind {
   std::string_view magic;  // eight characters, the last a line feed
   uint32_t version;
   // Words for messages:
-  std::string_view noun;       // names the file: "is no plate"
+  std::string_view noun;       // names the kind of file: "is no plate"
   std::string_view if_broken;  // what damage means to the user, and what to do
 };
 
@@ -52,9 +52,9 @@ class Source {
   const Kind& kind() const { return kind_; }
   uint64_t left() const { return left_; }
 
-  // kInput if there are fewer bytes, or if they cannot be read.
+  // kInput if fewer bytes are left, or if they cannot be read.
   Result<void> Read(void* to, size_t size);
-  // Returns the error for bytes that are not as they were written.
+  // Returns the error for a damaged file.
   Error Damaged(const std::string& reason) const;
 
  private:
@@ -71,7 +71,7 @@ struct Front {
 };
 
 // Reads a head of `head_bytes` bytes, text and checksum. kInput if the file is of another kind or
-// version, truncated or damaged, or if its text has another form.
+// version, truncated or damaged, or if its text is not made of lines "key: value".
 Result<Front> ReadFront(Source& source, size_t head_bytes);
 
 // Returns head, text and checksum. Fills in the beginning of the head. The entries must be as

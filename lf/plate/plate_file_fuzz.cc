@@ -1,6 +1,6 @@
-// Any bytes are a plate or an error, and a plate that was read holds only sums that its rays can
-// have. The checksums of the head and of the chunks are made right first, because nothing behind
-// them would be reached otherwise.
+// Any bytes must give a plate or an error, and each sum of a plate must be possible for its number
+// of rays. All checksums are corrected first, because otherwise nothing behind their checks would
+// be reached.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

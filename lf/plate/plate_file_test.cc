@@ -56,7 +56,7 @@ void ExpectError(const std::string& bytes, const std::string& word) {
   EXPECT_NE(message.find(word), std::string::npos) << message;
 }
 
-// Returns the bytes with a changed head, whose checksum is made right.
+// Returns the bytes with a changed head, whose checksum is corrected.
 std::string WithHead(std::string bytes, const std::function<void(plate_format::Head*)>& change) {
   plate_format::Head head;
   std::memcpy(&head, bytes.data(), sizeof(head));
@@ -187,7 +187,7 @@ TEST_F(PlateFile, WhatItSaysIsCheckedBeforeAnythingIsAllocated) {
 
 TEST_F(PlateFile, WideWordsLieInThePlateAndAscend) {
   using plate_format::WideWord;
-  constexpr size_t kWords = 2, kEnd = sizeof(uint64_t);  // of NoisePlate(), and the checksum
+  constexpr size_t kWords = 2, kEnd = sizeof(uint64_t);  // wide words of NoisePlate(); the checksum
   const std::string bytes = BytesOf(testing::NoisePlate(20, 15, 7, SensorPlate::kMaxCount, true));
   const auto with_words = [&](const std::function<void(WideWord*)>& change) {
     std::string changed = bytes;

@@ -44,7 +44,7 @@ class Compressor {
     std::string chunk(sizeof(ChunkHead) + ZSTD_compressBound(size), '\0');
     const size_t stored = ZSTD_compress(chunk.data() + sizeof(ChunkHead), ZSTD_compressBound(size),
                                         planes.data(), size, kCompressionLevel);
-    if (ZSTD_isError(stored) != 0) throw std::bad_alloc();  // the bound excludes all else
+    if (ZSTD_isError(stored) != 0) throw std::bad_alloc();  // the bound excludes other errors
     const ChunkHead head = {static_cast<uint32_t>(stored), 0,
                             HashBytes({chunk.data() + sizeof(head), stored}, number)};
     std::memcpy(chunk.data(), &head, sizeof(head));

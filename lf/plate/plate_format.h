@@ -34,7 +34,8 @@ struct ChunkHead {
 };
 static_assert(sizeof(ChunkHead) == 16);
 
-// A word of the wide table. These follow the chunks, by ascending index; their XXH3 ends the file.
+// A word of the wide table. The wide words follow the chunks, by ascending index. The XXH3 of all
+// wide words ends the file.
 struct WideWord {
   uint64_t index;
   uint64_t sum;
@@ -47,7 +48,7 @@ inline constexpr size_t kWideBlock = 4096;  // wide words read together
 inline constexpr size_t kChunkWords = size_t{1} << 16;
 
 // Writes the first byte of all words, then the second byte of all words, and so on. Bytes that
-// hardly differ then stand together, which doubles the speed of compression and its gain.
+// hardly differ are then neighbours, which doubles the speed of compression and its gain.
 inline void ToPlanes(std::span<const uint64_t> words, char* planes) {
   for (int byte = 0; byte < 8; ++byte)
     for (size_t i = 0; i < words.size(); ++i)

@@ -44,7 +44,7 @@ class SensorPlate {
 
   // count_limit: the largest count a packed word may hold; below kMaxCount for tests only.
   SensorPlate(int width, int height, uint32_t count_limit = kMaxCount);
-  // A plate with the fourth channel, if `has_opacity`.
+  // Returns a plate with the fourth channel if `has_opacity`, otherwise one without it.
   static SensorPlate WithOpacity(int width, int height, bool has_opacity = true,
                                  uint32_t count_limit = kMaxCount);
   SensorPlate(SensorPlate&&) noexcept;
@@ -57,10 +57,10 @@ class SensorPlate {
   bool has_opacity() const { return channels_ > kChannels; }
   size_t size_bytes() const;
 
-  // Sum and count of one element and channel, wherever they are kept.
+  // Returns sum and count of one element and channel, wherever they are stored.
   ElementSum At(int x, int y, int channel) const;
 
-  // Adds one ray of value v. Checked against overflow; for references and tests.
+  // Adds one ray of value v. Never overflows, but is slow: for references and tests.
   void AddRay(int x, int y, int channel, uint16_t v);
 
   // Adds the sum of any number of rays. Needs sum <= 65535 * count.
@@ -69,9 +69,9 @@ class SensorPlate {
   // Adds another plate of the same size and channels.
   void Merge(const SensorPlate& other);
 
-  // How sums and counts are kept, for files: words() are the packed words
-  // [height][width][channels()], wide() is kept beside them by the index of the word, and AtWord()
-  // is the total of both.
+  // These functions show how sums and counts are stored, for files. words() are the packed words
+  // [height][width][channels()]. wide() holds sums and counts that do not fit in a packed word, by
+  // the index of the word. AtWord() returns the total of both.
   std::span<const uint64_t> words() const { return packed_; }
   const std::map<size_t, ElementSum>& wide() const { return wide_; }
   ElementSum AtWord(size_t index) const;
@@ -99,8 +99,8 @@ class SensorPlate {
   std::unique_ptr<std::mutex> wide_mutex_;
 };
 
-// A rectangle of a plate as a kernel writes it. One thread owns a tile at a time; tiles of one
-// plate that do not overlap may be written at the same time.
+// A rectangle of a plate, to which a kernel adds rays. One thread owns a tile at a time; tiles of
+// one plate that do not overlap may be written at the same time.
 class PlateTile {
  public:
   // `rect` must lie on the plate.
@@ -115,7 +115,7 @@ class PlateTile {
   }
   int channels() const { return plate_->channels_; }
 
-  // The largest number of rays that Reserve() takes.
+  // The largest number of rays that may be reserved at once.
   uint32_t max_reserve() const { return plate_->count_limit_; }
 
   // Makes room for `rays` more rays, at most max_reserve(): they may be added to the tile's words,

@@ -1,4 +1,4 @@
-// Plates with something in every kind of word, for tests of their files.
+// Plates with all kinds of words (empty, packed and wide), for tests of their files.
 #pragma once
 
 #include "lf/core/random.h"
@@ -6,7 +6,7 @@
 
 namespace lf::testing {
 
-// A plate of noise. About every tenth word is empty. With `has_wide` two words are beyond any
+// A plate of noise. About every tenth word is empty. If `has_wide`, two words do not fit in any
 // packed word; others may be wide only because of the plate's count_limit.
 inline SensorPlate NoisePlate(int width, int height, uint64_t seed, uint32_t count_limit,
                               bool has_wide) {

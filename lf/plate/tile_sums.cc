@@ -5,7 +5,7 @@
 namespace lf {
 namespace {
 
-// The processor does not foresee the next row of a plate, which is too far away.
+// The processor does not prefetch the next row of a plate by itself, because it is too far away.
 void Prefetch(const uint64_t* words) { __builtin_prefetch(words, 1); }
 
 void AddTo(ElementSum* total, const ElementSum& sum) {

@@ -48,7 +48,7 @@ class TileSums {
     return {plate_width, plate_height, kTileWidth, kTileHeight};
   }
 
-  // Number of rays of the largest value whose sum fits in 32 bits.
+  // Largest number of rays of value 65535 whose sum fits in 32 bits.
   static constexpr uint32_t kMaxRays = 65537;
 
   // ray_limit: below kMaxRays for tests only.
@@ -58,8 +58,8 @@ class TileSums {
 
   // The channels of the plate that sums of RGB LF images go to.
   enum class Target : uint8_t {
-    kColours,  // R, G and B to theirs
-    kOpacity,  // R to the fourth, for opacities that stand in for each colour
+    kColours,  // R, G and B are added to the three colours
+    kOpacity,  // R is added to the fourth; for opacities, with R = G = B
   };
 
   // Makes `tile` the destination of everything that is added until Flush().

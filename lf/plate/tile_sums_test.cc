@@ -9,8 +9,8 @@
 namespace lf {
 namespace {
 
-// Returns the words of the sums of mosaics that a channel of element (x, y) of the tile may lie in:
-// green has two.
+// Returns the indices of the words that hold the mosaic sums of a channel of an element of the tile
+// at (x, y): one word for red or blue, two for green.
 std::vector<size_t> WordsOf(const TileSums& sums, int x, int y, int channel) {
   const int odd = x % 2;
   const auto word = [&](int kind) {
@@ -110,8 +110,8 @@ TEST(TileSums, RaysMayCountDifferentlyInEachColour) {
   EXPECT_EQ(plate, expected);
 }
 
-// All three layouts in one tile, on a plate that has rays of earlier tiles and words that move to
-// its wide table meanwhile.
+// Uses all three layouts in one tile of a plate that has rays of earlier tiles, and words that move
+// to its wide table meanwhile.
 TEST(TileSums, TellsWhatWasAddedToWatchedElements) {
   SensorPlate plate(23, 9, 60), added(23, 9);
   plate.Add(5, 4, 1, {300, 55});
