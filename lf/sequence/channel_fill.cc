@@ -66,8 +66,9 @@ ChannelFill::Collected ChannelFill::InSquare(int x, int y, int half_side) const 
   return {elements, ray_sums_[d] - ray_sums_[b] - ray_sums_[c] + ray_sums_[a]};
 }
 
-// Returns the smallest half side whose square around (x, y) holds enough; `most` + 1 if the square
-// of `most` does not. Doubles the side first, because most elements find enough close by.
+// Returns the smallest half side whose square around (x, y) contains enough collected elements and
+// rays; `most` + 1 if even the square of `most` does not. Doubles the side first, because most
+// elements find enough close by.
 int ChannelFill::SmallestSquare(int x, int y, int most) const {
   if (!IsEnough(InSquare(x, y, most))) return most + 1;
   int too_small = 0, enough = 1;  // one element is never enough
@@ -89,8 +90,8 @@ void ChannelFill::FindNeighbours(int x, int y, int64_t radius2, Scratch& scratch
   const int radius = static_cast<int>(std::sqrt(static_cast<double>(radius2)));
   const int x_begin = std::max(x - radius, 0), x_end = std::min(x + radius + 1, width_);
   const int y_begin = std::max(y - radius, 0), y_end = std::min(y + radius + 1, height_);
-  // Numbers of collected elements above row v and left of either end. Their increase at row v is
-  // the number in row v.
+  // Numbers of collected elements above row v and to the left of x_begin or x_end. Their increase
+  // at row v is the number in row v.
   uint32_t above_begin = element_sums_[SumIndex(x_begin, y_begin)];
   uint32_t above_end = element_sums_[SumIndex(x_end, y_begin)];
   for (int v = y_begin; v < y_end; ++v) {
@@ -106,8 +107,8 @@ void ChannelFill::FindNeighbours(int x, int y, int64_t radius2, Scratch& scratch
   }
 }
 
-// Returns the smallest squared radius that holds enough of the neighbours; that of all of them if
-// they are too few.
+// Returns the squared radius of the smallest disk that contains enough of the neighbours; if they
+// are too few, of the disk that contains all of them.
 int64_t ChannelFill::SmallestDisk(Scratch& scratch) const {
   const auto further = [](const Scratch::Ring& a, const Scratch::Ring& b) {
     return a.distance2 > b.distance2;

@@ -40,7 +40,7 @@ class ChannelFill {
     int64_t distance2;
   };
 
-  // Largest distance of the neighbours of an element.
+  // Returns the largest distance of the neighbours of an element, in elements.
   int RadiusAt(int x, int y) const;
   bool IsEnough(const Collected& collected) const;
   size_t SumIndex(int x, int y) const { return (static_cast<size_t>(width_) + 1) * y + x; }

@@ -13,7 +13,7 @@ namespace lf {
 namespace {
 
 constexpr int kChannels = SensorPlate::kChannels;
-constexpr int kFilledPerQuestion = 64;  // each takes up to 0.1 ms
+constexpr int kFilledPerQuestion = 64;  // filled per call of is_interrupted(); each up to 0.1 ms
 
 // Returns the share of the completion in a channel with `count` collected rays.
 double ShareOf(const Completion* completion, int x, int y, uint64_t count) {

@@ -15,7 +15,7 @@ namespace lf {
 
 // The part of a frame that was interpolated from rebinned rays (hybrid/rebinned_rays.h).
 struct Completion {
-  Image<float> rgb;  // [height][width][3], in the units of averages of the plate's rays
+  Image<float> rgb;  // [height][width][3], in the units of the plate's values
   // [height][width] share of rgb in an element that also has collected rays; 0: rgb is unknown
   Image<float> share;
 };
@@ -32,8 +32,8 @@ struct DevelopOptions {
   std::array<double, 3> white_balance = {1, 1, 1};
   Mat3 linear_srgb_from_camera = Mat3::Identity();
 
-  // An element with fewer rays than this in a channel, but at least one, is smoothed. 0 and 1:
-  // none.
+  // An element with fewer rays than this in a channel, but at least one, is smoothed. 0 or 1: no
+  // element is smoothed.
   uint32_t smooth_below = 0;
   // A channel without a ray takes light from collected elements at most this far away. It stays
   // black if there is none, because light that was not recorded must not be invented. 0: nothing is
@@ -59,17 +59,17 @@ struct DevelopedFrame {
   Image<float> coverage;      // [height][width] share of the channels with a ray of their own
   // [height][width] in [0, 1], multiplied into rgb; empty for a plate without opacities
   Image<float> opacity = {};
-  // [height][width] number of LF images of equal weight that would make as little noise; empty
-  // without lens weights, with which ray_count has sums of weights
+  // [height][width] number of LF images of equal weight that would give the same noise; empty
+  // without lens weights. With lens weights, ray_count holds sums of weights.
   Image<float> effective_count = {};
   // [height][width] share of each element that was interpolated; empty without completion
   Image<float> interpolated = {};
 };
 
 // Averages the rays of every element and channel, and mixes (1 - share) of the average with share
-// of the completion; the completion is taken alone if no ray was collected. An element with
-// neither, or with fewer rays than smooth_below, takes the inverse-distance mean of collected
-// elements of the channel,
+// of the completion; the completion is taken alone if no ray was collected. An element without
+// completion that has no ray, or fewer than smooth_below, takes the inverse-distance mean of
+// collected elements of the channel,
 //
 //   sum_i v_i / d_i  /  sum_i 1 / d_i      (Shepard 1968; d between element centres, in elements)
 //

@@ -10,8 +10,8 @@
 
 namespace lf {
 
-// Averages opacities [height][width] and fills them as Develop() fills colours. Opacities have the
-// rays of the colours, so the same elements are filled from the same neighbours.
+// Averages opacities [height][width] and fills them as Develop() fills colours. Opacities are
+// summed over the same rays as colours, so the same elements are filled from the same neighbours.
 //   is_interrupted  called by any thread; once it returns true, the result must not be used
 Image<float> DevelopOpacity(const SensorPlate& plate, const DevelopOptions& options,
                             const std::function<bool()>& is_interrupted, ThreadPool& pool);

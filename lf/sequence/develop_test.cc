@@ -11,8 +11,8 @@
 namespace lf {
 namespace {
 
-// Returns a plate whose elements have, with probability `density` for each channel, up to
-// `max_rays` rays.
+// Returns a plate whose elements have, with probability `density` for each channel, 1 to `max_rays`
+// rays.
 SensorPlate RandomPlate(int width, int height, double density, uint64_t max_rays, uint64_t seed) {
   SensorPlate plate(width, height);
   uint64_t i = 0;
@@ -194,7 +194,7 @@ TEST(Develop, BalancesInTheCamerasColoursThenMixesThem) {
   for (int c = 0; c < 3; ++c) plate.AddRay(0, 0, c, static_cast<uint16_t>(1000 + 100 * (c + 1)));
   DevelopOptions options;
   options.pedestal = 1000;
-  options.scale = 100;  // 1, 2, 3
+  options.scale = 100;  // the radiances are 1, 2, 3
   options.white_balance = {2, 1, 4};
   options.linear_srgb_from_camera << 1, 0, 0, 0, 1, 0.5, -1, 0, 1;
   ThreadPool pool(1);

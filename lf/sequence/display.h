@@ -7,7 +7,7 @@
 
 namespace lf {
 
-// Both values are in [0, 1]; the formulas are also used outside.
+// Both values are in [0, 1]; the formulas are also used outside of this range.
 inline double DisplayFromLinear(double linear) {
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
 }

@@ -17,8 +17,8 @@ namespace lf {
 
 enum class FrameFormat {
   // exr: R G B count.R count.G count.B coverage. Plates with opacities add A, which is multiplied
-  // into R G B; lens weights add effective; rebinned rays add interpolated. Colours are half,
-  // counts 32-bit integers.
+  // into R G B; with lens weights there is the channel effective, and with rebinned rays the
+  // channel interpolated. Colours are half, counts 32-bit integers.
   kExrHalf,
   kExrFloat,  // exr-float: as exr, with colours as float
   kPng8,      // png: sRGB, 8 bit; plates with opacities add alpha, which is not multiplied in
@@ -29,7 +29,7 @@ enum class FrameFormat {
 std::optional<FrameFormat> ParseFrameFormat(std::string_view name);
 const char* NameOf(FrameFormat format);
 
-// DIR/frame_0001.exr
+// Returns a path such as DIR/frame_0001.exr. The number has at least four digits.
 std::filesystem::path FramePath(const std::filesystem::path& folder, FrameId frame,
                                 FrameFormat format);
 
