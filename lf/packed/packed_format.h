@@ -14,7 +14,7 @@
 namespace lf {
 
 // Page size of SQLite. On average half a page is wasted for each encoded image: 16 % of 200 kB with
-// pages of 64 KiB, 4 % with these.
+// pages of 64 KiB, 4 % with these pages of 16 KiB.
 inline constexpr int kPageBytes = 16384;
 inline constexpr DatabaseFormat kStoreFormat = {"packed store", 0x4C465053 /* "LFPS" */, 1,
                                                 kPageBytes};

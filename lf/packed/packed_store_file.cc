@@ -77,7 +77,7 @@ Result<Database> OpenShardOf(const fs::path& path, const std::string& store, int
   return database;
 }
 
-// Returns the entries of all LF images, by the id in the store.
+// Returns the entries of all LF images, indexed by their ids in the store.
 Result<std::vector<PackedCode>> ReadCodes(OpenedStore* store) {
   LF_ASSIGN_OR_RETURN(const double shards, store->settings.Number("shards", 0, kMostShards));
   LF_ASSIGN_OR_RETURN(Statement count, store->database.Prepare("select count(*) from lf_images"));

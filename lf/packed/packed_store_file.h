@@ -31,7 +31,8 @@ enum class StoredValues : uint8_t {
 
 inline constexpr const char* kStoreExtension = ".lfs";
 
-// Returns true if the first bytes of the file identify a packed store. They do not for its shards.
+// Returns true if the first bytes of the file identify a packed store. False for a shard of a
+// store.
 bool IsPackedStore(const std::filesystem::path& path);
 // Returns true if the folder of the light field is a file with the extension of a packed store.
 // Opening it tells whether it is a valid store of this version.
@@ -64,8 +65,8 @@ std::vector<std::filesystem::path> FilesOf(const std::filesystem::path& path,
                                            const PackedStoreFacts& facts);
 
 // Black and white level of the display curve along which images are encoded as kDisplay16. They are
-// the light field's levels when the images were encoded; the light field's own levels may be
-// corrected later.
+// the levels that the light field had when the images were encoded; its levels may be corrected
+// later.
 struct DisplayLevels {
   double black = 0;
   double white = 0;  // above black
@@ -89,15 +90,15 @@ struct PackedCode {
   uint16_t shard = 0;        // 0: the store's file itself
   StoredValues values = StoredValues::kUint8;
   PixelRect rect;      // pixels of the LF image that are encoded
-  uint64_t bytes = 0;  // of encoded pixels and mask; 0: missing, because the LF image could not be
+  uint64_t bytes = 0;  // encoded pixels and mask; 0: missing, because the LF image could not be
                        // read
 
   bool is_listed() const { return id != kNotListed; }
 };
 
-// Returns the entries of the LF images of these names, not listed if the store does not know a
-// name. If a name occurs twice, the first and the second LF image of this name in the store are
-// taken. Takes seconds for a million names. kInput as ReadPackedStore().
+// Returns an entry for each of `names`; it is not listed if the store has no LF image of this name.
+// If a name occurs twice, the first and the second LF image of this name in the store are taken.
+// Takes seconds for a million names. kInput as ReadPackedStore().
 Result<std::vector<PackedCode>> FindCodes(const std::filesystem::path& path,
                                           std::span<const std::string> names);
 

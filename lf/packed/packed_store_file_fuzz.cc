@@ -1,5 +1,5 @@
-// Any bytes must be a packed store or an error. A store must have sane cameras and tables only, and
-// give encoded images or errors.
+// Any bytes, read as a file, must give a packed store or an error. A store must have only valid
+// cameras and tables, and give encoded images or errors.
 #include <unistd.h>
 
 #include <cstddef>

@@ -315,7 +315,7 @@ TEST_F(PackedStoreFileTest, WhatItReplacesIsGone) {
   Write();
   EXPECT_LT(Files().size(), files);
   ExpectHoldsAll();
-  // A writer that was killed while it renamed its shards.
+  // Simulates a writer that was killed while it renamed its shards.
   {
     PackedStoreWriter writer = Writer();
     for (uint32_t i = 0; i < field_.size(); ++i) ASSERT_TRUE(writer.Add({i}, CodeOfImage(i)));

@@ -24,7 +24,7 @@ namespace {
 constexpr size_t kImagesPerBatch = 64;
 constexpr std::chrono::seconds kBatchAge{2};
 
-// Returns the id by which shards find their store. Stores of the same images have different ids.
+// Returns a random id, by which a store and its shards are recognized as parts of one store.
 std::string NewStoreId() {
   std::random_device random;
   return fmt::format("{:08x}{:08x}", random(), random());
@@ -137,8 +137,8 @@ std::string StoreOfShard(const fs::path& path) {
   return StoreIdIn(OpenShardDatabase(path), kShardFormat);
 }
 
-// Also removes the store's shards that already have their final names, and unfinished shards behind
-// them.
+// Removes an unfinished store and its shards, including the shards that already have their final
+// names, and the unfinished shards behind them.
 void RemoveUnfinishedFiles(const fs::path& path) {
   const std::string store = StoreIdOf(UnfinishedPath(path));
   RemoveWithJournal(UnfinishedPath(path));
@@ -161,7 +161,7 @@ struct PackedStoreWriter::State {
   uint64_t shard_bytes = 0;
   std::string store;
   std::string replaced;                // id of the store that has the final name
-  std::vector<uint64_t> source_bytes;  // of the LF images that were added before
+  std::vector<uint64_t> source_bytes;  // of the LF images that earlier runs added
 
   std::mutex mutex;  // guards everything below
   std::vector<bool> has;
@@ -234,8 +234,8 @@ Result<void> PackedStoreWriter::State::TakeShardsBack() const {
   return {};
 }
 
-// kUsage unless a shard may get this name: no file has it, or a shard of this store or of the store
-// that is replaced.
+// kUsage unless a shard may get this name. It may if no file has the name, or if a shard of this
+// store or of the store that is replaced has it.
 Result<void> PackedStoreWriter::State::CheckIsFree(const fs::path& shard_path) const {
   std::error_code error;
   if (!fs::exists(fs::symlink_status(shard_path, error))) return {};

@@ -23,13 +23,13 @@ namespace lf {
 struct PackedStorePlan {
   LightFieldIdentity whole;         // the light field that the LF images are from
   std::vector<uint32_t> whole_ids;  // id of each LF image in `whole`; empty: 0, 1, 2, ...
-  std::vector<PixelRect> rects;     // wanted pixels of each LF image; empty: all are whole
+  std::vector<PixelRect> rects;     // wanted pixels of each LF image; empty: all pixels
   std::string codec;                // all settings of the encoder, in words
   std::optional<DisplayLevels> display_levels = {};  // of images encoded as kDisplay16
   // 0: one file. Otherwise the encoded images are in STORE-0001.lfs, STORE-0002.lfs, ... of about
   // this size, beside STORE.lfs, which has everything else.
   uint64_t shard_bytes = 0;
-  // For information only; these may differ.
+  // These are for information only. They may differ when an unfinished store is resumed.
   std::string source;   // LIGHTFIELD or packages, as the user gave them
   std::string version;  // of the program
 };
@@ -44,25 +44,26 @@ struct CodedImage {
   uint64_t source_bytes = 0;  // size of the files that it was made from; for information
 };
 
-// Writes a packed store. Until Finish() its file is STORE.lfs.unfinished, which no reader takes for
-// a store; its shards have similar names. An older store of the final name stays unchanged until
+// Writes a packed store. Until Finish() its file is STORE.lfs.unfinished, which no reader accepts
+// as a store; its shards have similar names. An older store of the final name stays unchanged until
 // then. The lock STORE.lfs.lock allows one writer at a time.
 class PackedStoreWriter {
  public:
-  // Takes the lock, for a caller that checks existing files before it writes, and passes the lock
-  // to Create() or Resume(). kOutput.
+  // Takes the lock, for a caller that checks existing files before it writes. The caller passes the
+  // lock to Create() or Resume(). kOutput: another writer holds the lock, or it cannot be created.
   static Result<FileLock> Lock(const std::filesystem::path& path);
 
-  // Begins a new store of the LF images of `light_field`, which has at least one and need not
-  // outlive the call. kUsage: there is an unfinished store, or a file with the name of a shard that
-  // does not belong to the store that is replaced; kOutput: disk, lock.
+  // Begins a new store of the LF images of `light_field`, which has at least one LF image and need
+  // not outlive the call. Takes the lock if `lock` is not given. kUsage: there is an unfinished
+  // store, or a file with the name of a shard that does not belong to the store that is replaced.
+  // kOutput: the disk fails, or another writer holds the lock.
   static Result<PackedStoreWriter> Create(const std::filesystem::path& path,
                                           const LightField& light_field,
                                           const PackedStorePlan& plan,
                                           std::optional<FileLock> lock = {});
   // Resumes an unfinished store. If there is none, or it has no tables yet, begins a new one.
-  // kUsage: it is of other images or settings (the message names the first difference); kInput: it
-  // is no packed store, or damaged; kOutput.
+  // kUsage: the unfinished store is of other images or settings (the message names the first
+  // difference). kInput: it is no packed store, or damaged. kOutput as Create().
   static Result<PackedStoreWriter> Resume(const std::filesystem::path& path,
                                           const LightField& light_field,
                                           const PackedStorePlan& plan,
@@ -80,9 +81,9 @@ class PackedStoreWriter {
   // others.
   uint64_t SourceBytes(LfImageId id) const;
 
-  // Adds an LF image that the store does not have. Commits after 64 LF images, and when the first
-  // of them is 2 s old. May be called by many threads at the same time. kOutput: the disk fails; no
-  // more can be added.
+  // Adds an LF image that the store does not have. Commits if 64 LF images were added since the
+  // last commit, or if the first of these was added 2 s ago. May be called by many threads at the
+  // same time. kOutput: the disk fails; no more can be added.
   Result<void> Add(LfImageId id, const CodedImage& image);
   // Commits the LF images that were added, so that they are on the disk permanently.
   Result<void> Commit();
