@@ -18,8 +18,8 @@ namespace {
 constexpr int kMaxBlobBytes = 1 << 30;
 
 // Limit of the steps of SQLite's virtual machine for one command. A row takes some 10 steps for
-// each value, and each value takes at least a byte of the file. Damaged pages that are children of
-// several others could take any number of steps.
+// each value, and each value takes at least a byte of the file. A damaged file could take any
+// number of steps, because its pages may be children of several others.
 constexpr int kStepsBetweenLooks = 1000;
 constexpr int64_t kStepsOfSmallFile = 10'000'000, kStepsOfByte = 20;
 constexpr size_t kHashBytes = sizeof(uint64_t);
@@ -320,8 +320,8 @@ Result<Database> Database::OpenToAppend(const fs::path& path, const DatabaseForm
     return state->Failed();
   Database database(std::move(state));
   // Uses a rollback journal and not a write-ahead log. Batches write new pages, which the journal
-  // need not save, and after every batch the file is complete without any other. Reading page_count
-  // rolls back an interrupted batch of an earlier program.
+  // need not save, and after every batch the file is complete without any other file. Reading
+  // page_count rolls back an interrupted batch of an earlier program.
   LF_RETURN_IF_ERROR(database.Execute(
       fmt::format("pragma page_size = {}; pragma journal_mode = delete; pragma synchronous = full;",
                   format.page_bytes)));

@@ -42,11 +42,11 @@ class Statement {
   Statement& BindNull(int parameter);
 
   // Moves to the next row. Returns false if there is none; the command may then be bound and run
-  // again. Errors have the kind of the database: damage when reading, a disk failure when writing.
-  // A command that takes more steps than a file of this length can need is an error, because the
-  // file is damaged.
+  // again. Errors are kInput (damage) for a database that is read, and kOutput (a disk failure) for
+  // one that is written. A command that takes more steps than a file of this length can need is an
+  // error, because the file is damaged.
   Result<bool> Step();
-  // Runs a command without rows to its end.
+  // Runs a command that returns no rows.
   Result<void> Run();
   // Ends a command before its last row, so that it may be bound and run again.
   void Reset();
@@ -71,21 +71,24 @@ class Statement {
 
 class Database {
  public:
-  // Creates an empty database and replaces an existing file of this name. kOutput.
+  // Creates an empty database and replaces an existing file of this name. kOutput: it cannot be
+  // written.
   static Result<Database> Create(const std::filesystem::path& path, const DatabaseFormat& format);
-  // Opens a file for reading. kInput: it cannot be read, is no database, is of another kind or
-  // version, was copied only in part, or has other tables and indices than one of these scripts
-  // makes, compared letter by letter. Nothing is selected before this check, because a view or a
-  // generated column in place of a table could take any time and memory.
+  // Opens a file for reading. The scripts are alternatives: the file must have exactly the tables
+  // and indices that one of them creates, letter by letter. kInput: the file cannot be read, is no
+  // database, is of another kind or version, was copied only in part, or has other tables and
+  // indices. No table is read before this check, because a view or a generated column in place of a
+  // table could take any time and memory.
   static Result<Database> Open(const std::filesystem::path& path, const DatabaseFormat& format,
                                const std::vector<std::string>& scripts);
 
   // Opens a file for writing in batches. Creates it if it does not exist or is empty, otherwise
   // keeps its contents. Committed batches ("begin" and "commit" by Execute()) are on the disk and
   // survive however the program ends: the next OpenToAppend() finds all committed batches, and
-  // nothing of an uncommitted one. During a batch there may be a file FILE-journal beside the file;
-  // it belongs to it until the file is opened and closed again. One program at a time may open it.
-  // kOutput; kInput: it is of another kind or version.
+  // nothing of an uncommitted one. During a batch a file FILE-journal may exist beside the file.
+  // After a crash it must stay there until the file has been opened and closed again. One program
+  // at a time may open the file. kOutput: the file cannot be written. kInput: it is of another kind
+  // or version.
   static Result<Database> OpenToAppend(const std::filesystem::path& path,
                                        const DatabaseFormat& format);
 
@@ -93,7 +96,7 @@ class Database {
   Database& operator=(Database&&) noexcept;
   ~Database();
 
-  // Runs commands without rows, separated by semicolons.
+  // Runs commands that return no rows, separated by semicolons.
   Result<void> Execute(const std::string& sql);
   Result<Statement> Prepare(const std::string& sql);
 

@@ -56,7 +56,8 @@ class DatabaseTest : public ::testing::Test {
     return bytes;
   }
 
-  // Returns how many rows have their original values. An error must be an error of this file.
+  // Returns how many rows have their original values; an error if the file cannot be opened or
+  // read.
   static Result<int> ReadAll(const fs::path& path) {
     LF_ASSIGN_OR_RETURN(Database database, Database::Open(path, kFormat, {kThings}));
     LF_ASSIGN_OR_RETURN(Statement select,
@@ -173,7 +174,7 @@ TEST_F(DatabaseTest, KeepsAllBitsOfNumbers) {
   }
 }
 
-// Other objects in place of the tables, which are correct in every other way.
+// Files with other objects in place of the expected tables, correct in every other way.
 TEST_F(DatabaseTest, OtherTablesAreRefusedBeforeTheyAreRead) {
   const std::string endless =
       "with recursive c(x) as (select 0 union all select x + 1 from c) select x as key, "

@@ -9,7 +9,7 @@
 
 namespace lf {
 
-// Appends the footer to a file that is complete and closed. kOutput.
+// Appends the footer to a file that is complete and closed. kOutput if the file cannot be written.
 Result<void> SealFile(const std::filesystem::path& path);
 
 // kInput: the file is shorter or longer than it was, or a byte has changed.
