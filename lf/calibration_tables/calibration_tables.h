@@ -13,7 +13,8 @@
 
 namespace lf {
 
-// Settings "unit_m", "bayer", "transfer", ...: unit_m, depth_range and the whole encoding.
+// Returns the settings "unit_m", "depth_range", "bayer", "transfer", ...: the unit, the depth range
+// and the whole encoding. ReadPixelSettings() reads them into `light_field`.
 SettingList SettingsOfPixels(const LightField& light_field);
 Result<void> ReadPixelSettings(const Settings& settings, LightField* light_field);
 

@@ -27,7 +27,7 @@ class CalibrationTablesTest : public ::testing::Test {
   Result<std::vector<Intrinsics>> Read() {
     return ReadIntrinsics(Settings::Read(*database_, "test file").value(), &*database_);
   }
-  // Inserts a row in the form of the file.
+  // Inserts a row of intrinsics as a file may contain it.
   void Insert(const std::string& distortion, const std::string& parameters) {
     ASSERT_TRUE(
         database_->Execute(("insert into intrinsics values (0, 640, 480, 500, 501, 320, 240, 0, '" +

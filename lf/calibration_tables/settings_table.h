@@ -19,7 +19,8 @@ inline constexpr const char* kSettingsTable =
 
 using SettingList = std::vector<std::pair<std::string, std::string>>;
 
-// Writes the settings in their order into the table, which must exist. Errors are the database's.
+// Writes the settings in their order into the table, which must exist. Passes on the errors of the
+// database.
 Result<void> WriteSettings(const SettingList& settings, Database* database);
 
 // Settings of a file, as text or converted to the type that the text should have. Errors are
@@ -36,7 +37,7 @@ class Settings {
   Result<double> Number(const std::string& key, double low, double high) const;
   // Returns a whole number of up to 2^64 - 1.
   Result<uint64_t> Whole(const std::string& key) const;
-  // Returns the index of the setting's word in `words`.
+  // Returns the index of the setting's word in `words`; kInput if it is not one of them.
   Result<int> Word(const std::string& key, std::span<const char* const> words) const;
 
   // Returns the error "package-0000.lfp: is a damaged package: " + what.

@@ -37,7 +37,7 @@ inline constexpr size_t kPoseNumbers = 12;
 std::array<double, kPoseNumbers> NumbersOfPose(const RigidTransform& pose);
 RigidTransform PoseOfNumbers(std::span<const double, kPoseNumbers> numbers);
 
-// Returns the numbers of a text, separated by spaces; none if a word is not a number.
+// Returns the numbers of a text, separated by spaces; none if a word is not a finite number.
 std::optional<std::vector<double>> ParseNumbers(const std::string& text);
 
 inline constexpr int64_t kMostSide_px = 65536;
@@ -49,7 +49,7 @@ inline bool IsWithin(double value, double low, double high) {
   return value >= low && value <= high;
 }
 bool IsPose(const RigidTransform& pose);
-// Checks the camera without its distortion.
+// True if the intrinsics are plausible. Does not check the distortion.
 bool IsCamera(const Intrinsics& k);
 bool IsStoredDistortion(const Distortion& distortion);
 
