@@ -1,8 +1,8 @@
 // A package contains all that one machine needs to render a section of a film (thesis 4.2): frames,
 // the LF cameras that they need out of a million, and the order in which LF images are taken. It is
-// itself a small light field with a camera path, is rendered like a whole one (pipeline/render.h),
-// and gives the same bits. If no LF image contributes to its frames, the package has none, and they
-// are black.
+// itself a small light field with a camera path, is rendered like a whole light field
+// (pipeline/render.h), and gives the same bits. If no LF image contributes to its frames, the
+// package has no LF images, and the frames are black.
 #pragma once
 
 #include <cstdint>
@@ -41,7 +41,7 @@ struct PackageChoices {
   uint64_t seed = 0;
   std::optional<size_t> max_image_count;  // limit for each frame; the first LF images in the order
                                           // are kept
-  std::optional<double> max_angle_rad;    // between the optical axes of LF camera and frame
+  std::optional<double> max_angle_rad;    // largest angle between the axes of LF camera and frame
   // True if the package has the LF cameras beside the lens. Lens weights are measured against them,
   // and rebinned rays are made from their LF images.
   bool has_neighbours = true;
@@ -73,16 +73,16 @@ struct Package {
   PackageChoices choices;
   std::vector<PackageImage> images;  // in the order of light_field.cameras; empty for a package in
                                      // memory
-  // One for each frame of the film, [frame - 1]. Empty: to be measured, which needs a whole light
-  // field.
+  // One for each frame of the film, [frame - 1]. Empty: not measured yet, which needs the whole
+  // light field.
   std::vector<FrameSurroundings> surroundings;
 
   std::vector<FrameId> FrameIds() const;
-  // Returns camera_distance_w around a frame of the film; none if it is to be measured.
+  // Returns camera_distance_w around a frame of the film; none if it is not measured yet.
   std::optional<double> CameraDistance(FrameId frame) const;
 };
 
-// Returns a whole light field and path as one package, in a shuffled order.
+// Returns a whole light field and path as one package, with the LF images in a shuffled order.
 Package PackageOfAll(LightField light_field, CameraPath path, uint64_t seed);
 
 }  // namespace lf

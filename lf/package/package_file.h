@@ -18,24 +18,24 @@ struct PackageNotes {
   std::string light_field;  // LIGHTFIELD, as the user gave it
 };
 
-// kOutput; no file is left then.
+// Writes the package atomically. kOutput if it cannot be written; no file is left then.
 Result<void> WritePackage(const std::filesystem::path& path, const Package& package,
                           const PackageNotes& notes);
 
-// Writes the package to the file `as`, which the caller will rename to `path`. kOutput; a part of
-// the file may be left then.
+// Writes the package to the file `as`, which the caller will rename to `path`. kOutput if it cannot
+// be written; a part of the file may be left then.
 Result<void> WritePackageAs(const std::filesystem::path& as, const std::filesystem::path& path,
                             const Package& package, const PackageNotes& notes);
 
 struct ReadPackageOptions {
-  // Off in tests that damage the file on purpose. Otherwise the checksum covers every byte.
+  // False in tests that damage the file on purpose. Otherwise the checksum covers every byte.
   bool check_seal = true;
 };
 
-// Reads a package. Its name is that of the file. light_field.folder is the folder where the LF
-// images were; if that no longer exists, the folder at the same relative path from the package, so
-// that a light field and its packages may be moved together. kInput: the file cannot be read, is
-// damaged, or has another version.
+// Reads a package. Its name is the file's name without extension. light_field.folder is the folder
+// where the LF images were; if that no longer exists, the folder at the same relative path from the
+// package, so that a light field and its packages may be moved together. kInput: the file cannot be
+// read, is damaged, or has another version.
 Result<Package> ReadPackage(const std::filesystem::path& path,
                             const ReadPackageOptions& options = {});
 

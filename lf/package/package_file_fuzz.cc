@@ -1,5 +1,6 @@
-// Any bytes must be a package or an error. A package must have sane cameras and ranks only. The
-// checksum footer is not checked, because otherwise no damaged bytes would reach the parser.
+// Any bytes, read as a file, must give a package or an error. A package must have only valid
+// cameras and ranks. The checksum footer is not checked, because otherwise no damaged bytes would
+// reach the parser.
 #include <unistd.h>
 
 #include <cmath>

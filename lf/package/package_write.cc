@@ -36,7 +36,7 @@ class Writer {
 
  private:
   SettingList SettingsOf(const fs::path& final_path, const PackageNotes& notes) const {
-    // An empty path is the working folder, as in the paths of files there.
+    // An empty path means the working folder.
     const auto absolute = [](const fs::path& path) {
       return fs::absolute(path.empty() ? "." : path).lexically_normal();
     };
