@@ -12,7 +12,7 @@
 
 namespace lf {
 
-// Errors of several images can be added.
+// The error of one image. Errors of several images can be added.
 struct CodeError {
   double squared = 0;  // sum of squared differences, relative to the range from black to white
   uint64_t count = 0;  // number of values

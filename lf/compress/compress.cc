@@ -207,7 +207,7 @@ Result<void> Compressor::Write(FileLock lock) {
   std::sort(report_.skipped.begin(), report_.skipped.end(),
             [](const auto& a, const auto& b) { return a.name < b.name; });
   if (error_) {
-    // Earlier work is kept, unless the error is a failure of the disk.
+    // Earlier work is committed, unless the disk or the memory failed.
     if (error_->kind == ErrorKind::kInput) LF_RETURN_IF_ERROR(writer.Commit());
     return *error_;
   }

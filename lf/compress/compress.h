@@ -29,7 +29,8 @@ struct CompressOptions {
   bool overwrite = false;    // replace an existing store, unfinished or complete
   bool strict = false;       // an LF image that cannot be read is an error
   // Reads all encoded images back from the disk. Each must equal the result of encoding its LF
-  // image, and be decoded without damage. An existing store is only checked.
+  // image, and be decoded without damage. If the store exists already and is not replaced, it is
+  // only checked.
   bool verify = false;
   std::string source_name;  // LIGHTFIELD or packages, as the user gave them
   std::string version;      // of the program
@@ -78,7 +79,7 @@ std::string NameOf(const CodecSettings& settings);
 // kUsage: wrong settings, the store exists, or its name belongs to another file. kInput: no LF
 // image can be read, or one cannot with `strict`; the files are not those that an unfinished store
 // was made from; or the store differs from the result of encoding its LF images (`verify`).
-// kOutput. kInterrupted: finished work is kept.
+// kOutput: the disk or the memory fails. kInterrupted: finished work is kept.
 Result<CompressReport> Compress(const CompressSource& source, const CompressOptions& options,
                                 ThreadPool& pool,
                                 const std::function<void(const CompressProgress&)>& progress);

@@ -16,7 +16,7 @@
 namespace lf {
 
 struct CompressSource {
-  LightField light_field;           // only these LF images
+  LightField light_field;           // only the LF images to compress
   LightFieldIdentity whole;         // the light field that they are from
   std::vector<uint32_t> whole_ids;  // ids in `whole`, in the order of light_field.cameras; empty:
                                     // 0, 1, 2, ...
@@ -28,8 +28,10 @@ Result<CompressSource> SourceOfAll(LightField light_field);
 
 // Returns the LF images from which frames of the packages take rays, in the order of the light
 // field.
-//   needed_pixels  take only the bounds of those frames' rectangles of each LF image
-// kUsage: the packages are of different light fields, or none of their frames takes any.
+//   needed_pixels  true: of each LF image, only the bounds of the pixels that these frames need;
+//                  false: all pixels
+// kUsage: the packages are of different light fields or of a packed store, or none of their frames
+// takes a ray.
 Result<CompressSource> SourceOfPackages(std::span<const Package> packages, bool needed_pixels);
 
 }  // namespace lf

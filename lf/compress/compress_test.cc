@@ -30,8 +30,7 @@ TEST(CodeQuality, PsnrIsOfAllValuesTogether) {
   EXPECT_TRUE(std::isinf(CodeError{}.PsnrDb()));
 }
 
-// Returns one of two packages that share an LF image; one LF camera is present for lens weights
-// only.
+// Returns a package of these LF images, all of which have the second intrinsics of the light field.
 Package PackageOf(const std::string& name, std::vector<PackageImage> images) {
   Package package;
   package.name = name;

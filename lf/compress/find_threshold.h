@@ -11,9 +11,9 @@
 namespace lf {
 
 // Returns a threshold in grey steps: the largest at which a sample of LF images, spread over the
-// light field, has at least `psnr_db` in total. Thresholds are tried in steps of 5 %. The result
-// does not depend on the number of threads. kUsage: no threshold of the profile reaches the
-// quality, or the profile has no threshold; kInput: no image of the sample can be read;
+// light field, has a PSNR of at least `psnr_db` over all its values. Thresholds are tried in steps
+// of 5 %. The result does not depend on the number of threads. kUsage: no threshold of the profile
+// reaches the quality, or the profile has no threshold; kInput: no image of the sample can be read;
 // kInterrupted.
 Result<double> FindThreshold(const CompressSource& source, const CodecSettings& settings,
                              double psnr_db, ThreadPool& pool,

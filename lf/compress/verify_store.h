@@ -25,14 +25,14 @@ struct VerifyOptions {
 // kInput: the store is of other LF images, another calibration or other settings, or there is none.
 Result<void> CheckStoreFacts(const CompressSource& source, const VerifyOptions& options);
 
-// Reads the encoded images back, compares each with the result of encoding its LF image, decodes
-// it, and returns their number. An LF image that is missing in the store must not be readable.
-// kInput: an encoded image differs or is damaged (the message states the first and the count), or
-// the store is of another light field or other settings; kInterrupted.
+// Reads all encoded images back. Each must equal the result of encoding its LF image, and be
+// decoded without damage. Returns the number of encoded images. An LF image that is missing in the
+// store must not be readable. kInput: an encoded image differs or is damaged (the message states
+// the first and the count), or the store is of another light field or other settings; kInterrupted.
 Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& options,
                            ThreadPool& pool, const std::function<void(size_t)>& progress);
 
-// Returns the total size of the store's file and its shards.
+// Returns the total size of the store's file and its shards; 0 if the store cannot be read.
 uint64_t StoreBytes(const std::filesystem::path& store);
 
 }  // namespace lf
