@@ -5,8 +5,8 @@ usage: bench/codec_speed.py BUILD_DIR [--data ../shared] [--runs 5] [--name NAME
        bench/codec_speed.py --again JSON [--write doc/codec.md]
 
 Pictures of `blender-shop` (the densest) and of `beer-colmap` (photographs) side by side, and the picture of waves and
-noise that lf_codec_bench draws. Each is coded by the thesis's scheme, by the default's, and without loss. MB/s are of
-pixels, 10^6 bytes; CPU time, medians.
+noise that lf_pixels_codec_bench draws. Each is coded by the thesis's scheme, by the default's, and without loss.
+MB/s are of pixels, 10^6 bytes; CPU time, medians.
 """
 import argparse
 import json
@@ -47,8 +47,9 @@ def measure(build, data, runs):
                 mosaic_of(sorted((data / "data" / name / "images").glob("*.jpg"))).tofile(image)
                 environment["LF_BENCH_IMAGE"] = str(image)
             report = json.loads(results.call(
-                [build / "lf/codec/lf_codec_bench", "--benchmark_filter=Mosaic", f"--benchmark_repetitions={runs}",
-                 "--benchmark_format=json", "--benchmark_min_time=0.3"], env=environment))
+                [build / "lf/pixels/codec/lf_pixels_codec_bench", "--benchmark_filter=Mosaic",
+                 f"--benchmark_repetitions={runs}", "--benchmark_format=json",
+                 "--benchmark_min_time=0.3"], env=environment))
             found = {b["run_name"]: b for b in report["benchmarks"] if b.get("aggregate_name") == "median"}
             for number, profile in enumerate(PROFILES):
                 coded, decoded = (found[f"{what}Mosaic/profile:{number}"] for what in ("Encode", "Decode"))

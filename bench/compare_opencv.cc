@@ -17,9 +17,9 @@
 #include <thread>
 #include <vector>
 
-#include "lf/calibration/open_light_field.h"
-#include "lf/capture/radiance.h"
-#include "lf/path/path_yaml.h"
+#include "lf/camera/path/path_yaml.h"
+#include "lf/import/formats/open_light_field.h"
+#include "lf/light_field/model/radiance.h"
 
 namespace {
 

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "lf/camera/ray_forms.h"
-#include "lf/capture/radiance.h"
 #include "lf/collection/ray_model.h"
 #include "lf/core/check.h"
 #include "lf/core/random.h"
+#include "lf/light_field/model/radiance.h"
 #include "lf/selection/overlap.h"
 
 namespace lf::bench {

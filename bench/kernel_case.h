@@ -11,10 +11,10 @@
 #include "lf/camera/ideal_pixels.h"
 #include "lf/camera/pinhole.h"
 #include "lf/camera/render_camera.h"
-#include "lf/capture/lf_pixels.h"
 #include "lf/collection/gather_sampling.h"
 #include "lf/core/geometry.h"
 #include "lf/core/image.h"
+#include "lf/light_field/model/lf_pixels.h"
 
 namespace lf::bench {
 
@@ -54,8 +54,8 @@ struct KernelCase {
   Image<float> ideal_positions;  // [height][width][2]: of the centre of every pixel
 };
 
-// Makes a case from 8-bit sRGB, converted by the table of lf/capture/radiance.h to 16-bit linear
-// light.
+// Makes a case from 8-bit sRGB, converted by the table of lf/light_field/model/radiance.h to 16-bit
+// linear light.
 KernelCase MakeCase(const CaseSpec& spec);
 
 // Returns every case of the table.

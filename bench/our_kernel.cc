@@ -1,4 +1,4 @@
-// Our kernels as the renderer calls them (lf/collector/collect_batch.cc), on one thread.
+// Our kernels as the renderer calls them (lf/render/collect/collect_batch.cc), on one thread.
 #include <hwy/targets.h>
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 #include "lf/collection/gather.h"
 #include "lf/collection/scatter.h"
 #include "lf/core/random.h"
-#include "lf/plate/sensor_plate.h"
-#include "lf/plate/tile_sums.h"
+#include "lf/film/plate/sensor_plate.h"
+#include "lf/film/plate/tile_sums.h"
 
 namespace lf::bench {
 namespace {

@@ -6,12 +6,12 @@
 #include <optional>
 #include <vector>
 
-#include "lf/calibration/open_light_field.h"
 #include "lf/camera/ideal_pixels.h"
+#include "lf/camera/path/path_yaml.h"
 #include "lf/collection/scatter.h"
 #include "lf/core/parallel.h"
-#include "lf/path/path_yaml.h"
-#include "lf/plate/tile_sums.h"
+#include "lf/film/plate/tile_sums.h"
+#include "lf/import/formats/open_light_field.h"
 #include "lf/selection/select.h"
 
 namespace {

@@ -14,18 +14,18 @@ from folder_list import room_of
 
 # Third-party headers, and the only folders that may include them (doc/design.md, "Dependencies").
 OWNERS = {
-    "OpenImageIO/": {"imageio"},
-    "jpeglib.h": {"imageio"},
-    "jerror.h": {"imageio"},
-    "yaml-cpp/": {"path"},
-    "nlohmann/": {"calibration", "native", "record"},
-    "simdjson": {"native"},
+    "OpenImageIO/": {"pixels/files"},
+    "jpeglib.h": {"pixels/files"},
+    "jerror.h": {"pixels/files"},
+    "yaml-cpp/": {"camera/path"},
+    "nlohmann/": {"import/formats", "light_field/transforms_json", "render/state"},
+    "simdjson": {"light_field/transforms_json"},
     "tbb/": {"core"},
-    "hwy/": {"codec", "collection", "rebinning", "store"},
+    "hwy/": {"pixels/codec", "collection", "rebinning", "storage/load"},
     "nanoflann": {"rebinning"},
-    "zstd": {"codec", "plate"},
+    "zstd": {"pixels/codec", "film/plate"},
     "xxhash": {"core"},
-    "sqlite3": {"database"},
+    "sqlite3": {"storage/sqlite"},
     "CLI/": set(),
     "microhttpd": set(),
 }

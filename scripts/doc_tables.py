@@ -144,8 +144,8 @@ def exit_codes_in_help(root):
     return textwrap.fill(sentence, 118, break_long_words=False) + "\n"
 
 
-TABLES = {"folders": folders, "programs": programs, "common-options": common_options, "exit-codes": exit_codes,
-          "exit-codes-in-help": exit_codes_in_help}
+TABLES = {"rooms": rooms, "folders": folders, "programs": programs, "common-options": common_options,
+          "exit-codes": exit_codes, "exit-codes-in-help": exit_codes_in_help}
 
 
 def pages(root, files, text_lines):

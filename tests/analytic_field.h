@@ -8,7 +8,7 @@
 
 #include "lf/camera/pinhole.h"
 #include "lf/camera/render_camera.h"
-#include "lf/collector/collect.h"
+#include "lf/render/collect/collect.h"
 
 namespace lf::testing {
 

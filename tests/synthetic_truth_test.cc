@@ -7,9 +7,9 @@
 
 #include "tests/analytic_field.h"
 
-#include "lf/synthetic/built_in_scenes.h"
-#include "lf/synthetic/photograph.h"
-#include "lf/synthetic/write_light_field.h"
+#include "lf/light_field/synthetic/built_in_scenes.h"
+#include "lf/light_field/synthetic/photograph.h"
+#include "lf/light_field/synthetic/write_light_field.h"
 
 namespace lf {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "lf/camera/path/camera_facts.h"
 #include "lf/core/log.h"
-#include "lf/path/camera_facts.h"
 
 namespace lf {
 namespace {

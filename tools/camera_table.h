@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "lf/camera/path/camera_path.h"
 #include "lf/core/ids.h"
-#include "lf/path/camera_path.h"
 
 namespace lf {
 

@@ -8,7 +8,7 @@
 #include "tools/common/progress.h"
 
 #include "lf/core/shell_word.h"
-#include "lf/record/record_fields.h"
+#include "lf/render/state/record_fields.h"
 
 namespace lf {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "tools/common/allow_missing.h"
 
-#include "lf/compress/compress.h"
+#include "lf/distribute/compress/compress.h"
 
 namespace lf {
 

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "lf/path/camera_path.h"
-#include "lf/preprocess/preprocess.h"
+#include "lf/camera/path/camera_path.h"
+#include "lf/distribute/preprocess/preprocess.h"
 
 namespace lf {
 

@@ -6,8 +6,8 @@
 
 #include "tools/common/allow_missing.h"
 
-#include "lf/path/camera_path.h"
-#include "lf/preprocess/preprocess.h"
+#include "lf/camera/path/camera_path.h"
+#include "lf/distribute/preprocess/preprocess.h"
 
 namespace lf {
 

@@ -10,9 +10,9 @@
 
 #include "tools/common/progress.h"
 
-#include "lf/capture/brackets.h"
-#include "lf/packed/packed_store_file.h"
-#include "lf/store/open_store.h"
+#include "lf/light_field/model/brackets.h"
+#include "lf/storage/load/open_store.h"
+#include "lf/storage/packed/packed_store_file.h"
 
 namespace lf {
 namespace {

@@ -10,12 +10,12 @@
 
 #include "tools/common/program.h"
 
-#include "lf/capture/light_field.h"
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
-#include "lf/exposure/match_exposure.h"
-#include "lf/import/capture_report.h"
-#include "lf/import/exif_gains.h"
+#include "lf/import/check/capture_report.h"
+#include "lf/import/check/exif_gains.h"
+#include "lf/import/exposure/match_exposure.h"
+#include "lf/light_field/model/light_field.h"
 
 namespace lf {
 

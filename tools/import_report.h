@@ -4,10 +4,10 @@
 #include <optional>
 #include <string>
 
-#include "lf/exposure/match_exposure.h"
-#include "lf/import/capture_report.h"
-#include "lf/import/check_images.h"
-#include "lf/import/exif_gains.h"
+#include "lf/import/check/capture_report.h"
+#include "lf/import/check/check_images.h"
+#include "lf/import/check/exif_gains.h"
+#include "lf/import/exposure/match_exposure.h"
 
 namespace lf {
 

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "lf/cluster/job.h"
-#include "lf/cluster/job_status.h"
+#include "lf/distribute/cluster/job.h"
+#include "lf/distribute/cluster/job_status.h"
 
 namespace lf {
 

@@ -6,8 +6,8 @@
 #include "tools/camera_table.h"
 #include "tools/common/program.h"
 
+#include "lf/camera/path/path_yaml.h"
 #include "lf/core/log.h"
-#include "lf/path/path_yaml.h"
 
 namespace {
 

@@ -14,10 +14,10 @@
 #include "tools/common/progress.h"
 #include "tools/compress_report.h"
 
-#include "lf/compress/compress.h"
-#include "lf/package/package_file.h"
-#include "lf/packed/packed_store_file.h"
-#include "lf/pipeline/render_packages.h"
+#include "lf/distribute/compress/compress.h"
+#include "lf/render/package/package_file.h"
+#include "lf/render/pipeline/render_packages.h"
+#include "lf/storage/packed/packed_store_file.h"
 
 namespace {
 

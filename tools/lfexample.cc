@@ -8,13 +8,13 @@
 #include "tools/common/light_field_argument.h"
 #include "tools/common/program.h"
 
-#include "lf/capture/capture_geometry.h"
+#include "lf/camera/path/path_yaml.h"
 #include "lf/core/file.h"
 #include "lf/core/log.h"
 #include "lf/core/shell_word.h"
 #include "lf/focus/example_path.h"
-#include "lf/path/path_yaml.h"
-#include "lf/store/open_store.h"
+#include "lf/light_field/model/capture_geometry.h"
+#include "lf/storage/load/open_store.h"
 
 namespace {
 

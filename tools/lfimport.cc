@@ -13,9 +13,9 @@
 
 #include "lf/core/file.h"
 #include "lf/core/log.h"
-#include "lf/import/exclude_images.h"
-#include "lf/import/native_folder.h"
-#include "lf/import/similarity.h"
+#include "lf/import/check/exclude_images.h"
+#include "lf/import/check/native_folder.h"
+#include "lf/import/check/similarity.h"
 
 namespace {
 

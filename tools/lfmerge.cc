@@ -13,9 +13,9 @@
 #include "tools/common/progress.h"
 #include "tools/render_end.h"
 
-#include "lf/calibration/open_light_field.h"
 #include "lf/core/log.h"
-#include "lf/pipeline/merge_shards.h"
+#include "lf/import/formats/open_light_field.h"
+#include "lf/render/pipeline/merge_shards.h"
 
 namespace {
 

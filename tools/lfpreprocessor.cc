@@ -14,11 +14,11 @@
 #include "tools/common/progress.h"
 #include "tools/forecast_report.h"
 
+#include "lf/camera/path/path_yaml.h"
+#include "lf/distribute/preprocess/preprocess.h"
 #include "lf/focus/swept_depths.h"
-#include "lf/path/path_yaml.h"
-#include "lf/pipeline/frame_range.h"
-#include "lf/preprocess/preprocess.h"
-#include "lf/store/open_store.h"
+#include "lf/render/pipeline/frame_range.h"
+#include "lf/storage/load/open_store.h"
 
 namespace {
 

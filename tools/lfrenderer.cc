@@ -17,10 +17,10 @@
 #include "tools/render_end.h"
 #include "tools/render_summary.h"
 
+#include "lf/camera/path/path_yaml.h"
 #include "lf/core/geometry.h"
-#include "lf/path/path_yaml.h"
-#include "lf/pipeline/render.h"
-#include "lf/pipeline/render_packages.h"
+#include "lf/render/pipeline/render.h"
+#include "lf/render/pipeline/render_packages.h"
 
 namespace {
 

@@ -12,16 +12,16 @@
 #include "tools/run_job.h"
 #include "tools/submit_arguments.h"
 
-#include "lf/cluster/finish_frames.h"
-#include "lf/cluster/job_status.h"
-#include "lf/cluster/resume_job.h"
-#include "lf/cluster/run_locally.h"
-#include "lf/cluster/run_package.h"
-#include "lf/cluster/slurm.h"
-#include "lf/cluster/task_state.h"
 #include "lf/core/file.h"
 #include "lf/core/log.h"
-#include "lf/sequence/video.h"
+#include "lf/distribute/cluster/finish_frames.h"
+#include "lf/distribute/cluster/job_status.h"
+#include "lf/distribute/cluster/resume_job.h"
+#include "lf/distribute/cluster/run_locally.h"
+#include "lf/distribute/cluster/run_package.h"
+#include "lf/distribute/cluster/slurm.h"
+#include "lf/distribute/cluster/task_state.h"
+#include "lf/film/develop/video.h"
 
 namespace {
 constexpr lf::HelpTexts kHelp = {

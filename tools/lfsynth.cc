@@ -10,14 +10,14 @@
 #include "tools/common/program.h"
 #include "tools/common/progress.h"
 
+#include "lf/camera/path/path_yaml.h"
 #include "lf/core/file.h"
 #include "lf/core/file_lock.h"
 #include "lf/core/log.h"
-#include "lf/native/transforms_json.h"
-#include "lf/path/path_yaml.h"
-#include "lf/synthetic/built_in_scenes.h"
-#include "lf/synthetic/write_light_field.h"
-#include "lf/synthetic/write_truth.h"
+#include "lf/light_field/synthetic/built_in_scenes.h"
+#include "lf/light_field/synthetic/write_light_field.h"
+#include "lf/light_field/synthetic/write_truth.h"
+#include "lf/light_field/transforms_json/transforms_json.h"
 
 namespace {
 

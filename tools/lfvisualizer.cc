@@ -12,10 +12,10 @@
 #include "tools/visualizer/export_page.h"
 #include "tools/visualizer/page_server.h"
 
+#include "lf/camera/path/path_yaml.h"
 #include "lf/core/log.h"
-#include "lf/path/path_yaml.h"
-#include "lf/pipeline/frame_range.h"
-#include "lf/visualizer/scene_text.h"
+#include "lf/render/pipeline/frame_range.h"
+#include "lf/view/scene_text.h"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lf/core/result.h"
-#include "lf/hybrid/rebinned_rays.h"
+#include "lf/render/hybrid/rebinned_rays.h"
 
 namespace lf {
 

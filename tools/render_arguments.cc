@@ -10,12 +10,12 @@
 #include "tools/common/frame_options.h"
 #include "tools/common/help.h"
 
-#include "lf/collector/noise_rule.h"
 #include "lf/core/log.h"
 #include "lf/core/value_named.h"
-#include "lf/package/package_file.h"
-#include "lf/pipeline/frame_range.h"
-#include "lf/sequence/develop.h"
+#include "lf/film/develop/develop.h"
+#include "lf/render/collect/noise_rule.h"
+#include "lf/render/package/package_file.h"
+#include "lf/render/pipeline/frame_range.h"
 
 namespace lf {
 namespace {

@@ -14,7 +14,7 @@
 #include "tools/rebin_arguments.h"
 
 #include "lf/core/result.h"
-#include "lf/pipeline/render.h"
+#include "lf/render/pipeline/render.h"
 
 namespace lf {
 

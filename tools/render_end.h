@@ -5,7 +5,7 @@
 #include "tools/common/allow_missing.h"
 
 #include "lf/core/result.h"
-#include "lf/record/report.h"
+#include "lf/render/state/report.h"
 
 namespace lf {
 

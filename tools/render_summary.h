@@ -6,7 +6,7 @@
 #include <string>
 
 #include "lf/core/result.h"
-#include "lf/record/report.h"
+#include "lf/render/state/report.h"
 
 namespace lf {
 

@@ -8,13 +8,13 @@
 #include "tools/common/progress.h"
 #include "tools/job_table.h"
 
-#include "lf/cluster/job_status.h"
-#include "lf/cluster/resume_job.h"
-#include "lf/cluster/run_locally.h"
-#include "lf/cluster/slurm.h"
-#include "lf/cluster/task_state.h"
 #include "lf/core/log.h"
 #include "lf/core/shell_word.h"
+#include "lf/distribute/cluster/job_status.h"
+#include "lf/distribute/cluster/resume_job.h"
+#include "lf/distribute/cluster/run_locally.h"
+#include "lf/distribute/cluster/slurm.h"
+#include "lf/distribute/cluster/task_state.h"
 
 namespace lf {
 namespace {

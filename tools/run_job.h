@@ -5,9 +5,9 @@
 
 #include "tools/common/program.h"
 
-#include "lf/cluster/job.h"
 #include "lf/core/file_lock.h"
 #include "lf/core/result.h"
+#include "lf/distribute/cluster/job.h"
 
 namespace lf {
 

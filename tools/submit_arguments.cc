@@ -13,12 +13,12 @@
 #include "tools/common/help.h"
 #include "tools/render_arguments.h"
 
-#include "lf/cluster/slurm.h"
 #include "lf/core/log.h"
 #include "lf/core/shell_word.h"
-#include "lf/package/package_file.h"
-#include "lf/pipeline/render.h"
-#include "lf/pipeline/render_packages.h"
+#include "lf/distribute/cluster/slurm.h"
+#include "lf/render/package/package_file.h"
+#include "lf/render/pipeline/render.h"
+#include "lf/render/pipeline/render_packages.h"
 
 namespace lf {
 namespace fs = std::filesystem;

@@ -9,8 +9,8 @@
 
 #include "tools/common/program.h"
 
-#include "lf/cluster/job.h"
 #include "lf/core/result.h"
+#include "lf/distribute/cluster/job.h"
 
 namespace lf {
 

@@ -15,10 +15,10 @@
 #include <cstdint>
 #include <cstring>
 
-#include "lf/capture/lf_pixels.h"
 #include "lf/collection/cubic_weights.h"
 #include "lf/collection/gather_places_simd-inl.h"
-#include "lf/plate/tile_sums.h"
+#include "lf/film/plate/tile_sums.h"
+#include "lf/light_field/model/lf_pixels.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace lf {

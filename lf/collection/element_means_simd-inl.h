@@ -13,10 +13,10 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "lf/capture/lf_pixels.h"
 #include "lf/collection/mosaic_filter.h"
 #include "lf/collection/ray_weight_simd-inl.h"
-#include "lf/plate/tile_sums.h"
+#include "lf/film/plate/tile_sums.h"
+#include "lf/light_field/model/lf_pixels.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace lf {

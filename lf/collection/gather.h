@@ -26,12 +26,12 @@
 #include "lf/camera/pinhole.h"
 #include "lf/camera/ray_weight.h"
 #include "lf/camera/render_camera.h"
-#include "lf/capture/lf_pixels.h"
 #include "lf/collection/gather_sampling.h"
 #include "lf/collection/segments.h"
 #include "lf/core/geometry.h"
-#include "lf/plate/sensor_plate.h"
-#include "lf/plate/tile_sums.h"
+#include "lf/film/plate/sensor_plate.h"
+#include "lf/film/plate/tile_sums.h"
+#include "lf/light_field/model/lf_pixels.h"
 
 namespace lf {
 

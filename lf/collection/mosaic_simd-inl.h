@@ -14,13 +14,13 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "lf/capture/lf_pixels.h"
 #include "lf/collection/bilinear_simd-inl.h"
 #include "lf/collection/cubic_simd-inl.h"
 #include "lf/collection/cubic_weights.h"
 #include "lf/collection/gather_places_simd-inl.h"
 #include "lf/collection/mosaic_filter.h"
-#include "lf/plate/tile_sums.h"
+#include "lf/film/plate/tile_sums.h"
+#include "lf/light_field/model/lf_pixels.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace lf {

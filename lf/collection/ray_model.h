@@ -9,7 +9,7 @@
 #include "lf/camera/pinhole.h"
 #include "lf/camera/render_camera.h"
 #include "lf/core/geometry.h"
-#include "lf/plate/tile_grid.h"
+#include "lf/film/plate/tile_grid.h"
 
 namespace lf {
 

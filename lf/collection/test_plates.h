@@ -8,10 +8,10 @@
 
 #include "lf/camera/ray_weight.h"
 #include "lf/camera/testing_scenes.h"
-#include "lf/capture/lf_pixels.h"
 #include "lf/core/random.h"
-#include "lf/plate/sensor_plate.h"
-#include "lf/plate/tile_sums.h"
+#include "lf/film/plate/sensor_plate.h"
+#include "lf/film/plate/tile_sums.h"
+#include "lf/light_field/model/lf_pixels.h"
 
 namespace lf::testing {
 

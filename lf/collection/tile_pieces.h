@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lf/collection/segments.h"
-#include "lf/plate/tile_grid.h"
+#include "lf/film/plate/tile_grid.h"
 
 namespace lf {
 

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <optional>
 
-#include "lf/capture/capture_geometry.h"
 #include "lf/core/log.h"
 #include "lf/focus/find_subject.h"
 #include "lf/focus/point_subject.h"
+#include "lf/light_field/model/capture_geometry.h"
 
 namespace lf {
 namespace {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "lf/camera/ray_through.h"
-#include "lf/capture/capture_geometry.h"
 #include "lf/core/log.h"
 #include "lf/focus/example_focus.h"
+#include "lf/light_field/model/capture_geometry.h"
 
 namespace lf {
 namespace {

@@ -8,11 +8,11 @@
 #include <string_view>
 #include <vector>
 
-#include "lf/capture/light_field.h"
 #include "lf/core/ids.h"
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
-#include "lf/store/lf_image_store.h"
+#include "lf/light_field/model/light_field.h"
+#include "lf/storage/load/lf_image_store.h"
 
 namespace lf {
 

@@ -5,9 +5,9 @@
 #include <span>
 #include <utility>
 
-#include "lf/capture/capture_geometry.h"
 #include "lf/focus/depth_sweep.h"
 #include "lf/focus/focus_pick.h"
+#include "lf/light_field/model/capture_geometry.h"
 
 namespace lf {
 namespace {

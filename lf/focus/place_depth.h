@@ -9,10 +9,10 @@
 
 #include "lf/camera/pinhole.h"
 #include "lf/camera/ray_through.h"
-#include "lf/capture/light_field.h"
 #include "lf/core/geometry.h"
 #include "lf/core/ids.h"
 #include "lf/focus/reduced_image.h"
+#include "lf/light_field/model/light_field.h"
 
 namespace lf {
 

@@ -3,10 +3,10 @@
 
 #include <optional>
 
-#include "lf/capture/light_field.h"
 #include "lf/core/geometry.h"
 #include "lf/core/parallel.h"
-#include "lf/store/lf_image_store.h"
+#include "lf/light_field/model/light_field.h"
+#include "lf/storage/load/lf_image_store.h"
 
 namespace lf {
 

@@ -13,9 +13,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "lf/capture/lf_pixels.h"
-#include "lf/capture/radiance.h"
 #include "lf/core/image.h"
+#include "lf/light_field/model/lf_pixels.h"
+#include "lf/light_field/model/radiance.h"
 
 namespace lf {
 
@@ -29,8 +29,8 @@ struct ProbabilityOptions {
 inline constexpr double kMostSigma_px = 8;
 inline constexpr double kMostAlpha = 255;
 
-// Returns the stored value of each linear value (capture/radiance.h), 0 for black to 65535 for
-// white: the inverse of RadianceTable() with a gain of 1.  [65536]
+// Returns the stored value of each linear value (light_field/model/radiance.h), 0 for black to
+// 65535 for white: the inverse of RadianceTable() with a gain of 1.  [65536]
 std::vector<uint16_t> StoredValueTable(const RadianceEncoding& encoding);
 
 // Computes p of the pixels of `rect`, a part of pixels.rect, in units of 1 / 65535.

@@ -12,7 +12,7 @@
 
 #include "lf/core/file.h"
 #include "lf/core/hash.h"
-#include "lf/plate/entry_file.h"
+#include "lf/film/plate/entry_file.h"
 #include "lf/rebinning/ray_map_format.h"
 
 namespace lf {

@@ -10,7 +10,7 @@
 
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
-#include "lf/plate/plate_file.h"
+#include "lf/film/plate/plate_file.h"
 #include "lf/rebinning/ray_map.h"
 
 namespace lf {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "lf/plate/entry_file.h"
+#include "lf/film/plate/entry_file.h"
 #include "lf/rebinning/ray_map.h"
 
 namespace lf::ray_map_format {

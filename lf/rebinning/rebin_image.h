@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "lf/camera/ideal_pixels.h"
-#include "lf/capture/lf_pixels.h"
 #include "lf/core/ids.h"
+#include "lf/light_field/model/lf_pixels.h"
 #include "lf/rebinning/coverage_map.h"
 #include "lf/rebinning/probability_map.h"
 #include "lf/rebinning/ray_map.h"

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "lf/core/check.h"
-#include "lf/plate/tile_grid.h"
+#include "lf/film/plate/tile_grid.h"
 #include "lf/rebinning/splat_tile.h"
 
 namespace lf {

@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "lf/capture/light_field.h"
 #include "lf/core/ids.h"
 #include "lf/core/parallel.h"
+#include "lf/light_field/model/light_field.h"
 #include "lf/selection/seen_region.h"
 
 namespace lf {

@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-#include "lf/capture/light_field.h"
 #include "lf/core/ids.h"
+#include "lf/light_field/model/light_field.h"
 #include "lf/selection/camera_tree.h"
 #include "lf/selection/image_order.h"
 

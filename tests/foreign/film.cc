@@ -2,10 +2,10 @@
 #include <cstdio>
 #include <utility>
 
-#include "lf/calibration/open_light_field.h"
-#include "lf/package/package.h"
-#include "lf/path/path_yaml.h"
-#include "lf/pipeline/render.h"
+#include "lf/camera/path/path_yaml.h"
+#include "lf/import/formats/open_light_field.h"
+#include "lf/render/package/package.h"
+#include "lf/render/pipeline/render.h"
 
 int main(int argc, char** argv) {
   if (argc != 4) return 2;

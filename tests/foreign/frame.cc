@@ -3,10 +3,10 @@
 #include <utility>
 #include <vector>
 
-#include "lf/calibration/open_light_field.h"
-#include "lf/package/package.h"
-#include "lf/path/path_yaml.h"
-#include "lf/pipeline/film_renderer.h"
+#include "lf/camera/path/path_yaml.h"
+#include "lf/import/formats/open_light_field.h"
+#include "lf/render/package/package.h"
+#include "lf/render/pipeline/film_renderer.h"
 
 lf::Result<lf::Image<float>> FirstFrame(const char* calibration, const char* path_file) {
   LF_ASSIGN_OR_RETURN(lf::LightField light_field, lf::OpenLightField(calibration));

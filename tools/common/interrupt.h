@@ -3,7 +3,7 @@
 
 #include <atomic>
 
-#include "lf/pipeline/render.h"
+#include "lf/render/pipeline/render.h"
 
 namespace lf {
 

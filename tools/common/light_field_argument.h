@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lf/calibration/open_light_field.h"
+#include "lf/import/formats/open_light_field.h"
 
 namespace lf {
 

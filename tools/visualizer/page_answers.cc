@@ -8,9 +8,9 @@
 
 #include "tools/visualizer/render_folder.h"
 
-#include "lf/imageio/write_jpeg.h"
-#include "lf/visualizer/lf_picture.h"
-#include "lf/visualizer/scene_bytes.h"
+#include "lf/pixels/files/write_jpeg.h"
+#include "lf/view/lf_picture.h"
+#include "lf/view/scene_bytes.h"
 
 namespace lf {
 namespace {

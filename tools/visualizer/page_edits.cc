@@ -12,7 +12,7 @@
 
 #include "lf/core/file.h"
 #include "lf/focus/focus_pick.h"
-#include "lf/record/record_fields.h"
+#include "lf/render/state/record_fields.h"
 
 namespace lf {
 namespace {

@@ -6,10 +6,10 @@
 #include "tools/common/program.h"
 #include "tools/visualizer/page_answers.h"
 
-#include "lf/preprocess/frame_density.h"
-#include "lf/record/record_fields.h"
-#include "lf/visualizer/overlap_outline.h"
-#include "lf/visualizer/scene_bytes.h"
+#include "lf/distribute/preprocess/frame_density.h"
+#include "lf/render/state/record_fields.h"
+#include "lf/view/overlap_outline.h"
+#include "lf/view/scene_bytes.h"
 
 namespace lf {
 namespace {

@@ -20,7 +20,7 @@
 #include "lf/core/check.h"
 #include "lf/core/file.h"
 #include "lf/core/log.h"
-#include "lf/visualizer/test_grid.h"
+#include "lf/view/test_grid.h"
 
 namespace {
 

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <utility>
 
+#include "lf/camera/path/path_yaml.h"
 #include "lf/core/file.h"
 #include "lf/core/hash.h"
 #include "lf/core/log.h"
-#include "lf/package/package_file.h"
-#include "lf/path/path_yaml.h"
-#include "lf/record/run_inputs.h"
-#include "lf/store/open_store.h"
+#include "lf/render/package/package_file.h"
+#include "lf/render/state/run_inputs.h"
+#include "lf/storage/load/open_store.h"
 
 namespace lf {
 namespace {

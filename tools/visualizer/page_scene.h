@@ -12,15 +12,15 @@
 
 #include "tools/visualizer/event_board.h"
 
-#include "lf/capture/light_field.h"
+#include "lf/camera/path/camera_path.h"
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
-#include "lf/package/package.h"
-#include "lf/path/camera_path.h"
+#include "lf/light_field/model/light_field.h"
+#include "lf/render/package/package.h"
 #include "lf/selection/image_index.h"
-#include "lf/store/lf_image_store.h"
-#include "lf/visualizer/film_use.h"
-#include "lf/visualizer/frame_use.h"
+#include "lf/storage/load/lf_image_store.h"
+#include "lf/view/film_use.h"
+#include "lf/view/frame_use.h"
 
 namespace lf {
 

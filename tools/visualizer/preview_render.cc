@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "lf/package/package.h"
-#include "lf/visualizer/scene_bytes.h"
+#include "lf/render/package/package.h"
+#include "lf/view/scene_bytes.h"
 
 namespace lf {
 namespace {

@@ -15,12 +15,12 @@
 #include "tools/visualizer/page_answers.h"
 #include "tools/visualizer/page_scene.h"
 
+#include "lf/camera/path/camera_path.h"
 #include "lf/core/ids.h"
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
-#include "lf/path/camera_path.h"
-#include "lf/pipeline/film_renderer.h"
-#include "lf/visualizer/watched_render.h"
+#include "lf/render/pipeline/film_renderer.h"
+#include "lf/view/watched_render.h"
 
 namespace lf {
 

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "lf/record/record_fields.h"
-#include "lf/visualizer/scene_bytes.h"
-#include "lf/visualizer/watched_render.h"
+#include "lf/render/state/record_fields.h"
+#include "lf/view/scene_bytes.h"
+#include "lf/view/watched_render.h"
 
 namespace lf {
 namespace {

@@ -1,0 +1,20 @@
+// Evaluates the description of a path to the thin-lens camera of every frame.
+#pragma once
+
+#include "lf/camera/path/camera_path.h"
+#include "lf/camera/path/path_description.h"
+#include "lf/core/result.h"
+
+namespace lf {
+
+// Returns the cameras of frames 1, 2, ...: frame i is the state at time (i - 1) / fps, without
+// motion blur. Elements are squares, and the principal point is the centre of the plate.
+//
+// kInput, with frame, time, quantity and its position in the file, if at some frame
+//   a quantity leaves its range: an aperture below 0, a focus distance of 0, a tilt of 90 degrees
+//   the camera is at the point it looks at, or looks along `up`
+//   the focus point is not in front of the lens
+//   `breathing` is set and the focus distance does not exceed the focal length
+Result<CameraPath> EvaluatePath(const PathDescription& path);
+
+}  // namespace lf

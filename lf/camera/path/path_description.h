@@ -1,0 +1,57 @@
+// The camera path as its file describes it, checked as far as this is possible without evaluating
+// single frames. Lengths are world units and angles radians, independent of the file's units.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "lf/camera/path/motion.h"
+#include "lf/camera/path/yaml_schema.h"
+#include "lf/core/geometry.h"
+
+namespace lf {
+
+// A quantity that may change over time.
+struct Quantity {
+  Motion motion;
+  // These are for the check of the range and for messages.
+  std::string label;          // "lens.focus_distance_mm"
+  YamlPlace place;            // position in the file where the motion is stated
+  NumberRange range;          // limits of every component, in units of the file
+  double units_per_file = 1;  // internal value = units_per_file * value in the file
+};
+
+struct PathDescription {
+  std::string file_name;
+  double fps = 30;
+  int frame_count = 0;
+  double unit_m = 1;
+  int width_px = 0;
+  int height_px = 0;
+
+  Quantity position_w;
+  std::optional<Quantity> look_at_w;    // either this or orientation
+  std::optional<Quantity> orientation;  // yaw, pitch, roll in radians, or quaternion w, x, y, z
+  Vec3 up = -Vec3::UnitY();             // used with look_at
+  bool keep_direction = false;          // with look_at: keeps the direction of time 0 while the
+                                        // camera moves
+  Quantity roll_rad;                    // applied after look_at or orientation
+
+  // Two of these three are given; the third follows from them. If the file gives only the focal
+  // length or only the field of view, the sensor width is 36 mm.
+  std::optional<double> sensor_width_w;
+  std::optional<Quantity> focal_length_w;
+  std::optional<Quantity> field_of_view_rad;  // horizontal, when focused at infinity
+
+  std::optional<Quantity> aperture_diameter_w;  // either this or f_number
+  std::optional<Quantity> f_number;
+  std::optional<Quantity> focus_distance_w;  // either this or focus_point
+  std::optional<Quantity> focus_point_w;
+  Quantity focus_tilt_rad;  // horizontal, vertical
+  bool breathing = false;
+  int blades = 0;
+  Quantity blade_rotation_rad;
+  double blade_rotation_per_stop_rad = 0;
+};
+
+}  // namespace lf

@@ -1,0 +1,114 @@
+#include "lf/camera/path/path_yaml.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lf/camera/path/evaluate_path.h"
+#include "lf/camera/path/path_description.h"
+#include "lf/camera/path/read_quantity.h"
+#include "lf/camera/path/read_sections.h"
+#include "lf/camera/path/yaml_schema.h"
+#include "lf/camera/path/yaml_tree.h"
+#include "lf/core/file.h"
+
+namespace lf {
+namespace {
+
+constexpr int kMostFrames = 1'000'000;
+constexpr int kLargestSide_px = 65536;
+constexpr long long kMostElements = 1LL << 30;
+
+// Reads fps and frames.
+void ReadClock(YamlMap* file, PathDescription* path) {
+  if (const YamlEntry* fps = file->Require("fps", "fps: 30"))
+    path->fps =
+        ReadNumber(*fps->value, "fps", NumberRange::Within(1e-3, 1e6), file->errors()).value_or(30);
+  if (const YamlEntry* frames = file->Require("frames", "frames: 60"))
+    path->frame_count =
+        ReadInteger(*frames->value, "frames", 1, kMostFrames, file->errors()).value_or(1);
+}
+
+void ReadResolution(YamlMap* file, PathDescription* path) {
+  const YamlEntry* entry = file->Require("resolution", "resolution: [1920, 1080]");
+  if (!entry) return;
+  const YamlNode& node = *entry->value;
+  if (node.kind != YamlNode::Kind::kSequence || node.items.size() != 2) {
+    file->errors()->Add(node.place,
+                        "resolution: expected [width, height] in sensor plate elements");
+    return;
+  }
+  const auto read = [&](size_t i, const char* label) {
+    return ReadInteger(*node.items[i], label, 1, kLargestSide_px, file->errors()).value_or(1);
+  };
+  path->width_px = read(0, "resolution width");
+  path->height_px = read(1, "resolution height");
+  if (static_cast<long long>(path->width_px) * path->height_px > kMostElements)
+    file->errors()->Add(node.place, fmt::format("resolution: {} x {} is more than {} elements",
+                                                path->width_px, path->height_px, kMostElements));
+}
+
+void ReadUnit(YamlMap* file, std::optional<double> light_field_unit_m, PathDescription* path) {
+  path->unit_m = light_field_unit_m.value_or(1);
+  const YamlEntry* entry = file->Find("unit_m");
+  if (!entry) return;
+  const auto unit_m =
+      ReadNumber(*entry->value, "unit_m", NumberRange::Within(1e-9, 1e9), file->errors());
+  if (!unit_m) return;
+  if (light_field_unit_m && std::abs(*unit_m - *light_field_unit_m) > 1e-6 * *light_field_unit_m)
+    file->errors()->Add(entry->value->place,
+                        fmt::format("unit_m: {}, but a world unit of the light field is {} m; "
+                                    "remove the key, and check the lengths of the path",
+                                    *unit_m, *light_field_unit_m));
+  if (!light_field_unit_m) path->unit_m = *unit_m;
+}
+
+// Checks the version of the format, which determines the meaning of all other keys. No other error
+// is reported if it is wrong.
+bool CheckFormat(YamlMap* file) {
+  const YamlEntry* format = file->Require("format", "format: lfpath 1");
+  return format && ReadWord(*format->value, "format", {"lfpath 1"}, file->errors());
+}
+
+PathDescription Describe(const YamlNode& root, std::optional<double> light_field_unit_m,
+                         YamlErrors* errors) {
+  PathDescription path;
+  path.file_name = errors->file_name();
+  YamlMap file(root, "", errors);
+  if (!errors->empty() || !CheckFormat(&file)) return path;
+  ReadClock(&file, &path);
+  ReadUnit(&file, light_field_unit_m, &path);
+  ReadResolution(&file, &path);
+  const YamlEntry* camera = file.Require("camera", "camera: {position: [0, 0, -0.4], ...}");
+  const YamlEntry* lens = file.Require("lens", "lens: {aperture_diameter_mm: 4, ...}");
+  QuantityReader quantities(file.Find("keyframes"), file.Find("accelerations"), path.unit_m,
+                            errors);
+  file.CheckKeys();
+  if (!camera || !lens) return path;
+  ReadCameraSection(*camera->value, &quantities, &path, errors);
+  ReadLensSection(*lens->value, &quantities, &path, errors);
+  quantities.CheckKeys();
+  return path;
+}
+
+}  // namespace
+
+Result<CameraPath> ParsePathYaml(std::string_view text, std::string_view name,
+                                 std::optional<double> light_field_unit_m) {
+  LF_ASSIGN_OR_RETURN(const YamlNodePtr root, ParseYaml(text, name));
+  YamlErrors errors(name);
+  const PathDescription description = Describe(*root, light_field_unit_m, &errors);
+  if (!errors.empty()) return errors.First();
+  return EvaluatePath(description);
+}
+
+Result<CameraPath> ReadPathYaml(const std::filesystem::path& path,
+                                std::optional<double> light_field_unit_m) {
+  LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(path, kMaxYamlBytes));
+  return ParsePathYaml(text, path.string(), light_field_unit_m);
+}
+
+}  // namespace lf

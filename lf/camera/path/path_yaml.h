@@ -1,0 +1,24 @@
+// Reads the camera path file (doc/formats/path.md). No other folder uses yaml-cpp.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string_view>
+
+#include "lf/camera/path/camera_path.h"
+#include "lf/core/result.h"
+
+namespace lf {
+
+// text                content of the file
+// name                its name in messages: "path.yaml:12:5: ..."
+// light_field_unit_m  metres per world unit of the light field, if there is one; a path that states
+//                     another unit is an error. Without it the path's own unit is used, or else 1.
+// kInput: every key is checked. Messages state file:line:column, the value found, the allowed keys
+// and, for a misspelt key, the nearest allowed one.
+Result<CameraPath> ParsePathYaml(std::string_view text, std::string_view name,
+                                 std::optional<double> light_field_unit_m);
+Result<CameraPath> ReadPathYaml(const std::filesystem::path& path,
+                                std::optional<double> light_field_unit_m);
+
+}  // namespace lf

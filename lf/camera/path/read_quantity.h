@@ -1,0 +1,92 @@
+// Reads the quantities of a path file that may change over time: their start and speed from a
+// section of the file, and their `accelerations` or `keyframes`.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lf/camera/path/path_description.h"
+#include "lf/camera/path/read_value.h"
+#include "lf/camera/path/yaml_schema.h"
+
+namespace lf {
+
+// Units of a quantity. The keys in the file are its name with the suffix of a unit, such as
+// "focus_distance_mm". kDegreesUnsaid: degrees, but without a suffix.
+enum class QuantityUnit { kNone, kLength, kDegrees, kDegreesUnsaid };
+
+struct QuantitySpec {
+  std::string name;
+  ValueShape shape = ValueShape::kNumber;
+  QuantityUnit unit = QuantityUnit::kNone;
+  NumberRange range = {};
+  bool zero_if_not_given = false;
+};
+
+class QuantityReader {
+ public:
+  //   keyframes, accelerations   entries of these keys of the file; null if the file lacks them
+  QuantityReader(const YamlEntry* keyframes, const YamlEntry* accelerations, double unit_m,
+                 YamlErrors* errors);
+
+  // Returns the quantity; none if the file does not give it or, with an error, gives it wrongly.
+  // Its start and speed are keys of `section`. If it has keyframes but none at time 0, its start
+  // becomes the key at time 0.
+  std::optional<Quantity> Read(YamlMap* section, const QuantitySpec& spec);
+
+  // Returns a length that does not change over time and is given in world units or in millimetres;
+  // none if the file does not give it or, with an error, gives it wrongly.
+  std::optional<double> ReadFixedLength(YamlMap* section, const std::string& name,
+                                        const NumberRange& range);
+
+  // Reports keyframes and accelerations of unknown quantities. Must be called after the last
+  // quantity is read.
+  void CheckKeys();
+
+ private:
+  struct UnitEnding {
+    std::string ending;
+    double units_per_file = 1;
+  };
+  struct Acceleration {
+    YamlPlace place;
+    std::string quantity;
+    const YamlNode* value = nullptr;
+    double from_s = 0;
+    double to_s = 0;
+    bool read = false;
+  };
+  struct Given {  // an entry of the file, and the unit that its key states
+    const YamlEntry* entry = nullptr;
+    std::string label;
+    double units_per_file = 1;
+    explicit operator bool() const { return entry != nullptr; }
+  };
+
+  void ReadAccelerations(const YamlNode& node);
+  std::vector<UnitEnding> Endings(QuantityUnit unit) const;
+  Given FindInOneUnit(YamlMap* map, const std::string& name, QuantityUnit unit);
+  // Returns the quantity without its motion. `given` is the entry of its keyframes or start, if it
+  // has any.
+  Quantity Unmoved(const YamlMap& section, const QuantitySpec& spec, const Given& given) const;
+  // Returns the periods of the quantity's accelerations, and sets `place` to the last of them if
+  // there is any.
+  std::vector<AccelerationPeriod> TakePeriods(const QuantitySpec& spec, YamlPlace* place);
+  std::optional<AcceleratedMotion> ReadAccelerated(const QuantitySpec& spec, const Given& start,
+                                                   const Given& speed,
+                                                   std::vector<AccelerationPeriod> periods);
+  std::optional<KeyframeCurve> ReadKeyframes(const QuantitySpec& spec, const Given& start,
+                                             const Given& keyframes);
+  std::optional<Key> ReadKey(const YamlNode& node, const QuantitySpec& spec,
+                             const Given& keyframes);
+  bool AddStartAsKey(const QuantitySpec& spec, const Given& start, std::vector<Key>* keys);
+
+  double unit_m_;
+  YamlErrors* errors_;
+  YamlMap keyframes_;
+  std::vector<Acceleration> accelerations_;
+  std::vector<std::string> accelerable_;  // quantities that were read so far
+};
+
+}  // namespace lf

@@ -1,0 +1,32 @@
+// Reads one value of a quantity from a path file.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "lf/camera/path/motion.h"
+#include "lf/camera/path/yaml_schema.h"
+
+namespace lf {
+
+enum class ValueShape {
+  kNumber,      // 0.4
+  kPoint,       // [x, y, z]
+  kTilt,        // {horizontal: , vertical: }, 0 if left out
+  kAngles,      // {yaw: , pitch: , roll: }, 0 if left out
+  kQuaternion,  // [w, x, y, z], length 1
+};
+
+// Returns the number of components, 1 to 4.
+int ComponentCount(ValueShape shape);
+
+// Returns an example of such a value as a file writes it, for messages.
+std::string_view ExampleOf(ValueShape shape);
+
+// Returns the value times `units_per_file`. None, with an error, if it has another shape or a
+// component is out of range. Quaternions are normalised; their length may deviate from 1 by 1 %.
+std::optional<MotionValue> ReadValue(const YamlNode& node, std::string_view label, ValueShape shape,
+                                     const NumberRange& range, double units_per_file,
+                                     YamlErrors* errors);
+
+}  // namespace lf

@@ -1,0 +1,106 @@
+#include "lf/distribute/cluster/finish_frames.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "lf/core/file.h"
+#include "lf/core/file_lock.h"
+#include "lf/render/pipeline/frame_range.h"
+#include "lf/render/state/record_fields.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr size_t kLimitBytes = size_t{16} << 20;
+constexpr const char* kFormat = "lffinish 1";
+
+Result<std::vector<FrameId>> ReadAll(const fs::path& path, size_t last_frame) {
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) return std::vector<FrameId>();
+  LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(path, kLimitBytes));
+  std::string fault, frames;
+  const Json json = ParseRecord(text, kFormat, &fault);
+  RecordFields(json, &fault).Get("frames", &frames);
+  if (fault.empty()) {
+    const auto parsed = ParseFrameRange(frames, last_frame);
+    if (parsed) return parsed;
+    fault = parsed.error().message;
+  }
+  return InputError(
+      fmt::format("{}: {}; remove it, and say again which frames to finish", path.string(), fault));
+}
+
+size_t LastFrame(const ClusterJob& job) {
+  size_t last = 0;
+  for (const JobPackage& package : job.packages)
+    if (!package.frames.empty()) last = std::max<size_t>(last, package.frames.back().value);
+  return last;
+}
+
+bool Has(const std::vector<FrameId>& frames, FrameId frame) {
+  return std::binary_search(frames.begin(), frames.end(), frame);
+}
+
+bool IsFinished(const ClusterJob& job, FrameId frame) {
+  std::error_code ignored;
+  return fs::exists(
+      job.output_folder / fmt::format("frame_{:04}{}", frame.value, job.frame_extension), ignored);
+}
+
+// Returns true if the package's checkpoint has rays of the frame: its plate, or rebinned rays,
+// which all frames share.
+bool HasRays(const ClusterJob& job, const JobPackage& package, FrameId frame) {
+  const fs::path checkpoint = job.output_folder / "partial" / package.name;
+  std::error_code ignored;
+  if (fs::exists(checkpoint / fmt::format("frame_{:04}.plate", frame.value), ignored)) return true;
+  for (const auto& entry : fs::directory_iterator(checkpoint, ignored))
+    if (entry.path().extension() == ".rays") return true;
+  return false;
+}
+
+}  // namespace
+
+Result<size_t> AskToFinish(const ClusterJob& job, const std::string& frames_text) {
+  LF_ASSIGN_OR_RETURN(const std::vector<FrameId> frames,
+                      ParseFrameRange(frames_text, LastFrame(job), "--finish"));
+  size_t unfinished_count = 0;
+  for (const FrameId frame : frames) {
+    const auto package =
+        std::find_if(job.packages.begin(), job.packages.end(),
+                     [&](const JobPackage& one) { return Has(one.frames, frame); });
+    if (package == job.packages.end())
+      return UsageError(
+          fmt::format("--finish: frame {} is in none of the job's packages", frame.value));
+    if (IsFinished(job, frame)) continue;
+    ++unfinished_count;
+    if (!HasRays(job, *package, frame))
+      return UsageError(fmt::format(
+          "--finish: frame {} has no rays yet: {} was not begun, or has written no checkpoint of "
+          "it; wait for {}/partial/{}/frame_{:04}.plate",
+          frame.value, package->name, job.output_folder.string(), package->name, frame.value));
+  }
+  if (unfinished_count == 0) return unfinished_count;
+  LF_ASSIGN_OR_RETURN(const FileLock lock, FileLock::Take(job.Folder() / "finish_frames.lock"));
+  LF_ASSIGN_OR_RETURN(const std::vector<FrameId> before,
+                      ReadAll(job.FinishFramesFile(), LastFrame(job)));
+  std::vector<FrameId> all;
+  std::set_union(before.begin(), before.end(), frames.begin(), frames.end(),
+                 std::back_inserter(all));
+  const Json json = {{"format", kFormat}, {"frames", FrameRangeText(all)}};
+  LF_RETURN_IF_ERROR(WriteFileAtomically(job.FinishFramesFile(), RecordText(json)));
+  return unfinished_count;
+}
+
+Result<std::vector<FrameId>> FramesToFinish(const ClusterJob& job, const JobPackage& package) {
+  LF_ASSIGN_OR_RETURN(const std::vector<FrameId> all,
+                      ReadAll(job.FinishFramesFile(), LastFrame(job)));
+  std::vector<FrameId> frames;
+  std::set_intersection(all.begin(), all.end(), package.frames.begin(), package.frames.end(),
+                        std::back_inserter(frames));
+  return frames;
+}
+
+}  // namespace lf

@@ -1,0 +1,225 @@
+#include "lf/distribute/cluster/job.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <string_view>
+
+#include "lf/core/file.h"
+#include "lf/core/value_named.h"
+#include "lf/render/pipeline/frame_range.h"
+#include "lf/render/state/record_fields.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr size_t kLimitBytes = size_t{64} << 20;
+constexpr const char* kFormat = "lfjob 1";
+constexpr size_t kMostFrames = 10'000'000;
+
+// Returns true if the text has control characters such as line breaks, which would begin another
+// line of a batch script.
+bool HasControls(std::string_view text) {
+  return std::any_of(text.begin(), text.end(),
+                     [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
+}
+
+bool IsNumber(std::string_view text) {
+  return !text.empty() &&
+         std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+// Checks the fields that go into batch scripts and calls of Slurm. Returns the fault, or an empty
+// text.
+std::string FaultOf(const ClusterJob& job) {
+  for (const std::string& option : job.sbatch_options)
+    if (HasControls(option) || !option.starts_with('-'))
+      return fmt::format("\"sbatch_options\": expected options of sbatch, found \"{}\"", option);
+  for (const std::string& id : job.slurm_array_ids)
+    if (!IsNumber(id))
+      return fmt::format("\"slurm_arrays\": expected numbers of jobs, found \"{}\"", id);
+  if (!job.slurm_finishing_id.empty() && !IsNumber(job.slurm_finishing_id))
+    return fmt::format("\"slurm_finishing\": expected the number of a job, found \"{}\"",
+                       job.slurm_finishing_id);
+  if (!job.frame_extension.starts_with('.') || job.frame_extension.find('/') != std::string::npos)
+    return fmt::format("\"frame_extension\": expected one such as .exr, found \"{}\"",
+                       job.frame_extension);
+  return "";
+}
+
+Json PackageToJson(const JobPackage& package) {
+  return {{"file", package.file.string()},
+          {"name", package.name},
+          {"frames", FrameRangeText(package.frames)},
+          {"is_whole", package.is_whole},
+          {"rays", package.ray_count}};
+}
+
+JobPackage PackageFromJson(const Json& json, std::string* fault) {
+  RecordFields fields(json, fault);
+  JobPackage package;
+  std::string file, frames;
+  fields.Get("file", &file);
+  fields.Get("name", &package.name);
+  fields.Get("frames", &frames);
+  fields.Get("is_whole", &package.is_whole);
+  fields.Get("rays", &package.ray_count);
+  package.file = file;
+  if (!fault->empty()) return package;
+  const auto parsed = ParseFrameRange(frames, kMostFrames);
+  if (parsed)
+    package.frames = *parsed;
+  else
+    *fault = "\"frames\": " + parsed.error().message;
+  // The name is part of file names in the job's folder.
+  if (package.name.empty() || package.name.find('/') != std::string::npos ||
+      package.name.front() == '.' || HasControls(package.name))
+    *fault = fmt::format("\"name\": expected the name of a package, found \"{}\"", package.name);
+  return package;
+}
+
+}  // namespace
+
+const char* NameOf(ClusterEngine engine) {
+  return engine == ClusterEngine::kLocal ? "local" : "slurm";
+}
+
+std::optional<ClusterEngine> ClusterEngineOf(std::string_view name) {
+  return ValueNamed(name, {ClusterEngine::kLocal, ClusterEngine::kSlurm});
+}
+
+bool ClusterJob::IsCancelled() const {
+  std::error_code ignored;
+  return fs::exists(CancelFile(), ignored);
+}
+
+ClusterTask PackageTask(const ClusterJob& job, size_t number) {
+  const std::string& name = job.packages[number].name;
+  const fs::path folder = job.Folder() / "packages";
+  return {name, folder / (name + ".json"), folder / (name + ".log"), folder / (name + ".lock")};
+}
+
+ClusterTask FinishingTask(const ClusterJob& job) {
+  const fs::path folder = job.Folder();
+  return {"finish", folder / "finish.json", folder / "finish.log", folder / "finish.lock"};
+}
+
+std::string FrameRangeText(const std::vector<FrameId>& frames) {
+  std::string text;
+  for (size_t begin = 0, end = 0; begin < frames.size(); begin = end) {
+    for (end = begin + 1; end < frames.size(); ++end)
+      if (frames[end].value != frames[end - 1].value + 1) break;
+    if (!text.empty()) text += ',';
+    text += fmt::format("{}", frames[begin].value);
+    if (end - begin > 1) text += fmt::format("-{}", frames[end - 1].value);
+  }
+  return text;
+}
+
+std::string ToJson(const ClusterJob& job) {
+  Json packages = Json::array();
+  for (const JobPackage& package : job.packages) packages.push_back(PackageToJson(package));
+  const Json json = {{"format", kFormat},
+                     {"output_folder", job.output_folder.string()},
+                     {"working_folder", job.working_folder.string()},
+                     {"lfrenderer", job.renderer.string()},
+                     {"lfsubmit", job.submitter.string()},
+                     {"arguments", job.arguments},
+                     {"frame_extension", job.frame_extension},
+                     {"video", job.video ? job.video->string() : ""},
+                     {"contact_sheet", job.contact_sheet},
+                     {"engine", NameOf(job.engine)},
+                     {"at_once", job.at_once},
+                     {"threads", job.thread_count},
+                     {"memory_bytes", job.memory_bytes},
+                     {"most_crashes", job.most_crashes},
+                     {"time_limit_s", job.time_limit_s},
+                     {"sbatch_options", job.sbatch_options},
+                     {"slurm_arrays", job.slurm_array_ids},
+                     {"slurm_finishing", job.slurm_finishing_id},
+                     {"packages", std::move(packages)}};
+  return RecordText(json);
+}
+
+Result<ClusterJob> ParseJob(std::string_view text, const std::string& name) {
+  std::string fault, engine, video, output, working, renderer, submitter;
+  ClusterJob job;
+  const Json json = ParseRecord(text, kFormat, &fault);
+  if (fault.empty()) {
+    RecordFields fields(json, &fault);
+    fields.Get("output_folder", &output);
+    fields.Get("working_folder", &working);
+    fields.Get("lfrenderer", &renderer);
+    fields.Get("lfsubmit", &submitter);
+    fields.Get("arguments", &job.arguments);
+    fields.Get("frame_extension", &job.frame_extension);
+    fields.Get("video", &video);
+    fields.Get("contact_sheet", &job.contact_sheet);
+    fields.Get("engine", &engine);
+    fields.Get("at_once", &job.at_once);
+    fields.Get("threads", &job.thread_count);
+    fields.Get("memory_bytes", &job.memory_bytes);
+    fields.Get("most_crashes", &job.most_crashes);
+    fields.Get("time_limit_s", &job.time_limit_s);
+    fields.Get("sbatch_options", &job.sbatch_options);
+    fields.Get("slurm_arrays", &job.slurm_array_ids);
+    fields.Get("slurm_finishing", &job.slurm_finishing_id);
+    for (const Json* item : fields.List("packages"))
+      job.packages.push_back(PackageFromJson(*item, &fault));
+    const auto known = ClusterEngineOf(engine);
+    if (known) job.engine = *known;
+    if (fault.empty() && !known)
+      fault = fmt::format("\"engine\": expected local or slurm, found \"{}\"", engine);
+    if (fault.empty() && job.packages.empty()) fault = "\"packages\": expected some, found none";
+    if (fault.empty()) fault = FaultOf(job);
+  }
+  if (!fault.empty())
+    return InputError(
+        fmt::format("{}: is no job of lfsubmit: {}; remove it to submit anew", name, fault));
+  job.output_folder = output;
+  job.working_folder = working;
+  job.renderer = renderer;
+  job.submitter = submitter;
+  if (!video.empty()) job.video = video;
+  return job;
+}
+
+Result<void> WriteJob(const ClusterJob& job) {
+  LF_RETURN_IF_ERROR(CreateFolder(job.Folder() / "packages"));
+  return WriteFileAtomically(job.File(), ToJson(job));
+}
+
+Result<void> CheckMayRun(const ClusterJob& job) {
+  struct stat status {};
+  if (::stat(job.File().c_str(), &status) != 0)
+    return InputError(
+        fmt::format("{}: cannot be read: {}", job.File().string(), std::strerror(errno)));
+  if (status.st_uid == ::geteuid() || status.st_uid == 0) return {};
+  return UsageError(
+      fmt::format("{}: belongs to another user (number {}), and the program and options that it "
+                  "names would run "
+                  "as you: submit the packages anew, into a folder of your own",
+                  job.File().string(), status.st_uid));
+}
+
+Result<ClusterJob> ReadJob(const fs::path& output_folder) {
+  const fs::path file = output_folder / "cluster" / "job.json";
+  std::error_code ignored;
+  if (!fs::exists(file, ignored))
+    return InputError(fmt::format(
+        "{}: no job was submitted into this folder (there is no cluster/job.json): expected the "
+        "DIR of lfsubmit PACKAGES... -o DIR",
+        output_folder.string()));
+  LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(file, kLimitBytes));
+  LF_ASSIGN_OR_RETURN(ClusterJob job, ParseJob(text, file.string()));
+  // The folder may have been moved, or have another name on this machine.
+  job.output_folder = fs::absolute(output_folder);
+  return job;
+}
+
+}  // namespace lf

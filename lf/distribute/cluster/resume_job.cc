@@ -1,0 +1,169 @@
+#include "lf/distribute/cluster/resume_job.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "lf/core/file.h"
+#include "lf/core/file_lock.h"
+#include "lf/core/log.h"
+#include "lf/core/shell_word.h"
+#include "lf/distribute/cluster/job_status.h"
+#include "lf/distribute/cluster/run_package.h"
+#include "lf/distribute/cluster/slurm.h"
+#include "lf/distribute/cluster/task_state.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+bool HasTasksAtWork(const JobStatus& status) {
+  const auto is_at_work = [](const TaskStatus& task) {
+    return task.state.phase == TaskPhase::kRunning || task.IsQueued();
+  };
+  return is_at_work(status.finishing) ||
+         std::any_of(status.packages.begin(), status.packages.end(), is_at_work);
+}
+
+bool IsAtWork(const JobStatus& status) {
+  return status.phase == TaskPhase::kRunning || HasTasksAtWork(status);
+}
+
+void RemoveFrames(const ClusterJob& job, const JobPackage& package) {
+  std::error_code ignored;
+  for (const FrameId frame : package.frames)
+    fs::remove(job.output_folder / fmt::format("frame_{:04}{}", frame.value, job.frame_extension),
+               ignored);
+  fs::remove(job.output_folder / ("report-" + package.name + ".json"), ignored);
+  fs::remove_all(job.output_folder / "partial" / package.name, ignored);
+}
+
+// Sleeps in short steps, so that a signal is noticed.
+void SleepOr(const std::atomic<bool>& stop, double seconds) {
+  for (int i = 0; i < 10 * seconds && !stop; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+}
+
+// Removes the job, but not the lock that we hold.
+void RemoveJob(const ClusterJob& job) {
+  std::error_code ignored;
+  std::vector<fs::path> files;
+  for (auto entry = fs::directory_iterator(job.Folder(), ignored);
+       !ignored && entry != fs::directory_iterator(); entry.increment(ignored))
+    files.push_back(entry->path());
+  for (const fs::path& file : files)
+    if (file != job.EngineLock()) fs::remove_all(file, ignored);
+}
+
+}  // namespace
+
+Result<FileLock> TakeJob(const ClusterJob& job) {
+  LF_RETURN_IF_ERROR(CreateFolder(job.Folder()));
+  Result<FileLock> lock = FileLock::Take(job.EngineLock());
+  if (lock || !FileLock::IsHeld(job.EngineLock())) return lock;
+  return OutputError(fmt::format("{}, or lfsubmit --cancel {}", lock.error().message,
+                                 ShellWord(job.output_folder.string())));
+}
+
+Result<void> MakeRoomForJob(const ClusterJob& job, bool overwrite) {
+  std::error_code ignored;
+  if (!fs::exists(job.File(), ignored) && !overwrite) return {};
+  const std::string folder = ShellWord(job.output_folder.string());
+  const Result<ClusterJob> before = ReadJob(job.output_folder);
+  if (!overwrite && !before) return before.error();
+  if (!overwrite)
+    return UsageError(fmt::format(
+        "{}: a job was submitted there: lfsubmit --resume {} goes on with it, --status tells how "
+        "far it is, --overwrite removes it and its frames (who removes {}/cluster instead submits "
+        "anew, and keeps the frames)",
+        job.output_folder.string(), folder, folder));
+  if (before && HasTasksAtWork(LookAtJob(*before)))
+    return UsageError(fmt::format("{}: is at work: lfsubmit --cancel {} first",
+                                  job.output_folder.string(), folder));
+  for (const JobPackage& package : job.packages) RemoveFrames(job, package);
+  RemoveJob(job);
+  return {};
+}
+
+Result<std::vector<size_t>> PrepareResume(const ClusterJob& job) {
+  std::error_code ignored;
+  fs::remove(job.CancelFile(), ignored);
+  if (job.engine == ClusterEngine::kSlurm) LF_RETURN_IF_ERROR(ReleaseInSlurm(job));
+  const JobStatus status = LookAtJob(job);
+  if (!status.queue_error.empty()) return OutputError(status.queue_error);
+  std::vector<size_t> numbers;
+  for (size_t i = 0; i < job.packages.size(); ++i) {
+    const TaskStatus& task = status.packages[i];
+    const bool is_done =
+        task.state.phase == TaskPhase::kDone && task.frames_done == task.frame_total;
+    if (is_done || task.IsQueued()) continue;
+    numbers.push_back(i);
+    // A package that still runs is about to end, because its engine is gone; its lock is waited
+    // for.
+    if (task.state.start_count == 0 || task.state.phase == TaskPhase::kRunning) continue;
+    TaskState state = task.state;
+    state.phase = TaskPhase::kInterrupted;
+    state.crash_count = 0;
+    LF_RETURN_IF_ERROR(WriteTaskState(state, PackageTask(job, i).state));
+  }
+  // The film was finished before, but something of it is missing. It must not be called done until
+  // it is finished again.
+  if (status.finishing.state.phase == TaskPhase::kDone && !status.finishing.IsQueued()) {
+    std::error_code error;
+    fs::remove(FinishingTask(job).state, error);
+    if (error)
+      return OutputError(fmt::format("{}: cannot be removed: {}", FinishingTask(job).state.string(),
+                                     error.message()));
+  }
+  LogInfo("going on: {} of {} packages are done", status.Count(TaskPhase::kDone),
+          job.packages.size());
+  return numbers;
+}
+
+Result<void> CancelJob(const ClusterJob& job, const std::atomic<bool>& stop) {
+  constexpr double kPatience_s = 180;
+  if (LookAtJob(job).phase == TaskPhase::kDone) {
+    LogInfo("{}: the film is done: there is nothing to end", job.output_folder.string());
+    return {};
+  }
+  LF_RETURN_IF_ERROR(WriteFileAtomically(job.CancelFile(), ""));
+  if (job.engine == ClusterEngine::kSlurm) LF_RETURN_IF_ERROR(CancelInSlurm(job));
+  JobStatus status = LookAtJob(job);
+  for (double waited_s = 0; IsAtWork(status) && waited_s < kPatience_s && !stop; waited_s += 1) {
+    SleepOr(stop, 1);
+    // Cancels tasks that were requeued in the meantime.
+    if (job.engine == ClusterEngine::kSlurm) LF_RETURN_IF_ERROR(CancelInSlurm(job));
+    status = LookAtJob(job);
+  }
+  const std::string again =
+      fmt::format("lfsubmit --resume {} goes on", ShellWord(job.output_folder.string()));
+  if (IsAtWork(status))
+    return OutputError(fmt::format(
+        "{} packages are still at work: they end as soon as they see {}; lfsubmit --status tells",
+        status.Count(TaskPhase::kRunning), job.CancelFile().string()));
+  LogInfo("cancelled: {} of {} frames are done, and the state of the others is kept; {}",
+          status.frames_done(), status.frame_total(), again);
+  return {};
+}
+
+Result<void> WaitForJob(const ClusterJob& job, const std::atomic<bool>& stop,
+                        const std::function<void()>& look) {
+  while (true) {
+    look();
+    const JobStatus status = LookAtJob(job);
+    if (!IsAtWork(status) && status.queue_error.empty())
+      return OutcomeOf("the finishing task", status.finishing.state);
+    if (job.engine == ClusterEngine::kSlurm)
+      if (const Result<void> released = ReleaseInSlurm(job); !released)
+        LogWarning("{}", released.error().message);
+    SleepOr(stop, 3);
+    if (stop)
+      return Error{ErrorKind::kInterrupted,
+                   fmt::format("no longer waiting; the job goes on: lfsubmit --status {} tells",
+                               ShellWord(job.output_folder.string()))};
+  }
+}
+
+}  // namespace lf

@@ -1,0 +1,38 @@
+// Measures the difference between decoded pixels and the original ones.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "lf/core/geometry.h"
+#include "lf/light_field/model/radiance.h"
+#include "lf/pixels/codec/lf_image_codec.h"
+#include "lf/storage/packed/packed_store_file.h"
+
+namespace lf {
+
+// The error of one image. Errors of several images can be added.
+struct CodeError {
+  double squared = 0;  // sum of squared differences, relative to the range from black to white
+  uint64_t count = 0;  // number of values
+
+  CodeError& operator+=(const CodeError& other) {
+    squared += other.squared;
+    count += other.count;
+    return *this;
+  }
+  // PSNR of all values together; infinite if there is no difference.
+  double PsnrDb() const;
+};
+
+// Returns the size of a grey step in stored values: the range from black to white has 255 steps. It
+// is 1 for 8 bits and 257 for 16 bits, unless levels are stated. Half floats are measured by their
+// bit patterns, of which 1024 are a factor of two in radiance; their step is 16, which is about 1
+// %.
+double GreyStep(const RadianceEncoding& encoding, StoredValues values);
+
+// Returns the error of one image. `decoded` must be the whole image.
+CodeError ErrorOf(const CodecPixels& coded, const DecodedPart& decoded, double grey_step);
+
+}  // namespace lf

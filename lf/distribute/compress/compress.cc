@@ -1,0 +1,331 @@
+#include "lf/distribute/compress/compress.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+#include <utility>
+
+#include "lf/core/log.h"
+#include "lf/distribute/compress/find_threshold.h"
+#include "lf/distribute/compress/image_coder.h"
+#include "lf/distribute/compress/verify_store.h"
+#include "lf/storage/load/recorded_image.h"
+#include "lf/storage/packed/packed_store_file.h"
+#include "lf/storage/packed/packed_store_writer.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+double Now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// Returns true if the store exists. kUsage if another file has its name.
+Result<bool> IsThere(const fs::path& path) {
+  std::error_code error;
+  if (!fs::exists(fs::symlink_status(path, error))) return false;
+  if (IsPackedStore(path)) return true;
+  return UsageError(
+      fmt::format("{}: is there already, and is no packed store: give another name, or remove it",
+                  path.string()));
+}
+
+PackedStorePlan PlanOf(const CompressSource& source, const CompressOptions& options,
+                       const CodecSettings& settings) {
+  PackedStorePlan plan;
+  plan.whole = source.whole;
+  plan.whole_ids = source.whole_ids;
+  plan.rects = source.rects;
+  plan.codec = NameOf(settings);
+  plan.display_levels = ImageCoder(source.light_field.encoding, settings).display_levels();
+  plan.shard_bytes = options.shard_bytes;
+  plan.source = options.source_name;
+  plan.version = options.version;
+  return plan;
+}
+
+Result<PackedStoreWriter> OpenWriter(const CompressSource& source, const CompressOptions& options,
+                                     const PackedStorePlan& plan, FileLock lock) {
+  const fs::path& store = options.store;
+  if (options.resume)
+    return PackedStoreWriter::Resume(store, source.light_field, plan, std::move(lock));
+  if (options.overwrite) PackedStoreWriter::RemoveUnfinished(store, lock);
+  return PackedStoreWriter::Create(store, source.light_field, plan, std::move(lock));
+}
+
+// Removes the lock at the end, unless a writer has taken it over.
+struct HeldLock {
+  std::optional<FileLock> lock;
+  HeldLock() = default;
+  HeldLock(const HeldLock&) = delete;
+  HeldLock& operator=(const HeldLock&) = delete;
+  ~HeldLock() {
+    if (lock) lock->Remove();
+  }
+};
+
+// State of one call of Compress(), shared by its threads.
+class Compressor {
+ public:
+  Compressor(const CompressSource& source, const CompressOptions& options, ThreadPool& pool,
+             const std::function<void(const CompressProgress&)>& progress)
+      : source_(source), options_(options), pool_(pool), progress_(progress) {}
+
+  Result<CompressReport> Run();
+
+ private:
+  Result<void> CheckTarget();
+  Result<void> FindSkipped();
+  Result<void> ChooseThreshold();
+  Result<void> Write(FileLock lock);
+  Result<void> CheckFiles(const PackedStoreWriter& writer);
+  void Count(const RecordedImage& image, const CodedImage& coded, const CodeError& lost,
+             const std::string& name);
+  void AddOne(PackedStoreWriter* writer, LfImageId id);
+  VerifyOptions Verification() const;
+  Result<void> Verify();
+  bool IsInterrupted() const { return options_.interrupted && *options_.interrupted; }
+  Error Interrupted() const;
+
+  const CompressSource& source_;
+  const CompressOptions& options_;
+  ThreadPool& pool_;
+  const std::function<void(const CompressProgress&)>& progress_;
+  CodecSettings settings_;
+  std::optional<ImageCoder> coder_;
+
+  std::mutex mutex_;  // guards everything below
+  CompressReport report_;
+  CompressProgress now_;
+  std::optional<Error> error_;
+  bool ended_ = false;  // by an error or by an interruption
+};
+
+Error Compressor::Interrupted() const {
+  return {
+      ErrorKind::kInterrupted,
+      fmt::format("interrupted after {} of {} LF images: --resume goes on", now_.done, now_.total)};
+}
+
+void Compressor::AddOne(PackedStoreWriter* writer, LfImageId id) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (IsInterrupted()) ended_ = true;
+    if (ended_) return;
+  }
+  const ThreadCpuTimer timer;
+  const LightField& light_field = source_.light_field;
+  const std::string& name = light_field.image_names[id.value];
+  const PixelRect rect = RectToRecord(light_field, id, source_.rects[id.value]);
+  const Result<RecordedImage> image = ReadRecordedImage(light_field, id, rect);
+  std::optional<CodedImage> coded;
+  std::optional<Error> error;
+  CodeError lost;
+  if (!image) {
+    error = image.error();
+  } else {
+    coded = coder_->Code(*image);
+    lost = coder_->ErrorOf(*image, *coded);
+    if (const Result<void> added = writer->Add(id, *coded); !added) error = added.error();
+  }
+
+  const std::lock_guard lock(mutex_);
+  report_.encode_cpu_s += static_cast<double>(timer.Nanoseconds()) * 1e-9;
+  ++now_.done;
+  if (error) {
+    // Only errors of the image itself are skipped. If the machine lacks memory or disk space, the
+    // call fails.
+    const bool is_image = !image && error->kind == ErrorKind::kInput;
+    if (is_image) report_.skipped.push_back({name, error->message});
+    if ((!is_image || options_.strict) && !ended_) {
+      ended_ = true;
+      error_ = *error;
+    }
+  } else {
+    Count(*image, *coded, lost, name);
+  }
+  if (progress_) progress_(now_);
+}
+
+void Compressor::Count(const RecordedImage& image, const CodedImage& coded, const CodeError& lost,
+                       const std::string& name) {
+  const uint64_t pixel_bytes =
+      std::visit([](const auto& pixels) { return pixels.size_bytes(); }, image.pixels);
+  ++report_.coded_count;
+  report_.rounded_count += image.is_rounded ? 1 : 0;
+  report_.source_bytes += coded.source_bytes;
+  report_.pixel_bytes += pixel_bytes;
+  report_.code_bytes += coded.code.size() + coded.mask.size();
+  report_.error += lost;
+  if (report_.worst_name.empty() || lost.PsnrDb() < report_.worst_psnr_db ||
+      (lost.PsnrDb() == report_.worst_psnr_db && name < report_.worst_name)) {
+    report_.worst_psnr_db = lost.PsnrDb();
+    report_.worst_name = name;
+  }
+  now_.pixel_bytes = report_.pixel_bytes;
+  now_.code_bytes = report_.code_bytes;
+}
+
+// Checks by their sizes that the files are still those from which the unfinished store was made.
+Result<void> Compressor::CheckFiles(const PackedStoreWriter& writer) {
+  const LightField& light_field = source_.light_field;
+  pool_.ForEach(light_field.size(), [&](size_t i) {
+    const LfImageId id{static_cast<uint32_t>(i)};
+    if (!writer.Has(id)) return;
+    const uint64_t now = SourceBytesOf(light_field, id), then = writer.SourceBytes(id);
+    if (now == 0 || now == then) return;
+    const std::lock_guard lock(mutex_);
+    if (!error_)
+      error_ = InputError(fmt::format(
+          "{}: has {} bytes, and had {} when it was coded for the unfinished {}: it was changed, "
+          "or is another light field's; --overwrite begins anew",
+          light_field.ImagePath(id).string(), now, then, options_.store.string()));
+  });
+  if (error_) return *error_;
+  return {};
+}
+
+Result<void> Compressor::Write(FileLock lock) {
+  coder_.emplace(source_.light_field.encoding, settings_);
+  LF_ASSIGN_OR_RETURN(
+      PackedStoreWriter writer,
+      OpenWriter(source_, options_, PlanOf(source_, options_, settings_), std::move(lock)));
+  LF_RETURN_IF_ERROR(CheckFiles(writer));
+  std::vector<LfImageId> ids;
+  for (uint32_t i = 0; i < source_.light_field.size(); ++i)
+    if (!writer.Has(LfImageId{i})) ids.push_back(LfImageId{i});
+  report_.resumed_count = source_.light_field.size() - ids.size();
+  now_.total = source_.light_field.size();
+  now_.done = report_.resumed_count;
+  LogDebug("{}: {} LF images to be coded, {} are; codec {}; {} threads", options_.store.string(),
+           ids.size(), report_.resumed_count, NameOf(settings_), pool_.thread_count());
+  pool_.ForEach(ids.size(), [&](size_t i) { AddOne(&writer, ids[i]); });
+  std::sort(report_.skipped.begin(), report_.skipped.end(),
+            [](const auto& a, const auto& b) { return a.name < b.name; });
+  if (error_) {
+    // Earlier work is committed, unless the disk or the memory failed.
+    if (error_->kind == ErrorKind::kInput) LF_RETURN_IF_ERROR(writer.Commit());
+    return *error_;
+  }
+  if (ended_) {
+    LF_RETURN_IF_ERROR(writer.Commit());
+    return Interrupted();
+  }
+  if (report_.skipped.size() == source_.light_field.size()) {
+    writer.Abandon();
+    return InputError(fmt::format("none of the {} LF images can be read; the first: {}",
+                                  report_.skipped.size(), report_.skipped.front().reason));
+  }
+  return writer.Finish();
+}
+
+VerifyOptions Compressor::Verification() const {
+  return {options_.store, settings_, PlanOf(source_, options_, settings_), !options_.resume,
+          [this] { return IsInterrupted(); }};
+}
+
+Result<void> Compressor::Verify() {
+  now_ = {0, source_.light_field.size(), 0, 0, true};
+  LF_ASSIGN_OR_RETURN(const size_t verified,
+                      VerifyStore(source_, Verification(), pool_, [&](size_t done) {
+                        now_.done = done;
+                        if (progress_) progress_(now_);
+                      }));
+  report_.verified_count = verified;
+  return {};
+}
+
+// Lists the LF images that an existing store lacks.
+Result<void> Compressor::FindSkipped() {
+  const std::vector<std::string>& names = source_.light_field.image_names;
+  LF_ASSIGN_OR_RETURN(const std::vector<PackedCode> codes, FindCodes(options_.store, names));
+  for (size_t i = 0; i < names.size(); ++i)
+    if (codes[i].bytes == 0)
+      report_.skipped.push_back({names[i], "it could not be read when the store was made"});
+  return {};
+}
+
+// Determines whether there is a store, and whether the options allow it.
+Result<void> Compressor::CheckTarget() {
+  const fs::path& store = options_.store;
+  LF_ASSIGN_OR_RETURN(const bool is_there, IsThere(store));
+  const bool is_unfinished = PackedStoreWriter::IsUnfinished(store);
+  if (options_.overwrite) return {};
+  if (options_.resume) {
+    report_.was_there = is_there && !is_unfinished;
+    return {};
+  }
+  report_.was_there = is_there && options_.verify;
+  if (report_.was_there) return {};
+  if (is_there)
+    return UsageError(fmt::format(
+        "{}: is there already: --overwrite replaces it, --verify checks it", store.string()));
+  if (is_unfinished)
+    return UsageError(
+        fmt::format("{}: there is an unfinished store of this name: --resume goes on "
+                    "with it, --overwrite begins anew",
+                    store.string()));
+  return {};
+}
+
+Result<void> Compressor::ChooseThreshold() {
+  if (options_.target_psnr_db) {
+    LF_ASSIGN_OR_RETURN(settings_.threshold,
+                        FindThreshold(source_, settings_, *options_.target_psnr_db, pool_,
+                                      [this] { return IsInterrupted(); }));
+    LogDebug("--target-psnr {}: threshold {}", *options_.target_psnr_db, settings_.threshold);
+  }
+  report_.threshold = settings_.threshold;
+  return {};
+}
+
+Result<CompressReport> Compressor::Run() {
+  const double begin_s = Now();
+  settings_ = options_.codec;
+  LF_RETURN_IF_ERROR(CheckSettings(settings_));
+  report_.image_count = source_.light_field.size();
+  LF_RETURN_IF_ERROR(CheckTarget());
+  HeldLock held;
+  if (!report_.was_there) {
+    LF_ASSIGN_OR_RETURN(held.lock, PackedStoreWriter::Lock(options_.store));
+    LF_RETURN_IF_ERROR(CheckTarget());  // another program may have finished it meanwhile
+  }
+  LF_RETURN_IF_ERROR(ChooseThreshold());
+  if (report_.was_there) {
+    LF_RETURN_IF_ERROR(CheckStoreFacts(source_, Verification()));
+    LF_RETURN_IF_ERROR(FindSkipped());
+  } else {
+    LF_RETURN_IF_ERROR(Write(std::move(*held.lock)));
+  }
+  if (options_.verify) LF_RETURN_IF_ERROR(Verify());
+  report_.store_bytes = StoreBytes(options_.store);
+  report_.total_s = Now() - begin_s;
+  return std::move(report_);
+}
+
+}  // namespace
+
+std::string NameOf(const CodecSettings& settings) {
+  switch (settings.profile) {
+    case CodecProfile::kThesis:
+      return fmt::format("thesis, levels {}, threshold {}, quantizer {}", settings.levels,
+                         settings.threshold, settings.quantizer);
+    case CodecProfile::kDefault:
+      return fmt::format("default, levels {}, threshold {}", settings.levels, settings.threshold);
+    case CodecProfile::kLossless:
+      break;
+  }
+  return fmt::format("lossless, levels {}", settings.levels);
+}
+
+Result<CompressReport> Compress(const CompressSource& source, const CompressOptions& options,
+                                ThreadPool& pool,
+                                const std::function<void(const CompressProgress&)>& progress) {
+  return Compressor(source, options, pool, progress).Run();
+}
+
+}  // namespace lf

@@ -1,0 +1,87 @@
+// Compresses LF images into a packed store (thesis 4.2.2, 4.5.3).
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lf/core/parallel.h"
+#include "lf/core/result.h"
+#include "lf/distribute/compress/code_quality.h"
+#include "lf/distribute/compress/compress_source.h"
+#include "lf/pixels/codec/lf_image_codec.h"
+
+namespace lf {
+
+struct CompressOptions {
+  std::filesystem::path store;  // STORE.lfs
+  // The threshold is in grey steps (GreyStep() of code_quality.h) of the images' values.
+  CodecSettings codec;
+  // Replaces the threshold by the one at which a sample of the LF images has this PSNR.
+  std::optional<double> target_psnr_db;
+  uint64_t shard_bytes = 0;  // as in PackedStorePlan
+  bool resume = false;       // resume an unfinished store; a complete one must match the options
+  bool overwrite = false;    // replace an existing store, unfinished or complete
+  bool strict = false;       // an LF image that cannot be read is an error
+  // Reads all encoded images back from the disk. Each must equal the result of encoding its LF
+  // image, and be decoded without damage. If the store exists already and is not replaced, it is
+  // only checked.
+  bool verify = false;
+  std::string source_name;  // LIGHTFIELD or packages, as the user gave them
+  std::string version;      // of the program
+  const std::atomic<bool>* interrupted = nullptr;
+};
+
+struct CompressProgress {
+  size_t done = 0;  // number of LF images
+  size_t total = 0;
+  uint64_t pixel_bytes = 0;  // of the LF images that this call encoded, as stored in their files'
+                             // type
+  uint64_t code_bytes = 0;
+  bool is_verifying = false;
+};
+
+struct CompressReport {
+  size_t image_count = 0;
+  size_t resumed_count = 0;  // LF images that the unfinished store already had
+  bool was_there = false;    // true if the store was complete, so that nothing was written
+  double threshold = 0;      // in grey steps
+  size_t rounded_count = 0;  // LF images with floats that half floats cannot represent exactly
+  struct Skipped {
+    std::string name;
+    std::string reason;
+  };
+  std::vector<Skipped> skipped;  // LF images that are not in the store because they cannot be read
+
+  // Sums over the LF images that this call encoded.
+  size_t coded_count = 0;
+  uint64_t source_bytes = 0;  // size of their files
+  uint64_t pixel_bytes = 0;   // size of their pixels as stored
+  uint64_t code_bytes = 0;
+  CodeError error;
+  double worst_psnr_db = 0;  // lowest of one LF image; infinite if all are exact
+  std::string worst_name;
+  double encode_cpu_s = 0;
+  double total_s = 0;
+
+  std::optional<size_t> verified_count;
+  uint64_t store_bytes = 0;  // size of all files of the store
+};
+
+// Returns the settings in words. An unfinished store is resumed only with equal settings.
+std::string NameOf(const CodecSettings& settings);
+
+// kUsage: wrong settings, the store exists, or its name belongs to another file. kInput: no LF
+// image can be read, or one cannot with `strict`; the files are not those that an unfinished store
+// was made from; or the store differs from the result of encoding its LF images (`verify`).
+// kOutput: the disk or the memory fails. kInterrupted: finished work is kept.
+Result<CompressReport> Compress(const CompressSource& source, const CompressOptions& options,
+                                ThreadPool& pool,
+                                const std::function<void(const CompressProgress&)>& progress);
+
+}  // namespace lf

@@ -1,0 +1,22 @@
+// Finds the threshold for a given quality. Internal to this folder.
+#pragma once
+
+#include <functional>
+
+#include "lf/core/parallel.h"
+#include "lf/core/result.h"
+#include "lf/distribute/compress/compress_source.h"
+#include "lf/pixels/codec/lf_image_codec.h"
+
+namespace lf {
+
+// Returns a threshold in grey steps: the largest at which a sample of LF images, spread over the
+// light field, has a PSNR of at least `psnr_db` over all its values. Thresholds are tried in steps
+// of 5 %. The result does not depend on the number of threads. kUsage: no threshold of the profile
+// reaches the quality, or the profile has no threshold; kInput: no image of the sample can be read;
+// kInterrupted.
+Result<double> FindThreshold(const CompressSource& source, const CodecSettings& settings,
+                             double psnr_db, ThreadPool& pool,
+                             const std::function<bool()>& is_interrupted);
+
+}  // namespace lf

@@ -1,0 +1,41 @@
+// Encodes one LF image and measures the error. Internal to this folder.
+#pragma once
+
+#include <optional>
+
+#include "lf/distribute/compress/code_quality.h"
+#include "lf/light_field/model/radiance.h"
+#include "lf/pixels/codec/lf_image_codec.h"
+#include "lf/storage/load/display_curve.h"
+#include "lf/storage/load/recorded_image.h"
+#include "lf/storage/packed/packed_store_writer.h"
+
+namespace lf {
+
+// An encoder for one light field and settings. The threshold of the settings is in grey steps.
+class ImageCoder {
+ public:
+  ImageCoder(const RadianceEncoding& encoding, const CodecSettings& settings);
+
+  // Encodes an image. The default profile encodes linear values of 16 bits along the display curve.
+  CodedImage Code(const RecordedImage& image) const;
+
+  // Returns the levels of the display curve if images are encoded along it.
+  std::optional<DisplayLevels> display_levels() const;
+
+  // Measures the error in stored values. The error of linear values of 16 bits is measured along
+  // the display curve for all profiles, because an error is seen on this curve.
+  CodeError ErrorOf(const RecordedImage& image, const CodedImage& coded) const;
+
+ private:
+  bool IsLinear(const RecordedImage& image) const {
+    return curve_ && image.values == StoredValues::kUint16;
+  }
+  Image<uint16_t> OnCurve(const CodecPixels& pixels) const;
+
+  const RadianceEncoding encoding_;
+  const CodecSettings settings_;
+  std::optional<DisplayCurve> curve_;
+};
+
+}  // namespace lf

@@ -1,0 +1,119 @@
+#include "lf/distribute/compress/verify_store.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "lf/distribute/compress/compress.h"
+#include "lf/distribute/compress/image_coder.h"
+#include "lf/storage/load/recorded_image.h"
+#include "lf/storage/packed/packed_store_file.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+
+Result<void> CheckStoreFacts(const CompressSource& source, const VerifyOptions& options) {
+  LF_ASSIGN_OR_RETURN(const PackedStoreFacts facts, ReadPackedStore(options.store));
+  if (facts.whole != source.whole)
+    return InputError(fmt::format("{}: is of another light field", options.store.string()));
+  if (const std::string asked = NameOf(options.settings); facts.codec != asked)
+    return InputError(
+        fmt::format("{}: was made with other settings: {}; asked for: {}: give the "
+                    "options that it was made with",
+                    options.store.string(), facts.codec, asked));
+  return CheckIsOfPlan(options.store, source.light_field, options.plan, options.any_shards);
+}
+
+Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& options,
+                           ThreadPool& pool, const std::function<void(size_t)>& progress) {
+  LF_RETURN_IF_ERROR(CheckStoreFacts(source, options));
+  const LightField& light_field = source.light_field;
+  LF_ASSIGN_OR_RETURN(const std::vector<PackedCode> codes,
+                      FindCodes(options.store, light_field.image_names));
+
+  const ImageCoder coder(light_field.encoding, options.settings);
+  std::mutex mutex;
+  std::vector<std::unique_ptr<PackedCodeReader>> readers;
+  size_t done = 0, verified = 0;
+  std::vector<std::optional<std::string>> faults(light_field.size());
+  const auto reader_of_thread = [&]() -> Result<std::unique_ptr<PackedCodeReader>> {
+    {
+      const std::lock_guard lock(mutex);
+      if (!readers.empty()) {
+        std::unique_ptr<PackedCodeReader> reader = std::move(readers.back());
+        readers.pop_back();
+        return reader;
+      }
+    }
+    LF_ASSIGN_OR_RETURN(PackedCodeReader reader, PackedCodeReader::Open(options.store));
+    return std::make_unique<PackedCodeReader>(std::move(reader));
+  };
+  // Returns what is wrong with an encoded image, if anything.
+  const auto check = [&](uint32_t i) -> Result<void> {
+    const LfImageId id{i};
+    const PixelRect rect = RectToRecord(light_field, id, source.rects[i]);
+    const Result<RecordedImage> image = ReadRecordedImage(light_field, id, rect);
+    if (codes[i].bytes == 0) {
+      if (image) return InputError("has no code, but can be read");
+      return {};
+    }
+    LF_RETURN_IF_ERROR(image);
+    LF_ASSIGN_OR_RETURN(std::unique_ptr<PackedCodeReader> reader, reader_of_thread());
+    const Result<PackedCodeReader::Bytes> bytes = reader->Read(codes[i]);
+    LF_RETURN_IF_ERROR(bytes);
+    const CodedImage again = coder.Code(*image);
+    DecodedPart decoded;
+    LF_RETURN_IF_ERROR(DecodeImage(bytes->code, &decoded));
+    if (codes[i].rect != again.rect || codes[i].values != again.values ||
+        bytes->code != again.code || bytes->mask != again.mask)
+      return InputError("has another code than its file gives");
+    const std::lock_guard lock(mutex);
+    readers.push_back(std::move(reader));
+    ++verified;
+    return {};
+  };
+  bool interrupted = false;
+  pool.ForEach(light_field.size(), [&](size_t i) {
+    if (options.is_interrupted()) {
+      const std::lock_guard lock(mutex);
+      interrupted = true;
+      return;
+    }
+    if (const Result<void> result = check(static_cast<uint32_t>(i)); !result)
+      faults[i] = result.error().message;
+    const std::lock_guard lock(mutex);
+    progress(++done);
+  });
+  if (interrupted)
+    return Error{ErrorKind::kInterrupted,
+                 fmt::format("interrupted after {} of {} LF images were verified: the store is "
+                             "there",
+                             done, light_field.size())};
+  const auto count = std::count_if(faults.begin(), faults.end(),
+                                   [](const auto& fault) { return fault.has_value(); });
+  if (count == 0) return verified;
+  const auto first = static_cast<size_t>(
+      std::find_if(faults.begin(), faults.end(), [](const auto& f) { return f.has_value(); }) -
+      faults.begin());
+  return InputError(fmt::format("{}: {} of {} codes are wrong; the first: {}: {}",
+                                options.store.string(), count, light_field.size(),
+                                light_field.image_names[first], *faults[first]));
+}
+
+uint64_t StoreBytes(const fs::path& store) {
+  const Result<PackedStoreFacts> facts = ReadPackedStore(store);
+  if (!facts) return 0;
+  uint64_t bytes = 0;
+  for (const fs::path& file : FilesOf(store, *facts)) {
+    std::error_code error;
+    const uintmax_t of_file = fs::file_size(file, error);
+    if (!error) bytes += of_file;
+  }
+  return bytes;
+}
+
+}  // namespace lf

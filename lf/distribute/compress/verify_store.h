@@ -1,0 +1,38 @@
+// Checks that a packed store on the disk matches its source. Internal to this folder.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+
+#include "lf/core/parallel.h"
+#include "lf/core/result.h"
+#include "lf/distribute/compress/compress_source.h"
+#include "lf/pixels/codec/lf_image_codec.h"
+#include "lf/storage/packed/packed_store_writer.h"
+
+namespace lf {
+
+struct VerifyOptions {
+  std::filesystem::path store;
+  CodecSettings settings;  // settings that it must have been made with
+  PackedStorePlan plan;    // the plan that it must match
+  bool any_shards = true;  // accept shards of any size
+  std::function<bool()> is_interrupted;
+};
+
+// kInput: the store is of other LF images, another calibration or other settings, or there is none.
+Result<void> CheckStoreFacts(const CompressSource& source, const VerifyOptions& options);
+
+// Reads all encoded images back. Each must equal the result of encoding its LF image, and be
+// decoded without damage. Returns the number of encoded images. An LF image that is missing in the
+// store must not be readable. kInput: an encoded image differs or is damaged (the message states
+// the first and the count), or the store is of another light field or other settings; kInterrupted.
+Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& options,
+                           ThreadPool& pool, const std::function<void(size_t)>& progress);
+
+// Returns the total size of the store's file and its shards; 0 if the store cannot be read.
+uint64_t StoreBytes(const std::filesystem::path& store);
+
+}  // namespace lf

@@ -1,0 +1,92 @@
+#include "lf/distribute/preprocess/package_folder.h"
+
+#include <fmt/format.h>
+
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kExtension = ".lfp";
+constexpr std::string_view kPrefix = "package-";
+
+// Returns the files of a folder that are packages by their extension.
+std::vector<fs::path> FilesIn(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (auto entry = fs::directory_iterator(folder, error);
+       !error && entry != fs::directory_iterator(); entry.increment(error))
+    if (entry->path().extension() == kExtension) files.push_back(entry->path());
+  return files;
+}
+
+void RemoveFiles(const std::vector<fs::path>& files) {
+  std::error_code ignored;
+  for (const fs::path& file : files) fs::remove(file, ignored);
+}
+
+}  // namespace
+
+PackageFolder::PackageFolder(fs::path folder, std::string part, FileLock lock)
+    : folder_(std::move(folder)), part_(std::move(part)), lock_(std::move(lock)) {}
+
+PackageFolder::~PackageFolder() { lock_.Remove(); }
+
+Result<PackageFolder> PackageFolder::Open(const fs::path& folder, const std::string& part,
+                                          bool overwrite) {
+  LF_RETURN_IF_ERROR(CreateFolder(folder));
+  LF_ASSIGN_OR_RETURN(FileLock lock, FileLock::Take(folder / ".packages.lock"));
+  PackageFolder opened(folder, part, std::move(lock));
+  // The lock guarantees that no program, on this host or on others, still writes them.
+  std::vector<fs::path> leftovers = FilesIn(folder);
+  std::erase_if(leftovers, [](const fs::path& file) {
+    const std::string name = file.filename().string();
+    return !IsTemporaryName(name) || !name.substr(1).starts_with(kPrefix);
+  });
+  RemoveFiles(leftovers);
+  const size_t there = opened.Packages().size();
+  if (there > 0 && !overwrite)
+    return UsageError(
+        fmt::format("{}: holds {} packages already: --overwrite replaces them, or give another -o",
+                    folder.string(), there));
+  return opened;
+}
+
+std::vector<fs::path> PackageFolder::Packages() const {
+  std::vector<fs::path> packages = FilesIn(folder_);
+  std::erase_if(packages, [this](const fs::path& file) {
+    const std::string name = file.filename().string();
+    return !name.starts_with(kPrefix) ||
+           (!part_.empty() && name.find(part_ + ".") == std::string::npos);
+  });
+  return packages;
+}
+
+fs::path PackageFolder::PathOf(const std::string& name) const {
+  return folder_ / (name + kExtension);
+}
+
+Result<void> PackageFolder::Add(const std::string& name, const Package& package,
+                                const PackageNotes& notes) {
+  const fs::path path = PathOf(name);
+  renamings_.push_back({files_.emplace_back(path).path(), path});
+  LF_RETURN_IF_ERROR(WritePackageAs(renamings_.back().from, path, package, notes));
+  return FlushToDisk(renamings_.back().from);  // flushed here, so that Publish() takes no time
+}
+
+Result<void> PackageFolder::Publish() {
+  RemoveFiles(Packages());
+  const Result<void> renamed = RenameFlushed(renamings_);
+  if (!renamed) {
+    // A part of the packages could be mistaken for all of them.
+    for (const Renaming& file : renamings_) RemoveFiles({file.to});
+    return renamed.error();
+  }
+  for (TemporaryFile& file : files_) file.Keep();
+  return {};
+}
+
+}  // namespace lf

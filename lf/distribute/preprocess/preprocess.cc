@@ -1,0 +1,440 @@
+#include "lf/distribute/preprocess/preprocess.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <memory>
+#include <numeric>
+
+#include "lf/core/hash.h"
+#include "lf/core/log.h"
+#include "lf/distribute/preprocess/package_folder.h"
+#include "lf/distribute/preprocess/split_film.h"
+#include "lf/render/collect/frame_lens.h"
+#include "lf/render/hybrid/render_memory.h"
+#include "lf/render/needs/film_order.h"
+#include "lf/render/needs/frame_needs.h"
+#include "lf/storage/load/open_store.h"
+
+namespace lf {
+namespace {
+
+// Memory for kept needs; enough for 300 frames of 20,000 LF images each.
+constexpr uint64_t kMostKeptBytes = uint64_t{256} << 20;
+
+double SecondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// Returns the suffix for names of packages of a part of a film, such as -of-frames-1-4; empty for
+// the whole film. With it, packages, reports and states of different parts can share a folder.
+std::string NameOfPart(const std::vector<FrameId>& frames, size_t film_frame_count) {
+  if (frames.empty() || frames.size() == film_frame_count) return "";
+  std::string ranges;
+  for (size_t begin = 0, end = 0; begin < frames.size(); begin = end) {
+    for (end = begin + 1; end < frames.size(); ++end)
+      if (frames[end].value != frames[end - 1].value + 1) break;
+    ranges += fmt::format("{}{}", ranges.empty() ? "" : "+", frames[begin].value);
+    if (end > begin + 1) ranges += fmt::format("-{}", frames[end - 1].value);
+  }
+  constexpr size_t kLongest = 40;
+  if (ranges.size() > kLongest)
+    ranges = fmt::format("{}-{}-{:08x}", frames.front().value, frames.back().value,
+                         static_cast<uint32_t>(HashBytes(ranges)));
+  return "-of-frames-" + ranges;
+}
+
+// The LF images of a package, gathered frame by frame.
+class Gathering {
+ public:
+  struct Image {
+    PixelRect rect;  // bounds of the pixels that the frames read
+    uint32_t frame_count = 0;
+    uint64_t ray_count = 0;
+  };
+  void Add(const FrameNeeds& needs) {
+    for (const FrameNeeds::Image& image : needs.images) {
+      Image& all = images_[image.id];
+      all.rect = Bounds(all.rect, image.rect);
+      all.frame_count += 1;
+      all.ray_count += image.ray_count;
+    }
+    for (const LfImageId id : needs.neighbours) images_[id];
+  }
+  // Returns the LF images by ascending ids. An image that no frame reads is a neighbour.
+  const std::map<LfImageId, Image>& images() const { return images_; }
+
+ private:
+  std::map<LfImageId, Image> images_;
+};
+
+class Preprocessor {
+ public:
+  Preprocessor(const LightField& light_field, const CameraPath& path,
+               const PreprocessOptions& options, ThreadPool& pool,
+               const std::function<void(size_t, size_t)>& progress)
+      : light_field_(light_field),
+        path_(path),
+        options_(options),
+        pool_(pool),
+        progress_(progress) {
+    needs_.select.reach = ReachOf(options.reading.estimator);
+    needs_.select.max_angle_rad = options.max_angle_rad;
+    needs_.select.interrupted = options.interrupted;
+    needs_.lens_weights = options.lens_weights;
+    needs_.mode = options.mode;
+    needs_.max_image_count = options.max_image_count;
+  }
+
+  Result<PreprocessReport> Run();
+
+ private:
+  Result<void> Begin();
+  Result<void> CheckOptions() const;
+  Result<void> MakeIndex();
+  Result<void> ForecastFrames();
+  Result<void> DescribeSurroundings(const std::map<FrameId, FrameSampling>& sampling);
+  Result<void> Measure();
+  Result<MemoryPlan> MemoryOf(const LightField& light_field, size_t frame_count) const;
+  Result<std::vector<Section>> Split() const;
+  Result<void> MakePackage(size_t number, const Section& section, size_t count);
+  Package PackageOf(const Section& section, const Gathering& gathering) const;
+  std::vector<uint64_t> FileSizes(const Package& package) const;
+  Result<void> CountMissing(const Package& package, PackageForecast* forecast);
+  Result<void> Forecast(const Package& package, PackageForecast* forecast) const;
+
+  Result<void> CheckInterrupted() const {
+    if (options_.interrupted == nullptr || !*options_.interrupted) return {};
+    return Error{ErrorKind::kInterrupted, "interrupted: no package is kept"};
+  }
+  // Needs are incomplete if an interruption came while they were computed.
+  Result<FrameNeeds> Needs(FrameId frame) {
+    FrameNeeds needs;
+    if (const auto kept = kept_needs_.find(frame); kept != kept_needs_.end()) {
+      needs = std::move(kept->second);
+      kept_needs_.erase(kept);
+    } else {
+      needs = NeedsOf(*index_, path_.Camera(frame), needs_, pool_);
+    }
+    LF_RETURN_IF_ERROR(CheckInterrupted());
+    if (progress_) progress_(++done_, 2 * frames_.size());
+    return needs;
+  }
+  void Keep(FrameId frame, FrameNeeds needs);
+
+  const LightField& light_field_;
+  const CameraPath& path_;
+  const PreprocessOptions& options_;
+  ThreadPool& pool_;
+  const std::function<void(size_t, size_t)>& progress_;
+  NeedsOptions needs_;
+  std::vector<FrameId> frames_;
+  std::optional<PackageFolder> folder_;  // none: nothing is written
+  std::unique_ptr<LfImageStore> store_;  // for sizes of files, and to check which pixels it keeps
+  LightFieldIdentity whole_;
+  ImagePlaces places_;
+  std::optional<ImageIndex> index_;
+  // Needs that the forecast computed and packages use again, up to kMostKeptBytes.
+  std::map<FrameId, FrameNeeds> kept_needs_;
+  uint64_t kept_bytes_ = 0;
+  std::vector<FrameSurroundings> surroundings_;  // [frame - 1] of the film
+  size_t done_ = 0;
+  std::vector<bool> is_counted_;  // LF images of finished packages
+  PreprocessReport report_;
+};
+
+Result<PreprocessReport> Preprocessor::Run() {
+  LF_RETURN_IF_ERROR(Begin());
+  LF_RETURN_IF_ERROR(MakeIndex());
+  LF_RETURN_IF_ERROR(ForecastFrames());
+  LF_RETURN_IF_ERROR(Measure());
+  LF_ASSIGN_OR_RETURN(const std::vector<Section> sections, Split());
+  for (size_t i = 0; i < sections.size(); ++i)
+    LF_RETURN_IF_ERROR(MakePackage(i, sections[i], sections.size()));
+  if (folder_) LF_RETURN_IF_ERROR(folder_->Publish());
+  return std::move(report_);
+}
+
+Result<void> Preprocessor::Begin() {
+  frames_ = options_.frames;
+  if (frames_.empty())
+    for (uint32_t n = 1; n <= path_.frame_count(); ++n) frames_.push_back(FrameId{n});
+  LF_RETURN_IF_ERROR(CheckOptions());
+  if (options_.output_folder) {
+    LF_ASSIGN_OR_RETURN(
+        PackageFolder folder,
+        PackageFolder::Open(*options_.output_folder,
+                            NameOfPart(options_.frames, path_.frame_count()), options_.overwrite));
+    folder_.emplace(std::move(folder));
+  }
+  LF_ASSIGN_OR_RETURN(store_,
+                      OpenStore(light_field_, options_.reading.estimator == Estimator::kBilinear
+                                                  ? Mosaics::kToRgb
+                                                  : Mosaics::kAsRecorded));
+  report_.light_field_image_count = light_field_.size();
+  whole_ = IdentityOf(light_field_);
+  return {};
+}
+
+Result<void> Preprocessor::CheckOptions() const {
+  LF_RETURN_IF_ERROR(CheckOpacity(light_field_.encoding, options_.mode));
+  if (Rebins(options_.mode) && options_.max_image_count)
+    return UsageError(
+        "--max-images: rebinned rays are shared by frames, so that no limit of each frame's LF "
+        "images can be kept: leave it out, or use --mode collect");
+  if (!Collects(options_.mode) && options_.lens_weights != LensWeights::kNone)
+    return UsageError(fmt::format(
+        "--lens-weights {}: --mode rebin collects no rays that could be weighed: leave it out",
+        NameOf(options_.lens_weights)));
+  if (options_.lens_weights == LensWeights::kArea)
+    for (const FrameId frame : frames_)
+      LF_RETURN_IF_ERROR(CheckHasArea(path_.Camera(frame), frame));
+  return {};
+}
+
+Result<void> Preprocessor::MakeIndex() {
+  const auto start = std::chrono::steady_clock::now();
+  const Result<ImagePlaces> places =
+      PlacesOfFilm(options_.order, options_.seed, light_field_, path_, needs_, pool_);
+  LF_RETURN_IF_ERROR(CheckInterrupted());
+  if (!places) return places.error();
+  places_ = *places;
+  index_.emplace(light_field_, places_);
+  report_.index_s = SecondsSince(start);
+  LogDebug("order {} of {} LF images by seed {}, and their octree: {:.2f} s",
+           NameOf(options_.order), light_field_.size(), options_.seed, report_.index_s);
+  return {};
+}
+
+// Slabs of rebinned rays are planned for the whole film, even if only some of its frames are
+// packed.
+Result<void> Preprocessor::DescribeSurroundings(const std::map<FrameId, FrameSampling>& sampling) {
+  if (!needs_.HasNeighbours()) return {};
+  for (uint32_t n = 1; n <= path_.frame_count(); ++n) {
+    const auto known = sampling.find(FrameId{n});
+    surroundings_.push_back(
+        SurroundingsOf(known != sampling.end()
+                           ? known->second
+                           : SamplingOf(*index_, path_.Camera(FrameId{n}), needs_.select, pool_)));
+    LF_RETURN_IF_ERROR(CheckInterrupted());
+  }
+  return {};
+}
+
+Result<void> Preprocessor::ForecastFrames() {
+  const auto start = std::chrono::steady_clock::now();
+  std::map<FrameId, FrameSampling> sampling;
+  for (const FrameId frame : frames_) {
+    LF_ASSIGN_OR_RETURN(FrameNeeds needs, Needs(frame));
+    LF_RETURN_IF_ERROR(CheckKept(*store_, light_field_, frame, needs));
+    report_.frames.push_back({frame, needs.images.size(), needs.RayCount(), {}});
+    if (needs.sampling) sampling[frame] = *needs.sampling;
+    Keep(frame, std::move(needs));
+  }
+  LF_RETURN_IF_ERROR(DescribeSurroundings(sampling));
+  report_.select_s += SecondsSince(start);
+  const auto density_start = std::chrono::steady_clock::now();
+  // One frame takes little time, but only one thread.
+  pool_.ForEach(frames_.size(), [this](size_t f) {
+    if (options_.interrupted != nullptr && *options_.interrupted) return;
+    report_.frames[f].density =
+        DensityOf(*index_, path_.Camera(frames_[f]),
+                  options_.depths ? options_.depths : light_field_.depth_range);
+  });
+  LF_RETURN_IF_ERROR(CheckInterrupted());
+  report_.density_s = SecondsSince(density_start);
+  if (std::all_of(report_.frames.begin(), report_.frames.end(),
+                  [](const FrameForecast& frame) { return frame.image_count == 0; }))
+    return InputError(fmt::format(
+        "no LF image contributes to frames {}-{}: no recorded ray passes both their lens and what "
+        "they see (is the aperture smaller than the camera spacing, or the camera off the "
+        "capture?)",
+        frames_.front().value, frames_.back().value));
+  return {};
+}
+
+void Preprocessor::Keep(FrameId frame, FrameNeeds needs) {
+  const uint64_t bytes = needs.images.capacity() * sizeof(FrameNeeds::Image) +
+                         needs.neighbours.capacity() * sizeof(LfImageId);
+  if (kept_bytes_ + bytes > kMostKeptBytes) return;
+  kept_bytes_ += bytes;
+  kept_needs_.emplace(frame, std::move(needs));
+}
+
+// Measures the rate on the frame that has the median number of rays.
+Result<void> Preprocessor::Measure() {
+  std::vector<size_t> by_rays(frames_.size());
+  std::iota(by_rays.begin(), by_rays.end(), size_t{0});
+  std::erase_if(by_rays, [this](size_t f) { return report_.frames[f].image_count == 0; });
+  std::sort(by_rays.begin(), by_rays.end(), [this](size_t a, size_t b) {
+    return report_.frames[a].ray_count < report_.frames[b].ray_count;
+  });
+  const FrameId frame = frames_[by_rays[by_rays.size() / 2]];
+  const Result<RenderRate> rate =
+      MeasureRate(*index_, path_.Camera(frame), needs_, options_.reading, pool_);
+  if (rate)
+    report_.rate = *rate;
+  else
+    report_.rate_error = rate.error().message;
+  return {};
+}
+
+Result<MemoryPlan> Preprocessor::MemoryOf(const LightField& light_field, size_t frame_count) const {
+  const Intrinsics& plate = path_.Camera(frames_.front()).pinhole.intrinsics;
+  LF_ASSIGN_OR_RETURN(RenderMemory memory,
+                      PlanRenderMemory(options_.memory_bytes, options_.mode, 0, light_field,
+                                       options_.reading.estimator, plate.width_px, plate.height_px,
+                                       frame_count, pool_.thread_count()));
+  memory.plan.total_bytes += memory.rebin_bytes;
+  return memory.plan;
+}
+
+Result<std::vector<Section>> Preprocessor::Split() const {
+  LF_ASSIGN_OR_RETURN(const MemoryPlan memory, MemoryOf(light_field_, frames_.size()));
+  std::vector<uint64_t> costs;
+  for (const FrameForecast& frame : report_.frames)
+    costs.push_back(options_.balance == PackageBalance::kRays ? frame.ray_count : 1);
+  if (options_.package_count) return SplitByCost(costs, *options_.package_count);
+  if (options_.frames_per_package) {
+    std::vector<Section> sections;
+    for (size_t begin = 0; begin < frames_.size(); begin += *options_.frames_per_package)
+      sections.push_back({begin, std::min(frames_.size(), begin + *options_.frames_per_package)});
+    return sections;
+  }
+  return SplitToFit(costs, memory.frames_per_pass);
+}
+
+Result<void> Preprocessor::MakePackage(size_t number, const Section& section, size_t count) {
+  const auto start = std::chrono::steady_clock::now();
+  Gathering gathering;
+  for (size_t f = section.begin; f < section.end; ++f) {
+    LF_ASSIGN_OR_RETURN(const FrameNeeds needs, Needs(frames_[f]));
+    gathering.Add(needs);
+  }
+  Package package = PackageOf(section, gathering);
+  package.number = number + 1;
+  package.count = count;
+  report_.select_s += SecondsSince(start);
+
+  PackageForecast forecast;
+  const std::string part = NameOfPart(options_.frames, path_.frame_count());
+  forecast.name = fmt::format("package-{:04}{}", number, part);
+  LF_RETURN_IF_ERROR(CountMissing(package, &forecast));
+  LF_RETURN_IF_ERROR(Forecast(package, &forecast));
+  report_.packages.push_back(std::move(forecast));
+  if (!folder_) return {};
+
+  const auto write_start = std::chrono::steady_clock::now();
+  const std::string& name = report_.packages.back().name;
+  LF_RETURN_IF_ERROR(folder_->Add(name, package, {options_.version, options_.light_field_name}));
+  report_.write_s += SecondsSince(write_start);
+  LogDebug("{}: {} frames, {} LF images, {} neighbours: written in {:.2f} s",
+           folder_->PathOf(name).string(), package.frames.size(),
+           report_.packages.back().image_count, report_.packages.back().neighbour_count,
+           SecondsSince(write_start));
+  return {};
+}
+
+// Counts the missing files of the package and of the film.
+Result<void> Preprocessor::CountMissing(const Package& package, PackageForecast* forecast) {
+  is_counted_.resize(light_field_.size(), false);
+  for (size_t i = 0; i < package.images.size(); ++i) {
+    const PackageImage& image = package.images[i];
+    if (image.frame_count == 0) continue;
+    const bool is_missing = image.file_bytes == 0, is_known = is_counted_[image.id];
+    is_counted_[image.id] = true;
+    if (is_missing) ++forecast->missing_count;
+    if (is_known) continue;
+    ++report_.needed_count;
+    if (is_missing && report_.missing_count++ == 0)
+      report_.first_missing =
+          package.light_field.ImagePath(LfImageId{static_cast<uint32_t>(i)}).string();
+    if (is_missing && options_.strict)
+      return InputError(fmt::format("--strict: {}: is not there, or empty", report_.first_missing));
+  }
+  return {};
+}
+
+Package Preprocessor::PackageOf(const Section& section, const Gathering& gathering) const {
+  Package package;
+  package.whole = whole_;
+  package.choices = {options_.order,         options_.seed,          options_.max_image_count,
+                     options_.max_angle_rad, needs_.HasNeighbours(), NameOf(options_.mode)};
+  package.path = path_;
+  package.surroundings = surroundings_;
+  for (size_t f = section.begin; f < section.end; ++f)
+    package.frames.push_back({.id = frames_[f],
+                              .image_count = report_.frames[f].image_count,
+                              .ray_count = report_.frames[f].ray_count});
+  LightField& part = package.light_field;
+  part.folder = light_field_.folder;
+  part.encoding = light_field_.encoding;
+  part.unit_m = light_field_.unit_m;
+  part.depth_range = light_field_.depth_range;
+  package.places.end = places_.end;
+  std::map<uint32_t, uint32_t> intrinsics;  // by index in the whole light field
+  for (const auto& [id, gathered] : gathering.images()) {
+    LfCamera camera = light_field_.cameras[id.value];
+    const auto [known, is_new] = intrinsics.try_emplace(
+        camera.intrinsics_index, static_cast<uint32_t>(part.intrinsics.size()));
+    if (is_new) part.intrinsics.push_back(light_field_.intrinsics[camera.intrinsics_index]);
+    camera.intrinsics_index = known->second;
+    part.cameras.push_back(camera);
+    part.image_names.push_back(light_field_.image_names[id.value]);
+    if (!light_field_.mask_names.empty())
+      part.mask_names.push_back(light_field_.mask_names[id.value]);
+    package.places.of_images.push_back(places_.of_images[id.value]);
+    PackageImage image;
+    image.id = id.value;
+    image.rect = gathered.rect;
+    image.frame_count = gathered.frame_count;
+    image.ray_count = gathered.ray_count;
+    package.images.push_back(image);
+  }
+  const std::vector<uint64_t> sizes = FileSizes(package);
+  for (size_t i = 0; i < sizes.size(); ++i) package.images[i].file_bytes = sizes[i];
+  return package;
+}
+
+// Returns the sizes of the files; 0 for a missing file and for a neighbour, whose file is not read.
+std::vector<uint64_t> Preprocessor::FileSizes(const Package& package) const {
+  constexpr size_t kTogether = 256;
+  std::vector<uint64_t> sizes(package.images.size(), 0);
+  pool_.ForEach((sizes.size() + kTogether - 1) / kTogether, [&](size_t task) {
+    for (size_t i = task * kTogether; i < std::min(sizes.size(), (task + 1) * kTogether); ++i)
+      if (package.images[i].frame_count > 0)
+        sizes[i] = store_->StoredBytes(LfImageId{package.images[i].id});
+  });
+  return sizes;
+}
+
+Result<void> Preprocessor::Forecast(const Package& package, PackageForecast* forecast) const {
+  forecast->frames = package.FrameIds();
+  for (const PackageImage& image : package.images) {
+    (image.frame_count > 0 ? forecast->image_count : forecast->neighbour_count) += 1;
+    forecast->read_bytes += image.file_bytes;
+    forecast->ray_count += image.ray_count;
+  }
+  LF_ASSIGN_OR_RETURN(const MemoryPlan memory,
+                      MemoryOf(package.light_field, package.frames.size()));
+  forecast->memory_bytes = memory.total_bytes;
+  forecast->pass_count =
+      (package.frames.size() + memory.frames_per_pass - 1) / memory.frames_per_pass;
+  if (report_.rate)
+    forecast->cpu_s = report_.rate->load_s * static_cast<double>(forecast->image_count) +
+                      report_.rate->collect_s * static_cast<double>(forecast->ray_count) +
+                      report_.rate->finish_s * static_cast<double>(package.frames.size());
+  return {};
+}
+
+}  // namespace
+
+Result<PreprocessReport> Preprocess(const LightField& light_field, const CameraPath& path,
+                                    const PreprocessOptions& options, ThreadPool& pool,
+                                    const std::function<void(size_t, size_t)>& progress) {
+  return Preprocessor(light_field, path, options, pool, progress).Run();
+}
+
+}  // namespace lf

@@ -1,0 +1,256 @@
+#include "lf/distribute/preprocess/preprocess.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "lf/render/collect/frame_lens.h"
+#include "lf/render/collect/test_noise_field.h"
+#include "lf/render/needs/frame_needs.h"
+#include "lf/render/package/package_file.h"
+
+namespace lf {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Returns frames that move over the noise field and past its border.
+CameraPath Film() {
+  CameraPath film;
+  for (int i = 0; i < 10; ++i) {
+    RenderCamera frame = testing::NoiseFrames()[static_cast<size_t>(i % 3)];
+    frame.pinhole.cam_from_world =
+        *LookAlong({-0.03 + 0.01 * i, 0.002 * i, -0.01 * (i % 2)}, {0, 0, 1}, {0, -1, 0});
+    frame.aperture.radius_w = 0.004 + 0.001 * i;
+    frame.focus_distance_w = 1 + i % 3;
+    frame.focus_plane = FocusPlane(frame.pinhole, frame.focus_distance_w, {});
+    film.cameras.push_back(frame);
+  }
+  return film;
+}
+
+class PreprocessTest : public ::testing::Test {
+ protected:
+  PreprocessTest()
+      : field_(testing::NoiseField(24)),
+        film_(Film()),
+        folder_(fs::temp_directory_path() /
+                ("lf_preprocess_test." + std::to_string(::getpid()) + "." +
+                 ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
+    options_.output_folder = folder_;
+    options_.package_count = 3;
+    options_.seed = 5;
+  }
+  ~PreprocessTest() override { fs::remove_all(folder_); }
+
+  PreprocessReport Run() {
+    Result<PreprocessReport> report = Preprocess(field_, film_, options_, pool_, nullptr);
+    EXPECT_TRUE(report) << report.error().message;
+    return *std::move(report);
+  }
+  Package Read(const PackageForecast& forecast) const {
+    Result<Package> package = ReadPackage(folder_ / (forecast.name + ".lfp"));
+    EXPECT_TRUE(package) << package.error().message;
+    return *std::move(package);
+  }
+  // Expects that the package's frames need the same LF images as in the whole light field, with
+  // equal weights.
+  void ExpectPackageIsAsGoodAsTheWhole(const Package& package, const NeedsOptions& needs);
+
+  LightField field_;
+  CameraPath film_;
+  fs::path folder_;
+  PreprocessOptions options_;
+  ThreadPool pool_{2};
+};
+
+void PreprocessTest::ExpectPackageIsAsGoodAsTheWhole(const Package& package,
+                                                     const NeedsOptions& needs) {
+  const ImageIndex whole(field_, options_.seed), part(package.light_field, package.places);
+  EXPECT_EQ(package.whole, IdentityOf(field_));
+  for (size_t i = 0; i < package.images.size(); ++i)
+    EXPECT_EQ(package.places.of_images[i], whole.PlaceOf(LfImageId{package.images[i].id}));
+  std::map<uint32_t, PackageImage> images;  // by the LF image's id in the whole light field
+  for (const PackageFrame& frame : package.frames) {
+    const RenderCamera& camera = film_.Camera(frame.id);
+    const FrameLens lens(whole, camera, needs.lens_weights, needs.select, pool_);
+    const FrameLens again(part, package.path.Camera(frame.id), needs.lens_weights, needs.select,
+                          pool_, package.CameraDistance(frame.id));
+    EXPECT_EQ(lens.camera().aperture.radius_w, again.camera().aperture.radius_w);
+    const FrameNeeds wanted = NeedsOf(whole, camera, needs, pool_);
+    EXPECT_EQ(frame.ray_count, wanted.RayCount());
+    EXPECT_EQ(frame.image_count, wanted.images.size());
+    for (const FrameNeeds::Image& image : wanted.images) {
+      PackageImage& all = images[image.id.value];
+      all.rect = Bounds(all.rect, image.rect);
+      all.frame_count += 1;
+      all.ray_count += image.ray_count;
+      const auto found =
+          std::find_if(package.images.begin(), package.images.end(),
+                       [&](const PackageImage& known) { return known.id == image.id.value; });
+      ASSERT_NE(found, package.images.end());
+      const LfImageId id{static_cast<uint32_t>(found - package.images.begin())};
+      for (int y = 0; y < 60; y += 7)
+        for (int x = 0; x < 80; x += 9)
+          ASSERT_EQ(lens.WeightsOf(image.id).At(x, y), again.WeightsOf(id).At(x, y));
+    }
+    // The package has enough data to find the same needs again.
+    const std::optional<FrameSampling> sampling =
+        package.surroundings.empty()
+            ? std::nullopt
+            : std::optional(SamplingOf(package.surroundings[frame.id.value - 1]));
+    const FrameNeeds found = NeedsOf(part, package.path.Camera(frame.id), needs, pool_, sampling);
+    ASSERT_EQ(found.images.size(), wanted.images.size());
+    for (size_t i = 0; i < found.images.size(); ++i) {
+      EXPECT_EQ(package.images[found.images[i].id.value].id, wanted.images[i].id.value);
+      EXPECT_EQ(found.images[i].rect, wanted.images[i].rect);
+    }
+  }
+  for (const PackageImage& image : package.images) {
+    const PackageImage& expected = images[image.id];
+    EXPECT_EQ(image.rect, expected.rect);
+    EXPECT_EQ(image.frame_count, expected.frame_count);
+    EXPECT_EQ(image.ray_count, expected.ray_count);
+  }
+}
+
+TEST_F(PreprocessTest, PackagesHaveWhatTheirFramesNeed) {
+  for (const LensWeights weights : {LensWeights::kAuto, LensWeights::kNone})
+    for (const std::optional<size_t> most : {std::optional<size_t>(), std::optional<size_t>(9)}) {
+      options_.lens_weights = weights;
+      options_.max_image_count = most;
+      options_.max_angle_rad = most ? std::optional<double>() : 0.02;
+      options_.overwrite = true;
+      const PreprocessReport report = Run();
+      ASSERT_EQ(report.packages.size(), 3u);
+      NeedsOptions needs;
+      needs.select.reach = PixelReach::kNeighbours;
+      needs.select.max_angle_rad = options_.max_angle_rad;
+      needs.lens_weights = weights;
+      needs.max_image_count = most;
+      std::vector<FrameId> frames;
+      for (const PackageForecast& forecast : report.packages) {
+        const Package package = Read(forecast);
+        EXPECT_EQ(package.FrameIds(), forecast.frames);
+        frames.insert(frames.end(), forecast.frames.begin(), forecast.frames.end());
+        ExpectPackageIsAsGoodAsTheWhole(package, needs);
+        EXPECT_EQ(package.light_field.size(), forecast.image_count + forecast.neighbour_count);
+        if (weights == LensWeights::kNone) {
+          EXPECT_LT(package.light_field.size(), field_.size());
+        }
+      }
+      EXPECT_EQ(frames.size(), film_.frame_count());
+      EXPECT_FALSE(report.rate);  // there are no image files
+      EXPECT_NE(report.rate_error, "");
+    }
+}
+
+// Packages have the LF images of rebinned rays, even if no LF camera's rays pass the lens.
+TEST_F(PreprocessTest, PackagesHaveWhatTheModeNeeds) {
+  for (RenderCamera& camera : film_.cameras) camera.aperture.radius_w *= 0.2;
+  std::map<RenderMode, uint64_t> rays;
+  for (const RenderMode mode : {RenderMode::kCollect, RenderMode::kRebin, RenderMode::kHybrid}) {
+    options_.mode = mode;
+    options_.lens_weights = LensWeights::kNone;
+    options_.overwrite = true;
+    NeedsOptions needs;
+    needs.select.reach = PixelReach::kNeighbours;
+    needs.lens_weights = LensWeights::kNone;
+    needs.mode = mode;
+    for (const PackageForecast& forecast : Run().packages) {
+      const Package package = Read(forecast);
+      EXPECT_EQ(package.choices.mode, NameOf(mode));
+      EXPECT_EQ(package.choices.has_neighbours, Rebins(mode));
+      ExpectPackageIsAsGoodAsTheWhole(package, needs);
+      rays[mode] += forecast.ray_count;
+    }
+  }
+  EXPECT_GT(rays[RenderMode::kRebin], rays[RenderMode::kCollect]);
+  EXPECT_GT(rays[RenderMode::kHybrid], rays[RenderMode::kCollect]);
+}
+
+TEST_F(PreprocessTest, WhatRebinnedRaysCannotHaveIsRefused) {
+  options_.mode = RenderMode::kRebin;
+  for (const bool has_weights : {true, false}) {
+    options_.lens_weights = has_weights ? LensWeights::kAuto : LensWeights::kNone;
+    if (!has_weights) options_.max_image_count = 5;
+    const Result<PreprocessReport> report = Preprocess(field_, film_, options_, pool_, nullptr);
+    ASSERT_FALSE(report);
+    EXPECT_EQ(report.error().kind, ErrorKind::kUsage);
+    EXPECT_NE(report.error().message.find(has_weights ? "--lens-weights" : "--max-images"),
+              std::string::npos);
+  }
+}
+
+TEST_F(PreprocessTest, FramesAndSectionsAsAsked) {
+  options_.package_count.reset();
+  EXPECT_EQ(Run().packages.size(), 1u);
+  options_.overwrite = true;
+  options_.frames_per_package = 4;
+  options_.frames = {FrameId{2}, FrameId{3}, FrameId{5}, FrameId{7}, FrameId{8}, FrameId{9}};
+  const PreprocessReport report = Run();
+  ASSERT_EQ(report.packages.size(), 2u);
+  EXPECT_EQ(report.packages[0].frames.size(), 4u);
+  EXPECT_EQ(report.packages[1].frames, (std::vector<FrameId>{FrameId{8}, FrameId{9}}));
+}
+
+TEST_F(PreprocessTest, APlanWritesNothingAndTellsTheSame) {
+  const PreprocessReport written = Run();
+  options_.output_folder.reset();
+  const PreprocessReport plan = Run();
+  ASSERT_EQ(plan.packages.size(), written.packages.size());
+  for (size_t i = 0; i < plan.packages.size(); ++i) {
+    EXPECT_EQ(plan.packages[i].ray_count, written.packages[i].ray_count);
+    EXPECT_EQ(plan.packages[i].image_count, written.packages[i].image_count);
+  }
+}
+
+TEST_F(PreprocessTest, PackagesThatAreThereAreReplacedOnRequestOnly) {
+  Run();
+  const Result<PreprocessReport> again = Preprocess(field_, film_, options_, pool_, nullptr);
+  ASSERT_FALSE(again);
+  EXPECT_EQ(again.error().kind, ErrorKind::kUsage);
+  EXPECT_NE(again.error().message.find("--overwrite"), std::string::npos);
+  options_.overwrite = true;
+  options_.package_count = 2;
+  Run();
+  EXPECT_TRUE(fs::exists(folder_ / "package-0001.lfp"));
+  EXPECT_FALSE(fs::exists(folder_ / "package-0002.lfp"));
+}
+
+TEST_F(PreprocessTest, AFilmThatNobodySeesIsAnError) {
+  for (RenderCamera& camera : film_.cameras)
+    camera.pinhole.cam_from_world = *LookAlong({50, 0, 0}, {0, 0, 1}, {0, -1, 0});
+  options_.lens_weights = LensWeights::kNone;
+  const Result<PreprocessReport> report = Preprocess(field_, film_, options_, pool_, nullptr);
+  ASSERT_FALSE(report);
+  EXPECT_EQ(report.error().kind, ErrorKind::kInput);
+}
+
+TEST_F(PreprocessTest, OrdersAreOfTheWholeFilm) {
+  for (const ImageOrder order : {ImageOrder::kRoundRobin, ImageOrder::kArea}) {
+    options_.order = order;
+    options_.overwrite = true;
+    const PreprocessReport report = Run();
+    std::map<uint32_t, uint32_t> places;  // by LF image
+    for (const PackageForecast& forecast : report.packages) {
+      const Package package = Read(forecast);
+      EXPECT_EQ(package.choices.order, order);
+      for (size_t i = 0; i < package.images.size(); ++i) {
+        const auto [known, is_new] =
+            places.emplace(package.images[i].id, package.places.of_images[i]);
+        EXPECT_EQ(known->second, package.places.of_images[i]);
+      }
+    }
+    std::set<uint32_t> distinct;
+    for (const auto& [id, place] : places) distinct.insert(place);
+    EXPECT_EQ(distinct.size(), places.size());
+  }
+}
+
+}  // namespace
+}  // namespace lf

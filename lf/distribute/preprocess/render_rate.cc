@@ -1,0 +1,96 @@
+#include "lf/distribute/preprocess/render_rate.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <ctime>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "lf/film/develop/frame_file.h"
+#include "lf/render/collect/collect.h"
+#include "lf/render/collect/frame_lens.h"
+#include "lf/storage/load/open_store.h"
+
+namespace lf {
+namespace {
+
+constexpr size_t kSampleImages = 16;
+
+// Returns a few LF images whose files exist, with ranks as if they were an order of their own.
+std::vector<SelectedImage> SampleOf(const FrameNeeds& needs, const LfImageStore& store) {
+  constexpr size_t kMostAsked = 256;
+  std::vector<SelectedImage> sample;
+  for (size_t i = 0; i < std::min(kMostAsked, needs.images.size()); ++i) {
+    const FrameNeeds::Image& image = needs.images[i];
+    if (!store.IsThere(image.id)) continue;
+    sample.push_back({image.id, static_cast<uint32_t>(i), image.rect, 1,
+                      static_cast<uint64_t>(image.rect.pixel_count())});
+    if (sample.size() == kSampleImages) break;
+  }
+  return sample;
+}
+
+}  // namespace
+
+Result<RenderRate> MeasureRate(const ImageIndex& index, const RenderCamera& frame,
+                               const NeedsOptions& needs_options, const RayReading& reading,
+                               ThreadPool& pool) {
+  const LightField& light_field = index.light_field();
+  const FrameNeeds needs = NeedsOf(index, frame, needs_options, pool);
+  LF_ASSIGN_OR_RETURN(
+      const std::unique_ptr<LfImageStore> opened,
+      OpenStore(light_field, reading.estimator == Estimator::kBilinear ? Mosaics::kToRgb
+                                                                       : Mosaics::kAsRecorded));
+  const LfImageStore& store = *opened;
+  const Intrinsics& plate = frame.pinhole.intrinsics;
+  std::vector<SensorPlate> plates;
+  plates.push_back(
+      SensorPlate::WithOpacity(plate.width_px, plate.height_px, light_field.encoding.HasOpacity()));
+  const std::vector<SelectedImage> sample = SampleOf(needs, store);
+  if (sample.empty())
+    return InputError(
+        needs.images.empty()
+            ? "no LF image is needed"
+            : fmt::format("{}: not there, nor any other of the LF images that were looked for",
+                          light_field.ImagePath(needs.images.front().id).string()));
+  // Nothing else runs, so the CPU time of the process is that of the working threads.
+  const std::clock_t lens_start = std::clock();
+  const FrameLens lens(index, frame, needs_options.lens_weights, needs_options.select, pool);
+  const double lens_s = static_cast<double>(std::clock() - lens_start) / CLOCKS_PER_SEC;
+  CollectOptions options;
+  options.reading = reading;
+  if (needs_options.lens_weights != LensWeights::kNone)
+    options.weights = [&lens](size_t, LfImageId id) { return lens.WeightsOf(id); };
+  LF_ASSIGN_OR_RETURN(const CollectStatistics statistics,
+                      Collect(light_field, store, std::span(&lens.camera(), 1), sample, options,
+                              pool, &plates, nullptr));
+  const size_t loaded = sample.size() - statistics.skipped.size();
+  if (loaded == 0) return InputError(statistics.skipped.front().reason);
+  RenderRate rate;
+  rate.load_s = statistics.times.load_cpu_s / static_cast<double>(loaded);
+  rate.collect_s = statistics.times.collect_cpu_s /
+                   static_cast<double>(std::max<uint64_t>(1, statistics.frames[0].tested_count));
+
+  ThreadPool alone(1);
+  const ThreadCpuTimer timer;
+  DevelopOptions develop;
+  develop.pedestal = light_field.encoding.pedestal;
+  develop.scale = light_field.encoding.Scale();
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / fmt::format("lf_rate.{}.exr", ::getpid());
+  DevelopedFrame developed = Develop(plates[0], develop, alone);
+  if (needs_options.lens_weights != LensWeights::kNone)
+    developed.effective_count =
+        SpreadOverPlate(lens.EffectiveCounts(), lens.camera().pinhole.intrinsics);
+  const Result<void> written = WriteFrame(file, developed, FrameFormat::kExrHalf, {});
+  std::error_code ignored;
+  std::filesystem::remove(file, ignored);
+  LF_RETURN_IF_ERROR(written);
+  rate.finish_s = lens_s + static_cast<double>(timer.Nanoseconds()) * 1e-9;
+  return rate;
+}
+
+}  // namespace lf

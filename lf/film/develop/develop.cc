@@ -1,0 +1,128 @@
+#include "lf/film/develop/develop.h"
+
+#include <algorithm>
+#include <atomic>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "lf/film/develop/channel_fill.h"
+#include "lf/film/develop/develop_opacity.h"
+
+namespace lf {
+namespace {
+
+constexpr int kChannels = SensorPlate::kChannels;
+constexpr int kFilledPerQuestion = 64;  // filled per call of is_interrupted(); each up to 0.1 ms
+
+// Returns the share of the completion in a channel with `count` collected rays.
+double ShareOf(const Completion* completion, int x, int y, uint64_t count) {
+  if (completion == nullptr) return 0;
+  const double share = completion->share.at(x, y);
+  return count == 0 && share > 0 ? 1 : share;
+}
+
+// Returns the number of rays that decides about filling: an interpolated element needs no fill.
+uint32_t KnownCount(const Completion* completion, int x, int y, uint32_t count) {
+  const bool is_completed = completion != nullptr && completion->share.at(x, y) > 0;
+  return is_completed ? std::numeric_limits<uint32_t>::max() : count;
+}
+
+// Computes own averages, counts and coverage of row y. Returns which channels have elements to
+// fill.
+std::array<bool, kChannels> AverageRow(const SensorPlate& plate, const DevelopOptions& options,
+                                       uint32_t rays_needed, int y, DevelopedFrame& frame,
+                                       Image<float>& mean) {
+  std::array<bool, kChannels> is_thin = {};
+  for (int x = 0; x < plate.width(); ++x) {
+    int collected = 0;
+    for (int c = 0; c < kChannels; ++c) {
+      const ElementSum rays = plate.At(x, y, c);
+      frame.ray_count.at(x, y, c) = static_cast<uint32_t>(
+          std::min<uint64_t>(rays.count, std::numeric_limits<uint32_t>::max()));
+      is_thin[c] |= KnownCount(options.completion, x, y, frame.ray_count.at(x, y, c)) < rays_needed;
+      const double share = ShareOf(options.completion, x, y, rays.count);
+      if (rays.count == 0 && share == 0) continue;
+      double average = 0;
+      if (rays.count > 0) {
+        ++collected;
+        average = static_cast<double>(rays.sum) / static_cast<double>(rays.count);
+      }
+      if (share > 0) average += share * (options.completion->rgb.at(x, y, c) - average);
+      mean.at(x, y, c) = static_cast<float>((average - options.pedestal) / options.scale);
+    }
+    frame.coverage.at(x, y) = static_cast<float>(collected) / kChannels;
+    if (options.completion != nullptr)
+      frame.interpolated.at(x, y) =
+          static_cast<float>(ShareOf(options.completion, x, y, static_cast<uint64_t>(collected)));
+  }
+  return is_thin;
+}
+
+}  // namespace
+
+DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, ThreadPool& pool) {
+  LF_CHECK(options.scale > 0 && options.fill_radius_px >= 0);
+  LF_CHECK(options.completion == nullptr || !plate.has_opacity());
+  const int width = plate.width(), height = plate.height();
+  const uint32_t rays_needed = std::max(options.smooth_below, 1u);
+  DevelopedFrame frame{Image<float>(width, height, kChannels),
+                       Image<uint32_t>(width, height, kChannels), Image<float>(width, height)};
+  if (options.completion != nullptr) frame.interpolated = Image<float>(width, height);
+  Image<float> mean(width, height, kChannels);
+  std::atomic<bool> is_ended = false;
+  const auto ends = [&] {
+    if (!is_ended && options.is_interrupted && options.is_interrupted()) is_ended = true;
+    return is_ended.load();
+  };
+  std::vector<std::array<bool, kChannels>> row_is_thin(height);
+  pool.ForEach(height, [&](size_t y) {
+    if (ends()) return;
+    row_is_thin[y] = AverageRow(plate, options, rays_needed, static_cast<int>(y), frame, mean);
+  });
+
+  Image<uint32_t> known;
+  if (options.completion != nullptr) {
+    known = frame.ray_count;
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x)
+        for (int c = 0; c < kChannels; ++c)
+          known.at(x, y, c) = KnownCount(options.completion, x, y, known.at(x, y, c));
+  }
+  const Image<uint32_t>& count = options.completion != nullptr ? known : frame.ray_count;
+  std::array<std::optional<ChannelFill>, kChannels> fills;
+  pool.ForEach(kChannels, [&](size_t c) {
+    if (std::any_of(row_is_thin.begin(), row_is_thin.end(),
+                    [c](const auto& row) { return row[c]; }))
+      fills[c].emplace(mean, count, static_cast<int>(c), rays_needed, options.fill_radius_px, ends);
+  });
+  if (is_ended) return frame;
+  if (plate.has_opacity()) frame.opacity = DevelopOpacity(plate, options, ends, pool);
+
+  const Mat3 srgb_from_camera =
+      options.linear_srgb_from_camera *
+      Vec3(options.white_balance[0], options.white_balance[1], options.white_balance[2])
+          .asDiagonal();
+  pool.ForEach(height, [&](size_t row) {
+    const int y = static_cast<int>(row);
+    ChannelFill::Scratch scratch;
+    int filled = 0;  // filled channels of this row
+    if (ends()) return;
+    for (int x = 0; x < width; ++x) {
+      Vec3 camera_rgb;
+      for (int c = 0; c < kChannels; ++c) {
+        if (count.at(x, y, c) >= rays_needed) {
+          camera_rgb[c] = mean.at(x, y, c);
+          continue;
+        }
+        if (++filled % kFilledPerQuestion == 0 && ends()) return;
+        camera_rgb[c] = fills[c]->At(x, y, scratch);
+      }
+      const Vec3 srgb = srgb_from_camera * camera_rgb;
+      for (int c = 0; c < kChannels; ++c) frame.rgb.at(x, y, c) = static_cast<float>(srgb[c]);
+    }
+  });
+  return frame;
+}
+
+}  // namespace lf

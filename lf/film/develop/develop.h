@@ -1,0 +1,84 @@
+// Develops sums and counts into a picture: average, fill, white balance, colour (thesis 4.3.1;
+// doc/ray.md, "Develop").
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+
+#include "lf/core/geometry.h"
+#include "lf/core/image.h"
+#include "lf/core/parallel.h"
+#include "lf/film/plate/sensor_plate.h"
+
+namespace lf {
+
+// The part of a frame that was interpolated from rebinned rays (render/hybrid/rebinned_rays.h).
+struct Completion {
+  Image<float> rgb;  // [height][width][3], in the units of the plate's values
+  // [height][width] share of rgb in an element that also has collected rays; 0: rgb is unknown
+  Image<float> share;
+};
+
+// Closes the gaps between the rays of mosaics and of LF pixels that are larger than elements.
+inline constexpr int kFillRadius_px = 2;
+inline constexpr int kMostFillRadius_px = 4096;
+// An element that is smoothed takes light from collected elements at most this far away.
+inline constexpr int kSmoothRadius_px = 32;
+
+struct DevelopOptions {
+  double pedestal = 0;  // radiance = (sum / count - pedestal) / scale
+  double scale = 65535;
+  std::array<double, 3> white_balance = {1, 1, 1};
+  Mat3 linear_srgb_from_camera = Mat3::Identity();
+
+  // An element with fewer rays than this in a channel, but at least one, is smoothed. 0 or 1: no
+  // element is smoothed.
+  uint32_t smooth_below = 0;
+  // A channel without a ray takes light from collected elements at most this far away. It stays
+  // black if there is none, because light that was not recorded must not be invented. 0: nothing is
+  // filled.
+  int fill_radius_px = kFillRadius_px;
+
+  // For a plate with opacities: opacity = (sum / count - transparent) / (opaque - transparent).
+  double transparent = 0;
+  double opaque = 65535;
+
+  // If given, mixed with collected light, and used alone in elements without rays. Not for a plate
+  // with opacities.
+  const Completion* completion = nullptr;
+
+  // If given, called by any thread, at least before each row and every 64 elements to be filled.
+  // Once it returns true, the rest is skipped and the result must not be used.
+  std::function<bool()> is_interrupted = {};
+};
+
+struct DevelopedFrame {
+  Image<float> rgb;           // [height][width][3] linear light, sRGB primaries
+  Image<uint32_t> ray_count;  // [height][width][3]
+  Image<float> coverage;      // [height][width] share of the channels with a ray of their own
+  // [height][width] in [0, 1], multiplied into rgb; empty for a plate without opacities
+  Image<float> opacity = {};
+  // [height][width] number of LF images of equal weight that would give the same noise; empty
+  // without lens weights. With lens weights, ray_count holds sums of weights.
+  Image<float> effective_count = {};
+  // [height][width] share of each element that was interpolated; empty without completion
+  Image<float> interpolated = {};
+};
+
+// Averages the rays of every element and channel, and mixes (1 - share) of the average with share
+// of the completion; the completion is taken alone if no ray was collected. An element without
+// completion that has no ray, or fewer than smooth_below, takes the inverse-distance mean of
+// collected elements of the channel,
+//
+//   sum_i v_i / d_i  /  sum_i 1 / d_i      (Shepard 1968; d between element centres, in elements)
+//
+// over all within the smallest radius that holds at least 4 of them and at least smooth_below rays.
+// The radius is at most fill_radius_px for an element without a ray, and kSmoothRadius_px
+// otherwise, even if it holds fewer. The element's own value, if it has one, is one of them, with d
+// = 0.5. Then applies white balance and linear_srgb_from_camera. Opacities are averaged and filled
+// like a colour, from the same neighbours, and clipped. Counts above 2^32 - 1 become 2^32 - 1. The
+// bits do not depend on the number of threads.
+DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, ThreadPool& pool);
+
+}  // namespace lf

@@ -1,0 +1,54 @@
+#include "lf/film/develop/develop_opacity.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <limits>
+
+#include "lf/core/check.h"
+#include "lf/film/develop/channel_fill.h"
+
+namespace lf {
+
+Image<float> DevelopOpacity(const SensorPlate& plate, const DevelopOptions& options,
+                            const std::function<bool()>& is_interrupted, ThreadPool& pool) {
+  LF_CHECK(plate.has_opacity() && options.opaque > options.transparent);
+  constexpr int kFilledPerQuestion = 64;  // filled per call of is_interrupted(); each up to 0.1 ms
+  constexpr uint64_t kMostCount = std::numeric_limits<uint32_t>::max();
+  const int width = plate.width(), height = plate.height();
+  const uint32_t rays_needed = std::max(options.smooth_below, 1u);
+  Image<float> mean(width, height);
+  Image<uint32_t> count(width, height);
+  std::atomic<bool> is_thin = false;
+  pool.ForEach(static_cast<size_t>(height), [&](size_t row) {
+    const int y = static_cast<int>(row);
+    for (int x = 0; x < width; ++x) {
+      const ElementSum rays = plate.At(x, y, SensorPlate::kOpacityChannel);
+      count.at(x, y) = static_cast<uint32_t>(std::min(rays.count, kMostCount));
+      if (count.at(x, y) < rays_needed) is_thin = true;
+      if (rays.count == 0) continue;
+      const double average = static_cast<double>(rays.sum) / static_cast<double>(rays.count);
+      mean.at(x, y) = static_cast<float>((average - options.transparent) /
+                                         (options.opaque - options.transparent));
+    }
+  });
+  Image<float> opacity = mean;
+  if (is_thin) {
+    const ChannelFill fill(mean, count, 0, rays_needed, options.fill_radius_px, is_interrupted);
+    pool.ForEach(static_cast<size_t>(height), [&](size_t row) {
+      const int y = static_cast<int>(row);
+      ChannelFill::Scratch scratch;
+      int filled = 0;
+      if (is_interrupted()) return;
+      for (int x = 0; x < width; ++x) {
+        if (count.at(x, y) >= rays_needed) continue;
+        if (++filled % kFilledPerQuestion == 0 && is_interrupted()) return;
+        opacity.at(x, y) = fill.At(x, y, scratch);
+      }
+    });
+  }
+  for (float& value : opacity.pixels()) value = std::clamp(value, 0.0F, 1.0F);
+  return opacity;
+}
+
+}  // namespace lf

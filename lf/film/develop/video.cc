@@ -1,0 +1,168 @@
+#include "lf/film/develop/video.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lf/core/child_process.h"
+#include "lf/core/file.h"
+#include "lf/core/temporary_file.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+// Returns the frame rate as text. Rates of television, such as 29.97, are fractions N * 1000 /
+// 1001.
+std::string FrameRate(double fps) {
+  const double whole = std::round(fps * 1.001);
+  if (fps != std::round(fps) && std::abs(fps * 1.001 - whole) < 1e-6 * whole)
+    return fmt::format("{:.0f}000/1001", whole);
+  return fmt::format("{:.9g}", fps);
+}
+
+std::vector<std::string> EncoderArguments(const fs::path& file, int width, int height, double fps) {
+  return {"ffmpeg", "-hide_banner", "-nostats", "-loglevel", "error", "-y",  //
+          "-f", "rawvideo", "-pixel_format", "rgb24", "-video_size",
+          fmt::format("{}x{}", width, height), "-framerate", FrameRate(fps), "-i", "pipe:0",
+          // The conversion and the tags must name the same matrix, or players shift the colours.
+          "-vf",
+          "scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd+full_chroma_int+"
+          "full_chroma_inp,format=yuv420p",
+          "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709",
+          "-color_range", "tv",                                  //
+          "-c:v", "libx264", "-preset", "medium", "-crf", "16",  //
+          "-movflags", "+faststart", "-f", "mp4", "file:" + file.string()};
+}
+
+Result<std::unique_ptr<ChildProcess>> StartFed(std::vector<std::string> words) {
+  ChildProcess::Options options;
+  options.words = std::move(words);
+  options.has_input = true;
+  return ChildProcess::Start(options);
+}
+
+}  // namespace
+
+Result<void> CheckVideoTool() {
+  constexpr double kPatience_s = 60;
+  const auto advice = [](const Error& error) {
+    return OutputError(error.message +
+                       "; a video needs ffmpeg with libx264 (Debian: apt-get install ffmpeg)");
+  };
+  // Encodes one small picture, because a program of that name may lack the encoder.
+  auto ffmpeg = StartFed({"ffmpeg", "-hide_banner", "-nostats", "-loglevel", "error", "-f",
+                          "rawvideo", "-pixel_format", "rgb24", "-video_size", "16x16", "-i",
+                          "pipe:0", "-c:v", "libx264", "-f", "null", "-"});
+  if (!ffmpeg) return advice(ffmpeg.error());
+  const std::vector<uint8_t> picture(16 * 16 * 3);
+  if (const auto written = (*ffmpeg)->Write(picture, kPatience_s); !written)
+    return advice(written.error());
+  if (const auto end = (*ffmpeg)->Finish(kPatience_s); !end) return advice(end.error());
+  return {};
+}
+
+namespace {
+
+// Returns true if the file is empty, or if its first bytes are those of an mp4 (ISO/IEC 14496-12,
+// "ftyp").
+bool IsEmptyOrVideo(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  char head[8] = {};
+  file.read(head, sizeof head);
+  return file.gcount() == 0 || std::string_view(head, sizeof head).substr(4) == "ftyp";
+}
+
+}  // namespace
+
+Result<void> CheckVideoTarget(const fs::path& path) {
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  std::error_code error;
+  // A render makes the folder of its frames, but no other folder.
+  if (!fs::is_directory(folder, error))
+    return OutputError(
+        fmt::format("--video {}: there is no folder {}", path.string(), folder.string()));
+  if (fs::exists(path, error) && !fs::is_regular_file(path, error))
+    return OutputError(fmt::format("--video {}: exists and is no file", path.string()));
+  if (fs::exists(path, error) && !IsEmptyOrVideo(path))
+    return OutputError(fmt::format(
+        "--video {}: exists and is no video; give another name, or remove it", path.string()));
+  return {};
+}
+
+struct VideoWriter::State {
+  fs::path path;
+  fs::path unfinished;
+  int width = 0;  // of the pictures; width and height of the film are even
+  int height = 0;
+  double patience_s = 0;
+  size_t picture_count = 0;
+  std::unique_ptr<ChildProcess> ffmpeg;
+  std::vector<uint8_t> packed;
+
+  Error Failure(const Error& error) const {
+    return OutputError(
+        fmt::format("{}: the video could not be written: {}", path.string(), error.message));
+  }
+};
+
+VideoWriter::VideoWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
+VideoWriter::~VideoWriter() {
+  state_->ffmpeg.reset();
+  ::unlink(state_->unfinished.c_str());
+}
+
+Result<std::unique_ptr<VideoWriter>> VideoWriter::Open(const fs::path& path, int width, int height,
+                                                       double fps, double patience_s) {
+  if (width < 2 || height < 2 || !(fps > 0 && std::isfinite(fps)))
+    return OutputError(fmt::format("{}: no video has {} x {} pixels at {} frames per second",
+                                   path.string(), width, height, fps));
+  auto state = std::make_unique<State>();
+  state->path = path;
+  const fs::path unfinished =
+      fs::absolute(path).parent_path() / (path.stem().string() + ".unfinished.mp4");
+  RemoveLeftovers(unfinished);
+  state->unfinished = TemporaryPath(unfinished);
+  state->width = width;
+  state->height = height;
+  state->patience_s = patience_s;
+  auto ffmpeg = StartFed(EncoderArguments(state->unfinished, width / 2 * 2, height / 2 * 2, fps));
+  if (!ffmpeg) return state->Failure(ffmpeg.error());
+  state->ffmpeg = *std::move(ffmpeg);
+  return std::unique_ptr<VideoWriter>(new VideoWriter(std::move(state)));
+}
+
+Result<void> VideoWriter::Add(const Image<uint8_t>& picture) {
+  LF_CHECK(picture.width() == state_->width && picture.height() == state_->height &&
+           picture.channels() == 3);
+  const size_t row_bytes = static_cast<size_t>(state_->width / 2 * 2) * 3;
+  const int rows = state_->height / 2 * 2;
+  state_->packed.resize(row_bytes * rows);
+  for (int y = 0; y < rows; ++y)
+    std::memcpy(state_->packed.data() + row_bytes * y, picture.row(y), row_bytes);
+  if (const auto written = state_->ffmpeg->Write(state_->packed, state_->patience_s); !written)
+    return state_->Failure(written.error());
+  ++state_->picture_count;
+  return {};
+}
+
+Result<void> VideoWriter::Close() {
+  if (const auto end = state_->ffmpeg->Finish(state_->patience_s); !end)
+    return state_->Failure(end.error());
+  if (state_->picture_count == 0) return state_->Failure(OutputError("no picture was added"));
+  return WriteAtomically(state_->path, [&](const fs::path& temporary) -> Result<void> {
+    if (::rename(state_->unfinished.c_str(), temporary.c_str()) == 0) return {};
+    return OutputError(fmt::format("{}: cannot be renamed: {}", state_->unfinished.string(),
+                                   std::strerror(errno)));
+  });
+}
+
+}  // namespace lf

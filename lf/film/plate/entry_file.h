@@ -1,0 +1,99 @@
+// Common part of the files of plates and of rebinned rays: they begin with a head, the text of
+// their entries, and the checksum of both. Internal to film/plate and rebinning.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "lf/core/result.h"
+#include "lf/film/plate/plate_file.h"
+
+namespace lf::entry_file {
+
+static_assert(std::endian::native == std::endian::little, "numbers in the file are little-endian");
+
+struct Kind {
+  std::string_view magic;  // eight characters, the last a line feed
+  uint32_t version;
+  // Words for messages:
+  std::string_view noun;       // names the kind of file: "is no plate"
+  std::string_view if_broken;  // what damage means to the user, and what to do
+};
+
+// The beginning of every head.
+struct HeadBegin {
+  char magic[8];
+  uint32_t version;
+  uint32_t text_bytes;
+};
+static_assert(sizeof(HeadBegin) == 16);
+
+// Reads the bytes of a file, or of memory, from front to back.
+class Source {
+ public:
+  // kInput if the file cannot be opened or is no regular file.
+  static Result<std::unique_ptr<Source>> OfFile(const std::filesystem::path& path,
+                                                const Kind& kind);
+  // The bytes must outlive the source; messages call them `name`.
+  static std::unique_ptr<Source> OfBytes(std::string_view bytes, const std::string& name,
+                                         const Kind& kind);
+  Source(std::string name, const Kind& kind) : name_(std::move(name)), kind_(kind) {}
+  ~Source();
+  Source(const Source&) = delete;
+  Source& operator=(const Source&) = delete;
+
+  const std::string& name() const { return name_; }
+  const Kind& kind() const { return kind_; }
+  uint64_t left() const { return left_; }
+
+  // kInput if fewer bytes are left, or if they cannot be read.
+  Result<void> Read(void* to, size_t size);
+  // Returns the error for a damaged file.
+  Error Damaged(const std::string& reason) const;
+
+ private:
+  std::string name_;
+  Kind kind_;
+  int fd_ = -1;
+  std::string_view memory_;
+  uint64_t left_ = 0;
+};
+
+struct Front {
+  std::string head;
+  PlateEntries entries;
+};
+
+// Reads a head of `head_bytes` bytes, text and checksum. kInput if the file is of another kind or
+// version, truncated or damaged, or if its text is not made of lines "key: value".
+Result<Front> ReadFront(Source& source, size_t head_bytes);
+
+// Returns head, text and checksum. Fills in the beginning of the head. The entries must be as
+// PlateEntries demands.
+std::string FrontOf(const Kind& kind, std::string head, const PlateEntries& entries);
+
+// Writes a file from front to back.
+class OutputFile {
+ public:
+  explicit OutputFile(const std::filesystem::path& path);
+
+  // Does nothing after the first error, which Close() returns.
+  void Write(const void* bytes, size_t size);
+  void Write(std::string_view bytes) { Write(bytes.data(), bytes.size()); }
+
+  // kOutput if the file could not be created or written.
+  Result<void> Close();
+
+ private:
+  std::filesystem::path path_;
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
+  int error_ = 0;
+};
+
+}  // namespace lf::entry_file

@@ -1,0 +1,150 @@
+#include <fmt/format.h>
+#include <zstd.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "lf/core/check.h"
+#include "lf/core/hash.h"
+#include "lf/film/plate/entry_file.h"
+#include "lf/film/plate/plate_file.h"
+#include "lf/film/plate/plate_format.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+
+using namespace plate_format;
+
+PlateReader::PlateReader(std::unique_ptr<entry_file::Source> source) : source_(std::move(source)) {}
+PlateReader::PlateReader(PlateReader&&) noexcept = default;
+PlateReader& PlateReader::operator=(PlateReader&&) noexcept = default;
+PlateReader::~PlateReader() = default;
+
+const std::string* FindEntry(const PlateEntries& entries, std::string_view key) {
+  const auto found = std::find_if(entries.begin(), entries.end(),
+                                  [key](const auto& entry) { return entry.first == key; });
+  return found == entries.end() ? nullptr : &found->second;
+}
+
+Result<PlateReader> PlateReader::Open(const fs::path& path) {
+  LF_ASSIGN_OR_RETURN(std::unique_ptr<entry_file::Source> source,
+                      entry_file::Source::OfFile(path, kKind));
+  PlateReader reader(std::move(source));
+  LF_RETURN_IF_ERROR(reader.ReadHead());
+  return reader;
+}
+
+Result<PlateReader> PlateReader::OpenBytes(std::string_view bytes, const std::string& name) {
+  PlateReader reader(entry_file::Source::OfBytes(bytes, name, kKind));
+  LF_RETURN_IF_ERROR(reader.ReadHead());
+  return reader;
+}
+
+Result<void> PlateReader::ReadHead() {
+  LF_ASSIGN_OR_RETURN(entry_file::Front front, entry_file::ReadFront(*source_, sizeof(Head)));
+  Head head;
+  std::memcpy(&head, front.head.data(), sizeof(head));
+  if (head.width < 1 || head.width > kMaxSide || head.height < 1 || head.height > kMaxSide ||
+      (head.channels != SensorPlate::kChannels && head.channels != SensorPlate::kChannels + 1))
+    return InputError(
+        fmt::format("{}: {} x {} elements of {} channels; expected 3 or 4 channels and sides up to "
+                    "{}",
+                    source_->name(), head.width, head.height, head.channels, kMaxSide));
+  const uint64_t most_rows = 1 + kChunkWords / (uint64_t{head.width} * head.channels);
+  if (head.rows_per_chunk < 1 || head.rows_per_chunk > most_rows)
+    return InputError(fmt::format("{}: chunks of {} rows; expected 1 to {}", source_->name(),
+                                  head.rows_per_chunk, most_rows));
+  // This is checked before anybody allocates a plate of this size.
+  const uint64_t least = uint64_t{(head.height - 1) / head.rows_per_chunk + 1} * sizeof(ChunkHead);
+  if (head.wide_count > source_->left() / sizeof(WideWord) ||
+      least + head.wide_count * sizeof(WideWord) > source_->left())
+    return InputError(
+        fmt::format("{}: is truncated: {} bytes follow its head, {} x {} elements and {} wide "
+                    "words need more; {}",
+                    source_->name(), source_->left(), head.width, head.height, head.wide_count,
+                    kKind.if_broken));
+  entries_ = std::move(front.entries);
+  width_ = static_cast<int>(head.width);
+  height_ = static_cast<int>(head.height);
+  channels_ = static_cast<int>(head.channels);
+  rows_per_chunk_ = static_cast<int>(head.rows_per_chunk);
+  wide_count_ = head.wide_count;
+  return {};
+}
+
+Result<void> PlateReader::AddTo(SensorPlate* plate) {
+  LF_CHECK(plate->width() == width_ && plate->height() == height_ &&
+           plate->channels() == channels_);
+  const int chunk_count = (height_ - 1) / rows_per_chunk_ + 1;
+  for (int chunk = 0; chunk < chunk_count; ++chunk)
+    LF_RETURN_IF_ERROR(AddChunk(static_cast<uint32_t>(chunk), plate));
+  LF_RETURN_IF_ERROR(AddWide(plate));
+  if (source_->left() != 0)
+    return source_->Damaged(fmt::format("{} bytes follow its end", source_->left()));
+  return {};
+}
+
+Result<void> PlateReader::AddChunk(uint32_t chunk, SensorPlate* plate) {
+  const int y_begin = static_cast<int>(chunk) * rows_per_chunk_;
+  const int y_end = std::min(height_, y_begin + rows_per_chunk_);
+  const size_t row_words = static_cast<size_t>(width_) * channels_;
+  std::vector<uint64_t> words(static_cast<size_t>(y_end - y_begin) * row_words);
+  const size_t size = words.size() * sizeof(uint64_t);
+  ChunkHead head;
+  LF_RETURN_IF_ERROR(source_->Read(&head, sizeof(head)));
+  if (head.stored_bytes > ZSTD_compressBound(size) || head.reserved != 0)
+    return source_->Damaged(fmt::format("rows {}-{}: {} stored bytes, at most {} were expected",
+                                        y_begin, y_end - 1, head.stored_bytes,
+                                        ZSTD_compressBound(size)));
+  std::string stored(head.stored_bytes, '\0');
+  LF_RETURN_IF_ERROR(source_->Read(stored.data(), stored.size()));
+  if (HashBytes(stored, chunk) != head.hash)
+    return source_->Damaged(fmt::format("the checksum of rows {}-{} differs", y_begin, y_end - 1));
+  std::vector<char> planes(size);
+  if (ZSTD_decompress(planes.data(), size, stored.data(), stored.size()) != size)
+    return source_->Damaged(fmt::format("rows {}-{} cannot be unpacked", y_begin, y_end - 1));
+  FromPlanes(planes.data(), words);
+  for (size_t i = 0; i < words.size(); ++i) {
+    const ElementSum rays = {words[i] & SensorPlate::kSumMask, words[i] >> SensorPlate::kSumBits};
+    if (rays.sum > 65535 * rays.count)
+      return source_->Damaged(fmt::format("row {}: a sum of {} is more than {} rays can have",
+                                          y_begin + static_cast<int>(i / row_words), rays.sum,
+                                          rays.count));
+    if (rays.count == 0) continue;
+    const auto in_row = static_cast<int>(i % row_words);
+    plate->Add(in_row / channels_, y_begin + static_cast<int>(i / row_words), in_row % channels_,
+               rays);
+  }
+  return {};
+}
+
+Result<void> PlateReader::AddWide(SensorPlate* plate) {
+  const uint64_t row_words = static_cast<uint64_t>(width_) * static_cast<uint64_t>(channels_);
+  const uint64_t word_count = row_words * static_cast<uint64_t>(height_);
+  Hasher hasher;
+  uint64_t next_index = 0;
+  for (uint64_t done = 0; done < wide_count_;) {
+    std::vector<WideWord> block(std::min<uint64_t>(kWideBlock, wide_count_ - done));
+    LF_RETURN_IF_ERROR(source_->Read(block.data(), block.size() * sizeof(WideWord)));
+    hasher.Add({reinterpret_cast<const char*>(block.data()), block.size() * sizeof(WideWord)});
+    for (const WideWord& word : block) {
+      // A count above 2^44 is beyond any run. Without such counts, sums of plates cannot wrap.
+      if (word.index < next_index || word.index >= word_count ||
+          word.count <= SensorPlate::kMaxCount || word.count > uint64_t{1} << 44 ||
+          word.sum > 65535 * word.count)
+        return source_->Damaged(fmt::format("wide word {} (sum {}, count {}) is none", word.index,
+                                            word.sum, word.count));
+      next_index = word.index + 1;
+      const auto in_row = static_cast<int>(word.index % row_words);
+      plate->Add(in_row / channels_, static_cast<int>(word.index / row_words), in_row % channels_,
+                 {word.sum, word.count});
+    }
+    done += block.size();
+  }
+  uint64_t hash = 0;
+  LF_RETURN_IF_ERROR(source_->Read(&hash, sizeof(hash)));
+  if (hash != hasher.Hash()) return source_->Damaged("the checksum of its wide words differs");
+  return {};
+}
+
+}  // namespace lf

@@ -1,0 +1,139 @@
+// The synthetic sensor plate of one frame: sum and count of the rays of every element and channel
+// (thesis 4.3.1), exact.
+//
+// One 64-bit word per element and channel, [height][width][3], R G B: the upper 24 bits count rays,
+// the lower 40 hold the sum of their 16-bit values. A ray is one addition of
+// kOneRay | value; integer addition commutes, so the plate has the same bits for any order, any
+// number of threads and any split of the work. 2^24 - 1 rays of value 65535 just fit; before an
+// element could exceed that, its content moves to a side table of wide words. Nothing wraps.
+//
+// A plate may have a fourth channel, opacity: its words stand behind those of the colours,
+// [height][width][4], and count the same rays. Opacities are values v as
+// light_field/model/lf_pixels.h has them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include "lf/core/check.h"
+#include "lf/core/geometry.h"
+#include "lf/core/large_vector.h"
+#include "lf/film/plate/tile_grid.h"
+
+namespace lf {
+
+struct ElementSum {
+  uint64_t sum = 0;    // sum of the rays' values v
+  uint64_t count = 0;  // number of rays
+  friend bool operator==(const ElementSum&, const ElementSum&) = default;
+};
+
+class SensorPlate {
+ public:
+  static constexpr int kChannels = 3;  // the colours
+  static constexpr int kOpacityChannel = 3;
+  static constexpr int kSumBits = 40;
+  static constexpr uint64_t kOneRay = uint64_t{1} << kSumBits;
+  static constexpr uint64_t kSumMask = kOneRay - 1;
+  static constexpr uint32_t kMaxCount = (1u << 24) - 1;
+
+  // count_limit: the largest count a packed word may hold; below kMaxCount for tests only.
+  SensorPlate(int width, int height, uint32_t count_limit = kMaxCount);
+  // Returns a plate with the fourth channel if `has_opacity`, otherwise one without it.
+  static SensorPlate WithOpacity(int width, int height, bool has_opacity = true,
+                                 uint32_t count_limit = kMaxCount);
+  SensorPlate(SensorPlate&&) noexcept;
+  SensorPlate& operator=(SensorPlate&&) noexcept;
+  ~SensorPlate();
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  int channels() const { return channels_; }
+  bool has_opacity() const { return channels_ > kChannels; }
+  size_t size_bytes() const;
+
+  // Returns sum and count of one element and channel, wherever they are stored.
+  ElementSum At(int x, int y, int channel) const;
+
+  // Adds one ray of value v. Never overflows, but is slow: for references and tests.
+  void AddRay(int x, int y, int channel, uint16_t v);
+
+  // Adds the sum of any number of rays. Needs sum <= 65535 * count.
+  void Add(int x, int y, int channel, const ElementSum& rays);
+
+  // Adds another plate of the same size and channels.
+  void Merge(const SensorPlate& other);
+
+  // These functions show how sums and counts are stored, for files. words() are the packed words
+  // [height][width][channels()]. wide() holds sums and counts that do not fit in a packed word, by
+  // the index of the word. AtWord() returns the total of both.
+  std::span<const uint64_t> words() const { return packed_; }
+  const std::map<size_t, ElementSum>& wide() const { return wide_; }
+  ElementSum AtWord(size_t index) const;
+
+  // True if all sums and counts are equal, however they are kept.
+  friend bool operator==(const SensorPlate& a, const SensorPlate& b);
+
+ private:
+  friend class PlateTile;
+  SensorPlate(int width, int height, int channels, uint32_t count_limit);
+  size_t IndexOf(int x, int y, int channel) const {
+    return (static_cast<size_t>(y) * width_ + x) * channels_ + channel;
+  }
+  // Moves packed words of `rect` whose count exceeds `count_kept` to the wide table. Returns the
+  // largest count still packed there.
+  uint32_t Promote(const PixelRect& rect, uint32_t count_kept);
+
+  int width_;
+  int height_;
+  int channels_;
+  uint32_t count_limit_;
+  LargeVector<uint64_t> packed_;
+  // A total is packed + wide. Wide words are rare, so that one lock is enough for all tiles.
+  std::map<size_t, ElementSum> wide_;
+  std::unique_ptr<std::mutex> wide_mutex_;
+};
+
+// A rectangle of a plate, to which a kernel adds rays. One thread owns a tile at a time; tiles of
+// one plate that do not overlap may be written at the same time.
+class PlateTile {
+ public:
+  // `rect` must lie on the plate.
+  PlateTile(SensorPlate* plate, const PixelRect& rect);
+
+  const PixelRect& rect() const { return rect_; }
+
+  // The tile's words in row y of the plate, [width][channels()].
+  uint64_t* row(int y) {
+    LF_DCHECK(y >= rect_.y_begin && y < rect_.y_end);
+    return plate_->packed_.data() + plate_->IndexOf(rect_.x_begin, y, 0);
+  }
+  int channels() const { return plate_->channels_; }
+
+  // The largest number of rays that may be reserved at once.
+  uint32_t max_reserve() const { return plate_->count_limit_; }
+
+  // Makes room for `rays` more rays, at most max_reserve(): they may be added to the tile's words,
+  // even all to the same one, without overflow. Almost always this is one comparison.
+  void Reserve(uint32_t rays) {
+    if (rays > headroom_) MakeRoom(rays);
+    headroom_ -= rays;
+  }
+
+ private:
+  void MakeRoom(uint32_t rays);
+
+  SensorPlate* plate_;
+  PixelRect rect_;
+  uint32_t headroom_ = 0;
+};
+
+// Returns all tiles of a plate, which must have the grid's size.
+std::vector<PlateTile> CutIntoTiles(SensorPlate* plate, const TileGrid& grid);
+
+}  // namespace lf

@@ -1,0 +1,44 @@
+// Plates with all kinds of words (empty, packed and wide), for tests of their files.
+#pragma once
+
+#include "lf/core/random.h"
+#include "lf/film/plate/sensor_plate.h"
+
+namespace lf::testing {
+
+// A plate of noise. About every tenth word is empty. If `has_wide`, two words do not fit in any
+// packed word; others may be wide only because of the plate's count_limit.
+inline SensorPlate NoisePlate(int width, int height, uint64_t seed, uint32_t count_limit,
+                              bool has_wide) {
+  SensorPlate plate(width, height, count_limit);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      for (int c = 0; c < SensorPlate::kChannels; ++c) {
+        const uint64_t bits =
+            RandomBits(seed, static_cast<uint64_t>(c), static_cast<uint64_t>(y) * 4096 + x);
+        if (bits % 10 == 0) continue;
+        const uint64_t count = 1 + (bits >> 8) % 40;
+        plate.Add(x, y, c, {((bits >> 16) & 0xffff) * count, count});
+      }
+  if (has_wide) {
+    plate.Add(width - 1, height / 2, 1, {uint64_t{65535} << 24, uint64_t{1} << 24});
+    plate.Add(0, 0, 2, {uint64_t{17} << 25, uint64_t{1} << 25});
+  }
+  return plate;
+}
+
+// A plate of noise in four channels.
+inline SensorPlate WithNoiseOpacity(int width, int height, uint64_t seed) {
+  SensorPlate plate = SensorPlate::WithOpacity(width, height);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      for (int c = 0; c < plate.channels(); ++c) {
+        const uint64_t bits =
+            RandomBits(seed, static_cast<uint64_t>(c), static_cast<uint64_t>(y) * 4096 + x);
+        const uint64_t count = bits % 40;
+        plate.Add(x, y, c, {((bits >> 16) & 0xffff) * count, count});
+      }
+  return plate;
+}
+
+}  // namespace lf::testing

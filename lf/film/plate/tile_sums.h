@@ -1,0 +1,146 @@
+// Sums that a batch of LF images adds to one tile of a plate, before they are added to the plate.
+// They are small enough for the second level cache, and laid out so that the rays of neighbouring
+// LF pixels fall on neighbouring words.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lf/core/large_vector.h"
+#include "lf/film/plate/sensor_plate.h"
+#include "lf/film/plate/tile_grid.h"
+
+namespace lf {
+
+class TileSums {
+ public:
+  // For RGB LF images: sums of 16-bit values and the number of rays.
+  struct alignas(16) Element {
+    uint32_t rgb_rays[4] = {};
+  };
+
+  // For rays that count differently in each colour: sums of 16-bit values times counts, and the
+  // counts. The fourth lanes are not flushed.
+  struct alignas(16) CountedElement {
+    uint32_t rgb[4] = {};
+    uint32_t counts[4] = {};
+  };
+
+  // For mosaics: packed words, as those of the plate. Along a scanline, green alternates with
+  // another colour. If an LF pixel is as large as an element, the colours alternate in the same way
+  // along a row of elements. A row of elements has one row of words for each alternation, so that a
+  // scanline adds to adjacent words:
+  //   kRedFirst    R at even x, G at odd ones     kBlueFirst   B at even x, G at odd ones
+  //   kGreenFirst  G at even x, R at odd ones     kGreenFirst + kBlueFirst   G, B
+  static constexpr int kRedFirst = 0;
+  static constexpr int kGreenFirst = 1;
+  static constexpr int kBlueFirst = 2;
+  static constexpr int kMosaicRows = 4;
+  static constexpr int kMargin = 8;
+
+  // Tiles of this shape stay in the second level cache while a batch of LF images is added to them.
+  // They are wide, so that scanlines are cut into few pieces, and tall enough for turned cameras.
+  static constexpr int kTileWidth = 512;
+  static constexpr int kTileHeight = 32;
+  static TileGrid GridOf(int plate_width, int plate_height) {
+    return {plate_width, plate_height, kTileWidth, kTileHeight};
+  }
+
+  // Largest number of rays of value 65535 whose sum fits in 32 bits.
+  static constexpr uint32_t kMaxRays = 65537;
+
+  // ray_limit: below kMaxRays for tests only.
+  explicit TileSums(uint32_t ray_limit = kMaxRays)
+      : ray_limit_(ray_limit),
+        mosaic_limit_(ray_limit == kMaxRays ? SensorPlate::kMaxCount : ray_limit) {}
+
+  // The channels of the plate that sums of RGB LF images go to.
+  enum class Target : uint8_t {
+    kColours,  // R, G and B are added to the three colours
+    kOpacity,  // R is added to the fourth; for opacities, with R = G = B
+  };
+
+  // Makes `tile` the destination of everything that is added until Flush().
+  //   watched  elements of the tile whose sums Added() returns; they must live until its last
+  //            call. Empty: nothing is kept beside the sums.
+  //   target   kOpacity: the plate must have opacity; only RGB may be reserved, and nothing watched
+  void Begin(PlateTile* tile, std::span<const PlateElement> watched = {},
+             Target target = Target::kColours);
+  const PixelRect& rect() const { return tile_->rect(); }
+
+  // Words or elements from one row to the next. This is at least a cache line more than the width,
+  // because columns at a distance of a power of two would share a few lines of the first level
+  // cache.
+  int stride() const { return rect().width() + 8; }
+
+  // Returns the sums [height][stride()], to whose elements `rays` more rays may then be added, even
+  // all to one element. `rays` is at most max_reserve().
+  Element* ReserveRgb(uint32_t rays) {
+    if (rays > rgb_headroom_) MakeRgbRoom(rays);
+    rgb_headroom_ -= rays;
+    return elements_.data();
+  }
+
+  // As ReserveRgb(), for counted elements [height][stride()].
+  CountedElement* ReserveCounted(uint32_t rays) {
+    if (rays > counted_headroom_) MakeCountedRoom(rays);
+    counted_headroom_ -= rays;
+    return counted_.data();
+  }
+
+  // As ReserveRgb(), for words [height][kMosaicRows][stride()]. Zeros may be added to kMargin words
+  // before and behind the rows of the tile.
+  uint64_t* ReserveMosaic(uint32_t rays) {
+    if (rays > mosaic_headroom_) MakeMosaicRoom(rays);
+    mosaic_headroom_ -= rays;
+    return words_.data() + kMargin;
+  }
+
+  uint32_t max_reserve() const { return ray_limit_; }
+
+  // Adds everything to the plate; the sums are 0 again.
+  void Flush();
+
+  // Returns the exact sum and count that were added to a watched element since Begin(), over all
+  // three layouts, however often the sums were flushed meanwhile.
+  //   index  of the element among those given to Begin()
+  ElementSum Added(size_t index, int channel) const;
+
+ private:
+  void MakeRgbRoom(uint32_t rays);
+  void MakeCountedRoom(uint32_t rays);
+  void MakeMosaicRoom(uint32_t rays);
+  void FlushRgb();
+  template <class AddTo>
+  void FlushRgbBy(const AddTo& add_to);
+  void FlushCounted();
+  void FlushMosaic();
+  // Sums that are not flushed yet, one function for each layout; 0 if the layout is not in use.
+  ElementSum PendingRgb(const PlateElement& element, int channel) const;
+  ElementSum PendingCounted(const PlateElement& element, int channel) const;
+  ElementSum PendingMosaic(const PlateElement& element, int channel) const;
+  template <class Pending>
+  void KeepWatched(const Pending& pending);
+
+  uint32_t ray_limit_;
+  uint32_t mosaic_limit_;  // rays that the plate's words hold
+  PlateTile* tile_ = nullptr;
+  Target target_ = Target::kColours;
+  bool has_rgb_ = false;
+  bool has_counted_ = false;
+  bool has_mosaic_ = false;
+  // Number of rays that still fit; 0 if the layout is not in use.
+  uint32_t rgb_headroom_ = 0;
+  uint32_t counted_headroom_ = 0;
+  uint32_t mosaic_headroom_ = 0;
+  // All 0, except between the first Reserve*() and Flush().
+  LargeVector<Element> elements_;
+  LargeVector<CountedElement> counted_;
+  LargeVector<uint64_t> words_;
+  std::span<const PlateElement> watched_;
+  std::vector<ElementSum> watched_flushed_;  // [watched][channel], since Begin()
+};
+
+}  // namespace lf

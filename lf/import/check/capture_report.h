@@ -1,0 +1,99 @@
+// Reports what the calibration of a light field says about the capture, and what looks wrong in it.
+// No file is read.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lf/core/parallel.h"
+#include "lf/import/check/find_brackets.h"
+#include "lf/light_field/model/light_field.h"
+
+namespace lf {
+
+struct Spread {
+  double min = 0;
+  double median = 0;
+  double max = 0;
+};
+
+// The LF cameras of one model and image size. Spreads are over LF images.
+struct CameraGroup {
+  DistortionModel model = DistortionModel::kNone;
+  int width_px = 0;
+  int height_px = 0;
+  size_t image_count = 0;
+  size_t intrinsics_count = 0;  // number of different intrinsics
+  Spread fx_px, fy_px, cx_px, cy_px;
+  Spread horizontal_fov_rad, vertical_fov_rad;  // through the middle of the image
+};
+
+enum class DistanceSource {
+  kStated,      // CaptureReportOptions::distance_w
+  kDepthRange,  // middle of 1 / near and 1 / far of the calibration
+  kMeeting,     // median distance to the point where the axes meet
+};
+
+// How densely the cameras sample a scene at the distance z. With the median spacing b and the
+// median focal length F, a point moves by the disparity F b / z pixels between neighbouring images.
+// A frame focused at z shows points at z' as copies that are F b |1/z - 1/z'| pixels of an LF image
+// apart: ghosts, unless that is at most about a pixel.
+struct Density {
+  DistanceSource source = DistanceSource::kStated;
+  double distance_w = 0;
+  double spacing_rad = 0;    // angle of b, seen from z
+  double disparity_px = 0;   // F b / z
+  double near_ghost_px = 0;  // at z' = 0.75 z: a third of the disparity
+  double far_ghost_px = 0;   // at z' = 1.25 z: a fifth of the disparity
+};
+
+struct CaptureWarning {
+  std::string kind;                // a word for programs, such as "upside-down"
+  std::string message;             // the fault and its remedy
+  size_t image_count = 0;          // affected LF images; 0: the capture as a whole
+  std::vector<std::string> names;  // of the first 5 of them
+};
+
+struct CaptureReport {
+  size_t image_count = 0;
+  size_t mask_count = 0;
+  std::vector<CameraGroup> groups;  // by falling image_count
+  Vec3 box_min_w = Vec3::Zero();    // bounding box of the positions
+  Vec3 box_max_w = Vec3::Zero();
+  std::optional<Spread> spacing_w;      // from a camera to its nearest neighbour, for two or more
+                                        // cameras; brackets count as one camera
+  std::optional<Vec3> meeting_point_w;  // AxesMeetingPoint()
+  std::optional<DepthRange> depth_range;
+  double unit_m = 1;
+  std::optional<AlphaMeaning> alpha;             // of the images, if known
+  std::array<double, 3> background = {0, 0, 0};  // behind the images, if alpha is light
+  bool keeps_opacity = false;                    // nothing is behind the images
+  std::optional<Density> density;                // if a distance is known
+  std::optional<FoundBrackets> brackets;         // poses with several exposures
+  std::vector<CaptureWarning> warnings;
+};
+
+struct CaptureReportOptions {
+  std::optional<double> distance_w;  // to the scene, for the density; overrides other sources
+  std::vector<double> lights = {};   // of the files, for FindBrackets(); empty: not read
+};
+
+// Kinds of warnings:
+//   facing-away         cameras that look away from the common point or direction of most cameras
+//   diverging-axes      most cameras look away from the point where their axes meet
+//   upside-down         cameras whose up axis opposes that of most (by more than 120 degrees)
+//   repeated-positions  cameras at the position of another one that are no brackets
+//   brackets            poses with several exposures that are not merged yet
+//   sparse              ghosts at 0.75 z of more than 1 % of the image width
+// The light field must have an LF image.
+CaptureReport ReportCapture(const LightField& light_field, const CaptureReportOptions& options,
+                            ThreadPool& pool);
+
+// Returns a warning about `ids`, with their names.
+CaptureWarning WarningAbout(const LightField& light_field, std::string kind, std::string message,
+                            const std::vector<LfImageId>& ids);
+
+}  // namespace lf

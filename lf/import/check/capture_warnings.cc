@@ -1,0 +1,161 @@
+#include "lf/import/check/capture_warnings.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "lf/light_field/model/capture_geometry.h"
+
+namespace lf {
+namespace {
+
+LfImageId IdOf(size_t index) { return LfImageId{static_cast<uint32_t>(index)}; }
+
+// Returns true if the cameras stand around or in front of something: the median line of sight
+// passes the point within a fifth of its distance. Otherwise the point says nothing about them.
+bool AxesConverge(const std::vector<Ray>& axes, const Vec3& point) {
+  std::vector<double> ratios;
+  for (const Ray& axis : axes) {
+    const Vec3 offset = point - axis.origin;
+    ratios.push_back(axis.direction.cross(offset).norm() / std::max(1e-300, offset.norm()));
+  }
+  const auto middle = ratios.begin() + static_cast<ptrdiff_t>(ratios.size() / 2);
+  std::nth_element(ratios.begin(), middle, ratios.end());
+  return *middle < 0.2;
+}
+
+}  // namespace
+
+std::vector<CaptureWarning> WarnOfDirections(const LightField& light_field) {
+  std::vector<Ray> axes;
+  Vec3 sum = Vec3::Zero();
+  for (size_t i = 0; i < light_field.size(); ++i) {
+    axes.push_back(CentralRay(light_field.Camera(IdOf(i))));
+    sum += axes.back().direction;
+  }
+  const std::optional<Vec3> point = PointNearestToAxes(light_field);
+  const bool converges = point && AxesConverge(axes, *point);
+  // Without a common point the cameras may have a common direction. It is significant if the mean
+  // direction is long enough.
+  if (!converges && !(sum.norm() > 0.5 * static_cast<double>(axes.size()))) return {};
+
+  std::vector<LfImageId> away;
+  for (size_t i = 0; i < axes.size(); ++i) {
+    const Vec3 expected = converges ? Vec3(*point - axes[i].origin) : sum;
+    if (axes[i].direction.dot(expected) < 0) away.push_back(IdOf(i));
+  }
+  if (away.empty()) return {};
+  if (converges && 2 * away.size() > axes.size())
+    return {
+        {"diverging-axes",
+         fmt::format("{} of {} cameras look away from ({:.4g}, {:.4g}, {:.4g}), where their "
+                     "optical axes meet. Right for a capture that looks outwards; else the axes "
+                     "are mixed up: transforms.json wants cameras with x right, y up, looking "
+                     "along -z; negate the 2nd and 3rd column of each transform_matrix",
+                     away.size(), axes.size(), point->x(), point->y(), point->z()),
+         away.size(),
+         {}}};
+  return {WarningAbout(light_field, "facing-away",
+                       fmt::format("{} of {} cameras look away from what the others look at: a "
+                                   "failed calibration? Leave them out with --exclude",
+                                   away.size(), axes.size()),
+                       away)};
+}
+
+std::vector<CaptureWarning> WarnOfUpsideDown(const LightField& light_field) {
+  std::vector<Vec3> ups;
+  Mat3 spread = Mat3::Zero();
+  for (size_t i = 0; i < light_field.size(); ++i) {
+    ups.push_back(light_field.Camera(IdOf(i)).UpWorld());
+    spread += ups.back() * ups.back().transpose() / static_cast<double>(light_field.size());
+  }
+  // The axis along which most up vectors lie, in either direction. A dome has 2/3 of the spread
+  // along it. Cameras that lie on their side around a ring have no common up; arcs of such rings
+  // have up to 0.61 along an axis.
+  constexpr double kCommonUp = 0.65;
+  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(spread);
+  if (!(eigen.eigenvalues()[2] >= kCommonUp)) return {};
+  Vec3 axis = eigen.eigenvectors().col(2);
+  const auto along =
+      std::count_if(ups.begin(), ups.end(), [&](const Vec3& up) { return up.dot(axis) > 0; });
+  if (2 * static_cast<size_t>(along) < ups.size()) axis = -axis;
+  std::vector<LfImageId> down;
+  for (size_t i = 0; i < ups.size(); ++i)
+    if (ups[i].dot(axis) < -0.5) down.push_back(IdOf(i));
+  if (down.empty()) return {};
+  return {
+      WarningAbout(light_field, "upside-down",
+                   fmt::format("{} of {} images are upside down beside the others: right if the "
+                               "camera was turned over; else rotate those poses by 180 degrees "
+                               "about their optical axis, or leave them out with --exclude",
+                               down.size(), ups.size()),
+                   down)};
+}
+
+std::vector<CaptureWarning> WarnOfRepeats(const LightField& light_field,
+                                          std::span<const LfImageId> ids,
+                                          std::span<const double> nearest_w) {
+  constexpr double kSamePlace = 1e-8, kRounding = 1e-14;
+  // Bound of the distance that rounding gives two equal positions.
+  const auto rounding_w = [&](size_t i) {
+    return kRounding * light_field.cameras[ids[i].value].cam_from_world.translation.norm();
+  };
+  std::vector<double> apart_w;  // of cameras that share no position
+  for (size_t i = 0; i < nearest_w.size(); ++i)
+    if (nearest_w[i] > rounding_w(i)) apart_w.push_back(nearest_w[i]);
+  double typical_w = 0;  // their median, which one distant camera does not change
+  if (!apart_w.empty()) {
+    const auto middle = apart_w.begin() + static_cast<ptrdiff_t>(apart_w.size() / 2);
+    std::nth_element(apart_w.begin(), middle, apart_w.end());
+    typical_w = *middle;
+  }
+  std::vector<LfImageId> repeated;
+  for (size_t i = 0; i < nearest_w.size(); ++i)
+    if (nearest_w[i] <= kSamePlace * typical_w + rounding_w(i)) repeated.push_back(ids[i]);
+  if (repeated.empty()) return {};
+  return {WarningAbout(light_field, "repeated-positions",
+                       fmt::format("{} of {} cameras share their position with another: rays from "
+                                   "there count twice, and none come from between. If images were "
+                                   "listed twice, leave one of each out with --exclude",
+                                   repeated.size(), light_field.size()),
+                       repeated)};
+}
+
+std::vector<CaptureWarning> WarnOfBrackets(const FoundBrackets& brackets, bool masks_clipped) {
+  if (brackets.are_gains && masks_clipped) return {};
+  const std::string options = brackets.are_gains ? "--mask-clipped"
+                              : masks_clipped    ? "--gain-from-exif"
+                                                 : "--gain-from-exif --mask-clipped";
+  const char* const why =
+      brackets.are_gains ? "highlights that the brighter ones clip are averaged in"
+                         : "they are averaged as if exposed alike, and highlights stay clipped";
+  return {{"brackets",
+           fmt::format("{} images are exposure brackets of {} poses: {}. Write a light field that "
+                       "merges them to linear light with lfimport {} -o DIR",
+                       brackets.image_count, brackets.pose_count, why, options),
+           brackets.image_count,
+           {}}};
+}
+
+std::vector<CaptureWarning> WarnOfSparseness(const Density& density, double width_px,
+                                             double spacing_w) {
+  constexpr double kVisibleShare = 0.01;
+  const double share = density.near_ghost_px / width_px;
+  if (!(share > kVisibleShare)) return {};
+  return {{"sparse",
+           fmt::format(
+               "The cameras stand {:.3g} degrees apart, seen from distance {:.4g}: what lies "
+               "25 % before or behind the focus plane appears as copies {:.3g} or {:.3g} "
+               "pixels of the recorded images apart ({:.2g} % of their width), not as blur. "
+               "Record cameras at most {:.3g} apart for 1 %, or film small apertures, and "
+               "scenes of little depth",
+               DegreesFromRadians(density.spacing_rad), density.distance_w, density.near_ghost_px,
+               density.far_ghost_px, 100 * share, spacing_w * kVisibleShare / share),
+           0,
+           {}}};
+}
+
+}  // namespace lf

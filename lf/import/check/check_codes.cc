@@ -1,0 +1,66 @@
+#include "lf/import/check/check_codes.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "lf/pixels/codec/lf_image_codec.h"
+
+namespace lf {
+namespace {
+
+Result<void> DecodeAll(std::string_view code) {
+  DecodedPart part;
+  return DecodeImage(code, &part);
+}
+
+}  // namespace
+
+CodeChecker::CodeChecker(const LightField& light_field, std::vector<PackedCode> codes)
+    : light_field_(light_field), codes_(std::move(codes)) {}
+
+Result<std::unique_ptr<CodeChecker>> CodeChecker::Open(const LightField& light_field) {
+  LF_ASSIGN_OR_RETURN(std::vector<PackedCode> codes,
+                      FindCodes(light_field.folder, light_field.image_names));
+  return std::unique_ptr<CodeChecker>(new CodeChecker(light_field, std::move(codes)));
+}
+
+CodeChecker::Fault CodeChecker::Check(LfImageId id, bool decode) const {
+  const PackedCode& code = codes_[id.value];
+  const std::string name = light_field_.ImagePath(id).string();
+  if (code.bytes == 0) return {true, fmt::format("{}: has no code in the packed store", name)};
+  const Intrinsics& k = light_field_.intrinsics[light_field_.cameras[id.value].intrinsics_index];
+  if (Intersection(code.rect, {0, 0, k.width_px, k.height_px}) != code.rect)
+    return {false, fmt::format("{}: has more pixels than the calibration says", name)};
+  if (!decode) return {};
+  const Result<void> decoded = Decode(id);
+  return {false, decoded ? "" : fmt::format("{}: {}", name, decoded.error().message)};
+}
+
+Result<void> CodeChecker::Decode(LfImageId id) const {
+  std::optional<PackedCodeReader> reader;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!readers_.empty()) {
+      reader = std::move(readers_.back());
+      readers_.pop_back();
+    }
+  }
+  if (!reader) {
+    LF_ASSIGN_OR_RETURN(reader, PackedCodeReader::Open(light_field_.folder));
+  }
+  Result<void> result;
+  if (const auto bytes = reader->Read(codes_[id.value]); !bytes) {
+    result = bytes.error();
+  } else {
+    result = DecodeAll(bytes->code);
+    if (result && !bytes->mask.empty()) result = DecodeAll(bytes->mask);
+  }
+  const std::lock_guard lock(mutex_);
+  readers_.push_back(*std::move(reader));
+  return result;
+}
+
+}  // namespace lf

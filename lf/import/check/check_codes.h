@@ -1,0 +1,39 @@
+// Checks the LF images of a packed store. Internal to this folder.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "lf/core/ids.h"
+#include "lf/core/result.h"
+#include "lf/light_field/model/light_field.h"
+#include "lf/storage/packed/packed_store_file.h"
+
+namespace lf {
+
+class CodeChecker {
+ public:
+  static Result<std::unique_ptr<CodeChecker>> Open(const LightField& light_field);
+
+  // The result of a check; no fault if `reason` is "".
+  struct Fault {
+    bool is_missing = false;
+    std::string reason;
+  };
+  // Checks one LF image. May be called by many threads at the same time.
+  //   decode  false: reads the store's table only; true: also decodes the image, with its checksum
+  Fault Check(LfImageId id, bool decode) const;
+
+ private:
+  CodeChecker(const LightField& light_field, std::vector<PackedCode> codes);
+  Result<void> Decode(LfImageId id) const;
+
+  const LightField& light_field_;
+  const std::vector<PackedCode> codes_;
+  mutable std::mutex mutex_;
+  mutable std::vector<PackedCodeReader> readers_;  // reused; one per thread in Check()
+};
+
+}  // namespace lf

@@ -1,0 +1,47 @@
+// Checks if the files of a light field, or the encoded images of a packed store, exist and match
+// the calibration.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "lf/core/parallel.h"
+#include "lf/core/result.h"
+#include "lf/light_field/model/light_field.h"
+
+namespace lf {
+
+enum class ImageCheck {
+  // Reads the headers of files and compares sizes; a truncated file goes unnoticed. For a packed
+  // store, reads the table of encoded images; a damaged one goes unnoticed.
+  kHeaders,
+  kPixels,  // decodes every file or encoded image completely
+};
+
+struct ImageFault {
+  LfImageId id;
+  std::string reason;  // names the file
+};
+
+struct ImageFaults {
+  std::vector<ImageFault> missing;  // the file does not exist
+  // The header (kPixels: the pixels) cannot be read, or the size is not that of the calibration.
+  std::vector<ImageFault> broken;
+};
+
+struct CheckOptions {
+  ImageCheck check = ImageCheck::kHeaders;
+  const std::atomic<bool>* interrupted = nullptr;  // polled now and then
+  std::function<void(size_t done, size_t total)> progress;
+};
+
+// Checks all LF images and their masks in parallel. The lists are in the order of the LF images;
+// each LF image is in at most one of them. kInterrupted; kInput: a packed store that cannot be
+// read.
+Result<ImageFaults> CheckImages(const LightField& light_field, const CheckOptions& options,
+                                ThreadPool& pool);
+
+}  // namespace lf

@@ -1,0 +1,112 @@
+#include "lf/import/check/exclude_images.h"
+
+#include <fmt/format.h>
+#include <fnmatch.h>
+
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+
+#include "lf/core/file.h"
+
+namespace lf {
+namespace {
+
+constexpr size_t kMaxFileSize_bytes = 64 << 20;
+
+void AddEntries(std::string_view text, std::string_view separators,
+                std::vector<std::string>* entries) {
+  while (!text.empty()) {
+    const size_t end = std::min(text.size(), text.find_first_of(separators));
+    if (end > 0) entries->emplace_back(text.substr(0, end));
+    text.remove_prefix(std::min(text.size(), end + 1));
+  }
+}
+
+std::string_view BaseName(std::string_view name) { return name.substr(name.rfind('/') + 1); }
+
+// Patterns to match names with. Exact names are looked up; only those with wildcards are tried one
+// by one.
+class PatternSet {
+ public:
+  explicit PatternSet(std::span<const std::string> patterns)
+      : patterns_(patterns), used_(patterns.size()) {
+    for (size_t i = 0; i < patterns.size(); ++i) {
+      exact_.try_emplace(patterns[i], i);
+      if (patterns[i].find_first_of("*?[") != std::string::npos) wildcards_.push_back(i);
+    }
+  }
+
+  bool Matches(const std::string& name) {
+    const std::string base(BaseName(name));
+    bool matches = false;
+    for (const std::string* text : {&name, &base}) {
+      if (const auto found = exact_.find(*text); found != exact_.end()) {
+        used_[found->second] = true;
+        matches = true;
+      }
+      for (const size_t i : wildcards_)
+        if (::fnmatch(patterns_[i].c_str(), text->c_str(), 0) == 0) {
+          used_[i] = true;
+          matches = true;
+        }
+    }
+    return matches;
+  }
+
+  // A pattern that was given twice counts as used if one of the two was.
+  const std::string* FirstUnused() const {
+    for (size_t i = 0; i < used_.size(); ++i)
+      if (!used_[i] && !used_[exact_.at(patterns_[i])]) return &patterns_[i];
+    return nullptr;
+  }
+
+ private:
+  std::span<const std::string> patterns_;
+  std::unordered_map<std::string, size_t> exact_;
+  std::vector<size_t> wildcards_;
+  std::vector<bool> used_;
+};
+
+}  // namespace
+
+Result<std::vector<std::string>> ReadPatterns(std::span<const std::string> options) {
+  std::vector<std::string> patterns;
+  for (const std::string& option : options) {
+    if (!option.starts_with('@')) {
+      AddEntries(option, ",", &patterns);
+      continue;
+    }
+    LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(option.substr(1), kMaxFileSize_bytes));
+    AddEntries(text, "\r\n", &patterns);
+  }
+  return patterns;
+}
+
+Result<size_t> ExcludeImages(std::span<const std::string> patterns, LightField* light_field) {
+  PatternSet set(patterns);
+  std::vector<size_t> kept;
+  for (size_t i = 0; i < light_field->size(); ++i)
+    if (!set.Matches(light_field->image_names[i])) kept.push_back(i);
+  if (const std::string* unused = set.FirstUnused())
+    return InputError(
+        fmt::format("\"{}\" names none of the {} images to exclude; the first is called {}",
+                    *unused, light_field->size(), light_field->image_names[0]));
+  if (kept.empty())
+    return InputError(
+        fmt::format("all {} images are excluded: a light field needs some", light_field->size()));
+  const size_t removed = light_field->size() - kept.size();
+  const bool has_masks = !light_field->mask_names.empty();
+  for (size_t i = 0; i < kept.size(); ++i) {
+    if (kept[i] == i) continue;
+    light_field->cameras[i] = light_field->cameras[kept[i]];
+    light_field->image_names[i] = std::move(light_field->image_names[kept[i]]);
+    if (has_masks) light_field->mask_names[i] = std::move(light_field->mask_names[kept[i]]);
+  }
+  light_field->cameras.resize(kept.size());
+  light_field->image_names.resize(kept.size());
+  if (has_masks) light_field->mask_names.resize(kept.size());
+  return removed;
+}
+
+}  // namespace lf

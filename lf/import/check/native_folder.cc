@@ -1,0 +1,86 @@
+#include "lf/import/check/native_folder.h"
+
+#include <fmt/format.h>
+
+#include <system_error>
+
+#include "lf/core/file.h"
+#include "lf/light_field/transforms_json/transforms_json.h"
+#include "lf/storage/packed/packed_store_file.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kCalibrationName = "transforms.json";
+
+Result<fs::path> Canonical(const fs::path& folder) {
+  std::error_code error;
+  fs::path canonical = fs::canonical(folder.empty() ? fs::path(".") : folder, error);
+  if (error) return InputError(fmt::format("{}: {}", folder.string(), error.message()));
+  return canonical;
+}
+
+// Returns true if the paths share more than the root.
+bool AreNear(const fs::path& a, const fs::path& b) {
+  auto part_a = a.begin(), part_b = b.begin();
+  if (part_a == a.end() || part_b == b.end() || ++part_a == a.end() || ++part_b == b.end())
+    return false;
+  return *part_a == *part_b;
+}
+
+}  // namespace
+
+Result<void> MoveToFolder(const fs::path& folder, LightField* light_field) {
+  LF_ASSIGN_OR_RETURN(const fs::path from, Canonical(light_field->folder));
+  LF_ASSIGN_OR_RETURN(const fs::path to, Canonical(folder));
+  const fs::path prefix = from == to ? fs::path() : from.lexically_relative(to);
+  const auto rename = [&](std::string* name) {
+    if (name->empty()) return;
+    const fs::path path(*name);
+    if (path.is_absolute()) {
+      if (AreNear(path, to)) *name = path.lexically_relative(to).string();
+    } else if (!prefix.empty()) {
+      *name = (prefix / path).string();
+    }
+  };
+  for (std::string& name : light_field->image_names) rename(&name);
+  for (std::string& name : light_field->mask_names) rename(&name);
+  light_field->folder = folder;
+  return {};
+}
+
+Result<void> CheckMayWrite(const fs::path& source, const fs::path& folder, bool force) {
+  std::error_code error;
+  const fs::path path = folder / kCalibrationName;
+  if (force || !fs::exists(path, error)) return {};
+  const fs::path read = fs::is_directory(source, error) ? source / kCalibrationName : source;
+  if (fs::exists(read, error) && fs::equivalent(read, path, error))
+    return UsageError(fmt::format(
+        "{} is what would be read, and what it was made from is not here: write to another folder, "
+        "or replace it (--force)",
+        path.string()));
+  LF_ASSIGN_OR_RETURN(const bool is_ours, IsAsWritten(path, kImportProgram));
+  if (is_ours) return {};
+  return UsageError(
+      fmt::format("{} was not written by lfimport, or was changed since: write to another folder, "
+                  "or replace it "
+                  "(--force)",
+                  path.string()));
+}
+
+Result<std::string> WriteNativeFolder(const fs::path& folder, LightField* light_field) {
+  if (HoldsPackedStore(*light_field))
+    return UsageError(
+        fmt::format("{}: a packed store holds its LF images itself, and a transforms.json can only "
+                    "name image files: every program takes the store as LIGHTFIELD, as it is; to "
+                    "change a light field, import it from its image files and compress it again",
+                    light_field->folder.string()));
+  LF_RETURN_IF_ERROR(CreateFolder(folder));
+  LF_RETURN_IF_ERROR(MoveToFolder(folder, light_field));
+  const fs::path path = folder / kCalibrationName;
+  LF_RETURN_IF_ERROR(WriteTransformsJson(*light_field, path, kImportProgram));
+  return path.string();
+}
+
+}  // namespace lf

@@ -1,0 +1,108 @@
+#include "lf/import/check/similarity.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <charconv>
+#include <cmath>
+#include <system_error>
+#include <vector>
+
+#include "lf/core/file.h"
+
+namespace lf {
+namespace {
+
+constexpr size_t kMaxFileSize_bytes = 64 << 10;
+constexpr double kLargest_w = 1e12;
+constexpr double kTolerance = 1e-3;
+
+Result<std::vector<double>> ParseNumbers(std::string_view text) {
+  constexpr std::string_view kSeparators = " \t\r\n,;[](){}";
+  std::vector<double> numbers;
+  while (true) {
+    text.remove_prefix(std::min(text.size(), text.find_first_not_of(kSeparators)));
+    if (text.empty()) return numbers;
+    const std::string_view word = text.substr(0, text.find_first_of(kSeparators));
+    text.remove_prefix(word.size());
+    const std::string_view digits = word.substr(word.starts_with('+') ? 1 : 0);
+    double number = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    if (error != std::errc() || end != digits.data() + digits.size() ||
+        !(std::abs(number) <= kLargest_w))
+      return InputError(fmt::format("\"{}\" is no number within +-1e12", word.substr(0, 40)));
+    numbers.push_back(number);
+    if (numbers.size() > 16) return numbers;
+  }
+}
+
+}  // namespace
+
+Result<Similarity> ParseSimilarity(std::string_view text) {
+  LF_ASSIGN_OR_RETURN(const std::vector<double> numbers, ParseNumbers(text));
+  if (numbers.size() != 16)
+    return InputError(
+        fmt::format("{} numbers: expected 16, the rows of a 4x4 matrix",
+                    numbers.size() > 16 ? "more than 16" : fmt::to_string(numbers.size())));
+  const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> m(numbers.data());
+  if (m.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
+    return InputError(fmt::format("the last row is {}, {}, {}, {}: expected 0, 0, 0, 1", m(3, 0),
+                                  m(3, 1), m(3, 2), m(3, 3)));
+  const Mat3 scaled = m.topLeftCorner<3, 3>();
+  const double determinant = scaled.determinant();
+  if (!(determinant > 0))
+    return InputError(fmt::format(
+        "the determinant is {}: expected above 0; a mirrored world is another scene", determinant));
+  Similarity similarity;
+  similarity.scale = std::cbrt(determinant);
+  if (!(similarity.scale >= 1e-9 && similarity.scale <= 1e9))
+    return InputError(fmt::format("the scale is {}: expected 1e-9 to 1e9", similarity.scale));
+  similarity.rotation = scaled / similarity.scale;
+  similarity.translation = m.topRightCorner<3, 1>();
+  const double off = (similarity.rotation.transpose() * similarity.rotation - Mat3::Identity())
+                         .cwiseAbs()
+                         .maxCoeff();
+  if (!(off <= kTolerance))
+    return InputError(fmt::format(
+        "the axes miss right angles or equal lengths by {:.2g}: expected a rotation times one "
+        "scale",
+        off));
+  if (off > 1e-12) {
+    const Eigen::JacobiSVD<Mat3> svd(similarity.rotation,
+                                     Eigen::ComputeFullU | Eigen::ComputeFullV);
+    similarity.rotation = svd.matrixU() * svd.matrixV().transpose();
+  }
+  return similarity;
+}
+
+Result<Similarity> ReadSimilarity(const std::string& text_or_file) {
+  if (Result<Similarity> similarity = ParseSimilarity(text_or_file)) return similarity;
+  const auto numbers = ParseNumbers(text_or_file);
+  std::error_code error;
+  if (numbers && !std::filesystem::exists(text_or_file, error))
+    return InputError(ParseSimilarity(text_or_file).error().message);
+  LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(text_or_file, kMaxFileSize_bytes));
+  Result<Similarity> similarity = ParseSimilarity(text);
+  if (!similarity) return InputError(text_or_file + ": " + similarity.error().message);
+  return similarity;
+}
+
+Result<void> Transform(const Similarity& b_from_a, LightField* light_field) {
+  for (size_t i = 0; i < light_field->size(); ++i) {
+    // x_cam = R x_a + t, scaled by s, with x_a = Q^T (x_b - q) / s:  R Q^T x_b + s t - R Q^T q
+    RigidTransform& pose = light_field->cameras[i].cam_from_world;
+    pose.rotation = pose.rotation * b_from_a.rotation.transpose();
+    pose.translation = b_from_a.scale * pose.translation - pose.rotation * b_from_a.translation;
+    if (!(pose.translation.cwiseAbs().maxCoeff() <= kLargest_w))
+      return InputError(fmt::format("{}: its position would lie beyond 1e12 world units",
+                                    light_field->image_names[i]));
+  }
+  if (light_field->depth_range) {
+    light_field->depth_range->near_w *= b_from_a.scale;
+    light_field->depth_range->far_w *= b_from_a.scale;
+  }
+  return {};
+}
+
+}  // namespace lf

@@ -1,0 +1,176 @@
+#include "lf/import/exposure/compare_patches.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "lf/camera/vignetting.h"
+
+namespace lf {
+namespace {
+
+constexpr int kHalf = 6;
+constexpr int kSide = 2 * kHalf + 1;
+constexpr int kPadded = kPatchWindowSide;  // neighbours included
+static_assert(kPadded == kSide + 2);
+constexpr double kLeastShare = 2. / 3;  // of the pixels must count
+constexpr double kDarkest = 0.01;       // radiance; below it, noise and quantisation are as large
+// Deviations of one pixel's light: relative, absolute (radiance), and as a part of the step to the
+// neighbour that differs most.
+constexpr double kNoise = 0.005, kDarkNoise = 0.001, kOfStep = 0.15;
+constexpr double kLeastDeviation = 5e-4;  // of a ratio
+
+PatchWindow WindowOf(const ExposureView& view, const PatchGrid& grid) {
+  PatchWindow window;
+  for (int y = 0; y < kPadded; ++y)
+    for (int x = 0; x < kPadded; ++x)
+      window[static_cast<size_t>(y * kPadded + x)] = view.LightsAt(
+          grid.centre + (x - kHalf - 1) * grid.step_x + (y - kHalf - 1) * grid.step_y);
+  return window;
+}
+
+float Sum(const std::array<float, 3>& light) { return light[0] + light[1] + light[2]; }
+
+// Returns the largest step from a pixel to one of its neighbours; NaN if one of the five pixels is
+// not recorded.
+float StepAt(const PatchWindow& window, size_t pixel) {
+  const float own = Sum(window[pixel]);
+  float step = own > 0 ? 0 : std::numeric_limits<float>::quiet_NaN();
+  for (const size_t other : {pixel - 1, pixel + 1, pixel - kPadded, pixel + kPadded}) {
+    const float light = Sum(window[other]);
+    if (light == 0) return std::numeric_limits<float>::quiet_NaN();
+    step = std::max(step, std::abs(light - own));
+  }
+  return step;
+}
+
+// The pixels that count, one after the other.
+struct Pixels {
+  std::array<std::array<float, kSide * kSide>, 3> a, b;  // light, by channel
+  std::array<float, kSide * kSide> a_sum, b_sum, a_step, b_step, weight, level;
+  std::array<Vec2, kSide * kSide> a_at, b_at;
+  size_t count = 0;
+};
+
+void Gather(const PatchWindow& window_a, const PatchWindow& window_b, const PatchGrid& grid_a,
+            const PatchGrid& grid_b, Pixels* pixels) {
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
+      const auto pixel = static_cast<size_t>((y + 1) * kPadded + x + 1);
+      const float step_a = StepAt(window_a, pixel), step_b = StepAt(window_b, pixel);
+      if (std::isnan(step_a) || std::isnan(step_b)) continue;
+      const size_t i = pixels->count++;
+      for (size_t c = 0; c < 3; ++c) {
+        pixels->a[c][i] = window_a[pixel][c] - 1;
+        pixels->b[c][i] = window_b[pixel][c] - 1;
+      }
+      pixels->a_sum[i] = Sum(window_a[pixel]) - 3;
+      pixels->b_sum[i] = Sum(window_b[pixel]) - 3;
+      pixels->a_step[i] = step_a;
+      pixels->b_step[i] = step_b;
+      pixels->a_at[i] = grid_a.centre + (x - kHalf) * grid_a.step_x + (y - kHalf) * grid_a.step_y;
+      pixels->b_at[i] = grid_b.centre + (x - kHalf) * grid_b.step_x + (y - kHalf) * grid_b.step_y;
+    }
+}
+
+// Sets the weights of the pixels from both images equally, with b's light multiplied by `gain`.
+// Dark noise is relative to the geometric mean of both.
+void Weigh(double gain, double scale, Pixels* pixels) {
+  const auto g = static_cast<float>(gain);
+  for (size_t i = 0; i < pixels->count; ++i) {
+    const float level =
+        std::max((pixels->a_sum[i] + g * pixels->b_sum[i]) / 2, static_cast<float>(1e-4 / scale));
+    const double step = std::max(pixels->a_step[i], g * pixels->b_step[i]) / level;
+    const double dark = 3 * kDarkNoise * std::sqrt(gain) / (scale * level);
+    pixels->level[i] = level;
+    pixels->weight[i] =
+        static_cast<float>(1 / (kNoise * kNoise + dark * dark + kOfStep * kOfStep * step * step));
+  }
+}
+
+// Sums of the weighted light of both images.
+struct Ratio {
+  double a = 0, b = 0;
+};
+Ratio Sums(const Pixels& pixels, const std::array<float, kSide * kSide>& a,
+           const std::array<float, kSide * kSide>& b) {
+  Ratio sums;
+  for (size_t i = 0; i < pixels.count; ++i) {
+    const double weight = pixels.weight[i] / pixels.level[i];
+    sums.a += weight * a[i];
+    sums.b += weight * b[i];
+  }
+  return sums;
+}
+
+double Deviation(const Pixels& pixels, size_t c, const Ratio& sums) {
+  const double gain = sums.a / sums.b;
+  double squares = 0;
+  for (size_t i = 0; i < pixels.count; ++i) {
+    const double weight = pixels.weight[i] / pixels.level[i];
+    const double residual = weight * (pixels.a[c][i] - gain * pixels.b[c][i]);
+    squares += residual * residual;
+  }
+  return std::sqrt(squares / (sums.a * sums.a) + kLeastDeviation * kLeastDeviation);
+}
+
+// Computes the weighted mean of r^2, and its variance.
+void TakeRadii(const Intrinsics& k, const std::array<Vec2, kSide * kSide>& at, const Pixels& pixels,
+               float* mean, float* variance) {
+  double weights = 0, sum = 0, squares = 0;
+  for (size_t i = 0; i < pixels.count; ++i) {
+    const double r_squared = RadiusSquared(k, at[i].x(), at[i].y());
+    weights += pixels.weight[i];
+    sum += pixels.weight[i] * r_squared;
+    squares += pixels.weight[i] * r_squared * r_squared;
+  }
+  *mean = static_cast<float>(sum / weights);
+  *variance = static_cast<float>(squares / weights - std::pow(sum / weights, 2));
+}
+
+}  // namespace
+
+ComparedPatch::ComparedPatch(const ComparedImage& a, const Place& place, double white)
+    : a_(a),
+      scale_(white / kLightSteps),
+      grid_{place.at_px, Vec2(a.view.grey->divisor, 0), Vec2(0, a.view.grey->divisor)},
+      window_(WindowOf(a.view, grid_)) {}
+
+std::optional<ExposureSample> ComparedPatch::CompareWith(const ComparedImage& b,
+                                                         const PatchGrid& grid) const {
+  Pixels pixels;
+  Gather(window_, WindowOf(b.view, grid), grid_, grid, &pixels);
+  if (static_cast<double>(pixels.count) < kLeastShare * kSide * kSide) return std::nullopt;
+  double a_mean = 0, b_mean = 0;
+  for (size_t i = 0; i < pixels.count; ++i) {
+    a_mean += pixels.a_sum[i];
+    b_mean += pixels.b_sum[i];
+  }
+  if (a_mean <= 0 || b_mean <= 0) return std::nullopt;
+  Weigh(a_mean / b_mean, scale_, &pixels);
+  const Ratio all = Sums(pixels, pixels.a_sum, pixels.b_sum);
+  Weigh(all.a / all.b, scale_, &pixels);
+  ExposureSample sample;
+  bool is_any = false;
+  for (size_t c = 0; c < 3; ++c) {
+    sample.log_ratio[c] = std::numeric_limits<float>::quiet_NaN();
+    double a_light = 0, b_light = 0;
+    for (size_t i = 0; i < pixels.count; ++i) {
+      a_light += pixels.a[c][i];
+      b_light += pixels.b[c][i];
+    }
+    if (scale_ * std::min(a_light, b_light) < kDarkest * static_cast<double>(pixels.count))
+      continue;
+    const Ratio sums = Sums(pixels, pixels.a[c], pixels.b[c]);
+    sample.log_ratio[c] = static_cast<float>(std::log(sums.a / sums.b));
+    sample.deviation[c] = static_cast<float>(Deviation(pixels, c, sums));
+    is_any = true;
+  }
+  if (!is_any) return std::nullopt;
+  TakeRadii(a_.intrinsics, pixels.a_at, pixels, &sample.a_r_squared, &sample.a_r_variance);
+  TakeRadii(b.intrinsics, pixels.b_at, pixels, &sample.b_r_squared, &sample.b_r_variance);
+  return sample;
+}
+
+}  // namespace lf

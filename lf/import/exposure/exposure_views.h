@@ -1,0 +1,51 @@
+// Small views of LF images for the comparison of exposures: their light by channel, and a grey
+// image to find depths. The views of a whole light field are in memory at the same time.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "lf/core/image.h"
+#include "lf/core/parallel.h"
+#include "lf/core/result.h"
+#include "lf/focus/reduced_image.h"
+#include "lf/light_field/model/light_field.h"
+#include "lf/storage/load/lf_image_store.h"
+
+namespace lf {
+
+struct ExposureView {
+  std::shared_ptr<const ReducedImage> grey;  // null: the image could not be loaded
+  // R, G and B of the same pixels  [height][width][3]: light in units of the largest that the light
+  // field can hold, times kLightSteps; 0 if one of the LF pixels is masked or clipped.
+  Image<uint16_t> light;
+
+  // Returns the light between pixels; 0 if one of the four pixels around is 0, or beyond the image.
+  std::array<float, 3> LightsAt(const Vec2& place_px) const;
+};
+inline constexpr float kLightSteps = 65534;
+
+struct LoadViewsOptions {
+  int width_px = 240;                              // largest width of a view
+  const std::atomic<bool>* interrupted = nullptr;  // read now and then; may be null
+  std::function<void(size_t done, size_t total)> progress;
+};
+
+// Returns the memory of a view of this width, for LF images with these intrinsics.
+size_t ViewBytes(const Intrinsics& k, int width_px);
+
+// Returns the views of all LF images, each of which is loaded once. The view of an image that
+// cannot be loaded has no `grey`.
+// kInterrupted: `interrupted` is true. kOutput: the machine lacks memory or open files.
+//   light_field  without gains and falloffs (WithoutExposure())
+//   store        of it, with Mosaics::kToRgb
+Result<std::vector<ExposureView>> LoadExposureViews(const LightField& light_field,
+                                                    const LfImageStore& store,
+                                                    const LoadViewsOptions& options,
+                                                    ThreadPool& pool);
+
+}  // namespace lf

@@ -1,0 +1,51 @@
+// Finds the LF cameras around one in a k-d tree of their positions, so that the neighbours of all n
+// LF images are found in n log n steps.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "lf/core/geometry.h"
+#include "lf/core/ids.h"
+#include "lf/focus/place_depth.h"
+#include "lf/light_field/model/light_field.h"
+
+namespace lf {
+
+class NearbyCameras {
+ public:
+  // Refers to the light field, which must outlive it.
+  explicit NearbyCameras(const LightField& light_field);
+
+  // Returns up to `count` LF cameras nearest to a point, the nearest first, that look in about the
+  // same direction as `camera` (within 37 degrees); without `camera` itself.
+  std::vector<uint32_t> Nearest(const Vec3& point_world, size_t count, LfImageId camera) const;
+
+  // Returns rings of up to six views around `camera` for DepthOf(), each twice as wide as the one
+  // before. Depths must be more precise than with ChooseRings(), because with a wrong disparity the
+  // estimated falloff is too weak. Images are not loaded.
+  Rings DepthRings(LfImageId camera) const;
+
+  // Returns the views whose light is compared with that of `camera`: those of the rings, and the
+  // six nearest ones, each once. Images are not loaded.
+  std::vector<View> ComparedViews(LfImageId camera, const Rings& rings) const;
+
+ private:
+  std::vector<View> Ring(LfImageId camera, double radius_w, double turn, double least_share) const;
+  View ViewOf(const PinholeCamera& camera, uint32_t other) const;
+  void Split(size_t begin, size_t end);
+  template <typename Visit>
+  void Search(size_t begin, size_t end, const Vec3& point_world, const double& limit,
+              const Visit& visit) const;
+
+  const LightField& field_;
+  std::vector<Vec3> centres_;    // [cameras]
+  std::vector<Vec3> forwards_;   // [cameras]
+  std::vector<uint32_t> order_;  // a balanced tree: the middle of each range is its root
+  std::vector<uint8_t> axes_;    // axis of each root's split, at the root's index in order_
+  Vec3 least_ = Vec3::Zero(), most_ = Vec3::Zero();  // corners of the box of all centres
+  double spacing_w_ = 0;
+};
+
+}  // namespace lf

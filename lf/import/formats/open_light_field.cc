@@ -1,0 +1,388 @@
+#include "lf/import/formats/open_light_field.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "lf/core/log.h"
+#include "lf/import/formats/read_aos.h"
+#include "lf/import/formats/read_hci.h"
+#include "lf/import/formats/read_llff.h"
+#include "lf/import/formats/read_middlebury.h"
+#include "lf/import/formats/read_stanford.h"
+#include "lf/light_field/colmap/points_seen.h"
+#include "lf/light_field/colmap/read_colmap.h"
+#include "lf/light_field/model/alpha_evidence.h"
+#include "lf/light_field/model/brackets.h"
+#include "lf/light_field/model/image_files.h"
+#include "lf/light_field/model/raw_encoding.h"
+#include "lf/light_field/transforms_json/transforms_json.h"
+#include "lf/storage/packed/packed_store_file.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kCalibrationName = "transforms.json";
+constexpr const char* kAosName = "poses.json";
+constexpr const char* kImagesName = "images";
+
+// Returns a hint at calibrations with other names, such as Blender's transforms_train.json.
+std::string OtherCalibrations(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    if (name.starts_with("transforms") && name.ends_with(".json")) names.push_back(name);
+  }
+  if (names.empty()) return "";
+  std::sort(names.begin(), names.end());
+  return fmt::format("; it holds {}: name the file itself to read it", fmt::join(names, ", "));
+}
+
+// Returns the first option in `options` that only folders of the Stanford form accept, for
+// messages; "" if there is none.
+std::string_view StanfordOptionOf(const OpenOptions& options) {
+  if (options.focal_px) return "--focal-px";
+  if (options.pitch_w) return "--pitch";
+  if (options.plane_distance_w) return "--plane-distance";
+  if (options.flip_x) return "--flip-x";
+  if (options.flip_y) return "--flip-y";
+  return "";
+}
+
+// kUsage if an option is given that only folders of the Stanford form need.
+Result<void> CheckNoStanfordOptions(const fs::path& path, const OpenOptions& options) {
+  const std::string_view option = StanfordOptionOf(options);
+  if (option.empty()) return {};
+  return UsageError(fmt::format(
+      "{} is for folders of images whose names do not tell everything; {} states its own", option,
+      path.string()));
+}
+
+Result<void> CheckNoFov(const fs::path& path, const OpenOptions& options) {
+  if (!options.fov_deg) return {};
+  return UsageError(fmt::format(
+      "--fov-deg is for poses of Airborne Optical Sectioning, which do not tell it; {} is of "
+      "another kind",
+      path.string()));
+}
+
+Result<void> CheckNoImagesFolder(const fs::path& path, const OpenOptions& options) {
+  if (!options.images_folder) return {};
+  return UsageError(fmt::format(
+      "--images is for calibrations whose image files are elsewhere; {} is where its own are",
+      path.string()));
+}
+
+Result<LightField> OpenAos(const fs::path& path, const OpenOptions& options) {
+  LF_RETURN_IF_ERROR(CheckNoStanfordOptions(path, options));
+  LogDebug("{}: opened as poses of Airborne Optical Sectioning", path.string());
+  return ReadAos(path, {.fov_deg = options.fov_deg, .images_folder = options.images_folder});
+}
+
+// A packed store holds its calibration and states everything about its pixels.
+Result<LightField> OpenPackedStore(const fs::path& path, const OpenOptions& options) {
+  LF_RETURN_IF_ERROR(CheckNoStanfordOptions(path, options));
+  LF_RETURN_IF_ERROR(CheckNoFov(path, options));
+  LF_RETURN_IF_ERROR(CheckNoImagesFolder(path, options));
+  if (options.bayer)
+    return UsageError(
+        fmt::format("--bayer: {} is a packed store, whose pixels are coded as what "
+                    "they are: import its light field with it, and compress again",
+                    path.string()));
+  LogDebug("{}: opened as a packed store", path.string());
+  LF_ASSIGN_OR_RETURN(PackedStoreFacts facts, ReadPackedStore(path));
+  return std::move(facts.light_field);
+}
+
+// Returns nullopt if the name is not that of a calibration file.
+std::optional<Result<LightField>> OpenFile(const fs::path& path, const OpenOptions& options) {
+  if (path.extension() == ".json" && IsAosFile(path)) return OpenAos(path, options);
+  if (path.extension() == kStoreExtension) return OpenPackedStore(path, options);
+  Result<LightField> (*read)(const fs::path&) = nullptr;
+  if (path.extension() == ".json") read = ReadTransformsJson;
+  if (path.extension() == ".npy") read = ReadLlff;
+  if (path.extension() == ".cfg") read = ReadHci;
+  if (IsMiddleburyName(path.filename().string())) read = ReadMiddlebury;
+  if (!read) return std::nullopt;
+  if (Result<void> result = CheckNoStanfordOptions(path, options); !result) return result.error();
+  if (Result<void> result = CheckNoFov(path, options); !result) return result.error();
+  LogDebug("{}: opened as {}", path.string(),
+           read == ReadLlff             ? "LLFF poses"
+           : read == ReadHci            ? "parameters of the 4D Light Field Benchmark"
+           : read == ReadTransformsJson ? "transforms.json"
+                                        : "Middlebury parameters");
+  return read(path);
+}
+
+// Returns the file in a folder, other than transforms.json, that describes its light field.
+Result<std::optional<fs::path>> OtherCalibrationIn(const fs::path& folder) {
+  std::error_code error;
+  const std::vector<fs::path> middlebury = MiddleburyFiles(folder);
+  if (middlebury.size() > 1)
+    return InputError(fmt::format("{}: holds {} and {}: name the file itself to read it",
+                                  folder.string(), middlebury[0].filename().string(),
+                                  middlebury[1].filename().string()));
+  if (!middlebury.empty()) return std::optional(middlebury[0]);
+  if (fs::exists(folder / kLlffName, error)) return std::optional(folder / kLlffName);
+  if (IsHciFile(folder / kHciName)) return std::optional(folder / kHciName);
+  if (IsAosFile(folder / kAosName)) return std::optional(folder / kAosName);
+  return std::optional<fs::path>();
+}
+
+Result<std::optional<fs::path>> CalibrationIn(const fs::path& folder) {
+  std::error_code error;
+  if (fs::exists(folder / kCalibrationName, error)) return std::optional(folder / kCalibrationName);
+  return OtherCalibrationIn(folder);
+}
+
+Result<LightField> OpenColmap(const fs::path& model_folder, const OpenOptions& options) {
+  LF_RETURN_IF_ERROR(CheckNoStanfordOptions(model_folder, options));
+  LF_RETURN_IF_ERROR(CheckNoFov(model_folder, options));
+  LogDebug("{}: opened as a COLMAP model", model_folder.string());
+  return ReadColmapModel(model_folder, options.images_folder);
+}
+
+Result<LightField> OpenStanford(const fs::path& folder, const OpenOptions& options,
+                                const fs::path& asked_for) {
+  LF_RETURN_IF_ERROR(CheckNoFov(folder, options));
+  LF_RETURN_IF_ERROR(CheckNoImagesFolder(folder, options));
+  LogDebug("{}: opened as images with Stanford names", folder.string());
+  return ReadStanfordFolder(folder, {.focal_px = options.focal_px,
+                                     .pitch_w = options.pitch_w,
+                                     .plane_distance_w = options.plane_distance_w,
+                                     .flip_x = options.flip_x,
+                                     .flip_y = options.flip_y,
+                                     .asked_for = asked_for});
+}
+
+// Completes the encoding. Called after the calibration was read, which may state nothing about it.
+Result<void> CompleteEncoding(const OpenOptions& options, const fs::path& path,
+                              LightField* light_field) {
+  RadianceEncoding& encoding = light_field->encoding;
+  const bool is_raw = IsRawName(light_field->image_names[0]);
+  // An encoding that is no longer the default was stated completely.
+  if (is_raw && encoding.bayer == BayerPattern::kNone && encoding.transfer == Transfer::kSrgb)
+    LF_RETURN_IF_ERROR(CompleteEncodingOfRaw(light_field));
+  if (options.bayer) {
+    if (encoding.transfer == Transfer::kSrgb) encoding.transfer = Transfer::kLinear;
+    encoding.bayer = *options.bayer;
+  }
+  if (!is_raw || encoding.bayer != BayerPattern::kNone) return {};
+  LF_ASSIGN_OR_RETURN(const std::optional<RawFacts> facts, RawFactsOfFirstImage(*light_field));
+  if (facts && facts->is_monochrome) return {};
+  return InputError(fmt::format(
+      "{}: the camera raw file {} does not tell a Bayer pattern (four letters of R, G, B with the "
+      "two G on a diagonal): state \"lf_bayer\": \"RGGB\", or what it is, in transforms.json, or "
+      "import with lfimport --bayer RGGB",
+      path.string(), light_field->ImagePath({0}).string()));
+}
+
+// Finds image files that were moved, renamed or downscaled after they were calibrated.
+Result<void> FindImages(const OpenOptions& options, const fs::path& path, LightField* light_field) {
+  const std::string name = light_field->image_names[0];
+  LF_ASSIGN_OR_RETURN(const size_t found_count, FindImageFiles(options.images_folder, light_field));
+  // A COLMAP model may be used for planning before its images are there.
+  if (found_count == 0 && options.images_folder && light_field->folder != *options.images_folder)
+    return InputError(fmt::format(
+        "--images {}: holds no image named as the LF images of {}, such as {}, in any folder below "
+        "it",
+        options.images_folder->string(), path.string(), name));
+  const Intrinsics before = light_field->intrinsics[0];
+  LF_ASSIGN_OR_RETURN(const double factor, FitToImageFiles(options.image_scale, light_field));
+  if (factor != 1)
+    LogInfo(
+        "{}: image files are {:.4g} times as large as they were calibrated, such as {} x {} "
+        "pixels instead of {} x {}: intrinsics are scaled (--image-scale)",
+        path.string(), factor, light_field->intrinsics[0].width_px,
+        light_field->intrinsics[0].height_px, before.width_px, before.height_px);
+  return {};
+}
+
+// Decides what alpha means: first by the options, then by the calibration, then by the pixels.
+Result<void> CompleteAlpha(const OpenOptions& options, const fs::path& path,
+                           LightField* light_field) {
+  RadianceEncoding& encoding = light_field->encoding;
+  const bool was_light = encoding.AlphaIsLight();
+  if (options.alpha && HoldsPackedStore(*light_field) &&
+      was_light != (*options.alpha != AlphaMeaning::kMask))
+    return UsageError(fmt::format(
+        "--image-alpha {}: {} is a packed store, in which alpha was coded as {}: compress its "
+        "light field again with this option",
+        NameOf(*options.alpha), path.string(), was_light ? "light" : "a mask"));
+  if (options.alpha) encoding.alpha = options.alpha;
+  if (options.background) {
+    encoding.background = options.background;
+    encoding.keeps_opacity = options.keeps_opacity;
+  }
+  if (!encoding.alpha && !HoldsPackedStore(*light_field) && encoding.bayer == BayerPattern::kNone) {
+    if (const std::optional<AlphaEvidence> found = FindAlphaEvidence(*light_field)) {
+      encoding.alpha = found->meaning;
+      if (encoding.AlphaIsLight() && !encoding.background) encoding.background = found->background;
+      LogInfo("{}: alpha is taken as {}, as the pixels of {} tell (--image-alpha)", path.string(),
+              TextOfAlpha(*encoding.alpha, encoding.Background(), encoding.keeps_opacity),
+              found->image_name);
+    }
+  }
+  if (!encoding.background) return {};
+  if (encoding.keeps_opacity && encoding.bayer != BayerPattern::kNone)
+    return UsageError(fmt::format(
+        "--background {}: the LF images of {} are mosaics, which have no alpha: leave it out",
+        kNoBackground, path.string()));
+  if (!encoding.AlphaIsLight())
+    return UsageError(fmt::format(
+        "--background: there is nothing behind the LF images of {}, whose alpha is {}: state "
+        "--image-alpha straight or premultiplied",
+        path.string(), encoding.alpha ? "a mask" : "not known or not there"));
+  const auto& behind = *encoding.background;
+  if (*std::max_element(behind.begin(), behind.end()) > encoding.max_radiance)
+    return UsageError(fmt::format("the background {} of {} is brighter than lf_max_radiance, {}",
+                                  fmt::join(behind, ","), path.string(), encoding.max_radiance));
+  return {};
+}
+
+bool HoldsLightField(const fs::path& folder) {
+  std::error_code error;
+  if (fs::exists(folder / kCalibrationName, error)) return true;
+  const Result<std::optional<fs::path>> model = FindColmapModel(folder);
+  if (model && *model) return true;
+  const Result<std::optional<fs::path>> calibration = CalibrationIn(folder);
+  return !calibration || *calibration || HoldsStanfordNames(folder) ||
+         HoldsStanfordNames(folder / kImagesName) || !PackedStoresIn(folder).empty();
+}
+
+// Returns a hint for a folder that holds photographs but no calibration.
+std::string PhotographsIn(const fs::path& path) {
+  constexpr size_t kMostEntries = 4096;
+  for (const fs::path& folder : {path, path / kImagesName}) {
+    size_t count = 0, entry_count = 0;
+    std::string first;
+    std::error_code error;
+    for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+      if (++entry_count > kMostEntries) break;
+      const std::string name = it->path().filename().string();
+      if (!IsImageName(name)) continue;
+      ++count;
+      if (first.empty() || name < first) first = name;
+    }
+    if (count > 1)
+      return fmt::format(
+          "; {} holds {}{} images, such as {}, but nothing that says where they were taken: "
+          "reconstruct that first, such as with COLMAP (colmap automatic_reconstructor), which "
+          "writes sparse/0",
+          folder.string(), entry_count > kMostEntries ? "at least " : "", count, first);
+  }
+  return "";
+}
+
+// Returns a hint if a subfolder holds a light field.
+std::string LightFieldsBelow(const fs::path& folder) {
+  constexpr size_t kMostNames = 5;
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    std::error_code ignored;
+    if (names.size() < kMostNames && it->is_directory(ignored) && HoldsLightField(it->path()))
+      names.push_back(it->path().filename().string());
+  }
+  if (names.empty()) return "";
+  std::sort(names.begin(), names.end());
+  return fmt::format("; but {}/ in it does", fmt::join(names, "/, "));
+}
+
+Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& options) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::none)
+    return InputError(fmt::format("{}: cannot be read: {}", path.string(), error.message()));
+  if (!fs::exists(status))
+    return InputError(fmt::format("{}: no such file or folder", path.string()));
+  if (!fs::is_directory(status)) {
+    if (std::optional<Result<LightField>> opened = OpenFile(path, options)) return *opened;
+    return InputError(
+        fmt::format("{}: is not a light field: expected a transforms.json, a NAME_par.txt "
+                    "(Middlebury), a poses_bounds.npy (LLFF), a parameters.cfg (4D Light Field "
+                    "Benchmark), a poses.json (AOS), a packed store "
+                    "(STORE.lfs) or the folder of one, the folder of a COLMAP model, or a folder "
+                    "of images",
+                    path.string()));
+  }
+  const bool passes_over = options.passes_over_own && HoldsOwnAndItsSource(path);
+  if (passes_over)
+    LogInfo("{}: was written by lfimport: what it was made from is read again",
+            (path / kCalibrationName).string());
+  // COLMAP comes before poses_bounds.npy, which is made from such a model and drops the distortion.
+  if (passes_over || !fs::exists(path / kCalibrationName, error)) {
+    LF_ASSIGN_OR_RETURN(const std::optional<fs::path> model, FindColmapModel(path));
+    if (model) return OpenColmap(*model, options);
+  }
+  LF_ASSIGN_OR_RETURN(const std::optional<fs::path> calibration,
+                      passes_over ? OtherCalibrationIn(path) : CalibrationIn(path));
+  if (calibration) return *OpenFile(*calibration, options);
+  for (const fs::path& folder : {path, path / kImagesName})
+    if (HoldsStanfordNames(folder)) return OpenStanford(folder, options, path);
+  const std::vector<fs::path> stores = PackedStoresIn(path);
+  if (stores.size() == 1) return OpenPackedStore(stores[0], options);
+  if (stores.size() > 1)
+    return InputError(fmt::format("{}: holds {} and {}: name the file itself to read it",
+                                  path.string(), stores[0].filename().string(),
+                                  stores[1].filename().string()));
+  return InputError(fmt::format(
+      "{}: holds no light field: looked for {}, a COLMAP model in it or in sparse/0, NAME_par.txt, "
+      "{}, {}, {} (AOS), one packed store NAME.lfs, and for images named "
+      "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext or NAME_ROW_COL.ext in it and in {}/{}{}{}",
+      path.string(), kCalibrationName, kLlffName, kHciName, kAosName, kImagesName,
+      OtherCalibrations(path), LightFieldsBelow(path), PhotographsIn(path)));
+}
+
+}  // namespace
+
+bool HoldsOwnAndItsSource(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::exists(folder / kCalibrationName, error)) return false;
+  const Result<bool> is_own = IsAsWritten(folder / kCalibrationName, kImportProgram);
+  if (!is_own || !*is_own) return false;
+  const Result<std::optional<fs::path>> model = FindColmapModel(folder);
+  if (model && *model) return true;
+  const Result<std::optional<fs::path>> other = OtherCalibrationIn(folder);
+  return (other && *other) || HoldsStanfordNames(folder) ||
+         HoldsStanfordNames(folder / kImagesName);
+}
+
+Result<std::vector<Vec3>> PointsSeenBy(const fs::path& path, const LightField& light_field,
+                                       LfImageId id) {
+  std::error_code error;
+  if (!fs::is_directory(path, error) || fs::exists(path / kCalibrationName, error))
+    return std::vector<Vec3>();
+  LF_ASSIGN_OR_RETURN(const std::optional<fs::path> model, FindColmapModel(path, /*warns=*/false));
+  if (!model) return std::vector<Vec3>();
+  return ReadColmapPointsSeen(*model, id.value, light_field.Camera(id));
+}
+
+Result<LightField> OpenLightField(const fs::path& path, const OpenOptions& options) {
+  LF_ASSIGN_OR_RETURN(LightField light_field, OpenCalibration(path, options));
+  if (!HoldsPackedStore(light_field)) {
+    LF_RETURN_IF_ERROR(FindImages(options, path, &light_field));
+    LF_RETURN_IF_ERROR(CompleteEncoding(options, path, &light_field));
+  }
+  LF_RETURN_IF_ERROR(CompleteAlpha(options, path, &light_field));
+  // A packed store states the decision that was made when its masks were encoded.
+  if (!HoldsPackedStore(light_field) && light_field.encoding.masks_clipped)
+    ApplyBrackets(&light_field);
+  const Intrinsics& first = light_field.Camera({0}).intrinsics;
+  LogDebug("{}: {} LF images in {}, the first of {} x {} pixels{}, {} distinct intrinsics{}{}",
+           path.string(), light_field.size(), light_field.folder.string(), first.width_px,
+           first.height_px, first.has_distortion() ? " with lens distortion" : "",
+           light_field.intrinsics.size(),
+           light_field.encoding.bayer == BayerPattern::kNone ? "" : ", mosaics",
+           light_field.mask_names.empty() ? "" : ", masks");
+  return light_field;
+}
+
+}  // namespace lf

@@ -1,0 +1,40 @@
+// Reads poses of Airborne Optical Sectioning (JKU Linz; doc/formats/aos.md), a JSON file:
+//
+//   {"images": [{"imagefile": "a.png", "M3x4": [[r11, r12, r13, t1], [...], [...]]}, ...]}
+//
+// M3x4 is cam_from_world with axes x right, y down, z forward; its numbers may be strings. The file
+// contains neither the cameras' field of view nor the folder of the images.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string_view>
+
+#include "lf/core/result.h"
+#include "lf/light_field/model/light_field.h"
+
+namespace lf {
+
+struct AosOptions {
+  // Field of view across both the width and the height of the image, because AOS renders square
+  // images. kInput if it is missing.
+  std::optional<double> fov_deg = {};
+  // Folder of the image files. Default: the folder of the JSON file, its images/, or images/ or
+  // images_ldr/ beside it: the first one that contains the first image.
+  std::optional<std::filesystem::path> images_folder = {};
+};
+
+// Returns true if the first MiB of the file look like these poses; false if it cannot be read.
+bool IsAosFile(const std::filesystem::path& path);
+
+// All images get the size of the first one. If the first image exists with the extension .png
+// instead of .tif or .tiff, all such names are changed, as AOS's programs do. Images that are not
+// square cause a warning. kInput names the file and the image, the value found and what was
+// expected; kUsage for a fov_deg outside 0.01 to 179.
+Result<LightField> ReadAos(const std::filesystem::path& path, const AosOptions& options);
+
+// Reads the poses and names alone, without intrinsics. `path` is for messages and
+// LightField::folder.
+Result<LightField> ParseAosPoses(std::string_view text, const std::filesystem::path& path);
+
+}  // namespace lf

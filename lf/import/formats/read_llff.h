@@ -1,0 +1,39 @@
+// Reads poses_bounds.npy of LLFF and of the NeRF data sets that follow it (doc/formats/llff.md): an
+// array of (N, 17) numbers beside a folder images/. The rows belong to the image files sorted by
+// name:
+//
+//   a 3x5 matrix, row by row: camera axes down, right, backwards | centre | height, width, focal
+//   near and far bound of the depths
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "lf/core/result.h"
+#include "lf/light_field/model/image_files.h"
+#include "lf/light_field/model/light_field.h"
+
+namespace lf {
+
+inline constexpr const char* kLlffName = "poses_bounds.npy";
+
+// Parses the content of a file.
+//   bytes        the file's content
+//   path         its name for messages; its folder becomes LightField::folder
+//   image_names  the files in images/, sorted
+//   image_size   called for the first image
+// The principal point is the image centre; depth_range is the smallest near and the largest far
+// bound.
+// kInput names the file and the row, the value found and what was expected: another type or shape;
+// different numbers of rows and images; images of another size than the rows state (the format has
+// no place for copies of other sizes, such as images_8); an axis that is mirrored or sheared.
+Result<LightField> ParseLlff(std::string_view bytes, const std::filesystem::path& path,
+                             std::span<const std::string> image_names,
+                             const ImageSizeSource& image_size);
+
+// As ParseLlff(), for a file with its images in images/ beside it.
+Result<LightField> ReadLlff(const std::filesystem::path& path);
+
+}  // namespace lf

@@ -1,0 +1,37 @@
+// Reads Middlebury's multi-view calibrations, NAME_par.txt (doc/formats/middlebury.md): the number
+// of images, then a line for each:
+//
+//   imgname.png k11 k12 k13 k21 k22 k23 k31 k32 k33 r11 r12 r13 r21 r22 r23 r31 r32 r33 t1 t2 t3
+//
+// P = K [R t], camera axes x right, y down, z forward. In the file the centre of the upper left
+// pixel is (0, 0); 0.5 is added to cx and cy on reading.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+#include "lf/core/result.h"
+#include "lf/light_field/model/image_files.h"
+#include "lf/light_field/model/light_field.h"
+
+namespace lf {
+
+// Parses the content of a file.
+//   text        the file's content
+//   path        its name for messages; its folder becomes LightField::folder
+//   image_size  called for the first image; all images have this size
+// kInput names the file, the line and the image, the value found and what was expected.
+Result<LightField> ParseMiddlebury(std::string_view text, const std::filesystem::path& path,
+                                   const ImageSizeSource& image_size);
+
+// As ParseMiddlebury(), for a file. The size comes from the header of the first image file beside
+// it.
+Result<LightField> ReadMiddlebury(const std::filesystem::path& path);
+
+bool IsMiddleburyName(std::string_view file_name);  // ends in _par.txt
+
+// Returns the files with such names in a folder, sorted.
+std::vector<std::filesystem::path> MiddleburyFiles(const std::filesystem::path& folder);
+
+}  // namespace lf

@@ -1,0 +1,229 @@
+#include "lf/import/formats/read_stanford.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "lf/core/log.h"
+#include "lf/core/shell_word.h"
+#include "lf/import/formats/stanford_name.h"
+#include "lf/light_field/model/distinct_intrinsics.h"
+#include "lf/pixels/files/image_file.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kForm = "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext";
+constexpr double kLargest_w = 1e12;           // as in transforms.json
+constexpr double kLargestPrincipal_px = 1e7;  // as in transforms.json
+
+struct StanfordImage {
+  std::string file_name;
+  StanfordName name;
+};
+
+// The image files of the form that is used, by row and column, and the names of all other files.
+// For example, sheet_01_02.png is no camera beside names with positions.
+struct Listing {
+  std::vector<StanfordImage> images;
+  std::vector<std::string> others;
+};
+
+Result<Listing> ListFolder(const fs::path& folder) {
+  Listing listing;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    std::string file_name = it->path().filename().string();
+    if (file_name.starts_with('.') || it->is_directory(error)) continue;
+    const std::optional<StanfordName> name = ParseStanfordName(file_name);
+    if (name)
+      listing.images.push_back({std::move(file_name), *name});
+    else
+      listing.others.push_back(std::move(file_name));
+  }
+  if (error)
+    return InputError(fmt::format("{}: cannot be listed: {}", folder.string(), error.message()));
+  const auto has_position = [](const StanfordImage& image) { return !!image.name.position; };
+  const auto others = std::partition(listing.images.begin(), listing.images.end(), has_position);
+  if (others != listing.images.begin()) {
+    for (auto it = others; it != listing.images.end(); ++it)
+      listing.others.push_back(std::move(it->file_name));
+    listing.images.erase(others, listing.images.end());
+  }
+  std::sort(listing.others.begin(), listing.others.end());
+  std::sort(listing.images.begin(), listing.images.end(),
+            [](const StanfordImage& a, const StanfordImage& b) {
+              return std::tie(a.name.row, a.name.column, a.file_name) <
+                     std::tie(b.name.row, b.name.column, b.file_name);
+            });
+  return listing;
+}
+
+void WarnOfOthers(const fs::path& folder, const Listing& listing) {
+  constexpr size_t kShown = 3;
+  const auto& others = listing.others;
+  if (others.empty()) return;
+  LogWarning("{}: {} of {} files left out, being named otherwise than {}: {}{}", folder.string(),
+             others.size(), others.size() + listing.images.size(), kForm,
+             fmt::join(others.begin(), others.begin() + std::min(kShown, others.size()), ", "),
+             others.size() > kShown ? ", ..." : "");
+}
+
+// Returns the call of lfimport that adds the missing values, with numbers to start from.
+std::string ImportCommand(const fs::path& folder, const StanfordOptions& options, bool needs_pitch,
+                          int width_px) {
+  const std::string word =
+      ShellWord((options.asked_for.empty() ? folder : options.asked_for).string());
+  return fmt::format("lfimport {} -o {}{} --focal-px {}", word, word,
+                     needs_pitch ? " --pitch 1" : "",
+                     options.focal_px.value_or(static_cast<double>(width_px)));
+}
+
+Result<void> CheckPlaces(const fs::path& folder, const std::vector<StanfordImage>& images) {
+  if (images.empty())
+    return InputError(fmt::format("{}: holds no image named {}", folder.string(), kForm));
+  for (size_t i = 0; i + 1 < images.size(); ++i)
+    if (images[i].name.row == images[i + 1].name.row &&
+        images[i].name.column == images[i + 1].name.column)
+      return InputError(fmt::format(
+          "{}: row {}, column {} is there twice, as {} and {}: keep one image per camera",
+          folder.string(), images[i].name.row, images[i].name.column, images[i].file_name,
+          images[i + 1].file_name));
+  return {};
+}
+
+Result<void> CheckOptions(const StanfordOptions& options) {
+  const auto is_length = [](double length_w) { return length_w > 0 && length_w <= 1e9; };
+  const Vec2 pitch_w = options.pitch_w.value_or(Vec2(1, 1));
+  if (!is_length(pitch_w.x()) || !is_length(pitch_w.y()))
+    return UsageError(fmt::format("the pitch is {}, {}: expected above 0 and at most 1e9",
+                                  pitch_w.x(), pitch_w.y()));
+  if (!is_length(options.plane_distance_w.value_or(1)))
+    return UsageError(fmt::format("the plane distance is {}: expected above 0 and at most 1e9",
+                                  *options.plane_distance_w));
+  return {};
+}
+
+// Checks that names and options together state everything.
+Result<void> CheckComplete(const fs::path& folder, const std::vector<StanfordImage>& images,
+                           const StanfordOptions& options, int width_px) {
+  if (!options.pitch_w && !images[0].name.position)
+    return InputError(fmt::format(
+        "{}: the names tell row and column, but neither positions nor the focal length ({}): write "
+        "down pitch and focal length, and --plane-distance if the images are rectified to one "
+        "plane, as in: {}",
+        folder.string(), images[0].file_name, ImportCommand(folder, options, true, width_px)));
+  if (options.focal_px) return {};
+  const auto lacks_lens = [](const StanfordImage& image) { return !image.name.lens; };
+  const auto without = std::find_if(images.begin(), images.end(), lacks_lens);
+  const auto with = std::find_if_not(images.begin(), images.end(), lacks_lens);
+  if (without == images.end()) return {};
+  if (with != images.end())
+    return InputError(fmt::format(
+        "{}: {} states focal length and sensor width, {} does not: rename them alike as {}",
+        folder.string(), with->file_name, without->file_name, kForm));
+  return InputError(fmt::format(
+      "{}: the names lack the focal length: {} has no _FOCALMM_SENSORMM at its end; give "
+      "it in pixels (--focal-px), or write it down once, and --plane-distance if the images are "
+      "rectified to one plane, as in: {}",
+      folder.string(), without->file_name,
+      ImportCommand(folder, options, !images[0].name.position, width_px)));
+}
+
+// Returns the positions of the cameras in their plane.
+std::vector<Vec2> Positions(const std::vector<StanfordImage>& images,
+                            const StanfordOptions& options) {
+  std::vector<Vec2> positions;
+  for (const StanfordImage& image : images) {
+    const StanfordName& name = image.name;
+    positions.push_back(
+        options.pitch_w ? Vec2(options.pitch_w->x() * name.column, options.pitch_w->y() * name.row)
+                        : Vec2(name.position->x_mm, name.position->y_mm) / 1000);
+    if (options.flip_x) positions.back().x() *= -1;
+    if (options.flip_y) positions.back().y() *= -1;
+  }
+  return positions;
+}
+
+Vec2 MiddleOf(const std::vector<Vec2>& positions) {
+  Eigen::AlignedBox2d box;
+  for (const Vec2& position : positions) box.extend(position);
+  return box.center();
+}
+
+// Returns the intrinsics of the camera at `offset_w` from the middle of the grid.
+Result<Intrinsics> IntrinsicsOf(const StanfordName& name, const ImageFileInfo& info,
+                                const StanfordOptions& options, const Vec2& offset_w) {
+  Intrinsics k;
+  k.width_px = info.width;
+  k.height_px = info.height;
+  k.fx_px = options.focal_px ? *options.focal_px
+                             : name.lens->focal_mm / name.lens->sensor_width_mm * info.width;
+  if (!(k.fx_px >= 0.001 && k.fx_px <= 1e7))
+    return InputError(
+        fmt::format("the focal length comes to {} px: expected 0.001 to 1e7", k.fx_px));
+  k.fy_px = k.fx_px;
+  const Vec2 shift_px =
+      options.plane_distance_w ? offset_w * k.fx_px / *options.plane_distance_w : Vec2(0, 0);
+  k.cx_px = info.width / 2.0 + shift_px.x();
+  k.cy_px = info.height / 2.0 + shift_px.y();
+  if (!(shift_px.cwiseAbs().maxCoeff() <= kLargestPrincipal_px / 2))
+    return InputError(fmt::format(
+        "the principal point comes to ({}, {}) px: is the plane distance {} in the units of the "
+        "positions?",
+        k.cx_px, k.cy_px, *options.plane_distance_w));
+  return k;
+}
+
+}  // namespace
+
+bool HoldsStanfordNames(const fs::path& folder) {
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+    if (ParseStanfordName(it->path().filename().string())) return true;
+  return false;
+}
+
+Result<LightField> ReadStanfordFolder(const fs::path& folder, const StanfordOptions& options) {
+  LF_RETURN_IF_ERROR(CheckOptions(options));
+  LF_ASSIGN_OR_RETURN(const Listing listing, ListFolder(folder));
+  LF_RETURN_IF_ERROR(CheckPlaces(folder, listing.images));
+  LF_ASSIGN_OR_RETURN(const ImageFileInfo info,
+                      ReadImageInfo(folder / listing.images[0].file_name));
+  LF_RETURN_IF_ERROR(CheckComplete(folder, listing.images, options, info.width));
+  WarnOfOthers(folder, listing);
+
+  LightField light_field;
+  light_field.folder = folder;
+  const std::vector<Vec2> positions = Positions(listing.images, options);
+  const Vec2 middle = MiddleOf(positions);
+  const Vec2 origin = options.pitch_w ? middle : Vec2(0, 0);
+  DistinctIntrinsics distinct;
+  for (size_t i = 0; i < positions.size(); ++i) {
+    const StanfordImage& image = listing.images[i];
+    const Result<Intrinsics> k = IntrinsicsOf(image.name, info, options, positions[i] - middle);
+    if (!k) return InputError((folder / image.file_name).string() + ": " + k.error().message);
+    const Vec2 centre = positions[i] - origin;
+    if (!(centre.cwiseAbs().maxCoeff() <= kLargest_w))
+      return InputError(fmt::format("{}: stands at ({}, {}): expected within 1e12 world units",
+                                    (folder / image.file_name).string(), centre.x(), centre.y()));
+    LfCamera camera;
+    camera.intrinsics_index = distinct.IndexOf(*k);
+    camera.cam_from_world.translation = Vec3::Zero() - Vec3(centre.x(), centre.y(), 0);
+    light_field.cameras.push_back(camera);
+    light_field.image_names.push_back(image.file_name);
+  }
+  light_field.intrinsics = distinct.Take();
+  light_field.encoding.max_radiance = DefaultMaxRadiance(light_field.image_names);
+  return light_field;
+}
+
+}  // namespace lf

@@ -1,0 +1,82 @@
+#include "lf/import/formats/stanford_name.h"
+
+#include <gtest/gtest.h>
+
+namespace lf {
+namespace {
+
+TEST(StanfordName, HasRowColumnAndPosition) {
+  const auto name = ParseStanfordName("out_09_16_-381.909271_1103.376221.png");
+  ASSERT_TRUE(name && name->position);
+  EXPECT_EQ(name->row, 9);
+  EXPECT_EQ(name->column, 16);
+  EXPECT_EQ(name->position->y_mm, -381.909271);
+  EXPECT_EQ(name->position->x_mm, 1103.376221);
+  EXPECT_FALSE(name->lens);
+}
+
+TEST(StanfordName, MayStateTheLens) {
+  const auto name = ParseStanfordName("Original Camera_18_04_-153.846154_276.923077_30_36.jpg");
+  ASSERT_TRUE(name && name->position);
+  EXPECT_EQ(name->row, 18);
+  EXPECT_EQ(name->column, 4);
+  EXPECT_EQ(name->position->y_mm, -153.846154);
+  EXPECT_EQ(name->position->x_mm, 276.923077);
+  ASSERT_TRUE(name->lens);
+  EXPECT_EQ(name->lens->focal_mm, 30);
+  EXPECT_EQ(name->lens->sensor_width_mm, 36);
+}
+
+TEST(StanfordName, MayEndInAnUnderscoreAndContainSome) {
+  const auto name = ParseStanfordName("my_2nd_scene_00_01_-780.1_-3355.3_.PNG");
+  ASSERT_TRUE(name && name->position);
+  EXPECT_EQ(name->row, 0);
+  EXPECT_EQ(name->column, 1);
+  EXPECT_EQ(name->position->x_mm, -3355.3);
+  EXPECT_FALSE(name->lens);
+}
+
+TEST(StanfordName, MayTellRowAndColumnAlone) {
+  for (const char* file_name : {"out_07_12.jpg", "out_07_12_.jpg", "my_2nd_scene_7_12.png"}) {
+    const auto name = ParseStanfordName(file_name);
+    ASSERT_TRUE(name) << file_name;
+    EXPECT_EQ(name->row, 7);
+    EXPECT_EQ(name->column, 12);
+    EXPECT_FALSE(name->position);
+    EXPECT_FALSE(name->lens);
+  }
+}
+
+TEST(StanfordName, OtherNamesHaveNone) {
+  for (const char* name : {"",
+                           ".",
+                           "_",
+                           "____.png",
+                           ".png",
+                           "a.png",
+                           "00_01.png",
+                           "out_00.png",
+                           "out_00_1.0.png",
+                           "out_00_-1.png",
+                           "out_99999999999_01.png",
+                           "00_01_2.0_3.0.png",
+                           "out_00_01_2.0_3.0",
+                           "out_00_01_2.0_3.0.txt",
+                           "out_-1_01_2.0_3.0.png",
+                           "out_0x1_01_2.0_3.0.png",
+                           "out_1.5_01_2.0_3.0.png",
+                           "out_00_01_nan_3.0.png",
+                           "out_00_01_inf_3.0.png",
+                           "out_00_01_1e3_3.0.png",
+                           "out_00_01_-_3.0.png",
+                           "out_00_01_--1_3.0.png",
+                           "out_00_01_1.2.3_3.0.png",
+                           "out_00_01__3.0.png",
+                           "out_99999999999_01_2.0_3.0.png",
+                           "out_00_01_9999999999999_3.0.png",
+                           "out_00_01_2.0_3.0_30.png"})
+    EXPECT_FALSE(ParseStanfordName(name)) << name;
+}
+
+}  // namespace
+}  // namespace lf

@@ -1,0 +1,36 @@
+// The camera models of COLMAP. Internal to this folder.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "lf/camera/pinhole.h"
+#include "lf/core/result.h"
+
+namespace lf {
+
+struct ColmapCameraModel {
+  std::string_view name;
+  int number;           // in cameras.bin
+  int parameter_count;  // 0: not supported
+
+  bool is_supported() const { return parameter_count > 0; }
+};
+
+inline constexpr int kMaxColmapParameterCount = 16;
+
+// Finds a model by its number in cameras.bin or its name in cameras.txt. kInput, with the model and
+// a remedy, if it is unknown or cannot be expressed as a Distortion.
+Result<ColmapCameraModel> FindColmapCameraModel(int32_t number);
+Result<ColmapCameraModel> FindColmapCameraModel(std::string_view name);
+
+// Converts the parameters, in COLMAP's order, to focal length, principal point and distortion. A
+// distortion without effect becomes DistortionModel::kNone.
+// kInput, without the place in the file: a size of 0 or beyond 65536, more than 2^30 pixels, a
+// number that is not finite or out of range.
+//   parameters  model.parameter_count numbers
+Result<Intrinsics> IntrinsicsOfColmap(const ColmapCameraModel& model, uint64_t width,
+                                      uint64_t height, std::span<const double> parameters);
+
+}  // namespace lf

@@ -1,0 +1,63 @@
+// Finds the points of a COLMAP model that one of its images shows: the scene's geometry without
+// pixels.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+#include "lf/camera/ray_through.h"
+#include "lf/core/geometry.h"
+#include "lf/core/result.h"
+#include "lf/light_field/colmap/read_colmap.h"
+
+namespace lf {
+
+inline constexpr size_t kMostPointsSeen = 2048;
+
+// Collects the points while a points3D file is read. Internal to this folder.
+class ColmapPointsSeen {
+ public:
+  // image_id  the id of the image in the model
+  ColmapPointsSeen(uint32_t image_id, const PinholeCamera& camera);
+
+  // Adds a point of the file; its observations follow.
+  Result<void> AddPoint(uint64_t point_id, const Vec3& point_world, bool has_track);
+  Result<void> AddObservation(uint64_t point_id, const Vec3& point_world, uint32_t image_id);
+
+  // Returns the points whose tracks contain the image. If no point of the file has a track, returns
+  // the points that project into the image. Empty afterwards.
+  std::vector<Vec3> Take();
+
+ private:
+  // At most kMostPointsSeen points, those with the smallest hashes, so that the order of points has
+  // no influence.
+  struct Sample {
+    void Add(uint64_t point_id, const Vec3& point_world);
+
+    uint64_t hash_limit = UINT64_MAX;
+    std::vector<std::pair<uint64_t, Vec3>> points;  // with their hashes
+  };
+
+  bool ProjectsIntoImage(const Vec3& point_world) const;
+
+  uint32_t image_id_;
+  RayThrough rays_;
+  Vec3 forward_world_;
+  bool has_tracks_ = false;
+  Sample tracked_, untracked_;
+};
+
+// Returns at most kMostPointsSeen evenly chosen points in world coordinates; none if the model has
+// no points3D file. Reads cameras, images and points again, block by block.
+//   position  index of the image among all images of the model sorted by name: its LfImageId
+//   camera    of this image, with the size that the image file has
+// kInput: errors of ReadColmapModel(); a position beyond the last image.
+Result<std::vector<Vec3>> ReadColmapPointsSeen(const std::filesystem::path& model_folder,
+                                               uint32_t position, const PinholeCamera& camera);
+// As ReadColmapPointsSeen(), from streams.
+Result<std::vector<Vec3>> ParseColmapPointsSeen(ColmapStreams streams, uint32_t position,
+                                                const PinholeCamera& camera);
+
+}  // namespace lf

@@ -1,0 +1,63 @@
+// Splits a text file into lines of words, block by block: lines may have any length. Internal to
+// this folder.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "lf/core/byte_stream.h"
+#include "lf/core/result.h"
+
+namespace lf {
+
+// Blanks, tabs and carriage returns separate words; a line feed ends a line.
+class TextWords {
+ public:
+  static constexpr size_t kMaxWordSize = 1024;  // bytes; longer words are cut
+
+  // `stream` must outlive this object.
+  explicit TextWords(ByteStream* stream) : stream_(stream) {}
+
+  // Moves to the next line, even if words of this line were not read. Returns false at the end of
+  // the file.
+  bool NextLine();
+  // Moves to the next line that is not blank and not a comment (#...).
+  bool NextEntry();
+  // The number in a comment "# Number of THINGS: NUMBER..." that was skipped.
+  const std::optional<uint64_t>& announced_count() const { return announced_count_; }
+
+  // Returns true if this line has no further word.
+  bool AtLineEnd() {
+    SkipBlanks();
+    return !Peek();
+  }
+  // Returns the next word of this line, "" at its end. Valid until the next call.
+  std::string_view Word();
+  // Returns the rest of this line without surrounding blanks, cut to max_size + 1 bytes.
+  std::string Rest(size_t max_size);
+  // Skips the rest of this line. Returns the number of its words; nullopt if it contains a
+  // character that no number has.
+  std::optional<uint64_t> SkipNumbers();
+
+  // Reads the next word as a number. kInput with file and line; `name` says what was expected.
+  Result<double> Number(const char* name);  // finite
+  Result<uint64_t> Whole(const char* name, uint64_t max);
+
+  // Returns an error at this line, or the error of reading it.
+  Error Fault(std::string_view message) const;
+
+ private:
+  // Returns the next character of this line without taking it; nullopt at the end of the line.
+  std::optional<char> Peek();
+  void SkipBlanks();
+  void NoteComment();
+
+  ByteStream* stream_;
+  uint64_t line_number_ = 0;  // 0 before the first line
+  std::optional<uint64_t> announced_count_;
+  std::string word_;  // the current word, if it crosses the end of a block
+};
+
+}  // namespace lf

@@ -1,0 +1,98 @@
+#include "lf/light_field/model/alpha_evidence.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <limits>
+#include <optional>
+
+#include "lf/pixels/files/image_file.h"
+#include "lf/pixels/files/test_folder.h"
+
+namespace lf {
+namespace {
+
+constexpr int kSide = 20;
+
+// Three LF images; each test writes as many of them as it needs.
+class AlphaEvidenceTest : public FolderTest {
+ protected:
+  void SetUp() override {
+    FolderTest::SetUp();
+    field_.cameras.resize(3);
+    field_.intrinsics = {{10, 10, 10, 10, 0, kSide, kSide}};
+    field_.image_names = {"0.png", "1.png", "2.png"};
+    field_.folder = folder_;
+  }
+  // Writes noise that is opaque in the columns from `begin` on. Transparent pixels have the value
+  // `beneath`, if it is given.
+  void Write(int index, int begin, std::optional<uint8_t> beneath) {
+    Image<uint8_t> image = NoiseImage<uint8_t>(kSide, kSide, 4);
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x) {
+        image.at(x, y, 3) = x < begin ? 0 : 255;
+        for (int c = 0; c < 3 && x < begin && beneath; ++c) image.at(x, y, c) = *beneath;
+      }
+    ASSERT_TRUE(WriteImage(folder_ / field_.image_names[index], image.view()));
+  }
+
+  LightField field_;
+};
+
+TEST_F(AlphaEvidenceTest, WithoutAlphaThereIsNone) {
+  EXPECT_FALSE(FindAlphaEvidence(field_));  // no files, no evidence
+  const Image<uint8_t> image(kSide, kSide, 3);
+  ASSERT_TRUE(WriteImage(folder_ / "0.png", image.view()));
+  EXPECT_FALSE(FindAlphaEvidence(field_));
+  Write(1, 0, {});
+  EXPECT_FALSE(FindAlphaEvidence(field_)) << "nothing is transparent";
+}
+
+TEST_F(AlphaEvidenceTest, AnObjectAloneIsLightOverWhatIsBeneath) {
+  Write(0, 5, 255);
+  Write(1, 9, 255);
+  Write(2, 7, 255);
+  const auto found = FindAlphaEvidence(field_);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->meaning, AlphaMeaning::kStraight);
+  EXPECT_EQ(found->background, (std::array<double, 3>{1, 1, 1}));
+  EXPECT_EQ(found->image_name, "0.png");
+}
+
+TEST_F(AlphaEvidenceTest, OneImageOfAnObjectIsEnough) {
+  Write(1, 9, 0);
+  const auto found = FindAlphaEvidence(field_);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->meaning, AlphaMeaning::kStraight);
+  EXPECT_EQ(found->background, (std::array<double, 3>{0, 0, 0}));
+}
+
+TEST_F(AlphaEvidenceTest, AMaskedPhotographDecidesForAll) {
+  Write(0, 5, 0);
+  Write(1, 9, {});
+  const auto found = FindAlphaEvidence(field_);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->meaning, AlphaMeaning::kMask);
+  EXPECT_EQ(found->image_name, "1.png");
+}
+
+TEST_F(AlphaEvidenceTest, ABorderThatAllHaveIsAMask) {
+  for (const int i : {0, 1, 2}) Write(i, 5, 0);
+  EXPECT_EQ(FindAlphaEvidence(field_)->meaning, AlphaMeaning::kMask);
+}
+
+TEST_F(AlphaEvidenceTest, FloatsOverBlackArePremultiplied) {
+  field_.image_names[0] = "0.exr";
+  Image<float> image(kSide, kSide, 4);
+  image.at(3, 3, 0) = image.at(3, 3, 3) = 1;
+  ASSERT_TRUE(WriteImage(folder_ / "0.exr", image.view(), {"R", "G", "B", "A"}, PixelType::kFloat));
+  EXPECT_EQ(FindAlphaEvidence(field_)->meaning, AlphaMeaning::kPremultiplied);
+  for (float& value : image.pixels()) value = 1;
+  image.at(4, 4, 0) = std::numeric_limits<float>::quiet_NaN();
+  image.at(4, 4, 3) = 0;
+  ASSERT_TRUE(WriteImage(folder_ / "0.exr", image.view(), {"R", "G", "B", "A"}, PixelType::kFloat));
+  EXPECT_EQ(FindAlphaEvidence(field_)->background, (std::array<double, 3>{0, 1, 1}));
+}
+
+}  // namespace
+}  // namespace lf

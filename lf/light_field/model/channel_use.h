@@ -1,0 +1,20 @@
+// Tells which channels of an LF image's file are colours, and which is alpha.
+#pragma once
+
+#include <optional>
+
+#include "lf/pixels/files/image_file.h"
+
+namespace lf {
+
+struct ChannelUse {
+  int channels = 1;
+  int colours = 1;  // 1: grey or mosaic; 3: R, G, B; they come first
+  std::optional<int> alpha;
+};
+
+// Three or more channels: the first three are colours. The channel behind the colours is alpha if
+// its name says so. Other channels, such as depth, are unused.
+ChannelUse UseOf(const ImageFileInfo& info);
+
+}  // namespace lf

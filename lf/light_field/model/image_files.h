@@ -1,0 +1,29 @@
+// Names and sizes of image files, for calibrations that do not state an image size.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lf/core/result.h"
+
+namespace lf {
+
+// [width, height] of an image file.
+using ImageSizeSource = std::function<Result<std::array<int, 2>>(const std::filesystem::path&)>;
+
+// Reads the size from the header of the file (ReadImageInfo() of pixels/files).
+Result<std::array<int, 2>> ImageSizeInHeader(const std::filesystem::path& image);
+
+// Returns true for the extensions png, jpg, jpeg, tif, tiff, exr (in upper or lower case), and for
+// raw files, as IsRawName() says.
+bool IsImageName(std::string_view file_name);
+
+// Returns the names of the image files in a folder, sorted by bytes, without hidden files. kInput
+// if the folder cannot be listed.
+Result<std::vector<std::string>> SortedImageNames(const std::filesystem::path& folder);
+
+}  // namespace lf

@@ -1,0 +1,91 @@
+// The pixels of one LF image, ready for collection.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+
+#include "lf/core/geometry.h"
+#include "lf/core/image.h"
+
+namespace lf {
+
+struct LfPixels {
+  // A kernel adds these lanes of an RGB pixel at once: v of R, G and B, and the number of rays.
+  static constexpr int kRgbLanes = 4;
+  static constexpr int kRayLane = 3;
+  // Values v of the opacities 0 and 1. There is room on both sides, because the filters of
+  // collection undershoot and overshoot opacities beside edges.
+  static constexpr uint16_t kTransparent = 4096;
+  static constexpr uint16_t kOpaque = 61440;
+
+  LfPixels() = default;
+  // Creates black pixels without a mask.
+  LfPixels(const PixelRect& part, BayerPattern pattern)
+      : radiance(part.width(), part.height(), pattern == BayerPattern::kNone ? kRgbLanes : 1),
+        bayer(pattern),
+        rect(part) {
+    if (pattern == BayerPattern::kNone)
+      for (size_t i = kRayLane; i < radiance.pixels().size(); i += kRgbLanes)
+        radiance.pixels()[i] = 1;
+  }
+
+  // Changes to another part in the same memory and clears the mask; the radiance is unspecified.
+  void Reset(const PixelRect& part, BayerPattern pattern) {
+    radiance.Resize(part.width(), part.height(), pattern == BayerPattern::kNone ? kRgbLanes : 1);
+    bayer = pattern;
+    recorded = BayerPattern::kNone;
+    mosaic_mask = {};
+    any_masked = false;
+    rect = part;
+    opacity.Resize(0, 0, kRgbLanes);
+  }
+
+  bool IsMasked(int column, int row) const {
+    if (bayer == BayerPattern::kNone) return radiance.at(column, row, kRayLane) == 0;
+    return !mosaic_mask.empty() && mosaic_mask.at(column, row) == 0;
+  }
+  // Excludes the pixel at this column and row of `rect`: it sends no ray.
+  void Mask(int column, int row) {
+    any_masked = true;
+    if (bayer == BayerPattern::kNone) {
+      for (int lane = 0; lane < kRgbLanes; ++lane) radiance.at(column, row, lane) = 0;
+      if (opacity.empty()) return;
+      for (int lane = 0; lane < kRgbLanes; ++lane) opacity.at(column, row, lane) = 0;
+      return;
+    }
+    if (mosaic_mask.empty()) mosaic_mask = Image<uint8_t>(rect.width(), rect.height(), 1, 255);
+    mosaic_mask.at(column, row) = 0;
+  }
+
+  // v of every pixel (light_field/model/radiance.h). A mosaic: [height][width][1]. RGB:
+  // [height][width][4] with R, G, B and 1, or all 0 if the pixel is masked.
+  Image<uint16_t> radiance;
+  BayerPattern bayer = BayerPattern::kNone;  // at pixel (0, 0) of the whole LF image
+  // The mosaic that RGB pixels were made from, at pixel (0, 0) of the whole LF image; kNone if
+  // every pixel recorded all three colours.
+  BayerPattern recorded = BayerPattern::kNone;
+  Image<uint8_t> mosaic_mask;  // of a mosaic, [height][width]: 0 = no ray from this pixel; or empty
+  bool any_masked = false;
+  PixelRect rect;  // the part of the LF image that these pixels are
+  // Opacities of RGB pixels if the light field HasOpacity(), otherwise empty. [height][width][4] in
+  // the lanes of `radiance`: the opacity stands in each colour's lane, so that kernels collect it
+  // with the same rays and weights.
+  Image<uint16_t> opacity;
+
+  // Moves the opacities out as pixels that kernels accept; the result is empty if there are none.
+  LfPixels TakeOpacity() {
+    LfPixels taken;
+    if (opacity.empty()) return taken;
+    taken.radiance = std::move(opacity);
+    taken.any_masked = any_masked;
+    taken.rect = rect;
+    opacity = {};
+    return taken;
+  }
+
+  size_t size_bytes() const {
+    return radiance.size_bytes() + mosaic_mask.size_bytes() + opacity.size_bytes();
+  }
+};
+
+}  // namespace lf

@@ -1,0 +1,68 @@
+// The recorded light field without its pixels: the cameras, the place of the pixels, and how stored
+// numbers become light.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lf/camera/pinhole.h"
+#include "lf/core/geometry.h"
+#include "lf/core/ids.h"
+#include "lf/light_field/model/radiance.h"
+
+namespace lf {
+
+// Factors of R, G and B; constructed from one number, all three are equal.
+struct ChannelGains {
+  ChannelGains(float all = 1) : of_channels{all, all, all} {}  // NOLINT: a number is a gain
+  ChannelGains(float r, float g, float b) : of_channels{r, g, b} {}
+
+  float& operator[](size_t channel) { return of_channels[channel]; }
+  float operator[](size_t channel) const { return of_channels[channel]; }
+  bool are_equal() const {
+    return of_channels[0] == of_channels[1] && of_channels[0] == of_channels[2];
+  }
+  friend bool operator==(const ChannelGains&, const ChannelGains&) = default;
+
+  std::array<float, 3> of_channels;
+};
+
+// One LF camera. It takes 120 bytes, since a light field may have a million of them.
+struct LfCamera {
+  RigidTransform cam_from_world;
+  uint32_t intrinsics_index = 0;  // index into LightField::intrinsics
+  ChannelGains gain;              // factor of the radiance (lf_gain)
+  // ApplyBrackets() sets these two (light_field/model/brackets.h).
+  static constexpr uint32_t kNone = UINT32_MAX;
+  uint32_t brighter = kNone;   // the LF image of the same pose with the next larger exposure
+  bool masks_clipped = false;  // clipped pixels send no ray, because the pose has a darker LF image
+};
+
+struct LightField {
+  std::vector<LfCamera> cameras;       // indexed by LfImageId, like the two lists of names
+  std::vector<Intrinsics> intrinsics;  // the distinct ones
+  // Names as written in the calibration; relative ones are relative to `folder`.
+  std::vector<std::string> image_names;
+  std::vector<std::string> mask_names;  // empty, or one per camera ("" where there is none)
+  // The folder of the image files, or the file of a packed store that holds them
+  // (storage/load/open_store.h).
+  std::filesystem::path folder;
+
+  RadianceEncoding encoding;
+  double unit_m = 1;                      // metres per world unit
+  std::optional<DepthRange> depth_range;  // of the scene, if the calibration states it
+
+  size_t size() const { return cameras.size(); }
+  PinholeCamera Camera(LfImageId id) const {
+    const LfCamera& camera = cameras[id.value];
+    return {intrinsics[camera.intrinsics_index], camera.cam_from_world};
+  }
+  // For a packed store the path is for messages only: STORE.lfs/name.png
+  std::filesystem::path ImagePath(LfImageId id) const { return folder / image_names[id.value]; }
+};
+
+}  // namespace lf

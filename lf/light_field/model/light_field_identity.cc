@@ -1,0 +1,23 @@
+#include "lf/light_field/model/light_field_identity.h"
+
+#include "lf/light_field/model/value_hasher.h"
+
+namespace lf {
+
+LightFieldIdentity IdentityOf(const LightField& light_field) {
+  ValueHasher names;
+  for (const std::string& name : light_field.image_names) names.Add(name);
+  for (const std::string& name : light_field.mask_names) names.Add(name);
+  ValueHasher calibration;
+  for (const LfCamera& camera : light_field.cameras) {
+    calibration.Add(camera.cam_from_world);
+    calibration.Add(static_cast<double>(camera.intrinsics_index));
+    calibration.Add(camera.gain[0]);
+    if (!camera.gain.are_equal())
+      for (const float gain : camera.gain.of_channels) calibration.Add(gain);
+  }
+  for (const Intrinsics& k : light_field.intrinsics) calibration.Add(k);
+  return {light_field.size(), names.Text(), calibration.Text()};
+}
+
+}  // namespace lf

@@ -1,0 +1,21 @@
+// Identifies a light field by a few words, so that packages and resumed renders can compare it.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "lf/light_field/model/light_field.h"
+
+namespace lf {
+
+struct LightFieldIdentity {
+  size_t image_count = 0;
+  std::string names;        // hash of the names of images and masks, without the folder
+  std::string calibration;  // hash of all cameras
+
+  friend bool operator==(const LightFieldIdentity&, const LightFieldIdentity&) = default;
+};
+
+LightFieldIdentity IdentityOf(const LightField& light_field);
+
+}  // namespace lf

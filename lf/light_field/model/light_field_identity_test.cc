@@ -1,0 +1,40 @@
+#include "lf/light_field/model/light_field_identity.h"
+
+#include <gtest/gtest.h>
+
+#include "lf/light_field/model/value_hasher.h"
+
+namespace lf {
+namespace {
+
+LightField OneCamera(const Distortion& distortion) {
+  LightField light_field;
+  light_field.cameras.resize(1);
+  light_field.image_names = {"a.png"};
+  light_field.intrinsics = {{500, 501, 320, 240, 0.5, 640, 480, distortion}};
+  return light_field;
+}
+
+// Checkpoints and packages older than the model with twelve parameters hold hashes of eight.
+TEST(LightFieldIdentity, ALensOfAnOlderModelIsHashedByEightParameters) {
+  ValueHasher expected;
+  for (const double number : {1, 0, 0, 0, 1, 0, 0, 0, 1}) expected.Add(number);  // rotation
+  for (const double number : {0, 0, 0}) expected.Add(number);
+  for (const double number : {0, 1}) expected.Add(number);  // intrinsics_index, gain
+  for (const double number : {500.0, 501.0, 320.0, 240.0, 0.5, 640.0, 480.0}) expected.Add(number);
+  for (const double number : {2, 1, 2, 3, 4, 0, 0, 0, 0}) expected.Add(number);  // the lens
+  EXPECT_EQ(IdentityOf(OneCamera({DistortionModel::kFisheye, {1, 2, 3, 4}})).calibration,
+            expected.Text());
+}
+
+TEST(LightFieldIdentity, EveryParameterOfALensCounts) {
+  const Distortion lens = {DistortionModel::kRadialTangentialThinPrism, {}};
+  for (size_t i = 0; i < lens.parameters.size(); ++i) {
+    Distortion other = lens;
+    other.parameters[i] = 1e-9;
+    EXPECT_NE(IdentityOf(OneCamera(other)), IdentityOf(OneCamera(lens))) << i;
+  }
+}
+
+}  // namespace
+}  // namespace lf

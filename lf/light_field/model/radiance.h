@@ -1,0 +1,124 @@
+// Converts stored numbers to light: the table "What is added" of doc/ray.md.
+//
+// Radiance is linear light, 1 = display white. A kernel sees it as a 16-bit integer
+//   v = clip(round(radiance * gain * scale) + pedestal, 0, 65535)
+// `gain` is lf_gain of the channel, divided by the falloff of the lens at the pixel's centre if the
+// camera has lf_vignetting (camera/vignetting.h). One scale and one pedestal hold for the whole
+// light field, so that sums of different images can be added. Values below black are noise that
+// must average to black; the pedestal preserves them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lf/core/geometry.h"
+#include "lf/core/image.h"
+
+namespace lf {
+
+enum class Transfer : uint8_t {
+  kSrgb,      // IEC 61966-2-1
+  kLinear,    // (stored - black) / (white - black)
+  kResponse,  // a measured curve: linear radiance at evenly spaced stored values
+};
+
+// The meaning of the alpha of LF images.
+enum class AlphaMeaning : uint8_t {
+  kMask,           // pixels with alpha below one half send no ray; colours are as stored
+  kStraight,       // share of the light behind that is covered; colours are those of the cover
+  kPremultiplied,  // as kStraight, with colours whose radiance is already multiplied by alpha
+};
+
+// How the pixels of a light field are stored (keys lf_*, doc/formats/transforms_json.md).
+// Float files hold radiance itself: transfer and levels do not apply to them.
+struct RadianceEncoding {
+  BayerPattern bayer = BayerPattern::kNone;
+  Transfer transfer = Transfer::kSrgb;
+  std::vector<double> response;       // kResponse: radiance at black .. white, evenly spaced, >= 2
+  double black_level = 0;             // stored value of no light
+  std::optional<double> white_level;  // stored value of radiance 1; default: the largest storable
+  double max_radiance = 1;            // radiance (after gain) that v = 65535 stands for
+  double pedestal = 0;                // v of no light: 1024 for raw data, 0 otherwise
+  std::optional<AlphaMeaning> alpha;  // default: kMask
+  // Radiance of R, G and B behind a pixel that alpha does not cover; default: black.
+  std::optional<std::array<double, 3>> background;
+  // Nothing is behind the pixels: `background` is black, and frames have an opacity channel.
+  bool keeps_opacity = false;
+  // LF images of one pose with different exposures form one picture: each pixel is taken from the
+  // brightest LF image that is not clipped there (light_field/model/brackets.h).
+  bool masks_clipped = false;
+  std::array<double, 3> white_balance = {1, 1, 1};  // applied on developing
+  Mat3 linear_srgb_from_camera = Mat3::Identity();  // linear sRGB = M * white balanced camera RGB
+
+  // v per unit of radiance.
+  double Scale() const { return (65535 - pedestal) / max_radiance; }
+  // Returns whether pixels are composed with the background (storage/load/opacities.h).
+  bool AlphaIsLight() const { return alpha.value_or(AlphaMeaning::kMask) != AlphaMeaning::kMask; }
+  // Returns whether LF images have opacities to be collected (LfPixels::opacity).
+  bool HasOpacity() const { return AlphaIsLight() && keeps_opacity; }
+  std::array<double, 3> Background() const { return background.value_or(std::array{0., 0., 0.}); }
+};
+
+// Largest pedestal, which leaves at least half of the range to light.
+inline constexpr double kMostPedestal = 32767;
+
+// Raises the pedestal to kUndershootPedestal, which leaves room for a fifteenth of max_radiance
+// below black. Bicubic interpolation and demosaicking undershoot beside bright lights; if the
+// values were clipped at black, dark surroundings of small lights would turn grey.
+inline constexpr double kUndershootPedestal = 4096;
+void MakeRoomForUndershoot(RadianceEncoding* encoding);
+
+// Converts a pattern to and from the words of lf_bayer, "RGGB" ...; kNone is "". nullopt for other
+// words.
+const char* NameOf(BayerPattern bayer);
+std::optional<BayerPattern> BayerPatternOf(const std::string& name);
+
+// Converts to and from the words of lf_alpha, "mask", "straight", "premultiplied". nullopt for
+// other words.
+const char* NameOf(AlphaMeaning alpha);
+std::optional<AlphaMeaning> AlphaMeaningOf(const std::string& name);
+
+// The word that stands in place of a background and sets RadianceEncoding::keeps_opacity.
+inline constexpr const char* kNoBackground = "none";
+
+// Returns text for people: "a mask", "straight light over black", "premultiplied light over 1, 0.5,
+// 0", "straight light over nothing".
+//   background, keeps_opacity  as in RadianceEncoding; unused for a mask
+std::string TextOfAlpha(AlphaMeaning alpha, const std::array<double, 3>& background,
+                        bool keeps_opacity);
+
+// Convert an sRGB value in [0, 1] to linear light, and back.
+double LinearFromSrgb(double srgb);
+double SrgbFromLinear(double linear);
+
+// Returns max_radiance for a light field that does not state it. 16 if an image is a float file
+// (its name ends in .exr or .hdr): highlights up to 16 times display white are kept, and black to
+// white still has 4096 steps. Otherwise 1, which integer files cannot exceed.
+double DefaultMaxRadiance(std::span<const std::string> image_names);
+
+// Returns true if files with `bits` bits can hold the levels: black < white <= the largest storable
+// value.
+bool LevelsFit(const RadianceEncoding& encoding, int bits);
+
+// Returns the smallest stored value that counts as clipped: the upper hundredth of black to white,
+// because JPEG, noise and demosaicking do not keep the largest value exactly. bits: 8 or 16, with
+// LevelsFit(). Float files have no such value.
+double ClippedFrom(const RadianceEncoding& encoding, int bits);
+
+// Returns v for every stored value of 8 or 16-bit files: 256 or 65536 entries. Halves round away
+// from zero, which keeps noise around black symmetric. Outside the levels, sRGB and linear are
+// extrapolated; a response curve continues with its first slope below black and holds its last
+// value above white. bits: 8 or 16, with LevelsFit().
+std::vector<uint16_t> RadianceTable(const RadianceEncoding& encoding, int bits, double gain);
+
+// Returns the radiance, before gain and falloff, from which RadianceTable() computes v.
+std::vector<double> LightTable(const RadianceEncoding& encoding, int bits);
+
+// Returns v for the radiance in a float file. NaN gives the pedestal.
+uint16_t QuantizeRadiance(const RadianceEncoding& encoding, double radiance, double gain);
+
+}  // namespace lf

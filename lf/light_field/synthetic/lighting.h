@@ -1,0 +1,46 @@
+// The light on diffuse surfaces: lamps with soft shadows of spheres, and the ambient light of the
+// room.
+#pragma once
+
+#include <vector>
+
+#include "lf/light_field/synthetic/ball_blocks.h"
+#include "lf/light_field/synthetic/scene_description.h"
+
+namespace lf {
+
+// A sphere that casts shadows.
+struct Occluder {
+  Sphere sphere;
+  bool is_glass = false;  // glass casts a coloured shadow with a bright spot in the middle
+  Rgb colour = Rgb::Ones();
+};
+
+// All lamps, and all spheres that may hide them.
+class Lighting {
+ public:
+  Lighting() = default;
+  Lighting(std::vector<Lamp> lamps, std::vector<Occluder> occluders, const Rgb& ambient);
+
+  // Returns the light that a white diffuse surface at the point reflects. The formulas are closed,
+  // without random numbers: the share of a lamp that a sphere hides is that of two discs on the
+  // sky; the spot in the shadow of glass is a Gaussian, as bright as the light that the shadow
+  // lacks. Spheres that touch the point hide nothing of it, because the cosine accounts for them.
+  Rgb DiffuseLight(const Vec3& point_world, const Vec3& normal_world) const;
+
+ private:
+  double OpenShare(const Vec3& point_world, const Vec3& normal_world) const;
+  Rgb PassedLight(const Lamp& lamp, const Vec3& to_lamp, double distance,
+                  const Vec3& point_world) const;
+
+  std::vector<Lamp> lamps_;
+  std::vector<Occluder> occluders_;
+  BallBlocks balls_;
+  Rgb ambient_ = Rgb::Zero();
+};
+
+// Returns the share of a disc of radius a on the sky that is hidden by one of radius b, with
+// centres c apart (all are angles).
+double HiddenShare(double a, double b, double c);
+
+}  // namespace lf

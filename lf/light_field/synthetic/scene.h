@@ -1,0 +1,72 @@
+// A scene as a light source: the radiance along any ray, in closed form (an analytic ray caster).
+//
+// Rays are followed through mirrors and glass. Diffuse surfaces receive light from lamps, with soft
+// shadows, and from the room (lighting.h). Nothing is random: a ray always has the same radiance,
+// in every thread. Therefore light field and thin-lens frames show the same world.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "lf/camera/ray.h"
+#include "lf/light_field/synthetic/footprint.h"
+#include "lf/light_field/synthetic/glows.h"
+#include "lf/light_field/synthetic/lighting.h"
+#include "lf/light_field/synthetic/scene_description.h"
+#include "lf/light_field/synthetic/shapes.h"
+
+namespace lf {
+
+class Scene {
+ public:
+  // Material indices must exist. Only spheres may be glass, only panels may shine.
+  explicit Scene(SceneDescription description);
+
+  // Returns linear RGB. `ray.direction` may have any length but 0. Lamps and textures are averaged
+  // over `footprint`, whose lengths belong to a ray of unit length.
+  Rgb RadianceAlong(const Ray& ray, const Footprint& footprint = {}) const;
+
+  // Shapes that rays within a cone may hit first, and glows that they may pass. With it,
+  // SightAlong() returns the same light faster. The cone must contain the rays with kGlowReach
+  // widths of their footprints (glows.h).
+  struct Sector {
+    std::vector<uint32_t> spheres;
+    std::vector<uint32_t> glows;
+  };
+  Sector SectorOf(const Cone& cone) const;
+
+  // The radiance with the shape that was hit first, which tells where more rays are needed.
+  // `sector`: one that contains the ray, or null.
+  struct Sight {
+    Rgb radiance = Rgb::Zero();
+    uint32_t shape = Hit::kNothing;
+  };
+  Sight SightAlong(const Ray& ray, const Footprint& footprint,
+                   const Sector* sector = nullptr) const;
+
+ private:
+  struct Beam {
+    Ray ray;  // unit direction
+    Footprint footprint;
+    double weight = 1;  // share of its light that reaches the camera
+    int depth = 0;      // number of mirrors and glass spheres passed
+    const Sector* sector = nullptr;
+  };
+  struct Place;  // a point on a surface (scene.cc)
+
+  Rgb Follow(const Beam& beam, Hit* first) const;
+  Place PlaceOf(const Beam& beam, const Hit& hit) const;
+  Rgb Reflection(const Beam& beam, const Place& place, double share) const;
+  Rgb ThroughGlass(const Beam& beam, const Place& place) const;
+  static Vec2 PlaceOnPattern(const Place& place);
+  Rgb DiffuseRadiance(const Place& place) const;
+  Rgb RoomRadiance(const Vec3& direction) const;
+
+  std::vector<Material> materials_;
+  Shapes shapes_;
+  Glows glows_;
+  Lighting lighting_;
+  Room room_;
+};
+
+}  // namespace lf

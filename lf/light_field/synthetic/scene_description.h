@@ -1,0 +1,94 @@
+// The parts of a synthetic scene, as plain values. lf::Scene (scene.h) computes its light.
+//
+// World units are metres (unit_m = 1), and y points down: a table is a panel whose half_up x
+// half_right normal points to -y. Radiance is linear light with sRGB primaries; 1 is display white.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "lf/core/geometry.h"
+#include "lf/light_field/synthetic/pattern.h"
+
+namespace lf {
+
+using Rgb = Eigen::Array3d;
+
+enum class Finish : uint8_t {
+  kDiffuse,  // Lambertian under a clear coat that reflects like glass, times `coat`
+  kMirror,   // reflects `colour` of the light
+  kGlass,    // a refracting sphere; `colour` of the light passes one radius of it
+  kLight,    // emits `colour`, which fades out towards the rim of the panel
+};
+
+struct Material {
+  Finish finish = Finish::kDiffuse;
+  Rgb colour = Rgb::Constant(0.5);
+  Rgb second_colour = Rgb::Constant(0.5);  // where the pattern is 1; kDiffuse only
+  Pattern pattern;
+  double coat = 0;                // 0: matte; 1: polished
+  double refractive_index = 1.5;  // of glass and of the coat
+  // Angle by which glows that are reflected or refracted by the material are spread, as by an
+  // imperfect polish. It keeps their tiny images in balls from sparkling.
+  double haze_rad = 0;
+};
+
+struct Sphere {
+  Vec3 centre_world = Vec3::Zero();
+  double radius_w = 1;
+  uint32_t material = 0;  // index into SceneDescription::materials
+};
+
+// A flat piece, visible from both sides: the points centre + a half_right + b half_up with |a|, |b|
+// <= 1, or a^2 + b^2 <= 1 for a disk. Its pattern is in world units from the centre (kBars and
+// kLetters: from the upper left corner).
+struct Panel {
+  Vec3 centre_world = Vec3::Zero();
+  Vec3 half_right_w = Vec3::UnitX();
+  Vec3 half_up_w = -Vec3::UnitY();
+  bool is_disk = false;
+  uint32_t material = 0;
+};
+
+// A small lamp in the picture: a soft ball of light that hides nothing. A ray that passes its
+// centre at distance b receives colour exp(-(b / radius)^2). Averaged over a round Gaussian
+// footprint this stays a Gaussian, so that a glow far smaller than a pixel loses no light and does
+// not flicker.
+struct Glow {
+  Vec3 centre_world = Vec3::Zero();
+  double radius_w = 0.005;
+  Rgb colour = Rgb::Constant(1);  // radiance at the centre; may be far above 1
+};
+
+// A light that falls on diffuse surfaces and is itself invisible (a kLight panel may be put in its
+// place). Spheres cast shadows, which are softer the larger the lamp is; panels cast none.
+struct Lamp {
+  Vec3 centre_world = Vec3::Zero();
+  double radius_w = 0.1;
+  Rgb power = Rgb::Constant(1);  // reflected radiance of a white surface facing it at distance 1
+};
+
+// The light of the distant room: `floor` and `ceiling` by the height of the direction, and soft
+// spots colour * exp(sharpness (cos - 1)).
+struct RoomSpot {
+  Vec3 direction_world = Vec3::UnitZ();  // unit length
+  double sharpness = 10;
+  Rgb colour = Rgb::Constant(1);
+};
+struct Room {
+  Rgb floor = Rgb::Zero();
+  Rgb ceiling = Rgb::Zero();
+  std::vector<RoomSpot> spots;
+  Rgb ambient = Rgb::Zero();  // falls on diffuse surfaces from everywhere, less near spheres
+};
+
+struct SceneDescription {
+  std::vector<Material> materials;
+  std::vector<Sphere> spheres;
+  std::vector<Panel> panels;
+  std::vector<Glow> glows;
+  std::vector<Lamp> lamps;
+  Room room;
+};
+
+}  // namespace lf

@@ -1,0 +1,81 @@
+// Intersects rays with spheres and panels, and finds the first shape that a ray hits.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "lf/camera/ray.h"
+#include "lf/core/geometry.h"
+#include "lf/light_field/synthetic/ball_blocks.h"
+#include "lf/light_field/synthetic/scene_description.h"
+
+namespace lf {
+
+// Smallest distance of a hit, because a ray that leaves a surface must not hit it again.
+inline constexpr double kLeastLambda = 1e-7;
+
+// Returns the distance along `ray`, whose direction has unit length, to the first point of the
+// sphere beyond kLeastLambda: a point of the outside, or of the inside if the ray starts within.
+std::optional<double> Intersect(const Ray& ray, const Sphere& sphere);
+
+// A panel with precomputed values that every ray needs.
+struct PanelPlane {
+  explicit PanelPlane(const Panel& panel);
+
+  // Returns the position on the panel in units of its half axes; inside it both are within [-1, 1].
+  Vec2 PlaceOf(const Vec3& point_world) const {
+    const Vec3 offset = point_world - centre_world;
+    return {offset.dot(right_per_w), offset.dot(up_per_w)};
+  }
+
+  Vec3 centre_world = Vec3::Zero();
+  Vec3 normal_world = Vec3::UnitZ();  // unit length
+  double offset_w = 0;                // normal . centre
+  Vec3 right_per_w = Vec3::Zero();    // half axis divided by its squared length
+  Vec3 up_per_w = Vec3::Zero();
+  double half_right_w = 1;  // lengths of the half axes
+  double half_up_w = 1;
+  bool is_disk = false;
+  uint32_t material = 0;
+};
+
+// Returns the distance along `ray` to a panel, on either of its sides.
+std::optional<double> Intersect(const Ray& ray, const PanelPlane& panel);
+
+// The point where a ray ends. Shapes are numbered: spheres first, then panels.
+struct Hit {
+  double lambda = std::numeric_limits<double>::infinity();
+  uint32_t shape = kNothing;
+
+  static constexpr uint32_t kNothing = ~uint32_t{0};
+  explicit operator bool() const { return shape != kNothing; }
+};
+
+// The spheres and panels of a scene.
+class Shapes {
+ public:
+  Shapes(std::vector<Sphere> spheres, const std::vector<Panel>& panels);
+
+  // Returns the first hit. The direction must have unit length. `among` lists the spheres to
+  // consider, null means all; panels are always considered.
+  Hit FirstHit(const Ray& ray, const std::vector<uint32_t>* among = nullptr) const;
+
+  // Returns all spheres that reach into the cone, and perhaps some others.
+  std::vector<uint32_t> SpheresNear(const Cone& cone) const;
+
+  const std::vector<Sphere>& spheres() const { return spheres_; }
+  // Returns null for a panel.
+  const Sphere* SphereOf(uint32_t shape) const {
+    return shape < spheres_.size() ? &spheres_[shape] : nullptr;
+  }
+  const PanelPlane& PanelOf(uint32_t shape) const { return panels_[shape - spheres_.size()]; }
+
+ private:
+  std::vector<Sphere> spheres_;
+  std::vector<PanelPlane> panels_;
+  BallBlocks balls_;
+};
+
+}  // namespace lf

@@ -1,0 +1,32 @@
+#include "lf/light_field/synthetic/write_truth.h"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+#include "lf/core/file.h"
+#include "lf/pixels/files/image_file.h"
+
+namespace lf {
+
+Result<void> WriteTruth(const Scene& scene, std::span<const RenderCamera> cameras,
+                        const LensSampling& sampling, const std::filesystem::path& folder,
+                        ThreadPool& pool, Surroundings surroundings,
+                        const std::function<bool(size_t frames_done)>& keep_going) {
+  LF_RETURN_IF_ERROR(CreateFolder(folder));
+  std::vector<std::string> names = {"R", "G", "B"};
+  if (surroundings == Surroundings::kTransparent) names.emplace_back("A");
+  for (size_t i = 0; i < cameras.size(); ++i) {
+    const Image<float> picture =
+        ThinLensPhotograph(scene, cameras[i], sampling, pool, surroundings);
+    LF_RETURN_IF_ERROR(WriteImage(folder / fmt::format("frame_{:04}.exr", i + 1), picture.view(),
+                                  names, PixelType::kFloat));
+    if (keep_going && !keep_going(i + 1) && i + 1 < cameras.size())
+      return Error{ErrorKind::kInterrupted, fmt::format("{}: stopped after {} of {} frames",
+                                                        folder.string(), i + 1, cameras.size())};
+  }
+  return {};
+}
+
+}  // namespace lf

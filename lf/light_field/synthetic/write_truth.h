@@ -1,0 +1,28 @@
+// Writes the frames that a lens would record of the scene itself: the ground truth with which
+// renders of its light field are compared.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <span>
+
+#include "lf/camera/render_camera.h"
+#include "lf/core/parallel.h"
+#include "lf/core/result.h"
+#include "lf/light_field/synthetic/photograph.h"
+#include "lf/light_field/synthetic/scene.h"
+
+namespace lf {
+
+// Writes folder/frame_0001.exr ..., one for each camera: R, G, B as floats, linear light; and A, by
+// which they are multiplied, if surroundings are transparent.
+//   keep_going  called after every frame; returns false to stop the work. May be empty
+// kOutput: folder, disk, no permission. kInterrupted: the work was stopped; written frames are
+// complete.
+Result<void> WriteTruth(const Scene& scene, std::span<const RenderCamera> cameras,
+                        const LensSampling& sampling, const std::filesystem::path& folder,
+                        ThreadPool& pool, Surroundings surroundings = Surroundings::kShown,
+                        const std::function<bool(size_t frames_done)>& keep_going = {});
+
+}  // namespace lf

@@ -1,0 +1,52 @@
+#include "lf/light_field/synthetic/write_truth.h"
+
+#include <gtest/gtest.h>
+
+#include "lf/light_field/synthetic/built_in_scenes.h"
+#include "lf/pixels/files/image_file.h"
+#include "lf/pixels/files/test_folder.h"
+
+namespace lf {
+namespace {
+
+class WriteTruthTest : public FolderTest {
+ protected:
+  WriteTruthTest() {
+    for (int i = 0; i < 3; ++i) {
+      RenderCamera camera;
+      camera.pinhole.intrinsics =
+          IntrinsicsFor(*FindBuiltInScene("lights"), 24 + i, 16);  // distinguished by their size
+      camera.pinhole.cam_from_world.translation = {0, 0, 1};
+      camera.aperture = {0.02, 5, 0};
+      camera.focus_plane = FocusPlane(camera.pinhole, 0.75, {});
+      cameras_.push_back(camera);
+    }
+  }
+  Scene scene_{DescribeLights()};
+  std::vector<RenderCamera> cameras_;
+  ThreadPool pool_{2};
+};
+
+TEST_F(WriteTruthTest, EveryFrameIsAFileOfItsOwnWithFullPrecision) {
+  ASSERT_TRUE(WriteTruth(scene_, cameras_, {4, 0}, folder_ / "truth", pool_));
+  for (int i = 0; i < 3; ++i) {
+    const auto name = "frame_000" + std::to_string(i + 1) + ".exr";
+    const StoredImage stored = *ReadImage(folder_ / "truth" / name);
+    EXPECT_EQ(std::get<Image<float>>(stored).pixels(),
+              ThinLensPhotograph(scene_, cameras_[static_cast<size_t>(i)], {4, 0}, pool_).pixels());
+  }
+}
+
+TEST_F(WriteTruthTest, StoppedItKeepsTheFramesThatAreDone) {
+  const Result<void> stopped =
+      WriteTruth(scene_, cameras_, {1, 0}, folder_, pool_, Surroundings::kShown,
+                 [](size_t done) { return done < 2; });
+  ASSERT_FALSE(stopped);
+  EXPECT_EQ(stopped.error().kind, ErrorKind::kInterrupted);
+  EXPECT_NE(stopped.error().message.find("after 2 of 3 frames"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "frame_0002.exr"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "frame_0003.exr"));
+}
+
+}  // namespace
+}  // namespace lf

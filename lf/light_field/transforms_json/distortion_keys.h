@@ -1,0 +1,52 @@
+// The lens distortion of transforms.json: camera_model and its parameters, which stand at the top
+// level and may be overridden in each frame, key by key. Internal to this folder.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "lf/camera/distortion.h"
+#include "lf/core/result.h"
+#include "lf/light_field/transforms_json/json_fields.h"
+
+namespace lf {
+
+// Returns the keys of the parameters of a model, in the order of Distortion::parameters.
+std::span<const char* const> ParameterKeys(DistortionModel model);
+
+// A camera model as COLMAP and nerfstudio name it. Its parameters are the first ones of
+// ParameterKeys(model); the remaining ones are 0.
+struct CameraModelName {
+  const char* name;
+  DistortionModel model;
+  size_t parameter_count;
+};
+
+// Returns the name with which a distortion is written: PINHOLE, OPENCV, FULL_OPENCV,
+// OPENCV_FISHEYE, FOV, DIVISION, EUCM, THIN_PRISM_FISHEYE or RAD_TAN_THIN_PRISM_FISHEYE.
+// parameter_count is the number of parameters to write; OPENCV has k3 only if it is not 0.
+CameraModelName CameraModelOf(const Distortion& distortion);
+
+// The keys as written; each of them may be missing.
+struct DistortionKeys {
+  std::optional<uint8_t> camera_model;  // index into the list of names
+  std::optional<bool> is_fisheye;       // instant-ngp
+  std::array<std::optional<double>, 19> values;
+
+  friend bool operator==(const DistortionKeys&, const DistortionKeys&) = default;
+};
+
+// kInput: an unknown camera model, a parameter beyond +-1e6, an omega outside [0, pi).
+Result<DistortionKeys> ReadDistortionKeys(const JsonFields& fields);
+
+// Takes each key from the frame, or from the top level if the frame lacks it; a key that both lack
+// is 0. A missing camera_model means OPENCV, or OPENCV_FISHEYE if is_fisheye is set.
+// Radial-tangential models with all parameters 0 become no distortion.
+// kInput: a nonzero parameter that the model does not have, an is_fisheye that contradicts the
+// model, a FOV without omega. `fields` is for messages.
+Result<Distortion> ResolveDistortion(const DistortionKeys& frame, const DistortionKeys& top,
+                                     const JsonFields& fields);
+
+}  // namespace lf

@@ -1,0 +1,122 @@
+#include "lf/light_field/transforms_json/frame_cutter.h"
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+namespace lf {
+namespace {
+
+using Characters = std::array<bool, 256>;
+
+constexpr Characters CharactersOf(std::string_view list) {
+  Characters table = {};
+  for (const char c : list) table[static_cast<unsigned char>(c)] = true;
+  return table;
+}
+
+// The characters with a meaning in strings, in frames, and outside of both.
+constexpr Characters kOfStrings = CharactersOf("\"\\");
+constexpr Characters kOfFrames = CharactersOf("\"{}");
+constexpr Characters kOfRest = CharactersOf("\"{}[]");
+
+size_t Find(const Characters& characters, std::string_view text) {
+  size_t i = 0;
+  while (i < text.size() && !characters[static_cast<unsigned char>(text[i])]) ++i;
+  return i;
+}
+
+// `key` is the text between the quotation marks, which may contain escapes.
+bool IsFrames(std::string_view key) {
+  if (key.find('\\') == std::string_view::npos) return key == "frames";
+  const std::string quoted = '"' + std::string(key) + '"';
+  return nlohmann::json::parse(quoted, nullptr, false) == "frames";
+}
+
+}  // namespace
+
+FrameCutter::FrameCutter(std::function<void(const std::string&)> take) : take_(std::move(take)) {}
+
+void FrameCutter::Add(std::string_view piece) {
+  while (!piece.empty()) {
+    size_t taken = 0;
+    if (in_string_)
+      taken = AddToString(piece, is_in_frame() ? &frame_ : &rest_);
+    else
+      taken = is_in_frame() ? AddToFrame(piece) : AddToRest(piece);
+    piece.remove_prefix(taken);
+  }
+}
+
+// Each of the next three functions takes text up to and including the next character that has a
+// meaning, at least one character. They return the number of bytes taken.
+size_t FrameCutter::AddToString(std::string_view piece, std::string* text) {
+  size_t size = 0;
+  if (is_escaped_) {
+    is_escaped_ = false;
+    size = 1;
+  } else {
+    size = Find(kOfStrings, piece);
+    if (size < piece.size()) {
+      is_escaped_ = piece[size] == '\\';
+      in_string_ = is_escaped_;
+      ++size;
+    }
+  }
+  text->append(piece.substr(0, size));
+  if (!in_string_ && !is_in_frame() && depth_ == 1) key_size_ = rest_.size() - 1 - key_begin_;
+  return size;
+}
+
+size_t FrameCutter::AddToFrame(std::string_view piece) {
+  size_t size = Find(kOfFrames, piece);
+  if (size == piece.size()) {
+    frame_.append(piece);
+    return size;
+  }
+  const char c = piece[size++];
+  frame_.append(piece.substr(0, size));
+  if (c == '"') in_string_ = true;
+  if (c == '{') ++frame_depth_;
+  if (c == '}' && --frame_depth_ == 0) {
+    take_(frame_);
+    frame_.clear();
+    rest_ += "{}";
+  }
+  return size;
+}
+
+size_t FrameCutter::AddToRest(std::string_view piece) {
+  size_t size = Find(kOfRest, piece);
+  if (size < piece.size() && piece[size] == '{' && BeginsFrame()) {
+    rest_.append(piece.substr(0, size));
+    frame_ = '{';
+    frame_depth_ = 1;
+    return size + 1;
+  }
+  if (size == piece.size()) {
+    rest_.append(piece);
+    return size;
+  }
+  const char c = piece[size++];
+  rest_.append(piece.substr(0, size));
+  if (c == '"') {
+    in_string_ = true;
+    if (depth_ == 1) key_begin_ = rest_.size();
+  } else if (c == '{' || c == '[') {
+    Enter(c);
+  } else if (depth_ > 0 && --depth_ == 0) {
+    is_over_ = true;
+  }
+  return size;
+}
+
+void FrameCutter::Enter(char bracket) {
+  if (depth_ == 0 && bracket == '[') is_over_ = true;
+  if (depth_ == 1)
+    is_frames_list_ = bracket == '[' && !is_over_ &&
+                      IsFrames(std::string_view(rest_).substr(key_begin_, key_size_));
+  ++depth_;
+}
+
+}  // namespace lf

@@ -1,0 +1,48 @@
+// Splits the text of a transforms.json into its frames and the rest. It only looks at brackets and
+// quotation marks and does not parse values. Internal to this folder.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <string_view>
+
+namespace lf {
+
+// If the text is JSON, the frames are the objects {...} in the lists under the keys "frames" of the
+// top level. Conversely, if the rest is JSON and every frame is JSON, the whole text is JSON.
+class FrameCutter {
+ public:
+  // Calls `take` with each frame as soon as its text is complete.
+  explicit FrameCutter(std::function<void(const std::string& frame)> take);
+
+  // Adds the next piece of the text, of any size.
+  void Add(std::string_view piece);
+
+  // The text outside frames so far, with {} in place of each frame.
+  const std::string& rest() const { return rest_; }
+  // True if the text so far ends inside a frame.
+  bool is_in_frame() const { return frame_depth_ > 0; }
+  // Size of all text that is kept: the rest, and the frame that has begun.
+  size_t held_bytes() const { return rest_.size() + frame_.size(); }
+
+ private:
+  size_t AddToString(std::string_view piece, std::string* text);
+  size_t AddToFrame(std::string_view piece);
+  size_t AddToRest(std::string_view piece);
+  void Enter(char bracket);
+  bool BeginsFrame() const { return depth_ == 2 && is_frames_list_; }
+
+  std::function<void(const std::string&)> take_;
+  std::string rest_, frame_;
+  bool in_string_ = false;
+  bool is_escaped_ = false;      // a backslash precedes the next character
+  size_t frame_depth_ = 0;       // open brackets {} in the frame
+  size_t depth_ = 0;             // open brackets of both kinds in the rest
+  size_t key_begin_ = 0;         // where the last string of the top level begins in rest_
+  size_t key_size_ = 0;          // its size without quotation marks
+  bool is_frames_list_ = false;  // the bracket that opened depth 2 is that of "frames": [
+  bool is_over_ = false;         // the top level was closed or is no object: no more frames
+};
+
+}  // namespace lf

@@ -1,0 +1,47 @@
+// The intrinsics of transforms.json: keys of the top level, which each frame may override. Internal
+// to this folder.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "lf/camera/pinhole.h"
+#include "lf/core/result.h"
+#include "lf/light_field/transforms_json/distortion_keys.h"
+#include "lf/light_field/transforms_json/json_fields.h"
+
+namespace lf {
+
+// The keys as written; each of them may be missing.
+struct IntrinsicsKeys {
+  std::optional<double> fl_x, fl_y;                      // px
+  std::optional<double> camera_angle_x, camera_angle_y;  // rad, the whole field of view
+  std::optional<double> cx, cy;                          // px
+  std::optional<double> w, h;                            // px
+  std::optional<double> lf_skew;                         // px
+  std::optional<std::array<double, 3>> lf_vignetting;
+  DistortionKeys distortion;
+
+  friend bool operator==(const IntrinsicsKeys&, const IntrinsicsKeys&) = default;
+};
+
+// Returns equal hashes for equal keys.
+uint64_t HashOfIntrinsicsKeys(const IntrinsicsKeys& keys);
+
+// Reads the keys and checks the range of every value.
+Result<IntrinsicsKeys> ReadIntrinsicsKeys(const JsonFields& fields);
+
+// Takes each key from the frame, or from the top level if the frame lacks it. The focal length
+// along x is fl_x, or that of camera_angle_x; along y it is fl_y, or that of camera_angle_y, or the
+// one along x. The principal point is the image centre by default.
+//   default_size  [width, height], called if w or h is missing; its error is returned
+//   fields        for messages
+// kInput: no focal length, a distortion that is unclear (ResolveDistortion), a vignetting that
+// leaves no light somewhere in the image.
+using SizeSource = std::function<Result<std::array<int, 2>>()>;
+Result<Intrinsics> ResolveIntrinsics(const IntrinsicsKeys& frame, const IntrinsicsKeys& top,
+                                     const SizeSource& default_size, const JsonFields& fields);
+
+}  // namespace lf

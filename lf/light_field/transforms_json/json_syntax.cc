@@ -1,0 +1,75 @@
+#include "lf/light_field/transforms_json/json_syntax.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+namespace lf {
+namespace {
+
+using nlohmann::json;
+
+// Iterates over the characters of a stream, as nlohmann's parser needs it.
+class StreamIterator {
+ public:
+  using iterator_category = std::input_iterator_tag;
+  using value_type = char;
+  using difference_type = std::ptrdiff_t;
+  using pointer = const char*;
+  using reference = char;
+
+  explicit StreamIterator(ByteStream* stream = nullptr) : stream_(stream) {}  // nullptr: the end
+  char operator*() const { return stream_->Window().front(); }
+  StreamIterator& operator++() {
+    stream_->Skip(1);
+    return *this;
+  }
+  // The parser compares with the end only.
+  bool operator==(const StreamIterator&) const { return stream_->Window().empty(); }
+
+ private:
+  ByteStream* stream_;
+};
+
+// Returns advice on the usual mistakes. `what` ends with what the parser read last.
+std::string_view AdviceOn(std::string_view what) {
+  const auto has = [what](std::string_view part) { return what.find(part) != what.npos; };
+  if (has("unexpected end of input") && has("line 1, column 1:")) return "; the file is empty";
+  if (has("unexpected ']'") || has("unexpected '}'; expected string literal"))
+    return "; is there a comma too many before it?";
+  if (has("invalid literal") && (has(" N'") || has(",N'") || has("[N'")))
+    return "; NaN is no number of JSON: which pose or calibration was not found?";
+  if (has("line 1, column 1:") && has("invalid literal"))
+    return "; it has to be text in UTF-8 that begins with {";
+  return "";
+}
+
+}  // namespace
+
+Error IsNotJson(const std::filesystem::path& file, std::string_view what) {
+  what.remove_prefix(std::min(what.size(), what.find("] ") + 2));  // without the name of the
+                                                                   // library
+  const std::string_view advice = AdviceOn(what);
+  // Text in another encoding cannot be shown.
+  if (advice.find("UTF-8") != advice.npos) what = what.substr(0, what.find("; last read"));
+  return InputError(fmt::format("{}: is not JSON: {}{}", file.string(), what, advice));
+}
+
+Error JsonSyntaxError(ByteStream* stream) {
+  std::optional<Error> error;
+  try {
+    const auto keep_nothing = [](int, json::parse_event_t, const json&) { return false; };
+    const json nothing = json::parse(StreamIterator(stream), StreamIterator(), keep_nothing);
+  } catch (const json::exception& exception) {
+    error = IsNotJson(stream->path(), exception.what());
+  }
+  if (Result<void> status = stream->Status(); !status) return status.error();
+  if (error) return *error;
+  return InputError(fmt::format("{}: changed while it was read", stream->path().string()));
+}
+
+}  // namespace lf

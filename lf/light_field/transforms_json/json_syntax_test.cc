@@ -1,0 +1,46 @@
+#include "lf/light_field/transforms_json/json_syntax.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+namespace lf {
+namespace {
+
+std::string ErrorOf(std::string_view text) {
+  ByteStream stream(text, "a.json");
+  return JsonSyntaxError(&stream).message;
+}
+
+TEST(JsonSyntax, ErrorsNameLineColumnAndWhatIsWrong) {
+  EXPECT_EQ(
+      ErrorOf("{\n \"a\": [1,\n  2 3]}"),
+      "a.json: is not JSON: parse error at line 3, column 5: syntax error while parsing array "
+      "- unexpected number literal; expected ']'");
+  EXPECT_EQ(ErrorOf("{\"a\": 1e999}").find("a.json: is not JSON: number overflow"), 0u);
+}
+
+TEST(JsonSyntax, UsualMistakesAreNamed) {
+  const auto advice = [](std::string_view text) {
+    const std::string message = ErrorOf(text);
+    return message.substr(std::min(message.size(), message.rfind("; ")));
+  };
+  EXPECT_EQ(advice("{\"frames\": [1, 2,]}"), "; is there a comma too many before it?");
+  EXPECT_EQ(advice("{\"w\": 1, }"), "; is there a comma too many before it?");
+  EXPECT_EQ(advice("[0, NaN, 1]").find("; NaN is no number of JSON"), 0u);
+  EXPECT_EQ(advice("[NaN]").find("; NaN is no number of JSON"), 0u);
+  EXPECT_EQ(advice(""), "; the file is empty");
+  EXPECT_EQ(advice("\xff\xfe{"), "; it has to be text in UTF-8 that begins with {");
+}
+
+TEST(JsonSyntax, NestingTakesNoMemory) {
+  EXPECT_NE(ErrorOf(std::string(1'000'000, '[')).find("column 1000001"), std::string::npos);
+}
+
+TEST(JsonSyntax, AFileThatIsJsonNowHasChanged) {
+  EXPECT_EQ(ErrorOf("{}"), "a.json: changed while it was read");
+}
+
+}  // namespace
+}  // namespace lf

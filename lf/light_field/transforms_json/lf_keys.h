@@ -1,0 +1,55 @@
+// The lf_* keys of transforms.json that say how stored numbers become light. Internal to this
+// folder.
+#pragma once
+
+#include "lf/core/result.h"
+#include "lf/light_field/model/light_field.h"
+#include "lf/light_field/model/radiance.h"
+#include "lf/light_field/model/raw_encoding.h"
+#include "lf/light_field/transforms_json/json_fields.h"
+
+namespace lf {
+
+// All lf_* keys (doc/formats/transforms_json.md).
+inline constexpr const char* kTopLevelLfKeys[] = {"lf_bayer",
+                                                  "lf_transfer",
+                                                  "lf_response",
+                                                  "lf_black_level",
+                                                  "lf_white_level",
+                                                  "lf_white_balance",
+                                                  "lf_camera_to_srgb",
+                                                  "lf_max_radiance",
+                                                  "lf_pedestal",
+                                                  "lf_unit_m",
+                                                  "lf_depth_range",
+                                                  "lf_skew",
+                                                  "lf_fov_omega",
+                                                  "lf_alpha",
+                                                  "lf_background",
+                                                  "lf_clipped",
+                                                  "lf_written_by",
+                                                  "lf_eucm_alpha",
+                                                  "lf_eucm_beta",
+                                                  "lf_sx1",
+                                                  "lf_sy1",
+                                                  "lf_p0",
+                                                  "lf_p1",
+                                                  "lf_s0",
+                                                  "lf_s1",
+                                                  "lf_s2",
+                                                  "lf_s3",
+                                                  "lf_vignetting"};
+inline constexpr const char* kFrameLfKeys[] = {
+    "lf_gain",      "lf_mask", "lf_translation", "lf_skew",      "lf_fov_omega", "lf_eucm_alpha",
+    "lf_eucm_beta", "lf_sx1",  "lf_sy1",         "lf_p0",        "lf_p1",        "lf_s0",
+    "lf_s1",        "lf_s2",   "lf_s3",          "lf_vignetting"};
+
+// Reads the keys of the top level. Missing keys take their values from camera raw files:
+// `raw_facts` is called if a key that it can replace is missing, unless it is null. Other defaults:
+// sRGB without a Bayer pattern, linear with one; pedestal 1024 if there is a black level, otherwise
+// 0; DefaultMaxRadiance(image_names).
+//   light_field  names and folder of the images
+Result<RadianceEncoding> ReadEncoding(const JsonFields& top, const LightField& light_field,
+                                      const RawFactsSource& raw_facts);
+
+}  // namespace lf

@@ -1,0 +1,323 @@
+#include "lf/light_field/transforms_json/transforms_json.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
+
+#include "lf/core/byte_stream.h"
+#include "lf/light_field/model/distinct_intrinsics.h"
+#include "lf/light_field/transforms_json/frame_cutter.h"
+#include "lf/light_field/transforms_json/intrinsics_keys.h"
+#include "lf/light_field/transforms_json/json_fields.h"
+#include "lf/light_field/transforms_json/json_object.h"
+#include "lf/light_field/transforms_json/json_syntax.h"
+#include "lf/light_field/transforms_json/lf_keys.h"
+#include "lf/light_field/transforms_json/opengl_pose.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+using nlohmann::json;
+using Event = json::parse_event_t;
+
+constexpr size_t kMaxFrameCount = size_t{1} << 24;
+constexpr size_t kMaxHeldBytes = size_t{1} << 30;
+constexpr int kMaxDepth = 8;  // deeper than anything that is read; hostile nesting then takes no
+                              // memory
+
+constexpr NumberRule kFinite = {"finite", [](double) { return true; }};
+constexpr NumberRule kGain = {"a factor from 1e-6 to 1e6",
+                              [](double x) { return x >= 1e-6 && x <= 1e6; }};
+constexpr NumberRule kUnit = {"metres per world unit, from 1e-9 to 1e9",
+                              [](double x) { return x >= 1e-9 && x <= 1e9; }};
+
+// Reads each frame as it is cut out of the text and then forgets its text: for a million frames,
+// only LfCameras and names stay in memory. Intrinsics are resolved at the end, because the keys
+// that all frames share may come after the frames.
+class Reader {
+ public:
+  Reader(const fs::path& path, const ImageSizeSource& image_size, const RawFactsSource& raw_facts)
+      : path_(path), image_size_(image_size), raw_facts_(raw_facts) {
+    light_field_.folder = path.parent_path();
+  }
+
+  // Returns false if the text is not JSON.
+  bool TakeFrame(const std::string& text) {
+    if (!frame_.Parse(text)) return false;
+    if (error_) return true;  // the rest is parsed only to see if the file is JSON
+    if (Result<void> result = AddFrame(); !result) error_ = result.error();
+    return true;
+  }
+
+  // Reads everything but the frames, after all of them; `text` has {} in place of each frame.
+  // Returns nullopt if the text is not JSON.
+  std::optional<Result<LightField>> TakeRest(const std::string& text) {
+    std::optional<Error> first_error;
+    std::string top_text;
+    try {
+      top_text = TopLevel(text, &first_error).dump();
+    } catch (const json::exception&) {
+      return std::nullopt;
+    }
+    if (first_error) return *first_error;
+    JsonObject top;
+    const JsonFields fields(top, path_);
+    if (!top.Parse(top_text))
+      return fields.Fault("expected an object {...} with a list \"frames\"");
+    if (error_) return *error_;
+    return Finish(fields);
+  }
+
+ private:
+  size_t frame_count() const { return light_field_.cameras.size(); }
+
+  // Returns the top level without the entries of "frames". Sets *error if one of the entries is no
+  // object, or if a key occurs twice. Throws if the text is not JSON.
+  json TopLevel(const std::string& text, std::optional<Error>* error) const {
+    std::set<std::string> seen_keys;
+    bool in_frames = false, in_frames_list = false;
+    size_t entry_count = 0;
+    // Depth 0 is the top level, 1 its keys and values, 2 the entries of "frames".
+    return json::parse(text, [&](int depth, Event event, json& value) {
+      if (*error || depth > kMaxDepth) return false;
+      if (depth == 1 && event == Event::key) {
+        const std::string& key = value.get_ref<const std::string&>();
+        in_frames = key == "frames";
+        if (!seen_keys.insert(key).second)
+          *error = InputError(fmt::format("{}: \"{}\" is given twice", path_.string(), key));
+      }
+      if (!in_frames) return true;
+      if (depth == 1 && event == Event::array_start) in_frames_list = true;
+      if (depth == 1 && event == Event::array_end) in_frames_list = false;
+      if (depth != 2 || !in_frames_list) return true;
+      if (event == Event::value || event == Event::array_start)
+        *error = JsonFields(JsonObject(), path_, entry_count, "").Fault("expected an object {...}");
+      if (event == Event::object_end) ++entry_count;
+      return event != Event::object_end;
+    });
+  }
+
+  Result<LightField> Finish(const JsonFields& top) {
+    if (!top.HasList("frames")) return top.Wrong("frames", "a list of objects");
+    if (frame_count() == 0) return top.Fault("\"frames\" is empty: a light field needs images");
+    LF_RETURN_IF_ERROR(top.CheckLfKeys(kTopLevelLfKeys, kFrameLfKeys, "into each frame"));
+    LF_RETURN_IF_ERROR(ResolveAllIntrinsics(top));
+    LF_ASSIGN_OR_RETURN(light_field_.encoding, ReadEncoding(top, light_field_, raw_facts_));
+    LF_ASSIGN_OR_RETURN(const std::optional<double> unit_m, top.Number("lf_unit_m", kUnit));
+    light_field_.unit_m = unit_m.value_or(1);
+    LF_RETURN_IF_ERROR(ReadDepthRange(top));
+    if (!light_field_.mask_names.empty()) light_field_.mask_names.resize(frame_count());
+    return std::move(light_field_);
+  }
+
+  Result<void> AddFrame() {
+    const size_t index = frame_count();
+    const JsonFields unnamed(frame_, path_, index, "");
+    if (index == kMaxFrameCount)
+      return unnamed.Fault(fmt::format("more than {} frames", kMaxFrameCount));
+    LF_ASSIGN_OR_RETURN(std::optional<std::string> name, unnamed.Text("file_path"));
+    if (!name || name->empty()) return unnamed.Wrong("file_path", "the name of the image file");
+
+    const JsonFields fields(frame_, path_, index, *name);
+    LF_RETURN_IF_ERROR(fields.CheckLfKeys(kFrameLfKeys, kTopLevelLfKeys, "to the top level"));
+    LfCamera camera;
+    LF_ASSIGN_OR_RETURN(camera.cam_from_world, ReadPose(fields));
+    LF_ASSIGN_OR_RETURN(camera.gain, ReadGains(fields));
+    LF_ASSIGN_OR_RETURN(const IntrinsicsKeys keys, ReadIntrinsicsKeys(fields));
+    camera.intrinsics_index = distinct_keys_.IndexOf(keys);
+    LF_RETURN_IF_ERROR(ReadMask(fields, index));
+    light_field_.cameras.push_back(camera);
+    // instant-ngp adds the same extension for the frames of Blender's NeRF scenes.
+    if (!fs::path(*name).has_extension()) *name += ".png";
+    light_field_.image_names.push_back(*std::move(name));
+    return {};
+  }
+
+  // Reads one factor for all channels, or one for each of R, G and B.
+  static Result<ChannelGains> ReadGains(const JsonFields& fields) {
+    LF_ASSIGN_OR_RETURN(const std::optional<std::vector<double>> numbers,
+                        fields.NumberOrNumbers("lf_gain", 3, kGain));
+    ChannelGains gains;
+    for (size_t c = 0; numbers && c < 3; ++c) gains[c] = static_cast<float>((*numbers)[c]);
+    return gains;
+  }
+
+  static Result<RigidTransform> ReadPose(const JsonFields& fields) {
+    LF_ASSIGN_OR_RETURN(const std::optional<std::vector<double>> matrix,
+                        fields.Matrix("transform_matrix", 3, 4, 4, kFinite));
+    if (!matrix) return fields.Wrong("transform_matrix", "the 4x4 camera-to-world matrix");
+    const double* last_row = matrix->size() == 16 ? matrix->data() + 12 : nullptr;
+    if (last_row && Eigen::RowVector4d(last_row) != Eigen::RowVector4d(0, 0, 0, 1))
+      return fields.Fault("\"transform_matrix\": expected the last row 0, 0, 0, 1");
+    const Result<RigidTransform> pose = CamFromWorldOfOpenGl(
+        Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(matrix->data()));
+    if (!pose) return fields.Fault("\"transform_matrix\" " + pose.error().message);
+    return WithExactTranslation(fields, *pose);
+  }
+
+  // lf_translation is the translation that the matrix stands for, without the rounding errors of
+  // the conversion to a centre and back.
+  static Result<RigidTransform> WithExactTranslation(const JsonFields& fields,
+                                                     RigidTransform pose) {
+    constexpr double kTolerance = 1e-6;
+    LF_ASSIGN_OR_RETURN(const std::optional<std::vector<double>> exact,
+                        fields.Numbers("lf_translation", 3, 3, kFinite));
+    if (!exact) return pose;
+    const Vec3 translation(exact->data());
+    if (!((translation - pose.translation).norm() <= kTolerance * pose.translation.norm()))
+      return fields.Wrong(
+          "lf_translation",
+          fmt::format("about [{}, {}, {}] by \"transform_matrix\"; remove "
+                      "lf_translation after changing the matrix",
+                      pose.translation.x(), pose.translation.y(), pose.translation.z()));
+    pose.translation = translation;
+    return pose;
+  }
+
+  // Reads lf_mask, or mask_path of nerfstudio, which has the same meaning.
+  Result<void> ReadMask(const JsonFields& fields, size_t index) {
+    LF_ASSIGN_OR_RETURN(std::optional<std::string> mask, fields.Text("lf_mask"));
+    if (!mask) {
+      LF_ASSIGN_OR_RETURN(mask, fields.Text("mask_path"));
+    }
+    if (!mask || mask->empty()) return {};
+    light_field_.mask_names.resize(index + 1);
+    light_field_.mask_names.back() = *std::move(mask);
+    return {};
+  }
+
+  Result<void> ReadDepthRange(const JsonFields& fields) {
+    constexpr NumberRule kDepth = {"a depth above 0 and at most 1e12",
+                                   [](double x) { return x > 0 && x <= 1e12; }};
+    LF_ASSIGN_OR_RETURN(const std::optional<std::vector<double>> range,
+                        fields.Numbers("lf_depth_range", 2, 2, kDepth));
+    if (!range) return {};
+    if (!(range->front() < range->back()))
+      return fields.Wrong("lf_depth_range", "[near, far] with near < far");
+    light_field_.depth_range = DepthRange{range->front(), range->back()};
+    return {};
+  }
+
+  // Returns the most frequent size of up to 15 evenly spread images, or the first of equally
+  // frequent ones. Read once and then kept.
+  Result<std::array<int, 2>> DefaultSize() {
+    constexpr const char* kAdvice =
+        "add \"w\" and \"h\", in pixels, at the top level (e.g. \"w\": 800, \"h\": 800)";
+    if (!default_size_) {
+      if (!image_size_)
+        return InputError(
+            fmt::format("{}: the image size is missing: {}", path_.string(), kAdvice));
+      LF_ASSIGN_OR_RETURN(default_size_, SizeOfMost(kAdvice));
+    }
+    return *default_size_;
+  }
+
+  Result<std::array<int, 2>> SizeOfMost(const char* advice) {
+    constexpr size_t kMostAsked = 15;
+    const size_t count = std::min(kMostAsked, light_field_.size());
+    std::vector<std::array<int, 2>> sizes;
+    std::optional<Error> fault;  // of the first image that cannot be read
+    for (size_t i = 0; i < count; ++i) {
+      const auto index = static_cast<uint32_t>(i * light_field_.size() / count);
+      const auto size = image_size_(light_field_.ImagePath(LfImageId{index}));
+      if (size)
+        sizes.push_back(*size);
+      else if (!fault)
+        fault = size.error();
+    }
+    if (sizes.empty())
+      return InputError(
+          fmt::format("{}: the image size is missing, and the images do not tell it: {}; {}",
+                      path_.string(), fault->message, advice));
+    const auto count_of = [&](const std::array<int, 2>& size) {
+      return std::count(sizes.begin(), sizes.end(), size);
+    };
+    return *std::max_element(sizes.begin(), sizes.end(), [&](const auto& a, const auto& b) {
+      return count_of(a) < count_of(b);
+    });
+  }
+
+  Result<void> ResolveAllIntrinsics(const JsonFields& fields) {
+    LF_ASSIGN_OR_RETURN(const IntrinsicsKeys top, ReadIntrinsicsKeys(fields));
+    const std::vector<IntrinsicsKeys> distinct_keys = distinct_keys_.Take();
+    constexpr uint32_t kNotYet = UINT32_MAX;
+    std::vector<uint32_t> resolved(distinct_keys.size(), kNotYet);
+    DistinctIntrinsics distinct;
+    const JsonObject no_object;
+    for (size_t i = 0; i < frame_count(); ++i) {
+      uint32_t& index = light_field_.cameras[i].intrinsics_index;
+      if (resolved[index] == kNotYet) {
+        const JsonFields frame(no_object, path_, i, light_field_.image_names[i]);
+        LF_ASSIGN_OR_RETURN(
+            const Intrinsics intrinsics,
+            ResolveIntrinsics(
+                distinct_keys[index], top, [this] { return DefaultSize(); }, frame));
+        resolved[index] = distinct.IndexOf(intrinsics);
+      }
+      index = resolved[index];
+    }
+    light_field_.intrinsics = distinct.Take();
+    return {};
+  }
+
+  const fs::path& path_;
+  const ImageSizeSource& image_size_;
+  const RawFactsSource& raw_facts_;
+  std::optional<std::array<int, 2>> default_size_;
+  LightField light_field_;  // until the end, intrinsics_index is an index into distinct_keys_
+  Distinct<IntrinsicsKeys, HashOfIntrinsicsKeys> distinct_keys_;
+  JsonObject frame_;            // the frame that is being read
+  std::optional<Error> error_;  // of the first faulty frame
+};
+
+using StreamSource = std::function<Result<ByteStream>()>;
+
+// Reads the file again to find its syntax error, because the parsers of frames do not know their
+// place in the file.
+Error SyntaxError(const StreamSource& open) {
+  Result<ByteStream> stream = open();
+  return stream ? JsonSyntaxError(&*stream) : stream.error();
+}
+
+Result<LightField> Read(const fs::path& path, const StreamSource& open,
+                        const ImageSizeSource& image_size, const RawFactsSource& raw_facts) {
+  Reader reader(path, image_size, raw_facts);
+  bool is_json = true;
+  FrameCutter cutter([&](const std::string& frame) { is_json &= reader.TakeFrame(frame); });
+  LF_ASSIGN_OR_RETURN(ByteStream stream, open());
+  for (std::string_view piece = stream.Window(); is_json && !piece.empty();
+       piece = stream.Window()) {
+    cutter.Add(piece);
+    stream.Skip(piece.size());
+    if (cutter.held_bytes() > kMaxHeldBytes)
+      return InputError(
+          fmt::format("{}: holds more than {} bytes beside its frames, or in one of them: is it a "
+                      "transforms.json?",
+                      path.string(), kMaxHeldBytes));
+  }
+  LF_RETURN_IF_ERROR(stream.Status());
+  if (!is_json || cutter.is_in_frame()) return SyntaxError(open);
+  std::optional<Result<LightField>> light_field = reader.TakeRest(cutter.rest());
+  return light_field ? *std::move(light_field) : SyntaxError(open);
+}
+
+}  // namespace
+
+Result<LightField> ParseTransformsJson(std::string_view text, const fs::path& path,
+                                       const ImageSizeSource& image_size,
+                                       const RawFactsSource& raw_facts) {
+  return Read(
+      path, [&] { return ByteStream(text, path); }, image_size, raw_facts);
+}
+
+Result<LightField> ReadTransformsJson(const fs::path& path) {
+  return Read(
+      path, [&] { return ByteStream::Open(path); }, ImageSizeInHeader, RawFactsOfFirstImage);
+}
+
+}  // namespace lf

@@ -1,0 +1,261 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "lf/core/file.h"
+#include "lf/light_field/transforms_json/distortion_keys.h"
+#include "lf/light_field/transforms_json/lf_keys.h"
+#include "lf/light_field/transforms_json/opengl_pose.h"
+#include "lf/light_field/transforms_json/transforms_json.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+// The text of a file, to which everything is appended. Numbers are written with the fewest digits
+// (at most 17) that read back as the same double.
+class JsonText {
+ public:
+  template <class... Args>
+  void Add(fmt::format_string<Args...> format, Args&&... args) {
+    fmt::format_to(std::back_inserter(text_), format, std::forward<Args>(args)...);
+  }
+  void AddNumber(double x) {
+    // "-0" would be read as an integer and lose its sign.
+    if (x == 0 && std::signbit(x))
+      Add("-0.0");
+    else
+      Add("{}", x);
+  }
+  void AddNumbers(std::span<const double> list) {
+    Add("[");
+    for (size_t i = 0; i < list.size(); ++i) {
+      if (i > 0) Add(", ");
+      AddNumber(list[i]);
+    }
+    Add("]");
+  }
+  // Adds rows of `columns` numbers.
+  void AddMatrix(std::span<const double> values, size_t columns) {
+    Add("[");
+    for (size_t i = 0; i < values.size(); i += columns) {
+      if (i > 0) Add(", ");
+      AddNumbers(values.subspan(i, columns));
+    }
+    Add("]");
+  }
+  // kOutput if the name is not UTF-8, which JSON requires.
+  Result<void> AddString(const std::string& string) {
+    try {
+      text_ += nlohmann::json(string).dump();
+    } catch (const nlohmann::json::exception&) {
+      return OutputError(fmt::format("the name \"{}\" is not UTF-8: rename the file", string));
+    }
+    return {};
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+// Writes camera_model and its parameters. Parameters that only `top` has are written as 0, because
+// a reader would otherwise take them from `top`.
+void AddDistortion(const Distortion& distortion, const Distortion& top, const char* separator,
+                   JsonText* json) {
+  const auto parameters = [](const Distortion& d, const CameraModelName& model) {
+    std::vector<std::pair<std::string_view, double>> list;
+    for (size_t i = 0; i < model.parameter_count; ++i)
+      list.emplace_back(ParameterKeys(model.model)[i], d.parameters[i]);
+    return list;
+  };
+  const CameraModelName model = CameraModelOf(distortion);
+  auto list = parameters(distortion, model);
+  for (const auto& of_top : parameters(top, CameraModelOf(top)))
+    if (std::none_of(list.begin(), list.end(),
+                     [&](const auto& parameter) { return parameter.first == of_top.first; }))
+      list.emplace_back(of_top.first, 0);
+  json->Add("\"camera_model\": \"{}\",{}", model.name, separator);
+  for (const auto& [key, value] : list) {
+    json->Add("\"{}\": ", key);
+    json->AddNumber(value);
+    json->Add(",{}", separator);
+  }
+}
+
+// Writes the keys that differ from `top`, the intrinsics at the top level.
+void AddIntrinsics(const Intrinsics& k, const Intrinsics& top, const char* separator,
+                   JsonText* json) {
+  AddDistortion(k.distortion, top.distortion, separator, json);
+  if (k.skew_px != 0 || top.skew_px != 0) {
+    json->Add("\"lf_skew\": ");
+    json->AddNumber(k.skew_px);
+    json->Add(",{}", separator);
+  }
+  const std::pair<const char*, double> numbers[] = {
+      {"fl_x", k.fx_px}, {"fl_y", k.fy_px}, {"cx", k.cx_px}, {"cy", k.cy_px}};
+  for (const auto& [key, value] : numbers) {
+    json->Add("\"{}\": ", key);
+    json->AddNumber(value);
+    json->Add(",{}", separator);
+  }
+  if (!k.vignetting.is_none() || !top.vignetting.is_none()) {
+    json->Add("\"lf_vignetting\": ");
+    json->AddNumbers(k.vignetting.v);
+    json->Add(",{}", separator);
+  }
+  json->Add("\"w\": {},{}\"h\": {}", k.width_px, separator, k.height_px);
+}
+
+void AddEncoding(const RadianceEncoding& encoding, JsonText* json) {
+  const auto add_number = [json](const char* key, double value) {
+    json->Add("\"{}\": ", key);
+    json->AddNumber(value);
+    json->Add(",\n");
+  };
+  if (encoding.bayer != BayerPattern::kNone)
+    json->Add("\"lf_bayer\": \"{}\",\n", NameOf(encoding.bayer));
+  if (encoding.transfer == Transfer::kResponse) {
+    json->Add("\"lf_response\": ");
+    json->AddNumbers(encoding.response);
+    json->Add(",\n");
+  } else {
+    json->Add("\"lf_transfer\": \"{}\",\n",
+              encoding.transfer == Transfer::kSrgb ? "sRGB" : "linear");
+  }
+  add_number("lf_black_level", encoding.black_level);
+  if (encoding.white_level) add_number("lf_white_level", *encoding.white_level);
+  add_number("lf_max_radiance", encoding.max_radiance);
+  add_number("lf_pedestal", encoding.pedestal);
+  if (encoding.alpha) json->Add("\"lf_alpha\": \"{}\",\n", NameOf(*encoding.alpha));
+  if (encoding.masks_clipped) json->Add("\"lf_clipped\": \"mask\",\n");
+  if (encoding.background && encoding.keeps_opacity) {
+    json->Add("\"lf_background\": \"{}\",\n", kNoBackground);
+  } else if (encoding.background) {
+    json->Add("\"lf_background\": ");
+    json->AddNumbers(*encoding.background);
+    json->Add(",\n");
+  }
+  json->Add("\"lf_white_balance\": ");
+  json->AddNumbers(encoding.white_balance);
+  json->Add(",\n\"lf_camera_to_srgb\": ");
+  const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rows = encoding.linear_srgb_from_camera;
+  json->AddMatrix({rows.data(), 9}, 3);
+  json->Add(",\n");
+}
+
+void AddPose(const RigidTransform& cam_from_world, JsonText* json) {
+  Eigen::Matrix<double, 4, 4, Eigen::RowMajor> rows = Eigen::Matrix4d::Identity();
+  const Mat34 pose = OpenGlOfCamFromWorld(cam_from_world);
+  rows.topRows<3>() = pose;
+  json->Add("\"transform_matrix\": ");
+  json->AddMatrix({rows.data(), 16}, 4);
+  // Converted to a centre and back with rounding, most translations change in their last bit.
+  const Result<RigidTransform> read_back = CamFromWorldOfOpenGl(pose);
+  if (read_back && read_back->translation == cam_from_world.translation) return;
+  json->Add(", \"lf_translation\": ");
+  json->AddNumbers({cam_from_world.translation.data(), 3});
+}
+
+// Writes one number if all channels have the same gain, as most light fields state it.
+void AddGains(const LfCamera& camera, JsonText* json) {
+  const std::array<double, 3> gains = {camera.gain[0], camera.gain[1], camera.gain[2]};
+  if (!camera.gain.are_equal()) {
+    json->Add(", \"lf_gain\": ");
+    json->AddNumbers(gains);
+  } else if (gains[0] != 1) {
+    json->Add(", \"lf_gain\": {}", gains[0]);
+  }
+}
+
+Result<void> AddFrame(const LightField& light_field, size_t index, JsonText* json) {
+  const std::string& name = light_field.image_names[index];
+  if (!fs::path(name).has_extension())
+    return OutputError(fmt::format(
+        "the image name \"{}\" has no extension: it would be read back as \"{}.png\"", name, name));
+  const LfCamera& camera = light_field.cameras[index];
+  json->Add("{{\"file_path\": ");
+  LF_RETURN_IF_ERROR(json->AddString(name));
+  json->Add(", ");
+  AddPose(camera.cam_from_world, json);
+  const uint32_t top_index = light_field.cameras[0].intrinsics_index;
+  if (camera.intrinsics_index != top_index) {
+    json->Add(", ");
+    AddIntrinsics(light_field.intrinsics[camera.intrinsics_index],
+                  light_field.intrinsics[top_index], " ", json);
+  }
+  AddGains(camera, json);
+  if (!light_field.mask_names.empty() && !light_field.mask_names[index].empty()) {
+    json->Add(", \"lf_mask\": ");
+    LF_RETURN_IF_ERROR(json->AddString(light_field.mask_names[index]));
+  }
+  json->Add("}}");
+  return {};
+}
+
+Result<std::string> TransformsJsonText(const LightField& light_field) {
+  JsonText json;
+  json.Add("{{\n");
+  const Intrinsics& top = light_field.intrinsics[light_field.cameras[0].intrinsics_index];
+  AddIntrinsics(top, top, "\n", &json);
+  json.Add(",\n");
+  AddEncoding(light_field.encoding, &json);
+  if (light_field.depth_range) {
+    json.Add("\"lf_depth_range\": ");
+    json.AddNumbers(std::array{light_field.depth_range->near_w, light_field.depth_range->far_w});
+    json.Add(",\n");
+  }
+  json.Add("\"lf_unit_m\": {},\n\"frames\": [\n", light_field.unit_m);
+  for (size_t i = 0; i < light_field.size(); ++i) {
+    LF_RETURN_IF_ERROR(AddFrame(light_field, i, &json));
+    json.Add("{}", i + 1 < light_field.size() ? ",\n" : "\n");
+  }
+  json.Add("]\n}}\n");
+  return json.text();
+}
+
+// FNV-1a with 64 bits: detects that a file was edited after it was written.
+uint64_t ChecksumOf(std::string_view text) {
+  uint64_t sum = 0xcbf29ce484222325;
+  for (const char c : text) sum = (sum ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  return sum;
+}
+
+// Returns the first lines of a file by `writer`, which `rest` follows.
+std::string SignedOpening(std::string_view writer, std::string_view rest) {
+  return fmt::format("{{\n\"lf_written_by\": \"{} {:016x}\",\n", writer, ChecksumOf(rest));
+}
+
+constexpr std::string_view kOpening = "{\n";
+
+}  // namespace
+
+Result<void> WriteTransformsJson(const LightField& light_field, const fs::path& path,
+                                 std::string_view writer) {
+  LF_CHECK(light_field.size() > 0 && light_field.image_names.size() == light_field.size());
+  Result<std::string> text = TransformsJsonText(light_field);
+  if (!text) return OutputError(fmt::format("{}: {}", path.string(), text.error().message));
+  if (!writer.empty()) {
+    const std::string opening =
+        SignedOpening(writer, std::string_view(*text).substr(kOpening.size()));
+    text->replace(0, kOpening.size(), opening);
+  }
+  return WriteFileAtomically(path, *text);
+}
+
+Result<bool> IsAsWritten(const fs::path& path, std::string_view writer) {
+  LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(path));
+  const size_t size = SignedOpening(writer, "").size();  // the same for every text
+  if (text.size() < size) return false;
+  return std::string_view(text).substr(0, size) ==
+         SignedOpening(writer, std::string_view(text).substr(size));
+}
+
+}  // namespace lf

@@ -1,0 +1,14 @@
+// DecodeImage() with a chosen implementation of the transforms. Internal to this folder.
+#pragma once
+
+#include <string_view>
+
+#include "lf/pixels/codec/lf_image_codec.h"
+#include "lf/pixels/codec/wavelet53.h"
+
+namespace lf {
+
+Result<void> DecodeImageBy(Transform transform, std::string_view code, const PixelRect& wanted,
+                           DecodedPart* part);
+
+}  // namespace lf

@@ -1,0 +1,32 @@
+// The lossless coder that compresses packed coefficients: zstd. No other file of the folder uses
+// zstd. Internal to this folder.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace lf {
+
+// Compression level of zstd, chosen by measurement (doc/codec.md).
+inline constexpr int kEntropyLevel = 1;
+
+// Appends the compressed bytes to `code`, without their length.
+void AppendCompressed(std::span<const uint8_t> bytes, std::string* code);
+
+// Returns true if `code` decompresses to exactly bytes.size() bytes.
+[[nodiscard]] bool Decompress(std::string_view code, std::span<uint8_t> bytes);
+
+// Appends a whole number in as few bytes as it needs: seven bits in each byte, the lowest first.
+// The highest bit of a byte is set if more bytes follow.
+void AppendNumber(uint64_t number, std::string* code);
+// Reads a number of AppendNumber() from the front of `code` and removes it there. Returns false if
+// `code` ends within the number or the number exceeds `limit`.
+[[nodiscard]] bool TakeNumber(std::string_view* code, uint64_t limit, uint64_t* number);
+// Removes the first `count` bytes from `code` and sets `bytes` to them. Returns false if there are
+// fewer.
+[[nodiscard]] bool TakeBytes(std::string_view* code, size_t count, std::string_view* bytes);
+
+}  // namespace lf

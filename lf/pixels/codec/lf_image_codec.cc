@@ -1,0 +1,186 @@
+#include "lf/pixels/codec/lf_image_codec.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "lf/core/check.h"
+#include "lf/pixels/codec/code_head.h"
+#include "lf/pixels/codec/decode_by.h"
+#include "lf/pixels/codec/entropy.h"
+#include "lf/pixels/codec/thesis_tile.h"
+#include "lf/pixels/codec/wavelet_tile.h"
+
+namespace lf {
+namespace {
+
+template <class Pixel>
+ImageView<Pixel> Part(ImageView<Pixel> image, const PixelRect& rect) {
+  image.data = image.row(rect.y_begin) + static_cast<size_t>(rect.x_begin) * image.channels;
+  image.width = rect.width();
+  image.height = rect.height();
+  return image;
+}
+
+// Returns the encoded image: head, table of contents and sections. Sections are ordered by
+// resolution, then by tile.
+template <class Tile>
+std::string Assembled(const CodeHead& head, const std::vector<Tile>& tiles) {
+  std::string code, sections;
+  AppendHead(head, &code);
+  for (int resolution = 0; resolution <= head.info.levels; ++resolution)
+    for (const Tile& tile : tiles) {
+      const std::string section = CodeOfSection(head, tile, resolution);
+      AppendNumber(section.size(), &code);
+      sections += section;
+    }
+  return code + sections;
+}
+
+template <class Pixel>
+std::string Encode(ImageView<const Pixel> pixels, const CodecSettings& settings, CodeHead head) {
+  if (settings.profile == CodecProfile::kThesis) {
+    std::vector<HaarTile> tiles;
+    for (size_t i = 0; i < head.tile_count(); ++i)
+      tiles.push_back(TransformTile(head, settings.threshold, Part(pixels, head.TileRect(i))));
+    head.quantizer = settings.quantizer;
+    head.low = tiles.front().low;
+    head.high = tiles.front().high;
+    for (const HaarTile& tile : tiles) {
+      head.low = std::min<int64_t>(head.low, tile.low);
+      head.high = std::max<int64_t>(head.high, tile.high);
+    }
+    return Assembled(head, tiles);
+  }
+  SetSteps(settings, &head);
+  std::vector<QuantizedTile> tiles;
+  int32_t largest = 0;
+  for (size_t i = 0; i < head.tile_count(); ++i) {
+    tiles.push_back(QuantizeTile(Transform::kSimd, head, Part(pixels, head.TileRect(i))));
+    largest = std::max(largest, tiles.back().largest);
+  }
+  head.coefficient_bytes = head.info.bits == 8 && FitsInTwoBytes(largest) ? 2 : 4;
+  return Assembled(head, tiles);
+}
+
+// Head and sections of an encoded image.
+struct Contents {
+  CodeHead head;
+  std::vector<std::string_view> sections;  // [resolution][tile]
+};
+
+// Reads head and table of contents from the front of `code`, and divides the rest into sections.
+Result<Contents> TakeContents(std::string_view code) {
+  Contents contents;
+  LF_ASSIGN_OR_RETURN(contents.head, TakeHead(&code));
+  const size_t count = contents.head.tile_count() * (contents.head.info.levels + 1);
+  // The table has at least one byte for each section.
+  if (count > code.size())
+    return InputError(
+        fmt::format("is a damaged LF image code: {} bytes for {} sections", code.size(), count));
+  std::vector<uint64_t> sizes(count);
+  for (uint64_t& size : sizes)
+    if (!TakeNumber(&code, code.size(), &size))
+      return InputError("is a damaged LF image code: its table of contents");
+  contents.sections.resize(count);
+  for (size_t i = 0; i < count; ++i)
+    if (!TakeBytes(&code, sizes[i], &contents.sections[i]))
+      return InputError("is a damaged LF image code: it is shorter than its table of contents");
+  if (!code.empty()) return InputError("is a damaged LF image code: bytes behind its end");
+  return contents;
+}
+
+// Returns the smallest rectangle of whole tiles that contains the pixels `wanted`.
+PixelRect TilesAround(const CodeHead& head, const PixelRect& wanted) {
+  const int size = head.tile_size();
+  return {wanted.x_begin / size * size, wanted.y_begin / size * size,
+          std::min((wanted.x_end - 1) / size * size + size, head.info.width),
+          std::min((wanted.y_end - 1) / size * size + size, head.info.height)};
+}
+
+template <class Pixel>
+Result<void> Decode(Transform transform, const Contents& contents, const PixelRect& rect,
+                    CodecPixels* pixels) {
+  const CodeHead& head = contents.head;
+  if (!std::holds_alternative<Image<Pixel>>(*pixels)) *pixels = Image<Pixel>();
+  auto& image = std::get<Image<Pixel>>(*pixels);
+  image.Resize(rect.width(), rect.height(), ChannelsOf(head.info.layout));
+  std::vector<std::string_view> sections(head.info.levels + 1);
+  for (size_t tile = 0; tile < head.tile_count(); ++tile) {
+    PixelRect here = head.TileRect(tile);
+    if (Intersection(here, rect).empty()) continue;
+    for (size_t r = 0; r < sections.size(); ++r)
+      sections[r] = contents.sections[r * head.tile_count() + tile];
+    here = {here.x_begin - rect.x_begin, here.y_begin - rect.y_begin, here.x_end - rect.x_begin,
+            here.y_end - rect.y_begin};
+    const ImageView<Pixel> part = Part(image.view(), here);
+    const bool is_whole = head.info.profile == CodecProfile::kThesis
+                              ? DecodeHaarTile(transform, head, sections, part)
+                              : DecodeWaveletTile(transform, head, sections, part);
+    if (!is_whole)
+      return InputError(fmt::format("is a damaged LF image code: the tile at pixel ({}, {})",
+                                    head.TileRect(tile).x_begin, head.TileRect(tile).y_begin));
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<void> CheckSettings(const CodecSettings& settings) {
+  if (settings.levels < 1 || settings.levels > kMostLevels)
+    return UsageError(fmt::format("--levels {}: expected 1 to {}", settings.levels, kMostLevels));
+  if (!(settings.threshold >= 0 && settings.threshold <= 65535))
+    return UsageError(fmt::format("--threshold {}: expected 0 to 65535", settings.threshold));
+  if (settings.quantizer < 2 || settings.quantizer > 65536)
+    return UsageError(
+        fmt::format("--quantizer {}: expected 8bit, or 2 to 65536", settings.quantizer));
+  return {};
+}
+
+std::string EncodeImage(const CodecPixels& pixels, PixelLayout layout,
+                        const CodecSettings& settings) {
+  LF_CHECK(CheckSettings(settings).has_value());
+  return std::visit(
+      [&]<class Pixel>(const Image<Pixel>& image) {
+        LF_CHECK(image.channels() == ChannelsOf(layout) && image.width() > 0 &&
+                 image.height() > 0 &&
+                 static_cast<long long>(image.width()) * image.height() <= kMostPixels);
+        CodeHead head;
+        head.info = {image.width(),     image.height(),   layout,
+                     8 * sizeof(Pixel), settings.profile, settings.levels};
+        return Encode(image.view(), settings, std::move(head));
+      },
+      pixels);
+}
+
+Result<CodeInfo> ReadCodeInfo(std::string_view code) {
+  LF_ASSIGN_OR_RETURN(const CodeHead head, TakeHead(&code));
+  if (head.tile_count() * (head.info.levels + 1) > code.size())
+    return InputError("is a damaged LF image code: it is shorter than its table of contents");
+  return head.info;
+}
+
+Result<void> DecodeImageBy(Transform transform, std::string_view code, const PixelRect& wanted,
+                           DecodedPart* part) {
+  LF_ASSIGN_OR_RETURN(const Contents contents, TakeContents(code));
+  const CodeInfo& info = contents.head.info;
+  const PixelRect inside = Intersection(wanted, {0, 0, info.width, info.height});
+  LF_CHECK(!inside.empty());
+  part->rect = TilesAround(contents.head, inside);
+  return info.bits == 8 ? Decode<uint8_t>(transform, contents, part->rect, &part->pixels)
+                        : Decode<uint16_t>(transform, contents, part->rect, &part->pixels);
+}
+
+Result<void> DecodeImage(std::string_view code, const PixelRect& wanted, DecodedPart* part) {
+  return DecodeImageBy(Transform::kSimd, code, wanted, part);
+}
+
+Result<void> DecodeImage(std::string_view code, DecodedPart* part) {
+  LF_ASSIGN_OR_RETURN(const CodeInfo info, ReadCodeInfo(code));
+  return DecodeImage(code, {0, 0, info.width, info.height}, part);
+}
+
+}  // namespace lf

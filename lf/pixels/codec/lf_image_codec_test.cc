@@ -1,0 +1,330 @@
+#include "lf/pixels/codec/lf_image_codec.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "lf/pixels/codec/decode_by.h"
+
+namespace lf {
+namespace {
+
+template <class Pixel>
+constexpr int kMost = std::numeric_limits<Pixel>::max();
+
+// Returns a picture of a random kind: smooth, slightly noisy, noise, flat, a checkerboard, or black
+// with single white pixels.
+template <class Pixel>
+Image<Pixel> Picture(std::mt19937& random, int width, int height, int channels) {
+  Image<Pixel> image(width, height, channels);
+  std::uniform_real_distribution<double> unit(0, 1);
+  const int kind = static_cast<int>(random() % 6);
+  const double fx = unit(random) / 5, fy = unit(random) / 5, noise = unit(random) * 0.1;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      for (int c = 0; c < channels; ++c) {
+        double v = 0.5 + 0.3 * std::sin(fx * x + c) * std::cos(fy * y);
+        if (kind == 1) v += noise * (unit(random) - 0.5);
+        if (kind == 2) v = unit(random);
+        if (kind == 3) v = 0.25;
+        if (kind == 4) v = (x + y) % 2;
+        if (kind == 5) v = random() % 50 == 0 ? 1 : 0;
+        image.at(x, y, c) = static_cast<Pixel>(std::lround(std::clamp(v, 0.0, 1.0) * kMost<Pixel>));
+      }
+  return image;
+}
+
+CodecPixels AnyPicture(std::mt19937& random, int width, int height, PixelLayout layout) {
+  const int channels = layout == PixelLayout::kRgb ? 3 : 1;
+  if (random() % 3 == 0) return Picture<uint16_t>(random, width, height, channels);
+  return Picture<uint8_t>(random, width, height, channels);
+}
+
+struct Size {
+  int width, height;
+};
+Size AnySize(std::mt19937& random) {
+  switch (random() % 20) {
+    case 0:
+      return {static_cast<int>(1 + random() % 4), static_cast<int>(1 + random() % 4)};
+    case 1:
+      return {1, static_cast<int>(1 + random() % 300)};
+    case 2:
+      return {static_cast<int>(1 + random() % 300), 1};
+    case 3:  // several tiles
+      return {static_cast<int>(1025 + random() % 200), static_cast<int>(1 + random() % 30)};
+    case 4:
+      return {static_cast<int>(1 + random() % 30), static_cast<int>(1025 + random() % 200)};
+    default:
+      return {static_cast<int>(1 + random() % 120), static_cast<int>(1 + random() % 120)};
+  }
+}
+
+PixelLayout AnyLayout(std::mt19937& random) { return static_cast<PixelLayout>(random() % 3); }
+
+CodecSettings AnySettings(std::mt19937& random) {
+  CodecSettings settings;
+  settings.profile = static_cast<CodecProfile>(random() % 3);
+  settings.levels = static_cast<int>(1 + random() % 5);
+  settings.threshold = static_cast<double>(random() % 100) / 8;
+  if (random() % 2 == 0) settings.quantizer = static_cast<int>(2 + random() % 65535);
+  return settings;
+}
+
+bool Same(const CodecPixels& a, const CodecPixels& b) {
+  return std::visit(
+      [&]<class Pixel>(const Image<Pixel>& left) {
+        const auto* right = std::get_if<Image<Pixel>>(&b);
+        return right != nullptr && left.width() == right->width() &&
+               left.height() == right->height() && left.channels() == right->channels() &&
+               left.pixels() == right->pixels();
+      },
+      a);
+}
+
+CodecPixels Cut(const CodecPixels& pixels, const PixelRect& rect) {
+  return std::visit(
+      [&]<class Pixel>(const Image<Pixel>& image) -> CodecPixels {
+        Image<Pixel> part(rect.width(), rect.height(), image.channels());
+        for (int y = 0; y < part.height(); ++y)
+          for (int x = 0; x < part.width(); ++x)
+            for (int c = 0; c < part.channels(); ++c)
+              part.at(x, y, c) = image.at(rect.x_begin + x, rect.y_begin + y, c);
+        return part;
+      },
+      pixels);
+}
+
+double Psnr(const CodecPixels& a, const CodecPixels& b) {
+  return std::visit(
+      [&]<class Pixel>(const Image<Pixel>& left) {
+        const auto& right = std::get<Image<Pixel>>(b);
+        double sum = 0;
+        for (size_t i = 0; i < left.pixels().size(); ++i)
+          sum += std::pow(static_cast<double>(left.pixels()[i]) - right.pixels()[i], 2);
+        return 10 * std::log10(std::pow(kMost<Pixel>, 2) * left.pixels().size() / sum);
+      },
+      a);
+}
+
+std::string Named(Size size, PixelLayout layout, const CodecSettings& settings) {
+  return std::to_string(size.width) + "x" + std::to_string(size.height) + ", layout " +
+         std::to_string(static_cast<int>(layout)) + ", profile " +
+         std::to_string(static_cast<int>(settings.profile)) + ", levels " +
+         std::to_string(settings.levels) + ", threshold " + std::to_string(settings.threshold) +
+         ", quantizer " + std::to_string(settings.quantizer);
+}
+
+TEST(LfImageCodec, LosslessIsExact) {
+  std::mt19937 random(1);
+  for (int i = 0; i < 1000; ++i) {
+    const Size size = AnySize(random);
+    const PixelLayout layout = AnyLayout(random);
+    const CodecPixels pixels = AnyPicture(random, size.width, size.height, layout);
+    CodecSettings settings;
+    settings.profile = CodecProfile::kLossless;
+    settings.levels = 1 + i % 5;
+    DecodedPart part;
+    const std::string code = EncodeImage(pixels, layout, settings);
+    ASSERT_TRUE(DecodeImage(code, &part)) << Named(size, layout, settings);
+    ASSERT_EQ(part.rect, (PixelRect{0, 0, size.width, size.height}));
+    ASSERT_TRUE(Same(part.pixels, pixels)) << Named(size, layout, settings);
+  }
+}
+
+// The example of doc/formats/lf_image.md.
+TEST(LfImageCodec, TheExampleOfThePage) {
+  Image<uint8_t> image(2, 2);
+  image.at(0, 0) = 10;
+  image.at(1, 0) = 12;
+  image.at(0, 1) = 14;
+  image.at(1, 1) = 20;
+  std::string code = EncodeImage(image, PixelLayout::kGrey, {CodecProfile::kLossless, 1, 0, 256});
+  std::string hex;
+  for (const char byte : code) {
+    constexpr const char* kDigits = "0123456789abcdef";
+    hex += kDigits[static_cast<uint8_t>(byte) >> 4];
+    hex += kDigits[static_cast<uint8_t>(byte) & 15];
+  }
+  EXPECT_EQ(hex,
+            "4c46494d01020008"
+            "0202010a"
+            "0200010101"
+            "0d0e"
+            "010a28b52ffd0000090000e300"
+            "020b28b52ffd0000110000c80800");
+}
+
+TEST(LfImageCodec, TheReferenceDecodesTheSame) {
+  std::mt19937 random(2);
+  for (int i = 0; i < 300; ++i) {
+    const Size size = AnySize(random);
+    const PixelLayout layout = AnyLayout(random);
+    const CodecSettings settings = AnySettings(random);
+    const CodecPixels pixels = AnyPicture(random, size.width, size.height, layout);
+    const std::string code = EncodeImage(pixels, layout, settings);
+    ASSERT_EQ(code, EncodeImage(pixels, layout, settings));
+    DecodedPart fast, slow;
+    const PixelRect all = {0, 0, size.width, size.height};
+    ASSERT_TRUE(DecodeImageBy(Transform::kSimd, code, all, &fast));
+    ASSERT_TRUE(DecodeImageBy(Transform::kReference, code, all, &slow));
+    ASSERT_TRUE(Same(fast.pixels, slow.pixels)) << Named(size, layout, settings);
+  }
+}
+
+TEST(LfImageCodec, ARectangleIsACropOfTheWhole) {
+  std::mt19937 random(3);
+  for (const PixelLayout layout : {PixelLayout::kGrey, PixelLayout::kMosaic, PixelLayout::kRgb})
+    for (const CodecProfile profile :
+         {CodecProfile::kThesis, CodecProfile::kDefault, CodecProfile::kLossless}) {
+      const int width = 2300, height = 1100;
+      const CodecPixels pixels = AnyPicture(random, width, height, layout);
+      CodecSettings settings;
+      settings.profile = profile;
+      const std::string code = EncodeImage(pixels, layout, settings);
+      DecodedPart whole, part;
+      ASSERT_TRUE(DecodeImage(code, &whole));
+      for (int i = 0; i < 12; ++i) {
+        const int x = static_cast<int>(random() % width), y = static_cast<int>(random() % height);
+        const PixelRect wanted = {x, y, static_cast<int>(x + 1 + random() % (width - x)),
+                                  static_cast<int>(y + 1 + random() % (height - y))};
+        ASSERT_TRUE(DecodeImage(code, wanted, &part));
+        ASSERT_EQ(Intersection(wanted, part.rect), wanted);
+        ASSERT_TRUE(Same(part.pixels, Cut(whole.pixels, part.rect)));
+      }
+      // Only the tiles that contain the wanted pixels are decoded.
+      ASSERT_TRUE(DecodeImage(code, {1100, 3, 1101, 4}, &part));
+      EXPECT_EQ(part.rect, (PixelRect{1024, 0, 2048, 1024}));
+    }
+}
+
+// The error follows from the threshold, which sets the quantiser's step. The picture is noise, so
+// that the result does not depend on a picture's content.
+TEST(LfImageCodec, TheThresholdBoundsTheError) {
+  std::mt19937 random(4);
+  for (const PixelLayout layout : {PixelLayout::kGrey, PixelLayout::kMosaic, PixelLayout::kRgb})
+    for (const double threshold : {2.0, 4.0, 10.0}) {
+      Image<uint8_t> image(256, 256, layout == PixelLayout::kRgb ? 3 : 1);
+      for (uint8_t& v : image.pixels()) v = static_cast<uint8_t>(random());
+      CodecSettings settings;
+      settings.threshold = threshold;
+      DecodedPart part;
+      ASSERT_TRUE(DecodeImage(EncodeImage(image, layout, settings), &part));
+      // The quantiser gives each coefficient a mean squared error of step^2 / 12, and rounding to
+      // pixels adds 1 / 12. The dead zone, subbands that are not quite orthogonal, and rounding
+      // between levels increase the error.
+      const double step = 1.5 * threshold;
+      const double ideal = 10 * std::log10(255 * 255 / (step * step / 12 + 1.0 / 12));
+      EXPECT_GT(Psnr(part.pixels, image), ideal - 2.5) << threshold;
+      EXPECT_LT(Psnr(part.pixels, image), ideal + 1.5) << threshold;
+    }
+}
+
+// Errors of both signs are equally frequent, so that the mean of many LF images is the mean of the
+// scene.
+TEST(LfImageCodec, BrightAndDarkPicturesKeepTheirMean) {
+  std::mt19937 random(8);
+  for (const int darkest : {25, 150})
+    for (const int levels : {1, 2}) {  // with fewer levels, a coefficient has a larger effect
+      Image<uint8_t> image(256, 256);
+      for (uint8_t& v : image.pixels()) v = static_cast<uint8_t>(darkest + random() % 80);
+      CodecSettings settings;
+      settings.levels = levels;
+      settings.threshold = 10;
+      DecodedPart part;
+      ASSERT_TRUE(DecodeImage(EncodeImage(image, PixelLayout::kGrey, settings), &part));
+      const auto& decoded = std::get<Image<uint8_t>>(part.pixels).pixels();
+      double sum = 0;
+      for (size_t i = 0; i < decoded.size(); ++i) sum += int{decoded[i]} - int{image.pixels()[i]};
+      EXPECT_NEAR(sum / static_cast<double>(decoded.size()), 0, 0.1)
+          << darkest << ", levels " << levels;
+    }
+}
+
+// A 16-bit version of the picture has the same relative error with 256 times the threshold, except
+// for rounding.
+TEST(LfImageCodec, SixteenBitsAreTheSamePicture) {
+  std::mt19937 random(5);
+  for (const CodecProfile profile : {CodecProfile::kThesis, CodecProfile::kDefault}) {
+    Image<uint8_t> image(200, 150);
+    Image<uint16_t> deep(200, 150);
+    for (int y = 0; y < 150; ++y)
+      for (int x = 0; x < 200; ++x) {
+        const double v = 128 + 90 * std::sin(x / 9.0) * std::cos(y / 7.0);
+        image.at(x, y) = static_cast<uint8_t>(std::lround(v) + random() % 8);
+        deep.at(x, y) = static_cast<uint16_t>(image.at(x, y) * 256);
+      }
+    CodecSettings settings;
+    settings.profile = profile;
+    DecodedPart part, deep_part;
+    ASSERT_TRUE(DecodeImage(EncodeImage(image, PixelLayout::kMosaic, settings), &part));
+    settings.threshold *= 256;
+    ASSERT_TRUE(DecodeImage(EncodeImage(deep, PixelLayout::kMosaic, settings), &deep_part));
+    EXPECT_NEAR(Psnr(part.pixels, image), Psnr(deep_part.pixels, deep), 1);
+  }
+}
+
+// With the finest quantiser and threshold 0, only rounding causes errors, which are too small to
+// change an 8-bit pixel.
+TEST(LfImageCodec, TheThesisProfileIsNearlyExactWithoutThreshold) {
+  std::mt19937 random(6);
+  for (int i = 0; i < 100; ++i) {
+    const Size size = AnySize(random);
+    const PixelLayout layout = AnyLayout(random);
+    const Image<uint8_t> image =
+        Picture<uint8_t>(random, size.width, size.height, layout == PixelLayout::kRgb ? 3 : 1);
+    CodecSettings settings{CodecProfile::kThesis, 1 + i % 5, 0, 65536};
+    DecodedPart part;
+    ASSERT_TRUE(DecodeImage(EncodeImage(image, layout, settings), &part));
+    ASSERT_TRUE(Same(part.pixels, image)) << Named(size, layout, settings);
+  }
+}
+
+TEST(LfImageCodec, SettingsOutOfRangeAreUsageErrors) {
+  const auto message = [](const CodecSettings& settings) {
+    const Result<void> checked = CheckSettings(settings);
+    return checked ? std::string("fine") : checked.error().message;
+  };
+  EXPECT_EQ(message({}), "fine");
+  EXPECT_EQ(message({CodecProfile::kDefault, 6, 3, 256}), "--levels 6: expected 1 to 5");
+  EXPECT_EQ(message({CodecProfile::kDefault, 3, -1, 256}), "--threshold -1: expected 0 to 65535");
+  EXPECT_EQ(message({CodecProfile::kThesis, 1, 3, 1}),
+            "--quantizer 1: expected 8bit, or 2 to 65536");
+}
+
+TEST(LfImageCodec, DamageIsAnErrorOrAnotherPicture) {
+  std::mt19937 random(7);
+  int refused = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Size size = {static_cast<int>(1 + random() % 90), static_cast<int>(1 + random() % 90)};
+    const PixelLayout layout = AnyLayout(random);
+    const CodecPixels pixels = AnyPicture(random, size.width, size.height, layout);
+    std::string code = EncodeImage(pixels, layout, AnySettings(random));
+    if (random() % 4 == 0)
+      code.resize(random() % code.size());
+    else
+      for (int k = 0; k < 3; ++k) code[random() % code.size()] = static_cast<char>(random());
+    const Result<CodeInfo> info = ReadCodeInfo(code);
+    if (!info || info->width > 4096 || info->height > 4096) {
+      ++refused;
+      continue;
+    }
+    DecodedPart part;
+    if (!DecodeImage(code, &part)) ++refused;
+  }
+  EXPECT_GT(refused, 1000);
+}
+
+TEST(LfImageCodec, ABlobThatClaimsTooMuchIsRefused) {
+  // The head states: magic, version 1, lossless grey of 8 bits, 2^20 x 2^11 pixels.
+  std::string code("LFIM\x01\x02\x00\x08\x80\x80\x40\x80\x10\x03\x0a\x02\x00", 17);
+  code.resize(1024, '\x01');
+  const Result<CodeInfo> info = ReadCodeInfo(code);
+  ASSERT_FALSE(info);
+  EXPECT_EQ(info.error().message,
+            "is a damaged LF image code: its size is not between 1 and 2^30 pixels");
+}
+
+}  // namespace
+}  // namespace lf

@@ -1,0 +1,52 @@
+// Packs coefficients into bytes that zstd compresses well, and unpacks them
+// (doc/formats/lf_image.md, "Streams"). Internal to this folder.
+//
+// Most coefficients are 0, 1 or -1, and small ones have small neighbours. zstd compresses bytes,
+// and spends at least one bit on each; therefore up to four coefficients share a byte. A
+// coefficient that is too large for its share of the byte is an escape: its remainder is appended
+// to a second stream, which is then packed in the way that makes it shortest.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "lf/pixels/codec/wavelet53.h"
+
+namespace lf {
+
+// How the numbers of a stream are packed. It is the first byte of the encoded stream.
+enum class Packing : uint8_t {
+  kZeros = 0,  // all numbers are 0; the stream has no other bytes
+  kOne = 1,    // one (two, four) numbers in a byte, the first in the lowest bits
+  kTwo = 2,
+  kFour = 4,
+  kPlanes2 = 18,  // 2 (3, 4) bytes of each number: all lowest bytes, then the next; no escapes
+  kPlanes3 = 19,
+  kPlanes4 = 20,
+};
+
+// Largest number of nested streams of escapes. Without this limit, a damaged file could make the
+// decoder recurse to any depth.
+inline constexpr int kMostEscapes = 4;
+
+// Returns the value with its sign in the lowest bit: 0, -1, 1, -2, ... become 0, 1, 2, 3, ...
+template <class T>
+uint32_t Folded(T value) {
+  return (static_cast<uint32_t>(int32_t{value}) << 1) ^ static_cast<uint32_t>(int32_t{value} >> 31);
+}
+
+// Appends the coefficients as a stream, packed in the way that makes it shortest. All values must
+// fit into T.
+template <class T>
+void AppendCoefficients(std::span<const int32_t> values, std::string* code);
+
+// Reads a stream of `count` coefficients from the front of `code` and removes it there. `values`
+// must have slack (wavelet53.h). Returns false if the stream is damaged.
+template <class T>
+[[nodiscard]] bool TakeCoefficients(Transform transform, std::string_view* code, size_t count,
+                                    T* values);
+
+}  // namespace lf

@@ -1,0 +1,93 @@
+// The reversible 5/3 wavelet transform of a plane, one level at a time (Le Gall and Tabatabai 1988;
+// as lifting: Calderbank, Daubechies, Sweldens, Yeo 1998). Internal to this folder.
+//
+// The transform converts n values x to (n + 1) / 2 low and n / 2 high coefficients:
+//
+//   high[i] = x[2i + 1] - (x[2i] + x[2i + 2] >> 1)
+//   low[i]  = x[2i]     + (high[i - 1] + high[i] + 2 >> 2)
+//
+// Values beyond the ends are mirrored: x[n] = x[n - 2], high[-1] = high[0]. Rows are transformed
+// first, then columns. All arithmetic is in type T, modulo its range, so that the synthesis
+// restores any x exactly.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "lf/core/image.h"
+
+namespace lf {
+
+// Slack: number of additional elements behind the end of each array that is passed to the functions
+// below. These functions may read them; they may write them if they write the array.
+inline constexpr size_t kSlack = 128;
+
+inline int LowCount(int count) { return (count + 1) / 2; }
+inline int HighCount(int count) { return count / 2; }
+
+// The subbands of a level. The first word is the frequency across, the second the frequency down.
+enum Band { kLowLow = 0, kHighLow = 1, kLowHigh = 2, kHighHigh = 3 };
+inline constexpr int kBands = 4;
+
+inline int BandWidth(Band band, int width) {
+  return band == kLowLow || band == kLowHigh ? LowCount(width) : HighCount(width);
+}
+inline int BandHeight(Band band, int height) {
+  return band == kLowLow || band == kHighLow ? LowCount(height) : HighCount(height);
+}
+inline size_t BandSize(Band band, int width, int height) {
+  return static_cast<size_t>(BandWidth(band, width)) * BandHeight(band, height);
+}
+
+// A subband as it is encoded. v is one of its values. Its coefficient is v * step. If is_doubled,
+// it is v * step / 2, with halves rounded up.
+template <class T>
+struct CodedBand {
+  const T* values = nullptr;  // [BandHeight][BandWidth]
+  T step = 1;
+  bool is_doubled = false;
+};
+
+template <class T>
+struct CodedBands {
+  int width = 0;  // of the plane that was split into these subbands
+  int height = 0;
+  std::array<CodedBand<T>, kBands> bands;  // by Band
+};
+
+// Converts coefficients c to pixels: (c + half >> fraction_bits) + offset, clipped to the range of
+// the pixel type, where half is half of 2^fraction_bits, rounded down.
+struct PixelScale {
+  int fraction_bits = 0;
+  int offset = 0;
+};
+
+enum class Transform { kReference, kSimd };
+
+// Restores a plane from the subbands of one level.
+//   values  [height][width]
+//   T       int16_t or int32_t
+template <class T>
+void Synthesize(Transform transform, const CodedBands<T>& bands, T* values);
+
+// Restores the last level directly as pixels of one channel. T is int16_t or int32_t for 8-bit
+// pixels, and int32_t for 16-bit pixels.
+template <class T, class Pixel>
+void SynthesizePixels(Transform transform, const CodedBands<T>& bands, const PixelScale& scale,
+                      ImageView<Pixel> pixels);
+
+// Splits a plane into the subbands of one level.
+//   values  [height][width], and slack
+//   bands   [BandHeight][BandWidth] each, and slack
+void Analyze(Transform transform, const int32_t* values, int width, int height,
+             const std::array<int32_t*, kBands>& bands);
+
+// Returns how much the synthesis amplifies an error of 1 in one coefficient: the Euclidean norm
+// along one dimension. is_high[0] is true if the coefficient's subband is high at the deepest
+// level. Each further entry is true if the result of the level before is the high subband of the
+// next level, up to the plane itself.
+double SynthesisNorm(const std::vector<bool>& is_high);
+
+}  // namespace lf

@@ -1,0 +1,27 @@
+// The implementations of wavelet53.h. Internal to this folder.
+#pragma once
+
+#include <array>
+
+#include "lf/pixels/codec/wavelet53.h"
+
+namespace lf {
+
+template <class T>
+void SynthesizeReference(const CodedBands<T>& bands, T* values);
+template <class T, class Pixel>
+void SynthesizePixelsReference(const CodedBands<T>& bands, const PixelScale& scale,
+                               ImageView<Pixel> pixels);
+void AnalyzeReference(const int32_t* values, int width, int height,
+                      const std::array<int32_t*, kBands>& bands);
+
+// Implementations with Highway.
+template <class T>
+void SynthesizeSimd(const CodedBands<T>& bands, T* values);
+template <class T, class Pixel>
+void SynthesizePixelsSimd(const CodedBands<T>& bands, const PixelScale& scale,
+                          ImageView<Pixel> pixels);
+void AnalyzeSimd(const int32_t* values, int width, int height,
+                 const std::array<int32_t*, kBands>& bands);
+
+}  // namespace lf

@@ -1,0 +1,346 @@
+#include "lf/pixels/codec/wavelet_tile.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "lf/core/check.h"
+#include "lf/pixels/codec/packing.h"
+#include "lf/pixels/codec/rgb_planes.h"
+
+namespace lf {
+namespace {
+
+// Number of fraction bits of lossy coefficients. The transform always rounds down, so its error has
+// the same sign in every LF image, and does not average out: an error of a tenth of a grey step in
+// every LF image is a tenth in a frame, while the noise of quantisation averages out. From the
+// second level on, coefficients have kMostDoublings more fraction bits.
+constexpr int kFractionBits = 3;
+constexpr int kMostDoublings = 1;
+
+// Returns true if the coefficients of level `depth` that are transformed further are doubled first.
+// These are the low ones, or all four subbands of the level that splits a mosaic. Levels are
+// counted from the pixels, from 1; the level that splits a mosaic is the first.
+bool IsDoubled(const CodeHead& head, int depth) {
+  return head.info.profile == CodecProfile::kDefault && depth <= kMostDoublings;
+}
+
+// Returns the depth of the first level of the components, counted as in IsDoubled().
+int FirstDepth(const CodeHead& head) { return head.info.layout == PixelLayout::kMosaic ? 2 : 1; }
+
+struct Size {
+  int width = 0;
+  int height = 0;
+  size_t count() const { return static_cast<size_t>(width) * height; }
+};
+
+// ComponentSize() returns the size of a component. LowSize() returns the size of its low subband
+// after `levels` levels.
+Size ComponentSize(const CodeHead& head, int component, int tile_width, int tile_height) {
+  if (head.info.layout != PixelLayout::kMosaic) return {tile_width, tile_height};
+  const auto band = static_cast<Band>(component);
+  return {BandWidth(band, tile_width), BandHeight(band, tile_height)};
+}
+Size LowSize(Size size, int levels) {
+  for (int i = 0; i < levels; ++i) size = {LowCount(size.width), LowCount(size.height)};
+  return size;
+}
+
+size_t DetailCount(Size size) { return size.count() - LowSize(size, 1).count(); }
+
+int StepIndex(const CodeHead& head, int component, int resolution, bool is_diagonal) {
+  const int first = component * (1 + 2 * head.info.levels);
+  return resolution == 0 ? first : first + 2 * resolution - 1 + (is_diagonal ? 1 : 0);
+}
+
+// Returns the norm of the error in the image that an error of 1 in a coefficient causes: the
+// product of the norms of both dimensions and of the colour transform. The subband is `level`
+// levels deep in its component.
+double Norm(const CodeHead& head, int component, int level, bool high_across, bool high_down) {
+  const auto along = [&](bool is_high, bool component_is_high) {
+    std::vector<bool> path(level, false);
+    path[0] = is_high;
+    if (head.info.layout == PixelLayout::kMosaic) path.push_back(component_is_high);
+    return SynthesisNorm(path);
+  };
+  const double of_colour = head.info.layout == PixelLayout::kRgb ? kRgbNorms[component] : 1;
+  return of_colour * along(high_across, component == kHighLow || component == kHighHigh) *
+         along(high_down, component == kLowHigh || component == kHighHigh);
+}
+
+// --- Encoding
+
+template <class Pixel>
+std::vector<std::vector<int32_t>> PlanesOf(const CodeHead& head, ImageView<const Pixel> pixels) {
+  const int channels = ChannelsOf(head.info.layout);
+  const int32_t middle = 1 << (head.info.bits - 1);
+  const size_t count = static_cast<size_t>(pixels.width) * pixels.height;
+  std::vector<std::vector<int32_t>> planes(channels, std::vector<int32_t>(count + kSlack));
+  for (int c = 0; c < channels; ++c) {
+    int32_t* out = planes[c].data();
+    for (int y = 0; y < pixels.height; ++y) {
+      const Pixel* in = pixels.row(y) + c;
+      for (int x = 0; x < pixels.width; ++x, in += channels)
+        *out++ = (int32_t{*in} - middle) << head.fraction_bits;
+    }
+  }
+  if (head.info.layout == PixelLayout::kRgb)
+    SeparateColours(planes[0].data(), planes[1].data(), planes[2].data(), count);
+  return planes;
+}
+
+// Splits a plane into its subbands.
+using BandPlanes = std::array<std::vector<int32_t>, kBands>;
+BandPlanes Analyzed(Transform transform, const std::vector<int32_t>& plane, Size size,
+                    bool is_doubled) {
+  BandPlanes bands;
+  std::array<int32_t*, kBands> pointers{};
+  for (int b = 0; b < kBands; ++b) {
+    bands[b].resize(BandSize(static_cast<Band>(b), size.width, size.height) + kSlack);
+    pointers[b] = bands[b].data();
+  }
+  Analyze(transform, plane.data(), size.width, size.height, pointers);
+  if (is_doubled)
+    for (int32_t& value : bands[kLowLow]) value *= 2;
+  return bands;
+}
+
+int32_t LargestOf(const std::vector<int32_t>& values, size_t count) {
+  int32_t largest = 0;
+  for (size_t i = 0; i < count; ++i) largest = std::max(largest, std::abs(values[i]));
+  return largest;
+}
+
+// Appends (|value| + rounding) / step with the sign of the value.
+//   rounding  step / 2: to the nearest; step / 3: values below two thirds of a step become 0
+void AppendQuantized(const std::vector<int32_t>& values, size_t count, int32_t step,
+                     int32_t rounding, std::vector<int32_t>* out) {
+  const size_t begin = out->size();
+  out->resize(begin + count);
+  int32_t* const to = out->data() + begin;
+  if (step == 1) {
+    std::copy_n(values.data(), count, to);
+    return;
+  }
+  const float inverse = 1.0F / static_cast<float>(step);
+  for (size_t i = 0; i < count; ++i) {
+    const int32_t value = values[i];
+    const auto level =
+        static_cast<int32_t>(static_cast<float>(std::abs(value) + rounding) * inverse);
+    to[i] = value < 0 ? -level : level;
+  }
+}
+
+// Subtracts from each value the value above it, or, in the first row, the value before it.
+void Predict(Size size, std::vector<int32_t>* values) {
+  const auto width = static_cast<size_t>(size.width);
+  for (size_t i = size.count(); i-- > width;) (*values)[i] -= (*values)[i - width];
+  for (size_t i = std::min(width, size.count()); i-- > 1;) (*values)[i] -= (*values)[i - 1];
+}
+
+// --- Decoding
+
+template <class T>
+void Unpredict(Size size, T* values) {
+  const auto sum = [](T a, T b) {
+    return static_cast<T>(static_cast<uint32_t>(a) + static_cast<uint32_t>(b));
+  };
+  const auto width = static_cast<size_t>(size.width);
+  for (size_t i = 1; i < width; ++i) values[i] = sum(values[i], values[i - 1]);
+  for (size_t i = width; i < size.count(); ++i) values[i] = sum(values[i], values[i - width]);
+}
+
+// Memory that a thread reuses.
+template <class T>
+struct Scratch {
+  std::array<std::vector<T>, 4> components;
+  std::array<std::vector<T>, 2> low;  // used in turn
+  std::vector<T> details;
+
+  static Scratch& OfThread() {
+    static thread_local Scratch scratch;
+    return scratch;
+  }
+  static T* Room(std::vector<T>* memory, size_t count) {
+    if (memory->size() < count + kSlack) memory->resize(count + kSlack);
+    return memory->data();
+  }
+};
+
+// Reads the streams of a tile, component by component.
+template <class T>
+class TileReader {
+ public:
+  TileReader(Transform transform, const CodeHead& head, std::span<std::string_view> sections)
+      : transform_(transform), head_(head), sections_(sections) {}
+
+  // Reads the next component and synthesises all its levels except the finest. Sets `finest` to the
+  // subbands of the finest level, which stay in the scratch memory until the next call. Returns
+  // false if a stream is damaged.
+  [[nodiscard]] bool Read(int component, Size size, CodedBands<T>* finest) {
+    const int levels = head_.info.levels;
+    const Size smallest = LowSize(size, levels);
+    T* low = Scratch<T>::Room(&scratch_.low[0], smallest.count());
+    if (!TakeCoefficients(transform_, &sections_[0], smallest.count(), low)) return false;
+    Unpredict(smallest, low);
+    T low_step = Step(component, 0, false);
+    for (int resolution = 1; resolution <= levels; ++resolution) {
+      const int level = levels + 1 - resolution;
+      const Size here = LowSize(size, level - 1);
+      T* const details = Scratch<T>::Room(&scratch_.details, DetailCount(here));
+      if (!TakeCoefficients(transform_, &sections_[resolution], DetailCount(here), details))
+        return false;
+      *finest = {here.width, here.height, {}};
+      const bool is_doubled = resolution > 1 && IsDoubled(head_, FirstDepth(head_) + level - 1);
+      const T step = Step(component, resolution, false);
+      const T diagonal = Step(component, resolution, true);
+      const T* next = details;
+      finest->bands[kLowLow] = {low, low_step, is_doubled};
+      for (const Band band : {kHighLow, kLowHigh, kHighHigh}) {
+        finest->bands[band] = {next, band == kHighHigh ? diagonal : step, false};
+        next += BandSize(band, here.width, here.height);
+      }
+      if (level == 1) break;
+      low = Scratch<T>::Room(&scratch_.low[resolution % 2], here.count());
+      Synthesize(transform_, *finest, low);
+      low_step = 1;
+    }
+    return true;
+  }
+
+ private:
+  T Step(int component, int resolution, bool is_diagonal) const {
+    return static_cast<T>(head_.steps[StepIndex(head_, component, resolution, is_diagonal)]);
+  }
+
+  const Transform transform_;
+  const CodeHead& head_;
+  const std::span<std::string_view> sections_;
+  Scratch<T>& scratch_ = Scratch<T>::OfThread();
+};
+
+template <class T, class Pixel>
+bool DecodeAs(Transform transform, const CodeHead& head, std::span<std::string_view> sections,
+              ImageView<Pixel> pixels) {
+  Scratch<T>& scratch = Scratch<T>::OfThread();
+  TileReader<T> reader(transform, head, sections);
+  const PixelScale scale{head.fraction_bits, 1 << (head.info.bits - 1)};
+  CodedBands<T> bands;
+  if (head.info.layout == PixelLayout::kGrey) {
+    if (!reader.Read(0, {pixels.width, pixels.height}, &bands)) return false;
+    SynthesizePixels(transform, bands, scale, pixels);
+    return true;
+  }
+  CodedBands<T> mosaic{pixels.width, pixels.height, {}};
+  for (int c = 0; c < head.components(); ++c) {
+    const Size size = ComponentSize(head, c, pixels.width, pixels.height);
+    T* const component = Scratch<T>::Room(&scratch.components[c], size.count());
+    mosaic.bands[c] = {component, 1, IsDoubled(head, 1)};
+    if (size.count() == 0) continue;
+    if (!reader.Read(c, size, &bands)) return false;
+    Synthesize(transform, bands, component);
+  }
+  if (head.info.layout == PixelLayout::kMosaic) {
+    SynthesizePixels(transform, mosaic, scale, pixels);
+    return true;
+  }
+  std::array<const T*, kRgbComponents> components{};
+  for (int c = 0; c < kRgbComponents; ++c) components[c] = scratch.components[c].data();
+  MergeColours(transform, components, scale, pixels);
+  return true;
+}
+
+}  // namespace
+
+void SetSteps(const CodecSettings& settings, CodeHead* head) {
+  const CodeInfo& info = head->info;
+  head->steps.assign(head->StepCount(), 1);
+  head->fraction_bits = 0;
+  if (info.profile == CodecProfile::kLossless) return;
+  head->fraction_bits = kFractionBits;
+  const double step = 1.5 * settings.threshold;
+  for (int c = 0; c < head->components(); ++c)
+    for (int resolution = 0; resolution <= info.levels; ++resolution)
+      for (const bool is_diagonal : {false, true}) {
+        const int level = resolution == 0 ? info.levels : info.levels + 1 - resolution;
+        const int depth = FirstDepth(*head) + level - 1;
+        const double unit = std::exp2(kFractionBits + std::min(depth - 1, kMostDoublings));
+        const bool is_detail = resolution > 0;
+        const double norm = Norm(*head, c, level, is_detail, is_detail && is_diagonal);
+        const double exact = std::clamp(std::round(step * unit / norm), 1.0, 32767.0);
+        head->steps[StepIndex(*head, c, resolution, is_diagonal)] = static_cast<int32_t>(exact);
+      }
+}
+
+template <class Pixel>
+QuantizedTile QuantizeTile(Transform transform, const CodeHead& head,
+                           ImageView<const Pixel> pixels) {
+  const int levels = head.info.levels;
+  std::vector<std::vector<int32_t>> planes = PlanesOf(head, pixels);
+  if (head.info.layout == PixelLayout::kMosaic) {
+    BandPlanes bands = Analyzed(transform, planes[0], {pixels.width, pixels.height}, false);
+    planes.assign(std::make_move_iterator(bands.begin()), std::make_move_iterator(bands.end()));
+    if (IsDoubled(head, 1))
+      for (std::vector<int32_t>& plane : planes)
+        for (int32_t& value : plane) value *= 2;
+  }
+  QuantizedTile tile;
+  for (int c = 0; c < head.components(); ++c) {
+    const Size whole = ComponentSize(head, c, pixels.width, pixels.height);
+    const size_t first = tile.streams.size();
+    tile.streams.resize(first + 1 + levels);
+    if (whole.count() == 0) continue;
+    std::vector<int32_t> low = std::move(planes[c]);
+    for (int level = 1; level <= levels; ++level) {
+      const int resolution = levels + 1 - level;
+      const Size size = LowSize(whole, level - 1);
+      const bool is_doubled = level < levels && IsDoubled(head, FirstDepth(head) + level - 1);
+      BandPlanes bands = Analyzed(transform, low, size, is_doubled);
+      for (const Band band : {kHighLow, kLowHigh, kHighHigh}) {
+        const int32_t step = head.steps[StepIndex(head, c, resolution, band == kHighHigh)];
+        const size_t count = BandSize(band, size.width, size.height);
+        tile.largest = std::max(tile.largest, LargestOf(bands[band], count));
+        AppendQuantized(bands[band], count, step, step / 3, &tile.streams[first + resolution]);
+      }
+      low = std::move(bands[kLowLow]);
+      tile.largest = std::max(tile.largest, LargestOf(low, LowSize(size, 1).count()));
+    }
+    const int32_t step = head.steps[StepIndex(head, c, 0, false)];
+    const Size smallest = LowSize(whole, levels);
+    AppendQuantized(low, smallest.count(), step, step / 2, &tile.streams[first]);
+    Predict(smallest, &tile.streams[first]);
+  }
+  return tile;
+}
+template QuantizedTile QuantizeTile(Transform, const CodeHead&, ImageView<const uint8_t>);
+template QuantizedTile QuantizeTile(Transform, const CodeHead&, ImageView<const uint16_t>);
+
+// The synthesis adds two values, each at most 2.5 times as large as the largest value of a subband.
+bool FitsInTwoBytes(int32_t largest) { return largest <= 6000; }
+
+std::string CodeOfSection(const CodeHead& head, const QuantizedTile& tile, int resolution) {
+  std::string code;
+  for (int c = 0; c < head.components(); ++c) {
+    const std::vector<int32_t>& stream = tile.streams[c * (1 + head.info.levels) + resolution];
+    if (head.coefficient_bytes == 2)
+      AppendCoefficients<int16_t>(stream, &code);
+    else
+      AppendCoefficients<int32_t>(stream, &code);
+  }
+  return code;
+}
+
+template <class Pixel>
+bool DecodeWaveletTile(Transform transform, const CodeHead& head,
+                       std::span<std::string_view> sections, ImageView<Pixel> pixels) {
+  if constexpr (sizeof(Pixel) == 1)
+    if (head.coefficient_bytes == 2) return DecodeAs<int16_t>(transform, head, sections, pixels);
+  return DecodeAs<int32_t>(transform, head, sections, pixels);
+}
+template bool DecodeWaveletTile(Transform, const CodeHead&, std::span<std::string_view>,
+                                ImageView<uint8_t>);
+template bool DecodeWaveletTile(Transform, const CodeHead&, std::span<std::string_view>,
+                                ImageView<uint16_t>);
+
+}  // namespace lf

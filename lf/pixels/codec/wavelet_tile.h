@@ -1,0 +1,46 @@
+// One tile in the default and the lossless profile, by wavelets. Internal to this folder.
+//
+// A mosaic is transformed once as a single plane, because this separates brightness and colours
+// better than planes of equal colour do. Its four subbands are the components, which are
+// transformed further. A grey image has one component, a colour image three (rgb_planes.h).
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lf/pixels/codec/code_head.h"
+#include "lf/pixels/codec/wavelet53.h"
+
+namespace lf {
+
+// Sets the fields of the head that belong to the profile: fraction bits and steps.
+void SetSteps(const CodecSettings& settings, CodeHead* head);
+
+// The quantised coefficients of a tile, in one stream for each component and resolution. Resolution
+// 0 is the approximation, the others are details from the coarsest level to the finest.
+struct QuantizedTile {
+  std::vector<std::vector<int32_t>> streams;  // [component][resolution]
+  int32_t largest = 0;                        // largest magnitude of all coefficients before
+                                              // quantisation
+};
+
+template <class Pixel>
+QuantizedTile QuantizeTile(Transform transform, const CodeHead& head,
+                           ImageView<const Pixel> pixels);
+
+// Returns true if two bytes can hold all coefficients whose magnitude is at most `largest`, and
+// also the sums of two values that occur during the synthesis.
+bool FitsInTwoBytes(int32_t largest);
+
+// Returns the encoded coefficients of one resolution of a tile.
+std::string CodeOfSection(const CodeHead& head, const QuantizedTile& tile, int resolution);
+
+// Decodes the pixels of a tile from its sections, which are ordered by resolution. Returns false if
+// they are damaged.
+template <class Pixel>
+[[nodiscard]] bool DecodeWaveletTile(Transform transform, const CodeHead& head,
+                                     std::span<std::string_view> sections, ImageView<Pixel> pixels);
+
+}  // namespace lf

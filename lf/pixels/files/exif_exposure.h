@@ -1,0 +1,14 @@
+// The exposure in the Exif data of a file, read without a decoder. Internal to this folder.
+#pragma once
+
+#include "lf/pixels/files/exposure_facts.h"
+#include "lf/pixels/files/image_probe.h"
+
+namespace lf {
+
+// Returns the exposure that the Exif data of a file of this format state; nothing for camera raw
+// files and EXR files. ExposureTime, FNumber and the sensitivity take precedence over the
+// equivalent APEX values.
+ExposureFacts ExposureOfExif(const ByteSource& source, ImageFormat format);
+
+}  // namespace lf

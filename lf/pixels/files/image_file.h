@@ -1,0 +1,150 @@
+// Reads image files (PNG, JPEG, TIFF, EXR, camera raw files) and writes them (all but raw files).
+// No other folder uses OpenImageIO, libjpeg or LibRaw.
+//
+// All functions may be called by many threads at once; none starts threads of its own.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "lf/core/geometry.h"
+#include "lf/core/image.h"
+#include "lf/core/result.h"
+
+namespace lf {
+
+// Pixels of a file, in the type it stores: integers of up to 8 bits as uint8_t, of up to 16 bits as
+// uint16_t (bit depths in between are scaled to the full range), half and float as float. Wider or
+// signed integers, and the integer channels of an EXR file that also holds others, become floats of
+// equal value (exact up to 2^24); doubles are rounded to float.
+using StoredImage = std::variant<Image<uint8_t>, Image<uint16_t>, Image<float>>;
+
+// Properties of the pixels that a camera raw file states, in the terms of
+// light_field/model/radiance.h.
+struct RawFacts {
+  BayerPattern bayer =
+      BayerPattern::kNone;            // at pixel (0, 0); kNone: not stated, or no Bayer pattern
+  bool is_monochrome = false;         // no colour filter: the pixels are a grey picture
+  std::optional<double> black_level;  // the mean, if the file has several
+  std::optional<double> white_level;
+  std::optional<std::array<double, 3>> white_balance;  // as shot; green is 1
+  std::optional<Mat3> linear_srgb_from_camera;         // for white-balanced colours
+};
+
+struct ImageFileInfo {
+  int width = 0;
+  int height = 0;
+  int channels = 0;
+  int bits = 0;  // 8, 16 or 32: bits of a value of the StoredImage
+  bool is_float = false;
+  std::vector<std::string> channel_names;  // one per channel, as the format calls it
+  int orientation = 1;                     // EXIF orientation, 1 to 8; the pixels stay as stored
+  std::optional<RawFacts> raw;             // camera raw files only: one channel of 16 bits
+};
+
+// Reads the header alone. kInput as for ReadImage(), except that truncation behind the header is
+// not detected. For camera raw files other than DNG the black level is missing, because LibRaw
+// measures it on covered pixels of the sensor.
+Result<ImageFileInfo> ReadImageInfo(const std::filesystem::path& path);
+
+// Reads all pixels and channels as stored: no colour conversion, no multiplication by alpha, no
+// rotation. The content decides the format, not the name. If a file has several parts, the first is
+// read.
+// - EXR: channels come in the order R, G, B, A, then the others. If no channel is named R, G or B,
+//   but one layer has all three (beauty.R), the channels of this layer come first. It is an error
+//   if several layers have all three.
+// - Camera raw: gives the mosaic as the sensor recorded it, or grey if the sensor is monochrome. It
+//   is not demosaicked, brightened, white balanced or rotated, and the black level is not
+//   subtracted. It is cropped to the pixels that see light (the active area of a DNG) and mapped
+//   through the linearization table of a DNG. LibRaw decodes these files. It may not detect small
+//   damage within compressed ones, and does not accept pictures below 22 pixels.
+// kInput, naming the file: it is missing, unreadable, truncated or damaged (JPEG: also if libjpeg
+// had to guess pixels); it has another format, or is a raw file that is neither Bayer nor
+// monochrome; it is a CMYK JPEG; it is larger than 2^30 pixels or 2^32 values, which is checked
+// before pixels are allocated. kOutput: the machine lacks something (KindOfReadFailure() of
+// core/file.h).
+Result<StoredImage> ReadImage(const std::filesystem::path& path);
+
+// Reads pixels and header at once.
+struct ImageWithInfo {
+  StoredImage image;
+  ImageFileInfo info;
+};
+Result<ImageWithInfo> ReadImageWithInfo(const std::filesystem::path& path);
+
+// A part of a picture. `image` holds the pixels of `rect`; `info` describes the whole picture.
+struct ImagePart {
+  StoredImage image;
+  PixelRect rect;
+  ImageFileInfo info;
+};
+
+// Called after the header is read; returns the pixels that are needed. If it returns an error,
+// reading ends with this error.
+using WantedPixels = std::function<Result<PixelRect>(const ImageFileInfo& info)>;
+
+// Reads at least the wanted pixels, which must contain a pixel of the picture. They have the values
+// that ReadImage() gives. JPEG files are decoded in part if this saves time, others as a whole;
+// damage is detected anywhere in the file in both cases. Reuses the memory of part->image if it has
+// the right type, because allocating it costs up to a third of the decoding time.
+Result<void> ReadImagePart(const std::filesystem::path& path, const WantedPixels& wanted,
+                           ImagePart* part);
+
+// These functions read a file that is in memory; messages call it `name`.
+Result<ImageFileInfo> ReadImageInfoBytes(std::string_view bytes, const std::string& name);
+Result<StoredImage> ReadImageBytes(std::string_view bytes, const std::string& name);
+Result<ImageWithInfo> ReadImageWithInfoBytes(std::string_view bytes, const std::string& name);
+Result<void> ReadImagePartBytes(std::string_view bytes, const std::string& name,
+                                const WantedPixels& wanted, ImagePart* part);
+
+enum class PixelType { kUint8, kUint16, kHalf, kFloat };
+
+// Metadata that is written into the file if its format can hold it (EXR: all; PNG, TIFF, JPEG: as
+// text).
+using ImageMetadata = std::vector<std::pair<std::string, std::variant<std::string, double, int>>>;
+
+// Writes `pixels` atomically (core/file.h); the extension of `path` chooses the format. For integer
+// types, the values are clipped to [0, 1] (NaN becomes 0) and rounded to nearest. They are sRGB
+// values for display, and PNG files state this. Floats are written as they are; a value that is too
+// large for half becomes infinite. Equal pixels give equal bytes, because no date is written.
+//   channel_names  one per channel, as EXR shows them; other formats ignore the names
+//   type           kUint8 (PNG, JPEG, TIFF), kUint16 (PNG, TIFF), kHalf (EXR), kFloat (EXR, TIFF)
+//   is_interrupted is called before every 32 rows are encoded, if given; it cannot interrupt the
+//                  writing to the disk
+// JPEG has quality 95 and full chroma resolution. EXR is compressed without loss (zip).
+// kOutput: the folder or the disk fails, or the format cannot hold the type. kInterrupted: nothing
+// is written.
+Result<void> WriteImage(const std::filesystem::path& path, ImageView<const float> pixels,
+                        const std::vector<std::string>& channel_names, PixelType type,
+                        const ImageMetadata& metadata = {},
+                        const std::function<bool()>& is_interrupted = {});
+
+// These functions write integers of 8 or 16 bits exactly as they are. The file states no colour
+// space.
+Result<void> WriteImage(const std::filesystem::path& path, ImageView<const uint8_t> pixels);
+Result<void> WriteImage(const std::filesystem::path& path, ImageView<const uint16_t> pixels);
+
+// One channel of an EXR file, with a type of its own: floats as half or float, or 32-bit integers.
+struct ExrChannel {
+  std::string name;
+  std::variant<ImageView<const float>, ImageView<const uint32_t>> pixels;
+  int channel = 0;      // channel index in `pixels`
+  bool as_half = true;  // for floats only
+};
+
+// Writes channels of equal size as one EXR file, as WriteImage() does. kOutput: the folder or the
+// disk fails, or the extension is not .exr. kInterrupted as in WriteImage().
+Result<void> WriteExr(const std::filesystem::path& path, std::span<const ExrChannel> channels,
+                      const ImageMetadata& metadata = {},
+                      const std::function<bool()>& is_interrupted = {});
+
+}  // namespace lf

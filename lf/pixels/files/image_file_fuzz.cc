@@ -1,0 +1,49 @@
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "lf/pixels/files/exposure_facts.h"
+#include "lf/pixels/files/image_file.h"
+#include "lf/pixels/files/whole_file.h"
+
+// OpenImageIO leaks a string when libpng reports an error by longjmp. The fuzzer looks for our own
+// faults only.
+extern "C" const char* __asan_default_options() { return "detect_leaks=0"; }
+
+// Any bytes must give an image, or an error that names the file. Pictures above a million values
+// are read up to their header only, because decoding them takes long and shows nothing new.
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size_bytes) {
+  const std::string_view file(reinterpret_cast<const char*>(bytes), size_bytes);
+  if (const auto facts = lf::ReadExposureFactsBytes(file, "fuzz"); facts) {
+    for (const auto& fact : {facts->time_s, facts->f_number, facts->iso})
+      LF_CHECK(!fact || (*fact > 0 && *fact < 1e300));
+  }
+  const auto source = [&](uint64_t offset, std::span<uint8_t> to) -> size_t {
+    const std::string_view part = offset < file.size() ? file.substr(offset, to.size()) : "";
+    std::copy(part.begin(), part.end(), to.begin());
+    return part.size();
+  };
+  if (const auto whole = lf::CheckIsWhole(source, file.size(), "fuzz"); !whole)
+    LF_CHECK(whole.error().message.starts_with("fuzz: "));
+  const auto info = lf::ReadImageInfoBytes(file, "fuzz");
+  if (!info) {
+    LF_CHECK(info.error().message.starts_with("fuzz: "));
+    return 0;
+  }
+  LF_CHECK(info->width > 0 && info->height > 0 && info->channels > 0);
+  if (info->raw)
+    LF_CHECK(info->raw->black_level.value_or(0) < info->raw->white_level.value_or(65536));
+  if (int64_t{info->width} * info->height > 1'000'000 / info->channels) return 0;
+  const auto image = lf::ReadImageBytes(file, "fuzz");
+  if (!image) {
+    LF_CHECK(image.error().message.starts_with("fuzz: "));
+    return 0;
+  }
+  std::visit(
+      [&](const auto& pixels) {
+        LF_CHECK(pixels.width() == info->width && pixels.height() == info->height);
+        LF_CHECK(pixels.channels() == info->channels);
+      },
+      *image);
+  return 0;
+}

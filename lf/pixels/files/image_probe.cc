@@ -1,0 +1,186 @@
+#include "lf/pixels/files/image_probe.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <optional>
+#include <string_view>
+
+#include "lf/pixels/files/tiff_directories.h"
+
+namespace lf {
+namespace {
+
+// Returns `count` bytes at `offset` as a number, the most significant first; none if they lie
+// beyond the end.
+std::optional<uint64_t> BigEndian(const ByteSource& source, uint64_t offset, size_t count) {
+  std::array<uint8_t, 8> bytes;
+  if (source(offset, std::span(bytes).first(count)) != count) return std::nullopt;
+  uint64_t value = 0;
+  for (size_t i = 0; i < count; ++i) value = value << 8 | bytes[i];
+  return value;
+}
+
+bool StartsWith(std::span<const uint8_t> bytes, std::string_view magic) {
+  return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
+}
+
+// Refuses a header that claims more than the file can hold, before a decoder believes it. A whole
+// file with a picture of this size has at least least_bytes.
+Result<void> CheckClaim(const ByteSource& source, uint64_t width, uint64_t height,
+                        uint64_t least_bytes, const std::string& name) {
+  LF_RETURN_IF_ERROR(CheckPixelCount(width, height, name));
+  if (least_bytes == 0 || BigEndian(source, least_bytes - 1, 1)) return {};
+  return InputError(
+      fmt::format("{}: claims {} x {} pixels, for which the file is too short: "
+                  "truncated or damaged",
+                  name, width, height));
+}
+
+constexpr uint64_t kPngPixels = 0x49444154, kPngEnd = 0x49454e44;  // "IDAT", "IEND"
+
+// A chunk is length, type, content, checksum.
+struct PngChunk {
+  uint64_t type = 0;
+  uint64_t end = 0;  // offset behind it
+  bool is_whole = false;
+};
+
+// Returns none if the file ends before the content of the chunk.
+std::optional<PngChunk> PngChunkAt(const ByteSource& source, uint64_t offset) {
+  const auto length = BigEndian(source, offset, 4), type = BigEndian(source, offset + 4, 4);
+  if (!length || !type) return std::nullopt;
+  const uint64_t end = offset + 12 + *length;
+  return PngChunk{*type, end, BigEndian(source, end - 1, 1).has_value()};
+}
+constexpr uint64_t kFirstPngChunk = 8;
+
+// Checks the chunks before the pixels, because libpng allocates as many bytes as such a chunk
+// claims.
+Result<void> CheckPngChunks(const ByteSource& source, const std::string& name) {
+  uint64_t offset = kFirstPngChunk;
+  while (const auto chunk = PngChunkAt(source, offset)) {
+    if (chunk->type == kPngPixels || chunk->type == kPngEnd) break;
+    if (!chunk->is_whole)
+      return InputError(fmt::format(
+          "{}: claims a chunk of {} bytes, for which the file is too short: truncated or damaged",
+          name, chunk->end - offset - 12));
+    offset = chunk->end;
+  }
+  return {};
+}
+
+Result<void> CheckPng(const ByteSource& source, const std::string& name) {
+  const auto width = BigEndian(source, 16, 4), height = BigEndian(source, 20, 4);
+  const auto depth = BigEndian(source, 24, 1), colour_type = BigEndian(source, 25, 1);
+  if (!width || !height || !depth || !colour_type)
+    return InputError(fmt::format("{}: PNG file ends within its header", name));
+  constexpr uint64_t kDeflateRatio = 1032;  // largest compression ratio of deflate
+  const uint64_t channels = *colour_type == 2   ? 3
+                            : *colour_type == 4 ? 2
+                            : *colour_type == 6 ? 4
+                                                : 1;
+  const uint64_t row_bytes = *width * channels * *depth / 8;
+  LF_RETURN_IF_ERROR(
+      CheckClaim(source, *width, *height, *height * row_bytes / kDeflateRatio, name));
+  return CheckPngChunks(source, name);
+}
+
+// Checks the size in the frame header (SOFn). Bytes between segments are skipped, as libjpeg does.
+Result<void> CheckJpeg(const ByteSource& source, const std::string& name) {
+  uint64_t offset = 2;
+  while (const auto byte = BigEndian(source, offset++, 1)) {
+    if (*byte != 0xff) continue;
+    std::optional<uint64_t> marker;
+    while ((marker = BigEndian(source, offset++, 1)) == 0xff) continue;
+    if (!marker || *marker == 0xd9 || *marker == 0xda) break;
+    if (*marker <= 0x01 || (*marker >= 0xd0 && *marker <= 0xd8)) continue;  // no content
+    const bool is_frame =
+        *marker >= 0xc0 && *marker <= 0xcf && *marker != 0xc4 && *marker != 0xc8 && *marker != 0xcc;
+    if (is_frame) {
+      const auto height = BigEndian(source, offset + 3, 2),
+                 width = BigEndian(source, offset + 5, 2);
+      if (!width || !height) break;
+      // A Huffman code has at least one bit, and there is one for every 8 x 8 pixels.
+      const bool is_huffman = *marker < 0xc8;
+      return CheckClaim(source, *width, *height, is_huffman ? *width * *height / 512 : 0, name);
+    }
+    const auto length = BigEndian(source, offset, 2);
+    if (!length) break;
+    offset += std::max<uint64_t>(*length, 2);
+  }
+  return InputError(
+      fmt::format("{}: JPEG file without a frame header: truncated or damaged", name));
+}
+
+// Returns true for the first bytes of a camera raw file that is not a TIFF file.
+bool IsOtherRaw(std::span<const uint8_t> start) {
+  using namespace std::string_view_literals;
+  struct Kind {
+    size_t offset;
+    std::string_view magic;
+  };
+  // Fujifilm RAF, Sigma X3F, Olympus ORF, Panasonic RW2, Minolta MRW, Canon CR3 and CRW.
+  constexpr Kind kKinds[] = {{0, "FUJIFILM"sv}, {0, "FOVb"sv},     {0, "IIRO"sv},
+                             {0, "IIRS"sv},     {0, "MMOR"sv},     {0, "IIU\0"sv},
+                             {0, "\0MRM"sv},    {4, "ftypcrx "sv}, {6, "HEAPCCDR"sv}};
+  for (const Kind& kind : kKinds)
+    if (start.size() >= kind.offset && StartsWith(start.subspan(kind.offset), kind.magic))
+      return true;
+  return false;
+}
+
+// Returns true if a TIFF file is a camera raw file.
+bool IsRawTiff(const ByteSource& source, std::span<const uint8_t> start) {
+  constexpr int kNewSubfileType = 254, kDngVersion = 50706;
+  if (start.size() >= 10 && start[8] == 'C' && start[9] == 'R') return true;  // Canon CR2
+  const std::optional<TiffDirectory> first = FirstTiffDirectory(source);
+  return first && (first->Has(kDngVersion) || std::fmod(first->Number(kNewSubfileType, 0), 2) == 1);
+}
+
+}  // namespace
+
+Result<void> CheckPixelCount(uint64_t width, uint64_t height, const std::string& name) {
+  // Both are below 2^32, so the product does not wrap.
+  if (width * height <= kMaxImagePixels) return {};
+  return InputError(fmt::format("{}: claims {} x {} pixels, more than the {} that are read", name,
+                                width, height, kMaxImagePixels));
+}
+
+Result<ImageFormat> ProbeImage(const ByteSource& source, const std::string& name) {
+  std::array<uint8_t, 16> head;
+  const auto start = std::span<const uint8_t>(head).first(source(0, head));
+  if (start.empty()) return InputError(fmt::format("{}: file is empty", name));
+  if (StartsWith(start, "\x89PNG\r\n\x1a\n")) {
+    LF_RETURN_IF_ERROR(CheckPng(source, name));
+    return ImageFormat::kPng;
+  }
+  if (StartsWith(start, "\xff\xd8\xff")) {
+    LF_RETURN_IF_ERROR(CheckJpeg(source, name));
+    return ImageFormat::kJpeg;
+  }
+  if (StartsWith(start, "\x76\x2f\x31\x01")) return ImageFormat::kExr;
+  using namespace std::string_view_literals;
+  for (const std::string_view tiff : {"II*\0"sv, "MM\0*"sv, "II+\0"sv, "MM\0+"sv}) {
+    if (!StartsWith(start, tiff)) continue;
+    return IsRawTiff(source, start) ? ImageFormat::kRaw : ImageFormat::kTiff;
+  }
+  if (IsOtherRaw(start)) return ImageFormat::kRaw;
+  return InputError(
+      fmt::format("{}: is not a PNG, JPEG, TIFF, EXR or camera raw file that is read here", name));
+}
+
+Result<void> CheckPngIsComplete(const ByteSource& source, const std::string& name) {
+  uint64_t offset = kFirstPngChunk;
+  while (const auto chunk = PngChunkAt(source, offset)) {
+    if (!chunk->is_whole) break;
+    if (chunk->type == kPngEnd) return {};
+    offset = chunk->end;
+  }
+  return InputError(fmt::format("{}: PNG file is truncated: it ends before its end mark", name));
+}
+
+}  // namespace lf

@@ -1,0 +1,47 @@
+// Decodes JPEG files, whole or in part, with libjpeg-turbo. No other reader uses libjpeg. Internal
+// to this folder.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "lf/core/geometry.h"
+#include "lf/core/image.h"
+#include "lf/core/result.h"
+#include "lf/pixels/files/image_file.h"
+#include "lf/pixels/files/image_probe.h"
+
+namespace lf {
+
+// A file whose header has been read. Its pixels can be decoded once. One thread at a time may use
+// it.
+class JpegReader {
+ public:
+  // Reads the header. `source` must outlive the reader and must have passed ProbeImage(). kInput:
+  // the file is truncated or damaged, or neither colour nor grey (CMYK).
+  static Result<JpegReader> Open(const ByteSource& source, const std::string& name);
+  JpegReader(JpegReader&&) noexcept;
+  ~JpegReader();
+
+  const ImageFileInfo& info() const;
+
+  // Decodes at least the pixels of `wanted`, which must contain a pixel of the picture. If it saves
+  // time, only these pixels and some around them are decoded, otherwise all. Returns the decoded
+  // rectangle, and resizes `image` to it, in the same memory if possible. The pixels equal those of
+  // the whole picture, bit for bit. The whole file is read in any case, so that the detection of
+  // damage does not depend on `wanted`; a part saves only the inverse transforms. kInput: libjpeg
+  // had to guess pixels, or the file has more than kMaxScans.
+  Result<PixelRect> Read(const PixelRect& wanted, Image<uint8_t>* image);
+
+  // A progressive file with more scans could demand hours of work with few bytes. Encoders write
+  // about ten.
+  static constexpr int kMaxScans = 200;
+
+ private:
+  struct State;
+  explicit JpegReader(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace lf

@@ -1,0 +1,156 @@
+#include "lf/pixels/files/whole_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <fstream>
+#include <optional>
+#include <string_view>
+
+#include "lf/pixels/files/image_probe.h"
+#include "lf/pixels/files/tiff_directories.h"
+
+namespace lf {
+namespace {
+
+// Reads a number, the least significant byte first, as in EXR; none if it lies beyond the end.
+template <class T>
+std::optional<T> LittleEndian(const ByteSource& source, uint64_t offset) {
+  std::array<uint8_t, sizeof(T)> bytes;
+  if (source(offset, bytes) != bytes.size()) return std::nullopt;
+  uint64_t value = 0;
+  for (size_t i = 0; i < bytes.size(); ++i) value |= uint64_t{bytes[i]} << (8 * i);
+  return static_cast<T>(value);
+}
+
+// Reads a name, which ends with a zero byte, and moves `offset` behind it. Returns none if the file
+// ends first or the name has more than 255 letters.
+std::optional<std::string> Name(const ByteSource& source, uint64_t* offset) {
+  constexpr size_t kLongestName = 255;
+  std::array<uint8_t, kLongestName + 1> bytes;
+  const size_t count = source(*offset, bytes);
+  const auto end = std::find(bytes.begin(), bytes.begin() + count, 0);
+  if (end == bytes.begin() + count) return std::nullopt;
+  *offset += static_cast<uint64_t>(end - bytes.begin()) + 1;
+  return std::string(bytes.begin(), end);
+}
+
+// Returns the number of rows in a block, by the number of the compression in the file (OpenEXR,
+// "File Layout").
+std::optional<int64_t> RowsOfBlock(uint8_t compression) {
+  constexpr int64_t kRows[] = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
+  if (compression >= std::size(kRows)) return std::nullopt;
+  return kRows[compression];
+}
+
+struct ExrHeader {
+  uint64_t end = 0;  // the table of offsets follows
+  int64_t row_count = 0;
+  int64_t rows_of_block = 0;
+};
+
+// Returns none if the header is damaged, or of a kind that is not written here: tiles, several
+// parts, or deep samples.
+std::optional<ExrHeader> ReadHeader(const ByteSource& source) {
+  constexpr uint32_t kLongNames = 0x400, kVersion = 2;
+  const auto version = LittleEndian<uint32_t>(source, 4);
+  if (!version || (*version & ~kLongNames) != kVersion) return std::nullopt;
+  ExrHeader header;
+  std::optional<int64_t> rows, of_block;
+  uint64_t offset = 8;
+  while (true) {
+    const auto name = Name(source, &offset);
+    if (!name) return std::nullopt;
+    if (name->empty()) break;
+    const auto type = Name(source, &offset);
+    const auto size = LittleEndian<uint32_t>(source, offset);
+    offset += sizeof(uint32_t);
+    if (!type || !size) return std::nullopt;
+    if (*name == "dataWindow" && *type == "box2i" && *size == 16) {
+      const auto first = LittleEndian<int32_t>(source, offset + 4);
+      const auto last = LittleEndian<int32_t>(source, offset + 12);
+      if (!first || !last) return std::nullopt;
+      rows = int64_t{*last} - *first + 1;
+    }
+    if (*name == "compression" && *type == "compression" && *size == 1) {
+      const auto compression = LittleEndian<uint8_t>(source, offset);
+      if (!compression) return std::nullopt;
+      of_block = RowsOfBlock(*compression);
+    }
+    offset += *size;
+  }
+  if (!rows || *rows < 1 || !of_block) return std::nullopt;
+  return ExrHeader{offset, *rows, *of_block};
+}
+
+Result<void> CheckExr(const ByteSource& source, uint64_t size_bytes, const std::string& name) {
+  const auto damaged = [&](const std::string& what) {
+    return InputError(fmt::format("{}: EXR file is not whole: {}", name, what));
+  };
+  const std::optional<ExrHeader> header = ReadHeader(source);
+  if (!header) return damaged("its header cannot be read, or is not of rows in one part");
+  const int64_t blocks = (header->row_count + header->rows_of_block - 1) / header->rows_of_block;
+  if (static_cast<uint64_t>(blocks) > size_bytes / sizeof(uint64_t))
+    return damaged("it ends within its table of offsets");
+  const uint64_t first = header->end + static_cast<uint64_t>(blocks) * sizeof(uint64_t);
+  for (int64_t block = 0; block < blocks; ++block) {
+    const auto offset = LittleEndian<uint64_t>(
+        source, header->end + static_cast<uint64_t>(block) * sizeof(uint64_t));
+    if (!offset) return damaged("it ends within its table of offsets");
+    const auto missing = [&] {
+      return damaged(fmt::format("block {} of {} is missing", block + 1, blocks));
+    };
+    // A block is the number of its first row, its length in bytes, and these bytes.
+    constexpr uint64_t kBlockHeader = 8;
+    if (*offset < first || *offset > size_bytes - std::min(size_bytes, kBlockHeader))
+      return missing();
+    const auto length = LittleEndian<uint32_t>(source, *offset + 4);
+    if (!length || *length > size_bytes - *offset - kBlockHeader) return missing();
+  }
+  return {};
+}
+
+Result<void> CheckJpeg(const ByteSource& source, uint64_t size_bytes, const std::string& name) {
+  std::array<uint8_t, 2> end;
+  if (size_bytes > 2 && source(size_bytes - 2, end) == 2 && end[0] == 0xff && end[1] == 0xd9)
+    return {};
+  return InputError(fmt::format("{}: JPEG file is not whole: it has no end mark", name));
+}
+
+}  // namespace
+
+Result<void> CheckIsWhole(const ByteSource& source, uint64_t size_bytes, const std::string& name) {
+  LF_ASSIGN_OR_RETURN(const ImageFormat format, ProbeImage(source, name));
+  switch (format) {
+    case ImageFormat::kExr:
+      return CheckExr(source, size_bytes, name);
+    case ImageFormat::kPng:
+      return CheckPngIsComplete(source, name);
+    case ImageFormat::kJpeg:
+      return CheckJpeg(source, size_bytes, name);
+    case ImageFormat::kTiff:
+      if (FirstTiffDirectory(source)) return {};
+      return InputError(fmt::format("{}: TIFF file is not whole: its directory is missing", name));
+    case ImageFormat::kRaw:
+      break;
+  }
+  return InputError(fmt::format("{}: is a camera raw file, no picture of ours", name));
+}
+
+Result<void> CheckFileIsWhole(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::error_code error;
+  const uint64_t size = std::filesystem::file_size(path, error);
+  if (!file || error) return InputError(fmt::format("{}: cannot be read", path.string()));
+  const ByteSource source = [&file](uint64_t offset, std::span<uint8_t> to) -> size_t {
+    file.clear();
+    file.seekg(static_cast<std::streamoff>(offset));
+    file.read(reinterpret_cast<char*>(to.data()), static_cast<std::streamsize>(to.size()));
+    return static_cast<size_t>(std::max<std::streamsize>(0, file.gcount()));
+  };
+  return CheckIsWhole(source, size, path.string());
+}
+
+}  // namespace lf

@@ -1,0 +1,56 @@
+#include "lf/render/collect/around_lens.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "lf/selection/lens_weights/frame_weights.h"
+
+namespace lf {
+
+std::vector<LfImageId> CamerasAroundLens(const ImageIndex& index, const RenderCamera& frame) {
+  const Intrinsics& k = frame.pinhole.intrinsics;
+  const std::optional<Vec3> focus = FocusPointOfElement(frame, 0.5 * k.width_px, 0.5 * k.height_px);
+  if (!focus) return {};
+  RenderCamera middle = frame;
+  middle.pinhole.intrinsics.cx_px -= 0.5 * k.width_px;
+  middle.pinhole.intrinsics.cy_px -= 0.5 * k.height_px;
+  middle.pinhole.intrinsics.width_px = middle.pinhole.intrinsics.height_px = 0;
+  const CameraTree& tree = index.tree();
+  // The radius begins with that of the lens, or a thousandth of the distance to the focus point if
+  // that is more, and doubles up to 29 times.
+  constexpr int kDoublings = 30;
+  double radius_w =
+      std::max(frame.aperture.radius_w, 1e-3 * (*focus - frame.pinhole.CentreWorld()).norm());
+  std::vector<LfImageId> ids;
+  for (int i = 0; i < kDoublings; ++i, radius_w *= 2) {
+    middle.aperture = {radius_w, 0, 0};
+    ids.clear();
+    size_t count = 0;
+    tree.ForEachLeaf(SeenRegion(middle), [&](size_t leaf, bool /*all_inside*/) {
+      for (const LfImageId id : tree.Leaf(leaf)) {
+        const Vec3 centre_world = index.light_field().Camera(id).CentreWorld();
+        ids.push_back(id);
+        count += LensPointOfLine(frame, centre_world, *focus).norm() <= radius_w;
+      }
+    });
+    if (count >= kCamerasAround) break;
+  }
+  std::sort(ids.begin(), ids.end());
+  return ids;
+}
+
+double CameraDistanceAround(const ImageIndex& index, const RenderCamera& frame) {
+  std::vector<Vec3> centres_world;
+  for (const LfImageId id : CamerasAroundLens(index, frame))
+    centres_world.push_back(index.light_field().Camera(id).CentreWorld());
+  if (index.light_field().encoding.masks_clipped) centres_world = DistinctPlaces(centres_world);
+  return CameraDistance(frame, centres_world);
+}
+
+bool IsSeenBy(const RayThrough& lf_camera, const Vec3& point_world) {
+  const std::optional<Vec2> p = lf_camera.RecordedAt(lf_camera.DirectionWorld(point_world));
+  const Intrinsics& k = lf_camera.intrinsics();
+  return p && p->x() >= 0 && p->x() <= k.width_px && p->y() >= 0 && p->y() <= k.height_px;
+}
+
+}  // namespace lf

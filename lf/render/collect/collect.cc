@@ -1,0 +1,335 @@
+#include "lf/render/collect/collect.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "lf/core/log.h"
+#include "lf/render/collect/noise_rule.h"
+#include "lf/selection/overlap.h"
+
+namespace lf {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double SecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// An LF image of a batch while it is decoded.
+struct Loading {
+  size_t index = 0;  // in the order
+  std::optional<Result<LfPixels>> pixels;
+};
+
+// LF images [begin, end) of the order.
+struct Batch {
+  size_t begin = 0;
+  size_t end = 0;
+  uint32_t place_end = 0;      // once it is collected, all places before this one are done
+  std::vector<size_t> frames;  // frames that take it; empty: all
+  std::vector<Loading> loading;
+  std::vector<BatchImage> images;  // unbroken images, once all are loaded
+  bool is_loaded = false;
+};
+
+}  // namespace
+
+class FrameCollector::State {
+ public:
+  State(const LightField& light_field, const LfImageStore& store,
+        std::span<const RenderCamera> frames, std::span<const SelectedImage> order,
+        std::span<const PlaceRange> places, const CollectOptions& options, ThreadPool& pool,
+        std::vector<SensorPlate>* plates)
+      : light_field_(light_field),
+        store_(store),
+        order_(order),
+        options_(options),
+        pool_(pool),
+        collector_(light_field, frames, options.reading, options.back_end, options.weights,
+                   options.plan_bytes, options.whole_images, pool, plates, options.moments),
+        places_(places.begin(), places.end()),
+        progress_(frames.size()),
+        is_stopped_(frames.size(), false) {
+    if (places_.empty()) places_.resize(frames.size());
+    LF_CHECK(places_.size() == frames.size());
+    for (size_t f = 0; f < places_.size(); ++f) progress_[f].places_done = places_[f].begin;
+    LF_CHECK(options.batch_image_count >= 1);
+    images_done_ = announced_ = FirstWanted(0);
+  }
+
+  Result<bool> Step();
+
+  std::vector<FrameProgress>& progress() { return progress_; }
+  std::vector<bool>& is_stopped() { return is_stopped_; }
+  const std::vector<SkippedImage>& skipped() const { return skipped_; }
+  const CollectTimes& times() const { return times_; }
+  size_t images_done() const { return images_done_; }
+
+ private:
+  bool IsInterrupted() const { return options_.interrupted != nullptr && *options_.interrupted; }
+  Error Interruption() const {
+    return {ErrorKind::kInterrupted,
+            fmt::format("interrupted after {} of {} LF images", images_done_, order_.size())};
+  }
+  bool Takes(size_t frame) const {
+    return !is_stopped_[frame] && progress_[frame].places_done < places_[frame].end;
+  }
+  // True if images before this place are still to be taken beside the frames.
+  bool ConsumerWants(uint32_t place_end) const {
+    return options_.consumer != nullptr && options_.consumer->places_done() < place_end;
+  }
+  uint32_t PlaceEnd() const {
+    return options_.place_end > 0 ? options_.place_end : static_cast<uint32_t>(light_field_.size());
+  }
+  size_t FirstWanted(size_t from) const;
+  Batch BatchFrom(size_t from) const;
+  std::vector<BatchFrame> FramesOf(const Batch& batch) const;
+  void AnnounceUpTo(size_t end);
+  PixelRect RectOf(const Batch& batch, const SelectedImage& image) const;
+  void Load(const Batch& batch, Loading* loading);
+  Result<void> FinishLoading(Batch* batch);
+  LfPixels TakeSpare();
+  void Skip(const SelectedImage& image, const Error& error);
+
+  const LightField& light_field_;
+  const LfImageStore& store_;
+  std::span<const SelectedImage> order_;
+  const CollectOptions options_;
+  ThreadPool& pool_;
+  BatchCollector collector_;
+  std::vector<PlaceRange> places_;
+  std::vector<FrameProgress> progress_;
+  std::vector<bool> is_stopped_;
+  std::vector<SkippedImage> skipped_;
+  CollectTimes times_;
+  std::atomic<int64_t> load_cpu_ns_ = 0;
+  std::atomic<int64_t> load_wall_ns_ = 0;
+  size_t images_done_ = 0;
+  size_t announced_ = 0;  // LF images of the order that the store knows of
+  std::mutex spare_mutex_;
+  std::vector<LfPixels> spare_;     // pixels that were collected, whose memory is used again
+  std::optional<LfImageId> whole_;  // an LF image that was loaded
+  Batch batch_;                     // the one to be collected
+  Batch next_;                      // the one to be decoded meanwhile
+};
+
+Result<bool> FrameCollector::State::Step() {
+  const Clock::time_point start = Clock::now();
+  std::vector<BatchFrame> takers = FramesOf(batch_);
+  // Frames may have been stopped since the next batch was planned.
+  while (takers.empty() && !ConsumerWants(batch_.place_end)) {
+    if (batch_.end > batch_.begin) images_done_ = batch_.end;
+    batch_ = next_.end > next_.begin ? std::move(next_) : BatchFrom(images_done_);
+    next_ = {};
+    if (batch_.begin == batch_.end) {
+      spare_.clear();  // others need the memory now
+      return false;
+    }
+    takers = FramesOf(batch_);
+  }
+  LF_RETURN_IF_ERROR(FinishLoading(&batch_));
+  if (next_.begin == next_.end) next_ = BatchFrom(batch_.end);
+  // The system reads files while the images before them are decoded.
+  const auto load_or_announce = [this](size_t i) {
+    if (i > 0)
+      Load(next_, &next_.loading[i - 1]);
+    else
+      AnnounceUpTo(BatchFrom(next_.end).end);
+  };
+  collector_.Add(batch_.images, takers, {1 + next_.loading.size(), load_or_announce},
+                 options_.interrupted);
+
+  bool all_done = true;
+  for (const BatchFrame& taker : takers) {
+    all_done = all_done && taker.is_done;
+    if (!taker.is_done) continue;
+    FrameProgress& progress = progress_[taker.frame];
+    progress.places_done = std::min(batch_.place_end, places_[taker.frame].end);
+    progress.rays.image_count += taker.rays.image_count;
+    progress.rays.tested_count += taker.rays.tested_count;
+    progress.rays.accepted_count += taker.rays.accepted_count;
+  }
+  times_.load_cpu_s = static_cast<double>(load_cpu_ns_) * 1e-9;
+  times_.load_wall_s = static_cast<double>(load_wall_ns_) * 1e-9;
+  times_.collect_cpu_s = collector_.cpu_seconds();
+  times_.wall_s += SecondsSince(start);
+  if (!all_done || (takers.empty() && IsInterrupted())) return Interruption();
+  if (ConsumerWants(batch_.place_end)) options_.consumer->Take(batch_.images, batch_.place_end);
+  images_done_ = batch_.end;
+  for (BatchImage& image : batch_.images) {
+    image.pixels.opacity = std::move(image.opacity.radiance);
+    spare_.push_back(std::move(image.pixels));
+  }
+  batch_ = {};
+  return true;
+}
+
+// Returns the first LF image from `from` on that a frame or the consumer has still to take.
+size_t FrameCollector::State::FirstWanted(size_t from) const {
+  uint32_t place = UINT32_MAX;
+  for (size_t f = 0; f < progress_.size(); ++f)
+    if (Takes(f)) place = std::min(place, progress_[f].places_done);
+  if (ConsumerWants(PlaceEnd())) place = std::min(place, options_.consumer->places_done());
+  if (place == UINT32_MAX) return order_.size();
+  const auto first = std::lower_bound(
+      order_.begin(), order_.end(), place,
+      [](const SelectedImage& image, uint32_t least) { return image.place < least; });
+  return std::max(from, static_cast<size_t>(first - order_.begin()));
+}
+
+Batch FrameCollector::State::BatchFrom(size_t from) const {
+  Batch batch;
+  batch.begin = batch.end = FirstWanted(from);
+  if (batch.begin == order_.size()) return batch;
+  const uint32_t cut = options_.decision_places;
+  const uint32_t first = order_[batch.begin].place;
+  uint32_t decision = cut == 0 ? UINT32_MAX : (first / cut + 1) * cut;
+  if (options_.cuts_for_noise) decision = std::min(decision, NoiseDecisionAfter(first));
+  const size_t most = batch.begin + static_cast<size_t>(options_.batch_image_count);
+  uint64_t rays = 0, frame_rays = 0;
+  for (; batch.end < std::min(order_.size(), most); ++batch.end) {
+    const SelectedImage& image = order_[batch.end];
+    rays += image.ray_count;
+    frame_rays += image.ray_count / std::max(1U, image.frame_count);
+    const bool is_long =
+        rays > options_.batch_ray_count || frame_rays > options_.batch_frame_ray_count;
+    if (image.place >= decision || (is_long && batch.end > batch.begin)) break;
+    batch.loading.push_back({batch.end, std::nullopt});
+  }
+  batch.place_end =
+      batch.end < order_.size() ? std::min(decision, order_[batch.end].place) : PlaceEnd();
+  for (const BatchFrame& taker : FramesOf(batch)) batch.frames.push_back(taker.frame);
+  if (batch.frames.size() == progress_.size()) batch.frames.clear();
+  return batch;
+}
+
+// Returns the frames that have not reached the end of the batch.
+std::vector<BatchFrame> FrameCollector::State::FramesOf(const Batch& batch) const {
+  std::vector<BatchFrame> frames;
+  for (size_t f = 0; f < progress_.size(); ++f)
+    if (Takes(f) && progress_[f].places_done < batch.place_end)
+      frames.push_back({f, {progress_[f].places_done, places_[f].end}, false, {}});
+  return frames;
+}
+
+void FrameCollector::State::AnnounceUpTo(size_t end) {
+  for (; announced_ < end && !IsInterrupted(); ++announced_) store_.Announce(order_[announced_].id);
+}
+
+// Returns the pixels that the frames of the batch need of an LF image. If all frames take the
+// batch, selection has already found them.
+PixelRect FrameCollector::State::RectOf(const Batch& batch, const SelectedImage& image) const {
+  if (batch.frames.empty()) return image.rect;
+  std::vector<size_t> frames;
+  for (const size_t frame : batch.frames)
+    if (places_[frame].Holds(image.place)) frames.push_back(frame);
+  return collector_.RectOf(image.id, frames);
+}
+
+void FrameCollector::State::Load(const Batch& batch, Loading* loading) {
+  if (loading->pixels || IsInterrupted()) return;
+  const Clock::time_point start = Clock::now();
+  const ThreadCpuTimer timer;
+  const SelectedImage& selected = order_[loading->index];
+  PixelRect rect = RectOf(batch, selected);
+  if (ConsumerWants(selected.place + 1))
+    rect = Bounds(rect, options_.consumer->RectOf(selected.id, selected.place));
+  loading->pixels =
+      rect.empty() ? LfPixels()
+                   : LoadWithoutThrowing(store_, selected.id, rect,
+                                         light_field_.image_names[selected.id.value], TakeSpare());
+  load_cpu_ns_ += timer.Nanoseconds();
+  load_wall_ns_ += std::chrono::nanoseconds(Clock::now() - start).count();
+}
+
+LfPixels FrameCollector::State::TakeSpare() {
+  const std::lock_guard lock(spare_mutex_);
+  if (spare_.empty()) return {};
+  LfPixels pixels = std::move(spare_.back());
+  spare_.pop_back();
+  return pixels;
+}
+
+Result<void> FrameCollector::State::FinishLoading(Batch* batch) {
+  if (batch->is_loaded) return {};
+  AnnounceUpTo(batch->end);
+  pool_.ForEach(batch->loading.size(), [&](size_t i) { Load(*batch, &batch->loading[i]); });
+  for (const Loading& loading : batch->loading)
+    if (!loading.pixels) return Interruption();
+  for (Loading& loading : batch->loading) {
+    const SelectedImage& image = order_[loading.index];
+    if (*loading.pixels) {
+      whole_ = image.id;
+      LfPixels pixels = **std::move(loading.pixels);
+      LfPixels opacity = pixels.TakeOpacity();
+      batch->images.push_back({image.id, image.place, std::move(pixels), std::move(opacity)});
+      continue;
+    }
+    // Only faults of the image itself are skipped. What the machine lacks would fail other images.
+    const Error& error = loading.pixels->error();
+    if (options_.strict || error.kind != ErrorKind::kInput) return error;
+    if (whole_ && !store_.IsThere(*whole_))
+      return InputError(
+          fmt::format("the LF images are gone: {} was read before, and is not there any more",
+                      light_field_.image_names[whole_->value]));
+    Skip(image, error);
+  }
+  batch->loading.clear();
+  batch->is_loaded = true;
+  return {};
+}
+
+void FrameCollector::State::Skip(const SelectedImage& image, const Error& error) {
+  // The first ones are reported at once; a report lists them all.
+  constexpr size_t kTold = 10;
+  if (skipped_.size() < kTold) LogWarning("LF image skipped: {}", error.message);
+  if (skipped_.size() == kTold)
+    LogWarning("more LF images are broken; they are counted and reported at the end");
+  skipped_.push_back({light_field_.image_names[image.id.value], error.message, image.place});
+}
+
+FrameCollector::FrameCollector(const LightField& light_field, const LfImageStore& store,
+                               std::span<const RenderCamera> frames,
+                               std::span<const SelectedImage> order,
+                               std::span<const PlaceRange> places, const CollectOptions& options,
+                               ThreadPool& pool, std::vector<SensorPlate>* plates)
+    : state_(std::make_unique<State>(light_field, store, frames, order, places, options, pool,
+                                     plates)) {}
+FrameCollector::~FrameCollector() = default;
+
+Result<bool> FrameCollector::Step() { return state_->Step(); }
+void FrameCollector::Stop(size_t frame) { state_->is_stopped()[frame] = true; }
+std::span<const FrameProgress> FrameCollector::frames() const { return state_->progress(); }
+std::span<const SkippedImage> FrameCollector::skipped() const { return state_->skipped(); }
+size_t FrameCollector::images_done() const { return state_->images_done(); }
+const CollectTimes& FrameCollector::times() const { return state_->times(); }
+
+Result<CollectStatistics> Collect(const LightField& light_field, const LfImageStore& store,
+                                  std::span<const RenderCamera> frames,
+                                  std::span<const SelectedImage> order,
+                                  const CollectOptions& options, ThreadPool& pool,
+                                  std::vector<SensorPlate>* plates,
+                                  const std::function<void(const CollectProgress&)>& progress) {
+  FrameCollector collector(light_field, store, frames, order, {}, options, pool, plates);
+  CollectProgress done;
+  while (true) {
+    LF_ASSIGN_OR_RETURN(const bool stepped, collector.Step());
+    if (!stepped) break;
+    for (; done.image_count < collector.images_done(); ++done.image_count)
+      done.tested_count += order[done.image_count].ray_count;
+    if (progress) progress(done);
+  }
+  CollectStatistics statistics;
+  for (const FrameProgress& frame : collector.frames()) statistics.frames.push_back(frame.rays);
+  statistics.skipped.assign(collector.skipped().begin(), collector.skipped().end());
+  statistics.times = collector.times();
+  return statistics;
+}
+
+}  // namespace lf

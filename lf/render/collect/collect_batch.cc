@@ -1,0 +1,312 @@
+#include "lf/render/collect/collect_batch.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "lf/collection/gather.h"
+#include "lf/collection/scatter.h"
+
+namespace lf {
+namespace {
+
+// Decides once, at the first item of a frame, whether the frame is collected.
+class FrameGate {
+ public:
+  bool IsOpen(const std::atomic<bool>* interrupted) {
+    State state = state_;
+    if (state != State::kUndecided) return state == State::kOpen;
+    const State decided = interrupted != nullptr && *interrupted ? State::kShut : State::kOpen;
+    // On failure `state` is what another thread decided.
+    if (state_.compare_exchange_strong(state, decided)) state = decided;
+    return state == State::kOpen;
+  }
+
+ private:
+  enum class State { kUndecided, kOpen, kShut };
+  std::atomic<State> state_ = State::kUndecided;
+};
+
+void Count(const PixelRect& rect, bool any_accepted, FrameRays* rays) {
+  rays->image_count += any_accepted ? 1 : 0;
+  rays->tested_count += static_cast<uint64_t>(rect.pixel_count());
+}
+
+}  // namespace
+
+const char* NameOf(Estimator estimator) {
+  return estimator == Estimator::kBilinear ? "bilinear" : "nearest";
+}
+
+PixelReach ReachOf(Estimator estimator) {
+  return estimator == Estimator::kBilinear ? PixelReach::kNeighbours : PixelReach::kOwn;
+}
+
+size_t PlanBytes(Estimator estimator, bool has_distortion, int image_width, int image_height,
+                 int plate_width, int plate_height) {
+  const bool is_nearest = estimator == Estimator::kNearest;
+  // Plates that are made finer are never more than twice as fine as the image.
+  const auto width =
+      static_cast<size_t>(is_nearest ? image_width : std::max(plate_width, 2 * image_width));
+  const auto height =
+      static_cast<size_t>(is_nearest ? image_height : std::max(plate_height, 2 * image_height));
+  // A scanline has a few segments, which are short if distortion bends them; tiles cut them into
+  // two or three.
+  const size_t segment_width = has_distortion ? 64 : 256;
+  return height * (2 + width / segment_width) *
+         (sizeof(Segment) + (is_nearest ? 3 * sizeof(TilePiece) : 0));
+}
+
+BatchCollector::BatchCollector(const LightField& light_field, std::span<const RenderCamera> frames,
+                               const RayReading& reading, CollectBackEnd back_end,
+                               FrameImageWeights weights, size_t plan_bytes, bool whole_images,
+                               ThreadPool& pool, std::vector<SensorPlate>* plates,
+                               std::vector<NoiseMoments>* moments)
+    : light_field_(light_field),
+      frames_(frames),
+      reading_(reading),
+      back_end_(back_end),
+      weights_(std::move(weights)),
+      plan_bytes_(plan_bytes),
+      whole_images_(whole_images),
+      pool_(pool),
+      plates_(*plates),
+      moments_(moments) {
+  LF_CHECK(plates->size() == frames.size());
+  LF_CHECK(moments == nullptr || moments->size() == frames.size());
+  for (SensorPlate& plate : plates_)
+    tiles_.push_back(CutIntoTiles(&plate, TileSums::GridOf(plate.width(), plate.height())));
+}
+
+void BatchCollector::Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>& frames,
+                         const OtherItems& other_items, const std::atomic<bool>* interrupted) {
+  UndoDistortion(batch);
+  const auto is_interrupted = [&] { return interrupted != nullptr && *interrupted; };
+  if (back_end_ == CollectBackEnd::kReference || batch.empty()) {
+    pool_.ForEach(other_items.count, other_items.run);
+    for (BatchFrame& frame : frames)
+      if (!is_interrupted()) AddByReference(batch, &frame);
+    return;
+  }
+  const std::span<BatchFrame> takers = FramesThatMayTake(batch, frames);
+  if (takers.empty()) {
+    pool_.ForEach(other_items.count, other_items.run);
+    return;
+  }
+  size_t frame_bytes = 1;
+  for (const BatchImage& image : batch)
+    frame_bytes +=
+        PlanBytes(reading_.estimator, light_field_.Camera(image.id).intrinsics.has_distortion(),
+                  image.pixels.rect.width(), image.pixels.rect.height(), plates_[0].width(),
+                  plates_[0].height());
+  const size_t chunk = std::max<size_t>(1, plan_bytes_ / frame_bytes);
+  for (size_t begin = 0; begin < takers.size(); begin += chunk) {
+    if (is_interrupted()) return;
+    const size_t count = std::min(takers.size() - begin, chunk);
+    AddToFrames(batch, takers.subspan(begin, count), begin == 0 ? other_items : OtherItems{},
+                interrupted);
+  }
+}
+
+PixelRect BatchCollector::RectOf(const BatchImage& image, const RenderCamera& frame) const {
+  if (whole_images_) return image.pixels.rect;
+  return Intersection(image.overlap->Rect(frame), image.pixels.rect);
+}
+
+PixelRect BatchCollector::RectOf(LfImageId id, std::span<const size_t> frames) const {
+  const PinholeCamera camera = light_field_.Camera(id);
+  const auto takes = [&](size_t frame) { return !WeightsOf(frame, id).are_none(); };
+  if (std::none_of(frames.begin(), frames.end(), takes)) return {};
+  if (whole_images_) return {0, 0, camera.intrinsics.width_px, camera.intrinsics.height_px};
+  std::vector<IdealCell> cells;
+  if (camera.intrinsics.has_distortion()) cells = MakeIdealCells(camera.intrinsics);
+  const ImageOverlap overlap(camera, cells, ReachOf(reading_.estimator));
+  PixelRect rect;
+  for (const size_t frame : frames)
+    if (takes(frame)) rect = Bounds(rect, overlap.Rect(frames_[frame]));
+  return rect;
+}
+
+// Images of one camera share its cells and ideal pixels. Only the fast back end of nearest follows
+// arcs.
+void BatchCollector::UndoDistortion(std::vector<BatchImage>& batch) {
+  if (reading_.estimator == Estimator::kNearest && back_end_ == CollectBackEnd::kFast)
+    ideal_pixels_.Keep(light_field_, batch,
+                       [&](size_t count, const auto& body) { ForEachTimed(count, body); });
+  std::map<uint32_t, std::shared_ptr<const std::vector<IdealCell>>> cells;
+  for (BatchImage& image : batch) {
+    const uint32_t index = light_field_.cameras[image.id.value].intrinsics_index;
+    std::shared_ptr<const std::vector<IdealCell>>& shared = cells[index];
+    if (!shared)
+      shared = std::make_shared<const std::vector<IdealCell>>(
+          light_field_.intrinsics[index].has_distortion()
+              ? MakeIdealCells(light_field_.intrinsics[index])
+              : std::vector<IdealCell>());
+    image.cells = shared;
+    image.ideal_pixels = ideal_pixels_.Of(index);
+    image.overlap.emplace(light_field_.Camera(image.id), *image.cells, ReachOf(reading_.estimator));
+  }
+}
+
+// Returns the frames that may take rays of the batch, which are few on long paths through large
+// light fields. The others are done, and are moved behind them.
+std::span<BatchFrame> BatchCollector::FramesThatMayTake(const std::vector<BatchImage>& batch,
+                                                        std::span<BatchFrame> frames) {
+  ForEachTimed(frames.size(), [&](size_t f) {
+    frames[f].is_done = std::none_of(batch.begin(), batch.end(), [&](const BatchImage& image) {
+      return frames[f].places.Holds(image.place) &&
+             (whole_images_ || !image.overlap->PlainlyMisses(frames_[frames[f].frame]));
+    });
+  });
+  const auto rest = std::stable_partition(frames.begin(), frames.end(),
+                                          [](const BatchFrame& frame) { return !frame.is_done; });
+  return frames.first(static_cast<size_t>(rest - frames.begin()));
+}
+
+void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span<BatchFrame> frames,
+                                 const OtherItems& other_items,
+                                 const std::atomic<bool>* interrupted) {
+  // First the segments of every (frame, image), then the rays of every (frame, tile).
+  const size_t contribution_count = frames.size() * batch.size();
+  while (contributions_.size() < contribution_count) contributions_.emplace_back();
+  ForEachTimed(contribution_count, [&](size_t i) {
+    const BatchFrame& taker = frames[i / batch.size()];
+    const BatchImage& image = batch[i % batch.size()];
+    Contribution& contribution = contributions_[i];
+    contribution.rect = {};
+    contribution.accepted_count = 0;
+    if (!taker.places.Holds(image.place)) return;
+    const RenderCamera& frame = frames_[taker.frame];
+    const PinholeCamera camera = light_field_.Camera(image.id);
+    contribution.weights = WeightsOf(taker.frame, image.id);
+    if (contribution.weights.are_none()) return;
+    contribution.rect = RectOf(image, frame);
+    if (contribution.rect.empty()) return;
+    const Intrinsics& plate = frame.pinhole.intrinsics;
+    if (reading_.estimator == Estimator::kBilinear)
+      contribution.gather =
+          PlanGather(camera, frame, std::move(contribution.gather), reading_.filter);
+    else
+      contribution.scatter = PlanScatter(camera, frame, contribution.rect,
+                                         TileSums::GridOf(plate.width_px, plate.height_px),
+                                         image.ideal_pixels.get(), std::move(contribution.scatter));
+  });
+
+  struct Task {
+    size_t taker;
+    size_t tile;
+  };
+  std::vector<Task> tasks;
+  for (size_t f = 0; f < frames.size(); ++f)
+    for (size_t tile = 0; tile < tiles_[frames[f].frame].size(); ++tile) tasks.push_back({f, tile});
+  std::vector<FrameGate> gates(frames.size());
+  const auto collect = [&](const Task& task) {
+    if (!gates[task.taker].IsOpen(interrupted)) return;
+    thread_local TileSums sums;
+    PlateTile& tile = tiles_[frames[task.taker].frame][task.tile];
+    NoiseTally tally(MomentsOf(frames[task.taker].frame), tile.rect());
+    sums.Begin(&tile, tally.elements());
+    for (size_t k = 0; k < batch.size(); ++k) {
+      Contribution& contribution = contributions_[task.taker * batch.size() + k];
+      if (contribution.rect.empty()) continue;
+      const uint64_t accepted = AddToTile(contribution, task.tile, batch[k].pixels, &sums);
+      contribution.accepted_count += accepted;
+      if (accepted > 0)
+        tally.TakeImage([&](size_t element, int c) { return sums.Added(element, c); });
+    }
+    sums.Flush();
+    if (!plates_[frames[task.taker].frame].has_opacity()) return;
+    sums.Begin(&tile, {}, TileSums::Target::kOpacity);
+    for (size_t k = 0; k < batch.size(); ++k)
+      if (Contribution& contribution = contributions_[task.taker * batch.size() + k];
+          !contribution.rect.empty())
+        AddToTile(contribution, task.tile, batch[k].opacity, &sums);
+    sums.Flush();
+  };
+  // The other items are long and come first. The last items should be short, so that no thread
+  // waits.
+  pool_.ForEach(other_items.count + tasks.size(), [&](size_t i) {
+    if (i < other_items.count) {
+      other_items.run(i);
+      return;
+    }
+    const ThreadCpuTimer timer;
+    collect(tasks[i - other_items.count]);
+    cpu_ns_ += timer.Nanoseconds();
+  });
+
+  for (size_t f = 0; f < frames.size(); ++f) {
+    frames[f].is_done = gates[f].IsOpen(nullptr);
+    if (!frames[f].is_done) continue;
+    for (size_t k = 0; k < batch.size(); ++k) {
+      const Contribution& contribution = contributions_[f * batch.size() + k];
+      frames[f].rays.accepted_count += contribution.accepted_count;
+      Count(contribution.rect, contribution.accepted_count > 0, &frames[f].rays);
+    }
+  }
+}
+
+// Adds the rays of one LF image that land in a tile. Returns how many.
+uint64_t BatchCollector::AddToTile(const Contribution& contribution, size_t tile,
+                                   const LfPixels& pixels, TileSums* sums) const {
+  return reading_.estimator == Estimator::kBilinear
+             ? GatherTile(contribution.gather, pixels, sums, contribution.weights)
+             : ScatterTile(contribution.scatter, tile, pixels, sums, contribution.weights);
+}
+
+void BatchCollector::AddByReference(const std::vector<BatchImage>& batch, BatchFrame* frame) {
+  const ThreadCpuTimer timer;
+  const RenderCamera& camera = frames_[frame->frame];
+  SensorPlate& plate = plates_[frame->frame];
+  NoiseTally tally(MomentsOf(frame->frame), {0, 0, plate.width(), plate.height()});
+  const auto total_of = [&](size_t element, int c) {
+    return plate.At(tally.elements()[element].x, tally.elements()[element].y, c);
+  };
+  tally.Start(total_of);
+  for (const BatchImage& image : batch) {
+    const PixelRect rect = RectOf(image, camera);
+    if (rect.empty() || !frame->places.Holds(image.place)) continue;
+    const RayWeights weights = WeightsOf(frame->frame, image.id);
+    if (weights.are_none()) continue;
+    const PinholeCamera lf_camera = light_field_.Camera(image.id);
+    const uint64_t accepted =
+        reading_.estimator == Estimator::kBilinear
+            ? GatherReference(lf_camera, image.pixels, camera, &plate, weights, reading_.filter)
+            : ScatterReference(lf_camera, image.pixels, camera, rect, &plate, weights);
+    if (plate.has_opacity()) AddOpacityByReference(image, rect, camera, weights, &plate);
+    tally.TakeImage(total_of);
+    frame->rays.accepted_count += accepted;
+    Count(rect, accepted > 0, &frame->rays);
+  }
+  frame->is_done = true;
+  cpu_ns_ += timer.Nanoseconds();
+}
+
+// Collects opacity as a colour of a plate of its own, and adds that to the fourth channel.
+void BatchCollector::AddOpacityByReference(const BatchImage& image, const PixelRect& rect,
+                                           const RenderCamera& camera, const RayWeights& weights,
+                                           SensorPlate* plate) const {
+  SensorPlate opacity(plate->width(), plate->height());
+  const PinholeCamera lf_camera = light_field_.Camera(image.id);
+  if (reading_.estimator == Estimator::kBilinear)
+    GatherReference(lf_camera, image.opacity, camera, &opacity, weights, reading_.filter);
+  else
+    ScatterReference(lf_camera, image.opacity, camera, rect, &opacity, weights);
+  for (int y = 0; y < plate->height(); ++y)
+    for (int x = 0; x < plate->width(); ++x)
+      plate->Add(x, y, SensorPlate::kOpacityChannel, opacity.At(x, y, 0));
+}
+
+// Groups items if there are many, because asking for the time costs more than a pair that misses.
+void BatchCollector::ForEachTimed(size_t count, const std::function<void(size_t)>& body) {
+  constexpr size_t kTasksPerThread = 64, kMostItems = 32;
+  const size_t tasks_wanted = kTasksPerThread * static_cast<size_t>(pool_.thread_count());
+  const size_t together = std::clamp<size_t>(count / tasks_wanted, 1, kMostItems);
+  pool_.ForEach((count + together - 1) / together, [&](size_t task) {
+    const ThreadCpuTimer timer;
+    for (size_t i = task * together; i < std::min(count, (task + 1) * together); ++i) body(i);
+    cpu_ns_ += timer.Nanoseconds();
+  });
+}
+
+}  // namespace lf

@@ -1,0 +1,307 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "lf/render/collect/collect.h"
+#include "lf/render/collect/test_noise_field.h"
+#include "lf/selection/overlap.h"
+
+namespace lf {
+namespace {
+
+constexpr uint32_t kSide = 14;  // more than 128 LF images contribute: two decisions
+
+struct Job {
+  const LightField field = testing::NoiseField(kSide);
+  const std::vector<RenderCamera> frames = testing::NoiseFrames();
+  ThreadPool pool{2};
+  const std::vector<SelectedImage> order = SelectImages(ImageIndex(field, 3), frames, {}, pool);
+  testing::NoiseStore store;
+  CollectOptions options;
+  std::vector<SensorPlate> plates = EmptyPlates();
+  std::vector<PlaceRange> places = std::vector<PlaceRange>(frames.size());
+
+  std::vector<SensorPlate> EmptyPlates() const {
+    std::vector<SensorPlate> empty;
+    for (size_t i = 0; i < frames.size(); ++i) empty.emplace_back(80, 60);
+    return empty;
+  }
+  FrameCollector Collector() {
+    return FrameCollector(field, store, frames, order, places, options, pool, &plates);
+  }
+};
+
+// Collects frame f alone, from places [0, end) of the order.
+SensorPlate PlateOf(Job& job, size_t f, uint32_t end, FrameRays* rays) {
+  std::vector<SensorPlate> plates;
+  plates.emplace_back(80, 60);
+  std::vector<SelectedImage> images = job.order;
+  std::erase_if(images, [&](const SelectedImage& image) { return image.place >= end; });
+  CollectOptions options = job.options;
+  options.interrupted = nullptr;
+  const auto on_load = std::exchange(job.store.on_load, nullptr);
+  const Result<CollectStatistics> statistics =
+      Collect(job.field, job.store, std::span(job.frames).subspan(f, 1), images, options, job.pool,
+              &plates, nullptr);
+  job.store.on_load = on_load;
+  EXPECT_TRUE(statistics);
+  *rays = statistics->frames[0];
+  return std::move(plates[0]);
+}
+
+void ExpectPlates(Job& job, std::span<const FrameProgress> progress) {
+  for (size_t f = 0; f < job.frames.size(); ++f) {
+    FrameRays rays;
+    EXPECT_EQ(job.plates[f], PlateOf(job, f, progress[f].places_done, &rays)) << f;
+  }
+}
+
+void ExpectRays(Job& job, std::span<const FrameProgress> progress) {
+  for (size_t f = 0; f < job.frames.size(); ++f) {
+    FrameRays rays;
+    PlateOf(job, f, progress[f].places_done, &rays);
+    EXPECT_EQ(progress[f].rays.image_count, rays.image_count);
+    EXPECT_EQ(progress[f].rays.tested_count, rays.tested_count);
+    EXPECT_EQ(progress[f].rays.accepted_count, rays.accepted_count);
+  }
+}
+
+TEST(FrameCollector, NoBatchGoesAcrossADecision) {
+  for (const int batch_image_count : {1, 10, 64, 100}) {
+    Job job;
+    job.options.batch_image_count = batch_image_count;
+    FrameCollector collector = job.Collector();
+    std::vector<uint32_t> ends;
+    size_t images_done = 0;
+    while (*collector.Step()) {
+      ends.push_back(collector.frames()[0].places_done);
+      for (const FrameProgress& frame : collector.frames())
+        EXPECT_EQ(frame.places_done, ends.back());
+      EXPECT_LE(collector.images_done() - images_done, static_cast<size_t>(batch_image_count));
+      images_done = collector.images_done();
+      const size_t images_before =
+          std::count_if(job.order.begin(), job.order.end(),
+                        [&](const SelectedImage& image) { return image.place < ends.back(); });
+      EXPECT_EQ(images_done, images_before);
+    }
+    for (const uint32_t decision : {64u, 128u, kSide * kSide})
+      EXPECT_EQ(std::count(ends.begin(), ends.end(), decision), 1) << batch_image_count;
+    ExpectPlates(job, collector.frames());
+    ExpectRays(job, collector.frames());
+  }
+}
+
+TEST(FrameCollector, WithoutRulesBatchesAreNotCut) {
+  Job job;
+  job.options.batch_image_count = 100;
+  job.options.decision_places = 0;
+  FrameCollector collector = job.Collector();
+  EXPECT_TRUE(*collector.Step());
+  EXPECT_EQ(collector.images_done(), 100u);
+}
+
+TEST(FrameCollector, FramesThatStartApartCatchUp) {
+  Job job;
+  job.options.batch_image_count = 10;
+  const uint32_t places[] = {37, 0, 64};
+  for (size_t f = 0; f < 3; ++f) {
+    job.places[f].begin = places[f];
+    FrameRays rays;
+    job.plates[f] = PlateOf(job, f, places[f], &rays);
+  }
+  std::atomic<size_t> load_count = 0;
+  job.store.on_load = [&](LfImageId, const PixelRect&) { ++load_count; };
+  FrameCollector collector = job.Collector();
+  while (*collector.Step()) continue;
+  // Each image is loaded at most once, and those that no frame still needs are not loaded.
+  EXPECT_LE(load_count, job.order.size());
+  EXPECT_GT(load_count, job.order.size() - 37);
+  ExpectPlates(job, collector.frames());
+}
+
+TEST(FrameCollector, FramesThatEndApart) {
+  Job job;
+  const uint32_t ends[] = {37, UINT32_MAX, 64};
+  for (size_t f = 0; f < 3; ++f) job.places[f].end = ends[f];
+  FrameCollector collector = job.Collector();
+  while (*collector.Step()) continue;
+  EXPECT_EQ(collector.frames()[0].places_done, 37u);
+  EXPECT_EQ(collector.frames()[1].places_done, kSide * kSide);
+  EXPECT_EQ(collector.frames()[2].places_done, 64u);
+  ExpectPlates(job, collector.frames());
+  ExpectRays(job, collector.frames());
+}
+
+TEST(FrameCollector, WhatNoFrameWantsIsNotRead) {
+  Job job;
+  for (PlaceRange& range : job.places) range.begin = 100;
+  std::atomic<int> load_count = 0;
+  job.store.on_load = [&](LfImageId, const PixelRect&) { ++load_count; };
+  FrameCollector collector = job.Collector();
+  while (*collector.Step()) continue;
+  EXPECT_EQ(load_count,
+            std::count_if(job.order.begin(), job.order.end(),
+                          [](const SelectedImage& image) { return image.place >= 100; }));
+}
+
+TEST(FrameCollector, LongBatchesAreCut) {
+  Job job;
+  job.options.batch_image_count = 64;
+  job.options.batch_frame_ray_count = 10 * testing::kWidth * testing::kHeight;
+  FrameCollector collector = job.Collector();
+  EXPECT_TRUE(*collector.Step());
+  EXPECT_GE(collector.images_done(), 10u);
+  EXPECT_LT(collector.images_done(), 40u);
+  job.options.batch_ray_count = 1;
+  FrameCollector one_by_one = job.Collector();
+  EXPECT_TRUE(*one_by_one.Step());
+  EXPECT_EQ(one_by_one.images_done(), 1u);
+}
+
+TEST(FrameCollector, TheNextBatchIsDecodedMeanwhile) {
+  Job job;
+  job.options.batch_image_count = 10;
+  std::atomic<int> load_count = 0;
+  job.store.on_load = [&](LfImageId, const PixelRect&) { ++load_count; };
+  FrameCollector collector = job.Collector();
+  EXPECT_TRUE(*collector.Step());
+  EXPECT_EQ(load_count, 20);
+  EXPECT_TRUE(*collector.Step());
+  EXPECT_EQ(load_count, 30);
+}
+
+TEST(FrameCollector, ImagesAreAnnouncedOnceAndAhead) {
+  Job job;
+  job.options.batch_image_count = 10;
+  FrameCollector collector = job.Collector();
+  EXPECT_TRUE(*collector.Step());
+  EXPECT_EQ(job.store.announced.size(), 30u);
+  while (*collector.Step()) continue;
+  ASSERT_EQ(job.store.announced.size(), job.order.size());
+  for (size_t place = 0; place < job.order.size(); ++place)
+    EXPECT_EQ(job.store.announced[place], job.order[place].id.value);
+}
+
+TEST(FrameCollector, OnlyWhatFramesStillNeedIsDecoded) {
+  Job job;
+  for (const size_t f : {size_t{0}, size_t{2}}) job.places[f].begin = kSide * kSide;
+  job.store.on_load = [&](LfImageId id, const PixelRect& rect) {
+    EXPECT_EQ(rect, ContributingRect(job.field.Camera(id), job.frames[1]));
+  };
+  FrameCollector collector = job.Collector();
+  while (*collector.Step()) continue;
+  FrameRays rays;
+  EXPECT_EQ(job.plates[1], PlateOf(job, 1, kSide * kSide, &rays));
+}
+
+TEST(FrameCollector, AStoppedFrameTakesNoMore) {
+  Job job;
+  job.options.batch_image_count = 64;
+  FrameCollector collector = job.Collector();
+  EXPECT_TRUE(*collector.Step());
+  collector.Stop(1);
+  EXPECT_TRUE(*collector.Step());
+  EXPECT_EQ(collector.frames()[1].places_done, 64u);
+  EXPECT_EQ(collector.frames()[2].places_done, 128u);
+  collector.Stop(0);
+  collector.Stop(2);
+  EXPECT_FALSE(*collector.Step());
+  ExpectPlates(job, collector.frames());
+  ExpectRays(job, collector.frames());
+}
+
+TEST(FrameCollector, InterruptedAnywhereEveryFrameIsConsistent) {
+  Job whole;
+  FrameCollector of_all = whole.Collector();
+  while (*of_all.Step()) continue;
+  for (int delay_us = 0; delay_us < 30000; delay_us += 1500) {
+    Job job;
+    std::atomic<bool> interrupted = false;
+    job.options.interrupted = &interrupted;
+    FrameCollector collector = job.Collector();
+    std::thread user([&] {
+      std::this_thread::sleep_for(std::chrono::microseconds(delay_us));
+      interrupted = true;
+    });
+    Result<bool> step = true;
+    while (step && *step) step = collector.Step();
+    user.join();
+    if (!step) {
+      EXPECT_EQ(step.error().kind, ErrorKind::kInterrupted);
+    }
+    ExpectPlates(job, collector.frames());
+    ExpectRays(job, collector.frames());
+
+    // Either this collector goes on after a look at the plates, or another one does.
+    interrupted = false;
+    if (delay_us % 2000 == 0) {
+      while (*collector.Step()) continue;
+      ExpectRays(job, collector.frames());
+    } else {
+      for (size_t f = 0; f < 3; ++f) job.places[f].begin = collector.frames()[f].places_done;
+      FrameCollector another = job.Collector();
+      while (*another.Step()) continue;
+      for (size_t f = 0; f < 3; ++f)
+        EXPECT_EQ(
+            collector.frames()[f].rays.accepted_count + another.frames()[f].rays.accepted_count,
+            of_all.frames()[f].rays.accepted_count);
+    }
+    EXPECT_EQ(job.plates, whole.plates);
+  }
+}
+
+TEST(FrameCollector, BrokenImagesArePlaces) {
+  Job job;
+  job.store.broken = {job.order[5].id.value, job.order[70].id.value};
+  FrameCollector collector = job.Collector();
+  while (*collector.Step()) continue;
+  ASSERT_EQ(collector.skipped().size(), 2u);
+  EXPECT_EQ(collector.skipped()[0].place, job.order[5].place);
+  EXPECT_EQ(collector.skipped()[1].place, job.order[70].place);
+}
+
+TEST(FrameCollector, ALightFieldThatVanishesIsNotSkipped) {
+  Job job;
+  job.options.batch_image_count = 10;
+  FrameCollector collector = job.Collector();
+  ASSERT_TRUE(*collector.Step());
+  ASSERT_TRUE(*collector.Step());
+  const size_t done = collector.images_done();
+  // From here on nothing can be read.
+  for (const SelectedImage& image : job.order) job.store.broken.push_back(image.id.value);
+  job.store.is_gone = true;
+  Result<bool> step = true;
+  while (step && *step) step = collector.Step();
+  ASSERT_FALSE(step);
+  EXPECT_EQ(step.error().kind, ErrorKind::kInput);
+  EXPECT_NE(step.error().message.find("are gone"), std::string::npos);
+  EXPECT_TRUE(collector.skipped().empty());
+  EXPECT_LE(collector.images_done(), done + 10);  // a batch may have been decoded before
+
+  // The disk is back.
+  job.store.broken.clear();
+  job.store.is_gone = false;
+  ExpectPlates(job, collector.frames());
+  for (size_t f = 0; f < 3; ++f) job.places[f].begin = collector.frames()[f].places_done;
+  FrameCollector another = job.Collector();
+  while (*another.Step()) continue;
+  Job whole;
+  FrameCollector of_all = whole.Collector();
+  while (*of_all.Step()) continue;
+  EXPECT_EQ(job.plates, whole.plates);
+}
+
+TEST(FrameCollector, TellsWhereTheTimeWent) {
+  Job job;
+  FrameCollector collector = job.Collector();
+  while (*collector.Step()) continue;
+  EXPECT_GT(collector.times().load_cpu_s, 0);
+  EXPECT_GT(collector.times().collect_cpu_s, 0);
+  EXPECT_GT(collector.times().wall_s, 0);
+}
+
+}  // namespace
+}  // namespace lf

@@ -1,0 +1,172 @@
+#include "lf/render/collect/frame_lens.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "lf/camera/ray_through.h"
+#include "lf/render/collect/around_lens.h"
+#include "lf/selection/lens_weights/image_feather.h"
+
+namespace lf {
+
+Result<void> CheckHasArea(const RenderCamera& camera, FrameId frame) {
+  if (camera.aperture.radius_w > 0) return {};
+  return UsageError(fmt::format(
+      "--lens-weights area: the lens of frame {} is a pinhole, which has no area: use hat",
+      frame.value));
+}
+
+FrameLens::FrameLens(const ImageIndex& index, const RenderCamera& frame, LensWeights kind,
+                     const SelectOptions& select, ThreadPool& pool,
+                     std::optional<double> camera_distance_w)
+    : light_field_(index.light_field()), select_(select), camera_(frame) {
+  if (kind == LensWeights::kNone) return;
+  camera_distance_w_ = camera_distance_w ? *camera_distance_w : CameraDistanceAround(index, frame);
+  RenderCamera grown = frame;
+  grown.aperture = {frame.aperture.radius_w + kReach_distances * camera_distance_w_, 0, 0};
+  for (const SelectedImage& image : SelectImages(index, std::span(&grown, 1), select, pool))
+    cameras_[image.id.value] = 0;
+  // Cameras are in the order of their numbers, because weights must not depend on the order of
+  // images.
+  std::vector<Vec3> near;
+  for (auto& [id, camera] : cameras_) {
+    camera = near.size();
+    near.push_back(light_field_.Camera(LfImageId{id}).CentreWorld());
+  }
+  weights_.emplace(frame, near, kind, pool, light_field_.encoding.masks_clipped);
+  // The lens is made a little larger, so that rays on its rim are inside.
+  camera_.aperture = {weights_->reach_w() * (1 + 1e-6), 0, 0};
+}
+
+RayWeights FrameLens::WeightsOf(LfImageId id) const {
+  if (!weights_) return IsWithinAngle(light_field_.cameras[id.value], camera_, select_) ? 1 : 0;
+  const auto found = cameras_.find(id.value);
+  if (found == cameras_.end() || !weights_->TakesPart(found->second)) return 0;
+  const size_t camera = found->second;
+  RayWeights::RowFunction of_row = [this, camera](int end_x, int end_y, int count,
+                                                  uint8_t* weights) {
+    weights_->OfRow(camera, end_x, end_y, count, weights);
+  };
+  if (weights_->is_constant()) {
+    const auto same = static_cast<uint8_t>(weights_->At(camera, 0, 0));
+    if (same == 0) return 0;
+    of_row = [same](int, int, int count, uint8_t* weights) { std::fill_n(weights, count, same); };
+  }
+  auto feather = std::make_shared<const ImageFeather>(light_field_.Camera(id), camera_);
+  return RayWeights(weights_->BlocksOf(camera), std::move(of_row),
+                    [feather](int x, int y, int count, uint16_t* of_corners) {
+                      feather->OfRow(x, y, count, of_corners);
+                    });
+}
+
+bool FrameLens::Takes(LfImageId id) const {
+  if (!weights_) return IsWithinAngle(light_field_.cameras[id.value], camera_, select_);
+  const auto found = cameras_.find(id.value);
+  if (found == cameras_.end() || !weights_->TakesPart(found->second)) return false;
+  // A share may be so small that its weight is rounded to 0.
+  return !weights_->is_constant() || weights_->At(found->second, 0, 0) > 0;
+}
+
+std::vector<LfImageId> FrameLens::near() const {
+  std::vector<LfImageId> ids;
+  for (const auto& [id, camera] : cameras_) ids.push_back(LfImageId{id});
+  return ids;
+}
+
+std::optional<FrameLens::Facts> FrameLens::facts() const {
+  if (!weights_) return std::nullopt;
+  return Facts{weights_->hat_share(), weights_->coverage()};
+}
+
+Image<float> FrameLens::EffectiveCounts() const {
+  if (!weights_) return {};
+  const Intrinsics& plate = camera_.pinhole.intrinsics;
+  const int step = EffectiveStep(plate);
+  const auto [columns, rows] = EffectiveSquares(plate);
+  Image<double> sums(columns, rows, 2);
+  const auto element = [step](int node, int size) {
+    return std::min(node * step + step / 2, size - 1);
+  };
+  Image<float> counts(sums.width(), sums.height(), 1);
+  std::vector<std::optional<Vec3>> focus;
+  for (int row = 0; row < sums.height(); ++row)
+    for (int column = 0; column < sums.width(); ++column)
+      focus.push_back(FocusPointOfElement(camera_, element(column, plate.width_px) + 0.5,
+                                          element(row, plate.height_px) + 0.5));
+  for (const auto& [id, camera] : cameras_) {
+    if (!weights_->TakesPart(camera)) continue;
+    const RayThrough ray(light_field_.Camera(LfImageId{id}), camera_.pinhole.ForwardWorld());
+    const RayWeights weights = WeightsOf(LfImageId{id});
+    for (int row = 0; row < sums.height(); ++row)
+      for (int column = 0; column < sums.width(); ++column) {
+        const std::optional<Vec3>& point = focus[static_cast<size_t>(row) * sums.width() + column];
+        if (!point || !IsSeenBy(ray, *point)) continue;
+        const double weight =
+            weights.At(element(column, plate.width_px), element(row, plate.height_px));
+        sums.at(column, row, 0) += weight;
+        sums.at(column, row, 1) += weight * weight;
+      }
+  }
+  for (int row = 0; row < sums.height(); ++row)
+    for (int column = 0; column < sums.width(); ++column) {
+      const double sum = sums.at(column, row, 0), squares = sums.at(column, row, 1);
+      counts.at(column, row, 0) = static_cast<float>(squares > 0 ? sum * sum / squares : 0);
+    }
+  return counts;
+}
+
+int EffectiveStep(const Intrinsics& plate) {
+  constexpr int kMostStep = 64, kLeastNodes = 8;
+  return std::clamp(std::min(plate.width_px, plate.height_px) / kLeastNodes, 1, kMostStep);
+}
+
+std::pair<int, int> EffectiveSquares(const Intrinsics& plate) {
+  const int step = EffectiveStep(plate);
+  return {(plate.width_px + step - 1) / step, (plate.height_px + step - 1) / step};
+}
+
+Image<float> SpreadOverPlate(const Image<float>& effective_counts, const Intrinsics& plate) {
+  Image<float> spread(plate.width_px, plate.height_px);
+  // The node before an element, and how far it is to the next one.
+  struct Place {
+    int node, next;
+    float fraction;
+  };
+  const auto places = [step = EffectiveStep(plate)](int size, int count) {
+    std::vector<Place> of_elements;
+    for (int i = 0; i < size; ++i) {
+      const float at =
+          (static_cast<float>(i) - static_cast<float>(step / 2)) / static_cast<float>(step);
+      const int node = std::clamp(static_cast<int>(std::floor(at)), 0, count - 1);
+      of_elements.push_back({node, std::min(node + 1, count - 1),
+                             std::clamp(at - static_cast<float>(node), 0.0F, 1.0F)});
+    }
+    return of_elements;
+  };
+  const std::vector<Place> across = places(plate.width_px, effective_counts.width());
+  const std::vector<Place> down = places(plate.height_px, effective_counts.height());
+  for (int y = 0; y < plate.height_px; ++y)
+    for (int x = 0; x < plate.width_px; ++x) {
+      const Place &h = across[x], &v = down[y];
+      float sum = 0, total = 0;
+      const auto add = [&](int column, int row, float weight) {
+        const float count = effective_counts.at(column, row);
+        if (count == 0) return;
+        sum += weight * count;
+        total += weight;
+      };
+      add(h.node, v.node, (1 - h.fraction) * (1 - v.fraction));
+      add(h.next, v.node, h.fraction * (1 - v.fraction));
+      add(h.node, v.next, (1 - h.fraction) * v.fraction);
+      add(h.next, v.next, h.fraction * v.fraction);
+      spread.at(x, y) = total > 0 ? sum / total : 0;
+    }
+  return spread;
+}
+
+}  // namespace lf

@@ -1,0 +1,116 @@
+#include "lf/render/collect/memory_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "lf/film/plate/sensor_plate.h"
+
+namespace lf {
+namespace {
+
+constexpr size_t kMiB = size_t{1} << 20;
+
+// Code and libraries (most of it OpenImageIO's), and small things. Measured: 120 MiB.
+constexpr size_t kProgramBytes = 132 * kMiB;
+
+// Picture, counts, tables for filling, file buffers. Measured: 58 bytes.
+constexpr size_t kDevelopBytesPerElement = 64;
+constexpr size_t kOpacityBytes = 16;         // per element: opacity, its counts and tables
+constexpr size_t kSheetBytesPerElement = 3;  // for each picture kept for the contact sheet
+constexpr size_t kMostSheetPictures = 12;
+
+// Memory while one LF image is decoded: the file, its stored values, what the decoder needs.
+constexpr size_t kDecodeBytesPerPixel = 16;
+constexpr size_t kDecodeFloatBytesPerPixel = 32;
+constexpr size_t kTileBytes = kMiB;  // of the sums that one thread works on
+
+// Size of a batch. It is large enough that adding its tiles to the plate, and waiting for its last
+// task, take little time beside its rays. More memory is not free: its first use can cost as much
+// as decoding an image into it.
+constexpr size_t kRaysPerElement = 8;
+constexpr size_t kEnoughBatchImages = 16;
+constexpr size_t kEnoughBatchImagesPerThread = 2;
+constexpr size_t kMostBatchImages = 64;
+constexpr size_t kMostPlanBytes = 64 * kMiB;
+
+// Memory that the largest LF image needs.
+struct ImageNeed {
+  size_t pixels = 1;
+  size_t kept_bytes = 1;    // 16-bit radiance, a mask; ideal positions, if any
+  size_t decode_bytes = 1;  // for the thread that decodes it
+  size_t plan_bytes = 1;    // for one frame
+};
+
+ImageNeed NeedOf(const LightField& light_field, Estimator estimator, int plate_width,
+                 int plate_height) {
+  // Bilinear needs RGB, and mosaics are demosaicked for it.
+  const bool is_rgb =
+      light_field.encoding.bayer == BayerPattern::kNone || estimator == Estimator::kBilinear;
+  const size_t decode_bytes_per_pixel = DefaultMaxRadiance(light_field.image_names) > 1
+                                            ? kDecodeFloatBytesPerPixel
+                                            : kDecodeBytesPerPixel;
+  constexpr size_t kPatchBytesPerPixel = 1;  // camera/ideal_pixels.h
+  ImageNeed need;
+  for (const Intrinsics& k : light_field.intrinsics) {
+    const size_t pixels = static_cast<size_t>(k.width_px) * k.height_px;
+    const size_t bytes_per_pixel =
+        (is_rgb ? LfPixels::kRgbLanes * sizeof(uint16_t) : sizeof(uint16_t) + 1) +
+        (light_field.encoding.HasOpacity() ? LfPixels::kRgbLanes * sizeof(uint16_t) : 0) +
+        (k.has_distortion() ? kPatchBytesPerPixel : 0);
+    need.pixels = std::max(need.pixels, pixels);
+    need.kept_bytes = std::max(need.kept_bytes, pixels * bytes_per_pixel);
+    need.decode_bytes = std::max(need.decode_bytes, pixels * decode_bytes_per_pixel);
+    need.plan_bytes = std::max(need.plan_bytes, PlanBytes(estimator, k.has_distortion(), k.width_px,
+                                                          k.height_px, plate_width, plate_height));
+  }
+  return need;
+}
+
+}  // namespace
+
+Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field,
+                              Estimator estimator, int plate_width, int plate_height,
+                              size_t frame_count, int thread_count, size_t bytes_per_frame) {
+  const size_t element_count = static_cast<size_t>(plate_width) * plate_height;
+  const ImageNeed need = NeedOf(light_field, estimator, plate_width, plate_height);
+  MemoryPlan plan;
+  const bool has_opacity = light_field.encoding.HasOpacity();
+  const size_t channels = SensorPlate::kChannels + (has_opacity ? 1 : 0);
+  const size_t develop_bytes = kDevelopBytesPerElement + (has_opacity ? kOpacityBytes : 0);
+  plan.plate_bytes = element_count * channels * sizeof(uint64_t);
+  plan.image_bytes = need.kept_bytes;
+
+  const size_t sheet_pictures = std::min(frame_count, kMostSheetPictures);
+  const size_t set_aside =
+      kProgramBytes + light_field.size() * (sizeof(LfCamera) + 128) +
+      element_count * (develop_bytes + sheet_pictures * kSheetBytesPerElement) +
+      static_cast<size_t>(thread_count) * (need.decode_bytes + kTileBytes);
+  const size_t pair_bytes = 2 * need.kept_bytes + need.plan_bytes;  // one image of each batch
+  const size_t frame_bytes = plan.plate_bytes + bytes_per_frame;
+  const size_t least = set_aside + frame_bytes + pair_bytes;
+  if (memory_bytes < least)
+    return OutputError(fmt::format(
+        "--memory {} MiB is not enough for one {}x{} plate and two LF images: at least {} MiB",
+        memory_bytes / kMiB, plate_width, plate_height, least / kMiB + 1));
+
+  const size_t free_bytes = memory_bytes - set_aside;
+  const size_t enough =
+      std::max({kEnoughBatchImages, kEnoughBatchImagesPerThread * static_cast<size_t>(thread_count),
+                std::min(kMostBatchImages, kRaysPerElement * element_count / need.pixels)});
+  plan.batch_image_count = std::clamp<size_t>(free_bytes / 4 / pair_bytes, 1, enough);
+  // Planning frames together saves waiting at the end of each.
+  plan.plan_bytes =
+      std::max(plan.batch_image_count * need.plan_bytes, std::min(kMostPlanBytes, free_bytes / 16));
+  const size_t images_bytes = plan.batch_image_count * 2 * need.kept_bytes + plan.plan_bytes;
+  plan.frames_finished_at_once =
+      std::min<size_t>(static_cast<size_t>(thread_count),
+                       1 + (images_bytes - plan.plan_bytes) / (element_count * develop_bytes));
+  const size_t plates_bytes = free_bytes - std::min(free_bytes, images_bytes);
+  plan.frames_per_pass =
+      std::clamp<size_t>(plates_bytes / frame_bytes, 1, std::max<size_t>(1, frame_count));
+  plan.total_bytes = set_aside + images_bytes + plan.frames_per_pass * frame_bytes;
+  return plan;
+}
+
+}  // namespace lf

@@ -1,0 +1,78 @@
+#include "lf/render/collect/memory_plan.h"
+
+#include <gtest/gtest.h>
+
+namespace lf {
+namespace {
+
+LightField Field(int width, int height) {
+  LightField field;
+  field.intrinsics = {{1000, 1000, width / 2.0, height / 2.0, 0, width, height}};
+  field.cameras.resize(1000);
+  field.image_names.resize(1000);
+  return field;
+}
+
+constexpr size_t kMiB = size_t{1} << 20;
+
+TEST(MemoryPlan, StaysWithinTheMemory) {
+  for (const size_t memory : {2048 * kMiB, 4096 * kMiB, 8192 * kMiB})
+    for (const int width : {640, 4000}) {
+      const MemoryPlan plan =
+          *PlanMemory(memory, Field(width, width), Estimator::kNearest, 1920, 1080, 900, 2);
+      const size_t images = 2 * plan.batch_image_count * plan.image_bytes + plan.plan_bytes;
+      EXPECT_LE(plan.frames_per_pass * plan.plate_bytes + images, memory) << memory << " " << width;
+      EXPECT_GE(plan.batch_image_count, 1u);
+    }
+}
+
+TEST(MemoryPlan, MoreMemoryNeverMeansMorePasses) {
+  size_t before = 0;
+  for (size_t mib = 700; mib < 10000; mib += 300) {
+    const size_t now =
+        PlanMemory(mib * kMiB, Field(960, 640), Estimator::kNearest, 1920, 1080, 900, 2)
+            ->frames_per_pass;
+    EXPECT_GE(now, before);
+    before = now;
+  }
+  EXPECT_GT(before, 100u);
+}
+
+TEST(MemoryPlan, BatchesAreNoLargerThanPays) {
+  const auto images = [](size_t mib, int width, int height, int threads) {
+    return PlanMemory(mib * kMiB, Field(width, height), Estimator::kNearest, 1920, 1080, 900,
+                      threads)
+        ->batch_image_count;
+  };
+  EXPECT_EQ(images(16384, 320, 240, 2), 64u);
+  EXPECT_EQ(images(16384, 960, 640, 2), 8u * 1920 * 1080 / (960 * 640));
+  EXPECT_EQ(images(16384, 2048, 2048, 2), 16u);
+  EXPECT_EQ(images(65536, 2048, 2048, 40), 80u);
+  EXPECT_LT(images(600, 960, 640, 2), 20u);
+}
+
+// Images of 24 megapixels: the plans of one batch in one frame would be as large as the images.
+TEST(MemoryPlan, LargeImagesAndManyThreadsCount) {
+  const LightField field = Field(6000, 4000);
+  const MemoryPlan few = *PlanMemory(4096 * kMiB, field, Estimator::kNearest, 1920, 1080, 900, 2);
+  const MemoryPlan many =
+      *PlanMemory(16384 * kMiB, field, Estimator::kNearest, 1920, 1080, 900, 32);
+  EXPECT_LE(few.batch_image_count * 2 * few.image_bytes, 1024 * kMiB);
+  EXPECT_FALSE(PlanMemory(4096 * kMiB, field, Estimator::kNearest, 1920, 1080, 900, 32));
+  EXPECT_GE(many.plan_bytes, many.batch_image_count * size_t{4000} * 6000 / 256 * 32);
+}
+
+TEST(MemoryPlan, NamesTheLeastMemoryThatIsEnough) {
+  const Result<MemoryPlan> plan =
+      PlanMemory(100 * kMiB, Field(960, 640), Estimator::kNearest, 1920, 1080, 1, 2);
+  ASSERT_FALSE(plan);
+  EXPECT_EQ(plan.error().kind, ErrorKind::kOutput);
+  const std::string& message = plan.error().message;
+  const size_t at = message.find("at least ");
+  ASSERT_NE(at, std::string::npos) << message;
+  const size_t least = std::stoul(message.substr(at + 9));
+  EXPECT_TRUE(PlanMemory(least * kMiB, Field(960, 640), Estimator::kNearest, 1920, 1080, 1, 2));
+}
+
+}  // namespace
+}  // namespace lf

@@ -1,0 +1,169 @@
+#include "lf/render/collect/noise_moments.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <optional>
+
+#include "lf/core/check.h"
+
+namespace lf {
+namespace {
+
+using Int128 = __int128;
+
+constexpr int kMoments = 4;         // numbers of an element and channel
+constexpr size_t kMostDigits = 30;  // of a number below 2^120
+
+// Reads the numbers of a text: without signs and leading zeros, with one space between.
+class HexReader {
+ public:
+  explicit HexReader(std::string_view text) : rest_(text) {}
+
+  // Returns the next number; none if there is no such number.
+  std::optional<UInt128> Next() {
+    if (count_++ > 0) {
+      if (rest_.empty() || rest_.front() != ' ') return std::nullopt;
+      rest_.remove_prefix(1);
+    }
+    UInt128 number = 0;
+    size_t digits = 0;
+    for (; digits < rest_.size() && rest_[digits] != ' '; ++digits) {
+      const char c = rest_[digits];
+      const int value = c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
+      if (value < 0 || digits == kMostDigits) return std::nullopt;
+      number = number << 4 | static_cast<UInt128>(value);
+    }
+    if (digits == 0 || (digits > 1 && rest_.front() == '0')) return std::nullopt;
+    rest_.remove_prefix(digits);
+    return number;
+  }
+  bool is_at_end() const { return rest_.empty(); }
+  size_t count() const { return count_; }
+
+ private:
+  std::string_view rest_;
+  size_t count_ = 0;
+};
+
+// True if there are S_i <= 65535 W_i with these sums and moments, as far as inequalities tell. All
+// products fit in 128 bits.
+bool CanBe(const ElementSum& total, const ElementMoments& moments) {
+  const UInt128 sum = total.sum, count = total.count, n = moments.image_count;
+  const UInt128 squares = moments.sum_squares, cross = moments.cross_sum;
+  if (n == 0) return moments == ElementMoments{} && total == ElementSum{};
+  if (n > count || moments.count_squares < count || moments.count_squares > count * count)
+    return false;
+  if (cross < sum || cross > sum * count || squares < sum || squares > sum * sum) return false;
+  return n * moments.count_squares >= count * count;  // Cauchy and Schwarz
+}
+
+}  // namespace
+
+double StandardErrorOfMean(const ElementSum& total, const ElementMoments& moments) {
+  if (moments.image_count < 2) return std::numeric_limits<double>::infinity();
+  // The moments about m0, the integer nearest to the mean, are exact: T_i = S_i - m0 W_i. Only m -
+  // m0, at most 1/2, is left to floating point. Unsigned numbers may wrap on the way, but results
+  // are below 2^122, and right when taken as signed numbers.
+  const UInt128 mean = (total.sum + total.count / 2) / total.count;
+  const UInt128 count_squares = moments.count_squares;
+  const UInt128 squares =
+      moments.sum_squares - 2 * mean * moments.cross_sum + mean * mean * count_squares;
+  const UInt128 cross = moments.cross_sum - mean * count_squares;
+  const UInt128 sum = total.sum - mean * total.count;
+  const auto number = [](UInt128 value) { return static_cast<double>(static_cast<Int128>(value)); };
+  const auto count = static_cast<double>(total.count);
+  const double off = number(sum) / count;
+  const double variance_sum =
+      number(squares) - 2 * off * number(cross) + off * off * number(count_squares);
+  const double n = moments.image_count;
+  return std::sqrt(n / (n - 1) * std::max(0.0, variance_sum)) / count;
+}
+
+NoiseMoments::NoiseMoments(int plate_width, int plate_height)
+    : plate_width_(plate_width),
+      plate_height_(plate_height),
+      columns_(std::min(plate_width, kMostColumns)),
+      rows_(std::min(plate_height, kMostRows)),
+      moments_(static_cast<size_t>(columns_) * rows_ * SensorPlate::kChannels) {}
+
+PlateElement NoiseMoments::ElementAt(size_t index) const {
+  const auto middle = [](int64_t number, int64_t count, int64_t length) {
+    return static_cast<int>((2 * number + 1) * length / (2 * count));
+  };
+  const auto column = static_cast<int64_t>(index) % columns_;
+  const auto row = static_cast<int64_t>(index) / columns_;
+  return {middle(column, columns_, plate_width_), middle(row, rows_, plate_height_)};
+}
+
+std::vector<size_t> NoiseMoments::IndicesIn(const PixelRect& rect) const {
+  std::vector<size_t> indices;
+  for (size_t first = 0; first < size(); first += columns_) {
+    const int y = ElementAt(first).y;
+    if (y < rect.y_begin || y >= rect.y_end) continue;
+    for (size_t index = first; index < first + columns_; ++index) {
+      const int x = ElementAt(index).x;
+      if (x >= rect.x_begin && x < rect.x_end) indices.push_back(index);
+    }
+  }
+  return indices;
+}
+
+void NoiseMoments::AddImage(size_t index, int channel, const ElementSum& of_image) {
+  ElementMoments& moments = moments_[index * SensorPlate::kChannels + channel];
+  const UInt128 sum = of_image.sum, count = of_image.count;
+  moments.sum_squares += sum * sum;
+  moments.cross_sum += sum * count;
+  moments.count_squares += count * count;
+  moments.image_count += count > 0 ? 1 : 0;
+}
+
+std::string NoiseMoments::Text() const {
+  std::string text = fmt::format("{:x} {:x}", columns_, rows_);
+  for (const ElementMoments& one : moments_)
+    fmt::format_to(std::back_inserter(text), " {:x} {:x} {:x} {:x}", one.sum_squares, one.cross_sum,
+                   one.count_squares, one.image_count);
+  return text;
+}
+
+Result<NoiseMoments> NoiseMoments::Read(std::string_view text, const SensorPlate& plate) {
+  NoiseMoments read(plate.width(), plate.height());
+  HexReader reader(text);
+  const auto fault = [&](const std::string& expected) {
+    return InputError(fmt::format("number {}: expected {}", reader.count(), expected));
+  };
+  for (const int side : {read.columns_, read.rows_})
+    if (reader.Next() != static_cast<UInt128>(side))
+      return fault(fmt::format("{:x}, of {} x {} measured elements on a plate of {} x {}", side,
+                               read.columns_, read.rows_, plate.width(), plate.height()));
+  for (size_t i = 0; i < read.moments_.size(); ++i) {
+    UInt128 numbers[kMoments];
+    for (UInt128& number : numbers) {
+      const std::optional<UInt128> next = reader.Next();
+      if (!next) return fault("a hexadecimal number below 2^120 after one space");
+      number = *next;
+    }
+    if (numbers[3] > UINT32_MAX) return fault("a number of LF images");
+    ElementMoments& moments = read.moments_[i];
+    moments = {numbers[0], numbers[1], numbers[2], static_cast<uint32_t>(numbers[3])};
+    const PlateElement at = read.ElementAt(i / SensorPlate::kChannels);
+    const int channel = static_cast<int>(i) % SensorPlate::kChannels;
+    if (!CanBe(plate.At(at.x, at.y, channel), moments))
+      return fault(fmt::format("moments of the rays in channel {} of element ({}, {})", channel,
+                               at.x, at.y));
+  }
+  if (!reader.is_at_end()) return fault("nothing behind it");
+  return read;
+}
+
+NoiseTally::NoiseTally(NoiseMoments* moments, const PixelRect& rect) : moments_(moments) {
+  if (moments == nullptr) return;
+  indices_ = moments->IndicesIn(rect);
+  for (const size_t index : indices_) elements_.push_back(moments->ElementAt(index));
+  before_.resize(indices_.size());
+}
+
+}  // namespace lf

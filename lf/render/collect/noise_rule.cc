@@ -1,0 +1,67 @@
+#include "lf/render/collect/noise_rule.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <limits>
+#include <string_view>
+#include <vector>
+
+namespace lf {
+namespace {
+
+constexpr std::string_view kStart = "noise";
+constexpr double kMostNoise = 1000;
+
+}  // namespace
+
+bool IsNoiseRule(const std::string& text) { return text.starts_with(kStart); }
+
+Result<double> ParseNoiseRule(const std::string& text, const std::string& option) {
+  constexpr std::string_view kWords = "noise<=";
+  double noise = 0;
+  const char* const begin = text.data() + std::min(text.size(), kWords.size());
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(begin, end, noise);
+  const bool is_number = error == std::errc{} && rest == end;
+  if (!text.starts_with(kWords) || !is_number || !(noise > 0 && noise <= kMostNoise))
+    return UsageError(
+        fmt::format("{} '{}': expected noise<=X with X above 0 and up to {}, such as noise<=0.002 "
+                    "(linear light, white is 1)",
+                    option, text, kMostNoise));
+  return noise;
+}
+
+std::string TextOfNoiseRule(double noise) { return fmt::format("noise<={}", noise); }
+
+uint32_t NoiseDecisionAfter(uint32_t place) {
+  constexpr uint32_t kFirst = 16, kPerDoubling = 8;
+  if (place < kFirst) return kFirst;
+  const uint32_t step = std::bit_floor(place) / kPerDoubling;
+  const uint64_t next = (uint64_t{place} / step + 1) * step;
+  return static_cast<uint32_t>(std::min<uint64_t>(next, UINT32_MAX));
+}
+
+double MeasureNoise(const SensorPlate& plate, const NoiseMoments& moments,
+                    const ReachableElements& reachable) {
+  std::vector<double> noise;
+  for (size_t i = 0; i < moments.size(); ++i) {
+    const PlateElement at = moments.ElementAt(i);
+    if (!reachable.Holds(at.x, at.y)) continue;
+    double largest = 0;
+    for (int c = 0; c < SensorPlate::kChannels; ++c)
+      largest = std::max(largest, StandardErrorOfMean(plate.At(at.x, at.y, c), moments.At(i, c)));
+    noise.push_back(largest);
+  }
+  if (noise.empty()) return std::numeric_limits<double>::infinity();
+  // Number of elements that may have more noise than the result.
+  const auto above =
+      static_cast<ptrdiff_t>((1 - kMostNoiseElements) * static_cast<double>(noise.size()));
+  const auto at = noise.end() - 1 - above;
+  std::nth_element(noise.begin(), at, noise.end());
+  return *at;
+}
+
+}  // namespace lf

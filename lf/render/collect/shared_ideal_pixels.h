@@ -1,0 +1,34 @@
+// The ideal pixels of LF cameras with distortion, made once for all LF images that share them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <span>
+
+#include "lf/camera/ideal_pixels.h"
+#include "lf/light_field/model/light_field.h"
+
+namespace lf {
+
+struct BatchImage;
+
+class SharedIdealPixels {
+ public:
+  // Calls its argument once for every i in [0, count), in parallel (as ThreadPool::ForEach).
+  using ForEach = std::function<void(size_t count, const std::function<void(size_t)>&)>;
+
+  // Makes what the LF images of a batch need and the batch before did not, and drops the rest.
+  void Keep(const LightField& light_field, std::span<const BatchImage> batch,
+            const ForEach& for_each);
+
+  // Returns nullptr without lens distortion. Any number of threads may call it at the same time.
+  std::shared_ptr<const IdealPixels> Of(uint32_t intrinsics_index) const;
+
+ private:
+  std::map<uint32_t, std::shared_ptr<const IdealPixels>> kept_;  // by index of intrinsics
+};
+
+}  // namespace lf

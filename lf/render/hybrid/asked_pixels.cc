@@ -1,0 +1,48 @@
+#include "lf/render/hybrid/asked_pixels.h"
+
+#include "lf/render/collect/collect.h"
+
+namespace lf {
+
+const char* NameOf(Previews previews) {
+  switch (previews) {
+    case Previews::kOn:
+      return "on";
+    case Previews::kOff:
+      return "off";
+    default:
+      return "auto";
+  }
+}
+
+uint32_t PhaseOf(uint32_t place) {
+  if (place < kDecisionPlaces) return 0;
+  uint32_t phase = kDecisionPlaces;
+  while (phase <= place / 4) phase *= 4;
+  return phase;
+}
+
+// Previews use only LF images that are read anyway, so they alone do not widen the camera.
+AskedPixels::AskedPixels(const LensGaps& gaps, bool collects, Previews previews)
+    : camera_(gaps.asks_in_the_end() ? gaps.ReachedCamera() : gaps.camera()),
+      asks_in_the_end_(gaps.asks_in_the_end()),
+      is_previewed_(collects && previews != Previews::kOff &&
+                    (previews == Previews::kOn || gaps.collected_count() > kPreviewedFrom)),
+      changes_until_(gaps.changes_until()),
+      previewed_until_(gaps.PlaceAfter(kPreviewImages)) {}
+
+PixelRect AskedPixels::RectOf(const LfCamera& lf_camera, const ImageOverlap& overlap,
+                              uint32_t place, const SelectOptions& select) const {
+  const bool is_for_preview = place < previewed_until_ && IsPreviewed(PhaseOf(place));
+  if (!is_for_preview && !asks_in_the_end_) return {};
+  return IsWithinAngle(lf_camera, camera_, select) ? overlap.Rect(camera_) : PixelRect();
+}
+
+PixelRect GrownBy(const PixelRect& rect, int around_px, const Intrinsics& image) {
+  if (rect.empty()) return rect;
+  return Intersection({rect.x_begin - around_px, rect.y_begin - around_px, rect.x_end + around_px,
+                       rect.y_end + around_px},
+                      {0, 0, image.width_px, image.height_px});
+}
+
+}  // namespace lf

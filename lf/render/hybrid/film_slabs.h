@@ -1,0 +1,35 @@
+// The slabs of a film (rebinning/slab_plan.h), planned for all of its frames. The slab of a frame,
+// and thus its cells, do not depend on which other frames are rendered in the same pass or package.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "lf/camera/render_camera.h"
+#include "lf/core/ids.h"
+#include "lf/rebinning/slab_plan.h"
+#include "lf/render/hybrid/frame_sampling.h"
+
+namespace lf {
+
+class FilmSlabs {
+ public:
+  //   frames    all frames of the film, frame 1 first
+  //   sampling  SamplingOf() each frame in the whole light field
+  FilmSlabs(std::span<const RenderCamera> frames, std::span<const FrameSampling> sampling,
+            const QueryOptions& options, const SlabChoices& choices);
+
+  // Returns the index of the frame's slab; none if no LF camera is around its lens.
+  std::optional<size_t> SlabOf(FrameId frame) const { return slab_of_[frame.value - 1]; }
+  // Returns the section of a slab; its bounds are those of all frames of the film that use the
+  // slab.
+  const SlabSection& section(size_t slab) const { return sections_[slab]; }
+
+ private:
+  std::vector<SlabSection> sections_;
+  std::vector<std::optional<size_t>> slab_of_;  // [frame - 1]
+};
+
+}  // namespace lf

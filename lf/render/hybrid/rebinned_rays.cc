@@ -1,0 +1,379 @@
+#include "lf/render/hybrid/rebinned_rays.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+
+#include "lf/core/check.h"
+#include "lf/render/collect/collect.h"
+#include "lf/selection/ideal_cells.h"
+#include "lf/selection/overlap.h"
+
+namespace lf {
+namespace {
+
+// Number of LF pixels whose rays wait for the map at the same time; a waiting ray takes 16 bytes.
+constexpr long long kPixelsAtOnce = 4 << 20;
+// If all rays are kept, LF images are cut into strips of so many rows, which bounds the waiting
+// rays.
+constexpr int kStripRows = 64;
+// About so many LF images are used to estimate the number of asked rays. All rays are kept if the
+// estimate is at most this share of the cells that fit.
+constexpr size_t kEstimatedFrom = 256;
+constexpr double kFitShare = 0.9;
+// Expected cells per estimated ray, if all rays are kept or only those at edges.
+constexpr double kRoom = 1.1, kRoomByEdges = 0.15;
+
+bool Covers(const CoverageMap& map, const Slab& slab, CellKey cell) {
+  return map.Covers(MiddleOf(slab, cell));
+}
+
+}  // namespace
+
+const char* NameOf(KeptRays kept) {
+  switch (kept) {
+    case KeptRays::kAll:
+      return "all";
+    case KeptRays::kEdges:
+      return "edges";
+    default:
+      return "auto";
+  }
+}
+
+// Consecutive frames with a slab of their own.
+struct RebinnedRays::Section {
+  SlabSection plan;        // begin and end are indices of asking_
+  CoverageMap in_the_end;  // rays that finished frames ask for
+  CoverageMap previews;    // rays that previews of this phase ask for
+  std::unique_ptr<RayMap> map;
+  uint32_t phase = 0;
+  uint32_t places_done = 0;
+  std::optional<std::vector<BinnedCell>> cells = {};  // cached cells of the map; none: map changed
+};
+
+RebinnedRays::RebinnedRays(const ImageIndex& index, const FilmSlabs& slabs,
+                           std::span<const FrameId> frames, std::vector<LensGaps> gaps,
+                           std::span<const PlaceRange> places, bool collects,
+                           const SelectOptions& select, const RebinPassOptions& options,
+                           ThreadPool& pool)
+    : light_field_(index.light_field()),
+      gaps_(std::move(gaps)),
+      select_(select),
+      options_(options),
+      pool_(pool),
+      stored_values_(StoredValueTable(light_field_.encoding)) {
+  LF_CHECK(places.size() == gaps_.size() && frames.size() == gaps_.size());
+  for (size_t f = 0; f < gaps_.size(); ++f) {
+    const AskedPixels asked(gaps_[f], collects, options_.previews);
+    if (!asked.AsksForAny() || !slabs.SlabOf(frames[f])) continue;
+    asking_.push_back(f);
+    asked_.push_back(asked);
+  }
+  MakeSections(slabs, frames);
+  MakeMaps(index, places);
+  for (const auto& section : sections_) Begin(0, *section);
+}
+
+// Consecutive frames of one slab are a section. Its bounds are those of its frames in this pass, so
+// that coverage maps are not coarser than necessary.
+void RebinnedRays::MakeSections(const FilmSlabs& slabs, std::span<const FrameId> frames) {
+  for (size_t begin = 0; begin < asking_.size();) {
+    const size_t slab = *slabs.SlabOf(frames[asking_[begin]]);
+    std::vector<FrameQueries> queries;
+    size_t end = begin;
+    for (; end < asking_.size() && *slabs.SlabOf(frames[asking_[end]]) == slab; ++end)
+      queries.push_back(gaps_[asking_[end]].QueriesAt(LensGaps::kInTheEnd));
+    auto section = std::make_unique<Section>();
+    section->plan = slabs.section(slab);
+    section->plan.begin = begin;
+    section->plan.end = end;
+    if (const std::optional<SlabBounds> bounds = BoundsOf(section->plan.slab, queries))
+      section->plan.bounds = *bounds;
+    section->in_the_end = CoverageMap(section->plan, queries, options_.coverage, pool_);
+    sections_.push_back(std::move(section));
+    begin = end;
+  }
+}
+
+RebinnedRays::~RebinnedRays() = default;
+
+// Estimates the number of rays that finished frames ask for by the covered squares of some LF
+// images all over the order. Then decides which rays are kept, and makes the maps.
+void RebinnedRays::MakeMaps(const ImageIndex& index, std::span<const PlaceRange> places) {
+  std::vector<PlaceRange> taken;
+  for (const size_t f : asking_) taken.push_back({0, places[f].end});
+  const std::vector<SelectedImage> images =
+      SelectImages(index, ReachedCameras(), select_, pool_, taken);
+  const size_t step = 1 + images.size() / kEstimatedFrom;
+  const size_t asked = (images.size() + step - 1) / step;
+  std::vector<double> totals;  // of sections
+  for (const auto& section : sections_) {
+    std::vector<double> rays(asked);
+    pool_.ForEach(asked, [&](size_t i) {
+      const SelectedImage& image = images[i * step];
+      rays[i] = static_cast<double>(image.rect.pixel_count()) *
+                CoveredShare(section->plan.slab, light_field_.Camera(image.id), image.rect,
+                             section->in_the_end);
+    });
+    totals.push_back(std::accumulate(rays.begin(), rays.end(), 0.0) * static_cast<double>(step));
+  }
+  const size_t most = std::max<size_t>(1, options_.max_cells / std::max<size_t>(1, totals.size()));
+  max_cells_per_section_ = most;
+  const double most_asked = totals.empty() ? 0 : *std::max_element(totals.begin(), totals.end());
+  keeps_all_ =
+      options_.kept == KeptRays::kAll ||
+      (options_.kept == KeptRays::kAuto && most_asked <= kFitShare * static_cast<double>(most));
+  for (size_t i = 0; i < sections_.size(); ++i)
+    sections_[i]->map = std::make_unique<RayMap>(
+        most, static_cast<size_t>(totals[i] * (keeps_all_ ? kRoom : kRoomByEdges)));
+}
+
+// Begins a phase: updates the coverage of previews, and drops the cells that only earlier previews
+// asked for.
+void RebinnedRays::Begin(uint32_t phase, Section& section) {
+  section.phase = phase;
+  std::vector<FrameQueries> queries;
+  for (size_t i = section.plan.begin; i < section.plan.end; ++i)
+    if (asked_[i].IsPreviewed(phase)) queries.push_back(gaps_[asking_[i]].QueriesAt(phase));
+  if (queries.empty() && section.previews.is_empty()) return;
+  CoverageOptions coarse = options_.coverage;
+  coarse.cells_across = std::max(1, coarse.cells_across / 2);
+  section.previews = CoverageMap(section.plan, queries, coarse, pool_);
+  section.cells.reset();
+  section.map->DropUnless(
+      [&section](CellKey cell) {
+        return Covers(section.in_the_end, section.plan.slab, cell) ||
+               Covers(section.previews, section.plan.slab, cell);
+      },
+      pool_);
+}
+
+uint32_t RebinnedRays::places_done() const {
+  uint32_t least = UINT32_MAX;
+  for (const auto& section : sections_) least = std::min(least, section->places_done);
+  return least;
+}
+uint32_t RebinnedRays::places_done(size_t section) const { return sections_[section]->places_done; }
+const RayMap& RebinnedRays::map(size_t section) const { return *sections_[section]->map; }
+
+void RebinnedRays::Restore(size_t number, RayMap map, uint32_t places_done) {
+  Section& section = *sections_[number];
+  // The coverage of previews must be that of the phase in which the last LF image was taken.
+  if (places_done > 0) Begin(PhaseOf(places_done - 1), section);
+  *section.map = std::move(map);
+  section.places_done = places_done;
+  section.cells.reset();
+}
+
+PixelRect RebinnedRays::RectOf(LfImageId id, uint32_t place, size_t begin, size_t end) const {
+  const PinholeCamera camera = light_field_.Camera(id);
+  std::vector<IdealCell> cells;
+  if (camera.intrinsics.has_distortion()) cells = MakeIdealCells(camera.intrinsics);
+  const ImageOverlap overlap(camera, cells, select_.reach);
+  PixelRect rect;
+  for (size_t i = begin; i < end; ++i)
+    rect = Bounds(rect, asked_[i].RectOf(light_field_.cameras[id.value], overlap, place, select_));
+  return rect;
+}
+
+PixelRect RebinnedRays::RectOf(LfImageId id, uint32_t place) const {
+  return GrownBy(RectOf(id, place, 0, asking_.size()), PixelsAround(options_.rebin, true),
+                 light_field_.Camera(id).intrinsics);
+}
+
+std::vector<RenderCamera> RebinnedRays::ReachedCameras() const {
+  std::vector<RenderCamera> cameras;
+  for (const AskedPixels& asked : asked_) cameras.push_back(asked.camera());
+  return cameras;
+}
+
+void RebinnedRays::Take(std::span<const BatchImage> images, uint32_t place_end) {
+  ideal_pixels_.Keep(light_field_, images,
+                     [&](size_t count, const auto& body) { pool_.ForEach(count, body); });
+  for (const auto& section : sections_) {
+    if (place_end <= section->places_done) continue;
+    const auto first = std::find_if(images.begin(), images.end(), [&](const BatchImage& image) {
+      return image.place >= section->places_done;
+    });
+    const auto left = images.subspan(static_cast<size_t>(first - images.begin()));
+    section->places_done = place_end;
+    if (left.empty()) continue;
+    // A batch never extends into the next phase.
+    const uint32_t phase = PhaseOf(left.front().place);
+    LF_CHECK(PhaseOf(left.back().place) == phase);
+    if (phase != section->phase) Begin(phase, *section);
+    Rebin(left, *section);
+  }
+}
+
+void RebinnedRays::Rebin(std::span<const BatchImage> images, Section& section) {
+  if (section.in_the_end.is_empty() && section.previews.is_empty()) return;
+  struct Task {
+    const BatchImage* image;
+    PixelRect rect;
+  };
+  std::vector<PixelRect> rects(images.size());
+  pool_.ForEach(images.size(), [&](size_t i) {
+    rects[i] = Intersection(images[i].pixels.rect, RectOf(images[i].id, images[i].place,
+                                                          section.plan.begin, section.plan.end));
+  });
+  const bool by_edges = !keeps_all_ || !section.previews.is_empty();
+  std::vector<Task> tasks;
+  for (size_t i = 0; i < images.size(); ++i) {
+    if (rects[i].empty()) continue;
+    // If rays are kept by edges, an LF image is not cut, so that its edges are computed once.
+    const int rows = by_edges ? rects[i].y_end : kStripRows;
+    for (int y = rects[i].y_begin / rows * rows; y < rects[i].y_end; y += rows)
+      tasks.push_back(
+          {&images[i], Intersection(rects[i], {rects[i].x_begin, y, rects[i].x_end, y + rows})});
+  }
+  const RebinCoverage coverage = {keeps_all_ ? &section.in_the_end : nullptr,
+                                  {keeps_all_ ? nullptr : &section.in_the_end, &section.previews}};
+  std::vector<BinnedRays> rays;
+  for (size_t begin = 0; begin < tasks.size();) {
+    // The cells that other rays are averaged into depend on which LF images are inserted together.
+    // They are inserted one LF image at a time, so that batches make no difference.
+    size_t end = begin;
+    for (long long pixels = 0; end < tasks.size() && (pixels == 0 || pixels < kPixelsAtOnce);
+         ++end) {
+      if (options_.rebin.averages_others && end > begin && tasks[end].image != tasks[begin].image)
+        break;
+      pixels += tasks[end].rect.pixel_count();
+    }
+    rays.resize(end - begin);
+    pool_.ForEach(rays.size(), [&](size_t i) {
+      const ThreadCpuTimer timer;
+      const Task& task = tasks[begin + i];
+      rays[i].Clear();
+      const LfCamera& lf_camera = light_field_.cameras[task.image->id.value];
+      RebinImage(section.plan.slab, light_field_.Camera(task.image->id), task.image->id,
+                 task.image->pixels, task.rect, stored_values_,
+                 ideal_pixels_.Of(lf_camera.intrinsics_index).get(), options_.rebin, &coverage,
+                 *section.map, &rays[i]);
+      cpu_ns_ += timer.Nanoseconds();
+    });
+    for (const BinnedRays& of_task : rays) looked_at_ += of_task.looked_at;
+    InsertRays(rays, pool_, section.map.get(), &cpu_ns_);
+    begin = end;
+  }
+  section.cells.reset();
+}
+
+SplatFrame RebinnedRays::SplatBy(std::span<const FrameRay> rays, const FrameQueries& queries,
+                                 const LensPointSets& points, const PointShares* shares) const {
+  const Intrinsics& plate = queries.camera.pinhole.intrinsics;
+  return options_.is_reference
+             ? SplatReference(rays, plate.width_px, plate.height_px, points, queries.kernel, pool_,
+                              shares, options_.nearest)
+             : Splat(rays, plate.width_px, plate.height_px, points, queries.kernel, pool_, shares);
+}
+
+SplatFrame RebinnedRays::SplatOf(const Section& section, const FrameQueries& queries) const {
+  const FrameReach reach = ReachOf(queries.kernel, queries.points);
+  AskedSquares squares;
+  if (queries.shares) squares = queries.shares->Squares(reach.plate_px);
+  const LargeVector<FrameRay> rays =
+      FrameRaysOf(section.plan.slab, *section.cells, queries.camera, reach, pool_, squares);
+  return SplatBy(rays, queries, queries.points, queries.shares ? &*queries.shares : nullptr);
+}
+
+// Interpolates on the planes of the slab: one splat for each lens point, and their mean.
+SplatFrame RebinnedRays::SplatOfPoints(const Section& section, const FrameQueries& queries) const {
+  const Intrinsics& plate = queries.camera.pinhole.intrinsics;
+  SplatFrame sum{Image<float>(plate.width_px, plate.height_px, 3),
+                 Image<float>(plate.width_px, plate.height_px)};
+  const LensPointSets& points = queries.points;
+  const size_t count = points.sets[0].size();
+  LF_CHECK(points.k == 1);
+  for (size_t i = 0; i < count; ++i) {
+    LensPointSets point;
+    point.sets = {{points.sets[0][i]}};
+    point.spreads = {{points.SpreadOf(0, i)}};
+    std::optional<PointShares> share;
+    if (queries.shares) share = queries.shares->OfPoint(i);
+    const LargeVector<FrameRay> rays =
+        FrameRaysThrough(points.sets[0][i], section.plan.slab, *section.cells, queries.camera,
+                         ReachOf(queries.kernel, point), pool_);
+    const SplatFrame splat = SplatBy(rays, queries, point, share ? &*share : nullptr);
+    pool_.ForEach(static_cast<size_t>(plate.height_px), [&](size_t row) {
+      const int y = static_cast<int>(row);
+      for (int x = 0; x < plate.width_px; ++x) {
+        const float found = splat.share.at(x, y);
+        sum.share.at(x, y) += found / static_cast<float>(count);
+        for (int c = 0; c < 3; ++c)
+          sum.rgb.at(x, y, c) += found / static_cast<float>(count) * splat.rgb.at(x, y, c);
+      }
+    });
+  }
+  for (int y = 0; y < plate.height_px; ++y)
+    for (int x = 0; x < plate.width_px; ++x)
+      for (int c = 0; c < 3 && sum.share.at(x, y) > 0; ++c)
+        sum.rgb.at(x, y, c) /= sum.share.at(x, y);
+  return sum;
+}
+
+Completion RebinnedRays::Complete(size_t frame, uint32_t place) {
+  const Intrinsics& plate = gaps_[frame].camera().pinhole.intrinsics;
+  Completion completion{Image<float>(plate.width_px, plate.height_px, 3),
+                        Image<float>(plate.width_px, plate.height_px)};
+  const auto found = std::lower_bound(asking_.begin(), asking_.end(), frame);
+  if (found == asking_.end() || *found != frame || !gaps_[frame].AsksAt(place)) return completion;
+  const auto number = static_cast<size_t>(found - asking_.begin());
+  const auto section = std::find_if(sections_.begin(), sections_.end(),
+                                    [number](const auto& one) { return number < one->plan.end; });
+  if (!(*section)->cells) (*section)->cells = (*section)->map->Cells(pool_);
+  const FrameQueries queries = gaps_[frame].QueriesAt(place);
+  SplatFrame splat =
+      options_.reparameterise ? SplatOf(**section, queries) : SplatOfPoints(**section, queries);
+  completion.rgb = std::move(splat.rgb);
+  if (!queries.shares) {
+    for (size_t i = 0; i < splat.share.pixels().size(); ++i)
+      completion.share.pixels()[i] = splat.share.pixels()[i] > 0 ? 1.0F : 0.0F;
+    return completion;
+  }
+  const PointShares asked = queries.shares->MeansOfSets(queries.points);
+  pool_.ForEach(static_cast<size_t>(plate.height_px), [&](size_t row) {
+    const int y = static_cast<int>(row), k = queries.points.k;
+    for (int x = 0; x < plate.width_px; ++x) {
+      float not_collected = 0;
+      asked.At(x, y, static_cast<size_t>(y % k) * k + static_cast<size_t>(x % k), 1,
+               &not_collected);
+      const float interpolated = splat.share.at(x, y);
+      if (interpolated > 0)
+        completion.share.at(x, y) =
+            interpolated / (interpolated + std::max(0.0F, 1 - not_collected));
+    }
+  });
+  return completion;
+}
+
+RebinnedRays::Facts RebinnedRays::facts() const {
+  Facts facts{sections_.size(), 0,     looked_at_, static_cast<double>(cpu_ns_) * 1e-9,
+              keeps_all_,       false, false};
+  for (const auto& section : sections_) {
+    facts.cell_count += section->map->size();
+    facts.is_full = facts.is_full || section->map->limit() < UINT64_MAX;
+    facts.is_too_coarse = facts.is_too_coarse || section->map->is_too_coarse();
+  }
+  return facts;
+}
+
+std::vector<std::string> RebinnedRays::Describe() const {
+  std::vector<std::string> lines;
+  for (const auto& section : sections_) {
+    const SlabSection& plan = section->plan;
+    const double distance_w =
+        (plan.slab.uv.origin_world - plan.slab.st.origin_world).dot(plan.slab.st.Normal());
+    lines.push_back(fmt::format(
+        "slab {} of {}: {} frames, planes {:.4g} apart, cells {:.3g} wide on st and {:.3g} on uv "
+        "(world units), {:.1f} % of its bounds asked for",
+        lines.size() + 1, sections_.size(), plan.end - plan.begin, distance_w, plan.slab.r_st_w,
+        plan.slab.r_uv_w, 100 * section->in_the_end.share()));
+  }
+  return lines;
+}
+
+}  // namespace lf

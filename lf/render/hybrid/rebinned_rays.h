@@ -1,0 +1,145 @@
+// The rebinned rays of the frames of one pass: keeps the rays that the frames ask for, LF image
+// after LF image, and interpolates the frames from them (thesis 4.3.2, 4.3.3).
+//
+// The rays that a finished frame will ask for are known from calibrations (lens_gaps.h). All of
+// them are kept if there is room, otherwise those at edges (Eq. 4.4). Previews ask for more: while
+// few LF images are collected, rebinned rays at edges show the rest of the picture. The queries of
+// previews are updated before the LF images at places 64, 256, 1024, ...: cells that no query can
+// use any more are dropped, and once no frame asks for more, nothing is rebinned. All of this
+// depends on places, not on time, so the kept rays depend neither on the number of threads nor on
+// interruptions.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lf/core/parallel.h"
+#include "lf/film/develop/develop.h"
+#include "lf/light_field/model/light_field.h"
+#include "lf/rebinning/coverage_map.h"
+#include "lf/rebinning/ray_map.h"
+#include "lf/rebinning/rebin_image.h"
+#include "lf/rebinning/slab_plan.h"
+#include "lf/render/collect/image_consumer.h"
+#include "lf/render/collect/shared_ideal_pixels.h"
+#include "lf/render/hybrid/asked_pixels.h"
+#include "lf/render/hybrid/film_slabs.h"
+#include "lf/render/hybrid/lens_gaps.h"
+
+namespace lf {
+
+// The rays that are kept, among those that finished frames ask for.
+enum class KeptRays {
+  kAuto,   // kAll if they fit in max_cells, otherwise kEdges
+  kAll,    // all rays
+  kEdges,  // rays at edges, by Eq. 4.4
+};
+// Returns "auto", "all" or "edges".
+const char* NameOf(KeptRays kept);
+
+struct RebinPassOptions {
+  RebinOptions rebin;
+  KeptRays kept = KeptRays::kAuto;
+  Previews previews = Previews::kAuto;
+  QueryOptions query;
+  // If true, distances between rays are measured on each frame's lens plane and focus plane. If
+  // false, they are measured on the planes of the slab, which needs query.lens_sets = 1.
+  bool reparameterise = true;
+  // If true, SplatReference() interpolates the rays with its `nearest`: far slower.
+  bool is_reference = false;
+  size_t nearest = 0;
+  SlabChoices slab;
+  CoverageOptions coverage;
+  size_t max_cells = 0;  // of all sections
+};
+
+class RebinnedRays : public ImageConsumer {
+ public:
+  // The light field of `index`, and `pool`, must outlive it.
+  //   slabs     of the film
+  //   frames    of the pass, ascending
+  //   gaps      one for each frame
+  //   places    one range for each frame: the LF images that the frame takes
+  //   collects  true if the frames also collect rays
+  RebinnedRays(const ImageIndex& index, const FilmSlabs& slabs, std::span<const FrameId> frames,
+               std::vector<LensGaps> gaps, std::span<const PlaceRange> places, bool collects,
+               const SelectOptions& select, const RebinPassOptions& options, ThreadPool& pool);
+  ~RebinnedRays() override;
+
+  uint32_t places_done() const override;
+  PixelRect RectOf(LfImageId id, uint32_t place) const override;
+  void Take(std::span<const BatchImage> images, uint32_t place_end) override;
+
+  // Cameras whose lenses contain all rays that are asked for, to select LF images by: one for each
+  // frame that ever asks. asking_frames() are the indices of these frames.
+  std::vector<RenderCamera> ReachedCameras() const;
+  const std::vector<size_t>& asking_frames() const { return asking_; }
+
+  // Returns the interpolated part of a frame when the LF images at places before `place` are
+  // collected.
+  //   frame  index in `frames`
+  Completion Complete(size_t frame, uint32_t place);
+
+  // The state from which an interrupted render resumes. Consecutive frames with the same slab form
+  // a section, which has its own map and an equal part of the memory.
+  size_t section_count() const { return sections_.size(); }
+  const RayMap& map(size_t section) const;
+  size_t max_cells_per_section() const { return max_cells_per_section_; }
+  uint32_t places_done(size_t section) const;
+  //   map  of max_cells_per_section(), with the rays of all LF images at places before places_done
+  void Restore(size_t section, RayMap map, uint32_t places_done);
+
+  // Upper bound of the memory for so many cells: their map, the rays that are made of them for one
+  // frame, the rays that wait for the map, and the coverage maps.
+  static constexpr size_t kBytesPerCell = 100;
+  static constexpr size_t kLeastCells = 1000;
+  static size_t BytesOf(size_t max_cells) {
+    return max_cells * kBytesPerCell + (size_t{192} << 20);
+  }
+
+  struct Facts {
+    size_t section_count = 0;
+    size_t cell_count = 0;
+    uint64_t looked_at = 0;  // number of covered LF pixels
+    double cpu_s = 0;        // CPU time of all threads
+    bool keeps_all = false;  // all rays that finished frames ask for are kept, not only at edges
+    bool is_full = false;    // cells were dropped because there were more than max_cells
+    bool is_too_coarse = false;  // RayMap::is_too_coarse() of a section
+  };
+  Facts facts() const;
+  // Returns a sentence about the slab and the coverage of each section.
+  std::vector<std::string> Describe() const;
+
+ private:
+  struct Section;
+  void MakeSections(const FilmSlabs& slabs, std::span<const FrameId> frames);
+  PixelRect RectOf(LfImageId id, uint32_t place, size_t begin, size_t end) const;
+  void MakeMaps(const ImageIndex& index, std::span<const PlaceRange> places);
+  void Begin(uint32_t phase, Section& section);
+  SplatFrame SplatBy(std::span<const FrameRay> rays, const FrameQueries& queries,
+                     const LensPointSets& points, const PointShares* shares) const;
+  SplatFrame SplatOf(const Section& section, const FrameQueries& queries) const;
+  SplatFrame SplatOfPoints(const Section& section, const FrameQueries& queries) const;
+  void Rebin(std::span<const BatchImage> images, Section& section);
+
+  const LightField& light_field_;
+  const std::vector<LensGaps> gaps_;
+  const SelectOptions select_;
+  const RebinPassOptions options_;
+  ThreadPool& pool_;
+  const std::vector<uint16_t> stored_values_;
+  std::vector<size_t> asking_;      // indices of frames that ask, and that have a slab
+  std::vector<AskedPixels> asked_;  // of these frames
+  std::vector<std::unique_ptr<Section>> sections_;
+  SharedIdealPixels ideal_pixels_;
+  bool keeps_all_ = false;
+  size_t max_cells_per_section_ = 1;
+  uint64_t looked_at_ = 0;
+  std::atomic<int64_t> cpu_ns_ = 0;
+};
+
+}  // namespace lf

@@ -1,0 +1,222 @@
+#include "lf/render/hybrid/rebinned_rays.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "lf/render/collect/collect.h"
+#include "lf/render/collect/frame_lens.h"
+#include "lf/render/collect/test_noise_field.h"
+
+namespace lf {
+namespace {
+
+struct Fixture {
+  LightField field = testing::NoiseField(11);
+  ImageIndex index{field, 5};
+  std::vector<RenderCamera> frames = testing::NoiseFrames();
+  SelectOptions select;
+  RebinPassOptions options;
+  bool collects = true;
+
+  Fixture() {
+    select.reach = PixelReach::kNeighbours;
+    options.max_cells = 4000000;
+    options.previews = Previews::kOn;
+    frames[2].aperture.radius_w = 0.0004;  // between the LF cameras
+  }
+
+  std::unique_ptr<RebinnedRays> Make(ThreadPool& pool) const {
+    std::vector<LensGaps> gaps;
+    CollectedWeights collected;
+    if (collects) collected = [](LfImageId) { return RayWeights(1); };
+    for (const RenderCamera& frame : frames)
+      gaps.emplace_back(index, frame, collected, true, PlaceRange(), select, options.query, pool);
+    const std::vector<PlaceRange> places(frames.size());
+    std::vector<FrameSampling> sampling;
+    std::vector<FrameId> ids;
+    for (const RenderCamera& frame : frames) {
+      sampling.push_back(SamplingOf(index, frame, select, pool));
+      ids.push_back(FrameId{static_cast<uint32_t>(sampling.size())});
+    }
+    const FilmSlabs slabs(frames, sampling, options.query, options.slab);
+    return std::make_unique<RebinnedRays>(index, slabs, ids, std::move(gaps), places, collects,
+                                          select, options, pool);
+  }
+
+  struct Outcome {
+    std::vector<SensorPlate> plates;
+    std::vector<Completion> completions;
+    std::vector<size_t> cells;
+  };
+
+  // Takes all batches. After `interrupted_after` batches, moves the maps to another object, as a
+  // render that resumes does.
+  Outcome Run(int threads, int batch, size_t interrupted_after = SIZE_MAX) const {
+    ThreadPool pool(threads);
+    const testing::NoiseStore store;
+    Outcome outcome;
+    std::vector<PlaceRange> places(frames.size());
+    for (const RenderCamera& frame : frames)
+      outcome.plates.emplace_back(frame.pinhole.intrinsics.width_px,
+                                  frame.pinhole.intrinsics.height_px);
+    std::unique_ptr<RebinnedRays> rays = Make(pool);
+    for (int round = 0; round < 2; ++round) {
+      std::vector<RenderCamera> cameras = collects ? frames : std::vector<RenderCamera>();
+      std::vector<PlaceRange> taken = collects ? places : std::vector<PlaceRange>();
+      for (const RenderCamera& camera : rays->ReachedCameras()) {
+        cameras.push_back(camera);
+        taken.push_back({rays->places_done(), UINT32_MAX});
+      }
+      const auto order = SelectImages(index, cameras, select, pool, taken);
+      CollectOptions collect;
+      collect.reading.estimator = Estimator::kBilinear;
+      collect.batch_image_count = batch;
+      collect.consumer = rays.get();
+      const size_t count = collects ? frames.size() : 0;
+      std::vector<SensorPlate> none;
+      FrameCollector collector(field, store, std::span(frames).first(count), order,
+                               std::span(places).first(count), collect, pool,
+                               collects ? &outcome.plates : &none);
+      for (size_t step = 0; step < interrupted_after; ++step)
+        if (!*collector.Step()) break;
+      if (interrupted_after == SIZE_MAX) break;
+      interrupted_after = SIZE_MAX;
+      for (size_t f = 0; f < count; ++f) places[f].begin = collector.frames()[f].places_done;
+      std::unique_ptr<RebinnedRays> again = Make(pool);
+      for (size_t i = 0; i < rays->section_count(); ++i)
+        again->Restore(i, RayMap(rays->map(i)), rays->places_done(i));
+      rays = std::move(again);
+    }
+    for (size_t f = 0; f < frames.size(); ++f)
+      outcome.completions.push_back(rays->Complete(f, LensGaps::kInTheEnd));
+    for (size_t i = 0; i < rays->section_count(); ++i) outcome.cells.push_back(rays->map(i).size());
+    return outcome;
+  }
+};
+
+void ExpectSame(const Fixture::Outcome& a, const Fixture::Outcome& b) {
+  EXPECT_EQ(a.cells, b.cells);
+  for (size_t f = 0; f < a.completions.size(); ++f) {
+    EXPECT_EQ(a.completions[f].rgb.pixels(), b.completions[f].rgb.pixels());
+    EXPECT_EQ(a.completions[f].share.pixels(), b.completions[f].share.pixels());
+    EXPECT_TRUE(a.plates[f] == b.plates[f]);
+  }
+}
+
+double MeanShare(const Completion& completion) {
+  double sum = 0;
+  for (const float share : completion.share.pixels()) sum += share;
+  return sum / static_cast<double>(completion.share.pixels().size());
+}
+
+TEST(RebinnedRays, CompletesWhatIsNotCollectedAndLeavesThePlatesAlone) {
+  const Fixture fixture;
+  const Fixture::Outcome outcome = fixture.Run(2, 16);
+  EXPECT_LT(MeanShare(outcome.completions[1]), 0.3);
+  EXPECT_GT(MeanShare(outcome.completions[2]), 0.7);
+
+  ThreadPool pool(2);
+  std::vector<SensorPlate> plates;
+  for (const RenderCamera& frame : fixture.frames)
+    plates.emplace_back(frame.pinhole.intrinsics.width_px, frame.pinhole.intrinsics.height_px);
+  CollectOptions collect;
+  collect.reading.estimator = Estimator::kBilinear;
+  const auto order = SelectImages(fixture.index, fixture.frames, fixture.select, pool);
+  ASSERT_TRUE(Collect(fixture.field, testing::NoiseStore(), fixture.frames, order, collect, pool,
+                      &plates, {}));
+  for (size_t f = 0; f < plates.size(); ++f) EXPECT_TRUE(plates[f] == outcome.plates[f]);
+}
+
+TEST(RebinnedRays, TheSameForAnyThreadsBatchesAndInterruptions) {
+  for (const bool collects : {true, false})
+    for (const KeptRays kept : {KeptRays::kAuto, KeptRays::kEdges}) {
+      Fixture fixture;
+      fixture.collects = collects;
+      fixture.options.kept = kept;
+      if (kept == KeptRays::kEdges) fixture.options.max_cells = 900;  // far too few
+      const Fixture::Outcome expected = fixture.Run(1, 16);
+      EXPECT_GT(MeanShare(expected.completions[2]), 0.01);
+      for (const size_t cells : expected.cells) EXPECT_LE(cells, fixture.options.max_cells);
+      ExpectSame(expected, fixture.Run(3, 5));
+      for (const size_t steps : {1, 4, 6}) ExpectSame(expected, fixture.Run(2, 16, steps));
+    }
+}
+
+TEST(RebinnedRays, OthersMayBeAveragedInTheSameWayEachTime) {
+  Fixture fixture;
+  fixture.options.kept = KeptRays::kEdges;
+  fixture.options.rebin.probability.alpha = 0.01;  // noise has edges everywhere
+  fixture.options.slab.r_st_w = 0.01;              // so wide that many rays share a cell
+  fixture.options.slab.r_uv_w = 0.03;
+  const Fixture::Outcome plain = fixture.Run(1, 16);
+  fixture.options.rebin.averages_others = true;
+  const Fixture::Outcome expected = fixture.Run(1, 16);
+  ExpectSame(expected, fixture.Run(3, 7));
+  EXPECT_EQ(expected.cells, plain.cells);
+  EXPECT_NE(expected.completions[2].rgb.pixels(), plain.completions[2].rgb.pixels());
+}
+
+// While few LF images are collected, rays are kept for previews; later, only the rays that finished
+// frames ask for.
+TEST(RebinnedRays, PreviewsAskForMoreThanTheFinishedFrames) {
+  ThreadPool pool(2);
+  const Fixture fixture;
+  const std::unique_ptr<RebinnedRays> rays = fixture.Make(pool);
+  const testing::NoiseStore store;
+  const uint32_t end = fixture.index.place_end();
+  std::vector<BatchImage> images(fixture.field.size());
+  for (uint32_t i = 0; i < images.size(); ++i) {
+    BatchImage& image = images[fixture.index.PlaceOf(LfImageId{i})];
+    image.id = LfImageId{i};
+    image.place = fixture.index.PlaceOf(image.id);
+    ASSERT_TRUE(store.Load(image.id, {0, 0, testing::kWidth, testing::kHeight}, &image.pixels));
+  }
+  ASSERT_GT(end, 64u);
+  EXPECT_GT(rays->RectOf(images[3].id, 3).pixel_count(), 0);
+  rays->Take(std::span(images).first(64), 64);
+  EXPECT_EQ(rays->places_done(), 64u);
+  const double share = MeanShare(rays->Complete(1, 20));
+  const size_t before = rays->facts().cell_count;
+  rays->Take(std::span(images).subspan(64), end);
+  EXPECT_LT(MeanShare(rays->Complete(1, end)), share - 0.1);
+  Fixture without;
+  without.options.previews = Previews::kOff;
+  const Fixture::Outcome outcome = without.Run(1, 16);
+  // The counts differ by cells at the borders of the coverage.
+  EXPECT_NEAR(static_cast<double>(rays->facts().cell_count) / static_cast<double>(outcome.cells[0]),
+              1, 0.4);
+  EXPECT_GT(before, outcome.cells[0] * 64 / end);
+}
+
+// Frames that need few LF images have no previews, unless Previews::kOn asks for them.
+TEST(RebinnedRays, PreviewsAreOfFramesThatTakeLong) {
+  ThreadPool pool(1);
+  Fixture fixture;
+  ASSERT_LT(fixture.field.size(), kPreviewedFrom);
+  const testing::NoiseStore store;
+  const auto looked_at = [&](Previews previews) {
+    fixture.options.previews = previews;
+    const std::unique_ptr<RebinnedRays> rays = fixture.Make(pool);
+    BatchImage image;
+    for (uint32_t i = 0; i < fixture.field.size(); ++i)
+      if (fixture.index.PlaceOf(LfImageId{i}) == 0) image.id = LfImageId{i};
+    EXPECT_TRUE(store.Load(image.id, {0, 0, testing::kWidth, testing::kHeight}, &image.pixels));
+    rays->Take(std::span(&image, 1), 1);
+    return rays->facts().looked_at;
+  };
+  EXPECT_GT(looked_at(Previews::kOn), looked_at(Previews::kAuto));
+  EXPECT_EQ(looked_at(Previews::kOff), looked_at(Previews::kAuto));
+}
+
+TEST(RebinnedRays, WithoutRoomTheRaysAtEdgesAreKept) {
+  ThreadPool pool(1);
+  Fixture fixture;
+  EXPECT_TRUE(fixture.Make(pool)->facts().keeps_all);
+  fixture.options.max_cells = 1000;
+  EXPECT_FALSE(fixture.Make(pool)->facts().keeps_all);
+}
+
+}  // namespace
+}  // namespace lf

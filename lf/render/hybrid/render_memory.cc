@@ -1,0 +1,59 @@
+#include "lf/render/hybrid/render_memory.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "lf/render/hybrid/rebinned_rays.h"
+
+namespace lf {
+namespace {
+
+Result<void> SetAsideForRays(size_t memory_bytes, RenderMode mode, size_t max_cells,
+                             RenderMemory* memory) {
+  const size_t part = memory_bytes / (mode == RenderMode::kRebin ? 2 : 4);
+  if (max_cells == 0)
+    max_cells = (part - std::min(part, RebinnedRays::BytesOf(0))) / RebinnedRays::kBytesPerCell;
+  memory->max_cells = max_cells;
+  memory->rebin_bytes = RebinnedRays::BytesOf(max_cells);
+  if (max_cells >= RebinnedRays::kLeastCells && memory->rebin_bytes <= memory_bytes) return {};
+  return OutputError(fmt::format(
+      "--memory {} MiB has no room for {} rebinned rays, which take {} MiB: give more, or fewer "
+      "--max-rays",
+      memory_bytes >> 20, std::max(max_cells, RebinnedRays::kLeastCells),
+      memory->rebin_bytes >> 20));
+}
+
+}  // namespace
+
+Result<RenderMemory> PlanRenderMemory(size_t memory_bytes, RenderMode mode, size_t max_cells,
+                                      const LightField& light_field, Estimator estimator,
+                                      int plate_width, int plate_height, size_t frame_count,
+                                      int thread_count, size_t measured_bytes) {
+  RenderMemory memory;
+  const bool has_plates = Collects(mode) || measured_bytes > 0;
+  if (Rebins(mode)) LF_RETURN_IF_ERROR(SetAsideForRays(memory_bytes, mode, max_cells, &memory));
+  const Result<MemoryPlan> plan =
+      PlanMemory(memory_bytes - memory.rebin_bytes, light_field, estimator, plate_width,
+                 plate_height, has_plates ? frame_count : 1, thread_count, measured_bytes);
+  if (!plan && memory.rebin_bytes > 0)
+    return Error{plan.error().kind,
+                 fmt::format("{} (beside {} MiB for {} rebinned rays: --memory is for both)",
+                             plan.error().message, memory.rebin_bytes >> 20, memory.max_cells)};
+  if (!plan) return plan.error();
+  memory.plan = *plan;
+  // The kept rays depend on all frames of a pass, and must not depend on whether noise is measured.
+  // All frames must therefore fit in one pass.
+  if (!Collects(mode) && has_plates && plan->frames_per_pass < frame_count)
+    return OutputError(fmt::format(
+        "--mode rebin: \"noise<=X\" is measured by a plate of {} MiB for each frame, and --memory "
+        "{} "
+        "MiB has room for {} of {} (beside {} MiB for {} rebinned rays): give more, or fewer "
+        "--max-rays, or render fewer --frames at a time",
+        plan->plate_bytes >> 20, memory_bytes >> 20, plan->frames_per_pass, frame_count,
+        memory.rebin_bytes >> 20, memory.max_cells));
+  if (!Collects(mode)) memory.plan.frames_per_pass = frame_count;
+  return memory;
+}
+
+}  // namespace lf

@@ -1,0 +1,203 @@
+#include "lf/render/needs/frame_needs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <span>
+#include <utility>
+
+#include "lf/core/check.h"
+#include "lf/render/collect/around_lens.h"
+#include "lf/render/collect/frame_lens.h"
+#include "lf/selection/ideal_cells.h"
+#include "lf/selection/overlap.h"
+
+namespace lf {
+namespace {
+
+// FrameLens::near() can replace a call of ImagesNearLens(), because both have this reach.
+static_assert(FrameLens::kReach_distances == kFarthestDistances);
+
+std::optional<double> DistanceOf(const std::optional<FrameSampling>& sampling) {
+  if (!sampling) return std::nullopt;
+  return sampling->lf.camera_distance_w;
+}
+
+class NeedsFinder {
+ public:
+  NeedsFinder(const ImageIndex& index, const RenderCamera& frame, const NeedsOptions& options,
+              ThreadPool& pool, const std::optional<FrameSampling>& sampling)
+      : index_(index),
+        frame_(frame),
+        options_(options),
+        pool_(pool),
+        distance_w_(DistanceOf(sampling)),
+        lens_(index, frame, options.lens_weights, options.select, pool, distance_w_) {
+    LF_CHECK(options.mode == RenderMode::kCollect || !options.max_image_count);
+    LF_CHECK(options.mode != RenderMode::kRebin || options.lens_weights == LensWeights::kNone);
+    needs_.sampling = sampling;
+  }
+
+  FrameNeeds Find() {
+    if (Collects(options_.mode)) AddCollected();
+    if (Rebins(options_.mode)) AddRebinned();
+    if (options_.HasNeighbours()) FindNeighbours();
+    return std::move(needs_);
+  }
+
+ private:
+  void AddCollected() {
+    const std::span<const RenderCamera> frames(&lens_.camera(), 1);
+    SelectOptions select = options_.select;
+    if (options_.lens_weights != LensWeights::kNone)
+      select.takes = [this](size_t /*frame*/, LfImageId id) { return lens_.Takes(id); };
+    std::vector<PlaceRange> places(1);
+    if (options_.max_image_count)
+      places = PlacesOfFirst(*options_.max_image_count, index_, frames, select, pool_);
+    for (const SelectedImage& image : SelectImages(index_, frames, select, pool_, places))
+      needs_.images.push_back({image.id, image.rect, image.ray_count});
+  }
+
+  void AddRebinned() {
+    CollectedWeights collected;
+    if (Collects(options_.mode)) collected = [this](LfImageId id) { return lens_.WeightsOf(id); };
+    const LensGaps gaps(index_, frame_, collected, options_.lens_weights == LensWeights::kNone, {},
+                        options_.select, options_.rebin.query, pool_, distance_w_);
+    const AskedPixels asked(gaps, Collects(options_.mode), options_.rebin.previews);
+    if (!asked.AsksForAny()) return;
+    std::vector<FrameNeeds::Image> rebinned;
+    for (const SelectedImage& image :
+         SelectImages(index_, std::span(&asked.camera(), 1), options_.select, pool_)) {
+      const PixelRect rect = RebinnedRect(asked, image);
+      if (!rect.empty())
+        rebinned.push_back({image.id, rect, static_cast<uint64_t>(rect.pixel_count())});
+    }
+    Join(rebinned);
+  }
+
+  PixelRect RebinnedRect(const AskedPixels& asked, const SelectedImage& image) const {
+    const LightField& light_field = index_.light_field();
+    const PinholeCamera camera = light_field.Camera(image.id);
+    std::vector<IdealCell> cells;
+    if (camera.intrinsics.has_distortion()) cells = MakeIdealCells(camera.intrinsics);
+    const ImageOverlap overlap(camera, cells, options_.select.reach);
+    const PixelRect rect =
+        asked.RectOf(light_field.cameras[image.id.value], overlap, image.place, options_.select);
+    return GrownBy(rect, PixelsAround(options_.rebin.rebin, true), camera.intrinsics);
+  }
+
+  // Merges `rebinned` into the needs. Both lists are by ascending ranks.
+  void Join(const std::vector<FrameNeeds::Image>& rebinned) {
+    const auto place = [this](const FrameNeeds::Image& image) { return index_.PlaceOf(image.id); };
+    std::vector<FrameNeeds::Image> joined;
+    auto next = rebinned.begin();
+    for (const FrameNeeds::Image& image : needs_.images) {
+      while (next != rebinned.end() && place(*next) < place(image)) joined.push_back(*next++);
+      joined.push_back(image);
+      if (next == rebinned.end() || next->id != image.id) continue;
+      joined.back().rect = Bounds(image.rect, next->rect);
+      joined.back().ray_count += next->ray_count;
+      ++next;
+    }
+    joined.insert(joined.end(), next, rebinned.end());
+    needs_.images = std::move(joined);
+  }
+
+  // Finds the LF cameras that are needed for lens weights, gaps of the lens and rebinned rays of
+  // the default options, for every mode and estimator, so that a package serves them all.
+  void FindNeighbours() {
+    SelectOptions widest = options_.select;
+    widest.reach = kWidestReach;
+    std::vector<SelectedImage> near = Near(widest);
+    if (!needs_.sampling) needs_.sampling = SamplingOf(index_, frame_, near, CameraDistance());
+    const double reach_w = NeighbourReach_w(frame_, *needs_.sampling);
+    if (reach_w > kFarthestDistances * needs_.sampling->lf.camera_distance_w) {
+      RenderCamera grown = frame_;
+      grown.aperture = {frame_.aperture.radius_w + reach_w, 0, 0};
+      near = SelectImages(index_, std::span(&grown, 1), widest, pool_);
+    }
+    std::vector<LfImageId> all, read;
+    for (const SelectedImage& image : near) all.push_back(image.id);
+    // Hats of LF cameras that are far apart reach further.
+    if (lens_.camera().aperture.radius_w > frame_.aperture.radius_w + reach_w)
+      for (const SelectedImage& image :
+           SelectImages(index_, std::span(&lens_.camera(), 1), widest, pool_))
+        all.push_back(image.id);
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    for (const FrameNeeds::Image& image : needs_.images) read.push_back(image.id);
+    std::sort(read.begin(), read.end());
+    std::set_difference(all.begin(), all.end(), read.begin(), read.end(),
+                        std::back_inserter(needs_.neighbours));
+  }
+
+  double CameraDistance() const {
+    if (options_.lens_weights != LensWeights::kNone) return lens_.camera_distance_w();
+    return distance_w_ ? *distance_w_ : CameraDistanceAround(index_, frame_);
+  }
+
+  // Returns the LF images near the lens, by ascending ranks.
+  std::vector<SelectedImage> Near(const SelectOptions& widest) const {
+    if (options_.lens_weights == LensWeights::kNone || options_.select.reach != widest.reach)
+      return ImagesNearLens(index_, frame_, CameraDistance(), widest, pool_);
+    std::vector<SelectedImage> near;
+    for (const LfImageId id : lens_.near()) {
+      SelectedImage image;
+      image.id = id;
+      image.place = index_.PlaceOf(id);
+      near.push_back(image);
+    }
+    std::sort(near.begin(), near.end(),
+              [](const SelectedImage& a, const SelectedImage& b) { return a.place < b.place; });
+    return near;
+  }
+
+  const ImageIndex& index_;
+  const RenderCamera& frame_;
+  const NeedsOptions& options_;
+  ThreadPool& pool_;
+  const std::optional<double> distance_w_;
+  const FrameLens lens_;
+  FrameNeeds needs_;
+};
+
+}  // namespace
+
+std::optional<double> FrameNeeds::camera_distance_w() const { return DistanceOf(sampling); }
+
+uint64_t FrameNeeds::RayCount() const {
+  uint64_t count = 0;
+  for (const Image& image : images) count += image.ray_count;
+  return count;
+}
+
+FrameSurroundings SurroundingsOf(const FrameSampling& sampling) {
+  return {sampling.lf.camera_distance_w, sampling.lf.pixel_rad, sampling.lf.middle_world,
+          sampling.hole_w};
+}
+
+FrameSampling SamplingOf(const FrameSurroundings& surroundings) {
+  return {{surroundings.camera_distance_w, surroundings.pixel_rad, surroundings.middle_world},
+          surroundings.hole_w};
+}
+
+FrameNeeds NeedsOf(const ImageIndex& index, const RenderCamera& frame, const NeedsOptions& options,
+                   ThreadPool& pool, const std::optional<FrameSampling>& sampling) {
+  return NeedsFinder(index, frame, options, pool, sampling).Find();
+}
+
+Result<void> CheckKept(const LfImageStore& store, const LightField& light_field, FrameId frame,
+                       const FrameNeeds& needs) {
+  for (const FrameNeeds::Image& image : needs.images)
+    if (!store.Keeps(image.id, image.rect))
+      return InputError(fmt::format(
+          "{}: frame {} reads pixels of {} that are not in this packed store: it was made for "
+          "other frames, or for another --mode, --estimator or --lens-weights; make packages with "
+          "these from the light field that was compressed, and compress them again, or compress "
+          "without --needed-pixels",
+          light_field.folder.string(), frame.value, light_field.image_names[image.id.value]));
+  return {};
+}
+
+}  // namespace lf

@@ -1,0 +1,32 @@
+#include "lf/render/package/package.h"
+
+#include <utility>
+
+#include "lf/core/check.h"
+
+namespace lf {
+
+std::vector<FrameId> Package::FrameIds() const {
+  std::vector<FrameId> ids;
+  for (const PackageFrame& frame : frames) ids.push_back(frame.id);
+  return ids;
+}
+
+std::optional<double> Package::CameraDistance(FrameId frame) const {
+  if (surroundings.empty()) return std::nullopt;
+  LF_CHECK(frame.value >= 1 && frame.value <= surroundings.size());
+  return surroundings[frame.value - 1].camera_distance_w;
+}
+
+Package PackageOfAll(LightField light_field, CameraPath path, uint64_t seed) {
+  Package package;
+  package.whole = IdentityOf(light_field);
+  package.places = ShuffledPlaces(light_field.size(), seed);
+  package.choices.seed = seed;
+  for (uint32_t n = 1; n <= path.frame_count(); ++n) package.frames.push_back({.id = FrameId{n}});
+  package.light_field = std::move(light_field);
+  package.path = std::move(path);
+  return package;
+}
+
+}  // namespace lf

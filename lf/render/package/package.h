@@ -1,0 +1,88 @@
+// A package contains all that one machine needs to render a section of a film (thesis 4.2): frames,
+// the LF cameras that they need out of a million, and the order in which LF images are taken. It is
+// itself a small light field with a camera path, is rendered like a whole light field
+// (render/pipeline/render.h), and gives the same bits. If no LF image contributes to its frames,
+// the package has no LF images, and the frames are black.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lf/camera/path/camera_path.h"
+#include "lf/core/geometry.h"
+#include "lf/core/ids.h"
+#include "lf/light_field/model/light_field.h"
+#include "lf/light_field/model/light_field_identity.h"
+#include "lf/selection/image_index.h"
+#include "lf/selection/image_order.h"
+
+namespace lf {
+
+struct PackageFrame {
+  FrameId id;
+  uint64_t image_count = 0;  // approximate number of LF images with a ray
+  uint64_t ray_count = 0;    // number of pixels of their rectangles
+};
+
+// Density of LF cameras around the lens of a frame (render/hybrid/frame_sampling.h). It is measured
+// in the whole light field, because the package may lack some LF cameras.
+struct FrameSurroundings {
+  double camera_distance_w = 0;  // approximate spacing of the LF cameras; 0: there are none
+  double pixel_rad = 0;          // angle that one LF pixel covers
+  Vec3 middle_world = Vec3::Zero();
+  double hole_w = 0;  // largest distance from a point of the lens to the nearest LF camera
+};
+
+// Options of the selection, which a render of the package cannot change.
+struct PackageChoices {
+  ImageOrder order = ImageOrder::kShuffle;
+  uint64_t seed = 0;
+  std::optional<size_t> max_image_count;  // limit for each frame; the first LF images in the order
+                                          // are kept
+  std::optional<double> max_angle_rad;    // largest angle between the axes of LF camera and frame
+  // True if the package has the LF cameras beside the lens. Lens weights are measured against them,
+  // and rebinned rays are made from their LF images.
+  bool has_neighbours = true;
+  // Render mode for which the images' `rect` and `frame_count` are computed: "collect", "rebin" or
+  // "hybrid" (render/hybrid/render_mode.h). A package with neighbours can be rendered in any mode
+  // if the LF images are whole.
+  std::string mode = "collect";
+};
+
+// The part of an LF image that the frames of a package need.
+struct PackageImage {
+  uint32_t id = 0;           // in the whole light field, from 0
+  uint64_t file_bytes = 0;   // size of the image file when the package was made; 0: it did not
+                             // exist, or this is a neighbour
+  PixelRect rect;            // bounds of the pixels that are read
+  uint32_t frame_count = 0;  // number of frames that need it; 0: a neighbour
+  uint64_t ray_count = 0;    // number of pixels that are tested as rays, in all of these frames
+};
+
+struct Package {
+  std::string name;   // name of the file without extension; empty for a package in memory
+  size_t number = 1;  // number of this package among the `count` of the film
+  size_t count = 1;
+  LightField light_field;
+  ImagePlaces places;                // ranks in the order of the whole light field
+  CameraPath path;                   // of the whole film
+  std::vector<PackageFrame> frames;  // ascending
+  LightFieldIdentity whole;          // the light field that this is a part of
+  PackageChoices choices;
+  std::vector<PackageImage> images;  // in the order of light_field.cameras; empty for a package in
+                                     // memory
+  // One for each frame of the film, [frame - 1]. Empty: not measured yet, which needs the whole
+  // light field.
+  std::vector<FrameSurroundings> surroundings;
+
+  std::vector<FrameId> FrameIds() const;
+  // Returns camera_distance_w around a frame of the film; none if it is not measured yet.
+  std::optional<double> CameraDistance(FrameId frame) const;
+};
+
+// Returns a whole light field and path as one package, with the LF images in a shuffled order.
+Package PackageOfAll(LightField light_field, CameraPath path, uint64_t seed);
+
+}  // namespace lf

@@ -1,0 +1,42 @@
+// Reads and writes the SQLite file of a package (doc/formats/package.md).
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "lf/core/result.h"
+#include "lf/render/package/package.h"
+
+namespace lf {
+
+// Returns true if the path has the extension .lfp, by which programs tell a package from a
+// LIGHTFIELD.
+bool IsPackageName(const std::filesystem::path& path);
+
+struct PackageNotes {
+  std::string version;      // of the program
+  std::string light_field;  // LIGHTFIELD, as the user gave it
+};
+
+// Writes the package atomically. kOutput if it cannot be written; no file is left then.
+Result<void> WritePackage(const std::filesystem::path& path, const Package& package,
+                          const PackageNotes& notes);
+
+// Writes the package to the file `as`, which the caller will rename to `path`. kOutput if it cannot
+// be written; a part of the file may be left then.
+Result<void> WritePackageAs(const std::filesystem::path& as, const std::filesystem::path& path,
+                            const Package& package, const PackageNotes& notes);
+
+struct ReadPackageOptions {
+  // False in tests that damage the file on purpose. Otherwise the checksum covers every byte.
+  bool check_seal = true;
+};
+
+// Reads a package. Its name is the file's name without extension. light_field.folder is the folder
+// where the LF images were; if that no longer exists, the folder at the same relative path from the
+// package, so that a light field and its packages may be moved together. kInput: the file cannot be
+// read, is damaged, or has another version.
+Result<Package> ReadPackage(const std::filesystem::path& path,
+                            const ReadPackageOptions& options = {});
+
+}  // namespace lf

@@ -1,0 +1,34 @@
+// Definitions that the writer and the reader of package files share. Internal to this folder.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "lf/camera/render_camera.h"
+#include "lf/storage/sqlite/database.h"
+
+namespace lf {
+
+inline constexpr DatabaseFormat kPackageFormat = {"package", 0x4C465047 /* "LFPG" */, 2, 4096};
+
+// Tables of a package besides settings and intrinsics (doc/formats/package.md).
+inline constexpr const char* kPackageTables = R"(
+create table lf_images (place integer primary key, id integer, name text, mask text,
+  intrinsics integer, gain real, x real, y real, z real, pose blob, file_bytes integer,
+  x_begin integer, y_begin integer, x_end integer, y_end integer, frames integer, rays integer);
+create table frames (frame integer primary key, time_s real, x real, y real, z real,
+  aperture_diameter real, focus_distance real, camera blob, is_rendered integer,
+  lf_images integer, rays integer, camera_distance real, surroundings blob);
+)";
+
+// Number of values that describe a frame's camera exactly: fx, fy, cx, cy, skew, width, height;
+// pose; radius, blades and rotation of the aperture; normal and offset of the focus plane; time,
+// focal length, sensor width, focus distance, horizontal and vertical tilt, unit_m.
+inline constexpr size_t kCameraNumbers = 33;
+std::array<double, kCameraNumbers> NumbersOfCamera(const RenderCamera& camera);
+RenderCamera CameraOfNumbers(std::span<const double, kCameraNumbers> numbers);
+
+// Number of fields of FrameSurroundings, stored in their order.
+inline constexpr size_t kSurroundingsNumbers = 6;
+
+}  // namespace lf

@@ -1,0 +1,250 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "lf/light_field/model/brackets.h"
+#include "lf/render/package/package_file.h"
+#include "lf/render/package/package_format.h"
+#include "lf/storage/sqlite/seal.h"
+#include "lf/storage/tables/calibration_tables.h"
+#include "lf/storage/tables/stored_numbers.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int64_t kMostFrames = 1'000'000;
+
+bool IsRenderCamera(const RenderCamera& camera) {
+  const int blades = camera.aperture.blades;
+  return IsCamera(camera.pinhole.intrinsics) && IsPose(camera.pinhole.cam_from_world) &&
+         IsWithin(camera.aperture.radius_w, 0, kMostNumber) &&
+         (blades == 0 || (blades >= 3 && blades <= 1000)) &&
+         std::abs(camera.focus_plane.normal.norm() - 1) < 1e-6 && camera.unit_m > 0;
+}
+
+class Reader {
+ public:
+  Reader(Database database, const fs::path& path) : database_(std::move(database)), path_(path) {}
+
+  Result<Package> Read() {
+    package_.name = path_.stem().string();
+    LF_RETURN_IF_ERROR(ReadSettings());
+    LF_ASSIGN_OR_RETURN(package_.light_field.intrinsics, ReadIntrinsics(settings_, &database_));
+    LF_RETURN_IF_ERROR(ReadImages());
+    LF_RETURN_IF_ERROR(ReadFrames());
+    return std::move(package_);
+  }
+
+ private:
+  Error Damaged(const std::string& what) const { return settings_.Damaged(what); }
+
+  Result<void> ReadSettings();
+  Result<void> ReadNumber();
+  Result<void> ReadChoices();
+  Result<void> ReadImages();
+  Result<void> ReadImage(const Statement& row);
+  Result<void> ReadFrames();
+  Result<void> ReadSurroundings(const std::vector<double>& numbers, int64_t frame);
+  fs::path Folder() const;
+
+  Database database_;
+  const fs::path& path_;
+  Settings settings_;
+  Package package_;
+};
+
+Result<void> Reader::ReadSettings() {
+  LF_ASSIGN_OR_RETURN(settings_, Settings::Read(database_, kPackageFormat.name));
+  package_.light_field.folder = Folder();
+  LF_RETURN_IF_ERROR(ReadPixelSettings(settings_, &package_.light_field));
+  LF_ASSIGN_OR_RETURN(const uint64_t whole_count, settings_.Whole("light_field.images"));
+  package_.whole = {whole_count, settings_.Text("light_field.names"),
+                    settings_.Text("light_field.calibration")};
+  LF_ASSIGN_OR_RETURN(const double end, settings_.Number("places", 1, kMostImages));
+  package_.places.end = static_cast<uint32_t>(end);
+  LF_RETURN_IF_ERROR(ReadNumber());
+  LF_ASSIGN_OR_RETURN(package_.path.fps, settings_.Number("fps", 1e-3, 1e6));
+  LF_ASSIGN_OR_RETURN(package_.path.unit_m, settings_.Number("path_unit_m", 1e-9, 1e9));
+  return ReadChoices();
+}
+
+// Reads the package's number from text such as "3 of 8".
+Result<void> Reader::ReadNumber() {
+  constexpr std::string_view kOf = " of ";
+  const std::string text = settings_.Text("package");
+  const size_t of = std::min(text.find(kOf), text.size());
+  const auto number = ParseNumbers(text.substr(0, of));
+  const auto count = ParseNumbers(text.substr(std::min(text.size(), of + kOf.size())));
+  const auto is_count = [](double x) { return IsWithin(x, 1, kMostFrames) && x == std::floor(x); };
+  const auto is_one = [&](const auto& list) {
+    return list && list->size() == 1 && is_count(list->front());
+  };
+  if (!is_one(number) || !is_one(count)) return settings_.Wrong("package", "like 3 of 8");
+  package_.number = static_cast<size_t>(number->front());
+  package_.count = static_cast<size_t>(count->front());
+  return {};
+}
+
+Result<void> Reader::ReadChoices() {
+  PackageChoices& choices = package_.choices;
+  const std::optional<ImageOrder> order = ImageOrderOf(settings_.Text("order"));
+  if (!order) return settings_.Wrong("order", "shuffle, round-robin or area");
+  choices.order = *order;
+  LF_ASSIGN_OR_RETURN(choices.seed, settings_.Whole("seed"));
+  if (!settings_.Text("max_images").empty()) {
+    LF_ASSIGN_OR_RETURN(choices.max_image_count, settings_.Whole("max_images"));
+  }
+  if (!settings_.Text("max_angle_rad").empty()) {
+    LF_ASSIGN_OR_RETURN(choices.max_angle_rad, settings_.Number("max_angle_rad", 0, kPi));
+  }
+  constexpr const char* kAnswers[] = {"no", "yes"};
+  LF_ASSIGN_OR_RETURN(const int has_neighbours, settings_.Word("lens_neighbours", kAnswers));
+  choices.has_neighbours = has_neighbours == 1;
+  constexpr const char* kModes[] = {"collect", "rebin", "hybrid"};
+  LF_ASSIGN_OR_RETURN(const int mode, settings_.Word("mode", kModes));
+  choices.mode = kModes[mode];
+  return {};
+}
+
+// Returns the folder of the LF images, or the packed store, as it was when the package was made. If
+// it no longer exists, returns the path that has the same position relative to the package.
+fs::path Reader::Folder() const {
+  const fs::path folder = settings_.Text("folder");
+  std::error_code error;
+  if (fs::exists(folder, error)) return folder;
+  const fs::path from_here =
+      (fs::absolute(path_).parent_path() / settings_.Text("folder_from_package"))
+          .lexically_normal();
+  return fs::exists(from_here, error) ? from_here : folder;
+}
+
+// Reads LF images in the order of the whole light field, as WritePackage() got them.
+Result<void> Reader::ReadImages() {
+  LF_RETURN_IF_ERROR(ForEachRow(
+      database_,
+      "select place, id, name, mask, intrinsics, gain, pose, file_bytes, x_begin, y_begin, x_end, "
+      "y_end, frames, rays from lf_images order by id",
+      [this](const Statement& row) { return ReadImage(row); }));
+  LightField& light_field = package_.light_field;
+  if (std::all_of(light_field.mask_names.begin(), light_field.mask_names.end(),
+                  [](const std::string& name) { return name.empty(); }))
+    light_field.mask_names.clear();
+  // All exposures of a pose see the same pixels, and the package has all of them or none.
+  if (light_field.encoding.masks_clipped) ApplyBrackets(&light_field);
+  std::vector<uint32_t> places = package_.places.of_images;
+  std::sort(places.begin(), places.end());
+  if (std::adjacent_find(places.begin(), places.end()) != places.end())
+    return Damaged("two LF images have one place");
+  return {};
+}
+
+Result<void> Reader::ReadImage(const Statement& row) {
+  LightField& light_field = package_.light_field;
+  LF_ASSIGN_OR_RETURN(const int64_t place, row.Integer(0, 0, package_.places.end - 1));
+  PackageImage image;
+  LF_ASSIGN_OR_RETURN(const int64_t id, row.Integer(1, 0, kMostImages));
+  LF_ASSIGN_OR_RETURN(std::string name, row.Text(2));
+  LF_ASSIGN_OR_RETURN(std::string mask, row.Text(3));
+  LF_ASSIGN_OR_RETURN(const LfCamera camera,
+                      ReadCamera(settings_, row, 4, name, light_field.intrinsics.size()));
+  LF_ASSIGN_OR_RETURN(const int64_t file_bytes, row.Integer(7, 0, INT64_MAX));
+  int64_t sides[4];
+  for (int i = 0; i < 4; ++i) {
+    LF_ASSIGN_OR_RETURN(sides[i], row.Integer(8 + i, 0, kMostSide_px));
+  }
+  LF_ASSIGN_OR_RETURN(const int64_t frames, row.Integer(12, 0, kMostFrames));
+  LF_ASSIGN_OR_RETURN(const int64_t rays, row.Integer(13, 0, INT64_MAX));
+  image.id = static_cast<uint32_t>(id);
+  image.file_bytes = static_cast<uint64_t>(file_bytes);
+  image.rect = {static_cast<int>(sides[0]), static_cast<int>(sides[1]), static_cast<int>(sides[2]),
+                static_cast<int>(sides[3])};
+  image.frame_count = static_cast<uint32_t>(frames);
+  image.ray_count = static_cast<uint64_t>(rays);
+  light_field.cameras.push_back(camera);
+  light_field.image_names.push_back(std::move(name));
+  light_field.mask_names.push_back(std::move(mask));
+  package_.places.of_images.push_back(static_cast<uint32_t>(place));
+  package_.images.push_back(image);
+  return {};
+}
+
+// Reads the surroundings of a frame. Either all frames of a film have them, or none.
+Result<void> Reader::ReadSurroundings(const std::vector<double>& numbers, int64_t frame) {
+  const size_t before = static_cast<size_t>(frame) - 1;
+  if (numbers.empty() && package_.surroundings.empty()) return {};
+  const bool are_sane = numbers.size() == kSurroundingsNumbers &&
+                        std::all_of(numbers.begin(), numbers.end(),
+                                    [](double x) { return std::abs(x) <= kMostNumber; }) &&
+                        numbers[0] >= 0 && numbers[1] >= 0 && numbers[5] >= 0 &&
+                        (numbers[0] == 0 || numbers[1] > 0);
+  if (!are_sane || package_.surroundings.size() != before)
+    return Damaged(fmt::format("the LF cameras around frame {} are not described", frame));
+  package_.surroundings.push_back(
+      {numbers[0], numbers[1], {numbers[2], numbers[3], numbers[4]}, numbers[5]});
+  return {};
+}
+
+Result<void> Reader::ReadFrames() {
+  CameraPath& film = package_.path;
+  LF_RETURN_IF_ERROR(ForEachRow(
+      database_,
+      "select frame, camera, is_rendered, lf_images, rays, surroundings from frames "
+      "order by frame",
+      [&](const Statement& row) -> Result<void> {
+        LF_ASSIGN_OR_RETURN(const int64_t number, row.Integer(0, 1, kMostFrames));
+        if (number != static_cast<int64_t>(film.frame_count()) + 1)
+          return Damaged(fmt::format("frame {} is missing", film.frame_count() + 1));
+        LF_ASSIGN_OR_RETURN(const std::string_view bytes, row.Blob(1));
+        const std::vector<double> numbers = NumbersOf<double>(bytes);
+        if (numbers.size() != kCameraNumbers)
+          return Damaged(fmt::format("the camera of frame {} has {} bytes", number, bytes.size()));
+        const bool are_finite = std::all_of(numbers.begin(), numbers.end(),
+                                            [](double x) { return std::abs(x) <= kMostNumber; }) &&
+                                IsWithin(numbers[5], 1, kMostSide_px) &&
+                                IsWithin(numbers[6], 1, kMostSide_px);
+        const RenderCamera camera =
+            are_finite ? CameraOfNumbers(std::span<const double>(numbers).first<kCameraNumbers>())
+                       : RenderCamera();
+        const Intrinsics& plate = camera.pinhole.intrinsics;
+        const bool has_size =
+            film.cameras.empty() ||
+            (plate.width_px == film.cameras.front().pinhole.intrinsics.width_px &&
+             plate.height_px == film.cameras.front().pinhole.intrinsics.height_px);
+        if (!are_finite || !IsRenderCamera(camera) || !has_size)
+          return Damaged(fmt::format("the camera of frame {} is none", number));
+        film.cameras.push_back(camera);
+        LF_ASSIGN_OR_RETURN(const int64_t is_rendered, row.Integer(2, 0, 1));
+        LF_ASSIGN_OR_RETURN(const int64_t images, row.Integer(3, 0, kMostImages));
+        LF_ASSIGN_OR_RETURN(const int64_t rays, row.Integer(4, 0, INT64_MAX));
+        LF_ASSIGN_OR_RETURN(const std::string_view surroundings, row.Blob(5));
+        // LF_RETURN_IF_ERROR cannot be used here, because it is in use around this lambda.
+        const auto read = ReadSurroundings(NumbersOf<double>(surroundings), number);
+        if (!read || is_rendered == 0) return read;
+        PackageFrame frame;
+        frame.id = FrameId{static_cast<uint32_t>(number)};
+        frame.image_count = static_cast<uint64_t>(images);
+        frame.ray_count = static_cast<uint64_t>(rays);
+        package_.frames.push_back(frame);
+        return {};
+      }));
+  if (package_.frames.empty()) return Damaged("it has no frame to render");
+  const bool has_all = package_.surroundings.size() == film.frame_count();
+  if (package_.choices.has_neighbours ? !has_all : !package_.surroundings.empty())
+    return Damaged("it does not describe the LF cameras around its frames");
+  return {};
+}
+
+}  // namespace
+
+bool IsPackageName(const fs::path& path) { return path.extension() == ".lfp"; }
+
+Result<Package> ReadPackage(const fs::path& path, const ReadPackageOptions& options) {
+  const std::string tables = std::string(kSettingsTable) + kIntrinsicsTable + kPackageTables;
+  LF_ASSIGN_OR_RETURN(Database database, Database::Open(path, kPackageFormat, {tables}));
+  if (options.check_seal) LF_RETURN_IF_ERROR(CheckSeal(path, kPackageFormat.name));
+  return Reader(std::move(database), path).Read();
+}
+
+}  // namespace lf

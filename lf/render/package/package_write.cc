@@ -1,0 +1,165 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+#include <vector>
+
+#include "lf/core/check.h"
+#include "lf/core/file.h"
+#include "lf/render/package/package_file.h"
+#include "lf/render/package/package_format.h"
+#include "lf/storage/sqlite/seal.h"
+#include "lf/storage/tables/calibration_tables.h"
+#include "lf/storage/tables/stored_numbers.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+class Writer {
+ public:
+  Writer(Database database, const Package& package)
+      : database_(std::move(database)), package_(package), light_field_(package.light_field) {}
+
+  Result<void> Write(const fs::path& final_path, const PackageNotes& notes) {
+    LF_RETURN_IF_ERROR(database_.Execute(kSettingsTable));
+    LF_RETURN_IF_ERROR(database_.Execute(kIntrinsicsTable));
+    LF_RETURN_IF_ERROR(database_.Execute(kPackageTables));
+    LF_RETURN_IF_ERROR(database_.Execute("begin"));
+    LF_RETURN_IF_ERROR(WriteSettings(SettingsOf(final_path, notes), &database_));
+    LF_RETURN_IF_ERROR(WriteIntrinsics(light_field_.intrinsics, &database_));
+    LF_RETURN_IF_ERROR(WriteImages());
+    LF_RETURN_IF_ERROR(WriteFrames());
+    return database_.Execute("commit");
+  }
+
+ private:
+  SettingList SettingsOf(const fs::path& final_path, const PackageNotes& notes) const {
+    // An empty path means the working folder.
+    const auto absolute = [](const fs::path& path) {
+      return fs::absolute(path.empty() ? "." : path).lexically_normal();
+    };
+    const fs::path folder = absolute(light_field_.folder);
+    const fs::path from_package = folder.lexically_relative(absolute(final_path).parent_path());
+    const PackageChoices& choices = package_.choices;
+    SettingList settings = {{"written_by", "lfrendertools " + notes.version},
+                            {"package", fmt::format("{} of {}", package_.number, package_.count)},
+                            {"light_field", notes.light_field},
+                            {"light_field.images", fmt::format("{}", package_.whole.image_count)},
+                            {"light_field.names", package_.whole.names},
+                            {"light_field.calibration", package_.whole.calibration},
+                            {"folder", folder.string()},
+                            {"folder_from_package", from_package.string()}};
+    const SettingList pixels = SettingsOfPixels(light_field_);
+    const SettingList of_choices = {
+        {"order", NameOf(choices.order)},
+        {"seed", fmt::format("{}", choices.seed)},
+        {"places", fmt::format("{}", package_.places.end)},
+        {"max_images", choices.max_image_count ? fmt::format("{}", *choices.max_image_count) : ""},
+        {"max_angle_rad", choices.max_angle_rad ? fmt::format("{}", *choices.max_angle_rad) : ""},
+        {"lens_neighbours", choices.has_neighbours ? "yes" : "no"},
+        {"mode", choices.mode},
+        {"fps", fmt::format("{}", package_.path.fps)},
+        {"path_unit_m", fmt::format("{}", package_.path.unit_m)}};
+    settings.insert(settings.end(), pixels.begin(), pixels.end());
+    settings.insert(settings.end(), of_choices.begin(), of_choices.end());
+    return settings;
+  }
+
+  // Writes rows in the order of ranks, so that SQLite appends them.
+  Result<void> WriteImages() {
+    LF_CHECK(package_.images.size() == light_field_.size());
+    LF_ASSIGN_OR_RETURN(Statement image,
+                        database_.Prepare("insert into lf_images values "
+                                          "(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"));
+    std::vector<uint32_t> order(light_field_.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::sort(order.begin(), order.end(), [this](uint32_t a, uint32_t b) {
+      return package_.places.of_images[a] < package_.places.of_images[b];
+    });
+    for (const uint32_t i : order) {
+      const int64_t place = package_.places.of_images[i];
+      LF_RETURN_IF_ERROR(WriteImage(&image, i, place));
+    }
+    return {};
+  }
+
+  Result<void> WriteImage(Statement* insert, uint32_t i, int64_t place) {
+    const PackageImage& image = package_.images[i];
+    insert->Bind(0, place).Bind(1, int64_t{image.id});
+    insert->Bind(2, std::string_view(light_field_.image_names[i]));
+    insert->Bind(3, light_field_.mask_names.empty() ? std::string_view()
+                                                    : std::string_view(light_field_.mask_names[i]));
+    BindCamera(light_field_, LfImageId{i}, 4, insert);
+    insert->Bind(10, static_cast<int64_t>(image.file_bytes));
+    insert->Bind(11, int64_t{image.rect.x_begin}).Bind(12, int64_t{image.rect.y_begin});
+    insert->Bind(13, int64_t{image.rect.x_end}).Bind(14, int64_t{image.rect.y_end});
+    insert->Bind(15, int64_t{image.frame_count}).Bind(16, static_cast<int64_t>(image.ray_count));
+    return insert->Run();
+  }
+
+  // Writes all frames of the film; the package's own are marked as rendered.
+  Result<void> WriteFrames() {
+    LF_ASSIGN_OR_RETURN(
+        Statement insert,
+        database_.Prepare("insert into frames values (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"));
+    auto rendered = package_.frames.begin();
+    for (uint32_t n = 1; n <= package_.path.frame_count(); ++n) {
+      const RenderCamera& camera = package_.path.Camera(FrameId{n});
+      const Vec3 centre = camera.pinhole.CentreWorld();
+      const auto numbers = NumbersOfCamera(camera);
+      const bool is_rendered = rendered != package_.frames.end() && rendered->id.value == n;
+      PackageFrame frame;
+      if (is_rendered) frame = *rendered++;
+      insert.Bind(0, int64_t{n}).Bind(1, camera.time_s);
+      insert.Bind(2, centre.x()).Bind(3, centre.y()).Bind(4, centre.z());
+      insert.Bind(5, 2 * camera.aperture.radius_w).Bind(6, camera.focus_distance_w);
+      insert.BindBlob(7, BytesOf(std::span<const double>(numbers)));
+      insert.Bind(8, int64_t{is_rendered}).Bind(9, static_cast<int64_t>(frame.image_count));
+      insert.Bind(10, static_cast<int64_t>(frame.ray_count));
+      const std::optional<double> distance_w = package_.CameraDistance(FrameId{n});
+      insert.Bind(11, distance_w ? *distance_w : -1.0);  // -1: not known
+      const std::vector<double> surroundings = SurroundingsOf(n);
+      insert.BindBlob(12, BytesOf(std::span<const double>(surroundings)));
+      LF_RETURN_IF_ERROR(insert.Run());
+    }
+    return {};
+  }
+
+  // Returns nothing if the surroundings were not measured.
+  std::vector<double> SurroundingsOf(uint32_t frame) const {
+    if (package_.surroundings.empty()) return {};
+    const FrameSurroundings& around = package_.surroundings[frame - 1];
+    const Vec3& middle = around.middle_world;
+    return {around.camera_distance_w,
+            around.pixel_rad,
+            middle.x(),
+            middle.y(),
+            middle.z(),
+            around.hole_w};
+  }
+
+  Database database_;
+  const Package& package_;
+  const LightField& light_field_;
+};
+
+}  // namespace
+
+Result<void> WritePackage(const fs::path& path, const Package& package, const PackageNotes& notes) {
+  return WriteAtomically(path, [&](const fs::path& temporary) -> Result<void> {
+    return WritePackageAs(temporary, path, package, notes);
+  });
+}
+
+Result<void> WritePackageAs(const fs::path& as, const fs::path& path, const Package& package,
+                            const PackageNotes& notes) {
+  {
+    LF_ASSIGN_OR_RETURN(Database database, Database::Create(as, kPackageFormat));
+    LF_RETURN_IF_ERROR(Writer(std::move(database), package).Write(path, notes));
+  }
+  return SealFile(as);
+}
+
+}  // namespace lf

@@ -1,0 +1,24 @@
+// Checks that a render does not overwrite the files that it reads.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "lf/core/result.h"
+#include "lf/render/package/package.h"
+#include "lf/render/pipeline/render.h"
+
+namespace lf {
+
+// Returns kUsage if an output and an input are the same file, by any names. Outputs that do not
+// exist yet replace nothing. Each input costs one access to the disk.
+Result<void> CheckReplacesNone(const std::vector<std::filesystem::path>& outputs,
+                               const std::vector<std::filesystem::path>& inputs);
+
+// Returns kUsage if a file that the render writes into its folder is an LF image or a mask of the
+// package, or one of options.folder.inputs. CheckVideoTarget() checks the video. Links to folders
+// are followed. Links to files are followed in light fields of up to 20,000 LF images only, because
+// each costs one access to the disk.
+Result<void> CheckOutputs(const Package& package, const RenderOptions& options);
+
+}  // namespace lf

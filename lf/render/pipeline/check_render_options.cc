@@ -1,0 +1,42 @@
+// Checks options and orders LF images before a render starts.
+#include "lf/render/needs/film_order.h"
+#include "lf/render/pipeline/check_film_options.h"
+#include "lf/render/pipeline/check_outputs.h"
+#include "lf/render/pipeline/render.h"
+
+namespace lf {
+
+Result<void> CheckRenderOptions(const Package& package, const RenderOptions& options) {
+  const FilmOptions& film = options.film;
+  const FolderOptions& folder = options.folder;
+  if (film.mode == RenderMode::kRebin && folder.keep_plates)
+    return UsageError(
+        "--mode rebin: frames are not made of collected rays, so that there are no plates for "
+        "--keep-plates: leave it out, or use hybrid");
+  LF_RETURN_IF_ERROR(CheckOutputs(package, options));
+  LF_RETURN_IF_ERROR(CheckFilmOptions(package, film, options.frames));
+  if (!folder.finish_early.empty() && (film.shard || !folder.resume))
+    return UsageError(
+        "--finish: finishes frames with the rays that a state has: give --resume, and leave out "
+        "--shard, whose parts would end at different LF images");
+  if (film.shard && (folder.keep_plates || folder.video))
+    return UsageError(
+        "--shard: writes plates for lfmerge, and no frames: leave out --keep-plates and --video "
+        "(lfmerge has one)");
+  return {};
+}
+
+Result<void> PutInOrder(ImageOrder order, const RenderOptions& options, ThreadPool& pool,
+                        Package* package) {
+  LF_RETURN_IF_ERROR(CheckRenderOptions(*package, options));
+  WorkOptions work = options.work;
+  if (options.signals != nullptr) work.stop = &options.signals->stop;
+  const NeedsOptions needs = NeedsOfFilm(*package, Resolved(options.film, *package), work);
+  LF_ASSIGN_OR_RETURN(
+      package->places,
+      PlacesOfFilm(order, package->choices.seed, package->light_field, package->path, needs, pool));
+  package->choices.order = order;
+  return {};
+}
+
+}  // namespace lf

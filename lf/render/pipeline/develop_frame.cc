@@ -1,0 +1,70 @@
+#include "lf/render/pipeline/develop_frame.h"
+
+#include <algorithm>
+#include <chrono>
+#include <iterator>
+#include <optional>
+#include <vector>
+
+#include "lf/light_field/model/lf_pixels.h"
+#include "lf/render/state/run_inputs.h"
+
+namespace lf {
+namespace {
+
+// Returns the median of the values above 0; 0 if there are none.
+double MedianOfSeen(const LargeVector<float>& values) {
+  std::vector<float> sorted;
+  std::copy_if(values.begin(), values.end(), std::back_inserter(sorted),
+               [](float value) { return value > 0; });
+  if (sorted.empty()) return 0;
+  const auto middle = sorted.begin() + static_cast<ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  return *middle;
+}
+
+}  // namespace
+
+PlateNotes MakePlateNotes(FrameId frame, const RenderCamera& camera, const FrameRays& rays,
+                          const FrameLens& lens, const RadianceEncoding& encoding) {
+  PlateNotes notes;
+  notes.frame = frame;
+  notes.camera = camera;
+  notes.rays = rays;
+  notes.develop.pedestal = encoding.pedestal;
+  notes.develop.scale = encoding.Scale();
+  notes.develop.white_balance = encoding.white_balance;
+  notes.develop.linear_srgb_from_camera = encoding.linear_srgb_from_camera;
+  if (const std::optional<FrameLens::Facts> facts = lens.facts())
+    notes.weighed = PlateNotes::Weighed{facts->hat_share, facts->coverage, lens.EffectiveCounts()};
+  return notes;
+}
+
+RenderedFrame DevelopFrame(const PlateNotes& notes, const SensorPlate& plate,
+                           const Completion* completion, bool with_effective, ThreadPool& pool,
+                           const std::function<bool()>& is_interrupted) {
+  const auto start = std::chrono::steady_clock::now();
+  DevelopOptions develop = notes.develop;
+  develop.is_interrupted = is_interrupted;
+  develop.completion = completion;
+  develop.transparent = LfPixels::kTransparent;
+  develop.opaque = LfPixels::kOpaque;
+  RenderedFrame frame;
+  frame.picture = Develop(plate, develop, pool);
+  if (is_interrupted && is_interrupted()) return frame;
+  frame.report = MakeFrameReport(notes.frame, notes.rays, frame.picture);
+  frame.report.camera = InputsOfCamera(notes.frame, notes.camera);
+  frame.report.places_done = notes.places_done;
+  if (notes.weighed) {
+    const Image<float>& counts = notes.weighed->effective_counts;
+    frame.report.weighed = {MedianOfSeen(counts.pixels()), notes.weighed->hat_share,
+                            notes.weighed->coverage};
+    if (with_effective)
+      frame.picture.effective_count = SpreadOverPlate(counts, notes.camera.pinhole.intrinsics);
+  }
+  frame.report.develop_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return frame;
+}
+
+}  // namespace lf

@@ -1,0 +1,357 @@
+#include "lf/render/pipeline/film_renderer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "lf/core/log.h"
+#include "lf/render/hybrid/frame_sampling.h"
+#include "lf/render/needs/frame_needs.h"
+
+namespace lf {
+
+Result<std::unique_ptr<FilmRenderer>> FilmRenderer::Open(Package package, const FilmOptions& film,
+                                                         const WorkOptions& work,
+                                                         std::vector<FrameId> frames,
+                                                         ThreadPool& pool) {
+  LF_ASSIGN_OR_RETURN(std::unique_ptr<FilmSetup> setup,
+                      FilmSetup::Make(std::move(package), film, work, std::move(frames), pool));
+  const size_t fit = setup->plan().frames_per_pass;
+  if (fit < setup->frames().size())
+    return OutputError(fmt::format(
+        "{} frames at the same time need more than {} MiB of memory, which suffice for {}",
+        setup->frames().size(), work.memory_bytes >> 20, fit));
+  LF_RETURN_IF_ERROR(setup->PlanSlabs());
+  auto renderer = std::make_unique<FilmRenderer>(*setup, setup->frames());
+  renderer->own_setup_ = std::move(setup);
+  LF_RETURN_IF_ERROR(renderer->Begin());
+  return renderer;
+}
+
+FilmRenderer::FilmRenderer(const FilmSetup& setup, std::span<const FrameId> frames)
+    : setup_(setup), film_(setup.film()), select_(setup.Select()), frames_(frames.size()) {
+  for (size_t f = 0; f < frames.size(); ++f) frames_[f].id = frames[f];
+}
+
+Result<void> FilmRenderer::Begin(const EarlierRun* earlier) {
+  if (earlier != nullptr)
+    for (Frame& frame : frames_) {
+      frame.is_released = earlier->IsFinished(frame.id);
+      frame.is_early = earlier->EndsEarly(frame.id);
+    }
+  LF_RETURN_IF_ERROR(FindLenses());
+  std::vector<PlaceRange> places(frames_.size());
+  if (film_.max_image_count)
+    places = PlacesOfFirst(*film_.max_image_count, setup_.index(), cameras_, SelectCollected(),
+                           setup_.pool());
+  if (film_.Rebins()) LF_RETURN_IF_ERROR(PrepareRebinning(places, earlier));
+  if (film_.HasPlates()) LF_RETURN_IF_ERROR(PreparePlates(earlier, &places));
+  if (rebinned_ && film_.HasStopRule()) ForgetRaysAhead(places);
+  SelectForFrames(places);
+  if (setup_.work().IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
+
+  CollectOptions collect = OptionsOfCollector();
+  if (film_.HasStopRule()) LF_RETURN_IF_ERROR(PrepareStops(places, &collect));
+  if (!film_.HasPlates()) places.clear();
+  collector_ = std::make_unique<FrameCollector>(
+      setup_.light_field(), setup_.store(),
+      film_.HasPlates() ? std::span<const RenderCamera>(cameras_) : std::span<const RenderCamera>(),
+      images_, places, collect, setup_.pool(), &plates_);
+  for (size_t f = 0; f < plates_.size(); ++f)
+    if (frames_[f].is_released) collector_->Stop(f);
+  EndEarlyFrames();
+  DecideStops();  // an earlier run may have left frames where their stop rule decides
+  return {};
+}
+
+Result<void> FilmRenderer::FindLenses() {
+  for (const Frame& frame : frames_) {
+    if (setup_.work().IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
+    lenses_.emplace_back(setup_.index(), setup_.path().Camera(frame.id), film_.lens_weights,
+                         select_, setup_.pool(), setup_.package().CameraDistance(frame.id));
+    cameras_.push_back(lenses_.back().camera());
+  }
+  return {};
+}
+
+// Selects the LF images with rays that count in a frame.
+SelectOptions FilmRenderer::SelectCollected() const {
+  SelectOptions select = select_;
+  if (film_.lens_weights != LensWeights::kNone)
+    select.takes = [this](size_t f, LfImageId id) { return lenses_[f].Takes(id); };
+  return select;
+}
+
+CollectOptions FilmRenderer::OptionsOfCollector() {
+  const WorkOptions& work = setup_.work();
+  CollectOptions collect;
+  collect.reading = film_.reading;
+  collect.back_end = film_.back_end;
+  collect.batch_image_count = static_cast<int>(setup_.plan().batch_image_count);
+  collect.plan_bytes = setup_.plan().plan_bytes;
+  collect.strict = work.strict;
+  collect.whole_images = work.whole_images;
+  collect.interrupted = work.interrupted;
+  collect.place_end = setup_.index().place_end();
+  if (film_.lens_weights != LensWeights::kNone || setup_.package().choices.max_angle_rad)
+    collect.weights = [this](size_t f, LfImageId id) { return lenses_[f].WeightsOf(id); };
+  collect.decision_places = 0;
+  if (rebinned_) {
+    collect.consumer = rebinned_.get();
+    collect.decision_places = kDecisionPlaces;
+  }
+  if (film_.MeasuresNoise()) collect.moments = &moments_;
+  return collect;
+}
+
+Result<void> FilmRenderer::PreparePlates(const EarlierRun* earlier,
+                                         std::vector<PlaceRange>* places) {
+  // Plates are made by all threads, because a thread that clears one waits for its memory.
+  for (size_t f = 0; f < frames_.size(); ++f) plates_.emplace_back(0, 0);
+  if (film_.MeasuresNoise()) moments_.resize(frames_.size());
+  setup_.pool().ForEach(frames_.size(), [this](size_t f) {
+    const Intrinsics& plate = cameras_[f].pinhole.intrinsics;
+    if (!setup_.work().IsStopped() && !frames_[f].is_released)
+      plates_[f] = SensorPlate::WithOpacity(plate.width_px, plate.height_px,
+                                            setup_.light_field().encoding.HasOpacity());
+  });
+  for (size_t f = 0; f < frames_.size(); ++f) {
+    if (setup_.work().IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
+    Frame& frame = frames_[f];
+    PlaceRange& taken = (*places)[f];
+    if (frame.is_released) {
+      taken.begin = taken.end;
+      continue;
+    }
+    LF_ASSIGN_OR_RETURN(const FrameProgress start, LoadPlate(f, earlier));
+    if (frame.is_early) taken.end = std::min(taken.end, start.places_done);
+    frame.places = {0, taken.end};
+    taken.begin = start.places_done;
+    frame.earlier_rays = start.rays;
+  }
+  return {};
+}
+
+// Loads a plate of the earlier run. If noise is measured, a plate without moments is dropped, and
+// its frame begins anew, unless the frame ends early.
+Result<FrameProgress> FilmRenderer::LoadPlate(size_t f, const EarlierRun* earlier) {
+  Frame& frame = frames_[f];
+  const int width = plates_[f].width(), height = plates_[f].height();
+  FrameProgress start;
+  std::optional<NoiseMoments> moments;
+  if (earlier != nullptr) {
+    LF_ASSIGN_OR_RETURN(start, earlier->LoadPlate(frame.id, &plates_[f],
+                                                  film_.MeasuresNoise() ? &moments : nullptr));
+  }
+  if (!film_.MeasuresNoise()) return start;
+  frame.has_noise = moments || start.places_done == 0;
+  if (!frame.has_noise && !frame.is_early) {
+    LogInfo("frame {} is begun anew, since its noise was not measured before", frame.id.value);
+    plates_[f] = SensorPlate::WithOpacity(width, height, plates_[f].has_opacity());
+    start = {};
+    frame.has_noise = true;
+  }
+  moments_[f] = moments ? *std::move(moments) : NoiseMoments(width, height);
+  return start;
+}
+
+// Checks that the frame needs no LF cameras beyond the reach of the default options, because the
+// package has no others.
+Result<void> FilmRenderer::CheckReach(const LensGaps& gaps, FrameId frame) const {
+  const Package& package = setup_.package();
+  if (package.surroundings.empty() || !gaps.asks_in_the_end()) return {};
+  const RenderCamera& camera = setup_.path().Camera(frame);
+  const double reached_w = gaps.ReachedCamera().aperture.radius_w - camera.aperture.radius_w;
+  const double known_w =
+      NeighbourReach_w(camera, SamplingOf(package.surroundings[frame.value - 1]));
+  if (reached_w <= known_w * (1 + 1e-9)) return {};
+  return UsageError(fmt::format(
+      "--sigma-st, --lens-points: frame {} asks for rays up to {:.3g} world units beside its lens, "
+      "and {} has LF cameras up to {:.3g}: leave them out, or render the light field itself",
+      frame.value, reached_w, package.name, known_w));
+}
+
+Result<void> FilmRenderer::PrepareRebinning(std::span<const PlaceRange> places,
+                                            const EarlierRun* earlier) {
+  std::vector<LensGaps> gaps;
+  std::vector<FrameId> ids;
+  for (size_t f = 0; f < frames_.size(); ++f) {
+    if (setup_.work().IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
+    const FrameId id = frames_[f].id;
+    CollectedWeights collected;
+    if (film_.Collects())
+      collected = [&, f](LfImageId image) { return lenses_[f].WeightsOf(image); };
+    gaps.emplace_back(setup_.index(), setup_.path().Camera(id), collected,
+                      film_.lens_weights == LensWeights::kNone, places[f], select_,
+                      film_.rebin.query, setup_.pool(), setup_.package().CameraDistance(id));
+    LF_RETURN_IF_ERROR(CheckReach(gaps.back(), id));
+    ids.push_back(id);
+  }
+  RebinPassOptions options = film_.rebin;
+  options.max_cells = setup_.max_cells();
+  options.is_reference = film_.back_end == CollectBackEnd::kReference;
+  rebinned_ =
+      std::make_unique<RebinnedRays>(setup_.index(), setup_.slabs(), ids, std::move(gaps), places,
+                                     film_.Collects(), select_, options, setup_.pool());
+  for (const std::string& line : rebinned_->Describe()) LogInfo("{}", line);
+  if (earlier == nullptr) return {};
+  for (size_t i = 0; i < rebinned_->section_count(); ++i) {
+    LF_ASSIGN_OR_RETURN(std::optional<EarlierRun::Rays> rays,
+                        earlier->LoadRays(i, rebinned_->max_cells_per_section()));
+    if (rays) rebinned_->Restore(i, std::move(rays->map), rays->places_done);
+  }
+  return {};
+}
+
+// Selects the LF images to load. Those for plates have the rectangle of the pixels to collect;
+// rebinned rays name their pixels when an image is loaded (ImageConsumer).
+void FilmRenderer::SelectForFrames(std::span<const PlaceRange> places) {
+  images_.clear();
+  if (film_.HasPlates()) {
+    SelectOptions select = SelectCollected();
+    select.whole_images = setup_.work().whole_images;
+    images_ = SelectImages(setup_.index(), cameras_, select, setup_.pool(), places);
+  }
+  if (film_.shard)
+    std::erase_if(images_,
+                  [this](const SelectedImage& image) { return !film_.shard->Holds(image.place); });
+  if (rebinned_) AddRebinnedImages(places);
+}
+
+void FilmRenderer::AddRebinnedImages(std::span<const PlaceRange> places) {
+  std::vector<PlaceRange> taken;
+  for (const size_t f : rebinned_->asking_frames())
+    taken.push_back({rebinned_->places_done(), places[f].end});
+  const auto is_before = [](const SelectedImage& a, const SelectedImage& b) {
+    return a.place < b.place;
+  };
+  std::vector<SelectedImage> all;
+  const std::vector<SelectedImage> asked =
+      SelectImages(setup_.index(), rebinned_->ReachedCameras(), select_, setup_.pool(), taken);
+  for (SelectedImage image : asked) {
+    if (std::binary_search(images_.begin(), images_.end(), image, is_before)) continue;
+    if (rebinned_->RectOf(image.id, image.place).empty()) continue;
+    image.rect = {};  // nothing is collected of it
+    all.push_back(image);
+  }
+  const auto middle = all.insert(all.end(), images_.begin(), images_.end());
+  std::inplace_merge(all.begin(), middle, all.end(), is_before);
+  images_ = std::move(all);
+}
+
+// Without collection, only rebinned rays tell what the earlier run has of a frame: a frame without
+// them does not end early.
+void FilmRenderer::EndEarlyFrames() {
+  if (film_.Collects()) return;
+  const uint32_t places_done = rebinned_->places_done();
+  for (Frame& frame : frames_) {
+    if (!frame.is_early || frame.is_released) continue;
+    frame.is_early = places_done > 0;
+    if (frame.is_early) frame.places.end = places_done;
+  }
+}
+
+Result<bool> FilmRenderer::Step() {
+  const Result<bool> step = collector_->Step();
+  if (!step && step.error().kind != ErrorKind::kInterrupted) return step;
+  DecideStops();
+  for (; done_.image_count < collector_->images_done(); ++done_.image_count)
+    done_.tested_count += images_[done_.image_count].ray_count;
+  return step;
+}
+
+FrameProgress FilmRenderer::Progress(size_t f) const {
+  if (!film_.HasPlates()) return {rebinned_->places_done(), {}};
+  FrameProgress progress = collector_->frames()[f];
+  if (frames_[f].is_stopped) progress.places_done = frames_[f].next_decision;
+  const FrameRays& earlier = frames_[f].earlier_rays;
+  progress.rays.image_count += earlier.image_count;
+  progress.rays.tested_count += earlier.tested_count;
+  progress.rays.accepted_count += earlier.accepted_count;
+  return progress;
+}
+
+uint32_t FilmRenderer::PlaceOfEnd(size_t f) const {
+  const Frame& frame = frames_[f];
+  return frame.is_stopped ? frame.next_decision
+                          : std::min(frame.places.end, setup_.index().place_end());
+}
+
+// A frame with all LF images that it takes is in its final state, even if it takes only some. A
+// frame that was stopped, or ends early, has more gaps, which no later LF image covers.
+std::vector<Completion> FilmRenderer::Complete(std::span<const size_t> frames) {
+  std::vector<Completion> completions;
+  if (!rebinned_) return completions;
+  for (const size_t f : frames) {
+    const uint32_t done = Progress(f).places_done;
+    const bool is_all =
+        !frames_[f].is_early && done >= std::min(frames_[f].places.end, setup_.index().place_end());
+    completions.push_back(rebinned_->Complete(f, is_all ? LensGaps::kInTheEnd : done));
+  }
+  return completions;
+}
+
+RenderedFrame FilmRenderer::Develop(size_t f) {
+  const std::vector<Completion> completion = Complete({&f, 1});
+  return Develop(f, completion.empty() ? nullptr : completion.data(), true, {});
+}
+
+RenderedFrame FilmRenderer::Develop(size_t f, const Completion* completion, bool with_effective,
+                                    const std::function<bool()>& is_interrupted) const {
+  const auto develop = [&](const SensorPlate& plate) {
+    return DevelopFrame(NotesOf(f), plate, completion, with_effective, setup_.pool(),
+                        is_interrupted);
+  };
+  if (film_.Collects()) return develop(plates_[f]);
+  const Intrinsics& plate = cameras_[f].pinhole.intrinsics;
+  return develop(SensorPlate(plate.width_px, plate.height_px));  // all of it is interpolated
+}
+
+PlateNotes FilmRenderer::NotesOf(size_t f) const {
+  const FrameId id = frames_[f].id;
+  PlateNotes notes = MakePlateNotes(id, setup_.path().Camera(id),
+                                    film_.Collects() ? Progress(f).rays : FrameRays(), lenses_[f],
+                                    setup_.light_field().encoding);
+  notes.fps = setup_.path().fps;
+  notes.estimator = film_.reading.estimator;
+  notes.develop.smooth_below = film_.smooth_below;
+  notes.develop.fill_radius_px = film_.fill_radius_px;
+  if (frames_[f].is_early) notes.places_done = frames_[f].places.end;
+  return notes;
+}
+
+void FilmRenderer::Release(size_t f) {
+  frames_[f].is_released = true;
+  if (!film_.HasPlates()) return;
+  collector_->Stop(f);
+  plates_[f] = SensorPlate(0, 0);
+  if (film_.MeasuresNoise()) moments_[f] = NoiseMoments();
+}
+
+bool FilmRenderer::AreAllReleased() const {
+  return std::all_of(frames_.begin(), frames_.end(),
+                     [](const Frame& frame) { return frame.is_released; });
+}
+
+Result<void> FilmRenderer::CheckAnyContributes() const {
+  const bool has_rays = std::any_of(frames_.begin(), frames_.end(), [](const Frame& frame) {
+    return frame.earlier_rays.accepted_count > 0;
+  });
+  if (!images_.empty() || has_rays) return {};
+  return NoneContributes(setup_.frames());
+}
+
+Result<void> FilmRenderer::CheckNotAllBroken() const {
+  if (!AllBroken() || skipped().empty()) return {};
+  return InputError(
+      fmt::format("every LF image is broken; the first: {}", skipped().front().reason));
+}
+
+bool FilmRenderer::AllBroken() const {
+  if (collector_->skipped().size() != images_.size()) return false;
+  return std::none_of(frames_.begin(), frames_.end(),
+                      [](const Frame& frame) { return frame.earlier_rays.accepted_count > 0; });
+}
+
+}  // namespace lf

@@ -1,0 +1,138 @@
+// Rules that stop frames, or measure finished ones.
+#include <algorithm>
+#include <cmath>
+
+#include "lf/core/log.h"
+#include "lf/render/collect/noise_rule.h"
+#include "lf/render/pipeline/film_renderer.h"
+
+namespace lf {
+
+const ReachableElements& FilmRenderer::ReachableOf(size_t f) {
+  Frame& frame = frames_[f];
+  if (!frame.reachable) {
+    std::function<RayWeights(LfImageId)> weights;
+    if (film_.lens_weights != LensWeights::kNone)
+      weights = [this, f](LfImageId id) { return lenses_[f].WeightsOf(id); };
+    frame.reachable =
+        std::make_unique<ReachableElements>(setup_.index(), cameras_[f], frame.places, select_,
+                                            film_.reading.filter, setup_.pool(), weights);
+  }
+  return *frame.reachable;
+}
+
+// Makes batches end at the places where the stop rule of a frame decides, in addition to those that
+// rebinned rays need.
+Result<void> FilmRenderer::PrepareStops(std::span<const PlaceRange> places,
+                                        CollectOptions* collect) {
+  collect->cuts_for_noise = film_.stop_at_noise.has_value();
+  for (size_t f = 0; f < frames_.size(); ++f) {
+    Frame& frame = frames_[f];
+    if (setup_.work().IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
+    if (frame.is_released) continue;
+    const ReachableElements& reachable = ReachableOf(f);
+    if (film_.stop_at_samples) {
+      // The decision places of every frame are multiples of the smallest one.
+      frame.decision_places = DecisionPlaces(setup_.index().place_end(), reachable.image_count());
+      collect->decision_places = collect->decision_places == 0
+                                     ? frame.decision_places
+                                     : std::min(collect->decision_places, frame.decision_places);
+    }
+    frame.next_decision = DecisionFrom(f, std::max(places[f].begin, 1U));
+  }
+  if (setup_.work().IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
+  return {};
+}
+
+// Returns the first place, at or behind `place`, where the stop rule of the frame decides. `place`
+// must be above 0.
+uint32_t FilmRenderer::DecisionFrom(size_t f, uint32_t place) const {
+  if (film_.stop_at_noise) return NoiseDecisionAfter(place - 1);
+  const uint32_t step = frames_[f].decision_places;
+  return (place + step - 1) / step * step;
+}
+
+// A frame that stops must be completed with the rebinned rays of the same LF images. In a state,
+// rebinned rays may lag behind the plates, which are written first; they catch up. If a plate was
+// removed, they are ahead of it: then they are made anew from the first LF image.
+void FilmRenderer::ForgetRaysAhead(std::span<const PlaceRange> places) {
+  uint32_t least = UINT32_MAX;
+  for (size_t f = 0; f < frames_.size(); ++f)
+    if (!frames_[f].is_released) least = std::min(least, places[f].begin);
+  for (size_t i = 0; i < rebinned_->section_count(); ++i) {
+    if (rebinned_->places_done(i) <= least) continue;
+    LogInfo("rebinned rays are made anew, since a frame is not as far as they are");
+    rebinned_->Restore(i, RayMap(rebinned_->max_cells_per_section(), 0), 0);
+  }
+}
+
+// Returns the first place of an LF image to be loaded that is not done. A frame with `places_done`
+// is the same as one with all places before it, because no LF image to be loaded lies between.
+uint32_t FilmRenderer::PlacesCovered(uint32_t places_done) const {
+  const auto next = std::lower_bound(
+      images_.begin(), images_.end(), places_done,
+      [](const SelectedImage& image, uint32_t place) { return image.place < place; });
+  return next == images_.end() ? setup_.index().place_end() : next->place;
+}
+
+// Returns the noise of a frame in radiance; infinity if it cannot be measured.
+double FilmRenderer::NoiseOf(size_t f) {
+  return MeasureNoise(plates_[f], moments_[f], ReachableOf(f)) /
+         setup_.light_field().encoding.Scale();
+}
+
+bool FilmRenderer::IsEnough(size_t f) {
+  if (film_.stop_at_noise) return NoiseOf(f) <= *film_.stop_at_noise;
+  return HasSamples(plates_[f], ReachableOf(f), *film_.stop_at_samples);
+}
+
+// Applies the stop rule to every frame that has reached its next place of decision. The plate has
+// exactly the rays of the places before it, because no batch extends beyond such a place, and a gap
+// in the order of the images adds nothing. Decisions therefore do not depend on the LF images that
+// other frames take. An interrupted earlier run may have decided already; the decision is the same.
+void FilmRenderer::DecideStops() {
+  if (!film_.HasStopRule()) return;
+  for (size_t f = 0; f < frames_.size(); ++f) {
+    Frame& frame = frames_[f];
+    // A frame that ends early takes no decision.
+    if (frame.is_released || frame.is_early || frame.is_stopped) continue;
+    const uint32_t covered = PlacesCovered(collector_->frames()[f].places_done);
+    if (covered < frame.next_decision) continue;
+    // After an interruption, rebinned rays must catch up to the place where the frame may stop.
+    if (rebinned_ && PlacesCovered(rebinned_->places_done()) < frame.next_decision) continue;
+    if (!IsEnough(f)) {
+      frame.next_decision = DecisionFrom(f, covered + 1);
+      continue;
+    }
+    LogDebug("frame {}: the stop rule is met at place {}", frame.id.value, frame.next_decision);
+    collector_->Stop(f);
+    frame.is_stopped = true;
+  }
+}
+
+std::vector<size_t> FilmRenderer::StoppedFrames() const {
+  std::vector<size_t> stopped;
+  for (size_t f = 0; f < frames_.size(); ++f)
+    if (frames_[f].is_stopped && !frames_[f].is_released) stopped.push_back(f);
+  return stopped;
+}
+
+Result<void> FilmRenderer::Measure(size_t f, FrameReport* report) {
+  const Frame& frame = frames_[f];
+  const auto samples = film_.require_samples ? film_.require_samples : film_.stop_at_samples;
+  if (samples)
+    report->samples = FrameSamples{*samples, MeasureSamples(plates_[f], ReachableOf(f), *samples)};
+  const auto noise = film_.require_noise ? film_.require_noise : film_.stop_at_noise;
+  if (noise && frame.has_noise) {
+    FrameNoise& measured = report->noise.emplace();
+    measured.asked = *noise;
+    if (const double reached = NoiseOf(f); std::isfinite(reached)) measured.reached = reached;
+    measured.places = PlaceOfEnd(f);
+    measured.image_count = Progress(f).rays.image_count;
+  }
+  if ((samples || noise) && setup_.work().IsStopped())
+    return Error{ErrorKind::kInterrupted, "interrupted"};
+  return {};
+}
+
+}  // namespace lf

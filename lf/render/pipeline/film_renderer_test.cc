@@ -1,0 +1,211 @@
+#include "lf/render/pipeline/film_renderer.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "lf/film/develop/frame_file.h"
+#include "lf/pixels/files/image_file.h"
+#include "lf/pixels/files/test_folder.h"
+#include "lf/render/collect/test_noise_field.h"
+#include "lf/render/pipeline/render.h"
+
+namespace lf {
+namespace {
+
+using testing::kHeight;
+using testing::kWidth;
+
+// A grid of LF images of noise in a folder, and a film of three frames.
+class FilmRendererTest : public FolderTest {
+ protected:
+  void SetUp() override {
+    FolderTest::SetUp();
+    LightField field = testing::NoiseField(12);
+    field.folder = folder_;
+    for (uint32_t i = 0; i < field.size(); ++i) {
+      field.image_names[i] += ".png";
+      Image<uint8_t> image(kWidth, kHeight, 3);
+      for (size_t k = 0; k < image.pixels().size(); ++k)
+        image.pixels()[k] = static_cast<uint8_t>(RandomBits(7, i, k));
+      ASSERT_TRUE(WriteImage(field.ImagePath({i}), image.view()));
+    }
+    CameraPath path;
+    path.cameras = testing::NoiseFrames();
+    film_ = PackageOfAll(std::move(field), std::move(path), 3);
+    work_.memory_bytes = size_t{1} << 30;
+  }
+  std::unique_ptr<FilmRenderer> Open(std::vector<FrameId> frames = {}) {
+    auto renderer = FilmRenderer::Open(film_, options_, work_, std::move(frames), pool_);
+    EXPECT_TRUE(renderer) << renderer.error().message;
+    return *std::move(renderer);
+  }
+  static void Finish(FilmRenderer& renderer) {
+    while (true) {
+      const Result<bool> step = renderer.Step();
+      ASSERT_TRUE(step) << step.error().message;
+      if (!*step) return;
+    }
+  }
+  // Returns the frame as the folder of a render has it.
+  Image<float> OfFolder(FrameId frame) {
+    RenderOptions options;
+    options.film = options_;
+    options.work.memory_bytes = work_.memory_bytes;
+    options.folder.output_folder = folder_ / ("film" + std::to_string(++folder_count_));
+    options.folder.format = FrameFormat::kExrFloat;
+    const Result<RenderReport> report = Render(film_, options, pool_, nullptr);
+    EXPECT_TRUE(report) << report.error().message;
+    const auto file = FramePath(options.folder.output_folder, frame, options.folder.format);
+    return std::get<Image<float>>(ReadImage(file).value());
+  }
+  static void ExpectSame(const Image<float>& file, const Image<float>& rgb) {
+    ASSERT_EQ(file.width(), rgb.width());
+    ASSERT_EQ(file.height(), rgb.height());
+    for (int y = 0; y < rgb.height(); ++y)
+      for (int x = 0; x < rgb.width(); ++x)
+        for (int c = 0; c < 3; ++c) ASSERT_EQ(file.at(x, y, c), rgb.at(x, y, c)) << x << " " << y;
+  }
+
+  Package film_;
+  FilmOptions options_;
+  WorkOptions work_;
+  ThreadPool pool_{2};
+
+ private:
+  int folder_count_ = 0;
+};
+
+TEST_F(FilmRendererTest, FramesAreThoseOfAFolderInEveryMode) {
+  for (const RenderMode mode : {RenderMode::kCollect, RenderMode::kRebin, RenderMode::kHybrid})
+    for (const LensWeights weights : {LensWeights::kNone, LensWeights::kAuto}) {
+      SCOPED_TRACE(std::string(NameOf(mode)) + " " + NameOf(weights));
+      options_.mode = mode;
+      options_.lens_weights = weights;
+      options_.rebin.max_cells = 100000;
+      const auto renderer = Open();
+      Finish(*renderer);
+      ASSERT_EQ(renderer->frame_count(), 3u);
+      ExpectSame(OfFolder(renderer->id(1)), renderer->Develop(1).picture.rgb);
+    }
+}
+
+TEST_F(FilmRendererTest, StopRulesAreThoseOfAFolder) {
+  options_.reading.estimator = Estimator::kBilinear;
+  options_.stop_at_samples = 4;
+  for (RenderCamera& camera : film_.path.cameras)  // so close that LF images see all of it
+    camera.pinhole.intrinsics.fx_px = camera.pinhole.intrinsics.fy_px = 200;
+  const auto renderer = Open();
+  Finish(*renderer);
+  EXPECT_EQ(renderer->StoppedFrames(), (std::vector<size_t>{0, 1, 2}));
+  EXPECT_LT(renderer->PlaceOfEnd(1), 144u);
+  FrameReport report;
+  ASSERT_TRUE(renderer->Measure(1, &report));
+  EXPECT_GE(report.samples.value().measured.share, kMostElements);
+  ExpectSame(OfFolder(renderer->id(1)), renderer->Develop(1).picture.rgb);
+}
+
+TEST_F(FilmRendererTest, PicturesBetweenStepsChangeNothing) {
+  const auto looked_at = Open({FrameId{2}}), alone = Open({FrameId{2}});
+  std::map<float, int> sums;  // of the pictures
+  for (bool is_going_on = true; is_going_on;) {
+    is_going_on = looked_at->Step().value();
+    const RenderedFrame frame = looked_at->Develop(0);
+    float sum = 0;
+    for (const float value : frame.picture.rgb.pixels()) sum += value;
+    ++sums[sum];
+  }
+  Finish(*alone);
+  EXPECT_GT(sums.size(), 2u);
+  EXPECT_EQ(looked_at->Develop(0).picture.rgb.pixels(), alone->Develop(0).picture.rgb.pixels());
+}
+
+TEST_F(FilmRendererTest, AnInterruptedStepGoesOn) {
+  const auto whole = Open();
+  Finish(*whole);
+  std::atomic<bool> interrupted = true;
+  work_.interrupted = &interrupted;
+  const auto renderer = Open();
+  const Result<bool> step = renderer->Step();
+  ASSERT_FALSE(step);
+  EXPECT_EQ(step.error().kind, ErrorKind::kInterrupted);
+  interrupted = false;
+  Finish(*renderer);
+  EXPECT_EQ(renderer->Develop(2).picture.rgb.pixels(), whole->Develop(2).picture.rgb.pixels());
+}
+
+// Goes on from the plates of another renderer, which took some steps.
+class PlatesOf : public EarlierRun {
+ public:
+  explicit PlatesOf(const FilmRenderer& renderer) : renderer_(renderer) {}
+  bool IsFinished(FrameId frame) const override { return frame == FrameId{1}; }
+  bool EndsEarly(FrameId frame) const override { return frame == FrameId{3}; }
+  Result<FrameProgress> LoadPlate(FrameId frame, SensorPlate* plate,
+                                  std::optional<NoiseMoments>* /*moments*/) const override {
+    plate->Merge(renderer_.plate(frame.value - 1));
+    return renderer_.Progress(frame.value - 1);
+  }
+  Result<std::optional<Rays>> LoadRays(size_t /*section*/, size_t /*max_cells*/) const override {
+    return std::optional<Rays>();
+  }
+
+ private:
+  const FilmRenderer& renderer_;
+};
+
+TEST_F(FilmRendererTest, GoesOnFromAnEarlierRun) {
+  const auto begun = Open(), whole = Open();
+  ASSERT_TRUE(begun->Step().value());
+  Finish(*whole);
+  FilmRenderer renderer(begun->setup(), begun->setup().frames());
+  const PlatesOf earlier(*begun);
+  ASSERT_TRUE(renderer.Begin(&earlier));
+  EXPECT_TRUE(renderer.IsReleased(0));
+  EXPECT_TRUE(renderer.EndsEarly(2));
+  Finish(renderer);
+  EXPECT_EQ(renderer.Progress(1).rays.accepted_count, whole->Progress(1).rays.accepted_count);
+  EXPECT_EQ(renderer.Develop(1).picture.rgb.pixels(), whole->Develop(1).picture.rgb.pixels());
+  EXPECT_EQ(renderer.Develop(2).picture.rgb.pixels(), begun->Develop(2).picture.rgb.pixels());
+  EXPECT_NE(renderer.Develop(2).picture.rgb.pixels(), whole->Develop(2).picture.rgb.pixels());
+}
+
+TEST_F(FilmRendererTest, TooManyFramesAtATimeAreRefused) {
+  for (int i = 0; i < 2000; ++i) {
+    film_.path.cameras.push_back(film_.path.cameras.front());
+    film_.path.cameras.back().pinhole.intrinsics = {800, 800, 400, 300, 0, 800, 600};
+    film_.frames.push_back({.id = FrameId{static_cast<uint32_t>(4 + i)}});
+  }
+  for (size_t i = 0; i < 3; ++i)
+    film_.path.cameras[i].pinhole.intrinsics = film_.path.cameras.back().pinhole.intrinsics;
+  const auto renderer = FilmRenderer::Open(film_, options_, work_, {}, pool_);
+  ASSERT_FALSE(renderer);
+  EXPECT_EQ(renderer.error().kind, ErrorKind::kOutput);
+  EXPECT_NE(renderer.error().message.find("2003 frames at the same time"), std::string::npos)
+      << renderer.error().message;
+}
+
+TEST_F(FilmRendererTest, AFilmWithoutLfImagesSaysSo) {
+  film_.path.cameras[0].pinhole.cam_from_world = *LookAlong({100, 0, 0}, {0, 0, 1}, {0, -1, 0});
+  const auto renderer = Open({FrameId{1}});
+  const Result<void> checked = renderer->CheckAnyContributes();
+  ASSERT_FALSE(checked);
+  EXPECT_EQ(checked.error().kind, ErrorKind::kInput);
+  EXPECT_FALSE(Open({FrameId{2}})->images().empty());
+}
+
+TEST_F(FilmRendererTest, BrokenLfImagesAreNamed) {
+  for (uint32_t i = 0; i < film_.light_field.size(); ++i)
+    std::filesystem::resize_file(film_.light_field.ImagePath({i}), 100);
+  const auto renderer = Open({FrameId{2}});
+  Finish(*renderer);
+  EXPECT_TRUE(renderer->AllBroken());
+  const Result<void> checked = renderer->CheckNotAllBroken();
+  ASSERT_FALSE(checked);
+  EXPECT_NE(checked.error().message.find("image"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace lf

@@ -1,0 +1,102 @@
+#include "lf/render/pipeline/film_setup.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "lf/light_field/model/radiance.h"
+#include "lf/render/collect/noise_moments.h"
+#include "lf/render/hybrid/frame_sampling.h"
+#include "lf/render/hybrid/render_memory.h"
+#include "lf/render/needs/film_order.h"
+#include "lf/render/pipeline/check_film_options.h"
+#include "lf/storage/load/open_store.h"
+
+namespace lf {
+namespace {
+
+Package WithRoomForUndershoot(Package package, Estimator estimator) {
+  if (estimator == Estimator::kBilinear) MakeRoomForUndershoot(&package.light_field.encoding);
+  return package;
+}
+
+}  // namespace
+
+FilmSetup::FilmSetup(Package package, const FilmOptions& film, const WorkOptions& work,
+                     std::vector<FrameId> frames, ThreadPool& pool)
+    : package_(WithRoomForUndershoot(std::move(package), film.reading.estimator)),
+      film_(film),
+      work_(work),
+      frames_(frames.empty() ? package_.FrameIds() : std::move(frames)),
+      pool_(pool),
+      index_(package_.light_field, package_.places) {}
+
+Result<std::unique_ptr<FilmSetup>> FilmSetup::Make(Package package, const FilmOptions& film,
+                                                   const WorkOptions& work,
+                                                   std::vector<FrameId> frames, ThreadPool& pool) {
+  const FilmOptions resolved = Resolved(film, package);
+  LF_RETURN_IF_ERROR(CheckFilmOptions(package, resolved, frames));
+  std::unique_ptr<FilmSetup> setup(
+      new FilmSetup(std::move(package), resolved, work, std::move(frames), pool));
+  LF_ASSIGN_OR_RETURN(setup->store_,
+                      OpenStore(setup->light_field(), film.reading.estimator == Estimator::kBilinear
+                                                          ? Mosaics::kToRgb
+                                                          : Mosaics::kAsRecorded));
+  LF_RETURN_IF_ERROR(setup->CheckStore());
+  LF_RETURN_IF_ERROR(setup->PlanMemory());
+  return setup;
+}
+
+// Checks, frame by frame, that the store keeps all pixels that the frames need: this is better
+// known before a night's work than after it.
+Result<void> FilmSetup::CheckStore() const {
+  if (!store_->IsPartial()) return {};
+  const NeedsOptions needs = Needs();
+  for (const FrameId frame : frames_) {
+    const std::optional<FrameSampling> sampling =
+        package_.surroundings.empty()
+            ? std::nullopt
+            : std::optional(SamplingOf(package_.surroundings[frame.value - 1]));
+    const FrameNeeds wanted = NeedsOf(index_, path().Camera(frame), needs, pool_, sampling);
+    if (work_.IsStopped()) return {};
+    LF_RETURN_IF_ERROR(CheckKept(*store_, light_field(), frame, wanted));
+  }
+  return {};
+}
+
+Result<void> FilmSetup::PlanMemory() {
+  const Intrinsics& plate = path().Camera(frames_.front()).pinhole.intrinsics;
+  LF_ASSIGN_OR_RETURN(
+      const RenderMemory memory,
+      PlanRenderMemory(work_.memory_bytes, film_.mode, film_.rebin.max_cells, light_field(),
+                       film_.reading.estimator, plate.width_px, plate.height_px, frames_.size(),
+                       pool_.thread_count(), film_.MeasuresNoise() ? NoiseMoments::kMostBytes : 0));
+  plan_ = memory.plan;
+  max_cells_ = memory.max_cells;
+  return {};
+}
+
+NeedsOptions FilmSetup::Needs() const { return NeedsOfFilm(package_, film_, work_); }
+
+SelectOptions FilmSetup::Select() const { return Needs().select; }
+
+Result<void> FilmSetup::PlanSlabs() {
+  if (!film_.Rebins() || slabs_) return {};
+  std::vector<FrameSampling> sampling;
+  for (const FrameSurroundings& around : package_.surroundings)
+    sampling.push_back(SamplingOf(around));
+  if (sampling.empty()) {
+    LF_ASSIGN_OR_RETURN(sampling, SamplingOfFilm(index_, path(), Select(), pool_));
+  }
+  slabs_.emplace(path().cameras, sampling, film_.rebin.query, film_.rebin.slab);
+  return {};
+}
+
+Error NoneContributes(std::span<const FrameId> frames) {
+  return InputError(fmt::format(
+      "no LF image contributes to frames {}-{}: no recorded ray passes both their lens and what "
+      "they see (is the aperture smaller than the camera spacing, or the camera off the capture?)",
+      frames.front().value, frames.back().value));
+}
+
+}  // namespace lf

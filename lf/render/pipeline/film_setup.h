@@ -1,0 +1,79 @@
+// Holds all that the frames of a film have in common while they are rendered: the light field, its
+// LF images, the options, and the division of the memory.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "lf/core/ids.h"
+#include "lf/core/parallel.h"
+#include "lf/core/result.h"
+#include "lf/render/collect/memory_plan.h"
+#include "lf/render/hybrid/film_slabs.h"
+#include "lf/render/needs/frame_needs.h"
+#include "lf/render/package/package.h"
+#include "lf/render/pipeline/film_options.h"
+#include "lf/selection/image_index.h"
+#include "lf/selection/select.h"
+#include "lf/storage/load/lf_image_store.h"
+
+namespace lf {
+
+class FilmSetup {
+ public:
+  // Resolves the options, makes room for undershoot in the encoding with kBilinear, opens the LF
+  // images and plans the memory. The pool must outlive the object.
+  //   frames  of the package, ascending; empty: all of its frames
+  // kUsage: the options do not go together, or not with the package.
+  // kInput: the packed store lacks pixels of a frame (CheckKept() of render/needs/frame_needs.h).
+  // kOutput: the memory is less than one frame needs; the message names the least that suffices.
+  static Result<std::unique_ptr<FilmSetup>> Make(Package package, const FilmOptions& film,
+                                                 const WorkOptions& work,
+                                                 std::vector<FrameId> frames, ThreadPool& pool);
+
+  const Package& package() const { return package_; }
+  const LightField& light_field() const { return package_.light_field; }
+  const CameraPath& path() const { return package_.path; }
+  const FilmOptions& film() const { return film_; }
+  const WorkOptions& work() const { return work_; }
+  const std::vector<FrameId>& frames() const { return frames_; }
+  ThreadPool& pool() const { return pool_; }
+  const ImageIndex& index() const { return index_; }
+  const LfImageStore& store() const { return *store_; }
+  const MemoryPlan& plan() const { return plan_; }
+  // Most cells of rebinned rays; 0 without them.
+  size_t max_cells() const { return max_cells_; }
+  SelectOptions Select() const;
+  // Options that decide which LF images frames need.
+  NeedsOptions Needs() const;
+
+  // Plans the slabs of the whole film, so that a frame has the same slab in any package and any
+  // part of the film. Does nothing without rebinned rays, or if they are planned. kInterrupted.
+  Result<void> PlanSlabs();
+  const FilmSlabs& slabs() const { return *slabs_; }  // after PlanSlabs()
+
+ private:
+  FilmSetup(Package package, const FilmOptions& film, const WorkOptions& work,
+            std::vector<FrameId> frames, ThreadPool& pool);
+  Result<void> CheckStore() const;
+  Result<void> PlanMemory();
+
+  const Package package_;
+  const FilmOptions film_;
+  const WorkOptions work_;
+  const std::vector<FrameId> frames_;
+  ThreadPool& pool_;
+  const ImageIndex index_;
+  std::unique_ptr<LfImageStore> store_;
+  MemoryPlan plan_;
+  size_t max_cells_ = 0;
+  std::optional<FilmSlabs> slabs_;
+};
+
+// Returns the kInput of frames that no LF image contributes to.
+//   frames  ascending
+Error NoneContributes(std::span<const FrameId> frames);
+
+}  // namespace lf

@@ -1,0 +1,16 @@
+// The metadata in a frame's file, about its render camera and rays.
+#pragma once
+
+#include "lf/camera/render_camera.h"
+#include "lf/core/ids.h"
+#include "lf/pixels/files/image_file.h"
+#include "lf/render/collect/collect.h"
+
+namespace lf {
+
+// Returns entries "lf:...", with units as in their names. There is no time of day, so that equal
+// frames have equal files.
+ImageMetadata FrameMetadata(FrameId frame, const RenderCamera& camera, const FrameRays& rays,
+                            Estimator estimator, double fps, const std::string& version);
+
+}  // namespace lf

@@ -1,0 +1,96 @@
+#include "lf/render/pipeline/frame_output.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "lf/film/develop/contact_sheet.h"
+#include "lf/film/develop/frame_file.h"
+#include "lf/film/develop/video.h"
+#include "lf/render/pipeline/frame_metadata.h"
+
+namespace lf {
+namespace {
+
+ImageMetadata MetadataOf(const PlateNotes& notes) {
+  ImageMetadata metadata = FrameMetadata(notes.frame, notes.camera, notes.rays, notes.estimator,
+                                         notes.fps, notes.version);
+  if (notes.places_done)
+    metadata.emplace_back("lf:finished_early_before_place", static_cast<int>(*notes.places_done));
+  return metadata;
+}
+
+}  // namespace
+
+bool HasEffectiveCounts(FrameFormat format) {
+  return format == FrameFormat::kExrHalf || format == FrameFormat::kExrFloat;
+}
+
+Result<void> WritePicture(const PlateNotes& notes, const DevelopedFrame& picture,
+                          const std::filesystem::path& to, FrameFormat format,
+                          const std::function<bool()>& is_interrupted) {
+  if (is_interrupted && is_interrupted())
+    return Error{ErrorKind::kInterrupted, fmt::format("{}: interrupted", to.string())};
+  return WriteFrame(to, picture, format, MetadataOf(notes), is_interrupted);
+}
+
+FilmFiles FilesOfFilm(const CameraPath& path, const RenderOptions& options) {
+  const Intrinsics& plate = path.Camera(FrameId{1}).pinhole.intrinsics;
+  return {options.folder.output_folder,
+          options.folder.format,
+          plate.width_px,
+          plate.height_px,
+          path.fps,
+          options.signals == nullptr ? nullptr : &options.signals->stop};
+}
+
+std::filesystem::path FilmFiles::PathOf(FrameId frame) const {
+  return FramePath(folder, frame, format);
+}
+
+Result<Image<uint8_t>> FilmFiles::ReadPicture(FrameId frame) const {
+  LF_ASSIGN_OR_RETURN(Image<uint8_t> picture, ReadDisplayImage(PathOf(frame)));
+  if (picture.width() != width_px || picture.height() != height_px)
+    return InputError(fmt::format(
+        "{}: has {} x {} pixels, the frame has {} x {}: remove it, and "
+        "--resume renders it again",
+        PathOf(frame).string(), picture.width(), picture.height(), width_px, height_px));
+  return picture;
+}
+
+Result<void> FilmFiles::WriteContactSheet(const std::vector<FrameId>& frames, size_t at_once,
+                                          ThreadPool& pool, const std::string& name) const {
+  const std::vector<size_t> shown = ContactSheetFrames(frames.size());
+  ContactSheet sheet(shown.size(), width_px, height_px);
+  for (size_t begin = 0; begin < shown.size(); begin += at_once) {
+    if (stop != nullptr && *stop)
+      return Error{ErrorKind::kInterrupted, "interrupted at the contact sheet"};
+    std::vector<std::optional<Error>> errors(std::min(at_once, shown.size() - begin));
+    pool.ForEach(errors.size(), [&](size_t i) {
+      if (const auto picture = ReadPicture(frames[shown[begin + i]]); picture)
+        sheet.Place(begin + i, *picture);
+      else
+        errors[i] = picture.error();
+    });
+    for (const std::optional<Error>& error : errors)
+      if (error) return *error;
+  }
+  return sheet.Write(folder / name);
+}
+
+Result<void> FilmFiles::WriteVideo(const std::vector<FrameId>& frames,
+                                   const std::filesystem::path& video) const {
+  LF_ASSIGN_OR_RETURN(const std::unique_ptr<VideoWriter> writer,
+                      VideoWriter::Open(video, width_px, height_px, fps));
+  for (const FrameId frame : frames) {
+    if (stop != nullptr && *stop) return Error{ErrorKind::kInterrupted, "interrupted at the video"};
+    LF_ASSIGN_OR_RETURN(const Image<uint8_t> picture, ReadPicture(frame));
+    LF_RETURN_IF_ERROR(writer->Add(picture));
+  }
+  return writer->Close();
+}
+
+}  // namespace lf

@@ -1,0 +1,54 @@
+#include "lf/render/pipeline/frame_range.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <set>
+
+namespace lf {
+namespace {
+
+// Reads a whole number at the beginning of `text` and removes it.
+bool TakeNumber(std::string_view* text, uint32_t* number) {
+  const char* end = text->data() + text->size();
+  const auto [rest, error] = std::from_chars(text->data(), end, *number);
+  if (error != std::errc{}) return false;
+  text->remove_prefix(static_cast<size_t>(rest - text->data()));
+  return true;
+}
+
+bool TakeCharacter(std::string_view* text, char character) {
+  if (text->empty() || text->front() != character) return false;
+  text->remove_prefix(1);
+  return true;
+}
+
+}  // namespace
+
+Result<std::vector<FrameId>> ParseFrameRange(std::string_view text, size_t frame_count,
+                                             const char* option) {
+  std::set<uint32_t> numbers;
+  std::string_view rest = text;
+  do {
+    uint32_t first = 0, last = 0, step = 1;
+    bool good = TakeNumber(&rest, &first);
+    last = first;
+    if (good && TakeCharacter(&rest, '-')) good = TakeNumber(&rest, &last);
+    if (good && TakeCharacter(&rest, 'x')) good = TakeNumber(&rest, &step);
+    if (!good || (!rest.empty() && rest.front() != ','))
+      return UsageError(fmt::format("{} \'{}\' is not like 1-100, 1-100x2 or 3,7,9", option, text));
+    if (last < first)
+      return UsageError(
+          fmt::format("{} \'{}\': ranges go upward: {}-{}", option, text, last, first));
+    if (step < 1)
+      return UsageError(fmt::format("{} \'{}\': the step after x is at least 1", option, text));
+    if (first < 1 || last > frame_count)
+      return UsageError(fmt::format("{} \'{}\': expected frames 1-{}", option, text, frame_count));
+    for (uint64_t n = first; n <= last; n += step) numbers.insert(static_cast<uint32_t>(n));
+  } while (TakeCharacter(&rest, ','));
+  std::vector<FrameId> frames;
+  for (const uint32_t number : numbers) frames.push_back(FrameId{number});
+  return frames;
+}
+
+}  // namespace lf

@@ -1,0 +1,38 @@
+#include "lf/render/pipeline/frame_range.h"
+
+#include <gtest/gtest.h>
+
+namespace lf {
+namespace {
+
+std::vector<uint32_t> Numbers(std::string_view text, size_t count = 100) {
+  const Result<std::vector<FrameId>> frames = ParseFrameRange(text, count);
+  std::vector<uint32_t> numbers;
+  if (frames)
+    for (const FrameId frame : *frames) numbers.push_back(frame.value);
+  return numbers;
+}
+
+TEST(FrameRange, ReadsRangesStepsAndLists) {
+  EXPECT_EQ(Numbers("7"), (std::vector<uint32_t>{7}));
+  EXPECT_EQ(Numbers("3-5"), (std::vector<uint32_t>{3, 4, 5}));
+  EXPECT_EQ(Numbers("1-8x3"), (std::vector<uint32_t>{1, 4, 7}));
+  EXPECT_EQ(Numbers("9,1-2,2"), (std::vector<uint32_t>{1, 2, 9}));
+  EXPECT_EQ(Numbers("1-100x2").size(), 50u);
+}
+
+TEST(FrameRange, RefusesWhatItDoesNotUnderstand) {
+  for (const char* text : {"", "x", "0", "5-", "-5", "5-3", "1-101", "1-9x0", "1,", "1 2", "1-9x",
+                           "99999999999", "1.5"}) {
+    const auto frames = ParseFrameRange(text, 100);
+    ASSERT_FALSE(frames) << text;
+    EXPECT_EQ(frames.error().kind, ErrorKind::kUsage);
+  }
+  const auto says = [](const char* text) { return ParseFrameRange(text, 4).error().message; };
+  EXPECT_NE(says("4-1").find("1-4"), std::string::npos);
+  EXPECT_NE(says("1-4x0").find("at least 1"), std::string::npos);
+  EXPECT_NE(says("2-7").find("expected frames 1-4"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace lf

@@ -1,0 +1,389 @@
+#include "lf/render/pipeline/merge_shards.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "lf/core/file.h"
+#include "lf/core/file_lock.h"
+#include "lf/core/log.h"
+#include "lf/film/develop/video.h"
+#include "lf/pixels/files/whole_file.h"
+#include "lf/render/pipeline/check_outputs.h"
+#include "lf/render/pipeline/develop_frame.h"
+#include "lf/render/pipeline/frame_output.h"
+#include "lf/render/pipeline/render_pass.h"
+#include "lf/render/state/plate_notes.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+// One plate file, without its rays.
+struct ShardPlate {
+  fs::path path;
+  Shard shard;
+  PlateNotes notes;
+  RunInputs inputs;  // entries that all plates of a frame have in common
+  int width_px = 0;
+  int height_px = 0;
+  bool has_opacity = false;
+};
+
+Result<std::vector<fs::path>> FilesOf(const std::vector<fs::path>& given) {
+  std::vector<fs::path> files;
+  for (const fs::path& path : given) {
+    std::error_code error;
+    if (!fs::is_directory(path, error)) {
+      files.push_back(path);
+      continue;
+    }
+    const size_t before = files.size();
+    for (auto entry = fs::recursive_directory_iterator(path, error);
+         !error && entry != fs::recursive_directory_iterator(); entry.increment(error))
+      if (entry->path().extension() == ".plate" &&
+          !entry->path().filename().string().starts_with('.'))
+        files.push_back(entry->path());
+    if (error) return InputError(fmt::format("{}: {}", path.string(), error.message()));
+    if (files.size() == before)
+      return InputError(fmt::format(
+          "{}: has no plates: expected files that end in .plate, of lfrenderer --shard or "
+          "--keep-plates",
+          path.string()));
+  }
+  std::sort(files.begin(), files.end());
+  for (size_t i = 1; i < files.size(); ++i)
+    if (files[i] == files[i - 1])
+      return UsageError(fmt::format("{}: is given twice", files[i].string()));
+  return files;
+}
+
+Result<ShardPlate> Look(const fs::path& path) {
+  LF_ASSIGN_OR_RETURN(const PlateReader reader, PlateReader::Open(path));
+  ShardPlate plate;
+  plate.path = path;
+  plate.width_px = reader.width();
+  plate.height_px = reader.height();
+  plate.has_opacity = reader.has_opacity();
+  LF_ASSIGN_OR_RETURN(
+      plate.notes, PlateNotesOf(reader.entries(), reader.width(), reader.height(), path.string()));
+  if (const std::string* const text = FindEntry(reader.entries(), "shard")) {
+    const std::optional<Shard> shard = ShardOf(*text);
+    if (!shard)
+      return InputError(
+          fmt::format("{}: shard is \"{}\", expected k/K, such as 2/5", path.string(), *text));
+    plate.shard = *shard;
+  }
+  // Entries in which the shards of a frame may differ: the shard and its rays.
+  constexpr const char* kOwn[] = {"shard",
+                                  "sheet.lf_images",
+                                  "sheet.rays_tested",
+                                  "sheet.rays_accepted",
+                                  "sheet.lf_images_skipped",
+                                  "sheet.skipped"};
+  for (const auto& entry : reader.entries())
+    if (!entry.first.starts_with("progress.") &&
+        std::find(std::begin(kOwn), std::end(kOwn), entry.first) == std::end(kOwn))
+      plate.inputs.push_back(entry);
+  return plate;
+}
+
+// Merges the plates of all frames.
+class Merger {
+ public:
+  Merger(const MergeOptions& options, ThreadPool& pool,
+         const std::function<void(const MergeProgress&)>& progress)
+      : options_(options), pool_(pool), progress_(progress) {}
+  ~Merger() {
+    if (!lock_) return;
+    lock_->Remove();
+    std::error_code ignored;
+    fs::remove(PartialFolder(), ignored);  // fails, as intended, if files are left in it
+  }
+  Merger(const Merger&) = delete;
+  Merger& operator=(const Merger&) = delete;
+
+  Result<RenderReport> Run(const std::vector<fs::path>& given) {
+    LF_ASSIGN_OR_RETURN(const std::vector<fs::path> files, FilesOf(given));
+    if (files.empty()) return InputError("no plates");
+    for (const fs::path& file : files) {
+      if (IsStopped()) return Interrupted();
+      LF_ASSIGN_OR_RETURN(ShardPlate plate, Look(file));
+      frames_[plate.notes.frame].push_back(std::move(plate));
+    }
+    LF_RETURN_IF_ERROR(CheckFrames());
+    LogDebug("{} plates of {} frames, the first in {} shards", files.size(), frames_.size(),
+             frames_.begin()->second.front().shard.count);
+    if (options_.video) {
+      LF_RETURN_IF_ERROR(CheckVideoTool());
+      LF_RETURN_IF_ERROR(CheckVideoTarget(*options_.video));
+    }
+    LF_RETURN_IF_ERROR(CheckOutputs(files));
+    LF_RETURN_IF_ERROR(Lock());
+    LF_RETURN_IF_ERROR(FindFinished());
+    now_.frame_total = frames_.size();
+    for (const auto& [frame, plates] : frames_) now_.plate_total += plates.size();
+    for (const auto& [frame, plates] : frames_)
+      if (const Result<void> written = WriteFrameOf(plates); !written) {
+        // --resume reads this report, if the disk has room for it: frames that no report names are
+        // written again.
+        (void)WriteReport(Report(), ReportPath());
+        return written.error();
+      }
+    return End();
+  }
+
+ private:
+  bool IsStopped() const { return options_.signals != nullptr && options_.signals->stop; }
+  Error Interrupted() const {
+    return {ErrorKind::kInterrupted,
+            fmt::format("interrupted after {} of {} frames; those are kept in {}, --resume goes on",
+                        now_.frame_count, now_.frame_total, options_.output_folder.string())};
+  }
+  fs::path PathOf(FrameId frame) const {
+    return FramePath(options_.output_folder, frame, options_.format);
+  }
+
+  Result<void> CheckOutputs(const std::vector<fs::path>& files) const {
+    std::vector<fs::path> outputs = {ReportPath(), options_.output_folder / kContactSheet};
+    for (const auto& [frame, plates] : frames_) outputs.push_back(PathOf(frame));
+    LF_RETURN_IF_ERROR(CheckReplacesNone(outputs, files));
+    return CheckReplacesNone(outputs, options_.kept_files);
+  }
+
+  // The lock is also that of a render into the same folder (lf/render/state/run_state.h).
+  fs::path PartialFolder() const { return options_.output_folder / "partial"; }
+  Result<void> Lock() {
+    LF_RETURN_IF_ERROR(CreateFolder(options_.output_folder));
+    LF_RETURN_IF_ERROR(CreateFolder(PartialFolder()));
+    LF_ASSIGN_OR_RETURN(FileLock lock, FileLock::Take(PartialFolder() / "lock"));
+    lock_ = std::move(lock);
+    return {};
+  }
+
+  fs::path ReportPath() const { return options_.output_folder / "report.json"; }
+
+  // Checks that all shards of each frame are there once, and are of the same render.
+  Result<void> CheckFrames() {
+    const ShardPlate& first = frames_.begin()->second.front();
+    for (auto& [frame, plates] : frames_) {
+      std::sort(plates.begin(), plates.end(), [](const ShardPlate& a, const ShardPlate& b) {
+        return a.shard.number < b.shard.number;
+      });
+      const ShardPlate& one = plates.front();
+      if (one.width_px != first.width_px || one.height_px != first.height_px)
+        return InputError(fmt::format("{}: has {} x {} elements, {} has {} x {}: not of one film",
+                                      one.path.string(), one.width_px, one.height_px,
+                                      first.path.string(), first.width_px, first.height_px));
+      std::set<uint32_t> there;
+      for (const ShardPlate& plate : plates) {
+        if (plate.shard.count != one.shard.count)
+          return InputError(
+              fmt::format("frame {}: {} is shard {}, {} is shard {}: all must be "
+                          "parts of the same cut",
+                          frame.value, one.path.string(), one.shard.Text(), plate.path.string(),
+                          plate.shard.Text()));
+        if (!there.insert(plate.shard.number).second)
+          return InputError(
+              fmt::format("frame {}: {} is shard {}, and another file is, too: give each once",
+                          frame.value, plate.path.string(), plate.shard.Text()));
+        if (plate.width_px != one.width_px || plate.height_px != one.height_px)
+          return InputError(fmt::format("frame {}: {} has {} x {} elements, {} has {} x {}",
+                                        frame.value, one.path.string(), one.width_px, one.height_px,
+                                        plate.path.string(), plate.width_px, plate.height_px));
+        if (const auto difference = FirstDifference(plate.inputs, one.inputs))
+          return InputError(fmt::format("frame {}: {}: shards of one render have all in common",
+                                        frame.value,
+                                        difference->Text(plate.path.string() + " was made with",
+                                                         one.path.string() + " with")));
+      }
+      std::vector<uint32_t> missing;
+      for (uint32_t k = 1; k <= one.shard.count && missing.size() < 10; ++k)
+        if (!there.contains(k)) missing.push_back(k);
+      if (!missing.empty())
+        return InputError(fmt::format(
+            "frame {}: of {} shards {} are there; missing: {}{} (is their render finished?)",
+            frame.value, one.shard.count, there.size(), fmt::join(missing, ", "),
+            one.shard.count - there.size() > missing.size() ? ", ..." : ""));
+    }
+    return {};
+  }
+
+  Result<void> FindFinished() {
+    RunInputs film_before;
+    if (options_.resume && fs::exists(ReportPath())) {
+      LF_ASSIGN_OR_RETURN(const RenderReport earlier, ReadReport(ReportPath()));
+      film_before = earlier.inputs;
+      for (const FrameReport& frame : earlier.frames) reports_[frame.frame] = frame;
+    }
+    for (const auto& [frame, plates] : frames_) {
+      if (!fs::exists(PathOf(frame)) || options_.overwrite) continue;
+      if (!options_.resume)
+        return UsageError(fmt::format(
+            "{}: is there already: --resume keeps such frames, --overwrite replaces them",
+            PathOf(frame).string()));
+      if (!reports_.contains(frame)) continue;
+      if (const auto difference = DifferenceFrom(film_before, plates.front().notes)) {
+        LogWarning("{}: {}; the frame is made again", PathOf(frame).string(),
+                   difference->Text("was made with", "these plates have"));
+        continue;
+      }
+      const Result<void> whole = CheckFileIsWhole(PathOf(frame));
+      if (whole)
+        finished_.insert(frame);
+      else
+        LogWarning("{}; the frame is made again", whole.error().message);
+    }
+    return {};
+  }
+
+  // Compares the film and the frame of an earlier report with those of the plates. They may differ
+  // after an interrupted --overwrite, which leaves frames of the film that it was to replace.
+  std::optional<InputDifference> DifferenceFrom(const RunInputs& film_before,
+                                                const PlateNotes& notes) const {
+    if (const auto difference = FirstDifference(film_before, FilmInputs())) return difference;
+    return FirstDifference(reports_.at(notes.frame).camera,
+                           InputsOfCamera(notes.frame, notes.camera));
+  }
+
+  Result<void> WriteFrameOf(const std::vector<ShardPlate>& plates) {
+    const ShardPlate& first = plates.front();
+    const FrameId frame = first.notes.frame;
+    PlateNotes notes = first.notes;
+    notes.rays = {};
+    for (const ShardPlate& plate : plates) {
+      notes.rays.image_count += plate.notes.rays.image_count;
+      notes.rays.tested_count += plate.notes.rays.tested_count;
+      notes.rays.accepted_count += plate.notes.rays.accepted_count;
+    }
+    const bool is_kept = finished_.contains(frame);
+    SensorPlate sum(0, 0);
+    if (!is_kept)
+      sum = SensorPlate::WithOpacity(first.width_px, first.height_px, first.has_opacity);
+    for (const ShardPlate& plate : plates) {
+      if (IsStopped()) return Interrupted();
+      if (!is_kept) {
+        LF_ASSIGN_OR_RETURN(PlateReader reader, PlateReader::Open(plate.path));
+        if (reader.width() != first.width_px || reader.height() != first.height_px ||
+            reader.has_opacity() != first.has_opacity)
+          return InputError(
+              fmt::format("{}: is another file than it was before", plate.path.string()));
+        LF_RETURN_IF_ERROR(reader.AddTo(&sum));
+      }
+      ++now_.plate_count;
+      if (progress_) progress_(now_);
+    }
+    if (!is_kept) {
+      const auto is_stopped = [this] { return IsStopped(); };
+      const RenderedFrame made =
+          DevelopFrame(notes, sum, nullptr, HasEffectiveCounts(options_.format), pool_, is_stopped);
+      const Result<void> written =
+          WritePicture(notes, made.picture, PathOf(frame), options_.format, is_stopped);
+      if (!written && written.error().kind == ErrorKind::kInterrupted) return Interrupted();
+      LF_RETURN_IF_ERROR(written);
+      reports_[frame] = made.report;
+    }
+    LogDebug("frame {}: {} plates, {} rays of {} LF images{}", frame.value, plates.size(),
+             notes.rays.accepted_count, notes.rays.image_count, is_kept ? "; kept" : "");
+    accepted_count_ += notes.rays.accepted_count;
+    ++now_.frame_count;
+    if (progress_) progress_(now_);
+    return {};
+  }
+
+  // Returns the inputs that all frames have in common.
+  RunInputs FilmInputs() const {
+    const ShardPlate& first = frames_.begin()->second.front();
+    RunInputs inputs;
+    for (const auto& entry : first.inputs)
+      if (!entry.first.starts_with("sheet.") && !entry.first.starts_with("frame"))
+        inputs.push_back(entry);
+    RunChoices picture;
+    picture.format = NameOf(options_.format);
+    picture.smooth_below = first.notes.develop.smooth_below;
+    picture.fill_radius_px = first.notes.develop.fill_radius_px;
+    for (auto& entry : InputsOfPicture(picture)) inputs.push_back(std::move(entry));
+    return inputs;
+  }
+
+  RenderReport Report() const {
+    const ShardPlate& first = frames_.begin()->second.front();
+    RenderReport report;
+    report.version = first.notes.version;
+    report.inputs = FilmInputs();
+    report.estimator = first.notes.estimator;
+    report.width = first.width_px;
+    report.height = first.height_px;
+    report.thread_count = pool_.thread_count();
+    for (const auto& [frame, plates] : frames_)
+      if (const auto found = reports_.find(frame); found != reports_.end())
+        report.frames.push_back(found->second);
+    AddImages(&report);
+    report.total_s = NowSeconds() - begin_s_;
+    report.peak_memory_bytes = PeakMemoryBytes();
+    return report;
+  }
+
+  // Adds the number of LF images of the frame that takes most, and the LF images that plates lack.
+  void AddImages(RenderReport* report) const {
+    for (const auto& [frame, plates] : frames_) {
+      uint64_t count = 0;
+      for (const ShardPlate& plate : plates) {
+        count += plate.notes.rays.image_count + plate.notes.skipped_count;
+        std::vector<SkippedImage> skipped;
+        for (const std::string& name : plate.notes.skipped)
+          skipped.push_back({name, fmt::format("{}: was rendered without it, since it was missing "
+                                               "or broken",
+                                               plate.path.string())});
+        report->AddSkipped(skipped);
+      }
+      report->selected_image_count = std::max<size_t>(report->selected_image_count, count);
+    }
+  }
+
+  Result<RenderReport> End() {
+    const ShardPlate& first = frames_.begin()->second.front();
+    std::vector<FrameId> frames;
+    for (const auto& [frame, plates] : frames_) frames.push_back(frame);
+    const FilmFiles film = {
+        options_.output_folder, options_.format,
+        first.width_px,         first.height_px,
+        first.notes.fps,        options_.signals == nullptr ? nullptr : &options_.signals->stop};
+    RenderReport report = Report();
+    LF_RETURN_IF_ERROR(WriteReport(report, ReportPath()));
+    if (options_.contact_sheet) LF_RETURN_IF_ERROR(film.WriteContactSheet(frames, 2, pool_));
+    if (options_.video) LF_RETURN_IF_ERROR(film.WriteVideo(frames, *options_.video));
+    if (accepted_count_ == 0)
+      return InputError(fmt::format("{}: every frame is black: no ray reached them",
+                                    options_.output_folder.string()));
+    return report;
+  }
+
+  const MergeOptions& options_;
+  ThreadPool& pool_;
+  const std::function<void(const MergeProgress&)>& progress_;
+  const double begin_s_ = NowSeconds();
+  std::optional<FileLock> lock_;
+  std::map<FrameId, std::vector<ShardPlate>> frames_;
+  std::map<FrameId, FrameReport> reports_;
+  std::set<FrameId> finished_;
+  MergeProgress now_;
+  uint64_t accepted_count_ = 0;
+};
+
+}  // namespace
+
+Result<RenderReport> MergeShards(const std::vector<fs::path>& plates, const MergeOptions& options,
+                                 ThreadPool& pool,
+                                 const std::function<void(const MergeProgress&)>& progress) {
+  return Merger(options, pool, progress).Run(plates);
+}
+
+}  // namespace lf

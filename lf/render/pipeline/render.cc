@@ -1,0 +1,422 @@
+#include "lf/render/pipeline/render.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "lf/collection/simd_target.h"
+#include "lf/core/file.h"
+#include "lf/core/log.h"
+#include "lf/film/develop/video.h"
+#include "lf/render/pipeline/film_setup.h"
+#include "lf/render/pipeline/frame_output.h"
+#include "lf/render/pipeline/render_pass.h"
+#include "lf/render/state/run_inputs.h"
+#include "lf/render/state/run_state.h"
+#include "lf/storage/packed/packed_store_file.h"
+
+namespace lf {
+
+namespace {
+
+// Returns the inputs that only rebinned rays depend on; none if the mode is kCollect.
+//   film  hash of all render cameras of the film, on which slabs depend
+RunInputs InputsOfRebinning(const FilmOptions& options, size_t max_cells, const std::string& film) {
+  if (!options.Rebins()) return {};
+  const RebinPassOptions& rebin = options.rebin;
+  const ProbabilityOptions& edges = rebin.rebin.probability;
+  const auto width = [](const std::optional<double>& value) {
+    return value ? fmt::format("{}", *value) : std::string("auto");
+  };
+  const auto place = [](const std::optional<Vec3>& v) {
+    return v ? fmt::format("{} {} {}", v->x(), v->y(), v->z()) : std::string("auto");
+  };
+  return {
+      {"mode", NameOf(options.mode)},
+      {"rebin.film", film},
+      {"rebin.max_rays", fmt::format("{}", max_cells)},
+      {"rebin.kept", NameOf(rebin.kept)},
+      {"rebin.edges", fmt::format("alpha {} beta {} xi {} sigma {} then {}", edges.alpha,
+                                  edges.beta, edges.xi, edges.sigma_px, edges.second_sigma_px)},
+      {"rebin.colours", fmt::format("sigma {}", rebin.rebin.colour_sigma_px)},
+      {"rebin.others", rebin.rebin.averages_others ? "averaged" : "left out"},
+      {"rebin.seed", fmt::format("{}", rebin.rebin.seed)},
+      {"rebin.preview", NameOf(rebin.previews)},
+      {"rebin.query", fmt::format("sigma_st {} sigma_uv {} lens points {} sets {} on {} nearest {}",
+                                  rebin.query.sigma_st, rebin.query.sigma_uv,
+                                  rebin.query.lens_point_count, rebin.query.lens_sets,
+                                  rebin.reparameterise ? "focus planes" : "slabs", rebin.nearest)},
+      {"rebin.slab", fmt::format("position {} forward {} distance {} r_st {} r_uv {}",
+                                 place(rebin.slab.position_world), place(rebin.slab.forward_world),
+                                 width(rebin.slab.uv_distance_w), width(rebin.slab.r_st_w),
+                                 width(rebin.slab.r_uv_w))},
+      {"rebin.coverage", fmt::format("{} cells across", rebin.coverage.cells_across)}};
+}
+
+// Returns the codec settings by which the pixels of LF images differ from the recorded ones, or the
+// value for pixels as recorded.
+Result<std::string> PixelsOf(const LightField& light_field) {
+  const std::string as_recorded = RunChoices().pixels;
+  if (!HoldsPackedStore(light_field)) return as_recorded;
+  LF_ASSIGN_OR_RETURN(std::string codec, ReadCodecSettings(light_field.folder));
+  return codec.starts_with(kLosslessCodec) ? as_recorded : codec;
+}
+
+RunStateOptions StateOptions(const FilmSetup& setup, const FolderOptions& folder,
+                             const std::string& pixels) {
+  const Package& package = setup.package();
+  const FilmOptions& film = setup.film();
+  RunChoices choices;
+  choices.pixels = pixels;
+  choices.reading = film.reading;
+  choices.lens_weights = film.lens_weights;
+  choices.back_end = film.back_end;
+  choices.order = package.choices.order;
+  choices.seed = package.choices.seed;
+  choices.max_image_count = film.max_image_count;
+  choices.max_angle_rad = package.choices.max_angle_rad;
+  choices.stop_at_samples = film.stop_at_samples;
+  choices.stop_at_noise = film.stop_at_noise;
+  choices.format = NameOf(folder.format);
+  choices.smooth_below = film.smooth_below;
+  choices.fill_radius_px = film.fill_radius_px;
+  const std::string cameras = HashOfCameras(package.path);
+  RunInputs picture = InputsOfPicture(choices);
+  if (!package.name.empty()) picture.emplace_back(kFilmOfPackage, cameras);
+  RunInputs rays = InputsOfRays(package.whole, package.light_field.encoding, choices);
+  for (auto& input : InputsOfRebinning(film, setup.max_cells(), cameras))
+    rays.push_back(std::move(input));
+  return {folder.output_folder, package.name,    package.FrameIds(), folder.format, folder.resume,
+          folder.overwrite,     std::move(rays), std::move(picture), film.shard};
+}
+
+WorkOptions WithFlags(WorkOptions work, const RenderSignals* signals) {
+  work.interrupted = signals == nullptr ? nullptr : &signals->attention;
+  work.stop = signals == nullptr ? nullptr : &signals->stop;
+  return work;
+}
+
+// One render: its inputs, and the results of its passes.
+class Renderer {
+ public:
+  Renderer(const RenderOptions& options, ThreadPool& pool,
+           const std::function<void(const RenderProgress&)>& progress)
+      : options_(options), folder_(options.folder), pool_(pool), progress_(progress) {}
+
+  Result<RenderReport> Run(Package package);
+
+ private:
+  // True for a whole film, which must not be black. A section of a film, or a shard, may be.
+  bool IsWhole() const { return setup_->package().name.empty() && !setup_->film().shard; }
+  bool IsStopped() const { return setup_->work().IsStopped(); }
+  Result<void> Begin(Package package);
+  Result<void> OpenState();
+  void TellPlan() const;
+  std::vector<FrameId> FramesToRender();
+  Result<void> RunPasses(std::vector<FrameId> frames);
+  std::vector<FrameId> EarlyOf(std::span<const FrameId> frames) const;
+  Result<void> FinishEarly(const PassContext& context, std::vector<FrameId>* frames);
+  Result<void> RunPass(const PassContext& context, std::span<const FrameId> frames,
+                       size_t frames_left, std::span<const FrameId> early);
+  Result<RenderReport> End();
+  Result<void> CheckAnyContributes(std::span<const FrameId> frames) const;
+  Error Interrupted() const;
+  void Report(const CollectProgress& pass, size_t finished_count) const;
+
+  const RenderOptions& options_;
+  const FolderOptions& folder_;
+  ThreadPool& pool_;
+  const std::function<void(const RenderProgress&)>& progress_;
+  std::unique_ptr<FilmSetup> setup_;
+  std::unique_ptr<RunState> state_;
+  RenderProgress done_;
+  RenderReport totals_;
+  const double begin_s_ = NowSeconds();
+  size_t black_count_ = 0;
+  bool had_plates_ = false;  // of an earlier run
+  bool all_broken_ = true;   // every LF image of every pass so far was broken
+};
+
+Result<RenderReport> Renderer::Run(Package package) {
+  LF_RETURN_IF_ERROR(Begin(std::move(package)));
+  std::vector<FrameId> frames = FramesToRender();
+  if (!frames.empty()) {
+    if (const Result<void> result = RunPasses(std::move(frames)); !result)
+      return result.error().kind == ErrorKind::kInterrupted ? Interrupted() : result.error();
+  }
+  return End();
+}
+
+Result<void> Renderer::Begin(Package package) {
+  LF_RETURN_IF_ERROR(CheckRenderOptions(package, options_));
+  LF_ASSIGN_OR_RETURN(
+      setup_, FilmSetup::Make(std::move(package), options_.film,
+                              WithFlags(options_.work, options_.signals), options_.frames, pool_));
+  LF_RETURN_IF_ERROR(CreateFolder(folder_.output_folder));
+  if (folder_.video) {
+    LF_RETURN_IF_ERROR(CheckVideoTool());
+    LF_RETURN_IF_ERROR(CheckVideoTarget(*folder_.video));
+  }
+  LF_RETURN_IF_ERROR(OpenState());
+  const LightField& light_field = setup_->light_field();
+  const Intrinsics& plate = setup_->path().Camera(setup_->frames().front()).pinhole.intrinsics;
+  totals_.version = folder_.version;
+  totals_.estimator = setup_->film().reading.estimator;
+  totals_.width = plate.width_px;
+  totals_.height = plate.height_px;
+  totals_.thread_count = pool_.thread_count();
+  totals_.lf_image_count = setup_->package().whole.image_count;
+  totals_.has_masks =
+      !light_field.mask_names.empty() || light_field.encoding.alpha == AlphaMeaning::kMask;
+  done_.frame_total = setup_->frames().size();
+  TellPlan();
+  return {};
+}
+
+// Opens the state in the folder, and takes over what it tells about earlier runs.
+Result<void> Renderer::OpenState() {
+  LF_ASSIGN_OR_RETURN(const std::string pixels, PixelsOf(setup_->light_field()));
+  const RunStateOptions state_options = StateOptions(*setup_, folder_, pixels);
+  LF_ASSIGN_OR_RETURN(state_, RunState::Open(state_options, setup_->path()));
+  had_plates_ = state_->HasPlates();
+  totals_ = state_->earlier();
+  // LF images that the earlier run skipped are tried again if nothing of that run is kept.
+  if (!had_plates_ && state_->finished().empty()) totals_.skipped.clear();
+  if (setup_->work().strict && !totals_.skipped.empty())
+    return InputError(fmt::format(
+        "--strict: the render that --resume goes on with skipped {} LF images, the first: {}",
+        totals_.skipped.size(), totals_.skipped.front().reason));
+  totals_.inputs = state_options.rays;
+  totals_.inputs.insert(totals_.inputs.end(), state_options.picture.begin(),
+                        state_options.picture.end());
+  return {};
+}
+
+// Logs the plan of the render, for debugging.
+void Renderer::TellPlan() const {
+  const FilmOptions& film = setup_->film();
+  const MemoryPlan& plan = setup_->plan();
+  LogDebug(
+      "rays: mode {}, estimator {}, filter {}, lens weights {}, back end {}; instruction set {}, "
+      "{} threads",
+      NameOf(film.mode), NameOf(film.reading.estimator), NameOf(film.reading.filter),
+      NameOf(film.lens_weights), film.back_end == CollectBackEnd::kFast ? "fast" : "reference",
+      SimdTargets().front(), pool_.thread_count());
+  LogDebug(
+      "memory: {} of {} MiB; up to {} of {} frames a pass with plates of {} KiB, two batches of up "
+      "to {} LF images of {} KiB, {} MiB of planned rays, {} rebinned rays",
+      plan.total_bytes >> 20, setup_->work().memory_bytes >> 20, plan.frames_per_pass,
+      setup_->frames().size(), plan.plate_bytes >> 10, plan.batch_image_count,
+      plan.image_bytes >> 10, plan.plan_bytes >> 20, setup_->max_cells());
+  LogDebug("state: {} frames are finished, {}; {} LF images were left out before",
+           state_->finished().size(), had_plates_ ? "others are begun" : "none is begun",
+           totals_.skipped.size());
+}
+
+// Returns the frames that are not finished, or lack a measurement or a plate that is asked for now.
+std::vector<FrameId> Renderer::FramesToRender() {
+  std::vector<FrameId> frames;
+  for (const FrameId frame : setup_->frames()) {
+    const auto finished = state_->finished().find(frame);
+    if (finished != state_->finished().end()) {
+      std::filesystem::path plate = FramePath(folder_.output_folder, frame, folder_.format);
+      const bool lacks_samples = setup_->film().require_samples && !finished->second.samples;
+      const bool lacks_noise = setup_->film().require_noise && !finished->second.noise;
+      const bool lacks_plate =
+          folder_.keep_plates && !std::filesystem::exists(plate.replace_extension(".plate"));
+      if (!lacks_samples && !lacks_noise && !lacks_plate) continue;
+      LogInfo("frame {} is rendered again, for {}", frame.value,
+              lacks_samples ? "--require: its samples were not measured"
+              : lacks_noise ? "--require: its noise was not measured"
+                            : "--keep-plates");
+      state_->Forget(frame);
+    }
+    frames.push_back(frame);
+  }
+  done_.frame_count = setup_->frames().size() - frames.size();
+  return frames;
+}
+
+Result<void> Renderer::RunPasses(std::vector<FrameId> frames) {
+  LF_RETURN_IF_ERROR(setup_->PlanSlabs());
+  const bool rebins = setup_->film().Rebins();
+  const size_t per_pass = setup_->plan().frames_per_pass;
+  totals_.pass_count = (frames.size() + per_pass - 1) / per_pass;
+  if (totals_.pass_count > 1)
+    LogInfo("{} frames in {} passes over the LF images: {} plates of {} MiB fit in the memory",
+            frames.size(), totals_.pass_count, per_pass, setup_->plan().plate_bytes >> 20);
+  DumpClock clock(folder_.dump_every_s, NowSeconds());
+  const PassContext context = {
+      *setup_,
+      folder_,
+      options_.signals,
+      *state_,
+      clock,
+      totals_,
+      begin_s_,
+      black_count_,
+      [this](const CollectProgress& pass, size_t finished_count) { Report(pass, finished_count); }};
+  // A film without contributing LF images is better reported before a night's work than after it.
+  // If an earlier run left plates or frames, LF images contribute.
+  if (totals_.pass_count > 1 && IsWhole() && !rebins && !state_->HasPlates() &&
+      state_->finished().empty())
+    LF_RETURN_IF_ERROR(CheckAnyContributes(frames));
+  if (!rebins) LF_RETURN_IF_ERROR(FinishEarly(context, &frames));
+  // The kept rebinned rays depend on all frames of a pass, so a resumed render must have passes of
+  // the same frames.
+  const std::span<const FrameId> in_passes = rebins ? std::span(setup_->frames()) : frames;
+  for (size_t begin = 0; begin < in_passes.size(); begin += per_pass) {
+    const size_t count = std::min(per_pass, in_passes.size() - begin);
+    const std::span<const FrameId> of_pass = in_passes.subspan(begin, count);
+    if (std::all_of(of_pass.begin(), of_pass.end(),
+                    [this](FrameId frame) { return state_->finished().contains(frame); }))
+      continue;
+    const std::vector<FrameId> early = rebins ? EarlyOf(of_pass) : std::vector<FrameId>();
+    LF_RETURN_IF_ERROR(RunPass(context, of_pass, in_passes.size() - begin, early));
+  }
+  return {};
+}
+
+Result<void> Renderer::CheckAnyContributes(std::span<const FrameId> frames) const {
+  // With lens weights, LF cameras beside the lens contribute, which only a pass can tell.
+  if (setup_->film().lens_weights != LensWeights::kNone) return {};
+  std::vector<RenderCamera> cameras;
+  for (const FrameId frame : frames) cameras.push_back(setup_->path().Camera(frame));
+  const bool any_contributes =
+      !SelectImages(setup_->index(), cameras, setup_->Select(), pool_).empty();
+  if (IsStopped()) return Interrupted();
+  if (!any_contributes) return NoneContributes(setup_->frames());
+  return {};
+}
+
+// Returns the frames of the pass that are to be finished with the rays that the state has of them.
+std::vector<FrameId> Renderer::EarlyOf(std::span<const FrameId> frames) const {
+  std::vector<FrameId> early;
+  for (const FrameId frame : folder_.finish_early) {
+    if (std::find(frames.begin(), frames.end(), frame) == frames.end()) continue;
+    if (state_->finished().contains(frame)) continue;
+    // Without collection, only the pass knows which rays the state has.
+    if (!setup_->film().Collects() || state_->HasPlate(frame))
+      early.push_back(frame);
+    else
+      LogWarning("--finish: frame {} has no rays yet: it takes all of its LF images", frame.value);
+  }
+  return early;
+}
+
+// Finishes the early frames in passes of their own, so that they need not wait for others, and
+// removes them from `frames`.
+Result<void> Renderer::FinishEarly(const PassContext& context, std::vector<FrameId>* frames) {
+  const std::vector<FrameId> early = EarlyOf(*frames);
+  std::erase_if(*frames, [&early](FrameId frame) {
+    return std::binary_search(early.begin(), early.end(), frame);
+  });
+  const size_t per_pass = setup_->plan().frames_per_pass;
+  for (size_t begin = 0; begin < early.size(); begin += per_pass) {
+    const size_t count = std::min(per_pass, early.size() - begin);
+    const std::span<const FrameId> of_pass = std::span(early).subspan(begin, count);
+    LF_RETURN_IF_ERROR(RunPass(context, of_pass, frames->size() + count, of_pass));
+  }
+  return {};
+}
+
+Result<void> Renderer::RunPass(const PassContext& context, std::span<const FrameId> frames,
+                               size_t frames_left, std::span<const FrameId> early) {
+  const auto finished_before = std::count_if(frames.begin(), frames.end(), [this](FrameId frame) {
+    return state_->finished().contains(frame);
+  });
+  RenderPass pass(context, frames, early);
+  LF_RETURN_IF_ERROR(pass.Prepare());
+  const std::vector<SelectedImage>& images = pass.renderer().images();
+  if (images.empty() && IsWhole() && totals_.pass_count == 1 && !state_->HasPlates() &&
+      state_->finished().empty())
+    return NoneContributes(setup_->frames());
+  // The progress estimate assumes that later passes are like this one.
+  const size_t passes_left = (frames_left + frames.size() - 1) / frames.size();
+  const uint64_t rays = std::accumulate(
+      images.begin(), images.end(), uint64_t{0},
+      [](uint64_t sum, const SelectedImage& image) { return sum + image.ray_count; });
+  LogDebug("pass over {} LF images for {} frames, {} to {}: {} pixels to be tried", images.size(),
+           frames.size(), frames.front().value, frames.back().value, rays);
+  done_.image_total = done_.image_count + images.size() * passes_left;
+  done_.ray_total = done_.ray_count + rays * passes_left;
+  LF_RETURN_IF_ERROR(pass.Collect());
+
+  // Passes depend on the memory, but this error must not: it needs all LF images of all passes.
+  all_broken_ = all_broken_ && pass.renderer().AllBroken();
+  const bool is_last = frames_left == frames.size();
+  if (all_broken_ && is_last && !setup_->film().shard && !pass.renderer().skipped().empty() &&
+      !had_plates_ && state_->finished().empty()) {
+    state_->RemoveAll();  // checkpoints may have written plates without a ray
+    return pass.renderer().CheckNotAllBroken();
+  }
+  LF_RETURN_IF_ERROR(pass.Finish());
+  done_.image_count += images.size();
+  done_.ray_count += rays;
+  done_.frame_count += frames.size() - static_cast<size_t>(finished_before);
+  Report({}, 0);
+  return {};
+}
+
+Result<RenderReport> Renderer::End() {
+  const FilmFiles film = FilesOfFilm(setup_->path(), options_);
+  std::optional<Error> video_error;
+  if (folder_.contact_sheet && !setup_->film().shard)
+    if (const Result<void> sheet =
+            film.WriteContactSheet(setup_->frames(), setup_->plan().frames_finished_at_once, pool_);
+        !sheet)
+      return sheet.error().kind == ErrorKind::kInterrupted ? Interrupted() : sheet.error();
+  // An error of the video comes last, because the frames are finished and matter most.
+  if (folder_.video)
+    if (const Result<void> video = film.WriteVideo(setup_->frames(), *folder_.video); !video)
+      video_error = video.error();
+  if (video_error && video_error->kind == ErrorKind::kInterrupted) return Interrupted();
+  for (const auto& [frame, report] : state_->finished()) totals_.frames.push_back(report);
+  totals_.total_s += NowSeconds() - begin_s_;
+  totals_.peak_memory_bytes = PeakMemoryBytes();
+  LF_RETURN_IF_ERROR(state_->Close(totals_));
+  if (totals_.IsBlack() && IsWhole())
+    return InputError(fmt::format(
+        "{}: every frame is black: no ray of {} LF images reached them ({})",
+        folder_.output_folder.string(), totals_.selected_image_count,
+        setup_->film().mode == RenderMode::kRebin
+            ? "are the images masked, or do --slab-position, --slab-distance, --r-st or --r-uv not "
+              "fit the scene?"
+            : "are the images masked?"));
+  if (video_error) return *video_error;
+  return std::move(totals_);
+}
+
+Error Renderer::Interrupted() const {
+  size_t finished_count = 0;
+  for (const FrameId frame : setup_->frames())
+    finished_count += state_->finished().contains(frame) ? 1 : 0;
+  return {ErrorKind::kInterrupted,
+          fmt::format("interrupted after {} of {} frames; what is done is "
+                      "kept in {}",
+                      finished_count, setup_->frames().size(), folder_.output_folder.string())};
+}
+
+void Renderer::Report(const CollectProgress& pass, size_t finished_count) const {
+  if (!progress_) return;
+  RenderProgress now = done_;
+  now.image_count += pass.image_count;
+  now.ray_count += pass.tested_count;
+  now.frame_count += finished_count;
+  progress_(now);
+}
+
+}  // namespace
+
+Result<RenderReport> Render(Package package, const RenderOptions& options, ThreadPool& pool,
+                            const std::function<void(const RenderProgress&)>& progress) {
+  return Renderer(options, pool, progress).Run(std::move(package));
+}
+
+}  // namespace lf

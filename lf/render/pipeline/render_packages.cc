@@ -1,0 +1,305 @@
+#include "lf/render/pipeline/render_packages.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "lf/core/log.h"
+#include "lf/film/develop/video.h"
+#include "lf/render/package/package_file.h"
+#include "lf/render/pipeline/frame_output.h"
+#include "lf/render/state/run_inputs.h"
+#include "lf/storage/packed/packed_store_file.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr size_t kLookedAt = 16;  // about so many image files, spread over the package, are checked
+
+// The properties that all packages of one film have in common.
+struct Film {
+  LightFieldIdentity light_field;
+  std::string cameras;  // their hash
+  PackageChoices choices;
+
+  explicit Film(const Package& package)
+      : light_field(package.whole),
+        cameras(HashOfCameras(package.path)),
+        choices(package.choices) {}
+  // Returns the first difference in words; empty if there is none.
+  std::string DifferenceTo(const Film& other) const {
+    if (light_field != other.light_field) return "another light field";
+    if (cameras != other.cameras) return "another camera path";
+    const PackageChoices &a = choices, &b = other.choices;
+    if (a.order != b.order || a.seed != b.seed) return "another order of the LF images";
+    if (a.max_image_count != b.max_image_count) return "another --max-images";
+    if (a.max_angle_rad != b.max_angle_rad) return "another --max-angle";
+    return "";
+  }
+};
+
+// Checks that the packed store, which may have been made for other packages, has the pixels that
+// the package needs. An LF image that was broken when it was packed is skipped when it is loaded,
+// like a broken file.
+Result<void> CheckCodes(const fs::path& path, const Package& package) {
+  const LightField& light_field = package.light_field;
+  const auto codes = FindCodes(light_field.folder, light_field.image_names);
+  if (!codes)
+    return InputError(
+        fmt::format("{}: its LF images are not at {} ({}): --lightfield says where they are",
+                    path.string(), light_field.folder.string(), codes.error().message));
+  size_t needed = 0, missing = 0;
+  std::string first;
+  for (size_t i = 0; i < package.images.size(); ++i) {
+    if (package.images[i].frame_count == 0) continue;
+    ++needed;
+    const PixelRect& rect = package.images[i].rect;
+    const PackedCode& code = (*codes)[i];
+    if (code.is_listed() && (code.bytes == 0 || Intersection(code.rect, rect) == rect)) continue;
+    if (missing++ == 0) first = light_field.image_names[i];
+  }
+  if (missing == 0) return {};
+  return InputError(
+      fmt::format("{}: {} of its {} LF images are not in the packed store {}, or not all of their "
+                  "pixels, the first: {}; compress this package, too",
+                  path.string(), missing, needed, light_field.folder.string(), first));
+}
+
+// Checks that not all of some image files are missing or changed. A few broken files are allowed.
+Result<void> CheckImageFiles(const fs::path& path, const Package& package) {
+  std::vector<size_t> recorded;
+  for (size_t i = 0; i < package.images.size(); ++i)
+    if (package.images[i].file_bytes > 0) recorded.push_back(i);
+  const size_t step = std::max<size_t>(1, recorded.size() / kLookedAt);
+  std::optional<Error> first;
+  for (size_t i = 0; i < recorded.size(); i += step) {
+    const LfImageId id{static_cast<uint32_t>(recorded[i])};
+    const fs::path file = package.light_field.ImagePath(id);
+    std::error_code error;
+    const uint64_t bytes = fs::file_size(file, error);
+    if (!error && bytes == package.images[id.value].file_bytes) return {};
+    if (first) continue;
+    first = error
+                ? InputError(fmt::format(
+                      "{}: its LF images are not at {} ({}: {}): --lightfield says where they are",
+                      path.string(), package.light_field.folder.string(), file.string(),
+                      error.message()))
+                : InputError(fmt::format(
+                      "{}: was made from another light field than is at {}: {} has {} bytes, and "
+                      "had {}; make the package again, or say with --lightfield where its own is",
+                      path.string(), package.light_field.folder.string(), file.string(), bytes,
+                      package.images[id.value].file_bytes));
+  }
+  if (first) return *first;
+  return {};
+}
+
+RenderReport Joined(RenderReport all, const RenderReport& part) {
+  if (all.frames.empty() && all.version.empty()) return part;
+  all.frames.insert(all.frames.end(), part.frames.begin(), part.frames.end());
+  all.AddSkipped(part.skipped);
+  all.selected_image_count = std::max(all.selected_image_count, part.selected_image_count);
+  all.pass_count += part.pass_count;
+  all.total_s += part.total_s;
+  all.load_cpu_s += part.load_cpu_s;
+  all.load_wall_s += part.load_wall_s;
+  all.collect_cpu_s += part.collect_cpu_s;
+  all.peak_memory_bytes = std::max(all.peak_memory_bytes, part.peak_memory_bytes);
+  return all;
+}
+
+// Warns if packages of the film are missing, so that nobody finds out by watching it. A single
+// package is one task of many, and is no reason to warn.
+void TellOfOthers(size_t given, size_t count) {
+  if (given > 1 && given < count)
+    LogWarning("{} of the film's {} packages are given: the frames of the others are not rendered",
+               given, count);
+}
+
+// Records size and time of the file. If they cannot be read, file_bytes is 0, and the package will
+// be opened again.
+void Stamp(PackagePart* part) {
+  std::error_code error;
+  part->file_bytes = fs::file_size(part->path, error);
+  if (error) part->file_bytes = 0;
+  part->file_time = fs::last_write_time(part->path, error);
+}
+
+void MoveTo(const std::optional<LightFieldPlace>& place, Package* package) {
+  if (place) package->light_field.folder = place->folder;
+}
+
+// Reads a package again, with all checks only if its file has changed.
+Result<Package> OpenAgain(const PackagePart& part, PackagedFilm* film) {
+  PackagePart now;
+  now.path = part.path;
+  Stamp(&now);
+  const bool is_same =
+      now.file_bytes == part.file_bytes && now.file_bytes > 0 && now.file_time == part.file_time;
+  if (!is_same) return OpenPackage(part.path, film->place);
+  if (part.path == film->paths.front()) return std::move(film->first);
+  LF_ASSIGN_OR_RETURN(Package package, ReadPackage(part.path, {.check_seal = false}));
+  MoveTo(film->place, &package);
+  return package;
+}
+
+}  // namespace
+
+Result<LightFieldPlace> PlaceOf(const std::string& name, const LightField& light_field) {
+  LightFieldPlace place{name, IdentityOf(light_field), std::nullopt, light_field.folder};
+  if (HoldsPackedStore(light_field)) {
+    LF_ASSIGN_OR_RETURN(place.whole, ReadWholeIdentity(light_field.folder));
+  }
+  return place;
+}
+
+Result<Package> OpenPackage(const fs::path& path, const std::optional<LightFieldPlace>& place) {
+  LF_ASSIGN_OR_RETURN(Package package, ReadPackage(path));
+  if (place) {
+    if (place->identity != package.whole && place->whole != package.whole)
+      return InputError(fmt::format(
+          "{}: was made from another light field than {}: {} LF images of calibration {}, there "
+          "are "
+          "{} of {}",
+          path.string(), place->name, package.whole.image_count, package.whole.calibration,
+          place->identity.image_count, place->identity.calibration));
+  }
+  MoveTo(place, &package);
+  const auto check = HoldsPackedStore(package.light_field) ? CheckCodes : CheckImageFiles;
+  LF_RETURN_IF_ERROR(check(path, package));
+  LogDebug("{}: read and checked, {} frames, {} LF cameras", path.string(), package.frames.size(),
+           package.light_field.size());
+  return package;
+}
+
+Result<PackagedFilm> OpenPackages(std::vector<fs::path> paths,
+                                  std::optional<LightFieldPlace> place) {
+  PackagedFilm film{std::move(paths), std::move(place), {}, 1, {}};
+  std::optional<Film> of_first;
+  std::map<FrameId, fs::path> owners;
+  std::map<std::string, fs::path> names;
+  for (const fs::path& path : film.paths) {
+    PackagePart part;
+    part.path = path;
+    Stamp(&part);
+    LF_ASSIGN_OR_RETURN(Package package, OpenPackage(path, film.place));
+    const Film other(package);
+    if (!of_first) of_first = other;
+    if (const std::string difference = of_first->DifferenceTo(other); !difference.empty())
+      return InputError(fmt::format("{}: is of {} than {}: render them into folders of their own",
+                                    path.string(), difference, film.paths.front().string()));
+    if (const auto [named, is_new] = names.emplace(package.name, path); !is_new)
+      return UsageError(
+          fmt::format("{} and {} have one name: reports and states of both would be "
+                      "called {}",
+                      named->second.string(), path.string(), package.name));
+    for (const PackageFrame& frame : package.frames) {
+      if (const auto [owner, is_new] = owners.emplace(frame.id, path); !is_new)
+        return UsageError(fmt::format("{} and {} both have frame {}: give one of them",
+                                      owner->second.string(), path.string(), frame.id.value));
+      part.frames.push_back(frame.id);
+      part.ray_count += frame.ray_count;
+    }
+    if (film.parts.empty()) {
+      film.film_count = package.count;
+      film.first = std::move(package);
+    }
+    film.parts.push_back(std::move(part));
+  }
+  return film;
+}
+
+Result<std::vector<PackagePart>> PartsWith(const PackagedFilm& film,
+                                           const std::vector<FrameId>& wanted) {
+  std::vector<PackagePart> parts;
+  size_t found_count = 0;
+  for (const PackagePart& whole : film.parts) {
+    PackagePart part = whole;
+    if (!wanted.empty())
+      std::erase_if(part.frames, [&](FrameId frame) {
+        return !std::binary_search(wanted.begin(), wanted.end(), frame);
+      });
+    part.is_whole = part.frames.size() == whole.frames.size();
+    part.ray_count =
+        whole.ray_count * part.frames.size() / std::max<size_t>(1, whole.frames.size());
+    found_count += part.frames.size();
+    if (!part.frames.empty()) parts.push_back(std::move(part));
+  }
+  if (!wanted.empty() && found_count < wanted.size())
+    for (const FrameId frame : wanted)
+      if (std::none_of(parts.begin(), parts.end(), [frame](const PackagePart& part) {
+            return std::binary_search(part.frames.begin(), part.frames.end(), frame);
+          }))
+        return UsageError(
+            fmt::format("--frames: frame {} is in none of the packages", frame.value));
+  TellOfOthers(film.paths.size(), film.film_count);
+  return parts;
+}
+
+// A single package is likely to be rendered into the same folder as others.
+std::string ContactSheetName(const std::vector<fs::path>& paths) {
+  return paths.size() == 1 ? fmt::format("contact_sheet-{}.png", paths.front().stem().string())
+                           : kContactSheet;
+}
+
+Result<RenderReport> RenderPackages(PackagedFilm film, const RenderOptions& options,
+                                    ThreadPool& pool,
+                                    const std::function<void(const RenderProgress&)>& progress) {
+  LF_ASSIGN_OR_RETURN(const std::vector<PackagePart> parts, PartsWith(film, options.frames));
+  if (options.folder.video) {
+    LF_RETURN_IF_ERROR(CheckVideoTool());
+    LF_RETURN_IF_ERROR(CheckVideoTarget(*options.folder.video));
+  }
+  RenderProgress before;  // of packages that are done
+  uint64_t rays_after = 0;
+  for (const PackagePart& part : parts) {
+    before.frame_total += part.frames.size();
+    rays_after += part.ray_count;
+  }
+  std::vector<FrameId> frames;
+  RenderReport report;
+  CameraPath path;  // of all packages
+  for (const PackagePart& part : parts) {
+    LF_ASSIGN_OR_RETURN(Package package, OpenAgain(part, &film));
+    RenderOptions of_part = options;
+    of_part.frames = part.frames;
+    of_part.folder.contact_sheet = false;
+    of_part.folder.video.reset();
+    const std::string name = package.name;
+    path = package.path;
+    rays_after -= part.ray_count;
+    RenderProgress now;
+    LF_ASSIGN_OR_RETURN(
+        const RenderReport done,
+        Render(std::move(package), of_part, pool, [&](const RenderProgress& of_package) {
+          now = of_package;
+          now.frame_count += before.frame_count;
+          now.frame_total = before.frame_total;
+          now.ray_count += before.ray_count;
+          now.ray_total += before.ray_count + rays_after;
+          if (progress) progress(now);
+        }));
+    before.frame_count += part.frames.size();
+    before.ray_count = now.ray_count;
+    report = Joined(std::move(report), done);
+    report.packages.push_back({name, done.selected_image_count, done.skipped.size()});
+    frames.insert(frames.end(), part.frames.begin(), part.frames.end());
+  }
+  std::sort(frames.begin(), frames.end());
+  std::sort(report.frames.begin(), report.frames.end(),
+            [](const FrameReport& a, const FrameReport& b) { return a.frame < b.frame; });
+  const FilmFiles files = FilesOfFilm(path, options);
+  if (options.folder.contact_sheet && !options.film.shard)
+    LF_RETURN_IF_ERROR(files.WriteContactSheet(frames, static_cast<size_t>(pool.thread_count()),
+                                               pool, ContactSheetName(film.paths)));
+  if (options.folder.video) LF_RETURN_IF_ERROR(files.WriteVideo(frames, *options.folder.video));
+  // A section of a film may be black.
+  if (report.IsBlack() && !options.film.shard && film.paths.size() == film.film_count)
+    return InputError(fmt::format("{}: every frame is black: no ray reached them",
+                                  options.folder.output_folder.string()));
+  return report;
+}
+
+}  // namespace lf

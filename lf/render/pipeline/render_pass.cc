@@ -1,0 +1,253 @@
+#include "lf/render/pipeline/render_pass.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "lf/core/log.h"
+#include "lf/light_field/model/value_hasher.h"
+#include "lf/render/pipeline/frame_output.h"
+#include "lf/render/pipeline/skipped_images.h"
+#include "lf/render/state/run_inputs.h"
+
+namespace lf {
+namespace {
+
+// Returns a description of the frames of a pass, on which its rebinned rays depend.
+std::string DescriptionOf(std::span<const FrameId> frames) {
+  ValueHasher numbers;
+  for (const FrameId frame : frames) numbers.Add(frame.value);
+  return fmt::format("{} from {} to {} ({})", frames.size(), frames.front().value,
+                     frames.back().value, numbers.Text());
+}
+
+}  // namespace
+
+RenderPass::RenderPass(const PassContext& context, std::span<const FrameId> frames,
+                       std::span<const FrameId> early)
+    : context_(context),
+      ids_(frames.begin(), frames.end()),
+      early_(early.begin(), early.end()),
+      rays_frames_(DescriptionOf(frames)),
+      renderer_(context.setup, frames),
+      saved_(frames.size()) {}
+
+bool RenderPass::IsFinished(FrameId frame) const {
+  return context_.state.finished().contains(frame);
+}
+
+bool RenderPass::EndsEarly(FrameId frame) const {
+  return std::binary_search(early_.begin(), early_.end(), frame);
+}
+
+Result<FrameProgress> RenderPass::LoadPlate(FrameId frame, SensorPlate* plate,
+                                            std::optional<NoiseMoments>* moments) const {
+  return context_.state.LoadPlate(frame, plate, moments);
+}
+
+Result<std::optional<EarlierRun::Rays>> RenderPass::LoadRays(size_t section,
+                                                             size_t max_cells) const {
+  LF_ASSIGN_OR_RETURN(std::optional<RunState::Rays> rays,
+                      context_.state.LoadRays(ids_.front(), section, rays_frames_, max_cells,
+                                              context_.setup.pool()));
+  std::optional<EarlierRun::Rays> restored;
+  if (rays) restored = EarlierRun::Rays{std::move(rays->map), rays->places_done};
+  return restored;
+}
+
+Result<void> RenderPass::Prepare() {
+  LF_RETURN_IF_ERROR(renderer_.Begin(this));
+  if (context_.setup.film().HasPlates())
+    for (size_t f = 0; f < saved_.size(); ++f)
+      if (!renderer_.IsReleased(f)) saved_[f].places = renderer_.Progress(f).places_done;
+  if (const RebinnedRays* rebinned = renderer_.rebinned())
+    for (size_t i = 0; i < rebinned->section_count(); ++i)
+      saved_rays_places_.push_back(rebinned->places_done(i));
+  size_t& selected = context_.totals.selected_image_count;
+  selected = std::max(selected, renderer_.images().size());
+  return {};
+}
+
+Result<void> RenderPass::Collect() {
+  LF_RETURN_IF_ERROR(FinishEarlyFrames());
+  LF_RETURN_IF_ERROR(FinishStoppedFrames());
+  while (!renderer_.AreAllReleased()) {
+    const Result<bool> step = renderer_.Step();
+    if (!step && step.error().kind != ErrorKind::kInterrupted) {
+      // Plates are complete up to the last step, so that they can be saved.
+      if (!Save(0)) return step.error();
+      return Error{step.error().kind,
+                   step.error().message + " (what is done is kept: --resume goes on)"};
+    }
+    LF_RETURN_IF_ERROR(FinishStoppedFrames());
+    context_.progress(renderer_.progress(), finished_count_);
+    if (IsStopped()) return Interrupt();
+    if (!step) context_.signals->attention = false;
+    if (context_.signals != nullptr && context_.signals->save.exchange(false)) {
+      LF_RETURN_IF_ERROR(Save(std::numeric_limits<double>::infinity()));
+      LogInfo("the state is written, as the signal asked for");
+    }
+    if (step && !*step) return {};
+    LF_RETURN_IF_ERROR(SaveWhenDue());
+  }
+  return {};
+}
+
+// Finishes the early frames at once: the state has all rays that they will get.
+Result<void> RenderPass::FinishEarlyFrames() {
+  for (size_t f = 0; f < ids_.size(); ++f) {
+    if (renderer_.IsReleased(f) || !EndsEarly(ids_[f])) continue;
+    if (renderer_.EndsEarly(f))
+      LF_RETURN_IF_ERROR(FinishFrames({&f, 1}));
+    else
+      LogWarning("--finish: frame {} has no rays yet: it takes all of its LF images",
+                 ids_[f].value);
+  }
+  return {};
+}
+
+Result<void> RenderPass::FinishStoppedFrames() {
+  const std::vector<size_t> stopped = renderer_.StoppedFrames();
+  if (stopped.empty()) return {};
+  LF_RETURN_IF_ERROR(context_.state.SaveTotals(Totals()));
+  for (const size_t f : stopped) LF_RETURN_IF_ERROR(FinishFrames({&f, 1}));
+  return {};
+}
+
+Result<void> RenderPass::Finish() {
+  LF_RETURN_IF_ERROR(context_.state.SaveTotals(Totals()));
+  std::vector<size_t> left;
+  for (size_t f = 0; f < ids_.size(); ++f)
+    if (!renderer_.IsReleased(f)) left.push_back(f);
+  const size_t at_once = context_.setup.plan().frames_finished_at_once;
+  for (size_t begin = 0; begin < left.size(); begin += at_once) {
+    if (IsStopped()) return Interrupt();
+    const size_t count = std::min(at_once, left.size() - begin);
+    LF_RETURN_IF_ERROR(FinishFrames(std::span(left).subspan(begin, count)));
+  }
+  if (renderer_.rebinned() != nullptr) {
+    if (renderer_.rebinned()->facts().is_too_coarse)
+      LogWarning(
+          "cells of rebinned rays are so wide that some got more LF pixels than they have room "
+          "for: make --r-st or --r-uv smaller");
+    context_.state.RemoveRays();
+  }
+  const double earlier_s = context_.totals.total_s;
+  context_.totals = Totals();
+  context_.totals.total_s = earlier_s;
+  return {};
+}
+
+// Writes frames at the same time, because an encoder keeps only one thread busy. A frame that is
+// written is kept, even if another one fails.
+Result<void> RenderPass::FinishFrames(std::span<const size_t> frames) {
+  std::vector<std::optional<Result<FrameReport>>> written(frames.size());
+  const std::vector<Completion> completions = renderer_.Complete(frames);
+  context_.setup.pool().ForEach(frames.size(), [&](size_t i) {
+    written[i].emplace(WriteFiles(frames[i], completions.empty() ? nullptr : &completions[i]));
+  });
+  for (size_t i = 0; i < frames.size(); ++i)
+    if (*written[i]) LF_RETURN_IF_ERROR(RecordFinished(frames[i], **written[i]));
+  for (const std::optional<Result<FrameReport>>& result : written)
+    if (!*result && result->error().kind != ErrorKind::kInterrupted) return result->error();
+  for (const std::optional<Result<FrameReport>>& result : written)
+    if (!*result) return Interrupt();
+  return {};
+}
+
+PlateNotes RenderPass::NotesOf(size_t f) const {
+  PlateNotes notes = renderer_.NotesOf(f);
+  notes.version = context_.folder.version;
+  return notes;
+}
+
+// Writes the files of a frame. May be called by several threads at the same time, for different
+// frames.
+Result<FrameReport> RenderPass::WriteFiles(size_t f, const Completion* completion) {
+  const std::filesystem::path to = context_.state.FinishedPath(ids_[f]);
+  const bool is_shard = context_.setup.film().shard.has_value();
+  if (context_.folder.keep_plates || is_shard) LF_RETURN_IF_ERROR(WriteFinishedPlate(f, to));
+  if (is_shard) {
+    FrameReport report;
+    report.frame = ids_[f];
+    report.rays = renderer_.Progress(f).rays;
+    report.camera = InputsOfCamera(ids_[f], context_.setup.path().Camera(ids_[f]));
+    return report;
+  }
+  LF_ASSIGN_OR_RETURN(FrameReport report,
+                      WritePicture(f, completion, to, [this] { return IsStopped(); }));
+  LF_RETURN_IF_ERROR(renderer_.Measure(f, &report));
+  return report;
+}
+
+Result<void> RenderPass::WriteFinishedPlate(size_t f, std::filesystem::path path) const {
+  const FilmSetup& setup = context_.setup;
+  FrameProgress progress = renderer_.Progress(f);
+  progress.places_done = renderer_.PlaceOfEnd(f);  // must not depend on passes
+  PlateEntries text = context_.state.PlateText(ids_[f], progress, renderer_.moments(f));
+  PlateNotes notes = NotesOf(f);
+  notes.skipped = SkippedOf(
+      Totals().skipped, setup.index(),
+      {renderer_.lens(f), {0, progress.places_done}, setup.Select().reach, setup.film().shard});
+  notes.skipped_count = notes.skipped.size();
+  for (auto& entry : TextOf(notes)) text.push_back(std::move(entry));
+  if (setup.film().shard) text.emplace_back("shard", setup.film().shard->Text());
+  return WritePlate(path.replace_extension(".plate"), text, renderer_.plate(f), setup.pool());
+}
+
+Result<FrameReport> RenderPass::WritePicture(size_t f, const Completion* completion,
+                                             const std::filesystem::path& to,
+                                             const std::function<bool()>& is_interrupted) const {
+  const FrameFormat format = context_.folder.format;
+  const RenderedFrame frame =
+      renderer_.Develop(f, completion, HasEffectiveCounts(format), is_interrupted);
+  LF_RETURN_IF_ERROR(lf::WritePicture(NotesOf(f), frame.picture, to, format, is_interrupted));
+  return frame.report;
+}
+
+Result<void> RenderPass::RecordFinished(size_t f, const FrameReport& report) {
+  const FrameId frame = ids_[f];
+  if (!context_.setup.film().shard && report.rays.image_count == 0 &&
+      report.interpolated_share.value_or(0) == 0) {
+    // Only the first black frames are logged; a report has all of them.
+    constexpr size_t kTold = 10;
+    if (++context_.black_count <= kTold)
+      LogWarning("frame {} is black: no LF image contributes to it", frame.value);
+    if (context_.black_count == kTold + 1)
+      LogWarning("more frames are black; report.json has the LF images of every frame");
+  }
+  LF_RETURN_IF_ERROR(context_.state.SaveFinished(report));
+  LogDebug("frame {}: written, with {} rays of {} LF images", frame.value,
+           report.rays.accepted_count, report.rays.image_count);
+  renderer_.Release(f);
+  ++finished_count_;
+  context_.progress(renderer_.progress(), finished_count_);
+  return {};
+}
+
+// Returns the totals with the work of this pass so far.
+RenderReport RenderPass::Totals() const {
+  RenderReport totals = context_.totals;
+  totals.total_s += NowSeconds() - context_.begin_s;
+  totals.load_cpu_s += renderer_.times().load_cpu_s;
+  totals.load_wall_s += renderer_.times().load_wall_s;
+  totals.collect_cpu_s += renderer_.times().collect_cpu_s;
+  if (renderer_.rebinned() != nullptr) {
+    const RebinnedRays::Facts facts = renderer_.rebinned()->facts();
+    RebinReport& rebinning = totals.rebinning ? *totals.rebinning : totals.rebinning.emplace();
+    rebinning.slab_count = std::max(rebinning.slab_count, facts.section_count);
+    rebinning.cell_count = std::max<uint64_t>(rebinning.cell_count, facts.cell_count);
+    rebinning.looked_at_count += facts.looked_at;
+    rebinning.cpu_s += facts.cpu_s;
+    if (facts.is_full)
+      rebinning.kept = "some";
+    else if (!facts.keeps_all && rebinning.kept == "all")
+      rebinning.kept = "edges";
+  }
+  totals.AddSkipped(renderer_.skipped());
+  return totals;
+}
+
+}  // namespace lf

@@ -1,0 +1,98 @@
+// One pass over the LF images: renders the frames whose plates fit in the memory together into a
+// folder, and keeps the state of unfinished ones there. Internal to this folder.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lf/render/pipeline/film_renderer.h"
+#include "lf/render/pipeline/render.h"
+#include "lf/render/state/dump_clock.h"
+#include "lf/render/state/run_state.h"
+
+namespace lf {
+
+// Returns the time of a monotonic clock.
+inline double NowSeconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// The objects that all passes of a render share.
+struct PassContext {
+  const FilmSetup& setup;
+  const FolderOptions& folder;
+  RenderSignals* signals;  // may be null
+  RunState& state;
+  DumpClock& clock;
+  RenderReport& totals;  // of finished passes and earlier runs; total_s is of earlier runs only
+  double begin_s;        // of this run
+  size_t& black_count;   // frames that no LF image contributes to
+  std::function<void(const CollectProgress&, size_t finished_count)> progress;
+};
+
+class RenderPass : private EarlierRun {
+ public:
+  //   frames  frames of the pass, ascending. Finished ones are not rendered; they are given because
+  //           the kept rebinned rays depend on all frames of the pass.
+  //   early   the frames, ascending, to finish with the rays of the state alone
+  RenderPass(const PassContext& context, std::span<const FrameId> frames,
+             std::span<const FrameId> early);
+
+  // Loads the plates of an earlier run, and selects the LF images that are still to be collected.
+  // kInput: the state is damaged.
+  Result<void> Prepare();
+  const FilmRenderer& renderer() const { return renderer_; }
+
+  // Collects until all LF images are done. kInterrupted: the state is written.
+  Result<void> Collect();
+  // Writes the frames that are not finished yet. kInterrupted: the state is written.
+  Result<void> Finish();
+
+ private:
+  // The parts of a frame that are in the folder.
+  struct Saved {
+    uint32_t places = 0;   // places done in the state on the disk
+    double picture_s = 0;  // time when its picture was last written
+  };
+
+  bool IsFinished(FrameId frame) const override;
+  bool EndsEarly(FrameId frame) const override;
+  Result<FrameProgress> LoadPlate(FrameId frame, SensorPlate* plate,
+                                  std::optional<NoiseMoments>* moments) const override;
+  Result<std::optional<EarlierRun::Rays>> LoadRays(size_t section, size_t max_cells) const override;
+
+  Result<void> FinishEarlyFrames();
+  Result<void> FinishStoppedFrames();
+  Result<void> FinishFrames(std::span<const size_t> frames);
+  PlateNotes NotesOf(size_t f) const;
+  Result<FrameReport> WriteFiles(size_t f, const Completion* completion);
+  Result<void> WriteFinishedPlate(size_t f, std::filesystem::path path) const;
+  Result<FrameReport> WritePicture(size_t f, const Completion* completion,
+                                   const std::filesystem::path& to,
+                                   const std::function<bool()>& is_interrupted) const;
+  Result<void> RecordFinished(size_t f, const FrameReport& report);
+  RenderReport Totals() const;
+
+  Result<void> Save(double picture_budget_s);
+  Result<void> SaveRays();
+  Result<void> SavePictures(double picture_budget_s);
+  Result<void> SaveWhenDue();
+  Error Interrupt();
+  bool IsStopped() const { return context_.setup.work().IsStopped(); }
+
+  const PassContext& context_;
+  const std::vector<FrameId> ids_;
+  const std::vector<FrameId> early_;
+  const std::string rays_frames_;  // frames that rebinned rays are made for, in their files
+  FilmRenderer renderer_;
+  std::vector<Saved> saved_;                 // one for each frame
+  std::vector<uint32_t> saved_rays_places_;  // places done of sections in the state on the disk
+  size_t finished_count_ = 0;
+};
+
+}  // namespace lf

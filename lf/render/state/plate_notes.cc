@@ -1,0 +1,252 @@
+#include "lf/render/state/plate_notes.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <charconv>
+#include <cmath>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "lf/core/value_named.h"
+#include "lf/render/collect/frame_lens.h"
+#include "lf/render/state/record_fields.h"
+
+namespace lf {
+namespace {
+
+// Returns the shortest texts that give the same bits when they are read.
+std::string Words(std::span<const double> numbers) {
+  return fmt::format("{}", fmt::join(numbers, " "));
+}
+
+// Returns a JSON list in ASCII without control characters, because names may have any bytes.
+std::string NamesText(const std::vector<std::string>& names) {
+  constexpr size_t kMostBytes = size_t{256} << 10;
+  const auto text_of = [](const Json& json) {
+    return json.dump(-1, ' ', true, Json::error_handler_t::replace);
+  };
+  std::string text;
+  for (const std::string& name : names) {
+    const std::string word = text_of(Json(name));
+    if (text.size() + word.size() > kMostBytes) break;
+    text += (text.empty() ? "" : ",") + word;
+  }
+  return "[" + text + "]";
+}
+
+// Reads the values of keys, one after the other. Keeps the first fault; values with a fault are
+// arbitrary.
+class NotesReader {
+ public:
+  NotesReader(const PlateEntries& entries, const std::string& name)
+      : entries_(entries), name_(name) {}
+
+  std::vector<double> Numbers(const char* key, size_t count) {
+    std::vector<double> numbers = AnyNumbers(key);
+    if (numbers.size() != count) Fault(key, fmt::format("{} numbers", count));
+    numbers.resize(count);
+    return numbers;
+  }
+
+  std::vector<double> AnyNumbers(const char* key) {
+    std::vector<double> numbers;
+    const std::string text = Text(key);
+    const char* next = text.data();
+    const char* const end = next + text.size();
+    while (next < end) {
+      double number = 0;
+      const auto [rest, error] = std::from_chars(next, end, number);
+      if (error != std::errc{} || !std::isfinite(number) || (rest < end && *rest != ' ')) {
+        Fault(key, "numbers");
+        break;
+      }
+      numbers.push_back(number);
+      next = rest + 1;
+    }
+    return numbers;
+  }
+
+  uint64_t WholeNumber(const char* key, uint64_t most) {
+    const std::string text = Text(key);
+    uint64_t number = 0;
+    const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc{} || rest != text.data() + text.size() || number > most)
+      Fault(key, fmt::format("a whole number up to {}", most));
+    return number;
+  }
+
+  std::vector<std::string> Names(const char* key) {
+    std::vector<std::string> names;
+    const Json json = Json::parse(Text(key), nullptr, false);
+    if (!json.is_array()) Fault(key, "a list of names");
+    for (const Json& item : json.is_array() ? json : Json::array()) {
+      if (!item.is_string()) Fault(key, "a list of names");
+      if (item.is_string()) names.push_back(item.get<std::string>());
+    }
+    return names;
+  }
+
+  std::string Text(const char* key) {
+    const std::string* const text = FindEntry(entries_, key);
+    if (text == nullptr && !fault_)
+      fault_ = InputError(fmt::format(
+          "{}: has no {}: it is the plate of an unfinished frame, or of another version; expected "
+          "those of lfrenderer --shard or --keep-plates",
+          name_, key));
+    return text == nullptr ? "" : *text;
+  }
+
+  void Fault(const char* key, const std::string& expected) {
+    if (!fault_)
+      fault_ =
+          InputError(fmt::format("{}: {} is \"{}\", expected {}", name_, key, Text(key), expected));
+  }
+
+  const std::optional<Error>& fault() const { return fault_; }
+
+ private:
+  const PlateEntries& entries_;
+  const std::string& name_;
+  std::optional<Error> fault_;
+};
+
+template <class Matrix>
+std::vector<double> RowsOf(const Matrix& matrix) {
+  std::vector<double> numbers;
+  for (int row = 0; row < matrix.rows(); ++row)
+    for (int column = 0; column < matrix.cols(); ++column) numbers.push_back(matrix(row, column));
+  return numbers;
+}
+
+Mat3 Mat3Of(std::span<const double> rows) {
+  Mat3 matrix;
+  for (int i = 0; i < 9; ++i) matrix(i / 3, i % 3) = rows[i];
+  return matrix;
+}
+
+Vec3 Vec3Of(std::span<const double> v) { return {v[0], v[1], v[2]}; }
+
+}  // namespace
+
+PlateEntries TextOf(const PlateNotes& notes) {
+  const RenderCamera& camera = notes.camera;
+  const Intrinsics& k = camera.pinhole.intrinsics;
+  const RigidTransform& pose = camera.pinhole.cam_from_world;
+  const Plane& focus = camera.focus_plane;
+  std::vector<double> develop = {notes.develop.pedestal, notes.develop.scale};
+  for (const double gain : notes.develop.white_balance) develop.push_back(gain);
+  for (const double value : RowsOf(notes.develop.linear_srgb_from_camera)) develop.push_back(value);
+  std::vector<double> of_pose = RowsOf(pose.rotation);
+  for (const double value : RowsOf(pose.translation)) of_pose.push_back(value);
+  const auto words = [](std::initializer_list<double> numbers) {
+    return Words(std::vector<double>(numbers));
+  };
+  PlateEntries text = {
+      {"sheet.frame", fmt::format("{}", notes.frame.value)},
+      {"sheet.intrinsics", words({k.fx_px, k.fy_px, k.cx_px, k.cy_px, k.skew_px})},
+      {"sheet.pose", Words(of_pose)},
+      {"sheet.aperture", words({camera.aperture.radius_w, 0.0 + camera.aperture.blades,
+                                camera.aperture.rotation_rad})},
+      {"sheet.focus_plane",
+       words({focus.normal.x(), focus.normal.y(), focus.normal.z(), focus.offset_w})},
+      {"sheet.lens",
+       words({camera.time_s, camera.focal_length_w, camera.sensor_width_w, camera.focus_distance_w,
+              camera.focus_tilt.horizontal_rad, camera.focus_tilt.vertical_rad, camera.unit_m})},
+      {"sheet.fps", words({notes.fps})},
+      {"sheet.estimator", NameOf(notes.estimator)},
+      {"sheet.version", notes.version},
+      {"sheet.develop", Words(develop)},
+      {"sheet.smooth_below", fmt::format("{}", notes.develop.smooth_below)},
+      {"sheet.fill_radius", fmt::format("{}", notes.develop.fill_radius_px)},
+      {"sheet.lf_images", fmt::format("{}", notes.rays.image_count)},
+      {"sheet.rays_tested", fmt::format("{}", notes.rays.tested_count)},
+      {"sheet.rays_accepted", fmt::format("{}", notes.rays.accepted_count)},
+  };
+  if (notes.places_done)
+    text.emplace_back("sheet.finished_early", fmt::format("{}", *notes.places_done));
+  if (notes.skipped_count > 0) {
+    text.emplace_back("sheet.lf_images_skipped", fmt::format("{}", notes.skipped_count));
+    text.emplace_back("sheet.skipped", NamesText(notes.skipped));
+  }
+  if (notes.weighed) {
+    const auto& counts = notes.weighed->effective_counts.pixels();
+    text.emplace_back("sheet.weights",
+                      words({notes.weighed->hat_share, notes.weighed->coverage.uncovered_share,
+                             notes.weighed->coverage.fitting_diameter_w}));
+    text.emplace_back("sheet.effective", fmt::format("{}", fmt::join(counts, " ")));
+  }
+  return text;
+}
+
+Result<PlateNotes> PlateNotesOf(const PlateEntries& entries, int width_px, int height_px,
+                                const std::string& name) {
+  NotesReader reader(entries, name);
+  PlateNotes notes;
+  notes.frame.value = static_cast<uint32_t>(reader.WholeNumber("sheet.frame", UINT32_MAX));
+  const std::vector<double> k = reader.Numbers("sheet.intrinsics", 5);
+  Intrinsics& intrinsics = notes.camera.pinhole.intrinsics;
+  intrinsics = {k[0], k[1], k[2], k[3], k[4], width_px, height_px};
+  if (!(k[0] != 0 && k[1] != 0)) reader.Fault("sheet.intrinsics", "focal lengths that are not 0");
+  const std::vector<double> pose = reader.Numbers("sheet.pose", 12);
+  notes.camera.pinhole.cam_from_world.rotation = Mat3Of(pose);
+  notes.camera.pinhole.cam_from_world.translation = Vec3Of(std::span(pose).subspan(9));
+  const std::vector<double> aperture = reader.Numbers("sheet.aperture", 3);
+  if (!(aperture[0] >= 0) || !(aperture[1] == 0 || (aperture[1] >= 3 && aperture[1] <= 1000)))
+    reader.Fault("sheet.aperture", "a radius, 0 or 3 to 1000 blades, and their rotation");
+  else
+    notes.camera.aperture = {aperture[0], static_cast<int>(aperture[1]), aperture[2]};
+  const std::vector<double> focus = reader.Numbers("sheet.focus_plane", 4);
+  notes.camera.focus_plane = {Vec3Of(focus), focus[3]};
+  const std::vector<double> lens = reader.Numbers("sheet.lens", 7);
+  notes.camera.time_s = lens[0];
+  notes.camera.focal_length_w = lens[1];
+  notes.camera.sensor_width_w = lens[2];
+  notes.camera.focus_distance_w = lens[3];
+  notes.camera.focus_tilt = {lens[4], lens[5]};
+  notes.camera.unit_m = lens[6];
+  notes.fps = reader.Numbers("sheet.fps", 1)[0];
+  const auto estimator =
+      ValueNamed(reader.Text("sheet.estimator"), {Estimator::kNearest, Estimator::kBilinear});
+  if (!estimator) reader.Fault("sheet.estimator", "nearest or bilinear");
+  notes.estimator = estimator.value_or(Estimator::kBilinear);
+  notes.version = reader.Text("sheet.version");
+  const std::vector<double> develop = reader.Numbers("sheet.develop", 14);
+  if (!(develop[1] > 0)) reader.Fault("sheet.develop", "a scale above 0 as the second number");
+  notes.develop.pedestal = develop[0];
+  notes.develop.scale = develop[1];
+  notes.develop.white_balance = {develop[2], develop[3], develop[4]};
+  notes.develop.linear_srgb_from_camera = Mat3Of(std::span(develop).subspan(5));
+  notes.develop.smooth_below =
+      static_cast<uint32_t>(reader.WholeNumber("sheet.smooth_below", UINT32_MAX));
+  notes.develop.fill_radius_px =
+      static_cast<int>(reader.WholeNumber("sheet.fill_radius", kMostFillRadius_px));
+  notes.rays.image_count = reader.WholeNumber("sheet.lf_images", UINT32_MAX);
+  notes.rays.tested_count = reader.WholeNumber("sheet.rays_tested", UINT64_MAX / 2);
+  notes.rays.accepted_count = reader.WholeNumber("sheet.rays_accepted", UINT64_MAX / 2);
+  if (FindEntry(entries, "sheet.finished_early") != nullptr)
+    notes.places_done =
+        static_cast<uint32_t>(reader.WholeNumber("sheet.finished_early", UINT32_MAX));
+  if (FindEntry(entries, "sheet.lf_images_skipped") != nullptr) {
+    notes.skipped_count = reader.WholeNumber("sheet.lf_images_skipped", UINT32_MAX);
+    notes.skipped = reader.Names("sheet.skipped");
+    if (notes.skipped.size() > notes.skipped_count)
+      reader.Fault("sheet.skipped", fmt::format("at most {} names", notes.skipped_count));
+  }
+  if (FindEntry(entries, "sheet.weights") != nullptr) {
+    const std::vector<double> weights = reader.Numbers("sheet.weights", 3);
+    const auto [columns, rows] = EffectiveSquares(intrinsics);
+    const std::vector<double> counts =
+        reader.Numbers("sheet.effective", static_cast<size_t>(columns) * rows);
+    notes.weighed = {weights[0], {weights[1], weights[2]}, Image<float>(columns, rows)};
+    for (size_t i = 0; i < counts.size(); ++i) {
+      if (!(counts[i] >= 0 && counts[i] <= 1e9)) reader.Fault("sheet.effective", "counts");
+      notes.weighed->effective_counts.pixels()[i] = static_cast<float>(counts[i]);
+    }
+  }
+  if (reader.fault()) return *reader.fault();
+  return notes;
+}
+
+}  // namespace lf

@@ -1,0 +1,140 @@
+// Reads values from our own JSON files (reports, jobs), which may be damaged. Only for sources that
+// include nlohmann's JSON anyway.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "lf/render/state/run_inputs.h"
+
+namespace lf {
+
+using Json = nlohmann::ordered_json;
+
+// Reads the values of one object by their keys. The value of a missing key keeps its default. The
+// first value of a wrong type is described in `fault`.
+class RecordFields {
+ public:
+  RecordFields(const Json& object, std::string* fault) : object_(object), fault_(*fault) {
+    if (!object.is_object()) Complain("", "an object");
+  }
+
+  void Get(const char* key, double* value) {
+    if (const Json* json = Find(key)) {
+      if (json->is_number())
+        *value = json->get<double>();
+      else
+        Complain(key, "a number");
+    }
+  }
+  template <class Integer>
+  void Get(const char* key, Integer* value) {
+    if (const Json* json = Find(key)) {
+      if (json->is_number_unsigned() &&
+          json->get<uint64_t>() <= std::numeric_limits<Integer>::max())
+        *value = static_cast<Integer>(json->get<uint64_t>());
+      else
+        Complain(key, "a whole number");
+    }
+  }
+  void Get(const char* key, std::string* value) {
+    if (const Json* json = Find(key)) {
+      if (json->is_string())
+        *value = json->get<std::string>();
+      else
+        Complain(key, "text");
+    }
+  }
+  void Get(const char* key, std::array<uint64_t, 3>* values) {
+    const Json* json = Find(key);
+    if (json == nullptr) return;
+    if (!json->is_array() || json->size() != 3) return Complain(key, "three numbers");
+    for (size_t i = 0; i < 3; ++i) {
+      if (!(*json)[i].is_number_unsigned()) return Complain(key, "three whole numbers");
+      (*values)[i] = (*json)[i].get<uint64_t>();
+    }
+  }
+  void Get(const char* key, RunInputs* inputs) {
+    const Json* json = Find(key);
+    if (json == nullptr) return;
+    if (!json->is_object()) return Complain(key, "an object");
+    for (const auto& [name, value] : json->items()) {
+      if (!value.is_string()) return Complain(key, "texts");
+      inputs->emplace_back(name, value.get<std::string>());
+    }
+  }
+  void Get(const char* key, bool* value) {
+    if (const Json* json = Find(key)) {
+      if (json->is_boolean())
+        *value = json->get<bool>();
+      else
+        Complain(key, "true or false");
+    }
+  }
+  void Get(const char* key, std::vector<std::string>* values) {
+    for (const Json* item : List(key)) {
+      if (!item->is_string()) return Complain(key, "a list of texts");
+      values->push_back(item->get<std::string>());
+    }
+  }
+  // Returns the items of a list; none if it is missing.
+  std::vector<const Json*> List(const char* key) {
+    std::vector<const Json*> list;
+    const Json* json = Find(key);
+    if (json == nullptr) return list;
+    if (!json->is_array()) {
+      Complain(key, "a list");
+      return list;
+    }
+    for (const Json& item : *json) list.push_back(&item);
+    return list;
+  }
+  const Json* Find(const char* key) const {
+    if (!object_.is_object()) return nullptr;
+    const auto found = object_.find(key);
+    return found == object_.end() ? nullptr : &*found;
+  }
+
+ private:
+  void Complain(const std::string& key, const char* expected) {
+    if (fault_.empty()) fault_ = fmt::format("\"{}\": expected {}", key, expected);
+  }
+
+  const Json& object_;
+  std::string& fault_;
+};
+
+// Returns the object in a text if its "format" is the expected one. Otherwise returns an empty
+// object, and `fault` says why.
+inline Json ParseRecord(std::string_view text, const char* format, std::string* fault) {
+  Json json = Json::parse(text, nullptr, false);
+  std::string found;
+  if (json.is_discarded())
+    *fault = "it is no JSON, or only a part of it";
+  else
+    RecordFields(json, fault).Get("format", &found);
+  if (fault->empty() && found != format)
+    *fault = fmt::format("\"format\": expected \"{}\", found \"{}\"", format, found);
+  return fault->empty() ? std::move(json) : Json::object();
+}
+
+// Returns the text of a JSON value. Names may have any bytes; bytes that are not UTF-8 are
+// replaced.
+inline std::string RecordText(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+// As RecordText(), on one line. Infinity becomes null in both.
+inline std::string RecordLine(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace lf

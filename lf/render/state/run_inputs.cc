@@ -1,0 +1,162 @@
+#include "lf/render/state/run_inputs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "lf/light_field/model/value_hasher.h"
+#include "lf/render/collect/noise_rule.h"
+
+namespace lf {
+namespace {
+
+constexpr const char* kNoInput = "(none)";
+
+// Returns the values that a reader may want to see, then the hash of all values.
+std::string EncodingText(const RadianceEncoding& encoding) {
+  ValueHasher hasher;
+  hasher.Add(static_cast<double>(encoding.bayer));
+  hasher.Add(static_cast<double>(encoding.transfer));
+  for (const double value : encoding.response) hasher.Add(value);
+  hasher.Add(encoding.black_level);
+  hasher.Add(encoding.white_level.value_or(-1));
+  hasher.Add(encoding.max_radiance);
+  hasher.Add(encoding.pedestal);
+  std::string alpha;
+  if (encoding.AlphaIsLight()) {
+    const std::array<double, 3> behind = encoding.Background();
+    hasher.Add(static_cast<double>(*encoding.alpha));
+    for (const double value : behind) hasher.Add(value);
+    if (encoding.keeps_opacity) hasher.Add(1.0);
+    const std::string over = encoding.keeps_opacity
+                                 ? kNoBackground
+                                 : fmt::format("{} {} {}", behind[0], behind[1], behind[2]);
+    alpha = fmt::format(" alpha {} over {}", NameOf(*encoding.alpha), over);
+  }
+  if (encoding.masks_clipped) {
+    hasher.Add(std::string("clipped"));
+    alpha += " clipped mask";
+  }
+  constexpr const char* kTransfers[] = {"srgb", "linear", "response"};
+  return fmt::format(
+      "{}{} black {} white {} max {} pedestal {}{} ({})",
+      kTransfers[static_cast<int>(encoding.transfer)],
+      encoding.bayer == BayerPattern::kNone ? std::string()
+                                            : fmt::format(" {}", NameOf(encoding.bayer)),
+      encoding.black_level, encoding.white_level ? fmt::format("{}", *encoding.white_level) : "-",
+      encoding.max_radiance, encoding.pedestal, alpha, hasher.Text());
+}
+
+// Returns a text of the values that change colours when a plate is developed.
+std::string ColoursText(const RadianceEncoding& encoding) {
+  ValueHasher hasher;
+  for (const double gain : encoding.white_balance) hasher.Add(gain);
+  hasher.AddMatrix(encoding.linear_srgb_from_camera);
+  return fmt::format("white balance {} {} {} ({})", encoding.white_balance[0],
+                     encoding.white_balance[1], encoding.white_balance[2], hasher.Text());
+}
+
+std::string StopText(const RunChoices& choices) {
+  if (choices.stop_at_noise) return TextOfNoiseRule(*choices.stop_at_noise);
+  return choices.stop_at_samples ? fmt::format("samples>={}", *choices.stop_at_samples) : "never";
+}
+
+std::string Text(const Vec3& v) { return fmt::format("{} {} {}", v.x(), v.y(), v.z()); }
+
+std::string CameraHash(const RenderCamera& camera) {
+  ValueHasher hasher;
+  hasher.Add(camera.pinhole.intrinsics);
+  hasher.Add(camera.pinhole.cam_from_world);
+  hasher.Add(camera.aperture.radius_w);
+  hasher.Add(camera.aperture.blades);
+  hasher.Add(camera.aperture.rotation_rad);
+  hasher.AddMatrix(camera.focus_plane.normal);
+  hasher.Add(camera.focus_plane.offset_w);
+  return hasher.Text();
+}
+
+}  // namespace
+
+RunInputs InputsOfRays(const LightFieldIdentity& light_field, const RadianceEncoding& encoding,
+                       const RunChoices& choices) {
+  return {
+      {"law", fmt::format("{}", kRayModelVersion)},
+      {"estimator", NameOf(choices.reading.estimator)},
+      {"filter",
+       choices.reading.estimator == Estimator::kBilinear ? NameOf(choices.reading.filter) : "none"},
+      {"lens_weights", NameOf(choices.lens_weights)},
+      {"lens_weights.law", choices.lens_weights == LensWeights::kNone
+                               ? "none"
+                               : fmt::format("{}", kLensWeightsVersion)},
+      {"back_end", choices.back_end == CollectBackEnd::kFast ? "fast" : "reference"},
+      {"order", NameOf(choices.order)},
+      {"seed", fmt::format("{}", choices.seed)},
+      {"max_images", choices.max_image_count ? fmt::format("{}", *choices.max_image_count) : "all"},
+      {"max_angle_deg", choices.max_angle_rad
+                            ? fmt::format("{}", DegreesFromRadians(*choices.max_angle_rad))
+                            : "any"},
+      {"stop_when", StopText(choices)},
+      {"light_field.images", fmt::format("{}", light_field.image_count)},
+      {"light_field.names", light_field.names},
+      {"light_field.calibration", light_field.calibration},
+      {"light_field.pixels", choices.pixels},
+      {"light_field.encoding", EncodingText(encoding)},
+      {"light_field.colours", ColoursText(encoding)}};
+}
+
+RunInputs InputsOfCamera(FrameId frame, const RenderCamera& camera) {
+  const PinholeCamera& pinhole = camera.pinhole;
+  const Intrinsics& k = pinhole.intrinsics;
+  return {{"frame", fmt::format("{}", frame.value)},
+          {"frame.resolution", fmt::format("{} {}", k.width_px, k.height_px)},
+          {"frame.fx_px", fmt::format("{}", k.fx_px)},
+          {"frame.position", Text(pinhole.CentreWorld())},
+          {"frame.forward", Text(pinhole.ForwardWorld())},
+          {"frame.up", Text(pinhole.UpWorld())},
+          {"frame.aperture_diameter_w", fmt::format("{}", 2 * camera.aperture.radius_w)},
+          {"frame.blades", fmt::format("{}", camera.aperture.blades)},
+          {"frame.focus_distance_w", fmt::format("{}", camera.focus_distance_w)},
+          {"frame.focus_plane",
+           fmt::format("{} {}", Text(camera.focus_plane.normal), camera.focus_plane.offset_w)},
+          {"frame.camera", CameraHash(camera)}};
+}
+
+RunInputs InputsOfPicture(const RunChoices& choices) {
+  return {{"picture.format", choices.format},
+          {"picture.smooth_below", fmt::format("{}", choices.smooth_below)},
+          {"picture.fill_radius", fmt::format("{}", choices.fill_radius_px)}};
+}
+
+std::string HashOfCameras(const CameraPath& path) {
+  ValueHasher hasher;
+  for (const RenderCamera& camera : path.cameras) hasher.Add(CameraHash(camera));
+  return hasher.Text();
+}
+
+std::string InputDifference::Text(const std::string& one, const std::string& other) const {
+  const auto text_of = [&](const std::string& value) {
+    if (value != kNoInput) return fmt::format("{} {}", key, value);
+    return key == kFilmOfPackage ? std::string("no packages") : "no " + key;
+  };
+  const bool is_in_both = recorded != kNoInput && wanted != kNoInput;
+  return fmt::format("{} {}, {} {}", one, text_of(recorded), other,
+                     is_in_both ? wanted : text_of(wanted));
+}
+
+std::optional<InputDifference> FirstDifference(const RunInputs& recorded, const RunInputs& wanted) {
+  const auto value_in = [](const RunInputs& inputs, const std::string& key) -> std::string {
+    for (const auto& [name, value] : inputs)
+      if (name == key) return value;
+    return kNoInput;
+  };
+  for (const auto& [key, value] : wanted)
+    if (const std::string other = value_in(recorded, key); other != value)
+      return InputDifference{key, other, value};
+  for (const auto& [key, value] : recorded)
+    if (const std::string other = value_in(wanted, key); other != value)
+      return InputDifference{key, value, other};
+  return std::nullopt;
+}
+
+}  // namespace lf

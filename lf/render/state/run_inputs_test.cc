@@ -1,0 +1,103 @@
+#include "lf/render/state/run_inputs.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "lf/render/collect/test_noise_field.h"
+
+namespace lf {
+namespace {
+
+RunInputs AllInputs(const LightField& field, const RunChoices& choices,
+                    const RenderCamera& camera) {
+  RunInputs all = InputsOfRays(IdentityOf(field), field.encoding, choices);
+  for (const RunInputs& part : {InputsOfCamera(FrameId{1}, camera), InputsOfPicture(choices)})
+    all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+TEST(RunInputs, EveryInputMakesADifferenceAndItsKeyNamesIt) {
+  struct Inputs {
+    Inputs() { choices.reading.estimator = Estimator::kBilinear; }
+    LightField field = testing::NoiseField();
+    RunChoices choices;
+    RenderCamera camera = testing::NoiseFrames()[0];
+  };
+  const Inputs base;
+  const RunInputs recorded = AllInputs(base.field, base.choices, base.camera);
+  EXPECT_EQ(FirstDifference(recorded, AllInputs(base.field, base.choices, base.camera)),
+            std::nullopt);
+  const std::vector<std::pair<std::string, std::function<void(Inputs&)>>> changes = {
+      {"seed", [](Inputs& i) { i.choices.seed = 1; }},
+      {"estimator", [](Inputs& i) { i.choices.reading.estimator = Estimator::kNearest; }},
+      {"filter", [](Inputs& i) { i.choices.reading.filter = PixelFilter::kBicubic; }},
+      {"back_end", [](Inputs& i) { i.choices.back_end = CollectBackEnd::kReference; }},
+      {"lens_weights", [](Inputs& i) { i.choices.lens_weights = LensWeights::kHat; }},
+      {"order", [](Inputs& i) { i.choices.order = ImageOrder::kArea; }},
+      {"max_angle_deg", [](Inputs& i) { i.choices.max_angle_rad = 1; }},
+      {"max_images", [](Inputs& i) { i.choices.max_image_count = 9; }},
+      {"stop_when", [](Inputs& i) { i.choices.stop_at_samples = 9; }},
+      {"stop_when", [](Inputs& i) { i.choices.stop_at_noise = 0.002; }},
+      {"picture.format", [](Inputs& i) { i.choices.format = "png"; }},
+      {"picture.smooth_below", [](Inputs& i) { i.choices.smooth_below = 2; }},
+      {"picture.fill_radius", [](Inputs& i) { i.choices.fill_radius_px = 32; }},
+      {"light_field.images", [](Inputs& i) { i.field.cameras.pop_back(); }},
+      {"light_field.names", [](Inputs& i) { i.field.image_names[3] += "x"; }},
+      {"light_field.names", [](Inputs& i) { i.field.mask_names.assign(49, "m.png"); }},
+      {"light_field.calibration",
+       [](Inputs& i) { i.field.cameras[3].cam_from_world.translation.x() += 1e-15; }},
+      {"light_field.calibration", [](Inputs& i) { i.field.cameras[3].gain = 1.01f; }},
+      {"light_field.calibration",
+       [](Inputs& i) { i.field.intrinsics[0].distortion.parameters[2] = 1e-9; }},
+      {"light_field.calibration", [](Inputs& i) { i.field.cameras[3].gain[2] = 1.01f; }},
+      {"light_field.calibration", [](Inputs& i) { i.field.intrinsics[0].vignetting.v[1] = 1e-9; }},
+      {"light_field.encoding", [](Inputs& i) { i.field.encoding.black_level = 64; }},
+      {"light_field.encoding",
+       [](Inputs& i) {
+         i.field.encoding.response = {0, 1};
+       }},
+      {"light_field.colours", [](Inputs& i) { i.field.encoding.white_balance[2] = 1.5; }},
+      {"light_field.encoding", [](Inputs& i) { i.field.encoding.masks_clipped = true; }},
+      {"frame.resolution", [](Inputs& i) { i.camera.pinhole.intrinsics.height_px = 61; }},
+      {"frame.position", [](Inputs& i) { i.camera.pinhole.cam_from_world.translation.z() += 0.1; }},
+      {"frame.aperture_diameter_w", [](Inputs& i) { i.camera.aperture.radius_w = 0.031; }},
+      {"frame.blades", [](Inputs& i) { i.camera.aperture.blades = 7; }},
+      {"frame.focus_plane", [](Inputs& i) { i.camera.focus_plane.offset_w += 1e-12; }},
+      {"frame.camera", [](Inputs& i) { i.camera.pinhole.intrinsics.cy_px += 0.5; }},
+      {"frame.camera", [](Inputs& i) { i.camera.aperture.rotation_rad = 0.1; }}};
+  for (const auto& [key, change] : changes) {
+    Inputs inputs;
+    change(inputs);
+    const auto difference =
+        FirstDifference(recorded, AllInputs(inputs.field, inputs.choices, inputs.camera));
+    ASSERT_TRUE(difference) << key;
+    EXPECT_EQ(difference->key, key);
+    EXPECT_NE(difference->recorded, difference->wanted);
+  }
+}
+
+TEST(RunInputs, WhatOneSideLacksIsADifference) {
+  EXPECT_EQ(FirstDifference({}, {{"a", "1"}})->recorded, "(none)");
+  EXPECT_EQ(FirstDifference({{"a", "1"}}, {})->wanted, "(none)");
+}
+
+TEST(RunInputs, DifferencesAreReadable) {
+  const RunInputs packages = {{kFilmOfPackage, "1f"}}, other = {{kFilmOfPackage, "2e"}};
+  EXPECT_EQ(FirstDifference(packages, other)->Text("was made with", "this call has"),
+            "was made with picture.film 1f, this call has 2e");
+  EXPECT_EQ(FirstDifference({}, packages)->Text("was made with", "this call has"),
+            "was made with no packages, this call has picture.film 1f");
+  EXPECT_EQ(FirstDifference({{"a", "1"}}, {})->Text("has", "this has"), "has a 1, this has no a");
+}
+
+TEST(RunInputs, TheFolderMayMove) {
+  LightField field = testing::NoiseField();
+  const RunInputs before = InputsOfRays(IdentityOf(field), field.encoding, {});
+  field.folder = "/elsewhere";
+  EXPECT_EQ(FirstDifference(before, InputsOfRays(IdentityOf(field), field.encoding, {})),
+            std::nullopt);
+}
+
+}  // namespace
+}  // namespace lf

@@ -1,0 +1,412 @@
+#include "lf/render/state/run_state.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <memory>
+#include <optional>
+#include <system_error>
+
+#include "lf/core/file.h"
+#include "lf/core/log.h"
+#include "lf/core/temporary_file.h"
+#include "lf/pixels/files/whole_file.h"
+#include "lf/rebinning/ray_map_file.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::string_view kProgress = "progress.";
+constexpr const char* kPlacesDone = "progress.places_done";
+constexpr const char* kNoise = "progress.noise";
+constexpr const char* kRaysExtension = ".rays";
+constexpr const char* kRaysFrames = "rays.frames";
+
+// Returns N of "frame_N.EXTENSION"; none for other names.
+std::optional<FrameId> FrameOf(const fs::path& path) {
+  constexpr std::string_view kPrefix = "frame_";
+  const std::string stem = path.stem().string();
+  if (!stem.starts_with(kPrefix)) return std::nullopt;
+  FrameId frame;
+  const char* const end = stem.data() + stem.size();
+  const auto [rest, error] = std::from_chars(stem.data() + kPrefix.size(), end, frame.value);
+  if (error != std::errc{} || rest != end || frame.value == 0) return std::nullopt;
+  return frame;
+}
+
+// Adds to an error how to continue: a damaged plate costs only its frame.
+Error WithAdvice(const Error& error) {
+  return {error.kind, error.message + "; remove the file to render its frame anew"};
+}
+
+std::vector<fs::path> FilesOf(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+// Removes temporary files of processes that were killed, on any host. The lock ensures that no
+// process renders these frames now.
+//   frames  ascending; temporary files of other frames are not removed
+void RemoveTemporaryFiles(const fs::path& folder, const std::vector<FrameId>& frames,
+                          bool is_shared) {
+  constexpr const char* kOurs[] = {".run.", ".report.", ".contact_sheet.", ".rays_"};
+  std::error_code ignored;
+  for (const fs::path& path : FilesOf(folder)) {
+    const std::string name = path.filename().string();
+    if (!IsTemporaryName(name)) continue;
+    const std::optional<FrameId> frame = FrameOf(name.substr(1, name.find('.', 1) - 1));
+    const bool is_ours =
+        frame
+            ? std::binary_search(frames.begin(), frames.end(), *frame)
+            : !is_shared && std::any_of(std::begin(kOurs), std::end(kOurs),
+                                        [&](const char* start) { return name.starts_with(start); });
+    if (is_ours) fs::remove(path, ignored);
+  }
+}
+
+// Returns the name of the state's folder below partial/; empty for a render without package name
+// and shard.
+std::string NameOf(const RunStateOptions& options) {
+  if (!options.shard) return options.package;
+  return options.package.empty() ? options.shard->Name()
+                                 : options.package + "." + options.shard->Name();
+}
+
+fs::path PartialFolder(const RunStateOptions& options) {
+  return options.folder / "partial" / NameOf(options);
+}
+
+template <class Number>
+Result<void> NumberOf(const fs::path& path, const PlateEntries& entries, const char* key,
+                      Number* value) {
+  const std::string* text = FindEntry(entries, key);
+  const std::string number = text == nullptr ? "(none)" : *text;
+  const char* const end = number.data() + number.size();
+  const auto [rest, error] = std::from_chars(number.data(), end, *value);
+  if (error == std::errc{} && rest == end) return {};
+  return WithAdvice(
+      InputError(fmt::format("{}: {} is {}, expected a whole number", path.string(), key, number)));
+}
+
+RunInputs Joined(RunInputs a, const RunInputs& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+}  // namespace
+
+RunState::RunState(const RunStateOptions& options, const CameraPath& path, FileLock lock)
+    : options_(options), path_(path), partial_(PartialFolder(options)), lock_(std::move(lock)) {}
+
+RunState::~RunState() {
+  lock_.Remove();
+  std::error_code ignored;
+  fs::remove(partial_, ignored);  // fails, as intended, if files are left in it
+  if (!Name().empty()) fs::remove(options_.folder / "partial", ignored);
+}
+
+std::string RunState::Name() const { return NameOf(options_); }
+fs::path RunState::FinishedPath(FrameId frame) const {
+  if (!options_.shard) return FramePath(options_.folder, frame, options_.format);
+  return FramePath(options_.folder / "partial" / "shards" / options_.shard->Name(), frame,
+                   options_.format)
+      .replace_extension(".plate");
+}
+fs::path RunState::PlatePath(FrameId frame) const {
+  return FramePath(partial_, frame, options_.format).replace_extension(".plate");
+}
+fs::path RunState::RecordPath(FrameId frame) const {
+  return FramePath(partial_, frame, options_.format).replace_extension(".json");
+}
+fs::path RunState::ReportPath() const {
+  return options_.folder / (Name().empty() ? "report.json" : "report-" + Name() + ".json");
+}
+fs::path RunState::PicturePath(FrameId frame) const {
+  return FramePath(partial_, frame, options_.format);
+}
+
+Result<std::unique_ptr<RunState>> RunState::Open(const RunStateOptions& options,
+                                                 const CameraPath& path) {
+  const fs::path partial = PartialFolder(options);
+  LF_RETURN_IF_ERROR(CreateFolder(options.folder));
+  LF_RETURN_IF_ERROR(CreateFolder(partial));
+  LF_ASSIGN_OR_RETURN(FileLock lock, FileLock::Take(partial / "lock"));
+  std::unique_ptr<RunState> state(new RunState(options, path, std::move(lock)));
+  if (options.shard)
+    LF_RETURN_IF_ERROR(CreateFolder(state->FinishedPath(FrameId{1}).parent_path()));
+  LF_RETURN_IF_ERROR(state->FindEarlierRun());
+  return state;
+}
+
+// Finds what an earlier run left, and continues, removes or refuses it, by the options.
+Result<void> RunState::FindEarlierRun() {
+  RemoveTemporaryFiles(partial_, options_.frames, false);
+  RemoveTemporaryFiles(options_.folder, options_.frames, !Name().empty());
+  if (options_.shard)
+    RemoveTemporaryFiles(FinishedPath(FrameId{1}).parent_path(), options_.frames, true);
+  for (const fs::path& file : FilesOf(partial_)) {
+    const std::optional<FrameId> frame = FrameOf(file);
+    if (frame && file.extension() == ".plate") plates_.insert(*frame);
+    if (frame && file.extension() == ".json") records_.insert(*frame);
+    has_rays_ = has_rays_ || file.extension() == kRaysExtension;
+  }
+  LF_RETURN_IF_ERROR(CheckOtherPackages());
+  if (options_.resume) return Read();
+  if (options_.overwrite) {
+    RemoveAll();
+  } else if (HasPlates() || !records_.empty()) {
+    return UsageError(
+        fmt::format("{}: holds an unfinished render ({} frames finished, {} begun): --resume goes "
+                    "on with it, --overwrite removes it and starts anew",
+                    partial_.string(), records_.size(), plates_.size()));
+  }
+  // Report and contact sheet of an earlier run are removed: if this run fails, they would look like
+  // its own.
+  std::error_code ignored;
+  if (fs::exists(ReportPath(), ignored))
+    LogWarning("{}: the finished render there is replaced, frame by frame",
+               options_.folder.string());
+  fs::remove(ReportPath(), ignored);
+  if (Name().empty()) fs::remove(options_.folder / "contact_sheet.png", ignored);
+  return {};
+}
+
+// Compares the inputs with the reports of other packages in the folder, because frames of two films
+// in one folder would look like one film.
+Result<void> RunState::CheckOtherPackages() const {
+  if (Name().empty()) return {};
+  for (const fs::path& file : FilesOf(options_.folder)) {
+    const std::string name = file.filename().string();
+    if (!name.starts_with("report-") || file.extension() != ".json" || file == ReportPath())
+      continue;
+    LF_ASSIGN_OR_RETURN(const RenderReport other, ReadReport(file));
+    if (const auto difference =
+            FirstDifference(other.inputs, Joined(options_.rays, options_.picture)))
+      return UsageError(
+          fmt::format("{}: is of a package or shard that {}: their frames would pass for one film; "
+                      "give another -o, or remove what is there",
+                      file.string(), difference->Text("was rendered with", "this one has")));
+  }
+  return {};
+}
+
+void RunState::RemoveAll() {
+  std::error_code ignored;
+  for (const fs::path& file : FilesOf(partial_))
+    if (FrameOf(file) || file.filename() == "run.json" || file.extension() == kRaysExtension)
+      fs::remove(file, ignored);
+  has_rays_ = false;
+  plates_.clear();
+  records_.clear();
+}
+
+Result<void> RunState::Read() {
+  const fs::path report = ReportPath(), run = partial_ / "run.json";
+  if (fs::exists(report)) LF_RETURN_IF_ERROR(ReadFinished(report));
+  for (const FrameId frame : records_) LF_RETURN_IF_ERROR(ReadFinished(RecordPath(frame)));
+  // The totals of a complete render are in its report, and run.json is gone.
+  if (fs::exists(run)) {
+    LF_ASSIGN_OR_RETURN(earlier_, ReadReport(run));
+  }
+  for (auto plate = plates_.begin(); plate != plates_.end();) {
+    if (finished_.contains(*plate)) {  // the process was killed before it removed the plate
+      std::error_code ignored;
+      fs::remove(PlatePath(*plate), ignored);
+      plate = plates_.erase(plate);
+      continue;
+    }
+    LF_RETURN_IF_ERROR(CheckPlate(*plate));
+    ++plate;
+  }
+  // If no frame is left to render, the run only makes the contact sheet and the video.
+  if (finished_.size() < options_.frames.size() && (!finished_.empty() || !plates_.empty()))
+    LogInfo("going on: {} frames are finished, {} begun", finished_.size(), plates_.size());
+  return {};
+}
+
+// Returns true if the file of a finished frame is there and whole. A truncated frame is rendered
+// again.
+bool RunState::IsKept(const fs::path& picture) const {
+  if (!fs::exists(picture)) return false;
+  if (options_.shard) return true;  // a plate is checked when it is read
+  const Result<void> whole = CheckFileIsWhole(picture);
+  if (!whole) LogWarning("{}; the frame is rendered again", whole.error().message);
+  return whole.has_value();
+}
+
+Result<void> RunState::ReadFinished(const fs::path& path) {
+  LF_ASSIGN_OR_RETURN(RenderReport report, ReadReport(path));
+  for (FrameReport& frame : report.frames) {
+    const RunInputs recorded = Joined(report.inputs, frame.camera);
+    // The user may have removed a frame to have it rendered again. If the format differs, the frame
+    // is elsewhere, and Check() reports the difference.
+    const bool has_format =
+        std::find(recorded.begin(), recorded.end(), options_.picture.front()) != recorded.end();
+    if (has_format && !IsKept(FinishedPath(frame.frame))) continue;
+    LF_RETURN_IF_ERROR(Check(path.string(), frame.frame, recorded, true));
+    finished_[frame.frame] = std::move(frame);
+  }
+  if (path == ReportPath()) {
+    report.frames.clear();
+    earlier_ = std::move(report);
+  }
+  return {};
+}
+
+Result<void> RunState::CheckPlate(FrameId frame) const {
+  const Result<PlateReader> reader = PlateReader::Open(PlatePath(frame));
+  if (!reader) return WithAdvice(reader.error());
+  RunInputs recorded;
+  for (const auto& entry : reader->entries())
+    if (!entry.first.starts_with(kProgress)) recorded.push_back(entry);
+  return Check(PlatePath(frame).string(), frame, recorded, false);
+}
+
+Result<void> RunState::Check(const std::string& place, FrameId frame, const RunInputs& recorded,
+                             bool has_picture) const {
+  constexpr const char* kAdvice =
+      "give the same, or another -o, or --overwrite in place of --resume to start anew";
+  if (frame.value > path_.frame_count())
+    return UsageError(fmt::format("{}: --resume: is of frame {}, the path has {}; {}", place,
+                                  frame.value, path_.frame_count(), kAdvice));
+  RunInputs wanted = options_.rays;
+  if (has_picture) wanted = Joined(wanted, options_.picture);
+  wanted = Joined(wanted, InputsOfCamera(frame, path_.Camera(frame)));
+  if (const auto difference = FirstDifference(recorded, wanted))
+    return UsageError(fmt::format("{}: --resume: {}; {}", place,
+                                  difference->Text("was made with", "this call has"), kAdvice));
+  return {};
+}
+
+PlateEntries RunState::PlateText(FrameId frame, const FrameProgress& progress,
+                                 const NoiseMoments* moments) const {
+  PlateEntries text = Joined(options_.rays, InputsOfCamera(frame, path_.Camera(frame)));
+  text.emplace_back(kPlacesDone, fmt::format("{}", progress.places_done));
+  text.emplace_back("progress.lf_images", fmt::format("{}", progress.rays.image_count));
+  text.emplace_back("progress.rays_tested", fmt::format("{}", progress.rays.tested_count));
+  text.emplace_back("progress.rays_accepted", fmt::format("{}", progress.rays.accepted_count));
+  if (moments != nullptr) text.emplace_back(kNoise, moments->Text());
+  return text;
+}
+
+Result<FrameProgress> RunState::LoadPlate(FrameId frame, SensorPlate* plate,
+                                          std::optional<NoiseMoments>* moments) const {
+  FrameProgress progress;
+  if (!plates_.contains(frame)) return progress;
+  const fs::path path = PlatePath(frame);
+  LF_ASSIGN_OR_RETURN(PlateReader reader, PlateReader::Open(path));
+  const auto get = [&](const char* key, auto* value) {
+    return NumberOf(path, reader.entries(), key, value);
+  };
+  LF_RETURN_IF_ERROR(get(kPlacesDone, &progress.places_done));
+  LF_RETURN_IF_ERROR(get("progress.lf_images", &progress.rays.image_count));
+  LF_RETURN_IF_ERROR(get("progress.rays_tested", &progress.rays.tested_count));
+  LF_RETURN_IF_ERROR(get("progress.rays_accepted", &progress.rays.accepted_count));
+  if (reader.width() != plate->width() || reader.height() != plate->height())
+    return InputError(fmt::format("{}: has {} x {} elements, expected {} x {}", path.string(),
+                                  reader.width(), reader.height(), plate->width(),
+                                  plate->height()));
+  if (reader.has_opacity() != plate->has_opacity())
+    return WithAdvice(InputError(fmt::format("{}: has {} channels, expected {}", path.string(),
+                                             reader.has_opacity() ? 4 : 3, plate->channels())));
+  if (const Result<void> added = reader.AddTo(plate); !added) return WithAdvice(added.error());
+  const std::string* const noise = FindEntry(reader.entries(), kNoise);
+  if (moments == nullptr || noise == nullptr) return progress;
+  Result<NoiseMoments> read = NoiseMoments::Read(*noise, *plate);
+  if (!read)
+    return WithAdvice(InputError(
+        fmt::format("{}: {} is damaged: {}", path.string(), kNoise, read.error().message)));
+  *moments = *std::move(read);
+  return progress;
+}
+
+Result<void> RunState::SavePlate(FrameId frame, const FrameProgress& progress,
+                                 const SensorPlate& plate, ThreadPool& pool,
+                                 const NoiseMoments* moments) {
+  LF_RETURN_IF_ERROR(
+      WritePlate(PlatePath(frame), PlateText(frame, progress, moments), plate, pool));
+  plates_.insert(frame);
+  return {};
+}
+
+fs::path RunState::RaysPath(FrameId first, size_t section) const {
+  return partial_ / fmt::format("rays_{:04}_{}{}", first.value, section + 1, kRaysExtension);
+}
+
+Result<std::optional<RunState::Rays>> RunState::LoadRays(FrameId first, size_t section,
+                                                         const std::string& frames,
+                                                         size_t max_cells, ThreadPool& pool) const {
+  const fs::path path = RaysPath(first, section);
+  if (!options_.resume || !fs::exists(path)) return std::optional<Rays>();
+  const auto check = [&](const PlateEntries& entries) -> Result<void> {
+    RunInputs recorded, wanted = options_.rays;
+    wanted.emplace_back(kRaysFrames, frames);
+    for (const auto& entry : entries)
+      if (!entry.first.starts_with(kProgress)) recorded.push_back(entry);
+    if (const auto difference = FirstDifference(recorded, wanted))
+      return UsageError(fmt::format(
+          "{}: --resume: {}; give the same, or another -o, or --overwrite in place of --resume to "
+          "start anew",
+          path.string(), difference->Text("was made with", "this call has")));
+    return {};
+  };
+  Result<RaysFile> file = ReadRays(path, max_cells, pool, check);
+  if (!file && file.error().kind == ErrorKind::kUsage) return file.error();
+  if (!file) return WithAdvice(file.error());
+  Rays rays{std::move(file->map), 0};
+  LF_RETURN_IF_ERROR(NumberOf(path, file->entries, kPlacesDone, &rays.places_done));
+  return std::optional<Rays>(std::move(rays));
+}
+
+Result<void> RunState::SaveRays(FrameId first, size_t section, const std::string& frames,
+                                const RayMap& map, uint32_t places_done, ThreadPool& pool) {
+  PlateEntries text = options_.rays;
+  text.emplace_back(kRaysFrames, frames);
+  text.emplace_back(kPlacesDone, fmt::format("{}", places_done));
+  LF_RETURN_IF_ERROR(WriteRays(RaysPath(first, section), text, map, pool));
+  has_rays_ = true;
+  return {};
+}
+
+void RunState::RemoveRays() {
+  std::error_code ignored;
+  for (const fs::path& file : FilesOf(partial_))
+    if (file.extension() == kRaysExtension) fs::remove(file, ignored);
+  has_rays_ = false;
+}
+
+Result<void> RunState::SaveTotals(const RenderReport& totals) {
+  RenderReport report = totals;
+  report.frames.clear();
+  return WriteReport(report, partial_ / "run.json");
+}
+
+Result<void> RunState::SaveFinished(const FrameReport& frame) {
+  RenderReport record;
+  record.inputs = Joined(options_.rays, options_.picture);
+  record.frames = {frame};
+  LF_RETURN_IF_ERROR(WriteReport(record, RecordPath(frame.frame)));
+  records_.insert(frame.frame);
+  finished_[frame.frame] = frame;
+  std::error_code ignored;
+  fs::remove(PlatePath(frame.frame), ignored);
+  fs::remove(PicturePath(frame.frame), ignored);
+  plates_.erase(frame.frame);
+  return {};
+}
+
+Result<void> RunState::Close(const RenderReport& report) {
+  LF_RETURN_IF_ERROR(WriteReport(report, ReportPath()));
+  std::error_code ignored;
+  for (const FrameId frame : records_) fs::remove(RecordPath(frame), ignored);
+  records_.clear();
+  if (plates_.empty()) RemoveAll();
+  return {};
+}
+
+}  // namespace lf

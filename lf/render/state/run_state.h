@@ -1,0 +1,147 @@
+// The state of an unfinished render, in DIR/partial/ of its output folder, or in DIR/partial/NAME/
+// for a package with a name. A render can be interrupted at any moment and resumes from its state
+// (doc/checkpoints.md).
+//
+//   lock              held by the process that renders
+//   run.json          times so far and skipped LF images
+//   rays_0001_1.rays  rebinned rays of the frames from 1 on
+//   frame_0001.plate  the plate of an unfinished frame, its inputs and its progress
+//   frame_0001.exr    its picture, about as recent
+//   frame_0002.json   the report of a finished frame, and its inputs
+//
+// The state of a shard (shard.h) is in DIR/partial/shard_1_of_5/, or NAME.shard_1_of_5/. Its
+// finished frames are plates, DIR/partial/shards/shard_1_of_5/frame_0001.plate.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "lf/camera/path/camera_path.h"
+#include "lf/core/file_lock.h"
+#include "lf/core/ids.h"
+#include "lf/core/parallel.h"
+#include "lf/core/result.h"
+#include "lf/film/develop/frame_file.h"
+#include "lf/film/plate/plate_file.h"
+#include "lf/film/plate/sensor_plate.h"
+#include "lf/rebinning/ray_map.h"
+#include "lf/render/collect/collect.h"
+#include "lf/render/collect/noise_moments.h"
+#include "lf/render/state/report.h"
+#include "lf/render/state/run_inputs.h"
+#include "lf/render/state/shard.h"
+
+namespace lf {
+
+struct RunStateOptions {
+  std::filesystem::path folder;  // DIR
+  std::string package;           // its name, if others are rendered into DIR at the same time
+  std::vector<FrameId> frames;   // of the package, ascending
+  FrameFormat format = FrameFormat::kExrHalf;
+  bool resume = false;     // continue with the state in the folder
+  bool overwrite = false;  // remove the state in the folder
+  RunInputs rays;          // InputsOfRays()
+  RunInputs picture;       // InputsOfPicture()
+  std::optional<Shard> shard = std::nullopt;
+};
+
+class RunState {
+ public:
+  // Makes the folder, locks it and reads the state in it. The path must outlive the object.
+  // kUsage: the folder has an unfinished render, and neither resume nor overwrite is asked for; the
+  //   state was made from other inputs (the message names the first that differs, and both values);
+  //   or other packages were rendered into the folder from other inputs.
+  // kInput: a file of the state is damaged.
+  // kOutput: the folder cannot be written, or another program renders into it.
+  static Result<std::unique_ptr<RunState>> Open(const RunStateOptions& options,
+                                                const CameraPath& path);
+  ~RunState();  // leaves no empty partial/ behind
+
+  // Frames that an earlier run finished, and whose files are still there.
+  const std::map<FrameId, FrameReport>& finished() const { return finished_; }
+  // Times and skipped LF images of earlier runs.
+  const RenderReport& earlier() const { return earlier_; }
+  // True if the state has plates of unfinished frames, or rebinned rays.
+  bool HasPlates() const { return !plates_.empty() || has_rays_; }
+  bool HasPlate(FrameId frame) const { return plates_.contains(frame); }
+
+  // Path of a finished frame: of its picture, or of the plate of a shard.
+  std::filesystem::path FinishedPath(FrameId frame) const;
+
+  // Adds the rays of the frame's plate in the state, if there is one, to `plate`. Returns the
+  // progress of the frame.
+  //   plate    empty, of the frame's size
+  //   moments  receives the moments that were saved with the plate, if there are any; may be null
+  // kInput: the plate is damaged.
+  Result<FrameProgress> LoadPlate(FrameId frame, SensorPlate* plate,
+                                  std::optional<NoiseMoments>* moments = nullptr) const;
+  // Writes the frame's plate and its moments, unless null, into one file, so that both are always
+  // of the same LF images. kOutput: the file cannot be written; the previous file is intact.
+  Result<void> SavePlate(FrameId frame, const FrameProgress& progress, const SensorPlate& plate,
+                         ThreadPool& pool, const NoiseMoments* moments = nullptr);
+  // Rebinned rays of one section of a pass. The pass is named by its first frame. `frames`
+  // describes the frames that the rays are for, on which they depend in addition to the inputs.
+  // LoadRays() returns none if the state has no such rays, or if it is not resumed.
+  // kUsage: the rays are for other frames, or from other inputs. kInput: the file is damaged, or
+  // has more than max_cells cells.
+  struct Rays {
+    RayMap map;
+    uint32_t places_done = 0;
+  };
+  Result<std::optional<Rays>> LoadRays(FrameId first, size_t section, const std::string& frames,
+                                       size_t max_cells, ThreadPool& pool) const;
+  Result<void> SaveRays(FrameId first, size_t section, const std::string& frames, const RayMap& map,
+                        uint32_t places_done, ThreadPool& pool);
+  void RemoveRays();
+
+  Result<void> SaveTotals(const RenderReport& totals);
+  // Records that a frame is finished, and removes its unfinished files. Must be called after the
+  // frame's own file is written.
+  Result<void> SaveFinished(const FrameReport& frame);
+  // Forgets that a frame is finished, so that it can be rendered again.
+  void Forget(FrameId frame) { finished_.erase(frame); }
+
+  // Returns the entries of a plate's file, also for a plate that is kept beside the frames.
+  //   moments  may be null
+  PlateEntries PlateText(FrameId frame, const FrameProgress& progress,
+                         const NoiseMoments* moments = nullptr) const;
+  std::filesystem::path PicturePath(FrameId frame) const;
+
+  // Removes the whole state.
+  void RemoveAll();
+  // Ends a finished render: writes report.json (report-NAME.json for a package), and removes the
+  // files of the state that are not needed any more.
+  Result<void> Close(const RenderReport& report);
+
+ private:
+  RunState(const RunStateOptions& options, const CameraPath& path, FileLock lock);
+  Result<void> FindEarlierRun();
+  Result<void> CheckOtherPackages() const;
+  Result<void> Read();
+  bool IsKept(const std::filesystem::path& picture) const;
+  Result<void> ReadFinished(const std::filesystem::path& path);
+  Result<void> CheckPlate(FrameId frame) const;
+  Result<void> Check(const std::string& place, FrameId frame, const RunInputs& recorded,
+                     bool has_picture) const;
+  std::filesystem::path PlatePath(FrameId frame) const;
+  std::filesystem::path RecordPath(FrameId frame) const;
+  std::filesystem::path RaysPath(FrameId first, size_t section) const;
+  std::filesystem::path ReportPath() const;
+  std::string Name() const;
+
+  RunStateOptions options_;
+  const CameraPath& path_;
+  std::filesystem::path partial_;
+  FileLock lock_;
+  std::set<FrameId> plates_;   // frames with a plate in the state
+  std::set<FrameId> records_;  // finished frames with a report in the state
+  bool has_rays_ = false;
+  std::map<FrameId, FrameReport> finished_;
+  RenderReport earlier_;
+};
+
+}  // namespace lf

@@ -1,0 +1,185 @@
+#include "lf/render/state/run_state.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "lf/core/file.h"
+#include "lf/film/plate/test_plate.h"
+#include "lf/pixels/files/image_file.h"
+#include "lf/render/collect/test_noise_field.h"
+
+namespace lf {
+namespace {
+
+namespace fs = std::filesystem;
+
+class RunStateTest : public ::testing::Test {
+ protected:
+  RunStateTest() {
+    static int count = 0;
+    folder_ = fs::temp_directory_path() /
+              ("lf_run_state_" + std::to_string(::getpid()) + "_" + std::to_string(count++));
+    path_.cameras = testing::NoiseFrames();
+  }
+  ~RunStateTest() override {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+  }
+
+  Result<std::unique_ptr<RunState>> Open(bool resume, bool overwrite = false, uint64_t seed = 0) {
+    RunChoices choices;
+    choices.seed = seed;
+    std::vector<FrameId> frames;
+    for (uint32_t n = 1; n <= path_.frame_count(); ++n) frames.push_back(FrameId{n});
+    return RunState::Open(
+        {folder_, "", frames, FrameFormat::kExrHalf, resume, overwrite,
+         InputsOfRays(IdentityOf(field_), field_.encoding, choices), InputsOfPicture(choices)},
+        path_);
+  }
+  // Leaves a state with frame 2 begun and frame 3 finished.
+  void LeaveUnfinished() {
+    const std::unique_ptr<RunState> state = *Open(false);
+    ASSERT_TRUE(state->SavePlate(FrameId{2}, progress_, plate_, pool_));
+    const Image<float> picture(8, 40, 1);
+    ASSERT_TRUE(WriteImage(folder_ / "frame_0003.exr", picture.view(), {"Y"}, PixelType::kHalf));
+    FrameReport frame;
+    frame.frame = FrameId{3};
+    frame.rays.accepted_count = 77;
+    frame.camera = InputsOfCamera(FrameId{3}, path_.Camera(FrameId{3}));
+    ASSERT_TRUE(state->SaveFinished(frame));
+  }
+
+  fs::path folder_;
+  CameraPath path_;
+  const LightField field_ = testing::NoiseField();
+  ThreadPool pool_{2};
+  const FrameProgress progress_ = {128, {50, 5000, 4000}};
+  const SensorPlate plate_ = testing::NoisePlate(80, 60, 7, SensorPlate::kMaxCount, true);
+};
+
+TEST_F(RunStateTest, GoesOnWhereItWas) {
+  LeaveUnfinished();
+  const auto state = Open(true);
+  ASSERT_TRUE(state) << state.error().message;
+  ASSERT_EQ((*state)->finished().size(), 1u);
+  EXPECT_EQ((*state)->finished().at(FrameId{3}).rays.accepted_count, 77u);
+  SensorPlate plate(80, 60);
+  const Result<FrameProgress> progress = (*state)->LoadPlate(FrameId{2}, &plate);
+  ASSERT_TRUE(progress);
+  EXPECT_EQ(progress->places_done, 128u);
+  EXPECT_EQ(progress->rays.tested_count, 5000u);
+  EXPECT_EQ(plate, plate_);
+  SensorPlate fresh(80, 60);
+  EXPECT_EQ((*state)->LoadPlate(FrameId{1}, &fresh)->places_done, 0u);
+}
+
+TEST_F(RunStateTest, LeavesNothingWhenAllIsDone) {
+  {
+    const std::unique_ptr<RunState> state = *Open(false);
+    FrameReport frame;
+    frame.frame = FrameId{1};
+    ASSERT_TRUE(state->SavePlate(FrameId{1}, progress_, plate_, pool_));
+    ASSERT_TRUE(state->SaveTotals({}));
+    ASSERT_TRUE(state->SaveFinished(frame));
+    ASSERT_TRUE(state->Close({}));
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "partial"));
+  EXPECT_TRUE(fs::exists(folder_ / "report.json"));
+}
+
+TEST_F(RunStateTest, IsNotTouchedUnlessAskedFor) {
+  LeaveUnfinished();
+  const auto refused = Open(false);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, ErrorKind::kUsage);
+  EXPECT_NE(refused.error().message.find("1 frames finished, 1 begun"), std::string::npos);
+  EXPECT_TRUE(Open(true));
+  EXPECT_TRUE(Open(false, true));
+  EXPECT_FALSE(fs::exists(folder_ / "partial"));
+  EXPECT_TRUE(Open(false));
+}
+
+TEST_F(RunStateTest, OtherInputsAreNamed) {
+  LeaveUnfinished();
+  auto refused = Open(true, false, 9);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("seed 0, this call has 9"), std::string::npos);
+  path_.cameras[1].aperture.blades = 8;
+  refused = Open(true);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("frame_0002.plate"), std::string::npos);
+  EXPECT_NE(refused.error().message.find("frame.blades 5, this call has 8"), std::string::npos);
+  path_.cameras.pop_back();
+  refused = Open(true);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("frame 3, the path has 2"), std::string::npos);
+}
+
+TEST_F(RunStateTest, AFinishedFrameThatWasRemovedIsRenderedAgain) {
+  LeaveUnfinished();
+  fs::remove(folder_ / "frame_0003.exr");
+  EXPECT_TRUE((*Open(true))->finished().empty());
+}
+
+TEST_F(RunStateTest, AFinishedFrameThatWasCutIsRenderedAgain) {
+  LeaveUnfinished();
+  const fs::path picture = folder_ / "frame_0003.exr";
+  fs::resize_file(picture, fs::file_size(picture) - 1);
+  EXPECT_TRUE((*Open(true))->finished().empty());
+}
+
+TEST_F(RunStateTest, WhatAKilledProcessLeftIsCleared) {
+  LeaveUnfinished();
+  const fs::path partial = folder_ / "partial";
+  std::ofstream(partial / ".frame_0002.123-00ab12cd.tmp.plate") << "half";
+  std::ofstream(folder_ / ".frame_0003.123-00ab12cd.tmp.exr") << "half";
+  std::ofstream(folder_ / ".hidden.tmp.txt") << "the user's";
+  // Another program renders frame 4, of another package, into the same folder.
+  std::ofstream(folder_ / ".frame_0004.456-00ab12cd.tmp.exr") << "half";
+  // A process was killed between the record of a frame and the removal of its plate.
+  fs::copy(partial / "frame_0002.plate", partial / "frame_0003.plate");
+  ASSERT_TRUE(Open(true));
+  EXPECT_FALSE(fs::exists(partial / ".frame_0002.123-00ab12cd.tmp.plate"));
+  EXPECT_FALSE(fs::exists(folder_ / ".frame_0003.123-00ab12cd.tmp.exr"));
+  EXPECT_TRUE(fs::exists(folder_ / ".hidden.tmp.txt"));
+  EXPECT_TRUE(fs::exists(folder_ / ".frame_0004.456-00ab12cd.tmp.exr"));
+  EXPECT_FALSE(fs::exists(partial / "frame_0003.plate"));
+  EXPECT_TRUE(fs::exists(partial / "frame_0002.plate"));
+}
+
+TEST_F(RunStateTest, RebinnedRaysAreThoseOfTheSameFrames) {
+  BinnedRay ray;
+  ray.cell = 5;
+  ray.rgb = {1000, 2000, 3000};
+  RayMap map(1000);
+  map.Add(RayMap::ShardOf(ray.cell), std::span(&ray, 1));
+  {
+    const std::unique_ptr<RunState> state = *Open(false);
+    ASSERT_TRUE(state->SaveRays(FrameId{1}, 0, "1-3", map, 128, pool_));
+  }
+  const auto state = Open(true);
+  ASSERT_TRUE(state) << state.error().message;
+  const auto rays = (*state)->LoadRays(FrameId{1}, 0, "1-3", 1000, pool_);
+  ASSERT_TRUE(rays) << rays.error().message;
+  ASSERT_TRUE(rays->has_value());
+  EXPECT_EQ((*rays)->places_done, 128u);
+  EXPECT_EQ((*rays)->map.size(), 1u);
+  const auto others = (*state)->LoadRays(FrameId{1}, 0, "1", 1000, pool_);
+  ASSERT_FALSE(others);
+  EXPECT_EQ(others.error().kind, ErrorKind::kUsage);
+  EXPECT_NE(others.error().message.find("rays.frames 1-3, this call has 1"), std::string::npos)
+      << others.error().message;
+  EXPECT_FALSE((*state)->LoadRays(FrameId{1}, 1, "1-3", 1000, pool_)->has_value());
+}
+
+TEST_F(RunStateTest, OneAtATime) {
+  const auto first = Open(false);
+  const auto second = Open(true);
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().kind, ErrorKind::kOutput);
+}
+
+}  // namespace
+}  // namespace lf

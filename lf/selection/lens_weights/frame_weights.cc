@@ -1,0 +1,291 @@
+#include "lf/selection/lens_weights/frame_weights.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "lf/core/check.h"
+#include "lf/core/random.h"
+#include "lf/core/value_named.h"
+#include "lf/selection/lens_weights/lens_cells.h"
+#include "lf/selection/lens_weights/lens_coverage.h"
+
+namespace lf {
+namespace {
+
+// Largest movement of lens points from node to node, approximately, as a part of their distance.
+constexpr double kStepOfDistance = 1.0 / 3;
+constexpr int kMostNodes = 48;         // along an edge of the plate
+constexpr int kLeastNodeStep_px = 32;  // finer grids would cost more than the rays
+// If lens points move by less than this part of their distance, cameras stand in the lens plane
+// except for rounding.
+constexpr double kAtRest = 1e-6;
+
+constexpr double kLeastShare = 1e-9;  // of the lens: smaller shares are rounding errors
+
+constexpr double kUnit = 256;  // value at a node for a weight of 1
+
+// For one element, the intersection of each camera's ray with the lens plane. Cameras whose ray is
+// parallel to it are left out.
+struct LensPoints {
+  std::vector<Vec2> points;
+  std::vector<size_t> cameras;
+};
+
+LensPoints PointsAt(const RenderCamera& frame, std::span<const Vec3> centres_world,
+                    const Vec3& focus_point) {
+  LensPoints seen;
+  for (size_t i = 0; i < centres_world.size(); ++i) {
+    const Vec2 point = LensPointOfLine(frame, centres_world[i], focus_point);
+    if (!point.allFinite()) continue;
+    seen.points.push_back(point);
+    seen.cameras.push_back(i);
+  }
+  return seen;
+}
+
+// Returns the approximate distance between points around the lens: of the kCamerasAround nearest
+// ones, or of all within the lens if these are more.
+double DistanceAround(const LensPoints& seen, double radius) {
+  std::vector<double> distances;
+  for (const Vec2& point : seen.points) distances.push_back(point.norm());
+  if (distances.empty()) return 0;
+  std::sort(distances.begin(), distances.end());
+  const auto within = static_cast<size_t>(
+      std::upper_bound(distances.begin(), distances.end(), radius) - distances.begin());
+  const size_t count = std::min(distances.size(), std::max(within, kCamerasAround));
+  return std::max(radius, distances[count - 1]) * std::sqrt(kPi / static_cast<double>(count));
+}
+
+// Largest movement of lens points from one edge of the plate to the other.
+struct Movement {
+  double across = 0;
+  double down = 0;
+};
+
+Movement MovementOf(const RenderCamera& frame, std::span<const Vec3> centres_world) {
+  const Intrinsics& plate = frame.pinhole.intrinsics;
+  std::optional<Vec3> focus[3][3];
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i)
+      focus[j][i] = FocusPointOfElement(frame, 0.5 * i * plate.width_px, 0.5 * j * plate.height_px);
+  const auto moved = [&](const Vec3& centre, const std::optional<Vec3>& a,
+                         const std::optional<Vec3>& b) {
+    if (!a || !b) return 0.0;
+    const double d =
+        (LensPointOfLine(frame, centre, *a) - LensPointOfLine(frame, centre, *b)).norm();
+    return std::isfinite(d) ? d : 0.0;
+  };
+  Movement most;
+  for (const Vec3& centre : centres_world)
+    for (int k = 0; k < 3; ++k) {
+      most.across = std::max(most.across, moved(centre, focus[k][0], focus[k][1]) +
+                                              moved(centre, focus[k][1], focus[k][2]));
+      most.down = std::max(most.down, moved(centre, focus[0][k], focus[1][k]) +
+                                          moved(centre, focus[1][k], focus[2][k]));
+    }
+  return most;
+}
+
+int NodeCount(double movement, double distance, int size_px) {
+  if (!(movement > kAtRest * distance)) return 1;
+  const double steps = movement / (kStepOfDistance * distance);
+  const int most = std::clamp(size_px / kLeastNodeStep_px, 2, kMostNodes);
+  return static_cast<int>(std::min(2 + steps, static_cast<double>(most)));
+}
+
+// Returns the share up to which the smallest shares make up a tenth of all. Very many tiny shares,
+// as those of cameras at almost the same position, do not lower it much.
+double ShareOfFirstTenth(std::vector<double> shares) {
+  std::sort(shares.begin(), shares.end());
+  const double tenth = 0.1 * std::accumulate(shares.begin(), shares.end(), 0.0);
+  double sum = 0;
+  for (const double share : shares)
+    if ((sum += share) >= tenth) return share;
+  return 0;
+}
+
+double NodePosition(int index, int count, int size_px) {
+  return count == 1 ? 0.5 * size_px : static_cast<double>(index) * size_px / (count - 1);
+}
+
+}  // namespace
+
+const char* NameOf(LensWeights weights) {
+  constexpr const char* kNames[] = {"none", "area", "hat", "auto"};
+  return kNames[static_cast<int>(weights)];
+}
+
+std::optional<LensWeights> LensWeightsOf(std::string_view name) {
+  return ValueNamed(
+      name, {LensWeights::kNone, LensWeights::kArea, LensWeights::kHat, LensWeights::kAuto});
+}
+
+double AutoHatShare(double diameter_w, double camera_distance_w) {
+  if (!(camera_distance_w > 0)) return diameter_w > 0 ? 0 : 1;
+  const double distances = diameter_w / camera_distance_w;
+  const double t = std::clamp((kCellsFrom - distances) / (kCellsFrom - kHatsUpTo), 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
+double CameraDistance(const RenderCamera& frame, std::span<const Vec3> centres_world) {
+  const Intrinsics& plate = frame.pinhole.intrinsics;
+  const std::optional<Vec3> middle =
+      FocusPointOfElement(frame, 0.5 * plate.width_px, 0.5 * plate.height_px);
+  if (!middle) return 0;
+  return DistanceAround(PointsAt(frame, centres_world, *middle), frame.aperture.radius_w);
+}
+
+std::vector<Vec3> DistinctPlaces(std::span<const Vec3> centres_world) {
+  std::vector<Vec3> places(centres_world.begin(), centres_world.end());
+  std::sort(places.begin(), places.end(), [](const Vec3& a, const Vec3& b) {
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+  });
+  places.erase(std::unique(places.begin(), places.end()), places.end());
+  return places;
+}
+
+Vec2 LensPointOfLine(const RenderCamera& frame, const Vec3& centre_world, const Vec3& point_world) {
+  const Vec3 lens_centre = frame.pinhole.CentreWorld();
+  const Vec3 forward = frame.pinhole.ForwardWorld();
+  const Vec3 along = centre_world - point_world;
+  const double t = forward.dot(lens_centre - point_world) / forward.dot(along);
+  const Vec3 offset = point_world + t * along - lens_centre;
+  return {frame.pinhole.RightWorld().dot(offset), frame.pinhole.UpWorld().dot(offset)};
+}
+
+FrameWeights::FrameWeights(const RenderCamera& frame, std::span<const Vec3> centres_world,
+                           LensWeights kind, ThreadPool& pool, bool are_brackets)
+    : width_px_(frame.pinhole.intrinsics.width_px),
+      height_px_(frame.pinhole.intrinsics.height_px),
+      nodes_begin_(centres_world.size(), kNone) {
+  LF_CHECK(kind != LensWeights::kNone);
+  LF_CHECK(kind != LensWeights::kArea || frame.aperture.radius_w > 0);
+  const double distance = are_brackets ? CameraDistance(frame, DistinctPlaces(centres_world))
+                                       : CameraDistance(frame, centres_world);
+  if (kind == LensWeights::kHat) hat_share_ = 1;
+  if (kind == LensWeights::kAuto) hat_share_ = AutoHatShare(2 * frame.aperture.radius_w, distance);
+  if (const std::optional<Vec3> focus =
+          FocusPointOfElement(frame, 0.5 * width_px_, 0.5 * height_px_))
+    coverage_ = CoverageOf(PointsAt(frame, centres_world, *focus).points, frame.aperture);
+  SetGrid(frame, centres_world, distance);
+  std::vector<Node> nodes(static_cast<size_t>(columns_) * rows_);
+  pool.ForEach(nodes.size(), [&](size_t n) {
+    nodes[n] = MakeNode(frame, centres_world, static_cast<int>(n) % columns_,
+                        static_cast<int>(n) / columns_);
+  });
+  SetWeights(nodes);
+  SetPlaces();
+}
+
+void FrameWeights::SetGrid(const RenderCamera& frame, std::span<const Vec3> centres_world,
+                           double distance_w) {
+  if (distance_w == 0) return;
+  const Movement movement = MovementOf(frame, centres_world);
+  columns_ = NodeCount(movement.across, distance_w, width_px_);
+  rows_ = NodeCount(movement.down, distance_w, height_px_);
+  if (columns_ > 1) step_w_ += movement.across / (columns_ - 1);
+  if (rows_ > 1) step_w_ += movement.down / (rows_ - 1);
+}
+
+FrameWeights::Node FrameWeights::MakeNode(const RenderCamera& frame,
+                                          std::span<const Vec3> centres_world, int column,
+                                          int row) const {
+  Node node;
+  const std::optional<Vec3> focus = FocusPointOfElement(
+      frame, NodePosition(column, columns_, width_px_), NodePosition(row, rows_, height_px_));
+  if (!focus) return node;  // beyond the horizon of a tilted focus plane, where no ray goes
+  const LensPoints seen = PointsAt(frame, centres_world, *focus);
+  std::vector<double> shares(seen.points.size(), 0);
+  const auto mix = [&](const std::vector<double>& part, double by) {
+    for (size_t k = 0; k < shares.size(); ++k) shares[k] += by * part[k];
+  };
+  if (hat_share_ < 1)
+    mix(CellShares(seen.points, frame.aperture, CoveredBy(seen.points)), 1 - hat_share_);
+  if (hat_share_ > 0) mix(HatShares(seen.points, frame.aperture), hat_share_);
+  for (size_t k = 0; k < shares.size(); ++k) {
+    if (!(shares[k] > kLeastShare)) continue;
+    node.push_back({seen.cameras[k], shares[k], seen.points[k].norm()});
+  }
+  return node;
+}
+
+void FrameWeights::SetWeights(const std::vector<Node>& nodes) {
+  std::vector<double> shares;
+  double together = 0;
+  for (const Node& node : nodes) {
+    double of_node = 0;
+    for (const CameraShare& share : node) {
+      shares.push_back(share.share);
+      of_node += share.share;
+    }
+    together = std::max(together, of_node);
+  }
+  if (shares.empty()) return;
+  const double most = std::min(*std::max_element(shares.begin(), shares.end()),
+                               kMostSmallShares * ShareOfFirstTenth(shares));
+  const double scale = kUnit * std::min(kMaxWeight / most, kMostTogether / together);
+  for (size_t n = 0; n < nodes.size(); ++n)
+    for (const CameraShare& share : nodes[n]) {
+      farthest_w_ = std::max(farthest_w_, share.distance_w);
+      size_t& begin = nodes_begin_[share.camera];
+      if (begin == kNone) {
+        begin = weights_.size();
+        weights_.resize(begin + nodes.size(), 0);
+      }
+      weights_[begin + n] = static_cast<uint16_t>(
+          std::min(std::lround(share.share * scale), std::lround(kUnit * kMaxWeight)));
+    }
+}
+
+void FrameWeights::SetPlaces() {
+  const auto set = [](int count, int size_px, std::vector<Place>* places) {
+    // Blocks may begin before the plate and end beyond it.
+    places->resize(static_cast<size_t>(size_px) + kWeightBlock + 1);
+    if (count == 1) return;
+    for (size_t end = 0; end < places->size(); ++end) {
+      const int middle = std::clamp(static_cast<int>(end) - kWeightBlock / 2, 0, size_px - 1);
+      const int64_t place = int64_t{256} * middle * (count - 1) / size_px;
+      (*places)[end] = {static_cast<int>(place >> 8), static_cast<int>(place & 255)};
+    }
+  };
+  set(columns_, width_px_, &places_across_);
+  set(rows_, height_px_, &places_down_);
+}
+
+WeightBlocks FrameWeights::BlocksOf(size_t camera) const {
+  const uint64_t any = MixBits(camera);
+  return {static_cast<int>(any % kWeightBlock), static_cast<int>((any >> 32) % kWeightBlock)};
+}
+
+uint32_t FrameWeights::At(size_t camera, int x, int y) const {
+  const WeightBlocks blocks = BlocksOf(camera);
+  uint8_t weight = 0;
+  OfRow(camera, blocks.EndX(x), blocks.EndY(y), 1, &weight);
+  return weight;
+}
+
+void FrameWeights::OfRow(size_t camera, int end_x, int end_y, int count, uint8_t* weights) const {
+  if (nodes_begin_[camera] == kNone) {
+    std::fill_n(weights, count, uint8_t{0});
+    return;
+  }
+  const int right = columns_ > 1 ? 1 : 0, below = rows_ > 1 ? columns_ : 0;
+  const Place v = places_down_[end_y];
+  const uint16_t* const upper = &weights_[nodes_begin_[camera]] + v.node * columns_;
+  const uint16_t* const lower = upper + below;
+  const auto between = [](uint32_t a, uint32_t b, int fraction) {
+    return a * static_cast<uint32_t>(256 - fraction) + b * static_cast<uint32_t>(fraction);
+  };
+  const auto down = static_cast<uint64_t>(v.fraction);
+  for (int i = 0; i < count; ++i) {
+    const Place h = places_across_[end_x + i * kWeightBlock];
+    const uint64_t above = between(upper[h.node], upper[h.node + right], h.fraction);
+    const uint64_t under = between(lower[h.node], lower[h.node + right], h.fraction);
+    const uint64_t weight = above * (256 - down) + under * down;
+    weights[i] = static_cast<uint8_t>((weight + (1 << 23)) >> 24);
+  }
+}
+
+}  // namespace lf

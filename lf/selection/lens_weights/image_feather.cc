@@ -1,0 +1,70 @@
+#include "lf/selection/lens_weights/image_feather.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lf/camera/ray_weight.h"
+
+namespace lf {
+namespace {
+
+double Smooth(double t) {
+  t = std::clamp(t, 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
+}  // namespace
+
+double FeatherAt(const Intrinsics& lf_image, double x_px, double y_px) {
+  const double width = kFeatherShare * std::min(lf_image.width_px, lf_image.height_px);
+  const double across = std::min(x_px - 0.5, lf_image.width_px - 0.5 - x_px);
+  const double down = std::min(y_px - 0.5, lf_image.height_px - 0.5 - y_px);
+  return Smooth(across / width) * Smooth(down / width);
+}
+
+ImageFeather::ImageFeather(const PinholeCamera& lf_camera, const RenderCamera& frame)
+    : intrinsics_(lf_camera.intrinsics) {
+  const PinholeCamera& lens = frame.pinhole;
+  const Vec3& n = frame.focus_plane.normal;
+  const Vec3 offset = lf_camera.CentreWorld() - lens.CentreWorld();
+  const double distance = frame.focus_plane.offset_w - n.dot(lens.CentreWorld());
+  const double sign = distance < 0 ? -1 : 1;
+  const Mat3 direction = lens.cam_from_world.rotation.transpose() * lens.intrinsics.InverseMatrix();
+  // X - c' = direction e distance / n.(direction e), where c' is the centre of the lens, and X - c
+  // is this minus `offset`. Both are multiplied by |n.(direction e)|.
+  const Mat3 to_focus = sign * (distance * Mat3::Identity() - offset * n.transpose()) * direction;
+  to_focus_ = lf_camera.cam_from_world.rotation * to_focus;
+  before_lens_ = (sign * n.transpose() * direction).transpose();
+  runs_forward_ = (lens.ForwardWorld().transpose() * to_focus).transpose();
+}
+
+void ImageFeather::OfRow(int x, int y, int count, uint16_t* feather) const {
+  if (intrinsics_.has_distortion())
+    std::call_once(map_is_made_, [this] { map_.emplace(intrinsics_.distortion); });
+  for (int i = 0; i < count; ++i) {
+    const Vec3 e(x + i * kWeightBlock, y, 1);
+    feather[i] = 0;
+    if (!(before_lens_.dot(e) > 0)) continue;
+    const double side = runs_forward_.dot(e) < 0 ? -1 : 1;
+    feather[i] = static_cast<uint16_t>(std::lround(kWholeFeather * At(side * (to_focus_ * e))));
+  }
+}
+
+// Returns the feather of a ray.
+//   direction  in axes of the LF camera, of any length
+double ImageFeather::At(const Vec3& direction) const {
+  const Intrinsics& k = intrinsics_;
+  Vec2 distorted;
+  if (map_) {
+    const std::optional<Vec2> recorded = map_->Distort(direction);
+    if (!recorded) return 0;
+    distorted = *recorded;
+  } else {
+    if (!(direction.z() > 0)) return 0;
+    distorted = direction.head<2>() / direction.z();
+  }
+  return FeatherAt(k, k.fx_px * distorted.x() + k.skew_px * distorted.y() + k.cx_px,
+                   k.fy_px * distorted.y() + k.cy_px);
+}
+
+}  // namespace lf

@@ -1,0 +1,71 @@
+#include "lf/selection/lens_weights/image_feather.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "lf/camera/ray_through.h"
+#include "lf/camera/ray_weight.h"
+#include "lf/camera/testing_scenes.h"
+
+namespace lf {
+namespace {
+
+TEST(ImageFeather, GrowsSmoothlyFromTheBorder) {
+  const Intrinsics k = {500, 500, 320, 160, 0, 640, 320};  // the border is 10 pixels wide
+  EXPECT_EQ(FeatherAt(k, 320, 160), 1);
+  EXPECT_EQ(FeatherAt(k, 10.5, 160), 1);
+  EXPECT_EQ(FeatherAt(k, 629.5, 309.5), 1);
+  EXPECT_DOUBLE_EQ(FeatherAt(k, 5.5, 160), 0.5);
+  EXPECT_DOUBLE_EQ(FeatherAt(k, 320, 314.5), 0.5);
+  EXPECT_DOUBLE_EQ(FeatherAt(k, 5.5, 5.5), 0.25);
+  for (const double outside : {0.5, 0.0, -100.0}) {
+    EXPECT_EQ(FeatherAt(k, outside, 160), 0);
+    EXPECT_EQ(FeatherAt(k, 640 - outside, 160), 0);
+    EXPECT_EQ(FeatherAt(k, 320, outside), 0);
+  }
+  for (double x = 0.5; x < 12; x += 0.25) {
+    const double step = FeatherAt(k, x + 0.25, 160) - FeatherAt(k, x, 160);
+    EXPECT_GE(step, 0);
+    EXPECT_LE(step, 0.25 * 1.5 / 10 + 1e-12);  // the steepest slope of the cubic
+  }
+}
+
+// Computes the feather literally: at the position where the LF camera records the ray through the
+// focus point.
+double Literally(const testing::CameraPair& pair, double x, double y) {
+  const auto focus = FocusPointOfElement(pair.render_camera, x, y);
+  if (!focus) return 0;
+  const RayThrough ray(pair.lf_camera, pair.render_camera.pinhole.ForwardWorld());
+  const auto recorded = ray.RecordedAt(ray.DirectionWorld(*focus));
+  if (!recorded) return 0;
+  return FeatherAt(pair.lf_camera.intrinsics, recorded->x(), recorded->y());
+}
+
+TEST(ImageFeather, FollowsTheRaysOfAnyPairOfCameras) {
+  size_t whole = 0, part = 0, none = 0;
+  for (uint64_t seed = 0; seed < 200; ++seed) {
+    const testing::CameraPair pair =
+        seed % 2 == 0 ? testing::RandomCameraPair(seed) : testing::RandomDistortedPair(seed);
+    const ImageFeather feather(pair.lf_camera, pair.render_camera);
+    const Intrinsics& plate = pair.render_camera.pinhole.intrinsics;
+    for (int y = -5; y < plate.height_px + 8; y += 8) {
+      std::vector<uint16_t> row(static_cast<size_t>(plate.width_px / kWeightBlock + 1));
+      feather.OfRow(-3, y, static_cast<int>(row.size()), row.data());
+      for (size_t i = 0; i < row.size(); ++i) {
+        const double wanted = Literally(pair, -3 + kWeightBlock * static_cast<double>(i), y);
+        EXPECT_NEAR(row[i], kWholeFeather * wanted, 0.5 + 1e-6) << seed;
+        whole += row[i] == kWholeFeather ? 1 : 0;
+        none += row[i] == 0 ? 1 : 0;
+        part += row[i] > 0 && row[i] < kWholeFeather ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(whole, 1000u);
+  EXPECT_GT(part, 1000u);
+  EXPECT_GT(none, 1000u);
+}
+
+}  // namespace
+}  // namespace lf

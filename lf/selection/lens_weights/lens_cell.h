@@ -1,0 +1,34 @@
+// The Voronoi cell of one place among points of the lens plane. Internal to this folder.
+#pragma once
+
+#include <span>
+
+#include "lf/core/geometry.h"
+#include "lf/selection/lens_weights/convex_polygon.h"
+#include "lf/selection/lens_weights/point_grid.h"
+
+namespace lf {
+
+// Returns the part of `around` that is nearer to `place` than to any point. Calls met(i) for every
+// point that cuts it at some step, and same(i) for every point at `place`.
+template <class Met, class Same>
+ConvexPolygon CellOf(const Vec2& place, std::span<const Vec2> points, const PointGrid& grid,
+                     ConvexPolygon around, const Met& met, const Same& same) {
+  double reach = 2 * around.FarthestFrom(place);  // largest distance of a point that may still cut
+  for (int ring = 0; ring <= grid.ring_count() && !around.empty(); ++ring) {
+    if (grid.LeastDistanceOf(ring) > reach) break;
+    const double reach2 = reach * reach;
+    grid.ForEachInRing(place, ring, [&](size_t i) {
+      const Vec2 across = points[i] - place;
+      if (across.squaredNorm() > reach2 || around.empty()) return;
+      if (across == Vec2::Zero())
+        same(i);
+      else if (around.Clip(across, across.dot(0.5 * (place + points[i]))))
+        met(i);
+    });
+    reach = 2 * around.FarthestFrom(place);
+  }
+  return around;
+}
+
+}  // namespace lf

@@ -1,0 +1,144 @@
+#include "lf/selection/lens_weights/lens_cells.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "lf/core/check.h"
+#include "lf/selection/lens_weights/lens_cell.h"
+
+namespace lf {
+namespace {
+
+// Finds the natural neighbours of a place, and the area that its cell takes from each.
+class HatMaker {
+ public:
+  explicit HatMaker(std::span<const Vec2> points) : points_(points), grid_(points) {}
+
+  void AddAt(const Vec2& place, double share, std::vector<double>* shares) {
+    neighbours_.clear();
+    same_.clear();
+    const ConvexPolygon cell = CellOf(
+        place, points_, grid_, Surroundings(place), [this](size_t i) { neighbours_.push_back(i); },
+        [this](size_t i) { same_.push_back(i); });
+    if (!same_.empty()) {
+      for (const size_t i : same_) (*shares)[i] += share / static_cast<double>(same_.size());
+      return;
+    }
+    AddThoseAtTheSamePlaces();
+    taken_.clear();
+    double total = 0;
+    for (const size_t i : neighbours_) {
+      taken_.push_back(TakenFrom(i, cell));
+      total += taken_.back();
+    }
+    for (size_t k = 0; k < neighbours_.size(); ++k)
+      (*shares)[neighbours_[k]] += share * taken_[k] / total;
+  }
+
+ private:
+  // Adds points at the places of neighbours: they are also neighbours, although they cut nothing
+  // more.
+  void AddThoseAtTheSamePlaces() {
+    const size_t met_count = neighbours_.size();
+    for (size_t k = 0; k < met_count; ++k)
+      grid_.ForEachInRing(points_[neighbours_[k]], 0, [&](size_t i) {
+        if (points_[i] == points_[neighbours_[k]] &&
+            std::find(neighbours_.begin(), neighbours_.end(), i) == neighbours_.end())
+          neighbours_.push_back(i);
+      });
+  }
+
+  // Returns a polygon that bounds the cell. Cells between cameras are smaller; cells beside the
+  // cameras would be infinite.
+  ConvexPolygon Surroundings(const Vec2& place) const {
+    constexpr double kFar = 8;
+    return ConvexPolygon::SquareAround(
+        place, kFar * (grid_.DistanceToNearest(place) + grid_.bucket_size()));
+  }
+
+  // Returns the area that the cell takes from neighbour i. Points at the same place share it.
+  double TakenFrom(size_t i, const ConvexPolygon& cell) {
+    int sharing = 1;
+    part_ = cell;
+    for (const size_t other : neighbours_) {
+      if (other == i) continue;
+      const Vec2 across = points_[other] - points_[i];
+      if (across == Vec2::Zero())
+        ++sharing;
+      else
+        part_.Clip(across, across.dot(0.5 * (points_[i] + points_[other])));
+    }
+    return part_.Area() / sharing;
+  }
+
+  std::span<const Vec2> points_;
+  PointGrid grid_;
+  std::vector<size_t> neighbours_;
+  std::vector<size_t> same_;
+  std::vector<double> taken_;
+  ConvexPolygon part_;  // a member, so that its memory is reused
+};
+
+// For a point beside the opening, returns the point that is nearest to the closest place of the
+// rim, among those around that place; none for a point in the opening.
+std::optional<Vec2> PointAtRim(const Vec2& point, std::span<const Vec2> points,
+                               const PointGrid& grid, double radius) {
+  const double distance = point.norm();
+  if (distance <= radius) return std::nullopt;
+  const Vec2 rim = point * (radius / distance);
+  std::optional<Vec2> nearest;
+  for (int ring = 0; ring <= 1; ++ring)
+    grid.ForEachInRing(rim, ring, [&](size_t i) {
+      if (points[i] == point) return;
+      if (!nearest || (points[i] - rim).squaredNorm() < (*nearest - rim).squaredNorm())
+        nearest = points[i];
+    });
+  return nearest;
+}
+
+}  // namespace
+
+std::vector<double> CellShares(std::span<const Vec2> points, const Aperture& aperture,
+                               const CoveredRegion& covered) {
+  LF_CHECK(aperture.radius_w > 0);
+  const bool is_disk = aperture.blades == 0;
+  ConvexPolygon opening = is_disk ? ConvexPolygon::SquareAround(Vec2::Zero(), aperture.radius_w)
+                                  : ConvexPolygon(Vertices(aperture));
+  covered.Clip(&opening);
+  const PointGrid grid(points);
+  std::vector<double> shares;
+  shares.reserve(points.size());
+  for (const Vec2& point : points) {
+    // Most points beside the opening have no cell in it, because points at its rim are nearer.
+    ConvexPolygon around = opening;
+    if (const std::optional<Vec2> rival = PointAtRim(point, points, grid, aperture.radius_w)) {
+      const Vec2 across = *rival - point;
+      around.Clip(across, across.dot(0.5 * (point + *rival)));
+      if (around.empty()) {
+        shares.push_back(0);
+        continue;
+      }
+    }
+    int sharing = 0;  // number of points at this place, itself included
+    const ConvexPolygon cell = CellOf(
+        point, points, grid, around, [](size_t) {}, [&](size_t) { ++sharing; });
+    const double area = is_disk ? cell.AreaInDisk(aperture.radius_w) : cell.Area();
+    shares.push_back(area / Area(aperture) / std::max(1, sharing));
+  }
+  return shares;
+}
+
+std::vector<double> HatShares(std::span<const Vec2> points, const Aperture& aperture,
+                              int sample_count) {
+  LF_CHECK(aperture.radius_w >= 0 && sample_count > 0);
+  std::vector<double> shares(points.size(), 0);
+  if (points.empty()) return shares;
+  HatMaker hats(points);
+  if (aperture.radius_w == 0) sample_count = 1;
+  for (const Vec2& place : SampleLens(aperture, sample_count))
+    hats.AddAt(place, 1.0 / sample_count, &shares);
+  return shares;
+}
+
+}  // namespace lf

@@ -1,0 +1,77 @@
+#include "lf/selection/lens_weights/lens_coverage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "lf/selection/lens_weights/point_grid.h"
+
+namespace lf {
+namespace {
+
+// Returns one of each group of points that are close together compared with the distance between
+// points. A camera on a tripod is recorded many times, and trembles.
+std::vector<Vec2> OneOfEachPlace(std::span<const Vec2> points, double distance) {
+  constexpr double kSamePlace = 1.0 / 16;
+  std::vector<Vec2> kept;
+  std::set<std::pair<int64_t, int64_t>> taken;
+  for (const Vec2& point : points) {
+    const Vec2 place = point / (kSamePlace * distance);
+    if (taken.emplace(std::llround(place.x()), std::llround(place.y())).second)
+      kept.push_back(point);
+  }
+  return kept;
+}
+
+// Returns the median distance to the nearest neighbour, weighted by the area that a point stands
+// for, so that cameras that crowd in a corner do not decide. 0 without two points.
+double DistanceOfDistinct(const std::vector<Vec2>& points) {
+  const PointGrid grid(points);
+  std::vector<double> distances;
+  double area = 0;
+  for (const Vec2& point : points) {
+    const double distance = grid.DistanceToNearest(point, true);
+    if (!std::isfinite(distance)) continue;
+    distances.push_back(distance);
+    area += distance * distance;
+  }
+  std::sort(distances.begin(), distances.end());
+  double sum = 0;
+  for (const double distance : distances)
+    if ((sum += distance * distance) >= 0.5 * area) return distance;
+  return 0;
+}
+
+}  // namespace
+
+double DistanceOfMost(std::span<const Vec2> points) {
+  if (points.empty()) return 0;
+  return DistanceOfDistinct(OneOfEachPlace(points, PointGrid(points).bucket_size()));
+}
+
+CoveredRegion CoveredBy(std::span<const Vec2> points) {
+  const double distance = DistanceOfMost(points);
+  return distance > 0 ? CoveredRegion(points, distance / 2) : CoveredRegion();
+}
+
+LensCoverage CoverageOf(std::span<const Vec2> points, const Aperture& aperture) {
+  constexpr int kSamples = 256;
+  const double distance = DistanceOfMost(points);
+  if (distance == 0) return {};
+  const PointGrid grid(points);
+  // A lens narrower than that has hats, which are not clipped by the region.
+  const bool is_cut = 2 * aperture.radius_w > distance;
+  const CoveredRegion region = CoveredBy(points);
+  const double far = kFarDistances * distance;
+  const std::vector<Vec2> places = SampleLens(aperture, aperture.radius_w > 0 ? kSamples : 1);
+  const auto uncovered = std::count_if(places.begin(), places.end(), [&](const Vec2& place) {
+    return (is_cut && !region.Contains(place)) || grid.DistanceToNearest(place) > far;
+  });
+  return {static_cast<double>(uncovered) / static_cast<double>(places.size()),
+          2 * region.LargestRadius_w()};
+}
+
+}  // namespace lf

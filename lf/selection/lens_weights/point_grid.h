@@ -1,0 +1,73 @@
+// Points of the plane in square buckets, about one in each, so that they can be visited roughly in
+// the order of their distance. Internal to this folder.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "lf/core/geometry.h"
+
+namespace lf {
+
+class PointGrid {
+ public:
+  //   points  must outlive the grid
+  explicit PointGrid(std::span<const Vec2> points);
+
+  // Side of a bucket, which is about the distance between points.
+  double bucket_size() const { return bucket_size_; }
+
+  // Number of the last ring that may have points. Ring 0 is the bucket nearest to a place, and ring
+  // k is the buckets k columns or rows away from it.
+  int ring_count() const { return std::max(columns_, rows_); }
+
+  // Points in this ring are at least so far away.
+  double LeastDistanceOf(int ring) const { return std::max(0, ring - 1) * bucket_size_; }
+
+  // Calls use(i) for the points of a ring around `centre`, which may be anywhere.
+  template <class Use>
+  void ForEachInRing(const Vec2& centre, int ring, const Use& use) const {
+    const int column = ColumnOf(centre), row = RowOf(centre);
+    for (int y = std::max(0, row - ring); y <= std::min(rows_ - 1, row + ring); ++y) {
+      const bool is_edge = std::abs(y - row) == ring;
+      const int step = is_edge || ring == 0 ? 1 : 2 * ring;
+      for (int x = column - ring; x <= column + ring; x += step) {
+        if (x < 0 || x >= columns_) continue;
+        const size_t bucket = static_cast<size_t>(y) * columns_ + x;
+        for (size_t i = begin_[bucket]; i < begin_[bucket + 1]; ++i) use(sorted_[i]);
+      }
+    }
+  }
+
+  // Returns the distance from a place to the nearest point; infinite if there is none.
+  //   leave_out_same  ignores points exactly at the place
+  double DistanceToNearest(const Vec2& place, bool leave_out_same = false) const {
+    double nearest = INFINITY;
+    for (int ring = 0; ring <= ring_count() && LeastDistanceOf(ring) < nearest; ++ring)
+      ForEachInRing(place, ring, [&](size_t i) {
+        const double distance = (points_[i] - place).norm();
+        if (distance > 0 || !leave_out_same) nearest = std::min(nearest, distance);
+      });
+    return nearest;
+  }
+
+ private:
+  int ColumnOf(const Vec2& point) const { return Bucket(point.x() - corner_.x(), columns_); }
+  int RowOf(const Vec2& point) const { return Bucket(point.y() - corner_.y(), rows_); }
+  int Bucket(double distance, int count) const {
+    return static_cast<int>(std::clamp(distance / bucket_size_, 0.0, count - 1.0));
+  }
+
+  std::span<const Vec2> points_;
+  Vec2 corner_ = Vec2::Zero();
+  double bucket_size_ = 1;
+  int columns_ = 1;
+  int rows_ = 1;
+  std::vector<size_t> begin_;   // [rows * columns + 1]
+  std::vector<size_t> sorted_;  // indices of points, by bucket
+};
+
+}  // namespace lf

@@ -1,0 +1,26 @@
+// The inner loop of demosaicing. Internal to this folder.
+#pragma once
+
+#include <cstdint>
+
+namespace lf {
+
+// Factors of the Laplacians in a row. They multiply integer Laplacians, in units of 1/4096. A row
+// of a mosaic holds G and either R or B, which is called C here; D is the colour that the row
+// lacks.
+struct RowGains {
+  int32_t g_at_c = 0;  // factor of 4 C minus the four others
+  int32_t d_at_c = 0;
+  int32_t c_at_g = 0;  // factor of 10 G minus the others, weighted
+  int32_t d_at_g = 0;
+};
+
+// Computes the RGB pixels of `pair_count` pairs of mosaic pixels. The first pixel of a pair
+// recorded C, the second recorded G.
+//   rows  mosaic rows y - 2 to y + 2, at the first pair; two values before the first pair and two
+//         after the last pair are read
+//   rgb   [pair_count][2][4]: R, G, B, 1
+void DemosaicPairs(const uint16_t* const rows[5], bool c_is_red, const RowGains& gains,
+                   int pair_count, uint16_t* rgb);
+
+}  // namespace lf

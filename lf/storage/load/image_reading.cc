@@ -1,0 +1,128 @@
+#include "lf/storage/load/image_reading.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <utility>
+
+#include "lf/light_field/model/image_fit.h"
+#include "lf/pixels/files/upright.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+// Reads at least the pixels `rect` of the picture as the calibration describes it. Sets part->rect
+// to the rectangle that was read.
+Result<void> ReadFitting(const fs::path& path, bool is_mosaic, const Intrinsics& intrinsics,
+                         const PixelRect& rect, ImagePart* part) {
+  bool is_turned = false;
+  const auto wanted = [&](const ImageFileInfo& info) -> Result<PixelRect> {
+    LF_ASSIGN_OR_RETURN(const ImageFit fit,
+                        FitToCalibration(info, is_mosaic, intrinsics, path.string()));
+    is_turned = fit == ImageFit::kTurned;
+    return is_turned ? StoredRect(rect, info.width, info.height, info.orientation) : rect;
+  };
+  LF_RETURN_IF_ERROR(ReadImagePart(path, wanted, part));
+  if (!is_turned) return {};
+  const ImageFileInfo& info = part->info;
+  std::visit([&](auto& image) { image = Upright(image, info.orientation); }, part->image);
+  part->rect = UprightRect(part->rect, info.width, info.height, info.orientation);
+  return {};
+}
+
+// Refuses a raw file in a light field whose encoding is not that of raw files: its mosaic would be
+// shown as a grey picture, or its linear light be taken for sRGB.
+Result<void> CheckRaw(const RawFacts& raw, const RadianceEncoding& encoding, const fs::path& path) {
+  if (raw.is_monochrome) {
+    if (encoding.bayer == BayerPattern::kNone && encoding.transfer != Transfer::kSrgb) return {};
+    return InputError(fmt::format(
+        "{}: is a camera raw file of a sensor without colour filter, but the light field {}: raw "
+        "files and other images do not go together",
+        path.string(),
+        encoding.bayer == BayerPattern::kNone ? "is of sRGB images" : "states lf_bayer"));
+  }
+  if (encoding.bayer == BayerPattern::kNone)
+    return InputError(
+        fmt::format("{}: is a camera raw file, but the light field states no lf_bayer: raw files "
+                    "and other images do not go together",
+                    path.string()));
+  if (raw.bayer != BayerPattern::kNone && raw.bayer != encoding.bayer)
+    return InputError(fmt::format("{}: its mosaic is {}, but that of the light field is {}",
+                                  path.string(), NameOf(raw.bayer), NameOf(encoding.bayer)));
+  return {};
+}
+
+Result<void> CheckEncoding(const ImagePart& file, const RadianceEncoding& encoding,
+                           const fs::path& path) {
+  if (file.info.raw) LF_RETURN_IF_ERROR(CheckRaw(*file.info.raw, encoding, path));
+  if (encoding.bayer != BayerPattern::kNone && file.info.channels != 1)
+    return InputError(
+        fmt::format("{}: has {} channels, but lf_bayer says that it is a mosaic of one",
+                    path.string(), file.info.channels));
+  if (std::holds_alternative<Image<float>>(file.image)) return {};
+  return CheckLevels(encoding, std::holds_alternative<Image<uint8_t>>(file.image) ? 8 : 16,
+                     path.string());
+}
+
+const Intrinsics& IntrinsicsOf(const LightField& light_field, LfImageId id) {
+  return light_field.intrinsics[light_field.cameras[id.value].intrinsics_index];
+}
+
+}  // namespace
+
+Result<ChannelUse> ReadStoredPixels(const LightField& light_field, LfImageId id,
+                                    const PixelRect& wanted, ImagePart* part) {
+  const RadianceEncoding& encoding = light_field.encoding;
+  const fs::path path = light_field.ImagePath(id);
+  LF_RETURN_IF_ERROR(ReadFitting(path, encoding.bayer != BayerPattern::kNone,
+                                 IntrinsicsOf(light_field, id), wanted, part));
+  LF_RETURN_IF_ERROR(CheckEncoding(*part, encoding, path));
+  return UseOf(part->info);
+}
+
+Result<bool> ReadMaskFile(const LightField& light_field, LfImageId id, const PixelRect& wanted,
+                          ImagePart* part) {
+  if (light_field.mask_names.empty() || light_field.mask_names[id.value].empty()) return false;
+  LF_RETURN_IF_ERROR(ReadFitting(light_field.folder / light_field.mask_names[id.value], false,
+                                 IntrinsicsOf(light_field, id), wanted, part));
+  return true;
+}
+
+void ForEachSeenBrighter(const LightField& light_field, LfImageId id, const PixelRect& rect,
+                         const std::function<void(int x, int y)>& mask) {
+  const LfImageId brighter{light_field.cameras[id.value].brighter};
+  const RadianceEncoding& encoding = light_field.encoding;
+  const Intrinsics& k = IntrinsicsOf(light_field, id);
+  const int reach = ReachOfDarker(encoding.bayer);
+  const PixelRect around = Intersection(
+      {rect.x_begin - reach, rect.y_begin - reach, rect.x_end + reach, rect.y_end + reach},
+      {0, 0, k.width_px, k.height_px});
+  ImagePart part;
+  const Result<ChannelUse> use = ReadStoredPixels(light_field, brighter, around, &part);
+  if (!use) return;
+  // The darker LF image sends the rays in a square around each clipped pixel.
+  Image<uint8_t> is_left(rect.width(), rect.height(), 1);
+  ForEachClipped(part, use->colours, encoding, around, [&](int x, int y) {
+    const PixelRect square =
+        Intersection({x - reach, y - reach, x + reach + 1, y + reach + 1}, rect);
+    for (int row = square.y_begin; row < square.y_end; ++row)
+      std::fill_n(&is_left.at(square.x_begin - rect.x_begin, row - rect.y_begin), square.width(),
+                  uint8_t{1});
+  });
+  for (int y = rect.y_begin; y < rect.y_end; ++y)
+    for (int x = rect.x_begin; x < rect.x_end; ++x)
+      if (is_left.at(x - rect.x_begin, y - rect.y_begin) == 0) mask(x, y);
+}
+
+Result<void> CheckLevels(const RadianceEncoding& encoding, int bits, const std::string& path) {
+  if (LevelsFit(encoding, bits)) return {};
+  return InputError(fmt::format(
+      "{}: holds values of {} bits, which lf_black_level {} and lf_white_level {} do not fit", path,
+      bits, encoding.black_level,
+      encoding.white_level ? fmt::format("{}", *encoding.white_level) : "(none)"));
+}
+
+}  // namespace lf

@@ -1,0 +1,71 @@
+// A source of the pixels of LF images. It loads one LF image at a time, because a light field may
+// take a terabyte.
+#pragma once
+
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "lf/core/geometry.h"
+#include "lf/core/ids.h"
+#include "lf/core/result.h"
+#include "lf/light_field/model/lf_pixels.h"
+
+namespace lf {
+
+// How mosaics are loaded: as recorded, or converted to RGB.
+enum class Mosaics { kAsRecorded, kToRgb };
+
+class LfImageStore {
+ public:
+  virtual ~LfImageStore() = default;
+
+  // Loads at least the pixels `rect` of one LF image, as linear 16-bit radiance. Reuses the memory
+  // of `pixels`. May be called by many threads at the same time. kInput, naming the file: the image
+  // is missing, broken or of another size than the calibration says. kOutput: the machine lacks
+  // something, such as memory. The caller decides whether to continue without it.
+  virtual Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const = 0;
+
+  // Returns true if the file exists, even if it is broken. The answer may change, for example if a
+  // disk is unmounted during the run.
+  virtual bool IsThere(LfImageId /*id*/) const { return true; }
+
+  // Returns true if pixels of LF images were left out on purpose when the store was made. Keeps()
+  // then tells which.
+  virtual bool IsPartial() const { return false; }
+  // Returns false if some of the pixels `rect`, cut to the image, were left out on purpose.
+  virtual bool Keeps(LfImageId /*id*/, const PixelRect& /*rect*/) const { return true; }
+
+  // Returns the bytes that loading reads: the size of the file, or of the encoded image in a packed
+  // store. 0 if it is missing, or the size is not known.
+  virtual uint64_t StoredBytes(LfImageId /*id*/) const { return 0; }
+
+  // Announces that the image will be loaded soon, so that the disk may begin to read it. Does not
+  // wait, and ignores failures, which Load() will report. May be called by many threads at the same
+  // time.
+  virtual void Announce(LfImageId /*id*/) const {}
+};
+
+// Calls store.Load() with the memory of `pixels`, and returns them. Exceptions of the store become
+// errors of the image, because an exception that leaves a thread ends the program: kOutput if there
+// is not enough memory, otherwise KindOfReadFailure() of core/file.h.
+Result<LfPixels> LoadWithoutThrowing(const LfImageStore& store, LfImageId id, const PixelRect& rect,
+                                     const std::string& name, LfPixels pixels);
+
+// Remembers the first failure to load that is the machine's fault (no memory, no open files). A
+// caller that leaves out LF images that cannot be loaded must check it at the end, because such an
+// LF image may be intact. All functions may be called by many threads at the same time.
+class MachineFailure {
+ public:
+  // Ignores errors of the image itself, which are not kOutput.
+  void Note(const Error& error);
+  // Returns the first error that was noted, which is kOutput; success if there is none.
+  Result<void> Check() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::optional<Error> first_;
+};
+
+}  // namespace lf

@@ -1,0 +1,24 @@
+// Loads mosaics as recorded or as RGB, for any store. Internal to this folder.
+#pragma once
+
+#include <functional>
+
+#include "lf/core/geometry.h"
+#include "lf/core/ids.h"
+#include "lf/core/result.h"
+#include "lf/light_field/model/lf_pixels.h"
+#include "lf/light_field/model/light_field.h"
+#include "lf/storage/load/lf_image_store.h"
+
+namespace lf {
+
+// Loads the pixels of `rect`, cut to the image. It calls load(part, pixels), which loads pixels as
+// recorded; if a mosaic is to be converted to RGB, `part` is the mosaic around `rect`.
+//   mosaic  memory for that mosaic
+// kInput: a mosaic to convert is smaller than 2 x 2 pixels. Passes on errors of load().
+Result<void> LoadMosaicsAs(Mosaics mosaics, const LightField& light_field, LfImageId id,
+                           const PixelRect& rect,
+                           const std::function<Result<void>(const PixelRect&, LfPixels*)>& load,
+                           LfPixels* mosaic, LfPixels* pixels);
+
+}  // namespace lf

@@ -1,0 +1,43 @@
+// Reads how much of the light behind each pixel of an LF image is covered, and composes pixels with
+// the background if alpha is light (RadianceEncoding::alpha). Internal to this folder.
+#pragma once
+
+#include <cstdint>
+
+#include "lf/core/geometry.h"
+#include "lf/core/ids.h"
+#include "lf/core/image.h"
+#include "lf/core/result.h"
+#include "lf/light_field/model/lf_pixels.h"
+#include "lf/light_field/model/light_field.h"
+#include "lf/storage/load/image_reading.h"
+
+namespace lf {
+
+// Values of a picture of opacities [height][width][1]. 0 sends no ray, because the pixel is masked;
+// any other o covers (o - 1) / kMostOpacity of the light behind it.
+inline constexpr uint16_t kMaskedOpacity = 0;
+inline constexpr uint16_t kMostOpacity = 65534;
+
+// Reads the opacities of the pixels `rect`, which lies in part.rect, from the file's alpha. Pixels
+// that the mask file or a bracket masks (ForEachMasked()) become kMaskedOpacity. Alpha of 8 bits is
+// exact. Alpha of 16 bits is exact except for 65534, which counts as opaque. Floats are rounded to
+// 16 bits; NaN is transparent. kInput: the mask file cannot be read.
+Result<Image<uint16_t>> ReadOpacities(const LightField& light_field, LfImageId id,
+                                      const ImagePart& part, const ChannelUse& use,
+                                      const PixelRect& rect);
+
+// Composes the loaded pixels of pixels->rect with the background. A colour v with opacity a and
+// background b becomes
+//   straight       a v + (1 - a) b
+//   premultiplied  v + (1 - a) (b - pedestal)
+// in integers, rounded to nearest and clipped at 65535. Masks pixels that send no ray. Fills
+// pixels->opacity, rounded to nearest, if the encoding HasOpacity(). The pixels are R, G and B.
+//   opacities_rect  pixels of the LF image that `opacities` holds; contains pixels->rect
+void ComposeWithBackground(const Image<uint16_t>& opacities, const PixelRect& opacities_rect,
+                           const RadianceEncoding& encoding, LfPixels* pixels);
+
+// Fills pixels->opacity of an LF image without alpha: pixels that are not masked are opaque.
+void SetOpaque(LfPixels* pixels);
+
+}  // namespace lf

@@ -1,0 +1,230 @@
+#include "lf/storage/load/packed_store.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include "lf/core/check.h"
+#include "lf/storage/load/image_reading.h"
+#include "lf/storage/load/load_mosaics.h"
+#include "lf/storage/load/opacities.h"
+#include "lf/storage/load/ordered_half.h"
+#include "lf/storage/load/recorded_image.h"
+
+namespace lf {
+namespace {
+
+constexpr uint8_t kMaskedBelow = 128;
+
+// Moves a rectangle by (x, y), between coordinates of the whole image and of its encoded part.
+PixelRect Moved(const PixelRect& rect, int x, int y) {
+  return {rect.x_begin + x, rect.y_begin + y, rect.x_end + x, rect.y_end + y};
+}
+
+std::string TextOf(const PixelRect& rect) {
+  return fmt::format("[{}, {}) x [{}, {})", rect.x_begin, rect.x_end, rect.y_begin, rect.y_end);
+}
+
+// Checks in the store's table that the image can be loaded.
+Result<void> CheckListed(const PackedCode& code, const LightField& light_field, LfImageId id) {
+  if (!code.is_listed())
+    return InputError(fmt::format("{}: is not in the packed store: compress it, too",
+                                  light_field.ImagePath(id).string()));
+  if (code.bytes == 0)
+    return InputError(fmt::format(
+        "{}: has no code in the packed store: it was missing or broken when that was made",
+        light_field.ImagePath(id).string()));
+  return {};
+}
+
+// Checks the head of an encoded image before memory is allocated for its pixels.
+Result<void> CheckCode(std::string_view bytes, int bits, PixelLayout layout, bool grey_too,
+                       const PixelRect& rect) {
+  LF_ASSIGN_OR_RETURN(const CodeInfo info, ReadCodeInfo(bytes));
+  if (info.width != rect.width() || info.height != rect.height())
+    return InputError(fmt::format("is damaged: a code of {} x {} pixels, the table says {} x {}",
+                                  info.width, info.height, rect.width(), rect.height()));
+  const bool has_layout = info.layout == layout || (grey_too && info.layout == PixelLayout::kGrey);
+  if (info.bits != bits || !has_layout)
+    return InputError("is damaged: a code of other values than the table says");
+  return {};
+}
+
+// Moves the decoded pixels into `part`, together with their memory, and converts them to stored
+// values: along `curve`, or to floats.
+void MakePart(StoredValues values, const PixelRect& coded, const std::optional<DisplayCurve>& curve,
+              DecodedPart* decoded, Image<float>* floats, ImagePart* part) {
+  part->rect = Moved(decoded->rect, coded.x_begin, coded.y_begin);
+  if (values == StoredValues::kUint8) {
+    part->image = std::move(std::get<Image<uint8_t>>(decoded->pixels));
+  } else if (values != StoredValues::kHalf) {
+    auto& words = std::get<Image<uint16_t>>(decoded->pixels);
+    if (values == StoredValues::kDisplay16)
+      for (uint16_t& word : words.pixels()) word = curve->Stored(word);
+    part->image = std::move(words);
+  } else {
+    const auto& ordered = std::get<Image<uint16_t>>(decoded->pixels);
+    floats->Resize(ordered.width(), ordered.height(), ordered.channels());
+    for (size_t i = 0; i < ordered.pixels().size(); ++i)
+      floats->pixels()[i] = FloatOfOrdered(ordered.pixels()[i]);
+    part->image = std::move(*floats);
+  }
+}
+
+// Moves the memory from `part` back to `decoded` or `floats`, so that it is reused for the next
+// image.
+void TakeBack(ImagePart* part, DecodedPart* decoded, Image<float>* floats) {
+  if (auto* bytes = std::get_if<Image<uint8_t>>(&part->image))
+    decoded->pixels = std::move(*bytes);
+  else if (auto* words = std::get_if<Image<uint16_t>>(&part->image))
+    decoded->pixels = std::move(*words);
+  else
+    *floats = std::move(std::get<Image<float>>(part->image));
+}
+
+}  // namespace
+
+PackedStore::PackedStore(const LightField& light_field, Mosaics mosaics,
+                         std::vector<PackedCode> codes)
+    : light_field_(light_field),
+      tables_(light_field.encoding, ChannelGains()),
+      mosaics_(mosaics),
+      codes_(std::move(codes)) {}
+
+Result<std::unique_ptr<PackedStore>> PackedStore::Open(const LightField& light_field,
+                                                       Mosaics mosaics) {
+  LF_ASSIGN_OR_RETURN(std::vector<PackedCode> codes,
+                      FindCodes(light_field.folder, light_field.image_names));
+  std::unique_ptr<PackedStore> store(new PackedStore(light_field, mosaics, std::move(codes)));
+  if (std::any_of(store->codes_.begin(), store->codes_.end(),
+                  [](const PackedCode& code) { return code.values == StoredValues::kDisplay16; })) {
+    LF_ASSIGN_OR_RETURN(const DisplayLevels levels, ReadDisplayLevels(light_field.folder));
+    store->curve_.emplace(levels.black, levels.white);
+  }
+  return store;
+}
+
+bool PackedStore::IsPartial() const {
+  for (uint32_t i = 0; i < codes_.size(); ++i) {
+    const Intrinsics& k = light_field_.intrinsics[light_field_.cameras[i].intrinsics_index];
+    if (!Keeps(LfImageId{i}, {0, 0, k.width_px, k.height_px})) return true;
+  }
+  return false;
+}
+
+bool PackedStore::Keeps(LfImageId id, const PixelRect& rect) const {
+  const PackedCode& code = codes_[id.value];
+  if (!code.is_listed()) return false;
+  const Intrinsics& k = light_field_.intrinsics[light_field_.cameras[id.value].intrinsics_index];
+  const PixelRect read = mosaics_ == Mosaics::kToRgb ? RectToRecord(light_field_, id, rect) : rect;
+  const PixelRect inside = Intersection(read, {0, 0, k.width_px, k.height_px});
+  return code.bytes == 0 || inside.empty() || Intersection(inside, code.rect) == inside;
+}
+
+Result<void> PackedStore::Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const {
+  LF_CHECK(id.value < light_field_.size());
+  LF_RETURN_IF_ERROR(CheckListed(codes_[id.value], light_field_, id));
+  LF_ASSIGN_OR_RETURN(std::unique_ptr<Loading> loading, TakeLoading());
+  const Result<void> loaded = LoadMosaicsAs(
+      mosaics_, light_field_, id, rect,
+      [&](const PixelRect& recorded, LfPixels* into) {
+        return LoadRecorded(loading.get(), id, recorded, into);
+      },
+      &loading->mosaic, pixels);
+  GiveBack(std::move(loading));
+  return loaded;
+}
+
+Result<void> PackedStore::LoadRecorded(Loading* loading, LfImageId id, const PixelRect& rect,
+                                       LfPixels* pixels) const {
+  const PackedCode& code = codes_[id.value];
+  const LfCamera& camera = light_field_.cameras[id.value];
+  const Intrinsics& k = light_field_.intrinsics[camera.intrinsics_index];
+  const RadianceEncoding& encoding = light_field_.encoding;
+  const std::string name = light_field_.ImagePath(id).string();
+  const auto named = [&name](const Error& error) {
+    return Error{error.kind, fmt::format("{}: {}", name, error.message)};
+  };
+  const PixelRect whole = {0, 0, k.width_px, k.height_px};
+  const PixelRect inside = Intersection(rect, whole);
+  if (Intersection(code.rect, whole) != code.rect)
+    return InputError(
+        fmt::format("{}: has pixels {} in the packed store, but the calibration says "
+                    "{} x {}",
+                    name, TextOf(code.rect), k.width_px, k.height_px));
+  if (!inside.empty() && Intersection(inside, code.rect) != inside)
+    return InputError(
+        fmt::format("{}: of its pixels {} only {} are in the packed store: compress the package "
+                    "that is rendered, too",
+                    name, TextOf(inside), TextOf(code.rect)));
+  const int bits = code.values == StoredValues::kUint8 ? 8 : 16;
+  if (code.values != StoredValues::kHalf) LF_RETURN_IF_ERROR(CheckLevels(encoding, bits, name));
+  const auto bytes = loading->reader.Read(code);
+  if (!bytes) return named(bytes.error());
+  const bool is_mosaic = encoding.bayer != BayerPattern::kNone;
+  const PixelLayout layout = is_mosaic ? PixelLayout::kMosaic : PixelLayout::kRgb;
+  if (const auto ok = CheckCode(bytes->code, bits, layout, !is_mosaic, code.rect); !ok)
+    return named(ok.error());
+  pixels->Reset(inside, encoding.bayer);
+  if (inside.empty()) return {};
+
+  const PixelRect wanted = Moved(inside, -code.rect.x_begin, -code.rect.y_begin);
+  if (const auto ok = DecodeImage(bytes->code, wanted, &loading->decoded); !ok)
+    return named(ok.error());
+  MakePart(code.values, code.rect, curve_, &loading->decoded, &loading->floats, &loading->part);
+  const int channels =
+      std::visit([](const auto& image) { return image.channels(); }, loading->part.image);
+  ConvertRadiance(loading->part, channels, tables_, encoding, camera, k, pixels);
+  TakeBack(&loading->part, &loading->decoded, &loading->floats);
+
+  if (bytes->mask.empty()) {
+    if (encoding.HasOpacity()) SetOpaque(pixels);
+    return {};
+  }
+  const bool is_light = encoding.AlphaIsLight() && !is_mosaic;
+  const int mask_bits = is_light ? 16 : 8;
+  if (const auto info = ReadCodeInfo(bytes->mask); info && info->bits != mask_bits)
+    return InputError(fmt::format(
+        "{}: alpha is coded in the packed store as {}, and asked for as {}: compress the light "
+        "field again with this --image-alpha",
+        name, is_light ? "a mask" : "light", is_light ? "light" : "a mask"));
+  if (const auto ok = CheckCode(bytes->mask, mask_bits, PixelLayout::kGrey, false, code.rect); !ok)
+    return named(ok.error());
+  if (const auto ok = DecodeImage(bytes->mask, wanted, &loading->mask); !ok)
+    return named(ok.error());
+  const PixelRect mask_rect = Moved(loading->mask.rect, code.rect.x_begin, code.rect.y_begin);
+  if (is_light) {
+    ComposeWithBackground(std::get<Image<uint16_t>>(loading->mask.pixels), mask_rect, encoding,
+                          pixels);
+    return {};
+  }
+  ForEachUnkept(
+      std::get<Image<uint8_t>>(loading->mask.pixels), mask_rect, 0,
+      [](uint8_t value) { return value >= kMaskedBelow; }, inside,
+      [&](int x, int y) { pixels->Mask(x - inside.x_begin, y - inside.y_begin); });
+  return {};
+}
+
+Result<std::unique_ptr<PackedStore::Loading>> PackedStore::TakeLoading() const {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!loadings_.empty()) {
+      std::unique_ptr<Loading> loading = std::move(loadings_.back());
+      loadings_.pop_back();
+      return loading;
+    }
+  }
+  LF_ASSIGN_OR_RETURN(PackedCodeReader reader, PackedCodeReader::Open(light_field_.folder));
+  return std::unique_ptr<Loading>(new Loading{std::move(reader), {}, {}, {}, {}, {}});
+}
+
+void PackedStore::GiveBack(std::unique_ptr<Loading> loading) const {
+  const std::lock_guard lock(mutex_);
+  loadings_.push_back(std::move(loading));
+}
+
+}  // namespace lf

@@ -1,0 +1,73 @@
+// Loads LF images from a packed store (storage/packed/packed_store_file.h).
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "lf/core/result.h"
+#include "lf/light_field/model/light_field.h"
+#include "lf/pixels/codec/lf_image_codec.h"
+#include "lf/pixels/files/image_file.h"
+#include "lf/storage/load/display_curve.h"
+#include "lf/storage/load/lf_image_store.h"
+#include "lf/storage/load/radiance_conversion.h"
+#include "lf/storage/packed/packed_store_file.h"
+
+namespace lf {
+
+// Decodes the recorded values (recorded_image.h) and converts them to radiance as FolderStore does
+// for files. After lossless encoding, both give the same bits, unless floats were rounded to half.
+// Takes 32 bytes of memory for each LF image of the light field, and as many connections to the
+// file as threads have loaded at the same time. While one image loads, its encoded bytes, its
+// stored values and the result are in memory together. Keeps a reference to `light_field`, which
+// must outlive the store.
+class PackedStore : public LfImageStore {
+ public:
+  // Opens the file light_field.folder. Its LF images are found by name, so that the light field may
+  // be the store's own or another one, such as that of a package. kInput as
+  // storage/packed/packed_store_file.h says.
+  static Result<std::unique_ptr<PackedStore>> Open(const LightField& light_field, Mosaics mosaics);
+
+  // Loads the pixels of `rect`, cut to the image. kInput as LfImageStore says, naming store and
+  // image: the image is not in the store, the pixels lie beyond those that were encoded, or the
+  // store is damaged.
+  Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override;
+  // An LF image without encoded pixels was missing or broken when the store was made. It does not
+  // count as left out on purpose.
+  bool IsPartial() const override;
+  bool Keeps(LfImageId id, const PixelRect& rect) const override;
+  // Returns true if the store's table lists encoded pixels.
+  bool IsThere(LfImageId id) const override { return codes_[id.value].bytes > 0; }
+  uint64_t StoredBytes(LfImageId id) const override { return codes_[id.value].bytes; }
+  // Returns the entry of the store's table for an LF image.
+  const PackedCode& CodeOf(LfImageId id) const { return codes_[id.value]; }
+
+ private:
+  // Buffers of one load, which are reused for later loads.
+  struct Loading {
+    PackedCodeReader reader;
+    DecodedPart decoded;
+    DecodedPart mask;
+    ImagePart part;  // the stored values that are converted to radiance
+    Image<float> floats;
+    LfPixels mosaic;  // before it is converted to RGB
+  };
+
+  PackedStore(const LightField& light_field, Mosaics mosaics, std::vector<PackedCode> codes);
+  Result<void> LoadRecorded(Loading* loading, LfImageId id, const PixelRect& rect,
+                            LfPixels* pixels) const;
+  Result<std::unique_ptr<Loading>> TakeLoading() const;
+  void GiveBack(std::unique_ptr<Loading> loading) const;
+
+  const LightField& light_field_;
+  const RadianceTables tables_;  // for images without a gain of their own
+  const Mosaics mosaics_;
+  const std::vector<PackedCode> codes_;  // in the order of light_field.cameras
+  std::optional<DisplayCurve> curve_;    // set if any image is encoded along it
+  mutable std::mutex mutex_;
+  mutable std::vector<std::unique_ptr<Loading>> loadings_;  // one for each simultaneous load
+};
+
+}  // namespace lf

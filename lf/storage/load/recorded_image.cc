@@ -1,0 +1,149 @@
+#include "lf/storage/load/recorded_image.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <span>
+#include <system_error>
+#include <utility>
+#include <variant>
+
+#include "lf/storage/load/demosaic.h"
+#include "lf/storage/load/image_reading.h"
+#include "lf/storage/load/opacities.h"
+#include "lf/storage/load/ordered_half.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+PixelRect WholeOf(const LightField& light_field, LfImageId id) {
+  const Intrinsics& k = light_field.intrinsics[light_field.cameras[id.value].intrinsics_index];
+  return {0, 0, k.width_px, k.height_px};
+}
+
+// Returns the first `channels` channels of the pixels `rect`, with each value converted by
+// convert().
+template <class To, class From, class Convert>
+Image<To> Cut(const Image<From>& stored, const PixelRect& stored_rect, const PixelRect& rect,
+              int channels, const Convert& convert) {
+  Image<To> cut(rect.width(), rect.height(), channels);
+  const int stored_channels = stored.channels();
+  for (int y = rect.y_begin; y < rect.y_end; ++y) {
+    const From* in = stored.row(y - stored_rect.y_begin) +
+                     static_cast<size_t>(rect.x_begin - stored_rect.x_begin) * stored_channels;
+    To* out = cut.row(y - rect.y_begin);
+    for (int x = rect.x_begin; x < rect.x_end; ++x, in += stored_channels, out += channels)
+      for (int c = 0; c < channels; ++c) out[c] = convert(in[c]);
+  }
+  return cut;
+}
+
+void CutStored(const ImagePart& part, int channels, RecordedImage* image) {
+  if (const auto* bytes = std::get_if<Image<uint8_t>>(&part.image)) {
+    image->values = StoredValues::kUint8;
+    image->pixels =
+        Cut<uint8_t>(*bytes, part.rect, image->rect, channels, [](uint8_t value) { return value; });
+  } else if (const auto* words = std::get_if<Image<uint16_t>>(&part.image)) {
+    image->values = StoredValues::kUint16;
+    image->pixels = Cut<uint16_t>(*words, part.rect, image->rect, channels,
+                                  [](uint16_t value) { return value; });
+  } else {
+    image->values = StoredValues::kHalf;
+    image->pixels = Cut<uint16_t>(
+        std::get<Image<float>>(part.image), part.rect, image->rect, channels, [image](float value) {
+          const uint16_t ordered = OrderedOfFloat(value);
+          // The condition is false for NaN, which counts as no loss.
+          if (FloatOfOrdered(ordered) < value || FloatOfOrdered(ordered) > value)
+            image->is_rounded = true;
+          return ordered;
+        });
+  }
+}
+
+constexpr uint16_t kOpaqueOpacity = kMostOpacity + 1;
+
+Result<RecordedImage> ReadMaskAsOpacities(const LightField& light_field, LfImageId id,
+                                          const ImagePart& part, const ChannelUse& use,
+                                          RecordedImage image) {
+  const PixelRect& rect = image.rect;
+  LF_RETURN_IF_ERROR(ForEachMasked(light_field, id, part, use, rect, [&](int x, int y) {
+    if (image.opacities.empty())
+      image.opacities = Image<uint16_t>(rect.width(), rect.height(), 1, kOpaqueOpacity);
+    image.opacities.at(x - rect.x_begin, y - rect.y_begin) = kMaskedOpacity;
+  }));
+  return image;
+}
+
+uint64_t SizeOf(const fs::path& path) {
+  std::error_code error;
+  const uint64_t size = fs::file_size(path, error);
+  return error ? 0 : size;
+}
+
+}  // namespace
+
+Result<RecordedImage> ReadRecordedImage(const LightField& light_field, LfImageId id,
+                                        const PixelRect& rect) {
+  LF_CHECK(id.value < light_field.size());
+  const fs::path path = light_field.ImagePath(id);
+  RecordedImage image;
+  image.rect = Intersection(rect, WholeOf(light_field, id));
+  if (image.rect.empty())
+    return InputError(fmt::format("{}: has none of the pixels that are asked for", path.string()));
+  ImagePart part;
+  LF_ASSIGN_OR_RETURN(const ChannelUse use, ReadStoredPixels(light_field, id, image.rect, &part));
+  CutStored(part, use.colours, &image);
+  image.layout = light_field.encoding.bayer != BayerPattern::kNone ? PixelLayout::kMosaic
+                 : use.colours == 3                                ? PixelLayout::kRgb
+                                                                   : PixelLayout::kGrey;
+  image.source_bytes = SourceBytesOf(light_field, id);
+  if (use.alpha && light_field.encoding.AlphaIsLight()) {
+    LF_ASSIGN_OR_RETURN(image.opacities, ReadOpacities(light_field, id, part, use, image.rect));
+    const std::span<const uint16_t> all = image.opacities.pixels();
+    if (std::all_of(all.begin(), all.end(), [](uint16_t o) { return o > kMostOpacity; }))
+      image.opacities = {};
+    return image;
+  }
+  // If alpha is light in this light field, an LF image without alpha is opaque except where its
+  // mask file masks it.
+  if (light_field.encoding.AlphaIsLight() && image.layout != PixelLayout::kMosaic)
+    return ReadMaskAsOpacities(light_field, id, part, use, std::move(image));
+  LF_RETURN_IF_ERROR(ForEachMasked(light_field, id, part, use, image.rect, [&image](int x, int y) {
+    if (image.mask.empty())
+      image.mask = Image<uint8_t>(image.rect.width(), image.rect.height(), 1, 255);
+    image.mask.at(x - image.rect.x_begin, y - image.rect.y_begin) = 0;
+  }));
+  return image;
+}
+
+PixelRect RectToRecord(const LightField& light_field, LfImageId id, const PixelRect& rect) {
+  const PixelRect whole = WholeOf(light_field, id);
+  const PixelRect inside = Intersection(rect, whole);
+  if (inside.empty() || light_field.encoding.bayer == BayerPattern::kNone) return inside;
+  return MosaicRectOf(inside, whole.width(), whole.height());
+}
+
+CodedImage CodeOf(const RecordedImage& image, const CodecSettings& settings) {
+  CodedImage coded;
+  coded.values = image.values;
+  coded.rect = image.rect;
+  coded.code = EncodeImage(image.pixels, image.layout, settings);
+  CodecSettings of_mask;
+  of_mask.profile = CodecProfile::kLossless;
+  if (!image.mask.empty()) coded.mask = EncodeImage(image.mask, PixelLayout::kGrey, of_mask);
+  if (!image.opacities.empty())
+    coded.mask = EncodeImage(image.opacities, PixelLayout::kGrey, of_mask);
+  coded.source_bytes = image.source_bytes;
+  return coded;
+}
+
+uint64_t SourceBytesOf(const LightField& light_field, LfImageId id) {
+  uint64_t bytes = SizeOf(light_field.ImagePath(id));
+  if (bytes > 0 && !light_field.mask_names.empty() && !light_field.mask_names[id.value].empty())
+    bytes += SizeOf(light_field.folder / light_field.mask_names[id.value]);
+  return bytes;
+}
+
+}  // namespace lf

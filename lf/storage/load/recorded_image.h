@@ -1,0 +1,51 @@
+// An LF image that will be written to a packed store. It holds stored values and not radiance: the
+// light field's encoding is applied when the image is loaded from the store, by the code that also
+// converts separate files (packed_store.h).
+#pragma once
+
+#include <cstdint>
+
+#include "lf/core/geometry.h"
+#include "lf/core/ids.h"
+#include "lf/core/image.h"
+#include "lf/core/result.h"
+#include "lf/light_field/model/light_field.h"
+#include "lf/pixels/codec/lf_image_codec.h"
+#include "lf/storage/packed/packed_store_writer.h"
+
+namespace lf {
+
+struct RecordedImage {
+  // Pixels of `rect`: grey, a mosaic, or R, G, B. Further channels of a file are left out.
+  CodecPixels pixels;
+  PixelLayout layout = PixelLayout::kGrey;
+  // kUint8 or kUint16; kHalf for float files, as ordered integers (ordered_half.h).
+  StoredValues values = StoredValues::kUint8;
+  PixelRect rect;
+  Image<uint8_t> mask;  // [height][width]: 0 masked, 255 not; empty: nothing is masked
+  // Replaces the mask if alpha is light (opacities.h). Empty: all is opaque.
+  Image<uint16_t> opacities;
+  bool is_rounded = false;    // a float was not representable as half, and was rounded to the
+                              // nearest
+  uint64_t source_bytes = 0;  // size of the image's file and its mask file
+};
+
+// Reads the pixels of `rect`, cut to the image, rotated upright as in the calibration, and not
+// composed with a background. Pixels that are masked by alpha, the mask file (folder_store.h) or
+// brackets (light_field/model/brackets.h) are 0 in the mask. Floats become the nearest half floats,
+// NaN becomes 0. When half floats are loaded, they are quantised as floats of image files are.
+// kInput as FolderStore::Load(), and if `rect` lies outside the image.
+Result<RecordedImage> ReadRecordedImage(const LightField& light_field, LfImageId id,
+                                        const PixelRect& rect);
+
+// Returns RecordedImage::source_bytes without reading the image; 0 if the file does not exist.
+uint64_t SourceBytesOf(const LightField& light_field, LfImageId id);
+
+// Returns the pixels that a store must hold so that `rect` can be loaded. For mosaics they include
+// the pixels around `rect` that demosaicing needs.
+PixelRect RectToRecord(const LightField& light_field, LfImageId id, const PixelRect& rect);
+
+// Encodes the pixels by `settings`, and the mask or the opacities without loss.
+CodedImage CodeOf(const RecordedImage& image, const CodecSettings& settings);
+
+}  // namespace lf

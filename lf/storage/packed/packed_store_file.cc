@@ -1,0 +1,303 @@
+#include "lf/storage/packed/packed_store_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <deque>
+#include <fstream>
+#include <numeric>
+#include <system_error>
+#include <utility>
+
+#include "lf/light_field/model/value_hasher.h"
+#include "lf/storage/packed/packed_format.h"
+#include "lf/storage/tables/calibration_tables.h"
+#include "lf/storage/tables/stored_numbers.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr size_t kMostOpenShards = 8;  // shards that one reader keeps open
+
+// A complete store's file and its settings.
+struct OpenedStore {
+  Database database;
+  Settings settings;
+};
+
+Result<OpenedStore> OpenComplete(const fs::path& path) {
+  LF_ASSIGN_OR_RETURN(Database database, OpenStoreDatabase(path));
+  LF_ASSIGN_OR_RETURN(Settings settings, Settings::Read(database, kStoreFormat.name));
+  if (settings.Text("state") == kUnfinished)
+    return database.Fault("is an unfinished packed store: go on writing it");
+  if (settings.Text("state") != kComplete) return settings.Wrong("state", "complete");
+  return OpenedStore{std::move(database), std::move(settings)};
+}
+
+Result<LightFieldIdentity> WholeIdentity(const Settings& settings) {
+  LF_ASSIGN_OR_RETURN(const uint64_t count, settings.Whole("light_field.images"));
+  return LightFieldIdentity{count, settings.Text("light_field.names"),
+                            settings.Text("light_field.calibration")};
+}
+
+Result<void> ReadImages(OpenedStore* store, PackedStoreFacts* facts) {
+  LightField& light_field = facts->light_field;
+  LF_RETURN_IF_ERROR(ForEachRow(
+      store->database,
+      "select id, whole_id, name, intrinsics, gain, pose from lf_images order by id",
+      [&](const Statement& row) -> Result<void> {
+        const auto next = static_cast<int64_t>(light_field.size());
+        LF_ASSIGN_OR_RETURN(const int64_t id, row.Integer(0, 0, kMostImages));
+        if (id != next) return store->settings.Damaged(fmt::format("LF image {} is missing", next));
+        LF_ASSIGN_OR_RETURN(const int64_t whole_id, row.Integer(1, 0, kMostImages));
+        LF_ASSIGN_OR_RETURN(std::string name, row.Text(2));
+        LF_ASSIGN_OR_RETURN(const LfCamera camera, ReadCamera(store->settings, row, 3, name,
+                                                              light_field.intrinsics.size()));
+        light_field.cameras.push_back(camera);
+        light_field.image_names.push_back(std::move(name));
+        facts->whole_ids.push_back(static_cast<uint32_t>(whole_id));
+        return {};
+      }));
+  if (light_field.size() == 0) return store->settings.Damaged("it has no LF image");
+  const LightFieldIdentity images = IdentityInStore(light_field);
+  if (store->settings.Text("images.names") != images.names)
+    return store->settings.Damaged("names of LF images are not those that were written");
+  if (store->settings.Text("images.calibration") != images.calibration)
+    return store->settings.Damaged("LF cameras are not those that were written");
+  return {};
+}
+
+// Opens a shard for reading.
+Result<Database> OpenShardOf(const fs::path& path, const std::string& store, int number) {
+  LF_ASSIGN_OR_RETURN(Database database, OpenShardDatabase(ShardPath(path, number)));
+  LF_ASSIGN_OR_RETURN(const Settings settings, Settings::Read(database, kShardFormat.name));
+  if (settings.Text("store") != store || settings.Text("number") != fmt::format("{}", number))
+    return database.Fault(fmt::format("belongs to another packed store than {}", path.string()));
+  return database;
+}
+
+// Returns the entries of all LF images, indexed by their ids in the store.
+Result<std::vector<PackedCode>> ReadCodes(OpenedStore* store) {
+  LF_ASSIGN_OR_RETURN(const double shards, store->settings.Number("shards", 0, kMostShards));
+  LF_ASSIGN_OR_RETURN(Statement count, store->database.Prepare("select count(*) from lf_images"));
+  LF_RETURN_IF_ERROR(count.Step());
+  LF_ASSIGN_OR_RETURN(const int64_t image_count, count.Integer(0, 1, kMostImages));
+  std::vector<PackedCode> codes(static_cast<size_t>(image_count));
+  LF_RETURN_IF_ERROR(ForEachRow(
+      store->database, "select id, shard, kind, x_begin, y_begin, x_end, y_end, bytes from codes",
+      [&](const Statement& row) -> Result<void> {
+        PackedCode code;
+        LF_ASSIGN_OR_RETURN(const int64_t id, row.Integer(0, 0, image_count - 1));
+        LF_ASSIGN_OR_RETURN(const int64_t shard, row.Integer(1, 0, static_cast<int64_t>(shards)));
+        LF_ASSIGN_OR_RETURN(const std::string kind, row.Text(2));
+        int64_t sides[4];
+        for (int i = 0; i < 4; ++i) {
+          LF_ASSIGN_OR_RETURN(sides[i], row.Integer(3 + i, 0, kMostSide_px));
+        }
+        LF_ASSIGN_OR_RETURN(const int64_t bytes, row.Integer(7, 1, INT64_MAX));
+        const auto* const name = std::find(std::begin(kKindNames), std::end(kKindNames), kind);
+        code.rect = {static_cast<int>(sides[0]), static_cast<int>(sides[1]),
+                     static_cast<int>(sides[2]), static_cast<int>(sides[3])};
+        if (name == std::end(kKindNames) || code.rect.empty())
+          return store->settings.Damaged(fmt::format("the code of LF image {} is of none", id));
+        code.id = static_cast<uint32_t>(id);
+        code.shard = static_cast<uint16_t>(shard);
+        code.values = static_cast<StoredValues>(name - std::begin(kKindNames));
+        code.bytes = static_cast<uint64_t>(bytes);
+        codes[code.id] = code;
+        return {};
+      }));
+  return codes;
+}
+
+// A file with the table of encoded images, and the command that reads one of them.
+struct OpenBlobs {
+  int shard = 0;
+  Database database;
+  Statement select;
+};
+
+Result<OpenBlobs> WithSelect(int shard, Database database) {
+  LF_ASSIGN_OR_RETURN(Statement select,
+                      database.Prepare("select code, mask from blobs where id = ?"));
+  return OpenBlobs{shard, std::move(database), std::move(select)};
+}
+
+}  // namespace
+
+LightFieldIdentity IdentityInStore(const LightField& light_field) {
+  LightFieldIdentity identity = IdentityOf(light_field);
+  ValueHasher names;
+  for (const std::string& name : light_field.image_names) names.Add(name);
+  identity.names = names.Text();
+  return identity;
+}
+
+bool IsPackedStore(const fs::path& path) {
+  constexpr size_t kApplicationId = 68;  // position in an SQLite file, most significant byte first
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return false;
+  char head[kApplicationId + 4] = {};
+  std::ifstream file(path, std::ios::binary);
+  if (!file.read(head, sizeof(head)) || !std::string_view(head, 15).starts_with("SQLite format 3"))
+    return false;
+  uint32_t id = 0;
+  for (size_t i = kApplicationId; i < sizeof(head); ++i)
+    id = id << 8 | static_cast<unsigned char>(head[i]);
+  return id == kStoreFormat.application_id;
+}
+
+std::vector<fs::path> PackedStoresIn(const fs::path& folder) {
+  std::vector<fs::path> stores;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+    if (it->path().extension() == kStoreExtension && IsPackedStore(it->path()))
+      stores.push_back(it->path());
+  std::sort(stores.begin(), stores.end());
+  return stores;
+}
+
+Result<PackedStoreFacts> ReadPackedStore(const fs::path& path) {
+  LF_ASSIGN_OR_RETURN(OpenedStore store, OpenComplete(path));
+  const Settings& settings = store.settings;
+  PackedStoreFacts facts;
+  LightField& light_field = facts.light_field;
+  light_field.folder = path;
+  LF_RETURN_IF_ERROR(ReadPixelSettings(settings, &light_field));
+  LF_ASSIGN_OR_RETURN(facts.whole, WholeIdentity(settings));
+  facts.source = settings.Text("light_field");
+  facts.codec = settings.Text("codec");
+  facts.written_by = settings.Text("written_by");
+  LF_ASSIGN_OR_RETURN(const double shards, settings.Number("shards", 0, kMostShards));
+  facts.shard_count = static_cast<size_t>(shards);
+  LF_ASSIGN_OR_RETURN(light_field.intrinsics, ReadIntrinsics(settings, &store.database));
+  LF_RETURN_IF_ERROR(ReadImages(&store, &facts));
+  // Checks all shards now, and not when the first LF image of each is loaded.
+  for (int number = 1; number <= static_cast<int>(facts.shard_count); ++number)
+    LF_RETURN_IF_ERROR(OpenShardOf(path, settings.Text("store"), number));
+  return facts;
+}
+
+std::vector<fs::path> FilesOf(const fs::path& path, const PackedStoreFacts& facts) {
+  std::vector<fs::path> files = {path};
+  for (size_t shard = 1; shard <= facts.shard_count; ++shard)
+    files.push_back(ShardPath(path, static_cast<int>(shard)));
+  return files;
+}
+
+Result<DisplayLevels> ReadDisplayLevels(const fs::path& path) {
+  LF_ASSIGN_OR_RETURN(const OpenedStore store, OpenComplete(path));
+  LF_ASSIGN_OR_RETURN(const std::vector<double> levels,
+                      store.settings.Numbers("display_levels", 2, 2));
+  constexpr double kMost = 65535;
+  if (!(-kMost <= levels[0] && levels[0] < levels[1] && levels[1] <= kMost))
+    return store.settings.Wrong("display_levels", "black, and white above it");
+  return DisplayLevels{levels[0], levels[1]};
+}
+
+Result<std::string> ReadCodecSettings(const fs::path& path) {
+  LF_ASSIGN_OR_RETURN(const OpenedStore store, OpenComplete(path));
+  return store.settings.Text("codec");
+}
+
+Result<LightFieldIdentity> ReadWholeIdentity(const fs::path& path) {
+  LF_ASSIGN_OR_RETURN(const OpenedStore store, OpenComplete(path));
+  return WholeIdentity(store.settings);
+}
+
+Result<std::vector<PackedCode>> FindCodes(const fs::path& path,
+                                          std::span<const std::string> names) {
+  LF_ASSIGN_OR_RETURN(OpenedStore store, OpenComplete(path));
+  LF_ASSIGN_OR_RETURN(const std::vector<PackedCode> codes, ReadCodes(&store));
+  // Merges both lists in the order of names, so that no further table of a million names is needed.
+  std::vector<uint32_t> order(names.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](uint32_t a, uint32_t b) { return names[a] < names[b]; });
+  std::vector<PackedCode> found(names.size());
+  size_t next = 0;
+  LF_RETURN_IF_ERROR(ForEachRow(store.database, "select name, id from lf_images order by name, id",
+                                [&](const Statement& row) -> Result<void> {
+                                  LF_ASSIGN_OR_RETURN(const std::string name, row.Text(0));
+                                  LF_ASSIGN_OR_RETURN(const int64_t id,
+                                                      row.Integer(1, 0, kMostImages));
+                                  while (next < order.size() && names[order[next]] < name) ++next;
+                                  if (next == order.size() || names[order[next]] != name) return {};
+                                  PackedCode& code = found[order[next++]];
+                                  if (const auto at = static_cast<size_t>(id); at < codes.size())
+                                    code = codes[at];
+                                  code.id = static_cast<uint32_t>(id);
+                                  return {};
+                                }));
+  return found;
+}
+
+struct PackedCodeReader::State {
+  fs::path path;
+  std::string store;  // the store's id
+  int shard_count = 0;
+  std::deque<OpenBlobs> open;  // most recently opened at the end
+  Statement* last = nullptr;   // the command whose row Read() returned
+
+  Result<OpenBlobs> OpenShard(int number) const;
+  Result<OpenBlobs*> At(int shard);
+};
+
+Result<OpenBlobs> PackedCodeReader::State::OpenShard(int number) const {
+  LF_ASSIGN_OR_RETURN(Database database, OpenShardOf(path, store, number));
+  return WithSelect(number, std::move(database));
+}
+
+Result<OpenBlobs*> PackedCodeReader::State::At(int shard) {
+  const auto known = std::find_if(open.begin(), open.end(),
+                                  [shard](const OpenBlobs& blobs) { return blobs.shard == shard; });
+  if (known != open.end()) return &*known;
+  LF_ASSIGN_OR_RETURN(OpenBlobs blobs, OpenShard(shard));
+  if (open.size() == kMostOpenShards) open.pop_front();
+  open.push_back(std::move(blobs));
+  return &open.back();
+}
+
+PackedCodeReader::PackedCodeReader(std::unique_ptr<State> state) : state_(std::move(state)) {}
+PackedCodeReader::PackedCodeReader(PackedCodeReader&&) noexcept = default;
+PackedCodeReader& PackedCodeReader::operator=(PackedCodeReader&&) noexcept = default;
+PackedCodeReader::~PackedCodeReader() = default;
+
+Result<PackedCodeReader> PackedCodeReader::Open(const fs::path& path) {
+  LF_ASSIGN_OR_RETURN(OpenedStore store, OpenComplete(path));
+  auto state = std::make_unique<State>();
+  state->path = path;
+  state->store = store.settings.Text("store");
+  LF_ASSIGN_OR_RETURN(const double shards, store.settings.Number("shards", 0, kMostShards));
+  state->shard_count = static_cast<int>(shards);
+  if (state->shard_count == 0) {
+    LF_ASSIGN_OR_RETURN(OpenBlobs blobs, WithSelect(0, std::move(store.database)));
+    state->open.push_back(std::move(blobs));
+  }
+  return PackedCodeReader(std::move(state));
+}
+
+Result<PackedCodeReader::Bytes> PackedCodeReader::Read(const PackedCode& code) {
+  if (state_->last) state_->last->Reset();
+  state_->last = nullptr;
+  if (state_->shard_count > 0 ? code.shard == 0 : code.shard != 0)
+    return InputError(fmt::format("{}: is a damaged {}: LF image {} is in no shard",
+                                  state_->path.string(), kStoreFormat.name, code.id));
+  LF_ASSIGN_OR_RETURN(OpenBlobs* const blobs, state_->At(code.shard));
+  Statement& select = blobs->select;
+  select.Bind(0, int64_t{code.id});
+  LF_ASSIGN_OR_RETURN(const bool has_row, select.Step());
+  if (!has_row)
+    return blobs->database.Fault(
+        fmt::format("is damaged: it lacks the code of LF image {}", code.id));
+  state_->last = &select;
+  Bytes bytes;
+  LF_ASSIGN_OR_RETURN(bytes.code, select.Blob(0));
+  if (!select.IsNull(1)) {
+    LF_ASSIGN_OR_RETURN(bytes.mask, select.Blob(1));
+  }
+  return bytes;
+}
+
+}  // namespace lf

@@ -1,0 +1,130 @@
+// Reads the file of a packed store: the encoded LF images of a light field with their calibration,
+// in one SQLite file (doc/formats/packed_store.md). packed_store_writer.h writes it. Here, encoded
+// images are bytes in any format; storage/load/packed_store.h decodes them.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "lf/core/geometry.h"
+#include "lf/core/result.h"
+#include "lf/light_field/model/light_field.h"
+#include "lf/light_field/model/light_field_identity.h"
+
+namespace lf {
+
+// Meaning of the numbers in an encoded image.
+enum class StoredValues : uint8_t {
+  kUint8 = 0,      // stored values of 8 bits
+  kUint16 = 1,     // stored values of 16 bits
+  kHalf = 2,       // radiance: bit patterns of half floats, as ordered integers
+                   // (storage/load/ordered_half.h)
+  kDisplay16 = 3,  // 16 bits along a tone curve: ReadDisplayLevels(), storage/load/display_curve.h
+};
+
+inline constexpr const char* kStoreExtension = ".lfs";
+
+// Returns true if the first bytes of the file identify a packed store. False for a shard of a
+// store.
+bool IsPackedStore(const std::filesystem::path& path);
+// Returns true if the folder of the light field is a file with the extension of a packed store.
+// Opening it tells whether it is a valid store of this version.
+inline bool HoldsPackedStore(const LightField& light_field) {
+  std::error_code error;
+  return light_field.folder.extension() == kStoreExtension &&
+         !std::filesystem::is_directory(light_field.folder, error);
+}
+// Returns the stores in a folder, sorted by path.
+std::vector<std::filesystem::path> PackedStoresIn(const std::filesystem::path& folder);
+
+// Everything in a store but the encoded images.
+struct PackedStoreFacts {
+  LightField light_field;           // folder: the store's file; no masks, which are stored with the
+                                    // encoded images
+  LightFieldIdentity whole;         // the light field that the LF images are from
+  std::vector<uint32_t> whole_ids;  // ids in `whole`, in the order of light_field.cameras
+  std::string source;               // LIGHTFIELD, as the user gave it to the writer
+  std::string codec;                // settings, in words
+  std::string written_by;
+  size_t shard_count = 0;  // 0: the encoded images are in the file itself
+};
+
+// kInput: the file cannot be read, is no complete packed store, is damaged, has another version, or
+// lacks a shard.
+Result<PackedStoreFacts> ReadPackedStore(const std::filesystem::path& path);
+
+// Returns the store's file, followed by its shards.
+std::vector<std::filesystem::path> FilesOf(const std::filesystem::path& path,
+                                           const PackedStoreFacts& facts);
+
+// Black and white level of the display curve along which images are encoded as kDisplay16. They are
+// the levels that the light field had when the images were encoded; its levels may be corrected
+// later.
+struct DisplayLevels {
+  double black = 0;
+  double white = 0;  // above black
+};
+// kInput as ReadPackedStore(), and if the store has no such levels.
+Result<DisplayLevels> ReadDisplayLevels(const std::filesystem::path& path);
+
+// Returns PackedStoreFacts::codec without reading the rest. Settings that begin with kLosslessCodec
+// restore the recorded values exactly.
+Result<std::string> ReadCodecSettings(const std::filesystem::path& path);
+inline constexpr std::string_view kLosslessCodec = "lossless";
+
+// Returns PackedStoreFacts::whole without reading the rest.
+Result<LightFieldIdentity> ReadWholeIdentity(const std::filesystem::path& path);
+
+// Position and type of one encoded LF image. Takes 32 bytes.
+struct PackedCode {
+  static constexpr uint32_t kNotListed = UINT32_MAX;
+
+  uint32_t id = kNotListed;  // id of the LF image in the store
+  uint16_t shard = 0;        // 0: the store's file itself
+  StoredValues values = StoredValues::kUint8;
+  PixelRect rect;      // pixels of the LF image that are encoded
+  uint64_t bytes = 0;  // encoded pixels and mask; 0: missing, because the LF image could not be
+                       // read
+
+  bool is_listed() const { return id != kNotListed; }
+};
+
+// Returns an entry for each of `names`; it is not listed if the store has no LF image of this name.
+// If a name occurs twice, the first and the second LF image of this name in the store are taken.
+// Takes seconds for a million names. kInput as ReadPackedStore().
+Result<std::vector<PackedCode>> FindCodes(const std::filesystem::path& path,
+                                          std::span<const std::string> names);
+
+// Reads encoded images, one at a time, for one thread. Opens shards when they are needed, and keeps
+// a few open.
+class PackedCodeReader {
+ public:
+  // kInput as ReadPackedStore().
+  static Result<PackedCodeReader> Open(const std::filesystem::path& path);
+  PackedCodeReader(PackedCodeReader&&) noexcept;
+  PackedCodeReader& operator=(PackedCodeReader&&) noexcept;
+  ~PackedCodeReader();
+
+  struct Bytes {
+    std::string_view code;
+    std::string_view mask;  // encoded mask or opacities; empty: none
+  };
+  // Reads an encoded image, which must be in the store. The bytes are valid until the next call.
+  // kInput, naming the file: the checksum shows damage, or a shard is missing or belongs to another
+  // store.
+  Result<Bytes> Read(const PackedCode& code);
+
+ private:
+  struct State;
+  explicit PackedCodeReader(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace lf

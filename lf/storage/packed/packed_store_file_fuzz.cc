@@ -1,0 +1,46 @@
+// Any bytes, read as a file, must give a packed store or an error. A store must have only valid
+// cameras and tables, and give encoded images or errors.
+#include <unistd.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "lf/core/check.h"
+#include "lf/storage/packed/packed_store_file.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size_bytes) {
+  static const std::filesystem::path path =
+      std::filesystem::temp_directory_path() /
+      ("lf_packed_fuzz." + std::to_string(::getpid()) + ".lfs");
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size_bytes));
+  const lf::Result<lf::PackedStoreFacts> facts = lf::ReadPackedStore(path);
+  if (facts) {
+    const lf::LightField& field = facts->light_field;
+    LF_CHECK(field.size() > 0 && facts->whole_ids.size() == field.size());
+    for (const lf::LfCamera& camera : field.cameras) {
+      LF_CHECK(camera.intrinsics_index < field.intrinsics.size());
+      LF_CHECK(camera.cam_from_world.translation.allFinite());
+    }
+  } else {
+    // The message names the store or one of its shards.
+    LF_CHECK(facts.error().message.starts_with(path.parent_path().string()));
+  }
+  // Searches for names also in a file that is not a valid store.
+  const std::vector<std::string> names = {"i0.png", "i1.png", "i2.png"};
+  const auto codes = lf::FindCodes(path, facts ? facts->light_field.image_names : names);
+  auto reader = lf::PackedCodeReader::Open(path);
+  if (codes && reader)
+    for (const lf::PackedCode& code : *codes) {
+      if (code.bytes == 0) continue;
+      const auto bytes = reader->Read(code);
+      LF_CHECK(bytes || !bytes.error().message.empty());
+    }
+  std::error_code ignored;
+  std::filesystem::remove(path, ignored);
+  return 0;
+}

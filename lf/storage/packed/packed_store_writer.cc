@@ -1,0 +1,482 @@
+#include "lf/storage/packed/packed_store_writer.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <mutex>
+#include <optional>
+#include <random>
+#include <system_error>
+#include <utility>
+
+#include "lf/core/check.h"
+#include "lf/core/file.h"
+#include "lf/core/file_lock.h"
+#include "lf/core/hash.h"
+#include "lf/storage/packed/packed_format.h"
+#include "lf/storage/tables/calibration_tables.h"
+#include "lf/storage/tables/stored_numbers.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr size_t kImagesPerBatch = 64;
+constexpr std::chrono::seconds kBatchAge{2};
+
+// Returns a random id, by which a store and its shards are recognized as parts of one store.
+std::string NewStoreId() {
+  std::random_device random;
+  return fmt::format("{:08x}{:08x}", random(), random());
+}
+
+std::string HashOfIds(const std::vector<uint32_t>& ids) {
+  return ids.empty() ? std::string()
+                     : fmt::format("{:016x}", HashBytes(BytesOf(std::span<const uint32_t>(ids))));
+}
+
+std::string HashOfRects(const std::vector<PixelRect>& rects) {
+  if (rects.empty()) return {};
+  Hasher hasher;
+  for (const PixelRect& rect : rects) {
+    const int32_t sides[] = {rect.x_begin, rect.y_begin, rect.x_end, rect.y_end};
+    hasher.Add(BytesOf(std::span<const int32_t>(sides)));
+  }
+  return fmt::format("{:016x}", hasher.Hash());
+}
+
+std::string TextOf(const std::optional<DisplayLevels>& levels) {
+  return levels ? fmt::format("{} {}", levels->black, levels->white) : std::string();
+}
+
+// Settings that an unfinished store must share with the plan by which it is resumed.
+SettingList SettingsOfPlan(const LightField& light_field, const PackedStorePlan& plan) {
+  const LightFieldIdentity images = IdentityInStore(light_field);
+  SettingList settings = {{"light_field.images", fmt::format("{}", plan.whole.image_count)},
+                          {"light_field.names", plan.whole.names},
+                          {"light_field.calibration", plan.whole.calibration},
+                          {"images", fmt::format("{}", images.image_count)},
+                          {"images.names", images.names},
+                          {"images.calibration", images.calibration},
+                          {"images.whole_ids", HashOfIds(plan.whole_ids)},
+                          {"images.rects", HashOfRects(plan.rects)},
+                          {"codec", plan.codec},
+                          {"display_levels", TextOf(plan.display_levels)},
+                          {"shard_bytes", fmt::format("{}", plan.shard_bytes)}};
+  const SettingList pixels = SettingsOfPixels(light_field);
+  settings.insert(settings.end(), pixels.begin(), pixels.end());
+  return settings;
+}
+
+Result<void> WriteImages(const LightField& light_field, const PackedStorePlan& plan,
+                         Database* database) {
+  LF_CHECK(plan.whole_ids.empty() || plan.whole_ids.size() == light_field.size());
+  LF_ASSIGN_OR_RETURN(
+      Statement insert,
+      database->Prepare("insert into lf_images values (?, ?, ?, ?, ?, ?, ?, ?, ?)"));
+  for (uint32_t i = 0; i < light_field.size(); ++i) {
+    insert.Bind(0, int64_t{i}).Bind(1, int64_t{plan.whole_ids.empty() ? i : plan.whole_ids[i]});
+    insert.Bind(2, std::string_view(light_field.image_names[i]));
+    BindCamera(light_field, LfImageId{i}, 3, &insert);
+    LF_RETURN_IF_ERROR(insert.Run());
+  }
+  return {};
+}
+
+Result<bool> HasTables(Database* database) {
+  LF_ASSIGN_OR_RETURN(
+      Statement select,
+      database->Prepare("select 1 from sqlite_master where name = 'settings' and type = 'table'"));
+  return select.Step();
+}
+
+// Makes all tables in one transaction, so that a program that is killed here leaves all or none.
+Result<void> MakeTables(const LightField& light_field, const PackedStorePlan& plan,
+                        Database* database) {
+  LF_RETURN_IF_ERROR(
+      database->Execute(fmt::format("begin; {}{}{}{}", kSettingsTable, kIntrinsicsTable,
+                                    kStoreTables, plan.shard_bytes > 0 ? "" : kBlobsTable)));
+  LF_RETURN_IF_ERROR(WriteSettings({{"written_by", "lfrendertools " + plan.version},
+                                    {"light_field", plan.source},
+                                    {"state", kUnfinished},
+                                    {"store", NewStoreId()},
+                                    {"shards", "0"}},
+                                   database));
+  LF_RETURN_IF_ERROR(WriteSettings(SettingsOfPlan(light_field, plan), database));
+  LF_RETURN_IF_ERROR(WriteIntrinsics(light_field.intrinsics, database));
+  LF_RETURN_IF_ERROR(WriteImages(light_field, plan, database));
+  return database->Execute("commit");
+}
+
+// Returns the first difference as text: "codec default, levels 4, threshold 3, this call has ...".
+std::optional<std::string> FirstDifference(const Settings& settings, const LightField& light_field,
+                                           const PackedStorePlan& plan, bool any_shards) {
+  const auto shown = [](const std::string& value) { return value.empty() ? "(none)" : value; };
+  for (const auto& [key, value] : SettingsOfPlan(light_field, plan))
+    if (settings.Text(key) != value && !(any_shards && key == "shard_bytes"))
+      return fmt::format("{} {}, this call has {}", key, shown(settings.Text(key)), shown(value));
+  return {};
+}
+
+void RemoveWithJournal(const fs::path& path) {
+  std::error_code ignored;
+  fs::remove(path, ignored);
+  fs::remove(fs::path(path) += "-journal", ignored);
+}
+
+// Returns the id of a store, or of a shard's store; empty if the file is neither.
+std::string StoreIdIn(Result<Database> database, const DatabaseFormat& format) {
+  if (!database) return {};
+  const Result<Settings> settings = Settings::Read(*database, format.name);
+  return settings ? settings->Text("store") : std::string();
+}
+std::string StoreIdOf(const fs::path& path) {
+  return StoreIdIn(OpenStoreDatabase(path), kStoreFormat);
+}
+std::string StoreOfShard(const fs::path& path) {
+  return StoreIdIn(OpenShardDatabase(path), kShardFormat);
+}
+
+// Removes an unfinished store and its shards, including the shards that already have their final
+// names, and the unfinished shards behind them.
+void RemoveUnfinishedFiles(const fs::path& path) {
+  const std::string store = StoreIdOf(UnfinishedPath(path));
+  RemoveWithJournal(UnfinishedPath(path));
+  std::error_code error;
+  for (int n = 1; n <= kMostShards; ++n) {
+    const fs::path shard = ShardPath(path, n), unfinished = UnfinishedPath(shard);
+    const bool is_unfinished = fs::exists(unfinished, error);
+    const bool is_ours = !store.empty() && StoreOfShard(shard) == store;
+    if (!is_unfinished && !is_ours) return;
+    RemoveWithJournal(unfinished);
+    if (is_ours) fs::remove(shard, error);
+  }
+}
+
+}  // namespace
+
+struct PackedStoreWriter::State {
+  fs::path path;
+  std::optional<FileLock> lock;
+  uint64_t shard_bytes = 0;
+  std::string store;
+  std::string replaced;                // id of the store that has the final name
+  std::vector<uint64_t> source_bytes;  // of the LF images that earlier runs added
+
+  std::mutex mutex;  // guards everything below
+  std::vector<bool> has;
+  std::optional<Database> database;
+  std::optional<Statement> insert_code;
+  int shard_count = 0;
+  uint64_t bytes_in_shard = 0;
+  std::optional<Database> shard;  // the last one
+  std::optional<Statement> insert_blob;
+  size_t batch_size = 0;
+  std::chrono::steady_clock::time_point batch_begin;
+  std::optional<Error> failed;
+
+  ~State() {
+    // Statements are closed before databases, and the lock is removed last.
+    Close();
+    if (lock) lock->Remove();
+  }
+  void Close() {
+    insert_blob.reset();
+    shard.reset();
+    insert_code.reset();
+    database.reset();
+  }
+
+  Result<void> Read(const Settings& settings);
+  Result<void> TakeShardsBack() const;
+  Result<void> CheckIsFree(const fs::path& shard_path) const;
+  Result<void> OpenShard(int number);
+  Result<void> Insert(LfImageId id, const CodedImage& image);
+  Result<void> CommitBatch();
+  Result<void> FinishFiles();
+  Error Failed(Error error) {
+    failed = error;
+    return error;
+  }
+};
+
+// Reads the contents of a store that is resumed.
+Result<void> PackedStoreWriter::State::Read(const Settings& settings) {
+  store = settings.Text("store");
+  LF_ASSIGN_OR_RETURN(const double shards, settings.Number("shards", 0, kMostShards));
+  shard_count = static_cast<int>(shards);
+  return ForEachRow(*database, "select id, shard, bytes, source_bytes from codes",
+                    [&](const Statement& row) -> Result<void> {
+                      LF_ASSIGN_OR_RETURN(const int64_t id, row.Integer(0));
+                      LF_ASSIGN_OR_RETURN(const int64_t of_shard, row.Integer(1));
+                      LF_ASSIGN_OR_RETURN(const int64_t bytes, row.Integer(2));
+                      LF_ASSIGN_OR_RETURN(const int64_t sources, row.Integer(3));
+                      if (id < 0 || static_cast<size_t>(id) >= has.size())
+                        return settings.Damaged(fmt::format("a code of LF image {}", id));
+                      has[static_cast<size_t>(id)] = true;
+                      source_bytes[static_cast<size_t>(id)] = static_cast<uint64_t>(sources);
+                      if (of_shard == shard_count) bytes_in_shard += static_cast<uint64_t>(bytes);
+                      return {};
+                    });
+}
+
+// Renames shards back, if the writer was killed while it gave them their final names.
+Result<void> PackedStoreWriter::State::TakeShardsBack() const {
+  std::error_code error;
+  for (int n = 1; n <= shard_count; ++n) {
+    const fs::path shard_path = ShardPath(path, n);
+    if (fs::exists(UnfinishedPath(shard_path), error)) continue;
+    if (StoreOfShard(shard_path) != store)
+      return InputError(
+          fmt::format("{}: is missing: begin the store anew", UnfinishedPath(shard_path).string()));
+    LF_RETURN_IF_ERROR(RenameFlushed(shard_path, UnfinishedPath(shard_path)));
+  }
+  return {};
+}
+
+// kUsage unless a shard may get this name. It may if no file has the name, or if a shard of this
+// store or of the store that is replaced has it.
+Result<void> PackedStoreWriter::State::CheckIsFree(const fs::path& shard_path) const {
+  std::error_code error;
+  if (!fs::exists(fs::symlink_status(shard_path, error))) return {};
+  const std::string of = StoreOfShard(shard_path);
+  if (!of.empty() && (of == store || of == replaced)) return {};
+  return UsageError(fmt::format(
+      "{}: is in the way of a shard, and none of the store that is replaced: give another name, or "
+      "remove it",
+      shard_path.string()));
+}
+
+// Opens a shard, and makes it if it does not exist.
+Result<void> PackedStoreWriter::State::OpenShard(int number) {
+  if (number > kMostShards)
+    return OutputError(
+        fmt::format("{}: has {} shards: make them larger", path.string(), kMostShards));
+  insert_blob.reset();
+  shard.reset();
+  const fs::path shard_path = ShardPath(path, number);
+  LF_RETURN_IF_ERROR(CheckIsFree(shard_path));
+  LF_ASSIGN_OR_RETURN(Database opened,
+                      Database::OpenToAppend(UnfinishedPath(shard_path), kShardFormat));
+  LF_ASSIGN_OR_RETURN(const bool has_tables, HasTables(&opened));
+  if (!has_tables) {
+    LF_RETURN_IF_ERROR(opened.Execute(fmt::format("begin; {}{}", kSettingsTable, kBlobsTable)));
+    LF_RETURN_IF_ERROR(
+        WriteSettings({{"store", store}, {"number", fmt::format("{}", number)}}, &opened));
+    LF_RETURN_IF_ERROR(opened.Execute("commit"));
+  }
+  LF_ASSIGN_OR_RETURN(const Settings settings, Settings::Read(opened, kShardFormat.name));
+  if (settings.Text("store") != store)
+    return InputError(fmt::format("{}: belongs to another packed store: remove it",
+                                  UnfinishedPath(shard_path).string()));
+  shard = std::move(opened);
+  shard_count = number;
+  return {};
+}
+
+Result<void> PackedStoreWriter::State::Insert(LfImageId id, const CodedImage& image) {
+  const uint64_t bytes = image.code.size() + image.mask.size();
+  if (shard_bytes > 0 &&
+      (shard_count == 0 || (bytes_in_shard > 0 && bytes_in_shard + bytes > shard_bytes))) {
+    LF_RETURN_IF_ERROR(CommitBatch());
+    LF_RETURN_IF_ERROR(OpenShard(shard_count + 1));
+    bytes_in_shard = 0;
+  }
+  if (batch_size == 0) {
+    LF_RETURN_IF_ERROR(database->Execute("begin"));
+    if (shard) LF_RETURN_IF_ERROR(shard->Execute("begin"));
+    batch_begin = std::chrono::steady_clock::now();
+  }
+  ++batch_size;
+  if (!insert_blob) {
+    // The row may exist: an earlier program may have committed it here, and ended before it
+    // committed the row of `codes`.
+    LF_ASSIGN_OR_RETURN(Statement prepared, (shard ? *shard : *database)
+                                                .Prepare("insert or replace into blobs values "
+                                                         "(?, ?, ?)"));
+    insert_blob = std::move(prepared);
+  }
+  insert_blob->Bind(0, int64_t{id.value}).BindBlob(1, image.code);
+  if (image.mask.empty())
+    insert_blob->BindNull(2);
+  else
+    insert_blob->BindBlob(2, image.mask);
+  LF_RETURN_IF_ERROR(insert_blob->Run());
+  insert_code->Bind(0, int64_t{id.value}).Bind(1, int64_t{shard ? shard_count : 0});
+  insert_code->Bind(2, std::string_view(kKindNames[static_cast<int>(image.values)]));
+  insert_code->Bind(3, int64_t{image.rect.x_begin}).Bind(4, int64_t{image.rect.y_begin});
+  insert_code->Bind(5, int64_t{image.rect.x_end}).Bind(6, int64_t{image.rect.y_end});
+  insert_code->Bind(7, static_cast<int64_t>(bytes));
+  insert_code->Bind(8, static_cast<int64_t>(image.source_bytes));
+  LF_RETURN_IF_ERROR(insert_code->Run());
+  bytes_in_shard += bytes;
+  return {};
+}
+
+// Commits encoded images before the rows that refer to them.
+Result<void> PackedStoreWriter::State::CommitBatch() {
+  if (batch_size == 0) return {};
+  batch_size = 0;
+  if (shard) {
+    LF_RETURN_IF_ERROR(shard->Execute("commit"));
+    LF_RETURN_IF_ERROR(database->Execute(
+        fmt::format("update settings set value = '{}' where key = 'shards'", shard_count)));
+  }
+  return database->Execute("commit");
+}
+
+Result<void> PackedStoreWriter::State::FinishFiles() {
+  LF_RETURN_IF_ERROR(database->Execute(
+      fmt::format("update settings set value = '{}' where key = 'state'", kComplete)));
+  Close();
+  for (int n = 1; n <= shard_count; ++n) {
+    LF_RETURN_IF_ERROR(CheckIsFree(ShardPath(path, n)));
+    LF_RETURN_IF_ERROR(RenameFlushed(UnfinishedPath(ShardPath(path, n)), ShardPath(path, n)));
+  }
+  LF_RETURN_IF_ERROR(RenameFlushed(UnfinishedPath(path), path));
+  // Removes the shards that the replaced store had in addition.
+  if (replaced.empty()) return {};
+  std::error_code ignored;
+  for (int n = shard_count + 1; n <= kMostShards && StoreOfShard(ShardPath(path, n)) == replaced;
+       ++n)
+    fs::remove(ShardPath(path, n), ignored);
+  return {};
+}
+
+PackedStoreWriter::PackedStoreWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
+PackedStoreWriter::PackedStoreWriter(PackedStoreWriter&&) noexcept = default;
+PackedStoreWriter& PackedStoreWriter::operator=(PackedStoreWriter&&) noexcept = default;
+PackedStoreWriter::~PackedStoreWriter() = default;
+
+Result<PackedStoreWriter> PackedStoreWriter::Open(const fs::path& path,
+                                                  const LightField& light_field,
+                                                  const PackedStorePlan& plan,
+                                                  std::optional<FileLock> lock) {
+  LF_CHECK(light_field.size() > 0);
+  auto state = std::make_unique<State>();
+  state->path = path;
+  if (lock) {
+    state->lock = std::move(lock);
+  } else {
+    LF_ASSIGN_OR_RETURN(state->lock, Lock(path));
+  }
+  if (!IsUnfinished(path)) RemoveUnfinishedFiles(path);  // only shards may be left
+  state->shard_bytes = plan.shard_bytes;
+  state->replaced = StoreIdOf(path);
+  state->has.resize(light_field.size());
+  state->source_bytes.resize(light_field.size());
+  // Checks the name now, and not after all work is done.
+  if (plan.shard_bytes > 0 && !IsUnfinished(path))
+    LF_RETURN_IF_ERROR(state->CheckIsFree(ShardPath(path, 1)));
+  LF_ASSIGN_OR_RETURN(Database database,
+                      Database::OpenToAppend(UnfinishedPath(path), kStoreFormat));
+  LF_ASSIGN_OR_RETURN(const bool has_tables, HasTables(&database));
+  if (!has_tables) LF_RETURN_IF_ERROR(MakeTables(light_field, plan, &database));
+  LF_ASSIGN_OR_RETURN(const Settings settings, Settings::Read(database, kStoreFormat.name));
+  if (const auto difference = FirstDifference(settings, light_field, plan, false))
+    return UsageError(fmt::format(
+        "{}: the unfinished store was made with {}: give the same, or another name, or begin anew",
+        path.string(), *difference));
+  state->database = std::move(database);
+  LF_RETURN_IF_ERROR(state->Read(settings));
+  LF_ASSIGN_OR_RETURN(
+      state->insert_code,
+      state->database->Prepare("insert into codes values (?, ?, ?, ?, ?, ?, ?, ?, ?)"));
+  if (state->shard_count > 0) {
+    LF_RETURN_IF_ERROR(state->TakeShardsBack());
+    LF_RETURN_IF_ERROR(state->OpenShard(state->shard_count));
+  }
+  return PackedStoreWriter(std::move(state));
+}
+
+Result<PackedStoreWriter> PackedStoreWriter::Create(const fs::path& path,
+                                                    const LightField& light_field,
+                                                    const PackedStorePlan& plan,
+                                                    std::optional<FileLock> lock) {
+  if (IsUnfinished(path))
+    return UsageError(
+        fmt::format("{}: there is an unfinished store of this name: go on with it, "
+                    "or begin anew",
+                    UnfinishedPath(path).string()));
+  return Open(path, light_field, plan, std::move(lock));
+}
+
+Result<PackedStoreWriter> PackedStoreWriter::Resume(const fs::path& path,
+                                                    const LightField& light_field,
+                                                    const PackedStorePlan& plan,
+                                                    std::optional<FileLock> lock) {
+  return Open(path, light_field, plan, std::move(lock));
+}
+
+Result<FileLock> PackedStoreWriter::Lock(const fs::path& path) {
+  return FileLock::Take(fs::path(path) += ".lock");
+}
+
+bool PackedStoreWriter::IsUnfinished(const fs::path& path) {
+  std::error_code error;
+  return fs::exists(UnfinishedPath(path), error);
+}
+
+void PackedStoreWriter::RemoveUnfinished(const fs::path& path, const FileLock& /*lock*/) {
+  RemoveUnfinishedFiles(path);
+}
+
+uint64_t PackedStoreWriter::SourceBytes(LfImageId id) const {
+  return state_->source_bytes[id.value];
+}
+
+bool PackedStoreWriter::Has(LfImageId id) const {
+  const std::lock_guard lock(state_->mutex);
+  return state_->has[id.value];
+}
+
+Result<void> PackedStoreWriter::Add(LfImageId id, const CodedImage& image) {
+  const std::lock_guard lock(state_->mutex);
+  State& state = *state_;
+  if (state.failed) return *state.failed;
+  LF_CHECK(id.value < state.has.size() && !state.has[id.value]);
+  LF_CHECK(!image.rect.empty() && !image.code.empty());
+  if (const Result<void> inserted = state.Insert(id, image); !inserted)
+    return state.Failed(inserted.error());
+  state.has[id.value] = true;
+  if (state.batch_size < kImagesPerBatch &&
+      std::chrono::steady_clock::now() - state.batch_begin < kBatchAge)
+    return {};
+  if (const Result<void> committed = state.CommitBatch(); !committed)
+    return state.Failed(committed.error());
+  return {};
+}
+
+Result<void> PackedStoreWriter::Commit() {
+  const std::lock_guard lock(state_->mutex);
+  if (state_->failed) return *state_->failed;
+  if (const Result<void> committed = state_->CommitBatch(); !committed)
+    return state_->Failed(committed.error());
+  return {};
+}
+
+Result<void> PackedStoreWriter::Finish() {
+  LF_RETURN_IF_ERROR(Commit());
+  const std::lock_guard lock(state_->mutex);
+  LF_RETURN_IF_ERROR(state_->FinishFiles());
+  state_->lock->Remove();
+  return {};
+}
+
+void PackedStoreWriter::Abandon() {
+  const std::lock_guard lock(state_->mutex);
+  state_->Close();
+  RemoveUnfinishedFiles(state_->path);
+  state_->lock->Remove();
+}
+
+Result<void> CheckIsOfPlan(const fs::path& path, const LightField& light_field,
+                           const PackedStorePlan& plan, bool any_shards) {
+  LF_ASSIGN_OR_RETURN(Database database, OpenStoreDatabase(path));
+  LF_ASSIGN_OR_RETURN(const Settings settings, Settings::Read(database, kStoreFormat.name));
+  if (const auto difference = FirstDifference(settings, light_field, plan, any_shards))
+    return InputError(fmt::format("{}: was made with {}", path.string(), *difference));
+  return {};
+}
+
+}  // namespace lf

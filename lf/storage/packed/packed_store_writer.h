@@ -1,0 +1,112 @@
+// Writes a packed store in batches over hours. Committed batches survive however the program ends,
+// and the next program resumes from them.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lf/core/file_lock.h"
+#include "lf/core/geometry.h"
+#include "lf/core/ids.h"
+#include "lf/core/result.h"
+#include "lf/light_field/model/light_field.h"
+#include "lf/light_field/model/light_field_identity.h"
+#include "lf/storage/packed/packed_store_file.h"
+
+namespace lf {
+
+// Everything that determines a store. An unfinished store is resumed only with an equal plan.
+struct PackedStorePlan {
+  LightFieldIdentity whole;         // the light field that the LF images are from
+  std::vector<uint32_t> whole_ids;  // id of each LF image in `whole`; empty: 0, 1, 2, ...
+  std::vector<PixelRect> rects;     // wanted pixels of each LF image; empty: all pixels
+  std::string codec;                // all settings of the encoder, in words
+  std::optional<DisplayLevels> display_levels = {};  // of images encoded as kDisplay16
+  // 0: one file. Otherwise the encoded images are in STORE-0001.lfs, STORE-0002.lfs, ... of about
+  // this size, beside STORE.lfs, which has everything else.
+  uint64_t shard_bytes = 0;
+  // These are for information only. They may differ when an unfinished store is resumed.
+  std::string source;   // LIGHTFIELD or packages, as the user gave them
+  std::string version;  // of the program
+};
+
+// One encoded LF image, to be added.
+struct CodedImage {
+  StoredValues values = StoredValues::kUint8;
+  PixelRect rect;    // pixels of the LF image that are encoded; not empty
+  std::string code;  // encoded colours, or mosaic (pixels/codec/lf_image_codec.h)
+  std::string mask;  // encoded grey picture of equal size: with 8 bits, 0 is masked; with 16 bits,
+                     // opacities (storage/load/opacities.h); empty: there is none
+  uint64_t source_bytes = 0;  // size of the files that it was made from; for information
+};
+
+// Writes a packed store. Until Finish() its file is STORE.lfs.unfinished, which no reader accepts
+// as a store; its shards have similar names. An older store of the final name stays unchanged until
+// then. The lock STORE.lfs.lock allows one writer at a time.
+class PackedStoreWriter {
+ public:
+  // Takes the lock, for a caller that checks existing files before it writes. The caller passes the
+  // lock to Create() or Resume(). kOutput: another writer holds the lock, or it cannot be created.
+  static Result<FileLock> Lock(const std::filesystem::path& path);
+
+  // Begins a new store of the LF images of `light_field`, which has at least one LF image and need
+  // not outlive the call. Takes the lock if `lock` is not given. kUsage: there is an unfinished
+  // store, or a file with the name of a shard that does not belong to the store that is replaced.
+  // kOutput: the disk fails, or another writer holds the lock.
+  static Result<PackedStoreWriter> Create(const std::filesystem::path& path,
+                                          const LightField& light_field,
+                                          const PackedStorePlan& plan,
+                                          std::optional<FileLock> lock = {});
+  // Resumes an unfinished store. If there is none, or it has no tables yet, begins a new one.
+  // kUsage: the unfinished store is of other images or settings (the message names the first
+  // difference). kInput: it is no packed store, or damaged. kOutput as Create().
+  static Result<PackedStoreWriter> Resume(const std::filesystem::path& path,
+                                          const LightField& light_field,
+                                          const PackedStorePlan& plan,
+                                          std::optional<FileLock> lock = {});
+  static bool IsUnfinished(const std::filesystem::path& path);
+  // Removes an unfinished store if there is one.
+  static void RemoveUnfinished(const std::filesystem::path& path, const FileLock& lock);
+
+  PackedStoreWriter(PackedStoreWriter&&) noexcept;
+  PackedStoreWriter& operator=(PackedStoreWriter&&) noexcept;
+  ~PackedStoreWriter();  // drops everything that is not committed
+
+  bool Has(LfImageId id) const;
+  // Returns CodedImage::source_bytes of an LF image that the store had when it was opened; 0 for
+  // others.
+  uint64_t SourceBytes(LfImageId id) const;
+
+  // Adds an LF image that the store does not have. Commits if 64 LF images were added since the
+  // last commit, or if the first of these was added 2 s ago. May be called by many threads at the
+  // same time. kOutput: the disk fails; no more can be added.
+  Result<void> Add(LfImageId id, const CodedImage& image);
+  // Commits the LF images that were added, so that they are on the disk permanently.
+  Result<void> Commit();
+  // Commits, marks the store as complete and gives it its final name, replacing an older store.
+  // Shards are renamed first. LF images that were not added are listed without an encoded image.
+  // Nothing may be called afterwards.
+  Result<void> Finish();
+  // Removes all that was written. Called instead of Finish().
+  void Abandon();
+
+ private:
+  struct State;
+  explicit PackedStoreWriter(std::unique_ptr<State> state);
+  static Result<PackedStoreWriter> Open(const std::filesystem::path& path,
+                                        const LightField& light_field, const PackedStorePlan& plan,
+                                        std::optional<FileLock> lock);
+  std::unique_ptr<State> state_;
+};
+
+// Checks that a complete store matches this plan in everything but the encoded images.
+//   any_shards  accept shards of any size
+// kInput: it differs (the message names the first difference), or cannot be read.
+Result<void> CheckIsOfPlan(const std::filesystem::path& path, const LightField& light_field,
+                           const PackedStorePlan& plan, bool any_shards);
+
+}  // namespace lf

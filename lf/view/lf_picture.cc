@@ -1,0 +1,67 @@
+#include "lf/view/lf_picture.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "lf/light_field/model/radiance.h"
+
+namespace lf {
+namespace {
+
+constexpr uint8_t kMaskedGrey = 128;
+constexpr int kSteps = 8192;  // of linear light; the darkest steps are a twelfth of a display value
+
+uint8_t DisplayValue(double linear) {
+  static const std::vector<uint8_t> values = [] {
+    std::vector<uint8_t> table(kSteps + 1);
+    for (int i = 0; i <= kSteps; ++i)
+      table[i] =
+          static_cast<uint8_t>(std::lround(255 * SrgbFromLinear(static_cast<double>(i) / kSteps)));
+    return table;
+  }();
+  return values[static_cast<size_t>(std::clamp(linear, 0.0, 1.0) * kSteps + 0.5)];
+}
+
+// Returns sums over the unmasked pixels of a square: R, G, B, and their number.
+std::array<double, 4> SumOf(const LfPixels& pixels, const PixelRect& square) {
+  std::array<double, 4> sum = {};
+  for (int y = square.y_begin; y < square.y_end; ++y)
+    for (int x = square.x_begin; x < square.x_end; ++x)
+      for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane)
+        sum[lane] += pixels.radiance.at(x, y, lane);
+  return sum;
+}
+
+}  // namespace
+
+Result<Image<uint8_t>> LfPicture(const LightField& light_field, const LfImageStore& store,
+                                 LfImageId id, int max_side_px) {
+  const Intrinsics& k = light_field.Camera(id).intrinsics;
+  const PixelRect whole = {0, 0, k.width_px, k.height_px};
+  LF_ASSIGN_OR_RETURN(
+      const LfPixels pixels,
+      LoadWithoutThrowing(store, id, whole, light_field.ImagePath(id).string(), LfPixels()));
+  const int factor =
+      std::max(1, (std::max(k.width_px, k.height_px) + max_side_px - 1) / std::max(1, max_side_px));
+  const RadianceEncoding& encoding = light_field.encoding;
+  Image<uint8_t> picture((k.width_px + factor - 1) / factor, (k.height_px + factor - 1) / factor, 3,
+                         kMaskedGrey);
+  for (int y = 0; y < picture.height(); ++y)
+    for (int x = 0; x < picture.width(); ++x) {
+      const PixelRect square =
+          Intersection(pixels.rect, {x * factor, y * factor, (x + 1) * factor, (y + 1) * factor});
+      const std::array<double, 4> sum = SumOf(pixels, square);
+      if (!(sum[3] > 0)) continue;
+      Vec3 colour;
+      for (int c = 0; c < 3; ++c)
+        colour[c] =
+            (sum[c] / sum[3] - encoding.pedestal) / encoding.Scale() * encoding.white_balance[c];
+      const Vec3 developed = encoding.linear_srgb_from_camera * colour;
+      for (int c = 0; c < 3; ++c) picture.at(x, y, c) = DisplayValue(developed[c]);
+    }
+  return picture;
+}
+
+}  // namespace lf

@@ -1,0 +1,30 @@
+// Writes light field, path and selection as plain text for plotting scripts (thesis 4.5).
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lf/camera/path/camera_path.h"
+#include "lf/core/ids.h"
+#include "lf/core/result.h"
+#include "lf/light_field/model/light_field.h"
+#include "lf/view/frame_use.h"
+
+namespace lf {
+
+// Writes lines of words. Numbers are in world units, with as many digits as restore the same bits:
+//
+//   lf_camera ID X Y Z                 every LF camera, ID from 0
+//   render_camera FRAME X Y Z          every requested frame
+//   collected FRAME ID SHARE           LF cameras that the frame uses, by ascending ID, and the
+//                                      share of the LF image's pixels in its rectangle
+//
+//   emit  receives the text in parts; its first error ends the function
+Result<void> WriteSceneText(const LightField& light_field, const CameraPath& path,
+                            const std::vector<FrameId>& frames, uint64_t seed,
+                            const NeedsOptions& options, ThreadPool& pool,
+                            const std::function<Result<void>(const std::string&)>& emit);
+
+}  // namespace lf
