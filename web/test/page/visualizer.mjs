@@ -99,12 +99,15 @@ export async function openPage(browser, address, options = {}) {
 }
 
 // Waits until an expression of the page's `app` (its state and view) is true. The page's policy
-// forbids code from strings, so the expression is evaluated from outside.
-export async function until(page, condition) {
+// forbids code from strings, so the expression is evaluated from outside. `act`, if given, is
+// repeated about twice a second until then.
+export async function until(page, condition, act = null) {
   const expression = `(() => { const app = window.lfvisualizer; return Boolean(${condition}); })()`;
-  for (const end = Date.now() + 240_000; Date.now() < end; await page.waitForTimeout(30))
+  for (const end = Date.now() + 240_000; Date.now() < end; await page.waitForTimeout(act ? 500 : 30)) {
     if (await page.evaluate(expression)) return;
-  throw new Error(`not within a minute: ${condition}`);
+    if (act) await act();
+  }
+  throw new Error(`not within four minutes: ${condition}`);
 }
 
 // Serves an exported page from a plain web server.
