@@ -97,7 +97,7 @@ class ProgramOptionsTest(ProgramTestCase):
                 match = re.match(SCANNED, line)
                 value = listed.get(f"{name} {match['name']}")
                 if value is not None and value not in MEANS_SOMETHING:
-                    # "as recorded, or black" is listed by its first word.
+                    # "as recorded, else black" is listed by its first word.
                     self.assertEqual((match["default"] or "").split(" ")[0], value, line)
 
     def test_others_are_refused_with_a_hint(self):

@@ -81,30 +81,30 @@ std::string StopsText(const std::vector<double>& stops) {
 
 void ExposureArguments::AddTo(CLI::App& app) {
   OptionGroup picture(app, kPictureGroup);
-  CLI::Option* const option = picture.AddFlag(
-      "--match-exposure", match,
-      "Make the LF images equally bright\n"
-      "Estimates lf_gain of each image and channel from what neighbouring images both show. It "
-      "replaces the lf_gain of LIGHTFIELD. Without -o only the report says it. See doc/inputs.md.");
-  picture
-      .AddFlag("--vignetting", vignetting,
-               "Correct how lenses darken the corners\n"
-               "Also estimates lf_vignetting of each camera: the light that its lens loses towards "
-               "the corners.")
-      ->needs(option);
+  CLI::Option* const option =
+      picture.AddFlag("--match-exposure", match,
+                      "Make the LF images equally bright\n"
+                      "Estimates lf_gain of each image and channel from places that neighbouring "
+                      "images both show. The result replaces lf_gain in the written "
+                      "transforms.json; without -o it is only reported. See doc/inputs.md.");
   picture
       .AddFlag(
-          "--gain-from-exif", gain_from_exif,
-          "Take the exposure of each image from its file\n"
-          "Writes lf_gain of each image from the exposure time, f-number and ISO sensitivity in "
-          "its file. It replaces the lf_gain of LIGHTFIELD. All images get the exposure of the "
-          "median one.")
+          "--vignetting", vignetting,
+          "Correct the darkening towards the corners\n"
+          "Also estimates lf_vignetting of each lens: how its light falls off towards the corners.")
+      ->needs(option);
+  picture
+      .AddFlag("--gain-from-exif", gain_from_exif,
+               "Take the exposure of each image from its file\n"
+               "Computes lf_gain of each image from the exposure time, f-number and ISO "
+               "sensitivity in its file (Exif data), relative to the image of median exposure. The "
+               "result replaces the lf_gain of LIGHTFIELD.")
       ->excludes(option);
-  picture.AddFlag("--mask-clipped", mask_clipped,
-                  "Merge images of one pose with different exposures\n"
-                  "Writes lf_clipped \"mask\": images of one pose with different exposures (by "
-                  "lf_gain) are one picture, and each pixel comes from the brightest image that "
-                  "does not clip it.");
+  picture.AddFlag(
+      "--mask-clipped", mask_clipped,
+      "Merge images of one pose with different exposures\n"
+      "Writes lf_clipped \"mask\". Of images with the same pose and different exposures (lf_gain), "
+      "each pixel is then taken from the brightest image that does not clip it.");
 }
 
 Result<std::optional<ExifGains>> StateBrackets(const ExposureArguments& arguments, ThreadPool& pool,

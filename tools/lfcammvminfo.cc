@@ -22,9 +22,9 @@ constexpr lf::HelpTexts kHelp = {
   lfcammvminfo path.yaml --json | jq '.cameras[].f_number')",
     .details =
         R"(Lengths that end in _w are world units. The others are computed from them by unit_m, the metres per
-world unit. The depth of field holds what is blurred by less than one element of the sensor plate;
-it is measured along the optical axis. forward and up are the camera's axes in the world. If the
-path has no error the exit code is 0: the program also checks a path.)",
+world unit. The depth of field is the range of distances along the optical axis at which the blur is
+smaller than one element of the sensor plate. forward and up are the camera's axes in the world. The
+program also checks the path: the exit code is 0 if the path has no error.)",
 };
 
 struct Arguments {
@@ -66,7 +66,7 @@ int main(int argc, char** argv) {
            "Camera path\n"
            "doc/formats/path.md describes the file.")
       ->required();
-  input.Add("--unit-m METRES", arguments.unit_m, "Metres per world unit, if the path does not say")
+  input.Add("--unit-m METRES", arguments.unit_m, "Metres per world unit, if not in PATH")
       ->check(CLI::Range(1e-9, 1e9));
   output.Add("--frame N", arguments.frame, "Only this frame, counted from 1 (all)")
       ->check(CLI::PositiveNumber);

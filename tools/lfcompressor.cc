@@ -23,23 +23,24 @@ namespace {
 
 constexpr lf::HelpTexts kHelp = {
     .summary =
-        "Compresses the LF images of a light field, or what packages need of it, into a packed "
+        "Compresses the LF images of a light field, or the part that packages need, into a packed "
         "store.",
     .usage = R"(  lfcompressor LIGHTFIELD -o STORE.lfs [OPTIONS]
   lfcompressor PACKAGE... -o STORE.lfs [OPTIONS])",
     .examples = R"(  lfcompressor capture/ -o capture.lfs                        # about 45 dB
-  lfcompressor capture/ -o capture.lfs --profile lossless     # every bit
+  lfcompressor capture/ -o capture.lfs --profile lossless     # lossless
   lfcompressor capture/ -o capture.lfs --target-psnr 42 --verify
-  lfcompressor packages/package-*.lfp -o film.lfs             # what a film needs, and no more
+  lfcompressor packages/package-*.lfp -o film.lfs             # only the part that a film needs
   lfrenderer capture.lfs path.yaml -o frames                  # a store is a LIGHTFIELD
   lfrenderer packages/package-0000.lfp --lightfield film.lfs -o frames)",
     .details =
-        R"(STORE.lfs holds the LF images, encoded one by one, and their calibration. It is one file that every
-program takes as LIGHTFIELD (doc/formats/packed_store.md). Until it is whole its name is
-STORE.lfs.unfinished. Ctrl-C, kill -9 or a crash lose two seconds of work, and --resume continues.
+        R"(STORE.lfs contains the LF images, encoded one by one, and their calibration. It is one file that
+every program accepts as LIGHTFIELD (doc/formats/packed_store.md). Until it is complete its name is
+STORE.lfs.unfinished. Ctrl-C, kill -9 or a crash lose two seconds of work; --resume continues.
 
-LF images that are missing or broken have no encoded image, and the exit code is then 6. --resume
-tries them again while the store is unfinished. A finished store is made anew by --overwrite.)",
+LF images that are missing or broken are left out of the store, and the exit code is then 6. While
+the store is unfinished, --resume tries to read them again. To add them to a finished store, make it
+again with --overwrite.)",
 };
 
 struct Arguments {
@@ -57,19 +58,19 @@ void AddInput(CLI::App& app, Arguments& a) {
   input
       .Add("INPUT", a.inputs,
            "LIGHTFIELD, or PACKAGE... of lfpreprocessor\n"
-           "LIGHTFIELD: a folder or file of any supported kind\n"
-           "PACKAGE: a file that lfpreprocessor has written")
+           "LIGHTFIELD: a light field of any supported kind, except a packed store\n"
+           "PACKAGE: a file that lfpreprocessor has written (NAME.lfp)")
       ->required()
       ->check(lf::NotEmpty());
   input
       .Add("--lightfield LIGHTFIELD", a.light_field.path,
-           "With packages: the place of their LF images\n"
+           "With packages: the light field of their LF images\n"
            "Needed if the light field was moved after the packages were made.")
       ->check(lf::NotEmpty());
-  input.AddFlag(
-      "--needed-pixels", a.needed_pixels,
-      "With packages: store only the needed pixels\n"
-      "Each LF image is stored only within the bounds of the pixels that the packages take.");
+  input.AddFlag("--needed-pixels", a.needed_pixels,
+                "With packages: store only the needed pixels\n"
+                "Of each LF image, only the smallest rectangle is stored that contains the pixels "
+                "that the packages need.");
   a.light_field.AddOptionsTo(app);
   a.allow_missing.AddTo(app, "the LF images to be encoded");
 }
@@ -83,53 +84,57 @@ void AddOutput(CLI::App& app, Arguments& a) {
       .Add("--shard-size SIZE", a.shard_size,
            "Split the store into files of about this size\n"
            "The encoded images are written into files beside STORE.lfs, each of about SIZE, such "
-           "as 4G.")
+           "as 4G. STORE.lfs itself is then small.")
       ->check(lf::NotEmpty());
 }
 
 void AddQuality(CLI::App& app, Arguments& a) {
   lf::OptionGroup quality(app, lf::kQualityGroup);
-  quality.AddChoice("--profile", a.profile, {"default", "thesis", "lossless"},
-                    "How LF images are encoded\n"
-                    "default: wavelets and dead-zone quantisers\n"
-                    "thesis: Haar wavelets, one threshold, one range\n"
-                    "lossless: every bit is kept");
+  quality.AddChoice(
+      "--profile", a.profile, {"default", "thesis", "lossless"},
+      "How LF images are encoded\n"
+      "default: wavelets with a dead-zone quantiser for each subband\n"
+      "thesis: Haar wavelets with one threshold and one range of values for all subbands\n"
+      "lossless: the decoded LF images are bit-identical");
   quality
       .Add("--levels N", a.levels,
            "Levels of the wavelet transform (by the profile)\n"
-           "0: 4 levels; with --profile thesis 1 level.")
+           "0: 4 levels; 1 level with --profile thesis.")
       ->check(CLI::Range(0, 5));
   auto* threshold =
       quality
           .Add("--threshold X", a.threshold,
                "Drop details below this (by the profile)\n"
-               "In steps of 256 greys. Unless given it is 3, and with --profile thesis 8.")
+               "Wavelet coefficients smaller than X become 0. The unit is a step of 256 greys. If "
+               "the option is not given, X is 3, or 8 with --profile thesis.")
           ->check(CLI::Range(0., 255.));
   quality
       .Add("--target-psnr DB", a.target_psnr,
            "Find the threshold for this quality (off)\n"
-           "The decoded LF images shall have this peak signal-to-noise ratio, in dB.")
+           "The threshold is chosen so that the decoded LF images have this peak signal-to-noise "
+           "ratio, in dB.")
       ->check(CLI::Range(10., 90.))
       ->excludes(threshold);
   quality.Add("--quantizer N", a.quantizer,
-              "With --profile thesis: values of a coefficient\n"
-              "8bit: 256 values, a byte each. With more values each takes two bytes.");
+              "With --profile thesis: values per coefficient\n"
+              "8bit: 256 values, one byte per coefficient. More than 256 values take two bytes.");
 }
 
 void AddRunning(CLI::App& app, Arguments& a) {
   lf::OptionGroup running(app, lf::kRunningGroup);
-  auto* resume = running.AddFlag("--resume", a.resume,
-                                 "Continue an unfinished store\n"
-                                 "The LF images, options and files must be the same.");
+  auto* resume = running.AddFlag(
+      "--resume", a.resume,
+      "Continue an unfinished store\n"
+      "The LF images, their files and the options must be those that the store was begun with.");
   running
       .AddFlag("--overwrite", a.overwrite,
                "Replace an existing store\n"
-               "No other file is replaced.")
+               "A file that is no packed store is never replaced.")
       ->excludes(resume);
   running.AddFlag("--verify", a.verify,
                   "Check the store after writing it\n"
-                  "Compares the calibration, and reads all encoded images back, compares them and "
-                  "decodes them. A store that exists already is only checked.");
+                  "Compares the calibration, reads all encoded images back, compares and decodes "
+                  "them. If the store exists already, it is only checked.");
 }
 
 void AddOptions(CLI::App& app, Arguments& a) {
@@ -226,8 +231,8 @@ int main(int argc, char** argv) {
   AddOptions(program.app(), arguments);
   program.AddCommonOptions({.threads = true,
                             .strict = "Stop at an LF image that cannot be read\n"
-                                      "Otherwise it is left out.",
-                            .json = "Print the report as JSON",
+                                      "Without this option it is left out.",
+                            .json = "Print the report to stdout as JSON",
                             .progress = true,
                             .verbose = true,
                             .quiet = true});

@@ -25,9 +25,9 @@ constexpr lf::HelpTexts kHelp = {
   lfexample capture/transforms.json -o orbit.yaml --move orbit --camera 364
   lfexample capture/ -o path.yaml --focus 8.12)",
     .details =
-        R"(The path starts at an LF camera and focuses on what most of its image shows. The program finds that
-by comparing the image with the images around it, or else by the points of a COLMAP model. A
-warning says where this is not sure, and what to try. Render the path with:
+        R"(The path starts at an LF camera and focuses on the depth that most of its image shows. The program
+finds this depth by comparing the image with the images around it; if that fails, from the points of
+a COLMAP model. A warning says when the depth is uncertain, and what to try. Render the path with:
   lfrenderer LIGHTFIELD PATH.yaml -o DIR)",
 };
 
@@ -125,14 +125,14 @@ int main(int argc, char** argv) {
   output_group.Add("-o,--output PATH.yaml", output, "Camera path to write")->required();
   picture.Add("--camera NUMBER|NAME", camera,
               "LF camera to start at (near the middle)\n"
-              "Its number from 0, or the name of its image. -1: the one nearest to the middle that "
-              "is level and can be read.");
+              "NUMBER counts from 0; NAME is the name of its image. -1: the LF camera nearest to "
+              "the middle of the capture that is level and whose image can be read.");
   picture.AddChoice("--move", move, {"static", "orbit", "dolly", "focus-pull"},
                     "Movement of the camera");
   picture
       .Add("--focus X", focus,
            "Focus distance in world units (automatic)\n"
-           "0: the program finds the distance by itself.")
+           "0: the program finds the distance in the LF images.")
       ->check(CLI::NonNegativeNumber);
   program.AddCommonOptions({.threads = true, .verbose = true, .quiet = true});
 

@@ -21,8 +21,8 @@ namespace {
 
 constexpr lf::HelpTexts kHelp = {
     .summary =
-        "Reports what a light field is and what looks wrong in it, and writes it as the native "
-        "transforms.json.",
+        "Reports what a light field contains and what looks wrong in it, and converts its "
+        "calibration to a transforms.json.",
     .usage = "  lfimport LIGHTFIELD [-o DIR] [OPTIONS]",
     .examples =
         R"(  lfimport capture/                                   # only the report: is it complete?
@@ -33,14 +33,14 @@ constexpr lf::HelpTexts kHelp = {
   lfimport brackets/ -o hdr --gain-from-exif --mask-clipped
   lfimport capture/ --json --distance 1.5 | jq .density)",
     .details =
-        R"(The program writes DIR/transforms.json, which names the images where they lie; nothing is copied.
-If DIR is LIGHTFIELD itself and has such a file already, the calibration that it was made from is
-read again. A transforms.json that lfimport did not write, or that was changed since, is replaced
-only with --force.
+        R"(With -o the program writes DIR/transforms.json, which refers to the image files where they are;
+images are not copied. If DIR is LIGHTFIELD itself and already contains a transforms.json written by
+lfimport, the program reads the calibration from which that file was made. A transforms.json that
+lfimport did not write, or that was changed since, is replaced only with --force.
 
-Exit code 6: the work is done, but more images are missing or broken than --allow-missing accepts.
-With --strict one such image is an error, and nothing is written. The report is described in
-doc/formats/import_report.md.)",
+Exit code 6: the report and the file are written, but more images are missing or broken than
+--allow-missing accepts. With --strict one such image is an error, and nothing is written.
+doc/formats/import_report.md describes the report.)",
 };
 
 struct Arguments {
@@ -59,55 +59,56 @@ void AddInput(CLI::App& app, Arguments& a) {
   input
       .Add("--exclude NAMES", a.exclude,
            "LF images to leave out: 'IMG_01*,x.jpg' or @FILE\n"
-           "Names or patterns (* ? [a-z]) with commas between, or @FILE with one per line. The "
-           "option may be repeated.")
+           "NAMES: names or patterns (* ? [a-z]) separated by commas, or @FILE, a file with one "
+           "name or pattern per line. The option may be repeated.")
       ->expected(1)
       ->take_all();
-  input.AddChoice(
-      "--bayer", a.bayer, {"RGGB", "BGGR", "GRBG", "GBRG"},
-      "The images are mosaics of this pattern\n"
-      "This holds whatever the calibration or camera raw files say. The pattern is that "
-      "of the upper left 2x2 pixels, row by row.");
+  input.AddChoice("--bayer", a.bayer, {"RGGB", "BGGR", "GRBG", "GBRG"},
+                  "The images are mosaics with this Bayer pattern\n"
+                  "The pattern of the upper left 2x2 pixels, row by row. It overrides the "
+                  "calibration and the camera raw files.");
   input.AddChoice("--check", a.check, {"none", "headers", "pixels"},
-                  "How the LF images are checked\n"
-                  "pixels: all pixels are read, which is slow");
+                  "How the image files are checked\n"
+                  "none: not at all\n"
+                  "headers: the header of each file is read\n"
+                  "pixels: all pixels are decoded, which is slow");
   a.allow_missing.AddTo(app, "the LF images of the light field");
 }
 
 void AddOutput(CLI::App& app, Arguments& a) {
   lf::OptionGroup output(app, lf::kOutputGroup);
   output.Add("-o,--output DIR", a.output, "Folder of the transforms.json to write");
-  output.AddFlag("--force", a.force, "Replace a transforms.json that lfimport did not write");
+  output.AddFlag("--force", a.force, "Replace a transforms.json not written by lfimport");
   output.Add(
       "--transform FILE|MATRIX", a.transform,
       "Rotate, scale and move the world\n"
-      "FILE holds a 4x4 matrix M; MATRIX is its 16 numbers in one word. new = M * old, where M "
-      "consists of a rotation, one scale and a translation.");
+      "FILE contains a 4x4 matrix M; MATRIX is its 16 numbers, quoted as one argument. M, which "
+      "consists of a rotation, one scale and a translation, maps old to new world coordinates.");
   output.Add("--scale X", a.scale, "Multiply all lengths, after --transform")
       ->check(CLI::Range(1e-9, 1e9));
   output
       .Add("--unit-m METRES", a.unit_m,
-           "Metres per world unit (as the light field says)\n"
-           "The world units are those after --transform and --scale.")
+           "Metres per world unit (as recorded)\n"
+           "The unit of the written light field, after --transform and --scale.")
       ->check(CLI::Range(0., 1e9));
   output
       .Add("--distance X", a.distance,
-           "Distance of the scene, for the density (by the file)\n"
-           "In world units. 0: the distance follows from the calibration.")
+           "Distance to the scene, to judge the density (as recorded)\n"
+           "In world units. 0: the distance is taken from the calibration.")
       ->check(CLI::NonNegativeNumber);
 }
 
 void AddNamedImages(CLI::App& app, Arguments& a) {
   lf::OptionGroup named(app, "Images named by row and column (doc/formats/stanford.md)");
-  named.Add("--pitch P|PX,PY", a.pitch, "World units between columns and rows");
+  named.Add("--pitch P|PX,PY", a.pitch, "Distance between columns and rows, in world units");
   named
       .Add("--plane-distance X", a.plane_distance,
-           "Depth of the plane that stands still (none)\n"
-           "A rectified slab has a plane that stands still in all images. 0: the cameras are "
-           "parallel.")
+           "Depth of the plane without parallax (none)\n"
+           "In world units, for a rectified slab: one plane of the scene is at the same pixels in "
+           "all images. 0: the images are not rectified; the cameras look in parallel directions.")
       ->check(CLI::NonNegativeNumber);
-  named.AddFlag("--flip-x", a.flip_x, "Columns count to the left");
-  named.AddFlag("--flip-y", a.flip_y, "Rows count upwards");
+  named.AddFlag("--flip-x", a.flip_x, "Columns are counted from right to left");
+  named.AddFlag("--flip-y", a.flip_y, "Rows are counted from bottom to top");
 }
 
 void AddOptions(CLI::App& app, Arguments& a) {
@@ -230,7 +231,7 @@ int main(int argc, char** argv) {
   program.AddCommonOptions({.threads = true,
                             .strict = "Stop at a missing or broken LF image\n"
                                       "Nothing is written then.",
-                            .json = "Print the report as JSON, with all digits",
+                            .json = "Print the report to stdout as JSON, with all digits",
                             .progress = true,
                             .verbose = true,
                             .quiet = true});

@@ -27,12 +27,12 @@ constexpr lf::HelpTexts kHelp = {
   lfmerge frames/partial/shards -o frames
   lfmerge a/partial/shards b/partial/shards -o frames --video film.mp4
   lfrenderer capture/ path.yaml -o frames --keep-plates            # plates beside the frames
-  lfmerge frames/*.plate -o again --format png16                   # developed again)",
+  lfmerge frames/*.plate -o again --format png16                   # in another format)",
     .details =
-        R"(The frames are those of a render that was not divided, to the bit. The order of the plates does not
-matter. Plates are read twice, and first only what they say about themselves: a missing shard is
-reported before the work. The memory is that of one frame. Plates stay where they are. If their
-renders left out LF images that were missing or broken, the exit code is 6.)",
+        R"(The frames are bit-identical to those of a render that was not divided. The order of the plates does
+not matter. The heads of all plates are read first: a missing shard is reported before the plates are
+added. The program needs the memory of one frame. It keeps the plates. The exit code is 6 if the
+renders left out LF images because they were missing or broken.)",
 };
 
 // Returns the LF images of a light field in the folder of the frames, which plates do not know.
@@ -57,16 +57,17 @@ struct Arguments {
 void AddOptions(CLI::App& app, Arguments& a, lf::MergeOptions& options) {
   lf::OptionGroup input(app, lf::kInputGroup), output(app, lf::kOutputGroup);
   lf::OptionGroup running(app, lf::kRunningGroup);
-  input.Add("PLATES", a.plates, "Files or folders of lfrenderer --shard or --keep-plates")
+  input.Add("PLATES", a.plates, "Plates of lfrenderer --shard or --keep-plates, or folders")
       ->required()
       ->check(lf::NotEmpty());
-  a.allow_missing.AddTo(app, "the LF images of the frame that takes most");
+  a.allow_missing.AddTo(app, "the LF images of the frame with the most LF images");
   output.Add("-o,--output DIR", a.output, "Folder of the frames")
       ->required()
       ->check(lf::NotEmpty());
   lf::AddFrameFormat(output, a.format);
   lf::AddFilmFiles(output, a.video, a.no_contact_sheet);
-  running.AddFlag("--resume", options.resume, "Keep the frames in DIR and write the others");
+  running.AddFlag("--resume", options.resume,
+                  "Keep the frames that are in DIR, and write the others");
   running.AddFlag("--overwrite", options.overwrite, "Write all frames anew")->excludes("--resume");
 }
 
@@ -78,7 +79,7 @@ int main(int argc, char** argv) {
   lf::MergeOptions options;
   AddOptions(program.app(), arguments, options);
   program.AddCommonOptions({.threads = true,
-                            .json = "Print the report to stdout",
+                            .json = "Print the report to stdout as JSON",
                             .progress = true,
                             .verbose = true,
                             .quiet = true});

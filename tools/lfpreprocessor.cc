@@ -24,21 +24,21 @@ namespace {
 
 constexpr lf::HelpTexts kHelp = {
     .summary =
-        "Selects what a film needs of a light field, and cuts it into packages for many "
-        "machines.",
+        "Selects the part of a light field that a film needs, and divides it into packages for "
+        "many machines.",
     .usage = R"(  lfpreprocessor LIGHTFIELD PATH.yaml --plan [OPTIONS]
   lfpreprocessor LIGHTFIELD PATH.yaml -o DIR [OPTIONS])",
     .examples =
-        R"(  lfpreprocessor capture/ path.yaml --plan           # what will it take, what will it look like?
+        R"(  lfpreprocessor capture/ path.yaml --plan           # forecast of cost and picture quality
   lfpreprocessor capture/ path.yaml -o packages --packages 4
   lfpreprocessor capture/ path.yaml -o packages --memory 4G
-  lfrenderer packages/package-0000.lfp -o frames     # each on any machine)",
+  lfrenderer packages/package-0000.lfp -o frames     # each package on any machine)",
     .details =
-        R"(DIR receives package-0000.lfp, ... (doc/formats/package.md). A package has the cameras of a section
-of the film, and the LF cameras that its frames need, with their pixel rectangles and their order.
-With --frames 1-4 the names are package-0000-of-frames-1-4.lfp, ..., so that parts of a film may
-share DIR. Frames that are rendered from packages have the same bits as those of lfrenderer
-LIGHTFIELD PATH.yaml.)",
+        R"(The packages are DIR/package-0000.lfp, ... (doc/formats/package.md). A package contains the render
+cameras of a section of the film, and the LF cameras that its frames need, with their pixel
+rectangles and their order. With --frames 1-4 the names are package-0000-of-frames-1-4.lfp, ..., so
+that packages of several parts of a film fit into one DIR. Frames that are rendered from packages are
+bit-identical to those of lfrenderer LIGHTFIELD PATH.yaml.)",
 };
 
 struct Arguments {
@@ -67,64 +67,67 @@ void AddInputAndOutput(CLI::App& app, Arguments& a) {
       ->excludes(plan);
   output.AddFlag("--overwrite", a.overwrite, "Replace the packages in DIR");
   lf::AddFrameRange(output, a.frames);
-  auto* packages = output.Add("--packages N", a.packages, "Number of packages (by --memory)")
-                       ->check(CLI::Range(0, 1'000'000));
+  auto* packages =
+      output.Add("--packages N", a.packages, "Number of packages (chosen to fit --memory)")
+          ->check(CLI::Range(0, 1'000'000));
   output
-      .Add("--frames-per-package N", a.frames_per_package, "Frames of each package (by --memory)")
+      .Add("--frames-per-package N", a.frames_per_package,
+           "Frames per package (chosen to fit --memory)")
       ->check(CLI::Range(0, 1'000'000))
       ->excludes(packages);
-  output.AddChoice("--balance", a.balance, {"rays", "frames"},
-                   "What all packages have equally\n"
-                   "rays: packages have equally many rays, so that they take equally long\n"
-                   "frames: packages have equally many frames");
+  output.AddChoice(
+      "--balance", a.balance, {"rays", "frames"},
+      "Quantity that is equal in all packages\n"
+      "rays: packages have about the same number of rays, and take about the same time\n"
+      "frames: packages have the same number of frames");
 }
 
 void AddRender(CLI::App& app, Arguments& a) {
   lf::OptionGroup picture(app, lf::kPictureGroup);
-  picture.AddChoice("--mode", a.mode, {"collect", "rebin", "hybrid"},
-                    "Mode of the later render\n"
-                    "As --mode of lfrenderer. "
-                    "Decides which LF images and pixels frames need, the forecast, and what "
-                    "lfcompressor --needed-pixels keeps.");
+  picture.AddChoice(
+      "--mode", a.mode, {"collect", "rebin", "hybrid"},
+      "Mode of the later render\n"
+      "Means the same as --mode of lfrenderer. It affects which LF images and pixels the packages "
+      "contain, the forecast, and the pixels that lfcompressor --needed-pixels keeps.");
   picture.AddChoice("--lens-weights", a.lens_weights, {"auto", "none", "area", "hat"},
                     "Lens weights of the later render\n"
-                    "As --lens-weights of lfrenderer.\n"
+                    "Means the same as --lens-weights of lfrenderer.\n"
                     "none, with --mode collect: packages lack the LF cameras beside the lens, and "
-                    "can be rendered without lens weights only.");
+                    "can only be rendered with --lens-weights none.");
   picture.AddChoice("--estimator", a.estimator, {"auto", "nearest", "bilinear"},
                     "Estimator of the later render, for the forecast\n"
-                    "As --estimator of lfrenderer.");
+                    "Means the same as --estimator of lfrenderer.");
 }
 
 void AddQuality(CLI::App& app, Arguments& a) {
   lf::OptionGroup quality(app, lf::kQualityGroup), running(app, lf::kRunningGroup);
   quality
       .Add("--max-images N", a.max_images,
-           "Most LF images that a frame takes (all)\n"
-           "A frame takes the first N of the order.")
+           "Maximum number of LF images per frame (all)\n"
+           "A frame uses the first N LF images of --order.")
       ->check(lf::WholeNumber());
   quality
       .Add("--max-angle DEGREES", a.max_angle_deg,
-           "Largest angle of an LF camera to the frame's axis (all)\n"
-           "A frame takes only LF cameras whose optical axes differ by at most so many degrees "
-           "from its own.")
+           "Largest angle between LF camera and frame axes (no limit)\n"
+           "A frame uses only LF cameras whose optical axis is within DEGREES of its own optical "
+           "axis.")
       ->check(CLI::Range(0., 180.));
   quality.AddChoice("--order", a.order, {"shuffle", "round-robin", "area"},
-                    "Order of the LF images\n"
+                    "Order in which frames take LF images\n"
                     "shuffle: random, by --seed\n"
-                    "round-robin: all frames fill equally\n"
-                    "area: LF images with most rays first");
+                    "round-robin: always an LF image for the frame with the fewest rays\n"
+                    "area: LF images with the most rays first");
   quality
       .Add("--depths NEAR FAR", a.depths,
            "Depths of the scene, for the density report\n"
-           "World units from the LF cameras. Without the option the depths are those that the "
-           "calibration tells, or else those that the LF images tell.")
+           "Distances from the LF cameras, in world units. If the option is not given, the depths "
+           "are taken from the calibration, or, if it has none, estimated from LF images.")
       ->expected(2)
       ->check(CLI::Range(1e-9, 1e12));
   running.Add("--memory SIZE", a.memory,
-              "Memory for the plates of a package\n"
-              "There are as few packages as possible, each with plates that fit into SIZE. The "
-              "forecast assumes the same memory.");
+              "Memory that the render of a package may use\n"
+              "The program makes as few packages as possible, each with plates that fit into SIZE. "
+              "The forecast assumes that lfrenderer has the same --memory.");
 }
 
 void AddOptions(CLI::App& app, Arguments& a) {
@@ -232,8 +235,8 @@ int main(int argc, char** argv) {
   AddOptions(program.app(), arguments);
   program.AddCommonOptions({.threads = true,
                             .seed = "Seed of the order of the LF images",
-                            .strict = "Stop at a missing file that packages need",
-                            .json = "Print the report as JSON",
+                            .strict = "Stop if an image file that packages need is missing",
+                            .json = "Print the report to stdout as JSON",
                             .progress = true,
                             .verbose = true,
                             .quiet = true});

@@ -35,20 +35,22 @@ constexpr lf::HelpTexts kHelp = {
   lfrenderer capture/ path.yaml -o frames --stop-when "noise<=0.002"
   lfrenderer packages/package-*.lfp -o frames            # packages of lfpreprocessor
   lfrenderer capture/ path.yaml -o frames --shard 2/5    # a part of the LF images: see lfmerge
-  lfrenderer capture/ path.yaml -o frames --mode hybrid  # interpolates where the lens got no rays)",
+  lfrenderer capture/ path.yaml -o frames --mode hybrid  # interpolate where no ray passes)",
     .details =
-        R"(DIR receives frame_0001.exr ..., contact_sheet.png and report.json. EXR frames hold linear light
-(R, G, B), the rays of every element (count.R, count.G, count.B; with lens weights the sums of
-their weights) and the coverage. With lens weights they hold the number of LF images of equal
-weight (effective), and with rebinned rays the share that is interpolated. With --background none
-they have alpha (A), with which colours are multiplied; PNG frames then have straight alpha.
+        R"(DIR receives frame_0001.exr ..., contact_sheet.png and report.json. EXR frames contain linear light
+(R, G, B), the number of rays of each element (count.R, count.G, count.B; with lens weights the sum
+of their weights), and the share of channels with a ray (coverage). With lens weights they also
+contain the number of LF images of equal weight that would give the same noise (effective); with
+rebinned rays, the share of light that is interpolated (interpolated). With --background none they
+also have premultiplied alpha (A); PNG frames have straight alpha.
 
-Packages have reports of their own, report-package-0000.json, and a package that is given alone has
-its own contact sheet: many machines may render their packages into one DIR at the same time.
+Each package has its own report, report-package-0000.json, and a package that is rendered alone has
+its own contact sheet. Many machines can therefore render packages into one DIR at the same time.
 
-The state of unfinished frames lies in DIR/partial. Ctrl-C (SIGINT), SIGTERM and SIGHUP write it
-and end the program with exit code 5. SIGUSR1 writes it, and the program continues. A second Ctrl-C
-ends the program at once. --resume gives the same bits as a render without interruption.)",
+The state of unfinished frames is in DIR/partial. On Ctrl-C (SIGINT), SIGTERM and SIGHUP the program
+writes the state and ends with exit code 5. On SIGUSR1 it writes the state and continues. A second
+Ctrl-C ends the program at once. A render that is continued with --resume gives frames that are
+bit-identical to those of a render without interruption.)",
 };
 
 using Progress = std::function<void(const lf::RenderProgress&)>;

@@ -25,7 +25,7 @@
 
 namespace {
 constexpr lf::HelpTexts kHelp = {
-    .summary = "Renders the packages of a film by many processes or machines.",
+    .summary = "Renders the packages of a film in many processes or on many machines.",
     .usage = R"(  lfsubmit PACKAGE... -o DIR [OPTIONS] [-- OPTIONS OF lfrenderer]
   lfsubmit --status DIR | --cancel DIR | --resume DIR | --finish DIR FRAMES)",
     .examples = R"(  lfpreprocessor capture/ path.yaml -o packages --packages 8
@@ -34,19 +34,19 @@ constexpr lf::HelpTexts kHelp = {
   lfsubmit packages/*.lfp -o film --engine slurm --sbatch=--partition=long
   lfsubmit packages/*.lfp -o film -- --format png16 --lens-weights area  # options of lfrenderer
   lfsubmit --status film
-  lfsubmit --finish film 10-20     # these are good enough; the others continue
+  lfsubmit --finish film 10-20     # finish these frames as they are now
   lfsubmit --cancel film           # or Ctrl-C, if the job runs here
   lfsubmit --resume film)",
     .details =
-        R"(Each package is rendered by a process lfrenderer. A process that is interrupted or dies is started
-again and resumes from its checkpoint: frames have the bits of one lfrenderer run. DIR/partial has
-pictures of unfinished frames. DIR/cluster has the job: batch scripts, and a state and a log of
-each package.
+        R"(Each package is rendered by its own lfrenderer process. A process that is interrupted or dies is
+restarted and resumes from its checkpoint. Frames are bit-identical to those of a single lfrenderer
+run. DIR/partial contains pictures of unfinished frames. DIR/cluster contains the job: batch
+scripts, and the state and the log of each package.
 
-A package that fails does not end the others. The exit code is 0 if every frame was written,
-otherwise that of the first package that failed, and the last line names what is missing. It is 6
-if every frame was written, but LF images were left out because they are missing or broken: the
-last line says how many in which packages, and "-- --allow-missing N" accepts them. See
+If a package fails, the others continue. The exit code is 0 if every frame was written; otherwise it
+is that of the first package that failed, and the last line names the missing frames. It is 6 if
+every frame was written, but LF images were left out because they are missing or broken. The last
+line then says how many in which packages; to accept them, add "-- --allow-missing N". See
 doc/cluster.md.)",
 };
 
@@ -140,9 +140,10 @@ int main(int argc, char** argv) {
   lf::SubmitArguments arguments;
   arguments.AddTo(program.app());
   program.AddCommonOptions({.threads = true,
-                            .strict = "For lfrenderer: stop at a broken LF image\n"
-                                      "Otherwise it is left out.",
-                            .json = "Print the status to stdout",
+                            .strict =
+                                "Passed to lfrenderer: stop at a broken LF image\n"
+                                "Without this option a missing or broken LF image is left out.",
+                            .json = "Print the status to stdout as JSON",
                             .progress = true,
                             .verbose = true,
                             .quiet = true});

@@ -32,13 +32,13 @@ constexpr lf::HelpTexts kHelp = {
   lfsynth chart -o cut-out --alpha straight --format png --truth path.yaml)",
     .details =
         R"(Scenes:
-  still-life  glass, mirrors and marbles before strings of lights
-  lights      lights alone at seven depths, on black
+  still-life  glass, mirrors and marbles in front of strings of lights
+  lights      only lights, at seven depths, on black
   chart       flat test charts at known depths and slants
 
-DIR receives images/0000.exr ... and transforms.json. With --truth it also receives
-truth/frame_0001.exr ..., the frames that a real lens would film along a camera path. Lengths are
-metres.)",
+The program writes DIR/images/0000.exr ... and DIR/transforms.json. With --truth it also writes
+DIR/truth/frame_0001.exr ..., the frames that a real lens would film along the camera path. The world
+unit is one metre.)",
 };
 
 struct Arguments {
@@ -62,12 +62,12 @@ void AddOutput(CLI::App& app, Arguments& a) {
                    "png16: 16-bit, linear");
   output.AddFlag("--calibration-only", a.calibration_only, "Write transforms.json without images");
   output.Add("--truth PATH.yaml", a.truth,
-             "Also write ground truth of this camera path\n"
-             "The frames are those of a real thin lens before the scene, in DIR/truth.");
-  output.AddFlag("--overwrite", a.overwrite,
-                 "Replace a light field of others in DIR\n"
-                 "Needed if lfsynth did not write the light field in DIR, or if it was changed "
-                 "since.");
+             "Also write the ground truth of this camera path\n"
+             "The frames in DIR/truth are what a real thin lens films of the scene itself.");
+  output.AddFlag(
+      "--overwrite", a.overwrite,
+      "Replace a light field not written by lfsynth in DIR\n"
+      "Needed if lfsynth did not write the light field in DIR, or if it was changed since.");
 }
 
 void AddRig(CLI::App& app, Arguments& a) {
@@ -85,28 +85,29 @@ void AddRig(CLI::App& app, Arguments& a) {
   picture.Add("--spacing X", a.spacing, "Distance between neighbouring LF cameras, in metres");
   picture.Add("--distance X", a.distance,
               "Distance from the rig to the scene, in metres\n"
-              "From the middle of the rig to the middle of the scene.");
+              "Measured from the middle of the rig to the middle of the scene.");
   picture.Add("--jitter X", a.jitter,
-              "Random error of the poses\n"
-              "Positions are off by this share of the spacing, and directions by so many degrees.");
+              "Largest random change of the poses\n"
+              "Positions change by up to X times the spacing along each axis, directions by up to "
+              "X degrees.");
 }
 
 void AddLens(CLI::App& app, Arguments& a) {
   lf::OptionGroup lens(app, "Lens of the LF cameras");
   lens.Add("--distortion K1,K2,...", a.distortion,
-           "Distortion by OpenCV's model\n"
-           "The parameters are k1,k2,p1,p2,k3,k4,k5,k6, or the first of them.")
+           "Lens distortion of OpenCV's model\n"
+           "The parameters are k1,k2,p1,p2,k3,k4,k5,k6, or only the first few of them.")
       ->delimiter(',')
       ->expected(1, 8)
       ->check(CLI::Range(-1e6, 1e6));
   lens.Add("--fisheye K1,K2,...", a.fisheye,
-           "Fish-eye lens by OpenCV's model\n"
-           "The parameters are k1,k2,k3,k4, or the first of them.")
+           "Fish-eye lens of OpenCV's model\n"
+           "The parameters are k1,k2,k3,k4, or only the first few of them.")
       ->delimiter(',')
       ->expected(1, 4)
       ->check(CLI::Range(-1e6, 1e6))
       ->excludes("--distortion");
-  lens.Add("--fov RADIANS", a.fov, "Ideal fish-eye lens of this omega (none)")
+  lens.Add("--fov RADIANS", a.fov, "Fish-eye lens of the FOV model with this omega (none)")
       ->check(CLI::Range(1e-3, 3.14))
       ->excludes("--distortion")
       ->excludes("--fisheye");
@@ -116,11 +117,11 @@ void AddQuality(CLI::App& app, Arguments& a) {
   lf::OptionGroup picture(app, lf::kPictureGroup), quality(app, lf::kQualityGroup);
   picture.AddChoice("--alpha", a.alpha, {"none", "straight", "premultiplied"},
                     "Alpha of the LF images\n"
-                    "straight, premultiplied: the surfaces of the scene alone, before a "
-                    "transparent background. The frames of --truth have premultiplied alpha.\n"
+                    "straight, premultiplied: only the surfaces of the scene, on a transparent "
+                    "background. The frames of --truth have premultiplied alpha.\n"
                     "none: the whole scene, without alpha");
   picture.AddFlag("--bayer", a.bayer, "Write raw-like 16-bit RGGB mosaics instead");
-  quality.Add("--noise X", a.noise, "With --bayer: standard deviation at radiance 1")
+  quality.Add("--noise X", a.noise, "With --bayer: noise (standard deviation) at radiance 1")
       ->check(CLI::Range(0.0, 10.0));
   quality.Add("--samples N", a.samples, "Rays per pixel at edges (by the scene)")
       ->check(CLI::Range(0, 4096));

@@ -20,23 +20,26 @@
 namespace {
 
 constexpr lf::HelpTexts kHelp = {
-    .summary = "Shows what was captured and what a camera path needs of it.",
+    .summary =
+        "Shows a light field and the part of it that a camera path needs, in the browser or as "
+        "text.",
     .usage = "  lfvisualizer LIGHTFIELD PATH [PACKAGE...] [OPTIONS]",
     .examples =
         R"(  lfvisualizer capture/ path.yaml                   # open the address that it prints
-  lfvisualizer capture/ path.yaml --watch frames    # with the render that lfrenderer writes there
+  lfvisualizer capture/ path.yaml --watch frames    # with the frames that lfrenderer writes there
   lfvisualizer capture/ path.yaml packages/*.lfp --serve 8080
   lfvisualizer capture/ path.yaml --export site     # as files for any web server
   lfvisualizer capture/ path.yaml --text > scene.txt)",
     .details =
-        R"(The page is served to this machine alone, at an address with a secret in it, until Ctrl-C. To see
-it on another machine: ssh -L 8080:127.0.0.1:8080 HOST, with --serve 8080.
+        R"(The page is served until Ctrl-C. It can only be opened on this machine, at an address that contains
+a secret. To see it on another machine, start lfvisualizer with --serve 8080, and there run
+ssh -L 8080:127.0.0.1:8080 HOST, where HOST is the machine that runs lfvisualizer.
 
---text prints lines of words, in world units:
-  lf_camera ID X Y Z              every LF camera, from 0
-  render_camera FRAME X Y Z       every frame asked for
-  collected FRAME ID SHARE        the LF cameras that a frame collects from, and the share of their
-                                  pixels)",
+--text prints lines of words; positions are in world units:
+  lf_camera ID X Y Z              each LF camera; ID counts from 0
+  render_camera FRAME X Y Z       each frame of --frames
+  collected FRAME ID SHARE        each LF camera that the frame collects from, and the share of the
+                                  pixels of its LF image that is read)",
 };
 
 struct Arguments {
@@ -64,10 +67,11 @@ void AddOutput(CLI::App& app, Arguments& a) {
   lf::OptionGroup output(app, lf::kOutputGroup);
   auto* serve = output.Add("--serve PORT", a.port, "Port of the page (any that is free)")
                     ->check(CLI::Range(0, 65535));
-  auto* watch = output.Add("--watch DIR", a.watch, "Show the frames of an lfrenderer as they grow")
-                    ->check(lf::NotEmpty());
+  auto* watch =
+      output.Add("--watch DIR", a.watch, "Show the frames that lfrenderer writes into DIR")
+          ->check(lf::NotEmpty());
   auto* text =
-      output.AddFlag("--text", a.text, "Print LF cameras, render cameras and collected cameras")
+      output.AddFlag("--text", a.text, "Print cameras, and which LF cameras each frame uses")
           ->excludes(serve)
           ->excludes(watch);
   output.Add("--frames RANGE", a.frames, "Only these frames, such as 1-100x2, 7 or 3-5,9 (all)")
@@ -83,8 +87,8 @@ void AddOutput(CLI::App& app, Arguments& a) {
                        ->check(lf::NotEmpty());
   output
       .Add("--export-images N", a.export_images,
-           "Most LF images in the export\n"
-           "They are some of the LF images that frames take.")
+           "Maximum number of LF images in the export\n"
+           "They are chosen from the LF images that the frames use.")
       ->needs(to_files);
   a.allow_missing.AddTo(app, "the LF images in the export")->needs(to_files);
 }
@@ -93,19 +97,19 @@ void AddQuality(CLI::App& app, Arguments& a) {
   lf::OptionGroup picture(app, lf::kPictureGroup), quality(app, lf::kQualityGroup);
   picture.AddChoice("--estimator", a.page.estimator, {"bilinear", "nearest"},
                     "Estimator of the render\n"
-                    "As --estimator of lfrenderer.");
+                    "Means the same as --estimator of lfrenderer.");
   picture.AddChoice("--lens-weights", a.page.lens_weights, {"auto", "none", "area", "hat"},
                     "Lens weights of the render\n"
-                    "As --lens-weights of lfrenderer.");
+                    "Means the same as --lens-weights of lfrenderer.");
   quality
       .Add("--max-images N", a.max_images,
-           "Most LF images that a frame takes (all)\n"
-           "As --max-images of lfrenderer.")
+           "Maximum number of LF images per frame (all)\n"
+           "Means the same as --max-images of lfrenderer.")
       ->check(lf::WholeNumber());
   quality
       .Add("--max-angle DEGREES", a.page.max_angle_deg,
-           "Largest angle of an LF camera to the frame's axis (all)\n"
-           "As --max-angle of lfpreprocessor.")
+           "Largest angle between LF camera and frame axes (no limit)\n"
+           "Means the same as --max-angle of lfrenderer.")
       ->check(CLI::Range(0.0, 180.0));
 }
 

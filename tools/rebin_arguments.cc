@@ -12,23 +12,23 @@ namespace lf {
 namespace {
 
 void AddKeptRays(OptionGroup& group, RebinArguments& a) {
-  group.AddChoice("--kept", a.kept, {"auto", "all", "edges"},
-                  "Rays that are kept in memory\n"
-                  "all: all rays that finished frames ask for\n"
-                  "edges: rays are kept with a probability that grows with the change of the image "
-                  "there\n"
-                  "auto: all if --max-rays has room for them, otherwise edges");
+  group.AddChoice(
+      "--kept", a.kept, {"auto", "all", "edges"},
+      "Rays that are kept in memory\n"
+      "all: all rays that the finished frames need\n"
+      "edges: a random part of them, with more rays where the LF image changes strongly\n"
+      "auto: all if they are at most --max-rays, otherwise edges");
   group
       .Add("--max-rays N", a.max_rays,
-           "Most cells of rays in memory (by --memory)\n"
-           "0: what half of --memory holds, or a quarter with --mode hybrid.")
+           "Most rebinned rays (cells) in memory (as --memory allows)\n"
+           "0: as many as fit into half of --memory, or into a quarter with --mode hybrid.")
       ->check(WholeNumber());
   group.AddChoice("--average-others", a.average_others, {"on", "off"},
-                  "Add rays that are not kept to existing cells\n"
+                  "Average rays that are not kept into existing cells\n"
                   "This gives less noise and takes more time.");
   group.AddChoice("--preview", a.preview, {"auto", "on", "off"},
                   "Keep rays for unfinished pictures of --mode hybrid\n"
-                  "They are kept until enough is collected.\n"
+                  "Such rays are kept until enough LF images are collected.\n"
                   "auto: on for frames that need more than 256 LF images");
 }
 
@@ -37,29 +37,33 @@ void AddProbabilities(OptionGroup& group, RebinArguments& a) {
   group
       .Add("--alpha X", edges.alpha,
            "With edges: probability per change of the image\n"
-           "The change is that of stored values, where black to white is 1.")
+           "With --kept edges, a ray is kept with the probability X * change + --xi. The change of "
+           "the image is measured in stored values, where the step from black to white is 1.")
       ->check(CLI::Range(0.0, kMostAlpha));
-  group.Add("--beta X", edges.beta, "Drop rays where the image changes less than this")
+  group
+      .Add("--beta X", edges.beta,
+           "Drop rays where the image changes less than this\n"
+           "In the unit of --alpha. Needs --kept edges.")
       ->check(CLI::Range(0.0, 1.0));
   group
       .Add("--xi X", edges.xi,
-           "Probability of every other ray\n"
+           "Probability of rays where the image does not change\n"
            "It is added to the probability by --alpha.")
       ->check(CLI::Range(0.0, 1.0));
   group
       .Add("--edge-sigma PIXELS", edges.sigma_px,
-           "Sigma of the smoothing before edges are searched\n"
+           "Sigma of the smoothing before edge detection\n"
            "In LF pixels. 0: no smoothing.")
       ->check(CLI::Range(0.0, kMostSigma_px));
   group
       .Add("--probability-sigma PIXELS", edges.second_sigma_px,
-           "Sigma that smooths the probabilities (not smoothed)\n"
+           "Sigma of the smoothing of probabilities (not smoothed)\n"
            "In LF pixels.")
       ->check(CLI::Range(0.0, kMostSigma_px));
   group
       .Add("--colour-sigma PIXELS", a.options.rebin.colour_sigma_px,
-           "Sigma that smooths the colours of rays (as recorded)\n"
-           "In LF pixels. It reduces noise.")
+           "Sigma of the smoothing of ray colours (not smoothed)\n"
+           "In LF pixels. Smoothing reduces noise.")
       ->check(CLI::Range(0.0, kMostSigma_px));
 }
 
@@ -67,47 +71,52 @@ void AddInterpolation(OptionGroup& group, RebinArguments& a) {
   group
       .Add("--sigma-st X", a.options.query.sigma_st,
            "Width of the kernel on the lens\n"
-           "In distances between LF cameras.")
+           "Standard deviation, in units of the distance between LF cameras.")
       ->check(CLI::Range(0.01, 100.0));
   group
       .Add("--sigma-uv X", a.options.query.sigma_uv,
            "Width of the kernel on the plate\n"
-           "In elements, or in LF pixels where these are larger.")
+           "Standard deviation, in elements, or in LF pixels where these are larger.")
       ->check(CLI::Range(0.05, 8.0));
   group
       .Add("--lens-points N", a.options.query.lens_point_count,
-           "Rays asked for each element (until kernels overlap)\n"
-           "0: so many that their kernels overlap, 8 to 256.")
+           "Rays requested per element (until kernels overlap)\n"
+           "0: as many as are needed for their kernels to overlap, from 8 to 256.")
       ->check(CLI::Range(0, 4096));
   group
       .Add("--lens-sets K", a.options.query.lens_sets,
            "Vary the lens points in squares of K x K elements\n"
-           "The elements of a square have different lens points: noise in place of steps.")
+           "Each element of a square has lens points of its own, which turns visible steps into "
+           "noise.")
       ->check(CLI::Range(1, 8));
   group.AddChoice("--reparameterise", a.reparameterise, {"on", "off"},
-                  "Tell rays apart on each frame's lens and focus plane\n"
-                  "off: rays are told apart on the planes of the slab");
+                  "Where distances between rays are measured\n"
+                  "on: on the lens and the focus plane of each frame\n"
+                  "off: on the planes of the slab");
 }
 
 void AddSlab(OptionGroup& group, RebinArguments& a) {
   group
       .Add("--r-st WIDTH", a.r_st_w,
-           "Width of cells on the st plane (by LF cameras)\n"
-           "In world units, on the slab's st plane.")
+           "Width of cells on the st plane (from camera distances)\n"
+           "In world units.")
       ->check(CLI::NonNegativeNumber);
   group
       .Add("--r-uv WIDTH", a.r_uv_w,
-           "Width of cells on the uv plane (by pixels)\n"
-           "In world units, on the slab's uv plane.")
+           "Width of cells on the uv plane (from pixel sizes)\n"
+           "In world units.")
       ->check(CLI::NonNegativeNumber);
-  group.Add("--slab-position X Y Z", a.slab_position_w, "Point of the st plane (among the frames)")
+  group
+      .Add("--slab-position X Y Z", a.slab_position_w,
+           "Point on the st plane (among the lenses of the frames)")
       ->expected(3);
   group
-      .Add("--slab-forward X Y Z", a.slab_forward, "Direction that the slab faces (as the frames)")
+      .Add("--slab-forward X Y Z", a.slab_forward,
+           "Direction that the slab faces (as the frames look)")
       ->expected(3);
   group
       .Add("--slab-distance X", a.slab_distance_w,
-           "Distance from st plane to uv plane (to the focus)\n"
+           "Distance from st plane to uv plane (to the focus plane)\n"
            "In world units.")
       ->check(CLI::NonNegativeNumber);
 }
@@ -124,13 +133,13 @@ void RebinArguments::AddTo(CLI::App& app) {
   measuring
       .Add("--nearest N", nearest,
            "Interpolate from the N nearest rays (within 3 sigma)\n"
-           "With --back-end reference: takes the N nearest rays, however far they are. 0: takes "
-           "the rays within 3 sigma.")
+           "Needs --back-end reference. Uses the N nearest rays, at any distance. 0: uses all rays "
+           "within 3 sigma.")
       ->check(CLI::Range(0, 1000));
   measuring
       .Add("--coverage-cells N", options.coverage.cells_across,
            "Cells of the coverage map across a frame\n"
-           "The map sorts out rays that no frame asks for; with more cells it does so more finely.")
+           "The map rejects rays that no frame needs. With more cells it rejects more of them.")
       ->check(CLI::Range(4, 1024));
 }
 

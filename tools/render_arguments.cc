@@ -44,13 +44,13 @@ void AddInput(CLI::App& app, RenderArguments& a) {
       ->required();
   input
       .Add("--lightfield LIGHTFIELD", a.light_field.path,
-           "With packages: the place of their LF images\n"
-           "Needed if the light field was moved after the packages were made. A packed store of "
-           "their LF images is possible as well.")
+           "With packages: the light field of their LF images\n"
+           "Needed if the light field was moved after the packages were made. It may be a packed "
+           "store that contains their LF images.")
       ->check(NotEmpty());
   a.light_field.AddOptionsTo(app);
   a.allow_missing.AddTo(
-      app, "the LF images that the largest pass reads (with packages, of each package by itself)");
+      app, "the LF images that the largest pass reads (with packages: that each package reads)");
 }
 
 void AddOutput(CLI::App& app, RenderArguments& a) {
@@ -60,108 +60,112 @@ void AddOutput(CLI::App& app, RenderArguments& a) {
   AddFrameFormat(output, a.format);
   AddFilmFiles(output, a.video, a.no_contact_sheet);
   output.AddFlag("--keep-plates", a.keep_plates,
-                 "Keep the sums and counts of each frame\n"
-                 "They are written beside the frame, as frame_0001.plate.");
+                 "Also write the sums and counts of each frame\n"
+                 "They are written beside the frame, as frame_0001.plate. lfmerge makes frames "
+                 "from them again.");
 }
 
 void AddPicture(CLI::App& app, RenderArguments& a) {
   OptionGroup picture(app, kPictureGroup);
-  picture.AddChoice("--mode", a.mode, {"collect", "rebin", "hybrid"},
-                    "Source of the rays\n"
-                    "collect: frames consist of the rays that were recorded\n"
-                    "rebin: frames are interpolated between rays that are kept in memory\n"
-                    "hybrid: frames are collected, and interpolated where the lens got no rays");
+  picture.AddChoice(
+      "--mode", a.mode, {"collect", "rebin", "hybrid"},
+      "How frames are made from recorded rays\n"
+      "collect: frames are averages of the recorded rays\n"
+      "rebin: frames are interpolated between rays that are kept in memory\n"
+      "hybrid: frames are collected; where no recorded ray passes the lens, they are interpolated");
   picture.AddChoice(
       "--estimator", a.estimator, {"auto", "nearest", "bilinear"},
       "How LF pixels contribute to elements\n"
-      "bilinear (auto): every element reads each LF image where it looks\n"
-      "nearest: every LF pixel goes to one element, and mosaics are not interpolated");
+      "bilinear (auto): every element reads each LF image at the point that it sees, by --filter\n"
+      "nearest: every LF pixel is added to one element; mosaics are not interpolated");
   picture.AddChoice("--filter", a.filter, {"auto", "nearest", "bilinear", "bicubic", "mosaic"},
                     "Interpolation between LF pixels\n"
-                    "The filter belongs to the estimator bilinear.\n"
-                    "auto: bicubic, but bilinear where an element is as large as nine LF pixels or "
-                    "more; for mosaics, mosaic\n"
-                    "mosaic: as auto, and colours that the sensor recorded count 8 times as much "
-                    "as colours that were interpolated");
-  picture.AddChoice("--lens-weights", a.lens_weights, {"auto", "none", "area", "hat"},
-                    "Weight of each LF image in a frame\n"
-                    "none: all LF images count the same\n"
-                    "area: an LF image counts as the part of the lens that is nearest to it\n"
-                    "hat: LF images are interpolated, for small lenses and pinholes\n"
-                    "auto: area, and hat as the lens closes");
+                    "Used by --estimator bilinear.\n"
+                    "auto: mosaic for mosaics, otherwise bicubic, or bilinear where an element is "
+                    "as large as nine LF pixels or more\n"
+                    "mosaic: bicubic or bilinear as auto, but colours that the sensor recorded "
+                    "count 8 times as much as interpolated colours");
+  picture.AddChoice(
+      "--lens-weights", a.lens_weights, {"auto", "none", "area", "hat"},
+      "Weight of each LF image in a frame\n"
+      "none: all LF images have the same weight\n"
+      "area: the weight is the area of the lens that is nearest to the LF camera\n"
+      "hat: interpolation between the nearest LF images, for small lenses and pinholes\n"
+      "auto: area for large lenses, hat for small ones, a mix of both in between");
   picture
       .Add("--fill RADIUS|off", a.fill,
-           "Radius that fills elements without rays, in elements\n"
-           "An element that no ray reached takes the light of collected elements that are at most "
-           "RADIUS elements away. It is black if there is none. Its coverage is below 1 in any "
-           "case.")
+           "Radius for filling elements without rays, in elements\n"
+           "An element without rays gets the mean light of collected elements at most RADIUS "
+           "elements away, or black if there is none. Its coverage stays below 1.\n"
+           "off: elements without rays are black")
       ->check(NotEmpty());
   picture.Add("--smooth-below N", a.smooth_below,
               "Smooth elements with fewer rays than this (none)\n"
-              "Each is smoothed over up to 32 elements.");
+              "Such an element is averaged with its neighbours, up to 32 elements away.");
 }
 
 void AddQuality(CLI::App& app, RenderArguments& a) {
   OptionGroup quality(app, kQualityGroup);
   quality
       .Add("--max-images N", a.max_images,
-           "Most LF images that a frame takes (all)\n"
-           "A frame takes the first N of the order, which is shuffled by default.")
+           "Maximum number of LF images per frame (all)\n"
+           "A frame uses the first N LF images of --order, which is random by default.")
       ->check(WholeNumber());
   quality
       .Add("--max-angle DEGREES", a.max_angle_deg,
-           "Largest angle of an LF camera to the frame's axis (all)\n"
-           "A frame takes only LF cameras whose optical axes differ by at most so many degrees "
-           "from its own.")
+           "Largest angle between LF camera and frame axes (no limit)\n"
+           "A frame uses only LF cameras whose optical axis is within DEGREES of its own optical "
+           "axis.")
       ->check(CLI::Range(0., 180.));
   quality.AddChoice("--order", a.order, {"shuffle", "round-robin", "area"},
-                    "Order of the LF images\n"
+                    "Order in which frames take LF images\n"
                     "The order matters if --max-images or --stop-when end a frame early.\n"
                     "shuffle: random, by --seed\n"
-                    "round-robin: all frames fill equally\n"
-                    "area: LF images with most rays first");
+                    "round-robin: always an LF image for the frame with the fewest rays\n"
+                    "area: LF images with the most rays first");
   quality
       .Add("--stop-when RULE", a.stop_when,
            "Finish a frame early: noise<=X or samples>=N\n"
-           "noise<=X: the frame is finished when the noise of 90 % of the elements that LF images "
-           "see is at most X. Noise is the standard error of an element's mean, in linear light "
-           "with white as 1; 0.002 is half a level of 255 in a mid-grey. The rule works with every "
-           "mode and all lens weights; rebin measures the noise by a plate of 24 bytes for each "
-           "element of every frame.\n"
-           "samples>=N: the frame is finished when 99 % of these elements have N rays in every "
-           "channel. Lens weights are then none.")
+           "noise<=X: the frame is finished when at least 90 % of the elements that LF images see "
+           "have a noise of at most X. The noise of an element is the standard error of its mean, "
+           "in linear light where white is 1; 0.002 is half an 8-bit level in a mid-grey. Works "
+           "with every --mode and all --lens-weights. With --mode rebin it needs 24 bytes of "
+           "memory for each element of every frame.\n"
+           "samples>=N: the frame is finished when at least 99 % of these elements have N rays in "
+           "every channel. --lens-weights auto then means none.")
       ->check(NotEmpty());
   quality
       .Add("--require RULE", a.require,
            "Exit with code 6 unless noise<=X or samples>=N\n"
-           "The exit code is 6 if a frame has more noise or fewer rays in the end.")
+           "The rules are those of --stop-when. The exit code is 6 if a frame has more noise or "
+           "fewer rays at its end.")
       ->check(NotEmpty());
 }
 
 void AddRunning(CLI::App& app, RenderArguments& a) {
   OptionGroup running(app, kRunningGroup);
-  running.Add("--memory SIZE", a.memory, "Bound of the memory used");
-  CLI::Option* const resume =
-      running.AddFlag("--resume", a.resume,
-                      "Continue the render in DIR\n"
-                      "The inputs must be the same. Finished frames are kept.");
-  running.AddFlag("--overwrite", a.overwrite, "Remove an unfinished render in DIR")
+  running.Add("--memory SIZE", a.memory, "Upper limit of the memory that is used");
+  CLI::Option* const resume = running.AddFlag(
+      "--resume", a.resume,
+      "Continue the unfinished render in DIR\n"
+      "The inputs and the options that change frames must be the same. Finished frames are kept.");
+  running.AddFlag("--overwrite", a.overwrite, "Remove an unfinished render in DIR and start anew")
       ->excludes(resume);
   running
       .Add("--finish RANGE", a.finish,
            "With --resume: finish frames with their rays so far\n"
-           "RANGE is such as 1-10,20. The other frames are continued. The report says which LF "
-           "images the finished frames have.")
+           "RANGE: frames, such as 1-10,20. The other frames are continued. The report states "
+           "which LF images the finished frames contain.")
       ->check(NotEmpty());
   running.Add("--dump-every TIME", a.dump_every,
               "Time between checkpoints\n"
-              "The state is written so often, such as 30s, 10m or 1h; more rarely if it would "
-              "take more than 5 % of the time. 0: only at signals.");
+              "TIME: such as 30s, 10m or 1h. Checkpoints are rarer if writing them would take more "
+              "than 5 % of the time. 0: checkpoints are only written at signals.");
   running
       .Add("--shard k/K", a.shard,
-           "Render a part of the LF images, for lfmerge\n"
-           "Writes the plates of the k-th of K parts of the LF images into DIR/partial/shards. "
-           "lfmerge adds the plates of all parts and writes the frames.")
+           "Render part k of K of the LF images, for lfmerge\n"
+           "Writes the plates of this part into DIR/partial/shards. lfmerge adds the plates of all "
+           "K parts and writes the frames.")
       ->check(NotEmpty());
 }
 
@@ -181,11 +185,12 @@ void AddMeasuring(CLI::App& app, RenderArguments& a) {
   OptionGroup measuring(app, kMeasuringGroup);
   measuring.AddChoice("--rectangles", a.rectangles, {"on", "off"},
                       "Read only the needed rectangle of each LF image\n"
-                      "off: all pixels of every LF image that may contribute are read and tried, "
-                      "to measure what the rectangles save. The frames have the same bits.");
+                      "off: all pixels of every LF image that may contribute are read, to measure "
+                      "what the rectangles save. The frames are bit-identical.");
   measuring.AddChoice("--back-end", a.back_end, {"fast", "reference"},
-                      "Code that adds the rays\n"
-                      "reference: the literal formulas, one ray at a time");
+                      "Implementation of the ray model\n"
+                      "fast: the quick implementation\n"
+                      "reference: the formulas applied literally, one ray at a time");
 }
 
 }  // namespace
@@ -202,11 +207,11 @@ void RenderArguments::AddTo(CLI::App& app) {
 
 OfferedOptions RenderArguments::Common() {
   return {.threads = true,
-          .seed = "Seed of the order, and of the rebinned rays",
+          .seed = "Seed of --order shuffle and of --kept edges",
           .strict =
               "Stop at a missing or broken LF image\n"
-              "Otherwise it is left out.",
-          .json = "Print the report to stdout",
+              "Without this option it is left out.",
+          .json = "Print the report to stdout as JSON",
           .progress = true,
           .verbose = true,
           .quiet = true};

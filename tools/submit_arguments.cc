@@ -122,9 +122,9 @@ Result<RenderOptions> TryArguments(const std::vector<fs::path>& packages, const 
 void AddNewJob(CLI::App& app, SubmitArguments& a) {
   OptionGroup input(app, kInputGroup), output(app, kOutputGroup);
   input.Add("PACKAGES", a.words,
-            "Files of lfpreprocessor\n"
-            "After -- follow options of lfrenderer, for all packages.");
-  output.Add("-o,--output DIR", a.output, "Folder of the frames, which all machines share")
+            "Packages that lfpreprocessor has written\n"
+            "Options after -- are passed to lfrenderer for every package.");
+  output.Add("-o,--output DIR", a.output, "Folder of the frames, shared by all machines")
       ->check(NotEmpty());
   AddFrameRange(output, a.frames);
   AddFilmFiles(output, a.video, a.no_contact_sheet);
@@ -135,19 +135,18 @@ void AddNewJob(CLI::App& app, SubmitArguments& a) {
 void AddExistingJob(CLI::App& app, SubmitArguments& a) {
   OptionGroup running(app, kRunningGroup);
   running.Add("--status DIR", a.status, "Show the progress of the job in DIR")->check(NotEmpty());
-  running.Add("--cancel DIR", a.cancel, "Write the state of all packages and end the job")
-      ->check(NotEmpty());
+  running.Add("--cancel DIR", a.cancel, "End the job in DIR and keep its state")->check(NotEmpty());
   running
       .Add("--resume DIR", a.resume,
            "Continue the job in DIR\n"
-           "The job continues with what is not done. These may be others now: --engine, --jobs, "
-           "--threads, --memory, --crashes, --time-limit, --sbatch, --lfrenderer, --video, the "
-           "places of the same PACKAGES, and the options of lfrenderer.")
+           "Packages that are not done are continued. These options may be changed: --engine, "
+           "--jobs, --threads, --memory, --crashes, --time-limit, --sbatch, --lfrenderer, --video, "
+           "and the options of lfrenderer. PACKAGES may be given again if the files were moved.")
       ->check(NotEmpty());
   running
       .Add("--finish DIR FRAMES", a.finish,
            "Finish frames with the rays that they have so far\n"
-           "The other frames continue.")
+           "FRAMES: a range, such as 1-10,20. The other frames continue.")
       ->expected(2);
 }
 
@@ -155,17 +154,18 @@ void AddResources(CLI::App& app, SubmitArguments& a) {
   OptionGroup running(app, kRunningGroup);
   running.AddChoice("--engine", a.engine, {"local", "slurm"},
                     "System that starts the processes (local)\n"
-                    "local: processes of this machine, until all is done\n"
-                    "slurm: tasks of Slurm");
+                    "local: processes on this machine; lfsubmit runs until the film is done\n"
+                    "slurm: tasks of Slurm; lfsubmit ends when they are submitted (see --wait)");
   running
-      .Add("--jobs N", a.at_once,
-           "Packages rendered at the same time\n"
-           "Unless given, 1 with the engine local, and with slurm as many as Slurm has room for.")
+      .Add(
+          "--jobs N", a.at_once,
+          "Packages rendered at the same time\n"
+          "If the option is not given: 1 with --engine local; with slurm, as many as Slurm starts.")
       ->check(WholeNumber());
   running.Add("--memory SIZE", a.memory,
-              "Bound of the memory of each lfrenderer (8G)\n"
-              "If the option is not given, the processes of this machine together take at most "
-              "80 % of its memory.");
+              "Upper limit of the memory of each lfrenderer (8G)\n"
+              "If the option is not given, the processes of this machine together take at most 80 "
+              "% of its memory.");
   running
       .Add("--time-limit TIME", a.time_limit,
            "slurm: time limit of each task, such as 2h\n"
@@ -173,15 +173,16 @@ void AddResources(CLI::App& app, SubmitArguments& a) {
       ->check(NotEmpty());
   running
       .Add("--sbatch OPTION", a.sbatch_options,
-           "slurm: option of sbatch: --sbatch=--partition=long\n"
-           "The option may be repeated.")
+           "slurm: option for sbatch: --sbatch=--partition=long\n"
+           "May be given several times.")
       ->allow_extra_args(false);
   running.AddFlag("--wait", a.wait,
                   "slurm: wait until the film is done\n"
-                  "The exit code is that of the film.");
-  running.Add("--crashes N", a.most_crashes,
-              "Most crashes of a package before it fails (10)\n"
-              "A package fails if lfrenderer, or its node, dies more often than this.");
+                  "The exit code then is the one described below.");
+  running.Add(
+      "--crashes N", a.most_crashes,
+      "Most crashes of a package before it fails (10)\n"
+      "A package fails if lfrenderer, or the node that runs it, crashes more often than this.");
   running.Add("--lfrenderer FILE", a.renderer, "Program that renders (beside lfsubmit)");
 }
 

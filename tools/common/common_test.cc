@@ -181,7 +181,7 @@ TEST_F(HelpTest, HelpAllAddsDetailsFactsAndRareOptions) {
         "  --threads N       Threads (all)\n      Default: 0 (all); values: 0 to 512\n",
         "\nRare:\n  --slab-position X Y Z  Place of the slab\n      Default: empty\n",
         "  --format exr|png  File format (exr)\n      Default: exr\n",
-        "\nHelp:\n  -h, --help        Show help\n\nDIR receives frames.\n\nExit codes: 0 done,"})
+        "\nHelp:\n  -h, --help        Show help\n\nDIR receives frames.\n\nExit codes: 0 success,"})
     EXPECT_NE(help.find(part), std::string::npos) << part << "\nis not in\n" << help;
 }
 

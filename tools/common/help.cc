@@ -20,8 +20,9 @@ constexpr size_t kWidestName = 38;
 constexpr std::array<std::string_view, 5> kShownGroups = {kInputGroup, kOutputGroup, kPictureGroup,
                                                           kQualityGroup, kRunningGroup};
 constexpr const char* kExitCodes =
-    "Exit codes: 0 done, 1 internal error (a bug), 2 wrong usage, 3 bad input, 4 output, disk or "
-    "memory, 5 interrupted, 6 finished below what was asked for. The last line on stderr says why.";
+    "Exit codes: 0 success, 1 internal error (a bug), 2 wrong usage, 3 bad input, 4 failed output, "
+    "full disk or lack of memory, 5 interrupted, 6 finished, but with LF images left out or less "
+    "quality than required. The last line on stderr states the reason.";
 
 using Options = std::vector<const CLI::Option*>;
 

@@ -34,25 +34,25 @@ void AddUnusualOptions(CLI::App& app, LightFieldArgument& argument) {
   OptionGroup unusual(app, "Unusual light fields");
   unusual
       .Add("--focal-px PIXELS", argument.focal_px,
-           "Focal length (as recorded)\n"
-           "For Stanford folders whose names do not tell the focal length.")
+           "Focal length of the LF cameras (as recorded)\n"
+           "Needed for images with Stanford names, if the names do not contain the focal length.")
       ->check(CLI::NonNegativeNumber);
   unusual
       .Add("--fov-deg DEGREES", argument.fov_deg,
-           "Field of view (as recorded)\n"
-           "For poses of Airborne Optical Sectioning (AOS).")
+           "Field of view of the LF cameras (as recorded)\n"
+           "Needed for poses of Airborne Optical Sectioning (AOS), which do not contain it.")
       ->check(CLI::Range(0., 179.));
   unusual.Add("--image-scale FACTOR", argument.image_scale,
-              "Size of the image files, as a factor\n"
-              "The factor, such as 0.25, multiplies the calibrated size.\n"
-              "auto: 1, or 1/2 to 1/16 if all image files have this size\n"
-              "off: the size is as calibrated");
-  unusual.AddChoice("--image-alpha", argument.image_alpha,
-                    {"auto", "mask", "straight", "premultiplied"},
-                    "Meaning of alpha\n"
-                    "auto: as recorded, or as the pixels of the images tell\n"
-                    "mask: a pixel whose alpha is below one half recorded nothing\n"
-                    "straight, premultiplied: the light of the image lies over --background");
+              "Size of the image files relative to calibration\n"
+              "FACTOR: size of the image files divided by the calibrated size, such as 0.25\n"
+              "auto: 1, or the one of 1/2 to 1/16 that fits all image files\n"
+              "off: the image files must have the calibrated size");
+  unusual.AddChoice(
+      "--image-alpha", argument.image_alpha, {"auto", "mask", "straight", "premultiplied"},
+      "Meaning of the alpha channel\n"
+      "auto: as recorded; if nothing is recorded, found from pixels of the images\n"
+      "mask: pixels with an alpha below one half are ignored\n"
+      "straight, premultiplied: alpha is opacity, and the light of --background shines through");
 }
 
 }  // namespace
@@ -62,9 +62,9 @@ void LightFieldArgument::AddTo(CLI::App& app) {
   input
       .Add("LIGHTFIELD", path,
            "Calibration file, its folder, or a packed store\n"
-           "The folder or file is transforms.json, or a calibration of COLMAP, Middlebury, LLFF, "
-           "HCI or AOS; a packed store is one file, STORE.lfs. A folder of images with Stanford "
-           "names is a light field as well.")
+           "The calibration is a transforms.json, or a calibration of COLMAP, Middlebury, LLFF, "
+           "HCI or AOS. A packed store is one file, STORE.lfs. A folder of images with Stanford "
+           "names is also a light field: the names contain the calibration.")
       ->required();
   AddOptionsTo(app);
 }
@@ -73,16 +73,16 @@ void LightFieldArgument::AddOptionsTo(CLI::App& app) {
   OptionGroup input(app, kInputGroup);
   input.Add("--images DIR", images,
             "Folder of the LF images, if they were moved\n"
-            "Needed if the image files are not where the calibration says. Each is found by its "
-            "name, whatever its suffix and the folders below DIR.");
+            "Needed if the image files are not where the calibration says. Each image file is "
+            "searched by its name in DIR and all folders below it. Its suffix may differ.");
   input
       .Add("--background COLOUR", background,
            "Light behind transparent LF images\n"
-           "The light behind images whose alpha is light: black, white, or R,G,B, which are linear "
-           "and where 1 is display white.\n"
-           "none: the frames have alpha themselves, and light as over black")
+           "Used if alpha is opacity (--image-alpha straight or premultiplied).\n"
+           "COLOUR: black, white, or R,G,B in linear light, where 1 is display white\n"
+           "none: frames have an alpha channel, and their colours are those before black")
       ->check(NotEmpty())
-      ->default_str("as recorded, or black");
+      ->default_str("as recorded, else black");
   AddUnusualOptions(app, *this);
 }
 

@@ -68,11 +68,14 @@ void Program::AddCommonOptions(const OfferedOptions& offered) {
         ->check(CLI::Range(0, 512));
   if (offered.progress)
     running.AddChoice("--progress", common_.progress, {"auto", "bar", "plain", "json", "none"},
-                      "How stderr shows progress\n"
+                      "How progress is shown on stderr\n"
                       "auto: a bar on a terminal, otherwise plain\n"
-                      "plain: a line now and then\n"
-                      "json: one object per line");
-  if (offered.verbose) running.AddFlag("-v,--verbose", verbosity_, "Print more, for debugging");
+                      "bar: one line that is updated\n"
+                      "plain: a new line every few seconds\n"
+                      "json: a line with a JSON object about every second\n"
+                      "none: no progress");
+  if (offered.verbose)
+    running.AddFlag("-v,--verbose", verbosity_, "Also print messages for debugging");
   if (offered.quiet) running.AddFlag("-q,--quiet", quiet_, "Print only warnings and errors");
 }
 
