@@ -112,9 +112,9 @@ class AlphaTest(ProgramTestCase):
             self.frame(field, "--background", "white")[0])
         for option in (["--background", "black"], ["--image-alpha", "mask"]):
             for moved in ([], ["--lightfield", field]):
-                self.fails(2, ["packages have what they were made with"], RENDERER, package, "-o",
+                self.fails(2, ["cannot be used with packages"], RENDERER, package, "-o",
                            self.folder / "refused", *option, *moved)
-            self.fails(2, ["packages have what they were made with"], COMPRESSOR, package, "-o",
+            self.fails(2, ["cannot be used with packages"], COMPRESSOR, package, "-o",
                        self.folder / "refused.lfs", *option)
         self.fails(2, ["--image-scale is for a light field"], COMPRESSOR, package, "-o",
                    self.folder / "refused.lfs", "--image-scale", "0.5")
@@ -135,7 +135,7 @@ class AlphaTest(ProgramTestCase):
             Image.fromarray((light * 255).astype(np.uint8)).save(file.with_suffix(".png"))
         field = self.field(opaque)
         for words, options in [
-                (["--background", "nothing behind"], ["--background", "white"]),
+                (["--background", "no light can shine through"], ["--background", "white"]),
                 (["--background", "expected black"], ["--background", "1,2"]),
                 (["--background"], ["--background", ""]),
                 (["--background", "expected black"], ["--background", "blue"]),

@@ -134,8 +134,8 @@ class ExampleTest(unittest.TestCase):
         path, words = self.example("--move", "static")
         focus = float(re.search(r"focus_distance: (\S+)", path.read_text()).group(1))
         self.assertAlmostEqual(focus, 0.8, delta=0.02 * 0.8)
-        self.assertRegex(words, r"focused at 0\.\d+ by the points of the reconstruction, since the LF "
-                                "images around agree")
+        self.assertRegex(words, r"focused at 0\.\d+ by the points of the reconstruction, because the "
+                                "neighbouring LF images agree")
         self.assertNotIn("not sure", words)
         result = self.run_tool(RENDERER, self.field, path, "-o", self.folder / "frames")
         self.assertEqual(result.returncode, 0, result.stderr)
@@ -157,20 +157,22 @@ class ExampleTest(unittest.TestCase):
                                     random.uniform(0.5, 3, 60)]), wall)
         focus, words = self.focus()
         self.assertAlmostEqual(focus, 0.8, delta=0.02 * 0.8)
-        self.assertRegex(words, r"since the LF images agree on 0\.2\d+, and next to none of the \d+ points")
+        self.assertRegex(words, r"because the LF images agree on the distance 0\.2\d+, "
+                                r"but almost none of the \d+ points")
 
     def test_points_that_contradict_the_images_and_each_other_are_a_doubt(self):
         random = np.random.default_rng(2)
         self.colmap(np.concatenate([random.uniform(0.14, 0.16, 20), 1 / random.uniform(0.2, 2, 300)]), wall)
         path, words = self.example("--move", "static")
-        self.assertRegex(words, r"not sure what to focus on \(the LF images agree on 0\.2\d+, and next to none")
+        self.assertRegex(words, r"not sure what to focus on \(the LF images agree on the distance 0\.2\d+, "
+                                r"but almost none")
         self.assertLess(self.aperture(path), 0.1 * PITCH)
 
     def test_images_that_agree_beyond_all_depths_are_a_doubt(self):
         self.colmap(1 / np.random.default_rng(2).uniform(0.2, 2, 300), wall)
         _, words = self.example("--move", "static")
-        self.assertRegex(words, r"not sure what to focus on \(the LF images agree on 0\.2\d+, beyond the depths "
-                                r"of the scene, 0\.\d+ to \d")
+        self.assertRegex(words, r"not sure what to focus on \(the LF images agree on the distance 0\.2\d+, which is "
+                                r"outside the depths of the scene, 0\.\d+ to \d")
 
     def test_points_anywhere_tell_no_focus(self):
         self.colmap(1 / np.random.default_rng(2).uniform(0.2, 2, 300))

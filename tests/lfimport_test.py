@@ -113,7 +113,7 @@ class ImportTest(unittest.TestCase):
     def test_a_calibration_of_the_user_is_never_replaced_unasked(self):
         field = write_field(self.folder / "field")
         text = field.read_text()
-        self.fails(2, ["is what would be read", "--force"], field, "-o", field.parent)
+        self.fails(2, ["is the calibration that is read", "--force"], field, "-o", field.parent)
         self.assertEqual(field.read_text(), text)
         other = write_field(self.folder / "other")
         self.fails(2, ["not written by lfimport", "--force"], field, "-o", other.parent)
@@ -121,7 +121,7 @@ class ImportTest(unittest.TestCase):
         out = self.folder / "out"
         self.run_tool(IMPORT, field, "-o", out)
         self.run_tool(IMPORT, field, "-o", out, "--scale", 2)
-        self.fails(2, ["is what would be read"], out, "-o", out)
+        self.fails(2, ["is the calibration that is read"], out, "-o", out)
         (out / "transforms.json").write_text((out / "transforms.json").read_text() + "\n")
         self.fails(2, ["was changed since"], field, "-o", out)
         self.run_tool(IMPORT, field, "-o", out, "--force")
@@ -271,7 +271,7 @@ class ImportTest(unittest.TestCase):
         np.testing.assert_allclose(after["out_02_03.png"][:3, 3], [1.5, 1, 0], atol=0)
         # Again with another pitch: the file that lfimport wrote does not interfere.
         again = self.run_tool(IMPORT, grid, "-o", grid, "--pitch", 2, "--focal-px", 32)
-        self.assertIn("is read again", again.stderr)
+        self.assertIn("is read instead", again.stderr)
         np.testing.assert_allclose(poses(grid / "transforms.json")["out_02_03.png"][:3, 3], [3, 2, 0])
         # Without -o, and for another folder, lfimport reads the file, as other programs do.
         self.assertAlmostEqual(self.report(grid)["spacing_w"]["median"], 2)
@@ -279,7 +279,7 @@ class ImportTest(unittest.TestCase):
         np.testing.assert_allclose(
             poses(self.folder / "copy" / "transforms.json")["out_02_03.png"][:3, 3], [3, 2, 0])
         (grid / "transforms.json").write_text((grid / "transforms.json").read_text() + "\n")
-        self.fails(2, ["is what would be read", "--force"], grid, "-o", grid)
+        self.fails(2, ["is the calibration that is read", "--force"], grid, "-o", grid)
 
     def test_poses_without_a_field_of_view_need_it(self):
         folder = self.folder / "aos"

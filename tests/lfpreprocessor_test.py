@@ -293,7 +293,7 @@ class PackagesTest(ProgramTestCase):
         field, path = self.film()
         (self.folder / "field" / "image_03.png").unlink()
         text = self.succeeds(PREPROCESSOR, field, path, "--plan", code=6)
-        self.assertIn("1 of 25 LF images that packages need are not there", text)
+        self.assertIn("1 of 25 LF images that packages need do not exist", text)
         self.fails(3, ["--strict", "image_03.png"], PREPROCESSOR, field, path, "-o",
                    self.folder / "strict", "--strict")
         self.assertEqual(list((self.folder / "strict").glob("*.lfp")), [])
@@ -433,7 +433,7 @@ class PackagesTest(ProgramTestCase):
         packages, out = self.folder / "packages", self.folder / "frames"
         for frames in ("1-2", "3-5"):
             self.succeeds(PREPROCESSOR, field, path, "-o", packages, "--frames", frames, "--packages", "1")
-            self.fails(2, ["holds 1 packages", "--overwrite"], PREPROCESSOR, field, path, "-o", packages,
+            self.fails(2, ["contains 1 packages", "--overwrite"], PREPROCESSOR, field, path, "-o", packages,
                        "--frames", frames)
         names = ["package-0000-of-frames-1-2", "package-0000-of-frames-3-5"]
         self.assertEqual(sorted(file.stem for file in packages.glob("*.lfp")), names)

@@ -158,7 +158,7 @@ class ResumeTest(unittest.TestCase):
             process.send_signal(signal.SIGKILL if kill % 2 == index % 2 else signal.SIGTERM)
             _, words = process.communicate(timeout=240)
             self.assertIn(process.returncode, (-signal.SIGKILL, 0, 5), words)
-            resumed += "going on" in words
+            resumed += "continuing" in words
             # Every file with a final name is complete and correct.
             for file, digest in digests(self.folder / name).items():
                 self.assertEqual(digest, self.expected[file], (options, kill, file))
@@ -203,7 +203,7 @@ class ResumeTest(unittest.TestCase):
     def test_the_command_in_the_last_words_goes_on(self):
         last = self.last_words.strip().splitlines()[-1]
         self.assertRegex(last, r"interrupted after \d+ of 12 frames.*--resume$")
-        command = last.split("go on with: ")[1]
+        command = last.split("continue with: ")[1]
         # Uses a copy, because other tests begin with this state.
         aside = self.folder / "aside"
         shutil.copytree(self.folder / "it's begun", aside)

@@ -148,7 +148,7 @@ class RendererTest(unittest.TestCase):
         self.assertNotIn("two camera distances", wide.stderr)
         pinhole = self.run_renderer(field, write_path(self.folder, aperture=0), "-o",
                                     self.folder / "pinhole")
-        self.assertIn("small lenses, interpolated between the LF images", pinhole.stderr)
+        self.assertIn("hat (interpolation between LF images), because the lenses are small", pinhole.stderr)
         self.assertNotIn("fewer than", pinhole.stderr)
         few = self.run_renderer(field, write_path(self.folder, aperture=0.016), "-o",
                                 self.folder / "few")
@@ -158,7 +158,7 @@ class RendererTest(unittest.TestCase):
         self.assertIn("beyond the capture", huge.stderr)
         counted = self.run_renderer(field, write_path(self.folder), "-o", self.folder / "counted",
                                     "--stop-when", "samples>=2")
-        self.assertIn("auto: none", counted.stderr)
+        self.assertIn("auto means none", counted.stderr)
 
     def test_pinholes_have_hats_but_no_area(self):
         field, path = write_field(self.folder / "field"), write_path(self.folder, aperture=0)

@@ -201,8 +201,8 @@ class LocalJobTest(ClusterTestCase):
         for options, code, words in (
                 (["--", "--format", "jpeg"], 2, ["after --", "jpeg"]),
                 (["--", "--no-such-option"], 2, ["after --", "no-such-option"]),
-                (["--", "--shard", "1/2"], 2, ["--shard", "lfsubmit decides"]),
-                (["--", "--frames=1"], 2, ["--frames=1", "lfsubmit decides"]),
+                (["--", "--shard", "1/2"], 2, ["--shard", "lfsubmit sets it"]),
+                (["--", "--frames=1"], 2, ["--frames=1", "lfsubmit sets it"]),
                 (["--", "--mode", "rebin", "--stop-when", "samples>=2"], 2, ["--mode rebin"]),
                 (["--time-limit", "1h"], 2, ["--engine slurm"]),
                 (["--frames", "12"], 2, ["12"]),
@@ -218,8 +218,8 @@ class LocalJobTest(ClusterTestCase):
             self.fails(3, words, submit, *arguments)
         self.fails(2, ["PACKAGES"], submit)
         self.fails(2, ["-o DIR is missing"], submit, *self.package_files)
-        self.fails(2, ["at a time"], submit, "--status", self.film, "--cancel", self.film)
-        self.fails(2, ["DIR alone"], submit, *self.package_files, "--status", self.film)
+        self.fails(2, ["only one of"], submit, "--status", self.film, "--cancel", self.film)
+        self.fails(2, ["need only DIR"], submit, *self.package_files, "--status", self.film)
         self.fails(2, ["is no package", "lfpreprocessor"], submit, self.field, self.path, "-o",
                    self.film)
 
@@ -263,7 +263,7 @@ class LongLocalJobTest(ClusterTestCase):
             logs = [(self.film / "cluster" / "packages" / f"package-000{k}.log").read_text()
                     for k in (0, 1)]
             for log in logs:  # nothing that was in a checkpoint is rendered again
-                self.assertRegex(log, r"going on: \d frames are finished, \d begun")
+                self.assertRegex(log, r"continuing: \d frames are finished, \d begun")
             subprocess.run(["rm", "-r", self.film, self.folder / "starts"], check=True)
 
     def test_a_killed_lfsubmit_takes_its_renderers_along(self):
@@ -273,7 +273,7 @@ class LongLocalJobTest(ClusterTestCase):
         process.wait()
         # The renderers get SIGTERM and write their checkpoints.
         self.wait_for(lambda: self.status()["state"] == "interrupted")
-        self.assertIn("process is gone", self.status()["packages"][0]["message"])
+        self.assertIn("process has died", self.status()["packages"][0]["message"])
         self.resume()
         self.assertEqual(digests(self.film), self.expected)
         self.assertEqual([package["crashes"] for package in self.status()["packages"]], [0, 0])

@@ -81,7 +81,7 @@ class SynthTest(unittest.TestCase):
 
     def test_calls_that_contradict_themselves_are_refused_before_anything_is_written(self):
         for words, *options in (
-                ("exclude each other", "--bayer", "--format", "png"),
+                ("cannot be combined", "--bayer", "--format", "png"),
                 ("add --bayer", "--noise", 0.1),
                 ("--count and --distance", "--capture", "hemisphere", "--spacing", 0.1),
                 ("spacing -1", "--spacing", -1),

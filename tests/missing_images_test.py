@@ -164,7 +164,7 @@ class MissingImagesTest(ProgramTestCase):
         self.assertEqual([package["lf_images_missing"] for package in report["packages"]], [2] * 3)
         self.check_accepted(
             lambda out: [PREPROCESSOR, self.field, self.path, "-o", self.folder / out],
-            "2 of 25 LF images that packages need are not there", 2)
+            "2 of 25 LF images that packages need do not exist", 2)
         self.fails(3, ["--strict", "image_"], PREPROCESSOR, self.field, self.path, "-o",
                    self.folder / "strict", "--strict")
         self.mend()
@@ -242,7 +242,7 @@ class MissingImagesTest(ProgramTestCase):
     # Stores and imports
 
     def test_a_store_without_all_codes_is_told_by_whoever_makes_or_checks_it(self):
-        text = "3 of 25 LF images have no code"
+        text = "3 of 25 LF images are not in the store"
         self.check_accepted(lambda out: [COMPRESSOR, self.field, "-o",
                                          self.folder / f"{out.replace('%', 'p')}.lfs"], text, 3)
         store = self.folder / "limit-3.lfs"

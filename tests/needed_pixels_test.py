@@ -128,18 +128,18 @@ class NeededPixelsTest(ProgramTestCase):
         path = self.path(frames=6)
         packages = self.packages(path, "--lens-weights", "none")
         store = self.store(packages)
-        self.fails(2, ["--mode hybrid", "lacks the LF cameras beside the lens", "make it again"],
+        self.fails(2, ["--mode hybrid", "lacks the LF cameras beside the lens", "make the package again"],
                    RENDERER, *packages, "--lightfield", store, "--lens-weights", "none", "--mode",
                    "hybrid", "-o", self.folder / "none")
         packages = self.packages(path, name="with-neighbours")
         store = self.store(packages, "neighbours")
-        self.fails(3, ["frame 1 reads pixels of", "not in this packed store", "--mode",
+        self.fails(3, ["frame 1 needs pixels of", "not in this packed store", "--mode",
                        "--needed-pixels"],
                    RENDERER, *packages, "--lightfield", store, "--mode", "rebin", "-o",
                    self.folder / "none")
         self.assertFalse(list((self.folder / "none").glob("frame_*")))
         # Packages that could not be rendered from the store are not made from it either.
-        self.fails(3, ["frame 1 reads pixels of", "not in this packed store"],
+        self.fails(3, ["frame 1 needs pixels of", "not in this packed store"],
                    PREPROCESSOR, store, path, "--mode", "rebin", "-o", self.folder / "made")
         self.assertFalse(list((self.folder / "made").glob("*.lfp")))
 

@@ -85,7 +85,7 @@ class PackedStoreTest(ProgramTestCase):
         store = self.pack(field, packages=left)
         self.frames("codes", *left, "--lightfield", store)
         self.fails(3, ["package-0000.lfp", "LF images are not in the packed store", "the first: ",
-                       "compress this package"],
+                       "make the store again"],
                    RENDERER, *right, "--lightfield", store, "-o", self.folder / "none")
 
     def test_packages_are_made_of_a_store(self):
@@ -156,7 +156,7 @@ class PackedStoreTest(ProgramTestCase):
             self.assertEqual(report["images"]["count"] if isinstance(report["images"], dict)
                              else report["images"], 25)
             self.assertTrue(report["first_image"].endswith("a store.lfs/image_00.png"))
-        self.fails(2, ["a packed store holds its LF images itself"], IMPORT, store, "-o",
+        self.fails(2, ["a packed store cannot be converted"], IMPORT, store, "-o",
                    self.folder / "native")
         self.fails(2, ["--bayer", "packed store"], IMPORT, store, "--bayer", "RGGB")
         self.damage(store, 3)

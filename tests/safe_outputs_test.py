@@ -99,7 +99,7 @@ class SafeOutputsTest(ProgramTestCase):
         path = self.folder / "film" / "report.json"
         path.parent.mkdir()
         self.path.rename(path)
-        self.keeps(path, 2, ["report.json", "what is read"], "lfrenderer", self.field, path, "-o", path.parent)
+        self.keeps(path, 2, ["report.json", "an input file"], "lfrenderer", self.field, path, "-o", path.parent)
         # An LF image has the name of the contact sheet.
         picture = next(self.field.rglob("*.png"))
         sheet = picture.with_name("contact_sheet.png")

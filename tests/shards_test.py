@@ -113,21 +113,21 @@ class ShardsTest(ProgramTestCase):
 
     def test_what_is_missing_double_or_of_another_render_is_named(self):
         plates = self.shards("out", 3, of=(1, 3))
-        self.fails(3, ["frame 1", "of 3 shards 2 are there", "missing: 2"], MERGE, plates, "-o",
+        self.fails(3, ["frame 1", "of 3 shards, 2 are given", "missing: 2"], MERGE, plates, "-o",
                    self.folder / "no")
         self.assertFalse((self.folder / "no").exists())
         self.shards("out", 3, of=(2,))
         for there, missing in (((1, 2), 3), ((2, 3), 1)):  # the last one and the first one are missing
-            self.fails(3, ["frame 1", "of 3 shards 2 are there", f"missing: {missing} "], MERGE,
+            self.fails(3, ["frame 1", "of 3 shards, 2 are given", f"missing: {missing} "], MERGE,
                        *(plates / f"shard_{k}_of_3" for k in there), "-o", self.folder / "no")
         self.shards("twice", 3, of=(2,))
-        self.fails(3, ["frame 1", "shard 2/3", "give each once"], MERGE, plates,
+        self.fails(3, ["frame 1", "shard 2/3", "give each shard once"], MERGE, plates,
                    self.folder / "twice", "-o", self.folder / "no")
         other = self.shards("other", 3, "--lens-weights", "none", of=(2,))
         shutil.copytree(other / "shard_2_of_3", plates / "shard_2_of_3", dirs_exist_ok=True)
         self.fails(3, ["lens_weights", "none"], MERGE, plates, "-o", self.folder / "no")
         two = self.shards("cut", 2, of=(1,))
-        self.fails(3, ["1/2", "the same cut"], MERGE, two, plates / "shard_1_of_3", "-o",
+        self.fails(3, ["1/2", "the same K"], MERGE, two, plates / "shard_1_of_3", "-o",
                    self.folder / "no")
         self.fails(3, ["no plates", "--shard"], MERGE, self.folder / "field", "-o",
                    self.folder / "no")

@@ -76,7 +76,7 @@ class SlurmTest(ClusterTestCase):
         self.assertEqual(crashes, [1, 1, 0, 1, 0, 0, 0, 0])
         for number in range(4):
             log = self.film / "cluster" / "packages" / f"package-{number:04d}.log"
-            self.assertRegex(log.read_text(), r"going on: \d frames are finished, \d begun")
+            self.assertRegex(log.read_text(), r"continuing: \d frames are finished, \d begun")
         self.assertNotEqual(status["packages"][0]["node"], first["node"])
         self.assertGreater((self.folder / "film.mp4").stat().st_size, 1000)
         self.assertTrue((self.film / "contact_sheet.png").exists())
@@ -102,7 +102,7 @@ class SlurmTest(ClusterTestCase):
                     words=["submitted 8 packages", "--status"])
         self.wait_for(lambda: self.is_held(0))
         table = self.succeeds(cluster_test_case.SUBMIT, "--status", self.film)
-        self.assertIn("waits for", table)
+        self.assertIn("waiting for", table)
         self.succeeds(cluster_test_case.SUBMIT, "--cancel", self.film)
         self.assertEqual(self.slurm.call("squeue", "-h"), "")
         status = self.status()

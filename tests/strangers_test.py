@@ -82,7 +82,7 @@ class StrangersTest(ProgramTestCase):
 
     def test_photographs_alone_are_told_what_they_lack(self):
         self.calibration.unlink()
-        self.everywhere_fails(f"holds {SIDE * SIDE} images, such as image_00.png, but nothing",
+        self.everywhere_fails(f"holds {SIDE * SIDE} images, such as image_00.png, but no file",
                               "COLMAP", "sparse/0")
         for image in self.field.glob("*.png"):
             image.unlink()
@@ -142,7 +142,7 @@ class StrangersTest(ProgramTestCase):
 
     def test_images_listed_twice_give_no_path(self):
         self.edit(lambda calibration: calibration["frames"].extend(calibration["frames"]))
-        self.fails(3, ["stand where another one does", "listed twice"], EXAMPLE, self.field, "-o",
+        self.fails(3, ["are at the position of another one", "listed twice"], EXAMPLE, self.field, "-o",
                    self.folder / "p.yaml")
         self.assertFalse((self.folder / "p.yaml").exists())
         report = json.loads(self.succeeds(IMPORT, self.field, "--json"))

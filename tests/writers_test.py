@@ -48,10 +48,10 @@ class WritersTest(WritersCase):
             self.assertEqual(locks, [])
 
     def test_lfrenderer(self):
-        self.race("lfrenderer", may_refuse=["is there already", "unfinished"])
+        self.race("lfrenderer", may_refuse=["exists already", "unfinished"])
 
     def test_lfpreprocessor(self):
-        self.race("lfpreprocessor", may_refuse=["holds 2 packages"])
+        self.race("lfpreprocessor", may_refuse=["contains 2 packages"])
         self.race_again("lfpreprocessor")
 
     def race_again(self, program):

@@ -139,8 +139,8 @@ Result<std::unique_ptr<ChildProcess>> ChildProcess::Start(const Options& options
   std::error_code ignored;
   if (!options.working_folder.empty() &&
       !std::filesystem::is_directory(options.working_folder, ignored))
-    return OutputError(fmt::format("{}: cannot be run in the folder {}: it is gone", name,
-                                   options.working_folder.string()));
+    return OutputError(fmt::format("{}: cannot be run in the folder {}: it does not exist any more",
+                                   name, options.working_folder.string()));
   std::vector<char*> argv;
   for (const std::string& word : options.words) argv.push_back(const_cast<char*>(word.c_str()));
   argv.push_back(nullptr);
@@ -209,7 +209,7 @@ Error ChildProcess::Failure(const std::string& reason) const {
 }
 
 Result<void> ChildProcess::Write(std::span<const uint8_t> bytes, double patience_s) {
-  if (input_ < 0) return Failure("takes in no more");
+  if (input_ < 0) return Failure("reads no more");
   timeval patience{};
   patience.tv_sec = static_cast<time_t>(patience_s);
   patience.tv_usec = static_cast<suseconds_t>(1e6 * (patience_s - std::floor(patience_s)));
@@ -224,11 +224,11 @@ Result<void> ChildProcess::Write(std::span<const uint8_t> bytes, double patience
     if (error == EINTR) continue;
     if (error == EAGAIN || error == EWOULDBLOCK) {
       Kill();
-      return Failure(fmt::format("has taken in nothing for {} s and was ended", patience_s));
+      return Failure(fmt::format("has read nothing for {} s and was killed", patience_s));
     }
     const Result<void> end = Finish(patience_s);  // says why the program ended
     if (!end) return end;
-    return Failure(fmt::format("takes in no more: {}", std::strerror(error)));
+    return Failure(fmt::format("reads no more: {}", std::strerror(error)));
   }
   return {};
 }
@@ -240,7 +240,7 @@ Result<void> ChildProcess::Finish(double patience_s) {
   while (!Poll()) {
     if (Clock::now() > give_up) {
       Kill();
-      return Failure(fmt::format("did not end within {} s and was ended", patience_s));
+      return Failure(fmt::format("did not end within {} s and was killed", patience_s));
     }
     std::this_thread::sleep_for(kTick);
   }

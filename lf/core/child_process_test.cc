@@ -96,7 +96,7 @@ TEST_F(ChildProcessTest, ManyComplaintsDoNotBlock) {
 TEST_F(ChildProcessTest, AStuckProgramIsEnded) {
   const auto begin = std::chrono::steady_clock::now();
   auto deaf = Shell("sleep 100");
-  EXPECT_NE(FailureOf(deaf->Write(std::vector<uint8_t>(3'000'000), 0.2)).find("taken in nothing"),
+  EXPECT_NE(FailureOf(deaf->Write(std::vector<uint8_t>(3'000'000), 0.2)).find("read nothing"),
             std::string::npos);
   auto endless = Shell("cat > /dev/null; sleep 100");
   EXPECT_NE(FailureOf(endless->Finish(0.2)).find("did not end"), std::string::npos);

@@ -47,10 +47,11 @@ Result<fs::path> WriteTarget(const fs::path& path) {
     target = fs::canonical(path, error);
     if (error)
       return OutputError(
-          fmt::format("{}: is a link to nowhere: {}", path.string(), error.message()));
+          fmt::format("{}: is a link to a missing file: {}", path.string(), error.message()));
   }
   if (fs::exists(target, error) && !fs::is_regular_file(target, error))
-    return OutputError(fmt::format("{}: exists and is no file; give another name", path.string()));
+    return OutputError(
+        fmt::format("{}: exists and is no regular file; give another name", path.string()));
   return target;
 }
 

@@ -28,17 +28,19 @@ ExampleFocus GuessFocus(const LightField& light_field, const PinholeCamera& came
   }
   if (const std::optional<DepthRange>& range = light_field.depth_range)
     return {2 / (1 / range->near_w + 1 / range->far_w), "the middle of the depth range"};
-  if (!depths.empty()) return {depths[0].distance_w, "where some LF images agree"};
-  return {camera.intrinsics.fx_px * spacing_w, "where neighbours see things a pixel apart"};
+  if (!depths.empty()) return {depths[0].distance_w, "where some LF images agree on a depth"};
+  return {camera.intrinsics.fx_px * spacing_w,
+          "where the disparity between neighbouring LF cameras is one pixel"};
 }
 
 std::string WhyNotSure(const Subject& subject, const Subject& points) {
   std::string why;
   if (points.place_count > 0)
-    why = fmt::format(", and {} of the {} points of the reconstruction that it shows lie at one",
-                      points.depths[0].place_count, points.place_count);
+    why = fmt::format(
+        ", and {} of the {} points of the reconstruction that it shows lie at one depth",
+        points.depths[0].place_count, points.place_count);
   if (subject.textured_count == 0) return "the LF image has no texture" + why;
-  return fmt::format("the LF images around agree on a depth at {} of {} textured places{}",
+  return fmt::format("the neighbouring LF images agree on a depth at {} of {} textured places{}",
                      subject.place_count, subject.textured_count, why);
 }
 
@@ -76,7 +78,7 @@ std::vector<double> CandidatesOf(const std::vector<SubjectDepth>& depths, const 
 Result<ExampleFocus> ChooseFocus(const LightField& light_field, const LfImageStore& store,
                                  const ExampleOptions& options, double spacing_w,
                                  ThreadPool& pool) {
-  if (options.focus_distance_w) return ExampleFocus{*options.focus_distance_w, "as asked for"};
+  if (options.focus_distance_w) return ExampleFocus{*options.focus_distance_w, "as given"};
   LF_ASSIGN_OR_RETURN(const Subject subject, FindSubject(light_field, store, options.camera, pool));
   const auto is_outside = [&](const SubjectDepth& depth) {
     constexpr double kMargin = 1.2;
@@ -100,17 +102,18 @@ Result<ExampleFocus> ChooseFocus(const LightField& light_field, const LfImageSto
   std::string why = WhyNotSure(subject, is_sure(points) ? Subject() : points);
   if (is_contradicted)
     why = fmt::format(
-        "the LF images agree on {:.4g}, and next to none of the {} points of the "
+        "the LF images agree on the distance {:.4g}, but almost none of the {} points of the "
         "reconstruction that the first of them shows lie there",
         subject.depths[0].distance_w, points.place_count);
   else if (subject.is_sure)
     why = fmt::format(
-        "the LF images agree on {:.4g}, beyond the depths of the scene, {:.4g} to {:.4g}",
+        "the LF images agree on the distance {:.4g}, which is outside the depths of the scene, "
+        "{:.4g} to {:.4g}",
         subject.depths[0].distance_w, light_field.depth_range->near_w,
         light_field.depth_range->far_w);
   if (is_sure(points)) {
     ExampleFocus focus = FocusOf(points, "points of the reconstruction");
-    LogInfo("focused at {:.4g} by the points of the reconstruction, since {}", focus.distance_w,
+    LogInfo("focused at {:.4g} by the points of the reconstruction, because {}", focus.distance_w,
             why);
     return focus;
   }
@@ -138,14 +141,13 @@ ExampleAperture ChooseAperture(const ExampleFocus& focus, double fx_px, double s
                            1 / focus.distance_w - 1 / std::max(focus.far_w, focus.distance_w));
   const double copies_px = fx_px * spacing_w * range_per_w;
   if (copies_px > kMostCopies_px)
-    return {kSharpSpacings,
-            fmt::format("which holds one LF camera, since what is away from the focus would fall "
-                        "into copies up to {:.0f} px apart",
-                        copies_px)};
+    return {kSharpSpacings, fmt::format("which holds one LF camera, because out-of-focus objects "
+                                        "would otherwise appear as copies up to {:.0f} px apart",
+                                        copies_px)};
   const double spacings = std::clamp(kMostSpacings * kGoodCopies_px / std::max(copies_px, 1e-9),
                                      kLeastSpacings, kMostSpacings);
-  return {spacings, fmt::format("{:.2g} spacings of LF cameras, whose copies of what is away from "
-                                "the focus are up to {:.2g} px apart",
+  return {spacings, fmt::format("{:.2g} spacings of LF cameras, for which copies of out-of-focus "
+                                "objects are up to {:.2g} px apart",
                                 spacings, copies_px)};
 }
 

@@ -143,20 +143,19 @@ std::optional<ExampleMove> ParseExampleMove(std::string_view name) {
 Result<ExamplePath> MakeExamplePath(const LightField& light_field, const LfImageStore& store,
                                     const ExampleOptions& options, ThreadPool& pool) {
   if (light_field.size() < 2)
-    return InputError(
-        fmt::format("a light field of {} LF camera has no lens to offer: two or more "
-                    "are needed",
-                    light_field.size()));
+    return InputError(fmt::format(
+        "a light field of {} LF camera cannot fill a lens: two or more LF cameras are needed",
+        light_field.size()));
   if (options.camera.value >= light_field.size())
     return InputError(fmt::format("there is no LF camera {}: the light field has 0 to {}",
                                   options.camera.value, light_field.size() - 1));
   const PinholeCamera camera = light_field.Camera(options.camera);
   const double spacing_w = MedianSpacing(light_field);
   if (!(spacing_w > 0))
-    return InputError(fmt::format(
-        "most of the {} LF cameras stand where another one does: were the images listed "
-        "twice, or are the positions missing? lfimport names them",
-        light_field.size()));
+    return InputError(
+        fmt::format("most of the {} LF cameras are at the position of another one: were the images "
+                    "listed twice, or are the positions missing? lfimport names them",
+                    light_field.size()));
   const Reach reach = CaptureReach(light_field, camera, 400);
   LF_ASSIGN_OR_RETURN(const ExampleFocus focus,
                       ChooseFocus(light_field, store, options, spacing_w, pool));

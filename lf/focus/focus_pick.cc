@@ -233,7 +233,7 @@ Result<void> LoadViews(const LightField& field, const LfImageStore& store, const
   if (views->size() > kLeastViews) return {};
   for (const auto& error : errors)
     if (error) return *error;
-  return InputError("fewer than four LF cameras around see this: its distance cannot be told");
+  return InputError("fewer than four LF cameras see this point: its distance cannot be measured");
 }
 
 }  // namespace
@@ -252,7 +252,8 @@ Result<FocusPick> FindFocus(const LightField& light_field, const LfImageStore& s
   const SearchRay search = MakeSearchRay(frame, ray, focal_px);
   std::vector<View> views = ChooseViews(light_field, search, frame.aperture.radius_w);
   if (views.size() <= kLeastViews)
-    return InputError("fewer than four LF cameras look this way: the distance cannot be told");
+    return InputError(
+        "fewer than four LF cameras look in this direction: the distance cannot be measured");
   const DepthSweep sweep = MakeSweep(views);
   LF_RETURN_IF_ERROR(LoadViews(light_field, store, search, sweep, pool, &views));
 
@@ -271,13 +272,13 @@ Result<FocusPick> FindFocus(const LightField& light_field, const LfImageStore& s
   }
   if (texture < kLeastTexture || agreements.empty())
     return InputError(
-        "nothing to focus on: the surroundings look alike at all distances. Click on an edge or a "
-        "texture");
+        "nothing to focus on: the LF images look the same here at all distances. Click on an edge "
+        "or a texture");
   const double score = agreements[best].score;
   if (score < kLeastAgreement || agreements[best].texture < kLeastTexture)
     return InputError(
-        "the LF images around do not agree on a distance here. Click on an edge or a texture, away "
-        "from outlines of things in front");
+        "the LF images do not agree on a distance here. Click on an edge or a texture, away from "
+        "outlines of things in front");
   // The rival is the best of the other peaks.
   constexpr size_t kPeakWidth = 4;
   std::vector<double> scores;

@@ -93,9 +93,10 @@ Result<Head> ReadHead(const entry_file::Source& source, const std::string& bytes
   Head head;
   std::memcpy(&head, bytes.data(), sizeof(head));
   if (head.shard_count != RayMap::kShards || head.is_too_coarse > 1)
-    return InputError(fmt::format("{}: {} shards, too coarse: {}; expected {} shards, and 0 or 1",
-                                  source.name(), head.shard_count, head.is_too_coarse,
-                                  RayMap::kShards));
+    return InputError(
+        fmt::format("{}: has {} shards, and the mark {} for cells that are too coarse: expected {} "
+                    "shards, and 0 or 1",
+                    source.name(), head.shard_count, head.is_too_coarse, RayMap::kShards));
   constexpr uint64_t kLeast = RayMap::kShards * sizeof(ShardHead);
   if (source.left() < kLeast || head.cell_count > (source.left() - kLeast) / sizeof(BinnedCell))
     return InputError(
@@ -105,10 +106,10 @@ Result<Head> ReadHead(const entry_file::Source& source, const std::string& bytes
   if (source.left() > size_bytes)
     return source.Damaged(fmt::format("{} bytes follow its end", source.left() - size_bytes));
   if (head.cell_count > max_cells)
-    return InputError(fmt::format(
-        "{}: holds {} cells, {} are allowed; allow as many as when it was written, or begin anew "
-        "without the file",
-        source.name(), head.cell_count, max_cells));
+    return InputError(
+        fmt::format("{}: contains {} cells, but {} are allowed; give the same --max-rays and "
+                    "--memory as when it was written, or remove the file",
+                    source.name(), head.cell_count, max_cells));
   return head;
 }
 

@@ -209,7 +209,8 @@ TEST_F(RayMapFile, MoreCellsThanAllowedAreRefused) {
   const std::string bytes = FileOf(map);
   EXPECT_EQ(ErrorOf(bytes, 100), "");
   const std::string message = ErrorOf(bytes, 99);
-  EXPECT_NE(message.find("a.rays: holds 100 cells, 99 are allowed"), std::string::npos) << message;
+  EXPECT_NE(message.find("a.rays: contains 100 cells, but 99 are allowed"), std::string::npos)
+      << message;
 }
 
 TEST_F(RayMapFile, TruncatedAnywhereItIsRefused) {
@@ -234,7 +235,7 @@ TEST_F(RayMapFile, WhatItSaysIsCheckedBeforeAnythingIsAllocated) {
   const std::string bytes = FileOf(MapOf(RandomRays(50, UINT64_MAX, 1)));
   ExpectError(WithHead(bytes, [](Head* head) { head->version = 7; }), "version 7");
   ExpectError(WithHead(bytes, [](Head* head) { head->shard_count = 16; }), "16 shards");
-  ExpectError(WithHead(bytes, [](Head* head) { head->is_too_coarse = 2; }), "too coarse: 2");
+  ExpectError(WithHead(bytes, [](Head* head) { head->is_too_coarse = 2; }), "the mark 2");
   ExpectError(WithHead(bytes, [](Head* head) { head->cell_count = 51; }), "51 cells need more");
   ExpectError(WithHead(bytes, [](Head* head) { head->cell_count = UINT64_MAX; }), "need more");
   ExpectError(WithHead(bytes, [](Head* head) { head->cell_count = 49; }), "24 bytes follow");

@@ -35,9 +35,10 @@ Result<MotionValue> ValueOf(const Moment& moment, const Quantity& quantity) {
   for (const double component : value) {
     const double in_file = component / quantity.units_per_file;
     if (!quantity.range.Holds(in_file))
-      return ErrorAt(moment, quantity,
-                     fmt::format("{:.6g} must be {}; change what moves it", in_file,
-                                 quantity.range.Describe()));
+      return ErrorAt(
+          moment, quantity,
+          fmt::format("{:.6g} must be {}; change its start value, keyframes or accelerations",
+                      in_file, quantity.range.Describe()));
   }
   return value;
 }
@@ -61,7 +62,8 @@ Result<RigidTransform> PoseTowards(const Moment& moment, const Vec3& centre_w) {
   LF_ASSIGN_OR_RETURN(const Vec3 target_w, ValueOf(moment, *path.look_at_w));
   const Vec3 forward_w = target_w - from_w;
   if (!(forward_w.norm() > 1e-12 * (target_w.norm() + from_w.norm())))
-    return ErrorAt(moment, *path.look_at_w, "the camera stands on the point it looks at");
+    return ErrorAt(moment, *path.look_at_w,
+                   "the camera is at the point that it looks at; move one of them");
   const auto pose = LookAlong(centre_w, forward_w, path.up);
   if (!pose)
     return ErrorAt(

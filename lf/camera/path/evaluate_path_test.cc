@@ -183,7 +183,7 @@ TEST(Path, NamesTheFrameAtWhichAQuantityLeavesItsRange) {
   path.focus = "focus_distance: 2, focus_distance_speed: -1.5";
   EXPECT_TRUE(
       path.Error().ends_with("lens.focus_distance at frame 15 (1.4 s): -0.1 must be above 0 (below "
-                             "1e+09); change what moves it"))
+                             "1e+09); change its start value, keyframes or accelerations"))
       << path.Error();
   path = {};
   path.aperture = "aperture_diameter_mm: 4, aperture_diameter_speed_mm: -3";

@@ -51,7 +51,7 @@ TEST(PathYaml, UnknownKeysAreNamedWithTheNearestAndTheAllowedOnes) {
 TEST(PathYaml, AKeyStandsOnce) {
   TestPath path;
   path.clock += "fps: 25\n";
-  EXPECT_TRUE(Says(path, "fps", "key 'fps' stands twice, first in line 2; remove one"));
+  EXPECT_TRUE(Says(path, "fps", "key 'fps' is given twice, first in line 2; remove one"));
   path = {};
   path.focus = "focus_distance: 2, focus_distance_mm: 2000";
   EXPECT_TRUE(Says(path, "focus_distance_mm",
@@ -164,7 +164,7 @@ TEST(PathYaml, ContradictionsAreErrors) {
   EXPECT_TRUE(
       Says(path, "orientation", "camera.look_at and camera.orientation contradict each other"));
   path.pose = "position: [0, 0, 0], orientation: {yaw: 0}, up: [0, -1, 0]";
-  EXPECT_TRUE(Says(path, "up", "camera.up belongs to look_at"));
+  EXPECT_TRUE(Says(path, "up", "camera.up is only for look_at"));
   path = {};
   path.optics += ", field_of_view_deg: 40";
   EXPECT_TRUE(Says(path, "field_of", "sensor width, focal length and field of view"));
@@ -190,7 +190,7 @@ TEST(PathYaml, KeysFollowEachOtherInTime) {
   TestPath path;
   path.more = "keyframes: {roll_deg: [{time: 1, value: 0}, {time: 1, value: 5}]}\n";
   EXPECT_TRUE(Says(path, "{time: 1, value: 5",
-                   "keyframes.roll_deg: the key at 1 s must be later than that before"));
+                   "keyframes.roll_deg: the key at 1 s must be later than the previous"));
   path.more = "keyframes: {roll_deg: [{time: -1, value: 0}]}\n";
   EXPECT_TRUE(Says(path, "-1", "keyframes.roll_deg.time: expected a number at least 0"));
   path.more = "keyframes: {roll_deg: []}\n";

@@ -109,8 +109,8 @@ QuantityReader::Given QuantityReader::FindInOneUnit(YamlMap* map, const std::str
   for (const auto& [ending, units_per_file] : Endings(unit)) {
     const YamlEntry* entry = map->Find(name + ending);
     if (entry && given)
-      errors_->Add(entry->place, fmt::format("{} and {} say the same; remove one", given.label,
-                                             map->Label(entry->key)));
+      errors_->Add(entry->place, fmt::format("{} and {} state the same quantity; remove one",
+                                             given.label, map->Label(entry->key)));
     if (entry) given = {entry, map->Label(entry->key), units_per_file};
   }
   return given;
@@ -219,9 +219,9 @@ std::optional<KeyframeCurve> QuantityReader::ReadKeyframes(const QuantitySpec& s
     const std::optional<Key> key = ReadKey(*item, spec, keyframes);
     if (!key) return std::nullopt;
     if (!keys.empty() && key->time_s < keys.back().time_s + kLeastKeyDistance_s) {
-      errors_->Add(item->place, fmt::format("{}: the key at {} s must be later than that before "
-                                            "it, at {} s",
-                                            keyframes.label, key->time_s, keys.back().time_s));
+      errors_->Add(item->place,
+                   fmt::format("{}: the key at {} s must be later than the previous key, at {} s",
+                               keyframes.label, key->time_s, keys.back().time_s));
       return std::nullopt;
     }
     keys.push_back(*key);
@@ -229,11 +229,10 @@ std::optional<KeyframeCurve> QuantityReader::ReadKeyframes(const QuantitySpec& s
   if (start && !AddStartAsKey(spec, start, &keys)) return std::nullopt;
   for (size_t i = 1; i < keys.size(); ++i) {
     if (!TurnsHalfway(keys[i - 1], keys[i], CurveOf(spec.shape))) continue;
-    errors_->Add(
-        keyframes.entry->place,
-        fmt::format("{}: half a turn to the key at {} s: neither way round is the shorter; "
-                    "add a key between",
-                    keyframes.label, keys[i].time_s));
+    errors_->Add(keyframes.entry->place,
+                 fmt::format("{}: the rotation to the key at {} s is half a turn, so that its "
+                             "direction is ambiguous; add a key in between",
+                             keyframes.label, keys[i].time_s));
     return std::nullopt;
   }
   return KeyframeCurve(std::move(keys), CurveOf(spec.shape));

@@ -64,9 +64,10 @@ void ReadLookAtKeys(YamlMap* camera, PathDescription* path) {
   const YamlEntry* follow = camera->Find("follow");
   for (const YamlEntry* entry : {up, follow})
     if (entry && path->orientation && !path->look_at_w)
-      errors->Add(entry->place, fmt::format("camera.{} belongs to look_at; remove it, the "
-                                            "orientation says it all",
-                                            entry->key));
+      errors->Add(
+          entry->place,
+          fmt::format("camera.{} is only for look_at; remove it, because the orientation is given",
+                      entry->key));
   if (up) {
     const auto xyz = ReadNumbers(*up->value, "camera.up", 3, NumberRange::Any(), errors);
     if (xyz) path->up = Vec3((*xyz)[0], (*xyz)[1], (*xyz)[2]);
@@ -102,8 +103,8 @@ void ReadOptics(YamlMap* camera, QuantityReader* quantities, PathDescription* pa
   path->field_of_view_rad = quantities->Read(camera, kFieldOfView);
   if (path->sensor_width_w && path->focal_length_w && path->field_of_view_rad)
     errors->Add(path->field_of_view_rad->place,
-                "sensor width, focal length and field of view: two of them give the third; remove "
-                "one");
+                "sensor width, focal length and field of view are all given, but two of them "
+                "determine the third; remove one");
   if (!path->focal_length_w && !path->field_of_view_rad && errors->empty())
     errors->Add(camera->place(),
                 "camera.focal_length_mm (or field_of_view_deg) is missing; write for instance "

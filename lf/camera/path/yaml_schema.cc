@@ -87,7 +87,7 @@ YamlMap::YamlMap(const YamlNode& node, std::string title, YamlErrors* errors)
       entries_.push_back(&entry);
     else
       errors_->AddFirst(entry.place,
-                        fmt::format("key {} stands twice, first in line {}; remove one",
+                        fmt::format("key {} is given twice, first in line {}; remove one",
                                     QuoteForMessage(entry.key), first->second));
   }
 }

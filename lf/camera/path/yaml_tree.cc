@@ -49,7 +49,7 @@ class TreeBuilder : public YAML::EventHandler {
 
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     for (const OpenNode& open : open_)
-      if (open.node == anchors_[anchor]) Fail(mark, "an alias stands inside its own anchor");
+      if (open.node == anchors_[anchor]) Fail(mark, "an alias is inside its own anchor; remove it");
     Add(anchors_[anchor], mark);
   }
 

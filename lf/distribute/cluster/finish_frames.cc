@@ -30,7 +30,7 @@ Result<std::vector<FrameId>> ReadAll(const fs::path& path, size_t last_frame) {
     fault = parsed.error().message;
   }
   return InputError(
-      fmt::format("{}: {}; remove it, and say again which frames to finish", path.string(), fault));
+      fmt::format("{}: {}; remove it, and call lfsubmit --finish again", path.string(), fault));
 }
 
 size_t LastFrame(const ClusterJob& job) {
@@ -72,8 +72,9 @@ Result<size_t> AskToFinish(const ClusterJob& job, const std::string& frames_text
         std::find_if(job.packages.begin(), job.packages.end(),
                      [&](const JobPackage& one) { return Has(one.frames, frame); });
     if (package == job.packages.end())
-      return UsageError(
-          fmt::format("--finish: frame {} is in none of the job's packages", frame.value));
+      return UsageError(fmt::format(
+          "--finish: frame {} is in none of the job's packages: give only frames of the job",
+          frame.value));
     if (IsFinished(job, frame)) continue;
     ++unfinished_count;
     if (!HasRays(job, *package, frame))

@@ -46,7 +46,7 @@ TaskStatus LookAtTask(const ClusterTask& task) {
   if (state->phase != TaskPhase::kRunning) return status;
   // lfrenderer reports progress every second; a batch system notices a dead node later than this.
   if (progress.quiet_s > kLongQuiet_s) {
-    status.message = fmt::format("nothing heard of it for {:.0f} s", progress.quiet_s);
+    status.message = fmt::format("has not reported progress for {:.0f} s", progress.quiet_s);
     return status;
   }
   if (progress.rate <= 0) return status;
@@ -84,7 +84,7 @@ void TakeQueue(const std::vector<QueuedTask>& queue, JobStatus* status) {
 void NoteLost(TaskStatus* task) {
   if (task->state.phase != TaskPhase::kRunning) return;
   task->state.phase = TaskPhase::kInterrupted;
-  task->message = "its process is gone; the checkpoint is there";
+  task->message = "its process has died; its checkpoint is kept";
   task->seconds_left.reset();
 }
 

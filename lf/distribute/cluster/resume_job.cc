@@ -74,13 +74,13 @@ Result<void> MakeRoomForJob(const ClusterJob& job, bool overwrite) {
   const Result<ClusterJob> before = ReadJob(job.output_folder);
   if (!overwrite && !before) return before.error();
   if (!overwrite)
-    return UsageError(fmt::format(
-        "{}: a job was submitted there: lfsubmit --resume {} goes on with it, --status tells how "
-        "far it is, --overwrite removes it and its frames (who removes {}/cluster instead submits "
-        "anew, and keeps the frames)",
-        job.output_folder.string(), folder, folder));
+    return UsageError(
+        fmt::format("{}: a job was submitted there already: continue it with lfsubmit --resume {}, "
+                    "show its progress with --status, or remove it and its frames with --overwrite "
+                    "(to submit anew and keep the frames, remove {}/cluster)",
+                    job.output_folder.string(), folder, folder));
   if (before && HasTasksAtWork(LookAtJob(*before)))
-    return UsageError(fmt::format("{}: is at work: lfsubmit --cancel {} first",
+    return UsageError(fmt::format("{}: is still running: end it with lfsubmit --cancel {} first",
                                   job.output_folder.string(), folder));
   for (const JobPackage& package : job.packages) RemoveFrames(job, package);
   RemoveJob(job);
@@ -117,7 +117,7 @@ Result<std::vector<size_t>> PrepareResume(const ClusterJob& job) {
       return OutputError(fmt::format("{}: cannot be removed: {}", FinishingTask(job).state.string(),
                                      error.message()));
   }
-  LogInfo("going on: {} of {} packages are done", status.Count(TaskPhase::kDone),
+  LogInfo("continuing: {} of {} packages are done", status.Count(TaskPhase::kDone),
           job.packages.size());
   return numbers;
 }
@@ -125,7 +125,7 @@ Result<std::vector<size_t>> PrepareResume(const ClusterJob& job) {
 Result<void> CancelJob(const ClusterJob& job, const std::atomic<bool>& stop) {
   constexpr double kPatience_s = 180;
   if (LookAtJob(job).phase == TaskPhase::kDone) {
-    LogInfo("{}: the film is done: there is nothing to end", job.output_folder.string());
+    LogInfo("{}: the film is done: there is nothing to cancel", job.output_folder.string());
     return {};
   }
   LF_RETURN_IF_ERROR(WriteFileAtomically(job.CancelFile(), ""));
@@ -138,11 +138,12 @@ Result<void> CancelJob(const ClusterJob& job, const std::atomic<bool>& stop) {
     status = LookAtJob(job);
   }
   const std::string again =
-      fmt::format("lfsubmit --resume {} goes on", ShellWord(job.output_folder.string()));
+      fmt::format("continue with lfsubmit --resume {}", ShellWord(job.output_folder.string()));
   if (IsAtWork(status))
-    return OutputError(fmt::format(
-        "{} packages are still at work: they end as soon as they see {}; lfsubmit --status tells",
-        status.Count(TaskPhase::kRunning), job.CancelFile().string()));
+    return OutputError(
+        fmt::format("{} packages are still running: they end as soon as they see {}; lfsubmit "
+                    "--status shows whether they have",
+                    status.Count(TaskPhase::kRunning), job.CancelFile().string()));
   LogInfo("cancelled: {} of {} frames are done, and the state of the others is kept; {}",
           status.frames_done(), status.frame_total(), again);
   return {};
@@ -160,9 +161,11 @@ Result<void> WaitForJob(const ClusterJob& job, const std::atomic<bool>& stop,
         LogWarning("{}", released.error().message);
     SleepOr(stop, 3);
     if (stop)
-      return Error{ErrorKind::kInterrupted,
-                   fmt::format("no longer waiting; the job goes on: lfsubmit --status {} tells",
-                               ShellWord(job.output_folder.string()))};
+      return Error{
+          ErrorKind::kInterrupted,
+          fmt::format(
+              "no longer waiting; the job continues: lfsubmit --status {} shows its progress",
+              ShellWord(job.output_folder.string()))};
   }
 }
 

@@ -54,7 +54,7 @@ Result<void> RunLocally(const ClusterJob& job, const FileLock& /*lock*/,
   }
   for (std::thread& thread : threads) thread.join();
   const std::string again =
-      fmt::format("lfsubmit --resume {} goes on", ShellWord(job.output_folder.string()));
+      fmt::format("continue with lfsubmit --resume {}", ShellWord(job.output_folder.string()));
   if (job.IsCancelled()) return Error{ErrorKind::kInterrupted, "the job was cancelled; " + again};
   if (stop)
     return Error{ErrorKind::kInterrupted,

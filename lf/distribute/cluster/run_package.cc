@@ -181,8 +181,9 @@ std::vector<std::string> PackageWords(const ClusterJob& job, const JobPackage& p
 }
 
 std::string WordsOf(const ProcessEnd& end) {
-  return fmt::format("killed by signal {} ({}){}", end.signal, ::strsignal(end.signal),
-                     end.signal == SIGKILL ? ": by somebody, or for taking too much memory" : "");
+  return fmt::format(
+      "killed by signal {} ({}){}", end.signal, ::strsignal(end.signal),
+      end.signal == SIGKILL ? ": by a user, or by the system because it used too much memory" : "");
 }
 
 std::vector<FrameId> MissingFrames(const ClusterJob& job, const JobPackage& package) {
@@ -210,14 +211,13 @@ Result<void> CheckAllDone(const ClusterJob& job) {
     if (state.phase == TaskPhase::kFailed && kind == ErrorKind::kInterrupted)
       kind = state.exit_code == 0 ? ErrorKind::kOutput : static_cast<ErrorKind>(state.exit_code);
     if (!state.message.empty()) reason += fmt::format(" on {}: {}", state.node, state.message);
-    if (state.phase == TaskPhase::kDone) reason = "done, but they are gone";
+    if (state.phase == TaskPhase::kDone) reason = "done, but their files are missing";
     words += fmt::format("{}{} (frames {}: {})", words.empty() ? "" : "; ", task.name,
                          FrameRangeText(missing.empty() ? package.frames : missing), reason);
   }
   if (words.empty()) return {};
   return Error{
-      kind, fmt::format("{}: not all packages are done: {}; lfsubmit --resume {} goes on "
-                        "with what is there",
+      kind, fmt::format("{}: not all packages are done: {}; continue with lfsubmit --resume {}",
                         job.output_folder.string(), words, ShellWord(job.output_folder.string()))};
 }
 
@@ -272,7 +272,7 @@ Result<TaskState> RunPackage(const ClusterJob& job, size_t number, const std::st
     }
     const ProcessEnd end = *ran;
     if (end.signal == SIGTERM) {
-      LF_RETURN_IF_ERROR(run.End(TaskPhase::kInterrupted, 5, "interrupted before it began"));
+      LF_RETURN_IF_ERROR(run.End(TaskPhase::kInterrupted, 5, "interrupted before it started"));
     } else if (end.signal != 0) {
       ++state.crash_count;
       LF_RETURN_IF_ERROR(run.End(TaskPhase::kInterrupted, 0, WordsOf(end)));
@@ -335,10 +335,11 @@ Result<void> FinishFilm(const ClusterJob& job, const std::string& node,
   printed.Keep();
   LF_RETURN_IF_ERROR(run.End(TaskPhase::kDone, end->exit_code, last));
   if (end->exit_code == 0) return {};
-  return Error{ErrorKind::kBelowRequired,
-               fmt::format("{}; lfsubmit --resume {} -- ARGUMENTS judges the film again by other "
-                           "arguments of lfrenderer, and --overwrite renders it anew",
-                           last, ShellWord(job.output_folder.string()))};
+  return Error{
+      ErrorKind::kBelowRequired,
+      fmt::format("{}; lfsubmit --resume {} -- OPTIONS checks the film again with other options of "
+                  "lfrenderer, such as --allow-missing; --overwrite renders it anew",
+                  last, ShellWord(job.output_folder.string()))};
 }
 
 }  // namespace lf

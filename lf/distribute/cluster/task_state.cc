@@ -100,11 +100,12 @@ Result<TaskState> ParseTaskState(std::string_view text, const std::string& name)
         ValueNamed(phase, {TaskPhase::kWaiting, TaskPhase::kRunning, TaskPhase::kInterrupted,
                            TaskPhase::kDone, TaskPhase::kFailed});
     if (known) state.phase = *known;
-    if (fault.empty() && !known) fault = fmt::format("\"phase\": found \"{}\"", phase);
+    if (fault.empty() && !known)
+      fault = fmt::format("\"phase\": expected the name of a phase, found \"{}\"", phase);
   }
   if (!fault.empty())
     return InputError(fmt::format(
-        "{}: is no state of a task: {}; remove it: what was rendered is kept", name, fault));
+        "{}: is no state of a task: {}; remove it (rendered frames are kept)", name, fault));
   return state;
 }
 

@@ -30,7 +30,7 @@ Result<bool> IsThere(const fs::path& path) {
   if (!fs::exists(fs::symlink_status(path, error))) return false;
   if (IsPackedStore(path)) return true;
   return UsageError(
-      fmt::format("{}: is there already, and is no packed store: give another name, or remove it",
+      fmt::format("{}: exists already, and is no packed store: give another name, or remove it",
                   path.string()));
 }
 
@@ -106,9 +106,9 @@ class Compressor {
 };
 
 Error Compressor::Interrupted() const {
-  return {
-      ErrorKind::kInterrupted,
-      fmt::format("interrupted after {} of {} LF images: --resume goes on", now_.done, now_.total)};
+  return {ErrorKind::kInterrupted,
+          fmt::format("interrupted after {} of {} LF images: --resume continues", now_.done,
+                      now_.total)};
 }
 
 void Compressor::AddOne(PackedStoreWriter* writer, LfImageId id) {
@@ -181,8 +181,8 @@ Result<void> Compressor::CheckFiles(const PackedStoreWriter& writer) {
     const std::lock_guard lock(mutex_);
     if (!error_)
       error_ = InputError(fmt::format(
-          "{}: has {} bytes, and had {} when it was coded for the unfinished {}: it was changed, "
-          "or is another light field's; --overwrite begins anew",
+          "{}: has {} bytes, but had {} when it was encoded for the unfinished {}: it was changed, "
+          "or belongs to another light field; --overwrite starts the store again",
           light_field.ImagePath(id).string(), now, then, options_.store.string()));
   });
   if (error_) return *error_;
@@ -201,8 +201,9 @@ Result<void> Compressor::Write(FileLock lock) {
   report_.resumed_count = source_.light_field.size() - ids.size();
   now_.total = source_.light_field.size();
   now_.done = report_.resumed_count;
-  LogDebug("{}: {} LF images to be coded, {} are; codec {}; {} threads", options_.store.string(),
-           ids.size(), report_.resumed_count, NameOf(settings_), pool_.thread_count());
+  LogDebug("{}: {} LF images to be encoded, {} are encoded; codec {}; {} threads",
+           options_.store.string(), ids.size(), report_.resumed_count, NameOf(settings_),
+           pool_.thread_count());
   pool_.ForEach(ids.size(), [&](size_t i) { AddOne(&writer, ids[i]); });
   std::sort(report_.skipped.begin(), report_.skipped.end(),
             [](const auto& a, const auto& b) { return a.name < b.name; });
@@ -262,12 +263,12 @@ Result<void> Compressor::CheckTarget() {
   report_.was_there = is_there && options_.verify;
   if (report_.was_there) return {};
   if (is_there)
-    return UsageError(fmt::format(
-        "{}: is there already: --overwrite replaces it, --verify checks it", store.string()));
+    return UsageError(fmt::format("{}: exists already: --overwrite replaces it, --verify checks it",
+                                  store.string()));
   if (is_unfinished)
     return UsageError(
-        fmt::format("{}: there is an unfinished store of this name: --resume goes on "
-                    "with it, --overwrite begins anew",
+        fmt::format("{}: an unfinished store of this name exists: --resume continues it, "
+                    "--overwrite starts it again",
                     store.string()));
   return {};
 }

@@ -28,8 +28,9 @@ struct Needed {
 // Refuses packed stores, because lossy compression would be applied twice.
 Result<void> CheckNotPacked(const LightField& light_field) {
   if (!HoldsPackedStore(light_field)) return {};
-  return UsageError(fmt::format("{}: is a packed store already: compress what it was made from",
-                                light_field.folder.string()));
+  return UsageError(
+      fmt::format("{}: is a packed store already: compress the light field from which it was made",
+                  light_field.folder.string()));
 }
 
 }  // namespace
@@ -50,7 +51,7 @@ Result<CompressSource> SourceOfPackages(std::span<const Package> packages, bool 
     const Package& package = packages[p];
     if (package.whole != packages.front().whole)
       return UsageError(
-          fmt::format("{} and {} are of different light fields: compress each by itself",
+          fmt::format("{} and {} are of different light fields: compress them into two stores",
                       packages.front().name, package.name));
     for (size_t i = 0; i < package.images.size(); ++i) {
       const PackageImage& image = package.images[i];
@@ -60,7 +61,7 @@ Result<CompressSource> SourceOfPackages(std::span<const Package> packages, bool 
     }
   }
   if (needed.empty())
-    return UsageError("no frame of the packages takes a ray: nothing to compress");
+    return UsageError("no frame of the packages uses an LF image: there is nothing to compress");
 
   LF_RETURN_IF_ERROR(CheckNotPacked(packages.front().light_field));
   CompressSource source;

@@ -25,9 +25,11 @@ Result<double> FindThreshold(const CompressSource& source, const CodecSettings& 
                              double psnr_db, ThreadPool& pool,
                              const std::function<bool()>& is_interrupted) {
   const Error interrupted = {ErrorKind::kInterrupted,
-                             "interrupted while the threshold was looked for"};
+                             "interrupted while the threshold was searched"};
   if (settings.profile == CodecProfile::kLossless)
-    return UsageError("--target-psnr: nothing is lost by --profile lossless");
+    return UsageError(
+        "--target-psnr cannot be used with --profile lossless, which loses nothing: leave one of "
+        "them out");
   const LightField& light_field = source.light_field;
   std::vector<Result<RecordedImage>> images(std::min(kLookedAt, light_field.size()),
                                             Error{ErrorKind::kInput, ""});
@@ -58,7 +60,9 @@ Result<double> FindThreshold(const CompressSource& source, const CodecSettings& 
   if (is_interrupted()) return interrupted;
   if (best < psnr_db)
     return UsageError(
-        fmt::format("--target-psnr {}: the best of these settings is {:.1f} dB", psnr_db, best));
+        fmt::format("--target-psnr {}: the best quality of these settings is {:.1f} dB: give a "
+                    "lower one, or --profile lossless",
+                    psnr_db, best));
   int good = 0, bad = kSteps;
   while (bad - good > 1) {
     const int middle = (good + bad) / 2;

@@ -19,11 +19,13 @@ namespace fs = std::filesystem;
 Result<void> CheckStoreFacts(const CompressSource& source, const VerifyOptions& options) {
   LF_ASSIGN_OR_RETURN(const PackedStoreFacts facts, ReadPackedStore(options.store));
   if (facts.whole != source.whole)
-    return InputError(fmt::format("{}: is of another light field", options.store.string()));
+    return InputError(fmt::format(
+        "{}: is a packed store of another light field: give the light field that it was made from",
+        options.store.string()));
   if (const std::string asked = NameOf(options.settings); facts.codec != asked)
     return InputError(
-        fmt::format("{}: was made with other settings: {}; asked for: {}: give the "
-                    "options that it was made with",
+        fmt::format("{}: was made with the settings {}, but the options say {}: give the options "
+                    "that it was made with",
                     options.store.string(), facts.codec, asked));
   return CheckIsOfPlan(options.store, source.light_field, options.plan, options.any_shards);
 }
@@ -58,7 +60,7 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
     const PixelRect rect = RectToRecord(light_field, id, source.rects[i]);
     const Result<RecordedImage> image = ReadRecordedImage(light_field, id, rect);
     if (codes[i].bytes == 0) {
-      if (image) return InputError("has no code, but can be read");
+      if (image) return InputError("is not in the store, but its file can be read");
       return {};
     }
     LF_RETURN_IF_ERROR(image);
@@ -70,7 +72,7 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
     LF_RETURN_IF_ERROR(DecodeImage(bytes->code, &decoded));
     if (codes[i].rect != again.rect || codes[i].values != again.values ||
         bytes->code != again.code || bytes->mask != again.mask)
-      return InputError("has another code than its file gives");
+      return InputError("differs in the store from what its file encodes to");
     const std::lock_guard lock(mutex);
     readers.push_back(std::move(reader));
     ++verified;
@@ -89,17 +91,17 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
     progress(++done);
   });
   if (interrupted)
-    return Error{ErrorKind::kInterrupted,
-                 fmt::format("interrupted after {} of {} LF images were verified: the store is "
-                             "there",
-                             done, light_field.size())};
+    return Error{
+        ErrorKind::kInterrupted,
+        fmt::format("interrupted after {} of {} LF images were verified: the store is complete",
+                    done, light_field.size())};
   const auto count = std::count_if(faults.begin(), faults.end(),
                                    [](const auto& fault) { return fault.has_value(); });
   if (count == 0) return verified;
   const auto first = static_cast<size_t>(
       std::find_if(faults.begin(), faults.end(), [](const auto& f) { return f.has_value(); }) -
       faults.begin());
-  return InputError(fmt::format("{}: {} of {} codes are wrong; the first: {}: {}",
+  return InputError(fmt::format("{}: {} of {} encoded images are wrong; the first: {}: {}",
                                 options.store.string(), count, light_field.size(),
                                 light_field.image_names[first], *faults[first]));
 }

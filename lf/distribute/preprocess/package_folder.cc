@@ -49,9 +49,9 @@ Result<PackageFolder> PackageFolder::Open(const fs::path& folder, const std::str
   RemoveFiles(leftovers);
   const size_t there = opened.Packages().size();
   if (there > 0 && !overwrite)
-    return UsageError(
-        fmt::format("{}: holds {} packages already: --overwrite replaces them, or give another -o",
-                    folder.string(), there));
+    return UsageError(fmt::format(
+        "{}: contains {} packages already: replace them with --overwrite, or give another -o",
+        folder.string(), there));
   return opened;
 }
 

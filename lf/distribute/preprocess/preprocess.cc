@@ -182,11 +182,11 @@ Result<void> Preprocessor::CheckOptions() const {
   LF_RETURN_IF_ERROR(CheckOpacity(light_field_.encoding, options_.mode));
   if (Rebins(options_.mode) && options_.max_image_count)
     return UsageError(
-        "--max-images: rebinned rays are shared by frames, so that no limit of each frame's LF "
-        "images can be kept: leave it out, or use --mode collect");
+        "--max-images cannot be used with rebinned rays, because frames share the rays of all LF "
+        "images: leave it out, or use --mode collect");
   if (!Collects(options_.mode) && options_.lens_weights != LensWeights::kNone)
     return UsageError(fmt::format(
-        "--lens-weights {}: --mode rebin collects no rays that could be weighed: leave it out",
+        "--lens-weights {}: --mode rebin collects no rays that could be weighted: leave it out",
         NameOf(options_.lens_weights)));
   if (options_.lens_weights == LensWeights::kArea)
     for (const FrameId frame : frames_)
@@ -352,7 +352,8 @@ Result<void> Preprocessor::CountMissing(const Package& package, PackageForecast*
       report_.first_missing =
           package.light_field.ImagePath(LfImageId{static_cast<uint32_t>(i)}).string();
     if (is_missing && options_.strict)
-      return InputError(fmt::format("--strict: {}: is not there, or empty", report_.first_missing));
+      return InputError(
+          fmt::format("--strict: {}: does not exist, or is empty", report_.first_missing));
   }
   return {};
 }

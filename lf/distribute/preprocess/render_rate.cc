@@ -54,8 +54,9 @@ Result<RenderRate> MeasureRate(const ImageIndex& index, const RenderCamera& fram
     return InputError(
         needs.images.empty()
             ? "no LF image is needed"
-            : fmt::format("{}: not there, nor any other of the LF images that were looked for",
-                          light_field.ImagePath(needs.images.front().id).string()));
+            : fmt::format(
+                  "{}: does not exist, nor does any other of the LF images that were searched",
+                  light_field.ImagePath(needs.images.front().id).string()));
   // Nothing else runs, so the CPU time of the process is that of the working threads.
   const std::clock_t lens_start = std::clock();
   const FrameLens lens(index, frame, needs_options.lens_weights, needs_options.select, pool);

@@ -123,7 +123,7 @@ VideoWriter::~VideoWriter() {
 Result<std::unique_ptr<VideoWriter>> VideoWriter::Open(const fs::path& path, int width, int height,
                                                        double fps, double patience_s) {
   if (width < 2 || height < 2 || !(fps > 0 && std::isfinite(fps)))
-    return OutputError(fmt::format("{}: no video has {} x {} pixels at {} frames per second",
+    return OutputError(fmt::format("{}: a video cannot have {} x {} pixels at {} frames per second",
                                    path.string(), width, height, fps));
   auto state = std::make_unique<State>();
   state->path = path;

@@ -82,7 +82,7 @@ Source::~Source() {
 
 Result<void> Source::Read(void* to, size_t size) {
   if (size > left_)
-    return InputError(fmt::format("{}: is truncated: {} bytes are missing at least; {}", name_,
+    return InputError(fmt::format("{}: is truncated: at least {} bytes are missing; {}", name_,
                                   size - left_, kind_.if_broken));
   left_ -= size;
   if (size == 0) return {};

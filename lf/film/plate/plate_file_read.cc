@@ -132,8 +132,8 @@ Result<void> PlateReader::AddWide(SensorPlate* plate) {
       if (word.index < next_index || word.index >= word_count ||
           word.count <= SensorPlate::kMaxCount || word.count > uint64_t{1} << 44 ||
           word.sum > 65535 * word.count)
-        return source_->Damaged(fmt::format("wide word {} (sum {}, count {}) is none", word.index,
-                                            word.sum, word.count));
+        return source_->Damaged(fmt::format("wide word {} (sum {}, count {}) is invalid",
+                                            word.index, word.sum, word.count));
       next_index = word.index + 1;
       const auto in_row = static_cast<int>(word.index % row_words);
       plate->Add(in_row / channels_, static_cast<int>(word.index / row_words), in_row % channels_,

@@ -49,20 +49,21 @@ std::vector<CaptureWarning> WarnOfDirections(const LightField& light_field) {
   }
   if (away.empty()) return {};
   if (converges && 2 * away.size() > axes.size())
-    return {
-        {"diverging-axes",
-         fmt::format("{} of {} cameras look away from ({:.4g}, {:.4g}, {:.4g}), where their "
-                     "optical axes meet. Right for a capture that looks outwards; else the axes "
-                     "are mixed up: transforms.json wants cameras with x right, y up, looking "
-                     "along -z; negate the 2nd and 3rd column of each transform_matrix",
-                     away.size(), axes.size(), point->x(), point->y(), point->z()),
-         away.size(),
-         {}}};
-  return {WarningAbout(light_field, "facing-away",
-                       fmt::format("{} of {} cameras look away from what the others look at: a "
-                                   "failed calibration? Leave them out with --exclude",
-                                   away.size(), axes.size()),
-                       away)};
+    return {{"diverging-axes",
+             fmt::format(
+                 "{} of {} cameras look away from ({:.4g}, {:.4g}, {:.4g}), where their optical "
+                 "axes meet. This is right for a capture that looks outwards. Otherwise the camera "
+                 "axes are wrong: in transforms.json, cameras have x to the right and y up, and "
+                 "look along -z; negate the 2nd and 3rd column of each transform_matrix",
+                 away.size(), axes.size(), point->x(), point->y(), point->z()),
+             away.size(),
+             {}}};
+  return {
+      WarningAbout(light_field, "facing-away",
+                   fmt::format("{} of {} cameras look away from the point that the others look at. "
+                               "If their calibration has failed, leave them out with --exclude",
+                               away.size(), axes.size()),
+                   away)};
 }
 
 std::vector<CaptureWarning> WarnOfUpsideDown(const LightField& light_field) {
@@ -86,13 +87,13 @@ std::vector<CaptureWarning> WarnOfUpsideDown(const LightField& light_field) {
   for (size_t i = 0; i < ups.size(); ++i)
     if (ups[i].dot(axis) < -0.5) down.push_back(IdOf(i));
   if (down.empty()) return {};
-  return {
-      WarningAbout(light_field, "upside-down",
-                   fmt::format("{} of {} images are upside down beside the others: right if the "
-                               "camera was turned over; else rotate those poses by 180 degrees "
-                               "about their optical axis, or leave them out with --exclude",
-                               down.size(), ups.size()),
-                   down)};
+  return {WarningAbout(
+      light_field, "upside-down",
+      fmt::format("{} of {} images are upside down compared with the others. This is right if the "
+                  "camera was turned over. Otherwise rotate these poses by 180 degrees about their "
+                  "optical axis, or leave them out with --exclude",
+                  down.size(), ups.size()),
+      down)};
 }
 
 std::vector<CaptureWarning> WarnOfRepeats(const LightField& light_field,
@@ -116,12 +117,12 @@ std::vector<CaptureWarning> WarnOfRepeats(const LightField& light_field,
   for (size_t i = 0; i < nearest_w.size(); ++i)
     if (nearest_w[i] <= kSamePlace * typical_w + rounding_w(i)) repeated.push_back(ids[i]);
   if (repeated.empty()) return {};
-  return {WarningAbout(light_field, "repeated-positions",
-                       fmt::format("{} of {} cameras share their position with another: rays from "
-                                   "there count twice, and none come from between. If images were "
-                                   "listed twice, leave one of each out with --exclude",
-                                   repeated.size(), light_field.size()),
-                       repeated)};
+  return {WarningAbout(
+      light_field, "repeated-positions",
+      fmt::format("{} of {} cameras are at the same position as another: rays from there count "
+                  "twice. If images were listed twice, leave one of each pair out with --exclude",
+                  repeated.size(), light_field.size()),
+      repeated)};
 }
 
 std::vector<CaptureWarning> WarnOfBrackets(const FoundBrackets& brackets, bool masks_clipped) {
@@ -130,8 +131,9 @@ std::vector<CaptureWarning> WarnOfBrackets(const FoundBrackets& brackets, bool m
                               : masks_clipped    ? "--gain-from-exif"
                                                  : "--gain-from-exif --mask-clipped";
   const char* const why =
-      brackets.are_gains ? "highlights that the brighter ones clip are averaged in"
-                         : "they are averaged as if exposed alike, and highlights stay clipped";
+      brackets.are_gains
+          ? "clipped highlights of the brighter images are averaged with the others"
+          : "they are averaged as if they had the same exposure, and highlights stay clipped";
   return {{"brackets",
            fmt::format("{} images are exposure brackets of {} poses: {}. Write a light field that "
                        "merges them to linear light with lfimport {} -o DIR",
@@ -145,17 +147,17 @@ std::vector<CaptureWarning> WarnOfSparseness(const Density& density, double widt
   constexpr double kVisibleShare = 0.01;
   const double share = density.near_ghost_px / width_px;
   if (!(share > kVisibleShare)) return {};
-  return {{"sparse",
-           fmt::format(
-               "The cameras stand {:.3g} degrees apart, seen from distance {:.4g}: what lies "
-               "25 % before or behind the focus plane appears as copies {:.3g} or {:.3g} "
-               "pixels of the recorded images apart ({:.2g} % of their width), not as blur. "
-               "Record cameras at most {:.3g} apart for 1 %, or film small apertures, and "
-               "scenes of little depth",
-               DegreesFromRadians(density.spacing_rad), density.distance_w, density.near_ghost_px,
-               density.far_ghost_px, 100 * share, spacing_w * kVisibleShare / share),
-           0,
-           {}}};
+  return {
+      {"sparse",
+       fmt::format(
+           "The cameras are {:.3g} degrees apart, seen from distance {:.4g}: objects 25 % in front "
+           "of or behind the focus plane will not be blurred, but appear as copies {:.3g} or "
+           "{:.3g} pixels of the recorded images apart ({:.2g} % of their width). For 1 %, record "
+           "cameras at most {:.3g} apart; or film with small apertures, and scenes of little depth",
+           DegreesFromRadians(density.spacing_rad), density.distance_w, density.near_ghost_px,
+           density.far_ghost_px, 100 * share, spacing_w * kVisibleShare / share),
+       0,
+       {}}};
 }
 
 }  // namespace lf

@@ -30,7 +30,10 @@ Result<std::unique_ptr<CodeChecker>> CodeChecker::Open(const LightField& light_f
 CodeChecker::Fault CodeChecker::Check(LfImageId id, bool decode) const {
   const PackedCode& code = codes_[id.value];
   const std::string name = light_field_.ImagePath(id).string();
-  if (code.bytes == 0) return {true, fmt::format("{}: has no code in the packed store", name)};
+  if (code.bytes == 0)
+    return {true, fmt::format("{}: is not in the packed store, because it was missing or broken "
+                              "when the store was made",
+                              name)};
   const Intrinsics& k = light_field_.intrinsics[light_field_.cameras[id.value].intrinsics_index];
   if (Intersection(code.rect, {0, 0, k.width_px, k.height_px}) != code.rect)
     return {false, fmt::format("{}: has more pixels than the calibration says", name)};

@@ -93,8 +93,8 @@ Result<size_t> ExcludeImages(std::span<const std::string> patterns, LightField* 
         fmt::format("\"{}\" names none of the {} images to exclude; the first is called {}",
                     *unused, light_field->size(), light_field->image_names[0]));
   if (kept.empty())
-    return InputError(
-        fmt::format("all {} images are excluded: a light field needs some", light_field->size()));
+    return InputError(fmt::format("all {} images are excluded: a light field needs at least one",
+                                  light_field->size()));
   const size_t removed = light_field->size() - kept.size();
   const bool has_masks = !light_field->mask_names.empty();
   for (size_t i = 0; i < kept.size(); ++i) {

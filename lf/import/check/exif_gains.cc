@@ -35,10 +35,10 @@ Result<void> CheckAllAreStated(std::span<const StatedExposure> stated,
   }
   if (!first) return {};
   if (!first->fault.empty())
-    return InputError(fmt::format(
-        "--gain-from-exif: {}; {} of {} images do not tell their exposure: leave them out with "
-        "--exclude",
-        first->fault, fault_count, stated.size()));
+    return InputError(
+        fmt::format("--gain-from-exif: {}; {} of {} images do not state their exposure: leave them "
+                    "out with --exclude",
+                    first->fault, fault_count, stated.size()));
   return InputError(fmt::format(
       "--gain-from-exif: {}: states no {}; expected exposure time, f-number and ISO sensitivity as "
       "Exif data of a JPEG, TIFF or PNG file, or in a camera raw file ({} of {} images lack some): "

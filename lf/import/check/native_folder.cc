@@ -56,10 +56,10 @@ Result<void> CheckMayWrite(const fs::path& source, const fs::path& folder, bool 
   if (force || !fs::exists(path, error)) return {};
   const fs::path read = fs::is_directory(source, error) ? source / kCalibrationName : source;
   if (fs::exists(read, error) && fs::equivalent(read, path, error))
-    return UsageError(fmt::format(
-        "{} is what would be read, and what it was made from is not here: write to another folder, "
-        "or replace it (--force)",
-        path.string()));
+    return UsageError(
+        fmt::format("{} is the calibration that is read, and would be replaced: write to another "
+                    "folder, or replace it (--force)",
+                    path.string()));
   LF_ASSIGN_OR_RETURN(const bool is_ours, IsAsWritten(path, kImportProgram));
   if (is_ours) return {};
   return UsageError(
@@ -71,11 +71,11 @@ Result<void> CheckMayWrite(const fs::path& source, const fs::path& folder, bool 
 
 Result<std::string> WriteNativeFolder(const fs::path& folder, LightField* light_field) {
   if (HoldsPackedStore(*light_field))
-    return UsageError(
-        fmt::format("{}: a packed store holds its LF images itself, and a transforms.json can only "
-                    "name image files: every program takes the store as LIGHTFIELD, as it is; to "
-                    "change a light field, import it from its image files and compress it again",
-                    light_field->folder.string()));
+    return UsageError(fmt::format(
+        "{}: a packed store cannot be converted, because it contains its LF images and a "
+        "transforms.json can only refer to image files: use the store as LIGHTFIELD of any "
+        "program; to change the light field, import it from its image files and compress it again",
+        light_field->folder.string()));
   LF_RETURN_IF_ERROR(CreateFolder(folder));
   LF_RETURN_IF_ERROR(MoveToFolder(folder, light_field));
   const fs::path path = folder / kCalibrationName;

@@ -85,7 +85,7 @@ TEST_F(NativeFolderTest, WhatOthersWroteIsNotReplacedUnforced) {
     const Result<void> may = CheckMayWrite(source, out, false);
     ASSERT_FALSE(may);
     EXPECT_EQ(may.error().kind, ErrorKind::kUsage);
-    EXPECT_NE(may.error().message.find("is what would be read"), std::string::npos);
+    EXPECT_NE(may.error().message.find("is the calibration that is read"), std::string::npos);
     EXPECT_TRUE(CheckMayWrite(source, out, true));
   }
   ASSERT_TRUE(WriteFileAtomically(out / "transforms.json", "{}"));

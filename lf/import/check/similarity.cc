@@ -43,7 +43,7 @@ Result<Similarity> ParseSimilarity(std::string_view text) {
   LF_ASSIGN_OR_RETURN(const std::vector<double> numbers, ParseNumbers(text));
   if (numbers.size() != 16)
     return InputError(
-        fmt::format("{} numbers: expected 16, the rows of a 4x4 matrix",
+        fmt::format("found {} numbers: expected 16, the rows of a 4x4 matrix",
                     numbers.size() > 16 ? "more than 16" : fmt::to_string(numbers.size())));
   const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> m(numbers.data());
   if (m.row(3) != Eigen::RowVector4d(0, 0, 0, 1))

@@ -276,11 +276,10 @@ Result<MatchedExposure> MatchExposure(const LightField& light_field, const LfIma
       views.begin(), views.end(), [](const ExposureView& view) { return view.grey != nullptr; }));
   if (tied == 0 || 2 * tied < readable)
     return InputError(fmt::format(
-        "--match-exposure: the gains of {} of {} LF images can be told, from {} places that two "
-        "of them show{}: LF cameras must overlap, the scene have texture, and its light stand "
-        "still "
-        "relative to it (as beside a turntable it does not). Import without --match-exposure, or "
-        "state lf_gain (doc/formats/transforms_json.md)",
+        "--match-exposure: the gains of only {} of {} LF images can be estimated, from {} places "
+        "that two of them show{}: LF images must overlap, the scene must have texture, and its "
+        "light must not move relative to the scene (as it does on a turntable). Import without "
+        "--match-exposure, or state lf_gain (doc/formats/transforms_json.md)",
         tied, readable, samples.size(),
         fit.spread > 0 ? fmt::format(" and whose light differs by {:.0f} % from place to place",
                                      100 * fit.spread)

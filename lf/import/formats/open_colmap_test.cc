@@ -262,7 +262,7 @@ TEST_F(ReadColmapTest, OfSeveralModelsTheLargestIsTaken) {
   const std::string messages = testing::internal::GetCapturedStderr();
   ASSERT_TRUE(light_field) << light_field.error().message;
   EXPECT_EQ(light_field->size(), 2u);
-  EXPECT_HAS(messages, "holds 3 COLMAP models: taking 2, with 2 of 5 images");
+  EXPECT_HAS(messages, "holds 3 COLMAP models: using 2, with 2 of 5 images");
   EXPECT_EQ(Open(folder_ / "sparse/0")->size(), 1u);
 }
 

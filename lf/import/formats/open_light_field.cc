@@ -60,23 +60,24 @@ std::string_view StanfordOptionOf(const OpenOptions& options) {
 Result<void> CheckNoStanfordOptions(const fs::path& path, const OpenOptions& options) {
   const std::string_view option = StanfordOptionOf(options);
   if (option.empty()) return {};
-  return UsageError(fmt::format(
-      "{} is for folders of images whose names do not tell everything; {} states its own", option,
-      path.string()));
+  return UsageError(
+      fmt::format("{} is only for folders of images whose names lack this value, but {} contains "
+                  "its own: leave the option out",
+                  option, path.string()));
 }
 
 Result<void> CheckNoFov(const fs::path& path, const OpenOptions& options) {
   if (!options.fov_deg) return {};
-  return UsageError(fmt::format(
-      "--fov-deg is for poses of Airborne Optical Sectioning, which do not tell it; {} is of "
-      "another kind",
-      path.string()));
+  return UsageError(
+      fmt::format("--fov-deg is only for poses of Airborne Optical Sectioning, which lack the "
+                  "field of view; {} is of another kind: leave the option out",
+                  path.string()));
 }
 
 Result<void> CheckNoImagesFolder(const fs::path& path, const OpenOptions& options) {
   if (!options.images_folder) return {};
   return UsageError(fmt::format(
-      "--images is for calibrations whose image files are elsewhere; {} is where its own are",
+      "--images cannot be used with {}, which contains its own images: leave the option out",
       path.string()));
 }
 
@@ -92,10 +93,10 @@ Result<LightField> OpenPackedStore(const fs::path& path, const OpenOptions& opti
   LF_RETURN_IF_ERROR(CheckNoFov(path, options));
   LF_RETURN_IF_ERROR(CheckNoImagesFolder(path, options));
   if (options.bayer)
-    return UsageError(
-        fmt::format("--bayer: {} is a packed store, whose pixels are coded as what "
-                    "they are: import its light field with it, and compress again",
-                    path.string()));
+    return UsageError(fmt::format(
+        "--bayer cannot be used with the packed store {}, whose pixels are already encoded: import "
+        "its image files with lfimport --bayer, and compress them again",
+        path.string()));
   LogDebug("{}: opened as a packed store", path.string());
   LF_ASSIGN_OR_RETURN(PackedStoreFacts facts, ReadPackedStore(path));
   return std::move(facts.light_field);
@@ -177,11 +178,11 @@ Result<void> CompleteEncoding(const OpenOptions& options, const fs::path& path,
   if (!is_raw || encoding.bayer != BayerPattern::kNone) return {};
   LF_ASSIGN_OR_RETURN(const std::optional<RawFacts> facts, RawFactsOfFirstImage(*light_field));
   if (facts && facts->is_monochrome) return {};
-  return InputError(fmt::format(
-      "{}: the camera raw file {} does not tell a Bayer pattern (four letters of R, G, B with the "
-      "two G on a diagonal): state \"lf_bayer\": \"RGGB\", or what it is, in transforms.json, or "
-      "import with lfimport --bayer RGGB",
-      path.string(), light_field->ImagePath({0}).string()));
+  return InputError(
+      fmt::format("{}: the camera raw file {} does not state a Bayer pattern (four letters of R, "
+                  "G, B with the two G on a diagonal): state the pattern in transforms.json, such "
+                  "as \"lf_bayer\": \"RGGB\", or import with lfimport --bayer RGGB",
+                  path.string(), light_field->ImagePath({0}).string()));
 }
 
 // Finds image files that were moved, renamed or downscaled after they were calibrated.
@@ -190,16 +191,16 @@ Result<void> FindImages(const OpenOptions& options, const fs::path& path, LightF
   LF_ASSIGN_OR_RETURN(const size_t found_count, FindImageFiles(options.images_folder, light_field));
   // A COLMAP model may be used for planning before its images are there.
   if (found_count == 0 && options.images_folder && light_field->folder != *options.images_folder)
-    return InputError(fmt::format(
-        "--images {}: holds no image named as the LF images of {}, such as {}, in any folder below "
-        "it",
-        options.images_folder->string(), path.string(), name));
+    return InputError(
+        fmt::format("--images {}: contains no image, in any folder below it, with the name of an "
+                    "LF image of {}, such as {}: give the folder of its images",
+                    options.images_folder->string(), path.string(), name));
   const Intrinsics before = light_field->intrinsics[0];
   LF_ASSIGN_OR_RETURN(const double factor, FitToImageFiles(options.image_scale, light_field));
   if (factor != 1)
     LogInfo(
-        "{}: image files are {:.4g} times as large as they were calibrated, such as {} x {} "
-        "pixels instead of {} x {}: intrinsics are scaled (--image-scale)",
+        "{}: image files are {:.4g} times as large as the calibration says, such as {} x {} pixels "
+        "instead of {} x {}: the intrinsics are scaled accordingly (see --image-scale)",
         path.string(), factor, light_field->intrinsics[0].width_px,
         light_field->intrinsics[0].height_px, before.width_px, before.height_px);
   return {};
@@ -212,10 +213,10 @@ Result<void> CompleteAlpha(const OpenOptions& options, const fs::path& path,
   const bool was_light = encoding.AlphaIsLight();
   if (options.alpha && HoldsPackedStore(*light_field) &&
       was_light != (*options.alpha != AlphaMeaning::kMask))
-    return UsageError(fmt::format(
-        "--image-alpha {}: {} is a packed store, in which alpha was coded as {}: compress its "
-        "light field again with this option",
-        NameOf(*options.alpha), path.string(), was_light ? "light" : "a mask"));
+    return UsageError(
+        fmt::format("--image-alpha {}: {} is a packed store, in which alpha is stored as {}: "
+                    "compress its image files again with this option",
+                    NameOf(*options.alpha), path.string(), was_light ? "light" : "a mask"));
   if (options.alpha) encoding.alpha = options.alpha;
   if (options.background) {
     encoding.background = options.background;
@@ -225,9 +226,11 @@ Result<void> CompleteAlpha(const OpenOptions& options, const fs::path& path,
     if (const std::optional<AlphaEvidence> found = FindAlphaEvidence(*light_field)) {
       encoding.alpha = found->meaning;
       if (encoding.AlphaIsLight() && !encoding.background) encoding.background = found->background;
-      LogInfo("{}: alpha is taken as {}, as the pixels of {} tell (--image-alpha)", path.string(),
-              TextOfAlpha(*encoding.alpha, encoding.Background(), encoding.keeps_opacity),
-              found->image_name);
+      LogInfo(
+          "{}: alpha is taken as {}, because of the pixels of {} (--image-alpha overrides this)",
+          path.string(),
+          TextOfAlpha(*encoding.alpha, encoding.Background(), encoding.keeps_opacity),
+          found->image_name);
     }
   }
   if (!encoding.background) return {};
@@ -236,14 +239,16 @@ Result<void> CompleteAlpha(const OpenOptions& options, const fs::path& path,
         "--background {}: the LF images of {} are mosaics, which have no alpha: leave it out",
         kNoBackground, path.string()));
   if (!encoding.AlphaIsLight())
-    return UsageError(fmt::format(
-        "--background: there is nothing behind the LF images of {}, whose alpha is {}: state "
-        "--image-alpha straight or premultiplied",
-        path.string(), encoding.alpha ? "a mask" : "not known or not there"));
+    return UsageError(
+        fmt::format("--background: no light can shine through the LF images of {}, because their "
+                    "alpha is {}: give --image-alpha straight or premultiplied",
+                    path.string(), encoding.alpha ? "a mask" : "unknown or absent"));
   const auto& behind = *encoding.background;
   if (*std::max_element(behind.begin(), behind.end()) > encoding.max_radiance)
-    return UsageError(fmt::format("the background {} of {} is brighter than lf_max_radiance, {}",
-                                  fmt::join(behind, ","), path.string(), encoding.max_radiance));
+    return UsageError(
+        fmt::format("the background {} of {} is brighter than lf_max_radiance, {}: give a darker "
+                    "one (--background)",
+                    fmt::join(behind, ","), path.string(), encoding.max_radiance));
   return {};
 }
 
@@ -273,9 +278,9 @@ std::string PhotographsIn(const fs::path& path) {
     }
     if (count > 1)
       return fmt::format(
-          "; {} holds {}{} images, such as {}, but nothing that says where they were taken: "
-          "reconstruct that first, such as with COLMAP (colmap automatic_reconstructor), which "
-          "writes sparse/0",
+          "; {} holds {}{} images, such as {}, but no file with the poses of the cameras: "
+          "reconstruct the poses first, for instance with COLMAP (colmap automatic_reconstructor), "
+          "which writes sparse/0",
           folder.string(), entry_count > kMostEntries ? "at least " : "", count, first);
   }
   return "";
@@ -315,7 +320,7 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
   }
   const bool passes_over = options.passes_over_own && HoldsOwnAndItsSource(path);
   if (passes_over)
-    LogInfo("{}: was written by lfimport: what it was made from is read again",
+    LogInfo("{}: was written by lfimport: the calibration from which it was made is read instead",
             (path / kCalibrationName).string());
   // COLMAP comes before poses_bounds.npy, which is made from such a model and drops the distortion.
   if (passes_over || !fs::exists(path / kCalibrationName, error)) {

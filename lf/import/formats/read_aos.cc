@@ -136,8 +136,8 @@ Result<Intrinsics> IntrinsicsOf(double fov_deg, const fs::path& path,
   LF_ASSIGN_OR_RETURN(const Size size, ImageSizeInHeader(image));
   if (size[0] != size[1])
     LogWarning(
-        "{}: {} has {} x {} pixels, but AOS takes images as squares: {} degrees are taken across "
-        "the width and across the height alike",
+        "{}: {} has {} x {} pixels, but AOS treats images as squares: the field of view of {} "
+        "degrees is used for the width and for the height",
         path.string(), image.string(), size[0], size[1], fov_deg);
   const double focal_per_size = 0.5 / std::tan(0.5 * RadiansFromDegrees(fov_deg));
   return Intrinsics{size[0] * focal_per_size,
@@ -176,8 +176,8 @@ Result<LightField> ParseAosPoses(std::string_view text, const fs::path& path) {
 Result<LightField> ReadAos(const fs::path& path, const AosOptions& options) {
   if (!options.fov_deg)
     return InputError(fmt::format(
-        "{}: holds poses of Airborne Optical Sectioning, which do not tell the field of view: give "
-        "it in degrees (--fov-deg; AOS's own programs take 43.10803984 or 50.81543622)",
+        "{}: holds poses of Airborne Optical Sectioning, which do not state the field of view: "
+        "give it in degrees (--fov-deg; AOS's own programs take 43.10803984 or 50.81543622)",
         path.string()));
   if (!(*options.fov_deg >= 0.01 && *options.fov_deg <= 179))
     return UsageError(

@@ -95,8 +95,8 @@ Result<void> CheckShape(const NpyArray& array, size_t image_count, const fs::pat
                     path.string(), fmt::join(shape, ", "), kRowSize, kMaxImageCount));
   if (shape[0] != image_count)
     return InputError(fmt::format(
-        "{}: holds {} poses, but {} holds {} image files: expected as many, sorted alike; remove "
-        "or add images",
+        "{}: holds {} poses, but {} holds {} image files: expected one image file for each pose, "
+        "in the same order; remove or add images",
         path.string(), shape[0], (path.parent_path() / kImagesName).string(), image_count));
   return {};
 }

@@ -103,7 +103,8 @@ Result<Line> ParseLine(std::string_view text, const Lines& lines) {
 // Returns the intrinsics without the image size. kInput without the place in the file.
 Result<Intrinsics> IntrinsicsOf(Mat3 k) {
   if (!(std::abs(k(2, 2)) > 1e-9))
-    return InputError(fmt::format("k33 is {}: expected 1, or what K was multiplied by", k(2, 2)));
+    return InputError(fmt::format(
+        "k33 is {}: expected 1, or the factor by which all of K was multiplied", k(2, 2)));
   k /= k(2, 2);
   if (k(1, 0) != 0 || k(2, 0) != 0 || k(2, 1) != 0)
     return InputError("K has numbers below its diagonal: expected k21 = k31 = k32 = 0");
@@ -184,7 +185,7 @@ Result<LightField> ParseMiddlebury(std::string_view text, const fs::path& path,
     light_field.image_names.push_back(std::move(line.name));
   }
   if (light_field.size() != count)
-    return InputError(fmt::format("{}: holds {} lines of images, the first line counts {}",
+    return InputError(fmt::format("{}: holds {} lines of images, but the first line says {}",
                                   path.string(), light_field.size(), count));
   light_field.intrinsics = distinct.Take();
   light_field.encoding.max_radiance = DefaultMaxRadiance(light_field.image_names);

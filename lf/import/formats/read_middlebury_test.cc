@@ -74,7 +74,7 @@ TEST(Middlebury, CountsThatDisagreeAreErrors) {
   ExpectError("1.5\n" + kLine, {"\"1.5\""});
   ExpectError("0\n", {"the number of images is 0"});
   ExpectError("99999999999\n" + kLine, {"expected 1 to 16777216"});
-  ExpectError("2\n" + kLine, {"holds 1 lines of images, the first line counts 2"});
+  ExpectError("2\n" + kLine, {"holds 1 lines of images, but the first line says 2"});
   ExpectError("1\n" + kLine + kLine, {"line 3: more lines than the 1"});
 }
 

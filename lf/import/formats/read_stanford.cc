@@ -71,8 +71,8 @@ void WarnOfOthers(const fs::path& folder, const Listing& listing) {
   constexpr size_t kShown = 3;
   const auto& others = listing.others;
   if (others.empty()) return;
-  LogWarning("{}: {} of {} files left out, being named otherwise than {}: {}{}", folder.string(),
-             others.size(), others.size() + listing.images.size(), kForm,
+  LogWarning("{}: {} of {} files are left out, because their names are not of the form {}: {}{}",
+             folder.string(), others.size(), others.size() + listing.images.size(), kForm,
              fmt::join(others.begin(), others.begin() + std::min(kShown, others.size()), ", "),
              others.size() > kShown ? ", ..." : "");
 }
@@ -117,9 +117,9 @@ Result<void> CheckComplete(const fs::path& folder, const std::vector<StanfordIma
                            const StanfordOptions& options, int width_px) {
   if (!options.pitch_w && !images[0].name.position)
     return InputError(fmt::format(
-        "{}: the names tell row and column, but neither positions nor the focal length ({}): write "
-        "down pitch and focal length, and --plane-distance if the images are rectified to one "
-        "plane, as in: {}",
+        "{}: the names contain row and column, but neither positions nor the focal length ({}): "
+        "state the pitch and the focal length, and --plane-distance if the images are rectified to "
+        "one plane, for instance by: {}",
         folder.string(), images[0].file_name, ImportCommand(folder, options, true, width_px)));
   if (options.focal_px) return {};
   const auto lacks_lens = [](const StanfordImage& image) { return !image.name.lens; };
@@ -127,15 +127,16 @@ Result<void> CheckComplete(const fs::path& folder, const std::vector<StanfordIma
   const auto with = std::find_if_not(images.begin(), images.end(), lacks_lens);
   if (without == images.end()) return {};
   if (with != images.end())
-    return InputError(fmt::format(
-        "{}: {} states focal length and sensor width, {} does not: rename them alike as {}",
-        folder.string(), with->file_name, without->file_name, kForm));
-  return InputError(fmt::format(
-      "{}: the names lack the focal length: {} has no _FOCALMM_SENSORMM at its end; give "
-      "it in pixels (--focal-px), or write it down once, and --plane-distance if the images are "
-      "rectified to one plane, as in: {}",
-      folder.string(), without->file_name,
-      ImportCommand(folder, options, !images[0].name.position, width_px)));
+    return InputError(
+        fmt::format("{}: the name {} contains focal length and sensor width, {} does not: rename "
+                    "all files to the form {}",
+                    folder.string(), with->file_name, without->file_name, kForm));
+  return InputError(
+      fmt::format("{}: the names lack the focal length: {} has no _FOCALMM_SENSORMM at its end; "
+                  "give it in pixels (--focal-px), or state it once, and --plane-distance if the "
+                  "images are rectified to one plane, for instance by: {}",
+                  folder.string(), without->file_name,
+                  ImportCommand(folder, options, !images[0].name.position, width_px)));
 }
 
 // Returns the positions of the cameras in their plane.
@@ -169,17 +170,17 @@ Result<Intrinsics> IntrinsicsOf(const StanfordName& name, const ImageFileInfo& i
                              : name.lens->focal_mm / name.lens->sensor_width_mm * info.width;
   if (!(k.fx_px >= 0.001 && k.fx_px <= 1e7))
     return InputError(
-        fmt::format("the focal length comes to {} px: expected 0.001 to 1e7", k.fx_px));
+        fmt::format("the computed focal length is {} px: expected 0.001 to 1e7", k.fx_px));
   k.fy_px = k.fx_px;
   const Vec2 shift_px =
       options.plane_distance_w ? offset_w * k.fx_px / *options.plane_distance_w : Vec2(0, 0);
   k.cx_px = info.width / 2.0 + shift_px.x();
   k.cy_px = info.height / 2.0 + shift_px.y();
   if (!(shift_px.cwiseAbs().maxCoeff() <= kLargestPrincipal_px / 2))
-    return InputError(fmt::format(
-        "the principal point comes to ({}, {}) px: is the plane distance {} in the units of the "
-        "positions?",
-        k.cx_px, k.cy_px, *options.plane_distance_w));
+    return InputError(
+        fmt::format("the computed principal point is ({}, {}) px: expected within +-1e7; is the "
+                    "plane distance {} in the units of the positions?",
+                    k.cx_px, k.cy_px, *options.plane_distance_w));
   return k;
 }
 
@@ -213,8 +214,9 @@ Result<LightField> ReadStanfordFolder(const fs::path& folder, const StanfordOpti
     if (!k) return InputError((folder / image.file_name).string() + ": " + k.error().message);
     const Vec2 centre = positions[i] - origin;
     if (!(centre.cwiseAbs().maxCoeff() <= kLargest_w))
-      return InputError(fmt::format("{}: stands at ({}, {}): expected within 1e12 world units",
-                                    (folder / image.file_name).string(), centre.x(), centre.y()));
+      return InputError(
+          fmt::format("{}: its camera is at ({}, {}): expected positions within 1e12 world units",
+                      (folder / image.file_name).string(), centre.x(), centre.y()));
     LfCamera camera;
     camera.intrinsics_index = distinct.IndexOf(*k);
     camera.cam_from_world.translation = Vec3::Zero() - Vec3(centre.x(), centre.y(), 0);

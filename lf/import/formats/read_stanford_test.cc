@@ -67,7 +67,7 @@ TEST_F(StanfordFolderTest, OtherFilesAreLeftOutWithAWarning) {
   const std::string warning = testing::internal::GetCapturedStderr();
   ASSERT_TRUE(light_field);
   EXPECT_EQ(light_field->size(), 1u);
-  EXPECT_NE(warning.find("1 of 2 files left out"), std::string::npos) << warning;
+  EXPECT_NE(warning.find("1 of 2 files are left out"), std::string::npos) << warning;
   EXPECT_NE(warning.find(": config.cfg\n"), std::string::npos) << warning;
 }
 
@@ -79,7 +79,7 @@ TEST_F(StanfordFolderTest, WithoutAFocalLengthSaysWhatIsMissing) {
   EXPECT_EQ(light_field->intrinsics[0], (Intrinsics{100, 100, 18, 10, 0, 36, 20}));
   EXPECT_NE(Error().find(" -o " + folder_.string() + " --focal-px 36"), std::string::npos);
   AddImage("s_01_11_-5.0_-25.0_30_36.png");
-  EXPECT_NE(Error().find("rename them alike"), std::string::npos);
+  EXPECT_NE(Error().find("rename all files"), std::string::npos);
 }
 
 TEST_F(StanfordFolderTest, APitchPlacesRowsAndColumnsAroundTheMiddle) {
@@ -173,7 +173,7 @@ TEST_F(StanfordFolderTest, ABrokenFirstImageIsNamed) {
 
 TEST_F(StanfordFolderTest, AFocalLengthOutOfRangeIsAnError) {
   AddImage("a_01_10_-5.0_-25.0_999999999_0.1.png");
-  EXPECT_NE(Error().find("focal length comes to"), std::string::npos);
+  EXPECT_NE(Error().find("computed focal length is"), std::string::npos);
 }
 
 }  // namespace

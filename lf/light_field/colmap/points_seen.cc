@@ -63,8 +63,8 @@ Result<std::vector<Vec3>> ParseColmapPointsSeen(ColmapStreams streams, uint32_t 
   const std::optional<uint32_t> image_id = scene.ImageIdAt(position);
   if (!image_id)
     return InputError(
-        fmt::format("{}: has {} images, but image {} of them is asked for: it was "
-                    "written again meanwhile; start again",
+        fmt::format("{}: has {} images, but image {} of them is needed: the file was replaced "
+                    "while the program ran; start again",
                     streams.images.path().string(), scene.image_count(), position + 1));
   ColmapPointsSeen seen(*image_id, camera);
   LF_RETURN_IF_ERROR(streams.is_binary ? ReadColmapPointsBinary(&*streams.points, &seen)

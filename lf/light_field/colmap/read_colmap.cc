@@ -42,9 +42,10 @@ Result<std::optional<std::string>> ModelExtension(const fs::path& folder) {
     const bool has_cameras = IsFile(cameras), has_images = IsFile(images);
     if (has_cameras && has_images) return std::optional<std::string>(extension);
     if (has_cameras != has_images && !incomplete)
-      incomplete = InputError(fmt::format("{}: is there, but not the {} of the same COLMAP model",
-                                          (has_cameras ? cameras : images).string(),
-                                          (has_cameras ? images : cameras).filename().string()));
+      incomplete =
+          InputError(fmt::format("{}: exists, but the {} of the same COLMAP model is missing",
+                                 (has_cameras ? cameras : images).string(),
+                                 (has_cameras ? images : cameras).filename().string()));
   }
   if (incomplete) return *incomplete;
   return std::optional<std::string>();
@@ -91,8 +92,8 @@ Result<std::optional<fs::path>> LargestModel(const fs::path& folder, bool warns)
   }
   if (warns && model_count > 1)
     LogWarning(
-        "{}: holds {} COLMAP models: taking {}, with {} of {} images; name its folder to "
-        "take another",
+        "{}: holds {} COLMAP models: using {}, with {} of {} images; to use another model, give "
+        "its folder",
         folder.string(), model_count, largest->filename().string(), largest_count, all_count);
   return largest;
 }

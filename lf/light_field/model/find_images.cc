@@ -242,10 +242,10 @@ Result<size_t> FindImageFiles(const std::optional<fs::path>& images_folder,
     if (ambiguous_count == 0) example = name;
   }
   if (ambiguous_count > 0)
-    return InputError(fmt::format(
-        "{}: {} of {} LF images could be one of several files there, such as {}: name the folder "
-        "of the right ones (--images)",
-        folder.string(), ambiguous_count, light_field->size(), example));
+    return InputError(
+        fmt::format("{}: for {} of {} LF images, several files have the same name, such as {}: "
+                    "give the folder of the right files (--images)",
+                    folder.string(), ambiguous_count, light_field->size(), example));
   if (found_count == 0) return 0;
   // A mask must not match a file with the same name in another folder.
   for (std::string& mask : masks)
@@ -267,10 +267,10 @@ Result<ImageScale> ParseImageScale(const std::string& text) {
   double factor = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), factor);
   if (error != std::errc() || end != text.data() + text.size() || !(factor > 0 && factor <= 100))
-    return UsageError(fmt::format(
-        "--image-scale {}: expected auto, off, or a factor such as 0.25: the size of the image "
-        "files beside the size that was calibrated",
-        text));
+    return UsageError(
+        fmt::format("--image-scale {}: expected auto, off, or a factor such as 0.25: the size of "
+                    "the image files divided by the calibrated size",
+                    text));
   return ImageScale{ImageScale::Kind::kFactor, factor};
 }
 
@@ -286,7 +286,8 @@ Result<double> FitToImageFiles(const ImageScale& scale, LightField* light_field)
     const Intrinsics& k = IntrinsicsOf(*light_field, image.id);
     if (!IsScaled(k, image.size, divisor))
       return InputError(
-          fmt::format("--image-scale {}: {} has {} x {} pixels, and the calibration says {} x {}",
+          fmt::format("--image-scale {}: {} has {} x {} pixels, which is not this factor times the "
+                      "calibrated {} x {}: give another factor, or auto",
                       scale.factor, light_field->ImagePath(image.id).string(), image.size[0],
                       image.size[1], k.width_px, k.height_px));
     size_of[{k.width_px, k.height_px}] = image.size;

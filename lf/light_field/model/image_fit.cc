@@ -12,8 +12,8 @@ namespace {
 // Returns a remedy for a picture of another size.
 std::string Advice(const ImageFileInfo& info, bool is_mosaic, const Intrinsics& k) {
   if (info.width == k.height_px && info.height == k.width_px)
-    return is_mosaic ? "mosaics are not turned: calibrate them as they are stored"
-                     : "it is turned by 90 degrees, and no orientation tag says so: use the images "
+    return is_mosaic ? "mosaics cannot be rotated: calibrate them as they are stored"
+                     : "it is rotated by 90 degrees, without an orientation tag: use the images "
                        "that were calibrated";
   const double factor = static_cast<double>(info.width) / k.width_px;
   // Undistortion cuts off some pixels on each side and roughly keeps the aspect ratio.

@@ -34,10 +34,10 @@ TEST(ImageFit, TheCalibratedSizeIsTakenAsStored) {
 TEST(ImageFit, ExchangedSidesAreTurnedIfTheTagSaysSo) {
   for (int orientation = 5; orientation <= 8; ++orientation) {
     EXPECT_EQ(*Fit(1080, 1920, orientation), ImageFit::kTurned) << orientation;
-    ExpectAdvice(Fit(1080, 1920, orientation, true), "mosaics are not turned");
+    ExpectAdvice(Fit(1080, 1920, orientation, true), "mosaics cannot be rotated");
   }
   for (int orientation = 1; orientation <= 4; ++orientation)
-    ExpectAdvice(Fit(1080, 1920, orientation), "no orientation tag");
+    ExpectAdvice(Fit(1080, 1920, orientation), "without an orientation tag");
 }
 
 TEST(ImageFit, OtherSizesAreErrorsThatSayWhatToDo) {

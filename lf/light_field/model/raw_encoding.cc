@@ -35,10 +35,9 @@ Result<std::optional<RawFacts>> RawFactsOfFirstImage(const LightField& light_fie
     info = image ? Result<ImageFileInfo>(std::move(image->info)) : image.error();
   }
   if (!info)
-    return InputError(
-        fmt::format("{}; as the first camera raw file it would tell the pattern, levels and "
-                    "colours of all: {}",
-                    info.error().message, kAdvice));
+    return InputError(fmt::format(
+        "{}; this first camera raw file must state the pattern, levels and colours of all: {}",
+        info.error().message, kAdvice));
   if (!info->raw)
     return InputError(fmt::format("{}: is named like a camera raw file, but is none; {}",
                                   light_field.ImagePath({0}).string(), kAdvice));
@@ -73,15 +72,15 @@ void WarnOfUnknown(const LightField& light_field, const RawFacts& facts, bool le
   const std::string name = light_field.ImagePath({0}).string();
   if (!levels_stated && !(facts.black_level && facts.white_level))
     LogWarning(
-        "{}: this camera raw file does not tell its {}; taken to be {}: state lf_black_level and "
-        "lf_white_level",
+        "{}: this camera raw file does not state its {}; assumed to be {}: if this is wrong, state "
+        "lf_black_level and lf_white_level",
         name, facts.black_level ? "white level" : "black and white level",
         facts.black_level ? "65535" : "0 and 65535");
   if (!colours_stated && !facts.is_monochrome &&
       !(facts.white_balance && facts.linear_srgb_from_camera))
     LogWarning(
-        "{}: this camera raw file does not tell its {}; colours stay those of the sensor: state "
-        "lf_white_balance and lf_camera_to_srgb",
+        "{}: this camera raw file does not state its {}; colours stay those of the sensor: to "
+        "correct them, state lf_white_balance and lf_camera_to_srgb",
         name, facts.white_balance ? "colour matrix" : "white balance or colour matrix");
 }
 

@@ -6,8 +6,10 @@ namespace lf {
 namespace {
 
 std::array<BuiltInScene, 3> MakeScenes() {
-  BuiltInScene still_life{
-      "still-life", "glass, mirrors and marbles before strings of lights", DescribeStillLife, {}};
+  BuiltInScene still_life{"still-life",
+                          "glass, mirrors and marbles in front of strings of lights",
+                          DescribeStillLife,
+                          {}};
   still_life.rig.spacing_w = 0.003;
   still_life.rig.distance_w = 0.8;
   still_life.rig.target_world = {0, -0.085, 0};
@@ -15,7 +17,7 @@ std::array<BuiltInScene, 3> MakeScenes() {
   still_life.focal_length_per_width = 1.125;
   still_life.max_radiance = 24;
 
-  BuiltInScene lights{"lights", "lights alone at seven depths, on black", DescribeLights, {}};
+  BuiltInScene lights{"lights", "only lights, at seven depths, on black", DescribeLights, {}};
   lights.max_radiance = 24;
 
   BuiltInScene chart{"chart", "flat test charts at known depths and slants", DescribeChart, {}};

@@ -95,7 +95,7 @@ std::vector<RigidTransform> HemispherePoses(const RigOptions& options) {
 
 Result<void> CheckOptions(const RigOptions& options) {
   if (options.count == 0)
-    return UsageError("a rig of 0 cameras takes no picture; ask for 1 or more");
+    return UsageError("a rig of 0 cameras takes no picture; give 1 or more (--count)");
   const bool pitched = options.shape != RigShape::kHemisphere;
   if (pitched && !(options.spacing_w > 0 && std::isfinite(options.spacing_w)))
     return UsageError(fmt::format("camera spacing {}: expected a positive length in world units",

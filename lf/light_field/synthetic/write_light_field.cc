@@ -185,7 +185,7 @@ Result<void> WriteLightField(const Scene& scene, const LightField& light_field,
   if (images_done < light_field.size())
     return Error{ErrorKind::kInterrupted,
                  fmt::format("{}: stopped after {} of {} images; no transforms.json was written. "
-                             "The same call starts anew",
+                             "Run the same command again to start anew",
                              light_field.folder.string(), images_done, light_field.size())};
   return WriteTransformsJson(light_field, calibration, kSynthProgram);
 }

@@ -170,7 +170,7 @@ Result<void> JsonFields::CheckLfKeys(std::span<const char* const> known,
     if (!key.starts_with("lf_") || is_in(known, key)) continue;
     if (is_in(known_elsewhere, key))
       return Fault(
-          fmt::format("\"{}\" stands in the wrong place: it belongs {}", key, elsewhere_place));
+          fmt::format("\"{}\" is in the wrong place: it belongs {}", key, elsewhere_place));
     constexpr size_t kLongest = 64;
     const std::string_view shown = key.substr(0, kLongest);
     return Fault(

@@ -42,7 +42,8 @@ std::string_view AdviceOn(std::string_view what) {
   if (has("unexpected ']'") || has("unexpected '}'; expected string literal"))
     return "; is there a comma too many before it?";
   if (has("invalid literal") && (has(" N'") || has(",N'") || has("[N'")))
-    return "; NaN is no number of JSON: which pose or calibration was not found?";
+    return "; NaN is no number of JSON: a program has written a pose or calibration that it could "
+           "not compute";
   if (has("line 1, column 1:") && has("invalid literal"))
     return "; it has to be text in UTF-8 that begins with {";
   return "";

@@ -24,7 +24,7 @@ bool TakeSigned(std::string_view* code, int64_t* number) {
 }
 
 Error Damaged(const char* what) {
-  return InputError(fmt::format("is a damaged LF image code: {}", what));
+  return InputError(fmt::format("is a damaged encoded LF image: {}", what));
 }
 
 // Reads the next number and removes it from `code`. Returns false if it is not in [low, high].
@@ -83,42 +83,44 @@ void AppendHead(const CodeHead& head, std::string* code) {
 Result<CodeHead> TakeHead(std::string_view* code) {
   std::string_view magic;
   if (!TakeBytes(code, kMagic.size(), &magic) || magic != kMagic)
-    return InputError("is no LF image code: it does not begin with LFIM");
+    return InputError("is no encoded LF image: it does not begin with LFIM");
   uint64_t version = 0;
-  if (!TakeNumber(code, UINT64_MAX, &version) || version == 0) return Damaged("its version");
+  if (!TakeNumber(code, UINT64_MAX, &version) || version == 0)
+    return Damaged("its version is invalid");
   if (version > kVersion)
     return InputError(
-        fmt::format("is an LF image code of version {}, which a newer lfrendertools has written; "
-                    "this one knows version {}",
+        fmt::format("is an encoded LF image of version {}, which a newer lfrendertools has "
+                    "written; this one knows version {}",
                     version, kVersion));
   CodeHead head;
   CodeInfo& info = head.info;
-  if (!Take(code, 0, 2, &info.profile)) return Damaged("its profile");
-  if (!Take(code, 0, 2, &info.layout)) return Damaged("its layout");
-  if (!Take(code, 8, 16, &info.bits) || info.bits % 8 != 0) return Damaged("its depth");
+  if (!Take(code, 0, 2, &info.profile)) return Damaged("its profile is invalid");
+  if (!Take(code, 0, 2, &info.layout)) return Damaged("its layout is invalid");
+  if (!Take(code, 8, 16, &info.bits) || info.bits % 8 != 0) return Damaged("its depth is invalid");
   if (!Take(code, 1, kMostPixels, &info.width) || !Take(code, 1, kMostPixels, &info.height) ||
       static_cast<long long>(info.width) * info.height > kMostPixels)
     return Damaged("its size is not between 1 and 2^30 pixels");
-  if (!Take(code, 1, kMostLevels, &info.levels)) return Damaged("its levels");
+  if (!Take(code, 1, kMostLevels, &info.levels)) return Damaged("its number of levels is invalid");
   if (!Take(code, kLeastTileBits, kMostTileBits, &head.tile_bits))
-    return Damaged("the size of its tiles");
+    return Damaged("the size of its tiles is invalid");
   if (info.profile == CodecProfile::kThesis) {
-    if (!Take(code, 2, 65536, &head.quantizer)) return Damaged("its quantizer");
+    if (!Take(code, 2, 65536, &head.quantizer)) return Damaged("its quantizer is invalid");
     constexpr int64_t kLimit = int64_t{1} << 26;  // 16 bits of a pixel plus kHaarBits; sums of
                                                   // several coefficients then fit 32 bits
     if (!TakeSigned(code, &head.low) || !TakeSigned(code, &head.high) || head.low < -kLimit ||
         head.high > kLimit || head.low > head.high)
-      return Damaged("the range of its coefficients");
+      return Damaged("the range of its coefficients is invalid");
     return head;
   }
   if (!Take(code, 2, 4, &head.coefficient_bytes) || head.coefficient_bytes % 2 != 0 ||
       (info.bits == 16 && head.coefficient_bytes == 2))
-    return Damaged("the size of its coefficients");
-  if (!Take(code, 0, 4, &head.fraction_bits)) return Damaged("its fraction bits");
+    return Damaged("the size of its coefficients is invalid");
+  if (!Take(code, 0, 4, &head.fraction_bits))
+    return Damaged("its number of fraction bits is invalid");
   head.steps.resize(head.StepCount());
   for (int32_t& step : head.steps)
     if (!Take(code, 1, head.coefficient_bytes == 2 ? INT16_MAX : 1 << 24, &step))
-      return Damaged("its quantiser steps");
+      return Damaged("a step of its quantisers is invalid");
   return head;
 }
 

@@ -79,17 +79,18 @@ Result<Contents> TakeContents(std::string_view code) {
   const size_t count = contents.head.tile_count() * (contents.head.info.levels + 1);
   // The table has at least one byte for each section.
   if (count > code.size())
-    return InputError(
-        fmt::format("is a damaged LF image code: {} bytes for {} sections", code.size(), count));
+    return InputError(fmt::format(
+        "is a damaged encoded LF image: {} bytes are too few for {} sections", code.size(), count));
   std::vector<uint64_t> sizes(count);
   for (uint64_t& size : sizes)
     if (!TakeNumber(&code, code.size(), &size))
-      return InputError("is a damaged LF image code: its table of contents");
+      return InputError("is a damaged encoded LF image: its table of contents is invalid");
   contents.sections.resize(count);
   for (size_t i = 0; i < count; ++i)
     if (!TakeBytes(&code, sizes[i], &contents.sections[i]))
       return InputError("is a damaged LF image code: it is shorter than its table of contents");
-  if (!code.empty()) return InputError("is a damaged LF image code: bytes behind its end");
+  if (!code.empty())
+    return InputError("is a damaged encoded LF image: there are bytes behind its end");
   return contents;
 }
 
@@ -121,8 +122,9 @@ Result<void> Decode(Transform transform, const Contents& contents, const PixelRe
                               ? DecodeHaarTile(transform, head, sections, part)
                               : DecodeWaveletTile(transform, head, sections, part);
     if (!is_whole)
-      return InputError(fmt::format("is a damaged LF image code: the tile at pixel ({}, {})",
-                                    head.TileRect(tile).x_begin, head.TileRect(tile).y_begin));
+      return InputError(
+          fmt::format("is a damaged encoded LF image: the tile at pixel ({}, {}) cannot be decoded",
+                      head.TileRect(tile).x_begin, head.TileRect(tile).y_begin));
   }
   return {};
 }

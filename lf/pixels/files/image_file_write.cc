@@ -50,7 +50,7 @@ Result<void> CheckHolds(const fs::path& path, ImageFormat format, PixelType type
                                    path.string(), PluginName(format), channels));
   if (holds) return {};
   constexpr const char* kTypes[] = {"8-bit integers", "16-bit integers", "half floats", "floats"};
-  return OutputError(fmt::format("{}: {} files are not written with {}; choose another extension",
+  return OutputError(fmt::format("{}: {} files with {} cannot be written; choose another extension",
                                  path.string(), PluginName(format),
                                  kTypes[static_cast<int>(type)]));
 }

@@ -39,11 +39,11 @@ Result<std::vector<int>> ColoursFirst(const std::vector<std::string>& channel_na
   std::string chosen;  // "": the channels without a layer, of which some may be missing
   if (std::none_of(channel_names.begin(), channel_names.end(), is_plain)) {
     if (layers.size() > 1)
-      return InputError(fmt::format(
-          "{}: has colours in the layers {} and {}, and none outside of layers: which are meant? "
-          "Write one of them as R, G, B",
-          name, layers[0].substr(0, layers[0].size() - 1),
-          layers[1].substr(0, layers[1].size() - 1)));
+      return InputError(
+          fmt::format("{}: has colours in the layers {} and {}, and none outside of layers: name "
+                      "the channels of the right layer R, G, B",
+                      name, layers[0].substr(0, layers[0].size() - 1),
+                      layers[1].substr(0, layers[1].size() - 1)));
     if (!layers.empty()) chosen = layers[0];
   }
   std::vector<int> order(channel_names.size());

@@ -117,8 +117,9 @@ std::string ReasonOfRefusal(const QuietLibRaw& raw) {
   const bool is_small = (sizes.width > 0 && sizes.width < kLeast_px) ||
                         (sizes.height > 0 && sizes.height < kLeast_px);
   if (is_small)
-    return fmt::format("its {} x {} pixels are fewer than the {} x {} that LibRaw reads",
-                       sizes.width, sizes.height, kLeast_px, kLeast_px);
+    return fmt::format(
+        "its {} x {} pixels are fewer than {} x {}, the smallest size that LibRaw reads",
+        sizes.width, sizes.height, kLeast_px, kLeast_px);
   if (unpacker.tiff_sampleformat == 3) return "its pixels are floating point numbers";
   if (unpacker.tiff_bps > 16)
     return fmt::format("its pixels have {} bits instead of 8 to 16", unpacker.tiff_bps);

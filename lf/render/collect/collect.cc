@@ -275,9 +275,9 @@ Result<void> FrameCollector::State::FinishLoading(Batch* batch) {
     const Error& error = loading.pixels->error();
     if (options_.strict || error.kind != ErrorKind::kInput) return error;
     if (whole_ && !store_.IsThere(*whole_))
-      return InputError(
-          fmt::format("the LF images are gone: {} was read before, and is not there any more",
-                      light_field_.image_names[whole_->value]));
+      return InputError(fmt::format(
+          "the LF images have disappeared: {} was read before, and does not exist any more",
+          light_field_.image_names[whole_->value]));
     Skip(image, error);
   }
   batch->loading.clear();

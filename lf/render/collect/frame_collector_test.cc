@@ -277,7 +277,7 @@ TEST(FrameCollector, ALightFieldThatVanishesIsNotSkipped) {
   while (step && *step) step = collector.Step();
   ASSERT_FALSE(step);
   EXPECT_EQ(step.error().kind, ErrorKind::kInput);
-  EXPECT_NE(step.error().message.find("are gone"), std::string::npos);
+  EXPECT_NE(step.error().message.find("have disappeared"), std::string::npos);
   EXPECT_TRUE(collector.skipped().empty());
   EXPECT_LE(collector.images_done(), done + 10);  // a batch may have been decoded before
 

@@ -91,7 +91,7 @@ Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field
   const size_t least = set_aside + frame_bytes + pair_bytes;
   if (memory_bytes < least)
     return OutputError(fmt::format(
-        "--memory {} MiB is not enough for one {}x{} plate and two LF images: at least {} MiB",
+        "--memory {} MiB is not enough for one {}x{} plate and two LF images: give at least {} MiB",
         memory_bytes / kMiB, plate_width, plate_height, least / kMiB + 1));
 
   const size_t free_bytes = memory_bytes - set_aside;

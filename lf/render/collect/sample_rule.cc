@@ -65,7 +65,8 @@ Result<uint32_t> ParseSampleRule(const std::string& text, const std::string& opt
   uint32_t samples = 0;
   const char* const end = text.data() + text.size();
   if (!text.starts_with(kStart))
-    return UsageError(fmt::format("{} '{}' is not like samples>=8 or noise<=0.002", option, text));
+    return UsageError(
+        fmt::format("{} '{}': expected a rule such as samples>=8 or noise<=0.002", option, text));
   const auto [rest, error] = std::from_chars(text.data() + kStart.size(), end, samples);
   if (error != std::errc{} || rest != end || samples < 1 || samples > SensorPlate::kMaxCount)
     return UsageError(fmt::format("{} '{}': expected samples>=N with N from 1 to {}", option, text,

@@ -367,11 +367,11 @@ std::vector<std::string> RebinnedRays::Describe() const {
     const SlabSection& plan = section->plan;
     const double distance_w =
         (plan.slab.uv.origin_world - plan.slab.st.origin_world).dot(plan.slab.st.Normal());
-    lines.push_back(fmt::format(
-        "slab {} of {}: {} frames, planes {:.4g} apart, cells {:.3g} wide on st and {:.3g} on uv "
-        "(world units), {:.1f} % of its bounds asked for",
-        lines.size() + 1, sections_.size(), plan.end - plan.begin, distance_w, plan.slab.r_st_w,
-        plan.slab.r_uv_w, 100 * section->in_the_end.share()));
+    lines.push_back(
+        fmt::format("slab {} of {}: {} frames, planes {:.4g} apart, cells {:.3g} wide on st and "
+                    "{:.3g} on uv (world units), {:.1f} % of its bounds needed",
+                    lines.size() + 1, sections_.size(), plan.end - plan.begin, distance_w,
+                    plan.slab.r_st_w, plan.slab.r_uv_w, 100 * section->in_the_end.share()));
   }
   return lines;
 }

@@ -17,11 +17,12 @@ Result<void> SetAsideForRays(size_t memory_bytes, RenderMode mode, size_t max_ce
   memory->max_cells = max_cells;
   memory->rebin_bytes = RebinnedRays::BytesOf(max_cells);
   if (max_cells >= RebinnedRays::kLeastCells && memory->rebin_bytes <= memory_bytes) return {};
-  return OutputError(fmt::format(
-      "--memory {} MiB has no room for {} rebinned rays, which take {} MiB: give more, or fewer "
-      "--max-rays",
-      memory_bytes >> 20, std::max(max_cells, RebinnedRays::kLeastCells),
-      memory->rebin_bytes >> 20));
+  return OutputError(
+      fmt::format("--memory {} MiB is too small for {} rebinned rays, which take {} MiB: increase "
+                  "--memory (without --max-rays only a half of it is for rays, or a quarter with "
+                  "--mode hybrid), or reduce --max-rays",
+                  memory_bytes >> 20, std::max(max_cells, RebinnedRays::kLeastCells),
+                  memory->rebin_bytes >> 20));
 }
 
 }  // namespace
@@ -38,7 +39,8 @@ Result<RenderMemory> PlanRenderMemory(size_t memory_bytes, RenderMode mode, size
                  plate_height, has_plates ? frame_count : 1, thread_count, measured_bytes);
   if (!plan && memory.rebin_bytes > 0)
     return Error{plan.error().kind,
-                 fmt::format("{} (beside {} MiB for {} rebinned rays: --memory is for both)",
+                 fmt::format("{} (in addition to {} MiB for {} rebinned rays: increase --memory, "
+                             "or reduce --max-rays)",
                              plan.error().message, memory.rebin_bytes >> 20, memory.max_cells)};
   if (!plan) return plan.error();
   memory.plan = *plan;
@@ -46,10 +48,9 @@ Result<RenderMemory> PlanRenderMemory(size_t memory_bytes, RenderMode mode, size
   // All frames must therefore fit in one pass.
   if (!Collects(mode) && has_plates && plan->frames_per_pass < frame_count)
     return OutputError(fmt::format(
-        "--mode rebin: \"noise<=X\" is measured by a plate of {} MiB for each frame, and --memory "
-        "{} "
-        "MiB has room for {} of {} (beside {} MiB for {} rebinned rays): give more, or fewer "
-        "--max-rays, or render fewer --frames at a time",
+        "--mode rebin: \"noise<=X\" needs a plate of {} MiB for each frame, but --memory {} MiB "
+        "has room for only {} of {} plates (in addition to {} MiB for {} rebinned rays): increase "
+        "--memory, reduce --max-rays, or render fewer --frames at a time",
         plan->plate_bytes >> 20, memory_bytes >> 20, plan->frames_per_pass, frame_count,
         memory.rebin_bytes >> 20, memory.max_cells));
   if (!Collects(mode)) memory.plan.frames_per_pass = frame_count;

@@ -18,10 +18,10 @@ std::optional<RenderMode> RenderModeOf(std::string_view name) {
 Result<void> CheckOpacity(const RadianceEncoding& encoding, RenderMode mode) {
   if (!Rebins(mode) || !encoding.HasOpacity()) return {};
   return UsageError(
-      fmt::format("--mode {}: rebinned rays keep colours alone, and no opacity for frames without "
-                  "a background (--background none, lf_background): use --mode collect, or "
-                  "--background black, which gives the same colours (packages have the background "
-                  "that lfpreprocessor was given)",
+      fmt::format("--mode {}: rebinned rays contain only colours, but frames without a background "
+                  "(--background none, lf_background) need opacity: use --mode collect, or "
+                  "--background black, which gives the same colours (packages contain the "
+                  "background that was given to lfpreprocessor)",
                   NameOf(mode)));
 }
 

@@ -192,10 +192,10 @@ Result<void> CheckKept(const LfImageStore& store, const LightField& light_field,
   for (const FrameNeeds::Image& image : needs.images)
     if (!store.Keeps(image.id, image.rect))
       return InputError(fmt::format(
-          "{}: frame {} reads pixels of {} that are not in this packed store: it was made for "
-          "other frames, or for another --mode, --estimator or --lens-weights; make packages with "
-          "these from the light field that was compressed, and compress them again, or compress "
-          "without --needed-pixels",
+          "{}: frame {} needs pixels of {} that are not in this packed store, which was made for "
+          "other frames, or for another --mode, --estimator or --lens-weights: make packages for "
+          "these frames and options from the original light field, and compress them again, or "
+          "compress without --needed-pixels",
           light_field.folder.string(), frame.value, light_field.image_names[image.id.value]));
   return {};
 }

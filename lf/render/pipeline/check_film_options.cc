@@ -24,8 +24,8 @@ Result<void> CheckSlab(const Package& package, const FilmOptions& film,
     const double off_deg = std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / kPi;
     if (off_deg > kMost_deg)
       return UsageError(fmt::format(
-          "--slab-forward {} {} {}: frame {} looks {:.0f} degrees away from it; expected "
-          "a direction within {:.0f} degrees of what all frames look along",
+          "--slab-forward {} {} {}: frame {} looks {:.0f} degrees away from it; expected a "
+          "direction within {:.0f} degrees of the viewing directions of all frames",
           forward.x(), forward.y(), forward.z(), frame.value, off_deg, kMost_deg));
   }
   return {};
@@ -38,34 +38,34 @@ Result<void> CheckShard(const FilmOptions& film) {
       !film.MeasuresNoise())
     return {};
   return UsageError(
-      "--shard: writes plates for lfmerge, of a part of the LF images, and no shard knows what the "
-      "others have: leave out --mode rebin and hybrid, --stop-when and --require");
+      "--shard renders only a part of the LF images, but --mode rebin and hybrid, --stop-when and "
+      "--require need all of them: leave out these options");
 }
 
 Result<void> CheckRebinnedRays(const Package& package, const FilmOptions& film,
                                const std::vector<FrameId>& frames) {
   if (film.mode == RenderMode::kRebin && film.CountsRays())
     return UsageError(
-        "--mode rebin: frames are not made of collected rays, so that \"samples>=N\" of "
-        "--stop-when and --require, and --smooth-below have none: leave them out, or use hybrid "
-        "(\"noise<=X\" goes with every mode)");
+        "--mode rebin collects no rays, so that \"samples>=N\" of --stop-when and --require, and "
+        "--smooth-below, have no rays to count: leave them out, or use --mode hybrid (\"noise<=X\" "
+        "works with every mode)");
   LF_RETURN_IF_ERROR(CheckOpacity(package.light_field.encoding, film.mode));
   LF_RETURN_IF_ERROR(CheckSlab(package, film, frames));
   if (film.Rebins() && !package.choices.has_neighbours)
-    return UsageError(fmt::format(
-        "--mode {}: {} was made by lfpreprocessor --lens-weights none, and lacks the LF cameras "
-        "beside the lens: make it again with --mode {}, or without --lens-weights none",
-        NameOf(film.mode), package.name, NameOf(film.mode)));
+    return UsageError(
+        fmt::format("--mode {}: package {} was made with lfpreprocessor --lens-weights none, and "
+                    "lacks the LF cameras beside the lens: make the package again with --mode {}, "
+                    "or without --lens-weights none",
+                    NameOf(film.mode), package.name, NameOf(film.mode)));
   if (film.Rebins() && film.max_image_count)
     return UsageError(
-        fmt::format("--max-images: with --mode {} rebinned rays are shared by frames, so that no "
-                    "limit of each frame's LF images can be kept: leave it out, or use --mode "
-                    "collect",
+        fmt::format("--max-images cannot be used with --mode {}, because frames share the rebinned "
+                    "rays of all LF images: leave it out, or use --mode collect",
                     NameOf(film.mode)));
   if (film.rebin.nearest > 0 && film.back_end != CollectBackEnd::kReference)
     return UsageError(
-        "--nearest: only by the k-d tree of --back-end reference, which is far slower: give that, "
-        "or leave it out");
+        "--nearest needs the k-d tree of --back-end reference, which is far slower: add --back-end "
+        "reference, or leave --nearest out");
   return {};
 }
 
@@ -74,15 +74,15 @@ Result<void> CheckLensWeights(const Package& package, const FilmOptions& film,
   if (film.lens_weights == LensWeights::kNone) return {};
   const char* const name = NameOf(film.lens_weights);
   if (!package.choices.has_neighbours)
-    return UsageError(
-        fmt::format("--lens-weights {}: {} was made with --lens-weights none, and lacks the LF "
-                    "cameras beside the lens: give none, or make it again",
-                    name, package.name));
+    return UsageError(fmt::format(
+        "--lens-weights {}: package {} was made with --lens-weights none, and lacks the LF cameras "
+        "beside the lens: use --lens-weights none, or make the package again without it",
+        name, package.name));
   if (film.CountsRays())
     return UsageError(
         fmt::format("--lens-weights {}: counts are sums of weights, so that \"samples>=N\" of "
                     "--stop-when and --require, and --smooth-below, have no rays to count: leave "
-                    "them out (\"noise<=X\" goes with lens weights)",
+                    "them out (\"noise<=X\" works with lens weights)",
                     name));
   if (film.lens_weights == LensWeights::kArea)
     for (const FrameId frame : frames)
@@ -99,15 +99,17 @@ Result<void> CheckFilmOptions(const Package& package, const FilmOptions& options
   LF_RETURN_IF_ERROR(CheckRebinnedRays(package, film, frames));
   const std::optional<size_t>& most = package.choices.max_image_count;
   if (most && *film.max_image_count > *most)
-    return UsageError(fmt::format(
-        "{}: was made with --max-images {}, and has no more of each frame", package.name, *most));
+    return UsageError(
+        fmt::format("{}: was made with --max-images {}, and contains no more LF images of a frame: "
+                    "give at most this --max-images, or make the package again",
+                    package.name, *most));
   LF_RETURN_IF_ERROR(CheckShard(film));
   if (film.CountsRays() && film.reading.estimator == Estimator::kBilinear &&
       film.reading.filter == PixelFilter::kMosaic)
     return UsageError(
         "--filter mosaic: rays count up to 8 times, so that \"samples>=N\" of --stop-when and "
-        "--require, and --smooth-below, have none to count: leave them out, or use bilinear "
-        "(\"noise<=X\" goes with every filter)");
+        "--require, and --smooth-below, cannot count rays: leave them out, or use --filter "
+        "bilinear (\"noise<=X\" works with every filter)");
   return CheckLensWeights(package, film, frames);
 }
 

@@ -73,7 +73,7 @@ class Replaced {
 };
 
 Error Refusal(const fs::path& output, std::string_view what, const fs::path& input) {
-  return UsageError(fmt::format("{}: is {} ({}), and would be replaced: give another -o",
+  return UsageError(fmt::format("{}: is {} ({}), and the render would replace it: give another -o",
                                 output.string(), what, input.string()));
 }
 
@@ -112,7 +112,7 @@ Result<void> CheckImages(const fs::path& folder, const std::vector<std::string>&
 Result<void> CheckFiles(const std::vector<fs::path>& inputs, const Replaced& replaced) {
   for (const fs::path& input : inputs)
     if (const fs::path* const output = replaced.Find(input))
-      return Refusal(*output, "what is read", input);
+      return Refusal(*output, "an input file", input);
   return {};
 }
 

@@ -147,7 +147,7 @@ Result<FrameProgress> FilmRenderer::LoadPlate(size_t f, const EarlierRun* earlie
   if (!film_.MeasuresNoise()) return start;
   frame.has_noise = moments || start.places_done == 0;
   if (!frame.has_noise && !frame.is_early) {
-    LogInfo("frame {} is begun anew, since its noise was not measured before", frame.id.value);
+    LogInfo("frame {} is started again, because its noise was not measured before", frame.id.value);
     plates_[f] = SensorPlate::WithOpacity(width, height, plates_[f].has_opacity());
     start = {};
     frame.has_noise = true;
@@ -166,10 +166,11 @@ Result<void> FilmRenderer::CheckReach(const LensGaps& gaps, FrameId frame) const
   const double known_w =
       NeighbourReach_w(camera, SamplingOf(package.surroundings[frame.value - 1]));
   if (reached_w <= known_w * (1 + 1e-9)) return {};
-  return UsageError(fmt::format(
-      "--sigma-st, --lens-points: frame {} asks for rays up to {:.3g} world units beside its lens, "
-      "and {} has LF cameras up to {:.3g}: leave them out, or render the light field itself",
-      frame.value, reached_w, package.name, known_w));
+  return UsageError(
+      fmt::format("--sigma-st, --lens-points: frame {} needs rays up to {:.3g} world units beside "
+                  "its lens, but package {} contains LF cameras only up to {:.3g}: leave these "
+                  "options out, or render from the light field instead of packages",
+                  frame.value, reached_w, package.name, known_w));
 }
 
 Result<void> FilmRenderer::PrepareRebinning(std::span<const PlaceRange> places,
@@ -345,7 +346,7 @@ Result<void> FilmRenderer::CheckAnyContributes() const {
 Result<void> FilmRenderer::CheckNotAllBroken() const {
   if (!AllBroken() || skipped().empty()) return {};
   return InputError(
-      fmt::format("every LF image is broken; the first: {}", skipped().front().reason));
+      fmt::format("every LF image is missing or broken; the first: {}", skipped().front().reason));
 }
 
 bool FilmRenderer::AllBroken() const {

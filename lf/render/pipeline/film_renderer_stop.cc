@@ -61,7 +61,9 @@ void FilmRenderer::ForgetRaysAhead(std::span<const PlaceRange> places) {
     if (!frames_[f].is_released) least = std::min(least, places[f].begin);
   for (size_t i = 0; i < rebinned_->section_count(); ++i) {
     if (rebinned_->places_done(i) <= least) continue;
-    LogInfo("rebinned rays are made anew, since a frame is not as far as they are");
+    LogInfo(
+        "rebinned rays are made again, because a frame has collected fewer LF images than they "
+        "have");
     rebinned_->Restore(i, RayMap(rebinned_->max_cells_per_section(), 0), 0);
   }
 }

@@ -36,12 +36,15 @@ Result<std::vector<FrameId>> ParseFrameRange(std::string_view text, size_t frame
     if (good && TakeCharacter(&rest, '-')) good = TakeNumber(&rest, &last);
     if (good && TakeCharacter(&rest, 'x')) good = TakeNumber(&rest, &step);
     if (!good || (!rest.empty() && rest.front() != ','))
-      return UsageError(fmt::format("{} \'{}\' is not like 1-100, 1-100x2 or 3,7,9", option, text));
+      return UsageError(
+          fmt::format("{} \'{}\': expected a range such as 1-100, 1-100x2 or 3,7,9", option, text));
     if (last < first)
       return UsageError(
-          fmt::format("{} \'{}\': ranges go upward: {}-{}", option, text, last, first));
+          fmt::format("{} \'{}\': the first frame of a range is at most the last: {}-{}", option,
+                      text, last, first));
     if (step < 1)
-      return UsageError(fmt::format("{} \'{}\': the step after x is at least 1", option, text));
+      return UsageError(
+          fmt::format("{} \'{}\': expected a step of at least 1 after x", option, text));
     if (first < 1 || last > frame_count)
       return UsageError(fmt::format("{} \'{}\': expected frames 1-{}", option, text, frame_count));
     for (uint64_t n = first; n <= last; n += step) numbers.insert(static_cast<uint32_t>(n));

@@ -144,8 +144,9 @@ class Merger {
   bool IsStopped() const { return options_.signals != nullptr && options_.signals->stop; }
   Error Interrupted() const {
     return {ErrorKind::kInterrupted,
-            fmt::format("interrupted after {} of {} frames; those are kept in {}, --resume goes on",
-                        now_.frame_count, now_.frame_total, options_.output_folder.string())};
+            fmt::format(
+                "interrupted after {} of {} frames; these are kept in {}, and --resume continues",
+                now_.frame_count, now_.frame_total, options_.output_folder.string())};
   }
   fs::path PathOf(FrameId frame) const {
     return FramePath(options_.output_folder, frame, options_.format);
@@ -179,37 +180,38 @@ class Merger {
       });
       const ShardPlate& one = plates.front();
       if (one.width_px != first.width_px || one.height_px != first.height_px)
-        return InputError(fmt::format("{}: has {} x {} elements, {} has {} x {}: not of one film",
-                                      one.path.string(), one.width_px, one.height_px,
-                                      first.path.string(), first.width_px, first.height_px));
+        return InputError(fmt::format(
+            "{}: has {} x {} elements, but {} has {} x {}: give plates of one film only",
+            one.path.string(), one.width_px, one.height_px, first.path.string(), first.width_px,
+            first.height_px));
       std::set<uint32_t> there;
       for (const ShardPlate& plate : plates) {
         if (plate.shard.count != one.shard.count)
-          return InputError(
-              fmt::format("frame {}: {} is shard {}, {} is shard {}: all must be "
-                          "parts of the same cut",
-                          frame.value, one.path.string(), one.shard.Text(), plate.path.string(),
-                          plate.shard.Text()));
+          return InputError(fmt::format(
+              "frame {}: {} is shard {}, but {} is shard {}: give shards with the same K",
+              frame.value, one.path.string(), one.shard.Text(), plate.path.string(),
+              plate.shard.Text()));
         if (!there.insert(plate.shard.number).second)
           return InputError(
-              fmt::format("frame {}: {} is shard {}, and another file is, too: give each once",
+              fmt::format("frame {}: {} is shard {}, and so is another file: give each shard once",
                           frame.value, plate.path.string(), plate.shard.Text()));
         if (plate.width_px != one.width_px || plate.height_px != one.height_px)
           return InputError(fmt::format("frame {}: {} has {} x {} elements, {} has {} x {}",
                                         frame.value, one.path.string(), one.width_px, one.height_px,
                                         plate.path.string(), plate.width_px, plate.height_px));
         if (const auto difference = FirstDifference(plate.inputs, one.inputs))
-          return InputError(fmt::format("frame {}: {}: shards of one render have all in common",
-                                        frame.value,
-                                        difference->Text(plate.path.string() + " was made with",
-                                                         one.path.string() + " with")));
+          return InputError(fmt::format(
+              "frame {}: {}: give only shards that were rendered with the same inputs and options",
+              frame.value,
+              difference->Text(plate.path.string() + " was made with",
+                               one.path.string() + " with")));
       }
       std::vector<uint32_t> missing;
       for (uint32_t k = 1; k <= one.shard.count && missing.size() < 10; ++k)
         if (!there.contains(k)) missing.push_back(k);
       if (!missing.empty())
         return InputError(fmt::format(
-            "frame {}: of {} shards {} are there; missing: {}{} (is their render finished?)",
+            "frame {}: of {} shards, {} are given; missing: {}{} (is their render finished?)",
             frame.value, one.shard.count, there.size(), fmt::join(missing, ", "),
             one.shard.count - there.size() > missing.size() ? ", ..." : ""));
     }
@@ -226,9 +228,9 @@ class Merger {
     for (const auto& [frame, plates] : frames_) {
       if (!fs::exists(PathOf(frame)) || options_.overwrite) continue;
       if (!options_.resume)
-        return UsageError(fmt::format(
-            "{}: is there already: --resume keeps such frames, --overwrite replaces them",
-            PathOf(frame).string()));
+        return UsageError(
+            fmt::format("{}: exists already: --resume keeps such frames, --overwrite replaces them",
+                        PathOf(frame).string()));
       if (!reports_.contains(frame)) continue;
       if (const auto difference = DifferenceFrom(film_before, plates.front().notes)) {
         LogWarning("{}: {}; the frame is made again", PathOf(frame).string(),
@@ -274,7 +276,7 @@ class Merger {
         if (reader.width() != first.width_px || reader.height() != first.height_px ||
             reader.has_opacity() != first.has_opacity)
           return InputError(
-              fmt::format("{}: is another file than it was before", plate.path.string()));
+              fmt::format("{}: was replaced while lfmerge ran: start again", plate.path.string()));
         LF_RETURN_IF_ERROR(reader.AddTo(&sum));
       }
       ++now_.plate_count;
@@ -339,9 +341,9 @@ class Merger {
         count += plate.notes.rays.image_count + plate.notes.skipped_count;
         std::vector<SkippedImage> skipped;
         for (const std::string& name : plate.notes.skipped)
-          skipped.push_back({name, fmt::format("{}: was rendered without it, since it was missing "
-                                               "or broken",
-                                               plate.path.string())});
+          skipped.push_back(
+              {name, fmt::format("{}: was rendered without it, because it was missing or broken",
+                                 plate.path.string())});
         report->AddSkipped(skipped);
       }
       report->selected_image_count = std::max<size_t>(report->selected_image_count, count);
@@ -361,7 +363,7 @@ class Merger {
     if (options_.contact_sheet) LF_RETURN_IF_ERROR(film.WriteContactSheet(frames, 2, pool_));
     if (options_.video) LF_RETURN_IF_ERROR(film.WriteVideo(frames, *options_.video));
     if (accepted_count_ == 0)
-      return InputError(fmt::format("{}: every frame is black: no ray reached them",
+      return InputError(fmt::format("{}: every frame is black, because no ray reached them",
                                     options_.output_folder.string()));
     return report;
   }

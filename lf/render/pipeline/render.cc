@@ -189,9 +189,10 @@ Result<void> Renderer::OpenState() {
   // LF images that the earlier run skipped are tried again if nothing of that run is kept.
   if (!had_plates_ && state_->finished().empty()) totals_.skipped.clear();
   if (setup_->work().strict && !totals_.skipped.empty())
-    return InputError(fmt::format(
-        "--strict: the render that --resume goes on with skipped {} LF images, the first: {}",
-        totals_.skipped.size(), totals_.skipped.front().reason));
+    return InputError(
+        fmt::format("--strict: the render that --resume would continue has left out {} LF images, "
+                    "the first: {}; leave out --strict, or start anew with --overwrite",
+                    totals_.skipped.size(), totals_.skipped.front().reason));
   totals_.inputs = state_options.rays;
   totals_.inputs.insert(totals_.inputs.end(), state_options.picture.begin(),
                         state_options.picture.end());
@@ -305,7 +306,8 @@ std::vector<FrameId> Renderer::EarlyOf(std::span<const FrameId> frames) const {
     if (!setup_->film().Collects() || state_->HasPlate(frame))
       early.push_back(frame);
     else
-      LogWarning("--finish: frame {} has no rays yet: it takes all of its LF images", frame.value);
+      LogWarning("--finish: frame {} has no rays yet, and is rendered from all of its LF images",
+                 frame.value);
   }
   return early;
 }
@@ -382,13 +384,13 @@ Result<RenderReport> Renderer::End() {
   totals_.peak_memory_bytes = PeakMemoryBytes();
   LF_RETURN_IF_ERROR(state_->Close(totals_));
   if (totals_.IsBlack() && IsWhole())
-    return InputError(fmt::format(
-        "{}: every frame is black: no ray of {} LF images reached them ({})",
-        folder_.output_folder.string(), totals_.selected_image_count,
-        setup_->film().mode == RenderMode::kRebin
-            ? "are the images masked, or do --slab-position, --slab-distance, --r-st or --r-uv not "
-              "fit the scene?"
-            : "are the images masked?"));
+    return InputError(
+        fmt::format("{}: every frame is black, because no ray of {} LF images reached them ({})",
+                    folder_.output_folder.string(), totals_.selected_image_count,
+                    setup_->film().mode == RenderMode::kRebin
+                        ? "are the images masked, or are --slab-position, --slab-distance, --r-st "
+                          "or --r-uv wrong for the scene?"
+                        : "are the images masked?"));
   if (video_error) return *video_error;
   return std::move(totals_);
 }
@@ -397,10 +399,10 @@ Error Renderer::Interrupted() const {
   size_t finished_count = 0;
   for (const FrameId frame : setup_->frames())
     finished_count += state_->finished().contains(frame) ? 1 : 0;
-  return {ErrorKind::kInterrupted,
-          fmt::format("interrupted after {} of {} frames; what is done is "
-                      "kept in {}",
-                      finished_count, setup_->frames().size(), folder_.output_folder.string())};
+  return {
+      ErrorKind::kInterrupted,
+      fmt::format("interrupted after {} of {} frames; finished frames and the state are kept in {}",
+                  finished_count, setup_->frames().size(), folder_.output_folder.string())};
 }
 
 void Renderer::Report(const CollectProgress& pass, size_t finished_count) const {

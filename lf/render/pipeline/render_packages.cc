@@ -47,9 +47,9 @@ Result<void> CheckCodes(const fs::path& path, const Package& package) {
   const LightField& light_field = package.light_field;
   const auto codes = FindCodes(light_field.folder, light_field.image_names);
   if (!codes)
-    return InputError(
-        fmt::format("{}: its LF images are not at {} ({}): --lightfield says where they are",
-                    path.string(), light_field.folder.string(), codes.error().message));
+    return InputError(fmt::format(
+        "{}: its LF images are not at {} ({}): give their light field with --lightfield",
+        path.string(), light_field.folder.string(), codes.error().message));
   size_t needed = 0, missing = 0;
   std::string first;
   for (size_t i = 0; i < package.images.size(); ++i) {
@@ -61,10 +61,10 @@ Result<void> CheckCodes(const fs::path& path, const Package& package) {
     if (missing++ == 0) first = light_field.image_names[i];
   }
   if (missing == 0) return {};
-  return InputError(
-      fmt::format("{}: {} of its {} LF images are not in the packed store {}, or not all of their "
-                  "pixels, the first: {}; compress this package, too",
-                  path.string(), missing, needed, light_field.folder.string(), first));
+  return InputError(fmt::format(
+      "{}: {} of its {} LF images are not in the packed store {}, or not with all needed pixels; "
+      "the first: {}; make the store again with lfcompressor from all packages that are rendered",
+      path.string(), missing, needed, light_field.folder.string(), first));
 }
 
 // Checks that not all of some image files are missing or changed. A few broken files are allowed.
@@ -81,16 +81,16 @@ Result<void> CheckImageFiles(const fs::path& path, const Package& package) {
     const uint64_t bytes = fs::file_size(file, error);
     if (!error && bytes == package.images[id.value].file_bytes) return {};
     if (first) continue;
-    first = error
-                ? InputError(fmt::format(
-                      "{}: its LF images are not at {} ({}: {}): --lightfield says where they are",
-                      path.string(), package.light_field.folder.string(), file.string(),
-                      error.message()))
-                : InputError(fmt::format(
-                      "{}: was made from another light field than is at {}: {} has {} bytes, and "
-                      "had {}; make the package again, or say with --lightfield where its own is",
-                      path.string(), package.light_field.folder.string(), file.string(), bytes,
-                      package.images[id.value].file_bytes));
+    first =
+        error ? InputError(fmt::format("{}: its LF images are not at {} ({}: {}): give their light "
+                                       "field with --lightfield",
+                                       path.string(), package.light_field.folder.string(),
+                                       file.string(), error.message()))
+              : InputError(fmt::format(
+                    "{}: was made from another light field than the one at {}: {} has {} bytes, "
+                    "but had {}; make the package again, or give its light field with --lightfield",
+                    path.string(), package.light_field.folder.string(), file.string(), bytes,
+                    package.images[id.value].file_bytes));
   }
   if (first) return *first;
   return {};
@@ -160,9 +160,9 @@ Result<Package> OpenPackage(const fs::path& path, const std::optional<LightField
   if (place) {
     if (place->identity != package.whole && place->whole != package.whole)
       return InputError(fmt::format(
-          "{}: was made from another light field than {}: {} LF images of calibration {}, there "
-          "are "
-          "{} of {}",
+          "{}: was made from another light field than {}: the package needs {} LF images with the "
+          "calibration checksum {}, but the light field has {} with {}; give the light field of "
+          "the package",
           path.string(), place->name, package.whole.image_count, package.whole.calibration,
           place->identity.image_count, place->identity.calibration));
   }
@@ -188,16 +188,17 @@ Result<PackagedFilm> OpenPackages(std::vector<fs::path> paths,
     const Film other(package);
     if (!of_first) of_first = other;
     if (const std::string difference = of_first->DifferenceTo(other); !difference.empty())
-      return InputError(fmt::format("{}: is of {} than {}: render them into folders of their own",
-                                    path.string(), difference, film.paths.front().string()));
+      return InputError(
+          fmt::format("{}: was made for {} than {}: render them into different folders",
+                      path.string(), difference, film.paths.front().string()));
     if (const auto [named, is_new] = names.emplace(package.name, path); !is_new)
       return UsageError(
-          fmt::format("{} and {} have one name: reports and states of both would be "
-                      "called {}",
+          fmt::format("{} and {} have the same name, so that reports and states of both would be "
+                      "called {}: rename one",
                       named->second.string(), path.string(), package.name));
     for (const PackageFrame& frame : package.frames) {
       if (const auto [owner, is_new] = owners.emplace(frame.id, path); !is_new)
-        return UsageError(fmt::format("{} and {} both have frame {}: give one of them",
+        return UsageError(fmt::format("{} and {} both contain frame {}: give only one of them",
                                       owner->second.string(), path.string(), frame.id.value));
       part.frames.push_back(frame.id);
       part.ray_count += frame.ray_count;
@@ -233,7 +234,9 @@ Result<std::vector<PackagePart>> PartsWith(const PackagedFilm& film,
             return std::binary_search(part.frames.begin(), part.frames.end(), frame);
           }))
         return UsageError(
-            fmt::format("--frames: frame {} is in none of the packages", frame.value));
+            fmt::format("--frames: frame {} is in none of the packages: give its package, too, or "
+                        "leave the frame out",
+                        frame.value));
   TellOfOthers(film.paths.size(), film.film_count);
   return parts;
 }
@@ -297,7 +300,7 @@ Result<RenderReport> RenderPackages(PackagedFilm film, const RenderOptions& opti
   if (options.folder.video) LF_RETURN_IF_ERROR(files.WriteVideo(frames, *options.folder.video));
   // A section of a film may be black.
   if (report.IsBlack() && !options.film.shard && film.paths.size() == film.film_count)
-    return InputError(fmt::format("{}: every frame is black: no ray reached them",
+    return InputError(fmt::format("{}: every frame is black, because no ray reached them",
                                   options.folder.output_folder.string()));
   return report;
 }

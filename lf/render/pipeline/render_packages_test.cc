@@ -71,7 +71,7 @@ TEST_F(OpenPackagesTest, EveryChoiceOfTheFilmIsCompared) {
 
 TEST_F(OpenPackagesTest, FramesHaveOneOwner) {
   const auto is_of_frame_1 = [](Package* p) { p->frames = {{.id = FrameId{1}}}; };
-  EXPECT_NE(ErrorOf(is_of_frame_1).find("both have frame 1"), std::string::npos);
+  EXPECT_NE(ErrorOf(is_of_frame_1).find("both contain frame 1"), std::string::npos);
 }
 
 }  // namespace

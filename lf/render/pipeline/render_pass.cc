@@ -79,7 +79,7 @@ Result<void> RenderPass::Collect() {
       // Plates are complete up to the last step, so that they can be saved.
       if (!Save(0)) return step.error();
       return Error{step.error().kind,
-                   step.error().message + " (what is done is kept: --resume goes on)"};
+                   step.error().message + " (finished work is kept: --resume continues)"};
     }
     LF_RETURN_IF_ERROR(FinishStoppedFrames());
     context_.progress(renderer_.progress(), finished_count_);
@@ -87,7 +87,7 @@ Result<void> RenderPass::Collect() {
     if (!step) context_.signals->attention = false;
     if (context_.signals != nullptr && context_.signals->save.exchange(false)) {
       LF_RETURN_IF_ERROR(Save(std::numeric_limits<double>::infinity()));
-      LogInfo("the state is written, as the signal asked for");
+      LogInfo("the state is written, as the signal requested");
     }
     if (step && !*step) return {};
     LF_RETURN_IF_ERROR(SaveWhenDue());
@@ -102,7 +102,7 @@ Result<void> RenderPass::FinishEarlyFrames() {
     if (renderer_.EndsEarly(f))
       LF_RETURN_IF_ERROR(FinishFrames({&f, 1}));
     else
-      LogWarning("--finish: frame {} has no rays yet: it takes all of its LF images",
+      LogWarning("--finish: frame {} has no rays yet, and is rendered from all of its LF images",
                  ids_[f].value);
   }
   return {};
@@ -216,7 +216,8 @@ Result<void> RenderPass::RecordFinished(size_t f, const FrameReport& report) {
     if (++context_.black_count <= kTold)
       LogWarning("frame {} is black: no LF image contributes to it", frame.value);
     if (context_.black_count == kTold + 1)
-      LogWarning("more frames are black; report.json has the LF images of every frame");
+      LogWarning(
+          "more frames are black; report.json states the number of LF images of every frame");
   }
   LF_RETURN_IF_ERROR(context_.state.SaveFinished(report));
   LogDebug("frame {}: written, with {} rays of {} LF images", frame.value,

@@ -91,10 +91,10 @@ class NotesReader {
   std::string Text(const char* key) {
     const std::string* const text = FindEntry(entries_, key);
     if (text == nullptr && !fault_)
-      fault_ = InputError(fmt::format(
-          "{}: has no {}: it is the plate of an unfinished frame, or of another version; expected "
-          "those of lfrenderer --shard or --keep-plates",
-          name_, key));
+      fault_ = InputError(
+          fmt::format("{}: has no {}: it is the plate of an unfinished frame, or of another "
+                      "version; expected a plate of lfrenderer --shard or --keep-plates",
+                      name_, key));
     return text == nullptr ? "" : *text;
   }
 

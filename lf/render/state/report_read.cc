@@ -87,9 +87,9 @@ Result<RenderReport> ParseReport(std::string_view text, const std::string& name)
       report.frames.push_back(FrameFromJson(*item, &fault));
   }
   if (!fault.empty())
-    return InputError(
-        fmt::format("{}: is no report that a render could go on from: {}; remove it to render anew",
-                    name, fault));
+    return InputError(fmt::format(
+        "{}: is no report from which a render could continue: {}; remove it to render anew", name,
+        fault));
   return report;
 }
 

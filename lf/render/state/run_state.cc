@@ -161,15 +161,15 @@ Result<void> RunState::FindEarlierRun() {
     RemoveAll();
   } else if (HasPlates() || !records_.empty()) {
     return UsageError(
-        fmt::format("{}: holds an unfinished render ({} frames finished, {} begun): --resume goes "
-                    "on with it, --overwrite removes it and starts anew",
+        fmt::format("{}: contains an unfinished render ({} frames finished, {} begun): --resume "
+                    "continues it, --overwrite removes it and starts anew",
                     partial_.string(), records_.size(), plates_.size()));
   }
   // Report and contact sheet of an earlier run are removed: if this run fails, they would look like
   // its own.
   std::error_code ignored;
   if (fs::exists(ReportPath(), ignored))
-    LogWarning("{}: the finished render there is replaced, frame by frame",
+    LogWarning("{}: the finished render in this folder is replaced, frame by frame",
                options_.folder.string());
   fs::remove(ReportPath(), ignored);
   if (Name().empty()) fs::remove(options_.folder / "contact_sheet.png", ignored);
@@ -187,10 +187,10 @@ Result<void> RunState::CheckOtherPackages() const {
     LF_ASSIGN_OR_RETURN(const RenderReport other, ReadReport(file));
     if (const auto difference =
             FirstDifference(other.inputs, Joined(options_.rays, options_.picture)))
-      return UsageError(
-          fmt::format("{}: is of a package or shard that {}: their frames would pass for one film; "
-                      "give another -o, or remove what is there",
-                      file.string(), difference->Text("was rendered with", "this one has")));
+      return UsageError(fmt::format(
+          "{}: is the report of a package or shard that {}: the frames of both would look like one "
+          "film; give another -o, or remove the frames and reports that are there",
+          file.string(), difference->Text("was rendered with", "this one has")));
   }
   return {};
 }
@@ -225,7 +225,7 @@ Result<void> RunState::Read() {
   }
   // If no frame is left to render, the run only makes the contact sheet and the video.
   if (finished_.size() < options_.frames.size() && (!finished_.empty() || !plates_.empty()))
-    LogInfo("going on: {} frames are finished, {} begun", finished_.size(), plates_.size());
+    LogInfo("continuing: {} frames are finished, {} begun", finished_.size(), plates_.size());
   return {};
 }
 
@@ -270,10 +270,12 @@ Result<void> RunState::CheckPlate(FrameId frame) const {
 Result<void> RunState::Check(const std::string& place, FrameId frame, const RunInputs& recorded,
                              bool has_picture) const {
   constexpr const char* kAdvice =
-      "give the same, or another -o, or --overwrite in place of --resume to start anew";
+      "give the same inputs and options, or another -o, or --overwrite instead of --resume to "
+      "start anew";
   if (frame.value > path_.frame_count())
-    return UsageError(fmt::format("{}: --resume: is of frame {}, the path has {}; {}", place,
-                                  frame.value, path_.frame_count(), kAdvice));
+    return UsageError(
+        fmt::format("{}: --resume: belongs to frame {}, but the path has {} frames; {}", place,
+                    frame.value, path_.frame_count(), kAdvice));
   RunInputs wanted = options_.rays;
   if (has_picture) wanted = Joined(wanted, options_.picture);
   wanted = Joined(wanted, InputsOfCamera(frame, path_.Camera(frame)));
@@ -349,10 +351,10 @@ Result<std::optional<RunState::Rays>> RunState::LoadRays(FrameId first, size_t s
     for (const auto& entry : entries)
       if (!entry.first.starts_with(kProgress)) recorded.push_back(entry);
     if (const auto difference = FirstDifference(recorded, wanted))
-      return UsageError(fmt::format(
-          "{}: --resume: {}; give the same, or another -o, or --overwrite in place of --resume to "
-          "start anew",
-          path.string(), difference->Text("was made with", "this call has")));
+      return UsageError(
+          fmt::format("{}: --resume: {}; give the same inputs and options, or another -o, or "
+                      "--overwrite instead of --resume to start anew",
+                      path.string(), difference->Text("was made with", "this call has")));
     return {};
   };
   Result<RaysFile> file = ReadRays(path, max_cells, pool, check);

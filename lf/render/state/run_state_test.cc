@@ -114,7 +114,7 @@ TEST_F(RunStateTest, OtherInputsAreNamed) {
   path_.cameras.pop_back();
   refused = Open(true);
   ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().message.find("frame 3, the path has 2"), std::string::npos);
+  EXPECT_NE(refused.error().message.find("frame 3, but the path has 2"), std::string::npos);
 }
 
 TEST_F(RunStateTest, AFinishedFrameThatWasRemovedIsRenderedAgain) {

@@ -459,7 +459,7 @@ TEST_F(FolderStoreTest, LevelsBeyondTheFilesBitsAreAnError) {
   Write<uint8_t>("a.png", 3);
   LightField light_field = OneImage();
   light_field.encoding.white_level = 4095;
-  ExpectMentions(ErrorOf(light_field), {"a.png: holds values of 8 bits", "4095"});
+  ExpectMentions(ErrorOf(light_field), {"a.png: contains values of 8 bits", "4095"});
 }
 
 TEST_F(FolderStoreTest, MissingAndBrokenImagesAreErrorsThatNameThem) {

@@ -119,10 +119,11 @@ void ForEachSeenBrighter(const LightField& light_field, LfImageId id, const Pixe
 
 Result<void> CheckLevels(const RadianceEncoding& encoding, int bits, const std::string& path) {
   if (LevelsFit(encoding, bits)) return {};
-  return InputError(fmt::format(
-      "{}: holds values of {} bits, which lf_black_level {} and lf_white_level {} do not fit", path,
-      bits, encoding.black_level,
-      encoding.white_level ? fmt::format("{}", *encoding.white_level) : "(none)"));
+  return InputError(
+      fmt::format("{}: contains values of {} bits, to which lf_black_level {} and lf_white_level "
+                  "{} do not fit: correct the levels",
+                  path, bits, encoding.black_level,
+                  encoding.white_level ? fmt::format("{}", *encoding.white_level) : "(none)"));
 }
 
 }  // namespace lf

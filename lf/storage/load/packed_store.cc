@@ -32,11 +32,12 @@ std::string TextOf(const PixelRect& rect) {
 // Checks in the store's table that the image can be loaded.
 Result<void> CheckListed(const PackedCode& code, const LightField& light_field, LfImageId id) {
   if (!code.is_listed())
-    return InputError(fmt::format("{}: is not in the packed store: compress it, too",
-                                  light_field.ImagePath(id).string()));
+    return InputError(
+        fmt::format("{}: is not in the packed store: make the store again with lfcompressor",
+                    light_field.ImagePath(id).string()));
   if (code.bytes == 0)
     return InputError(fmt::format(
-        "{}: has no code in the packed store: it was missing or broken when that was made",
+        "{}: is not in the packed store, because it was missing or broken when the store was made",
         light_field.ImagePath(id).string()));
   return {};
 }
@@ -46,11 +47,13 @@ Result<void> CheckCode(std::string_view bytes, int bits, PixelLayout layout, boo
                        const PixelRect& rect) {
   LF_ASSIGN_OR_RETURN(const CodeInfo info, ReadCodeInfo(bytes));
   if (info.width != rect.width() || info.height != rect.height())
-    return InputError(fmt::format("is damaged: a code of {} x {} pixels, the table says {} x {}",
-                                  info.width, info.height, rect.width(), rect.height()));
+    return InputError(
+        fmt::format("is damaged: an encoded image has {} x {} pixels, but the table says {} x {}",
+                    info.width, info.height, rect.width(), rect.height()));
   const bool has_layout = info.layout == layout || (grey_too && info.layout == PixelLayout::kGrey);
   if (info.bits != bits || !has_layout)
-    return InputError("is damaged: a code of other values than the table says");
+    return InputError(
+        "is damaged: an encoded image has another kind of values than the table says");
   return {};
 }
 
@@ -158,8 +161,8 @@ Result<void> PackedStore::LoadRecorded(Loading* loading, LfImageId id, const Pix
                     name, TextOf(code.rect), k.width_px, k.height_px));
   if (!inside.empty() && Intersection(inside, code.rect) != inside)
     return InputError(
-        fmt::format("{}: of its pixels {} only {} are in the packed store: compress the package "
-                    "that is rendered, too",
+        fmt::format("{}: of its pixels {}, only {} are in the packed store: make the store again "
+                    "with lfcompressor from all packages that are rendered",
                     name, TextOf(inside), TextOf(code.rect)));
   const int bits = code.values == StoredValues::kUint8 ? 8 : 16;
   if (code.values != StoredValues::kHalf) LF_RETURN_IF_ERROR(CheckLevels(encoding, bits, name));
@@ -188,10 +191,10 @@ Result<void> PackedStore::LoadRecorded(Loading* loading, LfImageId id, const Pix
   const bool is_light = encoding.AlphaIsLight() && !is_mosaic;
   const int mask_bits = is_light ? 16 : 8;
   if (const auto info = ReadCodeInfo(bytes->mask); info && info->bits != mask_bits)
-    return InputError(fmt::format(
-        "{}: alpha is coded in the packed store as {}, and asked for as {}: compress the light "
-        "field again with this --image-alpha",
-        name, is_light ? "a mask" : "light", is_light ? "light" : "a mask"));
+    return InputError(
+        fmt::format("{}: alpha is stored in the packed store as {}, but needed as {}: compress the "
+                    "light field again with this --image-alpha",
+                    name, is_light ? "a mask" : "light", is_light ? "light" : "a mask"));
   if (const auto ok = CheckCode(bytes->mask, mask_bits, PixelLayout::kGrey, false, code.rect); !ok)
     return named(ok.error());
   if (const auto ok = DecodeImage(bytes->mask, wanted, &loading->mask); !ok)

@@ -222,12 +222,12 @@ TEST_F(PackedStoreTest, AlphaIsNotTakenForWhatItWasNotCodedAs) {
   AddImages<uint8_t>(4);
   Pack();
   packed_.encoding.alpha = AlphaMeaning::kStraight;
-  EXPECT_NE(ErrorOf(*Opened(), {0}).find("coded in the packed store as a mask, and asked for as"),
+  EXPECT_NE(ErrorOf(*Opened(), {0}).find("stored in the packed store as a mask, but needed as"),
             std::string::npos);
   field_.encoding.alpha = AlphaMeaning::kStraight;
   Pack();
   packed_.encoding.alpha = AlphaMeaning::kMask;
-  EXPECT_NE(ErrorOf(*Opened(), {0}).find("coded in the packed store as light, and asked for as"),
+  EXPECT_NE(ErrorOf(*Opened(), {0}).find("stored in the packed store as light, but needed as"),
             std::string::npos);
 }
 
@@ -380,7 +380,7 @@ TEST_F(PackedStoreTest, LevelsBeyondTheBitsAreAnError) {
   AddImages<uint8_t>(3);
   Pack();
   packed_.encoding.white_level = 4095;
-  EXPECT_NE(ErrorOf(*Opened(), {0}).find("holds values of 8 bits"), std::string::npos);
+  EXPECT_NE(ErrorOf(*Opened(), {0}).find("contains values of 8 bits"), std::string::npos);
 }
 
 TEST_F(PackedStoreTest, ManyReadAtOnce) {

@@ -91,7 +91,7 @@ Result<RecordedImage> ReadRecordedImage(const LightField& light_field, LfImageId
   RecordedImage image;
   image.rect = Intersection(rect, WholeOf(light_field, id));
   if (image.rect.empty())
-    return InputError(fmt::format("{}: has none of the pixels that are asked for", path.string()));
+    return InputError(fmt::format("{}: has none of the pixels that are needed", path.string()));
   ImagePart part;
   LF_ASSIGN_OR_RETURN(const ChannelUse use, ReadStoredPixels(light_field, id, image.rect, &part));
   CutStored(part, use.colours, &image);

@@ -30,7 +30,7 @@ Result<OpenedStore> OpenComplete(const fs::path& path) {
   LF_ASSIGN_OR_RETURN(Database database, OpenStoreDatabase(path));
   LF_ASSIGN_OR_RETURN(Settings settings, Settings::Read(database, kStoreFormat.name));
   if (settings.Text("state") == kUnfinished)
-    return database.Fault("is an unfinished packed store: go on writing it");
+    return database.Fault("is an unfinished packed store: finish it with lfcompressor --resume");
   if (settings.Text("state") != kComplete) return settings.Wrong("state", "complete");
   return OpenedStore{std::move(database), std::move(settings)};
 }
@@ -62,9 +62,9 @@ Result<void> ReadImages(OpenedStore* store, PackedStoreFacts* facts) {
   if (light_field.size() == 0) return store->settings.Damaged("it has no LF image");
   const LightFieldIdentity images = IdentityInStore(light_field);
   if (store->settings.Text("images.names") != images.names)
-    return store->settings.Damaged("names of LF images are not those that were written");
+    return store->settings.Damaged("the names of its LF images differ from the recorded checksum");
   if (store->settings.Text("images.calibration") != images.calibration)
-    return store->settings.Damaged("LF cameras are not those that were written");
+    return store->settings.Damaged("its LF cameras differ from the recorded checksum");
   return {};
 }
 
@@ -100,7 +100,8 @@ Result<std::vector<PackedCode>> ReadCodes(OpenedStore* store) {
         code.rect = {static_cast<int>(sides[0]), static_cast<int>(sides[1]),
                      static_cast<int>(sides[2]), static_cast<int>(sides[3])};
         if (name == std::end(kKindNames) || code.rect.empty())
-          return store->settings.Damaged(fmt::format("the code of LF image {} is of none", id));
+          return store->settings.Damaged(
+              fmt::format("the encoded image of LF image {} has an unknown kind or no pixels", id));
         code.id = static_cast<uint32_t>(id);
         code.shard = static_cast<uint16_t>(shard);
         code.values = static_cast<StoredValues>(name - std::begin(kKindNames));
@@ -282,15 +283,16 @@ Result<PackedCodeReader::Bytes> PackedCodeReader::Read(const PackedCode& code) {
   if (state_->last) state_->last->Reset();
   state_->last = nullptr;
   if (state_->shard_count > 0 ? code.shard == 0 : code.shard != 0)
-    return InputError(fmt::format("{}: is a damaged {}: LF image {} is in no shard",
-                                  state_->path.string(), kStoreFormat.name, code.id));
+    return InputError(
+        fmt::format("{}: is a damaged {}: LF image {} is in no shard; copy or make it again",
+                    state_->path.string(), kStoreFormat.name, code.id));
   LF_ASSIGN_OR_RETURN(OpenBlobs* const blobs, state_->At(code.shard));
   Statement& select = blobs->select;
   select.Bind(0, int64_t{code.id});
   LF_ASSIGN_OR_RETURN(const bool has_row, select.Step());
   if (!has_row)
-    return blobs->database.Fault(
-        fmt::format("is damaged: it lacks the code of LF image {}", code.id));
+    return blobs->database.Fault(fmt::format(
+        "is damaged: it lacks the encoded image of LF image {}; copy or make it again", code.id));
   state_->last = &select;
   Bytes bytes;
   LF_ASSIGN_OR_RETURN(bytes.code, select.Blob(0));

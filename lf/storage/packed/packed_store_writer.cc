@@ -114,7 +114,7 @@ std::optional<std::string> FirstDifference(const Settings& settings, const Light
   const auto shown = [](const std::string& value) { return value.empty() ? "(none)" : value; };
   for (const auto& [key, value] : SettingsOfPlan(light_field, plan))
     if (settings.Text(key) != value && !(any_shards && key == "shard_bytes"))
-      return fmt::format("{} {}, this call has {}", key, shown(settings.Text(key)), shown(value));
+      return fmt::format("{} {}, but now it is {}", key, shown(settings.Text(key)), shown(value));
   return {};
 }
 
@@ -205,19 +205,21 @@ Result<void> PackedStoreWriter::State::Read(const Settings& settings) {
   store = settings.Text("store");
   LF_ASSIGN_OR_RETURN(const double shards, settings.Number("shards", 0, kMostShards));
   shard_count = static_cast<int>(shards);
-  return ForEachRow(*database, "select id, shard, bytes, source_bytes from codes",
-                    [&](const Statement& row) -> Result<void> {
-                      LF_ASSIGN_OR_RETURN(const int64_t id, row.Integer(0));
-                      LF_ASSIGN_OR_RETURN(const int64_t of_shard, row.Integer(1));
-                      LF_ASSIGN_OR_RETURN(const int64_t bytes, row.Integer(2));
-                      LF_ASSIGN_OR_RETURN(const int64_t sources, row.Integer(3));
-                      if (id < 0 || static_cast<size_t>(id) >= has.size())
-                        return settings.Damaged(fmt::format("a code of LF image {}", id));
-                      has[static_cast<size_t>(id)] = true;
-                      source_bytes[static_cast<size_t>(id)] = static_cast<uint64_t>(sources);
-                      if (of_shard == shard_count) bytes_in_shard += static_cast<uint64_t>(bytes);
-                      return {};
-                    });
+  return ForEachRow(
+      *database, "select id, shard, bytes, source_bytes from codes",
+      [&](const Statement& row) -> Result<void> {
+        LF_ASSIGN_OR_RETURN(const int64_t id, row.Integer(0));
+        LF_ASSIGN_OR_RETURN(const int64_t of_shard, row.Integer(1));
+        LF_ASSIGN_OR_RETURN(const int64_t bytes, row.Integer(2));
+        LF_ASSIGN_OR_RETURN(const int64_t sources, row.Integer(3));
+        if (id < 0 || static_cast<size_t>(id) >= has.size())
+          return settings.Damaged(fmt::format(
+              "it has an encoded image of LF image {}, which the light field lacks", id));
+        has[static_cast<size_t>(id)] = true;
+        source_bytes[static_cast<size_t>(id)] = static_cast<uint64_t>(sources);
+        if (of_shard == shard_count) bytes_in_shard += static_cast<uint64_t>(bytes);
+        return {};
+      });
 }
 
 // Renames shards back, if the writer was killed while it gave them their final names.
@@ -228,7 +230,9 @@ Result<void> PackedStoreWriter::State::TakeShardsBack() const {
     if (fs::exists(UnfinishedPath(shard_path), error)) continue;
     if (StoreOfShard(shard_path) != store)
       return InputError(
-          fmt::format("{}: is missing: begin the store anew", UnfinishedPath(shard_path).string()));
+          fmt::format("{}: this shard of the unfinished store is missing: start the store again "
+                      "with lfcompressor --overwrite",
+                      UnfinishedPath(shard_path).string()));
     LF_RETURN_IF_ERROR(RenameFlushed(shard_path, UnfinishedPath(shard_path)));
   }
   return {};
@@ -241,17 +245,18 @@ Result<void> PackedStoreWriter::State::CheckIsFree(const fs::path& shard_path) c
   if (!fs::exists(fs::symlink_status(shard_path, error))) return {};
   const std::string of = StoreOfShard(shard_path);
   if (!of.empty() && (of == store || of == replaced)) return {};
-  return UsageError(fmt::format(
-      "{}: is in the way of a shard, and none of the store that is replaced: give another name, or "
-      "remove it",
-      shard_path.string()));
+  return UsageError(
+      fmt::format("{}: a shard would replace this file, which is no shard of the replaced store: "
+                  "give another name, or remove it",
+                  shard_path.string()));
 }
 
 // Opens a shard, and makes it if it does not exist.
 Result<void> PackedStoreWriter::State::OpenShard(int number) {
   if (number > kMostShards)
     return OutputError(
-        fmt::format("{}: has {} shards: make them larger", path.string(), kMostShards));
+        fmt::format("{}: has {} shards, and more are not possible: give a larger --shard-size",
+                    path.string(), kMostShards));
   insert_blob.reset();
   shard.reset();
   const fs::path shard_path = ShardPath(path, number);
@@ -374,9 +379,10 @@ Result<PackedStoreWriter> PackedStoreWriter::Open(const fs::path& path,
   if (!has_tables) LF_RETURN_IF_ERROR(MakeTables(light_field, plan, &database));
   LF_ASSIGN_OR_RETURN(const Settings settings, Settings::Read(database, kStoreFormat.name));
   if (const auto difference = FirstDifference(settings, light_field, plan, false))
-    return UsageError(fmt::format(
-        "{}: the unfinished store was made with {}: give the same, or another name, or begin anew",
-        path.string(), *difference));
+    return UsageError(
+        fmt::format("{}: the unfinished store was made with {}: give the same options, or another "
+                    "name, or start it again with --overwrite",
+                    path.string(), *difference));
   state->database = std::move(database);
   LF_RETURN_IF_ERROR(state->Read(settings));
   LF_ASSIGN_OR_RETURN(
@@ -395,8 +401,7 @@ Result<PackedStoreWriter> PackedStoreWriter::Create(const fs::path& path,
                                                     std::optional<FileLock> lock) {
   if (IsUnfinished(path))
     return UsageError(
-        fmt::format("{}: there is an unfinished store of this name: go on with it, "
-                    "or begin anew",
+        fmt::format("{}: an unfinished store of this name exists: continue it, or start it again",
                     UnfinishedPath(path).string()));
   return Open(path, light_field, plan, std::move(lock));
 }

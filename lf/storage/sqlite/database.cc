@@ -81,7 +81,8 @@ struct Database::State {
   Error Failed() const {
     if (kind == ErrorKind::kOutput)
       return Fault(fmt::format("cannot be written: {}", sqlite3_errmsg(handle)));
-    return Fault(fmt::format("is no {}, or a damaged one: {}", what, sqlite3_errmsg(handle)));
+    return Fault(fmt::format("is no {}, or a damaged one: {}; copy or make it again", what,
+                             sqlite3_errmsg(handle)));
   }
 };
 
@@ -141,7 +142,8 @@ Result<bool> Statement::Step() {
   sqlite3_progress_handler(state_->database->handle, 0, nullptr, nullptr);
   if (code == SQLITE_ROW) return true;
   Error error = code == SQLITE_DONE ? Error() : state_->database->Failed();
-  if (state_->is_too_long) error = state_->database->Fault("is damaged: its tables have no end");
+  if (state_->is_too_long)
+    error = state_->database->Fault("is damaged: its tables have no end; copy or make it again");
   Reset();
   if (code == SQLITE_DONE) return false;
   return error;
@@ -164,9 +166,9 @@ bool Statement::IsNull(int column) const {
 }
 
 Error Statement::Wrong(int column, std::string_view found, std::string_view expected) const {
-  return state_->database->Fault(fmt::format("is damaged: {} in column {}, expected {}", found,
-                                             sqlite3_column_name(state_->handle, column),
-                                             expected));
+  return state_->database->Fault(
+      fmt::format("is damaged: {} in column {}, expected {}; copy or make it again", found,
+                  sqlite3_column_name(state_->handle, column), expected));
 }
 
 Result<int64_t> Statement::Integer(int column) const {
@@ -260,8 +262,10 @@ Result<void> Database::CheckTables(const std::vector<std::string>& scripts) {
     LF_ASSIGN_OR_RETURN(const Tables allowed, tables_of(ours));
     if (found == allowed) return {};
   }
-  return Fault(fmt::format(
-      "is damaged, or made by another program: its tables are not those of a {}", state_->what));
+  return Fault(
+      fmt::format("is damaged, or made by another program: its tables are not those of a {}; copy "
+                  "or make it again",
+                  state_->what));
 }
 
 Result<int64_t> Database::Pragma(const char* name) {
@@ -351,8 +355,9 @@ Result<Database> Database::Open(const fs::path& path, const DatabaseFormat& form
   if (!fs::is_regular_file(path, error)) return state->Fault("is no file");
   const uintmax_t size = fs::file_size(path, error), expected = BytesOfPages(path);
   if (!error && size < expected)
-    return state->Fault(
-        fmt::format("is damaged: it ends after {} of {} bytes, copied in part", size, expected));
+    return state->Fault(fmt::format(
+        "is damaged: it ends after {} of {} bytes; was it copied in part? Copy or make it again",
+        size, expected));
   constexpr int kFlags = SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX;
   if (sqlite3_open_v2(UriOf(path).c_str(), &state->handle, kFlags, nullptr) != SQLITE_OK)
     return state->Fault(fmt::format("cannot be read: {}", sqlite3_errmsg(state->handle)));

@@ -48,7 +48,7 @@ Result<Intrinsics> ReadIntrinsicsRow(const Settings& settings, const Statement& 
   std::copy(numbers->begin(), rest, k.distortion.parameters.begin());
   std::copy(rest, numbers->end(), k.vignetting.v.begin());
   if (!IsCamera(k) || !IsStoredDistortion(k.distortion) || !IsFalloff(k))
-    return settings.Damaged("intrinsics that no camera has");
+    return settings.Damaged("intrinsics are out of range");
   return k;
 }
 
@@ -219,7 +219,8 @@ Result<LfCamera> ReadCamera(const Settings& settings, const Statement& row, int 
     return settings.Damaged(fmt::format("the pose of LF image {} has {} bytes", name, pose.size()));
   camera.cam_from_world = PoseOfNumbers(std::span<const double>(numbers).first<kPoseNumbers>());
   if (!IsPose(camera.cam_from_world))
-    return settings.Damaged(fmt::format("the pose of LF image {} is none", name));
+    return settings.Damaged(
+        fmt::format("the pose of LF image {} is no rotation and translation", name));
   if (name.empty()) return settings.Damaged("an LF image has no name");
   camera.intrinsics_index = static_cast<uint32_t>(intrinsics);
   return camera;

@@ -31,7 +31,8 @@ Result<Settings> Settings::Read(Database& database, const char* what) {
 }
 
 Error Settings::Damaged(const std::string& what) const {
-  return InputError(fmt::format("{}: is a damaged {}: {}", file_, what_, what));
+  return InputError(
+      fmt::format("{}: is a damaged {}: {}; copy or make it again", file_, what_, what));
 }
 
 Error Settings::Wrong(const std::string& key, std::string_view expected) const {
