@@ -41,12 +41,13 @@ std::string CompressText(const CompressReport& report, const CompressOptions& op
       report.image_count - report.skipped.size(),
       report.skipped.empty() ? std::string() : fmt::format(" of {}", report.image_count),
       ShortNumber(static_cast<double>(report.store_bytes)), NameOf(settings));
-  if (report.was_there) text += "was there already: nothing was written\n";
+  if (report.was_there) text += "existed already: nothing was written\n";
   if (report.resumed_count > 0)
-    text += fmt::format("{} LF images were coded before; figures are of the other {}\n",
-                        report.resumed_count, report.coded_count);
+    text +=
+        fmt::format("{} LF images were encoded before; these figures are those of the other {}\n",
+                    report.resumed_count, report.coded_count);
   if (report.coded_count > 0) {
-    text += fmt::format("pixels    {}B, coded {}B: {:.2f} : 1\n",
+    text += fmt::format("pixels    {}B, encoded {}B: {:.2f} : 1\n",
                         ShortNumber(static_cast<double>(report.pixel_bytes)),
                         ShortNumber(static_cast<double>(report.code_bytes)),
                         Ratio(report.pixel_bytes, report.code_bytes));
@@ -62,12 +63,12 @@ std::string CompressText(const CompressReport& report, const CompressOptions& op
                         ShortDuration(report.total_s));
   }
   if (report.verified_count)
-    text +=
-        fmt::format("verified  {} codes read back: as they should be\n", *report.verified_count);
+    text += fmt::format("verified  {} encoded images were read back: all are right\n",
+                        *report.verified_count);
   if (report.code_bytes > report.source_bytes && report.source_bytes > 0)
     text +=
-        "note: the files are smaller than their codes: they are compressed with losses already, "
-        "and are better kept\n";
+        "note: the image files are smaller than their encoded images, because they are lossily "
+        "compressed already: use the files instead of the store\n";
   if (report.rounded_count > 0)
     text += fmt::format("note: {} LF images hold floats that were rounded to half floats\n",
                         report.rounded_count);
@@ -80,10 +81,10 @@ std::string CompressText(const CompressReport& report, const CompressOptions& op
 
 MissingImages MissingOf(const CompressReport& report, const CompressOptions& options) {
   MissingImages missing{report.skipped.size(), report.image_count, "",
-                        "once they are mended, --overwrite codes all anew"};
+                        "once they are mended, encode all LF images again with --overwrite"};
   if (missing.count > 0)
     missing.what = fmt::format(
-        "{}: {} of {} LF images have no code, since they are missing or broken; the "
+        "{}: {} of {} LF images are not in the store, because they are missing or broken; the "
         "first: {}: {}",
         options.store.string(), missing.count, missing.asked, report.skipped.front().name,
         report.skipped.front().reason);

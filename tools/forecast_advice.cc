@@ -79,7 +79,7 @@ std::string LengthText(double length_w, double unit_m) {
 
 std::string RangeText(const DepthRange& range, double unit_m) {
   const std::string near = LengthText(Rounded(range.near_w * unit_m, true), 1);
-  if (std::isinf(range.far_w)) return fmt::format("from {} on", near);
+  if (std::isinf(range.far_w)) return fmt::format("farther than {}", near);
   return fmt::format("between {} and {}", near,
                      LengthText(Rounded(range.far_w * unit_m, false), 1));
 }

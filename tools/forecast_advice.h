@@ -31,7 +31,7 @@ ForecastAdvice AdviceOf(const PreprocessReport& report, const CameraPath& path,
 
 // Returns "31.2 mm", "2.05 m", "1.2 km".
 std::string LengthText(double length_w, double unit_m);
-// Returns "between 1.2 m and 3 m" or "from 1.2 m on", rounded inwards.
+// Returns "between 1.2 m and 3 m" or "farther than 1.2 m", rounded inwards.
 std::string RangeText(const DepthRange& range, double unit_m);
 // Returns "30 mm", rounded down.
 std::string AtMostText(double length_w, double unit_m);

@@ -97,23 +97,22 @@ namespace {
 
 // Returns where the depths of the scene come from, or how to state them.
 std::string DepthsText(const ForecastFacts& facts) {
-  if (facts.depths_from == "LF images") return " (depths as LF images tell them)";
+  if (facts.depths_from == "LF images") return " (depths estimated from LF images)";
   if (!facts.depths_from.empty()) return "";
-  return " (a quarter off the focus: the depths of the scene are not known, so that no focus "
-         "distance "
-         "is advised. Neither the calibration nor the LF images tell them: give --depths NEAR FAR, "
-         "lf_depth_range in transforms.json, or the points3D of a COLMAP model)";
+  return " (25 % off the focus; no focus distance is advised, because neither the calibration nor "
+         "the LF images tell the depths of the scene: give --depths NEAR FAR, lf_depth_range in "
+         "transforms.json, or the points3D of a COLMAP model)";
 }
 
 }  // namespace
 
 MissingImages MissingOf(const PreprocessReport& report) {
   MissingImages missing{report.missing_count, report.needed_count, "",
-                        "renders of these packages leave them out unless they are mended before"};
+                        "renders of these packages leave them out, unless they are mended before"};
   if (missing.count > 0)
-    missing.what =
-        fmt::format("{} of {} LF images that packages need are not there, or empty; the first: {}",
-                    missing.count, missing.asked, report.first_missing);
+    missing.what = fmt::format(
+        "{} of {} LF images that packages need do not exist, or are empty; the first: {}",
+        missing.count, missing.asked, report.first_missing);
   return missing;
 }
 
@@ -152,19 +151,18 @@ std::vector<std::string> DensityWarnings(const PreprocessReport& report, const C
     if (black == nullptr) black = &frame;
   }
   if (black != nullptr)
-    warnings.push_back(
-        fmt::format("{} of {} frames will be black: no LF image contributes to them, the first is "
-                    "frame {}; its "
-                    "lens would collect rays from a diameter of {} on, and has {}",
-                    black_count, report.frames.size(), black->frame.value,
-                    LengthText(black->density.least_aperture_w, path.unit_m),
-                    LengthText(2 * path.Camera(black->frame).aperture.radius_w, path.unit_m)));
+    warnings.push_back(fmt::format(
+        "{} of {} frames will be black, because no LF image contributes to them; the first is "
+        "frame {}: its lens would collect rays with an aperture of at least {}, but has {}",
+        black_count, report.frames.size(), black->frame.value,
+        LengthText(black->density.least_aperture_w, path.unit_m),
+        LengthText(2 * path.Camera(black->frame).aperture.radius_w, path.unit_m)));
   const FrameForecast& uncovered = Worst(
       report, [](const FrameForecast& frame) { return frame.density.coverage.uncovered_share; });
   if (uncovered.density.coverage.uncovered_share > kMuchUncovered)
     warnings.push_back(fmt::format(
-        "frame {}: {:.0f} % of its lens are beyond the capture: they stay empty, and bokeh are cut "
-        "off there. What would work: {}a path nearer to the middle of the capture",
+        "frame {}: {:.0f} % of its lens are beyond the capture: this part stays empty, and bokeh "
+        "are cut off there. What would work: {}a path nearer to the middle of the capture",
         uncovered.frame.value, 100 * uncovered.density.coverage.uncovered_share,
         advice.largest_aperture_w > 0
             ? fmt::format("an aperture of at most {}, or ",
@@ -214,8 +212,7 @@ std::string ForecastText(const PreprocessReport& report, const CameraPath& path,
                         ShortDuration(cpu_s / facts.thread_count), facts.thread_count,
                         1e3 * report.rate->load_s, 1e9 * report.rate->collect_s,
                         1e3 * report.rate->finish_s) +
-                (facts.rebins ? "; making frames of rebinned rays takes longer, and is not in it"
-                              : "")
+                (facts.rebins ? "; the time to make frames from rebinned rays is not included" : "")
           : "not known: " + report.rate_error,
       &lines);
   AddLine(

@@ -29,26 +29,26 @@ void Warn(const LightField& light_field, const ExposureArguments& arguments,
   };
   if (!exposure.left_alone.empty())
     warn("exposure-left-alone",
-         fmt::format("{} of {} images keep the lf_gain they had, because what others show of the "
-                     "same places does not tell it to 2 %: state it where they are too dark or "
-                     "too bright",
+         fmt::format("{} of {} images keep their lf_gain, because it cannot be estimated to 2 % "
+                     "from what other images show of the same places: state lf_gain for images "
+                     "that are too dark or too bright",
                      exposure.left_alone.size(), light_field.size()),
          exposure.left_alone);
   if (!exposure.unreadable.empty())
     warn("exposure-left-alone",
-         fmt::format("{} of {} images cannot be read, and keep the lf_gain they had",
+         fmt::format("{} of {} images cannot be read, and keep their lf_gain",
                      exposure.unreadable.size(), light_field.size()),
          exposure.unreadable);
   if (exposure.component_count > 1)
     warn("exposure-apart",
-         fmt::format("the images are {} groups that do not overlap: each was matched by itself, "
-                     "and one may be brighter than another",
+         fmt::format("the images form {} groups that do not overlap: each was matched by itself, "
+                     "so that one may be brighter than another",
                      exposure.component_count),
          {});
   if (arguments.vignetting && !exposure.falloff)
     warn("no-falloff",
-         "no falloff of a lens was found that fits: the samples do not reach the corners, or tell "
-         "of something else; lf_vignetting stays as it was",
+         "no falloff of a lens fits the samples, which do not reach the corners, or differ for "
+         "another reason; lf_vignetting stays as it was",
          {});
 }
 
@@ -114,8 +114,8 @@ Result<std::optional<ExifGains>> StateBrackets(const ExposureArguments& argument
   if (HoldsPackedStore(*light_field)) {
     if (!arguments.gain_from_exif && !arguments.mask_clipped) return std::optional<ExifGains>();
     return UsageError(fmt::format(
-        "{} of {}: a packed store has neither Exif data nor masks that can be changed: import the "
-        "image files with it, and compress them again",
+        "{} cannot be used with {}: a packed store contains no Exif data, and its masks cannot be "
+        "changed: import the image files with this option, and compress them again",
         arguments.gain_from_exif ? "--gain-from-exif" : "--mask-clipped",
         light_field->folder.string()));
   }
@@ -150,12 +150,12 @@ void WarnOfBracketOptions(const ExposureArguments& arguments, const std::optiona
   }
   if (gains && !gains->has_f_numbers)
     warn("no-f-number",
-         "no image states an f-number, as with lenses that have no contacts: all are taken to be "
-         "of one; state lf_gain where the aperture was changed");
+         "no image states an f-number (lenses without contacts do not report it): all images are "
+         "assumed to have the same; state lf_gain where the aperture was changed");
   if (ApplyBrackets(light_field) == 0 && arguments.mask_clipped)
     warn("no-brackets",
-         "--mask-clipped masks nothing: no image has a darker one of the same pose, by lf_gain. "
-         "Give the images of one pose the same transform_matrix, and their gains "
+         "--mask-clipped masks nothing, because no image has a darker image of the same pose (by "
+         "lf_gain). Give the images of one pose the same transform_matrix, and their gains "
          "(--gain-from-exif, --match-exposure)");
 }
 
@@ -189,7 +189,7 @@ std::string BracketsText(const FoundBrackets& brackets) {
 }
 
 std::string ExifGainsText(const ExifGains& gains) {
-  return fmt::format("{:.5g} to {:.5g} for {} images, from what their files state of exposure",
+  return fmt::format("{:.5g} to {:.5g} for {} images, from the exposure that their files state",
                      gains.least_gain, gains.most_gain, gains.image_count);
 }
 

@@ -182,7 +182,7 @@ std::string ReportText(const ImportReport& report) {
   if (capture.density)
     AddDensity(*capture.density, &lines);
   else if (capture.spacing_w)
-    AddLine("density", "unknown: give the distance to the scene (--distance)", &lines);
+    AddLine("density", "unknown: give the distance to the scene with --distance", &lines);
   if (capture.brackets) AddLine("brackets", BracketsText(*capture.brackets), &lines);
   if (report.exif_gains) AddLine("gains", ExifGainsText(*report.exif_gains), &lines);
   if (report.exposure) {

@@ -43,9 +43,9 @@ std::string MessageOf(const TaskStatus& task) {
   if (task.state.phase == TaskPhase::kDone && task.state.exit_code == 0) return "";
   if (task.queue != "PENDING") return Shortened(task.message);
   if (task.message == "None" || task.message == "Resources" || task.message == "Priority")
-    return "waits for a node";
-  if (task.message == "BeginTime") return "Slurm waits two minutes before it begins a task again";
-  if (task.message == "Dependency") return "waits for the packages";
+    return "waiting for a node";
+  if (task.message == "BeginTime") return "Slurm waits two minutes before it restarts a task";
+  if (task.message == "Dependency") return "waiting for the packages";
   return Shortened(task.message);
 }
 
@@ -89,7 +89,7 @@ std::string JobTable(const ClusterJob& job, const JobStatus& status) {
     text += fmt::format("; about {} left", ShortDuration(*left_s));
   text += "\n";
   if (!status.queue_error.empty())
-    text += fmt::format("the queue cannot be asked ({}): what follows is what the files say\n",
+    text += fmt::format("the queue cannot be queried ({}): this table is made from files only\n",
                         status.queue_error);
   std::vector<std::vector<std::string>> rows = {{"package", "state", "on", "frames", "rays",
                                                  "LF images", "rate", "left", "restarts",

@@ -37,8 +37,9 @@ struct Arguments {
 lf::Result<std::vector<lf::FrameId>> ChooseFrames(const Arguments& arguments,
                                                   const lf::CameraPath& path) {
   if (arguments.frame > path.frame_count())
-    return lf::UsageError(fmt::format("--frame {}: {} has frames 1 to {}", arguments.frame,
-                                      arguments.path, path.frame_count()));
+    return lf::UsageError(
+        fmt::format("--frame {}: expected a frame of {}, which has frames 1 to {}", arguments.frame,
+                    arguments.path, path.frame_count()));
   if (arguments.frame > 0) return std::vector<lf::FrameId>{{arguments.frame}};
   std::vector<lf::FrameId> frames;
   for (uint32_t frame = 1; frame <= path.frame_count(); ++frame) frames.push_back({frame});

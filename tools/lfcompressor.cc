@@ -161,9 +161,10 @@ lf::Result<lf::CompressOptions> MakeOptions(const Arguments& a, const lf::Common
   options.codec.levels = a.levels > 0 ? a.levels : is_thesis ? 1 : 4;
   options.codec.threshold = a.threshold >= 0 ? a.threshold : is_thesis ? 8 : 3;
   if (is_lossless && (a.threshold >= 0 || a.target_psnr > 0))
-    return lf::UsageError("--profile lossless drops nothing: no --threshold, no --target-psnr");
+    return lf::UsageError(
+        "--profile lossless drops no details: leave out --threshold and --target-psnr");
   if (a.quantizer != "8bit") {
-    if (!is_thesis) return lf::UsageError("--quantizer belongs to --profile thesis");
+    if (!is_thesis) return lf::UsageError("--quantizer can only be used with --profile thesis");
     if (!CLI::detail::lexical_cast(a.quantizer, options.codec.quantizer))
       return lf::UsageError(
           fmt::format("--quantizer {}: expected 8bit, or 2 to 65536", a.quantizer));
@@ -184,9 +185,9 @@ lf::Result<lf::CompressOptions> MakeOptions(const Arguments& a, const lf::Common
 lf::Result<lf::CompressSource> OpenSource(const Arguments& a) {
   if (!HasPackages(a)) {
     if (a.inputs.size() > 1)
-      return lf::UsageError("expected one LIGHTFIELD, or packages: files that end in .lfp");
+      return lf::UsageError("expected one LIGHTFIELD, or only packages (files that end in .lfp)");
     if (a.needed_pixels || !a.light_field.path.empty())
-      return lf::UsageError("--needed-pixels and --lightfield are for packages");
+      return lf::UsageError("--needed-pixels and --lightfield can only be used with packages");
     lf::LightFieldArgument argument = a.light_field;
     argument.path = a.inputs.front();
     LF_ASSIGN_OR_RETURN(lf::LightField light_field, argument.Open());

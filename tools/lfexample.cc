@@ -68,16 +68,18 @@ lf::Result<lf::LfImageId> FindCamera(const lf::LightField& light_field,
   for (uint32_t i = 0; i < light_field.size(); ++i)
     if (matches(light_field.image_names[i])) found.push_back(i);
   if (found.size() > 1)
-    return lf::UsageError(fmt::format("--camera {}: {} LF images have this name, such as {} and {}",
-                                      text, found.size(), light_field.image_names[found[0]],
-                                      light_field.image_names[found[1]]));
+    return lf::UsageError(fmt::format(
+        "--camera {}: {} LF images have this name, such as {} and {}: give more of its path, or "
+        "its number",
+        text, found.size(), light_field.image_names[found[0]], light_field.image_names[found[1]]));
   if (found.size() == 1) return lf::LfImageId{found[0]};
   uint32_t number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error == std::errc() && end == text.data() + text.size()) return lf::LfImageId{number};
   return lf::UsageError(
-      fmt::format("--camera {}: is no number, and no LF image has this name; one is named {}", text,
-                  light_field.image_names[0]));
+      fmt::format("--camera {}: is no number, and no LF image has this name: give a name such as "
+                  "{}, or a number",
+                  text, light_field.image_names[0]));
 }
 
 // Warns where the focus is, why it is uncertain, and how to choose another one.
@@ -92,8 +94,8 @@ void WarnOfDoubt(const lf::ExamplePath& example, const std::string& light_field,
   command += fmt::format(" -o {} --move {}", lf::ShellWord(output), move);
   if (camera != "-1") command += " --camera " + lf::ShellWord(camera);
   lf::LogWarning(
-      "not sure what to focus on ({}): focused at {:.4g}, {}, with an aperture of {:.4g}, {}. "
-      "The best focus distance{} found: {}. For a wider aperture say which one it is: {} --focus "
+      "not sure what to focus on ({}): focused at {:.4g}, {}, with an aperture of {:.4g}, {}. The "
+      "best focus distance{} found: {}. For a wider aperture, choose the right one: {} --focus "
       "{:.4g}",
       example.doubt, example.focus_distance_w, example.focus_reason, example.aperture_diameter_w,
       example.aperture_reason, example.candidates_w.size() == 1 ? "" : "s", distances, command,
@@ -108,8 +110,8 @@ lf::Result<void> CheckMayWrite(const std::string& output) {
   const lf::Result<std::string> text = lf::ReadFile(output, kLongestPath);
   if (!text) return text.error();
   if (text->empty() || text->find("format: lfpath") != std::string::npos) return {};
-  return lf::UsageError(
-      fmt::format("{}: exists and is no camera path; give another name, or remove it", output));
+  return lf::UsageError(fmt::format(
+      "{}: exists and is no camera path; give another name, or remove the file", output));
 }
 
 }  // namespace

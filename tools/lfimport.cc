@@ -126,7 +126,7 @@ lf::Result<lf::Vec2> ParsePitch(const std::string& text) {
   const int size = static_cast<int>(text.size());
   if (end_of_one == size) return lf::Vec2(pitch.x(), pitch.x());
   if (end_of_two == size) return pitch;
-  return lf::UsageError(fmt::format("--pitch {}: expected P or PX,PY", text));
+  return lf::UsageError(fmt::format("--pitch {}: expected P or PX,PY, in world units", text));
 }
 
 // Returns true if the folder that is read holds the transforms.json that is written, and the
@@ -218,7 +218,8 @@ lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {
                   light_field.size(), report.faults->broken.size());
   if (refuses) return lf::InputError(what + "; nothing was written");
   return lf::EndWithMissing(
-      {fault_count, light_field.size(), what, "rendering skips them, --exclude leaves them out"},
+      {fault_count, light_field.size(), what,
+       "renders leave them out, too; --exclude removes them from the light field"},
       limit);
 }
 

@@ -140,7 +140,7 @@ lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::Comm
                                               const lf::CameraPath& path, lf::BayerPattern bayer) {
   lf::PreprocessOptions options;
   if (!a.plan) {
-    if (a.output.empty()) return lf::UsageError("-o DIR or --plan is needed");
+    if (a.output.empty()) return lf::UsageError("expected -o DIR, or --plan");
     options.output_folder = a.output;
   }
   options.overwrite = a.overwrite;
@@ -168,7 +168,7 @@ lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::Comm
   if (!a.depths.empty()) {
     if (!(a.depths[0] < a.depths[1]))
       return lf::UsageError(
-          fmt::format("--depths {} {}: expected the nearer one first", a.depths[0], a.depths[1]));
+          fmt::format("--depths {} {}: expected NEAR less than FAR", a.depths[0], a.depths[1]));
     options.depths = lf::DepthRange{a.depths[0], a.depths[1]};
   }
   options.strict = common.strict;

@@ -90,8 +90,8 @@ Result<void> Finish(const std::string& folder, const std::string& frames) {
   LF_ASSIGN_OR_RETURN(const ClusterJob job, lf::ReadJob(folder));
   LF_ASSIGN_OR_RETURN(const size_t count, lf::AskToFinish(job, frames));
   lf::LogInfo(
-      "{} frames are not finished, and will be with the rays they have, within seconds where their "
-      "packages run; report-*.json say which LF images these are",
+      "{} unfinished frames will be finished with the rays that they have, within seconds if their "
+      "packages are running; report-*.json state which LF images they contain",
       count);
   return {};
 }

@@ -145,7 +145,9 @@ lf::Result<lf::RigOptions> MakeRigOptions(const Arguments& a, const lf::BuiltInS
   if (a.capture == "band") rig.shape = lf::RigShape::kBand;
   if (a.capture == "hemisphere") rig.shape = lf::RigShape::kHemisphere;
   if (rig.shape == lf::RigShape::kHemisphere && a.spacing)
-    return lf::UsageError("--spacing: on a hemisphere it follows from --count and --distance");
+    return lf::UsageError(
+        "--spacing cannot be used with --capture hemisphere, where --count and --distance "
+        "determine it: leave it out");
   if (a.count > 0) rig.count = a.count;
   rig.spacing_w = a.spacing.value_or(rig.spacing_w);
   rig.distance_w = a.distance.value_or(rig.distance_w);
@@ -168,12 +170,17 @@ lf::Distortion DistortionOf(const Arguments& a) {
 
 lf::Result<lf::LfImageFormat> FormatOf(const Arguments& a) {
   if (a.bayer && a.format != "exr")
-    return lf::UsageError("--bayer and --format exclude each other: mosaics are 16-bit PNG");
+    return lf::UsageError(
+        "--bayer and --format cannot be combined, because mosaics are always 16-bit PNG: leave one "
+        "out");
   if (a.alpha != "none" && a.bayer)
-    return lf::UsageError("--bayer and --alpha exclude each other: mosaics have no alpha");
+    return lf::UsageError(
+        "--bayer and --alpha cannot be combined, because mosaics have no alpha: leave one out");
   if (a.alpha != "none" && a.scene == "lights")
-    return lf::UsageError("--alpha: lights has no surfaces: use another scene");
-  if (a.noise > 0 && !a.bayer) return lf::UsageError("--noise is for mosaics: add --bayer");
+    return lf::UsageError(
+        "--alpha needs surfaces, but the scene lights has none: use another scene");
+  if (a.noise > 0 && !a.bayer)
+    return lf::UsageError("--noise can only be used with mosaics: add --bayer");
   if (a.bayer) return lf::LfImageFormat::kBayer;
   if (a.format == "png") return lf::LfImageFormat::kPng;
   return a.format == "png16" ? lf::LfImageFormat::kPng16 : lf::LfImageFormat::kExr;
@@ -196,10 +203,10 @@ lf::Result<void> CheckMayWrite(const Arguments& a) {
   if (a.overwrite || !std::filesystem::exists(CalibrationIn(a), error)) return {};
   LF_ASSIGN_OR_RETURN(const bool is_ours, lf::IsAsWritten(CalibrationIn(a), lf::kSynthProgram));
   if (is_ours) return {};
-  return lf::UsageError(fmt::format(
-      "{} was not written by lfsynth, or was changed since: write to another folder, or "
-      "replace that light field (--overwrite)",
-      CalibrationIn(a).string()));
+  return lf::UsageError(
+      fmt::format("{} was not written by lfsynth, or was changed since: give another folder, or "
+                  "replace that light field with --overwrite",
+                  CalibrationIn(a).string()));
 }
 
 }  // namespace

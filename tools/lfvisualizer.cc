@@ -143,15 +143,17 @@ lf::Result<void> PrintText(const Arguments& a, const lf::CommonOptions& common) 
 
 lf::MissingImages MissingOf(const lf::ExportFacts& facts) {
   return {facts.missing_count, facts.image_count,
-          fmt::format("{} of {} LF images are not in the export, since they are missing or broken; "
-                      "the first: {}",
+          fmt::format("{} of {} LF images are not in the export, because they are missing or "
+                      "broken; the first: {}",
                       facts.missing_count, facts.image_count, facts.first_missing),
           "once they are mended, export again"};
 }
 
 lf::Result<void> Run(Arguments& a, const lf::CommonOptions& common) {
   if (a.text && !a.page.packages.empty())
-    return lf::UsageError("--text tells what a path takes of a light field: leave packages out");
+    return lf::UsageError(
+        "--text prints what a path needs of a light field, and cannot be used with packages: leave "
+        "them out");
   if (a.text) return PrintText(a, common);
   LF_ASSIGN_OR_RETURN(const lf::MissingLimit limit, a.allow_missing.Limit());
   const std::atomic<bool>& interrupted = lf::CatchInterrupts();
@@ -178,7 +180,7 @@ lf::Result<void> Run(Arguments& a, const lf::CommonOptions& common) {
   }
   LF_ASSIGN_OR_RETURN(const auto server, lf::PageServer::Open(*scene, a.port));
   LF_RETURN_IF_ERROR(lf::PrintReport(server->address() + "\n"));
-  lf::LogInfo("open this address in a browser; Ctrl-C ends");
+  lf::LogInfo("open this address in a browser; Ctrl-C ends lfvisualizer");
   return server->ServeUntil(interrupted);
 }
 

@@ -152,11 +152,12 @@ Result<RebinPassOptions> RebinArguments::Make(uint64_t seed) const {
   made.kept = ValueNamed(kept, {KeptRays::kAll, KeptRays::kEdges}).value_or(KeptRays::kAuto);
   made.max_cells = static_cast<size_t>(max_rays);
   if (max_rays > 0 && made.max_cells < RebinnedRays::kLeastCells)
-    return UsageError(fmt::format("--max-rays {}: expected 0, or {} and more", max_rays,
+    return UsageError(fmt::format("--max-rays {}: expected 0, or at least {}", max_rays,
                                   RebinnedRays::kLeastCells));
   made.reparameterise = reparameterise == "on";
   if (!made.reparameterise && made.query.lens_sets > 1)
-    return UsageError("--reparameterise off: has one set of lens points: leave out --lens-sets");
+    return UsageError(
+        "--reparameterise off works with one set of lens points only: leave out --lens-sets");
   made.previews = ValueNamed(preview, {Previews::kOn, Previews::kOff}).value_or(Previews::kAuto);
   made.rebin.averages_others = average_others == "on";
   made.rebin.seed = made.query.seed = seed;
@@ -167,7 +168,7 @@ Result<RebinPassOptions> RebinArguments::Make(uint64_t seed) const {
   if (!slab_position_w.empty()) made.slab.position_world = vector(slab_position_w);
   if (!slab_forward.empty()) made.slab.forward_world = vector(slab_forward);
   if (made.slab.forward_world && !(made.slab.forward_world->norm() > 0))
-    return UsageError("--slab-forward 0 0 0 is no direction");
+    return UsageError("--slab-forward 0 0 0 is no direction: give a vector that is not zero");
   return made;
 }
 

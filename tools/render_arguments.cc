@@ -225,26 +225,30 @@ Result<void> RenderArguments::Check(bool seed_given) const {
   LF_RETURN_IF_ERROR(allow_missing.Limit());
   if (HasPackages()) {
     if (seed_given)
-      return UsageError("--seed: packages have the order that they were made with: leave it out");
+      return UsageError(
+          "--seed cannot be used with packages, which contain the order and the seed that they "
+          "were made with: leave it out");
     if (order != "shuffle")
       return UsageError(
-          "--order: packages have the order that they were made with: leave it out, or make them "
-          "again by lfpreprocessor --order");
+          "--order cannot be used with packages, which contain the order that they were made with: "
+          "leave it out, or make the packages again with lfpreprocessor --order");
     if (max_angle_deg > 0)
       return UsageError(
-          "--max-angle: packages have the LF cameras that they were made with: leave it out, or "
-          "make them again by lfpreprocessor --max-angle");
+          "--max-angle cannot be used with packages, whose LF cameras were selected when they were "
+          "made: leave it out, or make the packages again with lfpreprocessor --max-angle");
     return light_field.CheckWithPackages();
   }
   if (std::any_of(inputs.begin(), inputs.end(), IsPackageName))
-    return UsageError("expected LIGHTFIELD PATH.yaml, or packages alone: PACKAGE...");
+    return UsageError("expected LIGHTFIELD PATH.yaml, or only packages: PACKAGE...");
   if (inputs.size() != 2)
     return UsageError(
         fmt::format("expected LIGHTFIELD PATH.yaml, or PACKAGE... (files that end in .lfp, such as "
                     "packages/package-0000.lfp); found {} {}",
                     inputs.size(), inputs.size() == 1 ? "word" : "words"));
   if (!light_field.path.empty())
-    return UsageError("--lightfield is for packages: here it is the first word");
+    return UsageError(
+        "--lightfield can only be used with packages: give the light field as first argument "
+        "instead");
   return {};
 }
 
@@ -266,7 +270,8 @@ Result<FilmOptions> RenderArguments::MakeFilm(uint64_t seed) const {
   LF_RETURN_IF_ERROR(ReadRule(require, "--require", &film.require_samples, &film.require_noise));
   if (film.mode != RenderMode::kRebin && film.lens_weights == LensWeights::kAuto &&
       film.CountsRays())
-    LogInfo("--lens-weights auto: none, since samples>=N and --smooth-below count rays");
+    LogInfo(
+        "--lens-weights auto means none here, because samples>=N and --smooth-below count rays");
   if (!shard.empty()) {
     film.shard = ShardOf(shard);
     if (!film.shard)

@@ -9,8 +9,8 @@ namespace lf {
 namespace {
 
 constexpr const char* kAdvice =
-    "the report names them; once they are mended, render anew without --resume, which keeps "
-    "finished frames as they are";
+    "the report names them; once they are mended, render again without --resume, which would keep "
+    "the finished frames";
 
 // Returns "2 of 20 in package-0000, 1 of 18 in package-0003".
 std::string PackagesText(const RenderReport& report) {

@@ -17,15 +17,16 @@ namespace {
 
 // Returns why elements of a frame have no ray, and what would help.
 std::string CauseOfEmptyElements(const RenderReport& report, const FrameReport& frame) {
-  if (!report.skipped.empty()) return "LF images are missing or broken, see below";
+  if (!report.skipped.empty()) return "LF images are missing or broken (see below)";
   if (frame.weighed && frame.weighed->coverage.uncovered_share > kMuchUncovered)
-    return "the lens is beyond the capture, see below";
+    return "the lens is beyond the capture (see below)";
   if (report.has_masks)
-    return "masks, or alpha that is taken as one (--image-alpha), leave out what is there";
+    return "masks, or alpha that is used as a mask (--image-alpha), exclude the pixels that show "
+           "them";
   if (!frame.weighed)
-    return "the lens holds no LF camera that sees them: open it, or leave --lens-weights at auto";
-  return "they look past what the LF cameras saw: at the capture's edge a frame must be narrower, "
-         "or the camera nearer to the middle";
+    return "no LF camera in the lens sees them: give a wider aperture, or --lens-weights auto";
+  return "no LF camera has recorded what they show: give a narrower field of view, or move the "
+         "camera nearer to the middle of the capture";
 }
 
 // Warns once, for all frames, about the share of elements without a ray.
@@ -39,11 +40,10 @@ void WarnOfEmptyElements(const RenderReport& report) {
       worst = &frame;
   }
   if (thin_count > 0)
-    LogWarning(
-        "{} of {} frames have elements that no ray reached, most of all frame {}: "
-        "{:.0f} %: {}",
-        thin_count, report.frames.size(), worst->frame.value,
-        100 * worst->empty_element_count[1] / element_count, CauseOfEmptyElements(report, *worst));
+    LogWarning("{} of {} frames have elements without rays, most of all frame {} ({:.0f} %): {}",
+               thin_count, report.frames.size(), worst->frame.value,
+               100 * worst->empty_element_count[1] / element_count,
+               CauseOfEmptyElements(report, *worst));
 }
 
 // Reports how much of the pictures is interpolated, and from what.
@@ -66,9 +66,10 @@ void TellRebinning(const RenderReport& report) {
           100 * most);
   if (rebinning.kept != "all")
     LogInfo(
-        "rebinned: {}, so that the picture depends on --max-rays and on which frames are rendered "
-        "together",
-        rebinning.kept == "edges" ? "rays at edges were kept" : "there was no room for all rays");
+        "rebinned: {}: the picture therefore depends on --max-rays and on which frames are "
+        "rendered together",
+        rebinning.kept == "edges" ? "only rays at edges were kept"
+                                  : "there was no room for all rays");
 }
 
 // Reports which lens weights kAuto chose.
@@ -81,12 +82,14 @@ void TellLensWeights(const RenderReport& report) {
   }
   if (cells + hats + both == 0) return;
   if (cells + both == 0)
-    LogInfo("lens weights: small lenses, interpolated between the LF images around them");
+    LogInfo("lens weights: hat (interpolation between LF images), because the lenses are small");
   else if (hats + both == 0)
-    LogInfo("lens weights: LF images count as the area of the lens that each stands for");
+    LogInfo(
+        "lens weights: area (each LF image has the area of the lens that is nearest to its camera "
+        "as weight)");
   else
     LogInfo(
-        "lens weights: by area in {} frames, interpolated between LF images (hats) in {}, by "
+        "lens weights: area in {} frames, hat (interpolation between LF images) in {}, a mix of "
         "both in {}",
         cells, hats, both);
 }
@@ -105,7 +108,7 @@ void TellNoise(const RenderReport& report) {
   }
   if (measured == 0) return;
   const std::string images = met == 0 ? "" : fmt::format(", with {} to {} LF images", fewest, most);
-  LogInfo("noise: {} of {} frames have what was asked for or less{}", met, measured, images);
+  LogInfo("noise: {} of {} frames have at most the requested noise{}", met, measured, images);
 }
 
 // Counts the frames whose badness exceeds the limit, and calls `warn` with the count and the worst
@@ -135,8 +138,8 @@ void WarnOfLenses(const RenderReport& report) {
             fitting_w = std::min(fitting_w, frame.weighed->coverage.fitting_diameter_w);
         LogWarning(
             "in {} of {} frames a part of the lens is beyond the capture, most of all in frame {}: "
-            "{:.0f} %. It stays empty, and bokeh are cut off there. {}a camera nearer to the "
-            "middle of the capture would show the truth",
+            "{:.0f} %. This part stays empty, and bokeh are cut off there. {}a camera nearer to "
+            "the middle of the capture would help",
             count, report.frames.size(), worst.frame.value, 100 * coverage.uncovered_share,
             fitting_w > 0 ? fmt::format("An aperture of at most {:.4g} world units, or ", fitting_w)
                           : "Only ");
@@ -152,8 +155,8 @@ void WarnOfLenses(const RenderReport& report) {
       [&](size_t count, const FrameReport& worst) {
         LogWarning(
             "{} of {} frames are made of fewer than {:.0f} LF images, counted by their weights, "
-            "fewest of all frame {}: {:.1f}. Expect double edges out of focus, and noise; a wider "
-            "aperture has more",
+            "fewest of all frame {}: {:.1f}. Expect noise, and double edges out of focus; a wider "
+            "aperture contains more LF images",
             count, report.frames.size(), kFewImages, worst.frame.value,
             worst.weighed->effective_count);
       });
@@ -178,7 +181,7 @@ void SummariseRender(const RenderReport& report, const std::string& look_at) {
   TellNoise(report);
   WarnOfEmptyElements(report);
   WarnOfLenses(report);
-  LogInfo("look at {}", look_at);
+  LogInfo("see {}", look_at);
 }
 
 Error WithResumeCommand(Error error, int argc, char** argv) {
@@ -192,7 +195,7 @@ Error WithResumeCommand(Error error, int argc, char** argv) {
     if (i > 0) command += ' ';
     command += ShellWord(word);
   }
-  error.message += "; go on with: " + command + (has_resume ? "" : " --resume");
+  error.message += "; continue with: " + command + (has_resume ? "" : " --resume");
   return error;
 }
 
@@ -208,15 +211,16 @@ Result<void> CheckRequired(const RenderReport& report, std::optional<uint32_t> s
     frames += frame.samples->asked == *samples
                   ? fmt::format("frame {} ({:.1f} %)", frame.frame.value,
                                 100 * frame.samples->measured.share)
-                  : fmt::format("frame {} ({} in most)", frame.frame.value,
+                  : fmt::format("frame {} ({} rays in 99 % of them)", frame.frame.value,
                                 frame.samples->measured.most_have);
   }
   if (count == 0) return {};
   return Error{
       ErrorKind::kBelowRequired,
-      fmt::format("--require samples>={}: {} of {} frames have them in less than 99 % of "
-                  "the elements that LF images see: {}{}",
-                  *samples, count, report.frames.size(), frames, count > kNamed ? ", ..." : "")};
+      fmt::format(
+          "--require samples>={}: {} of {} frames have so many rays in less than 99 % of the "
+          "elements that LF images see: {}{}; more LF images or a wider aperture give more",
+          *samples, count, report.frames.size(), frames, count > kNamed ? ", ..." : "")};
 }
 
 Result<void> CheckRequiredNoise(const RenderReport& report, std::optional<double> noise) {
@@ -231,14 +235,13 @@ Result<void> CheckRequiredNoise(const RenderReport& report, std::optional<double
     if (!frames.empty()) frames += ", ";
     frames += fmt::format("frame {} ({})", frame.frame.value,
                           reached ? fmt::format("{:.3g}", *reached)
-                                  : std::string("not measurable: fewer than two LF images"));
+                                  : std::string("not measurable with fewer than two LF images"));
   }
   if (count == 0) return {};
   return Error{
       ErrorKind::kBelowRequired,
-      fmt::format("--require noise<={}: {} of {} frames have more in more than a tenth of "
-                  "the elements that LF images see: {}{}; a wider aperture or more LF "
-                  "images lower it",
+      fmt::format("--require noise<={}: {} of {} frames have more noise in over 10 % of the "
+                  "elements that LF images see: {}{}; a wider aperture or more LF images reduce it",
                   *noise, count, report.frames.size(), frames, count > kNamed ? ", ..." : "")};
 }
 

@@ -35,15 +35,19 @@ Result<void> RunJob(ClusterJob job, FileLock lock, const std::vector<size_t>& nu
   Result<void> outcome;
   if (job.engine == ClusterEngine::kLocal) {
     if (!numbers.empty())
-      LogInfo("{} packages, {} at a time, {} threads and {} MiB each; lfsubmit --status {} tells",
-              numbers.size(), job.at_once, job.thread_count, job.memory_bytes >> 20, folder);
+      LogInfo(
+          "{} packages, {} at a time, {} threads and {} MiB each; lfsubmit --status {} shows the "
+          "progress",
+          numbers.size(), job.at_once, job.thread_count, job.memory_bytes >> 20, folder);
     outcome = RunLocally(job, *held, numbers, stop, [&] { Show(job, meter); });
   } else {
     LF_RETURN_IF_ERROR(SubmitToSlurm(&job, numbers));
     held.reset();  // Slurm runs the job now; other programs may resume or cancel it
-    LogInfo("submitted {} packages (array {}) and finishing task {}; lfsubmit --status {} tells",
-            numbers.size(), numbers.empty() ? "-" : job.slurm_array_ids.back(),
-            job.slurm_finishing_id, folder);
+    LogInfo(
+        "submitted {} packages (array {}) and finishing task {}; lfsubmit --status {} shows the "
+        "progress",
+        numbers.size(), numbers.empty() ? "-" : job.slurm_array_ids.back(), job.slurm_finishing_id,
+        folder);
     if (!waits) return {};
     outcome = WaitForJob(job, stop, [&] { Show(job, meter); });
   }

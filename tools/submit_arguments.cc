@@ -52,7 +52,7 @@ Result<fs::path> FindRenderer(const std::string& asked_for) {
   const fs::path renderer = asked_for.empty() ? folder / "lfrenderer" : fs::absolute(asked_for);
   if (::access(renderer.c_str(), X_OK) != 0)
     return UsageError(fmt::format(
-        "{}: is no program: expected lfrenderer beside lfsubmit; say with --lfrenderer where it is",
+        "{}: is no program: expected lfrenderer beside lfsubmit; give its path with --lfrenderer",
         renderer.string()));
   return renderer;
 }
@@ -69,10 +69,10 @@ Result<Words> SplitWords(const std::vector<std::string>& words) {
       words.begin(), words.end(), [](const std::string& word) { return word.starts_with('-'); });
   for (auto word = words.begin(); word != arguments; ++word) {
     if (!IsPackageName(*word))
-      return UsageError(fmt::format(
-          "{}: is no package (a file that ends in .lfp): make some with lfpreprocessor LIGHTFIELD "
-          "PATH.yaml -o packages --packages 8",
-          *word));
+      return UsageError(
+          fmt::format("{}: is no package (a file that ends in .lfp): make packages with "
+                      "lfpreprocessor LIGHTFIELD PATH.yaml -o packages --packages 8",
+                      *word));
     split.files.push_back(fs::absolute(*word).lexically_normal());
   }
   split.arguments.assign(arguments, words.end());
@@ -80,7 +80,7 @@ Result<Words> SplitWords(const std::vector<std::string>& words) {
     for (const std::string word : kOfTheJob)
       if (argument == word || argument.starts_with(word + "="))
         return UsageError(fmt::format(
-            "{}: not among the arguments of lfrenderer: lfsubmit decides about it{}", argument,
+            "{}: cannot be given to lfrenderer (after --), because lfsubmit sets it{}", argument,
             word.starts_with("--") ? ", and has some of these options itself" : ""));
   return split;
 }
@@ -200,14 +200,14 @@ void SubmitArguments::AddTo(CLI::App& app) {
 Result<void> SubmitArguments::Check() const {
   const int asked = !status.empty() + !cancel.empty() + !resume.empty() + !finish.empty() +
                     !run_package.empty() + !run_finish.empty();
-  if (asked > 1) return UsageError("one of --status, --cancel, --resume and --finish at a time");
+  if (asked > 1) return UsageError("give only one of --status, --cancel, --resume and --finish");
   if (asked == 1 && resume.empty() && !words.empty())
     return UsageError(
-        fmt::format("{}: packages are for new jobs and --resume: --status, --cancel and --finish "
-                    "take DIR alone",
+        fmt::format("{}: packages can only be given for new jobs and --resume; --status, --cancel "
+                    "and --finish need only DIR",
                     words.front()));
   if (asked == 1 && (!output.empty() || !frames.empty() || overwrite))
-    return UsageError("-o, --frames and --overwrite are for new jobs");
+    return UsageError("-o, --frames and --overwrite can only be used for new jobs: leave them out");
   if (asked == 1) return {};
   if (words.empty() || words.front().starts_with('-'))
     return UsageError(
@@ -231,7 +231,7 @@ Result<void> SubmitArguments::TakeResources(ClusterJob* job, const CommonOptions
       return UsageError(fmt::format(
           "--sbatch={}: expected an option of sbatch, such as --partition=long", option));
   if (is_local && (!time_limit.empty() || !sbatch_options.empty()))
-    return UsageError("--time-limit and --sbatch are for --engine slurm");
+    return UsageError("--time-limit and --sbatch can only be used with --engine slurm");
   const bool is_anew = is_new || engine || at_once;
   if (is_anew) {
     job->at_once = at_once.value_or(0);
@@ -265,7 +265,7 @@ Result<void> SubmitArguments::Change(ClusterJob* job, const CommonOptions& commo
     const auto queue = AskSlurm(*job);
     if (queue && !queue->empty())
       return UsageError(
-          fmt::format("--engine local: Slurm still has {} tasks of the job: lfsubmit "
+          fmt::format("--engine local: Slurm still has {} tasks of the job: end them with lfsubmit "
                       "--cancel {} first",
                       queue->size(), ShellWord(job->output_folder.string())));
   }
@@ -275,7 +275,8 @@ Result<void> SubmitArguments::Change(ClusterJob* job, const CommonOptions& commo
         std::find_if(job->packages.begin(), job->packages.end(),
                      [&](const JobPackage& known) { return known.name == file.stem().string(); });
     if (package == job->packages.end())
-      return UsageError(fmt::format("{}: is none of the job's packages", file.string()));
+      return UsageError(fmt::format(
+          "{}: is none of the job's packages: give the files of the same packages", file.string()));
     package->file = file;
   }
   if (!split.arguments.empty()) {

@@ -77,11 +77,11 @@ Result<void> EndWithMissing(const MissingImages& missing, const MissingLimit& li
                             bool is_accepted) {
   if (missing.count == 0) return {};
   if (is_accepted) {
-    LogWarning("{}; --allow-missing {} accepts that", missing.what, limit.text());
+    LogWarning("{}; --allow-missing {} accepts this", missing.what, limit.text());
     return {};
   }
   return Error{ErrorKind::kBelowRequired,
-               fmt::format("{}; --allow-missing {} would accept that; {}", missing.what,
+               fmt::format("{}; --allow-missing {} would accept this; {}", missing.what,
                            missing.count, missing.advice)};
 }
 

@@ -38,7 +38,7 @@ class MissingLimit {
 struct AllowMissing {
   std::string text = "0";
 
-  //   asked  names the LF images that a percentage counts, such as "those to be coded"
+  //   asked  names the LF images that a percentage counts, such as "the LF images to be encoded"
   CLI::Option* AddTo(CLI::App& app, const std::string& asked);
   Result<MissingLimit> Limit() const { return MissingLimit::Parse(text); }
 };

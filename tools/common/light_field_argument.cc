@@ -22,8 +22,8 @@ Result<std::array<double, 3>> ParseBackground(const std::string& text) {
     const bool is_followed = c == 2 ? rest == end : rest != end && *rest == ',';
     if (error != std::errc() || !is_followed || !(rgb[c] >= 0 && rgb[c] <= 1e6))
       return UsageError(
-          fmt::format("--background {}: expected black, white, none, or three radiances from 0 on "
-                      "such as 0.2,0.2,0.3",
+          fmt::format("--background {}: expected black, white, none, or three radiances of at "
+                      "least 0, such as 0.2,0.2,0.3",
                       text));
     at = rest + 1;
   }
@@ -103,14 +103,14 @@ Result<OpenOptions> LightFieldArgument::Options() const {
 Result<void> LightFieldArgument::CheckWithPackages() const {
   if (image_alpha != "auto" || !background.empty())
     return UsageError(
-        "--image-alpha and --background: packages have what they were made with: leave them out, "
-        "or "
-        "make the packages again by lfpreprocessor with them");
+        "--image-alpha and --background cannot be used with packages, which contain the values "
+        "that they were made with: leave them out, or make the packages again with lfpreprocessor "
+        "and these options");
   if (!path.empty() || Words().empty()) return {};
-  return UsageError(fmt::format(
-      "{} is for a light field: packages have their calibration; if the images have moved, "
-      "--lightfield says where it is now",
-      Words()[0]));
+  return UsageError(
+      fmt::format("{} cannot be used with packages, which contain their calibration: leave it out; "
+                  "if the images were moved, give their light field with --lightfield",
+                  Words()[0]));
 }
 
 Result<LightField> LightFieldArgument::Open() const {

@@ -79,7 +79,7 @@ int TellException() {
     return static_cast<int>(ErrorKind::kOutput);
   } catch (const std::system_error& error) {
     if (error.code() != std::errc::resource_unavailable_try_again && !is_about_threads(error)) {
-      LogMessage(LogLevel::kError, fmt::format("the system refused: {}", error.what()));
+      LogMessage(LogLevel::kError, fmt::format("a system call failed: {}", error.what()));
       return static_cast<int>(ErrorKind::kOutput);
     }
     LogMessage(LogLevel::kError, fmt::format(kNoThread, error.what()));

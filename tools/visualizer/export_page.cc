@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Error Interrupted() { return {ErrorKind::kInterrupted, "interrupted; the export is not whole"}; }
+Error Interrupted() { return {ErrorKind::kInterrupted, "interrupted; the export is incomplete"}; }
 
 class Exporter {
  public:
@@ -63,8 +63,8 @@ Result<ExportFacts> ExportPage(PageScene& scene, const fs::path& folder, size_t 
                                const std::function<void(size_t, size_t)>& progress) {
   std::error_code error;
   if (fs::exists(folder, error) && !fs::is_empty(folder, error))
-    return UsageError(
-        fmt::format("--export {}: something is there already; give a new folder", folder.string()));
+    return UsageError(fmt::format("--export {}: exists already and is not empty; give a new folder",
+                                  folder.string()));
   if (PageFiles().empty())
     return OutputError(
         "this lfvisualizer was built without its page: Node.js and npm were missing");

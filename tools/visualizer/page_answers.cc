@@ -93,7 +93,7 @@ PageAnswer OfFrame(PageScene& scene, PathDraft& draft, const Name& name) {
 PageAnswer OfPath(PageScene& scene, const Name& name) {
   if (name.parts.size() < 3) return NotFound();
   const std::shared_ptr<PathDraft> draft = scene.FindDraft(name.parts[1]);
-  if (!draft) return Refusal(410, "this path is not known any more: send it again");
+  if (!draft) return Refusal(410, "this path has been forgotten: send it again");
   if (name.parts.size() > 3) return OfFrame(scene, *draft, name);
   const std::string file = name.parts[2] + name.ending;
   if (file == "path.json") return JsonAnswer(PathHeadJson(*draft));

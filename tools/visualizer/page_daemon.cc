@@ -106,7 +106,7 @@ MHD_Result PageDaemon::Parts::Begin(MHD_Connection* connection, const char* path
   RequestHead head = HeadOf(connection, path, method);
   if (auto refusal = RefusalOf(head, door)) return Send(connection, *std::move(refusal));
   if (request_count >= kMostRequests)
-    return Send(connection, Refusal(503, "too many requests at once: ask again"));
+    return Send(connection, Refusal(503, "too many requests at the same time: try again"));
   auto begun = std::make_unique<Request>();
   begun->connection = connection;
   begun->head = std::move(head);
@@ -120,7 +120,7 @@ MHD_Result PageDaemon::Parts::Collect(Request& request, const char* bytes, size_
   const size_t needed_bytes = request.body.size() + byte_count;
   if (needed_bytes > kMostBodyBytes) {
     SendLast(request.connection, "413 Content Too Large",
-             Refusal(413, fmt::format("bodies have at most {} bytes", kMostBodyBytes)));
+             Refusal(413, fmt::format("a body may have at most {} bytes", kMostBodyBytes)));
     return MHD_NO;
   }
   if (needed_bytes > request.body_bytes) {
@@ -128,7 +128,7 @@ MHD_Result PageDaemon::Parts::Collect(Request& request, const char* bytes, size_
         std::min(std::max(needed_bytes, 2 * request.body_bytes), kMostBodyBytes);
     if (!bodies.Take(wanted_bytes - request.body_bytes)) {
       SendLast(request.connection, "503 Service Unavailable",
-               Refusal(503, "too much is being sent at once: ask again"));
+               Refusal(503, "too much data is being sent at the same time: try again"));
       return MHD_NO;
     }
     request.body_bytes = wanted_bytes;
@@ -140,9 +140,10 @@ MHD_Result PageDaemon::Parts::Collect(Request& request, const char* bytes, size_
 
 MHD_Result PageDaemon::Parts::Answer(Request& request) {
   if (request.is_begun)
-    return Send(request.connection, request.answer
-                                        ? *std::move(request.answer)
-                                        : Refusal(503, "the machine has no thread or memory left"));
+    return Send(request.connection,
+                request.answer
+                    ? *std::move(request.answer)
+                    : Refusal(503, "the machine has no thread or memory left: try again later"));
   const std::string_view name = NameOf(request.head, door);
   if (request.head.method != "POST") {
     if (name == "events") {

@@ -78,14 +78,14 @@ PageAnswer StartPreview(PageScene& scene, PreviewRender& preview, const Json& js
   const auto draft = scene.AddDraft(text);
   if (!draft) return RefusedPath(draft.error(), scene.arguments().path.filename().string());
   const auto frame = FrameOf(json, *(*draft)->path);
-  if (!frame) return Refusal(422, "\"frame\": expected one of the path's");
+  if (!frame) return Refusal(422, "\"frame\": expected a frame of the path");
   preview.Start((*draft)->path, *frame);
   return JsonAnswer(Json::object());
 }
 
 PageAnswer PickFocus(PageScene& scene, const Json& json) {
   const std::shared_ptr<PathDraft> draft = scene.FindDraft(TextOf(json, "path"));
-  if (!draft) return Refusal(410, "this path is not known any more: send it again");
+  if (!draft) return Refusal(410, "this path has been forgotten: send it again");
   const auto frame = FrameOf(json, *draft->path);
   const double x = NumberOf(json, "x"), y = NumberOf(json, "y");
   if (!frame || !std::isfinite(x) || !std::isfinite(y))
@@ -97,17 +97,19 @@ PageAnswer PickFocus(PageScene& scene, const Json& json) {
     if (!(id >= 0 && id < static_cast<double>(scene.light_field().size())))
       return Refusal(422, "\"camera\": expected one of the LF cameras");
     ray = RayOfLfPixel(scene.light_field().Camera(LfImageId{static_cast<uint32_t>(id)}), x, y);
-    if (!ray) return JsonAnswer({{"error", "no ray arrives at this pixel of the LF image"}});
+    if (!ray)
+      return JsonAnswer(
+          {{"error", "the lens of the LF camera sees nothing at this pixel of its image"}});
   }
   const auto pick = FindFocus(scene.light_field(), scene.store(), camera, *ray, scene.pool());
   if (!pick) return JsonAnswer({{"error", pick.error().message}});
   if (pick->certainty < kLeastCertainty)
     return JsonAnswer(
-        {{"error", fmt::format("the distance is certain to {:.0f} % only: click on an edge or a "
-                               "texture, away from outlines of things in front",
+        {{"error", fmt::format("the distance is only {:.0f} % certain: click on an edge or a "
+                               "texture, away from outlines of objects in front",
                                100 * pick->certainty)}});
   const double distance_w = FocusDistanceThrough(camera, pick->point_world);
-  if (!(distance_w > 0)) return JsonAnswer({{"error", "this lies behind the render camera"}});
+  if (!(distance_w > 0)) return JsonAnswer({{"error", "this point is behind the render camera"}});
   const Vec3& point = pick->point_world;
   Json cameras = Json::array();
   for (const LfImageId id : pick->images) cameras.push_back(id.value);

@@ -30,8 +30,10 @@ Result<PagePort> ListenOnThisMachine(int port) {
   if (opened.socket < 0 || !Listen(opened.socket, port) ||
       ::getsockname(opened.socket, reinterpret_cast<sockaddr*>(&address), &size) != 0) {
     if (opened.socket >= 0) ::close(opened.socket);
-    return OutputError(fmt::format(
-        "--serve {}: the port cannot be had; another program may listen there. 0 takes any", port));
+    return OutputError(
+        fmt::format("--serve {}: the port cannot be opened; another program may use it. --serve 0 "
+                    "uses any free port",
+                    port));
   }
   opened.port = ntohs(address.sin_port);
   return opened;

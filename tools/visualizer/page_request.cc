@@ -60,10 +60,10 @@ std::optional<PageAnswer> RefusalOfBody(const RequestHead& head) {
   const auto codings = ValuesOf(head, "Transfer-Encoding");
   const auto lengths = ValuesOf(head, "Content-Length");
   if (codings.size() + lengths.size() > 1)
-    return Refusal(400, "the length of the body is told more than once");
+    return Refusal(400, "the length of the body is stated more than once");
   if (!codings.empty()) {
     if (!IsSameWord(codings[0], "chunked"))
-      return Refusal(501, "the only Transfer-Encoding that is understood is chunked");
+      return Refusal(501, "the only supported Transfer-Encoding is chunked");
     if (head.method != "POST") return Refusal(400, "only POST may have a body");
   }
   if (lengths.empty()) return std::nullopt;
@@ -73,7 +73,7 @@ std::optional<PageAnswer> RefusalOfBody(const RequestHead& head) {
   if (rest != end || lengths[0].empty() || error == std::errc::invalid_argument)
     return Refusal(400, "Content-Length is no number");
   if (error != std::errc() || length > kMostBodyBytes)
-    return Refusal(413, fmt::format("bodies have at most {} bytes", kMostBodyBytes));
+    return Refusal(413, fmt::format("a body may have at most {} bytes", kMostBodyBytes));
   if (length > 0 && head.method != "POST") return Refusal(400, "only POST may have a body");
   return std::nullopt;
 }
@@ -90,10 +90,10 @@ std::optional<PageAnswer> RefusalOf(const RequestHead& head, const PageDoor& doo
                    "has printed");
   if (head.path.find("..") != std::string::npos ||
       head.path.find_first_of(std::string_view("\\%\0", 3)) != std::string::npos)
-    return Refusal(403, "there is nothing outside");
+    return Refusal(403, "nothing outside of the page is served");
   if (!ComesFromOurPage(head, door.port))
     return Refusal(403,
-                   "another site asks for this: paste the address into the browser's address bar");
+                   "another site requests this: paste the address into the browser's address bar");
   if (head.method != "GET" && head.method != "HEAD" && head.method != "POST")
     return Refusal(405, "only GET, HEAD and POST are answered");
   return RefusalOfBody(head);

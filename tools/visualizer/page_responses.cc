@@ -29,7 +29,7 @@ void AddHeaders(MHD_Response* response, const char* type) {
 
 Response ResponseOf(PageAnswer& answer, ByteBudget& budget) {
   if (!budget.Take(answer.body.size())) {
-    answer = Refusal(503, "answers that nobody has read fill the memory: ask again");
+    answer = Refusal(503, "unread answers fill the memory: try again");
     if (!budget.Take(answer.body.size())) return nullptr;
   }
   auto body = std::make_unique<HeldBody>(HeldBody{std::move(answer.body), budget});

@@ -43,12 +43,13 @@ Result<void> PageScene::OpenPackages() {
   for (const std::string& name : arguments_.packages) {
     LF_ASSIGN_OR_RETURN(Package read, ReadPackage(name));
     if (read.whole.image_count != light_field_.size())
-      return InputError(fmt::format("{}: is of a light field of {} LF images, {} has {}", name,
-                                    read.whole.image_count, arguments_.light_field,
+      return InputError(fmt::format("{}: belongs to a light field of {} LF images, but {} has {}",
+                                    name, read.whole.image_count, arguments_.light_field,
                                     light_field_.size()));
     if (HashOfCameras(read.path) != first_draft_->cameras_hash) {
       packages_note_ = fmt::format(
-          "{} is of another path than {}: packages are left aside. lfpreprocessor makes new ones.",
+          "{} was made for another path than {}: packages are ignored. Make new ones with "
+          "lfpreprocessor.",
           read.name, arguments_.path.string());
       LogWarning("{}", packages_note_);
       packages_.clear();

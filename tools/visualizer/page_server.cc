@@ -28,7 +28,7 @@ constexpr milliseconds kBetweenLooks(400);
 Result<std::string> MakeToken() {
   std::array<unsigned char, 16> bytes;
   if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
-    return OutputError("the system gives no random numbers for the address");
+    return OutputError("the system provides no random numbers for the secret in the address");
   std::string token;
   for (const unsigned char byte : bytes) token += fmt::format("{:02x}", byte);
   return token;
