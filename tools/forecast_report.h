@@ -13,13 +13,13 @@ namespace lf {
 
 struct ForecastFacts {
   std::string light_field;     // as the user typed it
-  std::string output;          // folder of the packages; empty: planned only
+  std::string output;          // folder of the packages; empty: nothing is written (--plan)
   std::string render_options;  // options of lfrenderer that the packages need
   bool rebins = false;         // RenderMode::kRebin or kHybrid
   ImageOrder order = ImageOrder::kShuffle;
   uint64_t seed = 0;
   int thread_count = 1;
-  double read_s = 0;  // time to read the calibration
+  double read_s = 0;  // seconds that it took to read the calibration
   // Source of the scene's depths: "--depths", "the calibration", "LF images"; empty: unknown.
   std::string depths_from;
 };

@@ -83,7 +83,7 @@ lf::Result<lf::LfImageId> FindCamera(const lf::LightField& light_field,
 }
 
 // Warns where the focus is, why it is uncertain, and how to choose another one.
-//   words  options of the light field
+//   words  the options of the light field, to show the whole command
 void WarnOfDoubt(const lf::ExamplePath& example, const std::string& light_field,
                  const std::vector<std::string>& words, const std::string& output,
                  const std::string& move, const std::string& camera) {
@@ -102,7 +102,7 @@ void WarnOfDoubt(const lf::ExamplePath& example, const std::string& light_field,
       example.candidates_w.front());
 }
 
-// A wrong -o may overwrite a camera path, but no calibration and no picture.
+// Refuses to overwrite any file but a camera path or an empty file, in case -o is wrong.
 lf::Result<void> CheckMayWrite(const std::string& output) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(output, error)) return {};

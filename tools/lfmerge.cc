@@ -35,7 +35,8 @@ added. The program needs the memory of one frame. It keeps the plates. The exit 
 renders left out LF images because they were missing or broken.)",
 };
 
-// Returns the LF images of a light field in the folder of the frames, which plates do not know.
+// Returns the LF images of a light field that is in the folder of the frames. They must not be
+// overwritten, and the plates do not state them.
 std::vector<std::filesystem::path> LfImagesIn(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> images;
   std::error_code error;

@@ -157,7 +157,7 @@ lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::Comm
     options.reading.filter = lf::PixelFilter::kMosaic;  // the default of lfrenderer
   options.lens_weights = *lf::LensWeightsOf(a.lens_weights);
   options.mode = *lf::RenderModeOf(a.mode);
-  // This is the default of lfrenderer: without collected rays there is nothing to weight.
+  // As in lfrenderer, auto means none with --mode rebin, which collects no rays to weight.
   if (options.mode == lf::RenderMode::kRebin && options.lens_weights == lf::LensWeights::kAuto)
     options.lens_weights = lf::LensWeights::kNone;
   LF_ASSIGN_OR_RETURN(options.memory_bytes, lf::ParseByteSize(a.memory, "--memory"));

@@ -197,7 +197,7 @@ lf::Result<lf::FileLock> LockFolder(const std::filesystem::path& folder) {
   return lock;
 }
 
-// A wrong -o must not overwrite a light field of others, or one that somebody has edited.
+// Refuses to overwrite a light field that lfsynth did not write, or that was edited since.
 lf::Result<void> CheckMayWrite(const Arguments& a) {
   std::error_code error;
   if (a.overwrite || !std::filesystem::exists(CalibrationIn(a), error)) return {};

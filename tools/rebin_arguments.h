@@ -14,13 +14,13 @@ namespace lf {
 struct RebinArguments {
   int nearest = 0;
   std::string kept = "auto", preview = "auto", average_others = "off", reparameterise = "on";
-  RebinPassOptions options;  // options that need no conversion
+  RebinPassOptions options;  // the options that Make() takes without conversion
   int64_t max_rays = 0;
   double r_st_w = 0, r_uv_w = 0, slab_distance_w = 0;
   std::vector<double> slab_position_w, slab_forward;
 
   void AddTo(CLI::App& app);
-  // kUsage: values that are impossible for a slab.
+  // Converts the arguments. kUsage: values that are impossible for a slab.
   Result<RebinPassOptions> Make(uint64_t seed) const;
 };
 

@@ -28,7 +28,7 @@ struct RenderArguments {
   RebinArguments rebin;
   AllowMissing allow_missing;
   int64_t max_images = 0;
-  double max_angle_deg = 0;  // 0: any
+  double max_angle_deg = 0;  // 0: no limit
   uint32_t smooth_below = 0;
   bool no_contact_sheet = false, resume = false, overwrite = false, keep_plates = false;
 
@@ -38,12 +38,13 @@ struct RenderArguments {
 
   // Returns true if all inputs are packages: files that end in .lfp.
   bool HasPackages() const;
-  // kUsage if options contradict each other or are not in this version. To be called first.
+  // Must be called before MakeOptions(). kUsage if options contradict each other, or cannot be used
+  // with packages.
   //   seed_given  --seed is given, although packages contain a seed
   Result<void> Check(bool seed_given) const;
 
   // Converts the arguments.
-  //   frame_count  of the film
+  //   frame_count  number of frames of the film
   Result<RenderOptions> MakeOptions(const CommonOptions& common, size_t frame_count) const;
 
  private:

@@ -10,7 +10,7 @@
 namespace lf {
 
 // Returns the LF images that the render left out. A percentage refers to the pass that reads most.
-//   advice  a remedy
+//   advice  remedy that the message gives to the user
 MissingImages MissingOf(const RenderReport& report, const std::string& advice);
 
 // Returns true if the limit accepts what the render left out. A number is compared with all

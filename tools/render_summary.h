@@ -10,7 +10,8 @@
 
 namespace lf {
 
-// Reports counts, speed and memory, then thin frames and where to look at the result. LF images
+// Logs counts, speed and memory, then warnings about frames with elements without rays and about
+// lenses, and where to look at the result. LF images
 // that were left out are reported by EndOfRender() (render_end.h).
 void SummariseRender(const RenderReport& report, const std::string& look_at);
 

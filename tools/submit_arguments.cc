@@ -261,7 +261,8 @@ Result<void> SubmitArguments::Change(ClusterJob* job, const CommonOptions& commo
   const ClusterEngine before = job->engine;
   LF_RETURN_IF_ERROR(TakeResources(job, common, false));
   if (before == ClusterEngine::kSlurm && job->engine == ClusterEngine::kLocal) {
-    // Without Slurm on this machine the queue is unknown: the job has then left the cluster.
+    // If Slurm is not installed on this machine, the queue is unknown. The job is then assumed to
+    // have no tasks in it.
     const auto queue = AskSlurm(*job);
     if (queue && !queue->empty())
       return UsageError(

@@ -22,14 +22,15 @@ struct SubmitArguments {
   std::optional<uint32_t> most_crashes;
   std::vector<std::string> sbatch_options;
   bool no_contact_sheet = false, overwrite = false, wait = false;
-  // These are for an existing job.
+  // The arguments below are for an existing job.
   std::string status, cancel, resume;
   std::vector<std::string> finish;       // DIR FRAMES
   std::vector<std::string> run_package;  // NUMBER DIR
   std::string run_finish;
 
   void AddTo(CLI::App& app);
-  // kUsage unless exactly one action is requested.
+  // kUsage unless exactly one action is requested (a new job, or one on an existing job) with the
+  // arguments that it needs, and no others.
   Result<void> Check() const;
   // Returns true if arguments of lfrenderer are given.
   bool HasRendererArguments() const;

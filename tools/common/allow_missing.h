@@ -25,7 +25,7 @@ class MissingLimit {
   // 2% of 149 allows 2.
   bool Allows(uint64_t missing, uint64_t asked) const;
   bool is_share() const { return is_share_; }
-  // The value as it was given.
+  // Returns the value as it was given, such as "2%".
   const std::string& text() const { return text_; }
 
  private:
@@ -54,8 +54,9 @@ struct MissingImages {
 // Ends a program; to be called when all of its results are written. Succeeds if nothing is missing,
 // or, with a warning, if the limit accepts what is missing. Otherwise kBelowRequired.
 Result<void> EndWithMissing(const MissingImages& missing, const MissingLimit& limit);
-// As above, for a caller that compared the numbers with the limit itself, such as package by
-// package.
+// As above, for a caller that has compared the numbers with the limit itself, such as separately
+// for each package.
+//   is_accepted  result of this comparison
 Result<void> EndWithMissing(const MissingImages& missing, const MissingLimit& limit,
                             bool is_accepted);
 

@@ -15,7 +15,7 @@ namespace lf {
 namespace {
 
 constexpr size_t kWidth = 100;
-// Names that are wider do not widen the column of the names.
+// An option whose names are wider does not widen the column of the names.
 constexpr size_t kWidestName = 38;
 constexpr std::array<std::string_view, 5> kShownGroups = {kInputGroup, kOutputGroup, kPictureGroup,
                                                           kQualityGroup, kRunningGroup};
@@ -95,7 +95,7 @@ std::string SummaryOf(const CLI::Option& option) {
 }
 
 // Returns the allowed values "0 to 180", from the description of a validator: "INT in [0 - 180]".
-// Returns nothing for words, which are the placeholder.
+// Returns nothing for a choice of words, because the placeholder shows them.
 std::string ValuesOf(const std::string& validator) {
   if (validator == "NONNEGATIVE") return "0 or more";
   if (validator == "POSITIVE") return "more than 0";
@@ -112,7 +112,8 @@ std::string JoinedNames(const std::set<CLI::Option*>& options) {
   return CLI::detail::join(names, ", ");
 }
 
-// Returns what the parser knows: "Default: 0 (all); values: 0 to 180; not with --packages".
+// Returns the default and the limits that the parser knows: "Default: 0 (all); values: 0 to 180;
+// not with --packages".
 std::string FactsOf(const CLI::Option& option) {
   std::vector<std::string> facts;
   if (option.get_required()) facts.push_back("required");

@@ -12,8 +12,8 @@ namespace lf {
 // batch systems repeat it.
 const std::atomic<bool>& CatchInterrupts();
 
-// As CatchInterrupts(), for a render: these signals ask for a checkpoint and the end, and SIGUSR1
-// for a checkpoint only. To be called once.
+// As CatchInterrupts(), for a render: after one of these signals the render writes a checkpoint and
+// ends; after SIGUSR1 it writes a checkpoint and continues. Must be called only once.
 RenderSignals& CatchRenderSignals();
 
 }  // namespace lf

@@ -17,7 +17,7 @@ struct LightFieldArgument {
 
   // Adds the positional argument and its options.
   void AddTo(CLI::App& app);
-  // Adds the options alone.
+  // Adds only the options, without the positional argument.
   void AddOptionsTo(CLI::App& app);
   // kUsage: a value that cannot be parsed.
   Result<OpenOptions> Options() const;

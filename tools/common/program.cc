@@ -82,7 +82,8 @@ void Program::AddCommonOptions(const OfferedOptions& offered) {
 int Program::Run(int argc, char** argv, const std::function<Result<void>()>& body) {
 #ifdef __GLIBC__
   // Makes glibc return the memory of images and plates to the system when they are freed, because
-  // --memory bounds what a program holds. Otherwise glibc would adapt and keep large blocks.
+  // --memory limits what a program holds. Otherwise glibc would raise its threshold and keep large
+  // blocks.
   constexpr int kLargeBytes = 1 << 20;
   mallopt(M_MMAP_THRESHOLD, kLargeBytes);
 #endif

@@ -34,7 +34,7 @@ struct CommonOptions {
 };
 
 // The common options that a program offers, because it obeys them. Others are refused as unknown.
-// The texts are those of OptionGroup::Add(), and nullptr for an option that is not offered.
+// A text is passed to OptionGroup::Add(); nullptr: the option is not offered.
 struct OfferedOptions {
   bool threads = false;
   const char* seed = nullptr;    // what the seed decides

@@ -11,7 +11,7 @@ namespace lf {
 
 enum class ProgressStyle { kBar, kPlain, kJson, kNone };
 
-// Parses --progress; "auto" is a bar on a terminal and plain otherwise.
+// Parses the value of --progress; "auto" becomes a bar if stderr is a terminal, otherwise plain.
 ProgressStyle ParseProgressStyle(const std::string& name);
 
 // The progress of one kind of thing, such as "frame" 3 of 10.

@@ -29,8 +29,8 @@ constexpr size_t kHeaderBytes = 32 << 10;
 constexpr size_t kThreads = 8, kMostStreams = 16;
 constexpr int kMostRequests = 96;  // past their headers; browsers open six per address
 constexpr size_t kMostWaiting = 128;
-// Must exceed the sum of both: libmicrohttpd accepts no more connections, and nobody would be
-// heard.
+// Must exceed the sum of both. At this limit libmicrohttpd accepts no more connections, and no new
+// client would get an answer.
 constexpr unsigned kMostConnections = 256;
 constexpr std::chrono::milliseconds kPatience(5000);
 constexpr unsigned kSilence_s = 10;  // of a client that sends no more of a body, or reads nothing

@@ -15,7 +15,7 @@
 
 namespace lf {
 
-// Limits of what a hostile client can use: 32 kB for the headers of a request, 128 connections
+// Limits what a hostile client can use: 32 kB for the headers of a request, 128 connections
 // without a complete request for 5 s each, 18 MiB for the bodies of all requests together. Only
 // requests with the token get past their headers (page_request.h).
 class PageDaemon {

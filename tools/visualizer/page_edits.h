@@ -1,4 +1,4 @@
-// Edits that the page requests: checking and saving paths, previews, focus picking.
+// Answers the POST requests of the page: checking and saving paths, previews, focus picking.
 #pragma once
 
 #include <string>

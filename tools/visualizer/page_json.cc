@@ -1,4 +1,4 @@
-// Answers in JSON.
+// Makes the answers of the page that are JSON.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -66,8 +66,8 @@ class PageScene {
   std::shared_ptr<PathDraft> first_draft() const { return first_draft_; }
   // Parses and keeps a draft. kInput: the error that the programs would report.
   Result<std::shared_ptr<PathDraft>> AddDraft(const std::string& text);
-  // Returns a draft, or nullptr if it is unknown. The first draft and the last few used ones are
-  // kept.
+  // Returns a draft, or nullptr if it is unknown. Keeps only the first draft and the few drafts
+  // that were used last.
   std::shared_ptr<PathDraft> FindDraft(const std::string& id);
 
   // Returns what a frame uses, as decided by its package if the draft has the cameras of that
@@ -99,7 +99,7 @@ class PageScene {
   std::list<std::shared_ptr<PathDraft>> drafts_;  // the last used first
 };
 
-// Returns 16 hexadecimal digits.
+// Returns a hash of the text: 16 hexadecimal digits.
 std::string IdOfText(std::string_view text);
 
 }  // namespace lf

@@ -23,7 +23,7 @@ class PageServer {
 
   // Returns http://127.0.0.1:8080/0123456789abcdef0123456789abcdef/.
   const std::string& address() const { return address_; }
-  // Serves until the flag is set. kOutput: the server cannot listen.
+  // Serves the page until the flag is set. kOutput: the machine has no thread or memory left.
   Result<void> ServeUntil(const std::atomic<bool>& interrupted);
 
  private:

@@ -20,7 +20,8 @@ using std::chrono::milliseconds;
 
 constexpr size_t kMemory_bytes = size_t{1} << 30;
 constexpr int kPictureSide_px = 1280;
-// Pictures follow each other after so much time, or so many times what a picture takes.
+// Time between pictures: at least kBetweenPictures, and at least kPictureTimes times the time that
+// the last picture took.
 constexpr milliseconds kBetweenPictures(250);
 constexpr int kPictureTimes = 3;
 
@@ -93,7 +94,7 @@ void PreviewRender::Render(const Wish& wish) {
     Say(wish, "failed", end.error().message);
 }
 
-// Returns what the picture lacks; empty if it is complete.
+// Returns a text about LF images that the picture lacks; empty if it lacks none.
 Result<std::string> PreviewRender::RenderFrame(const Wish& wish) {
   const PageArguments& arguments = scene_.arguments();
   Package film = PackageOfAll(scene_.light_field(), *wish.path, arguments.seed);

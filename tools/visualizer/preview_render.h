@@ -1,5 +1,5 @@
-// Renders one frame while the user looks at it: in this process, with the small plate of the path
-// that the page sends.
+// Renders one frame in this process while the user looks at it. The page sends a path with a small
+// plate.
 #pragma once
 
 #include <atomic>

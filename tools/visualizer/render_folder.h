@@ -1,4 +1,5 @@
-// The folder of a render in the form that the page reads: frames.json, and 7.bin for a frame.
+// Answers requests of the page about the folder of a watched render: frames.json lists its frames,
+// and 7.bin is the picture of frame 7.
 #pragma once
 
 #include <filesystem>

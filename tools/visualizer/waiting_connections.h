@@ -16,7 +16,7 @@ namespace lf {
 class WaitingConnections {
  public:
   // If there are more than `most_count`, the connection that has waited longest is closed, so that
-  // a new one with a complete request is always heard.
+  // a new connection with a complete request always gets an answer.
   WaitingConnections(size_t most_count, std::chrono::milliseconds patience)
       : most_count_(most_count), patience_(patience) {}
 
