@@ -1,5 +1,5 @@
-// A light field that exists only as a formula: dense parallel cameras in the plane z = 0 that look
-// at a function of the ray. For tests of optics with known answers, without files.
+// A light field without files, for tests of optics with known answers: dense parallel cameras in
+// the plane z = 0 whose pixels are given by a formula of the ray.
 #pragma once
 
 #include <algorithm>

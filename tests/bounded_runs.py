@@ -1,4 +1,4 @@
-"""Runs programs on hostile files with limits of memory, time and temporary disk, and records the worst use of each."""
+"""Runs programs on hostile files with limits of memory, time and temporary disk, and records the most used."""
 import concurrent.futures
 import os
 import pathlib
@@ -54,7 +54,7 @@ class Run:
 
 
 class BoundedRuns:
-    """Runs many calls in parallel and keeps the worst of each kind.
+    """Runs many programs in parallel and keeps the largest use of each kind.
 
     folder      for temporary files
     memory_mib  larger use is a fault

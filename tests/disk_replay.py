@@ -12,7 +12,7 @@ class File:
 
 
 class Folder:
-    """entries: what programs see; kept: what is on the disk"""
+    """entries: the content that programs see; kept: the content that is on the disk"""
 
     def __init__(self):
         self.entries, self.kept = {}, {}

@@ -1,16 +1,16 @@
 #!/usr/bin/python3
-"""Every program, while one call of the system fails: the k-th write, flush, rename, ... or allocation.
+"""Runs every program while one system call fails: the k-th write, flush, rename, ... or allocation.
 
 A program may end with 0 only if its files are those of an undisturbed run, and no temporary file is
-left. Else its status is 3, 4 or 6 (6 where a disk cannot give an LF image, which is left out and
-told), its last line begins with "error: ", every file that has its final name is the old one or the
-right one, and going on, or the same call once more, ends with the right files.
+left. Otherwise its status is 3, 4 or 6 (6 if an LF image cannot be read, which is then left out and
+reported), and its last line begins with "error: ". Every file with a final name must be the old file
+or the right one, and a run with --resume, or the same run again, must end with the right files.
 
 usage: faults_test.py SHIM FOLDER_OF_PROGRAMS [--points N] [--only WORD] [--say] [--workers N]
 
---points  calls that fail of each group: of one kind, by one function, on files of one pattern
-          (default 1, in fewer ways than more points; 0: all of them, which takes hours)
---only    programs whose name holds the word
+--points  number of system calls that fail in each group: one kind of call, by one function, on
+          files of one pattern (default 1, with fewer ways to fail; 0: all of them, which takes hours)
+--only    tests only programs whose name contains the word
 --say     print every try
 --workers hunts side by side (default 2)
 """
@@ -35,12 +35,12 @@ from final_files import (faults_of_finals, faults_of_going_on, faults_of_status,
 from tiny_calls import TinyCalls
 
 EIO, EINTR = 5, 4
-# Ways in which calls fail: a number of errno, "short" or "kill"; "+": this call and all later ones.
+# Ways in which system calls fail: a number of errno, "short" or "kill"; "+": this system call and all later ones.
 WAYS = {"open": ["24", "5"], "read": ["5", "short", "4"], "write": ["28+", "5", "short", "4", "kill"],
         "fsync": ["5", "kill"], "rename": ["28", "kill"], "unlink": ["5"], "mkdir": ["28"], "stat": ["5"],
         "mmap": ["12"], "thread": ["11+"], "malloc": ["12"]}
-# With --points 1: QUICK_WAYS for most calls; FEWER_WAYS for lfsubmit, which takes seconds, for calls that overwrite old
-# results, and for calls that differ from another one only in the mode.
+# With --points 1: QUICK_WAYS for most program runs; FEWER_WAYS for lfsubmit, which takes seconds, for runs that
+# overwrite old results, and for runs that differ from another run only in the mode.
 QUICK_WAYS = {"open": ["24"], "read": ["5", "short"], "write": ["28+", "short", "kill"], "fsync": ["5", "kill"],
               "rename": ["28", "kill"], "unlink": ["5"], "mkdir": ["28"], "stat": ["5"], "mmap": ["12"],
               "thread": ["11+"], "malloc": ["12"]}
@@ -53,7 +53,7 @@ HANGS_S = 120
 
 
 class Hunt:
-    """Makes the calls of programs fail, one program after the other, in a folder of its own."""
+    """Makes system calls of programs fail, one program after the other, in a folder of its own."""
 
     def __init__(self, arguments, folder):
         self.arguments, self.folder = arguments, folder
@@ -62,7 +62,7 @@ class Hunt:
         self.calls = TinyCalls(arguments.programs, folder / "base", self.work / "out")
 
     def run(self, command, fault=None):
-        """Returns the status and the output, after all processes of the call have ended."""
+        """Returns the status and the output of a program run, after all of its processes have ended."""
         environment = dict(os.environ, FAULT_PATH=str(self.folder))
         if fault is not None:
             environment.update(fault, LD_PRELOAD=str(self.arguments.shim))
@@ -87,7 +87,7 @@ class Hunt:
             self.work.mkdir()
 
     def make_old(self, call):
-        """Makes the results that the call overwrites. Returns their digests."""
+        """Makes the results that the program run overwrites. Returns their digests."""
         if not call.before:
             return {}
         shutil.rmtree(self.work, ignore_errors=True)
@@ -101,7 +101,7 @@ class Hunt:
         return files_of(self.old)[0]
 
     def points(self, trace):
-        """Returns, by kind, the calls that are to fail."""
+        """Returns, by kind, the system calls that are to fail."""
         groups = collections.defaultdict(list)
         for line in trace.splitlines():
             kind, k, function, path = line.split(" ", 3)
@@ -119,7 +119,7 @@ class Hunt:
         return {kind: sorted(calls) for kind, calls in chosen.items()}
 
     def ways(self, call, kind, points):
-        """Returns how and where calls of one kind fail."""
+        """Returns how and where system calls of one kind fail."""
         if self.arguments.points != 1:
             return itertools.product(WAYS[kind], points)
         is_submission = call.command[0].name == "lfsubmit"
@@ -199,12 +199,12 @@ def names_of_calls(calls):
 
 
 def chosen_calls(calls):
-    """Returns all calls, the slowest first."""
+    """Returns all program runs, the slowest first."""
     return [*calls.submitters(), *calls.overwriters(), *calls.writers()]
 
 
 def all_hunts(arguments, folder):
-    """Hunts with several workers. Returns tries and failures by the name of the call."""
+    """Hunts with several workers. Returns tries and failures by the name of the program run."""
     results, tasks = {}, queue.SimpleQueue()
 
     def work(number):

@@ -19,7 +19,7 @@ from matrix_world import (BROKEN, FRAMES, MISSING, MODES, MOST_IMAGES, Differenc
 
 SHARDS = 2
 LEAST_PSNR_DB = 38
-# Noise rules may stop elsewhere, and the choice of rebinned rays depends on what pixels show.
+# Noise rules may stop at another LF image, and the choice of rebinned rays depends on the pixels.
 LEAST_PSNR_OF_DRAWN_DB = 30
 DUMP_OFTEN = ["--dump-every", "0.001s"]
 RUNS = {  # options of rules, which decide the content of the frames

@@ -55,7 +55,7 @@ keyframes:
 
 
 class Difference(Exception):
-    """A cell differs from what it must be."""
+    """The result of a cell differs from the required one."""
 
 
 class ProgramFailed(Exception):
@@ -148,7 +148,7 @@ def add_flaws(field, calibration):
 
 
 class World:
-    """Everything that cells are rendered from, in one folder.
+    """All inputs from which cells are rendered, in one folder.
 
     programs  the folder of lfrenderer and the other programs
     """
@@ -213,7 +213,7 @@ class World:
         return files
 
     def package_options(self, mode):
-        """Returns those options of a mode that packages depend on."""
+        """Returns the options of a mode on which packages depend."""
         options = MODES[mode] if mode != "default" else []
         return [word for name, value in zip(options[::2], options[1::2]) for word in (name, value)
                 if name in ("--estimator", "--lens-weights") or
@@ -249,5 +249,5 @@ class World:
 
 
 def is_of_packages(source):
-    """Returns True if an input is a store of what packages need."""
+    """Returns True if an input is a packed store that contains only what packages need."""
     return "packages" in source or "needed" in source

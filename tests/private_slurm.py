@@ -38,13 +38,13 @@ MpiDefault=none
 JobAcctGatherType=jobacct_gather/none
 AccountingStorageType=accounting_storage/none
 PropagateResourceLimits=NONE
-# Nodes are CPUs by their word, not by what the machine has.
+# Slurm believes the number of CPUs that a node states, whatever the machine has.
 SlurmdParameters=config_overrides
 SelectType=select/cons_tres
 SelectTypeParameters=CR_CPU
 SchedulerType=sched/backfill
 SchedulerParameters=bf_interval=2,sched_min_interval=200000
-# A node that comes back is used again; one that is silent is soon given up.
+# A node that answers again is used again; a node that does not answer is soon marked as down.
 ReturnToService=2
 SlurmctldTimeout=10
 SlurmdTimeout=10
@@ -67,7 +67,7 @@ def find(program):
 def missing():
     """Returns the programs and mounts that are needed and missing on this machine."""
     lacking = [program for program in PROGRAMS if find(program) is None]
-    # Needed even if no resource is limited by cgroups.
+    # slurmd needs it even if no resource is limited by cgroups.
     if not os.path.ismount("/sys/fs/cgroup"):
         lacking.append("cgroups mounted at /sys/fs/cgroup")
     return lacking

@@ -52,8 +52,8 @@ RenderCamera CameraOf(const Film& film, const PinholeCamera& middle) {
   return camera;
 }
 
-// Returns the peak signal-to-noise ratio in dB, in linear light up to 1, without a margin that some
-// LF cameras do not see.
+// Returns the peak signal-to-noise ratio in dB, in linear light clipped at 1. Leaves out a margin
+// of the frame that some LF cameras do not see.
 double Likeness(const SensorPlate& plate, double scale, const Image<float>& truth) {
   constexpr int kMargin = 15;
   double squares = 0;
