@@ -68,7 +68,7 @@ def chosen(options):
 
 
 def hash_of(mutant):
-    """Returns a hash of what decides the outcome of a mutant, except for the code and its tests."""
+    """Returns a hash of everything that decides the outcome of a mutant, except for the code and its tests."""
     return hashlib.sha256(repr(mutant).encode()).hexdigest()[:12]
 
 
@@ -183,7 +183,7 @@ def check_baseline(copy, mutants, options):
     if code != 0:
         sys.exit(f"error: the copy does not build without a mutant either:\n{output[-3000:]}")
     copy.keep()
-    # The expressions are without groups, because CMake's have at most nine.
+    # The regular expressions have no groups, because those of CMake may have at most nine.
     failing, ran = copy.failing("|".join(sorted({mutant.tests for mutant in mutants})), options)
     copy.restore()
     if ran == 0:
