@@ -31,11 +31,12 @@ class Contender {
 // Our fast kernels, on a plate that is divided as in the renderer. It also counts the rays.
 class OurKernel : public Contender {
  public:
-  // Number accepted by the last Collect(): pixels with nearest, elements with bilinear.
+  // Returns the number of rays that the last Collect() accepted: LF pixels with nearest, elements
+  // with bilinear.
   virtual uint64_t accepted_count() const = 0;
 };
 
-// The contenders keep a reference to the case.
+// Make the contenders, which keep a reference to the case.
 //   is_weighed  every 8 x 8 elements weigh the rays of each LF image differently
 std::unique_ptr<OurKernel> MakeOurKernel(const KernelCase& kernel_case, bool is_weighed = false);
 

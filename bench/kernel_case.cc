@@ -113,7 +113,7 @@ uint64_t AcceptedCount(const KernelCase& kernel_case, const RenderCamera& frame)
   return accepted;
 }
 
-// Returns the radius with which the desired share of rays passes.
+// Returns the radius of the lens with which the desired share of the rays passes.
 double LensRadius(const KernelCase& kernel_case) {
   if (kernel_case.spec.accepted_share >= 1) return kWideLens_w;
   RenderCamera frame = kernel_case.frame;

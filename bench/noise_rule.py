@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Checks that frames stopped by --stop-when "noise<=X" have the noise that was asked for, and that this noise is
+"""Checks that frames stopped by --stop-when "noise<=X" have the requested noise, and that this noise is
 their difference from frames of all LF images.
 
 usage: bench/noise_rule.py BUILD_DIR [--data ../shared] [--size 480x320] [--noise 0.012,0.009,...]

@@ -1,4 +1,4 @@
-// Our kernels as the renderer calls them (lf/render/collect/collect_batch.cc), on one thread.
+// Runs our kernels on one thread, as the renderer calls them (lf/render/collect/collect_batch.cc).
 #include <hwy/targets.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Measures what packages and rectangles are worth, on movements of Table 5.1 (workloads.py).
+"""Measures how much time packages and rectangles save, on movements of Table 5.1 (workloads.py).
 
 usage: bench/packages.py BUILD_DIR [--density 0.03] [--size 480x320] [--runs 3] [--field DIR]
                          [--packages 4] [--name NAME] [--write PAGE]
@@ -23,9 +23,9 @@ import tempfile
 import record as results
 from workloads import WAYS, WORKLOADS, path_yaml, photograph
 
-# Options of lfpreprocessor that make its forecast one of the render.
+# Options of lfpreprocessor with which its forecast is for the measured render.
 PREPROCESSING = {"nearest": ("--estimator", "nearest", "--lens-weights", "none"), "default": ()}
-# Ways and focal lengths of the renders of `short`.
+# Options and focal lengths of the renders of `short`.
 RECTANGLES = (("nearest", 36), ("nearest", 72), ("bilinear", 72), ("default", 72))
 
 

@@ -47,7 +47,8 @@ void InsertOurs(benchmark::State& state) {
   const std::vector<BinnedRay> rays = RaysOfImages(static_cast<size_t>(state.range(0)));
   for (auto _ : state) {
     RayMap map(rays.size());
-    // In batches as LF images give them: some thousands at a time, sorted by shards.
+    // The rays are added in batches of the size that LF images give: some thousands, sorted by
+    // shard.
     constexpr size_t kBatch = 1 << 17;
     std::array<std::vector<BinnedRay>, RayMap::kShards> shards;
     for (size_t begin = 0; begin < rays.size(); begin += kBatch) {

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Films light fields of up to 100,000 LF images that exist as files: what programs take, and how it grows.
+"""Films light fields of up to 100,000 LF images that exist as files: time and memory of the programs, and their growth.
 
 usage: bench/scale.py BUILD_DIR [--counts 1000,10000,100000] [--weighed 1000,10000] [--frames 300]
                       [--size 48x32] [--memory 256M] [--packages 8] [--threads 2] [--folder DIR]
@@ -124,7 +124,7 @@ class Scale:
         self.rows[-1] |= {"files": len(files), "files_bytes": sum(512 * file.stat().st_blocks for file in files)}
 
     def render(self):
-        """Renders in one go and by packages, which must give the same bits."""
+        """Renders the film in one run and by packages. The frames of both must be bit-identical."""
         self.run("in one go", "lfrenderer", self.field, self.path, "--no-contact-sheet", *PLAIN, out="whole")
         self.run("packages made", "lfpreprocessor", self.field, self.path, "--packages", self.arguments.packages,
                  "--estimator", "bilinear", "--lens-weights", "none", out="packages")
@@ -183,7 +183,7 @@ def table(record):
 
 
 def goals(record):
-    """Returns the goals for growing light fields, and if they were reached."""
+    """Returns the goals for growing light fields, and whether they were reached."""
     lines = []
 
     def goal(what, value, is_reached):
