@@ -97,7 +97,7 @@ class AlphaTest(ProgramTestCase):
         self.succeeds(COMPRESSOR, field, "-o", store, "--profile", "lossless")
         for options in ([], ["--background", "white"], ["--mode", "rebin"], ["--mode", "hybrid"]):
             np.testing.assert_array_equal(self.frame(store, *options)[0], self.frame(field, *options)[0])
-        self.fails(2, ["--image-alpha mask", "coded as light", "compress"], RENDERER, store,
+        self.fails(2, ["--image-alpha mask", "stored as light", "compress"], RENDERER, store,
                    self.folder / "path.yaml", "-o", self.folder / "refused", "--image-alpha", "mask")
 
     def test_packages_keep_the_background_that_they_were_made_with(self):
@@ -116,7 +116,7 @@ class AlphaTest(ProgramTestCase):
                            self.folder / "refused", *option, *moved)
             self.fails(2, ["cannot be used with packages"], COMPRESSOR, package, "-o",
                        self.folder / "refused.lfs", *option)
-        self.fails(2, ["--image-scale is for a light field"], COMPRESSOR, package, "-o",
+        self.fails(2, ["--image-scale cannot be used with packages"], COMPRESSOR, package, "-o",
                    self.folder / "refused.lfs", "--image-scale", "0.5")
 
     def test_lfimport_writes_down_what_it_found(self):

@@ -313,7 +313,7 @@ class ImportTest(unittest.TestCase):
             result = self.run_tool(IMPORT, grid, f"--pitch={pitch}", "--focal-px", 40, code=2)
             self.assertIn("pitch", result.stderr.strip().splitlines()[-1])
         field = write_field(self.folder / "field")
-        self.fails(2, ["--pitch is for folders"], field, "--pitch", 1)
+        self.fails(2, ["--pitch is only for folders"], field, "--pitch", 1)
 
     def test_the_cards_are_sharp_where_they_stand(self):
         cards = pathlib.Path(TEST_DATA) / "data" / "stanford-cards-9x9"

@@ -260,7 +260,7 @@ class PackagesTest(ProgramTestCase):
         self.fails(2, [".lfp"], RENDERER, self.folder / "packages", "-o", out)
         self.fails(2, ["--plan"], PREPROCESSOR, field, path)
         self.fails(2, ["--overwrite"], PREPROCESSOR, field, path, "-o", self.folder / "packages")
-        self.fails(2, ["nearer"], PREPROCESSOR, field, path, "--plan", "--depths", "3", "2")
+        self.fails(2, ["NEAR less than FAR"], PREPROCESSOR, field, path, "--plan", "--depths", "3", "2")
         self.fails(2, ["--packages"], PREPROCESSOR, field, path, "--plan", "--packages", "2",
                    "--frames-per-package", "3")
         self.fails(4, ["--memory"], PREPROCESSOR, field, path, "--plan", "--memory", "1M")
@@ -280,7 +280,7 @@ class PackagesTest(ProgramTestCase):
         self.succeeds(RENDERER, files[1], "-o", out, "-q")
         self.assertTrue((out / "contact_sheet-package-0001.png").exists())
         told = self.call(RENDERER, files[0], "-o", out)
-        self.assertIn("look at " + str(out / "contact_sheet-package-0000.png"), told.stderr)
+        self.assertIn("see " + str(out / "contact_sheet-package-0000.png"), told.stderr)
 
     def test_a_part_of_a_film_is_told(self):
         field, path = self.film()

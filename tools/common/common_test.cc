@@ -79,7 +79,7 @@ TEST(MissingLimit, DecidesHowAProgramEnds) {
   ASSERT_FALSE(end);
   EXPECT_EQ(end.error().kind, ErrorKind::kBelowRequired);
   EXPECT_EQ(end.error().message,
-            "3 of 25 LF images were left out; --allow-missing 3 would accept that; mend them");
+            "3 of 25 LF images were left out; --allow-missing 3 would accept this; mend them");
 }
 
 TEST(Duration, ReadsTimesAsPeopleWriteThem) {

@@ -213,7 +213,8 @@ TEST(PathYaml, HalfATurnHasNoShorterArc) {
   path.pose = "position: [0, 0, 0]";
   path.more =
       "keyframes: {orientation: [{time: 0, value: {yaw: 0}}, {time: 1, value: {yaw: 180}}]}\n";
-  EXPECT_TRUE(Says(path, "orientation", "keyframes.orientation: half a turn to the key at 1 s"));
+  EXPECT_TRUE(Says(path, "orientation",
+                   "keyframes.orientation: the rotation to the key at 1 s is half a turn"));
 }
 
 TEST(PathYaml, TheUnitAgreesWithTheLightField) {

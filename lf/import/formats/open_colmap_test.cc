@@ -269,9 +269,9 @@ TEST_F(ReadColmapTest, OfSeveralModelsTheLargestIsTaken) {
 TEST_F(ReadColmapTest, AModelThatIsIncompleteIsAnError) {
   Write(folder_ / "sparse/0/cameras.bin", CamerasBin({TestCamera()}));
   Write(folder_ / "sparse/0/images.txt", "");
-  EXPECT_HAS(ErrorOf(Open(folder_)), "sparse/0/cameras.bin: is there, but not the images.bin of");
+  EXPECT_HAS(ErrorOf(Open(folder_)), "sparse/0/cameras.bin: exists, but the images.bin of");
   fs::remove(folder_ / "sparse/0/cameras.bin");
-  EXPECT_HAS(ErrorOf(Open(folder_)), "sparse/0/images.txt: is there, but not the cameras.txt of");
+  EXPECT_HAS(ErrorOf(Open(folder_)), "sparse/0/images.txt: exists, but the cameras.txt of");
   EXPECT_HAS(ErrorOf(ReadColmapModel(folder_)), "holds no COLMAP model");
 }
 
@@ -279,7 +279,7 @@ TEST_F(ReadColmapTest, ATextOfThatNameAloneIsNoModel) {
   Write(folder_ / "images.txt", "a list of something");
   EXPECT_HAS(ErrorOf(Open(folder_)), "holds no light field");
   Write(folder_ / "cameras.bin");
-  EXPECT_HAS(ErrorOf(Open(folder_)), "cameras.bin: is there, but not the images.bin");
+  EXPECT_HAS(ErrorOf(Open(folder_)), "cameras.bin: exists, but the images.bin");
 }
 
 TEST_F(ReadColmapTest, ImagesAreLookedForAndThePlacesAreListed) {

@@ -88,7 +88,7 @@ Result<Contents> TakeContents(std::string_view code) {
   contents.sections.resize(count);
   for (size_t i = 0; i < count; ++i)
     if (!TakeBytes(&code, sizes[i], &contents.sections[i]))
-      return InputError("is a damaged LF image code: it is shorter than its table of contents");
+      return InputError("is a damaged encoded LF image: it is shorter than its table of contents");
   if (!code.empty())
     return InputError("is a damaged encoded LF image: there are bytes behind its end");
   return contents;
@@ -161,7 +161,7 @@ std::string EncodeImage(const CodecPixels& pixels, PixelLayout layout,
 Result<CodeInfo> ReadCodeInfo(std::string_view code) {
   LF_ASSIGN_OR_RETURN(const CodeHead head, TakeHead(&code));
   if (head.tile_count() * (head.info.levels + 1) > code.size())
-    return InputError("is a damaged LF image code: it is shorter than its table of contents");
+    return InputError("is a damaged encoded LF image: it is shorter than its table of contents");
   return head.info;
 }
 

@@ -323,7 +323,7 @@ TEST(LfImageCodec, ABlobThatClaimsTooMuchIsRefused) {
   const Result<CodeInfo> info = ReadCodeInfo(code);
   ASSERT_FALSE(info);
   EXPECT_EQ(info.error().message,
-            "is a damaged LF image code: its size is not between 1 and 2^30 pixels");
+            "is a damaged encoded LF image: its size is not between 1 and 2^30 pixels");
 }
 
 }  // namespace

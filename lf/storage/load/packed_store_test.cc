@@ -373,7 +373,7 @@ TEST_F(PackedStoreTest, ImagesWithoutACodeAreTold) {
   packed_ = ReadPackedStore(path_).value().light_field;
   const auto store = Opened();
   EXPECT_FALSE(store->IsThere({2}));
-  EXPECT_NE(ErrorOf(*store, {2}).find("image2.png: has no code"), std::string::npos);
+  EXPECT_NE(ErrorOf(*store, {2}).find("image2.png: is not in the packed store"), std::string::npos);
 }
 
 TEST_F(PackedStoreTest, LevelsBeyondTheBitsAreAnError) {
