@@ -14,12 +14,13 @@
 namespace lf {
 namespace {
 
-constexpr double kMostSpacings = 8, kLeastSpacings = 2.5;  // of the aperture
-// An aperture this narrow holds almost only the LF camera at its middle. In captures shaped like
-// rings, the hat weights of other LF cameras reach far into it.
+constexpr double kMostSpacings = 8, kLeastSpacings = 2.5;  // limits of the aperture's diameter
+// An aperture this narrow contains only the LF camera at its middle. It is so narrow because, in
+// captures shaped like rings, the hat weights of other LF cameras reach far into the lens.
 constexpr double kSharpSpacings = 0.001;
 
-// Returns a focus for a scene whose depth neither pixels nor points tell.
+// Returns a guess at the focus if neither the pixels nor the points of a reconstruction show the
+// depth of the scene.
 ExampleFocus GuessFocus(const LightField& light_field, const PinholeCamera& camera,
                         double spacing_w, const std::vector<SubjectDepth>& depths) {
   if (const std::optional<Vec3> point = AxesMeetingPoint(light_field)) {
@@ -44,8 +45,8 @@ std::string WhyNotSure(const Subject& subject, const Subject& points) {
                      subject.place_count, subject.textured_count, why);
 }
 
-// Returns a focus on the best depth.
-//   things  that lie there
+// Returns a focus on the subject's best depth, subject.depths[0].
+//   things  for people: what was found at this depth, such as "places of the image"
 ExampleFocus FocusOf(const Subject& subject, const char* things) {
   const SubjectDepth& best = subject.depths[0];
   ExampleFocus focus{best.distance_w, fmt::format("where {} of {} {} lie", best.place_count,
@@ -55,7 +56,8 @@ ExampleFocus FocusOf(const Subject& subject, const char* things) {
   return focus;
 }
 
-// Returns distances that may be right, the guess first, without near duplicates.
+// Returns at most kMost focus distances to try: the guess, then the depths of the pixels, then
+// those of the points. A distance within 3 % of an earlier one is left out.
 std::vector<double> CandidatesOf(const std::vector<SubjectDepth>& depths, const Subject& points,
                                  double guess_w) {
   constexpr size_t kMost = 3;
@@ -125,16 +127,18 @@ Result<ExampleFocus> ChooseFocus(const LightField& light_field, const LfImageSto
   return focus;
 }
 
-// The disparity between neighbouring LF cameras of points away from the focus is the distance
-// between the ghosts that their blur falls into. Ghosts up to kGoodCopies_px apart are invisible;
-// farther apart, a narrower lens blurs less. Beyond kMostCopies_px, or if the focus may be wrong,
-// only a lens that holds one LF camera gives a picture.
+// A point away from the focus plane appears as several ghosts instead of as a blur. The distance
+// between two ghosts is the point's displacement between neighbouring LF cameras. Ghosts up to
+// kGoodCopies_px apart are invisible. If they are farther apart, the lens is made narrower, which
+// blurs less. If they are more than kMostCopies_px apart, or if the focus may be wrong, only a lens
+// that contains a single LF camera gives a clear picture.
 ExampleAperture ChooseAperture(const ExampleFocus& focus, double fx_px, double spacing_w) {
   constexpr double kGoodCopies_px = 3, kMostCopies_px = 16;
   if (!focus.doubt.empty())
     return {kSharpSpacings,
             "which holds one LF camera, so that the first frame is sharp at any distance"};
-  constexpr double kUnknownRange = 0.25;  // nearer than the focus
+  // If the depths are unknown, points are taken to be as near as focus distance / (1 + this).
+  constexpr double kUnknownRange = 0.25;
   double range_per_w = kUnknownRange / focus.distance_w;
   if (focus.near_w < focus.far_w)
     range_per_w = std::max(1 / std::min(focus.near_w, focus.distance_w) - 1 / focus.distance_w,

@@ -15,23 +15,23 @@ namespace lf {
 struct ExampleFocus {
   double distance_w = 0;
   std::string reason;
-  // The reason why the focus is not sure; empty if it is sure. If it is not, candidates_w are at
-  // most three distances that may be right, the best first.
+  // The reason why the focus may be wrong; empty if it is sure. If it may be wrong, candidates_w
+  // holds at most three focus distances to try, the most likely first.
   std::string doubt = {};
   std::vector<double> candidates_w = {};
-  // Depths that the scene lies between, if they are known; otherwise equal.
+  // The nearest and farthest depth of the scene; equal if they are not known.
   double near_w = 0, far_w = 0;
 };
 
-// Returns the focus as described at MakeExamplePath(). If the pixels and the points of a
-// reconstruction contradict each other, the points decide if they are sure; otherwise the focus is
-// not sure.
-//   spacing_w  of LF cameras
+// Returns the focus as described at MakeExamplePath(). If the depth found in the pixels contradicts
+// the points of a reconstruction, the depth of the points is used if it is sure; otherwise `doubt`
+// is set.
+//   spacing_w  distance between neighbouring LF cameras
 Result<ExampleFocus> ChooseFocus(const LightField& light_field, const LfImageStore& store,
                                  const ExampleOptions& options, double spacing_w, ThreadPool& pool);
 
 struct ExampleAperture {
-  double spacings = 0;  // its diameter, in spacings of LF cameras
+  double spacings = 0;  // diameter of the aperture, as a multiple of the spacing of the LF cameras
   std::string reason;
 };
 

@@ -24,8 +24,9 @@ std::string Text(const Vec3& v) {
   return fmt::format("[{:.9g}, {:.9g}, {:.9g}]", v.x(), v.y(), v.z());
 }
 
-// Returns the up direction that keeps the horizon level, if the LF cameras have one in common, and
-// otherwise that of the camera.
+// Returns the up direction of a camera that looks the same way with a level horizon. Returns the
+// camera's own up direction if the LF cameras have no mean up direction, or if the camera is rolled
+// by more than kMostRoll_deg against it.
 Vec3 LevelUp(const LightField& light_field, const PinholeCamera& camera) {
   const Vec3 up = MeanUpWorld(light_field);
   const double roll_rad = RollOf(camera, up);
@@ -35,11 +36,12 @@ Vec3 LevelUp(const LightField& light_field, const PinholeCamera& camera) {
   return roll_rad == 0 ? camera.UpWorld() : Vec3(across.normalized());
 }
 
-// Rounds to an even size, which video needs.
+// Rounds down to an even size (at least 2), because video needs even sizes.
 int Even(int size) { return std::max(2, size - size % 2); }
 
-// Returns the largest frame within the LF camera's view. It has the proportions of the LF image,
-// and elements as large as the LF pixels in its middle.
+// Returns the largest frame within the LF camera's view, at most as large as the LF image and at
+// least a quarter of it. It has the proportions of the LF image. Its elements are as large as the
+// LF pixels in the middle of the LF image.
 Intrinsics InscribedFrame(const PinholeCamera& camera, const Vec3& up_world) {
   const Intrinsics& k = camera.intrinsics;
   const RayThrough rays(camera, camera.ForwardWorld());
@@ -51,7 +53,7 @@ Intrinsics InscribedFrame(const PinholeCamera& camera, const Vec3& up_world) {
     return Intrinsics{k.fx_px, k.fx_px, width / 2.0, height / 2.0, 0, width, height};
   };
   const auto is_seen = [&](const Intrinsics& frame) {
-    constexpr int kPoints = 16;  // of each side
+    constexpr int kPoints = 16;  // steps along each side of the frame
     constexpr double kTolerance_px = 0.5;
     const PinholeCamera pinhole{frame, *pose};
     for (int i = 0; i <= kPoints; ++i) {
@@ -77,8 +79,8 @@ Intrinsics InscribedFrame(const PinholeCamera& camera, const Vec3& up_world) {
   return frame_of(seen);
 }
 
-// The keyframes of the path. At time 0, every quantity has the value that the rest of the file
-// says.
+// The keyframes of the path. At time 0, they have the values that the sections above them in the
+// file give.
 struct Movement {
   std::string keyframes;
   double first_focus_distance_w = 0;
@@ -102,7 +104,7 @@ Movement MakeMovement(ExampleMove move, const PinholeCamera& camera, const Reach
     return movement;
   }
   if (move == ExampleMove::kDolly) {
-    // The rays of the corners of the picture diverge, and LF cameras must stand where they pass.
+    // The rays of the picture's corners diverge. LF cameras must be where these rays pass.
     const Intrinsics& k = camera.intrinsics;
     const double room_w =
         std::min((reach.right_w - aperture_diameter_w / 2) * 2 * k.fx_px / k.width_px,
@@ -167,7 +169,8 @@ Result<ExamplePath> MakeExamplePath(const LightField& light_field, const LfImage
   const ExampleAperture aperture = ChooseAperture(focus, camera.intrinsics.fx_px, spacing_w);
   example.aperture_reason = aperture.reason;
   const double largest_w = 2 * std::max(reach.right_w, reach.up_w);
-  constexpr double kLeastOfBand = 2.2;  // in spacings; the lens may be this wide in any capture
+  // The lens may be this wide, in spacings, even if the capture is narrower.
+  constexpr double kLeastOfBand = 2.2;
   example.aperture_diameter_w =
       std::min(aperture.spacings * spacing_w, std::max(kLeastOfBand * spacing_w, largest_w));
 

@@ -12,8 +12,8 @@
 namespace lf {
 namespace {
 
-// Checks that all frames look about along --slab-forward: only rays in about this direction cut the
-// st plane of the slab before the uv plane.
+// Checks that the viewing direction of every frame is within 60 degrees of --slab-forward, because
+// only rays in about this direction meet the st plane of the slab before the uv plane.
 Result<void> CheckSlab(const Package& package, const FilmOptions& film,
                        const std::vector<FrameId>& frames) {
   constexpr double kMost_deg = 60;
@@ -31,7 +31,7 @@ Result<void> CheckSlab(const Package& package, const FilmOptions& film,
   return {};
 }
 
-// Checks the options of frames that are a part of their LF images.
+// Checks that a shard has no option that needs the rays of all shards.
 Result<void> CheckShard(const FilmOptions& film) {
   if (!film.shard) return {};
   if (film.mode == RenderMode::kCollect && !film.stop_at_samples && !film.require_samples &&

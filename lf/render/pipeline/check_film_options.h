@@ -1,5 +1,5 @@
-// Checks that the options of a film go with each other and with its package: before the render, and
-// before a job waits in a queue.
+// Checks that the options of a film are compatible with each other and with its package, before the
+// render starts and before a job waits in a queue.
 #pragma once
 
 #include <vector>
@@ -11,10 +11,12 @@
 
 namespace lf {
 
-// FilmSetup::Make() calls this before it starts. The messages name options as lfrenderer does.
-//   options  are resolved by the function (Resolved())
-//   frames   empty: all of the package
-// Returns kUsage, or kInput if a camera has no lens area and the lens weights need one.
+// Checks the options. FilmSetup::Make() calls this before it starts. The messages name options as
+// lfrenderer does.
+//   options  as the caller has them; the function resolves them (Resolved())
+//   frames   numbers of the frames to render; empty: all frames of the package
+// Returns kUsage if the options are not compatible, and if the lens of a frame is a pinhole but
+// lens weights by area need its area.
 Result<void> CheckFilmOptions(const Package& package, const FilmOptions& options,
                               const std::vector<FrameId>& frames);
 

@@ -30,7 +30,7 @@ std::string_view NameIn(const std::string& path) {
   return std::string_view(path).substr(path.rfind('/') + 1);
 }
 
-// The outputs that exist, and would be overwritten.
+// The outputs that exist already, and that the render would overwrite.
 class Replaced {
  public:
   explicit Replaced(const std::vector<fs::path>& outputs) {
@@ -47,14 +47,15 @@ class Replaced {
   }
   bool empty() const { return numbers_.empty(); }
 
-  // Returns the output that is this file, or null.
+  // Returns the output that is the same file as `input`; null if there is none.
   const fs::path* Find(const fs::path& input) const {
     const std::optional<FileNumber> number = NumberOf(input);
     if (!number) return nullptr;
     const auto found = numbers_.find(*number);
     return found == numbers_.end() ? nullptr : &found->second;
   }
-  // Returns the output that has this path, or null. Accesses the disk for folders only.
+  // Returns the output whose canonical path is that of folder/name with links to folders followed;
+  // null if there is none. Accesses the disk once for each folder, and not for each file.
   const fs::path* FindByName(const fs::path& folder, const std::string& name) {
     if (!names_.contains(NameIn(name))) return nullptr;
     const fs::path input = folder / name;
@@ -69,7 +70,7 @@ class Replaced {
   std::map<FileNumber, fs::path> numbers_;
   std::set<std::string, std::less<>> names_;
   std::map<std::string, fs::path> paths_;  // canonical
-  std::map<fs::path, fs::path> folders_;   // by the path as it is written: the canonical path
+  std::map<fs::path, fs::path> folders_;   // from the path as written to the canonical path
 };
 
 Error Refusal(const fs::path& output, std::string_view what, const fs::path& input) {

@@ -10,15 +10,16 @@
 
 namespace lf {
 
-// Returns kUsage if an output and an input are the same file, by any names. Outputs that do not
-// exist yet replace nothing. Each input costs one access to the disk.
+// Returns kUsage if an output and an input are the same file, even if their paths differ. An output
+// that does not exist yet replaces nothing. Each input costs one access to the disk, unless no
+// output exists.
 Result<void> CheckReplacesNone(const std::vector<std::filesystem::path>& outputs,
                                const std::vector<std::filesystem::path>& inputs);
 
 // Returns kUsage if a file that the render writes into its folder is an LF image or a mask of the
 // package, or one of options.folder.inputs. CheckVideoTarget() checks the video. Links to folders
-// are followed. Links to files are followed in light fields of up to 20,000 LF images only, because
-// each costs one access to the disk.
+// are followed. Links to files are followed only if the light field has at most 20,000 LF images,
+// because each file then costs one access to the disk.
 Result<void> CheckOutputs(const Package& package, const RenderOptions& options);
 
 }  // namespace lf

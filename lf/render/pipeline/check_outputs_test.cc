@@ -22,7 +22,7 @@ class CheckOutputsTest : public FolderTest {
     options_.folder.output_folder = folder_ / "film";
     options_.folder.format = FrameFormat::kPng8;
   }
-  // Makes an LF image with this name.
+  // Writes a file with this name, and adds it to the light field as an LF image.
   void AddImage(const std::string& name) {
     std::ofstream(folder_ / "field" / name) << name;
     package_.light_field.image_names.push_back(name);

@@ -1,4 +1,4 @@
-// Checks options and orders LF images before a render starts.
+// Work before a render starts: checks its options, and puts the LF images in order.
 #include "lf/render/needs/film_order.h"
 #include "lf/render/pipeline/check_film_options.h"
 #include "lf/render/pipeline/check_outputs.h"

@@ -1,4 +1,4 @@
-// Develops the plate of a frame into its picture, and tells what is in it.
+// Develops the plate of a frame into its picture, and reports what the picture contains.
 #pragma once
 
 #include <functional>
@@ -15,19 +15,22 @@ namespace lf {
 
 struct RenderedFrame {
   DevelopedFrame picture;
-  FrameReport report;  // without samples and noise
+  FrameReport report;  // without `samples` and `noise`, which FilmRenderer::Measure() adds
 };
 
-// Returns the notes by which a picture of the frame is made. The caller must set estimator, fps,
-// smooth_below and fill_radius_px, and may set the others.
+// Returns the sheet that DevelopFrame() makes the picture of the frame with. The caller must still
+// set estimator, fps, develop.smooth_below and develop.fill_radius_px. It may set version,
+// places_done and the skipped LF images.
 PlateNotes MakePlateNotes(FrameId frame, const RenderCamera& camera, const FrameRays& rays,
                           const FrameLens& lens, const RadianceEncoding& encoding);
 
 // Develops the plate.
-//   completion        the part interpolated from rebinned rays, or null
-//   with_effective    false: leaves DevelopedFrame::effective_count empty, which takes time
-//   is_interrupted    called often, by any thread; may be empty. Once it returns true, the rest is
-//                     skipped and the result must not be used.
+//   completion        the part of the picture that is interpolated from rebinned rays; null if
+//                     there is none
+//   with_effective    true: fills DevelopedFrame::effective_count, which takes time; false: leaves
+//                     it empty
+//   is_interrupted    called often, by any thread; empty: nothing interrupts. Once it returns true,
+//                     the remaining work is skipped and the result must not be used.
 RenderedFrame DevelopFrame(const PlateNotes& notes, const SensorPlate& plate,
                            const Completion* completion, bool with_effective, ThreadPool& pool,
                            const std::function<bool()>& is_interrupted);

@@ -1,5 +1,5 @@
-// The options of a film in memory: what its frames are made of, and how the work is done. render.h
-// adds where the frames go.
+// The options of a film that is rendered in memory: what its frames are made of, and how the work
+// is done. render.h adds the folder that the frames are written into.
 #pragma once
 
 #include <atomic>
@@ -19,68 +19,73 @@
 
 namespace lf {
 
-// These options decide, with the package, every bit of a frame.
+// These options and the package decide every bit of a frame.
 struct FilmOptions {
   RenderMode mode = RenderMode::kCollect;
-  // Unused with kCollect. If max_cells is 0, as many cells as fit in half of the memory with
-  // kRebin, or in a quarter with kHybrid.
+  // Unused if the mode is kCollect. If rebin.max_cells is 0, there are as many cells as fit in half
+  // of the memory (kRebin), or in a quarter of it (kHybrid).
   RebinPassOptions rebin;
-  // Its filter must not be kMosaic if CountsRays() is true, because its rays count more than once.
+  // The filter must not be kMosaic if the estimator is kBilinear and CountsRays() is true, because
+  // the filter counts a ray up to 8 times.
   RayReading reading;
   // Must be kNone if CountsRays() is true, because weighted counts are not ray counts, and if the
   // package has no neighbours.
   LensWeights lens_weights = LensWeights::kNone;
   CollectBackEnd back_end = CollectBackEnd::kFast;
 
-  // If set, a frame takes only the first so many LF images of the order that contribute to it. Must
-  // not be more than the package was made for.
+  // If set, a frame takes at most this number of LF images: the first ones in the order that
+  // contribute to it. Must not exceed the limit that the package was made with. Must be unset if
+  // the mode rebins.
   std::optional<size_t> max_image_count;
-  // If set, frames take only this part of the LF images, and their plates are to be added to those
-  // of the other parts. Not with rules that count rays or measure noise, nor with rebinned rays.
+  // If set, frames take only the LF images of this shard. MergeShards() adds their plates to the
+  // plates of the other shards. Cannot be combined with rules that count rays or measure noise, nor
+  // with rebinned rays.
   std::optional<Shard> shard;
 
-  // If set, a frame is finished when its elements have so many rays (sample_rule.h). This is
-  // decided after multiples of 64 places of the order (of 128, 256, ... if a frame takes only a
-  // part of the LF images), so that the frame has the same bits in any run.
+  // If set, a frame is finished when its elements have this number of rays (sample_rule.h). The
+  // rule is applied only at places of the order that are multiples of 64 (of 128, 256, ... if a
+  // frame takes only a part of the LF images), so that the frame has the same bits in any run.
   std::optional<uint32_t> stop_at_samples;
   std::optional<uint32_t> require_samples;  // if set, measured for the report of each frame
   // If set, a frame is finished when its noise is at most this (noise_rule.h), in linear radiance
-  // with the light field's white as 1. This is decided at the places of NoiseDecisionAfter(). Works
-  // with every mode, estimator, filter and weights: with kRebin, frames collect rays to measure the
-  // noise, but their pictures do not use them.
+  // where the light field's white is 1. The rule is applied at the places that NoiseDecisionAfter()
+  // gives. It can be combined with every mode, estimator, filter and weights: with kRebin, frames
+  // collect rays only to measure the noise, and their pictures do not use these rays.
   std::optional<double> stop_at_noise;
   std::optional<double> require_noise;  // if set, measured for the report of each frame
-  uint32_t smooth_below = 0;            // this and fill_radius_px: film/develop/develop.h
+  uint32_t smooth_below = 0;  // see DevelopOptions in sequence/develop.h, also for fill_radius_px
   int fill_radius_px = kFillRadius_px;
 
   bool Collects() const { return lf::Collects(mode); }
   bool Rebins() const { return lf::Rebins(mode); }
-  // Returns true if an option depends on the number of rays of elements.
+  // Returns true if an option depends on how many rays each element has.
   bool CountsRays() const { return stop_at_samples || require_samples || smooth_below > 0; }
-  // Returns true if an option depends on the differences between LF images in elements.
+  // Returns true if an option depends on the noise, which is measured by how much the LF images
+  // differ within an element.
   bool MeasuresNoise() const { return stop_at_noise || require_noise; }
   bool HasStopRule() const { return stop_at_samples || stop_at_noise; }
-  // Returns true if frames have plates, for their pictures or to measure noise.
+  // Returns true if frames have plates. With kRebin, they have plates only to measure the noise.
   bool HasPlates() const { return Collects() || MeasuresNoise(); }
 };
 
-// Returns the options with the values that follow from the package and from each other:
-//   lens_weights     kNone with kRebin, and instead of kAuto if rays are counted
-//   reading.filter   kMosaic instead of kAuto for mosaics, unless rays are counted
-//   max_image_count  unless set, the limit that the package was made with
+// Returns the options, with these values replaced by what follows from the package and from other
+// options:
+//   lens_weights     kNone if the mode is kRebin, or if it was kAuto and rays are counted
+//   reading.filter   kMosaic if it was kAuto and the LF images are mosaics, unless rays are counted
+//   max_image_count  the limit that the package was made with, if it was unset
 FilmOptions Resolved(FilmOptions options, const Package& package);
 
-// These options decide how the work is done. The frames have the same bits with any values, except
-// that the number of rebinned rays follows from the memory if their max_cells is 0.
+// These options decide how the work is done. The frames have the same bits for any values, with one
+// exception: if rebin.max_cells is 0, the number of rebinned rays follows from memory_bytes.
 struct WorkOptions {
   size_t memory_bytes = size_t{8} << 30;
-  bool strict = false;        // a broken LF image is an error, and not skipped
+  bool strict = false;        // true: a broken LF image is an error; false: it is skipped
   bool whole_images = false;  // SelectOptions::whole_images: slower
-  // If given and set by any thread, a step ends soon with kInterrupted. The caller clears the flag,
-  // and may go on with the next step.
+  // If not null: when any thread sets it to true, a step ends soon with kInterrupted. The caller
+  // then clears the flag, and may continue with the next step.
   const std::atomic<bool>* interrupted = nullptr;
-  // If given and set by any thread, everything ends soon with kInterrupted. The caller must then
-  // set `interrupted`.
+  // If not null: when any thread sets it to true, every function ends soon with kInterrupted. That
+  // thread must then set `interrupted` to true, because a step reads only that flag.
   const std::atomic<bool>* stop = nullptr;
 
   bool IsStopped() const { return stop != nullptr && *stop; }

@@ -61,7 +61,7 @@ Result<void> FilmRenderer::Begin(const EarlierRun* earlier) {
   for (size_t f = 0; f < plates_.size(); ++f)
     if (frames_[f].is_released) collector_->Stop(f);
   EndEarlyFrames();
-  DecideStops();  // an earlier run may have left frames where their stop rule decides
+  DecideStops();  // an earlier run may have ended exactly where the stop rule is applied
   return {};
 }
 
@@ -75,7 +75,7 @@ Result<void> FilmRenderer::FindLenses() {
   return {};
 }
 
-// Selects the LF images with rays that count in a frame.
+// Returns the options that select only the LF images whose rays have a weight in a frame.
 SelectOptions FilmRenderer::SelectCollected() const {
   SelectOptions select = select_;
   if (film_.lens_weights != LensWeights::kNone)
@@ -107,7 +107,8 @@ CollectOptions FilmRenderer::OptionsOfCollector() {
 
 Result<void> FilmRenderer::PreparePlates(const EarlierRun* earlier,
                                          std::vector<PlaceRange>* places) {
-  // Plates are made by all threads, because a thread that clears one waits for its memory.
+  // All threads make plates at the same time, because a thread that clears a plate mostly waits for
+  // the memory.
   for (size_t f = 0; f < frames_.size(); ++f) plates_.emplace_back(0, 0);
   if (film_.MeasuresNoise()) moments_.resize(frames_.size());
   setup_.pool().ForEach(frames_.size(), [this](size_t f) {
@@ -133,8 +134,8 @@ Result<void> FilmRenderer::PreparePlates(const EarlierRun* earlier,
   return {};
 }
 
-// Loads a plate of the earlier run. If noise is measured, a plate without moments is dropped, and
-// its frame begins anew, unless the frame ends early.
+// Loads a plate of the earlier run. If noise is measured and the plate has no moments, the plate is
+// dropped and its frame starts again, unless the frame is to be finished early.
 Result<FrameProgress> FilmRenderer::LoadPlate(size_t f, const EarlierRun* earlier) {
   Frame& frame = frames_[f];
   const int width = plates_[f].width(), height = plates_[f].height();
@@ -156,8 +157,8 @@ Result<FrameProgress> FilmRenderer::LoadPlate(size_t f, const EarlierRun* earlie
   return start;
 }
 
-// Checks that the frame needs no LF cameras beyond the reach of the default options, because the
-// package has no others.
+// Checks that the frame needs no LF camera farther from its lens than the default options reach,
+// because the package contains no farther ones.
 Result<void> FilmRenderer::CheckReach(const LensGaps& gaps, FrameId frame) const {
   const Package& package = setup_.package();
   if (package.surroundings.empty() || !gaps.asks_in_the_end()) return {};
@@ -205,8 +206,9 @@ Result<void> FilmRenderer::PrepareRebinning(std::span<const PlaceRange> places,
   return {};
 }
 
-// Selects the LF images to load. Those for plates have the rectangle of the pixels to collect;
-// rebinned rays name their pixels when an image is loaded (ImageConsumer).
+// Selects the LF images to load. An LF image that is collected into plates has the rectangle of the
+// pixels to collect. Rebinned rays name the pixels that they need when an LF image is loaded
+// (ImageTaker).
 void FilmRenderer::SelectForFrames(std::span<const PlaceRange> places) {
   images_.clear();
   if (film_.HasPlates()) {
@@ -241,8 +243,8 @@ void FilmRenderer::AddRebinnedImages(std::span<const PlaceRange> places) {
   images_ = std::move(all);
 }
 
-// Without collection, only rebinned rays tell what the earlier run has of a frame: a frame without
-// them does not end early.
+// With kRebin, the rebinned rays alone decide what the earlier run has of a frame. If it has none,
+// the frame is not finished early.
 void FilmRenderer::EndEarlyFrames() {
   if (film_.Collects()) return;
   const uint32_t places_done = rebinned_->places_done();
@@ -279,8 +281,9 @@ uint32_t FilmRenderer::PlaceOfEnd(size_t f) const {
                           : std::min(frame.places.end, setup_.index().place_end());
 }
 
-// A frame with all LF images that it takes is in its final state, even if it takes only some. A
-// frame that was stopped, or ends early, has more gaps, which no later LF image covers.
+// A frame that has all LF images that it takes is in its final state, even if it takes only a part
+// of the light field. A frame that was stopped or is finished early has more gaps, because the
+// remaining LF images do not cover them.
 std::vector<Completion> FilmRenderer::Complete(std::span<const size_t> frames) {
   std::vector<Completion> completions;
   if (!rebinned_) return completions;
@@ -306,7 +309,8 @@ RenderedFrame FilmRenderer::Develop(size_t f, const Completion* completion, bool
   };
   if (film_.Collects()) return develop(plates_[f]);
   const Intrinsics& plate = cameras_[f].pinhole.intrinsics;
-  return develop(SensorPlate(plate.width_px, plate.height_px));  // all of it is interpolated
+  // The plate is empty, because the whole picture is interpolated.
+  return develop(SensorPlate(plate.width_px, plate.height_px));
 }
 
 PlateNotes FilmRenderer::NotesOf(size_t f) const {

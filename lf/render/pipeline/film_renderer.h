@@ -6,8 +6,8 @@
 //     Show(renderer->Develop(0).picture);                  // the frame with the rays so far
 //   }
 //
-// Between two steps, every frame has exactly the rays of the LF images at its first places of the
-// order. Frames have the same bits however the work is cut.
+// Between two steps, every frame has exactly the rays of the LF images before one place of the
+// order. Frames have the same bits however the work is divided into batches.
 #pragma once
 
 #include <functional>
@@ -34,20 +34,24 @@
 
 namespace lf {
 
-// The rays that an earlier run has of the frames, from which a FilmRenderer goes on.
+// Gives access to the rays that an earlier run collected, from which a FilmRenderer continues.
 class EarlierRun {
  public:
   virtual ~EarlierRun() = default;
   // Returns true if the frame is finished, so that nothing is collected for it.
   virtual bool IsFinished(FrameId frame) const = 0;
-  // Returns true if the frame is to end with the rays that the run has of it.
+  // Returns true if the frame is to be finished with the rays that the earlier run collected for
+  // it.
   virtual bool EndsEarly(FrameId frame) const = 0;
-  // Adds the rays that the run has of the frame to the plate, and returns its progress.
+  // Adds the rays that the earlier run collected for the frame to the plate, and returns the
+  // frame's progress.
   //   plate    empty, of the frame's size
-  //   moments  receives the moments of these rays if the run has them; null if nobody needs them
+  //   moments  receives the moments of these rays, if the earlier run kept them; null: they are not
+  //            needed
   virtual Result<FrameProgress> LoadPlate(FrameId frame, SensorPlate* plate,
                                           std::optional<NoiseMoments>* moments) const = 0;
-  // Returns the rebinned rays of a section (RebinnedRays::map()); none if the run has none.
+  // The rebinned rays of a section (RebinnedRays::map()), made of the LF images before places_done.
+  // LoadRays() returns nullopt if the earlier run kept none.
   struct Rays {
     RayMap map;
     uint32_t places_done = 0;
@@ -58,95 +62,103 @@ class EarlierRun {
 class FilmRenderer {
  public:
   // Makes a renderer of some frames of the package, ready for the first step. The pool must outlive
-  // it.
-  //   frames  ascending; empty: all of the package
-  // kUsage, kInput: those of FilmSetup::Make(), and of PlanSlabs(). kOutput: the memory does not
-  // suffice for all of the frames at the same time; the message names the number that fits.
+  // the renderer.
+  //   frames  ascending; empty: all frames of the package
+  // kOutput: the memory does not suffice for all of the frames at the same time; the message names
+  // the number that fits. Other errors are those of FilmSetup::Make(), PlanSlabs() and Begin().
   static Result<std::unique_ptr<FilmRenderer>> Open(Package package, const FilmOptions& film,
                                                     const WorkOptions& work,
                                                     std::vector<FrameId> frames, ThreadPool& pool);
 
-  // The setup must have slabs, and outlive the renderer.
-  //   frames  some of the setup's, ascending; at most plan().frames_per_pass. The kept rebinned
-  //           rays depend on all of them, finished ones included.
+  // FilmSetup::PlanSlabs() must have been called. The setup must outlive the renderer.
+  //   frames  some of the setup's frames, ascending; at most plan().frames_per_pass. Which rebinned
+  //           rays are kept depends on all of these frames, even on finished ones.
   FilmRenderer(const FilmSetup& setup, std::span<const FrameId> frames);
 
-  // Selects the LF images that are still to be collected. Must be called once, before all below.
-  //   earlier  null: nothing is collected yet; only used during the call
-  // kInterrupted; the errors of `earlier`; kUsage if a package lacks LF cameras that rebinned rays
-  // ask for.
+  // Selects the LF images that are still to be collected. Must be called once, before the functions
+  // below.
+  //   earlier  null: nothing was collected before; only used during the call
+  // kInterrupted: WorkOptions::stop is set. kUsage: the package lacks LF cameras whose rays the
+  // rebinned rays need. Other errors are those of `earlier`.
   Result<void> Begin(const EarlierRun* earlier = nullptr);
 
   // Collects the next batch of LF images, and stops the frames whose stop rule is met. Returns
-  // false if nothing was left to do. Errors: those of FrameCollector::Step(). After kInterrupted,
-  // steps may go on.
+  // false if no LF image was left. Errors are those of FrameCollector::Step(). After kInterrupted,
+  // the caller may call Step() again.
   Result<bool> Step();
 
   size_t frame_count() const { return frames_.size(); }
   FrameId id(size_t f) const { return frames_[f].id; }
-  // Returns the progress with all rays in the plate, those of an earlier run included.
+  // Returns the frame's progress. It counts all rays in the plate, including those of the earlier
+  // run.
   FrameProgress Progress(size_t f) const;
-  const SensorPlate& plate(size_t f) const { return plates_[f]; }  // if FilmOptions::HasPlates()
-  // Returns the moments of the plate; null unless they are of all its LF images.
+  const SensorPlate& plate(size_t f) const { return plates_[f]; }  // only if HasPlates()
+  // Returns the moments of the plate. Returns null if noise is not measured, or if the moments lack
+  // LF images whose rays are in the plate.
   const NoiseMoments* moments(size_t f) const {
     return frames_[f].has_noise ? &moments_[f] : nullptr;
   }
   const FrameLens& lens(size_t f) const { return lenses_[f]; }
 
-  // True if the frame ends with the rays of the earlier run.
+  // True if the frame is to be finished with the rays of the earlier run.
   bool EndsEarly(size_t f) const { return frames_[f].is_early; }
-  // Returns the frames that the stop rule has stopped, and that are not released.
+  // Returns the frames that the stop rule has stopped and that are not released yet.
   std::vector<size_t> StoppedFrames() const;
-  // Returns the place of the order before which the frame ends: that of its stop rule, or that of
-  // the LF images that it takes. It does not depend on how the work is cut.
+  // Returns the end (exclusive) of the frame's places in the order: the place where its stop rule
+  // stopped it, otherwise the end of the places that the frame takes. Does not depend on how the
+  // work is divided into batches.
   uint32_t PlaceOfEnd(size_t f) const;
 
-  // Interpolates frames from rebinned rays, one after the other; empty without these.
+  // Interpolates frames from rebinned rays, one after the other. Returns an empty vector if the
+  // mode has no rebinned rays.
   std::vector<Completion> Complete(std::span<const size_t> frames);
-  // Develops the rays that the frame has so far. The report lacks measurements. The second form may
-  // be called by several threads at the same time, for different frames.
-  //   completion  of the frame, from Complete(); null without rebinned rays
-  // with_effective and is_interrupted are those of DevelopFrame().
+  // Develops the rays that the frame has so far. The report lacks `samples` and `noise`, which
+  // Measure() adds. Several threads may call the second form at the same time, for different
+  // frames.
+  //   completion  of this frame, from Complete(); null if the mode has no rebinned rays
+  // with_effective and is_interrupted are explained at DevelopFrame().
   RenderedFrame Develop(size_t f);
   RenderedFrame Develop(size_t f, const Completion* completion, bool with_effective,
                         const std::function<bool()>& is_interrupted) const;
-  // Adds the measurements that the options ask for to the report. Several threads may call it at
-  // the same time, for different frames. kInterrupted.
+  // Adds the measurements of samples and noise that the options require to the report. Several
+  // threads may call it at the same time, for different frames. kInterrupted: WorkOptions::stop is
+  // set.
   Result<void> Measure(size_t f, FrameReport* report);
-  // Returns the facts by which anybody can develop the frame's plate, without those about skipped
-  // LF images and without the program's version.
+  // Returns the facts that are needed to develop the frame's plate. The caller adds the skipped LF
+  // images and the program's version.
   PlateNotes NotesOf(size_t f) const;
 
-  // Frees the plate of a frame, which takes no more LF images.
+  // Frees the plate of a frame. The frame then takes no more LF images.
   void Release(size_t f);
   bool IsReleased(size_t f) const { return frames_[f].is_released; }
   bool AreAllReleased() const;
 
   const FilmSetup& setup() const { return setup_; }
-  const std::vector<SelectedImage>& images() const { return images_; }  // of all steps
-  CollectProgress progress() const { return done_; }                    // by these images
+  const std::vector<SelectedImage>& images() const { return images_; }  // that all steps load
+  CollectProgress progress() const { return done_; }                    // of the steps done
   std::span<const SkippedImage> skipped() const { return collector_->skipped(); }
   const CollectTimes& times() const { return collector_->times(); }
-  const RebinnedRays* rebinned() const { return rebinned_.get(); }  // null without
-  // kInput: there is no LF image to collect, nor was one collected before: no recorded ray passes
-  // both a frame's lens and what the frame sees.
+  const RebinnedRays* rebinned() const { return rebinned_.get(); }  // may be null
+  // kInput: no LF image contributes to any frame, and no ray was collected before. This is so if no
+  // recorded ray passes both a frame's lens and the region that the frame sees.
   Result<void> CheckAnyContributes() const;
-  // True if all LF images were broken (or there were none), and nothing was collected before.
+  // True if all LF images were broken (or there were none), and the earlier run collected no ray.
   bool AllBroken() const;
-  // kInput: AllBroken(), and there were LF images. The message has the first one's fault.
+  // kInput: AllBroken() is true, and there was at least one LF image. The message says what is
+  // wrong with the first one.
   Result<void> CheckNotAllBroken() const;
 
  private:
   struct Frame {
     FrameId id;
-    PlaceRange places;             // of the LF images that it takes, in earlier runs and this one
-    FrameRays earlier_rays;        // in its plate when this run began
-    uint32_t decision_places = 0;  // stop_at_samples is decided at multiples of this
-    uint32_t next_decision = 0;    // place
+    PlaceRange places;             // of the LF images that it takes, in all runs
+    FrameRays earlier_rays;        // in the plate when this run began
+    uint32_t decision_places = 0;  // stop_at_samples is decided at its multiples
+    uint32_t next_decision = 0;    // next place at which the stop rule is applied
     bool is_released = false;
-    bool is_stopped = false;  // by the stop rule, with the LF images before next_decision
-    bool has_noise = false;   // true if the moments are of all LF images in its plate
-    bool is_early = false;    // to be finished with the rays of the earlier run
+    bool is_stopped = false;  // by the stop rule, after the LF images before next_decision
+    bool has_noise = false;   // true if the moments include all LF images in the plate
+    bool is_early = false;    // true if it is finished with the rays of the earlier run
     std::unique_ptr<ReachableElements> reachable;
   };
 
@@ -170,19 +182,20 @@ class FilmRenderer {
   uint32_t DecisionFrom(size_t f, uint32_t place) const;
   void DecideStops();
 
-  std::unique_ptr<FilmSetup> own_setup_;  // if made by Open()
+  std::unique_ptr<FilmSetup> own_setup_;  // null unless made by Open()
   const FilmSetup& setup_;
   const FilmOptions& film_;  // of the setup
   const SelectOptions select_;
   std::vector<Frame> frames_;
-  // One for each frame, in arrays of their own, because selection and collection take them so.
+  // The next four arrays have one value for each frame. They are not members of Frame, because
+  // selection and collection need arrays.
   std::vector<FrameLens> lenses_;
-  std::vector<RenderCamera> cameras_;  // with these lenses
+  std::vector<RenderCamera> cameras_;  // with the lenses of lenses_
   std::vector<SensorPlate> plates_;
-  std::vector<NoiseMoments> moments_;  // of the plates, if noise is measured; otherwise empty
+  std::vector<NoiseMoments> moments_;  // empty if noise is not measured
   std::vector<SelectedImage> images_;
   std::unique_ptr<FrameCollector> collector_;
-  std::unique_ptr<RebinnedRays> rebinned_;  // null without rebinned rays
+  std::unique_ptr<RebinnedRays> rebinned_;  // null if the mode has none
   CollectProgress done_;
 };
 

@@ -1,4 +1,4 @@
-// Rules that stop frames, or measure finished ones.
+// The parts of FilmRenderer that stop frames by a rule, and measure finished ones.
 #include <algorithm>
 #include <cmath>
 
@@ -21,8 +21,8 @@ const ReachableElements& FilmRenderer::ReachableOf(size_t f) {
   return *frame.reachable;
 }
 
-// Makes batches end at the places where the stop rule of a frame decides, in addition to those that
-// rebinned rays need.
+// Makes batches end at the places where the stop rule of a frame is applied, in addition to the
+// places that rebinned rays need.
 Result<void> FilmRenderer::PrepareStops(std::span<const PlaceRange> places,
                                         CollectOptions* collect) {
   collect->cuts_for_noise = film_.stop_at_noise.has_value();
@@ -44,7 +44,7 @@ Result<void> FilmRenderer::PrepareStops(std::span<const PlaceRange> places,
   return {};
 }
 
-// Returns the first place, at or behind `place`, where the stop rule of the frame decides. `place`
+// Returns the first place at or after `place` where the stop rule of the frame is applied. `place`
 // must be above 0.
 uint32_t FilmRenderer::DecisionFrom(size_t f, uint32_t place) const {
   if (film_.stop_at_noise) return NoiseDecisionAfter(place - 1);
@@ -52,9 +52,10 @@ uint32_t FilmRenderer::DecisionFrom(size_t f, uint32_t place) const {
   return (place + step - 1) / step * step;
 }
 
-// A frame that stops must be completed with the rebinned rays of the same LF images. In a state,
-// rebinned rays may lag behind the plates, which are written first; they catch up. If a plate was
-// removed, they are ahead of it: then they are made anew from the first LF image.
+// A frame that stops must be completed with rebinned rays of exactly the LF images in its plate. In
+// a saved state, the rebinned rays may lag behind the plates, which are written first; Step() then
+// catches up. If a plate was removed, the rebinned rays are ahead of its frame. This function then
+// drops them, so that they are made again from the first LF image.
 void FilmRenderer::ForgetRaysAhead(std::span<const PlaceRange> places) {
   uint32_t least = UINT32_MAX;
   for (size_t f = 0; f < frames_.size(); ++f)
@@ -68,8 +69,9 @@ void FilmRenderer::ForgetRaysAhead(std::span<const PlaceRange> places) {
   }
 }
 
-// Returns the first place of an LF image to be loaded that is not done. A frame with `places_done`
-// is the same as one with all places before it, because no LF image to be loaded lies between.
+// Returns the place of the first LF image to be loaded at or after places_done; place_end() if
+// there is none. A frame that is done up to places_done is also done up to the returned place,
+// because no LF image to be loaded lies between.
 uint32_t FilmRenderer::PlacesCovered(uint32_t places_done) const {
   const auto next = std::lower_bound(
       images_.begin(), images_.end(), places_done,
@@ -77,7 +79,8 @@ uint32_t FilmRenderer::PlacesCovered(uint32_t places_done) const {
   return next == images_.end() ? setup_.index().place_end() : next->place;
 }
 
-// Returns the noise of a frame in radiance; infinity if it cannot be measured.
+// Returns the noise of a frame in radiance, with the light field's white as 1; infinity if the
+// noise cannot be measured.
 double FilmRenderer::NoiseOf(size_t f) {
   return MeasureNoise(plates_[f], moments_[f], ReachableOf(f)) /
          setup_.light_field().encoding.Scale();
@@ -88,15 +91,16 @@ bool FilmRenderer::IsEnough(size_t f) {
   return HasSamples(plates_[f], ReachableOf(f), *film_.stop_at_samples);
 }
 
-// Applies the stop rule to every frame that has reached its next place of decision. The plate has
-// exactly the rays of the places before it, because no batch extends beyond such a place, and a gap
-// in the order of the images adds nothing. Decisions therefore do not depend on the LF images that
-// other frames take. An interrupted earlier run may have decided already; the decision is the same.
+// Applies the stop rule to every frame that has reached its next_decision. The plate then has
+// exactly the rays of the LF images before this place, because no batch extends beyond such a
+// place, and places without an LF image to be loaded add nothing. Decisions therefore do not depend
+// on the LF images that other frames take. If an interrupted earlier run has decided already, the
+// decision is the same.
 void FilmRenderer::DecideStops() {
   if (!film_.HasStopRule()) return;
   for (size_t f = 0; f < frames_.size(); ++f) {
     Frame& frame = frames_[f];
-    // A frame that ends early takes no decision.
+    // The rule is not applied to a frame that is finished early.
     if (frame.is_released || frame.is_early || frame.is_stopped) continue;
     const uint32_t covered = PlacesCovered(collector_->frames()[f].places_done);
     if (covered < frame.next_decision) continue;

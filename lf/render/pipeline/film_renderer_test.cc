@@ -50,7 +50,7 @@ class FilmRendererTest : public FolderTest {
       if (!*step) return;
     }
   }
-  // Returns the frame as the folder of a render has it.
+  // Returns the pixels of the frame's file, after a render into a folder.
   Image<float> OfFolder(FrameId frame) {
     RenderOptions options;
     options.film = options_;
@@ -96,7 +96,8 @@ TEST_F(FilmRendererTest, FramesAreThoseOfAFolderInEveryMode) {
 TEST_F(FilmRendererTest, StopRulesAreThoseOfAFolder) {
   options_.reading.estimator = Estimator::kBilinear;
   options_.stop_at_samples = 4;
-  for (RenderCamera& camera : film_.path.cameras)  // so close that LF images see all of it
+  // The view is so narrow that the LF images see all of it.
+  for (RenderCamera& camera : film_.path.cameras)
     camera.pinhole.intrinsics.fx_px = camera.pinhole.intrinsics.fy_px = 200;
   const auto renderer = Open();
   Finish(*renderer);
@@ -137,7 +138,7 @@ TEST_F(FilmRendererTest, AnInterruptedStepGoesOn) {
   EXPECT_EQ(renderer->Develop(2).picture.rgb.pixels(), whole->Develop(2).picture.rgb.pixels());
 }
 
-// Goes on from the plates of another renderer, which took some steps.
+// An earlier run whose plates are those of another renderer after some steps.
 class PlatesOf : public EarlierRun {
  public:
   explicit PlatesOf(const FilmRenderer& renderer) : renderer_(renderer) {}

@@ -1,5 +1,5 @@
-// Holds all that the frames of a film have in common while they are rendered: the light field, its
-// LF images, the options, and the division of the memory.
+// Holds what the frames of a film share while they are rendered: the light field, its LF images,
+// the options, and the plan of the memory.
 #pragma once
 
 #include <memory>
@@ -23,12 +23,14 @@ namespace lf {
 
 class FilmSetup {
  public:
-  // Resolves the options, makes room for undershoot in the encoding with kBilinear, opens the LF
-  // images and plans the memory. The pool must outlive the object.
+  // Resolves the options, opens the LF images and plans the memory. With kBilinear, also makes room
+  // in the radiance encoding for values below black (MakeRoomForUndershoot()). The pool must
+  // outlive the object.
   //   frames  of the package, ascending; empty: all of its frames
-  // kUsage: the options do not go together, or not with the package.
-  // kInput: the packed store lacks pixels of a frame (CheckKept() of render/needs/frame_needs.h).
-  // kOutput: the memory is less than one frame needs; the message names the least that suffices.
+  // kUsage: the options are not compatible with each other or with the package.
+  // kInput: the packed store lacks pixels of a frame (CheckKept() of preprocess/frame_needs.h).
+  // kOutput: one frame needs more memory than memory_bytes; the message names the least memory that
+  // suffices.
   static Result<std::unique_ptr<FilmSetup>> Make(Package package, const FilmOptions& film,
                                                  const WorkOptions& work,
                                                  std::vector<FrameId> frames, ThreadPool& pool);
@@ -43,14 +45,15 @@ class FilmSetup {
   const ImageIndex& index() const { return index_; }
   const LfImageStore& store() const { return *store_; }
   const MemoryPlan& plan() const { return plan_; }
-  // Most cells of rebinned rays; 0 without them.
+  // The largest number of cells of rebinned rays; 0 if the mode has none.
   size_t max_cells() const { return max_cells_; }
   SelectOptions Select() const;
   // Options that decide which LF images frames need.
   NeedsOptions Needs() const;
 
-  // Plans the slabs of the whole film, so that a frame has the same slab in any package and any
-  // part of the film. Does nothing without rebinned rays, or if they are planned. kInterrupted.
+  // Plans the slabs of the whole film, so that a frame has the same slab in any package and in any
+  // part of the film. Does nothing if the mode has no rebinned rays, or if the slabs are planned
+  // already. kInterrupted: WorkOptions::stop is set.
   Result<void> PlanSlabs();
   const FilmSlabs& slabs() const { return *slabs_; }  // after PlanSlabs()
 
@@ -72,7 +75,7 @@ class FilmSetup {
   std::optional<FilmSlabs> slabs_;
 };
 
-// Returns the kInput of frames that no LF image contributes to.
+// Returns the error (kInput) for frames that no LF image contributes to.
 //   frames  ascending
 Error NoneContributes(std::span<const FrameId> frames);
 

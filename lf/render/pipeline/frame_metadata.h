@@ -1,4 +1,4 @@
-// The metadata in a frame's file, about its render camera and rays.
+// The metadata in the file of a frame: they describe its render camera and its rays.
 #pragma once
 
 #include "lf/camera/render_camera.h"
@@ -8,8 +8,8 @@
 
 namespace lf {
 
-// Returns entries "lf:...", with units as in their names. There is no time of day, so that equal
-// frames have equal files.
+// Returns "Software" and entries "lf:...", whose names end in their units. There is no time of day,
+// so that equal frames have equal files.
 ImageMetadata FrameMetadata(FrameId frame, const RenderCamera& camera, const FrameRays& rays,
                             Estimator estimator, double fps, const std::string& version);
 

@@ -1,5 +1,5 @@
-// Writes the picture of a frame, and contact sheet and video from pictures. Internal to this
-// folder.
+// Writes the picture of a frame, and makes the contact sheet and the video from the files of
+// frames. Internal to pipeline.
 #pragma once
 
 #include <atomic>
@@ -18,12 +18,12 @@
 
 namespace lf {
 
-// Returns true if a file of the format has DevelopedFrame::effective_count.
+// Returns true if a file of the format contains DevelopedFrame::effective_count.
 bool HasEffectiveCounts(FrameFormat format);
 
-// Writes a developed picture to the file `to`.
-//   is_interrupted  called often, by any thread; may be empty. The picture may be unusable if it
-//                   returns true.
+// Writes the developed picture of a sheet to the file `to`.
+//   is_interrupted  called often, by any thread; empty: nothing interrupts. The caller may pass an
+//                   unusable picture if it returns true, because nothing is written then.
 // kOutput: the file cannot be written. kInterrupted: nothing is written.
 Result<void> WritePicture(const PlateNotes& notes, const DevelopedFrame& picture,
                           const std::filesystem::path& to, FrameFormat format,
@@ -31,14 +31,15 @@ Result<void> WritePicture(const PlateNotes& notes, const DevelopedFrame& picture
 
 inline constexpr const char* kContactSheet = "contact_sheet.png";
 
-// A film whose frames are files. It does not matter when, or by which process, they were rendered.
+// A film whose frames are files in a folder. They may have been rendered at any time, by any
+// process.
 struct FilmFiles {
   std::filesystem::path folder;
   FrameFormat format = FrameFormat::kExrHalf;
   int width_px = 0;
   int height_px = 0;
   double fps = 0;
-  const std::atomic<bool>* stop = nullptr;  // interrupts the functions when true; may be null
+  const std::atomic<bool>* stop = nullptr;  // true interrupts the functions; may be null
 
   //   at_once  number of files that are read at the same time
   // kOutput: the file cannot be written, or ffmpeg failed. kInput: a frame cannot be read, or has
@@ -53,7 +54,7 @@ struct FilmFiles {
   Result<Image<uint8_t>> ReadPicture(FrameId frame) const;
 };
 
-// Returns the film of the frames that a render of the path writes. All frames have the same size.
+// Returns the FilmFiles of a render of the path into a folder. All frames have the same size.
 FilmFiles FilesOfFilm(const CameraPath& path, const RenderOptions& options);
 
 }  // namespace lf

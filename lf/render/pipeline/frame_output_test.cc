@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A film of two frames, and a script that stands in for ffmpeg.
+// A film of two frames, and a script that is run instead of ffmpeg.
 class FilmFilesTest : public FolderTest {
  protected:
   void SetUp() override {

@@ -8,7 +8,8 @@
 namespace lf {
 namespace {
 
-// Reads a whole number at the beginning of `text` and removes it.
+// Reads a whole number at the beginning of `text` and removes it from there. Returns false if there
+// is none.
 bool TakeNumber(std::string_view* text, uint32_t* number) {
   const char* end = text->data() + text->size();
   const auto [rest, error] = std::from_chars(text->data(), end, *number);

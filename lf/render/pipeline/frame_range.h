@@ -1,4 +1,5 @@
-// Parses frame numbers as people write them: "1-100x2" is 1, 3, 5 ...; "7"; "1-10,50-60".
+// Parses lists of frame numbers, such as "7", "1-10,50-60", and "1-100x2" (every second frame: 1,
+// 3, 5, ..., 99).
 #pragma once
 
 #include <string_view>
@@ -9,8 +10,8 @@
 
 namespace lf {
 
-// Returns the frames ascending, each once. kUsage: the text does not have this form, or a frame is
-// not in 1 .. frame_count. The message names the option.
+// Returns the frames in ascending order, each once. kUsage: the text does not have this form, or a
+// frame is not in 1 .. frame_count. The message names `option`.
 Result<std::vector<FrameId>> ParseFrameRange(std::string_view text, size_t frame_count,
                                              const char* option = "--frames");
 

@@ -26,7 +26,7 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-// One plate file, without its rays.
+// The facts about one plate file. The rays stay in the file.
 struct ShardPlate {
   fs::path path;
   Shard shard;
@@ -81,7 +81,7 @@ Result<ShardPlate> Look(const fs::path& path) {
           fmt::format("{}: shard is \"{}\", expected k/K, such as 2/5", path.string(), *text));
     plate.shard = *shard;
   }
-  // Entries in which the shards of a frame may differ: the shard and its rays.
+  // Entries that may differ between the shards of a frame: the shard, its rays, and its LF images.
   constexpr const char* kOwn[] = {"shard",
                                   "sheet.lf_images",
                                   "sheet.rays_tested",
@@ -132,8 +132,8 @@ class Merger {
     for (const auto& [frame, plates] : frames_) now_.plate_total += plates.size();
     for (const auto& [frame, plates] : frames_)
       if (const Result<void> written = WriteFrameOf(plates); !written) {
-        // --resume reads this report, if the disk has room for it: frames that no report names are
-        // written again.
+        // --resume reads this report and writes the frames again that it does not name. An error is
+        // ignored, because the disk may be full.
         (void)WriteReport(Report(), ReportPath());
         return written.error();
       }
@@ -159,7 +159,7 @@ class Merger {
     return CheckReplacesNone(outputs, options_.kept_files);
   }
 
-  // The lock is also that of a render into the same folder (lf/render/state/run_state.h).
+  // A render into the same folder takes the same lock (lf/record/run_state.h).
   fs::path PartialFolder() const { return options_.output_folder / "partial"; }
   Result<void> Lock() {
     LF_RETURN_IF_ERROR(CreateFolder(options_.output_folder));
@@ -171,7 +171,7 @@ class Merger {
 
   fs::path ReportPath() const { return options_.output_folder / "report.json"; }
 
-  // Checks that all shards of each frame are there once, and are of the same render.
+  // Checks that each shard of each frame exists exactly once, and that all are of the same render.
   Result<void> CheckFrames() {
     const ShardPlate& first = frames_.begin()->second.front();
     for (auto& [frame, plates] : frames_) {
@@ -246,8 +246,8 @@ class Merger {
     return {};
   }
 
-  // Compares the film and the frame of an earlier report with those of the plates. They may differ
-  // after an interrupted --overwrite, which leaves frames of the film that it was to replace.
+  // Compares the film and the render camera in an earlier report with those of the plates. They may
+  // differ after an interrupted --overwrite, which leaves frames of the film that it was replacing.
   std::optional<InputDifference> DifferenceFrom(const RunInputs& film_before,
                                                 const PlateNotes& notes) const {
     if (const auto difference = FirstDifference(film_before, FilmInputs())) return difference;
@@ -333,7 +333,8 @@ class Merger {
     return report;
   }
 
-  // Adds the number of LF images of the frame that takes most, and the LF images that plates lack.
+  // Sets selected_image_count to the number of LF images of the frame that takes most, and adds the
+  // LF images that were skipped when the plates were rendered.
   void AddImages(RenderReport* report) const {
     for (const auto& [frame, plates] : frames_) {
       uint64_t count = 0;

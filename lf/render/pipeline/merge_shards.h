@@ -1,5 +1,5 @@
-// Makes frames from plates: adds the plates of the shards of a divided render, which gives the bits
-// of a render that was not divided, and develops kept plates again.
+// Makes frames from plates. Adds the plates of a render that was divided into shards: the frames
+// are bit-identical to those of an undivided render. Also develops kept plates again.
 #pragma once
 
 #include <filesystem>
@@ -16,17 +16,17 @@ namespace lf {
 
 struct MergeOptions {
   std::filesystem::path output_folder;
-  std::vector<std::filesystem::path> kept_files;  // no output may replace them
+  std::vector<std::filesystem::path> kept_files;  // files that no output may replace
   FrameFormat format = FrameFormat::kExrHalf;
   std::optional<std::filesystem::path> video;
   bool contact_sheet = true;
-  bool resume = false;     // keep frames that are there
-  bool overwrite = false;  // replace frames that are there
+  bool resume = false;     // keep frames that exist already
+  bool overwrite = false;  // replace frames that exist already
   RenderSignals* signals = nullptr;
 };
 
 struct MergeProgress {
-  size_t plate_count = 0;  // plates that are added
+  size_t plate_count = 0;  // plates that are done
   size_t plate_total = 0;
   size_t frame_count = 0;
   size_t frame_total = 0;
@@ -34,20 +34,21 @@ struct MergeProgress {
 
 // Merges plates into frames. The entries of all plates are read and compared first. Then frames are
 // made one by one, which needs the memory of one plate and its picture. The file of a frame appears
-// when the frame is done, and not before. The report names the LF images that the plates' renders
-// skipped, as far as the plates name them (plate_notes.h). Its selected_image_count is the largest
-// number of LF images of a frame, skipped ones included.
-// With resume, frames of an earlier merge are kept if they are whole and were made of the same
-// film.
-//   plates  plate files, and folders with such files anywhere below them, in any order
+// only when the frame is done. The report names the LF images that were skipped when the plates
+// were rendered, as far as the plates name them (frame_sheet.h). RenderReport::selected_image_count
+// is the largest number of LF images of a frame, skipped ones included.
+// With `resume`, the frame of an earlier merge is kept if its file is whole, the earlier report
+// names it, and the film and the render camera are the same.
+//   plates  plate files and folders, in any order; the files *.plate anywhere below a folder are
+//           read
 //
-// kUsage: frames are there, and neither resume nor overwrite is set; an output would replace a
-//   plate or one of kept_files; a plate is given twice.
-// kInput: there are no plates; a plate has no notes (render/state/plate_notes.h) or is damaged; a
-//   frame's shards are not complete, are there twice, or are of different renders (the message
-//   names them); every frame is black.
-// kOutput: the disk or ffmpeg failed, or another program writes frames into the folder.
-// kInterrupted: frames that are written stay.
+// kUsage: a frame exists already, and neither resume nor overwrite is set; an output would replace
+// a plate or one of kept_files; the same plate file is listed twice.
+// kInput: there are no plates; a plate has no sheet (record/frame_sheet.h) or is damaged; a shard
+// of a frame is missing or exists twice, or the shards are of different renders (the message names
+// them); every frame is black.
+// kOutput: the disk or ffmpeg failed, or another process writes frames into the folder.
+// kInterrupted: frames that were written before are kept.
 Result<RenderReport> MergeShards(const std::vector<std::filesystem::path>& plates,
                                  const MergeOptions& options, ThreadPool& pool,
                                  const std::function<void(const MergeProgress&)>& progress);

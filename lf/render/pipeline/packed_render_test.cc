@@ -1,4 +1,4 @@
-// A render from a packed store gives the same bits as the render from the image files.
+// A render from a packed store is bit-identical to the render from the image files.
 #include <gtest/gtest.h>
 
 #include <functional>

@@ -25,8 +25,8 @@ namespace lf {
 
 namespace {
 
-// Returns the inputs that only rebinned rays depend on; none if the mode is kCollect.
-//   film  hash of all render cameras of the film, on which slabs depend
+// Returns the inputs that only rebinned rays depend on; no inputs if the mode is kCollect.
+//   film  hash of all render cameras of the film, because the slabs depend on all of them
 RunInputs InputsOfRebinning(const FilmOptions& options, size_t max_cells, const std::string& film) {
   if (!options.Rebins()) return {};
   const RebinPassOptions& rebin = options.rebin;
@@ -59,8 +59,8 @@ RunInputs InputsOfRebinning(const FilmOptions& options, size_t max_cells, const 
       {"rebin.coverage", fmt::format("{} cells across", rebin.coverage.cells_across)}};
 }
 
-// Returns the codec settings by which the pixels of LF images differ from the recorded ones, or the
-// value for pixels as recorded.
+// Returns the settings of the lossy codec that changed the pixels of the LF images; if the pixels
+// are as recorded, the default value of RunChoices::pixels.
 Result<std::string> PixelsOf(const LightField& light_field) {
   const std::string as_recorded = RunChoices().pixels;
   if (!HoldsPackedStore(light_field)) return as_recorded;
@@ -112,7 +112,7 @@ class Renderer {
   Result<RenderReport> Run(Package package);
 
  private:
-  // True for a whole film, which must not be black. A section of a film, or a shard, may be.
+  // True for a whole film. Its frames must not all be black; those of a section or a shard may be.
   bool IsWhole() const { return setup_->package().name.empty() && !setup_->film().shard; }
   bool IsStopped() const { return setup_->work().IsStopped(); }
   Result<void> Begin(Package package);
@@ -139,7 +139,7 @@ class Renderer {
   RenderReport totals_;
   const double begin_s_ = NowSeconds();
   size_t black_count_ = 0;
-  bool had_plates_ = false;  // of an earlier run
+  bool had_plates_ = false;  // true if an earlier run left plates
   bool all_broken_ = true;   // every LF image of every pass so far was broken
 };
 
@@ -179,14 +179,14 @@ Result<void> Renderer::Begin(Package package) {
   return {};
 }
 
-// Opens the state in the folder, and takes over what it tells about earlier runs.
+// Opens the state in the folder, and adds the totals of earlier runs to totals_.
 Result<void> Renderer::OpenState() {
   LF_ASSIGN_OR_RETURN(const std::string pixels, PixelsOf(setup_->light_field()));
   const RunStateOptions state_options = StateOptions(*setup_, folder_, pixels);
   LF_ASSIGN_OR_RETURN(state_, RunState::Open(state_options, setup_->path()));
   had_plates_ = state_->HasPlates();
   totals_ = state_->earlier();
-  // LF images that the earlier run skipped are tried again if nothing of that run is kept.
+  // If nothing of the earlier run is kept, the LF images that it skipped are tried again.
   if (!had_plates_ && state_->finished().empty()) totals_.skipped.clear();
   if (setup_->work().strict && !totals_.skipped.empty())
     return InputError(
@@ -220,7 +220,8 @@ void Renderer::TellPlan() const {
            totals_.skipped.size());
 }
 
-// Returns the frames that are not finished, or lack a measurement or a plate that is asked for now.
+// Returns the frames that are not finished, or that lack a measurement or a plate that the options
+// now require.
 std::vector<FrameId> Renderer::FramesToRender() {
   std::vector<FrameId> frames;
   for (const FrameId frame : setup_->frames()) {
@@ -263,14 +264,14 @@ Result<void> Renderer::RunPasses(std::vector<FrameId> frames) {
       begin_s_,
       black_count_,
       [this](const CollectProgress& pass, size_t finished_count) { Report(pass, finished_count); }};
-  // A film without contributing LF images is better reported before a night's work than after it.
-  // If an earlier run left plates or frames, LF images contribute.
+  // Reports a film without contributing LF images now, and not after hours of work. The check is
+  // skipped if an earlier run left plates or frames, because LF images then contribute.
   if (totals_.pass_count > 1 && IsWhole() && !rebins && !state_->HasPlates() &&
       state_->finished().empty())
     LF_RETURN_IF_ERROR(CheckAnyContributes(frames));
   if (!rebins) LF_RETURN_IF_ERROR(FinishEarly(context, &frames));
-  // The kept rebinned rays depend on all frames of a pass, so a resumed render must have passes of
-  // the same frames.
+  // Which rebinned rays are kept depends on all frames of a pass. A resumed render must therefore
+  // divide all frames, even finished ones, into the same passes.
   const std::span<const FrameId> in_passes = rebins ? std::span(setup_->frames()) : frames;
   for (size_t begin = 0; begin < in_passes.size(); begin += per_pass) {
     const size_t count = std::min(per_pass, in_passes.size() - begin);
@@ -285,7 +286,7 @@ Result<void> Renderer::RunPasses(std::vector<FrameId> frames) {
 }
 
 Result<void> Renderer::CheckAnyContributes(std::span<const FrameId> frames) const {
-  // With lens weights, LF cameras beside the lens contribute, which only a pass can tell.
+  // With lens weights, LF cameras beside the lens contribute as well; only a pass can find these.
   if (setup_->film().lens_weights != LensWeights::kNone) return {};
   std::vector<RenderCamera> cameras;
   for (const FrameId frame : frames) cameras.push_back(setup_->path().Camera(frame));
@@ -296,13 +297,14 @@ Result<void> Renderer::CheckAnyContributes(std::span<const FrameId> frames) cons
   return {};
 }
 
-// Returns the frames of the pass that are to be finished with the rays that the state has of them.
+// Returns those of `frames` that are to be finished with the rays that the state has of them. Warns
+// about a frame of which the state has none.
 std::vector<FrameId> Renderer::EarlyOf(std::span<const FrameId> frames) const {
   std::vector<FrameId> early;
   for (const FrameId frame : folder_.finish_early) {
     if (std::find(frames.begin(), frames.end(), frame) == frames.end()) continue;
     if (state_->finished().contains(frame)) continue;
-    // Without collection, only the pass knows which rays the state has.
+    // With kRebin, only RenderPass finds out which rays the state has.
     if (!setup_->film().Collects() || state_->HasPlate(frame))
       early.push_back(frame);
     else
@@ -312,7 +314,7 @@ std::vector<FrameId> Renderer::EarlyOf(std::span<const FrameId> frames) const {
   return early;
 }
 
-// Finishes the early frames in passes of their own, so that they need not wait for others, and
+// Finishes the early frames in separate passes, so that they need not wait for other frames, and
 // removes them from `frames`.
 Result<void> Renderer::FinishEarly(const PassContext& context, std::vector<FrameId>* frames) {
   const std::vector<FrameId> early = EarlyOf(*frames);
@@ -339,7 +341,7 @@ Result<void> Renderer::RunPass(const PassContext& context, std::span<const Frame
   if (images.empty() && IsWhole() && totals_.pass_count == 1 && !state_->HasPlates() &&
       state_->finished().empty())
     return NoneContributes(setup_->frames());
-  // The progress estimate assumes that later passes are like this one.
+  // The estimate of the total work assumes that later passes are as long as this one.
   const size_t passes_left = (frames_left + frames.size() - 1) / frames.size();
   const uint64_t rays = std::accumulate(
       images.begin(), images.end(), uint64_t{0},
@@ -350,7 +352,8 @@ Result<void> Renderer::RunPass(const PassContext& context, std::span<const Frame
   done_.ray_total = done_.ray_count + rays * passes_left;
   LF_RETURN_IF_ERROR(pass.Collect());
 
-  // Passes depend on the memory, but this error must not: it needs all LF images of all passes.
+  // The number of passes depends on the memory, but whether this error occurs must not. It is
+  // therefore returned only if every LF image of every pass is broken.
   all_broken_ = all_broken_ && pass.renderer().AllBroken();
   const bool is_last = frames_left == frames.size();
   if (all_broken_ && is_last && !setup_->film().shard && !pass.renderer().skipped().empty() &&
@@ -374,7 +377,7 @@ Result<RenderReport> Renderer::End() {
             film.WriteContactSheet(setup_->frames(), setup_->plan().frames_finished_at_once, pool_);
         !sheet)
       return sheet.error().kind == ErrorKind::kInterrupted ? Interrupted() : sheet.error();
-  // An error of the video comes last, because the frames are finished and matter most.
+  // An error of the video is returned last, because the frames, which matter more, are finished.
   if (folder_.video)
     if (const Result<void> video = film.WriteVideo(setup_->frames(), *folder_.video); !video)
       video_error = video.error();

@@ -1,5 +1,5 @@
-// The main task: renders a package into a folder with an image sequence (thesis 4.3). A light field
-// and a camera path form a package (render/package/package.h). film_renderer.h renders in memory.
+// Renders a package, that is a light field and a camera path (package/package.h), as an image
+// sequence into a folder (thesis 4.3). film_renderer.h renders in memory.
 #pragma once
 
 #include <atomic>
@@ -21,10 +21,10 @@
 
 namespace lf {
 
-// Requests to a render in progress. Code that sets `stop` or `save` must then set `attention`;
-// signal handlers may set them.
+// Requests to a render in progress. Code that sets `stop` or `save` must set `attention`
+// afterwards. Signal handlers may set all three.
 struct RenderSignals {
-  std::atomic<bool> attention = false;  // interrupts the current step, so that the others are read
+  std::atomic<bool> attention = false;  // end the step, to read the other flags
   std::atomic<bool> stop = false;       // write the state and end
   std::atomic<bool> save = false;       // write the state and continue
 };
@@ -32,66 +32,72 @@ struct RenderSignals {
 // The folder that the frames and the state of a render go into.
 struct FolderOptions {
   std::filesystem::path output_folder;
-  // Files other than LF images that are read, which no output may replace: calibration, path.
+  // Files other than LF images that the program reads, such as the calibration and the path. No
+  // output may replace them.
   std::vector<std::filesystem::path> inputs;
   FrameFormat format = FrameFormat::kExrHalf;
-  std::optional<std::filesystem::path> video;  // an mp4 of the frames; not with a shard
+  std::optional<std::filesystem::path> video;  // an mp4 of the frames; must be unset for a shard
   bool contact_sheet = true;                   // contact_sheet.png beside the frames
-  bool keep_plates = false;  // frame_0001.plate beside the frames; not with kRebin or a shard
+  bool keep_plates = false;  // writes frame_0001.plate, ...; not with kRebin or a shard
 
-  // Interval between checkpoints (run_state.h); 0: only those that signals ask for. Checkpoints
-  // take at most 5 % of the time: the interval is extended if they would take more.
+  // Interval between checkpoints (run_state.h), in seconds; 0: checkpoints are written only when a
+  // signal requests one. The interval is extended if checkpoints would take more than 5 % of the
+  // time.
   double dump_every_s = 30;
   bool resume = false;     // continue with the state in the folder
   bool overwrite = false;  // remove the state in the folder
-  // Frames to finish at once with the rays that the state has of them. Their reports name the place
-  // of the order at which they ended. Frames without rays are rendered as usual. Only with resume,
-  // and not with a shard.
+  // Frames to finish at once with the rays that the state in the folder has of them. Their reports
+  // say at which place of the order they ended. A frame without rays in the state is rendered as
+  // usual. Needs `resume`; must be empty for a shard.
   std::vector<FrameId> finish_early;  // ascending
-  std::string version;                // of the program, for the files' metadata
+  std::string version;                // of the program, for the metadata of the files
 };
 
-// A shard (FilmOptions::shard) writes plates for MergeShards(), and no frames or contact sheet.
+// If FilmOptions::shard is set, the render writes plates for MergeShards() instead of frames and a
+// contact sheet.
 struct RenderOptions {
-  std::vector<FrameId> frames;  // of the package, ascending; empty: all of its frames
+  std::vector<FrameId> frames;  // some of the package, ascending; empty: all
   FilmOptions film;             // what the frames are made of
-  WorkOptions work;             // how; its flags are those of `signals`, and are set by Render()
-  FolderOptions folder;         // where they go
+  WorkOptions work;             // how the work is done; Render() takes its flags from `signals`
+  FolderOptions folder;         // where the frames are written
   RenderSignals* signals = nullptr;  // read often; may be null
 };
 
 struct RenderProgress {
-  size_t frame_count = 0;  // finished, and in all
+  size_t frame_count = 0;  // frames that are finished
   size_t frame_total = 0;
-  uint64_t ray_count = 0;  // tested, and estimated in all
+  uint64_t ray_count = 0;  // rays that are tested; ray_total is an estimate
   uint64_t ray_total = 0;
-  size_t image_count = 0;  // LF images read, and to be read in all passes
+  size_t image_count = 0;  // LF images that are read; image_total: in all passes
   size_t image_total = 0;
 };
 
-// Checks the options before a render, and before a job waits in a queue: CheckFilmOptions(), and
-// the options of the folder. Render() calls this before it starts.
-// kUsage; kInput if a camera has no lens area and the lens weights need one.
+// Checks the options of the film (CheckFilmOptions()) and of the folder. Render() calls this before
+// it starts; a program may call it before a job waits in a queue.
+// kUsage: the options are not compatible; an output would replace a file that is read; the lens of
+// a frame is a pinhole, but lens weights by area need its area.
 Result<void> CheckRenderOptions(const Package& package, const RenderOptions& options);
 
-// Puts the LF images of a whole light field in the order for the film and the options.
-// kUsage: options that do not go together. kInterrupted: a signal asked to stop.
+// Puts the LF images of a whole light field (a package without surroundings) in the order that
+// suits the film and the options: sets package->places.
+// kUsage: the options are not compatible. kInterrupted: RenderSignals::stop is set.
 Result<void> PutInOrder(ImageOrder order, const RenderOptions& options, ThreadPool& pool,
                         Package* package);
 
 // Renders the frames into output_folder: frame_0001.exr ..., contact_sheet.png, report.json, and
 // the video. A package with a name has the report report-NAME.json and its own state, so that
-// several packages may be rendered into one folder at the same time. Every file appears under its
+// several packages may be rendered into one folder at the same time. A file appears under its final
 // name only when it is whole. The bits of the frames depend neither on the number of threads, nor
-// on the memory, nor on how often the render was interrupted, killed and resumed. A kill loses at
-// most the time since the last checkpoint.
-//   kUsage        the options do not go together; the folder has an unfinished render, or one from
+// on the memory (except for rebin.max_cells, see WorkOptions), nor on how often the render was
+// interrupted, killed and resumed. A kill loses at most the work since the last checkpoint.
+//   kUsage        the options are not compatible; the folder has an unfinished render, or one from
 //                 other inputs (run_state.h)
-//   kInput        no LF image contributes to any frame, or none has a ray; broken LF images
+//   kInput        no LF image contributes to any frame, or no frame gets a ray (both only for a
+//                 whole film: the package has no name and there is no shard); broken LF images
 //                 (collect.h); a damaged state
 //   kOutput       the disk or the memory does not suffice; ffmpeg failed, after the frames were
 //                 written. The state on the disk is that of the last checkpoint.
-//   kInterrupted  finished frames stay, and the state of the others is written
+//   kInterrupted  finished frames are kept, and the state of the others is written
 Result<RenderReport> Render(Package package, const RenderOptions& options, ThreadPool& pool,
                             const std::function<void(const RenderProgress&)>& progress);
 

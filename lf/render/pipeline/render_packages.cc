@@ -16,12 +16,12 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr size_t kLookedAt = 16;  // about so many image files, spread over the package, are checked
+constexpr size_t kLookedAt = 16;  // number of image files to check, about
 
-// The properties that all packages of one film have in common.
+// The properties that must be equal in all packages of one film.
 struct Film {
   LightFieldIdentity light_field;
-  std::string cameras;  // their hash
+  std::string cameras;  // hash of the render cameras
   PackageChoices choices;
 
   explicit Film(const Package& package)
@@ -40,9 +40,9 @@ struct Film {
   }
 };
 
-// Checks that the packed store, which may have been made for other packages, has the pixels that
-// the package needs. An LF image that was broken when it was packed is skipped when it is loaded,
-// like a broken file.
+// Checks that the packed store has the pixels that the package needs; it may have been made for
+// other packages. An LF image that was broken when the store was made (no bytes) is accepted here:
+// it is skipped when it is loaded, like a broken file.
 Result<void> CheckCodes(const fs::path& path, const Package& package) {
   const LightField& light_field = package.light_field;
   const auto codes = FindCodes(light_field.folder, light_field.image_names);
@@ -67,7 +67,8 @@ Result<void> CheckCodes(const fs::path& path, const Package& package) {
       path.string(), missing, needed, light_field.folder.string(), first));
 }
 
-// Checks that not all of some image files are missing or changed. A few broken files are allowed.
+// Checks about kLookedAt image files, spread over the package. At least one of them must exist with
+// its recorded size; missing or changed files beside it are allowed.
 Result<void> CheckImageFiles(const fs::path& path, const Package& package) {
   std::vector<size_t> recorded;
   for (size_t i = 0; i < package.images.size(); ++i)
@@ -110,16 +111,16 @@ RenderReport Joined(RenderReport all, const RenderReport& part) {
   return all;
 }
 
-// Warns if packages of the film are missing, so that nobody finds out by watching it. A single
-// package is one task of many, and is no reason to warn.
+// Warns if packages of the film are missing, so that the user does not find out by watching the
+// film. Does not warn for a single package, which is one task of a job.
 void TellOfOthers(size_t given, size_t count) {
   if (given > 1 && given < count)
     LogWarning("{} of the film's {} packages are given: the frames of the others are not rendered",
                given, count);
 }
 
-// Records size and time of the file. If they cannot be read, file_bytes is 0, and the package will
-// be opened again.
+// Records size and modification time of the file. If the size cannot be read, file_bytes is 0, and
+// OpenAgain() checks the package again.
 void Stamp(PackagePart* part) {
   std::error_code error;
   part->file_bytes = fs::file_size(part->path, error);
@@ -131,7 +132,7 @@ void MoveTo(const std::optional<LightFieldPlace>& place, Package* package) {
   if (place) package->light_field.folder = place->folder;
 }
 
-// Reads a package again, with all checks only if its file has changed.
+// Reads a package again. All checks are repeated only if the file has changed since OpenPackages().
 Result<Package> OpenAgain(const PackagePart& part, PackagedFilm* film) {
   PackagePart now;
   now.path = part.path;
@@ -241,7 +242,7 @@ Result<std::vector<PackagePart>> PartsWith(const PackagedFilm& film,
   return parts;
 }
 
-// A single package is likely to be rendered into the same folder as others.
+// Other packages are likely to be rendered into the same folder as a single package.
 std::string ContactSheetName(const std::vector<fs::path>& paths) {
   return paths.size() == 1 ? fmt::format("contact_sheet-{}.png", paths.front().stem().string())
                            : kContactSheet;
@@ -255,7 +256,7 @@ Result<RenderReport> RenderPackages(PackagedFilm film, const RenderOptions& opti
     LF_RETURN_IF_ERROR(CheckVideoTool());
     LF_RETURN_IF_ERROR(CheckVideoTarget(*options.folder.video));
   }
-  RenderProgress before;  // of packages that are done
+  RenderProgress before;  // progress of the packages that are done
   uint64_t rays_after = 0;
   for (const PackagePart& part : parts) {
     before.frame_total += part.frames.size();
@@ -263,7 +264,7 @@ Result<RenderReport> RenderPackages(PackagedFilm film, const RenderOptions& opti
   }
   std::vector<FrameId> frames;
   RenderReport report;
-  CameraPath path;  // of all packages
+  CameraPath path;  // the same in all packages
   for (const PackagePart& part : parts) {
     LF_ASSIGN_OR_RETURN(Package package, OpenAgain(part, &film));
     RenderOptions of_part = options;
@@ -298,7 +299,7 @@ Result<RenderReport> RenderPackages(PackagedFilm film, const RenderOptions& opti
     LF_RETURN_IF_ERROR(files.WriteContactSheet(frames, static_cast<size_t>(pool.thread_count()),
                                                pool, ContactSheetName(film.paths)));
   if (options.folder.video) LF_RETURN_IF_ERROR(files.WriteVideo(frames, *options.folder.video));
-  // A section of a film may be black.
+  // If packages are missing, all frames may be black.
   if (report.IsBlack() && !options.film.shard && film.paths.size() == film.film_count)
     return InputError(fmt::format("{}: every frame is black, because no ray reached them",
                                   options.folder.output_folder.string()));

@@ -17,66 +17,69 @@
 
 namespace lf {
 
-// The light field of packages, which may have moved since they were made.
+// Location and identity of the packages' light field, whose files may have moved since the packages
+// were made.
 struct LightFieldPlace {
   std::string name;  // for messages
   LightFieldIdentity identity;
-  std::optional<LightFieldIdentity> whole;  // of a packed store: light field that it was made from
-  std::filesystem::path folder;             // of its image files, or the packed store
+  // Only for a packed store: the light field that the store was made from.
+  std::optional<LightFieldIdentity> whole;
+  std::filesystem::path folder;  // folder of the image files, or the packed store
 };
 
-// Returns the place of an opened light field.
+// Returns the LightFieldPlace of an opened light field.
 //   name  for messages
 // kInput: a damaged packed store.
 Result<LightFieldPlace> PlaceOf(const std::string& name, const LightField& light_field);
 
-// Reads a package and checks it and a few of its light field's image files. The LF images of a
-// package may also come from a packed store of its light field.
-// kInput: as ReadPackage(); the package is of another light field than `place`; none of the checked
-// files is there with the size that it had; the packed store lacks LF images, or pixels of them,
-// that the package needs.
+// Reads a package, and checks it and a few image files of its light field. If the light field is a
+// packed store, checks instead that the store has all LF images and pixels that the package needs.
+// kInput: the errors of ReadPackage(); the package was made from another light field than `place`;
+// none of the checked files exists with its recorded size; the packed store lacks LF images or
+// pixels that the package needs.
 Result<Package> OpenPackage(const std::filesystem::path& path,
                             const std::optional<LightFieldPlace>& place = {});
 
-// A package file, and the frames of it that are rendered.
+// A package file, and those of its frames that are rendered.
 struct PackagePart {
   std::filesystem::path path;
   std::vector<FrameId> frames;
   bool is_whole = true;    // true if these are all frames of the package
-  uint64_t ray_count = 0;  // of these frames, approximately
-  // Size and time of the file when it was checked. If they are the same later, so is the file.
+  uint64_t ray_count = 0;  // rays of these frames, approximately
+  // Size and modification time of the file when it was checked. A file whose size and time are the
+  // same later is taken to be unchanged.
   uint64_t file_bytes = 0;
   std::filesystem::file_time_type file_time = {};
 };
 
-// Packages that are rendered into one folder.
+// The packages that are rendered into one folder.
 struct PackagedFilm {
   std::vector<std::filesystem::path> paths;
   std::optional<LightFieldPlace> place;
   std::vector<PackagePart> parts;  // one for each path
-  size_t film_count = 1;           // packages of the film, some of which may not be given
-  Package first;                   // of paths.front()
+  size_t film_count = 1;           // number of packages of the film; `paths` may lack some
+  Package first;                   // package of paths.front()
 };
 
-// Opens every package with OpenPackage(), and checks that all are of one film.
-// kUsage: packages have frames or a name in common. kInput: packages are of different films or
-// light fields. Other errors are those of OpenPackage().
+// Opens every package with OpenPackage(), and checks that all packages are of the same film.
+// kUsage: two packages have a frame or their name in common. kInput: packages are of different
+// films or light fields. Other errors are those of OpenPackage().
 Result<PackagedFilm> OpenPackages(std::vector<std::filesystem::path> paths,
                                   std::optional<LightFieldPlace> place);
 
-// Returns the parts that have frames of `wanted`; all parts if `wanted` is empty. Warns if packages
-// of the film are missing.
-// kUsage: none of the packages has a wanted frame.
+// Returns the parts that have frames of `wanted`, without their other frames; all parts if `wanted`
+// is empty. Warns if two or more packages are given, but not all packages of the film.
+// kUsage: a wanted frame is in none of the packages.
 Result<std::vector<PackagePart>> PartsWith(const PackagedFilm& film,
                                            const std::vector<FrameId>& wanted);
 
-// Returns "contact_sheet.png", or "contact_sheet-NAME.png" for a single package.
+// Returns "contact_sheet.png"; if there is a single package NAME.lfp, "contact_sheet-NAME.png".
 std::string ContactSheetName(const std::vector<std::filesystem::path>& paths);
 
 // Renders one package after the other with Render(), each with its own report and state. Then
-// writes the contact sheet (ContactSheetName()) and the video of their frames. Each package renders
-// those of options.frames that it has. Returns the report of all packages together. A package file
-// that was changed since the film was opened is opened again, with all checks.
+// writes the contact sheet (ContactSheetName()) and the video of the frames of all packages. Of
+// options.frames, each package renders those that it contains. Returns one report about all
+// packages. If a package file was changed since the film was opened, it is checked again.
 // kInput: every frame of a whole film is black. Other errors are those of Render() and PartsWith().
 Result<RenderReport> RenderPackages(PackagedFilm film, const RenderOptions& options,
                                     ThreadPool& pool,

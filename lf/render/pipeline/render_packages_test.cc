@@ -13,10 +13,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Packages of one film of three frames, each with frames of its own.
+// Packages of one film of three frames; each package has other frames.
 class OpenPackagesTest : public FolderTest {
  protected:
-  // Writes the package of one frame, after `change`.
+  // Writes the package of one frame, after `change` has changed it. Returns the path of the file.
   template <class Change>
   fs::path Packed(uint32_t frame, const Change& change) {
     CameraPath film;
@@ -40,7 +40,8 @@ class OpenPackagesTest : public FolderTest {
   fs::path Packed(uint32_t frame) {
     return Packed(frame, [](Package* /*package*/) {});
   }
-  // Returns the message when packages of frames 1 and 2 are opened together.
+  // Opens the package of frame 1 together with the changed package of frame 2. Returns the error
+  // message; empty if there is no error.
   template <class Change>
   std::string ErrorOf(const Change& change) {
     const Result<PackagedFilm> film = OpenPackages({Packed(1), Packed(2, change)}, {});

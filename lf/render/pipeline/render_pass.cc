@@ -15,7 +15,7 @@
 namespace lf {
 namespace {
 
-// Returns a description of the frames of a pass, on which its rebinned rays depend.
+// Returns a text that identifies the frames of a pass, because its rebinned rays depend on them.
 std::string DescriptionOf(std::span<const FrameId> frames) {
   ValueHasher numbers;
   for (const FrameId frame : frames) numbers.Add(frame.value);
@@ -76,7 +76,7 @@ Result<void> RenderPass::Collect() {
   while (!renderer_.AreAllReleased()) {
     const Result<bool> step = renderer_.Step();
     if (!step && step.error().kind != ErrorKind::kInterrupted) {
-      // Plates are complete up to the last step, so that they can be saved.
+      // After an error, the plates have all rays of the steps before, and can be saved.
       if (!Save(0)) return step.error();
       return Error{step.error().kind,
                    step.error().message + " (finished work is kept: --resume continues)"};
@@ -95,7 +95,7 @@ Result<void> RenderPass::Collect() {
   return {};
 }
 
-// Finishes the early frames at once: the state has all rays that they will get.
+// Finishes the early frames before collection, because they get no more rays than the state has.
 Result<void> RenderPass::FinishEarlyFrames() {
   for (size_t f = 0; f < ids_.size(); ++f) {
     if (renderer_.IsReleased(f) || !EndsEarly(ids_[f])) continue;
@@ -140,8 +140,8 @@ Result<void> RenderPass::Finish() {
   return {};
 }
 
-// Writes frames at the same time, because an encoder keeps only one thread busy. A frame that is
-// written is kept, even if another one fails.
+// Writes several frames at the same time, because an encoder keeps only one thread busy. A frame
+// that was written is kept even if another frame fails.
 Result<void> RenderPass::FinishFrames(std::span<const size_t> frames) {
   std::vector<std::optional<Result<FrameReport>>> written(frames.size());
   const std::vector<Completion> completions = renderer_.Complete(frames);
@@ -163,7 +163,7 @@ PlateNotes RenderPass::NotesOf(size_t f) const {
   return notes;
 }
 
-// Writes the files of a frame. May be called by several threads at the same time, for different
+// Writes the files of a frame. Several threads may call this at the same time, for different
 // frames.
 Result<FrameReport> RenderPass::WriteFiles(size_t f, const Completion* completion) {
   const std::filesystem::path to = context_.state.FinishedPath(ids_[f]);
@@ -211,7 +211,7 @@ Result<void> RenderPass::RecordFinished(size_t f, const FrameReport& report) {
   const FrameId frame = ids_[f];
   if (!context_.setup.film().shard && report.rays.image_count == 0 &&
       report.interpolated_share.value_or(0) == 0) {
-    // Only the first black frames are logged; a report has all of them.
+    // Only the first kTold black frames are logged; report.json names all of them.
     constexpr size_t kTold = 10;
     if (++context_.black_count <= kTold)
       LogWarning("frame {} is black: no LF image contributes to it", frame.value);
@@ -228,7 +228,7 @@ Result<void> RenderPass::RecordFinished(size_t f, const FrameReport& report) {
   return {};
 }
 
-// Returns the totals with the work of this pass so far.
+// Returns the totals of earlier passes and runs, plus the work of this pass so far.
 RenderReport RenderPass::Totals() const {
   RenderReport totals = context_.totals;
   totals.total_s += NowSeconds() - context_.begin_s;

@@ -1,5 +1,5 @@
-// One pass over the LF images: renders the frames whose plates fit in the memory together into a
-// folder, and keeps the state of unfinished ones there. Internal to this folder.
+// One pass over the LF images: renders a group of frames, whose plates fit in the memory together,
+// into a folder, and writes the state of unfinished frames there. Internal to pipeline.
 #pragma once
 
 #include <chrono>
@@ -17,7 +17,7 @@
 
 namespace lf {
 
-// Returns the time of a monotonic clock.
+// Returns the time of a monotonic clock, in seconds.
 inline double NowSeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -29,35 +29,37 @@ struct PassContext {
   RenderSignals* signals;  // may be null
   RunState& state;
   DumpClock& clock;
-  RenderReport& totals;  // of finished passes and earlier runs; total_s is of earlier runs only
-  double begin_s;        // of this run
+  RenderReport& totals;  // of finished passes and earlier runs; total_s: of earlier runs only
+  double begin_s;        // time when this run began
   size_t& black_count;   // frames that no LF image contributes to
   std::function<void(const CollectProgress&, size_t finished_count)> progress;
 };
 
 class RenderPass : private EarlierRun {
  public:
-  //   frames  frames of the pass, ascending. Finished ones are not rendered; they are given because
-  //           the kept rebinned rays depend on all frames of the pass.
-  //   early   the frames, ascending, to finish with the rays of the state alone
+  //   frames  frames of the pass, ascending. Finished frames are not rendered, but must be listed,
+  //           because which rebinned rays are kept depends on all frames of the pass.
+  //   early   those of the frames that are to be finished with the rays of the state alone,
+  //           ascending
   RenderPass(const PassContext& context, std::span<const FrameId> frames,
              std::span<const FrameId> early);
 
   // Loads the plates of an earlier run, and selects the LF images that are still to be collected.
-  // kInput: the state is damaged.
+  // kInput: the state is damaged. Other errors are those of FilmRenderer::Begin().
   Result<void> Prepare();
   const FilmRenderer& renderer() const { return renderer_; }
 
-  // Collects until all LF images are done. kInterrupted: the state is written.
+  // Collects until all LF images are done or all frames are finished. kInterrupted: the state was
+  // written.
   Result<void> Collect();
-  // Writes the frames that are not finished yet. kInterrupted: the state is written.
+  // Writes the frames that are not finished yet. kInterrupted: the state was written.
   Result<void> Finish();
 
  private:
-  // The parts of a frame that are in the folder.
+  // How far a frame is in the folder.
   struct Saved {
-    uint32_t places = 0;   // places done in the state on the disk
-    double picture_s = 0;  // time when its picture was last written
+    uint32_t places = 0;   // places_done of the plate in the state on the disk
+    double picture_s = 0;  // NowSeconds() when its picture was last written
   };
 
   bool IsFinished(FrameId frame) const override;
@@ -88,10 +90,10 @@ class RenderPass : private EarlierRun {
   const PassContext& context_;
   const std::vector<FrameId> ids_;
   const std::vector<FrameId> early_;
-  const std::string rays_frames_;  // frames that rebinned rays are made for, in their files
+  const std::string rays_frames_;  // description of the frames, in the files of rebinned rays
   FilmRenderer renderer_;
   std::vector<Saved> saved_;                 // one for each frame
-  std::vector<uint32_t> saved_rays_places_;  // places done of sections in the state on the disk
+  std::vector<uint32_t> saved_rays_places_;  // places_done of each section in the state on the disk
   size_t finished_count_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// Checkpoints of a pass.
+// The parts of RenderPass that write checkpoints.
 #include <algorithm>
 #include <functional>
 
@@ -8,14 +8,16 @@
 namespace lf {
 namespace {
 
-// Share of the time for pictures in checkpoints: half of the share of checkpoints (dump_clock.h).
+// Largest share of the time that checkpoints may spend on pictures: half of the share that they may
+// take in all (dump_clock.h).
 constexpr double kPictureShare = DumpClock::kMostShare / 2;
-// Time for pictures after a signal to end, when the plates are saved.
+// Time for pictures after a signal to stop, in addition to the time for the plates.
 constexpr double kLastPictures_s = 2;
 
 }  // namespace
 
-// Saves plates first, then pictures, the oldest first, as many as the time allows.
+// Saves the plates, then the rebinned rays, then pictures: those that were written longest ago
+// first, until picture_budget_s has passed.
 Result<void> RenderPass::Save(double picture_budget_s) {
   LF_RETURN_IF_ERROR(context_.state.SaveTotals(Totals()));
   for (size_t f = 0; f < ids_.size(); ++f) {
@@ -50,8 +52,9 @@ Result<void> RenderPass::SavePictures(double picture_budget_s) {
     return saved_[a].picture_s < saved_[b].picture_s;
   });
   const double begin_s = NowSeconds();
-  // A signal to end may interrupt these pictures. If it came before, they are the last ones, and
-  // the time may interrupt even the first, which may take minutes.
+  // A signal to stop may interrupt these pictures. If the signal came before, these are the last
+  // pictures, and each of them is interrupted when the time is over, because even the first may
+  // take minutes.
   std::function<bool()> is_interrupted = [this] { return IsStopped(); };
   if (IsStopped()) is_interrupted = [=] { return NowSeconds() - begin_s >= picture_budget_s; };
   for (const size_t f : oldest_first) {
@@ -60,7 +63,7 @@ Result<void> RenderPass::SavePictures(double picture_budget_s) {
     const Result<FrameReport> written =
         WritePicture(f, completion.empty() ? nullptr : completion.data(),
                      context_.state.PicturePath(ids_[f]), is_interrupted);
-    // The state that is written after the signal writes its own pictures.
+    // Interrupt() saves the state after the signal, and then writes pictures again.
     if (!written && written.error().kind == ErrorKind::kInterrupted) return {};
     LF_RETURN_IF_ERROR(written);
     saved_[f].picture_s = NowSeconds();

@@ -1,4 +1,4 @@
-// The skipped LF images that a frame lacks. Internal to this folder.
+// Finds the skipped LF images whose rays a frame lacks. Internal to pipeline.
 #pragma once
 
 #include <optional>
@@ -18,12 +18,12 @@ struct FrameTakes {
   const FrameLens& lens;
   PlaceRange places;
   PixelReach reach = PixelReach::kOwn;
-  std::optional<Shard> shard;  // of the render
+  std::optional<Shard> shard;  // of the render; unset: all LF images
 };
 
-// Returns the names of the skipped LF images that the frame would have taken, in the order of the
-// light field. They do not depend on threads, memory or interruptions. Reads all names of the light
-// field once, unless nothing was skipped.
+// Returns the names of the skipped LF images that the frame would have taken, ascending by
+// LfImageId. The names do not depend on threads, memory or interruptions. The time grows with the
+// number of LF images in the light field, unless nothing was skipped.
 std::vector<std::string> SkippedOf(std::span<const SkippedImage> skipped, const ImageIndex& index,
                                    const FrameTakes& frame);
 
