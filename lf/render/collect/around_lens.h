@@ -1,4 +1,4 @@
-// The LF cameras that a lens looks through, and how far apart they are there.
+// Finds the LF cameras that a lens looks through, and the distance between them in the lens plane.
 #pragma once
 
 #include <vector>
@@ -11,15 +11,18 @@
 
 namespace lf {
 
-// Returns the LF cameras that see the middle of the plate through the lens, and some beside them.
-// If fewer than a dozen do, the lens is widened until a dozen do. Ascending.
+// Returns the LF cameras whose line to the focus point of the plate's middle passes through the
+// lens, and some LF cameras beside them. If these are fewer than kCamerasAround, the lens is
+// widened until there are enough. Ascending; empty if the middle of the plate has no focus point.
 std::vector<LfImageId> CamerasAroundLens(const ImageIndex& index, const RenderCamera& frame);
 
-// Returns about how far apart these LF cameras are as seen through the lens
-// (selection/lens_weights/frame_weights.h). 0 if there is none.
+// Returns about the distance between neighbouring cameras of CamerasAroundLens() in the lens plane,
+// in world units (CameraDistance() in lens_weights/frame_weights.h); 0 if there is no such LF
+// camera.
 double CameraDistanceAround(const ImageIndex& index, const RenderCamera& frame);
 
-// True if the point lies within the picture of the LF camera.
+// Returns true if the LF camera's image shows the point, as far as its borders decide: occlusion is
+// not considered.
 bool IsSeenBy(const RayThrough& lf_camera, const Vec3& point_world);
 
 }  // namespace lf

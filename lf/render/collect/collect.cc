@@ -31,10 +31,10 @@ struct Loading {
 struct Batch {
   size_t begin = 0;
   size_t end = 0;
-  uint32_t place_end = 0;      // once it is collected, all places before this one are done
-  std::vector<size_t> frames;  // frames that take it; empty: all
+  uint32_t place_end = 0;      // all places before it are done once the batch is
+  std::vector<size_t> frames;  // frames that take the batch; empty: all
   std::vector<Loading> loading;
-  std::vector<BatchImage> images;  // unbroken images, once all are loaded
+  std::vector<BatchImage> images;  // the LF images that are not broken, once all are loaded
   bool is_loaded = false;
 };
 
@@ -80,7 +80,7 @@ class FrameCollector::State {
   bool Takes(size_t frame) const {
     return !is_stopped_[frame] && progress_[frame].places_done < places_[frame].end;
   }
-  // True if images before this place are still to be taken beside the frames.
+  // True if options_.taker still needs LF images before this place.
   bool ConsumerWants(uint32_t place_end) const {
     return options_.consumer != nullptr && options_.consumer->places_done() < place_end;
   }
@@ -111,31 +111,33 @@ class FrameCollector::State {
   std::atomic<int64_t> load_cpu_ns_ = 0;
   std::atomic<int64_t> load_wall_ns_ = 0;
   size_t images_done_ = 0;
-  size_t announced_ = 0;  // LF images of the order that the store knows of
+  size_t announced_ = 0;  // number of LF images of order_ that were announced to the store
   std::mutex spare_mutex_;
-  std::vector<LfPixels> spare_;     // pixels that were collected, whose memory is used again
-  std::optional<LfImageId> whole_;  // an LF image that was loaded
-  Batch batch_;                     // the one to be collected
-  Batch next_;                      // the one to be decoded meanwhile
+  std::vector<LfPixels> spare_;     // pixels that are done; their memory is used again
+  std::optional<LfImageId> whole_;  // the last LF image that was loaded
+  Batch batch_;                     // the batch to be collected
+  Batch next_;                      // the batch to be decoded at the same time
 };
 
 Result<bool> FrameCollector::State::Step() {
   const Clock::time_point start = Clock::now();
   std::vector<BatchFrame> takers = FramesOf(batch_);
-  // Frames may have been stopped since the next batch was planned.
+  // Skips batches that no frame needs any more, because frames may have been stopped since the
+  // batch was planned.
   while (takers.empty() && !ConsumerWants(batch_.place_end)) {
     if (batch_.end > batch_.begin) images_done_ = batch_.end;
     batch_ = next_.end > next_.begin ? std::move(next_) : BatchFrom(images_done_);
     next_ = {};
     if (batch_.begin == batch_.end) {
-      spare_.clear();  // others need the memory now
+      spare_.clear();  // other code needs the memory now
       return false;
     }
     takers = FramesOf(batch_);
   }
   LF_RETURN_IF_ERROR(FinishLoading(&batch_));
   if (next_.begin == next_.end) next_ = BatchFrom(batch_.end);
-  // The system reads files while the images before them are decoded.
+  // The LF images after the next batch are announced, so that the operating system reads their
+  // files while the next batch is decoded.
   const auto load_or_announce = [this](size_t i) {
     if (i > 0)
       Load(next_, &next_.loading[i - 1]);
@@ -170,7 +172,8 @@ Result<bool> FrameCollector::State::Step() {
   return true;
 }
 
-// Returns the first LF image from `from` on that a frame or the consumer has still to take.
+// Returns the index in order_ of the first LF image, at or after index `from`, that a frame or the
+// taker still needs; order_.size() if there is none.
 size_t FrameCollector::State::FirstWanted(size_t from) const {
   uint32_t place = UINT32_MAX;
   for (size_t f = 0; f < progress_.size(); ++f)
@@ -209,7 +212,7 @@ Batch FrameCollector::State::BatchFrom(size_t from) const {
   return batch;
 }
 
-// Returns the frames that have not reached the end of the batch.
+// Returns the frames that still take LF images and have not reached the end of the batch.
 std::vector<BatchFrame> FrameCollector::State::FramesOf(const Batch& batch) const {
   std::vector<BatchFrame> frames;
   for (size_t f = 0; f < progress_.size(); ++f)
@@ -222,8 +225,8 @@ void FrameCollector::State::AnnounceUpTo(size_t end) {
   for (; announced_ < end && !IsInterrupted(); ++announced_) store_.Announce(order_[announced_].id);
 }
 
-// Returns the pixels that the frames of the batch need of an LF image. If all frames take the
-// batch, selection has already found them.
+// Returns the bounds of the pixels of an LF image that the frames of the batch need. If all frames
+// take the batch, these are the bounds that selection has found.
 PixelRect FrameCollector::State::RectOf(const Batch& batch, const SelectedImage& image) const {
   if (batch.frames.empty()) return image.rect;
   std::vector<size_t> frames;
@@ -271,7 +274,8 @@ Result<void> FrameCollector::State::FinishLoading(Batch* batch) {
       batch->images.push_back({image.id, image.place, std::move(pixels), std::move(opacity)});
       continue;
     }
-    // Only faults of the image itself are skipped. What the machine lacks would fail other images.
+    // Only an error of the LF image itself (kInput) is skipped. If the machine lacks something,
+    // such as memory, the other LF images would fail for the same reason.
     const Error& error = loading.pixels->error();
     if (options_.strict || error.kind != ErrorKind::kInput) return error;
     if (whole_ && !store_.IsThere(*whole_))
@@ -286,7 +290,7 @@ Result<void> FrameCollector::State::FinishLoading(Batch* batch) {
 }
 
 void FrameCollector::State::Skip(const SelectedImage& image, const Error& error) {
-  // The first ones are reported at once; a report lists them all.
+  // The first kTold are logged at once; the report of the render lists all of them.
   constexpr size_t kTold = 10;
   if (skipped_.size() < kTold) LogWarning("LF image skipped: {}", error.message);
   if (skipped_.size() == kTold)

@@ -1,5 +1,6 @@
-// Ray collection over many LF images and frames: images are read once, in order, and all cores work
-// on any number of frames, even on one (doc/design.md, "Work is cut by destination").
+// Collects the rays of many LF images into the plates of many frames. LF images are read once, in
+// order. All CPU cores work together, even if there is only one frame (doc/design.md, "Work is cut
+// by destination").
 #pragma once
 
 #include <atomic>
@@ -23,42 +24,46 @@
 
 namespace lf {
 
-// Stop rules are decided at multiples of this number of places (doc/ray.md, "Same bits").
+// The rule "samples>=N" may stop a frame only at places that are multiples of this number
+// (doc/ray.md, "Same bits"). Rules of noise have the places of NoiseDecisionAfter().
 inline constexpr uint32_t kDecisionPlaces = 64;
 
 struct CollectOptions {
   RayReading reading;
   CollectBackEnd back_end = CollectBackEnd::kFast;
-  // Largest number of LF images that are collected together into a tile of a plate. As many again
-  // are decoded meanwhile, so that twice as many are in memory.
+  // Largest number of LF images in a batch: they are collected together into a tile of a plate. The
+  // next batch is decoded at the same time, so that twice this number of LF images is in memory.
   int batch_image_count = 16;
-  // Largest number of rays that a batch of more than one image tests. In all frames: some seconds
-  // of work, so that progress can be reported and a state written. In one frame: less than a
-  // second, because frames that are begun are finished before an interruption is answered.
+  // Largest number of rays that a batch of two or more LF images tests. batch_ray_count limits the
+  // rays in all frames to some seconds of work, so that progress can be reported and a state be
+  // written. batch_frame_ray_count limits the rays in one frame to less than a second of work,
+  // because an interruption waits until the frames that are begun are finished.
   uint64_t batch_ray_count = 10'000'000'000;
   uint64_t batch_frame_ray_count = 500'000'000;
-  size_t plan_bytes = size_t{64} << 20;  // memory for frames that are planned together
-  // No batch crosses a multiple of this number of places, where stop rules may be decided for all
-  // frames. 0: there is no rule, and batches are not cut. Otherwise a multiple of kDecisionPlaces.
+  size_t plan_bytes = size_t{64} << 20;  // for the plans of a batch's rays
+  // No batch extends beyond a place that is a multiple of this number, so that stop rules may be
+  // applied there. Must be 0 or a multiple of kDecisionPlaces. 0: batches do not end for this
+  // reason.
   uint32_t decision_places = kDecisionPlaces;
-  // Also ends batches at all places where noise is asked for (noise_rule.h).
+  // True: batches also end at all places of NoiseDecisionAfter() (noise_rule.h).
   bool cuts_for_noise = false;
-  // Moments of the frames' plates, one per frame. They are kept together with the plates: the
-  // moments of a frame cover exactly the LF images in its plate. Null: none are kept.
+  // Moments of the plates, one per frame. Step() updates them with the plates: the moments of a
+  // frame include exactly the LF images in its plate. Null: no moments are kept.
   std::vector<NoiseMoments>* moments = nullptr;
   FrameImageWeights weights;
-  // Takes part in all batches beside the frames, if given. It does not change the plates.
+  // Receives the LF images of all batches, in addition to the frames. Does not change the plates.
+  // May be null.
   ImageConsumer* consumer = nullptr;
-  bool whole_images = false;  // must be as in the SelectOptions of the order
-  // End of all places. 0: the number of LF images in the light field; a package, whose places are
-  // those of the whole light field, needs more.
+  bool whole_images = false;  // must be equal to SelectOptions::whole_images of the selection
+  // End (exclusive) of all places in the order. 0: the number of LF images in the light field. A
+  // package must set it, because its places are those of the whole light field.
   uint32_t place_end = 0;
-  bool strict = false;                             // a broken LF image is an error
-  const std::atomic<bool>* interrupted = nullptr;  // checked between items of about 10 ms
+  bool strict = false;  // true: a broken LF image is an error; false: it is skipped
+  const std::atomic<bool>* interrupted = nullptr;  // may be null; read about every 10 ms
 };
 
-// Progress of a frame: its plate holds the rays of all places below places_done that the frame
-// takes, and of no others. Broken LF images count as done.
+// Progress of a frame. Its plate has the rays of exactly those LF images that the frame takes and
+// whose places are below places_done. Broken LF images count as done.
 struct FrameProgress {
   uint32_t places_done = 0;
   FrameRays rays;  // rays that this collector added
@@ -67,29 +72,31 @@ struct FrameProgress {
 struct SkippedImage {
   std::string name;
   std::string reason;
-  uint32_t place = 0;  // in the order
+  uint32_t place = 0;  // of the LF image in the order
 };
 
 struct CollectTimes {
-  double load_cpu_s = 0;     // reading and decoding LF images, all threads
-  double load_wall_s = 0;    // as load_cpu_s, with waiting for the disk; summed over the threads
-  double collect_cpu_s = 0;  // planning and adding rays, all threads
+  double load_cpu_s = 0;     // CPU time to read and decode LF images, all threads
+  double load_wall_s = 0;    // the same work with waits for the disk, all threads
+  double collect_cpu_s = 0;  // CPU time to plan and add rays, all threads
   double wall_s = 0;         // all steps
 };
 
-// Adds the rays of LF images, in their order, to plates, one per frame. Each step adds a batch,
-// while the next one is decoded; the threads of the pool do both.
+// Adds the rays of LF images, in their order, to plates, one per frame. Each step adds a batch of
+// LF images while the next batch is decoded. The threads of the pool do both.
 //
 // The plates have the same bits for any order, batch size and number of threads, and however often
-// the work was interrupted and resumed by another object. A broken image that is skipped leaves the
-// plates as if it had not been there.
+// the work was interrupted and resumed by another object. An LF image that is skipped because it is
+// broken leaves the plates as if the light field did not contain it.
 class FrameCollector {
  public:
   // order   LF images that the frames take, by ascending places, each with the bounds of the pixels
-  //         that they need: SelectImages() with options.weights as SelectOptions::takes
-  // places  the places that each frame takes; begin is what its plate has already. Empty: all
-  // plates  one per frame; only Step() writes them
-  // Everything that is referred to must outlive the collector; `options` and `places` are copied.
+  // that the frames need: the result of SelectImages(), where SelectOptions::takes must be true
+  // exactly for the LF images that options.weights gives a weight
+  // places  the range of places that each frame takes; its plate must have the rays of the places
+  //         before `begin`. Empty: every frame takes all places
+  // plates  one per frame; only Step() changes them
+  // All arguments must outlive the collector, except `options` and `places`, which are copied.
   FrameCollector(const LightField& light_field, const LfImageStore& store,
                  std::span<const RenderCamera> frames, std::span<const SelectedImage> order,
                  std::span<const PlaceRange> places, const CollectOptions& options,
@@ -99,22 +106,23 @@ class FrameCollector {
   FrameCollector& operator=(const FrameCollector&) = delete;
 
   // Collects the next batch into every frame that has not reached its end and is not stopped.
-  // Returns false if nothing was left to do. Frames that start at different places catch up.
-  // kInterrupted: *options.interrupted became true. Every frame is consistent: those that were
-  //   begun are finished, the others stay at their place. Step() may be called again to continue.
-  // kInput: an image is broken and `strict` is set, or all images are gone. kOutput: the machine
-  //   lacks something that loading needs, such as memory. The plates are as after the last step,
-  //   and no further step may follow.
+  // Returns false if nothing was left to do. If frames start at different places, those that are
+  // behind catch up first.
+  // kInterrupted: *options.interrupted became true. Every frame is consistent: it has either all LF
+  // images of the batch or none. Step() may be called again to continue.
+  // kInput: an LF image is broken and `strict` is set, or an LF image that was read before has
+  // vanished. kOutput: loading needs something that the machine lacks, such as memory. The plates
+  // are as after the last step; Step() must not be called again.
   Result<bool> Step();
 
-  // Stops a frame, which takes no more images.
+  // Stops a frame: it takes no more LF images.
   void Stop(size_t frame);
 
-  // Progress of each frame, in the order of the frames given.
+  // Progress of each frame, in the order of the constructor's `frames`.
   std::span<const FrameProgress> frames() const;
-  // Broken images that the steps of this object skipped, by place.
+  // Broken LF images that this object skipped, by ascending places.
   std::span<const SkippedImage> skipped() const;
-  // Number of LF images of the order that are in all plates that take them.
+  // Number of LF images at the beginning of `order` that are done in all frames that take them.
   size_t images_done() const;
   const CollectTimes& times() const;
 
@@ -124,18 +132,18 @@ class FrameCollector {
 };
 
 struct CollectStatistics {
-  std::vector<FrameRays> frames;  // in the order of the frames given
+  std::vector<FrameRays> frames;  // in the order of the argument `frames`
   std::vector<SkippedImage> skipped;
   CollectTimes times;
 };
 
 struct CollectProgress {
-  size_t image_count = 0;  // LF images of the order that are done
+  size_t image_count = 0;  // LF images of `order` that are done
   uint64_t tested_count = 0;
 };
 
-// Takes all steps of a FrameCollector, from the first place of the order to its end. Returns its
-// errors.
+// Makes a FrameCollector for all places and calls Step() until nothing is left to do. Errors are
+// those of FrameCollector::Step().
 Result<CollectStatistics> Collect(const LightField& light_field, const LfImageStore& store,
                                   std::span<const RenderCamera> frames,
                                   std::span<const SelectedImage> order,

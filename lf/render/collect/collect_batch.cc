@@ -17,7 +17,7 @@ class FrameGate {
     State state = state_;
     if (state != State::kUndecided) return state == State::kOpen;
     const State decided = interrupted != nullptr && *interrupted ? State::kShut : State::kOpen;
-    // On failure `state` is what another thread decided.
+    // If the exchange fails, `state` becomes what another thread has decided.
     if (state_.compare_exchange_strong(state, decided)) state = decided;
     return state == State::kOpen;
   }
@@ -45,13 +45,13 @@ PixelReach ReachOf(Estimator estimator) {
 size_t PlanBytes(Estimator estimator, bool has_distortion, int image_width, int image_height,
                  int plate_width, int plate_height) {
   const bool is_nearest = estimator == Estimator::kNearest;
-  // Plates that are made finer are never more than twice as fine as the image.
+  // A plate that is made finer has at most twice the resolution of the LF image.
   const auto width =
       static_cast<size_t>(is_nearest ? image_width : std::max(plate_width, 2 * image_width));
   const auto height =
       static_cast<size_t>(is_nearest ? image_height : std::max(plate_height, 2 * image_height));
-  // A scanline has a few segments, which are short if distortion bends them; tiles cut them into
-  // two or three.
+  // A scanline has a few segments; they are shorter if lens distortion bends them. The borders of
+  // tiles cut a segment into two or three pieces.
   const size_t segment_width = has_distortion ? 64 : 256;
   return height * (2 + width / segment_width) *
          (sizeof(Segment) + (is_nearest ? 3 * sizeof(TilePiece) : 0));
@@ -127,8 +127,9 @@ PixelRect BatchCollector::RectOf(LfImageId id, std::span<const size_t> frames) c
   return rect;
 }
 
-// Images of one camera share its cells and ideal pixels. Only the fast back end of nearest follows
-// arcs.
+// Prepares cells, ideal pixels and overlap of the LF images. LF images with the same intrinsics
+// share their ideal pixels, also with the next batch. Only the fast back end of kNearest needs
+// ideal pixels, because only it follows the arcs into which distortion bends scanlines.
 void BatchCollector::UndoDistortion(std::vector<BatchImage>& batch) {
   if (reading_.estimator == Estimator::kNearest && back_end_ == CollectBackEnd::kFast)
     ideal_pixels_.Keep(light_field_, batch,
@@ -148,8 +149,8 @@ void BatchCollector::UndoDistortion(std::vector<BatchImage>& batch) {
   }
 }
 
-// Returns the frames that may take rays of the batch, which are few on long paths through large
-// light fields. The others are done, and are moved behind them.
+// Returns the frames that may get rays of the batch. On a long path through a large light field,
+// these are few. The other frames are marked as done and moved to the end of `frames`.
 std::span<BatchFrame> BatchCollector::FramesThatMayTake(const std::vector<BatchImage>& batch,
                                                         std::span<BatchFrame> frames) {
   ForEachTimed(frames.size(), [&](size_t f) {
@@ -166,7 +167,8 @@ std::span<BatchFrame> BatchCollector::FramesThatMayTake(const std::vector<BatchI
 void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span<BatchFrame> frames,
                                  const OtherItems& other_items,
                                  const std::atomic<bool>* interrupted) {
-  // First the segments of every (frame, image), then the rays of every (frame, tile).
+  // First plans the segments of every pair of frame and LF image, then adds the rays of every pair
+  // of frame and tile.
   const size_t contribution_count = frames.size() * batch.size();
   while (contributions_.size() < contribution_count) contributions_.emplace_back();
   ForEachTimed(contribution_count, [&](size_t i) {
@@ -223,8 +225,8 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
         AddToTile(contribution, task.tile, batch[k].opacity, &sums);
     sums.Flush();
   };
-  // The other items are long and come first. The last items should be short, so that no thread
-  // waits.
+  // The other items are long and therefore come first: if the last items are short, threads wait
+  // only briefly at the end.
   pool_.ForEach(other_items.count + tasks.size(), [&](size_t i) {
     if (i < other_items.count) {
       other_items.run(i);
@@ -246,7 +248,7 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
   }
 }
 
-// Adds the rays of one LF image that land in a tile. Returns how many.
+// Adds the rays of one LF image that land in a tile. Returns their number.
 uint64_t BatchCollector::AddToTile(const Contribution& contribution, size_t tile,
                                    const LfPixels& pixels, TileSums* sums) const {
   return reading_.estimator == Estimator::kBilinear
@@ -282,7 +284,8 @@ void BatchCollector::AddByReference(const std::vector<BatchImage>& batch, BatchF
   cpu_ns_ += timer.Nanoseconds();
 }
 
-// Collects opacity as a colour of a plate of its own, and adds that to the fourth channel.
+// Collects opacity as the colour of a separate plate, and adds that plate to the opacity channel of
+// `plate`.
 void BatchCollector::AddOpacityByReference(const BatchImage& image, const PixelRect& rect,
                                            const RenderCamera& camera, const RayWeights& weights,
                                            SensorPlate* plate) const {
@@ -297,7 +300,8 @@ void BatchCollector::AddOpacityByReference(const BatchImage& image, const PixelR
       plate->Add(x, y, SensorPlate::kOpacityChannel, opacity.At(x, y, 0));
 }
 
-// Groups items if there are many, because asking for the time costs more than a pair that misses.
+// Runs body(i) for all items and measures the CPU time. If there are many items, several are run as
+// one task, because reading the clock takes longer than an item whose LF image misses the frame.
 void BatchCollector::ForEachTimed(size_t count, const std::function<void(size_t)>& body) {
   constexpr size_t kTasksPerThread = 64, kMostItems = 32;
   const size_t tasks_wanted = kTasksPerThread * static_cast<size_t>(pool_.thread_count());

@@ -1,4 +1,4 @@
-// A batch of decoded LF images, added to the plates of all frames by all threads.
+// Adds a batch of decoded LF images to the plates of all frames, with all threads.
 #pragma once
 
 #include <atomic>
@@ -29,95 +29,100 @@
 
 namespace lf {
 
-// How rays are found (doc/ray.md, "What is added"). kNearest: every LF pixel looks for its element.
-// kBilinear: every element looks for its position in each LF image, which must be RGB.
+// How rays are found (doc/ray.md, "What is added"). kNearest: the ray of every LF pixel is added to
+// the element that it hits. kBilinear: every element samples each LF image at the position that it
+// sees there. For kBilinear, the LF images must be RGB.
 enum class Estimator { kNearest, kBilinear };
 
 // Returns "nearest" or "bilinear".
 const char* NameOf(Estimator estimator);
 
-// How rays are made of pixels.
+// Says how rays are made from the pixels of LF images.
 struct RayReading {
   Estimator estimator = Estimator::kNearest;
-  PixelFilter filter = PixelFilter::kAuto;  // for kBilinear
+  PixelFilter filter = PixelFilter::kAuto;  // only used by kBilinear
 };
 
-// Returns which pixels of an LF image its rays need, for selection.
+// Returns which pixels the rays of an LF image need. Selection includes these pixels.
 PixelReach ReachOf(Estimator estimator);
 
-// kReference applies the ray model to every pixel, on one thread. It is some 50 times slower, and
-// judges kFast.
+// kReference applies the ray model literally to every pixel, on one thread. It is about 50 times
+// slower than kFast; tests compare kFast with it.
 enum class CollectBackEnd { kFast, kReference };
 
 struct FrameRays {
   uint64_t image_count = 0;   // LF images with an accepted ray
-  uint64_t tested_count = 0;  // pixels of the rectangles of all LF images
+  uint64_t tested_count = 0;  // pixels in the rectangles of all LF images
   uint64_t accepted_count = 0;
 };
 
 struct BatchImage {
   LfImageId id;
-  uint32_t place = 0;  // in the order of the LF images
+  uint32_t place = 0;  // of the LF image in the order
   LfPixels pixels;
-  LfPixels opacity = {};  // of these pixels, for plates that have it (LfPixels::TakeOpacity)
-  // Filled by BatchCollector. Without lens distortion there are no cells and no ideal pixels.
+  // of these pixels (LfPixels::TakeOpacity()); only used by plates with opacity
+  LfPixels opacity = {};
+  // BatchCollector fills these. If the LF camera has no lens distortion, there are no cells and no
+  // ideal pixels.
   std::shared_ptr<const std::vector<IdealCell>> cells = nullptr;
   std::shared_ptr<const IdealPixels> ideal_pixels = nullptr;
   std::optional<ImageOverlap> overlap = std::nullopt;
 };
 
-// A frame that takes the images of a batch whose places are in `places`.
+// A frame that takes those LF images of a batch whose places are in `places`.
 struct BatchFrame {
   size_t frame = 0;
   PlaceRange places;
-  bool is_done = false;  // answer of Add(): all of these images are in the plate, or none
-  FrameRays rays;        // answer of Add(), if it is done
+  bool is_done = false;  // set by Add(): true if all of them are in the plate, false if none is
+  FrameRays rays;        // set by Add() if is_done
 };
 
-// Work that has nothing to do with the batch, done by the same threads at the same time.
+// Other work that the same threads do at the same time. run(i) does item i.
 struct OtherItems {
   size_t count = 0;
   std::function<void(size_t)> run;
 };
 
-// Returns about how many bytes the plan of the rays of one LF image in one frame takes. nearest
-// plans the scanlines of the image. bilinear plans those of the plate, or of a finer plate that is
-// at most twice as fine as the image.
+// Returns about the number of bytes that the plan of the rays of one LF image in one frame takes.
+// kNearest plans the scanlines of the LF image. kBilinear plans the scanlines of the plate, or of a
+// finer plate with at most twice the resolution of the LF image.
 size_t PlanBytes(Estimator estimator, bool has_distortion, int image_width, int image_height,
                  int plate_width, int plate_height);
 
-// Returns the weights of the rays of an LF image in a frame; 0 if the image takes no part in it. An
-// empty function stands for 1.
+// Returns the weights of the rays of an LF image in a frame; 0 if the frame does not take the LF
+// image. An empty function means that every ray has weight 1.
 using FrameImageWeights = std::function<RayWeights(size_t frame, LfImageId id)>;
 
 class BatchCollector {
  public:
-  // plan_bytes    of the plans of frames that are planned together; one frame may take more
-  // whole_images  take whole images instead of their rectangles
-  // moments       one per frame, for plates of their sizes; null: none are kept
+  // plan_bytes    memory for the plans of frames that are planned together; exceeded if one frame
+  //               needs more
+  // whole_images  true: tests all loaded pixels of an LF image instead of the rectangle that a
+  //               frame needs
+  // moments       one per frame, of the size of its plate; null: no moments are kept
   BatchCollector(const LightField& light_field, std::span<const RenderCamera> frames,
                  const RayReading& reading, CollectBackEnd back_end, FrameImageWeights weights,
                  size_t plan_bytes, bool whole_images, ThreadPool& pool,
                  std::vector<SensorPlate>* plates, std::vector<NoiseMoments>* moments = nullptr);
 
-  // Adds the images to the plates of `frames`, whose order may change, and runs the other items.
-  // Once *interrupted is true no further frame is begun, and those begun are finished; other items
-  // may then be left out.
+  // Adds the LF images to the plates of `frames` and runs the other items. May change the order of
+  // `frames`. Once *interrupted is true, no further frame is begun, and the frames that are begun
+  // are finished; other items may then be left out.
   void Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>& frames,
            const OtherItems& other_items, const std::atomic<bool>* interrupted);
 
-  // Returns the bounds of the pixels of an LF image that some of `frames` need. Frames in which the
-  // image has no weight need none.
+  // Returns the bounds of the pixels of an LF image that at least one of `frames` needs. A frame in
+  // which the LF image has no weight needs no pixels.
   PixelRect RectOf(LfImageId id, std::span<const size_t> frames) const;
 
   // CPU seconds that all threads have spent on batches so far, without other items.
   double cpu_seconds() const { return static_cast<double>(cpu_ns_.load()) * 1e-9; }
 
  private:
-  // One LF image in one frame.
+  // The contribution of one LF image to one frame.
   struct Contribution {
     PixelRect rect;
-    ScatterPlan scatter;  // planned if the estimator is nearest, otherwise `gather`
+    ScatterPlan scatter;  // used by kNearest; kBilinear uses `gather`
     GatherPlan gather;
     RayWeights weights;
     std::atomic<uint64_t> accepted_count = 0;
@@ -153,8 +158,8 @@ class BatchCollector {
   std::vector<SensorPlate>& plates_;
   std::vector<NoiseMoments>* moments_;
   std::vector<std::vector<PlateTile>> tiles_;
-  // One for each LF image of a batch in each frame. Every batch uses their memory again.
-  std::deque<Contribution> contributions_;
+  std::deque<Contribution> contributions_;  // [frame][LF image] of a batch; the next batch reuses their memory
+  // Ideal pixels of the LF cameras of the last batch, by the index of their intrinsics.
   SharedIdealPixels ideal_pixels_;
   std::atomic<int64_t> cpu_ns_ = 0;
 };

@@ -32,8 +32,8 @@ Outcome CollectAll(const NoiseStore& store, int threads, CollectOptions options,
   return {std::move(plates), std::move(statistics)};
 }
 
-// Half of the cameras have no distortion. The others have one of five lenses, most of them the
-// first.
+// Half of the LF cameras have no distortion. The other half have one of five distorted lenses, most
+// of them the first one.
 LightField DistortedField() {
   LightField field = testing::NoiseField();
   for (uint32_t i = 0; i < 5; ++i) {
@@ -69,7 +69,7 @@ TEST(Collect, FramesThatPassByTakeWhatTheyTakeAlone) {
   std::vector<RenderCamera> frames;
   for (int i = 0; i < 20; ++i) {
     frames.push_back(NoiseFrames()[i % 3]);
-    // The frames go from one side of the LF cameras across them to the other.
+    // The frames move across the LF cameras, from beyond their one side to beyond the other.
     frames.back().pinhole.cam_from_world =
         *LookAlong({0.012 * (i - 10), 0, 0}, {0, 0, 1}, {0, -1, 0});
     frames.back().aperture.radius_w = 0.006;
@@ -131,7 +131,7 @@ TEST(Collect, TheSameBitsForAnyThreadsBatchesAndOrder) {
       }
 }
 
-// Every LF image with its red as opacity.
+// Loads every LF image with its red channel as opacity.
 class RedOpacityStore : public LfImageStore {
  public:
   Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override {
@@ -187,7 +187,7 @@ TEST(Collect, TheReferenceAcceptsTheSameRays) {
               reference.statistics->frames[f].accepted_count);
     EXPECT_EQ(fast.statistics->frames[f].tested_count,
               reference.statistics->frames[f].tested_count);
-    // Accepted rays are the sum of the counts, in every channel.
+    // In every channel, the sum of the counts is the number of accepted rays.
     uint64_t counts[3] = {};
     for (int y = 0; y < 60; ++y)
       for (int x = 0; x < 80; ++x)

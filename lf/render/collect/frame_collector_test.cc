@@ -12,7 +12,8 @@
 namespace lf {
 namespace {
 
-constexpr uint32_t kSide = 14;  // more than 128 LF images contribute: two decisions
+// so that more than 128 LF images contribute: there are two decisions
+constexpr uint32_t kSide = 14;
 
 struct Job {
   const LightField field = testing::NoiseField(kSide);
@@ -116,7 +117,7 @@ TEST(FrameCollector, FramesThatStartApartCatchUp) {
   job.store.on_load = [&](LfImageId, const PixelRect&) { ++load_count; };
   FrameCollector collector = job.Collector();
   while (*collector.Step()) continue;
-  // Each image is loaded at most once, and those that no frame still needs are not loaded.
+  // Each LF image is loaded at most once, and an LF image that no frame still needs is not loaded.
   EXPECT_LE(load_count, job.order.size());
   EXPECT_GT(load_count, job.order.size() - 37);
   ExpectPlates(job, collector.frames());
@@ -235,7 +236,7 @@ TEST(FrameCollector, InterruptedAnywhereEveryFrameIsConsistent) {
     ExpectPlates(job, collector.frames());
     ExpectRays(job, collector.frames());
 
-    // Either this collector goes on after a look at the plates, or another one does.
+    // After the plates were compared, either this collector continues or a new one does.
     interrupted = false;
     if (delay_us % 2000 == 0) {
       while (*collector.Step()) continue;
@@ -270,7 +271,7 @@ TEST(FrameCollector, ALightFieldThatVanishesIsNotSkipped) {
   ASSERT_TRUE(*collector.Step());
   ASSERT_TRUE(*collector.Step());
   const size_t done = collector.images_done();
-  // From here on nothing can be read.
+  // From here on, no LF image can be read.
   for (const SelectedImage& image : job.order) job.store.broken.push_back(image.id.value);
   job.store.is_gone = true;
   Result<bool> step = true;
@@ -279,9 +280,9 @@ TEST(FrameCollector, ALightFieldThatVanishesIsNotSkipped) {
   EXPECT_EQ(step.error().kind, ErrorKind::kInput);
   EXPECT_NE(step.error().message.find("have disappeared"), std::string::npos);
   EXPECT_TRUE(collector.skipped().empty());
-  EXPECT_LE(collector.images_done(), done + 10);  // a batch may have been decoded before
+  EXPECT_LE(collector.images_done(), done + 10);  // one more batch may have been decoded before
 
-  // The disk is back.
+  // The LF images can be read again.
   job.store.broken.clear();
   job.store.is_gone = false;
   ExpectPlates(job, collector.frames());

@@ -32,15 +32,15 @@ FrameLens::FrameLens(const ImageIndex& index, const RenderCamera& frame, LensWei
   grown.aperture = {frame.aperture.radius_w + kReach_distances * camera_distance_w_, 0, 0};
   for (const SelectedImage& image : SelectImages(index, std::span(&grown, 1), select, pool))
     cameras_[image.id.value] = 0;
-  // Cameras are in the order of their numbers, because weights must not depend on the order of
-  // images.
+  // LF cameras are in the order of their ids, because weights must not depend on the order of the
+  // LF images.
   std::vector<Vec3> near;
   for (auto& [id, camera] : cameras_) {
     camera = near.size();
     near.push_back(light_field_.Camera(LfImageId{id}).CentreWorld());
   }
   weights_.emplace(frame, near, kind, pool, light_field_.encoding.masks_clipped);
-  // The lens is made a little larger, so that rays on its rim are inside.
+  // The disk is made slightly larger, so that rays on its border count as inside.
   camera_.aperture = {weights_->reach_w() * (1 + 1e-6), 0, 0};
 }
 
@@ -69,7 +69,7 @@ bool FrameLens::Takes(LfImageId id) const {
   if (!weights_) return IsWithinAngle(light_field_.cameras[id.value], camera_, select_);
   const auto found = cameras_.find(id.value);
   if (found == cameras_.end() || !weights_->TakesPart(found->second)) return false;
-  // A share may be so small that its weight is rounded to 0.
+  // The share of an LF camera may be so small that its weight is rounded to 0.
   return !weights_->is_constant() || weights_->At(found->second, 0, 0) > 0;
 }
 
@@ -133,7 +133,8 @@ std::pair<int, int> EffectiveSquares(const Intrinsics& plate) {
 
 Image<float> SpreadOverPlate(const Image<float>& effective_counts, const Intrinsics& plate) {
   Image<float> spread(plate.width_px, plate.height_px);
-  // The node before an element, and how far it is to the next one.
+  // Position of an element between the middles of two squares (nodes): `fraction` is 0 at `node`
+  // and 1 at `next`.
   struct Place {
     int node, next;
     float fraction;

@@ -1,4 +1,4 @@
-// The lens of one frame for collection: which rays it lets through, and what they count.
+// The lens of one frame as collection uses it: which rays pass through it, and with which weights.
 #pragma once
 
 #include <map>
@@ -19,50 +19,56 @@
 
 namespace lf {
 
-// kUsage if the lens of the frame is a pinhole, which kArea cannot weigh.
+// Returns kUsage if the lens of the frame is a pinhole, because LensWeights::kArea then has no area
+// to divide.
 Result<void> CheckHasArea(const RenderCamera& camera, FrameId frame);
 
-// With lens weights, LF cameras beside the lens also take part, and weights replace the lens test
-// (doc/ray.md, "What is added").
+// If there are lens weights, they replace the test whether a ray passes through the lens: LF
+// cameras beside the lens may then also have a weight, as described in doc/ray.md, "What is added".
 class FrameLens {
  public:
-  // LF images with rays this near the lens are asked for their share of it. The unit is the
+  // LF images with rays up to this distance beside the lens may get a share of it. The unit is the
   // distance of neighbouring LF cameras.
   static constexpr double kReach_distances = 8;
 
-  // kArea needs a lens that CheckHasArea() accepts. The object refers to the light field.
-  //   camera_distance_w  CameraDistanceAround() in the whole light field, if the index is of a
-  //                      part: a part that has all of near() then gives the same weights
+  // With kArea, CheckHasArea() must accept the lens. The object refers to the light field of
+  // `index`.
+  //   camera_distance_w  CameraDistanceAround() in the whole light field. Must be set if the index
+  //                      covers only a part of the light field: a part that contains all LF images
+  //                      of near() then gives the same weights. Unset: measured in `index`
   FrameLens(const ImageIndex& index, const RenderCamera& frame, LensWeights kind,
             const SelectOptions& select, ThreadPool& pool,
             std::optional<double> camera_distance_w = {});
 
-  // The frame's camera. With weights, its lens is the disk that holds all rays with a weight.
+  // The frame's camera. If there are lens weights, its aperture is replaced by the disk that all
+  // rays with a weight pass through.
   const RenderCamera& camera() const { return camera_; }
 
-  // Returns weights that refer to this object. They are 0 beyond the angle that selection allows.
+  // Returns the weights of the LF image's rays. They refer to this object. They are 0 if the LF
+  // camera's axis is tilted by more than SelectOptions::max_angle_rad against the frame's.
   RayWeights WeightsOf(LfImageId id) const;
 
-  // Returns false if WeightsOf() is 0 all over the plate.
+  // Returns false if WeightsOf() is 0 in all elements.
   bool Takes(LfImageId id) const;
 
-  // LF images that were asked for their share, ascending, and how far apart their cameras are
-  // around the lens. Empty and 0 without weights.
+  // LF images that may get a share of the lens, ascending; and the distance between neighbouring LF
+  // cameras around the lens, in world units. Empty and 0 if there are no lens weights.
   std::vector<LfImageId> near() const;
   double camera_distance_w() const { return camera_distance_w_; }
 
-  // Properties of the weights; none without weights.
+  // Properties of the lens weights; facts() returns nullopt if there are none.
   struct Facts {
     double hat_share = 0;  // FrameWeights::hat_share()
     LensCoverage coverage;
   };
   std::optional<Facts> facts() const;
 
-  // Returns effective numbers of LF images, (sum w)^2 / sum w^2: so many images of equal weight
-  // would make as little noise. The sums are over the images that hold what an element sees; 0 if
-  // none does. Computed for the elements in the middle of squares of EffectiveStep() elements.
-  // Broken images and masks are not known here.
-  // [rows][columns]  Empty without weights.
+  // Returns effective numbers of LF images, (sum w)^2 / sum w^2: the number of LF images of equal
+  // weight that would give the same noise. The sums are over the LF images that contain what an
+  // element sees; the result is 0 if no LF image does. Computed for the middle element of each
+  // square of EffectiveStep() x EffectiveStep() elements. Does not take broken LF images and masks
+  // into account.
+  // Shape: [rows][columns] of EffectiveSquares(). Empty if there are no lens weights.
   Image<float> EffectiveCounts() const;
 
  private:
@@ -75,9 +81,10 @@ class FrameLens {
 };
 
 int EffectiveStep(const Intrinsics& plate);
-// Number of columns and rows of squares.
+// Returns the numbers of columns and rows of squares.
 std::pair<int, int> EffectiveSquares(const Intrinsics& plate);
-// Interpolates effective numbers to every element, between those that are not 0.  [height][width]
+// Interpolates effective numbers to every element, ignoring those that are 0. Returns
+// [height][width].
 Image<float> SpreadOverPlate(const Image<float>& effective_counts, const Intrinsics& plate);
 
 }  // namespace lf

@@ -13,7 +13,7 @@
 namespace lf {
 namespace {
 
-// Collects every image with its weights.
+// Returns one plate per lens, with all LF images collected with the weights of the lens.
 std::vector<SensorPlate> Collected(const LightField& field, const std::vector<FrameLens>& lenses,
                                    Estimator estimator, CollectBackEnd back_end, int threads,
                                    uint64_t seed) {
@@ -81,8 +81,9 @@ TEST(FrameLens, PlatesAreThoseOfTheReferenceForAnyThreadsAndOrder) {
     }
 }
 
-// The LF cameras are before, behind and in the lens plane; frames are tilted, with polygons, near
-// and far. If selection left out pixels of rays with a weight, these rays would be missing.
+// The LF cameras are in front of, behind and in the lens plane. Frames have tilted focus planes,
+// near and far, and polygonal apertures. If selection left out pixels of rays with a weight, these
+// rays would be missing.
 TEST(FrameLens, SelectionLeavesOutNoRayWithAWeight) {
   const LightField field = testing::NoiseField();
   const testing::NoiseStore store;
@@ -152,8 +153,8 @@ TEST(FrameLens, ImagesBesideTheLensTakePartAndThoseFarAwayDoNot) {
   EXPECT_LT(lens.facts()->coverage.uncovered_share, 0.1);
 }
 
-// LF images are uniform, and their brightness differs by up to a tenth. The picture must change
-// only smoothly from element to element where images begin and end.
+// Every LF image is uniform; their brightnesses differ by up to a tenth. From element to element,
+// the picture must change only slightly, also where LF images begin and end.
 TEST(FrameLens, BordersOfLfImagesLeaveNoSeam) {
   class EvenStore : public testing::NoiseStore {
    public:
@@ -171,7 +172,8 @@ TEST(FrameLens, BordersOfLfImagesLeaveNoSeam) {
   LightField field = testing::NoiseField(7);
   field.intrinsics[0] = {700, 700, 320, 240, 0, 640, 480};
   RenderCamera frame = testing::NoiseFrames()[0];
-  frame.pinhole.intrinsics = {560, 560, 320, 240, 0, 640, 480};  // sees beyond the images
+  // sees beyond the borders of the LF images
+  frame.pinhole.intrinsics = {560, 560, 320, 240, 0, 640, 480};
   std::vector<FrameLens> lenses;
   lenses.emplace_back(ImageIndex(field), frame, LensWeights::kArea, SelectOptions{}, pool);
   SelectOptions select;
@@ -199,7 +201,8 @@ TEST(FrameLens, BordersOfLfImagesLeaveNoSeam) {
     };
     for (int y = 60; y < 420; ++y)
       for (int x = 60; x < 580; ++x)
-        // Farther out only some images end, and weights are too small to be told apart.
+        // Farther out, only some LF images remain, and their weights are too coarsely rounded for a
+        // smooth transition.
         if (std::min(plates[0].At(x, y, 1).count, plates[0].At(x - 1, y, 1).count) > kMaxWeight)
           most = std::max(most, std::abs(value(x, y) / value(x - 1, y) - 1));
     return most;
@@ -209,14 +212,16 @@ TEST(FrameLens, BordersOfLfImagesLeaveNoSeam) {
   EXPECT_GT(without, 2.5 * with);
 }
 
-// The judge are sums over the weights themselves, for frames that every image holds wholly.
+// Compares with sums over the weights of all LF images, for frames that every LF image sees
+// completely.
 TEST(FrameLens, EffectiveCountsAreThoseOfTheWeights) {
   ThreadPool pool(2);
   const LightField field = testing::NoiseField(15);
   for (RenderCamera frame : testing::NoiseFrames()) {
     Intrinsics& k = frame.pinhole.intrinsics;
     const int width = k.width_px;
-    for (double* value : {&k.fx_px, &k.fy_px}) *value *= 4;  // sees a small part of the images
+    // sees only a small part of the LF images
+    for (double* value : {&k.fx_px, &k.fy_px}) *value *= 4;
     const FrameLens lens(ImageIndex(field), frame, LensWeights::kArea, {}, pool);
     const Image<float> counts = lens.EffectiveCounts();
     const Image<float> spread = SpreadOverPlate(counts, k);

@@ -1,4 +1,5 @@
-// A second user of the LF images that are loaded for the plates, such as rebinned rays.
+// The interface of code, such as rebinning, that receives the LF images that are loaded for the
+// plates.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +15,14 @@ class ImageConsumer {
  public:
   virtual ~ImageConsumer() = default;
 
-  // All LF images at places before this one are taken, as in FrameProgress.
+  // Returns the place before which all LF images are done, like FrameProgress::places_done.
   virtual uint32_t places_done() const = 0;
-  // Returns the pixels that it needs of the LF image at that place; empty: none. Any thread may
-  // ask, for images that are yet to come.
+  // Returns the bounds of the pixels that the object needs of the LF image at this place; empty if
+  // it needs none. Any thread may call this, for LF images that Take() has not had yet.
   virtual PixelRect RectOf(LfImageId id, uint32_t place) const = 0;
-  // Takes the LF images of a batch, by ascending places from places_done() on, with at least the
-  // pixels that RectOf() gave. All other images before place_end are not needed, or broken.
+  // Processes the LF images of a batch, by ascending places from places_done() on. They have at
+  // least the pixels that RectOf() returned. All other LF images before place_end are not needed or
+  // broken.
   virtual void Take(std::span<const BatchImage> images, uint32_t place_end) = 0;
 };
 

@@ -11,23 +11,27 @@ namespace {
 
 constexpr size_t kMiB = size_t{1} << 20;
 
-// Code and libraries (most of it OpenImageIO's), and small things. Measured: 120 MiB.
+// The program's code, its libraries (mostly OpenImageIO) and small allocations. Measured: 120 MiB.
 constexpr size_t kProgramBytes = 132 * kMiB;
 
-// Picture, counts, tables for filling, file buffers. Measured: 58 bytes.
+// Memory to develop a frame, for each element: picture, counts, tables for filling, file buffers.
+// Measured: 58 bytes.
 constexpr size_t kDevelopBytesPerElement = 64;
-constexpr size_t kOpacityBytes = 16;         // per element: opacity, its counts and tables
-constexpr size_t kSheetBytesPerElement = 3;  // for each picture kept for the contact sheet
+// to develop, for each element: opacity, its counts and tables
+constexpr size_t kOpacityBytes = 16;
+constexpr size_t kSheetBytesPerElement = 3;  // of each picture of the contact sheet
 constexpr size_t kMostSheetPictures = 12;
 
-// Memory while one LF image is decoded: the file, its stored values, what the decoder needs.
+// Memory while one LF image is decoded, for each pixel: the file, its stored values, and the
+// decoder's own memory.
 constexpr size_t kDecodeBytesPerPixel = 16;
 constexpr size_t kDecodeFloatBytesPerPixel = 32;
-constexpr size_t kTileBytes = kMiB;  // of the sums that one thread works on
+constexpr size_t kTileBytes = kMiB;  // for the sums of the tile that a thread works on
 
-// Size of a batch. It is large enough that adding its tiles to the plate, and waiting for its last
-// task, take little time beside its rays. More memory is not free: its first use can cost as much
-// as decoding an image into it.
+// Limits of the size of a batch. A batch of this size is large enough that adding its tiles to the
+// plate, and waiting for its last task, take little time compared with its rays. Larger batches
+// would cost time, because the first use of memory can take as long as decoding an LF image into
+// it.
 constexpr size_t kRaysPerElement = 8;
 constexpr size_t kEnoughBatchImages = 16;
 constexpr size_t kEnoughBatchImagesPerThread = 2;
@@ -37,14 +41,14 @@ constexpr size_t kMostPlanBytes = 64 * kMiB;
 // Memory that the largest LF image needs.
 struct ImageNeed {
   size_t pixels = 1;
-  size_t kept_bytes = 1;    // 16-bit radiance, a mask; ideal positions, if any
-  size_t decode_bytes = 1;  // for the thread that decodes it
-  size_t plan_bytes = 1;    // for one frame
+  size_t kept_bytes = 1;    // 16-bit radiance, mask, ideal pixels if distorted
+  size_t decode_bytes = 1;  // while a thread decodes it
+  size_t plan_bytes = 1;    // of its rays in one frame
 };
 
 ImageNeed NeedOf(const LightField& light_field, Estimator estimator, int plate_width,
                  int plate_height) {
-  // Bilinear needs RGB, and mosaics are demosaicked for it.
+  // kBilinear needs RGB, so mosaics are demosaicked.
   const bool is_rgb =
       light_field.encoding.bayer == BayerPattern::kNone || estimator == Estimator::kBilinear;
   const size_t decode_bytes_per_pixel = DefaultMaxRadiance(light_field.image_names) > 1
@@ -86,7 +90,8 @@ Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field
       kProgramBytes + light_field.size() * (sizeof(LfCamera) + 128) +
       element_count * (develop_bytes + sheet_pictures * kSheetBytesPerElement) +
       static_cast<size_t>(thread_count) * (need.decode_bytes + kTileBytes);
-  const size_t pair_bytes = 2 * need.kept_bytes + need.plan_bytes;  // one image of each batch
+  // one LF image of each of the two batches
+  const size_t pair_bytes = 2 * need.kept_bytes + need.plan_bytes;
   const size_t frame_bytes = plan.plate_bytes + bytes_per_frame;
   const size_t least = set_aside + frame_bytes + pair_bytes;
   if (memory_bytes < least)
@@ -99,7 +104,7 @@ Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field
       std::max({kEnoughBatchImages, kEnoughBatchImagesPerThread * static_cast<size_t>(thread_count),
                 std::min(kMostBatchImages, kRaysPerElement * element_count / need.pixels)});
   plan.batch_image_count = std::clamp<size_t>(free_bytes / 4 / pair_bytes, 1, enough);
-  // Planning frames together saves waiting at the end of each.
+  // If several frames are planned together, threads wait less often for the last task of a frame.
   plan.plan_bytes =
       std::max(plan.batch_image_count * need.plan_bytes, std::min(kMostPlanBytes, free_bytes / 16));
   const size_t images_bytes = plan.batch_image_count * 2 * need.kept_bytes + plan.plan_bytes;

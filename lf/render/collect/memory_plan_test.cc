@@ -51,7 +51,8 @@ TEST(MemoryPlan, BatchesAreNoLargerThanPays) {
   EXPECT_LT(images(600, 960, 640, 2), 20u);
 }
 
-// Images of 24 megapixels: the plans of one batch in one frame would be as large as the images.
+// LF images of 24 megapixels: the plans of a batch's rays in one frame are about as large as the LF
+// images.
 TEST(MemoryPlan, LargeImagesAndManyThreadsCount) {
   const LightField field = Field(6000, 4000);
   const MemoryPlan few = *PlanMemory(4096 * kMiB, field, Estimator::kNearest, 1920, 1080, 900, 2);

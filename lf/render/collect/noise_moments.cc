@@ -15,15 +15,16 @@ namespace {
 
 using Int128 = __int128;
 
-constexpr int kMoments = 4;         // numbers of an element and channel
-constexpr size_t kMostDigits = 30;  // of a number below 2^120
+constexpr int kMoments = 4;         // number of moments of an element and channel
+constexpr size_t kMostDigits = 30;  // hexadecimal digits of a number below 2^120
 
-// Reads the numbers of a text: without signs and leading zeros, with one space between.
+// Reads hexadecimal numbers from a text. They have no sign and no leading zeros, and are separated
+// by one space.
 class HexReader {
  public:
   explicit HexReader(std::string_view text) : rest_(text) {}
 
-  // Returns the next number; none if there is no such number.
+  // Returns the next number; nullopt if the text does not continue with one in this form.
   std::optional<UInt128> Next() {
     if (count_++ > 0) {
       if (rest_.empty() || rest_.front() != ' ') return std::nullopt;
@@ -49,8 +50,8 @@ class HexReader {
   size_t count_ = 0;
 };
 
-// True if there are S_i <= 65535 W_i with these sums and moments, as far as inequalities tell. All
-// products fit in 128 bits.
+// Returns false if no integers S_i and W_i can have these sums and moments, as far as some
+// inequalities can show. All products fit in 128 bits.
 bool CanBe(const ElementSum& total, const ElementMoments& moments) {
   const UInt128 sum = total.sum, count = total.count, n = moments.image_count;
   const UInt128 squares = moments.sum_squares, cross = moments.cross_sum;
@@ -65,9 +66,9 @@ bool CanBe(const ElementSum& total, const ElementMoments& moments) {
 
 double StandardErrorOfMean(const ElementSum& total, const ElementMoments& moments) {
   if (moments.image_count < 2) return std::numeric_limits<double>::infinity();
-  // The moments about m0, the integer nearest to the mean, are exact: T_i = S_i - m0 W_i. Only m -
-  // m0, at most 1/2, is left to floating point. Unsigned numbers may wrap on the way, but results
-  // are below 2^122, and right when taken as signed numbers.
+  // The moments of T_i = S_i - m0 W_i, where m0 is the integer nearest to the mean m, are computed
+  // exactly. Only m - m0, at most 1/2, needs floating point. Intermediate unsigned values may wrap,
+  // but the results are below 2^122 in magnitude, and correct as signed numbers.
   const UInt128 mean = (total.sum + total.count / 2) / total.count;
   const UInt128 count_squares = moments.count_squares;
   const UInt128 squares =

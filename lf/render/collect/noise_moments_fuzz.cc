@@ -1,6 +1,7 @@
-// Any text is the moments of a plate or an error. The first line is the plate: rays of a 2 x 1
-// plate, "sum count" for each of its six channels. Moments are the same when written and read
-// again, and their standard error is a number that is not negative.
+// NoiseMoments::Read() must accept or refuse any text. The first line of the input describes a
+// plate of 2 x 1 elements: "sum count" for each of the three channels of both elements. The rest is
+// the text. If it is accepted, Text() must return it again, and the standard errors must not be
+// negative or NaN.
 #include <algorithm>
 #include <charconv>
 #include <cstddef>
@@ -12,7 +13,7 @@
 
 namespace {
 
-// The next number of the line, in [0, most].
+// Removes the next number from the line and returns it; 0 if there is none or it exceeds `most`.
 uint64_t NextNumber(std::string_view* line, uint64_t most) {
   uint64_t number = 0;
   const auto [rest, error] = std::from_chars(line->data(), line->data() + line->size(), number);

@@ -67,10 +67,12 @@ TEST(NoiseMoments, GiveTheStandardErrorOfTwoPasses) {
 }
 
 TEST(NoiseMoments, KnownAnswers) {
-  // For two images of one ray it is half of their difference, whatever both count.
+  // For two LF images of equal count, it is half of the difference of their means, whatever the
+  // count.
   EXPECT_EQ((ImageSums{{{100, 1}, {300, 1}}}).StandardError(), 100);
   EXPECT_EQ((ImageSums{{{25500, 255}, {76500, 255}}}).StandardError(), 100);
-  // LF images with the same mean, which is no integer, have no noise, whatever they count.
+  // LF images with the same mean, which is not an integer here, have no noise, whatever their
+  // counts.
   EXPECT_NEAR((ImageSums{{{5, 2}, {500, 200}, {50, 20}}}).StandardError(), 0, 1e-6);
   // Many rays of one LF image are one sample.
   EXPECT_TRUE(std::isinf((ImageSums{{{1000, 500}}}).StandardError()));
@@ -80,7 +82,7 @@ TEST(NoiseMoments, KnownAnswers) {
   EXPECT_EQ((ImageSums{{{1000, 500}, {0, 0}}}).Moments().image_count, 1u);
 }
 
-// The largest counts that a plate holds, and the brightest rays.
+// The largest counts that a plate can have, and the brightest rays.
 TEST(NoiseMoments, NothingWraps) {
   constexpr uint64_t kCount = uint64_t{1} << 43;
   const ImageSums sums{{{65535 * kCount, kCount}, {0, kCount}}};
@@ -115,7 +117,8 @@ TEST(NoiseMoments, MeasuresElementsAllOverThePlate) {
   EXPECT_TRUE(NoiseMoments(0, 0).IndicesIn({0, 0, 9, 9}).empty());
 }
 
-// A whole field, collected every way; the judge adds one LF image at a time to an empty plate.
+// Results of collecting a whole light field. The expected moments come from collecting one LF image
+// at a time into an empty plate.
 struct Collected {
   std::vector<SensorPlate> plates;
   std::vector<NoiseMoments> moments;
@@ -188,7 +191,7 @@ TEST(NoiseMoments, AreThoseOfEveryLfImageAloneForAnyThreadsAndBatches) {
               CollectField(estimator, CollectBackEnd::kFast, weights, threads, batch);
           EXPECT_EQ(all.moments, expected) << NameOf(estimator) << " " << threads << " " << batch;
         }
-      // The reference keeps moments of its own plate.
+      // The moments of the reference back end match its plate.
       const Collected judge = CollectField(estimator, CollectBackEnd::kReference, weights, 2, 7);
       for (size_t f = 0; f < kFrames; ++f)
         EXPECT_TRUE(NoiseMoments::Read(judge.moments[f].Text(), judge.plates[f]));
@@ -203,7 +206,7 @@ TEST(NoiseMoments, AreReadAsTheyWereWritten) {
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(*read, all.moments[1]);
   EXPECT_TRUE(text.starts_with("30 20 "));
-  // A wrong number is noticed if it cannot be a moment of the plate.
+  // Read() notices a wrong number only if it cannot be a moment of the plate.
   EXPECT_FALSE(NoiseMoments::Read(text, all.plates[0]));
   EXPECT_FALSE(NoiseMoments::Read(text.substr(0, text.size() / 2), all.plates[1]));
   EXPECT_FALSE(NoiseMoments::Read(text + " 0", all.plates[1]));

@@ -56,7 +56,7 @@ double MeasureNoise(const SensorPlate& plate, const NoiseMoments& moments,
     noise.push_back(largest);
   }
   if (noise.empty()) return std::numeric_limits<double>::infinity();
-  // Number of elements that may have more noise than the result.
+  // Number of elements that may be noisier than the result.
   const auto above =
       static_cast<ptrdiff_t>((1 - kMostNoiseElements) * static_cast<double>(noise.size()));
   const auto at = noise.end() - 1 - above;

@@ -42,7 +42,7 @@ TEST(NoiseRule, IsAskedEightTimesForEachDoubling) {
     if (place >= 16) {
       EXPECT_LE(next - place, place / 8);
     }
-    // Rebinned rays are looked at anew at 64, 256, 1024, ...: no batch may cross these places.
+    // Rebinned rays are chosen anew at the places 64, 256, 1024, ...: no batch may cross them.
     for (uint32_t phase = 64; phase < 1'000'000; phase *= 4)
       EXPECT_FALSE(place < phase && phase < next) << phase;
     place = next;
@@ -70,7 +70,7 @@ TEST(NoiseRule, NineOfTenReachableElementsAnswer) {
     moments.AddImage(i, c, {value, 1});
   };
   EXPECT_TRUE(std::isinf(MeasureNoise(plate, moments, reachable)));
-  // Reached element k has noise k + 1 in blue, and less in the other channels.
+  // The k-th reachable element has noise k + 1 in blue, and less in the other channels.
   for (size_t k = 0; k < reached.size(); ++k)
     for (int c = 0; c < 3; ++c) {
       add(reached[k], c, 2000);
@@ -78,7 +78,7 @@ TEST(NoiseRule, NineOfTenReachableElementsAnswer) {
     }
   const auto expected = static_cast<double>(reached.size() - reached.size() / 10);
   EXPECT_NEAR(MeasureNoise(plate, moments, reachable), expected, 1);
-  // In more than a tenth of them, one channel has a single LF image.
+  // In more than a tenth of the reachable elements, green has only a single LF image.
   plate = SensorPlate(160, 80);
   moments = NoiseMoments(160, 80);
   for (size_t k = 0; k < reached.size(); ++k)
@@ -87,12 +87,12 @@ TEST(NoiseRule, NineOfTenReachableElementsAnswer) {
       if (c != 1 || k % 8 != 0) add(reached[k], c, 7);
     }
   EXPECT_TRUE(std::isinf(MeasureNoise(plate, moments, reachable)));
-  // Nothing can be reached.
+  // No element is reachable.
   const ReachableElements none(ImageIndex(field), camera, {5, 5}, {}, {}, pool);
   EXPECT_TRUE(std::isinf(MeasureNoise(plate, moments, none)));
 }
 
-// Rays of weight 0 reach nothing.
+// Rays of weight 0 make no element reachable.
 TEST(NoiseRule, OnlyRaysThatCountReachElements) {
   const LightField field = testing::NoiseField();
   ThreadPool pool(1);

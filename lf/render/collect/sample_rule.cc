@@ -17,20 +17,21 @@
 namespace lf {
 namespace {
 
-// An LF camera, prepared to be asked for rays through points.
+// An LF camera, prepared for many calls of Sees().
 struct Viewer {
   RayThrough ray;
-  double border_px;  // distance that rays keep from the border of the image
+  double border_px;  // rays nearer to the border of the image do not count
   RayWeights weights;
 };
 
-// Returns about how far an element's ray reaches to each side of its position in the image, in
-// pixels.
+// Returns about the distance, in pixels, that the samples of an element reach to each side of its
+// position in the LF image.
 double BorderOf(const PinholeCamera& lf_camera, const RenderCamera& camera, PixelFilter filter) {
   return 0.5 + 0.5 * (SamplingOf(lf_camera, camera, filter).samples - 1);
 }
 
-// True if the LF image has a ray through X and the lens (doc/ray.md, 2, 3, 5).
+// Returns true if the LF image has a ray that passes through point_world and the lens (doc/ray.md,
+// rules 2, 3, 5).
 bool Sees(const Viewer& viewer, const RenderCamera& camera, const Vec3& point_world) {
   const PinholeCamera& lens = camera.pinhole;
   const Vec3 forward = lens.ForwardWorld();
@@ -53,7 +54,7 @@ uint64_t LeastCount(const SensorPlate& plate, int x, int y) {
   return least;
 }
 
-// Returns how many elements may have fewer rays than the rule asks for.
+// Returns how many of `count` elements may have fewer rays than the rule requires.
 size_t MayLack(size_t count) {
   return static_cast<size_t>((1 - kMostElements) * static_cast<double>(count));
 }

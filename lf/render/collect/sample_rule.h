@@ -1,4 +1,5 @@
-// How many rays the elements of a frame have. The rule "samples>=8" stops or refuses a frame by it.
+// The number of rays that the elements of a frame have, and the rule "samples>=N" (such as
+// "samples>=8"): --stop-when stops a frame by it, --require fails if a frame breaks it.
 #pragma once
 
 #include <cstdint>
@@ -18,23 +19,24 @@
 
 namespace lf {
 
-// Returns N of "samples>=N", from 1 to 2^24 - 1. kUsage if the text is no such rule; the message
-// names the option.
+// Returns N of "samples>=N", from 1 to 2^24 - 1. kUsage if the text does not have this form; the
+// message names `option`.
 Result<uint32_t> ParseSampleRule(const std::string& text, const std::string& option);
 
-// A rule is met if this share of the elements that can have rays have N in every channel.
+// The rule is met if at least this share of the reachable elements has N rays in every channel.
 inline constexpr double kMostElements = 0.99;
 
-// The elements that can have rays: an LF image sees their focus point through the lens. Every 8th
-// element in both directions is tested, and its answer holds for those around it.
+// The elements that can get rays, because an LF image sees their focus point through the lens. In
+// each square of kGrid x kGrid elements, only the middle element is tested; the result holds for
+// the whole square.
 class ReachableElements {
  public:
   static constexpr int kGrid = 8;  // elements
 
-  // places   the places of the index's order whose LF images count
-  // filter   used if select.reach is that of bilinear
-  // weights  what an LF image counts in the frame; empty: rays through the lens count 1. Rays that
-  //          count 0 reach nothing.
+  // places   only LF images whose places are in this range are considered
+  // filter   used only if select.reach is kNeighbours (bilinear)
+  // weights  returns the weights of an LF image in the frame; empty: all rays through the lens have
+  //          weight 1. Rays of weight 0 make no element reachable.
   ReachableElements(const ImageIndex& index, const RenderCamera& camera, const PlaceRange& places,
                     const SelectOptions& select, PixelFilter filter, ThreadPool& pool,
                     const std::function<RayWeights(LfImageId)>& weights = {});
@@ -42,27 +44,29 @@ class ReachableElements {
   bool Holds(int x, int y) const {
     return is_reachable_[static_cast<size_t>(y / kGrid) * columns_ + x / kGrid] != 0;
   }
-  size_t count() const { return count_; }              // elements
-  size_t image_count() const { return image_count_; }  // selected LF images at these places
+  size_t count() const { return count_; }              // of reachable elements
+  size_t image_count() const { return image_count_; }  // of LF images selected within `places`
 
  private:
   size_t columns_ = 0;
-  std::vector<uint8_t> is_reachable_;  // [rows][columns] of the grid
+  std::vector<uint8_t> is_reachable_;  // [rows][columns] of squares
   size_t count_ = 0;
   size_t image_count_ = 0;
 };
 
-// Returns the number at whose multiples, in places, a frame is asked for its samples: 64 if it
-// takes every LF image of a light field, 64 * 2^k if it takes one in 2^k, so that about 64 of its
-// own images lie between. The numbers of any two frames divide each other.
+// Returns a number of places: the rule of a frame is applied at its multiples. It is 64 if the
+// frame takes every LF image of the light field, and 64 * 2^k if it takes one in 2^k, so that the
+// frame gets about 64 LF images between. Of the numbers of any two frames, one is a multiple of the
+// other.
 uint32_t DecisionPlaces(size_t light_field_image_count, size_t frame_image_count);
 
-// True if kMostElements of the reachable elements have at least `samples` rays in every channel, or
-// if none is reachable. Quick if far fewer elements have them.
+// Returns true if at least the share kMostElements of the reachable elements has `samples` rays in
+// every channel, or if no element is reachable. Returns quickly if far fewer elements have them.
 bool HasSamples(const SensorPlate& plate, const ReachableElements& reachable, uint32_t samples);
 
-// The share of reachable elements that have `samples` rays in every channel (1 where none is
-// reachable), and the largest number of rays that kMostElements of them have.
+// share: share of the reachable elements that have `samples` rays in every channel; 1 if no element
+// is reachable. most_have: the largest number of rays that the share kMostElements of the reachable
+// elements has in every channel.
 struct SampleShare {
   double share = 1;
   uint64_t most_have = 0;

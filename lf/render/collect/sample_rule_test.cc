@@ -29,7 +29,7 @@ TEST(SampleRule, IsAskedAboutEvery64ImagesOfAFrame) {
   EXPECT_EQ(DecisionPlaces(size_t{1} << 32, 1), 1u << 30);
 }
 
-// Counts of a collected plate are the judge: bilinear asks every element for its rays.
+// Compares with the counts of a plate that bilinear collected, because it tests every element.
 TEST(SampleRule, ElementsAreReachableWhereTheyGetRays) {
   const LightField field = testing::NoiseField();
   const testing::NoiseStore store;
@@ -50,7 +50,7 @@ TEST(SampleRule, ElementsAreReachableWhereTheyGetRays) {
     for (int y = 4; y < 80; y += 8)
       for (int x = 4; x < 160; x += 8)
         EXPECT_EQ(reachable.Holds(x, y), plate.At(x, y, 0).count > 0) << x << " " << y;
-    // No LF image at all.
+    // There is no LF image at the places 5 to 5, so no element is reachable.
     EXPECT_EQ(ReachableElements(ImageIndex(field), camera, {5, 5}, {}, {}, pool).count(), 0u);
   }
 }
@@ -72,7 +72,7 @@ TEST(SampleRule, CountsEveryChannelOfReachableElementsAlone) {
     EXPECT_EQ(MeasureSamples(plate, reachable, 5).share, 1);
     EXPECT_EQ(MeasureSamples(plate, reachable, 6).share, 0);
     EXPECT_EQ(MeasureSamples(plate, reachable, 6).most_have, 5u);
-    // One per cent may have fewer.
+    // One per cent of the elements may have fewer rays.
     size_t left = reachable.count() - reachable.count() / 100;
     for (int y = 0; y < 80; ++y)
       for (int x = 0; x < 160; ++x)

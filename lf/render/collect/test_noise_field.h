@@ -18,7 +18,8 @@ namespace lf::testing {
 
 inline constexpr int kWidth = 64, kHeight = 48;
 
-// A grid of jittered cameras before a wall of noise; frames look at it with wide lenses.
+// A grid of LF cameras with jittered positions, whose LF images are noise (NoiseStore).
+// NoiseFrames() look at them with wide lenses.
 inline LightField NoiseField(uint32_t side = 7) {
   LightField field;
   field.intrinsics = {{70, 70, 32, 24, 0, kWidth, kHeight}};
@@ -58,7 +59,7 @@ class NoiseStore : public LfImageStore {
   ErrorKind broken_kind = ErrorKind::kInput;
   std::vector<uint32_t> without_memory;
   std::function<void(LfImageId, const PixelRect&)> on_load;
-  mutable std::vector<uint32_t> announced;  // only one thread announces at a time
+  mutable std::vector<uint32_t> announced;  // unguarded: only one thread announces at a time
 
   Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override {
     EXPECT_FALSE(rect.empty());
@@ -67,7 +68,7 @@ class NoiseStore : public LfImageStore {
       return Error{broken_kind, "image" + std::to_string(id.value) + ": broken"};
     if (std::count(without_memory.begin(), without_memory.end(), id.value) > 0)
       throw std::bad_alloc();
-    *pixels = LfPixels(rect, BayerPattern::kNone);  // no more than was asked for
+    *pixels = LfPixels(rect, BayerPattern::kNone);  // exactly the requested rectangle
     for (int y = rect.y_begin; y < rect.y_end; ++y)
       for (int x = rect.x_begin; x < rect.x_end; ++x)
         for (int c = 0; c < 3; ++c)
