@@ -22,7 +22,8 @@ uint32_t PhaseOf(uint32_t place) {
   return phase;
 }
 
-// Previews use only LF images that are read anyway, so they alone do not widen the camera.
+// The camera is widened only if the final picture needs rebinned rays. Previews use only LF images
+// that are read in any case.
 AskedPixels::AskedPixels(const LensGaps& gaps, bool collects, Previews previews)
     : camera_(gaps.asks_in_the_end() ? gaps.ReachedCamera() : gaps.camera()),
       asks_in_the_end_(gaps.asks_in_the_end()),

@@ -1,5 +1,6 @@
-// The slabs of a film (rebinning/slab_plan.h), planned for all of its frames. The slab of a frame,
-// and thus its cells, do not depend on which other frames are rendered in the same pass or package.
+// The slabs of a film (rebinning/slab_plan.h), planned for all of its frames together. The slab of
+// a frame, and therefore its cells, do not depend on which frames are rendered in the same pass or
+// package.
 #pragma once
 
 #include <cstddef>
@@ -17,14 +18,14 @@ namespace lf {
 class FilmSlabs {
  public:
   //   frames    all frames of the film, frame 1 first
-  //   sampling  SamplingOf() each frame in the whole light field
+  //   sampling  SamplingOf() of each frame in the whole light field
   FilmSlabs(std::span<const RenderCamera> frames, std::span<const FrameSampling> sampling,
             const QueryOptions& options, const SlabChoices& choices);
 
-  // Returns the index of the frame's slab; none if no LF camera is around its lens.
+  // Returns the index of the frame's slab; nullopt if there are no LF cameras around its lens.
   std::optional<size_t> SlabOf(FrameId frame) const { return slab_of_[frame.value - 1]; }
-  // Returns the section of a slab; its bounds are those of all frames of the film that use the
-  // slab.
+  // Returns the section of a slab. Its bounds contain the rays of all frames of the film that use
+  // the slab.
   const SlabSection& section(size_t slab) const { return sections_[slab]; }
 
  private:

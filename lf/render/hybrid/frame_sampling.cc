@@ -12,12 +12,13 @@
 namespace lf {
 namespace {
 
-// Distance between lens points, in sigmas, at which their kernels overlap.
+// Distance between lens points, in sigmas of their kernels, at which the kernels just overlap.
 constexpr double kPointDistance_sigmas = 3;
 constexpr int kLeastPoints = 8, kMostPoints = 256;
-// Sigma of a kernel far from LF cameras, in distances to the nearest one.
+// Sigma of the kernel of a lens point far from LF cameras, as a share of the distance to the
+// nearest LF camera.
 constexpr double kSigmaPerDistance = 0.5;
-// Largest sigma_uv, below the limit of splats (rebinning/splat_tile.h).
+// Largest sigma_uv; must be below the largest that splats support (rebinning/splat_tile.h).
 constexpr double kMostSigma_px = 8;
 
 double MiddleOf(std::vector<double> values) {
@@ -32,7 +33,8 @@ double NearestOf(std::span<const Vec2> seen_through, const Vec2& point) {
   return nearest_w;
 }
 
-// Measures at points all over the lens, and adds the distance between these points as a margin.
+// Returns FrameSampling::hole_w. Measures it at some points of the lens, and adds the distance
+// between these points as a margin.
 double HoleOf(const RenderCamera& frame, std::span<const Vec2> seen_through) {
   constexpr int kAsked = 64;
   const LensPointSets points = MakeLensPoints(frame.aperture, kAsked, 1, 0);
@@ -42,7 +44,7 @@ double HoleOf(const RenderCamera& frame, std::span<const Vec2> seen_through) {
   return hole_w + std::sqrt(Area(frame.aperture) / kAsked);
 }
 
-// Returns the width of an LF pixel at the focus, in elements; at least 1.
+// Returns the width of an LF pixel at the focus distance, in elements; at least 1.
 double LfPixelsPerElement(const RenderCamera& frame, const LfSampling& sampling) {
   const Intrinsics& plate = frame.pinhole.intrinsics;
   const std::optional<Vec3> focus =
@@ -122,8 +124,8 @@ FrameQueries QueriesOf(const RenderCamera& frame, const FrameSampling& sampling,
   queries.points = MakeLensPoints(frame.aperture, count, options.lens_sets, options.seed);
   queries.kernel = {
       sigma_w, std::min(options.sigma_uv * LfPixelsPerElement(frame, sampling.lf), kMostSigma_px)};
-  // A kernel is wider if its point is one of few, and so stands for a large part of the lens, and
-  // if LF cameras are far away.
+  // The kernel of a lens point is widened if there are so few points that each represents a large
+  // part of the lens, and if the nearest LF camera is far from the point.
   const double few = 0.5 * std::sqrt(area_w2 / count) / sigma_w;
   const double most_w = kFarthestDistances * sampling.lf.camera_distance_w;
   for (const auto& set : queries.points.sets) {

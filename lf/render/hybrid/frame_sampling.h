@@ -1,5 +1,6 @@
-// The density of LF cameras around the lens of a frame, and the rays that the frame therefore asks
-// for. Both follow from calibrations alone.
+// Measures the density of the LF cameras around the lens of a frame, and derives the frame's
+// queries: the rays that are interpolated from rebinned rays. Both need only calibrations, no
+// pixels.
 #pragma once
 
 #include <cstdint>
@@ -17,58 +18,59 @@
 
 namespace lf {
 
-// Rays of LF cameras that are farther than this from a lens point do not contribute to its rays. In
-// distances between LF cameras around the lens.
+// The rays of an LF camera contribute to a lens point only up to this distance, in distances
+// between LF cameras around the lens.
 inline constexpr double kFarthestDistances = 8;
 
 struct FrameSampling {
-  LfSampling lf;      // camera_distance_w is 0 if no LF camera is around the lens
+  LfSampling lf;      // lf.camera_distance_w is 0 if there is no LF camera around the lens
   double hole_w = 0;  // upper bound of the distance from a lens point to the nearest LF camera
 };
 
-// Returns the LF images with rays within kFarthestDistances of the lens, by ascending places.
+// Returns the LF images with rays through the lens or within kFarthestDistances of it, by ascending
+// places.
 std::vector<SelectedImage> ImagesNearLens(const ImageIndex& index, const RenderCamera& frame,
                                           double camera_distance_w, const SelectOptions& select,
                                           ThreadPool& pool);
 
-// Returns, for each LF image, the lens point on the line from its LF camera to the focus point of
-// the middle of the plate.
+// Returns, for each LF image, the intersection of the lens plane with the line from its LF camera
+// to the focus point of the plate's middle. Empty if there is no such focus point.
 std::vector<Vec2> SeenThrough(const ImageIndex& index, const RenderCamera& frame,
                               std::span<const SelectedImage> near);
 
 // Returns the sampling around the lens of a frame.
-//   near               ImagesNearLens()
-//   camera_distance_w  CameraDistanceAround() (render/collect/around_lens.h) in the whole light
-//                      field
+//   near               the result of ImagesNearLens()
+//   camera_distance_w  CameraDistanceAround() (collector/around_lens.h) in the whole light field
 FrameSampling SamplingOf(const ImageIndex& index, const RenderCamera& frame,
                          std::span<const SelectedImage> near, double camera_distance_w);
 
-// Returns the sampling for any estimator: it uses the LF images near the lens that have rays for at
-// least one estimator.
+// Returns the sampling around the lens for any estimator: it considers the LF images near the lens
+// that have rays for at least one estimator.
 FrameSampling SamplingOf(const ImageIndex& index, const RenderCamera& frame,
                          const SelectOptions& select, ThreadPool& pool);
-// SelectOptions::reach that selects these LF images.
+// Value of SelectOptions::reach that selects the LF images that have rays for at least one
+// estimator.
 inline constexpr PixelReach kWidestReach = PixelReach::kNeighbours;
 
 struct QueryOptions {
-  double sigma_st = 0.5;     // in distances between LF cameras; wider if LF cameras are far away
+  double sigma_st = 0.5;     // in distances between LF cameras; the least width
   double sigma_uv = 0.35;    // in elements, or in LF pixels if these are larger
-  int lens_point_count = 0;  // in a set; 0: enough for kernels to overlap, 8 to 256
+  int lens_point_count = 0;  // in a set; 0: 8 to 256, so that kernels overlap
   int lens_sets = 1;         // k: sets of k x k elements (lens_points.h)
   uint64_t seed = 0;
 };
 
-// Returns the queries of a frame: rays through all of its lens points. The sampling must have LF
-// cameras.
-//   seen_through  SeenThrough(): the width of each point's kernel follows from the distance to the
-//                 nearest of these; none: it follows from hole_w
+// Returns the queries of a frame: the rays through all of its lens points.
+// sampling.lf.camera_distance_w must be above 0.
+//   seen_through  the result of SeenThrough(): the kernel of a lens point is the wider, the farther
+//                 the nearest of these points is; unset: hole_w is used instead of this distance
 FrameQueries QueriesOf(const RenderCamera& frame, const FrameSampling& sampling,
                        const QueryOptions& options,
                        std::optional<std::span<const Vec2>> seen_through = {});
 
-// Returns the largest distance from the rim of the lens of the LF cameras that a frame depends on:
-// those whose rays are rebinned with the default options, and those that lens weights are measured
-// against.
+// Returns the distance from the rim of the lens, in world units, up to which a frame depends on LF
+// cameras. These are the LF cameras whose rays are rebinned with the default options, and those
+// against which lens weights are measured.
 double NeighbourReach_w(const RenderCamera& frame, const FrameSampling& sampling);
 
 }  // namespace lf

@@ -14,7 +14,7 @@ namespace lf {
 namespace {
 
 constexpr int kLeastNodes = 17, kMostNodes = 65;
-constexpr size_t kMostNodeValues = size_t{1} << 17;  // of all nodes and lens points
+constexpr size_t kMostNodeValues = size_t{1} << 17;  // number of nodes times lens points
 
 }  // namespace
 
@@ -42,8 +42,9 @@ LensGaps::LensGaps(const ImageIndex& index, const RenderCamera& frame,
   asks_in_the_end_ = AsksAt(kInTheEnd);
 }
 
-// Chooses so many nodes that, from a node to the next, the lens point of an LF camera moves by half
-// the distance within which rays cover a point.
+// Chooses the number of nodes. From one node to the next, the point where an LF camera's ray meets
+// the lens plane shall move by at most half the distance kCoveredDistances. There are kLeastNodes
+// to kMostNodes columns and rows, and at most kMostNodeValues values unless kLeastNodes need more.
 void LensGaps::SetNodes(const std::vector<LfImageId>& near, const ImageIndex& index) {
   constexpr size_t kAsked = 64;
   const RenderCamera& frame = all_.camera;
@@ -89,7 +90,8 @@ void LensGaps::FindGaps(const std::vector<LfImageId>& near, const ImageIndex& in
   const double near_w =
       std::max(kCoveredDistances * distance_w,
                std::sqrt(Area(frame.aperture) / static_cast<double>(points.size())));
-  // Reach of each point: rays within it may cover the point or answer its query.
+  // Squared reach of each lens point: only LF cameras within the reach may cover the point, or have
+  // rays for its kernel.
   std::vector<double> reach2_w2;
   for (size_t set = 0; set < all_.points.sets.size(); ++set)
     for (size_t i = 0; i < all_.points.sets[set].size(); ++i) {

@@ -1,12 +1,13 @@
-// The parts of a frame's lens that no collected ray passes, element by element. They are computed
-// from calibrations alone, before an LF image is read (thesis 4.3.3).
+// Finds the parts of a frame's lens that no collected ray passes through, for each element. Needs
+// only calibrations, so that it can be done before an LF image is read (thesis 4.3.3).
 //
-// The lens is represented by points spread over it. A point is covered for an element once the
-// collected LF images have a ray to that element which passes the lens near the point: within
-// kCoveredDistances times the distance between LF cameras, or within the distance between lens
-// points, whichever is more. Points that are not covered are gaps, and ask for rebinned rays. This
-// detects an aperture that is larger than the captured band, and one that lies between LF cameras.
-// A point asks for nothing if no LF camera within the reach of its kernel sees the element.
+// The lens is represented by points spread over it (lens points). A lens point is covered for an
+// element once the collected LF images have a ray that lands in this element and passes through the
+// lens near the point. "Near" means within kCoveredDistances times the distance between LF cameras,
+// or within the distance between lens points, whichever is larger. A lens point that is not covered
+// is a gap: rebinned rays are used for it. This detects an aperture that is larger than the
+// captured band, and an aperture that lies between LF cameras. A lens point is no gap if no LF
+// camera within the reach of its kernel sees the element, because no rebinned ray could fill it.
 #pragma once
 
 #include <cstdint>
@@ -24,46 +25,49 @@
 
 namespace lf {
 
-// Distance within which a ray covers a lens point, in distances between LF cameras around the lens.
+// Distance up to which a ray covers a lens point, in distances between LF cameras around the lens.
 inline constexpr double kCoveredDistances = 1.5;
-// A node asks for nothing if at most this part of its lens points is missing.
+// Gaps are tested at nodes, elements on a grid over the plate. A node needs no rebinned rays if at
+// most this share of its lens points are gaps.
 inline constexpr double kLittleMissing = 0.1;
-// Returns the weights with which the frame collects the rays of an LF image; none if it collects
-// none.
+// Returns the weights with which the frame collects the rays of an LF image; RayWeights::are_none()
+// if it collects none of them.
 using CollectedWeights = std::function<RayWeights(LfImageId id)>;
 
 class LensGaps {
  public:
-  //   collected          empty: nothing is collected, and all lens points are asked for
-  //   lens_test          true if only rays inside the opening are collected (no lens weights)
-  //   places             of the LF images that the frame takes
-  //   camera_distance_w  CameraDistanceAround() in the whole light field, needed if the index is of
-  //                      a part of it; none: computed from the index
+  //   collected          empty: the frame collects no rays, and all lens points are gaps
+  //   lens_test          true if there are no lens weights, so that only rays through the opening
+  //                      of the lens are collected
+  //   places             places of the LF images that the frame takes
+  //   camera_distance_w  CameraDistanceAround() in the whole light field. Must be set if the index
+  //                      covers only a part of the light field; unset: measured in `index`
   LensGaps(const ImageIndex& index, const RenderCamera& frame, const CollectedWeights& collected,
            bool lens_test, const PlaceRange& places, const SelectOptions& select,
            const QueryOptions& options, ThreadPool& pool,
            std::optional<double> camera_distance_w = {});
 
-  // True if there are LF cameras around the lens, so that rebinned rays could answer.
+  // True if there are LF cameras around the lens, so that there can be rebinned rays.
   bool can_be_asked() const { return sampling_.lf.camera_distance_w > 0; }
   const FrameSampling& sampling() const { return sampling_; }
   const RenderCamera& camera() const { return all_.camera; }
-  // Number of LF images with a collected ray at a node.
+  // Number of LF images that have a collected ray at a node.
   size_t collected_count() const { return collected_places_.size(); }
-  // Returns the place behind the first `count` of these LF images, or behind all if there are
-  // fewer.
+  // Returns the place after the first `count` of the LF images that collected_count() counts; after
+  // all of them if there are fewer; 0 if `count` is 0.
   uint32_t PlaceAfter(size_t count) const;
 
-  // Returns the queries when the LF images at places before `place` are collected.
+  // QueriesAt() returns the queries when exactly the LF images at places before `place` are
+  // collected. AsksAt() returns true if there is a gap then.
   FrameQueries QueriesAt(uint32_t place) const;
   bool AsksAt(uint32_t place) const;
   bool asks_in_the_end() const { return asks_in_the_end_; }
-  // Place from which on queries do not change any more.
+  // First place from which on the queries do not change any more.
   uint32_t changes_until() const { return changes_until_; }
   static constexpr uint32_t kInTheEnd = UINT32_MAX - 1;
 
-  // Returns the frame's camera with a lens and a plate that contain the reach of all its queries:
-  // rays that pass beside the plate contribute to the elements at its edge.
+  // Returns the frame's camera with its lens and plate enlarged by the reach of the kernels,
+  // because rays that land beside the plate contribute to the elements at its edge.
   RenderCamera ReachedCamera() const;
 
  private:
@@ -76,15 +80,16 @@ class LensGaps {
   FrameSampling sampling_;
   FrameQueries all_;
   bool is_collected_ = false;
-  NodeAxis columns_{1};  // nodes over the plate
+  NodeAxis columns_{1};  // grid of nodes over the plate
   NodeAxis rows_{1};
-  // Place from which on a lens point is covered: behind the first LF image that covers it;
-  // UINT32_MAX: never; 0: no LF camera within its reach sees the element, so no rebinned ray could
-  // answer.
+  // Place from which on a lens point is covered at a node: one after the place of the first LF
+  // image that covers it. UINT32_MAX: never covered. 0: no LF camera within reach sees the element,
+  // so that the point is no gap.
   std::vector<uint32_t> covered_from_;  // [rows][columns][points]
   uint32_t changes_until_ = 0;
   bool asks_in_the_end_ = false;
-  std::vector<uint32_t> collected_places_;  // ascending
+  // places of the LF images that collected_count() counts, ascending
+  std::vector<uint32_t> collected_places_;
 };
 
 }  // namespace lf

@@ -9,8 +9,8 @@
 namespace lf {
 namespace {
 
-// Returns 12 x 12 parallel LF cameras, 0.01 apart in the plane of the lens, or only some rows of
-// them.
+// Returns `rows` rows of 12 parallel LF cameras, 0.01 apart, in the lens plane of a frame with z =
+// 0.
 LightField Grid(int rows = 12) {
   LightField field;
   field.intrinsics = {{70, 70, 32, 24, 0, 64, 48}};
@@ -69,7 +69,8 @@ TEST(LensGaps, NothingIsCollectedBeforeTheFirstImageAndLessIsMissingWithEach) {
   EXPECT_FALSE(gaps.AsksAt(gaps.changes_until()));
 }
 
-// The lens is twice as high as the rows of LF cameras: gaps are above and below, and nowhere else.
+// The lens extends beyond the rows of LF cameras: gaps are above and below the rows, and nowhere
+// else.
 TEST(LensGaps, ALensLargerThanTheBandIsNoticedBySectors) {
   const LensGaps gaps = GapsOf(Grid(4), Frame(0.06));
   const FrameQueries queries = gaps.QueriesAt(LensGaps::kInTheEnd);
@@ -85,7 +86,7 @@ TEST(LensGaps, ALensLargerThanTheBandIsNoticedBySectors) {
     }
   }
   EXPECT_GE(missing, 2);
-  // Far from LF cameras, kernels are wide enough to reach them.
+  // The kernels of lens points far from LF cameras are wide enough to reach LF cameras.
   EXPECT_GT(queries.points.MostSpread(), 1.3);
 }
 
@@ -100,8 +101,8 @@ TEST(LensGaps, ASmallLensBetweenCamerasAsksForEverything) {
   EXPECT_FALSE(GapsOf(Grid(), there).AsksAt(LensGaps::kInTheEnd));
 }
 
-// From a lens outside the plane of the LF cameras, elements see different LF cameras: through a
-// small lens, some elements see one and others none.
+// If the lens is outside the plane of the LF cameras, elements see different LF cameras. Through a
+// small lens, some elements see an LF camera and others see none.
 TEST(LensGaps, GapsAreDifferentAllOverThePlate) {
   const LensGaps gaps = GapsOf(Grid(), Frame(0.003, 0, -0.3));
   const double share = AskedShare(gaps.QueriesAt(LensGaps::kInTheEnd));
@@ -110,7 +111,7 @@ TEST(LensGaps, GapsAreDifferentAllOverThePlate) {
 }
 
 // A lens with a radius of three camera distances contains about 28 LF cameras. An LF camera that
-// sees only a part of the plate counts.
+// sees only a part of the plate is counted.
 TEST(LensGaps, KnowsWhatIsCollectedAndWhen) {
   const LightField field = Grid();
   const LensGaps gaps = GapsOf(field, Frame(0.03));
@@ -129,10 +130,11 @@ TEST(LensGaps, KnowsWhatIsCollectedAndWhen) {
   EXPECT_LE(before, 144u);
 }
 
-// If LF images end close to a side of the plate, only the elements at that side ask.
+// If LF images end close to a side of the plate, only the elements at that side need rebinned rays.
 TEST(LensGaps, ElementsAtARimAskAlone) {
   RenderCamera frame = Frame(0.03);
-  // LF images are 64 pixels wide at a focal length of 70: the tangent is 0.457 to either side.
+  // LF images are 64 pixels wide at a focal length of 70 pixels: they end at the tangent 0.457 (32
+  // / 70). The plate ends at 0.47.
   frame.pinhole.intrinsics = {80 / 0.47 / 2, 80 / 0.47 / 2, 40, 30, 0, 80, 60};
   const FrameQueries queries = GapsOf(Grid(), frame).QueriesAt(LensGaps::kInTheEnd);
   const auto asks = [&](int x, int y) {

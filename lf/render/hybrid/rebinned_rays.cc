@@ -14,16 +14,18 @@
 namespace lf {
 namespace {
 
-// Number of LF pixels whose rays wait for the map at the same time; a waiting ray takes 16 bytes.
+// Largest number of LF pixels, about, whose rays are computed before they are inserted into the
+// map. A ray that waits takes 16 bytes.
 constexpr long long kPixelsAtOnce = 4 << 20;
-// If all rays are kept, LF images are cut into strips of so many rows, which bounds the waiting
-// rays.
+// If all rays are kept, LF images are divided into strips of this number of rows, which limits the
+// number of rays that wait.
 constexpr int kStripRows = 64;
-// About so many LF images are used to estimate the number of asked rays. All rays are kept if the
-// estimate is at most this share of the cells that fit.
+// At most kEstimatedFrom LF images are used to estimate the number of rays that frames need. All
+// rays are kept if the estimate is at most kFitShare times the number of cells that fit.
 constexpr size_t kEstimatedFrom = 256;
 constexpr double kFitShare = 0.9;
-// Expected cells per estimated ray, if all rays are kept or only those at edges.
+// Expected cells per estimated ray: kRoom if all rays are kept, kRoomByEdges if only rays at edges
+// are kept.
 constexpr double kRoom = 1.1, kRoomByEdges = 0.15;
 
 bool Covers(const CoverageMap& map, const Slab& slab, CellKey cell) {
@@ -43,15 +45,15 @@ const char* NameOf(KeptRays kept) {
   }
 }
 
-// Consecutive frames with a slab of their own.
+// Consecutive frames of asking_ that share a slab, and their rays.
 struct RebinnedRays::Section {
   SlabSection plan;        // begin and end are indices of asking_
-  CoverageMap in_the_end;  // rays that finished frames ask for
-  CoverageMap previews;    // rays that previews of this phase ask for
+  CoverageMap in_the_end;  // covers the rays that finished frames need
+  CoverageMap previews;    // covers the rays that previews of this phase need
   std::unique_ptr<RayMap> map;
   uint32_t phase = 0;
   uint32_t places_done = 0;
-  std::optional<std::vector<BinnedCell>> cells = {};  // cached cells of the map; none: map changed
+  std::optional<std::vector<BinnedCell>> cells = {};  // cached cells of the map; unset: changed
 };
 
 RebinnedRays::RebinnedRays(const ImageIndex& index, const FilmSlabs& slabs,
@@ -77,8 +79,9 @@ RebinnedRays::RebinnedRays(const ImageIndex& index, const FilmSlabs& slabs,
   for (const auto& section : sections_) Begin(0, *section);
 }
 
-// Consecutive frames of one slab are a section. Its bounds are those of its frames in this pass, so
-// that coverage maps are not coarser than necessary.
+// Makes a section of each group of consecutive frames with the same slab. The bounds of a section
+// contain only the rays of its frames in this pass, so that coverage maps are not coarser than
+// necessary.
 void RebinnedRays::MakeSections(const FilmSlabs& slabs, std::span<const FrameId> frames) {
   for (size_t begin = 0; begin < asking_.size();) {
     const size_t slab = *slabs.SlabOf(frames[asking_[begin]]);
@@ -100,8 +103,9 @@ void RebinnedRays::MakeSections(const FilmSlabs& slabs, std::span<const FrameId>
 
 RebinnedRays::~RebinnedRays() = default;
 
-// Estimates the number of rays that finished frames ask for by the covered squares of some LF
-// images all over the order. Then decides which rays are kept, and makes the maps.
+// Estimates the number of rays that finished frames need: for some LF images, spread over the
+// order, it finds the share of their squares of pixels that in_the_end covers. Then decides which
+// rays are kept, and makes the maps.
 void RebinnedRays::MakeMaps(const ImageIndex& index, std::span<const PlaceRange> places) {
   std::vector<PlaceRange> taken;
   for (const size_t f : asking_) taken.push_back({0, places[f].end});
@@ -109,7 +113,7 @@ void RebinnedRays::MakeMaps(const ImageIndex& index, std::span<const PlaceRange>
       SelectImages(index, ReachedCameras(), select_, pool_, taken);
   const size_t step = 1 + images.size() / kEstimatedFrom;
   const size_t asked = (images.size() + step - 1) / step;
-  std::vector<double> totals;  // of sections
+  std::vector<double> totals;  // estimated rays of each section
   for (const auto& section : sections_) {
     std::vector<double> rays(asked);
     pool_.ForEach(asked, [&](size_t i) {
@@ -132,7 +136,7 @@ void RebinnedRays::MakeMaps(const ImageIndex& index, std::span<const PlaceRange>
 }
 
 // Begins a phase: updates the coverage of previews, and drops the cells that only earlier previews
-// asked for.
+// needed.
 void RebinnedRays::Begin(uint32_t phase, Section& section) {
   section.phase = phase;
   std::vector<FrameQueries> queries;
@@ -161,7 +165,7 @@ const RayMap& RebinnedRays::map(size_t section) const { return *sections_[sectio
 
 void RebinnedRays::Restore(size_t number, RayMap map, uint32_t places_done) {
   Section& section = *sections_[number];
-  // The coverage of previews must be that of the phase in which the last LF image was taken.
+  // Restores the coverage of previews that was valid when the last LF image was taken.
   if (places_done > 0) Begin(PhaseOf(places_done - 1), section);
   *section.map = std::move(map);
   section.places_done = places_done;
@@ -201,7 +205,7 @@ void RebinnedRays::Take(std::span<const BatchImage> images, uint32_t place_end) 
     const auto left = images.subspan(static_cast<size_t>(first - images.begin()));
     section->places_done = place_end;
     if (left.empty()) continue;
-    // A batch never extends into the next phase.
+    // A batch never extends into the next phase, because decision_places ends batches there.
     const uint32_t phase = PhaseOf(left.front().place);
     LF_CHECK(PhaseOf(left.back().place) == phase);
     if (phase != section->phase) Begin(phase, *section);
@@ -224,7 +228,8 @@ void RebinnedRays::Rebin(std::span<const BatchImage> images, Section& section) {
   std::vector<Task> tasks;
   for (size_t i = 0; i < images.size(); ++i) {
     if (rects[i].empty()) continue;
-    // If rays are kept by edges, an LF image is not cut, so that its edges are computed once.
+    // If only rays at edges are kept, an LF image is not divided into strips, so that its edges are
+    // computed once.
     const int rows = by_edges ? rects[i].y_end : kStripRows;
     for (int y = rects[i].y_begin / rows * rows; y < rects[i].y_end; y += rows)
       tasks.push_back(
@@ -234,8 +239,9 @@ void RebinnedRays::Rebin(std::span<const BatchImage> images, Section& section) {
                                   {keeps_all_ ? nullptr : &section.in_the_end, &section.previews}};
   std::vector<BinnedRays> rays;
   for (size_t begin = 0; begin < tasks.size();) {
-    // The cells that other rays are averaged into depend on which LF images are inserted together.
-    // They are inserted one LF image at a time, so that batches make no difference.
+    // If rays that are not at edges are averaged into existing cells, the result depends on which
+    // LF images are inserted together. LF images are then inserted one at a time, so that the
+    // division into batches makes no difference.
     size_t end = begin;
     for (long long pixels = 0; end < tasks.size() && (pixels == 0 || pixels < kPixelsAtOnce);
          ++end) {
@@ -280,7 +286,7 @@ SplatFrame RebinnedRays::SplatOf(const Section& section, const FrameQueries& que
   return SplatBy(rays, queries, queries.points, queries.shares ? &*queries.shares : nullptr);
 }
 
-// Interpolates on the planes of the slab: one splat for each lens point, and their mean.
+// Interpolates with distances on the planes of the slab: the mean of one splat for each lens point.
 SplatFrame RebinnedRays::SplatOfPoints(const Section& section, const FrameQueries& queries) const {
   const Intrinsics& plate = queries.camera.pinhole.intrinsics;
   SplatFrame sum{Image<float>(plate.width_px, plate.height_px, 3),

@@ -1,12 +1,12 @@
-// The rebinned rays of the frames of one pass: keeps the rays that the frames ask for, LF image
-// after LF image, and interpolates the frames from them (thesis 4.3.2, 4.3.3).
+// The rebinned rays of the frames of one pass. Keeps the rays that the frames need, LF image after
+// LF image, and interpolates the frames from these rays (thesis 4.3.2, 4.3.3).
 //
-// The rays that a finished frame will ask for are known from calibrations (lens_gaps.h). All of
-// them are kept if there is room, otherwise those at edges (Eq. 4.4). Previews ask for more: while
-// few LF images are collected, rebinned rays at edges show the rest of the picture. The queries of
+// The rays that a finished frame needs are known from calibrations (lens_gaps.h). All of them are
+// kept if there is room, otherwise only rays at edges (Eq. 4.4). Previews need more rays: while few
+// LF images are collected, rebinned rays at edges fill the rest of the picture. The queries of
 // previews are updated before the LF images at places 64, 256, 1024, ...: cells that no query can
-// use any more are dropped, and once no frame asks for more, nothing is rebinned. All of this
-// depends on places, not on time, so the kept rays depend neither on the number of threads nor on
+// use any more are dropped, and rebinning stops once no frame needs more rays. All of this depends
+// on places, not on time, so that the kept rays depend neither on the number of threads nor on
 // interruptions.
 #pragma once
 
@@ -32,7 +32,7 @@
 
 namespace lf {
 
-// The rays that are kept, among those that finished frames ask for.
+// Which of the rays that finished frames need are kept.
 enum class KeptRays {
   kAuto,   // kAll if they fit in max_cells, otherwise kEdges
   kAll,    // all rays
@@ -47,21 +47,21 @@ struct RebinPassOptions {
   Previews previews = Previews::kAuto;
   QueryOptions query;
   // If true, distances between rays are measured on each frame's lens plane and focus plane. If
-  // false, they are measured on the planes of the slab, which needs query.lens_sets = 1.
+  // false, they are measured on the planes of the slab; query.lens_sets must then be 1.
   bool reparameterise = true;
-  // If true, SplatReference() interpolates the rays with its `nearest`: far slower.
+  // If true, the slower SplatReference() interpolates the rays, with `nearest` as its argument.
   bool is_reference = false;
   size_t nearest = 0;
   SlabChoices slab;
   CoverageOptions coverage;
-  size_t max_cells = 0;  // of all sections
+  size_t max_cells = 0;  // total for all sections
 };
 
 class RebinnedRays : public ImageConsumer {
  public:
-  // The light field of `index`, and `pool`, must outlive it.
-  //   slabs     of the film
-  //   frames    of the pass, ascending
+  // The light field of `index`, and `pool`, must outlive the object.
+  //   slabs     the slabs of the film
+  //   frames    the frames of the pass, ascending
   //   gaps      one for each frame
   //   places    one range for each frame: the LF images that the frame takes
   //   collects  true if the frames also collect rays
@@ -74,27 +74,29 @@ class RebinnedRays : public ImageConsumer {
   PixelRect RectOf(LfImageId id, uint32_t place) const override;
   void Take(std::span<const BatchImage> images, uint32_t place_end) override;
 
-  // Cameras whose lenses contain all rays that are asked for, to select LF images by: one for each
-  // frame that ever asks. asking_frames() are the indices of these frames.
+  // Cameras that select the LF images: their lenses and plates contain all rays that the frames
+  // need. There is one camera for each frame that ever needs rebinned rays; asking_frames() are the
+  // indices of these frames.
   std::vector<RenderCamera> ReachedCameras() const;
   const std::vector<size_t>& asking_frames() const { return asking_; }
 
-  // Returns the interpolated part of a frame when the LF images at places before `place` are
-  // collected.
-  //   frame  index in `frames`
+  // Returns the interpolated part of a frame when exactly the LF images at places before `place`
+  // are collected.
+  //   frame  index in the constructor's `frames`
   Completion Complete(size_t frame, uint32_t place);
 
-  // The state from which an interrupted render resumes. Consecutive frames with the same slab form
-  // a section, which has its own map and an equal part of the memory.
+  // The state from which an interrupted render resumes: a map of rays for each section. Consecutive
+  // frames with the same slab form a section. All sections get equal parts of the memory.
   size_t section_count() const { return sections_.size(); }
   const RayMap& map(size_t section) const;
   size_t max_cells_per_section() const { return max_cells_per_section_; }
   uint32_t places_done(size_t section) const;
-  //   map  of max_cells_per_section(), with the rays of all LF images at places before places_done
+  //   map  a map of max_cells_per_section() with the rays of all LF images at places before
+  //        places_done
   void Restore(size_t section, RayMap map, uint32_t places_done);
 
-  // Upper bound of the memory for so many cells: their map, the rays that are made of them for one
-  // frame, the rays that wait for the map, and the coverage maps.
+  // BytesOf() returns an upper bound of the memory for max_cells cells: their map, the rays of one
+  // frame that are made from them, the rays that wait to be inserted, and the coverage maps.
   static constexpr size_t kBytesPerCell = 100;
   static constexpr size_t kLeastCells = 1000;
   static size_t BytesOf(size_t max_cells) {
@@ -104,14 +106,15 @@ class RebinnedRays : public ImageConsumer {
   struct Facts {
     size_t section_count = 0;
     size_t cell_count = 0;
-    uint64_t looked_at = 0;  // number of covered LF pixels
+    uint64_t looked_at = 0;  // LF pixels within the coverage maps
     double cpu_s = 0;        // CPU time of all threads
-    bool keeps_all = false;  // all rays that finished frames ask for are kept, not only at edges
-    bool is_full = false;    // cells were dropped because there were more than max_cells
-    bool is_too_coarse = false;  // RayMap::is_too_coarse() of a section
+    // true: all rays that finished frames need are kept; false: only those at edges
+    bool keeps_all = false;
+    bool is_full = false;        // true: cells were dropped because there were more than max_cells
+    bool is_too_coarse = false;  // true if RayMap::is_too_coarse() is true for a section
   };
   Facts facts() const;
-  // Returns a sentence about the slab and the coverage of each section.
+  // Returns one line of text for each section, about its slab and coverage.
   std::vector<std::string> Describe() const;
 
  private:
@@ -132,8 +135,8 @@ class RebinnedRays : public ImageConsumer {
   const RebinPassOptions options_;
   ThreadPool& pool_;
   const std::vector<uint16_t> stored_values_;
-  std::vector<size_t> asking_;      // indices of frames that ask, and that have a slab
-  std::vector<AskedPixels> asked_;  // of these frames
+  std::vector<size_t> asking_;      // indices of the frames that need rays and have a slab
+  std::vector<AskedPixels> asked_;  // one for each frame of asking_
   std::vector<std::unique_ptr<Section>> sections_;
   SharedIdealPixels ideal_pixels_;
   bool keeps_all_ = false;

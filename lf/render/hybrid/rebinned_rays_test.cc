@@ -51,8 +51,8 @@ struct Fixture {
     std::vector<size_t> cells;
   };
 
-  // Takes all batches. After `interrupted_after` batches, moves the maps to another object, as a
-  // render that resumes does.
+  // Collects all batches. After `interrupted_after` batches, it moves the maps to another object,
+  // as a render that resumes does.
   Outcome Run(int threads, int batch, size_t interrupted_after = SIZE_MAX) const {
     ThreadPool pool(threads);
     const testing::NoiseStore store;
@@ -147,8 +147,8 @@ TEST(RebinnedRays, TheSameForAnyThreadsBatchesAndInterruptions) {
 TEST(RebinnedRays, OthersMayBeAveragedInTheSameWayEachTime) {
   Fixture fixture;
   fixture.options.kept = KeptRays::kEdges;
-  fixture.options.rebin.probability.alpha = 0.01;  // noise has edges everywhere
-  fixture.options.slab.r_st_w = 0.01;              // so wide that many rays share a cell
+  fixture.options.rebin.probability.alpha = 0.01;  // so that the noise images have edges everywhere
+  fixture.options.slab.r_st_w = 0.01;              // cells so wide that many rays share one
   fixture.options.slab.r_uv_w = 0.03;
   const Fixture::Outcome plain = fixture.Run(1, 16);
   fixture.options.rebin.averages_others = true;
@@ -159,7 +159,7 @@ TEST(RebinnedRays, OthersMayBeAveragedInTheSameWayEachTime) {
 }
 
 // While few LF images are collected, rays are kept for previews; later, only the rays that finished
-// frames ask for.
+// frames need.
 TEST(RebinnedRays, PreviewsAskForMoreThanTheFinishedFrames) {
   ThreadPool pool(2);
   const Fixture fixture;
@@ -184,13 +184,13 @@ TEST(RebinnedRays, PreviewsAskForMoreThanTheFinishedFrames) {
   Fixture without;
   without.options.previews = Previews::kOff;
   const Fixture::Outcome outcome = without.Run(1, 16);
-  // The counts differ by cells at the borders of the coverage.
+  // The two counts differ by cells at the borders of the covered region.
   EXPECT_NEAR(static_cast<double>(rays->facts().cell_count) / static_cast<double>(outcome.cells[0]),
               1, 0.4);
   EXPECT_GT(before, outcome.cells[0] * 64 / end);
 }
 
-// Frames that need few LF images have no previews, unless Previews::kOn asks for them.
+// With Previews::kAuto, frames that collect few LF images have no previews; with kOn they have.
 TEST(RebinnedRays, PreviewsAreOfFramesThatTakeLong) {
   ThreadPool pool(1);
   Fixture fixture;

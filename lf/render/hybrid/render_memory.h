@@ -1,4 +1,4 @@
-// Divides --memory between rebinned rays and collection, in each mode.
+// Divides the memory of a render (--memory) between rebinned rays and collection, for each mode.
 #pragma once
 
 #include <cstddef>
@@ -13,17 +13,18 @@ namespace lf {
 
 struct RenderMemory {
   MemoryPlan plan;
-  size_t max_cells = 0;    // of rebinned rays; 0 with RenderMode::kCollect
-  size_t rebin_bytes = 0;  // memory of these, in addition to plan.total_bytes
+  size_t max_cells = 0;    // of rebinned rays; 0 if the mode is kCollect
+  size_t rebin_bytes = 0;  // memory of the rebinned rays, in addition to plan.total_bytes
 };
 
 // Plans the memory of a render.
-//   max_cells       RebinPassOptions::max_cells; 0: as many as fit in half of the memory with
-//                   kRebin, or in a quarter with kHybrid
-//   frame_count     number of frames to render. With kRebin, all are in one pass.
-//   measured_bytes  memory for each frame, in addition to its plate, if noise is measured, else 0.
-//                   If noise is measured, frames of kRebin have plates.
-// kOutput: the memory is less than one frame needs. The message names the memory that is needed.
+//   max_cells       RebinPassOptions::max_cells; 0: as many as fit in half of the memory (kRebin),
+//                   or in a quarter of it (kHybrid)
+//   frame_count     number of frames to render. With kRebin, all of them are in one pass.
+//   measured_bytes  if noise is measured, the memory for each frame's moments, in addition to its
+//                   plate; otherwise 0. With kRebin, frames have plates only if this is above 0.
+// kOutput: the memory does not suffice for max_cells (or for RebinnedRays::kLeastCells), for one
+// frame, or, with kRebin and plates, for all frames. The message names the memory that is needed.
 Result<RenderMemory> PlanRenderMemory(size_t memory_bytes, RenderMode mode, size_t max_cells,
                                       const LightField& light_field, Estimator estimator,
                                       int plate_width, int plate_height, size_t frame_count,

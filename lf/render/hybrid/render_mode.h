@@ -1,4 +1,4 @@
-// Modes of a render: the rays that its frames are made of (doc/rebinning.md).
+// The mode of a render says which rays its frames are made of (doc/rebinning.md).
 #pragma once
 
 #include <optional>
@@ -10,8 +10,8 @@
 namespace lf {
 
 //   kCollect  collected rays
-//   kRebin    rays interpolated between rebinned ones
-//   kHybrid   collected rays, completed by rebinned ones in the gaps of the lens
+//   kRebin    rays that are interpolated between rebinned rays
+//   kHybrid   collected rays, completed by interpolated rays in the gaps of the lens
 enum class RenderMode { kCollect, kRebin, kHybrid };
 
 // Returns "collect", "rebin" or "hybrid".
@@ -21,7 +21,8 @@ std::optional<RenderMode> RenderModeOf(std::string_view name);  // nullopt: anot
 inline bool Collects(RenderMode mode) { return mode != RenderMode::kRebin; }
 inline bool Rebins(RenderMode mode) { return mode != RenderMode::kCollect; }
 
-// kUsage: LF images have opacities (RadianceEncoding::HasOpacity), which rebinned rays do not keep.
+// Returns kUsage if the mode rebins and the LF images have opacity
+// (RadianceEncoding::HasOpacity()), because rebinned rays do not keep it.
 Result<void> CheckOpacity(const RadianceEncoding& encoding, RenderMode mode);
 
 }  // namespace lf
