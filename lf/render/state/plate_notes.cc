@@ -16,12 +16,14 @@
 namespace lf {
 namespace {
 
-// Returns the shortest texts that give the same bits when they are read.
+// Returns the numbers as text, separated by spaces. Each number is the shortest text that is read
+// as the same bits.
 std::string Words(std::span<const double> numbers) {
   return fmt::format("{}", fmt::join(numbers, " "));
 }
 
-// Returns a JSON list in ASCII without control characters, because names may have any bytes.
+// Returns the names, up to kMostBytes, as a JSON list. It consists of printable ASCII, because
+// names may have any bytes.
 std::string NamesText(const std::vector<std::string>& names) {
   constexpr size_t kMostBytes = size_t{256} << 10;
   const auto text_of = [](const Json& json) {
@@ -36,8 +38,8 @@ std::string NamesText(const std::vector<std::string>& names) {
   return "[" + text + "]";
 }
 
-// Reads the values of keys, one after the other. Keeps the first fault; values with a fault are
-// arbitrary.
+// Reads the values of keys, one after the other. fault() is the first fault; a value with a fault
+// is arbitrary.
 class NotesReader {
  public:
   NotesReader(const PlateEntries& entries, const std::string& name)

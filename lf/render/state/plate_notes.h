@@ -1,5 +1,5 @@
-// Notes in a finished plate: entries in its file from which a picture can be made anywhere,
-// without the light field and the path (doc/formats/plate.md, keys "sheet.").
+// The sheet of a finished plate: entries in its file that suffice to develop the plate without the
+// light field and the path (doc/formats/plate.md, keys "sheet.").
 #pragma once
 
 #include <cstdint>
@@ -23,17 +23,18 @@ struct PlateNotes {
   RenderCamera camera;
   double fps = 0;
   Estimator estimator = Estimator::kBilinear;
-  std::string version;  // of the program
-  FrameRays rays;       // in the plate
-  // If set, the frame was finished early, with the LF images before this place of the order.
+  std::string version;  // version of the program
+  FrameRays rays;       // rays in the plate
+  // If set, the frame was finished early: its plate has only the LF images before this place of the
+  // order.
   std::optional<uint32_t> places_done = std::nullopt;
-  // Number and names of the LF images that the frame takes, and that are missing or broken. A file
-  // has only as many names as fit in 256 KiB.
+  // Number and names of the LF images that the frame should have, but that are missing or broken.
+  // TextOf() writes only the first names, up to 256 KiB.
   uint64_t skipped_count = 0;
   std::vector<std::string> skipped = {};
   DevelopOptions develop;  // without completion and is_interrupted
 
-  // Facts about lens weights (render/collect/frame_lens.h); none without them.
+  // Facts about lens weights (collector/frame_lens.h); unset if there are no lens weights.
   struct Weighed {
     double hat_share = 0;
     LensCoverage coverage;
@@ -42,10 +43,10 @@ struct PlateNotes {
   std::optional<Weighed> weighed;
 };
 
-// Returns the entries of the notes.
+// Returns the entries of a sheet for the file of its plate.
 PlateEntries TextOf(const PlateNotes& notes);
 
-// Returns the notes of the entries. Numbers have the same bits as before TextOf().
+// Reads the entries that TextOf() returned. Numbers have the same bits as in the original sheet.
 //   width_px, height_px  of the plate
 // kInput: a key is missing, or its value is invalid. The message begins with `name`.
 Result<PlateNotes> PlateNotesOf(const PlateEntries& entries, int width_px, int height_px,

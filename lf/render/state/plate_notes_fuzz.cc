@@ -1,5 +1,5 @@
-// Any lines "key: value" are notes or an error. Notes are the same when they are written and read
-// again.
+// FrameSheetOf() must accept or refuse any lines "key: value". A sheet that it accepts must not
+// change when it is written and read again.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

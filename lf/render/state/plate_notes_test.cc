@@ -65,7 +65,7 @@ TEST(PlateNotes, NamesOfLfImagesThatAreMissingComeBackInAnyBytes) {
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(read->skipped_count, 5u);
   EXPECT_EQ(read->skipped, notes.skipped);
-  // The notes have only as many names as fit into a plate's text; the count is that of all.
+  // The text has only the first names, up to a limit; the count includes all names.
   notes.skipped.assign(100'000, "a_name_of_some_length.png");
   notes.skipped_count = notes.skipped.size();
   const Result<PlateNotes> many = PlateNotesOf(TextOf(notes), 96, 64, "p");
@@ -116,7 +116,7 @@ TEST(PlateNotes, FaultsAreNamed) {
   }
   EXPECT_NE(fault("sheet.aperture", "1 2 0"), "");
   EXPECT_NE(fault("sheet.develop", "0 0 1 1 1 1 0 0 0 1 0 0 0 1"), "");
-  EXPECT_EQ(fault("sheet.weights", {}), "");  // without lens weights
+  EXPECT_EQ(fault("sheet.weights", {}), "");  // as for a frame without lens weights
 }
 
 }  // namespace

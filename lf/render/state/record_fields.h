@@ -1,5 +1,5 @@
-// Reads values from our own JSON files (reports, jobs), which may be damaged. Only for sources that
-// include nlohmann's JSON anyway.
+// Reads values from our own JSON files (reports, jobs), which may be damaged. To be included only
+// by sources that need nlohmann's JSON in any case.
 #pragma once
 
 #include <fmt/format.h>
@@ -19,8 +19,8 @@ namespace lf {
 
 using Json = nlohmann::ordered_json;
 
-// Reads the values of one object by their keys. The value of a missing key keeps its default. The
-// first value of a wrong type is described in `fault`.
+// Reads values of a JSON object by their keys. Get() leaves `value` unchanged if the key is missing
+// or the type is wrong. `fault` receives a description of the first wrong type.
 class RecordFields {
  public:
   RecordFields(const Json& object, std::string* fault) : object_(object), fault_(*fault) {
@@ -85,7 +85,7 @@ class RecordFields {
       values->push_back(item->get<std::string>());
     }
   }
-  // Returns the items of a list; none if it is missing.
+  // Returns the items of a list; empty if the key is missing or its value is no list.
   std::vector<const Json*> List(const char* key) {
     std::vector<const Json*> list;
     const Json* json = Find(key);
@@ -112,8 +112,8 @@ class RecordFields {
   std::string& fault_;
 };
 
-// Returns the object in a text if its "format" is the expected one. Otherwise returns an empty
-// object, and `fault` says why.
+// Returns the JSON object in a text, if the value of its key "format" is `format`. Otherwise
+// returns an empty object and sets `fault` to the reason.
 inline Json ParseRecord(std::string_view text, const char* format, std::string* fault) {
   Json json = Json::parse(text, nullptr, false);
   std::string found;
@@ -126,8 +126,8 @@ inline Json ParseRecord(std::string_view text, const char* format, std::string* 
   return fault->empty() ? std::move(json) : Json::object();
 }
 
-// Returns the text of a JSON value. Names may have any bytes; bytes that are not UTF-8 are
-// replaced.
+// Returns the text of a JSON value. Bytes that are not UTF-8 are replaced, because names may have
+// any bytes.
 inline std::string RecordText(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

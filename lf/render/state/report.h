@@ -1,6 +1,6 @@
-// The report of a render: report.json, and the numbers that people are shown. The state of an
-// interrupted render also consists of reports: one of each finished frame, and one of the times and
-// the skipped LF images.
+// The report of a render: the contents of report.json, from which programs also print numbers for
+// people. The state of an interrupted render contains reports, too: one for each finished frame,
+// and one with the times and the skipped LF images.
 #pragma once
 
 #include <array>
@@ -22,7 +22,8 @@
 
 namespace lf {
 
-// Samples of a frame with --stop-when or --require: the number asked for, and the measured ones.
+// Samples of a frame with --stop-when or --require "samples>=N": N (`asked`), and the measured
+// samples.
 struct FrameSamples {
   uint32_t asked = 0;
   SampleShare measured;
@@ -31,50 +32,50 @@ struct FrameSamples {
 // Noise of a frame with --stop-when or --require "noise<=X" (render/collect/noise_rule.h).
 struct FrameNoise {
   double asked = 0;               // X, in linear radiance
-  std::optional<double> reached;  // none: too few LF images, or no reachable element
-  uint32_t places = 0;            // measured with the LF images before this place of the order
-  uint64_t image_count = 0;       // of these, LF images with rays in the frame
+  std::optional<double> reached;  // unset: too few LF images, or no reachable element
+  uint32_t places = 0;            // the LF images before this place of the order were collected
+  uint64_t image_count = 0;       // number of these LF images that have rays in the frame
 };
 
 struct FrameReport {
   FrameId frame;
   FrameRays rays;
-  // Per channel R, G, B.
-  std::array<uint64_t, 3> empty_element_count{};  // without a ray of their own, not interpolated
+  // The next three have one value for each of the channels R, G, B.
+  std::array<uint64_t, 3> empty_element_count{};  // without a collected ray, and not interpolated
   std::array<uint64_t, 3> min_count{};
   std::array<uint64_t, 3> median_count{};
   double develop_s = 0;
-  std::optional<FrameSamples> samples;  // if they were asked for
+  std::optional<FrameSamples> samples;  // set if a rule of samples was given
   RunInputs camera;                     // InputsOfCamera()
-  // Facts about lens weights, with which counts are sums of weights; none without them.
+  // Facts about lens weights; unset if there are none. With lens weights, counts are sums of
+  // weights.
   struct Weighed {
-    double effective_count = 0;  // median over elements that LF images see
-                                 // (render/collect/frame_lens.h)
-    double hat_share = 0;        // part of hats in the weights
+    double effective_count = 0;  // median over elements that LF images see (collector/frame_lens.h)
+    double hat_share = 0;  // share of the hat weights in all weights
     LensCoverage coverage;
   };
   std::optional<Weighed> weighed = std::nullopt;
-  // If set, the frame was finished early (RenderOptions::finish_early), with the LF images before
-  // this place of the order.
+  // If set, the frame was finished early (FolderOptions::finish_early): it has only the LF images
+  // before this place of the order.
   std::optional<uint32_t> places_done = std::nullopt;
-  // With rebinned rays, the share of the picture that is interpolated between them.
+  // The share of the picture that is interpolated from rebinned rays; unset if there are none.
   std::optional<double> interpolated_share = std::nullopt;
-  std::optional<FrameNoise> noise = std::nullopt;  // if it was asked for
+  std::optional<FrameNoise> noise = std::nullopt;  // set if a rule of noise was given
 };
 
 // Facts about rebinned rays (render/hybrid/rebinned_rays.h).
 struct RebinReport {
-  size_t slab_count = 0;         // of the pass with most slabs
-  uint64_t cell_count = 0;       // at the end of the pass with most cells
-  uint64_t looked_at_count = 0;  // covered LF pixels
+  size_t slab_count = 0;         // largest number in a pass
+  uint64_t cell_count = 0;       // largest number at the end of a pass
+  uint64_t looked_at_count = 0;  // LF pixels within the coverage maps
   double cpu_s = 0;              // CPU time from LF pixels to cells
-  // "all": all rays that frames ask for; "edges": those at edges; "some": fewer, because there was
-  // no room. Unless it is "all", the picture of a frame depends on which frames are rendered with
-  // it.
+  // Which of the rays that finished frames need were kept. "all": all of them; "edges": those at
+  // edges; "some": not even these, because there was no room. Unless it is "all", the picture of a
+  // frame depends on which other frames are rendered in the same pass.
   std::string kept = "all";
 };
 
-// Report of one of several packages that were rendered by one call.
+// Report of one of the packages that one call of RenderPackages() has rendered.
 struct PackageReport {
   std::string name;
   size_t selected_image_count = 0;  // as in RenderReport
@@ -83,21 +84,21 @@ struct PackageReport {
 
 struct RenderReport {
   std::string version;
-  RunInputs inputs;  // of rays and pictures, the same for all frames
+  RunInputs inputs;  // InputsOfRays() and InputsOfPicture(), which all frames have in common
   Estimator estimator = Estimator::kNearest;
   int width = 0;
   int height = 0;
   int thread_count = 0;
-  size_t lf_image_count = 0;        // of the light field
-  bool has_masks = false;           // true if LF images have masks, as files or alpha; not written
-  size_t selected_image_count = 0;  // LF images read in the largest pass
+  size_t lf_image_count = 0;  // number of LF images of the light field
+  bool has_masks = false;     // true if LF images have masks, as files or alpha; not in the JSON
+  size_t selected_image_count = 0;  // LF images that the largest pass reads
   size_t pass_count = 0;
   std::vector<FrameReport> frames;
   // LF images that were skipped because they are missing or broken, each once.
   std::vector<SkippedImage> skipped;
   std::vector<PackageReport> packages;  // empty unless RenderPackages() was called
   double total_s = 0;
-  double load_cpu_s = 0;  // this and the next two as in CollectTimes
+  double load_cpu_s = 0;  // this and the next two are sums of CollectTimes
   double load_wall_s = 0;
   double collect_cpu_s = 0;
   std::optional<RebinReport> rebinning = std::nullopt;
@@ -105,24 +106,25 @@ struct RenderReport {
 
   uint64_t TestedRays() const;
   uint64_t AcceptedRays() const;
-  // Returns true if no frame has light, neither collected nor interpolated.
+  // Returns true if no frame has a collected or interpolated ray.
   bool IsBlack() const;
-  // Millions of accepted rays per CPU second of collection.
+  // Returns millions of accepted rays per CPU second of collection; 0 if collection took no time.
   double MraysPerSecondPerCore() const;
-  // Adds the skipped LF images whose names are not in the list yet.
+  // Adds to `skipped` those of `images` whose names are not in it yet.
   void AddSkipped(std::span<const SkippedImage> images);
 };
 
-// Returns the counts of a developed frame.
+// Returns a report with the counts of a developed frame.
 FrameReport MakeFrameReport(FrameId frame, const FrameRays& rays, const DevelopedFrame& developed);
 
-// Largest resident memory of this process so far.
+// Returns the largest resident memory of this process so far.
 uint64_t PeakMemoryBytes();
 
 std::string ToJson(const RenderReport& report);
 
-// Reads the parts of a report that a resumed render needs: inputs, frames, skipped LF images, times
-// and selected_image_count. kInput: the text is not a report. The message calls it `name`.
+// Reads the parts of a report that a resumed render needs: version, inputs, frames, skipped LF
+// images, times, rebinning and selected_image_count. kInput: the text is not a report. The message
+// begins with `name`.
 Result<RenderReport> ParseReport(std::string_view text, const std::string& name);
 Result<RenderReport> ReadReport(const std::filesystem::path& path);
 

@@ -1,4 +1,5 @@
-// Any text is a report or an error. A report is the same when it is written and read again.
+// ParseReport() must accept or refuse any text. A report that it accepts must have the same numbers
+// of frames and skipped LF images when it is written and read again.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>

@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kNoInput = "(none)";
 
-// Returns the values that a reader may want to see, then the hash of all values.
+// Returns a text of the values that a person may want to see, followed by the hash of all values.
 std::string EncodingText(const RadianceEncoding& encoding) {
   ValueHasher hasher;
   hasher.Add(static_cast<double>(encoding.bayer));
@@ -48,7 +48,7 @@ std::string EncodingText(const RadianceEncoding& encoding) {
       encoding.max_radiance, encoding.pedestal, alpha, hasher.Text());
 }
 
-// Returns a text of the values that change colours when a plate is developed.
+// Returns a text of the values that decide the colours when a plate is developed.
 std::string ColoursText(const RadianceEncoding& encoding) {
   ValueHasher hasher;
   for (const double gain : encoding.white_balance) hasher.Add(gain);

@@ -1,5 +1,5 @@
-// The inputs of a frame as readable lines. By these, a resumed render checks that it has the inputs
-// that it was begun with, or tells which one differs.
+// The inputs of a frame as readable pairs of key and value. A resumed render compares its inputs
+// with those that it was begun with. If an input differs, the error message names it.
 #pragma once
 
 #include <optional>
@@ -19,11 +19,12 @@
 
 namespace lf {
 
-// Pairs (key, value) in the order in which they are written. Keys have the form of those in
-// film/plate/plate_file.h.
+// Pairs (key, value) in the order in which they are written. Keys have the form that
+// plate/plate_file.h describes.
 using RunInputs = std::vector<std::pair<std::string, std::string>>;
 
-// The options that decide the rays of a frame; the last three decide its picture.
+// The options that decide the rays of a frame. The last three options decide only how its picture
+// is made of the rays.
 struct RunChoices {
   RayReading reading;
   CollectBackEnd back_end = CollectBackEnd::kFast;
@@ -32,7 +33,7 @@ struct RunChoices {
   LensWeights lens_weights = LensWeights::kNone;
   std::optional<size_t> max_image_count;
   std::optional<double> max_angle_rad;
-  std::optional<uint32_t> stop_at_samples;  // at most one of the two stop rules is set
+  std::optional<uint32_t> stop_at_samples;  // at most one stop rule is set
   std::optional<double> stop_at_noise;
   // "as recorded", or the settings of the lossy codec that changed the pixels.
   std::string pixels = "as recorded";
@@ -41,36 +42,41 @@ struct RunChoices {
   int fill_radius_px = kFillRadius_px;
 };
 
-// The version of the ray model of doc/ray.md. It is raised when the same inputs give other rays.
+// The version of the ray model (doc/ray.md). A change of the code that gives other rays for the
+// same inputs raises it.
 inline constexpr int kRayModelVersion = 3;
 
-// Returns the inputs of the rays of all frames: the ray model's version, the light field (number of
-// LF images, and hashes of calibration, encoding and names) and the choices for rays. The folder of
-// the light field may move, and is no input; the contents of its image files are not compared.
-//   light_field  the whole light field, also for a package
+// Returns the inputs that decide the rays of all frames: the version of the ray model, the light
+// field (number of LF images, and hashes of calibration, encoding and names), and the choices for
+// rays. The folder of the light field is no input, because it may move. The contents of its image
+// files are not compared.
+//   light_field  identity of the whole light field, even if a package is rendered
 RunInputs InputsOfRays(const LightFieldIdentity& light_field, const RadianceEncoding& encoding,
                        const RunChoices& choices);
 
-// Returns the inputs of one frame: its number, and its camera in words and, exactly, as a hash.
+// Returns the inputs of one frame: its number, readable values of its camera, and a hash of the
+// exact camera.
 RunInputs InputsOfCamera(FrameId frame, const RenderCamera& camera);
 
-// Returns the inputs that only pictures depend on.
+// Returns the inputs that decide only the pictures.
 RunInputs InputsOfPicture(const RunChoices& choices);
 
-// The key of HashOfCameras() in the inputs of packages; other renders do not have it.
+// The key of HashOfCameras() in the inputs of packages. Other renders do not have this input.
 inline constexpr const char* kFilmOfPackage = "picture.film";
 
-// Returns a hash of all cameras of a film. Packages rendered into one folder must have the same.
+// Returns a hash of all cameras of a film. Packages that are rendered into one folder must have the
+// same hash.
 std::string HashOfCameras(const CameraPath& path);
 
-// The first key that differs, and both values; "(none)" is the value of a side without the key.
+// The first input that differs, and its two values. The value is "(none)" if a side lacks the key.
 struct InputDifference {
   std::string key;
   std::string recorded;
   std::string wanted;
 
   // Returns a text such as "was made with order area, this call has shuffle" if `one` is "was made
-  // with" and `other` is "this call has". An input that one side lacks is "no order".
+  // with" and `other` is "this call has". If one side lacks the input, its part of the text is "no
+  // KEY", such as "no order".
   std::string Text(const std::string& one, const std::string& other) const;
 };
 std::optional<InputDifference> FirstDifference(const RunInputs& recorded, const RunInputs& wanted);

@@ -24,7 +24,7 @@ constexpr const char* kNoise = "progress.noise";
 constexpr const char* kRaysExtension = ".rays";
 constexpr const char* kRaysFrames = "rays.frames";
 
-// Returns N of "frame_N.EXTENSION"; none for other names.
+// Returns N if the file name is "frame_N.EXTENSION"; nullopt for other names.
 std::optional<FrameId> FrameOf(const fs::path& path) {
   constexpr std::string_view kPrefix = "frame_";
   const std::string stem = path.stem().string();
@@ -36,7 +36,7 @@ std::optional<FrameId> FrameOf(const fs::path& path) {
   return frame;
 }
 
-// Adds to an error how to continue: a damaged plate costs only its frame.
+// Adds the remedy to an error: if a damaged file is removed, only its frame is rendered again.
 Error WithAdvice(const Error& error) {
   return {error.kind, error.message + "; remove the file to render its frame anew"};
 }
@@ -49,9 +49,11 @@ std::vector<fs::path> FilesOf(const fs::path& folder) {
   return files;
 }
 
-// Removes temporary files of processes that were killed, on any host. The lock ensures that no
+// Removes temporary files that killed processes left, on any host. The lock ensures that no other
 // process renders these frames now.
-//   frames  ascending; temporary files of other frames are not removed
+//   frames  ascending; temporary files of other frames stay
+//   is_shared  true if other processes may write into the folder: files that belong to no frame
+//              stay
 void RemoveTemporaryFiles(const fs::path& folder, const std::vector<FrameId>& frames,
                           bool is_shared) {
   constexpr const char* kOurs[] = {".run.", ".report.", ".contact_sheet.", ".rays_"};
@@ -69,8 +71,8 @@ void RemoveTemporaryFiles(const fs::path& folder, const std::vector<FrameId>& fr
   }
 }
 
-// Returns the name of the state's folder below partial/; empty for a render without package name
-// and shard.
+// Returns the name of the state's folder below partial/; empty if the render has neither a package
+// name nor a shard.
 std::string NameOf(const RunStateOptions& options) {
   if (!options.shard) return options.package;
   return options.package.empty() ? options.shard->Name()
@@ -165,8 +167,8 @@ Result<void> RunState::FindEarlierRun() {
                     "continues it, --overwrite removes it and starts anew",
                     partial_.string(), records_.size(), plates_.size()));
   }
-  // Report and contact sheet of an earlier run are removed: if this run fails, they would look like
-  // its own.
+  // The report and the contact sheet of an earlier render are removed. Otherwise, if this render
+  // fails, they would look like its results.
   std::error_code ignored;
   if (fs::exists(ReportPath(), ignored))
     LogWarning("{}: the finished render in this folder is replaced, frame by frame",
@@ -176,8 +178,8 @@ Result<void> RunState::FindEarlierRun() {
   return {};
 }
 
-// Compares the inputs with the reports of other packages in the folder, because frames of two films
-// in one folder would look like one film.
+// Compares the inputs with the reports of other packages and shards in the folder, because the
+// frames of two films in one folder would look like one film.
 Result<void> RunState::CheckOtherPackages() const {
   if (Name().empty()) return {};
   for (const fs::path& file : FilesOf(options_.folder)) {
@@ -209,12 +211,12 @@ Result<void> RunState::Read() {
   const fs::path report = ReportPath(), run = partial_ / "run.json";
   if (fs::exists(report)) LF_RETURN_IF_ERROR(ReadFinished(report));
   for (const FrameId frame : records_) LF_RETURN_IF_ERROR(ReadFinished(RecordPath(frame)));
-  // The totals of a complete render are in its report, and run.json is gone.
+  // Without run.json, the totals are those of the report: the earlier render was completed.
   if (fs::exists(run)) {
     LF_ASSIGN_OR_RETURN(earlier_, ReadReport(run));
   }
   for (auto plate = plates_.begin(); plate != plates_.end();) {
-    if (finished_.contains(*plate)) {  // the process was killed before it removed the plate
+    if (finished_.contains(*plate)) {  // the process was killed before it removed it
       std::error_code ignored;
       fs::remove(PlatePath(*plate), ignored);
       plate = plates_.erase(plate);
@@ -223,17 +225,18 @@ Result<void> RunState::Read() {
     LF_RETURN_IF_ERROR(CheckPlate(*plate));
     ++plate;
   }
-  // If no frame is left to render, the run only makes the contact sheet and the video.
+  // Nothing is logged if no frame is left to render, because the run then only makes the contact
+  // sheet and the video.
   if (finished_.size() < options_.frames.size() && (!finished_.empty() || !plates_.empty()))
     LogInfo("continuing: {} frames are finished, {} begun", finished_.size(), plates_.size());
   return {};
 }
 
-// Returns true if the file of a finished frame is there and whole. A truncated frame is rendered
-// again.
+// Returns true if the file of a finished frame exists and is whole (the plate of a shard only has
+// to exist). Otherwise the frame is rendered again.
 bool RunState::IsKept(const fs::path& picture) const {
   if (!fs::exists(picture)) return false;
-  if (options_.shard) return true;  // a plate is checked when it is read
+  if (options_.shard) return true;  // it is checked when it is read
   const Result<void> whole = CheckFileIsWhole(picture);
   if (!whole) LogWarning("{}; the frame is rendered again", whole.error().message);
   return whole.has_value();
@@ -243,8 +246,9 @@ Result<void> RunState::ReadFinished(const fs::path& path) {
   LF_ASSIGN_OR_RETURN(RenderReport report, ReadReport(path));
   for (FrameReport& frame : report.frames) {
     const RunInputs recorded = Joined(report.inputs, frame.camera);
-    // The user may have removed a frame to have it rendered again. If the format differs, the frame
-    // is elsewhere, and Check() reports the difference.
+    // A frame whose file is missing is rendered again, because the user may have removed it for
+    // this purpose. If the frame format differs, the file has another name, and Check() reports the
+    // difference.
     const bool has_format =
         std::find(recorded.begin(), recorded.end(), options_.picture.front()) != recorded.end();
     if (has_format && !IsKept(FinishedPath(frame.frame))) continue;

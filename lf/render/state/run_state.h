@@ -1,13 +1,13 @@
-// The state of an unfinished render, in DIR/partial/ of its output folder, or in DIR/partial/NAME/
-// for a package with a name. A render can be interrupted at any moment and resumes from its state
-// (doc/checkpoints.md).
+// The state of an unfinished render. It is in DIR/partial/ if DIR is the output folder, or in
+// DIR/partial/NAME/ for a package NAME. A render can be interrupted at any moment and resumes from
+// its state (doc/checkpoints.md).
 //
-//   lock              held by the process that renders
+//   lock              locked by the process that renders
 //   run.json          times so far and skipped LF images
-//   rays_0001_1.rays  rebinned rays of the frames from 1 on
+//   rays_0001_1.rays  rebinned rays of section 1 of the pass whose first frame is 1
 //   frame_0001.plate  the plate of an unfinished frame, its inputs and its progress
-//   frame_0001.exr    its picture, about as recent
-//   frame_0002.json   the report of a finished frame, and its inputs
+//   frame_0001.exr    a picture of the unfinished frame, about as recent as its plate
+//   frame_0002.json   the report and the inputs of a finished frame
 //
 // The state of a shard (shard.h) is in DIR/partial/shard_1_of_5/, or NAME.shard_1_of_5/. Its
 // finished frames are plates, DIR/partial/shards/shard_1_of_5/frame_0001.plate.
@@ -39,8 +39,8 @@ namespace lf {
 
 struct RunStateOptions {
   std::filesystem::path folder;  // DIR
-  std::string package;           // its name, if others are rendered into DIR at the same time
-  std::vector<FrameId> frames;   // of the package, ascending
+  std::string package;           // name; empty unless other packages may be rendered into DIR
+  std::vector<FrameId> frames;   // all frames of the package, ascending
   FrameFormat format = FrameFormat::kExrHalf;
   bool resume = false;     // continue with the state in the folder
   bool overwrite = false;  // remove the state in the folder
@@ -51,43 +51,46 @@ struct RunStateOptions {
 
 class RunState {
  public:
-  // Makes the folder, locks it and reads the state in it. The path must outlive the object.
-  // kUsage: the folder has an unfinished render, and neither resume nor overwrite is asked for; the
-  //   state was made from other inputs (the message names the first that differs, and both values);
-  //   or other packages were rendered into the folder from other inputs.
+  // Makes the folder, locks it and, with options.resume, reads the state in it. The path must
+  // outlive the object.
+  // kUsage: the folder has an unfinished render, and neither resume nor overwrite is set; the state
+  // was made from other inputs (the message names the first input that differs, and both values);
+  // or packages or shards that are in the folder were rendered from other inputs.
   // kInput: a file of the state is damaged.
-  // kOutput: the folder cannot be written, or another program renders into it.
+  // kOutput: the folder cannot be written, or another process renders into it.
   static Result<std::unique_ptr<RunState>> Open(const RunStateOptions& options,
                                                 const CameraPath& path);
-  ~RunState();  // leaves no empty partial/ behind
+  ~RunState();  // removes partial/ if it is empty
 
-  // Frames that an earlier run finished, and whose files are still there.
+  // Reports of the frames that are finished and whose files exist.
   const std::map<FrameId, FrameReport>& finished() const { return finished_; }
-  // Times and skipped LF images of earlier runs.
+  // Totals of earlier runs, such as times and skipped LF images; without frames.
   const RenderReport& earlier() const { return earlier_; }
   // True if the state has plates of unfinished frames, or rebinned rays.
   bool HasPlates() const { return !plates_.empty() || has_rays_; }
   bool HasPlate(FrameId frame) const { return plates_.contains(frame); }
 
-  // Path of a finished frame: of its picture, or of the plate of a shard.
+  // Returns the path of the file of a finished frame: its picture or, for a shard, its plate.
   std::filesystem::path FinishedPath(FrameId frame) const;
 
-  // Adds the rays of the frame's plate in the state, if there is one, to `plate`. Returns the
-  // progress of the frame.
+  // Adds the rays of the frame's plate in the state to `plate`, and returns the frame's progress.
+  // If the state has no plate of the frame, adds nothing and returns zeros.
   //   plate    empty, of the frame's size
-  //   moments  receives the moments that were saved with the plate, if there are any; may be null
+  //   moments  receives the moments that were saved with the plate, if any; null: they are not
+  //            needed
   // kInput: the plate is damaged.
   Result<FrameProgress> LoadPlate(FrameId frame, SensorPlate* plate,
                                   std::optional<NoiseMoments>* moments = nullptr) const;
-  // Writes the frame's plate and its moments, unless null, into one file, so that both are always
-  // of the same LF images. kOutput: the file cannot be written; the previous file is intact.
+  // Writes the frame's plate and its moments (unless null) into one file, so that both always have
+  // the same LF images. kOutput: the file cannot be written; the previous file is intact.
   Result<void> SavePlate(FrameId frame, const FrameProgress& progress, const SensorPlate& plate,
                          ThreadPool& pool, const NoiseMoments* moments = nullptr);
-  // Rebinned rays of one section of a pass. The pass is named by its first frame. `frames`
-  // describes the frames that the rays are for, on which they depend in addition to the inputs.
-  // LoadRays() returns none if the state has no such rays, or if it is not resumed.
-  // kUsage: the rays are for other frames, or from other inputs. kInput: the file is damaged, or
-  // has more than max_cells cells.
+  // LoadRays() and SaveRays() read and write the rebinned rays of one section of a pass. `first` is
+  // the first frame of the pass. `frames` describes all frames of the pass, because the rays depend
+  // on them in addition to the inputs. LoadRays() returns nullopt if the state has no such rays, or
+  // if RunStateOptions::resume is false.
+  // kUsage: the rays were made for other frames or from other inputs. kInput: the file is damaged,
+  // or has more than max_cells cells.
   struct Rays {
     RayMap map;
     uint32_t places_done = 0;
@@ -99,22 +102,24 @@ class RunState {
   void RemoveRays();
 
   Result<void> SaveTotals(const RenderReport& totals);
-  // Records that a frame is finished, and removes its unfinished files. Must be called after the
-  // frame's own file is written.
+  // Records that a frame is finished, and removes its plate and picture from the state. Must be
+  // called only after the file FinishedPath() is written.
   Result<void> SaveFinished(const FrameReport& frame);
   // Forgets that a frame is finished, so that it can be rendered again.
   void Forget(FrameId frame) { finished_.erase(frame); }
 
-  // Returns the entries of a plate's file, also for a plate that is kept beside the frames.
-  //   moments  may be null
+  // Returns the entries of the file of a plate, in the state or beside the frames: inputs, progress
+  // and moments.
+  //   moments  null: the entries contain no moments
   PlateEntries PlateText(FrameId frame, const FrameProgress& progress,
                          const NoiseMoments* moments = nullptr) const;
   std::filesystem::path PicturePath(FrameId frame) const;
 
-  // Removes the whole state.
+  // Removes the files of the state, except for `lock`.
   void RemoveAll();
   // Ends a finished render: writes report.json (report-NAME.json for a package), and removes the
-  // files of the state that are not needed any more.
+  // state. If the state still has plates of unfinished frames, only the reports of finished frames
+  // are removed.
   Result<void> Close(const RenderReport& report);
 
  private:
@@ -137,7 +142,7 @@ class RunState {
   const CameraPath& path_;
   std::filesystem::path partial_;
   FileLock lock_;
-  std::set<FrameId> plates_;   // frames with a plate in the state
+  std::set<FrameId> plates_;   // unfinished frames with a plate in the state
   std::set<FrameId> records_;  // finished frames with a report in the state
   bool has_rays_ = false;
   std::map<FrameId, FrameReport> finished_;

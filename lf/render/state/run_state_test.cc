@@ -38,7 +38,7 @@ class RunStateTest : public ::testing::Test {
          InputsOfRays(IdentityOf(field_), field_.encoding, choices), InputsOfPicture(choices)},
         path_);
   }
-  // Leaves a state with frame 2 begun and frame 3 finished.
+  // Leaves a state in which frame 2 is begun and frame 3 is finished.
   void LeaveUnfinished() {
     const std::unique_ptr<RunState> state = *Open(false);
     ASSERT_TRUE(state->SavePlate(FrameId{2}, progress_, plate_, pool_));
@@ -136,9 +136,10 @@ TEST_F(RunStateTest, WhatAKilledProcessLeftIsCleared) {
   std::ofstream(partial / ".frame_0002.123-00ab12cd.tmp.plate") << "half";
   std::ofstream(folder_ / ".frame_0003.123-00ab12cd.tmp.exr") << "half";
   std::ofstream(folder_ / ".hidden.tmp.txt") << "the user's";
-  // Another program renders frame 4, of another package, into the same folder.
+  // Another process renders frame 4, of another package, into the same folder.
   std::ofstream(folder_ / ".frame_0004.456-00ab12cd.tmp.exr") << "half";
-  // A process was killed between the record of a frame and the removal of its plate.
+  // A process was killed after it wrote the record of frame 3, and before it removed the plate of
+  // the frame.
   fs::copy(partial / "frame_0002.plate", partial / "frame_0003.plate");
   ASSERT_TRUE(Open(true));
   EXPECT_FALSE(fs::exists(partial / ".frame_0002.123-00ab12cd.tmp.plate"));
