@@ -51,7 +51,7 @@ std::vector<fs::path> FilesOf(const fs::path& folder) {
 
 // Removes temporary files that killed processes left, on any host. The lock ensures that no other
 // process renders these frames now.
-//   frames  ascending; temporary files of other frames stay
+//   frames     ascending; temporary files of other frames stay
 //   is_shared  true if other processes may write into the folder: files that belong to no frame
 //              stay
 void RemoveTemporaryFiles(const fs::path& folder, const std::vector<FrameId>& frames,
